@@ -1,0 +1,28 @@
+# Install rules and the two exports (install tree, build tree). Nothing in polybody depends on the
+# machine's architecture, so everything but the headers goes to share/.
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/polybody)
+
+install(TARGETS polybody EXPORT polybodyTargets FILE_SET HEADERS)
+install(EXPORT polybodyTargets NAMESPACE polybody:: DESTINATION ${package_dir})
+
+# polybodyConfig.cmake, good for both trees: it loads the polybodyTargets.cmake beside it.
+configure_package_config_file(
+  cmake/polybodyConfig.cmake.in polybodyConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(
+  polybodyConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+install(FILES ${PROJECT_BINARY_DIR}/polybodyConfig.cmake
+              ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake DESTINATION ${package_dir})
+
+# The build tree: -Dpolybody_DIR=<build directory>.
+export(EXPORT polybodyTargets NAMESPACE polybody:: FILE polybodyTargets.cmake)
+
+# polybody.pc: paths are relative to the file itself, so the installed tree may be moved.
+set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+file(RELATIVE_PATH pc_to_prefix ${CMAKE_INSTALL_FULL_DATADIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(cmake/polybody.pc.in polybody.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/polybody.pc DESTINATION ${pkgconfig_dir})
+
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

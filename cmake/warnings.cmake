@@ -1,0 +1,13 @@
+# polybody_warnings: linked by our own tests, examples and benchmarks; never by a user.
+add_library(polybody_warnings INTERFACE)
+target_compile_options(polybody_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
+
+if(POLYBODY_WERROR)
+  target_compile_options(polybody_warnings INTERFACE -Werror)
+  # GCC's flow analysis misfires inside inlined Eigen code; these stay warnings.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(
+      polybody_warnings
+      INTERFACE -Wno-error=maybe-uninitialized -Wno-error=array-bounds -Wno-error=stringop-overflow)
+  endif()
+endif()

@@ -1,0 +1,42 @@
+#pragma once
+/// \file
+/// Consistent starts: assembly of positions, projection of velocities, accelerations and multipliers.
+
+#include <polybody/integrators/forward_dynamics.hpp>
+
+namespace polybody {
+
+/// \throws InconsistentStart naming the joint that is violated most, when by more than `tolerance`.
+template <class M>
+void require_assembled(System<M>& system, State const& x, double tolerance = 1e-8) {
+  system.evaluate(x.q, x.v, x.t);
+  VecX phi = VecX::Zero(system.rows());
+  system.violation(phi);
+  Index worst = 0;
+  if (phi.size() == 0 || phi.cwiseAbs().maxCoeff(&worst) <= tolerance) return;
+  throw InconsistentStart("At the start " + system.name_of(system.speeds() + worst) + " is open by " +
+                          std::to_string(std::abs(phi[worst])) + ". Place the bodies so that it closes, or call "
+                          "assemble(model, x).");
+}
+
+/// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton), then
+/// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed; x is then untouched.
+template <class M>
+void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
+  System<M> system(model);
+  ForwardDynamics<M> forward(system);
+  State trial = x;
+  double before = 0.0;
+  for (int k = 0;; ++k) {
+    before = forward.project_positions_once(system, trial.q, trial.v, trial.t);
+    if (before <= tolerance) break;
+    if (k == max_iterations || !std::isfinite(before)) {
+      require_assembled(system, trial, tolerance);
+      throw InconsistentStart("assemble: the joints cannot be closed from this start.");
+    }
+  }
+  forward.project_velocities(system, trial.q, trial.v, trial.t);
+  x = std::move(trial);
+}
+
+}  // namespace polybody

@@ -1,0 +1,129 @@
+#pragma once
+/// \file
+/// Questions about a single state: frames of points, gaps and reactions of joints, counts.
+
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+/// Frame of a material point in state x. \throws InvalidInput for a marker of another model.
+template <class M, class B>
+Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
+  model.require_own(marker.model, "frame");
+  if constexpr (std::is_same_v<B, Ground>) {
+    return {.r = marker.point.origin, .A = marker.point.axes};
+  } else {
+    auto const& e = std::get<detail::BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)];
+    std::array<double, 6 * B::point_columns> jacobian;
+    Published<double> p;
+    p.jacobian = jacobian.data();
+    e.body.template publish<double>(marker.point, Mat3::Identity(),
+                                    detail::body_part(x.q, e.q0, e.body.coordinates()),
+                                    detail::body_part(x.v, e.v0, e.body.speeds()), p);
+    return p.frame;
+  }
+}
+
+/// Position of a material point [m].
+template <class M, class B>
+Vec3 position(M const& model, State const& x, Marker<B> const& marker) {
+  return frame(model, x, marker).r;
+}
+
+/// Coordinates of one body in state x, to be handed to the body's own questions (strains, centre line).
+template <class M, class B>
+std::span<double const> coordinates_of(M const& model, State const& x, BodyHandle<B> const& handle) {
+  auto const& e = model.entry(handle);
+  return detail::body_part(x.q, e.q0, e.body.coordinates());
+}
+template <class M, class B>
+std::span<double const> speeds_of(M const& model, State const& x, BodyHandle<B> const& handle) {
+  auto const& e = model.entry(handle);
+  return detail::body_part(x.v, e.v0, e.body.speeds());
+}
+
+namespace detail {
+
+template <class M, class J, class F>
+auto ask_joint(M const& model, State const& x, ElementHandle<J> const& handle, F&& f) {
+  auto const& e = model.entry(handle);
+  System<M> system(model);
+  system.evaluate(x.q, x.v, x.t);
+  auto const& data = system.data();
+  auto const& gap = std::get<M::template joint_type<J>()>(data.gaps)[std::size_t(handle.index)];
+  return f(e, gap, data);
+}
+
+}  // namespace detail
+
+/// Violation of a joint's rows in state x.
+template <class M, class J>
+Vec<double, J::rows> gap(M const& model, State const& x, ElementHandle<J> const& joint) {
+  return detail::ask_joint(model, x, joint, [](auto const&, auto const& g, auto const&) { return g.g; });
+}
+
+/// Axes for the components of a reaction.
+enum class ReactionAxes { world, joint };
+
+/// Force and moment that the joint exerts on its second body, about the joint point there:
+/// −Gbᵀλ [thesis Eq. 3.3 and the rule of equipollent forces]; "joint" are the axes of the second marker.
+template <class M, class J>
+Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& joint,
+                        ReactionAxes axes = ReactionAxes::world) {
+  return detail::ask_joint(model, x, joint, [&](auto const& e, auto const& gap, auto const& data) {
+    Vec<double, J::rows> const lambda = detail::multiplier(e, gap, data, x.lambda);
+    Vec6 const w = -gap.Gb.transpose() * lambda;
+    Mat3 const turn = axes == ReactionAxes::world
+                          ? Mat3(Mat3::Identity())
+                          : Mat3(data.markers[std::size_t(e.b)].frame.A.transpose());
+    return Wrench<double>{turn * w.head<3>(), turn * w.tail<3>()};
+  });
+}
+
+/// Counts of a model as thesis Table 3.4 makes them: a unit quaternion counts four coordinates and one
+/// constraint.
+struct Census {
+  Index coordinates = 0;
+  Index constraints = 0;
+  Index speeds = 0;              ///< unknown rates of the integrator
+  Index rows = 0;                ///< multipliers of the integrator
+  Index degrees_of_freedom = 0;  ///< coordinates − constraints
+};
+
+template <class M>
+Census census(M const& model) {
+  Index const constraints = model.rows() + model.coordinates() - model.speeds();
+  return {model.coordinates(), constraints, model.speeds(), model.rows(),
+          model.coordinates() - constraints};
+}
+
+/// Largest |Φ|, |Φ̇| and |Φ̈| of a state.
+struct Violation {
+  double position = 0.0;
+  double velocity = 0.0;
+  double acceleration = 0.0;
+};
+
+template <class M>
+Violation violation(System<M>& system, State const& x) {
+  system.evaluate(x.q, x.v, x.t);
+  if (system.rows() == 0) return {};
+  VecX phi = VecX::Zero(system.rows()), rate = phi, second = phi;
+  system.violation(phi);
+  system.violation_rate(rate);
+  system.acceleration_bias(second);
+  std::vector<double> scratch(system.data().scratch.size());
+  for_each_row_block(system.model(), system.data(), [&](auto const& e, auto const& g, auto const& a, auto const& b) {
+    constexpr int m = std::decay_t<decltype(g)>::rows;
+    auto const add = [&](Published<double> const& p, Mat<double, m, 6> const& map) {
+      detail::pull_rows<m>(p, map, scratch, [&](auto const& gt) {
+        second.template segment<m>(e.row) += gt.transpose() * x.a.segment(p.first, p.columns);
+      });
+    };
+    add(a, g.Ga);
+    add(b, g.Gb);
+  });
+  return {phi.cwiseAbs().maxCoeff(), rate.cwiseAbs().maxCoeff(), second.cwiseAbs().maxCoeff()};
+}
+
+}  // namespace polybody

@@ -1,0 +1,139 @@
+#pragma once
+/// \file
+/// One physical specification of a straight prismatic bar, from which every body formulation is built.
+
+#include <numbers>
+#include <optional>
+#include <variant>
+
+#include <polybody/kinematics/frame.hpp>
+
+namespace polybody {
+
+/// Solid circular section.
+struct Circle {
+  Required<double> radius;  ///< [m]
+};
+
+/// Solid rectangle: `height` along y (bending in the x–y plane), `width` along z.
+struct Rectangle {
+  Required<double> height;  ///< along y [m]
+  Required<double> width;   ///< along z [m]
+};
+
+/// Linear elastic, isotropic.
+struct Material {
+  Required<double> density;  ///< [kg/m³]
+  Required<double> young;    ///< E [N/m²]
+  double poisson = 0.3;      ///< ν, in (−1, 0.5]
+};
+
+/// Stiffness and inertia of the section, as most published cases give them. "y" and "z" name the section's
+/// axes; the plane bends about z.
+struct BarConstants {
+  Required<double> EA;              ///< axial stiffness [N]
+  Required<double> EI;              ///< bending stiffness about z [N m²]
+  Required<double> mass_per_length; ///< Aρ [kg/m]
+  double GA = 0.0;                  ///< shear stiffness k G A along y [N]; 0 where none is given
+  double GJ = 0.0;                  ///< torsional stiffness [N m²]; 0 where none is given
+  double rotary_inertia = 0.0;      ///< Iρ about z, per length [kg m]
+  std::optional<double> EI_y = {};  ///< bending stiffness about y [N m²]; as EI if not given
+  std::optional<double> GA_z = {};  ///< shear stiffness along z [N]; as GA if not given
+  std::optional<double> rotary_inertia_y = {};  ///< about y, per length [kg m]; as about z if not given
+};
+
+/// Kelvin–Voigt damping: stress = stiffness · (strain + time · strain rate), objective by construction.
+struct Damping {
+  double axial = 0.0;    ///< [s]
+  double shear = 0.0;    ///< shear and torsion [s]
+  double bending = 0.0;  ///< [s]
+};
+
+/// A straight bar: first end at the placement's origin, axis along the placement's x.
+/// Given either by `section` and `material` or by `constants`.
+struct Bar {
+  Required<double> length;  ///< [m]
+  std::variant<std::monostate, Circle, Rectangle> section = {};
+  std::optional<Material> material = {};
+  std::optional<BarConstants> constants = {};
+  Placement placement = {};
+  Damping damping = {};
+};
+
+namespace detail {
+
+inline BarConstants constants_of_section(Bar const& bar) {
+  Material const& m = *bar.material;
+  require_positive(m.density, "Bar: the material's density");
+  require_positive(m.young, "Bar: Young's modulus");
+  if (!(m.poisson > -1.0 && m.poisson <= 0.5))
+    throw InvalidInput("Bar: Poisson's ratio must lie in (-1, 0.5], but is " +
+                       std::to_string(m.poisson) + ".");
+  double const nu = m.poisson;
+  double area = 0, iz = 0, iy = 0, torsion = 0, shear = 0;
+  if (auto const* c = std::get_if<Circle>(&bar.section)) {
+    require_positive(c->radius, "Bar: the circle's radius");
+    double const r2 = c->radius * c->radius;
+    area = std::numbers::pi * r2;
+    iz = iy = 0.25 * area * r2;
+    torsion = 2.0 * iz;
+    shear = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);  // Cowper 1966
+  } else {
+    Rectangle const& s = std::get<Rectangle>(bar.section);
+    require_positive(s.height, "Bar: the rectangle's height");
+    require_positive(s.width, "Bar: the rectangle's width");
+    double const h = s.height, w = s.width;
+    area = h * w;
+    iz = w * h * h * h / 12.0;
+    iy = h * w * w * w / 12.0;
+    shear = 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu);  // Cowper 1966
+    // Saint-Venant torsion, J = a b³ (1/3 − (64/π⁵)(b/a) Σ tanh((2k+1)πa/2b)/(2k+1)⁵) with sides a ≥ b
+    // [Timoshenko & Goodier 1970, §109, there with half the sides]
+    double const a = std::max(h, w), b = std::min(h, w);
+    double sum = 0.0;
+    for (int k = 1; k < 40; k += 2)
+      sum += std::tanh(k * std::numbers::pi * a / (2.0 * b)) / std::pow(k, 5);
+    torsion = a * b * b * b * (1.0 / 3.0 - 64.0 / std::pow(std::numbers::pi, 5) * b / a * sum);
+  }
+  double const e = m.young, g = e / (2.0 * (1.0 + nu)), rho = m.density;
+  return {.EA = e * area, .EI = e * iz, .mass_per_length = rho * area, .GA = shear * g * area,
+          .GJ = g * torsion, .rotary_inertia = rho * iz, .EI_y = e * iy, .GA_z = shear * g * area,
+          .rotary_inertia_y = rho * iy};
+}
+
+}  // namespace detail
+
+/// The section's stiffness and inertia. \throws InvalidInput naming the quantity that cannot be meant.
+inline BarConstants constants(Bar const& bar) {
+  require_positive(bar.length, "Bar: the length");
+  bar.placement.check("Bar");
+  require_not_negative(bar.damping.axial, "Bar: the axial damping time");
+  require_not_negative(bar.damping.shear, "Bar: the shear damping time");
+  require_not_negative(bar.damping.bending, "Bar: the bending damping time");
+  bool const by_section = !std::holds_alternative<std::monostate>(bar.section);
+  if (by_section != bar.material.has_value() || by_section == bar.constants.has_value())
+    throw InvalidInput("Bar: give either a section with a material, or constants; not both, not half.");
+  if (by_section) return detail::constants_of_section(bar);
+  BarConstants const& c = *bar.constants;
+  require_positive(c.EA, "Bar: EA");
+  require_positive(c.EI, "Bar: EI");
+  require_positive(c.mass_per_length, "Bar: mass per length");
+  require_not_negative(c.GA, "Bar: GA");
+  require_not_negative(c.GJ, "Bar: GJ");
+  require_not_negative(c.rotary_inertia, "Bar: rotary inertia");
+  require_not_negative(c.EI_y.value_or(0.0), "Bar: EI_y");
+  require_not_negative(c.GA_z.value_or(0.0), "Bar: GA_z");
+  require_not_negative(c.rotary_inertia_y.value_or(0.0), "Bar: rotary_inertia_y");
+  return c;
+}
+
+/// \throws InvalidInput unless 0 ≤ s ≤ length (to 1e-12 of the length); returns s within the bar.
+inline double require_inside(double s, double length, std::string const& what) {
+  double const slack = 1e-12 * length;
+  if (!(s >= -slack && s <= length + slack))
+    throw InvalidInput(what + ": s = " + std::to_string(s) + " lies outside the body, 0 <= s <= " +
+                       std::to_string(length) + ".");
+  return std::min(std::max(s, 0.0), length);
+}
+
+}  // namespace polybody

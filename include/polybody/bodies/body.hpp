@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// The Body concept: what a formulation supplies, and the second-order term that dual numbers supply for it.
+
+#include <span>
+
+#include <polybody/kinematics/published.hpp>
+
+namespace polybody {
+
+/// `n` entries of a body's coordinates or speeds from `first`, as a vector expression.
+template <int n, class T>
+auto part(std::span<T> x, Index first) {
+  using Scalar = std::remove_const_t<T>;
+  using Map = std::conditional_t<std::is_const_v<T>, Eigen::Map<Vec<Scalar, n> const>,
+                                 Eigen::Map<Vec<Scalar, n>>>;
+  return Map(x.data() + first);
+}
+
+/// A body is made of elements: fixed-size units that yield inertia, force and tangent. Spans cover the whole
+/// body; element e touches the columns [first_column(e), first_column(e) + element_columns).
+/// Positions may live on a manifold, q ⊞ δ (`plus`); δ has as many entries as there are speeds.
+template <class B>
+concept Body = requires(B const b, Index e, std::span<double const> x, std::span<double> out,
+                        typename B::Point p, Published<double>& published,
+                        Vec<double, B::element_columns>& vector,
+                        Mat<double, B::element_columns, B::element_columns>& matrix,
+                        Mat<double, B::point_columns, B::point_columns>& stiffness, Vec3 g) {
+  { B::world } -> std::convertible_to<World>;
+  { B::observes } -> std::convertible_to<Observes>;
+  { B::constant_mass } -> std::convertible_to<bool>;
+  { b.coordinates() } -> std::convertible_to<Index>;
+  { b.speeds() } -> std::convertible_to<Index>;
+  { b.elements() } -> std::convertible_to<Index>;
+  { b.first_column(e) } -> std::convertible_to<Index>;
+  b.reference(out);                                   // q of the undeformed body as placed
+  b.template plus<double>(x, x, out);                 // q ⊞ δ
+  b.template local_rate<double>(x, x, out);           // δ˙ of q ⊞ δ moving with speeds v
+  b.rigid_velocity(x, g, g, out);                     // v of a rigid motion
+  b.mass(e, x, matrix);                               // M
+  b.template inertia<double>(e, x, x, vector);        // M a
+  b.template force<double>(e, x, x, vector);          // elastic, damping and quadratic-velocity force
+  b.tangent(e, x, x, 1.0, 1.0, matrix);               // ck (−∂f/∂q) + cd (−∂f/∂v)
+  b.template gravity<double>(e, x, g, vector);        // force of a uniform field g [m/s²]
+  { b.kinetic_energy(e, x, x) } -> std::convertible_to<double>;
+  { b.strain_energy(e, x) } -> std::convertible_to<double>;
+  { b.gravity_energy(e, x, g) } -> std::convertible_to<double>;
+  { b.first_column(p) } -> std::convertible_to<Index>;
+  b.template publish<double>(p, Mat3::Identity().eval(), x, x, published);
+  b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
+};
+
+/// ∂(Jᵀw)/∂q, columns × columns, of a marker with J of fixed width by dual numbers: the default for a body
+/// that has no closed form. q is moved by ⊞ in the marker's own columns.
+template <class B>
+void load_stiffness_by_duals(B const& body, typename B::Point const& p, std::span<double const> q,
+                             Wrench<double> const& w,
+                             Mat<double, B::point_columns, B::point_columns>& out) {
+  constexpr int n = B::point_columns;
+  using D = Dual<n>;
+  std::array<D, n> coordinates, at_rest;
+  std::array<D, 6 * n> jacobian;
+  Index const first = body.first_column(p);
+  for (int i = 0; i < n; ++i) {
+    coordinates[i] = D::variable(q[first + i], i);
+    at_rest[i] = D(0.0);
+  }
+  Published<D> published;
+  published.jacobian = jacobian.data();
+  published.columns = n;
+  published.shape = JacobianShape::dense;
+  body.template publish<D>(body.local(p), Mat3::Identity().eval(),
+                           std::span<D const>(coordinates), std::span<D const>(at_rest), published);
+  Mat<D, 6, 1> wrench;
+  for (int i = 0; i < 3; ++i) {
+    wrench[i] = D(w.f[i]);
+    wrench[i + 3] = D(w.m[i]);
+  }
+  Mat<D, n, 1> force;
+  published.pull(wrench, force);
+  for (int i = 0; i < n; ++i) out.row(i) = force[i].d.matrix().transpose();
+}
+
+}  // namespace polybody

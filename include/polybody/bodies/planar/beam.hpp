@@ -1,0 +1,328 @@
+#pragma once
+/// \file
+/// A flexible bar in the plane as a chain of equal two-node elements. What is interpolated and which strains
+/// follow is a policy, the Theory; everything else (layout, mass, quadrature, gravity, markers) is here once.
+///
+/// Strain energy  U = Σ_groups ½ ∫ Σ_i C_i ε_i(p)² dx,  p = P(x) e the group's parameters (linear in the
+/// element's coordinates e), with Kelvin–Voigt damping n_i = C_i (ε_i + τ_i ε̇_i). Then
+///   f = −∫ Pᵀ Bᵀ n dx,   B = ∂ε/∂p,
+///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Bᵀ C τ (H ṗ)ᵀ] P dx,   H_i = ∂²ε_i/∂p²,
+///   −∂f/∂ė = ∫ Pᵀ Bᵀ C τ B P dx.
+
+#include <tuple>
+#include <vector>
+
+#include <polybody/bodies/bar.hpp>
+#include <polybody/bodies/body.hpp>
+#include <polybody/math/quadrature.hpp>
+
+namespace polybody::planar {
+
+/// The centre line at one place of an element, all linear in e except the angle.
+template <StateScalar T>
+struct CentreLine {
+  Vec<T, 2> r;     ///< position [m]
+  Vec<T, 2> v;     ///< velocity [m/s]
+  T angle;         ///< of the section's normal from world x [rad]
+  T rate;          ///< its rate [rad/s]
+  T rate_bias;     ///< its second derivative for ë = 0 [rad/s²]
+};
+
+template <class Theory>
+class Beam {
+ public:
+  static constexpr World world = World::plane;
+  static constexpr Observes observes = Observes::frame;
+  static constexpr bool constant_mass = true;
+  static constexpr int node_columns = Theory::node_columns;
+  static constexpr int element_columns = 2 * node_columns;
+  static constexpr int point_columns = element_columns;
+  template <class T>
+  using Element = Vec<T, element_columns>;
+  using ElementMatrix = Mat<double, element_columns, element_columns>;
+
+  /// A material point: element, place ξ ∈ [0, 1] on it, and distance y off the axis [m].
+  struct Point {
+    Index element = 0;
+    double xi = 0.0;
+    double y = 0.0;
+  };
+
+  /// The bar in n equal elements. \throws InvalidInput for n < 1, a placement that leaves the plane, or a
+  /// stiffness that the theory needs and the bar does not give.
+  static Beam from(Bar const& bar, Index n) {
+    if (n < 1) throw InvalidInput(std::string(Theory::name) + ": at least one element is needed.");
+    BarConstants const c = polybody::constants(bar);
+    Theory::check(c);
+    return Beam(bar, c, n);
+  }
+
+  double length() const { return length_; }
+  double element_length() const { return l_; }
+  BarConstants const& constants() const { return constants_; }
+
+  /// The point s from the first end, y off the axis. \throws InvalidInput outside the bar.
+  Point at(double s, double y = 0.0) const {
+    double const x = require_inside(s, length_, Theory::name) / l_;
+    if (!std::isfinite(y)) throw InvalidInput(std::string(Theory::name) + ": y of a point must be finite.");
+    Index const e = std::min(Index(x), n_ - 1);
+    return {e, x - double(e), y};
+  }
+  Point local(Point p) const {
+    p.element = 0;
+    return p;
+  }
+
+  Index coordinates() const { return (n_ + 1) * node_columns; }
+  Index speeds() const { return coordinates(); }
+  Index elements() const { return n_; }
+  Index first_column(Index e) const { return e * node_columns; }
+  Index first_column(Point const& p) const { return first_column(p.element); }
+
+  void reference(std::span<double> q) const {
+    for (Index i = 0; i <= n_; ++i)
+      part<node_columns>(q, i * node_columns) =
+          Theory::reference_node(origin_, angle_, double(i) * l_);
+  }
+  template <StateScalar T>
+  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
+    for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i] + delta[i];
+  }
+  template <StateScalar T>
+  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
+    for (std::size_t i = 0; i < v.size(); ++i) out[i] = v[i];
+  }
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega,
+                      std::span<double> v) const {
+    for (Index i = 0; i <= n_; ++i)
+      part<node_columns>(v, i * node_columns) = Theory::rigid_velocity(
+          part<node_columns>(q, i * node_columns), v0.head<2>(), omega[2]);
+  }
+
+  void mass(Index, std::span<double const>, ElementMatrix& m) const { m = mass_; }
+
+  template <StateScalar T>
+  void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
+    out.noalias() = mass_.template cast<T>() * part<element_columns>(a, first_column(e));
+  }
+
+  template <StateScalar T>
+  void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
+    Element<T> const x = part<element_columns>(q, first_column(e));
+    Element<T> const xd = part<element_columns>(v, first_column(e));
+    out.setZero();
+    for_each_group([&](auto const& group) { group.template force<T>(x, xd, out); });
+  }
+
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               ElementMatrix& k) const {
+    Element<double> const x = part<element_columns>(q, first_column(e));
+    Element<double> const xd = part<element_columns>(v, first_column(e));
+    k.setZero();
+    for_each_group([&](auto const& group) { group.tangent(x, xd, ck, cd, k); });
+  }
+
+  template <StateScalar T>
+  void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
+    out = (gravity_ * g.head<2>()).template cast<T>();
+  }
+
+  double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
+    auto const x = part<element_columns>(v, first_column(e));
+    return 0.5 * x.dot(mass_ * x);
+  }
+  double strain_energy(Index e, std::span<double const> q) const {
+    Element<double> const x = part<element_columns>(q, first_column(e));
+    double u = 0.0;
+    for_each_group([&](auto const& group) { u += group.energy(x); });
+    return u;
+  }
+  double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
+    return -part<element_columns>(q, first_column(e)).dot(gravity_ * g.head<2>());
+  }
+
+  /// Position, angle and motion of the centre line at `p`.
+  template <StateScalar T>
+  CentreLine<T> centre_line(Point const& p, std::span<T const> q, std::span<T const> v) const {
+    Element<T> const x = part<element_columns>(q, first_column(p));
+    Element<T> const xd = part<element_columns>(v, first_column(p));
+    Mat<double, 2, element_columns> const n = Theory::position(p.xi, l_);
+    CentreLine<T> c;
+    c.r = n.template cast<T>() * x;
+    c.v = n.template cast<T>() * xd;
+    Element<T> unused;
+    Theory::template rotation<T>(p.xi, l_, x, xd, c.angle, unused, c.rate_bias);
+    c.rate = unused.dot(xd);
+    return c;
+  }
+
+  /// r = r₀ + y n, n = (−sin θ, cos θ);  ṙ = ṙ₀ − y t θ̇, t = (cos θ, sin θ);
+  /// bias = −y (t θ̈ᵇ + n θ̇²), θ̈ᵇ the part of θ̈ without ë.
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+               Published<T>& out) const {
+    using std::cos, std::sin;
+    Element<T> const x = part<element_columns>(q, first_column(p));
+    Element<T> const xd = part<element_columns>(v, first_column(p));
+    Mat<double, 2, element_columns> const shape = Theory::position(p.xi, l_);
+    T angle, rate_bias;
+    Element<T> row;  // θ̇ = row · ė
+    Theory::template rotation<T>(p.xi, l_, x, xd, angle, row, rate_bias);
+    T const c = cos(angle), s = sin(angle), rate = row.dot(xd);
+    Vec<T, 2> const t(c, s), n(-s, c);
+    Mat<T, 3, 3> a;
+    a << c, -s, T(0), s, c, T(0), T(0), T(0), T(1);
+    out.frame.A = a * axes.template cast<T>();
+    out.frame.r << shape.template cast<T>() * x + n * p.y, T(0);
+    out.frame.v << shape.template cast<T>() * xd - t * (rate * p.y), T(0);
+    out.frame.w << T(0), T(0), rate;
+    out.bias.setZero();
+    out.bias.template head<2>() = (t * rate_bias + n * (rate * rate)) * (-p.y);
+    out.bias[5] = rate_bias;
+    Eigen::Map<Mat<T, 6, element_columns>> j(out.jacobian);
+    j.setZero();
+    j.template topRows<2>() = shape.template cast<T>() - (t * p.y) * row.transpose();
+    j.row(5) = row.transpose();
+    out.shape = JacobianShape::dense;
+    out.columns = element_columns;
+  }
+
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w,
+                      ElementMatrix& k) const {
+    load_stiffness_by_duals(*this, p, q, w, k);
+  }
+
+  /// Strains of group G (in the order of the theory) at `p`, and their stress resultants without damping.
+  template <int G>
+  auto strains(Point const& p, std::span<double const> q) const {
+    return std::get<G>(groups_).strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval());
+  }
+  /// Section forces of group G: stiffness times strain [N], [N m].
+  template <int G>
+  auto resultants(Point const& p, std::span<double const> q) const {
+    return strains<G>(p, q).cwiseProduct(std::get<G>(groups_).stiffness).eval();
+  }
+
+ private:
+  /// A group of strains with its own Gauss points; the maps P are the same for all (equal) elements.
+  template <class Law>
+  struct Group {
+    static constexpr int np = Law::parameters, m = Law::strains;
+    using Map = Mat<double, np, element_columns>;
+    Vec<double, m> stiffness = Vec<double, m>::Zero();  ///< C
+    Vec<double, m> time = Vec<double, m>::Zero();       ///< τ
+    std::array<Map, Law::points> maps;
+    std::array<double, Law::points> weights;  ///< [m]
+
+    Group() = default;
+    Group(BarConstants const& c, Damping const& d, double l)
+        : stiffness(Law::stiffness(c)), time(Law::damping(d)) {
+      for (int i = 0; i < Law::points; ++i) {
+        maps[i] = Law::map(gauss<Law::points>[i].xi, l);
+        weights[i] = gauss<Law::points>[i].weight * l;
+      }
+    }
+
+    Vec<double, m> strains(double xi, double l, Element<double> const& x) const {
+      Vec<double, m> strain;
+      Mat<double, m, np> b;
+      Law::template evaluate<double>((Law::map(xi, l) * x).eval(), strain, b);
+      return strain;
+    }
+
+    template <StateScalar T>
+    void force(Element<T> const& x, Element<T> const& xd, Element<T>& f) const {
+      for (int i = 0; i < Law::points; ++i) {
+        Vec<T, np> const p = maps[i].template cast<T>() * x, pd = maps[i].template cast<T>() * xd;
+        Vec<T, m> strain;
+        Mat<T, m, np> b;
+        Law::template evaluate<T>(p, strain, b);
+        Vec<T, m> const n = stress<T>(strain, b * pd) * T(weights[i]);
+        f.noalias() -= maps[i].transpose().template cast<T>() * (b.transpose() * n).eval();
+      }
+    }
+
+    void tangent(Element<double> const& x, Element<double> const& xd, double ck, double cd,
+                 ElementMatrix& k) const {
+      for (int i = 0; i < Law::points; ++i) {
+        Vec<double, np> const p = maps[i] * x, pd = maps[i] * xd;
+        Vec<double, m> strain;
+        Mat<double, m, np> b;
+        Law::template evaluate<double>(p, strain, b);
+        Vec<double, m> const n = stress<double>(strain, b * pd);
+        std::array<Mat<double, np, np>, m> h;
+        Law::hessian(p, h);
+        Mat<double, np, np> kp = Mat<double, np, np>::Zero();
+        for (int j = 0; j < m; ++j) {
+          double const c = stiffness[j], tau = time[j];
+          kp.noalias() += b.row(j).transpose() * (c * (ck + cd * tau) * b.row(j));
+          kp += (ck * n[j]) * h[j];
+          if (tau != 0.0)
+            kp.noalias() += (ck * c * tau) * b.row(j).transpose() * (h[j] * pd).transpose();
+        }
+        Mat<double, np, element_columns> const kpp = weights[i] * kp * maps[i];
+        k.noalias() += maps[i].transpose() * kpp;
+      }
+    }
+
+    double energy(Element<double> const& x) const {
+      double u = 0.0;
+      for (int i = 0; i < Law::points; ++i) {
+        Vec<double, m> strain;
+        Mat<double, m, np> b;
+        Law::template evaluate<double>((maps[i] * x).eval(), strain, b);
+        u += 0.5 * weights[i] * stiffness.dot(strain.cwiseAbs2());
+      }
+      return u;
+    }
+
+    template <StateScalar T>
+    Vec<T, m> stress(Vec<T, m> const& strain, Vec<T, m> const& strain_rate) const {
+      Vec<T, m> n;
+      for (int j = 0; j < m; ++j) n[j] = (strain[j] + strain_rate[j] * time[j]) * stiffness[j];
+      return n;
+    }
+  };
+
+  template <class List>
+  struct GroupsOf;
+  template <class... Laws>
+  struct GroupsOf<std::tuple<Laws...>> {
+    using type = std::tuple<Group<Laws>...>;
+    static type make(BarConstants const& c, Damping const& d, double l) {
+      return type(Group<Laws>(c, d, l)...);
+    }
+  };
+  using Groups = GroupsOf<typename Theory::Groups>;
+
+  Beam(Bar const& bar, BarConstants const& c, Index n)
+      : constants_(c), length_(bar.length), l_(bar.length / double(n)), n_(n),
+        origin_(bar.placement.origin.head<2>()), angle_(bar.placement.planar_angle(Theory::name)),
+        groups_(Groups::make(c, bar.damping, l_)) {
+    // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the theory's polynomials
+    for (GaussPoint const& g : gauss<4>) {
+      Mat<double, 2, element_columns> const s = Theory::position(g.xi, l_);
+      mass_ += g.weight * l_ * c.mass_per_length * s.transpose() * s;
+      Element<double> const rot = Theory::rotary(g.xi, l_);
+      mass_ += g.weight * l_ * c.rotary_inertia * rot * rot.transpose();
+      gravity_ += g.weight * l_ * c.mass_per_length * s.transpose();
+    }
+  }
+
+  template <class F>
+  void for_each_group(F&& f) const {
+    std::apply([&](auto const&... group) { (f(group), ...); }, groups_);
+  }
+
+  BarConstants constants_;
+  double length_;
+  double l_;
+  Index n_;
+  Vec2 origin_;
+  double angle_;
+  typename Groups::type groups_;
+  ElementMatrix mass_ = ElementMatrix::Zero();
+  Mat<double, element_columns, 2> gravity_ = Mat<double, element_columns, 2>::Zero();
+};
+
+}  // namespace polybody::planar

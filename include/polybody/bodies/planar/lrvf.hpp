@@ -1,0 +1,90 @@
+#pragma once
+/// \file
+/// Large rotation vector formulation in the plane: position and rotation fields interpolated linearly and
+/// independently, one-point (selective) quadrature of the strains
+///   ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ)
+/// [Simo & Vu-Quoc 1986; thesis Eq. 2.7–2.10]. Node coordinates (x, y, θ).
+
+#include <polybody/bodies/planar/beam.hpp>
+#include <polybody/math/shape_functions.hpp>
+
+namespace polybody::planar {
+
+/// The Theory of `Lrvf`.
+struct SimoVuQuoc {
+  static constexpr char const* name = "planar::Lrvf";
+  static constexpr int node_columns = 3;
+
+  static void check(BarConstants const& c) {
+    require_positive(c.GA, "planar::Lrvf: the shear stiffness GA of the bar");
+  }
+  static Vec3 reference_node(Vec2 const& origin, double angle, double s) {
+    return {origin[0] + s * std::cos(angle), origin[1] + s * std::sin(angle), angle};
+  }
+  static Vec3 rigid_velocity(Vec3 const& node, Vec2 const& v0, double omega) {
+    return {v0[0] - omega * node[1], v0[1] + omega * node[0], omega};
+  }
+  static Mat<double, 2, 6> position(double xi, double) {
+    Mat<double, 2, 6> n;
+    n << 1.0 - xi, 0, 0, xi, 0, 0, 0, 1.0 - xi, 0, 0, xi, 0;
+    return n;
+  }
+  /// The row of θ in the kinetic energy ½ ∫ Iρ θ̇² dx.
+  static Vec6 rotary(double xi, double) { return Vec6(0, 0, 1.0 - xi, 0, 0, xi); }
+
+  /// θ(ξ), its row θ̇ = row·ė, and the part of θ̈ without ë (none: the field is linear).
+  template <StateScalar T>
+  static void rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&, T& angle, Vec<T, 6>& row,
+                       T& bias) {
+    row = rotary(xi, l).template cast<T>();
+    angle = row.dot(e);
+    bias = T(0.0);
+  }
+
+  /// Axial, shear and bending strain at the one Gauss point; p = (x′, y′, θ, θ′).
+  struct Section {
+    static constexpr int points = 1;
+    static constexpr int parameters = 4;
+    static constexpr int strains = 3;
+
+    static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.GA, c.EI}; }
+    static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.bending}; }
+
+    static Mat<double, 4, 6> map(double xi, double l) {
+      ShapeValues<2> const n = linear_shape(xi, l);
+      Mat<double, 4, 6> p = Mat<double, 4, 6>::Zero();
+      for (int i = 0; i < 2; ++i) {
+        p(0, 3 * i) = p(1, 3 * i + 1) = p(3, 3 * i + 2) = n.ds[i];
+        p(2, 3 * i + 2) = n.s[i];
+      }
+      return p;
+    }
+    template <StateScalar T>
+    static void evaluate(Vec<T, 4> const& p, Vec<T, 3>& strain, Mat<T, 3, 4>& b) {
+      using std::cos, std::sin;
+      T const c = cos(p[2]), s = sin(p[2]);
+      T const stretch = c * p[0] + s * p[1], slide = c * p[1] - s * p[0];
+      strain << stretch - 1.0, slide, p[3];
+      b << c, s, slide, T(0), -s, c, -stretch, T(0), T(0), T(0), T(0), T(1);
+    }
+    static void hessian(Vec4 const& p, std::array<Mat<double, 4, 4>, 3>& h) {
+      double const c = std::cos(p[2]), s = std::sin(p[2]);
+      double const stretch = c * p[0] + s * p[1], slide = c * p[1] - s * p[0];
+      for (auto& m : h) m.setZero();
+      h[0](0, 2) = h[0](2, 0) = -s;
+      h[0](1, 2) = h[0](2, 1) = c;
+      h[0](2, 2) = -stretch;
+      h[1](0, 2) = h[1](2, 0) = -c;
+      h[1](1, 2) = h[1](2, 1) = -s;
+      h[1](2, 2) = -slide;
+    }
+  };
+  using Groups = std::tuple<Section>;
+};
+
+/// Planar geometrically exact beam with linear elements: `Lrvf::from(bar, n)`.
+using Lrvf = Beam<SimoVuQuoc>;
+
+static_assert(Body<Lrvf>);
+
+}  // namespace polybody::planar

@@ -1,0 +1,209 @@
+#pragma once
+/// \file
+/// Rigid body in space. Coordinates (r, q): r the centre of mass in world axes, q a unit quaternion;
+/// speeds (ṙ, Ω): Ω the angular velocity in body axes. Newton–Euler:
+///   m r̈ = f,   J Ω˙ + Ω × J Ω = Aᵀ m_c.   [Shabana 2020, §3.5; Brüls, Cardona & Arnold 2012]
+
+#include <Eigen/Eigenvalues>
+
+#include <polybody/bodies/bar.hpp>
+#include <polybody/bodies/body.hpp>
+
+namespace polybody {
+
+/// \throws InvalidInput unless `inertia` can belong to a mass distribution: symmetric, principal moments
+/// not negative and none greater than the sum of the others.
+inline void require_inertia(Mat3 const& inertia, std::string const& what) {
+  require_finite(inertia, what + ": the inertia");
+  double const size = inertia.norm();
+  if ((inertia - inertia.transpose()).norm() > 1e-9 * size)
+    throw InvalidInput(what + ": the inertia tensor must be symmetric.");
+  Eigen::SelfAdjointEigenSolver<Mat3> const principal(inertia, Eigen::EigenvaluesOnly);
+  Vec3 const i = principal.eigenvalues();
+  if (i[0] < -1e-9 * size)
+    throw InvalidInput(what + ": a principal moment of inertia is negative (" +
+                       std::to_string(i[0]) + ").");
+  if (i[2] > (i[0] + i[1]) * (1.0 + 1e-9))
+    throw InvalidInput(what + ": the principal moments of inertia " + std::to_string(i[0]) + ", " +
+                       std::to_string(i[1]) + ", " + std::to_string(i[2]) +
+                       " violate the triangle inequality; no body has them.");
+}
+
+/// How `Rigid` writes its rotation: unit quaternion with body-frame angular velocity as speeds.
+struct UnitQuaternion {};
+
+template <class Rotation = UnitQuaternion>
+class Rigid;
+
+template <>
+class Rigid<UnitQuaternion> {
+ public:
+  static constexpr World world = World::space;
+  static constexpr Observes observes = Observes::frame;
+  static constexpr bool constant_mass = true;
+  static constexpr int element_columns = 6;
+  static constexpr int point_columns = 6;
+
+  /// A material point, in body axes from the centre of mass [m].
+  struct Point {
+    Vec3 u = Vec3::Zero();
+  };
+
+  /// Mass properties without a bar.
+  struct Parameters {
+    Required<double> mass;         ///< [kg]
+    Mat3 inertia = Mat3::Zero();   ///< (3×3) about the centre of mass, body axes [kg m²]
+    Placement placement = {};      ///< of the centre of mass and the body's axes
+  };
+
+  /// \throws InvalidInput for mass ≤ 0 or an inertia that no body has. Zero moments are allowed.
+  Rigid(Parameters const& p) : mass_(p.mass), inertia_(p.inertia), placement_(p.placement) {  // NOLINT
+    require_positive(mass_, "Rigid: the mass");
+    require_inertia(inertia_, "Rigid");
+    placement_.check("Rigid");
+  }
+  Rigid(double mass, Mat3 const& inertia, Placement const& placement = {})
+      : Rigid(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
+
+  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
+  static Rigid from(Bar const& bar) {
+    BarConstants const c = constants(bar);
+    double const l = bar.length, m = c.mass_per_length * l;
+    double const z = c.rotary_inertia * l, y = c.rotary_inertia_y.value_or(c.rotary_inertia) * l;
+    Mat3 const inertia = Vec3(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z).asDiagonal();
+    Placement place = bar.placement;
+    place.origin += place.axes.col(0) * (0.5 * l);
+    Rigid body(m, inertia, place);
+    body.length_ = l;
+    return body;
+  }
+
+  double mass() const { return mass_; }
+  Mat3 const& inertia() const { return inertia_; }
+
+  /// The point s from the first end of the bar, (y, z) off its axis. \throws InvalidInput outside the bar.
+  Point at(double s, double y = 0.0, double z = 0.0) const {
+    if (length_ == 0.0)
+      throw InvalidInput("Rigid: at(s) needs a body made from a Bar; use at(Vec3) from the centre of mass.");
+    return at(Vec3(require_inside(s, length_, "Rigid") - 0.5 * length_, y, z));
+  }
+  /// The point u in body axes from the centre of mass [m].
+  Point at(Vec3 const& u) const {
+    require_finite(u, "Rigid: the point");
+    return {u};
+  }
+
+  Index coordinates() const { return 7; }
+  Index speeds() const { return 6; }
+  Index elements() const { return 1; }
+  Index first_column(Index) const { return 0; }
+  Index first_column(Point const&) const { return 0; }
+
+  void reference(std::span<double> q) const {
+    part<3>(q, 0) = placement_.origin;
+    part<4>(q, 3) = quaternion_of(placement_.axes);
+  }
+
+  template <StateScalar T>
+  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
+    part<3>(out, 0) = part<3>(q, 0) + part<3>(delta, 0);
+    part<4>(out, 3) = quaternion_plus<T>(part<4>(q, 3), part<3>(delta, 3));
+  }
+
+  /// δ˙ with q ⊞ δ(t) moving with v: Ω = Jr(δ) δ˙.
+  template <StateScalar T>
+  void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
+    part<3>(out, 0) = part<3>(v, 0);
+    part<3>(out, 3) = right_jacobian_inverse<T>(part<3>(delta, 3)) * part<3>(v, 3);
+  }
+
+  /// Speeds of a rigid motion: velocity of the world's origin point `v0` and angular velocity (world axes).
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega,
+                      std::span<double> v) const {
+    part<3>(v, 0) = v0 + omega.cross(part<3>(q, 0).eval());
+    part<3>(v, 3) = rotation_matrix<double>(part<4>(q, 3)).transpose() * omega;
+  }
+
+  void mass(Index, std::span<double const>, Mat<double, 6, 6>& m) const {
+    m.setZero();
+    m.diagonal().head<3>().setConstant(mass_);
+    m.bottomRightCorner<3, 3>() = inertia_;
+  }
+
+  template <StateScalar T>
+  void inertia(Index, std::span<T const>, std::span<T const> a, Vec<T, 6>& out) const {
+    out.template head<3>() = part<3>(a, 0) * T(mass_);
+    out.template tail<3>() = inertia_.template cast<T>() * part<3>(a, 3);
+  }
+
+  /// The gyroscopic force −Ω × J Ω.
+  template <StateScalar T>
+  void force(Index, std::span<T const>, std::span<T const> v, Vec<T, 6>& out) const {
+    Vec<T, 3> const omega = part<3>(v, 3);
+    out.template head<3>().setZero();
+    out.template tail<3>() = (inertia_.template cast<T>() * omega).cross(omega);
+  }
+
+  /// −∂f/∂Ω = Ω̃ J − (J Ω)~.
+  void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd,
+               Mat<double, 6, 6>& k) const {
+    Vec3 const omega = part<3>(v, 3);
+    k.setZero();
+    k.bottomRightCorner<3, 3>() =
+        cd * (skew<double>(omega) * inertia_ - skew<double>(inertia_ * omega));
+  }
+
+  template <StateScalar T>
+  void gravity(Index, std::span<T const>, Vec3 const& g, Vec<T, 6>& out) const {
+    out.template head<3>() = (g * mass_).template cast<T>();
+    out.template tail<3>().setZero();
+  }
+
+  double kinetic_energy(Index, std::span<double const>, std::span<double const> v) const {
+    Vec3 const omega = part<3>(v, 3);
+    return 0.5 * mass_ * part<3>(v, 0).squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
+  }
+  double strain_energy(Index, std::span<double const>) const { return 0.0; }
+  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
+    return -mass_ * g.dot(part<3>(q, 0));
+  }
+
+  /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+               Published<T>& out) const {
+    Mat<T, 3, 3> const a = rotation_matrix<T>(part<4>(q, 3));
+    Vec<T, 3> const arm = a * p.u.template cast<T>();
+    Vec<T, 3> const w = a * part<3>(v, 3);
+    Vec<T, 3> const rate = w.cross(arm);
+    out.frame.r = part<3>(q, 0) + arm;
+    out.frame.A.noalias() = a * axes.template cast<T>();
+    out.frame.v = part<3>(v, 0) + rate;
+    out.frame.w = w;
+    out.bias.template head<3>() = w.cross(rate);
+    out.bias.template tail<3>().setZero();
+    out.body_axes = a;
+    out.arm = arm;
+    out.shape = JacobianShape::rigid;
+    out.columns = 6;
+  }
+
+  /// Jᵀw = [f; Aᵀm + u × Aᵀf];  under A ⊞ δ: δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w,
+                      Mat<double, 6, 6>& k) const {
+    Mat3 const a = rotation_matrix<double>(part<4>(q, 3));
+    k.setZero();
+    k.bottomRightCorner<3, 3>() =
+        skew<double>(a.transpose() * w.m) + skew<double>(p.u) * skew<double>(a.transpose() * w.f);
+  }
+
+ private:
+  double mass_;
+  Mat3 inertia_;
+  Placement placement_;
+  double length_ = 0.0;
+};
+
+static_assert(Body<Rigid<>>);
+
+}  // namespace polybody

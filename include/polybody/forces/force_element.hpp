@@ -1,0 +1,61 @@
+#pragma once
+/// \file
+/// What a force element supplies: wrenches on its markers as a function of their frames. Its tangent comes
+/// from dual numbers.
+
+#include <array>
+
+#include <polybody/kinematics/frame.hpp>
+
+namespace polybody {
+
+template <class F>
+concept ForceElement = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t,
+                                std::string const name) {
+  requires F::markers >= 1;
+  { F::needs } -> std::convertible_to<Observes>;
+  { F::is_load } -> std::convertible_to<bool>;  // scaled by the load factor of `equilibrium`
+  { force.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
+  force.check(name);
+};
+
+/// A force element that stores energy: a function of its frames and time [J].
+template <class F>
+concept HasPotential = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t) {
+  { force.potential(frames, t) } -> std::convertible_to<double>;
+};
+
+/// Gradients of all wrenches with respect to the frames' poses (δr, δφ in world axes) and twists,
+/// ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N: one pass of dual numbers, pose seeded with ck, twist with cd.
+template <ForceElement F>
+Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(
+    F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck, double cd) {
+  constexpr int n = 6 * F::markers;
+  using D = Dual<n>;
+  auto const seed = [](double value, int i, double slope) {
+    D x(value);
+    x.d[i] = slope;
+    return x;
+  };
+  std::array<Frame<D>, F::markers> moved;
+  for (int k = 0; k < F::markers; ++k) {
+    Vec<D, 3> phi;
+    for (int i = 0; i < 3; ++i) {
+      moved[k].r[i] = seed(frames[k].r[i], 6 * k + i, ck);
+      moved[k].v[i] = seed(frames[k].v[i], 6 * k + i, cd);
+      phi[i] = seed(0.0, 6 * k + 3 + i, ck);
+      moved[k].w[i] = seed(frames[k].w[i], 6 * k + 3 + i, cd);
+    }
+    moved[k].A = frames[k].A.template cast<D>() + skew<D>(phi) * frames[k].A.template cast<D>();
+  }
+  std::array<Wrench<D>, F::markers> const w = force.template wrenches<D>(moved, t);
+  Mat<double, n, n> gradient;
+  for (int k = 0; k < F::markers; ++k)
+    for (int i = 0; i < 3; ++i) {
+      gradient.row(6 * k + i) = w[k].f[i].d.matrix().transpose();
+      gradient.row(6 * k + 3 + i) = w[k].m[i].d.matrix().transpose();
+    }
+  return gradient;
+}
+
+}  // namespace polybody

@@ -1,0 +1,70 @@
+#pragma once
+/// \file
+/// Forces and moments at a marker: dead (fixed in the world) or following the marker's axes.
+
+#include <polybody/forces/force_element.hpp>
+#include <polybody/math/time_laws.hpp>
+
+namespace polybody {
+
+/// Axes in which a load's components are given.
+enum class LoadAxes {
+  world,  ///< dead: keeps its direction
+  marker  ///< follower: turns with the marker
+};
+
+namespace detail {
+
+template <StateScalar T>
+Vec<T, 3> load_in_world(Vec3 const& load, double scale, LoadAxes axes, Frame<T> const& frame) {
+  Vec<T, 3> const given = (load * scale).template cast<T>();
+  return axes == LoadAxes::world ? given : (frame.A * given).eval();
+}
+
+}  // namespace detail
+
+/// A force at a marker, `force` times the law of time.
+template <TimeLaw Law = Constant>
+struct PointForce {
+  static constexpr int markers = 1;
+  static constexpr bool is_load = true;
+  static constexpr Observes needs = Observes::point;
+
+  Vec3 force = Vec3::Zero();         ///< (3) [N]
+  LoadAxes axes = LoadAxes::world;
+  Law law = {};                      ///< factor as a function of time
+
+  void check(std::string const& name) const { require_finite(force, name + ": the force"); }
+
+  template <StateScalar T>
+  std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const& frame, double t) const {
+    Wrench<T> w;
+    w.f = detail::load_in_world<T>(force, law(t).value, axes, frame[0]);
+    return {w};
+  }
+};
+
+/// A moment at a marker, `moment` times the law of time. In space a dead moment is not conservative.
+template <TimeLaw Law = Constant>
+struct PointMoment {
+  static constexpr int markers = 1;
+  static constexpr bool is_load = true;
+  static constexpr Observes needs = Observes::frame;
+
+  Vec3 moment = Vec3::Zero();        ///< (3) [N m]
+  LoadAxes axes = LoadAxes::world;
+  Law law = {};                      ///< factor as a function of time
+
+  void check(std::string const& name) const { require_finite(moment, name + ": the moment"); }
+
+  template <StateScalar T>
+  std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const& frame, double t) const {
+    Wrench<T> w;
+    w.m = detail::load_in_world<T>(moment, law(t).value, axes, frame[0]);
+    return {w};
+  }
+};
+
+static_assert(ForceElement<PointForce<>> && ForceElement<PointMoment<>>);
+
+}  // namespace polybody

@@ -1,0 +1,51 @@
+#pragma once
+#include <polybody/forces/force_element.hpp>
+
+namespace polybody {
+
+/// Spring and damper along the line between two markers: tension N = k (l − l₀) + c l̇.
+struct SpringDamper {
+  static constexpr int markers = 2;
+  static constexpr bool is_load = false;
+  static constexpr Observes needs = Observes::point;
+
+  Required<double> stiffness;    ///< k [N/m]
+  double damping = 0.0;          ///< c [N s/m]
+  Required<double> free_length;  ///< l₀ [m]
+
+  void check(std::string const& name) const {
+    require_not_negative(stiffness, name + ": the spring stiffness");
+    require_not_negative(damping, name + ": the damping");
+    require_not_negative(free_length, name + ": the free length");
+  }
+
+  /// With d = r_b − r_a, l = |d|: f_a = N d/l, f_b = −f_a. For l₀ = 0 the spring passes through l = 0
+  /// smoothly when undamped; elsewhere l = 0 has no direction.
+  template <StateScalar T>
+  std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& frames, double) const {
+    using std::sqrt;
+    Vec<T, 3> const d = frames[1].r - frames[0].r, rate = frames[1].v - frames[0].v;
+    T const l2 = d.squaredNorm();
+    Vec<T, 3> pull;
+    if (free_length == 0.0 && damping == 0.0) {
+      pull = d * T(stiffness.value);
+    } else {
+      T const l = sqrt(l2);
+      T const tension = (l - T(free_length.value)) * stiffness.value + d.dot(rate) / l * damping;
+      pull = d * (tension / l);
+    }
+    std::array<Wrench<T>, 2> w;
+    w[0].f = pull;
+    w[1].f = -pull;
+    return w;
+  }
+
+  double potential(std::array<Frame<double>, 2> const& frames, double) const {
+    double const x = (frames[1].r - frames[0].r).norm() - free_length;
+    return 0.5 * stiffness * x * x;
+  }
+};
+
+static_assert(ForceElement<SpringDamper> && HasPotential<SpringDamper>);
+
+}  // namespace polybody

@@ -1,0 +1,119 @@
+#pragma once
+/// \file
+/// Accelerations and multipliers of a state, and projections onto the rows: all through the matrix
+/// [M, Gᵀ; G, 0] [thesis Eq. 3.2].
+
+#include <polybody/solvers/auto_lu.hpp>
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+template <class M, LinearSolver Solver = AutoLu>
+class ForwardDynamics {
+ public:
+  explicit ForwardDynamics(System<M>& system)
+      : zero_a_(VecX::Zero(system.speeds())), zero_lambda_(VecX::Zero(system.rows())),
+        r_(VecX::Zero(system.speeds())), phi_(VecX::Zero(system.rows())), rhs_(VecX::Zero(system.size())),
+        x_(VecX::Zero(system.size())), scratch_(system.data().scratch.size()) {
+    PatternSink pattern;
+    system.tangent({.mass = 1.0}, SecondOrder::omitted, zero_lambda_, pattern);
+    solver_.analyse(system.size(), pattern.blocks);
+  }
+
+  /// M a + Gᵀλ = f, G a = −γ at (q, v, t). \throws LinearSolverSingular, NonFinite.
+  void accelerations(System<M>& system, VecX const& q, VecX const& v, double t, VecX& a, VecX& lambda) {
+    system.evaluate(q, v, t);
+    factor(system);
+    system.residual(zero_a_, zero_lambda_, r_);
+    system.require_finite_force(r_);
+    system.acceleration_bias(phi_);
+    solve(system, -1.0, -1.0);
+    a = x_.head(system.speeds());
+    lambda = x_.tail(system.rows());
+  }
+
+  /// The smallest change of v (in the norm of M) that satisfies G v + Φ_t = 0. Returns max |change|.
+  double project_velocities(System<M>& system, VecX const& q, VecX& v, double t) {
+    if (system.rows() == 0) return 0.0;
+    system.evaluate(q, v, t);
+    factor(system);
+    system.violation_rate(phi_);
+    solve(system, 0.0, -1.0);
+    v += x_.head(system.speeds());
+    return x_.head(system.speeds()).cwiseAbs().maxCoeff();
+  }
+
+  /// One Gauss–Newton step of the smallest change of q (in the norm of M) towards Φ = 0; returns |Φ| before.
+  double project_positions_once(System<M>& system, VecX& q, VecX const& v, double t) {
+    system.evaluate(q, v, t);
+    system.violation(phi_);
+    double const before = phi_.size() ? phi_.cwiseAbs().maxCoeff() : 0.0;
+    if (before == 0.0) return before;
+    factor(system);
+    solve(system, 0.0, -1.0);
+    delta_ = x_.head(system.speeds());
+    next_ = q;
+    system.plus(q, delta_, next_);
+    q.swap(next_);
+    return before;
+  }
+
+  /// P b: the part of b that the rows force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t).
+  void constrained_part(System<M>& system, VecX const& q, VecX const& v, double t, VecX const& b,
+                        VecX& out) {
+    system.evaluate(q, v, t);
+    factor(system);
+    rate_of(system, b);
+    solve(system, 0.0, 1.0);
+    out = x_.head(system.speeds());
+  }
+
+ private:
+  void factor(System<M>& system) {
+    if (M::constant_mass && system.rows() == 0 && factored_) return;
+    solver_.begin();
+    system.tangent({.mass = 1.0}, SecondOrder::omitted, zero_lambda_, solver_);
+    if (Index const bad = solver_.factor(); bad >= 0) singular(system, bad);
+    factored_ = true;
+  }
+
+  /// [M, Gᵀ; G, 0] x = [r_scale r; phi_scale φ].
+  void solve(System<M>& system, double r_scale, double phi_scale) {
+    rhs_.head(system.speeds()) = r_scale * r_;
+    rhs_.tail(system.rows()) = phi_scale * phi_;
+    if (r_scale == 0.0) rhs_.head(system.speeds()).setZero();
+    solver_.solve(rhs_, x_);
+    for (Index i = 0; i < x_.size(); ++i)
+      if (!std::isfinite(x_[i])) singular(system, i);
+  }
+
+  /// φ ← G b, by the markers' Jacobians.
+  void rate_of(System<M>& system, VecX const& b) {
+    phi_.setZero();
+    auto const& model = system.model();
+    for_each_row_block(model, system.data(), [&](auto const& e, auto const& gap, auto const& a, auto const& c) {
+      constexpr int m = std::decay_t<decltype(gap)>::rows;
+      auto const add = [&](Published<double> const& p, Mat<double, m, 6> const& g) {
+        detail::pull_rows<m>(p, g, scratch_, [&](auto const& gt) {
+          phi_.template segment<m>(e.row) += gt.transpose() * b.segment(p.first, p.columns);
+        });
+      };
+      add(a, gap.Ga);
+      add(c, gap.Gb);
+    });
+  }
+
+  [[noreturn]] static void singular(System<M> const& system, Index i) {
+    throw LinearSolverSingular(
+        "The equations of motion have no unique acceleration at t = " + std::to_string(system.time()) +
+        " s; the pivot is lost at " + system.name_of(i) +
+        ". Look for a joint that repeats another, or a body without inertia that is free to move.");
+  }
+
+  Solver solver_;
+  bool factored_ = false;
+  VecX zero_a_, zero_lambda_, r_, phi_, rhs_, x_, delta_, next_;
+  std::vector<double> scratch_;
+};
+
+}  // namespace polybody

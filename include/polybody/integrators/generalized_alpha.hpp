@@ -1,0 +1,226 @@
+#pragma once
+/// \file
+/// Lie-group generalised-α for index-3 equations [Arnold & Brüls 2007; Brüls, Cardona & Arnold 2012]:
+///   M v̇₁ = f₁ − Gᵀλ₁,  Φ(q₁) = 0,
+///   (1 − α_m) a₁ + α_m a₀ = (1 − α_f) v̇₁ + α_f v̇₀,
+///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
+/// One Newton unknown y = Δa₁ with Δq = βh² y, Δv = γh y, Δv̇ = (1 − α_m)/(1 − α_f) y; with the rows divided
+/// by βh² every entry of the tangent keeps the size of M and G for any h.
+
+#include <polybody/integrators/integrator.hpp>
+#include <polybody/solvers/newton.hpp>
+
+namespace polybody {
+
+struct GeneralizedAlpha {
+  static constexpr char const* name = "GeneralizedAlpha";
+  static constexpr int order = 2;
+  static constexpr bool accepts_rows = true;
+
+  double rho_inf = 0.8;          ///< spectral radius at infinity, in [0, 1]: 1 keeps energy, 0 damps most
+  double tolerance = 1e-8;       ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {};
+  bool start_correction = true;  ///< second-order multipliers from the first step and across changes of h
+  bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
+
+  /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
+  void check() const {
+    if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
+      throw InvalidInput("GeneralizedAlpha: rho_inf must lie in [0, 1], but is " + std::to_string(rho_inf) + ".");
+    require_positive(tolerance, "GeneralizedAlpha: the tolerance");
+  }
+
+  template <class M, class Solver>
+  struct Workspace {
+    VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, part, vd_before;
+    Solver solver;
+    ForwardDynamics<M, Solver> forward;
+    bool factored = false;
+    bool second_order = false;
+    double theta = 1.0;
+    double h_factored = 0.0;
+    double h_before = 0.0;  ///< length of the last step; 0 right after a start
+
+    explicit Workspace(System<M>& s)
+        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), vd(v), a(v), lambda(VecX::Zero(s.rows())),
+          dq(v), r(v), phi(lambda), rhs(VecX::Zero(s.size())), y(rhs), jerk(v), part(v), vd_before(v), forward(s) {}
+
+    void analyse(System<M>& s, SecondOrder second) {
+      PatternSink pattern;
+      s.tangent({1.0, 1.0, 1.0}, second, lambda, pattern);
+      solver.analyse(s.size(), pattern.blocks);
+      second_order = second == SecondOrder::included;
+      factored = false;
+    }
+  };
+
+  template <class Solver, class M>
+  Workspace<M, Solver> workspace(System<M>& system) const {
+    Workspace<M, Solver> w(system);
+    w.analyse(system, second_order_terms ? SecondOrder::included : SecondOrder::omitted);
+    return w;
+  }
+
+  /// Consistent v̇ and λ at x, and the algorithmic acceleration of the method.
+  template <class M, class Solver>
+  void start(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    check();
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    x.memory = x.a;
+    w.h_before = 0.0;
+    w.factored = false;
+    if (start_correction && jerk_at_start(system, x, h, w)) correct(system, x, 0.0, h, w);
+  }
+
+  template <class M, class Solver>
+  StepReport step(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    if (start_correction && w.h_before > 0.0 && std::abs(h - w.h_before) > 1e-9 * h) {
+      // across a change of h: jerk from the last two accelerations, used where the step resolves it
+      w.jerk = (x.a - w.vd_before) / w.h_before;
+      if (h * w.jerk.norm() <= 0.5 * x.a.norm()) {
+        State moved = x;  // x stays as it is when the step fails
+        correct(system, moved, w.h_before, h, w);
+        StepReport const report = advance(system, moved, h, w);
+        x = std::move(moved);
+        return report;
+      }
+    }
+    return advance(system, x, h, w);
+  }
+
+ private:
+  double alpha_m() const { return (2.0 * rho_inf - 1.0) / (rho_inf + 1.0); }
+  double alpha_f() const { return rho_inf / (rho_inf + 1.0); }
+  double gamma() const { return 0.5 - alpha_m() + alpha_f(); }
+  double beta() const { return 0.25 * (gamma() + 0.5) * (gamma() + 0.5); }
+
+  /// One step from x; x changes only when Newton converged.
+  template <class M, class Solver>
+  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    double const am = alpha_m(), af = alpha_f(), g = gamma(), b = beta(), s = b * h * h;
+    double const mass = (1.0 - am) / (1.0 - af);
+    Index const nv = system.speeds(), rows = system.rows();
+    w.vd = x.a;
+    w.lambda = x.lambda;
+    w.a = (af * x.a + (1.0 - af) * w.vd - am * x.memory) / (1.0 - am);
+    w.v = x.v + h * ((1.0 - g) * x.memory + g * w.a);
+    w.dq = h * x.v + h * h * ((0.5 - b) * x.memory + b * w.a);
+    if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+
+    struct Problem {
+      GeneralizedAlpha const& method;
+      System<M>& system;
+      State const& x;
+      Workspace<M, Solver>& w;
+      double h, s, g, mass;
+      Index nv, rows, bad = -1;
+
+      bool evaluate() {
+        system.plus(x.q, w.dq, w.q);
+        system.evaluate(w.q, w.v, x.t + h);
+        system.residual(w.vd, w.lambda, w.r);
+        system.violation(w.phi);
+        w.rhs.head(nv) = -w.r;
+        w.rhs.tail(rows) = w.phi / -s;
+        return w.rhs.allFinite();
+      }
+      bool refactor() {
+        w.solver.begin();
+        system.tangent({mass, h * g, s},
+                       w.second_order ? SecondOrder::included : SecondOrder::omitted, w.lambda, w.solver);
+        w.h_factored = h;
+        bad = w.solver.factor();
+        return bad < 0;
+      }
+      double solve() {
+        w.solver.solve(w.rhs, w.y);
+        double const n = std::sqrt(double(std::max<Index>(nv, 1)));
+        double const size = 1.0 + w.vd.norm() / n;
+        double const rounding = 100.0 * std::numeric_limits<double>::epsilon() *
+                                (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
+        return w.y.allFinite() ? w.y.head(nv).norm() / n / (method.tolerance * size + rounding)
+                               : std::numeric_limits<double>::quiet_NaN();
+      }
+      void apply() {
+        auto const da = w.y.head(nv);
+        w.a += da;
+        w.vd += mass * da;
+        w.v += h * g * da;
+        w.dq += s * da;
+        w.lambda += w.y.tail(rows);
+      }
+    } problem{*this, system, x, w, h, s, g, mass, nv, rows};
+
+    NewtonReport report = polybody::newton(problem, newton, w.factored, w.theta);
+    if (report.result == NewtonResult::diverged && !w.second_order) {
+      // the tangent was the lean one: try again from the same start with every term
+      w.analyse(system, SecondOrder::included);
+      return advance(system, x, h, w);
+    }
+    if (report.result != NewtonResult::converged) fail(system, x.t + h, report, problem.bad, w.rhs);
+    // the last correction moved dq: bring q to it
+    system.plus(x.q, w.dq, w.q);
+    w.vd_before = x.a;
+    x.q.swap(w.q);
+    x.v.swap(w.v);
+    x.a.swap(w.vd);
+    x.memory.swap(w.a);
+    x.lambda.swap(w.lambda);
+    x.t += h;
+    w.h_before = h;
+    return {h, h, report.iterations, report.factorisations, report.iterations, 0, report.theta};
+  }
+
+  template <class M>
+  [[noreturn]] void fail(System<M> const& system, double t, NewtonReport const& report, Index bad,
+                         VecX const& rhs) const {
+    std::string const when = " at t = " + std::to_string(t) + " s";
+    if (report.result == NewtonResult::singular)
+      throw LinearSolverSingular("GeneralizedAlpha: the tangent is singular" + when + ", first at " +
+                                 system.name_of(std::max<Index>(bad, 0)) +
+                                 ". Look for a joint that repeats another, or a free body without inertia.");
+    if (report.result == NewtonResult::not_finite) {
+      Index i = 0;
+      while (i < rhs.size() && std::isfinite(rhs[i])) ++i;
+      throw NonFinite("GeneralizedAlpha: a force on " + system.name_of(std::min(i, rhs.size() - 1)) +
+                      " is not finite" + when + ". Look at the forces applied to it, or take a smaller step.");
+    }
+    throw NewtonStalled("GeneralizedAlpha: Newton's method did not converge" + when + " after " +
+                        std::to_string(report.iterations) + " iterations (contraction " +
+                        std::to_string(report.theta) + "). Take a smaller step; the state is as before it.");
+  }
+
+  /// The method's a and v stand off those of the solution by Δ h q⃛ and C h² P q⃛ (Δ = α_m − α_f,
+  /// C = 1/6 − β − Δ/2, P the part that the rows force); start there, and follow it when h changes.
+  /// [derived from Arnold & Brüls 2007, Lemma 1]
+  template <class M, class Solver>
+  void correct(System<M>& system, State& x, double h_old, double h_new, Workspace<M, Solver>& w) const {
+    double const delta = alpha_m() - alpha_f(), c = 1.0 / 6.0 - beta() - 0.5 * delta;
+    x.memory += delta * (h_new - h_old) * w.jerk;
+    if (system.rows() == 0) return;
+    w.forward.constrained_part(system, x.q, x.v, x.t, w.jerk, w.part);
+    x.v += c * (h_new * h_new - h_old * h_old) * w.part;
+  }
+
+  /// q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. False where
+  /// the two disagree: then the motion is not resolved by steps of h and a correction would be noise.
+  template <class M, class Solver>
+  bool jerk_at_start(System<M>& system, State const& x, double h, Workspace<M, Solver>& w) const {
+    auto const acceleration_after = [&](double e, VecX& out) {
+      w.dq = e * x.v + 0.5 * e * e * x.a;
+      w.v = x.v + e * x.a;
+      system.plus(x.q, w.dq, w.q);
+      w.forward.accelerations(system, w.q, w.v, x.t + e, out, w.lambda);
+    };
+    VecX half = x.a, full = x.a, quarter = x.a;
+    acceleration_after(0.25 * h, quarter);
+    acceleration_after(0.5 * h, half);
+    acceleration_after(h, full);
+    VecX const fine = (4.0 * quarter - half - 3.0 * x.a) / (0.5 * h);
+    VecX const coarse = (4.0 * half - full - 3.0 * x.a) / h;
+    w.jerk = fine;
+    return (fine - coarse).norm() <= 0.5 * fine.norm() && fine.allFinite();
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,36 @@
+#pragma once
+/// \file
+/// What an integrator offers, and what it reports of a step.
+
+#include <polybody/integrators/forward_dynamics.hpp>
+
+namespace polybody {
+
+/// What one accepted step cost.
+struct StepReport {
+  double taken = 0.0;       ///< length of the step [s]
+  double next = 0.0;        ///< length suggested for the next one [s]
+  int iterations = 0;       ///< Newton iterations; 0 for an explicit step
+  int factorisations = 0;   ///< of the tangent or the mass matrix
+  int evaluations = 0;      ///< of the forces
+  int rejected = 0;         ///< trial steps thrown away by the step control
+  double contraction = 0.0; ///< last contraction rate of Newton's method
+};
+
+/// An integrator is a value with options. Its workspace for a system is allocated once:
+///   auto w = integrator.template workspace<Solver>(system);
+///   integrator.start(system, x, h, w);      after a start, a jump or an event
+///   integrator.step(system, x, h, w);       x is untouched when it throws; takes at most h
+template <class I, class M, class Solver = AutoLu>
+concept Integrator = requires(I const i, System<M>& system, State& x, double h) {
+  { I::name } -> std::convertible_to<char const*>;
+  { I::order } -> std::convertible_to<int>;
+  { I::accepts_rows } -> std::convertible_to<bool>;
+  i.check();
+  i.start(system, x, h, *std::declval<decltype(i.template workspace<Solver>(system))*>());
+  {
+    i.step(system, x, h, *std::declval<decltype(i.template workspace<Solver>(system))*>())
+  } -> std::same_as<StepReport>;
+};
+
+}  // namespace polybody

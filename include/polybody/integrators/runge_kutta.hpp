@@ -1,0 +1,179 @@
+#pragma once
+/// \file
+/// Explicit Runge–Kutta methods on the manifold: with q = q₀ ⊞ δ the pair (δ, v) lives in a vector space and
+/// δ˙ = local_rate(δ, v), v̇ = accelerations(q₀ ⊞ δ, v, t) [Munthe-Kaas 1999].
+
+#include <array>
+
+#include <polybody/integrators/stabilisation.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// Stages of an explicit method: positions, speeds and their rates.
+template <class M, class Solver, int stages>
+struct RungeKuttaWorkspace {
+  std::array<VecX, stages> position_rate, acceleration;
+  VecX delta, v, q, a, lambda, error, v_error;
+  ForwardDynamics<M, Solver> forward;
+
+  explicit RungeKuttaWorkspace(System<M>& s)
+      : delta(VecX::Zero(s.speeds())), v(delta), q(VecX::Zero(s.coordinates())), a(delta),
+        lambda(VecX::Zero(s.rows())), error(delta), v_error(delta), forward(s) {
+    position_rate.fill(delta);
+    acceleration.fill(delta);
+  }
+
+  /// Rates at x + h Σ row[j] k_j into stage i.
+  template <std::size_t n>
+  void stage(System<M>& system, State const& x, double h, double c, std::array<double, n> const& row, int i) {
+    combine(x, h, row, i);
+    system.plus(x.q, delta, q);
+    system.local_rate(delta, v, position_rate[std::size_t(i)]);
+    forward.accelerations(system, q, v, x.t + c * h, acceleration[std::size_t(i)], lambda);
+  }
+
+  /// delta, v = h Σ_{j<count} weights[j] k_j (plus v₀).
+  template <std::size_t n>
+  void combine(State const& x, double h, std::array<double, n> const& weights, int count) {
+    delta.setZero();
+    v = x.v;
+    for (int j = 0; j < count; ++j) {
+      if (weights[std::size_t(j)] == 0.0) continue;
+      delta += (h * weights[std::size_t(j)]) * position_rate[std::size_t(j)];
+      v += (h * weights[std::size_t(j)]) * acceleration[std::size_t(j)];
+    }
+  }
+
+  /// Projects the combined result and makes it the state at t + h.
+  template <class Stabilisation>
+  void accept(System<M>& system, State& x, double h, Stabilisation const& stabilisation) {
+    system.plus(x.q, delta, q);
+    stabilisation.apply(system, forward, q, v, x.t + h);
+    forward.accelerations(system, q, v, x.t + h, a, lambda);
+    x.q.swap(q);
+    x.v.swap(v);
+    x.a.swap(a);
+    x.lambda.swap(lambda);
+    x.t += h;
+  }
+};
+
+}  // namespace detail
+
+/// The classical method of order four.
+template <class Stabilisation = NoStabilisation>
+struct RungeKutta4 {
+  static constexpr char const* name = "RungeKutta4";
+  static constexpr int order = 4;
+  static constexpr bool accepts_rows = Stabilisation::accepts_rows;
+
+  Stabilisation stabilisation = {};
+
+  void check() const {}
+  template <class Solver, class M>
+  auto workspace(System<M>& system) const {
+    return detail::RungeKuttaWorkspace<M, Solver, 4>(system);
+  }
+  template <class M, class W>
+  void start(System<M>& system, State& x, double, W& w) const {
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+  }
+  template <class M, class W>
+  StepReport step(System<M>& system, State& x, double h, W& w) const {
+    using Row = std::array<double, 4>;
+    w.stage(system, x, h, 0.0, Row{}, 0);
+    w.stage(system, x, h, 0.5, Row{0.5}, 1);
+    w.stage(system, x, h, 0.5, Row{0.0, 0.5}, 2);
+    w.stage(system, x, h, 1.0, Row{0.0, 0.0, 1.0}, 3);
+    w.combine(x, h, Row{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0}, 4);
+    w.accept(system, x, h, stabilisation);
+    return {.taken = h, .next = h, .factorisations = 5, .evaluations = 5};
+  }
+};
+
+/// The pair of order 5(4) with step control [Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, §II.4–5].
+template <class Stabilisation = NoStabilisation>
+struct DormandPrince {
+  static constexpr char const* name = "DormandPrince";
+  static constexpr int order = 5;
+  static constexpr bool accepts_rows = Stabilisation::accepts_rows;
+  static constexpr bool controls_step = true;
+
+  double relative_tolerance = 1e-8;
+  double absolute_tolerance = 1e-10;
+  double smallest_step = 1e-12;  ///< [s]
+  Stabilisation stabilisation = {};
+
+  void check() const {
+    require_positive(relative_tolerance, "DormandPrince: the relative tolerance");
+    require_positive(absolute_tolerance, "DormandPrince: the absolute tolerance");
+    require_positive(smallest_step, "DormandPrince: the smallest step");
+  }
+  template <class Solver, class M>
+  auto workspace(System<M>& system) const {
+    return detail::RungeKuttaWorkspace<M, Solver, 7>(system);
+  }
+  template <class M, class W>
+  void start(System<M>& system, State& x, double, W& w) const {
+    check();
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+  }
+
+  /// Takes at most h, less where the error asks for it. \throws StepTooSmall.
+  template <class M, class W>
+  StepReport step(System<M>& system, State& x, double h, W& w) const {
+    using Row = std::array<double, 7>;
+    static constexpr Row c{0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
+    static constexpr std::array<Row, 7> a{
+        Row{},
+        Row{1.0 / 5},
+        Row{3.0 / 40, 9.0 / 40},
+        Row{44.0 / 45, -56.0 / 15, 32.0 / 9},
+        Row{19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+        Row{9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+        Row{35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+    static constexpr Row e{71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525,
+                           -1.0 / 40};
+    StepReport report;
+    for (;;) {
+      for (int i = 0; i < 7; ++i) w.stage(system, x, h, c[std::size_t(i)], a[std::size_t(i)], i);
+      report.evaluations += 7;
+      report.factorisations += 7;
+      w.error.setZero();
+      w.v_error.setZero();
+      for (std::size_t j = 0; j < 7; ++j) {
+        w.error += (h * e[j]) * w.position_rate[j];
+        w.v_error += (h * e[j]) * w.acceleration[j];
+      }
+      double const error = std::sqrt(0.5 * (size(w.error, w.delta, x.q) + size(w.v_error, w.v, x.v)));
+      double const factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 5.0);
+      if (error <= 1.0) {
+        w.combine(x, h, a[6], 6);
+        w.accept(system, x, h, stabilisation);
+        report.evaluations += 1;
+        report.factorisations += 1;
+        report.taken = h;
+        report.next = h * factor;
+        return report;
+      }
+      ++report.rejected;
+      h *= std::isfinite(error) ? factor : 0.2;
+      if (h < smallest_step)
+        throw StepTooSmall("DormandPrince: the error asks for a step below " + std::to_string(smallest_step) +
+                           " s at t = " + std::to_string(x.t) +
+                           " s. The model is stiff or jumps here: use an implicit integrator or name the corner.");
+    }
+  }
+
+ private:
+  /// Mean square of the error over its tolerance.
+  double size(VecX const& error, VecX const& now, VecX const& before) const {
+    if (error.size() == 0) return 0.0;
+    double const scale = absolute_tolerance +
+                         relative_tolerance * std::max(now.cwiseAbs().maxCoeff(), before.cwiseAbs().maxCoeff());
+    return error.squaredNorm() / (scale * scale * double(error.size()));
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,102 @@
+#pragma once
+/// \file
+/// Tables of numbers as comma-separated values (RFC 4180); reading them back: table.hpp.
+
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <filesystem>
+#include <initializer_list>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <polybody/io/atomic_file.hpp>
+#include <polybody/io/table.hpp>
+#include <polybody/math/errors.hpp>
+
+namespace polybody {
+
+/// Writes a table, one head line and then rows of numbers in the shortest form that reads back to
+/// the same double. The file appears under its name on `close()` (see AtomicFile). Move-only.
+class Csv {
+ public:
+  /// `columns`: the heads, with their units ("t [s]"); not empty and all different, else
+  /// InvalidInput. Creates the parent folders; throws IoError if the file cannot be made.
+  Csv(std::filesystem::path const& file, std::vector<std::string> columns)
+      : columns_(std::move(columns)), file_((check_heads(file, columns_), file)) {
+    for (auto const& head : columns_) (line_ += quoted(head)) += ',';
+    line_.back() = '\n';
+    file_.write(line_);
+  }
+
+  /// Adds one row, a number for each column. Throws InvalidInput, and writes nothing, if the count
+  /// differs or a number is not finite; IoError if the system refuses the bytes.
+  void row(std::span<double const> values) {
+    auto const where = [&] {
+      return "file '" + file_.name() + "', row " + std::to_string(rows_ + 1);
+    };
+    if (values.size() != columns_.size())
+      throw InvalidInput(where() + ": " + std::to_string(values.size()) + " values for " +
+                         std::to_string(columns_.size()) + " columns");
+    line_.clear();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i]))
+        throw InvalidInput(where() + ", column '" + columns_[i] + "': the value is not finite (" +
+                           std::to_string(values[i]) + ")");
+      char digits[32];
+      line_.append(digits, std::to_chars(digits, digits + sizeof digits, values[i]).ptr) += ',';
+    }
+    if (!line_.empty()) line_.back() = '\n';
+    file_.write(line_);
+    ++rows_;
+  }
+
+  /// The same for `row({t, x, y})`.
+  void row(std::initializer_list<double> values) {
+    row(std::span<double const>(values.begin(), values.size()));
+  }
+
+  /// The same for `row(t, x, y)`.
+  template <std::convertible_to<double>... Numbers>
+  void row(Numbers const&... values) {
+    row({static_cast<double>(values)...});
+  }
+
+  /// Completes the file and puts it in place; a second call does nothing. Throws IoError.
+  void close() { file_.close(); }
+
+  std::size_t rows() const noexcept { return rows_; }  ///< Rows written so far, without the head.
+
+ private:
+  static void check_heads(std::filesystem::path const& file,
+                          std::vector<std::string> const& columns) {
+    if (columns.empty())
+      throw InvalidInput("file '" + file.string() + "': a table needs at least one column");
+    std::set<std::string_view> seen;
+    for (auto const& head : columns) {
+      if (head.empty()) throw InvalidInput("file '" + file.string() + "': a column head is empty");
+      if (!seen.insert(head).second)
+        throw InvalidInput("file '" + file.string() + "': two columns are called '" + head + "'");
+    }
+  }
+
+  static std::string quoted(std::string const& head) {
+    bool const edge = head.front() == ' ' || head.back() == ' ';
+    if (!edge && head.find_first_of(",\"\r\n\t") == head.npos) return head;
+    std::string text = "\"";
+    for (char const c : head) text.append(c == '"' ? 2u : 1u, c);
+    return text + '"';
+  }
+
+  std::vector<std::string> columns_;
+  AtomicFile file_;
+  std::string line_;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace polybody

@@ -1,0 +1,86 @@
+#pragma once
+/// \file
+/// What a figure is: curves, axes and text; plot.hpp writes and draws it.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <polybody/math/errors.hpp>
+
+namespace polybody {
+
+/// One curve of a figure.
+struct Curve {
+  std::vector<double> x{}, y{};  ///< (n) points, n >= 1
+  std::string label{};           ///< in the legend; empty: not in the legend
+  std::string style = "lines";   ///< lines, points, linespoints, dashed or steps
+  int color = -1;                ///< same number, same colour (8, then again); -1: its place
+  double width = 1.5;            ///< line width [pt]
+};
+
+/// One pair of axes. All text is printed as it stands (UTF-8; '\n' begins a new line).
+struct Figure {
+  std::string title{}, x_label{}, y_label{};
+  std::vector<Curve> curves{};
+  bool equal_axes = false;            ///< one unit of x is as long as one unit of y
+  bool log_x = false, log_y = false;  ///< points that are not positive are then left out
+  bool legend = true;
+  std::optional<std::array<double, 2>> x_range{}, y_range{};  ///< from, to; else all points
+  int width_px = 1000, height_px = 700;
+};
+
+namespace detail {
+
+inline constexpr std::array<std::string_view, 5> curve_styles{"lines", "points", "linespoints",
+                                                              "dashed", "steps"};
+
+/// Throws InvalidInput with the figure's title and the curve's label unless all can be drawn.
+inline void check(Figure const& figure) {
+  std::string where = "figure '" + figure.title + "'";
+  auto const need = [&](bool good, std::string_view rule) {
+    if (!good) throw InvalidInput(where + ": " + std::string(rule));
+  };
+  auto const in = [](int value, int low, int high) { return low <= value && value <= high; };
+  auto const is_finite = [](double value) { return std::isfinite(value); };
+  need(!figure.curves.empty(), "a figure needs at least one curve");
+  need(in(figure.width_px, 50, 16000) && in(figure.height_px, 50, 16000),
+       "width and height must be 50 to 16000 pixels");
+  need(!figure.equal_axes || !(figure.log_x || figure.log_y), "equal axes cannot be logarithmic");
+  auto const check_range = [&](auto const& range, bool log, std::string const& axis) {
+    if (!range) return;
+    auto const [from, to] = *range;
+    need(is_finite(from) && is_finite(to) && from != to,
+         axis + " must be two different finite numbers");
+    need(!log || (from > 0 && to > 0), axis + " must be positive on a logarithmic axis");
+  };
+  check_range(figure.x_range, figure.log_x, "x_range");
+  check_range(figure.y_range, figure.log_y, "y_range");
+  bool visible = false;
+  std::string const title = where;
+  for (auto const& [x, y, label, style, color, width] : figure.curves) {
+    (where = title).append(", curve '").append(label).append("'");
+    need(x.size() == y.size(), "x has " + std::to_string(x.size()) + " numbers and y has " +
+                                   std::to_string(y.size()) + "; they must be as many");
+    need(!x.empty(), "a curve needs at least one point");
+    need(std::ranges::all_of(x, is_finite), "a number in x is not finite");
+    need(std::ranges::all_of(y, is_finite), "a number in y is not finite");
+    need(std::ranges::count(curve_styles, style) == 1,
+         "style '" + style + "' is none of lines, points, linespoints, dashed, steps");
+    need(color >= -1, "color must be 0, 1, 2 ... or -1 for one by its place");
+    need(is_finite(width) && width > 0, "width must be positive");
+    for (std::size_t i = 0; i < x.size() && !visible; ++i)
+      visible = (!figure.log_x || x[i] > 0) && (!figure.log_y || y[i] > 0);
+  }
+  where = title;
+  need(visible, "no point is positive, so nothing can be drawn on logarithmic axes");
+}
+
+}  // namespace detail
+
+}  // namespace polybody

@@ -1,0 +1,91 @@
+#pragma once
+/// \file
+/// Finding and running the program gnuplot, and writing text so that it prints it as it stands.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <polybody/io/atomic_file.hpp>
+#include <polybody/math/errors.hpp>
+
+namespace polybody {
+
+/// The first executable `gnuplot` in the folders of the environment variable PATH, if any.
+inline std::optional<std::filesystem::path> find_gnuplot() {
+  namespace fs = std::filesystem;
+  char const* const path = std::getenv("PATH");
+  for (std::string_view rest = path ? path : ""; !rest.empty();) {
+    std::string_view const folder = rest.substr(0, rest.find(':'));
+    rest.remove_prefix(folder.size() == rest.size() ? rest.size() : folder.size() + 1);
+    if (folder.empty()) continue;
+    std::error_code reason;
+    fs::path const program = fs::absolute(fs::path(folder) / "gnuplot", reason);
+    auto const status = fs::status(program, reason);
+    auto const may_run = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
+    if (fs::is_regular_file(status) && (status.permissions() & may_run) != fs::perms::none)
+      return program;
+  }
+  return std::nullopt;
+}
+
+namespace detail {
+
+/// `text` in single quotes, each single quote inside replaced by `escape`.
+inline std::string single_quoted(std::string_view text, std::string_view escape) {
+  std::string quoted = "'";
+  for (char const c : text) c == '\'' ? quoted += escape : quoted += c;
+  return quoted + '\'';
+}
+
+/// One word for a POSIX shell.
+inline std::string shell_word(std::string_view text) { return single_quoted(text, R"('\'')"); }
+
+/// A gnuplot string expression; nothing in it is special (gnuplot runs `...` in double quotes).
+inline std::string gnuplot_text(std::string_view text) {
+  std::string expression = single_quoted(text, "''");
+  for (std::size_t at = 0; (at = expression.find('\n', at)) != expression.npos; at += 7)
+    expression.replace(at, 1, "'.\"\\n\".'");
+  return expression;
+}
+
+/// Runs `program` in the folder of `script` with the gnuplot variable png set to the name of a
+/// temporary file, which then takes the place of `png`. Throws IoError with the script's name and
+/// gnuplot's own words.
+inline void run_gnuplot(std::filesystem::path const& program, std::filesystem::path const& script,
+                        std::filesystem::path const& png) {
+  namespace fs = std::filesystem;
+  struct Temporary {
+    fs::path file;
+    ~Temporary() {
+      std::error_code ignored;
+      fs::remove(file, ignored);
+    }
+  };
+  Temporary const drawing{temporary_beside(png)}, words{temporary_beside(png)};
+  fs::path const folder = fs::absolute(script).parent_path();
+  std::string const command = "cd " + shell_word(folder.string()) + " && " +
+                              shell_word(program.string()) + " -d -e " +
+                              shell_word("png='./" + drawing.file.filename().string() + "'") + ' ' +
+                              shell_word("./" + script.filename().string()) + " </dev/null >" +
+                              shell_word(words.file.filename().string()) + " 2>&1";
+  bool const ran = std::system(command.c_str()) == 0;
+  std::error_code reason;
+  if (!ran || fs::file_size(drawing.file, reason) == 0 || reason) {
+    std::ifstream said(words.file);
+    throw IoError("gnuplot failed on '" + script.string() +
+                  "': " + std::string(std::istreambuf_iterator<char>(said), {}));
+  }
+  fs::rename(drawing.file, png, reason);
+  if (reason)
+    throw IoError("file '" + png.string() + "' cannot be put in place: " + reason.message());
+}
+
+}  // namespace detail
+
+}  // namespace polybody

@@ -1,0 +1,169 @@
+#pragma once
+/// \file
+/// Figures of curves: a data file, a gnuplot script to run or edit by hand, and a PNG.
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <polybody/io/atomic_file.hpp>
+#include <polybody/io/figure.hpp>
+#include <polybody/io/gnuplot.hpp>
+#include <polybody/math/errors.hpp>
+
+namespace polybody {
+
+/// What `write_figure` could make: script_only when gnuplot is not on PATH or draw is false (a PNG
+/// of an earlier run is then left alone).
+enum class Drawn { png, script_only };
+
+namespace detail {
+
+/// What gnuplot calls each of `curve_styles`.
+inline constexpr std::array<std::string_view, 5> gnuplot_styles{"lines", "points", "linespoints",
+                                                                "lines dashtype (12,6)", "steps"};
+
+/// Colours that colour-blind readers can tell apart [Okabe & Ito 2008], strongest first.
+inline constexpr std::array<std::string_view, 8> palette{
+    "#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
+
+inline std::string number(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+/// A block of two columns for each curve; two blank lines part the blocks.
+inline std::string data_text(std::vector<Figure> const& figures) {
+  std::string text;
+  for (auto const& figure : figures)
+    for (auto const& curve : figure.curves) {
+      std::string remark = figure.title + " | " + curve.label;
+      std::ranges::replace(remark, '\n', ' ');
+      text += (text.empty() ? "# " : "\n\n# ") + remark + '\n';
+      for (std::size_t i = 0; i < curve.x.size(); ++i)
+        text += number(curve.x[i]) + ' ' + number(curve.y[i]) + '\n';
+    }
+  return text;
+}
+
+/// How many digits tell the marks of an axis apart: six, or more for a small span far from zero.
+inline std::string tick_digits(double low, double high) {
+  double const share = std::max(std::abs(low), std::abs(high)) / std::abs(high - low);
+  double const digits = share < 1e16 ? std::ceil(std::log10(share)) + 3 : 6;
+  return std::to_string(static_cast<int>(std::clamp(digits, 6.0, 17.0)));
+}
+
+/// The commands for one figure, whose first curve is data block `block` of the file `data`.
+inline std::string script_text(Figure const& figure, std::string const& data, std::size_t block) {
+  auto const range = [](auto const& r) {
+    return r ? '[' + number((*r)[0]) + ':' + number((*r)[1]) + ']' : std::string("[*:*]");
+  };
+  auto const digits = [&](auto const& r, auto points) {
+    if (r) return tick_digits((*r)[0], (*r)[1]);
+    double low = (figure.curves[0].*points)[0], high = low;
+    for (auto const& curve : figure.curves)
+      for (double const value : curve.*points)
+        low = std::min(low, value), high = std::max(high, value);
+    return tick_digits(low, high);
+  };
+  bool const named = std::ranges::any_of(figure.curves, [](auto& c) { return !c.label.empty(); });
+  std::string text = "reset\n";
+  text += "set title " + gnuplot_text(figure.title) + " noenhanced\n";
+  text += "set xlabel " + gnuplot_text(figure.x_label) + " noenhanced\n";
+  text += "set ylabel " + gnuplot_text(figure.y_label) + " noenhanced\n";
+  text +=
+      "set grid linetype 1 linecolor rgb '#d8d8d8' linewidth 1\nset tics nomirror\nset border 3\n";
+  text += figure.legend && named ? "set key below height 1 noenhanced\n" : "unset key\n";
+  text += "set format x '%." + digits(figure.x_range, &Curve::x) + "h'\n";
+  text += "set format y '%." + digits(figure.y_range, &Curve::y) + "h'\n";
+  if (figure.log_x) text += "set logscale x\n";
+  if (figure.log_y) text += "set logscale y\n";
+  if (figure.equal_axes) text += "set size ratio -1\n";
+  text +=
+      "set xrange " + range(figure.x_range) + "\nset yrange " + range(figure.y_range) + "\nplot ";
+  for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+    Curve const& curve = figure.curves[i];
+    std::size_t const color = (curve.color < 0 ? i : std::size_t(curve.color)) % palette.size();
+    auto const style =
+        std::size_t(std::ranges::find(curve_styles, curve.style) - curve_styles.begin());
+    text += (i ? ", \\\n     " : "") + gnuplot_text(data) + " index " + std::to_string(block + i) +
+            " using 1:2 with " + std::string(gnuplot_styles[style]);
+    text += " linewidth " + number(curve.width) + " linecolor rgb '" + std::string(palette[color]) +
+            "'";
+    if (curve.style.ends_with("points")) text += " pointtype " + std::to_string(4 + color);
+    text += curve.label.empty() ? " notitle" : " title " + gnuplot_text(curve.label);
+  }
+  return text + '\n';
+}
+
+inline std::filesystem::path with_ending(std::filesystem::path stem, char const* ending) {
+  return stem += ending;
+}
+
+}  // namespace detail
+
+/// Draws several figures in one PNG, row by row in `columns` columns, each panel as large as the
+/// largest figure. Writes stem.dat, stem.gp (runs by hand from its own folder) and, if `draw` and
+/// gnuplot is on PATH, stem.png; each appears only when complete. Throws InvalidInput (naming the
+/// figure and the curve) before anything is written, IoError if writing or gnuplot fails.
+inline Drawn write_panels(std::vector<Figure> const& figures, int columns,
+                          std::filesystem::path const& stem, bool draw = true) {
+  std::string const name = stem.filename().string();
+  if (name.empty() || std::ranges::any_of(name, [](unsigned char c) { return c < ' '; }))
+    throw InvalidInput("figure file '" + stem.string() +
+                       "': the name is empty or has a control sign");
+  if (figures.empty() || columns < 1)
+    throw InvalidInput("figure file '" + stem.string() + "': one figure and one column at least");
+  int width = 0, height = 0;
+  for (auto const& figure : figures) {
+    detail::check(figure);
+    width = std::max(width, figure.width_px);
+    height = std::max(height, figure.height_px);
+  }
+  int const count = static_cast<int>(figures.size());
+  int const across = std::min(columns, count), down = (count + across - 1) / across;
+  if (across > 30000 / width || down > 30000 / height)
+    throw InvalidInput("figure file '" + stem.string() +
+                       "': larger than 30000 pixels; use fewer panels");
+
+  std::string const size = std::to_string(across * width) + ',' + std::to_string(down * height);
+  std::string script = "# gnuplot script; run it from its own folder\n";
+  script += "if (!exists(\"png\")) png = " + detail::gnuplot_text("./" + name + ".png") + '\n';
+  script += "if (strstrt(GPVAL_TERMINALS, ' pngcairo ')) { set terminal pngcairo size " + size +
+            " font 'sans,14' } else { set terminal png size " + size + " }\n";
+  script += "set encoding utf8\nset output png\n";
+  if (count > 1)
+    script += "set multiplot layout " + std::to_string(down) + ',' + std::to_string(across) + '\n';
+  std::size_t block = 0;
+  for (auto const& figure : figures) {
+    script += detail::script_text(figure, "./" + name + ".dat", block);
+    block += figure.curves.size();
+  }
+  script += count > 1 ? "unset multiplot\nunset output\n" : "unset output\n";
+
+  AtomicFile data(detail::with_ending(stem, ".dat")), commands(detail::with_ending(stem, ".gp"));
+  data.write(detail::data_text(figures));
+  commands.write(script);
+  data.close();
+  commands.close();
+  auto const gnuplot = draw ? find_gnuplot() : std::nullopt;
+  if (!gnuplot) return Drawn::script_only;
+  detail::run_gnuplot(*gnuplot, detail::with_ending(stem, ".gp"),
+                      detail::with_ending(stem, ".png"));
+  return Drawn::png;
+}
+
+/// One figure; see `write_panels`.
+inline Drawn write_figure(Figure const& figure, std::filesystem::path const& stem,
+                          bool draw = true) {
+  return write_panels({figure}, 1, stem, draw);
+}
+
+}  // namespace polybody

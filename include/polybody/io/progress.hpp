@@ -1,0 +1,152 @@
+#pragma once
+/// \file
+/// A progress bar with the time that is left, on the terminal.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
+
+#include <polybody/math/errors.hpp>
+
+namespace polybody {
+
+/// Whether std::cerr goes to a terminal (never, on systems without isatty).
+inline bool stderr_is_terminal() {
+#if __has_include(<unistd.h>)
+  return ::isatty(STDERR_FILENO) == 1;
+#else
+  return false;
+#endif
+}
+
+/// Shows how far a run has come, on one line of at most 79 signs that is redrawn in place:
+///
+///     pendulum  42% [==============>                   ]  0:00:21  ETA 0:00:29
+///
+/// Silent where stderr is not a terminal. Not for use from several threads at once.
+class Progress {
+ public:
+  using Clock = std::function<double()>;  ///< Seconds from any origin, never falling.
+
+  /// From `start` to `end` (either may be the greater), in the unit of `update`, the simulated time
+  /// for one. Throws InvalidInput if either is not finite.
+  Progress(double start, double end, std::string label = "")
+      : Progress(start, end, std::move(label), std::cerr, stderr_is_terminal(), steady_seconds) {}
+
+  /// The same on any stream, with any clock; draws only if `terminal`.
+  Progress(double start, double end, std::string label, std::ostream& out, bool terminal,
+           Clock clock = steady_seconds)
+      : start_(start),
+        end_(end),
+        label_(shortened(std::move(label))),
+        out_(out),
+        terminal_(terminal),
+        clock_(std::move(clock)) {
+    if (!std::isfinite(start) || !std::isfinite(end))
+      throw InvalidInput("progress '" + label_ + "': start and end must be finite");
+    if (terminal_) began_ = clock_();
+  }
+
+  Progress(Progress const&) = delete;
+  Progress& operator=(Progress const&) = delete;
+
+  /// Leaves the line as far as the run came; the next output begins on a new line.
+  ~Progress() {
+    try {
+      end_line();
+    } catch (...) {  // a stream set to throw; a lost bar is no reason to end the program
+    }
+  }
+
+  /// The run has reached `now`. Cheap: redraws at most ten times a second.
+  void update(double now) {
+    if (!terminal_ || std::isnan(now)) return;
+    done_ = end_ == start_ ? 1.0 : std::clamp((now - start_) / (end_ - start_), 0.0, 1.0);
+    double const seconds = clock_();
+    if (drawn_ && seconds - last_drawn_ < 0.1) return;
+    draw(seconds);
+  }
+
+  /// The run is complete: draws 100 % and ends the line. Later calls do nothing.
+  void finish() {
+    done_ = 1.0;
+    drawn_ = true;
+    end_line();
+  }
+
+ private:
+  static constexpr std::size_t line_width = 79, label_width = 24;
+
+  static double steady_seconds() {
+    using Seconds = std::chrono::duration<double>;
+    return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  /// Seconds as h:mm:ss.
+  static std::string h_mm_ss(double seconds) {
+    if (!(seconds < 3.6e6)) return ">999:59:59";
+    auto const whole = static_cast<unsigned>(std::max(0.0, seconds));
+    char text[32];
+    std::snprintf(text, sizeof text, "%u:%02u:%02u", whole / 3600, whole / 60 % 60, whole % 60);
+    return text;
+  }
+
+  static bool begins_sign(char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }  // UTF-8
+
+  static std::size_t width(std::string const& text) {
+    return static_cast<std::size_t>(std::ranges::count_if(text, begins_sign));
+  }
+
+  static std::string shortened(std::string text) {
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+    while (width(text) > label_width) text.pop_back();  // ends with the first byte of a sign
+    return text;
+  }
+
+  void draw(double seconds) {
+    double const elapsed = seconds - began_;
+    std::string const left = done_ > 0 ? h_mm_ss(std::round(elapsed / done_ - elapsed)) : "-:--:--";
+    char percent[8];
+    std::snprintf(percent, sizeof percent, "%3d%%", static_cast<int>(100 * done_ + 1e-9));
+    std::string const head = (label_.empty() ? "" : label_ + ' ') + percent + " [";
+    std::string const tail = "]  " + h_mm_ss(elapsed) + "  ETA " + left;
+    std::size_t const room = line_width - width(head) - tail.size();
+    std::string bar(static_cast<std::size_t>(done_ * static_cast<double>(room)), '=');
+    if (bar.size() < room) bar += '>';
+    bar.resize(room, ' ');
+    out_ << '\r' << head << bar << tail << std::flush;
+    last_drawn_ = seconds;
+    drawn_ = true;
+  }
+
+  void end_line() {
+    if (!terminal_ || !drawn_) return;
+    terminal_ = false;
+    draw(clock_());
+    out_ << '\n' << std::flush;
+  }
+
+  double start_, end_;
+  std::string label_;
+  std::ostream& out_;
+  bool terminal_;
+  Clock clock_;
+  double began_ = 0.0, last_drawn_ = 0.0, done_ = 0.0;
+  bool drawn_ = false;
+};
+
+}  // namespace polybody

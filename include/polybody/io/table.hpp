@@ -1,0 +1,150 @@
+#pragma once
+/// \file
+/// A table of numbers in memory, and reading one from comma-separated values (RFC 4180).
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <polybody/math/errors.hpp>
+
+namespace polybody {
+
+/// A table in memory: `rows[i][j]` is the number in row i under head `columns[j]`.
+struct Table {
+  std::vector<std::string> columns;       ///< (m) the heads, units included
+  std::vector<std::vector<double>> rows;  ///< (n) rows of m numbers
+
+  /// The n numbers under the head `name`. Throws InvalidInput, listing the heads, unless exactly
+  /// one column is called so.
+  std::vector<double> column(std::string_view name) const {
+    std::string heads;
+    std::size_t found = 0, place = 0;
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      heads += (j ? ", '" : "'") + columns[j] + "'";
+      if (columns[j] == name) ++found, place = j;
+    }
+    if (found != 1)
+      throw InvalidInput((found ? "more than one column is called '" : "no column is called '") +
+                         std::string(name) + "'; the table has " +
+                         (heads.empty() ? "none" : heads));
+    std::vector<double> values;
+    for (auto const& row : rows) values.push_back(row.at(place));
+    return values;
+  }
+};
+
+namespace detail {
+
+/// Cuts RFC 4180 text into records of fields and counts its lines (from 1).
+struct CsvReader {
+  std::string_view text;
+  std::string name;  ///< the file, for messages
+  std::size_t line = 1;
+
+  [[noreturn]] void fail(std::size_t at, std::string const& what) const {
+    throw IoError("file '" + name + "', line " + std::to_string(at) + ": " + what);
+  }
+
+  /// The next record; `at` becomes the line where it begins. Blank lines are passed over, the end
+  /// of the text gives none. Blanks around an unquoted field are dropped.
+  std::vector<std::string> record(std::size_t& at) {
+    while (!text.empty() && (text.front() == '\n' || text.front() == '\r')) step();
+    at = line;
+    std::vector<std::string> fields;
+    while (!text.empty()) {
+      fields.push_back(field());
+      if (text.empty()) break;
+      bool const more = text.front() == ',';
+      step();
+      if (!more) break;
+      if (text.empty()) fields.emplace_back();
+    }
+    return fields;
+  }
+
+ private:
+  static constexpr std::string_view blanks = " \t\r";
+
+  char step() {
+    char const c = text.front();
+    text.remove_prefix(1);
+    line += c == '\n';
+    return c;
+  }
+
+  std::string field() {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) step();
+    if (!text.starts_with('"')) {
+      std::string_view plain = text.substr(0, text.find_first_of(",\n"));
+      text.remove_prefix(plain.size());
+      auto const last = plain.find_last_not_of(blanks);
+      return std::string(plain.substr(0, last == plain.npos ? 0 : last + 1));
+    }
+    std::size_t const opened = line;
+    std::string value;
+    for (step(); !text.empty();) {
+      char const c = step();
+      if (c != '"')
+        value += c;
+      else if (text.starts_with('"'))
+        value += step();
+      else {
+        while (!text.empty() && blanks.find(text.front()) != blanks.npos) step();
+        if (!text.empty() && text.front() != ',' && text.front() != '\n')
+          fail(line, "text follows a closing quote");
+        return value;
+      }
+    }
+    fail(opened, "a quote is never closed");
+  }
+};
+
+}  // namespace detail
+
+/// Reads a file as `Csv` writes it, and what other programs write: LF or CR LF, quoted fields, a
+/// byte-order mark, a leading '+', blank lines. Throws IoError with the file, and the line where
+/// there is one, if it cannot be read, is empty, is ragged or holds anything but finite numbers.
+inline Table read_csv(std::filesystem::path const& file) {
+  std::string const name = file.string();
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  for (char block[4096]; stream.read(block, sizeof block), stream.gcount() > 0;)
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  if (!stream.is_open() || stream.bad())
+    throw IoError("file '" + name + "' cannot be read" +
+                  (errno ? ": " + std::generic_category().message(errno) : ""));
+  detail::CsvReader reader{text, name};
+  if (reader.text.starts_with("\xEF\xBB\xBF")) reader.text.remove_prefix(3);
+  std::size_t line = 1;
+  Table table{reader.record(line), {}};
+  if (table.columns.empty()) throw IoError("file '" + name + "' is empty; a head line is needed");
+  for (auto fields = reader.record(line); !fields.empty(); fields = reader.record(line)) {
+    if (fields.size() != table.columns.size())
+      reader.fail(line, std::to_string(fields.size()) + " fields for " +
+                            std::to_string(table.columns.size()) + " columns");
+    auto& row = table.rows.emplace_back();
+    for (std::size_t j = 0; j < fields.size(); ++j) {
+      std::string_view digits = fields[j];
+      if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+      double value = 0.0;
+      auto const [end, error] =
+          std::from_chars(digits.data(), digits.data() + digits.size(), value);
+      if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
+        reader.fail(line, "column '" + table.columns[j] + "': '" + fields[j] +
+                              "' is not a finite number a double can hold");
+      row.push_back(value);
+    }
+  }
+  return table;
+}
+
+}  // namespace polybody

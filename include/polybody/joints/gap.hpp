@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// Waist 2: what a policy sees of a joint, whatever its geometry is.
+
+#include <polybody/kinematics/frame.hpp>
+
+namespace polybody {
+
+/// The violation of m rows between frame a and frame b:
+///   ġ = Ga Va + Gb Vb + Φ_t,   V = [ṙ; ω] in world axes.
+/// Rows are position-level (holonomic).
+template <int m, StateScalar T = double>
+struct Gap {
+  static constexpr int rows = m;
+  Vec<T, m> g = Vec<T, m>::Zero();             ///< (m) violation [m], [rad] or [1]
+  Mat<T, m, 6> Ga = Mat<T, m, 6>::Zero();      ///< (m×6) map of frame a's twist
+  Mat<T, m, 6> Gb = Mat<T, m, 6>::Zero();      ///< (m×6) map of frame b's twist
+  Vec<T, m> rate = Vec<T, m>::Zero();          ///< (m) Φ_t: the rate that is prescribed by time alone
+};
+
+/// [ṙ; ω] of a frame.
+template <StateScalar T>
+Vec<T, 6> twist(Frame<T> const& frame) {
+  Vec<T, 6> v;
+  v << frame.v, frame.w;
+  return v;
+}
+
+/// Pose and twist of b seen from a, in a's axes: what a compliant joint needs beyond the rows.
+template <StateScalar T = double>
+struct Relative {
+  Vec<T, 3> d;        ///< (3) r_b − r_a in a's axes [m]
+  Mat<T, 3, 3> R;     ///< (3×3) AaᵀAb
+  Vec<T, 3> v;        ///< (3) rate of r_b − r_a seen in a's axes [m/s]
+  Vec<T, 3> w;        ///< (3) ω_b − ω_a in a's axes [rad/s]
+};
+
+template <StateScalar T>
+Relative<T> relative(Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> const d = b.r - a.r;
+  return {a.A.transpose() * d, a.A.transpose() * b.A,
+          a.A.transpose() * (b.v - a.v - a.w.cross(d)), a.A.transpose() * (b.w - a.w)};
+}
+
+/// A joint geometry turns two frames into a gap. Its markers get axes that coincide at the reference
+/// configuration: `triad()` in world axes; the joint's axis is the third.
+template <class G>
+concept JointGeometry = requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
+  requires 1 <= G::rows && G::rows <= 6;
+  { G::name } -> std::convertible_to<char const*>;
+  { G::needs } -> std::convertible_to<Observes>;
+  { G::world } -> std::convertible_to<World>;
+  { g.triad() } -> std::convertible_to<Mat3>;
+  { g.template gap<double>(a, b, t) } -> std::same_as<Gap<G::rows, double>>;
+  { g.template gamma<double>(a, b, t) } -> std::same_as<Vec<double, G::rows>>;
+};
+
+/// ∂[Gaᵀλ; Gbᵀλ]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12, rotations δφ in world axes, by dual numbers.
+template <JointGeometry G>
+Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b,
+                                    double t, Vec<double, G::rows> const& lambda) {
+  using D = Dual<12>;
+  auto const moved = [](Frame<double> const& f, int first) {
+    Frame<D> m;
+    Vec<D, 3> phi;
+    for (int i = 0; i < 3; ++i) {
+      m.r[i] = D::variable(f.r[i], first + i);
+      phi[i] = D::variable(0.0, first + 3 + i);
+    }
+    m.A = f.A.cast<D>() + skew<D>(phi) * f.A.cast<D>();
+    return m;
+  };
+  Gap<G::rows, D> const gap = geometry.template gap<D>(moved(a, 0), moved(b, 6), t);
+  Vec<D, 6> const wa = gap.Ga.transpose() * lambda.template cast<D>();
+  Vec<D, 6> const wb = gap.Gb.transpose() * lambda.template cast<D>();
+  Mat<double, 12, 12> k;
+  for (int i = 0; i < 6; ++i) {
+    k.row(i) = wa[i].d.matrix().transpose();
+    k.row(i + 6) = wb[i].d.matrix().transpose();
+  }
+  return k;
+}
+
+}  // namespace polybody

@@ -1,0 +1,31 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody::planar {
+
+/// Pin in the plane: two points stay together, 2 rows.
+struct Revolute {
+  static constexpr char const* name = "planar::Revolute";
+  static constexpr int rows = 2;
+  static constexpr Observes needs = Observes::point;
+  static constexpr World world = World::plane;
+
+  Mat3 triad() const { return Mat3::Identity(); }
+
+  template <StateScalar T>
+  Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<2, T> gap;
+    gap.g = (b.r - a.r).template head<2>();
+    gap.Ga(0, 0) = gap.Ga(1, 1) = T(-1.0);
+    gap.Gb(0, 0) = gap.Gb(1, 1) = T(1.0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 2> gamma(Frame<T> const&, Frame<T> const&, double) const {
+    return Vec<T, 2>::Zero();
+  }
+};
+
+static_assert(JointGeometry<Revolute>);
+
+}  // namespace polybody::planar

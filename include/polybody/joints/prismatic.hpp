@@ -1,0 +1,38 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// Slider in space: b slides along the axis fixed in a and does not turn, 5 rows
+///   g = [a₁·d; a₂·d; a₁·b₂; a₂·b₃; a₃·b₁],  d = r_b − r_a.
+struct Prismatic {
+  static constexpr char const* name = "Prismatic";
+  static constexpr int rows = 5;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr World world = World::space;
+
+  Vec3 axis = Vec3::UnitX();  ///< (3) unit vector of the slide, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(axis, "Prismatic: the axis"); }
+
+  template <StateScalar T>
+  Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<5, T> gap;
+    polybody::rows::no_slide<5, T>(a.A.col(0), a, b, gap, 0);
+    polybody::rows::no_slide<5, T>(a.A.col(1), a, b, gap, 1);
+    polybody::rows::parallel(a, b, gap, 2);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Vec<T, 5> gamma;
+    gamma[0] = polybody::rows::no_slide_gamma<T>(a.A.col(0), a, b);
+    gamma[1] = polybody::rows::no_slide_gamma<T>(a.A.col(1), a, b);
+    gamma.template tail<3>() = polybody::rows::parallel_gamma<T>(a, b);
+    return gamma;
+  }
+};
+
+static_assert(JointGeometry<Prismatic>);
+
+}  // namespace polybody

@@ -1,0 +1,37 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// Pin in space: two points stay together and the axis stays parallel, 5 rows
+///   g = [r_b − r_a; a₁·b₃; a₂·b₃]   [thesis §3.5.1, the special case of the spherical joint].
+struct Revolute {
+  static constexpr char const* name = "Revolute";
+  static constexpr int rows = 5;
+  static constexpr Observes needs = Observes::axis;
+  static constexpr World world = World::space;
+
+  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the pin, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(axis, "Revolute: the axis"); }
+
+  template <StateScalar T>
+  Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<5, T> gap;
+    polybody::rows::coincident(a, b, gap);
+    polybody::rows::perpendicular<5, T>(a.A.col(0), b.A.col(2), gap, 3);
+    polybody::rows::perpendicular<5, T>(a.A.col(1), b.A.col(2), gap, 4);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Vec<T, 5> gamma = Vec<T, 5>::Zero();
+    gamma[3] = polybody::rows::perpendicular_gamma<T>(a.A.col(0), b.A.col(2), a, b);
+    gamma[4] = polybody::rows::perpendicular_gamma<T>(a.A.col(1), b.A.col(2), a, b);
+    return gamma;
+  }
+};
+
+static_assert(JointGeometry<Revolute>);
+
+}  // namespace polybody

@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// The rows from which joint geometries are put together, each with its maps and its γ. With d = r_b − r_a:
+///   coincident points   g = d
+///   perpendicular axes  g = u·w, u fixed in a, w fixed in b
+///   no slide along u    g = u·d, u fixed in a
+/// γ is the part of g̈ that the accelerations of the frames do not explain.
+/// [Haug 1989, §2.4 and §9.4; thesis Eq. 3.8–3.10 and §3.5.1]
+
+#include <polybody/joints/gap.hpp>
+
+namespace polybody::rows {
+
+/// Writes g = r_b − r_a into rows [row, row + 3).
+template <int m, StateScalar T>
+void coincident(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row = 0) {
+  gap.g.template segment<3>(row) = b.r - a.r;
+  for (int i = 0; i < 3; ++i) {
+    gap.Ga(row + i, i) = T(-1.0);
+    gap.Gb(row + i, i) = T(1.0);
+  }
+}
+
+/// Writes g = u·w: ġ = (u × w)·(ω_a − ω_b).
+template <int m, StateScalar T>
+void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, Gap<m, T>& gap, int row) {
+  Vec<T, 3> const c = u.cross(w);
+  gap.g[row] = u.dot(w);
+  gap.Ga.row(row).template tail<3>() = c.transpose();
+  gap.Gb.row(row).template tail<3>() = -c.transpose();
+}
+
+/// γ of `perpendicular`: 2 (ω_a × u)·(ω_b × w) + (ω_a × (ω_a × u))·w + u·(ω_b × (ω_b × w)).
+template <StateScalar T>
+T perpendicular_gamma(Vec<T, 3> const& u, Vec<T, 3> const& w, Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> const ud = a.w.cross(u), wd = b.w.cross(w);
+  return 2.0 * ud.dot(wd) + a.w.cross(ud).dot(w) + u.dot(b.w.cross(wd));
+}
+
+/// Writes g = u·d: ġ = u·(v_b − v_a) + (u × d)·ω_a.
+template <int m, StateScalar T>
+void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
+  Vec<T, 3> const d = b.r - a.r;
+  gap.g[row] = u.dot(d);
+  gap.Ga.row(row).template head<3>() = -u.transpose();
+  gap.Ga.row(row).template tail<3>() = u.cross(d).transpose();
+  gap.Gb.row(row).template head<3>() = u.transpose();
+}
+
+/// γ of `no_slide`: 2 (ω_a × u)·(v_b − v_a) + (ω_a × (ω_a × u))·d.
+template <StateScalar T>
+T no_slide_gamma(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> const ud = a.w.cross(u);
+  return 2.0 * ud.dot(b.v - a.v) + a.w.cross(ud).dot(b.r - a.r);
+}
+
+/// Writes the three rows a₁·b₂, a₂·b₃, a₃·b₁ that hold the axes of b parallel to those of a.
+template <int m, StateScalar T>
+void parallel(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
+  for (int i = 0; i < 3; ++i)
+    perpendicular<m, T>(a.A.col(i), b.A.col((i + 1) % 3), gap, row + i);
+}
+
+template <StateScalar T>
+Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> gamma;
+  for (int i = 0; i < 3; ++i)
+    gamma[i] = perpendicular_gamma<T>(a.A.col(i), b.A.col((i + 1) % 3), a, b);
+  return gamma;
+}
+
+/// A right-handed triad whose third axis is `axis`. \throws InvalidInput unless it is a unit vector.
+inline Mat3 triad_about(Vec3 const& axis, std::string const& what) {
+  require_unit(axis, what);
+  int smallest = 0;
+  axis.cwiseAbs().minCoeff(&smallest);
+  Mat3 e;
+  e.col(2) = axis;
+  e.col(0) = (Vec3::Unit(smallest) - axis[smallest] * axis).normalized();
+  e.col(1) = e.col(2).cross(e.col(0));
+  return e;
+}
+
+}  // namespace polybody::rows

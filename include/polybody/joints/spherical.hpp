@@ -1,0 +1,29 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// Ball joint in space: two points stay together, 3 rows in world axes.
+struct Spherical {
+  static constexpr char const* name = "Spherical";
+  static constexpr int rows = 3;
+  static constexpr Observes needs = Observes::point;
+  static constexpr World world = World::space;
+
+  Mat3 triad() const { return Mat3::Identity(); }
+
+  template <StateScalar T>
+  Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<3, T> gap;
+    polybody::rows::coincident(a, b, gap);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 3> gamma(Frame<T> const&, Frame<T> const&, double) const {
+    return Vec<T, 3>::Zero();
+  }
+};
+
+static_assert(JointGeometry<Spherical>);
+
+}  // namespace polybody

@@ -1,0 +1,32 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// Rigid connection in space: points together, axes parallel, 6 rows g = [r_b − r_a; a₁·b₂; a₂·b₃; a₃·b₁].
+struct Weld {
+  static constexpr char const* name = "Weld";
+  static constexpr int rows = 6;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr World world = World::space;
+
+  Mat3 triad() const { return Mat3::Identity(); }
+
+  template <StateScalar T>
+  Gap<6, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<6, T> gap;
+    polybody::rows::coincident(a, b, gap);
+    polybody::rows::parallel(a, b, gap, 3);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 6> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Vec<T, 6> gamma = Vec<T, 6>::Zero();
+    gamma.template tail<3>() = polybody::rows::parallel_gamma<T>(a, b);
+    return gamma;
+  }
+};
+
+static_assert(JointGeometry<Weld>);
+
+}  // namespace polybody

@@ -1,0 +1,67 @@
+#pragma once
+/// \file
+/// Waist 1: what a joint or a force sees of a body, whatever the body is.
+
+#include <polybody/math/quaternion.hpp>
+
+namespace polybody {
+
+/// Place, orientation and motion of a marker, all in world axes.
+template <StateScalar T = double>
+struct Frame {
+  Vec<T, 3> r = Vec<T, 3>::Zero();              ///< (3) origin [m]
+  Mat<T, 3, 3> A = Mat<T, 3, 3>::Identity();    ///< (3×3) columns are the marker's axes
+  Vec<T, 3> v = Vec<T, 3>::Zero();              ///< (3) velocity of the origin [m/s]
+  Vec<T, 3> w = Vec<T, 3>::Zero();              ///< (3) angular velocity [rad/s]
+};
+
+/// Force and moment about the marker's origin, in world axes.
+template <StateScalar T = double>
+struct Wrench {
+  Vec<T, 3> f = Vec<T, 3>::Zero();  ///< (3) force [N]
+  Vec<T, 3> m = Vec<T, 3>::Zero();  ///< (3) moment about the origin of the frame [N m]
+};
+
+/// What a marker can tell: a point, a point and its first axis, or a full frame.
+enum class Observes { point, axis, frame };
+
+/// Which world a body lives in; a joint of one never meets a marker of the other, except the ground.
+enum class World { plane, space, both };
+
+constexpr bool same_world(World a, World b) {
+  return a == b || a == World::both || b == World::both;
+}
+
+/// Where a body stands at the start, and how it is turned: placement of its own axes in the world.
+struct Placement {
+  Vec3 origin = Vec3::Zero();          ///< (3) [m]
+  Mat3 axes = Mat3::Identity();        ///< (3×3) columns are the body's axes in world axes
+
+  /// In the plane: origin (x, y) and the angle from world x to body x [rad].
+  static Placement planar(double x, double y, double angle = 0.0) {
+    return {Vec3(x, y, 0.0), exp_so3<double>(Vec3(0.0, 0.0, angle))};
+  }
+  /// Origin and rotation vector [rad].
+  static Placement at(Vec3 const& origin, Vec3 const& rotation = Vec3::Zero()) {
+    return {origin, exp_so3<double>(rotation)};
+  }
+
+  /// \throws InvalidInput naming `what` unless finite and orthonormal, right-handed.
+  void check(std::string const& what) const {
+    require_finite(origin, what + ": the placement's origin");
+    require_finite(axes, what + ": the placement's axes");
+    if ((axes.transpose() * axes - Mat3::Identity()).norm() > 1e-9 || axes.determinant() < 0.0)
+      throw InvalidInput(what + ": the placement's axes must be orthonormal and right-handed.");
+  }
+
+  /// The angle about world z of a planar placement [rad].
+  /// \throws InvalidInput when the placement leaves the plane z = 0.
+  double planar_angle(std::string const& what) const {
+    check(what);
+    if (std::abs(origin.z()) > 1e-12 || std::abs(axes(2, 2) - 1.0) > 1e-12)
+      throw InvalidInput(what + ": a planar body stands in the plane z = 0 and turns about z only.");
+    return std::atan2(axes(1, 0), axes(0, 0));
+  }
+};
+
+}  // namespace polybody

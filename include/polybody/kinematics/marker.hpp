@@ -1,0 +1,78 @@
+#pragma once
+/// \file
+/// Markers as the user holds them: a material point of a body of a certain model.
+
+#include <cstdint>
+#include <string>
+
+#include <polybody/kinematics/frame.hpp>
+
+namespace polybody {
+
+/// A material point of a body of type B in the model with this serial number.
+template <class B>
+struct Marker {
+  using BodyType = B;
+  static constexpr World world = B::world;
+  static constexpr Observes observes = B::observes;
+
+  std::uint64_t model = 0;
+  Index body = 0;
+  typename B::Point point = {};
+};
+
+/// The world as a body without coordinates. Its points are placements.
+struct Ground {
+  static constexpr World world = World::both;
+  static constexpr Observes observes = Observes::frame;
+  using Point = Placement;
+
+  /// The marker at `origin` [m], axes parallel to the world's.
+  Point at(Vec3 const& origin) const {
+    require_finite(origin, "Ground: the point");
+    return Placement::at(origin);
+  }
+  Point at(Placement const& placement) const {
+    placement.check("Ground");
+    return placement;
+  }
+};
+
+/// Handle of a body in a model: names it and makes markers on it.
+template <class B>
+struct BodyHandle {
+  std::uint64_t model = 0;
+  Index index = 0;
+  std::string name;
+  B body;
+
+  /// A marker at a material point; arguments as the body's own `at`. \throws InvalidInput with its name.
+  template <class... Args>
+    requires requires(B const b, Args... args) { b.at(args...); }
+  Marker<B> at(Args const&... args) const {
+    return named([&] { return body.at(args...); });
+  }
+  /// The same for a point in braces.
+  Marker<B> at(Vec3 const& point) const
+    requires(B::world != World::plane) && requires(B const b, Vec3 p) { b.at(p); }
+  {
+    return named([&] { return body.at(point); });
+  }
+  Marker<B> at(Vec2 const& point) const
+    requires(B::world == World::plane) && requires(B const b, Vec2 p) { b.at(p); }
+  {
+    return named([&] { return body.at(point); });
+  }
+
+ private:
+  template <class F>
+  Marker<B> named(F&& point) const {
+    try {
+      return {model, index, point()};
+    } catch (InvalidInput const& e) {
+      throw InvalidInput("\"" + name + "\": " + e.what());
+    }
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,58 @@
+#pragma once
+/// \file
+/// The exceptions of the library. Each message names the object, where known the time, and the remedy.
+
+#include <stdexcept>
+#include <string>
+
+namespace polybody {
+
+/// Base of every exception that polybody throws.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A number, name or combination that cannot be meant: negative mass, zero axis, s outside the body.
+class InvalidInput : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A start that violates a joint; `assemble` repairs it.
+class InconsistentStart : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Newton's method did not converge; the state is as it was before the step.
+class NewtonStalled : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The step control asks for a step below the smallest one allowed.
+class StepTooSmall : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A force, mass or coordinate became NaN or infinite.
+class NonFinite : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The linear solver met a matrix without inverse.
+class LinearSolverSingular : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A file could not be read or written.
+class IoError : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace polybody

@@ -1,0 +1,80 @@
+#pragma once
+/// \file
+/// Gauss–Legendre rules on [0, 1], exact for polynomials of degree 2n − 1
+/// [Abramowitz & Stegun 1964, 25.4.29]. Computed at compile time.
+
+#include <array>
+
+namespace polybody {
+
+/// A point ξ ∈ [0, 1] and its weight; the weights add up to one.
+struct GaussPoint {
+  double xi;
+  double weight;
+};
+
+namespace detail {
+
+struct LegendreValue {
+  double p;   ///< P_n(x)
+  double dp;  ///< P_n′(x)
+};
+
+/// (k+1) P_{k+1} = (2k+1) x P_k − k P_{k−1};  (1 − x²) P_n′ = n (P_{n−1} − x P_n).
+constexpr LegendreValue legendre(int n, double x) {
+  double before = 1.0, now = x;
+  for (int k = 1; k < n; ++k) {
+    double const next = ((2 * k + 1) * x * now - k * before) / (k + 1);
+    before = now;
+    now = next;
+  }
+  return {now, n * (before - x * now) / (1.0 - x * x)};
+}
+
+/// The roots of P_n separate those of P_{n+1}: bisect between them, then polish by Newton.
+template <int n>
+constexpr std::array<double, n> legendre_roots() {
+  std::array<double, n> roots{};
+  if constexpr (n > 1) {
+    constexpr std::array<double, n - 1> fence = legendre_roots<n - 1>();
+    for (int i = 0; i < n; ++i) {
+      double lo = i == 0 ? -1.0 + 1e-12 : fence[i - 1];
+      double hi = i == n - 1 ? 1.0 - 1e-12 : fence[i];
+      bool const rising = legendre(n, hi).p > 0.0;
+      for (int k = 0; k < 30; ++k) {
+        double const mid = 0.5 * (lo + hi);
+        if ((legendre(n, mid).p > 0.0) == rising)
+          hi = mid;
+        else
+          lo = mid;
+      }
+      double x = 0.5 * (lo + hi);
+      for (int k = 0; k < 4; ++k) {
+        LegendreValue const f = legendre(n, x);
+        x -= f.p / f.dp;
+      }
+      roots[i] = x;
+    }
+  }
+  return roots;
+}
+
+template <int n>
+constexpr std::array<GaussPoint, n> gauss_rule() {
+  std::array<GaussPoint, n> rule{};
+  std::array<double, n> const roots = legendre_roots<n>();
+  for (int i = 0; i < n; ++i) {
+    double const dp = n == 1 ? 1.0 : legendre(n, roots[i]).dp;
+    rule[i] = {0.5 * (1.0 + roots[i]), 1.0 / ((1.0 - roots[i] * roots[i]) * dp * dp)};
+  }
+  return rule;
+}
+
+}  // namespace detail
+
+/// The n-point rule: ∫₀¹ f(ξ) dξ ≈ Σ weight f(ξ).
+template <int n>
+  requires(n >= 1 && n <= 10)
+inline constexpr std::array<GaussPoint, n> gauss = detail::gauss_rule<n>();
+
+}  // namespace polybody

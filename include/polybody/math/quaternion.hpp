@@ -1,0 +1,97 @@
+#pragma once
+/// \file
+/// Unit quaternions (w, x, y, z) as four numbers of a state; ⊞ and ⊟ act in body axes.
+/// [Solà, Deray & Atchuthan 2018, §4; Shabana 2020, §2.4]
+
+#include <polybody/math/so3.hpp>
+
+namespace polybody {
+
+/// (w, x, y, z); A(q) turns body components into world components.
+template <class T>
+using Quaternion = Vec<T, 4>;
+
+template <class T>
+Quaternion<T> quaternion_product(Quaternion<T> const& p, Quaternion<T> const& q) {
+  Quaternion<T> r;
+  r << p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+      p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+      p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+      p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
+  return r;
+}
+
+template <class T>
+Quaternion<T> conjugate(Quaternion<T> const& q) {
+  Quaternion<T> r;
+  r << q[0], -q[1], -q[2], -q[3];
+  return r;
+}
+
+/// Rotation matrix A(q), 3×3, of a unit quaternion.
+template <class T>
+Mat<T, 3, 3> rotation_matrix(Quaternion<T> const& q) {
+  T const ww = q[0] * q[0], xx = q[1] * q[1], yy = q[2] * q[2], zz = q[3] * q[3];
+  T const xy = q[1] * q[2], xz = q[1] * q[3], yz = q[2] * q[3];
+  T const wx = q[0] * q[1], wy = q[0] * q[2], wz = q[0] * q[3];
+  Mat<T, 3, 3> a;
+  a << ww + xx - yy - zz, 2.0 * (xy - wz), 2.0 * (xz + wy),  //
+      2.0 * (xy + wz), ww - xx + yy - zz, 2.0 * (yz - wx),   //
+      2.0 * (xz - wy), 2.0 * (yz + wx), ww - xx - yy + zz;
+  return a;
+}
+
+/// exp(φ): the unit quaternion of the rotation vector φ [rad].
+template <class T>
+Quaternion<T> quaternion_exp(Vec<T, 3> const& phi) {
+  using std::sqrt;
+  Vec<T, 3> const half = phi * 0.5;
+  T const x = half.squaredNorm();
+  RotationSeries<T> const s(x);
+  Quaternion<T> q;
+  q << 1.0 - x * s.b, half * s.a;
+  return q;
+}
+
+/// log(q): the rotation vector of a unit quaternion, |φ| ≤ π [rad]. q and −q give the same vector.
+template <class T>
+Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
+  using std::atan2, std::sqrt;
+  T const sign = value_of(q[0]) < 0.0 ? T(-1.0) : T(1.0);
+  Vec<T, 3> const v = q.template tail<3>() * sign;
+  T const w = q[0] * sign;
+  T const x = v.squaredNorm();
+  if (value_of(x) < 1e-8) {  // atan(n)/n with n² = x/w²; the next term is 1e-24
+    T const n2 = x / (w * w);
+    return v * (2.0 / w * (1.0 - n2 * (1.0 / 3.0 - n2 * 0.2)));
+  }
+  T const n = sqrt(x);
+  return v * (2.0 * atan2(n, w) / n);
+}
+
+/// q ⊞ δ = q exp(δ): δ (3) in body axes [rad]; the result is normalised.
+template <class T>
+Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
+  using std::sqrt;
+  Quaternion<T> const r = quaternion_product<T>(q, quaternion_exp<T>(delta));
+  return r / sqrt(r.squaredNorm());
+}
+
+/// q ⊟ p = log(p⁻¹ q): the δ with p ⊞ δ = q (up to sign of the quaternion).
+template <class T>
+Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
+  return quaternion_log<T>(quaternion_product<T>(conjugate<T>(p), q));
+}
+
+/// The unit quaternion of a rotation matrix (w ≥ 0).
+inline Quaternion<double> quaternion_of(Mat3 const& a) {
+  Eigen::Quaterniond const e(a);
+  Quaternion<double> q(e.w(), e.x(), e.y(), e.z());
+  q.normalize();
+  return q[0] < 0.0 ? Quaternion<double>(-q) : q;
+}
+
+/// log of a rotation matrix: rotation vector with |φ| ≤ π [rad].
+inline Vec3 log_so3(Mat3 const& a) { return quaternion_log<double>(quaternion_of(a)); }
+
+}  // namespace polybody

@@ -1,0 +1,97 @@
+#pragma once
+/// \file
+/// Rotations in space: exp, log and their Jacobians, smooth through zero.
+/// Conventions: A = exp(φ̃) turns body components into world components; increments act on the right
+/// (body axes), A ⊞ δ = A exp(δ̃). [Solà, Deray & Atchuthan 2018, eqs. 132–146; Brüls, Cardona &
+/// Arnold 2012, App. A]
+
+#include <polybody/math/dual.hpp>
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+/// ã with ã b = a × b, 3×3.
+template <class T>
+Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
+  Mat<T, 3, 3> s;
+  s << T(0), -a[2], a[1], a[2], T(0), -a[0], -a[1], a[0], T(0);
+  return s;
+}
+
+/// The coefficients of exp and its Jacobian as functions of x = |φ|², by series near zero:
+/// a = sin θ/θ, b = (1 − cos θ)/θ², c = (θ − sin θ)/θ³, θ = √x.
+template <class T>
+struct RotationSeries {
+  T a, b, c;
+  explicit RotationSeries(T const& x) {
+    using std::cos, std::sin, std::sqrt;
+    if (value_of(x) < 0.25) {  // terms fall by x/56 at least: nine of them leave 1e-17
+      a = series(x, 1.0, 2.0);
+      b = series(x, 0.5, 3.0);
+      c = series(x, 1.0 / 6.0, 4.0);
+    } else {
+      T const angle = sqrt(x);
+      T const half = sin(0.5 * angle);
+      a = sin(angle) / angle;
+      b = 2.0 * half * half / x;
+      c = (1.0 - a) / x;
+    }
+  }
+
+ private:
+  /// Σ (−x)ᵏ first · (n−1)!/(n−1+2k)!, each term from the one before it.
+  static T series(T const& x, double first, double n) {
+    T term(first), sum(first);
+    for (int k = 0; k < 9; ++k) {
+      term = term * (-x) * (1.0 / (n * (n + 1.0)));
+      sum = sum + term;
+      n += 2.0;
+    }
+    return sum;
+  }
+};
+
+/// exp(φ̃) = 1 + a φ̃ + b φ̃²  (Rodrigues), 3×3; φ in [rad].
+template <class T>
+Mat<T, 3, 3> exp_so3(Vec<T, 3> const& phi) {
+  RotationSeries<T> const s(phi.squaredNorm());
+  Mat<T, 3, 3> const h = skew(phi);
+  return Mat<T, 3, 3>::Identity() + h * s.a + (h * h) * s.b;
+}
+
+/// Right Jacobian Jr(φ) = 1 − b φ̃ + c φ̃²: exp(φ + δ) ≈ exp(φ) exp(Jr δ), and ω_body = Jr φ̇.
+template <class T>
+Mat<T, 3, 3> right_jacobian(Vec<T, 3> const& phi) {
+  RotationSeries<T> const s(phi.squaredNorm());
+  Mat<T, 3, 3> const h = skew(phi);
+  return Mat<T, 3, 3>::Identity() - h * s.b + (h * h) * s.c;
+}
+
+/// Left Jacobian Jl(φ) = Jr(−φ): ω_world = Jl φ̇.
+template <class T>
+Mat<T, 3, 3> left_jacobian(Vec<T, 3> const& phi) {
+  return right_jacobian<T>(-phi);
+}
+
+/// Jr(φ)⁻¹ = 1 + ½ φ̃ + e φ̃², e = (1 − (a/2b))/|φ|², for |φ| < 2π.
+template <class T>
+Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
+  T const x = phi.squaredNorm();
+  RotationSeries<T> const s(x);
+  T e;
+  if (value_of(x) < 0.25) {
+    // (θ/2) cot(θ/2) = 1 − Σ |B₂ₖ| θ²ᵏ/(2k)!, B the Bernoulli numbers
+    e = 1.0 / 12.0 +
+        x * (1.0 / 720.0 +
+             x * (1.0 / 30240.0 +
+                  x * (1.0 / 1209600.0 +
+                       x * (1.0 / 47900160.0 +
+                            x * (691.0 / 1307674368000.0 + x * (1.0 / 74724249600.0))))));
+  } else {
+    e = (1.0 - s.a / (2.0 * s.b)) / x;
+  }
+  Mat<T, 3, 3> const h = skew(phi);
+  return Mat<T, 3, 3>::Identity() + h * 0.5 + (h * h) * e;
+}
+
+}  // namespace polybody

@@ -1,0 +1,98 @@
+#pragma once
+/// \file
+/// Functions of time with rate and acceleration, for drives and loads.
+
+#include <array>
+#include <concepts>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+/// A prescribed value with its first and second derivative in time.
+struct Motion {
+  double value = 0.0;
+  double rate = 0.0;
+  double acceleration = 0.0;
+};
+
+/// A function of time t [s] that yields a Motion; a lambda will do.
+template <class L>
+concept TimeLaw = requires(L const law, double t) {
+  { law(t) } -> std::convertible_to<Motion>;
+};
+
+/// A time law that knows where its rate jumps; `simulate` ends a step there.
+template <class L>
+concept HasCorners = requires(L const law) {
+  { law.corners() } -> std::convertible_to<std::vector<double>>;
+};
+
+/// 0 until `start`, then linear to `target` in `duration`, constant afterwards. The rate jumps at both
+/// ends; the value at a corner is that of the piece that begins there.
+struct Ramp {
+  Required<double> target;
+  Required<double> duration;
+  double start = 0.0;
+
+  Motion operator()(double t) const {
+    if (t < start) return {};
+    if (t >= start + duration) return {target, 0.0, 0.0};
+    return {target * (t - start) / duration, target / duration, 0.0};
+  }
+  std::vector<double> corners() const { return {start, start + duration}; }
+};
+
+/// From 0 to `target` in `duration` without jumps up to the acceleration:
+/// value = target (10 x³ − 15 x⁴ + 6 x⁵), x = (t − start)/duration.
+struct SmoothRamp {
+  Required<double> target;
+  Required<double> duration;
+  double start = 0.0;
+
+  Motion operator()(double t) const {
+    if (t < start) return {};
+    if (t >= start + duration) return {target, 0.0, 0.0};
+    double const d = duration, x = (t - start) / d, x2 = x * x;
+    return {target * x2 * x * (10.0 - 15.0 * x + 6.0 * x2),
+            target * 30.0 * x2 * (1.0 - 2.0 * x + x2) / d,
+            target * 60.0 * x * (1.0 - 3.0 * x + 2.0 * x2) / (d * d)};
+  }
+};
+
+/// The spin-up of Kane, Ryan & Banerjee 1987: from rest to the rate `speed` in `duration`,
+/// ψ = (speed/T)[t²/2 + (T/2π)²(cos(2πt/T) − 1)], then ψ = speed (t − T/2).
+struct SpinUp {
+  Required<double> speed;     ///< [rad/s]
+  Required<double> duration;  ///< T [s]
+
+  Motion operator()(double t) const {
+    if (t <= 0.0) return {};
+    double const period = duration;
+    if (t >= period) return {speed * (t - 0.5 * period), speed, 0.0};
+    double const w = 2.0 * std::numbers::pi / period;
+    return {speed / period * (0.5 * t * t + (std::cos(w * t) - 1.0) / (w * w)),
+            speed / period * (t - std::sin(w * t) / w), speed / period * (1.0 - std::cos(w * t))};
+  }
+};
+
+/// Always `value`.
+struct Constant {
+  double value = 1.0;
+  Motion operator()(double) const { return {value, 0.0, 0.0}; }
+};
+
+/// `value` for from ≤ t < to, else 0: a load that is switched on and off.
+struct Window {
+  double from = 0.0;
+  double to = std::numeric_limits<double>::infinity();
+  double value = 1.0;
+
+  Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }
+  std::vector<double> corners() const { return {from, to}; }
+};
+
+}  // namespace polybody

@@ -1,0 +1,70 @@
+#pragma once
+/// \file
+/// Vectors, matrices and small checks that every floor uses.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <polybody/math/errors.hpp>
+
+namespace polybody {
+
+using Index = Eigen::Index;
+
+template <class T, int n>
+using Vec = Eigen::Matrix<T, n, 1>;
+template <class T, int m, int n>
+using Mat = Eigen::Matrix<T, m, n>;
+
+using Vec2 = Vec<double, 2>;
+using Vec3 = Vec<double, 3>;
+using Vec4 = Vec<double, 4>;
+using Vec6 = Vec<double, 6>;
+using Mat3 = Mat<double, 3, 3>;
+using VecX = Eigen::VectorXd;
+using MatX = Eigen::MatrixXd;
+
+template <class T>
+using VecXOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+template <class T>
+using MatXOf = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// A number that decides physics: it has no default, so a forgotten one does not compile.
+template <class T>
+struct Required {
+  T value;
+  constexpr Required(T v) : value(v) {}  // NOLINT(google-explicit-constructor): reads as a T
+  constexpr operator T() const { return value; }  // NOLINT(google-explicit-constructor)
+};
+
+/// \throws InvalidInput unless `x` is finite and positive; `what` names the object and the quantity.
+inline void require_positive(double x, std::string const& what) {
+  if (!(x > 0.0) || !std::isfinite(x))
+    throw InvalidInput(what + " must be positive and finite, but is " + std::to_string(x) + ".");
+}
+
+/// \throws InvalidInput unless `x` is finite and not negative.
+inline void require_not_negative(double x, std::string const& what) {
+  if (!(x >= 0.0) || !std::isfinite(x))
+    throw InvalidInput(what + " must be zero or positive and finite, but is " + std::to_string(x) +
+                       ".");
+}
+
+/// \throws InvalidInput unless every entry of `x` is finite.
+template <class Derived>
+void require_finite(Eigen::MatrixBase<Derived> const& x, std::string const& what) {
+  if (!x.allFinite()) throw InvalidInput(what + " must be finite, but has a NaN or an infinity.");
+}
+
+/// \throws InvalidInput unless `axis` has length one (to 1e-9).
+inline void require_unit(Vec3 const& axis, std::string const& what) {
+  require_finite(axis, what);
+  if (std::abs(axis.norm() - 1.0) > 1e-9)
+    throw InvalidInput(what + " must be a unit vector, but has length " +
+                       std::to_string(axis.norm()) + ". Normalise it.");
+}
+
+}  // namespace polybody

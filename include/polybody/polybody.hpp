@@ -1,0 +1,33 @@
+#pragma once
+/// \file
+/// polybody: one model, every formulation. Includes everything.
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/equilibrium.hpp>
+#include <polybody/analysis/initial_conditions.hpp>
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/forces/gravity.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/user_force.hpp>
+#include <polybody/integrators/central_difference.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/io/csv.hpp>
+#include <polybody/io/plot.hpp>
+#include <polybody/io/progress.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/prismatic.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/weld.hpp>
+#include <polybody/math/time_laws.hpp>

@@ -1,0 +1,90 @@
+#pragma once
+/// \file
+/// Newton's method that keeps its factorisation while it contracts [Hairer & Wanner 1996, §IV.8].
+
+#include <algorithm>
+#include <cmath>
+
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+/// When to stop, refactor and give up. Norms are scaled: one means "as large as the tolerance".
+struct NewtonOptions {
+  int max_iterations = 20;
+  double refactor_above = 0.3;   ///< contraction θ above which the factorisation is renewed
+  bool always_refactor = false;  ///< full Newton
+};
+
+enum class NewtonResult { converged, diverged, singular, not_finite };
+
+/// What a solve cost and how well it contracted.
+struct NewtonReport {
+  NewtonResult result = NewtonResult::converged;
+  int iterations = 0;
+  int factorisations = 0;
+  double theta = 0.0;  ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖
+};
+
+/// Solves by corrections Δ. The problem offers
+///   bool evaluate()     the right-hand side at the iterate; false when it is not finite
+///   bool refactor()     the tangent there; false when it is singular
+///   double solve()      the next correction; returns its scaled norm
+///   void apply()        adds it
+/// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
+/// Stops when θ/(1 − θ) ‖Δ‖ ≤ 1; fails after growing twice.
+template <class Problem>
+NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
+  NewtonReport report;
+  double before = 0.0;
+  int grown = 0;
+  bool fresh = false;  // factored within this solve
+  theta = std::pow(std::max(theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
+  for (int k = 0; k < options.max_iterations; ++k) {
+    if (!problem.evaluate()) {
+      report.result = NewtonResult::not_finite;
+      return report;
+    }
+    bool compare = k > 0;
+    if (!factored || options.always_refactor) {
+      if (!problem.refactor()) {
+        report.result = NewtonResult::singular;
+        factored = false;
+        return report;
+      }
+      ++report.factorisations;
+      factored = fresh = true;
+      if (k == 0) theta = 1.0;
+    }
+    double const norm = problem.solve();
+    ++report.iterations;
+    if (!std::isfinite(norm)) {
+      report.result = fresh ? NewtonResult::singular : NewtonResult::not_finite;
+      factored = false;
+      return report;
+    }
+    if (compare && before > 0.0) {
+      theta = norm / before;
+      report.theta = theta;
+      if (theta >= 1.0 && norm > 1.0) {
+        factored = false;
+        if (++grown >= 2) {
+          report.result = NewtonResult::diverged;
+          return report;
+        }
+      } else if (theta > options.refactor_above) {
+        factored = false;
+      }
+    }
+    problem.apply();
+    before = norm;
+    double const rate = std::min(theta, 0.99);
+    bool const small = norm <= 1e-3 || (k > 0 && norm <= 0.1);  // the latter: rounding no longer contracts
+    if (small || (theta < 1.0 && rate / (1.0 - rate) * norm <= 1.0)) return report;
+  }
+  report.result = NewtonResult::diverged;
+  factored = false;
+  return report;
+}
+
+}  // namespace polybody

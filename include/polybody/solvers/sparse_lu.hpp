@@ -1,0 +1,82 @@
+#pragma once
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+
+#include <polybody/solvers/linear_solver.hpp>
+
+namespace polybody {
+
+/// Eigen's sparse LU with COLAMD order; the pattern is analysed once and blocks are scattered through a table,
+/// without searching. Eigen itself allocates inside `factor`.
+class SparseLu {
+ public:
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+  void analyse(Index size, std::vector<Block> const& blocks) {
+    // Compressed columns: gather the rows of each column, sort, remove twins.
+    std::vector<std::vector<int>> columns(static_cast<std::size_t>(size));
+    for (Block const& b : blocks)
+      for (Index j = 0; j < b.cols; ++j)
+        for (Index i = 0; i < b.rows; ++i)
+          columns[std::size_t(b.col + j)].push_back(int(b.row + i));
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Index j = 0; j < size; ++j) {
+      auto& rows = columns[std::size_t(j)];
+      std::sort(rows.begin(), rows.end());
+      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+      for (int i : rows) entries.emplace_back(i, int(j), 1.0);
+    }
+    a_.resize(size, size);
+    a_.setFromTriplets(entries.begin(), entries.end());
+    slots_.clear();
+    for (Block const& b : blocks)
+      for (Index j = 0; j < b.cols; ++j) {
+        int const* const begin = a_.innerIndexPtr() + a_.outerIndexPtr()[b.col + j];
+        int const* const end = a_.innerIndexPtr() + a_.outerIndexPtr()[b.col + j + 1];
+        for (Index i = 0; i < b.rows; ++i)
+          slots_.push_back(std::int32_t(std::lower_bound(begin, end, int(b.row + i)) - a_.innerIndexPtr()));
+      }
+    lu_->analyzePattern(a_);
+  }
+  void begin() {
+    std::fill_n(a_.valuePtr(), a_.nonZeros(), 0.0);
+    cursor_ = 0;
+  }
+  template <class Derived>
+  void add(Index, Index, Eigen::MatrixBase<Derived> const& b) {
+    double* const values = a_.valuePtr();
+    std::int32_t const* slot = slots_.data() + cursor_;
+    for (Index j = 0; j < b.cols(); ++j)
+      for (Index i = 0; i < b.rows(); ++i) values[*slot++] += b(i, j);
+    cursor_ = std::size_t(slot - slots_.data());
+  }
+  /// −1, or the column that Eigen names (else 0) when the matrix is singular.
+  Index factor() {
+    if (a_.cols() == 0) return -1;
+    lu_->factorize(a_);
+    if (lu_->info() == Eigen::Success) return -1;
+    std::string const message = lu_->lastErrorMessage();
+    std::size_t const digit = message.find_last_of("0123456789");
+    if (digit == std::string::npos) return 0;
+    std::size_t first = digit;
+    while (first > 0 && std::isdigit(static_cast<unsigned char>(message[first - 1]))) --first;
+    return std::min<Index>(std::stol(message.substr(first, digit + 1 - first)), a_.cols() - 1);
+  }
+  void solve(VecX const& b, VecX& x) const {
+    if (b.size() > 0) x = lu_->solve(b);
+  }
+  Matrix const& matrix() const { return a_; }
+
+ private:
+  Matrix a_;
+  std::vector<std::int32_t> slots_;
+  std::size_t cursor_ = 0;
+  using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
+  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();  // Eigen's does not move
+};
+
+static_assert(LinearSolver<SparseLu>);
+
+}  // namespace polybody

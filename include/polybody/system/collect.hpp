@@ -1,0 +1,128 @@
+#pragma once
+/// \file
+/// Second half of an evaluation: forces and rows are collected from bodies, joints and force elements.
+
+#include <polybody/system/publish.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// r[columns of the marker] += sign · Jᵀ w.
+template <StateScalar T>
+void add_pulled(Published<T> const& p, Vec<T, 6> const& w, double sign, VecXOf<T>& r) {
+  switch (p.shape) {
+    case JacobianShape::ground:
+      return;
+    case JacobianShape::rigid: {
+      Vec<T, 6> q;
+      p.pull(w, q);
+      r.template segment<6>(p.first) += q * T(sign);
+      return;
+    }
+    case JacobianShape::dense:
+      r.segment(p.first, p.columns).noalias() += p.dense().transpose() * (w * T(sign)).eval();
+  }
+}
+
+template <class F, class M, StateScalar T>
+auto frames_of(detail::ForceEntry<F> const& e, Data<M, T> const& data) {
+  std::array<Frame<T>, F::markers> frames;
+  for (int k = 0; k < F::markers; ++k) frames[k] = data.markers[std::size_t(e.markers[k])].frame;
+  return frames;
+}
+
+/// λ of a joint: the multipliers of its rows, or what its policy answers to the gap.
+template <class J, int m, class M, StateScalar T>
+Vec<T, m> multiplier(JointEntry<J> const& e, Gap<m, T> const& gap, Data<M, T> const& data,
+                     VecXOf<T> const& lambda) {
+  if constexpr (AddsRows<typename J::PolicyType>)
+    return lambda.template segment<m>(e.row);
+  else
+    return e.joint.policy.template multiplier<m, T>(
+        gap.g, gap_rate(gap, data.markers[std::size_t(e.a)], data.markers[std::size_t(e.b)]));
+}
+
+}  // namespace detail
+
+/// r = M a − f(q, v, t) + Gᵀλ (nv). Loads and gravity are scaled by `load_factor`.
+/// Needs `publish` and `enforce` at (q, v, t).
+template <class M, StateScalar T>
+void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& a,
+              VecXOf<T> const& lambda, double t, double load_factor, Data<M, T> const& data, VecXOf<T>& r) {
+  r.setZero();
+  Vec3 const g = model.gravity().g * load_factor;
+  bool const falls = !g.isZero(0.0);
+  model.for_each_body([&](auto const& e) {
+    using B = std::decay_t<decltype(e.body)>;
+    constexpr int n = B::element_columns;
+    auto const qe = detail::body_part(q, e.q0, e.body.coordinates());
+    auto const ve = detail::body_part(v, e.v0, e.body.speeds());
+    auto const ae = detail::body_part(a, e.v0, e.body.speeds());
+    Vec<T, n> x;
+    for (Index i = 0; i < e.body.elements(); ++i) {
+      auto rows = r.template segment<n>(e.v0 + e.body.first_column(i));
+      e.body.template inertia<T>(i, qe, ae, x);
+      rows += x;
+      e.body.template force<T>(i, qe, ve, x);
+      rows -= x;
+      if (falls) {
+        e.body.template gravity<T>(i, qe, g, x);
+        rows -= x;
+      }
+    }
+  });
+  for_each_gap(model, data, [&](auto const& e, auto const& gap) {
+    constexpr int m = std::decay_t<decltype(gap)>::rows;
+    Vec<T, m> const l = detail::multiplier(e, gap, data, lambda);
+    Vec<T, 6> const wa = gap.Ga.transpose() * l, wb = gap.Gb.transpose() * l;
+    detail::add_pulled<T>(data.markers[std::size_t(e.a)], wa, 1.0, r);
+    detail::add_pulled<T>(data.markers[std::size_t(e.b)], wb, 1.0, r);
+  });
+  model.for_each_force([&](auto const& e) {
+    using F = std::decay_t<decltype(e.force)>;
+    double const scale = F::is_load ? load_factor : 1.0;
+    auto const wrenches = e.force.template wrenches<T>(detail::frames_of(e, data), t);
+    for (int k = 0; k < F::markers; ++k) {
+      Vec<T, 6> w;
+      w << wrenches[k].f, wrenches[k].m;
+      detail::add_pulled<T>(data.markers[std::size_t(e.markers[k])], w, -scale, r);
+    }
+  });
+}
+
+/// Calls f(joint entry, gap, marker a, marker b) for every joint that adds rows.
+template <class M, StateScalar T, class F>
+void for_each_row_block(M const& model, Data<M, T> const& data, F&& f) {
+  for_each_gap(model, data, [&](auto const& e, auto const& gap) {
+    if constexpr (AddsRows<typename std::decay_t<decltype(e.joint)>::PolicyType>)
+      f(e, gap, data.markers[std::size_t(e.a)], data.markers[std::size_t(e.b)]);
+  });
+}
+
+/// Φ (rows).
+template <class M, StateScalar T>
+void violation(M const& model, Data<M, T> const& data, VecXOf<T>& phi) {
+  for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const&, auto const&) {
+    phi.template segment<std::decay_t<decltype(gap)>::rows>(e.row) = gap.g;
+  });
+}
+
+/// Φ̇ = G v + Φ_t (rows).
+template <class M, StateScalar T>
+void violation_rate(M const& model, Data<M, T> const& data, VecXOf<T>& rate) {
+  for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const& a, auto const& b) {
+    rate.template segment<std::decay_t<decltype(gap)>::rows>(e.row) = gap_rate(gap, a, b);
+  });
+}
+
+/// γ (rows): Φ̈ = G v̇ + γ, with Φ_tt and the frames' biases.
+template <class M, StateScalar T>
+void acceleration_bias(M const& model, double t, Data<M, T> const& data, VecXOf<T>& gamma) {
+  for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const& a, auto const& b) {
+    gamma.template segment<std::decay_t<decltype(gap)>::rows>(e.row) =
+        e.joint.geometry.template gamma<T>(a.frame, b.frame, t) + gap.Ga * a.bias + gap.Gb * b.bias;
+  });
+}
+
+}  // namespace polybody

@@ -1,0 +1,65 @@
+#pragma once
+/// \file
+/// Scratch of a model: everything that is computed from a state. The model itself stays const.
+
+#include <polybody/system/model.hpp>
+
+namespace polybody {
+
+template <class M, StateScalar T = double>
+struct Data {
+  std::vector<Published<T>> markers;        ///< waist 1, one for each marker
+  std::vector<T> jacobians;                 ///< arena of the dense Jacobians
+  typename M::template Gaps<T> gaps;        ///< waist 2, one for each joint
+  std::vector<Wrench<double>> loads;        ///< per marker: what the tangent's second-order terms need
+
+  std::vector<double> scratch;              ///< for pulled blocks: n×12 and n×n of the widest marker
+
+  explicit Data(M const& model)
+      : markers(std::size_t(model.markers())), jacobians(std::size_t(model.jacobian_size()), T(0.0)),
+        loads(std::size_t(model.markers())) {
+    Index offset = 0, widest = 12;
+    auto const place = [&](auto const& pool) {
+      for (auto const& m : pool.markers) {
+        auto const& e = pool.entries[std::size_t(m.body)];
+        Published<T>& p = markers[std::size_t(m.published)];
+        p.first = e.v0 + e.body.first_column(m.point);
+        p.columns = std::decay_t<decltype(e.body)>::point_columns;
+        p.jacobian = jacobians.data() + offset;
+        offset += 6 * p.columns;
+        widest = std::max(widest, p.columns);
+      }
+    };
+    std::apply([&](auto const&... pool) { (place(pool), ...); }, model.body_pools());
+    for (detail::GroundMarker const& g : model.ground_markers()) {
+      Frame<T>& f = markers[std::size_t(g.published)].frame;
+      f.r = g.placement.origin.template cast<T>();
+      f.A = g.placement.axes.template cast<T>();
+    }
+    scratch.resize(std::size_t(widest * (widest + 12)));
+    size_gaps(model, std::make_index_sequence<std::tuple_size_v<typename M::JointPools>>{});
+  }
+  Data(Data const&) = delete;  // the markers point into the arena
+  Data& operator=(Data const&) = delete;
+  Data(Data&&) = default;  // moving a vector keeps its buffer
+  Data& operator=(Data&&) = default;
+
+ private:
+  template <std::size_t... I>
+  void size_gaps(M const& model, std::index_sequence<I...>) {
+    (std::get<I>(gaps).resize(std::get<I>(model.joint_pools()).size()), ...);
+  }
+};
+
+/// Calls f(joint entry, gap) for every joint.
+template <class M, class D, class F>
+void for_each_gap(M const& model, D& data, F&& f) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    auto const over = [&](auto const& pool, auto& gaps) {
+      for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], gaps[i]);
+    };
+    (over(std::get<I>(model.joint_pools()), std::get<I>(data.gaps)), ...);
+  }(std::make_index_sequence<std::tuple_size_v<typename M::JointPools>>{});
+}
+
+}  // namespace polybody

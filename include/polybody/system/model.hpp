@@ -1,0 +1,238 @@
+#pragma once
+/// \file
+/// The model: typed pools of bodies, joints and forces, put together by the user and then only read.
+
+#include <atomic>
+#include <tuple>
+
+#include <polybody/forces/force_element.hpp>
+#include <polybody/forces/gravity.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/math/time_laws.hpp>
+#include <polybody/math/type_list.hpp>
+#include <polybody/system/pools.hpp>
+#include <polybody/system/state.hpp>
+
+namespace polybody {
+
+template <class BodyList, class JointList, class ForceList = Forces<>>
+class Model;
+
+/// `Model<Bodies<…>, Joints<…>, Forces<…>> model{Gravity{0, 0, -9.81}};` then `add`, `connect`, `apply`.
+template <Body... Bs, class... Js, ForceElement... Fs>
+  requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...>
+class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
+ public:
+  using BodyPools = std::tuple<detail::BodyPool<Bs>...>;
+  using JointPools = std::tuple<std::vector<detail::JointEntry<Js>>...>;
+  using ForcePools = std::tuple<std::vector<detail::ForceEntry<Fs>>...>;
+  /// Data that depend on the joint types: one gap for each joint.
+  template <StateScalar T>
+  using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;
+
+  /// Some joint type brings rows, so an explicit stepper needs a stabilisation.
+  static constexpr bool may_have_rows = (AddsRows<typename Js::PolicyType> || ... || false);
+  static constexpr bool constant_mass = (Bs::constant_mass && ...);
+
+  explicit Model(Gravity const& gravity = {}) : gravity_(gravity), serial_(next_serial()) {}
+
+  /// Adds a body; the name appears in every message about it.
+  template <OneOf<Bs...> B>
+  BodyHandle<B> add(B const& body, std::string name = "") {
+    auto& pool = std::get<detail::BodyPool<B>>(bodies_);
+    if (name.empty()) name = "body " + std::to_string(count_bodies_ + 1);
+    pool.entries.push_back({body, name, coordinates_, speeds_});
+    coordinates_ += body.coordinates();
+    speeds_ += body.speeds();
+    ++count_bodies_;
+    return {serial_, Index(pool.entries.size()) - 1, std::move(name), body};
+  }
+
+  BodyHandle<Ground> ground() const { return {serial_, 0, "ground", {}}; }
+
+  /// Joins marker a to marker b. The joint's axes are those of its geometry in world axes at the reference
+  /// configuration. \throws InvalidInput naming the joint for a marker of another model, a body joined to
+  /// itself at one marker type only, or parameters that cannot be meant.
+  template <OneOf<Js...> J, class A, class B>
+  ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b,
+                           std::string name = "") {
+    using G = typename J::Geometry;
+    static_assert(same_world(A::world, G::world) && same_world(B::world, G::world) &&
+                      same_world(A::world, B::world),
+                  "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
+                  "belongs to both.");
+    static_assert(A::observes >= G::needs && B::observes >= G::needs,
+                  "This joint needs more than the marker tells (a full frame, say, of a body that only "
+                  "publishes a point). Use a joint that needs less, such as Spherical.");
+    auto& pool = std::get<std::vector<detail::JointEntry<J>>>(joints_);
+    if (name.empty()) name = std::string(G::name) + " " + std::to_string(pool.size() + 1);
+    require_own(a.model, name);
+    require_own(b.model, name);
+    Mat3 triad;
+    try {
+      triad = joint.geometry.triad();
+    } catch (InvalidInput const& e) {
+      throw InvalidInput("\"" + name + "\": " + e.what());
+    }
+    if constexpr (AddsForce<typename J::PolicyType>) joint.policy.check("\"" + name + "\"");
+    Index const pa = publish_at(a, reference_axes(a).transpose() * triad);
+    Index const pb = publish_at(b, reference_axes(b).transpose() * triad);
+    detail::JointEntry<J> entry{joint, pa, pb, -1, name};
+    if constexpr (AddsRows<typename J::PolicyType>) {
+      entry.row = rows_;
+      rows_ += J::rows;
+    }
+    pool.push_back(std::move(entry));
+    return {serial_, Index(pool.size()) - 1, std::move(name)};
+  }
+
+  /// Applies a force element to one marker, or between two.
+  template <OneOf<Fs...> F, class A>
+    requires(F::markers == 1)
+  ElementHandle<F> apply(F const& force, Marker<A> const& a, std::string name = "") {
+    return apply(force, std::tuple(a), std::move(name));
+  }
+  template <OneOf<Fs...> F, class A, class B>
+    requires(F::markers == 2)
+  ElementHandle<F> apply(F const& force, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
+    return apply(force, std::tuple(a, b), std::move(name));
+  }
+  /// … or among any number of markers. \throws InvalidInput as `connect`.
+  template <OneOf<Fs...> F, class... Ms>
+    requires(F::markers == sizeof...(Ms))
+  ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
+    static_assert(((Ms::observes >= F::needs) && ...),
+                  "This force needs more than the marker tells; a moment needs a marker with a frame.");
+    auto& pool = std::get<std::vector<detail::ForceEntry<F>>>(forces_);
+    if (name.empty()) name = "force " + std::to_string(pool.size() + 1);
+    force.check("\"" + name + "\"");
+    detail::ForceEntry<F> entry{force, {}, name};
+    std::size_t k = 0;
+    std::apply([&](auto const&... m) {
+      (require_own(m.model, name), ...);
+      ((entry.markers[k++] = publish_at(m, Mat3::Identity())), ...);
+    }, markers);
+    pool.push_back(std::move(entry));
+    return {serial_, Index(pool.size()) - 1, std::move(name)};
+  }
+
+  /// The undeformed model as placed, at rest, t = 0.
+  State reference_state() const {
+    State x{VecX::Zero(coordinates_), VecX::Zero(speeds_), VecX::Zero(speeds_), VecX::Zero(rows_), 0.0, {}};
+    for_each_body([&](auto const& e) {
+      e.body.reference(detail::body_part_of(x.q, e.q0, e.body.coordinates()));
+    });
+    return x;
+  }
+
+  /// Gives a body the speeds of a rigid motion: `v0` is the velocity of the body-fixed point that is at the
+  /// world's origin [m/s], `omega` the angular velocity [rad/s], both in world axes.
+  template <OneOf<Bs...> B>
+  void set_velocity(State& x, BodyHandle<B> const& handle, Vec3 const& v0, Vec3 const& omega) const {
+    auto const& e = entry(handle);
+    e.body.rigid_velocity(detail::body_part(x.q, e.q0, e.body.coordinates()), v0, omega,
+                          detail::body_part_of(x.v, e.v0, e.body.speeds()));
+  }
+
+  Gravity const& gravity() const { return gravity_; }
+  Index coordinates() const { return coordinates_; }
+  Index speeds() const { return speeds_; }
+  Index rows() const { return rows_; }
+  Index markers() const { return markers_; }
+  Index jacobian_size() const { return jacobian_size_; }
+  Index body_count() const { return count_bodies_; }
+  std::uint64_t serial() const { return serial_; }
+
+  BodyPools const& body_pools() const { return bodies_; }
+  JointPools const& joint_pools() const { return joints_; }
+  ForcePools const& force_pools() const { return forces_; }
+  std::vector<detail::GroundMarker> const& ground_markers() const { return ground_; }
+
+  /// \throws InvalidInput when the handle is of another model.
+  template <OneOf<Bs...> B>
+  auto const& entry(BodyHandle<B> const& handle) const {
+    require_own(handle.model, handle.name);
+    return std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(handle.index)];
+  }
+  template <OneOf<Js...> J>
+  auto const& entry(ElementHandle<J> const& handle) const {
+    require_own(handle.model, handle.name);
+    return std::get<std::vector<detail::JointEntry<J>>>(joints_)[std::size_t(handle.index)];
+  }
+  /// Index of a joint's type among the model's joint types.
+  template <OneOf<Js...> J>
+  static constexpr std::size_t joint_type() {
+    std::size_t i = 0, found = 0;
+    ((std::is_same_v<J, Js> ? found = i++ : i++), ...);
+    return found;
+  }
+
+  /// Calls f(entry) for every body, in the order of the types.
+  template <class F>
+  void for_each_body(F&& f) const {
+    std::apply([&](auto const&... pool) { (for_each_in(pool.entries, f), ...); }, bodies_);
+  }
+  template <class F>
+  void for_each_joint(F&& f) const {
+    std::apply([&](auto const&... pool) { (for_each_in(pool, f), ...); }, joints_);
+  }
+  template <class F>
+  void for_each_force(F&& f) const {
+    std::apply([&](auto const&... pool) { (for_each_in(pool, f), ...); }, forces_);
+  }
+
+  /// \throws InvalidInput when `serial` is another model's.
+  void require_own(std::uint64_t serial, std::string const& what) const {
+    if (serial != serial_)
+      throw InvalidInput("\"" + what + "\" was given a marker or handle of another model; take it from a body "
+                         "added to this one.");
+  }
+
+ private:
+  template <class Pool, class F>
+  static void for_each_in(Pool const& pool, F& f) {
+    for (auto const& e : pool) f(e);
+  }
+  static std::uint64_t next_serial() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+  }
+
+  template <class B>
+  Mat3 reference_axes(Marker<B> const& m) const {
+    if constexpr (std::is_same_v<B, Ground>) {
+      return m.point.axes;
+    } else {
+      B const& body = std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)].body;
+      std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0);
+      std::vector<double> jacobian(6 * v.size());
+      body.reference(q);
+      Published<double> out;
+      out.jacobian = jacobian.data();
+      body.template publish<double>(m.point, Mat3::Identity(), std::span<double const>(q),
+                                    std::span<double const>(v), out);
+      return out.frame.A;
+    }
+  }
+
+  template <class B>
+  Index publish_at(Marker<B> const& m, Mat3 const& axes) {
+    if constexpr (std::is_same_v<B, Ground>) {
+      ground_.push_back({{m.point.origin, m.point.axes * axes}, markers_});
+    } else {
+      std::get<detail::BodyPool<B>>(bodies_).markers.push_back({m.body, m.point, axes, markers_});
+      jacobian_size_ += 6 * B::point_columns;
+    }
+    return markers_++;
+  }
+
+  Gravity gravity_;
+  std::uint64_t serial_;
+  BodyPools bodies_;
+  JointPools joints_;
+  ForcePools forces_;
+  std::vector<detail::GroundMarker> ground_;
+  Index coordinates_ = 0, speeds_ = 0, rows_ = 0, markers_ = 0, jacobian_size_ = 0, count_bodies_ = 0;
+};
+
+}  // namespace polybody

@@ -1,0 +1,86 @@
+#pragma once
+/// \file
+/// What a model stores of each body, marker, joint and force: typed pools, one per type.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <polybody/bodies/body.hpp>
+#include <polybody/kinematics/marker.hpp>
+
+namespace polybody {
+
+/// The types that a model may hold.
+template <class... Bs>
+struct Bodies {};
+template <class... Js>
+struct Joints {};
+template <class... Fs>
+struct Forces {};
+
+/// Handle of a joint or a force element in a model.
+template <class Element>
+struct ElementHandle {
+  std::uint64_t model = 0;
+  Index index = 0;
+  std::string name;
+};
+
+namespace detail {
+
+template <class B>
+struct MarkerEntry {
+  Index body;                ///< in the pool of its type
+  typename B::Point point;
+  Mat3 axes;                 ///< (3×3) the marker's axes in the body's at that point
+  Index published;           ///< where its data stand
+};
+
+template <class B>
+struct BodyPool {
+  struct Entry {
+    B body;
+    std::string name;
+    Index q0;  ///< first coordinate
+    Index v0;  ///< first speed
+  };
+  std::vector<Entry> entries;
+  std::vector<MarkerEntry<B>> markers;
+};
+
+struct GroundMarker {
+  Placement placement;
+  Index published;
+};
+
+template <class J>
+struct JointEntry {
+  J joint;
+  Index a, b;       ///< published markers
+  Index row = -1;   ///< first row; −1 for a joint without rows
+  std::string name;
+};
+
+template <class F>
+struct ForceEntry {
+  F force;
+  std::array<Index, F::markers> markers;
+  std::string name;
+};
+
+/// Coordinates or speeds of one body.
+template <class Vector>
+auto body_part(Vector const& x, Index first, Index size) {
+  using T = typename Vector::Scalar;
+  return std::span<T const>(x.data() + first, std::size_t(size));
+}
+template <class Vector>
+auto body_part_of(Vector& x, Index first, Index size) {
+  using T = typename Vector::Scalar;
+  return std::span<T>(x.data() + first, std::size_t(size));
+}
+
+}  // namespace detail
+}  // namespace polybody

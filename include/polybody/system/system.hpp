@@ -1,0 +1,120 @@
+#pragma once
+/// \file
+/// Waist 3: what an integrator or a solver sees of the mechanics,
+///   M(q) v̇ = f(q, v, t) − Gᵀλ,   Φ(q, t) = 0,   q moves by ⊞.
+
+#include <polybody/system/tangent.hpp>
+
+namespace polybody {
+
+/// A model with its scratch. `evaluate` sets the state at which everything else is asked.
+template <class M>
+class System {
+ public:
+  using ModelType = M;
+
+  /// The model must outlive the system and must not change after.
+  explicit System(M const& model)
+      : model_(&model), data_(model), q_(VecX::Zero(model.coordinates())),
+        v_(VecX::Zero(model.speeds())) {}
+
+  M const& model() const { return *model_; }
+  Index coordinates() const { return model_->coordinates(); }
+  Index speeds() const { return model_->speeds(); }
+  Index rows() const { return model_->rows(); }
+  Index size() const { return speeds() + rows(); }
+  double time() const { return t_; }
+  Data<M> const& data() const { return data_; }
+
+  /// Scales gravity and loads; one except inside `equilibrium`.
+  double load_factor = 1.0;
+
+  void evaluate(VecX const& q, VecX const& v, double t) {
+    q_ = q;
+    v_ = v;
+    t_ = t;
+    publish(*model_, q_, v_, data_);
+    enforce(*model_, t_, data_);
+  }
+
+  /// r = M a − f + Gᵀλ (nv).
+  void residual(VecX const& a, VecX const& lambda, VecX& r) const {
+    polybody::residual(*model_, q_, v_, a, lambda, t_, load_factor, data_, r);
+  }
+  void violation(VecX& phi) const { polybody::violation(*model_, data_, phi); }
+  void violation_rate(VecX& rate) const { polybody::violation_rate(*model_, data_, rate); }
+  void acceleration_bias(VecX& gamma) const {
+    polybody::acceleration_bias(*model_, t_, data_, gamma);
+  }
+  /// [cm M + cd D + ck K, Gᵀ; G, 0] (size × size) into `sink`.
+  template <TangentSink Sink>
+  void tangent(TangentCoefficients const& c, SecondOrder second, VecX const& lambda, Sink& sink) {
+    polybody::tangent(*model_, q_, v_, lambda, t_, load_factor, c, second, data_, sink);
+  }
+
+  /// out = q ⊞ delta.
+  void plus(VecX const& q, VecX const& delta, VecX& out) const {
+    model_->for_each_body([&](auto const& e) {
+      Index const n = e.body.coordinates(), m = e.body.speeds();
+      e.body.template plus<double>(detail::body_part(q, e.q0, n), detail::body_part(delta, e.v0, m),
+                                   detail::body_part_of(out, e.q0, n));
+    });
+  }
+  /// The rate of delta in q ⊞ delta when the model moves with speeds v.
+  void local_rate(VecX const& delta, VecX const& v, VecX& out) const {
+    model_->for_each_body([&](auto const& e) {
+      Index const m = e.body.speeds();
+      e.body.template local_rate<double>(detail::body_part(delta, e.v0, m), detail::body_part(v, e.v0, m),
+                                         detail::body_part_of(out, e.v0, m));
+    });
+  }
+
+  /// Name of the body that owns speed i, or of the joint that owns row i − nv.
+  std::string name_of(Index i) const {
+    std::string name = "unknown";
+    if (i < speeds()) {
+      model_->for_each_body([&](auto const& e) {
+        if (i >= e.v0 && i < e.v0 + e.body.speeds()) name = "body \"" + e.name + "\"";
+      });
+    } else {
+      Index const row = i - speeds();
+      model_->for_each_joint([&](auto const& e) {
+        if (e.row >= 0 && row >= e.row && row < e.row + std::decay_t<decltype(e.joint)>::rows)
+          name = "joint \"" + e.name + "\"";
+      });
+    }
+    return name;
+  }
+
+  /// \throws NonFinite naming body and time when an entry of x (by speeds) is NaN or infinite.
+  void require_finite_force(VecX const& x) const {
+    for (Index i = 0; i < x.size(); ++i)
+      if (!std::isfinite(x[i]))
+        throw NonFinite("A force on " + name_of(i) + " is not finite at t = " + std::to_string(t_) +
+                        " s. Look at the forces applied to it and at the state before.");
+  }
+
+ private:
+  M const* model_;
+  Data<M> data_;
+  VecX q_, v_;
+  double t_ = 0.0;
+};
+
+/// What an integrator may ask of the mechanics.
+template <class S>
+concept MechanicalSystem = requires(S s, S const c, VecX const x, VecX out, double t) {
+  { c.coordinates() } -> std::convertible_to<Index>;
+  { c.speeds() } -> std::convertible_to<Index>;
+  { c.rows() } -> std::convertible_to<Index>;
+  s.evaluate(x, x, t);
+  c.residual(x, x, out);
+  c.violation(out);
+  c.violation_rate(out);
+  c.acceleration_bias(out);
+  c.plus(x, x, out);
+  c.local_rate(x, x, out);
+  { c.name_of(Index(0)) } -> std::convertible_to<std::string>;
+};
+
+}  // namespace polybody

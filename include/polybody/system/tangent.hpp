@@ -1,0 +1,154 @@
+#pragma once
+/// \file
+/// The tangent of the residual and the rows, written block by block into a sink.
+
+#include <polybody/system/collect.hpp>
+
+namespace polybody {
+
+/// Coefficients of the tangent cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
+struct TangentCoefficients {
+  double mass = 0.0;
+  double damping = 0.0;
+  double stiffness = 0.0;
+};
+
+/// Terms ∂(Gᵀλ)/∂q and ∂(Jᵀw)/∂q: a time step may leave them out while Newton contracts; statics may not.
+enum class SecondOrder { omitted, included };
+
+/// Receives the tangent's blocks, always in the same order for the same model.
+template <class S>
+concept TangentSink = requires(S sink, Mat3 const block) { sink.add(Index(0), Index(0), block); };
+
+namespace detail {
+
+/// Calls f((rows · J)ᵀ) for m rows, n×m: of fixed size through a rigid marker, else in `scratch`.
+template <int m, class F>
+void pull_rows(Published<double> const& p, Mat<double, m, 6> const& rows, std::vector<double>& scratch, F&& f) {
+  if (p.columns == 0) return;
+  if (p.shape == JacobianShape::rigid) {
+    Mat<double, 6, m> out;
+    p.pull(rows.transpose(), out);
+    f(out);
+  } else {
+    Eigen::Map<Mat<double, Eigen::Dynamic, m>> out(scratch.data(), p.columns, m);
+    p.pull(rows.transpose(), out);
+    f(out);
+  }
+}
+
+/// sink += Jiᵀ S_ij Jj for all pairs of N markers; S is 6N×6N.
+template <int n, class Sink>
+void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const& markers,
+                      Mat<double, 6 * n, 6 * n> const& s, std::vector<double>& scratch, Sink& sink) {
+  using Half = Eigen::Map<Mat<double, Eigen::Dynamic, 6>>;
+  using Both = Eigen::Map<MatX>;
+  for (int i = 0; i < n; ++i) {
+    Published<double> const& a = *markers[std::size_t(i)];
+    if (a.columns == 0) continue;
+    for (int j = 0; j < n; ++j) {
+      Published<double> const& b = *markers[std::size_t(j)];
+      if (b.columns == 0) continue;
+      Mat<double, 6, 6> const block = s.template block<6, 6>(6 * i, 6 * j);
+      Half half(scratch.data(), a.columns, 6);
+      a.pull(block, half);
+      Both both(scratch.data() + 6 * a.columns, b.columns, a.columns);
+      b.pull(half.transpose(), both);
+      sink.add(a.first, b.first, both.transpose());
+    }
+  }
+}
+
+}  // namespace detail
+
+/// Writes [cm M + cd D + ck K, Gᵀ; G, 0] into `sink`, rows of G from index nv on; K, D of bodies, force
+/// elements and compliant joints. Needs `publish` and `enforce` at (q, v, t).
+template <class M, TangentSink Sink>
+void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, double t, double load_factor,
+             TangentCoefficients const& c, SecondOrder second, Data<M, double>& data, Sink& sink) {
+  bool const full = second == SecondOrder::included;
+  if (full) std::fill(data.loads.begin(), data.loads.end(), Wrench<double>{});
+  auto const load = [&](Index marker, Vec6 const& w) {
+    data.loads[std::size_t(marker)].f += w.head<3>();
+    data.loads[std::size_t(marker)].m += w.tail<3>();
+  };
+  model.for_each_body([&](auto const& e) {
+    using B = std::decay_t<decltype(e.body)>;
+    auto const qe = detail::body_part(q, e.q0, e.body.coordinates());
+    auto const ve = detail::body_part(v, e.v0, e.body.speeds());
+    Mat<double, B::element_columns, B::element_columns> k, m;
+    for (Index i = 0; i < e.body.elements(); ++i) {
+      e.body.tangent(i, qe, ve, c.stiffness, c.damping, k);
+      if (c.mass != 0.0) {
+        e.body.mass(i, qe, m);
+        k += c.mass * m;
+      }
+      Index const first = e.v0 + e.body.first_column(i);
+      sink.add(first, first, k);
+    }
+  });
+  Index const row0 = model.speeds();
+  for_each_gap(model, data, [&](auto const& e, auto const& gap) {
+    constexpr int m = std::decay_t<decltype(gap)>::rows;
+    using P = typename std::decay_t<decltype(e.joint)>::PolicyType;
+    Published<double> const& a = data.markers[std::size_t(e.a)];
+    Published<double> const& b = data.markers[std::size_t(e.b)];
+    Mat<double, 12, 12> s = Mat<double, 12, 12>::Zero();
+    if constexpr (AddsRows<P>) {
+      auto const add = [&](Published<double> const& p, Mat<double, m, 6> const& g) {
+        detail::pull_rows<m>(p, g, data.scratch, [&](auto const& gt) {
+          sink.add(p.first, row0 + e.row, gt);
+          sink.add(row0 + e.row, p.first, gt.transpose());
+        });
+      };
+      add(a, gap.Ga);
+      add(b, gap.Gb);
+    } else {
+      Mat<double, m, 12> g;
+      g << gap.Ga, gap.Gb;
+      s.noalias() = g.transpose() *
+                    e.joint.policy.template slope<m>(c.stiffness, c.damping).asDiagonal() * g;
+    }
+    if (full) {
+      Vec<double, m> const l = detail::multiplier(e, gap, data, lambda);
+      s += c.stiffness * wrench_gradient(e.joint.geometry, a.frame, b.frame, t, l);
+      load(e.a, gap.Ga.transpose() * l);
+      load(e.b, gap.Gb.transpose() * l);
+    }
+    if (full || AddsForce<P>) detail::add_pulled_pairs<2>({&a, &b}, s, data.scratch, sink);
+  });
+  model.for_each_force([&](auto const& e) {
+    using F = std::decay_t<decltype(e.force)>;
+    constexpr int n = F::markers;
+    double const scale = F::is_load ? load_factor : 1.0;
+    auto const frames = detail::frames_of(e, data);
+    std::array<Published<double> const*, std::size_t(n)> markers;
+    for (int k = 0; k < n; ++k) markers[std::size_t(k)] = &data.markers[std::size_t(e.markers[k])];
+    detail::add_pulled_pairs<n>(
+        markers, (-scale * wrench_gradient(e.force, frames, t, c.stiffness, c.damping)).eval(),
+        data.scratch, sink);
+    if (full) {
+      auto const wrenches = e.force.template wrenches<double>(frames, t);
+      for (int k = 0; k < n; ++k) {
+        Vec6 w;
+        w << wrenches[k].f, wrenches[k].m;
+        load(e.markers[k], -scale * w);
+      }
+    }
+  });
+  if (!full) return;
+  auto const stiffen = [&](auto const& pool) {
+    for (auto const& p : pool.markers) {
+      auto const& e = pool.entries[std::size_t(p.body)];
+      constexpr int n = std::decay_t<decltype(e.body)>::point_columns;
+      Mat<double, n, n> k;
+      e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()),
+                            data.loads[std::size_t(p.published)], k);
+      Index const first = data.markers[std::size_t(p.published)].first;
+      sink.add(first, first, c.stiffness * k);
+    }
+  };
+  std::apply([&](auto const&... pool) { (stiffen(pool), ...); }, model.body_pools());
+}
+
+}  // namespace polybody

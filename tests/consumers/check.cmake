@@ -1,0 +1,54 @@
+# cmake -DWAY=<way> -DBUILD=... (see CMakeLists.txt) -P check.cmake
+# Installs polybody, or builds and runs consumer.cpp against it in one of five ways.
+
+set(here ${CMAKE_CURRENT_LIST_DIR})
+set(dir ${WORK}/${WAY})
+set(prefix ${WORK}/installed)
+
+function(run)
+  execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+# build_and_run(<project folder> <cmake option>...)
+function(build_and_run project)
+  run(${CMAKE_COMMAND} -S ${here}/${project} -B ${dir} --fresh -G ${GENERATOR}
+      -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}" ${ARGN})
+  run(${CMAKE_COMMAND} --build ${dir})
+  run(${dir}/consumer)
+endfunction()
+
+if(WAY STREQUAL "install")
+  # Installed in one place, then moved: nothing in it may remember where it was made.
+  file(REMOVE_RECURSE ${WORK}/staged ${prefix})
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/staged)
+  file(RENAME ${WORK}/staged ${prefix})
+
+elseif(WAY STREQUAL "install_tree")
+  build_and_run(find_package -DCMAKE_PREFIX_PATH=${prefix} -DEXPECT=${prefix} -DVERSION=${VERSION})
+
+elseif(WAY STREQUAL "build_tree")
+  build_and_run(find_package -Dpolybody_DIR=${BUILD} -DEXPECT=${BUILD} -DVERSION=${VERSION})
+
+elseif(WAY STREQUAL "add_subdirectory")
+  build_and_run(add_subdirectory -DPOLYBODY=${SOURCE})
+
+elseif(WAY STREQUAL "fetch_content")
+  build_and_run(fetch_content -DFETCHCONTENT_SOURCE_DIR_POLYBODY=${SOURCE})
+
+elseif(WAY STREQUAL "pkg_config")
+  # No CMake at all: c++ -std=c++20 consumer.cpp $(pkg-config --cflags polybody)
+  find_program(PKG_CONFIG NAMES pkg-config pkgconf REQUIRED)
+  set(ENV{PKG_CONFIG_PATH} ${prefix}/share/pkgconfig:$ENV{PKG_CONFIG_PATH})
+  execute_process(
+    COMMAND ${PKG_CONFIG} --cflags "polybody >= ${VERSION}"
+    OUTPUT_VARIABLE cflags
+    OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(cflags UNIX_COMMAND "${cflags}")
+  separate_arguments(FLAGS UNIX_COMMAND "${FLAGS}")
+  file(MAKE_DIRECTORY ${dir})
+  run(${COMPILER} -std=c++20 ${FLAGS} ${cflags} ${here}/consumer.cpp -o ${dir}/consumer)
+  run(${dir}/consumer)
+
+else()
+  message(FATAL_ERROR "no way named '${WAY}'")
+endif()

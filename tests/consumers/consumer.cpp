@@ -1,0 +1,7 @@
+// The program that each consumer project builds: the whole library through its umbrella.
+#include <polybody/polybody.hpp>
+
+#include <iostream>
+
+int main() { std::cout << "polybody found, with Eigen " << EIGEN_WORLD_VERSION << '.'
+                       << EIGEN_MAJOR_VERSION << '\n'; }

@@ -1,0 +1,44 @@
+#include <polybody/math/errors.hpp>
+
+#include <gtest/gtest.h>
+
+#include <concepts>
+
+using namespace polybody;
+
+namespace {
+
+template <template <class...> class List>
+using All = List<InvalidInput, InconsistentStart, NewtonStalled, StepTooSmall, NonFinite,
+                 LinearSolverSingular, IoError>;
+
+/// From how many of Es does E derive (a class from itself too)?
+template <class... Es>
+struct Kinds {
+  template <class E>
+  static constexpr int of = (int(std::derived_from<E, Es>) + ...);
+};
+
+template <class E>
+struct EveryError : testing::Test {};
+using Errors = All<testing::Types>;
+TYPED_TEST_SUITE(EveryError, Errors);
+
+TYPED_TEST(EveryError, IsCaughtAsErrorAndKeepsItsMessage) {
+  try {
+    throw TypeParam("pin: broken");
+  } catch (Error const& error) {
+    EXPECT_STREQ(error.what(), "pin: broken");
+  }
+}
+
+TYPED_TEST(EveryError, IsAStandardRuntimeError) {
+  EXPECT_THROW(throw TypeParam("x"), std::runtime_error);
+}
+
+// A handler of one kind never swallows another.
+TYPED_TEST(EveryError, DerivesFromNoOtherKind) {
+  EXPECT_EQ(All<Kinds>::template of<TypeParam>, 1);
+}
+
+}  // namespace

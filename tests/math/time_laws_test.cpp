@@ -1,0 +1,119 @@
+#include <polybody/math/time_laws.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace polybody;
+
+namespace {
+
+static_assert(TimeLaw<Ramp> && TimeLaw<SmoothRamp> && TimeLaw<SpinUp> && TimeLaw<Constant> && TimeLaw<Window>);
+static_assert(TimeLaw<decltype([](double t) { return Motion{t, 1.0, 0.0}; })>);
+static_assert(!TimeLaw<int> && !TimeLaw<decltype([](double) { return "text"; })>);
+static_assert(HasCorners<Ramp> && HasCorners<Window>);
+static_assert(!HasCorners<SmoothRamp> && !HasCorners<SpinUp> && !HasCorners<Constant>);
+
+/// Rate and acceleration of `law` at t against fourth-order differences of value and rate.
+template <TimeLaw L>
+void expect_consistent(L const& law, double t) {
+  double const h = 1e-3;
+  auto const slope = [&](double Motion::*x) {
+    auto const at = [&](double time) { return law(time).*x; };
+    return (8 * (at(t + h) - at(t - h)) - (at(t + 2 * h) - at(t - 2 * h))) / (12 * h);
+  };
+  EXPECT_NEAR(law(t).rate, slope(&Motion::value), 1e-10) << "t = " << t;
+  EXPECT_NEAR(law(t).acceleration, slope(&Motion::rate), 1e-10) << "t = " << t;
+}
+
+/// All three numbers just before and at t agree.
+template <TimeLaw L>
+void expect_smooth(L const& law, double t) {
+  Motion const before = law(t - 1e-9), at = law(t);
+  EXPECT_NEAR(before.value, at.value, 1e-7);
+  EXPECT_NEAR(before.rate, at.rate, 1e-7);
+  EXPECT_NEAR(before.acceleration, at.acceleration, 1e-7);
+}
+
+void expect_motion(Motion const& m, double value, double rate, double acceleration) {
+  EXPECT_DOUBLE_EQ(m.value, value);
+  EXPECT_DOUBLE_EQ(m.rate, rate);
+  EXPECT_DOUBLE_EQ(m.acceleration, acceleration);
+}
+
+TEST(Ramp, RateAndAccelerationFollowTheValue) {
+  Ramp const law{.target = -3.0, .duration = 2.0, .start = 0.5};
+  for (double const t : {0.0, 0.6, 1.5, 2.4, 3.0}) expect_consistent(law, t);
+  EXPECT_DOUBLE_EQ(law(1.5).value, -1.5);
+}
+
+// A corner takes the piece that begins there.
+TEST(Ramp, CornerBelongsToThePieceThatBegins) {
+  Ramp const law{.target = -3.0, .duration = 2.0, .start = 0.5};
+  expect_motion(law(0.5), 0.0, -1.5, 0.0);
+  expect_motion(law(std::nextafter(0.5, 0.0)), 0.0, 0.0, 0.0);
+  expect_motion(law(2.5), -3.0, 0.0, 0.0);
+  EXPECT_DOUBLE_EQ(law(std::nextafter(2.5, 0.0)).rate, -1.5);
+  EXPECT_EQ(law.corners(), (std::vector{0.5, 2.5}));
+}
+
+TEST(SmoothRamp, RateAndAccelerationFollowTheValue) {
+  SmoothRamp const law{.target = 0.7, .duration = 2.0, .start = 0.5};
+  for (double const t : {0.0, 0.6, 1.1, 1.5, 2.4, 3.0}) expect_consistent(law, t);
+  EXPECT_DOUBLE_EQ(law(1.5).value, 0.35);  // half-way by symmetry
+}
+
+TEST(SmoothRamp, StartsAndEndsAtRestWithoutAJump) {
+  SmoothRamp const law{.target = 0.7, .duration = 2.0, .start = 0.5};
+  expect_smooth(law, 0.5);
+  expect_smooth(law, 2.5);
+  expect_motion(law(0.5), 0.0, 0.0, 0.0);
+  expect_motion(law(2.5), 0.7, 0.0, 0.0);
+}
+
+// Without a duration a ramp is a step, never 0/0.
+TEST(SmoothRamp, OfNoDurationIsAStep) {
+  SmoothRamp const law{.target = 0.7, .duration = 0.0, .start = 0.5};
+  expect_motion(law(0.4), 0.0, 0.0, 0.0);
+  expect_motion(law(0.5), 0.7, 0.0, 0.0);
+}
+
+// [Kane, Ryan & Banerjee 1987; Simo & Vu-Quoc 1986, spin-up manoeuvre]
+// ψ = (6/15)[t²/2 + (15/2π)²(cos(2πt/15) − 1)] for t ≤ 15 s, then 6t − 45.
+TEST(SpinUp, IsTheManoeuvreOfKaneRyanAndBanerjee) {
+  SpinUp const law{.speed = 6.0, .duration = 15.0};
+  double const pi = std::numbers::pi, k = 15.0 / (2.0 * pi);
+  for (double const t : {0.1, 2.5, 7.5, 10.0, 14.9, 15.0})
+    EXPECT_NEAR(law(t).value, 6.0 / 15.0 * (0.5 * t * t + k * k * (std::cos(2.0 * pi * t / 15.0) - 1.0)), 1e-12);
+  EXPECT_NEAR(law(15.0).value, 45.0, 1e-12);
+  expect_motion(law(18.0), 6.0 * 18.0 - 45.0, 6.0, 0.0);
+  expect_motion(law(-1.0), 0.0, 0.0, 0.0);
+}
+
+TEST(SpinUp, RateAndAccelerationFollowTheValue) {
+  SpinUp const law{.speed = 6.0, .duration = 15.0};
+  for (double const t : {-1.0, 0.1, 2.5, 7.5, 14.0, 16.0}) expect_consistent(law, t);
+  expect_smooth(law, 0.0);
+  expect_smooth(law, 15.0);
+}
+
+TEST(Constant, NeverMoves) {
+  expect_motion(Constant{.value = 2.5}(-7.0), 2.5, 0.0, 0.0);
+  expect_motion(Constant{}(3.0), 1.0, 0.0, 0.0);
+}
+
+TEST(Window, IsClosedAtItsBeginAndOpenAtItsEnd) {
+  Window const law{.from = 1.0, .to = 2.5, .value = -80.0};
+  expect_motion(law(std::nextafter(1.0, 0.0)), 0.0, 0.0, 0.0);
+  expect_motion(law(1.0), -80.0, 0.0, 0.0);
+  expect_motion(law(std::nextafter(2.5, 0.0)), -80.0, 0.0, 0.0);
+  expect_motion(law(2.5), 0.0, 0.0, 0.0);
+  EXPECT_EQ(law.corners(), (std::vector{1.0, 2.5}));
+}
+
+TEST(Window, IsOpenForeverUnlessToldOtherwise) {
+  EXPECT_EQ(Window{}(1e300).value, 1.0);
+  EXPECT_EQ(Window{}(-1e-300).value, 0.0);
+}
+
+}  // namespace

@@ -1,0 +1,3 @@
+// refused: a square has four sides
+// Must be reported: it compiles.
+int main() {}

@@ -1,0 +1,474 @@
+#pragma once
+/// \file
+/// The laws that every Body obeys, whatever it is made of. A case says how to build the body:
+///
+///     struct LrvfCase {
+///       static Bar bar();                     // every constant, damping and a placement that is not trivial
+///       static planar::Lrvf body(Bar const&);
+///     };
+///     INSTANTIATE_TYPED_TEST_SUITE_P(Lrvf, BodyLaws, LrvfCase);
+///
+/// Derivatives are taken with dual numbers along one direction at a time, q ⊞ ε d.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cstdint>
+#include <polybody/bodies/bar.hpp>
+#include <polybody/bodies/body.hpp>
+#include <random>
+#include <vector>
+
+#include "support/differences.hpp"
+
+namespace polybody {
+
+template <class V>
+auto read(V const& x) {
+  return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
+}
+template <class V>
+auto write(V& x) {
+  return std::span<typename V::Scalar>(x.data(), std::size_t(x.size()));
+}
+
+/// The ε part of a matrix of Dual<1>.
+inline MatX epsilon_of(MatXOf<Dual<1>> const& m) {
+  return m.unaryExpr([](Dual<1> const& x) { return x.d[0]; });
+}
+
+/// |a − b| against |b|, or against one where b is smaller.
+inline double mismatch(MatX const& a, MatX const& b) { return (a - b).norm() / std::max(1.0, b.norm()); }
+
+template <class Case>
+struct BodyLaws : testing::Test {
+  using B = decltype(Case::body(Case::bar()));
+  using D = Dual<1>;
+  static constexpr bool planar = B::world == World::plane;
+  static constexpr int n = B::element_columns;
+
+  Bar const bar = Case::bar();
+  B const body = Case::body(bar);
+  Index const nq = body.coordinates(), nv = body.speeds();
+  double const length = bar.length;
+  BarConstants const c = constants(bar);
+  double const total_mass = c.mass_per_length * length;
+  Vec3 const middle = bar.placement.origin + bar.placement.axes.col(0) * (0.5 * length);
+  std::mt19937 generator{20240607};
+
+  // --- random but fixed -----------------------------------------------------------------------------------
+
+  double number(double size) { return size * (double(generator()) / 2147483648.0 - 1.0); }
+  VecX vector(Index size, double scale) {
+    return VecX::NullaryExpr(size, [&](Index) { return number(scale); });
+  }
+  Vec3 vector3() { return vector(3, 1.0); }
+  /// A velocity and an angular velocity that the body's world knows.
+  Vec3 velocity() { return planar ? Vec3(number(1), number(1), 0.0) : vector3(); }
+  Vec3 spin() { return planar ? Vec3(0.0, 0.0, number(1)) : vector3(); }
+  /// A configuration far from the undeformed one; a body in space also turns by about a radian.
+  VecX configuration() { return moved<double>(reference(), vector(nv, planar ? 0.3 : 1.0)); }
+  VecX speeds() { return vector(nv, 1.5); }
+  Mat3 turned() { return exp_so3<double>(vector3()); }
+  Wrench<double> wrench() {
+    return {vector3() * 5.0, vector3() * 3.0};
+  }
+
+  /// Points on the axis, at both ends, and off it.
+  std::vector<typename B::Point> points() const {
+    std::vector<typename B::Point> p = {body.at(0.0), body.at(0.31 * length), body.at(0.5 * length, 0.07),
+                                        body.at(0.77 * length, -0.04), body.at(length)};
+    if constexpr (requires { body.at(0.0, 0.0, 0.0); }) p.push_back(body.at(0.2 * length, 0.03, -0.05));
+    return p;
+  }
+
+  // --- the body as a whole --------------------------------------------------------------------------------
+
+  VecX reference() const {
+    VecX q(nq);
+    body.reference(write(q));
+    return q;
+  }
+  template <class T>
+  VecXOf<T> moved(VecX const& q, VecXOf<T> const& delta) const {
+    VecXOf<T> const from = q.cast<T>();
+    VecXOf<T> to(nq);
+    body.template plus<T>(read(from), read(delta), write(to));
+    return to;
+  }
+  VecX rates(VecX const& delta, VecX const& v) const {
+    VecX rate(nv);
+    body.template local_rate<double>(read(delta), read(v), write(rate));
+    return rate;
+  }
+  VecX rigid_velocity(VecX const& q, Vec3 const& v0, Vec3 const& omega) const {
+    VecX v(nv);
+    body.rigid_velocity(read(q), v0, omega, write(v));
+    return v;
+  }
+
+  /// x + ε d, and q ⊞ ε d.
+  static VecXOf<D> along(VecX const& x, VecX const& direction) {
+    VecXOf<D> out = x.cast<D>();
+    for (Index i = 0; i < x.size(); ++i) out[i].d[0] = direction[i];
+    return out;
+  }
+  VecXOf<D> carried(VecX const& q, VecX const& direction) const {
+    return moved<D>(q, along(VecX::Zero(nv), direction));
+  }
+
+  template <class T, class Element>
+  VecXOf<T> assembled(Element&& element) const {
+    VecXOf<T> sum = VecXOf<T>::Zero(nv);
+    for (Index e = 0; e < body.elements(); ++e) {
+      Vec<T, n> x = Vec<T, n>::Constant(T(1e9));  // whatever stood there must be overwritten
+      element(e, x);
+      sum.template segment<n>(body.first_column(e)) += x;
+    }
+    return sum;
+  }
+  template <class Element>
+  MatX assembled_matrix(Element&& element) const {
+    MatX sum = MatX::Zero(nv, nv);
+    for (Index e = 0; e < body.elements(); ++e) {
+      Mat<double, n, n> m = Mat<double, n, n>::Constant(1e9);
+      element(e, m);
+      sum.template block<n, n>(body.first_column(e), body.first_column(e)) += m;
+    }
+    return sum;
+  }
+  template <class Element>
+  double summed(Element&& element) const {
+    double sum = 0.0;
+    for (Index e = 0; e < body.elements(); ++e) sum += element(e);
+    return sum;
+  }
+
+  MatX mass(VecX const& q) const {
+    return assembled_matrix([&](Index e, auto& m) { body.mass(e, read(q), m); });
+  }
+  template <class T>
+  VecXOf<T> inertia(VecXOf<T> const& q, VecXOf<T> const& a) const {
+    return assembled<T>([&](Index e, auto& x) { body.template inertia<T>(e, read(q), read(a), x); });
+  }
+  template <class T>
+  VecXOf<T> force_of(B const& b, VecXOf<T> const& q, VecXOf<T> const& v) const {
+    return assembled<T>([&](Index e, auto& x) { b.template force<T>(e, read(q), read(v), x); });
+  }
+  template <class T>
+  VecXOf<T> force(VecXOf<T> const& q, VecXOf<T> const& v) const {
+    return force_of<T>(body, q, v);
+  }
+  VecX force_at_rest(VecX const& q) const { return force<double>(q, VecX::Zero(nv)); }
+  MatX tangent(VecX const& q, VecX const& v, double ck, double cd) const {
+    return assembled_matrix([&](Index e, auto& k) { body.tangent(e, read(q), read(v), ck, cd, k); });
+  }
+  VecX gravity(VecX const& q, Vec3 const& g) const {
+    return assembled<double>([&](Index e, auto& x) { body.template gravity<double>(e, read(q), g, x); });
+  }
+  double kinetic_energy(VecX const& q, VecX const& v) const {
+    return summed([&](Index e) { return body.kinetic_energy(e, read(q), read(v)); });
+  }
+  double strain_energy(VecX const& q) const {
+    return summed([&](Index e) { return body.strain_energy(e, read(q)); });
+  }
+  double gravity_energy(VecX const& q, Vec3 const& g) const {
+    return summed([&](Index e) { return body.gravity_energy(e, read(q), g); });
+  }
+
+  /// ∂f/∂δ at δ = 0 of a number that depends on q ⊞ δ, by differences.
+  template <class F>
+  VecX gradient(F&& f, VecX const& q) const {
+    VecX out(nv);
+    for (Index j = 0; j < nv; ++j)
+      out[j] = slope_at_zero([&](double h) { return f(moved<double>(q, VecX::Unit(nv, j) * h)); });
+    return out;
+  }
+
+  // --- a marker -------------------------------------------------------------------------------------------
+
+  template <class T>
+  struct Seen {
+    std::vector<T> memory;  ///< of the Jacobian; moving it keeps its address
+    Published<T> marker;
+    Mat<T, 6, Eigen::Dynamic> jacobian;  ///< all columns of the body
+    Vec<T, 6> twist() const {
+      Vec<T, 6> t;
+      t << marker.frame.v, marker.frame.w;
+      return t;
+    }
+  };
+  template <class T>
+  Seen<T> see(typename B::Point const& p, Mat3 const& axes, VecXOf<T> const& q, VecXOf<T> const& v) const {
+    Seen<T> s;
+    s.memory.assign(6 * B::point_columns, T(1e9));
+    s.marker.jacobian = s.memory.data();
+    s.marker.bias.setConstant(T(1e9));
+    body.template publish<T>(p, axes, read(q), read(v), s.marker);
+    s.jacobian = Mat<T, 6, Eigen::Dynamic>::Zero(6, nv);
+    s.jacobian.middleCols(body.first_column(p), s.marker.columns) = s.marker.full();
+    return s;
+  }
+
+};
+
+TYPED_TEST_SUITE_P(BodyLaws);
+
+// --- inertia ------------------------------------------------------------------------------------------------
+
+TYPED_TEST_P(BodyLaws, MassIsSymmetricAndPositive) {
+  MatX const m = this->mass(this->configuration());
+  EXPECT_LT(mismatch(m, m.transpose()), 1e-15);
+  Eigen::SelfAdjointEigenSolver<MatX> const spectrum(m, Eigen::EigenvaluesOnly);
+  EXPECT_GT(spectrum.eigenvalues().minCoeff(), 1e-9 * spectrum.eigenvalues().maxCoeff());
+}
+
+TYPED_TEST_P(BodyLaws, KineticEnergyIsHalfVMV) {
+  VecX const q = this->configuration(), v = this->speeds();
+  double const expected = 0.5 * v.dot(this->mass(q) * v);
+  EXPECT_NEAR(this->kinetic_energy(q, v), expected, 1e-14 * expected);
+}
+
+TYPED_TEST_P(BodyLaws, InertiaIsMassTimesAcceleration) {
+  VecX const q = this->configuration(), a = this->speeds();
+  VecX const expected = this->mass(q) * a;
+  EXPECT_LT(mismatch(this->template inertia<double>(q, a), expected), 1e-14);
+  auto const dual = this->template inertia<Dual<1>>(q.template cast<Dual<1>>(), this->along(VecX::Zero(this->nv), a));
+  EXPECT_LT(mismatch(epsilon_of(dual), expected), 1e-14);
+}
+
+TYPED_TEST_P(BodyLaws, ConstantMassDoesNotDependOnTheConfiguration) {
+  if (!this->body.constant_mass) GTEST_SKIP() << "its mass is not constant";
+  EXPECT_LT(mismatch(this->mass(this->configuration()), this->mass(this->configuration())), 1e-14);
+}
+
+// In a translation every formulation of one bar has its kinetic energy.
+TYPED_TEST_P(BodyLaws, TotalMassIsThatOfTheBar) {
+  VecX const q = this->configuration();
+  Vec3 const v0 = this->velocity();
+  double const expected = 0.5 * this->total_mass * v0.squaredNorm();
+  EXPECT_NEAR(this->kinetic_energy(q, this->rigid_velocity(q, v0, Vec3::Zero())), expected, 1e-13 * expected);
+}
+
+// --- gravity ------------------------------------------------------------------------------------------------
+
+// Power of the weight in a rigid motion: m g · v0 + (r_c × m g) · ω, r_c the middle of the undeformed bar.
+TYPED_TEST_P(BodyLaws, WeightActsInTheMiddleOfTheBar) {
+  VecX const q = this->reference();
+  Vec3 const v0 = this->velocity(), omega = this->spin(), g(0.7, -9.8, 1.3);
+  VecX const weight = this->gravity(q, g);
+  double const m = this->total_mass;
+  EXPECT_NEAR(weight.dot(this->rigid_velocity(q, v0, Vec3::Zero())), m * g.dot(v0), 1e-12 * m);
+  EXPECT_NEAR(weight.dot(this->rigid_velocity(q, Vec3::Zero(), omega)), m * this->middle.cross(g).dot(omega),
+              1e-12 * m);
+  EXPECT_NEAR(this->gravity_energy(q, g), -m * g.dot(this->middle), 1e-12 * m);
+}
+
+TYPED_TEST_P(BodyLaws, WeightIsTheGradientOfItsEnergy) {
+  VecX const q = this->configuration();
+  Vec3 const g(0.7, -9.8, 1.3);
+  VecX const slope = this->gradient([&](VecX const& at) { return this->gravity_energy(at, g); }, q);
+  EXPECT_LT(mismatch(this->gravity(q, g), -slope), 1e-10);
+}
+
+// --- force ------------------------------------------------------------------------------------------------
+
+TYPED_TEST_P(BodyLaws, ReferenceIsFreeOfForceAndEnergy) {
+  VecX const q = this->reference();
+  double const size = this->c.EA + this->c.EI;
+  EXPECT_LT(this->force_at_rest(q).norm(), 1e-14 * size);
+  EXPECT_LT(this->strain_energy(q), 1e-25 * size);
+}
+
+TYPED_TEST_P(BodyLaws, ElasticForceIsTheGradientOfTheStrainEnergy) {
+  VecX const q = this->configuration();
+  VecX const slope = this->gradient([&](VecX const& at) { return this->strain_energy(at); }, q);
+  EXPECT_LT(mismatch(this->force_at_rest(q), -slope), 1e-8);
+}
+
+TYPED_TEST_P(BodyLaws, TangentIsTheDerivativeOfTheForceByPosition) {
+  VecX const q = this->configuration(), v = this->speeds();
+  MatX slope(this->nv, this->nv);
+  for (Index j = 0; j < this->nv; ++j)
+    slope.col(j) = epsilon_of(this->template force<Dual<1>>(this->carried(q, VecX::Unit(this->nv, j)),
+                                                            v.template cast<Dual<1>>()));
+  EXPECT_LT(mismatch(this->tangent(q, v, 1.0, 0.0), -slope), 1e-12);
+}
+
+TYPED_TEST_P(BodyLaws, TangentIsTheDerivativeOfTheForceBySpeed) {
+  VecX const q = this->configuration(), v = this->speeds();
+  MatX slope(this->nv, this->nv);
+  for (Index j = 0; j < this->nv; ++j)
+    slope.col(j) = epsilon_of(this->template force<Dual<1>>(q.template cast<Dual<1>>(),
+                                                            this->along(v, VecX::Unit(this->nv, j))));
+  EXPECT_LT(mismatch(this->tangent(q, v, 0.0, 1.0), -slope), 1e-12);
+}
+
+TYPED_TEST_P(BodyLaws, TangentMixesItsTwoPartsLinearly) {
+  VecX const q = this->configuration(), v = this->speeds();
+  MatX const expected = 0.7 * this->tangent(q, v, 1.0, 0.0) + 31.0 * this->tangent(q, v, 0.0, 1.0);
+  EXPECT_LT(mismatch(this->tangent(q, v, 0.7, 31.0), expected), 1e-14);
+}
+
+// f · v = −U˙ without damping; for a rigid body: gyroscopic forces do no work.
+TYPED_TEST_P(BodyLaws, UndampedForceGivesBackTheStrainEnergy) {
+  Bar undamped = this->bar;
+  undamped.damping = {};
+  auto const elastic = TypeParam::body(undamped);
+  VecX const q = this->configuration(), v = this->speeds();
+  double const power = this->template force_of<double>(elastic, q, v).dot(v);
+  double const rate =
+      slope_at_zero([&](double h) { return this->strain_energy(this->template moved<double>(q, v * h)); }, 3e-4);
+  EXPECT_NEAR(power, -rate, 1e-8 * (1.0 + std::abs(rate)));
+}
+
+// --- coordinates ----------------------------------------------------------------------------------------------
+
+TYPED_TEST_P(BodyLaws, PlusOfNothingChangesNothing) {
+  VecX const q = this->configuration(), zero = VecX::Zero(this->nv), v = this->speeds();
+  EXPECT_LT((this->template moved<double>(q, zero) - q).norm(), 1e-15 * q.norm());
+  EXPECT_EQ(this->rates(zero, v), v);
+}
+
+// While q ⊞ δ(t) moves with δ˙ = local_rate(δ, v), every point moves as the speeds v say.
+TYPED_TEST_P(BodyLaws, LocalRateMovesTheBodyWithItsSpeeds) {
+  VecX const q = this->configuration(), v = this->speeds();
+  VecX const delta = this->vector(this->nv, 0.8), rate = this->rates(delta, v);
+  VecX const now = this->template moved<double>(q, delta);
+  VecXOf<Dual<1>> const passing = this->template moved<Dual<1>>(q, this->along(delta, rate));
+  EXPECT_LT((values_of(passing) - now).norm(), 1e-14);
+  for (auto const& p : this->points()) {
+    auto const seen = this->template see<double>(p, Mat3::Identity(), now, v).marker.frame;
+    auto const moving =
+        this->template see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>()).marker.frame;
+    EXPECT_LT(mismatch(epsilon_of(moving.r), seen.v), 1e-13);
+    EXPECT_LT(mismatch(epsilon_of(moving.A), skew<double>(seen.w) * seen.A), 1e-13);
+  }
+}
+
+TYPED_TEST_P(BodyLaws, RigidVelocityIsTheFieldOfARigidMotion) {
+  VecX const q = this->configuration();
+  Vec3 const v0 = this->velocity(), omega = this->spin();
+  VecX const v = this->rigid_velocity(q, v0, omega);
+  for (auto const& p : this->points()) {
+    auto const f = this->template see<double>(p, this->turned(), q, v).marker.frame;
+    EXPECT_LT((f.v - v0 - omega.cross(f.r)).norm(), 1e-14);
+    EXPECT_LT((f.w - omega).norm(), 1e-14);
+  }
+}
+
+// --- markers --------------------------------------------------------------------------------------------------
+
+// at(s, y) of the undeformed body is the bar's material point, its axes the bar's.
+TYPED_TEST_P(BodyLaws, ReferenceStandsWhereTheBarIsPlaced) {
+  VecX const q = this->reference(), rest = VecX::Zero(this->nv);
+  Mat3 const axes = this->turned();
+  Placement const& place = this->bar.placement;
+  for (double const share : {0.0, 0.2, 1.0 / 3.0, 0.5, 0.9, 1.0})
+    for (double const y : {0.0, 0.06}) {
+      double const s = share * this->length;
+      auto const f = this->template see<double>(this->body.at(s, y), axes, q, rest).marker.frame;
+      EXPECT_LT((f.r - place.origin - place.axes * Vec3(s, y, 0.0)).norm(), 1e-14) << s;
+      EXPECT_LT((f.A - place.axes * axes).norm(), 1e-14) << s;
+      EXPECT_EQ(f.v.norm() + f.w.norm(), 0.0);
+    }
+}
+
+TYPED_TEST_P(BodyLaws, PointsOutsideTheBarAreRefused) {
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  for (double const s : {-1e-6, this->length * 1.000001, nan}) EXPECT_THROW((void)this->body.at(s), InvalidInput) << s;
+  EXPECT_THROW((void)this->body.at(0.0, nan), InvalidInput);
+  EXPECT_NO_THROW((void)this->body.at(this->length * (1 + 1e-15)));  // rounding is forgiven
+}
+
+TYPED_TEST_P(BodyLaws, FrameIsOrthonormal) {
+  VecX const q = this->configuration(), v = this->speeds();
+  for (auto const& p : this->points()) {
+    Mat3 const a = this->template see<double>(p, this->turned(), q, v).marker.frame.A;
+    EXPECT_LT((a.transpose() * a - Mat3::Identity()).norm(), 1e-14);
+    EXPECT_GT(a.determinant(), 0.0);
+  }
+}
+
+TYPED_TEST_P(BodyLaws, TwistIsJacobianTimesSpeeds) {
+  VecX const q = this->configuration(), v = this->speeds();
+  for (auto const& p : this->points()) {
+    auto const s = this->template see<double>(p, this->turned(), q, v);
+    EXPECT_EQ(s.marker.columns, Index(TestFixture::B::point_columns));
+    EXPECT_LT(mismatch(s.twist(), s.jacobian * v), 1e-14);
+  }
+}
+
+// δr = J_r δ and δA = (J_ω δ)~ A under q ⊞ δ.
+TYPED_TEST_P(BodyLaws, JacobianIsTheDerivativeOfTheFrame) {
+  VecX const q = this->configuration(), rest = VecX::Zero(this->nv);
+  Mat3 const axes = this->turned();
+  for (auto const& p : this->points()) {
+    auto const s = this->template see<double>(p, axes, q, rest);
+    for (Index j = 0; j < this->nv; ++j) {
+      auto const moved = this->template see<Dual<1>>(p, axes, this->carried(q, VecX::Unit(this->nv, j)),
+                                                     rest.template cast<Dual<1>>());
+      Vec3 const turn = s.jacobian.col(j).template tail<3>();
+      EXPECT_LT((epsilon_of(moved.marker.frame.r) - s.jacobian.col(j).template head<3>()).norm(), 1e-13) << j;
+      EXPECT_LT((epsilon_of(moved.marker.frame.A) - skew<double>(turn) * s.marker.frame.A).norm(), 1e-13) << j;
+    }
+  }
+}
+
+// bias = d/dt (J v) with v˙ = 0, from the Jacobian and, on another path, from the frame's own twist.
+TYPED_TEST_P(BodyLaws, BiasIsTheAccelerationAtConstantSpeeds) {
+  VecX const q = this->configuration(), v = this->speeds();
+  VecXOf<Dual<1>> const passing = this->carried(q, this->rates(VecX::Zero(this->nv), v));
+  for (auto const& p : this->points()) {
+    auto const s = this->template see<double>(p, this->turned(), q, v);
+    auto const moving =
+        this->template see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>());
+    Vec6 const expected = epsilon_of(moving.jacobian) * v;
+    EXPECT_LT(mismatch(s.marker.bias, expected), 1e-13);
+    EXPECT_LT(mismatch(s.marker.bias, epsilon_of(moving.twist())), 1e-13);
+  }
+}
+
+TYPED_TEST_P(BodyLaws, LoadStiffnessIsTheDerivativeOfThePulledWrench) {
+  constexpr int columns = TestFixture::B::point_columns;
+  VecX const q = this->configuration();
+  VecXOf<Dual<1>> const rest = VecXOf<Dual<1>>::Zero(this->nv);
+  Wrench<double> const w = this->wrench();
+  Mat<Dual<1>, 6, 1> load;
+  load << w.f.template cast<Dual<1>>(), w.m.template cast<Dual<1>>();
+  for (auto const& p : this->points()) {
+    MatX slope = MatX::Zero(this->nv, this->nv), stiffness = slope;
+    for (Index j = 0; j < this->nv; ++j) {
+      auto const moved =
+          this->template see<Dual<1>>(p, Mat3::Identity(), this->carried(q, VecX::Unit(this->nv, j)), rest);
+      VecXOf<Dual<1>> pulled(columns);
+      moved.marker.pull(load, pulled);
+      slope.col(j).segment(this->body.first_column(p), columns) = epsilon_of(pulled);
+    }
+    Mat<double, columns, columns> k;
+    k.setConstant(1e9);
+    this->body.load_stiffness(p, read(q), w, k);
+    Index const first = this->body.first_column(p);
+    stiffness.template block<columns, columns>(first, first) = k;
+    EXPECT_LT(mismatch(stiffness, slope), 1e-13);
+  }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(BodyLaws, MassIsSymmetricAndPositive, KineticEnergyIsHalfVMV,
+                            InertiaIsMassTimesAcceleration,
+                            ConstantMassDoesNotDependOnTheConfiguration, TotalMassIsThatOfTheBar,
+                            WeightActsInTheMiddleOfTheBar, WeightIsTheGradientOfItsEnergy,
+                            ReferenceIsFreeOfForceAndEnergy,
+                            ElasticForceIsTheGradientOfTheStrainEnergy,
+                            TangentIsTheDerivativeOfTheForceByPosition,
+                            TangentIsTheDerivativeOfTheForceBySpeed,
+                            TangentMixesItsTwoPartsLinearly, UndampedForceGivesBackTheStrainEnergy,
+                            PlusOfNothingChangesNothing, LocalRateMovesTheBodyWithItsSpeeds,
+                            RigidVelocityIsTheFieldOfARigidMotion,
+                            ReferenceStandsWhereTheBarIsPlaced, PointsOutsideTheBarAreRefused,
+                            FrameIsOrthonormal, TwistIsJacobianTimesSpeeds,
+                            JacobianIsTheDerivativeOfTheFrame,
+                            BiasIsTheAccelerationAtConstantSpeeds,
+                            LoadStiffnessIsTheDerivativeOfThePulledWrench);
+
+}  // namespace polybody

@@ -1,0 +1,67 @@
+#pragma once
+/// \file
+/// What a body that deforms owes beyond BodyLaws; with the same case:
+///
+///     INSTANTIATE_TYPED_TEST_SUITE_P(Lrvf, FlexibleBodyLaws, LrvfCase);
+
+#include "support/body_laws.hpp"
+
+namespace polybody {
+
+template <class Case>
+struct FlexibleBodyLaws : BodyLaws<Case> {};
+
+TYPED_TEST_SUITE_P(FlexibleBodyLaws);
+
+// The cases of this suite are such that the other laws compare numbers, not zeros.
+TYPED_TEST_P(FlexibleBodyLaws, DeformationIsResistedAndDamped) {
+  VecX const q = this->configuration(), v = this->speeds();
+  EXPECT_GT(this->strain_energy(q), 0.1);
+  EXPECT_GT(this->force_at_rest(q).norm(), 1.0);
+  EXPECT_GT(mismatch(this->template force<double>(q, v), this->force_at_rest(q)), 1e-3);
+}
+
+// The same bar placed elsewhere is a rigid motion of the reference.
+TYPED_TEST_P(FlexibleBodyLaws, RigidMotionStrainsNothing) {
+  Bar elsewhere = this->bar;
+  elsewhere.placement = this->planar ? Placement::planar(-7.0, 3.0, 2.5)
+                                     : Placement::at({-7.0, 3.0, 5.0}, {1.0, -0.4, 2.0});
+  auto const other = TypeParam::body(elsewhere);
+  VecX q(this->nq);
+  other.reference(write(q));
+  double const size = this->c.EA + this->c.EI;
+  EXPECT_LT(this->force_at_rest(q).norm(), 1e-10 * size);
+  EXPECT_LT(this->strain_energy(q), 1e-20 * size);
+}
+
+// Internal forces, damping included, do no work in a rigid motion superposed on any state.
+TYPED_TEST_P(FlexibleBodyLaws, InternalForcesAreInEquilibrium) {
+  VecX const q = this->configuration(), v = this->speeds();
+  VecX const rigid = this->rigid_velocity(q, this->velocity(), this->spin());
+  VecX const f = this->template force<double>(q, v);
+  EXPECT_LT(std::abs(f.dot(rigid)), 1e-13 * (1.0 + f.norm() * rigid.norm()));
+}
+
+TYPED_TEST_P(FlexibleBodyLaws, RigidVelocityIsNotDamped) {
+  VecX const q = this->configuration(), v = this->rigid_velocity(q, this->velocity(), this->spin());
+  EXPECT_GT(v.norm(), 0.1);
+  EXPECT_LT(mismatch(this->template force<double>(q, v), this->force_at_rest(q)), 1e-13);
+}
+
+// Damping takes vᵀ D v, D = −∂f/∂v, out of the motion; never less than nothing.
+TYPED_TEST_P(FlexibleBodyLaws, DampingTakesEnergy) {
+  for (int i = 0; i < 20; ++i) {
+    VecX const q = this->configuration(), v = this->speeds();
+    double const power = (this->template force<double>(q, v) - this->force_at_rest(q)).dot(v);
+    MatX const d = this->tangent(q, v, 0.0, 1.0);
+    EXPECT_LT(power, -1e-3);
+    EXPECT_NEAR(power, -v.dot(d * v), 1e-12 * std::abs(power));
+    EXPECT_LT(mismatch(d, d.transpose()), 1e-14);
+  }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(FlexibleBodyLaws, DeformationIsResistedAndDamped,
+                            RigidMotionStrainsNothing, InternalForcesAreInEquilibrium,
+                            RigidVelocityIsNotDamped, DampingTakesEnergy);
+
+}  // namespace polybody
