@@ -2,9 +2,11 @@
 /// \file
 /// polybody: one model, every formulation. Includes everything.
 
+#include <polybody/analysis/compare.hpp>
 #include <polybody/analysis/energy.hpp>
 #include <polybody/analysis/equilibrium.hpp>
 #include <polybody/analysis/initial_conditions.hpp>
+#include <polybody/analysis/mesh_diagnostics.hpp>
 #include <polybody/analysis/observe.hpp>
 #include <polybody/analysis/simulate.hpp>
 #include <polybody/bodies/planar/ancf_cable.hpp>

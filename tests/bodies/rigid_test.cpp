@@ -5,22 +5,158 @@
 #include "support/body_laws.hpp"
 #include "support/refusal.hpp"
 
-using namespace polybody;
-
+namespace polybody {
 namespace {
 
 struct RigidCase {
   static Bar bar() {
     return {.length = 1.3,
-            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .rotary_inertia = 0.05,
-                                      .rotary_inertia_y = 0.02},
+            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0,
+                                      .rotary_inertia = 0.05, .rotary_inertia_y = 0.02},
             .placement = Placement::at({0.4, -0.3, 0.8}, {0.5, -1.0, 0.7})};
   }
   static Rigid<> body(Bar const& bar) { return Rigid<>::from(bar); }
 };
+INSTANTIATE_TYPED_TEST_SUITE_P(Rigid, BodyLaws, RigidCase);
+
+double const nan_ = std::numeric_limits<double>::quiet_NaN();
+
+std::array<double, 6> force_of(Rigid<> const& body, std::array<double, 6> const& v) {
+  std::array<double, 7> q;
+  body.reference(q);
+  Vec6 f;
+  body.force<double>(0, q, v, f);
+  std::array<double, 6> out;
+  std::copy_n(f.data(), 6, out.begin());
+  return out;
+}
+
+Mat3 const tilted = [] {
+  Mat3 const turn = exp_so3<double>(Vec3(0.4, -0.8, 0.3));
+  return Mat3(turn * Vec3(0.3, 0.5, 0.7).asDiagonal() * turn.transpose());
+}();
+
+// Thin rod of length l: m l²/12 about its middle; a cylinder adds its rotary inertia ρ I l, ρ (I_y + I_z) l about
+// its own axis  [Goldstein, Poole & Safko 2002, ch. 5].
+TEST(Rigid, BarHasTheInertiaOfACylinder) {
+  double const l = 1.3, r = 0.04, rho = 7800, m = rho * std::numbers::pi * r * r * l;
+  Bar const bar{.length = l, .section = Circle{.radius = r}, .material = Material{.density = rho, .young = 2e11}};
+  Rigid<> const rod = Rigid<>::from(bar);
+  Vec3 const expected(m * r * r / 2.0, m * (3 * r * r + l * l) / 12.0, m * (3 * r * r + l * l) / 12.0);
+  EXPECT_NEAR(rod.mass(), m, 1e-13 * m);
+  EXPECT_LT((rod.inertia() - Mat3(expected.asDiagonal())).norm(), 1e-13 * expected.norm());
+}
+
+// A cuboid: m (b² + c²)/12 about each axis; height along y, width along z.
+TEST(Rigid, BarHasTheInertiaOfACuboid) {
+  double const l = 1.3, h = 0.2, w = 0.1, m = 500 * l * h * w;
+  Bar const bar{.length = l, .section = Rectangle{.height = h, .width = w},
+                .material = Material{.density = 500, .young = 1e9}};
+  Vec3 const expected = m / 12.0 * Vec3(h * h + w * w, l * l + w * w, l * l + h * h);
+  EXPECT_LT((Rigid<>::from(bar).inertia() - Mat3(expected.asDiagonal())).norm(), 1e-13);
+}
+
+TEST(Rigid, SpinningBarHasItsKineticEnergy) {
+  Bar const bar{.length = 3.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 2.0}};
+  Rigid<> const rod = Rigid<>::from(bar);
+  std::array<double, 7> q;
+  rod.reference(q);
+  double const omega = 4.0;
+  // about its middle ½ (m l²/12) ω², about its first end ½ (m l²/3) ω², about its own axis nothing
+  EXPECT_DOUBLE_EQ(rod.kinetic_energy(0, q, std::array{0.0, 0.0, 0.0, 0.0, 0.0, omega}), 0.5 * 6.0 * 9.0 / 12.0 * 16.0);
+  std::array<double, 6> v;
+  rod.rigid_velocity(q, Vec3::Zero(), Vec3(0, omega, 0), v);
+  EXPECT_DOUBLE_EQ(rod.kinetic_energy(0, q, v), 0.5 * 6.0 * 9.0 / 3.0 * 16.0);
+  EXPECT_EQ(rod.kinetic_energy(0, q, std::array{0.0, 0.0, 0.0, omega, 0.0, 0.0}), 0.0);
+}
+
+// Euler's equations J₁ Ω₁˙ = (J₂ − J₃) Ω₂ Ω₃ and so on in turn.
+TEST(Rigid, GyroscopicForceIsEulers) {
+  Rigid<> const body(2.0, Vec3(0.3, 0.5, 0.7).asDiagonal());
+  auto const f = force_of(body, {9.0, 8.0, 7.0, 1.0, 2.0, 3.0});
+  EXPECT_EQ(f[0] + f[1] + f[2], 0.0);
+  EXPECT_NEAR(f[3], (0.5 - 0.7) * 2.0 * 3.0, 1e-15);
+  EXPECT_NEAR(f[4], (0.7 - 0.3) * 3.0 * 1.0, 1e-15);
+  EXPECT_NEAR(f[5], (0.3 - 0.5) * 1.0 * 2.0, 1e-15);
+}
+
+// A full tensor: mass matrix, work-free gyroscopic force, tangent against differences.
+TEST(Rigid, FullInertiaTensorIsKept) {
+  Rigid<> const body(2.0, tilted);
+  std::array<double, 7> q;
+  body.reference(q);
+  std::array<double, 6> const v{0.1, 0.2, 0.3, 1.0, -2.0, 3.0};
+  Mat<double, 6, 6> m, k;
+  body.mass(0, q, m);
+  EXPECT_EQ((m.bottomRightCorner<3, 3>()), tilted);
+  auto const f = force_of(body, v);
+  EXPECT_NEAR(f[3] * v[3] + f[4] * v[4] + f[5] * v[5], 0.0, 1e-15);
+  body.tangent(0, q, v, 0.0, 1.0, k);
+  for (std::size_t j = 0; j < 6; ++j)
+    for (std::size_t i = 0; i < 6; ++i) {
+      double const slope = slope_at_zero([&](double h) {
+        auto moved = v;
+        moved[j] += h;
+        return force_of(body, moved)[i];
+      });
+      EXPECT_NEAR(k(Index(i), Index(j)), -slope, 1e-11);
+    }
+}
+
+TEST(Rigid, StandsWhereItIsPlaced) {
+  Placement const place = Placement::at({1, 2, 3}, {0.3, -2.0, 0.9});
+  Rigid<> const body(2.0, tilted, place);
+  std::array<double, 7> q;
+  body.reference(q);
+  EXPECT_EQ(Vec3(q[0], q[1], q[2]), place.origin);
+  EXPECT_LT((rotation_matrix<double>(Vec4(q[3], q[4], q[5], q[6])) - place.axes).norm(), 2e-15);
+}
+
+TEST(Rigid, PointsCountFromTheCentreOfMass) {
+  Rigid<> const rod = Rigid<>::from(RigidCase::bar());
+  EXPECT_EQ(rod.at(0.0).u, Vec3(-0.65, 0, 0));
+  EXPECT_EQ(rod.at(1.3, 0.1, -0.2).u, Vec3(0.65, 0.1, -0.2));
+  EXPECT_EQ(rod.at(Vec3(1, 2, 3)).u, Vec3(1, 2, 3));
+}
+
+TEST(Rigid, RefusesAMassThatIsNone) {
+  for (double const m : {0.0, -1.0, nan_})
+    EXPECT_TRUE(has(refusal([&] { Rigid<>(m, Mat3::Identity()); }), "Rigid: the mass")) << m;
+}
+
+TEST(Rigid, RefusesAnInertiaThatNoBodyHas) {
+  auto const said = [](Mat3 const& inertia) { return refusal([&] { Rigid<>(1.0, inertia); }); };
+  Mat3 asymmetric = Mat3::Identity(), broken = Mat3::Identity();
+  asymmetric(0, 1) = 1e-3;
+  broken(2, 1) = nan_;
+  EXPECT_TRUE(has(said(asymmetric), "symmetric"));
+  EXPECT_TRUE(has(said(broken), "the inertia"));
+  EXPECT_TRUE(has(said(Vec3(1, 1, -0.1).asDiagonal()), "negative"));
+  EXPECT_TRUE(has(said(Vec3(1, 1, 2.01).asDiagonal()), "triangle inequality"));
+  // the triangle holds for principal moments: here they hide behind turned axes
+  Mat3 const turn = exp_so3<double>(Vec3(0.4, -0.8, 0.3));
+  EXPECT_TRUE(has(said(turn * Vec3(1, 1, 2.01).asDiagonal() * turn.transpose()), "triangle inequality"));
+}
+
+TEST(Rigid, AllowsThinRodsPlatesAndPoints) {
+  EXPECT_NO_THROW(Rigid<>(1.0, Vec3(0, 1, 1).asDiagonal()));  // rod: nothing about its axis
+  EXPECT_NO_THROW(Rigid<>(1.0, Vec3(1, 1, 2).asDiagonal()));  // plate: the triangle is flat
+  EXPECT_NO_THROW(Rigid<>(1.0, Mat3::Zero()));
+  Mat3 const turn = exp_so3<double>(Vec3(0.4, -0.8, 0.3));
+  EXPECT_NO_THROW(Rigid<>(1.0, turn * Vec3(0, 1, 1).asDiagonal() * turn.transpose()));  // up to rounding
+}
+
+TEST(Rigid, RefusesAPlacementThatIsNone) {
+  EXPECT_TRUE(has(refusal([] { Rigid<>(1.0, Mat3::Zero(), Placement::at({0, nan_, 0})); }), "Rigid: the placement"));
+}
+
+TEST(Rigid, RefusesPointsThatAreNone) {
+  Rigid<> const lump(2.0, tilted), rod = Rigid<>::from(RigidCase::bar());
+  EXPECT_TRUE(has(refusal([&] { (void)lump.at(0.0); }), "needs a body made from a Bar"));
+  EXPECT_TRUE(has(refusal([&] { (void)rod.at(1.4); }), "outside"));
+  EXPECT_TRUE(has(refusal([&] { (void)rod.at(0.5, 0.0, nan_); }), "the point"));
+  EXPECT_TRUE(has(refusal([&] { (void)rod.at(Vec3(0, nan_, 0)); }), "the point"));
+}
 
 }  // namespace
-
-namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Rigid, BodyLaws, RigidCase);
-}
+}  // namespace polybody

@@ -58,13 +58,14 @@ TEST(Dual, MixesWithDoublesOnBothSides) {
 
 TEST(Dual, AssignsInPlaceEvenToItself) {
   D a = x;
-  a *= a;
+  D const& same = a;
+  a *= same;
   expect_dual(a, 0.49, 1.4, 0);
-  a = x, a /= a;
+  a = x, a /= same;
   expect_dual(a, 1, 0, 0);
-  a = x, a += a;
+  a = x, a += same;
   expect_dual(a, 1.4, 2, 0);
-  a = x, a -= a;
+  a = x, a -= same;
   expect_dual(a, 0, 0, 0);
   a = x, a *= y, a /= y;
   EXPECT_NEAR(a.d[0], 1.0, 1e-15);

@@ -12,7 +12,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cstdint>
 #include <polybody/bodies/bar.hpp>
 #include <polybody/bodies/body.hpp>
@@ -24,11 +23,11 @@
 namespace polybody {
 
 template <class V>
-auto read(V const& x) {
+auto view(V const& x) {
   return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
 }
 template <class V>
-auto write(V& x) {
+auto mutable_view(V& x) {
   return std::span<typename V::Scalar>(x.data(), std::size_t(x.size()));
 }
 
@@ -39,6 +38,17 @@ inline MatX epsilon_of(MatXOf<Dual<1>> const& m) {
 
 /// |a − b| against |b|, or against one where b is smaller.
 inline double mismatch(MatX const& a, MatX const& b) { return (a - b).norm() / std::max(1.0, b.norm()); }
+
+/// The smallest pivot of L D Lᵀ without exchanges: positive exactly for a positive definite matrix.
+inline double smallest_pivot(MatX m) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Index k = 0; k < m.rows(); ++k) {
+    smallest = std::min(smallest, m(k, k));
+    for (Index i = k + 1; i < m.rows(); ++i)
+      for (Index j = k + 1; j < m.rows(); ++j) m(i, j) -= m(i, k) * m(k, j) / m(k, k);
+  }
+  return smallest;
+}
 
 template <class Case>
 struct BodyLaws : testing::Test {
@@ -86,24 +96,24 @@ struct BodyLaws : testing::Test {
 
   VecX reference() const {
     VecX q(nq);
-    body.reference(write(q));
+    body.reference(mutable_view(q));
     return q;
   }
   template <class T>
   VecXOf<T> moved(VecX const& q, VecXOf<T> const& delta) const {
     VecXOf<T> const from = q.cast<T>();
     VecXOf<T> to(nq);
-    body.template plus<T>(read(from), read(delta), write(to));
+    body.template plus<T>(view(from), view(delta), mutable_view(to));
     return to;
   }
   VecX rates(VecX const& delta, VecX const& v) const {
     VecX rate(nv);
-    body.template local_rate<double>(read(delta), read(v), write(rate));
+    body.template local_rate<double>(view(delta), view(v), mutable_view(rate));
     return rate;
   }
   VecX rigid_velocity(VecX const& q, Vec3 const& v0, Vec3 const& omega) const {
     VecX v(nv);
-    body.rigid_velocity(read(q), v0, omega, write(v));
+    body.rigid_velocity(view(q), v0, omega, mutable_view(v));
     return v;
   }
 
@@ -145,15 +155,15 @@ struct BodyLaws : testing::Test {
   }
 
   MatX mass(VecX const& q) const {
-    return assembled_matrix([&](Index e, auto& m) { body.mass(e, read(q), m); });
+    return assembled_matrix([&](Index e, auto& m) { body.mass(e, view(q), m); });
   }
   template <class T>
   VecXOf<T> inertia(VecXOf<T> const& q, VecXOf<T> const& a) const {
-    return assembled<T>([&](Index e, auto& x) { body.template inertia<T>(e, read(q), read(a), x); });
+    return assembled<T>([&](Index e, auto& x) { body.template inertia<T>(e, view(q), view(a), x); });
   }
   template <class T>
   VecXOf<T> force_of(B const& b, VecXOf<T> const& q, VecXOf<T> const& v) const {
-    return assembled<T>([&](Index e, auto& x) { b.template force<T>(e, read(q), read(v), x); });
+    return assembled<T>([&](Index e, auto& x) { b.template force<T>(e, view(q), view(v), x); });
   }
   template <class T>
   VecXOf<T> force(VecXOf<T> const& q, VecXOf<T> const& v) const {
@@ -161,19 +171,19 @@ struct BodyLaws : testing::Test {
   }
   VecX force_at_rest(VecX const& q) const { return force<double>(q, VecX::Zero(nv)); }
   MatX tangent(VecX const& q, VecX const& v, double ck, double cd) const {
-    return assembled_matrix([&](Index e, auto& k) { body.tangent(e, read(q), read(v), ck, cd, k); });
+    return assembled_matrix([&](Index e, auto& k) { body.tangent(e, view(q), view(v), ck, cd, k); });
   }
   VecX gravity(VecX const& q, Vec3 const& g) const {
-    return assembled<double>([&](Index e, auto& x) { body.template gravity<double>(e, read(q), g, x); });
+    return assembled<double>([&](Index e, auto& x) { body.template gravity<double>(e, view(q), g, x); });
   }
   double kinetic_energy(VecX const& q, VecX const& v) const {
-    return summed([&](Index e) { return body.kinetic_energy(e, read(q), read(v)); });
+    return summed([&](Index e) { return body.kinetic_energy(e, view(q), view(v)); });
   }
   double strain_energy(VecX const& q) const {
-    return summed([&](Index e) { return body.strain_energy(e, read(q)); });
+    return summed([&](Index e) { return body.strain_energy(e, view(q)); });
   }
   double gravity_energy(VecX const& q, Vec3 const& g) const {
-    return summed([&](Index e) { return body.gravity_energy(e, read(q), g); });
+    return summed([&](Index e) { return body.gravity_energy(e, view(q), g); });
   }
 
   /// ∂f/∂δ at δ = 0 of a number that depends on q ⊞ δ, by differences.
@@ -204,7 +214,7 @@ struct BodyLaws : testing::Test {
     s.memory.assign(6 * B::point_columns, T(1e9));
     s.marker.jacobian = s.memory.data();
     s.marker.bias.setConstant(T(1e9));
-    body.template publish<T>(p, axes, read(q), read(v), s.marker);
+    body.template publish<T>(p, axes, view(q), view(v), s.marker);
     s.jacobian = Mat<T, 6, Eigen::Dynamic>::Zero(6, nv);
     s.jacobian.middleCols(body.first_column(p), s.marker.columns) = s.marker.full();
     return s;
@@ -219,8 +229,7 @@ TYPED_TEST_SUITE_P(BodyLaws);
 TYPED_TEST_P(BodyLaws, MassIsSymmetricAndPositive) {
   MatX const m = this->mass(this->configuration());
   EXPECT_LT(mismatch(m, m.transpose()), 1e-15);
-  Eigen::SelfAdjointEigenSolver<MatX> const spectrum(m, Eigen::EigenvaluesOnly);
-  EXPECT_GT(spectrum.eigenvalues().minCoeff(), 1e-9 * spectrum.eigenvalues().maxCoeff());
+  EXPECT_GT(smallest_pivot(m), 1e-6 * m.diagonal().maxCoeff());
 }
 
 TYPED_TEST_P(BodyLaws, KineticEnergyIsHalfVMV) {
@@ -447,7 +456,7 @@ TYPED_TEST_P(BodyLaws, LoadStiffnessIsTheDerivativeOfThePulledWrench) {
     }
     Mat<double, columns, columns> k;
     k.setConstant(1e9);
-    this->body.load_stiffness(p, read(q), w, k);
+    this->body.load_stiffness(p, view(q), w, k);
     Index const first = this->body.first_column(p);
     stiffness.template block<columns, columns>(first, first) = k;
     EXPECT_LT(mismatch(stiffness, slope), 1e-13);

@@ -28,7 +28,7 @@ TYPED_TEST_P(FlexibleBodyLaws, RigidMotionStrainsNothing) {
                                      : Placement::at({-7.0, 3.0, 5.0}, {1.0, -0.4, 2.0});
   auto const other = TypeParam::body(elsewhere);
   VecX q(this->nq);
-  other.reference(write(q));
+  other.reference(mutable_view(q));
   double const size = this->c.EA + this->c.EI;
   EXPECT_LT(this->force_at_rest(q).norm(), 1e-10 * size);
   EXPECT_LT(this->strain_energy(q), 1e-20 * size);

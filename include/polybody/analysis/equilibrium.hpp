@@ -10,7 +10,7 @@ namespace polybody {
 
 struct EquilibriumOptions {
   int load_steps = 1;          ///< loads and gravity grow in so many equal parts
-  double smallest_part = 1e-4; ///< a part that fails is halved down to this
+  double smallest_part = 1e-4; ///< a part that fails is halved down to this; the next one is twice as large again
   double tolerance = 1e-11;    ///< of a correction, relative to 1 + max |q|
   int max_iterations = 50;     ///< in one part
 };
@@ -71,7 +71,8 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
 
   EquilibriumReport report;
   NewtonOptions newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
-  double done = 0.0, part = 1.0 / std::max(options.load_steps, 1);
+  double const whole = 1.0 / std::max(options.load_steps, 1);
+  double done = 0.0, part = whole;
   while (done < 1.0) {
     State const before = trial;
     system.load_factor = std::min(done + part, 1.0);
@@ -83,6 +84,7 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
     if (n.result == NewtonResult::converged) {
       done = system.load_factor;
       ++report.parts;
+      part = std::min(2.0 * part, whole);
       continue;
     }
     trial = before;

@@ -8,6 +8,7 @@
 /// by βh² every entry of the tangent keeps the size of M and G for any h.
 
 #include <polybody/integrators/integrator.hpp>
+#include <polybody/integrators/step_history.hpp>
 #include <polybody/solvers/newton.hpp>
 
 namespace polybody {
@@ -32,18 +33,19 @@ struct GeneralizedAlpha {
 
   template <class M, class Solver>
   struct Workspace {
-    VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, part, vd_before;
+    VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
+    VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk;
     Solver solver;
     ForwardDynamics<M, Solver> forward;
     bool factored = false;
     bool second_order = false;
     double theta = 1.0;
     double h_factored = 0.0;
-    double h_before = 0.0;  ///< length of the last step; 0 right after a start
 
     explicit Workspace(System<M>& s)
-        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), vd(v), a(v), lambda(VecX::Zero(s.rows())),
-          dq(v), r(v), phi(lambda), rhs(VecX::Zero(s.size())), y(rhs), jerk(v), part(v), vd_before(v), forward(s) {}
+        : v0(VecX::Zero(s.speeds())), a0(v0), q(VecX::Zero(s.coordinates())), v(v0), vd(v0), a(v0),
+          lambda(VecX::Zero(s.rows())), dq(v0), r(v0), phi(lambda), rhs(VecX::Zero(s.size())), y(rhs), jerk(v0),
+          forward(s) {}
 
     void analyse(System<M>& s, SecondOrder second) {
       PatternSink pattern;
@@ -61,30 +63,25 @@ struct GeneralizedAlpha {
     return w;
   }
 
-  /// Consistent v̇ and λ at x, and the algorithmic acceleration of the method.
+  /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
   template <class M, class Solver>
   void start(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
     check();
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
-    x.memory = x.a;
-    w.h_before = 0.0;
+    StepHistory::reset(x);
     w.factored = false;
-    if (start_correction && jerk_at_start(system, x, h, w)) correct(system, x, 0.0, h, w);
+    if (start_correction && jerk_at_start(system, x, h, w)) StepHistory(x).pretend(x, w.jerk, h);
   }
 
   template <class M, class Solver>
   StepReport step(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
-    if (start_correction && w.h_before > 0.0 && std::abs(h - w.h_before) > 1e-9 * h) {
-      // across a change of h: jerk from the last two accelerations, used where the step resolves it
-      w.jerk = (x.a - w.vd_before) / w.h_before;
-      if (h * w.jerk.norm() <= 0.5 * x.a.norm()) {
-        State moved = x;  // x stays as it is when the step fails
-        correct(system, moved, w.h_before, h, w);
-        StepReport const report = advance(system, moved, h, w);
-        x = std::move(moved);
-        return report;
-      }
-    }
+    StepHistory const history(x);
+    w.v0 = x.v;
+    w.a0 = history.own();
+    double const shifted = history.shifted();  // the length for which v and a stand off; 0 after a start
+    if (start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
+        (shifted == 0.0 || h * w.jerk.norm() <= 0.5 * x.a.norm()))  // else the step does not resolve it
+      correct(system, x, shifted, h, w);
     return advance(system, x, h, w);
   }
 
@@ -100,11 +97,11 @@ struct GeneralizedAlpha {
     double const am = alpha_m(), af = alpha_f(), g = gamma(), b = beta(), s = b * h * h;
     double const mass = (1.0 - am) / (1.0 - af);
     Index const nv = system.speeds(), rows = system.rows();
-    w.vd = x.a;
-    w.lambda = x.lambda;
-    w.a = (af * x.a + (1.0 - af) * w.vd - am * x.memory) / (1.0 - am);
-    w.v = x.v + h * ((1.0 - g) * x.memory + g * w.a);
-    w.dq = h * x.v + h * h * ((0.5 - b) * x.memory + b * w.a);
+    StepHistory history(x);
+    history.extrapolate(x, h, w.vd, w.lambda);
+    w.a = (af * x.a + (1.0 - af) * w.vd - am * w.a0) / (1.0 - am);
+    w.v = w.v0 + h * ((1.0 - g) * w.a0 + g * w.a);
+    w.dq = h * w.v0 + h * h * ((0.5 - b) * w.a0 + b * w.a);
     if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
 
     struct Problem {
@@ -160,14 +157,12 @@ struct GeneralizedAlpha {
     if (report.result != NewtonResult::converged) fail(system, x.t + h, report, problem.bad, w.rhs);
     // the last correction moved dq: bring q to it
     system.plus(x.q, w.dq, w.q);
-    w.vd_before = x.a;
+    history.push(x, h, w.a);
     x.q.swap(w.q);
     x.v.swap(w.v);
     x.a.swap(w.vd);
-    x.memory.swap(w.a);
     x.lambda.swap(w.lambda);
     x.t += h;
-    w.h_before = h;
     return {h, h, report.iterations, report.factorisations, report.iterations, 0, report.theta};
   }
 
@@ -194,32 +189,37 @@ struct GeneralizedAlpha {
   /// C = 1/6 − β − Δ/2, P the part that the rows force); start there, and follow it when h changes.
   /// [derived from Arnold & Brüls 2007, Lemma 1]
   template <class M, class Solver>
-  void correct(System<M>& system, State& x, double h_old, double h_new, Workspace<M, Solver>& w) const {
+  void correct(System<M>& system, State const& x, double h_old, double h_new, Workspace<M, Solver>& w) const {
     double const delta = alpha_m() - alpha_f(), c = 1.0 / 6.0 - beta() - 0.5 * delta;
-    x.memory += delta * (h_new - h_old) * w.jerk;
+    w.a0 += delta * (h_new - h_old) * w.jerk;
     if (system.rows() == 0) return;
-    w.forward.constrained_part(system, x.q, x.v, x.t, w.jerk, w.part);
-    x.v += c * (h_new * h_new - h_old * h_old) * w.part;
+    w.forward.constrained_part(system, x.q, x.v, x.t, w.jerk, w.v);
+    w.v0 += c * (h_new * h_new - h_old * h_old) * w.v;
   }
 
   /// q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. False where
-  /// the two disagree: then the motion is not resolved by steps of h and a correction would be noise.
+  /// the two disagree, or where following q⃛ itself for h would change the acceleration by as much as q⃛ does
+  /// (ωh above 1.7 in an oscillator: after an impulse the stiff part carries q⃛). Then the motion is not
+  /// resolved by steps of h and a correction would be noise.
   template <class M, class Solver>
   bool jerk_at_start(System<M>& system, State const& x, double h, Workspace<M, Solver>& w) const {
+    w.jerk.setZero();
     auto const acceleration_after = [&](double e, VecX& out) {
-      w.dq = e * x.v + 0.5 * e * e * x.a;
-      w.v = x.v + e * x.a;
+      w.dq = e * x.v + 0.5 * e * e * x.a + e * e * e / 6.0 * w.jerk;
+      w.v = x.v + e * x.a + 0.5 * e * e * w.jerk;
       system.plus(x.q, w.dq, w.q);
       w.forward.accelerations(system, w.q, w.v, x.t + e, out, w.lambda);
     };
-    VecX half = x.a, full = x.a, quarter = x.a;
+    VecX half = x.a, full = x.a, quarter = x.a, followed = x.a;
     acceleration_after(0.25 * h, quarter);
     acceleration_after(0.5 * h, half);
     acceleration_after(h, full);
     VecX const fine = (4.0 * quarter - half - 3.0 * x.a) / (0.5 * h);
     VecX const coarse = (4.0 * half - full - 3.0 * x.a) / h;
     w.jerk = fine;
-    return (fine - coarse).norm() <= 0.5 * fine.norm() && fine.allFinite();
+    if (!((fine - coarse).norm() <= 0.5 * fine.norm()) || !fine.allFinite()) return false;
+    acceleration_after(h, followed);
+    return (followed - full).norm() <= 0.5 * h * fine.norm();
   }
 };
 

@@ -57,7 +57,7 @@ concept JointGeometry = requires(G const g, Frame<double> const a, Frame<double>
 
 /// ∂[Gaᵀλ; Gbᵀλ]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12, rotations δφ in world axes, by dual numbers.
 template <JointGeometry G>
-Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b,
+Mat<double, 12, 12> wrench_gradient_by_duals(G const& geometry, Frame<double> const& a, Frame<double> const& b,
                                     double t, Vec<double, G::rows> const& lambda) {
   using D = Dual<12>;
   auto const moved = [](Frame<double> const& f, int first) {
@@ -79,6 +79,22 @@ Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, F
     k.row(i + 6) = wb[i].d.matrix().transpose();
   }
   return k;
+}
+
+/// A geometry that gives this gradient in closed form.
+template <class G>
+concept HasWrenchGradient = requires(G const g, Frame<double> const f, Vec<double, G::rows> const l) {
+  { g.wrench_gradient(f, f, l) } -> std::convertible_to<Mat<double, 12, 12>>;
+};
+
+/// The same by the geometry's closed form where it has one, else by dual numbers.
+template <JointGeometry G>
+Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b,
+                                    double t, Vec<double, G::rows> const& lambda) {
+  if constexpr (HasWrenchGradient<G>)
+    return geometry.wrench_gradient(a, b, lambda);
+  else
+    return wrench_gradient_by_duals(geometry, a, b, t, lambda);
 }
 
 }  // namespace polybody

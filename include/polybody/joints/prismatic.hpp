@@ -31,6 +31,14 @@ struct Prismatic {
     gamma.template tail<3>() = polybody::rows::parallel_gamma<T>(a, b);
     return gamma;
   }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 5> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::no_slide_gradient(a.A.col(0), a, b, lambda[0], k);
+    polybody::rows::no_slide_gradient(a.A.col(1), a, b, lambda[1], k);
+    polybody::rows::parallel_gradient(a, b, lambda.tail<3>(), k);
+    return k;
+  }
 };
 
 static_assert(JointGeometry<Prismatic>);

@@ -30,6 +30,13 @@ struct Revolute {
     gamma[4] = polybody::rows::perpendicular_gamma<T>(a.A.col(1), b.A.col(2), a, b);
     return gamma;
   }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 5> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::perpendicular_gradient(a.A.col(0), b.A.col(2), lambda[3], k);
+    polybody::rows::perpendicular_gradient(a.A.col(1), b.A.col(2), lambda[4], k);
+    return k;
+  }
 };
 
 static_assert(JointGeometry<Revolute>);

@@ -69,6 +69,37 @@ Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
   return gamma;
 }
 
+/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: the wrenches of rows with multipliers, rotations in world axes.
+using WrenchGradient = Mat<double, 12, 12>;
+
+/// Adds λ times that of `perpendicular`: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ) δφ_b.
+inline void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchGradient& k) {
+  Mat3 const a = lambda * (u * w.transpose() - u.dot(w) * Mat3::Identity());
+  Mat3 const b = lambda * (u.dot(w) * Mat3::Identity() - w * u.transpose());
+  k.block<3, 3>(3, 3) += a;
+  k.block<3, 3>(3, 9) += b;
+  k.block<3, 3>(9, 3) -= a;
+  k.block<3, 3>(9, 9) -= b;
+}
+
+/// Adds λ times that of `no_slide`: δu = −ũ δφ_a and δ(u × d) = (u dᵀ − (u·d) 1) δφ_a + ũ (δr_b − δr_a).
+inline void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> const& b, double lambda,
+                              WrenchGradient& k) {
+  Vec3 const d = b.r - a.r;
+  Mat3 const turn = lambda * skew<double>(u);
+  k.block<3, 3>(0, 3) += turn;
+  k.block<3, 3>(3, 0) -= turn;
+  k.block<3, 3>(3, 3) += lambda * (u * d.transpose() - u.dot(d) * Mat3::Identity());
+  k.block<3, 3>(3, 6) += turn;
+  k.block<3, 3>(6, 3) -= turn;
+}
+
+/// Adds that of `parallel` for three multipliers.
+inline void parallel_gradient(Frame<double> const& a, Frame<double> const& b, Vec3 const& lambda,
+                              WrenchGradient& k) {
+  for (int i = 0; i < 3; ++i) perpendicular_gradient(a.A.col(i), b.A.col((i + 1) % 3), lambda[i], k);
+}
+
 /// A right-handed triad whose third axis is `axis`. \throws InvalidInput unless it is a unit vector.
 inline Mat3 triad_about(Vec3 const& axis, std::string const& what) {
   require_unit(axis, what);

@@ -25,6 +25,12 @@ struct Weld {
     gamma.template tail<3>() = polybody::rows::parallel_gamma<T>(a, b);
     return gamma;
   }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 6> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::parallel_gradient(a, b, lambda.tail<3>(), k);
+    return k;
+  }
 };
 
 static_assert(JointGeometry<Weld>);

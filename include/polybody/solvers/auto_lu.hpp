@@ -17,8 +17,7 @@ class AutoLu {
       sparse_.analyse(size, blocks);
   }
   void begin() { small_ ? dense_.begin() : sparse_.begin(); }
-  template <class Derived>
-  void add(Index row, Index col, Eigen::MatrixBase<Derived> const& b) {
+  void add(Index row, Index col, BlockView const& b) {
     small_ ? dense_.add(row, col, b) : sparse_.add(row, col, b);
   }
   Index factor() { return small_ ? dense_.factor() : sparse_.factor(); }

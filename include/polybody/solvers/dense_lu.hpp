@@ -14,9 +14,9 @@ class DenseLu {
     lu_ = Eigen::PartialPivLU<MatX>(size);
   }
   void begin() { a_.setZero(); }
-  template <class Derived>
-  void add(Index row, Index col, Eigen::MatrixBase<Derived> const& b) {
-    a_.block(row, col, b.rows(), b.cols()) += b;
+  void add(Index row, Index col, BlockView const& b) {
+    for (Index j = 0; j < b.cols; ++j)
+      for (Index i = 0; i < b.rows; ++i) a_(row + i, col + j) += b(i, j);
   }
   /// −1, or the first column whose pivot is below 1e-14 of the column's largest entry.
   Index factor() {

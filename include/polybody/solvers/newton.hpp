@@ -32,11 +32,13 @@ struct NewtonReport {
 ///   double solve()      the next correction; returns its scaled norm
 ///   void apply()        adds it
 /// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
-/// Stops when θ/(1 − θ) ‖Δ‖ ≤ 1; fails after growing twice.
+/// Stops when θ/(1 − θ) ‖Δ‖ ≤ 1; fails after growing twice. Full Newton in a stiff direction contracts by turns
+/// (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate predicts the next correction:
+/// it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
   NewtonReport report;
-  double before = 0.0;
+  double before = 0.0, earlier = 0.0;
   int grown = 0;
   bool fresh = false;  // factored within this solve
   theta = std::pow(std::max(theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
@@ -66,7 +68,8 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
     if (compare && before > 0.0) {
       theta = norm / before;
       report.theta = theta;
-      if (theta >= 1.0 && norm > 1.0) {
+      bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
+      if (grows && norm > 1.0) {
         factored = false;
         if (++grown >= 2) {
           report.result = NewtonResult::diverged;
@@ -77,10 +80,12 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
       }
     }
     problem.apply();
+    earlier = before;
     before = norm;
     double const rate = std::min(theta, 0.99);
     bool const small = norm <= 1e-3 || (k > 0 && norm <= 0.1);  // the latter: rounding no longer contracts
-    if (small || (theta < 1.0 && rate / (1.0 - rate) * norm <= 1.0)) return report;
+    if (options.always_refactor ? norm <= 1.0 : small || (theta < 1.0 && rate / (1.0 - rate) * norm <= 1.0))
+      return report;
   }
   report.result = NewtonResult::diverged;
   factored = false;

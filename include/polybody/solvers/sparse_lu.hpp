@@ -44,12 +44,11 @@ class SparseLu {
     std::fill_n(a_.valuePtr(), a_.nonZeros(), 0.0);
     cursor_ = 0;
   }
-  template <class Derived>
-  void add(Index, Index, Eigen::MatrixBase<Derived> const& b) {
+  void add(Index, Index, BlockView const& b) {
     double* const values = a_.valuePtr();
     std::int32_t const* slot = slots_.data() + cursor_;
-    for (Index j = 0; j < b.cols(); ++j)
-      for (Index i = 0; i < b.rows(); ++i) values[*slot++] += b(i, j);
+    for (Index j = 0; j < b.cols; ++j)
+      for (Index i = 0; i < b.rows; ++i) values[*slot++] += b(i, j);
     cursor_ = std::size_t(slot - slots_.data());
   }
   /// −1, or the column that Eigen names (else 0) when the matrix is singular.

@@ -145,7 +145,8 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
       e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()),
                             data.loads[std::size_t(p.published)], k);
       Index const first = data.markers[std::size_t(p.published)].first;
-      sink.add(first, first, c.stiffness * k);
+      k *= c.stiffness;
+      sink.add(first, first, k);
     }
   };
   std::apply([&](auto const&... pool) { (stiffen(pool), ...); }, model.body_pools());

@@ -76,6 +76,16 @@ struct HermiteCable {
     bias = row.dot(ed) * slope.dot(rate) * (-2.0) / n2;
   }
 
+  /// ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).
+  static void rotation_hessian(double xi, double l, Vec<double, 8> const& e, Mat<double, 8, 8>& h) {
+    Mat<double, 2, 8> const d = spread(hermite_shape(xi, l).ds);
+    Vec2 const slope = d * e;
+    double const x = slope[0], y = slope[1], n4 = std::pow(slope.squaredNorm(), 2);
+    Mat<double, 2, 2> of_slope;
+    of_slope << 2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y;
+    h = d.transpose() * (of_slope / n4) * d;
+  }
+
   /// Axial strain at five Gauss points; p = r′.
   struct Axial {
     static constexpr int points = 5;

@@ -187,9 +187,17 @@ class Beam {
     out.columns = element_columns;
   }
 
+  /// Jᵀw = Nᵀf + h c with the row h of θ̇ and c = m − y t·f;  ∂/∂e = c ∂h/∂e − y (n·f) h hᵀ.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w,
                       ElementMatrix& k) const {
-    load_stiffness_by_duals(*this, p, q, w, k);
+    Element<double> const x = part<element_columns>(q, first_column(p)), rest = Element<double>::Zero();
+    double angle, bias;
+    Element<double> row;
+    Theory::template rotation<double>(p.xi, l_, x, rest, angle, row, bias);
+    double const c = std::cos(angle), s = std::sin(angle);
+    Theory::rotation_hessian(p.xi, l_, x, k);
+    k *= w.m[2] - p.y * (c * w.f[0] + s * w.f[1]);
+    k -= (p.y * (c * w.f[1] - s * w.f[0])) * row * row.transpose();
   }
 
   /// Strains of group G (in the order of the theory) at `p`, and their stress resultants without damping.

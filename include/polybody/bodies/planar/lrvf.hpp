@@ -41,6 +41,9 @@ struct SimoVuQuoc {
     bias = T(0.0);
   }
 
+  /// ∂²θ/∂e²: none.
+  static void rotation_hessian(double, double, Vec6 const&, Mat<double, 6, 6>& h) { h.setZero(); }
+
   /// Axial, shear and bending strain at the one Gauss point; p = (x′, y′, θ, θ′).
   struct Section {
     static constexpr int points = 1;

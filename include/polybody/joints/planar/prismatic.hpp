@@ -35,6 +35,13 @@ struct Prismatic {
     return {polybody::rows::no_slide_gamma<T>(a.A.col(1), a, b),
             polybody::rows::perpendicular_gamma<T>(a.A.col(1), b.A.col(0), a, b)};
   }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 2> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::no_slide_gradient(a.A.col(1), a, b, lambda[0], k);
+    polybody::rows::perpendicular_gradient(a.A.col(1), b.A.col(0), lambda[1], k);
+    return k;
+  }
 };
 
 static_assert(JointGeometry<Prismatic>);

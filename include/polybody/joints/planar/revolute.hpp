@@ -24,6 +24,10 @@ struct Revolute {
   Vec<T, 2> gamma(Frame<T> const&, Frame<T> const&, double) const {
     return Vec<T, 2>::Zero();
   }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&,
+                                      Vec<double, 2> const&) const {
+    return Mat<double, 12, 12>::Zero();
+  }
 };
 
 static_assert(JointGeometry<Revolute>);

@@ -27,6 +27,12 @@ struct Weld {
     gamma[2] = polybody::rows::perpendicular_gamma<T>(a.A.col(1), b.A.col(0), a, b);
     return gamma;
   }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 3> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::perpendicular_gradient(a.A.col(1), b.A.col(0), lambda[2], k);
+    return k;
+  }
 };
 
 static_assert(JointGeometry<Weld>);

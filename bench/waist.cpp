@@ -1,0 +1,249 @@
+// What do the waists cost? One Newton iteration of a chain of rigid links on pins, through bodies, frames, gaps and
+// sinks, against a loop written by hand for just this chain, in one binary. Both fill the same sparse matrix and the same
+// right-hand side (checked first), both are solved by the same solver. Target: at most 1.2.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <polybody/polybody.hpp>
+
+namespace {
+
+using namespace polybody;
+using Pin = Joint<Revolute, Constraint>;
+using Chain = Model<Bodies<Rigid<>>, Joints<Pin>>;
+
+constexpr double link_length = 0.1, link_mass = 1.0, mass_factor = 1.5, h_gamma = 5e-4, h2_beta = 2.5e-7;
+Mat3 const link_inertia = Vec3(1e-4, 1e-3, 1e-3).asDiagonal();
+Vec3 const gravity(0, 0, -9.81), pin_axis(0, 1, 0);
+
+Chain make_chain(int links) {
+  Chain model{Gravity{gravity}};
+  auto const end = [](double side) { return Vec3(side * 0.5 * link_length, 0, 0); };
+  BodyHandle<Rigid<>> before;
+  for (int i = 0; i < links; ++i) {
+    auto const link = model.add(Rigid<>(link_mass, link_inertia, Placement::at({(i + 0.5) * link_length, 0, 0})), "link");
+    if (i == 0)
+      model.connect(Pin{Revolute{pin_axis}, {}}, model.ground().at({0, 0, 0}), link.at(end(-1)));
+    else
+      model.connect(Pin{Revolute{pin_axis}, {}}, before.at(end(1)), link.at(end(-1)));
+    before = link;
+  }
+  return model;
+}
+
+// A state off rest, so that no term vanishes.
+struct Fixture {
+  Chain model;
+  System<Chain> system;
+  VecX q, v, a, lambda, r, phi, rhs, x;
+  SparseLu solver;
+
+  explicit Fixture(int links)
+      : model(make_chain(links)), system(model), q(model.reference_state().q), v(VecX::Random(model.speeds())),
+        a(VecX::Random(model.speeds())), lambda(VecX::Random(model.rows())), r(VecX::Zero(model.speeds())),
+        phi(VecX::Zero(model.rows())), rhs(VecX::Zero(system.size())), x(rhs) {
+    VecX moved = q;
+    system.plus(q, 0.01 * VecX::Random(model.speeds()), moved);
+    q = moved;
+    PatternSink pattern;
+    system.evaluate(q, v, 0.0);
+    system.tangent({mass_factor, h_gamma, h2_beta}, SecondOrder::omitted, lambda, pattern);
+    solver.analyse(system.size(), pattern.blocks);
+  }
+
+  void residual() {
+    system.evaluate(q, v, 0.0);
+    system.residual(a, lambda, r);
+    system.violation(phi);
+    rhs.head(r.size()) = -r;
+    rhs.tail(phi.size()) = phi / -h2_beta;
+  }
+  void matrix() {
+    solver.begin();
+    system.tangent({mass_factor, h_gamma, h2_beta}, SecondOrder::omitted, lambda, solver);
+  }
+  void solve() {
+    solver.factor();
+    solver.solve(rhs, x);
+  }
+};
+
+// The same by hand: no markers, no gaps, no types; every constant of this chain is known.
+struct Fused {
+  int links;
+  SparseLu::Matrix matrix;
+  std::vector<int> mass_slots, joint_slots;  // 36 a body; up to 4 × 30 a joint
+  VecX rhs;
+  std::vector<Mat3> axes;
+  Eigen::SparseLU<SparseLu::Matrix, Eigen::COLAMDOrdering<int>> lu;
+  VecX x;
+  Mat3 triad = rows::triad_about(pin_axis, "pin");
+
+  Fused(int n, SparseLu::Matrix const& pattern) : links(n), matrix(pattern), rhs(VecX::Zero(pattern.rows())), axes(std::size_t(n)), x(rhs) {
+    auto const slot = [&](int i, int j) {
+      int const *b = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j], *e = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j + 1];
+      return int(std::lower_bound(b, e, i) - matrix.innerIndexPtr());
+    };
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < 6; ++j)
+        for (int i = 0; i < 6; ++i) mass_slots.push_back(slot(6 * k + i, 6 * k + j));
+    for (int k = 0; k < n; ++k)
+      for (int body : {k - 1, k}) {
+        if (body < 0) continue;
+        for (int m = 0; m < 5; ++m)
+          for (int i = 0; i < 6; ++i) {
+            joint_slots.push_back(slot(6 * body + i, 6 * n + 5 * k + m));
+            joint_slots.push_back(slot(6 * n + 5 * k + m, 6 * body + i));
+          }
+      }
+    lu.analyzePattern(matrix);
+  }
+
+  void residual(VecX const& q, VecX const& v, VecX const& a, VecX const& lambda) {
+    int const nv = 6 * links;
+    for (int k = 0; k < links; ++k) {
+      axes[std::size_t(k)] = rotation_matrix<double>(q.segment<4>(7 * k + 3));
+      Vec3 const w = v.segment<3>(6 * k + 3);
+      rhs.segment<3>(6 * k) = link_mass * (gravity - a.segment<3>(6 * k));
+      rhs.segment<3>(6 * k + 3) = -(link_inertia * a.segment<3>(6 * k + 3)) + (link_inertia * w).cross(w);
+    }
+    Vec3 const half(0.5 * link_length, 0, 0);
+    for (int k = 0; k < links; ++k) {
+      Mat3 const& ab = axes[std::size_t(k)];
+      Vec3 const rho_b = ab * -half, f = lambda.segment<3>(5 * k);
+      Vec3 const b3 = ab * triad.col(2), rb = q.segment<3>(7 * k) + rho_b;
+      Vec3 ra = Vec3::Zero(), a1 = triad.col(0), a2 = triad.col(1), rho_a = Vec3::Zero();
+      if (k > 0) {
+        Mat3 const& aa = axes[std::size_t(k - 1)];
+        rho_a = aa * half;
+        ra = q.segment<3>(7 * (k - 1)) + rho_a;
+        a1 = aa * triad.col(0);
+        a2 = aa * triad.col(1);
+      }
+      Vec3 const c = a1.cross(b3) * lambda[5 * k + 3] + a2.cross(b3) * lambda[5 * k + 4];
+      rhs.segment<3>(6 * k) -= f;
+      rhs.segment<3>(6 * k + 3) -= ab.transpose() * (rho_b.cross(f) - c);
+      if (k > 0) {
+        rhs.segment<3>(6 * k - 6) += f;
+        rhs.segment<3>(6 * k - 3) -= axes[std::size_t(k - 1)].transpose() * (c - rho_a.cross(f));
+      }
+      rhs.segment<3>(nv + 5 * k) = (rb - ra) / -h2_beta;
+      rhs[nv + 5 * k + 3] = a1.dot(b3) / -h2_beta;
+      rhs[nv + 5 * k + 4] = a2.dot(b3) / -h2_beta;
+    }
+  }
+
+  void assemble(VecX const& v) {
+    double* const values = matrix.valuePtr();
+    std::fill_n(values, matrix.nonZeros(), 0.0);
+    int const* slot = mass_slots.data();
+    for (int k = 0; k < links; ++k) {
+      Vec3 const w = v.segment<3>(6 * k + 3);
+      Mat3 const d = mass_factor * link_inertia + h_gamma * (skew<double>(w) * link_inertia - skew<double>(link_inertia * w));
+      for (int i = 0; i < 3; ++i) values[slot[7 * i]] = mass_factor * link_mass;
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) values[slot[6 * (3 + j) + 3 + i]] = d(i, j);
+      slot += 36;
+    }
+    slot = joint_slots.data();
+    auto const write = [&](Mat<double, 6, 5> const& gt) {
+      for (int m = 0; m < 5; ++m)
+        for (int i = 0; i < 6; ++i) {
+          values[*slot++] = gt(i, m);
+          values[*slot++] = gt(i, m);
+        }
+    };
+    Vec3 const half(0.5 * link_length, 0, 0);
+    Mat<double, 6, 5> gt;
+    for (int k = 0; k < links; ++k) {
+      Mat3 const& ab = axes[std::size_t(k)];
+      Vec3 const b3 = ab * triad.col(2);
+      Vec3 const a1 = k > 0 ? Vec3(axes[std::size_t(k - 1)] * triad.col(0)) : Vec3(triad.col(0));
+      Vec3 const a2 = k > 0 ? Vec3(axes[std::size_t(k - 1)] * triad.col(1)) : Vec3(triad.col(1));
+      Vec3 const c1 = a1.cross(b3), c2 = a2.cross(b3);
+      gt.setZero();
+      if (k > 0) {
+        Mat3 const& aa = axes[std::size_t(k - 1)];
+        gt.topLeftCorner<3, 3>() = -Mat3::Identity();
+        gt.bottomLeftCorner<3, 3>() = -(skew<double>(half) * aa.transpose());  // -Aᵀ ρ~ = -u~ Aᵀ
+        gt.col(3).tail<3>() = aa.transpose() * c1;
+        gt.col(4).tail<3>() = aa.transpose() * c2;
+        write(gt);
+      }
+      gt.topLeftCorner<3, 3>().setIdentity();
+      gt.bottomLeftCorner<3, 3>() = -(skew<double>(half) * ab.transpose());
+      gt.col(3).tail<3>() = -(ab.transpose() * c1);
+      gt.col(4).tail<3>() = -(ab.transpose() * c2);
+      write(gt);
+    }
+  }
+  void solve() {
+    lu.factorize(matrix);
+    x = lu.solve(rhs);
+  }
+};
+
+// Median of the ratios of interleaved timings.
+template <class F, class G>
+double ratio(F&& ours, G&& theirs, int repeats) {
+  auto const seconds = [](auto&& f) {
+    auto const begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 20; ++i) f();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  std::vector<double> ratios;
+  for (int i = 0; i < repeats; ++i) {
+    double const a = seconds(ours), b = seconds(theirs);
+    ratios.push_back(a / b);
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + repeats / 2, ratios.end());
+  return ratios[std::size_t(repeats / 2)];
+}
+
+int const links = 64;
+Fixture& fixture() {
+  static Fixture f(links);
+  return f;
+}
+Fused& fused() {
+  static Fused f(links, (fixture().residual(), fixture().matrix(), fixture().solver.matrix()));
+  return f;
+}
+
+void waists_residual(benchmark::State& s) { for (auto _ : s) fixture().residual(); }
+void fused_residual(benchmark::State& s) { for (auto _ : s) fused().residual(fixture().q, fixture().v, fixture().a, fixture().lambda); }
+void waists_matrix(benchmark::State& s) { for (auto _ : s) fixture().matrix(); }
+void fused_matrix(benchmark::State& s) { for (auto _ : s) fused().assemble(fixture().v); }
+void waists_solve(benchmark::State& s) { for (auto _ : s) fixture().solve(); }
+BENCHMARK(waists_residual);
+BENCHMARK(fused_residual);
+BENCHMARK(waists_matrix);
+BENCHMARK(fused_matrix);
+BENCHMARK(waists_solve);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Fixture& w = fixture();
+  Fused& f = fused();
+  f.residual(w.q, w.v, w.a, w.lambda);
+  f.assemble(w.v);
+  w.residual();
+  w.matrix();
+  double const off = (w.rhs - f.rhs).cwiseAbs().maxCoeff() / w.rhs.cwiseAbs().maxCoeff();
+  double const off_matrix = (SparseLu::Matrix(w.solver.matrix() - f.matrix)).norm() / f.matrix.norm();
+  std::printf("agreement of the two: right-hand side %.1e, matrix %.1e\n", off, off_matrix);
+  if (!(off < 1e-12 && off_matrix < 1e-12)) return 1;
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  auto const both = [&] { w.residual(); w.matrix(); };
+  auto const both_fused = [&] { f.residual(w.q, w.v, w.a, w.lambda); f.assemble(w.v); };
+  std::printf("\nwaists / hand-fused, %d links\n", links);
+  std::printf("  residual                        %.2f\n", ratio([&] { w.residual(); }, [&] { f.residual(w.q, w.v, w.a, w.lambda); }, 201));
+  std::printf("  matrix                          %.2f\n", ratio([&] { w.matrix(); }, [&] { f.assemble(w.v); }, 201));
+  std::printf("  residual and matrix             %.2f\n", ratio(both, both_fused, 201));
+  std::printf("  whole Newton iteration          %.2f   (target: at most 1.20)\n",
+              ratio([&] { both(); w.solve(); }, [&] { both_fused(); f.solve(); }, 21));
+}

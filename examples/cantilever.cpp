@@ -1,0 +1,163 @@
+// The clamped beam of Chapter 2 under a moment at its tip (Figures 2.9 and 2.10), and the same beam rolled into a full
+// circle under several formulations.
+//   cantilever --case all --out out/cantilever
+#include <CLI/CLI.hpp>
+#include <numbers>
+
+#include "chapter2_plots.hpp"
+
+using namespace chapter2;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+  std::string which = "all";
+  std::string body = "lrvf";
+  Index elements = 10;
+  double step = 5e-3;
+  double density = 7850.0;
+  double until = 20.0;
+  double moment = 30e3;
+  fs::path out = "out/cantilever";
+  bool no_plot = false;
+};
+
+// Figures 2.9 and 2.10: a constant moment on a beam at rest, which therefore swings about the static shape.
+template <class B>
+void tip_moment(Options const& o) {
+  Cantilever<B> beam(bar(low, o.density), o.elements, o.moment);
+  State x = beam.model.reference_state();
+  Figure shapes{.title = "Figure 2.9: 30 kN m at the tip of the clamped beam, t = 0, 1, 2, 3, 4, 20 s", .x_label = "x [m]",
+                .y_label = "y [m]", .equal_axes = true};
+  std::vector<double> const wanted{0.0, 1.0, 2.0, 3.0, 4.0, 20.0};
+  std::size_t next = 0;
+  std::vector<std::vector<double>> columns(5);
+  Progress progress(0.0, o.until, "tip moment");
+  for (State const& now : simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = o.until, .step = o.step})) {
+    Vec3 const tip = position(beam.model, now, beam.beam.at(length));
+    Energy const e = energy(beam.model, now);
+    std::vector<double> const row{now.t, tip[0], tip[1], e.kinetic, e.strain};
+    for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
+    if (next < wanted.size() && now.t >= wanted[next] - 1e-9) {
+      add_snapshot(shapes, beam.model, now, beam.beam, length);
+      if constexpr (std::is_same_v<B, planar::Lrvf>) {
+        MeshDiagnostics const d = mesh_diagnostics(beam.beam.body, coordinates_of(beam.model, now, beam.beam));
+        std::printf("  t = %4.1f s: tip (%.3f, %.3f) on the position mesh, (%.3f, %.3f) on the rotation mesh\n", now.t,
+                    d.position_nodes.back()[0], d.position_nodes.back()[1], d.rotation_nodes.back()[0], d.rotation_nodes.back()[1]);
+      }
+      ++next;
+    }
+    progress.update(now.t);
+  }
+  progress.finish();
+  std::string const suffix = std::is_same_v<B, planar::Lrvf> ? "" : "_" + o.body;
+  write_table(o.out / ("figure_2_9_tip_moment" + suffix + ".csv"),
+              {"t [s]", "tip x [m]", "tip y [m]", "kinetic energy [J]", "strain energy [J]"}, columns);
+  fit(shapes);
+  draw(shapes, o.out / ("figure_2_9_tip_moment" + suffix), !o.no_plot);
+  if constexpr (std::is_same_v<B, planar::Lrvf>) {
+    MeshDiagnostics const d = mesh_diagnostics(beam.beam.body, coordinates_of(beam.model, x, beam.beam));
+    Curve rotation{.label = "rotation mesh: constant in each element", .color = 1}, position{.label = "position mesh: zero", .color = 0},
+        still{.x = {0.0, length}, .y = {o.moment / low.EI, o.moment / low.EI}, .label = "M/EI at rest", .style = "dashed", .color = 2};
+    double const l = length / double(o.elements);
+    for (std::size_t e = 0; e < d.rotation_curvature.size(); ++e)
+      for (double end : {0.0, 1.0}) {
+        rotation.x.push_back((double(e) + end) * l);
+        rotation.y.push_back(d.rotation_curvature[e]);
+        position.x.push_back((double(e) + end) * l);
+        position.y.push_back(d.position_curvature[e]);
+      }
+    write_table(o.out / "figure_2_10_curvature.csv", {"s [m]", "rotation mesh [1/m]", "position mesh [1/m]"},
+                {rotation.x, rotation.y, position.y});
+    draw({.title = "Figure 2.10: curvature of the two meshes at t = " + std::to_string(int(o.until)) + " s", .x_label = "s [m]",
+          .y_label = "curvature [1/m]", .curves = {position, rotation, still}}, o.out / "figure_2_10_curvature", !o.no_plot);
+  }
+}
+
+// M = 2 pi EI/L closes the beam to a circle, exactly [Bernoulli-Euler]. Statics, one formulation.
+template <class B>
+double roll_up(Options const& o, Figure& shapes, std::string const& name, Index elements, int color) {
+  double const full = 2.0 * std::numbers::pi * low.EI / length;
+  Cantilever<B> beam(bar(low, o.density), elements, full);
+  State x = beam.model.reference_state();
+  EquilibriumReport const report = equilibrium(beam.model, x, {.load_steps = 10});
+  Curve c = shape_of(beam.model, x, beam.beam, length, 120);
+  c.label = name;
+  c.color = color;
+  c.style = color == 0 ? "lines" : "dashed";
+  shapes.curves.push_back(c);
+  double const open = position(beam.model, x, beam.beam.at(length)).norm();
+  std::printf("  %-28s %3ld elements: tip %.2e m from the root, %d Newton iterations\n", name.c_str(), long(elements), open, report.iterations);
+  return open;
+}
+
+void roll_up_all(Options const& o) {
+  Figure shapes{.title = "A moment of 2 pi EI/L closes the beam to a circle", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
+  roll_up<planar::Lrvf>(o, shapes, "LRVF", o.elements, 0);
+  roll_up<planar::AncfCable<EngineeringStrain>>(o, shapes, "ANCF, engineering strain", 16, 1);
+  roll_up<planar::AncfCable<GreenStrain>>(o, shapes, "ANCF, Green strain", 16, 2);
+  fit(shapes);
+  draw(shapes, o.out / "roll_up", !o.no_plot);
+}
+
+// The swinging beam under several formulations.
+struct BeamCase {
+  Options const& o;
+
+  template <class F>
+  auto operator()(F const& f) const {
+    using Beam = Cantilever<typename F::BodyType>;
+    using M = typename Beam::Model;
+    Beam beam(bar(low, o.density), o.elements, o.moment);
+    State const start = beam.model.reference_state();
+    auto const tip = beam.beam.at(length);
+    static_cast<void>(f);
+    return Scenario<M>{std::move(beam.model), start, {.until = std::min(o.until, 4.0), .step = o.step},
+                       {{"tip x [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[0]; }},
+                        {"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }}}};
+  }
+};
+
+void comparison(Options const& o) {
+  GeneralizedAlpha const implicit{.rho_inf = 0.8};
+  Comparison const c = compare(
+      BeamCase{o}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
+      Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralizedAlpha>{"ANCF Green", {}, implicit},
+      Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralizedAlpha>{"ANCF engin.", {}, implicit});
+  std::cout << "\nThe clamped beam under the tip moment, three formulations:\n\n" << c << '\n';
+  draw(histories(c, 0, "Tip of the clamped beam under 30 kN m"), o.out / "comparison_tip_x", !o.no_plot);
+  draw(histories(c, 1, "Tip of the clamped beam under 30 kN m"), o.out / "comparison_tip_y", !o.no_plot);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  CLI::App app{"The clamped beam of Chapter 2: Figures 2.9 and 2.10, roll-up to a circle, and a comparison of formulations"};
+  app.add_option("--case", o.which, "what to run")->check(CLI::IsMember({"all", "moment", "roll-up", "compare"}))->capture_default_str();
+  app.add_option("--body", o.body, "formulation of the case 'moment'; only lrvf has two meshes")
+      ->check(CLI::IsMember({"lrvf", "ancf", "ancf-engineering"}))
+      ->capture_default_str();
+  app.add_option("--elements", o.elements, "elements along the beam")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--step", o.step, "time step [s]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--moment", o.moment, "moment at the tip [N m]")->capture_default_str();
+  app.add_option("--density", o.density, "density, not printed in the thesis [kg/m^3]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--out", o.out, "folder for CSV files and pictures")->capture_default_str();
+  app.add_flag("--no-plot", o.no_plot, "write the scripts but draw nothing");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    bool const all = o.which == "all";
+    if (all || o.which == "moment") {
+      if (o.body == "lrvf") tip_moment<planar::Lrvf>(o);
+      if (o.body == "ancf") tip_moment<planar::AncfCable<GreenStrain>>(o);
+      if (o.body == "ancf-engineering") tip_moment<planar::AncfCable<EngineeringStrain>>(o);
+    }
+    if (all || o.which == "roll-up") roll_up_all(o);
+    if (all || o.which == "compare") comparison(o);
+  } catch (Error const& e) {
+    std::cerr << "cantilever: " << e.what() << '\n';
+    return 1;
+  }
+}

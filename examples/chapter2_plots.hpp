@@ -1,0 +1,99 @@
+#pragma once
+// Pictures and tables that the two programs of Chapter 2 share.
+#include "chapter2.hpp"
+
+#include <filesystem>
+#include <iostream>
+
+namespace chapter2 {
+
+// The centre line of any planar body at `samples` points.
+template <class M, class B>
+Curve shape_of(M const& model, State const& x, BodyHandle<B> const& handle, double bar_length, int samples = 60) {
+  Curve c;
+  for (int i = 0; i <= samples; ++i) {
+    Vec3 const r = position(model, x, handle.at(bar_length * i / samples));
+    c.x.push_back(r[0]);
+    c.y.push_back(r[1]);
+  }
+  return c;
+}
+
+// The curve that the rotation field implies.
+template <class M>
+Curve implied_shape_of(M const& model, State const& x, BodyHandle<planar::Lrvf> const& handle) {
+  Curve c;
+  for (Vec2 const& r : implied_curve(handle.body, coordinates_of(model, x, handle), 6)) {
+    c.x.push_back(r[0]);
+    c.y.push_back(r[1]);
+  }
+  return c;
+}
+
+// Adds both meshes of a beam (of any other body its one curve) as a pair of lines; the label only once.
+template <class M, class B>
+void add_snapshot(Figure& figure, M const& model, State const& x, BodyHandle<B> const& handle, double bar_length) {
+  bool const first = figure.curves.empty();
+  Curve position = shape_of(model, x, handle, bar_length);
+  position.color = 0;
+  if constexpr (std::is_same_v<B, planar::Lrvf>) {
+    position.label = first ? "position mesh" : "";
+    Curve rotation = implied_shape_of(model, x, handle);
+    rotation.color = 1;
+    rotation.style = "dashed";
+    rotation.label = first ? "rotation mesh" : "";
+    figure.curves.push_back(position);
+    figure.curves.push_back(rotation);
+  } else {
+    position.label = first ? "centre line" : "";
+    figure.curves.push_back(position);
+  }
+}
+
+// Fits ranges and size of a figure of shapes, so that flat ones are still readable on equal axes.
+inline void fit(Figure& figure) {
+  double lo[2] = {0.0, 0.0}, hi[2] = {0.0, 0.0};
+  for (Curve const& c : figure.curves)
+    for (std::size_t i = 0; i < c.x.size(); ++i) {
+      lo[0] = std::min(lo[0], c.x[i]);
+      hi[0] = std::max(hi[0], c.x[i]);
+      lo[1] = std::min(lo[1], c.y[i]);
+      hi[1] = std::max(hi[1], c.y[i]);
+    }
+  double const margin = 0.5, wide = hi[0] - lo[0] + 2.0 * margin;
+  double const missing = std::max(0.0, 0.35 * wide - (hi[1] - lo[1] + 2.0 * margin));
+  figure.x_range = {lo[0] - margin, hi[0] + margin};
+  figure.y_range = {lo[1] - margin - 0.5 * missing, hi[1] + margin + 0.5 * missing};
+  double const high = (*figure.y_range)[1] - (*figure.y_range)[0];
+  figure.width_px = 1000;
+  figure.height_px = int(std::min(1200.0, 200.0 + 850.0 * high / wide));
+}
+
+// Histories of a run as one CSV file: the columns share their rows.
+inline void write_table(std::filesystem::path const& file, std::vector<std::string> const& heads,
+                        std::vector<std::vector<double>> const& columns) {
+  Csv csv(file, heads);
+  std::vector<double> row(heads.size());
+  for (std::size_t i = 0; i < columns.front().size(); ++i) {
+    for (std::size_t j = 0; j < heads.size(); ++j) row[j] = columns[j][i];
+    csv.row(std::span<double const>(row));
+  }
+  csv.close();
+}
+
+inline void draw(Figure const& figure, std::filesystem::path const& stem, bool plot) {
+  Drawn const drawn = write_figure(figure, stem, plot);
+  std::cout << "  " << stem.string() << (drawn == Drawn::png ? ".png" : ".gp") << '\n';
+}
+
+// One figure of outputs over time, a curve for each formulation.
+inline Figure histories(Comparison const& c, std::size_t output, std::string const& title) {
+  Figure f{.title = title, .x_label = "t [s]", .y_label = c.runs.front().output_names[output]};
+  int color = 0;
+  for (ComparedRun const& run : c.runs)
+    f.curves.push_back({.x = run.times, .y = run.outputs[output], .label = run.name,
+                        .style = color == 0 ? "lines" : "dashed", .color = color++});
+  return f;
+}
+
+}  // namespace chapter2

@@ -1,0 +1,172 @@
+#include <polybody/bodies/planar/ancf_cable.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/flexible_body_laws.hpp"
+
+namespace polybody {
+namespace {
+
+using planar::AncfCable, planar::EngineeringStrain, planar::GreenStrain;
+
+template <class Strain>
+struct CableCase {
+  static Bar bar() {
+    return {.length = 1.3,
+            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0},
+            .placement = Placement::planar(0.4, -0.3, 0.7),
+            .damping = {.axial = 0.01, .bending = 0.03}};
+  }
+  static AncfCable<Strain> body(Bar const& bar) { return AncfCable<Strain>::from(bar, 2); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(GreenCable, BodyLaws, CableCase<GreenStrain>);
+INSTANTIATE_TYPED_TEST_SUITE_P(GreenCable, FlexibleBodyLaws, CableCase<GreenStrain>);
+INSTANTIATE_TYPED_TEST_SUITE_P(EngineeringCable, BodyLaws, CableCase<EngineeringStrain>);
+INSTANTIATE_TYPED_TEST_SUITE_P(EngineeringCable, FlexibleBodyLaws, CableCase<EngineeringStrain>);
+
+int const elements = 3;
+double const l = 1.3 / elements;
+
+template <class Strain>
+AncfCable<Strain> straight() {
+  Bar bar = CableCase<Strain>::bar();
+  bar.placement = {};
+  return AncfCable<Strain>::from(bar, elements);
+}
+
+/// q of a curve r(s) with slope r′(s), each a Vec2.
+template <class R, class Slope>
+VecX curve(R&& r, Slope&& slope) {
+  VecX q(4 * (elements + 1));
+  for (Index i = 0; i <= elements; ++i) q.segment<4>(4 * i) << r(double(i) * l), slope(double(i) * l);
+  return q;
+}
+
+template <class Strain>
+double axial(VecX const& q, double s) {
+  auto const cable = straight<Strain>();
+  return cable.template strains<0>(cable.at(s), view(q))[0];
+}
+template <class Strain>
+double bending(VecX const& q, double s) {
+  auto const cable = straight<Strain>();
+  return cable.template strains<1>(cable.at(s), view(q))[0];
+}
+
+double const places[] = {0.0, 0.1, 0.5, 0.9, 1.3};
+
+TEST(AncfCable, PureStretchIsAxialStrainAlone) {
+  VecX const q = curve([](double s) { return Vec2(1.2 * s, 0); }, [](double) { return Vec2(1.2, 0); });
+  for (double const s : places) {
+    EXPECT_NEAR(axial<GreenStrain>(q, s), 0.5 * (1.2 * 1.2 - 1.0), 1e-14);
+    EXPECT_NEAR(axial<EngineeringStrain>(q, s), 0.2, 1e-14);
+    EXPECT_NEAR(bending<GreenStrain>(q, s), 0.0, 1e-13);
+    EXPECT_NEAR(bending<EngineeringStrain>(q, s), 0.0, 1e-13);
+  }
+}
+
+// The parabola r = (s, k s²/2) is a cubic, so the element holds it exactly: r′ = (1, k s), r″ = (0, k).
+TEST(AncfCable, ParabolaHasItsExactStrains) {
+  double const k = 0.8;
+  VecX const q = curve([](double s) { return Vec2(s, 0.4 * s * s); }, [](double s) { return Vec2(1, 0.8 * s); });
+  for (double const s : places) {
+    double const n = std::hypot(1.0, k * s);
+    EXPECT_NEAR(axial<GreenStrain>(q, s), 0.5 * k * k * s * s, 1e-14);
+    EXPECT_NEAR(axial<EngineeringStrain>(q, s), n - 1.0, 1e-14);
+    EXPECT_NEAR(bending<GreenStrain>(q, s), k / (n * n * n), 1e-13);
+    EXPECT_NEAR(bending<EngineeringStrain>(q, s), k / (n * n), 1e-13);
+  }
+}
+
+// Bending to the other side changes the sign.
+TEST(AncfCable, CurvatureIsPositiveTowardsTheLeft) {
+  VecX const q = curve([](double s) { return Vec2(s, -0.4 * s * s); }, [](double s) { return Vec2(1, -0.8 * s); });
+  EXPECT_NEAR(bending<GreenStrain>(q, 0.0), -0.8, 1e-13);
+  EXPECT_NEAR(bending<EngineeringStrain>(q, 0.0), -0.8, 1e-13);
+}
+
+// The strain energies of the stretched cable: EA/2 ∫ ε² and nothing else.
+TEST(AncfCable, EnergyIsTheIntegralOfItsStrains) {
+  VecX const q = curve([](double s) { return Vec2(1.2 * s, 0); }, [](double) { return Vec2(1.2, 0); });
+  double green = 0.0, engineering = 0.0;
+  for (Index e = 0; e < elements; ++e) {
+    green += straight<GreenStrain>().strain_energy(e, view(q));
+    engineering += straight<EngineeringStrain>().strain_energy(e, view(q));
+  }
+  EXPECT_NEAR(green, 0.5 * 900 * 0.22 * 0.22 * 1.3, 1e-12);
+  EXPECT_NEAR(engineering, 0.5 * 900 * 0.2 * 0.2 * 1.3, 1e-12);
+}
+
+// Five points integrate the squared Green strain, of degree eight, exactly: a finer Gauss rule finds no more.
+// EI is made too small to matter.
+TEST(AncfCable, GreenEnergyIsIntegratedExactly) {
+  Bar bar = CableCase<GreenStrain>::bar();
+  bar.placement = {};
+  bar.constants->EI = 1e-12;
+  auto const cable = AncfCable<>::from(bar, 1);
+  VecX const q = (VecX(8) << 0.1, -0.2, 1.3, 0.4, 0.9, 0.7, 0.5, -0.8).finished();
+  double expected = 0.0;
+  for (GaussPoint const& g : gauss<9>) {
+    double const strain = cable.strains<0>(cable.at(g.xi * 1.3), view(q))[0];
+    expected += g.weight * 1.3 * 0.5 * 900 * strain * strain;
+  }
+  EXPECT_GT(expected, 1.0);
+  EXPECT_NEAR(cable.strain_energy(0, view(q)), expected, 1e-9);
+}
+
+// The consistent mass of cubic shapes, Aρ l/420 [156 22l 54 −13l; … 4l² 13l −3l²; …]  [Przemieniecki 1968, §11.4].
+TEST(AncfCable, MassIsTheConsistentOneOfCubicShapes) {
+  Mat<double, 4, 4> shape;
+  shape << 156, 22 * l, 54, -13 * l,           //
+      22 * l, 4 * l * l, 13 * l, -3 * l * l,   //
+      54, 13 * l, 156, -22 * l,                //
+      -13 * l, -3 * l * l, -22 * l, 4 * l * l;
+  shape *= 2.0 * l / 420.0;
+  Mat<double, 8, 8> m, expected = Mat<double, 8, 8>::Zero();
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) expected(2 * i, 2 * j) = expected(2 * i + 1, 2 * j + 1) = shape(i, j);
+  std::vector<double> const q(16);
+  straight<GreenStrain>().mass(0, q, m);
+  EXPECT_LT((m - expected).norm(), 1e-15);
+}
+
+// Small deflections of one clamped element are those of the classical beam: stiffness 12 EI/l³ against a
+// sideways shift, 4 EI/l against a turn, for both strains.
+template <class Strain>
+void expect_classical_stiffness() {
+  auto const cable = straight<Strain>();
+  std::vector<double> q(16), v(16);
+  cable.reference(q);
+  Mat<double, 8, 8> k;
+  cable.tangent(0, q, v, 1.0, 0.0, k);
+  EXPECT_NEAR(k(5, 5), 12 * 40 / (l * l * l), 1e-9);
+  EXPECT_NEAR(k(7, 7), 4 * 40 / l, 1e-9);
+  EXPECT_NEAR(k(5, 7), -6 * 40 / (l * l), 1e-9);
+  EXPECT_NEAR(k(0, 0) + k(0, 4), 0.0, 1e-9);  // pushing both ends alike costs nothing
+}
+TEST(AncfCable, SmallBendingIsThatOfTheClassicalBeam) {
+  expect_classical_stiffness<GreenStrain>();
+  expect_classical_stiffness<EngineeringStrain>();
+}
+
+// Normal to the centre line: r = r₀ + y (−sin θ, cos θ), θ the angle of r′, whatever its length.
+TEST(AncfCable, PointsOffTheAxisStandOnTheNormal) {
+  auto const cable = straight<GreenStrain>();
+  VecX const q = curve([](double s) { return Vec2(s, 0.4 * s * s); }, [](double s) { return Vec2(1, 0.8 * s); });
+  VecX const v = VecX::Zero(q.size());
+  std::array<double, 48> memory;
+  Published<double> out;
+  out.jacobian = memory.data();
+  cable.publish<double>(cable.at(0.9, -0.1), Mat3::Identity(), view(q), view(v), out);
+  double const angle = std::atan(0.72);
+  EXPECT_LT((out.frame.r - Vec3(0.9 + 0.1 * std::sin(angle), 0.324 - 0.1 * std::cos(angle), 0)).norm(), 1e-14);
+  EXPECT_LT((out.frame.A - exp_so3<double>(Vec3(0, 0, angle))).norm(), 1e-14);
+}
+
+// A cable resists neither shear nor torsion and asks for no such constant.
+TEST(AncfCable, NeedsNoShearStiffness) {
+  EXPECT_NO_THROW((void)AncfCable<>::from(CableCase<GreenStrain>::bar(), 1));
+}
+
+}  // namespace
+}  // namespace polybody

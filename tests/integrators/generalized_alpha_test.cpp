@@ -1,0 +1,152 @@
+#include <polybody/integrators/generalized_alpha.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/joints/planar/prismatic.hpp>
+
+#include "support/integrator_cases.hpp"
+#include "support/integrator_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace {
+
+std::vector<GeneralizedAlpha> every_damping() {
+  return {{.rho_inf = 1.0, .tolerance = 1e-11}, {.rho_inf = 0.8, .tolerance = 1e-11}, {.rho_inf = 0.5, .tolerance = 1e-11}};
+}
+struct OnTheBar {
+  using Model = SwingingBar;
+  static auto integrators() { return every_damping(); }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 32;
+};
+struct OnTheTop {
+  using Model = SlowTop;
+  static auto integrators() { return every_damping(); }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 64;
+};
+struct OnTheSprungBody {
+  using Model = SprungBody;
+  static auto integrators() { return every_damping(); }
+  static constexpr double until = 1.0;
+  static constexpr int steps = 32;
+};
+
+}  // namespace
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(Bar, IntegratorLaws, OnTheBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(Top, IntegratorLaws, OnTheTop);
+INSTANTIATE_TYPED_TEST_SUITE_P(SprungBody, IntegratorLaws, OnTheSprungBody);
+}  // namespace polybody
+
+namespace {
+
+/// A unit mass on a slide, held by a spring of 1 N/m without free length: ω = 1, released from x = 1 at rest.
+struct Oscillator {
+  using Slide = Joint<planar::Prismatic, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Slide>, Forces<SpringDamper>> model;
+  State x;
+
+  Oscillator() {
+    auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(1.0, 0.0)), "mass");
+    auto const home = model.ground().at({0, 0, 0});
+    model.connect(Slide{}, home, mass.at(Vec2(0, 0)), "slide");
+    model.apply(SpringDamper{.stiffness = 1.0, .free_length = 0.0}, home, mass.at(Vec2(0, 0)), "spring");
+    x = model.reference_state();
+  }
+  RunReport run(GeneralizedAlpha const& integrator, double h, int steps) {
+    return simulate(model, x, integrator, {.until = h * steps, .step = h}).run();
+  }
+};
+
+}  // namespace
+
+// CASES I1 [C]: 50 steps of ωh = 0.2 with a₀ = q̈₀.
+TEST(GeneralizedAlpha, GivesThePublishedDigitsOfTheOscillator) {
+  struct {
+    double rho, q, hv;
+  } const published[] = {{1.0, -0.856633663659, 0.103185031140},
+                         {0.9, -0.856840551864, 0.103112687841},
+                         {0.8, -0.857527990868, 0.102860652913},
+                         {0.5, -0.863643772912, 0.100216543917},
+                         {0.0, -0.887774657662, 0.077081882918}};
+  for (auto const& p : published) {
+    Oscillator o;
+    RunReport const report = o.run({.rho_inf = p.rho, .start_correction = false}, 0.2, 50);
+    EXPECT_NEAR(o.x.q[0], p.q, 1e-12) << p.rho;
+    EXPECT_NEAR(0.2 * o.x.v[0], p.hv, 1e-12) << p.rho;
+    EXPECT_EQ(report.factorisations, 1);  // a linear model needs one matrix
+  }
+}
+
+// CASES I1 [A]: for ρ∞ = 1 the phase advances by 2 atan(ωh/2) a step, whatever h.
+TEST(GeneralizedAlpha, WithoutDampingIsTheTrapezoidalRule) {
+  struct {
+    double h, period;
+  } const published[] = {{0.1, 1.00083277850411}, {0.5, 1.02049703761562}, {1.0, 1.07840521614581}};
+  for (auto const& p : published) {
+    int const n = 100;
+    Oscillator o;
+    o.run({.rho_inf = 1.0, .start_correction = false}, p.h, n);
+    double const phase = n * p.h / p.period;
+    EXPECT_NEAR(o.x.q[0], std::cos(phase), 1e-11) << p.h;
+    EXPECT_NEAR(o.x.v[0], -std::sin(phase), 1e-11) << p.h;
+  }
+}
+
+// ρ∞ is the spectral radius for ωh → ∞: a double root −ρ∞, so that |q| falls like n ρ∞ⁿ
+// [Chung & Hulbert 1993].
+TEST(GeneralizedAlpha, DampsTheUnresolvedByItsSpectralRadius) {
+  for (double const rho : {0.9, 0.5, 0.2}) {
+    Oscillator o;
+    double const h = 1e5;
+    System system(o.model);
+    GeneralizedAlpha const integrator{.rho_inf = rho, .start_correction = false};
+    auto workspace = integrator.workspace<DenseLu>(system);
+    integrator.start(system, o.x, h, workspace);
+    for (int i = 0; i < 20; ++i) integrator.step(system, o.x, h, workspace);
+    double const before = o.x.v[0];
+    for (int i = 0; i < 10; ++i) integrator.step(system, o.x, h, workspace);
+    double const per_step = std::pow(std::abs(o.x.v[0] / before), 0.1);
+    EXPECT_NEAR(per_step, rho * std::pow(30.0 / 20.0, 0.1), 0.03 * rho) << rho;
+  }
+}
+
+TEST(GeneralizedAlpha, RefusesWhatItCannotMean) {
+  for (double const rho : {-0.1, 1.0001, std::numeric_limits<double>::quiet_NaN()}) {
+    Oscillator o;
+    EXPECT_TRUE(has(refusal([&] { o.run({.rho_inf = rho}, 0.1, 1); }), "rho_inf must lie in [0, 1]")) << rho;
+  }
+  for (double const tolerance : {0.0, -1e-8, std::numeric_limits<double>::infinity()}) {
+    Oscillator o;
+    EXPECT_TRUE(has(refusal([&] { o.run({.tolerance = tolerance}, 0.1, 1); }), "the tolerance must be positive"));
+  }
+}
+
+TEST(GeneralizedAlpha, RefusesAStepWithoutAStart) {
+  Oscillator o;
+  System system(o.model);
+  GeneralizedAlpha const integrator;
+  auto workspace = integrator.workspace<DenseLu>(system);
+  EXPECT_TRUE(has(refusal([&] { integrator.step(system, o.x, 0.1, workspace); }), "call start before step"));
+}
+
+// The memory of the run stands in the state: a copy goes on exactly as the original does.
+TEST(GeneralizedAlpha, CopyOfAStateGoesOnAsTheOriginal) {
+  SwingingBar bar;
+  System system(bar.model);
+  GeneralizedAlpha const integrator{.tolerance = 1e-12, .newton = {.always_refactor = true}};
+  auto workspace = integrator.workspace<DenseLu>(system);
+  State x = bar.start;
+  integrator.start(system, x, 0.01, workspace);
+  for (int i = 0; i < 10; ++i) integrator.step(system, x, 0.01, workspace);
+  State copy = x;
+  for (int i = 0; i < 10; ++i) integrator.step(system, x, 0.003, workspace);
+  for (int i = 0; i < 10; ++i) integrator.step(system, copy, 0.003, workspace);
+  EXPECT_EQ(copy.q, x.q);
+  EXPECT_EQ(copy.v, x.v);
+  EXPECT_EQ(copy.lambda, x.lambda);
+}

@@ -1,0 +1,36 @@
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/weld.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace polybody;
+
+namespace {
+
+TEST(Joint, IsAGeometryAndAPolicy) {
+  using Soft = Joint<Revolute, Penalty>;
+  static_assert(std::is_same_v<Soft::Geometry, Revolute> && std::is_same_v<Soft::PolicyType, Penalty>);
+  Soft const soft{Revolute{.axis = {0, 1, 0}}, Penalty{.stiffness = 5.0, .damping = 0.1}};
+  EXPECT_EQ(soft.geometry.axis, Vec3(0, 1, 0));
+  EXPECT_EQ(double(soft.policy.stiffness), 5.0);
+}
+
+TEST(Joint, HasTheRowsOfItsGeometryUnderEveryPolicy) {
+  static_assert(Joint<Weld, Constraint>::rows == 6 && Joint<Weld, Penalty>::rows == 6);
+  static_assert(Joint<planar::Revolute, Constraint>::rows == 2);
+}
+
+TEST(Joint, NeedsNoNumbersUnlessItsPolicyDoes) {
+  Joint<Revolute, Constraint> const pin{};
+  EXPECT_EQ(pin.geometry.axis, Vec3(0, 0, 1));
+  static_assert(std::is_default_constructible_v<Joint<Revolute, Constraint>>);
+}
+
+template <class G, class P>
+concept CanJoin = requires { typename Joint<G, P>; };
+static_assert(CanJoin<Revolute, Constraint> && CanJoin<Revolute, Penalty>);
+static_assert(!CanJoin<Constraint, Revolute> && !CanJoin<Revolute, double> && !CanJoin<double, Penalty>);
+
+}  // namespace

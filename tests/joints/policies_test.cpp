@@ -1,0 +1,101 @@
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/revolute.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/differences.hpp"
+#include "support/frames.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace {
+
+double const nan_ = std::numeric_limits<double>::quiet_NaN();
+double const infinite = std::numeric_limits<double>::infinity();
+
+Penalty const penalty{.stiffness = 2000.0, .damping = 30.0};
+
+TEST(Penalty, MultiplierIsSpringPlusDamper) {
+  Vec3 const g(1e-3, -2e-3, 0), rate(0.1, 0, -0.2);
+  EXPECT_LT((penalty.multiplier<3, double>(g, rate) - Vec3(2 + 3, -4, -6)).norm(), 1e-13);
+}
+
+// slope(ck, cd) = ck ∂λ/∂g + cd ∂λ/∂ġ: g seeded with ck, ġ with cd.
+TEST(Penalty, SlopeIsTheDerivativeOfTheMultiplier) {
+  using D = Dual<1>;
+  for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}}) {
+    D const g(1e-3, D::Partials(ck)), rate(-0.2, D::Partials(cd));
+    auto const lambda = penalty.multiplier<3, D>(Vec<D, 3>::Constant(g), Vec<D, 3>::Constant(rate));
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(lambda[i].d[0], penalty.slope<3>(ck, cd)[i], 1e-12);
+  }
+}
+
+TEST(Penalty, ElasticMultiplierIsTheGradientOfThePotential) {
+  Vec3 const g(0.3, -0.2, 0.9);
+  for (int i = 0; i < 3; ++i) {
+    double const slope = slope_at_zero([&](double h) { return penalty.potential<3>(g + Vec3::Unit(i) * h); });
+    EXPECT_NEAR((penalty.multiplier<3, double>(g, Vec3::Zero())[i]), slope, 1e-9);
+  }
+  EXPECT_EQ(penalty.potential<3>(Vec3::Zero()), 0.0);
+}
+
+TEST(Penalty, DamperTakesPowerOut) {
+  Numbers number;
+  for (int k = 0; k < 5; ++k) {
+    Vec3 const rate = number.vec<3>();
+    EXPECT_GT((penalty.multiplier<3, double>(Vec3::Zero(), rate).dot(rate)), 0.0);
+  }
+}
+
+// The rows of coincident points are in world axes, yet a spring along d makes no moment: d × k d = 0.
+TEST(Penalty, ElasticForcesOfAnOpenPinBalanceInMoment) {
+  Numbers number;
+  for (int k = 0; k < 3; ++k) {
+    Frame<double> const a = number.frame(), b = number.frame();
+    Gap<5> const gap = Revolute{}.gap<double>(a, b, 0.0);
+    auto const lambda = penalty.multiplier<5, double>(gap.g, Vec<double, 5>::Zero());
+    Vec6 const wa = gap.Ga.transpose() * lambda, wb = gap.Gb.transpose() * lambda;
+    Vec3 const moment =
+        wa.tail<3>() + a.r.cross(wa.head<3>()) + wb.tail<3>() + b.r.cross(wb.head<3>());
+    EXPECT_GT(wa.norm(), 100.0);
+    EXPECT_LT(moment.norm(), 1e-14 * wa.norm() * 10);
+  }
+}
+
+TEST(Penalty, RefusesNumbersThatCannotBeMeantByName) {
+  for (double const k : {0.0, -1.0, nan_, infinite}) {
+    std::string const said = refusal([&] { Penalty{.stiffness = k, .damping = 0.0}.check("\"hinge\""); });
+    EXPECT_TRUE(has(said, "\"hinge\": the penalty stiffness must be positive")) << k;
+  }
+  for (double const c : {-1.0, nan_, infinite}) {
+    std::string const said = refusal([&] { Penalty{.stiffness = 1.0, .damping = c}.check("\"hinge\""); });
+    EXPECT_TRUE(has(said, "\"hinge\": the penalty damping must be zero or positive")) << c;
+  }
+  EXPECT_NO_THROW((Penalty{.stiffness = 1.0, .damping = 0.0}.check("hinge")));
+}
+
+// --- the concepts: exactly one kind ---------------------------------------------------------------------------
+
+struct Neither {};
+struct Both : Penalty {
+  static constexpr bool adds_rows = true;
+};
+struct RowsDenied {
+  static constexpr bool adds_rows = false;
+};
+struct NoPotential {
+  void check(std::string const&) const {}
+  template <int m, StateScalar T>
+  Vec<T, m> multiplier(Vec<T, m> const& g, Vec<T, m> const&) const { return g; }
+  template <int m>
+  Vec<double, m> slope(double, double) const { return {}; }
+};
+static_assert(Policy<Constraint> && AddsRows<Constraint> && !AddsForce<Constraint>);
+static_assert(Policy<Penalty> && AddsForce<Penalty> && !AddsRows<Penalty>);
+static_assert(!Policy<Neither> && !Policy<Both> && !Policy<RowsDenied> && !Policy<NoPotential> && !Policy<int>);
+static_assert(AddsRows<Both> && AddsForce<Both>);
+static_assert(!std::is_default_constructible_v<Penalty>);  // its numbers decide physics
+
+}  // namespace

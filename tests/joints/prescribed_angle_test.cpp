@@ -1,0 +1,88 @@
+#include <polybody/joints/prescribed_angle.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace {
+
+using Drive = PrescribedAngle<SmoothRamp>;
+Drive const drive{.law = {.target = 1.1, .duration = 4.0}};
+
+struct PlanarDriveCase {
+  static constexpr bool planar = true;
+  static constexpr int world_rows = 0;
+  static Drive geometry() { return drive; }
+  static Mate mate(Numbers& number, double t) {
+    Mate mate{.d = Vec3(number(), number(), 0.0),
+              .R = exp_so3<double>(Vec3(0, 0, drive.law(t).value)),
+              .freedoms = MatX::Zero(6, 2)};
+    mate.freedoms.topRows<2>().setIdentity();
+    return mate;
+  }
+};
+
+struct DriveCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static Drive geometry() { return drive; }
+  static Mate mate(Numbers& number, double t) {
+    Mate mate = PlanarDriveCase::mate(number, t);
+    mate.d = number.vec<3>();
+    mate.freedoms = Mat<double, 6, 5>::Identity();  // all but the turn about the third axis
+    return mate;
+  }
+};
+
+Frame<double> turned(double angle) { return {.A = exp_so3<double>(Vec3(0, 0, angle))}; }
+
+struct Steady {
+  double speed = 1.0;
+  Motion operator()(double t) const { return {speed * t, speed, 0.0}; }
+};
+
+// The angle is wrapped, so a drive that has turned many times is still closed, and opens by what it lacks.
+TEST(PrescribedAngle, HoldsBeyondManyTurns) {
+  PrescribedAngle<Steady> const steady{};
+  for (double const t : {0.5, 3.1, 3.2, 40.0, -17.0, 1000.0}) {
+    EXPECT_NEAR(steady.gap<double>(turned(0.3), turned(0.3 + t), t).g[0], 0.0, 1e-12) << t;
+    EXPECT_NEAR(steady.gap<double>(turned(0.3), turned(0.5 + t), t).g[0], 0.2, 1e-12) << t;
+  }
+}
+
+TEST(PrescribedAngle, MeasuresTheTurnAboutTheThirdAxis) {
+  for (double const angle : {-3.0, -1e-8, 1e-4, 1.0, 3.0})
+    EXPECT_NEAR(PrescribedAngle<Constant>{.law = {.value = 0.0}}.gap<double>(turned(1.0), turned(1.0 + angle), 0.0).g[0],
+                angle, 1e-15);
+}
+
+// ġ = a₃ · (ω_b − ω_a) − ψ̇ while b₁ stays in the plane of a₁, a₂.
+TEST(PrescribedAngle, RateIsTheRelativeAngularVelocityLessTheDrives) {
+  PrescribedAngle<Steady> const steady{.law = {.speed = 2.0}};
+  Gap<1> const gap = steady.gap<double>(turned(0.4), turned(1.7), 0.3);
+  EXPECT_LT((gap.Gb.tail<3>() - Vec3(0, 0, 1).transpose()).norm(), 1e-15);
+  EXPECT_LT((gap.Ga.tail<3>() + Vec3(0, 0, 1).transpose()).norm(), 1e-15);
+  EXPECT_EQ(gap.rate[0], -2.0);
+}
+
+TEST(PrescribedAngle, TellsTheCornersOfItsLaw) {
+  PrescribedAngle<Ramp> const ramp{.law = {.target = 1.0, .duration = 2.0, .start = 0.5}};
+  EXPECT_EQ(ramp.corners(), (std::vector{0.5, 2.5}));
+  EXPECT_TRUE(drive.corners().empty());
+}
+
+TEST(PrescribedAngle, RefusesAnAxisThatIsNotAUnitVector) {
+  Drive lame = drive;
+  lame.axis = {0, 0, 0};
+  EXPECT_TRUE(has(refusal([&] { (void)lame.triad(); }), "PrescribedAngle: the axis must be a unit vector"));
+}
+
+}  // namespace
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(PrescribedAngle, JointLaws, DriveCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrescribedAngle, JointLaws, PlanarDriveCase);
+}  // namespace polybody

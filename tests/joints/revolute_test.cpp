@@ -1,0 +1,56 @@
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/revolute.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace {
+
+struct RevoluteCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 3;
+  static Revolute geometry() { return {}; }
+  static Mate mate(Numbers& number, double) {
+    Mate mate{.R = exp_so3<double>(Vec3(0, 0, number(3.0))), .freedoms = MatX::Zero(6, 1)};
+    mate.freedoms(5, 0) = 1.0;
+    return mate;
+  }
+};
+
+struct PlanarRevoluteCase {
+  static constexpr bool planar = true;
+  static constexpr int world_rows = 2;
+  static planar::Revolute geometry() { return {}; }
+  static Mate mate(Numbers& number, double t) { return RevoluteCase::mate(number, t); }
+};
+
+TEST(Revolute, TurnsAboutItsAxis) {
+  Vec3 const axis = Vec3(2, -1, 2) / 3.0;
+  Mat3 const e = Revolute{.axis = axis}.triad();
+  EXPECT_LT((e.transpose() * e - Mat3::Identity()).norm(), 1e-15);
+  EXPECT_EQ(e.col(2), axis);
+}
+
+TEST(Revolute, RefusesAnAxisThatIsNotAUnitVector) {
+  for (Vec3 const& axis : {Vec3(0, 0, 0), Vec3(0, 0, 1.001), Vec3(1, 1, 0)})
+    EXPECT_TRUE(has(refusal([&] { (void)Revolute{.axis = axis}.triad(); }), "Revolute: the axis must be a unit vector"));
+  EXPECT_TRUE(has(refusal([] { (void)Revolute{.axis = {0, NAN, 1}}.triad(); }), "Revolute: the axis must be finite"));
+}
+
+// A pin closed the wrong way round has no gap either: b₃ = −a₃.
+TEST(Revolute, TakesNoAccountOfWhichWayTheAxisPoints) {
+  Frame<double> const a;
+  Frame<double> const b{.A = exp_so3<double>(Vec3(std::numbers::pi, 0, 0))};
+  EXPECT_LT(Revolute{}.gap<double>(a, b, 0.0).g.norm(), 1e-15);
+}
+
+}  // namespace
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(Revolute, JointLaws, RevoluteCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarRevolute, JointLaws, PlanarRevoluteCase);
+}  // namespace polybody

@@ -1,0 +1,95 @@
+#include <polybody/joints/rows.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/frames.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace {
+
+constexpr double untouched = 7.0;
+
+Gap<6> full() {
+  Gap<6> gap;
+  gap.g.setConstant(untouched);
+  gap.Ga.setConstant(untouched);
+  gap.Gb.setConstant(untouched);
+  return gap;
+}
+
+// Rows [first, first + n) of a gap of six are written, the others left alone.
+void expect_only(Gap<6> const& gap, int first, int n) {
+  for (int i = 0; i < 6; ++i) {
+    bool const inside = i >= first && i < first + n;
+    EXPECT_EQ(gap.g[i] == untouched && gap.Ga.row(i).isConstant(untouched) && gap.Gb.row(i).isConstant(untouched),
+              !inside)
+        << "row " << i;
+  }
+}
+
+TEST(Rows, EachIsWrittenWhereItIsAskedFor) {
+  Numbers number;
+  Frame<double> const a = number.frame(), b = number.frame();
+  Gap<6> together = full(), square = full(), slide = full(), parallel = full();
+  rows::coincident(a, b, together, 2);
+  rows::perpendicular<6, double>(a.A.col(0), b.A.col(1), square, 4);
+  rows::no_slide<6, double>(a.A.col(2), a, b, slide, 5);
+  rows::parallel(a, b, parallel, 1);
+  expect_only(together, 2, 3);
+  expect_only(square, 4, 1);
+  expect_only(slide, 5, 1);
+  expect_only(parallel, 1, 3);
+}
+
+TEST(Rows, GapsAreTheirFormulas) {
+  Numbers number;
+  Frame<double> const a = number.frame(), b = number.frame();
+  Gap<6> gap;
+  rows::coincident(a, b, gap);
+  EXPECT_EQ(gap.g.head<3>(), b.r - a.r);
+  rows::parallel(a, b, gap, 3);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(gap.g[3 + i], a.A.col(i).dot(b.A.col((i + 1) % 3)), 1e-15);
+  rows::no_slide<6, double>(a.A.col(2), a, b, gap, 0);
+  EXPECT_NEAR(gap.g[0], a.A.col(2).dot(b.r - a.r), 1e-15);
+}
+
+// u turns with ω_a, w with ω_b about one axis: g = cos(β + (ω_b − ω_a) t), so g̈ = −(ω_b − ω_a)² cos β.
+TEST(Rows, PerpendicularGammaOfTwoTurningAxes) {
+  double const beta = 0.7;
+  Frame<double> const a{.w = {0, 0, 0.4}}, b{.w = {0, 0, -1.1}};
+  EXPECT_NEAR((rows::perpendicular_gamma<double>(Vec3(1, 0, 0), Vec3(std::cos(beta), std::sin(beta), 0), a, b)),
+              -1.5 * 1.5 * std::cos(beta), 1e-15);
+}
+
+// a turns with ω about z, b leaves along world x with speed s from (x, 0, 0):
+// g = −sin(ωt) (x + s t) for u = a₂, so g̈ = −2 ω s (Coriolis), and −ω² x for u = a₁ (centripetal).
+TEST(Rows, NoSlideGammaOfARadialMotion) {
+  double const omega = 0.7, s = 1.3, x = 2.0;
+  Frame<double> const a{.w = {0, 0, omega}}, b{.r = {x, 0, 0}, .v = {s, 0, 0}};
+  EXPECT_NEAR((rows::no_slide_gamma<double>(Vec3(0, 1, 0), a, b)), -2.0 * omega * s, 1e-15);
+  EXPECT_NEAR((rows::no_slide_gamma<double>(Vec3(1, 0, 0), a, b)), -omega * omega * x, 1e-15);
+}
+
+TEST(TriadAbout, IsRightHandedWithTheAxisThird) {
+  Numbers number;
+  for (Vec3 const& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(Vec3(1, 1, 1).normalized()),
+                           Vec3(Vec3(1e-9, 1, 0).normalized()), Vec3(number.vec<3>().normalized())}) {
+    Mat3 const e = rows::triad_about(axis, "pin");
+    EXPECT_LT((e.transpose() * e - Mat3::Identity()).norm(), 1e-14);
+    EXPECT_GT(e.determinant(), 0.0);
+    EXPECT_EQ(e.col(2), axis);
+  }
+}
+
+TEST(TriadAbout, RefusesWhatIsNoUnitVector) {
+  double const nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  for (Vec3 const& axis : {Vec3(0, 0, 0), Vec3(0, 0, 2), Vec3(0, 1 + 1e-8, 0)})
+    EXPECT_TRUE(has(refusal([&] { (void)rows::triad_about(axis, "pin"); }), "pin must be a unit vector"));
+  for (Vec3 const& axis : {Vec3(nan, 0, 1), Vec3(0, 0, infinite)})
+    EXPECT_TRUE(has(refusal([&] { (void)rows::triad_about(axis, "pin"); }), "pin must be finite"));
+  EXPECT_NO_THROW((void)rows::triad_about(Vec3(0, 1 + 1e-10, 0), "pin"));  // rounding is forgiven
+}
+
+}  // namespace

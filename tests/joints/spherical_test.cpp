@@ -1,0 +1,33 @@
+#include <polybody/joints/spherical.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+
+using namespace polybody;
+
+namespace {
+
+struct SphericalCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 3;
+  static Spherical geometry() { return {}; }
+  static Mate mate(Numbers& number, double) {
+    Mate mate{.R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 3)};
+    mate.freedoms.bottomRows<3>().setIdentity();
+    return mate;
+  }
+};
+
+TEST(Spherical, GapLeadsFromTheFirstPointToTheSecond) {
+  Frame<double> a, b;
+  a.r = {1, 2, 3};
+  b.r = {1.5, 1, 3};
+  EXPECT_EQ(Spherical{}.gap<double>(a, b, 0.0).g, Vec3(0.5, -1, 0));
+}
+
+}  // namespace
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(Spherical, JointLaws, SphericalCase);
+}  // namespace polybody

@@ -1,0 +1,42 @@
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/weld.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+
+using namespace polybody;
+
+namespace {
+
+struct WeldCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 3;
+  static Weld geometry() { return {}; }
+  static Mate mate(Numbers&, double) { return {.freedoms = MatX::Zero(6, 0)}; }
+};
+
+struct PlanarWeldCase {
+  static constexpr bool planar = true;
+  static constexpr int world_rows = 2;
+  static planar::Weld geometry() { return {}; }
+  static Mate mate(Numbers& number, double t) { return WeldCase::mate(number, t); }
+};
+
+// For a small turn φ of b the rows a₁·b₂, a₂·b₃, a₃·b₁ are −φ₃, −φ₁, −φ₂ in a's axes.
+TEST(Weld, RotationalRowsMeasureTheTurn) {
+  Vec3 const phi = Vec3(1, -2, 3) * 1e-7;
+  Frame<double> const a{.A = exp_so3<double>(Vec3(0.3, 1, -2))};
+  Frame<double> const b{.A = a.A * exp_so3<double>(phi)};
+  EXPECT_LT((Weld{}.gap<double>(a, b, 0.0).g.tail<3>() + Vec3(phi[2], phi[0], phi[1])).norm(), 1e-12);
+  Frame<double> const c{.A = exp_so3<double>(Vec3(0, 0, 0.7))};
+  Frame<double> const d{.A = exp_so3<double>(Vec3(0, 0, 0.7 + 1e-7))};
+  EXPECT_NEAR((planar::Weld{}.gap<double>(c, d, 0.0).g[2]), 1e-7, 1e-15);
+}
+
+}  // namespace
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(Weld, JointLaws, WeldCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarWeld, JointLaws, PlanarWeldCase);
+}  // namespace polybody

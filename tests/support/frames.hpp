@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// Frames that look random and are the same in every run, and how frames move.
+
+#include <polybody/kinematics/frame.hpp>
+#include <random>
+
+namespace polybody {
+
+/// Numbers in [−size, size].
+class Numbers {
+ public:
+  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}
+
+  double operator()(double size = 1.0) { return size * (double(generator_()) / 2147483648.0 - 1.0); }
+  template <int n>
+  Vec<double, n> vec(double size = 1.0) {
+    return Vec<double, n>::NullaryExpr([&](Index) { return (*this)(size); });
+  }
+  VecX vector(Index n, double size = 1.0) {
+    return VecX::NullaryExpr(n, [&](Index) { return (*this)(size); });
+  }
+  /// [δr; δφ] or [ṙ; ω]; in the plane only (x, y) and about z.
+  Vec6 motion(bool planar, double size = 1.0) {
+    Vec6 x = vec<6>(size);
+    if (planar) x[2] = x[3] = x[4] = 0.0;
+    return x;
+  }
+  /// Anywhere, turned anyhow, moving.
+  Frame<double> frame(bool planar = false) {
+    Vec6 const place = motion(planar, 2.0), twist = motion(planar);
+    return {.r = place.head<3>(), .A = exp_so3<double>(place.tail<3>()), .v = twist.head<3>(), .w = twist.tail<3>()};
+  }
+
+ private:
+  std::mt19937 generator_;
+};
+
+/// r + δr, exp(φ̃) A: the frame after a motion [δr; φ] in world axes; its twist stays.
+template <StateScalar T>
+Frame<T> moved(Frame<double> const& f, Vec<T, 6> const& motion) {
+  Vec<T, 3> const phi = motion.template tail<3>();
+  return {.r = f.r.cast<T>() + motion.template head<3>(),
+          .A = exp_so3<T>(phi) * f.A.cast<T>(),
+          .v = f.v.cast<T>(),
+          .w = f.w.cast<T>()};
+}
+
+/// The frame after its twist has acted for a time without acceleration.
+template <StateScalar T>
+Frame<T> later(Frame<double> const& f, T const& time) {
+  Vec6 twist;
+  twist << f.v, f.w;
+  return moved<T>(f, twist.cast<T>() * time);
+}
+
+/// The frame carried along by a rigid motion of the world: turned by `turn` about the origin, then shifted.
+inline Frame<double> carried(Frame<double> const& f, Mat3 const& turn, Vec3 const& shift) {
+  return {.r = turn * f.r + shift, .A = turn * f.A, .v = turn * f.v, .w = turn * f.w};
+}
+
+}  // namespace polybody

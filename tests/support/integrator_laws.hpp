@@ -1,0 +1,157 @@
+#pragma once
+/// \file
+/// What every integrator with a fixed step owes. A case names the integrator, a conservative model and a run:
+///
+///     struct Rk4OnTheTop {
+///       using Model = TopModel;                                  // .model, and .start of type State
+///       static std::vector<RungeKutta4<Projection>> integrators();  // that differ in options only
+///       static constexpr double until = 0.5;                     // [s]
+///       static constexpr int steps = 32;                         // of the coarsest run
+///     };
+///     INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnTheTop, IntegratorLaws, Rk4OnTheTop);
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+
+namespace polybody {
+
+/// log₂ of the ratio of neighbours: the measured order of errors at h, h/2, h/4, …
+inline std::vector<double> slopes(std::vector<double> const& errors) {
+  std::vector<double> slope;
+  for (std::size_t i = 1; i < errors.size(); ++i) slope.push_back(std::log2(errors[i - 1] / errors[i]));
+  return slope;
+}
+
+template <class Case>
+struct IntegratorLaws : testing::Test {
+  using Integrator = typename decltype(Case::integrators())::value_type;
+  static constexpr double slack = 0.1;  ///< of a measured order
+
+  typename Case::Model setup;
+
+  struct Outcome {
+    State x;
+    double energy_error = 0.0;  ///< largest |E − E(0)| on the way
+  };
+  Outcome run(Integrator const& integrator, int steps) const {
+    Outcome out{setup.start};
+    double const start = energy(setup.model, setup.start).total();
+    auto simulation = simulate(setup.model, out.x, integrator, {.until = Case::until, .step = Case::until / steps});
+    for (State const& now : simulation)
+      out.energy_error = std::max(out.energy_error, std::abs(energy(setup.model, now).total() - start));
+    EXPECT_EQ(simulation.report().steps, steps);
+    return out;
+  }
+  /// The runs at steps, 2 steps, 4 steps, 8 steps.
+  std::vector<Outcome> refined(Integrator const& integrator) const {
+    std::vector<Outcome> runs;
+    for (int k = 1; k <= 8; k *= 2) runs.push_back(run(integrator, Case::steps * k));
+    return runs;
+  }
+};
+
+TYPED_TEST_SUITE_P(IntegratorLaws);
+
+// Each part of the state: differences of neighbouring refinements fall by 2^order.
+TYPED_TEST_P(IntegratorLaws, StateConvergesAtTheDeclaredOrder) {
+  std::pair<char const*, VecX State::*> const parts[] = {
+      {"q", &State::q}, {"v", &State::v}, {"a", &State::a}, {"lambda", &State::lambda}};
+  for (auto const& integrator : TypeParam::integrators()) {
+    auto const runs = this->refined(integrator);
+    for (auto const& [name, part] : parts) {
+      if ((runs[0].x.*part).size() == 0) continue;
+      std::vector<double> differences;
+      for (std::size_t i = 1; i < runs.size(); ++i)
+        differences.push_back((runs[i].x.*part - runs[i - 1].x.*part).norm());
+      EXPECT_GT(differences.back(), 1e-12) << name << ": too small to tell";
+      double const order = slopes(differences).back();
+      EXPECT_GT(order, integrator.order - this->slack) << name << ' ' << testing::PrintToString(differences);
+    }
+  }
+}
+
+TYPED_TEST_P(IntegratorLaws, EnergyErrorFallsAtTheDeclaredOrder) {
+  for (auto const& integrator : TypeParam::integrators()) {
+    std::vector<double> errors;
+    for (auto const& outcome : this->refined(integrator)) errors.push_back(outcome.energy_error);
+    EXPECT_GT(errors.back(), 1e-13) << "too small to tell";
+    EXPECT_GT(slopes(errors).back(), integrator.order - this->slack) << testing::PrintToString(errors);
+  }
+}
+
+TYPED_TEST_P(IntegratorLaws, RowsHoldAtTheEnd) {
+  for (auto const& integrator : TypeParam::integrators()) {
+    auto const outcome = this->run(integrator, TypeParam::steps);
+    System system(this->setup.model);
+    Violation const open = violation(system, outcome.x);
+    EXPECT_LT(open.position, 1e-10);
+    // A step in the form of index 3 keeps the rows of the positions only.
+    if constexpr (!std::is_same_v<typename TestFixture::Integrator, GeneralizedAlpha>) {
+      EXPECT_LT(open.velocity, 1e-10);
+      EXPECT_LT(open.acceleration, 1e-8);
+    }
+  }
+}
+
+TYPED_TEST_P(IntegratorLaws, StepReportsWhatItTook) {
+  for (auto const& integrator : TypeParam::integrators()) {
+    State x = this->setup.start;
+    System system(this->setup.model);
+    auto workspace = integrator.template workspace<AutoLu>(system);
+    double const h = TypeParam::until / TypeParam::steps;
+    integrator.start(system, x, h, workspace);
+    EXPECT_EQ(x.q, this->setup.start.q);
+    EXPECT_EQ(x.v, this->setup.start.v);
+    StepReport const report = integrator.step(system, x, h, workspace);
+    EXPECT_EQ(report.taken, h);
+    EXPECT_EQ(report.next, h);
+    EXPECT_EQ(x.t, this->setup.start.t + h);
+    EXPECT_GT(report.evaluations, 0);
+    EXPECT_EQ(report.rejected, 0);
+    EXPECT_NE(x.q, this->setup.start.q);
+  }
+}
+
+TYPED_TEST_P(IntegratorLaws, RunsRepeatToTheLastBit) {
+  for (auto const& integrator : TypeParam::integrators()) {
+    State const a = this->run(integrator, TypeParam::steps).x, b = this->run(integrator, TypeParam::steps).x;
+    EXPECT_EQ(a.q, b.q);
+    EXPECT_EQ(a.v, b.v);
+    EXPECT_EQ(a.lambda, b.lambda);
+  }
+}
+
+// Speeds whose squares overflow: no step can be taken.
+TYPED_TEST_P(IntegratorLaws, FailedStepLeavesTheStateAsItWas) {
+  for (auto const& integrator : TypeParam::integrators()) {
+    State x = this->setup.start;
+    System system(this->setup.model);
+    auto workspace = integrator.template workspace<AutoLu>(system);
+    double const h = TypeParam::until / TypeParam::steps;
+    integrator.start(system, x, h, workspace);
+    State const sound = x;
+    x.v.setConstant(1e200);
+    State const before = x;
+    EXPECT_THROW(integrator.step(system, x, h, workspace), Error);
+    EXPECT_EQ(x.q, before.q);
+    EXPECT_EQ(x.v, before.v);
+    EXPECT_EQ(x.a, before.a);
+    EXPECT_EQ(x.lambda, before.lambda);
+    EXPECT_EQ(x.memory, before.memory);
+    EXPECT_EQ(x.t, before.t);
+    // The workspace serves on.
+    x = sound;
+    EXPECT_NO_THROW(integrator.step(system, x, h, workspace));
+    EXPECT_GT(x.t, sound.t);
+  }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(IntegratorLaws, StateConvergesAtTheDeclaredOrder,
+                            EnergyErrorFallsAtTheDeclaredOrder, RowsHoldAtTheEnd, StepReportsWhatItTook,
+                            RunsRepeatToTheLastBit, FailedStepLeavesTheStateAsItWas);
+
+}  // namespace polybody
