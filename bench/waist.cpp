@@ -21,13 +21,13 @@ Vec3 const gravity(0, 0, -9.81), pin_axis(0, 1, 0);
 Chain make_chain(int links) {
   Chain model{Gravity{gravity}};
   auto const end = [](double side) { return Vec3(side * 0.5 * link_length, 0, 0); };
-  BodyHandle<Rigid<>> before;
+  std::optional<BodyHandle<Rigid<>>> before;
   for (int i = 0; i < links; ++i) {
     auto const link = model.add(Rigid<>(link_mass, link_inertia, Placement::at({(i + 0.5) * link_length, 0, 0})), "link");
     if (i == 0)
       model.connect(Pin{Revolute{pin_axis}, {}}, model.ground().at({0, 0, 0}), link.at(end(-1)));
     else
-      model.connect(Pin{Revolute{pin_axis}, {}}, before.at(end(1)), link.at(end(-1)));
+      model.connect(Pin{Revolute{pin_axis}, {}}, before->at(end(1)), link.at(end(-1)));
     before = link;
   }
   return model;

@@ -56,6 +56,15 @@ TEST(Rigid, BarHasTheInertiaOfACuboid) {
   EXPECT_LT((Rigid<>::from(bar).inertia() - Mat3(expected.asDiagonal())).norm(), 1e-13);
 }
 
+// Iρ about y is that about z unless given.
+TEST(Rigid, BarOfOneRotaryInertiaIsRound) {
+  Bar bar = RigidCase::bar();
+  bar.constants->rotary_inertia_y.reset();
+  double const l = 1.3, lateral = 2.0 * l * l * l / 12.0 + 0.05 * l;
+  Mat3 const expected = Vec3(2 * 0.05 * l, lateral, lateral).asDiagonal();
+  EXPECT_LT((Rigid<>::from(bar).inertia() - expected).norm(), 1e-15);
+}
+
 TEST(Rigid, SpinningBarHasItsKineticEnergy) {
   Bar const bar{.length = 3.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 2.0}};
   Rigid<> const rod = Rigid<>::from(bar);

@@ -15,19 +15,19 @@ namespace {
 std::vector<GeneralizedAlpha> every_damping() {
   return {{.rho_inf = 1.0, .tolerance = 1e-11}, {.rho_inf = 0.8, .tolerance = 1e-11}, {.rho_inf = 0.5, .tolerance = 1e-11}};
 }
-struct OnTheBar {
+struct GeneralizedAlphaOnBar {
   using Model = SwingingBar;
   static auto integrators() { return every_damping(); }
   static constexpr double until = 0.5;
   static constexpr int steps = 32;
 };
-struct OnTheTop {
+struct GeneralizedAlphaOnTop {
   using Model = SlowTop;
   static auto integrators() { return every_damping(); }
   static constexpr double until = 0.5;
   static constexpr int steps = 64;
 };
-struct OnTheSprungBody {
+struct GeneralizedAlphaOnSprungBody {
   using Model = SprungBody;
   static auto integrators() { return every_damping(); }
   static constexpr double until = 1.0;
@@ -37,9 +37,9 @@ struct OnTheSprungBody {
 }  // namespace
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Bar, IntegratorLaws, OnTheBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(Top, IntegratorLaws, OnTheTop);
-INSTANTIATE_TYPED_TEST_SUITE_P(SprungBody, IntegratorLaws, OnTheSprungBody);
+INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnBar, IntegratorLaws, GeneralizedAlphaOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnTop, IntegratorLaws, GeneralizedAlphaOnTop);
+INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnSprungBody, IntegratorLaws, GeneralizedAlphaOnSprungBody);
 }  // namespace polybody
 
 namespace {

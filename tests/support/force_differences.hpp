@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <polybody/forces/force_element.hpp>
 
 #include "support/differences.hpp"
@@ -20,16 +21,19 @@ template <ForceElement F>
 MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames, double t,
                              double ck, double cd) {
   MatX gradient(6 * F::markers, 6 * F::markers);
+  double const step = 1e-3 / std::max({1.0, ck, cd});
   for (Index j = 0; j < gradient.cols(); ++j)
-    gradient.col(j) = slope_at_zero([&](double h) {
-      auto shifted = frames;
-      Frame<double>& f = shifted[std::size_t(j / 6)];
-      Vec6 const unit = Vec6::Unit(j % 6);
-      f = moved<double>(f, unit * (ck * h));
-      f.v += unit.head<3>() * (cd * h);
-      f.w += unit.tail<3>() * (cd * h);
-      return stacked_wrenches(force, shifted, t);
-    });
+    gradient.col(j) = slope_at_zero(
+        [&](double h) {
+          auto shifted = frames;
+          Frame<double>& f = shifted[std::size_t(j / 6)];
+          Vec6 const unit = Vec6::Unit(j % 6);
+          f = moved<double>(f, unit * (ck * h));
+          f.v += unit.head<3>() * (cd * h);
+          f.w += unit.tail<3>() * (cd * h);
+          return stacked_wrenches(force, shifted, t);
+        },
+        step);
   return gradient;
 }
 

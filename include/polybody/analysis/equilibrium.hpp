@@ -40,6 +40,7 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
     Solver& solver;
     State& trial;
     double tolerance;
+    double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
     Index nv = system.speeds(), rows = system.rows(), bad = -1;
     VecX r = VecX::Zero(nv), phi = VecX::Zero(rows), rhs = VecX::Zero(nv + rows), y = rhs, dq = r,
          q = trial.q;
@@ -60,7 +61,13 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
     double solve() {
       solver.solve(rhs, y);
       dq = y.head(nv);
-      return dq.cwiseAbs().maxCoeff() / (tolerance * (1.0 + trial.q.cwiseAbs().maxCoeff()));
+      Index largest = 0;
+      double const step = dq.cwiseAbs().maxCoeff(&largest), size = trial.q.cwiseAbs().maxCoeff();
+      if (!(step < far && size < far)) {  // nothing but rounding errors resists
+        bad = largest;
+        return std::numeric_limits<double>::infinity();
+      }
+      return step / (tolerance * (1.0 + size));
     }
     void apply() {
       system.plus(trial.q, dq, q);

@@ -6,6 +6,18 @@
 
 namespace polybody {
 
+/// \throws InvalidInput unless x is a state of this model, as it stands after its last body and joint, with finite
+/// coordinates and speeds.
+template <class M>
+void require_fitting(M const& model, State const& x) {
+  if (x.q.size() != model.coordinates() || x.v.size() != model.speeds() || x.a.size() != model.speeds() ||
+      x.lambda.size() != model.rows())
+    throw InvalidInput("The state does not fit the model; take it from reference_state() after the last body and "
+                       "joint were added.");
+  require_finite(x.q, "The coordinates of the state");
+  require_finite(x.v, "The speeds of the state");
+}
+
 /// \throws InconsistentStart naming the joint that is violated most, when by more than `tolerance`.
 template <class M>
 void require_assembled(System<M>& system, State const& x, double tolerance = 1e-8) {
@@ -23,6 +35,7 @@ void require_assembled(System<M>& system, State const& x, double tolerance = 1e-
 /// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed; x is then untouched.
 template <class M>
 void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
+  require_fitting(model, x);
   System<M> system(model);
   ForwardDynamics<M> forward(system);
   State trial = x;

@@ -2,7 +2,9 @@
 /// \file
 /// The run: a range of states, from step to step, that ends steps at corners, events and stop conditions.
 
+#include <algorithm>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -57,14 +59,12 @@ class Simulation {
       : system_(std::make_unique<System<M>>(model)), x_(&x), integrator_(std::move(integrator)),
         options_(std::move(options)), workspace_(integrator_.template workspace<Solver>(*system_)) {
     integrator_.check();
-    require_positive(options_.step, "simulate: the step");
-    if (!(options_.until >= x.t) || !std::isfinite(options_.until))
-      throw InvalidInput("simulate: the end " + std::to_string(options_.until) + " s lies before the start " +
-                         std::to_string(x.t) + " s.");
-    require_sizes(x);
+    check_options();
+    require_fitting(model, x);
     collect_corners();
     require_assembled(*system_, x, options_.assembly_tolerance);
-    h_ = options_.step;
+    h_ = std::min<double>(options_.step, largest_step());
+    pass_corners();
     restart();
   }
 
@@ -73,26 +73,25 @@ class Simulation {
   System<M>& system() { return *system_; }
   bool done() const { return report_.stopped || x_->t >= options_.until; }
 
-  /// Takes one step: to the next grid point, or to a corner or event before it.
+  /// Takes one step: to the next grid point, or to a corner or event before it. When it throws, the state is as
+  /// it was before.
   void advance() {
-    double target = options_.until;
-    bool const corner = next_corner_ < corners_.size() && corners_[next_corner_] <= target;
-    if (corner) target = corners_[next_corner_];
-    double h = h_;
-    double const left = target - x_->t;
-    bool const lands = h >= left * (1.0 - 1e-9);
-    // A law that changes at a corner still holds its old value just before it: end the step there.
-    if (lands) h = corner ? std::nextafter(target, x_->t) - x_->t : left;
+    auto const [target, h, lands, jumps] = plan();
+    bool const crumb = h < 0.01 * h_;  // one is left all the same: after a corner or an event
     State before;
-    if (!options_.events.empty()) before = *x_;
+    if (jumps || crumb || !options_.events.empty()) before = *x_;
     StepReport const report = integrator_.step(*system_, *x_, h, workspace_);
     bool const reached = lands && report.taken == h;
     if (reached) x_->t = target;
-    account(report);
-    if (!options_.events.empty() && meet_event(before, report)) return;
-    if (reached && corner) {
-      while (next_corner_ < corners_.size() && corners_[next_corner_] <= target) ++next_corner_;
-      restart();
+    account(report, reached);
+    try {
+      bool const met = !options_.events.empty() && meet_events(before, report.taken);
+      bool const at_corner = jumps && x_->t == target;
+      if (at_corner) pass_corners();
+      if (met || at_corner || crumb) restart();
+    } catch (...) {
+      *x_ = before;
+      throw;
     }
   }
 
@@ -127,14 +126,18 @@ class Simulation {
   }
 
  private:
-  void require_sizes(State const& x) const {
-    M const& m = system_->model();
-    if (x.q.size() != m.coordinates() || x.v.size() != m.speeds() || x.lambda.size() != m.rows() ||
-        x.a.size() != m.speeds())
-      throw InvalidInput("simulate: the state does not fit the model; take it from reference_state() after the "
-                         "last body and joint were added.");
-    require_finite(x.q, "simulate: the coordinates at the start");
-    require_finite(x.v, "simulate: the speeds at the start");
+  double largest_step() const { return options_.largest_step.value_or(std::numeric_limits<double>::infinity()); }
+
+  void check_options() const {
+    require_positive(options_.step, "simulate: the step");
+    if (options_.largest_step) require_positive(*options_.largest_step, "simulate: the largest step");
+    if (!(options_.until >= x_->t) || !std::isfinite(options_.until))
+      throw InvalidInput("simulate: the end " + std::to_string(options_.until) + " s lies before the start " +
+                         std::to_string(x_->t) + " s.");
+    for (Event const& event : options_.events) {
+      if (!event.value) throw InvalidInput("simulate: the event \"" + event.name + "\" has no value.");
+      require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");
+    }
   }
 
   void collect_corners() {
@@ -147,19 +150,49 @@ class Simulation {
     system_->model().for_each_force([&](auto const& e) {
       if constexpr (requires { e.force.law; }) take(e.force.law);
     });
-    std::erase_if(corners_, [&](double t) { return !(t > x_->t) || !std::isfinite(t); });
+    std::erase_if(corners_, [&](double t) { return !(t > x_->t) || !(t <= options_.until); });
     std::sort(corners_.begin(), corners_.end());
-    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
   }
 
-  /// After a start, corner or event: speeds onto the rows, then consistent accelerations.
+  /// Leaves behind the corners up to now and those that only rounding sets apart from it (0.3 and 0.1 + 0.2 are
+  /// one); the clock goes with them.
+  void pass_corners() {
+    double const crumb = 1e-9 * options_.step + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(x_->t);
+    while (next_corner_ < corners_.size() && corners_[next_corner_] <= x_->t + crumb)
+      x_->t = std::max(x_->t, corners_[next_corner_++]);
+    if (options_.until - x_->t <= crumb) x_->t = options_.until;
+  }
+
+  /// The next step: where it may at most go, its length, whether it goes there, and whether a corner is there.
+  struct Plan {
+    double target, h;
+    bool lands, jumps;
+  };
+  Plan plan() const {
+    bool const corner = next_corner_ < corners_.size();
+    double const target = corner ? corners_[next_corner_] : double(options_.until), left = target - x_->t;
+    // rather a longer step than a crumb left over: over its square, rows would be rounding errors
+    bool const lands = 1.01 * h_ >= left;
+    return {target, !lands ? h_ : corner ? until_just_before(target) : left, lands, lands && corner};
+  }
+
+  /// A law that changes at a corner still holds its old value just before it: the length of a step that ends there.
+  double until_just_before(double corner) const {
+    double h = std::nextafter(corner, x_->t) - x_->t;
+    while (x_->t + h >= corner) h = std::nextafter(h, 0.0);
+    return h;
+  }
+
+  /// After a start, corner or event: speeds onto the rows, then consistent accelerations. The integrator may look
+  /// ahead as far as the next step goes, not across a corner.
   void restart() {
-    ForwardDynamics<M, Solver>& forward = workspace_.forward;
-    forward.project_velocities(*system_, x_->q, x_->v, x_->t);
-    integrator_.start(*system_, *x_, h_, workspace_);
+    State fresh = *x_;  // x stays as it is when the start fails
+    workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
+    integrator_.start(*system_, fresh, done() ? h_ : plan().h, workspace_);
+    *x_ = std::move(fresh);
   }
 
-  void account(StepReport const& r) {
+  void account(StepReport const& r, bool shortened) {
     ++report_.steps;
     report_.iterations += r.iterations;
     report_.factorisations += r.factorisations;
@@ -167,41 +200,54 @@ class Simulation {
     report_.rejected += r.rejected;
     report_.last = r;
     if constexpr (requires { I::controls_step; })
-      h_ = std::min(r.next, options_.largest_step.value_or(std::numeric_limits<double>::infinity()));
+      h_ = std::min(shortened ? std::max(r.next, h_) : r.next, largest_step());
   }
 
   /// Ends the step at the first event within it, by bisection on the step's length from `before`.
-  bool meet_event(State const& before, StepReport const& taken) {
-    Event const* first = nullptr;
-    double first_h = taken.taken;
+  bool meet_events(State const& before, double taken) {
+    auto const after = [&](double h) {
+      State trial = before;
+      while (trial.t < before.t + h) {
+        double const left = before.t + h - trial.t;
+        if (integrator_.step(*system_, trial, left, workspace_).taken == left) break;
+      }
+      return trial;
+    };
+    auto const value = [](Event const& event, State const& x) {
+      double const y = event.value(x);
+      if (!std::isfinite(y))
+        throw NonFinite("The event \"" + event.name + "\" is not finite at t = " + std::to_string(x.t) + " s.");
+      return y;
+    };
+    auto const passed = [&](Event const& event, State const& x) {
+      double const start = value(event, before), now = value(event, x);
+      return start != 0.0 && (now == 0.0 || (now > 0.0) != (start > 0.0));
+    };
+    State first = *x_;
+    bool met = false;
     for (Event const& event : options_.events) {
-      double const at_start = event.value(before);
-      auto const passed = [&](State const& s) {
-        double const value = event.value(s);
-        return value == 0.0 || (value > 0.0) != (at_start > 0.0);
-      };
-      if (at_start == 0.0 || !passed(*x_)) continue;
-      double lo = 0.0, hi = taken.taken;
-      State trial;
+      if (!passed(event, *x_)) continue;
+      met = true;
+      double lo = 0.0, hi = taken;
       while (hi - lo > event.tolerance) {
         double const mid = 0.5 * (lo + hi);
-        trial = before;
-        integrator_.step(*system_, trial, mid, workspace_);
-        (passed(trial) ? hi : lo) = mid;
-      }
-      if (hi <= first_h) {
-        first_h = hi;
-        first = &event;
+        if (mid <= lo || mid >= hi) break;
+        State trial = after(mid);
+        if (!passed(event, trial)) {
+          lo = mid;
+          continue;
+        }
+        hi = mid;
+        if (trial.t < first.t) first = std::move(trial);
       }
     }
-    if (first == nullptr) return false;
-    if (first_h < taken.taken) {
-      *x_ = before;
-      integrator_.step(*system_, *x_, first_h, workspace_);
-    }
-    report_.events.push_back({first->name, x_->t});
-    report_.stopped = first->stops;
-    if (!report_.stopped) restart();
+    if (!met) return false;
+    *x_ = std::move(first);
+    for (Event const& event : options_.events)
+      if (passed(event, *x_)) {
+        report_.events.push_back({event.name, x_->t});
+        report_.stopped = report_.stopped || event.stops;
+      }
     return true;
   }
 

@@ -14,7 +14,8 @@ class ForwardDynamics {
   explicit ForwardDynamics(System<M>& system)
       : zero_a_(VecX::Zero(system.speeds())), zero_lambda_(VecX::Zero(system.rows())),
         r_(VecX::Zero(system.speeds())), phi_(VecX::Zero(system.rows())), rhs_(VecX::Zero(system.size())),
-        x_(VecX::Zero(system.size())), scratch_(system.data().scratch.size()) {
+        x_(VecX::Zero(system.size())), delta_(VecX::Zero(system.speeds())),
+        next_(VecX::Zero(system.coordinates())), scratch_(system.data().scratch.size()) {
     PatternSink pattern;
     system.tangent({.mass = 1.0}, SecondOrder::omitted, zero_lambda_, pattern);
     solver_.analyse(system.size(), pattern.blocks);
@@ -27,6 +28,7 @@ class ForwardDynamics {
     system.residual(zero_a_, zero_lambda_, r_);
     system.require_finite_force(r_);
     system.acceleration_bias(phi_);
+    system.require_finite_rows(phi_);
     solve(system, -1.0, -1.0);
     a = x_.head(system.speeds());
     lambda = x_.tail(system.rows());

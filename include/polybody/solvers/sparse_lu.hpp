@@ -51,17 +51,32 @@ class SparseLu {
       for (Index i = 0; i < b.rows; ++i) values[*slot++] += b(i, j);
     cursor_ = std::size_t(slot - slots_.data());
   }
-  /// −1, or the column that Eigen names (else 0) when the matrix is singular.
+  /// −1, or a column whose pivot is below 1e-14 of the column's largest entry.
   Index factor() {
     if (a_.cols() == 0) return -1;
     lu_->factorize(a_);
-    if (lu_->info() == Eigen::Success) return -1;
-    std::string const message = lu_->lastErrorMessage();
-    std::size_t const digit = message.find_last_of("0123456789");
-    if (digit == std::string::npos) return 0;
-    std::size_t first = digit;
-    while (first > 0 && std::isdigit(static_cast<unsigned char>(message[first - 1]))) --first;
-    return std::min<Index>(std::stol(message.substr(first, digit + 1 - first)), a_.cols() - 1);
+    auto const& place = lu_->colsPermutation().indices();  // of a column in the order of elimination
+    if (lu_->info() != Eigen::Success) {
+      // Eigen tells a pivot that is exactly zero by its place, counted from one, at the end of a message.
+      std::string const message = lu_->lastErrorMessage();
+      std::size_t const first = message.find_last_not_of("0123456789") + 1;
+      if (first == message.size()) return 0;
+      for (Index i = 0; i < place.size(); ++i)
+        if (place[i] + 1 == std::stol(message.substr(first))) return i;
+      return 0;
+    }
+    auto const upper = lu_->matrixU();  // its diagonal stands in the supernodes of L
+    for (Index i = 0; i < a_.cols(); ++i) {
+      double largest = 0.0, pivot = 0.0;
+      for (Matrix::InnerIterator entry(a_, i); entry; ++entry) largest = std::max(largest, std::abs(entry.value()));
+      for (Lu::SCMatrix::InnerIterator entry(upper.m_mapL, place[i]); entry; ++entry)
+        if (entry.index() == place[i]) {
+          pivot = entry.value();
+          break;
+        }
+      if (!(std::abs(pivot) > 1e-14 * largest)) return i;
+    }
+    return -1;
   }
   void solve(VecX const& b, VecX& x) const {
     if (b.size() > 0) x = lu_->solve(b);

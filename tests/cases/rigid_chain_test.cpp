@@ -1,0 +1,132 @@
+// CASES R8: pendulums of several links, released horizontally [C, an ordinary solver of order eight].
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+
+#include "support/chain.hpp"
+
+using namespace polybody;
+
+namespace {
+
+using Plane = Chain<InPlane<Constraint>>;
+using Space = Chain<InSpace<Constraint>>;
+
+DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
+
+/// Angles of both links from the downward vertical at time t.
+struct Angles {
+  double t, first, second;
+};
+
+/// Published angles count full turns, measured ones do not.
+double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
+
+template <class C, class I>
+void expect_angles(C const& chain, I const& integrator, double step, std::vector<Angles> const& exact,
+                   double tolerance) {
+  State x = chain.model.reference_state();
+  for (Angles const& e : exact) {
+    simulate(chain.model, x, integrator, {.until = e.t, .step = step}).run();
+    EXPECT_NEAR(wrapped(chain.angle(x, 0) - e.first), 0.0, tolerance) << e.t;
+    EXPECT_NEAR(wrapped(chain.angle(x, 1) - e.second), 0.0, tolerance) << e.t;
+  }
+}
+
+std::vector<Angles> const point_masses{{1, -0.625087699806, -1.034585085680},
+                                       {2, -0.482971534252, -1.324048712302},
+                                       {3, 1.785795522077, 1.118107461205},
+                                       {5, -0.627186705067, -1.301315550209}};
+std::vector<Angles> const bars{{0.5, 0.448142625932, 1.041962887304},
+                               {1, -1.207716238191, -0.814391023091},
+                               {2, -0.082758306821, 0.407362074912},
+                               {3, 1.025086012289, 0.495734647626}};
+std::vector<Angles> const chrono{{0.5, 0.801614759963, 1.357616418761},
+                                 {1, -0.656406513171, 0.081108625687},
+                                 {2, -0.308903760931, -3.342138789353}};
+
+Link const chrono_link{.length = 1.0, .mass = 1.0, .inertia = 1.0, .com = 0.5};
+
+}  // namespace
+
+TEST(DoublePendulum, OfPointMassesFollowsThePublishedAngles) {
+  Plane const chain(2, point_link());
+  expect_angles(chain, precise(), 0.01, point_masses, 1e-6);
+  State x = chain.model.reference_state();
+  simulate(chain.model, x, precise(), {.until = 1.0, .step = 0.01}).run();
+  EXPECT_LT((chain.tip(x) - Vec3(-1.444818849943, -1.321794461381, 0.0)).norm(), 1e-8);
+}
+
+TEST(DoublePendulum, OfBarsFollowsThePublishedAngles) {
+  expect_angles(Plane(2, bar_link()), precise(), 0.01, bars, 1e-7);
+  expect_angles(Space(2, bar_link()), precise(), 0.01, bars, 1e-7);
+}
+
+// Implicit steps converge to the same angles, at second order.
+TEST(DoublePendulum, OfBarsConvergesAtSecondOrderWithGeneralizedAlpha) {
+  Plane const chain(2, bar_link());
+  std::vector<double> errors;
+  for (double const h : {4e-3, 2e-3, 1e-3}) {
+    State x = chain.model.reference_state();
+    simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = h}).run();
+    errors.push_back(std::hypot(chain.angle(x, 0) - bars[1].first, chain.angle(x, 1) - bars[1].second));
+  }
+  EXPECT_LT(errors[2], 1e-4);
+  EXPECT_GT(std::log2(errors[1] / errors[2]), 1.9) << testing::PrintToString(errors);
+}
+
+// The peer's own tolerances: 1e-3 in states, 1e-6 in the rows, at h = 2e-4.
+TEST(DoublePendulum, OfThePeerKeepsItsTolerances) {
+  Space const chain(2, chrono_link, 10.0);
+  expect_angles(chain, precise(), 0.01, chrono, 1e-7);
+  expect_angles(chain, GeneralizedAlpha{}, 2e-4, {chrono[0], chrono[1]}, 1e-5);
+
+  State x = chain.model.reference_state();
+  simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 2e-4}).run();
+  System system(chain.model);
+  EXPECT_LT(violation(system, x).position, 1e-6);
+  EXPECT_NEAR(x.v[5], -1.9495974609, 1e-3);
+  EXPECT_NEAR(x.v[11], -3.9480427098, 1e-3);
+}
+
+namespace {
+
+struct Tip {
+  int links;
+  double t, x, y;
+};
+std::vector<Tip> const tips{{3, 0.25, 0.880767899903, -0.295360886340},  {3, 0.5, -0.243303645300, -0.913193847171},
+                            {3, 1.0, -0.908458260529, -0.025617696288},  {4, 0.25, 0.879110128751, -0.304401804992},
+                            {4, 0.5, -0.250307803491, -0.901990387817},  {4, 1.0, -0.864582047703, -0.090031032523},
+                            {10, 0.25, 0.877462524775, -0.306656671158}, {10, 0.5, -0.264645112002, -0.863546754750},
+                            {10, 0.75, -0.908445211876, -0.383978760999}, {10, 1.0, -0.894316852361, -0.146565064747}};
+
+template <class C, class I>
+void expect_tips(int links, I const& integrator, double step, double until, double tolerance) {
+  C const chain(links, bar_link(1.0 / links, 1.0 / links));
+  State x = chain.model.reference_state();
+  int compared = 0;
+  for (Tip const& e : tips) {
+    if (e.links != links || e.t > until) continue;
+    simulate(chain.model, x, integrator, {.until = e.t, .step = step}).run();
+    EXPECT_LT((chain.tip(x) - Vec3(e.x, e.y, 0.0)).norm(), tolerance) << links << " links, t = " << e.t;
+    ++compared;
+  }
+  EXPECT_GE(compared, 2);
+}
+
+}  // namespace
+
+TEST(LongPendulum, TipIsWhereThePublishedOneIs) {
+  for (int const links : {3, 4, 10}) expect_tips<Plane>(links, precise(), 1e-3, 1.0, 1e-7);
+}
+
+TEST(LongPendulum, TipIsThereInSpaceToo) { expect_tips<Space>(3, precise(), 1e-3, 1.0, 1e-7); }
+
+TEST(LongPendulum, TipIsThereWithImplicitSteps) {
+  for (int const links : {3, 4, 10}) expect_tips<Plane>(links, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5);
+  expect_tips<Space>(10, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5);
+}

@@ -1,0 +1,122 @@
+// CASES S1: a cantilever rolled up by a tip moment. Pure bending, so the exact answer is [A] an arc of curvature
+// M/EI without stretch or shear: x = (L/θ) sin θ, y = (L/θ)(1 − cos θ), θ = ML/EI.
+
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/lrvf.hpp>
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "support/cantilever.hpp"
+
+using namespace polybody;
+
+namespace {
+
+using std::numbers::pi;
+using planar::EngineeringStrain, planar::GreenStrain, planar::Lrvf;
+
+/// Thesis Fig. 2.9, length "as Simo & Vu-Quoc" (S1); EA and GA of their robot arm's order, without influence.
+Bar thesis() {
+  return {.length = 10.0, .constants = BarConstants{.EA = 1e6, .EI = 8.33e4, .mass_per_length = 1.0, .GA = 1e6}};
+}
+
+/// Exudyn's ANCFtestHalfcircle.py (S1): L = 2, E = 2.07e11, b = h = 0.01.
+Bar half_circle() {
+  return {.length = 2.0,
+          .section = Rectangle{.height = 0.01, .width = 0.01},
+          .material = Material{.density = 7850, .young = 2.07e11}};
+}
+
+double moment_of_turn(Bar const& bar, double theta) { return constants(bar).EI * theta / bar.length; }
+
+template <class B>
+Cantilever<B> rolled(Bar const& bar, Index n, double theta, int load_steps = 10) {
+  return {B::from(bar, n), {.moment = moment_of_turn(bar, theta)}, {.load_steps = load_steps}};
+}
+
+// With one Gauss point the elements of a 2-node beam in pure bending are chords of equal length h whose directions
+// step by θ/n: the first stands at θ/2n. So θ is exact, and node k lies at h Σ_{j ≤ k} (cos, sin)((2j − 1) θ/2n).
+TEST(RollUp, LrvfNodesLieOnARegularPolygon) {
+  Bar const bar = half_circle();
+  for (Index const n : {1, 2, 3, 4, 10, 16})
+    for (double const theta : {pi / 2, pi, 2 * pi}) {
+      Cantilever<Lrvf> const c = rolled<Lrvf>(bar, n, theta);
+      double const h = bar.length / double(n), step = theta / double(n);
+      Vec3 node = Vec3::Zero();
+      for (Index k = 0; k <= n; ++k) {
+        EXPECT_LT((c.at(double(k) * h) - node).norm(), 1e-10 * bar.length) << "node " << k << " of " << n;
+        node += Vec3(h * std::cos((double(k) + 0.5) * step), h * std::sin((double(k) + 0.5) * step), step);
+      }
+    }
+}
+
+// A polygon of two or more chords closes; the single chord of n = 1 cannot, it points at −x.
+TEST(RollUp, LrvfFullCircleClosesForAnyNumberOfElementsAboveOne) {
+  Bar const bar = half_circle();
+  for (Index const n : {2, 3, 4, 10, 16, 40}) {
+    Vec3 const tip = rolled<Lrvf>(bar, n, 2 * pi).tip();
+    EXPECT_LT(tip.head<2>().norm(), 1e-10 * bar.length) << n;
+    EXPECT_NEAR(tip[2], 2 * pi, 1e-11) << n;
+  }
+  EXPECT_LT((rolled<Lrvf>(bar, 1, 2 * pi).tip() - Vec3(-bar.length, 0, 2 * pi)).norm(), 1e-10);
+}
+
+// [A] κ = M/EI = 0.360144058 1/m and θ_tip = 3.601440576 for M = 30 kN m. The chords end on the arc's ray, farther
+// out by (θ/2n)/sin(θ/2n); the exact tip is (−1.232317522, 5.264893204).
+TEST(RollUp, ThesisFigure29StaticValues) {
+  Index const n = 10;
+  Cantilever<Lrvf> const c(Lrvf::from(thesis(), n), {.moment = 3e4}, {});
+  for (double const s : {0.5, 4.2, 9.9}) {
+    Vec3 const strain = c.bar.body.strains<0>(c.bar.body.at(s), coordinates_of(c.model, c.x, c.bar));
+    EXPECT_LT((strain - Vec3(0, 0, 0.360144058)).norm(), 5e-10) << s;
+  }
+  double const half = 0.5 * c.tip()[2] / double(n), chord = half / std::sin(half);
+  EXPECT_NEAR(c.tip()[2], 3.601440576, 5e-10);
+  EXPECT_NEAR(c.tip()[0], -1.232317522 * chord, 1e-9);
+  EXPECT_NEAR(c.tip()[1], 5.264893204 * chord, 1e-9);
+}
+
+template <class Strain>
+double cable_error(Index n, double theta) {
+  Bar const bar = half_circle();
+  Vec3 const tip = rolled<planar::AncfCable<Strain>>(bar, n, theta).tip();
+  return (tip.head<2>() - bar.length / theta * Vec2(std::sin(theta), 1.0 - std::cos(theta))).norm() / bar.length;
+}
+
+// Tolerances of S1 for the closed circle: n = 32 ≤ 1e-4 L, and 1e-3 L at n = 16. Its 3.6e-3 L at n = 8 is of four or
+// more bending points (3.63e-3 with 4, 5 or 10); the three points that the per-mesh digits of S3 need give 3.78e-3.
+TEST(RollUp, AncfCableClosesTheCircle) {
+  double const coarse = cable_error<EngineeringStrain>(8, 2 * pi), middle = cable_error<EngineeringStrain>(16, 2 * pi),
+               fine = cable_error<EngineeringStrain>(32, 2 * pi);
+  EXPECT_LT(coarse, 3.8e-3);
+  EXPECT_LT(middle, 1e-3);
+  EXPECT_LT(fine, 1e-4);
+  EXPECT_GT(std::log2(coarse / middle), 4.0);
+  EXPECT_GT(std::log2(middle / fine), 4.0);
+}
+
+TEST(RollUp, AncfCableQuarterAndHalfCircle) {
+  for (double const theta : {pi / 2, pi}) EXPECT_LT(cable_error<EngineeringStrain>(16, theta), 1e-4) << theta;
+}
+
+// GreenStrain's curvature c/|r′|³, c = r′ × r″, couples bending and stretch. Minimising ½ EA ε² + ½ EI θ′²/n² − M θ′
+// over n = |r′| and θ′ = c/n² gives ε = ½ (n² − 1) = M²/(EI EA) and θ′ = M n²/EI: an arc of radius n/θ′ that turns by
+// 2ε of a circle too far, 1.6e-4 L here (S1). That is the limit of the meshes.
+TEST(RollUp, GreenCableTurnsFartherByTheStretchOfItsCurvature) {
+  Bar const bar = half_circle();
+  BarConstants const k = constants(bar);
+  double const m = moment_of_turn(bar, 2 * pi), e = m * m / (k.EI * k.EA), n2 = 1.0 + 2.0 * e;
+  double const turn = m * n2 / k.EI, radius = std::sqrt(n2) / turn, theta = turn * bar.length;
+  Vec2 const limit = radius * Vec2(std::sin(theta), 1.0 - std::cos(theta));
+  EXPECT_NEAR(limit.norm() / bar.length, 1.6e-4, 0.05e-4);
+  double error[3];
+  for (int i = 0; i < 3; ++i)
+    error[i] = (rolled<planar::AncfCable<GreenStrain>>(bar, 16 << i, 2 * pi).tip().head<2>() - limit).norm() / bar.length;
+  EXPECT_LT(error[0], 1e-3);
+  EXPECT_LT(error[1], 1e-5);
+  EXPECT_LT(error[2], 1e-6);
+}
+
+}  // namespace

@@ -1,0 +1,111 @@
+#include <polybody/integrators/central_difference.hpp>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <polybody/bodies/planar/ancf_cable.hpp>
+
+#include "support/integrator_cases.hpp"
+#include "support/integrator_laws.hpp"
+
+using namespace polybody;
+
+namespace {
+
+struct CentralDifferenceOnFreeBody {
+  using Model = SprungBody;
+  static auto integrators() { return std::vector<CentralDifference<>>(1); }
+  static constexpr double until = 1.0;
+  static constexpr int steps = 64;
+};
+struct CentralDifferenceOnBar {
+  using Model = SwingingBar;
+  static auto integrators() { return std::vector<CentralDifference<Projection>>(1); }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 32;
+};
+struct CentralDifferenceOnTop {
+  using Model = SlowTop;
+  static auto integrators() { return std::vector<CentralDifference<Projection>>(1); }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 64;
+};
+
+}  // namespace
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnFreeBody, IntegratorLaws, CentralDifferenceOnFreeBody);
+INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnBar, IntegratorLaws, CentralDifferenceOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnTop, IntegratorLaws, CentralDifferenceOnTop);
+}  // namespace polybody
+
+namespace {
+
+/// A free ANCF cable of n elements of 0.25 m, steel of 1 cm: its highest mode is a stretch.
+struct FreeCable {
+  Model<Bodies<planar::AncfCable<>>, Joints<>> model;
+  VecX mode;           ///< of the largest frequency, of unit mass
+  double omega = 0.0;  ///< that frequency [rad/s]
+  State start;
+
+  explicit FreeCable(Index n) {
+    model.add(planar::AncfCable<>::from({.length = 0.25 * double(n),
+                                         .section = Circle{.radius = 0.01},
+                                         .material = Material{.density = 7800, .young = 2e11}}, n));
+    start = model.reference_state();
+    System system(model);
+    system.evaluate(start.q, start.v, 0.0);
+    auto const matrix = [&](TangentCoefficients const& c) {
+      DenseLu sink;
+      sink.analyse(system.size(), {});
+      sink.begin();
+      system.tangent(c, SecondOrder::included, start.lambda, sink);
+      return sink.matrix();
+    };
+    Eigen::GeneralizedSelfAdjointEigenSolver<MatX> const pencil(matrix({.stiffness = 1.0}), matrix({.mass = 1.0}));
+    omega = std::sqrt(pencil.eigenvalues().tail<1>()[0]);
+    mode = pencil.eigenvectors().rightCols<1>();
+  }
+
+  /// Amplitude of the highest mode after each of `steps` steps of h from 1e-10 of it.
+  std::vector<double> amplitudes(double h, int steps) const {
+    System system(model);
+    CentralDifference<> const integrator;
+    auto workspace = integrator.workspace<DenseLu>(system);
+    State x = start;
+    x.q += 1e-10 * mode;
+    integrator.start(system, x, h, workspace);
+    std::vector<double> amplitude;
+    for (int i = 0; i < steps; ++i) {
+      integrator.step(system, x, h, workspace);
+      amplitude.push_back((x.q - start.q).norm() / mode.norm());
+    }
+    return amplitude;
+  }
+};
+
+}  // namespace
+
+// CASES I2: stable iff h < 2/ω_max. Beyond it, at h = 1.01 · 2/ω, the mode grows by the root of
+// μ² − 2 (1 − ½ (ωh)²) μ + 1 = 0 in every step [Hughes 2000, §9.1].
+TEST(CentralDifference, IsStableUpToTwoOverTheHighestFrequency) {
+  for (Index const n : {1, 4}) {
+    FreeCable const cable(n);
+    double const limit = 2.0 / cable.omega;
+    for (double const a : cable.amplitudes(0.99 * limit, 5000)) ASSERT_LT(a, 1e-8);
+
+    double const c = 1.0 - 0.5 * std::pow(2.02, 2), growth = std::abs(c) + std::sqrt(c * c - 1.0);
+    auto const a = cable.amplitudes(1.01 * limit, 40);
+    EXPECT_NEAR(std::pow(a[39] / a[19], 1.0 / 20.0), growth, 0.01 * growth);
+    // … until nothing finite is left
+    EXPECT_THROW(cable.amplitudes(1.01 * limit, 2000), NonFinite);
+  }
+}
+
+// The highest frequency of an assembly is at most that of its elements.
+TEST(CentralDifference, ElementPencilBoundsTheAssembly) {
+  double const element = FreeCable(1).omega;
+  EXPECT_LT(FreeCable(4).omega, element * (1 + 1e-12));
+  EXPECT_GT(FreeCable(4).omega, 0.8 * element);
+}

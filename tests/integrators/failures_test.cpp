@@ -1,0 +1,150 @@
+// What a run says when it cannot go on, and what it leaves behind.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/forces/user_force.hpp>
+#include <polybody/integrators/central_difference.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+
+#include "support/chain.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace {
+
+/// The message of the E that `act` throws; a failure where it throws none or another.
+template <class E, class Act>
+std::string message_of(Act&& act) {
+  try {
+    act();
+  } catch (E const& error) {
+    return error.what();
+  } catch (std::exception const& error) {
+    ADD_FAILURE() << "another exception: " << error.what();
+    return "";
+  }
+  ADD_FAILURE() << "no exception";
+  return "";
+}
+
+void expect_same(State const& a, State const& b) {
+  EXPECT_EQ(a.q, b.q);
+  EXPECT_EQ(a.v, b.v);
+  EXPECT_EQ(a.a, b.a);
+  EXPECT_EQ(a.lambda, b.lambda);
+  EXPECT_EQ(a.memory, b.memory);
+  EXPECT_EQ(a.t, b.t);
+}
+
+}  // namespace
+
+TEST(Failures, AbsurdStepStallsNewtonAndLeavesTheState) {
+  Chain<InSpace<Constraint>> chain(4, bar_link());
+  State x = chain.model.reference_state();
+  GeneralizedAlpha const integrator;
+  System system(chain.model);
+  auto workspace = integrator.workspace<DenseLu>(system);
+  integrator.start(system, x, 1e-3, workspace);
+  for (int i = 0; i < 100; ++i) integrator.step(system, x, 1e-3, workspace);
+  State const before = x;
+  std::string const message =
+      message_of<NewtonStalled>([&] { integrator.step(system, x, 3.0, workspace); });
+  EXPECT_TRUE(has(message, "did not converge at t = 3.1"));
+  EXPECT_TRUE(has(message, "Take a smaller step"));
+  expect_same(x, before);
+  // and a sound step goes on from there
+  EXPECT_NO_THROW(integrator.step(system, x, 1e-3, workspace));
+  EXPECT_NEAR(x.t, 0.101, 1e-12);
+}
+
+namespace {
+
+/// Two bodies; the second is pushed by a force that is no number once t exceeds 0.05.
+struct Poisoned {
+  static auto law() {
+    return [](auto const& frames, double t) {
+      using T = std::decay_t<decltype(frames[0].r[0])>;
+      Wrench<T> w;
+      w.f[1] = T(t > 0.05 ? std::numeric_limits<double>::quiet_NaN() : 1.0);
+      return std::array{w};
+    };
+  }
+  using Push = decltype(user_force<1>(law()));
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>, Forces<Push>> model;
+  State x;
+
+  Poisoned() {
+    auto const sound = model.add(planar::Rigid(1.0, 1.0), "sound one");
+    auto const pushed = model.add(planar::Rigid(1.0, 1.0), "pushed one");
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), sound.at(Vec2(0, 0)), "pin");
+    model.apply(user_force<1>(law()), pushed.at(Vec2(0, 0)), "push");
+    x = model.reference_state();
+  }
+  template <class I>
+  void expect_named(I const& integrator) {
+    State before = x;
+    auto run = simulate(model, x, integrator, {.until = 1.0, .step = 0.01});
+    std::string const message = message_of<NonFinite>([&] {
+      while (!run.done()) {
+        before = run.state();
+        run.advance();
+      }
+    });
+    EXPECT_TRUE(has(message, "\"pushed one\""));
+    EXPECT_TRUE(has(message, "is not finite at t = 0.0"));
+    EXPECT_NEAR(x.t, 0.05, 0.02);
+    expect_same(x, before);
+    EXPECT_TRUE(x.q.allFinite() && x.v.allFinite());
+  }
+};
+
+}  // namespace
+
+TEST(Failures, ForceThatIsNoNumberNamesItsBody) {
+  Poisoned().expect_named(GeneralizedAlpha{});
+  Poisoned().expect_named(RungeKutta4<Projection>{});
+  Poisoned().expect_named(DormandPrince<Projection>{});
+  Poisoned().expect_named(CentralDifference<Projection>{});
+}
+
+TEST(Failures, DoubledJointIsNamed) {
+  using Pin = Joint<Revolute, Constraint>;
+  Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+  auto const rod = model.add(Rigid<>(1.0, Vec3(0.1, 0.2, 0.2).asDiagonal().toDenseMatrix()), "rod");
+  for (char const* name : {"pin", "pin again"})
+    model.connect(Pin{}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
+  State x = model.reference_state();
+  auto const expect_named = [&](auto&& act) {
+    std::string const message = message_of<LinearSolverSingular>(act);
+    EXPECT_TRUE(has(message, "joint \"pin"));
+    EXPECT_TRUE(has(message, "a joint that repeats another"));
+  };
+  RunOptions const options{.until = 1.0, .step = 0.01};
+  expect_named([&] { simulate<DenseLu>(model, x, GeneralizedAlpha{}, options).run(); });
+  expect_named([&] { simulate<SparseLu>(model, x, GeneralizedAlpha{}, options).run(); });
+  EXPECT_EQ(x.t, 0.0);
+}
+
+// A point mass on a ball joint may spin about its own axis without inertia.
+TEST(Failures, BodyWithoutInertiaIsNamed) {
+  Chain<OnBallJoints<Constraint>> chain(1, point_link());
+  State x = chain.model.reference_state();
+  std::string const message = message_of<LinearSolverSingular>(
+      [&] { simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.01}).run(); });
+  EXPECT_TRUE(has(message, "body \"link 1\""));
+  EXPECT_TRUE(has(message, "a body without inertia that is free to move"));
+}
+
+TEST(Failures, OpenJointAtTheStartIsNamed) {
+  Chain<InPlane<Constraint>> chain(2, bar_link());
+  State x = chain.model.reference_state();
+  x.q[0] += 1e-3;
+  std::string const message = message_of<InconsistentStart>(
+      [&] { simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.01}); });
+  EXPECT_TRUE(has(message, "joint \"pin"));
+  EXPECT_TRUE(has(message, "0.001"));
+}

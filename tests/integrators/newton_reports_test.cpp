@@ -1,0 +1,67 @@
+// What Newton's method costs in a step of generalised-α.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+
+#include "support/chain.hpp"
+
+using namespace polybody;
+
+namespace {
+
+RunReport fall(GeneralizedAlpha const& integrator, double until) {
+  Chain<InSpace<Constraint>> chain(16, bar_link(0.1));
+  State x = chain.model.reference_state();
+  return simulate(chain.model, x, integrator, {.until = until, .step = 1e-3}).run();
+}
+
+double per_step(long count, RunReport const& r) { return double(count) / double(r.steps); }
+
+}  // namespace
+
+// 16 links of 0.1 m released horizontally, h = 1 ms, 1 s.
+TEST(NewtonReports, LongChainKeepsItsFactorisation) {
+  RunReport const report = fall({}, 1.0);
+  RecordProperty("iterations_per_step", std::to_string(per_step(report.iterations, report)));
+  RecordProperty("factorisations_per_step", std::to_string(per_step(report.factorisations, report)));
+  EXPECT_EQ(report.steps, 1000);
+  EXPECT_LT(per_step(report.iterations, report), 6.0);
+  EXPECT_LT(per_step(report.factorisations, report), 0.3);
+  EXPECT_LT(report.last.contraction, 1.0);
+
+  RunReport const coarser = fall({.tolerance = 1e-6}, 1.0);
+  EXPECT_LT(per_step(coarser.iterations, coarser), 4.2);
+}
+
+TEST(NewtonReports, FullNewtonFactorsInEveryIteration) {
+  RunReport const full = fall({.newton = {.always_refactor = true}}, 0.1);
+  EXPECT_EQ(full.factorisations, full.iterations);
+  RunReport const modified = fall({}, 0.1);
+  EXPECT_LT(10 * modified.factorisations, full.factorisations);
+}
+
+TEST(NewtonReports, ChainAtRestCostsOneIterationAndNoFactorisation) {
+  Chain<InSpace<Constraint>> chain(8, bar_link(0.1), 9.81, 0.0);
+  State x = chain.model.reference_state();
+  auto run = simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3});
+  EXPECT_EQ(run.run().iterations, run.report().steps);
+  EXPECT_EQ(run.report().factorisations, 1);
+  EXPECT_EQ(run.report().evaluations, run.report().iterations);
+}
+
+TEST(NewtonReports, ReportOfAStepIsThatOfTheSum) {
+  Chain<InSpace<Constraint>> chain(4, bar_link());
+  State x = chain.model.reference_state();
+  auto run = simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 5e-3});
+  long iterations = 0, factorisations = 0;
+  while (!run.done()) {
+    run.advance();
+    iterations += run.report().last.iterations;
+    factorisations += run.report().last.factorisations;
+  }
+  EXPECT_EQ(run.report().steps, 20);
+  EXPECT_EQ(run.report().iterations, iterations);
+  EXPECT_EQ(run.report().factorisations, factorisations);
+}

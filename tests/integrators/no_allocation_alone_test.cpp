@@ -1,0 +1,162 @@
+// No step takes memory from the heap. A program of its own: it puts its own malloc and operator new in the place
+// of the library's (malloc itself on glibc and without a sanitizer, which has its own).
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/integrators/central_difference.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/prescribed_angle.hpp>
+
+#include "support/chain.hpp"
+
+namespace {
+long taken = 0;  // pieces of memory
+}
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define POLYBODY_TEST_SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define POLYBODY_TEST_SANITIZED
+#endif
+
+#if defined(__GLIBC__) && !defined(POLYBODY_TEST_SANITIZED)
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+void* malloc(std::size_t n) { return ++taken, __libc_malloc(n); }
+void* calloc(std::size_t n, std::size_t size) { return ++taken, __libc_calloc(n, size); }
+void* realloc(void* p, std::size_t n) { return ++taken, __libc_realloc(p, n); }
+void* aligned_alloc(std::size_t alignment, std::size_t n) { return ++taken, __libc_memalign(alignment, n); }
+int posix_memalign(void** p, std::size_t alignment, std::size_t n) {
+  ++taken;
+  *p = __libc_memalign(alignment, n);
+  return *p == nullptr;
+}
+}
+#endif
+
+void* operator new(std::size_t n) {
+  ++taken;
+  if (void* p = std::malloc(n)) return p;
+  throw std::bad_alloc();
+}
+void* operator new[](std::size_t n) { return operator new(n); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+
+using namespace polybody;
+
+namespace {
+
+/// Five links pinned in space.
+struct RigidChain {
+  Chain<InSpace<Constraint>> chain{5, bar_link(0.3)};
+  auto const& model() const { return chain.model; }
+};
+
+/// An arm of Lrvf elements on a pin, its root turned by a drive.
+struct DrivenArm {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  using Drive = Joint<PrescribedAngle<SpinUp>, Constraint>;
+  Model<Bodies<planar::Lrvf>, Joints<Pin, Drive>> arm{Gravity{0, -9.81, 0}};
+
+  DrivenArm() {
+    Bar const bar{.length = 1.0,
+                  .constants = BarConstants{.EA = 1e5, .EI = 50, .mass_per_length = 1.0, .GA = 3e4,
+                                            .rotary_inertia = 1e-3},
+                  .damping = {.axial = 1e-3, .shear = 1e-3, .bending = 1e-3}};
+    auto const body = arm.add(planar::Lrvf::from(bar, 6), "arm");
+    arm.connect(Pin{}, arm.ground().at({0, 0, 0}), body.at(0.0), "pin");
+    arm.connect(Drive{{.law = {.speed = 2.0, .duration = 0.5}}, {}}, arm.ground().at({0, 0, 0}), body.at(0.0), "drive");
+  }
+  auto const& model() const { return arm; }
+};
+
+/// An ANCF cable on a compliant pin, its end on a damped spring.
+struct SprungCable {
+  using Pin = Joint<planar::Revolute, Penalty>;
+  Model<Bodies<planar::AncfCable<>>, Joints<Pin>, Forces<SpringDamper>> cable{Gravity{0, -9.81, 0}};
+
+  SprungCable() {
+    Bar const bar{.length = 1.0, .constants = BarConstants{.EA = 1e4, .EI = 5, .mass_per_length = 1.0}};
+    auto const body = cable.add(planar::AncfCable<>::from(bar, 6), "cable");
+    cable.connect(Pin{{}, {.stiffness = 1e5, .damping = 10.0}}, cable.ground().at({0, 0, 0}), body.at(0.0), "pin");
+    cable.apply(SpringDamper{.stiffness = 100.0, .damping = 1.0, .free_length = 0.5}, cable.ground().at({1, 0.6, 0}),
+                body.at(1.0), "spring");
+  }
+  auto const& model() const { return cable; }
+};
+
+/// Pieces of memory taken by 40 steps, from the first one, with a change of length in mid-run.
+template <class Case, class I>
+long in_steps(I const& integrator) {
+  Case const setup;
+  auto const& model = setup.model();
+  State x = model.reference_state();
+  System system(model);
+  auto workspace = integrator.template workspace<DenseLu>(system);
+  double const h = 2e-4;
+  integrator.start(system, x, h, workspace);
+  long const before = taken;
+  for (int i = 0; i < 20; ++i) integrator.step(system, x, h, workspace);
+  for (int i = 0; i < 20; ++i) integrator.step(system, x, 0.25 * h, workspace);
+  long const count = taken - before;
+  EXPECT_GT(x.t, 20 * h);
+  EXPECT_TRUE(x.q.allFinite());
+  return count;
+}
+
+template <class Case>
+void expect_none() {
+  EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{}), 0);
+  EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<Case>(RungeKutta4<Projection>{}), 0);
+  EXPECT_EQ(in_steps<Case>(CentralDifference<Projection>{}), 0);
+  EXPECT_EQ(in_steps<Case>(DormandPrince<Projection>{}), 0);
+}
+
+}  // namespace
+
+TEST(NoAllocation, TheCountersCount) {
+  long before = taken;
+  std::vector<double> const v(100);
+  EXPECT_GT(taken, before);
+#if defined(__GLIBC__) && !defined(POLYBODY_TEST_SANITIZED)
+  before = taken;
+  VecX const x = VecX::Zero(100);  // Eigen asks malloc
+  EXPECT_GT(taken, before);
+#endif
+}
+
+TEST(NoAllocation, InAStepOfARigidChain) { expect_none<RigidChain>(); }
+
+TEST(NoAllocation, InAStepOfADrivenLrvfArm) { expect_none<DrivenArm>(); }
+
+TEST(NoAllocation, InAStepOfAnAncfCableOnCompliantJoints) { expect_none<SprungCable>(); }
+
+TEST(NoAllocation, InAskingForTheEnergyOfASystem) {
+  SprungCable const setup;
+  State const x = setup.cable.reference_state();
+  System system(setup.cable);
+  long const before = taken;
+  system.evaluate(x.q, x.v, x.t);
+  double const total = energy(system, x).total();
+  EXPECT_EQ(taken, before);
+  EXPECT_TRUE(std::isfinite(total));
+}

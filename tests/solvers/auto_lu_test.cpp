@@ -1,0 +1,27 @@
+#include <polybody/solvers/auto_lu.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace polybody;
+
+// On both sides of the limit the answer is that of the solver chosen, to the last bit.
+TEST(AutoLu, ChoosesBySize) {
+  for (Index const size : {AutoLu::dense_limit - 1, AutoLu::dense_limit, AutoLu::dense_limit + 1}) {
+    MatX const a = MatX::Random(size, size) + 10.0 * MatX::Identity(size, size);
+    VecX const b = VecX::Random(size);
+    auto const answer = [&](auto solver) {
+      solver.analyse(size, {{0, 0, size, size}});
+      solver.begin();
+      solver.add(0, 0, a);
+      EXPECT_EQ(solver.factor(), -1);
+      VecX x(size);
+      solver.solve(b, x);
+      return x;
+    };
+    VecX const chosen = answer(AutoLu());
+    EXPECT_LT((a * chosen - b).norm(), 1e-11);
+    bool const small = size <= AutoLu::dense_limit;
+    EXPECT_EQ(chosen, small ? answer(DenseLu()) : answer(SparseLu())) << size;
+    EXPECT_NE(chosen, small ? answer(SparseLu()) : answer(DenseLu())) << size << ": cannot tell";
+  }
+}

@@ -1,0 +1,174 @@
+#include <polybody/solvers/newton.hpp>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+using namespace polybody;
+
+namespace {
+
+/// f(x) = 0 in one unknown; a correction of `tolerance` has the norm one. Records what it is asked.
+struct Scalar {
+  std::function<double(double)> f, slope;
+  double x = 0.0;
+  double tolerance = 1e-10;
+  double factored_slope = 0.0, residual = 0.0, correction = 0.0;
+  int evaluations = 0, factorisations = 0, solutions = 0;
+
+  bool evaluate() {
+    ++evaluations;
+    residual = f(x);
+    return std::isfinite(residual);
+  }
+  bool refactor() {
+    ++factorisations;
+    factored_slope = slope(x);
+    return factored_slope != 0.0;
+  }
+  double solve() {
+    ++solutions;
+    correction = -residual / factored_slope;
+    return std::abs(correction) / tolerance;
+  }
+  void apply() { x += correction; }
+};
+
+Scalar square_root_of_two() {
+  return {[](double x) { return x * x - 2.0; }, [](double x) { return 2.0 * x; }, 1.0};
+}
+
+struct Outcome {
+  NewtonReport report;
+  bool factored;
+  double theta;
+};
+Outcome solve(Scalar& problem, NewtonOptions const& options = {}, bool factored = false, double theta = 1.0) {
+  Outcome out{{}, factored, theta};
+  out.report = newton(problem, options, out.factored, out.theta);
+  return out;
+}
+
+}  // namespace
+
+TEST(Newton, SolvesAndReportsWhatItCost) {
+  Scalar problem = square_root_of_two();
+  Outcome const o = solve(problem);
+  EXPECT_EQ(o.report.result, NewtonResult::converged);
+  EXPECT_NEAR(problem.x, std::sqrt(2.0), 1e-10);
+  EXPECT_EQ(o.report.iterations, problem.solutions);
+  EXPECT_EQ(o.report.factorisations, problem.factorisations);
+  EXPECT_EQ(problem.evaluations, problem.solutions);
+  EXPECT_LT(o.report.theta, 1.0);
+  EXPECT_TRUE(o.factored);
+}
+
+TEST(Newton, FullNewtonFactorsAtEveryIterate) {
+  Scalar problem = square_root_of_two();
+  Outcome const o = solve(problem, {.always_refactor = true});
+  EXPECT_EQ(o.report.result, NewtonResult::converged);
+  EXPECT_EQ(o.report.factorisations, o.report.iterations);
+  EXPECT_LE(o.report.iterations, 6);  // quadratic convergence
+  EXPECT_NEAR(problem.x, std::sqrt(2.0), 1e-15);
+}
+
+// From 1.4 the slope there contracts by |1 − x/1.4|, about 0.01: it is kept to the end and for the next solve.
+TEST(Newton, KeepsAFactorisationThatContracts) {
+  Scalar problem = square_root_of_two();
+  problem.x = 1.4;
+  Outcome const first = solve(problem);
+  EXPECT_EQ(first.report.factorisations, 1);
+  EXPECT_TRUE(first.factored);
+  EXPECT_NEAR(first.theta, std::sqrt(2.0) / 1.4 - 1.0, 1e-3);
+
+  problem.x = 1.41;
+  Outcome const second = solve(problem, {}, first.factored, first.theta);
+  EXPECT_EQ(second.report.result, NewtonResult::converged);
+  EXPECT_EQ(second.report.factorisations, 0);
+  EXPECT_EQ(problem.factorisations, 1);
+  EXPECT_NEAR(problem.x, std::sqrt(2.0), 1e-10);
+}
+
+// With the slope at 1 in place of that at √2 the rate is √2 − 1 = 0.41: above 0.3 it is renewed, below 0.5 kept.
+TEST(Newton, RenewsAFactorisationThatContractsTooSlowly) {
+  Scalar eager = square_root_of_two(), patient = square_root_of_two();
+  EXPECT_GE(solve(eager).report.factorisations, 2);
+  EXPECT_EQ(solve(patient, {.max_iterations = 50, .refactor_above = 0.5}).report.factorisations, 1);
+  EXPECT_GT(patient.solutions, eager.solutions);
+  EXPECT_NEAR(patient.x, std::sqrt(2.0), 1e-10);
+}
+
+// A linear contraction of rate θ: what is left after the last correction is θ/(1 − θ) of it, and below the
+// tolerance. The slope is wrong by a known factor.
+TEST(Newton, StopsWhereTheErrorLeftIsBelowTheTolerance) {
+  for (double const rate : {0.1, 0.25}) {
+    Scalar problem{[](double x) { return x - 1.0; }, [&](double) { return 1.0 / (1.0 - rate); }};
+    Outcome const o = solve(problem);
+    ASSERT_EQ(o.report.result, NewtonResult::converged);
+    EXPECT_NEAR(o.report.theta, rate, 1e-6);
+    EXPECT_EQ(o.report.factorisations, 1);
+    EXPECT_LT(std::abs(problem.x - 1.0), problem.tolerance);
+    EXPECT_GT(std::abs(problem.x - 1.0), 0.9 * rate * problem.tolerance);  // one correction fewer would not do
+  }
+}
+
+TEST(Newton, CorrectionBelowTheToleranceEndsItAtOnce) {
+  Scalar problem = square_root_of_two();
+  problem.x = std::sqrt(2.0) * (1.0 + 1e-14);
+  Outcome const o = solve(problem);
+  EXPECT_EQ(o.report.result, NewtonResult::converged);
+  EXPECT_EQ(o.report.iterations, 1);
+}
+
+// A rate known from the solve before lets a single correction do.
+TEST(Newton, OldRateSavesTheSecondCorrection) {
+  Scalar with = square_root_of_two(), without = square_root_of_two();
+  with.x = without.x = std::sqrt(2.0) + 1e-10;
+  with.factored_slope = without.factored_slope = 2.0 * std::sqrt(2.0);
+  EXPECT_EQ(solve(with, {}, true, 1e-3).report.iterations, 1);
+  EXPECT_EQ(solve(without, {}, true, 0.9).report.iterations, 2);
+}
+
+TEST(Newton, GivesUpWhenCorrectionsGrow) {
+  // x^(1/3): every Newton correction throws x to −2 x
+  Scalar problem{[](double x) { return std::cbrt(x); },
+                 [](double x) { return std::cbrt(x) / (3.0 * x); }, 1.0};
+  Outcome const o = solve(problem);
+  EXPECT_EQ(o.report.result, NewtonResult::diverged);
+  EXPECT_FALSE(o.factored);
+  EXPECT_GE(o.report.theta, 1.0);
+  EXPECT_LE(o.report.iterations, 5);
+}
+
+TEST(Newton, GivesUpAfterTheMostIterationsAllowed) {
+  Scalar problem = square_root_of_two();
+  Outcome const o = solve(problem, {.max_iterations = 2});
+  EXPECT_EQ(o.report.result, NewtonResult::diverged);
+  EXPECT_EQ(o.report.iterations, 2);
+  EXPECT_FALSE(o.factored);
+}
+
+TEST(Newton, SaysWhenTheTangentIsSingular) {
+  Scalar problem = square_root_of_two();
+  problem.x = 0.0;
+  Outcome const o = solve(problem);
+  EXPECT_EQ(o.report.result, NewtonResult::singular);
+  EXPECT_FALSE(o.factored);
+  EXPECT_EQ(problem.solutions, 0);
+}
+
+TEST(Newton, SaysWhenTheRightHandSideIsNoNumber) {
+  Scalar problem{[](double x) { return std::sqrt(x) + 1.0; }, [](double x) { return 0.5 / std::sqrt(x); }, 1.0};
+  Outcome const o = solve(problem);  // the first correction leaves the domain
+  EXPECT_EQ(o.report.result, NewtonResult::not_finite);
+  EXPECT_EQ(problem.solutions, 1);
+}
+
+TEST(Newton, CorrectionThatIsNoNumberIsNotApplied) {
+  Scalar problem = square_root_of_two();
+  problem.slope = [](double) { return std::numeric_limits<double>::quiet_NaN(); };
+  Outcome const o = solve(problem);
+  EXPECT_EQ(o.report.result, NewtonResult::singular);
+  EXPECT_EQ(problem.x, 1.0);
+  EXPECT_FALSE(o.factored);
+}

@@ -1,0 +1,101 @@
+#pragma once
+/// \file
+/// One model of space and one of the plane in which everything meets: bodies of several kinds, joints with rows
+/// and compliant ones, springs, dead and follower loads, the ground; in a state that obeys nothing.
+
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/system/system.hpp>
+
+#include "support/frames.hpp"
+
+namespace polybody {
+
+/// Two rigid bodies: ground –Revolute, Constraint– a –Spherical, Penalty– b, a spring, a dead load on a and a
+/// follower load on b. `damping` is that of the penalty joint and of the spring.
+struct MixedSpace {
+  using Pin = Joint<Revolute, Constraint>;
+  using Ball = Joint<Spherical, Penalty>;
+  using M = Model<Bodies<Rigid<>>, Joints<Pin, Ball>, Forces<SpringDamper, PointForce<>>>;
+
+  static M model(double damping) {
+    M model{Gravity{0.5, -1.0, -9.81}};
+    Bar const bar{.length = 1.2,
+                  .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 2.0, .rotary_inertia = 0.05},
+                  .placement = Placement::at({0.1, 0.2, 0.3}, {0.5, -0.4, 1.0})};
+    Mat3 inertia;
+    inertia << 0.3, 0.02, -0.01, 0.02, 0.4, 0.03, -0.01, 0.03, 0.5;
+    auto const a = model.add(Rigid<>::from(bar), "a");
+    auto const b = model.add(Rigid<>(3.0, inertia, Placement::at({0.9, 0.1, -0.2}, {-1, 0.3, 0.2})), "b");
+    auto const ground = model.ground();
+    model.connect(Ball{Spherical{}, Penalty{.stiffness = 70.0, .damping = damping}}, a.at(1.2, 0.1),
+                  b.at(Vec3(-0.2, 0.1, 0.3)), "ball");
+    model.connect(Pin{Revolute{.axis = Vec3(1, 2, -2) / 3.0}, Constraint{}},
+                  ground.at(Placement::at({0, 0, 0.1}, {0.2, 0.1, 0})), a.at(0.0, 0.0, 0.05), "pin");
+    model.apply(SpringDamper{.stiffness = 40.0, .damping = damping, .free_length = 0.6}, a.at(0.3), b.at(Vec3(0.4, 0, 0)),
+                "strut");
+    model.apply(SpringDamper{.stiffness = 25.0, .free_length = 0.0}, b.at(Vec3(0, 0.2, 0)), ground.at({1, 1, 0}), "rope");
+    model.apply(PointForce<>{.force = {1, 2, -3}}, a.at(0.9, 0.02, 0.1), "dead");
+    model.apply(PointForce<>{.force = {-2, 1, 0.5}, .axes = LoadAxes::marker}, b.at(Vec3(0.1, 0.2, 0.3)), "follower");
+    return model;
+  }
+};
+
+/// A rigid body, a geometrically exact beam and a cable: ground –Revolute and a drive– body –Weld, Constraint–
+/// beam –Weld, Penalty– cable, a spring, a moment in the middle of the cable.
+struct MixedPlane {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  using Fixed = Joint<planar::Weld, Constraint>;
+  using Glue = Joint<planar::Weld, Penalty>;
+  using Drive = Joint<PrescribedAngle<SmoothRamp>, Constraint>;
+  using M = Model<Bodies<planar::Rigid, planar::Lrvf, planar::AncfCable<>>, Joints<Pin, Fixed, Glue, Drive>,
+                  Forces<PointMoment<>, SpringDamper>>;
+
+  static M model(double damping) {
+    M model{Gravity{0.3, -9.81, 0}};
+    Bar bar{.length = 1.0,
+            .constants = BarConstants{.EA = 90, .EI = 4, .mass_per_length = 2.0, .GA = 30, .rotary_inertia = 0.05},
+            .placement = Placement::planar(0.2, 0.1, 0.5),
+            .damping = {.axial = 0.01, .shear = 0.02, .bending = 0.03}};
+    auto const cable = model.add(planar::AncfCable<>::from(bar, 2), "cable");
+    bar.placement = Placement::planar(0.7, 0.4, -0.6);
+    auto const beam = model.add(planar::Lrvf::from(bar, 2), "beam");
+    auto const body = model.add(planar::Rigid(2.0, 0.3, Placement::planar(-0.3, 0.2, 1.0)), "body");
+    auto const ground = model.ground();
+    model.connect(Fixed{}, body.at(Vec2(0.3, -0.1)), beam.at(0.3, 0.05), "fixed");
+    model.connect(Drive{{.law = {.target = 1.1, .duration = 4.0}}, {}}, ground.at({0, 0, 0}), body.at(Vec2(0, 0)),
+                  "drive");
+    model.connect(Glue{planar::Weld{}, Penalty{.stiffness = 50.0, .damping = damping}}, beam.at(0.8), cable.at(0.1, -0.04),
+                  "glue");
+    model.connect(Pin{}, ground.at({0.1, -0.2, 0}), body.at(Vec2(-0.2, 0.1)), "pin");
+    model.apply(PointMoment<>{.moment = {0, 0, 2.5}}, cable.at(0.7), "moment");
+    model.apply(SpringDamper{.stiffness = 40.0, .damping = damping, .free_length = 0.6}, cable.at(1.0), body.at(Vec2(0.1, 0.2)),
+                "strut");
+    return model;
+  }
+};
+
+/// A state away from the reference: coordinates, speeds, accelerations, multipliers, t = 1.3.
+template <class M>
+State scrambled(M const& model, unsigned seed = 1) {
+  Numbers number(seed);
+  State x = model.reference_state();
+  VecX q = x.q;
+  System<M>(model).plus(q, number.vector(model.speeds(), 0.4), x.q);
+  x.v = number.vector(model.speeds());
+  x.a = number.vector(model.speeds(), 2.0);
+  x.lambda = number.vector(model.rows(), 5.0);
+  x.t = 1.3;
+  return x;
+}
+
+}  // namespace polybody
