@@ -436,33 +436,5 @@ TEST(Simulate, StepControlKeepsToTheLargestStep) {
   EXPECT_LT(longest(held, 0.01), 0.0102);  // the last step may be longer by a hundredth
 }
 
-// --- energy ---------------------------------------------------------------------------------------------------
-
-// A tip force of 3 N works until 0.3 s; before and after it the energy stands still.
-TEST(Simulate, EnergyChangesOnlyWhileALoadWorks) {
-  auto const drift_and_gain = [](double step) {
-    Pendulum p;
-    p.model.apply(Push{.force = {0.0, -3.0, 0.0}, .law = {.from = 0.1, .to = 0.3}}, p.rod.at(1.0));
-    double drift = 0.0, plateau = nan, height = nan, work = 0.0;
-    for (State const& now :
-         simulate(p.model, p.x, GeneralizedAlpha{.rho_inf = 1.0}, {.until = 10.0, .step = step})) {
-      double const e = energy(p.model, now).total();
-      if (now.t <= 0.1) drift = std::max(drift, std::abs(e));
-      if (now.t == 0.1) height = p.tip(now)[1];
-      if (now.t == 0.3) {
-        plateau = e;
-        work = -3.0 * (p.tip(now)[1] - height);
-      }
-      if (now.t > 0.3) drift = std::max(drift, std::abs(e - plateau));
-    }
-    EXPECT_GT(work, 0.8);
-    EXPECT_LT(std::abs(plateau - work), 60.0 * step * step);
-    return drift;
-  };
-  double const coarse = drift_and_gain(2e-3), fine = drift_and_gain(1e-3);
-  EXPECT_LT(fine, 1e-4);
-  EXPECT_NEAR(coarse / fine, 4.0, 0.5);  // bounded over ten seconds, and of second order
-}
-
 }  // namespace
 }  // namespace polybody

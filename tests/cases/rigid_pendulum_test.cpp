@@ -105,7 +105,7 @@ namespace {
 struct Swing {
   double t, angle, rate, rx, ry;
 };
-constexpr std::array<Swing, 4> j1{{{0.0, half_pi, 0.0, 0.0, 2.4525},
+constexpr std::array<Swing, 4> swings{{{0.0, half_pi, 0.0, 0.0, 2.4525},
                                    {0.25, 1.114159968059, -3.602307184113, -8.7352815388, 6.7438504085},
                                    {0.5, -0.090352089956, -5.413866990753, 1.9834605859, 24.3453009333},
                                    {1.0, -1.562621718035, 0.490485531299, 0.1804260137, 2.4539749449}}};
@@ -113,7 +113,7 @@ constexpr std::array<Swing, 4> j1{{{0.0, half_pi, 0.0, 0.0, 2.4525},
 template <class C>
 void expect_j1(C const& chain, double tolerance) {
   State x = chain.model.reference_state();
-  for (Swing const& s : j1) {
+  for (Swing const& s : swings) {
     simulate(chain.model, x, precise(), {.until = s.t, .step = 0.01}).run();
     EXPECT_NEAR(chain.angle(x), s.angle, tolerance) << s.t;
     Vec3 const force(s.rx, s.ry, 0.0);
@@ -147,7 +147,7 @@ TEST(RodPendulum, PinBesideTheRodCarriesAMoment) {
   auto const pin = model.connect(Pin{Revolute{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, -d}),
                                  rod.at(Vec3(-0.5, 0, -d)), "pin");
   State x = model.reference_state();
-  for (Swing const& s : j1) {
+  for (Swing const& s : swings) {
     simulate(model, x, precise(), {.until = s.t, .step = 0.01}).run();
     Vec3 const force(s.rx, s.ry, 0.0), moment = d * Vec3::UnitZ().cross(force);
     Wrench<> const world = reaction(model, x, pin), local = reaction(model, x, pin, ReactionAxes::joint);
@@ -223,7 +223,7 @@ TEST(RodPendulum, PeriodOfAStiffPenaltyTendsToThatOfTheConstraint) {
 TEST(RodPendulum, GapOfAPenaltyIsTheReactionOverItsStiffness) {
   auto const expect_gap = [](auto const& chain, double k) {
     State x = chain.model.reference_state();
-    for (Swing const& s : {j1[1], j1[2]}) {
+    for (Swing const& s : {swings[1], swings[2]}) {
       simulate(chain.model, x, GeneralizedAlpha{}, {.until = s.t, .step = 5e-4}).run();
       Vec3 const force(s.rx, s.ry, 0.0);
       EXPECT_NEAR(gap(chain.model, x, chain.hinges[0]).norm(), force.norm() / k, 2e-3 * force.norm() / k) << s.t;

@@ -62,17 +62,17 @@ TEST(Failures, AbsurdStepStallsNewtonAndLeavesTheState) {
 
 namespace {
 
-/// Two bodies; the second is pushed by a force that is no number once t exceeds 0.05.
+/// A force that is no number once t exceeds 0.05.
+constexpr auto poison = [](auto const& frames, double t) {
+  using T = std::decay_t<decltype(frames[0].r[0])>;
+  Wrench<T> w;
+  w.f[1] = T(t > 0.05 ? std::numeric_limits<double>::quiet_NaN() : 1.0);
+  return std::array{w};
+};
+
+/// Two bodies; the second is pushed by it.
 struct Poisoned {
-  static auto law() {
-    return [](auto const& frames, double t) {
-      using T = std::decay_t<decltype(frames[0].r[0])>;
-      Wrench<T> w;
-      w.f[1] = T(t > 0.05 ? std::numeric_limits<double>::quiet_NaN() : 1.0);
-      return std::array{w};
-    };
-  }
-  using Push = decltype(user_force<1>(law()));
+  using Push = UserForce<1, std::remove_const_t<decltype(poison)>>;
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>, Forces<Push>> model;
   State x;
@@ -81,7 +81,7 @@ struct Poisoned {
     auto const sound = model.add(planar::Rigid(1.0, 1.0), "sound one");
     auto const pushed = model.add(planar::Rigid(1.0, 1.0), "pushed one");
     model.connect(Pin{}, model.ground().at({0, 0, 0}), sound.at(Vec2(0, 0)), "pin");
-    model.apply(user_force<1>(law()), pushed.at(Vec2(0, 0)), "push");
+    model.apply(Push{poison}, pushed.at(Vec2(0, 0)), "push");
     x = model.reference_state();
   }
   template <class I>

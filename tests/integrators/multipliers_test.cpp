@@ -57,7 +57,8 @@ Errors in_the_plane(GeneralizedAlpha const& integrator, double h, double then) {
 /// Against Runge–Kutta of order four on the same steps.
 Errors on_se3(GeneralizedAlpha const& integrator, double h, double then) {
   SlowTop top;
-  Stepper run(top.model, top.start, integrator, h), exact(top.model, top.start, RungeKutta4<Projection>{}, h);
+  Stepper run(top.model, top.start, integrator, h);
+  Stepper exact(top.model, top.start, RungeKutta4<Projection>{}, h);
   Errors e;
   auto const advance = [&](double step) {
     run.step(step);

@@ -49,6 +49,8 @@ int posix_memalign(void** p, std::size_t alignment, std::size_t n) {
 }
 #endif
 
+// malloc and new are both replaced here, so pairing free with new is right.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void* operator new(std::size_t n) {
   ++taken;
   if (void* p = std::malloc(n)) return p;

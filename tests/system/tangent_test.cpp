@@ -148,11 +148,13 @@ TEST_P(Tangent, StiffnessIsExactInMotionWithoutDampers) {
 TEST_P(Tangent, StiffnessAgreesWithDifferencesOfTheResidual) {
   MatX k(nv, nv);
   for (Index j = 0; j < nv; ++j)
-    k.col(j) = slope_at_zero([&](double h) {
-      State y = x;
-      y.q = undamped.plus(x.q, VecX::Unit(nv, j) * h);
-      return undamped.residual(y);
-    });
+    k.col(j) = slope_at_zero(
+        [&](double h) {
+          State y = x;
+          y.q = undamped.plus(x.q, VecX::Unit(nv, j) * h);
+          return undamped.residual(y);
+        },
+        3e-4);
   EXPECT_LT(mismatch(stiffness(undamped, x), k), 1e-9);
 }
 
@@ -167,8 +169,8 @@ TEST_P(Tangent, MassIsTheDerivativeOfTheResidualByAcceleration) {
   MatX expected(nv, nv);
   for (Index j = 0; j < nv; ++j) {
     State y = x;
-    y.a[j] += 1.0;
-    expected.col(j) = damped.residual(y) - damped.residual(x);
+    y.a[j] += 1000.0;  // linear in a: a large step leaves little rounding
+    expected.col(j) = (damped.residual(y) - damped.residual(x)) / 1000.0;
   }
   EXPECT_LT(mismatch(m, expected), 1e-12);
 }
@@ -235,12 +237,12 @@ TEST_P(Tangent, BlocksComeInTheSameOrderEveryTime) {
   }
 }
 
-// With everything closed, unloaded and at rest no force is left to turn, and both tangents are one.
-TEST_P(Tangent, SecondOrderTermsVanishWithTheirForces) {
+// What `omitted` leaves out is not small here, and without it the tangent is not the derivative.
+TEST_P(Tangent, SecondOrderTermsCount) {
   MatX const with = damped.tangent(x, {.stiffness = 1.0}, SecondOrder::included);
   MatX const without = damped.tangent(x, {.stiffness = 1.0}, SecondOrder::omitted);
   EXPECT_GT((with - without).norm(), 1.0);
-  MatX const k = by_position(undamped, at_rest(x));  // without second-order terms it is not the derivative
+  MatX const k = by_position(undamped, at_rest(x));
   EXPECT_GT(mismatch(without.topLeftCorner(nv, nv), k), 1e-3);
 }
 

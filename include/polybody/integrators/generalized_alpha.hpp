@@ -18,7 +18,9 @@ struct GeneralizedAlpha {
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
 
-  double rho_inf = 0.8;          ///< spectral radius at infinity, in [0, 1]: 1 keeps energy, 0 damps most
+  /// Spectral radius at infinity, in [0, 1]: 1 keeps energy, 0 damps most. With rows stay below 1 (0.99 will do): there
+  /// the multipliers are only marginally stable, alternate in sign and grow over some thousand steps.
+  double rho_inf = 0.8;
   double tolerance = 1e-8;       ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};
   bool start_correction = true;  ///< second-order multipliers from the first step and across changes of h

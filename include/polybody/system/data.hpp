@@ -55,7 +55,7 @@ struct Data {
 template <class M, class D, class F>
 void for_each_gap(M const& model, D& data, F&& f) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
-    auto const over = [&](auto const& pool, auto& gaps) {
+    [[maybe_unused]] auto const over = [&](auto const& pool, auto& gaps) {
       for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], gaps[i]);
     };
     (over(std::get<I>(model.joint_pools()), std::get<I>(data.gaps)), ...);

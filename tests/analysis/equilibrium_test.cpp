@@ -1,0 +1,194 @@
+#include <polybody/analysis/equilibrium.hpp>
+
+#include <polybody/analysis/observe.hpp>
+#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/penalty.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace {
+
+using planar::Lrvf;
+using Clamp = Joint<planar::Weld, Constraint>;
+using SoftClamp = Joint<planar::Weld, Penalty>;
+
+/// 1, or NaN from t = 1 on.
+struct Breaks {
+  Motion operator()(double t) const { return {t < 1.0 ? 1.0 : std::numeric_limits<double>::quiet_NaN()}; }
+};
+
+using Structure = Model<Bodies<Lrvf>, Joints<Clamp, SoftClamp>, Forces<PointForce<>, PointForce<Breaks>>>;
+
+Bar bar(double stiffness) {
+  return {.length = 1.0,
+          .constants = BarConstants{.EA = stiffness, .EI = 1.0, .mass_per_length = 1.0, .GA = stiffness}};
+}
+
+/// Clamped at the origin, with a tip force `force`.
+struct Held {
+  Structure model;
+  BodyHandle<Lrvf> beam;
+  ElementHandle<Clamp> clamp;
+
+  Held(Bar const& bar, Index n, Vec3 const& force, LoadAxes axes = LoadAxes::world, Gravity const& gravity = {})
+      : model(gravity),
+        beam(model.add(Lrvf::from(bar, n), "beam")),
+        clamp(model.connect(Clamp{}, model.ground().at({0, 0, 0}), beam.at(0.0), "clamp")) {
+    model.apply(PointForce<>{.force = force, .axes = axes}, beam.at(1.0));
+  }
+};
+
+/// The message of the E that equilibrium throws; the state must be as before, to the last bit.
+template <class E>
+std::string refused(Structure const& model, State x, EquilibriumOptions const& options = {}) {
+  x.v.setConstant(0.25);
+  x.a.setConstant(0.5);
+  State const before = x;
+  std::string message;
+  try {
+    equilibrium(model, x, options);
+    ADD_FAILURE() << "equilibrium was reached";
+  } catch (E const& error) {
+    message = error.what();
+  } catch (std::exception const& error) {
+    ADD_FAILURE() << "another exception: " << error.what();
+  }
+  EXPECT_TRUE(x.q == before.q && x.v == before.v && x.a == before.a && x.lambda == before.lambda && x.t == before.t);
+  return message;
+}
+
+// A stiff beam makes Newton contract by turns (θ = 0.01, 0.8, 1e-4, …); stopping on one good rate was 3e-9 off.
+TEST(Equilibrium, DoesNotDependOnTheLoadSteps) {
+  Held const s(bar(1e6), 16, {0, 1, 0});
+  State once = s.model.reference_state();
+  equilibrium(s.model, once);
+  for (int const steps : {2, 3, 10, 20, 40}) {
+    State x = s.model.reference_state();
+    EXPECT_GE(equilibrium(s.model, x, {.load_steps = steps}).parts, steps);
+    EXPECT_LT((x.q - once.q).cwiseAbs().maxCoeff(), 1e-11) << steps;
+    EXPECT_LT((x.lambda - once.lambda).cwiseAbs().maxCoeff(), 1e-7) << steps;  // rounding: EA · 1e-16 · elements
+  }
+}
+
+TEST(Equilibrium, BalancesForcesWithTheReactions) {
+  Held const s(bar(1e4), 10, {0.3, 2, 0}, LoadAxes::world, Gravity{0, -0.7, 0});
+  State x = s.model.reference_state();
+  x.v.setConstant(1.0);
+  equilibrium(s.model, x);
+  Wrench<double> const support = reaction(s.model, x, s.clamp);
+  EXPECT_LT((support.f - Vec3(-0.3, 0.7 - 2.0, 0)).norm(), 1e-9);
+  EXPECT_TRUE(x.v.isZero(0.0) && x.a.isZero(0.0));
+  EXPECT_LT(gap(s.model, x, s.clamp).norm(), 1e-12);
+}
+
+TEST(Equilibrium, OfAStateInEquilibriumIsThatState) {
+  Held const s(bar(1e4), 10, {0, 2, 0});
+  State x = s.model.reference_state();
+  equilibrium(s.model, x, {.load_steps = 3});
+  State again = x;
+  EXPECT_EQ(equilibrium(s.model, again).iterations, 1);
+  EXPECT_LT((again.q - x.q).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// With the whole tangent, the follower's and the reaction's terms too, the digits double with each iteration: nine
+// digits more cost two iterations. (A linear rate of 0.1 would cost nine.)
+TEST(Equilibrium, ConvergesQuadratically) {
+  for (LoadAxes const axes : {LoadAxes::world, LoadAxes::marker}) {
+    Held const s(bar(100.0), 8, {0.5, 2, 0}, axes);
+    int count[3];
+    double const tolerance[3] = {1e-3, 1e-6, 1e-12};
+    for (int i = 0; i < 3; ++i) {
+      State x = s.model.reference_state();
+      count[i] = equilibrium(s.model, x, {.tolerance = tolerance[i]}).iterations;
+    }
+    EXPECT_LE(count[1] - count[0], 1);
+    EXPECT_LE(count[2] - count[0], 2);
+    EXPECT_LE(count[2], 9);
+  }
+}
+
+// 4 elements go to the dense solver, 40 to the sparse one.
+TEST(Equilibrium, NamesTheBodyThatNothingHolds) {
+  for (Index const n : {4, 40})
+    for (double const weight : {0.0, -9.81}) {
+      Held s(bar(1e4), n, {0, 1, 0}, LoadAxes::world, Gravity{0, weight, 0});
+      Bar loose = bar(1e4);
+      loose.placement = Placement::planar(0.3, 0.2, 0.7);
+      auto const body = s.model.add(Lrvf::from(loose, n), "loose");
+      s.model.apply(PointForce<>{.force = {0, 1, 0}}, body.at(1.0));
+      std::string const text = refused<LinearSolverSingular>(s.model, s.model.reference_state());
+      EXPECT_TRUE(has(text, "body \"loose\"")) << n;
+      EXPECT_TRUE(has(text, "Hold every body")) << n;
+    }
+}
+
+TEST(Equilibrium, NamesTheJointThatIsThereTwice) {
+  for (Index const n : {4, 40}) {
+    Held s(bar(1e4), n, {0, 1, 0});
+    s.model.connect(Clamp{}, s.model.ground().at({0, 0, 0}), s.beam.at(0.0), "again");
+    EXPECT_TRUE(has(refused<LinearSolverSingular>(s.model, s.model.reference_state()), "joint \"")) << n;
+  }
+}
+
+TEST(Equilibrium, SaysThatNewtonStalled) {
+  Held const s(bar(1e6), 8, {0, 50, 0});
+  std::string const text = refused<NewtonStalled>(s.model, s.model.reference_state(), {.max_iterations = 1});
+  EXPECT_TRUE(has(text, "load steps"));
+}
+
+TEST(Equilibrium, HalvesAPartThatFailsAndGetsThere) {
+  Held const s(bar(1e6), 16, {0, 50, 0});
+  State x = s.model.reference_state(), small = x;
+  EXPECT_GT(equilibrium(s.model, x).parts, 1);
+  equilibrium(s.model, small, {.load_steps = 40});
+  EXPECT_LT((x.q - small.q).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+TEST(Equilibrium, SaysThatAForceIsNotFinite) {
+  Held s(bar(1e4), 4, {0, 1, 0});
+  s.model.apply(PointForce<Breaks>{.force = {0, 1, 0}}, s.beam.at(0.5));
+  State x = s.model.reference_state();
+  x.t = 1.0;
+  refused<NonFinite>(s.model, x);
+  x.t = 0.5;
+  EXPECT_NO_THROW(equilibrium(s.model, x));
+  EXPECT_EQ(x.t, 0.5);
+}
+
+// A penalty clamp yields by what it bears, g = F/k and k g = M; a stiffer one comes nearer to the constraint.
+TEST(Equilibrium, PenaltySupportsYieldByForceOverStiffness) {
+  Vec3 const force(0.4, 2, 0);
+  Held const ideal(bar(1e4), 8, force);
+  State exact = ideal.model.reference_state();
+  equilibrium(ideal.model, exact);
+  Vec3 const moment = reaction(ideal.model, exact, ideal.clamp).m;
+  double error[3];
+  for (int i = 0; i < 3; ++i) {
+    double const k = std::pow(10.0, 5 + 2 * i);
+    Structure model;
+    auto const beam = model.add(Lrvf::from(bar(1e4), 8), "beam");
+    auto const clamp = model.connect(SoftClamp{{}, Penalty{.stiffness = k, .damping = 0.0}},
+                                     model.ground().at({0, 0, 0}), beam.at(0.0), "soft clamp");
+    model.apply(PointForce<>{.force = force}, beam.at(1.0));
+    State x = model.reference_state();
+    equilibrium(model, x);
+    Vec3 const g = gap(model, x, clamp);
+    EXPECT_NEAR(g[0], force[0] / k, 1e-9 * force[0] / k + 1e-15);
+    EXPECT_NEAR(g[1], force[1] / k, 1e-9 * force[1] / k + 1e-15);
+    Wrench<double> const r = reaction(model, x, clamp);
+    EXPECT_LT((r.f + force).norm(), 1e-6);
+    EXPECT_NEAR(r.m[2], moment[2], 20.0 * std::abs(moment[2]) / k);
+    error[i] = (x.q - exact.q).cwiseAbs().maxCoeff();
+  }
+  EXPECT_NEAR(error[0] / error[1], 100.0, 1.0);
+  EXPECT_NEAR(error[1] / error[2], 100.0, 1.0);
+}
+
+}  // namespace

@@ -1,0 +1,192 @@
+// Planar flexible dynamics against independent computations (CASES D1, D2, D3, D6; parameters as published).
+#include <gtest/gtest.h>
+
+#include <polybody/polybody.hpp>
+
+namespace {
+
+using namespace polybody;
+using planar::EngineeringStrain;
+using planar::Lrvf;
+using Cable = planar::AncfCable<EngineeringStrain>;
+
+Vec2 turned_back(Vec3 const& r, double psi) {
+  return {std::cos(psi) * r[0] + std::sin(psi) * r[1], std::cos(psi) * r[1] - std::sin(psi) * r[0]};
+}
+
+// D1: Simo & Vu-Quoc 1986. Pinned at the origin along x, no gravity.
+Bar svq_arm() {
+  return {.length = 10.0, .constants = BarConstants{.EA = 1e4, .EI = 1e3, .mass_per_length = 1.0, .GA = 1e4, .rotary_inertia = 10.0}};
+}
+
+template <class B, class Law>
+struct DrivenArm {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  using Drive = Joint<PrescribedAngle<Law>, Constraint>;
+  Model<Bodies<B>, Joints<Pin, Drive>> model;
+  BodyHandle<B> arm;
+  DrivenArm(B const& body, Law const& law) : arm(model.add(body, "arm")) {
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
+    model.connect(Drive{{law}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "drive");
+  }
+};
+
+TEST(SimoVuQuocArm, DisplacementDrivenConvergesToTheIndependentSolution) {
+  DrivenArm<Lrvf, Ramp> arm(Lrvf::from(svq_arm(), 40), Ramp{.target = 1.5, .duration = 2.5});
+  State x = arm.model.reference_state();
+  struct Row { double t, x, y; };
+  std::vector<Row> const rows{{0.5, 9.95467, 0.0850}, {1.0, 9.69741, 0.4799}, {2.0, 8.23204, 5.2519},
+                              {2.5, 5.05062, 8.5231}, {3.0, 0.0686, 9.98608}, {5.0, -8.0557, 3.7519}};
+  std::size_t next = 0;
+  double energy_after = 0.0;
+  for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 5.0, .step = 2.5e-3})) {
+    if (next < rows.size() && now.t >= rows[next].t - 1e-9) {
+      Vec3 const tip = position(arm.model, now, arm.arm.at(10.0));
+      EXPECT_NEAR(tip[0], rows[next].x, 0.05) << now.t;  // 0.5 % of L
+      EXPECT_NEAR(tip[1], rows[next].y, 0.05) << now.t;
+      ++next;
+    }
+    if (std::abs(now.t - 3.0) < 1e-9) energy_after = energy(arm.model, now).total();
+  }
+  EXPECT_EQ(next, rows.size());
+  EXPECT_NEAR(energy_after, 256.33, 0.01 * 256.33);
+  EXPECT_NEAR(energy(arm.model, x).total(), energy_after, 0.002 * energy_after);
+}
+
+TEST(SimoVuQuocArm, TenElementsAsInThePaperStayWithinFivePercentOfTheLength) {
+  DrivenArm<Lrvf, Ramp> arm(Lrvf::from(svq_arm(), 10), Ramp{.target = 1.5, .duration = 5.0});
+  State x = arm.model.reference_state();
+  struct Row { double t, x, y; };
+  std::vector<Row> const rows{{1.0, 9.9233, 0.2375}, {2.5, 8.7431, 4.7879}, {5.0, -2.6005, 9.5806}};
+  std::size_t next = 0;
+  for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 5.0, .step = 5e-3}))
+    if (next < rows.size() && now.t >= rows[next].t - 1e-9) {
+      Vec3 const tip = position(arm.model, now, arm.arm.at(10.0));
+      EXPECT_LT((tip - Vec3(rows[next].x, rows[next].y, 0)).norm(), 0.5) << now.t;
+      ++next;
+    }
+  EXPECT_EQ(next, rows.size());
+}
+
+TEST(SimoVuQuocArm, TorqueDrivenKeepsTheImpulseExactly) {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<Lrvf>, Joints<Pin>, Forces<PointMoment<Window>>> model;
+  auto const arm = model.add(Lrvf::from(svq_arm(), 40), "arm");
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
+  model.apply(PointMoment<Window>{.moment = {0, 0, 80}, .law = {.to = 2.5}}, arm.at(0.0), "torque");
+  State x = model.reference_state();
+  GeneralizedAlpha const integrator{.rho_inf = 0.9};
+  simulate(model, x, integrator, {.until = 1.0, .step = 2.5e-3}).run();
+  EXPECT_NEAR(position(model, x, arm.at(10.0))[0], 9.85887, 0.05);
+  EXPECT_NEAR(position(model, x, arm.at(10.0))[1], 0.37794, 0.05);
+  simulate(model, x, integrator, {.until = 2.5, .step = 2.5e-3}).run();
+  EXPECT_NEAR(position(model, x, arm.at(10.0))[0], 8.34343, 0.05);
+  EXPECT_NEAR(position(model, x, arm.at(10.0))[1], 5.51855, 0.05);
+  simulate(model, x, integrator, {.until = 5.0, .step = 2.5e-3}).run();
+  EXPECT_NEAR(momentum(model, x).angular[2], 200.0, 0.01);  // 80 N m for 2.5 s
+  EXPECT_NEAR(energy(model, x).total(), 55.463, 0.01 * 55.463);
+  EXPECT_NEAR(position(model, x, arm.at(10.0))[0], -1.66986, 0.05);
+  EXPECT_NEAR(position(model, x, arm.at(10.0))[1], 9.87162, 0.05);
+}
+
+// D2: Kane, Ryan & Banerjee 1987; the base is clamped to a hub of zero radius.
+Bar kane_beam() {
+  return {.length = 10.0, .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .GA = 1e7, .rotary_inertia = 6e-4}};
+}
+
+template <class B>
+void spin_up(B const& body, double step, double lag_tolerance) {
+  SpinUp const law{.speed = 6.0, .duration = 15.0};
+  DrivenArm<B, SpinUp> arm(body, law);
+  State x = arm.model.reference_state();
+  struct Row { double t, u1, u2; };
+  std::vector<Row> const rows{{2.5, -0.00132267702, -0.15128355864}, {5.0, -0.01265463625, -0.46847618344},
+                              {6.5, -0.01860342132, -0.56994836841}, {7.5, -0.01774186447, -0.55908345896},
+                              {10.0, -0.00707233630, -0.36281451565}};
+  std::size_t next = 0;
+  double stretch = 0.0, lag = 0.0;
+  int count = 0;
+  for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 18.0, .step = step})) {
+    Vec2 const u = turned_back(position(arm.model, now, arm.arm.at(10.0)), law(now.t).value) - Vec2(10.0, 0.0);
+    lag = std::min(lag, u[1]);
+    if (next < rows.size() && now.t >= rows[next].t - 1e-9) {
+      EXPECT_NEAR(u[1], rows[next].u2, lag_tolerance) << now.t;
+      EXPECT_NEAR(u[0], rows[next].u1, 0.1 * lag_tolerance + 2e-5) << now.t;
+      ++next;
+    }
+    if (now.t > 15.0) {
+      stretch += u[0];
+      ++count;
+    }
+  }
+  EXPECT_EQ(next, rows.size());
+  EXPECT_NEAR(lag, -0.573835, lag_tolerance);
+  EXPECT_NEAR(stretch / count, 5.139493e-4, 1e-3 * 5.14e-4);
+}
+
+TEST(SpinUp, CableOfEightElements) { spin_up(Cable::from(kane_beam(), 8), 5e-3, 1e-3 * 0.5738); }
+TEST(SpinUp, LrvfOfTenElements) { spin_up(Lrvf::from(kane_beam(), 10), 5e-3, 1e-2 * 0.5738); }
+
+// D3: the flying rod of Simo & Vu-Quoc 1986, free in the plane.
+template <class B>
+void flying_rod(double EI, int elements, Vec2 const& loaded, Vec2 const& free, double plateau, double tolerance) {
+  Bar const bar{.length = 10.0,
+                .constants = BarConstants{.EA = 1e4, .EI = EI, .mass_per_length = 1.0, .GA = 1e4, .rotary_inertia = 10.0},
+                .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))};
+  Model<Bodies<B>, Joints<>, Forces<PointForce<Window>, PointMoment<Window>>> model;
+  auto const rod = model.add(B::from(bar, elements), "rod");
+  model.apply(PointForce<Window>{.force = {8, 0, 0}, .law = {.to = 2.5}}, rod.at(0.0), "force");
+  model.apply(PointMoment<Window>{.moment = {0, 0, -80}, .law = {.to = 2.5}}, rod.at(0.0), "moment");
+  State x = model.reference_state();
+  simulate(model, x, GeneralizedAlpha{.rho_inf = 0.95}, {.until = 5.0, .step = 2.5e-3}).run();
+  Momentum const p = momentum(model, x);
+  EXPECT_NEAR(p.linear[0], 20.0, 1e-6);  // 8 N for 2.5 s
+  EXPECT_NEAR(p.linear[1], 0.0, 1e-6);
+  Vec3 centre = Vec3::Zero();  // of mass: exact for the linear field by the mid-points
+  for (int i = 0; i < elements; ++i)
+    centre += 0.5 / elements * (position(model, x, rod.at(10.0 * i / elements)) + position(model, x, rod.at(10.0 * (i + 1) / elements)));
+  EXPECT_NEAR(centre[0], 5.5 + 2.0 * 2.5, 2e-4);
+  EXPECT_NEAR(centre[1], 4.0, 1e-6);
+  EXPECT_NEAR(energy(model, x).total(), plateau, 0.02 * plateau);
+  Vec3 const a = position(model, x, rod.at(0.0)), b = position(model, x, rod.at(10.0));
+  EXPECT_LT((a.head<2>() - loaded).norm(), tolerance);
+  EXPECT_LT((b.head<2>() - free).norm(), tolerance);
+}
+
+TEST(FlyingRod, Stiff) { flying_rod<Lrvf>(500.0, 40, {5.6202, 4.7642}, {15.4085, 4.2645}, 90.2, 0.05); }
+TEST(FlyingRod, Flexible) { flying_rod<Lrvf>(100.0, 40, {9.7838, 8.2039}, {8.0742, 1.7588}, 380.0, 0.1); }
+
+// D6b, D6c: pendulums released horizontally.
+template <class B>
+void pendulum(B const& body, std::vector<std::array<double, 3>> const& rows, double step, double tolerance) {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<B>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+  auto const rod = model.add(body, "rod");
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
+  State x = model.reference_state();
+  for (auto const& [t, tip_x, tip_y] : rows) {
+    simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = step}).run();
+    Vec3 const tip = position(model, x, rod.at(1.0));
+    EXPECT_NEAR(tip[0], tip_x, tolerance) << t;
+    EXPECT_NEAR(tip[1], tip_y, tolerance) << t;
+  }
+}
+
+Bar moderate() {  // D6b
+  return {.length = 1.0, .constants = BarConstants{.EA = 1.5e5, .EI = 5.0, .mass_per_length = 1.0, .GA = 4.807692e4, .rotary_inertia = 3.3333333e-5}};
+}
+Bar stiff() {  // D6c
+  return {.length = 1.0, .constants = BarConstants{.EA = 5.25e7, .EI = 10937.5, .mass_per_length = 10.0, .GA = 1.68269e7, .rotary_inertia = 2.08333e-3}};
+}
+// the cable has no shear: the values of the run with GA = 1e6
+TEST(FlexiblePendulum, ModerateCable) {
+  pendulum(Cable::from(moderate(), 8), {{0.5, -0.093390, -0.995671}, {1.0, -0.999921, -0.003370}, {2.0, 0.999386, -0.019993}}, 1e-3, 5e-4);
+}
+TEST(FlexiblePendulum, ModerateLrvf) {
+  pendulum(Lrvf::from(moderate(), 32), {{0.1, 0.997688, -0.061850}, {0.2, 0.957377, -0.288926}, {0.5, -0.093346, -0.995676}, {1.0, -0.999924, -0.003451}}, 1e-3, 5e-4);
+}
+TEST(FlexiblePendulum, StiffCable) {
+  pendulum(Cable::from(stiff(), 8), {{0.1, 0.9972992192, -0.0734484788}, {0.2, 0.9573053663, -0.2890813990}, {0.5, -0.0893682330, -0.9960014555}}, 1e-4, 1e-4);
+}
+
+}  // namespace

@@ -1,0 +1,10 @@
+// refused: has no stabilisation
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+
+using namespace polybody;
+using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Constraint>>>;
+
+void run(M const& model, State& x) { simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 1e-3}); }

@@ -1,0 +1,6 @@
+// refused: Required
+// Numbers that decide physics have no default.
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/spherical.hpp>
+
+polybody::Joint<polybody::Spherical, polybody::Penalty> joint{};

@@ -1,0 +1,11 @@
+// accepted
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+using Pin = Joint<planar::Revolute, Constraint>;
+
+void connect(Model<Bodies<planar::Rigid>, Joints<Pin>>& model, BodyHandle<planar::Rigid> const& body) {
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), body.at({0, 0}));
+}

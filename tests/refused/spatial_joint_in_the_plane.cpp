@@ -1,0 +1,11 @@
+// refused: A joint of the plane joins planar bodies
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+using Ball = Joint<Spherical, Constraint>;
+
+void connect(Model<Bodies<planar::Rigid>, Joints<Ball>>& model, BodyHandle<planar::Rigid> const& body) {
+  model.connect(Ball{}, model.ground().at({0, 0, 0}), body.at({0, 0}));
+}
