@@ -64,9 +64,9 @@ inline void fit(Figure& figure) {
   double const missing = std::max(0.0, 0.35 * wide - (hi[1] - lo[1] + 2.0 * margin));
   figure.x_range = {lo[0] - margin, hi[0] + margin};
   figure.y_range = {lo[1] - margin - 0.5 * missing, hi[1] + margin + 0.5 * missing};
-  double const high = (*figure.y_range)[1] - (*figure.y_range)[0];
+  double const tall = (*figure.y_range)[1] - (*figure.y_range)[0];
   figure.width_px = 1000;
-  figure.height_px = int(std::min(1200.0, 200.0 + 850.0 * high / wide));
+  figure.height_px = int(std::min(1200.0, 200.0 + 850.0 * tall / wide));
 }
 
 // Histories of a run as one CSV file: the columns share their rows.

@@ -73,7 +73,7 @@ TEST(HeavyTop, ConvergesAtSecondOrderWithGeneralizedAlpha) {
   }
   for (auto const* errors : {&early, &late}) {
     EXPECT_GT(std::log2((*errors)[1] / (*errors)[2]), 1.9) << testing::PrintToString(*errors);
-    EXPECT_LT(errors->back(), 2e-5);
+    EXPECT_LT(errors->back(), 2e-4);
   }
 }
 
@@ -122,7 +122,7 @@ TEST(TorqueFreeBody, TumblesAsPublished) {
   FreeBody body;
   double const energy0 = energy(body.model, body.x).kinetic;
   Vec3 const momentum0 = momentum(body.model, body.x).angular;
-  DormandPrince<> const integrator{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12};
+  DormandPrince<> const integrator{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13};
   for (Spin const& e : r7) {
     simulate(body.model, body.x, integrator, {.until = e.t, .step = 0.01}).run();
     EXPECT_LT((body.x.v.tail<3>() - e.omega).norm(), 1e-8) << e.t;

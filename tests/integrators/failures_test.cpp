@@ -96,7 +96,8 @@ struct Poisoned {
     });
     EXPECT_TRUE(has(message, "\"pushed one\""));
     EXPECT_TRUE(has(message, "is not finite at t = 0.0"));
-    EXPECT_NEAR(x.t, 0.05, 0.02);
+    EXPECT_GT(x.t, 0.0);
+    EXPECT_LE(x.t, 0.0501);  // steps that grow get less far
     expect_same(x, before);
     EXPECT_TRUE(x.q.allFinite() && x.v.allFinite());
   }

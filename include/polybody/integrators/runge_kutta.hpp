@@ -102,7 +102,7 @@ struct DormandPrince {
 
   double relative_tolerance = 1e-8;
   double absolute_tolerance = 1e-10;
-  double smallest_step = 1e-12;  ///< [s]
+  double smallest_step = 1e-12;  ///< that may be chosen [s]
   Stabilisation stabilisation = {};
 
   void check() const {
@@ -154,7 +154,7 @@ struct DormandPrince {
         report.evaluations += 1;
         report.factorisations += 1;
         report.taken = h;
-        report.next = h * factor;
+        report.next = std::max(h * factor, smallest_step);
         return report;
       }
       ++report.rejected;

@@ -83,7 +83,7 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
     earlier = before;
     before = norm;
     double const rate = std::min(theta, 0.99);
-    bool const small = norm <= 1e-3 || (k > 0 && norm <= 0.1);  // the latter: rounding no longer contracts
+    bool const small = norm <= 0.1;  // rounding no longer contracts
     if (options.always_refactor ? norm <= 1.0 : small || (theta < 1.0 && rate / (1.0 - rate) * norm <= 1.0))
       return report;
   }
