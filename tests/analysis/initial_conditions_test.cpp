@@ -85,7 +85,7 @@ TEST(InitialConditions, TheJointThatIsOpenMostIsNamed) {
   // the point of the coupler less that of the rocker, by trigonometry
   double const x = std::cos(1.2) + 2.0 * std::cos(0.3) - 2.0 - 1.5 * std::cos(1.5);
   double const y = std::sin(1.2) + 2.0 * std::sin(0.3) - 1.5 * std::sin(1.5);
-  EXPECT_TRUE(has(message, std::to_string(std::max(std::abs(x), std::abs(y)))));
+  EXPECT_TRUE(has(message, number(std::max(std::abs(x), std::abs(y)))));
 }
 
 TEST(InitialConditions, TheToleranceDecides) {

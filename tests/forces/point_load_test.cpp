@@ -66,6 +66,13 @@ TEST(PointLoads, GradientIsThatOfTheLoadThatTurns) {
   EXPECT_EQ(wrench_gradient(PointForce<>{.force = load}, frame, 0.0, 1.0, 1.0).norm(), 0.0);
 }
 
+TEST(PointLoads, RefuseALawThatCannotBeMeant) {
+  PointForce<Ramp> const force{.force = load, .law = {.target = 1.0, .duration = -1.0}};
+  EXPECT_TRUE(has(refusal([&] { force.check("\"push\""); }), "\"push\": the law of time: the duration"));
+  PointMoment<Window> const moment{.moment = load, .law = {.from = 1.0, .to = 1.0}};
+  EXPECT_TRUE(has(refusal([&] { moment.check("\"turn\""); }), "\"turn\": the law of time: a window"));
+}
+
 TEST(PointLoads, RefuseNanByName) {
   EXPECT_TRUE(has(refusal([] { PointForce<>{.force = {0, nan_, 0}}.check("\"push\""); }), "\"push\": the force"));
   EXPECT_TRUE(has(refusal([] { PointMoment<>{.moment = {0, 0, nan_}}.check("\"turn\""); }), "\"turn\": the moment"));

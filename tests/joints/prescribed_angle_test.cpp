@@ -74,6 +74,11 @@ TEST(PrescribedAngle, TellsTheCornersOfItsLaw) {
   EXPECT_TRUE(drive.corners().empty());
 }
 
+TEST(PrescribedAngle, RefusesALawThatCannotBeMeant) {
+  PrescribedAngle<Ramp> const drive{.law = {.target = 1.0, .duration = 0.0}};
+  EXPECT_TRUE(has(refusal([&] { drive.check("\"drive\""); }), "\"drive\": the law of time: the duration"));
+}
+
 TEST(PrescribedAngle, RefusesAnAxisThatIsNotAUnitVector) {
   Drive lame = drive;
   lame.axis = {0, 0, 0};

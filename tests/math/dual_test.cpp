@@ -163,6 +163,13 @@ TEST(Dual, MinAndMaxTakeTheBranchWithItsDerivative) {
   expect_dual(max(x, D(5.0)), 5.0, 0, 0);
 }
 
+// The slope of √ is infinite there, but a constant has none: the norm of a vector that stays zero is no NaN.
+TEST(Dual, RootOfAConstantZeroIsAConstantZero) {
+  EXPECT_EQ(sqrt(Dual<2>(0.0)).d[0], 0.0);
+  EXPECT_EQ(sqrt(Dual<2>::variable(0.0, 1)).d[0], 0.0);
+  EXPECT_EQ(sqrt(Dual<2>::variable(0.0, 1)).d[1], std::numeric_limits<double>::infinity());
+}
+
 TEST(Dual, BranchesByValue) {
   auto const clamp = [](auto const& a) { return a > 1.0 ? decltype(a * a)(1.0) : a * a; };
   expect_dual(clamp(x), 0.49, 1.4, 0);

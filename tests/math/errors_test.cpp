@@ -41,4 +41,11 @@ TYPED_TEST(EveryError, DerivesFromNoOtherKind) {
   EXPECT_EQ(All<Kinds>::template of<TypeParam>, 1);
 }
 
+TEST(Number, IsReadableAtAnySize) {
+  EXPECT_EQ(number(-1e-9), "-1e-09");
+  EXPECT_EQ(number(0.1 + 0.2), "0.3");
+  EXPECT_EQ(number(-5.0), "-5");
+  EXPECT_EQ(number(123456.789), "123456.789");
+}
+
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "support/refusal.hpp"
+
 using namespace polybody;
 
 namespace {
@@ -114,6 +116,20 @@ TEST(Window, IsClosedAtItsBeginAndOpenAtItsEnd) {
 TEST(Window, IsOpenForeverUnlessToldOtherwise) {
   EXPECT_EQ(Window{}(1e300).value, 1.0);
   EXPECT_EQ(Window{}(-1e-300).value, 0.0);
+}
+
+TEST(TimeLaws, RefuseNumbersThatCannotBeMeant) {
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(has(refusal([] { check_law(Ramp{.target = 1.0, .duration = 0.0}, "drive"); }),
+                  "drive: the duration must be positive and finite, but is 0."));
+  EXPECT_TRUE(has(refusal([] { check_law(SmoothRamp{.target = 1.0, .duration = -2.5}, "drive"); }), "but is -2.5."));
+  EXPECT_TRUE(has(refusal([&] { check_law(SmoothRamp{.target = nan, .duration = 1.0}, "drive"); }), "target"));
+  EXPECT_TRUE(has(refusal([&] { check_law(Ramp{.target = 1.0, .duration = 1.0, .start = nan}, "drive"); }), "start"));
+  EXPECT_TRUE(has(refusal([&] { check_law(SpinUp{.speed = 1.0, .duration = nan}, "hub"); }), "hub: the duration"));
+  EXPECT_TRUE(has(refusal([] { check_law(Window{.from = 2.0, .to = 1.0}, "load"); }), "from = 2, to = 1"));
+  EXPECT_TRUE(has(refusal([&] { check_law(Window{.value = nan}, "load"); }), "finite value"));
+  EXPECT_NO_THROW(check_law(Window{}, "load"));
+  EXPECT_NO_THROW(check_law([](double t) { return Motion{t, 1.0, 0.0}; }, "a lambda is not asked"));
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
     trial = before;
     part *= 0.5;
     if (part >= options.smallest_part) continue;
-    std::string const at = " at load factor " + std::to_string(system.load_factor);
+    std::string const at = " at load factor " + number(system.load_factor);
     if (n.result == NewtonResult::singular)
       throw LinearSolverSingular("equilibrium: the stiffness is singular" + at + ", first at " +
                                  system.name_of(std::max<Index>(problem.bad, 0)) +

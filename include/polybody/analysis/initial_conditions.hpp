@@ -27,7 +27,7 @@ void require_assembled(System<M>& system, State const& x, double tolerance = 1e-
   Index worst = 0;
   if (phi.size() == 0 || phi.cwiseAbs().maxCoeff(&worst) <= tolerance) return;
   throw InconsistentStart("At the start " + system.name_of(system.speeds() + worst) + " is open by " +
-                          std::to_string(std::abs(phi[worst])) + ". Place the bodies so that it closes, or call "
+                          number(std::abs(phi[worst])) + ". Place the bodies so that it closes, or call "
                           "assemble(model, x).");
 }
 

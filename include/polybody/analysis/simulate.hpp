@@ -65,6 +65,7 @@ class Simulation {
     require_assembled(*system_, x, options_.assembly_tolerance);
     h_ = std::min<double>(options_.step, largest_step());
     pass_corners();
+    for (Event const& event : options_.events) sides_.push_back(side(event, x));
     restart();
   }
 
@@ -132,8 +133,8 @@ class Simulation {
     require_positive(options_.step, "simulate: the step");
     if (options_.largest_step) require_positive(*options_.largest_step, "simulate: the largest step");
     if (!(options_.until >= x_->t) || !std::isfinite(options_.until))
-      throw InvalidInput("simulate: the end " + std::to_string(options_.until) + " s lies before the start " +
-                         std::to_string(x_->t) + " s.");
+      throw InvalidInput("simulate: the end " + number(options_.until) + " s lies before the start " +
+                         number(x_->t) + " s.");
     for (Event const& event : options_.events) {
       if (!event.value) throw InvalidInput("simulate: the event \"" + event.name + "\" has no value.");
       require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");
@@ -203,6 +204,14 @@ class Simulation {
       h_ = std::min(shortened ? std::max(r.next, h_) : r.next, largest_step());
   }
 
+  /// The sign of the event's value. \throws NonFinite.
+  static int side(Event const& event, State const& x) {
+    double const y = event.value(x);
+    if (!std::isfinite(y))
+      throw NonFinite("The event \"" + event.name + "\" is not finite at t = " + number(x.t) + " s.");
+    return (y > 0.0) - (y < 0.0);
+  }
+
   /// Ends the step at the first event within it, by bisection on the step's length from `before`.
   bool meet_events(State const& before, double taken) {
     auto const after = [&](double h) {
@@ -213,27 +222,20 @@ class Simulation {
       }
       return trial;
     };
-    auto const value = [](Event const& event, State const& x) {
-      double const y = event.value(x);
-      if (!std::isfinite(y))
-        throw NonFinite("The event \"" + event.name + "\" is not finite at t = " + std::to_string(x.t) + " s.");
-      return y;
-    };
-    auto const passed = [&](Event const& event, State const& x) {
-      double const start = value(event, before), now = value(event, x);
-      return start != 0.0 && (now == 0.0 || (now > 0.0) != (start > 0.0));
+    auto const passed = [&](std::size_t i, State const& x) {
+      return sides_[i] != 0 && side(options_.events[i], x) != sides_[i];
     };
     State first = *x_;
     bool met = false;
-    for (Event const& event : options_.events) {
-      if (!passed(event, *x_)) continue;
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      if (!passed(i, *x_)) continue;
       met = true;
       double lo = 0.0, hi = taken;
-      while (hi - lo > event.tolerance) {
+      while (hi - lo > options_.events[i].tolerance) {
         double const mid = 0.5 * (lo + hi);
         if (mid <= lo || mid >= hi) break;
         State trial = after(mid);
-        if (!passed(event, trial)) {
+        if (!passed(i, trial)) {
           lo = mid;
           continue;
         }
@@ -241,14 +243,16 @@ class Simulation {
         if (trial.t < first.t) first = std::move(trial);
       }
     }
-    if (!met) return false;
-    *x_ = std::move(first);
-    for (Event const& event : options_.events)
-      if (passed(event, *x_)) {
+    if (met) *x_ = std::move(first);
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      Event const& event = options_.events[i];
+      if (met && passed(i, *x_)) {
         report_.events.push_back({event.name, x_->t});
         report_.stopped = report_.stopped || event.stops;
       }
-    return true;
+      sides_[i] = side(event, *x_);
+    }
+    return met;
   }
 
   std::unique_ptr<System<M>> system_;  // workspaces refer to it
@@ -258,6 +262,7 @@ class Simulation {
   decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System<M>&>())) workspace_;
   std::vector<double> corners_;
   std::size_t next_corner_ = 0;
+  std::vector<int> sides_;  // of the events at the end of the last step: each is met once, however a restart rounds
   double h_ = 0.0;
   RunReport report_;
 };

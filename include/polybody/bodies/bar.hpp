@@ -68,7 +68,7 @@ inline BarConstants constants_of_section(Bar const& bar) {
   require_positive(m.young, "Bar: Young's modulus");
   if (!(m.poisson > -1.0 && m.poisson <= 0.5))
     throw InvalidInput("Bar: Poisson's ratio must lie in (-1, 0.5], but is " +
-                       std::to_string(m.poisson) + ".");
+                       number(m.poisson) + ".");
   double const nu = m.poisson;
   double area = 0, iz = 0, iy = 0, torsion = 0, shear = 0;
   if (auto const* c = std::get_if<Circle>(&bar.section)) {
@@ -131,8 +131,8 @@ inline BarConstants constants(Bar const& bar) {
 inline double require_inside(double s, double length, std::string const& what) {
   double const slack = 1e-12 * length;
   if (!(s >= -slack && s <= length + slack))
-    throw InvalidInput(what + ": s = " + std::to_string(s) + " lies outside the body, 0 <= s <= " +
-                       std::to_string(length) + ".");
+    throw InvalidInput(what + ": s = " + number(s) + " lies outside the body, 0 <= s <= " +
+                       number(length) + ".");
   return std::min(std::max(s, 0.0), length);
 }
 

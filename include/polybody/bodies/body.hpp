@@ -51,7 +51,8 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
 };
 
 /// ∂(Jᵀw)/∂q, columns × columns, of a marker with J of fixed width by dual numbers: the default for a body
-/// that has no closed form. q is moved by ⊞ in the marker's own columns.
+/// that has no closed form and whose coordinates add, q ⊞ δ = q + δ. `body.local(p)` is p in a body made of the
+/// marker's columns only.
 template <class B>
 void load_stiffness_by_duals(B const& body, typename B::Point const& p, std::span<double const> q,
                              Wrench<double> const& w,

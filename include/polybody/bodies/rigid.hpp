@@ -22,10 +22,10 @@ inline void require_inertia(Mat3 const& inertia, std::string const& what) {
   Vec3 const i = principal.eigenvalues();
   if (i[0] < -1e-9 * size)
     throw InvalidInput(what + ": a principal moment of inertia is negative (" +
-                       std::to_string(i[0]) + ").");
+                       number(i[0]) + ").");
   if (i[2] > (i[0] + i[1]) * (1.0 + 1e-9))
-    throw InvalidInput(what + ": the principal moments of inertia " + std::to_string(i[0]) + ", " +
-                       std::to_string(i[1]) + ", " + std::to_string(i[2]) +
+    throw InvalidInput(what + ": the principal moments of inertia " + number(i[0]) + ", " +
+                       number(i[1]) + ", " + number(i[2]) +
                        " violate the triangle inequality; no body has them.");
 }
 

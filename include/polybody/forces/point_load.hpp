@@ -34,7 +34,10 @@ struct PointForce {
   LoadAxes axes = LoadAxes::world;
   Law law = {};                      ///< factor as a function of time
 
-  void check(std::string const& name) const { require_finite(force, name + ": the force"); }
+  void check(std::string const& name) const {
+    require_finite(force, name + ": the force");
+    check_law(law, name + ": the law of time");
+  }
 
   template <StateScalar T>
   std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const& frame, double t) const {
@@ -55,7 +58,10 @@ struct PointMoment {
   LoadAxes axes = LoadAxes::world;
   Law law = {};                      ///< factor as a function of time
 
-  void check(std::string const& name) const { require_finite(moment, name + ": the moment"); }
+  void check(std::string const& name) const {
+    require_finite(moment, name + ": the moment");
+    check_law(law, name + ": the law of time");
+  }
 
   template <StateScalar T>
   std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const& frame, double t) const {

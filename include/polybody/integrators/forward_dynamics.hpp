@@ -107,7 +107,7 @@ class ForwardDynamics {
 
   [[noreturn]] static void singular(System<M> const& system, Index i) {
     throw LinearSolverSingular(
-        "The equations of motion have no unique acceleration at t = " + std::to_string(system.time()) +
+        "The equations of motion have no unique acceleration at t = " + number(system.time()) +
         " s; the pivot is lost at " + system.name_of(i) +
         ". Look for a joint that repeats another, or a body without inertia that is free to move.");
   }

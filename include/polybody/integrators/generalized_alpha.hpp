@@ -29,7 +29,7 @@ struct GeneralizedAlpha {
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
   void check() const {
     if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
-      throw InvalidInput("GeneralizedAlpha: rho_inf must lie in [0, 1], but is " + std::to_string(rho_inf) + ".");
+      throw InvalidInput("GeneralizedAlpha: rho_inf must lie in [0, 1], but is " + number(rho_inf) + ".");
     require_positive(tolerance, "GeneralizedAlpha: the tolerance");
   }
 
@@ -179,7 +179,7 @@ struct GeneralizedAlpha {
   template <class M>
   [[noreturn]] void fail(System<M> const& system, double t, NewtonReport const& report, Index bad,
                          VecX const& rhs) const {
-    std::string const when = " at t = " + std::to_string(t) + " s";
+    std::string const when = " at t = " + number(t) + " s";
     if (report.result == NewtonResult::singular)
       throw LinearSolverSingular("GeneralizedAlpha: the tangent is singular" + when + ", first at " +
                                  system.name_of(std::max<Index>(bad, 0)) +
@@ -192,7 +192,7 @@ struct GeneralizedAlpha {
     }
     throw NewtonStalled("GeneralizedAlpha: Newton's method did not converge" + when + " after " +
                         std::to_string(report.iterations) + " iterations (contraction " +
-                        std::to_string(report.theta) + "). Take a smaller step; the state is as before it.");
+                        number(report.theta) + "). Take a smaller step; the state is as before it.");
   }
 
   /// The method's a and v stand off those of the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12) (Δ = α_m − α_f,

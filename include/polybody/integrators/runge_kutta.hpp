@@ -160,8 +160,8 @@ struct DormandPrince {
       ++report.rejected;
       h *= std::isfinite(error) ? factor : 0.2;
       if (h < smallest_step)
-        throw StepTooSmall("DormandPrince: the error asks for a step below " + std::to_string(smallest_step) +
-                           " s at t = " + std::to_string(x.t) +
+        throw StepTooSmall("DormandPrince: the error asks for a step below " + number(smallest_step) +
+                           " s at t = " + number(x.t) +
                            " s. The model is stiff or jumps here: use an implicit integrator or name the corner.");
     }
   }

@@ -29,7 +29,7 @@ struct Projection {
       if (forward.project_positions_once(system, q, v, t) <= enough) break;
       if (k == max_iterations)
         throw NewtonStalled("Projection: the positions cannot be brought back to the joints at t = " +
-                            std::to_string(t) + " s. Take a smaller step.");
+                            number(t) + " s. Take a smaller step.");
     }
     forward.project_velocities(system, q, v, t);
   }

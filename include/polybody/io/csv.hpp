@@ -47,7 +47,7 @@ class Csv {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i]))
         throw InvalidInput(where() + ", column '" + columns_[i] + "': the value is not finite (" +
-                           std::to_string(values[i]) + ")");
+                           number(values[i]) + ")");
       char digits[32];
       line_.append(digits, std::to_chars(digits, digits + sizeof digits, values[i]).ptr) += ',';
     }

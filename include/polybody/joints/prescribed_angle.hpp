@@ -22,6 +22,7 @@ struct PrescribedAngle {
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
 
   Mat3 triad() const { return polybody::rows::triad_about(axis, "PrescribedAngle: the axis"); }
+  void check(std::string const& what) const { check_law(law, what + ": the law of time"); }
   std::vector<double> corners() const {
     if constexpr (HasCorners<Law>)
       return law.corners();

@@ -51,6 +51,7 @@ struct Dual {
 
   friend Dual sqrt(Dual const& a) {
     double const s = std::sqrt(a.v);
+    if (s == 0.0) return {s, (a.d == 0.0).select(0.0, a.d / 0.0)};  // a constant zero stays one
     return {s, a.d * (0.5 / s)};
   }
   friend Dual sin(Dual const& a) { return {std::sin(a.v), a.d * std::cos(a.v)}; }

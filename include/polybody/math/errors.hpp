@@ -2,10 +2,18 @@
 /// \file
 /// The exceptions of the library. Each message names the object, where known the time, and the remedy.
 
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
 namespace polybody {
+
+/// `x` as it stands in a message: up to nine digits.
+inline std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
 
 /// Base of every exception that polybody throws.
 class Error : public std::runtime_error {

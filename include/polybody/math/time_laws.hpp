@@ -31,6 +31,23 @@ concept HasCorners = requires(L const law) {
   { law.corners() } -> std::convertible_to<std::vector<double>>;
 };
 
+/// Calls `law.check(what)` of a law that has one. \throws InvalidInput for numbers that cannot be meant.
+template <TimeLaw Law>
+void check_law(Law const& law, std::string const& what) {
+  if constexpr (requires { law.check(what); }) law.check(what);
+}
+
+namespace detail {
+
+inline void check_ramp(double target, double duration, double start, std::string const& what) {
+  require_positive(duration, what + ": the duration");
+  if (!std::isfinite(target) || !std::isfinite(start))
+    throw InvalidInput(what + ": target and start must be finite, but are " + number(target) + " and " +
+                       number(start) + ".");
+}
+
+}  // namespace detail
+
 /// 0 until `start`, then linear to `target` in `duration`, constant afterwards. The rate jumps at both
 /// ends; the value at a corner is that of the piece that begins there.
 struct Ramp {
@@ -38,6 +55,7 @@ struct Ramp {
   Required<double> duration;
   double start = 0.0;
 
+  void check(std::string const& what) const { detail::check_ramp(target, duration, start, what); }
   Motion operator()(double t) const {
     if (t < start) return {};
     if (t >= start + duration) return {target, 0.0, 0.0};
@@ -53,6 +71,7 @@ struct SmoothRamp {
   Required<double> duration;
   double start = 0.0;
 
+  void check(std::string const& what) const { detail::check_ramp(target, duration, start, what); }
   Motion operator()(double t) const {
     if (t < start) return {};
     if (t >= start + duration) return {target, 0.0, 0.0};
@@ -69,6 +88,7 @@ struct SpinUp {
   Required<double> speed;     ///< [rad/s]
   Required<double> duration;  ///< T [s]
 
+  void check(std::string const& what) const { detail::check_ramp(speed, duration, 0.0, what); }
   Motion operator()(double t) const {
     if (t <= 0.0) return {};
     double const period = duration;
@@ -91,6 +111,11 @@ struct Window {
   double to = std::numeric_limits<double>::infinity();
   double value = 1.0;
 
+  void check(std::string const& what) const {
+    if (!(from < to) || !std::isfinite(value))
+      throw InvalidInput(what + ": a window needs from < to and a finite value, but has from = " + number(from) +
+                         ", to = " + number(to) + ", value = " + number(value) + ".");
+  }
   Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }
   std::vector<double> corners() const { return {from, to}; }
 };

@@ -43,13 +43,13 @@ struct Required {
 /// \throws InvalidInput unless `x` is finite and positive; `what` names the object and the quantity.
 inline void require_positive(double x, std::string const& what) {
   if (!(x > 0.0) || !std::isfinite(x))
-    throw InvalidInput(what + " must be positive and finite, but is " + std::to_string(x) + ".");
+    throw InvalidInput(what + " must be positive and finite, but is " + number(x) + ".");
 }
 
 /// \throws InvalidInput unless `x` is finite and not negative.
 inline void require_not_negative(double x, std::string const& what) {
   if (!(x >= 0.0) || !std::isfinite(x))
-    throw InvalidInput(what + " must be zero or positive and finite, but is " + std::to_string(x) +
+    throw InvalidInput(what + " must be zero or positive and finite, but is " + number(x) +
                        ".");
 }
 
@@ -64,7 +64,7 @@ inline void require_unit(Vec3 const& axis, std::string const& what) {
   require_finite(axis, what);
   if (std::abs(axis.norm() - 1.0) > 1e-9)
     throw InvalidInput(what + " must be a unit vector, but has length " +
-                       std::to_string(axis.norm()) + ". Normalise it.");
+                       number(axis.norm()) + ". Normalise it.");
 }
 
 }  // namespace polybody

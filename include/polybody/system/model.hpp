@@ -74,6 +74,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     } catch (InvalidInput const& e) {
       throw InvalidInput("\"" + name + "\": " + e.what());
     }
+    if constexpr (requires { joint.geometry.check(name); }) joint.geometry.check("\"" + name + "\"");
     if constexpr (AddsForce<typename J::PolicyType>) joint.policy.check("\"" + name + "\"");
     Index const pa = publish_at(a, reference_axes(a).transpose() * triad);
     Index const pb = publish_at(b, reference_axes(b).transpose() * triad);

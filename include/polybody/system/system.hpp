@@ -90,14 +90,14 @@ class System {
   void require_finite_force(VecX const& x) const {
     for (Index i = 0; i < x.size(); ++i)
       if (!std::isfinite(x[i]))
-        throw NonFinite("A force on " + name_of(i) + " is not finite at t = " + std::to_string(t_) +
+        throw NonFinite("A force on " + name_of(i) + " is not finite at t = " + number(t_) +
                         " s. Look at the forces applied to it and at the state before.");
   }
   /// \throws NonFinite naming joint and time when an entry of x (by rows) is NaN or infinite.
   void require_finite_rows(VecX const& x) const {
     for (Index i = 0; i < x.size(); ++i)
       if (!std::isfinite(x[i]))
-        throw NonFinite("The motion at " + name_of(speeds() + i) + " is not finite at t = " + std::to_string(t_) +
+        throw NonFinite("The motion at " + name_of(speeds() + i) + " is not finite at t = " + number(t_) +
                         " s. Look at the state before, or take a smaller step.");
   }
 

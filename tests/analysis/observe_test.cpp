@@ -1,0 +1,112 @@
+// Energies, momenta and what is asked of a single state.
+#include <polybody/analysis/observe.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/energy.hpp>
+
+#include "support/mixed_models.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace {
+
+/// A rod of 3 kg and 2 m, 0.5 m from the origin, between two springs.
+struct Rod {
+  using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>;
+  M model{Gravity{0, -10.0, 0}};
+  BodyHandle<planar::Rigid> rod = model.add(planar::Rigid(3.0, 1.0, Placement::planar(0.5, 0.25)), "rod");
+  State x;
+
+  Rod() {
+    model.apply(SpringDamper{.stiffness = 8.0, .free_length = 0.25}, model.ground().at({0.5, -0.75, 0}),
+                rod.at(Vec2(0, 0)), "spring");
+    x = model.reference_state();
+    model.set_velocity(x, rod, {1.0, 2.0, 0}, {0, 0, -4.0});
+  }
+};
+
+}  // namespace
+
+// v of the middle is (1, 2) + ω × (0.5, 0.25) = (1 + 1, 2 − 2).
+TEST(Energy, IsThatOfTheHandCalculation) {
+  Rod const r;
+  Energy const e = energy(r.model, r.x);
+  EXPECT_NEAR(e.kinetic, 0.5 * 3.0 * 4.0 + 0.5 * 1.0 * 16.0, 1e-13);
+  EXPECT_NEAR(e.gravity, 3.0 * 10.0 * 0.25, 1e-13);
+  EXPECT_NEAR(e.forces, 0.5 * 8.0 * 0.75 * 0.75, 1e-13);
+  EXPECT_EQ(e.strain, 0.0);
+  EXPECT_EQ(e.joints, 0.0);
+  EXPECT_NEAR(e.total(), e.kinetic + e.potential(), 1e-13);
+}
+
+TEST(Momentum, IsThatOfTheHandCalculation) {
+  Rod const r;
+  Momentum const p = momentum(r.model, r.x);
+  EXPECT_LT((p.linear - Vec3(6.0, 0.0, 0.0)).norm(), 1e-13);
+  // r × m v + I ω = 0.5 · 0 − 0.25 · 6 − 4
+  EXPECT_LT((p.angular - Vec3(0, 0, -5.5)).norm(), 1e-13);
+}
+
+// Without damping, drives and dead loads the power of the residual forces is the rate of the potential:
+// d(potential)/dt = v·(M a − r)|… = −v·f, differenced along q ⊞ v t.
+TEST(Energy, PotentialFallsByThePowerOfTheForces) {
+  using M = Model<Bodies<planar::Lrvf, planar::AncfCable<>>, Joints<Joint<planar::Weld, Penalty>>, Forces<SpringDamper>>;
+  M model{Gravity{0.3, -9.81, 0}};
+  Bar const bar{.length = 1.0,
+                .constants = BarConstants{.EA = 90, .EI = 4, .mass_per_length = 2.0, .GA = 30, .rotary_inertia = 0.05}};
+  auto const beam = model.add(planar::Lrvf::from(bar, 2));
+  auto const cable = model.add(planar::AncfCable<>::from(bar, 2));
+  model.connect(Joint<planar::Weld, Penalty>{{}, {.stiffness = 50.0, .damping = 0.0}}, beam.at(0.8), cable.at(0.1));
+  model.apply(SpringDamper{.stiffness = 40.0, .free_length = 0.6}, cable.at(1.0), model.ground().at({0, 1, 0}));
+  State const x = scrambled(model);
+  System system(model);
+  auto const potential = [&](double s) {
+    State y = x;
+    system.plus(x.q, s * x.v, y.q);
+    return energy(model, y).potential();
+  };
+  double const h = 1e-4;
+  double const rate = (8.0 * (potential(h) - potential(-h)) - (potential(2 * h) - potential(-2 * h))) / (12.0 * h);
+  // at rest the residual without accelerations is minus the potential's force
+  system.evaluate(x.q, VecX::Zero(model.speeds()), 0.0);
+  VecX r = VecX::Zero(model.speeds());
+  system.residual(VecX::Zero(model.speeds()), VecX::Zero(0), r);
+  EXPECT_NEAR(r.dot(x.v), rate, 1e-8 * std::abs(rate));
+}
+
+TEST(Reaction, TurnsIntoTheAxesOfTheJoint) {
+  auto const model = MixedSpace::model(1.0);
+  State const x = scrambled(model);
+  ElementHandle<MixedSpace::Pin> const pin{model.serial(), 0, "pin"};
+  Wrench<> const world = reaction(model, x, pin), local = reaction(model, x, pin, ReactionAxes::joint);
+  EXPECT_NEAR(world.f.norm(), local.f.norm(), 1e-12);
+  EXPECT_NEAR(world.m.norm(), local.m.norm(), 1e-12);
+  EXPECT_GT((world.f - local.f).norm(), 1e-3);
+}
+
+TEST(Observe, ReadsPartsOfTheState) {
+  Rod const r;
+  auto const q = coordinates_of(r.model, r.x, r.rod), v = speeds_of(r.model, r.x, r.rod);
+  ASSERT_EQ(q.size(), 3u);
+  EXPECT_EQ(q[0], 0.5);
+  EXPECT_EQ(q[1], 0.25);
+  EXPECT_NEAR(v[0], 2.0, 1e-15);
+  EXPECT_NEAR(v[2], -4.0, 1e-15);
+  EXPECT_EQ(position(r.model, r.x, r.model.ground().at({1, 2, 3})), Vec3(1, 2, 3));
+}
+
+// Thesis Table 3.4: a unit quaternion counts four coordinates and one constraint.
+TEST(Census, CountsAsTheThesisDoes) {
+  auto const space = census(MixedSpace::model(0.0));
+  EXPECT_EQ(space.coordinates, 14);
+  EXPECT_EQ(space.speeds, 12);
+  EXPECT_EQ(space.rows, 5);
+  EXPECT_EQ(space.constraints, 7);
+  EXPECT_EQ(space.degrees_of_freedom, 7);
+  auto const plane = census(MixedPlane::model(0.0));
+  EXPECT_EQ(plane.coordinates, 3 + 9 + 12);
+  EXPECT_EQ(plane.rows, 2 + 3 + 1);
+  EXPECT_EQ(plane.degrees_of_freedom, 24 - 6);
+}
