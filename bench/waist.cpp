@@ -38,7 +38,7 @@ struct Fixture {
   Chain model;
   System<Chain> system;
   VecX q, v, a, lambda, r, phi, rhs, x;
-  SparseLu solver;
+  EigenSparseLu solver;
 
   explicit Fixture(int links)
       : model(make_chain(links)), system(model), q(model.reference_state().q), v(VecX::Random(model.speeds())),
@@ -73,15 +73,15 @@ struct Fixture {
 // The same by hand: no markers, no gaps, no types; every constant of this chain is known.
 struct Fused {
   int links;
-  SparseLu::Matrix matrix;
+  EigenSparseLu::Matrix matrix;
   std::vector<int> mass_slots, joint_slots;  // 36 a body; up to 4 × 30 a joint
   VecX rhs;
   std::vector<Mat3> axes;
-  Eigen::SparseLU<SparseLu::Matrix, Eigen::COLAMDOrdering<int>> lu;
+  Eigen::SparseLU<EigenSparseLu::Matrix, Eigen::COLAMDOrdering<int>> lu;
   VecX x;
   Mat3 triad = rows::triad_about(pin_axis, "pin");
 
-  Fused(int n, SparseLu::Matrix const& pattern) : links(n), matrix(pattern), rhs(VecX::Zero(pattern.rows())), axes(std::size_t(n)), x(rhs) {
+  Fused(int n, EigenSparseLu::Matrix const& pattern) : links(n), matrix(pattern), rhs(VecX::Zero(pattern.rows())), axes(std::size_t(n)), x(rhs) {
     auto const slot = [&](int i, int j) {
       int const *b = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j], *e = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j + 1];
       return int(std::lower_bound(b, e, i) - matrix.innerIndexPtr());
@@ -233,7 +233,7 @@ int main(int argc, char** argv) {
   w.residual();
   w.matrix();
   double const off = (w.rhs - f.rhs).cwiseAbs().maxCoeff() / w.rhs.cwiseAbs().maxCoeff();
-  double const off_matrix = (SparseLu::Matrix(w.solver.matrix() - f.matrix)).norm() / f.matrix.norm();
+  double const off_matrix = (EigenSparseLu::Matrix(w.solver.matrix() - f.matrix)).norm() / f.matrix.norm();
   std::printf("agreement of the two: right-hand side %.1e, matrix %.1e\n", off, off_matrix);
   if (!(off < 1e-12 && off_matrix < 1e-12)) return 1;
   benchmark::Initialize(&argc, argv);

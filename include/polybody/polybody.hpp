@@ -33,3 +33,6 @@
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>
 #include <polybody/math/time_laws.hpp>
+#include <polybody/solvers/auto_lu.hpp>
+#include <polybody/solvers/block_ldlt.hpp>
+#include <polybody/solvers/block_lu.hpp>

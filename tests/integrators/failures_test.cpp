@@ -126,7 +126,7 @@ TEST(Failures, DoubledJointIsNamed) {
   };
   RunOptions const options{.until = 1.0, .step = 0.01};
   expect_named([&] { simulate<DenseLu>(model, x, GeneralizedAlpha{}, options).run(); });
-  expect_named([&] { simulate<SparseLu>(model, x, GeneralizedAlpha{}, options).run(); });
+  expect_named([&] { simulate<EigenSparseLu>(model, x, GeneralizedAlpha{}, options).run(); });
   EXPECT_EQ(x.t, 0.0);
 }
 

@@ -6,7 +6,7 @@ using namespace polybody;
 
 // On both sides of the limit the answer is that of the solver chosen, to the last bit.
 TEST(AutoLu, ChoosesBySize) {
-  for (Index const size : {AutoLu::dense_limit - 1, AutoLu::dense_limit, AutoLu::dense_limit + 1}) {
+  for (Index const size : {AutoLu::limit - 1, AutoLu::limit, AutoLu::limit + 1}) {
     MatX const a = MatX::Random(size, size) + 10.0 * MatX::Identity(size, size);
     VecX const b = VecX::Random(size);
     auto const answer = [&](auto solver) {
@@ -20,8 +20,8 @@ TEST(AutoLu, ChoosesBySize) {
     };
     VecX const chosen = answer(AutoLu());
     EXPECT_LT((a * chosen - b).norm(), 1e-11);
-    bool const small = size <= AutoLu::dense_limit;
-    EXPECT_EQ(chosen, small ? answer(DenseLu()) : answer(SparseLu())) << size;
-    EXPECT_NE(chosen, small ? answer(SparseLu()) : answer(DenseLu())) << size << ": cannot tell";
+    bool const small = size <= AutoLu::limit;
+    EXPECT_EQ(chosen, small ? answer(DenseLu()) : answer(EigenSparseLu())) << size;
+    EXPECT_NE(chosen, small ? answer(EigenSparseLu()) : answer(DenseLu())) << size << ": cannot tell";
   }
 }

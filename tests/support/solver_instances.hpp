@@ -3,5 +3,5 @@
 #include <polybody/solvers/auto_lu.hpp>
 
 extern template class Eigen::PartialPivLU<polybody::MatX>;
-extern template class Eigen::SparseLU<polybody::SparseLu::Matrix, Eigen::COLAMDOrdering<int>>;
+extern template class Eigen::SparseLU<polybody::EigenSparseLu::Matrix, Eigen::COLAMDOrdering<int>>;
 extern template class Eigen::internal::SparseLUImpl<double, int>;

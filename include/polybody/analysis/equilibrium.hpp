@@ -53,9 +53,9 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
       return rhs.allFinite();
     }
     bool refactor() {
-      solver.begin();
-      system.tangent({.stiffness = 1.0}, SecondOrder::included, trial.lambda, solver);
-      bad = solver.factor();
+      bad = write_and_factor(solver, [&](Solver& sink) {
+        system.tangent({.stiffness = 1.0}, SecondOrder::included, trial.lambda, sink);
+      });
       return bad < 0;
     }
     double solve() {

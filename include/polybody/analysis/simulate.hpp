@@ -44,11 +44,14 @@ struct RunReport {
   };
   std::vector<Met> events = {};
   bool stopped = false;  ///< by an event before `until`
+  /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share the
+  /// load is not determined.
+  std::vector<std::string> redundant = {};
 };
 
 /// An input range of states: `for (State const& now : simulate(…))` yields the start and every step's end.
 /// The state given by the caller is moved along. Not copyable; begin() once.
-template <class M, class I, class Solver = AutoLu>
+template <class M, class I, class Solver = BlockSolver>
 class Simulation {
   static_assert(I::accepts_rows || !M::may_have_rows,
                 "This explicit integrator has no stabilisation, but joints with the Constraint policy add rows. Use "
@@ -191,6 +194,11 @@ class Simulation {
     workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
     integrator_.start(*system_, fresh, done() ? h_ : plan().h, workspace_);
     *x_ = std::move(fresh);
+    report_.redundant.clear();
+    for (Index const i : workspace_.forward.redundant_rows()) {
+      std::string const name = system_->name_of(i);
+      if (report_.redundant.empty() || report_.redundant.back() != name) report_.redundant.push_back(name);
+    }
   }
 
   void account(StepReport const& r, bool shortened) {
@@ -269,7 +277,7 @@ class Simulation {
 
 /// Runs `model` from x: a range of states. x is moved along and holds the last state afterwards.
 /// \throws InconsistentStart, InvalidInput at once; NewtonStalled, NonFinite, … from the step that fails.
-template <LinearSolver Solver = AutoLu, class M, class I>
+template <LinearSolver Solver = BlockSolver, class M, class I>
 Simulation<M, I, Solver> simulate(M const& model, State& x, I integrator, RunOptions options) {
   return Simulation<M, I, Solver>(model, x, std::move(integrator), std::move(options));
 }

@@ -4,39 +4,67 @@
 /// speeds (ṙ, Ω): Ω the angular velocity in body axes. Newton–Euler:
 ///   m r̈ = f,   J Ω˙ + Ω × J Ω = Aᵀ m_c.   [Shabana 2020, §3.5; Brüls, Cardona & Arnold 2012]
 
-#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <concepts>
+#include <numbers>
 
 #include <polybody/bodies/bar.hpp>
 #include <polybody/bodies/body.hpp>
 
 namespace polybody {
 
+namespace detail {
+
+/// A + shift·1 has positive pivots.
+inline bool is_definite(Mat3 const& a, double shift) {
+  double const d0 = a(0, 0) + shift, l10 = a(1, 0) / d0, l20 = a(2, 0) / d0;
+  double const d1 = a(1, 1) + shift - l10 * a(1, 0), c21 = a(2, 1) - l20 * a(1, 0);
+  double const d2 = a(2, 2) + shift - l20 * a(2, 0) - c21 * c21 / d1;
+  return d0 > 0.0 && d1 > 0.0 && d2 > 0.0;
+}
+
+/// Eigenvalues of a symmetric matrix, descending, to 1e-8 of the largest: for messages [Smith 1961].
+inline std::array<double, 3> principal_values(Mat3 const& a) {
+  double const mean = (a(0, 0) + a(1, 1) + a(2, 2)) / 3.0;
+  double const x = a(0, 0) - mean, y = a(1, 1) - mean, z = a(2, 2) - mean;
+  double const u = a(1, 0), v = a(2, 0), w = a(2, 1);
+  double const p = std::sqrt((x * x + y * y + z * z + 2.0 * (u * u + v * v + w * w)) / 6.0);
+  double const det = x * (y * z - w * w) - u * (u * z - v * w) + v * (u * w - v * y);
+  double const angle = p > 0.0 ? std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0 : 0.0;
+  double const largest = mean + 2.0 * p * std::cos(angle);
+  double const least = mean + 2.0 * p * std::cos(angle + 2.0 * std::numbers::pi / 3.0);
+  return {largest, 3.0 * mean - largest - least, least};
+}
+
+}  // namespace detail
+
 /// \throws InvalidInput unless `inertia` can belong to a mass distribution: symmetric, principal moments
-/// not negative and none greater than the sum of the others.
+/// not negative and none greater than the sum of the others; that is, ½ tr(J) 1 − J ⪰ 0.
 inline void require_inertia(Mat3 const& inertia, std::string const& what) {
   require_finite(inertia, what + ": the inertia");
-  double const size = inertia.norm();
-  if ((inertia - inertia.transpose()).norm() > 1e-9 * size)
-    throw InvalidInput(what + ": the inertia tensor must be symmetric.");
-  Eigen::SelfAdjointEigenSolver<Mat3> const principal(inertia, Eigen::EigenvaluesOnly);
-  Vec3 const i = principal.eigenvalues();
-  if (i[0] < -1e-9 * size)
-    throw InvalidInput(what + ": a principal moment of inertia is negative (" +
-                       number(i[0]) + ").");
-  if (i[2] > (i[0] + i[1]) * (1.0 + 1e-9))
-    throw InvalidInput(what + ": the principal moments of inertia " + number(i[0]) + ", " +
-                       number(i[1]) + ", " + number(i[2]) +
-                       " violate the triangle inequality; no body has them.");
+  double const size = std::max({std::abs(inertia(0, 0)), std::abs(inertia(1, 1)), std::abs(inertia(2, 2)),
+                                std::abs(inertia(1, 0)), std::abs(inertia(2, 0)), std::abs(inertia(2, 1)),
+                                std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
+  if (size == 0.0) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < i; ++j)
+      if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)
+        throw InvalidInput(what + ": the inertia tensor must be symmetric.");
+  std::array<double, 3> const i = detail::principal_values(inertia);
+  if (!detail::is_definite(inertia, 1e-9 * size))
+    throw InvalidInput(what + ": a principal moment of inertia is negative (" + number(i[2]) + ").");
+  Mat3 second = -inertia;
+  for (int k = 0; k < 3; ++k) second(k, k) += 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2));
+  if (!detail::is_definite(second, 1e-9 * size))
+    throw InvalidInput(what + ": the principal moments of inertia " + number(i[0]) + ", " + number(i[1]) + ", " +
+                       number(i[2]) + " violate the triangle inequality; no body has them.");
 }
 
 /// How `Rigid` writes its rotation: unit quaternion with body-frame angular velocity as speeds.
 struct UnitQuaternion {};
 
-template <class Rotation = UnitQuaternion>
-class Rigid;
-
-template <>
-class Rigid<UnitQuaternion> {
+template <std::same_as<UnitQuaternion> Rotation = UnitQuaternion>
+class Rigid {
  public:
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::frame;

@@ -3,12 +3,14 @@
 /// Accelerations and multipliers of a state, and projections onto the rows: all through the matrix
 /// [M, Gᵀ; G, 0] [thesis Eq. 3.2].
 
-#include <polybody/solvers/auto_lu.hpp>
+#include <span>
+
+#include <polybody/solvers/block_lu.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
-template <class M, LinearSolver Solver = AutoLu>
+template <class M, LinearSolver Solver = BlockSolver>
 class ForwardDynamics {
  public:
   explicit ForwardDynamics(System<M>& system)
@@ -70,12 +72,22 @@ class ForwardDynamics {
     out = x_.head(system.speeds());
   }
 
+  /// Unknowns (from `speeds()` on: rows) that repeat others, as of the last factorisation: their multipliers are not unique and are
+  /// taken as zero. Empty for solvers that do not tell.
+  std::span<Index const> redundant_rows() const {
+    if constexpr (requires { solver_.dropped(); })
+      return solver_.dropped();
+    else
+      return {};
+  }
+
  private:
   void factor(System<M>& system) {
     if (M::constant_mass && system.rows() == 0 && factored_) return;
-    solver_.begin();
-    system.tangent({.mass = 1.0}, SecondOrder::omitted, zero_lambda_, solver_);
-    if (Index const bad = solver_.factor(); bad >= 0) singular(system, bad);
+    Index const bad = write_and_factor(solver_, [&](Solver& sink) {
+      system.tangent({.mass = 1.0}, SecondOrder::omitted, zero_lambda_, sink);
+    });
+    if (bad >= 0) singular(system, bad);
     factored_ = true;
   }
 

@@ -129,11 +129,10 @@ struct GeneralizedAlpha {
         return w.rhs.allFinite();
       }
       bool refactor() {
-        w.solver.begin();
-        system.tangent({mass, h * g, s},
-                       w.second_order ? SecondOrder::included : SecondOrder::omitted, w.lambda, w.solver);
         w.h_factored = h;
-        bad = w.solver.factor();
+        bad = write_and_factor(w.solver, [&](Solver& sink) {
+          system.tangent({mass, h * g, s}, w.second_order ? SecondOrder::included : SecondOrder::omitted, w.lambda, sink);
+        });
         return bad < 0;
       }
       double solve() {

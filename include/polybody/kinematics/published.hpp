@@ -45,8 +45,14 @@ struct Published {
           out.col(k).template tail<3>() = body_axes.transpose() * m;
         }
         return;
-      case JacobianShape::dense:
-        out.noalias() = dense().transpose() * wrenches;  // without noalias Eigen takes heap memory
+      case JacobianShape::dense:  // in plain loops: a matrix product of Eigen costs more, to compile and to run
+        for (Index k = 0; k < wrenches.cols(); ++k)
+          for (Index c = 0; c < columns; ++c) {
+            T const* const j = jacobian + 6 * c;
+            T sum = j[0] * wrenches(0, k);
+            for (int i = 1; i < 6; ++i) sum += j[i] * wrenches(i, k);
+            out(c, k) = sum;
+          }
     }
   }
 

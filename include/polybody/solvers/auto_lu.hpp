@@ -1,34 +1,34 @@
 #pragma once
 #include <polybody/solvers/dense_lu.hpp>
-#include <polybody/solvers/sparse_lu.hpp>
+#include <polybody/solvers/eigen_sparse_lu.hpp>
 
 namespace polybody {
 
-/// Dense LU up to `dense_limit` unknowns, sparse LU above: the default.
-class AutoLu {
+/// One solver up to `limit` unknowns, another above.
+template <class Small, class Large>
+class SolverBySize {
  public:
-  static constexpr Index dense_limit = 64;
+  static constexpr Index limit = 64;
 
   void analyse(Index size, std::vector<Block> const& blocks) {
-    small_ = size <= dense_limit;
+    small_ = size <= limit;
     if (small_)
-      dense_.analyse(size, blocks);
+      few_.analyse(size, blocks);
     else
-      sparse_.analyse(size, blocks);
+      many_.analyse(size, blocks);
   }
-  void begin() { small_ ? dense_.begin() : sparse_.begin(); }
-  void add(Index row, Index col, BlockView const& b) {
-    small_ ? dense_.add(row, col, b) : sparse_.add(row, col, b);
-  }
-  Index factor() { return small_ ? dense_.factor() : sparse_.factor(); }
-  void solve(VecX const& b, VecX& x) const { small_ ? dense_.solve(b, x) : sparse_.solve(b, x); }
+  void begin() { small_ ? few_.begin() : many_.begin(); }
+  void add(Index row, Index col, BlockView const& b) { small_ ? few_.add(row, col, b) : many_.add(row, col, b); }
+  Index factor() { return small_ ? few_.factor() : many_.factor(); }
+  void solve(VecX const& b, VecX& x) const { small_ ? few_.solve(b, x) : many_.solve(b, x); }
 
  private:
   bool small_ = true;
-  DenseLu dense_;
-  SparseLu sparse_;
+  Small few_;
+  Large many_;
 };
 
-static_assert(LinearSolver<AutoLu>);
+/// LU with pivoting over the whole matrix: for statics, where no block need have a pivot of its own.
+using AutoLu = SolverBySize<DenseLu, EigenSparseLu>;
 
 }  // namespace polybody

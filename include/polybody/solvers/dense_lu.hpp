@@ -1,41 +1,76 @@
 #pragma once
-#include <Eigen/LU>
+#include <cstring>
 
 #include <polybody/solvers/linear_solver.hpp>
 
 namespace polybody {
 
-/// Dense LU with partial pivoting: for small systems and for checking the others.
+/// Dense LU with partial pivoting [Golub & Van Loan 2013, Algorithm 3.4.1]: for small systems and for checking the others.
 class DenseLu {
  public:
   void analyse(Index size, std::vector<Block> const&) {
     a_.setZero(size, size);
-    scale_.setZero(size);
-    lu_ = Eigen::PartialPivLU<MatX>(size);
+    lu_.assign(std::size_t(size * size), 0.0);
+    scale_.assign(std::size_t(size), 0.0);
+    swaps_.assign(std::size_t(size), 0);
   }
   void begin() { a_.setZero(); }
   void add(Index row, Index col, BlockView const& b) {
     for (Index j = 0; j < b.cols; ++j)
       for (Index i = 0; i < b.rows; ++i) a_(row + i, col + j) += b(i, j);
   }
+
   /// −1, or the first column whose pivot is below 1e-14 of the column's largest entry.
   Index factor() {
-    if (a_.size() == 0) return -1;
-    scale_ = a_.cwiseAbs().colwise().maxCoeff().transpose();
-    lu_.compute(a_);
-    for (Index i = 0; i < a_.cols(); ++i)
-      if (!(std::abs(lu_.matrixLU()(i, i)) > 1e-14 * scale_[i])) return i;
+    Index const n = a_.cols();
+    double* const lu = lu_.data();  // by rows
+    for (Index j = 0; j < n; ++j) {
+      double largest = 0.0;
+      for (Index i = 0; i < n; ++i) {
+        lu[i * n + j] = a_(i, j);
+        largest = std::max(largest, std::abs(a_(i, j)));
+      }
+      scale_[std::size_t(j)] = largest;
+    }
+    for (Index k = 0; k < n; ++k) {
+      Index best = k;
+      for (Index i = k + 1; i < n; ++i)
+        if (std::abs(lu[i * n + k]) > std::abs(lu[best * n + k])) best = i;
+      if (!(std::abs(lu[best * n + k]) > 1e-14 * scale_[std::size_t(k)])) return k;
+      swaps_[std::size_t(k)] = best;
+      if (best != k) std::swap_ranges(lu + k * n, lu + (k + 1) * n, lu + best * n);
+      double const inverse = 1.0 / lu[k * n + k];
+      for (Index i = k + 1; i < n; ++i) {
+        double const f = lu[i * n + k] *= inverse;
+        if (f == 0.0) continue;
+        for (Index j = k + 1; j < n; ++j) lu[i * n + j] -= f * lu[k * n + j];
+      }
+    }
     return -1;
   }
+
   void solve(VecX const& b, VecX& x) const {
-    if (b.size() > 0) x = lu_.solve(b);
+    Index const n = a_.cols();
+    double const* const lu = lu_.data();
+    x = b;
+    for (Index k = 0; k < n; ++k) std::swap(x[k], x[swaps_[std::size_t(k)]]);
+    for (Index i = 1; i < n; ++i) {
+      double sum = x[i];
+      for (Index j = 0; j < i; ++j) sum -= lu[i * n + j] * x[j];
+      x[i] = sum;
+    }
+    for (Index i = n - 1; i >= 0; --i) {
+      double sum = x[i];
+      for (Index j = i + 1; j < n; ++j) sum -= lu[i * n + j] * x[j];
+      x[i] = sum / lu[i * n + i];
+    }
   }
   MatX const& matrix() const { return a_; }
 
  private:
   MatX a_;
-  VecX scale_;
-  Eigen::PartialPivLU<MatX> lu_;
+  std::vector<double> lu_, scale_;
+  std::vector<Index> swaps_;
 };
 
 static_assert(LinearSolver<DenseLu>);

@@ -2,6 +2,7 @@
 /// \file
 /// What a linear solver offers: it is itself the sink into which the tangent is written.
 
+#include <algorithm>
 #include <vector>
 
 #include <polybody/math/types.hpp>
@@ -44,5 +45,19 @@ concept LinearSolver = requires(S s, std::vector<Block> const blocks, Mat3 const
   { s.factor() } -> std::convertible_to<Index>;  // −1, or the column without a usable pivot
   s.solve(b, x);
 };
+
+/// Writes the matrix into the solver and factors it; twice where the solver asks for it in another order.
+/// Returns −1, or the column without a usable pivot.
+template <LinearSolver S, class Write>
+Index write_and_factor(S& solver, Write&& write) {
+  for (;;) {
+    solver.begin();
+    write(solver);
+    Index const bad = solver.factor();
+    if constexpr (requires { solver.reordered(); })
+      if (bad >= 0 && solver.reordered()) continue;
+    return bad;
+  }
+}
 
 }  // namespace polybody

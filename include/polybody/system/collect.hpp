@@ -21,7 +21,12 @@ void add_pulled(Published<T> const& p, Vec<T, 6> const& w, double sign, VecXOf<T
       return;
     }
     case JacobianShape::dense:
-      r.segment(p.first, p.columns).noalias() += p.dense().transpose() * (w * T(sign)).eval();
+      for (Index c = 0; c < p.columns; ++c) {
+        T const* const j = p.jacobian + 6 * c;
+        T sum = j[0] * w[0];
+        for (int i = 1; i < 6; ++i) sum += j[i] * w[i];
+        r[p.first + c] += sum * sign;
+      }
   }
 }
 

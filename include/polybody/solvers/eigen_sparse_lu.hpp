@@ -8,9 +8,10 @@
 
 namespace polybody {
 
-/// Eigen's sparse LU with COLAMD order; the pattern is analysed once and blocks are scattered through a table,
-/// without searching. Eigen itself allocates inside `factor`.
-class SparseLu {
+/// Eigen's sparse LU; the pattern is analysed once and blocks are scattered through a table, without searching. Eigen
+/// itself allocates inside `factor`. \tparam Ordering one of Eigen's.
+template <class Ordering>
+class EigenSparseLuBy {
  public:
   using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
@@ -68,8 +69,8 @@ class SparseLu {
     auto const upper = lu_->matrixU();  // its diagonal stands in the supernodes of L
     for (Index i = 0; i < a_.cols(); ++i) {
       double largest = 0.0, pivot = 0.0;
-      for (Matrix::InnerIterator entry(a_, i); entry; ++entry) largest = std::max(largest, std::abs(entry.value()));
-      for (Lu::SCMatrix::InnerIterator entry(upper.m_mapL, place[i]); entry; ++entry)
+      for (typename Matrix::InnerIterator entry(a_, i); entry; ++entry) largest = std::max(largest, std::abs(entry.value()));
+      for (typename Lu::SCMatrix::InnerIterator entry(upper.m_mapL, place[i]); entry; ++entry)
         if (entry.index() == place[i]) {
           pivot = entry.value();
           break;
@@ -87,10 +88,11 @@ class SparseLu {
   Matrix a_;
   std::vector<std::int32_t> slots_;
   std::size_t cursor_ = 0;
-  using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
+  using Lu = Eigen::SparseLU<Matrix, Ordering>;
   std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();  // Eigen's does not move
 };
 
-static_assert(LinearSolver<SparseLu>);
+/// … in the order of COLAMD.
+using EigenSparseLu = EigenSparseLuBy<Eigen::COLAMDOrdering<int>>;
 
 }  // namespace polybody

@@ -1,4 +1,4 @@
-#include <polybody/solvers/sparse_lu.hpp>
+#include <polybody/solvers/eigen_sparse_lu.hpp>
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ struct Parts {
   Vec3 c = Vec3::Random();
   Vec<double, 1> d = Vec<double, 1>(2.0);
 
-  void write(SparseLu& lu) const {
+  void write(EigenSparseLu& lu) const {
     lu.begin();
     lu.add(0, 0, a);
     lu.add(2, 2, b);
@@ -35,8 +35,8 @@ struct Parts {
 
 }  // namespace
 
-TEST(SparseLu, HoldsTheSumOfItsBlocks) {
-  SparseLu lu;
+TEST(EigenSparseLu, HoldsTheSumOfItsBlocks) {
+  EigenSparseLu lu;
   lu.analyse(6, pattern);
   for (int k = 0; k < 3; ++k) {
     Parts const parts;
@@ -45,37 +45,37 @@ TEST(SparseLu, HoldsTheSumOfItsBlocks) {
   }
 }
 
-TEST(SparseLu, StoresEachPlaceOnce) {
-  SparseLu lu;
+TEST(EigenSparseLu, StoresEachPlaceOnce) {
+  EigenSparseLu lu;
   lu.analyse(6, pattern);
   EXPECT_EQ(lu.matrix().nonZeros(), 9 + 9 - 1 + 3 + 3 + 1);
 }
 
-TEST(SparseLu, NamesTheColumnThatIsZero) {
+TEST(EigenSparseLu, NamesTheColumnThatIsZero) {
   for (Index const empty : {1, 3}) {
     Parts parts;
     (empty < 2 ? parts.a.col(empty) : parts.b.col(empty - 2)).setZero();
     if (empty < 2) parts.c[empty] = 0.0;
-    SparseLu lu;
+    EigenSparseLu lu;
     lu.analyse(6, pattern);
     parts.write(lu);
     EXPECT_EQ(lu.factor(), empty);
   }
 }
 
-TEST(SparseLu, SeesAPivotThatIsOnlyRounding) {
+TEST(EigenSparseLu, SeesAPivotThatIsOnlyRounding) {
   Parts parts;
   parts.b.col(2) = 0.1 * parts.b.col(1);
-  SparseLu lu;
+  EigenSparseLu lu;
   lu.analyse(6, pattern);
   parts.write(lu);
   EXPECT_GE(lu.factor(), 0);
 }
 
-TEST(SparseLu, CanBeMoved) {
-  SparseLu lu;
+TEST(EigenSparseLu, CanBeMoved) {
+  EigenSparseLu lu;
   lu.analyse(6, pattern);
-  SparseLu moved = std::move(lu);
+  EigenSparseLu moved = std::move(lu);
   Parts const parts;
   parts.write(moved);
   ASSERT_EQ(moved.factor(), -1);

@@ -1,0 +1,174 @@
+#pragma once
+/// \file
+/// The symbolic half of a block factorisation: nodes in the order of elimination, where each block of the matrix and of
+/// the fill stands, and which block each elimination changes. Found once; then numbers run through flat lists.
+
+#include <polybody/solvers/block_kernels.hpp>
+#include <polybody/solvers/elimination_order.hpp>
+
+namespace polybody::detail {
+
+class BlockLayout {
+ public:
+  /// A later node that shares a block with an earlier one.
+  struct Neighbour {
+    int node, column, size;  ///< place in the order, first column within W, unknowns
+  };
+  /// Its rows stand as [D | W], D its own block and W its row of later ones; its column of later ones, transposed, as Lt.
+  struct Node {
+    int size, pad, width;              ///< unknowns, padded, and columns of W
+    std::size_t u, l, f, x;            ///< begin of its rows [D | W], of Lt, of its triangle, of its part of vectors
+    int first_neighbour, neighbours;
+    int first_target;                  ///< for each pair of neighbours k before l: the column of l in W of k
+    bool pivoted, joint, droppable;
+    int stride() const { return pad + width; }
+  };
+  /// The part of an added block between two segments, and where it goes.
+  struct Piece {
+    std::size_t to;
+    int row, col, rows, cols, row_step, col_step;
+    bool lower;  ///< into Lt
+  };
+  /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others, all in
+  /// one node.
+  struct Lessons {
+    std::vector<char> merged, late;
+    bool dense = false;
+  };
+
+  std::vector<Node> nodes;
+  std::vector<Neighbour> neighbours;
+  std::vector<int> targets;
+  std::vector<Piece> pieces;
+  std::vector<int> first_piece;   ///< of each added block, and one past the last
+  std::vector<Index> unknown;     ///< of each place in padded vectors; −1 for padding
+  std::size_t size_u = 0, size_l = 0, size_f = 0;
+
+  void compile(BlockPattern const& pattern, std::vector<Block> const& blocks, Lessons const& lessons) {
+    EliminationOrder order;
+    order.compute(pattern, blocks, number_nodes(pattern, lessons), lessons.late);
+    place_nodes(pattern, order, lessons);
+    find_targets();
+    place_pieces(pattern, blocks);
+  }
+
+ private:
+  static std::vector<int> number_nodes(BlockPattern const& pattern, Lessons const& lessons) {
+    auto const& segments = pattern.segments();
+    std::vector<int> node_of(segments.size(), lessons.dense ? 0 : -1);
+    if (lessons.dense) return node_of;
+    int count = 0;
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+      if (!lessons.merged[s] || node_of[s] >= 0) continue;
+      auto const take = [&](int t) { node_of[std::size_t(t)] = count; };
+      int const body = segments[s].body, primary = pattern.primary(body);
+      take(int(s));
+      if (primary < 0) {
+        for (int const t : pattern.segments_of(body)) take(t);
+      } else {
+        for (int const t : segments[std::size_t(primary)].child) take(t);
+        take(primary);
+      }
+      for (int const t : pattern.secondary(body)) take(t);
+      ++count;
+    }
+    for (int& n : node_of)
+      if (n < 0) n = count++;
+    return node_of;
+  }
+
+  void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, Lessons const& lessons) {
+    auto const& segments = pattern.segments();
+    local_.assign(segments.size(), 0);
+    place_.assign(segments.size(), 0);
+    nodes.clear();
+    neighbours.clear();
+    unknown.clear();
+    size_u = size_l = size_f = 0;
+    std::vector<int> size(order.nodes.size(), 0);
+    for (std::size_t k = 0; k < order.nodes.size(); ++k)
+      for (int const s : order.nodes[k].segments) {
+        local_[std::size_t(s)] = size[k];
+        place_[std::size_t(s)] = int(k);
+        size[k] += segments[std::size_t(s)].size;
+      }
+    for (std::size_t k = 0; k < order.nodes.size(); ++k) {
+      auto const& from = order.nodes[k];
+      Node n{};
+      n.size = size[k];
+      n.pad = padded(n.size);
+      n.joint = n.droppable = true;
+      for (int const s : from.segments) {
+        auto const& segment = segments[std::size_t(s)];
+        n.joint = n.joint && segment.joint;
+        n.droppable = n.droppable && segment.joint && (segment.closes_loop || lessons.late[std::size_t(s)]);
+        for (int i = 0; i < segment.size; ++i) unknown.push_back(segment.first + i);
+      }
+      n.pivoted = lessons.dense || from.segments.size() > 1;
+      n.u = size_u;
+      n.l = size_l;
+      n.f = size_f;
+      n.x = unknown.size() - std::size_t(n.size);
+      unknown.resize(n.x + std::size_t(n.pad), -1);
+      n.first_neighbour = int(neighbours.size());
+      n.neighbours = int(from.neighbours.size());
+      for (int const later : from.neighbours) {
+        neighbours.push_back({later, n.width, size[std::size_t(later)]});
+        n.width += padded(size[std::size_t(later)]);
+      }
+      size_u += std::size_t(n.size) * std::size_t(n.stride());
+      size_l += std::size_t(n.size) * std::size_t(n.width);
+      size_f += std::size_t(padded(n.size * n.size));
+      nodes.push_back(n);
+    }
+  }
+
+  void find_targets() {
+    targets.clear();
+    for (Node& n : nodes) {
+      n.first_target = int(targets.size());
+      for (int a = 0; a < n.neighbours; ++a) {
+        Node const& k = nodes[std::size_t(neighbours[std::size_t(n.first_neighbour + a)].node)];
+        std::size_t at = std::size_t(k.first_neighbour);
+        for (int b = a + 1; b < n.neighbours; ++b) {
+          while (neighbours[at].node != neighbours[std::size_t(n.first_neighbour + b)].node) ++at;
+          targets.push_back(neighbours[at].column);
+        }
+      }
+    }
+  }
+
+  void place_pieces(BlockPattern const& pattern, std::vector<Block> const& blocks) {
+    auto const column = [&](Node const& n, int k) {
+      std::size_t i = std::size_t(n.first_neighbour);
+      while (neighbours[i].node != k) ++i;
+      return neighbours[i].column;
+    };
+    pieces.clear();
+    first_piece.assign(1, 0);
+    for (Block const& b : blocks) {
+      pattern.for_each_segment(b.row, b.rows, [&](int r) {
+        pattern.for_each_segment(b.col, b.cols, [&](int c) {
+          auto const &sr = pattern.segments()[std::size_t(r)], &sc = pattern.segments()[std::size_t(c)];
+          int const pr = place_[std::size_t(r)], pc = place_[std::size_t(c)];
+          int const lr = local_[std::size_t(r)], lc = local_[std::size_t(c)];
+          Node const& n = nodes[std::size_t(std::min(pr, pc))];
+          Piece p{0, int(sr.first - b.row), int(sc.first - b.col), sr.size, sc.size, n.stride(), 1, pr > pc};
+          if (p.lower) {
+            p.to = n.l + std::size_t(lc * n.width + column(n, pr) + lr);
+            p.row_step = 1;
+            p.col_step = n.width;
+          } else {
+            p.to = n.u + std::size_t(lr * n.stride() + (pr == pc ? 0 : n.pad + column(n, pc)) + lc);
+          }
+          pieces.push_back(p);
+        });
+      });
+      first_piece.push_back(int(pieces.size()));
+    }
+  }
+
+  std::vector<int> local_, place_;  // of each segment: first place within its node, its node
+};
+
+}  // namespace polybody::detail

@@ -1,0 +1,11 @@
+#pragma once
+#include <polybody/solvers/block_factor.hpp>
+
+namespace polybody {
+
+/// Block LDLᵀ of a symmetric matrix; the half below the diagonal is not read.
+using BlockLdlt = BlockFactor<Symmetry::assumed>;
+
+static_assert(LinearSolver<BlockLdlt>);
+
+}  // namespace polybody

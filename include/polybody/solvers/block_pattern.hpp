@@ -1,0 +1,217 @@
+#pragma once
+/// \file
+/// What the blocks of [A, Gᵀ; G, 0] tell of bodies and joints, and on which joint each body hangs.
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <polybody/solvers/linear_solver.hpp>
+
+namespace polybody::detail {
+
+/// What the pattern of a matrix tells of bodies and joints. A segment is a run of unknowns that no block cuts; it is of a
+/// joint when nothing stands on its diagonal.
+class BlockPattern {
+ public:
+  struct Segment {
+    Index first = 0;
+    int size = 0;
+    bool joint = true;
+    int body = -1;            ///< its body's number (of bodies)
+    std::vector<int> child;   ///< of a joint: segments of the hanging body that it touches
+    std::vector<int> after;   ///< of a joint: segments to be eliminated before
+    bool closes_loop = false;
+  };
+
+  void analyse(Index size, std::vector<Block> const& blocks) {
+    cut(size, blocks);
+    for (Block const& b : blocks) mark(b);
+    link(blocks);
+    match();
+  }
+
+  std::vector<Segment> const& segments() const { return segments_; }
+  int of(Index unknown) const { return segment_of_[std::size_t(unknown)]; }
+  /// Segments that block b covers, by rows or columns.
+  template <class F>
+  void for_each_segment(Index first, Index count, F&& f) const {
+    for (int s = count > 0 ? of(first) : int(segments_.size());
+         s < int(segments_.size()) && segments_[std::size_t(s)].first < first + count; ++s)
+      f(s);
+  }
+  /// The joint on which a body hangs, and others of it alone; −1 and none for a free one.
+  int primary(int body) const { return bodies_[std::size_t(body)].primary; }
+  std::vector<int> const& secondary(int body) const { return bodies_[std::size_t(body)].secondary; }
+  std::vector<int> const& segments_of(int body) const { return bodies_[std::size_t(body)].segments; }
+
+ private:
+  struct Body {
+    std::vector<int> segments, joints, secondary;
+    int primary = -1, parent = -1, depth = 0;  // parent −1: the ground, or none
+    bool visited = false;
+  };
+  struct Joint {
+    int segment;
+    std::vector<std::pair<int, std::vector<int>>> ends;  // body and the segments touched there
+    bool used = false;
+  };
+
+  void cut(Index size, std::vector<Block> const& blocks) {
+    std::vector<char> begins(std::size_t(size) + 1, 0);
+    begins[0] = 1;
+    for (Block const& b : blocks)
+      for (Index const at : {b.row, b.row + b.rows, b.col, b.col + b.cols}) begins[std::size_t(at)] = 1;
+    segments_.clear();
+    segment_of_.assign(std::size_t(size), 0);
+    for (Index i = 0; i < size; ++i) {
+      if (begins[std::size_t(i)]) segments_.emplace_back().first = i;
+      ++segments_.back().size;
+      segment_of_[std::size_t(i)] = int(segments_.size()) - 1;
+    }
+  }
+
+  void mark(Block const& b) {
+    for_each_segment(b.row, b.rows, [&](int s) {
+      Segment& segment = segments_[std::size_t(s)];
+      if (segment.first >= b.col && segment.first < b.col + b.cols) segment.joint = false;
+    });
+  }
+
+  /// Bodies are what the square blocks on the diagonal tie together.
+  void link(std::vector<Block> const& blocks) {
+    std::vector<int> root(segments_.size());
+    std::iota(root.begin(), root.end(), 0);
+    auto const find = [&](int s) {
+      while (root[std::size_t(s)] != s) s = root[std::size_t(s)] = root[std::size_t(root[std::size_t(s)])];
+      return s;
+    };
+    for (Block const& b : blocks) {
+      if (b.row != b.col || b.rows != b.cols || b.rows == 0) continue;
+      int const first = find(of(b.row));
+      for_each_segment(b.row, b.rows, [&](int s) { root[std::size_t(find(s))] = first; });
+    }
+    bodies_.clear();
+    joints_.clear();
+    std::vector<int> number(segments_.size(), -1), joint_of(segments_.size(), -1);
+    for (std::size_t s = 0; s < segments_.size(); ++s) {
+      if (segments_[s].joint) {
+        joint_of[s] = int(joints_.size());
+        joints_.push_back({int(s), {}, false});
+        continue;
+      }
+      int& n = number[std::size_t(find(int(s)))];
+      if (n < 0) {
+        n = int(bodies_.size());
+        bodies_.emplace_back();
+      }
+      segments_[s].body = n;
+      bodies_[std::size_t(n)].segments.push_back(int(s));
+    }
+    // A block in the rows of a joint is one end of it: the columns of one marker.
+    for (Block const& b : blocks) {
+      if (b.rows == 0 || b.cols == 0) continue;
+      for_each_segment(b.row, b.rows, [&](int row) {
+        if (!segments_[std::size_t(row)].joint) return;
+        auto& ends = joints_[std::size_t(joint_of[std::size_t(row)])].ends;
+        for_each_segment(b.col, b.cols, [&](int col) {
+          int const body = segments_[std::size_t(col)].body;
+          if (body < 0) return;
+          auto end = std::find_if(ends.begin(), ends.end(), [&](auto const& e) { return e.first == body; });
+          if (end == ends.end()) end = ends.insert(end, {body, {}});
+          if (std::find(end->second.begin(), end->second.end(), col) == end->second.end()) end->second.push_back(col);
+        });
+      });
+    }
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+      for (auto const& end : joints_[j].ends) bodies_[std::size_t(end.first)].joints.push_back(int(j));
+  }
+
+  /// A joint of one body and one row: a norm row, or a drive against the ground. No tree hangs on it.
+  bool is_own(Joint const& j) const { return j.ends.size() == 1 && segments_[std::size_t(j.segment)].size == 1; }
+
+  /// Hangs every body on one joint, breadth first from the ground, then from a body of each part that does not touch it.
+  void match() {
+    std::vector<int> queue;
+    auto const hang = [&](Joint& j, std::size_t end, int parent) {
+      auto const& [body, touched] = j.ends[end];
+      Body& b = bodies_[std::size_t(body)];
+      Segment& s = segments_[std::size_t(j.segment)];
+      b.visited = j.used = true;
+      b.primary = j.segment;
+      b.parent = parent;
+      b.depth = parent < 0 ? 1 : bodies_[std::size_t(parent)].depth + 1;
+      s.child = s.after = touched;
+      queue.push_back(body);
+    };
+    for (Joint& j : joints_)
+      if (j.ends.size() == 1 && !is_own(j) && !bodies_[std::size_t(j.ends[0].first)].visited) hang(j, 0, -1);
+    std::size_t head = 0;
+    auto const spread = [&] {
+      for (; head < queue.size(); ++head) {
+        int const u = queue[head];
+        for (int const n : bodies_[std::size_t(u)].joints) {
+          Joint& j = joints_[std::size_t(n)];
+          if (j.used || j.ends.size() != 2) continue;
+          std::size_t const other = j.ends[0].first == u ? 1 : 0;
+          if (!bodies_[std::size_t(j.ends[other].first)].visited) hang(j, other, u);
+        }
+      }
+    };
+    spread();
+    std::vector<int> by_degree(bodies_.size());
+    std::iota(by_degree.begin(), by_degree.end(), 0);
+    std::stable_sort(by_degree.begin(), by_degree.end(), [&](int a, int b) {
+      return bodies_[std::size_t(a)].joints.size() > bodies_[std::size_t(b)].joints.size();
+    });
+    for (int const root : by_degree) {
+      if (bodies_[std::size_t(root)].visited) continue;
+      bodies_[std::size_t(root)].visited = true;
+      queue.push_back(root);
+      spread();
+    }
+    for (Joint& j : joints_)
+      if (!j.used) close(j);
+  }
+
+  /// A joint that is not of the tree waits for all of its loop.
+  void close(Joint& j) {
+    Segment& s = segments_[std::size_t(j.segment)];
+    std::vector<int> loop;
+    if (j.ends.size() == 2) {
+      int a = j.ends[0].first, b = j.ends[1].first;
+      while (a != b) {
+        int& deeper = b < 0 || (a >= 0 && bodies_[std::size_t(a)].depth >= bodies_[std::size_t(b)].depth) ? a : b;
+        loop.push_back(deeper);
+        deeper = bodies_[std::size_t(deeper)].parent;
+      }
+    } else {  // against the ground, or among many bodies: everything on the way there
+      for (auto const& end : j.ends) {
+        if (is_own(j)) loop.push_back(end.first);
+        for (int u = end.first; u >= 0 && !is_own(j); u = bodies_[std::size_t(u)].parent) loop.push_back(u);
+      }
+    }
+    std::sort(loop.begin(), loop.end());
+    loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
+    for (auto const& [body, touched] : j.ends) {
+      if (loop.size() == 1 && body != loop[0]) continue;  // beside the joint on which it hangs: a drive, a norm row
+      s.after.insert(s.after.end(), touched.begin(), touched.end());
+      if (loop.size() == 1) s.child = touched;
+    }
+    for (int const u : loop) {
+      Body& body = bodies_[std::size_t(u)];
+      if (loop.size() > 1) s.after.insert(s.after.end(), body.segments.begin(), body.segments.end());
+      if (body.primary >= 0) s.after.push_back(body.primary);
+      if (loop.size() == 1) body.secondary.push_back(j.segment);
+    }
+    s.closes_loop = true;
+  }
+
+  std::vector<Segment> segments_;
+  std::vector<int> segment_of_;
+  std::vector<Body> bodies_;
+  std::vector<Joint> joints_;
+};
+
+}  // namespace polybody::detail

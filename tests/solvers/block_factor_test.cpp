@@ -1,0 +1,290 @@
+// The block solvers against full pivoting, on what is singular in parts, and on what repeats itself.
+#include <polybody/solvers/block_factor.hpp>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include <polybody/solvers/block_ldlt.hpp>
+#include <polybody/solvers/block_lu.hpp>
+
+using namespace polybody;
+
+namespace {
+
+/// A matrix of blocks that are written again and again in the same order.
+struct Blocks {
+  std::vector<std::pair<Block, MatX>> all;
+  Index size = 0;
+
+  void add(Index row, Index col, MatX const& m) {
+    all.push_back({{row, col, m.rows(), m.cols()}, m});
+    size = std::max({size, row + m.rows(), col + m.cols()});
+  }
+  /// G at (row, col) and its transpose.
+  void join(Index row, Index col, MatX const& g) {
+    add(row, col, g);
+    add(col, row, g.transpose());
+  }
+  template <class Sink>
+  void write(Sink& sink) const {
+    for (auto const& [b, m] : all) sink.add(b.row, b.col, m);
+  }
+  MatX dense() const {
+    MatX a = MatX::Zero(size, size);
+    for (auto const& [b, m] : all) a.block(b.row, b.col, b.rows, b.cols) += m;
+    return a;
+  }
+  template <class Solver>
+  Solver analysed() const {
+    PatternSink pattern;
+    write(pattern);
+    Solver solver;
+    solver.analyse(size, pattern.blocks);
+    return solver;
+  }
+};
+
+struct Draw {
+  std::mt19937 engine{3};
+  MatX matrix(Index m, Index n) {
+    std::uniform_real_distribution<double> d(-1.0, 1.0);
+    return MatX::NullaryExpr(m, n, [&] { return d(engine); });
+  }
+  MatX definite(Index n) {
+    MatX const a = matrix(n, n);
+    return a * a.transpose() + MatX::Identity(n, n);
+  }
+};
+
+/// Bodies of n columns in a chain that hangs from the ground, on joints of m rows.
+Blocks chain(Index bodies, Index n, Index m, Draw& draw) {
+  Blocks b;
+  for (Index i = 0; i < bodies; ++i) b.add(n * i, n * i, draw.definite(n));
+  for (Index i = 0; i < bodies; ++i) {
+    b.join(n * bodies + m * i, n * i, draw.matrix(m, n));
+    if (i > 0) b.join(n * bodies + m * i, n * (i - 1), draw.matrix(m, n));
+  }
+  return b;
+}
+
+/// Largest |A x − b| against |b| for a random b.
+template <class Solver>
+double residual(Blocks const& blocks, Solver const& solver, Draw& draw) {
+  MatX const a = blocks.dense();
+  VecX const b = draw.matrix(blocks.size, 1);
+  VecX x = VecX::Zero(blocks.size);
+  solver.solve(b, x);
+  return (a * x - b).norm() / (b.norm() + a.norm() * x.norm());
+}
+
+template <class Solver>
+struct BlockSolvers : testing::Test {
+  Draw draw;
+  /// Analyses, factors, expects success and a small residual.
+  Solver solved(Blocks const& blocks, double tolerance = 1e-13) {
+    Solver solver = blocks.analysed<Solver>();
+    EXPECT_EQ(write_and_factor(solver, [&](Solver& s) { blocks.write(s); }), -1);
+    EXPECT_LT(residual(blocks, solver, draw), tolerance);
+    return solver;
+  }
+};
+using All = testing::Types<BlockLdlt, BlockLu, BlockSolver>;
+TYPED_TEST_SUITE(BlockSolvers, All);
+
+}  // namespace
+
+TYPED_TEST(BlockSolvers, SolveChainsOfEveryBlockSize) {
+  for (auto const& [n, m] : {std::pair{6, 5}, {6, 3}, {3, 2}, {3, 1}, {4, 2}, {7, 6}, {12, 6}, {1, 1}})
+    for (Index const bodies : {1, 2, 9}) this->solved(chain(bodies, n, m, this->draw));
+}
+
+// Elements share nodes; joints hold the ends and stand within an element.
+TYPED_TEST(BlockSolvers, SolveFlexibleBodies) {
+  Draw& draw = this->draw;
+  Blocks b;
+  for (Index e = 0; e < 5; ++e) b.add(4 * e, 4 * e, draw.definite(8));  // 24 columns
+  for (Index e = 0; e < 3; ++e) b.add(24 + 3 * e, 24 + 3 * e, draw.definite(6));  // 12 more
+  MatX at_start = draw.matrix(2, 8);
+  at_start.rightCols(4).setZero();  // a marker on a node: its element's other node does not move it
+  b.join(36, 0, at_start);
+  b.join(38, 16, draw.matrix(3, 8));  // both bodies
+  b.join(38, 24, draw.matrix(3, 6));
+  MatX at_end = draw.matrix(2, 6);
+  at_end.leftCols(3).setZero();
+  b.join(41, 30, at_end);  // closes the loop
+  this->solved(b);
+}
+
+// A marker on the node that its element counts second: the first node alone cannot carry the joint.
+TYPED_TEST(BlockSolvers, FindThePivotOfAJointOnTheOtherNode) {
+  Draw& draw = this->draw;
+  Blocks b;
+  for (Index e = 0; e < 3; ++e) b.add(3 * e, 3 * e, draw.definite(6));
+  MatX g = draw.matrix(2, 6);
+  g.leftCols(3).setZero();
+  b.join(12, 6, g);
+  this->solved(b);
+}
+
+// Springs tie bodies across the tree: more fill, the same answer.
+TYPED_TEST(BlockSolvers, SolveWithSpringsBetweenBodies) {
+  Draw& draw = this->draw;
+  Blocks b = chain(12, 6, 5, draw);
+  for (auto const& [i, j] : {std::pair{0, 7}, {3, 11}, {2, 9}}) {
+    MatX const both = 0.3 * draw.definite(12);
+    b.add(6 * i, 6 * i, both.topLeftCorner(6, 6));
+    b.add(6 * j, 6 * j, both.bottomRightCorner(6, 6));
+    b.join(6 * i, 6 * j, both.topRightCorner(6, 6));
+  }
+  this->solved(b);
+}
+
+// Nothing holds the chain: the tree starts at one of its own bodies.
+TYPED_TEST(BlockSolvers, SolveWhatDoesNotTouchTheGround) {
+  Draw& draw = this->draw;
+  Blocks b;
+  for (Index i = 0; i < 5; ++i) b.add(6 * i, 6 * i, draw.definite(6));
+  for (Index i = 1; i < 5; ++i) {
+    b.join(25 + 5 * i, 6 * i, draw.matrix(5, 6));
+    b.join(25 + 5 * i, 6 * (i - 1), draw.matrix(5, 6));
+  }
+  this->solved(b);
+}
+
+// Thin rods (no inertia about their axis) and point masses: the joint's rows hold what the mass does not.
+TYPED_TEST(BlockSolvers, SolveSingularMasses) {
+  Draw& draw = this->draw;
+  for (Index const bodies : {1, 3, 40}) {
+    Blocks b = chain(bodies, 6, 5, draw);
+    for (Index i = 0; i < bodies; ++i) {
+      Vec6 thin;
+      thin << 2, 2, 2, 0, 0.3, 0.3;
+      b.all[std::size_t(i)].second = thin.asDiagonal();
+    }
+    TypeParam const solver = this->solved(b);
+    EXPECT_LT(solver.nodes(), 2 * bodies);  // body and joint have become one
+  }
+  // Euler parameters: seven columns, the mass singular along p, and the row pᵀ of the norm
+  Blocks b;
+  VecX const p = draw.matrix(4, 1).normalized();
+  MatX const q = draw.matrix(4, 4);
+  MatX const across = MatX::Identity(4, 4) - p * p.transpose();
+  for (Index i = 0; i < 3; ++i) {
+    MatX m = MatX::Identity(7, 7);
+    m.bottomRightCorner(4, 4) = across * (q * q.transpose() + MatX::Identity(4, 4)) * across;
+    b.add(7 * i, 7 * i, m);
+  }
+  for (Index i = 0; i < 3; ++i) {
+    MatX norm = MatX::Zero(1, 7);
+    norm.rightCols(4) = p.transpose();
+    b.join(21 + i, 7 * i, norm);
+    b.join(24 + 3 * i, 7 * i, draw.matrix(3, 7));
+    if (i > 0) b.join(24 + 3 * i, 7 * (i - 1), draw.matrix(3, 7));
+  }
+  this->solved(b);
+}
+
+// A joint doubled: its rows are dropped, and the speeds and forces are right all the same.
+TYPED_TEST(BlockSolvers, DropRowsThatRepeatOthers) {
+  Draw& draw = this->draw;
+  for (Index const bodies : {2, 30}) {
+    Blocks b = chain(bodies, 6, 5, draw);
+    Index const row = b.size;
+    // the joint that closes the loop is the chain's last one once more, its rows combined
+    MatX const dense = b.dense(), mix = draw.matrix(5, 5);
+    Index const last = 6 * bodies + 5 * (bodies - 1);
+    b.join(row, 6 * (bodies - 1), mix * dense.block(last, 6 * (bodies - 1), 5, 6));
+    b.join(row, 6 * (bodies - 2), mix * dense.block(last, 6 * (bodies - 2), 5, 6));
+    TypeParam solver = b.analysed<TypeParam>();
+    ASSERT_EQ(write_and_factor(solver, [&](TypeParam& s) { b.write(s); }), -1);
+    ASSERT_EQ(solver.dropped().size(), 5u);
+    for (Index const i : solver.dropped()) EXPECT_GE(i, row);
+    // a right-hand side that the repeated rows do not contradict
+    MatX const a = b.dense();
+    VecX const y = draw.matrix(b.size, 1), rhs = a * y;
+    VecX x = VecX::Zero(b.size);
+    solver.solve(rhs, x);
+    EXPECT_LT((x - y).head(6 * bodies).norm(), 1e-9 * y.norm());  // speeds
+    EXPECT_LT((a * x - rhs).norm(), 1e-9 * rhs.norm());           // and Gᵀλ
+    for (Index const i : solver.dropped()) EXPECT_EQ(x[i], 0.0);
+  }
+}
+
+TYPED_TEST(BlockSolvers, SolveSeveralSidesAtOnce) {
+  Blocks const b = chain(7, 6, 5, this->draw);
+  TypeParam const solver = this->solved(b);
+  MatX const sides = this->draw.matrix(b.size, 3);
+  MatX x = MatX::Zero(b.size, 3);
+  solver.solve(sides, x);
+  EXPECT_LT((b.dense() * x - sides).norm(), 1e-11 * sides.norm());
+  // in place
+  VecX y = sides.col(1);
+  solver.solve(y, y);
+  EXPECT_EQ(y, x.col(1));
+}
+
+TYPED_TEST(BlockSolvers, RepeatToTheLastBit) {
+  Blocks const b = chain(20, 6, 5, this->draw);
+  TypeParam solver = this->solved(b);
+  VecX const side = VecX::Ones(b.size);
+  VecX first = side, second = side;
+  solver.solve(side, first);
+  write_and_factor(solver, [&](TypeParam& s) { b.write(s); });
+  solver.solve(side, second);
+  EXPECT_EQ(first, second);
+}
+
+// Work and fill for each link are the same however long the chain is.
+TYPED_TEST(BlockSolvers, GrowLinearlyWithAChain) {
+  auto const solver_of = [&](Index bodies) { return chain(bodies, 6, 5, this->draw).template analysed<TypeParam>(); };
+  auto const short_one = solver_of(64), long_one = solver_of(1024);
+  EXPECT_NEAR(long_one.flops() / short_one.flops(), 16.0, 0.5);
+  EXPECT_NEAR(double(long_one.fill()) / double(short_one.fill()), 16.0, 0.5);
+}
+
+// A loop costs a border of the closing joint, not a dense matrix.
+TYPED_TEST(BlockSolvers, CloseALoopAtTheCostOfABorder) {
+  Blocks open = chain(256, 6, 5, this->draw), closed = open;
+  closed.join(closed.size, 6 * 255, this->draw.matrix(1, 6));
+  EXPECT_LT(closed.analysed<TypeParam>().flops(), 2.0 * open.analysed<TypeParam>().flops());
+}
+
+TYPED_TEST(BlockSolvers, SayWhichUnknownIsNotFinite) {
+  Blocks b = chain(4, 6, 5, this->draw);
+  b.all[2].second(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  TypeParam solver = b.analysed<TypeParam>();
+  solver.begin();
+  b.write(solver);
+  EXPECT_GE(solver.factor(), 0);
+  EXPECT_FALSE(solver.reordered());
+}
+
+TEST(BlockSolver, TakesTheHalfOfTheWorkOnlyWhenItMay) {
+  Draw draw;
+  Blocks b = chain(6, 6, 5, draw);
+  BlockSolver solver = b.analysed<BlockSolver>();
+  solver.begin();
+  b.write(solver);
+  ASSERT_EQ(solver.factor(), -1);
+  EXPECT_TRUE(solver.was_symmetric());
+  b.all[3].second += 0.2 * draw.matrix(6, 6);
+  solver.begin();
+  b.write(solver);
+  ASSERT_EQ(solver.factor(), -1);
+  EXPECT_FALSE(solver.was_symmetric());
+  EXPECT_LT(residual(b, solver, draw), 1e-13);
+}
+
+TEST(BlockLu, SolvesUnsymmetricTangents) {
+  Draw draw;
+  for (Index const bodies : {1, 8, 40}) {
+    Blocks b = chain(bodies, 6, 5, draw);
+    for (auto& [block, m] : b.all)
+      if (block.row == block.col) m += 0.3 * draw.matrix(6, 6);
+    auto solver = b.analysed<BlockLu>();
+    ASSERT_EQ(write_and_factor(solver, [&](BlockLu& s) { b.write(s); }), -1);
+    EXPECT_LT(residual(b, solver, draw), 1e-13);
+  }
+}
