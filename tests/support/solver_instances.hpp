@@ -2,6 +2,5 @@
 // Eigen's solvers are compiled once for all tests (solver_instances.cpp), not again in every file.
 #include <polybody/solvers/auto_lu.hpp>
 
-extern template class Eigen::PartialPivLU<polybody::MatX>;
 extern template class Eigen::SparseLU<polybody::EigenSparseLu::Matrix, Eigen::COLAMDOrdering<int>>;
 extern template class Eigen::internal::SparseLUImpl<double, int>;

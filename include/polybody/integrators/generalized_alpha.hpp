@@ -73,6 +73,9 @@ struct GeneralizedAlpha {
     StepHistory::reset(x);
     w.factored = false;
     if (start_correction && jerk_at_start(system, x, h, w)) StepHistory(x).pretend(x, w.jerk, h);
+    // once here, so that a solver that changes its order does not do so within a step
+    system.evaluate(x.q, x.v, x.t);
+    (void)refactor(system, h, x.lambda, w);
   }
 
   template <class M, class Solver>
@@ -92,6 +95,17 @@ struct GeneralizedAlpha {
   double alpha_f() const { return rho_inf / (rho_inf + 1.0); }
   double gamma() const { return 0.5 - alpha_m() + alpha_f(); }
   double beta() const { return 0.25 * (gamma() + 0.5) * (gamma() + 0.5); }
+
+  /// Tangent and factorisation for steps of h where `system` was evaluated last. −1, or the unknown without a pivot.
+  template <class M, class Solver>
+  Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w) const {
+    double const mass = (1.0 - alpha_m()) / (1.0 - alpha_f());
+    w.h_factored = h;
+    return write_and_factor(w.solver, [&](Solver& sink) {
+      system.tangent({mass, h * gamma(), beta() * h * h}, w.second_order ? SecondOrder::included : SecondOrder::omitted,
+                     lambda, sink);
+    });
+  }
 
   /// One step from x; x changes only when Newton converged.
   template <class M, class Solver>
@@ -129,10 +143,7 @@ struct GeneralizedAlpha {
         return w.rhs.allFinite();
       }
       bool refactor() {
-        w.h_factored = h;
-        bad = write_and_factor(w.solver, [&](Solver& sink) {
-          system.tangent({mass, h * g, s}, w.second_order ? SecondOrder::included : SecondOrder::omitted, w.lambda, sink);
-        });
+        bad = method.refactor(system, h, w.lambda, w);
         return bad < 0;
       }
       double solve() {
