@@ -55,8 +55,12 @@ TEST(HeavyTop, IsWhereThePublishedSolutionIs) {
   for (auto const& e : exact) {
     simulate(top.model, x, precise(), {.until = e.t, .step = 1e-3}).run();
     EXPECT_LT((x.q.head<3>() - e.place).norm(), 1e-7) << e.t;
-    if (e.parameters) EXPECT_LT(distance(x.q.tail<4>(), *e.parameters), 1e-7) << e.t;
-    if (e.spin) EXPECT_LT((x.v.tail<3>() - *e.spin).norm(), 1e-6) << e.t;
+    if (e.parameters) {
+      EXPECT_LT(distance(x.q.tail<4>(), *e.parameters), 1e-7) << e.t;
+    }
+    if (e.spin) {
+      EXPECT_LT((x.v.tail<3>() - *e.spin).norm(), 1e-6) << e.t;
+    }
   }
 }
 
@@ -126,8 +130,9 @@ TEST(TorqueFreeBody, TumblesAsPublished) {
   for (Spin const& e : r7) {
     simulate(body.model, body.x, integrator, {.until = e.t, .step = 0.01}).run();
     EXPECT_LT((body.x.v.tail<3>() - e.omega).norm(), 1e-8) << e.t;
-    if (e.t == 1.0)
+    if (e.t == 1.0) {
       EXPECT_LT(distance(body.x.q.tail<4>(), Vec4(-0.8011321124, 0.0017634284, 0.5984399441, 0.0073390884)), 1e-9);
+    }
     EXPECT_NEAR(energy(body.model, body.x).kinetic, energy0, 1e-8);
     EXPECT_LT((momentum(body.model, body.x).angular - momentum0).norm(), 1e-8);
     EXPECT_NEAR(body.x.q.tail<4>().norm(), 1.0, 1e-12);

@@ -93,7 +93,9 @@ TYPED_TEST_P(IntegratorLaws, RowsHoldAtTheEnd) {
     if constexpr (!std::is_same_v<typename TestFixture::Integrator, GeneralizedAlpha>) {
       EXPECT_LT(open.velocity, 1e-10);
       // Central differences evaluate the accelerations at the predicted speeds.
-      if (!std::string_view(integrator.name).starts_with("CentralDifference")) EXPECT_LT(open.acceleration, 1e-8);
+      if (!std::string_view(integrator.name).starts_with("CentralDifference")) {
+        EXPECT_LT(open.acceleration, 1e-8);
+      }
     }
   }
 }

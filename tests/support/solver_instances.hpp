@@ -1,6 +1,8 @@
 #pragma once
-// Eigen's solvers are compiled once for all tests (solver_instances.cpp), not again in every file.
+// Solvers are compiled once for all tests (solver_instances.cpp), not again in every file.
 #include <polybody/solvers/auto_lu.hpp>
+#include <polybody/solvers/block_lu.hpp>
 
+extern template class polybody::BlockFactor<polybody::Symmetry::measured>;
 extern template class Eigen::SparseLU<polybody::EigenSparseLu::Matrix, Eigen::COLAMDOrdering<int>>;
 extern template class Eigen::internal::SparseLUImpl<double, int>;
