@@ -36,3 +36,4 @@
 #include <polybody/solvers/auto_lu.hpp>
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/refined.hpp>

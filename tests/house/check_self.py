@@ -38,6 +38,7 @@ class Check(unittest.TestCase):
 
     def test_umbrella(self):
         self.assertEqual(len(self.found("umbrella", math__lonely="")), 1)
+        self.assertEqual(self.found("umbrella", math__lonely="/// Not in polybody.hpp: needs a library.\n"), [])
 
 
 if __name__ == "__main__":

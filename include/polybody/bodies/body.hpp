@@ -50,6 +50,12 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
 };
 
+/// A body whose points share what is dear to compute: `pose` once, then `publish` each point from it.
+template <class B, class T>
+concept SharesPose = requires(B const b, std::span<T const> x, typename B::Point p, Published<T>& out) {
+  b.publish(p, Mat3::Identity().eval(), b.template pose<T>(x, x), out);
+};
+
 /// ∂(Jᵀw)/∂q, columns × columns, of a marker with J of fixed width by dual numbers: the default for a body
 /// that has no closed form and whose coordinates add, q ⊞ δ = q + δ. `body.local(p)` is p in a body made of the
 /// marker's columns only.

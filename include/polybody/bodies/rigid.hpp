@@ -196,24 +196,40 @@ class Rigid {
     return -mass_ * g.dot(part<3>(q, 0));
   }
 
+  /// What all points of the body share.
+  template <StateScalar T>
+  struct Pose {
+    Vec<T, 3> r, v, w;  ///< of the centre of mass, world axes
+    Mat<T, 3, 3> A;
+  };
+
+  template <StateScalar T>
+  Pose<T> pose(std::span<T const> q, std::span<T const> v) const {
+    Pose<T> p{part<3>(q, 0), part<3>(v, 0), Vec<T, 3>(), rotation_matrix<T>(part<4>(q, 3))};
+    p.w = p.A.col(0) * v[3] + p.A.col(1) * v[4] + p.A.col(2) * v[5];
+    return p;
+  }
+
   /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
-               Published<T>& out) const {
-    Mat<T, 3, 3> const a = rotation_matrix<T>(part<4>(q, 3));
-    Vec<T, 3> const arm = a * p.u.template cast<T>();
-    Vec<T, 3> const w = a * part<3>(v, 3);
-    Vec<T, 3> const rate = w.cross(arm);
-    out.frame.r = part<3>(q, 0) + arm;
-    out.frame.A.noalias() = a * axes.template cast<T>();
-    out.frame.v = part<3>(v, 0) + rate;
-    out.frame.w = w;
-    out.bias.template head<3>() = w.cross(rate);
+  void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
+    auto const turned = [&at](auto const& u) { return at.A.col(0) * T(u[0]) + at.A.col(1) * T(u[1]) + at.A.col(2) * T(u[2]); };
+    Vec<T, 3> const arm = turned(p.u), rate = at.w.cross(arm);
+    out.frame.r = at.r + arm;
+    for (int i = 0; i < 3; ++i) out.frame.A.col(i) = turned(axes.col(i));
+    out.frame.v = at.v + rate;
+    out.frame.w = at.w;
+    out.bias.template head<3>() = at.w.cross(rate);
     out.bias.template tail<3>().setZero();
-    out.body_axes = a;
+    out.body_axes = at.A;
     out.arm = arm;
     out.shape = JacobianShape::rigid;
     out.columns = 6;
+  }
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+               Published<T>& out) const {
+    publish(p, axes, pose<T>(q, v), out);
   }
 
   /// Jᵀw = [f; Aᵀm + u × Aᵀf];  under A ⊞ δ: δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.

@@ -2,6 +2,7 @@
 /// \file
 /// Waist 1 as data: a marker after its body has published it. The body's type is gone.
 
+#include <algorithm>
 #include <cassert>
 
 #include <polybody/kinematics/frame.hpp>
@@ -38,12 +39,7 @@ struct Published {
       case JacobianShape::ground:
         return;
       case JacobianShape::rigid:
-        for (Index k = 0; k < wrenches.cols(); ++k) {
-          Vec<T, 3> const f = wrenches.col(k).template head<3>();
-          Vec<T, 3> const m = wrenches.col(k).template tail<3>() + arm.cross(f);
-          out.col(k).template head<3>() = f;
-          out.col(k).template tail<3>() = body_axes.transpose() * m;
-        }
+        pull_rigid(wrenches, out);
         return;
       case JacobianShape::dense:  // in plain loops: a matrix product of Eigen costs more, to compile and to run
         for (Index k = 0; k < wrenches.cols(); ++k)
@@ -53,6 +49,29 @@ struct Published {
             for (int i = 1; i < 6; ++i) sum += j[i] * wrenches(i, k);
             out(c, k) = sum;
           }
+    }
+  }
+
+  /// `pull` for the rigid shape: [f; Aᵀ(m + ρ × f)], component by component for all wrenches, as vector units like it.
+  template <class In, class Out>
+  void pull_rigid(In const& w, Out& out) const {
+    constexpr int fixed = In::ColsAtCompileTime;
+    constexpr int room = fixed > 0 ? fixed : 6;
+    for (Index begin = 0; begin < w.cols(); begin += room) {
+      int const count = fixed > 0 ? fixed : int(std::min<Index>(room, w.cols() - begin));
+      T f[3][room], m[3][room];
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < count; ++k) {
+          out(i, begin + k) = f[i][k] = w(i, begin + k);
+          m[i][k] = w(3 + i, begin + k);
+        }
+      for (int i = 0; i < 3; ++i) {
+        int const j = (i + 1) % 3, l = (i + 2) % 3;
+        for (int k = 0; k < count; ++k) m[i][k] += arm[j] * f[l][k] - arm[l] * f[j][k];
+      }
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < count; ++k)
+          out(3 + i, begin + k) = body_axes(0, i) * m[0][k] + body_axes(1, i) * m[1][k] + body_axes(2, i) * m[2][k];
     }
   }
 

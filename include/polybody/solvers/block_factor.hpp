@@ -8,10 +8,10 @@
 /// later k, l. In a symmetric matrix Lt = Δ⁻¹ W and only l ≥ k is made.
 
 #include <cmath>
-#include <cstring>
 #include <span>
 
 #include <polybody/solvers/block_layout.hpp>
+#include <polybody/solvers/block_node.hpp>
 
 namespace polybody {
 
@@ -53,9 +53,11 @@ class BlockFactor {
       detail::BlockLayout::Piece const& p = layout_.pieces[std::size_t(k)];
       if constexpr (!two_sided)
         if (p.lower) continue;
-      double* const to = (p.lower ? l_.data() : u_.data()) + p.to;
-      for (int i = 0; i < p.rows; ++i)
-        for (int j = 0; j < p.cols; ++j) to[i * p.row_step + j * p.col_step] += b(p.row + i, p.col + j);
+      double const* const from = b.data + p.row * b.row_step + p.col * b.col_step;
+      if (p.lower)
+        detail::add_block(l_.data() + p.to, p.stride, from, b.col_step, b.row_step, p.cols, p.rows);
+      else
+        detail::add_block(u_.data() + p.to, p.stride, from, b.row_step, b.col_step, p.rows, p.cols);
     }
   }
 
@@ -66,11 +68,14 @@ class BlockFactor {
     dropped_count_ = 0;
     bool const symmetric = symmetry == Symmetry::assumed || (symmetry == Symmetry::measured && is_symmetric());
     symmetric_ = symmetric;
-    set_scales();
+    scales_.zero();
     for (Node const& node : layout_.nodes) {
-      if (int const bad = node.pivoted ? eliminate_pivoted(node, symmetric) : eliminate(node, symmetric); bad >= 0)
-        return failed(node, bad);
-      update(node, symmetric);
+      int const bad = detail::with_constant(node.pivoted ? 0 : node.size, [&](auto n) {
+        int const lost = eliminate<n>(node, symmetric);
+        if (lost < 0) symmetric ? update<n, true>(node) : update<n, false>(node);
+        return lost;
+      });
+      if (bad >= 0) return failed(node, bad);
     }
     return -1;
   }
@@ -103,10 +108,11 @@ class BlockFactor {
   using Neighbour = detail::BlockLayout::Neighbour;
 
   void compile() {
-    layout_.compile(pattern_, blocks_, lessons_);
+    layout_.compile(pattern_, blocks_, lessons_, two_sided);
     u_ = detail::AlignedDoubles(layout_.size_u);
     l_ = detail::AlignedDoubles(layout_.size_l);
     f_ = detail::AlignedDoubles(layout_.size_f);
+    scaled_ = detail::AlignedDoubles(std::size_t(layout_.largest_w));
     inverse_ = scales_ = work_ = detail::AlignedDoubles(layout_.unknown.size());
     swaps_.assign(layout_.unknown.size(), 0);
     dropped_.assign(std::size_t(size_), 0);
@@ -114,119 +120,46 @@ class BlockFactor {
   }
   bool is_symmetric() const;
 
-  /// What each diagonal entry is made of: its own size, and what elimination adds.
-  void set_scales() {
-    for (Node const& n : layout_.nodes) {
-      double const* const d = u_.data() + n.u;
-      double* const scale = scales_.data() + n.x;
-      for (int i = 0; i < n.size; ++i) {
-        scale[i] = std::abs(d[i * n.stride() + i]);
-        if (!n.pivoted) continue;
-        for (int j = 0; j < n.stride(); ++j) scale[i] = std::max(scale[i], std::abs(d[i * n.stride() + j]));
-      }
-    }
+  /// Symmetric nodes need Lt = Δ⁻¹ W only while they are eliminated.
+  bool keeps_columns(Node const& n) const { return n.pivoted || !symmetric_; }
+  detail::NodeStorage storage(Node const& n) const {
+    double* const l = keeps_columns(n) ? l_.data() + n.l : scaled_.data();
+    return {n.size, n.pad, n.width, u_.data() + n.u, l, f_.data() + n.f, inverse_.data() + n.x};
   }
 
+  template <int N>
   int eliminate(Node const& n, bool symmetric) {
-    int const stride = n.stride();
-    double* const u = u_.data() + n.u;
-    double* const l = l_.data() + n.l;
-    double* const f = f_.data() + n.f;
-    double* const inverse = inverse_.data() + n.x;
-    double const* const scale = scales_.data() + n.x;
-    for (int r = 0; r < n.size; ++r) {
-      double const pivot = u[r * stride + r];
-      if (!(std::abs(pivot) > (n.joint ? row_threshold : body_threshold) * scale[r])) {
-        if (!n.droppable || !std::isfinite(pivot)) return r;  // only a joint that waits for its whole loop may be redundant
-        dropped_[dropped_count_++] = layout_.unknown[n.x + std::size_t(r)];
-        inverse[r] = 0.0;
-        for (int s = 0; s < n.size; ++s) f[s * n.size + r] = 0.0;
-        continue;
-      }
-      inverse[r] = 1.0 / pivot;
-      int const begin = (r + 1) & ~3;
-      for (int s = r + 1; s < n.size; ++s) {
-        double const factor = u[s * stride + r] * inverse[r];
-        f[s * n.size + r] = factor;
-        detail::subtract_row(u + s * stride + begin, factor, u + r * stride + begin, stride - begin);
-      }
-    }
-    if (symmetric) {
-      for (int r = 0; r < n.size; ++r)
-        detail::scale_row(l + r * n.width, inverse[r], u + r * stride + n.pad, n.width);
-    } else {
-      finish_columns(n, u, l, inverse);
-    }
-    return -1;
+    double* const scale = scales_.data() + n.x;  // what eliminations have added to the diagonal
+    if (n.pivoted)
+      return detail::eliminate_pivoted(storage(n), symmetric, body_threshold, scale, swaps_.data() + n.x);
+    return detail::eliminate_node<N>(storage(n), symmetric, n.joint ? row_threshold : body_threshold, scale,
+                                     [&](int r, double pivot) {
+                                       // only a joint that waits for its whole loop may be redundant
+                                       if (!n.droppable || !std::isfinite(pivot)) return true;
+                                       dropped_[dropped_count_++] = layout_.unknown[n.x + std::size_t(r)];
+                                       return false;
+                                     });
   }
 
-  /// Lt ← Δ⁻¹ R⁻ᵀ Lt.
-  static void finish_columns(Node const& n, double const* u, double* l, double const* inverse) {
-    for (int r = 0; r < n.size; ++r) {
-      double* const row = l + r * n.width;
-      detail::scale_row(row, inverse[r], row, n.width);
-      for (int s = r + 1; s < n.size; ++s)
-        detail::subtract_row(l + s * n.width, u[r * n.stride() + s], row, n.width);
-    }
-  }
-
-  /// With partial pivoting among the node's rows.
-  int eliminate_pivoted(Node const& n, bool symmetric) {
-    int const stride = n.stride();
-    double* const u = u_.data() + n.u;
-    double* const l = l_.data() + n.l;
-    double* const f = f_.data() + n.f;
-    double* const inverse = inverse_.data() + n.x;
-    int* const swap = swaps_.data() + n.x;
-    double largest = 0.0;
-    for (int i = 0; i < n.size; ++i) largest = std::max(largest, scales_.data()[n.x + std::size_t(i)]);
-    if (symmetric)
-      for (int r = 0; r < n.size; ++r) std::copy_n(u + r * stride + n.pad, n.width, l + r * n.width);
-    for (int r = 0; r < n.size; ++r) {
-      int best = r;
-      double column = 0.0;
-      for (int s = r; s < n.size; ++s)
-        if (std::abs(u[s * stride + r]) > std::abs(u[best * stride + r])) best = s;
-      for (int s = 0; s < n.size; ++s) column = std::max(column, std::abs(u[s * stride + r]));
-      swap[r] = best;
-      if (best != r) {
-        std::swap_ranges(u + r * stride, u + (r + 1) * stride, u + best * stride);
-        std::swap_ranges(f + r * n.size, f + r * n.size + r, f + best * n.size);
-      }
-      double const pivot = u[r * stride + r];
-      if (!(std::abs(pivot) > body_threshold * std::max(column, 1e-3 * body_threshold * largest))) return r;
-      inverse[r] = 1.0 / pivot;
-      int const begin = (r + 1) & ~3;
-      for (int s = r + 1; s < n.size; ++s) {
-        double const factor = u[s * stride + r] * inverse[r];
-        f[s * n.size + r] = factor;
-        detail::subtract_row(u + s * stride + begin, factor, u + r * stride + begin, stride - begin);
-      }
-    }
-    finish_columns(n, u, l, inverse);
-    return -1;
-  }
-
-  void update(Node const& n, bool symmetric) {
-    double const* const w = u_.data() + n.u + n.pad;
-    double const* const l = l_.data() + n.l;
+  template <int N, bool symmetric>
+  void update(Node const& n) {
+    double const *const w = u_.data() + n.u + n.pad, *const l = keeps_columns(n) ? l_.data() + n.l : scaled_.data();
     Neighbour const* const of = layout_.neighbours.data() + n.first_neighbour;
     int const* target = layout_.targets.data() + n.first_target;
+    int const stride = n.stride();
     for (int a = 0; a < n.neighbours; ++a) {
       Node const& k = layout_.nodes[std::size_t(of[a].node)];
       double* const rows = u_.data() + k.u;
       double const *const wa = w + of[a].column, *const la = l + of[a].column;
-      detail::subtract_product(rows, k.stride(), la, n.width, wa, n.stride(), n.size, k.size, k.pad);
-      double* const scale = scales_.data() + k.x;
-      for (int r = 0; r < n.size; ++r)
-        for (int i = 0; i < k.size; ++i) scale[i] += std::abs(la[r * n.width + i] * wa[r * n.stride() + i]);
+      detail::add_sizes<N>(scales_.data() + k.x, la, n.width, wa, stride, n.size, k.pad);
+      detail::subtract_product<N>(rows, k.stride(), la, n.width, wa, stride, n.size, k.size, k.pad);
       for (int b = a + 1; b < n.neighbours; ++b) {
         int const column = *target++, width = detail::padded(of[b].size);
-        detail::subtract_product(rows + k.pad + column, k.stride(), la, n.width, w + of[b].column, n.stride(), n.size,
-                                 k.size, width);
+        detail::subtract_product<N>(rows + k.pad + column, k.stride(), la, n.width, w + of[b].column, stride, n.size,
+                                    k.size, width);
         if (!symmetric)
-          detail::subtract_product(l_.data() + k.l + column, k.width, wa, n.stride(), l + of[b].column, n.width, n.size,
-                                   k.size, width);
+          detail::subtract_product<N>(l_.data() + k.l + column, k.width, wa, stride, l + of[b].column, n.width, n.size,
+                                      k.size, width);
       }
     }
   }
@@ -243,26 +176,21 @@ class BlockFactor {
   std::vector<int> swaps_;
   std::vector<Index> dropped_;
   std::size_t dropped_count_ = 0;
-  detail::AlignedDoubles u_, l_, f_, inverse_, scales_;
-  mutable detail::AlignedDoubles work_;
+  mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // a solve changes the last two only
+  detail::AlignedDoubles scales_;
 };
 
 template <Symmetry symmetry>
 bool BlockFactor<symmetry>::is_symmetric() const {
   for (Node const& n : layout_.nodes) {
-    double const *const u = u_.data() + n.u, *const l = l_.data() + n.l;
-    double largest = 0.0, apart = 0.0;
+    detail::Difference off;
     for (int r = 0; r < n.size; ++r) {
-      for (int c = 0; c < n.size; ++c) {
-        largest = std::max(largest, std::abs(u[r * n.stride() + c]));
-        apart = std::max(apart, std::abs(u[r * n.stride() + c] - u[c * n.stride() + r]));
-      }
-      for (int k = 0; k < n.width; ++k) {
-        largest = std::max(largest, std::abs(u[r * n.stride() + n.pad + k]));
-        apart = std::max(apart, std::abs(u[r * n.stride() + n.pad + k] - l[r * n.width + k]));
-      }
+      double const* const u = u_.data() + n.u + r * n.stride();
+      for (int c = 0; c < r; ++c) off.compare(u[c], u_.data()[n.u + std::size_t(c * n.stride() + r)]);
+      off.compare(u + n.pad, l_.data() + n.l + r * n.width, n.width);
+      off.enlarge(u[r]);
     }
-    if (apart > 1e-12 * largest) return false;
+    if (!off.is_rounding()) return false;
   }
   return true;
 }
@@ -288,8 +216,7 @@ Index BlockFactor<symmetry>::failed(Node const& n, int r) {
     };
     for (std::size_t s = 0; s < segments.size(); ++s)
       if (!segments[s].joint && !lessons_.merged[s] && segments[s].size == segment.size &&
-          rows(segments[s].body) == rows(segment.body))
-{
+          rows(segments[s].body) == rows(segment.body)) {
         lessons_.merged[s] = 1;
         changed = true;
       }
@@ -306,39 +233,34 @@ Index BlockFactor<symmetry>::failed(Node const& n, int r) {
 template <Symmetry symmetry>
 void BlockFactor<symmetry>::solve(double const* b, double* x) const {
   double* const w = work_.data();
-  for (std::size_t i = 0; i < layout_.unknown.size(); ++i) w[i] = layout_.unknown[i] < 0 ? 0.0 : b[layout_.unknown[i]];
-  double const* const inverses = inverse_.data();
+  for (Index i = 0; i < size_; ++i) w[layout_.place[std::size_t(i)]] = b[i];
+  Neighbour const* const all = layout_.neighbours.data();
   for (Node const& n : layout_.nodes) {
     double* const y = w + n.x;
-    double const *const f = f_.data() + n.f, *const l = l_.data() + n.l;
     if (n.pivoted)
       for (int r = 0; r < n.size; ++r) std::swap(y[r], y[swaps_[n.x + std::size_t(r)]]);
-    for (int r = 0; r < n.size; ++r)
-      for (int s = r + 1; s < n.size; ++s) y[s] -= f[s * n.size + r] * y[r];
-    Neighbour const* const of = layout_.neighbours.data() + n.first_neighbour;
-    for (int a = 0; a < n.neighbours; ++a) {
-      Node const& k = layout_.nodes[std::size_t(of[a].node)];
-      for (int r = 0; r < n.size; ++r) detail::subtract_row(w + k.x, y[r], l + r * n.width + of[a].column, k.pad);
-    }
+    detail::NodeStorage const s = storage(n);
+    detail::with_constant(n.size, [&](auto size) {
+      detail::solve_lower<size>(s, y);
+      bool const kept = keeps_columns(n);
+      double const *const lt = kept ? s.l : s.u + s.pad, *z = y;
+      if (!kept) {
+        for (int r = 0; r < n.size; ++r) scaled_.data()[r] = s.inverse[r] * y[r];
+        z = scaled_.data();
+      }
+      for (Neighbour const* k = all + n.first_neighbour; k != all + n.first_neighbour + n.neighbours; ++k)
+        detail::pass_down<size>(lt + k->column, kept ? s.width : s.stride(), s.size, z, detail::padded(k->size),
+                                w + layout_.nodes[std::size_t(k->node)].x);
+    });
   }
-  for (auto it = layout_.nodes.rbegin(); it != layout_.nodes.rend(); ++it) {
-    Node const& n = *it;
-    double* const y = w + n.x;
-    double const *const u = u_.data() + n.u, *const inverse = inverses + n.x;
-    Neighbour const* const of = layout_.neighbours.data() + n.first_neighbour;
-    for (int a = 0; a < n.neighbours; ++a) {
-      Node const& k = layout_.nodes[std::size_t(of[a].node)];
-      for (int r = 0; r < n.size; ++r)
-        y[r] -= detail::dot_rows(u + r * n.stride() + n.pad + of[a].column, w + k.x, k.pad);
-    }
-    for (int r = n.size - 1; r >= 0; --r) {
-      double sum = y[r];
-      for (int s = r + 1; s < n.size; ++s) sum -= u[r * n.stride() + s] * y[s];
-      y[r] = sum * inverse[r];
-    }
+  for (auto n = layout_.nodes.rbegin(); n != layout_.nodes.rend(); ++n) {
+    detail::NodeStorage const s = storage(*n);
+    detail::with_constant(n->size, [&](auto size) {
+      detail::pass_up<size>(s, all + n->first_neighbour, n->neighbours, layout_.nodes.data(), w, w + n->x);
+      detail::solve_upper<size>(s, w + n->x);
+    });
   }
-  for (std::size_t i = 0; i < layout_.unknown.size(); ++i)
-    if (layout_.unknown[i] >= 0) x[layout_.unknown[i]] = w[i];
+  for (Index i = 0; i < size_; ++i) x[i] = w[layout_.place[std::size_t(i)]];
 }
 
 template <Symmetry symmetry>

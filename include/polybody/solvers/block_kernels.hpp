@@ -1,20 +1,22 @@
 #pragma once
 /// \file
-/// Products of small blocks that stand by rows, padded to multiples of four doubles.
+/// Products of small blocks that stand by rows, padded to whole vectors of the machine.
 
 #include <Eigen/Core>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 namespace polybody::detail {
 
+using Index = Eigen::Index;
 
 /// As many doubles as the machine for which we compile takes at once, two or four (a wider vector than its own would be
-/// taken apart entry by entry). All rows of a block are padded with zeros to a multiple of four.
+/// taken apart entry by entry). All rows of a block are padded with zeros to a multiple of it.
 constexpr int lane_size = Eigen::internal::packet_traits<double>::size >= 4 ? 4 : 2;
 using Lane [[gnu::vector_size(8 * lane_size), gnu::may_alias]] = double;
 static_assert(sizeof(Lane) == 8 * lane_size, "The block solvers need the vector extensions of g++ or clang++.");
-constexpr int padded(int n) { return (n + 3) & ~3; }
+constexpr int padded(int n) { return (n + lane_size - 1) & ~(lane_size - 1); }
 inline Lane* lanes(double* x) { return reinterpret_cast<Lane*>(x); }
 inline Lane const* lanes(double const* x) { return reinterpret_cast<Lane const*>(x); }
 
@@ -36,60 +38,67 @@ class AlignedDoubles {
   std::vector<Four> quads_;
 };
 
-/// C (m × width) −= Aᵀ B; A (n × m) and B (n × width) by rows.
-template <int width>
-void subtract_product(double* __restrict c, Eigen::Index c_stride, double const* a, Eigen::Index a_stride, double const* b,
-                      Eigen::Index b_stride, int n, int m) {
-  constexpr int count = width / lane_size;
-  int i = 0;
-  for (; i + 2 <= m; i += 2) {
-    Lane s0[count], s1[count];
-#pragma GCC unroll 4
-    for (int k = 0; k < count; ++k) {
-      s0[k] = lanes(c + i * c_stride)[k];
-      s1[k] = lanes(c + (i + 1) * c_stride)[k];
-    }
-    for (int p = 0; p < n; ++p) {
-      double const f0 = a[p * a_stride + i], f1 = a[p * a_stride + i + 1];
-      Lane const* const row = lanes(b + p * b_stride);
-#pragma GCC unroll 4
-      for (int k = 0; k < count; ++k) {
-        s0[k] -= f0 * row[k];
-        s1[k] -= f1 * row[k];
-      }
-    }
-#pragma GCC unroll 4
-    for (int k = 0; k < count; ++k) {
-      lanes(c + i * c_stride)[k] = s0[k];
-      lanes(c + (i + 1) * c_stride)[k] = s1[k];
-    }
+/// Calls f with N = 1 … 6 as a constant, or 0 for any other number.
+template <class F>
+auto with_constant(int n, F&& f) {
+  switch (n) {
+    case 1: return f(std::integral_constant<int, 1>{});
+    case 2: return f(std::integral_constant<int, 2>{});
+    case 3: return f(std::integral_constant<int, 3>{});
+    case 4: return f(std::integral_constant<int, 4>{});
+    case 5: return f(std::integral_constant<int, 5>{});
+    case 6: return f(std::integral_constant<int, 6>{});
+    default: return f(std::integral_constant<int, 0>{});
   }
-  for (; i < m; ++i) {
-    Lane s[count];
+}
+
+/// `strip` rows of C −= Aᵀ B, held in registers.
+template <int strip, int count, int inner>
+inline void subtract_strip(double* __restrict c, Index c_stride, double const* a, Index a_stride, double const* b,
+                           Index b_stride, int n) {
+  Lane s[strip][count];
 #pragma GCC unroll 4
-    for (int k = 0; k < count; ++k) s[k] = lanes(c + i * c_stride)[k];
-    for (int p = 0; p < n; ++p) {
+  for (int i = 0; i < strip; ++i)
+#pragma GCC unroll 4
+    for (int k = 0; k < count; ++k) s[i][k] = lanes(c + i * c_stride)[k];
+#pragma GCC unroll 8
+  for (int p = 0; p < (inner > 0 ? inner : n); ++p)
+#pragma GCC unroll 4
+    for (int i = 0; i < strip; ++i) {
       double const f = a[p * a_stride + i];
-      Lane const* const row = lanes(b + p * b_stride);
 #pragma GCC unroll 4
-      for (int k = 0; k < count; ++k) s[k] -= f * row[k];
+      for (int k = 0; k < count; ++k) s[i][k] -= f * lanes(b + p * b_stride)[k];
     }
 #pragma GCC unroll 4
-    for (int k = 0; k < count; ++k) lanes(c + i * c_stride)[k] = s[k];
-  }
+  for (int i = 0; i < strip; ++i)
+#pragma GCC unroll 4
+    for (int k = 0; k < count; ++k) lanes(c + i * c_stride)[k] = s[i][k];
+}
+
+/// C (m × count lanes) −= Aᵀ B; A (n × m) and B (n × count lanes) by rows; `inner` is n, or 0 when known at run time only.
+template <int count, int inner>
+void subtract_product(double* c, Index c_stride, double const* a, Index a_stride, double const* b, Index b_stride, int n,
+                      int m) {
+  int i = 0;
+  for (; i + 3 <= m; i += 3)
+    subtract_strip<3, count, inner>(c + i * c_stride, c_stride, a + i, a_stride, b, b_stride, n);
+  for (; i < m; ++i) subtract_strip<1, count, inner>(c + i * c_stride, c_stride, a + i, a_stride, b, b_stride, n);
 }
 
 /// The same for any padded width.
-inline void subtract_product(double* c, Eigen::Index c_stride, double const* a, Eigen::Index a_stride, double const* b,
-                             Eigen::Index b_stride, int n, int m, int width) {
-  for (; width > 8; width -= 8, c += 8, b += 8) subtract_product<8>(c, c_stride, a, a_stride, b, b_stride, n, m);
-  if (width > 4)
-    subtract_product<8>(c, c_stride, a, a_stride, b, b_stride, n, m);
-  else
-    subtract_product<4>(c, c_stride, a, a_stride, b, b_stride, n, m);
+template <int inner>
+void subtract_product(double* c, Index c_stride, double const* a, Index a_stride, double const* b, Index b_stride, int n,
+                      int m, int width) {
+  constexpr int most = lane_size == 2 ? 3 : 2, step = most * lane_size;
+  for (; width >= step; width -= step, c += step, b += step)
+    subtract_product<most, inner>(c, c_stride, a, a_stride, b, b_stride, n, m);
+  if (lane_size == 2 && width == 2 * lane_size)
+    subtract_product<2, inner>(c, c_stride, a, a_stride, b, b_stride, n, m);
+  else if (width > 0)
+    subtract_product<1, inner>(c, c_stride, a, a_stride, b, b_stride, n, m);
 }
 
-/// y −= f x, `width` a multiple of four.
+/// y −= f x, `width` padded.
 inline void subtract_row(double* __restrict y, double f, double const* __restrict x, int width) {
   for (int k = 0; k < width / lane_size; ++k) lanes(y)[k] -= f * lanes(x)[k];
 }
@@ -99,13 +108,57 @@ inline void scale_row(double* y, double f, double const* x, int width) {
   for (int k = 0; k < width / lane_size; ++k) lanes(y)[k] = f * lanes(x)[k];
 }
 
-/// x·y, `width` a multiple of four.
-inline double dot_rows(double const* x, double const* y, int width) {
-  Lane sum = lanes(x)[0] * lanes(y)[0];
-  for (int k = 1; k < width / lane_size; ++k) sum += lanes(x)[k] * lanes(y)[k];
-  double total = 0.0;
-  for (int k = 0; k < lane_size; ++k) total += sum[k];
+/// y += Σ |a_r b_r| over n rows, entry by entry; `inner` is n, or 0 when known at run time only.
+template <int inner>
+void add_sizes(double* y, double const* a, Index a_stride, double const* b, Index b_stride, int n, int width) {
+  using Bits [[gnu::vector_size(8 * lane_size)]] = long long;
+  for (int k = 0; k < width / lane_size; ++k) {
+    Lane sum = lanes(y)[k];
+#pragma GCC unroll 8
+    for (int r = 0; r < (inner > 0 ? inner : n); ++r) {
+      Bits const product = Bits(Lane(lanes(a + r * a_stride)[k] * lanes(b + r * b_stride)[k]));
+      sum += Lane(product & 0x7fffffffffffffffLL);  // without its sign
+    }
+    lanes(y)[k] = sum;
+  }
+}
+
+/// to (by rows) += from, whose rows are `outer_step` apart and their entries `inner_step`.
+inline void add_block(double* __restrict to, int stride, double const* __restrict from, Index outer_step, Index inner_step,
+                      int outer, int inner) {
+  for (int i = 0; i < outer; ++i, to += stride, from += outer_step) {
+    if (inner_step == 1)
+      for (int j = 0; j < inner; ++j) to[j] += from[j];
+    else
+      for (int j = 0; j < inner; ++j) to[j] += from[j * inner_step];
+  }
+}
+
+inline double sum_of(Lane const& x) {
+  double total = x[0];
+  for (int k = 1; k < lane_size; ++k) total += x[k];
   return total;
 }
+
+/// How far apart the halves of a matrix are, in the Frobenius norm.
+struct Difference {
+  Lane lane_sum = {}, lane_apart = {};
+  double sum = 0.0, apart = 0.0;
+
+  void enlarge(double x) { sum += x * x; }
+  void compare(double x, double y) {
+    sum += x * x;
+    apart += (x - y) * (x - y);
+  }
+  void compare(double const* x, double const* y, int width) {
+    for (int k = 0; k < width / lane_size; ++k) {
+      Lane const d = lanes(x)[k] - lanes(y)[k];
+      lane_sum += lanes(x)[k] * lanes(x)[k];
+      lane_apart += d * d;
+    }
+  }
+  bool is_rounding() const { return apart + sum_of(lane_apart) <= 1e-24 * (sum + sum_of(lane_sum)); }
+};
+
 
 }  // namespace polybody::detail

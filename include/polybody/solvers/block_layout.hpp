@@ -17,7 +17,7 @@ class BlockLayout {
   /// Its rows stand as [D | W], D its own block and W its row of later ones; its column of later ones, transposed, as Lt.
   struct Node {
     int size, pad, width;              ///< unknowns, padded, and columns of W
-    std::size_t u, l, f, x;            ///< begin of its rows [D | W], of Lt, of its triangle, of its part of vectors
+    std::size_t u, l, f, x;            ///< begin of its rows [D | W], of Lt if it has one, of its triangle, of its vectors
     int first_neighbour, neighbours;
     int first_target;                  ///< for each pair of neighbours k before l: the column of l in W of k
     bool pivoted, joint, droppable;
@@ -26,8 +26,9 @@ class BlockLayout {
   /// The part of an added block between two segments, and where it goes.
   struct Piece {
     std::size_t to;
-    int row, col, rows, cols, row_step, col_step;
-    bool lower;  ///< into Lt
+    int row, col, rows, cols;  ///< within the added block
+    int stride;                ///< of what it is added to
+    bool lower;                ///< into Lt, transposed
   };
   /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others, all in
   /// one node.
@@ -42,12 +43,15 @@ class BlockLayout {
   std::vector<Piece> pieces;
   std::vector<int> first_piece;   ///< of each added block, and one past the last
   std::vector<Index> unknown;     ///< of each place in padded vectors; −1 for padding
+  std::vector<int> place;         ///< of each unknown in padded vectors
   std::size_t size_u = 0, size_l = 0, size_f = 0;
+  int largest_w = 0;              ///< entries of the largest W, or unknowns of the largest node
 
-  void compile(BlockPattern const& pattern, std::vector<Block> const& blocks, Lessons const& lessons) {
+  /// Without `both_halves` only nodes with pivoting have an Lt.
+  void compile(BlockPattern const& pattern, std::vector<Block> const& blocks, Lessons const& lessons, bool both_halves) {
     EliminationOrder order;
     order.compute(pattern, blocks, number_nodes(pattern, lessons), lessons.late);
-    place_nodes(pattern, order, lessons);
+    place_nodes(pattern, order, lessons, both_halves);
     find_targets();
     place_pieces(pattern, blocks);
   }
@@ -77,7 +81,7 @@ class BlockLayout {
     return node_of;
   }
 
-  void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, Lessons const& lessons) {
+  void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, Lessons const& lessons, bool both_halves) {
     auto const& segments = pattern.segments();
     local_.assign(segments.size(), 0);
     place_.assign(segments.size(), 0);
@@ -85,6 +89,7 @@ class BlockLayout {
     neighbours.clear();
     unknown.clear();
     size_u = size_l = size_f = 0;
+    largest_w = 0;
     std::vector<int> size(order.nodes.size(), 0);
     for (std::size_t k = 0; k < order.nodes.size(); ++k)
       for (int const s : order.nodes[k].segments) {
@@ -117,10 +122,14 @@ class BlockLayout {
         n.width += padded(size[std::size_t(later)]);
       }
       size_u += std::size_t(n.size) * std::size_t(n.stride());
-      size_l += std::size_t(n.size) * std::size_t(n.width);
+      if (both_halves || n.pivoted) size_l += std::size_t(n.size) * std::size_t(n.width);
+      largest_w = std::max(largest_w, n.size * std::max(n.width, 1));
       size_f += std::size_t(padded(n.size * n.size));
       nodes.push_back(n);
     }
+    place.assign(unknown.size(), 0);
+    for (std::size_t i = 0; i < unknown.size(); ++i)
+      if (unknown[i] >= 0) place[std::size_t(unknown[i])] = int(i);
   }
 
   void find_targets() {
@@ -153,11 +162,9 @@ class BlockLayout {
           int const pr = place_[std::size_t(r)], pc = place_[std::size_t(c)];
           int const lr = local_[std::size_t(r)], lc = local_[std::size_t(c)];
           Node const& n = nodes[std::size_t(std::min(pr, pc))];
-          Piece p{0, int(sr.first - b.row), int(sc.first - b.col), sr.size, sc.size, n.stride(), 1, pr > pc};
+          Piece p{0, int(sr.first - b.row), int(sc.first - b.col), sr.size, sc.size, pr > pc ? n.width : n.stride(), pr > pc};
           if (p.lower) {
             p.to = n.l + std::size_t(lc * n.width + column(n, pr) + lr);
-            p.row_step = 1;
-            p.col_step = n.width;
           } else {
             p.to = n.u + std::size_t(lr * n.stride() + (pr == pc ? 0 : n.pad + column(n, pc)) + lc);
           }

@@ -1,10 +1,8 @@
 #pragma once
 #include <Eigen/SparseLU>
-#include <algorithm>
-#include <cstdint>
 #include <memory>
 
-#include <polybody/solvers/linear_solver.hpp>
+#include <polybody/solvers/sparse_sink.hpp>
 
 namespace polybody {
 
@@ -13,49 +11,19 @@ namespace polybody {
 template <class Ordering>
 class EigenSparseLuBy {
  public:
-  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+  using Matrix = SparseSink::Matrix;
 
   void analyse(Index size, std::vector<Block> const& blocks) {
-    // Compressed columns: gather the rows of each column, sort, remove twins.
-    std::vector<std::vector<int>> columns(static_cast<std::size_t>(size));
-    for (Block const& b : blocks)
-      for (Index j = 0; j < b.cols; ++j)
-        for (Index i = 0; i < b.rows; ++i)
-          columns[std::size_t(b.col + j)].push_back(int(b.row + i));
-    std::vector<Eigen::Triplet<double>> entries;
-    for (Index j = 0; j < size; ++j) {
-      auto& rows = columns[std::size_t(j)];
-      std::sort(rows.begin(), rows.end());
-      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-      for (int i : rows) entries.emplace_back(i, int(j), 1.0);
-    }
-    a_.resize(size, size);
-    a_.setFromTriplets(entries.begin(), entries.end());
-    slots_.clear();
-    for (Block const& b : blocks)
-      for (Index j = 0; j < b.cols; ++j) {
-        int const* const begin = a_.innerIndexPtr() + a_.outerIndexPtr()[b.col + j];
-        int const* const end = a_.innerIndexPtr() + a_.outerIndexPtr()[b.col + j + 1];
-        for (Index i = 0; i < b.rows; ++i)
-          slots_.push_back(std::int32_t(std::lower_bound(begin, end, int(b.row + i)) - a_.innerIndexPtr()));
-      }
-    lu_->analyzePattern(a_);
+    sink_.analyse(size, blocks);
+    lu_->analyzePattern(sink_.matrix());
   }
-  void begin() {
-    std::fill_n(a_.valuePtr(), a_.nonZeros(), 0.0);
-    cursor_ = 0;
-  }
-  void add(Index, Index, BlockView const& b) {
-    double* const values = a_.valuePtr();
-    std::int32_t const* slot = slots_.data() + cursor_;
-    for (Index j = 0; j < b.cols; ++j)
-      for (Index i = 0; i < b.rows; ++i) values[*slot++] += b(i, j);
-    cursor_ = std::size_t(slot - slots_.data());
-  }
+  void begin() { sink_.begin(); }
+  void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
   /// −1, or a column whose pivot is below 1e-14 of the column's largest entry.
   Index factor() {
-    if (a_.cols() == 0) return -1;
-    lu_->factorize(a_);
+    Matrix const& a = sink_.matrix();
+    if (a.cols() == 0) return -1;
+    lu_->factorize(a);
     auto const& place = lu_->colsPermutation().indices();  // of a column in the order of elimination
     if (lu_->info() != Eigen::Success) {
       // Eigen tells a pivot that is exactly zero by its place, counted from one, at the end of a message.
@@ -67,9 +35,9 @@ class EigenSparseLuBy {
       return 0;
     }
     auto const upper = lu_->matrixU();  // its diagonal stands in the supernodes of L
-    for (Index i = 0; i < a_.cols(); ++i) {
+    for (Index i = 0; i < a.cols(); ++i) {
       double largest = 0.0, pivot = 0.0;
-      for (typename Matrix::InnerIterator entry(a_, i); entry; ++entry) largest = std::max(largest, std::abs(entry.value()));
+      for (typename Matrix::InnerIterator entry(a, i); entry; ++entry) largest = std::max(largest, std::abs(entry.value()));
       for (typename Lu::SCMatrix::InnerIterator entry(upper.m_mapL, place[i]); entry; ++entry)
         if (entry.index() == place[i]) {
           pivot = entry.value();
@@ -82,12 +50,10 @@ class EigenSparseLuBy {
   void solve(VecX const& b, VecX& x) const {
     if (b.size() > 0) x = lu_->solve(b);
   }
-  Matrix const& matrix() const { return a_; }
+  Matrix const& matrix() const { return sink_.matrix(); }
 
  private:
-  Matrix a_;
-  std::vector<std::int32_t> slots_;
-  std::size_t cursor_ = 0;
+  SparseSink sink_;
   using Lu = Eigen::SparseLU<Matrix, Ordering>;
   std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();  // Eigen's does not move
 };

@@ -15,9 +15,12 @@ void add_pulled(Published<T> const& p, Vec<T, 6> const& w, double sign, VecXOf<T
     case JacobianShape::ground:
       return;
     case JacobianShape::rigid: {
-      Vec<T, 6> q;
-      p.pull(w, q);
-      r.template segment<6>(p.first) += q * T(sign);
+      Vec<T, 3> const f = w.template head<3>() * T(sign);
+      Vec<T, 3> const m = w.template tail<3>() * T(sign) + p.arm.cross(f);
+      for (int i = 0; i < 3; ++i) {
+        r[p.first + i] += f[i];
+        r[p.first + 3 + i] += p.body_axes(0, i) * m[0] + p.body_axes(1, i) * m[1] + p.body_axes(2, i) * m[2];
+      }
       return;
     }
     case JacobianShape::dense:
@@ -28,6 +31,18 @@ void add_pulled(Published<T> const& p, Vec<T, 6> const& w, double sign, VecXOf<T
         r[p.first + c] += sum * sign;
       }
   }
+}
+
+/// Gᵀ λ, entry by entry.
+template <int m, StateScalar T>
+Vec<T, 6> wrench_of(Mat<T, m, 6> const& g, Vec<T, m> const& lambda) {
+  Vec<T, 6> w;
+  for (int i = 0; i < 6; ++i) {
+    T sum = g(0, i) * lambda[0];
+    for (int r = 1; r < m; ++r) sum += g(r, i) * lambda[r];
+    w[i] = sum;
+  }
+  return w;
 }
 
 template <class F, class M, StateScalar T>
@@ -80,9 +95,8 @@ void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> 
   for_each_gap(model, data, [&](auto const& e, auto const& gap) {
     constexpr int m = std::decay_t<decltype(gap)>::rows;
     Vec<T, m> const l = detail::multiplier(e, gap, data, lambda);
-    Vec<T, 6> const wa = gap.Ga.transpose() * l, wb = gap.Gb.transpose() * l;
-    detail::add_pulled<T>(data.markers[std::size_t(e.a)], wa, 1.0, r);
-    detail::add_pulled<T>(data.markers[std::size_t(e.b)], wb, 1.0, r);
+    detail::add_pulled<T>(data.markers[std::size_t(e.a)], detail::wrench_of<m>(gap.Ga, l), 1.0, r);
+    detail::add_pulled<T>(data.markers[std::size_t(e.b)], detail::wrench_of<m>(gap.Gb, l), 1.0, r);
   });
   model.for_each_force([&](auto const& e) {
     using F = std::decay_t<decltype(e.force)>;

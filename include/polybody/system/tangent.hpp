@@ -27,8 +27,9 @@ template <int m, class F>
 void pull_rows(Published<double> const& p, Mat<double, m, 6> const& rows, std::vector<double>& scratch, F&& f) {
   if (p.columns == 0) return;
   if (p.shape == JacobianShape::rigid) {
-    Mat<double, 6, m> out;
-    p.pull(rows.transpose(), out);
+    // by rows, as sinks store a body before its joint
+    Eigen::Matrix<double, 6, m, m == 1 ? Eigen::ColMajor : Eigen::RowMajor> out;
+    p.pull_rigid(rows.transpose(), out);
     f(out);
   } else {
     Eigen::Map<Mat<double, Eigen::Dynamic, m>> out(scratch.data(), p.columns, m);
@@ -93,7 +94,6 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
     using P = typename std::decay_t<decltype(e.joint)>::PolicyType;
     Published<double> const& a = data.markers[std::size_t(e.a)];
     Published<double> const& b = data.markers[std::size_t(e.b)];
-    Mat<double, 12, 12> s = Mat<double, 12, 12>::Zero();
     if constexpr (AddsRows<P>) {
       auto const add = [&](Published<double> const& p, Mat<double, m, 6> const& g) {
         detail::pull_rows<m>(p, g, data.scratch, [&](auto const& gt) {
@@ -103,7 +103,10 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
       };
       add(a, gap.Ga);
       add(b, gap.Gb);
-    } else {
+      if (!full) return;
+    }
+    Mat<double, 12, 12> s = Mat<double, 12, 12>::Zero();
+    if constexpr (AddsForce<P>) {
       Mat<double, m, 12> g;
       g << gap.Ga, gap.Gb;
       s.noalias() = g.transpose() *
@@ -115,7 +118,7 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
       load(e.a, gap.Ga.transpose() * l);
       load(e.b, gap.Gb.transpose() * l);
     }
-    if (full || AddsForce<P>) detail::add_pulled_pairs<2>({&a, &b}, s, data.scratch, sink);
+    detail::add_pulled_pairs<2>({&a, &b}, s, data.scratch, sink);
   });
   model.for_each_force([&](auto const& e) {
     using F = std::decay_t<decltype(e.force)>;

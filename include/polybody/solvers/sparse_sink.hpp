@@ -1,0 +1,60 @@
+#pragma once
+/// \file
+/// The tangent as a sparse matrix by columns: the sink of the solvers that need one.
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+
+#include <polybody/solvers/linear_solver.hpp>
+
+namespace polybody {
+
+class SparseSink {
+ public:
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+  /// Finds each entry's place in the values once, so that `add` never searches.
+  void analyse(Index size, std::vector<Block> const& blocks) {
+    std::vector<std::vector<int>> columns(static_cast<std::size_t>(size));
+    for (Block const& b : blocks)
+      for (Index j = 0; j < b.cols; ++j)
+        for (Index i = 0; i < b.rows; ++i)
+          columns[std::size_t(b.col + j)].push_back(int(b.row + i));
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Index j = 0; j < size; ++j) {
+      auto& rows = columns[std::size_t(j)];
+      std::sort(rows.begin(), rows.end());
+      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+      for (int i : rows) entries.emplace_back(i, int(j), 1.0);
+    }
+    a_.resize(size, size);
+    a_.setFromTriplets(entries.begin(), entries.end());
+    slots_.clear();
+    for (Block const& b : blocks)
+      for (Index j = 0; j < b.cols; ++j) {
+        int const* const begin = a_.innerIndexPtr() + a_.outerIndexPtr()[b.col + j];
+        int const* const end = a_.innerIndexPtr() + a_.outerIndexPtr()[b.col + j + 1];
+        for (Index i = 0; i < b.rows; ++i)
+          slots_.push_back(std::int32_t(std::lower_bound(begin, end, int(b.row + i)) - a_.innerIndexPtr()));
+      }
+  }
+  void begin() {
+    std::fill_n(a_.valuePtr(), a_.nonZeros(), 0.0);
+    cursor_ = 0;
+  }
+  void add(Index, Index, BlockView const& b) {
+    double* const values = a_.valuePtr();
+    std::int32_t const* slot = slots_.data() + cursor_;
+    for (Index j = 0; j < b.cols; ++j)
+      for (Index i = 0; i < b.rows; ++i) values[*slot++] += b(i, j);
+    cursor_ = std::size_t(slot - slots_.data());
+  }
+  Matrix const& matrix() const { return a_; }
+
+ private:
+  Matrix a_;
+  std::vector<std::int32_t> slots_;
+  std::size_t cursor_ = 0;
+};
+
+}  // namespace polybody
