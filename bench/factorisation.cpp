@@ -2,15 +2,20 @@
 // chassis, links coupled to what they touch. Every solver gets the same matrix in one run; then chains from 64 to 4096 links.
 #include <benchmark/benchmark.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <functional>
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/eigen_ldlt.hpp>
 #include <polybody/solvers/eigen_sparse_lu.hpp>
 #include <random>
+#include <string>
+
+#ifdef POLYBODY_HAS_KLU
+#include <polybody/solvers/klu.hpp>
+#endif
 
 namespace {
 
@@ -103,10 +108,9 @@ Blocks chain(int links) {
 }
 
 template <class Solver>
-Solver analysed(Blocks const& b) {
+Solver analysed(Blocks const& b, Solver solver = {}) {
   PatternSink pattern;
   b.write(pattern);
-  Solver solver;
   solver.analyse(b.size, pattern.blocks);
   return solver;
 }
@@ -147,18 +151,6 @@ double eigen_rate() {
   return 2.0 * 216.0 * 16.0 * rounds / time;
 }
 
-/// Eigen's LDLᵀ with AMD: of the matrix made quasi-definite by a shift of the rows, one step of refinement after.
-struct ShiftedLdlt {
-  Eigen::SparseMatrix<double> a;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt;
-  VecX r;
-  void solve(VecX const& b, VecX& x) {
-    x = ldlt.solve(b);
-    r = b - a * x;
-    x += ldlt.solve(r);
-  }
-};
-
 void compare() {
   Blocks const b = vehicle();
   VecX const rhs = Draw().matrix(b.size, 1);
@@ -167,16 +159,11 @@ void compare() {
   auto ldlt = analysed<BlockLdlt>(b);
   auto lu = analysed<BlockLu>(b);
   auto automatic = analysed<BlockSolver>(b);
+  auto shifted = analysed<EigenLdlt>(b);
   auto sparse = analysed<EigenSparseLu>(b);
   sparse.begin();
   b.write(sparse);
-  ShiftedLdlt shifted;
-  shifted.a = sparse.matrix();
-  Eigen::SparseMatrix<double> quasi = shifted.a;
-  for (Index i = 6 * 155; i < b.size; ++i)  // the rows of the joints
-     quasi.coeffRef(i, i) -= 1e-9;
-  quasi.makeCompressed();
-  shifted.ldlt.analyzePattern(quasi);
+  Eigen::SparseMatrix<double> const matrix = sparse.matrix();
 
   auto const written = [&](auto& solver) {
     return [&] {
@@ -194,21 +181,22 @@ void compare() {
   auto const residual = [&](std::function<void()> const& write, std::function<void()> const& solve) {
     write();
     solve();
-    return (shifted.a * x - rhs).norm() / (rhs.norm() + shifted.a.norm() * x.norm());
-  };
-  auto const factor_shifted = [&] {
-    shifted.ldlt.factorize(quasi);
-    shifted.solve(rhs, x);
+    return (matrix * x - rhs).norm() / (rhs.norm() + matrix.norm() * x.norm());
   };
   struct Row {
     char const* name;
     std::function<void()> write, solve;
   };
-  std::vector<Row> const rows{{"block LDLT", written(ldlt), solved(ldlt)},
-                              {"block LU", written(lu), solved(lu)},
-                              {"block, symmetry measured", written(automatic), solved(automatic)},
-                              {"Eigen SimplicialLDLT, AMD, shifted", [] {}, factor_shifted},
-                              {"Eigen SparseLU, COLAMD, numeric", written(sparse), solved(sparse)}};
+  std::vector<Row> rows{{"block LDLT", written(ldlt), solved(ldlt)},
+                        {"block LU", written(lu), solved(lu)},
+                        {"block, symmetry measured", written(automatic), solved(automatic)},
+                        {"Eigen SimplicialLDLT, AMD, shifted", written(shifted), solved(shifted)},
+                        {"Eigen SparseLU, COLAMD, numeric", written(sparse), solved(sparse)}};
+#ifdef POLYBODY_HAS_KLU
+  auto klu = analysed<Klu>(b), klu_in_order = analysed(b, Klu(ldlt.order()));
+  rows.push_back({"KLU refactor, its own order", written(klu), solved(klu)});
+  rows.push_back({"KLU refactor, block order", written(klu_in_order), solved(klu_in_order)});
+#endif
   std::vector<std::pair<std::function<void()>, std::function<void()>>> acts;
   for (Row const& row : rows) acts.push_back({row.write, row.solve});
   std::vector<double> const time = medians(acts, 101);

@@ -5,7 +5,7 @@ include(GNUInstallDirs)
 
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/polybody)
 
-install(TARGETS polybody EXPORT polybodyTargets FILE_SET HEADERS)
+install(TARGETS polybody EXPORT polybodyTargets FILE_SET HEADERS FILE_SET optional)
 install(EXPORT polybodyTargets NAMESPACE polybody:: DESTINATION ${package_dir})
 
 # polybodyConfig.cmake, good for both trees: it loads the polybodyTargets.cmake beside it.

@@ -100,6 +100,13 @@ class BlockFactor {
   /// Entries of the factor without padding.
   Index fill() const;
   Index nodes() const { return Index(layout_.nodes.size()); }
+  /// The unknowns as they are eliminated.
+  std::vector<int> order() const {
+    std::vector<int> all;
+    for (Index const i : layout_.unknown)
+      if (i >= 0) all.push_back(int(i));
+    return all;
+  }
 
  private:
   static constexpr bool two_sided = symmetry != Symmetry::assumed;

@@ -1,0 +1,11 @@
+# SuiteSparse's KLU, optional: target polybody_klu where it is found (Debian: libsuitesparse-dev).
+find_path(POLYBODY_KLU_INCLUDE klu.h PATH_SUFFIXES suitesparse)
+find_library(POLYBODY_KLU_LIBRARY klu)
+mark_as_advanced(POLYBODY_KLU_INCLUDE POLYBODY_KLU_LIBRARY)
+if(POLYBODY_KLU_INCLUDE AND POLYBODY_KLU_LIBRARY)
+  add_library(polybody_klu INTERFACE)
+  target_include_directories(polybody_klu SYSTEM INTERFACE ${POLYBODY_KLU_INCLUDE})
+  target_link_libraries(polybody_klu INTERFACE ${POLYBODY_KLU_LIBRARY})
+else()
+  message(STATUS "KLU is not here: its tests and benchmarks are left out")
+endif()

@@ -1,0 +1,114 @@
+#pragma once
+/// \file
+/// Not in polybody.hpp: Eigen's sparse Cholesky costs every translation unit; include it where it is used.
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <polybody/solvers/sparse_sink.hpp>
+
+namespace polybody {
+
+/// Eigen's sparse LDLᵀ (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0: rows without a diagonal block get −ε,
+/// which makes the matrix quasi-definite, so that it has a factorisation in any order [Vanderbei 1995]; refinement
+/// against the matrix itself removes ε again. Slight asymmetry (gyroscopic terms) is refined away as well.
+class EigenLdlt {
+ public:
+  static constexpr double shift = 1e-9;            ///< ε beside g²/a, of the largest entries of G and A
+  static constexpr double largest_asymmetry = 0.1;  ///< ‖A − Aᵀ‖ beside ‖A‖; above it `factor` throws
+  static constexpr int most_refinements = 20;
+
+  void analyse(Index size, std::vector<Block> const& blocks) {
+    std::vector<char> has_diagonal(std::size_t(size), 0);
+    for (Block const& b : blocks)
+      if (b.row == b.col) std::fill_n(has_diagonal.begin() + b.row, std::min(b.rows, b.cols), char(1));
+    rows_.clear();
+    std::vector<Block> all = blocks;
+    for (Index i = 0; i < size; ++i)
+      if (!has_diagonal[std::size_t(i)]) {
+        rows_.push_back(i);
+        all.push_back({i, i, 1, 1});
+      }
+    sink_.analyse(size, all);
+    r_ = dx_ = VecX::Zero(size);
+    ldlt_->analyzePattern(sink_.matrix());
+  }
+  void begin() { sink_.begin(); }
+  void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
+
+  /// −1, or an unknown without a usable pivot. \throws InvalidInput for a matrix that is far from symmetric.
+  Index factor() {
+    Matrix const& a = sink_.matrix();
+    if (a.cols() == 0) return -1;
+    require_symmetric(a);
+    double body = 0.0, joint = 0.0;
+    std::size_t k = 0;
+    for (Index j = 0; j < a.cols(); ++j) {
+      bool const is_row = k < rows_.size() && rows_[k] == j;
+      if (is_row) ++k;
+      for (Matrix::InnerIterator e(a, j); e; ++e) {
+        double& largest = is_row ? joint : body;
+        largest = std::max(largest, std::abs(e.value()));
+      }
+    }
+    epsilon_ = shift * (body > 0.0 ? joint * joint / body : 1.0);
+    Mat<double, 1, 1> const block(-epsilon_);
+    for (Index const i : rows_) sink_.add(i, i, block);
+    ldlt_->factorize(a);
+    if (ldlt_->info() != Eigen::Success) return first_bad(0.0);
+    return first_bad(1e-14);
+  }
+
+  /// Both may be the same.
+  void solve(VecX const& b, VecX& x) const {
+    if (b.size() == 0) return;
+    VecX const rhs = b;
+    x = ldlt_->solve(rhs);
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < most_refinements; ++k) {
+      r_ = rhs - sink_.matrix() * x;
+      for (Index const i : rows_) r_[i] -= epsilon_ * x[i];  // the matrix without ε
+      double const left = r_.norm();
+      if (!(left < 0.5 * before) || left <= 1e-15 * rhs.norm()) return;
+      before = left;
+      dx_ = ldlt_->solve(r_);
+      x += dx_;
+    }
+  }
+  SparseSink::Matrix const& matrix() const { return sink_.matrix(); }
+
+ private:
+  using Matrix = SparseSink::Matrix;
+
+  static void require_symmetric(Matrix const& a) {
+    Matrix const t = a.transpose();
+    double const off = (a - t).norm(), size = a.norm();
+    if (off > largest_asymmetry * size)
+      throw InvalidInput("EigenLdlt: the tangent is not symmetric (" + number(off / size) +
+                         " of its norm). Use EigenSparseLu or the default BlockSolver.");
+  }
+  /// The unknown whose pivot is not above `threshold` of the largest entry of its column.
+  Index first_bad(double threshold) const {
+    VecX const d = ldlt_->vectorD();
+    for (Index i = 0; i < d.size(); ++i) {
+      double largest = 0.0;
+      for (Matrix::InnerIterator e(sink_.matrix(), i); e; ++e) largest = std::max(largest, std::abs(e.value()));
+      if (!(std::abs(d[ldlt_->permutationP().indices()[i]]) > threshold * largest)) return i;
+    }
+    return -1;
+  }
+
+  SparseSink sink_;
+  std::vector<Index> rows_;
+  double epsilon_ = 0.0;
+  mutable VecX r_, dx_;
+  using Ldlt = Eigen::SimplicialLDLT<Matrix, Eigen::Lower>;
+  std::unique_ptr<Ldlt> ldlt_ = std::make_unique<Ldlt>();  // Eigen's does not move
+};
+
+static_assert(LinearSolver<EigenLdlt>);
+
+}  // namespace polybody

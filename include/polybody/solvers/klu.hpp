@@ -1,0 +1,125 @@
+#pragma once
+/// \file
+/// SuiteSparse's KLU. Not in polybody.hpp: it needs klu.h and -lklu (Debian: libsuitesparse-dev).
+
+#if __has_include(<klu.h>)
+#include <klu.h>
+#else
+#include <suitesparse/klu.h>
+#endif
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <polybody/solvers/sparse_sink.hpp>
+
+namespace polybody {
+
+/// KLU, called so that it really refactors: pivots are chosen in the first factorisation and kept, in place, until their
+/// growth or the condition shows that they no longer serve [Davis & Palamadai Natarajan 2010]. `solve` does not allocate.
+class Klu {
+ public:
+  /// Below these, KLU's reciprocals of the pivot growth and of the condition, pivots are chosen anew, or are refused.
+  static constexpr double least_growth = 1e-8, least_condition = 1e-16;
+
+  Klu() = default;
+  /// With the unknowns in this order (each once) instead of KLU's own (block triangular, AMD).
+  explicit Klu(std::vector<int> order) : order_(std::move(order)) {}
+
+  /// \throws InvalidInput when an order was given that is not one of `size` unknowns.
+  void analyse(Index size, std::vector<Block> const& blocks) {
+    sink_.analyse(size, blocks);
+    klu_ = std::make_unique<Handle>();
+    if (size == 0) return;
+    if (!order_.empty()) require_order(size);
+    auto [n, columns, rows, values] = arrays();
+    klu_->symbolic = order_.empty() ? klu_analyze(n, columns, rows, &klu_->common)
+                                    : klu_analyze_given(n, columns, rows, order_.data(), order_.data(), &klu_->common);
+  }
+  void begin() { sink_.begin(); }
+  void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
+
+  /// −1, or a column without a usable pivot.
+  Index factor() {
+    if (sink_.matrix().cols() == 0) return -1;
+    if (klu_->symbolic == nullptr) return empty_column();
+    auto [n, columns, rows, values] = arrays();
+    Handle& k = *klu_;
+    if (k.numeric != nullptr && klu_refactor(columns, rows, values, k.symbolic, k.numeric, &k.common) != 0 && sound(least_growth))
+      return -1;
+    k.drop_numeric();
+    k.numeric = klu_factor(columns, rows, values, k.symbolic, &k.common);
+    if (k.numeric != nullptr && sound(0.0)) return -1;
+    Index const bad = k.common.singular_col >= 0 && k.common.singular_col < n ? k.common.singular_col : empty_column();
+    k.drop_numeric();
+    return bad;
+  }
+
+  /// Both may be the same.
+  void solve(VecX const& b, VecX& x) const {
+    if (b.size() == 0) return;
+    x = b;
+    klu_solve(klu_->symbolic, klu_->numeric, int(x.size()), 1, x.data(), &klu_->common);
+  }
+  SparseSink::Matrix const& matrix() const { return sink_.matrix(); }
+
+ private:
+  struct Handle {
+    klu_common common;
+    klu_symbolic* symbolic = nullptr;
+    klu_numeric* numeric = nullptr;
+
+    Handle() { klu_defaults(&common); }
+    Handle(Handle const&) = delete;
+    Handle& operator=(Handle const&) = delete;
+    ~Handle() {
+      drop_numeric();
+      klu_free_symbolic(&symbolic, &common);
+    }
+    void drop_numeric() { klu_free_numeric(&numeric, &common); }
+  };
+  struct Arrays {
+    int n;
+    int *columns, *rows;
+    double* values;
+  };
+  void require_order(Index size) const {
+    std::vector<int> sorted = order_;
+    std::sort(sorted.begin(), sorted.end());
+    bool right = Index(sorted.size()) == size;
+    for (std::size_t i = 0; right && i < sorted.size(); ++i) right = sorted[i] == int(i);
+    if (!right) throw InvalidInput("Klu: the order does not name each of the " + std::to_string(size) + " unknowns once.");
+  }
+  /// As KLU wants them: not const, though it does not change them.
+  Arrays arrays() const {
+    auto const& a = sink_.matrix();
+    return {int(a.cols()), const_cast<int*>(a.outerIndexPtr()), const_cast<int*>(a.innerIndexPtr()),
+            const_cast<double*>(a.valuePtr())};
+  }
+  bool sound(double growth) const {
+    auto [n, columns, rows, values] = arrays();
+    Handle& k = *klu_;
+    if (klu_rcond(k.symbolic, k.numeric, &k.common) == 0 || !(k.common.rcond > least_condition)) return false;
+    if (growth == 0.0) return true;
+    return klu_rgrowth(columns, rows, values, k.symbolic, k.numeric, &k.common) != 0 && k.common.rgrowth > growth;
+  }
+  /// A column of zeros, else the first.
+  Index empty_column() const {
+    auto const& a = sink_.matrix();
+    for (Index j = 0; j < a.cols(); ++j) {
+      bool empty = true;
+      for (SparseSink::Matrix::InnerIterator entry(a, j); entry; ++entry) empty = empty && entry.value() == 0.0;
+      if (empty) return j;
+    }
+    return 0;
+  }
+
+  SparseSink sink_;
+  std::vector<int> order_;
+  std::unique_ptr<Handle> klu_;
+};
+
+static_assert(LinearSolver<Klu>);
+
+}  // namespace polybody

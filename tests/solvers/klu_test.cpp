@@ -1,0 +1,61 @@
+// SuiteSparse's KLU; this file is built where it is installed.
+
+#include <polybody/solvers/block_ldlt.hpp>
+#include <polybody/solvers/klu.hpp>
+
+#include "support/linear_solver_laws.hpp"
+
+using namespace polybody;
+
+namespace polybody::test {
+INSTANTIATE_TYPED_TEST_SUITE_P(Klu, LinearSolvers, testing::Types<Klu>);
+}
+
+namespace {
+
+template <class Solver>
+Solver analysed(Solver solver, test::Blocks const& blocks) {
+  PatternSink pattern;
+  blocks.write(pattern, 1);
+  solver.analyse(blocks.size(), pattern.blocks);
+  return solver;
+}
+
+}  // namespace
+
+TEST(Klu, SolvesInAnOrderThatIsGiven) {
+  test::Blocks const blocks{8};
+  auto block = analysed(BlockLdlt(), blocks);
+  auto klu = analysed(Klu(block.order()), blocks);
+  for (unsigned const seed : {1u, 2u}) {
+    klu.begin();
+    blocks.write(klu, seed);
+    ASSERT_EQ(klu.factor(), -1);
+    MatX const a = test::plain(blocks, seed);
+    VecX const expected = VecX::Random(blocks.size());
+    VecX x = a * expected;
+    klu.solve(x, x);
+    EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm());
+  }
+}
+
+TEST(Klu, RefusesAnOrderThatIsNone) {
+  EXPECT_THROW(analysed(Klu(std::vector<int>(88, 3)), test::Blocks{8}), InvalidInput);
+}
+
+// Kept pivots that have become tiny: they are chosen anew.
+TEST(Klu, ChoosesPivotsAnewWhenTheyNoLongerServe) {
+  Mat<double, 2, 2> first, second;
+  first << 1.0, 0.5, 0.5, 1.0;
+  second << 1e-14, 1.0, 1.0, 0.0;
+  Klu klu;
+  klu.analyse(2, {{0, 0, 2, 2}});
+  for (auto const& m : {first, second}) {
+    klu.begin();
+    klu.add(0, 0, m);
+    ASSERT_EQ(klu.factor(), -1);
+    VecX x = m * VecX::Ones(2);
+    klu.solve(x, x);
+    EXPECT_LT((x - VecX::Ones(2)).norm(), 1e-13);
+  }
+}

@@ -1,0 +1,147 @@
+#pragma once
+// What every linear solver must do, on the same matrices:
+//   INSTANTIATE_TYPED_TEST_SUITE_P(Name, LinearSolvers, testing::Types<...>);
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include <polybody/solvers/linear_solver.hpp>
+
+namespace polybody::test {
+
+/// Bodies of six columns in a row, joints of five rows between neighbours: [M, Gᵀ; G, 0], with blocks that
+/// overlap (a second spring on body 0) and come in a fixed order.
+struct Blocks {
+  Index bodies;
+  Index size() const { return 11 * bodies; }
+
+  template <class Sink>
+  void write(Sink& sink, unsigned seed) const {
+    std::srand(seed);
+    using M66 = Mat<double, 6, 6>;
+    for (Index i = 0; i < bodies; ++i) {
+      M66 const a = M66::Random(), m = a * a.transpose() + M66::Identity();
+      sink.add(6 * i, 6 * i, m);
+    }
+    Mat3 const extra = Mat3::Random();
+    sink.add(3, 3, extra);
+    for (Index i = 0; i < bodies; ++i) {
+      Mat<double, 6, 5> const g = Mat<double, 6, 5>::Random();
+      Index const row = 6 * bodies + 5 * i;
+      sink.add(6 * i, row, g);
+      sink.add(row, 6 * i, g.transpose());
+      if (i == 0) continue;
+      Mat<double, 6, 5> const before = Mat<double, 6, 5>::Random();
+      sink.add(6 * (i - 1), row, before);
+      sink.add(row, 6 * (i - 1), before.transpose());
+    }
+  }
+};
+
+/// Adds blocks in place: what a sink must amount to.
+struct Plain {
+  MatX a;
+  void add(Index row, Index col, BlockView const& b) {
+    for (Index i = 0; i < b.rows; ++i)
+      for (Index j = 0; j < b.cols; ++j) a(row + i, col + j) += b(i, j);
+  }
+};
+
+inline MatX plain(Blocks const& blocks, unsigned seed) {
+  Plain sink{MatX::Zero(blocks.size(), blocks.size())};
+  blocks.write(sink, seed);
+  return sink.a;
+}
+
+template <class Solver>
+struct LinearSolvers : testing::Test {
+  static Solver analysed(Blocks const& blocks) {
+    PatternSink pattern;
+    blocks.write(pattern, 1);
+    Solver solver;
+    solver.analyse(blocks.size(), pattern.blocks);
+    return solver;
+  }
+};
+TYPED_TEST_SUITE_P(LinearSolvers);
+
+TYPED_TEST_P(LinearSolvers, SolveWhatFullPivotingSolves) {
+  for (Index const bodies : {1, 4, 12}) {
+    Blocks const blocks{bodies};
+    auto solver = this->analysed(blocks);
+    for (unsigned seed : {1u, 2u, 3u}) {  // one analysis, many values
+      solver.begin();
+      blocks.write(solver, seed);
+      ASSERT_EQ(solver.factor(), -1);
+      MatX const a = plain(blocks, seed);
+      for (int k = 0; k < 2; ++k) {  // one factorisation, many sides
+        VecX const b = VecX::Random(blocks.size());
+        VecX x = VecX::Zero(blocks.size());
+        solver.solve(b, x);
+        VecX const expected = a.fullPivLu().solve(b);
+        EXPECT_LT((x - expected).norm(), 1e-10 * expected.norm());
+      }
+    }
+  }
+}
+
+TYPED_TEST_P(LinearSolvers, NameAColumnOfASingularMatrix) {
+  for (Index const bodies : {3, 8}) {
+    Blocks const blocks{bodies};
+    auto solver = this->analysed(blocks);
+    solver.begin();
+    Index const column = solver.factor();  // zero throughout
+    EXPECT_GE(column, 0);
+    EXPECT_LT(column, blocks.size());
+    // and after it, a sound matrix again
+    solver.begin();
+    blocks.write(solver, 1);
+    EXPECT_EQ(solver.factor(), -1);
+  }
+}
+
+// Two joints with the same rows: singular but for rounding, and one of the two is named.
+TYPED_TEST_P(LinearSolvers, NameOneOfTwoEqualJoints) {
+  for (Index const bodies : {3, 20}) {
+    Index const n = 6 * bodies, size = n + 10;
+    std::srand(7);
+    Mat<double, 6, 5> const g = Mat<double, 6, 5>::Random();
+    Mat<double, 6, 6> const a = Mat<double, 6, 6>::Random();
+    Mat<double, 6, 6> const m = a * a.transpose() + Mat<double, 6, 6>::Identity();
+    auto const write = [&](auto& sink) {
+      for (Index i = 0; i < bodies; ++i) sink.add(6 * i, 6 * i, m);
+      for (Index row : {n, n + 5}) {
+        sink.add(6, row, g);
+        sink.add(row, 6, g.transpose());
+      }
+    };
+    PatternSink pattern;
+    write(pattern);
+    TypeParam solver;
+    solver.analyse(size, pattern.blocks);
+    solver.begin();
+    write(solver);
+    Index column = solver.factor();
+    if constexpr (requires { solver.dropped(); }) {  // the block solvers go on without them
+      ASSERT_EQ(column, -1);
+      ASSERT_EQ(solver.dropped().size(), 5u);
+      column = solver.dropped().front();
+    }
+    EXPECT_GE(column, n) << bodies;
+    EXPECT_LT(column, size) << bodies;
+  }
+}
+
+TYPED_TEST_P(LinearSolvers, NothingIsSolvedAtOnce) {
+  TypeParam solver;
+  solver.analyse(0, {});
+  solver.begin();
+  EXPECT_EQ(solver.factor(), -1);
+  VecX x;
+  solver.solve(VecX(), x);
+  EXPECT_EQ(x.size(), 0);
+}
+
+REGISTER_TYPED_TEST_SUITE_P(LinearSolvers, SolveWhatFullPivotingSolves, NameAColumnOfASingularMatrix, NameOneOfTwoEqualJoints, NothingIsSolvedAtOnce);
+
+}  // namespace polybody::test
