@@ -52,9 +52,24 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
 
 /// A body whose points share what is dear to compute: `pose` once, then `publish` each point from it.
 template <class B, class T>
-concept SharesPose = requires(B const b, std::span<T const> x, typename B::Point p, Published<T>& out) {
-  b.publish(p, Mat3::Identity().eval(), b.template pose<T>(x, x), out);
+concept SharesPose = requires(B const b, std::span<T const> x, typename B::Point p, typename B::template Pose<T>& pose,
+                              Published<T>& out) {
+  b.template pose<T>(x, x, pose);
+  b.publish(p, Mat3::Identity().eval(), pose, out);
 };
+
+namespace detail {
+struct NoPose {};
+template <class B, class T>
+struct PoseOf {
+  using Type = NoPose;
+};
+template <class B, class T>
+  requires SharesPose<B, T>
+struct PoseOf<B, T> {
+  using Type = typename B::template Pose<T>;
+};
+}  // namespace detail
 
 /// ∂(Jᵀw)/∂q, columns × columns, of a marker with J of fixed width by dual numbers: the default for a body
 /// that has no closed form and whose coordinates add, q ⊞ δ = q + δ. `body.local(p)` is p in a body made of the

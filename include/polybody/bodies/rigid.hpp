@@ -161,15 +161,15 @@ class Rigid {
   template <StateScalar T>
   void inertia(Index, std::span<T const>, std::span<T const> a, Vec<T, 6>& out) const {
     out.template head<3>() = part<3>(a, 0) * T(mass_);
-    out.template tail<3>() = inertia_.template cast<T>() * part<3>(a, 3);
+    out.template tail<3>() = inertia_times<T>(part<3>(a, 3));
   }
 
   /// The gyroscopic force −Ω × J Ω.
   template <StateScalar T>
   void force(Index, std::span<T const>, std::span<T const> v, Vec<T, 6>& out) const {
-    Vec<T, 3> const omega = part<3>(v, 3);
+    Vec<T, 3> const omega = part<3>(v, 3), spin = inertia_times<T>(omega);
     out.template head<3>().setZero();
-    out.template tail<3>() = (inertia_.template cast<T>() * omega).cross(omega);
+    set_cross(spin, omega, out, 3);
   }
 
   /// −∂f/∂Ω = Ω̃ J − (J Ω)~.
@@ -204,22 +204,27 @@ class Rigid {
   };
 
   template <StateScalar T>
-  Pose<T> pose(std::span<T const> q, std::span<T const> v) const {
-    Pose<T> p{part<3>(q, 0), part<3>(v, 0), Vec<T, 3>(), rotation_matrix<T>(part<4>(q, 3))};
-    p.w = p.A.col(0) * v[3] + p.A.col(1) * v[4] + p.A.col(2) * v[5];
-    return p;
+  void pose(std::span<T const> q, std::span<T const> v, Pose<T>& out) const {
+    set_rotation<T>(part<4>(q, 3), out.A);
+    for (int i = 0; i < 3; ++i) {
+      out.r[i] = q[i];
+      out.v[i] = v[i];
+      out.w[i] = out.A(i, 0) * v[3] + out.A(i, 1) * v[4] + out.A(i, 2) * v[5];
+    }
   }
 
   /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
     auto const turned = [&at](auto const& u) { return at.A.col(0) * T(u[0]) + at.A.col(1) * T(u[1]) + at.A.col(2) * T(u[2]); };
-    Vec<T, 3> const arm = turned(p.u), rate = at.w.cross(arm);
+    Vec<T, 3> const arm = turned(p.u);
+    Vec<T, 3> rate;
+    set_cross(at.w, arm, rate, 0);
     out.frame.r = at.r + arm;
     for (int i = 0; i < 3; ++i) out.frame.A.col(i) = turned(axes.col(i));
     out.frame.v = at.v + rate;
     out.frame.w = at.w;
-    out.bias.template head<3>() = at.w.cross(rate);
+    set_cross(at.w, rate, out.bias, 0);
     out.bias.template tail<3>().setZero();
     out.body_axes = at.A;
     out.arm = arm;
@@ -229,7 +234,9 @@ class Rigid {
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
                Published<T>& out) const {
-    publish(p, axes, pose<T>(q, v), out);
+    Pose<T> at;
+    pose<T>(q, v, at);
+    publish(p, axes, at, out);
   }
 
   /// Jᵀw = [f; Aᵀm + u × Aᵀf];  under A ⊞ δ: δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
@@ -242,6 +249,20 @@ class Rigid {
   }
 
  private:
+  template <StateScalar T>
+  Vec<T, 3> inertia_times(Vec<T, 3> const& x) const {
+    Vec<T, 3> y;
+    for (int i = 0; i < 3; ++i) y[i] = x[0] * inertia_(i, 0) + x[1] * inertia_(i, 1) + x[2] * inertia_(i, 2);
+    return y;
+  }
+  /// a × b into three entries of `out`; Eigen's goes through memory, and waits for it.
+  template <class A, class Out>
+  static void set_cross(A const& a, A const& b, Out& out, int first) {
+    out[first] = a[1] * b[2] - a[2] * b[1];
+    out[first + 1] = a[2] * b[0] - a[0] * b[2];
+    out[first + 2] = a[0] * b[1] - a[1] * b[0];
+  }
+
   double mass_;
   Mat3 inertia_;
   Placement placement_;

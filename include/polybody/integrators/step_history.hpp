@@ -1,16 +1,19 @@
 #pragma once
+#include <array>
+
 #include <polybody/math/errors.hpp>
 #include <polybody/system/state.hpp>
 
 namespace polybody {
 
-/// The last two steps of a run: what extrapolation and differences in time need. It stands in `State::memory`,
+/// The last three steps of a run: what extrapolation and differences in time need. It stands in `State::memory`,
 /// so a copy of a state carries it along:
-///   [the method's own nv entries | v̇₋₁ | v̇₋₂ | λ₋₁ | λ₋₂ | h₋₂, h₋₁ | length for which the state is shifted].
+///   [the method's own nv entries | v̇₋₁ … v̇₋₃ | λ₋₁ … λ₋₃ | h₋₃ … h₋₁ | length for which the state is shifted].
 class StepHistory {
-  static Index size(Index nv, Index rows) { return 3 * nv + 2 * rows + 3; }
+  static constexpr int kept = 3;
+  static Index size(Index nv, Index rows) { return (kept + 1) * nv + kept * rows + kept + 1; }
   auto a(int back) const { return memory_.segment(back * nv_, nv_); }
-  auto lambda(int back) const { return memory_.segment(3 * nv_ + (back - 1) * rows_, rows_); }
+  auto lambda(int back) const { return memory_.segment((kept + 1) * nv_ + (back - 1) * rows_, rows_); }
   double& length(int back) const { return memory_[memory_.size() - 1 - back]; }
 
   Index nv_, rows_;
@@ -43,27 +46,34 @@ class StepHistory {
   /// Makes x, from which a step h was taken, the last one; `own` are the method's entries after it.
   void push(State const& x, double h, VecX const& own) {
     memory_.head(nv_) = own;
-    a(2) = a(1);
-    lambda(2) = lambda(1);
-    length(2) = length(1);
+    for (int back = kept; back > 1; --back) {
+      a(back) = a(back - 1);
+      lambda(back) = lambda(back - 1);
+      length(back) = length(back - 1);
+    }
     a(1) = x.a;
     lambda(1) = x.lambda;
     length(1) = h;
     memory_[memory_.size() - 1] = h;
   }
 
-  /// v̇ and λ at x.t + h, of third order in h where two steps are known.
+  /// v̇ and λ at x.t + h by the polynomial through all that is known [Lagrange]; of order four after three steps.
   void extrapolate(State const& x, double h, VecX& vd, VecX& l) const {
-    vd = x.a;
-    l = x.lambda;
-    double const h1 = length(1), h2 = length(2);
-    if (h1 == 0.0) return;
-    vd += h / h1 * (x.a - a(1));
-    l += h / h1 * (x.lambda - lambda(1));
-    if (h2 == 0.0) return;
-    double const c = h * (h + h1) / (h1 + h2);
-    vd += c * ((x.a - a(1)) / h1 - (a(1) - a(2)) / h2);
-    l += c * ((x.lambda - lambda(1)) / h1 - (lambda(1) - lambda(2)) / h2);
+    std::array<double, kept + 1> t{};  // times before x
+    int n = 1;
+    for (; n <= kept && length(n) > 0.0; ++n) t[std::size_t(n)] = t[std::size_t(n - 1)] - length(n);
+    for (int i = 0; i < n; ++i) {
+      double c = 1.0;
+      for (int j = 0; j < n; ++j)
+        if (j != i) c *= (h - t[std::size_t(j)]) / (t[std::size_t(i)] - t[std::size_t(j)]);
+      if (i == 0) {
+        vd = c * x.a;
+        l = c * x.lambda;
+      } else {
+        vd += c * a(i);
+        l += c * lambda(i);
+      }
+    }
   }
 
   /// v̈ at x, of second order where two steps are known. False where none is.

@@ -28,16 +28,28 @@ Quaternion<T> conjugate(Quaternion<T> const& q) {
   return r;
 }
 
-/// Rotation matrix A(q), 3×3, of a unit quaternion.
+/// Rotation matrix A(q), 3×3, of a unit quaternion, written where it is to stand.
 template <class T>
-Mat<T, 3, 3> rotation_matrix(Quaternion<T> const& q) {
+void set_rotation(Quaternion<T> const& q, Mat<T, 3, 3>& a) {
   T const ww = q[0] * q[0], xx = q[1] * q[1], yy = q[2] * q[2], zz = q[3] * q[3];
   T const xy = q[1] * q[2], xz = q[1] * q[3], yz = q[2] * q[3];
   T const wx = q[0] * q[1], wy = q[0] * q[2], wz = q[0] * q[3];
+  a(0, 0) = ww + xx - yy - zz;
+  a(1, 0) = 2.0 * (xy + wz);
+  a(2, 0) = 2.0 * (xz - wy);
+  a(0, 1) = 2.0 * (xy - wz);
+  a(1, 1) = ww - xx + yy - zz;
+  a(2, 1) = 2.0 * (yz + wx);
+  a(0, 2) = 2.0 * (xz + wy);
+  a(1, 2) = 2.0 * (yz - wx);
+  a(2, 2) = ww - xx - yy + zz;
+}
+
+/// The same, returned.
+template <class T>
+Mat<T, 3, 3> rotation_matrix(Quaternion<T> const& q) {
   Mat<T, 3, 3> a;
-  a << ww + xx - yy - zz, 2.0 * (xy - wz), 2.0 * (xz + wy),  //
-      2.0 * (xy + wz), ww - xx + yy - zz, 2.0 * (yz - wx),   //
-      2.0 * (xz - wy), 2.0 * (yz + wx), ww - xx - yy + zz;
+  set_rotation<T>(q, a);
   return a;
 }
 

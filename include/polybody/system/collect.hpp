@@ -15,8 +15,9 @@ void add_pulled(Published<T> const& p, Vec<T, 6> const& w, double sign, VecXOf<T
     case JacobianShape::ground:
       return;
     case JacobianShape::rigid: {
-      Vec<T, 3> const f = w.template head<3>() * T(sign);
-      Vec<T, 3> const m = w.template tail<3>() * T(sign) + p.arm.cross(f);
+      T const f[3] = {w[0] * sign, w[1] * sign, w[2] * sign};
+      T const m[3] = {w[3] * sign + p.arm[1] * f[2] - p.arm[2] * f[1], w[4] * sign + p.arm[2] * f[0] - p.arm[0] * f[2],
+                      w[5] * sign + p.arm[0] * f[1] - p.arm[1] * f[0]};
       for (int i = 0; i < 3; ++i) {
         r[p.first + i] += f[i];
         r[p.first + 3 + i] += p.body_axes(0, i) * m[0] + p.body_axes(1, i) * m[1] + p.body_axes(2, i) * m[2];
@@ -81,14 +82,14 @@ void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> 
     auto const ae = detail::body_part(a, e.v0, e.body.speeds());
     Vec<T, n> x;
     for (Index i = 0; i < e.body.elements(); ++i) {
-      auto rows = r.template segment<n>(e.v0 + e.body.first_column(i));
+      T* const rows = r.data() + e.v0 + e.body.first_column(i);
       e.body.template inertia<T>(i, qe, ae, x);
-      rows += x;
+      for (int k = 0; k < n; ++k) rows[k] += x[k];
       e.body.template force<T>(i, qe, ve, x);
-      rows -= x;
+      for (int k = 0; k < n; ++k) rows[k] -= x[k];
       if (falls) {
         e.body.template gravity<T>(i, qe, g, x);
-        rows -= x;
+        for (int k = 0; k < n; ++k) rows[k] -= x[k];
       }
     }
   });

@@ -10,6 +10,7 @@ template <class M, StateScalar T = double>
 struct Data {
   std::vector<Published<T>> markers;        ///< waist 1, one for each marker
   std::vector<T> jacobians;                 ///< arena of the dense Jacobians
+  typename M::template Poses<T> poses;      ///< of the bodies
   typename M::template Gaps<T> gaps;        ///< waist 2, one for each joint
   std::vector<Wrench<double>> loads;        ///< per marker: what the tangent's second-order terms need
 
@@ -37,7 +38,8 @@ struct Data {
       f.A = g.placement.axes.template cast<T>();
     }
     scratch.resize(std::size_t(widest * (widest + 12)));
-    size_gaps(model, std::make_index_sequence<std::tuple_size_v<typename M::JointPools>>{});
+    size(poses, model.body_pools(), [](auto const& pool) { return pool.entries.size(); });
+    size(gaps, model.joint_pools(), [](auto const& pool) { return pool.size(); });
   }
   Data(Data const&) = delete;  // the markers point into the arena
   Data& operator=(Data const&) = delete;
@@ -45,9 +47,11 @@ struct Data {
   Data& operator=(Data&&) = default;
 
  private:
-  template <std::size_t... I>
-  void size_gaps(M const& model, std::index_sequence<I...>) {
-    (std::get<I>(gaps).resize(std::get<I>(model.joint_pools()).size()), ...);
+  template <class Vectors, class Pools, class Count>
+  static void size(Vectors& vectors, Pools const& pools, Count&& count) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (std::get<I>(vectors).resize(count(std::get<I>(pools))), ...);
+    }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
   }
 };
 

@@ -26,6 +26,9 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   using BodyPools = std::tuple<detail::BodyPool<Bs>...>;
   using JointPools = std::tuple<std::vector<detail::JointEntry<Js>>...>;
   using ForcePools = std::tuple<std::vector<detail::ForceEntry<Fs>>...>;
+  /// Data that depend on the body types: one pose for each body whose points share one.
+  template <StateScalar T>
+  using Poses = std::tuple<std::vector<typename detail::PoseOf<Bs, T>::Type>...>;
   /// Data that depend on the joint types: one gap for each joint.
   template <StateScalar T>
   using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;

@@ -12,27 +12,25 @@ namespace polybody {
 /// Every marker's frame, Jacobian and bias from the coordinates (nq) and speeds (nv).
 template <class M, StateScalar T>
 void publish(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data<M, T>& data) {
-  auto const over = [&](auto const& pool) {
+  auto const over = [&](auto const& pool, auto& poses) {
     using B = std::decay_t<decltype(pool.entries.front().body)>;
     auto const coordinates = [&](auto const& e) { return detail::body_part(q, e.q0, e.body.coordinates()); };
     auto const speeds = [&](auto const& e) { return detail::body_part(v, e.v0, e.body.speeds()); };
-    if constexpr (SharesPose<B, T>) {
-      typename B::template Pose<T> pose{};
-      Index of = -1;  // markers of one body mostly follow each other
-      for (auto const& m : pool.markers) {
-        auto const& e = pool.entries[std::size_t(m.body)];
-        if (of != m.body) pose = e.body.template pose<T>(coordinates(e), speeds(e));
-        of = m.body;
-        e.body.publish(m.point, m.axes, pose, data.markers[std::size_t(m.published)]);
-      }
-    } else {
-      for (auto const& m : pool.markers) {
-        auto const& e = pool.entries[std::size_t(m.body)];
-        e.body.template publish<T>(m.point, m.axes, coordinates(e), speeds(e), data.markers[std::size_t(m.published)]);
-      }
+    if constexpr (SharesPose<B, T>)
+      for (std::size_t i = 0; i < poses.size(); ++i)
+        pool.entries[i].body.template pose<T>(coordinates(pool.entries[i]), speeds(pool.entries[i]), poses[i]);
+    for (auto const& m : pool.markers) {
+      auto const& e = pool.entries[std::size_t(m.body)];
+      Published<T>& out = data.markers[std::size_t(m.published)];
+      if constexpr (SharesPose<B, T>)
+        e.body.publish(m.point, m.axes, poses[std::size_t(m.body)], out);
+      else
+        e.body.template publish<T>(m.point, m.axes, coordinates(e), speeds(e), out);
     }
   };
-  std::apply([&](auto const&... pool) { (over(pool), ...); }, model.body_pools());
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (over(std::get<I>(model.body_pools()), std::get<I>(data.poses)), ...);
+  }(std::make_index_sequence<std::tuple_size_v<typename M::BodyPools>>{});
 }
 
 /// Every joint's gap at time t from the published frames.
