@@ -51,15 +51,7 @@ std::string refused(Structure const& model, State x, EquilibriumOptions const& o
   x.v.setConstant(0.25);
   x.a.setConstant(0.5);
   State const before = x;
-  std::string message;
-  try {
-    equilibrium(model, x, options);
-    ADD_FAILURE() << "equilibrium was reached";
-  } catch (E const& error) {
-    message = error.what();
-  } catch (std::exception const& error) {
-    ADD_FAILURE() << "another exception: " << error.what();
-  }
+  std::string const message = message_of<E>([&] { equilibrium(model, x, options); });
   EXPECT_TRUE(x.q == before.q && x.v == before.v && x.a == before.a && x.lambda == before.lambda && x.t == before.t);
   return message;
 }

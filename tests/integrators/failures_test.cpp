@@ -15,21 +15,6 @@ using namespace polybody;
 
 namespace {
 
-/// The message of the E that `act` throws; a failure where it throws none or another.
-template <class E, class Act>
-std::string message_of(Act&& act) {
-  try {
-    act();
-  } catch (E const& error) {
-    return error.what();
-  } catch (std::exception const& error) {
-    ADD_FAILURE() << "another exception: " << error.what();
-    return "";
-  }
-  ADD_FAILURE() << "no exception";
-  return "";
-}
-
 void expect_same(State const& a, State const& b) {
   EXPECT_EQ(a.q, b.q);
   EXPECT_EQ(a.v, b.v);

@@ -16,6 +16,8 @@
 #include <random>
 #include <type_traits>
 
+#include "support/refusal.hpp"
+
 namespace fs = std::filesystem;
 using namespace polybody;
 
@@ -32,26 +34,6 @@ std::string text_of(fs::path const& file) {
 
 void put(fs::path const& file, std::string_view text) {
   std::ofstream(file, std::ios::binary) << text;
-}
-
-/// The message of the exception of type E that `act` must throw.
-template <class E>
-std::string message(auto&& act) {
-  try {
-    act();
-  } catch (E const& error) {
-    return error.what();
-  } catch (std::exception const& error) {
-    ADD_FAILURE() << "another exception: " << error.what();
-    return "";
-  }
-  ADD_FAILURE() << "no exception";
-  return "";
-}
-
-testing::AssertionResult has(std::string_view text, std::string_view part) {
-  if (text.find(part) != text.npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "'" << part << "' is not in: " << text;
 }
 
 /// Each test has its own empty folder.
@@ -142,31 +124,31 @@ TEST_F(CsvFiles, RelativeNameStaysInTheFolderWhereItWasOpened) {
 
 TEST_F(CsvFiles, RefusesHeadsThatCannotBeMeant) {
   using Heads = std::vector<std::string>;
-  EXPECT_TRUE(has(message<InvalidInput>([&] { Csv(file, Heads{}); }), "at least one column"));
-  EXPECT_TRUE(has(message<InvalidInput>([&] { Csv(file, Heads{"x", ""}); }), "head is empty"));
-  EXPECT_TRUE(has(message<InvalidInput>([&] { Csv(file, Heads{"x", "y", "x"}); }), "'x'"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{}); }), "at least one column"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{"x", ""}); }), "head is empty"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{"x", "y", "x"}); }), "'x'"));
   EXPECT_EQ(files(), 0u);
 }
 
 TEST_F(CsvFiles, RefusesBadRowsByNameAndGoesOnUnharmed) {
   Csv csv(file, {"t [s]", "x [m]"});
   csv.row(0, 0);
-  auto const few = message<InvalidInput>([&] { csv.row(1); });
+  auto const few = message_of<InvalidInput>([&] { csv.row(1); });
   EXPECT_TRUE(has(few, file.string()));
   EXPECT_TRUE(has(few, "row 2: 1 values for 2 columns"));
-  EXPECT_TRUE(has(message<InvalidInput>([&] { csv.row(1, 2, 3); }), "3 values"));
-  EXPECT_TRUE(has(message<InvalidInput>([&] { csv.row(); }), "0 values"));
-  EXPECT_TRUE(has(message<InvalidInput>([&] { csv.row({}); }), "0 values"));
-  auto const nan = message<InvalidInput>([&] { csv.row(1, std::nan("")); });
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row(1, 2, 3); }), "3 values"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row(); }), "0 values"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row({}); }), "0 values"));
+  auto const nan = message_of<InvalidInput>([&] { csv.row(1, std::nan("")); });
   EXPECT_TRUE(has(nan, file.string()));
   EXPECT_TRUE(has(nan, "row 2"));
   EXPECT_TRUE(has(nan, "'x [m]'"));
   auto const infinity = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(has(message<InvalidInput>([&] { csv.row({-infinity, 1}); }), "'t [s]'"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row({-infinity, 1}); }), "'t [s]'"));
   csv.row(1, 1);
   csv.close();
   EXPECT_EQ(text_of(file), "t [s],x [m]\n0,0\n1,1\n");
-  EXPECT_TRUE(has(message<InvalidInput>([&] { csv.row(2, 2); }), "already closed"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row(2, 2); }), "already closed"));
 }
 
 TEST_F(CsvFiles, NothingUnderTheFinalNameUntilClosed) {
@@ -227,18 +209,18 @@ TEST_F(CsvFiles, MovesTakeTheFileAlong) {
 
 TEST_F(CsvFiles, SystemRefusalsNameTheFileAndTheReason) {
   put(folder / "plain", "x");
-  auto const below = message<IoError>([&] { Csv(folder / "plain" / "run.csv", {"x"}); });
+  auto const below = message_of<IoError>([&] { Csv(folder / "plain" / "run.csv", {"x"}); });
   EXPECT_TRUE(has(below, (folder / "plain" / "run.csv").string()));
   EXPECT_TRUE(has(below, "ot a directory"));
   fs::create_directories(folder / "taken");
-  EXPECT_TRUE(has(message<IoError>([&] { Csv(folder / "taken", {"x"}); }), "not a regular file"));
-  EXPECT_TRUE(has(message<IoError>([&] { Csv("/dev/null", {"x"}); }), "not a regular file"));
-  EXPECT_TRUE(has(message<IoError>([&] { Csv("", {"x"}); }), "name of a file is missing"));
-  EXPECT_TRUE(has(message<IoError>([&] { Csv(folder / "", {"x"}); }), "name of a file is missing"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Csv(folder / "taken", {"x"}); }), "not a regular file"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Csv("/dev/null", {"x"}); }), "not a regular file"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Csv("", {"x"}); }), "name of a file is missing"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Csv(folder / "", {"x"}); }), "name of a file is missing"));
   {
     Csv csv(file, {"x"});
     fs::create_directories(file / "in the way");
-    EXPECT_TRUE(has(message<IoError>([&] { csv.close(); }), "cannot be put in place: "));
+    EXPECT_TRUE(has(message_of<IoError>([&] { csv.close(); }), "cannot be put in place: "));
   }
   EXPECT_EQ(files(), 3u);  // plain, taken, run.csv/: no temporary
 }
@@ -255,8 +237,8 @@ TEST_F(CsvFiles, AFullDiskLeavesNothing) {
     for (int i = 0; i < rows; ++i) csv.row(1.0 / 3.0);
     if (close) csv.close();
   };
-  auto const in_row = message<IoError>([&] { fill(5000, true); });
-  auto const in_close = message<IoError>([&] { fill(550, true); });  // the last buffer only
+  auto const in_row = message_of<IoError>([&] { fill(5000, true); });
+  auto const in_close = message_of<IoError>([&] { fill(550, true); });  // the last buffer only
   testing::internal::CaptureStderr();
   fill(550, false);
   auto const told = testing::internal::GetCapturedStderr();
@@ -334,7 +316,7 @@ TEST_F(CsvFiles, ReadsWhatOtherProgramsWrite) {
 TEST_F(CsvFiles, ReadingNamesFileAndLine) {
   auto const refusal = [&](std::string_view text) {
     put(file, text);
-    auto const said = message<IoError>([&] { read_csv(file); });
+    auto const said = message_of<IoError>([&] { read_csv(file); });
     EXPECT_TRUE(has(said, file.string()));
     return said;
   };
@@ -349,19 +331,19 @@ TEST_F(CsvFiles, ReadingNamesFileAndLine) {
   EXPECT_TRUE(has(refusal("a\n\"1\"2\n"), "line 2: text follows a closing quote"));
   EXPECT_TRUE(has(refusal(""), "is empty"));
   EXPECT_TRUE(has(refusal("\n\n"), "is empty"));
-  auto const missing = message<IoError>([&] { read_csv(folder / "none.csv"); });
+  auto const missing = message_of<IoError>([&] { read_csv(folder / "none.csv"); });
   EXPECT_TRUE(has(missing, "none.csv"));
   EXPECT_TRUE(has(missing, "No such file"));
-  EXPECT_TRUE(has(message<IoError>([&] { read_csv(folder); }), "cannot be read"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(folder); }), "cannot be read"));
 }
 
 TEST(CsvTable, ColumnMustBeThereOnce) {
   Table const table{{"t", "x", "x"}, {{1, 2, 3}, {4, 5, 6}}};
   EXPECT_EQ(table.column("t"), (std::vector<double>{1, 4}));
-  EXPECT_TRUE(has(message<InvalidInput>([&] { table.column("y"); }),
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("y"); }),
                   "no column is called 'y'; the table has 't', 'x'"));
-  EXPECT_TRUE(has(message<InvalidInput>([&] { table.column("x"); }), "more than one"));
-  EXPECT_TRUE(has(message<InvalidInput>([] { Table{}.column("t"); }), "has none"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("x"); }), "more than one"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([] { Table{}.column("t"); }), "has none"));
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/refusal.hpp"
+
 namespace fs = std::filesystem;
 using namespace polybody;
 
@@ -34,25 +36,6 @@ std::array<int, 2> png_size(fs::path const& file) {
     return value;
   };
   return {number(16), number(20)};
-}
-
-template <class E>
-std::string message(auto&& act) {
-  try {
-    act();
-  } catch (E const& error) {
-    return error.what();
-  } catch (std::exception const& error) {
-    ADD_FAILURE() << "another exception: " << error.what();
-    return "";
-  }
-  ADD_FAILURE() << "no exception";
-  return "";
-}
-
-testing::AssertionResult has(std::string_view text, std::string_view part) {
-  if (text.find(part) != text.npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "'" << part << "' is not in: " << text;
 }
 
 Figure waves() {
@@ -228,7 +211,7 @@ TEST_F(Plots, RefusalsNameTheFigureAndTheCurveAndWriteNothing) {
     Figure figure = waves();
     figure.title = "Energy";
     spoil(figure);
-    auto const said = message<InvalidInput>([&] { write_figure(figure, folder / "new" / "f"); });
+    auto const said = message_of<InvalidInput>([&] { write_figure(figure, folder / "new" / "f"); });
     EXPECT_TRUE(has(said, "'Energy'"));
     return said;
   };
@@ -292,7 +275,7 @@ TEST_F(Plots, GnuplotFailureNamesTheScriptAndKeepsTheOldPicture) {
     std::ofstream(folder / "bin" / "gnuplot") << "#!/bin/sh\n" << body << '\n';
     fs::permissions(folder / "bin" / "gnuplot", fs::perms::owner_all);
     Path const first((folder / "bin").string() + ':' + std::getenv("PATH"));
-    auto const said = message<IoError>([&] { write_figure(waves(), stem); });
+    auto const said = message_of<IoError>([&] { write_figure(waves(), stem); });
     EXPECT_TRUE(has(said, with(".gp").string()));
     EXPECT_TRUE(has(said, "strange"));
     EXPECT_EQ(text_of(with(".png")), "old");
@@ -304,7 +287,7 @@ TEST_F(Plots, AnUnwritablePlaceIsAnIoError) {
   std::ofstream(folder / "plain") << 'x';
   EXPECT_THROW(write_figure(waves(), folder / "plain" / "f"), IoError);
   fs::create_directories(with(".gp"));
-  EXPECT_TRUE(has(message<IoError>([&] { write_figure(waves(), stem); }), ".gp"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { write_figure(waves(), stem); }), ".gp"));
   EXPECT_EQ(files(), 2u);  // neither a data file without a script nor a temporary
 }
 
