@@ -43,7 +43,8 @@ State moved(M const& model) {
   return x;
 }
 
-/// How far two motions are apart, beside their size; with λ, which shows more.
+/// How far two motions are apart, beside their size; with λ, which shows more: positions rounded to 1e-16 are
+/// accelerations and forces rounded to 1e-16/(βh²), here 1e-10, and Newton's method stops a hundred of these before.
 double apart(State const& x, State const& y) {
   return std::max({(x.q - y.q).norm() / y.q.norm(), (x.v - y.v).norm() / y.v.norm(),
                    (x.lambda - y.lambda).norm() / y.lambda.norm()});
@@ -71,5 +72,5 @@ TYPED_TEST(SolverPolicies, MoveAMixedModelAlikeAndGiveTheSameBitsTwice) {
 
 TYPED_TEST(GeneralSolverPolicies, MoveAChainOfBallsAlike) {
   Chain<OnBallJoints<Constraint>> const chain(8, bar_link(0.2));
-  EXPECT_LT(apart(moved<TypeParam>(chain.model), moved<DenseLu>(chain.model)), 1e-9);
+  EXPECT_LT(apart(moved<TypeParam>(chain.model), moved<DenseLu>(chain.model)), 1e-8);
 }
