@@ -8,6 +8,7 @@
 #include <functional>
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
 #include <polybody/solvers/eigen_sparse_lu.hpp>
 #include <random>
@@ -232,6 +233,29 @@ void grow() {
   }
 }
 
+/// Is there a size below which dense LU is faster?
+void small() {
+  std::printf("\nwrite + factor + solve of small chains\n");
+  for (int const links : {1, 2, 4, 8}) {
+    Blocks const b = chain(links);
+    VecX const rhs = VecX::Ones(b.size);
+    VecX x = rhs;
+    auto block = analysed<BlockSolver>(b);
+    auto dense = analysed<DenseLu>(b);
+    auto const all = [&](auto& solver) {
+      return [&] {
+        solver.begin();
+        b.write(solver);
+        solver.factor();
+        solver.solve(rhs, x);
+        benchmark::DoNotOptimize(x.data());
+      };
+    };
+    std::vector<double> const time = fastest({{[] {}, all(block)}, {[] {}, all(dense)}}, 1001);
+    std::printf("  %3td unknowns   block %6.2f us   dense LU %6.2f us\n", b.size, time[0], time[1]);
+  }
+}
+
 void block_product(benchmark::State& state) {
   detail::AlignedDoubles a(48), b(48), c(48);
   a.zero();
@@ -261,4 +285,5 @@ int main(int argc, char** argv) {
   benchmark::RunSpecifiedBenchmarks();
   compare();
   grow();
+  small();
 }
