@@ -14,6 +14,8 @@
 #include <random>
 #include <string>
 
+#include "support/blocks.hpp"
+
 #ifdef POLYBODY_HAS_KLU
 #include <polybody/solvers/klu.hpp>
 #endif
@@ -22,25 +24,6 @@ namespace {
 
 using namespace polybody;
 using Matrix6 = Mat<double, 6, 6>;
-
-/// Blocks of a matrix, written again and again in the same order.
-struct Blocks {
-  std::vector<std::pair<Block, MatX>> all;
-  Index size = 0;
-
-  void add(Index row, Index col, MatX const& m) {
-    all.push_back({{row, col, m.rows(), m.cols()}, m});
-    size = std::max({size, row + m.rows(), col + m.cols()});
-  }
-  void join(Index row, Index col, MatX const& g) {
-    add(row, col, g);
-    add(col, row, g.transpose());
-  }
-  template <class Sink>
-  void write(Sink& sink) const {
-    for (auto const& [b, m] : all) sink.add(b.row, b.col, m);
-  }
-};
 
 struct Draw {
   std::mt19937 engine{1};
@@ -108,14 +91,6 @@ Blocks chain(int links) {
   return b;
 }
 
-template <class Solver>
-Solver analysed(Blocks const& b, Solver solver = {}) {
-  PatternSink pattern;
-  b.write(pattern);
-  solver.analyse(b.size, pattern.blocks);
-  return solver;
-}
-
 double microseconds(std::function<void()> const& act) {
   auto const start = std::chrono::steady_clock::now();
   act();
@@ -155,11 +130,11 @@ void compare() {
   VecX const rhs = Draw().matrix(b.size, 1);
   VecX x = VecX::Zero(b.size);
 
-  auto ldlt = analysed<BlockLdlt>(b);
-  auto lu = analysed<BlockLu>(b);
-  auto automatic = analysed<BlockSolver>(b);
-  auto shifted = analysed<EigenLdlt>(b);
-  auto sparse = analysed<EigenSparseLu>(b);
+  auto ldlt = b.analysed<BlockLdlt>();
+  auto lu = b.analysed<BlockLu>();
+  auto automatic = b.analysed<BlockSolver>();
+  auto shifted = b.analysed<EigenLdlt>();
+  auto sparse = b.analysed<EigenSparseLu>();
   sparse.begin();
   b.write(sparse);
   Eigen::SparseMatrix<double> const matrix = sparse.matrix();
@@ -192,7 +167,7 @@ void compare() {
                         {"Eigen SimplicialLDLT, AMD, shifted", written(shifted), solved(shifted)},
                         {"Eigen SparseLU, COLAMD, numeric", written(sparse), solved(sparse)}};
 #ifdef POLYBODY_HAS_KLU
-  auto klu = analysed<Klu>(b), klu_in_order = analysed(b, Klu(ldlt.order()));
+  auto klu = b.analysed<Klu>(), klu_in_order = b.analysed(Klu(ldlt.order()));
   rows.push_back({"KLU refactor, its own order", written(klu), solved(klu)});
   rows.push_back({"KLU refactor, block order", written(klu_in_order), solved(klu_in_order)});
 #endif
@@ -216,7 +191,7 @@ void grow() {
     Blocks const b = chain(links);
     VecX const rhs = VecX::Ones(b.size);
     VecX x = rhs;
-    auto solver = analysed<BlockLdlt>(b);
+    auto solver = b.analysed<BlockLdlt>();
     double const time = fastest({{[&] {
                                     solver.begin();
                                     b.write(solver);
@@ -240,8 +215,8 @@ void small() {
     Blocks const b = chain(links);
     VecX const rhs = VecX::Ones(b.size);
     VecX x = rhs;
-    auto block = analysed<BlockSolver>(b);
-    auto dense = analysed<DenseLu>(b);
+    auto block = b.analysed<BlockSolver>();
+    auto dense = b.analysed<DenseLu>();
     auto const all = [&](auto& solver) {
       return [&] {
         solver.begin();

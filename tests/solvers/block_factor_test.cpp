@@ -9,42 +9,11 @@
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
 
+#include "support/blocks.hpp"
+
 using namespace polybody;
 
 namespace {
-
-/// A matrix of blocks that are written again and again in the same order.
-struct Blocks {
-  std::vector<std::pair<Block, MatX>> all;
-  Index size = 0;
-
-  void add(Index row, Index col, MatX const& m) {
-    all.push_back({{row, col, m.rows(), m.cols()}, m});
-    size = std::max({size, row + m.rows(), col + m.cols()});
-  }
-  /// G at (row, col) and its transpose.
-  void join(Index row, Index col, MatX const& g) {
-    add(row, col, g);
-    add(col, row, g.transpose());
-  }
-  template <class Sink>
-  void write(Sink& sink) const {
-    for (auto const& [b, m] : all) sink.add(b.row, b.col, m);
-  }
-  MatX dense() const {
-    MatX a = MatX::Zero(size, size);
-    for (auto const& [b, m] : all) a.block(b.row, b.col, b.rows, b.cols) += m;
-    return a;
-  }
-  template <class Solver>
-  Solver analysed() const {
-    PatternSink pattern;
-    write(pattern);
-    Solver solver;
-    solver.analyse(size, pattern.blocks);
-    return solver;
-  }
-};
 
 struct Draw {
   std::mt19937 engine{3};
