@@ -1,10 +1,13 @@
 // One step of h = 1 ms: chains of rigid links (0.1 m, 1 kg, I = (1e-4, 1e-3, 1e-3) kg m²) released horizontally, 1 s, with
-// ideal and compliant pins, by the default solver and by Eigen's sparse LU; and the share of each part of a step.
+// ideal and compliant pins; the robot arm of Chapter 2; N four-bars (IFToMM A02). Each by the default solver and by Eigen's sparse
+// LU; and the share of each part of a step.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
 #include <cstdio>
 #include <polybody/polybody.hpp>
+
+#include "chapter2.hpp"
 
 namespace {
 
@@ -36,8 +39,7 @@ struct Cost {
 };
 
 template <class Solver, class M>
-Cost cost(M const& model, double until) {
-  State x = model.reference_state();
+Cost cost(M const& model, State x, double until) {
   auto run = simulate<Solver>(model, x, GeneralizedAlpha{}, {.until = until, .step = 1e-3});
   auto const start = std::chrono::steady_clock::now();
   run.run();
@@ -53,11 +55,73 @@ void chains() {
     double const until = links > 64 ? 0.2 : 1.0;
     Chain<Constraint> const ideal(links, {});
     Chain<Penalty> const compliant(links, {.stiffness = 1e7, .damping = 1e3});
-    Cost const block = cost<BlockSolver>(ideal.model, until), lu = cost<EigenSparseLu>(ideal.model, until),
-               soft = cost<BlockSolver>(compliant.model, until);
+    Cost const block = cost<BlockSolver>(ideal.model, ideal.model.reference_state(), until),
+               lu = cost<EigenSparseLu>(ideal.model, ideal.model.reference_state(), until),
+               soft = cost<BlockSolver>(compliant.model, compliant.model.reference_state(), until);
     std::printf("  %5d", links);
     for (Cost const& c : {block, lu, soft}) std::printf(" %9.1f (%5.2f, %5.3f)      ", c.microseconds, c.iterations, c.factorisations);
     std::printf("  ratio SparseLU / block %.1f\n", lu.microseconds / block.microseconds);
+  }
+}
+
+/// A row of the table: the default solver, Eigen's sparse LU, their ratio.
+template <class M>
+void compare_solvers(std::string const& what, M const& model, State const& x, double until) {
+  Cost const block = cost<BlockSolver>(model, x, until), lu = cost<EigenSparseLu>(model, x, until);
+  std::printf("  %-34s %8.1f (%5.2f, %5.3f)   %8.1f   ratio %.1f\n", what.c_str(), block.microseconds, block.iterations,
+              block.factorisations, lu.microseconds, lu.microseconds / block.microseconds);
+}
+
+template <class B, class P>
+void arm(std::string const& what, Index elements, P const& policy) {
+  chapter2::RobotArm<B, P> const robot(chapter2::bar(chapter2::medium, 1.2), elements, 15.0, 0.0, policy);
+  compare_solvers("robot arm, " + what, robot.model, robot.model.reference_state(), 1.0);
+}
+
+/// N windows of unit bars on pins, upright, moving to the right at 1 m/s [CASES R2].
+struct FourBars {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+  std::vector<BodyHandle<planar::Rigid>> up, across;
+
+  explicit FourBars(int n) {
+    Bar const unit{.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}};
+    auto const rod = [&](double x, double y, double angle) {
+      Bar b = unit;
+      b.placement = Placement::planar(x, y, angle);
+      return model.add(planar::Rigid::from(b));
+    };
+    for (int i = 0; i <= n; ++i) {
+      up.push_back(rod(i, 0, 0.5 * std::numbers::pi));
+      model.connect(Pin{}, model.ground().at({double(i), 0, 0}), up.back().at(0.0));
+    }
+    for (int i = 0; i < n; ++i) {
+      across.push_back(rod(i, 1, 0.0));
+      model.connect(Pin{}, up[std::size_t(i)].at(1.0), across.back().at(0.0));
+      model.connect(Pin{}, up[std::size_t(i) + 1].at(1.0), across.back().at(1.0));
+    }
+  }
+  State start() const {
+    State x = model.reference_state();
+    for (std::size_t i = 0; i < up.size(); ++i)  // about its own foot
+      model.set_velocity(x, up[i], Vec3(0, double(i), 0), Vec3(0, 0, -1));
+    for (auto const& bar : across) model.set_velocity(x, bar, Vec3(1, 0, 0), Vec3::Zero());
+    return x;
+  }
+};
+
+void mechanisms() {
+  std::printf("\nmicroseconds a step (iterations, factorisations), Eigen SparseLU, ratio\n");
+  Penalty const stiff{.stiffness = 1e9, .damping = 1e5};
+  arm<planar::Rigid>("rigid, Constraint", 1, Constraint{});
+  arm<planar::Rigid>("rigid, Penalty", 1, stiff);
+  arm<planar::Lrvf>("10 Lrvf, Constraint", 10, Constraint{});
+  arm<planar::Lrvf>("10 Lrvf, Penalty", 10, stiff);
+  arm<planar::AncfCable<>>("10 AncfCable, Constraint", 10, Constraint{});
+  arm<planar::AncfCable<>>("10 AncfCable, Penalty", 10, stiff);
+  for (int const n : {2, 10, 40}) {
+    FourBars const bars(n);
+    compare_solvers(std::to_string(n) + " four-bars", bars.model, bars.start(), 0.7);  // the first flat position comes at 0.71 s
   }
 }
 
@@ -122,4 +186,5 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   chains();
+  mechanisms();
 }

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <polybody/bodies/lrvf.hpp>
 #include <polybody/bodies/planar/ancf_cable.hpp>
 #include <polybody/bodies/planar/lrvf.hpp>
 #include <polybody/bodies/planar/rigid.hpp>
@@ -77,6 +78,10 @@ TEST(Heap, TheWatchSeesAnAllocation) {
 
 TEST(Heap, RigidTakesNone) { expect_no_heap(Rigid<>::from(bar)); }
 TEST(Heap, PlanarRigidTakesNone) { expect_no_heap(planar::Rigid::from(bar)); }
+TEST(Heap, SpatialLrvfTakesNone) {
+  expect_no_heap(Lrvf<Objective>::from(bar, 3));
+  expect_no_heap(Lrvf<Direct>::from(bar, 3));
+}
 TEST(Heap, LrvfTakesNone) { expect_no_heap(planar::Lrvf::from(bar, 3)); }
 TEST(Heap, GreenCableTakesNone) { expect_no_heap(planar::AncfCable<>::from(bar, 3)); }
 TEST(Heap, EngineeringCableTakesNone) {

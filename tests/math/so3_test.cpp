@@ -196,4 +196,80 @@ TEST(So3, DerivativeOfTheInverseJacobianMatchesThatOfTheJacobian) {
     }
 }
 
+// b′ = Σ k (−1)ᵏ xᵏ⁻¹/(2k + 2)! and c′ = Σ k (−1)ᵏ xᵏ⁻¹/(2k + 3)!, k ≥ 1, in long double.
+TEST(So3, SlopesAreThoseOfHighPrecision) {
+  auto const slope = [](long double x, int first) {
+    long double sum = 0.0L, factor = -1.0L;  // (−1)ᵏ xᵏ⁻¹/(2k + first)!
+    for (int i = 2; i <= first + 2; ++i) factor /= i;
+    for (int k = 1; k < 40; ++k) {
+      sum += k * factor;
+      factor *= -x / ((2 * k + first + 1.0L) * (2 * k + first + 2.0L));
+    }
+    return double(sum);
+  };
+  for (double const angle : {0.0, 1e-8, 1e-4, 1e-2, 0.3, 0.49, 0.51, 1.0, 3.0, 6.0}) {
+    double const x = angle * angle;
+    RotationSlopes<double> const s(x);
+    EXPECT_NEAR(s.b, slope(x, 2), 2e-15) << angle;
+    EXPECT_NEAR(s.c, slope(x, 3), 2e-15) << angle;
+  }
+}
+
+/// m = (1 − atan t/t)/t² in long double: by Σ (−z)ᵏ/(2k + 3) for z ≤ 0.3, else as it stands.
+long double arctan_rest(long double z) {
+  if (z > 0.3L) return (1.0L - std::atan(std::sqrt(z)) / std::sqrt(z)) / z;
+  long double sum = 0.0L, power = 1.0L;
+  for (int k = 0; k < 40; ++k) {
+    sum += power / (2 * k + 3);
+    power *= -z;
+  }
+  return sum;
+}
+
+// The slopes by the differential equation 2 z a′ + a = 1/(1 + z), with a = 1 − z m.
+TEST(So3, ArctanIsThatOfHighPrecision) {
+  for (double const t : {0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.1, 0.3, 0.316, 0.3163, 0.5, 0.99}) {  // the series ends at √0.1
+    double const z = t * t;
+    long double const m = arctan_rest(z);
+    ArctanSeries<double> const s(z);
+    EXPECT_NEAR(s.m, double(m), 2e-15) << t;
+    EXPECT_NEAR(s.a, double(1.0L - z * m), 2e-16) << t;
+    if (t > 0.0) {
+      EXPECT_NEAR(s.a * t, std::atan(t), 2e-16 * t) << t;
+    }
+    if (t < 0.05) continue;  // there the quotients below lose their digits
+    long double const da = (1.0L / (1.0L + z) - (1.0L - z * m)) / (2.0L * z);
+    EXPECT_NEAR(s.da, double(da), 1e-14) << t;
+    EXPECT_NEAR(s.dm, double(-(da + m) / z), 1e-13) << t;
+  }
+  ArctanSeries<double> const zero(0.0);
+  EXPECT_EQ(zero.da, -1.0 / 3.0);  // 1 − z/3 + z²/5 − ...
+  EXPECT_EQ(zero.dm, -0.2);
+}
+
+TEST(So3, SlopesOfTheArctanAreItsDerivatives) {
+  using D = Dual<1>;
+  for (double const z : {0.0, 1e-8, 1e-4, 0.01, 0.0999, 0.1001, 0.5}) {
+    ArctanSeries<D> const s(D::variable(z, 0));
+    EXPECT_NEAR(s.a.d[0], s.da.v, 1e-14) << z;
+    EXPECT_NEAR(s.m.d[0], s.dm.v, 1e-13) << z;
+  }
+}
+
+// Jr(φ + εy) x, for x and y in general position to φ.
+TEST(So3, DerivativeOfTheJacobianIsWhatItSays) {
+  Vec3 const x(0.7, -1.3, 0.4);
+  auto const applied = [&](auto const& phi) -> Mat<Dual<1>, 3, 3> {
+    Mat<Dual<1>, 3, 3> out;
+    for (int j = 0; j < 3; ++j) out.col(j) = right_jacobian<Dual<1>>(phi) * x.cast<Dual<1>>();
+    return out;
+  };
+  for (double const angle : {0.0, 1e-8, 1e-4, 1e-2, 0.49, 0.51, 2.0, 5.0})
+    for (int i = 0; i < 3; ++i) {
+      Vec3 const phi = angle * directions[1];
+      Vec3 const slope = derivative(applied, phi, Vec3::Unit(i)).col(0);
+      EXPECT_LT((right_jacobian_derivative<double>(phi, x).col(i) - slope).norm(), 1e-14) << angle;
+    }
+}
+
 }  // namespace

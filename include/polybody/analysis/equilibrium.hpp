@@ -2,6 +2,7 @@
 /// \file
 /// Static equilibrium: f(q) − Gᵀλ = 0, Φ(q) = 0 at v = 0, by full Newton with load steps.
 
+#include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/solvers/auto_lu.hpp>
 #include <polybody/solvers/newton.hpp>
 #include <polybody/system/system.hpp>
@@ -14,6 +15,21 @@ struct EquilibriumOptions {
   double tolerance = 1e-11;    ///< of a correction, relative to 1 + max |q|
   int max_iterations = 50;     ///< in one part
 };
+
+namespace detail {
+/// Multipliers that carry the loads at the first instant, in place of none: what holds a pendulum upright is made of them. False where the
+/// state has no unique acceleration.
+template <class M>
+bool multipliers_at_rest(System<M>& system, State& x) {
+  VecX a = x.a;
+  try {
+    ForwardDynamics<M>(system).accelerations(system, x.q, x.v, x.t, a, x.lambda);
+  } catch (Error const&) {
+    return false;
+  }
+  return true;
+}
+}  // namespace detail
 
 struct EquilibriumReport {
   int parts = 0;
@@ -80,6 +96,7 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
   NewtonOptions newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
   double const whole = 1.0 / std::max(options.load_steps, 1);
   double done = 0.0, part = whole;
+  bool primed = false;
   while (done < 1.0) {
     State const before = trial;
     system.load_factor = std::min(done + part, 1.0);
@@ -95,6 +112,10 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
       continue;
     }
     trial = before;
+    if (n.result == NewtonResult::singular && !primed) {
+      primed = true;
+      if (detail::multipliers_at_rest(system, trial)) continue;
+    }
     part *= 0.5;
     if (part >= options.smallest_part) continue;
     std::string const at = " at load factor " + number(system.load_factor);

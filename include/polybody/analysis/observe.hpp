@@ -112,17 +112,9 @@ Violation violation(System<M>& system, State const& x) {
   system.violation(phi);
   system.violation_rate(rate);
   system.acceleration_bias(second);
-  std::vector<double> scratch(system.data().scratch.size());
-  for_each_row_block(system.model(), system.data(), [&](auto const& e, auto const& g, auto const& a, auto const& b) {
-    constexpr int m = std::decay_t<decltype(g)>::rows;
-    auto const add = [&](Published<double> const& p, Mat<double, m, 6> const& map) {
-      detail::pull_rows<m>(p, map, scratch, [&](auto const& gt) {
-        second.template segment<m>(e.row) += gt.transpose() * x.a.segment(p.first, p.columns);
-      });
-    };
-    add(a, g.Ga);
-    add(b, g.Gb);
-  });
+  VecX of_accelerations = phi;
+  system.rows_times(x.a, of_accelerations);
+  second += of_accelerations;
   return {phi.cwiseAbs().maxCoeff(), rate.cwiseAbs().maxCoeff(), second.cwiseAbs().maxCoeff()};
 }
 

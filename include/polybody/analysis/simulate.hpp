@@ -28,6 +28,7 @@ struct RunOptions {
   std::vector<double> corners = {};   ///< times at which a step must end, beside those of the drives and loads
   std::vector<Event> events = {};
   double assembly_tolerance = 1e-8;   ///< of the start
+  int threads = 1;                    ///< that share the loops of an evaluation; for large models, results stay the same bits
 };
 
 /// What a run has cost so far, and which events it met.
@@ -63,6 +64,7 @@ class Simulation {
         options_(std::move(options)), workspace_(integrator_.template workspace<Solver>(*system_)) {
     integrator_.check();
     check_options();
+    if (options_.threads != 1) system_->use_threads(options_.threads);
     require_fitting(model, x);
     collect_corners();
     require_assembled(*system_, x, options_.assembly_tolerance);

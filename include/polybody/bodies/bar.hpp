@@ -2,6 +2,7 @@
 /// \file
 /// One physical specification of a straight prismatic bar, from which every body formulation is built.
 
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <variant>
@@ -58,7 +59,12 @@ struct Bar {
   std::optional<BarConstants> constants = {};
   Placement placement = {};
   Damping damping = {};
+  double pretension = 0.0;  ///< axial force in the reference configuration [N]
 };
+
+/// A curved reference: the placement of the section at arc length s ∈ [0, length], in the bar's own axes (x along the
+/// tangent). At s = 0 it is usually `Placement{}`.
+using ReferenceCurve = std::function<Placement(double)>;
 
 namespace detail {
 
@@ -110,6 +116,7 @@ inline BarConstants constants(Bar const& bar) {
   require_not_negative(bar.damping.axial, "Bar: the axial damping time");
   require_not_negative(bar.damping.shear, "Bar: the shear damping time");
   require_not_negative(bar.damping.bending, "Bar: the bending damping time");
+  if (!std::isfinite(bar.pretension)) throw InvalidInput("Bar: the pretension must be finite.");
   bool const by_section = !std::holds_alternative<std::monostate>(bar.section);
   if (by_section != bar.material.has_value() || by_section == bar.constants.has_value())
     throw InvalidInput("Bar: give either a section with a material, or constants; not both, not half.");

@@ -50,6 +50,18 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
 };
 
+/// A body that owns rows between its coordinates, such as the norm of Euler parameters: Φ(q) = 0 with G = ∂Φ/∂q (own_rows × all
+/// speeds of the body, whose number is fixed) and γ, Φ̈ = G v̇ + γ. They are counted and solved like a joint's.
+template <class B>
+concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B::own_rows>& rows,
+                            Mat<double, B::own_rows, B::element_columns>& map,
+                            Mat<double, B::element_columns, B::element_columns>& stiffness) {
+  b.template own_gap<double>(x, rows);                       // Φ
+  b.template own_map<double>(x, map);                        // G
+  b.template own_gamma<double>(x, x, rows);                  // γ(q, v)
+  b.own_stiffness(x, Vec<double, B::own_rows>(), stiffness);  // ∂(Gᵀλ)/∂q
+};
+
 /// A body whose points share what is dear to compute: `pose` once, then `publish` each point from it.
 template <class B, class T>
 concept SharesPose = requires(B const b, std::span<T const> x, typename B::Point p, typename B::template Pose<T>& pose,

@@ -60,17 +60,11 @@ inline void require_inertia(Mat3 const& inertia, std::string const& what) {
                        number(i[2]) + " violate the triangle inequality; no body has them.");
 }
 
-/// How `Rigid` writes its rotation: unit quaternion with body-frame angular velocity as speeds.
-struct UnitQuaternion {};
-
-template <std::same_as<UnitQuaternion> Rotation = UnitQuaternion>
-class Rigid {
+/// Mass properties, placement and points: what a rigid body has however its rotation is written.
+class RigidShape {
  public:
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::frame;
-  static constexpr bool constant_mass = true;
-  static constexpr int element_columns = 6;
-  static constexpr int point_columns = 6;
 
   /// A material point, in body axes from the centre of mass [m].
   struct Point {
@@ -85,26 +79,13 @@ class Rigid {
   };
 
   /// \throws InvalidInput for mass ≤ 0 or an inertia that no body has. Zero moments are allowed.
-  Rigid(Parameters const& p) : mass_(p.mass), inertia_(p.inertia), placement_(p.placement) {  // NOLINT
+  RigidShape(Parameters const& p) : mass_(p.mass), inertia_(p.inertia), placement_(p.placement) {  // NOLINT
     require_positive(mass_, "Rigid: the mass");
     require_inertia(inertia_, "Rigid");
     placement_.check("Rigid");
   }
-  Rigid(double mass, Mat3 const& inertia, Placement const& placement = {})
-      : Rigid(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
-
-  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
-  static Rigid from(Bar const& bar) {
-    BarConstants const c = constants(bar);
-    double const l = bar.length, m = c.mass_per_length * l;
-    double const z = c.rotary_inertia * l, y = c.rotary_inertia_y.value_or(c.rotary_inertia) * l;
-    Mat3 const inertia = Vec3(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z).asDiagonal();
-    Placement place = bar.placement;
-    place.origin += place.axes.col(0) * (0.5 * l);
-    Rigid body(m, inertia, place);
-    body.length_ = l;
-    return body;
-  }
+  RigidShape(double mass, Mat3 const& inertia, Placement const& placement = {})
+      : RigidShape(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
 
   double mass() const { return mass_; }
   Mat3 const& inertia() const { return inertia_; }
@@ -121,11 +102,65 @@ class Rigid {
     return {u};
   }
 
-  Index coordinates() const { return 7; }
-  Index speeds() const { return 6; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }
+
+ protected:
+  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
+  explicit RigidShape(Bar const& bar) : RigidShape(parameters(bar)) { length_ = bar.length; }
+  static Parameters parameters(Bar const& bar) {
+    BarConstants const c = constants(bar);
+    double const l = bar.length, m = c.mass_per_length * l;
+    double const z = c.rotary_inertia * l, y = c.rotary_inertia_y.value_or(c.rotary_inertia) * l;
+    Placement place = bar.placement;
+    place.origin += place.axes.col(0) * (0.5 * l);
+    return {.mass = m,
+            .inertia = Vec3(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z).asDiagonal(),
+            .placement = place};
+  }
+
+  template <StateScalar T>
+  Vec<T, 3> inertia_times(Vec<T, 3> const& x) const {
+    Vec<T, 3> y;
+    for (int i = 0; i < 3; ++i) y[i] = x[0] * inertia_(i, 0) + x[1] * inertia_(i, 1) + x[2] * inertia_(i, 2);
+    return y;
+  }
+  /// a × b into three entries of `out`; Eigen's goes through memory, and waits for it.
+  template <class A, class Out>
+  static void set_cross(A const& a, A const& b, Out& out, int first) {
+    out[first] = a[1] * b[2] - a[2] * b[1];
+    out[first + 1] = a[2] * b[0] - a[0] * b[2];
+    out[first + 2] = a[0] * b[1] - a[1] * b[0];
+  }
+
+  double mass_;
+  Mat3 inertia_;
+  Placement placement_;
+  double length_ = 0.0;
+};
+
+/// How `Rigid` writes its rotation: unit quaternion with body-frame angular velocity as speeds.
+struct UnitQuaternion {};
+
+/// A rigid body: `Rigid<>`, or `Rigid<EulerParameters>` of bodies/rigid_euler_parameters.hpp.
+template <class Rotation = UnitQuaternion>
+class Rigid;
+
+template <>
+class Rigid<UnitQuaternion> : public RigidShape {
+ public:
+  static constexpr bool constant_mass = true;
+  static constexpr int element_columns = 6;
+  static constexpr int point_columns = 6;
+
+  using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
+
+  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
+  static Rigid from(Bar const& bar) { return Rigid(bar); }
+
+  Index coordinates() const { return 7; }
+  Index speeds() const { return 6; }
 
   void reference(std::span<double> q) const {
     part<3>(q, 0) = placement_.origin;
@@ -249,24 +284,7 @@ class Rigid {
   }
 
  private:
-  template <StateScalar T>
-  Vec<T, 3> inertia_times(Vec<T, 3> const& x) const {
-    Vec<T, 3> y;
-    for (int i = 0; i < 3; ++i) y[i] = x[0] * inertia_(i, 0) + x[1] * inertia_(i, 1) + x[2] * inertia_(i, 2);
-    return y;
-  }
-  /// a × b into three entries of `out`; Eigen's goes through memory, and waits for it.
-  template <class A, class Out>
-  static void set_cross(A const& a, A const& b, Out& out, int first) {
-    out[first] = a[1] * b[2] - a[2] * b[1];
-    out[first + 1] = a[2] * b[0] - a[0] * b[2];
-    out[first + 2] = a[0] * b[1] - a[1] * b[0];
-  }
-
-  double mass_;
-  Mat3 inertia_;
-  Placement placement_;
-  double length_ = 0.0;
+  explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
 
 static_assert(Body<Rigid<>>);

@@ -19,6 +19,18 @@ concept ForceElement = requires(F const force, std::array<Frame<double>, F::mark
   force.check(name);
 };
 
+/// A force element may leave the blocks that couple its markers' bodies out of a time step's matrix by
+/// `static constexpr bool couples_bodies = false`: then Newton sees each body's own stiffness only and iterates over the rest.
+/// For contacts of many candidates: the matrix's pattern, and the order in which it is eliminated, stay as they are without
+/// contact, whichever candidates touch.
+template <class F>
+constexpr bool couples_bodies() {
+  if constexpr (requires { F::couples_bodies; })
+    return F::couples_bodies;
+  else
+    return true;
+}
+
 /// A force element that stores energy: a function of its frames and time [J].
 template <class F>
 concept HasPotential = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t) {

@@ -47,12 +47,13 @@ struct PointForce {
   }
 };
 
-/// A moment at a marker, `moment` times the law of time. In space a dead moment is not conservative.
+/// A moment at a marker, `moment` times the law of time. In space a dead moment is not conservative. A marker that knows its tangent
+/// only feels the part across it.
 template <TimeLaw Law = Constant>
 struct PointMoment {
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs = Observes::axis;
 
   Vec3 moment = Vec3::Zero();        ///< (3) [N m]
   LoadAxes axes = LoadAxes::world;

@@ -17,7 +17,7 @@ class ForwardDynamics {
       : zero_a_(VecX::Zero(system.speeds())), zero_lambda_(VecX::Zero(system.rows())),
         r_(VecX::Zero(system.speeds())), phi_(VecX::Zero(system.rows())), rhs_(VecX::Zero(system.size())),
         x_(VecX::Zero(system.size())), delta_(VecX::Zero(system.speeds())),
-        next_(VecX::Zero(system.coordinates())), scratch_(system.data().scratch.size()) {
+        next_(VecX::Zero(system.coordinates())) {
     PatternSink pattern;
     system.tangent({.mass = 1.0}, SecondOrder::omitted, zero_lambda_, pattern);
     solver_.analyse(system.size(), pattern.blocks);
@@ -67,7 +67,7 @@ class ForwardDynamics {
                         VecX& out) {
     system.evaluate(q, v, t);
     factor(system);
-    rate_of(system, b);
+    system.rows_times(b, phi_);
     solve(system, 0.0, 1.0);
     out = x_.head(system.speeds());
   }
@@ -101,22 +101,6 @@ class ForwardDynamics {
       if (!std::isfinite(x_[i])) singular(system, i);
   }
 
-  /// φ ← G b, by the markers' Jacobians.
-  void rate_of(System<M>& system, VecX const& b) {
-    phi_.setZero();
-    auto const& model = system.model();
-    for_each_row_block(model, system.data(), [&](auto const& e, auto const& gap, auto const& a, auto const& c) {
-      constexpr int m = std::decay_t<decltype(gap)>::rows;
-      auto const add = [&](Published<double> const& p, Mat<double, m, 6> const& g) {
-        detail::pull_rows<m>(p, g, scratch_, [&](auto const& gt) {
-          phi_.template segment<m>(e.row) += gt.transpose() * b.segment(p.first, p.columns);
-        });
-      };
-      add(a, gap.Ga);
-      add(c, gap.Gb);
-    });
-  }
-
   [[noreturn]] static void singular(System<M> const& system, Index i) {
     throw LinearSolverSingular(
         "The equations of motion have no unique acceleration at t = " + number(system.time()) +
@@ -127,7 +111,6 @@ class ForwardDynamics {
   Solver solver_;
   bool factored_ = false;
   VecX zero_a_, zero_lambda_, r_, phi_, rhs_, x_, delta_, next_;
-  std::vector<double> scratch_;
 };
 
 }  // namespace polybody

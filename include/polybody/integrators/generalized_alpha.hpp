@@ -21,8 +21,10 @@ struct GeneralizedAlpha {
   /// Spectral radius at infinity, in [0, 1]: 1 keeps energy, 0 damps most. With rows stay below 1 (0.99 will do): there
   /// the multipliers are only marginally stable, alternate in sign and grow over some thousand steps.
   double rho_inf = 0.8;
-  double tolerance = 1e-8;       ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};
+  /// Of Newton's corrections, relative to the accelerations. At 1e-5 what it leaves of a smooth motion is still far below what a step of
+  /// ωh = 0.1 itself gets wrong, for two iterations less; not near singular configurations, which blow it up.
+  double tolerance = 1e-8;
+  NewtonOptions newton = {.refactor_above = 0.16};
   bool start_correction = true;  ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
 
@@ -36,18 +38,19 @@ struct GeneralizedAlpha {
   template <class M, class Solver>
   struct Workspace {
     VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
-    VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk;
+    VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
     Solver solver;
     ForwardDynamics<M, Solver> forward;
     bool factored = false;
     bool second_order = false;
     double theta = 1.0;
     double h_factored = 0.0;
+    int age = 0;  ///< steps that the factorisation has served
 
     explicit Workspace(System<M>& s)
         : v0(VecX::Zero(s.speeds())), a0(v0), q(VecX::Zero(s.coordinates())), v(v0), vd(v0), a(v0),
           lambda(VecX::Zero(s.rows())), dq(v0), r(v0), phi(lambda), rhs(VecX::Zero(s.size())), y(rhs), jerk(v0),
-          forward(s) {}
+          ahead(v0), forward(s) {}
 
     void analyse(System<M>& s, SecondOrder second) {
       PatternSink pattern;
@@ -101,6 +104,7 @@ struct GeneralizedAlpha {
   Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w) const {
     double const mass = (1.0 - alpha_m()) / (1.0 - alpha_f());
     w.h_factored = h;
+    w.age = 0;
     return write_and_factor(w.solver, [&](Solver& sink) {
       system.tangent({mass, h * gamma(), beta() * h * h}, w.second_order ? SecondOrder::included : SecondOrder::omitted,
                      lambda, sink);
@@ -130,7 +134,7 @@ struct GeneralizedAlpha {
       System<M>& system;
       State const& x;
       Workspace<M, Solver>& w;
-      double h, s, g, mass;
+      double h, s, g, mass, look_ahead;
       Index nv, rows, bad = -1;
 
       bool evaluate() {
@@ -143,6 +147,12 @@ struct GeneralizedAlpha {
         return w.rhs.allFinite();
       }
       bool refactor() {
+        double const ahead = std::min(look_ahead * w.age, 4.0) * h;
+        if (ahead > 0.0) {
+          w.ahead = w.dq + ahead * w.v;
+          system.plus(x.q, w.ahead, w.q);
+          system.evaluate(w.q, w.v, x.t + h);
+        }
         bad = method.refactor(system, h, w.lambda, w);
         return bad < 0;
       }
@@ -150,7 +160,7 @@ struct GeneralizedAlpha {
         w.solver.solve(w.rhs, w.y);
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));
         double const size = 1.0 + w.vd.norm() / n;
-        double const rounding = 100.0 * std::numeric_limits<double>::epsilon() *
+        double const rounding = 30.0 * std::numeric_limits<double>::epsilon() *
                                 (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
         return w.y.allFinite() ? w.y.head(nv).norm() / n / (method.tolerance * size + rounding)
                                : std::numeric_limits<double>::quiet_NaN();
@@ -163,10 +173,11 @@ struct GeneralizedAlpha {
         w.dq += s * da;
         w.lambda += w.y.tail(rows);
       }
-    } problem{*this, system, x, w, h, s, g, mass, nv, rows};
-
+    };
     NewtonOptions options = newton;
     options.always_refactor = options.always_refactor || careful;
+    // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
+    Problem problem{*this, system, x, w, h, s, g, mass, options.always_refactor ? 0.0 : 0.4, nv, rows};
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular && !careful) {
       // try again with every term in the tangent, full Newton, and from the start without extrapolation
@@ -177,6 +188,7 @@ struct GeneralizedAlpha {
     if (report.result != NewtonResult::converged) fail(system, x.t + h, report, problem.bad, w.rhs);
     // the last correction moved dq: bring q to it
     system.plus(x.q, w.dq, w.q);
+    ++w.age;
     history.push(x, h, w.a);
     x.q.swap(w.q);
     x.v.swap(w.v);

@@ -1,16 +1,17 @@
 #pragma once
 #include <array>
+#include <limits>
 
 #include <polybody/math/errors.hpp>
 #include <polybody/system/state.hpp>
 
 namespace polybody {
 
-/// The last three steps of a run: what extrapolation and differences in time need. It stands in `State::memory`,
+/// The last five steps of a run: what extrapolation and differences in time need. It stands in `State::memory`,
 /// so a copy of a state carries it along:
-///   [the method's own nv entries | v̇₋₁ … v̇₋₃ | λ₋₁ … λ₋₃ | h₋₃ … h₋₁ | length for which the state is shifted].
+///   [the method's own nv entries | v̇₋₁ … v̇₋₅ | λ₋₁ … λ₋₅ | h₋₅ … h₋₁ | length for which the state is shifted].
 class StepHistory {
-  static constexpr int kept = 3;
+  static constexpr int kept = 5;
   static Index size(Index nv, Index rows) { return (kept + 1) * nv + kept * rows + kept + 1; }
   auto a(int back) const { return memory_.segment(back * nv_, nv_); }
   auto lambda(int back) const { return memory_.segment((kept + 1) * nv_ + (back - 1) * rows_, rows_); }
@@ -57,23 +58,16 @@ class StepHistory {
     memory_[memory_.size() - 1] = h;
   }
 
-  /// v̇ and λ at x.t + h by the polynomial through all that is known [Lagrange]; of order four after three steps.
+  /// v̇ and λ at x.t + h, each by the polynomial through as many of the last points as would have foretold its present
+  /// value best: many where the motion is smooth, few where what Newton left over would be blown up [Lagrange].
   void extrapolate(State const& x, double h, VecX& vd, VecX& l) const {
-    std::array<double, kept + 1> t{};  // times before x
-    int n = 1;
-    for (; n <= kept && length(n) > 0.0; ++n) t[std::size_t(n)] = t[std::size_t(n - 1)] - length(n);
-    for (int i = 0; i < n; ++i) {
-      double c = 1.0;
-      for (int j = 0; j < n; ++j)
-        if (j != i) c *= (h - t[std::size_t(j)]) / (t[std::size_t(i)] - t[std::size_t(j)]);
-      if (i == 0) {
-        vd = c * x.a;
-        l = c * x.lambda;
-      } else {
-        vd += c * a(i);
-        l += c * lambda(i);
-      }
-    }
+    Times t{};
+    int known = 1;
+    bool const far = h > 2.0 * length(1);  // what was learnt over short steps does not reach that far
+    for (; known <= kept && length(known) > 0.0 && !far; ++known)
+      t[std::size_t(known)] = t[std::size_t(known - 1)] - length(known);
+    extrapolate(t, known, h, x.a, [this](int back) { return a(back); }, vd);
+    extrapolate(t, known, h, x.lambda, [this](int back) { return lambda(back); }, l);
   }
 
   /// v̈ at x, of second order where two steps are known. False where none is.
@@ -83,6 +77,35 @@ class StepHistory {
     out = (x.a - a(1)) / h1;
     if (h2 > 0.0) out += h1 / (h1 + h2) * ((x.a - a(1)) / h1 - (a(1) - a(2)) / h2);
     return true;
+  }
+
+ private:
+  using Times = std::array<double, kept + 1>;  ///< before x
+
+  /// Lagrange's weight at time `at` of point i among the points [first, end).
+  static double weight(Times const& t, int i, int first, int end, double at) {
+    double c = 1.0;
+    for (int j = first; j < end; ++j)
+      if (j != i) c *= (at - t[std::size_t(j)]) / (t[std::size_t(i)] - t[std::size_t(j)]);
+    return c;
+  }
+
+  /// Of `known` points, `now` the first and `get(i)` the others.
+  template <class Get>
+  static void extrapolate(Times const& t, int known, double h, VecX const& now, Get&& get, VecX& out) {
+    int best = 1;
+    double least = std::numeric_limits<double>::infinity();
+    for (int n = 1; n < known; ++n) {
+      out = now;
+      for (int i = 1; i <= n; ++i) out -= weight(t, i, 1, n + 1, 0.0) * get(i);
+      double const error = out.squaredNorm();
+      if (error < least) {
+        least = error;
+        best = n;
+      }
+    }
+    out = weight(t, 0, 0, best, h) * now;
+    for (int i = 1; i < best; ++i) out += weight(t, i, 0, best, h) * get(i);
   }
 };
 

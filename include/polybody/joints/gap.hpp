@@ -55,6 +55,15 @@ concept JointGeometry = requires(G const g, Frame<double> const a, Frame<double>
   { g.template gamma<double>(a, b, t) } -> std::same_as<Vec<double, G::rows>>;
 };
 
+/// What a geometry asks of its second marker, where that is less than of its first (`needs_of_second`).
+template <JointGeometry G>
+constexpr Observes needs_of_second() {
+  if constexpr (requires { G::needs_of_second; })
+    return G::needs_of_second;
+  else
+    return G::needs;
+}
+
 /// ∂[Gaᵀλ; Gbᵀλ]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12, rotations δφ in world axes, by dual numbers.
 template <JointGeometry G>
 Mat<double, 12, 12> wrench_gradient_by_duals(G const& geometry, Frame<double> const& a, Frame<double> const& b,

@@ -5,10 +5,12 @@ namespace polybody {
 
 /// Pin in space: two points stay together and the axis stays parallel, 5 rows
 ///   g = [r_b − r_a; a₁·b₃; a₂·b₃]   [thesis §3.5.1, the special case of the spherical joint].
+/// The second marker may be a cable's, which knows its tangent only, when the pin is along the tangent: a clamp.
 struct Revolute {
   static constexpr char const* name = "Revolute";
   static constexpr int rows = 5;
-  static constexpr Observes needs = Observes::axis;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::axis;
   static constexpr World world = World::space;
 
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the pin, world axes at the reference configuration

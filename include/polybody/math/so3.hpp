@@ -38,7 +38,6 @@ struct RotationSeries {
     }
   }
 
- private:
   /// Σ (−x)ᵏ first · (n−1)!/(n−1+2k)!, each term from the one before it.
   static T series(T const& x, double first, double n) {
     T term(first), sum(first);
@@ -48,6 +47,46 @@ struct RotationSeries {
       n += 2.0;
     }
     return sum;
+  }
+};
+
+/// Slopes by x of b and c: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x, e = (1/6 − c)/x.
+template <class T>
+struct RotationSlopes {
+  T b, c;
+  explicit RotationSlopes(T const& x) {
+    RotationSeries<T> const s(x);
+    bool const small = value_of(x) < 0.25;
+    T const d = small ? s.series(x, 1.0 / 24.0, 5.0) : T((0.5 - s.b) / x);
+    T const e = small ? s.series(x, 1.0 / 120.0, 6.0) : T((1.0 / 6.0 - s.c) / x);
+    b = d - 0.5 * s.c;
+    c = 1.5 * e - 0.5 * d;
+  }
+};
+
+/// a = atan t/t and m = (1 − a)/t² as functions of z = t², and their slopes da/dz, dm/dz, by series near zero.
+/// For t = tan(θ/4): a rotation by θ about n, written as c = t n, has the rotation vector 4 a c.
+template <class T>
+struct ArctanSeries {
+  T a, m, da, dm;
+  explicit ArctanSeries(T const& z) {
+    using std::atan, std::sqrt;
+    if (value_of(z) < 0.1) {  // m = Σ (−z)ᵏ/(2k + 3); sixteen terms leave 1e-17
+      m = dm = T(0.0);
+      for (int k = 15; k >= 0; --k) {
+        dm = m - z * dm;
+        m = 1.0 / (2 * k + 3) - z * m;
+      }
+      dm = -dm;
+      a = 1.0 - z * m;
+      da = -m - z * dm;
+    } else {
+      T const t = sqrt(z);
+      a = atan(t) / t;
+      m = (1.0 - a) / z;
+      da = (1.0 / (1.0 + z) - a) / (2.0 * z);
+      dm = -(da + m) / z;
+    }
   }
 };
 
@@ -92,6 +131,19 @@ Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
   }
   Mat<T, 3, 3> const h = skew(phi);
   return Mat<T, 3, 3>::Identity() + h * 0.5 + (h * h) * e;
+}
+
+/// ∂(Jr(φ) x)/∂φ at fixed x, 3×3:
+///   2 (c′ φ × (φ × x) − b′ φ × x) φᵀ + b x̃ − c ((φ × x)~ + φ̃ x̃),  b′, c′ the slopes of b, c.
+template <class T>
+Mat<T, 3, 3> right_jacobian_derivative(Vec<T, 3> const& phi, Vec<T, 3> const& x) {
+  T const angle2 = phi.squaredNorm();
+  RotationSeries<T> const s(angle2);
+  RotationSlopes<T> const slope(angle2);
+  Vec<T, 3> const once = phi.cross(x), twice = phi.cross(once);
+  Vec<T, 3> const along = (twice * slope.c - once * slope.b) * 2.0;
+  Mat<T, 3, 3> const h = skew(phi), hx = skew(x);
+  return along * phi.transpose() + hx * s.b - (skew(once) + h * hx) * s.c;
 }
 
 }  // namespace polybody

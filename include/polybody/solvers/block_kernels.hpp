@@ -7,13 +7,14 @@
 #include <type_traits>
 #include <vector>
 
+#include <polybody/math/pack.hpp>
+
 namespace polybody::detail {
 
 using Index = Eigen::Index;
 
-/// As many doubles as the machine for which we compile takes at once, two or four (a wider vector than its own would be
-/// taken apart entry by entry). All rows of a block are padded with zeros to a multiple of it.
-constexpr int lane_size = Eigen::internal::packet_traits<double>::size >= 4 ? 4 : 2;
+/// All rows of a block are padded with zeros to a multiple of what the machine takes at once.
+constexpr int lane_size = pack_size;
 using Lane [[gnu::vector_size(8 * lane_size), gnu::may_alias]] = double;
 static_assert(sizeof(Lane) == 8 * lane_size, "The block solvers need the vector extensions of g++ or clang++.");
 constexpr int padded(int n) { return (n + lane_size - 1) & ~(lane_size - 1); }

@@ -2,6 +2,7 @@
 /// \file
 /// Second half of an evaluation: forces and rows are collected from bodies, joints and force elements.
 
+#include <polybody/bodies/element_batches.hpp>
 #include <polybody/system/publish.hpp>
 
 namespace polybody {
@@ -32,6 +33,21 @@ void add_pulled(Published<T> const& p, Vec<T, 6> const& w, double sign, VecXOf<T
         r[p.first + c] += sum * sign;
       }
   }
+}
+
+/// J b (6) of a marker, b over all speeds of the model.
+inline Vec6 pushed(Published<double> const& p, VecX const& b) {
+  Vec6 t = Vec6::Zero();
+  if (p.shape == JacobianShape::rigid) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) t[3 + i] += p.body_axes(i, j) * b[p.first + 3 + j];
+    for (int i = 0; i < 3; ++i)
+      t[i] = b[p.first + i] + t[3 + (i + 1) % 3] * p.arm[(i + 2) % 3] - t[3 + (i + 2) % 3] * p.arm[(i + 1) % 3];
+  } else {
+    for (Index c = 0; c < p.columns; ++c)
+      for (int i = 0; i < 6; ++i) t[i] += p.jacobian[6 * c + i] * b[p.first + c];
+  }
+  return t;
 }
 
 /// Gᵀ λ, entry by entry.
@@ -66,11 +82,20 @@ Vec<T, m> multiplier(JointEntry<J> const& e, Gap<m, T> const& gap, Data<M, T> co
 
 }  // namespace detail
 
+/// Calls f(body entry, coordinates, speeds) for every body that owns rows.
+template <class M, StateScalar T, class F>
+void for_each_body_with_rows(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, F&& f) {
+  model.for_each_body([&](auto const& e) {
+    if constexpr (OwnsRows<std::decay_t<decltype(e.body)>>)
+      f(e, detail::body_part(q, e.q0, e.body.coordinates()), detail::body_part(v, e.v0, e.body.speeds()));
+  });
+}
+
 /// r = M a − f(q, v, t) + Gᵀλ (nv). Loads and gravity are scaled by `load_factor`.
 /// Needs `publish` and `enforce` at (q, v, t).
 template <class M, StateScalar T>
 void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& a,
-              VecXOf<T> const& lambda, double t, double load_factor, Data<M, T> const& data, VecXOf<T>& r) {
+              VecXOf<T> const& lambda, double t, double load_factor, Data<M, T>& data, VecXOf<T>& r) {
   r.setZero();
   Vec3 const g = model.gravity().g * load_factor;
   bool const falls = !g.isZero(0.0);
@@ -80,18 +105,32 @@ void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> 
     auto const qe = detail::body_part(q, e.q0, e.body.coordinates());
     auto const ve = detail::body_part(v, e.v0, e.body.speeds());
     auto const ae = detail::body_part(a, e.v0, e.body.speeds());
-    Vec<T, n> x;
-    for (Index i = 0; i < e.body.elements(); ++i) {
+    auto const add = [&](Index i, auto const& x) {
       T* const rows = r.data() + e.v0 + e.body.first_column(i);
-      e.body.template inertia<T>(i, qe, ae, x);
       for (int k = 0; k < n; ++k) rows[k] += x[k];
-      e.body.template force<T>(i, qe, ve, x);
-      for (int k = 0; k < n; ++k) rows[k] -= x[k];
       if (falls) {
-        e.body.template gravity<T>(i, qe, g, x);
-        for (int k = 0; k < n; ++k) rows[k] -= x[k];
+        Vec<T, n> weight;
+        e.body.template gravity<T>(i, qe, g, weight);
+        for (int k = 0; k < n; ++k) rows[k] -= weight[k];
       }
+    };
+    Index const elements = e.body.elements();
+    if (data.workers && elements >= 2 * data.least_elements) {
+      using Slot = Eigen::Map<Vec<T, n>>;
+      T* const slots = data.element_forces.data();
+      data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
+        for_each_unbalance<B, T>(e.body, begin, end, qe, ve, ae, [&](Index i, Vec<T, n> const& x) { Slot(slots + n * i) = x; });
+      });
+      for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * i));
+    } else {
+      for_each_unbalance<B, T>(e.body, 0, elements, qe, ve, ae, add);
     }
+  });
+  for_each_body_with_rows(model, q, v, [&](auto const& e, auto const& qe, auto const&) {
+    using B = std::decay_t<decltype(e.body)>;
+    Mat<T, B::own_rows, B::element_columns> map;
+    e.body.template own_map<T>(qe, map);
+    r.template segment<B::element_columns>(e.v0) += map.transpose() * lambda.template segment<B::own_rows>(e.row);
   });
   for_each_gap(model, data, [&](auto const& e, auto const& gap) {
     constexpr int m = std::decay_t<decltype(gap)>::rows;
@@ -122,7 +161,12 @@ void for_each_row_block(M const& model, Data<M, T> const& data, F&& f) {
 
 /// Φ (rows).
 template <class M, StateScalar T>
-void violation(M const& model, Data<M, T> const& data, VecXOf<T>& phi) {
+void violation(M const& model, VecXOf<T> const& q, Data<M, T> const& data, VecXOf<T>& phi) {
+  for_each_body_with_rows(model, q, q, [&](auto const& e, auto const& qe, auto const&) {
+    Vec<T, std::decay_t<decltype(e.body)>::own_rows> own;
+    e.body.template own_gap<T>(qe, own);
+    phi.segment(e.row, own.size()) = own;
+  });
   for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const&, auto const&) {
     phi.template segment<std::decay_t<decltype(gap)>::rows>(e.row) = gap.g;
   });
@@ -130,7 +174,13 @@ void violation(M const& model, Data<M, T> const& data, VecXOf<T>& phi) {
 
 /// Φ̇ = G v + Φ_t (rows).
 template <class M, StateScalar T>
-void violation_rate(M const& model, Data<M, T> const& data, VecXOf<T>& rate) {
+void violation_rate(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data<M, T> const& data, VecXOf<T>& rate) {
+  for_each_body_with_rows(model, q, v, [&](auto const& e, auto const& qe, auto const&) {
+    using B = std::decay_t<decltype(e.body)>;
+    Mat<T, B::own_rows, B::element_columns> map;
+    e.body.template own_map<T>(qe, map);
+    rate.template segment<B::own_rows>(e.row) = map * v.template segment<B::element_columns>(e.v0);
+  });
   for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const& a, auto const& b) {
     rate.template segment<std::decay_t<decltype(gap)>::rows>(e.row) = gap_rate(gap, a, b);
   });
@@ -138,10 +188,34 @@ void violation_rate(M const& model, Data<M, T> const& data, VecXOf<T>& rate) {
 
 /// γ (rows): Φ̈ = G v̇ + γ, with Φ_tt and the frames' biases.
 template <class M, StateScalar T>
-void acceleration_bias(M const& model, double t, Data<M, T> const& data, VecXOf<T>& gamma) {
+void acceleration_bias(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, double t, Data<M, T> const& data,
+                       VecXOf<T>& gamma) {
+  for_each_body_with_rows(model, q, v, [&](auto const& e, auto const& qe, auto const& ve) {
+    Vec<T, std::decay_t<decltype(e.body)>::own_rows> own;
+    e.body.template own_gamma<T>(qe, ve, own);
+    gamma.segment(e.row, own.size()) = own;
+  });
   for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const& a, auto const& b) {
     gamma.template segment<std::decay_t<decltype(gap)>::rows>(e.row) =
         e.joint.geometry.template gamma<T>(a.frame, b.frame, t) + gap.Ga * a.bias + gap.Gb * b.bias;
+  });
+}
+
+/// out = G b (rows), by the markers' Jacobians.
+template <class M>
+void rows_times(M const& model, VecX const& q, VecX const& b, Data<M, double> const& data, VecX& out) {
+  out.setZero();
+  for_each_body_with_rows(model, q, b, [&](auto const& e, auto const& qe, auto const&) {
+    using B = std::decay_t<decltype(e.body)>;
+    Mat<double, B::own_rows, B::element_columns> map;
+    e.body.template own_map<double>(qe, map);
+    out.template segment<B::own_rows>(e.row) = map * b.template segment<B::element_columns>(e.v0);
+  });
+  for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const& a, auto const& c) {
+    constexpr int m = std::decay_t<decltype(gap)>::rows;
+    auto rows = out.template segment<m>(e.row);
+    rows += gap.Ga * detail::pushed(a, b);
+    rows += gap.Gb * detail::pushed(c, b);
   });
 }
 

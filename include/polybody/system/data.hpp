@@ -2,6 +2,7 @@
 /// \file
 /// Scratch of a model: everything that is computed from a state. The model itself stays const.
 
+#include <polybody/math/workers.hpp>
 #include <polybody/system/model.hpp>
 
 namespace polybody {
@@ -15,6 +16,10 @@ struct Data {
   std::vector<Wrench<double>> loads;        ///< per marker: what the tangent's second-order terms need
 
   std::vector<double> scratch;              ///< for pulled blocks: n×12 and n×n of the widest marker
+
+  Workers* workers = nullptr;               ///< threads that share the loops; none by default
+  std::vector<T> element_forces;            ///< with workers: of all elements of a body, before they are added in order
+  std::vector<double> element_tangents;     ///< the same
 
   explicit Data(M const& model)
       : markers(std::size_t(model.markers())), jacobians(std::size_t(model.jacobian_size()), T(0.0)),
@@ -41,6 +46,22 @@ struct Data {
     size(poses, model.body_pools(), [](auto const& pool) { return pool.entries.size(); });
     size(gaps, model.joint_pools(), [](auto const& pool) { return pool.size(); });
   }
+  /// From now on the threads share the loops over elements, markers and joints; what is computed stays the same to the last bit.
+  void share_with(M const& model, Workers& threads) {
+    workers = &threads;
+    std::size_t forces = 0, tangents = 0;
+    model.for_each_body([&](auto const& e) {
+      std::size_t const n = std::decay_t<decltype(e.body)>::element_columns, elements = std::size_t(e.body.elements());
+      if (elements < std::size_t(2 * least_elements)) return;
+      forces = std::max(forces, n * elements);
+      tangents = std::max(tangents, n * n * elements);
+    });
+    element_forces.resize(forces);
+    element_tangents.resize(tangents);
+  }
+  static constexpr Index least_elements = 32;  ///< that are worth a thread
+  static constexpr Index least_markers = 128;
+
   Data(Data const&) = delete;  // the markers point into the arena
   Data& operator=(Data const&) = delete;
   Data(Data&&) = default;  // moving a vector keeps its buffer

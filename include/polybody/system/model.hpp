@@ -34,7 +34,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;
 
   /// Some joint type brings rows, so an explicit stepper needs a stabilisation.
-  static constexpr bool may_have_rows = (AddsRows<typename Js::PolicyType> || ... || false);
+  static constexpr bool may_have_rows = (AddsRows<typename Js::PolicyType> || ... || (OwnsRows<Bs> || ... || false));
   static constexpr bool constant_mass = (Bs::constant_mass && ...);
 
   explicit Model(Gravity const& gravity = {}) : gravity_(gravity), serial_(next_serial()) {}
@@ -45,6 +45,10 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     auto& pool = std::get<detail::BodyPool<B>>(bodies_);
     if (name.empty()) name = "body " + std::to_string(count_bodies_ + 1);
     pool.entries.push_back({body, name, coordinates_, speeds_});
+    if constexpr (OwnsRows<B>) {
+      pool.entries.back().row = rows_;
+      rows_ += B::own_rows;
+    }
     coordinates_ += body.coordinates();
     speeds_ += body.speeds();
     ++count_bodies_;
@@ -64,9 +68,10 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                       same_world(A::world, B::world),
                   "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
                   "belongs to both.");
-    static_assert(A::observes >= G::needs && B::observes >= G::needs,
+    static_assert(A::observes >= G::needs && B::observes >= needs_of_second<G>(),
                   "This joint needs more than the marker tells (a full frame, say, of a body that only "
-                  "publishes a point). Use a joint that needs less, such as Spherical.");
+                  "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
+                  "Revolute about its tangent, with the cable's marker second.");
     auto& pool = std::get<std::vector<detail::JointEntry<J>>>(joints_);
     if (name.empty()) name = std::string(G::name) + " " + std::to_string(pool.size() + 1);
     require_own(a.model, name);
@@ -79,8 +84,13 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     }
     if constexpr (requires { joint.geometry.check(name); }) joint.geometry.check("\"" + name + "\"");
     if constexpr (AddsForce<typename J::PolicyType>) joint.policy.check("\"" + name + "\"");
-    Index const pa = publish_at(a, reference_axes(a).transpose() * triad);
-    Index const pb = publish_at(b, reference_axes(b).transpose() * triad);
+    Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
+    if constexpr (B::observes == Observes::axis && needs_of_second<G>() == Observes::axis)
+      if (axes_b.col(0).cross(triad.col(2)).norm() > 1e-6)
+        throw InvalidInput("\"" + name + "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
+                           "reference configuration.");
+    Index const pa = publish_at(a, axes_a.transpose() * triad);
+    Index const pb = publish_at(b, axes_b.transpose() * triad);
     detail::JointEntry<J> entry{joint, pa, pb, -1, name};
     if constexpr (AddsRows<typename J::PolicyType>) {
       entry.row = rows_;
@@ -106,7 +116,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
     static_assert(((Ms::observes >= F::needs) && ...),
-                  "This force needs more than the marker tells; a moment needs a marker with a frame.");
+                  "This force needs more than the marker tells; a moment needs a marker with a frame or a tangent.");
     auto& pool = std::get<std::vector<detail::ForceEntry<F>>>(forces_);
     if (name.empty()) name = "force " + std::to_string(pool.size() + 1);
     force.check("\"" + name + "\"");

@@ -45,6 +45,7 @@ struct BodyPool {
     std::string name;
     Index q0;  ///< first coordinate
     Index v0;  ///< first speed
+    Index row = -1;  ///< first of its own rows; −1 for a body without
   };
   std::vector<Entry> entries;
   std::vector<MarkerEntry<B>> markers;

@@ -17,16 +17,21 @@ void publish(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data<M, T>&
     auto const coordinates = [&](auto const& e) { return detail::body_part(q, e.q0, e.body.coordinates()); };
     auto const speeds = [&](auto const& e) { return detail::body_part(v, e.v0, e.body.speeds()); };
     if constexpr (SharesPose<B, T>)
-      for (std::size_t i = 0; i < poses.size(); ++i)
-        pool.entries[i].body.template pose<T>(coordinates(pool.entries[i]), speeds(pool.entries[i]), poses[i]);
-    for (auto const& m : pool.markers) {
-      auto const& e = pool.entries[std::size_t(m.body)];
-      Published<T>& out = data.markers[std::size_t(m.published)];
-      if constexpr (SharesPose<B, T>)
-        e.body.publish(m.point, m.axes, poses[std::size_t(m.body)], out);
-      else
-        e.body.template publish<T>(m.point, m.axes, coordinates(e), speeds(e), out);
-    }
+      share(data.workers, Index(poses.size()), data.least_markers, [&](Index begin, Index end) {
+        for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
+          pool.entries[i].body.template pose<T>(coordinates(pool.entries[i]), speeds(pool.entries[i]), poses[i]);
+      });
+    share(data.workers, Index(pool.markers.size()), data.least_markers, [&](Index begin, Index end) {
+      for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+        auto const& m = pool.markers[i];
+        auto const& e = pool.entries[std::size_t(m.body)];
+        Published<T>& out = data.markers[std::size_t(m.published)];
+        if constexpr (SharesPose<B, T>)
+          e.body.publish(m.point, m.axes, poses[std::size_t(m.body)], out);
+        else
+          e.body.template publish<T>(m.point, m.axes, coordinates(e), speeds(e), out);
+      }
+    });
   };
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     (over(std::get<I>(model.body_pools()), std::get<I>(data.poses)), ...);
@@ -36,12 +41,20 @@ void publish(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data<M, T>&
 /// Every joint's gap at time t from the published frames.
 template <class M, StateScalar T>
 void enforce(M const& model, double t, Data<M, T>& data) {
-  for_each_gap(model, data, [&](auto const& e, auto& gap) {
-    using Gap = std::decay_t<decltype(gap)>;  // made where it stands: assigned, it would be copied
-    static_assert(std::is_trivially_destructible_v<Gap>);
-    ::new (static_cast<void*>(&gap)) Gap(e.joint.geometry.template gap<T>(
-        data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame, t));
-  });
+  auto const over = [&](auto const& pool, auto& gaps) {
+    share(data.workers, Index(pool.size()), data.least_markers, [&](Index begin, Index end) {
+      for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+        auto const& e = pool[i];
+        using Gap = std::decay_t<decltype(gaps[i])>;  // made where it stands: assigned, it would be copied
+        static_assert(std::is_trivially_destructible_v<Gap>);
+        ::new (static_cast<void*>(&gaps[i])) Gap(e.joint.geometry.template gap<T>(
+            data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame, t));
+      }
+    });
+  };
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (over(std::get<I>(model.joint_pools()), std::get<I>(data.gaps)), ...);
+  }(std::make_index_sequence<std::tuple_size_v<typename M::JointPools>>{});
 }
 
 /// ġ = Ga Va + Gb Vb + Φ_t of a gap between published markers.

@@ -3,6 +3,8 @@
 /// Waist 3: what an integrator or a solver sees of the mechanics,
 ///   M(q) v̇ = f(q, v, t) − Gᵀλ,   Φ(q, t) = 0,   q moves by ⊞.
 
+#include <memory>
+
 #include <polybody/system/tangent.hpp>
 
 namespace polybody {
@@ -37,15 +39,22 @@ class System {
     enforce(*model_, t_, data_);
   }
 
+  /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results are
+  /// the same to the last bit. \throws InvalidInput for fewer than one.
+  void use_threads(int threads) {
+    workers_ = std::make_unique<Workers>(threads);
+    data_.share_with(*model_, *workers_);
+  }
+
   /// r = M a − f + Gᵀλ (nv).
-  void residual(VecX const& a, VecX const& lambda, VecX& r) const {
+  void residual(VecX const& a, VecX const& lambda, VecX& r) {
     polybody::residual(*model_, q_, v_, a, lambda, t_, load_factor, data_, r);
   }
-  void violation(VecX& phi) const { polybody::violation(*model_, data_, phi); }
-  void violation_rate(VecX& rate) const { polybody::violation_rate(*model_, data_, rate); }
-  void acceleration_bias(VecX& gamma) const {
-    polybody::acceleration_bias(*model_, t_, data_, gamma);
-  }
+  void violation(VecX& phi) const { polybody::violation(*model_, q_, data_, phi); }
+  void violation_rate(VecX& rate) const { polybody::violation_rate(*model_, q_, v_, data_, rate); }
+  void acceleration_bias(VecX& gamma) const { polybody::acceleration_bias(*model_, q_, v_, t_, data_, gamma); }
+  /// out = G b (rows) for b by speeds.
+  void rows_times(VecX const& b, VecX& out) const { polybody::rows_times(*model_, q_, b, data_, out); }
   /// [cm M + cd D + ck K, Gᵀ; G, 0] (size × size) into `sink`.
   template <TangentSink Sink>
   void tangent(TangentCoefficients const& c, SecondOrder second, VecX const& lambda, Sink& sink) {
@@ -78,6 +87,11 @@ class System {
       });
     } else {
       Index const row = i - speeds();
+      model_->for_each_body([&](auto const& e) {
+        using B = std::decay_t<decltype(e.body)>;
+        if constexpr (OwnsRows<B>)
+          if (row >= e.row && row < e.row + B::own_rows) name = "body \"" + e.name + "\"";
+      });
       model_->for_each_joint([&](auto const& e) {
         if (e.row >= 0 && row >= e.row && row < e.row + std::decay_t<decltype(e.joint)>::rows)
           name = "joint \"" + e.name + "\"";
@@ -103,6 +117,7 @@ class System {
 
  private:
   M const* model_;
+  std::unique_ptr<Workers> workers_;
   Data<M> data_;
   VecX q_, v_;
   double t_ = 0.0;
@@ -115,10 +130,11 @@ concept MechanicalSystem = requires(S s, S const c, VecX const x, VecX out, doub
   { c.speeds() } -> std::convertible_to<Index>;
   { c.rows() } -> std::convertible_to<Index>;
   s.evaluate(x, x, t);
-  c.residual(x, x, out);
+  s.residual(x, x, out);
   c.violation(out);
   c.violation_rate(out);
   c.acceleration_bias(out);
+  c.rows_times(x, out);
   c.plus(x, x, out);
   c.local_rate(x, x, out);
   { c.name_of(Index(0)) } -> std::convertible_to<std::string>;

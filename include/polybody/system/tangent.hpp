@@ -38,10 +38,10 @@ void pull_rows(Published<double> const& p, Mat<double, m, 6> const& rows, std::v
   }
 }
 
-/// sink += Jiᵀ S_ij Jj for all pairs of N markers; S is 6N×6N.
+/// sink += Jiᵀ S_ij Jj for all pairs of N markers, or for i = j only; S is 6N×6N.
 template <int n, class Sink>
 void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const& markers,
-                      Mat<double, 6 * n, 6 * n> const& s, std::vector<double>& scratch, Sink& sink) {
+                      Mat<double, 6 * n, 6 * n> const& s, bool couples, std::vector<double>& scratch, Sink& sink) {
   using Half = Eigen::Map<Mat<double, Eigen::Dynamic, 6>>;
   using Both = Eigen::Map<MatX>;
   for (int i = 0; i < n; ++i) {
@@ -49,7 +49,7 @@ void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const
     if (a.columns == 0) continue;
     for (int j = 0; j < n; ++j) {
       Published<double> const& b = *markers[std::size_t(j)];
-      if (b.columns == 0) continue;
+      if (b.columns == 0 || (!couples && i != j)) continue;
       Mat<double, 6, 6> const block = s.template block<6, 6>(6 * i, 6 * j);
       Half half(scratch.data(), a.columns, 6);
       a.pull(block, half);
@@ -77,18 +77,40 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
     using B = std::decay_t<decltype(e.body)>;
     auto const qe = detail::body_part(q, e.q0, e.body.coordinates());
     auto const ve = detail::body_part(v, e.v0, e.body.speeds());
-    Mat<double, B::element_columns, B::element_columns> k, m;
-    for (Index i = 0; i < e.body.elements(); ++i) {
-      e.body.tangent(i, qe, ve, c.stiffness, c.damping, k);
-      if (c.mass != 0.0) {
-        e.body.mass(i, qe, m);
-        k += c.mass * m;
-      }
+    constexpr int n = B::element_columns;
+    auto const add = [&](Index i, auto const& k) {
       Index const first = e.v0 + e.body.first_column(i);
       sink.add(first, first, k);
+    };
+    auto const loop = [&](Index begin, Index end, auto&& f) {
+      for_each_element_tangent<B>(e.body, begin, end, qe, ve, c.mass, c.damping, c.stiffness, f);
+    };
+    Index const elements = e.body.elements();
+    if (data.workers && elements >= 2 * data.least_elements) {
+      using Slot = Eigen::Map<Mat<double, n, n>>;
+      double* const slots = data.element_tangents.data();
+      data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
+        loop(begin, end, [&](Index i, Mat<double, n, n> const& k) { Slot(slots + n * n * i) = k; });
+      });
+      for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * n * i));
+    } else {
+      loop(0, elements, add);
     }
   });
   Index const row0 = model.speeds();
+  for_each_body_with_rows(model, q, v, [&](auto const& e, auto const& qe, auto const&) {
+    using B = std::decay_t<decltype(e.body)>;
+    constexpr int n = B::element_columns;
+    Mat<double, B::own_rows, n> map;
+    e.body.template own_map<double>(qe, map);
+    sink.add(e.v0, row0 + e.row, map.transpose());
+    sink.add(row0 + e.row, e.v0, map);
+    if (!full) return;
+    Mat<double, n, n> k;
+    e.body.own_stiffness(qe, lambda.template segment<B::own_rows>(e.row).eval(), k);
+    k *= c.stiffness;
+    sink.add(e.v0, e.v0, k);
+  });
   for_each_gap(model, data, [&](auto const& e, auto const& gap) {
     constexpr int m = std::decay_t<decltype(gap)>::rows;
     using P = typename std::decay_t<decltype(e.joint)>::PolicyType;
@@ -118,7 +140,7 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
       load(e.a, gap.Ga.transpose() * l);
       load(e.b, gap.Gb.transpose() * l);
     }
-    detail::add_pulled_pairs<2>({&a, &b}, s, data.scratch, sink);
+    detail::add_pulled_pairs<2>({&a, &b}, s, true, data.scratch, sink);
   });
   model.for_each_force([&](auto const& e) {
     using F = std::decay_t<decltype(e.force)>;
@@ -127,9 +149,8 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
     auto const frames = detail::frames_of(e, data);
     std::array<Published<double> const*, std::size_t(n)> markers;
     for (int k = 0; k < n; ++k) markers[std::size_t(k)] = &data.markers[std::size_t(e.markers[k])];
-    detail::add_pulled_pairs<n>(
-        markers, (-scale * wrench_gradient(e.force, frames, t, c.stiffness, c.damping)).eval(),
-        data.scratch, sink);
+    Mat<double, 6 * n, 6 * n> const s = -scale * wrench_gradient(e.force, frames, t, c.stiffness, c.damping);
+    detail::add_pulled_pairs<n>(markers, s, full || couples_bodies<F>(), data.scratch, sink);
     if (full) {
       auto const wrenches = e.force.template wrenches<double>(frames, t);
       for (int k = 0; k < n; ++k) {

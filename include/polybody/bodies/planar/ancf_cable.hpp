@@ -4,46 +4,20 @@
 /// constant mass matrix, no rotation coordinate and no rotary inertia
 /// [Berzeri & Shabana 2000; Gerstmayr & Irschik 2008; thesis Eq. 3.16–3.20].
 
+#include <polybody/bodies/cable_strains.hpp>
 #include <polybody/bodies/planar/beam.hpp>
 #include <polybody/math/shape_functions.hpp>
 
 namespace polybody::planar {
 
-/// Green strain ε = ½ (r′·r′ − 1) and the exact geometric curvature κ = r′ × r″/|r′|³ (the thesis' choice).
-struct GreenStrain {
-  static constexpr int curvature_power = 3;
+using polybody::EngineeringStrain, polybody::GreenStrain;
 
-  template <StateScalar T>
-  static void axial(Vec<T, 2> const& p, T& strain, Mat<T, 1, 2>& b) {
-    strain = 0.5 * (p.squaredNorm() - T(1.0));
-    b = p.transpose();
-  }
-  static Mat<double, 2, 2> axial_hessian(Vec2 const&) { return Mat<double, 2, 2>::Identity(); }
-};
-
-/// Engineering strain ε = |r′| − 1 and material bending measure κ = r′ × r″/|r′|² = θ′: linear in the
-/// resultants of the exact rod [Gerstmayr & Irschik 2008].
-struct EngineeringStrain {
-  static constexpr int curvature_power = 2;
-
-  template <StateScalar T>
-  static void axial(Vec<T, 2> const& p, T& strain, Mat<T, 1, 2>& b) {
-    using std::sqrt;
-    T const n = sqrt(p.squaredNorm());
-    strain = n - T(1.0);
-    b = p.transpose() / n;
-  }
-  static Mat<double, 2, 2> axial_hessian(Vec2 const& p) {
-    double const n = p.norm();
-    return (Mat<double, 2, 2>::Identity() - p * p.transpose() / (n * n)) / n;
-  }
-};
-
-/// The Theory of `AncfCable`.
-template <class Strain>
+/// The Theory of `AncfCable`, with so many Gauss points for axial strain and bending.
+template <class Strain, int axial_points = 5, int bending_points = 3>
 struct HermiteCable {
   static constexpr char const* name = "planar::AncfCable";
   static constexpr int node_columns = 4;
+  static constexpr bool packs_pay = true;
 
   static void check(BarConstants const&) {}
   static Vec4 reference_node(Vec2 const& origin, double angle, double s) {
@@ -86,72 +60,103 @@ struct HermiteCable {
     h = d.transpose() * (of_slope / n4) * d;
   }
 
-  /// Axial strain at five Gauss points; p = r′.
+  /// Axial strain, p = r′. Five points integrate ε² of the cubic field exactly.
   struct Axial {
-    static constexpr int points = 5;
+    static constexpr int points = axial_points;
     static constexpr int parameters = 2;
     static constexpr int strains = 1;
+    static constexpr int reach = 4;
 
     static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EA)); }
     static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.axial); }
-    static Mat<double, 2, 8> map(double xi, double l) { return spread(hermite_shape(xi, l).ds); }
-
-    template <StateScalar T>
-    static void evaluate(Vec<T, 2> const& p, Vec<T, 1>& strain, Mat<T, 1, 2>& b) {
-      Strain::template axial<T>(p, strain[0], b);
+    static constexpr int column(int k, int j) { return 2 * j + k; }
+    static Mat<double, 2, 4> map(double xi, double l) {
+      ShapeValues<4> const s = hermite_shape(xi, l);
+      Mat<double, 2, 4> p;
+      for (int j = 0; j < 4; ++j) p(0, j) = p(1, j) = s.ds[j];
+      return p;
     }
-    static void hessian(Vec2 const& p, std::array<Mat<double, 2, 2>, 1>& h) {
-      h[0] = Strain::axial_hessian(p);
+
+    template <KernelScalar T>
+    static void evaluate(Vec<T, 2> const& p, Vec<T, 1>& strain, Mat<T, 1, 2>& b) {
+      Strain::template axial<T, 2>(p, strain, b);
+    }
+    template <KernelScalar T>
+    static void add_hessian(Vec<T, 2> const& p, Vec<T, 1> const& n, Mat<T, 2, 2>& h) {
+      Strain::template add_axial_hessian<T, 2>(p, n[0], h);
     }
   };
 
-  /// Bending at three Gauss points [Gerstmayr & Irschik 2008]; p = (r′, r″), κ = c/nᵏ with
-  /// c = r′ × r″, n = |r′|.
+  /// Bending, p = (r′, r″), κ = c/nᵏ with c = r′ × r″, n = |r′|. Three points are the field's choice [Gerstmayr & Irschik 2008].
   struct Bending {
-    static constexpr int points = 3;
+    static constexpr int points = bending_points;
     static constexpr int parameters = 4;
     static constexpr int strains = 1;
+    static constexpr int reach = 4;
     static constexpr int k = Strain::curvature_power;
 
     static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EI)); }
     static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.bending); }
-    static Mat<double, 4, 8> map(double xi, double l) {
+    static constexpr int column(int i, int j) { return 2 * j + i % 2; }
+    static Mat<double, 4, 4> map(double xi, double l) {
       ShapeValues<4> const s = hermite_shape(xi, l);
-      Mat<double, 4, 8> p;
-      p << spread(s.ds), spread(s.dds);
+      Mat<double, 4, 4> p;
+      for (int j = 0; j < 4; ++j) {
+        p(0, j) = p(1, j) = s.ds[j];
+        p(2, j) = p(3, j) = s.dds[j];
+      }
       return p;
     }
 
-    template <StateScalar T>
+    template <KernelScalar T>
     static void evaluate(Vec<T, 4> const& p, Vec<T, 1>& strain, Mat<T, 1, 4>& b) {
-      using std::sqrt;
-      T const n2 = p[0] * p[0] + p[1] * p[1];
-      T const nk = k == 2 ? n2 : n2 * sqrt(n2);
-      T const kappa = (p[0] * p[3] - p[1] * p[2]) / nk, pull = kappa * double(k) / n2;
+      T const inverse2 = one_over(p), inverse = power(inverse2);
+      T const kappa = (p[0] * p[3] - p[1] * p[2]) * inverse, pull = kappa * inverse2 * double(k);
       strain[0] = kappa;
-      b << p[3] / nk - pull * p[0], -p[2] / nk - pull * p[1], -p[1] / nk, p[0] / nk;
+      b(0, 0) = p[3] * inverse - pull * p[0];
+      b(0, 1) = -p[2] * inverse - pull * p[1];
+      b(0, 2) = -p[1] * inverse;
+      b(0, 3) = p[0] * inverse;
     }
-    static void hessian(Vec4 const& p, std::array<Mat<double, 4, 4>, 1>& h) {
-      Vec2 const slope = p.head<2>(), by_slope(p[3], -p[2]), by_second(-p[1], p[0]);
-      double const n2 = slope.squaredNorm(), nk = k == 2 ? n2 : n2 * std::sqrt(n2);
-      double const c = p[0] * p[3] - p[1] * p[2];
-      Mat<double, 2, 2> turn;
-      turn << 0.0, 1.0, -1.0, 0.0;
-      Mat<double, 2, 2> const a = by_slope * slope.transpose();
-      h[0].setZero();
-      h[0].topLeftCorner<2, 2>() =
-          (-k * (a + a.transpose() + c * Mat<double, 2, 2>::Identity()) +
-           k * (k + 2) * c / n2 * slope * slope.transpose()) / (n2 * nk);
-      h[0].topRightCorner<2, 2>() = turn / nk - k * slope * by_second.transpose() / (n2 * nk);
-      h[0].bottomLeftCorner<2, 2>() = h[0].topRightCorner<2, 2>().transpose();
+    /// With s = r′, u = ∂c/∂s, w = ∂c/∂r″, and J = ∂²c/∂s∂r″ (a quarter turn):
+    ///   ∂²κ/∂s² = (−k (u sᵀ + s uᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²κ/∂s∂r″ = J/nᵏ − k s wᵀ/nᵏ⁺².
+    template <KernelScalar T>
+    static void add_hessian(Vec<T, 4> const& p, Vec<T, 1> const& n, Mat<T, 4, 4>& h) {
+      T const inverse2 = one_over(p), each = power(inverse2) * n[0], a = each * inverse2 * double(k);
+      T const c = p[0] * p[3] - p[1] * p[2], along = c * inverse2 * double(k + 2), x = a * p[0], y = a * p[1];
+      h(0, 0) += x * (along * p[0] - p[3] * 2.0) - a * c;
+      h(1, 1) += y * (along * p[1] + p[2] * 2.0) - a * c;
+      T const across = x * (along * p[1] + p[2]) - y * p[3];
+      h(0, 1) += across;
+      h(1, 0) += across;
+      T const of_second[2][2] = {{x * p[1], each - x * p[0]}, {y * p[1] - each, -(y * p[0])}};
+      for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j) {
+          h(i, 2 + j) += of_second[i][j];
+          h(2 + j, i) += of_second[i][j];
+        }
+    }
+
+   private:
+    template <class T>
+    static T one_over(Vec<T, 4> const& p) {  // 1/n²
+      return T(1.0) / (p[0] * p[0] + p[1] * p[1]);
+    }
+    template <class T>
+    static T power(T const& inverse2) {  // 1/nᵏ
+      using std::sqrt;
+      if constexpr (k == 2)
+        return inverse2;
+      else
+        return inverse2 * sqrt(inverse2);
     }
   };
   using Groups = std::tuple<Axial, Bending>;
 };
 
 /// Planar ANCF cable: `AncfCable<>::from(bar, n)`, `AncfCable<EngineeringStrain>::from(bar, n)`.
-template <class Strain = GreenStrain>
-using AncfCable = Beam<HermiteCable<Strain>>;
+template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
+using AncfCable = Beam<HermiteCable<Strain, axial_points, bending_points>>;
 
 static_assert(Body<AncfCable<>>);
 

@@ -1,20 +1,15 @@
 #pragma once
 /// \file
 /// A flexible bar in the plane as a chain of equal two-node elements. What is interpolated and which strains
-/// follow is a policy, the Theory; everything else (layout, mass, quadrature, gravity, markers) is here once.
-///
-/// Strain energy  U = Σ_groups ½ ∫ Σ_i C_i ε_i(p)² dx,  p = P(x) e the group's parameters (linear in the
-/// element's coordinates e), with Kelvin–Voigt damping n_i = C_i (ε_i + τ_i ε̇_i). Then
-///   f = −∫ Pᵀ Bᵀ n dx,   B = ∂ε/∂p,
-///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Bᵀ C τ (H ṗ)ᵀ] P dx,   H_i = ∂²ε_i/∂p²,
-///   −∂f/∂ė = ∫ Pᵀ Bᵀ C τ B P dx.
+/// follow is a policy, the Theory; layout, mass, gravity and markers are here once, energy, force and tangent in
+/// `StrainGroup`.
 
 #include <tuple>
 #include <vector>
 
 #include <polybody/bodies/bar.hpp>
 #include <polybody/bodies/body.hpp>
-#include <polybody/math/quadrature.hpp>
+#include <polybody/bodies/strain_group.hpp>
 
 namespace polybody::planar {
 
@@ -37,6 +32,8 @@ class Beam {
   static constexpr int node_columns = Theory::node_columns;
   static constexpr int element_columns = 2 * node_columns;
   static constexpr int point_columns = element_columns;
+  static constexpr int element_stride = node_columns;
+  static constexpr bool packs_pay = Theory::packs_pay;
   template <class T>
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
@@ -101,25 +98,41 @@ class Beam {
 
   void mass(Index, std::span<double const>, ElementMatrix& m) const { m = mass_; }
 
+  /// M a of an element's own accelerations.
+  template <KernelScalar T>
+  void element_inertia(Element<T> const& a, Element<T>& out) const {
+    for (int i = 0; i < element_columns; ++i) {
+      T sum = a[0] * mass_(i, 0);
+      for (int j = 1; j < element_columns; ++j) sum += a[j] * mass_(i, j);
+      out[i] = sum;
+    }
+  }
+  /// Elastic and damping force from an element's own coordinates and speeds.
+  template <KernelScalar T>
+  void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
+    for (int i = 0; i < element_columns; ++i) out[i] = T(0.0);
+    for_each_group([&](auto const& group) { group.template add_force<T>(x, xd, out); });
+  }
+  /// ck (−∂f/∂x) + cd (−∂f/∂xd).
+  template <KernelScalar T>
+  void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd,
+                       Mat<T, element_columns, element_columns>& k) const {
+    for (int j = 0; j < element_columns; ++j)
+      for (int i = 0; i < element_columns; ++i) k(i, j) = T(0.0);
+    for_each_group([&](auto const& group) { group.template add_tangent<T>(x, xd, ck, cd, k); });
+  }
+
   template <StateScalar T>
   void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
-    out.noalias() = mass_.template cast<T>() * part<element_columns>(a, first_column(e));
+    element_inertia<T>(part<element_columns>(a, first_column(e)), out);
   }
-
   template <StateScalar T>
   void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
-    Element<T> const x = part<element_columns>(q, first_column(e));
-    Element<T> const xd = part<element_columns>(v, first_column(e));
-    out.setZero();
-    for_each_group([&](auto const& group) { group.template force<T>(x, xd, out); });
+    element_force<T>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), out);
   }
-
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                ElementMatrix& k) const {
-    Element<double> const x = part<element_columns>(q, first_column(e));
-    Element<double> const xd = part<element_columns>(v, first_column(e));
-    k.setZero();
-    for_each_group([&](auto const& group) { group.tangent(x, xd, ck, cd, k); });
+    element_tangent<double>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), ck, cd, k);
   }
 
   template <StateScalar T>
@@ -205,100 +218,26 @@ class Beam {
   auto strains(Point const& p, std::span<double const> q) const {
     return std::get<G>(groups_).strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval());
   }
-  /// Section forces of group G: stiffness times strain [N], [N m].
+  /// Section forces of group G without damping [N], [N m].
   template <int G>
   auto resultants(Point const& p, std::span<double const> q) const {
-    return strains<G>(p, q).cwiseProduct(std::get<G>(groups_).stiffness).eval();
+    return std::get<G>(groups_).stress(strains<G>(p, q));
   }
 
  private:
-  /// A group of strains with its own Gauss points; the maps P are the same for all (equal) elements.
-  template <class Law>
-  struct Group {
-    static constexpr int np = Law::parameters, m = Law::strains;
-    using Map = Mat<double, np, element_columns>;
-    Vec<double, m> stiffness = Vec<double, m>::Zero();  ///< C
-    Vec<double, m> time = Vec<double, m>::Zero();       ///< τ
-    std::array<Map, Law::points> maps;
-    std::array<double, Law::points> weights;  ///< [m]
-
-    Group() = default;
-    Group(BarConstants const& c, Damping const& d, double l)
-        : stiffness(Law::stiffness(c)), time(Law::damping(d)) {
-      for (int i = 0; i < Law::points; ++i) {
-        maps[i] = Law::map(gauss<Law::points>[i].xi, l);
-        weights[i] = gauss<Law::points>[i].weight * l;
-      }
-    }
-
-    Vec<double, m> strains(double xi, double l, Element<double> const& x) const {
-      Vec<double, m> strain;
-      Mat<double, m, np> b;
-      Law::template evaluate<double>((Law::map(xi, l) * x).eval(), strain, b);
-      return strain;
-    }
-
-    template <StateScalar T>
-    void force(Element<T> const& x, Element<T> const& xd, Element<T>& f) const {
-      for (int i = 0; i < Law::points; ++i) {
-        Vec<T, np> const p = maps[i].template cast<T>() * x, pd = maps[i].template cast<T>() * xd;
-        Vec<T, m> strain;
-        Mat<T, m, np> b;
-        Law::template evaluate<T>(p, strain, b);
-        Vec<T, m> const n = stress<T>(strain, b * pd) * T(weights[i]);
-        f.noalias() -= maps[i].transpose().template cast<T>() * (b.transpose() * n).eval();
-      }
-    }
-
-    void tangent(Element<double> const& x, Element<double> const& xd, double ck, double cd,
-                 ElementMatrix& k) const {
-      for (int i = 0; i < Law::points; ++i) {
-        Vec<double, np> const p = maps[i] * x, pd = maps[i] * xd;
-        Vec<double, m> strain;
-        Mat<double, m, np> b;
-        Law::template evaluate<double>(p, strain, b);
-        Vec<double, m> const n = stress<double>(strain, b * pd);
-        std::array<Mat<double, np, np>, m> h;
-        Law::hessian(p, h);
-        Mat<double, np, np> kp = Mat<double, np, np>::Zero();
-        for (int j = 0; j < m; ++j) {
-          double const c = stiffness[j], tau = time[j];
-          kp.noalias() += b.row(j).transpose() * (c * (ck + cd * tau) * b.row(j));
-          kp += (ck * n[j]) * h[j];
-          if (tau != 0.0)
-            kp.noalias() += (ck * c * tau) * b.row(j).transpose() * (h[j] * pd).transpose();
-        }
-        Mat<double, np, element_columns> const kpp = weights[i] * kp * maps[i];
-        k.noalias() += maps[i].transpose() * kpp;
-      }
-    }
-
-    double energy(Element<double> const& x) const {
-      double u = 0.0;
-      for (int i = 0; i < Law::points; ++i) {
-        Vec<double, m> strain;
-        Mat<double, m, np> b;
-        Law::template evaluate<double>((maps[i] * x).eval(), strain, b);
-        u += 0.5 * weights[i] * stiffness.dot(strain.cwiseAbs2());
-      }
-      return u;
-    }
-
-    template <StateScalar T>
-    Vec<T, m> stress(Vec<T, m> const& strain, Vec<T, m> const& strain_rate) const {
-      Vec<T, m> n;
-      for (int j = 0; j < m; ++j) n[j] = (strain[j] + strain_rate[j] * time[j]) * stiffness[j];
-      return n;
-    }
-  };
-
   template <class List>
   struct GroupsOf;
   template <class... Laws>
   struct GroupsOf<std::tuple<Laws...>> {
-    using type = std::tuple<Group<Laws>...>;
-    static type make(BarConstants const& c, Damping const& d, double l) {
-      return type(Group<Laws>(c, d, l)...);
+    using type = std::tuple<StrainGroup<Laws>...>;
+    /// A pretension is the first stress of the first group, along the axis.
+    static type make(BarConstants const& c, Bar const& bar, double l) {
+      type groups(StrainGroup<Laws>(c, bar.damping, l)...);
+      using First = std::tuple_element_t<0, type>;
+      typename First::Strains initial = First::Strains::Zero();
+      initial[0] = bar.pretension;
+      std::get<0>(groups) = First(c, bar.damping, l, initial);
+      return groups;
     }
   };
   using Groups = GroupsOf<typename Theory::Groups>;
@@ -306,7 +245,7 @@ class Beam {
   Beam(Bar const& bar, BarConstants const& c, Index n)
       : constants_(c), length_(bar.length), l_(bar.length / double(n)), n_(n),
         origin_(bar.placement.origin.head<2>()), angle_(bar.placement.planar_angle(Theory::name)),
-        groups_(Groups::make(c, bar.damping, l_)) {
+        groups_(Groups::make(c, bar, l_)) {
     // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the theory's polynomials
     for (GaussPoint const& g : gauss<4>) {
       Mat<double, 2, element_columns> const s = Theory::position(g.xi, l_);

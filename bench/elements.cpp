@@ -1,0 +1,136 @@
+// Element kernels: nanoseconds an element for force and tangent one by one, in packs (structure of arrays) and by two threads,
+// with the rate of arithmetic beside that of the machine.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cstdio>
+#include <polybody/polybody.hpp>
+
+namespace {
+
+using namespace polybody;
+using Clock = std::chrono::steady_clock;
+
+constexpr Index count = 1024;
+
+/// Nanoseconds an element, the fastest of many passes.
+template <class F>
+double fastest(F&& pass) {
+  double best = 1e300;
+  for (int i = 0; i < 200; ++i) {
+    auto const start = Clock::now();
+    pass();
+    best = std::min(best, std::chrono::duration<double, std::nano>(Clock::now() - start).count() / double(count));
+  }
+  return best;
+}
+
+template <class B>
+struct Swaying {
+  B body = B::from({.length = 16.0,
+                    .constants = BarConstants{.EA = 1e6, .EI = 10.0, .mass_per_length = 1.0, .GA = 1e5}}, count);
+  std::vector<double> q, v, a;
+  Swaying() : q(std::size_t(body.coordinates())), v(q.size()), a(q.size()) {
+    body.reference(q);
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      q[i] += 1e-3 * std::sin(7.0 * double(i));
+      v[i] = 0.1 * std::sin(3.0 * double(i));
+      a[i] = std::cos(5.0 * double(i));
+    }
+  }
+  std::span<double const> qs() const { return q; }
+  std::span<double const> vs() const { return v; }
+  std::span<double const> as() const { return a; }
+};
+
+template <class B>
+void compare(char const* name) {
+  constexpr int n = B::element_columns;
+  Swaying<B> const s;
+  std::vector<double> out(s.q.size());
+  double sink = 0.0;
+  auto const add = [&](Index e, Vec<double, n> const& x) {
+    double* const to = out.data() + s.body.first_column(e);
+    for (int k = 0; k < n; ++k) to[k] += x[k];
+  };
+  double const force = fastest([&] {
+    Vec<double, n> x, f;
+    for (Index e = 0; e < count; ++e) {
+      s.body.template inertia<double>(e, s.qs(), s.as(), x);
+      s.body.template force<double>(e, s.qs(), s.vs(), f);
+      add(e, x - f);
+    }
+  });
+  double const forces = fastest([&] { for_each_unbalance<B, double>(s.body, 0, count, s.qs(), s.vs(), s.as(), add); });
+  double const tangent = fastest([&] {
+    Mat<double, n, n> k, m;
+    for (Index e = 0; e < count; ++e) {
+      s.body.tangent(e, s.qs(), s.vs(), 1.0, 0.1, k);
+      s.body.mass(e, s.qs(), m);
+      k += 1.5 * m;
+      sink += k.sum();
+    }
+  });
+  double const tangents = fastest([&] {
+    for_each_element_tangent<B>(s.body, 0, count, s.qs(), s.vs(), 1.5, 0.1, 1.0, [&](Index, auto const& k) { sink += k.sum(); });
+  });
+  benchmark::DoNotOptimize(sink);
+  std::printf("  %-34s M a - f: %6.1f, in packs %6.1f, ratio %4.2f;   tangent: %6.1f, in packs %6.1f, ratio %4.2f\n", name, force,
+              forces, force / forces, tangent, tangents, tangent / tangents);
+}
+
+/// Residual and tangent of a whole model of one body with `count` elements, alone and with two threads.
+template <class B>
+void share_loops(char const* name) {
+  Model<Bodies<B>, Joints<>> model{Gravity{0, -9.81, 0}};
+  Swaying<B> s;
+  model.add(s.body);
+  System<decltype(model)> alone(model), shared(model);
+  shared.use_threads(2);
+  State const x = model.reference_state();
+  VecX const q = Eigen::Map<VecX const>(s.q.data(), Index(s.q.size())), v = 0.0 * q;
+  VecX r = v;
+  struct Sum {
+    double total = 0.0;
+    void add(Index, Index, BlockView const& b) { total += b(0, 0); }
+  } sum;
+  auto const residual = [&](auto& system) {
+    return fastest([&] { system.residual(v, x.lambda, r); });
+  };
+  auto const tangent = [&](auto& system) {
+    return fastest([&] { system.tangent({1.5, 5e-4, 2.5e-7}, SecondOrder::omitted, x.lambda, sum); });
+  };
+  alone.evaluate(q, v, 0.0);
+  shared.evaluate(q, v, 0.0);
+  double const r1 = residual(alone), r2 = residual(shared), t1 = tangent(alone), t2 = tangent(shared);
+  std::printf("  %-34s residual: %6.1f, two threads %6.1f, ratio %4.2f;   tangent: %6.1f, two threads %6.1f, ratio %4.2f\n", name,
+              r1, r2, r1 / r2, t1, t2, t1 / t2);
+}
+
+using Green = planar::AncfCable<>;
+using Engineering = planar::AncfCable<planar::EngineeringStrain>;
+
+template <class B>
+void packs(benchmark::State& state) {
+  Swaying<B> const s;
+  double sum = 0.0;
+  for (auto _ : state)
+    for_each_unbalance<B, double>(s.body, 0, count, s.qs(), s.vs(), s.as(), [&](Index, auto const& x) { sum += x[0]; });
+  benchmark::DoNotOptimize(sum);
+  state.SetItemsProcessed(state.iterations() * count);
+}
+BENCHMARK(packs<Green>);
+BENCHMARK(packs<planar::Lrvf>);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  std::printf("\nnanoseconds an element, packs of %d\n", pack_size);
+  compare<Green>("AncfCable, Green strain");
+  compare<Engineering>("AncfCable, engineering strain");
+  compare<planar::Lrvf>("Lrvf (does not use packs)");
+  share_loops<Green>("AncfCable, Green strain");
+  share_loops<planar::Lrvf>("Lrvf");
+}

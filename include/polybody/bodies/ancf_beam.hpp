@@ -1,0 +1,400 @@
+#pragma once
+/// \file
+/// Fully parameterised two-node ANCF beam in space: node coordinates (r, r_x, r_y, r_z), twelve a node, of the field in
+/// ancf_field.hpp. Constant mass matrix; coordinates add. Where its elastic force comes from is a policy.
+/// [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis §3.5.4]
+
+#include <vector>
+
+#include <polybody/bodies/ancf_continuum.hpp>
+#include <polybody/bodies/ancf_elastic_line.hpp>
+#include <polybody/bodies/body.hpp>
+
+namespace polybody {
+
+/// `AncfBeam<>::from(bar, n)`, `AncfBeam<Continuum<>>::from(bar, n, curve)`.
+template <class Elastic = ElasticLine>
+class AncfBeam {
+ public:
+  static constexpr World world = World::space;
+  static constexpr Observes observes = Observes::frame;
+  static constexpr bool constant_mass = true;
+  static constexpr int node_columns = 12;
+  static constexpr int element_columns = ancf::columns;
+  static constexpr int point_columns = element_columns;
+  static constexpr int element_stride = node_columns;
+  static constexpr bool packs_pay = true;
+  template <class T>
+  using Element = Vec<T, element_columns>;
+  using ElementMatrix = Mat<double, element_columns, element_columns>;
+  using PointMap = Mat<double, 3, element_columns>;
+
+  /// A material point: element, place ξ ∈ [0, 1] on it, and distances y, z off the axis in the reference [m].
+  struct Point {
+    Index element = 0;
+    double xi = 0.0;
+    double y = 0.0, z = 0.0;
+  };
+
+  /// The straight bar in n equal elements. Its rotary inertia must be positive about both axes: without it r_y or r_z has no
+  /// mass. \throws InvalidInput for n < 1 or a constant that the bar does not give.
+  static AncfBeam from(Bar const& bar, Index n) {
+    return AncfBeam(bar, n, [](double s) { return Placement{Vec3(s, 0, 0)}; }, true);
+  }
+  /// The bar with a curved or twisted reference, free of stress but for the pretension. Nodes get place and axes of `curve`,
+  /// which between them is interpolated by the element's own field. \throws InvalidInput also where the section would be
+  /// turned inside out, or `curve` does not run at unit speed.
+  static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
+
+  double length() const { return bar_.length; }
+  double element_length() const { return l_; }
+  BarConstants const& constants() const { return constants_; }
+  /// All elements have the same reference.
+  bool alike() const { return groups_.size() == 1; }
+
+  /// The point s from the first end, (y, z) off the axis. \throws InvalidInput outside the bar.
+  Point at(double s, double y = 0.0, double z = 0.0) const {
+    double const x = require_inside(s, bar_.length, Elastic::name) / l_;
+    if (!std::isfinite(y) || !std::isfinite(z))
+      throw InvalidInput(std::string(Elastic::name) + ": y and z of a point must be finite.");
+    Index const e = std::min(Index(x), n_ - 1);
+    return {e, x - double(e), y, z};
+  }
+  Point local(Point p) const {
+    p.element = 0;
+    return p;
+  }
+
+  Index coordinates() const { return (n_ + 1) * node_columns; }
+  Index speeds() const { return coordinates(); }
+  Index elements() const { return n_; }
+  Index first_column(Index e) const { return e * node_columns; }
+  Index first_column(Point const& p) const { return first_column(p.element); }
+
+  void reference(std::span<double> q) const {
+    for (Index i = 0; i <= n_; ++i) {
+      Placement const& p = nodes_[std::size_t(i)];
+      part<3>(q, i * node_columns) = bar_.placement.origin + bar_.placement.axes * p.origin;
+      Mat3 const axes = bar_.placement.axes * p.axes;
+      for (int k = 0; k < 3; ++k) part<3>(q, i * node_columns + 3 + 3 * k) = axes.col(k);
+    }
+  }
+  template <StateScalar T>
+  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
+    for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i] + delta[i];
+  }
+  template <StateScalar T>
+  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
+    for (std::size_t i = 0; i < v.size(); ++i) out[i] = v[i];
+  }
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
+    for (Index i = 0; i < coordinates(); i += 3) {
+      part<3>(v, i) = omega.cross(part<3>(q, i).eval());
+      if (i % node_columns == 0) part<3>(v, i) += v0;
+    }
+  }
+
+  void mass(Index e, std::span<double const>, ElementMatrix& m) const { m = inertia_of(e).mass; }
+
+  /// M a of an element's own accelerations, for elements that are alike.
+  template <KernelScalar T>
+  void element_inertia(Element<T> const& a, Element<T>& out) const {
+    times_mass(inertia_[0], a, out);
+  }
+  /// Elastic and damping force from an element's own coordinates and speeds, for elements that are alike.
+  template <KernelScalar T>
+  void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
+    add_force(groups_[0], x, xd, out);
+  }
+  /// ck (−∂f/∂x) + cd (−∂f/∂xd), for elements that are alike.
+  template <KernelScalar T>
+  void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd,
+                       Mat<T, element_columns, element_columns>& k) const {
+    add_tangent(groups_[0], x, xd, ck, cd, k);
+  }
+
+  template <StateScalar T>
+  void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
+    times_mass<T>(inertia_of(e), part<element_columns>(a, first_column(e)), out);
+  }
+  template <StateScalar T>
+  void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
+    add_force<T>(groups_of(e), part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), out);
+  }
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd, ElementMatrix& k) const {
+    add_tangent<double>(groups_of(e), part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)),
+                        ck, cd, k);
+  }
+
+  template <StateScalar T>
+  void gravity(Index e, std::span<T const>, Vec3 const& g, Element<T>& out) const {
+    Inertia const& inertia = inertia_of(e);
+    for (int v = 0; v < ancf::vectors; ++v)
+      for (int i = 0; i < 3; ++i) out[3 * v + i] = T(inertia.first_moment[v] * g[i]);
+  }
+
+  double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
+    Element<double> const xd = part<element_columns>(v, first_column(e));
+    Element<double> momentum;
+    times_mass<double>(inertia_of(e), xd, momentum);
+    return 0.5 * xd.dot(momentum);
+  }
+  /// A pretensioned bar has energy in its reference.
+  double strain_energy(Index e, std::span<double const> q) const {
+    Element<double> const x = part<element_columns>(q, first_column(e));
+    double u = 0.0;
+    std::apply([&](auto const&... group) { ((u += group.energy(x)), ...); }, groups_of(e));
+    return u;
+  }
+  double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
+    Element<double> weight;
+    gravity<double>(e, q, g, weight);
+    return -part<element_columns>(q, first_column(e)).dot(weight);
+  }
+
+  /// r = S e at `p`, 3×24, constant: S is also the Jacobian of ṙ. e are the coordinates from `first_column(p)`.
+  PointMap position_map(Point const& p) const { return map_of(p, 0); }
+  /// ∂r/∂x, ∂r/∂y, ∂r/∂z = S_α e at `p` for α = 0, 1, 2, 3×24, constant.
+  PointMap gradient_map(Point const& p, int alpha) const {
+    if (alpha < 0 || alpha > 2) throw InvalidInput("AncfBeam: the gradient's direction must be 0, 1 or 2 for x, y, z.");
+    return map_of(p, alpha + 1);
+  }
+
+  /// The marker is the material point; its axes are those of the section on the axis there (`SectionFrame` of r_y and r_z).
+  /// Off the axis it follows r(x, y, z), also where the section stretches.
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+    Index const first = first_column(p);
+    Mat<double, ancf::vectors, 4> const n = ancf::shape(p.xi, p.y, p.z, l_);
+    Vec<T, 3> r[3], rate[3];  // r, r_y, r_z
+    for (int k = 0; k < 3; ++k) {
+      r[k].setZero();
+      rate[k].setZero();
+      for (int a = 0; a < ancf::vectors; ++a) {
+        double const s = n(a, k == 0 ? 0 : k + 1);
+        if (s == 0.0) continue;
+        for (int i = 0; i < 3; ++i) {
+          r[k][i] += q[std::size_t(first + 3 * a + i)] * s;
+          rate[k][i] += v[std::size_t(first + 3 * a + i)] * s;
+        }
+      }
+    }
+    SectionFrame<T> const f(r[1], r[2]);
+    Vec<T, 6> const w = f.components(rate[1], rate[2]);
+    out.frame.r = r[0];
+    out.frame.v = rate[0];
+    out.frame.A = f.R * axes.template cast<T>();
+    out.frame.w = f.world(f.spin(w));
+    out.bias.template head<3>().setZero();
+    out.bias.template tail<3>() = f.world(f.acceleration(w));
+    Mat<T, 3, 6> const turn = turning(f);
+    Eigen::Map<Mat<T, 6, element_columns>> j(out.jacobian);
+    j.setZero();
+    for (int a = 0; a < ancf::vectors; ++a)
+      for (int i = 0; i < 3; ++i) {
+        j(i, 3 * a + i) = T(n(a, 0));
+        for (int k = 0; k < 3; ++k)
+          if (a % 4 >= 2) j(3 + k, 3 * a + i) = turn(k, 3 * (a % 4 - 2) + i) * n(a, a % 4);
+      }
+    out.shape = JacobianShape::dense;
+    out.columns = element_columns;
+  }
+
+  /// The force pulls through a constant S. For the moment, δ̂(m·ω) = m·(φ̂ × φ) + m·δ̂φ in the section's axes.
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
+    PointMap const by = map_of(p, 2), bz = map_of(p, 3);
+    Element<double> const x = part<element_columns>(q, first_column(p));
+    SectionFrame<double> const f(by * x, bz * x);
+    Vec3 const m = f.local(w.m);
+    Mat<double, 6, 6> form = f.second(m), by_vectors = Mat<double, 6, 6>::Zero();
+    for (int i = 0; i < 3; ++i) {  // φ·(m × φ̂)
+      Vec6 const left = f.pull(f.axis(i)), right = f.pull(f.cross(f.axis(i), m));
+      form += left * right.transpose();
+    }
+    f.add_form(form, 0, 0, by_vectors);
+    k.setZero();
+    std::array<double, 2> const s = {1.0 - p.xi, p.xi};
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b)
+        k.block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
+  }
+
+  /// `ElasticLine`: strains of group G (0: Γ; 1: K; 2: the section's) at `p` less those of the reference, and their resultants,
+  /// stiffness times strain without damping, Γ₁'s with the pretension [N], [N m].
+  template <int G>
+  Vec3 strains(Point const& p, std::span<double const> q) const
+    requires std::same_as<Elastic, ElasticLine>
+  {
+    using Group = std::tuple_element_t<G, Groups>;
+    return Group::strains(p.xi, l_, coordinates_at(p, q)) - Group::strains(p.xi, l_, reference_of(p.element).x);
+  }
+  template <int G>
+  Vec3 resultants(Point const& p, std::span<double const> q) const
+    requires std::same_as<Elastic, ElasticLine>
+  {
+    Vec3 n = strains<G>(p, q).cwiseProduct(std::get<G>(groups_of(p.element)).stiffness());
+    if constexpr (G == 0) n[0] += bar_.pretension;
+    return n;
+  }
+
+  /// F at `p`: from the axes of the reference section to world axes.
+  Mat3 deformation_gradient(Point const& p, std::span<double const> q) const {
+    auto const at = reference_of(p.element).gradients(p.xi, p.y, p.z);
+    return coordinates_at(p, q).reshaped(3, ancf::vectors) * at.g;
+  }
+  /// Green–Lagrange strain E at `p`, in the axes of the reference section.
+  Mat3 strain(Point const& p, std::span<double const> q) const {
+    Mat3 const f = deformation_gradient(p, q);
+    return 0.5 * (f.transpose() * f - Mat3::Identity());
+  }
+  /// `Continuum`: stress at `p`, without damping. When cured, Poisson's part is that of the axis, and the shear stresses are the
+  /// corrected ones, means over the section.
+  Stress stress(Point const& p, std::span<double const> q) const
+    requires(!std::same_as<Elastic, ElasticLine>)
+  {
+    Mat3 const f = deformation_gradient(p, q);
+    Mat3 const s = Elastic::second_piola(bar_, constants_, strain(p, q), strain({p.element, p.xi}, q));
+    return {s, f * s * f.transpose() / f.determinant()};
+  }
+
+ private:
+  using Groups = typename Elastic::Groups;
+  /// M = ∫ρ NᵀN dV, the same for the three components, and ∫ρ N dV.
+  struct Inertia {
+    ElementMatrix mass = ElementMatrix::Zero();
+    Vec<double, ancf::vectors> first_moment = Vec<double, ancf::vectors>::Zero();
+  };
+
+  AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight) : bar_(bar), n_(n) {
+    std::string const name = Elastic::name;
+    if (n < 1) throw InvalidInput(name + ": at least one element is needed.");
+    constants_ = polybody::constants(bar);
+    require_positive(constants_.rotary_inertia, name + ": the rotary inertia of the bar, the only mass of r_y,");
+    require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
+                     name + ": the rotary inertia of the bar about y, the only mass of r_z,");
+    Elastic::check(bar, constants_);
+    l_ = bar.length / double(n);
+    for (Index i = 0; i <= n; ++i) {
+      double const s = std::min(double(i) * l_, length());
+      nodes_.push_back(curve(s));
+      nodes_.back().check(name + ": the reference curve at s = " + number(s));
+    }
+    for (Index e = 0; e < (straight ? Index(1) : n); ++e) {
+      ancf::Reference ref;
+      ref.l = l_;
+      ref.straight = straight;
+      for (int node = 0; node < 2; ++node) {
+        Placement const& p = nodes_[std::size_t(e + node)];
+        ref.x.segment<3>(12 * node) = p.origin;
+        for (int k = 0; k < 3; ++k) ref.x.segment<3>(12 * node + 3 + 3 * k) = p.axes.col(k);
+      }
+      check_reference(ref, e);
+      references_.push_back(ref);
+      groups_.push_back(Elastic::make(bar_, constants_, ref));
+      inertia_.push_back(inertia_of(ref));
+    }
+  }
+
+  /// \throws InvalidInput for a reference that is no beam.
+  void check_reference(ancf::Reference const& ref, Index e) const {
+    std::string const what = std::string(Elastic::name) + ": element " + std::to_string(e);
+    double const chord = (ref.x.segment<3>(12) - ref.x.segment<3>(0)).norm();
+    if (!(chord > 1e-6 * l_)) throw InvalidInput(what + " begins where it ends. Use more elements, or another curve.");
+    if (chord > (1.0 + 1e-6) * l_)
+      throw InvalidInput(what + " is longer than its part of the bar: the curve's argument must be its arc length.");
+    double height = 0.0, width = 0.0;  // half of each
+    if (auto const* r = std::get_if<Rectangle>(&bar_.section)) {
+      height = 0.5 * r->height;
+      width = 0.5 * r->width;
+    } else if (auto const* c = std::get_if<Circle>(&bar_.section)) {
+      height = width = c->radius;
+    }
+    for (double const xi : {0.0, 0.5, 1.0}) {
+      double const middle = ref.determinant(xi, 0.0, 0.0), y = ref.determinant(xi, height, 0.0) - middle,
+                   z = ref.determinant(xi, 0.0, width) - middle;
+      double const drop = std::holds_alternative<Circle>(bar_.section) ? std::hypot(y, z) : std::abs(y) + std::abs(z);
+      if (!(middle - drop > 0.0))
+        throw InvalidInput(what + " is turned inside out in the reference: the curve bends more sharply than the section's "
+                                  "size allows, or than one element can follow. Use more elements, or another curve.");
+    }
+  }
+
+  /// Over Gauss points along x (exact for the straight bar) and the four points of the section that give Aρ and both Iρ.
+  Inertia inertia_of(ancf::Reference const& ref) const {
+    double const rho = constants_.mass_per_length, iz = constants_.rotary_inertia;
+    ancf::SectionPoints const section{std::sqrt(iz / rho), std::sqrt(constants_.rotary_inertia_y.value_or(iz) / rho)};
+    Inertia out;
+    for (GaussPoint const& g : gauss<4>)
+      section.for_each([&](double y, double z) {
+        double const mass = 0.25 * rho * g.weight * ref.l * ref.gradients(g.xi, y, z).volume;
+        Vec<double, ancf::vectors> const n = ancf::shape(g.xi, y, z, ref.l).col(0);
+        out.first_moment += mass * n;
+        for (int a = 0; a < ancf::vectors; ++a)
+          for (int b = 0; b < ancf::vectors; ++b)
+            for (int i = 0; i < 3; ++i) out.mass(3 * a + i, 3 * b + i) += mass * n[a] * n[b];
+      });
+    return out;
+  }
+  template <class T>
+  std::size_t which(std::vector<T> const& each, Index e) const {
+    return each.size() == 1 ? 0 : std::size_t(e);
+  }
+  Inertia const& inertia_of(Index e) const { return inertia_[which(inertia_, e)]; }
+  Groups const& groups_of(Index e) const { return groups_[which(groups_, e)]; }
+  ancf::Reference const& reference_of(Index e) const { return references_[which(references_, e)]; }
+  Element<double> coordinates_at(Point const& p, std::span<double const> q) const {
+    return part<element_columns>(q, first_column(p));
+  }
+
+  template <KernelScalar T>
+  static void times_mass(Inertia const& inertia, Element<T> const& a, Element<T>& out) {
+    for (int r = 0; r < element_columns; ++r) {
+      T sum(0.0);
+      for (int v = 0; v < ancf::vectors; ++v) sum += a[3 * v + r % 3] * inertia.mass(r, 3 * v + r % 3);
+      out[r] = sum;
+    }
+  }
+  template <KernelScalar T>
+  static void add_force(Groups const& groups, Element<T> const& x, Element<T> const& xd, Element<T>& out) {
+    for (int i = 0; i < element_columns; ++i) out[i] = T(0.0);
+    std::apply([&](auto const&... group) { (group.template add_force<T>(x, xd, out), ...); }, groups);
+  }
+  template <KernelScalar T>
+  static void add_tangent(Groups const& groups, Element<T> const& x, Element<T> const& xd, double ck, double cd,
+                          Mat<T, element_columns, element_columns>& k) {
+    for (int j = 0; j < element_columns; ++j)
+      for (int i = 0; i < element_columns; ++i) k(i, j) = T(0.0);
+    std::apply([&](auto const&... group) { (group.template add_tangent<T>(x, xd, ck, cd, k), ...); }, groups);
+  }
+
+  PointMap map_of(Point const& p, int derivative) const {
+    Mat<double, ancf::vectors, 4> const n = ancf::shape(p.xi, p.y, p.z, l_);
+    PointMap map = PointMap::Zero();
+    for (int a = 0; a < ancf::vectors; ++a)
+      for (int i = 0; i < 3; ++i) map(i, 3 * a + i) = n(a, derivative);
+    return map;
+  }
+  /// ω in world axes by the rates of (r_y, r_z), 3×6.
+  template <class T>
+  static Mat<T, 3, 6> turning(SectionFrame<T> const& f) {
+    Mat<T, 3, 6> local, turn;
+    for (int k = 0; k < 3; ++k) f.to_vectors(f.pull(f.axis(k)), k, 0, local);
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 3; ++i)
+        turn(i, j) = f.R(i, 0) * local(0, j) + f.R(i, 1) * local(1, j) + f.R(i, 2) * local(2, j);
+    return turn;
+  }
+
+  Bar bar_;
+  BarConstants constants_{.EA = 0.0, .EI = 0.0, .mass_per_length = 0.0};
+  double l_ = 0.0;
+  Index n_;
+  std::vector<Placement> nodes_;             ///< in the bar's axes
+  std::vector<ancf::Reference> references_;  ///< one where all elements are alike, or one each; the next two as well
+  std::vector<Groups> groups_;
+  std::vector<Inertia> inertia_;
+};
+
+static_assert(Body<AncfBeam<>> && Body<AncfBeam<Continuum<>>>);
+
+}  // namespace polybody

@@ -1,0 +1,60 @@
+#pragma once
+/// \file
+/// Axial strain measures of cables, functions of the slope p = r′ in the plane (d = 2) or in space (d = 3), each with the power k
+/// of |r′| in the bending measure |r′ × r″|/|r′|ᵏ that goes with it.
+
+#include <polybody/math/pack.hpp>
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+namespace detail {
+template <class T, int d>
+T dot(Vec<T, d> const& a, Vec<T, d> const& b) {
+  T sum = a[0] * b[0];
+  for (int i = 1; i < d; ++i) sum += a[i] * b[i];
+  return sum;
+}
+}  // namespace detail
+
+/// Green strain ε = ½ (r′·r′ − 1) and the exact geometric curvature κ = |r′ × r″|/|r′|³ (the thesis' choice).
+struct GreenStrain {
+  static constexpr int curvature_power = 3;
+
+  template <KernelScalar T, int d>
+  static void axial(Vec<T, d> const& p, Vec<T, 1>& strain, Mat<T, 1, d>& b) {
+    strain[0] = detail::dot(p, p) * 0.5 - 0.5;
+    for (int i = 0; i < d; ++i) b(0, i) = p[i];
+  }
+  /// h += n ∂²ε/∂p².
+  template <KernelScalar T, int d>
+  static void add_axial_hessian(Vec<T, d> const&, T const& n, Mat<T, d, d>& h) {
+    for (int i = 0; i < d; ++i) h(i, i) += n;
+  }
+};
+
+/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|²: linear in the resultants of the exact rod
+/// [Gerstmayr & Irschik 2008].
+struct EngineeringStrain {
+  static constexpr int curvature_power = 2;
+
+  template <KernelScalar T, int d>
+  static void axial(Vec<T, d> const& p, Vec<T, 1>& strain, Mat<T, 1, d>& b) {
+    using std::sqrt;
+    T const n = sqrt(detail::dot(p, p));
+    strain[0] = n - 1.0;
+    for (int i = 0; i < d; ++i) b(0, i) = p[i] / n;
+  }
+  /// h += n (1 − p pᵀ/|p|²)/|p|, the part across p.
+  template <KernelScalar T, int d>
+  static void add_axial_hessian(Vec<T, d> const& p, T const& n, Mat<T, d, d>& h) {
+    using std::sqrt;
+    T const l2 = detail::dot(p, p), each = n / (l2 * sqrt(l2));
+    for (int i = 0; i < d; ++i) {
+      h(i, i) += each * l2;
+      for (int j = 0; j < d; ++j) h(i, j) -= each * p[i] * p[j];
+    }
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,125 @@
+#pragma once
+/// \file
+/// Loops over the elements of a body. Where all elements are alike, neighbours go through the kernel side by side in packs
+/// (structure of arrays); what is left over, and bodies of other kinds, one by one.
+
+#include <polybody/bodies/body.hpp>
+#include <polybody/math/pack.hpp>
+
+namespace polybody {
+
+/// A body whose elements differ in nothing but their coordinates, which each reads at its own columns, q as v: its kernels
+/// take an element's own coordinates and may run on packs. Where that depends on the body, its `alike()` says so.
+template <class B>
+concept AlikeElements = requires(B const b, Vec<Pack<>, B::element_columns> x, Vec<Pack<>, B::element_columns>& out,
+                                 Mat<Pack<>, B::element_columns, B::element_columns>& k) {
+  requires B::packs_pay;                              // measured: the kernel is arithmetic, not sines
+  { B::element_stride } -> std::convertible_to<int>;  // from an element's first column to that of the next
+  b.template element_inertia<Pack<>>(x, out);
+  b.template element_force<Pack<>>(x, x, out);
+  b.template element_tangent<Pack<>>(x, x, 1.0, 1.0, k);
+};
+
+namespace detail {
+
+/// The coordinates of `pack_size` neighbours; `x` points to the first one's.
+template <int n, int stride>
+Vec<Pack<>, n> side_by_side(double const* x) {
+  Vec<Pack<>, n> packed;
+  for (int k = 0; k < n; ++k)
+    for (int l = 0; l < pack_size; ++l) packed[k].set(l, x[l * stride + k]);
+  return packed;
+}
+
+/// All elements differ in nothing but their coordinates.
+template <class B>
+bool are_alike(B const& body) {
+  if constexpr (requires { body.alike(); })
+    return body.alike();
+  else
+    return AlikeElements<B>;
+}
+
+/// How many of the elements [begin, end) go in packs: packs begin at multiples of their size, so that an element's kernel does
+/// not depend on how a loop is cut.
+template <class B>
+Index packed_until(B const& body, Index begin, Index end) {
+  if constexpr (AlikeElements<B>) {
+    if (!are_alike(body)) return begin;
+    Index const whole = body.elements() / pack_size * pack_size;
+    return std::max(begin, std::min(end, whole));
+  } else {
+    return begin;
+  }
+}
+
+}  // namespace detail
+
+/// Calls f(e, M a − force) for the elements [begin, end); `begin` is a multiple of `pack_size`, and `end` too unless it is the last.
+template <Body B, StateScalar T, class F>
+void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const> q, std::span<T const> v,
+                        std::span<T const> a, F&& f) {
+  constexpr int n = B::element_columns;
+  Vec<T, n> x, force;
+  if constexpr (AlikeElements<B> && std::same_as<T, double>) {
+    Index const packed = detail::packed_until(body, begin, end);
+    for (; begin < packed; begin += pack_size) {
+      Index const first = body.first_column(begin);
+      constexpr int stride = B::element_stride;
+      Vec<Pack<>, n> inertia, elastic;
+      body.template element_inertia<Pack<>>(detail::side_by_side<n, stride>(a.data() + first), inertia);
+      body.template element_force<Pack<>>(detail::side_by_side<n, stride>(q.data() + first),
+                                          detail::side_by_side<n, stride>(v.data() + first), elastic);
+      for (int k = 0; k < n; ++k) inertia[k] -= elastic[k];
+      for (int l = 0; l < pack_size; ++l) {
+        for (int k = 0; k < n; ++k) x[k] = inertia[k][l];
+        f(begin + l, x);
+      }
+    }
+  }
+  for (; begin < end; ++begin) {
+    body.template inertia<T>(begin, q, a, x);
+    body.template force<T>(begin, q, v, force);
+    for (int k = 0; k < n; ++k) x[k] -= force[k];
+    f(begin, x);
+  }
+}
+
+/// Calls f(e, cm M + cd D + ck K) for the elements [begin, end), cut as above.
+template <Body B, class F>
+void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q, std::span<double const> v,
+                              double cm, double cd, double ck, F&& f) {
+  constexpr int n = B::element_columns;
+  Mat<double, n, n> k, m;
+  bool const alike = detail::are_alike(body);
+  bool first_mass = true;
+  auto const finish = [&](Index e) {
+    if (cm != 0.0) {
+      if (first_mass || !alike) body.mass(e, q, m);
+      first_mass = false;
+      k += cm * m;
+    }
+    f(e, k);
+  };
+  if constexpr (AlikeElements<B>) {
+    Index const packed = detail::packed_until(body, begin, end);
+    for (; begin < packed; begin += pack_size) {
+      Index const first = body.first_column(begin);
+      constexpr int stride = B::element_stride;
+      Mat<Pack<>, n, n> packs;
+      body.template element_tangent<Pack<>>(detail::side_by_side<n, stride>(q.data() + first),
+                                            detail::side_by_side<n, stride>(v.data() + first), ck, cd, packs);
+      for (int l = 0; l < pack_size; ++l) {
+        for (int c = 0; c < n; ++c)
+          for (int r = 0; r < n; ++r) k(r, c) = packs(r, c)[l];
+        finish(begin + l);
+      }
+    }
+  }
+  for (; begin < end; ++begin) {
+    body.tangent(begin, q, v, ck, cd, k);
+    finish(begin);
+  }
+}
+
+}  // namespace polybody

@@ -1,0 +1,202 @@
+#pragma once
+/// \file
+/// The orthonormal frame of a deformable section, its rotation, and the derivatives of both in closed form. From two vectors
+/// b, c that lie in the section (r_y and r_z of a beam):
+///   t₂ = b/|b|,  t₁ = b × c/|b × c|,  t₃ = t₁ × t₂,
+/// so that t₁ is normal to the section and R = [t₁ t₂ t₃] is the identity where b = e₂, c = e₃. With β = |b|, c₃ = c·t₃,
+/// σ = c·t₂/c₃, a change d = (δb, δc) has the components
+///   w = (X, Y),  X = Rᵀδb/β,  Y = Rᵀδc/c₃,
+/// and turns the frame by φ = S w in its own axes, δR = R φ̃:
+///   φ = (X₃, Y₁ − σ X₁, −X₁),
+/// from δt₂ = (1 − t₂t₂ᵀ) δb/β and from t₁·c staying zero. While the frame moves by ŵ, the components of a constant d change:
+///   δ̂X = X × φ̂ − X X̂₂,  δ̂Y = Y × φ̂ − Y (Ŷ₃ − σ X̂₃),  δ̂σ = g·ŵ = Ŷ₂ + (1 + σ²) X̂₃ − σ Ŷ₃.
+/// All else follows by the chain rule. Six-vectors are ordered (X, Y). Plain loops; they run on doubles, dual numbers and packs.
+
+#include <polybody/math/dual.hpp>
+#include <polybody/math/pack.hpp>
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+template <KernelScalar T>
+class SectionFrame {
+ public:
+  using V3 = Vec<T, 3>;
+  using V6 = Vec<T, 6>;
+  using M6 = Mat<T, 6, 6>;
+
+  Mat<T, 3, 3> R;  ///< columns t₁, t₂, t₃
+
+  SectionFrame(V3 const& b, V3 const& c) {
+    using std::sqrt;
+    V3 const n = cross(b, c);
+    T const bb = dot(b, b), in = T(1.0) / sqrt(dot(n, n));
+    ib_ = T(1.0) / sqrt(bb);
+    ic_ = bb * ib_ * in;  // c₃ = |b × c|/|b|
+    for (int i = 0; i < 3; ++i) {
+      R(i, 0) = n[i] * in;
+      R(i, 1) = b[i] * ib_;
+    }
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, k = (i + 2) % 3;
+      R(i, 2) = R(j, 0) * R(k, 1) - R(k, 0) * R(j, 1);
+    }
+    sigma_ = (R(0, 1) * c[0] + R(1, 1) * c[1] + R(2, 1) * c[2]) * ic_;
+  }
+
+  /// Rᵀx.
+  V3 local(V3 const& x) const {
+    V3 y;
+    for (int i = 0; i < 3; ++i) y[i] = R(0, i) * x[0] + R(1, i) * x[1] + R(2, i) * x[2];
+    return y;
+  }
+  /// R x.
+  V3 world(V3 const& x) const {
+    V3 y;
+    for (int i = 0; i < 3; ++i) y[i] = R(i, 0) * x[0] + R(i, 1) * x[1] + R(i, 2) * x[2];
+    return y;
+  }
+  /// w = (Rᵀdb/β, Rᵀdc/c₃).
+  V6 components(V3 const& db, V3 const& dc) const {
+    V3 const x = local(db), y = local(dc);
+    V6 w;
+    for (int i = 0; i < 3; ++i) {
+      w[i] = x[i] * ib_;
+      w[3 + i] = y[i] * ic_;
+    }
+    return w;
+  }
+  /// φ = S w; of rates: the angular velocity, of derivatives along the axis: twist and curvatures. In the frame's axes.
+  V3 spin(V6 const& w) const { return V3(w[2], w[3] - sigma_ * w[0], -w[0]); }
+  /// Sᵀm.
+  V6 pull(V3 const& m) const {
+    V6 s;
+    for (int i = 0; i < 6; ++i) s[i] = T(0.0);
+    s[0] = -(m[2] + sigma_ * m[1]);
+    s[2] = m[0];
+    s[3] = m[1];
+    return s;
+  }
+  /// M(m), 6×6: m·δ̂φ(w) = wᵀ M ŵ for a constant d of components w: the second derivative of the rotation.
+  M6 second(V3 const& m) const {
+    M6 h = pairing(pull(m), 1.0);
+    V6 const g = sigma_gradient();
+    for (int j = 0; j < 6; ++j) h(0, j) -= m[1] * g[j];
+    return h;
+  }
+  /// δ̂φ of d = w moving by itself: the angular acceleration, in the frame's axes, of b and c moving at constant rates w.
+  V3 acceleration(V6 const& w) const {
+    V3 a;
+    for (int k = 0; k < 3; ++k) {
+      M6 const h = second(axis(k));
+      T sum(0.0);
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) sum += w[i] * h(i, j) * w[j];
+      a[k] = sum;
+    }
+    return a;
+  }
+
+  /// ∂K/∂(X, Y), 3×6, of K = S w′ for the components w′ of (b′, c′); the derivative by (X′, Y′) is S itself.
+  Mat<T, 3, 6> curvature_gradient(V6 const& w) const {
+    M6 const l = pairing(w, -1.0);
+    V6 const g = sigma_gradient();
+    Mat<T, 3, 6> k;
+    for (int j = 0; j < 6; ++j) {
+      k(0, j) = l(2, j);
+      k(1, j) = l(3, j) - sigma_ * l(0, j) - w[0] * g[j];
+      k(2, j) = -l(0, j);
+    }
+    return k;
+  }
+  /// Second derivatives of n·K by (X, Y) twice, `twice`, and by (X′, Y′) (rows) and (X, Y) (columns), `mixed`.
+  void curvature_hessian(V6 const& w, V3 const& n, M6& twice, M6& mixed) const {
+    M6 const l = pairing(w, -1.0);  // δ̂w′ = l ŵ
+    V6 const s = pull(n), g = sigma_gradient();
+    mixed = second(n);
+    V6 h, c;  // ∂(n·K)/∂(X, Y);  the factor of δ̂σ
+    for (int j = 0; j < 6; ++j) {
+      T sum = -(n[1] * w[0] * g[j]);
+      for (int i = 0; i < 6; ++i) sum += l(i, j) * s[i];
+      h[j] = sum;
+      c[j] = -(n[1] * l(0, j));
+    }
+    c[0] -= s[2] * w[0] - s[0] * w[2] + s[5] * w[3] - s[3] * w[5];
+    c[2] += s[3] * w[3] + s[4] * w[4] + s[5] * w[5] - n[1] * w[0] * sigma_ * 2.0;
+    c[5] += n[1] * w[0];
+    twice = pairing(h, 1.0);
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i) {
+        T sum = c[i] * g[j];
+        for (int k = 0; k < 6; ++k) sum += mixed(k, i) * l(k, j);
+        twice(i, j) += sum;
+      }
+  }
+
+  /// Row `row` of `out` gets the covector s of (X, Y) as one of (δb, δc) at columns `first`, `first` + 3.
+  template <int rows, int columns>
+  void to_vectors(V6 const& s, int row, int first, Mat<T, rows, columns>& out) const {
+    for (int i = 0; i < 3; ++i) {
+      out(row, first + i) = (R(i, 0) * s[0] + R(i, 1) * s[1] + R(i, 2) * s[2]) * ib_;
+      out(row, first + 3 + i) = (R(i, 0) * s[3] + R(i, 1) * s[4] + R(i, 2) * s[5]) * ic_;
+    }
+  }
+  /// Block (first_row, first_column) of `out` += the form h of (X, Y) × (X, Y) as one of (δb, δc) × (δb, δc).
+  template <int n>
+  void add_form(M6 const& h, int first_row, int first_column, Mat<T, n, n>& out) const {
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b) {
+        T const scale = (a == 0 ? ib_ : ic_) * (b == 0 ? ib_ : ic_);
+        for (int j = 0; j < 3; ++j) {
+          V3 turned;  // column of h against t_j
+          for (int i = 0; i < 3; ++i)
+            turned[i] = (h(3 * a + i, 3 * b) * R(j, 0) + h(3 * a + i, 3 * b + 1) * R(j, 1) +
+                         h(3 * a + i, 3 * b + 2) * R(j, 2)) * scale;
+          V3 const column = world(turned);
+          for (int i = 0; i < 3; ++i) out(first_row + 3 * a + i, first_column + 3 * b + j) += column[i];
+        }
+      }
+  }
+
+  static V3 axis(int k) { return V3(T(k == 0 ? 1.0 : 0.0), T(k == 1 ? 1.0 : 0.0), T(k == 2 ? 1.0 : 0.0)); }
+  static V3 cross(V3 const& a, V3 const& b) {
+    return V3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+  }
+  static T dot(V3 const& a, V3 const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+ private:
+  /// g with δ̂σ = g·ŵ.
+  V6 sigma_gradient() const {
+    V6 g;
+    for (int i = 0; i < 6; ++i) g[i] = T(0.0);
+    g[2] = sigma_ * sigma_ + 1.0;
+    g[4] = T(1.0);
+    g[5] = -sigma_;
+    return g;
+  }
+  /// sign = 1: A with s·δ̂w = wᵀ A ŵ;  sign = −1: L with δ̂w = L ŵ for w = s. Either: ∓ s̃ S less s times the change of length.
+  M6 pairing(V6 const& s, double sign) const {
+    M6 m;
+    for (int part = 0; part < 2; ++part) {
+      T const x = s[3 * part] * sign, y = s[3 * part + 1] * sign, z = s[3 * part + 2] * sign;
+      T const a[3][6] = {{y - sigma_ * z, T(0.0), T(0.0), z, T(0.0), T(0.0)},
+                         {-x, T(0.0), -z, T(0.0), T(0.0), T(0.0)},
+                         {sigma_ * x, T(0.0), y, -x, T(0.0), T(0.0)}};
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 6; ++j) m(3 * part + i, j) = a[i][j];
+        T const& length = s[3 * part + i];
+        if (part == 0) {
+          m(i, 1) -= length;
+        } else {
+          m(3 + i, 5) -= length;
+          m(3 + i, 2) += sigma_ * length;
+        }
+      }
+    }
+    return m;
+  }
+
+  T ib_, ic_, sigma_;  ///< 1/β, 1/c₃, σ
+};
+
+}  // namespace polybody

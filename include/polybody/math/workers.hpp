@@ -1,0 +1,104 @@
+#pragma once
+/// \file
+/// Threads that share loops. A loop is cut into as many contiguous parts as there are threads, so whoever writes to places of
+/// its own writes the same whatever their number.
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+#include <vector>
+
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+class Workers {
+ public:
+  /// `threads` counts the caller: 1 starts none. \throws InvalidInput for less.
+  explicit Workers(int threads) : thrown_(std::size_t(std::max(threads, 0))) {
+    if (threads < 1) throw InvalidInput("Workers: at least one thread is needed, but " + std::to_string(threads) + " are asked for.");
+    for (int i = 1; i < threads; ++i) others_.emplace_back([this, i] { serve(i); });
+  }
+  Workers(Workers const&) = delete;
+  Workers& operator=(Workers const&) = delete;
+  ~Workers() {
+    call_ = nullptr;
+    wake();
+    for (std::thread& t : others_) t.join();
+  }
+
+  int size() const { return int(thrown_.size()); }
+
+  /// Calls f(begin, end) for parts of [0, n) and returns when all are done. Parts begin at multiples of four and have no fewer than
+  /// `least` entries, so a short loop stays with the caller. An exception of the first part that throws is passed on.
+  template <class F>
+  void over(Index n, Index least, F&& f) {
+    Index const parts = std::clamp<Index>(n / std::max<Index>(least, 1), 1, size());
+    if (parts == 1) {
+      f(Index(0), n);
+      return;
+    }
+    auto const part = [&](int i) {
+      auto const cut = [&](Index k) { return k == parts ? n : n * k / parts / 4 * 4; };
+      if (i < parts) f(cut(i), cut(i + 1));
+    };
+    using Part = decltype(part);
+    call_ = [](void const* what, int i) { (*static_cast<Part const*>(what))(i); };
+    what_ = &part;
+    wake();
+    run(0);
+    for (unsigned left; (left = running_.load()) != 0;) wait_for_change(running_, left);
+    for (std::exception_ptr& e : thrown_)
+      if (e) {
+        std::exception_ptr const first = e;
+        std::fill(thrown_.begin(), thrown_.end(), nullptr);
+        std::rethrow_exception(first);
+      }
+  }
+
+ private:
+  void wake() {
+    running_.store(unsigned(size() - 1));
+    round_.fetch_add(1);
+    round_.notify_all();
+  }
+  void run(int i) {
+    try {
+      call_(what_, i);
+    } catch (...) {
+      thrown_[std::size_t(i)] = std::current_exception();
+    }
+  }
+  void serve(int i) {
+    for (unsigned seen = 0;; ++seen) {
+      wait_for_change(round_, seen);
+      if (!call_) return;
+      run(i);
+      if (running_.fetch_sub(1) == 1) running_.notify_one();
+    }
+  }
+  /// Looks for a few microseconds, as loops follow one another closely, before it sleeps.
+  static void wait_for_change(std::atomic<unsigned> const& x, unsigned old) {
+    for (int i = 0; i < 4000; ++i)
+      if (x.load() != old) return;
+    x.wait(old);
+  }
+
+  std::vector<std::exception_ptr> thrown_;  // one for each thread
+  void (*call_)(void const*, int) = nullptr;
+  void const* what_ = nullptr;
+  std::atomic<unsigned> round_{0}, running_{0};  // wrap around without harm
+  std::vector<std::thread> others_;  // last: they use the rest
+};
+
+/// f over [0, n), by `workers` where there are any.
+template <class F>
+void share(Workers* workers, Index n, Index least, F&& f) {
+  if (workers)
+    workers->over(n, least, f);
+  else
+    f(Index(0), n);
+}
+
+}  // namespace polybody

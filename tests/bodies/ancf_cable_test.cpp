@@ -1,0 +1,170 @@
+#include <polybody/bodies/ancf_cable.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/element_batches.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+
+#include "support/flexible_body_laws.hpp"
+#include "support/refusal.hpp"
+
+namespace polybody {
+namespace {
+
+template <class Strain>
+struct SpatialCableCase {
+  static Bar bar() {
+    return {.length = 1.3,
+            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0},
+            .placement = Placement::at({0.4, -0.3, 0.2}, {0.3, -0.5, 0.9}),
+            .damping = {.axial = 0.01, .bending = 0.03}};
+  }
+  static AncfCable<Strain> body(Bar const& bar) { return AncfCable<Strain>::from(bar, 2); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(SpatialGreenCable, BodyLaws, SpatialCableCase<GreenStrain>);
+INSTANTIATE_TYPED_TEST_SUITE_P(SpatialGreenCable, FlexibleBodyLaws, SpatialCableCase<GreenStrain>);
+INSTANTIATE_TYPED_TEST_SUITE_P(SpatialEngineeringCable, BodyLaws, SpatialCableCase<EngineeringStrain>);
+INSTANTIATE_TYPED_TEST_SUITE_P(SpatialEngineeringCable, FlexibleBodyLaws, SpatialCableCase<EngineeringStrain>);
+
+static_assert(AlikeElements<AncfCable<>>);
+
+// A bar in the plane z = 0 moves as the planar cable: mass, force and tangent of the same numbers.
+template <class Strain>
+void expect_planar_numbers() {
+  Bar bar = SpatialCableCase<Strain>::bar();
+  bar.placement = Placement::planar(0.4, -0.3, 0.7);
+  bar.pretension = 12.0;
+  auto const space = AncfCable<Strain>::from(bar, 3);
+  auto const plane = planar::AncfCable<Strain>::from(bar, 3);
+  VecX q(plane.coordinates()), v = q, r = VecX::Zero(space.coordinates()), w = r;
+  plane.reference(mutable_view(q));
+  for (Index i = 0; i < q.size(); ++i) {
+    q[i] += 0.2 * std::sin(3.0 * double(i));
+    v[i] = std::cos(2.0 * double(i));
+  }
+  auto const lifted = [](Index i) { return i / 2 * 3 + i % 2; };  // (x, y) of a node's vector
+  for (Index i = 0; i < q.size(); ++i) {
+    r[lifted(i)] = q[i];
+    w[lifted(i)] = v[i];
+  }
+  for (Index e = 0; e < 3; ++e) {
+    Vec<double, 8> f;
+    Vec<double, 12> g;
+    Mat<double, 8, 8> k, m;
+    Mat<double, 12, 12> l, n;
+    plane.template force<double>(e, view(q), view(v), f);
+    space.template force<double>(e, view(r), view(w), g);
+    plane.tangent(e, view(q), view(v), 0.7, 0.1, k);
+    space.tangent(e, view(r), view(w), 0.7, 0.1, l);
+    plane.mass(e, view(q), m);
+    space.mass(e, view(r), n);
+    EXPECT_NEAR(plane.strain_energy(e, view(q)), space.strain_energy(e, view(r)), 1e-12);
+    for (Index i = 0; i < 8; ++i) {
+      EXPECT_NEAR(g[lifted(i)], f[i], 1e-12 * f.norm());
+      for (Index j = 0; j < 8; ++j) {
+        EXPECT_NEAR(l(lifted(i), lifted(j)), k(i, j), 1e-12 * k.norm());
+        EXPECT_NEAR(n(lifted(i), lifted(j)), m(i, j), 1e-15 * m.norm());
+      }
+    }
+    for (Index i = 0; i < 4; ++i) EXPECT_NEAR(g[3 * i + 2], 0.0, 1e-12 * f.norm());  // nothing leaves the plane
+  }
+}
+TEST(SpatialCable, InAPlaneEqualsThePlanarCable) {
+  expect_planar_numbers<GreenStrain>();
+  expect_planar_numbers<EngineeringStrain>();
+}
+
+VecX of(AncfCable<> const& cable) {
+  VecX q(cable.coordinates());
+  cable.reference(mutable_view(q));
+  return q;
+}
+
+// The thesis' Eq. 3.18, (ρA l/420) [156, 22l, 54, −13l; …] for each component.
+TEST(SpatialCable, MassIsThatOfTheThesis) {
+  AncfCable<> const cable = AncfCable<>::from(
+      {.length = 1.4, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 3.0}}, 2);
+  double const l = 0.7;
+  Mat<double, 4, 4> expected;
+  expected << 156, 22 * l, 54, -13 * l, 22 * l, 4 * l * l, 13 * l, -3 * l * l, 54, 13 * l, 156, -22 * l, -13 * l,
+      -3 * l * l, -22 * l, 4 * l * l;
+  expected *= 3.0 * l / 420.0;
+  Mat<double, 12, 12> m;
+  cable.mass(0, view(of(cable)), m);
+  for (int i = 0; i < 12; ++i)
+    for (int j = 0; j < 12; ++j) EXPECT_NEAR(m(i, j), i % 3 == j % 3 ? expected(i / 3, j / 3) : 0.0, 1e-15);
+}
+
+// A helix of radius a and rise 2πb a turn has curvature a/(a² + b²); its tangent is a unit vector of arc length.
+TEST(SpatialCable, KnowsTheCurvatureOfAHelix) {
+  double const a = 2.0, b = 0.5, c = std::hypot(a, b), length = 4.0;
+  auto const helix = [&](double s) {
+    double const u = s / c;
+    Placement p;
+    p.origin = Vec3(a * std::cos(u), a * std::sin(u), b * u);
+    p.axes.col(0) = Vec3(-a * std::sin(u), a * std::cos(u), b) / c;
+    p.axes.col(1) = Vec3(-std::cos(u), -std::sin(u), 0.0);
+    p.axes.col(2) = p.axes.col(0).cross(p.axes.col(1));
+    return p;
+  };
+  AncfCable<> const cable =
+      AncfCable<>::from({.length = length, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0}}, 16, helix);
+  VecX const q = of(cable);
+  double const bound = std::pow(length / 16, 2) / 12.0 * a / std::pow(c, 4);  // of r″ of a cubic Hermite interpolant: l²/12 |r⁗|
+  for (double const s : {0.3, 1.1, 2.7, 3.9}) {
+    Vec3 const kappa = cable.curvature(cable.at(s), view(q));
+    EXPECT_NEAR(kappa.norm(), a / (a * a + b * b), bound) << s;
+    EXPECT_NEAR(kappa.dot(helix(s).axes.col(2)), kappa.norm(), 1e-5) << s;  // about the binormal
+    EXPECT_NEAR(cable.axial_strain(cable.at(s), view(q)), 0.0, 1e-6) << s;
+    EXPECT_NEAR((cable.bending_moment(cable.at(s), view(q)) - 40.0 * kappa).norm(), 0.0, 1e-12);
+  }
+}
+
+TEST(SpatialCable, PretensionPullsAtTheEnds) {
+  Bar bar{.length = 2.0, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0}, .pretension = 30.0};
+  AncfCable<> const cable = AncfCable<>::from(bar, 2);
+  VecX const q = of(cable), rest = VecX::Zero(q.size());
+  Vec<double, 12> f;
+  cable.force<double>(0, view(q), view(rest), f);
+  EXPECT_NEAR(f[0], 30.0, 1e-12);   // it wants to be shorter
+  EXPECT_NEAR(f[6], -30.0, 1e-12);
+  EXPECT_NEAR(cable.axial_force(cable.at(0.7), view(q)), 30.0, 1e-12);
+}
+
+// Spinning about its own axis a bent cable is not damped, whatever it cannot know of its roll; nor is a straight one, whose κ = 0.
+TEST(SpatialCable, SpinAboutItselfIsNotDamped) {
+  Bar const bar{.length = 2.0,
+                .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0},
+                .damping = {.axial = 0.1, .bending = 0.1}};
+  AncfCable<> const cable = AncfCable<>::from(bar, 3);
+  VecX q = of(cable), v(q.size());
+  for (double const bend : {0.0, 0.3}) {
+    for (Index i = 0; i <= 3; ++i) {
+      q[6 * i + 1] = bend * std::sin(double(i));
+      q[6 * i + 4] = bend * std::cos(double(i));
+    }
+    cable.rigid_velocity(view(q), Vec3::Zero(), Vec3(7.0, 0.0, 0.0), mutable_view(v));
+    for (Index e = 0; e < 3; ++e) {
+      Vec<double, 12> moving, still;
+      VecX const rest = VecX::Zero(q.size());
+      cable.force<double>(e, view(q), view(v), moving);
+      cable.force<double>(e, view(q), view(rest), still);
+      EXPECT_LT((moving - still).norm(), 1e-13 * (1.0 + still.norm())) << bend;
+    }
+  }
+}
+
+TEST(SpatialCable, RefusesWhatCannotBeMeant) {
+  Bar bar{.length = 2.0, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0}};
+  EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 0); }), "AncfCable: at least one element"));
+  auto const too_fast = [](double s) { return Placement::at({1.5 * s, 0, 0}); };
+  EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 4, too_fast); }), "element 1 of the reference curve is strained"));
+  bar.pretension = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 1); }), "the pretension must be finite"));
+  bar.pretension = 0.0;
+  bar.constants->EA = -1.0;
+  EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 1); }), "EA must be positive"));
+}
+
+}  // namespace
+}  // namespace polybody

@@ -1,0 +1,24 @@
+// The laws of all bodies and of flexible ones for the spatial Lrvf with rotation vectors interpolated as they are. Three of
+// them speak of rigid motions of a bent body, which it fails: lrvf_direct_test.cpp measures by how much.
+
+#include <polybody/bodies/lrvf.hpp>
+
+#include "support/flexible_body_laws.hpp"
+#include "support/spatial_lrvf.hpp"
+
+namespace polybody {
+namespace {
+
+struct DirectLrvfCase {
+  static Bar bar() { return spatial_lrvf_bar(); }
+  static Lrvf<Direct> body(Bar const& bar) { return Lrvf<Direct>::from(bar, 3); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(DirectLrvf, BodyLaws, DirectLrvfCase);
+
+struct ElasticDirectCase : DirectLrvfCase {
+  static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(DirectLrvf, FlexibleBodyLaws, ElasticDirectCase);
+
+}  // namespace
+}  // namespace polybody

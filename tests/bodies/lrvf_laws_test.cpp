@@ -1,0 +1,23 @@
+// The laws of all bodies and of flexible ones for the spatial Lrvf.
+
+#include <polybody/bodies/lrvf.hpp>
+
+#include "support/flexible_body_laws.hpp"
+#include "support/spatial_lrvf.hpp"
+
+namespace polybody {
+namespace {
+
+struct SpatialLrvfCase {
+  static Bar bar() { return spatial_lrvf_bar(); }
+  static Lrvf<> body(Bar const& bar) { return Lrvf<>::from(bar, 3); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(SpatialLrvf, BodyLaws, SpatialLrvfCase);
+
+struct ElasticLrvfCase : SpatialLrvfCase {
+  static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(SpatialLrvf, FlexibleBodyLaws, ElasticLrvfCase);
+
+}  // namespace
+}  // namespace polybody

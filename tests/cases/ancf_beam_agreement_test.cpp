@@ -1,0 +1,70 @@
+// The thesis' check of its ANCF elements: two elastic forces of different origin, elastic line and cured continuum, agree in the
+// limit of fine meshes, up to the strain.
+
+#include <polybody/bodies/ancf_beam.hpp>
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "support/spatial_cantilever.hpp"
+
+using namespace polybody;
+
+namespace {
+
+using Line = AncfBeam<ElasticLine>;
+using Cured = AncfBeam<Continuum<>>;
+using std::numbers::pi;
+
+/// What meshes of order 2 converge to.
+template <class Tip>
+Vec3 limit(Tip&& tip) {
+  return (4.0 * tip(32) - tip(16)) / 3.0;
+}
+
+// A bar that bends about both axes and twists: tip force and moment, strains of 2e-3 at the most.
+TEST(AncfElasticForces, AgreeOnABarBentAndTwisted) {
+  Bar const bar{.length = 0.508,
+                .section = Rectangle{.height = 12.3777e-3, .width = 3.2024e-3},
+                .material = Material{.density = 2700, .young = 71.7e9, .poisson = 0.31}};
+  TipLoad const load{.force = {0, -5, 5}, .moment = {0.4, 0, 0}};
+  Vec3 const line = limit([&](Index n) {
+    return SpatialCantilever<Line>(Line::from(bar, n), load, {.load_steps = 2}).tip_displacement();
+  });
+  Vec3 const cured = limit([&](Index n) {
+    return SpatialCantilever<Cured>(Cured::from(bar, n), load, {.load_steps = 2}).tip_displacement();
+  });
+  EXPECT_GT(line.norm(), 0.07);
+  EXPECT_LT((cured - line).norm(), 2e-3 * line.norm());
+}
+
+// S2, α = 1, EA = 1e6 EI/L²: a square section with side √12e-6 L, strains of 1.7e-3.
+TEST(AncfElasticForces, CuredContinuumMeetsTheElastica) {
+  double const side = std::sqrt(12e-6);
+  Bar const bar{.length = 1.0,
+                .section = Rectangle{.height = side, .width = side},
+                .material = Material{.density = 1, .young = 1e6 / (side * side), .poisson = 0.3}};
+  Vec3 const u = limit([&](Index n) {
+    return SpatialCantilever<Cured>(Cured::from(bar, n), {.force = {0, 1, 0}}, {.load_steps = 4}).tip_displacement();
+  });
+  EXPECT_LT((u - Vec3(-0.05643323628337688, 0.3017207737998135, 0)).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+// S7 with Saint-Venant's GJ and GA = 5/6 · 5e6, those of the square section; strains reach 1e-2.
+TEST(AncfElasticForces, CuredContinuumMeetsTheCurvedRod) {
+  Bar const bar{.length = 25 * pi,
+                .section = Rectangle{.height = 1, .width = 1},
+                .material = Material{.density = 1, .young = 1e7, .poisson = 0}};
+  auto const bend = [](double s) {
+    double const a = s / 100;
+    return Placement{100 * Vec3(std::sin(a), 1 - std::cos(a), 0), exp_so3<double>(Vec3(0, 0, a))};
+  };
+  Vec3 const exact(46.8915863910, 15.5576762394, 53.6079863172), start(70.7106781187, 29.2893218813, 0);
+  Vec3 const end = limit([&](Index n) {
+    return SpatialCantilever<Cured>(Cured::from(bar, n, bend), {.force = {0, 0, 600}}, {.load_steps = 4}).tip();
+  });
+  EXPECT_LT((end - exact).norm(), 1e-3 * (exact - start).norm());
+}
+
+}  // namespace

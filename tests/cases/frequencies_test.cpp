@@ -1,0 +1,136 @@
+// CASES E1, E2 and S9e: vibrations of straight beams, and where a pressed one buckles.
+
+#include <polybody/analysis/modes.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/equilibrium.hpp>
+#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/revolute.hpp>
+
+using namespace polybody;
+
+namespace {
+
+using Clamp = Joint<planar::Weld, Constraint>;
+using Pin = Joint<planar::Revolute, Constraint>;
+
+enum class Ends { clamped_free, pinned_pinned, free_free };
+
+/// Frequencies of a planar beam along x with these ends; rigid motions are left out.
+template <class B>
+VecX frequencies(Bar const& bar, Index n, Ends ends) {
+  Model<Bodies<B>, Joints<Clamp, Pin>> model;
+  auto const beam = model.add(B::from(bar, n), "beam");
+  double const l = bar.length;
+  if (ends == Ends::clamped_free) model.connect(Clamp{}, model.ground().at({0, 0, 0}), beam.at(0.0));
+  if (ends == Ends::pinned_pinned) {
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), beam.at(0.0));
+    model.connect(Pin{}, model.ground().at({l, 0, 0}), beam.at(l));
+  }
+  Modes const m = modes(model, model.reference_state(), 12);
+  Index const rigid = ends == Ends::free_free ? 3 : 0;
+  for (Index i = 0; i < rigid; ++i) EXPECT_LT(std::abs(m.frequency[i]), 1e-3 * m.frequency[rigid]);
+  return m.frequency.tail(m.frequency.size() - rigid);
+}
+
+/// A stiff EA keeps axial modes out of the way.
+Bar slender() { return {.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0}}; }
+
+// E1: 8 elements, clamped–free: modes 1 and 2 to 1e-4, mode 3 to 1e-3. With other ends the error is that of cubic elements with consistent
+// mass, ω_h/ω = 1 + (β l)⁴/1440 for an element of length l to leading
+// order (the dispersion of a wave in a row of them).
+TEST(EulerBernoulli, CableHasTheFrequenciesOfTheBeam) {
+  struct Row {
+    Ends ends;
+    double beta[3];
+  };
+  double const pi = std::numbers::pi;
+  for (Row const& row : {Row{Ends::clamped_free, {1.875104068711961, 4.694091132974175, 7.854757438237613}},
+                         Row{Ends::pinned_pinned, {pi, 2 * pi, 3 * pi}},
+                         Row{Ends::free_free, {4.730040744862704, 7.853204624095838, 10.99560783800167}}}) {
+    VecX const w = frequencies<planar::AncfCable<>>(slender(), 8, row.ends);
+    for (int i = 0; i < 3; ++i) {
+      double const exact = row.beta[i] * row.beta[i], error = w[i] / exact - 1.0;
+      if (row.ends == Ends::clamped_free) {
+        EXPECT_LT(std::abs(error), i < 2 ? 1e-4 : 1e-3) << i;
+      } else {
+        double const expected = std::pow(row.beta[i] / 8.0, 4) / 1440.0;
+        EXPECT_NEAR(error, expected, 0.2 * expected) << int(row.ends) << ' ' << i;
+      }
+    }
+  }
+}
+
+// In space every bending mode comes twice, once in each plane.
+TEST(EulerBernoulli, SpatialCableBendsInTwoPlanes) {
+  using Cable = AncfCable<>;
+  using Hold = Joint<Revolute, Constraint>;
+  Model<Bodies<Cable>, Joints<Hold>> model;
+  Placement const askew = Placement::at({1, 2, 3}, {0.4, -0.9, 1.7});
+  Bar bar = slender();
+  bar.placement = askew;
+  auto const cable = model.add(Cable::from(bar, 8), "cable");
+  model.connect(Hold{Revolute{.axis = askew.axes.col(0)}, {}}, model.ground().at(askew), cable.at(0.0), "clamp");
+  VecX const w = modes(model, model.reference_state()).frequency;
+  double const beta[] = {1.875104068711961, 4.694091132974175, 7.854757438237613};
+  for (int i = 0; i < 3; ++i)
+    for (int twin = 0; twin < 2; ++twin) EXPECT_NEAR(w[2 * i + twin], beta[i] * beta[i], (i < 2 ? 1e-4 : 1e-3) * beta[i] * beta[i]);
+}
+
+/// E2 (a): thick beam; rotary inertia and shear count.
+Bar thick() {
+  double const h = 0.4, e = 1e9, rho = 7850, a = h * h, i = h * h * h * h / 12.0, k = 0.849673202614;
+  return {.length = 2.0,
+          .constants = BarConstants{.EA = e * a, .EI = e * i, .mass_per_length = rho * a, .GA = k * e / 2.6 * a,
+                                    .rotary_inertia = rho * i}};
+}
+
+// Linear elements converge at second order: from n = 32 and 64 the limit by Richardson.
+TEST(Timoshenko, LrvfConvergesToTheThickBeam) {
+  struct Row {
+    Ends ends;
+    double omega[2];
+  };
+  for (Row const& row : {Row{Ends::pinned_pinned, {95.6339808811, 332.234513637}}, Row{Ends::clamped_free, {35.1471170634, 189.630725571}},
+                         Row{Ends::free_free, {204.165814718, 477.907465926}}}) {
+    VecX const coarse = frequencies<planar::Lrvf>(thick(), 16, row.ends), fine = frequencies<planar::Lrvf>(thick(), 32, row.ends);
+    for (int i = 0; i < 2; ++i) {
+      // axial modes lie between: take the nearest
+      auto const nearest = [&](VecX const& w) {
+        Index at = 0;
+        (w.array() - row.omega[i]).abs().minCoeff(&at);
+        return w[at];
+      };
+      double const c = nearest(coarse) - row.omega[i], f = nearest(fine) - row.omega[i];
+      EXPECT_NEAR(c / f, 4.0, 0.3) << int(row.ends) << ' ' << i;
+      EXPECT_NEAR(row.omega[i] + f - (c - f) / 3.0, row.omega[i], 2e-4 * row.omega[i]) << int(row.ends) << ' ' << i;
+    }
+  }
+}
+
+// S9e: clamped–free, P = π²EI/4L²: the lowest frequency vanishes there and the straight state is unstable beyond.
+TEST(Buckling, FrequencyVanishesAtEulersLoad) {
+  using Cable = planar::AncfCable<planar::EngineeringStrain>;
+  double const critical = 0.25 * std::numbers::pi * std::numbers::pi;
+  auto const lowest = [&](double load) {
+    Model<Bodies<Cable>, Joints<Clamp>, Forces<PointForce<>>> model;
+    auto const beam = model.add(Cable::from(slender(), 8), "column");
+    model.connect(Clamp{}, model.ground().at({0, 0, 0}), beam.at(0.0));
+    model.apply(PointForce<>{.force = {-load, 0, 0}}, beam.at(1.0));
+    State x = model.reference_state();
+    equilibrium(model, x);
+    return modes(model, x, 1).frequency[0];
+  };
+  EXPECT_GT(lowest(0.999 * critical), 0.0);
+  EXPECT_LT(lowest(1.001 * critical), 0.0);
+  EXPECT_LT(lowest(0.5 * critical), lowest(0.0));
+}
+
+}  // namespace

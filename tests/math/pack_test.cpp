@@ -1,0 +1,66 @@
+#include <polybody/math/pack.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/math/types.hpp>
+
+using namespace polybody;
+
+namespace {
+
+static_assert(KernelScalar<Pack<2>> && KernelScalar<Pack<4>> && KernelScalar<double>);
+static_assert(!KernelScalar<std::string>);
+template <class T>
+concept HasValue = requires(T const x) { value_of(x); };
+static_assert(!HasValue<Pack<>>, "A kernel that branches must not compile for packs.");
+
+template <int N>
+Pack<N> some(double first) {
+  Pack<N> p;
+  for (int i = 0; i < N; ++i) p.set(i, first + 0.37 * i);
+  return p;
+}
+
+/// f on a pack is f on each of its numbers.
+template <int N, class F>
+void expect_each(F&& f) {
+  Pack<N> const a = some<N>(0.6), b = some<N>(1.9), c = f(a, b);
+  for (int i = 0; i < N; ++i) EXPECT_DOUBLE_EQ(c[i], f(a[i], b[i])) << N << ' ' << i;
+}
+template <class F>
+void expect_each(F&& f) {
+  expect_each<2>(f);
+  expect_each<4>(f);
+}
+
+TEST(Pack, CalculatesWithEachNumber) {
+  using std::cos, std::sin, std::sqrt;
+  expect_each([](auto a, auto b) { return a + b; });
+  expect_each([](auto a, auto b) { return a - b; });
+  expect_each([](auto a, auto b) { return a * b; });
+  expect_each([](auto a, auto b) { return a / b; });
+  expect_each([](auto a, auto b) { return -a * +b; });
+  expect_each([](auto a, auto b) { return 2.0 * a - b / 3.0 + 1.0; });
+  expect_each([](auto a, auto) { return sqrt(a); });
+  expect_each([](auto a, auto) { return sin(a); });
+  expect_each([](auto a, auto) { return cos(a); });
+}
+
+TEST(Pack, IsZeroOrConstantWhenMade) {
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(Pack<4>()[i], 0.0);
+    EXPECT_EQ(Pack<4>(2.5)[i], 2.5);
+  }
+}
+
+TEST(Pack, IsAScalarOfEigen) {
+  Mat<Pack<>, 2, 2> m;
+  m << some<pack_size>(1.0), Pack<>(2.0), Pack<>(0.0), some<pack_size>(-1.0);
+  Vec<Pack<>, 2> const x(Pack<>(1.0), Pack<>(3.0)), y = m * x;
+  for (int i = 0; i < pack_size; ++i) {
+    EXPECT_DOUBLE_EQ(y[0][i], 7.0 + 0.37 * i);
+    EXPECT_DOUBLE_EQ(y[1][i], 3.0 * (-1.0 + 0.37 * i));
+  }
+}
+
+}  // namespace
