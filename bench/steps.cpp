@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <polybody/polybody.hpp>
 
-#include "chapter2.hpp"
+#include "../examples/chapter2.hpp"
 
 namespace {
 
