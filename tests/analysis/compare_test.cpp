@@ -8,7 +8,7 @@
 
 #include <sstream>
 
-namespace {
+namespace compare_test {
 
 using namespace polybody;
 
@@ -75,4 +75,4 @@ TEST(Compare, InterpolatesHistories) {
   EXPECT_DOUBLE_EQ(detail::interpolate(t, y, 9.0), 6.0);
 }
 
-}  // namespace
+}  // namespace compare_test

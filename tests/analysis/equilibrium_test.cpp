@@ -13,7 +13,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace equilibrium_test {
 
 using planar::Lrvf;
 using Clamp = Joint<planar::Weld, Constraint>;
@@ -183,4 +183,4 @@ TEST(Equilibrium, PenaltySupportsYieldByForceOverStiffness) {
   EXPECT_NEAR(error[1] / error[2], 100.0, 1.0);
 }
 
-}  // namespace
+}  // namespace equilibrium_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace formulation_test {
 
 using namespace polybody;
 
@@ -21,4 +21,4 @@ TEST(Formulation, CarriesTheValuesOfItsChoices) {
   EXPECT_DOUBLE_EQ(f.integrator.rho_inf, 0.5);
 }
 
-}  // namespace
+}  // namespace formulation_test

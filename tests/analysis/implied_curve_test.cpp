@@ -6,7 +6,7 @@
 
 #include "support/refusal.hpp"
 
-namespace {
+namespace implied_curve_test {
 
 using namespace polybody;
 
@@ -141,4 +141,4 @@ TEST(ImpliedCurve, RefusesNothingToIntegrate) {
   EXPECT_TRUE(has(refusal([&] { (void)implied_curve(field, 1.0, 0); }), "at least one piece"));
 }
 
-}  // namespace
+}  // namespace implied_curve_test

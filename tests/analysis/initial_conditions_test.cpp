@@ -11,7 +11,7 @@
 #include "support/refusal.hpp"
 
 namespace polybody {
-namespace {
+namespace initial_conditions_test {
 
 using Pin = Joint<planar::Revolute, Constraint>;
 using TestModel = Model<Bodies<planar::Rigid>, Joints<Pin>>;
@@ -167,5 +167,5 @@ TEST(InitialConditions, AStateThatIsNotFiniteIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace initial_conditions_test
 }  // namespace polybody

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace mesh_diagnostics_test {
 
 using namespace polybody;
 
@@ -55,4 +55,4 @@ TEST(MeshDiagnostics, StretchLengthensThePositionMeshOnly) {
   EXPECT_NEAR(d.rotation_length, 2.0, 1e-14);
 }
 
-}  // namespace
+}  // namespace mesh_diagnostics_test

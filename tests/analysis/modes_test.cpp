@@ -15,7 +15,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace modes_test {
 
 // The whole stiffness of a hinged rod is a second-order term: ω² = m g d/J about the hinge, here 3g/2L; upside down it is −3g/2L.
 TEST(Modes, OfAHangingAndOfAStandingRod) {
@@ -95,4 +95,4 @@ TEST(Modes, AskForAStateOfRest) {
   EXPECT_TRUE(has(refusal([&] { modes(o.model, o.x); }), "the state must be at rest"));
 }
 
-}  // namespace
+}  // namespace modes_test

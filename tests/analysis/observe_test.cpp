@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace observe_test {
 
 /// A rod of 3 kg and 2 m, 0.5 m from the origin, between two springs.
 struct Rod {
@@ -26,8 +26,6 @@ struct Rod {
     model.set_velocity(x, rod, {1.0, 2.0, 0}, {0, 0, -4.0});
   }
 };
-
-}  // namespace
 
 // v of the middle is (1, 2) + ω × (0.5, 0.25) = (1 + 1, 2 − 2).
 TEST(Energy, IsThatOfTheHandCalculation) {
@@ -110,3 +108,5 @@ TEST(Census, CountsAsTheThesisDoes) {
   EXPECT_EQ(plane.rows, 2 + 3 + 1);
   EXPECT_EQ(plane.degrees_of_freedom, 24 - 6);
 }
+
+}  // namespace observe_test

@@ -16,7 +16,7 @@
 #include "support/refusal.hpp"
 
 namespace polybody {
-namespace {
+namespace simulate_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -436,5 +436,5 @@ TEST(Simulate, StepControlKeepsToTheLargestStep) {
   EXPECT_LT(longest(held, 0.01), 0.0102);  // the last step may be longer by a hundredth
 }
 
-}  // namespace
+}  // namespace simulate_test
 }  // namespace polybody

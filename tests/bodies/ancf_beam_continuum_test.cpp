@@ -5,7 +5,7 @@
 #include "support/flexible_body_laws.hpp"
 
 namespace polybody {
-namespace {
+namespace ancf_beam_continuum_test {
 
 /// Different axial and shear times, a section that is not square.
 template <Locking locking>
@@ -112,5 +112,5 @@ TEST(AncfContinuum, BendsWithTheConstrainedModulusAndTwistsWithThePolarMoment) {
   EXPECT_NEAR(energy_of(body, 0, d), 0.5 * 1.3 * polar * d * d, 1e-5 * polar * d * d);
 }
 
-}  // namespace
+}  // namespace ancf_beam_continuum_test
 }  // namespace polybody

@@ -11,12 +11,12 @@
 #include "support/refusal.hpp"
 
 namespace polybody {
-namespace {
+namespace ancf_beam_reference_test {
 
 static_assert(AlikeElements<AncfBeam<>> && AlikeElements<AncfBeam<Continuum<>>>);
 
 template <class V>
-auto view(V const& x) {
+auto as_span(V const& x) {
   return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
 }
 std::span<double> mutable_view(VecX& x) { return {x.data(), std::size_t(x.size())}; }
@@ -51,7 +51,7 @@ VecX deformed(VecX const& q, unsigned seed) {
 template <class B>
 double energy(B const& body, VecX const& q) {
   double sum = 0.0;
-  for (Index e = 0; e < body.elements(); ++e) sum += body.strain_energy(e, view(q));
+  for (Index e = 0; e < body.elements(); ++e) sum += body.strain_energy(e, as_span(q));
   return sum;
 }
 
@@ -72,11 +72,11 @@ TYPED_TEST(AncfReference, CurvedReferenceStandsOnItsCurveWithoutStress) {
   }
   for (Index e = 0; e < 3; ++e) {
     Vec<double, 24> f;
-    body.template force<double>(e, view(q), view(rest), f);
+    body.template force<double>(e, as_span(q), as_span(rest), f);
     EXPECT_LT(f.norm(), 1e-11);
   }
   EXPECT_LT(energy(body, q), 1e-24);
-  EXPECT_LT(body.strain(body.at(0.6, 0.1, -0.05), view(q)).norm(), 1e-14);
+  EXPECT_LT(body.strain(body.at(0.6, 0.1, -0.05), as_span(q)).norm(), 1e-14);
 }
 
 TYPED_TEST(AncfReference, CurvedElementsHaveTheirOwnForceAndTangent) {
@@ -87,20 +87,20 @@ TYPED_TEST(AncfReference, CurvedElementsHaveTheirOwnForceAndTangent) {
   VecXOf<D> const moving = v.cast<D>();
   for (Index e = 0; e < 3; ++e) {
     Mat<double, 24, 24> k;
-    body.tangent(e, view(q), view(v), 1.0, 0.0, k);
+    body.tangent(e, as_span(q), as_span(v), 1.0, 0.0, k);
     Vec<double, 24> still, slope, column;
-    body.template force<double>(e, view(q), view(rest), still);
+    body.template force<double>(e, as_span(q), as_span(rest), still);
     for (int j = 0; j < 24; ++j) {
       VecXOf<D> moved = q.cast<D>();
       moved[12 * e + j].d[0] = 1.0;
       Vec<D, 24> f;
-      body.template force<D>(e, view(moved), view(moving), f);
+      body.template force<D>(e, as_span(moved), as_span(moving), f);
       for (int i = 0; i < 24; ++i) column[i] = f[i].d[0];
       EXPECT_LT((k.col(j) + column).norm(), 1e-12 * k.norm()) << j;
       slope[j] = slope_at_zero([&](double h) {
         VecX at = q;
         at[12 * e + j] += h;
-        return body.strain_energy(e, view(at));
+        return body.strain_energy(e, as_span(at));
       });
     }
     EXPECT_LT((still + slope).norm(), 1e-8 * still.norm());
@@ -117,11 +117,11 @@ TYPED_TEST(AncfReference, StraightCurveIsTheStraightBar) {
   for (Index e = 0; e < 3; ++e) {
     Vec<double, 24> a, b;
     Mat<double, 24, 24> m, n;
-    straight.template force<double>(e, view(q), view(v), a);
-    curved.template force<double>(e, view(q), view(v), b);
+    straight.template force<double>(e, as_span(q), as_span(v), a);
+    curved.template force<double>(e, as_span(q), as_span(v), b);
     EXPECT_LT((a - b).norm(), 1e-12 * a.norm());
-    straight.mass(e, view(q), m);
-    curved.mass(e, view(q), n);
+    straight.mass(e, as_span(q), m);
+    curved.mass(e, as_span(q), n);
     EXPECT_LT((m - n).norm(), 1e-13 * m.norm());
   }
 }
@@ -131,9 +131,9 @@ TYPED_TEST(AncfReference, CurvedBarHasTheMassOfTheStraightOne) {
   TypeParam const body = TypeParam::from(bar(), 6, curve);
   VecX const q = reference_of(body);
   VecX v(q.size());
-  body.rigid_velocity(view(q), Vec3(0, 0, 1), Vec3::Zero(), mutable_view(v));
+  body.rigid_velocity(as_span(q), Vec3(0, 0, 1), Vec3::Zero(), mutable_view(v));
   double energy = 0.0;
-  for (Index e = 0; e < 6; ++e) energy += body.kinetic_energy(e, view(q), view(v));
+  for (Index e = 0; e < 6; ++e) energy += body.kinetic_energy(e, as_span(q), as_span(v));
   EXPECT_NEAR(energy, 0.5 * 45 * 1.3 * 0.25 * 0.18, 1e-13 * energy);
 }
 
@@ -149,7 +149,7 @@ TYPED_TEST(AncfReference, PretensionIsTheSectionForceOfTheReference) {
     VecX f = VecX::Zero(q.size()), stretching = f;
     for (Index e = 0; e < 3; ++e) {
       Vec<double, 24> x;
-      body.template force<double>(e, view(q), view(rest), x);
+      body.template force<double>(e, as_span(q), as_span(rest), x);
       f.segment<24>(12 * e) += x;
     }
     for (Index i = 0; i < q.size(); i += 12) stretching.segment<6>(i) = q.segment<6>(i);
@@ -170,18 +170,18 @@ TYPED_TEST(AncfReference, BatchesEqualElementsOneByOne) {
     TypeParam const body = bent ? TypeParam::from(bar(), n, curve) : TypeParam::from(bar(), n);
     VecX const q = deformed(reference_of(body), 5), v = deformed(VecX::Zero(q.size()), 6), a = deformed(VecX::Zero(q.size()), 7);
     Index next = 0;
-    for_each_unbalance<TypeParam, double>(body, 0, n, view(q), view(v), view(a), [&](Index e, Vec<double, 24> const& x) {
+    for_each_unbalance<TypeParam, double>(body, 0, n, as_span(q), as_span(v), as_span(a), [&](Index e, Vec<double, 24> const& x) {
       ASSERT_EQ(e, next++);
       Vec<double, 24> inertia, force;
-      body.template inertia<double>(e, view(q), view(a), inertia);
-      body.template force<double>(e, view(q), view(v), force);
+      body.template inertia<double>(e, as_span(q), as_span(a), inertia);
+      body.template force<double>(e, as_span(q), as_span(v), force);
       EXPECT_LT((x - (inertia - force)).norm(), 1e-12 * force.norm());
     });
     EXPECT_EQ(next, n);
-    for_each_element_tangent<TypeParam>(body, 0, n, view(q), view(v), 1.5, 0.1, 0.7, [&](Index e, auto const& k) {
+    for_each_element_tangent<TypeParam>(body, 0, n, as_span(q), as_span(v), 1.5, 0.1, 0.7, [&](Index e, auto const& k) {
       Mat<double, 24, 24> expected, mass;
-      body.tangent(e, view(q), view(v), 0.7, 0.1, expected);
-      body.mass(e, view(q), mass);
+      body.tangent(e, as_span(q), as_span(v), 0.7, 0.1, expected);
+      body.mass(e, as_span(q), mass);
       expected += 1.5 * mass;
       EXPECT_LT((k - expected).norm(), 1e-12 * expected.norm()) << e;
     });
@@ -252,5 +252,5 @@ TEST(AncfBeam, RefusesCurvesThatNoBarFollows) {
                   "the reference curve at s = 0"));
 }
 
-}  // namespace
+}  // namespace ancf_beam_reference_test
 }  // namespace polybody

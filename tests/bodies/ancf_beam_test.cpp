@@ -5,7 +5,7 @@
 #include "support/flexible_body_laws.hpp"
 
 namespace polybody {
-namespace {
+namespace ancf_beam_test {
 
 struct ElasticLineCase {
   static Bar bar() {
@@ -186,5 +186,5 @@ TEST(AncfElasticLine, MarkerIsTheMaterialPointAndTheSectionsFrame) {
   EXPECT_THROW((void)beam.gradient_map(p, 3), InvalidInput);
 }
 
-}  // namespace
+}  // namespace ancf_beam_test
 }  // namespace polybody

@@ -9,7 +9,7 @@
 #include "support/refusal.hpp"
 
 namespace polybody {
-namespace {
+namespace ancf_cable_test {
 
 template <class Strain>
 struct SpatialCableCase {
@@ -166,5 +166,5 @@ TEST(SpatialCable, RefusesWhatCannotBeMeant) {
   EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 1); }), "EA must be positive"));
 }
 
-}  // namespace
+}  // namespace ancf_cable_test
 }  // namespace polybody

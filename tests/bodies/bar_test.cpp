@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace bar_test {
 
 double const pi = std::numbers::pi;
 double const nan_ = std::numeric_limits<double>::quiet_NaN();
@@ -188,4 +188,4 @@ TEST(Bar, InsideForgivesRoundingAndClamps) {
     EXPECT_TRUE(has(refusal([&] { (void)require_inside(s, 2.0, "rod"); }), "rod: s = ")) << s;
 }
 
-}  // namespace
+}  // namespace bar_test

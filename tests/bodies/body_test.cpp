@@ -11,7 +11,7 @@
 #include "support/differences.hpp"
 
 namespace polybody {
-namespace {
+namespace body_test {
 
 static_assert(Body<Rigid<>> && Body<Rigid<UnitQuaternion>>);
 static_assert(Body<planar::Rigid> && Body<planar::Lrvf>);
@@ -110,5 +110,5 @@ TEST(Bodies, AtIsTheSameMaterialPointInAll) {
     }
 }
 
-}  // namespace
+}  // namespace body_test
 }  // namespace polybody

@@ -9,7 +9,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace element_batches_test {
 
 static_assert(AlikeElements<planar::AncfCable<>> && AlikeElements<planar::AncfCable<planar::EngineeringStrain>>);
 static_assert(!AlikeElements<planar::Lrvf> && !AlikeElements<Rigid<>>);
@@ -89,4 +89,4 @@ TYPED_TEST(ElementBatches, DoNotDependOnHowALoopIsCut) {
   }
 }
 
-}  // namespace
+}  // namespace element_batches_test

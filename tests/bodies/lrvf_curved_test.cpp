@@ -7,7 +7,7 @@
 
 namespace polybody {
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(BodyLaws);
-namespace {
+namespace lrvf_curved_test {
 
 /// A helix of curvature κ and torsion τ in its Frenet axes: R = exp(s (τ, 0, κ)), r = ∫ R e₁ ds = s Jl(s k) e₁.
 ReferenceCurve helix(double curvature, double torsion) {
@@ -82,5 +82,5 @@ TEST_F(CurvedLrvf, UniformStretchAndBendOfAnArcAreMeasuredExactly) {
   EXPECT_LT((beam.strains(beam.at(0.7), view(bent)) - expected).norm(), 1e-14);
 }
 
-}  // namespace
+}  // namespace lrvf_curved_test
 }  // namespace polybody

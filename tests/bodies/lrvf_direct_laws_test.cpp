@@ -7,7 +7,7 @@
 #include "support/spatial_lrvf.hpp"
 
 namespace polybody {
-namespace {
+namespace lrvf_direct_laws_test {
 
 struct DirectLrvfCase {
   static Bar bar() { return spatial_lrvf_bar(); }
@@ -20,5 +20,5 @@ struct ElasticDirectCase : DirectLrvfCase {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(DirectLrvf, FlexibleBodyLaws, ElasticDirectCase);
 
-}  // namespace
+}  // namespace lrvf_direct_laws_test
 }  // namespace polybody

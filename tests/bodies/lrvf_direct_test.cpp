@@ -8,7 +8,7 @@
 #include "support/spatial_lrvf.hpp"
 
 namespace polybody {
-namespace {
+namespace lrvf_direct_test {
 
 double const pi = std::numbers::pi;
 
@@ -124,5 +124,5 @@ TEST(DirectLrvf, AnElementAcrossAHalfTurnTakesTheShortWay) {
   EXPECT_NEAR(strain<Direct>(q)[3], 0.4 / l, 1e-13);
 }
 
-}  // namespace
+}  // namespace lrvf_direct_test
 }  // namespace polybody

@@ -6,7 +6,7 @@
 #include "support/spatial_lrvf.hpp"
 
 namespace polybody {
-namespace {
+namespace lrvf_laws_test {
 
 struct SpatialLrvfCase {
   static Bar bar() { return spatial_lrvf_bar(); }
@@ -19,5 +19,5 @@ struct ElasticLrvfCase : SpatialLrvfCase {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(SpatialLrvf, FlexibleBodyLaws, ElasticLrvfCase);
 
-}  // namespace
+}  // namespace lrvf_laws_test
 }  // namespace polybody

@@ -8,7 +8,7 @@
 #include "support/spatial_lrvf.hpp"
 
 namespace polybody {
-namespace {
+namespace lrvf_test {
 
 using std::numbers::pi;
 
@@ -197,5 +197,5 @@ TEST(SpatialLrvf, RefusesWhatItCannotMean) {
   EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 3, still); }), "has a chord of 0"));
 }
 
-}  // namespace
+}  // namespace lrvf_test
 }  // namespace polybody

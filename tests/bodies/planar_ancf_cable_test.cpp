@@ -5,7 +5,7 @@
 #include "support/flexible_body_laws.hpp"
 
 namespace polybody {
-namespace {
+namespace planar_ancf_cable_test {
 
 using planar::AncfCable, planar::EngineeringStrain, planar::GreenStrain;
 
@@ -168,5 +168,5 @@ TEST(AncfCable, NeedsNoShearStiffness) {
   EXPECT_NO_THROW((void)AncfCable<>::from(CableCase<GreenStrain>::bar(), 1));
 }
 
-}  // namespace
+}  // namespace planar_ancf_cable_test
 }  // namespace polybody

@@ -9,7 +9,7 @@
 #include "support/refusal.hpp"
 
 namespace polybody {
-namespace {
+namespace planar_beam_test {
 
 // What the template itself does, whatever its theory; the theories' own numbers are in their own tests.
 template <class B>
@@ -127,5 +127,5 @@ TYPED_TEST(PlanarBeam, RefusesPointsThatAreNone) {
   EXPECT_TRUE(has(refusal([&] { (void)beam.at(0.5, std::nan("")); }), "y of a point"));
 }
 
-}  // namespace
+}  // namespace planar_beam_test
 }  // namespace polybody

@@ -6,7 +6,7 @@
 #include "support/refusal.hpp"
 
 namespace polybody {
-namespace {
+namespace planar_lrvf_test {
 
 struct LrvfCase {
   static Bar bar() {
@@ -128,5 +128,5 @@ TEST(Lrvf, NeedsAShearStiffness) {
   EXPECT_TRUE(has(refusal([&] { (void)planar::Lrvf::from(bar, 3); }), "planar::Lrvf: the shear stiffness GA"));
 }
 
-}  // namespace
+}  // namespace planar_lrvf_test
 }  // namespace polybody

@@ -6,7 +6,7 @@
 #include "support/refusal.hpp"
 
 namespace polybody {
-namespace {
+namespace planar_rigid_test {
 
 struct PlanarRigidCase {
   static Bar bar() {
@@ -69,5 +69,5 @@ TEST(PlanarRigid, RefusesPointsThatAreNone) {
   EXPECT_TRUE(has(refusal([] { (void)planar::Rigid(1.0, 1.0).at(Vec2(0, nan_)); }), "the point"));
 }
 
-}  // namespace
+}  // namespace planar_rigid_test
 }  // namespace polybody

@@ -14,7 +14,7 @@
 #include "support/body_laws.hpp"
 
 namespace polybody {
-namespace {
+namespace rigid_euler_parameters_test {
 
 struct EulerCase {
   static Bar bar() {
@@ -116,5 +116,5 @@ TEST(EulerParameterNames, OwnRowIsNamedByItsBody) {
   EXPECT_EQ(system.name_of(16), "joint \"pivot\"");
 }
 
-}  // namespace
+}  // namespace rigid_euler_parameters_test
 }  // namespace polybody

@@ -6,7 +6,7 @@
 #include "support/refusal.hpp"
 
 namespace polybody {
-namespace {
+namespace rigid_test {
 
 struct RigidCase {
   static Bar bar() {
@@ -167,5 +167,5 @@ TEST(Rigid, RefusesPointsThatAreNone) {
   EXPECT_TRUE(has(refusal([&] { (void)rod.at(Vec3(0, nan_, 0)); }), "the point"));
 }
 
-}  // namespace
+}  // namespace rigid_test
 }  // namespace polybody

@@ -9,7 +9,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace strain_group_test {
 
 // The energy law itself, against dual numbers: for every group of every theory.
 template <class Law_, int columns>
@@ -139,4 +139,4 @@ TYPED_TEST(StrainGroupLaws, PacksCalculateWithEachElement) {
   }
 }
 
-}  // namespace
+}  // namespace strain_group_test

@@ -11,7 +11,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace ancf_beam_agreement_test {
 
 using Line = AncfBeam<ElasticLine>;
 using Cured = AncfBeam<Continuum<>>;
@@ -67,4 +67,4 @@ TEST(AncfElasticForces, CuredContinuumMeetsTheCurvedRod) {
   EXPECT_LT((end - exact).norm(), 1e-3 * (exact - start).norm());
 }
 
-}  // namespace
+}  // namespace ancf_beam_agreement_test

@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace ancf_beam_locking_test {
 
 using Plain = AncfBeam<Continuum<Locking::present>>;
 using Cured = AncfBeam<Continuum<>>;
@@ -97,4 +97,4 @@ TEST(AncfLocking, CuredBeamUnderALargeLoadIsTheRodUpToTheStrain) {
   EXPECT_LT((tip<Cured>(thick(), 32, {0, 6.25e7, 0}, 4) - exact).norm(), 0.14 * exact.norm() / 8);
 }
 
-}  // namespace
+}  // namespace ancf_beam_locking_test

@@ -11,7 +11,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace ancf_beam_statics_test {
 
 using Beam = AncfBeam<>;
 using std::numbers::pi;
@@ -182,4 +182,4 @@ TEST(AncfBatheBolourchi, SectionGivesTheSaintVenantConstants) {
   EXPECT_LT((limit(bathe(square, 32, 600), bathe(square, 64, 600)) - exact).norm(), 3e-6 * exact.norm());
 }
 
-}  // namespace
+}  // namespace ancf_beam_statics_test

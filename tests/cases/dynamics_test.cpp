@@ -3,7 +3,7 @@
 
 #include <polybody/polybody.hpp>
 
-namespace {
+namespace dynamics_test {
 
 using namespace polybody;
 using planar::EngineeringStrain;
@@ -196,4 +196,4 @@ TEST(FlexiblePendulum, StiffCable) {
   pendulum(Cable::from(stiff(), 8), d6c, 1e-4, 1e-4, 9.81 / ratio);
 }
 
-}  // namespace
+}  // namespace dynamics_test

@@ -16,7 +16,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace frequencies_test {
 
 using Clamp = Joint<planar::Weld, Constraint>;
 using Pin = Joint<planar::Revolute, Constraint>;
@@ -133,4 +133,4 @@ TEST(Buckling, FrequencyVanishesAtEulersLoad) {
   EXPECT_LT(lowest(0.5 * critical), lowest(0.0));
 }
 
-}  // namespace
+}  // namespace frequencies_test

@@ -12,7 +12,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace redundant_joints_test {
 
 /// N windows of uniform rods of 1 m and 1 kg; upright, θ˙ = 1 rad/s [IFToMM A02].
 template <class Where>
@@ -43,8 +43,6 @@ struct FourBars {
 };
 using Plane = FourBars<InPlane<Constraint>>;
 using Space = FourBars<InSpace<Constraint>>;
-
-}  // namespace
 
 // R2: through the flat position, where the rows lose a rank, four or five times in 4 s; the peer's error at this step and
 // 10 s is 5e-5.
@@ -98,8 +96,6 @@ TEST(FourBar, ExplicitMethodsTakeRedundantRowsToo) {
   EXPECT_LT((space.corner() - plane.corner()).norm(), 1e-9);
 }
 
-namespace {
-
 /// The Bricard mechanism [IFToMM A04]: five rods of 1 m and 1 kg of width h, six pins, one degree of freedom, of which no
 /// count of rows knows. h = 0 are thin rods: their mass is singular as well.
 struct Bricard {
@@ -150,8 +146,6 @@ void bricard(double h, std::vector<std::pair<double, Vec3>> const& exact) {
   }
 }
 
-}  // namespace
-
 // R4; the published tolerance of the energy is 1e-3 J.
 TEST(Bricard, SquareRodsMoveAsPublished) {
   bricard(0.1, {{0.5, {0.968283679, -1.224625159, 0.750146609}},
@@ -186,3 +180,5 @@ TEST(RedundantJoint, IsNamedAndHarmless) {
   EXPECT_EQ(named, std::vector<std::string>{"joint \"pin again\""});
   EXPECT_LT((once - twice).norm(), 1e-10);
 }
+
+}  // namespace redundant_joints_test

@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace rigid_chain_test {
 
 using Plane = Chain<InPlane<Constraint>>;
 using Space = Chain<InSpace<Constraint>>;
@@ -49,8 +49,6 @@ std::vector<Angles> const chrono{{0.5, 0.801614759963, 1.357616418761},
                                  {2, -0.308903760931, -3.342138789353}};
 
 Link const chrono_link{.length = 1.0, .mass = 1.0, .inertia = 1.0, .com = 0.5};
-
-}  // namespace
 
 TEST(DoublePendulum, OfPointMassesFollowsThePublishedAngles) {
   Plane const chain(2, point_link());
@@ -92,8 +90,6 @@ TEST(DoublePendulum, OfThePeerKeepsItsTolerances) {
   EXPECT_NEAR(x.v[11], -3.9480427098, 1e-3);
 }
 
-namespace {
-
 struct Tip {
   int links;
   double t, x, y;
@@ -118,8 +114,6 @@ void expect_tips(int links, I const& integrator, double step, double until, doub
   EXPECT_GE(compared, 2);
 }
 
-}  // namespace
-
 TEST(LongPendulum, TipIsWhereThePublishedOneIs) {
   for (int const links : {3, 4, 10}) expect_tips<Plane>(links, precise(), 1e-3, 1.0, 1e-7);
 }
@@ -130,3 +124,5 @@ TEST(LongPendulum, TipIsThereWithImplicitSteps) {
   for (int const links : {3, 4, 10}) expect_tips<Plane>(links, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5);
   expect_tips<Space>(10, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5);
 }
+
+}  // namespace rigid_chain_test

@@ -12,7 +12,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace rigid_pendulum_test {
 
 constexpr double g = 9.81, half_pi = 0.5 * std::numbers::pi;
 
@@ -44,8 +44,6 @@ void expect_r1(C const& chain, Marker<typename C::Body> const& end, I const& int
     EXPECT_NEAR(at[2], 0.0, 1e-12);
   }
 }
-
-}  // namespace
 
 TEST(ExactPendulum, HasThePublishedDigits) {
   ExactPendulum const point(-half_pi, g);
@@ -99,8 +97,6 @@ TEST(PointMassPendulum, InSpaceTakesTheStepsOfThePlane) {
   EXPECT_NEAR(std::sin(plane.angle(in_plane)), r1[1].x, 2e-3);  // h = 0.01
 }
 
-namespace {
-
 /// CASES J1: a uniform rod released horizontally; R on the rod at the pivot.
 struct Swing {
   double t, angle, rate, rx, ry;
@@ -125,8 +121,6 @@ void expect_j1(C const& chain, double tolerance) {
     EXPECT_NEAR(local.m.norm(), 0.0, 1e-9);  // the pin's plane holds the rod
   }
 }
-
-}  // namespace
 
 TEST(RodPendulum, HasThePublishedReactions) {
   expect_j1(Plane(1, bar_link()), 1e-9);
@@ -183,8 +177,6 @@ TEST(RodPendulum, FollowsTheAdamsCase) {
   }
 }
 
-namespace {
-
 /// The time after which a rod, released horizontally, is at rest again at the side of its release [s].
 template <class C>
 double period(C const& chain, double h = 1e-3) {
@@ -199,8 +191,6 @@ double period(C const& chain, double h = 1e-3) {
 }
 
 Penalty stiff(double k) { return {.stiffness = k, .damping = 0.7 * std::sqrt(k)}; }
-
-}  // namespace
 
 TEST(RodPendulum, HasTheAnalyticPeriod) {
   double const exact = ExactPendulum(half_pi, 1.5 * g).period();
@@ -235,3 +225,5 @@ TEST(RodPendulum, GapOfAPenaltyIsTheReactionOverItsStiffness) {
   expect_gap(Chain<InPlane<Penalty>>(1, bar_link(), g, half_pi, stiff(1e7)), 1e7);
   expect_gap(Chain<InSpace<Penalty>>(1, bar_link(), g, half_pi, stiff(1e7)), 1e7);
 }
+
+}  // namespace rigid_pendulum_test

@@ -11,7 +11,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace rigid_top_test {
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 
@@ -32,8 +32,6 @@ struct HeavyTop {
 
 /// Euler parameters up to their common sign.
 double distance(Vec4 const& a, Vec4 const& b) { return std::min((a - b).norm(), (a + b).norm()); }
-
-}  // namespace
 
 TEST(HeavyTop, IsWhereThePublishedSolutionIs) {
   struct {
@@ -98,8 +96,6 @@ TEST(SlowTop, IsWhereThePublishedSolutionIs) {
   }
 }
 
-namespace {
-
 /// CASES R7 (Dzhanibekov): I = (1, 2, 3), spun about the middle axis.
 struct FreeBody {
   Model<Bodies<Rigid<>>, Joints<>> model;
@@ -119,8 +115,6 @@ Spin const r7[] = {{0.5, {-0.0122755034, 4.9999949312, 0.0108118451}},
                    {1.0, {-0.0648826095, 4.9995890078, 0.0383395054}},
                    {2.0, {-1.1612500596, 4.8632908919, 0.6704977507}},
                    {3.0, {-3.8681418083, -3.1682138423, 2.2332876400}}};
-
-}  // namespace
 
 TEST(TorqueFreeBody, TumblesAsPublished) {
   FreeBody body;
@@ -149,3 +143,5 @@ TEST(TorqueFreeBody, ConvergesAtSecondOrderWithGeneralizedAlpha) {
   EXPECT_GT(std::log2(errors[1] / errors[2]), 1.9) << testing::PrintToString(errors);
   EXPECT_LT(errors[2], 1e-2);
 }
+
+}  // namespace rigid_top_test

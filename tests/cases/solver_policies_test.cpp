@@ -14,7 +14,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace solver_policies_test {
 
 /// In the plane: a rigid link on an ideal pin, a cable on it, and another link hung on the cable by a stiff pin. Its
 /// tangents are symmetric.
@@ -61,8 +61,6 @@ struct GeneralSolverPolicies : testing::Test {};
 using GeneralSolver = testing::Types<EigenSparseLu, BlockLu, BlockSolver>;
 TYPED_TEST_SUITE(GeneralSolverPolicies, GeneralSolver);
 
-}  // namespace
-
 TYPED_TEST(SolverPolicies, MoveAMixedModelAlikeAndGiveTheSameBitsTwice) {
   Mixed const mixed;
   State const x = moved<TypeParam>(mixed.model), again = moved<TypeParam>(mixed.model);
@@ -74,3 +72,5 @@ TYPED_TEST(GeneralSolverPolicies, MoveAChainOfBallsAlike) {
   Chain<OnBallJoints<Constraint>> const chain(8, bar_link(0.2));
   EXPECT_LT(apart(moved<TypeParam>(chain.model), moved<DenseLu>(chain.model)), 1e-8);
 }
+
+}  // namespace solver_policies_test

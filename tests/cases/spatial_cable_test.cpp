@@ -18,7 +18,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace spatial_cable_test {
 
 using Cable = AncfCable<EngineeringStrain>;
 using Clamp = Joint<Revolute, Constraint>;
@@ -158,4 +158,4 @@ TEST(SpinningCablePendulum, FollowsTheConvergedMotion) {
   }
 }
 
-}  // namespace
+}  // namespace spatial_cable_test

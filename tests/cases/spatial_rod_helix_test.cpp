@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace spatial_rod_helix_test {
 
 using std::numbers::pi;
 using Rod = SpatialCantilever<Lrvf<>>;
@@ -45,4 +45,4 @@ TEST(CantileverToHelix, MeetsTheExactRodThroughFiveTurns) {
   }
 }
 
-}  // namespace
+}  // namespace spatial_rod_helix_test

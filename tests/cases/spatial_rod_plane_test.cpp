@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace spatial_rod_plane_test {
 
 template <class Interpolation = Objective>
 using Rod = SpatialCantilever<Lrvf<Interpolation>>;
@@ -125,4 +125,4 @@ TEST(LateralBuckling, StripBucklesAtTheExactForce) {
   EXPECT_NEAR((16 * twice - once) / 15, 8554.9932, 1e-3);
 }
 
-}  // namespace
+}  // namespace spatial_rod_plane_test

@@ -11,7 +11,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace spatial_rod_test {
 
 using std::numbers::pi;
 using Rod = SpatialCantilever<Lrvf<>>;
@@ -157,4 +157,4 @@ TEST(PreTwistedCantilever, MeetsTheExactRod) {
   EXPECT_LT((z - Vec3(0, 1.7187438e-3, 1.7496234e-3)).tail<2>().norm(), 1e-10);
 }
 
-}  // namespace
+}  // namespace spatial_rod_test

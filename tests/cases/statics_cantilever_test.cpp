@@ -12,7 +12,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace statics_cantilever_test {
 
 using Cable = planar::AncfCable<planar::EngineeringStrain>;
 using planar::Lrvf;
@@ -156,4 +156,4 @@ TEST(InclinedBeam, MeshesConvergeToTheExactRod) {
   EXPECT_LT(((4.0 * b - a) / 3.0 - exact).cwiseAbs().maxCoeff(), 1e-7);
 }
 
-}  // namespace
+}  // namespace statics_cantilever_test

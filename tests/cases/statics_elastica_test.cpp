@@ -11,7 +11,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace statics_elastica_test {
 
 using Cable = planar::AncfCable<planar::EngineeringStrain>;
 using planar::Lrvf;
@@ -111,4 +111,4 @@ TEST(Elastica, UnderAFollowingTipForce) {
   for (Tip const& t : follower) meets(t, CantileverLoad{.force = {0, t.load}, .axes = LoadAxes::marker});
 }
 
-}  // namespace
+}  // namespace statics_elastica_test

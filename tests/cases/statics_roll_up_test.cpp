@@ -12,7 +12,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace statics_roll_up_test {
 
 using std::numbers::pi;
 using planar::EngineeringStrain, planar::GreenStrain, planar::Lrvf;
@@ -119,4 +119,4 @@ TEST(RollUp, GreenCableTurnsFartherByTheStretchOfItsCurvature) {
   EXPECT_LT(error[2], 1e-6);
 }
 
-}  // namespace
+}  // namespace statics_roll_up_test

@@ -4,9 +4,10 @@
 
 #include "../../examples/chapter2.hpp"
 
-namespace {
+namespace thesis_chapter2_test {
 
 using namespace chapter2;
+
 using planar::Lrvf;
 
 // Largest gap between the nodes of the two meshes during the ramp.
@@ -37,7 +38,7 @@ TEST(ThesisChapter2, AxialForceStretchesThePositionMeshOnly) {
 }
 
 TEST(ThesisChapter2, TipMomentBringsTheMeshesApart) {
-  Cantilever<Lrvf> beam(bar(low, 7850.0), 10, 30e3);
+  chapter2::Cantilever<Lrvf> beam(bar(low, 7850.0), 10, 30e3);
   State x = beam.model.reference_state();
   simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 2.0, .step = 1e-3}).run();
   MeshDiagnostics const d = mesh_diagnostics(beam.beam.body, coordinates_of(beam.model, x, beam.beam));
@@ -54,4 +55,4 @@ TEST(ThesisChapter2, TipMomentBringsTheMeshesApart) {
   EXPECT_GT(jump, 0.01);
 }
 
-}  // namespace
+}  // namespace thesis_chapter2_test

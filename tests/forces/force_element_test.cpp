@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace force_element_test {
 
 // f = (k · pose, c · twist) of a frame: its gradient is known by heart.
 struct Linear {
@@ -58,4 +58,4 @@ struct Silent {
 static_assert(!ForceElement<Unchecked> && !ForceElement<OfOneWrenchTooMany> && !ForceElement<Silent>);
 static_assert(!ForceElement<OfNoMarker>);
 
-}  // namespace
+}  // namespace force_element_test

@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace gravity_test {
 
 TEST(Gravity, IsNoneUnlessGiven) {
   EXPECT_EQ(Gravity{}.g, Vec3(0, 0, 0));
@@ -20,4 +20,4 @@ TEST(Gravity, RefusesNan) {
   EXPECT_TRUE(has(refusal([&] { Gravity{Vec3(0, 0, std::numeric_limits<double>::infinity())}; }), "Gravity"));
 }
 
-}  // namespace
+}  // namespace gravity_test

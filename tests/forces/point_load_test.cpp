@@ -7,7 +7,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace point_load_test {
 
 double const nan_ = std::numeric_limits<double>::quiet_NaN();
 Vec3 const load(3, -1, 2);
@@ -78,4 +78,4 @@ TEST(PointLoads, RefuseNanByName) {
   EXPECT_TRUE(has(refusal([] { PointMoment<>{.moment = {0, 0, nan_}}.check("\"turn\""); }), "\"turn\": the moment"));
 }
 
-}  // namespace
+}  // namespace point_load_test

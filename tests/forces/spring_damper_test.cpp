@@ -7,7 +7,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace spring_damper_test {
 
 using Ends = std::array<Frame<double>, 2>;
 
@@ -110,4 +110,4 @@ TEST(SpringDamper, RefusesNumbersThatCannotBeMeantByName) {
   }
 }
 
-}  // namespace
+}  // namespace spring_damper_test

@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace user_force_test {
 
 // Drag −c |v| v and a torque that turns the marker's first axis to world z.
 auto const drag = user_force<1>([](auto const& frames, double) {
@@ -52,4 +52,4 @@ TEST(UserForce, GradientComesFromDualNumbers) {
   }
 }
 
-}  // namespace
+}  // namespace user_force_test

@@ -11,7 +11,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace central_difference_test {
 
 struct CentralDifferenceOnFreeBody {
   using Model = SprungBody;
@@ -32,15 +32,15 @@ struct CentralDifferenceOnTop {
   static constexpr int steps = 64;
 };
 
-}  // namespace
+}  // namespace central_difference_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnFreeBody, IntegratorLaws, CentralDifferenceOnFreeBody);
-INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnBar, IntegratorLaws, CentralDifferenceOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnTop, IntegratorLaws, CentralDifferenceOnTop);
+INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnFreeBody, IntegratorLaws, central_difference_test::CentralDifferenceOnFreeBody);
+INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnBar, IntegratorLaws, central_difference_test::CentralDifferenceOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(CentralDifferenceOnTop, IntegratorLaws, central_difference_test::CentralDifferenceOnTop);
 }  // namespace polybody
 
-namespace {
+namespace central_difference_test {
 
 /// A free ANCF cable of n elements of 0.25 m, steel of 1 cm: its highest mode is a stretch.
 struct FreeCable {
@@ -85,8 +85,6 @@ struct FreeCable {
   }
 };
 
-}  // namespace
-
 // CASES I2: stable iff h < 2/ω_max. Beyond it, at h = 1.01 · 2/ω, the mode grows by the root of
 // μ² − 2 (1 − ½ (ωh)²) μ + 1 = 0 in every step [Hughes 2000, §9.1].
 TEST(CentralDifference, IsStableUpToTwoOverTheHighestFrequency) {
@@ -109,3 +107,5 @@ TEST(CentralDifference, ElementPencilBoundsTheAssembly) {
   EXPECT_LT(FreeCable(4).omega, element * (1 + 1e-12));
   EXPECT_GT(FreeCable(4).omega, 0.7 * element);
 }
+
+}  // namespace central_difference_test

@@ -13,7 +13,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace failures_test {
 
 void expect_same(State const& a, State const& b) {
   EXPECT_EQ(a.q, b.q);
@@ -23,8 +23,6 @@ void expect_same(State const& a, State const& b) {
   EXPECT_EQ(a.memory, b.memory);
   EXPECT_EQ(a.t, b.t);
 }
-
-}  // namespace
 
 TEST(Failures, AbsurdStepStallsNewtonAndLeavesTheState) {
   Chain<InSpace<Constraint>> chain(4, bar_link());
@@ -44,8 +42,6 @@ TEST(Failures, AbsurdStepStallsNewtonAndLeavesTheState) {
   EXPECT_NO_THROW(integrator.step(system, x, 1e-3, workspace));
   EXPECT_NEAR(x.t, 0.101, 1e-12);
 }
-
-namespace {
 
 /// A force that is no number once t exceeds 0.05.
 constexpr auto poison = [](auto const& frames, double t) {
@@ -87,8 +83,6 @@ struct Poisoned {
     EXPECT_TRUE(x.q.allFinite() && x.v.allFinite());
   }
 };
-
-}  // namespace
 
 TEST(Failures, ForceThatIsNoNumberNamesItsBody) {
   Poisoned().expect_named(GeneralizedAlpha{});
@@ -134,3 +128,5 @@ TEST(Failures, OpenJointAtTheStartIsNamed) {
   EXPECT_TRUE(has(message, "joint \"pin"));
   EXPECT_TRUE(has(message, "0.001"));
 }
+
+}  // namespace failures_test

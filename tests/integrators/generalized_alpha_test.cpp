@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace generalized_alpha_test {
 
 std::vector<GeneralizedAlpha> every_damping() {
   return {{.rho_inf = 1.0, .tolerance = 1e-11}, {.rho_inf = 0.8, .tolerance = 1e-11}, {.rho_inf = 0.5, .tolerance = 1e-11}};
@@ -34,15 +34,15 @@ struct GeneralizedAlphaOnSprungBody {
   static constexpr int steps = 32;
 };
 
-}  // namespace
+}  // namespace generalized_alpha_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnBar, IntegratorLaws, GeneralizedAlphaOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnTop, IntegratorLaws, GeneralizedAlphaOnTop);
-INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnSprungBody, IntegratorLaws, GeneralizedAlphaOnSprungBody);
+INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnBar, IntegratorLaws, generalized_alpha_test::GeneralizedAlphaOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnTop, IntegratorLaws, generalized_alpha_test::GeneralizedAlphaOnTop);
+INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnSprungBody, IntegratorLaws, generalized_alpha_test::GeneralizedAlphaOnSprungBody);
 }  // namespace polybody
 
-namespace {
+namespace generalized_alpha_test {
 
 /// A unit mass on a slide, held by a spring of 1 N/m without free length: ω = 1, released from x = 1 at rest.
 struct Oscillator {
@@ -61,8 +61,6 @@ struct Oscillator {
     return simulate(model, x, integrator, {.until = h * steps, .step = h}).run();
   }
 };
-
-}  // namespace
 
 // CASES I1 [C]: 50 steps of ωh = 0.2 with a₀ = q̈₀.
 TEST(GeneralizedAlpha, GivesThePublishedDigitsOfTheOscillator) {
@@ -150,3 +148,5 @@ TEST(GeneralizedAlpha, CopyOfAStateGoesOnAsTheOriginal) {
   EXPECT_EQ(copy.v, x.v);
   EXPECT_EQ(copy.lambda, x.lambda);
 }
+
+}  // namespace generalized_alpha_test

@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace multipliers_test {
 
 /// Steps a model by h for 1 s, then by another step for 0.2 s.
 template <class M, class I>
@@ -113,8 +113,6 @@ void expect_first_order_without(F const& errors_of, double rho) {
   EXPECT_GT(first[1], 5.0 * errors_of(method(rho, true), steps[1], steps[1]).first);
 }
 
-}  // namespace
-
 TEST(Multipliers, ConvergeAtSecondOrderFromTheFirstStepAndAcrossAChangeOfStep) {
   for (double const rho : {0.8, 0.5}) expect_second_order(in_the_plane, rho);
 }
@@ -134,3 +132,5 @@ TEST(Multipliers, WithoutDampingConvergeAtSecondOrderFromTheStart) {
   for (double const h : steps) before.push_back(in_the_plane(method(1.0, true), h, h).before);
   EXPECT_GT(slopes(before)[1], 1.9) << testing::PrintToString(before);
 }
+
+}  // namespace multipliers_test

@@ -9,7 +9,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace newton_reports_test {
 
 RunReport fall(int links, GeneralizedAlpha const& integrator, double until) {
   Chain<InSpace<Constraint>> chain(links, {.length = 0.1, .mass = 1.0, .inertia = 1e-3, .com = 0.05});
@@ -18,8 +18,6 @@ RunReport fall(int links, GeneralizedAlpha const& integrator, double until) {
 }
 
 double per_step(long count, RunReport const& r) { return double(count) / double(r.steps); }
-
-}  // namespace
 
 // 64 links of 0.1 m, 1 kg, 1e-3 kg m² released horizontally, h = 1 ms, 1 s, with the tolerance of the next test.
 TEST(NewtonReports, LongChainKeepsItsFactorisation) {
@@ -79,3 +77,5 @@ TEST(NewtonReports, ReportOfAStepIsThatOfTheSum) {
   EXPECT_EQ(run.report().iterations, iterations);
   EXPECT_EQ(run.report().factorisations, factorisations);
 }
+
+}  // namespace newton_reports_test

@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace runge_kutta_test {
 
 struct Rk4OnFreeBody {
   using Model = SprungBody;
@@ -31,15 +31,15 @@ struct Rk4OnTop {
   static constexpr int steps = 16;
 };
 
-}  // namespace
+}  // namespace runge_kutta_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnFreeBody, IntegratorLaws, Rk4OnFreeBody);
-INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnBar, IntegratorLaws, Rk4OnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnTop, IntegratorLaws, Rk4OnTop);
+INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnFreeBody, IntegratorLaws, runge_kutta_test::Rk4OnFreeBody);
+INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnBar, IntegratorLaws, runge_kutta_test::Rk4OnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnTop, IntegratorLaws, runge_kutta_test::Rk4OnTop);
 }  // namespace polybody
 
-namespace {
+namespace runge_kutta_test {
 
 template <class Stabilisation>
 DormandPrince<Stabilisation> with_tolerance(double tolerance) {
@@ -68,8 +68,6 @@ void expect_proportional(std::vector<double> const& errors) {
     EXPECT_GT(std::log10(errors[i - 1] / errors[i]), 1.0) << testing::PrintToString(errors);
 }
 
-}  // namespace
-
 TEST(DormandPrince, ErrorOfAPendulumIsProportionalToTheTolerance) {
   SwingingBar bar;
   double const angle = bar.exact(bar.phase + 1.0).angle;
@@ -83,8 +81,6 @@ TEST(DormandPrince, ErrorOfAFreeBodyIsProportionalToTheTolerance) {
   simulate(body.model, fine, RungeKutta4<>{}, {.until = 1.0, .step = 1.0 / 8192}).run();
   expect_proportional(errors_by_tolerance<DormandPrince<>>(body.model, body.start, fine.q));
 }
-
-namespace {
 
 /// A point of mass 1 on the x axis under the force law(x, v, t); the plane's rotation stays at rest.
 template <class Law>
@@ -111,8 +107,6 @@ auto along_x(F f) {
     return std::array{w};
   };
 }
-
-}  // namespace
 
 // x˙˙ = 6 x² with x(0) = 1, x˙(0) = 2 is x = 1/(1 − t)²: no step reaches t = 1.
 TEST(DormandPrince, StopsBeforeABlowUp) {
@@ -201,3 +195,5 @@ TEST(Projection, SaysThatThePositionsCannotBeBroughtBack) {
   EXPECT_EQ(x.q, before.q);
   EXPECT_EQ(x.t, before.t);
 }
+
+}  // namespace runge_kutta_test

@@ -21,7 +21,7 @@
 namespace fs = std::filesystem;
 using namespace polybody;
 
-namespace {
+namespace csv_test {
 
 static_assert(!std::copyable<Csv> && std::movable<Csv>);
 static_assert(!std::copyable<AtomicFile> && std::movable<AtomicFile>);
@@ -346,4 +346,4 @@ TEST(CsvTable, ColumnMustBeThereOnce) {
   EXPECT_TRUE(has(message_of<InvalidInput>([] { Table{}.column("t"); }), "has none"));
 }
 
-}  // namespace
+}  // namespace csv_test

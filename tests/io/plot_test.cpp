@@ -15,7 +15,7 @@
 namespace fs = std::filesystem;
 using namespace polybody;
 
-namespace {
+namespace plot_test {
 
 std::string text_of(fs::path const& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -291,4 +291,4 @@ TEST_F(Plots, AnUnwritablePlaceIsAnIoError) {
   EXPECT_EQ(files(), 2u);  // neither a data file without a script nor a temporary
 }
 
-}  // namespace
+}  // namespace plot_test

@@ -12,7 +12,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace progress_test {
 
 static_assert(!std::is_copy_constructible_v<Progress> && !std::is_copy_assignable_v<Progress>);
 
@@ -197,4 +197,4 @@ TEST_F(ProgressBar, AThrowingStreamDoesNotEndTheProgram) {
   SUCCEED();
 }
 
-}  // namespace
+}  // namespace progress_test

@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace gap_test {
 
 using D = Dual<1>;
 
@@ -111,4 +111,4 @@ static_assert(!JointGeometry<NoRows> && !JointGeometry<SevenRows>);
 static_assert(!JointGeometry<GapOfOtherRows> && !JointGeometry<NoTriad> && !JointGeometry<NoGamma>);
 static_assert(!JointGeometry<int>);
 
-}  // namespace
+}  // namespace gap_test

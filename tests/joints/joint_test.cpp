@@ -7,7 +7,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace joint_test {
 
 TEST(Joint, IsAGeometryAndAPolicy) {
   using Soft = Joint<Revolute, Penalty>;
@@ -33,4 +33,4 @@ concept CanJoin = requires { typename Joint<G, P>; };
 static_assert(CanJoin<Revolute, Constraint> && CanJoin<Revolute, Penalty>);
 static_assert(!CanJoin<Constraint, Revolute> && !CanJoin<Revolute, double> && !CanJoin<double, Penalty>);
 
-}  // namespace
+}  // namespace joint_test

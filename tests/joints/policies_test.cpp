@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace policies_test {
 
 double const nan_ = std::numeric_limits<double>::quiet_NaN();
 double const infinite = std::numeric_limits<double>::infinity();
@@ -98,4 +98,4 @@ static_assert(!Policy<Neither> && !Policy<Both> && !Policy<RowsDenied> && !Polic
 static_assert(AddsRows<Both> && AddsForce<Both>);
 static_assert(!std::is_default_constructible_v<Penalty>);  // its numbers decide physics
 
-}  // namespace
+}  // namespace policies_test

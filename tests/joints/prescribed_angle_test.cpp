@@ -7,7 +7,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace prescribed_angle_test {
 
 using Drive = PrescribedAngle<SmoothRamp>;
 Drive const drive{.law = {.target = 1.1, .duration = 4.0}};
@@ -85,9 +85,9 @@ TEST(PrescribedAngle, RefusesAnAxisThatIsNotAUnitVector) {
   EXPECT_TRUE(has(refusal([&] { (void)lame.triad(); }), "PrescribedAngle: the axis must be a unit vector"));
 }
 
-}  // namespace
+}  // namespace prescribed_angle_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(PrescribedAngle, JointLaws, DriveCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrescribedAngle, JointLaws, PlanarDriveCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PrescribedAngle, JointLaws, prescribed_angle_test::DriveCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrescribedAngle, JointLaws, prescribed_angle_test::PlanarDriveCase);
 }  // namespace polybody

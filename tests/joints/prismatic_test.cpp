@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace prismatic_test {
 
 // The slide is the third axis in space, the first in the plane.
 template <int slide>
@@ -51,9 +51,9 @@ TEST(Prismatic, RefusesADirectionThatLeavesThePlane) {
                   "planar::Prismatic: the axis must lie in the plane"));
 }
 
-}  // namespace
+}  // namespace prismatic_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Prismatic, JointLaws, PrismaticCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrismatic, JointLaws, PlanarPrismaticCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(Prismatic, JointLaws, prismatic_test::PrismaticCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrismatic, JointLaws, prismatic_test::PlanarPrismaticCase);
 }  // namespace polybody

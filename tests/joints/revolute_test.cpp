@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace revolute_test {
 
 struct RevoluteCase {
   static constexpr bool planar = false;
@@ -48,9 +48,9 @@ TEST(Revolute, TakesNoAccountOfWhichWayTheAxisPoints) {
   EXPECT_LT(Revolute{}.gap<double>(a, b, 0.0).g.norm(), 1e-15);
 }
 
-}  // namespace
+}  // namespace revolute_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Revolute, JointLaws, RevoluteCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarRevolute, JointLaws, PlanarRevoluteCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(Revolute, JointLaws, revolute_test::RevoluteCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarRevolute, JointLaws, revolute_test::PlanarRevoluteCase);
 }  // namespace polybody

@@ -7,7 +7,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace rows_test {
 
 constexpr double untouched = 7.0;
 
@@ -92,4 +92,4 @@ TEST(TriadAbout, RefusesWhatIsNoUnitVector) {
   EXPECT_NO_THROW((void)rows::triad_about(Vec3(0, 1 + 1e-10, 0), "pin"));  // rounding is forgiven
 }
 
-}  // namespace
+}  // namespace rows_test

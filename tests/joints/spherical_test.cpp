@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace spherical_test {
 
 struct SphericalCase {
   static constexpr bool planar = false;
@@ -26,8 +26,8 @@ TEST(Spherical, GapLeadsFromTheFirstPointToTheSecond) {
   EXPECT_EQ(Spherical{}.gap<double>(a, b, 0.0).g, Vec3(0.5, -1, 0));
 }
 
-}  // namespace
+}  // namespace spherical_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Spherical, JointLaws, SphericalCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(Spherical, JointLaws, spherical_test::SphericalCase);
 }  // namespace polybody

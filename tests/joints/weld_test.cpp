@@ -7,7 +7,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace weld_test {
 
 struct WeldCase {
   static constexpr bool planar = false;
@@ -34,9 +34,9 @@ TEST(Weld, RotationalRowsMeasureTheTurn) {
   EXPECT_NEAR((planar::Weld{}.gap<double>(c, d, 0.0).g[2]), 1e-7, 1e-15);
 }
 
-}  // namespace
+}  // namespace weld_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Weld, JointLaws, WeldCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarWeld, JointLaws, PlanarWeldCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(Weld, JointLaws, weld_test::WeldCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarWeld, JointLaws, weld_test::PlanarWeldCase);
 }  // namespace polybody

@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace frame_test {
 
 double const nan_ = std::numeric_limits<double>::quiet_NaN();
 
@@ -84,4 +84,4 @@ TEST(Placement, RefusesToLeaveThePlane) {
   }
 }
 
-}  // namespace
+}  // namespace frame_test

@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace published_test {
 
 Mat3 const axes = exp_so3<double>(Vec3(0.4, -1.1, 0.7));
 Vec3 const arm(0.3, -0.2, 0.9);
@@ -101,4 +101,4 @@ TEST(Published, WorksInDualNumbers) {
   }
 }
 
-}  // namespace
+}  // namespace published_test

@@ -11,7 +11,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace dual_test {
 
 using D = Dual<2>;
 using Vec3 = Eigen::Vector3d;
@@ -287,4 +287,4 @@ TEST(DualInEigen, AllFiniteLooksAtValues) {
   EXPECT_FALSE(u.allFinite());
 }
 
-}  // namespace
+}  // namespace dual_test

@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace errors_test {
 
 template <template <class...> class List>
 using All = List<InvalidInput, InconsistentStart, NewtonStalled, StepTooSmall, NonFinite,
@@ -48,4 +48,4 @@ TEST(Number, IsReadableAtAnySize) {
   EXPECT_EQ(number(123456.789), "123456.789");
 }
 
-}  // namespace
+}  // namespace errors_test

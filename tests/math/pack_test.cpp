@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace pack_test {
 
 static_assert(KernelScalar<Pack<2>> && KernelScalar<Pack<4>> && KernelScalar<double>);
 static_assert(!KernelScalar<std::string>);
@@ -63,4 +63,4 @@ TEST(Pack, IsAScalarOfEigen) {
   }
 }
 
-}  // namespace
+}  // namespace pack_test

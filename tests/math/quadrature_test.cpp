@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace quadrature_test {
 
 /// Runs `test` with n = 1 … 10 as a compile-time number.
 template <class Test>
@@ -92,4 +92,4 @@ TEST(Quadrature, IsAConstantOfTheCompiler) {
   EXPECT_FALSE(offered(std::integral_constant<int, 11>{}));
 }
 
-}  // namespace
+}  // namespace quadrature_test

@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace quaternion_test {
 
 using Q = Quaternion<double>;
 double const pi = std::numbers::pi;
@@ -191,4 +191,4 @@ TEST(Quaternion, OfHalfTurnsAboutEveryAxis) {
   }
 }
 
-}  // namespace
+}  // namespace quaternion_test

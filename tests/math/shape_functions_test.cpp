@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace shape_functions_test {
 
 double const length = 0.7;
 double const places[] = {0.0, 0.13, 0.5, 0.77, 1.0};
@@ -90,4 +90,4 @@ TEST(ShapeFunctions, AreConstantsOfTheCompiler) {
   static_assert(hermite_shape(0.5, 2.0).s[3] == -0.25);
 }
 
-}  // namespace
+}  // namespace shape_functions_test

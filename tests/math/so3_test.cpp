@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace so3_test {
 
 double const pi = std::numbers::pi;
 
@@ -272,4 +272,4 @@ TEST(So3, DerivativeOfTheJacobianIsWhatItSays) {
     }
 }
 
-}  // namespace
+}  // namespace so3_test

@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace time_laws_test {
 
 static_assert(TimeLaw<Ramp> && TimeLaw<SmoothRamp> && TimeLaw<SpinUp> && TimeLaw<Constant> && TimeLaw<Window>);
 static_assert(TimeLaw<decltype([](double t) { return Motion{t, 1.0, 0.0}; })>);
@@ -132,4 +132,4 @@ TEST(TimeLaws, RefuseNumbersThatCannotBeMeant) {
   EXPECT_NO_THROW(check_law([](double t) { return Motion{t, 1.0, 0.0}; }, "a lambda is not asked"));
 }
 
-}  // namespace
+}  // namespace time_laws_test

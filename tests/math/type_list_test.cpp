@@ -4,7 +4,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace type_list_test {
 
 TEST(TypeList, KnowsItsSize) {
   EXPECT_EQ(TypeList<>::size, 0u);
@@ -31,4 +31,4 @@ TEST(TypeList, DistinctRefusesATwin) {
   EXPECT_FALSE((Distinct<int, char, int>));
 }
 
-}  // namespace
+}  // namespace type_list_test

@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace types_test {
 
 double const nan_ = std::numeric_limits<double>::quiet_NaN();
 double const infinity = std::numeric_limits<double>::infinity();
@@ -60,4 +60,4 @@ TEST(Checks, UnitAllowsRoundingOnly) {
   EXPECT_TRUE(has(refusal([] { require_unit(Vec3(2, 0, 0), "axis"); }), "has length 2."));  // and says how long
 }
 
-}  // namespace
+}  // namespace types_test

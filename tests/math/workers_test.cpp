@@ -8,7 +8,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace workers_test {
 
 TEST(Workers, EveryEntryIsVisitedOnceWhateverTheNumber) {
   for (int const threads : {1, 2, 3, 5})
@@ -78,4 +78,4 @@ TEST(Workers, LoopsWithoutAnyRunAsTheyStand) {
   EXPECT_EQ(sum, 10);
 }
 
-}  // namespace
+}  // namespace workers_test

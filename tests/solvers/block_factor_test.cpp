@@ -13,7 +13,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace block_factor_test {
 
 struct Draw {
   std::mt19937 engine{3};
@@ -61,8 +61,6 @@ struct BlockSolvers : testing::Test {
 };
 using All = testing::Types<BlockLdlt, BlockLu, BlockSolver>;
 TYPED_TEST_SUITE(BlockSolvers, All);
-
-}  // namespace
 
 TYPED_TEST(BlockSolvers, SolveChainsOfEveryBlockSize) {
   for (auto const& [n, m] : {std::pair{6, 5}, {6, 3}, {3, 2}, {3, 1}, {4, 2}, {7, 6}, {12, 6}, {1, 1}})
@@ -257,3 +255,5 @@ TEST(BlockLu, SolvesUnsymmetricTangents) {
     EXPECT_LT(residual(b, solver, draw), 1e-13);
   }
 }
+
+}  // namespace block_factor_test

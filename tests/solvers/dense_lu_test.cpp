@@ -4,7 +4,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace dense_lu_test {
 
 DenseLu holding(MatX const& a) {
   DenseLu lu;
@@ -13,8 +13,6 @@ DenseLu holding(MatX const& a) {
   lu.add(0, 0, a);
   return lu;
 }
-
-}  // namespace
 
 TEST(DenseLu, BlocksAddUpAndBeginForgets) {
   DenseLu lu = holding(MatX::Constant(4, 4, 9.0));
@@ -62,3 +60,5 @@ TEST(DenseLu, PivotsWhereTheDiagonalIsZero) {
   lu.solve(Vec2(2.0, 4.0), x);
   EXPECT_EQ(x, Vec2(1.0, 1.0));
 }
+
+}  // namespace dense_lu_test

@@ -7,7 +7,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace eigen_ldlt_test {
 
 /// A chain of bodies on pins, [M, Gᵀ; G, 0], and a skew part of body 0.
 struct Chain {
@@ -55,8 +55,6 @@ double error(Chain const& chain) {
   return (x - expected).norm() / expected.norm();
 }
 
-}  // namespace
-
 TEST(EigenLdlt, SolvesSymmetricTangentsWithRows) {
   for (Index const bodies : {1, 8, 30}) EXPECT_LT(error({bodies}), 1e-9) << bodies;
 }
@@ -92,3 +90,5 @@ TEST(EigenLdlt, NothingIsSolvedAtOnce) {
   solver.solve(VecX(), x);
   EXPECT_EQ(x.size(), 0);
 }
+
+}  // namespace eigen_ldlt_test

@@ -4,7 +4,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace eigen_sparse_lu_test {
 
 /// Blocks on the diagonal, one after another, of the sizes of `parts`; the first two overlap in one column.
 std::vector<Block> const pattern{{0, 0, 3, 3}, {2, 2, 3, 3}, {5, 0, 1, 3}, {0, 5, 3, 1}, {5, 5, 1, 1}};
@@ -32,8 +32,6 @@ struct Parts {
     return m;
   }
 };
-
-}  // namespace
 
 TEST(EigenSparseLu, HoldsTheSumOfItsBlocks) {
   EigenSparseLu lu;
@@ -84,3 +82,5 @@ TEST(EigenSparseLu, CanBeMoved) {
   moved.solve(b, x);
   EXPECT_LT((parts.dense() * x - b).norm(), 1e-13);
 }
+
+}  // namespace eigen_sparse_lu_test

@@ -11,7 +11,7 @@ namespace polybody::test {
 INSTANTIATE_TYPED_TEST_SUITE_P(Klu, LinearSolvers, testing::Types<Klu>);
 }
 
-namespace {
+namespace klu_test {
 
 template <class Solver>
 Solver analysed(Solver solver, test::Blocks const& blocks) {
@@ -20,8 +20,6 @@ Solver analysed(Solver solver, test::Blocks const& blocks) {
   solver.analyse(blocks.size(), pattern.blocks);
   return solver;
 }
-
-}  // namespace
 
 TEST(Klu, SolvesInAnOrderThatIsGiven) {
   test::Blocks const blocks{8};
@@ -59,3 +57,5 @@ TEST(Klu, ChoosesPivotsAnewWhenTheyNoLongerServe) {
     EXPECT_LT((x - VecX::Ones(2)).norm(), 1e-13);
   }
 }
+
+}  // namespace klu_test

@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace newton_test {
 
 /// f(x) = 0 in one unknown; a correction of `tolerance` has the norm one. Records what it is asked.
 struct Scalar {
@@ -48,8 +48,6 @@ Outcome solve(Scalar& problem, NewtonOptions const& options = {}, bool factored 
   out.report = newton(problem, options, out.factored, out.theta);
   return out;
 }
-
-}  // namespace
 
 TEST(Newton, SolvesAndReportsWhatItCost) {
   Scalar problem = square_root_of_two();
@@ -172,3 +170,5 @@ TEST(Newton, CorrectionThatIsNoNumberIsNotApplied) {
   EXPECT_EQ(problem.x, 1.0);
   EXPECT_FALSE(o.factored);
 }
+
+}  // namespace newton_test

@@ -14,7 +14,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace model_test {
 
 using Pin = Joint<planar::Revolute, Constraint>;
 using Drive = Joint<PrescribedAngle<Ramp>, Constraint>;
@@ -119,4 +119,4 @@ TEST(Model, ACopyMovesAsTheOriginal) {
   EXPECT_EQ(x.q, y.q);
 }
 
-}  // namespace
+}  // namespace model_test

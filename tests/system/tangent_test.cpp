@@ -10,7 +10,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace tangent_test {
 
 using D = Dual<1>;
 
@@ -249,4 +249,4 @@ TEST_P(Tangent, SecondOrderTermsCount) {
 INSTANTIATE_TEST_SUITE_P(Space, Tangent, testing::Values([](double c) { return ask(MixedSpace::model(c)); }));
 INSTANTIATE_TEST_SUITE_P(Plane, Tangent, testing::Values([](double c) { return ask(MixedPlane::model(c)); }));
 
-}  // namespace
+}  // namespace tangent_test

@@ -11,7 +11,7 @@
 
 using namespace polybody;
 
-namespace {
+namespace threads_test {
 
 template <class M>
 State run(M const& model, int threads, double until) {
@@ -54,4 +54,4 @@ TEST(Threads, AreAtLeastOne) {
   EXPECT_TRUE(has(refusal([&] { run(chain.model, 0, 0.1); }), "at least one thread"));
 }
 
-}  // namespace
+}  // namespace threads_test
