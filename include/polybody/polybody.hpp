@@ -2,6 +2,7 @@
 /// \file
 /// polybody: one model, every formulation. Includes everything.
 
+#include <polybody/analysis/arc_length.hpp>
 #include <polybody/analysis/compare.hpp>
 #include <polybody/analysis/energy.hpp>
 #include <polybody/analysis/equilibrium.hpp>
@@ -18,6 +19,7 @@
 #include <polybody/bodies/planar/rigid.hpp>
 #include <polybody/bodies/rigid.hpp>
 #include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/forces/distributed_force.hpp>
 #include <polybody/forces/gravity.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>

@@ -8,6 +8,7 @@
 
 #include <polybody/analysis/energy.hpp>
 #include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/ffr.hpp>
 #include <polybody/bodies/planar/ancf_cable.hpp>
 #include <polybody/bodies/planar/lrvf.hpp>
 #include <polybody/forces/spring_damper.hpp>
@@ -106,6 +107,21 @@ struct SprungCable {
   auto const& model() const { return cable; }
 };
 
+/// A floating frame of six modes with geometric stiffening on a pin: a body whose size is known at run time.
+struct HungFrame {
+  using Pin = Joint<Revolute, Constraint>;
+  Model<Bodies<Ffr>, Joints<Pin>> frame{Gravity{0, -9.81, 0}};
+
+  HungFrame() {
+    Bar const bar{.length = 1.0,
+                  .constants = BarConstants{.EA = 1e5, .EI = 50, .mass_per_length = 1.0, .GJ = 40, .rotary_inertia = 1e-3}};
+    Structure const s = structure_of(bar, 4);
+    auto const body = frame.add(Ffr(s, held_modes(s, 6), {.stiffening = true}), "frame");
+    frame.connect(Pin{}, frame.ground().at({0, 0, 0}), body.at(0.0), "pin");
+  }
+  auto const& model() const { return frame; }
+};
+
 /// Pieces of memory taken by 40 steps, from the first one, with a change of length in mid-run.
 template <class Case, class Solver = BlockSolver, class I>
 long in_steps(I const& integrator) {
@@ -153,6 +169,12 @@ TEST(NoAllocation, InAStepOfARigidChain) { expect_none<RigidChain>(); }
 TEST(NoAllocation, InAStepOfADrivenLrvfArm) { expect_none<DrivenArm>(); }
 
 TEST(NoAllocation, InAStepOfAnAncfCableOnCompliantJoints) { expect_none<SprungCable>(); }
+
+TEST(NoAllocation, InAStepOfAFloatingFrame) {
+  EXPECT_EQ(in_steps<HungFrame>(GeneralizedAlpha{}), 0);
+  EXPECT_EQ(in_steps<HungFrame>(GeneralizedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<HungFrame>(RungeKutta4<Projection>{}), 0);
+}
 
 TEST(NoAllocation, InAskingForTheEnergyOfASystem) {
   SprungCable const setup;

@@ -67,10 +67,10 @@ Momentum momentum(M const& model, State const& x) {
     auto const paired = [&](Vec3 const& v0, Vec3 const& omega) {
       e.body.rigid_velocity(q, v0, omega, detail::body_part_of(rigid, 0, rigid.size()));
       double sum = 0.0;
-      Vec<double, n> mv;
+      Vec<double, n> mv(element_columns(e.body));
       for (Index i = 0; i < e.body.elements(); ++i) {
         e.body.template inertia<double>(i, q, v, mv);
-        sum += mv.dot(rigid.template segment<n>(e.body.first_column(i)));
+        sum += mv.dot(rigid.template segment<n>(e.body.first_column(i), mv.size()));
       }
       return sum;
     };

@@ -18,7 +18,8 @@ auto part(std::span<T> x, Index first) {
 }
 
 /// A body is made of elements: fixed-size units that yield inertia, force and tangent. Spans cover the whole
-/// body; element e touches the columns [first_column(e), first_column(e) + element_columns).
+/// body; element e touches the columns [first_column(e), first_column(e) + element_columns). A body whose size is known at
+/// run time only says `element_columns = Eigen::Dynamic`: it is one element, and touches all its columns.
 /// Positions may live on a manifold, q ⊞ δ (`plus`); δ has as many entries as there are speeds.
 template <class B>
 concept Body = requires(B const b, Index e, std::span<double const> x, std::span<double> out,
@@ -61,6 +62,54 @@ concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B:
   b.template own_gamma<double>(x, x, rows);                  // γ(q, v)
   b.own_stiffness(x, Vec<double, B::own_rows>(), stiffness);  // ∂(Gᵀλ)/∂q
 };
+
+/// Columns that an element of a body, or a marker on it, touches.
+template <class B>
+Index element_columns(B const& body) {
+  return B::element_columns == Eigen::Dynamic ? body.speeds() : Index(B::element_columns);
+}
+template <class B>
+Index point_columns(B const& body) {
+  return B::point_columns == Eigen::Dynamic ? body.speeds() : Index(B::point_columns);
+}
+
+/// What the loops over a body's elements need besides it: on the stack where sizes are known at compile time, else kept with
+/// the body's data, so that no step allocates.
+template <class B, class T>
+struct ForceScratch {
+  Vec<T, B::element_columns> x, force, weight;
+  explicit ForceScratch([[maybe_unused]] B const& body) {
+    if constexpr (B::element_columns == Eigen::Dynamic)
+      for (auto* const v : {&x, &force, &weight}) v->resize(body.speeds());
+  }
+};
+template <class B>
+struct TangentScratch {
+  Mat<double, B::element_columns, B::element_columns> k, m;
+  explicit TangentScratch([[maybe_unused]] B const& body) {
+    if constexpr (B::element_columns == Eigen::Dynamic)
+      for (auto* const matrix : {&k, &m}) matrix->resize(body.speeds(), body.speeds());
+  }
+};
+
+namespace detail {
+/// Kept with the data for each body of run-time size; nothing for the others.
+template <class B, class T>
+struct KeptScratch {
+  explicit KeptScratch(B const&) {}
+  ForceScratch<B, T> force_scratch(B const& body) const { return ForceScratch<B, T>(body); }
+  TangentScratch<B> tangent_scratch(B const& body) const { return TangentScratch<B>(body); }
+};
+template <class B, class T>
+  requires(B::element_columns == Eigen::Dynamic)
+struct KeptScratch<B, T> {
+  ForceScratch<B, T> force;
+  TangentScratch<B> tangent;
+  explicit KeptScratch(B const& body) : force(body), tangent(body) {}
+  ForceScratch<B, T>& force_scratch(B const&) { return force; }
+  TangentScratch<B>& tangent_scratch(B const&) { return tangent; }
+};
+}  // namespace detail
 
 /// A body whose points share what is dear to compute: `pose` once, then `publish` each point from it.
 template <class B, class T>

@@ -58,9 +58,9 @@ Index packed_until(B const& body, Index begin, Index end) {
 /// Calls f(e, M a − force) for the elements [begin, end); `begin` is a multiple of `pack_size`, and `end` too unless it is the last.
 template <Body B, StateScalar T, class F>
 void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const> q, std::span<T const> v,
-                        std::span<T const> a, F&& f) {
+                        std::span<T const> a, ForceScratch<B, T>& scratch, F&& f) {
   constexpr int n = B::element_columns;
-  Vec<T, n> x, force;
+  Vec<T, n>&x = scratch.x, &force = scratch.force;
   if constexpr (AlikeElements<B> && std::same_as<T, double>) {
     Index const packed = detail::packed_until(body, begin, end);
     for (; begin < packed; begin += pack_size) {
@@ -80,17 +80,24 @@ void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const
   for (; begin < end; ++begin) {
     body.template inertia<T>(begin, q, a, x);
     body.template force<T>(begin, q, v, force);
-    for (int k = 0; k < n; ++k) x[k] -= force[k];
+    for (int k = 0; k < int(x.size()); ++k) x[k] -= force[k];
     f(begin, x);
   }
+}
+
+template <Body B, StateScalar T, class F>
+void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const> q, std::span<T const> v,
+                        std::span<T const> a, F&& f) {
+  ForceScratch<B, T> scratch(body);
+  for_each_unbalance<B, T>(body, begin, end, q, v, a, scratch, f);
 }
 
 /// Calls f(e, cm M + cd D + ck K) for the elements [begin, end), cut as above.
 template <Body B, class F>
 void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q, std::span<double const> v,
-                              double cm, double cd, double ck, F&& f) {
+                              double cm, double cd, double ck, TangentScratch<B>& scratch, F&& f) {
   constexpr int n = B::element_columns;
-  Mat<double, n, n> k, m;
+  Mat<double, n, n>&k = scratch.k, &m = scratch.m;
   bool const alike = detail::are_alike(body);
   bool first_mass = true;
   auto const finish = [&](Index e) {
@@ -120,6 +127,13 @@ void for_each_element_tangent(B const& body, Index begin, Index end, std::span<d
     body.tangent(begin, q, v, ck, cd, k);
     finish(begin);
   }
+}
+
+template <Body B, class F>
+void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q, std::span<double const> v,
+                              double cm, double cd, double ck, F&& f) {
+  TangentScratch<B> scratch(body);
+  for_each_element_tangent<B>(body, begin, end, q, v, cm, cd, ck, scratch, f);
 }
 
 }  // namespace polybody

@@ -99,32 +99,34 @@ void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> 
   r.setZero();
   Vec3 const g = model.gravity().g * load_factor;
   bool const falls = !g.isZero(0.0);
-  model.for_each_body([&](auto const& e) {
+  for_each_body_with_scratch(model, data, [&](auto const& e, auto& kept) {
     using B = std::decay_t<decltype(e.body)>;
     constexpr int n = B::element_columns;
+    auto&& scratch = kept.force_scratch(e.body);
     auto const qe = detail::body_part(q, e.q0, e.body.coordinates());
     auto const ve = detail::body_part(v, e.v0, e.body.speeds());
     auto const ae = detail::body_part(a, e.v0, e.body.speeds());
     auto const add = [&](Index i, auto const& x) {
       T* const rows = r.data() + e.v0 + e.body.first_column(i);
-      for (int k = 0; k < n; ++k) rows[k] += x[k];
+      int const size = n == Eigen::Dynamic ? int(x.size()) : n;
+      for (int k = 0; k < size; ++k) rows[k] += x[k];
       if (falls) {
-        Vec<T, n> weight;
-        e.body.template gravity<T>(i, qe, g, weight);
-        for (int k = 0; k < n; ++k) rows[k] -= weight[k];
+        e.body.template gravity<T>(i, qe, g, scratch.weight);
+        for (int k = 0; k < size; ++k) rows[k] -= scratch.weight[k];
       }
     };
     Index const elements = e.body.elements();
-    if (data.workers && elements >= 2 * data.least_elements) {
-      using Slot = Eigen::Map<Vec<T, n>>;
-      T* const slots = data.element_forces.data();
-      data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-        for_each_unbalance<B, T>(e.body, begin, end, qe, ve, ae, [&](Index i, Vec<T, n> const& x) { Slot(slots + n * i) = x; });
-      });
-      for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * i));
-    } else {
-      for_each_unbalance<B, T>(e.body, 0, elements, qe, ve, ae, add);
-    }
+    if constexpr (n != Eigen::Dynamic)
+      if (data.workers && elements >= 2 * data.least_elements) {
+        using Slot = Eigen::Map<Vec<T, n>>;
+        T* const slots = data.element_forces.data();
+        data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
+          for_each_unbalance<B, T>(e.body, begin, end, qe, ve, ae, [&](Index i, Vec<T, n> const& x) { Slot(slots + n * i) = x; });
+        });
+        for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * i));
+        return;
+      }
+    for_each_unbalance<B, T>(e.body, 0, elements, qe, ve, ae, scratch, add);
   });
   for_each_body_with_rows(model, q, v, [&](auto const& e, auto const& qe, auto const&) {
     using B = std::decay_t<decltype(e.body)>;

@@ -7,11 +7,22 @@
 
 namespace polybody {
 
+namespace detail {
+/// Calls f(pool, vector) for the pools of a model and what stands beside them.
+template <class Pools, class Vectors, class F>
+void for_each_pool_beside(Pools const& pools, Vectors& vectors, F&& f) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (f(std::get<I>(pools), std::get<I>(vectors)), ...);
+  }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
+}
+}  // namespace detail
+
 template <class M, StateScalar T = double>
 struct Data {
   std::vector<Published<T>> markers;        ///< waist 1, one for each marker
   std::vector<T> jacobians;                 ///< arena of the dense Jacobians
   typename M::template Poses<T> poses;      ///< of the bodies
+  typename M::template Scratch<T> scratch_of_bodies;
   typename M::template Gaps<T> gaps;        ///< waist 2, one for each joint
   std::vector<Wrench<double>> loads;        ///< per marker: what the tangent's second-order terms need
 
@@ -30,7 +41,7 @@ struct Data {
         auto const& e = pool.entries[std::size_t(m.body)];
         Published<T>& p = markers[std::size_t(m.published)];
         p.first = e.v0 + e.body.first_column(m.point);
-        p.columns = std::decay_t<decltype(e.body)>::point_columns;
+        p.columns = point_columns(e.body);
         p.jacobian = jacobians.data() + offset;
         offset += 6 * p.columns;
         widest = std::max(widest, p.columns);
@@ -43,15 +54,18 @@ struct Data {
       f.A = g.placement.axes.template cast<T>();
     }
     scratch.resize(std::size_t(widest * (widest + 12)));
-    size(poses, model.body_pools(), [](auto const& pool) { return pool.entries.size(); });
-    size(gaps, model.joint_pools(), [](auto const& pool) { return pool.size(); });
+    detail::for_each_pool_beside(model.body_pools(), poses, [](auto const& pool, auto& x) { x.resize(pool.entries.size()); });
+    detail::for_each_pool_beside(model.body_pools(), scratch_of_bodies, [](auto const& pool, auto& x) {
+      for (auto const& e : pool.entries) x.emplace_back(e.body);
+    });
+    detail::for_each_pool_beside(model.joint_pools(), gaps, [](auto const& pool, auto& x) { x.resize(pool.size()); });
   }
   /// From now on the threads share the loops over elements, markers and joints; what is computed stays the same to the last bit.
   void share_with(M const& model, Workers& threads) {
     workers = &threads;
     std::size_t forces = 0, tangents = 0;
     model.for_each_body([&](auto const& e) {
-      std::size_t const n = std::decay_t<decltype(e.body)>::element_columns, elements = std::size_t(e.body.elements());
+      std::size_t const n = std::size_t(element_columns(e.body)), elements = std::size_t(e.body.elements());
       if (elements < std::size_t(2 * least_elements)) return;
       forces = std::max(forces, n * elements);
       tangents = std::max(tangents, n * n * elements);
@@ -66,25 +80,22 @@ struct Data {
   Data& operator=(Data const&) = delete;
   Data(Data&&) = default;  // moving a vector keeps its buffer
   Data& operator=(Data&&) = default;
-
- private:
-  template <class Vectors, class Pools, class Count>
-  static void size(Vectors& vectors, Pools const& pools, Count&& count) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (std::get<I>(vectors).resize(count(std::get<I>(pools))), ...);
-    }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
-  }
 };
+
+/// Calls f(body entry, its scratch) for every body.
+template <class M, class D, class F>
+void for_each_body_with_scratch(M const& model, D& data, F&& f) {
+  detail::for_each_pool_beside(model.body_pools(), data.scratch_of_bodies, [&](auto const& pool, auto& scratch) {
+    for (std::size_t i = 0; i < pool.entries.size(); ++i) f(pool.entries[i], scratch[i]);
+  });
+}
 
 /// Calls f(joint entry, gap) for every joint.
 template <class M, class D, class F>
 void for_each_gap(M const& model, D& data, F&& f) {
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    [[maybe_unused]] auto const over = [&](auto const& pool, auto& gaps) {
-      for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], gaps[i]);
-    };
-    (over(std::get<I>(model.joint_pools()), std::get<I>(data.gaps)), ...);
-  }(std::make_index_sequence<std::tuple_size_v<typename M::JointPools>>{});
+  detail::for_each_pool_beside(model.joint_pools(), data.gaps, [&](auto const& pool, auto& gaps) {
+    for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], gaps[i]);
+  });
 }
 
 }  // namespace polybody

@@ -29,6 +29,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Data that depend on the body types: one pose for each body whose points share one.
   template <StateScalar T>
   using Poses = std::tuple<std::vector<typename detail::PoseOf<Bs, T>::Type>...>;
+  template <StateScalar T>
+  using Scratch = std::tuple<std::vector<detail::KeptScratch<Bs, T>>...>;
   /// Data that depend on the joint types: one gap for each joint.
   template <StateScalar T>
   using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;
@@ -235,7 +237,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
       ground_.push_back({{m.point.origin, m.point.axes * axes}, markers_});
     } else {
       std::get<detail::BodyPool<B>>(bodies_).markers.push_back({m.body, m.point, axes, markers_});
-      jacobian_size_ += 6 * B::point_columns;
+      jacobian_size_ += 6 * point_columns(std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)].body);
     }
     return markers_++;
   }

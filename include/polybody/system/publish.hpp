@@ -33,9 +33,7 @@ void publish(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data<M, T>&
       }
     });
   };
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (over(std::get<I>(model.body_pools()), std::get<I>(data.poses)), ...);
-  }(std::make_index_sequence<std::tuple_size_v<typename M::BodyPools>>{});
+  detail::for_each_pool_beside(model.body_pools(), data.poses, over);
 }
 
 /// Every joint's gap at time t from the published frames.
@@ -52,9 +50,7 @@ void enforce(M const& model, double t, Data<M, T>& data) {
       }
     });
   };
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (over(std::get<I>(model.joint_pools()), std::get<I>(data.gaps)), ...);
-  }(std::make_index_sequence<std::tuple_size_v<typename M::JointPools>>{});
+  detail::for_each_pool_beside(model.joint_pools(), data.gaps, over);
 }
 
 /// ġ = Ga Va + Gb Vb + Φ_t of a gap between published markers.

@@ -73,8 +73,9 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
     data.loads[std::size_t(marker)].f += w.head<3>();
     data.loads[std::size_t(marker)].m += w.tail<3>();
   };
-  model.for_each_body([&](auto const& e) {
+  for_each_body_with_scratch(model, data, [&](auto const& e, auto& kept) {
     using B = std::decay_t<decltype(e.body)>;
+    auto&& scratch = kept.tangent_scratch(e.body);
     auto const qe = detail::body_part(q, e.q0, e.body.coordinates());
     auto const ve = detail::body_part(v, e.v0, e.body.speeds());
     constexpr int n = B::element_columns;
@@ -82,20 +83,19 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
       Index const first = e.v0 + e.body.first_column(i);
       sink.add(first, first, k);
     };
-    auto const loop = [&](Index begin, Index end, auto&& f) {
-      for_each_element_tangent<B>(e.body, begin, end, qe, ve, c.mass, c.damping, c.stiffness, f);
-    };
     Index const elements = e.body.elements();
-    if (data.workers && elements >= 2 * data.least_elements) {
-      using Slot = Eigen::Map<Mat<double, n, n>>;
-      double* const slots = data.element_tangents.data();
-      data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-        loop(begin, end, [&](Index i, Mat<double, n, n> const& k) { Slot(slots + n * n * i) = k; });
-      });
-      for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * n * i));
-    } else {
-      loop(0, elements, add);
-    }
+    if constexpr (n != Eigen::Dynamic)
+      if (data.workers && elements >= 2 * data.least_elements) {
+        using Slot = Eigen::Map<Mat<double, n, n>>;
+        double* const slots = data.element_tangents.data();
+        data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
+          for_each_element_tangent<B>(e.body, begin, end, qe, ve, c.mass, c.damping, c.stiffness,
+                                      [&](Index i, Mat<double, n, n> const& k) { Slot(slots + n * n * i) = k; });
+        });
+        for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * n * i));
+        return;
+      }
+    for_each_element_tangent<B>(e.body, 0, elements, qe, ve, c.mass, c.damping, c.stiffness, scratch, add);
   });
   Index const row0 = model.speeds();
   for_each_body_with_rows(model, q, v, [&](auto const& e, auto const& qe, auto const&) {
@@ -161,19 +161,25 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
     }
   });
   if (!full) return;
-  auto const stiffen = [&](auto const& pool) {
+  detail::for_each_pool_beside(model.body_pools(), data.scratch_of_bodies, [&](auto const& pool, auto& kept) {
     for (auto const& p : pool.markers) {
       auto const& e = pool.entries[std::size_t(p.body)];
-      constexpr int n = std::decay_t<decltype(e.body)>::point_columns;
-      Mat<double, n, n> k;
-      e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()),
-                            data.loads[std::size_t(p.published)], k);
-      Index const first = data.markers[std::size_t(p.published)].first;
-      k *= c.stiffness;
-      sink.add(first, first, k);
+      using B = std::decay_t<decltype(e.body)>;
+      auto const add = [&](auto& k) {
+        e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()),
+                              data.loads[std::size_t(p.published)], k);
+        k *= c.stiffness;
+        Index const first = data.markers[std::size_t(p.published)].first;
+        sink.add(first, first, k);
+      };
+      if constexpr (B::point_columns == Eigen::Dynamic) {
+        add(kept[std::size_t(p.body)].tangent.k);
+      } else {
+        Mat<double, B::point_columns, B::point_columns> k;
+        add(k);
+      }
     }
-  };
-  std::apply([&](auto const&... pool) { (stiffen(pool), ...); }, model.body_pools());
+  });
 }
 
 }  // namespace polybody

@@ -1,0 +1,39 @@
+// The floating frame of reference in space obeys the laws of every body: nodal coordinates, with and without geometric
+// stiffening, modes, mean axes, and a frame of two bars.
+#include <polybody/bodies/ffr.hpp>
+
+#include "support/flexible_body_laws.hpp"
+
+namespace polybody {
+namespace ffr_laws_test {
+
+struct NodalFfrCase {
+  static Bar bar() {
+    return {.length = 1.3,
+            .constants = BarConstants{.EA = 40.0, .EI = 3.0, .mass_per_length = 0.7, .GJ = 2.0, .rotary_inertia = 0.02, .EI_y = 5.0,
+                                      .rotary_inertia_y = 0.03},
+            .placement = Placement::at({0.4, -0.3, 0.2}, {0.3, -0.5, 0.9}),
+            .damping = {.axial = 0.02, .shear = 0.03, .bending = 0.01}};
+  }
+  static Ffr body(Bar const& bar) { return Ffr::from(bar, 2); }
+};
+struct StiffenedFfrCase : NodalFfrCase {
+  static constexpr double deformation = 0.03;  // second-order theory
+  static Ffr body(Bar const& bar) { return Ffr::from(bar, 2, {.stiffening = true}); }
+};
+// Modes of the free bar: the frame follows the mean motion.
+struct MeanAxesFfrCase : StiffenedFfrCase {
+  static Ffr body(Bar const& bar) {
+    Structure const s = structure_of(bar, 3);
+    return Ffr(s, free_interface_modes(s, 5), {.placement = bar.placement, .stiffening = true});
+  }
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(NodalFfr, BodyLaws, NodalFfrCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(StiffenedFfr, BodyLaws, StiffenedFfrCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(MeanAxesFfr, BodyLaws, MeanAxesFfrCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(NodalFfr, FlexibleBodyLaws, NodalFfrCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(StiffenedFfr, FlexibleBodyLaws, StiffenedFfrCase);
+
+}  // namespace ffr_laws_test
+}  // namespace polybody

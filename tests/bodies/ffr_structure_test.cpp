@@ -1,0 +1,181 @@
+// What a floating frame's body is made of: inertia shape integrals, intermediate element frames, bases; and what is refused.
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/rigid.hpp>
+
+#include "support/refusal.hpp"
+
+namespace ffr_structure_test {
+
+using namespace polybody;
+
+Bar steel(double length, Placement const& place = {}) {
+  return {.length = length,
+          .section = Rectangle{.height = 0.03, .width = 0.05},
+          .material = Material{.density = 7800.0, .young = 2e11, .poisson = 0.3},
+          .placement = place};
+}
+Placement along(Vec3 const& from, Vec3 const& direction) { return {from, intermediate_axes(direction)}; }
+
+/// Mass, ∫ρ u₀ and the inertia tensor about the origin of bars, each by `Rigid` and the parallel-axis theorem.
+struct Expected {
+  double mass = 0.0;
+  Vec3 first = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();
+  explicit Expected(std::vector<Bar> const& bars) {
+    for (Bar const& bar : bars) {
+      Rigid<> const b = Rigid<>::from(bar);
+      Vec3 const c = bar.placement.origin + bar.placement.axes.col(0) * (0.5 * bar.length);
+      mass += b.mass();
+      first += b.mass() * c;
+      inertia += bar.placement.axes * b.inertia() * bar.placement.axes.transpose() +
+                 b.mass() * (c.squaredNorm() * Mat3::Identity() - c * c.transpose());
+    }
+  }
+};
+
+/// A frame whose bars point along x, along and against the axis y that makes Eq. A.2 singular, and anywhere.
+std::vector<Bar> crooked() {
+  return {steel(0.7), steel(0.4, along({0.7, 0, 0}, {0, 1, 0})), steel(0.3, along({0.7, 0.4, 0}, {0.3, -0.4, 0.6})),
+          steel(0.5, along({0, 0, 0}, {0, -1, 0}))};
+}
+
+TEST(Structure, InertiaOfARigidFrameIsExactWhateverTheMesh) {
+  Expected const e(crooked());
+  for (Index n : {1, 3}) {
+    Structure const s = structure_of(crooked(), {n, n, n, n});
+    Ffr const body(s, nodal_coordinates(s));
+    EXPECT_NEAR(body.integrals().mass, e.mass, 1e-12 * e.mass);
+    EXPECT_LT((body.integrals().first - e.first).norm(), 1e-12 * e.first.norm());
+    EXPECT_LT((body.integrals().inertia - e.inertia).norm(), 1e-12 * e.inertia.norm());
+  }
+}
+
+// A rigid motion of all nodes is a rigid motion of every material point, off-axis ones, too: with Φ the six infinitesimal rigid motions
+// ΦᵀMΦ is the inertia of the rigid frame, KΦ = 0, and first- and second-order integrals follow from it.
+TEST(Structure, RigidMotionsOfTheNodesCarryTheBody) {
+  Structure const s = structure_of(crooked(), {2, 1, 2, 1});
+  Expected const e(crooked());
+  MatX rigid = MatX::Zero(s.size(), 6);
+  for (std::size_t i = 0; i < s.nodes.size(); ++i) {
+    auto rows = rigid.middleRows<6>(6 * Index(i));
+    rows.setIdentity();
+    rows.topRightCorner<3, 3>() = -skew<double>(s.nodes[i]);
+  }
+  MatX const m = rigid.transpose() * (s.mass_matrix() * rigid);
+  EXPECT_LT((m.topLeftCorner<3, 3>() - e.mass * Mat3::Identity()).norm(), 1e-12 * e.mass);
+  EXPECT_LT((m.topRightCorner<3, 3>() + skew<double>(e.first)).norm(), 1e-12 * e.first.norm());
+  EXPECT_LT((m.bottomRightCorner<3, 3>() - e.inertia).norm(), 1e-12 * e.inertia.norm());
+  EXPECT_LT((s.stiffness * rigid).norm(), 1e-12 * s.stiffness.norm());
+  // u₀ + S Φ (0, θ) = u₀ + θ × u₀: J changes by θ̃ J + (θ̃ J)ᵀ to first order
+  FfrIntegrals const x = integrals_of(s, rigid);
+  for (int k = 0; k < 3; ++k) {
+    Mat3 const turned = skew<double>(Vec3::Unit(k)) * e.inertia, change = turned + turned.transpose();
+    for (std::size_t p = 0; p < 6; ++p)
+      EXPECT_NEAR(x.inertia_by[p][3 + k], change(symmetric_row[p], symmetric_column[p]), 1e-12 * e.inertia.norm()) << k << ' ' << p;
+    // H = ∫ρ ũ S: for rotations it is J, for translations that of ∫ρ u₀
+    EXPECT_LT((x.coupling.col(3 + k) - e.inertia.col(k)).norm(), 1e-12 * e.inertia.norm());
+    EXPECT_LT((x.coupling.col(k) - e.first.cross(Vec3::Unit(k))).norm(), 1e-12 * e.first.norm());
+  }
+}
+
+TEST(Structure, IntermediateAxesAreOrthonormalWherePointsEvenAlongY) {
+  for (Vec3 const& d : {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, -3, 0), Vec3(1, 2, -3), Vec3(1e-10, 1, 0), Vec3(0, 0, -1)}) {
+    Mat3 const c = intermediate_axes(d);
+    EXPECT_LT((c.transpose() * c - Mat3::Identity()).norm(), 1e-9) << d.transpose();
+    EXPECT_NEAR(c.determinant(), 1.0, 1e-9);
+    EXPECT_LT((c.col(0) - d.normalized()).norm(), 1e-9);
+  }
+}
+
+/// Frequencies of small vibrations in a frame that is held: those of (K, M) of the deformation alone.
+VecX held_frequencies(Ffr const& body) {
+  return Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(body.integrals().stiffness, body.integrals().mass_matrix)
+      .eigenvalues()
+      .cwiseSqrt();
+}
+/// … of the free body: of the whole mass matrix, less the rigid motions.
+VecX free_frequencies(Ffr const& body) {
+  VecX q(body.coordinates());
+  body.reference({q.data(), std::size_t(q.size())});
+  MatX m, k = MatX::Zero(body.speeds(), body.speeds());
+  body.mass(0, {q.data(), std::size_t(q.size())}, m);
+  k.bottomRightCorner(body.deformations(), body.deformations()) = body.integrals().stiffness;
+  return Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(k, m).eigenvalues().tail(body.deformations()).cwiseMax(0.0).cwiseSqrt();
+}
+// E1, with EI = ρA = L = 1, other motions far away.
+Bar unit() {
+  return {.length = 1.0,
+          .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 10.0, .rotary_inertia = 1e-7, .EI_y = 1e4}};
+}
+double const clamped_free[3] = {3.516015268, 22.03449156, 61.69721441}, free_free[2] = {22.37328545, 61.67282287};
+
+// CASES E1: Craig–Bampton with five fixed-interface modes to 1e-3.
+TEST(Bases, GiveTheFrequenciesOfTheBeam) {
+  Structure const s = structure_of(unit(), 16);
+  Ffr const nodal(s, nodal_coordinates(s)), held(s, held_modes(s, 4)), cb(s, craig_bampton(s, {0, 16}, 5));
+  for (Ffr const* body : {&nodal, &held, &cb})
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(held_frequencies(*body)[i] / clamped_free[i], 1.0, 1e-3) << body->deformations();
+  Ffr const mean(s, free_interface_modes(s, 3)), cb_mean(s, craig_bampton(s, {0, 16}, 5, true));
+  for (Ffr const* body : {&nodal, &cb, &mean, &cb_mean})
+    for (int i = 0; i < 2; ++i) EXPECT_NEAR(free_frequencies(*body)[i] / free_free[i], 1.0, 1e-3) << body->deformations();
+}
+
+// Mean axes: momentum and moment of momentum of the deformation vanish.
+TEST(Bases, MeanAxesDecoupleTheFrame) {
+  Structure const s = structure_of(crooked(), {2, 2, 2, 2});
+  for (MatX const& basis : {free_interface_modes(s, 6), craig_bampton(s, {0, 4}, 2, true)}) {
+    FfrIntegrals const x = integrals_of(s, basis);
+    EXPECT_LT(x.first_by.norm(), 1e-8);
+    EXPECT_LT(x.coupling.norm(), 1e-8);
+    EXPECT_LT((x.mass_matrix - MatX::Identity(x.size(), x.size())).norm(), 1e-8);
+  }
+}
+
+// Statics does not depend on the frame: a free tip force on a clamped bar, from a frame tied to either end or simply supported.
+TEST(Bases, SimplySupportedFrameHasTheSameFrequencies) {
+  Structure const s = structure_of(unit(), 8);
+  Ffr const a(s, nodal_coordinates(s)), b(s, nodal_coordinates(s, ReferenceConditions::simply_supported(0, 8)));
+  VecX const fa = free_frequencies(a), fb = free_frequencies(b);
+  ASSERT_EQ(fa.size(), fb.size());
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(fa[i] / fb[i], 1.0, 1e-7);
+}
+
+TEST(Ffr, RefusesWhatCannotBeMeant) {
+  Structure const s = structure_of(unit(), 4);
+  EXPECT_TRUE(has(refusal([&] { held_modes(s, 25); }), "25 modes"));
+  EXPECT_TRUE(has(refusal([&] { free_interface_modes(s, 25); }), "25 modes"));
+  EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 7}, 2); }), "node 7 does not exist"));
+  EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 0}, 2); }), "each once"));
+  EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions::clamped(9)); }), "node 9 does not exist"));
+  EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions().fix(0, 7)); }), "component 7"));
+  EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions().fix(0, 0)); }), "not positive definite"));
+  EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions::none()); }), "not positive definite"));
+  EXPECT_TRUE(has(refusal([&] { intermediate_axes(Vec3::Zero()); }), "two different nodes"));
+  Bar bar = unit();
+  bar.length = 0.0;
+  EXPECT_TRUE(has(refusal([&] { structure_of(bar, 4); }), "length"));
+  bar = unit();
+  bar.constants->GJ = 0.0;
+  EXPECT_TRUE(has(refusal([&] { Ffr::from(bar, 4); }), "GJ"));
+  EXPECT_TRUE(has(refusal([&] { structure_of(unit(), 0); }), "element"));
+  EXPECT_TRUE(has(refusal([&] { Ffr(s, MatX::Zero(5, 2)); }), "rows"));
+  EXPECT_TRUE(has(refusal([&] { Ffr(s, MatX::Ones(s.size(), 2)); }), "positive definite"));
+  Bar apart = steel(1.0, {Vec3(5, 0, 0)});
+  Structure const two = structure_of({steel(1.0), apart}, {1, 1});
+  EXPECT_TRUE(has(refusal([&] { nodal_coordinates(two); }), "not positive definite"));
+  Ffr const body(s, held_modes(s, 2));
+  EXPECT_TRUE(has(refusal([&] { body.at(1.5); }), "outside"));
+  EXPECT_TRUE(has(refusal([&] { body.at(0.5, 0.0, 0.0, 1); }), "bar 1 does not exist"));
+  EXPECT_TRUE(has(refusal([&] { body.node(5); }), "node 5"));
+  EXPECT_TRUE(has(refusal([&] { Ffr(body.integrals(), {}).node(0); }), "integrals only"));
+  FfrIntegrals bad = body.integrals();
+  bad.stiffness.resize(3, 3);
+  EXPECT_TRUE(has(refusal([&] { Ffr(bad, {}); }), "not all of one size"));
+  bad = body.integrals();
+  bad.mass_matrix(0, 0) = -1.0;
+  EXPECT_TRUE(has(refusal([&] { Ffr(bad, {}); }), "positive definite"));
+}
+
+}  // namespace ffr_structure_test

@@ -1,0 +1,29 @@
+// The floating frame of reference in the plane obeys the laws of every body.
+#include <polybody/bodies/planar/ffr.hpp>
+
+#include "support/flexible_body_laws.hpp"
+
+namespace polybody {
+namespace planar_ffr_laws_test {
+
+struct PlanarFfrCase {
+  static Bar bar() {
+    return {.length = 1.3,
+            .constants = BarConstants{.EA = 400.0, .EI = 30.0, .mass_per_length = 0.7, .rotary_inertia = 0.02},
+            .placement = Placement::planar(0.4, -0.3, 0.7),
+            .damping = {.axial = 0.02, .bending = 0.01}};
+  }
+  static planar::Ffr body(Bar const& bar) { return planar::Ffr::from(bar, 2); }
+};
+struct StiffenedPlanarFfrCase : PlanarFfrCase {
+  static constexpr double deformation = 0.2;  // second-order theory
+  static planar::Ffr body(Bar const& bar) { return planar::Ffr::from(bar, 2, {.stiffening = true}); }
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarFfr, BodyLaws, PlanarFfrCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(StiffenedPlanarFfr, BodyLaws, StiffenedPlanarFfrCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarFfr, FlexibleBodyLaws, PlanarFfrCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(StiffenedPlanarFfr, FlexibleBodyLaws, StiffenedPlanarFfrCase);
+
+}  // namespace planar_ffr_laws_test
+}  // namespace polybody
