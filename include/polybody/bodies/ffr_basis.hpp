@@ -65,7 +65,6 @@ class ReferenceConditions {
       if (!fixed[std::size_t(i)]) free.push_back(i);
     return free;
   }
-  bool is_none() const { return nodes_.empty() && single_.empty(); }
   int rigid_motions() const { return in_plane_ ? 3 : 6; }
 
  private:
