@@ -1,4 +1,6 @@
-# Sourced by tests/run, examples/run and .ci/run:  need_packages PACKAGE...
+# Sourced by tests/run, examples/run and .ci/run.
+
+# need_packages PACKAGE...
 # Installs the Debian packages that are missing; on another system it says what is needed and goes on.
 
 need_packages() {
@@ -25,4 +27,13 @@ need_packages() {
   "${as_root[@]}" apt-get update -qq < /dev/null || true
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install -y -qq --no-install-recommends "${missing[@]}" < /dev/null
+}
+
+# Path of any clang++ from 16 on; nothing where there is none.
+find_clang() {
+  local version
+  for version in 16 17 18 19 20 21; do
+    command -v "clang++-$version" && return 0
+  done
+  return 0
 }

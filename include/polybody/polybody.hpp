@@ -43,4 +43,5 @@
 #include <polybody/solvers/auto_lu.hpp>
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/refined.hpp>

@@ -1,6 +1,64 @@
-#include <polybody/solvers/auto_lu.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_ldlt.hpp>
+#include <polybody/solvers/default_solver.hpp>
+#include <polybody/solvers/dense_lu.hpp>
+#include <polybody/solvers/eigen_ldlt.hpp>
+#include <polybody/solvers/refined.hpp>
+
+#include <cstdlib>
+#ifdef POLYBODY_WITH_KLU
+#include <polybody/solvers/klu.hpp>
+#endif
 
 template class polybody::BlockFactor<polybody::Symmetry::measured>;
 template class Eigen::SparseLU<polybody::EigenSparseLu::Matrix, Eigen::COLAMDOrdering<int>>;
 template class Eigen::internal::SparseLUImpl<double, int>;
+
+namespace polybody {
+namespace {
+
+template <class Solver>
+class Behind final : public SolverInTests {
+ public:
+  void analyse(Index size, std::vector<Block> const& blocks) override { solver_.analyse(size, blocks); }
+  void begin() override { solver_.begin(); }
+  void add(Index row, Index col, BlockView const& b) override { solver_.add(row, col, b); }
+  Index factor() override { return solver_.factor(); }
+  bool reordered() const override {
+    if constexpr (requires { solver_.reordered(); }) return solver_.reordered();
+    return false;
+  }
+  std::span<Index const> dropped() const override {
+    if constexpr (requires { solver_.dropped(); }) return solver_.dropped();
+    return {};
+  }
+  void solve(VecX const& b, VecX& x) const override { solver_.solve(b, x); }
+
+ private:
+  Solver solver_;
+};
+
+}  // namespace
+
+std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, bool statics) {
+  char const* const given = std::getenv("POLYBODY_SOLVER");
+  std::string const name = given ? given : "";
+  if (name.empty()) return nullptr;
+  if (name == "EigenSparseLu") return std::make_unique<Behind<EigenSparseLu>>();
+  if (name == "DenseLu") {
+    if (size > 400) return nullptr;
+    return std::make_unique<Behind<DenseLu>>();
+  }
+#ifdef POLYBODY_WITH_KLU
+  if (name == "Klu") return std::make_unique<Behind<Klu>>();
+#endif
+  // these need pivots within blocks, or symmetry: statics keeps its default
+  bool const for_steps = name == "BlockLdlt" || name == "BlockLu" || name == "EigenLdlt" || name == "RefinedBlockSolver";
+  if (!for_steps) throw InvalidInput("POLYBODY_SOLVER=" + name + " is not a solver that the tests know.");
+  if (statics) return nullptr;
+  if (name == "BlockLdlt") return std::make_unique<Behind<BlockLdlt>>();
+  if (name == "BlockLu") return std::make_unique<Behind<BlockLu>>();
+  if (name == "EigenLdlt") return std::make_unique<Behind<EigenLdlt>>();
+  return std::make_unique<Behind<Refined<BlockSolver>>>();
+}
+
+}  // namespace polybody

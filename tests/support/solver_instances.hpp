@@ -1,7 +1,6 @@
 #pragma once
 // Solvers are compiled once for all tests (solver_instances.cpp), not again in every file.
-#include <polybody/solvers/auto_lu.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/default_solver.hpp>
 
 extern template class polybody::BlockFactor<polybody::Symmetry::measured>;
 extern template class Eigen::SparseLU<polybody::EigenSparseLu::Matrix, Eigen::COLAMDOrdering<int>>;

@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include <polybody/solvers/auto_lu.hpp>
+#include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/newton.hpp>
 #include <polybody/system/system.hpp>
 
@@ -32,7 +32,7 @@ struct PathPoint {
 /// Follows the path from x, in equilibrium without loads, until `done(point)` or `options.points`. Lengths are measured by
 /// |dq|²/c² + dp², c = |dq/dp| at the start. \throws NewtonStalled naming the load factor where steps have become too
 /// short, LinearSolverSingular where not even the start has a tangent, NonFinite.
-template <LinearSolver Solver = AutoLu, class M>
+template <LinearSolver Solver = DefaultStaticSolver, class M>
 std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {
   require_positive(options.step, "equilibrium_path: the step");

@@ -2,19 +2,13 @@
 /// \file
 /// Static equilibrium: f(q) − Gᵀλ = 0, Φ(q) = 0 at v = 0, by full Newton with load steps.
 
+#include <polybody/analysis/equilibrium_options.hpp>
 #include <polybody/integrators/forward_dynamics.hpp>
-#include <polybody/solvers/auto_lu.hpp>
+#include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/newton.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
-
-struct EquilibriumOptions {
-  int load_steps = 1;          ///< loads and gravity grow in so many equal parts
-  double smallest_part = 1e-4; ///< a part that fails is halved down to this; the next one is twice as large again
-  double tolerance = 1e-11;    ///< of a correction, relative to 1 + max |q|
-  int max_iterations = 50;     ///< in one part
-};
 
 namespace detail {
 /// Multipliers that carry the loads at the first instant, in place of none: what holds a pendulum upright is made of them. False where the
@@ -31,15 +25,10 @@ bool multipliers_at_rest(System<M>& system, State& x) {
 }
 }  // namespace detail
 
-struct EquilibriumReport {
-  int parts = 0;
-  int iterations = 0;
-};
-
 /// Moves x (coordinates, multipliers; speeds become zero) into equilibrium at time x.t, from its present place.
 /// Every term of the tangent is included. \throws NewtonStalled, LinearSolverSingular, NonFinite; x is then
 /// untouched.
-template <LinearSolver Solver = AutoLu, class M>
+template <LinearSolver Solver = DefaultStaticSolver, class M>
 EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
   System<M> system(model);
   State trial = x;

@@ -52,7 +52,7 @@ struct RunReport {
 
 /// An input range of states: `for (State const& now : simulate(…))` yields the start and every step's end.
 /// The state given by the caller is moved along. Not copyable; begin() once.
-template <class M, class I, class Solver = BlockSolver>
+template <class M, class I, class Solver = DefaultSolver>
 class Simulation {
   static_assert(I::accepts_rows || !M::may_have_rows,
                 "This explicit integrator has no stabilisation, but joints with the Constraint policy add rows. Use "
@@ -279,7 +279,7 @@ class Simulation {
 
 /// Runs `model` from x: a range of states. x is moved along and holds the last state afterwards.
 /// \throws InconsistentStart, InvalidInput at once; NewtonStalled, NonFinite, … from the step that fails.
-template <LinearSolver Solver = BlockSolver, class M, class I>
+template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<M, I, Solver> simulate(M const& model, State& x, I integrator, RunOptions options) {
   return Simulation<M, I, Solver>(model, x, std::move(integrator), std::move(options));
 }

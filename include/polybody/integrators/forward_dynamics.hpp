@@ -5,12 +5,12 @@
 
 #include <span>
 
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/default_solver.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
-template <class M, LinearSolver Solver = BlockSolver>
+template <class M, LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:
   explicit ForwardDynamics(System<M>& system)

@@ -21,7 +21,7 @@ struct StepReport {
 ///   auto w = integrator.template workspace<Solver>(system);
 ///   integrator.start(system, x, h, w);      after a start, a jump or an event
 ///   integrator.step(system, x, h, w);       x is untouched when it throws; takes at most h
-template <class I, class M, class Solver = BlockSolver>
+template <class I, class M, class Solver = DefaultSolver>
 concept Integrator = requires(I const i, System<M>& system, State& x, double h) {
   { I::name } -> std::convertible_to<char const*>;
   { I::order } -> std::convertible_to<int>;

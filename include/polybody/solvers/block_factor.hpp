@@ -150,7 +150,8 @@ class BlockFactor {
 
   template <int N, bool symmetric>
   void update(Node const& n) {
-    double const *const w = u_.data() + n.u + n.pad, *const l = keeps_columns(n) ? l_.data() + n.l : scaled_.data();
+    detail::NodeStorage const s = storage(n);
+    double const *const w = s.u + s.pad, *const l = s.l;
     Neighbour const* const of = layout_.neighbours.data() + n.first_neighbour;
     int const* target = layout_.targets.data() + n.first_target;
     int const stride = n.stride();

@@ -5,7 +5,7 @@ namespace polybody {
 
 /// Block LU in the order of `BlockLdlt`, for unsymmetric tangents.
 using BlockLu = BlockFactor<Symmetry::none>;
-/// The default: block LU that does the half of the work when the matrix is symmetric.
+/// Block LU that does the half of the work when the matrix is symmetric.
 using BlockSolver = BlockFactor<Symmetry::measured>;
 
 static_assert(LinearSolver<BlockLu> && LinearSolver<BlockSolver>);

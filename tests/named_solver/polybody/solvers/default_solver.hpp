@@ -1,0 +1,62 @@
+#pragma once
+// Found before the library's own header of this name: tests that name no solver take the one that the environment names,
+//   POLYBODY_SOLVER=EigenSparseLu ctest ...
+// and the library's default when it names none. `DenseLu` is taken up to 400 unknowns.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <polybody/solvers/auto_lu.hpp>
+#include <polybody/solvers/block_lu.hpp>
+
+namespace polybody {
+
+/// A linear solver of any type, behind a pointer.
+struct SolverInTests {
+  virtual ~SolverInTests() = default;
+  virtual void analyse(Index size, std::vector<Block> const& blocks) = 0;
+  virtual void begin() = 0;
+  virtual void add(Index row, Index col, BlockView const& b) = 0;
+  virtual Index factor() = 0;
+  virtual bool reordered() const = 0;
+  virtual std::span<Index const> dropped() const = 0;
+  virtual void solve(VecX const& b, VecX& x) const = 0;
+};
+
+/// The one that the environment names, for a matrix of this size; none when it names none.
+/// \throws InvalidInput for a name that is not known. Defined in support/solver_instances.cpp.
+std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, bool statics);
+
+/// `Default`, unless the environment names another.
+template <class Default, bool statics>
+class NamedSolver {
+ public:
+  void analyse(Index size, std::vector<Block> const& blocks) {
+    other_ = solver_named_by_environment(size, statics);
+    other_ ? other_->analyse(size, blocks) : default_.analyse(size, blocks);
+  }
+  void begin() { other_ ? other_->begin() : default_.begin(); }
+  void add(Index row, Index col, BlockView const& b) { other_ ? other_->add(row, col, b) : default_.add(row, col, b); }
+  Index factor() { return other_ ? other_->factor() : default_.factor(); }
+  bool reordered() const {
+    if (other_) return other_->reordered();
+    if constexpr (requires { default_.reordered(); }) return default_.reordered();
+    return false;
+  }
+  std::span<Index const> dropped() const {
+    if (other_) return other_->dropped();
+    if constexpr (requires { default_.dropped(); }) return default_.dropped();
+    return {};
+  }
+  void solve(VecX const& b, VecX& x) const { other_ ? other_->solve(b, x) : default_.solve(b, x); }
+
+ private:
+  Default default_;
+  std::unique_ptr<SolverInTests> other_;
+};
+
+using DefaultSolver = NamedSolver<BlockSolver, false>;
+using DefaultStaticSolver = NamedSolver<AutoLu, true>;
+
+}  // namespace polybody
