@@ -28,7 +28,8 @@ double fastest(F&& pass) {
 template <class B>
 struct Swaying {
   B body = B::from({.length = 16.0,
-                    .constants = BarConstants{.EA = 1e6, .EI = 10.0, .mass_per_length = 1.0, .GA = 1e5}}, count);
+                    .constants = BarConstants{.EA = 1e6, .EI = 10.0, .mass_per_length = 1.0, .GA = 1e5, .GJ = 8.0,
+                                             .rotary_inertia = 1e-3}}, count);
   std::vector<double> q, v, a;
   Swaying() : q(std::size_t(body.coordinates())), v(q.size()), a(q.size()) {
     body.reference(q);
@@ -75,8 +76,8 @@ void compare(char const* name) {
     for_each_element_tangent<B>(s.body, 0, count, s.qs(), s.vs(), 1.5, 0.1, 1.0, [&](Index, auto const& k) { sink += k.sum(); });
   });
   benchmark::DoNotOptimize(sink);
-  std::printf("  %-34s M a - f: %6.1f, in packs %6.1f, ratio %4.2f;   tangent: %6.1f, in packs %6.1f, ratio %4.2f\n", name, force,
-              forces, force / forces, tangent, tangents, tangent / tangents);
+  std::printf("  %-37s M a - f: %6.1f, in packs %6.1f, ratio %4.2f;   tangent: %7.1f, in packs %6.1f, ratio %4.2f;   both: ratio %4.2f\n",
+              name, force, forces, force / forces, tangent, tangents, tangent / tangents, (force + tangent) / (forces + tangents));
 }
 
 /// Residual and tangent of a whole model of one body with `count` elements, alone and with two threads.
@@ -103,7 +104,7 @@ void share_loops(char const* name) {
   alone.evaluate(q, v, 0.0);
   shared.evaluate(q, v, 0.0);
   double const r1 = residual(alone), r2 = residual(shared), t1 = tangent(alone), t2 = tangent(shared);
-  std::printf("  %-34s residual: %6.1f, two threads %6.1f, ratio %4.2f;   tangent: %6.1f, two threads %6.1f, ratio %4.2f\n", name,
+  std::printf("  %-37s residual: %6.1f, two threads %6.1f, ratio %4.2f;   tangent: %6.1f, two threads %6.1f, ratio %4.2f\n", name,
               r1, r2, r1 / r2, t1, t2, t1 / t2);
 }
 
@@ -128,9 +129,11 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   std::printf("\nnanoseconds an element, packs of %d\n", pack_size);
-  compare<Green>("AncfCable, Green strain");
-  compare<Engineering>("AncfCable, engineering strain");
-  compare<planar::Lrvf>("Lrvf (does not use packs)");
-  share_loops<Green>("AncfCable, Green strain");
-  share_loops<planar::Lrvf>("Lrvf");
+  compare<Green>("planar AncfCable, Green strain");
+  compare<Engineering>("planar AncfCable, engineering strain");
+  compare<planar::Lrvf>("planar Lrvf (does not use packs)");
+  compare<AncfCable<>>("AncfCable in space");
+  compare<AncfBeam<ElasticLine>>("AncfBeam<ElasticLine>");
+  share_loops<Green>("planar AncfCable, Green strain");
+  share_loops<planar::Lrvf>("planar Lrvf");
 }

@@ -53,11 +53,12 @@ void expect_strains(VecX const& q, Vec3 const& gamma, Vec3 const& kappa, Vec3 co
   Vec3 const ga(900, 300, 200), ei(25, 60, 40), s(900, 900, 300);
   for (int e = 0; e < elements; ++e) {
     auto const p = beam.at((e + 0.5) * l);
-    EXPECT_LT((beam.strains<0>(p, view(q)) - gamma).norm(), 1e-14) << e;
-    EXPECT_LT((beam.strains<1>(p, view(q)) - kappa).norm(), 1e-14) << e;
-    EXPECT_LT((beam.strains<2>(p, view(q)) - section).norm(), 1e-14) << e;
-    EXPECT_LT((beam.resultants<0>(p, view(q)) - gamma.cwiseProduct(ga)).norm(), 1e-11) << e;
-    EXPECT_LT((beam.resultants<1>(p, view(q)) - kappa.cwiseProduct(ei)).norm(), 1e-11) << e;
+    Vec6 const strains = beam.section_strains(p, view(q)), forces = beam.section_forces(p, view(q));
+    EXPECT_LT((strains.head<3>() - gamma).norm(), 1e-14) << e;
+    EXPECT_LT((strains.tail<3>() - kappa).norm(), 1e-14) << e;
+    EXPECT_LT((beam.section_deformation(p, view(q)) - section).norm(), 1e-14) << e;
+    EXPECT_LT((forces.head<3>() - gamma.cwiseProduct(ga)).norm(), 1e-11) << e;
+    EXPECT_LT((forces.tail<3>() - kappa.cwiseProduct(ei)).norm(), 1e-11) << e;
   }
   double const expected =
       gamma.cwiseProduct(ga).dot(gamma) + kappa.cwiseProduct(ei).dot(kappa) + section.cwiseProduct(s).dot(section);
@@ -98,10 +99,10 @@ TEST(AncfElasticLine, TurningSectionsAreCurvatureAndTwist) {
       return node(Vec3::Zero(), turn);
     });
     for (int e = 0; e < elements; ++e) {
-      EXPECT_LT((beam.strains<1>(beam.at((e + 0.5) * l), view(q)) - Vec3::Unit(axis) * middle).norm(), 1e-13);
+      EXPECT_LT((beam.section_strains(beam.at((e + 0.5) * l), view(q)).tail<3>() - Vec3::Unit(axis) * middle).norm(), 1e-13);
       auto p = beam.at((e + 0.5) * l);
       p.xi = 0.5 - 0.5 / std::sqrt(3.0);
-      EXPECT_LT((beam.resultants<1>(p, view(q)) - Vec3::Unit(axis) * (stiffness[axis] * gauss)).norm(), 1e-11);
+      EXPECT_LT((beam.section_forces(p, view(q)).tail<3>() - Vec3::Unit(axis) * (stiffness[axis] * gauss)).norm(), 1e-11);
     }
   }
 }

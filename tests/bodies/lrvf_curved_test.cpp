@@ -37,7 +37,7 @@ TEST_F(CurvedLrvf, NodesStandOnTheCurveWithoutStrain) {
     auto const f = see<double>(body.at(s, 0.05, -0.02), Mat3::Identity(), q, rest).marker.frame;
     EXPECT_LT((f.A - place.axes * expected.axes).norm(), 1e-14);
     EXPECT_LT((f.r - place.origin - place.axes * (expected.origin + expected.axes * Vec3(0, 0.05, -0.02))).norm(), 1e-14);
-    EXPECT_EQ(body.strains(body.at(s), view(q)).norm(), 0.0);
+    EXPECT_EQ(body.section_strains(body.at(s), view(q)).norm(), 0.0);
   }
 }
 
@@ -70,7 +70,7 @@ TEST_F(CurvedLrvf, UniformStretchAndBendOfAnArcAreMeasuredExactly) {
   for (int i = 0; i <= 3; ++i) stretched.segment<3>(7 * i) *= 1.02;
   Vec6 expected = Vec6::Zero();
   expected[0] = 0.02;
-  EXPECT_LT((beam.strains(beam.at(0.7), view(stretched)) - expected).norm(), 1e-14);
+  EXPECT_LT((beam.section_strains(beam.at(0.7), view(stretched)) - expected).norm(), 1e-14);
   Placement at;
   Mat3 const half = exp_so3<double>(Vec3(0, 0, 0.5 * 2.1 * l));
   VecX const bent = nodes_of(3, [&](double) {
@@ -79,7 +79,7 @@ TEST_F(CurvedLrvf, UniformStretchAndBendOfAnArcAreMeasuredExactly) {
     return node;
   });
   expected << 0, 0, 0, 0, 0, 0.6;
-  EXPECT_LT((beam.strains(beam.at(0.7), view(bent)) - expected).norm(), 1e-14);
+  EXPECT_LT((beam.section_strains(beam.at(0.7), view(bent)) - expected).norm(), 1e-14);
 }
 
 }  // namespace lrvf_curved_test

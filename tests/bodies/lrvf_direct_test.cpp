@@ -47,7 +47,7 @@ Turn turn(double phi, double a) {
 template <class I>
 Vec6 strain(VecX const& q) {
   Lrvf<I> const beam = element<I>();
-  return beam.strains(beam.at(0.5), numbers(q));
+  return beam.section_strains(beam.at(0.5), numbers(q));
 }
 
 // While every node turns about one axis from the placement, Ψ is that angle and both policies agree.

@@ -28,8 +28,8 @@ void expect_strains(VecX const& q, Vec6 const& expected, double tolerance = 1e-1
   Lrvf<> const beam = straight();
   for (int e = 0; e < elements; ++e) {
     auto const p = beam.at((e + 0.3) * l);
-    EXPECT_LT((beam.strains(p, numbers(q)) - expected).norm(), tolerance) << e;
-    EXPECT_LT((beam.resultants(p, numbers(q)) - expected.cwiseProduct(stiffness)).norm(), 1e3 * tolerance) << e;
+    EXPECT_LT((beam.section_strains(p, numbers(q)) - expected).norm(), tolerance) << e;
+    EXPECT_LT((beam.section_forces(p, numbers(q)) - expected.cwiseProduct(stiffness)).norm(), 1e3 * tolerance) << e;
   }
   EXPECT_NEAR(strain_energy_of(beam, q), 0.65 * expected.cwiseAbs2().dot(stiffness), 1e3 * tolerance);
 }
@@ -117,7 +117,7 @@ TEST(SpatialLrvf, ATurningTipTwistsTheLastElementWithoutAJumpOfTheOthers) {
     beam.plus<double>(numbers(q), numbers(delta), std::span<double>(next.data(), std::size_t(next.size())));
     q = next;
     double const turn = 0.05 * k, shortest = std::remainder(turn, 2 * pi);
-    EXPECT_NEAR(beam.strains(beam.at(0.0), numbers(q))[3], shortest / l, 1e-11) << k;
+    EXPECT_NEAR(beam.section_strains(beam.at(0.0), numbers(q))[3], shortest / l, 1e-11) << k;
   }
 }
 
@@ -160,7 +160,7 @@ TEST(SpatialLrvf, PretensionPullsTheEndsAndStoresItsWork) {
   expected[6] = -70.0;
   beam.force<double>(0, numbers(q), numbers(rest), f);
   EXPECT_LT((f - expected).norm(), 1e-12);
-  EXPECT_NEAR(beam.resultants(beam.at(0.5), numbers(q))[0], 70.0, 1e-12);
+  EXPECT_NEAR(beam.section_forces(beam.at(0.5), numbers(q))[0], 70.0, 1e-12);
   q[7] *= 1.02;
   EXPECT_NEAR(strain_energy_of(beam, q), 1.3 * (0.5 * 900 * 0.02 * 0.02 + 70.0 * 0.02), 1e-12);
 }

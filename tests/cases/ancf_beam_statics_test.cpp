@@ -80,9 +80,9 @@ TEST(AncfNachbagauer, WeldIsTheClampOfTheRod) {
   Beam const& body = c.bar.body;
   auto const clamp = body.at(0.0), inside = body.at(0.5 * body.element_length());
   double const ga = body.constants().GA;
-  EXPECT_NEAR(body.strains<0>(clamp, c.coordinates())[1], small / ga, 2e-3 * small / ga);
-  EXPECT_LT(body.strains<2>(clamp, c.coordinates()).norm(), 1e-9);
-  EXPECT_NEAR(body.resultants<1>(inside, c.coordinates())[2], small * 2.0 * (1 - 0.5 / 32), 1e-3 * small * 2.0);
+  EXPECT_NEAR(body.section_strains(clamp, c.coordinates())[1], small / ga, 2e-3 * small / ga);
+  EXPECT_LT(body.section_deformation(clamp, c.coordinates()).norm(), 1e-9);
+  EXPECT_NEAR(body.section_forces(inside, c.coordinates())[5], small * 2.0 * (1 - 0.5 / 32), 1e-3 * small * 2.0);
 }
 
 // ---- S5: moments fixed in space, and following

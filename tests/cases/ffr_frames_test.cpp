@@ -3,7 +3,7 @@
 
 #include <numbers>
 #include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/section.hpp>
 #include <polybody/bodies/ffr.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -87,8 +87,8 @@ TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
     State x = model.reference_state();
     equilibrium(model, x);
     EXPECT_NEAR(position(model, x, body.at(1.0))[1], expected, 5e-3 * expected) << part;
-    EXPECT_NEAR(body.body.axial_force(body.body.at(0.5), coordinates_of(model, x, body)), -p, 1e-3) << part;
-    EXPECT_NEAR(body.body.bending_moment(body.body.at(0.0), coordinates_of(model, x, body))[2],
+    EXPECT_NEAR(section_forces(model, x, body.at(0.5))[0], -p, 1e-3) << part;
+    EXPECT_NEAR(section_forces(model, x, body.at(0.0))[5],
                 lateral * 1.0 + p * expected, 0.02 * (lateral + p * expected))
         << part;
   }

@@ -8,21 +8,18 @@
 
 #include <polybody/bodies/ancf_continuum.hpp>
 #include <polybody/bodies/ancf_elastic_line.hpp>
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/node_chain.hpp>
 
 namespace polybody {
 
 /// `AncfBeam<>::from(bar, n)`, `AncfBeam<Continuum<>>::from(bar, n, curve)`.
 template <class Elastic = ElasticLine>
-class AncfBeam {
+class AncfBeam : public NodeChain<12> {
  public:
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = true;
-  static constexpr int node_columns = 12;
-  static constexpr int element_columns = ancf::columns;
-  static constexpr int point_columns = element_columns;
-  static constexpr int element_stride = node_columns;
+  static_assert(element_columns == ancf::columns);
   static constexpr bool packs_pay = true;
   template <class T>
   using Element = Vec<T, element_columns>;
@@ -60,16 +57,6 @@ class AncfBeam {
     Index const e = std::min(Index(x), n_ - 1);
     return {e, x - double(e), y, z};
   }
-  Point local(Point p) const {
-    p.element = 0;
-    return p;
-  }
-
-  Index coordinates() const { return (n_ + 1) * node_columns; }
-  Index speeds() const { return coordinates(); }
-  Index elements() const { return n_; }
-  Index first_column(Index e) const { return e * node_columns; }
-  Index first_column(Point const& p) const { return first_column(p.element); }
 
   void reference(std::span<double> q) const {
     for (Index i = 0; i <= n_; ++i) {
@@ -78,14 +65,6 @@ class AncfBeam {
       Mat3 const axes = bar_.placement.axes * p.axes;
       for (int k = 0; k < 3; ++k) part<3>(q, i * node_columns + 3 + 3 * k) = axes.col(k);
     }
-  }
-  template <StateScalar T>
-  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i] + delta[i];
-  }
-  template <StateScalar T>
-  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
-    for (std::size_t i = 0; i < v.size(); ++i) out[i] = v[i];
   }
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     for (Index i = 0; i < coordinates(); i += 3) {
@@ -219,22 +198,15 @@ class AncfBeam {
         k.block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
-  /// `ElasticLine`: strains of group G (0: Γ; 1: K; 2: the section's) at `p` less those of the reference, and their resultants,
-  /// stiffness times strain without damping, Γ₁'s with the pretension [N], [N m].
-  template <int G>
-  Vec3 strains(Point const& p, std::span<double const> q) const
+  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without damping (see
+  /// sections.hpp): `ElasticLine` as stiffness times strain, `Continuum` as sums of its stress over the section.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const;
+  Vec6 section_forces(Point const& p, std::span<double const> q) const;
+  /// `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, less those of the reference.
+  Vec3 section_deformation(Point const& p, std::span<double const> q) const
     requires std::same_as<Elastic, ElasticLine>
   {
-    using Group = std::tuple_element_t<G, Groups>;
-    return Group::strains(p.xi, l_, coordinates_at(p, q)) - Group::strains(p.xi, l_, reference_of(p.element).x);
-  }
-  template <int G>
-  Vec3 resultants(Point const& p, std::span<double const> q) const
-    requires std::same_as<Elastic, ElasticLine>
-  {
-    Vec3 n = strains<G>(p, q).cwiseProduct(std::get<G>(groups_of(p.element)).stiffness());
-    if constexpr (G == 0) n[0] += bar_.pretension;
-    return n;
+    return strains<std::tuple_element_t<2, Groups>>(p, q);
   }
 
   /// F at `p`: from the axes of the reference section to world axes.
@@ -265,7 +237,7 @@ class AncfBeam {
     Vec<double, ancf::vectors> first_moment = Vec<double, ancf::vectors>::Zero();
   };
 
-  AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight) : bar_(bar), n_(n) {
+  AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight) : NodeChain(n), bar_(bar) {
     std::string const name = Elastic::name;
     if (n < 1) throw InvalidInput(name + ": at least one element is needed.");
     constants_ = polybody::constants(bar);
@@ -345,6 +317,10 @@ class AncfBeam {
   Element<double> coordinates_at(Point const& p, std::span<double const> q) const {
     return part<element_columns>(q, first_column(p));
   }
+  template <class Group>
+  Vec3 strains(Point const& p, std::span<double const> q) const {
+    return Group::strains(p.xi, l_, coordinates_at(p, q)) - Group::strains(p.xi, l_, reference_of(p.element).x);
+  }
 
   template <KernelScalar T>
   static void times_mass(Inertia const& inertia, Element<T> const& a, Element<T>& out) {
@@ -388,7 +364,6 @@ class AncfBeam {
   Bar bar_;
   BarConstants constants_{.EA = 0.0, .EI = 0.0, .mass_per_length = 0.0};
   double l_ = 0.0;
-  Index n_;
   std::vector<Placement> nodes_;             ///< in the bar's axes
   std::vector<ancf::Reference> references_;  ///< one where all elements are alike, or one each; the next two as well
   std::vector<Groups> groups_;
@@ -398,3 +373,5 @@ class AncfBeam {
 static_assert(Body<AncfBeam<>> && Body<AncfBeam<Continuum<>>>);
 
 }  // namespace polybody
+
+#include <polybody/bodies/ancf_section.hpp>

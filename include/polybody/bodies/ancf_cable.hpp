@@ -4,8 +4,8 @@
 /// matrix, no torsion and no section [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006]. With s_i of `hermite_shape`,
 ///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
 
-#include <polybody/bodies/body.hpp>
 #include <polybody/bodies/cable_laws.hpp>
+#include <polybody/bodies/node_chain.hpp>
 
 namespace polybody {
 
@@ -16,15 +16,11 @@ namespace polybody {
 /// along r′ has no effect, and the marker's other two axes stand as the smallest turn from the reference leaves them. A clamp is
 /// `Revolute` about the tangent, with the cable's marker second.
 template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
-class AncfCable {
+class AncfCable : public NodeChain<6> {
  public:
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::axis;
   static constexpr bool constant_mass = true;
-  static constexpr int node_columns = 6;
-  static constexpr int element_columns = 12;
-  static constexpr int point_columns = 12;
-  static constexpr int element_stride = node_columns;
   static constexpr bool packs_pay = true;
   static constexpr char const* name = "AncfCable";
   template <class T>
@@ -58,26 +54,8 @@ class AncfCable {
     Index const e = std::min(Index(x), n_ - 1);
     return {e, x - double(e)};
   }
-  Point local(Point p) const {
-    p.element = 0;
-    return p;
-  }
-
-  Index coordinates() const { return (n_ + 1) * node_columns; }
-  Index speeds() const { return coordinates(); }
-  Index elements() const { return n_; }
-  Index first_column(Index e) const { return e * node_columns; }
-  Index first_column(Point const& p) const { return first_column(p.element); }
 
   void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
-  template <StateScalar T>
-  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i] + delta[i];
-  }
-  template <StateScalar T>
-  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
-    for (std::size_t i = 0; i < v.size(); ++i) out[i] = v[i];
-  }
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     for (Index i = 0; i <= n_; ++i) {
       part<3>(v, 6 * i) = v0 + omega.cross(part<3>(q, 6 * i).eval());
@@ -151,14 +129,15 @@ class AncfCable {
     return -part<12>(q, first_column(e)).dot(weight);
   }
 
-  /// Axial strain at `p`, and the bending measure κ (3), world axes, across the tangent [1/m].
-  double axial_strain(Point const& p, std::span<double const> q) const { return axial_.strains(p.xi, l_, element_of(p, q))[0]; }
-  Vec3 curvature(Point const& p, std::span<double const> q) const { return bending_.strains(p.xi, l_, element_of(p, q)); }
-  /// Axial force [N] and bending moment [N m] at `p`, without damping.
-  double axial_force(Point const& p, std::span<double const> q) const {
-    return axial_.stress(axial_.strains(p.xi, l_, element_of(p, q)))[0];
+  /// At `p`, in the axes of a marker there (see sections.hpp): a cable knows axial strain and curvature, nothing of shear and torsion.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    Element<double> const x = element_of(p, q);
+    return in_section_axes(p, x, axial_.strains(p.xi, l_, x)[0], bending_.strains(p.xi, l_, x));
   }
-  Vec3 bending_moment(Point const& p, std::span<double const> q) const { return bending_.stress(curvature(p, q)); }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    Element<double> const x = element_of(p, q);
+    return in_section_axes(p, x, axial_.stress(axial_.strains(p.xi, l_, x))[0], bending_.stress(bending_.strains(p.xi, l_, x)));
+  }
 
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
@@ -212,7 +191,7 @@ class AncfCable {
 
  private:
   AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
-      : constants_(c), length_(bar.length), l_(bar.length / double(n)), n_(n),
+      : NodeChain(n), constants_(c), length_(bar.length), l_(bar.length / double(n)),
         axial_(c, bar.damping, l_, Vec<double, 1>(bar.pretension)), bending_(c, bar.damping, l_) {
     for (GaussPoint const& g : gauss<4>) {
       ShapeValues<4> const s = hermite_shape(g.xi, l_);
@@ -240,6 +219,15 @@ class AncfCable {
   }
 
   Element<double> element_of(Point const& p, std::span<double const> q) const { return part<12>(q, first_column(p)); }
+  Vec6 in_section_axes(Point const& p, Element<double> const& x, double along, Vec3 const& bending) const {
+    ShapeValues<4> const s = hermite_shape(p.xi, l_);
+    Vec3 slope = Vec3::Zero();
+    for (int i = 0; i < 4; ++i) slope += s.ds[i] * x.segment<3>(3 * i);
+    Vec6 out = Vec6::Zero();
+    out[0] = along;
+    out.tail<3>() = smallest_turn<double>(slope, axes_[std::size_t(p.element)]).transpose() * bending;
+    return out;
+  }
 
   /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are first turned by π
   /// about their third one, so that there is always one.
@@ -257,7 +245,6 @@ class AncfCable {
   BarConstants constants_;
   double length_;
   double l_;
-  Index n_;
   StrainGroup<CableAxial<Strain, axial_points>> axial_;
   StrainGroup<CableBending<Strain, bending_points>> bending_;
   Mat<double, 4, 4> mass_ = Mat<double, 4, 4>::Zero();  ///< of each component

@@ -172,7 +172,7 @@ struct Continuum {
       }
       Along along(Vec<double, 1>(double(c.EA)), Vec<double, 1>(axial));
       Shear shears(Vec2(c.GA, c.GA_z.value()), Vec2(shear, shear));
-      double const lever = std::sqrt(c.GJ / (c.GA * z * z + c.GA_z.value() * y * y));
+      double const lever = Continuum::lever(c);
       int k = 0;
       for (GaussPoint const& g : gauss<3>)
         section.for_each([&](double a, double b) {
@@ -193,6 +193,14 @@ struct Continuum {
         });
       return {volume};
     }
+  }
+
+  /// Where shear is measured: this many times as far from the axis as the points of the section.
+  static double lever(BarConstants const& c) {
+    if constexpr (cured)
+      return std::sqrt(c.GJ * c.EA / (c.GA * c.EI_y.value() + c.GA_z.value() * c.EI));
+    else
+      return 1.0;
   }
 
   /// Stress at a point with strain E and, where the section meets the axis, `axis`; without damping.

@@ -9,14 +9,14 @@
 
 #include <vector>
 
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/node_chain.hpp>
 
 namespace polybody {
 
 /// `CholeskyCoordinates<AncfCable<>>::from(bar, n)` in place of `AncfCable<>::from(bar, n)`; everything else stays.
 template <Body B>
   requires(B::constant_mass && B::element_columns > 0)
-class CholeskyCoordinates {
+class CholeskyCoordinates : public AddingCoordinates {
  public:
   static constexpr World world = B::world;
   static constexpr Observes observes = B::observes;
@@ -49,6 +49,10 @@ class CholeskyCoordinates {
     return e;
   }
 
+  /// As the body itself tells them (see sections.hpp).
+  Vec6 section_strains(Point const& p, std::span<double const> q) const { return body_.section_strains(p, span(base_coordinates(q))); }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const { return body_.section_forces(p, span(base_coordinates(q))); }
+
   Index coordinates() const { return n_; }
   Index speeds() const { return n_; }
   Index elements() const { return 1; }
@@ -58,14 +62,6 @@ class CholeskyCoordinates {
   void reference(std::span<double> q) const {
     body_.reference(q);
     multiply(q);
-  }
-  template <StateScalar T>
-  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i] + delta[i];
-  }
-  template <StateScalar T>
-  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
-    std::copy(v.begin(), v.end(), out.begin());
   }
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     body_.rigid_velocity(span(base_of<double>(q, 0)), v0, omega, v);

@@ -57,10 +57,7 @@ class Ffr {
   bool stiffens() const { return i_.stiffens(); }
   Index deformations() const { return i_.size(); }
   /// Of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
-  double length() const {
-    if (made().structure().beams.empty()) throw InvalidInput("Ffr: only a body made of bars has a length.");
-    return made().structure().bar_lengths.front();
-  }
+  double length() const { return made().length(); }
 
   /// The section at distance s from the first end of bar `bar`, (y, z) off its axis. \throws InvalidInput outside, and for a
   /// body that is not made of bars.
@@ -292,18 +289,10 @@ class Ffr {
     for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= f[Index(i)] * p.drawn[i];
   }
 
-  /// Of the section that a point of a beam sits on, q all coordinates of the body: axial strain of the fibre through the point;
-  /// torsion and curvatures about the section's y, z [1/m]; axial force [N]; torsional and bending moments [N m], without damping.
-  /// \throws InvalidInput for a point that is not of a beam.
-  double axial_strain(Point const& p, std::span<double const> q) const {
-    Vec4 const e = p.strains(q.data() + 7);
-    return e[0] - p.y * e[3] + p.z * e[2];
-  }
-  Vec3 curvature(Point const& p, std::span<double const> q) const { return p.strains(q.data() + 7).tail<3>(); }
-  double axial_force(Point const& p, std::span<double const> q) const { return p.stiffness[0] * p.strains(q.data() + 7)[0]; }
-  Vec3 bending_moment(Point const& p, std::span<double const> q) const {
-    return p.stiffness.tail<3>().cwiseProduct(p.strains(q.data() + 7).tail<3>());
-  }
+  /// Of the beam that a point sits on, q all coordinates of the body (see sections.hpp): axial strain, torsion and curvatures; shear is
+  /// not told. \throws InvalidInput for a point that is not of a beam.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 7); }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 7); }
 
  private:
   template <class T>

@@ -29,13 +29,19 @@ struct FfrPoint {
     for (Index j = 0; j < m.rows(); ++j) s -= q[j] * m(j, k);
     return s;
   }
-  /// Of the section's axis by the deformation q. \throws InvalidInput for a point that is not of a beam.
-  Vec4 strains(double const* q) const {
+  /// Strains and forces of the beam's section by the deformation q (see sections.hpp). \throws InvalidInput for a point that is
+  /// not of a beam.
+  Vec6 section_strains(double const* q) const {
     if (strain.cols() != S.cols()) throw InvalidInput("Ffr: strains are known in points of beams only.");
-    Vec4 sum = Vec4::Zero();
+    Vec6 sum = Vec6::Zero();
     for (Index k = 0; k < strain.cols(); ++k)
-      for (int i = 0; i < 4; ++i) sum[i] += strain(i, k) * q[k];
+      for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
     return sum;
+  }
+  Vec6 section_forces(double const* q) const {
+    Vec6 n = section_strains(q);
+    for (int i = 0; i < 4; ++i) n[i == 0 ? 0 : i + 2] *= stiffness[i];
+    return n;
   }
 };
 
@@ -51,6 +57,11 @@ class FfrPoints {
   Structure const& structure() const { return s_; }
   MatX const& shapes() const { return shapes_; }
 
+  /// Of the first bar [m]. \throws InvalidInput without bars.
+  double length() const {
+    if (s_.beams.empty()) throw InvalidInput("Ffr: only a body made of bars has a length.");
+    return s_.bar_lengths.front();
+  }
   /// The point at distance s from the first end of a bar, (y, z) off its axis. \throws InvalidInput outside the bar.
   FfrPoint at(double s, double y, double z, Index bar) const {
     if (s_.beams.empty()) throw InvalidInput("Ffr: at(s) needs a body made from bars; use node(i).");
@@ -62,7 +73,8 @@ class FfrPoints {
     Structure::Beam const* beam = nullptr;
     for (Structure::Beam const& b : s_.beams)
       if (b.bar == bar && (!beam || b.start <= inside)) beam = &b;
-    BeamShapes const shapes(std::min((inside - beam->start) / beam->length, 1.0), beam->length);
+    double const xi = std::min((inside - beam->start) / beam->length, 1.0);
+    BeamShapes const shapes(xi, beam->length);
     FfrPoint p;
     p.u = s_.nodes[std::size_t(beam->a)] + beam->axes * Vec3(inside - beam->start, y, z);
     Mat<double, 3, 12> const spread = detail::in_body_axes(shapes.axis + y * shapes.by_y + z * shapes.by_z, beam->axes);
@@ -73,7 +85,7 @@ class FfrPoints {
     p.y = y;
     p.z = z;
     if (axial_)
-      draw(p, [&](int k, Structure::Beam const& b) {
+      draw(p, xi > 1e-9 && xi < 1.0 - 1e-9, [&](int k, Structure::Beam const& b) {
         Vec<double, 12> load = Vec<double, 12>::Zero();
         for (int j = 0; j < 12 && &b == beam; ++j) load[j] = spread(k, j);
         return load;
@@ -90,7 +102,7 @@ class FfrPoints {
     p.R = s_.per_node == 6 ? MatX(shapes_.middleRows<3>(6 * i + 3)) : MatX(MatX::Zero(3, shapes_.cols()));
     if (axial_) {
       auto const* const first = &*std::find_if(s_.beams.begin(), s_.beams.end(), [&](auto const& b) { return b.a == i || b.b == i; });
-      draw(p, [&](int k, Structure::Beam const& b) {
+      draw(p, false, [&](int k, Structure::Beam const& b) {
         Vec<double, 12> load = Vec<double, 12>::Zero();
         if (&b == first) load[(b.a == i ? 0 : 6) + k] = 1.0;
         return load;
@@ -112,13 +124,16 @@ class FfrPoints {
       }
     return out;
   }
-  /// −½ qᵀ drawn_k q: what the axial forces of a unit force along k at the point work.
+  /// −½ qᵀ drawn_k q: what the axial forces of a unit force along k at the point work. A force at a node leaves them constant along
+  /// each beam (a held node draws nothing); one `within` a beam counts as spread over it.
   template <class Load>
-  void draw(FfrPoint& p, Load&& load) const {
+  void draw(FfrPoint& p, bool within, Load&& load) const {
     for (int k = 0; k < 3; ++k) {
       VecX nodal = VecX::Zero(s_.size());
       for (Structure::Beam const& b : s_.beams) detail::add_entries(b, load(k, b), nodal);
-      Structure::Sparse const m = (*axial_)(nodal, [&](Structure::Beam const& b) { return load(k, b); });
+      Structure::Sparse const m = (*axial_)(nodal, [&](Structure::Beam const& b) {
+        return within ? load(k, b) : Vec<double, 12>(Vec<double, 12>::Zero());
+      });
       p.drawn[std::size_t(k)] = shapes_.transpose() * (m * shapes_);
     }
   }

@@ -200,15 +200,15 @@ class Lrvf {
            0.5 * rotary_.dot(w1.cwiseProduct(w1) + w2.cwiseProduct(w2));
   }
   double strain_energy(Index e, std::span<double const> q) const {
-    Vec6 const x = strains({e, 0.5}, q);
+    Vec6 const x = section_strains({e, 0.5}, q);
     return l_ * (0.5 * x.dot(stiffness_.cwiseProduct(x)) + pretension_ * x[0]);
   }
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     return -3.0 * sixth_ * g.dot(part<3>(q, 7 * e) + part<3>(q, 7 * e + 7));
   }
 
-  /// Strains (Γ, K) of the element of `p`, section axes [1], [1/m].
-  Vec6 strains(Point const& p, std::span<double const> q) const {
+  /// (Γ, K) of the element of `p` in the axes of its section [1], [1/m]: see sections.hpp.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
     MiddleSection<double> at;
     Vec3 gamma;
     place<double>(p.element, q, at, gamma);
@@ -217,9 +217,9 @@ class Lrvf {
     x << gamma - free.gamma, (at.turn - free.turn) / l_;
     return x;
   }
-  /// Section forces (N, M) of the element of `p` without damping, section axes [N], [N m].
-  Vec6 resultants(Point const& p, std::span<double const> q) const {
-    Vec6 n = stiffness_.cwiseProduct(strains(p, q));
+  /// (N, M) of the element of `p`, without damping [N], [N m].
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    Vec6 n = stiffness_.cwiseProduct(section_strains(p, q));
     n[0] += pretension_;
     return n;
   }

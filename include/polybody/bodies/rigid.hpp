@@ -50,14 +50,15 @@ inline void require_inertia(Mat3 const& inertia, std::string const& what) {
     for (int j = 0; j < i; ++j)
       if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)
         throw InvalidInput(what + ": the inertia tensor must be symmetric.");
-  std::array<double, 3> const i = detail::principal_values(inertia);
   if (!detail::is_definite(inertia, 1e-9 * size))
-    throw InvalidInput(what + ": a principal moment of inertia is negative (" + number(i[2]) + ").");
+    throw InvalidInput(what + ": a principal moment of inertia is negative (" + number(detail::principal_values(inertia)[2]) + ").");
   Mat3 second = -inertia;
   for (int k = 0; k < 3; ++k) second(k, k) += 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2));
-  if (!detail::is_definite(second, 1e-9 * size))
+  if (!detail::is_definite(second, 1e-9 * size)) {
+    std::array<double, 3> const i = detail::principal_values(inertia);
     throw InvalidInput(what + ": the principal moments of inertia " + number(i[0]) + ", " + number(i[1]) + ", " +
                        number(i[2]) + " violate the triangle inequality; no body has them.");
+  }
 }
 
 /// Mass properties, placement and points: what a rigid body has however its rotation is written.

@@ -8,6 +8,7 @@
 /// M is singular along θ; the norm row makes up for it. Division by |θ|² keeps A and Ḡ a rotation and its rate where the row does not
 /// hold exactly.
 
+#include <polybody/bodies/node_chain.hpp>
 #include <polybody/bodies/rigid.hpp>
 
 namespace polybody {
@@ -16,7 +17,7 @@ namespace polybody {
 struct EulerParameters {};
 
 template <>
-class Rigid<EulerParameters> : public RigidShape {
+class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
  public:
   static constexpr bool constant_mass = false;
   static constexpr int element_columns = 7;
@@ -35,14 +36,6 @@ class Rigid<EulerParameters> : public RigidShape {
   void reference(std::span<double> q) const {
     part<3>(q, 0) = placement_.origin;
     part<4>(q, 3) = quaternion_of(placement_.axes);
-  }
-  template <StateScalar T>
-  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    for (int i = 0; i < 7; ++i) out[i] = q[i] + delta[i];
-  }
-  template <StateScalar T>
-  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
-    for (int i = 0; i < 7; ++i) out[i] = v[i];
   }
   /// θ̇ = ¼ |θ|² Ḡᵀ Ω.
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {

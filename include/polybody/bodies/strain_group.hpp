@@ -119,16 +119,21 @@ class StrainGroup {
       Vec<T, m> stress;
       Mat<T, m, np> b;
       Law::template evaluate<T>(p, stress, b);
-      Mat<T, np, np> h;  // of the energy in p
+      Mat<T, np, np> h;  // of the energy in p: BᵀCB, symmetric, and what follows
 #pragma GCC unroll 8
-      for (int r = 0; r < np; ++r)
+      for (int r = 0; r < np; ++r) {
+        Vec<T, m> scaled;
 #pragma GCC unroll 8
-        for (int c = 0; c < np; ++c) {
-          T sum(0.0);
+        for (int i = 0; i < m; ++i) scaled[i] = b(i, r) * (weights_[g] * stiffness_[i] * ck);
 #pragma GCC unroll 8
-          for (int i = 0; i < m; ++i) sum += b(i, r) * b(i, c) * (weights_[g] * stiffness_[i] * ck);
+        for (int c = 0; c <= r; ++c) {
+          T sum = scaled[0] * b(0, c);
+#pragma GCC unroll 8
+          for (int i = 1; i < m; ++i) sum += scaled[i] * b(i, c);
           h(r, c) = sum;
+          h(c, r) = sum;
         }
+      }
       if (damped_) {
         Vec<T, np> const pd = parameters<T, n>(maps_[g], xd);
         Vec<T, m> const rate = rates(b, pd);

@@ -75,6 +75,22 @@ struct Published {
     }
   }
 
+  /// J b (6), b by the marker's columns.
+  Vec<T, 6> push(T const* b) const {
+    Vec<T, 6> t;
+    for (int i = 0; i < 6; ++i) t[i] = T(0.0);
+    if (shape == JacobianShape::rigid) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) t[3 + i] += body_axes(i, j) * b[3 + j];
+      for (int i = 0; i < 3; ++i)
+        t[i] = b[i] + t[3 + (i + 1) % 3] * arm[(i + 2) % 3] - t[3 + (i + 2) % 3] * arm[(i + 1) % 3];
+    } else {
+      for (Index c = 0; c < columns; ++c)
+        for (int i = 0; i < 6; ++i) t[i] += jacobian[6 * c + i] * b[c];
+    }
+    return t;
+  }
+
   /// J as a full 6×columns matrix, for tests and analyses.
   Mat<T, 6, Eigen::Dynamic> full() const {
     Mat<T, 6, Eigen::Dynamic> j = Mat<T, 6, Eigen::Dynamic>::Zero(6, columns);

@@ -35,21 +35,6 @@ void add_pulled(Published<T> const& p, Vec<T, 6> const& w, double sign, VecXOf<T
   }
 }
 
-/// J b (6) of a marker, b over all speeds of the model.
-inline Vec6 pushed(Published<double> const& p, VecX const& b) {
-  Vec6 t = Vec6::Zero();
-  if (p.shape == JacobianShape::rigid) {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) t[3 + i] += p.body_axes(i, j) * b[p.first + 3 + j];
-    for (int i = 0; i < 3; ++i)
-      t[i] = b[p.first + i] + t[3 + (i + 1) % 3] * p.arm[(i + 2) % 3] - t[3 + (i + 2) % 3] * p.arm[(i + 1) % 3];
-  } else {
-    for (Index c = 0; c < p.columns; ++c)
-      for (int i = 0; i < 6; ++i) t[i] += p.jacobian[6 * c + i] * b[p.first + c];
-  }
-  return t;
-}
-
 /// Gᵀ λ, entry by entry.
 template <int m, StateScalar T>
 Vec<T, 6> wrench_of(Mat<T, m, 6> const& g, Vec<T, m> const& lambda) {
@@ -216,8 +201,8 @@ void rows_times(M const& model, VecX const& q, VecX const& b, Data<M, double> co
   for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const& a, auto const& c) {
     constexpr int m = std::decay_t<decltype(gap)>::rows;
     auto rows = out.template segment<m>(e.row);
-    rows += gap.Ga * detail::pushed(a, b);
-    rows += gap.Gb * detail::pushed(c, b);
+    rows += gap.Ga * a.push(b.data() + a.first);
+    rows += gap.Gb * c.push(b.data() + c.first);
   });
 }
 

@@ -18,6 +18,7 @@ struct HermiteCable {
   static constexpr char const* name = "planar::AncfCable";
   static constexpr int node_columns = 4;
   static constexpr bool packs_pay = true;
+  static constexpr std::array<int, 2> section_rows = {0, 5};
 
   static void check(BarConstants const&) {}
   static Vec4 reference_node(Vec2 const& origin, double angle, double s) {

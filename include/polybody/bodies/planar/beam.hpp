@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <polybody/bodies/bar.hpp>
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/node_chain.hpp>
 #include <polybody/bodies/strain_group.hpp>
 
 namespace polybody::planar {
@@ -24,15 +24,13 @@ struct CentreLine {
 };
 
 template <class Theory>
-class Beam {
+class Beam : public NodeChain<Theory::node_columns> {
  public:
   static constexpr World world = World::plane;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = true;
-  static constexpr int node_columns = Theory::node_columns;
-  static constexpr int element_columns = 2 * node_columns;
-  static constexpr int point_columns = element_columns;
-  static constexpr int element_stride = node_columns;
+  using Chain = NodeChain<Theory::node_columns>;
+  using Chain::coordinates, Chain::element_columns, Chain::elements, Chain::first_column, Chain::node_columns;
   static constexpr bool packs_pay = Theory::packs_pay;
   template <class T>
   using Element = Vec<T, element_columns>;
@@ -62,36 +60,18 @@ class Beam {
   Point at(double s, double y = 0.0) const {
     double const x = require_inside(s, length_, Theory::name) / l_;
     if (!std::isfinite(y)) throw InvalidInput(std::string(Theory::name) + ": y of a point must be finite.");
-    Index const e = std::min(Index(x), n_ - 1);
+    Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e), y};
   }
-  Point local(Point p) const {
-    p.element = 0;
-    return p;
-  }
-
-  Index coordinates() const { return (n_ + 1) * node_columns; }
-  Index speeds() const { return coordinates(); }
-  Index elements() const { return n_; }
-  Index first_column(Index e) const { return e * node_columns; }
-  Index first_column(Point const& p) const { return first_column(p.element); }
 
   void reference(std::span<double> q) const {
-    for (Index i = 0; i <= n_; ++i)
+    for (Index i = 0; i <= elements(); ++i)
       part<node_columns>(q, i * node_columns) =
           Theory::reference_node(origin_, angle_, double(i) * l_);
   }
-  template <StateScalar T>
-  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i] + delta[i];
-  }
-  template <StateScalar T>
-  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
-    for (std::size_t i = 0; i < v.size(); ++i) out[i] = v[i];
-  }
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega,
                       std::span<double> v) const {
-    for (Index i = 0; i <= n_; ++i)
+    for (Index i = 0; i <= elements(); ++i)
       part<node_columns>(v, i * node_columns) = Theory::rigid_velocity(
           part<node_columns>(q, i * node_columns), v0.head<2>(), omega[2]);
   }
@@ -213,6 +193,15 @@ class Beam {
     k -= (p.y * (c * w.f[1] - s * w.f[0])) * row * row.transpose();
   }
 
+  /// In the axes of space (see sections.hpp); what the theory does not know is zero.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    return in_space([&](auto const& group) { return group.strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval()); });
+  }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    return in_space([&](auto const& group) {
+      return group.stress(group.strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval()));
+    });
+  }
   /// Strains of group G (in the order of the theory) at `p`, and their stress resultants without damping.
   template <int G>
   auto strains(Point const& p, std::span<double const> q) const {
@@ -243,7 +232,7 @@ class Beam {
   using Groups = GroupsOf<typename Theory::Groups>;
 
   Beam(Bar const& bar, BarConstants const& c, Index n)
-      : constants_(c), length_(bar.length), l_(bar.length / double(n)), n_(n),
+      : Chain(n), constants_(c), length_(bar.length), l_(bar.length / double(n)),
         origin_(bar.placement.origin.head<2>()), angle_(bar.placement.planar_angle(Theory::name)),
         groups_(Groups::make(c, bar, l_)) {
     // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the theory's polynomials
@@ -256,6 +245,17 @@ class Beam {
     }
   }
 
+  /// Entries of the groups one after another, where the theory says they belong.
+  template <class F>
+  Vec6 in_space(F&& of_group) const {
+    Vec6 out = Vec6::Zero();
+    std::size_t k = 0;
+    for_each_group([&](auto const& group) {
+      auto const x = of_group(group);
+      for (Index i = 0; i < x.size(); ++i) out[Theory::section_rows[k++]] = x[i];
+    });
+    return out;
+  }
   template <class F>
   void for_each_group(F&& f) const {
     std::apply([&](auto const&... group) { (f(group), ...); }, groups_);
@@ -264,7 +264,6 @@ class Beam {
   BarConstants constants_;
   double length_;
   double l_;
-  Index n_;
   Vec2 origin_;
   double angle_;
   typename Groups::type groups_;

@@ -11,12 +11,13 @@
 #include <memory>
 
 #include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/node_chain.hpp>
 #include <polybody/bodies/planar/ffr_integrals.hpp>
 
 namespace polybody::planar {
 
 /// Coordinates x, y of the frame's origin, its angle θ, q (n); speeds their rates. A marker turns with its section.
-class Ffr {
+class Ffr : public AddingCoordinates {
  public:
   static constexpr World world = World::plane;
   static constexpr Observes observes = Observes::frame;
@@ -62,10 +63,7 @@ class Ffr {
   FfrIntegrals const& integrals() const { return i_; }
   Index deformations() const { return i_.size(); }
   /// Of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
-  double length() const {
-    if (made().structure().beams.empty()) throw InvalidInput("planar::Ffr: only a body made of bars has a length.");
-    return made().structure().bar_lengths.front();
-  }
+  double length() const { return made().length(); }
 
   Point at(double s, double y = 0.0, Index bar = 0) const { return made().at(s, y, 0.0, bar); }
   Point node(Index i) const { return made().node(i); }
@@ -85,14 +83,6 @@ class Ffr {
   void reference(std::span<double> q) const {
     std::fill(q.begin(), q.end(), 0.0);
     part<3>(q, 0) << origin_, angle_;
-  }
-  template <StateScalar T>
-  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i] + delta[i];
-  }
-  template <StateScalar T>
-  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
-    std::copy(v.begin(), v.end(), out.begin());
   }
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     std::fill(v.begin(), v.end(), 0.0);
@@ -306,14 +296,9 @@ class Ffr {
     for (std::size_t i = 0; i < 2 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= (i == 0 ? fx : fy) * p.drawn[i];
   }
 
-  /// As in space: of the fibre through the point; curvature, axial force and bending moment of its section.
-  double axial_strain(Point const& p, std::span<double const> q) const {
-    Vec4 const e = p.strains(q.data() + 3);
-    return e[0] - p.y * e[3];
-  }
-  double curvature(Point const& p, std::span<double const> q) const { return p.strains(q.data() + 3)[3]; }
-  double axial_force(Point const& p, std::span<double const> q) const { return p.stiffness[0] * p.strains(q.data() + 3)[0]; }
-  double bending_moment(Point const& p, std::span<double const> q) const { return p.stiffness[3] * p.strains(q.data() + 3)[3]; }
+  /// As in space.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 3); }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 3); }
 
  private:
   FfrPoints const& made() const {

@@ -15,6 +15,7 @@ struct SimoVuQuoc {
   static constexpr char const* name = "planar::Lrvf";
   static constexpr int node_columns = 3;
   static constexpr bool packs_pay = false;  ///< most of its time goes into one sine and one cosine
+  static constexpr std::array<int, 3> section_rows = {0, 1, 5};
 
   static void check(BarConstants const& c) {
     require_positive(c.GA, "planar::Lrvf: the shear stiffness GA of the bar");

@@ -3,11 +3,11 @@
 /// Rigid body in the plane. Coordinates (x, y, θ) of the centre of mass; speeds are their rates.
 
 #include <polybody/bodies/bar.hpp>
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/node_chain.hpp>
 
 namespace polybody::planar {
 
-class Rigid {
+class Rigid : public AddingCoordinates {
  public:
   static constexpr World world = World::plane;
   static constexpr Observes observes = Observes::frame;
@@ -67,14 +67,6 @@ class Rigid {
 
   void reference(std::span<double> q) const { part<3>(q, 0) << origin_, angle_; }
 
-  template <StateScalar T>
-  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    part<3>(out, 0) = part<3>(q, 0) + part<3>(delta, 0);
-  }
-  template <StateScalar T>
-  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
-    part<3>(out, 0) = part<3>(v, 0);
-  }
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega,
                       std::span<double> v) const {
     part<3>(v, 0) << v0[0] - omega[2] * q[1], v0[1] + omega[2] * q[0], omega[2];
