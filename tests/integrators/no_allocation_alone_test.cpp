@@ -15,6 +15,8 @@
 #include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/policies/bushing.hpp>
+#include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 
@@ -107,6 +109,24 @@ struct SprungCable {
   auto const& model() const { return cable; }
 };
 
+/// A body on a bushing with laws, a second one that hangs from it on a linear bushing.
+struct BushedBodies {
+  using Pin = Joint<Revolute, Bushing>;
+  using Mount = Joint<Revolute, NonlinearBushing<TabulatedLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>>;
+  Model<Bodies<Rigid<>>, Joints<Pin, Mount>> bodies{Gravity{0, -9.81, 0}};
+
+  BushedBodies() {
+    Rigid<> const ball(1.0, Mat3::Identity(), {});
+    auto const first = bodies.add(ball, "first"), second = bodies.add(ball, "second");
+    TabulatedLaw const table{MonotoneTable{{{-1.0, -2e3}, {0.0, 0.0}, {0.1, 100.0}}}, 1.0};
+    LinearLaw const law{.stiffness = 1e4, .damping = 1.0};
+    bodies.connect(Mount{{}, {table, law, law, law, law, law}}, bodies.ground().at({0, 0, 0}), first.at(Vec3(0, 0, 0)), "mount");
+    bodies.connect(Pin{{}, {.stiffness = 1e4 * Bushing::Matrix::Identity(), .damping = Bushing::Matrix::Identity()}},
+                   first.at(Vec3(1, 0, 0)), second.at(Vec3(1, 0.01, 0)), "pin");
+  }
+  auto const& model() const { return bodies; }
+};
+
 /// A floating frame of six modes with geometric stiffening on a pin: a body whose size is known at run time.
 struct HungFrame {
   using Pin = Joint<Revolute, Constraint>;
@@ -169,6 +189,10 @@ TEST(NoAllocation, InAStepOfARigidChain) { expect_none<RigidChain>(); }
 TEST(NoAllocation, InAStepOfADrivenLrvfArm) { expect_none<DrivenArm>(); }
 
 TEST(NoAllocation, InAStepOfAnAncfCableOnCompliantJoints) { expect_none<SprungCable>(); }
+
+TEST(NoAllocation, InAStepOfBodiesOnBushings) {
+  EXPECT_EQ(in_steps<BushedBodies>(GeneralizedAlpha{.second_order_terms = true}), 0);
+}
 
 TEST(NoAllocation, InAStepOfAFloatingFrame) {
   EXPECT_EQ(in_steps<HungFrame>(GeneralizedAlpha{}), 0);

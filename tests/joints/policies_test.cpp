@@ -28,7 +28,8 @@ TEST(Penalty, SlopeIsTheDerivativeOfTheMultiplier) {
   for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}}) {
     D const g(1e-3, D::Partials(ck)), rate(-0.2, D::Partials(cd));
     auto const lambda = penalty.multiplier<3, D>(Vec<D, 3>::Constant(g), Vec<D, 3>::Constant(rate));
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(lambda[i].d[0], penalty.slope<3>(ck, cd)[i], 1e-12);
+    auto const slope = penalty.slope<3>(ck, cd, Vec3::Constant(g.v), Vec3::Constant(rate.v));
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(lambda[i].d[0], slope.diagonal()[i], 1e-12);
   }
 }
 
@@ -76,6 +77,30 @@ TEST(Penalty, RefusesNumbersThatCannotBeMeantByName) {
   EXPECT_NO_THROW((Penalty{.stiffness = 1.0, .damping = 0.0}.check("hinge")));
 }
 
+TEST(PenaltyPerRow, OfEqualNumbersIsThePenalty) {
+  PenaltyPerRow<3> const rows{.stiffness = Vec3(2000, 2000, 2000), .damping = Vec3(30, 30, 30)};
+  Vec3 const g(1e-3, -2e-3, 4e-3), rate(0.1, 0.3, -0.2);
+  EXPECT_LT((rows.multiplier<3, double>(g, rate) - penalty.multiplier<3, double>(g, rate)).norm(), 1e-14);
+  Mat3 const slope = rows.slope<3>(0.7, 31.0, g, rate), same = penalty.slope<3>(0.7, 31.0, g, rate);
+  EXPECT_LT((slope - same).norm(), 1e-12);
+  EXPECT_NEAR(rows.potential<3>(g), penalty.potential<3>(g), 1e-16);
+}
+
+TEST(PenaltyPerRow, EachRowHasItsNumbers) {
+  PenaltyPerRow<3> const rows{.stiffness = Vec3(1, 10, 100), .damping = Vec3(0, 2, 4)};
+  Vec3 const g(1, 2, -3), rate(5, 7, 9);
+  EXPECT_LT((rows.multiplier<3, double>(g, rate) - Vec3(1, 20 + 14, -300 + 36)).norm(), 1e-12);
+  EXPECT_LT((rows.slope<3>(2.0, 3.0, g, rate).diagonal() - Vec3(2, 20 + 6, 200 + 12)).norm(), 1e-12);
+  EXPECT_NEAR(rows.potential<3>(g), 0.5 * (1 + 40 + 900), 1e-12);
+}
+
+TEST(PenaltyPerRow, RefusesNumbersThatCannotBeMeantByNameAndRow) {
+  EXPECT_TRUE(has(refusal([] { PenaltyPerRow<2>{.stiffness = Vec2(1, 0), .damping = Vec2(0, 0)}.check("\"hinge\""); }),
+                  "\"hinge\": the penalty stiffness of row 2 must be positive"));
+  EXPECT_TRUE(has(refusal([] { PenaltyPerRow<2>{.stiffness = Vec2(1, 1), .damping = Vec2(-1, 0)}.check("\"hinge\""); }),
+                  "\"hinge\": the penalty damping of row 1 must be zero or positive"));
+}
+
 // --- the concepts: exactly one kind ---------------------------------------------------------------------------
 
 struct Neither {};
@@ -90,12 +115,14 @@ struct NoPotential {
   template <int m, StateScalar T>
   Vec<T, m> multiplier(Vec<T, m> const& g, Vec<T, m> const&) const { return g; }
   template <int m>
-  Vec<double, m> slope(double, double) const { return {}; }
+  Mat<double, m, m> slope(double, double, Vec<double, m> const&, Vec<double, m> const&) const { return {}; }
 };
 static_assert(Policy<Constraint> && AddsRows<Constraint> && !AddsForce<Constraint>);
 static_assert(Policy<Penalty> && AddsForce<Penalty> && !AddsRows<Penalty>);
 static_assert(!Policy<Neither> && !Policy<Both> && !Policy<RowsDenied> && !Policy<NoPotential> && !Policy<int>);
 static_assert(AddsRows<Both> && AddsForce<Both>);
-static_assert(!std::is_default_constructible_v<Penalty>);  // its numbers decide physics
+static_assert(Policy<PenaltyPerRow<2>> && AnswersRows<PenaltyPerRow<2>, 2> && !AnswersRows<PenaltyPerRow<2>, 3>);
+// their numbers decide physics
+static_assert(!std::is_default_constructible_v<Penalty> && !std::is_default_constructible_v<PenaltyPerRow<2>>);
 
 }  // namespace policies_test

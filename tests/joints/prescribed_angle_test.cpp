@@ -75,8 +75,15 @@ TEST(PrescribedAngle, TellsTheCornersOfItsLaw) {
 }
 
 TEST(PrescribedAngle, RefusesALawThatCannotBeMeant) {
-  PrescribedAngle<Ramp> const drive{.law = {.target = 1.0, .duration = 0.0}};
-  EXPECT_TRUE(has(refusal([&] { drive.check("\"drive\""); }), "\"drive\": the law of time: the duration"));
+  PrescribedAngle<Ramp> const lame{.law = {.target = 1.0, .duration = 0.0}};
+  EXPECT_TRUE(has(refusal([&] { lame.check("\"drive\""); }), "\"drive\": the law of time: the duration"));
+}
+
+TEST(PrescribedAngle, RefusesALawThatJumps) {
+  PrescribedAngle<Window> const jump{.law = {.from = 1.0, .to = 2.0, .value = 0.5}};
+  EXPECT_TRUE(has(refusal([&] { jump.check("\"drive\""); }),
+                  "\"drive\": the law of time: its value jumps from 0 to 0.5 at t = 1 s"));
+  EXPECT_NO_THROW((PrescribedAngle<Ramp>{.law = {.target = 100.0, .duration = 1e-3, .start = 50.0}}.check("\"drive\"")));
 }
 
 TEST(PrescribedAngle, RefusesAnAxisThatIsNotAUnitVector) {

@@ -1,3 +1,4 @@
+#include <polybody/joints/angle.hpp>
 #include <polybody/joints/rows.hpp>
 
 #include <gtest/gtest.h>
@@ -70,6 +71,61 @@ TEST(Rows, NoSlideGammaOfARadialMotion) {
   Frame<double> const a{.w = {0, 0, omega}}, b{.r = {x, 0, 0}, .v = {s, 0, 0}};
   EXPECT_NEAR((rows::no_slide_gamma<double>(Vec3(0, 1, 0), a, b)), -2.0 * omega * s, 1e-15);
   EXPECT_NEAR((rows::no_slide_gamma<double>(Vec3(1, 0, 0), a, b)), -omega * omega * x, 1e-15);
+}
+
+TEST(Rows, PairsAreThoseOfTheirFormulas) {
+  Numbers number;
+  Frame<double> const a = number.frame(), b = number.frame();
+  Gap<6> direction = full(), line = full(), rod = full();
+  rows::same_direction(a, b, direction, 1);
+  rows::on_axis(a, b, line, 3);
+  rows::distance(a, b, 0.5, rod, 4);
+  expect_only(direction, 1, 2);
+  expect_only(line, 3, 2);
+  expect_only(rod, 4, 1);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NEAR(direction.g[1 + i], a.A.col(i).dot(b.A.col(2)), 1e-15);
+    EXPECT_NEAR(line.g[3 + i], a.A.col(i).dot(b.r - a.r), 1e-15);
+  }
+  EXPECT_NEAR(rod.g[4], (b.r - a.r).norm() - 0.5, 1e-15);
+}
+
+TEST(Wrapped, LeavesLessThanHalfATurn) {
+  double const pi = std::numbers::pi;
+  EXPECT_EQ(rows::wrapped(3.0), 3.0);
+  EXPECT_NEAR(rows::wrapped(3.5), 3.5 - 2.0 * pi, 1e-15);
+  EXPECT_NEAR(rows::wrapped(-200.0 * pi + 0.25), 0.25, 1e-12);
+}
+
+// At constant speeds about a common axis θ = ω_rel t grows evenly: no γ, and θ̇ = ω_rel.
+TEST(Turn, GrowsEvenlyAboutAFixedAxis) {
+  Frame<double> const a{.A = exp_so3<double>(Vec3(0, 0, 0.4)), .w = {0, 0, 1.0}};
+  Frame<double> const b{.A = exp_so3<double>(Vec3(0, 0, 3.0)), .w = {0, 0, 3.5}};
+  Gap<2> const xy = rows::turned(a, b);
+  Gap<1> const turn = rows::angle(xy);
+  EXPECT_NEAR(turn.g[0], 2.6, 1e-15);
+  EXPECT_NEAR((turn.Ga * twist(a) + turn.Gb * twist(b)).value(), 2.5, 1e-14);
+  EXPECT_NEAR(rows::turn_gamma(xy, a, b), 0.0, 1e-14);
+}
+
+// A point that passes at speed v along y, x away: θ = atan(y/x), θ˙ = x v/(x² + y²), θ¨ = −2 x y v²/(x² + y²)², which is
+// −v²/(2 x²) where y = x.
+TEST(Turn, GammaOfThePassingPoint) {
+  double const x = 2.0, v = 3.0;
+  Frame<double> const a, b{.r = {x, x, 0}, .v = {0, v, 0}};
+  Gap<2> xy;
+  rows::on_axis(a, b, xy, 0);
+  EXPECT_NEAR(rows::angle_gamma(xy, rows::on_axis_gamma(a, b), a, b), -v * v / (2.0 * x * x), 1e-14);
+}
+
+TEST(TriadOf, HoldsBothAxesAndRefusesOthers) {
+  Mat3 const e = rows::triad_of({0, 1, 0}, {0.6, 0, 0.8}, "cross");
+  EXPECT_EQ(e.col(0), Vec3(0, 1, 0));
+  EXPECT_EQ(e.col(2), Vec3(0.6, 0, 0.8));
+  EXPECT_NEAR(e.determinant(), 1.0, 1e-15);
+  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 0, 0}, {0.6, 0, 0.8}, "cross"); }), "cross: the two axes must be perp"));
+  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 1, 0}, {0, 0, 1}, "cross"); }), "cross: the first axis must be a unit"));
+  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 0, 0}, {0, 0, 2}, "cross"); }), "cross: the second axis must be a unit"));
 }
 
 TEST(TriadAbout, IsRightHandedWithTheAxisThird) {

@@ -14,6 +14,7 @@ static_assert(TimeLaw<Ramp> && TimeLaw<SmoothRamp> && TimeLaw<SpinUp> && TimeLaw
 static_assert(TimeLaw<decltype([](double t) { return Motion{t, 1.0, 0.0}; })>);
 static_assert(!TimeLaw<int> && !TimeLaw<decltype([](double) { return "text"; })>);
 static_assert(HasCorners<Ramp> && HasCorners<Window>);
+static_assert(HasIntegral<Ramp> && HasIntegral<SmoothRamp> && HasIntegral<Constant> && !HasIntegral<Window>);
 static_assert(!HasCorners<SmoothRamp> && !HasCorners<SpinUp> && !HasCorners<Constant>);
 
 /// Rate and acceleration of `law` at t against fourth-order differences of value and rate.
@@ -116,6 +117,45 @@ TEST(Window, IsClosedAtItsBeginAndOpenAtItsEnd) {
 TEST(Window, IsOpenForeverUnlessToldOtherwise) {
   EXPECT_EQ(Window{}(1e300).value, 1.0);
   EXPECT_EQ(Window{}(-1e-300).value, 0.0);
+}
+
+// ∫ value dt by differences of the integral, and its value at rest after the ramp by symmetry.
+template <HasIntegral L>
+void expect_integral(L const& law, std::initializer_list<double> times) {
+  double const h = 1e-3;
+  for (double const t : times) {
+    double const slope =
+        (8 * (law.integral(t + h) - law.integral(t - h)) - (law.integral(t + 2 * h) - law.integral(t - 2 * h))) / (12 * h);
+    EXPECT_NEAR(slope, law(t).value, 1e-10) << t;
+  }
+}
+
+TEST(Ramps, IntegralsGrowByTheValue) {
+  Ramp const ramp{.target = -3.0, .duration = 2.0, .start = 0.5};
+  SmoothRamp const smooth{.target = -3.0, .duration = 2.0, .start = 0.5};
+  expect_integral(ramp, {0.0, 0.6, 1.5, 2.4, 3.0});
+  expect_integral(smooth, {0.0, 0.6, 1.5, 2.4, 3.0});
+  expect_integral(Constant{.value = 2.5}, {-7.0, 3.0});
+  for (double const whole : {ramp.integral(3.5), smooth.integral(3.5)}) EXPECT_DOUBLE_EQ(whole, -3.0 * (1.0 + 1.0));
+}
+
+TEST(IntegralOf, IsThePlaceOfASpeedFromTimeZero) {
+  IntegralOf<SmoothRamp> const place{{.target = 0.7, .duration = 2.0, .start = -0.5}};
+  EXPECT_EQ(place(0.0).value, 0.0);
+  for (double const t : {0.0, 0.6, 1.1, 1.4, 3.0}) {
+    expect_consistent(place, t);
+    EXPECT_EQ(place(t).rate, place.law(t).value);
+  }
+  EXPECT_TRUE(place.corners().empty());
+  EXPECT_EQ(IntegralOf<Ramp>({{.target = 1.0, .duration = 2.0, .start = 0.5}}).corners(), (std::vector{0.5, 2.5}));
+}
+
+TEST(TimeLaws, RefuseToDriveThroughAJump) {
+  EXPECT_TRUE(has(refusal([] { check_drive(Window{.from = 1.0, .value = 2.0}, "drive"); }),
+                  "drive: its value jumps from 0 to 2 at t = 1 s"));
+  EXPECT_TRUE(has(refusal([] { check_drive(Ramp{.target = 1.0, .duration = 0.0}, "drive"); }), "drive: the duration"));
+  EXPECT_NO_THROW(check_drive(Ramp{.target = 1e3, .duration = 1e-2, .start = 10.0}, "drive"));
+  EXPECT_NO_THROW(check_drive(Constant{}, "drive"));
 }
 
 TEST(TimeLaws, RefuseNumbersThatCannotBeMeant) {

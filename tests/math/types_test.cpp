@@ -17,6 +17,8 @@ double const infinity = std::numeric_limits<double>::infinity();
 static_assert(!std::is_default_constructible_v<Required<double>>);
 static_assert(std::is_convertible_v<double, Required<double>>);
 static_assert(std::is_convertible_v<Required<double>, double>);
+static_assert(std::is_convertible_v<decltype(Vec3::Zero()), Required<Vec3>>);  // an expression
+static_assert(!std::is_convertible_v<std::string, Required<double>> && !std::is_convertible_v<Vec3, Required<double>>);
 
 struct Asks {
   Required<double> mass;

@@ -11,7 +11,10 @@
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/policies/bushing.hpp>
+#include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/system/system.hpp>
@@ -46,6 +49,33 @@ struct MixedSpace {
     model.apply(SpringDamper{.stiffness = 25.0, .free_length = 0.0}, b.at(Vec3(0, 0.2, 0)), ground.at({1, 1, 0}), "rope");
     model.apply(PointForce<>{.force = {1, 2, -3}}, a.at(0.9, 0.02, 0.1), "dead");
     model.apply(PointForce<>{.force = {-2, 1, 0.5}, .axes = LoadAxes::marker}, b.at(Vec3(0.1, 0.2, 0.3)), "follower");
+    return model;
+  }
+};
+
+/// Two rigid bodies: ground –Revolute, Bushing– a –Spherical, Constraint– b –Prismatic, NonlinearBushing– ground, with markers
+/// apart. `damping` is that of both bushings.
+struct MixedBushings {
+  using Ball = Joint<Spherical, Constraint>;
+  using Pin = Joint<Revolute, Bushing>;
+  using Slide = Joint<Prismatic, NonlinearBushing<TabulatedLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, TabulatedLaw>>;
+  using M = Model<Bodies<Rigid<>>, Joints<Pin, Ball, Slide>>;
+
+  static M model(double damping) {
+    M model{Gravity{0.5, -1.0, -9.81}};
+    Mat3 inertia;
+    inertia << 0.3, 0.02, -0.01, 0.02, 0.4, 0.03, -0.01, 0.03, 0.5;
+    auto const a = model.add(Rigid<>(2.0, inertia, Placement::at({0.1, 0.2, 0.3}, {0.5, -0.4, 1.0})), "a");
+    auto const b = model.add(Rigid<>(3.0, inertia, Placement::at({0.9, 0.1, -0.2}, {-1, 0.3, 0.2})), "b");
+    Bushing::Matrix k = Bushing::diagonal({50, 60, 70}, {20, 30, 40});
+    for (int i = 0; i < 5; ++i) k(i, i + 1) = k(i + 1, i) = 3.0 * (i - 2.5);
+    model.connect(Pin{Revolute{.axis = Vec3(1, 2, -2) / 3.0}, Bushing{.stiffness = k, .damping = damping * k / 60.0}},
+                  model.ground().at(Placement::at({0, 0, 0.1}, {0.2, 0.1, 0})), a.at(Vec3(-0.2, 0.1, 0.3)), "pin");
+    model.connect(Ball{}, a.at(Vec3(0.3, 0.2, 0.1)), b.at(Vec3(-0.1, 0.2, 0)), "ball");
+    MonotoneTable const table{{{-1.0, -30.0}, {-0.3, -20.0}, {0.4, 10.0}, {1.5, 40.0}}};
+    LinearLaw const law{.stiffness = 25.0, .damping = 0.1 * damping};
+    TabulatedLaw const tabled{table, damping};
+    model.connect(Slide{{}, {tabled, law, law, law, law, tabled}}, b.at(Vec3(0.4, 0, 0)), model.ground().at({1, 1, 0}), "slide");
     return model;
   }
 };

@@ -73,10 +73,12 @@ Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& 
   return detail::ask_joint(model, x, joint, [&](auto const& e, auto const& gap, auto const& data) {
     Vec<double, J::rows> const lambda = detail::multiplier(e, gap, data, x.lambda);
     Vec6 const w = -gap.Gb.transpose() * lambda;
-    Mat3 const turn = axes == ReactionAxes::world
-                          ? Mat3(Mat3::Identity())
-                          : Mat3(data.markers[std::size_t(e.b)].frame.A.transpose());
-    return Wrench<double>{turn * w.head<3>(), turn * w.tail<3>()};
+    Wrench<double> wrench{w.head<3>(), w.tail<3>()};
+    if (axes == ReactionAxes::joint) {
+      Mat3 const& axes_of_b = data.markers[std::size_t(e.b)].frame.A;
+      wrench = {axes_of_b.transpose() * wrench.f, axes_of_b.transpose() * wrench.m};
+    }
+    return wrench;
   });
 }
 

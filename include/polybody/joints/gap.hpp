@@ -2,6 +2,8 @@
 /// \file
 /// Waist 2: what a policy sees of a joint, whatever its geometry is.
 
+#include <array>
+
 #include <polybody/kinematics/frame.hpp>
 
 namespace polybody {
@@ -42,21 +44,29 @@ Relative<T> relative(Frame<T> const& a, Frame<T> const& b) {
           a.A.transpose() * (b.v - a.v - a.w.cross(d)), a.A.transpose() * (b.w - a.w)};
 }
 
-/// A joint geometry turns two frames into a gap. Its markers get axes that coincide at the reference
+/// Turns two frames into a gap: what a policy measures.
+template <class G>
+concept Measure = requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
+  requires 1 <= G::rows && G::rows <= 6;
+  { G::needs } -> std::convertible_to<Observes>;
+  { g.template gap<double>(a, b, t) } -> std::same_as<Gap<G::rows, double>>;
+};
+
+/// A joint geometry measures the motions that it stops. Its markers get axes that coincide at the reference
 /// configuration: `triad()` in world axes; the joint's axis is the third.
 template <class G>
-concept JointGeometry = requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
-  requires 1 <= G::rows && G::rows <= 6;
+concept JointGeometry = Measure<G> && requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
   { G::name } -> std::convertible_to<char const*>;
-  { G::needs } -> std::convertible_to<Observes>;
   { G::world } -> std::convertible_to<World>;
   { g.triad() } -> std::convertible_to<Mat3>;
-  { g.template gap<double>(a, b, t) } -> std::same_as<Gap<G::rows, double>>;
   { g.template gamma<double>(a, b, t) } -> std::same_as<Vec<double, G::rows>>;
 };
 
+/// Which motions of b against a a geometry leaves free (its member `free`): slides along the joint's axes, then turns about them.
+using Freedoms = std::array<bool, 6>;
+
 /// What a geometry asks of its second marker, where that is less than of its first (`needs_of_second`).
-template <JointGeometry G>
+template <Measure G>
 constexpr Observes needs_of_second() {
   if constexpr (requires { G::needs_of_second; })
     return G::needs_of_second;
@@ -65,7 +75,7 @@ constexpr Observes needs_of_second() {
 }
 
 /// ∂[Gaᵀλ; Gbᵀλ]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12, rotations δφ in world axes, by dual numbers.
-template <JointGeometry G>
+template <Measure G>
 Mat<double, 12, 12> wrench_gradient_by_duals(G const& geometry, Frame<double> const& a, Frame<double> const& b,
                                     double t, Vec<double, G::rows> const& lambda) {
   using D = Dual<12>;
@@ -97,7 +107,7 @@ concept HasWrenchGradient = requires(G const g, Frame<double> const f, Vec<doubl
 };
 
 /// The same by the geometry's closed form where it has one, else by dual numbers.
-template <JointGeometry G>
+template <Measure G>
 Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b,
                                     double t, Vec<double, G::rows> const& lambda) {
   if constexpr (HasWrenchGradient<G>)

@@ -10,6 +10,7 @@ struct Prismatic {
   static constexpr int rows = 5;
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::space;
+  static constexpr Freedoms free = {false, false, true};
 
   Vec3 axis = Vec3::UnitX();  ///< (3) unit vector of the slide, world axes at the reference configuration
 

@@ -2,6 +2,7 @@
 /// \file
 /// Functions of time with rate and acceleration, for drives and loads.
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <limits>
@@ -37,6 +38,48 @@ void check_law(Law const& law, std::string const& what) {
   if constexpr (requires { law.check(what); }) law.check(what);
 }
 
+/// The corners of a law, none for one that does not tell.
+template <TimeLaw Law>
+std::vector<double> corners_of(Law const& law) {
+  if constexpr (HasCorners<Law>)
+    return law.corners();
+  else
+    return {};
+}
+
+/// For a law that moves a body. \throws InvalidInput as `check_law`, and where its value jumps.
+template <TimeLaw Law>
+void check_drive(Law const& law, std::string const& what) {
+  check_law(law, what);
+  for (double const t : corners_of(law)) {
+    if (!std::isfinite(t)) continue;
+    double const before = Motion(law(std::nextafter(t, -std::numeric_limits<double>::infinity()))).value;
+    double const after = Motion(law(t)).value;
+    if (!(std::abs(after - before) <= 1e-9 * (1.0 + std::abs(after))))
+      throw InvalidInput(what + ": its value jumps from " + number(before) + " to " + number(after) + " at t = " + number(t) +
+                         " s, but no body can. Go there in a while, by a Ramp or SmoothRamp.");
+  }
+}
+
+/// A time law that knows ∫ value dt from some fixed time.
+template <class L>
+concept HasIntegral = TimeLaw<L> && requires(L const law, double t) {
+  { law.integral(t) } -> std::convertible_to<double>;
+};
+
+/// ∫ value dt from t = 0: a place where the law is a speed, an angle where it is an angular velocity.
+template <HasIntegral Law>
+struct IntegralOf {
+  Law law;
+
+  void check(std::string const& what) const { check_law(law, what); }
+  Motion operator()(double t) const {
+    Motion const speed = law(t);
+    return {law.integral(t) - law.integral(0.0), speed.value, speed.rate};
+  }
+  std::vector<double> corners() const { return corners_of(law); }
+};
+
 namespace detail {
 
 inline void check_ramp(double target, double duration, double start, std::string const& what) {
@@ -61,6 +104,10 @@ struct Ramp {
     if (t >= start + duration) return {target, 0.0, 0.0};
     return {target * (t - start) / duration, target / duration, 0.0};
   }
+  double integral(double t) const {
+    double const x = std::clamp(t - start, 0.0, double(duration));
+    return target * (0.5 * x * x / duration + std::max(0.0, t - start - duration));
+  }
   std::vector<double> corners() const { return {start, start + duration}; }
 };
 
@@ -79,6 +126,10 @@ struct SmoothRamp {
     return {target * x2 * x * (10.0 - 15.0 * x + 6.0 * x2),
             target * 30.0 * x2 * (1.0 - 2.0 * x + x2) / d,
             target * 60.0 * x * (1.0 - 3.0 * x + 2.0 * x2) / (d * d)};
+  }
+  double integral(double t) const {
+    double const d = duration, x = std::clamp((t - start) / d, 0.0, 1.0), x2 = x * x;
+    return target * (d * x2 * x2 * (2.5 - 3.0 * x + x2) + std::max(0.0, t - start - d));
   }
 };
 
@@ -103,6 +154,7 @@ struct SpinUp {
 struct Constant {
   double value = 1.0;
   Motion operator()(double) const { return {value, 0.0, 0.0}; }
+  double integral(double t) const { return value * t; }
 };
 
 /// `value` for from ≤ t < to, else 0: a load that is switched on and off.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include <polybody/math/errors.hpp>
 
@@ -37,6 +38,10 @@ template <class T>
 struct Required {
   T value;
   constexpr Required(T v) : value(v) {}  // NOLINT(google-explicit-constructor): reads as a T
+  /// From an expression that makes a T.
+  template <class X>
+    requires std::is_class_v<X> && (!std::is_same_v<X, Required>) && std::is_convertible_v<X const&, T>
+  constexpr Required(X const& x) : value(x) {}  // NOLINT(google-explicit-constructor)
   constexpr operator T() const { return value; }  // NOLINT(google-explicit-constructor)
 };
 

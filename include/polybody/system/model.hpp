@@ -66,11 +66,12 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b,
                            std::string name = "") {
     using G = typename J::Geometry;
+    using Asks = typename J::Measured;
     static_assert(same_world(A::world, G::world) && same_world(B::world, G::world) &&
                       same_world(A::world, B::world),
                   "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
                   "belongs to both.");
-    static_assert(A::observes >= G::needs && B::observes >= needs_of_second<G>(),
+    static_assert(A::observes >= Asks::needs && B::observes >= needs_of_second<Asks>(),
                   "This joint needs more than the marker tells (a full frame, say, of a body that only "
                   "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
                   "Revolute about its tangent, with the cable's marker second.");
@@ -87,7 +88,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     if constexpr (requires { joint.geometry.check(name); }) joint.geometry.check("\"" + name + "\"");
     if constexpr (AddsForce<typename J::PolicyType>) joint.policy.check("\"" + name + "\"");
     Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
-    if constexpr (B::observes == Observes::axis && needs_of_second<G>() == Observes::axis)
+    if constexpr (B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)
       if (axes_b.col(0).cross(triad.col(2)).norm() > 1e-6)
         throw InvalidInput("\"" + name + "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
                            "reference configuration.");

@@ -45,7 +45,7 @@ void enforce(M const& model, double t, Data<M, T>& data) {
         auto const& e = pool[i];
         using Gap = std::decay_t<decltype(gaps[i])>;  // made where it stands: assigned, it would be copied
         static_assert(std::is_trivially_destructible_v<Gap>);
-        ::new (static_cast<void*>(&gaps[i])) Gap(e.joint.geometry.template gap<T>(
+        ::new (static_cast<void*>(&gaps[i])) Gap(e.joint.measure().template gap<T>(
             data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame, t));
       }
     });

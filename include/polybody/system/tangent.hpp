@@ -132,11 +132,11 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
       Mat<double, m, 12> g;
       g << gap.Ga, gap.Gb;
       s.noalias() = g.transpose() *
-                    e.joint.policy.template slope<m>(c.stiffness, c.damping).asDiagonal() * g;
+                    e.joint.policy.template slope<m>(c.stiffness, c.damping, gap.g, gap_rate(gap, a, b)) * g;
     }
     if (full) {
       Vec<double, m> const l = detail::multiplier(e, gap, data, lambda);
-      s += c.stiffness * wrench_gradient(e.joint.geometry, a.frame, b.frame, t, l);
+      s += c.stiffness * wrench_gradient(e.joint.measure(), a.frame, b.frame, t, l);
       load(e.a, gap.Ga.transpose() * l);
       load(e.b, gap.Gb.transpose() * l);
     }

@@ -10,6 +10,7 @@ struct Prismatic {
   static constexpr int rows = 2;
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::plane;
+  static constexpr Freedoms free = {true};
 
   Vec3 axis = Vec3::UnitX();  ///< (3) unit vector in the plane, world axes at the reference configuration
 

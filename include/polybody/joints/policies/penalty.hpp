@@ -21,10 +21,10 @@ struct Penalty {
   Vec<T, m> multiplier(Vec<T, m> const& g, Vec<T, m> const& g_rate) const {
     return g * T(stiffness.value) + g_rate * T(damping.value);
   }
-  /// ck ∂λ/∂g + cd ∂λ/∂ġ, a diagonal (m).
+  /// ck ∂λ/∂g + cd ∂λ/∂ġ (m×m).
   template <int m>
-  Vec<double, m> slope(double ck, double cd) const {
-    return Vec<double, m>::Constant(ck * stiffness + cd * damping);
+  Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {
+    return Eigen::DiagonalMatrix<double, m>(Vec<double, m>::Constant(ck * stiffness + cd * damping));
   }
   /// The energy that the spring stores [J].
   template <int m>
@@ -33,6 +33,45 @@ struct Penalty {
   }
 };
 
+/// The same with numbers for each of the n rows of a joint, `PenaltyPerRow<5>` for a Revolute, say.
+template <int n>
+struct PenaltyPerRow {
+  static constexpr char const* name = "PenaltyPerRow";
+
+  Required<Vec<double, n>> stiffness;  ///< (n) k
+  Required<Vec<double, n>> damping;    ///< (n) c
+
+  /// \throws InvalidInput unless k > 0 and c ≥ 0 in every row; `what` is the joint's name.
+  void check(std::string const& what) const {
+    for (int i = 0; i < n; ++i) {
+      std::string const row = " of row " + std::to_string(i + 1);
+      require_positive(stiffness.value[i], what + ": the penalty stiffness" + row);
+      require_not_negative(damping.value[i], what + ": the penalty damping" + row);
+    }
+  }
+
+  template <int m, StateScalar T>
+    requires(m == n)
+  Vec<T, m> multiplier(Vec<T, m> const& g, Vec<T, m> const& g_rate) const {
+    Vec<T, m> lambda;
+    for (int i = 0; i < m; ++i) lambda[i] = g[i] * stiffness.value[i] + g_rate[i] * damping.value[i];
+    return lambda;
+  }
+  /// ck ∂λ/∂g + cd ∂λ/∂ġ (m×m).
+  template <int m>
+    requires(m == n)
+  Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {
+    return Eigen::DiagonalMatrix<double, m>(ck * stiffness.value + cd * damping.value);
+  }
+  /// The energy that the springs store [J].
+  template <int m>
+    requires(m == n)
+  double potential(Vec<double, m> const& g) const {
+    return 0.5 * g.dot(stiffness.value.cwiseProduct(g));
+  }
+};
+
 static_assert(AddsForce<Penalty> && !AddsRows<Penalty>);
+static_assert(AnswersRows<PenaltyPerRow<5>, 5> && !AnswersRows<PenaltyPerRow<5>, 3>);
 
 }  // namespace polybody

@@ -10,14 +10,19 @@ namespace polybody {
 template <class P>
 concept AddsRows = requires { requires P::adds_rows; };
 
-/// A force −Gᵀλ(g, ġ) in place of rows.
-template <class P>
-concept AddsForce = requires(P const p, Vec<double, 3> const g, std::string const what) {
+/// Answers m rows by a force −Gᵀλ(g, ġ); the slope of λ is a matrix (m×m), full or diagonal.
+template <class P, int m>
+concept AnswersRows = requires(P const p, Vec<double, m> const g, std::string const what) {
   p.check(what);
-  { p.template multiplier<3, double>(g, g) } -> std::convertible_to<Vec<double, 3>>;
-  { p.template slope<3>(1.0, 1.0) } -> std::convertible_to<Vec<double, 3>>;
-  { p.template potential<3>(g) } -> std::convertible_to<double>;
+  { p.template multiplier<m, double>(g, g) } -> std::convertible_to<Vec<double, m>>;
+  { p.template slope<m>(1.0, 1.0, g, g) } -> std::convertible_to<Mat<double, m, m>>;
+  { p.template potential<m>(g) } -> std::convertible_to<double>;
 };
+
+/// A force in place of rows. Some policies answer any number of rows, others one number only.
+template <class P>
+concept AddsForce = AnswersRows<P, 1> || AnswersRows<P, 2> || AnswersRows<P, 3> || AnswersRows<P, 4> || AnswersRows<P, 5> ||
+                    AnswersRows<P, 6>;
 
 /// Exactly one kind.
 template <class P>

@@ -1,0 +1,100 @@
+#pragma once
+/// \file
+/// The rows of angles: that of a vector in a's first two axes, θ = atan2(y, x), where x and y are two rows of rows.hpp.
+///   θ̇ = (x ẏ − y ẋ)/n²,   n² = x² + y².
+/// Angles are compared modulo a full turn, so nothing need be remembered from step to step.
+
+#include <numbers>
+
+#include <polybody/joints/rows.hpp>
+
+namespace polybody::rows {
+
+/// The angle less the nearest number of full turns [rad].
+template <StateScalar T>
+T wrapped(T const& angle) {
+  double const turn = 2.0 * std::numbers::pi;
+  return angle - turn * std::nearbyint(value_of(angle) / turn);
+}
+
+/// θ in (−π, π] with its maps, from x and y with theirs. x = y = 0 has no angle.
+template <StateScalar T>
+Gap<1, T> angle(Gap<2, T> const& xy) {
+  using std::atan2;
+  T const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
+  T const p = x / n2, q = y / n2;
+  Gap<1, T> gap;
+  gap.g[0] = atan2(y, x);
+  for (int j = 0; j < 6; ++j) {
+    gap.Ga(0, j) = p * xy.Ga(1, j) - q * xy.Ga(0, j);
+    gap.Gb(0, j) = p * xy.Gb(1, j) - q * xy.Gb(0, j);
+  }
+  return gap;
+}
+
+/// γ of θ from those of x and y: (x γ_y − y γ_x − 2 θ̇ (x ẋ + y ẏ))/n².
+template <StateScalar T>
+T angle_gamma(Gap<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 2> const rate = xy.Ga * twist(a) + xy.Gb * twist(b);
+  T const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
+  T const turning = (x * rate[1] - y * rate[0]) / n2;
+  return (x * gamma[1] - y * gamma[0] - 2.0 * turning * (x * rate[0] + y * rate[1])) / n2;
+}
+
+/// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ), G_r = (x G_x + y G_y)/n²: what the wrench of θ changes by as x and y change in it.
+/// The rest is the change of their own maps under the multipliers λ (−y, x)/n², which are returned.
+inline Vec2 angle_gradient(Gap<2> const& xy, double lambda, WrenchGradient& k) {
+  double const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
+  Mat<double, 2, 12> g;
+  g << xy.Ga, xy.Gb;
+  Vec<double, 12> const turning = (x * g.row(1) - y * g.row(0)).transpose() / n2;
+  Vec<double, 12> const growing = (x * g.row(0) + y * g.row(1)).transpose() * (lambda / n2);
+  k -= turning * growing.transpose() + growing * turning.transpose();
+  return Vec2(-y, x) * (lambda / n2);
+}
+
+/// x = a₁·b₁ and y = a₂·b₁, whose angle is the turn of b against a about a₃. While b₁ stays in the plane of a₁, a₂ (as a
+/// Revolute keeps it) θ̇ = a₃·(ω_b − ω_a); perpendicular to it there is no angle.
+template <StateScalar T>
+Gap<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
+  Gap<2, T> xy;
+  for (int i = 0; i < 2; ++i) perpendicular<2, T>(a.A.col(i), b.A.col(0), xy, i);
+  return xy;
+}
+
+template <StateScalar T>
+T turn_gamma(Gap<2, T> const& xy, Frame<T> const& a, Frame<T> const& b) {
+  return angle_gamma<T>(xy,
+                        {perpendicular_gamma<T>(a.A.col(0), b.A.col(0), a, b),
+                         perpendicular_gamma<T>(a.A.col(1), b.A.col(0), a, b)},
+                        a, b);
+}
+
+inline void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
+  Vec2 const each = angle_gradient(turned(a, b), lambda, k);
+  for (int i = 0; i < 2; ++i) perpendicular_gradient(a.A.col(i), b.A.col(0), each[i], k);
+}
+
+/// Writes g = u·d − p θ, u fixed in a, θ the turn of b about a₃: one slide and one turn coupled, p [m/rad]. Full turns are
+/// counted by the slide, g = −p wrap(θ − u·d/p), so |g| ≤ π |p|.
+template <int m, StateScalar T>
+void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
+  no_slide<m, T>(u, a, b, gap, row);
+  Gap<1, T> const turn = angle(turned(a, b));
+  gap.g[row] = -p * wrapped<T>(turn.g[0] - gap.g[row] / p);
+  gap.Ga.row(row) -= turn.Ga * T(p);
+  gap.Gb.row(row) -= turn.Gb * T(p);
+}
+
+template <StateScalar T>
+T slide_and_turn_gamma(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b) {
+  return no_slide_gamma<T>(u, a, b) - p * turn_gamma<T>(turned(a, b), a, b);
+}
+
+inline void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b, double lambda,
+                                    WrenchGradient& k) {
+  no_slide_gradient(u, a, b, lambda, k);
+  turn_gradient(a, b, -p * lambda, k);
+}
+
+}  // namespace polybody::rows

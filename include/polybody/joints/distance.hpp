@@ -1,0 +1,45 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// Massless rod with a ball joint at each end, in the plane and in space, 1 row
+///   g = |r_b − r_a| − L      [Haug 1989, §9.4, there squared].
+/// Without the square g is a length, λ the tension of the rod [N] and a Penalty a linear spring, however far it gives;
+/// the price is a direction that points which coincide do not have.
+struct Distance {
+  static constexpr char const* name = "Distance";
+  static constexpr int rows = 1;
+  static constexpr Observes needs = Observes::point;
+  static constexpr World world = World::both;
+
+  Required<double> length;  ///< L [m]
+
+  Mat3 triad() const { return Mat3::Identity(); }
+  void check(std::string const& what) const {
+    if (!(length > 0.0) || !std::isfinite(length))
+      throw InvalidInput(what + ": the length must be positive and finite, but is " + number(length) +
+                         ". Points that coincide are held by a Spherical or, in the plane, a planar::Revolute.");
+  }
+
+  template <StateScalar T>
+  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<1, T> gap;
+    polybody::rows::distance(a, b, length, gap);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    return Vec<T, 1>(polybody::rows::distance_gamma(a, b));
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 1> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::distance_gradient(a, b, lambda[0], k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<Distance>);
+
+}  // namespace polybody

@@ -1,0 +1,93 @@
+#pragma once
+#include <numeric>
+
+#include <polybody/joints/angle.hpp>
+
+namespace polybody {
+
+/// Spur gears on parallel axes, in the plane and in space, 1 row
+///   g = (N_a ψ_a + N_b ψ_b)/N_b,   ψ_a, ψ_b the angles of the line of centres d = r_b − r_a in the axes of a and of b
+/// [Haug 1989, §3.4]. The line of centres turns with whatever carries the wheels, so the same row does for wheels on the
+/// ground and for a planet's. Teeth are whole numbers: turns are counted by the teeth, g is wrapped to half of the least
+/// common step π/n_b, n_b = N_b/gcd. The axes are kept parallel and the centres apart by other joints.
+struct Gear {
+  static constexpr char const* name = "Gear";
+  static constexpr int rows = 1;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr World world = World::both;
+
+  Required<int> teeth_a;         ///< N_a
+  Required<int> teeth_b;         ///< N_b; of an internal (ring) gear the number is negative
+  Vec3 axis = Vec3::UnitZ();     ///< (3) unit vector of both wheels' axes, world axes at the reference configuration
+  Vec3 centres = Vec3::UnitX();  ///< (3) unit vector from a's centre to b's there, perpendicular to it
+
+  Mat3 triad() const {
+    require_unit(axis, "Gear: the axis");
+    require_unit(centres, "Gear: the line of centres");
+    return polybody::rows::triad_of(centres, axis, "Gear");
+  }
+  void check(std::string const& what) const {
+    if (teeth_a == 0 || teeth_b == 0 || (teeth_a < 0 && teeth_b < 0))
+      throw InvalidInput(what + ": both wheels need teeth, and only one of them can be a ring gear, with a negative number.");
+    if ((teeth_a < 0 || teeth_b < 0) && teeth_a + teeth_b >= 0)
+      throw InvalidInput(what + ": a ring gear must have more teeth than the wheel inside it, but the numbers are " +
+                         std::to_string(teeth_a) + " and " + std::to_string(teeth_b) + ".");
+  }
+
+  template <StateScalar T>
+  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Ratio const n = ratio();
+    Gap<1, T> const of_a = polybody::rows::angle(bearing(a, b)), of_b = polybody::rows::angle(bearing(b, a));
+    Gap<1, T> gap;
+    T const turns = of_a.g[0] * n.a + of_b.g[0] * n.b;
+    gap.g[0] = polybody::rows::wrapped<T>(turns - std::numbers::pi * n.b) / n.b;  // b's bearing points the other way
+    gap.Ga = of_a.Ga * T(n.a / n.b) + of_b.Gb;
+    gap.Gb = of_a.Gb * T(n.a / n.b) + of_b.Ga;
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Ratio const n = ratio();
+    return Vec<T, 1>(bearing_gamma(a, b) * (n.a / n.b) + bearing_gamma(b, a));
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 1> const& lambda) const {
+    Ratio const n = ratio();
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero(), back = k;
+    bearing_gradient(a, b, lambda[0] * n.a / n.b, k);
+    bearing_gradient(b, a, lambda[0], back);
+    for (int i = 0; i < 12; ++i)
+      for (int j = 0; j < 12; ++j) k(i, j) += back((i + 6) % 12, (j + 6) % 12);
+    return k;
+  }
+
+ private:
+  /// The teeth in lowest terms.
+  struct Ratio {
+    double a, b;
+  };
+  Ratio ratio() const {
+    int const common = std::gcd(int(teeth_a), int(teeth_b));
+    return {double(teeth_a / common), double(teeth_b / common)};
+  }
+
+  /// The components of the vector from one wheel's centre to the other's in the first two axes of the one.
+  template <StateScalar T>
+  static Gap<2, T> bearing(Frame<T> const& one, Frame<T> const& other) {
+    Gap<2, T> xy;
+    polybody::rows::on_axis(one, other, xy, 0);
+    return xy;
+  }
+  template <StateScalar T>
+  static T bearing_gamma(Frame<T> const& one, Frame<T> const& other) {
+    return polybody::rows::angle_gamma<T>(bearing(one, other), polybody::rows::on_axis_gamma(one, other), one, other);
+  }
+  static void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda, Mat<double, 12, 12>& k) {
+    Vec2 const each = polybody::rows::angle_gradient(bearing(one, other), lambda, k);
+    polybody::rows::on_axis_gradient(one, other, each, k);
+  }
+};
+
+static_assert(JointGeometry<Gear>);
+
+}  // namespace polybody

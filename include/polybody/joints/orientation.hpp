@@ -1,0 +1,36 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// The axes of b stay parallel to those of a, the points are free, 3 rows g = [a₁·b₂; a₂·b₃; a₃·b₁].
+struct Orientation {
+  static constexpr char const* name = "Orientation";
+  static constexpr int rows = 3;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr World world = World::space;
+  static constexpr Freedoms free = {true, true, true};
+
+  Mat3 triad() const { return Mat3::Identity(); }
+
+  template <StateScalar T>
+  Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<3, T> gap;
+    polybody::rows::parallel(a, b, gap, 0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    return polybody::rows::parallel_gamma<T>(a, b);
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 3> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::parallel_gradient(a, b, lambda, k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<Orientation>);
+
+}  // namespace polybody

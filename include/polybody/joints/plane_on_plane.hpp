@@ -1,0 +1,45 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// The planar joint of space: a plane of b slides and turns on a plane of a, 3 rows
+///   g = [a₃·d; a₁·b₃; a₂·b₃],  d = r_b − r_a      [Haug 1989, §9.4].
+/// Its name leaves the word planar to the bodies and joints of the plane.
+struct PlaneOnPlane {
+  static constexpr char const* name = "PlaneOnPlane";
+  static constexpr int rows = 3;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr World world = World::space;
+  static constexpr Freedoms free = {true, true, false, false, false, true};
+
+  Vec3 normal = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(normal, "PlaneOnPlane: the normal"); }
+
+  template <StateScalar T>
+  Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<3, T> gap;
+    polybody::rows::no_slide<3, T>(a.A.col(2), a, b, gap, 0);
+    polybody::rows::same_direction(a, b, gap, 1);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Vec<T, 3> gamma;
+    gamma << polybody::rows::no_slide_gamma<T>(a.A.col(2), a, b), polybody::rows::same_direction_gamma(a, b);
+    return gamma;
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 3> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::no_slide_gradient(a.A.col(2), a, b, lambda[0], k);
+    polybody::rows::same_direction_gradient(a, b, lambda.tail<2>(), k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<PlaneOnPlane>);
+
+}  // namespace polybody

@@ -1,0 +1,41 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// The point of b stays in the plane through a's point whose normal is fixed in a, 1 row
+///   g = a₃·d,  d = r_b − r_a      [Haug 1989, §9.4].
+/// World::both: in the plane the normal lies in it, and the point stays on the line across the normal.
+struct PointInPlane {
+  static constexpr char const* name = "PointInPlane";
+  static constexpr int rows = 1;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::point;
+  static constexpr World world = World::both;
+  static constexpr Freedoms free = {true, true, false, true, true, true};
+
+  Vec3 normal = Vec3::UnitY();  ///< (3) unit vector, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(normal, "PointInPlane: the normal"); }
+
+  template <StateScalar T>
+  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<1, T> gap;
+    polybody::rows::no_slide<1, T>(a.A.col(2), a, b, gap, 0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    return Vec<T, 1>(polybody::rows::no_slide_gamma<T>(a.A.col(2), a, b));
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 1> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::no_slide_gradient(a.A.col(2), a, b, lambda[0], k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<PointInPlane>);
+
+}  // namespace polybody

@@ -1,0 +1,40 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// Bead on a wire: the point of b stays on the line through a's point along the axis fixed in a, 2 rows
+///   g = [a₁·d; a₂·d],  d = r_b − r_a      [Haug 1989, §9.4].
+struct PointOnLine {
+  static constexpr char const* name = "PointOnLine";
+  static constexpr int rows = 2;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::point;
+  static constexpr World world = World::space;
+  static constexpr Freedoms free = {false, false, true, true, true, true};
+
+  Vec3 axis = Vec3::UnitX();  ///< (3) unit vector of the line, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(axis, "PointOnLine: the axis"); }
+
+  template <StateScalar T>
+  Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<2, T> gap;
+    polybody::rows::on_axis(a, b, gap, 0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    return polybody::rows::on_axis_gamma(a, b);
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 2> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::on_axis_gradient(a, b, lambda, k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<PointOnLine>);
+
+}  // namespace polybody

@@ -1,0 +1,91 @@
+#pragma once
+#include <polybody/joints/policies/policy.hpp>
+#include <polybody/joints/relative_coordinates.hpp>
+
+namespace polybody {
+
+namespace detail {
+/// \throws InvalidInput naming `what` unless k (6×6) is finite, symmetric and positive semidefinite: symmetric elimination of k
+/// with its diagonal scaled to ones meets no negative pivot, and nothing beside a pivot that is zero [Higham 2002, §10.3].
+inline void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
+  double l[6][6];
+  auto const refuse = [&](std::string const& why) {
+    throw InvalidInput(what + " must be finite, symmetric and positive semidefinite (6×6), but " + why + ".");
+  };
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      auto const entry = [&] {
+        return "its entry (" + std::to_string(i + 1) + ", " + std::to_string(j + 1) + ") is " + number(k(i, j));
+      };
+      double const scale = std::sqrt(k(i, i) * k(j, j));
+      if (!std::isfinite(k(i, j)) || (i == j && k(i, j) < 0.0)) refuse(entry());
+      if (std::abs(k(i, j) - k(j, i)) > 1e-9 * scale) refuse(entry() + " and its mirror is " + number(k(j, i)));
+      if (scale == 0.0 && k(i, j) != 0.0) refuse(entry() + " beside a zero on the diagonal");
+      l[i][j] = scale > 0.0 ? k(i, j) / scale : 0.0;
+    }
+  for (int i = 0; i < 6; ++i) {
+    bool const lost = std::abs(l[i][i]) < 1e-10;
+    for (int r = i; r < 6; ++r)
+      if (l[i][i] <= -1e-10 || (lost && std::abs(l[r][i]) > 1e-5))
+        refuse("the coupling of its row " + std::to_string(i + 1) + " with the others is too strong");
+    if (lost) continue;
+    for (int r = i + 1; r < 6; ++r)
+      for (int c = i + 1; c < 6; ++c) l[r][c] -= l[r][i] * l[i][c] / l[i][i];
+  }
+}
+}  // namespace detail
+
+/// Linear bushing [thesis Eq. 3.15]: λ = K x + C ẋ instead of the joint's rows, x the six `RelativeCoordinates` of b against a in
+/// the joint's axes, fixed in a: slides [m], then turns [rad], for any size of either. What the joint's geometry leaves free
+/// stays free: its rows and columns of K and C do not count. To act on these directions too (a torsional spring in a pin, within half a
+/// turn) take `RelativeCoordinates` as the geometry, which leaves nothing free. The potential ½ xᵀK x is exact.
+struct Bushing {
+  static constexpr char const* name = "Bushing";
+  template <JointGeometry G>
+  using Measured = HeldCoordinates<G>;
+  using Matrix = Mat<double, 6, 6>;
+
+  Required<Matrix> stiffness;  ///< (6×6) K, blocks [N/m], [N/rad]; [N], [N m/rad]
+  Required<Matrix> damping;    ///< (6×6) C, the same times seconds
+
+  /// A matrix with these numbers along and about the joint's axes and no coupling.
+  static Matrix diagonal(Vec3 const& along, Vec3 const& about) {
+    Matrix k = Matrix::Zero();
+    for (int i = 0; i < 3; ++i) {
+      k(i, i) = along[i];
+      k(i + 3, i + 3) = about[i];
+    }
+    return k;
+  }
+
+  /// \throws InvalidInput unless K and C are symmetric and positive semidefinite; `what` is the joint's name.
+  void check(std::string const& what) const {
+    detail::require_semidefinite(stiffness.value, what + ": the bushing's stiffness");
+    detail::require_semidefinite(damping.value, what + ": the bushing's damping");
+  }
+
+  template <int m, StateScalar T>
+    requires(m == 6)
+  Vec<T, m> multiplier(Vec<T, m> const& x, Vec<T, m> const& rate) const {
+    Vec<T, m> lambda = Vec<T, m>::Zero();
+    for (int j = 0; j < m; ++j)
+      for (int i = 0; i < m; ++i) lambda[i] += x[j] * stiffness.value(i, j) + rate[j] * damping.value(i, j);
+    return lambda;
+  }
+  /// ck K + cd C (6×6).
+  template <int m>
+    requires(m == 6)
+  Matrix slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {
+    return ck * stiffness.value + cd * damping.value;
+  }
+  /// ½ xᵀK x [J].
+  template <int m>
+    requires(m == 6)
+  double potential(Vec<double, m> const& x) const {
+    return 0.5 * x.dot(stiffness.value * x);
+  }
+};
+
+static_assert(AnswersRows<Bushing, 6> && !AnswersRows<Bushing, 5> && Policy<Bushing>);
+
+}  // namespace polybody

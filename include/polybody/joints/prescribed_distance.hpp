@@ -1,0 +1,48 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+#include <polybody/math/time_laws.hpp>
+
+namespace polybody {
+
+/// Linear actuator between two points, in the plane and in space, 1 row
+///   g = |r_b − r_a| − L − x(t)      [Haug 1989, §3.5, there squared].
+template <TimeLaw Law>
+struct PrescribedDistance {
+  static constexpr char const* name = "PrescribedDistance";
+  static constexpr int rows = 1;
+  static constexpr Observes needs = Observes::point;
+  static constexpr World world = World::both;
+
+  Law law;                  ///< stroke x [m], rate and acceleration as functions of time [s]
+  Required<double> length;  ///< L, the distance at x = 0 [m]; L + x stays positive
+
+  Mat3 triad() const { return Mat3::Identity(); }
+  void check(std::string const& what) const {
+    require_positive(length, what + ": the length");
+    check_drive(law, what + ": the law of time");
+  }
+  std::vector<double> corners() const { return corners_of(law); }
+
+  template <StateScalar T>
+  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double t) const {
+    Motion const x = law(t);
+    Gap<1, T> gap;
+    polybody::rows::distance(a, b, length + x.value, gap);
+    gap.rate[0] = T(-x.rate);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
+    return Vec<T, 1>(polybody::rows::distance_gamma(a, b) - Motion(law(t)).acceleration);
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 1> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::distance_gradient(a, b, lambda[0], k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<PrescribedDistance<Ramp>>);
+
+}  // namespace polybody

@@ -1,0 +1,48 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+#include <polybody/math/time_laws.hpp>
+
+namespace polybody {
+
+/// One row: the point of b stands s(t) before that of a along the axis fixed in a. Use it beside a joint that slides.
+///   g = a₃·(r_b − r_a) − s      [Haug 1989, §3.5].
+/// World::both: in the plane the axis lies in it.
+template <TimeLaw Law>
+struct PrescribedSlide {
+  static constexpr char const* name = "PrescribedSlide";
+  static constexpr int rows = 1;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::point;
+  static constexpr World world = World::both;
+
+  Law law;                    ///< slide s [m], rate and acceleration as functions of time [s]
+  Vec3 axis = Vec3::UnitX();  ///< (3) unit vector, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(axis, "PrescribedSlide: the axis"); }
+  void check(std::string const& what) const { check_drive(law, what + ": the law of time"); }
+  std::vector<double> corners() const { return corners_of(law); }
+
+  template <StateScalar T>
+  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double t) const {
+    Motion const s = law(t);
+    Gap<1, T> gap;
+    polybody::rows::no_slide<1, T>(a.A.col(2), a, b, gap, 0);
+    gap.g[0] -= s.value;
+    gap.rate[0] = T(-s.rate);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
+    return Vec<T, 1>(polybody::rows::no_slide_gamma<T>(a.A.col(2), a, b) - Motion(law(t)).acceleration);
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 1> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::no_slide_gradient(a.A.col(2), a, b, lambda[0], k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<PrescribedSlide<Ramp>>);
+
+}  // namespace polybody

@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// Geometries of one idea each, from which any joint can be put together by connecting several between the same markers:
+///   Revolute = CoincidentPoints + ParallelAxes          Universal    = CoincidentPoints + PerpendicularAxes
+///   Prismatic = PointOnLine + Orientation               Weld         = CoincidentPoints + Orientation
+///   Cylindrical = PointOnLine + ParallelAxes            PlaneOnPlane = PointInPlane + ParallelAxes
+///   PointOnLine = two of PointInPlane                   Orientation  = ParallelAxes + PerpendicularAxes
+/// A named joint spares the repeated frames; the motions are the same.      [Haug 1989, §9.4]
+
+#include <polybody/joints/orientation.hpp>
+#include <polybody/joints/point_in_plane.hpp>
+#include <polybody/joints/point_on_line.hpp>
+#include <polybody/joints/spherical.hpp>
+
+namespace polybody {
+
+/// Two points stay together: the ball joint under the name of its primitive.
+using CoincidentPoints = Spherical;
+
+/// The first axis, fixed in a, stays perpendicular to the second, fixed in b, 1 row g = a₁·b₃.
+struct PerpendicularAxes {
+  static constexpr char const* name = "PerpendicularAxes";
+  static constexpr int rows = 1;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr World world = World::space;
+
+  Vec3 first = Vec3::UnitX();   ///< (3) unit vector a₁, world axes at the reference configuration
+  Vec3 second = Vec3::UnitY();  ///< (3) unit vector b₃, perpendicular to it
+
+  Mat3 triad() const { return polybody::rows::triad_of(first, second, "PerpendicularAxes"); }
+
+  template <StateScalar T>
+  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<1, T> gap;
+    polybody::rows::perpendicular<1, T>(a.A.col(0), b.A.col(2), gap, 0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    return Vec<T, 1>(polybody::rows::perpendicular_gamma<T>(a.A.col(0), b.A.col(2), a, b));
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 1> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::perpendicular_gradient(a.A.col(0), b.A.col(2), lambda[0], k);
+    return k;
+  }
+};
+
+/// An axis of b stays parallel to one of a, 2 rows g = [a₁·b₃; a₂·b₃].
+struct ParallelAxes {
+  static constexpr char const* name = "ParallelAxes";
+  static constexpr int rows = 2;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr World world = World::space;
+  static constexpr Freedoms free = {true, true, true, false, false, true};
+
+  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(axis, "ParallelAxes: the axis"); }
+
+  template <StateScalar T>
+  Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<2, T> gap;
+    polybody::rows::same_direction(a, b, gap, 0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    return polybody::rows::same_direction_gamma(a, b);
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 2> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::same_direction_gradient(a, b, lambda, k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<PerpendicularAxes> && JointGeometry<ParallelAxes>);
+
+}  // namespace polybody

@@ -1,0 +1,51 @@
+#pragma once
+#include <polybody/joints/angle.hpp>
+
+namespace polybody {
+
+/// Pinion b on the rack a, in the plane and in space, 1 row: a slide and a turn coupled,
+///   g = a₁·d − R θ,  d = r_b − r_a      [Haug 1989, §3.4].
+/// θ, the turn of b about a₃, is zero at the reference configuration when a₁·d is; full turns are counted by the slide. The
+/// pinion's height over the rack and its axis are held by other joints. A rack on the ground makes a wheel that rolls.
+struct RackAndPinion {
+  static constexpr char const* name = "RackAndPinion";
+  static constexpr int rows = 1;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr World world = World::both;
+
+  Required<double> radius;         ///< R [m] of the pitch circle; the rack touches it on the side of axis × direction, or
+                                   ///< for R < 0 on the other
+  Vec3 axis = Vec3::UnitZ();       ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
+  Vec3 direction = Vec3::UnitX();  ///< (3) unit vector along the rack, perpendicular to it
+
+  Mat3 triad() const {
+    require_unit(axis, "RackAndPinion: the axis");
+    require_unit(direction, "RackAndPinion: the direction");
+    return polybody::rows::triad_of(direction, axis, "RackAndPinion");
+  }
+  void check(std::string const& what) const {
+    if (!std::isfinite(radius) || radius == 0.0)
+      throw InvalidInput(what + ": the radius must be finite and not zero, but is " + number(radius) + ".");
+  }
+
+  template <StateScalar T>
+  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<1, T> gap;
+    polybody::rows::slide_and_turn<1, T>(a.A.col(0), radius, a, b, gap, 0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    return Vec<T, 1>(polybody::rows::slide_and_turn_gamma<T>(a.A.col(0), radius, a, b));
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 1> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::slide_and_turn_gradient(a.A.col(0), radius, a, b, lambda[0], k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<RackAndPinion>);
+
+}  // namespace polybody

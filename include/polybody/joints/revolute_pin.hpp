@@ -1,0 +1,62 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// The pin of thesis Eq. 3.8, between two points of the joint axis that stand a distance L apart, 5 rows
+///   g = [a₁·b₃; a₂·b₃; a₁·d; a₂·d; d·d − k_θ],  d = r_b − r_a,  k_θ = L².
+/// The last row holds d along the axis, and nothing where the points coincide (rank 4), so L > 0 is asked for. The motions
+/// are those of a Revolute [thesis §3.5.1]; its force along the axis is 2 L λ₅.
+struct RevolutePin {
+  static constexpr char const* name = "RevolutePin";
+  static constexpr int rows = 5;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr World world = World::space;
+
+  Required<double> distance;  ///< L [m]
+  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the pin, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(axis, "RevolutePin: the axis"); }
+  void check(std::string const& what) const {
+    if (!(distance > 0.0) || !std::isfinite(distance))
+      throw InvalidInput(what + ": its points must stand a positive, finite distance apart along the axis, but it is " +
+                         number(distance) + ". Points that coincide are joined by a Revolute.");
+  }
+
+  template <StateScalar T>
+  Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<5, T> gap;
+    polybody::rows::same_direction(a, b, gap, 0);
+    polybody::rows::on_axis(a, b, gap, 2);
+    Vec<T, 3> const d = b.r - a.r;
+    gap.g[4] = d.squaredNorm() - double(distance) * distance;
+    gap.Ga.row(4).template head<3>() = d.transpose() * T(-2.0);
+    gap.Gb.row(4).template head<3>() = d.transpose() * T(2.0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Vec<T, 5> gamma;
+    Vec<T, 3> const rate = b.v - a.v;
+    gamma << polybody::rows::same_direction_gamma(a, b), polybody::rows::on_axis_gamma(a, b), rate.squaredNorm() * T(2.0);
+    return gamma;
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 5> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::same_direction_gradient(a, b, lambda.head<2>(), k);
+    polybody::rows::on_axis_gradient(a, b, lambda.segment<2>(2), k);
+    for (int i = 0; i < 3; ++i) {
+      k(i, i) += 2.0 * lambda[4];
+      k(i, i + 6) -= 2.0 * lambda[4];
+      k(i + 6, i) -= 2.0 * lambda[4];
+      k(i + 6, i + 6) += 2.0 * lambda[4];
+    }
+    return k;
+  }
+};
+
+static_assert(JointGeometry<RevolutePin>);
+
+}  // namespace polybody

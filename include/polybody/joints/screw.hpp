@@ -1,0 +1,52 @@
+#pragma once
+#include <polybody/joints/angle.hpp>
+
+namespace polybody {
+
+/// Nut b on the thread of a: a cylindrical joint whose slide is p times its turn, 5 rows
+///   g = [a₁·d; a₂·d; a₁·b₃; a₂·b₃; a₃·d − p θ],  d = r_b − r_a      [Haug 1989, §9.4].
+/// θ is zero at the reference configuration when d is; full turns are counted by the slide, any number of them.
+struct Screw {
+  static constexpr char const* name = "Screw";
+  static constexpr int rows = 5;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr World world = World::space;
+
+  Required<double> pitch;     ///< p, slide for each radian [m/rad], the lead over 2π; negative for a left-handed thread
+  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
+
+  Mat3 triad() const { return polybody::rows::triad_about(axis, "Screw: the axis"); }
+  void check(std::string const& what) const {
+    if (!std::isfinite(pitch) || pitch == 0.0)
+      throw InvalidInput(what + ": the pitch must be finite and not zero, but is " + number(pitch) +
+                         ". A screw without pitch is a Revolute.");
+  }
+
+  template <StateScalar T>
+  Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<5, T> gap;
+    polybody::rows::on_axis(a, b, gap, 0);
+    polybody::rows::same_direction(a, b, gap, 2);
+    polybody::rows::slide_and_turn<5, T>(a.A.col(2), pitch, a, b, gap, 4);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Vec<T, 5> gamma;
+    gamma << polybody::rows::on_axis_gamma(a, b), polybody::rows::same_direction_gamma(a, b),
+        polybody::rows::slide_and_turn_gamma<T>(a.A.col(2), pitch, a, b);
+    return gamma;
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 5> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::on_axis_gradient(a, b, lambda.head<2>(), k);
+    polybody::rows::same_direction_gradient(a, b, lambda.segment<2>(2), k);
+    polybody::rows::slide_and_turn_gradient(a.A.col(2), pitch, a, b, lambda[4], k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<Screw>);
+
+}  // namespace polybody

@@ -1,0 +1,44 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// Cardan joint: two points stay together, and the first axis, fixed in a, stays perpendicular to the second, fixed in b;
+/// the two are the arms of the cross. 4 rows
+///   g = [r_b − r_a; a₁·b₃]      [Haug 1989, §9.4].
+struct Universal {
+  static constexpr char const* name = "Universal";
+  static constexpr int rows = 4;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr World world = World::space;
+
+  Vec3 first = Vec3::UnitX();   ///< (3) unit vector a₁, world axes at the reference configuration
+  Vec3 second = Vec3::UnitY();  ///< (3) unit vector b₃, perpendicular to it
+
+  Mat3 triad() const { return polybody::rows::triad_of(first, second, "Universal"); }
+
+  template <StateScalar T>
+  Gap<4, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<4, T> gap;
+    polybody::rows::coincident(a, b, gap);
+    polybody::rows::perpendicular<4, T>(a.A.col(0), b.A.col(2), gap, 3);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 4> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Vec<T, 4> gamma = Vec<T, 4>::Zero();
+    gamma[3] = polybody::rows::perpendicular_gamma<T>(a.A.col(0), b.A.col(2), a, b);
+    return gamma;
+  }
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 4> const& lambda) const {
+    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    polybody::rows::perpendicular_gradient(a.A.col(0), b.A.col(2), lambda[3], k);
+    return k;
+  }
+};
+
+static_assert(JointGeometry<Universal>);
+
+}  // namespace polybody

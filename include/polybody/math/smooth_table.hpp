@@ -1,0 +1,120 @@
+#pragma once
+/// \file
+/// A function of time through measured or planned points.
+
+#include <algorithm>
+#include <optional>
+
+#include <polybody/math/time_laws.hpp>
+
+namespace polybody {
+
+/// The cubic spline through points (t, value): value, rate and acceleration are continuous  [de Boor 1978, ch. IV].
+/// Its first and last rate may be given; an end without one is natural, acceleration zero. Beyond both ends it goes on at
+/// the rate it has there.
+class SmoothTable {
+ public:
+  struct Point {
+    double time;   ///< [s]
+    double value;
+  };
+  struct Ends {
+    std::optional<double> first_rate = {};
+    std::optional<double> last_rate = {};
+  };
+
+  /// \throws InvalidInput for fewer than two points, times that do not increase, and numbers that are not finite.
+  explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
+  SmoothTable(std::vector<Point> const& points, Ends const& ends) : knots_(points.size()) {
+    check_points(points, ends);
+    std::size_t const last = points.size() - 1;
+    for (std::size_t i = 0; i <= last; ++i) knots_[i] = {.time = points[i].time, .value = points[i].value};
+    solve(ends);
+    for (std::size_t i = 0; i < last; ++i) {
+      Knot &k = knots_[i], &next = knots_[i + 1];
+      double const h = next.time - k.time;
+      k.rate = (next.value - k.value) / h - h * (2.0 * k.second + next.second) / 6.0;
+      k.third = (next.second - k.second) / h;
+      next.integral = integral_to(k, next.time);
+      next.rate = k.rate + 0.5 * h * (k.second + next.second);
+    }
+    for (Knot const& end : {knots_.front(), knots_.back()})
+      if (end.second != 0.0) corners_.push_back(end.time);
+    knots_.back().second = 0.0;
+  }
+
+  Motion operator()(double t) const {
+    Knot const k = piece(t);
+    double const x = t - k.time;
+    return {k.value + x * (k.rate + x * (k.second / 2.0 + x * k.third / 6.0)), k.rate + x * (k.second + x * k.third / 2.0),
+            k.second + x * k.third};
+  }
+  /// ∫ value dt from the first point.
+  double integral(double t) const { return integral_to(piece(t), t); }
+  /// The ends at which the acceleration jumps.
+  std::vector<double> corners() const { return corners_; }
+
+ private:
+  /// A point with the derivatives of the piece that begins there.
+  struct Knot {
+    double time = 0.0, value = 0.0, rate = 0.0, second = 0.0, third = 0.0;
+    double integral = 0.0;  ///< from the first point to this one
+  };
+
+  static void check_points(std::vector<Point> const& points, Ends const& ends) {
+    if (points.size() < 2)
+      throw InvalidInput("SmoothTable: at least two points are needed, but there are " + std::to_string(points.size()) + ".");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!std::isfinite(points[i].time) || !std::isfinite(points[i].value))
+        throw InvalidInput("SmoothTable: point " + std::to_string(i + 1) + " must be finite.");
+      if (i > 0 && !(points[i].time > points[i - 1].time))
+        throw InvalidInput("SmoothTable: the times must increase, but point " + std::to_string(i + 1) + " at t = " +
+                           number(points[i].time) + " s follows one at " + number(points[i - 1].time) + " s.");
+    }
+    if (!std::isfinite(ends.first_rate.value_or(0.0)) || !std::isfinite(ends.last_rate.value_or(0.0)))
+      throw InvalidInput("SmoothTable: the rates at the ends must be finite.");
+  }
+
+  /// The second derivatives mᵢ that make the rates continuous, s the slopes of the chords:
+  ///   hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (sᵢ − sᵢ₋₁),  at an end s is the given rate and h zero.
+  void solve(Ends const& ends) {
+    std::size_t const n = knots_.size();
+    std::vector<double> upper(n, 0.0);
+    double slope = ends.first_rate.value_or(0.0), lower = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      bool const first = i == 0, last = i + 1 == n;
+      double const h = last ? 0.0 : knots_[i + 1].time - knots_[i].time;
+      double const next = last ? ends.last_rate.value_or(0.0) : (knots_[i + 1].value - knots_[i].value) / h;
+      if ((first && !ends.first_rate) || (last && !ends.last_rate)) {
+        knots_[i].second = upper[i] = 0.0;
+      } else {
+        double const pivot = 2.0 * (lower + h) - (first ? 0.0 : lower * upper[i - 1]);
+        upper[i] = h / pivot;
+        knots_[i].second = (6.0 * (next - slope) - (first ? 0.0 : lower * knots_[i - 1].second)) / pivot;
+      }
+      slope = next;
+      lower = h;
+    }
+    for (std::size_t i = n - 1; i-- > 0;) knots_[i].second -= upper[i] * knots_[i + 1].second;
+  }
+
+  /// The piece at t; outside the table a straight line.
+  Knot piece(double t) const {
+    auto const after = std::upper_bound(knots_.begin(), knots_.end(), t, [](double x, Knot const& k) { return x < k.time; });
+    if (after != knots_.begin()) return *(after - 1);
+    Knot before = knots_.front();
+    before.second = before.third = 0.0;
+    return before;
+  }
+  static double integral_to(Knot const& k, double t) {
+    double const x = t - k.time;
+    return k.integral + x * (k.value + x * (k.rate / 2.0 + x * (k.second / 6.0 + x * k.third / 24.0)));
+  }
+
+  std::vector<Knot> knots_;
+  std::vector<double> corners_;
+};
+
+static_assert(HasIntegral<SmoothTable> && HasCorners<SmoothTable>);
+
+}  // namespace polybody

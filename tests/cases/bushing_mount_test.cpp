@@ -1,0 +1,185 @@
+// A body on a bushing against closed forms: CASES J3.
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/equilibrium.hpp>
+#include <polybody/analysis/modes.hpp>
+#include <polybody/analysis/preloads.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/policies/bushing.hpp>
+#include <polybody/joints/policies/nonlinear_bushing.hpp>
+#include <polybody/joints/weld.hpp>
+#include <polybody/solvers/dense_lu.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace polybody;
+
+namespace bushing_mount_test {
+
+using Matrix = Bushing::Matrix;
+Matrix const none = Matrix::Zero();
+
+using Mount = Joint<Weld, Bushing>;
+using Sprung = Joint<RelativeCoordinates, Bushing>;
+
+/// f = 1000 u + 1e6 u³.
+struct Hardening {
+  template <class T>
+  T operator()(T const& u, T const&) const {
+    return u * 1000.0 + u * u * u * 1e6;
+  }
+};
+using Rubber = NonlinearBushing<Hardening, TabulatedLaw, TabulatedLaw, LinearLaw, LinearLaw, LinearLaw>;
+
+/// One rigid body on one joint from the ground, with a force and a moment.
+struct Mounted {
+  Model<Bodies<Rigid<>>, Joints<Mount, Sprung, Joint<Weld, Rubber>>, Forces<PointForce<>, PointMoment<>>> model;
+  static constexpr double mass = 2.0;
+  inline static Vec3 const inertia{0.3, 0.4, 0.6};
+  BodyHandle<Rigid<>> body = model.add(Rigid<>(mass, inertia.asDiagonal().toDenseMatrix()), "body");
+
+  template <class J>
+  explicit Mounted(J const& joint, Vec3 const& at = Vec3::Zero(), Vec3 const& on_ground = Vec3::Zero()) {
+    model.connect(joint, model.ground().at(on_ground), body.at(at), "mount");
+  }
+  void load(Vec3 const& force, Vec3 const& at, Vec3 const& moment = Vec3::Zero()) {
+    model.apply(PointForce<>{.force = force}, body.at(at), "force");
+    model.apply(PointMoment<>{.moment = moment}, body.at(at), "moment");
+  }
+  State at_rest() const {
+    State x = model.reference_state();
+    equilibrium<DenseLu>(model, x);
+    return x;
+  }
+  Frame<> moved(State const& x) const { return frame(model, x, body.at(Vec3(0, 0, 0))); }
+  VecX frequencies() const { return modes(model, model.reference_state()).frequency; }
+};
+
+Vec3 const k{1000.0, 2000.0, 4000.0}, k_turn{50.0, 70.0, 90.0};
+Bushing const diagonal{.stiffness = Bushing::diagonal(k, k_turn), .damping = none};
+
+// CASES J3: u = F/k and θ = M/k_θ along and about each axis; about one axis for a moment of any size.
+TEST(BushingMount, GivesWayAsTheLoadOverTheStiffness) {
+  for (int i = 0; i < 3; ++i)
+    for (double const size : {1.0, 60.0}) {
+      Mounted m{Mount{{}, diagonal}};
+      m.load(Vec3(10.0, -20.0, 30.0), {0, 0, 0}, Vec3::Unit(i) * size);
+      State const x = m.at_rest();
+      Frame<> const f = m.moved(x);
+      EXPECT_LT((f.r - Vec3(10.0, -20.0, 30.0).cwiseQuotient(k)).norm(), 1e-12);
+      EXPECT_LT((f.A - exp_so3<double>(Vec3::Unit(i) * size / k_turn[i])).norm(), 1e-12) << i;
+    }
+}
+
+// CASES J3: ω = √(k/m) and √(k_θ/I).
+TEST(BushingMount, SwingsWithItsSixFrequencies) {
+  Mounted const m{Mount{{}, diagonal}};
+  VecX expected(6);
+  expected << (k / m.mass).cwiseSqrt(), k_turn.cwiseQuotient(m.inertia).cwiseSqrt();
+  std::sort(expected.begin(), expected.end());
+  VecX const found = m.frequencies();
+  ASSERT_EQ(found.size(), 6);
+  EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm());
+}
+
+// CASES J3, the lever: θ = F a/k_θ and u = F/k + a θ. In full, with a dead load at the end of a lever that turns:
+// k_θ θ = F a cos θ, u = F/k + a sin θ.
+TEST(BushingMount, GivesWayUnderALever) {
+  double const a = 0.7;
+  for (double const force : {1e-3, 1.0, 80.0}) {
+    Mounted m{Mount{{}, diagonal}};
+    m.load({0, force, 0}, {a, 0, 0});
+    double theta = 0.0;
+    for (int i = 0; i < 200; ++i) theta = force * a * std::cos(theta) / k_turn[2];  // contracts by F a/k_θ < 1
+    Vec3 const tip = position(m.model, m.at_rest(), m.body.at(Vec3(a, 0, 0)));
+    EXPECT_NEAR(tip[1], force / k[1] + a * std::sin(theta), 1e-12);
+    EXPECT_NEAR(tip[0], a * std::cos(theta), 1e-12);
+    double const linear = force * a / k_turn[2];
+    if (force == 1e-3) {
+      EXPECT_NEAR(tip[1], force / k[1] + a * linear, 1e-9 * linear);
+    }
+  }
+}
+
+// The same lever inside the bushing, whose marker is where the force acts: with u_c = u − a θ the energy ½ k u_c² + ½ k_θ θ² has
+// the coupling −k a. The force acts along the coordinate u alone, so θ = F a/k_θ and u = F/k + a θ hold for every size.
+TEST(BushingMount, CouplesForceAndTurn) {
+  double const a = 0.7;
+  Matrix coupled = diagonal.stiffness;
+  coupled(5, 5) += k[1] * a * a;
+  coupled(1, 5) = coupled(5, 1) = -k[1] * a;
+  for (double const force : {1e-3, 1.0, 40.0}) {
+    Mounted m{Mount{{}, {.stiffness = coupled, .damping = none}}};
+    m.load({0, force, 0}, {0, 0, 0});
+    Frame<> const f = m.moved(m.at_rest());
+    double const theta = force * a / k_turn[2];
+    EXPECT_LT((f.r - Vec3(0, force / k[1] + a * theta, 0)).norm(), 1e-12);
+    EXPECT_LT((f.A - exp_so3<double>(Vec3(0, 0, theta))).norm(), 1e-12);
+  }
+}
+
+// A spring about an axis, which a Revolute would leave free: ω = √(k_θ/I) about it, and half a turn of reach.
+TEST(BushingMount, MayHoldTheFreeDirectionToo) {
+  Bushing const spring{.stiffness = Bushing::diagonal({1e8, 1e8, 1e8}, {1e8, 1e8, 12.0}), .damping = none};
+  Mounted sprung{Sprung{{.axis = Vec3::UnitX()}, spring}};
+  EXPECT_NEAR(sprung.frequencies()[0], std::sqrt(12.0 / 0.3), 1e-7);
+  sprung.load({0, 0, 0}, {0, 0, 0}, {30.0, 0, 0});
+  EXPECT_LT((sprung.moved(sprung.at_rest()).A - exp_so3<double>(Vec3(2.5, 0, 0))).norm(), 1e-9);
+}
+
+// A nonlinear law: u with f(u) = F, and tables at their points.
+TEST(BushingMount, FollowsItsLaws) {
+  TabulatedLaw const stop{MonotoneTable{{{-0.02, -400.0}, {-0.01, -20.0}, {0.0, 0.0}, {0.01, 20.0}, {0.02, 400.0}}}, 0.0};
+  LinearLaw const turn{.stiffness = 50.0, .damping = 0.0};
+  Mounted m{Joint<Weld, Rubber>{{}, Rubber{Hardening{}, stop, stop, turn, turn, turn}}};
+  m.load({50.0 + 125.0, 20.0, -400.0}, {0, 0, 0});  // f(0.05)
+  EXPECT_LT((m.moved(m.at_rest()).r - Vec3(0.05, 0.01, -0.02)).norm(), 1e-12);
+}
+
+TEST(BushingMount, AddsNoRows) {
+  Mounted const m{Mount{{}, diagonal}};
+  Census const c = census(m.model);
+  EXPECT_EQ(c.rows, 0);
+  EXPECT_EQ(c.degrees_of_freedom, 6);
+  static_assert(!decltype(m.model)::may_have_rows);
+}
+
+// Markers apart by d at the reference state: K d on the body, and what stands without a gap bears nothing.
+TEST(Preloads, AreWhatTheReferenceStateStores) {
+  Vec3 const d(0.001, -0.002, 0.003);
+  Mounted const tight{Mount{{}, diagonal}}, apart{Mount{{}, diagonal}, Vec3(0.1, 0.2, 0.3), Vec3(0.1, 0.2, 0.3) - d};
+  ASSERT_EQ(preloads(tight.model).size(), 1u);
+  EXPECT_EQ(preloads(tight.model)[0].wrench.f.norm() + preloads(tight.model)[0].wrench.m.norm(), 0.0);
+  Preload const p = preloads(apart.model)[0];
+  EXPECT_EQ(p.joint, "mount");
+  EXPECT_LT((p.wrench.f + k.cwiseProduct(d)).norm(), 1e-12);
+  EXPECT_LT(p.wrench.m.norm(), 1e-12);
+  EXPECT_NEAR(energy(apart.model, apart.model.reference_state()).joints, 0.5 * d.dot(k.cwiseProduct(d)), 1e-15);
+}
+
+// In the plane: K d on the body, and its moment about the middle of mass; the pin is free to turn.
+TEST(BushingMount, HoldsAPlanarPinToo) {
+  using Pin = Joint<planar::Revolute, Bushing>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model;
+  auto const body = model.add(planar::Rigid(1.0, 1.0, {}), "body");
+  auto const pin = model.connect(Pin{{}, diagonal}, model.ground().at({0.3, 0.1, 0}), body.at(Vec2(0.3, 0.1)), "pin");
+  State x = model.reference_state();
+  x.q[0] = 0.01;
+  x.q[1] = -0.02;
+  System system(model);
+  system.evaluate(x.q, x.v, x.t);
+  VecX r(3);
+  system.residual(x.a, x.lambda, r);
+  double const fx = -k[0] * 0.01, fy = k[1] * 0.02;
+  EXPECT_LT((r + Vec3(fx, fy, 0.3 * fy - 0.1 * fx)).norm(), 1e-12);
+  x = model.reference_state();
+  x.q[2] = 0.5;  // turned about the middle of mass, and put back to the pin
+  x.q.head<2>() = Vec2(0.3, 0.1) - Eigen::Rotation2Dd(0.5) * Vec2(0.3, 0.1);
+  EXPECT_LT(reaction(model, x, pin).f.norm(), 1e-12);
+  EXPECT_LT(reaction(model, x, pin).m.norm(), 1e-12);
+}
+
+}  // namespace bushing_mount_test

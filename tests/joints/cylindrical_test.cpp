@@ -1,0 +1,38 @@
+#include <polybody/joints/cylindrical.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace cylindrical_test {
+
+struct CylindricalCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static Cylindrical geometry() { return {}; }
+  static Mate mate(Numbers& number, double) {
+    Mate mate{.d = Vec3(0, 0, number(2.0)), .R = exp_so3<double>(Vec3(0, 0, number(3.0))), .freedoms = MatX::Zero(6, 2)};
+    mate.freedoms(2, 0) = mate.freedoms(5, 1) = 1.0;
+    return mate;
+  }
+};
+
+// b stands off the axis by (0.3, −0.4) and is tilted about a₁ by φ, b₃ = (0, −sin φ, cos φ).
+TEST(Cylindrical, RowsAreTheOffsetAndTheTilt) {
+  Frame<double> const b{.r = {0.3, -0.4, 7.0}, .A = exp_so3<double>(Vec3(0.2, 0, 0))};
+  Vec4 const expected(0.3, -0.4, 0.0, -std::sin(0.2));
+  EXPECT_LT((Cylindrical{}.gap<double>({}, b, 0.0).g - expected).norm(), 1e-15);
+}
+
+TEST(Cylindrical, RefusesAnAxisThatIsNotAUnitVector) {
+  EXPECT_TRUE(has(refusal([] { (void)Cylindrical{.axis = {0, 0, 2}}.triad(); }), "Cylindrical: the axis must be a unit vector"));
+}
+
+}  // namespace cylindrical_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(Cylindrical, JointLaws, cylindrical_test::CylindricalCase);
+}  // namespace polybody

@@ -1,0 +1,106 @@
+#include <polybody/joints/distance.hpp>
+#include <polybody/joints/prescribed_distance.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace distance_test {
+
+constexpr double length = 0.8;
+
+/// b anywhere at a distance from a, turned anyhow: free but along d.
+Mate at_distance(Numbers& number, double distance) {
+  Vec3 const e = number.vec<3>().normalized(), f = e.unitOrthogonal();
+  Mate mate{.d = distance * e, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 5)};
+  mate.freedoms.topLeftCorner<3, 2>() << f, e.cross(f);
+  mate.freedoms.bottomRightCorner<3, 3>().setIdentity();
+  return mate;
+}
+Mate at_distance_in_plane(Numbers& number, double distance) {
+  double const phi = number(3.0);
+  Mate mate{.d = distance * Vec3(std::cos(phi), std::sin(phi), 0),
+            .R = exp_so3<double>(Vec3(0, 0, number(3.0))),
+            .freedoms = MatX::Zero(6, 2)};
+  mate.freedoms.col(0).head<2>() << -std::sin(phi), std::cos(phi);
+  mate.freedoms(5, 1) = 1.0;
+  return mate;
+}
+
+struct DistanceCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static Distance geometry() { return {.length = length}; }
+  static Mate mate(Numbers& number, double) { return at_distance(number, length); }
+};
+struct PlanarDistanceCase : DistanceCase {
+  static constexpr bool planar = true;
+  static Mate mate(Numbers& number, double) { return at_distance_in_plane(number, length); }
+};
+
+using Actuator = PrescribedDistance<SmoothRamp>;
+Actuator const actuator{.law = {.target = 0.6, .duration = 4.0}, .length = length};
+
+struct ActuatorCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static Actuator geometry() { return actuator; }
+  static Mate mate(Numbers& number, double t) { return at_distance(number, length + actuator.law(t).value); }
+};
+struct PlanarActuatorCase : ActuatorCase {
+  static constexpr bool planar = true;
+  static Mate mate(Numbers& number, double t) { return at_distance_in_plane(number, length + actuator.law(t).value); }
+};
+
+// The multiplier is a force: pulled apart, the points are drawn together by it, along d = (3, 4, 0)/5.
+TEST(Distance, GapIsALengthAndItsMultiplierATension) {
+  Frame<double> const a{.r = {1, 1, 1}}, b{.r = {4, 5, 1}};
+  Gap<1> const gap = Distance{.length = 2.0}.gap<double>(a, b, 0.0);
+  EXPECT_DOUBLE_EQ(gap.g[0], 3.0);
+  EXPECT_LT((gap.Gb.head<3>() - Vec3(0.6, 0.8, 0).transpose()).norm(), 1e-15);
+  EXPECT_EQ(gap.Gb.tail<3>().norm() + gap.Ga.tail<3>().norm(), 0.0);
+}
+
+// b circles a at ω: the points keep their distance while g̈ without accelerations is ω² L.
+TEST(Distance, GammaIsTheCentripetalAcceleration) {
+  Frame<double> const b{.r = {2, 0, 0}, .v = {5, 3, 0}};
+  EXPECT_DOUBLE_EQ((Distance{.length = 2.0}.gamma<double>({}, b, 0.0)[0]), 9.0 / 2.0);
+}
+
+TEST(Distance, OfPointsThatCoincideIsFinite) {
+  Gap<1> const gap = Distance{.length = 2.0}.gap<double>({}, {}, 0.0);
+  EXPECT_EQ(gap.g[0], -2.0);
+  EXPECT_EQ(Vec3(gap.Gb.head<3>()), Vec3(1, 0, 0));
+}
+
+TEST(Distance, RefusesALengthThatIsNone) {
+  for (double const l : {0.0, -1.0, double(NAN), HUGE_VAL})
+    EXPECT_TRUE(has(refusal([&] { Distance{.length = l}.check("\"rod\""); }), "\"rod\": the length must be positive and finite"));
+  EXPECT_TRUE(has(refusal([] { Distance{.length = 0.0}.check("\"rod\""); }), "Spherical"));
+}
+
+TEST(PrescribedDistance, RefusesWhatNoActuatorCanDo) {
+  EXPECT_TRUE(has(refusal([] { Actuator{.law = actuator.law, .length = 0.0}.check("\"ram\""); }), "\"ram\": the length"));
+  EXPECT_TRUE(has(refusal([] { Actuator{.law = {.target = 1.0, .duration = 0.0}, .length = 1.0}.check("\"ram\""); }),
+                  "\"ram\": the law of time: the duration"));
+  PrescribedDistance<Window> const jump{.law = {.from = 1.0, .to = 2.0}, .length = 1.0};
+  EXPECT_TRUE(has(refusal([&] { jump.check("\"ram\""); }), "\"ram\": the law of time: its value jumps from 0 to 1 at t = 1 s"));
+}
+
+TEST(PrescribedDistance, TellsTheCornersOfItsLaw) {
+  PrescribedDistance<Ramp> const ramp{.law = {.target = 1.0, .duration = 2.0, .start = 0.5}, .length = 1.0};
+  EXPECT_EQ(ramp.corners(), (std::vector{0.5, 2.5}));
+  EXPECT_TRUE(actuator.corners().empty());
+}
+
+}  // namespace distance_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(Distance, JointLaws, distance_test::DistanceCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarDistance, JointLaws, distance_test::PlanarDistanceCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PrescribedDistance, JointLaws, distance_test::ActuatorCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrescribedDistance, JointLaws, distance_test::PlanarActuatorCase);
+}  // namespace polybody

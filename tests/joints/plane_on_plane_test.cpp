@@ -1,0 +1,39 @@
+#include <polybody/joints/plane_on_plane.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace plane_on_plane_test {
+
+struct PlaneOnPlaneCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static PlaneOnPlane geometry() { return {}; }
+  static Mate mate(Numbers& number, double) {
+    Mate mate{.d = Vec3(number(2.0), number(2.0), 0),
+              .R = exp_so3<double>(Vec3(0, 0, number(3.0))),
+              .freedoms = MatX::Zero(6, 3)};
+    mate.freedoms(0, 0) = mate.freedoms(1, 1) = mate.freedoms(5, 2) = 1.0;
+    return mate;
+  }
+};
+
+// b hovers 0.3 above the plane, tilted about a₂ by φ: b₃ = (sin φ, 0, cos φ).
+TEST(PlaneOnPlane, RowsAreTheHeightAndTheTilt) {
+  Frame<double> const b{.r = {5, -7, 0.3}, .A = exp_so3<double>(Vec3(0, 0.2, 0))};
+  EXPECT_LT((PlaneOnPlane{}.gap<double>({}, b, 0.0).g - Vec3(0.3, std::sin(0.2), 0)).norm(), 1e-15);
+}
+
+TEST(PlaneOnPlane, RefusesANormalThatIsNotAUnitVector) {
+  EXPECT_TRUE(has(refusal([] { (void)PlaneOnPlane{.normal = {1, 1, 0}}.triad(); }), "PlaneOnPlane: the normal must be a unit"));
+}
+
+}  // namespace plane_on_plane_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(PlaneOnPlane, JointLaws, plane_on_plane_test::PlaneOnPlaneCase);
+}  // namespace polybody

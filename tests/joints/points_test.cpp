@@ -1,0 +1,85 @@
+#include <polybody/joints/point_in_plane.hpp>
+#include <polybody/joints/point_on_line.hpp>
+#include <polybody/joints/prescribed_slide.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace points_test {
+
+/// b at d, turned anyhow; its point moves freely along the axes of `free`.
+Mate at(Numbers& number, Vec3 const& d, std::vector<Index> const& free) {
+  Index const n = Index(free.size());
+  Mate mate{.d = d, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, n + 3)};
+  for (Index j = 0; j < n; ++j) mate.freedoms(free[std::size_t(j)], j) = 1.0;
+  mate.freedoms.bottomRightCorner<3, 3>().setIdentity();
+  return mate;
+}
+
+struct PointOnLineCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static PointOnLine geometry() { return {}; }
+  static Mate mate(Numbers& number, double) { return at(number, {0, 0, number(2.0)}, {2}); }
+};
+
+struct PointInPlaneCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static PointInPlane geometry() { return {}; }
+  static Mate mate(Numbers& number, double) { return at(number, {number(2.0), number(2.0), 0}, {0, 1}); }
+};
+
+using Slide = PrescribedSlide<SmoothRamp>;
+Slide const slide{.law = {.target = 0.6, .duration = 4.0}};
+
+struct SlideCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static Slide geometry() { return slide; }
+  static Mate mate(Numbers& number, double t) {
+    return at(number, {number(2.0), number(2.0), slide.law(t).value}, {0, 1});
+  }
+};
+
+Frame<double> const b{.r = {0.1, 0.2, 0.3}};
+
+TEST(PointOnLine, RowsAreTheOffsetFromTheLine) {
+  EXPECT_EQ((PointOnLine{}.gap<double>({}, b, 0.0).g), Vec2(0.1, 0.2));
+}
+
+TEST(PointInPlane, RowIsTheHeightOverThePlane) {
+  EXPECT_EQ((PointInPlane{}.gap<double>({}, b, 0.0).g[0]), 0.3);
+}
+
+TEST(PrescribedSlide, RowIsWhatTheSlideLacks) {
+  PrescribedSlide<Constant> const still{.law = {.value = 0.25}};
+  EXPECT_DOUBLE_EQ((still.gap<double>({}, b, 0.0).g[0]), 0.05);
+}
+
+TEST(PrescribedSlide, TellsTheCornersOfItsLawAndRefusesAJump) {
+  PrescribedSlide<Ramp> const ramp{.law = {.target = 1.0, .duration = 2.0, .start = 0.5}};
+  EXPECT_EQ(ramp.corners(), (std::vector{0.5, 2.5}));
+  EXPECT_NO_THROW(ramp.check("\"slide\""));
+  PrescribedSlide<Window> const jump{.law = {.from = 1.0, .to = 2.0, .value = -3.0}};
+  EXPECT_TRUE(has(refusal([&] { jump.check("\"slide\""); }),
+                  "\"slide\": the law of time: its value jumps from 0 to -3 at t = 1 s"));
+}
+
+TEST(Points, RefuseAxesThatAreNotUnitVectors) {
+  EXPECT_TRUE(has(refusal([] { (void)PointOnLine{.axis = {0, 0, 0}}.triad(); }), "PointOnLine: the axis must be a unit"));
+  EXPECT_TRUE(has(refusal([] { (void)PointInPlane{.normal = {0, 2, 0}}.triad(); }), "PointInPlane: the normal must be a unit"));
+  EXPECT_TRUE(has(refusal([] { (void)Slide{.law = slide.law, .axis = {0, 2, 0}}.triad(); }), "PrescribedSlide: the axis"));
+}
+
+}  // namespace points_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(PointOnLine, JointLaws, points_test::PointOnLineCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PointInPlane, JointLaws, points_test::PointInPlaneCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PrescribedSlide, JointLaws, points_test::SlideCase);
+}  // namespace polybody

@@ -1,0 +1,169 @@
+#include <polybody/joints/cylindrical.hpp>
+#include <polybody/joints/plane_on_plane.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/prismatic.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/universal.hpp>
+#include <polybody/joints/weld.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace primitives_test {
+
+struct OrientationCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static Orientation geometry() { return {}; }
+  static Mate mate(Numbers& number, double) {
+    Mate mate{.d = number.vec<3>(), .freedoms = MatX::Zero(6, 3)};
+    mate.freedoms.topRows<3>().setIdentity();
+    return mate;
+  }
+};
+
+struct ParallelAxesCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static ParallelAxes geometry() { return {}; }
+  static Mate mate(Numbers& number, double t) {
+    Mate mate = OrientationCase::mate(number, t);
+    mate.R = exp_so3<double>(Vec3(0, 0, number(3.0)));
+    mate.freedoms.conservativeResizeLike(MatX::Zero(6, 4));
+    mate.freedoms(5, 3) = 1.0;
+    return mate;
+  }
+};
+
+// b turns about a₁ by φ, then about its own third axis by ψ.
+struct PerpendicularAxesCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static PerpendicularAxes geometry() { return {}; }
+  static Mate mate(Numbers& number, double t) {
+    Mate mate = OrientationCase::mate(number, t);
+    mate.R = exp_so3<double>(Vec3(number(3.0), 0, 0)) * exp_so3<double>(Vec3(0, 0, number(3.0)));
+    mate.freedoms.conservativeResizeLike(MatX::Zero(6, 5));
+    mate.freedoms.bottomRightCorner<3, 2>() << Vec3::UnitX(), mate.R.col(2);
+    return mate;
+  }
+};
+
+/// The frames of another geometry between the same two points, as `Model::connect` sets them up: both markers stand
+/// along its triad when they stand along `from` at the reference configuration.
+template <JointGeometry G>
+MatX maps(G const& geometry, Mat3 const& from, Frame<double> a, Frame<double> b) {
+  Mat3 const turn = from.transpose() * geometry.triad();
+  a.A *= turn;
+  b.A *= turn;
+  Gap<G::rows> const gap = geometry.template gap<double>(a, b, 0.0);
+  EXPECT_LT(gap.g.norm(), 1e-14) << G::name;
+  MatX g(G::rows, 12);
+  g << gap.Ga, gap.Gb;
+  return g;
+}
+
+/// An orthonormal basis of the rows (Gram–Schmidt, twice); a dependent row fails.
+MatX basis(MatX g) {
+  for (Index i = 0; i < g.rows(); ++i) {
+    double const before = g.row(i).norm();
+    for (int again = 0; again < 2; ++again)
+      for (Index j = 0; j < i; ++j) g.row(i) -= g.row(i).dot(g.row(j)) * g.row(j).eval();
+    EXPECT_GT(g.row(i).norm(), 1e-3 * before);
+    g.row(i).normalize();
+  }
+  return g;
+}
+
+/// A place of b against a where a joint is closed, in a's axes.
+struct Pose {
+  Vec3 d = Vec3::Zero();
+  Mat3 R = Mat3::Identity();
+};
+
+/// Where the joint is closed, it and its primitives have as many rows, and these span the same space of wrenches: equal
+/// projectors Bᵀ B.
+template <JointGeometry G, JointGeometry... Primitives>
+void expect_equal(G const& joint, Pose (*pose)(Numbers&), Primitives const&... primitives) {
+  static_assert((Primitives::rows + ...) == G::rows);
+  Numbers number;
+  for (int k = 0; k < 5; ++k) {
+    Pose const at = pose(number);
+    Frame<double> const a = number.frame();
+    Frame<double> const b{.r = a.r + a.A * at.d, .A = a.A * at.R};
+    MatX stacked(G::rows, 12);
+    Index row = 0;
+    auto const stack = [&](MatX const& g) {
+      stacked.middleRows(row, g.rows()) = g;
+      row += g.rows();
+    };
+    (stack(maps(primitives, joint.triad(), a, b)), ...);
+    MatX const one = basis(maps(joint, joint.triad(), a, b)), other = basis(stacked);
+    EXPECT_LT((one.transpose() * one - other.transpose() * other).norm(), 1e-12) << G::name;
+  }
+}
+
+Vec3 const axis = Vec3(2, -1, 2) / 3.0, across = Vec3(1, 2, 0) / std::sqrt(5.0);
+
+Mat3 turned_about(int i, Numbers& number) { return exp_so3<double>(Vec3::Unit(i) * number(3.0)); }
+
+TEST(Primitives, MakeUpARevolute) {
+  expect_equal(Revolute{.axis = axis}, [](Numbers& n) { return Pose{.R = turned_about(2, n)}; }, CoincidentPoints{},
+               ParallelAxes{.axis = axis});
+}
+
+TEST(Primitives, MakeUpAUniversal) {
+  expect_equal(Universal{.first = across, .second = axis},
+               [](Numbers& n) { return Pose{.R = turned_about(0, n) * turned_about(2, n)}; }, CoincidentPoints{},
+               PerpendicularAxes{.first = across, .second = axis});
+}
+
+TEST(Primitives, MakeUpACylindrical) {
+  expect_equal(Cylindrical{.axis = axis}, [](Numbers& n) { return Pose{.d = Vec3(0, 0, n()), .R = turned_about(2, n)}; },
+               PointOnLine{.axis = axis}, ParallelAxes{.axis = axis});
+}
+
+TEST(Primitives, MakeUpAPlaneOnPlane) {
+  expect_equal(PlaneOnPlane{.normal = axis}, [](Numbers& n) { return Pose{.d = Vec3(n(), n(), 0), .R = turned_about(2, n)}; },
+               PointInPlane{.normal = axis}, ParallelAxes{.axis = axis});
+}
+
+TEST(Primitives, MakeUpAPrismatic) {
+  expect_equal(Prismatic{.axis = axis}, [](Numbers& n) { return Pose{.d = Vec3(0, 0, n())}; }, PointOnLine{.axis = axis},
+               Orientation{});
+}
+
+TEST(Primitives, MakeUpAWeld) {
+  expect_equal(Weld{}, [](Numbers&) { return Pose{}; }, CoincidentPoints{}, Orientation{});
+}
+
+// Down to single rows.
+TEST(Primitives, MakeUpALineOfTwoPlanesAndAnOrientationOfThreeRightAngles) {
+  expect_equal(PointOnLine{.axis = axis},
+               [](Numbers& n) { return Pose{.d = Vec3(0, 0, n()), .R = exp_so3<double>(n.vec<3>(3.0))}; },
+               PointInPlane{.normal = across}, PointInPlane{.normal = axis.cross(across)});
+  expect_equal(Orientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; },
+               PerpendicularAxes{.first = {1, 0, 0}, .second = {0, 1, 0}},
+               PerpendicularAxes{.first = {0, 1, 0}, .second = {0, 0, 1}},
+               PerpendicularAxes{.first = {0, 0, 1}, .second = {1, 0, 0}});
+  expect_equal(Orientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; }, ParallelAxes{.axis = axis},
+               PerpendicularAxes{.first = across, .second = axis.cross(across)});
+}
+
+TEST(Primitives, RefuseAxesThatCannotBeMeant) {
+  EXPECT_TRUE(has(refusal([] { (void)PerpendicularAxes{.first = {0, 1, 0}}.triad(); }),
+                  "PerpendicularAxes: the two axes must be perpendicular"));
+  EXPECT_TRUE(has(refusal([] { (void)ParallelAxes{.axis = {0, 2, 0}}.triad(); }), "ParallelAxes: the axis must be a unit"));
+}
+
+}  // namespace primitives_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(Orientation, JointLaws, primitives_test::OrientationCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(ParallelAxes, JointLaws, primitives_test::ParallelAxesCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(PerpendicularAxes, JointLaws, primitives_test::PerpendicularAxesCase);
+}  // namespace polybody

@@ -1,0 +1,70 @@
+#include <polybody/joints/rack_and_pinion.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace rack_and_pinion_test {
+
+constexpr double radius = 0.6;
+
+Frame<double> pinion(double slide, double height, double angle) {
+  return {.r = {slide, height, 0}, .A = exp_so3<double>(Vec3(0, 0, angle))};
+}
+
+// The pinion rolls along, and may leave the rack across it.
+struct PlanarRackCase {
+  static constexpr bool planar = true;
+  static constexpr int world_rows = 0;
+  static RackAndPinion geometry() { return {.radius = radius}; }
+  static Mate mate(Numbers& number, double) {
+    double const angle = number(9.0);
+    Frame<double> const b = pinion(radius * angle, number(), angle);
+    Mate mate{.d = b.r, .R = b.A, .freedoms = MatX::Zero(6, 2)};
+    mate.freedoms(0, 0) = radius;
+    mate.freedoms(5, 0) = 1.0;
+    mate.freedoms(1, 1) = 1.0;
+    return mate;
+  }
+};
+
+// In space it may also move along its axis; nothing holds its tilt.
+struct RackCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static RackAndPinion geometry() { return {.radius = radius}; }
+  static Mate mate(Numbers& number, double t) {
+    Mate mate = PlanarRackCase::mate(number, t);
+    mate.freedoms.conservativeResizeLike(MatX::Zero(6, 5));
+    for (Index j = 2; j < 5; ++j) mate.freedoms(j, j) = 1.0;
+    return mate;
+  }
+};
+
+// A wheel of radius 0.5 on a floor under it: forward by s, it has turned by −s/R about z.
+TEST(RackAndPinion, RollsOnAFloorByANegativeRadius) {
+  RackAndPinion const floor{.radius = -0.5};
+  for (double const s : {0.0, 1.0, -40.0, 500.0}) {
+    EXPECT_NEAR(floor.gap<double>({}, pinion(s, 0.5, -s / 0.5), 0.0).g[0], 0.0, 1e-12) << s;
+    EXPECT_NEAR(floor.gap<double>({}, pinion(s + 0.01, 0.5, -s / 0.5), 0.0).g[0], 0.01, 1e-12) << s;
+  }
+}
+
+TEST(RackAndPinion, RefusesWhatCannotRoll) {
+  for (double const r : {0.0, double(NAN), HUGE_VAL})
+    EXPECT_TRUE(has(refusal([&] { RackAndPinion{.radius = r}.check("\"rack\""); }), "\"rack\": the radius must be finite"));
+  EXPECT_TRUE(has(refusal([] { (void)RackAndPinion{.radius = 1.0, .direction = {0, 0, 1}}.triad(); }),
+                  "RackAndPinion: the two axes must be perpendicular"));
+  EXPECT_TRUE(has(refusal([] { (void)RackAndPinion{.radius = 1.0, .direction = {2, 0, 0}}.triad(); }),
+                  "RackAndPinion: the direction must be a unit vector"));
+}
+
+}  // namespace rack_and_pinion_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(PlanarRackAndPinion, JointLaws, rack_and_pinion_test::PlanarRackCase);
+INSTANTIATE_TYPED_TEST_SUITE_P(RackAndPinion, JointLaws, rack_and_pinion_test::RackCase);
+}  // namespace polybody

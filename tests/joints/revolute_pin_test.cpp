@@ -1,0 +1,46 @@
+#include <polybody/joints/revolute_pin.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace revolute_pin_test {
+
+struct RevolutePinCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static RevolutePin geometry() { return {.distance = 0.6}; }
+  static Mate mate(Numbers& number, double) {
+    Mate mate{.d = Vec3(0, 0, 0.6), .R = exp_so3<double>(Vec3(0, 0, number(3.0))), .freedoms = MatX::Zero(6, 1)};
+    mate.freedoms(5, 0) = 1.0;
+    return mate;
+  }
+};
+
+// Thesis Eq. 3.8 by hand: b tilted about a₁ by φ, b₃ = (0, −sin φ, cos φ), d = (0.1, 0.2, 0.3).
+TEST(RevolutePin, RowsAreThoseOfTheThesis) {
+  Frame<double> const b{.r = {0.1, 0.2, 0.3}, .A = exp_so3<double>(Vec3(0.25, 0, 0))};
+  Vec<double, 5> expected;
+  expected << 0, -std::sin(0.25), 0.1, 0.2, 0.14 - 0.25;
+  EXPECT_LT((RevolutePin{.distance = 0.5}.gap<double>({}, b, 0.0).g - expected).norm(), 1e-15);
+}
+
+// What L > 0 is asked for: with the points together the fifth row is empty.
+TEST(RevolutePin, WouldHaveRankFourAtOnePoint) {
+  EXPECT_EQ((RevolutePin{.distance = 0.0}.gap<double>({}, {}, 0.0).Gb.row(4).norm()), 0.0);
+  for (double const l : {0.0, -0.1, double(NAN)})
+    EXPECT_TRUE(has(refusal([&] { RevolutePin{.distance = l}.check("\"pin\""); }), "\"pin\": its points must stand a positive"));
+}
+
+TEST(RevolutePin, RefusesAnAxisThatIsNotAUnitVector) {
+  EXPECT_TRUE(has(refusal([] { (void)RevolutePin{.distance = 1.0, .axis = {0, 0, 2}}.triad(); }), "RevolutePin: the axis"));
+}
+
+}  // namespace revolute_pin_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(RevolutePin, JointLaws, revolute_pin_test::RevolutePinCase);
+}  // namespace polybody

@@ -1,0 +1,7 @@
+// refused: numbers for another number of rows
+// A ball joint has three rows.
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/spherical.hpp>
+
+polybody::Joint<polybody::Spherical, polybody::PenaltyPerRow<5>> const joint{
+    {}, {.stiffness = polybody::Vec<double, 5>::Ones(), .damping = polybody::Vec<double, 5>::Zero()}};

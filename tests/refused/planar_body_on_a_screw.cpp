@@ -1,0 +1,11 @@
+// refused: A joint of the plane joins planar bodies
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/joints/screw.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+using Thread = Joint<Screw, Constraint>;
+
+void connect(Model<Bodies<planar::Rigid>, Joints<Thread>>& model, BodyHandle<planar::Rigid> const& body) {
+  model.connect(Thread{{.pitch = 0.1}, {}}, model.ground().at({0, 0, 0}), body.at({0, 0}));
+}

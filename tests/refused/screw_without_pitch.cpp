@@ -1,0 +1,4 @@
+// refused: Required
+#include <polybody/joints/screw.hpp>
+
+polybody::Screw screw{};
