@@ -2,12 +2,14 @@
 /// \file
 /// Small vibrations about a state of rest: with q = q₀ ⊞ δ,
 ///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0,
-/// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Shabana 2018, Ch. 4]. The rows are eliminated by a basis N of the null space
-/// of G, δ = N z, so redundant rows do no harm.
+/// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Shabana 2018, Ch. 4]. The rows are eliminated by a basis N of
+/// the null space of G, δ = N z, so redundant rows do no harm. About a steady rotation: analysis/steady_rotation.hpp.
 ///
 /// Not in polybody.hpp: Eigen's eigenvalue solvers would cost every program seconds to compile.
 
+#include <algorithm>
 #include <complex>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -41,13 +43,41 @@ MatX dense_tangent(System<S>& system, TangentCoefficients const& c, VecX const& 
   system.tangent(c, SecondOrder::included, lambda, sink);
   return sum;
 }
+
+/// A basis of the motions that rows G leave free: orthonormal, G N = 0.
+template <class = void>  // compiled where it is used
+MatX free_motions(MatX const& g) {
+  if (g.rows() == 0) return MatX::Identity(g.cols(), g.cols());
+  Eigen::ColPivHouseholderQR<MatX> qr(g.transpose());
+  qr.setThreshold(1e-10);
+  MatX const q = qr.householderQ();
+  return q.rightCols(g.cols() - qr.rank());
+}
+
+/// The smallest x of those that leave the least of A x = b; pivots below `threshold` count as zero.
+template <class = void>
+MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
+  Eigen::CompleteOrthogonalDecomposition<MatX> solver(a.rows(), a.cols());
+  solver.setThreshold(threshold);
+  solver.compute(a);
+  return solver.solve(b);
+}
+
+/// Nᵀ A N.
+template <class = void>
+MatX of_free_motions(MatX const& n, MatX const& a) {
+  MatX const an = a * n;
+  return n.transpose() * an;
+}
 }  // namespace detail
 
-/// About state x; its multipliers count (a hanging pendulum swings by them). \throws InvalidInput when x moves.
+/// About state x, which rests; its multipliers count (a hanging pendulum swings by them). A model that turns steadily is linearised
+/// with its `SteadyRotation`; about any other motion the matrices would change with time. \throws InvalidInput when x moves.
 template <class S>
 Linearisation linearise(S const& model, State const& x) {
   if (x.v.size() && x.v.cwiseAbs().maxCoeff() > 1e-9)
-    throw InvalidInput("modes: the state must be at rest; take one from equilibrium(model, x).");
+    throw InvalidInput("modes: the state must be at rest; take one from equilibrium(model, x). About a steady rotation use "
+                       "linearise(model, x, SteadyRotation{...}) of analysis/steady_rotation.hpp.");
   System<S> system(model);
   system.evaluate(x.q, x.v, x.t);
   Index const nv = system.speeds(), rows = system.rows();
@@ -57,14 +87,7 @@ Linearisation linearise(S const& model, State const& x) {
   MatX const k = detail::dense_tangent(system, {.stiffness = 1.0}, x.lambda);
   l.K = k.topLeftCorner(nv, nv);
   l.G = k.bottomLeftCorner(rows, nv);
-  if (rows == 0) {
-    l.N = MatX::Identity(nv, nv);
-  } else {
-    Eigen::ColPivHouseholderQR<MatX> qr(l.G.transpose());
-    qr.setThreshold(1e-10);
-    MatX const q = qr.householderQ();
-    l.N = q.rightCols(nv - qr.rank());
-  }
+  l.N = detail::free_motions(l.G);
   return l;
 }
 
@@ -74,13 +97,13 @@ struct Modes {
   MatX shape;      ///< (nv×k) δ by speeds, shapeᵀ M shape = 1
 };
 
-/// The `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 about x, a state of rest in equilibrium, by a dense solver: for models of up to some
-/// hundred speeds. Motions without inertia have no frequency and are left out. K is symmetrised: follower loads, whose K is not, belong to
-/// `damped_modes`. \throws InvalidInput when x moves.
-template <class S>
-Modes modes(S const& model, State const& x, Index count = 10) {
-  Linearisation const l = linearise(model, x);
-  MatX const k = l.N.transpose() * (0.5 * (l.K + l.K.transpose())) * l.N, m = l.N.transpose() * l.M * l.N;
+/// The `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver: for models of up to some hundred speeds. Motions without
+/// inertia have no frequency and are left out. K is symmetrised and D left out: follower loads, whose K is not symmetric, and models
+/// that turn, whose D is gyroscopic, belong to `damped_modes`.
+template <class = void>  // compiled where it is used
+Modes modes(Linearisation const& l, Index count = 10) {
+  MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()), m = detail::of_free_motions(l.N, l.M);
+  if (m.rows() == 0) return {};
   // motions with inertia first: m = V diag(d) Vᵀ; the others follow without delay, K₂₂ z₂ = −K₂₁ z₁
   Eigen::SelfAdjointEigenSolver<MatX> const inertia(m);
   VecX const& d = inertia.eigenvalues();
@@ -91,7 +114,7 @@ Modes modes(S const& model, State const& x, Index count = 10) {
   MatX basis = v1;
   if (still > 0) {
     MatX const k22 = v2.transpose() * k * v2, k21 = v2.transpose() * k * v1;
-    if (k22.norm() > 1e-12 * k.norm()) basis -= v2 * k22.completeOrthogonalDecomposition().solve(k21);
+    if (k22.norm() > 1e-12 * k.norm()) basis -= v2 * detail::smallest_solution(k22, k21, 1e-12);
   }
   VecX const scale = d.tail(n - still).cwiseSqrt().cwiseInverse();
   basis = basis * scale.asDiagonal();
@@ -101,6 +124,11 @@ Modes modes(S const& model, State const& x, Index count = 10) {
   out.frequency = solved.eigenvalues().head(kept).unaryExpr([](double w2) { return w2 < 0.0 ? -std::sqrt(-w2) : std::sqrt(w2); });
   out.shape = l.N * basis * solved.eigenvectors().leftCols(kept);
   return out;
+}
+/// The same about x, a state of rest in equilibrium. \throws InvalidInput when x moves.
+template <class S>
+Modes modes(S const& model, State const& x, Index count = 10) {
+  return modes(linearise(model, x), count);
 }
 
 /// Damped modes δ = Re(shape e^{s t}).
@@ -112,36 +140,53 @@ struct DampedModes {
   double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }
 };
 
-/// The `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0 about x, from the dense state matrix [0, 1; −M⁻¹K, −M⁻¹D] of the free motions.
-/// \throws InvalidInput when x moves, or when a free motion has no inertia.
-template <class S>
-DampedModes damped_modes(S const& model, State const& x, Index count = 10) {
-  Linearisation const l = linearise(model, x);
-  MatX const m = l.N.transpose() * l.M * l.N;
-  Eigen::LLT<MatX> const inertia(m);
+/// The `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0, dense. With δ = N z, the unit of time 1/τ and y = (z, ż/τ) the state
+/// matrix is A = [0, 1; −M̂⁻¹K, −M̂⁻¹D̂], M̂ = τ² M, D̂ = τ D. Solved is its inverse about s = τ, which asks for no M⁻¹,
+///   (A − 1)⁻¹ = [−Y, −Z; 1 − Y, −Z],  Y = Q⁻¹ (M̂ + D̂),  Z = Q⁻¹ M̂,  Q = M̂ + D̂ + K,  s = τ (1 + 1/μ):
+/// slow motions have its largest eigenvalues μ, so that stiff ones beside them take no digits from them. τ is a little below the
+/// lowest frequency of M z̈ + K z = 0 without its neutral motions. Those of the model come first, with an |s| of √rounding.
+/// \throws InvalidInput when a free motion has no inertia.
+template <class = void>  // compiled where it is used
+DampedModes damped_modes(Linearisation const& l, Index count = 10) {
+  MatX m = detail::of_free_motions(l.N, l.M), d = detail::of_free_motions(l.N, l.D);
+  MatX const k = detail::of_free_motions(l.N, l.K);
   Index const n = m.rows();
-  if (inertia.info() != Eigen::Success || inertia.matrixLLT().diagonal().minCoeff() <= 1e-7 * inertia.matrixLLT().diagonal().maxCoeff())
+  if (n == 0) return {};
+  Eigen::LLT<MatX> const inertia(m);
+  VecX const pivots = inertia.matrixLLT().diagonal();
+  if (inertia.info() != Eigen::Success || pivots.minCoeff() <= 1e-7 * pivots.maxCoeff())
     throw InvalidInput("damped_modes: a free motion of the model has no inertia; hold it or give it some.");
-  MatX state = MatX::Zero(2 * n, 2 * n);
-  state.topRightCorner(n, n).setIdentity();
-  state.bottomLeftCorner(n, n) = -inertia.solve(l.N.transpose() * l.K * l.N);
-  state.bottomRightCorner(n, n) = -inertia.solve(l.N.transpose() * l.D * l.N);
-  Eigen::EigenSolver<MatX> const solved(state);
+  double const slowest = detail::smallest_solution(k, m, 1e-9).norm();  // at least 1/ω²
+  double const tau = slowest > 0.0 ? 0.7 / std::sqrt(slowest) : 1.0;
+  m *= tau * tau;
+  d *= tau;
+  MatX inverse(2 * n, 2 * n);
+  inverse.topLeftCorner(n, n) = -m - d;
+  inverse.topRightCorner(n, n) = -m;
+  inverse.topRows(n) = MatX(m + d + k).partialPivLu().solve(inverse.topRows(n).eval());
+  inverse.bottomRows(n) = inverse.topRows(n);
+  inverse.bottomLeftCorner(n, n).diagonal().array() += 1.0;
+  Eigen::EigenSolver<MatX> const solved(inverse);
+  Eigen::VectorXcd const s = tau * (1.0 + solved.eigenvalues().array().inverse());
   std::vector<Index> order;
   for (Index i = 0; i < 2 * n; ++i)
-    if (solved.eigenvalues()[i].imag() >= 0.0) order.push_back(i);
-  std::sort(order.begin(), order.end(),
-            [&](Index a, Index b) { return std::abs(solved.eigenvalues()[a]) < std::abs(solved.eigenvalues()[b]); });
+    if (s[i].imag() >= 0.0) order.push_back(i);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(s[a]) < std::abs(s[b]); });
   order.resize(std::min(order.size(), std::size_t(count)));
   DampedModes out;
   out.eigenvalue.resize(Index(order.size()));
   out.shape.resize(l.N.rows(), Index(order.size()));
   Eigen::MatrixXcd const vectors = solved.eigenvectors();
   for (std::size_t i = 0; i < order.size(); ++i) {
-    out.eigenvalue[Index(i)] = solved.eigenvalues()[order[i]];
+    out.eigenvalue[Index(i)] = s[order[i]];
     out.shape.col(Index(i)) = l.N * vectors.col(order[i]).head(n);
   }
   return out;
+}
+/// The same about x. \throws InvalidInput also when x moves.
+template <class S>
+DampedModes damped_modes(S const& model, State const& x, Index count = 10) {
+  return damped_modes(linearise(model, x), count);
 }
 
 }  // namespace polybody

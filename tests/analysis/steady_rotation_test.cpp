@@ -1,0 +1,226 @@
+#include <polybody/analysis/steady_rotation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/user_force.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/spherical.hpp>
+
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace steady_rotation_test {
+
+using Pin = Joint<Revolute, Constraint>;
+using Ball = Joint<Spherical, Constraint>;
+using Drive = Joint<PrescribedAngle<Ramp>, Constraint>;
+
+/// Drag c from the ground.
+auto const drag = user_force<1>([](auto const& frames, double) {
+  using T = typename std::decay_t<decltype(frames[0].r)>::Scalar;
+  Wrench<T> w;
+  w.f = frames[0].v * T(-1.2);
+  return std::array{w};
+});
+
+// as few types as will do, for the compiler's sake
+using PlaneModel = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper, std::decay_t<decltype(drag)>>>;
+template <class B>
+using SpaceModel = Model<Bodies<B>, Joints<Pin, Ball, Drive>, Forces<SpringDamper>>;
+
+SteadyRotation about_z(double omega) { return {.angular_velocity = {0, 0, omega}}; }
+
+/// Modes about a steady rotation, without the neutral ones, slower than 1e-4 rad/s.
+std::vector<std::complex<double>> eigenvalues(Linearisation const& l) {
+  std::vector<std::complex<double>> kept;
+  for (std::complex<double> const s : damped_modes(l, 100).eigenvalue)
+    if (std::abs(s) > 1e-4) kept.push_back(s);
+  return kept;
+}
+
+/// A mass m on a spring k, c of free length l₀ whose other end is at the origin; both turn about z. In the turning frame
+///   radial ξ¨ + (c/m) ξ˙ − 2Ω η˙ + (k/m − Ω²) ξ = 0,  tangential η¨ + 2Ω ξ˙ + (N/(m r₀) − Ω²) η = 0,
+/// and the tension N = k (r₀ − l₀) = m Ω² r₀ cancels the last term: s² (s² + (c/m) s + k/m + 3Ω²) = 0. Across the plane ζ¨ + Ω² ζ = 0.
+struct Slung {
+  double const m = 2.0, k = 50.0, c = 1.2, free_length = 1.0, omega = 3.0;
+  double const radius = k * free_length / (k - m * omega * omega);
+  std::complex<double> const radial{-0.5 * c / m, std::sqrt(k / m + 3.0 * omega * omega - 0.25 * c * c / (m * m))};
+
+  template <class M, class B, class Point>
+  Linearisation turning(M model, B const& body, Point const& centre) const {
+    auto const mass = model.add(body, "mass");
+    SpringDamper const spring{.stiffness = k, .damping = c, .free_length = free_length};
+    model.apply(spring, model.ground().at({0, 0, 0}), mass.at(centre));
+    State x = model.reference_state();
+    relative_equilibrium(model, x, about_z(omega));
+    EXPECT_NEAR(x.q.template head<2>().norm(), radius, 1e-10);
+    return linearise(model, x, about_z(omega));
+  }
+};
+
+TEST(SteadyRotation, OfAMassOnASpringInThePlane) {
+  Slung const slung;
+  auto const s =
+      eigenvalues(slung.turning(PlaneModel(), planar::Rigid(slung.m, 0.3, Placement::planar(0.9, 0.9)), Vec2(0, 0)));
+  ASSERT_EQ(s.size(), 1u);
+  EXPECT_LT(std::abs(s[0] - slung.radial), 1e-8);
+}
+
+// In space also the body's own turning: a sphere whose spin is tilted once keeps it, and seen from the frame the spin goes round
+// with Ω.
+TEST(SteadyRotation, OfAMassOnASpringInSpace) {
+  Slung const slung;
+  Rigid<> const sphere(slung.m, 0.3 * Mat3::Identity(), Placement::at({0.9, 0.9, 0}, {0.3, -0.5, 0.7}));
+  auto const s = eigenvalues(slung.turning(SpaceModel<Rigid<>>(), sphere, Vec3(0, 0, 0)));
+  ASSERT_EQ(s.size(), 3u);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(std::abs(s[i] - std::complex<double>(0.0, slung.omega)), 1e-6);
+  EXPECT_LT(std::abs(s[2] - slung.radial), 1e-8);
+}
+
+// A mass at rest on the axis, spring k and drag c from the ground: in the world s = −c/2m ± i ω_d; a frame that turns with Ω sees the
+// two whirls at |ω_d ∓ Ω|, with the same decay. This asks for ∂f/∂v Dw in K and for the Coriolis terms in D.
+TEST(SteadyRotation, ShiftsWhirlsByItsOwnRate) {
+  double const m = 2.0, k = 50.0, c = 1.2, omega = 3.0;
+  PlaneModel model;
+  auto const mass = model.add(planar::Rigid(m, 0.3), "mass");
+  model.apply(SpringDamper{.stiffness = k, .free_length = 0.0}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)));
+  model.apply(drag, mass.at(Vec2(0, 0)));
+  auto const s = eigenvalues(linearise(model, model.reference_state(), about_z(omega)));
+  double const decay = 0.5 * c / m, swing = std::sqrt(k / m - decay * decay);
+  ASSERT_EQ(s.size(), 2u);
+  EXPECT_LT(std::abs(s[0] - std::complex<double>(-decay, swing - omega)), 1e-9);
+  EXPECT_LT(std::abs(s[1] - std::complex<double>(-decay, swing + omega)), 1e-9);
+}
+
+/// A hub driven about z, and a thin uniform rod of length L hinged to it at distance e from the axis.
+struct Blade {
+  SpaceModel<Rigid<>> model;
+  State x;
+  Blade(double omega, double e, double length, Vec3 const& hinge, Gravity const& gravity = {}) : model(gravity) {
+    auto const hub = model.add(Rigid<>(1.0, Mat3::Identity()), "hub");
+    double const j = 3.0 * length * length / 12.0;
+    auto const rod = model.add(Rigid<>(3.0, Vec3(0.0, j, j).asDiagonal(), Placement::at({e + 0.5 * length, 0, 0})), "rod");
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "shaft");
+    model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}}, {}}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "drive");
+    model.connect(Pin{{.axis = hinge}, {}}, hub.at({e, 0, 0}), rod.at({-0.5 * length, 0, 0}), "hinge");
+    x = model.reference_state();
+  }
+};
+
+// A piece dm of the rod at s from the hinge is pulled away from the axis by Ω² (e + s) dm. Flapping by β its lever is s β, so that
+// ω² = Ω² ∫(e + s) s ds/∫s² ds = Ω² (1 + 3e/2L); lagging, the pull turns with the radius, and only its part from e is left:
+// ω² = Ω² 3e/2L.
+TEST(SteadyRotation, OfAHingedBlade) {
+  double const omega = 7.0, e = 0.3, length = 2.0;
+  for (bool const flaps : {true, false}) {
+    Blade blade(omega, e, length, flaps ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
+    relative_equilibrium(blade.model, blade.x, about_z(omega));
+    DampedModes const m = damped_modes(linearise(blade.model, blade.x, about_z(omega)));
+    ASSERT_EQ(m.eigenvalue.size(), 1);
+    EXPECT_NEAR(m.frequency(0), omega * std::sqrt((flaps ? 1.0 : 0.0) + 1.5 * e / length), 1e-9);
+    EXPECT_NEAR(m.damping_ratio(0), 0.0, 1e-10);
+  }
+}
+
+/// A body that spins freely about the second of its principal axes, held at its centre of mass away from the origin.
+template <class B>
+std::vector<std::complex<double>> spinning(Vec3 const& inertia, double omega) {
+  Placement const place = Placement::at({1, 2, -1}, {0.4, -0.9, 1.7});
+  SpaceModel<B> model;
+  auto const body = model.add(B(2.0, inertia.asDiagonal(), place), "body");
+  model.connect(Ball{}, model.ground().at(place.origin), body.at({0, 0, 0}), "ball");
+  SteadyRotation const rotation{.angular_velocity = omega * place.axes.col(1), .point = place.origin};
+  return eigenvalues(linearise(model, rotating_state(model, model.reference_state(), rotation), rotation));
+}
+
+// Euler's equations about a spin Ω along axis 1: I₀ w₀˙ = (I₁ − I₂) Ω w₂, I₂ w₂˙ = (I₀ − I₁) Ω w₀, so
+// s² = −Ω² (I₁ − I₀)(I₁ − I₂)/(I₀ I₂); the other motion is a constant tilt of the momentum, which goes round with Ω. About the middle
+// axis the spin is unstable.
+template <class B>
+void spins() {
+  double const omega = 5.0;
+  auto const stable = spinning<B>({1.0, 2.0, 1.5}, omega);
+  ASSERT_EQ(stable.size(), 2u);
+  EXPECT_LT(std::abs(stable[0] - std::complex<double>(0.0, omega * std::sqrt(1.0 * 0.5 / 1.5))), 1e-8);
+  EXPECT_LT(std::abs(stable[1] - std::complex<double>(0.0, omega)), 1e-8);
+
+  auto const tumbling = spinning<B>({1.0, 1.5, 2.0}, omega);
+  ASSERT_EQ(tumbling.size(), 3u);
+  double const rate = omega * std::sqrt(0.5 * 0.5 / 2.0);
+  EXPECT_NEAR(std::max(tumbling[0].real(), tumbling[1].real()), rate, 1e-8);
+  EXPECT_NEAR(std::min(tumbling[0].real(), tumbling[1].real()), -rate, 1e-8);
+  EXPECT_NEAR(std::abs(tumbling[0].imag()) + std::abs(tumbling[1].imag()), 0.0, 1e-8);
+  EXPECT_LT(std::abs(tumbling[2] - std::complex<double>(0.0, omega)), 1e-8);
+}
+TEST(SteadyRotation, OfAFreeBody) { spins<Rigid<>>(); }
+TEST(SteadyRotation, OfAFreeBodyInEulerParameters) { spins<Rigid<EulerParameters>>(); }
+
+// Conical pendulum of a point mass: at the angle ϑ from the vertical cos ϑ = g/(l Ω²). From the effective potential
+// Ω²sin⁴ϑ₀/(2 sin²ϑ) − (g/l) cos ϑ: ω² = Ω² (1 + 3 cos² ϑ). Gravity turns about its own line, so the rotation is steady.
+TEST(SteadyRotation, OfAConicalPendulum) {
+  double const g = 9.81, length = 0.8, omega = 4.5;
+  SpaceModel<Rigid<>> model{Gravity{0, 0, -g}};
+  Placement const start = Placement::at(length * Vec3(std::sin(0.6), 0.0, -std::cos(0.6)), {0, -0.6, 0});
+  auto const bob = model.add(Rigid<>(1.0, 1e-9 * Mat3::Identity(), start), "bob");
+  model.connect(Ball{}, model.ground().at({0, 0, 0}), bob.at({0, 0, length}), "ball");
+  State x = model.reference_state();
+  relative_equilibrium(model, x, about_z(omega));
+  double const cosine = g / (length * omega * omega);
+  EXPECT_NEAR(x.q[2], -length * cosine, 1e-8);
+  auto const s = eigenvalues(linearise(model, x, about_z(omega)));
+  auto const nearest = *std::min_element(s.begin(), s.end(), [&](auto a, auto b) {
+    double const expected = omega * std::sqrt(1.0 + 3.0 * cosine * cosine);
+    return std::abs(a - std::complex<double>(0.0, expected)) < std::abs(b - std::complex<double>(0.0, expected));
+  });
+  EXPECT_LT(std::abs(nearest - std::complex<double>(0.0, omega * std::sqrt(1.0 + 3.0 * cosine * cosine))), 1e-6);
+}
+
+// At rest both linearisations are one.
+TEST(SteadyRotation, OfZeroIsRest) {
+  Blade blade(0.0, 0.3, 2.0, {0, 1, 0}, Gravity{0, 0, -9.81});
+  blade.x.q.tail<7>() << 0.3, 0.0, -1.0, std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0;  // hanging
+  relative_equilibrium(blade.model, blade.x, about_z(0.0));
+  EXPECT_NEAR(damped_modes(linearise(blade.model, blade.x, about_z(0.0))).frequency(0), std::sqrt(1.5 * 9.81 / 2.0), 1e-9);
+  EXPECT_NEAR(modes(linearise(blade.model, blade.x, about_z(0.0))).frequency[0], modes(blade.model, blade.x).frequency[0], 1e-10);
+}
+
+TEST(SteadyRotation, RefusesWhatIsNotSteady) {
+  Blade level(7.0, 0.3, 2.0, {0, 1, 0});
+  SteadyRotation const right = about_z(7.0);
+  State start = level.x;
+  EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, right); }), "do not balance as the model turns"));
+  EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, about_z(6.9)); }), "joint \"drive\" does not turn with the model"));
+  SteadyRotation const tilted{.angular_velocity = {0, 7, 0}};
+  EXPECT_TRUE(has(refusal([&] { relative_equilibrium(level.model, start, tilted); }), "joint \"shaft\" does not turn"));
+  EXPECT_EQ(start.q, level.x.q);
+  State const moving = rotating_state(level.model, start, right);
+  EXPECT_TRUE(has(refusal([&] { damped_modes(level.model, moving); }), "linearise(model, x, SteadyRotation{...})"));
+
+  // across the axis gravity pulls the rod to and fro
+  Blade across(7.0, 0.3, 2.0, {0, 0, 1}, Gravity{-1.0, 0, 0});
+  relative_equilibrium(across.model, across.x, right);
+  EXPECT_TRUE(has(refusal([&] { linearise(across.model, across.x, right); }), "do not turn with the model"));
+
+  PlaneModel plane;
+  plane.add(planar::Rigid(1.0, 1.0), "disc");
+  EXPECT_TRUE(has(refusal([&] { rotating_state(plane, plane.reference_state(), {.angular_velocity = {1, 0, 1}}); }),
+                  "body \"disc\" lives in the plane"));
+}
+
+// A spring softer than m Ω² holds the mass nowhere.
+TEST(SteadyRotation, FindsNothingBeyondTheCriticalSpeed) {
+  PlaneModel model;
+  auto const mass = model.add(planar::Rigid(2.0, 0.3, Placement::planar(1.2, 0.0)), "mass");
+  model.apply(SpringDamper{.stiffness = 50.0, .free_length = 1.0}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)));
+  State x = model.reference_state();
+  EXPECT_TRUE(has(message_of<NewtonStalled>([&] { relative_equilibrium(model, x, about_z(5.1)); }), "there may be none"));
+}
+
+}  // namespace steady_rotation_test

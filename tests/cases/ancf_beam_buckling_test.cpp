@@ -1,0 +1,30 @@
+// CASES S9c with the fully parameterised ANCF beam on its elastic line: what is pulled in its stiff plane leaves it.
+
+#include <polybody/bodies/ancf_beam.hpp>
+
+#include "support/buckling.hpp"
+#include "support/solver_instances.hpp"
+
+using namespace polybody;
+
+namespace ancf_beam_buckling_test {
+
+using namespace buckling;
+using Beam = AncfBeam<>;
+
+// 1.08751842 N and 1.08408817 N [C]; published 1.088 [P]. Elements are of order 2: three a leg come to 2.2 %, six to a quarter
+// of that, both together to the exact frame.
+TEST(AncfRightAngleFrame, BucklesAtTheExactForce) {
+  struct Case {
+    double J, force;
+  };
+  for (auto const& [J, force] : {Case{thin_strip, 1.08751842}, Case{thick_strip, 1.08408817}}) {
+    double const a = critical_force_of_the_frame<Beam>(3, J), b = critical_force_of_the_frame<Beam>(6, J);
+    double const limit = (4.0 * b - a) / 3.0;
+    EXPECT_NEAR(a, force, 0.025 * force);
+    EXPECT_NEAR((a - force) / (b - force), 4.0, 0.1);
+    EXPECT_NEAR(limit, force, 1e-4 * force);
+  }
+}
+
+}  // namespace ancf_beam_buckling_test

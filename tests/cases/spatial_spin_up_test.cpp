@@ -1,0 +1,41 @@
+// CASES D2 by bodies that live in space.
+
+#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/rigid.hpp>
+
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/weld.hpp>
+
+#include "support/solver_instances.hpp"
+#include "support/spin_up.hpp"
+
+using namespace polybody;
+
+namespace spatial_spin_up_test {
+
+using Cable = AncfCable<EngineeringStrain>;
+using Pin = Joint<Revolute, Constraint>;
+using Fixed = Joint<Weld, Constraint>;
+
+/// The arm on a driven hub of zero radius, whose own mass plays no part; a cable is clamped by a pin along its tangent.
+template <class B>
+void spins_up(Index n, double part) {
+  Model<Bodies<Rigid<>, Cable, Lrvf<>>, Joints<Pin, Fixed, spin_up::Drive>> model;  // one type for both bodies
+  auto const arm = model.add(B::from(spin_up::arm(), n), "arm");
+  auto const hub = model.add(Rigid<>(1.0, Mat3::Identity()), "hub").at(Vec3(0, 0, 0));
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), hub, "axle");
+  model.connect(spin_up::drive(), model.ground().at({0, 0, 0}), hub, "drive");
+  if constexpr (B::observes == Observes::frame) {
+    model.connect(Fixed{}, hub, arm.at(0.0), "clamp");
+  } else {
+    model.connect(Pin{Revolute{.axis = Vec3::UnitX()}, {}}, hub, arm.at(0.0), "clamp");
+  }
+  spin_up::follows(model, arm.at(10.0), part);
+}
+
+// Tolerances of D2.
+TEST(SpinUpInSpace, CableOfEightElements) { spins_up<Cable>(8, 1e-3); }
+TEST(SpinUpInSpace, LrvfOfTenElements) { spins_up<Lrvf<>>(10, 1e-2); }
+
+}  // namespace spatial_spin_up_test

@@ -1,0 +1,157 @@
+// CASES E2 (a): frequencies of a thick beam in space, in which shear and rotary inertia count [C; some meshes P]. In a square
+// section every bending mode comes twice and no other does, so pairs are told from single modes: torsion and stretch.
+
+#include <polybody/analysis/modes.hpp>
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/lrvf.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/weld.hpp>
+
+using namespace polybody;
+
+namespace timoshenko_spatial_test {
+
+using Clamp = Joint<Weld, Constraint>;
+using Ball = Joint<Spherical, Constraint>;
+using Line = AncfBeam<ElasticLine>;
+using Cured = AncfBeam<Continuum<>>;
+/// One type of model for all bodies: it is compiled once.
+using Beams = Model<Bodies<Lrvf<>, Line, Cured>, Joints<Clamp, Ball>>;
+
+enum class Ends { pinned_pinned, clamped_free, free_free };
+
+/// Cowper's shear factor for ν = 0.3 is E2's k, and J is Saint-Venant's.
+Bar thick() {
+  return {.length = 2.0,
+          .section = Rectangle{.height = 0.4, .width = 0.4},
+          .material = Material{.density = 7850, .young = 1e9, .poisson = 0.3},
+          .placement = Placement::at({1, 2, 3}, {0.4, -0.9, 1.7})};
+}
+
+struct Frequencies {
+  std::vector<double> bending;  ///< each once
+  std::vector<double> single;   ///< torsion and stretch
+};
+
+/// Ascending [rad/s], without those of rigid motions: all six, or the spin between balls.
+template <class B>
+Frequencies frequencies(Index n, Ends ends) {
+  Beams model;
+  auto const beam = model.add(B::from(thick(), n), "beam");
+  Placement const place = thick().placement;
+  if (ends == Ends::clamped_free) model.connect(Clamp{}, model.ground().at(place), beam.at(0.0));
+  if (ends == Ends::pinned_pinned) {
+    model.connect(Ball{}, model.ground().at(place.origin), beam.at(0.0));
+    model.connect(Ball{}, model.ground().at(place.origin + 2.0 * place.axes.col(0)), beam.at(2.0));
+  }
+  VecX const w = modes(model, model.reference_state(), 16).frequency;
+  Index i = ends == Ends::free_free ? 6 : ends == Ends::pinned_pinned ? 1 : 0;
+  EXPECT_LT(w.head(i).cwiseAbs().sum(), 1e-2);
+  Frequencies out;
+  while (i + 1 < w.size()) {
+    bool const twins = w[i + 1] - w[i] < 1e-6 * w[i];
+    (twins ? out.bending : out.single).push_back(w[i]);
+    i += twins ? 2 : 1;
+  }
+  return out;
+}
+
+struct Row {
+  Ends ends;
+  double bending[2];
+};
+Row const rows[] = {{Ends::pinned_pinned, {95.6339808811, 332.234513637}},
+                    {Ends::clamped_free, {35.1471170634, 189.630725571}},
+                    {Ends::free_free, {204.165814718, 477.907465926}}};
+
+/// Elements are of order 2: what n and 2n extrapolate to.
+double limit(double coarse, double fine) { return (4.0 * fine - coarse) / 3.0; }
+
+template <class B>
+void bends(Index n) {
+  for (Row const& row : rows) {
+    Frequencies const coarse = frequencies<B>(n, row.ends), fine = frequencies<B>(2 * n, row.ends);
+    for (std::size_t i = 0; i < 2; ++i) {
+      double const exact = row.bending[i], c = coarse.bending[i], f = fine.bending[i];
+      EXPECT_LT(std::abs(c - exact), 0.02 * exact) << int(row.ends) << ' ' << i;
+      EXPECT_NEAR((c - exact) / (f - exact), 4.0, 0.1) << int(row.ends) << ' ' << i;
+      EXPECT_NEAR(limit(c, f), exact, 5e-5 * exact) << int(row.ends) << ' ' << i;
+    }
+  }
+}
+TEST(ThickBeamInSpace, LrvfConvergesToTimoshenkosFrequencies) { bends<Lrvf<>>(16); }
+TEST(ThickBeamInSpace, AncfElasticLineConvergesToTimoshenkosFrequencies) { bends<Line>(12); }
+TEST(ThickBeamInSpace, AncfContinuumConvergesToTimoshenkosFrequencies) { bends<Cured>(12); }
+
+// Exudyn's ANCFBeam [P], mesh by mesh. Its rotary inertia is spread over the element, ours is lumped at the nodes: of a wave of
+// k h = iπ/n that has 1 and (2 + cos kh)/3 of the rotary energy, which is s to 1 in the kinetic, s = (I/A) k²/(1 + k² EI/GA)².
+// So our ω is lower by s/(1 + s) (1 − cos kh)/6, to leading order.
+TEST(ThickBeamInSpace, LrvfHasThePublishedFrequenciesOfEveryMesh) {
+  BarConstants const c = constants(thick());
+  struct {
+    Index n;
+    double bending[2];
+  } const published[] = {{8, {97.361214, 353.279185}}, {32, {95.740589, 333.500724}}};
+  for (auto const& mesh : published) {
+    Frequencies const f = frequencies<Lrvf<>>(mesh.n, Ends::pinned_pinned);
+    for (std::size_t i = 0; i < 2; ++i) {
+      double const k = double(i + 1) * std::numbers::pi / 2.0, slope = 1.0 / (1.0 + k * k * c.EI / c.GA);
+      double const s = c.EI / c.EA * k * k * slope * slope;
+      double const lower = s / (1.0 + s) * (1.0 - std::cos(2.0 * k / double(mesh.n))) / 6.0;
+      EXPECT_NEAR(f.bending[i] / mesh.bending[i], 1.0 - lower, 0.25 * lower) << mesh.n << ' ' << i;
+    }
+  }
+}
+
+// Torsion of a clamped beam is half of a free one's, by symmetry.
+double const axial = 280.320625133;  ///< clamped–free
+/// Free–free: E2 rounds J to 0.8436·2I; the square's is 0.1405770150 h⁴ (S7).
+double const torsion = 319.349808602 * std::sqrt(6 * 0.1405770150 / 0.8436);
+
+/// Of the free beam, by n and 2n elements.
+template <class B>
+double free_torsion(Index n) {
+  return limit(frequencies<B>(n, Ends::free_free).single[0], frequencies<B>(2 * n, Ends::free_free).single[0]);
+}
+
+TEST(ThickBeamInSpace, LrvfTwistsAndStretches) {
+  Frequencies const c = frequencies<Lrvf<>>(16, Ends::clamped_free), f = frequencies<Lrvf<>>(32, Ends::clamped_free);
+  EXPECT_NEAR(limit(c.single[0], f.single[0]), 0.5 * torsion, 1e-6 * torsion);
+  EXPECT_NEAR(limit(c.single[1], f.single[1]), axial, 1e-6 * axial);
+  EXPECT_NEAR(free_torsion<Lrvf<>>(16), torsion, 1e-6 * torsion);
+}
+
+/// The frame of a section follows r_y, which carries Iρ, and r_z with its own Iρ hangs on it by the section's shear stiffness
+/// GA: where ω₀ is the rod's, ½ ω² (1 + 1/(1 − Iρ ω²/GA)) = ω₀². With a = Iρ ω₀²/GA, that is ω²/ω₀² = (1 + a − √(1 + a²))/a,
+/// less than 1 by a/2.
+double twisting(double omega0) {
+  BarConstants const c = constants(thick());
+  double const a = c.rotary_inertia * omega0 * omega0 / c.GA;
+  return omega0 * std::sqrt((1.0 + a - std::sqrt(1.0 + a * a)) / a);
+}
+TEST(ThickBeamInSpace, AncfElasticLineTwistsAndStretches) {
+  Frequencies const c = frequencies<Line>(12, Ends::clamped_free), f = frequencies<Line>(24, Ends::clamped_free);
+  EXPECT_NEAR(limit(c.single[0], f.single[0]), twisting(0.5 * torsion), 1e-5 * torsion);
+  EXPECT_NEAR(c.single[1], axial, 1e-8 * axial);
+  EXPECT_NEAR(free_torsion<Line>(12), twisting(torsion), 1e-5 * torsion);
+}
+
+// A solid's sections contract where it stretches: their inertia slows it down, by (1 + ν² r² k²)^(−1/2) if nothing resists a
+// contraction that varies along the beam [Rayleigh & Love], r² = 2I/A, k = π/2L; shear does resist it [Bishop 1952]. A weld
+// holds the frame that follows r_y, not r_z: the free beam's torsion is compared.
+TEST(ThickBeamInSpace, AncfContinuumTwistsAndStretches) {
+  BarConstants const c = constants(thick());
+  double const k = 0.25 * std::numbers::pi, love = axial / std::sqrt(1.0 + 0.09 * 2.0 * c.EI / c.EA * k * k);
+  double const stretch = frequencies<Cured>(12, Ends::clamped_free).single[1];
+  EXPECT_GT(stretch, love);
+  EXPECT_LT(stretch, axial);
+  EXPECT_NEAR(free_torsion<Cured>(12), torsion, 1e-5 * torsion);
+}
+
+}  // namespace timoshenko_spatial_test

@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// CASES E3: a cantilever of unit ρA, EI and L, clamped at the axis to a hub that turns steadily.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/steady_rotation.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/weld.hpp>
+
+namespace polybody {
+
+/// Frequencies of flap and chord together, ascending, for three speeds; inextensible Euler–Bernoulli.
+struct RotatingCantilever {
+  double omega;
+  double frequency[6];
+};
+inline constexpr RotatingCantilever rotating_cantilevers[] = {
+    {2.0, {3.621797, 4.137320, 22.526311, 22.614922, 62.241059, 62.273184}},
+    {6.0, {4.263225, 7.360373, 26.129042, 26.809082, 66.413436, 66.683914}},
+    {12.0, {5.427049, 13.170150, 35.636976, 37.603112, 78.704925, 79.614478}}};
+
+/// Stretch and shear so stiff that they do not show: what a frequency loses by them is of the order of Ω²/EA and ω EI/GA.
+inline Bar blade() {
+  return {.length = 1.0, 
+          .constants = BarConstants{.EA = 1e8, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e8, .GJ = 1.0, .rotary_inertia = 1e-8},
+          .placement = Placement::at({1, 2, 3}, {0.4, -0.9, 1.7})};
+}
+
+/// The six lowest frequencies of the body made of `blade()`, turning steadily about an axis askew.
+template <class B>
+Vec6 frequencies_in_rotation(B const& body, double omega) {
+  using Pin = Joint<Revolute, Constraint>;
+  using Drive = Joint<PrescribedAngle<Ramp>, Constraint>;
+  using Clamp = Joint<Weld, Constraint>;
+  Model<Bodies<Rigid<>, B>, Joints<Pin, Drive, Clamp>> model;
+  Placement const root = blade().placement;
+  Vec3 const axis = root.axes.col(2);
+  auto const hub = model.add(Rigid<>(1.0, Mat3::Identity(), root), "hub");
+  auto const arm = model.add(body, "blade");
+  model.connect(Pin{{.axis = axis}, {}}, model.ground().at(root), hub.at({0, 0, 0}), "shaft");
+  model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}, axis}, {}}, model.ground().at(root), hub.at({0, 0, 0}), "drive");
+  if constexpr (B::observes == Observes::frame)
+    model.connect(Clamp{}, hub.at({0, 0, 0}), arm.at(0.0), "clamp");
+  else
+    model.connect(Pin{{.axis = root.axes.col(0)}, {}}, hub.at({0, 0, 0}), arm.at(0.0), "clamp");
+  State x = model.reference_state();
+  SteadyRotation const rotation{.angular_velocity = omega * axis, .point = root.origin};
+  relative_equilibrium(model, x, rotation, {.tolerance = 1e-9});
+  DampedModes const modes = damped_modes(linearise(model, x, rotation), 6);
+  Vec6 found;
+  for (Index i = 0; i < 6; ++i) {
+    EXPECT_LT(std::abs(modes.damping_ratio(i)), 1e-6) << omega << ' ' << i;
+    found[i] = modes.frequency(i);
+  }
+  return found;
+}
+
+}  // namespace polybody
