@@ -30,9 +30,15 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/forces/user_force.hpp>
+#include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
+#include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/hht_alpha.hpp>
+#include <polybody/integrators/newmark.hpp>
+#include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/integrators/symplectic.hpp>
 #include <polybody/io/csv.hpp>
 #include <polybody/io/plot.hpp>
 #include <polybody/io/progress.hpp>

@@ -4,9 +4,12 @@
 
 #include <polybody/analysis/simulate.hpp>
 #include <polybody/forces/user_force.hpp>
+#include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
+#include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/integrators/symplectic.hpp>
 
 #include "support/chain.hpp"
 #include "support/refusal.hpp"
@@ -89,6 +92,8 @@ TEST(Failures, ForceThatIsNoNumberNamesItsBody) {
   Poisoned().expect_named(RungeKutta4<Projection>{});
   Poisoned().expect_named(DormandPrince<Projection>{});
   Poisoned().expect_named(CentralDifference<Projection>{});
+  Poisoned().expect_named(AdamsBashforthMoulton<CoordinatePartitioning>{});
+  Poisoned().expect_named(Rattle{});
 }
 
 TEST(Failures, DoubledJointIsNamed) {

@@ -12,9 +12,12 @@
 #include <polybody/bodies/planar/ancf_cable.hpp>
 #include <polybody/bodies/planar/lrvf.hpp>
 #include <polybody/forces/spring_damper.hpp>
+#include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
+#include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
@@ -166,9 +169,14 @@ void expect_none() {
   EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{}), 0);
   EXPECT_EQ((in_steps<Case, DenseLu>(GeneralizedAlpha{})), 0);
   EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{.stabilised = true}), 0);
   EXPECT_EQ(in_steps<Case>(RungeKutta4<Projection>{}), 0);
   EXPECT_EQ(in_steps<Case>(CentralDifference<Projection>{}), 0);
   EXPECT_EQ(in_steps<Case>(DormandPrince<Projection>{}), 0);
+  EXPECT_EQ(in_steps<Case>(AdamsBashforthMoulton<Projection>{.relative_tolerance = 1.0, .absolute_tolerance = 1.0}), 0);
+  EXPECT_EQ(in_steps<Case>(RungeKutta4<CoordinatePartitioning>{}), 0);
+  EXPECT_EQ(in_steps<Case>(Rattle{}), 0);
+  EXPECT_EQ(in_steps<Case>(RungeKutta4<Baumgarte>{.stabilisation = {.alpha = 5.0, .beta = 5.0}}), 0);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace polybody {
 /// Explicit central differences in their one-step form,
 ///   v½ = v₀ + ½h v̇₀,  q₁ = q₀ ⊞ h v½,  v̇₁ = accelerations(q₁, v½ + ½h v̇₀),  v₁ = v½ + ½h v̇₁,
 /// of order two, stable for h < 2/ω_max [Hughes 2000, §9.1].
-template <class Stabilisation = NoStabilisation>
+template <class Stabilisation = WithoutRows>
 struct CentralDifference {
   static constexpr char const* name = "CentralDifference";
   static constexpr int order = 2;
@@ -18,19 +18,21 @@ struct CentralDifference {
   struct Workspace {
     VecX q, v, a, dq, lambda;
     ForwardDynamics<M, Solver> forward;
+    typename Stabilisation::Scratch scratch;
     explicit Workspace(System<M>& s)
         : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), a(v), dq(v),
-          lambda(VecX::Zero(s.rows())), forward(s) {}
+          lambda(VecX::Zero(s.rows())), forward(s), scratch(s) {}
   };
 
-  void check() const {}
+  void check() const { stabilisation.check(); }
   template <class Solver, class M>
   Workspace<M, Solver> workspace(System<M>& system) const {
     return Workspace<M, Solver>(system);
   }
   template <class M, class W>
   void start(System<M>& system, State& x, double, W& w) const {
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    stabilisation.start(w.scratch);
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda, stabilisation.feedback());
   }
   template <class M, class W>
   StepReport step(System<M>& system, State& x, double h, W& w) const {
@@ -38,10 +40,10 @@ struct CentralDifference {
     w.dq = h * w.v;
     system.plus(x.q, w.dq, w.q);
     w.v += 0.5 * h * x.a;  // predicted, for forces that depend on speed
-    stabilisation.apply(system, w.forward, w.q, w.v, x.t + h);
-    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda);
+    stabilisation.apply(system, w.forward, w.scratch, w.q, w.v, x.t + h);
+    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda, stabilisation.feedback());
     w.v = x.v + 0.5 * h * (x.a + w.a);
-    if (system.rows() > 0) w.forward.project_velocities(system, w.q, w.v, x.t + h);
+    stabilisation.velocities(system, w.forward, w.scratch, w.q, w.v, x.t + h);
     x.q.swap(w.q);
     x.v.swap(w.v);
     x.a.swap(w.a);

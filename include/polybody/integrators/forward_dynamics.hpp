@@ -10,12 +10,18 @@
 
 namespace polybody {
 
+/// What accelerations feed back of a violation of the rows: Φ̈ + rate Φ̇ + position Φ = 0.
+struct RowFeedback {
+  double rate = 0.0;      ///< [1/s]
+  double position = 0.0;  ///< [1/s²]
+};
+
 template <class M, LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:
   explicit ForwardDynamics(System<M>& system)
       : zero_a_(VecX::Zero(system.speeds())), zero_lambda_(VecX::Zero(system.rows())),
-        r_(VecX::Zero(system.speeds())), phi_(VecX::Zero(system.rows())), rhs_(VecX::Zero(system.size())),
+        r_(VecX::Zero(system.speeds())), phi_(VecX::Zero(system.rows())), open_(phi_), rhs_(VecX::Zero(system.size())),
         x_(VecX::Zero(system.size())), delta_(VecX::Zero(system.speeds())),
         next_(VecX::Zero(system.coordinates())) {
     PatternSink pattern;
@@ -23,13 +29,22 @@ class ForwardDynamics {
     solver_.analyse(system.size(), pattern.blocks);
   }
 
-  /// M a + Gᵀλ = f, G a = −γ at (q, v, t). \throws LinearSolverSingular, NonFinite.
-  void accelerations(System<M>& system, VecX const& q, VecX const& v, double t, VecX& a, VecX& lambda) {
+  /// M a + Gᵀλ = f, G a = −γ − what is fed back, at (q, v, t). \throws LinearSolverSingular, NonFinite.
+  void accelerations(System<M>& system, VecX const& q, VecX const& v, double t, VecX& a, VecX& lambda,
+                     RowFeedback const& feedback = {}) {
     system.evaluate(q, v, t);
     factor(system);
     system.residual(zero_a_, zero_lambda_, r_);
     system.require_finite_force(r_);
     system.acceleration_bias(phi_);
+    if (feedback.rate != 0.0) {
+      system.violation_rate(open_);
+      phi_ += feedback.rate * open_;
+    }
+    if (feedback.position != 0.0) {
+      system.violation(open_);
+      phi_ += feedback.position * open_;
+    }
     system.require_finite_rows(phi_);
     solve(system, -1.0, -1.0);
     a = x_.head(system.speeds());
@@ -60,6 +75,20 @@ class ForwardDynamics {
     system.plus(q, delta_, next_);
     q.swap(next_);
     return before;
+  }
+
+  /// Factors the matrix at (q, v, t) for `least_change`.
+  void hold(System<M>& system, VecX const& q, VecX const& v, double t) {
+    system.evaluate(q, v, t);
+    factor(system);
+  }
+
+  /// out = −M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ φ: the smallest change (in the norm of M) with G out = −φ, with M and G as of the last
+  /// factorisation.
+  void least_change(System<M>& system, VecX const& phi, VecX& out) {
+    phi_ = phi;
+    solve(system, 0.0, -1.0);
+    out = x_.head(system.speeds());
   }
 
   /// P b: the part of b that the rows force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t).
@@ -110,7 +139,7 @@ class ForwardDynamics {
 
   Solver solver_;
   bool factored_ = false;
-  VecX zero_a_, zero_lambda_, r_, phi_, rhs_, x_, delta_, next_;
+  VecX zero_a_, zero_lambda_, r_, phi_, open_, rhs_, x_, delta_, next_;
 };
 
 }  // namespace polybody

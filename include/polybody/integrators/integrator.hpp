@@ -14,6 +14,7 @@ struct StepReport {
   int factorisations = 0;   ///< of the tangent or the mass matrix
   int evaluations = 0;      ///< of the forces
   int rejected = 0;         ///< trial steps thrown away by the step control
+  int order = 0;            ///< at which the step was taken, of a method that chooses it; else 0
   double contraction = 0.0; ///< last contraction rate of Newton's method
 };
 

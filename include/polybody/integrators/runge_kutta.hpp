@@ -11,17 +11,25 @@ namespace polybody {
 namespace detail {
 
 /// Stages of an explicit method: positions, speeds and their rates.
-template <class M, class Solver, int stages>
+template <class M, class Solver, class Stabilisation, int stages>
 struct RungeKuttaWorkspace {
   std::array<VecX, stages> position_rate, acceleration;
   VecX delta, v, q, a, lambda, error, v_error;
   ForwardDynamics<M, Solver> forward;
+  typename Stabilisation::Scratch scratch;
+  RowFeedback feedback;  ///< of the run
 
   explicit RungeKuttaWorkspace(System<M>& s)
       : delta(VecX::Zero(s.speeds())), v(delta), q(VecX::Zero(s.coordinates())), a(delta),
-        lambda(VecX::Zero(s.rows())), error(delta), v_error(delta), forward(s) {
+        lambda(VecX::Zero(s.rows())), error(delta), v_error(delta), forward(s), scratch(s) {
     position_rate.fill(delta);
     acceleration.fill(delta);
+  }
+
+  void start(System<M>& system, State& x, Stabilisation const& stabilisation) {
+    stabilisation.start(scratch);
+    feedback = stabilisation.feedback();
+    forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda, feedback);
   }
 
   /// Rates at x + h Σ row[j] k_j into stage i.
@@ -30,7 +38,7 @@ struct RungeKuttaWorkspace {
     combine(x, h, row, i);
     system.plus(x.q, delta, q);
     system.local_rate(delta, v, position_rate[std::size_t(i)]);
-    forward.accelerations(system, q, v, x.t + c * h, acceleration[std::size_t(i)], lambda);
+    forward.accelerations(system, q, v, x.t + c * h, acceleration[std::size_t(i)], lambda, feedback);
   }
 
   /// delta, v = h Σ_{j<count} weights[j] k_j (plus v₀).
@@ -46,11 +54,10 @@ struct RungeKuttaWorkspace {
   }
 
   /// Projects the combined result and makes it the state at t + h.
-  template <class Stabilisation>
   void accept(System<M>& system, State& x, double h, Stabilisation const& stabilisation) {
     system.plus(x.q, delta, q);
-    stabilisation.apply(system, forward, q, v, x.t + h);
-    forward.accelerations(system, q, v, x.t + h, a, lambda);
+    stabilisation.apply(system, forward, scratch, q, v, x.t + h);
+    forward.accelerations(system, q, v, x.t + h, a, lambda, feedback);
     x.q.swap(q);
     x.v.swap(v);
     x.a.swap(a);
@@ -62,7 +69,7 @@ struct RungeKuttaWorkspace {
 }  // namespace detail
 
 /// The classical method of order four.
-template <class Stabilisation = NoStabilisation>
+template <class Stabilisation = WithoutRows>
 struct RungeKutta4 {
   static constexpr char const* name = "RungeKutta4";
   static constexpr int order = 4;
@@ -70,14 +77,14 @@ struct RungeKutta4 {
 
   Stabilisation stabilisation = {};
 
-  void check() const {}
+  void check() const { stabilisation.check(); }
   template <class Solver, class M>
   auto workspace(System<M>& system) const {
-    return detail::RungeKuttaWorkspace<M, Solver, 4>(system);
+    return detail::RungeKuttaWorkspace<M, Solver, Stabilisation, 4>(system);
   }
   template <class M, class W>
   void start(System<M>& system, State& x, double, W& w) const {
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.start(system, x, stabilisation);
   }
   template <class M, class W>
   StepReport step(System<M>& system, State& x, double h, W& w) const {
@@ -93,7 +100,7 @@ struct RungeKutta4 {
 };
 
 /// The pair of order 5(4) with step control [Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, §II.4–5].
-template <class Stabilisation = NoStabilisation>
+template <class Stabilisation = WithoutRows>
 struct DormandPrince {
   static constexpr char const* name = "DormandPrince";
   static constexpr int order = 5;
@@ -109,15 +116,16 @@ struct DormandPrince {
     require_positive(relative_tolerance, "DormandPrince: the relative tolerance");
     require_positive(absolute_tolerance, "DormandPrince: the absolute tolerance");
     require_positive(smallest_step, "DormandPrince: the smallest step");
+    stabilisation.check();
   }
   template <class Solver, class M>
   auto workspace(System<M>& system) const {
-    return detail::RungeKuttaWorkspace<M, Solver, 7>(system);
+    return detail::RungeKuttaWorkspace<M, Solver, Stabilisation, 7>(system);
   }
   template <class M, class W>
   void start(System<M>& system, State& x, double, W& w) const {
     check();
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.start(system, x, stabilisation);
   }
 
   /// Takes at most h, less where the error asks for it. \throws StepTooSmall.

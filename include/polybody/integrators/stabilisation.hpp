@@ -1,28 +1,78 @@
 #pragma once
 /// \file
-/// How an explicit step keeps to the rows.
+/// How an explicit step keeps to the rows. A policy is a value with options:
+///   policy.check();                                         throws for options that cannot be meant
+///   Policy::Scratch scratch(system);                        its memory, allocated once
+///   policy.start(scratch);                                  at the start of a run: earlier steps are forgotten
+///   policy.feedback()                                       what the accelerations feed back
+///   policy.apply(system, forward, scratch, q, v, t);        positions and velocities after a step, back to the rows
+///   policy.velocities(system, forward, scratch, q, v, t);   the velocities alone
 
 #include <polybody/integrators/integrator.hpp>
 
 namespace polybody {
 
-/// None: for models whose joints bring no rows.
-struct NoStabilisation {
-  static constexpr bool accepts_rows = false;
+/// What policies have in common that need no memory and correct nothing.
+struct NoCorrection {
+  struct Scratch {
+    template <class M>
+    explicit Scratch(System<M> const&) {}
+  };
+  void check() const {}
+  void start(Scratch&) const {}
+  RowFeedback feedback() const { return {}; }
   template <class M, class Solver>
-  void apply(System<M>&, ForwardDynamics<M, Solver>&, VecX&, VecX&, double) const {}
+  void apply(System<M>&, ForwardDynamics<M, Solver>&, Scratch&, VecX&, VecX&, double) const {}
+  template <class M, class Solver>
+  void velocities(System<M>&, ForwardDynamics<M, Solver>&, Scratch&, VecX const&, VecX&, double) const {}
+};
+
+/// Where none is named: for models whose joints bring no rows.
+struct WithoutRows : NoCorrection {
+  static constexpr bool accepts_rows = false;
+};
+
+/// The augmented equations alone, Φ̈ = 0 [thesis Eq. 3.2]. What a step leaves of Φ̇ stays, and Φ drifts off as Φ̇ t: to show
+/// that, or for runs short enough.
+struct NoStabilisation : NoCorrection {
+  static constexpr bool accepts_rows = true;
+};
+
+/// The accelerations obey Φ̈ + 2α Φ̇ + β² Φ = 0: with α = β a violation dies away as e^{−αt} [Baumgarte 1972]. It is damped, not
+/// removed, and the step must resolve 1/α.
+struct Baumgarte {
+  static constexpr bool accepts_rows = true;
+  using Scratch = NoCorrection::Scratch;
+  Required<double> alpha;  ///< [1/s]
+  Required<double> beta;   ///< [1/s]
+
+  void check() const {
+    require_positive(alpha, "Baumgarte: alpha");
+    require_positive(beta, "Baumgarte: beta");
+  }
+  void start(Scratch&) const {}
+  RowFeedback feedback() const { return {.rate = 2.0 * alpha, .position = beta * beta}; }
+  template <class M, class Solver>
+  void apply(System<M>&, ForwardDynamics<M, Solver>&, Scratch&, VecX&, VecX&, double) const {}
+  template <class M, class Solver>
+  void velocities(System<M>&, ForwardDynamics<M, Solver>&, Scratch&, VecX const&, VecX&, double) const {}
 };
 
 /// After every step the positions are brought back to Φ = 0 by Gauss–Newton and the velocities to Φ̇ = 0, both
 /// by the smallest change in the norm of M [Lubich 1991; Eich-Soellner & Führer 1998, §5.3].
 struct Projection {
   static constexpr bool accepts_rows = true;
+  using Scratch = NoCorrection::Scratch;
   double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
   int max_iterations = 10;
 
+  void check() const { require_positive(tolerance, "Projection: the tolerance"); }
+  void start(Scratch&) const {}
+  RowFeedback feedback() const { return {}; }
+
   /// \throws NewtonStalled when the positions cannot be brought back.
   template <class M, class Solver>
-  void apply(System<M>& system, ForwardDynamics<M, Solver>& forward, VecX& q, VecX& v, double t) const {
+  void apply(System<M>& system, ForwardDynamics<M, Solver>& forward, Scratch&, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
     double const enough = tolerance * (1.0 + q.cwiseAbs().maxCoeff());
     for (int k = 0;; ++k) {
@@ -31,6 +81,10 @@ struct Projection {
         throw NewtonStalled("Projection: the positions cannot be brought back to the joints at t = " +
                             number(t) + " s. Take a smaller step.");
     }
+    forward.project_velocities(system, q, v, t);
+  }
+  template <class M, class Solver>
+  void velocities(System<M>& system, ForwardDynamics<M, Solver>& forward, Scratch&, VecX const& q, VecX& v, double t) const {
     forward.project_velocities(system, q, v, t);
   }
 };

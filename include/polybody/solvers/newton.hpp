@@ -14,6 +14,7 @@ struct NewtonOptions {
   int max_iterations = 20;
   double refactor_above = 0.3;   ///< contraction θ above which the factorisation is renewed
   bool always_refactor = false;  ///< full Newton
+  bool foretell = true;          ///< stop on what θ tells of the next correction, not on the last one itself
 };
 
 enum class NewtonResult { converged, diverged, singular, not_finite };
@@ -84,7 +85,7 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
     before = norm;
     double const rate = std::min(theta, 0.99);
     bool const small = norm <= 0.1;  // rounding no longer contracts
-    if (options.always_refactor ? norm <= 1.0 : small || (theta < 1.0 && rate / (1.0 - rate) * norm <= 1.0))
+    if (options.always_refactor || !options.foretell ? norm <= 1.0 : small || (theta < 1.0 && rate / (1.0 - rate) * norm <= 1.0))
       return report;
   }
   report.result = NewtonResult::diverged;

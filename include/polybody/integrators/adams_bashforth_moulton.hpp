@@ -1,0 +1,202 @@
+#pragma once
+#include <polybody/integrators/adams_history.hpp>
+#include <polybody/integrators/coordinate_rate.hpp>
+#include <polybody/integrators/stabilisation.hpp>
+
+namespace polybody {
+
+/// Predictor and corrector of Adams with variable order k = 1 … 12 and step, in the mode PECE [Shampine & Gordon 1975;
+/// Hairer, Nørsett & Wanner 1993, §III.5]. Of y = (q, v), in divided differences D_j of the past of y˙ (`AdamsHistory`) and with
+/// T_j = h + t₀ − t₋ⱼ:
+///   p = y₀ + Σ_{j<k} c_j D_j,   D*₀ = y˙(p),  D*ⱼ₊₁ = (D*ⱼ − D_j)/T_j,   y₁ = p + c_k D*_k,
+/// with the error of order j taken as |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. y₁ is of order k + 1. Two evaluations a step, one more for
+/// each step refused. Coordinates on a manifold are stepped as they stand, q˙ by `CoordinateRate`, and normalised by ⊞ 0.
+template <class Stabilisation = WithoutRows>
+struct AdamsBashforthMoulton {
+  static constexpr char const* name = "AdamsBashforthMoulton";
+  static constexpr int order = AdamsHistory::highest;  ///< the highest
+  static constexpr bool accepts_rows = Stabilisation::accepts_rows;
+  static constexpr bool controls_step = true;
+
+  double relative_tolerance = 1e-8;
+  double absolute_tolerance = 1e-10;
+  double smallest_step = 1e-12;  ///< that may be chosen [s]
+  int max_order = order;
+  Stabilisation stabilisation = {};
+
+  /// \throws InvalidInput for tolerances and steps that are not positive, or a highest order outside [1, 12].
+  void check() const {
+    require_positive(relative_tolerance, "AdamsBashforthMoulton: the relative tolerance");
+    require_positive(absolute_tolerance, "AdamsBashforthMoulton: the absolute tolerance");
+    require_positive(smallest_step, "AdamsBashforthMoulton: the smallest step");
+    if (max_order < 1 || max_order > order)
+      throw InvalidInput("AdamsBashforthMoulton: max_order must lie in [1, 12], but is " + std::to_string(max_order) + ".");
+    stabilisation.check();
+  }
+
+  template <class M, class Solver>
+  struct Workspace {
+    VecX y, f, correction;  ///< of (q, v)
+    VecX raw, q, v, a, lambda, zero;
+    CoordinateRate<M> coordinate_rate;
+    ForwardDynamics<M, Solver> forward;
+    typename Stabilisation::Scratch scratch;
+
+    explicit Workspace(System<M>& s)
+        : y(VecX::Zero(s.coordinates() + s.speeds())), f(y), correction(y), raw(VecX::Zero(s.coordinates())), q(raw),
+          v(VecX::Zero(s.speeds())), a(v), lambda(VecX::Zero(s.rows())), zero(v), coordinate_rate(s), forward(s), scratch(s) {}
+
+    /// y into q, normalised, and v.
+    void split(System<M> const& system) {
+      raw = y.head(raw.size());
+      v = y.tail(v.size());
+      system.plus(raw, zero, q);
+    }
+    /// y˙ at (q, v, t) into f.
+    void rates(System<M>& system, double t, RowFeedback const& feedback) {
+      forward.accelerations(system, q, v, t, a, lambda, feedback);
+      coordinate_rate(system, q, v, f.head(q.size()));
+      f.tail(a.size()) = a;
+    }
+  };
+  template <class Solver, class M>
+  Workspace<M, Solver> workspace(System<M>& system) const {
+    return Workspace<M, Solver>(system);
+  }
+
+  template <class M, class W>
+  void start(System<M>& system, State& x, double, W& w) const {
+    check();
+    stabilisation.start(w.scratch);
+    w.q = x.q;
+    w.v = x.v;
+    w.rates(system, x.t, stabilisation.feedback());
+    x.a = w.a;
+    x.lambda = w.lambda;
+    AdamsHistory::reset(x.memory, w.f);
+  }
+
+  /// Takes at most h, less where the error asks for it. \throws StepTooSmall.
+  template <class M, class W>
+  StepReport step(System<M>& system, State& x, double h, W& w) const {
+    AdamsHistory history(x.memory, w.y.size());
+    RowFeedback const feedback = stabilisation.feedback();
+    auto const age = history.ages();
+    int const known = int(history.known());
+    int k = std::min(int(history.order()), max_order);
+    bool rising = history.rising() != 0.0;
+    StepReport report;
+    Errors e;
+    for (;;) {
+      auto const c = AdamsHistory::weights(h, age);
+      predict(history, c, k, x, w);
+      w.split(system);
+      w.rates(system, x.t + h, feedback);
+      report.evaluations += 1;
+      e = correct(history, c, age, h, k, known, x, w);
+      if (e.here <= 1.0) break;
+      ++report.rejected;
+      if (known > 1) rising = false;
+      if (!std::isfinite(e.here) || report.rejected > 2) {
+        k = 1;
+        h *= std::isfinite(e.here) ? std::min(0.5, std::sqrt(0.5 / e.here)) : 0.1;
+      } else {
+        if (e.prefer_lower(k)) --k;
+        h *= 0.5;
+      }
+      if (!(h >= smallest_step))
+        throw StepTooSmall("AdamsBashforthMoulton: the error asks for a step below " + number(smallest_step) + " s at t = " +
+                           number(x.t) + " s. The model is stiff or jumps here: use an implicit integrator or name the corner.");
+    }
+    w.y += w.correction;
+    w.split(system);
+    stabilisation.apply(system, w.forward, w.scratch, w.q, w.v, x.t + h);
+    w.rates(system, x.t + h, feedback);
+    report.evaluations += 1;
+    report.factorisations = report.evaluations;
+    report.taken = h;
+    report.order = k;
+    report.next = std::max(choose(e, h, k, known, rising), smallest_step);
+    history.push(h, w.f);
+    history.order() = k;
+    history.rising() = rising;
+    x.q.swap(w.q);
+    x.v.swap(w.v);
+    x.a.swap(w.a);
+    x.lambda.swap(w.lambda);
+    x.t += h;
+    return report;
+  }
+
+ private:
+  /// Errors over the tolerance at orders k − 2, k − 1, k and k + 1; infinite where the past does not reach that far.
+  struct Errors {
+    double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;
+    /// The lower orders do as well [Shampine & Gordon 1975].
+    bool prefer_lower(int k) const { return k > 2 ? std::max(two_below, below) <= here : k == 2 && below <= 0.5 * here; }
+  };
+
+  template <class W>
+  void predict(AdamsHistory const& history, std::array<double, order + 2> const& c, int k, State const& x, W& w) const {
+    w.y.head(x.q.size()) = x.q;
+    w.y.tail(x.v.size()) = x.v;
+    for (int j = 0; j < k; ++j) {
+      double const* const d = history.difference(j);
+      for (Index i = 0; i < w.y.size(); ++i) w.y[i] += c[std::size_t(j)] * d[i];
+    }
+  }
+
+  /// c_k D*_k into w.correction, and the errors: means over q and over v, each relative to its largest entry.
+  template <class W>
+  Errors correct(AdamsHistory const& history, std::array<double, order + 2> const& c, std::array<double, order + 2> const& age,
+                 double h, int k, int known, State const& x, W& w) const {
+    std::array<double, 4> sum{};
+    Index const nq = x.q.size(), n = w.y.size();
+    double const in_q = share(x.q, w.q), in_v = share(x.v, w.v);
+    for (Index i = 0; i < n; ++i) {
+      double d = w.f[i];
+      for (int j = 0; j <= std::min(k + 1, known); ++j) {  // d is D*_j
+        if (j >= k - 2) sum[std::size_t(j - k + 2)] += (i < nq ? in_q : in_v) * d * d;
+        if (j == k) w.correction[i] = c[std::size_t(k)] * d;
+        if (j < known) d = (d - history.difference(j)[i]) / (h + age[std::size_t(j)]);
+      }
+    }
+    auto const error = [&](int j) {
+      if (j < 1) return 0.0;
+      if (j > known) return std::numeric_limits<double>::infinity();
+      std::size_t const i = std::size_t(j);
+      return std::abs(c[i] - c[i - 1] * (h + age[i - 1])) * std::sqrt(0.5 * sum[std::size_t(j - k + 2)]);
+    };
+    return {error(k - 2), error(k - 1), error(k), k < order ? error(k + 1) : std::numeric_limits<double>::infinity()};
+  }
+  /// Of an entry's square in the mean square of the error over its tolerance.
+  double share(VecX const& before, VecX const& now) const {
+    if (now.size() == 0) return 0.0;
+    double const scale =
+        absolute_tolerance + relative_tolerance * std::max(now.cwiseAbs().maxCoeff(), before.cwiseAbs().maxCoeff());
+    return 1.0 / (scale * scale * double(now.size()));
+  }
+
+  /// The next order into k, and the next step. While the order rises from the start it goes up with every step, and the step
+  /// doubles; then the order goes where the error is least, and the step doubles, stays or shrinks as that error asks.
+  double choose(Errors const& e, double h, int& k, int known, bool& rising) const {
+    double error = e.here;
+    bool const higher = k > 1 ? e.above < error && error < std::max(e.two_below, e.below) : e.above < 0.5 * error;
+    if (e.prefer_lower(k)) {
+      error = e.below;
+      --k;
+      rising = false;
+    } else if (rising && k < max_order) {
+      ++k;
+      return 2.0 * h;
+    } else if (k < max_order && known > k && higher) {
+      error = e.above;
+      ++k;
+    }
+    if (std::ldexp(error, k + 1) <= 0.5) return 2.0 * h;
+    if (error <= 0.5) return h;
+    return h * std::clamp(std::pow(0.5 / error, 1.0 / (k + 1)), 0.5, 0.9);
+  }
+};
+
+}  // namespace polybody

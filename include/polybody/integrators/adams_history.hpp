@@ -1,0 +1,79 @@
+#pragma once
+#include <array>
+
+#include <polybody/math/quadrature.hpp>
+#include <polybody/system/state.hpp>
+
+namespace polybody {
+
+/// The past of y˙ = f(t, y) as divided differences D_j = f[t₀, t₋₁, …, t₋ⱼ] over the last points, y of n entries. It stands in
+/// `State::memory`, so a copy of a state carries it along:
+///   [D₀ … D₁₂ | lengths of the last 12 steps, the last one first | points known | order | 1 while the order still rises].
+class AdamsHistory {
+ public:
+  static constexpr int highest = 12;  ///< order
+
+  /// Only f at the present point, order 1.
+  static void reset(VecX& memory, VecX const& f) {
+    memory.setZero((highest + 1) * f.size() + highest + 3);
+    memory.head(f.size()) = f;
+    memory.tail<3>().setOnes();
+  }
+
+  /// Of a state after `reset`. \throws InvalidInput for another.
+  AdamsHistory(VecX& memory, Index n) : memory_(memory), n_(n) {
+    if (memory.size() != (highest + 1) * n + highest + 3)
+      throw InvalidInput("This state has no memory of a run: call start before step.");
+  }
+
+  double* difference(int j) const { return memory_.data() + j * n_; }
+  double& known() const { return memory_[memory_.size() - 3]; }
+  double& order() const { return memory_[memory_.size() - 2]; }
+  double& rising() const { return memory_[memory_.size() - 1]; }
+
+  /// t₀ − t₋ⱼ for j < `known`, 0 beyond.
+  std::array<double, highest + 2> ages() const {
+    std::array<double, highest + 2> age{};
+    for (int j = 1; j < int(known()); ++j) age[std::size_t(j)] = age[std::size_t(j - 1)] + length(j - 1);
+    return age;
+  }
+
+  /// The point a step h later, where y˙ is f, becomes the present one: D′₀ = f, D′ⱼ₊₁ = (D′ⱼ − Dⱼ)/(h + t₀ − t₋ⱼ).
+  void push(double h, VecX const& f) {
+    auto const age = ages();
+    int const points = int(known());
+    for (Index c = 0; c < n_; ++c) {
+      double carry = f[c];
+      for (int j = 0; j <= std::min(points, highest); ++j) {
+        double& d = difference(j)[c];
+        double const next = j < points ? (carry - d) / (h + age[std::size_t(j)]) : 0.0;
+        d = carry;
+        carry = next;
+      }
+    }
+    for (int j = highest - 1; j > 0; --j) length(j) = length(j - 1);
+    length(0) = h;
+    known() = std::min(points, highest) + 1;
+  }
+
+  /// c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ, j up to 13: by the rule of Gauss that is exact for degree 13. All terms are positive.
+  static std::array<double, highest + 2> weights(double h, std::array<double, highest + 2> const& age) {
+    std::array<double, highest + 2> c{};
+    for (GaussPoint const& p : gauss<7>) {
+      double term = p.weight * h;
+      for (std::size_t j = 0; j < c.size(); ++j) {
+        c[j] += term;
+        term *= p.xi * h + age[j];
+      }
+    }
+    return c;
+  }
+
+ private:
+  double& length(int j) const { return memory_[(highest + 1) * n_ + j]; }
+
+  VecX& memory_;
+  Index n_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,255 @@
+#pragma once
+/// \file
+/// The family of generalised-α on Lie groups for index-3 equations [Arnold & Brüls 2007; Brüls, Cardona & Arnold 2012]:
+///   M v̇₁ = f₁ − Gᵀλ₁,  Φ(q₁) = 0,
+///   (1 − α_m) a₁ + α_m a₀ = (1 − α_f) v̇₁ + α_f v̇₀,
+///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
+/// One Newton unknown y = Δa₁ with Δq = βh² y, Δv = γh y, Δv̇ = (1 − α_m)/(1 − α_f) y; with the rows divided
+/// by βh² every entry of the tangent keeps the size of M and G for any h.
+/// Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ in the four coefficients only.
+///
+/// Stabilised, a step keeps the rows of the speeds too, Φ̇(q₁, v₁) = 0, by a second set of multipliers μ [Gear, Gupta &
+/// Leimkuhler 1985; Arnold, Brüls & Cardona 2015]:
+///   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁) − M⁻¹(q₀) Gᵀ(q₀) μ).
+/// λ then answers Φ̇ = 0 and μ answers Φ = 0: Newton's method takes the first pair through the tangent, the second
+/// through [M, Gᵀ; G, 0] at q₀, and each sees the other through the next right-hand side.
+
+#include <polybody/integrators/newton_failure.hpp>
+#include <polybody/integrators/step_history.hpp>
+
+namespace polybody {
+
+/// A member of the family: its coefficients, and how Newton's method is to solve its steps.
+struct AlphaMethod {
+  char const* name;
+  double alpha_m, alpha_f, gamma, beta;
+  double tolerance;
+  NewtonOptions newton;
+  bool start_correction;
+  bool second_order_terms;
+  bool stabilised;
+
+  template <class M, class Solver>
+  struct Workspace {
+    VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
+    VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
+    VecX back, rate;  ///< of a stabilised step: what μ moves, and a vector by rows
+    Solver solver;
+    ForwardDynamics<M, Solver> forward;
+    bool factored = false;
+    bool second_order = false;
+    double theta = 1.0;
+    double h_factored = 0.0;
+    int age = 0;  ///< steps that the factorisation has served
+
+    explicit Workspace(System<M>& s)
+        : v0(VecX::Zero(s.speeds())), a0(v0), q(VecX::Zero(s.coordinates())), v(v0), vd(v0), a(v0),
+          lambda(VecX::Zero(s.rows())), dq(v0), r(v0), phi(lambda), rhs(VecX::Zero(s.size())), y(rhs), jerk(v0),
+          ahead(v0), back(v0), rate(lambda), forward(s) {}
+
+    void analyse(System<M>& s, SecondOrder second) {
+      PatternSink pattern;
+      s.tangent({1.0, 1.0, 1.0}, second, lambda, pattern);
+      solver.analyse(s.size(), pattern.blocks);
+      second_order = second == SecondOrder::included;
+      factored = false;
+    }
+  };
+
+  template <class Solver, class M>
+  Workspace<M, Solver> workspace(System<M>& system) const {
+    Workspace<M, Solver> w(system);
+    w.analyse(system, second_order_terms ? SecondOrder::included : SecondOrder::omitted);
+    return w;
+  }
+
+  /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
+  template <class M, class Solver>
+  void start(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    StepHistory::reset(x);
+    w.factored = false;
+    if (start_correction && jerk_at_start(system, x, h, w)) StepHistory(x).pretend(x, w.jerk, h);
+    // once here, so that a solver that changes its order does not do so within a step
+    system.evaluate(x.q, x.v, x.t);
+    (void)refactor(system, h, x.lambda, w);
+  }
+
+  template <class M, class Solver>
+  StepReport step(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    StepHistory const history(x);
+    w.v0 = x.v;
+    w.a0 = history.own();
+    double const shifted = history.shifted();  // the length for which v and a stand off; 0 after a start
+    if (start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
+        (shifted == 0.0 || h * w.jerk.norm() <= 0.5 * x.a.norm()))  // else the step does not resolve it
+      correct(system, x, shifted, h, w);
+    return advance(system, x, h, w);
+  }
+
+ private:
+  /// Tangent and factorisation for steps of h where `system` was evaluated last. −1, or the unknown without a pivot.
+  template <class M, class Solver>
+  Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w) const {
+    double const mass = (1.0 - alpha_m) / (1.0 - alpha_f);
+    w.h_factored = h;
+    w.age = 0;
+    return write_and_factor(w.solver, [&](Solver& sink) {
+      system.tangent({mass, h * gamma, beta * h * h}, w.second_order ? SecondOrder::included : SecondOrder::omitted,
+                     lambda, sink);
+    });
+  }
+
+  /// One step from x; x changes only when Newton converged.
+  template <class M, class Solver>
+  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, bool careful = false) const {
+    double const am = alpha_m, af = alpha_f, g = gamma, b = beta, s = b * h * h;
+    double const mass = (1.0 - am) / (1.0 - af);
+    Index const nv = system.speeds(), rows = system.rows();
+    StepHistory history(x);
+    if (careful) {
+      w.vd = x.a;
+      w.lambda = x.lambda;
+    } else {
+      history.extrapolate(x, h, w.vd, w.lambda);
+    }
+    w.a = (af * x.a + (1.0 - af) * w.vd - am * w.a0) / (1.0 - am);
+    w.v = w.v0 + h * ((1.0 - g) * w.a0 + g * w.a);
+    w.dq = h * w.v0 + h * h * ((0.5 - b) * w.a0 + b * w.a);
+    bool const two_sets = stabilised && rows > 0;
+    if (two_sets) w.forward.hold(system, x.q, x.v, x.t);
+    if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+
+    struct Problem {
+      AlphaMethod const& method;
+      System<M>& system;
+      State const& x;
+      Workspace<M, Solver>& w;
+      double h, s, g, mass, look_ahead;
+      Index nv, rows;
+      bool two_sets;
+      Index bad = -1;
+
+      bool evaluate() {
+        system.plus(x.q, w.dq, w.q);
+        system.evaluate(w.q, w.v, x.t + h);
+        system.residual(w.vd, w.lambda, w.r);
+        system.violation(w.phi);
+        w.rhs.head(nv) = -w.r;
+        if (two_sets) {
+          system.violation_rate(w.rate);
+          w.rhs.tail(rows) = w.rate / -(h * g);
+        } else {
+          w.rhs.tail(rows) = w.phi / -s;
+        }
+        return w.rhs.allFinite();
+      }
+      bool refactor() {
+        double const ahead = std::min(look_ahead * w.age, 4.0) * h;
+        if (ahead > 0.0) {
+          w.ahead = w.dq + ahead * w.v;
+          system.plus(x.q, w.ahead, w.q);
+          system.evaluate(w.q, w.v, x.t + h);
+        }
+        bad = method.refactor(system, h, w.lambda, w);
+        return bad < 0;
+      }
+      double solve() {
+        w.solver.solve(w.rhs, w.y);
+        bool const finite = w.y.allFinite();
+        if (two_sets && finite) {
+          w.back = s * w.y.head(nv);
+          system.rows_times(w.back, w.rate);
+          w.phi += w.rate;
+          w.forward.least_change(system, w.phi, w.back);
+        }
+        double const n = std::sqrt(double(std::max<Index>(nv, 1)));
+        double const size = 1.0 + w.vd.norm() / n;
+        double const rounding = 30.0 * std::numeric_limits<double>::epsilon() *
+                                (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
+        double const change = w.y.head(nv).norm() + (two_sets ? w.back.norm() / s : 0.0);
+        return finite ? change / n / (method.tolerance * size + rounding)
+                      : std::numeric_limits<double>::quiet_NaN();
+      }
+      void apply() {
+        auto const da = w.y.head(nv);
+        w.a += da;
+        w.vd += mass * da;
+        w.v += h * g * da;
+        w.dq += s * da;
+        if (two_sets) w.dq += w.back;
+        w.lambda += w.y.tail(rows);
+      }
+    };
+    NewtonOptions options = newton;
+    options.always_refactor = options.always_refactor || careful;
+    // what μ moves is large and gone at once: how it shrinks tells nothing of the rest
+    options.foretell = options.foretell && !two_sets;
+    // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
+    Problem problem{*this, system, x, w, h, s, g, mass, options.always_refactor ? 0.0 : 0.4, nv, rows, two_sets};
+    NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
+    if (report.result != NewtonResult::converged && report.result != NewtonResult::singular && !careful) {
+      // try again with every term in the tangent, full Newton, and from the start without extrapolation
+      if (!w.second_order) w.analyse(system, SecondOrder::included);
+      w.factored = false;
+      return advance(system, x, h, w, true);
+    }
+    if (report.result != NewtonResult::converged) detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
+    // the last correction moved dq: bring q to it
+    system.plus(x.q, w.dq, w.q);
+    ++w.age;
+    history.push(x, h, w.a);
+    x.q.swap(w.q);
+    x.v.swap(w.v);
+    x.a.swap(w.vd);
+    x.lambda.swap(w.lambda);
+    x.t += h;
+    return {h, h, report.iterations, report.factorisations, report.iterations, 0, 0, report.theta};
+  }
+
+  /// The method's a and v stand off those of the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12) (Δ = α_m − α_f,
+  /// C = 1/6 − β − Δ/2, P the part that the rows force); start there, and follow it when h changes. The defect of
+  /// a step is h³ (C v̈ + [v, v̇]/12): q(t + h) = q ⊞ (h v + ½h² v̇ + h³(v̈/6 + [v, v̇]/12)), and the rows undo it.
+  /// [derived from Arnold & Brüls 2007, Lemma 1; the bracket as in Arnold, Brüls & Cardona 2015]
+  template <class M, class Solver>
+  void correct(System<M>& system, State const& x, double h_old, double h_new, Workspace<M, Solver>& w) const {
+    double const delta = alpha_m - alpha_f, c = 1.0 / 6.0 - beta - 0.5 * delta;
+    w.a0 += delta * (h_new - h_old) * w.jerk;
+    if (system.rows() == 0 || stabilised) return;  // μ moves no speeds
+    // [v, v̇]/12: rates in coordinates ⊞ are v + ½[δ, v] + even terms of δ
+    w.dq = h_new * x.v;
+    system.local_rate(w.dq, x.a, w.v);
+    w.dq = -w.dq;
+    system.local_rate(w.dq, x.a, w.a);
+    w.jerk = c * w.jerk + (w.v - w.a) / (12.0 * h_new);
+    w.forward.constrained_part(system, x.q, x.v, x.t, w.jerk, w.v);
+    w.v0 += (h_new * h_new - h_old * h_old) * w.v;
+  }
+
+  /// q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. False where
+  /// the two disagree, or where following q⃛ itself for h would change the acceleration by as much as q⃛ does
+  /// (ωh above 1.7 in an oscillator: after an impulse the stiff part carries q⃛). Then the motion is not
+  /// resolved by steps of h and a correction would be noise.
+  template <class M, class Solver>
+  bool jerk_at_start(System<M>& system, State const& x, double h, Workspace<M, Solver>& w) const {
+    w.jerk.setZero();
+    auto const acceleration_after = [&](double e, VecX& out) {
+      w.dq = e * x.v + 0.5 * e * e * x.a + e * e * e / 6.0 * w.jerk;
+      w.v = x.v + e * x.a + 0.5 * e * e * w.jerk;
+      system.plus(x.q, w.dq, w.q);
+      w.forward.accelerations(system, w.q, w.v, x.t + e, out, w.lambda);
+    };
+    VecX half = x.a, full = x.a, quarter = x.a, followed = x.a;
+    acceleration_after(0.25 * h, quarter);
+    acceleration_after(0.5 * h, half);
+    acceleration_after(h, full);
+    VecX const fine = (4.0 * quarter - half - 3.0 * x.a) / (0.5 * h);
+    VecX const coarse = (4.0 * half - full - 3.0 * x.a) / h;
+    w.jerk = fine;
+    if (!((fine - coarse).norm() <= 0.5 * fine.norm()) || !fine.allFinite()) return false;
+    acceleration_after(h, followed);
+    return (followed - full).norm() <= 0.5 * h * fine.norm();
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,88 @@
+#pragma once
+#include <limits>
+
+#include <polybody/integrators/partitioned_rows.hpp>
+#include <polybody/integrators/stabilisation.hpp>
+
+namespace polybody {
+
+/// Generalised coordinate partitioning: what a step gives the independent speeds and coordinates stands, the dependent ones
+/// follow from the rows,
+///   G_d Δq_d = −Φ  (Newton),   G_d v_d = −G_i v_i − Φ_t      [Wehage & Haug 1982; thesis §3.3.1].
+/// Independent are the columns of G that full pivoting leaves over. They are chosen anew when a dependent one would move more
+/// than `largest_ratio` times as fast as an independent one, that is when G_d⁻¹ G_i, and with it the condition of G_d, has grown
+/// too large; and when the rank of G changes. Dense: for up to some hundred speeds. Ratios compare metres with radians.
+struct CoordinatePartitioning {
+  static constexpr bool accepts_rows = true;
+  double tolerance = 1e-12;  ///< of Φ, beside what rounding of q leaves
+  int max_iterations = 10;
+  double largest_ratio = 10.0;  ///< of the rate of a dependent coordinate to that of an independent one
+
+  struct Scratch {
+    PartitionedRows rows;
+    VecX phi, rate, delta, next;
+    template <class M>
+    explicit Scratch(System<M> const& s)
+        : rows(s.rows(), s.speeds()), phi(VecX::Zero(s.rows())), rate(phi), delta(VecX::Zero(s.speeds())),
+          next(VecX::Zero(s.coordinates())) {}
+  };
+
+  /// \throws InvalidInput unless the tolerance is positive and the largest ratio at least 1.
+  void check() const {
+    require_positive(tolerance, "CoordinatePartitioning: the tolerance");
+    if (!(largest_ratio >= 1.0))
+      throw InvalidInput("CoordinatePartitioning: largest_ratio must be at least 1, but is " + number(largest_ratio) + ".");
+  }
+  void start(Scratch& s) const { s.rows.forget(); }
+  RowFeedback feedback() const { return {}; }
+
+  /// \throws NewtonStalled when the positions cannot be brought back.
+  template <class M, class Solver>
+  void apply(System<M>& system, ForwardDynamics<M, Solver>&, Scratch& s, VecX& q, VecX& v, double t) const {
+    if (system.rows() == 0) return;
+    double const enough = tolerance + 16.0 * std::numeric_limits<double>::epsilon() * q.cwiseAbs().maxCoeff();
+    for (int k = 0;; ++k) {
+      reduce(system, s, q, v, t);
+      if (s.phi.cwiseAbs().maxCoeff() <= enough) break;
+      if (k == max_iterations)
+        throw NewtonStalled("CoordinatePartitioning: the positions cannot be brought back to the joints at t = " + number(t) +
+                            " s. Take a smaller step.");
+      s.rows.solution(0, s.delta);
+      system.plus(q, s.delta, s.next);
+      q.swap(s.next);
+    }
+    s.rows.solution(1, s.delta);
+    v += s.delta;
+  }
+  template <class M, class Solver>
+  void velocities(System<M>& system, ForwardDynamics<M, Solver>&, Scratch& s, VecX const& q, VecX& v, double t) const {
+    if (system.rows() == 0) return;
+    reduce(system, s, q, v, t);
+    s.rows.solution(1, s.delta);
+    v += s.delta;
+  }
+
+ private:
+  /// Right-hand sides −Φ and −Φ̇ at (q, v, t), and the rows reduced.
+  template <class M>
+  void reduce(System<M>& system, Scratch& s, VecX const& q, VecX const& v, double t) const {
+    system.evaluate(q, v, t);
+    system.violation(s.phi);
+    system.violation_rate(s.rate);
+    write(system, s);
+    if (s.rows.reduce(largest_ratio)) return;
+    write(system, s);
+    s.rows.choose();
+  }
+  template <class M>
+  static void write(System<M>& system, Scratch& s) {
+    s.rows.begin();
+    system.tangent({}, SecondOrder::omitted, s.phi, s.rows);
+    for (Index i = 0; i < system.rows(); ++i) {
+      s.rows.right(0, i) = -s.phi[i];
+      s.rows.right(1, i) = -s.rate[i];
+    }
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,49 @@
+#pragma once
+#include <polybody/integrators/alpha_method.hpp>
+
+namespace polybody {
+
+/// HHT-α: the forces of a step stand between those at its ends,
+///   M a₁ = (1 + α) f₁ − α f₀,   γ = ½ − α,   β = ¼(1 − α)²   [Hilber, Hughes & Taylor 1977],
+/// which is generalised-α with α_m = 0, α_f = −α. Spectral radius at infinity (1 + α)/(1 − α).
+struct HhtAlpha {
+  static constexpr char const* name = "HhtAlpha";
+  static constexpr int order = 2;
+  static constexpr bool accepts_rows = true;
+
+  double alpha = -0.1;  ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
+  double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {.refactor_above = 0.16};
+  bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
+  bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
+  bool stabilised = false;          ///< keep the rows of the speeds too
+
+  /// \throws InvalidInput unless −1/3 ≤ α ≤ 0 and the tolerance is positive.
+  void check() const {
+    if (!(alpha >= -1.0 / 3.0 && alpha <= 0.0))
+      throw InvalidInput("HhtAlpha: alpha must lie in [-1/3, 0], but is " + number(alpha) + ".");
+    require_positive(tolerance, "HhtAlpha: the tolerance");
+  }
+
+  template <class Solver, class M>
+  auto workspace(System<M>& system) const {
+    return method().template workspace<Solver>(system);
+  }
+  template <class M, class W>
+  void start(System<M>& system, State& x, double h, W& w) const {
+    check();
+    method().start(system, x, h, w);
+  }
+  template <class M, class W>
+  StepReport step(System<M>& system, State& x, double h, W& w) const {
+    return method().step(system, x, h, w);
+  }
+
+ private:
+  AlphaMethod method() const {
+    double const alpha_m = 0.0, alpha_f = -alpha, gamma = 0.5 - alpha, beta = 0.25 * (1.0 - alpha) * (1.0 - alpha);
+    return {name, alpha_m, alpha_f, gamma, beta, tolerance, newton, start_correction, second_order_terms, stabilised};
+  }
+};
+
+}  // namespace polybody

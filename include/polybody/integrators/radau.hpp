@@ -1,0 +1,206 @@
+#pragma once
+/// \file
+/// RADAU IIA with three stages on the manifold: order five, L-stable, stiffly accurate [Hairer & Wanner 1996, §IV.5, §IV.8]:
+///   M(q_i) v̇_i = f(q_i, v_i, t_i) − Gᵀλ_i,   G v̇_i = −γ(q_i, v_i, t_i),   t_i = t₀ + c_i h,
+///   v_i = v₀ + h Σ a_ij v̇_j,   q_i = q₀ ⊞ δ_i,   δ_i = h Σ a_ij δ˙(δ_j, v_j),   and the third stage is the end.
+/// The rows stand as accelerations, so that multipliers keep the order of the speeds; `Projection` takes away what drifts.
+/// Newton's unknowns are v̇_i and λ_i of all stages at once; δ_i follows them.
+
+#include <array>
+
+#include <polybody/integrators/newton_failure.hpp>
+#include <polybody/integrators/stabilisation.hpp>
+#include <polybody/solvers/auto_lu.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// a_ij and c_i [Hairer & Wanner 1996, Table IV.5.6].
+struct RadauTableau {
+  static constexpr double r6 = 2.449489742783178;
+  static constexpr double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
+  static constexpr double a[3][3] = {{(88.0 - 7.0 * r6) / 360.0, (296.0 - 169.0 * r6) / 1800.0, (-2.0 + 3.0 * r6) / 225.0},
+                                     {(296.0 + 169.0 * r6) / 1800.0, (88.0 + 7.0 * r6) / 360.0, (-2.0 - 3.0 * r6) / 225.0},
+                                     {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0}};
+  /// (A²)_ij.
+  static constexpr double squared(int i, int j) { return a[i][0] * a[0][j] + a[i][1] * a[1][j] + a[i][2] * a[2][j]; }
+};
+
+/// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G and Gᵀ.
+template <class Sink>
+struct StageSink {
+  Sink& sink;
+  Index row0, col0, speeds;
+  void add(Index row, Index col, BlockView const& b) {
+    if (row0 == col0 || (row < speeds && col < speeds)) sink.add(row0 + row, col0 + col, b);
+  }
+};
+
+}  // namespace detail
+
+/// The reference among the integrators: for few, accurate steps, also of stiff models. The matrix of a step has three times the
+/// unknowns of the model and goes to `AutoLu` whatever solver the run names; above 64 unknowns that one takes memory in a step.
+struct Radau {
+  static constexpr char const* name = "Radau";
+  static constexpr int order = 5;
+  static constexpr bool accepts_rows = true;
+
+  double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {.max_iterations = 50};  ///< many: the matrix leaves out how rows turn
+  Projection projection = {};
+
+  /// \throws InvalidInput unless the tolerance is positive.
+  void check() const { require_positive(tolerance, "Radau: the tolerance"); }
+
+  template <class M, class Solver>
+  struct Workspace {
+    std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
+    VecX q, r, phi, gamma, next, rhs, y;
+    AutoLu solver;
+    ForwardDynamics<M, Solver> forward;
+    Projection::Scratch projected;
+    bool factored = false;
+    double theta = 1.0;
+    double h_factored = 0.0;
+    double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
+
+    explicit Workspace(System<M>& s)
+        : q(VecX::Zero(s.coordinates())), r(VecX::Zero(s.speeds())), phi(VecX::Zero(s.rows())), gamma(phi), next(r),
+          rhs(VecX::Zero(3 * s.size())), y(rhs), forward(s), projected(s) {
+      v.fill(r);
+      vd.fill(r);
+      delta.fill(r);
+      rate.fill(r);
+      lambda.fill(phi);
+      PatternSink pattern;
+      write(s, 1.0, pattern);
+      solver.analyse(3 * s.size(), pattern.blocks);
+    }
+
+    /// The matrix of Newton's method where `s` was evaluated last: block (i, j) is
+    ///   δ_ij [M, Gᵀ; G, 0] + h a_ij D + h² (A²)_ij K.
+    template <class Sink>
+    void write(System<M>& s, double h, Sink& sink) {
+      using T = detail::RadauTableau;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          detail::StageSink<Sink> stage{sink, i * s.size(), j * s.size(), s.speeds()};
+          s.tangent({i == j ? 1.0 : 0.0, h * T::a[i][j], h * h * T::squared(i, j)}, SecondOrder::omitted, phi, stage);
+        }
+    }
+    /// v_i = v₀ + h Σ a_ij v̇_j.
+    void set_speeds(VecX const& v0, double h) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        v[i] = v0;
+        for (std::size_t j = 0; j < 3; ++j) v[i] += h * detail::RadauTableau::a[i][j] * vd[j];
+      }
+    }
+    /// δ_i = h Σ a_ij δ˙(δ_j, v_j), by two passes from the last δ: the rate hardly depends on δ, and not at all without rotations.
+    void set_positions(System<M>& s, double h) {
+      for (int pass = 0; pass < 2; ++pass) {
+        unsettled = 0.0;
+        for (std::size_t j = 0; j < 3; ++j) s.local_rate(delta[j], v[j], rate[j]);
+        for (std::size_t i = 0; i < 3; ++i) {
+          next.setZero();
+          for (std::size_t j = 0; j < 3; ++j) next += h * detail::RadauTableau::a[i][j] * rate[j];
+          delta[i] -= next;
+          unsettled = std::max(unsettled, delta[i].norm());
+          delta[i] = next;
+        }
+      }
+    }
+  };
+
+  template <class Solver, class M>
+  Workspace<M, Solver> workspace(System<M>& system) const {
+    return Workspace<M, Solver>(system);
+  }
+  template <class M, class Solver>
+  void start(System<M>& system, State& x, double, Workspace<M, Solver>& w) const {
+    check();
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.factored = false;
+  }
+
+  template <class M, class Solver>
+  StepReport step(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    struct Problem {
+      Radau const& method;
+      System<M>& system;
+      State const& x;
+      Workspace<M, Solver>& w;
+      double h;
+      Index nv, rows, bad = -1;
+
+      void evaluate_stage(std::size_t i) {
+        system.plus(x.q, w.delta[i], w.q);
+        system.evaluate(w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h);
+      }
+      bool evaluate() {
+        w.set_positions(system, h);
+        for (std::size_t i = 0; i < 3; ++i) {
+          evaluate_stage(i);
+          system.residual(w.vd[i], w.lambda[i], w.r);
+          system.acceleration_bias(w.gamma);
+          system.rows_times(w.vd[i], w.phi);
+          w.phi += w.gamma;
+          w.rhs.segment(Index(i) * (nv + rows), nv) = -w.r;
+          w.rhs.segment(Index(i) * (nv + rows) + nv, rows) = -w.phi;
+        }
+        return w.rhs.allFinite();
+      }
+      bool refactor() {
+        evaluate_stage(1);
+        w.h_factored = h;
+        bad = write_and_factor(w.solver, [&](AutoLu& sink) { w.write(system, h, sink); });
+        return bad < 0;
+      }
+      double solve() {
+        w.solver.solve(w.rhs, w.y);
+        double const n = std::sqrt(double(std::max<Index>(nv, 1)));
+        double change = w.unsettled / (h * h);
+        for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), nv).norm());
+        double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / (h * h);
+        return w.y.allFinite() ? change / n / (method.tolerance * (1.0 + w.vd[2].norm() / n) + rounding)
+                               : std::numeric_limits<double>::quiet_NaN();
+      }
+      void apply() {
+        for (std::size_t i = 0; i < 3; ++i) {
+          w.vd[i] += w.y.segment(Index(i) * (nv + rows), nv);
+          w.lambda[i] += w.y.segment(Index(i) * (nv + rows) + nv, rows);
+        }
+        w.set_speeds(x.v, h);
+      }
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+      w.vd[i] = x.a;
+      w.lambda[i] = x.lambda;
+      w.delta[i] = detail::RadauTableau::c[i] * h * x.v;
+    }
+    w.set_speeds(x.v, h);
+    if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+    Problem problem{*this, system, x, w, h, system.speeds(), system.rows()};
+    NewtonReport const report = polybody::newton(problem, newton, w.factored, w.theta);
+    if (report.result != NewtonResult::converged)
+      detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
+    w.set_positions(system, h);
+    system.plus(x.q, w.delta[2], w.q);
+    projection.apply(system, w.forward, w.projected, w.q, w.v[2], x.t + h);
+    if (system.rows() > 0) {  // v̇ too, to where the projection moved the rows
+      w.forward.hold(system, w.q, w.v[2], x.t + h);
+      system.acceleration_bias(w.gamma);
+      system.rows_times(w.vd[2], w.phi);
+      w.phi += w.gamma;
+      w.forward.least_change(system, w.phi, w.next);
+      w.vd[2] += w.next;
+    }
+    x.q.swap(w.q);
+    x.v.swap(w.v[2]);
+    x.a.swap(w.vd[2]);
+    x.lambda.swap(w.lambda[2]);
+    x.t += h;
+    return {h, h, report.iterations, report.factorisations, 3 * report.iterations, 0, 0, report.theta};
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,125 @@
+#pragma once
+/// \file
+/// Explicit methods whose energy error stays bounded: symplectic where coordinates form a vector space, the mass is constant
+/// and forces depend on positions alone (planar rigid bodies, cables, springs). Bodies that turn in space and damped forces are
+/// taken too, at the same order, but without that promise.
+
+#include <polybody/integrators/integrator.hpp>
+
+namespace polybody {
+
+/// v₁ = v₀ + h v̇₀,  q₁ = q₀ ⊞ h v₁, of order one, one evaluation a step [Hairer, Lubich & Wanner 2006, §I.1.2].
+struct SymplecticEuler {
+  static constexpr char const* name = "SymplecticEuler";
+  static constexpr int order = 1;
+  static constexpr bool accepts_rows = false;
+
+  template <class M, class Solver>
+  struct Workspace {
+    static_assert(M::constant_mass, "SymplecticEuler asks for bodies of constant mass matrix.");
+    VecX q, v, a, dq, lambda;
+    ForwardDynamics<M, Solver> forward;
+    explicit Workspace(System<M>& s)
+        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), a(v), dq(v), lambda(VecX::Zero(s.rows())), forward(s) {}
+  };
+
+  void check() const {}
+  template <class Solver, class M>
+  Workspace<M, Solver> workspace(System<M>& system) const {
+    return Workspace<M, Solver>(system);
+  }
+  template <class M, class W>
+  void start(System<M>& system, State& x, double, W& w) const {
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+  }
+  template <class M, class W>
+  StepReport step(System<M>& system, State& x, double h, W& w) const {
+    w.v = x.v + h * x.a;
+    w.dq = h * w.v;
+    system.plus(x.q, w.dq, w.q);
+    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda);
+    x.q.swap(w.q);
+    x.v.swap(w.v);
+    x.a.swap(w.a);
+    x.lambda.swap(w.lambda);
+    x.t += h;
+    return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
+  }
+};
+
+/// RATTLE, of order two [Andersen 1983; Hairer, Lubich & Wanner 2006, §VII.1.4]:
+///   v½ = v₀ + ½h M⁻¹(f₀ − G₀ᵀλ),  q₁ = q₀ ⊞ h v½,   λ such that Φ(q₁) = 0,
+///   v₁ = v½ + ½h M⁻¹(f₁ − G₁ᵀμ),                    μ such that G₁ v₁ + Φ_t = 0.
+/// λ by Newton with the matrix of q₀ throughout, so that every correction lies along M⁻¹G₀ᵀ. Forces at t₁ see the speeds
+/// v½ + ½h v̇₀.
+struct Rattle {
+  static constexpr char const* name = "Rattle";
+  static constexpr int order = 2;
+  static constexpr bool accepts_rows = true;
+
+  double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
+  int max_iterations = 50;   ///< each gains a factor of about 1/(hω)
+
+  template <class M, class Solver>
+  struct Workspace {
+    static_assert(M::constant_mass, "Rattle asks for bodies of constant mass matrix.");
+    VecX q, v, a, dq, change, lambda, phi;
+    ForwardDynamics<M, Solver> forward;
+    explicit Workspace(System<M>& s)
+        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), a(v), dq(v), change(v), lambda(VecX::Zero(s.rows())),
+          phi(lambda), forward(s) {}
+  };
+
+  void check() const { require_positive(tolerance, "Rattle: the tolerance"); }
+  template <class Solver, class M>
+  Workspace<M, Solver> workspace(System<M>& system) const {
+    return Workspace<M, Solver>(system);
+  }
+  template <class M, class W>
+  void start(System<M>& system, State& x, double, W& w) const {
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+  }
+
+  /// \throws NewtonStalled when the positions cannot be brought to the joints.
+  template <class M, class W>
+  StepReport step(System<M>& system, State& x, double h, W& w) const {
+    w.dq = h * x.v + (0.5 * h * h) * x.a;
+    system.plus(x.q, w.dq, w.q);
+    StepReport report{.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
+    if (system.rows() > 0) {
+      report.iterations = close(system, x, h, w);
+      report.factorisations = 3;
+    }
+    w.dq /= h;  // v½
+    w.v = w.dq + 0.5 * h * x.a;
+    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda);
+    w.v = w.dq + 0.5 * h * w.a;
+    w.forward.project_velocities(system, w.q, w.v, x.t + h);
+    x.q.swap(w.q);
+    x.v.swap(w.v);
+    x.a.swap(w.a);
+    x.lambda.swap(w.lambda);
+    x.t += h;
+    return report;
+  }
+
+ private:
+  /// Moves dq along M⁻¹G₀ᵀ until Φ(q₀ ⊞ dq) = 0; how many corrections it took.
+  template <class M, class W>
+  int close(System<M>& system, State const& x, double h, W& w) const {
+    double const enough = tolerance * (1.0 + x.q.cwiseAbs().maxCoeff());
+    w.forward.hold(system, x.q, x.v, x.t);
+    for (int k = 0; k <= max_iterations; ++k) {
+      system.evaluate(w.q, x.v, x.t + h);
+      system.violation(w.phi);
+      if (w.phi.cwiseAbs().maxCoeff() <= enough) return k;
+      w.forward.least_change(system, w.phi, w.change);
+      w.dq += w.change;
+      system.plus(x.q, w.dq, w.q);
+    }
+    throw NewtonStalled("Rattle: the positions cannot be brought to the joints at t = " + number(x.t + h) +
+                        " s. Take a smaller step.");
+  }
+};
+
+}  // namespace polybody

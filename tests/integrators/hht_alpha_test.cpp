@@ -1,0 +1,109 @@
+#include <polybody/integrators/hht_alpha.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/integrator_cases.hpp"
+#include "support/integrator_laws.hpp"
+#include "support/oscillator.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace hht_alpha_test {
+
+std::vector<HhtAlpha> every_damping() { return {{.alpha = -0.1, .tolerance = 1e-11}, {.alpha = -1.0 / 3.0, .tolerance = 1e-11}}; }
+struct HhtAlphaOnBar {
+  using Model = SwingingBar;
+  static auto integrators() { return every_damping(); }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 32;
+};
+struct HhtAlphaOnTop {
+  using Model = SlowTop;
+  static auto integrators() { return every_damping(); }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 64;
+};
+
+}  // namespace hht_alpha_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(HhtAlphaOnBar, IntegratorLaws, hht_alpha_test::HhtAlphaOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(HhtAlphaOnTop, IntegratorLaws, hht_alpha_test::HhtAlphaOnTop);
+}  // namespace polybody
+
+namespace hht_alpha_test {
+
+// As first published: a₁ + (1 + α) q₁ − α q₀ = 0 for ω = 1, with Newmark's q₁ and v₁; a₁ follows by hand
+// [Hilber, Hughes & Taylor 1977, Eq. 1–4]. Damping and period of every step follow from it.
+TEST(HhtAlpha, SolvesThePublishedEquationsOfAnOscillator) {
+  for (double const alpha : {-1.0 / 3.0, -0.1, -0.05}) {
+    double const beta = 0.25 * (1.0 - alpha) * (1.0 - alpha), gamma = 0.5 - alpha;  // CASES I1
+    double const h = 0.2;
+    double q = 1.0, v = 0.0, a = -1.0;
+    for (int i = 0; i < 50; ++i) {
+      double const known = q + h * v + h * h * (0.5 - beta) * a;
+      double const next = (alpha * q - (1.0 + alpha) * known) / (1.0 + (1.0 + alpha) * beta * h * h);
+      q = known + h * h * beta * next;
+      v += h * ((1.0 - gamma) * a + gamma * next);
+      a = next;
+    }
+    Oscillator o;
+    o.run(HhtAlpha{.alpha = alpha, .start_correction = false}, h, 50);
+    EXPECT_NEAR(o.x.q[0], q, 1e-12) << alpha;
+    EXPECT_NEAR(o.x.v[0], v, 1e-12) << alpha;
+  }
+}
+
+// CASES I1 [A].
+TEST(HhtAlpha, AtZeroIsTheTrapezoidalRule) {
+  for (auto const& p : trapezoidal_periods) {
+    Oscillator o;
+    o.run(HhtAlpha{.alpha = 0.0, .start_correction = false}, p.h, 100);
+    EXPECT_NEAR(o.x.q[0], std::cos(100 * p.h / p.ratio), 1e-11) << p.h;
+    EXPECT_NEAR(o.x.v[0], -std::sin(100 * p.h / p.ratio), 1e-11) << p.h;
+  }
+}
+
+// CASES I1: spectral radius (1 + α)/(1 − α) for ωh → ∞, of a double root, so that |q| falls like n ρⁿ. At α = −1/3 the third
+// root α/(1 + α) comes to the same −1/2, and |q| falls like n² ρⁿ.
+TEST(HhtAlpha, DampsTheUnresolvedByItsSpectralRadius) {
+  for (double const alpha : {-0.05, -0.1, -0.2}) {
+    double const rho = (1.0 + alpha) / (1.0 - alpha);
+    double const per_step = Oscillator().scale_of_a_long_step(HhtAlpha{.alpha = alpha, .start_correction = false});
+    EXPECT_NEAR(per_step, rho * std::pow(30.0 / 20.0, 0.1), 0.03 * rho) << alpha;
+  }
+}
+
+// CASES I3: the energy decays. Within a swing the energy of q and v stands off that which the method takes away from by
+// O((ωh)²), to and fro with kinetic and potential energy; so each state is compared with that half a period earlier.
+template <class Setup>
+void expect_decay(Setup const& setup, State x, double period) {
+  int const half = 64;
+  auto run = simulate(setup.model, x, HhtAlpha{.alpha = -0.1, .tolerance = 1e-12}, {.until = 6.0 * period, .step = 0.5 * period / half});
+  std::vector<double> energies;
+  for (State const& now : run) energies.push_back(energy(setup.model, now).total());
+  ASSERT_GE(energies.size(), 12u * half);
+  for (std::size_t i = half; i < energies.size(); ++i) EXPECT_LT(energies[i], energies[i - half]) << i;
+}
+
+TEST(HhtAlpha, TakesEnergyFromASpring) {
+  Oscillator const o;
+  expect_decay(o, o.x, 2.0 * std::numbers::pi);
+}
+
+TEST(HhtAlpha, TakesEnergyFromAPendulum) {
+  SwingingBar const bar;
+  expect_decay(bar, bar.start, bar.exact.period());
+}
+
+TEST(HhtAlpha, RefusesWhatItCannotMean) {
+  for (double const alpha : {-0.34, 0.01, std::numeric_limits<double>::quiet_NaN()}) {
+    Oscillator o;
+    EXPECT_TRUE(has(refusal([&] { o.run(HhtAlpha{.alpha = alpha}, 0.1, 1); }), "HhtAlpha: alpha must lie in [-1/3, 0]")) << alpha;
+  }
+  Oscillator o;
+  EXPECT_TRUE(has(refusal([&] { o.run(HhtAlpha{.tolerance = 0.0}, 0.1, 1); }), "HhtAlpha: the tolerance must be positive"));
+}
+
+}  // namespace hht_alpha_test

@@ -1,0 +1,122 @@
+#include <polybody/integrators/newmark.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/integrator_cases.hpp"
+#include "support/integrator_laws.hpp"
+#include "support/oscillator.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace newmark_test {
+
+struct NewmarkOnBar {
+  using Model = SwingingBar;
+  static auto integrators() { return std::vector<Newmark>{{.gamma = 0.6, .beta = 0.25 * 1.1 * 1.1, .tolerance = 1e-11}}; }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 32;
+};
+struct TrapezoidalOnBar {
+  using Model = SwingingBar;
+  static auto integrators() { return std::vector<Trapezoidal>{{.tolerance = 1e-11}}; }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 32;
+};
+struct TrapezoidalOnSprungBody {
+  using Model = SprungBody;
+  static auto integrators() { return std::vector<Trapezoidal>{{.tolerance = 1e-11}}; }
+  static constexpr double until = 1.0;
+  static constexpr int steps = 32;
+};
+
+}  // namespace newmark_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(NewmarkOnBar, IntegratorLaws, newmark_test::NewmarkOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(TrapezoidalOnBar, IntegratorLaws, newmark_test::TrapezoidalOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(TrapezoidalOnSprungBody, IntegratorLaws, newmark_test::TrapezoidalOnSprungBody);
+}  // namespace polybody
+
+namespace newmark_test {
+
+// CASES I1 [A].
+template <class I>
+void expect_published_periods(I const& integrator) {
+  for (auto const& p : trapezoidal_periods) {
+    Oscillator o;
+    o.run(integrator, p.h, 100);
+    EXPECT_NEAR(o.x.q[0], std::cos(100 * p.h / p.ratio), 1e-11) << p.h;
+    EXPECT_NEAR(o.x.v[0], -std::sin(100 * p.h / p.ratio), 1e-11) << p.h;
+  }
+}
+
+TEST(Trapezoidal, HasThePublishedPeriod) { expect_published_periods(Trapezoidal{.start_correction = false}); }
+
+TEST(Newmark, UnlessToldOtherwiseIsTheTrapezoidalRule) { expect_published_periods(Newmark{}); }
+
+/// What γ = ½ keeps of the oscillator with ω = 1: v² + q² + (β − γ/2) h² a².
+double kept(Newmark const& integrator, double h, State const& x) {
+  double const q = x.q[0], v = x.v[0], a = x.a[0];
+  return v * v + q * q + (integrator.beta - 0.5 * integrator.gamma) * h * h * a * a;
+}
+
+// For γ = ½ and ω = 1, v taken out of two steps leaves q₂ − 2 q₁ + q₀ = −h² (β q₂ + (1 − 2β) q₁ + β q₀): the phase advances by
+// φ, cos φ = 1 − ½h²/(1 + βh²), a step. By what is kept (see there), v/√(1 + (β − ¼)h²) goes with it.
+TEST(Newmark, OscillatesInClosedFormWithoutDamping) {
+  double const h = 0.7;
+  for (double const beta : {1.0 / 12.0, 1.0 / 6.0, 0.25, 0.5}) {
+    Oscillator o;
+    o.run(Newmark{.beta = beta}, h, 40);
+    double const phase = 40 * std::acos(1.0 - 0.5 * h * h / (1.0 + beta * h * h));
+    EXPECT_NEAR(o.x.q[0], std::cos(phase), 1e-11) << beta;
+    EXPECT_NEAR(o.x.v[0], -std::sin(phase) * std::sqrt(1.0 + (beta - 0.25) * h * h), 1e-11) << beta;
+  }
+}
+
+// With κ = β − γ/2, v₁ − v₀ = h(ā + (γ − ½)Δa) and q₁ − q₀ = h v̄ + κh²Δa (bars: means of the ends). Then
+//   v̄ Δv + q̄ Δq + κh² ā Δa = −(γ − ½)(Δq² + κh² Δa²)      for a = −q:
+// what is kept without damping falls by twice that in every step [Hughes 2000, §9.3].
+TEST(Newmark, LosesEnergyInEveryStepAsDerived) {
+  double const h = 0.3;
+  for (double const gamma : {0.55, 0.8}) {
+    Newmark const integrator{.gamma = gamma, .beta = 0.25 * (gamma + 0.5) * (gamma + 0.5)};
+    double const kappa = integrator.beta - 0.5 * gamma;
+    Oscillator o;
+    State before = o.x, x = o.x;
+    bool first = true;
+    for (State const& now : simulate(o.model, x, integrator, {.until = 30 * h, .step = h})) {
+      if (!first) {
+        double const dq = now.q[0] - before.q[0], da = now.a[0] - before.a[0];
+        double const loss = (2.0 * gamma - 1.0) * (dq * dq + kappa * h * h * da * da);
+        EXPECT_NEAR(kept(integrator, h, now), kept(integrator, h, before) - loss, 1e-12) << now.t;
+      }
+      first = false;
+      before = now;
+    }
+  }
+}
+
+// The loss of the test above is (γ − ½)h of the kinetic energy, twice over, in a time of one: of first order.
+TEST(Newmark, DampedIsOfFirstOrderOnly) {
+  std::vector<double> errors;
+  for (int const n : {100, 200, 400}) {
+    Oscillator o;
+    o.run(Newmark{.gamma = 0.6, .beta = 0.3025}, 1.0 / n, n);
+    errors.push_back(std::abs(o.x.q[0] - std::cos(1.0)));
+  }
+  EXPECT_NEAR(slopes(errors).back(), 1.0, 0.05) << testing::PrintToString(errors);
+}
+
+TEST(Newmark, RefusesWhatItCannotMean) {
+  auto const try_with = [](Newmark const& integrator) {
+    Oscillator o;
+    return refusal([&] { o.run(integrator, 0.1, 1); });
+  };
+  EXPECT_TRUE(has(try_with({.gamma = 0.49}), "Newmark: gamma must be at least 1/2"));
+  EXPECT_TRUE(has(try_with({.gamma = std::numeric_limits<double>::quiet_NaN()}), "Newmark: gamma must be at least 1/2"));
+  EXPECT_TRUE(has(try_with({.beta = 0.0}), "take CentralDifference"));
+  EXPECT_TRUE(has(try_with({.tolerance = -1.0}), "Newmark: the tolerance must be positive"));
+}
+
+}  // namespace newmark_test

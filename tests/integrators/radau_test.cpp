@@ -1,0 +1,115 @@
+#include <polybody/integrators/radau.hpp>
+
+#include <gtest/gtest.h>
+
+#include <complex>
+
+#include <polybody/forces/user_force.hpp>
+
+#include "support/integrator_cases.hpp"
+#include "support/integrator_laws.hpp"
+#include "support/oscillator.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace radau_test {
+
+struct RadauOnBar {
+  using Model = SwingingBar;
+  static auto integrators() { return std::vector<Radau>{{.tolerance = 1e-12}}; }
+  static constexpr double until = 1.0;
+  static constexpr int steps = 16;
+};
+struct RadauOnTop {
+  using Model = SlowTop;
+  static auto integrators() { return std::vector<Radau>{{.tolerance = 1e-12}}; }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 16;
+};
+struct RadauOnSprungBody {
+  using Model = SprungBody;
+  static auto integrators() { return std::vector<Radau>{{.tolerance = 1e-12}}; }
+  static constexpr double until = 1.0;
+  static constexpr int steps = 24;
+};
+
+}  // namespace radau_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(RadauOnBar, IntegratorLaws, radau_test::RadauOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(RadauOnTop, IntegratorLaws, radau_test::RadauOnTop);
+INSTANTIATE_TYPED_TEST_SUITE_P(RadauOnSprungBody, IntegratorLaws, radau_test::RadauOnSprungBody);
+}  // namespace polybody
+
+namespace radau_test {
+
+/// The stability function [Hairer & Wanner 1996, §IV.5: the Padé approximation of exp with degrees 2 and 3].
+std::complex<double> growth(std::complex<double> z) {
+  return (1.0 + 0.4 * z + z * z / 20.0) / (1.0 - 0.6 * z + 3.0 * z * z / 20.0 - z * z * z / 60.0);
+}
+
+// (q + i v)˙ = −i (q + i v): a step multiplies q + i v by R(−ih), whatever h.
+TEST(Radau, GivesItsStabilityFunctionOnAnOscillator) {
+  for (double const h : {0.2, 1.0, 5.0, 1e3}) {
+    Oscillator o;
+    int const n = h < 10.0 ? 20 : 2;
+    o.run(Radau{.tolerance = 1e-13}, h, n);
+    std::complex<double> const exact = std::pow(growth({0.0, -h}), n);
+    EXPECT_NEAR(o.x.q[0], exact.real(), 1e-12) << h;
+    EXPECT_NEAR(o.x.v[0], exact.imag(), 1e-12) << h;
+  }
+}
+
+/// A unit mass that a spring of k holds to a point moving as cos t: x˙˙ = −k (x − cos t).
+struct Led {
+  static constexpr double k = 1e10;
+  static constexpr auto law = [](auto const& frames, double t) {
+    using T = std::decay_t<decltype(frames[0].r[0])>;
+    Wrench<T> w;
+    w.f[0] = -k * (frames[0].r[0] - std::cos(t));
+    return std::array{w};
+  };
+  using Force = UserForce<1, std::remove_const_t<decltype(law)>>;
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<Force>> model;
+  State x;
+
+  Led() {
+    auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(k / (k - 1.0), 0.0)), "mass");
+    model.apply(Force{law}, mass.at(Vec2(0, 0)), "spring");
+    x = model.reference_state();
+  }
+};
+
+// Stiff accuracy [Prothero & Robinson 1974]: from x = cos t · k/(k − 1) on, the third stage's own force balance holds x to
+// (error of v̇)/k, and v, which is then the derivative of a cubic through x, converges at the order three of the stages.
+TEST(Radau, FollowsAStiffSpringWithoutResolvingIt) {
+  std::vector<double> errors;
+  for (double const h : {0.2, 0.1, 0.05}) {
+    Led led;
+    simulate(led.model, led.x, Radau{}, {.until = 2.0, .step = h}).run();
+    EXPECT_NEAR(led.x.q[0], std::cos(2.0), 10.0 / Led::k) << h;
+    errors.push_back(std::abs(led.x.v[0] + std::sin(2.0)));
+  }
+  EXPECT_GT(slopes(errors).back(), 2.8) << testing::PrintToString(errors);
+  EXPECT_LT(errors.back(), 1e-5);
+}
+
+// CASES R1: the exact motion, its reaction at the pivot and its acceleration.
+TEST(Radau, PendulumAgreesWithTheExactMotion) {
+  SwingingBar bar;
+  State x = bar.start;
+  simulate(bar.model, x, Radau{.tolerance = 1e-12}, {.until = 2.0, .step = 0.005}).run();
+  auto const [angle, rate, acceleration] = bar.exact(bar.phase + 2.0);
+  EXPECT_NEAR(x.q[2] + 0.5 * std::numbers::pi, angle, 1e-10);
+  EXPECT_NEAR(x.v[2], rate, 1e-10);
+  EXPECT_NEAR(x.a[2], acceleration, 1e-9);
+  EXPECT_LT((x.lambda + bar.reaction(2.0)).norm(), 1e-9);
+}
+
+TEST(Radau, RefusesWhatItCannotMean) {
+  Oscillator o;
+  EXPECT_TRUE(has(refusal([&] { o.run(Radau{.tolerance = 0.0}, 0.1, 1); }), "Radau: the tolerance must be positive"));
+}
+
+}  // namespace radau_test

@@ -1,0 +1,98 @@
+// The rows of positions and speeds together, under generalised-α and HHT-α.
+
+#include <gtest/gtest.h>
+
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/hht_alpha.hpp>
+
+#include "support/integrator_cases.hpp"
+#include "support/integrator_laws.hpp"
+
+using namespace polybody;
+
+namespace stabilised_alpha_test {
+
+std::vector<GeneralizedAlpha> both_dampings() {
+  return {{.rho_inf = 0.8, .tolerance = 1e-11, .stabilised = true}, {.rho_inf = 0.5, .tolerance = 1e-11, .stabilised = true}};
+}
+struct StabilisedAlphaOnBar {
+  using Model = SwingingBar;
+  static auto integrators() { return both_dampings(); }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 32;
+};
+struct StabilisedAlphaOnTop {
+  using Model = SlowTop;
+  static auto integrators() { return both_dampings(); }
+  static constexpr double until = 0.5;
+  static constexpr int steps = 64;
+};
+
+}  // namespace stabilised_alpha_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(StabilisedAlphaOnBar, IntegratorLaws, stabilised_alpha_test::StabilisedAlphaOnBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(StabilisedAlphaOnTop, IntegratorLaws, stabilised_alpha_test::StabilisedAlphaOnTop);
+}  // namespace polybody
+
+namespace stabilised_alpha_test {
+
+/// The largest violations over a run of 1 s by 0.01 s.
+template <class Setup, class I>
+Violation worst(Setup const& setup, I const& integrator) {
+  State x = setup.start;
+  System system(setup.model);
+  Violation out;
+  for (State const& now : simulate(setup.model, x, integrator, {.until = 1.0, .step = 0.01})) {
+    Violation const open = violation(system, now);
+    out.position = std::max(out.position, open.position);
+    out.velocity = std::max(out.velocity, open.velocity);
+  }
+  return out;
+}
+
+template <class Setup, class I>
+void expect_both_rows_kept(Setup const& setup, I integrator) {
+  integrator.stabilised = false;
+  Violation const without = worst(setup, integrator);
+  integrator.stabilised = true;
+  Violation const with = worst(setup, integrator);
+  EXPECT_LT(without.position, 1e-12);
+  EXPECT_GT(without.velocity, 1e-6);  // else there is nothing to show
+  EXPECT_LT(with.position, 1e-12);
+  EXPECT_LT(with.velocity, 1e-11);
+}
+
+TEST(StabilisedAlpha, KeepsPositionsAndSpeedsOfAPendulumInEveryStep) {
+  expect_both_rows_kept(SwingingBar(), GeneralizedAlpha{.tolerance = 1e-12});
+  expect_both_rows_kept(SwingingBar(), HhtAlpha{.tolerance = 1e-12});
+}
+
+TEST(StabilisedAlpha, KeepsPositionsAndSpeedsOfATopInEveryStep) {
+  expect_both_rows_kept(SlowTop(), GeneralizedAlpha{.tolerance = 1e-12});
+}
+
+// CASES I2, without a correction of the speeds at the start.
+TEST(StabilisedAlpha, MultipliersConvergeAtSecondOrderFromTheFirstStep) {
+  std::vector<double> errors;
+  for (double const h : {0.02, 0.01, 0.005, 0.0025}) {
+    SwingingBar bar;
+    State x = bar.start;
+    double worst = 0.0;
+    for (State const& now : simulate(bar.model, x, GeneralizedAlpha{.tolerance = 1e-12, .stabilised = true}, {.until = 1.0, .step = h}))
+      worst = std::max(worst, (now.lambda + bar.reaction(now.t)).norm());
+    errors.push_back(worst);
+  }
+  EXPECT_GT(slopes(errors).back(), 1.9) << testing::PrintToString(errors);
+}
+
+TEST(StabilisedAlpha, WithoutRowsChangesNothing) {
+  SprungBody body;
+  State with = body.start, without = body.start;
+  simulate(body.model, with, GeneralizedAlpha{.stabilised = true}, {.until = 0.5, .step = 0.01}).run();
+  simulate(body.model, without, GeneralizedAlpha{}, {.until = 0.5, .step = 0.01}).run();
+  EXPECT_EQ(with.q, without.q);
+  EXPECT_EQ(with.v, without.v);
+}
+
+}  // namespace stabilised_alpha_test

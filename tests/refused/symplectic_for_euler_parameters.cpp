@@ -1,0 +1,9 @@
+// refused: asks for bodies of constant mass
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/integrators/symplectic.hpp>
+
+using namespace polybody;
+using M = Model<Bodies<Rigid<EulerParameters>>, Joints<>>;
+
+void run(M const& model, State& x) { simulate(model, x, Rattle{}, {.until = 1.0, .step = 1e-3}); }

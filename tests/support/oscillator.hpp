@@ -1,0 +1,48 @@
+#pragma once
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/solvers/dense_lu.hpp>
+
+namespace polybody {
+
+/// A unit mass on a slide, held by a spring of 1 N/m without free length: ω = 1, released from x = 1 at rest.
+struct Oscillator {
+  using Slide = Joint<planar::Prismatic, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Slide>, Forces<SpringDamper>> model;
+  State x;
+
+  Oscillator() {
+    auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(1.0, 0.0)), "mass");
+    auto const home = model.ground().at({0, 0, 0});
+    model.connect(Slide{}, home, mass.at(Vec2(0, 0)), "slide");
+    model.apply(SpringDamper{.stiffness = 1.0, .free_length = 0.0}, home, mass.at(Vec2(0, 0)), "spring");
+    x = model.reference_state();
+  }
+  template <class I>
+  RunReport run(I const& integrator, double h, int steps) {
+    return simulate(model, x, integrator, {.until = h * steps, .step = h}).run();
+  }
+  /// By how much a step of h ≫ 1/ω scales the speed, over steps 21 to 30.
+  template <class I>
+  double scale_of_a_long_step(I const& integrator) {
+    double const h = 1e5;
+    System system(model);
+    auto workspace = integrator.template workspace<DenseLu>(system);
+    integrator.start(system, x, h, workspace);
+    for (int i = 0; i < 20; ++i) integrator.step(system, x, h, workspace);
+    double const before = x.v[0];
+    for (int i = 0; i < 10; ++i) integrator.step(system, x, h, workspace);
+    return std::pow(std::abs(x.v[0] / before), 0.1);
+  }
+};
+
+/// CASES I1 [A]: the phase of the trapezoidal rule advances by 2 atan(ωh/2) a step; `ratio` is T_num/T.
+struct TrapezoidalPeriod {
+  double h, ratio;
+};
+inline constexpr TrapezoidalPeriod trapezoidal_periods[] = {{0.1, 1.00083277850411}, {0.5, 1.02049703761562}, {1.0, 1.07840521614581}};
+
+}  // namespace polybody
