@@ -2,7 +2,7 @@
 /// \file
 /// Questions about a single state: frames of points, gaps and reactions of joints, counts.
 
-#include <polybody/system/system.hpp>
+#include <polybody/system/reduced_system.hpp>
 
 namespace polybody {
 
@@ -54,10 +54,29 @@ auto ask_joint(M const& model, State const& x, ElementHandle<J> const& handle, F
   return f(e, gap, data);
 }
 
+/// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its λ_α the
+/// moment r_α × λ_α. (What stretches r_α is no wrench.)
+template <class = void>  // compiled where it is used
+Vec6 linear_wrench(LinearRows const& rows, State const& x) {
+  Vec6 w = Vec6::Zero();
+  Index const size = rows.positions;
+  w.head(size) = x.lambda.segment(rows.row, size);
+  Index row = size;
+  for (LinearRows::Gradient const& g : rows.gradients) {
+    Vec3 now = g.fixed, force = g.axis * x.lambda[rows.row + row];
+    if (g.map.cols() > 0) now.head(size) = g.map * x.q.segment(rows.b.q0, g.map.cols());
+    if (g.rows > 1) force.head(size) = x.lambda.segment(rows.row + row, size);
+    w.tail<3>() += now.cross(force);
+    row += g.rows;
+  }
+  return w;
+}
+
 }  // namespace detail
 
 /// Violation of a joint's rows in state x.
 template <class M, class J>
+  requires(!LinearInCoordinates<typename J::PolicyType>)
 Vec<double, J::rows> gap(M const& model, State const& x, ElementHandle<J> const& joint) {
   return detail::ask_joint(model, x, joint, [](auto const&, auto const& g, auto const&) { return g.g; });
 }
@@ -71,8 +90,11 @@ template <class M, class J>
 Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& joint,
                         ReactionAxes axes = ReactionAxes::world) {
   return detail::ask_joint(model, x, joint, [&](auto const& e, auto const& gap, auto const& data) {
-    Vec<double, J::rows> const lambda = detail::multiplier(e, gap, data, x.lambda);
-    Vec6 const w = -gap.Gb.transpose() * lambda;
+    Vec6 w;
+    if constexpr (LinearInCoordinates<typename J::PolicyType>)
+      w = -detail::linear_wrench(model.linear_rows()[std::size_t(e.linear)], x);
+    else
+      w = -gap.Gb.transpose() * detail::multiplier(e, gap, data, x.lambda);
     Wrench<double> wrench{w.head<3>(), w.tail<3>()};
     if (axes == ReactionAxes::joint) {
       Mat3 const& axes_of_b = data.markers[std::size_t(e.b)].frame.A;
@@ -83,7 +105,7 @@ Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& 
 }
 
 /// Counts of a model as thesis Table 3.4 makes them: a unit quaternion counts four coordinates and one
-/// constraint.
+/// constraint. What policies eliminate is not counted.
 struct Census {
   Index coordinates = 0;
   Index constraints = 0;
@@ -94,9 +116,14 @@ struct Census {
 
 template <class M>
 Census census(M const& model) {
-  Index const constraints = model.rows() + model.coordinates() - model.speeds();
-  return {model.coordinates(), constraints, model.speeds(), model.rows(),
-          model.coordinates() - constraints};
+  auto const count = [](auto const& of) {
+    Index const constraints = of.rows() + of.coordinates() - of.speeds();
+    return Census{of.coordinates(), constraints, of.speeds(), of.rows(), of.coordinates() - constraints};
+  };
+  if constexpr (M::eliminates)
+    return count(Reduction(model));
+  else
+    return count(model);
 }
 
 /// Largest |Φ|, |Φ̇| and |Φ̈| of a state.

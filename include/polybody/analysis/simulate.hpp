@@ -54,29 +54,37 @@ struct RunReport {
 /// The state given by the caller is moved along. Not copyable; begin() once.
 template <class M, class I, class Solver = DefaultSolver>
 class Simulation {
+  using Stepped = SteppedModel<M>;
   static_assert(I::accepts_rows || !M::may_have_rows,
                 "This explicit integrator has no stabilisation, but joints with the Constraint policy add rows. Use "
                 "it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
 
  public:
   Simulation(M const& model, State& x, I integrator, RunOptions options)
-      : system_(std::make_unique<System<M>>(model)), x_(&x), integrator_(std::move(integrator)),
+      : system_(std::make_unique<System<Stepped>>(model)), x_(&x), integrator_(std::move(integrator)),
         options_(std::move(options)), workspace_(integrator_.template workspace<Solver>(*system_)) {
     integrator_.check();
     check_options();
     if (options_.threads != 1) system_->use_threads(options_.threads);
     require_fitting(model, x);
     collect_corners();
-    require_assembled(*system_, x, options_.assembly_tolerance);
+    require_assembled(whole(), x, options_.assembly_tolerance);
+    if constexpr (M::eliminates) {
+      State start = x;  // joint speeds are read off speeds that keep to the joints
+      ForwardDynamics<M, Solver>(whole()).project_velocities(whole(), start.q, start.v, start.t);
+      narrow_ = system_->narrow(start);
+    }
     h_ = std::min<double>(options_.step, largest_step());
     pass_corners();
-    for (Event const& event : options_.events) sides_.push_back(side(event, x));
+    for (Event const& event : options_.events) sides_.push_back(side(event, stepped()));
     restart();
+    show();
   }
 
   State const& state() const { return *x_; }
   RunReport const& report() const { return report_; }
-  System<M>& system() { return *system_; }
+  /// What is stepped: the model, or what its policies leave of it.
+  System<Stepped>& system() { return *system_; }
   bool done() const { return report_.stopped || x_->t >= options_.until; }
 
   /// Takes one step: to the next grid point, or to a corner or event before it. When it throws, the state is as
@@ -85,18 +93,20 @@ class Simulation {
     auto const [target, h, lands, jumps] = plan();
     bool const crumb = h < 0.01 * h_;  // one is left all the same: after a corner or an event
     State before;
-    if (jumps || crumb || !options_.events.empty()) before = *x_;
-    StepReport const report = integrator_.step(*system_, *x_, h, workspace_);
+    if (jumps || crumb || !options_.events.empty()) before = stepped();
+    StepReport const report = integrator_.step(*system_, stepped(), h, workspace_);
     bool const reached = lands && report.taken == h;
-    if (reached) x_->t = target;
+    if (reached) stepped().t = target;
     account(report, reached);
     try {
       bool const met = !options_.events.empty() && meet_events(before, report.taken);
-      bool const at_corner = jumps && x_->t == target;
+      bool const at_corner = jumps && stepped().t == target;
       if (at_corner) pass_corners();
       if (met || at_corner || crumb) restart();
+      show();
     } catch (...) {
-      *x_ = before;
+      stepped() = before;
+      show();
       throw;
     }
   }
@@ -132,6 +142,24 @@ class Simulation {
   }
 
  private:
+  /// The state that is stepped: the user's, or the narrow one of which `show` makes the user's.
+  State& stepped() {
+    if constexpr (M::eliminates)
+      return narrow_;
+    else
+      return *x_;
+  }
+  State const& stepped() const { return const_cast<Simulation*>(this)->stepped(); }
+  void show() {
+    if constexpr (M::eliminates) system_->widen(narrow_, *x_);
+  }
+  System<M>& whole() {
+    if constexpr (M::eliminates)
+      return system_->whole();
+    else
+      return *system_;
+  }
+
   double largest_step() const { return options_.largest_step.value_or(std::numeric_limits<double>::infinity()); }
 
   void check_options() const {
@@ -163,10 +191,10 @@ class Simulation {
   /// Leaves behind the corners up to now and those that only rounding sets apart from it (0.3 and 0.1 + 0.2 are
   /// one); the clock goes with them.
   void pass_corners() {
-    double const crumb = 1e-9 * options_.step + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(x_->t);
-    while (next_corner_ < corners_.size() && corners_[next_corner_] <= x_->t + crumb)
-      x_->t = std::max(x_->t, corners_[next_corner_++]);
-    if (options_.until - x_->t <= crumb) x_->t = options_.until;
+    double const crumb = 1e-9 * options_.step + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(stepped().t);
+    while (next_corner_ < corners_.size() && corners_[next_corner_] <= stepped().t + crumb)
+      stepped().t = std::max(stepped().t, corners_[next_corner_++]);
+    if (options_.until - stepped().t <= crumb) stepped().t = options_.until;
   }
 
   /// The next step: where it may at most go, its length, whether it goes there, and whether a corner is there.
@@ -176,7 +204,7 @@ class Simulation {
   };
   Plan plan() const {
     bool const corner = next_corner_ < corners_.size();
-    double const target = corner ? corners_[next_corner_] : double(options_.until), left = target - x_->t;
+    double const target = corner ? corners_[next_corner_] : double(options_.until), left = target - stepped().t;
     // rather a longer step than a crumb left over: over its square, rows would be rounding errors
     bool const lands = 1.01 * h_ >= left;
     return {target, !lands ? h_ : corner ? until_just_before(target) : left, lands, lands && corner};
@@ -184,23 +212,20 @@ class Simulation {
 
   /// A law that changes at a corner still holds its old value just before it: the length of a step that ends there.
   double until_just_before(double corner) const {
-    double h = std::nextafter(corner, x_->t) - x_->t;
-    while (x_->t + h >= corner) h = std::nextafter(h, 0.0);
+    double h = std::nextafter(corner, stepped().t) - stepped().t;
+    while (stepped().t + h >= corner) h = std::nextafter(h, 0.0);
     return h;
   }
 
   /// After a start, corner or event: speeds onto the rows, then consistent accelerations. The integrator may look
   /// ahead as far as the next step goes, not across a corner.
   void restart() {
-    State fresh = *x_;  // x stays as it is when the start fails
+    State fresh = stepped();  // which stays as it is when the start fails
     workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
     integrator_.start(*system_, fresh, done() ? h_ : plan().h, workspace_);
-    *x_ = std::move(fresh);
-    report_.redundant.clear();
-    for (Index const i : workspace_.forward.redundant_rows()) {
-      std::string const name = system_->name_of(i);
-      if (report_.redundant.empty() || report_.redundant.back() != name) report_.redundant.push_back(name);
-    }
+    stepped() = std::move(fresh);
+    report_.redundant = workspace_.forward.redundant(*system_);
+    if constexpr (M::eliminates) system_->add_redundant(report_.redundant);
   }
 
   void account(StepReport const& r, bool shortened) {
@@ -214,9 +239,20 @@ class Simulation {
       h_ = std::min(shortened ? std::max(r.next, h_) : r.next, largest_step());
   }
 
+  /// The user's state of a stepped one.
+  State const& seen(State const& x) {
+    if constexpr (M::eliminates) {
+      seen_ = *x_;
+      system_->widen(x, seen_);
+      return seen_;
+    } else {
+      return x;
+    }
+  }
+
   /// The sign of the event's value. \throws NonFinite.
-  static int side(Event const& event, State const& x) {
-    double const y = event.value(x);
+  int side(Event const& event, State const& x) {
+    double const y = event.value(seen(x));
     if (!std::isfinite(y))
       throw NonFinite("The event \"" + event.name + "\" is not finite at t = " + number(x.t) + " s.");
     return (y > 0.0) - (y < 0.0);
@@ -235,10 +271,10 @@ class Simulation {
     auto const passed = [&](std::size_t i, State const& x) {
       return sides_[i] != 0 && side(options_.events[i], x) != sides_[i];
     };
-    State first = *x_;
+    State first = stepped();
     bool met = false;
     for (std::size_t i = 0; i < sides_.size(); ++i) {
-      if (!passed(i, *x_)) continue;
+      if (!passed(i, stepped())) continue;
       met = true;
       double lo = 0.0, hi = taken;
       while (hi - lo > options_.events[i].tolerance) {
@@ -253,23 +289,24 @@ class Simulation {
         if (trial.t < first.t) first = std::move(trial);
       }
     }
-    if (met) *x_ = std::move(first);
+    if (met) stepped() = std::move(first);
     for (std::size_t i = 0; i < sides_.size(); ++i) {
       Event const& event = options_.events[i];
-      if (met && passed(i, *x_)) {
-        report_.events.push_back({event.name, x_->t});
+      if (met && passed(i, stepped())) {
+        report_.events.push_back({event.name, stepped().t});
         report_.stopped = report_.stopped || event.stops;
       }
-      sides_[i] = side(event, *x_);
+      sides_[i] = side(event, stepped());
     }
     return met;
   }
 
-  std::unique_ptr<System<M>> system_;  // workspaces refer to it
+  std::unique_ptr<System<Stepped>> system_;  // workspaces refer to it
   State* x_;
+  State narrow_, seen_;  // of models with eliminating policies
   I integrator_;
   RunOptions options_;
-  decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System<M>&>())) workspace_;
+  decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System<Stepped>&>())) workspace_;
   std::vector<double> corners_;
   std::size_t next_corner_ = 0;
   std::vector<int> sides_;  // of the events at the end of the last step: each is met once, however a restart rounds

@@ -25,6 +25,7 @@ class AncfBeam : public NodeChain<12> {
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
   using PointMap = Mat<double, 3, element_columns>;
+  static constexpr int gradients = 3;  ///< that are linear in the coordinates
 
   /// A material point: element, place ξ ∈ [0, 1] on it, and distances y, z off the axis in the reference [m].
   struct Point {

@@ -26,6 +26,8 @@ class AncfCable : public NodeChain<6> {
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = Mat<double, 12, 12>;
+  using PointMap = Mat<double, 3, 12>;
+  static constexpr int gradients = 1;  ///< that are linear in the coordinates
 
   /// A material point of the axis: element, and place ξ ∈ [0, 1] on it.
   struct Point {
@@ -129,6 +131,11 @@ class AncfCable : public NodeChain<6> {
     return -part<12>(q, first_column(e)).dot(weight);
   }
 
+  /// r = S e at `p`, 3×12, constant; e are the coordinates from `first_column(p)`.
+  PointMap position_map(Point const& p) const { return map_of(hermite_shape(p.xi, l_).s); }
+  /// r′ = S′ e at `p`, 3×12, constant: the one gradient of a cable, α = 0.
+  PointMap gradient_map(Point const& p, int) const { return map_of(hermite_shape(p.xi, l_).ds); }
+
   /// At `p`, in the axes of a marker there (see sections.hpp): a cable knows axial strain and curvature, nothing of shear and torsion.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     Element<double> const x = element_of(p, q);
@@ -218,6 +225,12 @@ class AncfCable : public NodeChain<6> {
     }
   }
 
+  static PointMap map_of(std::array<double, 4> const& s) {
+    PointMap map = PointMap::Zero();
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) map(k, 3 * i + k) = s[std::size_t(i)];
+    return map;
+  }
   Element<double> element_of(Point const& p, std::span<double const> q) const { return part<12>(q, first_column(p)); }
   Vec6 in_section_axes(Point const& p, Element<double> const& x, double along, Vec3 const& bending) const {
     ShapeValues<4> const s = hermite_shape(p.xi, l_);

@@ -17,6 +17,25 @@ auto part(std::span<T> x, Index first) {
   return Map(x.data() + first);
 }
 
+/// How a rigid body whose pose a joint may give writes it: coordinates and speeds.
+enum class RigidLayout : unsigned char {
+  quaternion,  ///< (r, unit quaternion) and (ṙ, Ω in body axes)
+  plane        ///< (x, y, θ) and their rates
+};
+
+/// A rigid body that says how it writes its pose, from its centre of mass.
+template <class B>
+concept HasRigidLayout = requires {
+  { B::layout } -> std::convertible_to<RigidLayout>;
+};
+
+/// A body whose points are linear in its coordinates, r = S e with constant S; and so are so many of the gradients r_α.
+template <class B>
+concept HasLinearPoints = requires(B const b, typename B::Point p) {
+  { B::gradients } -> std::convertible_to<int>;
+  b.position_map(p);
+};
+
 /// A body is made of elements: fixed-size units that yield inertia, force and tangent. Spans cover the whole
 /// body; element e touches the columns [first_column(e), first_column(e) + element_columns). A body whose size is known at
 /// run time only says `element_columns = Eigen::Dynamic`: it is one element, and touches all its columns.

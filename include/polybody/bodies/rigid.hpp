@@ -154,6 +154,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = 6;
   static constexpr int point_columns = 6;
+  static constexpr RigidLayout layout = RigidLayout::quaternion;
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 

@@ -34,7 +34,7 @@ struct AlphaMethod {
     VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
     VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
     VecX back, rate;  ///< of a stabilised step: what μ moves, and a vector by rows
-    Solver solver;
+    TangentSolver<M, Solver> solver;
     ForwardDynamics<M, Solver> forward;
     bool factored = false;
     bool second_order = false;
@@ -48,9 +48,7 @@ struct AlphaMethod {
           ahead(v0), back(v0), rate(lambda), forward(s) {}
 
     void analyse(System<M>& s, SecondOrder second) {
-      PatternSink pattern;
-      s.tangent({1.0, 1.0, 1.0}, second, lambda, pattern);
-      solver.analyse(s.size(), pattern.blocks);
+      solver.analyse(s, second, lambda);
       second_order = second == SecondOrder::included;
       factored = false;
     }
@@ -94,10 +92,8 @@ struct AlphaMethod {
     double const mass = (1.0 - alpha_m) / (1.0 - alpha_f);
     w.h_factored = h;
     w.age = 0;
-    return write_and_factor(w.solver, [&](Solver& sink) {
-      system.tangent({mass, h * gamma, beta * h * h}, w.second_order ? SecondOrder::included : SecondOrder::omitted,
-                     lambda, sink);
-    });
+    return w.solver.factor(system, {mass, h * gamma, beta * h * h},
+                           w.second_order ? SecondOrder::included : SecondOrder::omitted, lambda);
   }
 
   /// One step from x; x changes only when Newton converged.
@@ -155,7 +151,7 @@ struct AlphaMethod {
         return bad < 0;
       }
       double solve() {
-        w.solver.solve(w.rhs, w.y);
+        w.solver.solve(system, w.rhs, w.y);
         bool const finite = w.y.allFinite();
         if (two_sets && finite) {
           w.back = s * w.y.head(nv);

@@ -20,10 +20,10 @@ struct CoordinatePartitioning {
 
   struct Scratch {
     PartitionedRows rows;
-    VecX phi, rate, delta, next;
+    VecX phi, rate, column, delta, next;
     template <class M>
     explicit Scratch(System<M> const& s)
-        : rows(s.rows(), s.speeds()), phi(VecX::Zero(s.rows())), rate(phi), delta(VecX::Zero(s.speeds())),
+        : rows(s.rows(), s.speeds()), phi(VecX::Zero(s.rows())), rate(phi), column(phi), delta(VecX::Zero(s.speeds())),
           next(VecX::Zero(s.coordinates())) {}
   };
 
@@ -77,7 +77,17 @@ struct CoordinatePartitioning {
   template <class M>
   static void write(System<M>& system, Scratch& s) {
     s.rows.begin();
-    system.tangent({}, SecondOrder::omitted, s.phi, s.rows);
+    if constexpr (System<M>::solves_as_it_is && !System<M>::solves_by_bodies) {
+      system.tangent({}, SecondOrder::omitted, s.phi, s.rows);
+    } else {  // the tangent is in other unknowns
+      s.delta.setZero();
+      for (Index j = 0; j < system.speeds(); ++j) {
+        s.delta[j] = 1.0;
+        system.rows_times(s.delta, s.column);
+        s.delta[j] = 0.0;
+        s.rows.add(system.speeds(), j, s.column);
+      }
+    }
     for (Index i = 0; i < system.rows(); ++i) {
       s.rows.right(0, i) = -s.phi[i];
       s.rows.right(1, i) = -s.rate[i];

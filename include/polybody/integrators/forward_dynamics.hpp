@@ -6,7 +6,7 @@
 #include <span>
 
 #include <polybody/solvers/default_solver.hpp>
-#include <polybody/system/system.hpp>
+#include <polybody/solvers/tangent_solver.hpp>
 
 namespace polybody {
 
@@ -24,9 +24,7 @@ class ForwardDynamics {
         r_(VecX::Zero(system.speeds())), phi_(VecX::Zero(system.rows())), open_(phi_), rhs_(VecX::Zero(system.size())),
         x_(VecX::Zero(system.size())), delta_(VecX::Zero(system.speeds())),
         next_(VecX::Zero(system.coordinates())) {
-    PatternSink pattern;
-    system.tangent({.mass = 1.0}, SecondOrder::omitted, zero_lambda_, pattern);
-    solver_.analyse(system.size(), pattern.blocks);
+    solver_.analyse(system, SecondOrder::omitted, zero_lambda_);
   }
 
   /// M a + Gᵀλ = f, G a = −γ − what is fed back, at (q, v, t). \throws LinearSolverSingular, NonFinite.
@@ -101,22 +99,22 @@ class ForwardDynamics {
     out = x_.head(system.speeds());
   }
 
-  /// Unknowns (from `speeds()` on: rows) that repeat others, as of the last factorisation: their multipliers are not unique and are
-  /// taken as zero. Empty for solvers that do not tell.
-  std::span<Index const> redundant_rows() const {
-    if constexpr (requires { solver_.dropped(); })
-      return solver_.dropped();
-    else
-      return {};
+  /// Names of the joints and bodies whose equations repeat others, as of the last factorisation: their multipliers are not unique and are
+  /// taken as zero.
+  std::vector<std::string> redundant(System<M> const& system) const {
+    std::vector<std::string> names;
+    for (Index const i : solver_.dropped()) {
+      std::string name = system.name_of_equation(i);
+      if (names.empty() || names.back() != name) names.push_back(std::move(name));
+    }
+    return names;
   }
 
  private:
   void factor(System<M>& system) {
     if (M::constant_mass && system.rows() == 0 && factored_) return;
-    Index const bad = write_and_factor(solver_, [&](Solver& sink) {
-      system.tangent({.mass = 1.0}, SecondOrder::omitted, zero_lambda_, sink);
-    });
-    if (bad >= 0) singular(system, bad);
+    Index const bad = solver_.factor(system, {.mass = 1.0}, SecondOrder::omitted, zero_lambda_);
+    if (bad >= 0) singular(system, system.name_of_equation(bad));
     factored_ = true;
   }
 
@@ -125,19 +123,19 @@ class ForwardDynamics {
     rhs_.head(system.speeds()) = r_scale * r_;
     rhs_.tail(system.rows()) = phi_scale * phi_;
     if (r_scale == 0.0) rhs_.head(system.speeds()).setZero();
-    solver_.solve(rhs_, x_);
+    solver_.solve(system, rhs_, x_);
     for (Index i = 0; i < x_.size(); ++i)
-      if (!std::isfinite(x_[i])) singular(system, i);
+      if (!std::isfinite(x_[i])) singular(system, system.name_of(i));
   }
 
-  [[noreturn]] static void singular(System<M> const& system, Index i) {
+  [[noreturn]] static void singular(System<M> const& system, std::string const& name) {
     throw LinearSolverSingular(
         "The equations of motion have no unique acceleration at t = " + number(system.time()) +
-        " s; the pivot is lost at " + system.name_of(i) +
+        " s; the pivot is lost at " + name +
         ". Look for a joint that repeats another, or a body without inertia that is free to move.");
   }
 
-  Solver solver_;
+  TangentSolver<M, Solver> solver_;
   bool factored_ = false;
   VecX zero_a_, zero_lambda_, r_, phi_, open_, rhs_, x_, delta_, next_;
 };

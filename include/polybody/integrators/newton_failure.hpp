@@ -4,7 +4,7 @@
 
 namespace polybody::detail {
 
-/// Throws what says why Newton's method failed in the step of integrator `name` to time t. `bad` is the unknown without a
+/// Throws what says why Newton's method failed in the step of integrator `name` to time t. `bad` is the equation without a
 /// pivot, −1 where none is known; `rhs` is the right-hand side, of one stage after another.
 /// \throws LinearSolverSingular, NonFinite, NewtonStalled.
 template <class M>
@@ -13,7 +13,8 @@ template <class M>
   std::string const when = " at t = " + number(t) + " s";
   auto const owner = [&](Index i) { return system.name_of(i % system.size()); };
   if (report.result == NewtonResult::singular)
-    throw LinearSolverSingular(name + ": the tangent is singular" + when + ", first at " + owner(std::max<Index>(bad, 0)) +
+    throw LinearSolverSingular(name + ": the tangent is singular" + when + ", first at " +
+                               system.name_of_equation(std::max<Index>(bad, 0) % system.equations()) +
                                ". Look for a joint that repeats another, or a free body without inertia.");
   if (report.result == NewtonResult::not_finite) {
     Index i = 0;

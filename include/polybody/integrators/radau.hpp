@@ -56,7 +56,7 @@ struct Radau {
   struct Workspace {
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
     VecX q, r, phi, gamma, next, rhs, y;
-    AutoLu solver;
+    TangentSolver<M, AutoLu> solver;
     ForwardDynamics<M, Solver> forward;
     Projection::Scratch projected;
     bool factored = false;
@@ -72,9 +72,7 @@ struct Radau {
       delta.fill(r);
       rate.fill(r);
       lambda.fill(phi);
-      PatternSink pattern;
-      write(s, 1.0, pattern);
-      solver.analyse(3 * s.size(), pattern.blocks);
+      solver.analyse(s, 3, [&](PatternSink& pattern) { write(s, 1.0, pattern); });
     }
 
     /// The matrix of Newton's method where `s` was evaluated last: block (i, j) is
@@ -84,7 +82,7 @@ struct Radau {
       using T = detail::RadauTableau;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
-          detail::StageSink<Sink> stage{sink, i * s.size(), j * s.size(), s.speeds()};
+          detail::StageSink<Sink> stage{sink, i * s.equations(), j * s.equations(), s.equation_speeds()};
           s.tangent({i == j ? 1.0 : 0.0, h * T::a[i][j], h * h * T::squared(i, j)}, SecondOrder::omitted, phi, stage);
         }
     }
@@ -152,11 +150,11 @@ struct Radau {
       bool refactor() {
         evaluate_stage(1);
         w.h_factored = h;
-        bad = write_and_factor(w.solver, [&](AutoLu& sink) { w.write(system, h, sink); });
+        bad = w.solver.factor(system, [&](auto& sink) { w.write(system, h, sink); });
         return bad < 0;
       }
       double solve() {
-        w.solver.solve(w.rhs, w.y);
+        w.solver.solve(system, w.rhs, w.y);
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));
         double change = w.unsettled / (h * h);
         for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), nv).norm());

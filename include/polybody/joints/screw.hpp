@@ -1,5 +1,6 @@
 #pragma once
 #include <polybody/joints/angle.hpp>
+#include <polybody/joints/joint_motion.hpp>
 
 namespace polybody {
 
@@ -16,6 +17,7 @@ struct Screw {
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
 
   Mat3 triad() const { return polybody::rows::triad_about(axis, "Screw: the axis"); }
+  JointMotions motions() const { return {.list = {JointMotion{JointMotion::Kind::screw, 2, pitch}}, .count = 1}; }
   void check(std::string const& what) const {
     if (!std::isfinite(pitch) || pitch == 0.0)
       throw InvalidInput(what + ": the pitch must be finite and not zero, but is " + number(pitch) +

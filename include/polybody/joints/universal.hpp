@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/joints/joint_motion.hpp>
 #include <polybody/joints/rows.hpp>
 
 namespace polybody {
@@ -17,6 +18,8 @@ struct Universal {
   Vec3 second = Vec3::UnitY();  ///< (3) unit vector b₃, perpendicular to it
 
   Mat3 triad() const { return polybody::rows::triad_of(first, second, "Universal"); }
+  /// About a₁, then about b₃.
+  JointMotions motions() const { return {.list = {JointMotion{JointMotion::Kind::turn, 0}, JointMotion{JointMotion::Kind::turn, 2}}, .count = 2}; }
 
   template <StateScalar T>
   Gap<4, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {

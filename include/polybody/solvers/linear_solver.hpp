@@ -5,29 +5,13 @@
 #include <algorithm>
 #include <vector>
 
-#include <polybody/math/types.hpp>
+#include <polybody/math/block_view.hpp>
 
 namespace polybody {
 
 /// Place of a block in the matrix.
 struct Block {
   Index row, col, rows, cols;
-};
-
-/// A dense block wherever it stands in memory, also transposed. Not an Eigen expression, so that a sink is compiled once
-/// and not for every shape of block.
-struct BlockView {
-  double const* data;
-  Index rows, cols, row_step, col_step;
-
-  template <class D>
-    requires(bool(D::Flags & Eigen::DirectAccessBit))
-  BlockView(Eigen::MatrixBase<D> const& m)  // NOLINT(google-explicit-constructor): a view of a matrix
-      : data(m.derived().data()), rows(m.rows()), cols(m.cols()),
-        row_step(D::IsRowMajor ? m.derived().outerStride() : m.derived().innerStride()),
-        col_step(D::IsRowMajor ? m.derived().innerStride() : m.derived().outerStride()) {}
-
-  double operator()(Index i, Index j) const { return data[i * row_step + j * col_step]; }
 };
 
 /// Records where blocks go, in the order in which they come.

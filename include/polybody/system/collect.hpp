@@ -76,6 +76,14 @@ void for_each_body_with_rows(M const& model, VecXOf<T> const& q, VecXOf<T> const
   });
 }
 
+/// Calls f(side, rows) for both bodies of all linear joints.
+template <class M, class F>
+void for_each_linear_side(M const& model, F&& f) {
+  for (LinearRows const& rows : model.linear_rows())
+    for (LinearSide const* const side : {&rows.a, &rows.b})
+      if (side->map.cols() > 0) f(*side, rows);
+}
+
 /// r = M a − f(q, v, t) + Gᵀλ (nv). Loads and gravity are scaled by `load_factor`.
 /// Needs `publish` and `enforce` at (q, v, t).
 template <class M, StateScalar T>
@@ -119,6 +127,10 @@ void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> 
     e.body.template own_map<T>(qe, map);
     r.template segment<B::element_columns>(e.v0) += map.transpose() * lambda.template segment<B::own_rows>(e.row);
   });
+  for_each_linear_side(model, [&](LinearSide const& side, LinearRows const& rows) {
+    for (Index j = 0; j < side.map.cols(); ++j)
+      for (Index i = 0; i < side.map.rows(); ++i) r[side.v0 + j] += lambda[rows.row + i] * side.map(i, j);
+  });
   for_each_gap(model, data, [&](auto const& e, auto const& gap) {
     constexpr int m = std::decay_t<decltype(gap)>::rows;
     Vec<T, m> const l = detail::multiplier(e, gap, data, lambda);
@@ -146,6 +158,23 @@ void for_each_row_block(M const& model, Data<M, T> const& data, F&& f) {
   });
 }
 
+namespace detail {
+/// Adds C x of all linear joints to the rows, x by coordinates or by speeds.
+template <class M, StateScalar T>
+void add_linear_rows(M const& model, VecXOf<T> const& x, Index LinearSide::* first, VecXOf<T>& out) {
+  for_each_linear_side(model, [&](LinearSide const& side, LinearRows const& rows) {
+    for (Index j = 0; j < side.map.cols(); ++j)
+      for (Index i = 0; i < side.map.rows(); ++i) out[rows.row + i] += x[side.*first + j] * side.map(i, j);
+  });
+}
+/// … after setting them to −c, or to zero.
+template <class M, StateScalar T>
+void set_linear_rows(M const& model, double constant, VecXOf<T>& out) {
+  for (LinearRows const& rows : model.linear_rows())
+    for (Index i = 0; i < rows.rows(); ++i) out[rows.row + i] = T(-constant * rows.constant[i]);
+}
+}  // namespace detail
+
 /// Φ (rows).
 template <class M, StateScalar T>
 void violation(M const& model, VecXOf<T> const& q, Data<M, T> const& data, VecXOf<T>& phi) {
@@ -157,6 +186,8 @@ void violation(M const& model, VecXOf<T> const& q, Data<M, T> const& data, VecXO
   for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const&, auto const&) {
     phi.template segment<std::decay_t<decltype(gap)>::rows>(e.row) = gap.g;
   });
+  detail::set_linear_rows(model, 1.0, phi);
+  detail::add_linear_rows(model, q, &LinearSide::q0, phi);
 }
 
 /// Φ̇ = G v + Φ_t (rows).
@@ -171,6 +202,8 @@ void violation_rate(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data
   for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const& a, auto const& b) {
     rate.template segment<std::decay_t<decltype(gap)>::rows>(e.row) = gap_rate(gap, a, b);
   });
+  detail::set_linear_rows(model, 0.0, rate);
+  detail::add_linear_rows(model, v, &LinearSide::v0, rate);
 }
 
 /// γ (rows): Φ̈ = G v̇ + γ, with Φ_tt and the frames' biases.
@@ -186,6 +219,7 @@ void acceleration_bias(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, d
     gamma.template segment<std::decay_t<decltype(gap)>::rows>(e.row) =
         e.joint.geometry.template gamma<T>(a.frame, b.frame, t) + gap.Ga * a.bias + gap.Gb * b.bias;
   });
+  detail::set_linear_rows(model, 0.0, gamma);
 }
 
 /// out = G b (rows), by the markers' Jacobians.
@@ -204,6 +238,7 @@ void rows_times(M const& model, VecX const& q, VecX const& b, Data<M, double> co
     rows += gap.Ga * a.push(b.data() + a.first);
     rows += gap.Gb * c.push(b.data() + c.first);
   });
+  detail::add_linear_rows(model, b, &LinearSide::v0, out);
 }
 
 }  // namespace polybody

@@ -90,11 +90,13 @@ void for_each_body_with_scratch(M const& model, D& data, F&& f) {
   });
 }
 
-/// Calls f(joint entry, gap) for every joint.
+/// Calls f(joint entry, gap) for every joint that has a gap: all but linear ones.
 template <class M, class D, class F>
 void for_each_gap(M const& model, D& data, F&& f) {
   detail::for_each_pool_beside(model.joint_pools(), data.gaps, [&](auto const& pool, auto& gaps) {
-    for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], gaps[i]);
+    using J = std::decay_t<decltype(pool.front().joint)>;
+    if constexpr (!LinearInCoordinates<typename J::PolicyType>)
+      for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], gaps[i]);
   });
 }
 

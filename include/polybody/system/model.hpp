@@ -10,6 +10,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/math/time_laws.hpp>
 #include <polybody/math/type_list.hpp>
+#include <polybody/system/linear_rows.hpp>
 #include <polybody/system/pools.hpp>
 #include <polybody/system/state.hpp>
 
@@ -35,8 +36,13 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <StateScalar T>
   using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;
 
-  /// Some joint type brings rows, so an explicit stepper needs a stabilisation.
-  static constexpr bool may_have_rows = (AddsRows<typename Js::PolicyType> || ... || (OwnsRows<Bs> || ... || false));
+  /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
+  static constexpr bool may_have_rows =
+      (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
+  /// Some joint type eliminates coordinates from a time step; and how.
+  static constexpr bool eliminates = (Eliminates<typename Js::PolicyType> || ...);
+  using Solution = detail::SolutionOf<typename Js::PolicyType...>;
+  static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);
   static constexpr bool constant_mass = (Bs::constant_mass && ...);
 
   explicit Model(Gravity const& gravity = {}) : gravity_(gravity), serial_(next_serial()) {}
@@ -66,12 +72,19 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b,
                            std::string name = "") {
     using G = typename J::Geometry;
+    using P = typename J::PolicyType;
     using Asks = typename J::Measured;
     static_assert(same_world(A::world, G::world) && same_world(B::world, G::world) &&
                       same_world(A::world, B::world),
                   "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
                   "belongs to both.");
-    static_assert(A::observes >= Asks::needs && B::observes >= needs_of_second<Asks>(),
+    static_assert(!MakesJointCoordinates<P> || HasMotions<G>,
+                  "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or Universal; a Distance "
+                  "or a Gear has none. Use Constraint for it.");
+    static_assert(!MakesJointCoordinates<P> || (detail::may_be_carried<A>() && detail::may_be_carried<B>()),
+                  "Recursive makes joint coordinates between rigid bodies and the ground: Rigid<> in space, planar::Rigid in the plane. "
+                  "Use another policy for joints of other bodies.");
+    static_assert(LinearInCoordinates<P> || (A::observes >= Asks::needs && B::observes >= needs_of_second<Asks>()),
                   "This joint needs more than the marker tells (a full frame, say, of a body that only "
                   "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
                   "Revolute about its tangent, with the cable's marker second.");
@@ -86,18 +99,27 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
       throw InvalidInput("\"" + name + "\": " + e.what());
     }
     if constexpr (requires { joint.geometry.check(name); }) joint.geometry.check("\"" + name + "\"");
-    if constexpr (AddsForce<typename J::PolicyType>) joint.policy.check("\"" + name + "\"");
+    if constexpr (AddsForce<P>) joint.policy.check("\"" + name + "\"");
     Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
-    if constexpr (B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)
+    if constexpr (!LinearInCoordinates<P> && B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)
       if (axes_b.col(0).cross(triad.col(2)).norm() > 1e-6)
         throw InvalidInput("\"" + name + "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
                            "reference configuration.");
     Index const pa = publish_at(a, axes_a.transpose() * triad);
     Index const pb = publish_at(b, axes_b.transpose() * triad);
     detail::JointEntry<J> entry{joint, pa, pb, -1, name};
-    if constexpr (AddsRows<typename J::PolicyType>) {
+    if constexpr (LinearInCoordinates<P>) {
+      LinearRows rows{.name = name, .row = rows_};
+      detail::fill_linear_rows<G>(linear_side(a, B::world, rows.a), linear_side(b, A::world, rows.b), triad.col(2), rows);
+      entry.linear = Index(linear_rows_.size());
+      entry.rows = rows.rows();
+      linear_rows_.push_back(std::move(rows));
+    } else if constexpr (AddsRows<P>) {
+      entry.rows = J::rows;
+    }
+    if constexpr (AddsRows<P>) {
       entry.row = rows_;
-      rows_ += J::rows;
+      rows_ += entry.rows;
     }
     pool.push_back(std::move(entry));
     return {serial_, Index(pool.size()) - 1, std::move(name)};
@@ -164,6 +186,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   JointPools const& joint_pools() const { return joints_; }
   ForcePools const& force_pools() const { return forces_; }
   std::vector<detail::GroundMarker> const& ground_markers() const { return ground_; }
+  std::vector<LinearRows> const& linear_rows() const { return linear_rows_; }
 
   /// \throws InvalidInput when the handle is of another model.
   template <OneOf<Bs...> B>
@@ -243,12 +266,26 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return markers_++;
   }
 
+  /// The linear point of a marker, and where its body stands; the ground takes the world of the other.
+  template <class B>
+  detail::LinearPoint linear_side(Marker<B> const& m, World other, LinearSide& side) const {
+    if constexpr (std::is_same_v<B, Ground>) {
+      return detail::linear_ground(m.point, other == World::plane ? 2 : 3);
+    } else {
+      auto const& e = std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)];
+      side.q0 = e.q0 + e.body.first_column(m.point);
+      side.v0 = e.v0 + e.body.first_column(m.point);
+      return detail::linear_point(e.body, m.point);
+    }
+  }
+
   Gravity gravity_;
   std::uint64_t serial_;
   BodyPools bodies_;
   JointPools joints_;
   ForcePools forces_;
   std::vector<detail::GroundMarker> ground_;
+  std::vector<LinearRows> linear_rows_;
   Index coordinates_ = 0, speeds_ = 0, rows_ = 0, markers_ = 0, jacobian_size_ = 0, count_bodies_ = 0;
 };
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include <polybody/bodies/body.hpp>
+#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/policies/recursive.hpp>
 #include <polybody/kinematics/marker.hpp>
 
 namespace polybody {
@@ -62,6 +64,8 @@ struct JointEntry {
   Index a, b;       ///< published markers
   Index row = -1;   ///< first row; −1 for a joint without rows
   std::string name;
+  Index rows = 0;    ///< how many
+  Index linear = -1; ///< of a linear joint: its place among the model's linear rows
 };
 
 template <class F>
@@ -70,6 +74,29 @@ struct ForceEntry {
   std::array<Index, F::markers> markers;
   std::string name;
 };
+
+/// A body that a joint may carry, or that may carry one.
+template <class B>
+constexpr bool may_be_carried() {
+  return std::is_same_v<B, Ground> || HasRigidLayout<B>;
+}
+
+/// How the joint coordinates of a model are solved for: what the first policy says that makes any.
+template <class... Ps>
+struct SolutionAmong {
+  using Type = void;
+};
+template <class P, class... Ps>
+struct SolutionAmong<P, Ps...> : SolutionAmong<Ps...> {};
+template <MakesJointCoordinates P, class... Ps>
+struct SolutionAmong<P, Ps...> {
+  using Type = typename P::Solution;
+  static_assert(((!MakesJointCoordinates<Ps> || std::is_same_v<typename SolutionAmong<Ps>::Type, void> ||
+                  std::is_same_v<typename SolutionAmong<Ps>::Type, Type>) && ...),
+                "The recursive joints of one model are solved for in one way.");
+};
+template <class... Ps>
+using SolutionOf = typename SolutionAmong<Ps...>::Type;
 
 /// Coordinates or speeds of one body.
 template <class Vector>

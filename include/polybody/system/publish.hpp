@@ -40,7 +40,9 @@ void publish(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data<M, T>&
 template <class M, StateScalar T>
 void enforce(M const& model, double t, Data<M, T>& data) {
   auto const over = [&](auto const& pool, auto& gaps) {
-    share(data.workers, Index(pool.size()), data.least_markers, [&](Index begin, Index end) {
+    using J = std::decay_t<decltype(pool.front().joint)>;
+    if constexpr (LinearInCoordinates<typename J::PolicyType>) return;
+    else share(data.workers, Index(pool.size()), data.least_markers, [&](Index begin, Index end) {
       for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
         auto const& e = pool[i];
         using Gap = std::decay_t<decltype(gaps[i])>;  // made where it stands: assigned, it would be copied

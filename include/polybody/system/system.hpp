@@ -9,6 +9,23 @@
 
 namespace polybody {
 
+namespace detail {
+template <class S>
+void require_finite_force(S const& system, VecX const& x) {
+  for (Index i = 0; i < x.size(); ++i)
+    if (!std::isfinite(x[i]))
+      throw NonFinite("A force on " + system.name_of(i) + " is not finite at t = " + number(system.time()) +
+                      " s. Look at the forces applied to it and at the state before.");
+}
+template <class S>
+void require_finite_rows(S const& system, VecX const& x) {
+  for (Index i = 0; i < x.size(); ++i)
+    if (!std::isfinite(x[i]))
+      throw NonFinite("The motion at " + system.name_of(system.speeds() + i) + " is not finite at t = " + number(system.time()) +
+                      " s. Look at the state before, or take a smaller step.");
+}
+}  // namespace detail
+
 /// A model with its scratch. `evaluate` sets the state at which everything else is asked.
 template <class M>
 class System {
@@ -93,7 +110,7 @@ class System {
           if (row >= e.row && row < e.row + B::own_rows) name = "body \"" + e.name + "\"";
       });
       model_->for_each_joint([&](auto const& e) {
-        if (e.row >= 0 && row >= e.row && row < e.row + std::decay_t<decltype(e.joint)>::rows)
+        if (e.row >= 0 && row >= e.row && row < e.row + e.rows)
           name = "joint \"" + e.name + "\"";
       });
     }
@@ -101,19 +118,21 @@ class System {
   }
 
   /// \throws NonFinite naming body and time when an entry of x (by speeds) is NaN or infinite.
-  void require_finite_force(VecX const& x) const {
-    for (Index i = 0; i < x.size(); ++i)
-      if (!std::isfinite(x[i]))
-        throw NonFinite("A force on " + name_of(i) + " is not finite at t = " + number(t_) +
-                        " s. Look at the forces applied to it and at the state before.");
-  }
+  void require_finite_force(VecX const& x) const { detail::require_finite_force(*this, x); }
   /// \throws NonFinite naming joint and time when an entry of x (by rows) is NaN or infinite.
-  void require_finite_rows(VecX const& x) const {
-    for (Index i = 0; i < x.size(); ++i)
-      if (!std::isfinite(x[i]))
-        throw NonFinite("The motion at " + name_of(speeds() + i) + " is not finite at t = " + number(t_) +
-                        " s. Look at the state before, or take a smaller step.");
-  }
+  void require_finite_rows(VecX const& x) const { detail::require_finite_rows(*this, x); }
+
+  /// Unknowns of a linear system of equations; those that stand for speeds come first. Here they are those of a time step.
+  Index equations() const { return size(); }
+  Index equation_speeds() const { return speeds(); }
+  std::string name_of_equation(Index i) const { return name_of(i); }
+  /// What goes between the two (see reduced_system.hpp): nothing.
+  struct Held {};
+  static constexpr bool solves_as_it_is = true;
+  static constexpr bool solves_by_bodies = false;
+  void hold(Held&) const {}
+  void spread(Held&, VecX const& rhs, VecX& out) const { out = rhs; }
+  void gather(Held&, VecX const& solution, VecX& out) const { out = solution; }
 
  private:
   M const* model_;

@@ -19,6 +19,7 @@ struct HermiteCable {
   static constexpr int node_columns = 4;
   static constexpr bool packs_pay = true;
   static constexpr std::array<int, 2> section_rows = {0, 5};
+  static constexpr int gradients = 1;  ///< that are linear in the coordinates
 
   static void check(BarConstants const&) {}
   static Vec4 reference_node(Vec2 const& origin, double angle, double s) {
@@ -34,6 +35,7 @@ struct HermiteCable {
     return n;
   }
   static Mat<double, 2, 8> position(double xi, double l) { return spread(hermite_shape(xi, l).s); }
+  static Mat<double, 2, 8> gradient(double xi, double l) { return spread(hermite_shape(xi, l).ds); }
   /// A cable has no rotary inertia.
   static Vec<double, 8> rotary(double, double) { return Vec<double, 8>::Zero(); }
 

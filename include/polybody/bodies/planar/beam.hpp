@@ -35,6 +35,8 @@ class Beam : public NodeChain<Theory::node_columns> {
   template <class T>
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
+  using PointMap = Mat<double, 2, element_columns>;
+  static constexpr int gradients = Theory::gradients;  ///< of the position, that are linear in the coordinates
 
   /// A material point: element, place ξ ∈ [0, 1] on it, and distance y off the axis [m].
   struct Point {
@@ -132,6 +134,19 @@ class Beam : public NodeChain<Theory::node_columns> {
   }
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     return -part<element_columns>(q, first_column(e)).dot(gravity_ * g.head<2>());
+  }
+
+  /// r = S e at `p`, 2×n, constant; e are the coordinates from `first_column(p)`. \throws InvalidInput off the axis, where r turns
+  /// with the section.
+  PointMap position_map(Point const& p) const {
+    if (p.y != 0.0) throw InvalidInput(std::string(Theory::name) + ": a point off the axis is not linear in the coordinates.");
+    return Theory::position(p.xi, l_);
+  }
+  /// r′ = S′ e at `p`, 2×n, constant.
+  PointMap gradient_map(Point const& p, int) const
+    requires(Theory::gradients > 0)
+  {
+    return Theory::gradient(p.xi, l_);
   }
 
   /// Position, angle and motion of the centre line at `p`.

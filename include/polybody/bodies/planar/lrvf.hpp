@@ -16,6 +16,7 @@ struct SimoVuQuoc {
   static constexpr int node_columns = 3;
   static constexpr bool packs_pay = false;  ///< most of its time goes into one sine and one cosine
   static constexpr std::array<int, 3> section_rows = {0, 1, 5};
+  static constexpr int gradients = 0;  ///< that are linear in the coordinates
 
   static void check(BarConstants const& c) {
     require_positive(c.GA, "planar::Lrvf: the shear stiffness GA of the bar");

@@ -14,6 +14,7 @@ class Rigid : public AddingCoordinates {
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = 3;
   static constexpr int point_columns = 3;
+  static constexpr RigidLayout layout = RigidLayout::plane;
 
   /// A material point, in body axes from the centre of mass [m].
   struct Point {

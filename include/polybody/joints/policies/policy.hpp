@@ -10,6 +10,15 @@ namespace polybody {
 template <class P>
 concept AddsRows = requires { requires P::adds_rows; };
 
+/// Its rows leave the equations of a time step together with the coordinates that they determine; all other questions to a model
+/// treat them as rows with multipliers.
+template <class P>
+concept Eliminates = AddsRows<P> && requires { requires P::eliminates; };
+
+/// Its rows stay in the equations of a time step.
+template <class P>
+concept KeepsRows = AddsRows<P> && !Eliminates<P>;
+
 /// Answers m rows by a force −Gᵀλ(g, ġ); the slope of λ is a matrix (m×m), full or diagonal.
 template <class P, int m>
 concept AnswersRows = requires(P const p, Vec<double, m> const g, std::string const what) {

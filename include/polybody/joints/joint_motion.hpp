@@ -1,0 +1,80 @@
+#pragma once
+/// \file
+/// The motion that a joint leaves, in coordinates: elementary motions made one after another that lead from frame a to frame b.
+/// Slides come before turns.
+
+#include <array>
+
+#include <polybody/joints/gap.hpp>
+
+namespace polybody {
+
+/// One elementary motion, along or about an axis of the frame as the earlier ones have left it.
+struct JointMotion {
+  enum class Kind : unsigned char {
+    slide,  ///< along the axis, one coordinate [m]
+    turn,   ///< about the axis, one coordinate [rad]
+    screw,  ///< about and along the axis, one coordinate [rad]
+    ball    ///< about all axes, a unit quaternion; speeds in the axes of frame b [rad/s]
+  };
+  Kind kind = Kind::slide;
+  int axis = 2;        ///< 0, 1 or 2
+  double pitch = 0.0;  ///< of a screw: slide for each radian [m/rad]
+
+  int coordinates() const { return kind == Kind::ball ? 4 : 1; }
+  int speeds() const { return kind == Kind::ball ? 3 : 1; }
+};
+
+/// The motions of a joint, from a to b.
+struct JointMotions {
+  std::array<JointMotion, 4> list = {};
+  int count = 0;
+
+  constexpr void add(JointMotion const& m) { list[std::size_t(count++)] = m; }
+  auto begin() const { return list.begin(); }
+  auto end() const { return list.begin() + count; }
+  int coordinates() const {
+    int n = 0;
+    for (JointMotion const& m : *this) n += m.coordinates();
+    return n;
+  }
+  int speeds() const {
+    int n = 0;
+    for (JointMotion const& m : *this) n += m.speeds();
+    return n;
+  }
+};
+
+namespace detail {
+/// Turns that `free` leaves, of three.
+constexpr int free_turns(Freedoms const& free) { return int(free[3]) + int(free[4]) + int(free[5]); }
+}  // namespace detail
+
+/// A geometry whose motion has coordinates: it says which (`motions()`), or what it leaves free has one turn, all or none.
+template <class G>
+concept HasMotions = requires(G const g) {
+  { g.motions() } -> std::same_as<JointMotions>;
+} || (requires { G::free; } && []() consteval {
+  if constexpr (requires { G::free; }) return detail::free_turns(G::free) != 2;
+  return false;
+}());
+
+template <HasMotions G>
+JointMotions motions_of(G const& geometry) {
+  if constexpr (requires { geometry.motions(); }) {
+    return geometry.motions();
+  } else {
+    JointMotions out;
+    for (int i = 0; i < 3; ++i)
+      if (G::free[std::size_t(i)]) out.add({JointMotion::Kind::slide, i});
+    if (detail::free_turns(G::free) == 3) {
+      out.add({JointMotion::Kind::ball, 0});
+    } else {
+      for (int i = 0; i < 3; ++i)
+        if (G::free[std::size_t(3 + i)]) out.add({JointMotion::Kind::turn, i});
+    }
+    return out;
+  }
+}
+
+}  // namespace polybody

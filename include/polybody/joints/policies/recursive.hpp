@@ -1,0 +1,39 @@
+#pragma once
+#include <polybody/joints/joint_motion.hpp>
+#include <polybody/joints/policies/policy.hpp>
+
+namespace polybody {
+
+/// Ways to solve the equations of joint coordinates, v = T u, v̇ = T u̇ + Ṫ u, that all give the same motion.
+namespace recursive {
+/// The sparse augmented system [M, Gᵀ; G, 0] of all bodies, whose solution is projected on the joints: T u̇ = v̇ − Ṫu
+/// [thesis Eq. 3.5]. Linear in the number of bodies with a sparse solver, for trees and loops alike.
+struct Augmented {};
+/// The dense reduced system TᵀM T u̇ = Tᵀ(f − M Ṫ u) [thesis Eq. 3.4]: for some dozen joints.
+struct Reduced {};
+/// TᵀM T u̇ = … by elimination body by body from the tips to the roots [Featherstone 1983]: linear in the number of bodies of a
+/// tree. Rows beside the tree are added one by one, so few of them.
+struct ArticulatedBody {};
+}  // namespace recursive
+
+/// Joint coordinates: body b is carried by body a, its pose is a's pose followed by the motion that the joint leaves, and a time step
+/// knows the coordinates of this motion alone. The joint's rows hold by construction; what they would have carried is worked out
+/// afterwards, so that multipliers and reactions are there as for `Constraint`. Joints form trees from the ground, or from a free
+/// body; a joint that closes a loop takes another policy. For rigid bodies [Shabana 2020, §3; thesis §3.3.2].
+template <class Path>
+struct RecursiveBy {
+  static constexpr char const* name = "Recursive";
+  static constexpr bool adds_rows = true;
+  static constexpr bool eliminates = true;
+  using Solution = Path;
+};
+
+using Recursive = RecursiveBy<recursive::Augmented>;
+
+/// A policy that makes joint coordinates.
+template <class P>
+concept MakesJointCoordinates = Eliminates<P> && requires { typename P::Solution; };
+
+static_assert(Policy<Recursive> && MakesJointCoordinates<Recursive>);
+
+}  // namespace polybody

@@ -1,0 +1,233 @@
+#pragma once
+/// \file
+/// Elimination of TᵀKT body by body from the tips of a tree to its roots [Featherstone 1983; 2008, §7], for any K whose blocks lie on
+/// bodies and between a body and its parent. With x = [v; ω] of a body about its centre of mass, x = X x_p + S u, a body's equation after
+/// those of all that it carries being K̂ x + C x_p = f, B and C the blocks between parent and body,
+///   D u = r + Sᵀf − L x_p,    D = SᵀK̂ S,  L = Sᵀ(K̂ X + C),  R = (XᵀK̂ + B) S,
+///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf).
+/// A root is carried by nothing, with S = 1. Rows that stay are added by their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
+
+#include <polybody/solvers/dense_lu.hpp>
+#include <polybody/system/reduction.hpp>
+
+namespace polybody {
+
+class ArticulatedBodySolver {
+ public:
+  /// Whose tree it is, and where its bodies are; both must outlive the use of the solver. Allocates the first time.
+  void attach(Reduction const& reduction, TreeState const& state) {
+    reduction_ = &reduction;
+    state_ = &state;
+    if (!nodes_.empty()) return;
+    std::vector<TreeBody> const& bodies = reduction.tree().bodies;
+    Index const m = reduction.rows();
+    nodes_.resize(bodies.size());
+    rows_.assign(std::size_t(m), std::vector<Vec6>(bodies.size(), Vec6::Zero()));
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      owner_.resize(std::max(owner_.size(), std::size_t(bodies[i].v0 + speeds_of(bodies[i]))), -1);
+      for (Index j = 0; j < speeds_of(bodies[i]); ++j) owner_[std::size_t(bodies[i].v0 + j)] = Index(i);
+    }
+    for (Index i = 0; i < m; ++i) {
+      std::size_t const row = std::size_t(reduction.rows_that_stay()[std::size_t(i)]);
+      row_of_.resize(std::max(row_of_.size(), row + 1), -1);
+      row_of_[row] = i;
+    }
+    answers_.setZero(reduction.speeds(), m);
+    schur_.setZero(m, m);
+    open_.setZero(m);
+    lambda_.setZero(m);
+    none_.setZero(reduction.speeds());
+    loops_.analyse(m, {});
+  }
+
+  void begin() {
+    for (Node& n : nodes_) n = {};
+    for (auto& row : rows_) std::fill(row.begin(), row.end(), Vec6(Vec6::Zero()));
+    misplaced_ = -1;
+  }
+
+  /// A block of the whole [K, Gᵀ; G, 0].
+  void add(Index row, Index col, BlockView const& b) {
+    Index const nv = Index(owner_.size());
+    if (col >= nv) return;  // the mirror of G
+    std::size_t const j = std::size_t(owner_[std::size_t(col)]);
+    std::size_t const i = row < nv ? std::size_t(owner_[std::size_t(row)]) : 0;
+    std::vector<TreeBody> const& bodies = reduction_->tree().bodies;
+    Mat<double, 6, 6>* const to = row >= nv                         ? nullptr
+                                  : i == j                          ? &nodes_[i].k
+                                  : bodies[i].parent == Index(j)    ? &nodes_[i].c
+                                  : bodies[j].parent == Index(i)    ? &nodes_[j].b
+                                                                    : nullptr;
+    for (Index l = 0; l < b.rows; ++l) {
+      Vec6 g = Vec6::Zero();  // row l by the world's axes
+      for (Index k = 0; k < b.cols; ++k) g += b(l, k) * axis_of(j, col + k - bodies[j].v0);
+      if (row >= nv) {
+        std::size_t const at = std::size_t(row + l - nv);
+        if (at < row_of_.size() && row_of_[at] >= 0) rows_[std::size_t(row_of_[at])][j] += g;
+      } else if (to) {
+        *to += axis_of(i, row + l - bodies[i].v0) * g.transpose();
+      } else if (!g.isZero(0.0)) {
+        misplaced_ = Index(std::max(i, j));
+      }
+    }
+  }
+
+  /// −1, or the unknown (of a time step) without a pivot. \throws InvalidInput for a block between bodies that are not neighbours.
+  Index factor() {
+    if (misplaced_ >= 0)
+      throw InvalidInput("recursive::ArticulatedBody: a force couples body \"" + reduction_->tree().bodies[std::size_t(misplaced_)].name +
+                         "\" with one that neither carries it nor is carried by it. Take recursive::Augmented.");
+    for (std::size_t i = nodes_.size(); i-- > 0;)
+      if (Index const bad = eliminate(i); bad >= 0) return bad;
+    Index const m = schur_.rows();
+    for (Index k = 0; k < m; ++k) {
+      for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].f = rows_[std::size_t(k)][i];
+      run(none_, answers_.col(k));
+      for (Index j = 0; j < m; ++j) schur_(j, k) = row_times(j);
+    }
+    loops_.begin();
+    if (m > 0) loops_.add(0, 0, schur_);
+    Index const bad = loops_.factor();
+    return bad < 0 ? -1 : reduction_->speeds() + bad;
+  }
+
+  /// [TᵀKT, (G T)ᵀ; G T, 0] x = rhs.
+  void solve(VecX const& rhs, VecX& x) {
+    Index const n = reduction_->speeds(), m = schur_.rows();
+    for (Node& node : nodes_) node.f.setZero();
+    run(rhs, x.head(n));
+    if (m == 0) return;
+    for (Index j = 0; j < m; ++j) open_[j] = row_times(j) - rhs[n + j];
+    loops_.solve(open_, lambda_);
+    x.tail(m) = lambda_;
+    for (Index k = 0; k < m; ++k) x.head(n) -= lambda_[k] * answers_.col(k);
+  }
+
+ private:
+  struct Node {
+    Mat<double, 6, 6> k = Mat<double, 6, 6>::Zero(), b = k, c = k;                       ///< K̂, B, C
+    Mat<double, 6, 6> s = k, inverse = k, left = k, right = k;                           ///< S, D⁻¹, L by rows, R by columns
+    Vec6 f = Vec6::Zero(), x = f, u = f;
+    int speeds = 0;
+  };
+
+  static Index speeds_of(TreeBody const& body) { return body.layout == RigidLayout::plane ? 3 : 6; }
+  /// What speed k of body i moves, as [v; ω] in world axes.
+  Vec6 axis_of(std::size_t i, Index k) const {
+    Vec6 axis = Vec6::Zero();
+    if (reduction_->tree().bodies[i].layout == RigidLayout::plane)
+      axis[k == 2 ? 5 : k] = 1.0;
+    else if (k < 3)
+      axis[k] = 1.0;
+    else
+      axis.tail<3>() = state_->frames[i].A.col(k - 3);
+    return axis;
+  }
+
+  Index eliminate(std::size_t i) {
+    Node& n = nodes_[i];
+    TreeBody const& body = reduction_->tree().bodies[i];
+    TreeFrame const& frame = state_->frames[i];
+    if (body.carried()) {
+      n.speeds = frame.speeds;
+      n.s = frame.s;
+    } else {
+      n.speeds = int(speeds_of(body));
+      for (int k = 0; k < n.speeds; ++k) n.s.col(k) = axis_of(i, k);
+    }
+    int const d = n.speeds;
+    Mat<double, 6, 6> const ks = n.k * n.s;
+    double largest = 0.0;
+    for (int r = 0; r < d; ++r)
+      for (int c = 0; c < d; ++c) largest = std::max(largest, std::abs(n.inverse(r, c) = n.s.col(r).dot(ks.col(c))));
+    if (int const bad = invert(n.inverse, d, largest); bad >= 0) return body.vn + bad;
+    if (body.parent < 0) return -1;
+    Mat<double, 6, 6> shift = Mat<double, 6, 6>::Identity();  // X
+    shift.topRightCorner<3, 3>() = -skew<double>(frame.arm);
+    Mat<double, 6, 6> const kx = n.k * shift + n.c;
+    for (int r = 0; r < d; ++r) {
+      n.left.row(r) = n.s.col(r).transpose() * kx;
+      n.right.col(r) = shift.transpose() * ks.col(r) + n.b * n.s.col(r);
+    }
+    Node& p = nodes_[std::size_t(body.parent)];
+    p.k += shift.transpose() * kx + n.b * shift;
+    for (int r = 0; r < d; ++r)
+      for (int c = 0; c < d; ++c) p.k -= n.inverse(r, c) * n.right.col(r) * n.left.row(c);
+    return -1;
+  }
+  /// The leading n×n inverted with pivoting. −1, or the column that has no pivot.
+  static int invert(Mat<double, 6, 6>& a, int n, double size) {
+    Mat<double, 6, 6> out = Mat<double, 6, 6>::Identity();
+    for (int k = 0; k < n; ++k) {
+      int best = k;
+      for (int r = k + 1; r < n; ++r)
+        if (std::abs(a(r, k)) > std::abs(a(best, k))) best = r;
+      if (!(std::abs(a(best, k)) > 1e-14 * size)) return k;
+      a.row(k).swap(a.row(best));
+      out.row(k).swap(out.row(best));
+      double const inverse = 1.0 / a(k, k);
+      a.row(k) *= inverse;
+      out.row(k) *= inverse;
+      for (int r = 0; r < n; ++r) {
+        double const f = a(r, k);
+        if (r == k || f == 0.0) continue;
+        a.row(r) -= f * a.row(k);
+        out.row(r) -= f * out.row(k);
+      }
+    }
+    a = out;
+    return -1;
+  }
+
+  /// u of all joints for generalised forces r and the nodes' f (used up); the nodes' x.
+  template <class Out>
+  void run(VecX const& r, Out&& u) {
+    std::vector<TreeBody> const& bodies = reduction_->tree().bodies;
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+      Node& n = nodes_[i];
+      Vec6 given = Vec6::Zero();
+      for (int k = 0; k < n.speeds; ++k) given[k] = r[bodies[i].vn + k] + n.s.col(k).dot(n.f);
+      n.u.setZero();
+      for (int c = 0; c < n.speeds; ++c)
+        for (int k = 0; k < n.speeds; ++k) n.u[k] += n.inverse(k, c) * given[c];  // D⁻¹ (r + Sᵀf)
+      if (bodies[i].parent < 0) continue;
+      Vec6& f = nodes_[std::size_t(bodies[i].parent)].f;
+      JointTree::add_back(n.f, state_->frames[i].arm, f);
+      for (int k = 0; k < n.speeds; ++k) f -= n.u[k] * n.right.col(k);
+    }
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      Node& n = nodes_[i];
+      n.x.setZero();
+      if (bodies[i].parent >= 0) {
+        Vec6 const& p = nodes_[std::size_t(bodies[i].parent)].x;
+        Vec6 by_parent = Vec6::Zero();
+        for (int k = 0; k < n.speeds; ++k) by_parent[k] = n.left.row(k).dot(p);
+        for (int c = 0; c < n.speeds; ++c)
+          for (int k = 0; k < n.speeds; ++k) n.u[k] -= n.inverse(k, c) * by_parent[c];
+        JointTree::add_carried(p, state_->frames[i].arm, n.x);
+      }
+      for (int k = 0; k < n.speeds; ++k) {
+        n.x += n.u[k] * n.s.col(k);
+        u[bodies[i].vn + k] = n.u[k];
+      }
+    }
+  }
+  /// G x of row j for the nodes' x.
+  double row_times(Index j) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) sum += rows_[std::size_t(j)][i].dot(nodes_[i].x);
+    return sum;
+  }
+
+  Reduction const* reduction_ = nullptr;
+  TreeState const* state_ = nullptr;
+  std::vector<Node> nodes_;
+  std::vector<Index> owner_, row_of_;       // body of a whole speed; narrow row of a whole one
+  std::vector<std::vector<Vec6>> rows_;  // G by bodies
+  MatX answers_, schur_;
+  VecX open_, lambda_, none_;
+  DenseLu loops_;
+  Index misplaced_ = -1;
+};
+
+}  // namespace polybody

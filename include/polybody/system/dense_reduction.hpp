@@ -1,0 +1,59 @@
+#pragma once
+#include <vector>
+
+#include <polybody/math/block_view.hpp>
+
+namespace polybody {
+
+/// [TᵀKT, (G T)ᵀ; G T, 0] as a dense matrix from the blocks of [K, Gᵀ; G, 0]: itself the sink of these. Of the rows those that stay
+/// are taken.
+class DenseReduction {
+ public:
+  DenseReduction() = default;
+  /// \param row_of where each row of the model goes among `rows`; −1 where it is left out
+  DenseReduction(Index whole_speeds, Index speeds, Index rows, std::vector<Index> row_of)
+      : row_of_(std::move(row_of)), speeds_(whole_speeds), transposed_(MatX::Zero(speeds, whole_speeds)),
+        k_(MatX::Zero(speeds, speeds)), g_(MatX::Zero(rows, speeds)), half_(VecX::Zero(speeds)) {}
+
+  /// Column j of T.
+  void set_column(Index j, VecX const& column) {
+    for (Index i = 0; i < column.size(); ++i) transposed_(j, i) = column[i];
+  }
+  void begin() {
+    k_.setZero();
+    g_.setZero();
+  }
+  void add(Index row, Index col, BlockView const& b) {
+    if (col >= speeds_) return;  // the mirror of G
+    for (Index i = 0; i < b.rows; ++i) {
+      Index const at = row + i;
+      Index const to = at < speeds_ ? at : row_of_[std::size_t(at - speeds_)];
+      if (to < 0) continue;
+      half_.setZero();  // row i of b T
+      for (Index j = 0; j < b.cols; ++j)
+        if (double const e = b(i, j); e != 0.0) half_ += e * transposed_.col(col + j);
+      if (at >= speeds_) {
+        for (Index j = 0; j < half_.size(); ++j) g_(to, j) += half_[j];
+        continue;
+      }
+      for (Index j = 0; j < half_.size(); ++j)
+        if (double const e = half_[j]; e != 0.0) k_.col(j) += e * transposed_.col(at);
+    }
+  }
+  /// The matrix, block by block.
+  template <class Sink>
+  void write(Sink& sink) const {
+    sink.add(0, 0, k_);
+    if (g_.rows() == 0) return;
+    sink.add(0, k_.rows(), g_.transpose());
+    sink.add(k_.rows(), 0, g_);
+  }
+
+ private:
+  std::vector<Index> row_of_;
+  Index speeds_ = 0;
+  MatX transposed_, k_, g_;
+  VecX half_;
+};
+
+}  // namespace polybody

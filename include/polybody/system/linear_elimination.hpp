@@ -1,0 +1,165 @@
+#pragma once
+/// \file
+/// Dependent coordinates of linear rows C e = c, e_d = Σ f_k e_k + c_d, by elimination once before a run [thesis §3.5.4]. A row is
+/// freed of the dependents of earlier rows, row'_k = row_k − Σ_j m_kj row'_j, and its largest entry p_k makes the next one. What the
+/// rows hold follows from the balance Cᵀλ = −r of the dependent coordinates, by the same numbers:
+///   p_k λ'_k = −r_dk − Σ_{j<k} row'_j,dk λ'_j,   λ_j = λ'_j − Σ_{k>j} m_kj λ_k.
+
+#include <map>
+
+#include <polybody/math/errors.hpp>
+#include <polybody/system/linear_rows.hpp>
+
+namespace polybody {
+
+class LinearElimination {
+ public:
+  /// An independent coordinate and its factor.
+  struct Term {
+    Index q, v;
+    double factor;
+  };
+  struct Dependent {
+    Index q, v;
+    double constant;
+    std::vector<Term> terms;
+  };
+
+  LinearElimination() = default;
+  /// \throws InconsistentStart when rows contradict each other; those that repeat others are left out.
+  explicit LinearElimination(std::vector<LinearRows> const& joints) {
+    for (LinearRows const& rows : joints)
+      for (Index i = 0; i < rows.rows(); ++i) take(rows, i);
+    for (std::size_t k = pivots_.size(); k-- > 0;) solve_for(k);
+  }
+
+  bool empty() const { return dependents_.empty(); }
+  std::vector<Dependent> const& dependents() const { return dependents_; }
+  /// Rows that repeat others.
+  std::vector<Index> const& redundant() const { return redundant_; }
+
+  /// Dependent coordinates, and speeds or accelerations, from the independent ones.
+  void spread_coordinates(VecX& q) const {
+    for (Dependent const& d : dependents_) {
+      double sum = d.constant;
+      for (Term const& t : d.terms) sum += t.factor * q[t.q];
+      q[d.q] = sum;
+    }
+  }
+  void spread_rates(VecX& v) const {
+    for (Dependent const& d : dependents_) {
+      double sum = 0.0;
+      for (Term const& t : d.terms) sum += t.factor * v[t.v];
+      v[d.v] = sum;
+    }
+  }
+  /// Forces of dependent coordinates go to those on which they depend.
+  void pull(VecX& r) const {
+    for (Dependent const& d : dependents_)
+      for (Term const& t : d.terms) r[t.v] += t.factor * r[d.v];
+  }
+  /// λ of the rows, for r = M a − f + … without them. Zero for rows that repeat others.
+  void multipliers(VecX const& r, VecX& lambda) const {
+    for (Index const i : redundant_) lambda[i] = 0.0;
+    for (std::size_t k = 0; k < pivots_.size(); ++k) {
+      Pivot const& p = pivots_[k];
+      double sum = -r[p.v];
+      for (auto const& [j, entry] : p.above) sum -= entry * lambda[pivots_[j].row];
+      lambda[p.row] = sum / p.entries.at(p.v);
+    }
+    for (std::size_t k = pivots_.size(); k-- > 0;)
+      for (auto const& [j, m] : pivots_[k].multiples) lambda[pivots_[j].row] -= m * lambda[pivots_[k].row];
+  }
+
+ private:
+  /// A row after elimination, and how it came about.
+  struct Pivot {
+    Index row;                                         ///< of the model
+    Index v = -1;                                      ///< its dependent
+    std::map<Index, double> entries;                   ///< by speeds
+    double constant;
+    std::vector<std::pair<std::size_t, double>> multiples = {};  ///< m_kj
+    std::vector<std::pair<std::size_t, double>> above = {};      ///< row'_j,dk of earlier rows
+  };
+
+  void take(LinearRows const& joint, Index i) {
+    Pivot p{.row = joint.row + i, .entries = {}, .constant = joint.constant[i]};
+    double scale = 0.0;
+    for (LinearSide const* const side : {&joint.a, &joint.b})
+      for (Index j = 0; j < side->map.cols(); ++j)
+        if (double const c = side->map(i, j); c != 0.0) {
+          p.entries[side->v0 + j] += c;
+          coordinate_[side->v0 + j] = side->q0 + j;
+          scale = std::max(scale, std::abs(c));
+        }
+    eliminate(p);
+    double largest = 0.0;
+    for (auto const& [v, entry] : p.entries)
+      if (std::abs(entry) >= largest * (1.0 - 1e-12)) {
+        largest = std::max(largest, std::abs(entry));
+        p.v = v;
+      }
+    if (largest <= 1e-10 * scale) {
+      if (std::abs(p.constant) > 1e-8)
+        throw InconsistentStart("\"" + joint.name + "\": its linear rows contradict those of other joints by " +
+                                number(std::abs(p.constant)) + ". Place the bodies so that the loop closes, or leave a joint out.");
+      redundant_.push_back(p.row);
+      return;
+    }
+    for (std::size_t j = 0; j < pivots_.size(); ++j)
+      if (auto const found = pivots_[j].entries.find(p.v); found != pivots_[j].entries.end()) p.above.emplace_back(j, found->second);
+    pivot_of_[p.v] = pivots_.size();
+    pivots_.push_back(std::move(p));
+  }
+
+  /// Frees a row of all dependents so far, the earliest first: a row' may bring in later ones only.
+  void eliminate(Pivot& p) const {
+    for (;;) {
+      std::size_t first = pivots_.size();
+      for (auto const& [v, entry] : p.entries)
+        if (auto const found = pivot_of_.find(v); found != pivot_of_.end()) first = std::min(first, found->second);
+      if (first == pivots_.size()) return;
+      Pivot const& by = pivots_[first];
+      double const m = p.entries.at(by.v) / by.entries.at(by.v);
+      p.multiples.emplace_back(first, m);
+      p.constant -= m * by.constant;
+      for (auto const& [v, entry] : by.entries) {
+        double& e = p.entries[v];
+        e -= m * entry;
+        if (v == by.v || std::abs(e) <= 1e-14 * std::abs(m * entry)) p.entries.erase(v);
+      }
+    }
+  }
+
+  /// e_d of pivot k by independent coordinates; later pivots are solved for.
+  void solve_for(std::size_t k) {
+    Pivot const& p = pivots_[k];
+    double const pivot = p.entries.at(p.v);
+    std::map<Index, double> factors;
+    double constant = p.constant / pivot;
+    for (auto const& [v, entry] : p.entries) {
+      if (v == p.v) continue;
+      auto const later = solved_.find(v);
+      if (later == solved_.end()) {
+        factors[v] -= entry / pivot;
+        continue;
+      }
+      Dependent const& d = dependents_[later->second];
+      constant -= entry / pivot * d.constant;
+      for (Term const& t : d.terms) factors[t.v] -= entry / pivot * t.factor;
+    }
+    Dependent d{coordinate_.at(p.v), p.v, constant, {}};
+    for (auto const& [v, factor] : factors)
+      if (factor != 0.0) d.terms.push_back({coordinate_.at(v), v, factor});
+    solved_[p.v] = dependents_.size();
+    dependents_.push_back(std::move(d));
+  }
+
+  std::vector<Pivot> pivots_;
+  std::vector<Dependent> dependents_;
+  std::vector<Index> redundant_;
+  std::map<Index, Index> coordinate_;        // of a speed
+  std::map<Index, std::size_t> pivot_of_, solved_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,155 @@
+#pragma once
+/// \file
+/// Rows of linear joints, Φ = C_a e_a + C_b e_b − c, with C constant [thesis §3.5.4].
+
+#include <string>
+#include <vector>
+
+#include <polybody/bodies/body.hpp>
+#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/kinematics/marker.hpp>
+
+namespace polybody {
+
+/// One body's part in linear rows.
+struct LinearSide {
+  Index q0 = 0, v0 = 0;  ///< the first coordinate and speed that it reads
+  MatX map;              ///< (rows × columns) C; no columns for the ground
+};
+
+/// The rows of one joint: first those of the position, then those of gradients.
+struct LinearRows {
+  std::string name;
+  Index row = 0;
+  LinearSide a, b;
+  VecX constant;                ///< (rows) c
+  Index positions = 0;          ///< rows of the position
+  /// A gradient that a and b share, or its component along an axis.
+  struct Gradient {
+    Index rows;
+    MatX map;    ///< of b
+    Vec3 fixed;  ///< what it is where b is the ground
+    Vec3 axis;   ///< (3) of a single row
+  };
+  std::vector<Gradient> gradients = {};
+  Index rows() const { return constant.size(); }
+};
+
+namespace detail {
+
+/// Position and gradients of a linear point, with their values in the reference.
+struct LinearPoint {
+  int size = 3;                     ///< components: three, or two in the plane
+  Index columns = 0;
+  MatX position;                    ///< (size × columns)
+  std::array<MatX, 3> gradients;
+  int gradient_count = 0;           ///< 3 and no columns for the ground
+  Vec3 at = Vec3::Zero();           ///< r
+  Mat3 J = Mat3::Identity();        ///< [r_x r_y r_z] in the reference, as far as there are gradients
+
+  bool complete() const { return gradient_count == 3; }
+  /// The map of J J₀⁻¹ w: what has become of the direction w of the reference. A body with r′ alone knows that of r′.
+  MatX carried(Vec3 const& w) const {
+    if (columns == 0) return MatX(size, 0);
+    if (!complete()) return gradients[0];
+    Vec3 const material = J.inverse() * w;
+    MatX map = MatX::Zero(size, columns);
+    for (int k = 0; k < 3; ++k) map += material[k] * gradients[std::size_t(k)];
+    return map;
+  }
+};
+
+template <class B>
+LinearPoint linear_point(B const& body, typename B::Point const& p) {
+  static_assert(HasLinearPoints<B>,
+                "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground are, Rigid, Ffr "
+                "and Lrvf in space are not. Use Constraint there.");
+  LinearPoint out;
+  out.size = B::world == World::plane ? 2 : 3;
+  std::vector<double> reference(std::size_t(body.coordinates()));
+  body.reference(reference);
+  auto const position = body.position_map(p);
+  out.columns = position.cols();
+  Eigen::Map<VecX const> const e(reference.data() + body.first_column(p), out.columns);
+  out.position = position;
+  out.at.head(out.size) = out.position * e;
+  out.gradient_count = B::gradients;
+  if constexpr (B::gradients > 0)
+    for (int k = 0; k < B::gradients; ++k) {
+      out.gradients[std::size_t(k)] = body.gradient_map(p, k);
+      out.J.col(k).head(out.size) = out.gradients[std::size_t(k)] * e;
+    }
+  return out;
+}
+
+template <class = void>  // compiled where it is used
+LinearPoint linear_ground(Placement const& placement, int size) {
+  LinearPoint out;
+  out.size = size;
+  out.position = MatX(size, 0);
+  out.gradient_count = 3;
+  out.at = placement.origin;
+  return out;
+}
+
+/// Appends Φ = (C_b e_b) − (C_a e_a) − c.
+template <class = void>
+void append_rows(LinearRows& rows, MatX const& a, MatX const& b, VecX const& c) {
+  Index const before = rows.rows(), more = c.size();
+  rows.a.map.conservativeResize(before + more, a.cols());
+  rows.b.map.conservativeResize(before + more, b.cols());
+  rows.constant.conservativeResize(before + more);
+  rows.a.map.bottomRows(more) = -a;
+  rows.b.map.bottomRows(more) = b;
+  rows.constant.tail(more) = c;
+}
+
+/// The rows of geometry G with its third axis along n between two linear points. \throws InvalidInput with the joint's name.
+template <class G>
+void fill_linear_rows(LinearPoint const& a, LinearPoint const& b, Vec3 const& n, LinearRows& rows) {
+  constexpr bool slides = G::free[0] || G::free[1] || G::free[2];
+  constexpr int turns = int(G::free[3]) + int(G::free[4]) + int(G::free[5]);
+  static_assert(!slides && turns != 2, "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
+  int const size = b.size;
+  rows.a.map.resize(0, a.columns);
+  rows.b.map.resize(0, b.columns);
+  // the ground's part stands in the constants: r_a − r_b of what has no columns
+  Vec3 const still = (a.columns == 0 ? a.at : Vec3(Vec3::Zero())) - (b.columns == 0 ? b.at : Vec3(Vec3::Zero()));
+  append_rows(rows, a.position, b.position, still.head(size));
+  rows.positions = size;
+  if constexpr (turns == 3 || (turns == 1 && G::world == World::plane)) return;
+  auto const share = [&](Vec3 const& of_a, Vec3 const& of_b, bool along_axis_only) {
+    MatX ca = a.carried(of_a), cb = b.carried(of_b);
+    VecX c = ((a.columns == 0 ? of_a : Vec3(Vec3::Zero())) - (b.columns == 0 ? of_b : Vec3(Vec3::Zero()))).head(size);
+    rows.gradients.push_back({along_axis_only ? 1 : Index(size), cb, of_b, n});
+    if (along_axis_only) {
+      Eigen::RowVectorXd const axis = n.head(size).transpose();
+      ca = (axis * ca).eval();
+      cb = (axis * cb).eval();
+      c = VecX::Constant(1, axis * c);
+    }
+    append_rows(rows, ca, cb, c);
+  };
+  if constexpr (turns == 1) {
+    if (a.complete() && b.complete()) {
+      share(n, n, false);
+    } else {
+      Vec3 const t_a = a.complete() ? b.J.col(0) : a.J.col(0), t_b = b.complete() ? a.J.col(0) : b.J.col(0);
+      if (std::abs(n.dot(t_a)) > 1e-9 || std::abs(n.dot(t_b)) > 1e-9)
+        throw InvalidInput("\"" + rows.name + "\": the pin of a cable must be perpendicular to it.");
+      share(t_a, t_b, true);
+    }
+  } else if (a.complete() && b.complete()) {
+    for (int k = 0; k < size; ++k) share(Vec3::Unit(k), Vec3::Unit(k), false);
+  } else if (a.gradient_count == 0 || b.gradient_count == 0) {
+    throw InvalidInput("\"" + rows.name + "\": AncfLinear welds bodies with position gradients. Use Constraint here.");
+  } else {
+    Vec3 const t = a.complete() ? b.J.col(0) : a.J.col(0);
+    if (!a.complete() && !b.complete() && (a.J.col(0) - b.J.col(0)).norm() > 1e-9)
+      throw InvalidInput("\"" + rows.name + "\": AncfLinear welds two cables only where one goes on as the other; weld a corner by Constraint.");
+    share(t, t, false);
+  }
+}
+
+}  // namespace detail
+}  // namespace polybody

@@ -1,0 +1,252 @@
+#pragma once
+/// \file
+/// Which unknowns of a model a time step has once policies have eliminated others: narrow vectors hold them, whole ones everything.
+///   q, v: coordinates of bodies that no joint carries, without those that depend on others; joint coordinates of carried bodies.
+///   rows: those of joints and bodies that stay.
+
+#include <algorithm>
+
+#include <polybody/system/joint_tree.hpp>
+#include <polybody/system/linear_elimination.hpp>
+#include <polybody/system/model.hpp>
+
+namespace polybody {
+
+/// Where one body stands in narrow vectors.
+struct NarrowPlace {
+  enum class Kind : unsigned char {
+    as_it_is,  ///< all its coordinates
+    reduced,   ///< some of them; they add
+    carried    ///< those of its joint
+  };
+  Kind kind = Kind::as_it_is;
+  Index q = 0, v = 0, coordinates = 0, speeds = 0;
+};
+
+class Reduction {
+ public:
+  /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each other.
+  template <class M>
+  explicit Reduction(M const& model) : linear_(model.linear_rows()) {
+    if constexpr (!std::is_void_v<typename M::Solution>) grow_tree(model);
+    number_unknowns(model);
+    number_rows(model);
+  }
+
+  Index coordinates() const { return coordinates_; }
+  Index speeds() const { return speeds_; }
+  Index rows() const { return Index(rows_.size()); }
+  JointTree const& tree() const { return tree_; }
+  LinearElimination const& linear() const { return linear_; }
+  /// In the order in which `for_each_body` goes.
+  std::vector<NarrowPlace> const& places() const { return places_; }
+  /// Rows that stay, by their number in the model.
+  std::vector<Index> const& rows_that_stay() const { return rows_; }
+  /// The speed of the whole model behind a narrow one: of a joint coordinate, the first of the body that it carries.
+  Index whole_speed(Index i) const { return whole_speed_[std::size_t(i)]; }
+  /// Place in the tree of the body that the joint with this first row carries.
+  Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
+
+  /// What is the same in both, narrow to whole and back.
+  void copy_coordinates_out(VecX const& narrow, VecX& whole) const {
+    for (auto const& [n, w] : same_q_) whole[w] = narrow[n];
+  }
+  void copy_coordinates_in(VecX const& whole, VecX& narrow) const {
+    for (auto const& [n, w] : same_q_) narrow[n] = whole[w];
+  }
+  void copy_speeds_out(VecX const& narrow, VecX& whole) const {
+    for (auto const& [n, w] : same_v_) whole[w] = narrow[n];
+  }
+  void copy_speeds_in(VecX const& whole, VecX& narrow) const {
+    for (auto const& [n, w] : same_v_) narrow[n] = whole[w];
+  }
+  void copy_rows_out(VecX const& narrow, VecX& whole) const {
+    whole.setZero();
+    for (std::size_t i = 0; i < rows_.size(); ++i) whole[rows_[i]] = narrow[Index(i)];
+  }
+  void copy_rows_in(VecX const& whole, VecX& narrow) const {
+    for (std::size_t i = 0; i < rows_.size(); ++i) narrow[Index(i)] = whole[rows_[i]];
+  }
+
+ private:
+  /// A joint of the tree before it hangs.
+  struct Hook {
+    Index body = -1;  ///< −1: the ground
+    Placement frame;
+  };
+  struct Link {
+    std::string name;
+    Index row;
+    Hook a, b;
+    JointMotions motions;
+  };
+
+  template <class M>
+  void grow_tree(M const& model) {
+    std::vector<TreeBody> bodies;
+    std::vector<Hook> hooks(std::size_t(model.markers()));
+    std::apply([&](auto const&... pool) { (hook(pool, bodies, hooks), ...); }, model.body_pools());
+    for (detail::GroundMarker const& g : model.ground_markers()) hooks[std::size_t(g.published)].frame = g.placement;
+    std::vector<Link> links;
+    model.for_each_joint([&](auto const& e) {
+      using J = std::decay_t<decltype(e.joint)>;
+      if constexpr (MakesJointCoordinates<typename J::PolicyType>)
+        links.push_back({e.name, e.row, hooks[std::size_t(e.a)], hooks[std::size_t(e.b)], motions_of(e.joint.geometry)});
+    });
+    hang(bodies, links, model.reference_state().q, std::is_same_v<typename M::Solution, recursive::ArticulatedBody>);
+    carried_by_.assign(std::size_t(model.rows()), -1);
+    for (std::size_t i = 0; i < tree_.bodies.size(); ++i)
+      if (tree_.bodies[i].carried()) carried_by_[std::size_t(tree_.bodies[i].row)] = Index(i);
+  }
+
+  template <class B>
+  static void hook(detail::BodyPool<B> const& pool, std::vector<TreeBody>& bodies, std::vector<Hook>& hooks) {
+    if constexpr (HasRigidLayout<B>) {
+      Index const first = Index(bodies.size());
+      for (auto const& e : pool.entries) bodies.push_back({.name = e.name, .layout = B::layout, .q0 = e.q0, .v0 = e.v0});
+      for (auto const& m : pool.markers) {
+        Hook& h = hooks[std::size_t(m.published)];
+        h.body = first + m.body;
+        h.frame.origin.head(m.point.u.size()) = m.point.u;
+        h.frame.axes = m.axes;
+      }
+    }
+  }
+
+  /// \throws InvalidInput naming the first joint, as they were connected, between bodies that joints before it connect.
+  static void refuse_loops(std::size_t bodies, std::vector<Link> const& links) {
+    std::vector<std::size_t> towards(bodies + 1);  // the ground is last
+    for (std::size_t i = 0; i <= bodies; ++i) towards[i] = i;
+    auto const part_of = [&](Index body) {
+      std::size_t i = body < 0 ? bodies : std::size_t(body);
+      while (towards[i] != i) i = towards[i] = towards[towards[i]];
+      return i;
+    };
+    std::vector<Link const*> order;
+    for (Link const& link : links) order.push_back(&link);
+    std::sort(order.begin(), order.end(), [](Link const* a, Link const* b) { return a->row < b->row; });
+    for (Link const* const link : order) {
+      std::size_t const a = part_of(link->a.body), b = part_of(link->b.body);
+      if (a == b)
+        throw InvalidInput("\"" + link->name + "\" closes a loop of recursive joints. Give one joint of the loop another policy, such as "
+                           "Constraint.");
+      towards[a] = b;
+    }
+  }
+
+  /// Breadth first from the ground, then from a body of each part that is left: every joint carries one body. Bodies without a recursive
+  /// joint only with `all`, as roots.
+  void hang(std::vector<TreeBody> const& bodies, std::vector<Link> const& links, VecX const& reference, bool all) {
+    refuse_loops(bodies.size(), links);
+    std::vector<Index> place(bodies.size(), -1);
+    std::vector<bool> used(links.size(), false);
+    auto const carry_from = [&](Index body) {  // −1: the ground
+      for (std::size_t k = 0; k < links.size(); ++k) {
+        Link const& link = links[k];
+        if (used[k] || (link.a.body != body && link.b.body != body)) continue;
+        used[k] = true;
+        bool const backwards = link.a.body != body;
+        Hook const& from = backwards ? link.b : link.a;
+        Hook const& to = backwards ? link.a : link.b;
+        TreeBody next = bodies[std::size_t(to.body)];
+        next.row = link.row;
+        next.parent = body < 0 ? -1 : place[std::size_t(body)];
+        next.from = from.frame;
+        next.to = to.frame;
+        next.motions = link.motions;
+        next.backwards = backwards;
+        if (next.layout == RigidLayout::plane)
+          next.angle = reference[next.q0 + 2] - (body < 0 ? 0.0 : reference[bodies[std::size_t(body)].q0 + 2]);
+        place[std::size_t(to.body)] = Index(tree_.bodies.size());
+        order_.push_back(to.body);
+        tree_.bodies.push_back(std::move(next));
+      }
+    };
+    auto const grow = [&](std::size_t from) {
+      for (std::size_t i = from; i < order_.size(); ++i) carry_from(order_[i]);
+    };
+    carry_from(-1);
+    grow(0);
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      if (used[k]) continue;
+      Index const root = std::min(links[k].a.body, links[k].b.body);
+      place[std::size_t(root)] = Index(tree_.bodies.size());
+      tree_.bodies.push_back(bodies[std::size_t(root)]);
+      order_.push_back(root);
+      grow(order_.size() - 1);
+    }
+    order_.clear();
+    if (!all) return;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (place[i] < 0) tree_.bodies.push_back(bodies[i]);
+  }
+
+  template <class M>
+  void number_unknowns(M const& model) {
+    std::vector<bool> dependent_v(std::size_t(model.speeds()), false), dependent_q(std::size_t(model.coordinates()), false);
+    for (auto const& d : linear_.dependents()) dependent_v[std::size_t(d.v)] = dependent_q[std::size_t(d.q)] = true;
+    std::vector<Index> in_tree(std::size_t(model.speeds()) + 1, -1);  // by first speed
+    for (std::size_t i = 0; i < tree_.bodies.size(); ++i) in_tree[std::size_t(tree_.bodies[i].v0)] = Index(i);
+    struct Extent {
+      Index q0, nq, v0, nv;
+    };
+    std::vector<Extent> extents;
+    model.for_each_body([&](auto const& e) { extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.speeds()}); });
+    places_.resize(extents.size());
+    std::vector<std::size_t> order(extents.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return extents[a].v0 < extents[b].v0; });
+    for (std::size_t const i : order) {
+      Extent const& x = extents[i];
+      NarrowPlace& place = places_[i];
+      place.q = coordinates_;
+      place.v = speeds_;
+      TreeBody* const body = x.nv == 0 || in_tree[std::size_t(x.v0)] < 0 ? nullptr : &tree_.bodies[std::size_t(in_tree[std::size_t(x.v0)])];
+      if (body) {
+        body->qn = coordinates_;
+        body->vn = speeds_;
+      }
+      if (body && body->carried()) {
+        place.kind = NarrowPlace::Kind::carried;
+        coordinates_ += body->motions.coordinates();
+        speeds_ += body->motions.speeds();
+        whole_speed_.resize(std::size_t(speeds_), x.v0);
+      } else {
+        for (Index j = x.q0; j < x.q0 + x.nq; ++j)
+          if (!dependent_q[std::size_t(j)]) same_q_.emplace_back(coordinates_++, j);
+        for (Index j = x.v0; j < x.v0 + x.nv; ++j) {
+          if (dependent_v[std::size_t(j)]) {
+            place.kind = NarrowPlace::Kind::reduced;
+            continue;
+          }
+          same_v_.emplace_back(speeds_++, j);
+          whole_speed_.push_back(j);
+        }
+      }
+      place.coordinates = coordinates_ - place.q;
+      place.speeds = speeds_ - place.v;
+    }
+  }
+
+  template <class M>
+  void number_rows(M const& model) {
+    std::vector<bool> gone(std::size_t(model.rows()), false);
+    model.for_each_joint([&](auto const& e) {
+      using J = std::decay_t<decltype(e.joint)>;
+      if constexpr (Eliminates<typename J::PolicyType>)
+        for (Index i = 0; i < e.rows; ++i) gone[std::size_t(e.row + i)] = true;
+    });
+    for (Index i = 0; i < model.rows(); ++i)
+      if (!gone[std::size_t(i)]) rows_.push_back(i);
+  }
+
+  LinearElimination linear_;
+  JointTree tree_;
+  std::vector<Index> order_;
+  Index coordinates_ = 0, speeds_ = 0;
+  std::vector<NarrowPlace> places_;
+  std::vector<std::pair<Index, Index>> same_q_, same_v_;  // narrow, whole
+  std::vector<Index> whole_speed_, rows_, carried_by_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,13 @@
+// refused: Recursive needs a joint whose motion has coordinates
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/joints/distance.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+using Rod = Joint<Distance, Recursive>;
+using M = Model<Bodies<Rigid<>>, Joints<Rod>>;
+
+void make(M& model, BodyHandle<Rigid<>> const& body) {
+  model.connect(Rod{{.length = 1.0}, {}}, model.ground().at({0, 0, 0}), body.at({0, 0, 0}));
+}

@@ -1,0 +1,11 @@
+// refused: Recursive makes joint coordinates between rigid bodies
+#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+using Pin = Joint<Revolute, Recursive>;
+using M = Model<Bodies<AncfBeam<>>, Joints<Pin>>;
+
+void make(M& model, BodyHandle<AncfBeam<>> const& beam) { model.connect(Pin{}, model.ground().at({0, 0, 0}), beam.at(0.0)); }

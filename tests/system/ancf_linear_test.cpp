@@ -1,0 +1,196 @@
+// Linear joints of ANCF bodies [thesis §3.5.4]: the same motion and reactions as with multipliers, without them.
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/equilibrium.hpp>
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/weld.hpp>
+
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace ancf_linear_test {
+
+Bar bar(Placement const& placement, double poisson = 0.3) {
+  return {.length = 0.5, .section = Rectangle{.height = 0.02, .width = 0.02},
+          .material = Material{.density = 1000.0, .young = 1e7, .poisson = poisson}, .placement = placement};
+}
+
+/// n bars in a row on a support, joined by G; they fall.
+template <class B, class G, class Policy>
+struct Chain {
+  using Pin = Joint<G, Policy>;
+  Model<Bodies<B>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+  std::vector<BodyHandle<B>> links;
+  std::vector<ElementHandle<Pin>> pins;
+  State x;
+
+  Chain(G geometry, int n) {
+    for (int i = 0; i < n; ++i) links.push_back(model.add(B::from(bar(Placement::at({0.5 * i, 0, 0})), 2)));
+    pins.push_back(model.connect(Pin{geometry, {}}, model.ground().at({0, 0, 0}), links[0].at(0.0)));
+    for (std::size_t i = 1; i < links.size(); ++i) pins.push_back(model.connect(Pin{geometry, {}}, links[i - 1].at(0.5), links[i].at(0.0)));
+    x = model.reference_state();
+  }
+  void fall(double until) { simulate(model, x, GeneralizedAlpha{}, {.until = until, .step = 1e-3}).run(); }
+};
+
+template <class A, class B>
+void expect_same(A const& held, B const& free, double reaction_tolerance) {
+  EXPECT_LT((held.x.q - free.x.q).norm(), 1e-9);
+  EXPECT_LT((held.x.v - free.x.v).norm(), 1e-6);
+  for (std::size_t i = 0; i < held.pins.size(); ++i) {
+    Vec3 const f = reaction(held.model, held.x, held.pins[i]).f;
+    EXPECT_GT(f.norm(), 0.5);
+    EXPECT_LT((f - reaction(free.model, free.x, free.pins[i]).f).norm(), reaction_tolerance * f.norm());
+  }
+}
+
+TEST(AncfLinear, PinsACableInThePlane) {
+  Chain<planar::AncfCable<>, planar::Revolute, Constraint> held({}, 3);
+  Chain<planar::AncfCable<>, planar::Revolute, AncfLinear> free({}, 3);
+  held.fall(0.2);
+  free.fall(0.2);
+  expect_same(held, free, 1e-6);
+  EXPECT_EQ(census(free.model).rows, 0);
+  EXPECT_EQ(census(free.model).coordinates, 3 * 12 - 3 * 2);
+  EXPECT_EQ(census(free.model).degrees_of_freedom, census(held.model).degrees_of_freedom);
+  System system(free.model);
+  Violation const open = violation(system, free.x);
+  EXPECT_LT(open.position, 1e-15);
+  EXPECT_LT(open.acceleration, 1e-12);
+}
+
+TEST(AncfLinear, PinsACableInSpace) {
+  Chain<AncfCable<>, Spherical, Constraint> held({}, 3);
+  Chain<AncfCable<>, Spherical, AncfLinear> free({}, 3);
+  Chain<AncfCable<>, Revolute, AncfLinear> pinned({.axis = Vec3::UnitZ()}, 3);
+  held.fall(0.2);
+  free.fall(0.2);
+  pinned.fall(0.2);
+  expect_same(held, free, 1e-6);
+  // the fourth equation of a pin holds the chain in its plane, where it moves anyhow
+  expect_same(held, pinned, 1e-6);
+  EXPECT_EQ(census(pinned.model).coordinates, 3 * 18 - 3 * 4);
+}
+
+TEST(AncfLinear, PinsAFullyParameterisedBeamBySixEquations) {
+  Chain<AncfBeam<Continuum<>>, Revolute, Constraint> held({.axis = Vec3::UnitZ()}, 2);
+  Chain<AncfBeam<Continuum<>>, Revolute, AncfLinear> free({.axis = Vec3::UnitZ()}, 2);
+  EXPECT_EQ(census(held.model).rows, 2 * 5);
+  EXPECT_EQ(census(free.model).coordinates, 2 * 36 - 2 * 6);
+  held.fall(0.2);
+  free.fall(0.2);
+  // motion in the plane does not stretch the pin's line: the sixth equation changes nothing
+  expect_same(held, free, 1e-6);
+}
+
+TEST(AncfLinear, OnlyTheStrainAlongThePinIsContinuous) {
+  // Two beams with Poisson's ratio 0.3, swinging: strains ε_αβ = ½ (r_α·r_β − δ) at
+  // both sides of the pin about z.
+  using Pin = Joint<Revolute, AncfLinear>;
+  Model<Bodies<AncfBeam<Continuum<>>>, Joints<Pin>, Forces<>> model{Gravity{0, -9.81, 0}};
+  auto const a = model.add(AncfBeam<Continuum<>>::from(bar(Placement::at({0, 0, 0})), 2));
+  auto const b = model.add(AncfBeam<Continuum<>>::from(bar(Placement::at({0.5, 0, 0})), 2));
+  model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), a.at(0.0));
+  model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, a.at(0.5), b.at(0.0));
+  State x = model.reference_state();
+  simulate(model, x, GeneralizedAlpha{.rho_inf = 0.5}, {.until = 0.3, .step = 1e-3}).run();
+  auto const strains = [&](auto const& body, double s) {
+    auto const& e = model.entry(body);
+    auto const p = body.body.at(s);
+    Eigen::Map<VecX const> const q(x.q.data() + e.q0 + e.body.first_column(p), 24);
+    Mat3 j;
+    for (int k = 0; k < 3; ++k) j.col(k) = body.body.gradient_map(p, k) * q;
+    return Mat3(0.5 * (j.transpose() * j - Mat3::Identity()));
+  };
+  Mat3 const left = strains(a, 0.5), right = strains(b, 0.0);
+  double const size = left.cwiseAbs().maxCoeff();
+  EXPECT_GT(size, 1e-5);
+  EXPECT_LT(std::abs(left(2, 2) - right(2, 2)), 1e-14);
+  EXPECT_GT(std::abs(left(0, 0) - right(0, 0)), 1e-4 * size);
+  EXPECT_GT(std::abs(left(1, 1) - right(1, 1)), 1e-4 * size);
+  EXPECT_GT(std::abs(left(0, 1) - right(0, 1)), 1e-4 * size);
+}
+
+TEST(AncfLinear, WeldedBodiesAreOne) {
+  // 3 × 2 elements welded, against one body of 6: the same mesh
+  Chain<planar::AncfCable<>, planar::Weld, AncfLinear> welded({}, 3);
+  using Clamp = Joint<planar::Weld, AncfLinear>;
+  Model<Bodies<planar::AncfCable<>>, Joints<Clamp>> whole{Gravity{0, -9.81, 0}};
+  Bar one = bar({});
+  one.length = 1.5;
+  auto const beam = whole.add(planar::AncfCable<>::from(one, 6));
+  whole.connect(Clamp{}, whole.ground().at({0, 0, 0}), beam.at(0.0));
+  State x = whole.reference_state();
+  simulate(whole, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3}).run();
+  welded.fall(0.1);
+  EXPECT_EQ(census(whole).coordinates, census(welded.model).coordinates);
+  Vec3 const tip = position(whole, x, beam.at(1.5));
+  EXPECT_LT(tip[1], -0.01);
+  EXPECT_LT((tip - position(welded.model, welded.x, welded.links[2].at(0.5))).norm(), 1e-9);
+}
+
+TEST(AncfLinear, HoldsInStaticsWhatABalanceSays) {
+  // a cantilever of two welded beams under a force P at its end: root force −P, root moment P L
+  using Clamp = Joint<Weld, AncfLinear>;
+  Model<Bodies<AncfBeam<Continuum<>>>, Joints<Clamp>, Forces<PointForce<>>> model;
+  auto const a = model.add(AncfBeam<Continuum<>>::from(bar({}), 2)), b = model.add(AncfBeam<Continuum<>>::from(bar(Placement::at({0.5, 0, 0})), 2));
+  auto const root = model.connect(Clamp{}, model.ground().at({0, 0, 0}), a.at(0.0));
+  auto const joint = model.connect(Clamp{}, a.at(0.5), b.at(0.0));
+  double const p = 1e-4;
+  model.apply(PointForce<>{.force = {0, p, 0}}, b.at(0.5));
+  State x = model.reference_state();
+  equilibrium(model, x);
+  Wrench<double> const at_root = reaction(model, x, root), between = reaction(model, x, joint);
+  EXPECT_LT((at_root.f - Vec3(0, -p, 0)).norm(), 1e-6 * p);
+  EXPECT_LT((at_root.m - Vec3(0, 0, -p)).norm(), 1e-4 * p);  // about the support: −P L, L = 1 m
+  EXPECT_LT((between.f - Vec3(0, -p, 0)).norm(), 1e-6 * p);
+  EXPECT_LT((between.m - Vec3(0, 0, -0.5 * p)).norm(), 1e-4 * p);
+}
+
+TEST(AncfLinear, RowsThatRepeatOthersAreNamed) {
+  Chain<planar::AncfCable<>, planar::Revolute, AncfLinear> chain({}, 2);
+  using Pin = Joint<planar::Revolute, AncfLinear>;
+  chain.model.connect(Pin{}, chain.links[0].at(0.5), chain.links[1].at(0.0), "again");
+  State x = chain.model.reference_state();
+  auto run = simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.01, .step = 1e-3});
+  run.run();
+  ASSERT_EQ(run.report().redundant.size(), 1u);
+  EXPECT_EQ(run.report().redundant[0], "joint \"again\"");
+  EXPECT_EQ(census(chain.model).coordinates, 2 * 12 - 2 * 2);
+}
+
+TEST(AncfLinear, RowsThatContradictOthersAreNamed) {
+  Chain<planar::AncfCable<>, planar::Revolute, AncfLinear> chain({}, 2);
+  using Pin = Joint<planar::Revolute, AncfLinear>;
+  chain.model.connect(Pin{}, chain.model.ground().at({0.1, 0, 0}), chain.links[0].at(0.0), "second support");
+  State x = chain.model.reference_state();
+  EXPECT_TRUE(has(message_of<InconsistentStart>([&] { simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.01, .step = 1e-3}); }),
+                  "second support"));
+}
+
+TEST(AncfLinear, RefusesWhatIsNotLinear) {
+  using Pin = Joint<planar::Revolute, AncfLinear>;
+  Model<Bodies<planar::AncfCable<>>, Joints<Pin>> model;
+  auto const a = model.add(planar::AncfCable<>::from(bar({}), 2)), b = model.add(planar::AncfCable<>::from(bar(Placement::planar(0.5, 0)), 2));
+  EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, a.at(0.5, 0.01), b.at(0.0)); }), "off the axis"));
+  using Clamp = Joint<Weld, AncfLinear>;
+  Model<Bodies<AncfCable<>>, Joints<Clamp, Joint<Revolute, AncfLinear>>> space;
+  auto const c = space.add(AncfCable<>::from(bar({}), 2));
+  auto const d = space.add(AncfCable<>::from(bar(Placement::at({0.5, 0, 0}, {0, 0, 1.0})), 2));
+  EXPECT_TRUE(has(refusal([&] { space.connect(Clamp{}, c.at(0.5), d.at(0.0), "corner"); }), "\"corner\""));
+  EXPECT_TRUE(has(refusal([&] { space.connect(Joint<Revolute, AncfLinear>{{.axis = Vec3::UnitX()}, {}}, c.at(0.5), d.at(0.0), "pin"); }), "\"pin\""));
+}
+
+}  // namespace ancf_linear_test

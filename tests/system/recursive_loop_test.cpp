@@ -1,0 +1,168 @@
+// Joint coordinates in the plane: loops closed by another policy, implicit steps, flexible bodies on a tree, refusals.
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace recursive_loop_test {
+
+using Reduced = RecursiveBy<recursive::Reduced>;
+using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
+
+/// A four-bar in the plane, the last pin by a policy of its own.
+template <class Policy>
+struct FourBar {
+  using Pin = Joint<planar::Revolute, Policy>;
+  using Close = Joint<planar::Revolute, Constraint>;
+  using Weld = Joint<planar::Weld, Policy>;
+  using Slide = Joint<planar::Prismatic, Policy>;
+  using ModelType = std::conditional_t<std::is_same_v<Policy, Constraint>, Model<Bodies<planar::Rigid>, Joints<Pin, Weld, Slide>, Forces<SpringDamper>>,
+                                       Model<Bodies<planar::Rigid>, Joints<Pin, Weld, Slide, Close>, Forces<SpringDamper>>>;
+  ModelType model{Gravity{0, -9.81, 0}};
+  ElementHandle<Close> last;
+  State x;
+
+  FourBar() {
+    auto const a = model.add(planar::Rigid(1.0, 0.1, Placement::planar(0.0, 0.5, 0.3)));
+    auto const b = model.add(planar::Rigid(2.0, 0.4, Placement::planar(0.75, 1.25, -0.2)));
+    auto const c = model.add(planar::Rigid(1.5, 0.2, Placement::planar(1.5, 0.75)));
+    auto const tip = model.add(planar::Rigid(0.5, 0.05, Placement::planar(0.75, 1.5)));
+    auto const slider = model.add(planar::Rigid(0.4, 0.02, Placement::planar(1.75, 0.75)));
+    auto const at = [](auto const& body, double bx, double by, double angle, Vec2 const& p) {
+      double const s = std::sin(angle), co = std::cos(angle);
+      Vec2 const d = p - Vec2(bx, by);
+      return body.at(Vec2(co * d[0] + s * d[1], -s * d[0] + co * d[1]));
+    };
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), at(a, 0.0, 0.5, 0.3, {0, 0}));
+    model.connect(Pin{}, at(b, 0.75, 1.25, -0.2, {0, 1}), at(a, 0.0, 0.5, 0.3, {0, 1}));
+    model.connect(Pin{}, at(b, 0.75, 1.25, -0.2, {1.5, 1.5}), at(c, 1.5, 0.75, 0.0, {1.5, 1.5}));
+    model.connect(Weld{}, at(tip, 0.75, 1.5, 0.0, {0.75, 1.25}), at(b, 0.75, 1.25, -0.2, {0.75, 1.25}));
+    model.connect(Slide{{.axis = Vec3(0, 1, 0)}}, at(c, 1.5, 0.75, 0.0, {1.6, 0.75}), at(slider, 1.75, 0.75, 0.0, {1.6, 0.75}));
+    last = model.connect(Close{}, at(c, 1.5, 0.75, 0.0, {1.5, 0}), model.ground().at({1.5, 0, 0}));
+    model.apply(SpringDamper{.stiffness = 200.0, .damping = 2.0, .free_length = 0.4}, at(slider, 1.75, 0.75, 0.0, {1.75, 0.75}),
+                model.ground().at({1.75, 0.2, 0}));
+    x = model.reference_state();
+  }
+};
+
+template <class Policy, class I>
+FourBar<Policy> run_four_bar(I integrator, double step) {
+  FourBar<Policy> f;
+  simulate(f.model, f.x, integrator, {.until = 0.5, .step = step}).run();
+  return f;
+}
+
+TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
+  auto const held = run_four_bar<Constraint>(RungeKutta4<Projection>{}, 1e-3);
+  auto const open = run_four_bar<Recursive>(RungeKutta4<Projection>{}, 1e-3);
+  auto const dense = run_four_bar<Reduced>(RungeKutta4<Projection>{}, 1e-3);
+  auto const bodies = run_four_bar<ByBodies>(RungeKutta4<Projection>{}, 1e-3);
+  EXPECT_EQ(census(open.model).rows, 2);
+  EXPECT_EQ(census(open.model).speeds, 4);
+  EXPECT_EQ(census(open.model).degrees_of_freedom, 2);
+  Vec3 const force = reaction(held.model, held.x, held.last).f;
+  EXPECT_GT(force.norm(), 1.0);
+  auto const expect_same = [&](auto const& other) {
+    EXPECT_LT((held.x.q - other.x.q).norm(), 1e-8);
+    EXPECT_LT((held.x.a - other.x.a).norm(), 1e-6 * held.x.a.norm());
+    EXPECT_LT((force - reaction(other.model, other.x, other.last).f).norm(), 1e-6 * force.norm());
+    System system(other.model);
+    EXPECT_LT(violation(system, other.x).position, 1e-11);
+  };
+  expect_same(open);
+  expect_same(dense);
+  expect_same(bodies);
+}
+
+TEST(RecursiveLoop, ImplicitStepsHaveTheirOrder) {
+  auto const exact = run_four_bar<Recursive>(RungeKutta4<Projection>{}, 5e-4);
+  double last = 0.0;
+  for (double const h : {4e-3, 2e-3, 1e-3}) {
+    double const off = (run_four_bar<Recursive>(GeneralizedAlpha{.rho_inf = 0.8}, h).x.q - exact.x.q).norm();
+    if (last > 0.0) {
+      EXPECT_NEAR(std::log2(last / off), 2.0, 0.15);
+    }
+    last = off;
+  }
+  EXPECT_GT(last, 1e-9);
+  auto const bodies = run_four_bar<ByBodies>(GeneralizedAlpha{.rho_inf = 0.8}, 1e-3);
+  auto const dense = run_four_bar<Reduced>(GeneralizedAlpha{.rho_inf = 0.8}, 1e-3);
+  EXPECT_NEAR((bodies.x.q - exact.x.q).norm(), last, 0.01 * last);
+  EXPECT_NEAR((dense.x.q - exact.x.q).norm(), last, 0.01 * last);
+}
+
+TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {
+  auto const tip = [](auto policy) {
+    using P = decltype(policy);
+    using Pin = Joint<planar::Revolute, P>;
+    using Clamp = Joint<planar::Weld, Constraint>;
+    Model<Bodies<planar::Rigid, planar::AncfCable<>>, Joints<Pin, Clamp>> model{Gravity{0, -9.81, 0}};
+    auto const arm = model.add(planar::Rigid(1.0, 0.1, Placement::planar(0.5, 0.0)));
+    auto const beam = model.add(planar::AncfCable<>::from({.length = 1.0, .constants = BarConstants{.EA = 1e4, .EI = 10.0, .mass_per_length = 1.0}, .placement = Placement::planar(1.0, 0.0)}, 3));
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), arm.at(Vec2(-0.5, 0)));
+    model.connect(Clamp{}, arm.at(Vec2(0.5, 0)), beam.at(0.0));
+    State x = model.reference_state();
+    simulate(model, x, GeneralizedAlpha{}, {.until = 0.3, .step = 1e-3}).run();
+    return position(model, x, beam.at(1.0));
+  };
+  Vec3 const held = tip(Constraint{}), free = tip(Recursive{});
+  EXPECT_GT(std::abs(held[1]), 0.1);
+  EXPECT_LT((held - free).norm(), 1e-5);  // both are off by h²
+}
+
+TEST(RecursiveLoop, EventsSeeTheWholeState) {
+  using Pin = Joint<planar::Revolute, Recursive>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+  auto const rod = model.add(planar::Rigid(1.0, 1.0 / 12.0, Placement::planar(0.5, 0.0)));
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(Vec2(-0.5, 0)));
+  State x = model.reference_state();
+  auto run = simulate(model, x, DormandPrince<>{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12},
+                      {.until = 5.0, .step = 1e-3, .events = {{.name = "below", .value = [](State const& s) { return s.q[0]; }, .stops = true}}});
+  run.run();
+  // a quarter of the period of amplitude π/2: K(½) √(2L/3g)
+  EXPECT_NEAR(x.t, 1.8540746773013719 * std::sqrt(2.0 / (3.0 * 9.81)), 1e-8);
+  EXPECT_NEAR(x.q[0], 0.0, 1e-8);
+}
+
+TEST(RecursiveLoop, NamesTheJointThatClosesALoop) {
+  using Pin = Joint<planar::Revolute, Recursive>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model;
+  auto const a = model.add(planar::Rigid(1.0, 0.1)), b = model.add(planar::Rigid(1.0, 0.1));
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), a.at(Vec2(0, 0)));
+  model.connect(Pin{}, a.at(Vec2(0, 0)), b.at(Vec2(0, 0)));
+  model.connect(Pin{}, b.at(Vec2(0, 0)), model.ground().at({0, 0, 0}), "closing pin");
+  State x = model.reference_state();
+  std::string const why = refusal([&] { simulate(model, x, RungeKutta4<Projection>{}, {.until = 1.0, .step = 1e-3}); });
+  EXPECT_TRUE(has(why, "\"closing pin\" closes a loop"));
+  EXPECT_TRUE(has(why, "Constraint"));
+}
+
+TEST(RecursiveLoop, EliminationByBodiesNamesAForceThatItCannotTake) {
+  using Pin = Joint<planar::Revolute, ByBodies>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>, Forces<SpringDamper>> model;
+  auto const a = model.add(planar::Rigid(1.0, 0.1), "a"), b = model.add(planar::Rigid(1.0, 0.1), "b"), c = model.add(planar::Rigid(1.0, 0.1), "c");
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), a.at(Vec2(0, 0)));
+  model.connect(Pin{}, a.at(Vec2(0, 0)), b.at(Vec2(0, 0)));
+  model.connect(Pin{}, b.at(Vec2(0, 0)), c.at(Vec2(0, 0)));
+  model.apply(SpringDamper{.stiffness = 1.0, .damping = 0.0, .free_length = 1.0}, a.at(Vec2(1, 0)), c.at(Vec2(0, 1)));
+  State x = model.reference_state();
+  EXPECT_NO_THROW(simulate(model, x, RungeKutta4<Projection>{}, {.until = 1e-2, .step = 1e-3}).run());  // M alone has no such block
+  std::string const why = refusal([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}).run(); });
+  EXPECT_TRUE(has(why, "\"c\""));
+  EXPECT_TRUE(has(why, "Augmented"));
+}
+
+}  // namespace recursive_loop_test

@@ -1,0 +1,183 @@
+// Joint coordinates of trees against the same models with multipliers: motion, reactions, violation, counts, three ways to solve.
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/cylindrical.hpp>
+#include <polybody/joints/orientation.hpp>
+#include <polybody/joints/plane_on_plane.hpp>
+#include <polybody/joints/point_in_plane.hpp>
+#include <polybody/joints/point_on_line.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/prismatic.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/screw.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/universal.hpp>
+#include <polybody/joints/weld.hpp>
+
+using namespace polybody;
+
+namespace recursive_test {
+
+using Reduced = RecursiveBy<recursive::Reduced>;
+using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
+
+Rigid<> link(double x, double y) {
+  return Rigid<>({.mass = 2.0, .inertia = Vec3(0.02, 0.05, 0.06).asDiagonal(), .placement = Placement::at({x, y, 0}, {0.1, 0.2, -0.1})});
+}
+
+template <class Policy>
+struct Branched {
+  template <class G>
+  using J = Joint<G, Policy>;
+  using ModelType =
+      Model<Bodies<Rigid<>>, Joints<J<Revolute>, J<Prismatic>, J<Cylindrical>, J<Spherical>, J<Universal>, J<Screw>, J<PlaneOnPlane>,
+                                    J<PointOnLine>, J<PointInPlane>, J<Orientation>, J<Weld>>>;
+  ModelType model{Gravity{1, -2, -9.81}};
+  std::vector<BodyHandle<Rigid<>>> links;
+
+  /// All joints in a tree with two branches; in every other one the carried body is the first marker.
+  Branched() {
+    for (int i = 0; i < 11; ++i) links.push_back(model.add(link(0.3 * i, 0.05 * i)));
+    hang(J<Revolute>{{.axis = Vec3::UnitY()}}, -1, 0);
+    hang(J<Prismatic>{{.axis = Vec3::UnitX()}}, 0, 1);
+    hang(J<Cylindrical>{{.axis = Vec3::UnitZ()}}, 1, 2);
+    hang(J<Spherical>{}, 2, 3);
+    hang(J<Universal>{}, 1, 4);
+    hang(J<Screw>{{.pitch = 0.2, .axis = Vec3::UnitX()}}, 4, 5);
+    hang(J<PlaneOnPlane>{{.normal = Vec3::UnitY()}}, 4, 6);
+    hang(J<PointOnLine>{{.axis = Vec3::UnitX()}}, 6, 7);
+    hang(J<PointInPlane>{{.normal = Vec3::UnitZ()}}, 5, 8);
+    hang(J<Orientation>{}, 3, 9);
+    hang(J<Weld>{}, 9, 10);
+  }
+  template <class Joint>
+  void hang(Joint const& joint, int carrier, int carried) {
+    Vec3 const off(0.1, -0.05, 0.02);
+    auto const b = links[std::size_t(carried)].at(off);
+    // the joint point in the world, on both bodies
+    Rigid<> const& body = links[std::size_t(carried)].body;
+    std::vector<double> q(7);
+    body.reference(q);
+    Mat3 const axes = rotation_matrix<double>(Quaternion<double>(q[3], q[4], q[5], q[6]));
+    Vec3 const point = Vec3(q[0], q[1], q[2]) + axes * off;
+    if (carrier < 0) {
+      model.connect(joint, model.ground().at(point), b);
+      return;
+    }
+    links[std::size_t(carrier)].body.reference(q);
+    auto const a = links[std::size_t(carrier)].at(axes.transpose() * (point - Vec3(q[0], q[1], q[2])));
+    if (carried % 2 == 0)
+      model.connect(joint, a, b);
+    else
+      model.connect(joint, b, a);
+  }
+  State moving() const {
+    State x = model.reference_state();
+    for (std::size_t i = 0; i < links.size(); ++i) model.set_velocity(x, links[i], {0.2, -0.1, 0.3}, {0.5, -0.4, 0.2});
+    return x;
+  }
+};
+
+template <class Policy, class I>
+State moved(Branched<Policy> const& tree, I integrator, double until, double step) {
+  State x = tree.moving();
+  simulate(tree.model, x, integrator, {.until = until, .step = step}).run();
+  return x;
+}
+
+TEST(Recursive, MovesEveryJointAsMultipliersDo) {
+  Branched<Constraint> const held;
+  Branched<Recursive> const free;
+  State const x = moved(held, RungeKutta4<Projection>{}, 0.3, 1e-3), y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
+  // Both are off by h⁴: Richardson's difference to twice the step shows how much.
+  State const coarse = moved(held, RungeKutta4<Projection>{}, 0.3, 2e-3);
+  double const off = (x.q - coarse.q).norm();
+  EXPECT_LT(off, 1e-7);
+  EXPECT_LT((x.q - y.q).norm(), 1e-9 + off);
+  EXPECT_LT((x.v - y.v).norm(), 1e-8 + 100.0 * off);
+  EXPECT_LT((x.a - y.a).norm(), 1e-6 * x.a.norm());
+  EXPECT_LT((x.lambda - y.lambda).norm(), 1e-6 * x.lambda.norm());
+}
+
+TEST(Recursive, JointsHoldToRounding) {
+  Branched<Recursive> const free;
+  State const y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
+  System system(free.model);
+  Violation const open = violation(system, y);
+  EXPECT_LT(open.position, 1e-12);
+  EXPECT_LT(open.velocity, 1e-12);
+  EXPECT_LT(open.acceleration, 1e-9);
+}
+
+TEST(Recursive, ThreeWaysToSolveAreOne) {
+  State const x = moved(Branched<Recursive>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
+  State const dense = moved(Branched<Reduced>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
+  State const bodies = moved(Branched<ByBodies>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
+  for (State const* y : {&dense, &bodies}) {
+    EXPECT_LT((x.q - y->q).norm(), 1e-11);
+    EXPECT_LT((x.a - y->a).norm(), 1e-9 * x.a.norm());
+    EXPECT_LT((x.lambda - y->lambda).norm(), 1e-9 * x.lambda.norm());
+  }
+}
+
+TEST(Recursive, CountsJointCoordinates) {
+  // 1 + 1 + 2 + 3 + 2 + 1 + 3 + 4 + 5 + 3 + 0 degrees of freedom; four balls have a coordinate more than speeds
+  Census const c = census(Branched<Recursive>().model);
+  EXPECT_EQ(c.speeds, 25);
+  EXPECT_EQ(c.coordinates, 28);
+  EXPECT_EQ(c.rows, 0);
+  EXPECT_EQ(c.degrees_of_freedom, 25);
+  EXPECT_EQ(census(Branched<Constraint>().model).degrees_of_freedom, 25);
+}
+
+TEST(Recursive, NarrowAndWideStatesAreTheSame) {
+  Branched<Recursive> const free;
+  State const x = moved(free, RungeKutta4<Projection>{}, 0.2, 1e-3);
+  System<polybody::Reduced<Branched<Recursive>::ModelType>> system(free.model);
+  State const narrow = system.narrow(x);
+  State again = x;
+  again.lambda.setZero();
+  system.widen(narrow, again);
+  EXPECT_LT((x.q - again.q).norm(), 1e-12);
+  EXPECT_LT((x.v - again.v).norm(), 1e-12 * x.v.norm());
+  EXPECT_LT((x.a - again.a).norm(), 1e-11 * x.a.norm());
+  EXPECT_LT((x.lambda - again.lambda).norm(), 1e-10 * x.lambda.norm());
+}
+
+TEST(Recursive, FreeTreesKeepTheirMomentum) {
+  using Ball = Joint<Spherical, Recursive>;
+  Model<Bodies<Rigid<>>, Joints<Ball>> model;
+  auto const a = model.add(Rigid<>(2.0, Vec3(0.02, 0.05, 0.06).asDiagonal()));
+  auto const b = model.add(Rigid<>(1.0, Vec3(0.01, 0.02, 0.02).asDiagonal(), Placement::at({0.5, 0, 0})));
+  model.connect(Ball{}, b.at({-0.25, 0, 0}), a.at({0.25, 0, 0}));
+  State x = model.reference_state();
+  model.set_velocity(x, a, {0, 1, 0}, {0, 0, 2});
+  model.set_velocity(x, b, {0, 1, 0}, {0, 0, 2});
+  x.v.segment<3>(model.entry(b).v0 + 3) += Vec3(3, -1, 0.5);  // b turns against a
+  x.v.segment<3>(model.entry(b).v0) += Vec3(3, -1, 0.5).cross(Vec3(0.25, 0, 0));
+  EXPECT_EQ(census(model).degrees_of_freedom, 9);
+  auto const momenta = [&] {
+    Vec6 p = Vec6::Zero();
+    for (auto const* body : {&a, &b}) {
+      auto const& e = model.entry(*body);
+      Vec3 const r = x.q.segment<3>(e.q0), v = x.v.segment<3>(e.v0);
+      Mat3 const A = rotation_matrix<double>(x.q.segment<4>(e.q0 + 3));
+      Vec3 const spin = A * (e.body.inertia() * x.v.segment<3>(e.v0 + 3));
+      p.head<3>() += e.body.mass() * v;
+      p.tail<3>() += e.body.mass() * r.cross(v) + spin;
+    }
+    return p;
+  };
+  Vec6 const before = momenta();
+  double const energy_before = energy(model, x).total();
+  simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 1e-3}).run();
+  EXPECT_LT((momenta() - before).norm(), 1e-9);
+  EXPECT_NEAR(energy(model, x).total(), energy_before, 1e-9);
+}
+
+}  // namespace recursive_test
