@@ -33,6 +33,7 @@
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
+#include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>

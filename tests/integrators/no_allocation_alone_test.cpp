@@ -15,6 +15,7 @@
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
+#include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
@@ -76,6 +77,12 @@ namespace {
 /// Five links pinned in space.
 struct RigidChain {
   Chain<InSpace<Constraint>> chain{5, bar_link(0.3)};
+  auto const& model() const { return chain.model; }
+};
+
+/// The same in the plane.
+struct PlanarChain {
+  Chain<InPlane<Constraint>> chain{5, bar_link(0.3)};
   auto const& model() const { return chain.model; }
 };
 
@@ -197,6 +204,12 @@ TEST(NoAllocation, InAStepOfARigidChain) { expect_none<RigidChain>(); }
 TEST(NoAllocation, InAStepOfADrivenLrvfArm) { expect_none<DrivenArm>(); }
 
 TEST(NoAllocation, InAStepOfAnAncfCableOnCompliantJoints) { expect_none<SprungCable>(); }
+
+TEST(NoAllocation, InAStepThatConservesEnergy) {
+  EXPECT_EQ(in_steps<SprungCable>(EnergyMomentum{}), 0);
+  EXPECT_EQ(in_steps<SprungCable>(EnergyDecaying{}), 0);
+  EXPECT_EQ(in_steps<PlanarChain>(EnergyMomentum{}), 0);
+}
 
 TEST(NoAllocation, InAStepOfBodiesOnBushings) {
   EXPECT_EQ(in_steps<BushedBodies>(GeneralizedAlpha{.second_order_terms = true}), 0);

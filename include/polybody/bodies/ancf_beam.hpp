@@ -106,6 +106,21 @@ class AncfBeam : public NodeChain<12> {
                         ck, cd, k);
   }
 
+  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
+  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
+                  Element<double>& out) const {
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)), x1 = part<element_columns>(q1, first_column(e));
+    out.setZero();
+    std::apply([&](auto const&... group) { (group.add_mean_force(x0, x1, means, out), ...); }, groups_of(e));
+  }
+  /// ck (−∂f/∂q1), nearly; not symmetric.
+  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
+                    ElementMatrix& k) const {
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)), x1 = part<element_columns>(q1, first_column(e));
+    k.setZero();
+    std::apply([&](auto const&... group) { (group.add_mean_tangent(x0, x1, means, ck, k), ...); }, groups_of(e));
+  }
+
   template <StateScalar T>
   void gravity(Index e, std::span<T const>, Vec3 const& g, Element<T>& out) const {
     Inertia const& inertia = inertia_of(e);
@@ -199,7 +214,8 @@ class AncfBeam : public NodeChain<12> {
         k.block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
-  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without damping (see
+  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without damping
+  /// (see
   /// sections.hpp): `ElasticLine` as stiffness times strain, `Continuum` as sums of its stress over the section.
   Vec6 section_strains(Point const& p, std::span<double const> q) const;
   Vec6 section_forces(Point const& p, std::span<double const> q) const;

@@ -40,7 +40,8 @@ class AncfCable : public NodeChain<6> {
     return from(bar, n, [](double s) { return Placement::at({s, 0, 0}); });
   }
   /// The same laid along a curve, nodes at equal arc lengths. Its natural shape stays straight: it stands bent.
-  /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes off by a tenth.
+  /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes off by a
+  /// tenth.
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     if (n < 1) throw InvalidInput("AncfCable: at least one element is needed.");
     return AncfCable(bar, polybody::constants(bar), n, curve);
@@ -109,6 +110,23 @@ class AncfCable : public NodeChain<6> {
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd, ElementMatrix& k) const {
     element_tangent<double>(part<12>(q, first_column(e)), part<12>(v, first_column(e)), ck, cd, k);
   }
+  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
+  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
+                  Element<double>& out) const {
+    Element<double> const x0 = part<12>(q0, first_column(e)), x1 = part<12>(q1, first_column(e));
+    out.setZero();
+    axial_.add_mean_force(x0, x1, means, out);
+    bending_.add_mean_force(x0, x1, means, out);
+  }
+  /// ck (−∂f/∂q1), nearly; not symmetric.
+  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
+                    ElementMatrix& k) const {
+    Element<double> const x0 = part<12>(q0, first_column(e)), x1 = part<12>(q1, first_column(e));
+    k.setZero();
+    axial_.add_mean_tangent(x0, x1, means, ck, k);
+    bending_.add_mean_tangent(x0, x1, means, ck, k);
+  }
+
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
     for (int i = 0; i < 4; ++i)
@@ -242,7 +260,8 @@ class AncfCable : public NodeChain<6> {
     return out;
   }
 
-  /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are first turned by π
+  /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are first
+  /// turned by π
   /// about their third one, so that there is always one.
   template <StateScalar T>
   static Mat<T, 3, 3> smallest_turn(Vec<T, 3> const& slope, Mat3 from) {

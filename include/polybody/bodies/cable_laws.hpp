@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Axial strain and bending of a cable in space as strain laws over the cubic Hermite element with coordinates (r, r′) at both ends.
+/// Axial strain and bending of a cable in space as strain laws over the cubic Hermite element with coordinates (r, r′) at both
+/// ends.
 
 #include <polybody/bodies/cable_strains.hpp>
 #include <polybody/bodies/strain_group.hpp>
@@ -74,6 +75,14 @@ struct CableBending {
     }
   }
 
+  /// κ·κ = ((s·s)(u·u) − (s·u)²)/n²ᵏ.
+  template <KernelScalar T>
+  static T square(Vec<T, 6> const& p) {
+    T const ss = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], uu = p[3] * p[3] + p[4] * p[4] + p[5] * p[5];
+    T const su = p[0] * p[3] + p[1] * p[4] + p[2] * p[5], inverse = power(T(1.0) / ss);
+    return (ss * uu - su * su) * (inverse * inverse);
+  }
+
   /// For w·κ = c/nᵏ, c = w·(s × u) with ∂c/∂s = a = u × w, ∂c/∂u = d = w × s, ∂²c/∂s∂u = −w̃:
   ///   ∂²/∂s² = (−k (a sᵀ + s aᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²/∂s∂u = −w̃/nᵏ − k s dᵀ/nᵏ⁺².
   template <KernelScalar T>
@@ -104,7 +113,8 @@ struct CableBending {
     }
   }
 
-  /// κ̇ = turn of κ + change of its length, and a cable does not know how it turns about its own axis; so the length alone is damped,
+  /// κ̇ = turn of κ + change of its length, and a cable does not know how it turns about its own axis; so the length alone is
+  /// damped,
   ///   p = w κ̇ + G κ (κ·κ̇),  w = (1 + x)⁻⁴,  G = (1 − w)/κ²,  x = κ²/κ₀²,
   /// with all of κ̇ below κ₀ = 1e-3 1/m, where the direction of κ says nothing. G is a polynomial over (1 + x)⁴.
   template <KernelScalar T>

@@ -15,8 +15,10 @@
 #include <array>
 
 #include <polybody/bodies/bar.hpp>
+#include <polybody/bodies/step_means.hpp>
 #include <polybody/math/pack.hpp>
 #include <polybody/math/quadrature.hpp>
+#include <polybody/math/secant.hpp>
 
 namespace polybody {
 
@@ -43,6 +45,14 @@ template <class L>
 concept HasObjectiveRate = requires(Vec<double, L::strains>& e, Mat<double, L::strains, L::strains>& m) {
   L::template objective_rate<double>(e, e);
   L::template objective_rate_gradients<double>(e, e, m, m);
+};
+
+/// A law of equal stiffness for all strains, which are components of a vector that turns with the body: gives the vector's square
+/// from
+/// scalar products of its parameters.
+template <class L>
+concept HasSquare = requires(Vec<double, L::parameters> const p) {
+  { L::template square<double>(p) } -> std::convertible_to<double>;
 };
 
 template <StrainFunctions Law>
@@ -144,6 +154,65 @@ class StrainGroup {
       for (int i = 0; i < m; ++i) stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
       Law::template add_hessian<T>(p, stress, h);
       add_mapped<T, n>(maps_[g], h, k);
+    }
+  }
+
+  /// f += the group's force over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
+  ///   −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
+  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. It has no moment where strains are made of scalar products. The
+  /// others,
+  /// vectors that turn, go by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), κ₀ = 1e-3 1/m, as `objective_rate` damps; the
+  /// part of `decay` has a moment then.
+  template <int n>
+  void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, Vec<double, n>& f) const {
+    using S = Secant<np>;
+    for (int g = 0; g < Law::points; ++g) {
+      Vec<double, np> const p0 = parameters<double, n>(maps_[g], x0), p1 = parameters<double, n>(maps_[g], x1);
+      Vec<S, np> p;
+      for (int k = 0; k < np; ++k) p[k] = S::variable(p0[k], p1[k], k);
+      typename S::Slope sum = S::Slope::Zero();
+      if constexpr (HasSquare<Law>) {
+        S const z = Law::template square<S>(p);
+        double const damped = time_[0] * means.rate * z.change() / (2.0 * (z.mean() + 1e-6));
+        sum = z.d * (0.5 * stiffness_[0] * (1.0 + damped));
+      }
+      if (!HasSquare<Law> || means.decay > 0.0) {
+        Vec<S, m> strain;
+        Mat<S, m, np> b;
+        Law::template evaluate<S>(p, strain, b);
+        for (int i = 0; i < m; ++i) {
+          double stretch = means.decay * strain[i].change();
+          if constexpr (!HasSquare<Law>) stretch += strain[i].mean() - free_[g][i] + time_[i] * means.rate * strain[i].change();
+          sum += strain[i].d * (stiffness_[i] * stretch + (HasSquare<Law> ? 0.0 : initial_[i]));
+        }
+      }
+      for (int k = 0; k < np; ++k)
+        for (int j = 0; j < reach; ++j) f[Law::column(k, j)] -= weights_[g] * sum[k] * maps_[g](k, j);
+    }
+  }
+
+  /// k += ck (−∂f/∂x1) of `add_mean_force`, not symmetric, with the strains' gradients B̄ and H̄ of the middle for the secants:
+  ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
+  template <int n>
+  void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, double ck,
+                        Mat<double, n, n>& k) const {
+    for (int g = 0; g < Law::points; ++g) {
+      Vec<double, np> const p0 = parameters<double, n>(maps_[g], x0), p1 = parameters<double, n>(maps_[g], x1);
+      Vec<double, np> const middle = 0.5 * (p0 + p1);
+      Strains from, to, stress;
+      Mat<double, m, np> b, end;
+      Law::template evaluate<double>(p0, from, b);
+      Law::template evaluate<double>(p1, to, end);
+      Law::template evaluate<double>(middle, stress, b);
+      Mat<double, np, np> h = Mat<double, np, np>::Zero();
+      for (int i = 0; i < m; ++i) {
+        double const w = ck * weights_[g], share = means.decay + time_[i] * means.rate;
+        stress[i] = 0.5 * w * (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[g][i] + share * (to[i] - from[i])) + initial_[i]);
+        for (int c = 0; c < np; ++c)
+          for (int r = 0; r < np; ++r) h(r, c) += w * stiffness_[i] * (0.5 + share) * b(i, r) * end(i, c);
+      }
+      Law::template add_hessian<double>(middle, stress, h);
+      add_mapped<double, n>(maps_[g], h, k);
     }
   }
 

@@ -40,9 +40,13 @@ struct SpringDamper {
     return w;
   }
 
-  double potential(std::array<Frame<double>, 2> const& frames, double) const {
-    double const x = (frames[1].r - frames[0].r).norm() - free_length;
-    return 0.5 * stiffness * x * x;
+  template <StateScalar T>
+  T potential(std::array<Frame<T>, 2> const& frames, double) const {
+    using std::sqrt;
+    T const l2 = (frames[1].r - frames[0].r).squaredNorm();
+    if (free_length == 0.0) return l2 * (0.5 * stiffness);
+    T const x = sqrt(l2) - T(free_length.value);
+    return x * x * (0.5 * stiffness);
   }
 };
 

@@ -14,6 +14,7 @@ struct NewtonOptions {
   int max_iterations = 20;
   double refactor_above = 0.3;   ///< contraction θ above which the factorisation is renewed
   bool always_refactor = false;  ///< full Newton
+  int growths = 2;               ///< of the corrections, after which it gives up
   bool foretell = true;          ///< stop on what θ tells of the next correction, not on the last one itself
 };
 
@@ -33,7 +34,7 @@ struct NewtonReport {
 ///   double solve()      the next correction; returns its scaled norm
 ///   void apply()        adds it
 /// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
-/// Stops when θ/(1 − θ) ‖Δ‖ ≤ 1; fails after growing twice. Full Newton in a stiff direction contracts by turns
+/// Stops when θ/(1 − θ) ‖Δ‖ ≤ 1; fails after growing as often as `growths` says. Full Newton in a stiff direction contracts by turns
 /// (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate predicts the next correction:
 /// it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖.
 template <class Problem>
@@ -72,7 +73,7 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
       bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
       if (grows && norm > 1.0) {
         factored = false;
-        if (++grown >= 2) {
+        if (++grown >= options.growths) {
           report.result = NewtonResult::diverged;
           return report;
         }

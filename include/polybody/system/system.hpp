@@ -77,6 +77,16 @@ class System {
   void tangent(TangentCoefficients const& c, SecondOrder second, VecX const& lambda, Sink& sink) {
     polybody::tangent(*model_, q_, v_, lambda, t_, load_factor, c, second, data_, sink);
   }
+  /// cd D + ck K of the force elements alone, with second-order terms, into `sink`.
+  template <TangentSink Sink>
+  void force_tangents(TangentCoefficients const& c, Sink& sink) {
+    std::fill(data_.loads.begin(), data_.loads.end(), Wrench<double>{});
+    add_force_tangents(*model_, t_, load_factor, c, true, data_, sink, [&](Index marker, Vec6 const& w) {
+      data_.loads[std::size_t(marker)].f += w.head<3>();
+      data_.loads[std::size_t(marker)].m += w.tail<3>();
+    });
+    add_load_stiffness(*model_, q_, c.stiffness, data_, sink);
+  }
 
   /// out = q ⊞ delta.
   void plus(VecX const& q, VecX const& delta, VecX& out) const {

@@ -62,6 +62,54 @@ void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const
 
 }  // namespace detail
 
+/// sink += K and D of the force elements; `load(marker, wrench)` hears what acts where second-order terms are wanted.
+template <class M, TangentSink Sink, class Load>
+void add_force_tangents(M const& model, double t, double load_factor, TangentCoefficients const& c, bool full,
+                        Data<M, double>& data, Sink& sink, Load&& load) {
+  model.for_each_force([&](auto const& e) {
+    using F = std::decay_t<decltype(e.force)>;
+    constexpr int n = F::markers;
+    double const scale = F::is_load ? load_factor : 1.0;
+    auto const frames = detail::frames_of(e, data);
+    std::array<Published<double> const*, std::size_t(n)> markers;
+    for (int k = 0; k < n; ++k) markers[std::size_t(k)] = &data.markers[std::size_t(e.markers[k])];
+    Mat<double, 6 * n, 6 * n> const s = -scale * wrench_gradient(e.force, frames, t, c.stiffness, c.damping);
+    detail::add_pulled_pairs<n>(markers, s, full || couples_bodies<F>(), data.scratch, sink);
+    if (full) {
+      auto const wrenches = e.force.template wrenches<double>(frames, t);
+      for (int k = 0; k < n; ++k) {
+        Vec6 w;
+        w << wrenches[k].f, wrenches[k].m;
+        load(e.markers[k], -scale * w);
+      }
+    }
+  });
+}
+
+/// sink += ck ∂(Jᵀw)/∂q for the wrenches w in `data.loads`, marker by marker.
+template <class M, TangentSink Sink>
+void add_load_stiffness(M const& model, VecX const& q, double ck, Data<M, double>& data, Sink& sink) {
+  detail::for_each_pool_beside(model.body_pools(), data.scratch_of_bodies, [&](auto const& pool, auto& kept) {
+    for (auto const& p : pool.markers) {
+      auto const& e = pool.entries[std::size_t(p.body)];
+      using B = std::decay_t<decltype(e.body)>;
+      auto const add = [&](auto& k) {
+        e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()),
+                              data.loads[std::size_t(p.published)], k);
+        k *= ck;
+        Index const first = data.markers[std::size_t(p.published)].first;
+        sink.add(first, first, k);
+      };
+      if constexpr (B::point_columns == Eigen::Dynamic) {
+        add(kept[std::size_t(p.body)].tangent.k);
+      } else {
+        Mat<double, B::point_columns, B::point_columns> k;
+        add(k);
+      }
+    }
+  });
+}
+
 /// Writes [cm M + cd D + ck K, Gᵀ; G, 0] into `sink`, rows of G from index nv on; K, D of bodies, force
 /// elements and compliant joints. Needs `publish` and `enforce` at (q, v, t).
 template <class M, TangentSink Sink>
@@ -146,44 +194,8 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
     }
     detail::add_pulled_pairs<2>({&a, &b}, s, true, data.scratch, sink);
   });
-  model.for_each_force([&](auto const& e) {
-    using F = std::decay_t<decltype(e.force)>;
-    constexpr int n = F::markers;
-    double const scale = F::is_load ? load_factor : 1.0;
-    auto const frames = detail::frames_of(e, data);
-    std::array<Published<double> const*, std::size_t(n)> markers;
-    for (int k = 0; k < n; ++k) markers[std::size_t(k)] = &data.markers[std::size_t(e.markers[k])];
-    Mat<double, 6 * n, 6 * n> const s = -scale * wrench_gradient(e.force, frames, t, c.stiffness, c.damping);
-    detail::add_pulled_pairs<n>(markers, s, full || couples_bodies<F>(), data.scratch, sink);
-    if (full) {
-      auto const wrenches = e.force.template wrenches<double>(frames, t);
-      for (int k = 0; k < n; ++k) {
-        Vec6 w;
-        w << wrenches[k].f, wrenches[k].m;
-        load(e.markers[k], -scale * w);
-      }
-    }
-  });
-  if (!full) return;
-  detail::for_each_pool_beside(model.body_pools(), data.scratch_of_bodies, [&](auto const& pool, auto& kept) {
-    for (auto const& p : pool.markers) {
-      auto const& e = pool.entries[std::size_t(p.body)];
-      using B = std::decay_t<decltype(e.body)>;
-      auto const add = [&](auto& k) {
-        e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()),
-                              data.loads[std::size_t(p.published)], k);
-        k *= c.stiffness;
-        Index const first = data.markers[std::size_t(p.published)].first;
-        sink.add(first, first, k);
-      };
-      if constexpr (B::point_columns == Eigen::Dynamic) {
-        add(kept[std::size_t(p.body)].tangent.k);
-      } else {
-        Mat<double, B::point_columns, B::point_columns> k;
-        add(k);
-      }
-    }
-  });
+  add_force_tangents(model, t, load_factor, c, full, data, sink, load);
+  if (full) add_load_stiffness(model, q, c.stiffness, data, sink);
 }
 
 }  // namespace polybody

@@ -117,6 +117,21 @@ class Beam : public NodeChain<Theory::node_columns> {
     element_tangent<double>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), ck, cd, k);
   }
 
+  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
+  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
+                  Element<double>& out) const {
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)), x1 = part<element_columns>(q1, first_column(e));
+    out.setZero();
+    for_each_group([&](auto const& group) { group.add_mean_force(x0, x1, means, out); });
+  }
+  /// ck (−∂f/∂q1), nearly; not symmetric.
+  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
+                    ElementMatrix& k) const {
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)), x1 = part<element_columns>(q1, first_column(e));
+    k.setZero();
+    for_each_group([&](auto const& group) { group.add_mean_tangent(x0, x1, means, ck, k); });
+  }
+
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
     out = (gravity_ * g.head<2>()).template cast<T>();

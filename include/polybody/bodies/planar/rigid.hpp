@@ -3,7 +3,7 @@
 /// Rigid body in the plane. Coordinates (x, y, θ) of the centre of mass; speeds are their rates.
 
 #include <polybody/bodies/bar.hpp>
-#include <polybody/bodies/node_chain.hpp>
+#include <polybody/bodies/step_means.hpp>
 
 namespace polybody::planar {
 
@@ -87,6 +87,8 @@ class Rigid : public AddingCoordinates {
   void tangent(Index, std::span<double const>, std::span<double const>, double, double, Mat3& k) const {
     k.setZero();
   }
+  void mean_force(Index, std::span<double const>, std::span<double const>, StepMeans const&, Vec3& out) const { out.setZero(); }
+  void mean_tangent(Index, std::span<double const>, std::span<double const>, StepMeans const&, double, Mat3& k) const { k.setZero(); }
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Vec<T, 3>& out) const {
     out << T(g[0] * mass_), T(g[1] * mass_), T(0.0);

@@ -41,6 +41,7 @@ inline void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& 
 /// turn) take `RelativeCoordinates` as the geometry, which leaves nothing free. The potential ½ xᵀK x is exact.
 struct Bushing {
   static constexpr char const* name = "Bushing";
+  static constexpr bool linear = true;  ///< in g and ġ
   template <JointGeometry G>
   using Measured = HeldCoordinates<G>;
   using Matrix = Mat<double, 6, 6>;

@@ -7,6 +7,7 @@ namespace polybody {
 /// rows' own units: [N/m], [N s/m] for lengths, [N m], [N m s] for angles and direction cosines.
 struct Penalty {
   static constexpr char const* name = "Penalty";
+  static constexpr bool linear = true;  ///< in g and ġ
 
   Required<double> stiffness;  ///< k
   Required<double> damping;    ///< c
@@ -37,6 +38,7 @@ struct Penalty {
 template <int n>
 struct PenaltyPerRow {
   static constexpr char const* name = "PenaltyPerRow";
+  static constexpr bool linear = true;  ///< in g and ġ
 
   Required<Vec<double, n>> stiffness;  ///< (n) k
   Required<Vec<double, n>> damping;    ///< (n) c

@@ -1,0 +1,215 @@
+#pragma once
+/// \file
+/// Steps that keep energy and momenta, and steps that only ever lose energy, for coordinates that form a vector space and
+/// constant M:
+///   M Δv = h (f̄ − Ḡᵀλ),   Δq = h (v̄ + χ Δv),   Φ(q₁) = 0,   v̄ = ½ (v₀ + v₁).
+/// f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], made of secants (math/secant.hpp) of strains, gaps and potentials:
+///   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping),   Ḡ Δq = ΔΦ = 0.
+/// Hence, for the kinetic energy T, ΔT = v̄ᵀMΔv = (Δq/h − χ Δv)ᵀMΔv and
+///   ΔT + ΔV = −χ (ΔvᵀMΔv + ΔεᵀCΔε) − (damping) + (work of the loads).
+/// χ = 0: energy stays. The linear momentum changes by the loads' impulse for every χ. The angular momentum does so for χ = 0
+/// where f̄ and Ḡ have no moment of their own: for what is made of scalar products of coordinates. These are ANCF cables and the
+/// ANCF beam of `Continuum`, springs and joints between points on their axes. Angles as coordinates, section frames (`ElasticLine`)
+/// and joints of axes keep energy too, but angular momentum to the method's order only.
+
+#include <polybody/integrators/newton_failure.hpp>
+#include <polybody/integrators/step_history.hpp>
+#include <polybody/system/step_secants.hpp>
+
+namespace polybody {
+
+/// A member of the family. `State::a` and `State::lambda` after a step belong to the middle of it; with χ = 0, λ alternates by O(h) about
+/// the reaction, and the mean of two steps is right to O(h²).
+struct ConservingStep {
+  char const* name;
+  double chi;
+  double tolerance;
+  NewtonOptions newton;
+
+  template <class M, class Solver>
+  struct Workspace {
+    static_assert(requires { typename M::BodyPools; },
+                  "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of AncfLinear, say.");
+    VecX q, v, vd, lambda, r, phi, rhs, y;
+    StepSecants<M> secants;
+    Solver solver;
+    ForwardDynamics<M, Solver> forward;
+    bool factored = false;
+    double theta = 1.0;
+    double h_factored = 0.0;
+
+    explicit Workspace(System<M>& s)
+        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), vd(v), lambda(VecX::Zero(s.rows())), r(v), phi(lambda),
+          rhs(VecX::Zero(s.size())), y(rhs), secants(s), forward(s) {}
+  };
+
+  template <class Solver, class M>
+  Workspace<M, Solver> workspace(System<M>& system) const {
+    return Workspace<M, Solver>(system);
+  }
+
+  /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
+  template <class M, class Solver>
+  void start(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    StepHistory::reset(x);
+    w.secants.evaluate(system, x.q, x.q, x.t, h, chi);
+    PatternSink pattern;
+    w.secants.tangent(system, scale(h), pattern);
+    w.solver.analyse(system.size(), pattern.blocks);
+    w.factored = false;
+    (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
+  }
+
+  /// x changes only when Newton's method converged.
+  template <class M, class Solver>
+  StepReport step(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    return advance(system, x, h, w, false);
+  }
+
+ private:
+  /// Δq = h v₀ + s a with Δv = h a.
+  double scale(double h) const { return (0.5 + chi) * h * h; }
+
+  template <class M, class Solver>
+  Index refactor(System<M>& system, double h, Workspace<M, Solver>& w) const {
+    w.h_factored = h;
+    return write_and_factor(w.solver, [&](Solver& sink) { w.secants.tangent(system, scale(h), sink); });
+  }
+
+  template <class M, class Solver>
+  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, bool careful) const {
+    struct Problem {
+      ConservingStep const& method;
+      System<M>& system;
+      State const& x;
+      Workspace<M, Solver>& w;
+      double h, s;
+      Index nv, rows, bad = -1;
+
+      void move() { w.q = x.q + h * x.v + s * w.vd; }
+      bool evaluate() {
+        move();
+        w.secants.evaluate(system, x.q, w.q, x.t, h, method.chi);
+        w.secants.residual(system, w.vd, w.lambda, w.r);
+        w.secants.violation(system.model(), w.phi);
+        w.rhs.head(nv) = -w.r;
+        w.rhs.tail(rows) = w.phi / -s;
+        return w.rhs.allFinite();
+      }
+      bool refactor() {
+        bad = method.refactor(system, h, w);
+        return bad < 0;
+      }
+      double solve() {
+        w.solver.solve(w.rhs, w.y);
+        double const n = std::sqrt(double(std::max<Index>(nv, 1)));
+        double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
+        return w.y.allFinite() ? w.y.head(nv).norm() / n / (method.tolerance * (1.0 + w.vd.norm() / n) + rounding)
+                               : std::numeric_limits<double>::quiet_NaN();
+      }
+      void apply() {
+        w.vd += w.y.head(nv);
+        w.lambda += w.y.tail(rows);
+      }
+    };
+    StepHistory history(x);
+    if (careful) {
+      w.vd.setZero();  // the mean of what a step does not resolve
+      w.lambda = x.lambda;
+    } else {
+      history.extrapolate(x, h, w.vd, w.lambda);
+    }
+    if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+    NewtonOptions options = newton;
+    options.always_refactor = options.always_refactor || careful;
+    if (careful) options.growths = 10;
+    Problem problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows()};
+    NewtonReport const report = polybody::newton(problem, options, w.factored, w.theta);
+    if (report.result != NewtonResult::converged && !careful) {  // full Newton, from no acceleration at all
+      w.factored = false;
+      return advance(system, x, h, w, true);
+    }
+    if (report.result != NewtonResult::converged) detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
+    problem.move();
+    w.v = x.v + h * w.vd;
+    history.push(x, h, w.vd);
+    x.q.swap(w.q);
+    x.v.swap(w.v);
+    x.a.swap(w.vd);
+    x.lambda.swap(w.lambda);
+    x.t += h;
+    return {h, h, report.iterations, report.factorisations, report.iterations, 0, 0, report.theta};
+  }
+};
+
+/// χ = 0: the energy–momentum method, of order two [Simo & Tarnow 1992; Gonzalez 1996]. Energy, and with it stability, holds for
+/// every h at which Newton's method converges; high modes are kept too. Energy and momenta err by what Newton's method leaves.
+struct EnergyMomentum {
+  static constexpr char const* name = "EnergyMomentum";
+  static constexpr int order = 2;
+  static constexpr bool accepts_rows = true;
+
+  double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {.max_iterations = 50, .refactor_above = 0.16};
+
+  /// \throws InvalidInput unless the tolerance is positive.
+  void check() const { require_positive(tolerance, "EnergyMomentum: the tolerance"); }
+
+  template <class Solver, class M>
+  auto workspace(System<M>& system) const {
+    return method().template workspace<Solver>(system);
+  }
+  template <class M, class W>
+  void start(System<M>& system, State& x, double h, W& w) const {
+    check();
+    method().start(system, x, h, w);
+  }
+  template <class M, class W>
+  StepReport step(System<M>& system, State& x, double h, W& w) const {
+    return method().step(system, x, h, w);
+  }
+
+ private:
+  ConservingStep method() const { return {name, 0.0, tolerance, newton}; }
+};
+
+/// χ = ½ (1 − ρ∞)/(1 + ρ∞): energy falls in every step, in a linear mode by the factor ρ∞² as ωh → ∞. Of order one for ρ∞ < 1.
+/// The strains' part is that of the energy-dissipative momentum-conserving method EDMC-1 [Armero & Romero 2001]; the speeds' part is
+/// taken in the norm of M here, so that no mode escapes, and the angular momentum follows to first order only. Force elements with a
+/// potential of their own keep their energy: the speeds damp them.
+struct EnergyDecaying {
+  static constexpr char const* name = "EnergyDecaying";
+  static constexpr int order = 1;
+  static constexpr bool accepts_rows = true;
+
+  double rho_inf = 0.9;      ///< of a mode of strain as ωh → ∞, in [0, 1]; 1 keeps energy
+  double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {.max_iterations = 50, .refactor_above = 0.16};
+
+  /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
+  void check() const {
+    if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
+      throw InvalidInput("EnergyDecaying: rho_inf must lie in [0, 1], but is " + number(rho_inf) + ".");
+    require_positive(tolerance, "EnergyDecaying: the tolerance");
+  }
+
+  template <class Solver, class M>
+  auto workspace(System<M>& system) const {
+    return method().template workspace<Solver>(system);
+  }
+  template <class M, class W>
+  void start(System<M>& system, State& x, double h, W& w) const {
+    check();
+    method().start(system, x, h, w);
+  }
+  template <class M, class W>
+  StepReport step(System<M>& system, State& x, double h, W& w) const {
+    return method().step(system, x, h, w);
+  }
+
+ private:
+  ConservingStep method() const { return {name, 0.5 * (1.0 - rho_inf) / (1.0 + rho_inf), tolerance, newton}; }
+};
+
+}  // namespace polybody

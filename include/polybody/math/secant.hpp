@@ -1,0 +1,122 @@
+#pragma once
+/// \file
+/// Secants: a function's values at both ends of a step and its slope between them, f₁ − f₀ = s·(x₁ − x₀), carried through
+/// formulas as dual numbers carry derivatives [slopes: Krawczyk & Neumaier 1985; Rump 1996]. The rules are symmetric in the two
+/// ends,
+///   s(f g) = f̄ s(g) + ḡ s(f),   s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁),   f̄ = ½ (f₀ + f₁),
+/// so s is a discrete gradient [Gonzalez 1996]: exact over the step, and the gradient in its middle up to O(|x₁ − x₀|²). Of a
+/// quadratic form it is the gradient in the middle itself; and of a function of quadratic forms that a rotation does not change
+/// it
+/// stays at right angles to the rotations of the middle.
+
+#include <polybody/math/dual.hpp>
+
+namespace polybody {
+
+/// Values `a` and `b` at the two ends and the slope `d` by N variables.
+template <int N>
+struct Secant {
+  static_assert(N > 0, "A secant needs at least one variable.");
+  using Slope = Eigen::Array<double, N, 1>;
+
+  double a = 0.0, b = 0.0;
+  Slope d = Slope::Zero();
+
+  Secant() = default;
+  Secant(double value) : a(value), b(value) {}  // NOLINT(google-explicit-constructor): a constant is a secant
+  Secant(double from, double to, Slope const& slope) : a(from), b(to), d(slope) {}
+
+  /// The variable number `i`, which goes from `from` to `to`.
+  static Secant variable(double from, double to, int i) {
+    Secant x(from, to, Slope::Zero());
+    x.d[i] = 1.0;
+    return x;
+  }
+
+  double mean() const { return 0.5 * (a + b); }
+  double change() const { return b - a; }
+
+  Secant& operator+=(Secant const& y) { a += y.a; b += y.b; d += y.d; return *this; }
+  Secant& operator-=(Secant const& y) { a -= y.a; b -= y.b; d -= y.d; return *this; }
+  Secant& operator*=(Secant const& y) {
+    d = d * y.mean() + y.d * mean();
+    a *= y.a;
+    b *= y.b;
+    return *this;
+  }
+  Secant& operator/=(Secant const& y) {
+    d = (d * y.mean() - y.d * mean()) / (y.a * y.b);
+    a /= y.a;
+    b /= y.b;
+    return *this;
+  }
+
+  friend Secant operator+(Secant x, Secant const& y) { return x += y; }
+  friend Secant operator-(Secant x, Secant const& y) { return x -= y; }
+  friend Secant operator*(Secant x, Secant const& y) { return x *= y; }
+  friend Secant operator/(Secant x, Secant const& y) { return x /= y; }
+  friend Secant operator-(Secant const& x) { return {-x.a, -x.b, -x.d}; }
+  friend Secant operator+(Secant const& x) { return x; }
+
+  friend bool operator==(Secant const& x, Secant const& y) { return x.mean() == y.mean(); }
+  friend auto operator<=>(Secant const& x, Secant const& y) { return x.mean() <=> y.mean(); }
+
+  friend Secant sqrt(Secant const& x) {
+    double const from = std::sqrt(x.a), to = std::sqrt(x.b);
+    if (from + to == 0.0) return {from, to, (x.d == 0.0).select(0.0, x.d / 0.0)};  // a constant zero stays one
+    return {from, to, x.d / (from + to)};
+  }
+  /// sin b − sin a = 2 cos ½(a + b) sin ½(b − a), and cos alike.
+  friend Secant sin(Secant const& x) { return {std::sin(x.a), std::sin(x.b), x.d * (std::cos(x.mean()) * chord(x))}; }
+  friend Secant cos(Secant const& x) { return {std::cos(x.a), std::cos(x.b), x.d * (-std::sin(x.mean()) * chord(x))}; }
+  /// The angle turns by φ = atan2(X, D), X = x₀ y₁ − y₀ x₁ = x̄ Δy − ȳ Δx, D = x₀ x₁ + y₀ y₁: less than half a turn.
+  friend Secant atan2(Secant const& y, Secant const& x) {
+    double const across = x.a * y.b - y.a * x.b, along = x.a * x.b + y.a * y.b, t = across / along;
+    double const turn = std::atan2(across, along), from = std::atan2(y.a, x.a);
+    double const each = along > 0.0 && std::abs(t) < 1e-3 ? (1.0 - t * t * (1.0 / 3.0 - t * t / 5.0)) / along : turn / across;
+    return {from, from + turn, (y.d * x.mean() - x.d * y.mean()) * each};
+  }
+  friend Secant atan(Secant const& x) { return atan2(x, Secant(1.0)); }
+  friend Secant abs2(Secant const& x) { return x * x; }
+  friend bool isfinite(Secant const& x) { return std::isfinite(x.a) && std::isfinite(x.b) && x.d.allFinite(); }
+
+ private:
+  /// sin(x)/x of half the change.
+  static double chord(Secant const& x) {
+    double const half = 0.5 * x.change();
+    return std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
+  }
+};
+
+/// The branch that a formula takes is that of the middle.
+template <int N>
+double value_of(Secant<N> const& x) {
+  return x.mean();
+}
+
+}  // namespace polybody
+
+template <int N>
+struct Eigen::NumTraits<polybody::Secant<N>> : Eigen::NumTraits<double> {
+  using Real = polybody::Secant<N>;
+  using NonInteger = polybody::Secant<N>;
+  using Nested = polybody::Secant<N>;
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 2 + N,
+    AddCost = 2 + N,
+    MulCost = 2 + 2 * N
+  };
+};
+
+template <int N, class BinaryOp>
+struct Eigen::ScalarBinaryOpTraits<polybody::Secant<N>, double, BinaryOp> {
+  using ReturnType = polybody::Secant<N>;
+};
+template <int N, class BinaryOp>
+struct Eigen::ScalarBinaryOpTraits<double, polybody::Secant<N>, BinaryOp> {
+  using ReturnType = polybody::Secant<N>;
+};

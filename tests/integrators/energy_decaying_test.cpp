@@ -1,0 +1,101 @@
+// Steps that only ever lose energy.
+
+#include <polybody/integrators/energy_momentum.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+
+#include "support/energy_drift.hpp"
+#include "support/refusal.hpp"
+#include "support/solver_instances.hpp"
+
+using namespace polybody;
+
+namespace energy_decaying_test {
+
+using Cable = planar::AncfCable<>;
+
+// A mass on a linear spring, x = ωh. With θ = ½ + χ = 1/(1 + ρ): Δq = h (v₀ + θ Δv), Δv = −hω² (q₀ + θ Δq), so ω q + i v is
+// multiplied by
+// (1 − i (1 − θ) x)/(1 + i θ x), and energy by (1 + (1 − θ)² x²)/(1 + θ² x²): by ρ² as x → ∞.
+TEST(EnergyDecaying, LinearModeLosesTheShareOfItsTheory) {
+  using Spring = Joint<planar::Revolute, Penalty>;
+  Model<Bodies<planar::Rigid>, Joints<Spring>> model;
+  auto const mass = model.add(planar::Rigid(2.0, 1.0), "mass");
+  model.connect(Spring{{}, {.stiffness = 50.0, .damping = 0.0}}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)), "spring");
+  for (double const rho : {0.0, 0.5, 0.9, 1.0})
+    for (double const hw : {0.1, 1.0, 10.0, 1e3}) {
+      EnergyDecaying const integrator{.rho_inf = rho};
+      State x = model.reference_state();
+      x.q << 0.3, -0.2, 0.0;
+      x.v << 1.0, 0.5, 0.0;
+      System system(model);
+      auto workspace = integrator.workspace<DefaultSolver>(system);
+      double const h = hw / 5.0, theta = 1.0 / (1.0 + rho);
+      double const share = (1.0 + std::pow((1.0 - theta) * hw, 2)) / (1.0 + std::pow(theta * hw, 2));
+      integrator.start(system, x, h, workspace);
+      for (int i = 0; i < 3; ++i) {
+        double const before = energy(model, x).total();
+        integrator.step(system, x, h, workspace);
+        EXPECT_NEAR(energy(model, x).total() / before, share, 1e-8) << rho << ' ' << hw;
+      }
+    }
+}
+
+/// A rod of 10 m and 1 kg/m in free flight that turns, bends and stretches.
+struct Flight {
+  Model<Bodies<Cable>, Joints<>> model;
+  State x;
+  Flight(double ea, double ei, Index n) {
+    auto const rod = model.add(
+        Cable::from({.length = 10.0, .constants = BarConstants{.EA = ea, .EI = ei, .mass_per_length = 1.0}}, n), "rod");
+    x = model.reference_state();
+    model.set_velocity(x, rod, Vec3(2, 0, 0), Vec3(0, 0, 1));
+  }
+};
+
+// High modes: speeds of the slopes r′ that alternate from node to node along the axis. They hold most of the energy, and are
+// gone; what the
+// rod must keep for its momenta stays. Energy falls in every step; linear momentum stays.
+TEST(EnergyDecaying, HighModesDieAndEnergyFallsInEveryStep) {
+  Flight flight(1e6, 500.0, 8);
+  double const smooth = energy(flight.model, flight.x).kinetic;
+  for (Index i = 0; i <= 8; ++i) flight.x.v[4 * i + 2] += i % 2 == 0 ? 60.0 : -60.0;
+  double const start = energy(flight.model, flight.x).total();
+  ASSERT_GT(start, 2.0 * smooth);
+  Drift const drift = drift_of(flight.model, flight.x, EnergyDecaying{.rho_inf = 0.5}, 0.005, 400);
+  EXPECT_LT(drift.largest_gain, 0.0);
+  EXPECT_LT(drift.linear, 1e-11);
+  EXPECT_LT(energy(flight.model, flight.x).total(), 1.1 * smooth);
+  EXPECT_GT(energy(flight.model, flight.x).total(), 0.5 * smooth);
+}
+
+TEST(EnergyDecaying, IsOfOrderOneAndOfOrderTwoWhereItKeepsEnergy) {
+  for (double const rho : {0.5, 1.0}) {
+    std::vector<VecX> ends;
+    for (int k = 1; k <= 8; k *= 2) {
+      Flight flight(1e3, 100.0, 2);
+      flight.x.v[8] += 0.5;
+      simulate(flight.model, flight.x, EnergyDecaying{.rho_inf = rho}, {.until = 0.5, .step = 0.001 / k}).run();
+      VecX end(2 * flight.x.q.size());
+      end << flight.x.q, flight.x.v;
+      ends.push_back(end);
+    }
+    double const order = std::log2((ends[2] - ends[1]).norm() / (ends[3] - ends[2]).norm());
+    EXPECT_NEAR(order, rho < 1.0 ? 1.0 : 2.0, 0.1) << rho;
+  }
+}
+
+TEST(EnergyDecaying, RefusesARadiusOutsideItsRange) {
+  Flight flight(1e3, 100.0, 2);
+  for (double const rho : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_TRUE(has(refusal([&] { simulate(flight.model, flight.x, EnergyDecaying{.rho_inf = rho}, {.until = 1.0, .step = 0.1}); }),
+                    "EnergyDecaying: rho_inf must lie in [0, 1]"));
+}
+
+}  // namespace energy_decaying_test

@@ -1,0 +1,62 @@
+// Energy and both momenta of what flies in space, over long runs [CASES I3, D4].
+
+#include <polybody/integrators/energy_momentum.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/forces/point_load.hpp>
+
+#include "support/energy_drift.hpp"
+#include "support/solver_instances.hpp"
+
+using namespace polybody;
+
+namespace energy_momentum_space_test {
+
+/// From 0 to 1 at 2.5 s, back to 0 at 5 s.
+struct Triangle {
+  Motion operator()(double t) const { return {std::max(0.0, 1.0 - std::abs(t / 2.5 - 1.0)), 0.0, 0.0}; }
+  std::vector<double> corners() const { return {0.0, 2.5, 5.0}; }
+};
+
+/// CASES D4: from (6, 0, 0) to (0, 8, 0), thrown by a force and a moment at the first end in 5 s.
+template <class B>
+struct Thrown {
+  Model<Bodies<B>, Joints<>, Forces<PointForce<Triangle>, PointMoment<Triangle>>> model;
+  BodyHandle<B> rod;
+  State x;
+  explicit Thrown(Index n)
+      : rod(model.add(B::from({.length = 10.0,
+                               .constants = BarConstants{.EA = 1e4, .EI = 500, .mass_per_length = 1.0, .GA = 1e4, .GJ = 500,
+                                                         .rotary_inertia = 10.0},
+                               .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))},
+                              n),
+                      "rod")) {
+    model.apply(PointForce<Triangle>{.force = {20, 0, 0}}, rod.at(0.0), "force");
+    model.apply(PointMoment<Triangle>{.moment = {0, -100, -200}}, rod.at(0.0), "moment");
+    x = model.reference_state();
+    simulate(model, x, EnergyMomentum{}, {.until = 5.0, .step = 0.01}).run();
+  }
+};
+
+// P = (50, 0, 0) after 5 s [A].
+TEST(EnergyMomentumInSpace, KeepsEnergyAndMomentaOfAThrownCableOverTenThousandSteps) {
+  Thrown<AncfCable<>> cable(6);
+  EXPECT_LT((momentum(cable.model, cable.x).linear - Vec3(50, 0, 0)).norm(), 1e-9);
+  Drift const drift = drift_of(cable.model, cable.x, EnergyMomentum{}, 0.01, 10000);
+  EXPECT_LT(drift.energy, 1e-8);
+  EXPECT_LT(drift.linear, 1e-10);
+  EXPECT_LT(drift.angular, 1e-8);
+}
+
+TEST(EnergyMomentumInSpace, KeepsThemWithEngineeringStrainToo) {
+  Thrown<AncfCable<EngineeringStrain>> cable(4);
+  Drift const drift = drift_of(cable.model, cable.x, EnergyMomentum{}, 0.01, 1000);
+  EXPECT_LT(drift.energy, 1e-8);
+  EXPECT_LT(drift.linear, 1e-10);
+  EXPECT_LT(drift.angular, 1e-8);
+}
+
+}  // namespace energy_momentum_space_test

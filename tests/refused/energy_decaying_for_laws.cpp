@@ -1,0 +1,12 @@
+// refused: takes joints with Constraint, Penalty or Bushing
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/integrators/energy_momentum.hpp>
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/policies/nonlinear_bushing.hpp>
+
+using namespace polybody;
+using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>;
+using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Weld, Laws>>>;
+
+void run(M const& model, State& x) { simulate(model, x, EnergyDecaying{}, {.until = 1.0, .step = 1e-3}); }

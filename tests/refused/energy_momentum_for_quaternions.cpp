@@ -1,0 +1,9 @@
+// refused: whose coordinates form a vector space
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/integrators/energy_momentum.hpp>
+
+using namespace polybody;
+using M = Model<Bodies<Rigid<>>, Joints<>>;
+
+void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 1e-3}); }

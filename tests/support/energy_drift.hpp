@@ -1,0 +1,44 @@
+#pragma once
+/// \file
+/// What a run without loads keeps: the largest departures of energy and momenta on the way.
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/integrators/integrator.hpp>
+
+namespace polybody {
+
+struct Drift {
+  double energy = 0.0, linear = 0.0, angular = 0.0;  ///< relative to the start's
+  double largest_gain = -1.0;                        ///< of energy in one step, relative; negative when every step loses some
+  double violation = 0.0;                            ///< |Φ|, largest
+};
+
+/// `steps` steps of length h from x, which is moved along.
+template <class M, class I>
+Drift drift_of(M const& model, State& x, I const& integrator, double h, int steps) {
+  System system(model);
+  auto workspace = integrator.template workspace<DefaultSolver>(system);
+  integrator.start(system, x, h, workspace);
+  system.evaluate(x.q, x.v, x.t);
+  double const start = energy(system, x).total();
+  Momentum const p0 = momentum(model, x);
+  double before = start;
+  VecX open = VecX::Zero(system.rows());
+  Drift drift;
+  for (int i = 0; i < steps; ++i) {
+    integrator.step(system, x, h, workspace);
+    system.evaluate(x.q, x.v, x.t);
+    double const now = energy(system, x).total();
+    Momentum const p = momentum(model, x);
+    drift.energy = std::max(drift.energy, std::abs(now / start - 1.0));
+    drift.largest_gain = std::max(drift.largest_gain, (now - before) / start);
+    drift.linear = std::max(drift.linear, (p.linear - p0.linear).norm() / p0.linear.norm());
+    drift.angular = std::max(drift.angular, (p.angular - p0.angular).norm() / p0.angular.norm());
+    system.violation(open);
+    for (double const g : open) drift.violation = std::max(drift.violation, std::abs(g));
+    before = now;
+  }
+  return drift;
+}
+
+}  // namespace polybody
