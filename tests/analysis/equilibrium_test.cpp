@@ -143,6 +143,35 @@ TEST(Equilibrium, HalvesAPartThatFailsAndGetsThere) {
   EXPECT_LT((x.q - small.q).cwiseAbs().maxCoeff(), 1e-10);
 }
 
+// Stiffness and force times 2ᵏ: the same coordinates, multipliers times 2ᵏ, to the last bit. Rows do not take part, so they must not be
+// lost beside pivots of 1e24 N/m, nor outweigh those of 1e-12.
+TEST(Equilibrium, DoesNotDependOnTheUnitOfForce) {
+  for (Index const n : {4, 40}) {
+    State reference;
+    for (int const k : {0, -60, 40, 60}) {
+      Bar const b{.length = 1.0,
+                  .constants = BarConstants{.EA = std::ldexp(1e6, k), .EI = std::ldexp(1.0, k), .mass_per_length = 1.0,
+                                            .GA = std::ldexp(1e6, k)}};
+      Held const s(b, n, {0, std::ldexp(5.0, k), 0});
+      State x = s.model.reference_state();
+      equilibrium(s.model, x);
+      if (k == 0) reference = x;
+      EXPECT_TRUE(x.q == reference.q) << n << ' ' << k;
+      EXPECT_TRUE(x.lambda == std::ldexp(1.0, k) * reference.lambda) << n << ' ' << k;
+    }
+  }
+}
+
+// The whole load takes several parts; from the equilibrium under half of it one or two are left.
+TEST(Equilibrium, GoesOnFromWhereItIs) {
+  Held const half(bar(1e6), 16, {0, 25, 0}), full(bar(1e6), 16, {0, 50, 0});
+  State x = full.model.reference_state(), y = x;
+  EXPECT_GT(equilibrium(full.model, x).parts, 2);
+  equilibrium(half.model, y);
+  EXPECT_LE(equilibrium(full.model, y).parts, 2);
+  EXPECT_LT((x.q - y.q).cwiseAbs().maxCoeff(), 1e-10);
+}
+
 TEST(Equilibrium, SaysThatAForceIsNotFinite) {
   Held s(bar(1e4), 4, {0, 1, 0});
   s.model.apply(PointForce<Breaks>{.force = {0, 1, 0}}, s.beam.at(0.5));

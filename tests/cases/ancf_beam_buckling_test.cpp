@@ -1,8 +1,8 @@
-// CASES S9c with the fully parameterised ANCF beam on its elastic line: what is pulled in its stiff plane leaves it.
+// CASES S9c, S9d, S9e with the fully parameterised ANCF beam on its elastic line: what is pulled in its stiff plane leaves it.
 
 #include <polybody/bodies/ancf_beam.hpp>
 
-#include "support/buckling.hpp"
+#include "support/columns.hpp"
 #include "support/solver_instances.hpp"
 
 using namespace polybody;
@@ -26,5 +26,13 @@ TEST(AncfRightAngleFrame, BucklesAtTheExactForce) {
     EXPECT_NEAR(limit, force, 1e-4 * force);
   }
 }
+
+// 8554.9932 N [C], with the deflection before buckling.
+TEST(AncfStrip, BucklesSidewaysAtTheExactForce) {
+  EXPECT_NEAR(columns::limit_of_meshes(columns::critical_tip_force<Beam>, 8), 8554.9932, 3e-3);
+}
+
+TEST(AncfColumns, BuckleAtEulersLoads) { columns::buckles_at_eulers_loads<Beam>(8); }
+TEST(AncfColumns, StandBentBeyond) { columns::stands_bent_beyond<Beam>(16); }
 
 }  // namespace ancf_beam_buckling_test

@@ -106,6 +106,17 @@ TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithShear) {
   }
 }
 
+// Without shear: GA a thousand times EA leaves 1e-6 of the displacement. From one load to the next Newton's method needs parts.
+TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithoutShear) {
+  std::vector<Vec2> const coarse = pushed<planar::Lrvf>(40, 1e3 * EA, no_shear);
+  std::vector<Vec2> const fine = pushed<planar::Lrvf>(80, 1e3 * EA, no_shear);
+  for (std::size_t i = 0; i < no_shear.size(); ++i) {
+    Vec2 const limit = (4.0 * fine[i] - coarse[i]) / 3.0;
+    EXPECT_LT(miss(fine[i], no_shear[i]), 1e-3) << no_shear[i].P;
+    EXPECT_LT(miss(limit, no_shear[i]), 1e-5) << no_shear[i].P;
+  }
+}
+
 /// Where the path turns: the upper limit load, by the parabola through three points of the path near u₀. Load control ends there;
 /// with the loaded point on the rail at u it does not, and the load is sought, by secants, that needs no force of the rail.
 template <class B>

@@ -56,6 +56,19 @@ TEST(GerstmayrIrschik, MeshesConvergeToTheExactRod) {
   EXPECT_GT((coarse - exact).norm() / (fine - exact).norm(), 14.0);  // order 4
 }
 
+// The same rod [C] by Lrvf, which does not lock in its thin limit: with GA = 1e6 EA shear adds F L/GA, 1e-9. Errors in h² and h⁴ are
+// extrapolated away.
+TEST(GerstmayrIrschik, LrvfWithoutShearConvergesToTheExactRod) {
+  Bar const bar{.length = 2.0, .constants = BarConstants{.EA = 2.07e9, .EI = 1.725e6, .mass_per_length = 78.5, .GA = 2.07e15}};
+  Vec3 const exact(-0.508537304325871, -1.207239854549803, -0.986237330266);
+  auto const tip = [&](Index n) {
+    return Cantilever<Lrvf>(Lrvf::from(bar, n), {.force = {0, -3.0 * 1.725e6 / 4.0}}, {.load_steps = 5}).tip_displacement();
+  };
+  Vec3 const a = tip(32), b = tip(64), c = tip(128), once = (4.0 * b - a) / 3.0, twice = (4.0 * c - b) / 3.0;
+  EXPECT_NEAR((a - exact).norm() / (b - exact).norm(), 4.0, 0.01);
+  EXPECT_LT(((16.0 * twice - once) / 15.0 - exact).cwiseAbs().maxCoeff(), 5e-9);
+}
+
 // ---- S4: Nachbagauer, Pechstein, Irschik & Gerstmayr 2011
 
 Bar thick(double angle = 0.0) {

@@ -42,8 +42,9 @@ double critical_force(F&& lowest, double a, double b) {
   return b;
 }
 
-/// Two legs of 240 mm, 30 mm high in the plane and 0.6 mm thick (N, mm, and any mass: it decides no stability), in equilibrium
-/// under `force` at the tip. S9c's numbers are those of a frame without shear: GA is ten times EA.
+/// Two legs of 240 mm, 30 mm high in the plane and 0.6 mm thick (N, mm, and any mass: it decides no stability, and a heavy one
+/// keeps rounding errors out of the lowest frequency), in equilibrium under `force` at the tip. S9c's
+/// numbers are those of a frame without shear: GA is ten times EA.
 template <class B>
 struct FlatFrame {
   using Clamp = Joint<Weld, Constraint>;
@@ -65,7 +66,7 @@ struct FlatFrame {
     return {.length = 240.0,
             .constants = BarConstants{.EA = e * b * t, .EI = e * t * b * b * b / 12, .mass_per_length = 1.0, .GA = 10 * e * b * t,
                                       .GJ = g * J, .rotary_inertia = 75.0,
-                                      .EI_y = e * b * t * t * t / 12, .rotary_inertia_y = 0.03},
+                                      .EI_y = e * b * t * t * t / 12, .rotary_inertia_y = 75.0},
             .placement = placement};
   }
 };

@@ -8,9 +8,8 @@
 #include <functional>
 #include <vector>
 
+#include <polybody/analysis/static_tangent.hpp>
 #include <polybody/solvers/default_solver.hpp>
-#include <polybody/solvers/newton.hpp>
-#include <polybody/system/system.hpp>
 
 namespace polybody {
 
@@ -42,13 +41,10 @@ std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcL
   PathPoint now{0.0, start};
   now.x.v.setZero();
   now.x.a.setZero();
-  Solver solver;
-  PatternSink pattern;
   system.evaluate(now.x.q, now.x.v, now.x.t);
-  system.tangent({.stiffness = 1.0}, SecondOrder::included, now.x.lambda, pattern);
-  solver.analyse(system.size(), pattern.blocks);
+  StaticTangent<Solver, M> stiffness(system, now.x.lambda);
 
-  VecX r(nv), r0(nv), r1(nv), phi(rows), rhs(nv + rows), a(nv + rows), b(nv + rows), q;
+  VecX r(nv), r0(nv), r1(nv), phi(rows), a(nv + rows), b(nv + rows), q;
   // a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false where K is singular.
   auto const solve = [&](PathPoint const& at) {
     system.evaluate(at.x.q, at.x.v, at.x.t);
@@ -59,14 +55,9 @@ std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcL
     system.violation(phi);
     if (!r.allFinite() || !phi.allFinite())
       throw NonFinite("equilibrium_path: a force is not finite at load factor " + number(at.load_factor) + ".");
-    Index const bad = write_and_factor(solver, [&](Solver& sink) {
-      system.tangent({.stiffness = 1.0}, SecondOrder::included, at.x.lambda, sink);
-    });
-    if (bad >= 0) return false;
-    rhs << -r, -phi;
-    solver.solve(rhs, a);
-    rhs << r0 - r1, VecX::Zero(rows);
-    solver.solve(rhs, b);
+    if (stiffness.factor(at.x.lambda) >= 0) return false;
+    stiffness.solve(-r, -phi, a);
+    stiffness.solve(r0 - r1, VecX::Zero(rows), b);
     return a.allFinite() && b.allFinite();
   };
   auto const move = [&](PathPoint& point, VecX const& by, double load) {

@@ -3,10 +3,10 @@
 /// Static equilibrium: f(q) − Gᵀλ = 0, Φ(q) = 0 at v = 0, by full Newton with load steps.
 
 #include <polybody/analysis/equilibrium_options.hpp>
+#include <polybody/analysis/static_tangent.hpp>
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/newton.hpp>
-#include <polybody/system/system.hpp>
 
 namespace polybody {
 
@@ -25,46 +25,62 @@ bool multipliers_at_rest(System<M>& system, State& x) {
 }
 }  // namespace detail
 
-/// Moves x (coordinates, multipliers; speeds become zero) into equilibrium at time x.t, from its present place.
-/// Every term of the tangent is included. \throws NewtonStalled, LinearSolverSingular, NonFinite; x is then
-/// untouched.
+/// Moves x (coordinates, multipliers; speeds become zero) into equilibrium at time x.t, from its present place. Every term of the
+/// tangent is included. Where Newton's method does not get there at once, it follows the path s = 0 … 1 of
+///   r(q, λ, p) = (1 − s) r₀,  Φ(q) = (1 − s) Φ₀,  p = p₀ + s (1 − p₀),
+/// p the factor of loads and gravity: p₀ ∈ [0, 1] is the one that best keeps x where it is, r₀ and Φ₀ what it leaves. From a reference
+/// state loads grow from nothing; from an equilibrium under smaller ones they grow from those.
+/// \throws NewtonStalled, LinearSolverSingular, NonFinite; x is then untouched.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
   System<M> system(model);
   State trial = x;
   trial.v.setZero();
   trial.a.setZero();
-  Solver solver;
-  PatternSink pattern;
   system.evaluate(trial.q, trial.v, trial.t);
-  system.tangent({.stiffness = 1.0}, SecondOrder::included, trial.lambda, pattern);
-  solver.analyse(system.size(), pattern.blocks);
+  StaticTangent<Solver, M> tangent(system, trial.lambda);
 
   struct Problem {
     System<M>& system;
-    Solver& solver;
+    StaticTangent<Solver, M>& tangent;
     State& trial;
     double tolerance;
     double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
     Index nv = system.speeds(), rows = system.rows(), bad = -1;
-    VecX r = VecX::Zero(nv), phi = VecX::Zero(rows), rhs = VecX::Zero(nv + rows), y = rhs, dq = r,
-         q = trial.q;
+    double first = 0.0, share = 0.0;  ///< p₀, s
+    VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
 
+    /// The path starts at the present place.
+    void begin() {
+      system.evaluate(trial.q, trial.v, trial.t);
+      system.load_factor = 0.0;
+      system.residual(trial.a, trial.lambda, r0);
+      system.load_factor = 1.0;
+      system.residual(trial.a, trial.lambda, r);
+      r -= r0;
+      double const loads = r.squaredNorm();
+      first = loads > 0.0 ? std::clamp(-r0.dot(r) / loads, 0.0, 1.0) : 0.0;
+      r0 += first * r;
+      system.violation(phi0);
+    }
+    void advance(double s) {
+      share = s;
+      system.load_factor = first + s * (1.0 - first);
+    }
     bool evaluate() {
       system.evaluate(trial.q, trial.v, trial.t);
       system.residual(trial.a, trial.lambda, r);
       system.violation(phi);
-      rhs << -r, -phi;
-      return rhs.allFinite();
+      r = (1.0 - share) * r0 - r;
+      phi = (1.0 - share) * phi0 - phi;
+      return r.allFinite() && phi.allFinite();
     }
     bool refactor() {
-      bad = write_and_factor(solver, [&](Solver& sink) {
-        system.tangent({.stiffness = 1.0}, SecondOrder::included, trial.lambda, sink);
-      });
+      bad = tangent.factor(trial.lambda);
       return bad < 0;
     }
     double solve() {
-      solver.solve(rhs, y);
+      tangent.solve(r, phi, y);
       dq = y.head(nv);
       Index largest = 0;
       double const step = dq.cwiseAbs().maxCoeff(&largest), size = trial.q.cwiseAbs().maxCoeff();
@@ -79,23 +95,23 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
       trial.q.swap(q);
       trial.lambda += y.tail(rows);
     }
-  } problem{system, solver, trial, options.tolerance};
+  } problem{system, tangent, trial, options.tolerance};
 
   EquilibriumReport report;
   NewtonOptions newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
   double const whole = 1.0 / std::max(options.load_steps, 1);
   double done = 0.0, part = whole;
   bool primed = false;
+  problem.begin();
   while (done < 1.0) {
     State const before = trial;
-    system.load_factor = std::min(done + part, 1.0);
-    if (1.0 - system.load_factor < 1e-12) system.load_factor = 1.0;
+    problem.advance(done + part > 1.0 - 1e-12 ? 1.0 : done + part);
     bool factored = false;
     double theta = 1.0;
     NewtonReport const n = newton(problem, newton_options, factored, theta);
     report.iterations += n.iterations;
     if (n.result == NewtonResult::converged) {
-      done = system.load_factor;
+      done = problem.share;
       ++report.parts;
       part = std::min(2.0 * part, whole);
       continue;
@@ -103,7 +119,11 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
     trial = before;
     if (n.result == NewtonResult::singular && !primed) {
       primed = true;
-      if (detail::multipliers_at_rest(system, trial)) continue;
+      if (detail::multipliers_at_rest(system, trial)) {
+        problem.begin();
+        done = 0.0;
+        continue;
+      }
     }
     part *= 0.5;
     if (part >= options.smallest_part) continue;

@@ -1,0 +1,17 @@
+// CASES S9e by Lrvf: Euler's columns with all four ends, and the bent column beyond.
+
+#include <polybody/bodies/lrvf.hpp>
+
+#include "support/columns.hpp"
+#include "support/solver_instances.hpp"
+
+using namespace polybody;
+
+namespace euler_columns_test {
+
+using Rod = Lrvf<>;
+
+TEST(EulerColumns, LrvfBucklesAtEulersLoads) { columns::buckles_at_eulers_loads<Rod>(8); }
+TEST(EulerColumns, LrvfStandsBentBeyond) { columns::stands_bent_beyond<Rod>(16); }
+
+}  // namespace euler_columns_test
