@@ -5,6 +5,7 @@
 #include <polybody/bodies/ancf_cable.hpp>
 #include <polybody/bodies/planar/ancf_cable.hpp>
 #include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/strain_tangent.hpp>
 #include <random>
 
 using namespace polybody;
@@ -90,9 +91,9 @@ TYPED_TEST(StrainGroupLaws, ForceIsTheEnergysSlopeAndTangentItsGradient) {
     moving[i] = D::variable(xd[i], n + i);
   }
   this->group.template add_force<D>(moved, moving, force);
-  Mat<double, n, n> stiffness = Mat<double, n, n>::Zero(), damping = stiffness;
-  this->group.template add_tangent<double>(x, xd, 1.0, 0.0, stiffness);
-  this->group.template add_tangent<double>(x, xd, 0.0, 1.0, damping);
+  Mat<double, n, n> stiffness, damping;
+  tangent_of(std::tuple(this->group), x, xd, 1.0, 0.0, stiffness);
+  tangent_of(std::tuple(this->group), x, xd, 0.0, 1.0, damping);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       EXPECT_NEAR(stiffness(i, j), -force[i].d[j], 1e-12 * stiffness.norm());
@@ -115,7 +116,7 @@ TYPED_TEST(StrainGroupLaws, ForceIsTheEnergysSlopeAndTangentItsGradient) {
 TYPED_TEST(StrainGroupLaws, PacksCalculateWithEachElement) {
   constexpr int n = TypeParam::n;
   Vec<Pack<>, n> x, xd, force = Vec<Pack<>, n>::Zero();
-  Mat<Pack<>, n, n> tangent = Mat<Pack<>, n, n>::Zero();
+  Mat<Pack<>, n, n> tangent;
   std::array<Vec<double, n>, pack_size> each, rate;
   for (int l = 0; l < pack_size; ++l) {
     each[std::size_t(l)] = this->coordinates();
@@ -126,12 +127,12 @@ TYPED_TEST(StrainGroupLaws, PacksCalculateWithEachElement) {
     }
   }
   this->group.template add_force<Pack<>>(x, xd, force);
-  this->group.template add_tangent<Pack<>>(x, xd, 0.7, 0.1, tangent);
+  tangent_of(std::tuple(this->group), x, xd, 0.7, 0.1, tangent);
   for (int l = 0; l < pack_size; ++l) {
     Vec<double, n> f = Vec<double, n>::Zero();
-    Mat<double, n, n> k = Mat<double, n, n>::Zero();
+    Mat<double, n, n> k;
     this->group.template add_force<double>(each[std::size_t(l)], rate[std::size_t(l)], f);
-    this->group.template add_tangent<double>(each[std::size_t(l)], rate[std::size_t(l)], 0.7, 0.1, k);
+    tangent_of(std::tuple(this->group), each[std::size_t(l)], rate[std::size_t(l)], 0.7, 0.1, k);
     for (int i = 0; i < n; ++i) {
       EXPECT_NEAR(force[i][l], f[i], 1e-13 * f.norm());
       for (int j = 0; j < n; ++j) EXPECT_NEAR(tangent(i, j)[l], k(i, j), 1e-13 * k.norm());

@@ -53,6 +53,26 @@ TEST(Pack, IsZeroOrConstantWhenMade) {
   }
 }
 
+/// Rows of a matrix, N × N with (i, j) = 10 i + j, become its columns.
+template <int N>
+void expect_transposed() {
+  std::array<double, 2 * N> memory{};
+  std::array<Pack<N>, std::size_t(N)> packs;
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < N; ++j) memory[std::size_t(1 + j)] = 10.0 * i + j;
+    packs[std::size_t(i)] = Pack<N>::load(memory.data() + 1);  // not aligned
+  }
+  transpose(packs);
+  for (int i = 0; i < N; ++i) {
+    packs[std::size_t(i)].store(memory.data() + 1);
+    for (int j = 0; j < N; ++j) EXPECT_EQ(memory[std::size_t(1 + j)], 10.0 * j + i);
+  }
+}
+TEST(Pack, GoesToMemoryAndBackAndIsTransposedWithOthers) {
+  expect_transposed<2>();
+  expect_transposed<4>();
+}
+
 TEST(Pack, IsAScalarOfEigen) {
   Mat<Pack<>, 2, 2> m;
   m << some<pack_size>(1.0), Pack<>(2.0), Pack<>(0.0), some<pack_size>(-1.0);

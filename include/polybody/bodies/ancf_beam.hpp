@@ -9,6 +9,7 @@
 #include <polybody/bodies/ancf_continuum.hpp>
 #include <polybody/bodies/ancf_elastic_line.hpp>
 #include <polybody/bodies/node_chain.hpp>
+#include <polybody/bodies/strain_tangent.hpp>
 
 namespace polybody {
 
@@ -90,7 +91,7 @@ class AncfBeam : public NodeChain<12> {
   template <KernelScalar T>
   void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd,
                        Mat<T, element_columns, element_columns>& k) const {
-    add_tangent(groups_[0], x, xd, ck, cd, k);
+    tangent_of<T, element_columns>(groups_[0], x, xd, ck, cd, k);
   }
 
   template <StateScalar T>
@@ -102,8 +103,8 @@ class AncfBeam : public NodeChain<12> {
     add_force<T>(groups_of(e), part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), out);
   }
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd, ElementMatrix& k) const {
-    add_tangent<double>(groups_of(e), part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)),
-                        ck, cd, k);
+    tangent_of<double, element_columns>(groups_of(e), part<element_columns>(q, first_column(e)),
+                                        part<element_columns>(v, first_column(e)), ck, cd, k);
   }
 
   /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
@@ -351,13 +352,6 @@ class AncfBeam : public NodeChain<12> {
   static void add_force(Groups const& groups, Element<T> const& x, Element<T> const& xd, Element<T>& out) {
     for (int i = 0; i < element_columns; ++i) out[i] = T(0.0);
     std::apply([&](auto const&... group) { (group.template add_force<T>(x, xd, out), ...); }, groups);
-  }
-  template <KernelScalar T>
-  static void add_tangent(Groups const& groups, Element<T> const& x, Element<T> const& xd, double ck, double cd,
-                          Mat<T, element_columns, element_columns>& k) {
-    for (int j = 0; j < element_columns; ++j)
-      for (int i = 0; i < element_columns; ++i) k(i, j) = T(0.0);
-    std::apply([&](auto const&... group) { (group.template add_tangent<T>(x, xd, ck, cd, k), ...); }, groups);
   }
 
   PointMap map_of(Point const& p, int derivative) const {

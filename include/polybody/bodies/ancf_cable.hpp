@@ -6,6 +6,7 @@
 
 #include <polybody/bodies/cable_laws.hpp>
 #include <polybody/bodies/node_chain.hpp>
+#include <polybody/bodies/strain_tangent.hpp>
 
 namespace polybody {
 
@@ -87,16 +88,13 @@ class AncfCable : public NodeChain<6> {
   template <KernelScalar T>
   void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
     for (int i = 0; i < 12; ++i) out[i] = T(0.0);
-    axial_.template add_force<T>(x, xd, out);
-    bending_.template add_force<T>(x, xd, out);
+    axial().template add_force<T>(x, xd, out);
+    bending().template add_force<T>(x, xd, out);
   }
   /// ck (−∂f/∂x) + cd (−∂f/∂xd).
   template <KernelScalar T>
   void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd, Mat<T, 12, 12>& k) const {
-    for (int j = 0; j < 12; ++j)
-      for (int i = 0; i < 12; ++i) k(i, j) = T(0.0);
-    axial_.template add_tangent<T>(x, xd, ck, cd, k);
-    bending_.template add_tangent<T>(x, xd, ck, cd, k);
+    tangent_of<T, 12>(groups_, x, xd, ck, cd, k);
   }
 
   template <StateScalar T>
@@ -141,7 +139,7 @@ class AncfCable : public NodeChain<6> {
   }
   double strain_energy(Index e, std::span<double const> q) const {
     Element<double> const x = part<12>(q, first_column(e));
-    return axial_.energy(x) + bending_.energy(x);
+    return axial().energy(x) + bending().energy(x);
   }
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     Element<double> weight;
@@ -157,11 +155,11 @@ class AncfCable : public NodeChain<6> {
   /// At `p`, in the axes of a marker there (see sections.hpp): a cable knows axial strain and curvature, nothing of shear and torsion.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     Element<double> const x = element_of(p, q);
-    return in_section_axes(p, x, axial_.strains(p.xi, l_, x)[0], bending_.strains(p.xi, l_, x));
+    return in_section_axes(p, x, axial().strains(p.xi, l_, x)[0], bending().strains(p.xi, l_, x));
   }
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     Element<double> const x = element_of(p, q);
-    return in_section_axes(p, x, axial_.stress(axial_.strains(p.xi, l_, x))[0], bending_.stress(bending_.strains(p.xi, l_, x)));
+    return in_section_axes(p, x, axial().stress(axial().strains(p.xi, l_, x))[0], bending().stress(bending().strains(p.xi, l_, x)));
   }
 
   template <StateScalar T>
@@ -215,9 +213,14 @@ class AncfCable : public NodeChain<6> {
   }
 
  private:
+  using Axial = StrainGroup<CableAxial<Strain, axial_points>>;
+  using Bending = StrainGroup<CableBending<Strain, bending_points>>;
+  Axial const& axial() const { return std::get<0>(groups_); }
+  Bending const& bending() const { return std::get<1>(groups_); }
+
   AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
       : NodeChain(n), constants_(c), length_(bar.length), l_(bar.length / double(n)),
-        axial_(c, bar.damping, l_, Vec<double, 1>(bar.pretension)), bending_(c, bar.damping, l_) {
+        groups_(Axial(c, bar.damping, l_, Vec<double, 1>(bar.pretension)), Bending(c, bar.damping, l_)) {
     for (GaussPoint const& g : gauss<4>) {
       ShapeValues<4> const s = hermite_shape(g.xi, l_);
       Vec4 const shape(s.s[0], s.s[1], s.s[2], s.s[3]);
@@ -233,7 +236,7 @@ class AncfCable : public NodeChain<6> {
     }
     for (Index e = 0; e < n_; ++e) {
       for (GaussPoint const& g : gauss<3>) {
-        double const off = axial_.strains(g.xi, l_, element_of({e, g.xi}, reference_))[0];
+        double const off = axial().strains(g.xi, l_, element_of({e, g.xi}, reference_))[0];
         if (!(std::abs(off) < 0.1))
           throw InvalidInput("AncfCable: element " + std::to_string(e + 1) +
                              " of the reference curve is strained by " + number(off) +
@@ -277,8 +280,7 @@ class AncfCable : public NodeChain<6> {
   BarConstants constants_;
   double length_;
   double l_;
-  StrainGroup<CableAxial<Strain, axial_points>> axial_;
-  StrainGroup<CableBending<Strain, bending_points>> bending_;
+  std::tuple<Axial, Bending> groups_;
   Mat<double, 4, 4> mass_ = Mat<double, 4, 4>::Zero();  ///< of each component
   Vec4 weight_ = Vec4::Zero();                          ///< the same for a uniform field
   std::vector<double> reference_;

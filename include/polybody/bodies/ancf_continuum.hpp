@@ -14,17 +14,19 @@ namespace polybody {
 
 namespace ancf {
 
-/// Strains of columns of F, which read all nodal vectors: parameter k is component k % 3 of the column k / 3 of those used.
+/// Strains of columns of F, the shapes, which read all nodal vectors.
 template <int used>
 struct OfGradient {
+  static constexpr int components = 3;
   static constexpr int parameters = 3 * used;
-  static constexpr int reach = vectors;
-  static constexpr int column(int k, int j) { return 3 * j + k % 3; }
+  static constexpr int reach = vectors - 1;
+  static constexpr int difference = vectors / 2;
+  static constexpr int vector(int, int j) { return j + 1; }
   /// P for the columns `which` of F.
-  static Mat<double, 3 * used, vectors> map(Mat<double, vectors, 3> const& g, std::array<int, used> const& which) {
-    Mat<double, 3 * used, vectors> p;
-    for (int k = 0; k < 3 * used; ++k) p.row(k) = g.col(which[std::size_t(k / 3)]).transpose();
-    return p;
+  static Mat<double, used, vectors - 1> map(Mat<double, vectors, 3> const& g, std::array<int, used> const& which) {
+    Mat<double, used, vectors - 1> n;
+    for (int s = 0; s < used; ++s) n.row(s) = g.col(which[std::size_t(s)]).template tail<vectors - 1>().transpose();
+    return n;
   }
 };
 
@@ -39,8 +41,8 @@ struct AlongStrain : OfGradient<1> {
     for (int i = 0; i < 3; ++i) b(0, i) = p[i];
   }
   template <KernelScalar T>
-  static void add_hessian(Vec<T, 3> const&, Vec<T, 1> const& n, Mat<T, 3, 3>& h) {
-    for (int i = 0; i < 3; ++i) h(i, i) += n[0];
+  static void add_hessian(Vec<T, 1> const& n, Mat<T, 1, 1>& s) {
+    s(0, 0) += n[0];
   }
 };
 
@@ -62,12 +64,11 @@ struct ShearStrains : OfGradient<3> {
     }
   }
   template <KernelScalar T>
-  static void add_hessian(Vec<T, 9> const&, Vec<T, 2> const& n, Mat<T, 9, 9>& h) {
-    for (int j = 0; j < 2; ++j)
-      for (int i = 0; i < 3; ++i) {
-        h(i, 3 + 3 * j + i) += n[j];
-        h(3 + 3 * j + i, i) += n[j];
-      }
+  static void add_hessian(Vec<T, 2> const& n, Mat<T, 3, 3>& s) {
+    for (int j = 0; j < 2; ++j) {
+      s(0, 1 + j) += n[j];
+      s(1 + j, 0) += n[j];
+    }
   }
 };
 
@@ -96,14 +97,12 @@ struct GreenStrains : OfGradient<3> {
     strain[0] = strain[1] + strain[2] + strain[3];
   }
   template <KernelScalar T>
-  static void add_hessian(Vec<T, 9> const&, Vec<T, 7> const& n, Mat<T, 9, 9>& h) {
+  static void add_hessian(Vec<T, 7> const& n, Mat<T, 3, 3>& s) {
     for (int i = 0; i < 3; ++i) {
       int const j = (i + 1) % 3, k = (i + 2) % 3;
-      for (int a = 0; a < 3; ++a) {
-        h(3 * i + a, 3 * i + a) += n[0] + n[1 + i];
-        h(3 * j + a, 3 * k + a) += n[4 + i];
-        h(3 * k + a, 3 * j + a) += n[4 + i];
-      }
+      s(i, i) += n[0] + n[1 + i];
+      s(j, k) += n[4 + i];
+      s(k, j) += n[4 + i];
     }
   }
 };

@@ -26,25 +26,23 @@ struct ElasticLine {
   /// Γ; p = (r₀′, r_y, r_z).
   struct Stretch {
     static constexpr int points = 3;
+    static constexpr int components = 3;
     static constexpr int parameters = 9;
     static constexpr int strains = 3;
-    static constexpr int reach = 4;
+    static constexpr int reach = 3;
+    static constexpr int difference = 4;
 
     static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.GA, c.GA_z.value_or(c.GA)}; }
     static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.shear}; }
-    static constexpr int column(int k, int j) {
-      int const vector = k < 3 ? 4 * (j / 2) + j % 2 : 4 * (j % 2) + 1 + k / 3;
-      return 3 * vector + k % 3;
+    static constexpr int vector(int s, int j) {
+      if (s == 0) return j == 0 ? 1 : 3 + j;
+      return j < 2 ? 4 * j + 1 + s : -1;
     }
-    static Mat<double, 9, 4> map(double xi, double l) {
+    static Mat<double, 3, 3> map(double xi, double l) {
       ShapeValues<4> const h = hermite_shape(xi, l);
-      Mat<double, 9, 4> p = Mat<double, 9, 4>::Zero();
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 4; ++j) p(i, j) = h.ds[j];
-        p(3 + i, 0) = p(6 + i, 0) = 1.0 - xi;
-        p(3 + i, 1) = p(6 + i, 1) = xi;
-      }
-      return p;
+      Mat<double, 3, 3> n;
+      n << h.ds[1], h.ds[2], h.ds[3], 1.0 - xi, xi, 0.0, 1.0 - xi, xi, 0.0;
+      return n;
     }
 
     /// u = Rᵀ r₀′:  δu = Rᵀ δr₀′ + u × φ.
@@ -66,41 +64,43 @@ struct ElasticLine {
       Mat<T, 6, 6> twice = f.second(f.cross(n, u));
       T const nu = f.dot(n, u);
       Vec<T, 6> const pn = f.pull(n), pu = f.pull(u);
-      for (int j = 0; j < 6; ++j)
-        for (int i = 0; i < 6; ++i) twice(i, j) += pu[i] * pn[j];
+      constexpr std::array<int, 3> turning = {0, 2, 3};  // the components that turn the frame
+      for (int const i : turning)
+        for (int const j : turning) twice(i, j) += pu[i] * pn[j];
       Vec<T, 3> const nw = f.world(n);
       Mat<T, 3, 9> across;
       for (int k = 0; k < 3; ++k) {
         Vec<T, 6> const s = f.pull(f.axis(k));
-        for (int j = 0; j < 6; ++j)
-          for (int i = 0; i < 6; ++i) twice(i, j) -= nu * s[i] * s[j];
+        for (int const i : turning)
+          for (int const j : turning) twice(i, j) -= nu * s[i] * s[j];
         f.to_vectors(f.pull(f.local(f.cross(nw, f.axis(k)))), k, 3, across);  // e_k·(ω̂ × n) = (n × e_k)·ω̂
         for (int j = 3; j < 9; ++j) {
           h(k, j) += across(k, j);
           h(j, k) += across(k, j);
         }
       }
-      f.add_form(twice, 3, 3, h);
+      f.add_symmetric(twice, 3, h);
     }
   };
 
   /// K; p = (r_y, r_z, r_y′, r_z′).
   struct Bend {
     static constexpr int points = 2;
+    static constexpr int components = 3;
     static constexpr int parameters = 12;
     static constexpr int strains = 3;
     static constexpr int reach = 2;
 
     static Vec3 stiffness(BarConstants const& c) { return {c.GJ, c.EI_y.value_or(c.EI), c.EI}; }
     static Vec3 damping(Damping const& d) { return {d.shear, d.bending, d.bending}; }
-    static constexpr int column(int k, int j) { return 3 * (4 * j + 2 + k / 3 % 2) + k % 3; }
-    static Mat<double, 12, 2> map(double xi, double l) {
-      Mat<double, 12, 2> p;
-      for (int k = 0; k < 6; ++k) {
-        p.row(k) << 1.0 - xi, xi;
-        p.row(6 + k) << -1.0 / l, 1.0 / l;
+    static constexpr int vector(int s, int j) { return 4 * j + 2 + s % 2; }
+    static Mat<double, 4, 2> map(double xi, double l) {
+      Mat<double, 4, 2> n;
+      for (int s = 0; s < 2; ++s) {
+        n.row(s) << 1.0 - xi, xi;
+        n.row(2 + s) << -1.0 / l, 1.0 / l;
       }
-      return p;
+      return n;
     }
 
     template <KernelScalar T>
@@ -122,23 +122,23 @@ struct ElasticLine {
       Vec<T, 6> const w = f.components({p[6], p[7], p[8]}, {p[9], p[10], p[11]});
       Mat<T, 6, 6> twice, mixed;
       f.curvature_hessian(w, n, twice, mixed);
-      f.add_form(twice, 0, 0, h);
-      f.add_form(mixed, 6, 0, h);
-      f.add_form(mixed.transpose(), 0, 6, h);
+      f.add_symmetric(twice, 0, h);
+      f.add_second(mixed, 6, 0, h);
     }
   };
 
   /// The section's own strains; p = (r_y, r_z).
   struct Section {
     static constexpr int points = 2;
+    static constexpr int components = 3;
     static constexpr int parameters = 6;
     static constexpr int strains = 3;
     static constexpr int reach = 2;
 
     static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.EA, c.GA}; }
     static Vec3 damping(Damping const& d) { return {d.axial, d.axial, d.shear}; }
-    static constexpr int column(int k, int j) { return Bend::column(k, j); }
-    static Mat<double, 6, 2> map(double xi, double l) { return Bend::map(xi, l).topRows<6>(); }
+    static constexpr int vector(int s, int j) { return Bend::vector(s, j); }
+    static Mat<double, 2, 2> map(double xi, double l) { return Bend::map(xi, l).topRows<2>(); }
 
     template <KernelScalar T>
     static void evaluate(Vec<T, 6> const& p, Vec<T, 3>& strain, Mat<T, 3, 6>& b) {

@@ -13,18 +13,18 @@ namespace polybody {
 template <class Strain, int axial_points>
 struct CableAxial {
   static constexpr int points = axial_points;
+  static constexpr int components = 3;
   static constexpr int parameters = 3;
   static constexpr int strains = 1;
-  static constexpr int reach = 4;
+  static constexpr int reach = 3;
+  static constexpr int difference = 2;
 
   static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EA)); }
   static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.axial); }
-  static constexpr int column(int k, int j) { return 3 * j + k; }
-  static Mat<double, 3, 4> map(double xi, double l) {
+  static constexpr int vector(int, int j) { return j + 1; }
+  static Mat<double, 1, 3> map(double xi, double l) {
     ShapeValues<4> const s = hermite_shape(xi, l);
-    Mat<double, 3, 4> p;
-    for (int j = 0; j < 4; ++j) p.col(j).setConstant(s.ds[j]);
-    return p;
+    return {s.ds[1], s.ds[2], s.ds[3]};
   }
   template <KernelScalar T>
   static void evaluate(Vec<T, 3> const& p, Vec<T, 1>& strain, Mat<T, 1, 3>& b) {
@@ -40,22 +40,24 @@ struct CableAxial {
 template <class Strain, int bending_points>
 struct CableBending {
   static constexpr int points = bending_points;
+  static constexpr int components = 3;
   static constexpr int parameters = 6;
   static constexpr int strains = 3;
-  static constexpr int reach = 4;
+  static constexpr int reach = 3;
+  static constexpr int difference = 2;
   static constexpr int k = Strain::curvature_power;
 
   static Vec3 stiffness(BarConstants const& c) { return Vec3::Constant(c.EI); }
   static Vec3 damping(Damping const& d) { return Vec3::Constant(d.bending); }
-  static constexpr int column(int i, int j) { return 3 * j + i % 3; }
-  static Mat<double, 6, 4> map(double xi, double l) {
+  static constexpr int vector(int, int j) { return j + 1; }
+  static Mat<double, 2, 3> map(double xi, double l) {
     ShapeValues<4> const s = hermite_shape(xi, l);
-    Mat<double, 6, 4> p;
-    for (int j = 0; j < 4; ++j) {
-      p.col(j).template head<3>().setConstant(s.ds[j]);
-      p.col(j).template tail<3>().setConstant(s.dds[j]);
+    Mat<double, 2, 3> n;
+    for (int j = 0; j < 3; ++j) {
+      n(0, j) = s.ds[j + 1];
+      n(1, j) = s.dds[j + 1];
     }
-    return p;
+    return n;
   }
 
   /// With c = s × u: ∂κ/∂s = −ũ/nᵏ − k κ sᵀ/n², ∂κ/∂u = s̃/nᵏ.

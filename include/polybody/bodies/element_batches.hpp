@@ -3,6 +3,8 @@
 /// Loops over the elements of a body. Where all elements are alike, neighbours go through the kernel side by side in packs
 /// (structure of arrays); what is left over, and bodies of other kinds, one by one.
 
+#include <array>
+
 #include <polybody/bodies/body.hpp>
 #include <polybody/math/pack.hpp>
 
@@ -25,10 +27,27 @@ namespace detail {
 /// The coordinates of `pack_size` neighbours; `x` points to the first one's.
 template <int n, int stride>
 Vec<Pack<>, n> side_by_side(double const* x) {
+  static_assert(n % pack_size == 0);
   Vec<Pack<>, n> packed;
-  for (int k = 0; k < n; ++k)
-    for (int l = 0; l < pack_size; ++l) packed[k].set(l, x[l * stride + k]);
+  std::array<Pack<>, pack_size> part;
+  for (int k = 0; k < n; k += pack_size) {
+    for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = Pack<>::load(x + l * stride + k);
+    transpose(part);
+    for (int l = 0; l < pack_size; ++l) packed[k + l] = part[std::size_t(l)];
+  }
   return packed;
+}
+/// The other way: each of `pack_size` vectors or matrices gets its numbers, on top of those of `same`.
+template <class Packed, class Each>
+void take_apart(Packed const& packed, Each const& same, std::array<Each, pack_size>& each) {
+  static_assert(Packed::SizeAtCompileTime % pack_size == 0);
+  std::array<Pack<>, pack_size> part;
+  for (int k = 0; k < Packed::SizeAtCompileTime; k += pack_size) {
+    for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = packed.data()[k + l];
+    transpose(part);
+    Pack<> const base = Pack<>::load(same.data() + k);
+    for (int l = 0; l < pack_size; ++l) (part[std::size_t(l)] + base).store(each[std::size_t(l)].data() + k);
+  }
 }
 
 /// All elements differ in nothing but their coordinates.
@@ -63,6 +82,8 @@ void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const
   Vec<T, n>&x = scratch.x, &force = scratch.force;
   if constexpr (AlikeElements<B> && std::same_as<T, double>) {
     Index const packed = detail::packed_until(body, begin, end);
+    Vec<double, n> const zero = Vec<double, n>::Zero();
+    std::array<Vec<double, n>, pack_size> each;
     for (; begin < packed; begin += pack_size) {
       Index const first = body.first_column(begin);
       constexpr int stride = B::element_stride;
@@ -71,10 +92,8 @@ void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const
       body.template element_force<Pack<>>(detail::side_by_side<n, stride>(q.data() + first),
                                           detail::side_by_side<n, stride>(v.data() + first), elastic);
       for (int k = 0; k < n; ++k) inertia[k] -= elastic[k];
-      for (int l = 0; l < pack_size; ++l) {
-        for (int k = 0; k < n; ++k) x[k] = inertia[k][l];
-        f(begin + l, x);
-      }
+      detail::take_apart(inertia, zero, each);
+      for (int l = 0; l < pack_size; ++l) f(begin + l, each[std::size_t(l)]);
     }
   }
   for (; begin < end; ++begin) {
@@ -100,32 +119,34 @@ void for_each_element_tangent(B const& body, Index begin, Index end, std::span<d
   Mat<double, n, n>&k = scratch.k, &m = scratch.m;
   bool const alike = detail::are_alike(body);
   bool first_mass = true;
-  auto const finish = [&](Index e) {
-    if (cm != 0.0) {
-      if (first_mass || !alike) body.mass(e, q, m);
-      first_mass = false;
-      k += cm * m;
+  auto const inertia = [&](Index e) {
+    if (first_mass || !alike) {
+      body.mass(e, q, m);
+      m *= cm;
     }
-    f(e, k);
+    first_mass = false;
   };
   if constexpr (AlikeElements<B>) {
     Index const packed = detail::packed_until(body, begin, end);
+    std::array<Mat<double, n, n>, pack_size> each;
+    if (begin < packed) inertia(begin);
     for (; begin < packed; begin += pack_size) {
       Index const first = body.first_column(begin);
       constexpr int stride = B::element_stride;
       Mat<Pack<>, n, n> packs;
       body.template element_tangent<Pack<>>(detail::side_by_side<n, stride>(q.data() + first),
                                             detail::side_by_side<n, stride>(v.data() + first), ck, cd, packs);
-      for (int l = 0; l < pack_size; ++l) {
-        for (int c = 0; c < n; ++c)
-          for (int r = 0; r < n; ++r) k(r, c) = packs(r, c)[l];
-        finish(begin + l);
-      }
+      detail::take_apart(packs, m, each);
+      for (int l = 0; l < pack_size; ++l) f(begin + l, each[std::size_t(l)]);
     }
   }
   for (; begin < end; ++begin) {
     body.tangent(begin, q, v, ck, cd, k);
-    finish(begin);
+    if (cm != 0.0) {
+      inertia(begin);
+      k += m;
+    }
+    f(begin, k);
   }
 }
 

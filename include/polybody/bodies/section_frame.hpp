@@ -12,6 +12,8 @@
 ///   δ̂X = X × φ̂ − X X̂₂,  δ̂Y = Y × φ̂ − Y (Ŷ₃ − σ X̂₃),  δ̂σ = g·ŵ = Ŷ₂ + (1 + σ²) X̂₃ − σ Ŷ₃.
 /// All else follows by the chain rule. Six-vectors are ordered (X, Y). Plain loops; they run on doubles, dual numbers and packs.
 
+#include <array>
+
 #include <polybody/math/dual.hpp>
 #include <polybody/math/pack.hpp>
 #include <polybody/math/types.hpp>
@@ -77,11 +79,21 @@ class SectionFrame {
     s[3] = m[1];
     return s;
   }
-  /// M(m), 6×6: m·δ̂φ(w) = wᵀ M ŵ for a constant d of components w: the second derivative of the rotation.
+  /// M(m), 6×6: m·δ̂φ(w) = wᵀ M ŵ for a constant d of components w: the second derivative of the rotation, `pairing(pull(m), 1)`
+  /// less m₂ g in its first row.
   M6 second(V3 const& m) const {
-    M6 h = pairing(pull(m), 1.0);
-    V6 const g = sigma_gradient();
-    for (int j = 0; j < 6; ++j) h(0, j) -= m[1] * g[j];
+    T const along = m[2] + sigma_ * m[1];
+    M6 h;
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i) h(i, j) = T(0.0);
+    h(0, 0) = -(sigma_ * m[0]);
+    h(0, 1) = h(1, 0) = h(2, 3) = along;
+    h(0, 2) = -(m[1] * (sigma_ * sigma_ + 1.0));
+    h(0, 3) = m[0];
+    h(1, 2) = h(2, 1) = -m[0];
+    h(2, 0) = -(sigma_ * along);
+    h(0, 5) = h(5, 0) = h(3, 2) = sigma_ * m[1];
+    h(0, 4) = h(4, 0) = h(3, 5) = h(5, 3) = -m[1];
     return h;
   }
   /// δ̂φ of d = w moving by itself: the angular acceleration, in the frame's axes, of b and c moving at constant rates w.
@@ -109,7 +121,7 @@ class SectionFrame {
     }
     return k;
   }
-  /// Second derivatives of n·K by (X, Y) twice, `twice`, and by (X′, Y′) (rows) and (X, Y) (columns), `mixed`.
+  /// Second derivatives of n·K by (X, Y) twice, `twice`, and by (X′, Y′) (rows) and (X, Y) (columns), `mixed` = M(n).
   void curvature_hessian(V6 const& w, V3 const& n, M6& twice, M6& mixed) const {
     M6 const l = pairing(w, -1.0);  // δ̂w′ = l ŵ
     V6 const s = pull(n), g = sigma_gradient();
@@ -125,10 +137,15 @@ class SectionFrame {
     c[2] += s[3] * w[3] + s[4] * w[4] + s[5] * w[5] - n[1] * w[0] * sigma_ * 2.0;
     c[5] += n[1] * w[0];
     twice = pairing(h, 1.0);
+#pragma GCC unroll 6
     for (int j = 0; j < 6; ++j)
+#pragma GCC unroll 6
       for (int i = 0; i < 6; ++i) {
+        if (j > i) continue;  // symmetric: the lower half will do
         T sum = c[i] * g[j];
-        for (int k = 0; k < 6; ++k) sum += mixed(k, i) * l(k, j);
+#pragma GCC unroll 6
+        for (int k = 0; k < 6; ++k)
+          if (of_second[k][i]) sum += mixed(k, i) * l(k, j);
         twice(i, j) += sum;
       }
   }
@@ -145,17 +162,36 @@ class SectionFrame {
   template <int n>
   void add_form(M6 const& h, int first_row, int first_column, Mat<T, n, n>& out) const {
     for (int a = 0; a < 2; ++a)
-      for (int b = 0; b < 2; ++b) {
-        T const scale = (a == 0 ? ib_ : ic_) * (b == 0 ? ib_ : ic_);
-        for (int j = 0; j < 3; ++j) {
-          V3 turned;  // column of h against t_j
-          for (int i = 0; i < 3; ++i)
-            turned[i] = (h(3 * a + i, 3 * b) * R(j, 0) + h(3 * a + i, 3 * b + 1) * R(j, 1) +
-                         h(3 * a + i, 3 * b + 2) * R(j, 2)) * scale;
-          V3 const column = world(turned);
-          for (int i = 0; i < 3; ++i) out(first_row + 3 * a + i, first_column + 3 * b + j) += column[i];
-        }
-      }
+      for (int b = 0; b < 2; ++b)
+        add_world<everywhere>(h, a, b, [&](int i, int j, T const& x) {
+          out(first_row + 3 * a + i, first_column + 3 * b + j) += x;
+        });
+  }
+  /// The same of a symmetric form, of which the lower half is read, in a block on the diagonal.
+  template <int n>
+  void add_symmetric(M6 const& h, int first, Mat<T, n, n>& out) const {
+    M6 whole = h;
+    for (int part = 0; part < 6; part += 3)
+      for (int i = 1; i < 3; ++i)
+        for (int j = 0; j < i; ++j) whole(part + j, part + i) = h(part + i, part + j);
+    for (int a = 0; a < 2; ++a)
+      add_world<everywhere>(whole, a, a, [&](int i, int j, T const& x) { out(first + 3 * a + i, first + 3 * a + j) += x; });
+    add_world<everywhere>(whole, 1, 0, [&](int i, int j, T const& x) {
+      out(first + 3 + i, first + j) += x;
+      out(first + j, first + 3 + i) += x;
+    });
+  }
+  /// The same of M(m) in a block off the diagonal and its mirror image.
+  template <int n>
+  void add_second(M6 const& h, int first_row, int first_column, Mat<T, n, n>& out) const {
+#pragma GCC unroll 2
+    for (int a = 0; a < 2; ++a)
+#pragma GCC unroll 2
+      for (int b = 0; b < 2; ++b)
+        add_world<of_second>(h, a, b, [&](int i, int j, T const& x) {
+          out(first_row + 3 * a + i, first_column + 3 * b + j) += x;
+          out(first_column + 3 * b + j, first_row + 3 * a + i) += x;
+        });
   }
 
   static V3 axis(int k) { return V3(T(k == 0 ? 1.0 : 0.0), T(k == 1 ? 1.0 : 0.0), T(k == 2 ? 1.0 : 0.0)); }
@@ -165,6 +201,43 @@ class SectionFrame {
   static T dot(V3 const& a, V3 const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
  private:
+  /// Where forms may differ from zero.
+  using Places = std::array<std::array<bool, 6>, 6>;
+  static constexpr Places everywhere = [] {
+    Places all{};
+    for (auto& row : all) row.fill(true);
+    return all;
+  }();
+  static constexpr Places of_second = {{{true, true, true, true, true, true},
+                                        {true, false, true, false, false, false},
+                                        {true, true, false, true, false, false},
+                                        {false, false, true, false, false, true},
+                                        {true, false, false, false, false, false},
+                                        {true, false, false, true, false, false}}};
+
+  /// add(i, j, x) for the entries x of block (a, b) of the form h in world axes, R h_ab Rᵀ by the lengths.
+  template <Places places, class F>
+  void add_world(M6 const& h, int a, int b, F&& add) const {
+    T const scale = (a == 0 ? ib_ : ic_) * (b == 0 ? ib_ : ic_);
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j) {
+      V3 column(T(0.0), T(0.0), T(0.0));  // of R h_ab Rᵀ
+#pragma GCC unroll 3
+      for (int r = 0; r < 3; ++r) {
+        bool any = false;
+        T turned(0.0);
+#pragma GCC unroll 3
+        for (int c = 0; c < 3; ++c)
+          if (places[std::size_t(3 * a + r)][std::size_t(3 * b + c)]) {
+            turned = any ? turned + h(3 * a + r, 3 * b + c) * R(j, c) : h(3 * a + r, 3 * b + c) * R(j, c);
+            any = true;
+          }
+        if (any)
+          for (int i = 0; i < 3; ++i) column[i] += R(i, r) * turned;
+      }
+      for (int i = 0; i < 3; ++i) add(i, j, column[i] * scale);
+    }
+  }
   /// g with δ̂σ = g·ŵ.
   V6 sigma_gradient() const {
     V6 g;

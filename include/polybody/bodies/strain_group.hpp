@@ -9,58 +9,27 @@
 ///   −∂f/∂ė = ∫ Pᵀ Bᵀ C τ B P dx.
 /// Where strains are components of a vector that turns with the body, a law says which part of ε̇ is deformation: ε̇ is then
 /// replaced by P_ε ε̇ (`objective_rate`).
-/// P is sparse: each parameter reads `reach` coordinates, always the same ones. Plain loops, for they run on doubles, dual
-/// numbers and packs of elements alike, and compile fast.
+/// P is sparse (`StrainMap`). Plain loops, for they run on doubles, dual numbers and packs of elements alike, and compile fast.
 
 #include <array>
+#include <numeric>
 
-#include <polybody/bodies/bar.hpp>
 #include <polybody/bodies/step_means.hpp>
-#include <polybody/math/pack.hpp>
+#include <polybody/bodies/strain_laws.hpp>
 #include <polybody/math/quadrature.hpp>
 #include <polybody/math/secant.hpp>
 
 namespace polybody {
 
-/// Strains as functions of parameters: what a group is made of.
-template <class L>
-concept StrainFunctions = requires(Vec<double, L::parameters> const p, Vec<double, L::strains> e,
-                                   Mat<double, L::strains, L::parameters> b, Mat<double, L::parameters, L::parameters> h) {
-  requires L::points >= 1 && L::reach >= 1;
-  { L::column(0, 0) } -> std::convertible_to<int>;  // the coordinate that parameter k reads as its j-th
-  L::template evaluate<double>(p, e, b);            // ε and B
-  L::template add_hessian<double>(p, e, h);         // h += Σ n_i H_i for given n
-};
-
-/// … that also know their parameters along the axis of a bar, and their stiffness.
-template <class L>
-concept StrainLaw = StrainFunctions<L> && requires(BarConstants const c, Damping const d) {
-  { L::map(0.5, 1.0) } -> std::convertible_to<Mat<double, L::parameters, L::reach>>;  // P's factors at ξ, length l
-  { L::stiffness(c) } -> std::convertible_to<Vec<double, L::strains>>;                // C
-  { L::damping(d) } -> std::convertible_to<Vec<double, L::strains>>;                  // τ [s]
-};
-
-/// A law that gives p_ε = P_ε(ε) ε̇ and its gradients P_ε by ε̇ and Q by ε.
-template <class L>
-concept HasObjectiveRate = requires(Vec<double, L::strains>& e, Mat<double, L::strains, L::strains>& m) {
-  L::template objective_rate<double>(e, e);
-  L::template objective_rate_gradients<double>(e, e, m, m);
-};
-
-/// A law of equal stiffness for all strains, which are components of a vector that turns with the body: gives the vector's square
-/// from
-/// scalar products of its parameters.
-template <class L>
-concept HasSquare = requires(Vec<double, L::parameters> const p) {
-  { L::template square<double>(p) } -> std::convertible_to<double>;
-};
-
 template <StrainFunctions Law>
 class StrainGroup {
  public:
-  static constexpr int np = Law::parameters, m = Law::strains, reach = Law::reach;
+  static constexpr int np = Law::parameters, m = Law::strains;
 
-  using Map = Mat<double, np, reach>;
+  using P = StrainMap<Law>;
+  using Map = typename P::Factors;
+  template <class T, int n>
+  using Coordinates = typename P::template Coordinates<T, n>;
   using Strains = Vec<double, m>;
 
   StrainGroup() = default;
@@ -82,6 +51,10 @@ class StrainGroup {
     weights_[g] = weight;
     maps_[g] = map;
     free_[g] = free;
+    for (std::size_t k = 0; k < products_.size(); ++k) {
+      auto const [s, j, t, l] = P::table.pairs[k];
+      products_[k][g] = map(s, j) * map(t, l);
+    }
   }
 
   Strains const& stiffness() const { return stiffness_; }
@@ -95,41 +68,126 @@ class StrainGroup {
   {
     Vec<double, m> strain;
     Mat<double, m, np> b;
-    Law::template evaluate<double>(parameters<double, n>(Law::map(xi, l), x), strain, b);
+    Law::template evaluate<double>(P::parameters(Law::map(xi, l), Coordinates<double, n>(x)), strain, b);
     return strain;
   }
 
   /// f += the group's force at coordinates x, rates xd.
   template <KernelScalar T, int n>
   void add_force(Vec<T, n> const& x, Vec<T, n> const& xd, Vec<T, n>& f) const {
+    Coordinates<T, n> const e(x), ed(xd);
+    Vec<T, P::d> step;
+    for (int i = 0; i < P::d; ++i) step[i] = T(0.0);
     for (int g = 0; g < Law::points; ++g) {
-      Vec<T, np> const p = parameters<T, n>(maps_[g], x);
+      Vec<T, np> const p = P::parameters(maps_[g], e);
       Vec<T, m> stress;
       Mat<T, m, np> b;
       Law::template evaluate<T>(p, stress, b);
-      if (damped_) add_damping(rates(b, parameters<T, n>(maps_[g], xd)), stress);
+      if (damped_) add_damping(rates(b, P::parameters(maps_[g], ed)), stress);
 #pragma GCC unroll 8
       for (int i = 0; i < m; ++i) stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * weights_[g];
-#pragma GCC unroll 8
+      Vec<T, np> pull;  // w Bᵀ n
+#pragma GCC unroll 16
       for (int k = 0; k < np; ++k) {
-        T s = b(0, k) * stress[0];
+        T sum = b(0, k) * stress[0];
 #pragma GCC unroll 8
-        for (int i = 1; i < m; ++i) s += b(i, k) * stress[i];
-#pragma GCC unroll 8
-        for (int j = 0; j < reach; ++j) f[Law::column(k, j)] -= s * maps_[g](k, j);
+        for (int i = 1; i < m; ++i) sum += b(i, k) * stress[i];
+        pull[k] = sum;
       }
+      P::subtract_pulled(maps_[g], pull, f, step);
     }
+    P::spread(step, f);
   }
 
-  /// k += ck (−∂f/∂x) + cd (−∂f/∂xd).
+  bool damped() const { return damped_; }
+
+  // The tangent is put together from all groups of an element by `tangent_of`: `prepare` once, then `add_block` for each block.
+  static constexpr bool quadratic = QuadraticStrains<Law>;
+
+  /// What the tangent's blocks are made of: h of each point, by p; of quadratic strains K̂ itself, by the vectors that are read.
+  template <KernelScalar T>
+  struct Prepared {
+    using Each = std::array<Mat<T, np, np>, std::size_t(Law::points)>;
+    std::conditional_t<quadratic, Mat<T, P::d * P::reach, P::d * P::reach>, Each> h;
+    Prepared() {}  // NOLINT(modernize-use-equals-default): a tuple of defaulted ones would fill them with zeros
+  };
+
+  /// K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st, with β = B P, γ = w C [ck B + τ (ck Ḃ + cd B)] P, Ḃ_i = H_i ṗ, and
+  /// σ = ck w Σ n_i S_i: of few strains that read many vectors this is less work than Pᵀ h P. A few points at a time, which fit
+  /// the first cache. The blocks above the diagonal are left out if `symmetric`.
   template <KernelScalar T, int n>
-  void add_tangent(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, Mat<T, n, n>& k) const {
+  void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool symmetric, Prepared<T>& k) const
+    requires quadratic
+  {
+    constexpr int d = P::d, reach = P::reach, shapes = P::shapes, size = d * reach;
+    constexpr int chunk = std::gcd(Law::points, std::max(1, 12 / m)), rows = chunk * m;
+    Coordinates<T, n> const e(x), ed(xd);
+    for (int first = 0; first < Law::points; first += chunk) {
+      std::array<Vec<T, size>, std::size_t(rows)> left, right;     // β, γ
+      std::array<Mat<T, shapes, reach>, std::size_t(chunk)> bend;  // σ N
+      for (int c = 0; c < chunk; ++c) {
+        int const g = first + c;
+        Vec<T, np> const p = P::parameters(maps_[g], e), pd = P::parameters(maps_[g], ed);
+        Vec<T, m> stress, unused;
+        Mat<T, m, np> b, change;
+        Law::template evaluate<T>(p, stress, b);
+        Law::template evaluate<T>(pd, unused, change);
+        for (int i = 0; i < m; ++i)
+          for (int q = 0; q < np; ++q)
+            change(i, q) = (b(i, q) * (ck + time_[i] * cd) + change(i, q) * (time_[i] * ck)) * (weights_[g] * stiffness_[i]);
+        if (damped_) add_damping(rates(b, pd), stress);
+        for (int i = 0; i < m; ++i) {
+          stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
+          P::pull_row(maps_[g], b, i, left[c * m + i]);
+          P::pull_row(maps_[g], change, i, right[c * m + i]);
+        }
+        Mat<T, shapes, shapes> s;
+        for (int t = 0; t < shapes; ++t)
+          for (int r = 0; r < shapes; ++r) s(r, t) = T(0.0);
+        Law::template add_hessian<T>(stress, s);
+        for (int j = 0; j < reach; ++j)
+          for (int t = 0; t < shapes; ++t) {
+            T sum = s(t, 0) * maps_[g](0, j);
+            for (int r = 1; r < shapes; ++r) sum += s(t, r) * maps_[g](r, j);
+            bend[c](t, j) = sum;
+          }
+      }
+      for (int v = 0; v < reach; ++v)
+        for (int w = 0; w < (symmetric ? v + 1 : reach); ++w) {
+          T along(0.0);
+          for (int c = 0; c < chunk; ++c)
+            for (int t = 0; t < shapes; ++t) along += bend[c](t, v) * maps_[first + c](t, w);
+          typename P::template Block<T> sum;
+          P::for_each_entry([&](int i, int j) { sum(i, j) = i == j ? along : T(0.0); });
+          for (int r = 0; r < rows; ++r)
+            P::for_each_entry([&](int i, int j) { sum(i, j) += left[r][d * v + i] * right[r][d * w + j]; });
+          T* const to = k.h.data() + d * (v + size * w);
+          P::for_each_entry([&](int i, int j) { to[size * j + i] = first == 0 ? sum(i, j) : to[size * j + i] + sum(i, j); });
+        }
+    }
+  }
+  template <KernelScalar T>
+  void add_block(int v, int w, Prepared<T> const& k, typename P::template Block<T>& block) const
+    requires quadratic
+  {
+    if (!P::reads(v) || !P::reads(w)) return;
+    auto const& at = P::table.pairs[P::table.first[v][w]];
+    T const* const from = k.h.data() + P::d * (at.j + P::d * P::reach * at.l);
+    P::for_each_entry([&](int i, int j) { block(i, j) += from[P::d * P::reach * j + i]; });
+  }
+
+  /// h = w [ck (BᵀCB + Σ n_i H_i) + the part of damping].
+  template <KernelScalar T, int n>
+  void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool, Prepared<T>& hs) const
+    requires(!quadratic)
+  {
+    Coordinates<T, n> const e(x), ed(xd);
     for (int g = 0; g < Law::points; ++g) {
-      Vec<T, np> const p = parameters<T, n>(maps_[g], x);
+      Mat<T, np, np>& h = hs.h[g];
+      Vec<T, np> const p = P::parameters(maps_[g], e);
       Vec<T, m> stress;
       Mat<T, m, np> b;
       Law::template evaluate<T>(p, stress, b);
-      Mat<T, np, np> h;  // of the energy in p: BᵀCB, symmetric, and what follows
 #pragma GCC unroll 8
       for (int r = 0; r < np; ++r) {
         Vec<T, m> scaled;
@@ -145,7 +203,7 @@ class StrainGroup {
         }
       }
       if (damped_) {
-        Vec<T, np> const pd = parameters<T, n>(maps_[g], xd);
+        Vec<T, np> const pd = P::parameters(maps_[g], ed);
         Vec<T, m> const rate = rates(b, pd);
         add_damping_gradient(weights_[g], ck, cd, p, pd, stress, rate, b, h);
         add_damping(rate, stress);
@@ -153,21 +211,37 @@ class StrainGroup {
 #pragma GCC unroll 8
       for (int i = 0; i < m; ++i) stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
       Law::template add_hessian<T>(p, stress, h);
-      add_mapped<T, n>(maps_[g], h, k);
+    }
+  }
+  /// `block` += the group's share of K̂_vw.
+  template <KernelScalar T>
+  void add_block(int v, int w, Prepared<T> const& hs, typename P::template Block<T>& block) const
+    requires(!quadratic)
+  {
+    if (v >= P::vectors || w >= P::vectors) return;
+    for (int pair = P::table.first[v][w]; pair < P::table.last[v][w]; ++pair) {
+      int const from = P::d * (P::table.pairs[pair].s + np * P::table.pairs[pair].t);
+#pragma GCC unroll 16
+      for (int g = 0; g < Law::points; ++g) {
+        T const product(products_[pair][g]);
+        T const* const h = hs.h[g].data() + from;
+        P::for_each_entry([&](int i, int j) { block(i, j) += product * h[np * j + i]; });
+      }
     }
   }
 
   /// f += the group's force over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
   ///   −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
   /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. It has no moment where strains are made of scalar products. The
-  /// others,
-  /// vectors that turn, go by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), κ₀ = 1e-3 1/m, as `objective_rate` damps; the
+  /// others, vectors that turn, go by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), κ₀ = 1e-3 1/m, as `objective_rate` damps; the
   /// part of `decay` has a moment then.
   template <int n>
   void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, Vec<double, n>& f) const {
     using S = Secant<np>;
+    Coordinates<double, n> const e0(x0), e1(x1);
+    Vec<double, P::d> step = Vec<double, P::d>::Zero();
     for (int g = 0; g < Law::points; ++g) {
-      Vec<double, np> const p0 = parameters<double, n>(maps_[g], x0), p1 = parameters<double, n>(maps_[g], x1);
+      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
       Vec<S, np> p;
       for (int k = 0; k < np; ++k) p[k] = S::variable(p0[k], p1[k], k);
       typename S::Slope sum = S::Slope::Zero();
@@ -186,9 +260,11 @@ class StrainGroup {
           sum += strain[i].d * (stiffness_[i] * stretch + (HasSquare<Law> ? 0.0 : initial_[i]));
         }
       }
-      for (int k = 0; k < np; ++k)
-        for (int j = 0; j < reach; ++j) f[Law::column(k, j)] -= weights_[g] * sum[k] * maps_[g](k, j);
+      Vec<double, np> pull;
+      for (int k = 0; k < np; ++k) pull[k] = weights_[g] * sum[k];
+      P::subtract_pulled(maps_[g], pull, f, step);
     }
+    P::spread(step, f);
   }
 
   /// k += ck (−∂f/∂x1) of `add_mean_force`, not symmetric, with the strains' gradients B̄ and H̄ of the middle for the secants:
@@ -196,8 +272,9 @@ class StrainGroup {
   template <int n>
   void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, double ck,
                         Mat<double, n, n>& k) const {
+    Coordinates<double, n> const e0(x0), e1(x1);
     for (int g = 0; g < Law::points; ++g) {
-      Vec<double, np> const p0 = parameters<double, n>(maps_[g], x0), p1 = parameters<double, n>(maps_[g], x1);
+      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
       Vec<double, np> const middle = 0.5 * (p0 + p1);
       Strains from, to, stress;
       Mat<double, m, np> b, end;
@@ -211,8 +288,15 @@ class StrainGroup {
         for (int c = 0; c < np; ++c)
           for (int r = 0; r < np; ++r) h(r, c) += w * stiffness_[i] * (0.5 + share) * b(i, r) * end(i, c);
       }
-      Law::template add_hessian<double>(middle, stress, h);
-      add_mapped<double, n>(maps_[g], h, k);
+      if constexpr (quadratic) {
+        Mat<double, P::shapes, P::shapes> of_shapes = Mat<double, P::shapes, P::shapes>::Zero();
+        Law::template add_hessian<double>(stress, of_shapes);
+        for (int c = 0; c < np; ++c)
+          for (int r = c % P::d; r < np; r += P::d) h(r, c) += of_shapes(r / P::d, c / P::d);
+      } else {
+        Law::template add_hessian<double>(middle, stress, h);
+      }
+      P::add_mapped(maps_[g], h, k);
     }
   }
 
@@ -220,10 +304,11 @@ class StrainGroup {
   template <int n>
   double energy(Vec<double, n> const& x) const {
     double u = 0.0;
+    Coordinates<double, n> const e(x);
     for (int g = 0; g < Law::points; ++g) {
       Vec<double, m> strain;
       Mat<double, m, np> b;
-      Law::template evaluate<double>(parameters<double, n>(maps_[g], x), strain, b);
+      Law::template evaluate<double>(P::parameters(maps_[g], e), strain, b);
 #pragma GCC unroll 8
       for (int i = 0; i < m; ++i) {
         double const stretch = strain[i] - free_[g][i];
@@ -234,39 +319,6 @@ class StrainGroup {
   }
 
  private:
-  /// p = P x.
-  template <class T, int n>
-  static Vec<T, np> parameters(Map const& map, Vec<T, n> const& x) {
-    Vec<T, np> p;
-#pragma GCC unroll 8
-    for (int k = 0; k < np; ++k) {
-      T s = x[Law::column(k, 0)] * map(k, 0);
-#pragma GCC unroll 8
-      for (int j = 1; j < reach; ++j) s += x[Law::column(k, j)] * map(k, j);
-      p[k] = s;
-    }
-    return p;
-  }
-
-  /// k += Pᵀ h P, column by column of h.
-  template <class T, int n>
-  static void add_mapped(Map const& map, Mat<T, np, np> const& h, Mat<T, n, n>& k) {
-#pragma GCC unroll 8
-    for (int c = 0; c < np; ++c) {
-      Vec<T, n> pulled;  // Pᵀ h e_c
-#pragma GCC unroll 16
-      for (int r = 0; r < n; ++r) pulled[r] = T(0.0);
-#pragma GCC unroll 8
-      for (int r = 0; r < np; ++r)
-#pragma GCC unroll 8
-        for (int j = 0; j < reach; ++j) pulled[Law::column(r, j)] += h(r, c) * map(r, j);
-#pragma GCC unroll 8
-      for (int j = 0; j < reach; ++j)
-#pragma GCC unroll 16
-        for (int r = 0; r < n; ++r) k(r, Law::column(c, j)) += pulled[r] * map(c, j);
-    }
-  }
-
   /// ε̇ = B ṗ.
   template <class T>
   static Vec<T, m> rates(Mat<T, m, np> const& b, Vec<T, np> const& pd) {
@@ -329,7 +381,9 @@ class StrainGroup {
   Strains time_ = Strains::Zero();
   Strains initial_ = Strains::Zero();
   bool damped_ = false;
-  std::array<Map, Law::points> maps_;
+  std::array<Map, std::size_t(Law::points)> maps_;
+  /// Of two factors, for each pair.
+  std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
   std::array<double, Law::points> weights_;  ///< [m]
   std::array<Strains, Law::points> free_;    ///< ε⁰
 };

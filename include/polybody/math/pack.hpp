@@ -4,8 +4,10 @@
 /// vector registers. A kernel that is a template on its scalar and does not branch on values runs on packs as it stands.
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <concepts>
+#include <cstring>
 
 namespace polybody {
 
@@ -34,8 +36,9 @@ class Pack {
  public:
   static constexpr int size = N;
   using Lanes = typename detail::LanesOf<N>::Type;
+  using Native = typename Eigen::internal::find_best_packet<double, N>::type;  ///< Eigen's name for `Lanes` where it has one
 
-  Pack() : x_{} {}
+  Pack() = default;  ///< `Pack<>()` is zero, `Pack<> x;` is not made yet, as for double
   Pack(double same) : x_(same - Lanes{}) {}  // NOLINT(google-explicit-constructor): a constant is a pack
 
   double operator[](int i) const { return x_[i]; }
@@ -52,8 +55,33 @@ class Pack {
   friend Pack operator-(Pack const& a) { return Pack(-a.x_); }
   friend Pack operator+(Pack const& a) { return a; }
 
+  /// `N` numbers one after another in memory, aligned or not.
+  static Pack load(double const* from) {
+    Pack r;
+    std::memcpy(&r.x_, from, sizeof(Lanes));
+    return r;
+  }
+  void store(double* to) const { std::memcpy(to, &x_, sizeof(Lanes)); }
+
+  /// `N` packs as the rows of a matrix become its columns.
+  friend void transpose(std::array<Pack, std::size_t(N)>& packs) {
+    if constexpr (sizeof(Native) == sizeof(Lanes)) {
+      Eigen::internal::PacketBlock<Native, N> block;
+      for (int i = 0; i < N; ++i) block.packet[i] = Native(packs[std::size_t(i)].x_);
+      Eigen::internal::ptranspose(block);
+      for (int i = 0; i < N; ++i) packs[std::size_t(i)].x_ = Lanes(block.packet[i]);
+    } else {
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j < i; ++j) {
+          Pack &a = packs[std::size_t(i)], &b = packs[std::size_t(j)];
+          double const kept = a[j];
+          a.set(j, b[i]);
+          b.set(i, kept);
+        }
+    }
+  }
+
   friend Pack sqrt(Pack const& a) {
-    using Native = Eigen::internal::packet_traits<double>::type;
     if constexpr (sizeof(Native) == sizeof(Lanes))
       return Pack(Lanes(Eigen::internal::psqrt(Native(a.x_))));  // at once; std::sqrt stops to look for negative numbers
     else
@@ -94,7 +122,7 @@ struct Eigen::NumTraits<polybody::Pack<N>> : Eigen::NumTraits<double> {
     IsComplex = 0,
     IsInteger = 0,
     IsSigned = 1,
-    RequireInitialization = 1,
+    RequireInitialization = 0,
     ReadCost = 1,
     AddCost = 1,
     MulCost = 1

@@ -8,104 +8,11 @@
 /// joints. Everything is one walk from the roots to the tips or back.
 
 #include <numbers>
-#include <string>
-#include <vector>
 
-#include <polybody/bodies/body.hpp>
-#include <polybody/joints/joint_motion.hpp>
 #include <polybody/math/quaternion.hpp>
+#include <polybody/system/tree_body.hpp>
 
 namespace polybody {
-
-/// A body of a tree: how its pose is written, and the joint that carries it.
-struct TreeBody {
-  std::string name;
-  RigidLayout layout = RigidLayout::quaternion;
-  Index q0 = 0, v0 = 0;            ///< in whole vectors
-  Index row = -1;                  ///< first of the joint's rows; −1: a root, which nothing carries
-  Index parent = -1;               ///< in the tree; −1: the ground
-  Placement from;                  ///< the joint's frame in the parent's axes
-  Placement to;                    ///< … in its own
-  JointMotions motions = {};            ///< from frame a to frame b
-  bool backwards = false;          ///< frame b is the parent's
-  double angle = 0.0;              ///< in the plane: what it is turned against the parent before the joint moves
-  Index qn = 0, vn = 0;            ///< in narrow vectors
-
-  bool carried() const { return row >= 0; }
-};
-
-/// Where a body of a tree is and how it may move.
-struct TreeFrame {
-  Vec3 r = Vec3::Zero(), v = Vec3::Zero(), w = Vec3::Zero(), arm = Vec3::Zero();
-  Mat3 A = Mat3::Identity();
-  double angle = 0.0;
-  int speeds = 0;
-  Mat<double, 6, 6> s = Mat<double, 6, 6>::Zero();        ///< S = [S_r; S_ω] by columns
-  Mat<double, 6, 6> inverse = Mat<double, 6, 6>::Zero();  ///< (SᵀS)⁻¹
-  Vec6 bias = Vec6::Zero();                               ///< [b_r; b_ω]
-};
-
-/// Scratch of a tree.
-struct TreeState {
-  std::vector<TreeFrame> frames;
-  std::vector<Vec6> twists;
-  std::vector<Vec6> held;  ///< as of the last `pull`: the wrench [f; m] about its centre of mass with which a body and all that it
-                           ///< carries are out of balance, which its joint holds
-};
-
-namespace detail {
-
-/// a → a⁻¹ for the leading n×n of a positive definite matrix, by Gauss–Jordan elimination.
-inline void invert_leading(Mat<double, 6, 6>& a, int n) {
-  for (int k = 0; k < n; ++k) {
-    double const pivot = 1.0 / a(k, k);
-    a(k, k) = 1.0;
-    for (int j = 0; j < n; ++j) a(k, j) *= pivot;
-    for (int i = 0; i < n; ++i) {
-      if (i == k) continue;
-      double const f = a(i, k);
-      a(i, k) = 0.0;
-      for (int j = 0; j < n; ++j) a(i, j) -= f * a(k, j);
-    }
-  }
-}
-
-/// The turn by an angle about axis k of the frame itself.
-inline Mat3 turn_about(int k, double angle) {
-  int const i = (k + 1) % 3, j = (k + 2) % 3;
-  double const c = std::cos(angle), s = std::sin(angle);
-  Mat3 m = Mat3::Identity();
-  m(i, i) = m(j, j) = c;
-  m(j, i) = s;
-  m(i, j) = -s;
-  return m;
-}
-
-/// A frame on its way through the motions of a joint, with what its own acceleration has beyond u̇.
-struct Runner {
-  Vec3 r, v, a;
-  Mat3 A;
-  Vec3 w, alpha;
-
-  /// To a point of the same rigid piece, `along` away.
-  void go(Vec3 const& along) {
-    Vec3 const rate = w.cross(along);
-    r += along;
-    v += rate;
-    a += alpha.cross(along) + w.cross(rate);
-  }
-  void slide(Vec3 const& n, double s, double rate) {
-    go(s * n);
-    v += rate * n;
-    a += (2.0 * rate) * w.cross(n);
-  }
-  void turn(Vec3 const& spin) {
-    alpha += w.cross(spin);
-    w += spin;
-  }
-};
-
-}  // namespace detail
 
 class JointTree {
  public:

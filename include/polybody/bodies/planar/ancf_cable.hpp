@@ -66,18 +66,18 @@ struct HermiteCable {
   /// Axial strain, p = r′. Five points integrate ε² of the cubic field exactly.
   struct Axial {
     static constexpr int points = axial_points;
+    static constexpr int components = 2;
     static constexpr int parameters = 2;
     static constexpr int strains = 1;
-    static constexpr int reach = 4;
+    static constexpr int reach = 3;
+    static constexpr int difference = 2;
 
     static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EA)); }
     static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.axial); }
-    static constexpr int column(int k, int j) { return 2 * j + k; }
-    static Mat<double, 2, 4> map(double xi, double l) {
+    static constexpr int vector(int, int j) { return j + 1; }
+    static Mat<double, 1, 3> map(double xi, double l) {
       ShapeValues<4> const s = hermite_shape(xi, l);
-      Mat<double, 2, 4> p;
-      for (int j = 0; j < 4; ++j) p(0, j) = p(1, j) = s.ds[j];
-      return p;
+      return {s.ds[1], s.ds[2], s.ds[3]};
     }
 
     template <KernelScalar T>
@@ -93,22 +93,24 @@ struct HermiteCable {
   /// Bending, p = (r′, r″), κ = c/nᵏ with c = r′ × r″, n = |r′|. Three points are the field's choice [Gerstmayr & Irschik 2008].
   struct Bending {
     static constexpr int points = bending_points;
+    static constexpr int components = 2;
     static constexpr int parameters = 4;
     static constexpr int strains = 1;
-    static constexpr int reach = 4;
+    static constexpr int reach = 3;
+    static constexpr int difference = 2;
     static constexpr int k = Strain::curvature_power;
 
     static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EI)); }
     static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.bending); }
-    static constexpr int column(int i, int j) { return 2 * j + i % 2; }
-    static Mat<double, 4, 4> map(double xi, double l) {
+    static constexpr int vector(int, int j) { return j + 1; }
+    static Mat<double, 2, 3> map(double xi, double l) {
       ShapeValues<4> const s = hermite_shape(xi, l);
-      Mat<double, 4, 4> p;
-      for (int j = 0; j < 4; ++j) {
-        p(0, j) = p(1, j) = s.ds[j];
-        p(2, j) = p(3, j) = s.dds[j];
+      Mat<double, 2, 3> n;
+      for (int j = 0; j < 3; ++j) {
+        n(0, j) = s.ds[j + 1];
+        n(1, j) = s.dds[j + 1];
       }
-      return p;
+      return n;
     }
 
     template <KernelScalar T>

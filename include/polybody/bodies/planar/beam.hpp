@@ -9,7 +9,7 @@
 
 #include <polybody/bodies/bar.hpp>
 #include <polybody/bodies/node_chain.hpp>
-#include <polybody/bodies/strain_group.hpp>
+#include <polybody/bodies/strain_tangent.hpp>
 
 namespace polybody::planar {
 
@@ -99,9 +99,7 @@ class Beam : public NodeChain<Theory::node_columns> {
   template <KernelScalar T>
   void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd,
                        Mat<T, element_columns, element_columns>& k) const {
-    for (int j = 0; j < element_columns; ++j)
-      for (int i = 0; i < element_columns; ++i) k(i, j) = T(0.0);
-    for_each_group([&](auto const& group) { group.template add_tangent<T>(x, xd, ck, cd, k); });
+    tangent_of<T, element_columns>(groups_, x, xd, ck, cd, k);
   }
 
   template <StateScalar T>

@@ -50,6 +50,7 @@ struct SimoVuQuoc {
   /// Axial, shear and bending strain at the one Gauss point; p = (x′, y′, θ, θ′).
   struct Section {
     static constexpr int points = 1;
+    static constexpr int components = 1;
     static constexpr int parameters = 4;
     static constexpr int strains = 3;
 
@@ -57,7 +58,7 @@ struct SimoVuQuoc {
     static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.bending}; }
 
     static constexpr int reach = 2;
-    static constexpr int column(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
+    static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
     static Mat<double, 4, 2> map(double xi, double l) {
       ShapeValues<2> const n = linear_shape(xi, l);
       Mat<double, 4, 2> p;

@@ -1,0 +1,164 @@
+#pragma once
+/// \file
+/// The constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point. The parameters
+/// of a law are vectors of `components` entries, the shapes. Shape s reads a few nodal vectors, its j-th being e_v with
+/// v = `vector(s, j)`, by one factor for all components:
+///   p_s = Σ_j N_sj ê_v,  P = N ⊗ 1.
+/// ê = e but for what a law names as `difference`: strains do not feel where an element is, so that the factors of its two ends are
+/// opposite, and ê_v = e_v − e_0 stands for both. K̂ = PᵀhP then has the blocks
+///   K̂_vw = Σ_(s,j) Σ_(t,l) N_sj N_tl h_st,  v = vector(s, j), w = vector(t, l),
+/// one product for each pair of factors; K by e has K_0w = −K_vw, v the difference.
+
+#include <algorithm>
+#include <array>
+
+#include <polybody/math/pack.hpp>
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+template <class Law>
+class StrainMap {
+ public:
+  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;
+
+  using Factors = Mat<double, shapes, reach>;  ///< N
+  template <class T>
+  using Block = Mat<T, d, d>;
+
+  /// The vector that is read against the first one; 0: there is none.
+  static constexpr int difference = [] {
+    if constexpr (requires { Law::difference; })
+      return int(Law::difference);
+    else
+      return 0;
+  }();
+  static constexpr bool is_difference(int v) { return difference > 0 && v == difference; }
+
+  /// f(i, j) for the entries of a block.
+  template <class F>
+  static void for_each_entry(F&& f) {
+#pragma GCC unroll 4
+    for (int j = 0; j < d; ++j)
+#pragma GCC unroll 4
+      for (int i = 0; i < d; ++i) f(i, j);
+  }
+
+  /// ê.
+  template <class T, int n>
+  struct Coordinates {
+    Vec<T, n> const& e;
+    Vec<T, d> step;  ///< the difference
+    explicit Coordinates(Vec<T, n> const& x) : e(x) {
+      for (int i = 0; i < d; ++i) step[i] = difference > 0 ? x[d * difference + i] - x[i] : x[i];
+    }
+    T const& operator()(int v, int i) const { return is_difference(v) ? step[i] : e[d * v + i]; }
+  };
+
+  /// p.
+  template <class T, int n>
+  static Vec<T, np> parameters(Factors const& factors, Coordinates<T, n> const& x) {
+    Vec<T, np> p;
+#pragma GCC unroll 16
+    for (int k = 0; k < np; ++k) {
+      T sum = x(Law::vector(k / d, 0), k % d) * factors(k / d, 0);
+#pragma GCC unroll 8
+      for (int j = 1; j < reach; ++j)
+        if (Law::vector(k / d, j) >= 0) sum += x(Law::vector(k / d, j), k % d) * factors(k / d, j);
+      p[k] = sum;
+    }
+    return p;
+  }
+  /// f −= Pᵀ s.
+  template <class T, int n>
+  static void subtract_pulled(Factors const& factors, Vec<T, np> const& s, Vec<T, n>& f, Vec<T, d>& step) {
+#pragma GCC unroll 8
+    for (int j = 0; j < reach; ++j)
+#pragma GCC unroll 16
+      for (int k = 0; k < np; ++k) {
+        int const v = Law::vector(k / d, j);
+        if (v >= 0) (is_difference(v) ? step[k % d] : f[d * v + k % d]) -= s[k] * factors(k / d, j);
+      }
+  }
+  /// f += what the difference got.
+  template <class T, int n>
+  static void spread(Vec<T, d> const& step, Vec<T, n>& f) {
+    if constexpr (difference > 0)
+      for (int i = 0; i < d; ++i) {
+        f[i] -= step[i];
+        f[d * difference + i] += step[i];
+      }
+  }
+
+  /// k += Pᵀ h P, for any h: entry by entry.
+  template <int n>
+  static void add_mapped(Factors const& factors, Mat<double, np, np> const& h, Mat<double, n, n>& k) {
+    Mat<double, np, n> p = Mat<double, np, n>::Zero();
+    for (int r = 0; r < np; ++r)
+      for (int j = 0; j < reach; ++j) {
+        int const v = Law::vector(r / d, j);
+        if (v < 0) continue;
+        p(r, d * v + r % d) += factors(r / d, j);
+        if (is_difference(v)) p(r, r % d) -= factors(r / d, j);
+      }
+    for (int c = 0; c < n; ++c)
+      for (int r = 0; r < np; ++r) {
+        double sum = 0.0;  // of h P
+        for (int q = 0; q < np; ++q) sum += h(r, q) * p(q, c);
+        if (sum == 0.0) continue;
+        for (int i = 0; i < n; ++i) k(i, c) += p(r, i) * sum;
+      }
+  }
+
+  /// Row `row` of B P by the vectors that all shapes read.
+  template <class T, int m>
+  static void pull_row(Factors const& factors, Mat<T, m, np> const& b, int row, Vec<T, d * reach>& out) {
+    for (int j = 0; j < reach; ++j)
+#pragma GCC unroll 4
+      for (int i = 0; i < d; ++i) {
+        T sum = b(row, i) * factors(0, j);
+#pragma GCC unroll 4
+        for (int s = 1; s < shapes; ++s) sum += b(row, d * s + i) * factors(s, j);
+        out[d * j + i] = sum;
+      }
+  }
+
+  static constexpr int vectors = [] {
+    int most = 0;
+    for (int s = 0; s < shapes; ++s)
+      for (int j = 0; j < reach; ++j) most = std::max(most, Law::vector(s, j));
+    return most + 1;
+  }();
+  static constexpr int count = [] {
+    int sum = 0;
+    for (int s = 0; s < shapes; ++s)
+      for (int j = 0; j < reach; ++j) sum += Law::vector(s, j) >= 0;
+    return sum;
+  }();
+  /// All pairs of factors, those of block (v, w) from `first[v][w]` to `last[v][w]`.
+  struct Pair {
+    int s, j, t, l;
+  };
+  struct Pairs {
+    std::array<Pair, std::size_t(count * count)> pairs{};
+    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};
+  };
+  static constexpr Pairs table = [] {
+    Pairs out;
+    int next = 0;
+    for (int v = 0; v < vectors; ++v)
+      for (int w = 0; w < vectors; ++w) {
+        out.first[v][w] = next;
+        for (int s = 0; s < shapes; ++s)
+          for (int j = 0; j < reach; ++j)
+            for (int t = 0; t < shapes; ++t)
+              for (int l = 0; l < reach; ++l)
+                if (Law::vector(s, j) == v && Law::vector(t, l) == w) out.pairs[next++] = {s, j, t, l};
+        out.last[v][w] = next;
+      }
+    return out;
+  }();
+  static constexpr bool reads(int v) { return v < vectors && table.first[v][v] < table.last[v][v]; }
+};
+
+}  // namespace polybody
