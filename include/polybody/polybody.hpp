@@ -9,8 +9,10 @@
 #include <polybody/analysis/implied_curve.hpp>
 #include <polybody/analysis/initial_conditions.hpp>
 #include <polybody/analysis/mesh_diagnostics.hpp>
+#include <polybody/analysis/minimum_norm.hpp>
 #include <polybody/analysis/observe.hpp>
 #include <polybody/analysis/preloads.hpp>
+#include <polybody/analysis/redundancy.hpp>
 #include <polybody/analysis/section.hpp>
 #include <polybody/analysis/simulate.hpp>
 #include <polybody/analysis/surface.hpp>

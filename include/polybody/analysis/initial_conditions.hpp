@@ -2,7 +2,7 @@
 /// \file
 /// Consistent starts: assembly of positions, projection of velocities, accelerations and multipliers.
 
-#include <polybody/integrators/forward_dynamics.hpp>
+#include <polybody/analysis/repeated_rows.hpp>
 
 namespace polybody {
 
@@ -31,8 +31,19 @@ void require_assembled(System<M>& system, State const& x, double tolerance = 1e-
                           "assemble(model, x).");
 }
 
+/// \throws InconsistentStart naming joints that stay open because their rows repeat each other with other dimensions.
+template <class M, class Solver>
+void require_closable(System<M>& system, ForwardDynamics<M, Solver>& forward, State const& x) {
+  if (!x.q.allFinite()) return;
+  forward.hold(system, x.q, x.v, x.t);
+  VecX phi = VecX::Zero(system.rows());
+  system.violation(phi);
+  require_no_contradiction(system, forward, x.q, phi, detail::ContradictionLimits{}.position, "positions");
+}
+
 /// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton), then
-/// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed; x is then untouched.
+/// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed, or the joints whose rows repeat each
+/// other but contradict; x is then untouched.
 template <class M>
 void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   require_fitting(model, x);
@@ -44,11 +55,13 @@ void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterat
     before = forward.project_positions_once(system, trial.q, trial.v, trial.t);
     if (before <= tolerance) break;
     if (k == max_iterations || !std::isfinite(before)) {
+      require_closable(system, forward, trial);
       require_assembled(system, trial, tolerance);
       throw InconsistentStart("assemble: the joints cannot be closed from this start.");
     }
   }
   forward.project_velocities(system, trial.q, trial.v, trial.t);
+  require_consistent_rows(system, forward, trial);
   x = std::move(trial);
 }
 

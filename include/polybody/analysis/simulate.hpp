@@ -8,8 +8,8 @@
 #include <memory>
 #include <optional>
 
-#include <polybody/analysis/initial_conditions.hpp>
-#include <polybody/integrators/integrator.hpp>
+#include <polybody/analysis/minimum_norm.hpp>
+#include <polybody/analysis/stable_step.hpp>
 
 namespace polybody {
 
@@ -28,6 +28,7 @@ struct RunOptions {
   std::vector<double> corners = {};   ///< times at which a step must end, beside those of the drives and loads
   std::vector<Event> events = {};
   double assembly_tolerance = 1e-8;   ///< of the start
+  bool minimum_norm = false;          ///< every state gets the multipliers of `MinimumNorm`, for a factorisation each
   int threads = 1;                    ///< that share the loops of an evaluation; for large models, results stay the same bits
 };
 
@@ -48,6 +49,7 @@ struct RunReport {
   /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share the
   /// load is not determined.
   std::vector<std::string> redundant = {};
+  std::vector<std::string> warnings = {};  ///< of the start, in sentences: a step beyond the limit of an explicit integrator
 };
 
 /// An input range of states: `for (State const& now : simulate(…))` yields the start and every step's end.
@@ -62,22 +64,22 @@ class Simulation {
  public:
   Simulation(M const& model, State& x, I integrator, RunOptions options)
       : system_(std::make_unique<System<Stepped>>(model)), x_(&x), integrator_(std::move(integrator)),
-        options_(std::move(options)), workspace_(integrator_.template workspace<Solver>(*system_)) {
+        options_(std::move(options)), workspace_(integrator_.template workspace<Solver>(*system_)), norm_(whole()) {
     integrator_.check();
     check_options();
     if (options_.threads != 1) system_->use_threads(options_.threads);
     require_fitting(model, x);
     collect_corners();
     require_assembled(whole(), x, options_.assembly_tolerance);
-    if constexpr (M::eliminates) {
-      State start = x;  // joint speeds are read off speeds that keep to the joints
-      ForwardDynamics<M, Solver>(whole()).project_velocities(whole(), start.q, start.v, start.t);
-      narrow_ = system_->narrow(start);
-    }
     h_ = std::min<double>(options_.step, largest_step());
+    if constexpr (M::eliminates) narrow_start();
     pass_corners();
     for (Event const& event : options_.events) sides_.push_back(side(event, stepped()));
-    restart();
+    restart(true);
+    if constexpr (!M::eliminates) {
+      if (options_.minimum_norm) norm_.apply(*system_, workspace_.forward, x);
+      warn(workspace_.forward, x);
+    }
     show();
   }
 
@@ -93,7 +95,7 @@ class Simulation {
     auto const [target, h, lands, jumps] = plan();
     bool const crumb = h < 0.01 * h_;  // one is left all the same: after a corner or an event
     State before;
-    if (jumps || crumb || !options_.events.empty()) before = stepped();
+    if (jumps || crumb || options_.minimum_norm || !options_.events.empty()) before = stepped();
     StepReport const report = integrator_.step(*system_, stepped(), h, workspace_);
     bool const reached = lands && report.taken == h;
     if (reached) stepped().t = target;
@@ -103,6 +105,8 @@ class Simulation {
       bool const at_corner = jumps && stepped().t == target;
       if (at_corner) pass_corners();
       if (met || at_corner || crumb) restart();
+      if constexpr (!M::eliminates)
+        if (options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
       show();
     } catch (...) {
       stepped() = before;
@@ -158,6 +162,26 @@ class Simulation {
       return system_->whole();
     else
       return *system_;
+  }
+
+  /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep to the joints.
+  void narrow_start() {
+    if (options_.minimum_norm)
+      throw InvalidInput("simulate: minimum_norm is for models whose joints all keep their rows. Ask minimum_norm_multipliers for single "
+                         "states.");
+    State start = *x_;
+    ForwardDynamics<M, Solver> forward(whole());
+    forward.project_velocities(whole(), start.q, start.v, start.t);
+    require_consistent_rows(whole(), forward, start);
+    warn(forward, start);
+    narrow_ = system_->narrow(start);
+  }
+  /// Of a step that is too long for compliant joints.
+  void warn(ForwardDynamics<M, Solver>& forward, State const& x) {
+    if constexpr (NamesStableStep<I>) {
+      std::string const warning = warn_of_step<I>(whole(), forward, x, h_);
+      if (!warning.empty()) report_.warnings.push_back(warning);
+    }
   }
 
   double largest_step() const { return options_.largest_step.value_or(std::numeric_limits<double>::infinity()); }
@@ -219,10 +243,12 @@ class Simulation {
 
   /// After a start, corner or event: speeds onto the rows, then consistent accelerations. The integrator may look
   /// ahead as far as the next step goes, not across a corner.
-  void restart() {
+  void restart(bool first = false) {
     State fresh = stepped();  // which stays as it is when the start fails
     workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
     integrator_.start(*system_, fresh, done() ? h_ : plan().h, workspace_);
+    if constexpr (!M::eliminates)
+      if (first) require_consistent_rows(*system_, workspace_.forward, fresh);
     stepped() = std::move(fresh);
     report_.redundant = workspace_.forward.redundant(*system_);
     if constexpr (M::eliminates) system_->add_redundant(report_.redundant);
@@ -307,6 +333,7 @@ class Simulation {
   I integrator_;
   RunOptions options_;
   decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System<Stepped>&>())) workspace_;
+  MinimumNorm<M> norm_;
   std::vector<double> corners_;
   std::size_t next_corner_ = 0;
   std::vector<int> sides_;  // of the events at the end of the last step: each is met once, however a restart rounds

@@ -11,6 +11,8 @@ struct CentralDifference {
   static constexpr char const* name = "CentralDifference";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
+  static constexpr double stable_to = 2.0;  ///< ωh
+  static double stable_step(double omega, double rate) { return stable_step_of_verlet(omega, rate); }
 
   Stabilisation stabilisation = {};
 

@@ -99,8 +99,20 @@ class ForwardDynamics {
     out = x_.head(system.speeds());
   }
 
-  /// Names of the joints and bodies whose equations repeat others, as of the last factorisation: their multipliers are not unique and are
-  /// taken as zero.
+  /// M a + Gᵀμ = w, G a = 0 with M and G as of the last factorisation: what a force w (nv) moves and what the rows hold of it;
+  /// μ of rows that repeat others is zero.
+  void response(System<M>& system, VecX const& w, VecX& a, VecX& mu) {
+    r_ = w;
+    phi_.setZero();
+    solve(system, 1.0, 0.0);
+    a = x_.head(system.speeds());
+    mu = x_.tail(system.rows());
+  }
+
+  /// Equations that repeat others (see `System::name_of_equation`), as of the last factorisation: their multipliers are not unique and are
+  /// taken as zero. Empty for solvers that do not tell.
+  std::span<Index const> redundant_rows() const { return solver_.dropped(); }
+  /// Names of the joints and bodies that they belong to.
   std::vector<std::string> redundant(System<M> const& system) const {
     std::vector<std::string> names;
     for (Index const i : solver_.dropped()) {

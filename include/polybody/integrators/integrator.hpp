@@ -18,6 +18,21 @@ struct StepReport {
   double contraction = 0.0; ///< last contraction rate of Newton's method
 };
 
+/// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ + a₁):
+/// beyond ω²h² + 4dh = 4 it has a multiplier below −1. \param omega ω [1/s]  \param rate d [1/s]
+template <class = void>
+double stable_step_of_verlet(double omega, double rate) {
+  return 2.0 / (rate + std::sqrt(rate * rate + omega * omega));
+}
+
+/// An explicit integrator of fixed step tells when x¨ + d x˙ + ω² x = 0 grows without bound: `stable_to`, the largest ωh for d
+/// = 0, and `stable_step(ω, d)`, the largest h.
+template <class I>
+concept NamesStableStep = requires(double omega, double rate) {
+  { I::stable_to } -> std::convertible_to<double>;
+  { I::stable_step(omega, rate) } -> std::convertible_to<double>;
+};
+
 /// An integrator is a value with options. Its workspace for a system is allocated once:
 ///   auto w = integrator.template workspace<Solver>(system);
 ///   integrator.start(system, x, h, w);      after a start, a jump or an event

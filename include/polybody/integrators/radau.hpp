@@ -63,10 +63,11 @@ struct Radau {
     double theta = 1.0;
     double h_factored = 0.0;
     double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
+    std::vector<double> slack;  ///< by rows: −1 on the diagonal of a row that repeats others leaves its multiplier alone
 
     explicit Workspace(System<M>& s)
         : q(VecX::Zero(s.coordinates())), r(VecX::Zero(s.speeds())), phi(VecX::Zero(s.rows())), gamma(phi), next(r),
-          rhs(VecX::Zero(3 * s.size())), y(rhs), forward(s), projected(s) {
+          rhs(VecX::Zero(3 * s.size())), y(rhs), forward(s), projected(s), slack(std::size_t(s.equations() - s.equation_speeds()), 0.0) {
       v.fill(r);
       vd.fill(r);
       delta.fill(r);
@@ -76,7 +77,7 @@ struct Radau {
     }
 
     /// The matrix of Newton's method where `s` was evaluated last: block (i, j) is
-    ///   δ_ij [M, Gᵀ; G, 0] + h a_ij D + h² (A²)_ij K.
+    ///   δ_ij [M, Gᵀ; G, slack] + h a_ij D + h² (A²)_ij K.
     template <class Sink>
     void write(System<M>& s, double h, Sink& sink) {
       using T = detail::RadauTableau;
@@ -84,6 +85,11 @@ struct Radau {
         for (int j = 0; j < 3; ++j) {
           detail::StageSink<Sink> stage{sink, i * s.equations(), j * s.equations(), s.equation_speeds()};
           s.tangent({i == j ? 1.0 : 0.0, h * T::a[i][j], h * h * T::squared(i, j)}, SecondOrder::omitted, phi, stage);
+          if (i == j)
+            for (std::size_t k = 0; k < slack.size(); ++k) {
+              Index const at = s.equation_speeds() + Index(k);
+              stage.add(at, at, Eigen::Map<Mat<double, 1, 1> const>(&slack[k]));
+            }
         }
     }
     /// v_i = v₀ + h Σ a_ij v̇_j.
@@ -117,6 +123,8 @@ struct Radau {
   void start(System<M>& system, State& x, double, Workspace<M, Solver>& w) const {
     check();
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    std::fill(w.slack.begin(), w.slack.end(), 0.0);
+    for (Index const i : w.forward.redundant_rows()) w.slack[std::size_t(i - system.equation_speeds())] = -1.0;
     w.factored = false;
   }
 

@@ -4,6 +4,7 @@
 /// δ˙ = local_rate(δ, v), v̇ = accelerations(q₀ ⊞ δ, v, t) [Munthe-Kaas 1999].
 
 #include <array>
+#include <complex>
 
 #include <polybody/integrators/stabilisation.hpp>
 
@@ -74,6 +75,20 @@ struct RungeKutta4 {
   static constexpr char const* name = "RungeKutta4";
   static constexpr int order = 4;
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
+  static constexpr double stable_to = 2.8284271247461901;  ///< ωh
+  /// Where |1 + z + z²/2 + z³/6 + z⁴/24| = 1 along z = hs, s the faster of the roots −d/2 ± √(d²/4 − ω²)
+  /// [Hairer & Wanner 1996, §IV.2].
+  static double stable_step(double omega, double rate) {
+    double const under = omega * omega - 0.25 * rate * rate;
+    std::complex<double> const s = under > 0.0 ? std::complex(-0.5 * rate, std::sqrt(under)) : -0.5 * rate - std::sqrt(-under);
+    double lo = 2.5, hi = 3.5;  // |z|
+    while (hi - lo > 1e-9) {
+      double const mid = 0.5 * (lo + hi);
+      std::complex<double> const z = mid / std::abs(s) * s;
+      (std::abs(1.0 + z * (1.0 + z * (0.5 + z * (1.0 / 6.0 + z / 24.0)))) <= 1.0 ? lo : hi) = mid;
+    }
+    return lo / std::abs(s);
+  }
 
   Stabilisation stabilisation = {};
 

@@ -13,6 +13,11 @@ struct SymplecticEuler {
   static constexpr char const* name = "SymplecticEuler";
   static constexpr int order = 1;
   static constexpr bool accepts_rows = false;
+  static constexpr double stable_to = 2.0;  ///< ωh
+  /// Where ω²h² + 2dh = 4 a multiplier passes −1.
+  static double stable_step(double omega, double rate) {
+    return 4.0 / (rate + std::sqrt(rate * rate + 4.0 * omega * omega));
+  }
 
   template <class M, class Solver>
   struct Workspace {
@@ -56,6 +61,8 @@ struct Rattle {
   static constexpr char const* name = "Rattle";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
+  static constexpr double stable_to = 2.0;  ///< ωh
+  static double stable_step(double omega, double rate) { return stable_step_of_verlet(omega, rate); }
 
   double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
   int max_iterations = 50;   ///< each gains a factor of about 1/(hω)

@@ -241,4 +241,22 @@ void rows_times(M const& model, VecX const& q, VecX const& b, Data<M, double> co
   detail::add_linear_rows(model, b, &LinearSide::v0, out);
 }
 
+/// out = Gᵀ b (nv) for b by rows.
+template <class M>
+void rows_transposed_times(M const& model, VecX const& q, VecX const& b, Data<M, double> const& data, VecX& out) {
+  out.setZero();
+  for_each_body_with_rows(model, q, q, [&](auto const& e, auto const& qe, auto const&) {
+    using B = std::decay_t<decltype(e.body)>;
+    Mat<double, B::own_rows, B::element_columns> map;
+    e.body.template own_map<double>(qe, map);
+    out.template segment<B::element_columns>(e.v0) += map.transpose() * b.template segment<B::own_rows>(e.row);
+  });
+  for_each_row_block(model, data, [&](auto const& e, auto const& gap, auto const& a, auto const& c) {
+    constexpr int m = std::decay_t<decltype(gap)>::rows;
+    Vec<double, m> const part = b.template segment<m>(e.row);
+    detail::add_pulled<double>(a, detail::wrench_of<m>(gap.Ga, part), 1.0, out);
+    detail::add_pulled<double>(c, detail::wrench_of<m>(gap.Gb, part), 1.0, out);
+  });
+}
+
 }  // namespace polybody

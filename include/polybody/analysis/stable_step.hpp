@@ -1,0 +1,106 @@
+#pragma once
+/// \file
+/// Whether the compliant joints of a model are too stiff for the step of an explicit integrator.
+
+#include <polybody/integrators/integrator.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// Motions of compliant joints alone: M a + Gᵀμ = w, G a = 0 under forces w = Σ gᵀ S g y, S = ck ∂λ/∂g + cd ∂λ/∂ġ at a state.
+template <class M, class Solver>
+class CompliantMotion {
+ public:
+  /// `forward` must be factored, and `system` evaluated, at that state.
+  CompliantMotion(System<M>& system, ForwardDynamics<M, Solver>& forward)
+      : system_(system), forward_(forward), y_(VecX::Zero(system.speeds())), w_(y_), other_(y_), mu_(VecX::Zero(system.rows())) {}
+
+  struct Found {
+    double omega2 = 0.0;  ///< [1/s²] of k
+    double rate = 0.0;    ///< [1/s] of c
+    std::string joint;    ///< that works most
+  };
+
+  /// Power iteration for the largest yᵀ(ck k + cd c) y/yᵀM y: what it finds is a lower bound and grows from pass to pass.
+  Found largest(double ck, double cd) {
+    for (Index i = 0; i < w_.size(); ++i) w_[i] = std::fmod(0.6180339887498949 * double(i + 1), 1.0) - 0.5;
+    Found found;
+    double before = 0.0, mass = 0.0;
+    for (int pass = 0; pass < 200; ++pass) {
+      forward_.response(system_, w_, y_, mu_);
+      mass = y_.dot(w_);
+      if (!(mass > 0.0)) return found;
+      double const now = pull(ck, cd, w_, found.joint) / mass;
+      if (!(now > 0.0) || (pass > 10 && now <= before * (1.0 + 1e-5))) break;
+      before = now;
+      w_ /= w_.norm();
+    }
+    std::string unused;
+    found.omega2 = pull(1.0, 0.0, other_, unused) / mass;
+    found.rate = pull(0.0, 1.0, other_, unused) / mass;
+    return found;
+  }
+
+ private:
+  /// out = Σ gᵀ S g y. Returns yᵀ out; `most` becomes the joint with the largest part of it.
+  double pull(double ck, double cd, VecX& out, std::string& most) {
+    double sum = 0.0, largest = 0.0;
+    out.setZero();
+    for_each_gap(system_.model(), system_.data(), [&](auto const& e, auto const& gap) {
+      using P = typename std::decay_t<decltype(e.joint)>::PolicyType;
+      if constexpr (AddsForce<P>) {
+        constexpr int m = std::decay_t<decltype(gap)>::rows;
+        Published<double> const& a = system_.data().markers[std::size_t(e.a)];
+        Published<double> const& b = system_.data().markers[std::size_t(e.b)];
+        Vec<double, m> const gy = gap.Ga * a.push(y_.data() + a.first) + gap.Gb * b.push(y_.data() + b.first);
+        Vec<double, m> const l = e.joint.policy.template slope<m>(ck, cd, gap.g, gap_rate(gap, a, b)) * gy;
+        double const part = gy.dot(l);
+        sum += part;
+        if (part > largest) {
+          largest = part;
+          most = e.name;
+        }
+        add_pulled<double>(a, wrench_of<m>(gap.Ga, l), 1.0, out);
+        add_pulled<double>(b, wrench_of<m>(gap.Gb, l), 1.0, out);
+      }
+    });
+    return sum;
+  }
+
+  System<M>& system_;
+  ForwardDynamics<M, Solver>& forward_;
+  VecX y_, w_, other_, mu_;
+};
+
+}  // namespace detail
+
+/// A sentence that warns of a step h beyond the limit of integrator I for the stiffness and damping of the compliant joints at
+/// x, or nothing. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of what the model has: who is
+/// warned will blow up, but springs and elastic bodies may ask for less still.
+template <NamesStableStep I, class M, class Solver>
+std::string warn_of_step(System<M>& system, ForwardDynamics<M, Solver>& forward, State const& x, double h) {
+  bool compliant = false;
+  system.model().for_each_joint([&](auto const& e) {
+    compliant = compliant || AddsForce<typename std::decay_t<decltype(e.joint)>::PolicyType>;
+  });
+  if (!compliant) return "";
+  forward.hold(system, x.q, x.v, x.t);
+  detail::CompliantMotion<M, Solver> motion(system, forward);
+  std::string warning;
+  double least = h;
+  for (bool const by_damping : {false, true}) {
+    auto const found = motion.largest(by_damping ? 0.0 : 1.0, by_damping ? 1.0 : 0.0);
+    double const omega = std::sqrt(std::max(found.omega2, 0.0)), rate = std::max(found.rate, 0.0);
+    if (omega == 0.0 && rate == 0.0) continue;
+    double const limit = I::stable_step(omega, rate);
+    if (!(limit < least)) continue;
+    least = limit;
+    warning = "The joint \"" + found.joint + "\" is too " + (by_damping ? "strongly damped" : "stiff") + " for " + I::name +
+              ": over the mass that it moves, k h² is " + number(found.omega2 * h * h) + " and c h is " + number(rate * h) +
+              "; stable are " + number(found.omega2 * limit * limit) + " and " + number(rate * limit) +
+              ". Take steps of at most " + number(limit) + " s, a softer joint, or an implicit integrator.";
+  }
+  return warning;
+}
+
+}  // namespace polybody

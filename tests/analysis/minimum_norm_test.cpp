@@ -1,0 +1,125 @@
+// How redundant joints share a load: answers by hand.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/point_in_plane.hpp>
+#include <polybody/joints/revolute.hpp>
+
+namespace polybody {
+namespace minimum_norm_test {
+
+constexpr double g = 9.81;
+
+/// A plate of 2 kg on four legs at (±1, ±1), its mass centre at (x, y).
+struct Platform {
+  using Leg = Joint<PointInPlane, Constraint>;
+  Model<Bodies<Rigid<>>, Joints<Leg>> model{Gravity{0, 0, -g}};
+  std::vector<ElementHandle<Leg>> legs;
+  State x;
+  static constexpr double corners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+
+  Platform(double cx, double cy) {
+    Mat3 const inertia = Vec3(0.7, 0.8, 1.5).asDiagonal();
+    auto const plate = model.add(Rigid<>(2.0, inertia, Placement::at({cx, cy, 0})), "plate");
+    for (auto const& c : corners)
+      legs.push_back(model.connect(Leg{PointInPlane{.normal = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
+                                   plate.at(Vec3(c[0] - cx, c[1] - cy, 0))));
+    x = model.reference_state();
+  }
+  double force(State const& s, std::size_t i) const { return reaction(model, s, legs[i]).f[2]; }
+};
+
+// min Σ λ² with Σ λ = m g, Σ λ x_i = m g x, Σ λ y_i = m g y is affine in the place of the leg: λ_i = ¼ m g (1 + x x_i + y y_i).
+TEST(MinimumNorm, OfAPlatformOnFourLegsIsAffine) {
+  for (auto const& [cx, cy] : {std::pair{0.0, 0.0}, std::pair{0.2, -0.5}}) {
+    Platform p(cx, cy);
+    auto run = simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 0.1, .step = 0.01});
+    ASSERT_EQ(run.report().redundant.size(), 1u);
+    double least = 1.0;
+    for (std::size_t i = 0; i < 4; ++i) least = std::min(least, std::abs(p.force(p.x, i)));
+    EXPECT_NEAR(least, 0.0, 1e-12);  // as dropped: one leg carries nothing
+    State shared = p.x;
+    shared.lambda = minimum_norm_multipliers(p.model, p.x);
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(p.force(shared, i), 0.5 * g * (1.0 + cx * p.corners[i][0] + cy * p.corners[i][1]), 1e-12) << i;
+    System system(p.model);
+    VecX r = VecX::Zero(p.model.speeds());
+    system.evaluate(shared.q, shared.v, shared.t);
+    system.residual(shared.a, shared.lambda, r);
+    EXPECT_LT(r.norm(), 1e-12);  // M a + Gᵀλ = f as before
+  }
+}
+
+// Two pins hold a beam four ways: its weight and a push along it are shared equally.
+TEST(MinimumNorm, OfABeamOnTwoPinsIsHalf) {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>, Forces<PointForce<>>> model{Gravity{0, -g, 0}};
+  auto const beam = model.add(planar::Rigid(3.0, 0.5), "beam");
+  auto const left = model.connect(Pin{}, model.ground().at({-2, 0, 0}), beam.at(Vec2(-2, 0)), "left");
+  auto const right = model.connect(Pin{}, model.ground().at({2, 0, 0}), beam.at(Vec2(2, 0)), "right");
+  model.apply(PointForce<>{.force = {7, 0, 0}}, beam.at(Vec2(0, 0)), "push");
+  State x = model.reference_state();
+  for (State const& now : simulate(model, x, GeneralizedAlpha{}, {.until = 0.02, .step = 0.01, .minimum_norm = true}))
+    for (auto const& pin : {left, right})
+      EXPECT_LT((reaction(model, now, pin).f - Vec3(-3.5, 1.5 * g, 0)).norm(), 1e-12) << now.t;
+}
+
+/// A door of mass m on two pins at z = ±h, its mass centre at d from them, that turns at ω.
+template <class I>
+void expect_door(I const& integrator, double unit, double tolerance) {
+  using Pin = Joint<Revolute, Constraint>;
+  double const m = 4.0, h = 0.8 * unit, d = 0.5 * unit, omega = 3.0;
+  Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -g * unit}};
+  Mat3 const inertia = (unit * unit * Vec3(0.3, 0.4, 0.5)).asDiagonal();
+  auto const door = model.add(Rigid<>(m, inertia, Placement::at({d, 0, 0})), "door");
+  auto const top = model.connect(Pin{}, model.ground().at({0, 0, h}), door.at(Vec3(-d, 0, h)), "top");
+  auto const bottom = model.connect(Pin{}, model.ground().at({0, 0, -h}), door.at(Vec3(-d, 0, -h)), "bottom");
+  State x = model.reference_state();
+  model.set_velocity(x, door, Vec3::Zero(), {0, 0, omega});
+  // The pins exert the moment −M = −m g d about the tangent: by forces ∓F along the radius, 2 h F, and moments N each, 2 N. The
+  // least 2 F² + 2 N²/ℓ² has F = N h/ℓ²; ℓ = h, the distance of both from their mean: F = M/4h, N = M/4.
+  double const moment = m * g * unit * d, weight = m * g * unit, scale = std::max(weight, m * omega * omega * d);
+  int states = 0;
+  for (State const& now : simulate(model, x, integrator, {.until = 0.5, .step = 0.01, .minimum_norm = true})) {
+    Vec3 const out(std::cos(omega * now.t), std::sin(omega * now.t), 0.0), along(-out[1], out[0], 0.0);
+    for (bool const upper : {true, false}) {
+      Wrench<> const w = reaction(model, now, upper ? top : bottom);
+      Vec3 const force = Vec3(0, 0, 0.5 * weight) + (-0.5 * m * omega * omega * d - (upper ? 1 : -1) * moment / (4.0 * h)) * out;
+      EXPECT_LT((w.f - force).norm(), tolerance * scale) << now.t;
+      EXPECT_LT((w.m + 0.25 * moment * along).norm(), tolerance * scale * unit) << now.t;
+    }
+    ++states;
+  }
+  EXPECT_GE(states, 51);
+}
+
+TEST(MinimumNorm, OfADoorOnTwoPinsIsSharedInEveryStateOfARun) {
+  expect_door(RungeKutta4<Projection>{}, 1.0, 1e-7);
+  expect_door(GeneralizedAlpha{}, 1.0, 1e-3);
+}
+// ℓ goes with the model, so millimetres share as metres do.
+TEST(MinimumNorm, OfADoorDoesNotDependOnTheUnits) { expect_door(RungeKutta4<Projection>{}, 1e3, 1e-7); }
+
+// Without redundant rows the multipliers stay as they are, bit for bit.
+TEST(MinimumNorm, LeavesUniqueMultipliersAlone) {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -g, 0}};
+  auto const rod = model.add(planar::Rigid(1.0, 0.1), "rod");
+  model.connect(Pin{}, model.ground().at({-0.5, 0, 0}), rod.at(Vec2(-0.5, 0)), "pin");
+  State x = model.reference_state(), y = x;
+  simulate(model, x, GeneralizedAlpha{}, {.until = 0.3, .step = 0.01}).run();
+  simulate(model, y, GeneralizedAlpha{}, {.until = 0.3, .step = 0.01, .minimum_norm = true}).run();
+  EXPECT_EQ(x.lambda, y.lambda);
+  EXPECT_EQ(x.lambda, minimum_norm_multipliers(model, x));
+}
+
+}  // namespace minimum_norm_test
+}  // namespace polybody

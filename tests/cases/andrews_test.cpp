@@ -1,0 +1,173 @@
+// CASES R3: Andrews' squeezing mechanism (IFToMM A03, IVP Test Set "andrews"), its seven bodies in the plane.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/integrators/adams_bashforth_moulton.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/hht_alpha.hpp>
+#include <polybody/integrators/radau.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+
+namespace polybody {
+namespace andrews_test {
+
+/// β, Θ, γ, Φ, δ, Ω, ε.
+using Angles = Vec<double, 7>;
+
+Angles angles(std::array<double, 7> const& q) { return Eigen::Map<Angles const>(q.data()); }
+
+/// Names of points and lengths as in the test set. The bodies are OF, FE, BDE, EG, AG, HE, AH; their angles, which the axes of
+/// the table belong to, are β, β + Θ, γ, Φ + δ, δ, Ω + ε, ε.
+struct Squeezer {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  using Body = planar::Rigid;
+  static constexpr double drive = 0.033;  ///< [N m] on OF
+  Model<Bodies<Body>, Joints<Pin>, Forces<PointMoment<>, SpringDamper>> model;
+  std::vector<BodyHandle<Body>> bodies;
+  std::vector<ElementHandle<Pin>> at_e;  ///< of FE to BDE, EG and HE: g₁ … g₆ of the test set
+  State x;
+
+  explicit Squeezer(Angles const& q) {
+    Vec2 const O(0, 0), A(-0.06934, -0.00227), B(-0.03635, 0.03273), C(0.014, 0.072);
+    // mass, inertia, angle, and in body axes: the mass centre, and the point that is known in the world
+    struct Part {
+      double mass, inertia, angle;
+      Vec2 centre, known, place;
+    };
+    auto const turned = [](double angle, double px, double py) {
+      return Vec2(std::cos(angle) * px - std::sin(angle) * py, std::sin(angle) * px + std::cos(angle) * py);
+    };
+    double const b = q[0], bt = q[0] + q[1], pd = q[3] + q[4], d = q[4], oe = q[5] + q[6], e = q[6];
+    Vec2 const F = turned(b, 0.007, 0), G = A + turned(d, 0.04, 0), H = A + turned(e, 0, -0.04);
+    Part const parts[] = {{0.04325, 2.194e-6, b, {0.00092, 0}, {0, 0}, O},
+                          {0.00365, 4.410e-7, bt, {-0.0115, 0}, {0, 0}, F},
+                          {0.02373, 5.255e-6, q[2], {0.01043, -0.01874}, {0, 0}, B},
+                          {0.00706, 5.667e-7, pd, {0, -0.02 + 0.01421}, {0, 0}, G},
+                          {0.07050, 1.169e-5, d, {0.02308, 0.00916}, {0, 0}, A},
+                          {0.00706, 5.667e-7, oe, {0.02 - 0.01421, 0}, {0, 0}, H},
+                          {0.05498, 1.912e-5, e, {-0.00449, -0.01228}, {0, 0}, A}};
+    for (Part const& p : parts) {
+      Vec2 const centre = p.place + turned(p.angle, p.centre[0], p.centre[1]);
+      bodies.push_back(model.add(Body(p.mass, p.inertia, Placement::planar(centre[0], centre[1], p.angle))));
+    }
+    auto const on = [&](std::size_t i, double px, double py) { return bodies[i].at(Vec2(Vec2(px, py) - parts[i].centre)); };
+    auto const ground = [&](Vec2 const& p) { return model.ground().at({p[0], p[1], 0}); };
+    auto const of_fe = on(1, -0.028, 0);
+    model.connect(Pin{}, ground(O), on(0, 0, 0), "O");
+    model.connect(Pin{}, on(0, 0.007, 0), on(1, 0, 0), "F");
+    model.connect(Pin{}, ground(B), on(2, 0, 0), "B");
+    model.connect(Pin{}, ground(A), on(4, 0, 0), "A of AG");
+    model.connect(Pin{}, ground(A), on(6, 0, 0), "A of AH");
+    model.connect(Pin{}, on(4, 0.04, 0), on(3, 0, 0), "G");
+    model.connect(Pin{}, on(6, 0, -0.04), on(5, 0, 0), "H");
+    at_e.push_back(model.connect(Pin{}, on(2, 0, -0.035), of_fe, "E of BDE"));
+    at_e.push_back(model.connect(Pin{}, on(3, 0, -0.02), of_fe, "E of EG"));
+    at_e.push_back(model.connect(Pin{}, on(5, 0.02, 0), of_fe, "E of HE"));
+    model.apply(PointMoment<>{.moment = {0, 0, drive}}, on(0, 0, 0), "drive");
+    model.apply(SpringDamper{.stiffness = 4530, .free_length = 0.07785}, on(2, 0.02, -0.018), ground(C), "spring");
+    x = model.reference_state();
+  }
+  Squeezer(Squeezer const&) = delete;
+
+  /// q, q˙ or q¨ of the test set from those of the bodies.
+  Angles read(VecX const& y) const {
+    double const b = y[2], bt = y[5], c = y[8], pd = y[11], d = y[14], oe = y[17], e = y[20];
+    return angles({b, bt - b, c, pd - d, d, oe - e, e});
+  }
+  /// λ₁ … λ₆.
+  Vec6 multipliers() const {
+    Vec6 l;
+    for (std::size_t i = 0; i < 3; ++i) l.segment<2>(2 * Index(i)) = x.lambda.segment<2>(model.entry(at_e[i]).row);
+    return l;
+  }
+  /// The drive's work comes off: T + V − M β is constant.
+  double invariant() const { return energy(model, x).total() - drive * x.q[2]; }
+};
+
+Angles const start = angles({-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550,
+                             -0.222668390165885885, 1.23054744454982119});
+
+// PSIDE at a tolerance of 1e-14, t = 0.03.
+Angles const end = angles({15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948, 0.5244099658805304,
+                           0.5347301163226948, 1.048080741042263});
+Angles const end_rate = angles({1139.920302151208, -1424.379294994111, 11.03291221937134, 19.29337464421385, 0.5735699284790808,
+                                -19.29337464421385, 0.3231791658026955});
+Angles const end_acceleration = angles({-24631.76316945196, 51850.37701610329, 324102.5686413781, 566749.3645176213,
+                                        16743.62929479361, -566749.3645176222, 9826.520791458422});
+
+TEST(Andrews, StartsAsPublished) {
+  Squeezer s(start);
+  simulate(s.model, s.x, RungeKutta4<Projection>{}, {.until = 0.0, .step = 1e-5}).run();
+  EXPECT_LT((s.read(s.x.q) - start).norm(), 1e-15);
+  Angles const a = s.read(s.x.a);
+  EXPECT_NEAR(a[0], 14222.4439199541138706, 1e-7);
+  EXPECT_NEAR(a[1], -10666.8329399655854029, 1e-7);
+  EXPECT_LT(a.tail<5>().norm(), 1e-7);
+  Vec6 l = s.multipliers();
+  EXPECT_NEAR(l[0], 98.5668703962410896, 1e-9);
+  EXPECT_NEAR(l[1], -6.12268834425566266, 1e-9);
+  EXPECT_LT(l.tail<4>().norm(), 1e-9);
+}
+
+/// At t = 0.01, 0.02 and 0.03.
+template <class I>
+void expect_published(I const& integrator, double step, double tolerance) {
+  Squeezer s(start);
+  double const before = s.invariant();
+  struct {
+    double t, beta, theta, gamma;
+  } const way[] = {{0.01, 2.1601131315315, -1.8833642311070, 0.15851675800},
+                   {0.02, 8.1849058896618, -7.8905053637306, 0.20953691338}};
+  for (auto const& w : way) {
+    simulate(s.model, s.x, integrator, {.until = w.t, .step = step}).run();
+    EXPECT_LT((s.read(s.x.q).head<3>() - Vec3(w.beta, w.theta, w.gamma)).norm(), tolerance) << w.t;
+  }
+  simulate(s.model, s.x, integrator, {.until = 0.03, .step = step}).run();
+  EXPECT_LT((s.read(s.x.q) - end).norm(), tolerance);
+  EXPECT_LT((s.read(s.x.v) - end_rate).norm(), 1e3 * tolerance);
+  // near a dead point, where errors of q come out many times larger
+  EXPECT_LT((s.read(s.x.a) - end_acceleration).norm(), 1e2 * tolerance * end_acceleration.norm());
+  EXPECT_NEAR(s.invariant(), before, tolerance);
+  Vec6 lambda;
+  lambda << 199.1753333731910, -29.75531228015052, 23.06654119098399, 31.45271365475927, 22.64249232082739, 11.61740700019673;
+  EXPECT_LT((s.multipliers() - lambda).norm(), 1e2 * tolerance * lambda.norm());
+}
+
+TEST(Andrews, HasThePublishedDigitsWithDormandPrince) {
+  expect_published(DormandPrince<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5, 1e-8);
+}
+TEST(Andrews, HasThePublishedDigitsWithAdams) {
+  expect_published(AdamsBashforthMoulton<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5, 1e-8);
+}
+TEST(Andrews, HasThePublishedDigitsWithRadau) { expect_published(Radau{.tolerance = 1e-12}, 7.5e-6, 1e-8); }
+TEST(Andrews, IsMetByAlphaMethodsWithinAThousandth) {
+  expect_published(GeneralizedAlpha{}, 1e-5, 1e-3);
+  expect_published(HhtAlpha{}, 1e-5, 1e-3);
+}
+
+// The variant of the multibody benchmark: β(0) = −0.062, F at four times.
+TEST(Andrews, OfTheBenchmarkCarriesFWhereItIsPublished) {
+  Squeezer s(angles({-0.062, 0.000214586853799, 0.455279812100370, 0.222668375903028, 0.487364981140633, -0.222668375903027,
+                     1.230547439156601}));
+  struct {
+    double t, x, y;
+  } const way[] = {{0.01, -0.003851290594, 0.005845302453}, {0.02, -0.002229411835, 0.006635489648},
+                   {0.03, -0.006970260782, -0.000644565461}, {0.04, 0.005051245443, -0.004846124171}};
+  for (auto const& w : way) {
+    simulate(s.model, s.x, DormandPrince<Projection>{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12},
+             {.until = w.t, .step = 1e-5}).run();
+    EXPECT_NEAR(0.007 * std::cos(s.x.q[2]), w.x, 1e-10) << w.t;
+    EXPECT_NEAR(0.007 * std::sin(s.x.q[2]), w.y, 1e-10) << w.t;
+  }
+}
+
+}  // namespace andrews_test
+}  // namespace polybody

@@ -1,0 +1,141 @@
+// CASES R1, R2, R4, R6, R7 and R8 under HHT-α, Radau IIA and Adams' methods; generalised-α and the Runge–Kutta methods stand in
+// rigid_pendulum_test.cpp, rigid_chain_test.cpp, rigid_top_test.cpp and redundant_joints_test.cpp.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/integrators/adams_bashforth_moulton.hpp>
+#include <polybody/integrators/hht_alpha.hpp>
+#include <polybody/integrators/radau.hpp>
+
+#include "support/linkages.hpp"
+
+namespace polybody {
+namespace rigid_integrators_test {
+
+constexpr double g = 9.81, half_pi = 0.5 * std::numbers::pi;
+using Plane = Chain<InPlane<Constraint>>;
+using Windows = FourBars<InPlane<Constraint>>;
+
+/// An integrator with the step and the error that each case allows it.
+template <class I>
+struct Way {
+  I integrator = {};
+  double step = 0.0;       ///< [s]
+  double pendulum = 0.0;   ///< R1 over 10 s [m]
+  double links = 0.0;      ///< R8 over 2 s [rad]
+  double windows = 0.0;    ///< R2 over 4 s [m]
+  double top = 0.0;        ///< R6 over 0.2 s [m], with a fifth of the step
+  double spin = 0.0;       ///< R7 over 2 s [rad/s]
+  double bricard = 0.0;    ///< R4 over 2 s [m]
+  double energy = 0.0;     ///< of R4 [J]
+};
+
+Way<HhtAlpha> hht() { return {{}, 2.5e-4, 2e-5, 2e-5, 1e-4, 1e-5, 1e-6, 1e-6, 1e-5}; }
+Way<Radau> radau() { return {{}, 5e-3, 1e-8, 1e-8, 1e-6, 1e-8, 1e-8, 1e-8, 1e-8}; }
+Way<AdamsBashforthMoulton<Projection>> adams() {
+  return {{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12}, 1e-3, 1e-8, 1e-8, 1e-6, 1e-8, 1e-8, 1e-8, 1e-8};
+}
+
+struct Place {
+  double t, x, y;
+};
+
+template <class W>
+void expect_pendulum(W const& way) {  // R1
+  Plane const chain(1, point_link(), g, -half_pi);
+  State x = chain.model.reference_state();
+  for (Place const& p : {Place{0.5, -0.3910487915505464, -0.9203699487851922}, Place{2, -0.7935661953433217, -0.6084839304437915},
+                         Place{10, -0.2750874625761169, -0.9614192050991251}}) {
+    simulate(chain.model, x, way.integrator, {.until = p.t, .step = way.step}).run();
+    EXPECT_LT((chain.tip(x) - Vec3(p.x, p.y, 0)).norm(), way.pendulum) << p.t;
+  }
+}
+
+template <class W>
+void expect_links(W const& way) {  // R8a, R8b
+  Plane const points(2, point_link()), bars(2, bar_link());
+  auto const expect = [&](Plane const& chain, double t, double first, double second) {
+    State x = chain.model.reference_state();
+    simulate(chain.model, x, way.integrator, {.until = t, .step = way.step}).run();
+    double const off = std::max(std::abs(chain.angle(x, 0) - first), std::abs(chain.angle(x, 1) - second));
+    EXPECT_LT(off, way.links) << t;
+  };
+  expect(points, 1, -0.625087699806, -1.034585085680);
+  expect(points, 2, -0.482971534252, -1.324048712302);
+  expect(bars, 1, -1.207716238191, -0.814391023091);
+  expect(bars, 2, -0.082758306821, 0.407362074912);
+}
+
+template <class W>
+void expect_windows(W const& way, int n, double until) {  // R2
+  Windows bars(n);
+  for (Corner const& c : corners) {
+    if (c.n != n || c.t > until) continue;
+    simulate(bars.model, bars.x, way.integrator, {.until = c.t, .step = way.step}).run();
+    EXPECT_LT((bars.corner() - Vec3(c.x, c.y, 0)).norm(), way.windows) << n << " windows at " << c.t;
+  }
+}
+
+template <class W>
+void expect_bricard(W const& way) {  // R4
+  Bricard<> b(0.1);
+  double const before = energy(b.model, b.x).total();
+  for (auto const& [t, p3] : {std::pair{0.5, Vec3(0.968283679, -1.224625159, 0.750146609)},
+                              std::pair{1.0, Vec3(0.510501461, -1.649167599, 0.140123115)},
+                              std::pair{2.0, Vec3(-0.969340345, -1.221246895, 0.754278011)}}) {
+    auto run = simulate(b.model, b.x, way.integrator, {.until = t, .step = way.step});
+    run.run();
+    EXPECT_EQ(run.report().redundant.size(), 1u) << t;
+    EXPECT_LT((b.p3() - p3).norm(), way.bricard) << t;
+    EXPECT_NEAR(energy(b.model, b.x).total(), before, way.energy) << t;
+  }
+}
+
+template <class W>
+void expect_tops(W const& way) {  // R6, R7
+  using Ball = Joint<Spherical, Constraint>;
+  Model<Bodies<Rigid<>>, Joints<Ball>> heavy{Gravity{0, 0, -9.81}}, free;
+  Mat3 const inertia = Vec3(0.234375, 0.46875, 0.234375).asDiagonal();
+  auto const top = heavy.add(Rigid<>(15.0, inertia, Placement::at({0, 1, 0})), "top");
+  heavy.connect(Ball{}, heavy.ground().at({0, 0, 0}), top.at(Vec3(0, -1, 0)), "tip");
+  State x = heavy.reference_state();
+  heavy.set_velocity(x, top, Vec3::Zero(), Vec3(0, 150, -4.61538));
+  simulate(heavy, x, way.integrator, {.until = 0.2, .step = 0.2 * way.step}).run();
+  EXPECT_LT((x.q.head<3>() - Vec3(0.6055505614, 0.5989576818, -0.5239830274)).norm(), way.top);
+
+  auto const body = free.add(Rigid<>(1.0, Vec3(1, 2, 3).asDiagonal().toDenseMatrix()), "body");
+  State y = free.reference_state();
+  free.set_velocity(y, body, Vec3::Zero(), Vec3(0.01, 5, 0.01));
+  simulate(free, y, way.integrator, {.until = 2.0, .step = way.step}).run();
+  EXPECT_LT((y.v.tail<3>() - Vec3(-1.1612500596, 4.8632908919, 0.6704977507)).norm(), way.spin);
+}
+
+TEST(EveryIntegrator, HhtSwingsThePendulum) { expect_pendulum(hht()); }
+TEST(EveryIntegrator, RadauSwingsThePendulum) { expect_pendulum(radau()); }
+TEST(EveryIntegrator, AdamsSwingsThePendulum) { expect_pendulum(adams()); }
+TEST(EveryIntegrator, HhtSwingsTwoLinks) { expect_links(hht()); }
+TEST(EveryIntegrator, RadauSwingsTwoLinks) { expect_links(radau()); }
+TEST(EveryIntegrator, AdamsSwingsTwoLinks) { expect_links(adams()); }
+// Next to the flat position rounding of Φ alone moves the links by more than Newton's usual tolerance, so that one is wider here.
+TEST(EveryIntegrator, HhtTurnsTheFourBars) {
+  Way<HhtAlpha> way = hht();
+  way.integrator.tolerance = 1e-5;
+  way.step = 1e-3;
+  for (int const n : {1, 2, 40}) expect_windows(way, n, 4);
+}
+TEST(EveryIntegrator, AdamsTurnsTheFourBars) {
+  expect_windows(adams(), 2, 10);
+  expect_windows(adams(), 40, 4);
+}
+
+TEST(EveryIntegrator, HhtFoldsBricard) { expect_bricard(hht()); }
+TEST(EveryIntegrator, RadauFoldsBricard) { expect_bricard(radau()); }
+TEST(EveryIntegrator, AdamsFoldsBricard) { expect_bricard(adams()); }
+TEST(EveryIntegrator, HhtSpinsTops) { expect_tops(hht()); }
+TEST(EveryIntegrator, RadauSpinsTops) { expect_tops(radau()); }
+TEST(EveryIntegrator, AdamsSpinsTops) { expect_tops(adams()); }
+
+}  // namespace rigid_integrators_test
+}  // namespace polybody
