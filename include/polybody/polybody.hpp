@@ -15,6 +15,7 @@
 #include <polybody/analysis/redundancy.hpp>
 #include <polybody/analysis/section.hpp>
 #include <polybody/analysis/simulate.hpp>
+#include <polybody/analysis/sliders.hpp>
 #include <polybody/analysis/surface.hpp>
 #include <polybody/analysis/visual.hpp>
 #include <polybody/bodies/ancf_beam.hpp>
@@ -27,6 +28,7 @@
 #include <polybody/bodies/rigid.hpp>
 #include <polybody/bodies/rigid_euler_parameters.hpp>
 #include <polybody/bodies/sections.hpp>
+#include <polybody/bodies/sliding.hpp>
 #include <polybody/forces/distributed_force.hpp>
 #include <polybody/forces/gravity.hpp>
 #include <polybody/forces/point_load.hpp>
@@ -49,6 +51,7 @@
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/gear.hpp>
 #include <polybody/joints/joint.hpp>
+#include <polybody/joints/knife_edge.hpp>
 #include <polybody/joints/orientation.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
@@ -68,6 +71,7 @@
 #include <polybody/joints/relative_coordinates.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/revolute_pin.hpp>
+#include <polybody/joints/rolling_disc.hpp>
 #include <polybody/joints/screw.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/universal.hpp>

@@ -49,7 +49,7 @@ struct SeenGap {
 
 /// A geometry of any type.
 struct AnyGeometry {
-  Index rows = 0, world_rows = 0;
+  Index rows = 0, world_rows = 0, velocity_rows = 0;
   bool planar = false;
   std::function<SeenGap(FramePair const&, double)> gap, gap_with_slopes;
   std::function<VecX(FramePair const&, double)> gamma;
@@ -95,6 +95,7 @@ AnyGeometry any_geometry() {
   };
   return {.rows = m,
           .world_rows = Case::world_rows,
+          .velocity_rows = velocity_rows<G>(),
           .planar = Case::planar,
           .gap = gap,
           .gap_with_slopes = by_duals,
@@ -109,7 +110,7 @@ struct JointLawsOf : testing::Test {
   static constexpr double tolerance = 1e-12;
   AnyGeometry const geometry;
   bool const planar = geometry.planar;
-  Index const m = geometry.rows;
+  Index const m = geometry.rows, held = m - geometry.velocity_rows;  ///< rows, and those of them that hold positions
   double const t = 1.3;
   Numbers number;
 

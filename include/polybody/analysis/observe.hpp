@@ -14,7 +14,7 @@ Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
     return {.r = marker.point.origin, .A = marker.point.axes};
   } else {
     auto const& e = std::get<detail::BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)];
-    std::vector<double> jacobian(std::size_t(6 * point_columns(e.body)));
+    std::vector<double> jacobian(std::size_t(6 * point_columns(e.body, marker.point)));
     Published<double> p;
     p.jacobian = jacobian.data();
     e.body.template publish<double>(marker.point, Mat3::Identity(),

@@ -60,6 +60,19 @@ class AncfBeam : public NodeChain<12> {
     return {e, x - double(e), y, z};
   }
 
+  /// r₀ = Σ s_v e_v on the axis, and its derivatives by arc length.
+  ShapeValues<ancf::vectors> axis_shape(double xi) const {
+    ShapeValues<4> const h = hermite_shape(xi, l_);
+    ShapeValues<ancf::vectors> out{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::size_t const v = i < 2 ? i : i + 2;  // r, r_x of each node
+      out.s[v] = h.s[i];
+      out.ds[v] = h.ds[i];
+      out.dds[v] = h.dds[i];
+    }
+    return out;
+  }
+
   void reference(std::span<double> q) const {
     for (Index i = 0; i <= n_; ++i) {
       Placement const& p = nodes_[std::size_t(i)];
@@ -215,8 +228,7 @@ class AncfBeam : public NodeChain<12> {
         k.block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
-  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without damping
-  /// (see
+  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without damping (see
   /// sections.hpp): `ElasticLine` as stiffness times strain, `Continuum` as sums of its stress over the section.
   Vec6 section_strains(Point const& p, std::span<double const> q) const;
   Vec6 section_forces(Point const& p, std::span<double const> q) const;

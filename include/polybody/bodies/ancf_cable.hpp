@@ -41,8 +41,7 @@ class AncfCable : public NodeChain<6> {
     return from(bar, n, [](double s) { return Placement::at({s, 0, 0}); });
   }
   /// The same laid along a curve, nodes at equal arc lengths. Its natural shape stays straight: it stands bent.
-  /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes off by a
-  /// tenth.
+  /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes off by a tenth.
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     if (n < 1) throw InvalidInput("AncfCable: at least one element is needed.");
     return AncfCable(bar, polybody::constants(bar), n, curve);
@@ -58,6 +57,9 @@ class AncfCable : public NodeChain<6> {
     Index const e = std::min(Index(x), n_ - 1);
     return {e, x - double(e)};
   }
+
+  /// r = Σ s_i e_i, e_i of entries 3i … 3i + 2 of an element, and its derivatives by arc length.
+  ShapeValues<4> axis_shape(double xi) const { return hermite_shape(xi, l_); }
 
   void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
@@ -263,8 +265,7 @@ class AncfCable : public NodeChain<6> {
     return out;
   }
 
-  /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are first
-  /// turned by π
+  /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are first turned by π
   /// about their third one, so that there is always one.
   template <StateScalar T>
   static Mat<T, 3, 3> smallest_turn(Vec<T, 3> const& slope, Mat3 from) {

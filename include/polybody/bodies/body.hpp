@@ -82,14 +82,17 @@ concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B:
   b.own_stiffness(x, Vec<double, B::own_rows>(), stiffness);  // ∂(Gᵀλ)/∂q
 };
 
-/// Columns that an element of a body, or a marker on it, touches.
+/// Columns that an element of a body, or a marker on it, touches. A body whose markers differ says `columns_of(point)`.
 template <class B>
 Index element_columns(B const& body) {
   return B::element_columns == Eigen::Dynamic ? body.speeds() : Index(B::element_columns);
 }
 template <class B>
-Index point_columns(B const& body) {
-  return B::point_columns == Eigen::Dynamic ? body.speeds() : Index(B::point_columns);
+Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) {
+  if constexpr (requires { body.columns_of(p); })
+    return body.columns_of(p);
+  else
+    return B::point_columns == Eigen::Dynamic ? body.speeds() : Index(B::point_columns);
 }
 
 /// What the loops over a body's elements need besides it: on the stack where sizes are known at compile time, else kept with
@@ -115,9 +118,13 @@ namespace detail {
 /// Kept with the data for each body of run-time size; nothing for the others.
 template <class B, class T>
 struct KeptScratch {
-  explicit KeptScratch(B const&) {}
+  MatX of_point;  ///< for a marker's load stiffness, where its size is known at run time only
+  explicit KeptScratch([[maybe_unused]] B const& body) {
+    if constexpr (B::point_columns == Eigen::Dynamic) of_point.resize(body.speeds(), body.speeds());
+  }
   ForceScratch<B, T> force_scratch(B const& body) const { return ForceScratch<B, T>(body); }
   TangentScratch<B> tangent_scratch(B const& body) const { return TangentScratch<B>(body); }
+  MatX& point_scratch() { return of_point; }
 };
 template <class B, class T>
   requires(B::element_columns == Eigen::Dynamic)
@@ -127,6 +134,7 @@ struct KeptScratch<B, T> {
   explicit KeptScratch(B const& body) : force(body), tangent(body) {}
   ForceScratch<B, T>& force_scratch(B const&) { return force; }
   TangentScratch<B>& tangent_scratch(B const&) { return tangent; }
+  MatX& point_scratch() { return tangent.k; }
 };
 }  // namespace detail
 

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Axial strain and bending of a cable in space as strain laws over the cubic Hermite element with coordinates (r, r′) at both
-/// ends.
+/// Axial strain and bending of a cable in space as strain laws over the cubic Hermite element with coordinates (r, r′) at both ends.
 
 #include <polybody/bodies/cable_strains.hpp>
 #include <polybody/bodies/strain_group.hpp>
@@ -115,8 +114,7 @@ struct CableBending {
     }
   }
 
-  /// κ̇ = turn of κ + change of its length, and a cable does not know how it turns about its own axis; so the length alone is
-  /// damped,
+  /// κ̇ = turn of κ + change of its length, and a cable does not know how it turns about its own axis; so the length alone is damped,
   ///   p = w κ̇ + G κ (κ·κ̇),  w = (1 + x)⁻⁴,  G = (1 − w)/κ²,  x = κ²/κ₀²,
   /// with all of κ̇ below κ₀ = 1e-3 1/m, where the direction of κ says nothing. G is a polynomial over (1 + x)⁴.
   template <KernelScalar T>

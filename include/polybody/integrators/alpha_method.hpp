@@ -5,7 +5,8 @@
 ///   (1 − α_m) a₁ + α_m a₀ = (1 − α_f) v̇₁ + α_f v̇₀,
 ///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
 /// One Newton unknown y = Δa₁ with Δq = βh² y, Δv = γh y, Δv̇ = (1 − α_m)/(1 − α_f) y; with the rows divided
-/// by βh² every entry of the tangent keeps the size of M and G for any h.
+/// by βh² every entry of the tangent keeps the size of M and G for any h. Velocity rows, G v + Φ_t = 0 at the end of the step,
+/// are divided by γh, and the tangent is the same.
 /// Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ in the four coefficients only.
 ///
 /// Stabilised, a step keeps the rows of the speeds too, Φ̇(q₁, v₁) = 0, by a second set of multipliers μ [Gear, Gupta &
@@ -132,11 +133,12 @@ struct AlphaMethod {
         system.residual(w.vd, w.lambda, w.r);
         system.violation(w.phi);
         w.rhs.head(nv) = -w.r;
+        if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
         if (two_sets) {
-          system.violation_rate(w.rate);
           w.rhs.tail(rows) = w.rate / -(h * g);
         } else {
           w.rhs.tail(rows) = w.phi / -s;
+          for (Index const i : system.velocity_rows()) w.rhs[nv + i] = w.rate[i] / -(h * g);
         }
         return w.rhs.allFinite();
       }
@@ -157,6 +159,7 @@ struct AlphaMethod {
           w.back = s * w.y.head(nv);
           system.rows_times(w.back, w.rate);
           w.phi += w.rate;
+          for (Index const i : system.velocity_rows()) w.phi[i] = 0.0;  // μ is of positions
           w.forward.least_change(system, w.phi, w.back);
         }
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));

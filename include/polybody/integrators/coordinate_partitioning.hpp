@@ -11,7 +11,8 @@ namespace polybody {
 ///   G_d Δq_d = −Φ  (Newton),   G_d v_d = −G_i v_i − Φ_t      [Wehage & Haug 1982; thesis §3.3.1].
 /// Independent are the columns of G that full pivoting leaves over. They are chosen anew when a dependent one would move more
 /// than `largest_ratio` times as fast as an independent one, that is when G_d⁻¹ G_i, and with it the condition of G_d, has grown
-/// too large; and when the rank of G changes. Dense: for up to some hundred speeds. Ratios compare metres with radians.
+/// too large; and when the rank of G changes. Velocity rows make speeds dependent, not coordinates: with them the two are split
+/// apart. Dense: for up to some hundred speeds. Ratios compare metres with radians.
 struct CoordinatePartitioning {
   static constexpr bool accepts_rows = true;
   double tolerance = 1e-12;  ///< of Φ, beside what rounding of q leaves
@@ -19,12 +20,17 @@ struct CoordinatePartitioning {
   double largest_ratio = 10.0;  ///< of the rate of a dependent coordinate to that of an independent one
 
   struct Scratch {
-    PartitionedRows rows;
+    PartitionedRows rows;       ///< of positions; where there are no velocity rows, of speeds too
+    PartitionedRows all_rows;   ///< of speeds where there are
     VecX phi, rate, column, delta, next;
     template <class M>
     explicit Scratch(System<M> const& s)
-        : rows(s.rows(), s.speeds()), phi(VecX::Zero(s.rows())), rate(phi), column(phi), delta(VecX::Zero(s.speeds())),
-          next(VecX::Zero(s.coordinates())) {}
+        : rows(s.rows(), s.speeds()), all_rows(s.velocity_rows().empty() ? 0 : s.rows(), s.speeds()), phi(VecX::Zero(s.rows())),
+          rate(phi), column(phi), delta(VecX::Zero(s.speeds())), next(VecX::Zero(s.coordinates())) {}
+    template <class M>
+    PartitionedRows& of_speeds(System<M> const& s) {
+      return s.velocity_rows().empty() ? rows : all_rows;
+    }
   };
 
   /// \throws InvalidInput unless the tolerance is positive and the largest ratio at least 1.
@@ -33,16 +39,19 @@ struct CoordinatePartitioning {
     if (!(largest_ratio >= 1.0))
       throw InvalidInput("CoordinatePartitioning: largest_ratio must be at least 1, but is " + number(largest_ratio) + ".");
   }
-  void start(Scratch& s) const { s.rows.forget(); }
+  void start(Scratch& s) const {
+    s.rows.forget();
+    s.all_rows.forget();
+  }
   RowFeedback feedback() const { return {}; }
 
   /// \throws NewtonStalled when the positions cannot be brought back.
   template <class M, class Solver>
-  void apply(System<M>& system, ForwardDynamics<M, Solver>&, Scratch& s, VecX& q, VecX& v, double t) const {
+  void apply(System<M>& system, ForwardDynamics<M, Solver>& forward, Scratch& s, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
     double const enough = tolerance + 16.0 * std::numeric_limits<double>::epsilon() * q.cwiseAbs().maxCoeff();
     for (int k = 0;; ++k) {
-      reduce(system, s, q, v, t);
+      reduce(system, s, s.rows, q, v, t);
       if (s.phi.cwiseAbs().maxCoeff() <= enough) break;
       if (k == max_iterations)
         throw NewtonStalled("CoordinatePartitioning: the positions cannot be brought back to the joints at t = " + number(t) +
@@ -51,47 +60,51 @@ struct CoordinatePartitioning {
       system.plus(q, s.delta, s.next);
       q.swap(s.next);
     }
+    if (!system.velocity_rows().empty()) return velocities(system, forward, s, q, v, t);
     s.rows.solution(1, s.delta);
     v += s.delta;
   }
   template <class M, class Solver>
   void velocities(System<M>& system, ForwardDynamics<M, Solver>&, Scratch& s, VecX const& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
-    reduce(system, s, q, v, t);
-    s.rows.solution(1, s.delta);
+    PartitionedRows& rows = s.of_speeds(system);
+    reduce(system, s, rows, q, v, t);
+    rows.solution(1, s.delta);
     v += s.delta;
   }
 
  private:
-  /// Right-hand sides −Φ and −Φ̇ at (q, v, t), and the rows reduced.
+  /// Right-hand sides −Φ and −Φ̇ at (q, v, t), and one of the two reduced.
   template <class M>
-  void reduce(System<M>& system, Scratch& s, VecX const& q, VecX const& v, double t) const {
+  void reduce(System<M>& system, Scratch& s, PartitionedRows& rows, VecX const& q, VecX const& v, double t) const {
     system.evaluate(q, v, t);
     system.violation(s.phi);
     system.violation_rate(s.rate);
-    write(system, s);
-    if (s.rows.reduce(largest_ratio)) return;
-    write(system, s);
-    s.rows.choose();
+    write(system, s, rows);
+    if (rows.reduce(largest_ratio)) return;
+    write(system, s, rows);
+    rows.choose();
   }
   template <class M>
-  static void write(System<M>& system, Scratch& s) {
-    s.rows.begin();
+  static void write(System<M>& system, Scratch& s, PartitionedRows& rows) {
+    rows.begin();
     if constexpr (System<M>::solves_as_it_is && !System<M>::solves_by_bodies) {
-      system.tangent({}, SecondOrder::omitted, s.phi, s.rows);
+      system.tangent({}, SecondOrder::omitted, s.phi, rows);
     } else {  // the tangent is in other unknowns
       s.delta.setZero();
       for (Index j = 0; j < system.speeds(); ++j) {
         s.delta[j] = 1.0;
         system.rows_times(s.delta, s.column);
         s.delta[j] = 0.0;
-        s.rows.add(system.speeds(), j, s.column);
+        rows.add(system.speeds(), j, s.column);
       }
     }
     for (Index i = 0; i < system.rows(); ++i) {
-      s.rows.right(0, i) = -s.phi[i];
-      s.rows.right(1, i) = -s.rate[i];
+      rows.right(0, i) = -s.phi[i];
+      rows.right(1, i) = -s.rate[i];
     }
+    if (&rows == &s.rows)
+      for (Index const i : system.velocity_rows()) rows.leave_out(i);
   }
 };
 

@@ -89,12 +89,13 @@ class ForwardDynamics {
     out = x_.head(system.speeds());
   }
 
-  /// P b: the part of b that the rows force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t).
+  /// P b: the part of b that the rows of positions force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t); velocity rows have it zero.
   void constrained_part(System<M>& system, VecX const& q, VecX const& v, double t, VecX const& b,
                         VecX& out) {
     system.evaluate(q, v, t);
     factor(system);
     system.rows_times(b, phi_);
+    for (Index const i : system.velocity_rows()) phi_[i] = 0.0;
     solve(system, 0.0, 1.0);
     out = x_.head(system.speeds());
   }

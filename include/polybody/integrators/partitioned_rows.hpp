@@ -30,6 +30,8 @@ class PartitionedRows {
     for (Index i = 0; i < b.rows; ++i)
       for (Index j = 0; j < b.cols; ++j) at(row - columns_ + i, col + j) += b(i, j);
   }
+  /// Leaves a row out of account.
+  void leave_out(Index row) { std::fill_n(&at(row, 0), width_, 0.0); }
   /// Entry `row` of the right-hand side.
   double& right(int side, Index row) { return at(row, columns_ + side); }
 

@@ -10,7 +10,8 @@ namespace polybody {
 
 /// The violation of m rows between frame a and frame b:
 ///   ġ = Ga Va + Gb Vb + Φ_t,   V = [ṙ; ω] in world axes.
-/// Rows are position-level (holonomic).
+/// Rows are of positions (holonomic), but for those that a geometry names as `velocity_rows`: of these only the rate has a
+/// meaning, and g is zero.
 template <int m, StateScalar T = double>
 struct Gap {
   static constexpr int rows = m;
@@ -61,6 +62,15 @@ concept JointGeometry = Measure<G> && requires(G const g, Frame<double> const a,
   { g.triad() } -> std::convertible_to<Mat3>;
   { g.template gamma<double>(a, b, t) } -> std::same_as<Vec<double, G::rows>>;
 };
+
+/// How many of a geometry's rows, the last ones, hold speeds and no positions (nonholonomic: rolling, a blade); most have none.
+template <class G>
+constexpr int velocity_rows() {
+  if constexpr (requires { G::velocity_rows; })
+    return G::velocity_rows;
+  else
+    return 0;
+}
 
 /// Which motions of b against a a geometry leaves free (its member `free`): slides along the joint's axes, then turns about them.
 using Freedoms = std::array<bool, 6>;

@@ -26,6 +26,9 @@ struct Joint {
   static constexpr int rows = Measured::rows;
   static_assert(AddsRows<P> || AnswersRows<P, rows>,
                 "This policy has numbers for another number of rows than the joint's geometry has.");
+  static_assert(AddsRows<P> || velocity_rows<G>() == 0,
+                "This geometry holds speeds, not positions (it rolls, or glides on a blade): there is no gap that a force could "
+                "answer. Use Constraint.");
   G geometry = {};
   P policy = {};
 

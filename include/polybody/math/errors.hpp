@@ -39,6 +39,12 @@ class NewtonStalled : public Error {
   using Error::Error;
 };
 
+/// A point that slides along a body has gone off its end.
+class OffTheEnd : public Error {
+ public:
+  using Error::Error;
+};
+
 /// The step control asks for a step below the smallest one allowed.
 class StepTooSmall : public Error {
  public:

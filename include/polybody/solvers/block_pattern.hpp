@@ -56,6 +56,7 @@ class BlockPattern {
     int segment;
     std::vector<std::pair<int, std::vector<int>>> ends;  // body and the segments touched there
     bool used = false;
+    bool meets_rows = false;  ///< a block couples it with the rows of a joint
   };
 
   void cut(Index size, std::vector<Block> const& blocks) {
@@ -98,7 +99,7 @@ class BlockPattern {
     for (std::size_t s = 0; s < segments_.size(); ++s) {
       if (segments_[s].joint) {
         joint_of[s] = int(joints_.size());
-        joints_.push_back({int(s), {}, false});
+        joints_.push_back({int(s), {}});
         continue;
       }
       int& n = number[std::size_t(find(int(s)))];
@@ -114,10 +115,14 @@ class BlockPattern {
       if (b.rows == 0 || b.cols == 0) continue;
       for_each_segment(b.row, b.rows, [&](int row) {
         if (!segments_[std::size_t(row)].joint) return;
-        auto& ends = joints_[std::size_t(joint_of[std::size_t(row)])].ends;
+        Joint& joint = joints_[std::size_t(joint_of[std::size_t(row)])];
+        auto& ends = joint.ends;
         for_each_segment(b.col, b.cols, [&](int col) {
           int const body = segments_[std::size_t(col)].body;
-          if (body < 0) return;
+          if (body < 0) {
+            joint.meets_rows = true;
+            return;
+          }
           auto end = std::find_if(ends.begin(), ends.end(), [&](auto const& e) { return e.first == body; });
           if (end == ends.end()) end = ends.insert(end, {body, {}});
           if (std::find(end->second.begin(), end->second.end(), col) == end->second.end()) end->second.push_back(col);
@@ -178,6 +183,12 @@ class BlockPattern {
   /// A joint that is not of the tree waits for all of its loop.
   void close(Joint& j) {
     Segment& s = segments_[std::size_t(j.segment)];
+    if (j.ends.empty() && j.meets_rows) {  // an unknown that rows alone hold, such as a slider's place, waits for all
+      for (Joint const& other : joints_)
+        if (!other.ends.empty()) s.after.push_back(other.segment);
+      for (Body const& body : bodies_) s.after.insert(s.after.end(), body.segments.begin(), body.segments.end());
+      return;
+    }
     std::vector<int> loop;
     if (j.ends.size() == 2) {
       int a = j.ends[0].first, b = j.ends[1].first;

@@ -41,7 +41,7 @@ struct Data {
         auto const& e = pool.entries[std::size_t(m.body)];
         Published<T>& p = markers[std::size_t(m.published)];
         p.first = e.v0 + e.body.first_column(m.point);
-        p.columns = point_columns(e.body);
+        p.columns = point_columns(e.body, m.point);
         p.jacobian = jacobians.data() + offset;
         offset += 6 * p.columns;
         widest = std::max(widest, p.columns);

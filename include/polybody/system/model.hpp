@@ -105,6 +105,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
       if (axes_b.col(0).cross(triad.col(2)).norm() > 1e-6)
         throw InvalidInput("\"" + name + "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
                            "reference configuration.");
+    require_told(a, Asks::needs, name);
+    require_told(b, needs_of_second<Asks>(), name);
     Index const pa = publish_at(a, axes_a.transpose() * triad);
     Index const pb = publish_at(b, axes_b.transpose() * triad);
     detail::JointEntry<J> entry{joint, pa, pb, -1, name};
@@ -120,6 +122,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     if constexpr (AddsRows<P>) {
       entry.row = rows_;
       rows_ += entry.rows;
+      for (Index i = polybody::velocity_rows<G>(); i > 0; --i) velocity_rows_.push_back(rows_ - i);
     }
     pool.push_back(std::move(entry));
     return {serial_, Index(pool.size()) - 1, std::move(name)};
@@ -149,6 +152,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     std::size_t k = 0;
     std::apply([&](auto const&... m) {
       (require_own(m.model, name), ...);
+      (require_told(m, F::needs, name), ...);
       ((entry.markers[k++] = publish_at(m, Mat3::Identity())), ...);
     }, markers);
     pool.push_back(std::move(entry));
@@ -177,6 +181,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   Index coordinates() const { return coordinates_; }
   Index speeds() const { return speeds_; }
   Index rows() const { return rows_; }
+  /// Those of the rows that hold speeds and no positions, ascending.
+  std::vector<Index> const& velocity_rows() const { return velocity_rows_; }
   Index markers() const { return markers_; }
   Index jacobian_size() const { return jacobian_size_; }
   Index body_count() const { return count_bodies_; }
@@ -238,6 +244,15 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return ++last;
   }
 
+  /// \throws InvalidInput where a point of the body tells less than its others do.
+  template <class B>
+  static void require_told(Marker<B> const& m, Observes needs, std::string const& what) {
+    if constexpr (requires { B::observes_at(m.point); })
+      if (B::observes_at(m.point) < needs)
+        throw InvalidInput("\"" + what + "\" needs axes, but a point that slides along a body has none. Use a joint or force that "
+                           "needs a point only, such as Spherical or planar::Revolute.");
+  }
+
   template <class B>
   Mat3 reference_axes(Marker<B> const& m) const {
     if constexpr (std::is_same_v<B, Ground>) {
@@ -261,7 +276,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
       ground_.push_back({{m.point.origin, m.point.axes * axes}, markers_});
     } else {
       std::get<detail::BodyPool<B>>(bodies_).markers.push_back({m.body, m.point, axes, markers_});
-      jacobian_size_ += 6 * point_columns(std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)].body);
+      jacobian_size_ += 6 * point_columns(std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)].body, m.point);
     }
     return markers_++;
   }
@@ -286,6 +301,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   ForcePools forces_;
   std::vector<detail::GroundMarker> ground_;
   std::vector<LinearRows> linear_rows_;
+  std::vector<Index> velocity_rows_;
   Index coordinates_ = 0, speeds_ = 0, rows_ = 0, markers_ = 0, jacobian_size_ = 0, count_bodies_ = 0;
 };
 

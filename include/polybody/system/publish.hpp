@@ -41,16 +41,16 @@ template <class M, StateScalar T>
 void enforce(M const& model, double t, Data<M, T>& data) {
   auto const over = [&](auto const& pool, auto& gaps) {
     using J = std::decay_t<decltype(pool.front().joint)>;
-    if constexpr (LinearInCoordinates<typename J::PolicyType>) return;
-    else share(data.workers, Index(pool.size()), data.least_markers, [&](Index begin, Index end) {
-      for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
-        auto const& e = pool[i];
-        using Gap = std::decay_t<decltype(gaps[i])>;  // made where it stands: assigned, it would be copied
-        static_assert(std::is_trivially_destructible_v<Gap>);
-        ::new (static_cast<void*>(&gaps[i])) Gap(e.joint.measure().template gap<T>(
-            data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame, t));
-      }
-    });
+    if constexpr (!LinearInCoordinates<typename J::PolicyType>)
+      share(data.workers, Index(pool.size()), data.least_markers, [&](Index begin, Index end) {
+        for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+          auto const& e = pool[i];
+          using Gap = std::decay_t<decltype(gaps[i])>;  // made where it stands: assigned, it would be copied
+          static_assert(std::is_trivially_destructible_v<Gap>);
+          ::new (static_cast<void*>(&gaps[i])) Gap(e.joint.measure().template gap<T>(
+              data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame, t));
+        }
+      });
   };
   detail::for_each_pool_beside(model.joint_pools(), data.gaps, over);
 }

@@ -54,6 +54,7 @@ class System<Reduced<M>> {
   Index rows() const { return reduction_.rows(); }
   Index size() const { return speeds() + rows(); }
   double time() const { return whole_.time(); }
+  std::vector<Index> const& velocity_rows() const { return reduction_.velocity_rows(); }
   void use_threads(int threads) { whole_.use_threads(threads); }
 
   void evaluate(VecX const& q, VecX const& v, double t) {

@@ -42,6 +42,8 @@ class Reduction {
   std::vector<NarrowPlace> const& places() const { return places_; }
   /// Rows that stay, by their number in the model.
   std::vector<Index> const& rows_that_stay() const { return rows_; }
+  /// Those of them that are of velocity level, by their narrow number.
+  std::vector<Index> const& velocity_rows() const { return velocity_rows_; }
   /// The speed of the whole model behind a narrow one: of a joint coordinate, the first of the body that it carries.
   Index whole_speed(Index i) const { return whole_speed_[std::size_t(i)]; }
   /// Place in the tree of the body that the joint with this first row carries.
@@ -238,6 +240,8 @@ class Reduction {
     });
     for (Index i = 0; i < model.rows(); ++i)
       if (!gone[std::size_t(i)]) rows_.push_back(i);
+    for (Index const i : model.velocity_rows())
+      velocity_rows_.push_back(Index(std::lower_bound(rows_.begin(), rows_.end(), i) - rows_.begin()));
   }
 
   LinearElimination linear_;
@@ -246,7 +250,7 @@ class Reduction {
   Index coordinates_ = 0, speeds_ = 0;
   std::vector<NarrowPlace> places_;
   std::vector<std::pair<Index, Index>> same_q_, same_v_;  // narrow, whole
-  std::vector<Index> whole_speed_, rows_, carried_by_;
+  std::vector<Index> whole_speed_, rows_, velocity_rows_, carried_by_;
 };
 
 }  // namespace polybody

@@ -41,6 +41,8 @@ class System {
   Index coordinates() const { return model_->coordinates(); }
   Index speeds() const { return model_->speeds(); }
   Index rows() const { return model_->rows(); }
+  /// Rows without a position: Φ is zero there, Φ̇ and γ are not.
+  std::vector<Index> const& velocity_rows() const { return model_->velocity_rows(); }
   Index size() const { return speeds() + rows(); }
   double time() const { return t_; }
   Data<M> const& data() const { return data_; }
@@ -67,6 +69,7 @@ class System {
   void residual(VecX const& a, VecX const& lambda, VecX& r) {
     polybody::residual(*model_, q_, v_, a, lambda, t_, load_factor, data_, r);
   }
+  /// Φ (rows); zero for velocity rows.
   void violation(VecX& phi) const { polybody::violation(*model_, q_, data_, phi); }
   void violation_rate(VecX& rate) const { polybody::violation_rate(*model_, q_, v_, data_, rate); }
   void acceleration_bias(VecX& gamma) const { polybody::acceleration_bias(*model_, q_, v_, t_, data_, gamma); }

@@ -93,18 +93,21 @@ void add_load_stiffness(M const& model, VecX const& q, double ck, Data<M, double
     for (auto const& p : pool.markers) {
       auto const& e = pool.entries[std::size_t(p.body)];
       using B = std::decay_t<decltype(e.body)>;
-      auto const add = [&](auto& k) {
-        e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()),
-                              data.loads[std::size_t(p.published)], k);
-        k *= ck;
-        Index const first = data.markers[std::size_t(p.published)].first;
-        sink.add(first, first, k);
+      Published<double> const& at = data.markers[std::size_t(p.published)];
+      auto const stiffness = [&](auto& k) {
+        e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()), data.loads[std::size_t(p.published)], k);
       };
       if constexpr (B::point_columns == Eigen::Dynamic) {
-        add(kept[std::size_t(p.body)].tangent.k);
+        MatX& k = kept[std::size_t(p.body)].point_scratch();
+        stiffness(k);
+        auto of_marker = k.topLeftCorner(at.columns, at.columns);
+        of_marker *= ck;
+        sink.add(at.first, at.first, of_marker);
       } else {
         Mat<double, B::point_columns, B::point_columns> k;
-        add(k);
+        stiffness(k);
+        k *= ck;
+        sink.add(at.first, at.first, k);
       }
     }
   });

@@ -36,6 +36,7 @@ struct HermiteCable {
   }
   static Mat<double, 2, 8> position(double xi, double l) { return spread(hermite_shape(xi, l).s); }
   static Mat<double, 2, 8> gradient(double xi, double l) { return spread(hermite_shape(xi, l).ds); }
+  static ShapeValues<4> axis_shape(double xi, double l) { return hermite_shape(xi, l); }
   /// A cable has no rotary inertia.
   static Vec<double, 8> rotary(double, double) { return Vec<double, 8>::Zero(); }
 

@@ -66,6 +66,14 @@ class Beam : public NodeChain<Theory::node_columns> {
     return {e, x - double(e), y};
   }
 
+  /// r = Σ s_i e_i, e_i of entries 2i and 2i + 1 of an element, and its derivatives by arc length; for theories whose axis is
+  /// smooth.
+  auto axis_shape(double xi) const
+    requires requires { Theory::axis_shape(xi, 1.0); }
+  {
+    return Theory::axis_shape(xi, l_);
+  }
+
   void reference(std::span<double> q) const {
     for (Index i = 0; i <= elements(); ++i)
       part<node_columns>(q, i * node_columns) =

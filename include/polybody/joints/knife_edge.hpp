@@ -1,0 +1,38 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// A blade or skate on b that glides on a and does not move across, in the plane and in space, 1 velocity row
+///   ġ = b₃·u,  u = ṙ_b − ṙ_a − ω_a × d,  d = r_b − r_a      [Neimark & Fufaev 1972, ch. I],
+/// u the velocity of b's point seen from a. No place and no turn is out of reach, so there is no g.
+struct KnifeEdge {
+  static constexpr char const* name = "KnifeEdge";
+  static constexpr int rows = 1;
+  static constexpr int velocity_rows = 1;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr World world = World::both;
+
+  Vec3 across = Vec3::UnitY();  ///< (3) unit vector across the blade, world axes at the reference configuration; moves with b
+
+  Mat3 triad() const { return polybody::rows::triad_about(across, "KnifeEdge: the direction across"); }
+
+  template <StateScalar T>
+  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Gap<1, T> gap;
+    Vec<T, 3> const n = b.A.col(2), d = b.r - a.r;
+    gap.Ga << -n.transpose(), n.cross(d).transpose();
+    gap.Gb.template leftCols<3>() = n.transpose();
+    return gap;
+  }
+  /// γ = (ω_b × b₃)·u − b₃·(ω_a × (ṙ_b − ṙ_a)).
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Vec<T, 3> const n = b.A.col(2), d = b.r - a.r, rate = b.v - a.v, u = rate - a.w.cross(d);
+    return Vec<T, 1>(b.w.cross(n).dot(u) - n.dot(a.w.cross(rate)));
+  }
+};
+
+static_assert(JointGeometry<KnifeEdge>);
+
+}  // namespace polybody

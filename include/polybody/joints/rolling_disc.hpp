@@ -1,0 +1,87 @@
+#pragma once
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// A thin disc b that rolls on a plane of a without slip, 3 rows, the last two of velocity level
+///   g₁ = n·d − R √(1 − (n·b₃)²),   ġ = [n, t₁, t₂]ᵀ u,   u = ṙ_b + ω_b × ρ − ṙ_a − ω_a × p      [Neimark & Fufaev 1972].
+/// d = r_b − r_a; n the plane's normal and t₁, t₂ two directions in the plane, all fixed in a; b₃ the disc's axis. The rim comes
+/// nearest to the plane at the contact point, from the disc's centre ρ = −R e, e = m/|m| with m = n − (n·b₃) b₃, and from a's
+/// point p = d + ρ. u is the velocity of the disc's material there seen from a; as ρ is where n·ρ is least, n·u is indeed ġ₁.
+/// λ are the forces along n, t₁, t₂, the first negative while the plane pushes. A disc that lies flat has no such point, and
+/// steps near it fail as not finite. Nothing keeps the disc from leaving the plane or slipping when the forces ask for it.
+struct RollingDisc {
+  static constexpr char const* name = "RollingDisc";
+  static constexpr int rows = 3;
+  static constexpr int velocity_rows = 2;
+  static constexpr Observes needs = Observes::frame;
+  static constexpr World world = World::space;
+
+  Required<double> radius;       ///< R [m]
+  Vec3 axis = Vec3::UnitY();     ///< (3) unit vector of the disc's axis, world axes at the reference configuration
+  Vec3 normal = Vec3::UnitZ();   ///< (3) unit vector from the plane towards the disc; a's point lies in the plane
+
+  /// First axis n × axis, along the plane, so that n = a₂ |n × axis| + a₃ n·axis.
+  /// \throws InvalidInput unless both are unit vectors that are not parallel.
+  Mat3 triad() const {
+    require_unit(axis, "RollingDisc: the axis");
+    require_unit(normal, "RollingDisc: the normal");
+    Vec3 const first = normal.cross(axis);
+    if (first.norm() < 1e-6)
+      throw InvalidInput("RollingDisc: the disc must not lie flat on the plane at the reference configuration.");
+    return polybody::rows::triad_of(first.normalized(), axis, "RollingDisc");
+  }
+  void check(std::string const& what) const { require_positive(radius, what + ": the radius"); }
+
+  template <StateScalar T>
+  Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+    Contact<T> const c(*this, a, b);
+    Gap<3, T> gap;
+    gap.g[0] = c.n.dot(c.p);
+    for (int i = 0; i < 3; ++i) {
+      Vec<T, 3> const direction = c.direction(i);
+      gap.Ga.row(i) << -direction.transpose(), direction.cross(c.p).transpose();
+      gap.Gb.row(i) << direction.transpose(), c.rho.cross(direction).transpose();
+    }
+    return gap;
+  }
+  /// For a direction s fixed in a: γ = (ω_a × s)·u + s·(ω_b × ρ̇ − ω_a × ṗ), ρ̇ = −R (ṁ − e (e·ṁ))/|m|, ṗ = ḋ + ρ̇.
+  template <StateScalar T>
+  Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    Contact<T> const c(*this, a, b);
+    Vec<T, 3> const axis_b = b.A.col(2), n_rate = a.w.cross(c.n), axis_rate = b.w.cross(axis_b);
+    T const tilt = c.n.dot(axis_b), tilt_rate = n_rate.dot(axis_b) + c.n.dot(axis_rate);
+    Vec<T, 3> const m_rate = n_rate - axis_b * tilt_rate - axis_rate * tilt;
+    Vec<T, 3> const rho_rate = (m_rate - c.e * c.e.dot(m_rate)) * (-radius / c.steep), d_rate = b.v - a.v;
+    Vec<T, 3> const u = d_rate + b.w.cross(c.rho) - a.w.cross(c.p);
+    Vec<T, 3> const turning = b.w.cross(rho_rate) - a.w.cross(d_rate + rho_rate);
+    Vec<T, 3> gamma;
+    for (int i = 0; i < 3; ++i) gamma[i] = a.w.cross(c.direction(i)).dot(u) + c.direction(i).dot(turning);
+    return gamma;
+  }
+
+ private:
+  template <StateScalar T>
+  struct Contact {
+    Vec<T, 3> n, t1, t2;   ///< normal and directions in the plane
+    Vec<T, 3> e, rho, p;   ///< up the disc; the contact point from the disc's centre and from a's point
+    T steep;               ///< |m|, the sine of the angle between the disc's axis and the normal
+    Contact(RollingDisc const& disc, Frame<T> const& a, Frame<T> const& b) {
+      using std::sqrt;
+      double const along = disc.normal.dot(disc.axis), across = disc.normal.cross(disc.axis).norm();
+      n = a.A.col(1) * T(across) + a.A.col(2) * T(along);
+      t1 = a.A.col(0);
+      t2 = n.cross(t1);
+      Vec<T, 3> const m = n - b.A.col(2) * n.dot(b.A.col(2));
+      steep = sqrt(m.squaredNorm());
+      e = m / steep;
+      rho = e * T(-disc.radius);
+      p = b.r - a.r + rho;
+    }
+    Vec<T, 3> const& direction(int i) const { return i == 0 ? n : i == 1 ? t1 : t2; }
+  };
+};
+
+static_assert(JointGeometry<RollingDisc>);
+
+}  // namespace polybody

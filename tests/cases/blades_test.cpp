@@ -1,0 +1,67 @@
+// Blades in the plane: motions in closed form under each way to keep rows of velocity level.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/joints/knife_edge.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+
+#include "support/velocity_row_runs.hpp"
+
+using namespace polybody;
+
+namespace blades_test {
+
+constexpr double g = 9.81;
+using Blade = Joint<KnifeEdge, Constraint>;
+using InPlane = Model<Bodies<planar::Rigid>, Joints<Blade>>;
+
+// A blade under the centre of mass on an incline, pull p along x, starts at rest along x while it turns at ω. The turn is free,
+// θ = ωt; along the blade u̇ = p cos θ, so u = (p/ω) sin ωt and
+//   x = p/(2ω²) sin² ωt,  y = p/(2ω) (t − sin(2ωt)/(2ω)):
+// a cycloid across the incline, not down [Neimark & Fufaev 1972, ch. III]. Across it needs m (u ω + p sin θ) = 2 m p sin θ.
+TEST(KnifeEdge, GoesAlongACycloidAcrossAnIncline) {
+  double const m = 3.0, omega = 2.0, p = g * std::sin(0.4), t = 2.3;
+  InPlane model{Gravity{p, 0, 0}};
+  auto const sleigh = model.add(planar::Rigid(m, 0.7), "sleigh");
+  auto const blade = model.connect(Blade{}, model.ground().at({0, 0, 0}), sleigh.at({0, 0}), "blade");
+  State start = model.reference_state();
+  model.set_velocity(start, sleigh, Vec3::Zero(), Vec3(0, 0, omega));
+  double const s = std::sin(omega * t), c = std::cos(omega * t);
+  Vec3 const place(p / (2.0 * omega * omega) * s * s, p / (2.0 * omega) * (t - s * c / omega), omega * t);
+  Vec3 const speed(p / omega * s * c, p / omega * s * s, omega);
+  with_each_integrator([&](auto const& integrator, double h, double precise) {
+    State const x = rolled(model, start, integrator, t, h);
+    EXPECT_LT((x.q - place).norm(), 2e-6 * precise) << integrator.name;
+    EXPECT_LT((x.v - speed).norm(), 2e-6 * precise) << integrator.name;
+    EXPECT_LT((reaction(model, x, blade).f - 2.0 * m * p * s * Vec3(-s, c, 0)).norm(), 1e-4 * precise) << integrator.name;
+  });
+}
+
+// Chaplygin's sleigh: the centre of mass is a ahead of the blade. With J = I + m a², u̇ = a ω² and J ω̇ = −m a u ω; as
+// m u² + J ω² = m U² stays,
+//   u = U tanh(k t + c),  ω = U √(m/J) / cosh(k t + c),  k = a m U/J:
+// it comes to go straight, though no energy is lost [Neimark & Fufaev 1972, ch. III; Bloch 2003, §1.7].
+TEST(KnifeEdge, LetsChaplyginsSleighGoStraight) {
+  double const m = 2.0, inertia = 0.5, a = 0.6, J = inertia + m * a * a, U = 1.5, k = a * m * U / J, c = -2.0, t = 3.0;
+  auto const along = [&](double time) { return U * std::tanh(k * time + c); };
+  auto const turn = [&](double time) { return U * std::sqrt(m / J) / std::cosh(k * time + c); };
+  InPlane model{};
+  auto const sleigh = model.add(planar::Rigid(m, inertia, Placement::planar(a, 0)), "sleigh");
+  model.connect(Blade{}, model.ground().at({0, 0, 0}), sleigh.at({-a, 0}), "blade");
+  State start = model.reference_state();
+  model.set_velocity(start, sleigh, Vec3(along(0), 0, 0), Vec3(0, 0, turn(0)));
+  // θ = √(J/m)/a (atan sinh(kt + c) − atan sinh c)
+  double const angle = std::sqrt(J / m) / a * (std::atan(std::sinh(k * t + c)) - std::atan(std::sinh(c)));
+  with_each_integrator([&](auto const& integrator, double h, double precise) {
+    State const x = rolled(model, start, integrator, t, h);
+    Vec2 const blade = x.v.head<2>() - a * turn(t) * Vec2(-std::sin(angle), std::cos(angle));
+    EXPECT_NEAR(x.q[2], angle, 2e-6 * precise) << integrator.name;
+    EXPECT_NEAR(x.v[2], turn(t), 2e-6 * precise) << integrator.name;
+    EXPECT_LT((blade - along(t) * Vec2(std::cos(angle), std::sin(angle))).norm(), 5e-6 * precise) << integrator.name;
+    EXPECT_NEAR(energy(model, x).total(), 0.5 * m * U * U, 1e-6 * precise) << integrator.name;
+  });
+}
+
+}  // namespace blades_test

@@ -1,0 +1,100 @@
+// Rolling discs: motions in closed form under each way to keep rows of velocity level.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/rolling_disc.hpp>
+
+#include "support/velocity_row_runs.hpp"
+
+using namespace polybody;
+
+namespace rolling_test {
+
+constexpr double g = 9.81;
+using Wheel = Joint<RollingDisc, Constraint>;
+using InSpace = Model<Bodies<Rigid<>>, Joints<Wheel>>;
+
+/// A uniform disc about z of its own axes.
+Rigid<> disc(double m, double radius, Placement const& place) {
+  double const j = 0.25 * m * radius * radius;
+  return Rigid<>(m, Vec3(j, j, 2.0 * j).asDiagonal().toDenseMatrix(), place);
+}
+
+// CASES C4: from rest straight down an incline at (2/3) g sin α, held back by a third of the pull.
+TEST(RollingDisc, RollsDownAnInclineAtTwoThirdsOfThePull) {
+  double const m = 4.0, radius = 0.5, alpha = 0.3, t = 1.5, s = std::sin(alpha), c = std::cos(alpha);
+  InSpace model{Gravity{g * s, 0, -g * c}};
+  Placement const place = Placement::at({0, 0, radius}, {-0.5 * std::numbers::pi, 0, 0});  // its z along world y
+  auto const wheel = model.add(disc(m, radius, place), "wheel");
+  auto const contact = model.connect(Wheel{{.radius = radius}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
+  double const a = 2.0 / 3.0 * g * s;
+  with_each_integrator([&](auto const& integrator, double h, double precise) {
+    State const x = rolled(model, model.reference_state(), integrator, t, h);
+    Frame<double> const f = frame(model, x, wheel.at(Vec3::Zero()));
+    EXPECT_LT((f.r - Vec3(0.5 * a * t * t, 0, radius)).norm(), 1e-8) << integrator.name;
+    EXPECT_LT((f.w - Vec3(0, a * t / radius, 0)).norm(), 1e-8) << integrator.name;
+    EXPECT_LT((reaction(model, x, contact).f - m * g * Vec3(-s / 3.0, 0, c)).norm(), 1e-3 * precise) << integrator.name;
+  });
+}
+
+/// Steady rolling in a circle: the centre at distance r from a vertical axis, the disc leaning in by β, all turning at Ω. With e_r
+/// outwards and e_t onwards, the disc's axis b = cos β e_r + sin β e_z, ρ = R (sin β e_r − cos β e_z) and ω = Ω e_z + σ b,
+/// rolling Ω r e_t + ω × ρ = 0 asks for σ = −Ω (r/R + sin β). The ground gives F = −m Ω² r e_r + m g e_z, whose moment
+/// ρ × F = m R (Ω² r cos β − g sin β) e_t is Ω e_z × H = Ω² cos β (−C r/R − A sin β) e_t with C = ½ m R², A = ¼ m R²:
+///   Ω² = g tan β/(3/2 r + ¼ R sin β)       [Neimark & Fufaev 1972, ch. II, for a uniform disc].
+struct Circle {
+  double m = 2.0, radius = 0.4, r = 1.2, lean = 0.35;
+  double omega = std::sqrt(g * std::tan(lean) / (1.5 * r + 0.25 * radius * std::sin(lean)));
+  Vec3 axis{std::cos(lean), 0, std::sin(lean)}, up{-std::sin(lean), 0, std::cos(lean)};
+  InSpace model{Gravity{0, 0, -g}};
+  BodyHandle<Rigid<>> wheel = model.add(disc(m, radius, {Vec3(r, 0, radius * std::cos(lean)), axes()}), "wheel");
+  ElementHandle<Wheel> contact =
+      model.connect(Wheel{{.radius = radius, .axis = axis}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
+  State start = model.reference_state();
+
+  /// \param extra angular velocity about the contact point beside that of the steady motion
+  explicit Circle(Vec3 const& extra = Vec3::Zero()) {
+    Vec3 const w = omega * Vec3::UnitZ() - omega * (r / radius + std::sin(lean)) * axis + extra;
+    Vec3 const contact_point = Vec3(r + radius * std::sin(lean), 0, 0);
+    model.set_velocity(start, wheel, -w.cross(contact_point), w);
+  }
+  Mat3 axes() const {
+    Mat3 a;
+    a << up, axis.cross(up), axis;
+    return a;
+  }
+};
+
+TEST(RollingDisc, RollsSteadilyInACircle) {
+  Circle const circle;
+  double const t = 1.1 * 2.0 * std::numbers::pi / circle.omega;
+  Mat3 const turn = exp_so3<double>(Vec3(0, 0, circle.omega * t));
+  with_each_integrator([&](auto const& integrator, double h, double precise) {
+    State const x = rolled(circle.model, circle.start, integrator, t, h);
+    Frame<double> const f = frame(circle.model, x, circle.wheel.at(Vec3::Zero()));
+    Vec3 const force = circle.m * Vec3(-circle.omega * circle.omega * circle.r, 0, g);
+    EXPECT_LT((f.r - turn * Vec3(circle.r, 0, circle.radius * std::cos(circle.lean))).norm(), 3e-5 * precise) << integrator.name;
+    EXPECT_LT((f.A.col(2) - turn * circle.axis).norm(), 3e-5 * precise) << integrator.name;
+    EXPECT_LT((reaction(circle.model, x, circle.contact).f - turn * force).norm(), 1e-3 * precise) << integrator.name;
+  });
+}
+
+// Off the steady motion the disc wobbles; rolling takes no energy.
+TEST(RollingDisc, KeepsItsEnergyWhileItWobbles) {
+  Circle const circle(Vec3(0.5, 0.4, 0.3));
+  double const before = energy(circle.model, circle.start).total();
+  double lowest = 1.0, highest = 0.0;
+  State x = circle.start;
+  for (State const& now : simulate(circle.model, x, RungeKutta4<CoordinatePartitioning>{}, {.until = 20.0, .step = 2e-3})) {
+    double const steep = frame(circle.model, now, circle.wheel.at(Vec3::Zero())).A(2, 2);
+    lowest = std::min(lowest, steep);
+    highest = std::max(highest, steep);
+  }
+  EXPECT_GT(highest - lowest, 0.05);  // it does wobble
+  EXPECT_NEAR(energy(circle.model, x).total(), before, 1e-7 * before);
+}
+
+}  // namespace rolling_test

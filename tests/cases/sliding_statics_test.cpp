@@ -1,0 +1,72 @@
+// Weights that find their place on flexible lines.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/equilibrium.hpp>
+
+#include "support/bead_on_a_line.hpp"
+
+using namespace polybody;
+
+namespace sliding_statics_test {
+
+constexpr double g = 9.81;
+
+// A cable under tension T with bending stiffness, pinned at both ends, and a weight P that finds its own way: to the middle,
+//   w = P L/(4 T) (1 − tanh u/u),  u = ½ L √(T/EI)      [Timoshenko & Gere 1961, §1.11; of small deflections].
+TEST(BeadOnATautCable, ComesToTheMiddle) {
+  double const length = 2.0, tension = 1e5, mass = 0.5, u = 6.0, bending = tension * length * length / (4.0 * u * u);
+  BeadOnALine rig({0, -g, 0},
+                  {.length = length,
+                   .constants = BarConstants{.EA = 1e7, .EI = bending, .mass_per_length = 1e-9},
+                   .pretension = tension},
+                  24, mass, 0.77);
+  rig.pin_right({length, 0, 0});
+  State x = rig.resting(mass * g);
+  equilibrium(rig.model, x);
+  double const w = mass * g * length / (4.0 * tension) * (1.0 - std::tanh(u) / u);
+  EXPECT_NEAR(place(rig.model, x, rig.line), 0.5 * length, 1e-6);
+  EXPECT_NEAR(-rig.place_of_bead(x)[1] / w, 1.0, 1e-4);
+  EXPECT_LT((reaction(rig.model, x, rig.contact).f - Vec3(0, mass * g, 0)).norm(), 1e-7);
+}
+
+// A rope with a heavy bead between pins D apart and H different in height. Its tension is the same on both sides of the bead,
+// which hangs where both make the same angle φ with the vertical: W = 2 T cos φ, D = L(1 + T/EA) sin φ.
+// Bending stiffness rounds the corner over √(EI/T), which must be as long as an element: on a coarser mesh each element holds the
+// bead where it is best for it. Then the pins carry half the weight each, whatever EI. Exact on any mesh: the reactions balance.
+TEST(BeadOnARope, HangsWhereBothSidesAreEquallySteep) {
+  double const D = 1.0, H = 0.25, length = std::hypot(D, H), EA = 60.0, W = 20.0;
+  double t = W, phi = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    phi = std::asin(D / (length * (1.0 + t / EA)));
+    t = 0.5 * (t + 0.5 * W / std::cos(phi));
+  }
+  // the sides a + b = D/sin φ, (a − b) cos φ = H: the depth below the first pin is the shorter side's
+  double const depth = 0.5 * (D / std::sin(phi) - H / std::cos(phi)) * std::cos(phi), aside = depth * std::tan(phi);
+  Bar const rope{.length = length,
+                 .constants = BarConstants{.EA = EA, .EI = 0.02, .mass_per_length = 1e-9},
+                 .placement = Placement::planar(0, 0, std::atan2(H, D))};
+  double const from_left = depth / std::cos(phi) / (1.0 + t / EA);  // of the rope without load
+  // first tied to the rope, some way off, then let go
+  BeadOnALine tied({0, -g, 0}, rope, 60, W / g, from_left + 0.02, false), rig({0, -g, 0}, rope, 60, W / g, from_left + 0.02);
+  tied.pin_right({D, H, 0});
+  auto const right = rig.pin_right({D, H, 0});
+  State before = tied.resting(W), x = rig.resting(W);
+  equilibrium(tied.model, before, {.load_steps = 10});
+  x.q << before.q.head(before.q.size() - 3), from_left + 0.02, before.q.tail<3>();
+  x.lambda = before.lambda;
+  equilibrium(rig.model, x);
+  double const s = place(rig.model, x, rig.line);
+  Vec3 const bead = rig.place_of_bead(x);
+  Wrench<double> const a = reaction(rig.model, x, rig.left), b = reaction(rig.model, x, right);
+  EXPECT_LT((reaction(rig.model, x, rig.contact).f - Vec3(0, W, 0)).norm(), 1e-6);
+  EXPECT_LT((a.f + b.f - Vec3(0, W, 0)).norm(), 1e-6);
+  EXPECT_NEAR(D * b.f[1] - H * b.f[0], W * bead[0], 1e-6);
+  EXPECT_NEAR(a.f[1], 0.5 * W, 2e-3 * W);
+  EXPECT_NEAR(b.f[1], 0.5 * W, 2e-3 * W);
+  EXPECT_LT((bead - Vec3(aside, -depth, 0)).norm(), 0.03);  // of the order of √(EI/T)
+  EXPECT_NEAR(a.f.norm(), t, 0.04 * t);
+  EXPECT_NEAR(s, from_left, 0.03);
+}
+
+}  // namespace sliding_statics_test

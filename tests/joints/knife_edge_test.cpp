@@ -1,0 +1,51 @@
+#include <polybody/joints/knife_edge.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+
+#include "support/joint_laws.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace knife_edge_test {
+
+// Anywhere and turned anyhow; free are the velocities along b₁ and b₂ and every turn.
+struct KnifeEdgeCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static KnifeEdge geometry() { return {}; }
+  static Mate mate(Numbers& number, double) {
+    Mate mate{.d = number.vec<3>(2.0), .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 5)};
+    mate.freedoms.topLeftCorner<3, 2>() = mate.R.leftCols<2>();
+    mate.freedoms.bottomRightCorner<3, 3>().setIdentity();
+    return mate;
+  }
+};
+
+// On a turntable (2 rad/s about z) the table under a blade at (3, 0, 0) moves at 6 m/s along y: a blade that stands still there
+// and points along x is crossed by −6 m/s.
+TEST(KnifeEdge, RowIsTheVelocityAcrossSeenFromTheOtherBody) {
+  Frame<double> const table{.w = {0, 0, 2}};
+  Frame<double> blade{.r = {3, 0, 0}};
+  blade.A = KnifeEdge{}.triad();
+  auto const gap = KnifeEdge{}.gap<double>(table, blade, 0.0);
+  EXPECT_NEAR((gap.Ga * twist(table) + gap.Gb * twist(blade))[0], -6.0, 1e-14);
+  blade.v = {7, 6, 1};  // carried along, and gliding
+  EXPECT_NEAR((gap.Ga * twist(table) + gap.Gb * twist(blade))[0], 0.0, 1e-14);
+}
+
+TEST(KnifeEdge, RefusesADirectionThatIsNoUnitVector) {
+  EXPECT_TRUE(has(refusal([] { (void)KnifeEdge{.across = {0, 2, 0}}.triad(); }), "KnifeEdge: the direction across must be a unit"));
+}
+
+static_assert(velocity_rows<KnifeEdge>() == 1);
+static_assert(Joint<KnifeEdge, Constraint>::rows == 1);
+
+}  // namespace knife_edge_test
+
+namespace polybody {
+INSTANTIATE_TYPED_TEST_SUITE_P(KnifeEdge, JointLaws, knife_edge_test::KnifeEdgeCase);
+}  // namespace polybody

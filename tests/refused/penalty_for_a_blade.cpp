@@ -1,0 +1,7 @@
+// refused: there is no gap that a force could
+// A penalty on a speed would be a damper.
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/knife_edge.hpp>
+#include <polybody/joints/policies/penalty.hpp>
+
+polybody::Joint<polybody::KnifeEdge, polybody::Penalty> const joint{{}, {.stiffness = 1e7, .damping = 1e3}};

@@ -1,0 +1,48 @@
+#pragma once
+/// \file
+/// A bead on a flexible line in the plane.
+
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/sliders.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/prescribed_rate.hpp>
+
+#include "support/solver_instances.hpp"
+
+namespace polybody {
+
+/// A line from the origin, pinned at its first end, and a bead that slides on it; or that is held by the point s of it.
+struct BeadOnALine {
+  using Line = planar::AncfCable<EngineeringStrain>;
+  using Pin = Joint<planar::Revolute, Constraint>;
+  using Motor = Joint<PrescribedRate<Constant>, Constraint>;
+  using Plane = Model<Bodies<Sliding<Line>, planar::Rigid>, Joints<Pin, Motor>>;
+
+  Plane model;
+  BodyHandle<Sliding<Line>> line;
+  BodyHandle<planar::Rigid> bead;
+  ElementHandle<Pin> left, contact;
+
+  BeadOnALine(Gravity const& gravity, Bar const& bar, Index elements, double mass, double s, bool slides = true)
+      : model(gravity),
+        line(model.add(Sliding(Line::from(bar, elements), slides ? std::vector{s} : std::vector<double>{}), "line")),
+        bead(model.add(planar::Rigid(mass, 1e-3 * mass, Placement{bar.placement.origin + s * bar.placement.axes.col(0)}), "bead")),
+        left(model.connect(Pin{}, model.ground().at({0, 0, 0}), line.at(0.0), "left")),
+        contact(model.connect(Pin{}, slides ? line.at(Slider{}) : line.at(s), bead.at({0, 0}), "contact")) {}
+  ElementHandle<Pin> pin_right(Vec3 const& to) {
+    return model.connect(Pin{}, model.ground().at(to), line.at(line.body.length()), "right");
+  }
+  /// For statics: the bead does not turn, and bears on the line with its weight from the beginning (no load, no direction to go).
+  State resting(double weight) {
+    model.connect(Motor{{.law = {{.value = 0.0}}}, {}}, model.ground().at({0, 0, 0}), bead.at({0, 0}), "upright");
+    State x = model.reference_state();
+    x.lambda[model.entry(contact).row + 1] = -weight;
+    return x;
+  }
+  Vec3 place_of_bead(State const& x) const { return position(model, x, bead.at({0, 0})); }
+};
+
+}  // namespace polybody
