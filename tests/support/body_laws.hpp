@@ -244,7 +244,7 @@ struct BodyLaws : testing::Test {
   template <class T>
   Seen<T> see(typename B::Point const& p, Mat3 const& axes, VecXOf<T> const& q, VecXOf<T> const& v) const {
     Seen<T> s;
-    s.memory.assign(std::size_t(6 * point_columns(body)), T(1e9));
+    s.memory.assign(std::size_t(6 * point_columns(body, p)), T(1e9));
     s.marker.jacobian = s.memory.data();
     s.marker.bias.setConstant(T(1e9));
     body.template publish<T>(p, rolls ? axes : Mat3::Identity(), view(q), view(v), s.marker);
@@ -451,7 +451,7 @@ TYPED_TEST_P(BodyLaws, TwistIsJacobianTimesSpeeds) {
   VecX const q = this->configuration(), v = this->speeds();
   for (auto const& p : this->points()) {
     auto const s = this->template see<double>(p, this->turned(), q, v);
-    EXPECT_EQ(s.marker.columns, point_columns(this->body));
+    EXPECT_EQ(s.marker.columns, point_columns(this->body, p));
     EXPECT_LT(mismatch(s.twist(), s.jacobian * v), 1e-14);
   }
 }
@@ -488,7 +488,7 @@ TYPED_TEST_P(BodyLaws, BiasIsTheAccelerationAtConstantSpeeds) {
 
 TYPED_TEST_P(BodyLaws, LoadStiffnessIsTheDerivativeOfThePulledWrench) {
   constexpr int fixed = TestFixture::B::point_columns;
-  Index const columns = point_columns(this->body);
+  Index const columns = point_columns(this->body, this->points().front());
   VecX const q = this->configuration();
   VecXOf<Dual<1>> const rest = VecXOf<Dual<1>>::Zero(this->nv);
   Wrench<double> const w = this->wrench();

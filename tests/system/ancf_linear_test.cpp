@@ -85,13 +85,13 @@ TEST(AncfLinear, PinsACableInSpace) {
 }
 
 TEST(AncfLinear, PinsAFullyParameterisedBeamBySixEquations) {
-  Chain<AncfBeam<Continuum<>>, Revolute, Constraint> held({.axis = Vec3::UnitZ()}, 2);
-  Chain<AncfBeam<Continuum<>>, Revolute, AncfLinear> free({.axis = Vec3::UnitZ()}, 2);
+  Chain<AncfBeam<>, Revolute, Constraint> held({.axis = Vec3::UnitZ()}, 2);
+  Chain<AncfBeam<>, Revolute, AncfLinear> free({.axis = Vec3::UnitZ()}, 2);
   EXPECT_EQ(census(held.model).rows, 2 * 5);
   EXPECT_EQ(census(free.model).coordinates, 2 * 36 - 2 * 6);
   held.fall(0.2);
   free.fall(0.2);
-  // motion in the plane does not stretch the pin's line: the sixth equation changes nothing
+  // the elastic line does not stretch the pin's line as it moves in the plane: the sixth equation changes nothing
   expect_same(held, free, 1e-6);
 }
 

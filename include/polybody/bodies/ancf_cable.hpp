@@ -115,16 +115,16 @@ class AncfCable : public NodeChain<6> {
                   Element<double>& out) const {
     Element<double> const x0 = part<12>(q0, first_column(e)), x1 = part<12>(q1, first_column(e));
     out.setZero();
-    axial_.add_mean_force(x0, x1, means, out);
-    bending_.add_mean_force(x0, x1, means, out);
+    axial().add_mean_force(x0, x1, means, out);
+    bending().add_mean_force(x0, x1, means, out);
   }
   /// ck (−∂f/∂q1), nearly; not symmetric.
   void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
                     ElementMatrix& k) const {
     Element<double> const x0 = part<12>(q0, first_column(e)), x1 = part<12>(q1, first_column(e));
     k.setZero();
-    axial_.add_mean_tangent(x0, x1, means, ck, k);
-    bending_.add_mean_tangent(x0, x1, means, ck, k);
+    axial().add_mean_tangent(x0, x1, means, ck, k);
+    bending().add_mean_tangent(x0, x1, means, ck, k);
   }
 
   template <StateScalar T>

@@ -21,8 +21,8 @@ struct LinearSide {
 struct LinearRows {
   std::string name;
   Index row = 0;
-  LinearSide a, b;
-  VecX constant;                ///< (rows) c
+  LinearSide a = {}, b = {};
+  VecX constant = {};                ///< (rows) c
   Index positions = 0;          ///< rows of the position
   /// A gradient that a and b share, or its component along an axis.
   struct Gradient {

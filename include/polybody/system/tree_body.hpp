@@ -17,8 +17,8 @@ struct TreeBody {
   Index q0 = 0, v0 = 0;            ///< in whole vectors
   Index row = -1;                  ///< first of the joint's rows; −1: a root, which nothing carries
   Index parent = -1;               ///< in the tree; −1: the ground
-  Placement from;                  ///< the joint's frame in the parent's axes
-  Placement to;                    ///< … in its own
+  Placement from = {};                  ///< the joint's frame in the parent's axes
+  Placement to = {};                    ///< … in its own
   JointMotions motions = {};            ///< from frame a to frame b
   bool backwards = false;          ///< frame b is the parent's
   double angle = 0.0;              ///< in the plane: what it is turned against the parent before the joint moves
