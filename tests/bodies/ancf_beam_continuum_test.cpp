@@ -21,10 +21,9 @@ struct ContinuumCase {
 };
 using LockingCase = ContinuumCase<Locking::present>;
 using CuredCase = ContinuumCase<Locking::cured>;
-INSTANTIATE_TYPED_TEST_SUITE_P(AncfContinuum, BodyLaws, LockingCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(AncfContinuum, FlexibleBodyLaws, LockingCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(AncfCuredContinuum, BodyLaws, CuredCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(AncfCuredContinuum, FlexibleBodyLaws, CuredCase);
+bool const ancf_beam_continuum_obey[] = {
+    obeys<LockingCase, BodyLaws, FlexibleBodyLaws>("AncfContinuum"),
+    obeys<CuredCase, BodyLaws, FlexibleBodyLaws>("AncfCuredContinuum")};
 
 // A homogeneous deformation r = F X, in the bar's axes: E = ½ (FᵀF − 1) everywhere, S and the energy by Hooke's law.
 struct Homogeneous {

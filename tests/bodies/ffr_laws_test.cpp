@@ -29,11 +29,10 @@ struct MeanAxesFfrCase : StiffenedFfrCase {
   }
 };
 
-INSTANTIATE_TYPED_TEST_SUITE_P(NodalFfr, BodyLaws, NodalFfrCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(StiffenedFfr, BodyLaws, StiffenedFfrCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(MeanAxesFfr, BodyLaws, MeanAxesFfrCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(NodalFfr, FlexibleBodyLaws, NodalFfrCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(StiffenedFfr, FlexibleBodyLaws, StiffenedFfrCase);
+bool const ffr_laws_obey[] = {
+    obeys<NodalFfrCase, BodyLaws, FlexibleBodyLaws>("NodalFfr"),
+    obeys<StiffenedFfrCase, BodyLaws, FlexibleBodyLaws>("StiffenedFfr"),
+    obeys<MeanAxesFfrCase, BodyLaws>("MeanAxesFfr")};
 
 }  // namespace ffr_laws_test
 }  // namespace polybody

@@ -13,12 +13,12 @@ struct DirectLrvfCase {
   static Bar bar() { return spatial_lrvf_bar(); }
   static Lrvf<Direct> body(Bar const& bar) { return Lrvf<Direct>::from(bar, 3); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(DirectLrvf, BodyLaws, DirectLrvfCase);
+bool const lrvf_direct_laws_obeys = obeys<DirectLrvfCase, BodyLaws>("DirectLrvf");
 
 struct ElasticDirectCase : DirectLrvfCase {
   static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(DirectLrvf, FlexibleBodyLaws, ElasticDirectCase);
+bool const lrvf_direct_laws_elastic_obeys = obeys<ElasticDirectCase, FlexibleBodyLaws>("DirectLrvf");
 
 }  // namespace lrvf_direct_laws_test
 }  // namespace polybody

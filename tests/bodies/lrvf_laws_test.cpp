@@ -12,12 +12,12 @@ struct SpatialLrvfCase {
   static Bar bar() { return spatial_lrvf_bar(); }
   static Lrvf<> body(Bar const& bar) { return Lrvf<>::from(bar, 3); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(SpatialLrvf, BodyLaws, SpatialLrvfCase);
+bool const lrvf_laws_obeys = obeys<SpatialLrvfCase, BodyLaws>("SpatialLrvf");
 
 struct ElasticLrvfCase : SpatialLrvfCase {
   static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(SpatialLrvf, FlexibleBodyLaws, ElasticLrvfCase);
+bool const lrvf_laws_elastic_obeys = obeys<ElasticLrvfCase, FlexibleBodyLaws>("SpatialLrvf");
 
 }  // namespace lrvf_laws_test
 }  // namespace polybody

@@ -18,8 +18,7 @@ struct LrvfCase {
   }
   static planar::Lrvf body(Bar const& bar) { return planar::Lrvf::from(bar, 3); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(Lrvf, BodyLaws, LrvfCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(Lrvf, FlexibleBodyLaws, LrvfCase);
+bool const planar_lrvf_obeys = obeys<LrvfCase, BodyLaws, FlexibleBodyLaws>("Lrvf");
 
 int const elements = 4;
 planar::Lrvf straight() {

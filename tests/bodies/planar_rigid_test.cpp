@@ -16,7 +16,7 @@ struct PlanarRigidCase {
   }
   static planar::Rigid body(Bar const& bar) { return planar::Rigid::from(bar); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarRigid, BodyLaws, PlanarRigidCase);
+bool const planar_rigid_obeys = obeys<PlanarRigidCase, BodyLaws>("PlanarRigid");
 
 double const nan_ = std::numeric_limits<double>::quiet_NaN();
 

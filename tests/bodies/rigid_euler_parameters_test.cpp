@@ -25,7 +25,7 @@ struct EulerCase {
   }
   static Rigid<EulerParameters> body(Bar const& bar) { return Rigid<EulerParameters>::from(bar); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(RigidEulerParameters, BodyLaws, EulerCase);
+bool const rigid_euler_parameters_obeys = obeys<EulerCase, BodyLaws>("RigidEulerParameters");
 
 // Ω = Ḡ θ̇ is the angular velocity that turns A; a moment does the same work in either description.
 TEST(EulerParameterMap, RelatesCartesianAndGeneralisedMoments) {

@@ -17,7 +17,7 @@ struct RigidCase {
   }
   static Rigid<> body(Bar const& bar) { return Rigid<>::from(bar); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(Rigid, BodyLaws, RigidCase);
+bool const rigid_obeys = obeys<RigidCase, BodyLaws>("Rigid");
 
 double const nan_ = std::numeric_limits<double>::quiet_NaN();
 

@@ -36,9 +36,10 @@ struct GeneralizedAlphaOnSprungBody {
 }  // namespace generalized_alpha_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnBar, IntegratorLaws, generalized_alpha_test::GeneralizedAlphaOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnTop, IntegratorLaws, generalized_alpha_test::GeneralizedAlphaOnTop);
-INSTANTIATE_TYPED_TEST_SUITE_P(GeneralizedAlphaOnSprungBody, IntegratorLaws, generalized_alpha_test::GeneralizedAlphaOnSprungBody);
+bool const generalized_alpha_obey[] = {
+    obeys<generalized_alpha_test::GeneralizedAlphaOnBar, IntegratorLaws>("GeneralizedAlphaOnBar"),
+    obeys<generalized_alpha_test::GeneralizedAlphaOnTop, IntegratorLaws>("GeneralizedAlphaOnTop"),
+    obeys<generalized_alpha_test::GeneralizedAlphaOnSprungBody, IntegratorLaws>("GeneralizedAlphaOnSprungBody")};
 }  // namespace polybody
 
 namespace generalized_alpha_test {

@@ -28,8 +28,9 @@ struct HhtAlphaOnTop {
 }  // namespace hht_alpha_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(HhtAlphaOnBar, IntegratorLaws, hht_alpha_test::HhtAlphaOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(HhtAlphaOnTop, IntegratorLaws, hht_alpha_test::HhtAlphaOnTop);
+bool const hht_alpha_obey[] = {
+    obeys<hht_alpha_test::HhtAlphaOnBar, IntegratorLaws>("HhtAlphaOnBar"),
+    obeys<hht_alpha_test::HhtAlphaOnTop, IntegratorLaws>("HhtAlphaOnTop")};
 }  // namespace polybody
 
 namespace hht_alpha_test {

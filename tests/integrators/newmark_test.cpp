@@ -33,9 +33,10 @@ struct TrapezoidalOnSprungBody {
 }  // namespace newmark_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(NewmarkOnBar, IntegratorLaws, newmark_test::NewmarkOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(TrapezoidalOnBar, IntegratorLaws, newmark_test::TrapezoidalOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(TrapezoidalOnSprungBody, IntegratorLaws, newmark_test::TrapezoidalOnSprungBody);
+bool const newmark_obey[] = {
+    obeys<newmark_test::NewmarkOnBar, IntegratorLaws>("NewmarkOnBar"),
+    obeys<newmark_test::TrapezoidalOnBar, IntegratorLaws>("TrapezoidalOnBar"),
+    obeys<newmark_test::TrapezoidalOnSprungBody, IntegratorLaws>("TrapezoidalOnSprungBody")};
 }  // namespace polybody
 
 namespace newmark_test {

@@ -37,9 +37,10 @@ struct RadauOnSprungBody {
 }  // namespace radau_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(RadauOnBar, IntegratorLaws, radau_test::RadauOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(RadauOnTop, IntegratorLaws, radau_test::RadauOnTop);
-INSTANTIATE_TYPED_TEST_SUITE_P(RadauOnSprungBody, IntegratorLaws, radau_test::RadauOnSprungBody);
+bool const radau_obey[] = {
+    obeys<radau_test::RadauOnBar, IntegratorLaws>("RadauOnBar"),
+    obeys<radau_test::RadauOnTop, IntegratorLaws>("RadauOnTop"),
+    obeys<radau_test::RadauOnSprungBody, IntegratorLaws>("RadauOnSprungBody")};
 }  // namespace polybody
 
 namespace radau_test {

@@ -34,9 +34,10 @@ struct Rk4OnTop {
 }  // namespace runge_kutta_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnFreeBody, IntegratorLaws, runge_kutta_test::Rk4OnFreeBody);
-INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnBar, IntegratorLaws, runge_kutta_test::Rk4OnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(Rk4OnTop, IntegratorLaws, runge_kutta_test::Rk4OnTop);
+bool const runge_kutta_obey[] = {
+    obeys<runge_kutta_test::Rk4OnFreeBody, IntegratorLaws>("Rk4OnFreeBody"),
+    obeys<runge_kutta_test::Rk4OnBar, IntegratorLaws>("Rk4OnBar"),
+    obeys<runge_kutta_test::Rk4OnTop, IntegratorLaws>("Rk4OnTop")};
 }  // namespace polybody
 
 namespace runge_kutta_test {

@@ -37,9 +37,10 @@ struct PartitionedDifferences {
 }  // namespace stabilisation_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(PartitionedBar, IntegratorLaws, stabilisation_test::PartitionedBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(PartitionedTop, IntegratorLaws, stabilisation_test::PartitionedTop);
-INSTANTIATE_TYPED_TEST_SUITE_P(PartitionedDifferences, IntegratorLaws, stabilisation_test::PartitionedDifferences);
+bool const stabilisation_obey[] = {
+    obeys<stabilisation_test::PartitionedBar, IntegratorLaws>("PartitionedBar"),
+    obeys<stabilisation_test::PartitionedTop, IntegratorLaws>("PartitionedTop"),
+    obeys<stabilisation_test::PartitionedDifferences, IntegratorLaws>("PartitionedDifferences")};
 }  // namespace polybody
 
 namespace stabilisation_test {

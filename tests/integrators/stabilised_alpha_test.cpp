@@ -31,8 +31,9 @@ struct StabilisedAlphaOnTop {
 }  // namespace stabilised_alpha_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(StabilisedAlphaOnBar, IntegratorLaws, stabilised_alpha_test::StabilisedAlphaOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(StabilisedAlphaOnTop, IntegratorLaws, stabilised_alpha_test::StabilisedAlphaOnTop);
+bool const stabilised_alpha_obey[] = {
+    obeys<stabilised_alpha_test::StabilisedAlphaOnBar, IntegratorLaws>("StabilisedAlphaOnBar"),
+    obeys<stabilised_alpha_test::StabilisedAlphaOnTop, IntegratorLaws>("StabilisedAlphaOnTop")};
 }  // namespace polybody
 
 namespace stabilised_alpha_test {

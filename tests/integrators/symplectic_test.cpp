@@ -32,9 +32,10 @@ struct RattleOnTop {
 }  // namespace symplectic_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(SymplecticEulerOnFreeBody, IntegratorLaws, symplectic_test::SymplecticEulerOnFreeBody);
-INSTANTIATE_TYPED_TEST_SUITE_P(RattleOnBar, IntegratorLaws, symplectic_test::RattleOnBar);
-INSTANTIATE_TYPED_TEST_SUITE_P(RattleOnTop, IntegratorLaws, symplectic_test::RattleOnTop);
+bool const symplectic_obey[] = {
+    obeys<symplectic_test::SymplecticEulerOnFreeBody, IntegratorLaws>("SymplecticEulerOnFreeBody"),
+    obeys<symplectic_test::RattleOnBar, IntegratorLaws>("RattleOnBar"),
+    obeys<symplectic_test::RattleOnTop, IntegratorLaws>("RattleOnTop")};
 }  // namespace polybody
 
 namespace symplectic_test {

@@ -50,8 +50,9 @@ struct PartitionedDisc {
   static constexpr int steps = 16;
 };
 
-INSTANTIATE_TYPED_TEST_SUITE_P(VelocityRows, IntegratorLaws, AlphaOnTheDisc);
-INSTANTIATE_TYPED_TEST_SUITE_P(PartitionedVelocityRows, IntegratorLaws, PartitionedDisc);
+bool const velocity_rows_obey[] = {
+    obeys<AlphaOnTheDisc, IntegratorLaws>("VelocityRows"),
+    obeys<PartitionedDisc, IntegratorLaws>("PartitionedVelocityRows")};
 
 // Nine coordinates' worth of rows: the touching row makes one coordinate dependent, all rows three speeds.
 TEST(CoordinatePartitioning, SplitsCoordinatesBySurfacesAndSpeedsByAllRows) {

@@ -34,5 +34,5 @@ TEST(Cylindrical, RefusesAnAxisThatIsNotAUnitVector) {
 }  // namespace cylindrical_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Cylindrical, JointLaws, cylindrical_test::CylindricalCase);
+bool const cylindrical_obeys = obeys<cylindrical_test::CylindricalCase, JointLaws>("Cylindrical");
 }  // namespace polybody

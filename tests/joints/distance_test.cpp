@@ -99,8 +99,9 @@ TEST(PrescribedDistance, TellsTheCornersOfItsLaw) {
 }  // namespace distance_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Distance, JointLaws, distance_test::DistanceCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarDistance, JointLaws, distance_test::PlanarDistanceCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PrescribedDistance, JointLaws, distance_test::ActuatorCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrescribedDistance, JointLaws, distance_test::PlanarActuatorCase);
+bool const distance_obey[] = {
+    obeys<distance_test::DistanceCase, JointLaws>("Distance"),
+    obeys<distance_test::PlanarDistanceCase, JointLaws>("PlanarDistance"),
+    obeys<distance_test::ActuatorCase, JointLaws>("PrescribedDistance"),
+    obeys<distance_test::PlanarActuatorCase, JointLaws>("PlanarPrescribedDistance")};
 }  // namespace polybody

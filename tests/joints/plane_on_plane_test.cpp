@@ -35,5 +35,5 @@ TEST(PlaneOnPlane, RefusesANormalThatIsNotAUnitVector) {
 }  // namespace plane_on_plane_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(PlaneOnPlane, JointLaws, plane_on_plane_test::PlaneOnPlaneCase);
+bool const plane_on_plane_obeys = obeys<plane_on_plane_test::PlaneOnPlaneCase, JointLaws>("PlaneOnPlane");
 }  // namespace polybody

@@ -79,7 +79,8 @@ TEST(Points, RefuseAxesThatAreNotUnitVectors) {
 }  // namespace points_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(PointOnLine, JointLaws, points_test::PointOnLineCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PointInPlane, JointLaws, points_test::PointInPlaneCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PrescribedSlide, JointLaws, points_test::SlideCase);
+bool const points_obey[] = {
+    obeys<points_test::PointOnLineCase, JointLaws>("PointOnLine"),
+    obeys<points_test::PointInPlaneCase, JointLaws>("PointInPlane"),
+    obeys<points_test::SlideCase, JointLaws>("PrescribedSlide")};
 }  // namespace polybody

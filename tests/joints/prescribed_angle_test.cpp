@@ -95,6 +95,7 @@ TEST(PrescribedAngle, RefusesAnAxisThatIsNotAUnitVector) {
 }  // namespace prescribed_angle_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(PrescribedAngle, JointLaws, prescribed_angle_test::DriveCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrescribedAngle, JointLaws, prescribed_angle_test::PlanarDriveCase);
+bool const prescribed_angle_obey[] = {
+    obeys<prescribed_angle_test::DriveCase, JointLaws>("PrescribedAngle"),
+    obeys<prescribed_angle_test::PlanarDriveCase, JointLaws>("PlanarPrescribedAngle")};
 }  // namespace polybody

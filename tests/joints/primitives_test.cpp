@@ -163,7 +163,8 @@ TEST(Primitives, RefuseAxesThatCannotBeMeant) {
 }  // namespace primitives_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Orientation, JointLaws, primitives_test::OrientationCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(ParallelAxes, JointLaws, primitives_test::ParallelAxesCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PerpendicularAxes, JointLaws, primitives_test::PerpendicularAxesCase);
+bool const primitives_obey[] = {
+    obeys<primitives_test::OrientationCase, JointLaws>("Orientation"),
+    obeys<primitives_test::ParallelAxesCase, JointLaws>("ParallelAxes"),
+    obeys<primitives_test::PerpendicularAxesCase, JointLaws>("PerpendicularAxes")};
 }  // namespace polybody

@@ -54,6 +54,7 @@ TEST(Prismatic, RefusesADirectionThatLeavesThePlane) {
 }  // namespace prismatic_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Prismatic, JointLaws, prismatic_test::PrismaticCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarPrismatic, JointLaws, prismatic_test::PlanarPrismaticCase);
+bool const prismatic_obey[] = {
+    obeys<prismatic_test::PrismaticCase, JointLaws>("Prismatic"),
+    obeys<prismatic_test::PlanarPrismaticCase, JointLaws>("PlanarPrismatic")};
 }  // namespace polybody

@@ -65,6 +65,7 @@ TEST(RackAndPinion, RefusesWhatCannotRoll) {
 }  // namespace rack_and_pinion_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarRackAndPinion, JointLaws, rack_and_pinion_test::PlanarRackCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(RackAndPinion, JointLaws, rack_and_pinion_test::RackCase);
+bool const rack_and_pinion_obey[] = {
+    obeys<rack_and_pinion_test::PlanarRackCase, JointLaws>("PlanarRackAndPinion"),
+    obeys<rack_and_pinion_test::RackCase, JointLaws>("RackAndPinion")};
 }  // namespace polybody

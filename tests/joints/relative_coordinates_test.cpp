@@ -170,5 +170,5 @@ TEST(RelativeCoordinates, RefusesAnAxisThatIsNotAUnitVector) {
 }  // namespace relative_coordinates_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(RelativeCoordinates, JointLaws, relative_coordinates_test::RelativeCoordinatesCase);
+bool const relative_coordinates_obeys = obeys<relative_coordinates_test::RelativeCoordinatesCase, JointLaws>("RelativeCoordinates");
 }  // namespace polybody

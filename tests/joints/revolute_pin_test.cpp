@@ -42,5 +42,5 @@ TEST(RevolutePin, RefusesAnAxisThatIsNotAUnitVector) {
 }  // namespace revolute_pin_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(RevolutePin, JointLaws, revolute_pin_test::RevolutePinCase);
+bool const revolute_pin_obeys = obeys<revolute_pin_test::RevolutePinCase, JointLaws>("RevolutePin");
 }  // namespace polybody

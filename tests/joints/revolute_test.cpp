@@ -51,6 +51,7 @@ TEST(Revolute, TakesNoAccountOfWhichWayTheAxisPoints) {
 }  // namespace revolute_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Revolute, JointLaws, revolute_test::RevoluteCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarRevolute, JointLaws, revolute_test::PlanarRevoluteCase);
+bool const revolute_obey[] = {
+    obeys<revolute_test::RevoluteCase, JointLaws>("Revolute"),
+    obeys<revolute_test::PlanarRevoluteCase, JointLaws>("PlanarRevolute")};
 }  // namespace polybody

@@ -60,5 +60,5 @@ static_assert(velocity_rows<RollingDisc>() == 2);
 }  // namespace rolling_disc_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(RollingDisc, JointLaws, rolling_disc_test::RollingDiscCase);
+bool const rolling_disc_obeys = obeys<rolling_disc_test::RollingDiscCase, JointLaws>("RollingDisc");
 }  // namespace polybody

@@ -54,5 +54,5 @@ TEST(Screw, RefusesAPitchThatCannotBeMeant) {
 }  // namespace screw_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Screw, JointLaws, screw_test::ScrewCase);
+bool const screw_obeys = obeys<screw_test::ScrewCase, JointLaws>("Screw");
 }  // namespace polybody

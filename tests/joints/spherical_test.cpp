@@ -29,5 +29,5 @@ TEST(Spherical, GapLeadsFromTheFirstPointToTheSecond) {
 }  // namespace spherical_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Spherical, JointLaws, spherical_test::SphericalCase);
+bool const spherical_obeys = obeys<spherical_test::SphericalCase, JointLaws>("Spherical");
 }  // namespace polybody

@@ -37,6 +37,7 @@ TEST(Weld, RotationalRowsMeasureTheTurn) {
 }  // namespace weld_test
 
 namespace polybody {
-INSTANTIATE_TYPED_TEST_SUITE_P(Weld, JointLaws, weld_test::WeldCase);
-INSTANTIATE_TYPED_TEST_SUITE_P(PlanarWeld, JointLaws, weld_test::PlanarWeldCase);
+bool const weld_obey[] = {
+    obeys<weld_test::WeldCase, JointLaws>("Weld"),
+    obeys<weld_test::PlanarWeldCase, JointLaws>("PlanarWeld")};
 }  // namespace polybody

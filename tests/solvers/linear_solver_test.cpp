@@ -10,8 +10,13 @@ using namespace polybody;
 
 namespace polybody::test {
 
-using Solvers = testing::Types<DenseLu, EigenSparseLu, AutoLu, BlockLu, BlockSolver, Refined<BlockSolver>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Core, LinearSolvers, Solvers);
+bool const linear_solver_obey[] = {
+    obeys<DenseLu, LinearSolvers>("DenseLu"),
+    obeys<EigenSparseLu, LinearSolvers>("EigenSparseLu"),
+    obeys<AutoLu, LinearSolvers>("AutoLu"),
+    obeys<BlockLu, LinearSolvers>("BlockLu"),
+    obeys<BlockSolver, LinearSolvers>("BlockSolver"),
+    obeys<Refined<BlockSolver>, LinearSolvers>("RefinedBlockSolver")};
 
 }  // namespace polybody::test
 

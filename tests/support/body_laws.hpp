@@ -6,7 +6,7 @@
 ///       static Bar bar();                     // every constant, damping and a placement that is not trivial
 ///       static planar::Lrvf body(Bar const&);
 ///     };
-///     INSTANTIATE_TYPED_TEST_SUITE_P(Lrvf, BodyLaws, LrvfCase);
+///     bool const obeyed = obeys<LrvfCase, BodyLaws>("Lrvf");
 ///
 /// Derivatives are taken with dual numbers along one direction at a time, q ⊞ ε d.
 
@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "support/differences.hpp"
+#include "support/laws.hpp"
 
 namespace polybody {
 
@@ -51,7 +52,7 @@ inline double smallest_pivot(MatX m) {
 }
 
 template <class Case>
-struct BodyLaws : testing::Test {
+struct BodyLaws {
   using B = decltype(Case::body(Case::bar()));
   using D = Dual<1>;
   static constexpr bool planar = B::world == World::plane;
@@ -253,31 +254,85 @@ struct BodyLaws : testing::Test {
     return s;
   }
 
-};
+  // --- the laws, each a test -----------------------------------------------------------------------------
 
-TYPED_TEST_SUITE_P(BodyLaws);
+  void mass_is_symmetric_and_positive();
+  void kinetic_energy_is_half_v_m_v();
+  void inertia_is_mass_times_acceleration();
+  void constant_mass_does_not_depend_on_the_configuration();
+  void total_mass_is_that_of_the_bar();
+  void weight_acts_in_the_middle_of_the_bar();
+  void weight_is_the_gradient_of_its_energy();
+  void reference_is_free_of_force_and_energy();
+  void elastic_force_is_the_gradient_of_the_strain_energy();
+  void tangent_is_the_derivative_of_the_force_by_position();
+  void tangent_is_the_derivative_of_the_force_by_speed();
+  void tangent_mixes_its_two_parts_linearly();
+  void undamped_force_gives_back_the_strain_energy();
+  void plus_of_nothing_changes_nothing();
+  void local_rate_moves_the_body_with_its_speeds();
+  void rigid_velocity_is_the_field_of_a_rigid_motion();
+  void reference_stands_where_the_bar_is_placed();
+  void points_outside_the_bar_are_refused();
+  void frame_is_orthonormal();
+  void twist_is_jacobian_times_speeds();
+  void jacobian_is_the_derivative_of_the_frame();
+  void bias_is_the_acceleration_at_constant_speeds();
+  void load_stiffness_is_the_derivative_of_the_pulled_wrench();
+  void own_rows_hold_at_the_reference_and_their_maps_are_derivatives();
+
+  static constexpr char const* suite = "BodyLaws";
+  static constexpr Law<BodyLaws> laws[] = {
+      {"MassIsSymmetricAndPositive", &BodyLaws::mass_is_symmetric_and_positive},
+      {"KineticEnergyIsHalfVMV", &BodyLaws::kinetic_energy_is_half_v_m_v},
+      {"InertiaIsMassTimesAcceleration", &BodyLaws::inertia_is_mass_times_acceleration},
+      {"ConstantMassDoesNotDependOnTheConfiguration", &BodyLaws::constant_mass_does_not_depend_on_the_configuration},
+      {"TotalMassIsThatOfTheBar", &BodyLaws::total_mass_is_that_of_the_bar},
+      {"WeightActsInTheMiddleOfTheBar", &BodyLaws::weight_acts_in_the_middle_of_the_bar},
+      {"WeightIsTheGradientOfItsEnergy", &BodyLaws::weight_is_the_gradient_of_its_energy},
+      {"ReferenceIsFreeOfForceAndEnergy", &BodyLaws::reference_is_free_of_force_and_energy},
+      {"ElasticForceIsTheGradientOfTheStrainEnergy", &BodyLaws::elastic_force_is_the_gradient_of_the_strain_energy},
+      {"TangentIsTheDerivativeOfTheForceByPosition", &BodyLaws::tangent_is_the_derivative_of_the_force_by_position},
+      {"TangentIsTheDerivativeOfTheForceBySpeed", &BodyLaws::tangent_is_the_derivative_of_the_force_by_speed},
+      {"TangentMixesItsTwoPartsLinearly", &BodyLaws::tangent_mixes_its_two_parts_linearly},
+      {"UndampedForceGivesBackTheStrainEnergy", &BodyLaws::undamped_force_gives_back_the_strain_energy},
+      {"PlusOfNothingChangesNothing", &BodyLaws::plus_of_nothing_changes_nothing},
+      {"LocalRateMovesTheBodyWithItsSpeeds", &BodyLaws::local_rate_moves_the_body_with_its_speeds},
+      {"RigidVelocityIsTheFieldOfARigidMotion", &BodyLaws::rigid_velocity_is_the_field_of_a_rigid_motion},
+      {"ReferenceStandsWhereTheBarIsPlaced", &BodyLaws::reference_stands_where_the_bar_is_placed},
+      {"PointsOutsideTheBarAreRefused", &BodyLaws::points_outside_the_bar_are_refused},
+      {"FrameIsOrthonormal", &BodyLaws::frame_is_orthonormal},
+      {"TwistIsJacobianTimesSpeeds", &BodyLaws::twist_is_jacobian_times_speeds},
+      {"JacobianIsTheDerivativeOfTheFrame", &BodyLaws::jacobian_is_the_derivative_of_the_frame},
+      {"BiasIsTheAccelerationAtConstantSpeeds", &BodyLaws::bias_is_the_acceleration_at_constant_speeds},
+      {"LoadStiffnessIsTheDerivativeOfThePulledWrench", &BodyLaws::load_stiffness_is_the_derivative_of_the_pulled_wrench},
+      {"OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives", &BodyLaws::own_rows_hold_at_the_reference_and_their_maps_are_derivatives}};
+};
 
 // --- inertia ------------------------------------------------------------------------------------------------
 
 // Where a body owns rows, its mass may be singular across them.
-TYPED_TEST_P(BodyLaws, MassIsSymmetricAndPositive) {
+template <class Case>
+void BodyLaws<Case>::mass_is_symmetric_and_positive() {
   VecX const q = this->configuration();
   MatX m = this->mass(q);
   EXPECT_LT(mismatch(m, m.transpose()), 1e-15);
-  if constexpr (OwnsRows<typename TestFixture::B>) {
+  if constexpr (OwnsRows<typename BodyLaws::B>) {
     MatX const g = this->own_map(q);
     m += g.transpose() * g;
   }
   EXPECT_GT(smallest_pivot(m), 1e-6 * m.diagonal().maxCoeff());
 }
 
-TYPED_TEST_P(BodyLaws, KineticEnergyIsHalfVMV) {
+template <class Case>
+void BodyLaws<Case>::kinetic_energy_is_half_v_m_v() {
   VecX const q = this->configuration(), v = this->speeds();
   double const expected = 0.5 * v.dot(this->mass(q) * v);
   EXPECT_NEAR(this->kinetic_energy(q, v), expected, 1e-14 * expected);
 }
 
-TYPED_TEST_P(BodyLaws, InertiaIsMassTimesAcceleration) {
+template <class Case>
+void BodyLaws<Case>::inertia_is_mass_times_acceleration() {
   VecX const q = this->configuration(), a = this->speeds();
   VecX const expected = this->mass(q) * a;
   EXPECT_LT(mismatch(this->template inertia<double>(q, a), expected), 1e-14);
@@ -285,13 +340,15 @@ TYPED_TEST_P(BodyLaws, InertiaIsMassTimesAcceleration) {
   EXPECT_LT(mismatch(epsilon_of(dual), expected), 1e-14);
 }
 
-TYPED_TEST_P(BodyLaws, ConstantMassDoesNotDependOnTheConfiguration) {
+template <class Case>
+void BodyLaws<Case>::constant_mass_does_not_depend_on_the_configuration() {
   if (!this->body.constant_mass) GTEST_SKIP() << "its mass is not constant";
   EXPECT_LT(mismatch(this->mass(this->configuration()), this->mass(this->configuration())), 1e-14);
 }
 
 // In a translation every formulation of one bar has its kinetic energy.
-TYPED_TEST_P(BodyLaws, TotalMassIsThatOfTheBar) {
+template <class Case>
+void BodyLaws<Case>::total_mass_is_that_of_the_bar() {
   VecX const q = this->configuration();
   Vec3 const v0 = this->velocity();
   double const expected = 0.5 * this->total_mass * v0.squaredNorm();
@@ -301,7 +358,8 @@ TYPED_TEST_P(BodyLaws, TotalMassIsThatOfTheBar) {
 // --- gravity ------------------------------------------------------------------------------------------------
 
 // Power of the weight in a rigid motion: m g · v0 + (r_c × m g) · ω, r_c the middle of the undeformed bar.
-TYPED_TEST_P(BodyLaws, WeightActsInTheMiddleOfTheBar) {
+template <class Case>
+void BodyLaws<Case>::weight_acts_in_the_middle_of_the_bar() {
   VecX const q = this->reference();
   Vec3 const v0 = this->velocity(), omega = this->spin(), g(0.7, -9.8, 1.3);
   VecX const weight = this->gravity(q, g);
@@ -312,7 +370,8 @@ TYPED_TEST_P(BodyLaws, WeightActsInTheMiddleOfTheBar) {
   EXPECT_NEAR(this->gravity_energy(q, g), -m * g.dot(this->middle), 1e-12 * m);
 }
 
-TYPED_TEST_P(BodyLaws, WeightIsTheGradientOfItsEnergy) {
+template <class Case>
+void BodyLaws<Case>::weight_is_the_gradient_of_its_energy() {
   VecX const q = this->configuration();
   Vec3 const g(0.7, -9.8, 1.3);
   VecX const slope = this->gradient([&](VecX const& at) { return this->gravity_energy(at, g); }, q);
@@ -321,21 +380,24 @@ TYPED_TEST_P(BodyLaws, WeightIsTheGradientOfItsEnergy) {
 
 // --- force ------------------------------------------------------------------------------------------------
 
-TYPED_TEST_P(BodyLaws, ReferenceIsFreeOfForceAndEnergy) {
+template <class Case>
+void BodyLaws<Case>::reference_is_free_of_force_and_energy() {
   VecX const q = this->reference();
   double size = this->c.EA + this->c.EI;
-  if constexpr (requires { TypeParam::rounding; }) size *= TypeParam::rounding;  // of coordinates that are transformed
+  if constexpr (requires { Case::rounding; }) size *= Case::rounding;  // of coordinates that are transformed
   EXPECT_LT(this->force_at_rest(q).norm(), 1e-14 * size);
   EXPECT_LT(this->strain_energy(q), 1e-25 * size);
 }
 
-TYPED_TEST_P(BodyLaws, ElasticForceIsTheGradientOfTheStrainEnergy) {
+template <class Case>
+void BodyLaws<Case>::elastic_force_is_the_gradient_of_the_strain_energy() {
   VecX const q = this->configuration();
   VecX const slope = this->gradient([&](VecX const& at) { return this->strain_energy(at); }, q);
   EXPECT_LT(mismatch(this->force_at_rest(q), -slope), 1e-8);
 }
 
-TYPED_TEST_P(BodyLaws, TangentIsTheDerivativeOfTheForceByPosition) {
+template <class Case>
+void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_position() {
   VecX const q = this->configuration(), v = this->speeds();
   MatX slope(this->nv, this->nv);
   for (Index j = 0; j < this->nv; ++j)
@@ -344,7 +406,8 @@ TYPED_TEST_P(BodyLaws, TangentIsTheDerivativeOfTheForceByPosition) {
   EXPECT_LT(mismatch(this->tangent(q, v, 1.0, 0.0), -slope), 1e-12);
 }
 
-TYPED_TEST_P(BodyLaws, TangentIsTheDerivativeOfTheForceBySpeed) {
+template <class Case>
+void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_speed() {
   VecX const q = this->configuration(), v = this->speeds();
   MatX slope(this->nv, this->nv);
   for (Index j = 0; j < this->nv; ++j)
@@ -353,37 +416,41 @@ TYPED_TEST_P(BodyLaws, TangentIsTheDerivativeOfTheForceBySpeed) {
   EXPECT_LT(mismatch(this->tangent(q, v, 0.0, 1.0), -slope), 1e-12);
 }
 
-TYPED_TEST_P(BodyLaws, TangentMixesItsTwoPartsLinearly) {
+template <class Case>
+void BodyLaws<Case>::tangent_mixes_its_two_parts_linearly() {
   VecX const q = this->configuration(), v = this->speeds();
   MatX const expected = 0.7 * this->tangent(q, v, 1.0, 0.0) + 31.0 * this->tangent(q, v, 0.0, 1.0);
   EXPECT_LT(mismatch(this->tangent(q, v, 0.7, 31.0), expected), 1e-14);
 }
 
 // f · v = −U˙ − ½ vᵀ M˙ v without damping: elastic and quadratic-velocity forces keep the energy.
-TYPED_TEST_P(BodyLaws, UndampedForceGivesBackTheStrainEnergy) {
+template <class Case>
+void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
   Bar undamped = this->bar;
   undamped.damping = {};
-  auto const elastic = TypeParam::body(undamped);
+  auto const elastic = Case::body(undamped);
   VecX const q = this->configuration(), v = this->speeds();
   double const power = this->template force_of<double>(elastic, q, v).dot(v);
   double const rate =
       slope_at_zero([&](double h) { return this->strain_energy(this->template moved<double>(q, v * h)); }, 3e-4);
   double by_mass = 0.0;  // with own rows ⊞ keeps them, which these speeds do not; v · Q_v of Euler parameters is zero
-  if constexpr (!OwnsRows<typename TestFixture::B>)
+  if constexpr (!OwnsRows<typename BodyLaws::B>)
     by_mass = slope_at_zero([&](double h) { return this->kinetic_energy(this->template moved<double>(q, v * h), v); }, 3e-4);
   EXPECT_NEAR(power, -rate - by_mass, 1e-8 * (1.0 + std::abs(rate) + std::abs(by_mass)));
 }
 
 // --- coordinates ----------------------------------------------------------------------------------------------
 
-TYPED_TEST_P(BodyLaws, PlusOfNothingChangesNothing) {
+template <class Case>
+void BodyLaws<Case>::plus_of_nothing_changes_nothing() {
   VecX const q = this->configuration(), zero = VecX::Zero(this->nv), v = this->speeds();
   EXPECT_LT((this->template moved<double>(q, zero) - q).norm(), 1e-15 * q.norm());
   EXPECT_EQ(this->rates(zero, v), v);
 }
 
 // While q ⊞ δ(t) moves with δ˙ = local_rate(δ, v), every point moves as the speeds v say.
-TYPED_TEST_P(BodyLaws, LocalRateMovesTheBodyWithItsSpeeds) {
+template <class Case>
+void BodyLaws<Case>::local_rate_moves_the_body_with_its_speeds() {
   VecX const q = this->configuration(), v = this->speeds();
   VecX const delta = this->vector(this->nv, 0.8), rate = this->rates(delta, v);
   VecX const now = this->template moved<double>(q, delta);
@@ -398,8 +465,9 @@ TYPED_TEST_P(BodyLaws, LocalRateMovesTheBodyWithItsSpeeds) {
   }
 }
 
-TYPED_TEST_P(BodyLaws, RigidVelocityIsTheFieldOfARigidMotion) {
-  if (!TestFixture::objective) GTEST_SKIP() << "it says that it is not objective";
+template <class Case>
+void BodyLaws<Case>::rigid_velocity_is_the_field_of_a_rigid_motion() {
+  if (!BodyLaws::objective) GTEST_SKIP() << "it says that it is not objective";
   VecX const q = this->configuration();
   Vec3 const v0 = this->velocity(), omega = this->spin();
   VecX const v = this->rigid_velocity(q, v0, omega);
@@ -414,7 +482,8 @@ TYPED_TEST_P(BodyLaws, RigidVelocityIsTheFieldOfARigidMotion) {
 // --- markers --------------------------------------------------------------------------------------------------
 
 // at(s, y) of the undeformed body is the bar's material point, its axes the bar's.
-TYPED_TEST_P(BodyLaws, ReferenceStandsWhereTheBarIsPlaced) {
+template <class Case>
+void BodyLaws<Case>::reference_stands_where_the_bar_is_placed() {
   VecX const q = this->reference(), rest = VecX::Zero(this->nv);
   Mat3 const axes = this->turned();
   Placement const& place = this->bar.placement;
@@ -429,16 +498,18 @@ TYPED_TEST_P(BodyLaws, ReferenceStandsWhereTheBarIsPlaced) {
     }
 }
 
-TYPED_TEST_P(BodyLaws, PointsOutsideTheBarAreRefused) {
+template <class Case>
+void BodyLaws<Case>::points_outside_the_bar_are_refused() {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   for (double const s : {-1e-6, this->length * 1.000001, nan}) EXPECT_THROW((void)this->body.at(s), InvalidInput) << s;
-  if constexpr (TestFixture::rolls) {
+  if constexpr (BodyLaws::rolls) {
     EXPECT_THROW((void)this->body.at(0.0, nan), InvalidInput);
   }
   EXPECT_NO_THROW((void)this->body.at(this->length * (1 + 1e-15)));  // rounding is forgiven
 }
 
-TYPED_TEST_P(BodyLaws, FrameIsOrthonormal) {
+template <class Case>
+void BodyLaws<Case>::frame_is_orthonormal() {
   VecX const q = this->configuration(), v = this->speeds();
   for (auto const& p : this->points()) {
     Mat3 const a = this->template see<double>(p, this->turned(), q, v).marker.frame.A;
@@ -447,7 +518,8 @@ TYPED_TEST_P(BodyLaws, FrameIsOrthonormal) {
   }
 }
 
-TYPED_TEST_P(BodyLaws, TwistIsJacobianTimesSpeeds) {
+template <class Case>
+void BodyLaws<Case>::twist_is_jacobian_times_speeds() {
   VecX const q = this->configuration(), v = this->speeds();
   for (auto const& p : this->points()) {
     auto const s = this->template see<double>(p, this->turned(), q, v);
@@ -457,7 +529,8 @@ TYPED_TEST_P(BodyLaws, TwistIsJacobianTimesSpeeds) {
 }
 
 // δr = J_r δ and δA = (J_ω δ)~ A under q ⊞ δ.
-TYPED_TEST_P(BodyLaws, JacobianIsTheDerivativeOfTheFrame) {
+template <class Case>
+void BodyLaws<Case>::jacobian_is_the_derivative_of_the_frame() {
   VecX const q = this->configuration(), rest = VecX::Zero(this->nv);
   Mat3 const axes = this->turned();
   for (auto const& p : this->points()) {
@@ -473,7 +546,8 @@ TYPED_TEST_P(BodyLaws, JacobianIsTheDerivativeOfTheFrame) {
 }
 
 // bias = d/dt (J v) with v˙ = 0, from the Jacobian and, on another path, from the frame's own twist.
-TYPED_TEST_P(BodyLaws, BiasIsTheAccelerationAtConstantSpeeds) {
+template <class Case>
+void BodyLaws<Case>::bias_is_the_acceleration_at_constant_speeds() {
   VecX const q = this->configuration(), v = this->speeds();
   VecXOf<Dual<1>> const passing = this->carried(q, this->rates(VecX::Zero(this->nv), v));
   for (auto const& p : this->points()) {
@@ -486,8 +560,9 @@ TYPED_TEST_P(BodyLaws, BiasIsTheAccelerationAtConstantSpeeds) {
   }
 }
 
-TYPED_TEST_P(BodyLaws, LoadStiffnessIsTheDerivativeOfThePulledWrench) {
-  constexpr int fixed = TestFixture::B::point_columns;
+template <class Case>
+void BodyLaws<Case>::load_stiffness_is_the_derivative_of_the_pulled_wrench() {
+  constexpr int fixed = BodyLaws::B::point_columns;
   Index const columns = point_columns(this->body, this->points().front());
   VecX const q = this->configuration();
   VecXOf<Dual<1>> const rest = VecXOf<Dual<1>>::Zero(this->nv);
@@ -513,8 +588,9 @@ TYPED_TEST_P(BodyLaws, LoadStiffnessIsTheDerivativeOfThePulledWrench) {
 
 // --- own rows -------------------------------------------------------------------------------------------------
 
-TYPED_TEST_P(BodyLaws, OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives) {
-  using B = typename TestFixture::B;
+template <class Case>
+void BodyLaws<Case>::own_rows_hold_at_the_reference_and_their_maps_are_derivatives() {
+  using B = typename BodyLaws::B;
   if constexpr (!OwnsRows<B>) {
     GTEST_SKIP() << "it owns no rows";
   } else {
@@ -531,40 +607,23 @@ TYPED_TEST_P(BodyLaws, OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives) {
     for (Index j = 0; j < this->nv; ++j) {
       VecXOf<Dual<1>> const moved = this->carried(q, VecX::Unit(this->nv, j));
       EXPECT_LT((epsilon_of(gap(moved)) - g.col(j)).norm(), 1e-14) << j;
-      Mat<Dual<1>, m, TestFixture::n> map;
+      Mat<Dual<1>, m, BodyLaws::n> map;
       this->body.template own_map<Dual<1>>(view(moved), map);
       stiffness.col(j) = epsilon_of(map).transpose() * lambda;
     }
     // γ = Φ̈ − G v̇ = d/dt(G v) at v˙ = 0
-    Mat<Dual<1>, m, TestFixture::n> moving;
+    Mat<Dual<1>, m, BodyLaws::n> moving;
     VecXOf<Dual<1>> const passing = this->carried(q, this->rates(VecX::Zero(this->nv), v));
     this->body.template own_map<Dual<1>>(view(passing), moving);
     Vec<double, m> gamma;
     this->body.template own_gamma<double>(view(q), view(v), gamma);
     EXPECT_LT((gamma - epsilon_of(moving) * v).norm(), 1e-13);
-    Mat<double, TestFixture::n, TestFixture::n> k;
+    Mat<double, BodyLaws::n, BodyLaws::n> k;
     this->body.own_stiffness(view(q), Vec<double, m>(lambda), k);
     EXPECT_LT(mismatch(k, stiffness), 1e-14);
     // a rigid motion keeps them
     EXPECT_LT((g * this->rigid_velocity(q, this->velocity(), this->spin())).norm(), 1e-14);
   }
 }
-
-REGISTER_TYPED_TEST_SUITE_P(BodyLaws, OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives, MassIsSymmetricAndPositive, KineticEnergyIsHalfVMV,
-                            InertiaIsMassTimesAcceleration,
-                            ConstantMassDoesNotDependOnTheConfiguration, TotalMassIsThatOfTheBar,
-                            WeightActsInTheMiddleOfTheBar, WeightIsTheGradientOfItsEnergy,
-                            ReferenceIsFreeOfForceAndEnergy,
-                            ElasticForceIsTheGradientOfTheStrainEnergy,
-                            TangentIsTheDerivativeOfTheForceByPosition,
-                            TangentIsTheDerivativeOfTheForceBySpeed,
-                            TangentMixesItsTwoPartsLinearly, UndampedForceGivesBackTheStrainEnergy,
-                            PlusOfNothingChangesNothing, LocalRateMovesTheBodyWithItsSpeeds,
-                            RigidVelocityIsTheFieldOfARigidMotion,
-                            ReferenceStandsWhereTheBarIsPlaced, PointsOutsideTheBarAreRefused,
-                            FrameIsOrthonormal, TwistIsJacobianTimesSpeeds,
-                            JacobianIsTheDerivativeOfTheFrame,
-                            BiasIsTheAccelerationAtConstantSpeeds,
-                            LoadStiffnessIsTheDerivativeOfThePulledWrench);
 
 }  // namespace polybody

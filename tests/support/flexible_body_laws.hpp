@@ -2,7 +2,7 @@
 /// \file
 /// What a body that deforms owes beyond BodyLaws; with the same case:
 ///
-///     INSTANTIATE_TYPED_TEST_SUITE_P(Lrvf, FlexibleBodyLaws, LrvfCase);
+///     bool const obeyed = obeys<LrvfCase, FlexibleBodyLaws>("Lrvf");
 
 #include "support/body_laws.hpp"
 
@@ -20,12 +20,25 @@ struct FlexibleBodyLaws : BodyLaws<Case> {
     return this->template force<double>(q, v) - this->template force_of<double>(undamped, q, v);
   }
   VecX internal_force(VecX const& q, VecX const& v) { return this->force_at_rest(q) + damping_force(q, v); }
+
+  void deformation_is_resisted_and_damped();
+  void rigid_motion_strains_nothing();
+  void internal_forces_are_in_equilibrium();
+  void rigid_velocity_is_not_damped();
+  void damping_takes_energy();
+
+  static constexpr char const* suite = "FlexibleBodyLaws";
+  static constexpr Law<FlexibleBodyLaws> laws[] = {
+      {"DeformationIsResistedAndDamped", &FlexibleBodyLaws::deformation_is_resisted_and_damped},
+      {"RigidMotionStrainsNothing", &FlexibleBodyLaws::rigid_motion_strains_nothing},
+      {"InternalForcesAreInEquilibrium", &FlexibleBodyLaws::internal_forces_are_in_equilibrium},
+      {"RigidVelocityIsNotDamped", &FlexibleBodyLaws::rigid_velocity_is_not_damped},
+      {"DampingTakesEnergy", &FlexibleBodyLaws::damping_takes_energy}};
 };
 
-TYPED_TEST_SUITE_P(FlexibleBodyLaws);
-
 // The cases of this suite are such that the other laws compare numbers, not zeros.
-TYPED_TEST_P(FlexibleBodyLaws, DeformationIsResistedAndDamped) {
+template <class Case>
+void FlexibleBodyLaws<Case>::deformation_is_resisted_and_damped() {
   VecX const q = this->configuration(), v = this->speeds();
   EXPECT_GT(this->strain_energy(q), 0.1);
   EXPECT_GT(this->force_at_rest(q).norm(), 1.0);
@@ -33,11 +46,12 @@ TYPED_TEST_P(FlexibleBodyLaws, DeformationIsResistedAndDamped) {
 }
 
 // The same bar placed elsewhere is a rigid motion of the reference.
-TYPED_TEST_P(FlexibleBodyLaws, RigidMotionStrainsNothing) {
+template <class Case>
+void FlexibleBodyLaws<Case>::rigid_motion_strains_nothing() {
   Bar elsewhere = this->bar;
   elsewhere.placement = this->planar ? Placement::planar(-7.0, 3.0, 2.5)
                                      : Placement::at({-7.0, 3.0, 5.0}, {1.0, -0.4, 2.0});
-  auto const other = TypeParam::body(elsewhere);
+  auto const other = Case::body(elsewhere);
   VecX q(this->nq);
   other.reference(mutable_view(q));
   double const size = this->c.EA + this->c.EI;
@@ -46,23 +60,26 @@ TYPED_TEST_P(FlexibleBodyLaws, RigidMotionStrainsNothing) {
 }
 
 // Internal forces, damping included, do no work in a rigid motion superposed on any state.
-TYPED_TEST_P(FlexibleBodyLaws, InternalForcesAreInEquilibrium) {
-  if (!TestFixture::objective) GTEST_SKIP() << "it says that it is not objective";
+template <class Case>
+void FlexibleBodyLaws<Case>::internal_forces_are_in_equilibrium() {
+  if (!FlexibleBodyLaws::objective) GTEST_SKIP() << "it says that it is not objective";
   VecX const q = this->configuration(), v = this->speeds();
   VecX const rigid = this->rigid_velocity(q, this->velocity(), this->spin());
   VecX const f = this->internal_force(q, v);
   EXPECT_LT(std::abs(f.dot(rigid)), 1e-13 * (1.0 + f.norm() * rigid.norm()));
 }
 
-TYPED_TEST_P(FlexibleBodyLaws, RigidVelocityIsNotDamped) {
-  if (!TestFixture::objective) GTEST_SKIP() << "it says that it is not objective";
+template <class Case>
+void FlexibleBodyLaws<Case>::rigid_velocity_is_not_damped() {
+  if (!FlexibleBodyLaws::objective) GTEST_SKIP() << "it says that it is not objective";
   VecX const q = this->configuration(), v = this->rigid_velocity(q, this->velocity(), this->spin());
   EXPECT_GT(v.norm(), 0.1);
   EXPECT_LT(this->damping_force(q, v).norm(), 1e-13 * (1.0 + this->force_at_rest(q).norm()));
 }
 
 // Damping takes vᵀ D v, D = −∂f/∂v, out of the motion; never less than nothing.
-TYPED_TEST_P(FlexibleBodyLaws, DampingTakesEnergy) {
+template <class Case>
+void FlexibleBodyLaws<Case>::damping_takes_energy() {
   for (int i = 0; i < 20; ++i) {
     VecX const q = this->configuration(), v = this->speeds();
     double const power = this->damping_force(q, v).dot(v);
@@ -74,9 +91,5 @@ TYPED_TEST_P(FlexibleBodyLaws, DampingTakesEnergy) {
     EXPECT_LT(mismatch(d, d.transpose()), 1e-14);
   }
 }
-
-REGISTER_TYPED_TEST_SUITE_P(FlexibleBodyLaws, DeformationIsResistedAndDamped,
-                            RigidMotionStrainsNothing, InternalForcesAreInEquilibrium,
-                            RigidVelocityIsNotDamped, DampingTakesEnergy);
 
 }  // namespace polybody

@@ -8,7 +8,7 @@
 ///       static Revolute geometry();
 ///       static Mate mate(Numbers&, double t);      // how b may stand against a at time t
 ///     };
-///     INSTANTIATE_TYPED_TEST_SUITE_P(Revolute, JointLaws, RevoluteCase);
+///     bool const obeyed = obeys<RevoluteCase, JointLaws>("Revolute");
 ///
 /// Derivatives are taken with dual numbers along motions of the frames, [δr; φ] in world axes. The geometry is
 /// asked through a few functions, so that the laws are compiled once (joint_laws_test.cpp) for all geometries.
@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "support/frames.hpp"
+#include "support/laws.hpp"
 
 namespace polybody {
 
@@ -106,7 +107,7 @@ AnyGeometry any_geometry() {
 }
 
 /// The laws themselves.
-struct JointLawsOf : testing::Test {
+struct JointLawsOf {
   static constexpr double tolerance = 1e-12;
   AnyGeometry const geometry;
   bool const planar = geometry.planar;
@@ -140,28 +141,18 @@ struct JointLawsOf : testing::Test {
 template <class Case>
 struct JointLaws : JointLawsOf {
   JointLaws() : JointLawsOf(any_geometry<Case>()) {}
+
+  static constexpr char const* suite = "JointLaws";
+  static constexpr Law<JointLaws> laws[] = {
+      {"ClosedFramesHaveNoGap", &JointLaws::closed_frames_have_no_gap},
+      {"MapsAreTheDerivativeOfTheGap", &JointLaws::maps_are_the_derivative_of_the_gap},
+      {"RateIsTheDerivativeOfTheGapByTime", &JointLaws::rate_is_the_derivative_of_the_gap_by_time},
+      {"GammaIsTheSecondDerivativeWithoutAccelerations", &JointLaws::gamma_is_the_second_derivative_without_accelerations},
+      {"WrenchesHaveThePowerOfTheMultipliers", &JointLaws::wrenches_have_the_power_of_the_multipliers},
+      {"WrenchesAreEqualAndOpposite", &JointLaws::wrenches_are_equal_and_opposite},
+      {"DoesNotSeeARigidMotionOfBothFrames", &JointLaws::does_not_see_a_rigid_motion_of_both_frames},
+      {"WrenchGradientIsTheDerivativeOfTheWrenches", &JointLaws::wrench_gradient_is_the_derivative_of_the_wrenches},
+      {"RowsAndFreedomsMakeUpAllMotions", &JointLaws::rows_and_freedoms_make_up_all_motions}};
 };
-
-TYPED_TEST_SUITE_P(JointLaws);
-
-TYPED_TEST_P(JointLaws, ClosedFramesHaveNoGap) { this->closed_frames_have_no_gap(); }
-TYPED_TEST_P(JointLaws, MapsAreTheDerivativeOfTheGap) { this->maps_are_the_derivative_of_the_gap(); }
-TYPED_TEST_P(JointLaws, RateIsTheDerivativeOfTheGapByTime) { this->rate_is_the_derivative_of_the_gap_by_time(); }
-TYPED_TEST_P(JointLaws, GammaIsTheSecondDerivativeWithoutAccelerations) {
-  this->gamma_is_the_second_derivative_without_accelerations();
-}
-TYPED_TEST_P(JointLaws, WrenchesHaveThePowerOfTheMultipliers) { this->wrenches_have_the_power_of_the_multipliers(); }
-TYPED_TEST_P(JointLaws, WrenchesAreEqualAndOpposite) { this->wrenches_are_equal_and_opposite(); }
-TYPED_TEST_P(JointLaws, DoesNotSeeARigidMotionOfBothFrames) { this->does_not_see_a_rigid_motion_of_both_frames(); }
-TYPED_TEST_P(JointLaws, WrenchGradientIsTheDerivativeOfTheWrenches) {
-  this->wrench_gradient_is_the_derivative_of_the_wrenches();
-}
-TYPED_TEST_P(JointLaws, RowsAndFreedomsMakeUpAllMotions) { this->rows_and_freedoms_make_up_all_motions(); }
-
-REGISTER_TYPED_TEST_SUITE_P(JointLaws, ClosedFramesHaveNoGap, MapsAreTheDerivativeOfTheGap,
-                            RateIsTheDerivativeOfTheGapByTime, GammaIsTheSecondDerivativeWithoutAccelerations,
-                            WrenchesHaveThePowerOfTheMultipliers, WrenchesAreEqualAndOpposite,
-                            DoesNotSeeARigidMotionOfBothFrames, WrenchGradientIsTheDerivativeOfTheWrenches,
-                            RowsAndFreedomsMakeUpAllMotions);
 
 }  // namespace polybody

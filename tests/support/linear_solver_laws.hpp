@@ -1,11 +1,13 @@
 #pragma once
 // What every linear solver must do, on the same matrices:
-//   INSTANTIATE_TYPED_TEST_SUITE_P(Name, LinearSolvers, testing::Types<...>);
+//   bool const obeyed = obeys<DenseLu, LinearSolvers>("DenseLu");
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
 #include <polybody/solvers/linear_solver.hpp>
+
+#include "support/laws.hpp"
 
 namespace polybody::test {
 
@@ -54,7 +56,7 @@ inline MatX plain(Blocks const& blocks, unsigned seed) {
 }
 
 template <class Solver>
-struct LinearSolvers : testing::Test {
+struct LinearSolvers {
   static Solver analysed(Blocks const& blocks) {
     PatternSink pattern;
     blocks.write(pattern, 1);
@@ -62,10 +64,22 @@ struct LinearSolvers : testing::Test {
     solver.analyse(blocks.size(), pattern.blocks);
     return solver;
   }
-};
-TYPED_TEST_SUITE_P(LinearSolvers);
 
-TYPED_TEST_P(LinearSolvers, SolveWhatFullPivotingSolves) {
+  void solve_what_full_pivoting_solves();
+  void name_a_column_of_a_singular_matrix();
+  void name_one_of_two_equal_joints();
+  void nothing_is_solved_at_once();
+
+  static constexpr char const* suite = "LinearSolvers";
+  static constexpr Law<LinearSolvers> laws[] = {
+      {"SolveWhatFullPivotingSolves", &LinearSolvers::solve_what_full_pivoting_solves},
+      {"NameAColumnOfASingularMatrix", &LinearSolvers::name_a_column_of_a_singular_matrix},
+      {"NameOneOfTwoEqualJoints", &LinearSolvers::name_one_of_two_equal_joints},
+      {"NothingIsSolvedAtOnce", &LinearSolvers::nothing_is_solved_at_once}};
+};
+
+template <class Solver>
+void LinearSolvers<Solver>::solve_what_full_pivoting_solves() {
   for (Index const bodies : {1, 4, 12}) {
     Blocks const blocks{bodies};
     auto solver = this->analysed(blocks);
@@ -85,7 +99,8 @@ TYPED_TEST_P(LinearSolvers, SolveWhatFullPivotingSolves) {
   }
 }
 
-TYPED_TEST_P(LinearSolvers, NameAColumnOfASingularMatrix) {
+template <class Solver>
+void LinearSolvers<Solver>::name_a_column_of_a_singular_matrix() {
   for (Index const bodies : {3, 8}) {
     Blocks const blocks{bodies};
     auto solver = this->analysed(blocks);
@@ -101,7 +116,8 @@ TYPED_TEST_P(LinearSolvers, NameAColumnOfASingularMatrix) {
 }
 
 // Two joints with the same rows: singular but for rounding, and one of the two is named.
-TYPED_TEST_P(LinearSolvers, NameOneOfTwoEqualJoints) {
+template <class Solver>
+void LinearSolvers<Solver>::name_one_of_two_equal_joints() {
   for (Index const bodies : {3, 20}) {
     Index const n = 6 * bodies, size = n + 10;
     std::srand(7);
@@ -117,7 +133,7 @@ TYPED_TEST_P(LinearSolvers, NameOneOfTwoEqualJoints) {
     };
     PatternSink pattern;
     write(pattern);
-    TypeParam solver;
+    Solver solver;
     solver.analyse(size, pattern.blocks);
     solver.begin();
     write(solver);
@@ -132,8 +148,9 @@ TYPED_TEST_P(LinearSolvers, NameOneOfTwoEqualJoints) {
   }
 }
 
-TYPED_TEST_P(LinearSolvers, NothingIsSolvedAtOnce) {
-  TypeParam solver;
+template <class Solver>
+void LinearSolvers<Solver>::nothing_is_solved_at_once() {
+  Solver solver;
   solver.analyse(0, {});
   solver.begin();
   EXPECT_EQ(solver.factor(), -1);
@@ -141,7 +158,5 @@ TYPED_TEST_P(LinearSolvers, NothingIsSolvedAtOnce) {
   solver.solve(VecX(), x);
   EXPECT_EQ(x.size(), 0);
 }
-
-REGISTER_TYPED_TEST_SUITE_P(LinearSolvers, SolveWhatFullPivotingSolves, NameAColumnOfASingularMatrix, NameOneOfTwoEqualJoints, NothingIsSolvedAtOnce);
 
 }  // namespace polybody::test

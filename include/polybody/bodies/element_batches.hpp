@@ -72,35 +72,56 @@ Index packed_until(B const& body, Index begin, Index end) {
   }
 }
 
+/// M a − force of the `pack_size` elements from `first` on; what stands at `columns` is the first one's.
+template <class B>
+void unbalance_of_pack(B const& body, Index columns, std::span<double const> q, std::span<double const> v, std::span<double const> a,
+                       std::array<Vec<double, B::element_columns>, pack_size>& each) {
+  constexpr int n = B::element_columns, stride = B::element_stride;
+  Vec<Pack<>, n> inertia, elastic;
+  body.template element_inertia<Pack<>>(side_by_side<n, stride>(a.data() + columns), inertia);
+  body.template element_force<Pack<>>(side_by_side<n, stride>(q.data() + columns), side_by_side<n, stride>(v.data() + columns), elastic);
+  for (int k = 0; k < n; ++k) inertia[k] -= elastic[k];
+  Vec<double, n> const zero = Vec<double, n>::Zero();
+  take_apart(inertia, zero, each);
+}
+
+/// The same of one element, into scratch.x.
+template <class B, StateScalar T>
+void unbalance_of_one(B const& body, Index e, std::span<T const> q, std::span<T const> v, std::span<T const> a, ForceScratch<B, T>& scratch) {
+  body.template inertia<T>(e, q, a, scratch.x);
+  body.template force<T>(e, q, v, scratch.force);
+  for (int k = 0; k < int(scratch.x.size()); ++k) scratch.x[k] -= scratch.force[k];
+}
+
+/// m + ck K + cd D of the elements of a pack.
+template <class B>
+void tangent_of_pack(B const& body, Index columns, std::span<double const> q, std::span<double const> v, double cd, double ck,
+                     Mat<double, B::element_columns, B::element_columns> const& m,
+                     std::array<Mat<double, B::element_columns, B::element_columns>, pack_size>& each) {
+  constexpr int n = B::element_columns, stride = B::element_stride;
+  Mat<Pack<>, n, n> packs;
+  body.template element_tangent<Pack<>>(side_by_side<n, stride>(q.data() + columns), side_by_side<n, stride>(v.data() + columns), ck, cd,
+                                        packs);
+  take_apart(packs, m, each);
+}
+
 }  // namespace detail
 
 /// Calls f(e, M a − force) for the elements [begin, end); `begin` is a multiple of `pack_size`, and `end` too unless it is the last.
 template <Body B, StateScalar T, class F>
 void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const> q, std::span<T const> v,
                         std::span<T const> a, ForceScratch<B, T>& scratch, F&& f) {
-  constexpr int n = B::element_columns;
-  Vec<T, n>&x = scratch.x, &force = scratch.force;
   if constexpr (AlikeElements<B> && std::same_as<T, double>) {
     Index const packed = detail::packed_until(body, begin, end);
-    Vec<double, n> const zero = Vec<double, n>::Zero();
-    std::array<Vec<double, n>, pack_size> each;
+    std::array<Vec<double, B::element_columns>, pack_size> each;
     for (; begin < packed; begin += pack_size) {
-      Index const first = body.first_column(begin);
-      constexpr int stride = B::element_stride;
-      Vec<Pack<>, n> inertia, elastic;
-      body.template element_inertia<Pack<>>(detail::side_by_side<n, stride>(a.data() + first), inertia);
-      body.template element_force<Pack<>>(detail::side_by_side<n, stride>(q.data() + first),
-                                          detail::side_by_side<n, stride>(v.data() + first), elastic);
-      for (int k = 0; k < n; ++k) inertia[k] -= elastic[k];
-      detail::take_apart(inertia, zero, each);
+      detail::unbalance_of_pack(body, body.first_column(begin), q, v, a, each);
       for (int l = 0; l < pack_size; ++l) f(begin + l, each[std::size_t(l)]);
     }
   }
   for (; begin < end; ++begin) {
-    body.template inertia<T>(begin, q, a, x);
-    body.template force<T>(begin, q, v, force);
-    for (int k = 0; k < int(x.size()); ++k) x[k] -= force[k];
-    f(begin, x);
+    detail::unbalance_of_one<B, T>(body, begin, q, v, a, scratch);
+    f(begin, scratch.x);
   }
 }
 
@@ -131,12 +152,7 @@ void for_each_element_tangent(B const& body, Index begin, Index end, std::span<d
     std::array<Mat<double, n, n>, pack_size> each;
     if (begin < packed) inertia(begin);
     for (; begin < packed; begin += pack_size) {
-      Index const first = body.first_column(begin);
-      constexpr int stride = B::element_stride;
-      Mat<Pack<>, n, n> packs;
-      body.template element_tangent<Pack<>>(detail::side_by_side<n, stride>(q.data() + first),
-                                            detail::side_by_side<n, stride>(v.data() + first), ck, cd, packs);
-      detail::take_apart(packs, m, each);
+      detail::tangent_of_pack(body, body.first_column(begin), q, v, cd, ck, m, each);
       for (int l = 0; l < pack_size; ++l) f(begin + l, each[std::size_t(l)]);
     }
   }

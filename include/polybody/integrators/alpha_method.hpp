@@ -20,6 +20,17 @@
 
 namespace polybody {
 
+/// What a step of the family computes with, of whatever model.
+struct AlphaVectors {
+  VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
+  VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
+  VecX back, rate;  ///< of a stabilised step: what μ moves, and a vector by rows
+
+  AlphaVectors(Index coordinates, Index speeds, Index rows)
+      : v0(VecX::Zero(speeds)), a0(v0), q(VecX::Zero(coordinates)), v(v0), vd(v0), a(v0), lambda(VecX::Zero(rows)), dq(v0), r(v0),
+        phi(lambda), rhs(VecX::Zero(speeds + rows)), y(rhs), jerk(v0), ahead(v0), back(v0), rate(lambda) {}
+};
+
 /// A member of the family: its coefficients, and how Newton's method is to solve its steps.
 struct AlphaMethod {
   char const* name;
@@ -31,10 +42,7 @@ struct AlphaMethod {
   bool stabilised;
 
   template <class M, class Solver>
-  struct Workspace {
-    VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
-    VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
-    VecX back, rate;  ///< of a stabilised step: what μ moves, and a vector by rows
+  struct Workspace : AlphaVectors {
     TangentSolver<M, Solver> solver;
     ForwardDynamics<M, Solver> forward;
     bool factored = false;
@@ -43,10 +51,7 @@ struct AlphaMethod {
     double h_factored = 0.0;
     int age = 0;  ///< steps that the factorisation has served
 
-    explicit Workspace(System<M>& s)
-        : v0(VecX::Zero(s.speeds())), a0(v0), q(VecX::Zero(s.coordinates())), v(v0), vd(v0), a(v0),
-          lambda(VecX::Zero(s.rows())), dq(v0), r(v0), phi(lambda), rhs(VecX::Zero(s.size())), y(rhs), jerk(v0),
-          ahead(v0), back(v0), rate(lambda), forward(s) {}
+    explicit Workspace(System<M>& s) : AlphaVectors(s.coordinates(), s.speeds(), s.rows()), forward(s) {}
 
     void analyse(System<M>& s, SecondOrder second) {
       solver.analyse(s, second, lambda);
@@ -87,22 +92,57 @@ struct AlphaMethod {
   }
 
  private:
+  /// v̇ changes by this much with a.
+  double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
+
+  /// a, v and Δq of a step of h from x where v̇ becomes w.vd.
+  void predict(State const& x, double h, AlphaVectors& w) const {
+    w.a = (alpha_f * x.a + (1.0 - alpha_f) * w.vd - alpha_m * w.a0) / (1.0 - alpha_m);
+    w.v = w.v0 + h * ((1.0 - gamma) * w.a0 + gamma * w.a);
+    w.dq = h * w.v0 + h * h * ((0.5 - beta) * w.a0 + beta * w.a);
+  }
+  /// … and when a changes by y, λ by the rest of it.
+  void apply(double h, bool two_sets, AlphaVectors& w) const {
+    auto const da = w.y.head(w.v.size());
+    w.a += da;
+    w.vd += mass() * da;
+    w.v += h * gamma * da;
+    w.dq += beta * h * h * da;
+    if (two_sets) w.dq += w.back;
+    w.lambda += w.y.tail(w.lambda.size());
+  }
+  /// A correction beside what is tolerated.
+  double measure(double h, bool two_sets, AlphaVectors const& w) const {
+    double const s = beta * h * h, n = std::sqrt(double(std::max<Index>(w.v.size(), 1)));
+    double const size = 1.0 + w.vd.norm() / n;
+    double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
+    double const change = w.y.head(w.v.size()).norm() + (two_sets ? w.back.norm() / s : 0.0);
+    return change / n / (tolerance * size + rounding);
+  }
+  /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
+  void right_hand_side(double h, bool two_sets, std::vector<Index> const& velocity_rows, AlphaVectors& w) const {
+    Index const nv = w.v.size(), rows = w.lambda.size();
+    w.rhs.head(nv) = -w.r;
+    if (two_sets) {
+      w.rhs.tail(rows) = w.rate / -(h * gamma);
+    } else {
+      w.rhs.tail(rows) = w.phi / -(beta * h * h);
+      for (Index const i : velocity_rows) w.rhs[nv + i] = w.rate[i] / -(h * gamma);
+    }
+  }
+
   /// Tangent and factorisation for steps of h where `system` was evaluated last. −1, or the unknown without a pivot.
   template <class M, class Solver>
   Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w) const {
-    double const mass = (1.0 - alpha_m) / (1.0 - alpha_f);
     w.h_factored = h;
     w.age = 0;
-    return w.solver.factor(system, {mass, h * gamma, beta * h * h},
+    return w.solver.factor(system, {mass(), h * gamma, beta * h * h},
                            w.second_order ? SecondOrder::included : SecondOrder::omitted, lambda);
   }
 
   /// One step from x; x changes only when Newton converged.
   template <class M, class Solver>
   StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, bool careful = false) const {
-    double const am = alpha_m, af = alpha_f, g = gamma, b = beta, s = b * h * h;
-    double const mass = (1.0 - am) / (1.0 - af);
-    Index const nv = system.speeds(), rows = system.rows();
     StepHistory history(x);
     if (careful) {
       w.vd = x.a;
@@ -110,10 +150,8 @@ struct AlphaMethod {
     } else {
       history.extrapolate(x, h, w.vd, w.lambda);
     }
-    w.a = (af * x.a + (1.0 - af) * w.vd - am * w.a0) / (1.0 - am);
-    w.v = w.v0 + h * ((1.0 - g) * w.a0 + g * w.a);
-    w.dq = h * w.v0 + h * h * ((0.5 - b) * w.a0 + b * w.a);
-    bool const two_sets = stabilised && rows > 0;
+    predict(x, h, w);
+    bool const two_sets = stabilised && system.rows() > 0;
     if (two_sets) w.forward.hold(system, x.q, x.v, x.t);
     if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
 
@@ -122,8 +160,7 @@ struct AlphaMethod {
       System<M>& system;
       State const& x;
       Workspace<M, Solver>& w;
-      double h, s, g, mass, look_ahead;
-      Index nv, rows;
+      double h, look_ahead;
       bool two_sets;
       Index bad = -1;
 
@@ -132,14 +169,8 @@ struct AlphaMethod {
         system.evaluate(w.q, w.v, x.t + h);
         system.residual(w.vd, w.lambda, w.r);
         system.violation(w.phi);
-        w.rhs.head(nv) = -w.r;
         if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
-        if (two_sets) {
-          w.rhs.tail(rows) = w.rate / -(h * g);
-        } else {
-          w.rhs.tail(rows) = w.phi / -s;
-          for (Index const i : system.velocity_rows()) w.rhs[nv + i] = w.rate[i] / -(h * g);
-        }
+        method.right_hand_side(h, two_sets, system.velocity_rows(), w);
         return w.rhs.allFinite();
       }
       bool refactor() {
@@ -156,36 +187,22 @@ struct AlphaMethod {
         w.solver.solve(system, w.rhs, w.y);
         bool const finite = w.y.allFinite();
         if (two_sets && finite) {
-          w.back = s * w.y.head(nv);
+          w.back = method.beta * h * h * w.y.head(system.speeds());
           system.rows_times(w.back, w.rate);
           w.phi += w.rate;
           for (Index const i : system.velocity_rows()) w.phi[i] = 0.0;  // μ is of positions
           w.forward.least_change(system, w.phi, w.back);
         }
-        double const n = std::sqrt(double(std::max<Index>(nv, 1)));
-        double const size = 1.0 + w.vd.norm() / n;
-        double const rounding = 30.0 * std::numeric_limits<double>::epsilon() *
-                                (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
-        double const change = w.y.head(nv).norm() + (two_sets ? w.back.norm() / s : 0.0);
-        return finite ? change / n / (method.tolerance * size + rounding)
-                      : std::numeric_limits<double>::quiet_NaN();
+        return finite ? method.measure(h, two_sets, w) : std::numeric_limits<double>::quiet_NaN();
       }
-      void apply() {
-        auto const da = w.y.head(nv);
-        w.a += da;
-        w.vd += mass * da;
-        w.v += h * g * da;
-        w.dq += s * da;
-        if (two_sets) w.dq += w.back;
-        w.lambda += w.y.tail(rows);
-      }
+      void apply() { method.apply(h, two_sets, w); }
     };
     NewtonOptions options = newton;
     options.always_refactor = options.always_refactor || careful;
     // what μ moves is large and gone at once: how it shrinks tells nothing of the rest
     options.foretell = options.foretell && !two_sets;
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
-    Problem problem{*this, system, x, w, h, s, g, mass, options.always_refactor ? 0.0 : 0.4, nv, rows, two_sets};
+    Problem problem{*this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets};
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular && !careful) {
       // try again with every term in the tangent, full Newton, and from the start without extrapolation
@@ -232,22 +249,26 @@ struct AlphaMethod {
   template <class M, class Solver>
   bool jerk_at_start(System<M>& system, State const& x, double h, Workspace<M, Solver>& w) const {
     w.jerk.setZero();
-    auto const acceleration_after = [&](double e, VecX& out) {
-      w.dq = e * x.v + 0.5 * e * e * x.a + e * e * e / 6.0 * w.jerk;
-      w.v = x.v + e * x.a + 0.5 * e * e * w.jerk;
+    auto const acceleration_after = [&](double e) {
+      follow(x, e, w);
       system.plus(x.q, w.dq, w.q);
-      w.forward.accelerations(system, w.q, w.v, x.t + e, out, w.lambda);
+      VecX a = x.a;
+      w.forward.accelerations(system, w.q, w.v, x.t + e, a, w.lambda);
+      return a;
     };
-    VecX half = x.a, full = x.a, quarter = x.a, followed = x.a;
-    acceleration_after(0.25 * h, quarter);
-    acceleration_after(0.5 * h, half);
-    acceleration_after(h, full);
-    VecX const fine = (4.0 * quarter - half - 3.0 * x.a) / (0.5 * h);
-    VecX const coarse = (4.0 * half - full - 3.0 * x.a) / h;
-    w.jerk = fine;
-    if (!((fine - coarse).norm() <= 0.5 * fine.norm()) || !fine.allFinite()) return false;
-    acceleration_after(h, followed);
-    return (followed - full).norm() <= 0.5 * h * fine.norm();
+    VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);
+    return differences_agree(x.a, quarter, half, full, h, w.jerk) &&
+           (acceleration_after(h) - full).norm() <= 0.5 * h * w.jerk.norm();
+  }
+  /// Δq and v after e seconds with w.jerk.
+  static void follow(State const& x, double e, AlphaVectors& w) {
+    w.dq = e * x.v + 0.5 * e * e * x.a + e * e * e / 6.0 * w.jerk;
+    w.v = x.v + e * x.a + 0.5 * e * e * w.jerk;
+  }
+  static bool differences_agree(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h, VecX& jerk) {
+    jerk = (4.0 * quarter - half - 3.0 * now) / (0.5 * h);
+    VecX const coarse = (4.0 * half - full - 3.0 * now) / h;
+    return (jerk - coarse).norm() <= 0.5 * jerk.norm() && jerk.allFinite();
   }
 };
 

@@ -32,7 +32,7 @@ struct ConservingStep {
                   "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of AncfLinear, say.");
     VecX q, v, vd, lambda, r, phi, rhs, y;
     StepSecants<M> secants;
-    Solver solver;
+    TangentSolver<M, Solver> solver;
     ForwardDynamics<M, Solver> forward;
     bool factored = false;
     double theta = 1.0;
@@ -54,9 +54,7 @@ struct ConservingStep {
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
     StepHistory::reset(x);
     w.secants.evaluate(system, x.q, x.q, x.t, h, chi);
-    PatternSink pattern;
-    w.secants.tangent(system, scale(h), pattern);
-    w.solver.analyse(system.size(), pattern.blocks);
+    w.solver.analyse(system, 1, [&](PatternSink& sink) { w.secants.tangent(system, scale(h), sink); });
     w.factored = false;
     (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
   }
@@ -74,7 +72,7 @@ struct ConservingStep {
   template <class M, class Solver>
   Index refactor(System<M>& system, double h, Workspace<M, Solver>& w) const {
     w.h_factored = h;
-    return write_and_factor(w.solver, [&](Solver& sink) { w.secants.tangent(system, scale(h), sink); });
+    return w.solver.factor(system, [&](Solver& sink) { w.secants.tangent(system, scale(h), sink); });
   }
 
   template <class M, class Solver>
@@ -102,7 +100,7 @@ struct ConservingStep {
         return bad < 0;
       }
       double solve() {
-        w.solver.solve(w.rhs, w.y);
+        w.solver.solve(system, w.rhs, w.y);
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));
         double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
         return w.y.allFinite() ? w.y.head(nv).norm() / n / (method.tolerance * (1.0 + w.vd.norm() / n) + rounding)

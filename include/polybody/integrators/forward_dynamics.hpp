@@ -16,6 +16,14 @@ struct RowFeedback {
   double position = 0.0;  ///< [1/s²]
 };
 
+namespace detail {
+[[noreturn]] inline void throw_singular(double t, std::string const& who) {
+  throw LinearSolverSingular("The equations of motion have no unique acceleration at t = " + number(t) +
+                             " s; the pivot is lost at " + who +
+                             ". Look for a joint that repeats another, or a body without inertia that is free to move.");
+}
+}  // namespace detail
+
 template <class M, LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:
@@ -127,7 +135,7 @@ class ForwardDynamics {
   void factor(System<M>& system) {
     if (M::constant_mass && system.rows() == 0 && factored_) return;
     Index const bad = solver_.factor(system, {.mass = 1.0}, SecondOrder::omitted, zero_lambda_);
-    if (bad >= 0) singular(system, system.name_of_equation(bad));
+    if (bad >= 0) detail::throw_singular(system.time(), system.name_of_equation(bad));
     factored_ = true;
   }
 
@@ -137,15 +145,7 @@ class ForwardDynamics {
     rhs_.tail(system.rows()) = phi_scale * phi_;
     if (r_scale == 0.0) rhs_.head(system.speeds()).setZero();
     solver_.solve(system, rhs_, x_);
-    for (Index i = 0; i < x_.size(); ++i)
-      if (!std::isfinite(x_[i])) singular(system, system.name_of(i));
-  }
-
-  [[noreturn]] static void singular(System<M> const& system, std::string const& name) {
-    throw LinearSolverSingular(
-        "The equations of motion have no unique acceleration at t = " + number(system.time()) +
-        " s; the pivot is lost at " + name +
-        ". Look for a joint that repeats another, or a body without inertia that is free to move.");
+    if (Index const i = detail::first_not_finite(x_); i >= 0) detail::throw_singular(system.time(), system.name_of(i));
   }
 
   TangentSolver<M, Solver> solver_;

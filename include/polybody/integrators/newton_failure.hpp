@@ -4,27 +4,33 @@
 
 namespace polybody::detail {
 
-/// Throws what says why Newton's method failed in the step of integrator `name` to time t. `bad` is the equation without a
-/// pivot, −1 where none is known; `rhs` is the right-hand side, of one stage after another.
+/// Throws what says why Newton's method failed in the step of `integrator` to time t; `who` is to blame.
 /// \throws LinearSolverSingular, NonFinite, NewtonStalled.
-template <class M>
-[[noreturn]] void throw_stalled(std::string const& name, System<M> const& system, double t, NewtonReport const& report, Index bad,
-                                VecX const& rhs) {
+[[noreturn]] inline void throw_stalled(std::string const& integrator, double t, NewtonReport const& report, std::string const& who) {
   std::string const when = " at t = " + number(t) + " s";
-  auto const owner = [&](Index i) { return system.name_of(i % system.size()); };
   if (report.result == NewtonResult::singular)
-    throw LinearSolverSingular(name + ": the tangent is singular" + when + ", first at " +
-                               system.name_of_equation(std::max<Index>(bad, 0) % system.equations()) +
+    throw LinearSolverSingular(integrator + ": the tangent is singular" + when + ", first at " + who +
                                ". Look for a joint that repeats another, or a free body without inertia.");
-  if (report.result == NewtonResult::not_finite) {
-    Index i = 0;
-    while (i < rhs.size() && std::isfinite(rhs[i])) ++i;
-    throw NonFinite(name + ": a force on " + owner(std::min(i, rhs.size() - 1)) + " is not finite" + when +
+  if (report.result == NewtonResult::not_finite)
+    throw NonFinite(integrator + ": a force on " + who + " is not finite" + when +
                     ". Look at the forces applied to it, or take a smaller step.");
+  throw NewtonStalled(integrator + ": Newton's method did not converge" + when + " after " + std::to_string(report.iterations) +
+                      " iterations (contraction " + number(report.theta) + "). Take a smaller step; the state is as before it.");
+}
+
+/// The same for a system. `bad` is the equation without a pivot, −1 where none is known; `rhs` is the right-hand side, of one
+/// stage after another.
+template <class M>
+[[noreturn]] void throw_stalled(std::string const& integrator, System<M> const& system, double t, NewtonReport const& report, Index bad,
+                                VecX const& rhs) {
+  std::string who;
+  if (report.result == NewtonResult::singular) {
+    who = system.name_of_equation(std::max<Index>(bad, 0) % system.equations());
+  } else if (report.result == NewtonResult::not_finite) {
+    Index const i = first_not_finite(rhs);
+    who = system.name_of((i < 0 ? rhs.size() - 1 : i) % system.size());
   }
-  throw NewtonStalled(name + ": Newton's method did not converge" + when + " after " + std::to_string(report.iterations) +
-                      " iterations (contraction " + number(report.theta) +
-                      "). Take a smaller step; the state is as before it.");
+  throw_stalled(integrator, t, report, who);
 }
 
 }  // namespace polybody::detail

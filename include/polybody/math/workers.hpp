@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <concepts>
 #include <exception>
 #include <thread>
 #include <vector>
@@ -12,6 +13,21 @@
 #include <polybody/math/types.hpp>
 
 namespace polybody {
+
+/// The body of a loop over [begin, end), whatever its type: what shares a loop is compiled once.
+class LoopBody {
+ public:
+  /// Of f, which must outlive it.
+  template <class F>
+    requires(!std::same_as<std::remove_cvref_t<F>, LoopBody>)
+  explicit LoopBody(F&& f)
+      : body_(&f), call_([](void const* body, Index begin, Index end) { (*static_cast<std::remove_reference_t<F> const*>(body))(begin, end); }) {}
+  void operator()(Index begin, Index end) const { call_(body_, begin, end); }
+
+ private:
+  void const* body_;
+  void (*call_)(void const*, Index, Index);
+};
 
 class Workers {
  public:
@@ -32,11 +48,10 @@ class Workers {
 
   /// Calls f(begin, end) for parts of [0, n) and returns when all are done. Parts begin at multiples of four and have no fewer than
   /// `least` entries, so a short loop stays with the caller. An exception of the first part that throws is passed on.
-  template <class F>
-  void over(Index n, Index least, F&& f) {
+  void over(Index n, Index least, LoopBody const& f) {
     Index const parts = std::clamp<Index>(n / std::max<Index>(least, 1), 1, size());
     if (parts == 1) {
-      f(Index(0), n);
+      f(0, n);
       return;
     }
     auto const part = [&](int i) {
@@ -55,6 +70,10 @@ class Workers {
         std::fill(thrown_.begin(), thrown_.end(), nullptr);
         std::rethrow_exception(first);
       }
+  }
+  template <class F>
+  void over(Index n, Index least, F const& f) {
+    over(n, least, LoopBody(f));
   }
 
  private:
@@ -94,11 +113,12 @@ class Workers {
 
 /// f over [0, n), by `workers` where there are any.
 template <class F>
-void share(Workers* workers, Index n, Index least, F&& f) {
+void share(Workers* workers, Index n, Index least, F const& f) {
+  LoopBody const body(f);
   if (workers)
-    workers->over(n, least, f);
+    workers->over(n, least, body);
   else
-    f(Index(0), n);
+    body(0, n);
 }
 
 }  // namespace polybody

@@ -11,7 +11,7 @@
 #include <polybody/math/time_laws.hpp>
 #include <polybody/math/type_list.hpp>
 #include <polybody/system/linear_rows.hpp>
-#include <polybody/system/pools.hpp>
+#include <polybody/system/markers.hpp>
 #include <polybody/system/state.hpp>
 
 namespace polybody {
@@ -51,7 +51,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Bs...> B>
   BodyHandle<B> add(B const& body, std::string name = "") {
     auto& pool = std::get<detail::BodyPool<B>>(bodies_);
-    if (name.empty()) name = "body " + std::to_string(count_bodies_ + 1);
+    name = detail::name_or_next(std::move(name), "body", std::size_t(count_bodies_));
     pool.entries.push_back({body, name, coordinates_, speeds_});
     if constexpr (OwnsRows<B>) {
       pool.entries.back().row = rows_;
@@ -89,24 +89,15 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                   "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
                   "Revolute about its tangent, with the cable's marker second.");
     auto& pool = std::get<std::vector<detail::JointEntry<J>>>(joints_);
-    if (name.empty()) name = std::string(G::name) + " " + std::to_string(pool.size() + 1);
+    name = detail::name_or_next(std::move(name), G::name, pool.size());
     require_own(a.model, name);
     require_own(b.model, name);
-    Mat3 triad;
-    try {
-      triad = joint.geometry.triad();
-    } catch (InvalidInput const& e) {
-      throw InvalidInput("\"" + name + "\": " + e.what());
-    }
-    if constexpr (requires { joint.geometry.check(name); }) joint.geometry.check("\"" + name + "\"");
-    if constexpr (AddsForce<P>) joint.policy.check("\"" + name + "\"");
+    Mat3 const triad = detail::checked_triad(joint, name);
     Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
     if constexpr (!LinearInCoordinates<P> && B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)
-      if (axes_b.col(0).cross(triad.col(2)).norm() > 1e-6)
-        throw InvalidInput("\"" + name + "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
-                           "reference configuration.");
-    require_told(a, Asks::needs, name);
-    require_told(b, needs_of_second<Asks>(), name);
+      detail::require_along_tangent(axes_b, triad, name);
+    detail::require_told(a, Asks::needs, name);
+    detail::require_told(b, needs_of_second<Asks>(), name);
     Index const pa = publish_at(a, axes_a.transpose() * triad);
     Index const pb = publish_at(b, axes_b.transpose() * triad);
     detail::JointEntry<J> entry{joint, pa, pb, -1, name};
@@ -146,13 +137,13 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     static_assert(((Ms::observes >= F::needs) && ...),
                   "This force needs more than the marker tells; a moment needs a marker with a frame or a tangent.");
     auto& pool = std::get<std::vector<detail::ForceEntry<F>>>(forces_);
-    if (name.empty()) name = "force " + std::to_string(pool.size() + 1);
+    name = detail::name_or_next(std::move(name), "force", pool.size());
     force.check("\"" + name + "\"");
     detail::ForceEntry<F> entry{force, {}, name};
     std::size_t k = 0;
     std::apply([&](auto const&... m) {
       (require_own(m.model, name), ...);
-      (require_told(m, F::needs, name), ...);
+      (detail::require_told(m, F::needs, name), ...);
       ((entry.markers[k++] = publish_at(m, Mat3::Identity())), ...);
     }, markers);
     pool.push_back(std::move(entry));
@@ -229,9 +220,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
 
   /// \throws InvalidInput when `serial` is another model's.
   void require_own(std::uint64_t serial, std::string const& what) const {
-    if (serial != serial_)
-      throw InvalidInput("\"" + what + "\" was given a marker or handle of another model; take it from a body "
-                         "added to this one.");
+    if (serial != serial_) detail::refuse_marker_of_another_model(what);
   }
 
  private:
@@ -244,29 +233,12 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return ++last;
   }
 
-  /// \throws InvalidInput where a point of the body tells less than its others do.
-  template <class B>
-  static void require_told(Marker<B> const& m, Observes needs, std::string const& what) {
-    if constexpr (requires { B::observes_at(m.point); })
-      if (B::observes_at(m.point) < needs)
-        throw InvalidInput("\"" + what + "\" needs axes, but a point that slides along a body has none. Use a joint or force that "
-                           "needs a point only, such as Spherical or planar::Revolute.");
-  }
-
   template <class B>
   Mat3 reference_axes(Marker<B> const& m) const {
     if constexpr (std::is_same_v<B, Ground>) {
       return m.point.axes;
     } else {
-      B const& body = std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)].body;
-      std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0);
-      std::vector<double> jacobian(6 * v.size());
-      body.reference(q);
-      Published<double> out;
-      out.jacobian = jacobian.data();
-      body.template publish<double>(m.point, Mat3::Identity(), std::span<double const>(q),
-                                    std::span<double const>(v), out);
-      return out.frame.A;
+      return detail::reference_axes(std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)].body, m.point);
     }
   }
 
@@ -275,8 +247,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     if constexpr (std::is_same_v<B, Ground>) {
       ground_.push_back({{m.point.origin, m.point.axes * axes}, markers_});
     } else {
-      std::get<detail::BodyPool<B>>(bodies_).markers.push_back({m.body, m.point, axes, markers_});
-      jacobian_size_ += 6 * point_columns(std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)].body, m.point);
+      jacobian_size_ += detail::add_marker(std::get<detail::BodyPool<B>>(bodies_), m, axes, markers_);
     }
     return markers_++;
   }

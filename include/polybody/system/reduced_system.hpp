@@ -158,8 +158,8 @@ class System<Reduced<M>> {
       reduction_.tree().spread_forces(held, narrow_, a_);
       out.setZero();
       for (Index i = 0; i < a_.size(); ++i)
-        if (Index const to = map_.run(i, 1); to >= 0) out[to] = a_[i];
-      for (Index i = 0; i < rows(); ++i) out[map_.run(a_.size() + reduction_.rows_that_stay()[std::size_t(i)], 1)] = rhs[speeds() + i];
+        if (Index const to = equation_of(i); to >= 0) out[to] = a_[i];
+      for (Index i = 0; i < rows(); ++i) out[equation_of_row(i)] = rhs[speeds() + i];
     }
   }
   void gather(Held& held, VecX const& solution, VecX& out) const {
@@ -168,11 +168,11 @@ class System<Reduced<M>> {
     } else {
       a_.setZero();
       for (Index i = 0; i < a_.size(); ++i)
-        if (Index const from = map_.run(i, 1); from >= 0) a_[i] = solution[from];
+        if (Index const from = equation_of(i); from >= 0) a_[i] = solution[from];
       reduction_.copy_speeds_in(a_, narrow_);
       reduction_.tree().gather_rates(held, a_, false, narrow_);
       out.head(speeds()) = narrow_;
-      for (Index i = 0; i < rows(); ++i) out[speeds() + i] = solution[map_.run(a_.size() + reduction_.rows_that_stay()[std::size_t(i)], 1)];
+      for (Index i = 0; i < rows(); ++i) out[speeds() + i] = solution[equation_of_row(i)];
     }
   }
 
@@ -211,7 +211,7 @@ class System<Reduced<M>> {
   std::string name_of_equation(Index i) const {
     if constexpr (solves_densely || solves_by_bodies) return name_of(i);
     for (Index k = 0; k < whole_.size(); ++k)
-      if (map_.run(k, 1) == i) return whole_.name_of(k);
+      if (equation_of(k) == i) return whole_.name_of(k);
     return "unknown";
   }
   /// Adds the names of linear joints whose rows repeat others.
@@ -221,8 +221,12 @@ class System<Reduced<M>> {
       if (names.empty() || names.back() != name) names.push_back(std::move(name));
     }
   }
-  void require_finite_force(VecX const& x) const { detail::require_finite_force(*this, x); }
-  void require_finite_rows(VecX const& x) const { detail::require_finite_rows(*this, x); }
+  void require_finite_force(VecX const& x) const {
+    if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_force_not_finite(name_of(i), time());
+  }
+  void require_finite_rows(VecX const& x) const {
+    if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_motion_not_finite(name_of(speeds() + i), time());
+  }
 
  private:
   /// Calls f(body, its place) for every body that no joint carries.
@@ -307,7 +311,11 @@ class System<Reduced<M>> {
     for (Index i = 0; i < whole_.rows(); ++i)
       if (!linear[std::size_t(i)]) targets[std::size_t(nv + i)].push_back({equation_speeds_ + equation_rows_++, 1.0});
     map_ = UnknownMap(std::move(targets));
+    for (Index i = 0; i < whole_.size(); ++i) equation_of_.push_back(map_.run(i, 1));
   }
+  /// Of a whole unknown, −1 for one that is spread or left out; and of a row that stays.
+  Index equation_of(Index i) const { return equation_of_[std::size_t(i)]; }
+  Index equation_of_row(Index i) const { return equation_of(whole_.speeds() + reduction_.rows_that_stay()[std::size_t(i)]); }
 
   void prepare_dense() {
     std::vector<Index> row_of(std::size_t(whole_.rows()), -1);
@@ -338,6 +346,7 @@ class System<Reduced<M>> {
   VecX held_r_;                                    // r of the last residual, for multipliers
   Index equation_speeds_ = 0, equation_rows_ = 0;
   UnknownMap map_;
+  std::vector<Index> equation_of_;
   MappedBlocks mapped_;
   DenseReduction dense_;
 };

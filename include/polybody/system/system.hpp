@@ -10,20 +10,26 @@
 namespace polybody {
 
 namespace detail {
-template <class S>
-void require_finite_force(S const& system, VecX const& x) {
+/// The first entry that is NaN or infinite, or −1.
+inline Index first_not_finite(VecX const& x) {
   for (Index i = 0; i < x.size(); ++i)
-    if (!std::isfinite(x[i]))
-      throw NonFinite("A force on " + system.name_of(i) + " is not finite at t = " + number(system.time()) +
-                      " s. Look at the forces applied to it and at the state before.");
+    if (!std::isfinite(x[i])) return i;
+  return -1;
 }
-template <class S>
-void require_finite_rows(S const& system, VecX const& x) {
-  for (Index i = 0; i < x.size(); ++i)
-    if (!std::isfinite(x[i]))
-      throw NonFinite("The motion at " + system.name_of(system.speeds() + i) + " is not finite at t = " + number(system.time()) +
-                      " s. Look at the state before, or take a smaller step.");
+[[noreturn]] inline void throw_force_not_finite(std::string const& who, double t) {
+  throw NonFinite("A force on " + who + " is not finite at t = " + number(t) +
+                  " s. Look at the forces applied to it and at the state before.");
 }
+[[noreturn]] inline void throw_motion_not_finite(std::string const& who, double t) {
+  throw NonFinite("The motion at " + who + " is not finite at t = " + number(t) +
+                  " s. Look at the state before, or take a smaller step.");
+}
+/// Whose unknown it is, as messages say it.
+struct Owner {
+  char const* kind = nullptr;
+  std::string const* name = nullptr;
+  std::string text() const { return name ? kind + (" \"" + *name) + '"' : "unknown"; }
+};
 }  // namespace detail
 
 /// A model with its scratch. `evaluate` sets the state at which everything else is asked.
@@ -110,30 +116,29 @@ class System {
 
   /// Name of the body that owns speed i, or of the joint that owns row i − nv.
   std::string name_of(Index i) const {
-    std::string name = "unknown";
-    if (i < speeds()) {
-      model_->for_each_body([&](auto const& e) {
-        if (i >= e.v0 && i < e.v0 + e.body.speeds()) name = "body \"" + e.name + "\"";
-      });
-    } else {
-      Index const row = i - speeds();
-      model_->for_each_body([&](auto const& e) {
-        using B = std::decay_t<decltype(e.body)>;
-        if constexpr (OwnsRows<B>)
-          if (row >= e.row && row < e.row + B::own_rows) name = "body \"" + e.name + "\"";
-      });
+    detail::Owner owner;
+    Index const row = i - speeds();
+    model_->for_each_body([&](auto const& e) {
+      using B = std::decay_t<decltype(e.body)>;
+      if (row < 0 && i >= e.v0 && i < e.v0 + e.body.speeds()) owner = {"body", &e.name};
+      if constexpr (OwnsRows<B>)
+        if (row >= 0 && row >= e.row && row < e.row + B::own_rows) owner = {"body", &e.name};
+    });
+    if (row >= 0)
       model_->for_each_joint([&](auto const& e) {
-        if (e.row >= 0 && row >= e.row && row < e.row + e.rows)
-          name = "joint \"" + e.name + "\"";
+        if (e.row >= 0 && row >= e.row && row < e.row + e.rows) owner = {"joint", &e.name};
       });
-    }
-    return name;
+    return owner.text();
   }
 
   /// \throws NonFinite naming body and time when an entry of x (by speeds) is NaN or infinite.
-  void require_finite_force(VecX const& x) const { detail::require_finite_force(*this, x); }
+  void require_finite_force(VecX const& x) const {
+    if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_force_not_finite(name_of(i), t_);
+  }
   /// \throws NonFinite naming joint and time when an entry of x (by rows) is NaN or infinite.
-  void require_finite_rows(VecX const& x) const { detail::require_finite_rows(*this, x); }
+  void require_finite_rows(VecX const& x) const {
+    if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_motion_not_finite(name_of(speeds() + i), t_);
+  }
 
   /// Unknowns of a linear system of equations; those that stand for speeds come first. Here they are those of a time step.
   Index equations() const { return size(); }

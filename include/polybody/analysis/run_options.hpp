@@ -1,0 +1,74 @@
+#pragma once
+/// \file
+/// What a run is asked for, and what it reports.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polybody/integrators/integrator.hpp>
+
+namespace polybody {
+
+/// Something that happens when `value` passes through zero (in either direction). The step ends there.
+struct Event {
+  std::string name;
+  std::function<double(State const&)> value;
+  bool stops = false;        ///< ends the run
+  double tolerance = 1e-10;  ///< in time [s]
+};
+
+struct RunOptions {
+  Required<double> until;             ///< [s]
+  Required<double> step;              ///< [s]; the first one for an integrator that controls its step
+  std::optional<double> largest_step = {};  ///< [s], for an integrator that controls its step
+  std::vector<double> corners = {};   ///< times at which a step must end, beside those of the drives and loads
+  std::vector<Event> events = {};
+  double assembly_tolerance = 1e-8;   ///< of the start
+  bool minimum_norm = false;          ///< every state gets the multipliers of `MinimumNorm`, for a factorisation each
+  int threads = 1;                    ///< that share the loops of an evaluation; for large models, results stay the same bits
+
+  /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
+  void check(double start) const {
+    require_positive(step, "simulate: the step");
+    if (largest_step) require_positive(*largest_step, "simulate: the largest step");
+    if (!(until >= start) || !std::isfinite(until))
+      throw InvalidInput("simulate: the end " + number(until) + " s lies before the start " + number(start) + " s.");
+    for (Event const& event : events) {
+      if (!event.value) throw InvalidInput("simulate: the event \"" + event.name + "\" has no value.");
+      require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");
+    }
+  }
+};
+
+/// What a run has cost so far, and which events it met.
+struct RunReport {
+  long steps = 0;
+  long iterations = 0;
+  long factorisations = 0;
+  long evaluations = 0;
+  long rejected = 0;
+  StepReport last = {};
+  struct Met {
+    std::string name;
+    double time;
+  };
+  std::vector<Met> events = {};
+  bool stopped = false;  ///< by an event before `until`
+  /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share the
+  /// load is not determined.
+  std::vector<std::string> redundant = {};
+  std::vector<std::string> warnings = {};  ///< of the start, in sentences: a step beyond the limit of an explicit integrator
+
+  void add(StepReport const& step) {
+    ++steps;
+    iterations += step.iterations;
+    factorisations += step.factorisations;
+    evaluations += step.evaluations;
+    rejected += step.rejected;
+    last = step;
+  }
+};
+
+}  // namespace polybody

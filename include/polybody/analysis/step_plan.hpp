@@ -1,0 +1,59 @@
+#pragma once
+/// \file
+/// Where steps end: on the grid, at corners of drives and loads, at the end of the run.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace polybody {
+
+/// The corners of a run and what is left of it.
+class StepPlan {
+ public:
+  /// The next step: where it may at most go, its length, whether it goes there, and whether a corner is there.
+  struct Next {
+    double target, h;
+    bool lands, jumps;
+  };
+
+  StepPlan() = default;
+  /// Of a run from `start` to `until` with steps of about `step` [s]; corners outside of it are left out.
+  StepPlan(double start, double until, double step, std::vector<double> corners)
+      : until_(until), step_(step), corners_(std::move(corners)) {
+    std::erase_if(corners_, [&](double t) { return !(t > start) || !(t <= until); });
+    std::sort(corners_.begin(), corners_.end());
+  }
+
+  /// The clock at t, which leaves behind the corners up to now and those that only rounding sets apart from it (0.3 and 0.1 + 0.2
+  /// are one).
+  double pass(double t) {
+    double const crumb = 1e-9 * step_ + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
+    while (next_ < corners_.size() && corners_[next_] <= t + crumb) t = std::max(t, corners_[next_++]);
+    return until_ - t <= crumb ? until_ : t;
+  }
+
+  /// The step from t that would best be h long.
+  Next next(double t, double h) const {
+    bool const corner = next_ < corners_.size();
+    double const target = corner ? corners_[next_] : until_, left = target - t;
+    // rather a longer step than a crumb left over: over its square, rows would be rounding errors
+    bool const lands = 1.01 * h >= left;
+    return {target, !lands ? h : corner ? until_just_before(target, t) : left, lands, lands && corner};
+  }
+
+ private:
+  /// A law that changes at a corner still holds its old value just before it: the length of a step that ends there.
+  static double until_just_before(double corner, double t) {
+    double h = std::nextafter(corner, t) - t;
+    while (t + h >= corner) h = std::nextafter(h, 0.0);
+    return h;
+  }
+
+  double until_ = 0.0, step_ = 0.0;
+  std::vector<double> corners_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace polybody

@@ -1,0 +1,69 @@
+#pragma once
+/// \file
+/// What a model works out of markers and joints as they are added. None of it depends on the model's type.
+
+#include <utility>
+
+#include <polybody/system/pools.hpp>
+
+namespace polybody::detail {
+
+/// The name, or the next one of its kind where it is empty.
+inline std::string name_or_next(std::string name, char const* kind, std::size_t before) {
+  return name.empty() ? kind + (" " + std::to_string(before + 1)) : std::move(name);
+}
+
+/// The joint's axes as parameters tell, after all of them are checked. \throws InvalidInput naming the joint.
+template <class J>
+Mat3 checked_triad(J const& joint, std::string const& name) {
+  std::string const quoted = "\"" + name + "\"";
+  if constexpr (requires { joint.geometry.check(name); }) joint.geometry.check(quoted);
+  if constexpr (AddsForce<typename J::PolicyType>) joint.policy.check(quoted);
+  try {
+    return joint.geometry.triad();
+  } catch (InvalidInput const& e) {
+    throw InvalidInput(quoted + ": " + e.what());
+  }
+}
+
+/// Axes (3×3) of a body at a point, as placed.
+template <class B>
+Mat3 reference_axes(B const& body, typename B::Point const& point) {
+  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0);
+  std::vector<double> jacobian(6 * v.size());
+  body.reference(q);
+  Published<double> out;
+  out.jacobian = jacobian.data();
+  body.template publish<double>(point, Mat3::Identity(), std::span<double const>(q), std::span<double const>(v), out);
+  return out.frame.A;
+}
+
+/// A marker of a body goes into the pool. Returns the size of its Jacobian.
+template <class B>
+Index add_marker(BodyPool<B>& pool, Marker<B> const& m, Mat3 const& axes, Index published) {
+  pool.markers.push_back({m.body, m.point, axes, published});
+  return 6 * point_columns(pool.entries[std::size_t(m.body)].body, m.point);
+}
+
+/// \throws InvalidInput where a point of the body tells less than its others do.
+template <class B>
+void require_told(Marker<B> const& m, Observes needs, std::string const& what) {
+  if constexpr (requires { B::observes_at(m.point); })
+    if (B::observes_at(m.point) < needs)
+      throw InvalidInput("\"" + what + "\" needs axes, but a point that slides along a body has none. Use a joint or force that "
+                         "needs a point only, such as Spherical or planar::Revolute.");
+}
+
+/// \throws InvalidInput where a second marker that knows its tangent only does not lie along the joint's axis.
+inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::string const& name) {
+  if (axes.col(0).cross(triad.col(2)).norm() > 1e-6)
+    throw InvalidInput("\"" + name + "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
+                       "reference configuration.");
+}
+
+/// \throws InvalidInput.
+[[noreturn]] inline void refuse_marker_of_another_model(std::string const& what) {
+  throw InvalidInput("\"" + what + "\" was given a marker or handle of another model; take it from a body added to this one.");
+}
+
+}  // namespace polybody::detail

@@ -1,0 +1,58 @@
+#pragma once
+/// \file
+/// Laws that many types obey, each a test. A suite is a template with its laws as members and a list of them:
+///
+///     template <class Case>
+///     struct SpringLaws {
+///       void force_falls_with_length();
+///       static constexpr Law<SpringLaws> laws[] = {{"ForceFallsWithLength", &SpringLaws::force_falls_with_length}};
+///     };
+///     bool const steel_obeys = obeys<SteelCase, SpringLaws>("Steel");  // registers the test Steel/SpringLaws.ForceFallsWithLength
+///
+/// GoogleTest's typed tests do the same with a class for each law and type: an eighth of all the code of these tests was that.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+namespace polybody {
+
+template <class Laws>
+struct Law {
+  char const* name;
+  void (Laws::*holds)();
+};
+
+/// A test of one law: made anew, so that laws do not see one another.
+class LawTest : public testing::Test {
+ public:
+  explicit LawTest(std::function<void()> law) : law_(std::move(law)) {}
+
+ private:
+  void TestBody() override { law_(); }
+  std::function<void()> law_;
+};
+
+inline void register_law(std::string const& suite, char const* law, char const* file, int line, std::function<void()> holds) {
+  testing::RegisterTest(suite.c_str(), law, nullptr, nullptr, file, line,
+                        [holds = std::move(holds)]() -> LawTest* { return new LawTest(holds); });
+}
+
+template <class Laws>
+void register_laws(std::string const& suite, char const* file, int line) {
+  for (Law<Laws> const& law : Laws::laws)
+    register_law(suite, law.name, file, line, [holds = law.holds] {
+      Laws laws;
+      (laws.*holds)();
+    });
+}
+
+/// Registers the laws of each suite for a case, under its name.
+template <class Case, template <class> class... Suites>
+bool obeys(std::string const& name, char const* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  (register_laws<Suites<Case>>(name + "/" + Suites<Case>::suite, file, line), ...);
+  return true;
+}
+
+}  // namespace polybody
