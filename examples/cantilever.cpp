@@ -125,9 +125,8 @@ void comparison(Options const& o) {
       BeamCase{o}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
       Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralizedAlpha>{"ANCF Green", {}, implicit},
       Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralizedAlpha>{"ANCF engin.", {}, implicit});
-  std::cout << "\nThe clamped beam under the tip moment, three formulations:\n\n" << c << '\n';
-  draw(histories(c, 0, "Tip of the clamped beam under 30 kN m"), o.out / "comparison_tip_x", !o.no_plot);
-  draw(histories(c, 1, "Tip of the clamped beam under 30 kN m"), o.out / "comparison_tip_y", !o.no_plot);
+  std::cout << "\nThe clamped beam under the tip moment, three formulations:\n\n";
+  report(c, o.out / "comparison", !o.no_plot);
 }
 
 }  // namespace

@@ -86,14 +86,10 @@ inline void draw(Figure const& figure, std::filesystem::path const& stem, bool p
   std::cout << "  " << stem.string() << (drawn == Drawn::png ? ".png" : ".gp") << '\n';
 }
 
-// One figure of outputs over time, a curve for each formulation.
-inline Figure histories(Comparison const& c, std::size_t output, std::string const& title) {
-  Figure f{.title = title, .x_label = "t [s]", .y_label = c.runs.front().output_names[output]};
-  int color = 0;
-  for (ComparedRun const& run : c.runs)
-    f.curves.push_back({.x = run.times, .y = run.outputs[output], .label = run.name,
-                        .style = color == 0 ? "lines" : "dashed", .color = color++});
-  return f;
+// The table of a comparison on the terminal, and all of it as files in a folder of its own.
+inline void report(Comparison const& c, std::filesystem::path const& folder, bool plot) {
+  std::cout << c << '\n';
+  for (std::filesystem::path const& file : write_report(c, folder, plot)) std::cout << "  " << file.string() << '\n';
 }
 
 }  // namespace chapter2

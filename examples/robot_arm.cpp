@@ -116,7 +116,6 @@ struct ArmCase {
                          Vec3 const r = position(m, x, tip);
                          return std::cos(psi) * r[1] - std::sin(psi) * r[0];
                        }});
-    outputs.push_back({"total energy [J]", [](M const& m, State const& x) { return energy(m, x).total(); }});
     return Scenario<M>{std::move(arm.model), start, {.until = o.until > 0.0 ? o.until : 1.5 * ramp, .step = o.step},
                        std::move(outputs)};
   }
@@ -132,18 +131,8 @@ void comparison(Options const& o) {
       Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralizedAlpha>{"ANCF Green", {}, implicit},
       Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralizedAlpha>{"ANCF engin.", {}, implicit},
       Formulation<planar::Rigid, Constraint, GeneralizedAlpha>{"rigid", {}, implicit});
-  std::cout << "\nThe arm of medium stiffness, 1.5 rad in 4.5 s, under five formulations:\n\n" << c << '\n';
-  std::vector<std::string> heads{"t [s]"};
-  std::vector<std::vector<double>> columns{c.runs.front().times};
-  for (ComparedRun const& run : c.runs)
-    for (std::size_t i = 0; i < run.outputs.size(); ++i) {
-      heads.push_back(run.name + ": " + run.output_names[i]);
-      columns.emplace_back();
-      for (double t : columns.front()) columns.back().push_back(detail::interpolate(run.times, run.outputs[i], t));
-    }
-  write_table(o.out / "comparison.csv", heads, columns);
-  draw(histories(c, 2, "Lag of the tip behind the prescribed angle, medium stiffness, fast ramp"), o.out / "comparison_lag", !o.no_plot);
-  draw(histories(c, 3, "Energy of the arm: constant once the drive stands still (4.5 s)"), o.out / "comparison_energy", !o.no_plot);
+  std::cout << "\nThe arm of medium stiffness, 1.5 rad in 4.5 s, under five formulations:\n\n";
+  report(c, o.out / "comparison", !o.no_plot);
 }
 
 template <class B>

@@ -18,6 +18,7 @@
 #include <polybody/analysis/sliders.hpp>
 #include <polybody/analysis/surface.hpp>
 #include <polybody/analysis/visual.hpp>
+#include <polybody/analysis/work_precision.hpp>
 #include <polybody/bodies/ancf_beam.hpp>
 #include <polybody/bodies/ancf_cable.hpp>
 #include <polybody/bodies/lrvf.hpp>
@@ -44,6 +45,7 @@
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
+#include <polybody/io/comparison_report.hpp>
 #include <polybody/io/csv.hpp>
 #include <polybody/io/plot.hpp>
 #include <polybody/io/progress.hpp>

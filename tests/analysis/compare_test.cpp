@@ -1,12 +1,18 @@
 #include <polybody/analysis/compare.hpp>
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <sstream>
+
+#include <polybody/analysis/work_precision.hpp>
 #include <polybody/bodies/planar/rigid.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 
-#include <gtest/gtest.h>
-
-#include <sstream>
+#include "support/exact_pendulum.hpp"
+#include "support/refusal.hpp"
 
 namespace compare_test {
 
@@ -14,6 +20,8 @@ using namespace polybody;
 
 // A rod of 1 m and 1 kg on a pin, released horizontally.
 struct Pendulum {
+  std::vector<std::string> outputs = {"tip y [m]"};  ///< all of them the same
+
   template <class F>
   auto operator()(F const& f) const {
     using Pin = Joint<planar::Revolute, typename F::PolicyType>;
@@ -24,10 +32,23 @@ struct Pendulum {
     model.connect(Pin{{}, f.policy}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
     State const start = model.reference_state();
     auto const tip = rod.at(1.0);
-    return Scenario<M>{std::move(model), start, {.until = 0.5, .step = 1e-3},
-                       {{"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }}}};
+    Scenario<M> scenario{std::move(model), start, {.until = 0.5, .step = 1e-3}};
+    for (std::string const& name : outputs)
+      scenario.outputs.push_back({name, [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }});
+    if (f.name == "of its own mind") scenario.outputs.pop_back();
+    return scenario;
   }
 };
+
+// CASES.md J1 (Chrono/ADAMS-type rod pendulum): phi(0.5) from the downward vertical
+constexpr double end_angle = -0.090352089956;
+// θ¨ = −(3 g/2 L) sin θ from θ = 90°
+double exact_tip(double t) {
+  static ExactPendulum const pendulum(0.5 * std::numbers::pi, 1.5 * 9.81);
+  return -std::cos(pendulum(t).angle);
+}
+
+double nowhere(double) { return std::nan(""); }
 
 using Ideal = Formulation<planar::Rigid, Constraint, GeneralizedAlpha>;
 using Stiff = Formulation<planar::Rigid, Penalty, GeneralizedAlpha>;
@@ -43,18 +64,32 @@ TEST(Compare, RunsOneCaseUnderSeveralFormulations) {
   EXPECT_EQ(c.runs[1].census.degrees_of_freedom, 3);
   EXPECT_EQ(c.runs[0].census.rows, 2);
   EXPECT_EQ(c.runs[1].census.rows, 0);
+  // The pin carries 5/2 m g cos φ along the rod and 1/4 m g sin φ across it: m g/4 at the start, but nothing yet by a penalty.
+  double const mg = 9.81, held = mg * std::hypot(2.5 * std::cos(end_angle), 0.25 * std::sin(end_angle));
   for (ComparedRun const& run : c.runs) {
     EXPECT_EQ(run.run.steps, 500);
-    EXPECT_EQ(run.times.size(), 501u);
-    // CASES.md J1 (Chrono/ADAMS-type rod pendulum): phi(0.5) = -0.090352089956 from the downward vertical
-    EXPECT_NEAR(run.outputs[0].back(), -std::cos(0.090352089956), 2e-5) << run.name;
+    ASSERT_EQ(run.times.size(), 501u);
+    EXPECT_NEAR(run.outputs[0].back(), -std::cos(end_angle), 2e-5) << run.name;
     EXPECT_NEAR(run.energy_end - run.energy_start, 0.0, 2e-3) << run.name;
-    EXPECT_NEAR(run.peak_joint_force, 24.5, 0.2) << run.name;  // 2.5 m g at the bottom
+    EXPECT_NEAR(run.peak_joint_force, 2.5 * mg, 0.2) << run.name;
+    ASSERT_EQ(run.joint_forces.size(), 501u);
+    EXPECT_NEAR(run.joint_forces.front(), &run == &c.runs[1] ? 0.0 : 0.25 * mg, 1e-9) << run.name;
+    EXPECT_NEAR(run.joint_forces.back(), held, 2e-3 * held) << run.name;
+    // the middle has fallen by ½ cos φ
+    ASSERT_EQ(run.energies.size(), 501u);
+    EXPECT_NEAR(run.energies.back().kinetic, 0.5 * mg * std::cos(end_angle), 2e-3) << run.name;
+    EXPECT_NEAR(run.energies.back().potential(), -0.5 * mg * std::cos(end_angle), 2e-3) << run.name;
+    EXPECT_EQ(run.energies.front().total(), 0.0) << run.name;
+    ASSERT_EQ(run.violations.size(), 501u);
+    double largest = 0.0;
+    for (Violation const& v : run.violations) largest = std::max(largest, v.velocity);
+    EXPECT_EQ(run.violation.velocity, largest) << run.name;
   }
   EXPECT_EQ(c.runs[0].difference[0], 0.0);
   EXPECT_GT(c.runs[1].difference[0], 0.0);
   EXPECT_LT(c.runs[1].difference[0], 1e-4);
   EXPECT_LT(c.runs[0].violation.position, 1e-12);
+  EXPECT_EQ(c.runs[1].violation.position, 0.0);
   EXPECT_LT(c.runs[2].violation.velocity, 1e-10);
 }
 
@@ -63,8 +98,24 @@ TEST(Compare, TypesAloneDoWhereEveryNumberHasADefault) {
   ASSERT_EQ(c.runs.size(), 2u);
   std::ostringstream text;
   text << c;
-  for (char const* word : {"degrees of freedom", "Newton iterations a step", "peak joint force [N]", "end: tip y [m]"})
+  for (char const* word : {"GeneralizedAlpha", "RungeKutta4", "degrees of freedom", "Newton iterations a step",
+                           "peak joint force [N]", "end: tip y [m]"})
     EXPECT_NE(text.str().find(word), std::string::npos) << word;
+}
+
+TEST(Compare, TellsRunsOfTheSameNameApart) {
+  std::vector<ComparedRun> runs(2);
+  runs[0].name = "ideal";
+  runs[1].name = "ideal (2)";
+  EXPECT_EQ(detail::name_of(Ideal{"ideal"}, runs), "ideal (3)");
+  EXPECT_EQ(detail::name_of(Ideal{}, runs), "GeneralizedAlpha");
+}
+
+TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {
+  EXPECT_TRUE(has(refusal([] { compare(Pendulum{{"tip", "tip"}}, Ideal{"ideal"}); }), "\"ideal\" need names, each its own"));
+  EXPECT_TRUE(has(refusal([] { compare(Pendulum{{""}}, Ideal{}); }), "need names"));
+  EXPECT_TRUE(has(refusal([] { compare(Pendulum{}, Ideal{"ideal"}, Ideal{"of its own mind"}); }),
+                  "\"of its own mind\" has other outputs than \"ideal\""));
 }
 
 TEST(Compare, InterpolatesHistories) {
@@ -73,6 +124,75 @@ TEST(Compare, InterpolatesHistories) {
   EXPECT_DOUBLE_EQ(detail::interpolate(t, y, 2.0), 4.0);
   EXPECT_DOUBLE_EQ(detail::interpolate(t, y, -1.0), 0.0);
   EXPECT_DOUBLE_EQ(detail::interpolate(t, y, 9.0), 6.0);
+  EXPECT_EQ(detail::interpolate({2.0}, {7.0}, 2.0), 7.0);
+}
+
+// A cubic is met exactly, also where two times nearly coincide and one of the values there is wrong by rounding.
+TEST(Compare, InterpolatesByCubicsThatSkipCrumbs) {
+  auto const cubic = [](double t) { return 1.0 + t * (2.0 - t * (3.0 - t)); };
+  std::vector<double> const t{0.0, 0.4, 1.0, 1.0 + 1e-12, 2.0, 2.5, 3.5};
+  std::vector<double> y;
+  for (double const x : t) y.push_back(cubic(x));
+  y[2] += 1e-15;
+  for (double const x : {0.2, 0.7, 1.5, 2.2, 2.4, 3.0}) EXPECT_NEAR(detail::interpolate(t, y, x), cubic(x), 1e-13) << x;
+  EXPECT_EQ(detail::interpolate(t, y, 2.5), y[5]);
+}
+
+TEST(WorkPrecision, ErrorOfASecondOrderMethodFallsWithTheSquareOfTheStep) {
+  Ideal const ideal{"ideal", {}, {.rho_inf = 0.9}};
+  std::vector<double> const steps{2e-2, 1e-2, 5e-3, 2.5e-3};
+  WorkCurve const whole = work_precision(Pendulum{}, ideal, steps, exact_tip);
+  WorkCurve const end = work_precision(Pendulum{}, ideal, steps, -std::cos(end_angle));
+  EXPECT_EQ(whole.name, "ideal");
+  EXPECT_EQ(whole.output, "tip y [m]");
+  ASSERT_EQ(whole.points.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(whole.points[i].setting, steps[i]);
+    EXPECT_EQ(whole.points[i].steps, std::lround(0.5 / steps[i]));
+    EXPECT_EQ(whole.points[i].failure, "");
+    EXPECT_LE(end.points[i].error, whole.points[i].error * (1.0 + 1e-6));
+    if (i > 0) {
+      EXPECT_NEAR(std::log2(whole.points[i - 1].error / whole.points[i].error), 2.0, 0.2) << steps[i];
+      EXPECT_NEAR(std::log2(end.points[i - 1].error / end.points[i].error), 2.0, 0.2) << steps[i];
+    }
+  }
+  // CPU time counts in ticks of the clock, but eight times the steps cannot be free
+  EXPECT_GT(whole.points[3].cpu, 0.0);
+}
+
+TEST(WorkPrecision, TakesTheRunOfAnotherIntegratorForTheTruth) {
+  Ideal const ideal{"ideal", {}, {.rho_inf = 0.9}};
+  RecordedOutput const fine = reference_run(Pendulum{}, Explicit{}, 1.1e-3);
+  EXPECT_EQ(fine.times.size(), 456u);  // 0.5 s/1.1 ms, and the start
+  double const by_run = work_precision(Pendulum{}, ideal, {7e-3}, fine).points[0].error;
+  double const exact = work_precision(Pendulum{}, ideal, {7e-3}, exact_tip).points[0].error;
+  EXPECT_NEAR(by_run, exact, 1e-5 * exact);
+}
+
+TEST(WorkPrecision, ToleranceIsTheSettingOfAnIntegratorThatControlsItsStep) {
+  DormandPrince<> adaptive;
+  adaptive.absolute_tolerance = 1e-3 * adaptive.relative_tolerance;
+  RunOptions options{.until = 1.0, .step = 0.1};
+  detail::set_accuracy(adaptive, options, 1e-5);
+  EXPECT_EQ(adaptive.relative_tolerance, 1e-5);
+  EXPECT_NEAR(adaptive.absolute_tolerance, 1e-8, 1e-22);
+  EXPECT_EQ(double(options.step), 0.1);
+}
+
+TEST(WorkPrecision, GoesOnWhereOneRunFails) {
+  Ideal const hasty{"hasty", {}, {.rho_inf = 0.9, .newton = {.max_iterations = 2}}};
+  WorkCurve const curve = work_precision(Pendulum{}, hasty, {0.25, 1e-3}, exact_tip);
+  EXPECT_TRUE(has(curve.points[0].failure, "Newton"));
+  EXPECT_EQ(curve.points[1].failure, "");
+  EXPECT_LT(curve.points[1].error, 1e-5);
+  WorkCurve const lost = work_precision(Pendulum{}, Ideal{}, {0.05}, nowhere);
+  EXPECT_TRUE(has(lost.points[0].failure, "The error of tip y [m] is not finite at t = 0 s"));
+}
+
+TEST(WorkPrecision, RefusesWhatIsNoSetting) {
+  EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {}, 0.0); }), "give one step or tolerance"));
+  EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {0.0}, 0.0); }), "a step or tolerance must be positive"));
+  EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {1e-3}, 0.0, 1); }), "there is no output 1; the case has 1"));
 }
 
 }  // namespace compare_test

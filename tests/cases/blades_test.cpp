@@ -36,6 +36,9 @@ TEST(KnifeEdge, GoesAlongACycloidAcrossAnIncline) {
     EXPECT_LT((x.q - place).norm(), 2e-6 * precise) << integrator.name;
     EXPECT_LT((x.v - speed).norm(), 2e-6 * precise) << integrator.name;
     EXPECT_LT((reaction(model, x, blade).f - 2.0 * m * p * s * Vec3(-s, c, 0)).norm(), 1e-4 * precise) << integrator.name;
+    System system(model);
+    system.evaluate(x.q, x.v, x.t);
+    EXPECT_NEAR(peak_joint_force(system, x), 2.0 * m * p * std::abs(s), 1e-4 * precise) << integrator.name;
   });
 }
 

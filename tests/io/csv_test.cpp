@@ -62,6 +62,17 @@ TEST_F(CsvFiles, WritesHeadAndRowsOfEveryKind) {
   EXPECT_EQ(text_of(file), "t [s],x [m]\n0,1.5\n0.1,-2\n1e+300,-0\n");
 }
 
+TEST_F(CsvFiles, WritesATextBeforeNumbers) {
+  Csv csv(file, {"quantity", "soft", "stiff"});
+  std::vector<double> const values{1.0, 0.1}, few{1.0};
+  csv.row("tip, x [m]", values);
+  csv.row("", values);
+  EXPECT_TRUE(has(refusal([&] { csv.row("mass [kg]", few); }), "row 3: 2 values for 3 columns"));
+  csv.close();
+  EXPECT_EQ(text_of(file), "quantity,soft,stiff\n\"tip, x [m]\",1,0.1\n,1,0.1\n");
+  EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }), "'tip, x [m]' is not a finite number"));
+}
+
 TEST_F(CsvFiles, NumbersReadBackBitForBit) {
   std::vector<double> values{0.0,
                              -0.0,

@@ -49,11 +49,16 @@ template <class A, class B>
 void expect_same(A const& held, B const& free, double reaction_tolerance) {
   EXPECT_LT((held.x.q - free.x.q).norm(), 1e-9);
   EXPECT_LT((held.x.v - free.x.v).norm(), 1e-6);
+  double most = 0.0;
   for (std::size_t i = 0; i < held.pins.size(); ++i) {
     Vec3 const f = reaction(held.model, held.x, held.pins[i]).f;
     EXPECT_GT(f.norm(), 0.5);
     EXPECT_LT((f - reaction(free.model, free.x, free.pins[i]).f).norm(), reaction_tolerance * f.norm());
+    most = std::max(most, f.norm());
   }
+  System system(free.model);
+  system.evaluate(free.x.q, free.x.v, free.x.t);
+  EXPECT_NEAR(peak_joint_force(system, free.x), most, reaction_tolerance * most);
 }
 
 TEST(AncfLinear, PinsACableInThePlane) {
@@ -157,6 +162,9 @@ TEST(AncfLinear, HoldsInStaticsWhatABalanceSays) {
   EXPECT_LT((at_root.m - Vec3(0, 0, -p)).norm(), 1e-4 * p);  // about the support: −P L, L = 1 m
   EXPECT_LT((between.f - Vec3(0, -p, 0)).norm(), 1e-6 * p);
   EXPECT_LT((between.m - Vec3(0, 0, -0.5 * p)).norm(), 1e-4 * p);
+  System system(model);
+  system.evaluate(x.q, x.v, x.t);
+  EXPECT_NEAR(peak_joint_force(system, x), p, 1e-6 * p);
 }
 
 TEST(AncfLinear, RowsThatRepeatOthersAreNamed) {

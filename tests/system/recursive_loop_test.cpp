@@ -75,12 +75,17 @@ TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
   EXPECT_EQ(census(open.model).degrees_of_freedom, 2);
   Vec3 const force = reaction(held.model, held.x, held.last).f;
   EXPECT_GT(force.norm(), 1.0);
+  System held_system(held.model);
+  held_system.evaluate(held.x.q, held.x.v, held.x.t);
+  double const most = peak_joint_force(held_system, held.x);
+  EXPECT_GE(most, force.norm());
   auto const expect_same = [&](auto const& other) {
     EXPECT_LT((held.x.q - other.x.q).norm(), 1e-8);
     EXPECT_LT((held.x.a - other.x.a).norm(), 1e-6 * held.x.a.norm());
     EXPECT_LT((force - reaction(other.model, other.x, other.last).f).norm(), 1e-6 * force.norm());
     System system(other.model);
     EXPECT_LT(violation(system, other.x).position, 1e-11);
+    EXPECT_NEAR(peak_joint_force(system, other.x), most, 1e-6 * most);
   };
   expect_same(open);
   expect_same(dense);

@@ -104,6 +104,20 @@ Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& 
   });
 }
 
+/// The largest force of any joint on its second body [N], whatever its policy; `system` must have been evaluated at x.
+template <class M>
+double peak_joint_force(System<M> const& system, State const& x) {
+  double peak = 0.0;
+  for_each_gap(system.model(), system.data(), [&](auto const& e, auto const& gap) {
+    constexpr int m = std::decay_t<decltype(gap)>::rows;
+    Vec6 const w = detail::wrench_of<m>(gap.Gb, detail::multiplier(e, gap, system.data(), x.lambda));
+    peak = std::max(peak, w.head<3>().norm());
+  });
+  for (LinearRows const& rows : system.model().linear_rows())
+    peak = std::max(peak, x.lambda.segment(rows.row, rows.positions).norm());
+  return peak;
+}
+
 /// Counts of a model as thesis Table 3.4 makes them: a unit quaternion counts four coordinates and one
 /// constraint. What policies eliminate is not counted.
 struct Census {

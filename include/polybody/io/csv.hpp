@@ -37,23 +37,15 @@ class Csv {
   /// Adds one row, a number for each column. Throws InvalidInput, and writes nothing, if the count
   /// differs or a number is not finite; IoError if the system refuses the bytes.
   void row(std::span<double const> values) {
-    auto const where = [&] {
-      return "file '" + file_.name() + "', row " + std::to_string(rows_ + 1);
-    };
-    if (values.size() != columns_.size())
-      throw InvalidInput(where() + ": " + std::to_string(values.size()) + " values for " +
-                         std::to_string(columns_.size()) + " columns");
     line_.clear();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!std::isfinite(values[i]))
-        throw InvalidInput(where() + ", column '" + columns_[i] + "': the value is not finite (" +
-                           number(values[i]) + ")");
-      char digits[32];
-      line_.append(digits, std::to_chars(digits, digits + sizeof digits, values[i]).ptr) += ',';
-    }
-    if (!line_.empty()) line_.back() = '\n';
-    file_.write(line_);
-    ++rows_;
+    write_row(values, 0);
+  }
+
+  /// The same with a text in the first column: `row("mass [kg]", numbers)`. `read_csv` reads numbers
+  /// only and refuses such a table.
+  void row(std::string_view text, std::span<double const> values) {
+    line_ = (text.empty() ? "" : quoted(std::string(text))) + ',';
+    write_row(values, 1);
   }
 
   /// The same for `row({t, x, y})`.
@@ -83,6 +75,26 @@ class Csv {
       if (!seen.insert(head).second)
         throw InvalidInput("file '" + file.string() + "': two columns are called '" + head + "'");
     }
+  }
+
+  /// Completes `line_`, which holds the texts of the first `texts` columns.
+  void write_row(std::span<double const> values, std::size_t texts) {
+    auto const where = [&] {
+      return "file '" + file_.name() + "', row " + std::to_string(rows_ + 1);
+    };
+    if (values.size() + texts != columns_.size())
+      throw InvalidInput(where() + ": " + std::to_string(values.size() + texts) + " values for " +
+                         std::to_string(columns_.size()) + " columns");
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i]))
+        throw InvalidInput(where() + ", column '" + columns_[i + texts] +
+                           "': the value is not finite (" + number(values[i]) + ")");
+      char digits[32];
+      line_.append(digits, std::to_chars(digits, digits + sizeof digits, values[i]).ptr) += ',';
+    }
+    line_.back() = '\n';
+    file_.write(line_);
+    ++rows_;
   }
 
   static std::string quoted(std::string const& head) {

@@ -1,0 +1,208 @@
+#pragma once
+/// \file
+/// A comparison, and what accuracy costs, as files: tables, histories and figures.
+
+#include <polybody/analysis/work_precision.hpp>
+#include <polybody/io/csv.hpp>
+#include <polybody/io/plot.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// \throws InvalidInput unless there are runs, each with whole histories and the outputs of the first.
+template <class = void>  // compiled where it is used
+void check(Comparison const& c, std::string const& what) {
+  if (c.runs.empty()) throw InvalidInput(what + ": the comparison has no runs. Give `compare` a formulation.");
+  for (ComparedRun const& run : c.runs) {
+    std::size_t const n = run.times.size(), outputs = run.output_names.size();
+    bool whole = n > 0 && run.violations.size() == n && run.energies.size() == n && run.joint_forces.size() == n &&
+                 run.outputs.size() == outputs && run.difference.size() == outputs &&
+                 run.output_names == c.runs.front().output_names;
+    for (auto const& history : run.outputs) whole = whole && history.size() == n;
+    if (!whole)
+      throw InvalidInput(what + ": the run \"" + run.name +
+                         "\" lacks times, or its histories and outputs are not as many as its times and the first run's outputs. "
+                         "Take it from `compare`.");
+  }
+}
+
+/// `name` as part of a file name: letters, digits and signs beyond ASCII stay, all else becomes one '_' for a group.
+template <class = void>
+std::string file_word(std::string const& name) {
+  std::string word;
+  for (char const c : name) {
+    bool const stays = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c & 0x80) != 0;
+    if (stays)
+      word += c;
+    else if (!word.empty() && word.back() != '_')
+      word += '_';
+  }
+  if (word.ends_with('_')) word.pop_back();
+  return word;
+}
+
+/// One curve for each run over the run's times: the first broad, the others dashed upon it.
+template <class = void>
+Figure over_time(Comparison const& c, std::string const& title, std::string const& y_label,
+                 std::function<double(ComparedRun const&, std::size_t)> const& value) {
+  Figure figure{.title = title, .x_label = "t [s]", .y_label = y_label, .width_px = 900, .height_px = 560};
+  for (std::size_t i = 0; i < c.runs.size(); ++i) {
+    ComparedRun const& run = c.runs[i];
+    Curve curve{.x = run.times, .label = run.name, .color = int(i)};
+    curve.style = i == 0 ? "lines" : "dashed";
+    curve.width = i == 0 ? 3.0 : 1.5;
+    for (std::size_t k = 0; k < run.times.size(); ++k) curve.y.push_back(value(run, k));
+    figure.curves.push_back(std::move(curve));
+  }
+  return figure;
+}
+
+/// Violations over time, on a logarithmic axis, of the runs that have any; no figure where none has. What is below rounding is
+/// drawn at 1e-16, or at a millionth of the largest where that is less; zeros are left out.
+template <class = void>
+void add_violations(Comparison const& c, std::string const& title, std::string const& units, double Violation::* level,
+                    std::vector<Figure>& figures) {
+  Figure figure = over_time(c, title, "largest violation " + units,
+                            [level](ComparedRun const& run, std::size_t k) { return run.violations[k].*level; });
+  figure.log_y = true;
+  auto const largest = [](Curve const& curve) { return *std::max_element(curve.y.begin(), curve.y.end()); };
+  std::erase_if(figure.curves, [&](Curve const& curve) { return !(largest(curve) > 0.0); });
+  if (figure.curves.empty()) return;
+  double all = 0.0;
+  for (Curve const& curve : figure.curves) all = std::max(all, largest(curve));
+  for (Curve& curve : figure.curves)
+    for (double& y : curve.y)
+      if (y > 0.0) y = std::max(y, std::min(1e-16, 1e-6 * all));
+  figures.push_back(std::move(figure));
+}
+
+/// Draws panels, if there are any, and adds the files to `written`.
+template <class = void>
+void draw_panels(std::vector<Figure> const& figures, std::filesystem::path const& stem, bool draw,
+                 std::vector<std::filesystem::path>& written) {
+  if (figures.empty()) return;
+  bool const drawn = write_panels(figures, figures.size() < 4 ? 1 : 2, stem, draw) == Drawn::png;
+  written.push_back(with_ending(stem, ".dat"));
+  written.push_back(with_ending(stem, ".gp"));
+  if (drawn) written.push_back(with_ending(stem, ".png"));
+}
+
+}  // namespace detail
+
+/// The table that `<<` prints, in full precision: one row a quantity, one column a run.
+/// Throws InvalidInput for a comparison without runs and for numbers that are not finite, IoError as `Csv` does.
+template <class = void>
+void write_csv(Comparison const& c, std::filesystem::path const& file) {
+  detail::check(c, "write_csv");
+  std::vector<std::string> heads{"quantity"};
+  std::vector<std::vector<Quantity>> columns;
+  for (ComparedRun const& run : c.runs) {
+    heads.push_back(run.name);
+    columns.push_back(quantities(run, c.runs.front()));
+  }
+  Csv csv(file, std::move(heads));
+  std::vector<double> row(columns.size());
+  for (std::size_t i = 0; i < columns.front().size(); ++i) {
+    for (std::size_t j = 0; j < columns.size(); ++j) row[j] = columns[j][i].value;
+    csv.row(columns.front()[i].name, row);
+  }
+  csv.close();
+}
+
+/// The histories of each run in a file of its own, history_<number>_<name>.csv: the column "t [s]", then those of `histories`.
+/// Returns the files in the order of the runs. Throws as `write_csv`.
+template <class = void>
+std::vector<std::filesystem::path> write_histories(Comparison const& c, std::filesystem::path const& folder) {
+  detail::check(c, "write_histories");
+  std::vector<std::filesystem::path> written;
+  for (ComparedRun const& run : c.runs) {
+    std::vector<History> const all = histories(run);
+    std::vector<std::string> heads{"t [s]"};
+    for (History const& h : all) heads.push_back(h.name);
+    written.push_back(folder / ("history_" + std::to_string(written.size() + 1) + '_' + detail::file_word(run.name) + ".csv"));
+    Csv csv(written.back(), std::move(heads));
+    std::vector<double> row(all.size() + 1);
+    for (std::size_t k = 0; k < run.times.size(); ++k) {
+      row[0] = run.times[k];
+      for (std::size_t i = 0; i < all.size(); ++i) row[i + 1] = all[i].values[k];
+      csv.row(row);
+    }
+    csv.close();
+  }
+  return written;
+}
+
+/// Draws all runs over time: `outputs`, `violations` (of positions, speeds and accelerations), `joint_force` (of the joint that
+/// holds most) and `energies`, each as .dat, .gp and, where gnuplot is there and `draw` is set, .png. Without outputs, or without
+/// violations, there is no such figure. Returns the files. Throws as `write_csv`, and IoError where gnuplot fails.
+template <class = void>
+std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder, bool draw = true) {
+  detail::check(c, "write_figures");
+  using Run = ComparedRun const&;
+  std::vector<std::filesystem::path> written;
+  std::vector<Figure> outputs, violations;
+  for (std::size_t i = 0; i < c.runs.front().outputs.size(); ++i) {
+    std::string const& name = c.runs.front().output_names[i];
+    outputs.push_back(detail::over_time(c, name, name, [i](Run run, std::size_t k) { return run.outputs[i][k]; }));
+  }
+  detail::draw_panels(outputs, folder / "outputs", draw, written);
+  detail::add_violations(c, "Violation of positions", "[m, rad, 1]", &Violation::position, violations);
+  detail::add_violations(c, "Violation of speeds", "[m/s, rad/s, 1/s]", &Violation::velocity, violations);
+  detail::add_violations(c, "Violation of accelerations", "[m/s², rad/s², 1/s²]", &Violation::acceleration, violations);
+  detail::draw_panels(violations, folder / "violations", draw, written);
+  auto const force = [](Run run, std::size_t k) { return run.joint_forces[k]; };
+  detail::draw_panels({detail::over_time(c, "Force of the joint that holds most", "force [N]", force)}, folder / "joint_force",
+                      draw, written);
+  detail::draw_panels(
+      {detail::over_time(c, "Kinetic energy", "energy [J]", [](Run run, std::size_t k) { return run.energies[k].kinetic; }),
+       detail::over_time(c, "Potential energy", "energy [J]", [](Run run, std::size_t k) { return run.energies[k].potential(); }),
+       detail::over_time(c, "Total energy, change since the start", "energy [J]",
+                         [](Run run, std::size_t k) { return run.energies[k].total() - run.energies.front().total(); })},
+      folder / "energies", draw, written);
+  return written;
+}
+
+/// All of the above in `folder`: table.csv, histories and figures. Returns the files.
+template <class = void>
+std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesystem::path const& folder, bool draw = true) {
+  detail::check(c, "write_report");
+  std::vector<std::filesystem::path> written{folder / "table.csv"};
+  write_csv(c, written.front());
+  for (auto const& files : {write_histories(c, folder), write_figures(c, folder, draw)})
+    written.insert(written.end(), files.begin(), files.end());
+  return written;
+}
+
+/// All points that came to their end, one row each. Throws IoError as `Csv` does.
+template <class = void>
+void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
+  Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"});
+  for (WorkCurve const& curve : w.curves)
+    for (WorkPoint const& p : curve.points)
+      if (p.failure.empty()) csv.row(curve.name, std::array{p.setting, double(p.steps), p.cpu, p.error});
+  csv.close();
+}
+
+/// Error against CPU time of the runs that came to their end, both axes logarithmic.
+template <class = void>
+Figure work_precision_figure(WorkPrecision const& w) {
+  if (w.curves.empty()) throw InvalidInput("work_precision_figure: there are no curves. Add those of `work_precision`.");
+  Figure figure{.title = "Work and precision", .x_label = "CPU time [s]", .y_label = "error of " + w.curves.front().output,
+                .log_x = true, .log_y = true};
+  for (WorkCurve const& curve : w.curves) {
+    if (curve.output != w.curves.front().output)
+      throw InvalidInput("work_precision_figure: \"" + curve.name + "\" is for the output \"" + curve.output + "\", not \"" +
+                         w.curves.front().output + "\". Draw it in another figure.");
+    Curve drawn{.label = curve.name, .style = "linespoints", .color = int(&curve - w.curves.data())};
+    for (WorkPoint const& p : curve.points)
+      if (p.failure.empty()) {
+        drawn.x.push_back(p.cpu);
+        drawn.y.push_back(p.error);
+      }
+    if (!drawn.x.empty()) figure.curves.push_back(std::move(drawn));
+  }
+  return figure;
+}
+
+}  // namespace polybody

@@ -1,0 +1,221 @@
+#include <polybody/io/comparison_report.hpp>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <sstream>
+
+#include "support/refusal.hpp"
+
+namespace fs = std::filesystem;
+using namespace polybody;
+
+namespace comparison_report_test {
+
+std::string text_of(fs::path const& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// Two runs as `compare` would give them: x = cos t in steps of 0.1 s with rows, and in steps of 0.25 s a little off and without.
+Comparison oscillators() {
+  Comparison c;
+  for (int i = 0; i < 2; ++i) {
+    ComparedRun run;
+    run.name = i == 0 ? "ideal, \"1\"" : "stiff/ρ";
+    run.census = {.coordinates = 3 - i, .constraints = 2 - i, .speeds = 3, .rows = 2, .degrees_of_freedom = 1};
+    run.run.steps = i == 0 ? 100 : 40;
+    run.run.iterations = 300;
+    run.cpu = 0.125 * (i + 1);
+    run.output_names = {"x [m]", "v [m/s]"};
+    run.outputs.resize(2);
+    for (long k = 0; k <= run.run.steps; ++k) {
+      double const t = 10.0 * double(k) / double(run.run.steps), x = std::cos(t) + 1e-3 * i * t, v = -std::sin(t);
+      run.times.push_back(t);
+      run.violations.push_back(i == 0 ? Violation{1e-14 * (1.0 + v * v), 1e-6 * v * v, 1e-3 * x * x} : Violation{});
+      run.energies.push_back({.kinetic = 0.5 * v * v, .gravity = 0.25 * x * x, .forces = 0.25 * x * x});
+      run.joint_forces.push_back(std::abs(x));
+      run.outputs[0].push_back(x);
+      run.outputs[1].push_back(v);
+    }
+    run.violation = {2e-14, 1e-6, 1e-3};
+    run.energy_end = 1.0 / 3.0;
+    run.peak_joint_force = 1.0;
+    run.difference = {0.01 * i, 0.0};
+    c.runs.push_back(run);
+  }
+  return c;
+}
+
+WorkPrecision work() {
+  WorkPrecision w{{{"ideal", "x [m]"}, {"stiff", "x [m]"}}};
+  for (double const h : {0.5, 0.125, 0.03125}) {
+    w.curves[0].points.push_back({.setting = h, .steps = std::lround(1.0 / h), .cpu = 0.0625 / h, .error = h * h});
+    w.curves[1].points.push_back({.setting = h, .steps = std::lround(1.0 / h), .cpu = 0.125 / h, .error = h * h * h * h});
+  }
+  w.curves[1].points[0].failure = "Newton's method stalled";
+  return w;
+}
+
+/// Each test has its own folder, not made yet, with a blank in its name.
+struct ComparisonReport : testing::Test {
+  fs::path const folder = fs::path(testing::TempDir()) / ("polybody report " + std::to_string(std::random_device{}()));
+  ~ComparisonReport() override { fs::remove_all(folder); }
+
+  /// Lines of a table, cut into fields.
+  std::vector<std::vector<std::string>> fields_of(fs::path const& file) const {
+    std::string const text = text_of(file);
+    detail::CsvReader reader{text, file.string()};
+    std::vector<std::vector<std::string>> lines;
+    std::size_t at = 0;
+    for (auto fields = reader.record(at); !fields.empty(); fields = reader.record(at)) lines.push_back(fields);
+    return lines;
+  }
+};
+
+TEST_F(ComparisonReport, TableHoldsWhatIsPrintedInFullPrecision) {
+  Comparison const c = oscillators();
+  write_csv(c, folder / "table.csv");
+  auto const lines = fields_of(folder / "table.csv");
+  EXPECT_EQ(lines.at(0), (std::vector<std::string>{"quantity", c.runs[0].name, c.runs[1].name}));
+  std::ostringstream text;
+  text << c;
+  std::istringstream printed(text.str());
+  std::string line;
+  std::getline(printed, line);  // the heads
+  EXPECT_TRUE(has(line, c.runs[1].name));
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    ASSERT_EQ(lines[i].size(), 3u);
+    ASSERT_TRUE(std::getline(printed, line));
+    std::string const& name = lines[i][0];
+    EXPECT_TRUE(line.starts_with(name + ' ')) << line;
+    std::istringstream numbers(line.substr(name.size()));
+    for (std::size_t j = 0; j < 2; ++j) {
+      double shown = std::nan("");
+      numbers >> shown;
+      double const kept = std::stod(lines[i][j + 1]);
+      EXPECT_EQ(kept, quantities(c.runs[j], c.runs[0])[i - 1].value) << name;
+      EXPECT_NEAR(shown, kept, 5e-4 * std::abs(kept)) << name;
+    }
+  }
+  EXPECT_FALSE(std::getline(printed, line));
+  auto const value = [&](char const* name, std::size_t run) {
+    for (auto const& fields : lines)
+      if (fields[0] == name) return std::stod(fields[run]);
+    return std::nan("");
+  };
+  EXPECT_EQ(value("coordinates", 2), 2.0);
+  EXPECT_EQ(value("Newton iterations a step", 2), 7.5);
+  EXPECT_EQ(value("CPU ratio to the first", 2), 2.0);
+  EXPECT_EQ(value("energy at the end - at the start [J]", 1), 1.0 / 3.0);
+  EXPECT_EQ(value("end: x [m]", 1), std::cos(10.0));
+  EXPECT_EQ(value("most off the first: x [m]", 2), 0.01);
+}
+
+TEST_F(ComparisonReport, HistoriesReadBackOneFileARun) {
+  Comparison const c = oscillators();
+  auto const files = write_histories(c, folder);
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0], folder / "history_1_ideal_1.csv");
+  EXPECT_EQ(files[1], folder / "history_2_stiff_ρ.csv");
+  for (std::size_t i = 0; i < 2; ++i) {
+    Table const table = read_csv(files[i]);
+    ComparedRun const& run = c.runs[i];
+    EXPECT_EQ(table.columns.size(), 13u);
+    EXPECT_EQ(table.column("t [s]"), run.times);
+    EXPECT_EQ(table.column("v [m/s]"), run.outputs[1]);
+    EXPECT_EQ(table.column("peak joint force [N]"), run.joint_forces);
+    for (std::size_t k = 0; k < run.times.size(); ++k) {
+      EXPECT_EQ(table.column("velocity violation")[k], run.violations[k].velocity);
+      EXPECT_EQ(table.column("total energy [J]")[k], run.energies[k].total());
+      EXPECT_EQ(table.column("energy of forces [J]")[k], run.energies[k].forces);
+    }
+  }
+}
+
+TEST_F(ComparisonReport, AnOutputStandsInPlaceOfTheHistoryOfItsName) {
+  Comparison c = oscillators();
+  for (ComparedRun& run : c.runs) run.output_names[0] = "total energy [J]";
+  Table const table = read_csv(write_histories(c, folder)[0]);
+  EXPECT_EQ(table.columns.size(), 12u);
+  EXPECT_EQ(table.column("total energy [J]"), c.runs[0].outputs[0]);
+}
+
+TEST_F(ComparisonReport, WritesAllOfIt) {
+  Comparison const c = oscillators();
+  auto const files = write_report(c, folder / "deep");
+  bool const pictures = find_gnuplot().has_value();
+  EXPECT_EQ(files.size(), 3u + 4u * (pictures ? 3u : 2u));
+  for (fs::path const& file : files) {
+    std::string const text = text_of(file);
+    EXPECT_GT(text.size(), 100u) << file;
+    if (file.extension() == ".png") {
+      EXPECT_TRUE(text.starts_with("\x89PNG\r\n\x1a\n") && text.ends_with("IEND\xAE\x42\x60\x82")) << file;
+    }
+  }
+  // and leaves no crumbs
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "deep"), fs::directory_iterator()), std::ptrdiff_t(files.size()));
+  EXPECT_EQ(write_report(c, folder / "drafts", false).size(), 3u + 4u * 2u);
+}
+
+TEST_F(ComparisonReport, FiguresShowEveryRunThatHasSomethingToShow) {
+  Comparison c = oscillators();
+  write_figures(c, folder, false);
+  std::string const violations = text_of(folder / "violations.gp"), force = text_of(folder / "joint_force.gp"),
+                    outputs = text_of(folder / "outputs.gp"), energies = text_of(folder / "energies.dat");
+  EXPECT_TRUE(has(violations, "set logscale y"));
+  EXPECT_TRUE(has(violations, "'Violation of accelerations'"));
+  EXPECT_TRUE(has(violations, "'ideal, \"1\"'"));
+  EXPECT_FALSE(has(violations, "'stiff/ρ'"));  // without rows
+  EXPECT_TRUE(has(force, "'force [N]'") && has(force, "'t [s]'") && has(force, "'stiff/ρ'"));
+  EXPECT_TRUE(has(outputs, "'x [m]'") && has(outputs, "'v [m/s]'"));
+  EXPECT_TRUE(has(energies, "Total energy, change since the start | stiff/ρ\n0 0\n"));
+  for (ComparedRun& run : c.runs) run.violations.assign(run.times.size(), Violation{});
+  EXPECT_EQ(write_figures(c, folder / "free", false).size(), 3u * 2u);
+  EXPECT_FALSE(fs::exists(folder / "free" / "violations.gp"));
+}
+
+TEST_F(ComparisonReport, RefusesWhatIsNoComparison) {
+  EXPECT_TRUE(has(refusal([&] { write_report({}, folder); }), "write_report: the comparison has no runs"));
+  EXPECT_TRUE(has(refusal([&] { write_csv(Comparison{}, folder / "table.csv"); }), "no runs"));
+  EXPECT_TRUE(has(refusal([&] { write_histories({}, folder); }), "no runs"));
+  EXPECT_TRUE(has(refusal([&] { write_figures({}, folder); }), "no runs"));
+  Comparison c = oscillators();
+  c.runs[1].energies.pop_back();
+  EXPECT_TRUE(has(refusal([&] { write_report(c, folder); }), "the run \"stiff/ρ\" lacks times"));
+  c = oscillators();
+  c.runs[1].output_names[0] = "y [m]";
+  EXPECT_TRUE(has(refusal([&] { write_report(c, folder); }), "the run \"stiff/ρ\""));
+  EXPECT_FALSE(fs::exists(folder));
+  c = oscillators();
+  c.runs[1].peak_joint_force = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(has(refusal([&] { write_report(c, folder); }), "column 'stiff/ρ': the value is not finite"));
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST_F(ComparisonReport, WorkAndPrecisionLeaveFailedRunsOut) {
+  Figure const figure = work_precision_figure(work());
+  EXPECT_TRUE(figure.log_x && figure.log_y);
+  EXPECT_EQ(figure.y_label, "error of x [m]");
+  ASSERT_EQ(figure.curves.size(), 2u);
+  EXPECT_EQ(figure.curves[1].label, "stiff");
+  EXPECT_EQ(figure.curves[1].x, (std::vector<double>{1.0, 4.0}));
+  EXPECT_EQ(figure.curves[0].y.size(), 3u);
+  write_csv(work(), folder / "work.csv");
+  auto const lines = fields_of(folder / "work.csv");
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_EQ(lines[4], (std::vector<std::string>{"stiff", "0.125", "8", "1", "0.000244140625"}));
+}
+
+TEST_F(ComparisonReport, RefusesCurvesOfDifferentOutputsInOneFigure) {
+  EXPECT_TRUE(has(refusal([] { work_precision_figure({}); }), "there are no curves"));
+  WorkPrecision w = work();
+  w.curves[1].output = "v [m/s]";
+  EXPECT_TRUE(has(refusal([&] { work_precision_figure(w); }), "\"stiff\" is for the output \"v [m/s]\", not \"x [m]\""));
+}
+
+}  // namespace comparison_report_test
