@@ -16,7 +16,7 @@ namespace polybody {
 template <class M, class I, class Solver = DefaultSolver>
 class Simulation {
   using Stepped = SteppedModel<M>;
-  static_assert(I::accepts_rows || !M::may_have_rows,
+  static_assert(KeepsToRows<I, M>,
                 "This explicit integrator has no stabilisation, but joints with the Constraint policy add rows. Use "
                 "it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
 

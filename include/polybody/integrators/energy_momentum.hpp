@@ -28,7 +28,7 @@ struct ConservingStep {
 
   template <class M, class Solver>
   struct Workspace {
-    static_assert(requires { typename M::BodyPools; },
+    static_assert(SteppedWhole<M>,
                   "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of AncfLinear, say.");
     VecX q, v, vd, lambda, r, phi, rhs, y;
     StepSecants<M> secants;
@@ -147,6 +147,8 @@ struct EnergyMomentum {
   static constexpr char const* name = "EnergyMomentum";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
+  template <class M>
+  static constexpr bool takes = OffersSecants<M>;
 
   double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50, .refactor_above = 0.16};
@@ -180,6 +182,8 @@ struct EnergyDecaying {
   static constexpr char const* name = "EnergyDecaying";
   static constexpr int order = 1;
   static constexpr bool accepts_rows = true;
+  template <class M>
+  static constexpr bool takes = OffersSecants<M>;
 
   double rho_inf = 0.9;      ///< of a mode of strain as ωh → ∞, in [0, 1]; 1 keeps energy
   double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations

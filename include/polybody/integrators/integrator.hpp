@@ -49,4 +49,12 @@ concept Integrator = requires(I const i, System<M>& system, State& x, double h) 
   } -> std::same_as<StepReport>;
 };
 
+/// Joints bring no rows into a step of model M, or integrator I keeps to them.
+template <class I, class M>
+concept KeepsToRows = I::accepts_rows || !M::may_have_rows;
+
+/// I steps M. Some integrators ask more of what they step: their member `takes`.
+template <class I, class M>
+concept StepsModel = KeepsToRows<I, M> && (!requires { I::template takes<SteppedModel<M>>; } || I::template takes<SteppedModel<M>>);
+
 }  // namespace polybody

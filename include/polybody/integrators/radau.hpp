@@ -44,6 +44,8 @@ struct Radau {
   static constexpr char const* name = "Radau";
   static constexpr int order = 5;
   static constexpr bool accepts_rows = true;
+  template <class M>
+  static constexpr bool takes = !requires { requires M::solved_by_bodies; };
 
   double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< many: the matrix leaves out how rows turn
@@ -54,6 +56,9 @@ struct Radau {
 
   template <class M, class Solver>
   struct Workspace {
+    static_assert(takes<M>,
+                  "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a step together. Take "
+                  "recursive::Augmented.");
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
     VecX q, r, phi, gamma, next, rhs, y;
     TangentSolver<M, AutoLu> solver;

@@ -13,6 +13,8 @@ struct SymplecticEuler {
   static constexpr char const* name = "SymplecticEuler";
   static constexpr int order = 1;
   static constexpr bool accepts_rows = false;
+  template <class M>
+  static constexpr bool takes = M::constant_mass;
   static constexpr double stable_to = 2.0;  ///< ωh
   /// Where ω²h² + 2dh = 4 a multiplier passes −1.
   static double stable_step(double omega, double rate) {
@@ -21,7 +23,7 @@ struct SymplecticEuler {
 
   template <class M, class Solver>
   struct Workspace {
-    static_assert(M::constant_mass, "SymplecticEuler asks for bodies of constant mass matrix.");
+    static_assert(takes<M>, "SymplecticEuler asks for bodies of constant mass matrix.");
     VecX q, v, a, dq, lambda;
     ForwardDynamics<M, Solver> forward;
     explicit Workspace(System<M>& s)
@@ -61,6 +63,8 @@ struct Rattle {
   static constexpr char const* name = "Rattle";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
+  template <class M>
+  static constexpr bool takes = M::constant_mass;
   static constexpr double stable_to = 2.0;  ///< ωh
   static double stable_step(double omega, double rate) { return stable_step_of_verlet(omega, rate); }
 
@@ -69,7 +73,7 @@ struct Rattle {
 
   template <class M, class Solver>
   struct Workspace {
-    static_assert(M::constant_mass, "Rattle asks for bodies of constant mass matrix.");
+    static_assert(takes<M>, "Rattle asks for bodies of constant mass matrix.");
     VecX q, v, a, dq, change, lambda, phi;
     ForwardDynamics<M, Solver> forward;
     explicit Workspace(System<M>& s)

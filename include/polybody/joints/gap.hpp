@@ -74,6 +74,13 @@ constexpr int velocity_rows() {
 
 /// Which motions of b against a a geometry leaves free (its member `free`): slides along the joint's axes, then turns about them.
 using Freedoms = std::array<bool, 6>;
+template <class G>
+concept NamesFreedoms = requires { { G::free } -> std::convertible_to<Freedoms>; };
+
+namespace detail {
+constexpr int free_slides(Freedoms const& free) { return int(free[0]) + int(free[1]) + int(free[2]); }
+constexpr int free_turns(Freedoms const& free) { return int(free[3]) + int(free[4]) + int(free[5]); }
+}  // namespace detail
 
 /// What a geometry asks of its second marker, where that is less than of its first (`needs_of_second`).
 template <Measure G>

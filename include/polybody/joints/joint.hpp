@@ -17,6 +17,18 @@ constexpr auto measured_by() {
 }
 }  // namespace detail
 
+/// What P measures of G is there: a bushing measures what G says that it does not leave free.
+template <class P, class G>
+concept MeasuresGeometry = NamesFreedoms<G> || !requires { typename P::template Measured<G>; };
+
+/// P brings rows; or it answers, by a force, as many as it measures of G.
+template <class P, class G>
+concept AnswersGeometry = AddsRows<P> || (MeasuresGeometry<P, G> && AnswersRows<P, decltype(detail::measured_by<G, P>())::type::rows>);
+
+/// P brings rows; or G has a gap in each of its rows, which a force can answer.
+template <class P, class G>
+concept HasGapToAnswer = AddsRows<P> || velocity_rows<G>() == 0;
+
 /// A joint is a geometry (which motions it stops) and a policy (how it stops them).
 template <JointGeometry G, Policy P>
 struct Joint {
@@ -24,9 +36,9 @@ struct Joint {
   using PolicyType = P;
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
   static constexpr int rows = Measured::rows;
-  static_assert(AddsRows<P> || AnswersRows<P, rows>,
+  static_assert(!MeasuresGeometry<P, G> || AnswersGeometry<P, G>,
                 "This policy has numbers for another number of rows than the joint's geometry has.");
-  static_assert(AddsRows<P> || velocity_rows<G>() == 0,
+  static_assert(HasGapToAnswer<P, G>,
                 "This geometry holds speeds, not positions (it rolls, or glides on a blade): there is no gap that a force could "
                 "answer. Use Constraint.");
   G geometry = {};

@@ -45,19 +45,11 @@ struct JointMotions {
   }
 };
 
-namespace detail {
-/// Turns that `free` leaves, of three.
-constexpr int free_turns(Freedoms const& free) { return int(free[3]) + int(free[4]) + int(free[5]); }
-}  // namespace detail
-
 /// A geometry whose motion has coordinates: it says which (`motions()`), or what it leaves free has one turn, all or none.
 template <class G>
 concept HasMotions = requires(G const g) {
   { g.motions() } -> std::same_as<JointMotions>;
-} || (requires { G::free; } && []() consteval {
-  if constexpr (requires { G::free; }) return detail::free_turns(G::free) != 2;
-  return false;
-}());
+} || (NamesFreedoms<G> && detail::free_turns(G::free) != 2);
 
 template <HasMotions G>
 JointMotions motions_of(G const& geometry) {

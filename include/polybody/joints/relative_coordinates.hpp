@@ -116,7 +116,7 @@ static_assert(JointGeometry<RelativeCoordinates>);
 /// to them, however far they go.
 template <JointGeometry G>
 struct HeldCoordinates {
-  static_assert(requires { G::free; },
+  static_assert(NamesFreedoms<G>,
                 "A bushing stands in for a joint of bodies that says which of the six relative coordinates it leaves free "
                 "(`free`). This geometry does not; use Constraint or Penalty.");
   static constexpr int rows = 6;

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include <polybody/bodies/body.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/kinematics/marker.hpp>
+#include <polybody/system/composition.hpp>
 
 namespace polybody {
 
@@ -107,9 +106,8 @@ void append_rows(LinearRows& rows, MatX const& a, MatX const& b, VecX const& c) 
 /// The rows of geometry G with its third axis along n between two linear points. \throws InvalidInput with the joint's name.
 template <class G>
 void fill_linear_rows(LinearPoint const& a, LinearPoint const& b, Vec3 const& n, LinearRows& rows) {
-  constexpr bool slides = G::free[0] || G::free[1] || G::free[2];
-  constexpr int turns = int(G::free[3]) + int(G::free[4]) + int(G::free[5]);
-  static_assert(!slides && turns != 2, "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
+  static_assert(LinearGeometry<G>, "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
+  constexpr int turns = free_turns(G::free);
   int const size = b.size;
   rows.a.map.resize(0, a.columns);
   rows.b.map.resize(0, b.columns);

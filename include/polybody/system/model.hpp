@@ -10,6 +10,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/math/time_laws.hpp>
 #include <polybody/math/type_list.hpp>
+#include <polybody/system/composition.hpp>
 #include <polybody/system/linear_rows.hpp>
 #include <polybody/system/markers.hpp>
 #include <polybody/system/state.hpp>
@@ -74,17 +75,16 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     using G = typename J::Geometry;
     using P = typename J::PolicyType;
     using Asks = typename J::Measured;
-    static_assert(same_world(A::world, G::world) && same_world(B::world, G::world) &&
-                      same_world(A::world, B::world),
+    static_assert(MeetInOneWorld<G, A, B>,
                   "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
                   "belongs to both.");
-    static_assert(!MakesJointCoordinates<P> || HasMotions<G>,
+    static_assert(HasJointCoordinates<P, G>,
                   "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or Universal; a Distance "
                   "or a Gear has none. Use Constraint for it.");
-    static_assert(!MakesJointCoordinates<P> || (detail::may_be_carried<A>() && detail::may_be_carried<B>()),
+    static_assert(!MakesJointCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
                   "Recursive makes joint coordinates between rigid bodies and the ground: Rigid<> in space, planar::Rigid in the plane. "
                   "Use another policy for joints of other bodies.");
-    static_assert(LinearInCoordinates<P> || (A::observes >= Asks::needs && B::observes >= needs_of_second<Asks>()),
+    static_assert(TellsEnoughFirst<J, A> && TellsEnoughSecond<J, B>,
                   "This joint needs more than the marker tells (a full frame, say, of a body that only "
                   "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
                   "Revolute about its tangent, with the cable's marker second.");

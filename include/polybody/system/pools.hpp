@@ -75,12 +75,6 @@ struct ForceEntry {
   std::string name;
 };
 
-/// A body that a joint may carry, or that may carry one.
-template <class B>
-constexpr bool may_be_carried() {
-  return std::is_same_v<B, Ground> || HasRigidLayout<B>;
-}
-
 /// How the joint coordinates of a model are solved for: what the first policy says that makes any.
 template <class... Ps>
 struct SolutionAmong {

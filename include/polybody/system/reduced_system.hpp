@@ -17,6 +17,7 @@ template <class M>
 struct Reduced {
   static constexpr bool may_have_rows = M::may_have_rows;
   static constexpr bool constant_mass = M::constant_mass && std::is_void_v<typename M::Solution>;
+  static constexpr bool solved_by_bodies = std::is_same_v<typename M::Solution, recursive::ArticulatedBody>;
 };
 
 /// What a time step is about: the model itself where no policy eliminates anything.
@@ -30,7 +31,7 @@ class System<Reduced<M>> {
   /// The dense system TᵀKT is solved, else the sparse one of all bodies with the tree's rows.
   static constexpr bool solves_densely = std::is_same_v<typename M::Solution, recursive::Reduced>;
   /// The tree itself is the solver: the tangent is written as it is for the whole model.
-  static constexpr bool solves_by_bodies = std::is_same_v<typename M::Solution, recursive::ArticulatedBody>;
+  static constexpr bool solves_by_bodies = Reduced<M>::solved_by_bodies;
   /// The equations have the unknowns of a time step.
   static constexpr bool solves_as_it_is = solves_densely || solves_by_bodies || std::is_void_v<typename M::Solution>;
   static_assert(!solves_by_bodies || M::all_rigid, "recursive::ArticulatedBody is for models of rigid bodies. Take recursive::Augmented.");

@@ -23,6 +23,16 @@ concept HasSecantPotential = requires(F const force, std::array<Frame<Secant<12 
 
 namespace detail {
 
+/// What a model offers a step that conserves energy.
+template <class BodyPools, class JointPools>
+struct SecantOffer;
+template <class... Bs, class... Js>
+struct SecantOffer<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>> {
+  static constexpr bool bodies = (OffersStepMeans<Bs> && ...);
+  static constexpr bool policies = (OffersMeanMultiplier<typename Js::PolicyType> && ...);
+  static constexpr bool positions = ((velocity_rows<typename Js::Geometry>() == 0) && ...);
+};
+
 /// Place and axes of a marker (r, then A column by column) at both ends, and their slopes by its columns.
 struct MarkerSecant {
   Vec<double, 12> from, to;
@@ -46,12 +56,16 @@ template <class BodyPools, class JointPools>
 struct SecantsBeside;
 template <class... Bs, class... Js>
 struct SecantsBeside<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>> {
-  static_assert((OffersStepMeans<Bs> && ...),
+  using Offer = SecantOffer<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>>;
+  static_assert(Offer::bodies,
                 "A step that conserves energy asks for bodies of constant mass whose coordinates form a vector space and "
                 "which give their mean force over a step: cables, ANCF beams, planar rigid bodies and beams. For others use GeneralizedAlpha.");
-  static_assert((OffersMeanMultiplier<typename Js::PolicyType> && ...),
+  static_assert(Offer::policies,
                 "A step that conserves energy takes joints with Constraint, Penalty or Bushing. "
                 "For others use GeneralizedAlpha.");
+  static_assert(Offer::positions,
+                "A step that conserves energy knows rows by the change of their gap, and RollingDisc and KnifeEdge have none. Use "
+                "GeneralizedAlpha.");
   using Scratch = std::tuple<SecantScratch<Bs>...>;
   using Gaps = std::tuple<std::vector<GapSecant<Js::rows>>...>;
 };
@@ -75,6 +89,16 @@ inline double pulled(MarkerSecant const& m, double const* by_frame, Index column
 }
 
 }  // namespace detail
+
+/// A model that is stepped whole, as no policy eliminates anything.
+template <class M>
+concept SteppedWhole = requires { typename M::BodyPools; };
+
+/// What a step that conserves energy asks of a model.
+template <class M>
+concept OffersSecants = SteppedWhole<M> && detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::bodies &&
+                        detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::policies &&
+                        detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::positions;
 
 template <class M>
 class StepSecants {

@@ -23,6 +23,10 @@ struct AncfLinear {
 template <class P>
 concept LinearInCoordinates = Eliminates<P> && requires { requires P::linear; };
 
+/// What such rows can say: that points coincide, and axes or whole frames with them.
+template <class G>
+concept LinearGeometry = NamesFreedoms<G> && detail::free_slides(G::free) == 0 && detail::free_turns(G::free) != 2;
+
 static_assert(Policy<AncfLinear> && LinearInCoordinates<AncfLinear>);
 
 }  // namespace polybody

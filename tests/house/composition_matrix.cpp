@@ -1,0 +1,243 @@
+// The tables "What composes with what" of docs/joints.md, read off the concepts that Joint, Model::connect and simulate state.
+//   composition_matrix FILE            fails where the block between the two marks in FILE is another one
+//   composition_matrix FILE --write    writes the block
+// A new geometry, policy, body or integrator needs a line here.
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/planar/ffr.hpp>
+#include <polybody/polybody.hpp>
+
+using namespace polybody;
+
+namespace {
+
+template <class T>
+struct Type {
+  char const* name;
+};
+
+using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>;
+/// Stands for `PenaltyPerRow` with as many numbers as the geometry has rows.
+struct PerRow {};
+template <class P, class G>
+using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerRow<G::rows>, P>;
+
+auto const geometries = std::tuple(
+    Type<Spherical>{"Spherical"}, Type<Revolute>{"Revolute"}, Type<RevolutePin>{"RevolutePin"}, Type<Universal>{"Universal"},
+    Type<Cylindrical>{"Cylindrical"}, Type<Prismatic>{"Prismatic"}, Type<Screw>{"Screw"}, Type<PlaneOnPlane>{"PlaneOnPlane"},
+    Type<PointOnLine>{"PointOnLine"}, Type<PointInPlane>{"PointInPlane"}, Type<Orientation>{"Orientation"},
+    Type<ParallelAxes>{"ParallelAxes"}, Type<PerpendicularAxes>{"PerpendicularAxes"}, Type<Weld>{"Weld"},
+    Type<RelativeCoordinates>{"RelativeCoordinates"}, Type<Distance>{"Distance"}, Type<Gear>{"Gear"},
+    Type<RackAndPinion>{"RackAndPinion"}, Type<RollingDisc>{"RollingDisc"}, Type<KnifeEdge>{"KnifeEdge"},
+    Type<PrescribedAngle<Ramp>>{"PrescribedAngle"}, Type<PrescribedRate<Ramp>>{"PrescribedRate"},
+    Type<PrescribedDistance<Ramp>>{"PrescribedDistance"}, Type<PrescribedSlide<Ramp>>{"PrescribedSlide"},
+    Type<planar::Revolute>{"planar::Revolute"}, Type<planar::Prismatic>{"planar::Prismatic"}, Type<planar::Weld>{"planar::Weld"});
+
+auto const policies = std::tuple(
+    Type<Constraint>{"Constraint"}, Type<Penalty>{"Penalty"}, Type<PerRow>{"PenaltyPerRow"}, Type<Bushing>{"Bushing"},
+    Type<Laws>{"NonlinearBushing"}, Type<Recursive>{"Recursive"}, Type<RecursiveBy<recursive::Reduced>>{"RecursiveBy<Reduced>"},
+    Type<RecursiveBy<recursive::ArticulatedBody>>{"RecursiveBy<ArticulatedBody>"}, Type<AncfLinear>{"AncfLinear"});
+
+auto const bodies = std::tuple(
+    Type<Rigid<>>{"Rigid<>"}, Type<Rigid<EulerParameters>>{"Rigid<EulerParameters>"}, Type<AncfCable<>>{"AncfCable"},
+    Type<AncfBeam<ElasticLine>>{"AncfBeam<ElasticLine>"}, Type<AncfBeam<Continuum<>>>{"AncfBeam<Continuum>"},
+    Type<Lrvf<Objective>>{"Lrvf<Objective>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"}, Type<Ffr>{"Ffr"}, Type<planar::Rigid>{"planar::Rigid"},
+    Type<planar::AncfCable<>>{"planar::AncfCable"}, Type<planar::Lrvf>{"planar::Lrvf"}, Type<planar::Ffr>{"planar::Ffr"});
+
+/// An integrator, and why it refuses what it does not take for other reasons than rows.
+template <class I>
+struct Stepper {
+  char const* name;
+  char const* refuses = "";
+};
+auto const integrators = std::tuple(
+    Stepper<GeneralizedAlpha>{"GeneralizedAlpha"}, Stepper<HhtAlpha>{"HhtAlpha"}, Stepper<Newmark>{"Newmark"},
+    Stepper<Trapezoidal>{"Trapezoidal"}, Stepper<Radau>{"Radau", "t"}, Stepper<EnergyMomentum>{"EnergyMomentum", "e"},
+    Stepper<EnergyDecaying>{"EnergyDecaying", "e"}, Stepper<RungeKutta4<>>{"RungeKutta4<>"}, Stepper<DormandPrince<>>{"DormandPrince<>"},
+    Stepper<AdamsBashforthMoulton<>>{"AdamsBashforthMoulton<>"}, Stepper<CentralDifference<>>{"CentralDifference<>"},
+    Stepper<RungeKutta4<Projection>>{"RungeKutta4<Projection>"}, Stepper<RungeKutta4<Baumgarte>>{"RungeKutta4<Baumgarte>"},
+    Stepper<RungeKutta4<NoStabilisation>>{"RungeKutta4<NoStabilisation>"}, Stepper<RungeKutta4<CoordinatePartitioning>>{"RungeKutta4<CoordinatePartitioning>"},
+    Stepper<DormandPrince<Projection>>{"DormandPrince<Projection>"},
+    Stepper<AdamsBashforthMoulton<Projection>>{"AdamsBashforthMoulton<Projection>"},
+    Stepper<CentralDifference<Projection>>{"CentralDifference<Projection>"}, Stepper<SymplecticEuler>{"SymplecticEuler", "m"},
+    Stepper<Rattle>{"Rattle", "m"});
+
+constexpr char const* yes = "✓";
+
+template <class P, class G>
+char const* policy_cell() {
+  using Q = PolicyFor<P, G>;
+  if constexpr (Holds<Q, G>)
+    return yes;
+  else if constexpr (!HasGapToAnswer<Q, G>)
+    return "v";
+  else if constexpr (!MeasuresGeometry<Q, G>)
+    return "f";
+  else if constexpr (!HasJointCoordinates<Q, G>)
+    return "j";
+  else if constexpr (!HasLinearRows<Q, G>)
+    return "l";
+  else
+    return "no";
+}
+
+/// Body B and the ground may be joined by geometry G and policy P.
+template <class B, class G, class P>
+concept Joinable = MeetInOneWorld<G, B, Ground> && Holds<PolicyFor<P, G>, G> && MayBeEliminated<PolicyFor<P, G>, B>;
+/// … with the first marker on B; with the second.
+template <class B, class G, class P>
+concept First = Joinable<B, G, P> && TellsEnoughFirst<Joint<G, PolicyFor<P, G>>, B>;
+template <class B, class G, class P>
+concept Second = Joinable<B, G, P> && TellsEnoughSecond<Joint<G, PolicyFor<P, G>>, B>;
+
+template <class B, class P, class... Gs>
+char const* marker_cell(char const* refused) {
+  constexpr bool first = (First<B, Gs, P> || ...), second = (Second<B, Gs, P> || ...);
+  return first && second ? yes : second ? "2nd" : first ? "1st" : refused;
+}
+
+template <class M, class I>
+char const* step_cell(Stepper<I> const& stepper) {
+  if constexpr (StepsModel<I, M>)
+    return yes;
+  else if constexpr (!KeepsToRows<I, M>)
+    return "s";
+  else
+    return stepper.refuses;
+}
+
+/// A body in the plane that does not stand in the way of any integrator, on a joint of policy P.
+template <class P>
+using Held = Model<Bodies<std::conditional_t<LinearInCoordinates<P>, planar::AncfCable<>, planar::Rigid>>,
+                   Joints<Joint<planar::Revolute, PolicyFor<P, planar::Revolute>>>>;
+using OnABlade = Model<Bodies<planar::Rigid>, Joints<Joint<KnifeEdge, Constraint>>>;
+
+/// Rows of text; equal columns become one, so do equal rows.
+struct Table {
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;  ///< the name, then a cell for each column
+  bool merges_rows = false;
+
+  template <class... Cells>
+  void row(char const* name, Cells... cells) {
+    rows.push_back({code(name), cells...});
+  }
+  template <class... Ts>
+  void heads(std::tuple<Ts...> const& list) {
+    std::apply([&](auto const&... t) { (columns.push_back(code(t.name)), ...); }, list);
+  }
+  static std::string code(std::string const& name) { return "`" + name + "`"; }
+
+  void merge_columns() {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      for (std::size_t j = i + 1; j < columns.size();) {
+        if (!std::all_of(rows.begin(), rows.end(), [&](auto const& r) { return r[i + 1] == r[j + 1]; })) {
+          ++j;
+          continue;
+        }
+        columns[i] += ", " + columns[j];
+        columns.erase(columns.begin() + std::ptrdiff_t(j));
+        for (auto& r : rows) r.erase(r.begin() + std::ptrdiff_t(j) + 1);
+      }
+  }
+  void merge_rows() {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t j = i + 1; j < rows.size();) {
+        if (!std::equal(rows[i].begin() + 1, rows[i].end(), rows[j].begin() + 1)) {
+          ++j;
+          continue;
+        }
+        rows[i][0] += ", " + rows[j][0];
+        rows.erase(rows.begin() + std::ptrdiff_t(j));
+      }
+  }
+  std::string text(std::string const& corner) {
+    merge_columns();
+    if (merges_rows) merge_rows();
+    std::string out = "| " + corner + " |";
+    for (std::string const& c : columns) out += " " + c + " |";
+    out += "\n|---|";
+    for (std::size_t i = 0; i < columns.size(); ++i) out += "---|";
+    for (auto const& r : rows) {
+      out += "\n|";
+      for (std::string const& cell : r) out += " " + cell + " |";
+    }
+    return out + "\n";
+  }
+};
+
+template <class G>
+void geometry_row(Table& by_policy, Table& by_body, Type<G> g) {
+  std::apply([&]<class... Ps>(Type<Ps>...) { by_policy.row(g.name, policy_cell<Ps, G>()...); }, policies);
+  std::apply([&]<class... Bs>(Type<Bs>...) {
+    by_body.row(g.name, marker_cell<Bs, Constraint, G>(MeetInOneWorld<G, Bs, Ground> ? "n" : "w")...);
+  }, bodies);
+}
+template <class P, class... Gs>
+void policy_row(Table& by_body, Type<P> p, std::tuple<Type<Gs>...> const&) {
+  std::apply([&]<class... Bs>(Type<Bs>...) {
+    by_body.row(p.name, marker_cell<Bs, P, Gs...>(MakesJointCoordinates<P> ? "r" : "l")...);
+  }, bodies);
+}
+template <class I>
+void integrator_row(Table& by_body, Table& by_policy, Stepper<I> const& i) {
+  std::apply([&]<class... Bs>(Type<Bs>...) { by_body.row(i.name, step_cell<Model<Bodies<Bs>, Joints<>>>(i)...); }, bodies);
+  std::apply([&]<class... Ps>(Type<Ps>...) { by_policy.row(i.name, step_cell<Held<Ps>>(i)..., step_cell<OnABlade>(i)); }, policies);
+}
+
+std::string composition() {
+  Table geometry_policy, geometry_body, policy_body{.merges_rows = true}, integrator_body{.merges_rows = true},
+      integrator_policy{.merges_rows = true};
+  for (Table* t : {&geometry_policy, &integrator_policy}) t->heads(policies);
+  for (Table* t : {&geometry_body, &policy_body, &integrator_body}) t->heads(bodies);
+  integrator_policy.columns.push_back("`Constraint` of velocity rows");
+  std::apply([&](auto... g) { (geometry_row(geometry_policy, geometry_body, g), ...); }, geometries);
+  std::apply([&](auto... p) { (policy_row(policy_body, p, geometries), ...); }, policies);
+  std::apply([&](auto const&... i) { (integrator_row(integrator_body, integrator_policy, i), ...); }, integrators);
+
+  static_assert(HeldCoordinates<Spherical>::needs == Observes::frame);
+  return geometry_policy.text("geometry") +
+         "\nv: velocity rows have no gap for a force to answer. f: names no freedoms, which a bushing needs. j: the motion left has no joint "
+         "coordinates. l: not linear in coordinates of ANCF bodies.\n\n" +
+         geometry_body.text("geometry, by `Constraint`") +
+         "\n✓: for either marker. 2nd: for the second only. n: the body's markers tell too little. w: another world. The ground serves "
+         "everywhere. A bushing asks its first marker for a frame.\n\n" +
+         policy_body.text("policy, some geometry") +
+         "\nr: joint coordinates are for rigid bodies. l: points are not linear in the coordinates.\n\n" + integrator_body.text("integrator") +
+         "\ns: no stabilisation, and norms of Euler parameters are rows. m: the mass matrix is not constant. e: "
+         "coordinates do not add, or there is no mean force over a step.\n\n" +
+         integrator_policy.text("integrator") +
+         "\ns: no stabilisation keeps to rows. m: the mass matrix of joint coordinates is not constant. e: needs joints that eliminate "
+         "nothing, with gaps, and forces linear in them. t: three stages are solved together.\n";
+}
+
+std::string const begins = "<!-- composition begins: written by tests/house/composition_matrix.cpp -->\n", ends = "<!-- composition ends -->\n";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bool const writes = argc == 3 && std::string(argv[2]) == "--write";
+  if (argc != 2 && !writes) {
+    std::fprintf(stderr, "usage: %s FILE [--write]\n", argv[0]);
+    return 2;
+  }
+  std::ifstream in(argv[1], std::ios::binary);
+  std::string const text{std::istreambuf_iterator<char>(in), {}};
+  std::size_t const first = text.find(begins), last = text.find(ends);
+  if (first == std::string::npos || last == std::string::npos || last < first) {
+    std::fprintf(stderr, "%s: the marks around the block are missing:\n%s%s", argv[1], begins.c_str(), ends.c_str());
+    return 1;
+  }
+  std::string const fresh = text.substr(0, first) + begins + "\n" + composition() + "\n" + text.substr(last);
+  if (fresh == text) return 0;
+  if (!writes) {
+    std::fprintf(stderr, "%s: the tables of what composes with what are not up to date. Refresh them by\n  %s %s --write\n", argv[1],
+                 argv[0], argv[1]);
+    return 1;
+  }
+  AtomicFile out(argv[1]);
+  out.write(fresh);
+  out.close();
+}

@@ -1,0 +1,14 @@
+// refused: AncfLinear knows Spherical, Revolute and Weld
+// It says nothing of what it leaves free.
+#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/joints/distance.hpp>
+#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+using Rod = Joint<Distance, AncfLinear>;
+using M = Model<Bodies<AncfBeam<>>, Joints<Rod>>;
+
+void make(M& model, BodyHandle<AncfBeam<>> const& beam) {
+  model.connect(Rod{{.length = 1.0}, {}}, model.ground().at({0, 0, 0}), beam.at(0.0));
+}

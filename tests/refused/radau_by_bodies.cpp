@@ -1,0 +1,10 @@
+// refused: not for the stages of a step together
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/integrators/radau.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+
+using namespace polybody;
+using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, RecursiveBy<recursive::ArticulatedBody>>>>;
+
+void run(M const& model, State& x) { simulate(model, x, Radau{}, {.until = 1.0, .step = 1e-3}); }
