@@ -1,4 +1,5 @@
-// Floating frames made of several bars, in static equilibrium: CASES S8, S8b; and a cantilever whose tip force buckles it (S9e).
+// Floating frames made of several bars, in static equilibrium: CASES S8, S8b; several of them welded in a row, S7; and a
+// cantilever whose tip force buckles it (S9e).
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -14,10 +15,13 @@ namespace ffr_frames_test {
 using namespace polybody;
 using std::numbers::pi;
 
+using Clamp = Joint<Weld, Constraint>;
+/// One type of model for all, which is compiled once.
+using Frames = Model<Bodies<Ffr>, Joints<Clamp>, Forces<PointForce<>>>;
+
 /// Displacement of the last node of a structure welded to the ground at node 0, under a force there.
 Vec3 tip_displacement(Structure const& s, Vec3 const& force) {
-  using Clamp = Joint<Weld, Constraint>;
-  Model<Bodies<Ffr>, Joints<Clamp>, Forces<PointForce<>>> model;
+  Frames model;
   auto const body = model.add(Ffr(s, nodal_coordinates(s)), "frame");
   model.connect(Clamp{}, model.ground().at({0, 0, 0}), body.at(body.body.node(0)), "clamp");
   auto const tip = body.at(body.body.node(Index(s.nodes.size()) - 1));
@@ -71,16 +75,77 @@ TEST(FloatingFrame, CurvedCantilever) {
   EXPECT_NEAR(w, 0.5022, 0.01 * 0.5022);
 }
 
+// ---- S7: the 45° bend of Bathe & Bolourchi in sub-structures
+
+/// Tip of the arc of radius 100 under a force along z. So many equal pieces, each of so many bars along chords, with a floating
+/// frame of its own that is tied to its first node or to its mean motion; the shapes are Craig & Bampton's with two modes.
+Vec3 bend_tip(Index pieces, Index bars_of_each, BarConstants const& constants, double force, bool mean_axes) {
+  auto const on_arc = [](double a) { return Placement::at(100.0 * Vec3(std::sin(a), 1 - std::cos(a), 0), {0, 0, a}); };
+  double const chord = 0.25 * pi / double(pieces * bars_of_each), length = 200.0 * std::sin(0.5 * chord);
+  std::vector<Bar> bars;
+  for (Index i = 0; i < bars_of_each; ++i)
+    bars.push_back({.length = length,
+                    .constants = constants,
+                    .placement = Placement::at(on_arc(chord * double(i)).origin, {0, 0, chord * (double(i) + 0.5)})});
+  Structure const s = structure_of(bars, std::vector<Index>(std::size_t(bars_of_each), 1));
+  MatX const shapes = craig_bampton(s, {0, bars_of_each}, 2, mean_axes);
+  Frames model;
+  std::vector<Marker<Ffr>> tips;
+  for (Index i = 0; i < pieces; ++i) {
+    auto const piece = model.add(Ffr(s, shapes, {.placement = on_arc(chord * double(i * bars_of_each))}));
+    auto const root = piece.at(piece.body.node(0));
+    if (i == 0)
+      model.connect(Clamp{}, model.ground().at({0, 0, 0}), root, "clamp");
+    else
+      model.connect(Clamp{}, tips.back(), root, "weld");
+    tips.push_back(piece.at(piece.body.node(bars_of_each)));
+  }
+  model.apply(PointForce<>{.force = {0, 0, force}}, tips.back());
+  State x = model.reference_state();
+  equilibrium(model, x, {.load_steps = 4});
+  return position(model, x, tips.back());
+}
+
+// Within a piece turns are small: what is left out falls with the square of its length, and is a quarter where the frame is in
+// the middle of them. Beams here have no shear; so stiff a bar does not stretch.
+TEST(FloatingFrames, SubStructuresConvergeToTheExactRod) {
+  BarConstants const c{.EA = 1e10, .EI = 1e7 / 12, .mass_per_length = 1.0, .GJ = 1e7 / 12, .rotary_inertia = 1.0 / 12};
+  Vec3 const exact(47.1512944003, 15.6850781622, 53.4685984423), straight(70.7106781187, 29.2893218813, 0);
+  double const u = (exact - straight).norm();
+  for (bool const mean_axes : {false, true}) {
+    auto const error = [&](Index pieces) { return (bend_tip(pieces, 96 / pieces, c, 600, mean_axes) - exact).norm() / u; };
+    double const eight = error(8), sixteen = error(16);
+    EXPECT_LT(error(4), 0.03) << mean_axes;
+    EXPECT_LT(eight, mean_axes ? 0.002 : 0.01);
+    EXPECT_NEAR(eight / sixteen, 4.0, 0.1) << mean_axes;
+  }
+}
+
+// Chrono's utest_MOD_curved_beam [P]: 40 elements in five sub-assemblies, to 5 %.
+TEST(FloatingFrames, FiveSubStructuresMeetThePublishedTolerance) {
+  BarConstants const c{.EA = 1e7, .EI = 1e7 / 12, .mass_per_length = 1.0, .GJ = 0.1405770150 * 5e6, .rotary_inertia = 1.0 / 12};
+  struct {
+    double force;
+    Vec3 tip;
+  } const rows[] = {{300, {58.5357092368, 22.1125138053, 40.4807573768}},
+                    {450, {51.9694245784, 18.3691630429, 48.7053489407}},
+                    {600, {46.8915863910, 15.5576762394, 53.6079863172}}};
+  for (auto const& row : rows)
+    for (bool const mean_axes : {false, true}) {
+      Vec3 const tip = bend_tip(5, 8, c, row.force, mean_axes);
+      EXPECT_LT((tip - row.tip).norm(), 0.05 * (row.tip - Vec3(70.7106781187, 29.2893218813, 0)).norm()) << row.force;
+    }
+}
+
 // Geometric stiffening knows every axial force: the lateral stiffness of a cantilever pressed at its tip with P is lost at Euler's load
 // π²EI/4L² (S9e, clamped–free). Under P it is P/(tan(κL)/κ − L), κ² = P/EI.
 TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
-  using Clamp = Joint<Weld, Constraint>;
   Bar const bar{.length = 1.0,
                 .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
   for (double const part : {0.0, 0.5, 0.9}) {
     double const p = part * pi * pi / 4, kappa = std::sqrt(p), lateral = 1e-5;
     double const expected = part == 0.0 ? lateral / 3 : lateral * (std::tan(kappa) / kappa - 1.0) / p;
-    Model<Bodies<Ffr>, Joints<Clamp>, Forces<PointForce<>>> model;
+    Frames model;
     auto const body = model.add(Ffr::from(bar, 6, {.stiffening = true}), "column");
     model.connect(Clamp{}, model.ground().at({0, 0, 0}), body.at(0.0), "clamp");
     model.apply(PointForce<>{.force = {-p, lateral, 0}}, body.at(1.0));

@@ -1,7 +1,8 @@
 // CASES S2, S3, S11 and D6a for the ANCF cable in space: the plane's numbers in a plane that stands askew, a hanging cable, and a very
-// flexible pendulum that spins.
+// flexible pendulum that spins, as Lrvf too.
 
 #include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/lrvf.hpp>
 
 #include <gtest/gtest.h>
 
@@ -23,6 +24,8 @@ namespace spatial_cable_test {
 using Cable = AncfCable<EngineeringStrain>;
 using Clamp = Joint<Revolute, Constraint>;
 using Ball = Joint<Spherical, Constraint>;
+/// One type of model for what hangs on balls: it is compiled once.
+using Hung = Model<Bodies<Cable, Lrvf<>>, Joints<Ball>>;
 
 Placement const askew = Placement::at({0.3, -0.2, 0.7}, {0.8, -1.1, 0.4});
 
@@ -116,7 +119,7 @@ TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
   VecX hanging;
   for (Row const& row : {Row{1e4, 33.35480862, 2.687462764}, Row{1e6, 33.81541787, 2.654709857}}) {
     Bar const bar{.length = 10.0, .constants = BarConstants{.EA = row.EA, .EI = 1e-3, .mass_per_length = 1.0}};
-    Model<Bodies<Cable>, Joints<Ball>> model{Gravity{0, 0, -10.0}};
+    Hung model{Gravity{0, 0, -10.0}};
     auto const cable = model.add(Cable::from(bar, 20, arc), "cable");
     auto const left = model.connect(Ball{}, model.ground().at({0, 0, 0}), cable.at(0.0), "left");
     model.connect(Ball{}, model.ground().at({8, 0, 0}), cable.at(10.0), "right");
@@ -131,31 +134,38 @@ TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
   }
 }
 
-// D6a: hinged at the origin along +x, gravity along −y, spinning at 4 rad/s about +y; 16 elements, h = 1 ms: 2e-3 to t = 1 s and 1e-2 at
-// 2 s are asked.
-TEST(SpinningCablePendulum, FollowsTheConvergedMotion) {
-  Bar const bar{.length = 1.0, .constants = BarConstants{.EA = 40.0, .EI = 7.957747154594767e-5, .mass_per_length = 8e-3}};
-  Model<Bodies<Cable>, Joints<Ball>> model{Gravity{0, -9.81, 0}};
-  auto const cable = model.add(Cable::from(bar, 16), "cable");
-  model.connect(Ball{}, model.ground().at({0, 0, 0}), cable.at(0.0), "hinge");
+// D6a: hinged at the origin along +x, gravity along −y, spinning at 4 rad/s about +y; h = 1 ms: 2e-3 to t = 1 s and 1e-2 at
+// 2 s are asked of 16 cable elements. GA, GJ and Iρ are those of the reference, to which they do not matter.
+Bar pendulum() {
+  return {.length = 1.0,
+          .constants = BarConstants{.EA = 40.0, .EI = 7.957747154594767e-5, .mass_per_length = 8e-3, .GA = 15.0, .GJ = 6e-5,
+                                    .rotary_inertia = 1.59e-8}};
+}
+template <class B>
+void spins(Index n) {
+  Hung model{Gravity{0, -9.81, 0}};
+  auto const rod = model.add(B::from(pendulum(), n), "rod");
+  model.connect(Ball{}, model.ground().at({0, 0, 0}), rod.at(0.0), "hinge");
   State x = model.reference_state();
-  model.set_velocity(x, cable, Vec3::Zero(), Vec3(0, 4, 0));
+  model.set_velocity(x, rod, Vec3::Zero(), Vec3(0, 4, 0));
   struct Row {
     double t;
     Vec3 tip, mid;
-    double tolerance;
   };
-  Row const rows[] = {{0.1, {0.917305, -0.049063, -0.387767}, {0.456406, -0.048748, -0.193291}, 2e-3},
-                      {0.2, {0.660150, -0.196223, -0.699564}, {0.311624, -0.185786, -0.341537}, 2e-3},
-                      {0.5, {-0.690713, -0.710316, -0.086963}, {-0.322446, -0.372293, -0.096017}, 2e-3},
-                      {1.0, {0.653327, 0.045767, 0.658895}, {0.273900, -0.108163, 0.398954}, 2e-3},
-                      {2.0, {-0.239876, -0.202892, 0.903284}, {-0.010451, -0.170533, 0.468231}, 1e-2}};
+  Row const rows[] = {{0.1, {0.917305, -0.049063, -0.387767}, {0.456406, -0.048748, -0.193291}},
+                      {0.2, {0.660150, -0.196223, -0.699564}, {0.311624, -0.185786, -0.341537}},
+                      {0.5, {-0.690713, -0.710316, -0.086963}, {-0.322446, -0.372293, -0.096017}},
+                      {1.0, {0.653327, 0.045767, 0.658895}, {0.273900, -0.108163, 0.398954}},
+                      {1.5, {-0.555340, -0.487708, -0.649961}, {-0.312379, -0.280193, -0.273679}},
+                      {2.0, {-0.239876, -0.202892, 0.903284}, {-0.010451, -0.170533, 0.468231}}};
   for (Row const& row : rows) {
     simulate(model, x, GeneralizedAlpha{}, {.until = row.t, .step = 1e-3}).run();
-    EXPECT_LT((position(model, x, cable.at(1.0)) - row.tip).norm(), row.tolerance) << row.t;
-    EXPECT_LT((position(model, x, cable.at(0.5)) - row.mid).norm(), row.tolerance) << row.t;
-    RecordProperty("tip_error_at_" + std::to_string(row.t), std::to_string((position(model, x, cable.at(1.0)) - row.tip).norm()));
+    double const tolerance = row.t > 1.0 ? 1e-2 : 2e-3;
+    EXPECT_LT((position(model, x, rod.at(1.0)) - row.tip).norm(), tolerance) << row.t;
+    EXPECT_LT((position(model, x, rod.at(0.5)) - row.mid).norm(), tolerance) << row.t;
   }
 }
+TEST(SpinningPendulum, CableFollowsTheConvergedMotion) { spins<Cable>(16); }
+TEST(SpinningPendulum, LrvfFollowsTheConvergedMotion) { spins<Lrvf<>>(32); }
 
 }  // namespace spatial_cable_test

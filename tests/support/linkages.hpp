@@ -53,15 +53,18 @@ inline constexpr Corner corners[] = {{1, 1, -0.2607126751836504, -0.965416439159
                                      {40, 10, 0.1805122266867284, 0.9835727405823116}};
 
 /// The Bricard mechanism [IFToMM A04, CASES R4]: five rods of 1 m and 1 kg of width h, six pins, one degree of freedom, of
-/// which no count of rows knows. h = 0 are thin rods: their mass is singular as well.
-template <class Policy = Constraint, class B = Rigid<>>
+/// which no count of rows knows. h = 0 are thin rods: their mass is singular as well. \tparam Closing the policy of the last pin
+template <class Policy = Constraint, class B = Rigid<>, class Closing = Policy>
 struct Bricard {
   using Pin = Joint<Revolute, Policy>;
-  Model<Bodies<B>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+  using LastPin = Joint<Revolute, Closing>;
+  using Pins = std::conditional_t<std::is_same_v<Pin, LastPin>, Joints<Pin>, Joints<Pin, LastPin>>;
+  Model<Bodies<B>, Pins> model{Gravity{0, -9.81, 0}};
   std::vector<BodyHandle<B>> rods;
   State x;
 
-  explicit Bricard(double h, Policy const& policy = {}) {
+  explicit Bricard(double h, Policy const& policy = {}) : Bricard(h, policy, policy) {}
+  Bricard(double h, Policy const& policy, Closing const& closing) {
     Vec3 const points[] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, -1, 1}, {0, -1, 1}, {0, 0, 1}};
     Vec3 const axes[] = {Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX()};
     double const own = h * h / 6.0, across = (1.0 + h * h) / 12.0;
@@ -81,7 +84,7 @@ struct Bricard {
       if (i == 0)
         model.connect(pin, model.ground().at(points[0]), end(0, 0), name);
       else if (i == 5)
-        model.connect(pin, end(4, 5), model.ground().at(points[5]), name);
+        model.connect(LastPin{Revolute{.axis = axes[i]}, closing}, end(4, 5), model.ground().at(points[5]), name);
       else
         model.connect(pin, end(i - 1, i), end(i, i), name);
     }

@@ -128,6 +128,40 @@ TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {
   EXPECT_LT((held - free).norm(), 1e-5);  // both are off by h²
 }
 
+// CASES S11: ten links of 0.1 m and 1 kg hang over 0.8 m; tan θᵢ = (V − m g (i + ½))/H. They stay so, and what the tree's pins
+// carry is worked out.
+TEST(RecursiveLoop, ChainHangsWithThePublishedForces) {
+  using Loop = FourBar<Recursive>;
+  Loop::ModelType model{Gravity{0, -9.81, 0}};
+  double const H = 33.0892370968, V = 49.05, length = 0.1;
+  std::vector<ElementHandle<Loop::Pin>> pins;
+  std::vector<BodyHandle<planar::Rigid>> links;
+  Vec2 const end(0.5 * length, 0.0);
+  Vec2 r(0.0, 0.0);
+  for (int i = 0; i < 10; ++i) {
+    double const angle = -std::atan2(V - 9.81 * (i + 0.5), H);
+    Vec2 const half = 0.5 * length * Vec2(std::cos(angle), std::sin(angle));
+    r += half;
+    links.push_back(model.add(planar::Rigid(1.0, length * length / 12.0, Placement::planar(r[0], r[1], angle))));
+    auto const here = links.back().at(-end);
+    if (i == 0)
+      pins.push_back(model.connect(Loop::Pin{}, model.ground().at({0, 0, 0}), here));
+    else
+      pins.push_back(model.connect(Loop::Pin{}, links[std::size_t(i) - 1].at(end), here));
+    r += half;
+  }
+  auto const closing = model.connect(Loop::Close{}, links.back().at(end), model.ground().at({0.8, 0, 0}));
+  EXPECT_EQ(census(model).speeds, 10);
+  EXPECT_EQ(census(model).rows, 2);
+  State x = model.reference_state();
+  VecX const hanging = x.q;
+  simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 0.1, .step = 1e-2}).run();
+  EXPECT_LT((x.q - hanging).norm(), 1e-9);
+  EXPECT_LT((reaction(model, x, pins[0]).f - Vec3(-H, V, 0)).norm(), 1e-6);
+  EXPECT_LT((reaction(model, x, pins[5]).f - Vec3(-H, 0, 0)).norm(), 1e-6);
+  EXPECT_LT((reaction(model, x, closing).f - Vec3(-H, -V, 0)).norm(), 1e-6);
+}
+
 TEST(RecursiveLoop, EventsSeeTheWholeState) {
   using Pin = Joint<planar::Revolute, Recursive>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};

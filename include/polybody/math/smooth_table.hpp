@@ -23,10 +23,11 @@ class SmoothTable {
     std::optional<double> last_rate = {};
   };
 
-  /// \throws InvalidInput for fewer than two points, times that do not increase, and numbers that are not finite.
+  /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and numbers that are not finite.
   explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
-  SmoothTable(std::vector<Point> const& points, Ends const& ends) : knots_(points.size()) {
-    check_points(points, ends);
+  SmoothTable(std::vector<Point> const& points, Ends const& ends, std::string const& what = "SmoothTable")
+      : knots_(points.size()) {
+    check_points(points, ends, what);
     std::size_t const last = points.size() - 1;
     for (std::size_t i = 0; i <= last; ++i) knots_[i] = {.time = points[i].time, .value = points[i].value};
     solve(ends);
@@ -61,18 +62,18 @@ class SmoothTable {
     double integral = 0.0;  ///< from the first point to this one
   };
 
-  static void check_points(std::vector<Point> const& points, Ends const& ends) {
+  static void check_points(std::vector<Point> const& points, Ends const& ends, std::string const& what) {
     if (points.size() < 2)
-      throw InvalidInput("SmoothTable: at least two points are needed, but there are " + std::to_string(points.size()) + ".");
+      throw InvalidInput(what + ": at least two points are needed, but there are " + std::to_string(points.size()) + ".");
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!std::isfinite(points[i].time) || !std::isfinite(points[i].value))
-        throw InvalidInput("SmoothTable: point " + std::to_string(i + 1) + " must be finite.");
+        throw InvalidInput(what + ": point " + std::to_string(i + 1) + " must be finite.");
       if (i > 0 && !(points[i].time > points[i - 1].time))
-        throw InvalidInput("SmoothTable: the times must increase, but point " + std::to_string(i + 1) + " at t = " +
+        throw InvalidInput(what + ": the times must increase, but point " + std::to_string(i + 1) + " at t = " +
                            number(points[i].time) + " s follows one at " + number(points[i - 1].time) + " s.");
     }
     if (!std::isfinite(ends.first_rate.value_or(0.0)) || !std::isfinite(ends.last_rate.value_or(0.0)))
-      throw InvalidInput("SmoothTable: the rates at the ends must be finite.");
+      throw InvalidInput(what + ": the rates at the ends must be finite.");
   }
 
   /// The second derivatives mᵢ that make the rates continuous, s the slopes of the chords:

@@ -98,15 +98,17 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
       detail::require_along_tangent(axes_b, triad, name);
     detail::require_told(a, Asks::needs, name);
     detail::require_told(b, needs_of_second<Asks>(), name);
+    if constexpr (LinearInCoordinates<P>) {  // before a marker is published: it may refuse
+      LinearRows rows{.name = name, .row = rows_};
+      detail::fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name), triad.col(2), rows);
+      linear_rows_.push_back(std::move(rows));
+    }
     Index const pa = publish_at(a, axes_a.transpose() * triad);
     Index const pb = publish_at(b, axes_b.transpose() * triad);
     detail::JointEntry<J> entry{joint, pa, pb, -1, name};
     if constexpr (LinearInCoordinates<P>) {
-      LinearRows rows{.name = name, .row = rows_};
-      detail::fill_linear_rows<G>(linear_side(a, B::world, rows.a), linear_side(b, A::world, rows.b), triad.col(2), rows);
-      entry.linear = Index(linear_rows_.size());
-      entry.rows = rows.rows();
-      linear_rows_.push_back(std::move(rows));
+      entry.linear = Index(linear_rows_.size()) - 1;
+      entry.rows = linear_rows_.back().rows();
     } else if constexpr (AddsRows<P>) {
       entry.rows = J::rows;
     }
@@ -253,15 +255,20 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   }
 
   /// The linear point of a marker, and where its body stands; the ground takes the world of the other.
+  /// \throws InvalidInput naming the joint `what` for a point that is not linear in the coordinates.
   template <class B>
-  detail::LinearPoint linear_side(Marker<B> const& m, World other, LinearSide& side) const {
+  detail::LinearPoint linear_side(Marker<B> const& m, World other, LinearSide& side, std::string const& what) const {
     if constexpr (std::is_same_v<B, Ground>) {
       return detail::linear_ground(m.point, other == World::plane ? 2 : 3);
     } else {
       auto const& e = std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)];
       side.q0 = e.q0 + e.body.first_column(m.point);
       side.v0 = e.v0 + e.body.first_column(m.point);
-      return detail::linear_point(e.body, m.point);
+      try {
+        return detail::linear_point(e.body, m.point);
+      } catch (InvalidInput const& error) {
+        throw InvalidInput("\"" + what + "\": " + error.what() + " Use Constraint here.");
+      }
     }
   }
 

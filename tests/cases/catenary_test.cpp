@@ -1,0 +1,184 @@
+// CASES S11 in the plane: a cable and a chain of rigid links, hung at equal heights. Links on ideal pins, on springs, and on
+// joint coordinates.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/equilibrium.hpp>
+#include <polybody/analysis/observe.hpp>
+#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/policies/bushing.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+
+namespace polybody {
+namespace catenary_test {
+
+using Cable = planar::AncfCable<EngineeringStrain>;
+template <class Policy>
+using Pin = Joint<planar::Revolute, Policy>;
+/// One type of model for all, which is compiled once.
+using Hanging = Model<Bodies<planar::Rigid, Cable>, Joints<Pin<Constraint>, Pin<Penalty>, Pin<Bushing>, Pin<Recursive>>>;
+
+/// By how much a chord is steeper than the one before where n chords of length l, ends on a circle, span s:
+/// Σ l cos δ(i − (n − 1)/2) = s.
+double turn_of_chords(int n, double l, double s) {
+  double low = 0.0, high = 2.0 * std::numbers::pi / n;
+  for (int k = 0; k < 60; ++k) {
+    double const mid = 0.5 * (low + high);
+    double sum = -s;
+    for (int i = 0; i < n; ++i) sum += l * std::cos(mid * (i - 0.5 * (n - 1)));
+    (sum > 0.0 ? low : high) = mid;
+  }
+  return low;
+}
+
+// 10 m of 10 N/m with supports 8 m apart; 20 elements, EI = 1e-3 N m². Laid along an arc, then left to itself; the stiffer
+// cable starts where the softer one hangs.
+TEST(PlanarCatenary, HangsWithThePublishedForceAndSag) {
+  struct Row {
+    double EA, H, sag;
+  };
+  double const turn = turn_of_chords(20, 0.5, 8.0);
+  VecX hanging(84);
+  Vec2 r(0.0, 0.0);
+  for (int i = 0; i <= 20; ++i) {
+    double const at_node = turn * (i - 10), chord = at_node + 0.5 * turn;
+    hanging.segment<4>(4 * i) << r, std::cos(at_node), std::sin(at_node);
+    r += 0.5 * Vec2(std::cos(chord), std::sin(chord));
+  }
+  for (Row const& row : {Row{1e4, 33.35480862, 2.687462764}, Row{1e6, 33.81541787, 2.654709857}}) {
+    Bar const bar{.length = 10.0, .constants = BarConstants{.EA = row.EA, .EI = 1e-3, .mass_per_length = 1.0}};
+    Hanging model{Gravity{0, -10.0, 0}};
+    auto const cable = model.add(Cable::from(bar, 20), "cable");
+    auto const left = model.connect(Pin<Constraint>{}, model.ground().at({0, 0, 0}), cable.at(0.0), "left");
+    model.connect(Pin<Constraint>{}, model.ground().at({8, 0, 0}), cable.at(10.0), "right");
+    State x = model.reference_state();
+    x.q = hanging;
+    equilibrium(model, x, {.max_iterations = 200});
+    hanging = x.q;
+    Wrench<> const f = reaction(model, x, left);
+    EXPECT_NEAR(-f.f[0], row.H, 1e-3 * row.H) << row.EA;
+    EXPECT_NEAR(f.f[1], 50.0, 1e-6) << row.EA;
+    EXPECT_NEAR(-position(model, x, cable.at(5.0))[1], row.sag, 1e-3 * row.sag) << row.EA;
+  }
+}
+
+/// N uniform links of length l [m] and mass m [kg] over a span [m].
+struct Links {
+  int n;
+  double l, m, span;
+};
+/// Horizontal and vertical force at the first support, sag of the middle pin, slope of the first link.
+struct Hang {
+  double H, V, sag, slope;
+};
+
+/// A link turns until its weight, at its middle, is in balance with the forces at its ends: tan θᵢ = (V − m g (i + ½))/H. Pins of
+/// stiffness k open along their forces, (H, V − m g i)/k, and the span closes: Σ l cos θᵢ + (N + 1) H/k = s; N is even.
+Hang closed_form(Links const& c, double k) {
+  double const w = c.m * 9.81, v = 0.5 * c.n * w;
+  Hang out{};
+  double low = 1e-3 * v, high = 1e3 * v;
+  for (int step = 0; step < 200; ++step) {
+    double const h = 0.5 * (low + high);
+    double span = (c.n + 1) * h / k;
+    out = {h, v, 0.0, std::atan2(v - 0.5 * w, h)};
+    for (int i = 0; i < c.n; ++i) {
+      double const slope = std::atan2(v - w * (i + 0.5), h);
+      span += c.l * std::cos(slope);
+      if (2 * i < c.n) out.sag += c.l * std::sin(slope) + (v - w * i) / k;
+    }
+    (span < c.span ? low : high) = h;
+  }
+  return out;
+}
+
+/// Links laid along an arc, each on the one before. Pins start open by `open` along the arc: springs that do not pull cannot
+/// hold a chain. The far support may hold by another policy.
+template <class Policy>
+struct Chain {
+  Hanging model{Gravity{0, -9.81, 0}};
+  ElementHandle<Pin<Policy>> first;
+  std::vector<BodyHandle<planar::Rigid>> links;
+  Links c;
+  State x;
+  template <class Far>
+  Chain(Links const& chain, Policy const& policy, Far const& far, double open = 0.0) : c(chain) {
+    double const turn = turn_of_chords(c.n, c.l + open, c.span);
+    Vec2 const end(0.5 * c.l, 0.0);
+    Vec2 r(0.0, 0.0);
+    for (int i = 0; i < c.n; ++i) {
+      double const angle = turn * (i - 0.5 * (c.n - 1));
+      Vec2 const half = 0.5 * (c.l + open) * Vec2(std::cos(angle), std::sin(angle));
+      r += half;
+      links.push_back(model.add(planar::Rigid(c.m, c.m * c.l * c.l / 12.0, Placement::planar(r[0], r[1], angle))));
+      r += half;
+      if (i == 0)
+        first = model.connect(Pin<Policy>{{}, policy}, model.ground().at({0, 0, 0}), links[0].at(-end), "support");
+      else
+        model.connect(Pin<Policy>{{}, policy}, links[std::size_t(i) - 1].at(end), links[std::size_t(i)].at(-end));
+    }
+    model.connect(Pin<Far>{{}, far}, links.back().at(end), model.ground().at({c.span, 0, 0}), "far support");
+    x = model.reference_state();
+    equilibrium(model, x);
+  }
+  Hang hang() const {
+    Vec3 const f = reaction(model, x, first).f;
+    auto const& middle = links[std::size_t(c.n / 2) - 1];
+    Vec3 const along = frame(model, x, links[0].at(Vec2(0, 0))).A.col(0);
+    return {-f[0], f[1], -position(model, x, middle.at(Vec2(0.5 * c.l, 0)))[1], std::atan2(-along[1], along[0])};
+  }
+};
+
+void expect_same(Hang const& a, Hang const& b, double tolerance) {
+  EXPECT_NEAR(a.H, b.H, tolerance * b.H);
+  EXPECT_NEAR(a.V, b.V, tolerance * b.V);
+  EXPECT_NEAR(a.sag, b.sag, tolerance * b.sag);
+  EXPECT_NEAR(a.slope, b.slope, tolerance * b.slope);
+}
+
+Links const ten{10, 0.1, 1.0, 0.8}, twenty{20, 0.05, 0.5, 0.8};
+Hang const of_ten{33.0892370968, 49.05, 0.2668644258, 0.9275781698};
+
+TEST(HangingChain, HasThePublishedForcesAndShape) {
+  double const rigid = std::numeric_limits<double>::infinity();
+  expect_same(closed_form(ten, rigid), of_ten, 1e-9);
+  expect_same(Chain(ten, Constraint{}, Constraint{}).hang(), of_ten, 1e-9);
+  Hang const h = Chain(twenty, Constraint{}, Constraint{}).hang();
+  EXPECT_NEAR(h.H, 33.1554563512, 1e-9);
+  EXPECT_NEAR(h.sag, 0.2657915666, 1e-9);
+  expect_same(h, closed_form(twenty, rigid), 1e-9);
+}
+
+// A tree from the first support, closed by a pin at the far one; its steps: tests/system/recursive_loop_test.cpp.
+TEST(HangingChain, HangsAlikeOnJointCoordinates) {
+  expect_same(Chain(ten, Recursive{}, Constraint{}).hang(), of_ten, 1e-9);
+}
+
+// Springs in place of pins: their closed form at every stiffness, and the published force with an error of 1/k.
+void expect_springs(auto&& of_stiffness) {
+  double last = 0.0;
+  for (double const k : {1e7, 1e8, 1e9}) {
+    Hang const h = Chain(ten, of_stiffness(k), of_stiffness(k), of_ten.H / k).hang();
+    expect_same(h, closed_form(ten, k), 1e-9);
+    double const error = std::abs(h.H - of_ten.H);
+    if (last > 0.0) {
+      EXPECT_NEAR(last / error, 10.0, 0.01) << k;
+    }
+    last = error;
+  }
+  EXPECT_LT(last, 2e-6 * of_ten.H);
+}
+TEST(HangingChain, HangsOnPenaltiesWithAnErrorOfOneOverK) {
+  expect_springs([](double k) { return Penalty{.stiffness = k, .damping = 0.0}; });
+}
+TEST(HangingChain, HangsOnBushingsWithAnErrorOfOneOverK) {
+  expect_springs([](double k) {
+    return Bushing{.stiffness = Bushing::diagonal(Vec3::Constant(k), Vec3::Zero()), .damping = Bushing::Matrix::Zero()};
+  });
+}
+
+}  // namespace catenary_test
+}  // namespace polybody

@@ -1,0 +1,198 @@
+// An open chain of links that falls from the horizontal, its first link pinned to the ground, by five joint policies: where
+// the tip is, how far the pins open, and what is counted. CASES R8d, thesis §3.5 and Table 3.4.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/policies/bushing.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/revolute.hpp>
+
+namespace polybody {
+namespace falling_chain_test {
+
+template <class Policy>
+using Pin = Joint<Revolute, Policy>;
+
+/// What a policy joins: rigid links, in one model for the policies that keep their coordinates, or cables of one element.
+template <class Policy>
+struct Kind {
+  using Link = Rigid<>;
+  using ModelType = Model<Bodies<Link>, Joints<Pin<Constraint>, Pin<Penalty>, Pin<Bushing>>>;
+  static Link link(Bar const& bar) { return Link::from(bar); }
+};
+template <>
+struct Kind<Recursive> : Kind<Constraint> {
+  using ModelType = Model<Bodies<Link>, Joints<Pin<Recursive>>>;
+};
+template <>
+struct Kind<AncfLinear> {
+  using Link = AncfCable<>;
+  using ModelType = Model<Bodies<Link>, Joints<Pin<AncfLinear>>>;
+  static Link link(Bar const& bar) { return Link::from(bar, 1); }
+};
+
+/// Of k in every row; damped, so that the pins, closed at the start, do not ring long.
+template <class Policy>
+Policy policy_of(double k) {
+  double const c = std::sqrt(k);
+  if constexpr (std::is_same_v<Policy, Penalty>) {
+    return {.stiffness = k, .damping = c};
+  } else if constexpr (std::is_same_v<Policy, Bushing>) {
+    Bushing::Matrix const one = Bushing::Matrix::Identity();
+    return {.stiffness = Bushing::Matrix(k * one), .damping = Bushing::Matrix(c * one)};
+  } else {
+    return {};
+  }
+}
+
+/// 16 m and 64 kg in n links. Lengths scale as g t²: after 1 s the chain is shaped as one of 1 m is after 0.25 s, of which CASES
+/// R8d has the tip. That is before the whip: the wave from the pin is under way, and the tip still falls freely.
+constexpr double length = 16.0, stiff = 1e8;
+
+/// A rod of the chain: thin (rotary inertia adds 5e-4 to m l²/12 of 0.25 m, and a cable has none); 0.25 m of it stretch as a
+/// spring `stiff`. A cable of one element that neither stretches nor bends is r = r₀ + s t, with the kinetic energy of a rigid rod.
+Bar rod(double l, double from) {
+  return {.length = l,
+          .constants = BarConstants{.EA = 0.25 * stiff, .EI = 1e-3 * stiff, .mass_per_length = 4.0, .rotary_inertia = 1e-5},
+          .placement = Placement::at({from, 0, 0})};
+}
+
+/// The chain: one source for all policies.
+template <class Policy>
+struct Chain {
+  typename Kind<Policy>::ModelType model{Gravity{0, -9.81, 0}};
+  std::vector<BodyHandle<typename Kind<Policy>::Link>> links;
+  std::vector<ElementHandle<Pin<Policy>>> pins;
+  State x;
+  double l;
+  Violation worst;  ///< over the steps
+
+  explicit Chain(int n, double k = stiff) : l(length / n) {
+    Pin<Policy> const pin{Revolute{.axis = Vec3::UnitZ()}, policy_of<Policy>(k)};
+    for (int i = 0; i < n; ++i) {
+      links.push_back(model.add(Kind<Policy>::link(rod(l, i * l))));
+      auto const here = links.back().at(0.0);
+      pins.push_back(i == 0 ? model.connect(pin, model.ground().at({0, 0, 0}), here)
+                            : model.connect(pin, links[std::size_t(i) - 1].at(l), here));
+    }
+    x = model.reference_state();
+  }
+  /// For one second.
+  void fall(double h = 2e-3) {
+    System system(model);
+    for (State const& now : simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = h})) {
+      Violation const open = violation(system, now);
+      worst.position = std::max(worst.position, open.position);
+      worst.velocity = std::max(worst.velocity, open.velocity);
+    }
+  }
+  Vec3 tip() const { return position(model, x, links.back().at(l)); }
+  /// The forces in all pins, √Σ F² [N], and how far the pins are open, √Σ g² [m].
+  double force() const {
+    double sum = 0.0;
+    for (auto const& pin : pins) sum += reaction(model, x, pin).f.squaredNorm();
+    return std::sqrt(sum);
+  }
+  double opening() const {
+    double sum = 0.0;
+    for (auto const& pin : pins) sum += gap(model, x, pin).squaredNorm();
+    return std::sqrt(sum);
+  }
+};
+
+template <class Policy>
+Chain<Policy> fallen(int n, double k = stiff) {
+  Chain<Policy> chain(n, k);
+  chain.fall();
+  return chain;
+}
+Chain<Constraint> const& ideal() {
+  static Chain<Constraint> const chain = fallen<Constraint>(64);
+  return chain;
+}
+
+// CASES R8d: ten links, sixteen times the tip of 1 m at 0.25 s. Ideal joints are off by h² alone, the others by F/k too.
+TEST(FallingChain, OfTenLinksHasThePublishedTip) {
+  Vec3 const published = length * Vec3(0.877462524775, -0.306656671158, 0.0);
+  EXPECT_LT((fallen<Constraint>(10).tip() - published).norm(), 2e-5);
+  EXPECT_LT((fallen<Recursive>(10).tip() - published).norm(), 2e-5);
+  EXPECT_LT((fallen<Penalty>(10).tip() - published).norm(), 1e-4);
+  EXPECT_LT((fallen<Bushing>(10).tip() - published).norm(), 1e-4);
+  EXPECT_LT((fallen<AncfLinear>(10).tip() - published).norm(), 5e-4);
+}
+
+// All within 1 % of the tip's way, and of its 5 m within 0.5 mm.
+TEST(FallingChain, HasOneTipByFivePolicies) {
+  Vec3 const tip = ideal().tip();
+  double const way = (tip - Vec3(length, 0, 0)).norm();
+  // what the pin does falls by a factor from link to link: 64 links away the tip falls freely, −½ g t²
+  EXPECT_NEAR(tip[1], -0.5 * 9.81, 1e-5);
+  Chain<Constraint> fine(64);
+  fine.fall(1e-3);
+  EXPECT_LT((fine.tip() - tip).norm(), 5e-6 * way);
+  EXPECT_LT((fallen<Recursive>(64).tip() - tip).norm(), 5e-6 * way);
+  EXPECT_LT((fallen<Penalty>(64).tip() - tip).norm(), 1e-4 * way);
+  EXPECT_LT((fallen<Bushing>(64).tip() - tip).norm(), 1e-4 * way);
+  EXPECT_LT((fallen<AncfLinear>(64).tip() - tip).norm(), 1e-4 * way);
+}
+
+/// g = F/k, F the ideal chain's; and so the tip's distance from where it ideally is.
+template <class Policy>
+void expect_one_over_k() {
+  double opening = 0.0, off = 0.0;
+  for (double const k : {1e6, 1e7, 1e8}) {
+    Chain<Policy> const chain = fallen<Policy>(64, k);
+    double const opens = chain.opening(), away = (chain.tip() - ideal().tip()).norm();
+    EXPECT_NEAR(k * opens, ideal().force(), 0.01 * ideal().force()) << k;
+    if (opening > 0.0) {
+      EXPECT_NEAR(opening / opens, 10.0, 0.05) << k;
+      EXPECT_NEAR(off / away, 10.0, 0.15) << k;
+    }
+    opening = opens;
+    off = away;
+  }
+}
+TEST(FallingChain, OpensPenaltiesAsOneOverTheStiffness) { expect_one_over_k<Penalty>(); }
+TEST(FallingChain, OpensBushingsAsOneOverTheStiffness) { expect_one_over_k<Bushing>(); }
+
+// A cable of one element stretches as a spring EA/l in series with an ideal pin.
+TEST(FallingChain, OfCablesIsThatOfSpringsAsStiff) {
+  Vec3 const spring = fallen<Penalty>(64).tip() - ideal().tip(), cable = fallen<AncfLinear>(64).tip() - ideal().tip();
+  EXPECT_GT(spring.norm(), 1e-4);
+  EXPECT_LT((cable - spring).norm(), 0.03 * spring.norm());
+}
+
+// A step of generalised-α holds the rows of `Constraint`, not their rates; joint coordinates hold both.
+TEST(FallingChain, PinsWithoutSpringsStayClosed) {
+  Chain<Recursive> const joints = fallen<Recursive>(64);
+  EXPECT_LT(joints.worst.position, 1e-12);
+  EXPECT_LT(joints.worst.velocity, 1e-12);
+  EXPECT_LT(fallen<AncfLinear>(64).worst.position, 1e-12);
+  EXPECT_LT(ideal().worst.position, 1e-10);
+}
+
+// Coordinates, constraints and degrees of freedom as Table 3.4 counts: of a rigid link seven and the norm of its parameters, of a
+// cable twelve. A pin has five rows, between cables four; to penalties and bushings none.
+TEST(FallingChain, IsCountedAsInTheThesis) {
+  constexpr Index n = 64;
+  auto const expect = [](Census const& c, Index coordinates, Index constraints, Index freedoms, Index rows) {
+    EXPECT_EQ(c.coordinates, coordinates);
+    EXPECT_EQ(c.constraints, constraints);
+    EXPECT_EQ(c.degrees_of_freedom, freedoms);
+    EXPECT_EQ(c.rows, rows);
+  };
+  expect(census(Chain<Constraint>(n).model), 7 * n, n + 5 * n, n, 5 * n);
+  expect(census(Chain<Penalty>(n).model), 7 * n, n, 6 * n, 0);
+  expect(census(Chain<Bushing>(n).model), 7 * n, n, 6 * n, 0);
+  expect(census(Chain<Recursive>(n).model), n, 0, n, 0);
+  expect(census(Chain<AncfLinear>(n).model), 12 * n - 4 * n, 0, 8 * n, 0);
+}
+
+}  // namespace falling_chain_test
+}  // namespace polybody

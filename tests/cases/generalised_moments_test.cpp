@@ -1,0 +1,242 @@
+// Generalised and Cartesian moments [thesis §3.4]: a spatial double pendulum under a follower moment, with Euler parameters, with
+// a quaternion and body-axes angular velocity, and with joint coordinates.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/universal.hpp>
+
+namespace polybody {
+namespace generalised_moments_test {
+
+/// The applied moment in the axes of body b, which tumbles: it keeps no direction in the world [N m].
+Vec3 const applied(0.8, -0.5, 0.6);
+
+/// The ground, a Cardan joint, body a, a ball joint, body b.
+template <class Rotation, class Policy>
+struct Pendulum {
+  using Cardan = Joint<Universal, Policy>;
+  using Ball = Joint<Spherical, Policy>;
+  using ModelType = Model<Bodies<Rigid<Rotation>>, Joints<Cardan, Ball>, Forces<PointMoment<>>>;
+  /// The ball's place from the centres of mass.
+  static inline Vec3 const elbow{0.5, 0.1, -0.1}, on_a{0.2, 0.05, -0.1}, on_b{-0.2, 0.0, 0.05};
+
+  ModelType model{Gravity{0, 0, -9.81}};
+  BodyHandle<Rigid<Rotation>> a =
+      model.add(Rigid<Rotation>(2.0, Vec3(0.02, 0.05, 0.06).asDiagonal(), Placement::at(elbow - on_a)), "a");
+  BodyHandle<Rigid<Rotation>> b =
+      model.add(Rigid<Rotation>(1.0, Vec3(0.02, 0.01, 0.025).asDiagonal(), Placement::at(elbow - on_b)), "b");
+  ElementHandle<Cardan> cardan = model.connect(Cardan{{.first = Vec3::UnitX(), .second = Vec3::UnitY()}, {}},
+                                               model.ground().at({0, 0, 0}), a.at(Vec3(on_a - elbow)), "cardan");
+  ElementHandle<Ball> ball = model.connect(Ball{}, a.at(on_a), b.at(on_b), "ball");
+  State x;
+
+  explicit Pendulum(double h = 5e-4) {
+    model.apply(PointMoment<>{.moment = applied, .axes = LoadAxes::marker}, b.at(Vec3(0, 0, 0)));
+    x = model.reference_state();
+    Vec3 const spin_a(1, 2, 0), spin_b(2, -1, 3);  // a about both arms of the cross
+    model.set_velocity(x, a, Vec3::Zero(), spin_a);
+    model.set_velocity(x, b, (spin_a - spin_b).cross(elbow), spin_b);
+    simulate(model, x, RungeKutta4<Projection>{}, {.until = 1.0, .step = h}).run();
+  }
+  template <class B>
+  Frame<double> of(B const& body) const { return frame(model, x, body.at(Vec3(0, 0, 0))); }
+
+  /// What the speeds of a body feel of the joints whose multipliers stand in lambda: −Gᵀλ [thesis Eq. 3.3].
+  VecX joint_force(BodyHandle<Rigid<Rotation>> const& body, VecX const& lambda) const {
+    System system(model);
+    system.evaluate(x.q, x.v, x.t);
+    VecX with(model.speeds()), without(model.speeds());
+    system.residual(x.a, lambda, with);
+    system.residual(x.a, VecX::Zero(model.rows()), without);
+    return (without - with).segment(model.entry(body).v0, body.body.speeds());
+  }
+  /// The multipliers of one joint, zero elsewhere.
+  template <class J>
+  VecX only(J const& joint) const {
+    VecX lambda = VecX::Zero(model.rows());
+    auto const& e = model.entry(joint);
+    lambda.segment(e.row, e.rows) = x.lambda.segment(e.row, e.rows);
+    return lambda;
+  }
+  /// What the turns of b feel of the applied moment; gravity has no part in them.
+  VecX applied_force() const {
+    System system(model);
+    system.evaluate(x.q, x.v, x.t);
+    VecX with(model.speeds()), without(model.speeds());
+    system.residual(x.a, x.lambda, with);
+    system.load_factor = 0.0;
+    system.residual(x.a, x.lambda, without);
+    return (without - with).segment(model.entry(b).v0 + 3, b.body.speeds() - 3);
+  }
+};
+
+using Parameters = Pendulum<EulerParameters, Constraint>;
+using Cartesian = Pendulum<UnitQuaternion, Constraint>;
+using Relative = Pendulum<UnitQuaternion, Recursive>;
+
+/// The three after one second.
+struct Runs {
+  Parameters parameters;
+  Cartesian cartesian;
+  Relative relative;
+};
+Runs const& runs() {
+  static Runs const all;
+  return all;
+}
+
+template <class A, class B>
+double apart(A const& one, B const& other) {
+  double sum = 0.0;
+  auto const add = [&sum](Frame<double> const& f, Frame<double> const& g) {
+    sum += (f.r - g.r).norm() + (f.A - g.A).norm() + (f.v - g.v).norm() + (f.w - g.w).norm();
+  };
+  add(one.of(one.a), other.of(other.a));
+  add(one.of(one.b), other.of(other.b));
+  return sum;
+}
+/// Ḡ (3×4) of θ = (θ₀, θ₁, θ₂, θ₃), |θ| = 1: Ω = Ḡ θ̇ = 2 Im(θ* θ̇), the quaternion product.
+Mat<double, 3, 4> g_bar(Vec4 const& theta) {
+  Eigen::Quaterniond const back = Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]).conjugate();
+  Mat<double, 3, 4> g;
+  for (int j = 0; j < 4; ++j)
+    g.col(j) = 2.0 * (back * Eigen::Quaterniond(double(j == 0), double(j == 1), double(j == 2), double(j == 3))).vec();
+  return g;
+}
+Vec4 theta_of(Parameters const& p, BodyHandle<Rigid<EulerParameters>> const& body) {
+  return p.x.q.segment<4>(p.model.entry(body).q0 + 3);
+}
+
+// Each way is off by C h⁴: Richardson's difference to twice the step says how much, and no two are further apart than that.
+TEST(EulerParameterMoments, MakeOneMotionToTheAccuracyOfTheSteps) {
+  auto const& [p, c, r] = runs();
+  double const of_p = apart(Parameters(1e-3), p) / 15.0, of_c = apart(Cartesian(1e-3), c) / 15.0;
+  double const of_r = apart(Relative(1e-3), r) / 15.0;
+  for (double const error : {of_p, of_c, of_r}) {
+    EXPECT_LT(error, 3e-8);
+    EXPECT_GT(error, 1e-10);
+  }
+  EXPECT_LT(apart(p, c), of_p + of_c);
+  EXPECT_LT(apart(r, c), of_r + of_c);
+  EXPECT_GT((c.of(c.b).A - Mat3::Identity()).norm(), 1.0);  // it has tumbled
+}
+
+// A cross bears a moment square to both its arms, a ball none.
+TEST(EulerParameterMoments, JointsHoldTheSameForcesAndMoments) {
+  auto const& [p, c, r] = runs();
+  auto const expect = [&c = c](auto const& other) {
+    auto const same = [](Wrench<double> const& one, Wrench<double> const& two) {
+      EXPECT_LT((one.f - two.f).norm(), 1e-6);
+      EXPECT_LT((one.m - two.m).norm(), 1e-6);
+    };
+    Wrench<double> const cardan = reaction(other.model, other.x, other.cardan), ball = reaction(other.model, other.x, other.ball);
+    same(cardan, reaction(c.model, c.x, c.cardan));
+    same(ball, reaction(c.model, c.x, c.ball));
+    EXPECT_GT(cardan.f.norm(), 10.0);
+    EXPECT_GT(cardan.m.norm(), 1.0);
+    EXPECT_LT(std::abs(cardan.m[0]), 1e-12);                               // the arm on the ground
+    EXPECT_LT(std::abs(cardan.m.dot(other.of(other.a).A.col(1))), 1e-12);  // the arm on a
+    EXPECT_LT(ball.m.norm(), 1e-12);
+  };
+  expect(p);
+  expect(c);
+  expect(r);
+}
+
+// −Gᵀλ of a joint on a body, against its Cartesian force F and moment M at the point u from the centre of mass: F, and
+// Ḡᵀ Aᵀ(M + u × F) for the four rates of the parameters, Aᵀ(M + u × F) for the three of the angular velocity [thesis Eq. 3.7].
+TEST(EulerParameterMoments, OfAJointAreTheCartesianOnesByG) {
+  auto const& [p, c, r] = runs();
+  auto const expect = [&p = p, &c = c](auto const& joint_p, auto const& joint_c, auto const& body_p, auto const& body_c,
+                                       Vec3 const& at, double side) {
+    Wrench<double> const w = reaction(c.model, c.x, joint_c);
+    Vec3 const force = side * w.f;
+    Vec3 const moment = c.of(body_c).A.transpose() * (side * w.m) + at.cross(c.of(body_c).A.transpose() * force);
+    EXPECT_GT(moment.norm(), 1.0);
+    VecX const six = c.joint_force(body_c, c.only(joint_c)), seven = p.joint_force(body_p, p.only(joint_p));
+    ASSERT_EQ(six.size(), 6);
+    ASSERT_EQ(seven.size(), 7);
+    EXPECT_LT((six.head<3>() - force).norm(), 1e-12 * force.norm());
+    EXPECT_LT((six.tail<3>() - moment).norm(), 1e-12 * moment.norm());
+    EXPECT_LT((seven.head<3>() - force).norm(), 1e-6);  // two runs
+    Vec4 const theta = theta_of(p, body_p), generalised = seven.tail<4>();
+    EXPECT_LT((generalised - g_bar(theta).transpose() * moment).norm(), 1e-6);
+    EXPECT_NEAR(generalised.norm(), 2.0 * moment.norm(), 1e-6);  // Ḡ Ḡᵀ = 4 1
+    EXPECT_LT((0.25 * g_bar(theta) * generalised - moment).norm(), 1e-6);
+    EXPECT_NEAR(generalised.dot(theta), 0.0, 1e-9);  // Ḡ θ = 0
+  };
+  Vec3 const pivot = p.on_a - p.elbow;
+  expect(p.cardan, c.cardan, p.a, c.a, pivot, 1.0);
+  expect(p.ball, c.ball, p.a, c.a, p.on_a, -1.0);
+  expect(p.ball, c.ball, p.b, c.b, p.on_b, 1.0);
+}
+
+// Moments have no part along θ, so nothing is left to the rows of the norms.
+TEST(EulerParameterMoments, LeaveNothingToTheNormsOfTheParameters) {
+  Parameters const& p = runs().parameters;
+  for (auto const& body : {p.a, p.b}) {
+    EXPECT_LT(std::abs(p.x.lambda[p.model.entry(body).row]), 1e-11);
+    EXPECT_NEAR(theta_of(p, body).norm(), 1.0, 1e-12);
+  }
+}
+
+// The applied moment M (axes of b): Ḡᵀ M, M, and with joint coordinates its parts along the axes of the joints, beside those of
+// the weights there. All have the power M·Ω.
+TEST(EulerParameterMoments, OfALoadHaveItsPower) {
+  auto const& [p, c, r] = runs();
+  VecX const four = p.applied_force(), three = c.applied_force();
+  ASSERT_EQ(four.size(), 4);
+  ASSERT_EQ(three.size(), 3);
+  EXPECT_LT((four - g_bar(theta_of(p, p.b)).transpose() * applied).norm(), 1e-11);
+  EXPECT_NEAR(four.norm(), 2.0 * applied.norm(), 1e-11);
+  EXPECT_LT((three - applied).norm(), 1e-12);
+  double const power = applied.dot(c.x.v.segment<3>(c.model.entry(c.b).v0 + 3));
+  EXPECT_GT(std::abs(power), 1.0);
+  EXPECT_NEAR(four.dot(p.x.v.segment<4>(p.model.entry(p.b).v0 + 3)), power, 1e-6);
+
+  System<Reduced<Relative::ModelType>> system(r.model);
+  State const narrow = system.narrow(r.x);
+  system.evaluate(narrow.q, narrow.v, narrow.t);
+  VecX with(system.speeds()), without(system.speeds());
+  system.residual(narrow.a, narrow.lambda, with);
+  system.whole().load_factor = 0.0;
+  system.residual(narrow.a, narrow.lambda, without);
+  VecX const five = without - with;
+  ASSERT_EQ(five.size(), 2 + 3);
+  Frame<double> const a = r.of(r.a), b = r.of(r.b);
+  Vec3 const moment = b.A * applied, weight(0, 0, -9.81), elbow = b.r + b.A * r.on_b;
+  Vec3 const about_cross = moment + a.r.cross(2.0 * weight) + b.r.cross(weight);
+  EXPECT_NEAR(five[0], about_cross[0], 1e-11);
+  EXPECT_NEAR(five[1], about_cross.dot(a.A.col(1)), 1e-11);
+  EXPECT_NEAR(five.tail<3>().norm(), (moment + (b.r - elbow).cross(weight)).norm(), 1e-11);
+  double const falling = weight.dot(2.0 * a.v + b.v);
+  EXPECT_NEAR(five.dot(narrow.v), power + falling, 1e-6);
+}
+
+// Table 3.4's way of counting: seven coordinates and one constraint a body; four rows of the cross, three of the ball. A ball's
+// joint coordinates are four parameters with their norm.
+TEST(EulerParameterMoments, AreCountedAsInTheThesis) {
+  auto const& [p, c, r] = runs();
+  auto const expect = [](Census const& census, Index coordinates, Index constraints, Index speeds, Index rows) {
+    EXPECT_EQ(census.coordinates, coordinates);
+    EXPECT_EQ(census.constraints, constraints);
+    EXPECT_EQ(census.speeds, speeds);
+    EXPECT_EQ(census.rows, rows);
+    EXPECT_EQ(census.degrees_of_freedom, 5);  // two of the cross, three of the ball
+  };
+  expect(census(p.model), 2 * 7, 2 + 4 + 3, 2 * 7, 2 + 4 + 3);
+  expect(census(c.model), 2 * 7, 2 + 4 + 3, 2 * 6, 4 + 3);
+  expect(census(r.model), 2 + 4, 1, 5, 0);
+}
+
+}  // namespace generalised_moments_test
+}  // namespace polybody

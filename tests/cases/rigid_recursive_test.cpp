@@ -1,0 +1,97 @@
+// CASES R1, R4, R6, R8 and J1 in joint coordinates.
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+
+#include "support/linkages.hpp"
+
+namespace polybody {
+namespace rigid_recursive_test {
+
+constexpr double g = 9.81, half_pi = 0.5 * std::numbers::pi;
+using Plane = Chain<InPlane<Recursive>>;
+
+DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
+
+TEST(JointCoordinates, SwingAPointMass) {  // R1
+  Plane const chain(1, point_link(), g, -half_pi);
+  State x = chain.model.reference_state();
+  for (auto const& [t, px, py] : {std::array{0.5, -0.3910487915505464, -0.9203699487851922},
+                                  std::array{2.0, -0.7935661953433217, -0.6084839304437915},
+                                  std::array{10.0, -0.2750874625761169, -0.9614192050991251}}) {
+    simulate(chain.model, x, precise(), {.until = t, .step = 0.01}).run();
+    EXPECT_LT((chain.tip(x) - Vec3(px, py, 0)).norm(), 1e-8) << t;
+  }
+}
+
+TEST(JointCoordinates, TellWhatThePinHolds) {  // J1
+  Plane const rod(1, bar_link());
+  State x = rod.model.reference_state();
+  for (auto const& [t, angle, rx, ry] : {std::array{0.25, 1.114159968059, -8.7352815388, 6.7438504085},
+                                         std::array{1.0, -1.562621718035, 0.1804260137, 2.4539749449}}) {
+    simulate(rod.model, x, precise(), {.until = t, .step = 0.01}).run();
+    EXPECT_NEAR(rod.angle(x), angle, 1e-9) << t;
+    EXPECT_LT((reaction(rod.model, x, rod.hinges[0]).f - Vec3(rx, ry, 0)).norm(), 1e-7) << t;
+  }
+}
+
+TEST(JointCoordinates, SwingTwoBars) {  // R8b
+  Plane const bars(2, bar_link());
+  State x = bars.model.reference_state();
+  for (auto const& [t, first, second] : {std::array{0.5, 0.448142625932, 1.041962887304},
+                                         std::array{1.0, -1.207716238191, -0.814391023091},
+                                         std::array{2.0, -0.082758306821, 0.407362074912}}) {
+    simulate(bars.model, x, precise(), {.until = t, .step = 0.01}).run();
+    EXPECT_NEAR(bars.angle(x, 0), first, 1e-7) << t;
+    EXPECT_NEAR(bars.angle(x, 1), second, 1e-7) << t;
+  }
+}
+
+TEST(JointCoordinates, SwingManyBars) {  // R8d
+  for (auto const& [n, px, py] : {std::array{3.0, -0.908458260529, -0.025617696288},
+                                  std::array{4.0, -0.864582047703, -0.090031032523},
+                                  std::array{10.0, -0.894316852361, -0.146565064747}}) {
+    Plane const chain(int(n), bar_link(1.0 / n, 1.0 / n));
+    State x = chain.model.reference_state();
+    simulate(chain.model, x, precise(), {.until = 1.0, .step = 1e-3}).run();
+    EXPECT_LT((chain.tip(x) - Vec3(px, py, 0)).norm(), 1e-7) << n;
+  }
+}
+
+// R4: five pins in joint coordinates, the sixth by five rows, of which one repeats the others.
+TEST(JointCoordinates, FoldBricard) {
+  Bricard<Recursive, Rigid<>, Constraint> b(0.1, {}, {});
+  double const before = energy(b.model, b.x).total();
+  EXPECT_EQ(census(b.model).coordinates, 5);
+  EXPECT_EQ(census(b.model).rows, 5);
+  for (auto const& [t, p3] : {std::pair{0.5, Vec3(0.968283679, -1.224625159, 0.750146609)},
+                              std::pair{1.0, Vec3(0.510501461, -1.649167599, 0.140123115)},
+                              std::pair{2.0, Vec3(-0.969340345, -1.221246895, 0.754278011)}}) {
+    auto run = simulate(b.model, b.x, precise(), {.until = t, .step = 1e-3});
+    run.run();
+    EXPECT_EQ(run.report().redundant.size(), 1u) << t;
+    EXPECT_LT((b.p3() - p3).norm(), 1e-8) << t;
+    EXPECT_NEAR(energy(b.model, b.x).total(), before, 1e-8) << t;
+  }
+}
+
+TEST(JointCoordinates, SpinTheHeavyTop) {  // R6
+  using Ball = Joint<Spherical, Recursive>;
+  Model<Bodies<Rigid<>>, Joints<Ball>> model{Gravity{0, 0, -g}};
+  auto const top = model.add(Rigid<>(15.0, Vec3(0.234375, 0.46875, 0.234375).asDiagonal(), Placement::at({0, 1, 0})));
+  model.connect(Ball{}, model.ground().at({0, 0, 0}), top.at(Vec3(0, -1, 0)));
+  State x = model.reference_state();
+  model.set_velocity(x, top, Vec3::Zero(), Vec3(0, 150, -4.61538));
+  for (auto const& [t, place] : {std::pair{0.2, Vec3(0.6055505614, 0.5989576818, -0.5239830274)},
+                                 std::pair{1.0, Vec3(0.1733439641, 0.6400885921, -0.7484907911)}}) {
+    simulate(model, x, precise(), {.until = t, .step = 1e-3}).run();
+    EXPECT_LT((x.q.head<3>() - place).norm(), 1e-7) << t;
+  }
+}
+
+}  // namespace rigid_recursive_test
+}  // namespace polybody
