@@ -26,7 +26,7 @@ struct CurvedCase {
   static Lrvf<> body(Bar const& bar) { return Lrvf<>::from(bar, 3, helix(1.5, 0.8)); }
 };
 /// The means of the laws, for a body that is not the straight bar of the laws themselves.
-struct CurvedLrvf : BodyLaws<CurvedCase> {};
+struct CurvedLrvf : testing::Test, BodyLaws<CurvedCase> {};
 
 TEST_F(CurvedLrvf, NodesStandOnTheCurveWithoutStrain) {
   VecX const q = reference(), rest = VecX::Zero(nv);

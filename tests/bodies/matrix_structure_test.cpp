@@ -155,7 +155,7 @@ struct BlockCase {
   static constexpr double deformation = 0.1;
 };
 
-struct MatrixBody : BodyLaws<BlockCase> {
+struct MatrixBody : testing::Test, BodyLaws<BlockCase> {
   Block const block{2, 0.3};
 };
 

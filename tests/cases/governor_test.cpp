@@ -11,6 +11,7 @@
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/joint.hpp>
+#include <polybody/joints/policies/recursive.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 
@@ -19,9 +20,10 @@ namespace governor_test {
 
 /// A shaft that turns about z, a slider of 3 kg on it, and two rods, 30° below the horizontal, with 5 kg at their ends; from the
 /// middle of each a spring-damper to the slider. All spin at 2π.
+template <class Policy = Constraint>
 struct Governor {
-  using Pin = Joint<Revolute, Constraint>;
-  using Slide = Joint<Prismatic, Constraint>;
+  using Pin = Joint<Revolute, Policy>;
+  using Slide = Joint<Prismatic, Policy>;
   using Body = Rigid<>;
   Model<Bodies<Body>, Joints<Pin, Slide>, Forces<SpringDamper>> model{Gravity{0, 0, -9.81}};
   BodyHandle<Body> shaft = model.add(prism(0.3), "shaft"), slider = model.add(cube(3.0), "slider");
@@ -36,20 +38,20 @@ struct Governor {
   /// Of 0.1 m.
   static Body cube(double mass) { return {mass, Mat3::Identity() * (mass * 0.02 / 12.0), Placement::at({0, 0, 0.5})}; }
 
-  Governor() {
+  explicit Governor(Policy const& policy = {}) {
     double const rod = 0.3, ball = 5.0, mass = rod + ball, own = rod * 2e-4 / 12.0;  // a prism and a point
     double const centre = (0.5 * rod + ball) / mass;
     double const across = rod * ((1.0 + 1e-4) / 12.0 + (centre - 0.5) * (centre - 0.5)) + ball * (1.0 - centre) * (1.0 - centre);
     double const down = std::numbers::pi / 6.0;
-    model.connect(Pin{Revolute{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), shaft.at(Vec3(0, 0, -0.5)), "bearing");
-    model.connect(Slide{Prismatic{.axis = Vec3::UnitZ()}, {}}, shaft.at(Vec3(0, 0, 0)), slider.at(Vec3(0, 0, 0)), "slide");
+    model.connect(Pin{Revolute{.axis = Vec3::UnitZ()}, policy}, model.ground().at({0, 0, 0}), shaft.at(Vec3(0, 0, -0.5)), "bearing");
+    model.connect(Slide{Prismatic{.axis = Vec3::UnitZ()}, policy}, shaft.at(Vec3(0, 0, 0)), slider.at(Vec3(0, 0, 0)), "slide");
     for (double const side : {1.0, -1.0}) {
       Mat3 axes;
       axes << side * std::cos(down), 0, side * std::sin(down), 0, side, 0, -std::sin(down), 0, std::cos(down);
       Vec3 const pivot(0.05 * side, 0, 1);
       rods.push_back(model.add(Body(mass, Vec3(own, across, across).asDiagonal().toDenseMatrix(),
                                     Placement{pivot + centre * axes.col(0), axes}), side > 0 ? "right" : "left"));
-      model.connect(Pin{Revolute{.axis = Vec3::UnitY()}, {}}, shaft.at(Vec3(0.05 * side, 0, 0.5)),
+      model.connect(Pin{Revolute{.axis = Vec3::UnitY()}, policy}, shaft.at(Vec3(0.05 * side, 0, 0.5)),
                     rods.back().at(Vec3(-centre, 0, 0)));
       model.apply(SpringDamper{.stiffness = 8e5, .damping = 4e4, .free_length = 0.5}, rods.back().at(Vec3(0.5 - centre, 0, 0)),
                   slider.at(Vec3(0.05 * side, 0, 0)));
@@ -79,9 +81,9 @@ constexpr Published r5[] = {{0.1, 0.5238364756, 0.4961738691, 0.622106681},    {
                             {5, 0.5355631037, 0.4828745766, 27.942531991},     {7.5, 0.6771929637, 0.3285415751, 42.102747732},
                             {10, 0.6196229171, 0.3900737018, 55.935409909}};
 
-template <class I>
-void expect_r5(I const& integrator, double step, double until, double tolerance, double momentum_tolerance) {
-  Governor governor;
+template <class Policy = Constraint, class I>
+void expect_r5(I const& integrator, double step, double until, double tolerance, double momentum_tolerance, Policy const& policy = {}) {
+  Governor<Policy> governor(policy);
   double const before = momentum(governor.model, governor.x).angular[2];
   double worst[3] = {0, 0, 0}, drift = 0.0;
   for (Published const& p : r5) {
@@ -104,6 +106,11 @@ TEST(Governor, MovesAsPublishedWithAlphaMethods) {
   expect_r5(HhtAlpha{}, 1e-3, 10.0, 1e-4, 1e-5);
 }
 TEST(Governor, MovesAsPublishedToTheDigitsWithRadau) { expect_r5(Radau{}, 5e-3, 10.0, 1e-8, 1e-9); }
+TEST(Governor, MovesAsPublishedInJointCoordinates) { expect_r5<Recursive>(GeneralizedAlpha{}, 1e-3, 10.0, 1e-4, 1e-5); }
+// Pins and slide give way by F/k, some 200 N/1e9 N/m.
+TEST(Governor, MovesAsPublishedOnPenalties) {
+  expect_r5(GeneralizedAlpha{}, 1e-3, 10.0, 1e-4, 1e-5, Penalty{.stiffness = 1e9, .damping = 1e4});
+}
 
 }  // namespace governor_test
 }  // namespace polybody

@@ -1,4 +1,4 @@
-// CASES R1, R4, R6, R8 and J1 in joint coordinates.
+// CASES R1, R2, R4, R6, R8 and J1 in joint coordinates; R3 and R5 are in andrews_test.cpp, governor_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -59,6 +59,16 @@ TEST(JointCoordinates, SwingManyBars) {  // R8d
     State x = chain.model.reference_state();
     simulate(chain.model, x, precise(), {.until = 1.0, .step = 1e-3}).run();
     EXPECT_LT((chain.tip(x) - Vec3(px, py, 0)).norm(), 1e-7) << n;
+  }
+}
+
+// R2: the loops are closed by rows. After the flat position, where these lose a rank.
+TEST(JointCoordinates, TurnFourBars) {
+  for (Corner const& e : {corners[0], corners[3]}) {
+    FourBars<InPlane<Recursive>, InPlane<Constraint>> bars(e.n);
+    simulate(bars.model, bars.x, precise(), {.until = e.t, .step = 1e-3}).run();
+    EXPECT_NEAR(bars.corner()[0], e.x, 1e-6) << e.n;
+    EXPECT_NEAR(bars.corner()[1], e.y, 1e-6) << e.n;
   }
 }
 

@@ -314,11 +314,11 @@ struct BodyLaws {
 // Where a body owns rows, its mass may be singular across them.
 template <class Case>
 void BodyLaws<Case>::mass_is_symmetric_and_positive() {
-  VecX const q = this->configuration();
-  MatX m = this->mass(q);
+  VecX const q = configuration();
+  MatX m = mass(q);
   EXPECT_LT(mismatch(m, m.transpose()), 1e-15);
-  if constexpr (OwnsRows<typename BodyLaws::B>) {
-    MatX const g = this->own_map(q);
+  if constexpr (OwnsRows<B>) {
+    MatX const g = own_map(q);
     m += g.transpose() * g;
   }
   EXPECT_GT(smallest_pivot(m), 1e-6 * m.diagonal().maxCoeff());
@@ -326,33 +326,33 @@ void BodyLaws<Case>::mass_is_symmetric_and_positive() {
 
 template <class Case>
 void BodyLaws<Case>::kinetic_energy_is_half_v_m_v() {
-  VecX const q = this->configuration(), v = this->speeds();
-  double const expected = 0.5 * v.dot(this->mass(q) * v);
-  EXPECT_NEAR(this->kinetic_energy(q, v), expected, 1e-14 * expected);
+  VecX const q = configuration(), v = speeds();
+  double const expected = 0.5 * v.dot(mass(q) * v);
+  EXPECT_NEAR(kinetic_energy(q, v), expected, 1e-14 * expected);
 }
 
 template <class Case>
 void BodyLaws<Case>::inertia_is_mass_times_acceleration() {
-  VecX const q = this->configuration(), a = this->speeds();
-  VecX const expected = this->mass(q) * a;
-  EXPECT_LT(mismatch(this->template inertia<double>(q, a), expected), 1e-14);
-  auto const dual = this->template inertia<Dual<1>>(q.template cast<Dual<1>>(), this->along(VecX::Zero(this->nv), a));
+  VecX const q = configuration(), a = speeds();
+  VecX const expected = mass(q) * a;
+  EXPECT_LT(mismatch(inertia<double>(q, a), expected), 1e-14);
+  auto const dual = inertia<Dual<1>>(q.template cast<Dual<1>>(), along(VecX::Zero(nv), a));
   EXPECT_LT(mismatch(epsilon_of(dual), expected), 1e-14);
 }
 
 template <class Case>
 void BodyLaws<Case>::constant_mass_does_not_depend_on_the_configuration() {
-  if (!this->body.constant_mass) GTEST_SKIP() << "its mass is not constant";
-  EXPECT_LT(mismatch(this->mass(this->configuration()), this->mass(this->configuration())), 1e-14);
+  if (!body.constant_mass) GTEST_SKIP() << "its mass is not constant";
+  EXPECT_LT(mismatch(mass(configuration()), mass(configuration())), 1e-14);
 }
 
 // In a translation every formulation of one bar has its kinetic energy.
 template <class Case>
 void BodyLaws<Case>::total_mass_is_that_of_the_bar() {
-  VecX const q = this->configuration();
-  Vec3 const v0 = this->velocity();
-  double const expected = 0.5 * this->total_mass * v0.squaredNorm();
-  EXPECT_NEAR(this->kinetic_energy(q, this->rigid_velocity(q, v0, Vec3::Zero())), expected, 1e-13 * expected);
+  VecX const q = configuration();
+  Vec3 const v0 = velocity();
+  double const expected = 0.5 * total_mass * v0.squaredNorm();
+  EXPECT_NEAR(kinetic_energy(q, rigid_velocity(q, v0, Vec3::Zero())), expected, 1e-13 * expected);
 }
 
 // --- gravity ------------------------------------------------------------------------------------------------
@@ -360,82 +360,82 @@ void BodyLaws<Case>::total_mass_is_that_of_the_bar() {
 // Power of the weight in a rigid motion: m g · v0 + (r_c × m g) · ω, r_c the middle of the undeformed bar.
 template <class Case>
 void BodyLaws<Case>::weight_acts_in_the_middle_of_the_bar() {
-  VecX const q = this->reference();
-  Vec3 const v0 = this->velocity(), omega = this->spin(), g(0.7, -9.8, 1.3);
-  VecX const weight = this->gravity(q, g);
-  double const m = this->total_mass;
-  EXPECT_NEAR(weight.dot(this->rigid_velocity(q, v0, Vec3::Zero())), m * g.dot(v0), 1e-12 * m);
-  EXPECT_NEAR(weight.dot(this->rigid_velocity(q, Vec3::Zero(), omega)), m * this->middle.cross(g).dot(omega),
+  VecX const q = reference();
+  Vec3 const v0 = velocity(), omega = spin(), g(0.7, -9.8, 1.3);
+  VecX const weight = gravity(q, g);
+  double const m = total_mass;
+  EXPECT_NEAR(weight.dot(rigid_velocity(q, v0, Vec3::Zero())), m * g.dot(v0), 1e-12 * m);
+  EXPECT_NEAR(weight.dot(rigid_velocity(q, Vec3::Zero(), omega)), m * middle.cross(g).dot(omega),
               1e-12 * m);
-  EXPECT_NEAR(this->gravity_energy(q, g), -m * g.dot(this->middle), 1e-12 * m);
+  EXPECT_NEAR(gravity_energy(q, g), -m * g.dot(middle), 1e-12 * m);
 }
 
 template <class Case>
 void BodyLaws<Case>::weight_is_the_gradient_of_its_energy() {
-  VecX const q = this->configuration();
+  VecX const q = configuration();
   Vec3 const g(0.7, -9.8, 1.3);
-  VecX const slope = this->gradient([&](VecX const& at) { return this->gravity_energy(at, g); }, q);
-  EXPECT_LT(mismatch(this->gravity(q, g), -slope), 1e-10);
+  VecX const slope = gradient([&](VecX const& at) { return gravity_energy(at, g); }, q);
+  EXPECT_LT(mismatch(gravity(q, g), -slope), 1e-10);
 }
 
 // --- force ------------------------------------------------------------------------------------------------
 
 template <class Case>
 void BodyLaws<Case>::reference_is_free_of_force_and_energy() {
-  VecX const q = this->reference();
-  double size = this->c.EA + this->c.EI;
+  VecX const q = reference();
+  double size = c.EA + c.EI;
   if constexpr (requires { Case::rounding; }) size *= Case::rounding;  // of coordinates that are transformed
-  EXPECT_LT(this->force_at_rest(q).norm(), 1e-14 * size);
-  EXPECT_LT(this->strain_energy(q), 1e-25 * size);
+  EXPECT_LT(force_at_rest(q).norm(), 1e-14 * size);
+  EXPECT_LT(strain_energy(q), 1e-25 * size);
 }
 
 template <class Case>
 void BodyLaws<Case>::elastic_force_is_the_gradient_of_the_strain_energy() {
-  VecX const q = this->configuration();
-  VecX const slope = this->gradient([&](VecX const& at) { return this->strain_energy(at); }, q);
-  EXPECT_LT(mismatch(this->force_at_rest(q), -slope), 1e-8);
+  VecX const q = configuration();
+  VecX const slope = gradient([&](VecX const& at) { return strain_energy(at); }, q);
+  EXPECT_LT(mismatch(force_at_rest(q), -slope), 1e-8);
 }
 
 template <class Case>
 void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_position() {
-  VecX const q = this->configuration(), v = this->speeds();
-  MatX slope(this->nv, this->nv);
-  for (Index j = 0; j < this->nv; ++j)
-    slope.col(j) = epsilon_of(this->template force<Dual<1>>(this->carried(q, VecX::Unit(this->nv, j)),
+  VecX const q = configuration(), v = speeds();
+  MatX slope(nv, nv);
+  for (Index j = 0; j < nv; ++j)
+    slope.col(j) = epsilon_of(force<Dual<1>>(carried(q, VecX::Unit(nv, j)),
                                                             v.template cast<Dual<1>>()));
-  EXPECT_LT(mismatch(this->tangent(q, v, 1.0, 0.0), -slope), 1e-12);
+  EXPECT_LT(mismatch(tangent(q, v, 1.0, 0.0), -slope), 1e-12);
 }
 
 template <class Case>
 void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_speed() {
-  VecX const q = this->configuration(), v = this->speeds();
-  MatX slope(this->nv, this->nv);
-  for (Index j = 0; j < this->nv; ++j)
-    slope.col(j) = epsilon_of(this->template force<Dual<1>>(q.template cast<Dual<1>>(),
-                                                            this->along(v, VecX::Unit(this->nv, j))));
-  EXPECT_LT(mismatch(this->tangent(q, v, 0.0, 1.0), -slope), 1e-12);
+  VecX const q = configuration(), v = speeds();
+  MatX slope(nv, nv);
+  for (Index j = 0; j < nv; ++j)
+    slope.col(j) = epsilon_of(force<Dual<1>>(q.template cast<Dual<1>>(),
+                                                            along(v, VecX::Unit(nv, j))));
+  EXPECT_LT(mismatch(tangent(q, v, 0.0, 1.0), -slope), 1e-12);
 }
 
 template <class Case>
 void BodyLaws<Case>::tangent_mixes_its_two_parts_linearly() {
-  VecX const q = this->configuration(), v = this->speeds();
-  MatX const expected = 0.7 * this->tangent(q, v, 1.0, 0.0) + 31.0 * this->tangent(q, v, 0.0, 1.0);
-  EXPECT_LT(mismatch(this->tangent(q, v, 0.7, 31.0), expected), 1e-14);
+  VecX const q = configuration(), v = speeds();
+  MatX const expected = 0.7 * tangent(q, v, 1.0, 0.0) + 31.0 * tangent(q, v, 0.0, 1.0);
+  EXPECT_LT(mismatch(tangent(q, v, 0.7, 31.0), expected), 1e-14);
 }
 
 // f · v = −U˙ − ½ vᵀ M˙ v without damping: elastic and quadratic-velocity forces keep the energy.
 template <class Case>
 void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
-  Bar undamped = this->bar;
+  Bar undamped = bar;
   undamped.damping = {};
   auto const elastic = Case::body(undamped);
-  VecX const q = this->configuration(), v = this->speeds();
-  double const power = this->template force_of<double>(elastic, q, v).dot(v);
+  VecX const q = configuration(), v = speeds();
+  double const power = force_of<double>(elastic, q, v).dot(v);
   double const rate =
-      slope_at_zero([&](double h) { return this->strain_energy(this->template moved<double>(q, v * h)); }, 3e-4);
+      slope_at_zero([&](double h) { return strain_energy(moved<double>(q, v * h)); }, 3e-4);
   double by_mass = 0.0;  // with own rows ⊞ keeps them, which these speeds do not; v · Q_v of Euler parameters is zero
-  if constexpr (!OwnsRows<typename BodyLaws::B>)
-    by_mass = slope_at_zero([&](double h) { return this->kinetic_energy(this->template moved<double>(q, v * h), v); }, 3e-4);
+  if constexpr (!OwnsRows<B>)
+    by_mass = slope_at_zero([&](double h) { return kinetic_energy(moved<double>(q, v * h), v); }, 3e-4);
   EXPECT_NEAR(power, -rate - by_mass, 1e-8 * (1.0 + std::abs(rate) + std::abs(by_mass)));
 }
 
@@ -443,39 +443,39 @@ void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
 
 template <class Case>
 void BodyLaws<Case>::plus_of_nothing_changes_nothing() {
-  VecX const q = this->configuration(), zero = VecX::Zero(this->nv), v = this->speeds();
-  EXPECT_LT((this->template moved<double>(q, zero) - q).norm(), 1e-15 * q.norm());
-  EXPECT_EQ(this->rates(zero, v), v);
+  VecX const q = configuration(), zero = VecX::Zero(nv), v = speeds();
+  EXPECT_LT((moved<double>(q, zero) - q).norm(), 1e-15 * q.norm());
+  EXPECT_EQ(rates(zero, v), v);
 }
 
 // While q ⊞ δ(t) moves with δ˙ = local_rate(δ, v), every point moves as the speeds v say.
 template <class Case>
 void BodyLaws<Case>::local_rate_moves_the_body_with_its_speeds() {
-  VecX const q = this->configuration(), v = this->speeds();
-  VecX const delta = this->vector(this->nv, 0.8), rate = this->rates(delta, v);
-  VecX const now = this->template moved<double>(q, delta);
-  VecXOf<Dual<1>> const passing = this->template moved<Dual<1>>(q, this->along(delta, rate));
+  VecX const q = configuration(), v = speeds();
+  VecX const delta = vector(nv, 0.8), rate = rates(delta, v);
+  VecX const now = moved<double>(q, delta);
+  VecXOf<Dual<1>> const passing = moved<Dual<1>>(q, along(delta, rate));
   EXPECT_LT((values_of(passing) - now).norm(), 1e-14);
-  for (auto const& p : this->points()) {
-    auto const seen = this->template see<double>(p, Mat3::Identity(), now, v).marker.frame;
+  for (auto const& p : points()) {
+    auto const seen = see<double>(p, Mat3::Identity(), now, v).marker.frame;
     auto const moving =
-        this->template see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>()).marker.frame;
+        see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>()).marker.frame;
     EXPECT_LT(mismatch(epsilon_of(moving.r), seen.v), 1e-13);
-    EXPECT_LT(mismatch(this->known(epsilon_of(moving.A)), this->known(skew<double>(seen.w) * seen.A)), 1e-13);
+    EXPECT_LT(mismatch(known(epsilon_of(moving.A)), known(skew<double>(seen.w) * seen.A)), 1e-13);
   }
 }
 
 template <class Case>
 void BodyLaws<Case>::rigid_velocity_is_the_field_of_a_rigid_motion() {
-  if (!BodyLaws::objective) GTEST_SKIP() << "it says that it is not objective";
-  VecX const q = this->configuration();
-  Vec3 const v0 = this->velocity(), omega = this->spin();
-  VecX const v = this->rigid_velocity(q, v0, omega);
-  for (auto const& p : this->points()) {
-    auto const f = this->template see<double>(p, this->turned(), q, v).marker.frame;
+  if (!objective) GTEST_SKIP() << "it says that it is not objective";
+  VecX const q = configuration();
+  Vec3 const v0 = velocity(), omega = spin();
+  VecX const v = rigid_velocity(q, v0, omega);
+  for (auto const& p : points()) {
+    auto const f = see<double>(p, turned(), q, v).marker.frame;
     EXPECT_LT((f.v - v0 - omega.cross(f.r)).norm(), 1e-14);
     Vec3 const apart = f.w - omega, along = f.A.col(0);
-    EXPECT_LT((this->rolls ? apart : (apart - along * along.dot(apart)).eval()).norm(), 1e-14);
+    EXPECT_LT((rolls ? apart : (apart - along * along.dot(apart)).eval()).norm(), 1e-14);
   }
 }
 
@@ -484,16 +484,16 @@ void BodyLaws<Case>::rigid_velocity_is_the_field_of_a_rigid_motion() {
 // at(s, y) of the undeformed body is the bar's material point, its axes the bar's.
 template <class Case>
 void BodyLaws<Case>::reference_stands_where_the_bar_is_placed() {
-  VecX const q = this->reference(), rest = VecX::Zero(this->nv);
-  Mat3 const axes = this->turned();
-  Placement const& place = this->bar.placement;
+  VecX const q = reference(), rest = VecX::Zero(nv);
+  Mat3 const axes = turned();
+  Placement const& place = bar.placement;
   for (double const share : {0.0, 0.2, 1.0 / 3.0, 0.5, 0.9, 1.0})
     for (double const y : {0.0, 0.06}) {
-      if (y != 0.0 && !this->rolls) continue;
-      double const s = share * this->length;
-      auto const f = this->template see<double>(this->point(s, y), axes, q, rest).marker.frame;
+      if (y != 0.0 && !rolls) continue;
+      double const s = share * length;
+      auto const f = see<double>(point(s, y), axes, q, rest).marker.frame;
       EXPECT_LT((f.r - place.origin - place.axes * Vec3(s, y, 0.0)).norm(), 1e-14) << s;
-      EXPECT_LT((f.A - place.axes * (this->rolls ? axes : Mat3::Identity())).norm(), 1e-14) << s;
+      EXPECT_LT((f.A - place.axes * (rolls ? axes : Mat3::Identity())).norm(), 1e-14) << s;
       EXPECT_EQ(f.v.norm() + f.w.norm(), 0.0);
     }
 }
@@ -501,18 +501,18 @@ void BodyLaws<Case>::reference_stands_where_the_bar_is_placed() {
 template <class Case>
 void BodyLaws<Case>::points_outside_the_bar_are_refused() {
   double const nan = std::numeric_limits<double>::quiet_NaN();
-  for (double const s : {-1e-6, this->length * 1.000001, nan}) EXPECT_THROW((void)this->body.at(s), InvalidInput) << s;
-  if constexpr (BodyLaws::rolls) {
-    EXPECT_THROW((void)this->body.at(0.0, nan), InvalidInput);
+  for (double const s : {-1e-6, length * 1.000001, nan}) EXPECT_THROW((void)body.at(s), InvalidInput) << s;
+  if constexpr (rolls) {
+    EXPECT_THROW((void)body.at(0.0, nan), InvalidInput);
   }
-  EXPECT_NO_THROW((void)this->body.at(this->length * (1 + 1e-15)));  // rounding is forgiven
+  EXPECT_NO_THROW((void)body.at(length * (1 + 1e-15)));  // rounding is forgiven
 }
 
 template <class Case>
 void BodyLaws<Case>::frame_is_orthonormal() {
-  VecX const q = this->configuration(), v = this->speeds();
-  for (auto const& p : this->points()) {
-    Mat3 const a = this->template see<double>(p, this->turned(), q, v).marker.frame.A;
+  VecX const q = configuration(), v = speeds();
+  for (auto const& p : points()) {
+    Mat3 const a = see<double>(p, turned(), q, v).marker.frame.A;
     EXPECT_LT((a.transpose() * a - Mat3::Identity()).norm(), 1e-14);
     EXPECT_GT(a.determinant(), 0.0);
   }
@@ -520,10 +520,10 @@ void BodyLaws<Case>::frame_is_orthonormal() {
 
 template <class Case>
 void BodyLaws<Case>::twist_is_jacobian_times_speeds() {
-  VecX const q = this->configuration(), v = this->speeds();
-  for (auto const& p : this->points()) {
-    auto const s = this->template see<double>(p, this->turned(), q, v);
-    EXPECT_EQ(s.marker.columns, point_columns(this->body, p));
+  VecX const q = configuration(), v = speeds();
+  for (auto const& p : points()) {
+    auto const s = see<double>(p, turned(), q, v);
+    EXPECT_EQ(s.marker.columns, point_columns(body, p));
     EXPECT_LT(mismatch(s.twist(), s.jacobian * v), 1e-14);
   }
 }
@@ -531,16 +531,16 @@ void BodyLaws<Case>::twist_is_jacobian_times_speeds() {
 // δr = J_r δ and δA = (J_ω δ)~ A under q ⊞ δ.
 template <class Case>
 void BodyLaws<Case>::jacobian_is_the_derivative_of_the_frame() {
-  VecX const q = this->configuration(), rest = VecX::Zero(this->nv);
-  Mat3 const axes = this->turned();
-  for (auto const& p : this->points()) {
-    auto const s = this->template see<double>(p, axes, q, rest);
-    for (Index j = 0; j < this->nv; ++j) {
-      auto const moved = this->template see<Dual<1>>(p, axes, this->carried(q, VecX::Unit(this->nv, j)),
+  VecX const q = configuration(), rest = VecX::Zero(nv);
+  Mat3 const axes = turned();
+  for (auto const& p : points()) {
+    auto const s = see<double>(p, axes, q, rest);
+    for (Index j = 0; j < nv; ++j) {
+      auto const moved = see<Dual<1>>(p, axes, carried(q, VecX::Unit(nv, j)),
                                                      rest.template cast<Dual<1>>());
       Vec3 const turn = s.jacobian.col(j).template tail<3>();
       EXPECT_LT((epsilon_of(moved.marker.frame.r) - s.jacobian.col(j).template head<3>()).norm(), 1e-13) << j;
-      EXPECT_LT(this->known(epsilon_of(moved.marker.frame.A) - skew<double>(turn) * s.marker.frame.A).norm(), 1e-13) << j;
+      EXPECT_LT(known(epsilon_of(moved.marker.frame.A) - skew<double>(turn) * s.marker.frame.A).norm(), 1e-13) << j;
     }
   }
 }
@@ -548,12 +548,12 @@ void BodyLaws<Case>::jacobian_is_the_derivative_of_the_frame() {
 // bias = d/dt (J v) with v˙ = 0, from the Jacobian and, on another path, from the frame's own twist.
 template <class Case>
 void BodyLaws<Case>::bias_is_the_acceleration_at_constant_speeds() {
-  VecX const q = this->configuration(), v = this->speeds();
-  VecXOf<Dual<1>> const passing = this->carried(q, this->rates(VecX::Zero(this->nv), v));
-  for (auto const& p : this->points()) {
-    auto const s = this->template see<double>(p, this->turned(), q, v);
+  VecX const q = configuration(), v = speeds();
+  VecXOf<Dual<1>> const passing = carried(q, rates(VecX::Zero(nv), v));
+  for (auto const& p : points()) {
+    auto const s = see<double>(p, turned(), q, v);
     auto const moving =
-        this->template see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>());
+        see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>());
     Vec6 const expected = epsilon_of(moving.jacobian) * v;
     EXPECT_LT(mismatch(s.marker.bias, expected), 1e-13);
     EXPECT_LT(mismatch(s.marker.bias, epsilon_of(moving.twist())), 1e-13);
@@ -562,25 +562,25 @@ void BodyLaws<Case>::bias_is_the_acceleration_at_constant_speeds() {
 
 template <class Case>
 void BodyLaws<Case>::load_stiffness_is_the_derivative_of_the_pulled_wrench() {
-  constexpr int fixed = BodyLaws::B::point_columns;
-  Index const columns = point_columns(this->body, this->points().front());
-  VecX const q = this->configuration();
-  VecXOf<Dual<1>> const rest = VecXOf<Dual<1>>::Zero(this->nv);
-  Wrench<double> const w = this->wrench();
+  constexpr int fixed = B::point_columns;
+  Index const columns = point_columns(body, points().front());
+  VecX const q = configuration();
+  VecXOf<Dual<1>> const rest = VecXOf<Dual<1>>::Zero(nv);
+  Wrench<double> const w = wrench();
   Mat<Dual<1>, 6, 1> load;
   load << w.f.template cast<Dual<1>>(), w.m.template cast<Dual<1>>();
-  for (auto const& p : this->points()) {
-    MatX slope = MatX::Zero(this->nv, this->nv), stiffness = slope;
-    for (Index j = 0; j < this->nv; ++j) {
+  for (auto const& p : points()) {
+    MatX slope = MatX::Zero(nv, nv), stiffness = slope;
+    for (Index j = 0; j < nv; ++j) {
       auto const moved =
-          this->template see<Dual<1>>(p, Mat3::Identity(), this->carried(q, VecX::Unit(this->nv, j)), rest);
+          see<Dual<1>>(p, Mat3::Identity(), carried(q, VecX::Unit(nv, j)), rest);
       VecXOf<Dual<1>> pulled(columns);
       moved.marker.pull(load, pulled);
-      slope.col(j).segment(this->body.first_column(p), columns) = epsilon_of(pulled);
+      slope.col(j).segment(body.first_column(p), columns) = epsilon_of(pulled);
     }
     Mat<double, fixed, fixed> k = Mat<double, fixed, fixed>::Constant(columns, columns, 1e9);
-    this->body.load_stiffness(p, view(q), w, k);
-    Index const first = this->body.first_column(p);
+    body.load_stiffness(p, view(q), w, k);
+    Index const first = body.first_column(p);
     stiffness.block(first, first, columns, columns) = k;
     EXPECT_LT(mismatch(stiffness, slope), 1e-13);
   }
@@ -590,39 +590,38 @@ void BodyLaws<Case>::load_stiffness_is_the_derivative_of_the_pulled_wrench() {
 
 template <class Case>
 void BodyLaws<Case>::own_rows_hold_at_the_reference_and_their_maps_are_derivatives() {
-  using B = typename BodyLaws::B;
   if constexpr (!OwnsRows<B>) {
     GTEST_SKIP() << "it owns no rows";
   } else {
     constexpr int m = B::own_rows;
     auto const gap = [&]<class T>(VecXOf<T> const& q) {
       Vec<T, m> phi;
-      this->body.template own_gap<T>(view(q), phi);
+      body.template own_gap<T>(view(q), phi);
       return VecXOf<T>(phi);
     };
-    EXPECT_LT(gap(this->reference()).norm(), 1e-15);
-    VecX const q = this->configuration(), v = this->speeds(), lambda = this->vector(m, 2.0);
-    MatX const g = this->own_map(q);
-    MatX stiffness(this->nv, this->nv);
-    for (Index j = 0; j < this->nv; ++j) {
-      VecXOf<Dual<1>> const moved = this->carried(q, VecX::Unit(this->nv, j));
+    EXPECT_LT(gap(reference()).norm(), 1e-15);
+    VecX const q = configuration(), v = speeds(), lambda = vector(m, 2.0);
+    MatX const g = own_map(q);
+    MatX stiffness(nv, nv);
+    for (Index j = 0; j < nv; ++j) {
+      VecXOf<Dual<1>> const moved = carried(q, VecX::Unit(nv, j));
       EXPECT_LT((epsilon_of(gap(moved)) - g.col(j)).norm(), 1e-14) << j;
-      Mat<Dual<1>, m, BodyLaws::n> map;
-      this->body.template own_map<Dual<1>>(view(moved), map);
+      Mat<Dual<1>, m, n> map;
+      body.template own_map<Dual<1>>(view(moved), map);
       stiffness.col(j) = epsilon_of(map).transpose() * lambda;
     }
     // γ = Φ̈ − G v̇ = d/dt(G v) at v˙ = 0
-    Mat<Dual<1>, m, BodyLaws::n> moving;
-    VecXOf<Dual<1>> const passing = this->carried(q, this->rates(VecX::Zero(this->nv), v));
-    this->body.template own_map<Dual<1>>(view(passing), moving);
+    Mat<Dual<1>, m, n> moving;
+    VecXOf<Dual<1>> const passing = carried(q, rates(VecX::Zero(nv), v));
+    body.template own_map<Dual<1>>(view(passing), moving);
     Vec<double, m> gamma;
-    this->body.template own_gamma<double>(view(q), view(v), gamma);
+    body.template own_gamma<double>(view(q), view(v), gamma);
     EXPECT_LT((gamma - epsilon_of(moving) * v).norm(), 1e-13);
-    Mat<double, BodyLaws::n, BodyLaws::n> k;
-    this->body.own_stiffness(view(q), Vec<double, m>(lambda), k);
+    Mat<double, n, n> k;
+    body.own_stiffness(view(q), Vec<double, m>(lambda), k);
     EXPECT_LT(mismatch(k, stiffness), 1e-14);
     // a rigid motion keeps them
-    EXPECT_LT((g * this->rigid_velocity(q, this->velocity(), this->spin())).norm(), 1e-14);
+    EXPECT_LT((g * rigid_velocity(q, velocity(), spin())).norm(), 1e-14);
   }
 }
 

@@ -78,7 +78,7 @@ void IntegratorLaws<Case>::state_converges_at_the_declared_order() {
   std::pair<char const*, VecX State::*> const parts[] = {
       {"q", &State::q}, {"v", &State::v}, {"a", &State::a}, {"lambda", &State::lambda}};
   for (auto const& integrator : Case::integrators()) {
-    auto const runs = this->refined(integrator);
+    auto const runs = refined(integrator);
     for (auto const& [name, part] : parts) {
       if ((runs[0].x.*part).size() == 0) continue;
       std::vector<double> differences;
@@ -86,7 +86,7 @@ void IntegratorLaws<Case>::state_converges_at_the_declared_order() {
         differences.push_back((runs[i].x.*part - runs[i - 1].x.*part).norm());
       EXPECT_GT(differences.back(), 1e-12) << name << ": too small to tell";
       double const order = slopes(differences).back();
-      EXPECT_GT(order, integrator.order - this->slack) << name << ' ' << testing::PrintToString(differences);
+      EXPECT_GT(order, integrator.order - slack) << name << ' ' << testing::PrintToString(differences);
     }
   }
 }
@@ -95,17 +95,17 @@ template <class Case>
 void IntegratorLaws<Case>::energy_error_falls_at_the_declared_order() {
   for (auto const& integrator : Case::integrators()) {
     std::vector<double> errors;
-    for (auto const& outcome : this->refined(integrator)) errors.push_back(outcome.energy_error);
+    for (auto const& outcome : refined(integrator)) errors.push_back(outcome.energy_error);
     EXPECT_GT(errors.back(), 1e-13) << "too small to tell";
-    EXPECT_GT(slopes(errors).back(), integrator.order - this->slack) << testing::PrintToString(errors);
+    EXPECT_GT(slopes(errors).back(), integrator.order - slack) << testing::PrintToString(errors);
   }
 }
 
 template <class Case>
 void IntegratorLaws<Case>::rows_hold_at_the_end() {
   for (auto const& integrator : Case::integrators()) {
-    auto const outcome = this->run(integrator, Case::steps);
-    System system(this->setup.model);
+    auto const outcome = run(integrator, Case::steps);
+    System system(setup.model);
     Violation const open = violation(system, outcome.x);
     EXPECT_LT(open.position, 1e-10);
     // Without stabilisation a step of the family of generalised-α keeps the rows of the positions only.
@@ -125,27 +125,27 @@ void IntegratorLaws<Case>::rows_hold_at_the_end() {
 template <class Case>
 void IntegratorLaws<Case>::step_reports_what_it_took() {
   for (auto const& integrator : Case::integrators()) {
-    State x = this->setup.start;
-    System system(this->setup.model);
+    State x = setup.start;
+    System system(setup.model);
     auto workspace = integrator.template workspace<DefaultSolver>(system);
     double const h = Case::until / Case::steps;
     integrator.start(system, x, h, workspace);
-    EXPECT_EQ(x.q, this->setup.start.q);
-    EXPECT_EQ(x.v, this->setup.start.v);
+    EXPECT_EQ(x.q, setup.start.q);
+    EXPECT_EQ(x.v, setup.start.v);
     StepReport const report = integrator.step(system, x, h, workspace);
     EXPECT_EQ(report.taken, h);
     EXPECT_EQ(report.next, h);
-    EXPECT_EQ(x.t, this->setup.start.t + h);
+    EXPECT_EQ(x.t, setup.start.t + h);
     EXPECT_GT(report.evaluations, 0);
     EXPECT_EQ(report.rejected, 0);
-    EXPECT_NE(x.q, this->setup.start.q);
+    EXPECT_NE(x.q, setup.start.q);
   }
 }
 
 template <class Case>
 void IntegratorLaws<Case>::runs_repeat_to_the_last_bit() {
   for (auto const& integrator : Case::integrators()) {
-    State const a = this->run(integrator, Case::steps).x, b = this->run(integrator, Case::steps).x;
+    State const a = run(integrator, Case::steps).x, b = run(integrator, Case::steps).x;
     EXPECT_EQ(a.q, b.q);
     EXPECT_EQ(a.v, b.v);
     EXPECT_EQ(a.lambda, b.lambda);
@@ -156,8 +156,8 @@ void IntegratorLaws<Case>::runs_repeat_to_the_last_bit() {
 template <class Case>
 void IntegratorLaws<Case>::failed_step_leaves_the_state_as_it_was() {
   for (auto const& integrator : Case::integrators()) {
-    State x = this->setup.start;
-    System system(this->setup.model);
+    State x = setup.start;
+    System system(setup.model);
     auto workspace = integrator.template workspace<DefaultSolver>(system);
     double const h = Case::until / Case::steps;
     integrator.start(system, x, h, workspace);

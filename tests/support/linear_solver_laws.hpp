@@ -82,7 +82,7 @@ template <class Solver>
 void LinearSolvers<Solver>::solve_what_full_pivoting_solves() {
   for (Index const bodies : {1, 4, 12}) {
     Blocks const blocks{bodies};
-    auto solver = this->analysed(blocks);
+    auto solver = analysed(blocks);
     for (unsigned seed : {1u, 2u, 3u}) {  // one analysis, many values
       solver.begin();
       blocks.write(solver, seed);
@@ -103,7 +103,7 @@ template <class Solver>
 void LinearSolvers<Solver>::name_a_column_of_a_singular_matrix() {
   for (Index const bodies : {3, 8}) {
     Blocks const blocks{bodies};
-    auto solver = this->analysed(blocks);
+    auto solver = analysed(blocks);
     solver.begin();
     Index const column = solver.factor();  // zero throughout
     EXPECT_GE(column, 0);

@@ -9,12 +9,16 @@
 
 namespace polybody {
 
-/// N windows of uniform rods of 1 m and 1 kg; upright, θ˙ = 1 rad/s [IFToMM A02, CASES R2]. \tparam Where as for `Chain`
-template <class Where>
+/// Joints of one type, or of two.
+template <class J, class K>
+using JointsOf = std::conditional_t<std::is_same_v<J, K>, Joints<J>, Joints<J, K>>;
+
+/// N windows of uniform rods of 1 m and 1 kg; upright, θ˙ = 1 rad/s [IFToMM A02, CASES R2]. \tparam Where as for `Chain`; `Loop`, the
+/// same for the pins that close loops
+template <class Where, class Loop = Where>
 struct FourBars {
   using Body = typename Where::Body;
-  using Pin = typename Where::Hinge;
-  Model<Bodies<Body>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+  Model<Bodies<Body>, JointsOf<typename Where::Hinge, typename Loop::Hinge>> model{Gravity{0, -9.81, 0}};
   std::vector<BodyHandle<Body>> upright, across;
   State x;
 
@@ -23,12 +27,18 @@ struct FourBars {
     for (int i = 0; i <= n; ++i)
       upright.push_back(model.add(Where::body(link, Placement::planar(i, 0.5, 0.5 * std::numbers::pi))));
     for (int i = 0; i < n; ++i) across.push_back(model.add(Where::body(link, Placement::planar(i + 0.5, 1.0))));
-    Pin const pin = Where::hinge(policy);
+    auto const pin = Where::hinge(policy);
+    auto const last = [&] {
+      if constexpr (std::is_same_v<Where, Loop>)
+        return pin;
+      else
+        return Loop::hinge({});
+    }();
     for (int i = 0; i <= n; ++i)
       model.connect(pin, model.ground().at({double(i), 0, 0}), Where::at(upright[std::size_t(i)], -0.5));
     for (int i = 0; i < n; ++i) {
       model.connect(pin, Where::at(upright[std::size_t(i)], 0.5), Where::at(across[std::size_t(i)], -0.5));
-      model.connect(pin, Where::at(across[std::size_t(i)], 0.5), Where::at(upright[std::size_t(i) + 1], 0.5));
+      model.connect(last, Where::at(across[std::size_t(i)], 0.5), Where::at(upright[std::size_t(i) + 1], 0.5));
     }
     x = model.reference_state();
     for (int i = 0; i <= n; ++i) model.set_velocity(x, upright[std::size_t(i)], {0, double(i), 0}, {0, 0, -1});
@@ -58,8 +68,7 @@ template <class Policy = Constraint, class B = Rigid<>, class Closing = Policy>
 struct Bricard {
   using Pin = Joint<Revolute, Policy>;
   using LastPin = Joint<Revolute, Closing>;
-  using Pins = std::conditional_t<std::is_same_v<Pin, LastPin>, Joints<Pin>, Joints<Pin, LastPin>>;
-  Model<Bodies<B>, Pins> model{Gravity{0, -9.81, 0}};
+  Model<Bodies<B>, JointsOf<Pin, LastPin>> model{Gravity{0, -9.81, 0}};
   std::vector<BodyHandle<B>> rods;
   State x;
 

@@ -26,7 +26,7 @@ struct Data {
   typename M::template Gaps<T> gaps;        ///< waist 2, one for each joint
   std::vector<Wrench<double>> loads;        ///< per marker: what the tangent's second-order terms need
 
-  std::vector<double> scratch;              ///< for pulled blocks: n×12 and n×n of the widest marker
+  std::vector<double> scratch;              ///< for pulled blocks: n×18 and n×n of the widest marker
 
   Workers* workers = nullptr;               ///< threads that share the loops; none by default
   std::vector<T> element_forces;            ///< with workers: of all elements of a body, before they are added in order
@@ -53,7 +53,7 @@ struct Data {
       f.r = g.placement.origin.template cast<T>();
       f.A = g.placement.axes.template cast<T>();
     }
-    scratch.resize(std::size_t(widest * (widest + 12)));
+    scratch.resize(std::size_t(widest * (widest + 18)));
     detail::for_each_pool_beside(model.body_pools(), poses, [](auto const& pool, auto& x) { x.resize(pool.entries.size()); });
     detail::for_each_pool_beside(model.body_pools(), scratch_of_bodies, [](auto const& pool, auto& x) {
       for (auto const& e : pool.entries) x.emplace_back(e.body);

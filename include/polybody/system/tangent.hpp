@@ -2,6 +2,8 @@
 /// \file
 /// The tangent of the residual and the rows, written block by block into a sink.
 
+#include <utility>
+
 #include <polybody/system/collect.hpp>
 
 namespace polybody {
@@ -38,6 +40,18 @@ void pull_rows(Published<double> const& p, Mat<double, m, 6> const& rows, std::v
   }
 }
 
+/// out = JaᵀS Jb of two rigid markers, J = [1, −ρ×A; 0, A] with ρ the marker's arm and A the body's axes; S is 6×6.
+template <class Block>
+void pull_rigid_pair(Published<double> const& a, Published<double> const& b, Block const& s, Mat<double, 6, 6>& out) {
+  Mat<double, 6, 6> half, turned;
+  a.pull_rigid(s, half);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) turned(j, i) = half(i, j);
+  b.pull_rigid(turned, half);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) out(j, i) = half(i, j);
+}
+
 /// sink += Jiᵀ S_ij Jj for all pairs of N markers, or for i = j only; S is 6N×6N.
 template <int n, class Sink>
 void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const& markers,
@@ -50,12 +64,73 @@ void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const
     for (int j = 0; j < n; ++j) {
       Published<double> const& b = *markers[std::size_t(j)];
       if (b.columns == 0 || (!couples && i != j)) continue;
-      Mat<double, 6, 6> const block = s.template block<6, 6>(6 * i, 6 * j);
+      Mat<double, 6, 6> block = s.template block<6, 6>(6 * i, 6 * j);
+      if (a.shape == JacobianShape::rigid && b.shape == JacobianShape::rigid) {
+        pull_rigid_pair(a, b, block, block);
+        sink.add(a.first, b.first, block);
+        continue;
+      }
       Half half(scratch.data(), a.columns, 6);
       a.pull(block, half);
       Both both(scratch.data() + 6 * a.columns, b.columns, a.columns);
       b.pull(half.transpose(), both);
       sink.add(a.first, b.first, both.transpose());
+    }
+  }
+}
+
+/// out (rows×cols) = a (rows×m) bᵀ, b cols×m, all by columns. In plain loops: a product of Eigen packs matrices of such sizes first.
+template <int m>
+void times_transposed(double const* a, double const* b, Index rows, Index cols, double* out) {
+  for (Index j = 0; j < cols; ++j)
+    for (Index i = 0; i < rows; ++i) {
+      double sum = a[i] * b[j];
+      for (int k = 1; k < m; ++k) sum += a[i + rows * k] * b[j + cols * k];
+      out[i + rows * j] = sum;
+    }
+}
+
+/// sink += (Gi Ji)ᵀ k (Gj Jj) for the slope k (m×m, or diagonal) of a force in the m rows of a gap between two markers: rows are
+/// pulled before k is multiplied, which takes m wrenches for each marker and not six for each pair.
+template <int m, class Slope, class Sink>
+void add_pulled_slope(Published<double> const& a, Published<double> const& b, Mat<double, m, 6> const& ga, Mat<double, m, 6> const& gb,
+                      Slope const& slope, std::vector<double>& scratch, Sink& sink) {
+  Published<double> const* const markers[2] = {&a, &b};
+  Mat<double, m, 6> const* const maps[2] = {&ga, &gb};
+  constexpr bool diagonal = requires { slope.toDenseMatrix(); };
+  double* place = scratch.data();
+  auto const take = [&](Index size) { return std::exchange(place, place + size); };
+  double* const rows[2] = {take(m * a.columns), take(m * b.columns)};  // (Gi Ji)ᵀ, columns×m
+  double* const bent = take(m * std::max(a.columns, b.columns));       // the same times kᵀ
+  for (int i = 0; i < 2; ++i) {
+    Index const n = markers[i]->columns;
+    if (n == 0) continue;
+    Eigen::Map<Mat<double, Eigen::Dynamic, m>> out(rows[i], n, m);
+    markers[i]->pull(maps[i]->transpose(), out);
+  }
+  for (int j = 0; j < 2; ++j) {
+    Index const nj = markers[j]->columns;
+    if (nj == 0) continue;
+    for (int k = 0; k < m; ++k)
+      for (Index c = 0; c < nj; ++c) {
+        double sum = 0.0;
+        if constexpr (diagonal)
+          sum = slope.diagonal()[k] * rows[j][c + nj * k];
+        else
+          for (int l = 0; l < m; ++l) sum += slope(k, l) * rows[j][c + nj * l];
+        bent[c + nj * k] = sum;
+      }
+    for (int i = 0; i < 2; ++i) {
+      Index const ni = markers[i]->columns;
+      if (ni == 0) continue;
+      if (ni == 6 && nj == 6) {
+        Mat<double, 6, 6> block;
+        times_transposed<m>(rows[i], bent, 6, 6, block.data());
+        sink.add(markers[i]->first, markers[j]->first, block);
+      } else {
+        times_transposed<m>(rows[i], bent, ni, nj, place);
+        sink.add(markers[i]->first, markers[j]->first, Eigen::Map<MatX>(place, ni, nj));
+      }
     }
   }
 }
@@ -180,21 +255,16 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
       };
       add(a, gap.Ga);
       add(b, gap.Gb);
-      if (!full) return;
     }
-    Mat<double, 12, 12> s = Mat<double, 12, 12>::Zero();
     if constexpr (AddsForce<P>) {
-      Mat<double, m, 12> g;
-      g << gap.Ga, gap.Gb;
-      s.noalias() = g.transpose() *
-                    e.joint.policy.template slope<m>(c.stiffness, c.damping, gap.g, gap_rate(gap, a, b)) * g;
+      auto const slope = e.joint.policy.template slope<m>(c.stiffness, c.damping, gap.g, gap_rate(gap, a, b));
+      detail::add_pulled_slope<m>(a, b, gap.Ga, gap.Gb, slope, data.scratch, sink);
     }
-    if (full) {
-      Vec<double, m> const l = detail::multiplier(e, gap, data, lambda);
-      s += c.stiffness * wrench_gradient(e.joint.measure(), a.frame, b.frame, t, l);
-      load(e.a, gap.Ga.transpose() * l);
-      load(e.b, gap.Gb.transpose() * l);
-    }
+    if (!full) return;
+    Vec<double, m> const l = detail::multiplier(e, gap, data, lambda);
+    Mat<double, 12, 12> const s = c.stiffness * wrench_gradient(e.joint.measure(), a.frame, b.frame, t, l);
+    load(e.a, gap.Ga.transpose() * l);
+    load(e.b, gap.Gb.transpose() * l);
     detail::add_pulled_pairs<2>({&a, &b}, s, true, data.scratch, sink);
   });
   add_force_tangents(model, t, load_factor, c, full, data, sink, load);
