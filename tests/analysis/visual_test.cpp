@@ -101,6 +101,24 @@ TYPED_TEST(SweptBody, IsTheBarWhereItWasPlaced) {
   for (double const s : part.axial_stress) EXPECT_NEAR(s, 0.0, 1e-2);
 }
 
+// A rigid motion in the plane, which every formulation has: v = v₀ + ω × r in every point.
+TYPED_TEST(SweptBody, MovesWithItsPoints) {
+  Bar const bar = square();
+  Model<Bodies<TypeParam>, Joints<>> model;
+  auto const body = model.add(made<TypeParam>(bar), "bar");
+  Visual visual(model);
+  visual.sweep(body, bar, 9);
+  visual.attach(body.at(0.5), box({0.1, 0.2, 0.3}));
+  State x = model.reference_state();
+  Vec3 const v0(0.4, -0.2, 0.0), omega(0.0, 0.0, 1.3);
+  model.set_velocity(x, body, v0, omega);
+  for (VisualPart const& part : visual.at(x)) {
+    ASSERT_EQ(part.velocities.size(), part.surface.points.size());
+    for (std::size_t i = 0; i < part.velocities.size(); ++i)
+      EXPECT_LT((part.velocities[i] - v0 - omega.cross(part.surface.points[i])).norm(), 1e-13);
+  }
+}
+
 // Half a circle by an end moment: plane sections along an arc of unchanged length hold the same volume [Pappus], up to the chords of
 // n = 60 pieces, (π/n)²/6 of it; and stress is ± M h/2I = E h κ/2 at the faces.
 TEST(SweptBodies, BendWithTheBody) {

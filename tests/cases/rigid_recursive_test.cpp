@@ -8,6 +8,7 @@
 #include <polybody/joints/policies/recursive.hpp>
 
 #include "support/linkages.hpp"
+#include "support/resumed_run.hpp"
 
 namespace polybody {
 namespace rigid_recursive_test {
@@ -102,6 +103,8 @@ TEST(JointCoordinates, SpinTheHeavyTop) {  // R6
     EXPECT_LT((x.q.head<3>() - place).norm(), 1e-7) << t;
   }
 }
+
+TEST(JointCoordinates, GoOnWithTheSameBits) { expect_resumes<InPlane<Recursive>>(precise()); }
 
 }  // namespace rigid_recursive_test
 }  // namespace polybody

@@ -60,6 +60,27 @@ TEST(Ramp, CornerBelongsToThePieceThatBegins) {
   EXPECT_EQ(law.corners(), (std::vector{0.5, 2.5}));
 }
 
+// The parabola of a corner has covered (w/2)²/(2w) = w/8 of the ramp's rise per second at the corner itself; it cuts off at
+// the end what it adds at the start, so the value and ∫ value dt afterwards are those of the sharp ramp.
+TEST(Ramp, RoundedCornersLeaveTheRestAsItWas) {
+  Ramp const sharp{.target = -3.0, .duration = 2.0, .start = 0.5}, law{.target = -3.0, .duration = 2.0, .start = 0.5, .rounding = 0.2};
+  for (double const t : {0.0, 0.45, 0.55, 0.8, 1.5, 2.45, 2.58, 3.0}) {
+    expect_consistent(law, t);
+    double const h = 1e-3;
+    EXPECT_NEAR((law.integral(t + h) - law.integral(t - h)) / (2.0 * h), law(t).value, 1e-5) << "t = " << t;
+  }
+  for (double const t : {0.4, 0.6, 2.4, 2.6})
+    EXPECT_NEAR(law(t - 1e-9).rate, law(t + 1e-9).rate, 1e-7) << "t = " << t;
+  for (double const t : {0.0, 0.4, 0.6, 1.5, 2.4, 2.6, 5.0}) EXPECT_NEAR(law(t).value, sharp(t).value, 1e-14) << "t = " << t;
+  EXPECT_NEAR(law(0.5).value, -1.5 * 0.2 / 8.0, 1e-15);
+  EXPECT_NEAR(law(2.5).value, -3.0 + 1.5 * 0.2 / 8.0, 1e-15);
+  EXPECT_NEAR(law.integral(5.0), sharp.integral(5.0), 1e-14);
+  EXPECT_NEAR(sharp.integral(5.0), -3.0 * 3.5, 1e-14);
+  EXPECT_TRUE(law.corners().empty());
+  Ramp const too_round{.target = 1.0, .duration = 1.0, .rounding = 1.1};
+  EXPECT_TRUE(has(refusal([&] { check_law(too_round, "drive"); }), "drive: the rounding 1.1 s"));
+}
+
 TEST(SmoothRamp, RateAndAccelerationFollowTheValue) {
   SmoothRamp const law{.target = 0.7, .duration = 2.0, .start = 0.5};
   for (double const t : {0.0, 0.6, 1.1, 1.5, 2.4, 3.0}) expect_consistent(law, t);

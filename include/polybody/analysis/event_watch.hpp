@@ -14,6 +14,11 @@ class EventWatch {
   /// A step from a state, of at most so many seconds; the state moves along. Returns the length taken.
   using Step = std::function<double(State&, double)>;
 
+  EventWatch() = default;
+  /// Of events that stand on these sides.
+  explicit EventWatch(std::vector<int> sides) : sides_(std::move(sides)) {}
+  std::vector<int> const& sides() const { return sides_; }
+
   /// Notes on which sides the events stand at x. \throws NonFinite.
   void start(std::vector<Event> const& events, State const& x, Seen const& seen) {
     sides_.clear();

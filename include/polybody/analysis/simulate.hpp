@@ -6,6 +6,7 @@
 
 #include <polybody/analysis/event_watch.hpp>
 #include <polybody/analysis/minimum_norm.hpp>
+#include <polybody/analysis/run_snapshot.hpp>
 #include <polybody/analysis/stable_step.hpp>
 #include <polybody/analysis/step_plan.hpp>
 
@@ -22,15 +23,10 @@ class Simulation {
 
  public:
   Simulation(M const& model, State& x, I integrator, RunOptions options)
-      : system_(std::make_unique<System<Stepped>>(model)), x_(&x), integrator_(std::move(integrator)),
-        options_(std::move(options)), workspace_(integrator_.template workspace<Solver>(*system_)), norm_(whole()) {
-    integrator_.check();
-    options_.check(x.t);
-    if (options_.threads != 1) system_->use_threads(options_.threads);
+      : Simulation(Prepared{}, model, x, std::move(integrator), std::move(options), x.t) {
     require_fitting(model, x);
     plan_ = StepPlan(x.t, options_.until, options_.step, corners());
     require_assembled(whole(), x, options_.assembly_tolerance);
-    h_ = std::min<double>(options_.step, largest_step());
     if constexpr (M::eliminates) narrow_start();
     stepped().t = plan_.pass(stepped().t);
     if (!options_.events.empty()) watch_.start(options_.events, stepped(), seen());
@@ -40,6 +36,28 @@ class Simulation {
       warn(workspace_.forward, x);
     }
     show();
+  }
+
+  /// Goes on from a snapshot. \throws InvalidInput for one of another model, integrator or count of events.
+  Simulation(M const& model, State& x, I integrator, RunOptions options, RunSnapshot const& from)
+      : Simulation(Prepared{}, model, x, std::move(integrator), std::move(options), from.state.t) {
+    from.require(identity_of(*system_), I::name, options_.events.size());
+    x = model.reference_state();
+    stepped() = from.state;
+    show();
+    plan_ = StepPlan(x.t, options_.until, options_.step, corners());
+    if constexpr (requires { I::controls_step; }) h_ = std::min(from.step, largest_step());
+    watch_ = EventWatch(from.sides);
+    report_ = from.report;
+    renew();
+  }
+
+  /// What it takes to go on from here with `resume`. Factorisations and the like, which a run keeps from step to step, are no
+  /// part of it: the run itself throws them away now, as if it were resumed. So both go on with the same bits. Where bits
+  /// matter, let the run that is not interrupted take its snapshots at the same times.
+  RunSnapshot snapshot() {
+    renew();
+    return {identity_of(*system_), I::name, stepped(), h_, watch_.sides(), report_};
   }
 
   State const& state() const { return *x_; }
@@ -105,6 +123,23 @@ class Simulation {
   }
 
  private:
+  struct Prepared {};
+  Simulation(Prepared, M const& model, State& x, I integrator, RunOptions options, double start)
+      : system_(std::make_unique<System<Stepped>>(model)), x_(&x), integrator_(std::move(integrator)),
+        options_(std::move(options)), workspace_(integrator_.template workspace<Solver>(*system_)), norm_(whole()) {
+    integrator_.check();
+    options_.check(start);
+    if (options_.threads != 1) system_->use_threads(options_.threads);
+    h_ = std::min<double>(options_.step, largest_step());
+  }
+
+  /// A workspace that knows no earlier step, and is ready for the next one.
+  void renew() {
+    workspace_ = integrator_.template workspace<Solver>(*system_);
+    State ready = stepped();  // whose memory `start` clears
+    integrator_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, workspace_);
+  }
+
   /// The state that is stepped: the user's, or the narrow one of which `show` makes the user's.
   State& stepped() {
     if constexpr (M::eliminates)
@@ -212,6 +247,13 @@ class Simulation {
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<M, I, Solver> simulate(M const& model, State& x, I integrator, RunOptions options) {
   return Simulation<M, I, Solver>(model, x, std::move(integrator), std::move(options));
+}
+
+/// Takes a run up where its snapshot was made; x becomes its state. Model, integrator and options must be those of the run; a
+/// later `until` lets it go on for longer. \throws InvalidInput for a snapshot of another model, integrator or count of events.
+template <LinearSolver Solver = DefaultSolver, class M, class I>
+Simulation<M, I, Solver> resume(M const& model, State& x, I integrator, RunOptions options, RunSnapshot const& from) {
+  return Simulation<M, I, Solver>(model, x, std::move(integrator), std::move(options), from);
 }
 
 }  // namespace polybody

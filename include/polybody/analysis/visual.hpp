@@ -10,12 +10,24 @@
 
 namespace polybody {
 
-/// One thing to be seen: its surface in world axes, and the axial stress in each of its points [N/m²] where its body knows it, else none.
+/// One thing to be seen: its surface in world axes, and in each of its points the axial stress [N/m²] where its body knows it,
+/// else none, and the velocity [m/s].
 struct VisualPart {
   std::string name;
   Surface surface;
   std::vector<double> axial_stress;
+  std::vector<Vec3> velocities = {};
 };
+
+namespace detail {
+/// Point i of a part stands at `point` in the axes of a frame, and moves with it.
+template <class = void>
+void carry(Frame<double> const& f, Vec3 const& point, VisualPart& part, std::size_t i) {
+  Vec3 const arm = f.A * point;
+  part.surface.points[i] = f.r + arm;
+  part.velocities[i] = f.v + f.w.cross(arm);
+}
+}  // namespace detail
 
 /// The visual geometry of a model, put together once and then asked for any state:
 ///   Visual visual(model);
@@ -32,10 +44,10 @@ class Visual {
   template <class B>
   void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape") {
     model_->require_own(marker.model, name);
-    parts_.push_back({std::move(name), shape, {}});
+    parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
     moves_.push_back([model = model_, marker, points = shape.points](State const& x, VisualPart& part) {
       Frame<double> const f = frame(*model, x, marker);
-      for (std::size_t i = 0; i < points.size(); ++i) part.surface.points[i] = f.r + f.A * points[i];
+      for (std::size_t i = 0; i < points.size(); ++i) detail::carry(f, points[i], part, i);
     });
   }
 
@@ -49,7 +61,8 @@ class Visual {
     std::vector<Vec2> const ring = outline(bar, sides);
     int const n = int(ring.size());
     bool const stressed = HasSections<B> && bar.material;
-    parts_.push_back({body.name, swept(pieces + 1, n), std::vector<double>(stressed ? std::size_t((pieces + 1) * n) : 0)});
+    std::size_t const points = std::size_t((pieces + 1) * n);
+    parts_.push_back({body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
     moves_.push_back([model = model_, body, bar, pieces, ring](State const& x, VisualPart& part) {
       std::size_t i = 0;
       for (int k = 0; k <= pieces; ++k) {
@@ -62,13 +75,15 @@ class Visual {
         for (Vec2 const& p : ring) {
           if (!part.axial_stress.empty()) part.axial_stress[i] = fibre_stress(bar, forces, p[0], p[1]);
           if constexpr (B::world == World::space && requires { body.at(s, p[0], p[1]); })
-            part.surface.points[i++] = position(*model, x, body.at(s, p[0], p[1]));
+            detail::carry(frame(*model, x, body.at(s, p[0], p[1])), Vec3::Zero(), part, i++);
           else
-            part.surface.points[i++] = f.r + f.A * Vec3(0, p[0], p[1]);
+            detail::carry(f, Vec3(0, p[0], p[1]), part, i++);
         }
       }
     });
   }
+
+  M const& model() const { return *model_; }
 
   /// All parts in state x; valid until asked again.
   std::vector<VisualPart> const& at(State const& x) {

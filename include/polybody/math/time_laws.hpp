@@ -92,23 +92,53 @@ inline void check_ramp(double target, double duration, double start, std::string
 }  // namespace detail
 
 /// 0 until `start`, then linear to `target` in `duration`, constant afterwards. The rate jumps at both
-/// ends; the value at a corner is that of the piece that begins there.
+/// ends; the value at a corner is that of the piece that begins there. With a `rounding` w each corner is a
+/// parabola instead, from w/2 before to w/2 after it: value = slope s²/(2w), s = t − corner + w/2. Then only
+/// the acceleration jumps, and what follows both corners has the same value and integral.
 struct Ramp {
   Required<double> target;
   Required<double> duration;
   double start = 0.0;
+  double rounding = 0.0;  ///< w [s], at most `duration`
 
-  void check(std::string const& what) const { detail::check_ramp(target, duration, start, what); }
+  void check(std::string const& what) const {
+    detail::check_ramp(target, duration, start, what);
+    require_not_negative(rounding, what + ": the rounding");
+    if (rounding > duration)
+      throw InvalidInput(what + ": the rounding " + number(rounding) + " s must not exceed the duration " + number(duration) + " s.");
+  }
   Motion operator()(double t) const {
-    if (t < start) return {};
-    if (t >= start + duration) return {target, 0.0, 0.0};
-    return {target * (t - start) / duration, target / duration, 0.0};
+    if (t < start - 0.5 * rounding) return {};
+    if (t >= start + duration + 0.5 * rounding) return {target, 0.0, 0.0};
+    Motion const begin = corner(t - start), end = corner(t - start - duration);
+    return {target * (begin.value - end.value) / duration, target * (begin.rate - end.rate) / duration,
+            target * (begin.acceleration - end.acceleration) / duration};
   }
   double integral(double t) const {
-    double const x = std::clamp(t - start, 0.0, double(duration));
-    return target * (0.5 * x * x / duration + std::max(0.0, t - start - duration));
+    double const x = t - start, y = x - duration;
+    if (y >= 0.5 * rounding) return target * 0.5 * (x + y);
+    return target * (corner_integral(x) - corner_integral(y)) / duration;
   }
-  std::vector<double> corners() const { return {start, start + duration}; }
+  /// None where they are rounded.
+  std::vector<double> corners() const {
+    if (rounding > 0.0) return {};
+    return {start, start + duration};
+  }
+
+ private:
+  /// max(0, x), rounded.
+  Motion corner(double x) const {
+    double const s = x + 0.5 * rounding;
+    if (x >= 0.5 * rounding) return {x, 1.0, 0.0};
+    if (s <= 0.0) return {};
+    return {0.5 * s * s / rounding, s / rounding, 1.0 / rounding};
+  }
+  /// ∫ of it: s³/(6w), then x²/2 + w²/24.
+  double corner_integral(double x) const {
+    double const s = x + 0.5 * rounding;
+    if (x >= 0.5 * rounding) return 0.5 * x * x + rounding * rounding / 24.0;
+    return s <= 0.0 ? 0.0 : s * s * s / (6.0 * rounding);
+  }
 };
 
 /// From 0 to `target` in `duration` without jumps up to the acceleration:

@@ -1,0 +1,154 @@
+#pragma once
+/// \file
+/// Snapshots of runs in files. A file is: "polybody", 0x01020304, version, length of the content, content, `checksum` of all
+/// before; numbers as this machine holds them, integers as int64. Not in polybody.hpp: few programs need it.
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include <polybody/analysis/run_snapshot.hpp>
+#include <polybody/io/atomic_file.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// Goes through what a snapshot holds, one way for both directions: `archive(x)` writes or reads a number.
+template <class Archive>
+class SnapshotWalk {
+ public:
+  Archive archive;
+
+  template <class S>
+  void walk(S& s) {
+    each(s.model.coordinates, s.model.speeds, s.model.rows, s.model.names);
+    text(s.integrator);
+    numbers(s.state.q), numbers(s.state.v), numbers(s.state.a), numbers(s.state.lambda), numbers(s.state.memory);
+    each(s.state.t, s.step);
+    list(s.sides, [&](auto& side) { archive(side); });
+    each(s.report.steps, s.report.iterations, s.report.factorisations, s.report.evaluations, s.report.rejected, s.report.stopped);
+    auto& last = s.report.last;
+    each(last.taken, last.next, last.iterations, last.factorisations, last.evaluations, last.rejected);
+    each(last.order, last.contraction);
+    list(s.report.events, [&](auto& met) { text(met.name), archive(met.time); });
+    list(s.report.redundant, [&](auto& name) { text(name); });
+    list(s.report.warnings, [&](auto& sentence) { text(sentence); });
+  }
+
+ private:
+  template <class... X>
+  void each(X&... x) {
+    (archive(x), ...);
+  }
+  template <class List, class F>
+  void list(List& of, F&& f) {
+    archive.resize(of);
+    for (auto& x : of) f(x);
+  }
+  template <class Text>
+  void text(Text& of) {
+    list(of, [&](auto& c) { archive(c); });
+  }
+  template <class V>
+  void numbers(V& of) {
+    archive.resize(of);
+    for (Index i = 0; i < of.size(); ++i) archive(of[i]);
+  }
+};
+
+struct SnapshotWriter {
+  std::string bytes;
+  template <class T>
+  void operator()(T x) {
+    std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t> const wide(static_cast<decltype(wide)>(x));
+    bytes.append(reinterpret_cast<char const*>(&wide), sizeof wide);
+  }
+  template <class List>
+  void resize(List const& of) {
+    (*this)(of.size());
+  }
+};
+
+struct SnapshotReader {
+  std::string_view bytes;
+  std::string const& name;
+
+  template <class T>
+  void operator()(T& x) {
+    std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t> wide;
+    if (bytes.size() < sizeof wide) throw IoError("checkpoint '" + name + "' ends before its content does.");
+    std::memcpy(&wide, bytes.data(), sizeof wide);
+    bytes.remove_prefix(sizeof wide);
+    x = static_cast<T>(wide);
+  }
+  template <class List>
+  void resize(List& of) {
+    std::size_t count = 0;
+    (*this)(count);
+    if (count > bytes.size() / sizeof(double)) throw IoError("checkpoint '" + name + "' ends before its content does.");
+    of.resize(static_cast<decltype(of.size())>(count));
+  }
+};
+
+struct CheckpointHead {
+  char kind[8];
+  std::uint32_t order, version;
+  std::uint64_t length;
+};
+inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 1u, 0u};
+
+}  // namespace detail
+
+/// Puts a snapshot away; the file appears when it is complete, until then an older one stays:
+///   if (run.report().steps % 1000 == 0) write_checkpoint("out/run.checkpoint", run.snapshot());
+/// and later, in another process,
+///   auto run = resume(model, x, GeneralizedAlpha{}, options, read_checkpoint("out/run.checkpoint"));
+/// goes on with the same bits. \throws IoError.
+template <class = void>
+void write_checkpoint(std::filesystem::path const& name, RunSnapshot const& snapshot) {
+  detail::SnapshotWalk<detail::SnapshotWriter> content;
+  content.walk(snapshot);
+  detail::CheckpointHead head = detail::checkpoint_head;
+  head.length = content.archive.bytes.size();
+  std::string all(reinterpret_cast<char const*>(&head), sizeof head);
+  all += content.archive.bytes;
+  std::uint64_t const sum = checksum(all);
+  all.append(reinterpret_cast<char const*>(&sum), sizeof sum);
+  AtomicFile file(name);
+  file.write(all);
+  file.close();
+}
+
+/// \throws IoError for a file that cannot be read, is no checkpoint, is of another version or byte order, is cut off or damaged.
+template <class = void>
+RunSnapshot read_checkpoint(std::filesystem::path const& file) {
+  std::string const name = file.string();
+  std::ifstream stream(file, std::ios::binary);
+  std::string const all{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream.is_open() || stream.bad()) throw IoError("checkpoint '" + name + "' cannot be read.");
+  detail::CheckpointHead const ours = detail::checkpoint_head;
+  detail::CheckpointHead head = {};
+  std::memcpy(&head, all.data(), std::min(all.size(), sizeof head));
+  if (std::memcmp(head.kind, ours.kind, sizeof head.kind) != 0)
+    throw IoError("file '" + name + "' is not a checkpoint of polybody.");
+  if (all.size() < sizeof head) throw IoError("checkpoint '" + name + "' is cut off within its head.");
+  if (head.order == 0x04030201u) throw IoError("checkpoint '" + name + "' was written by a machine of another byte order.");
+  if (head.version != ours.version)
+    throw IoError("checkpoint '" + name + "' is of version " + std::to_string(head.version) +
+                  ", but this program reads version " + std::to_string(ours.version) + ". Read it with the program that wrote it.");
+  std::uint64_t sum = 0;
+  std::size_t const beside = sizeof head + sizeof sum;
+  if (all.size() < beside || all.size() - beside != head.length)
+    throw IoError("checkpoint '" + name + "' is cut off or has grown: it has " + std::to_string(all.size()) +
+                  " bytes in place of " + std::to_string(head.length + beside) + ".");
+  std::memcpy(&sum, all.data() + all.size() - sizeof sum, sizeof sum);
+  std::string_view const summed = std::string_view(all).substr(0, all.size() - sizeof sum);
+  if (checksum(summed) != sum) throw IoError("checkpoint '" + name + "' is damaged: its checksum is not that of its content.");
+  RunSnapshot snapshot;
+  detail::SnapshotWalk<detail::SnapshotReader> content{{summed.substr(sizeof head), name}};
+  content.walk(snapshot);
+  return snapshot;
+}
+
+}  // namespace polybody

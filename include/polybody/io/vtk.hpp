@@ -1,0 +1,158 @@
+#pragma once
+/// \file
+/// What a model looks like over time, as VTK's XML files for ParaView: a collection (.pvd) and beside it an unstructured grid
+/// (.vtu) for each state. Not in polybody.hpp: few programs need it.
+
+#include <bit>
+#include <charconv>
+#include <cstdint>
+
+#include <polybody/analysis/visual.hpp>
+#include <polybody/io/atomic_file.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// `text` as it stands between the quotes of an XML attribute.
+template <class = void>
+std::string xml_text(std::string const& text) {
+  std::string out;
+  for (char const c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
+
+/// Arrays of a VTK file: their heads, and their raw bytes, each array behind its length, as they are appended [VTK File
+/// Formats, XML].
+struct VtkArrays {
+  std::string heads, bytes;
+
+  template <class T>
+  void add(char const* name, int components, std::vector<T> const& values) {
+    char const* const type = std::is_same_v<T, float> ? "Float32" : sizeof(T) == 8 ? "Int64" : sizeof(T) == 4 ? "Int32" : "UInt8";
+    heads += std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+             std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(bytes.size()) + "\"/>\n";
+    std::uint64_t const length = values.size() * sizeof(T);
+    bytes.append(reinterpret_cast<char const*>(&length), sizeof length);
+    bytes.append(reinterpret_cast<char const*>(values.data()), std::size_t(length));
+  }
+  void add(char const* name, std::vector<Vec3> const& values) {
+    std::vector<float> out;
+    for (Vec3 const& x : values)
+      for (int i = 0; i < 3; ++i) out.push_back(float(x[i]));
+    add(name, 3, out);
+  }
+};
+
+/// All parts as one unstructured grid of polygons. \param rest where the points stand in the reference state
+template <class = void>
+void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const& parts, std::vector<Vec3> const& rest) {
+  std::vector<Vec3> points, moved, velocities;
+  std::vector<float> stress;
+  std::vector<std::int64_t> corners, ends;
+  std::vector<std::int32_t> part_of_cell;
+  bool stressed = false;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    VisualPart const& part = parts[k];
+    std::int64_t const first_point = std::int64_t(points.size()), first_corner = std::int64_t(corners.size());
+    for (int const i : part.surface.corners) corners.push_back(first_point + i);
+    for (int const i : part.surface.ends) ends.push_back(first_corner + i);
+    part_of_cell.insert(part_of_cell.end(), part.surface.ends.size(), std::int32_t(k));
+    for (Vec3 const& p : part.surface.points) {
+      moved.push_back(p - rest[points.size()]);
+      points.push_back(p);
+    }
+    velocities.insert(velocities.end(), part.velocities.begin(), part.velocities.end());
+    for (double const s : part.axial_stress) stress.push_back(float(s));
+    stressed = stressed || !part.axial_stress.empty();
+    stress.resize(points.size(), std::numeric_limits<float>::quiet_NaN());  // of a part without
+  }
+
+  VtkArrays arrays;
+  std::string const n = std::to_string(points.size()), cells = std::to_string(ends.size());
+  arrays.heads = "<Piece NumberOfPoints=\"" + n + "\" NumberOfCells=\"" + cells + "\">\n<Points>\n";
+  arrays.add("points", points);
+  arrays.heads += "</Points>\n<Cells>\n";
+  arrays.add("connectivity", 1, corners);
+  arrays.add("offsets", 1, ends);
+  arrays.add("types", 1, std::vector<std::uint8_t>(ends.size(), 7));  // VTK_POLYGON
+  arrays.heads += "</Cells>\n<PointData>\n";
+  arrays.add("displacement", moved);
+  arrays.add("velocity", velocities);
+  if (stressed) arrays.add("axial_stress", 1, stress);
+  arrays.heads += "</PointData>\n<CellData>\n";
+  arrays.add("part", 1, part_of_cell);
+  arrays.heads += "</CellData>\n</Piece>\n";
+
+  std::string const order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
+  AtomicFile file(name);
+  file.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" + order +
+             "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n" + arrays.heads +
+             "</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
+  file.write(arrays.bytes);
+  file.write("\n</AppendedData>\n</VTKFile>\n");
+  file.close();
+}
+
+}  // namespace detail
+
+/// Writes one state after the other:
+///   VtkWriter writer("out/run.pvd", visual);
+///   for (State const& now : simulate(…)) writer.write(now);
+/// makes out/run.pvd and out/run/run_000000.vtu, …. Points carry `displacement` from the reference state [m], `velocity` [m/s]
+/// and, where a part knows it, `axial_stress` [N/m²] (NaN on the others); cells carry `part`, the place among the parts of the
+/// visual, from 0. Numbers are float32. Every file appears when it is complete, a grid before the collection that names it; so
+/// a run that is broken off leaves an animation up to its last state. The visual must outlive the writer.
+template <class M>
+class VtkWriter {
+ public:
+  /// Writes a collection without states. \throws InvalidInput unless the file ends in .pvd; IoError when it cannot be written.
+  VtkWriter(std::filesystem::path const& file, Visual<M>& visual) : visual_(&visual), file_(std::filesystem::absolute(file)) {
+    if (file_.extension() != ".pvd")
+      throw InvalidInput("VtkWriter: the name of a collection ends in .pvd, but this is '" + file.string() + "'.");
+    for (VisualPart const& part : visual.at(visual.model().reference_state()))
+      rest_.insert(rest_.end(), part.surface.points.begin(), part.surface.points.end());
+    write_collection();
+  }
+
+  /// \throws InvalidInput unless times rise, NonFinite, IoError.
+  void write(State const& x) {
+    if (!(x.t > last_))
+      throw InvalidInput("VtkWriter: the states of '" + file_.string() + "' must rise in time, but t = " + number(x.t) +
+                         " s follows " + number(last_) + " s.");
+    std::vector<VisualPart> const& parts = visual_->at(x);
+    for (VisualPart const& part : parts)
+      for (Vec3 const& p : part.surface.points)
+        if (!p.allFinite())
+          throw NonFinite("VtkWriter: a point of \"" + part.name + "\" is not finite at t = " + number(x.t) + " s.");
+    std::string index = std::to_string(count_);
+    index.insert(0, index.size() < 6 ? 6 - index.size() : 0, '0');
+    std::filesystem::path const stem = file_.stem(), grid = stem / (stem.string() + "_" + index + ".vtu");
+    detail::write_vtu(file_.parent_path() / grid, parts, rest_);
+    char digits[32];
+    std::string const time(digits, std::to_chars(digits, digits + sizeof digits, x.t).ptr);
+    entries_ += "<DataSet timestep=\"" + time + "\" part=\"0\" file=\"" + detail::xml_text(grid.generic_string()) + "\"/>\n";
+    write_collection();
+    last_ = x.t;
+    ++count_;
+  }
+
+  std::size_t states() const { return count_; }  ///< written so far
+
+ private:
+  void write_collection() const {
+    AtomicFile file(file_);
+    file.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" + entries_ +
+               "</Collection>\n</VTKFile>\n");
+    file.close();
+  }
+
+  Visual<M>* visual_;
+  std::filesystem::path file_;
+  std::vector<Vec3> rest_;
+  std::string entries_;
+  std::size_t count_ = 0;
+  double last_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace polybody

@@ -1,0 +1,137 @@
+#pragma once
+/// \file
+/// A chain of rigid links laid once around the circles of a track, as taut as it can be.
+/// Not in polybody.hpp: of use to vehicles only.
+///
+/// A link is the straight chord of length p between two pins; its faces lie at the distance h to both sides. Pins that sit on
+/// the sprocket lie on the corners of its pitch polygon, of radius p / (2 sin(π/N)). Away from it each link turns inwards at its
+/// pin as far as the circles let it: it lies on a line that touches the next circle of radius R + h (its face touches the rim),
+/// or that leads to the first seat of the sprocket. Links of one straight run share their line. So the chain is what a string
+/// around the same circles is, with corners for curves.
+
+#include <algorithm>
+#include <limits>
+
+#include <polybody/vehicle/track_layout.hpp>
+
+namespace polybody {
+namespace detail {
+
+inline double track_cross(Vec2 const& a, Vec2 const& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+/// A direction in which a link may lie, and by how much it then turns to the left of the one before.
+struct TrackSight {
+  Vec2 direction;  ///< (2) of length one
+  double turn;     ///< [rad], −3π/2 < turn ≤ π/2
+};
+
+inline TrackSight track_sight(Vec2 const& heading, Vec2 const& direction) {
+  double const turn = std::atan2(track_cross(heading, direction), heading.dot(direction));
+  return {direction, turn > 0.5 * std::numbers::pi ? turn - 2.0 * std::numbers::pi : turn};
+}
+
+/// From `pin` along the tangent to the circle of radius r = R + h. With c to the centre, t² = c² − r² and c⊥ = c turned left,
+/// the tangent that leaves the circle on its right is (t c + r c⊥)/c².
+inline TrackSight track_tangent(TrackLayout const& layout, TrackCircle const& circle, Vec2 const& pin, Vec2 const& heading) {
+  Vec2 const c = circle.centre - pin;
+  double const r = (circle.radius + layout.half_thickness) * (circle.side == TrackSide::inside ? 1.0 : -1.0);
+  double const t = std::sqrt(std::max(0.0, c.squaredNorm() - r * r));
+  return track_sight(heading, Vec2(t * c[0] - r * c[1], t * c[1] + r * c[0]).normalized());
+}
+
+/// Once around: from a seat that the track surely covers, over the circles, back to the first seat that it meets.
+struct TrackWalk {
+  int start;               ///< the seat where the walk begins
+  int last;                ///< the last seat covered, ≥ start
+  int first = 0;           ///< the first seat covered, ≤ start
+  std::vector<Vec2> pins;  ///< from seat `start` to the pin from which a straight run leads to seat `first`
+  double length = 0.0;     ///< of the whole loop, in links; not a whole number unless it closes
+};
+
+/// The seat that points away from the circles.
+inline int track_start(TrackLayout const& layout) {
+  Vec2 away = layout.sprocket.centre;
+  for (TrackCircle const& c : layout.circles) away -= c.centre / double(layout.circles.size());
+  double const angle = std::atan2(away[0], away[1]) - layout.sprocket.valley;
+  return int(std::lround(angle * layout.sprocket.teeth / (2.0 * std::numbers::pi)));
+}
+
+/// Of the seats before the first one covered by the walk, the one that the track meets: all others are to the right of it.
+inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pin, Vec2 const& heading, TrackSight& sight) {
+  int first = start;
+  sight.turn = -std::numeric_limits<double>::infinity();
+  for (int k = start; k >= start - layout.sprocket.teeth / 2; --k) {
+    Vec2 const chord = layout.seat(k) - pin;
+    if (chord.norm() < 1e-9 * layout.pitch) continue;
+    TrackSight const to = track_sight(heading, chord.normalized());
+    if (to.turn > sight.turn) {
+      sight = to;
+      first = k;
+    }
+  }
+  return first;
+}
+
+/// What the link behind the last pin of `walk` runs to: the index of a circle at or after `at`; −1 for the next seat, while the
+/// walk has not left the sprocket; the number of circles for the seat that ends it. Sets `heading` to the link's direction.
+/// Circles inside the track bound a link's turn to the right, those outside bound it to the left. They are looked at in their
+/// order until a bound crosses the other one: then the link runs to the circle that set the other one. If none crosses, as
+/// without circles outside, it runs to what lies furthest to the left.
+inline int track_target(TrackLayout const& layout, int at, Vec2& heading, TrackWalk& walk) {
+  struct Bound {
+    TrackSight sight;
+    int by;
+  };
+  double const endless = std::numeric_limits<double>::infinity();
+  double const same = 1e-9;  // bounds as close as this are one, and the earlier circle's
+  int const count = int(layout.circles.size());
+  Vec2 const pin = walk.pins.back();
+  Bound right{{heading, -endless}, count}, left{{heading, endless}, count};
+  if (at < 0 && walk.last - walk.start < layout.sprocket.teeth)
+    right = {track_sight(heading, (layout.seat(walk.last + 1) - pin).normalized()), -1};
+
+  Bound* nearest = &right;
+  for (int k = std::max(at, 0); k <= count; ++k) {
+    bool const inside = k == count || layout.circles[k].side == TrackSide::inside;
+    TrackSight sight;
+    if (k < count)
+      sight = track_tangent(layout, layout.circles[k], pin, heading);
+    else
+      walk.first = track_first_seat(layout, walk.start, pin, heading, sight);
+    Bound &mine = inside ? right : left, &other = inside ? left : right;
+    double const sign = inside ? 1.0 : -1.0, tighter = sign * (sight.turn - mine.sight.turn);
+    if (sign * (sight.turn - other.sight.turn) > 0.0) {
+      nearest = &other;
+      break;
+    }
+    if (tighter > same) mine.by = k;
+    if (tighter > 0.0) mine.sight = sight;
+  }
+  heading = nearest->sight.direction;
+  return nearest->by;
+}
+
+inline TrackWalk track_walk(TrackLayout const& layout) {
+  int const start = track_start(layout), end = int(layout.circles.size());
+  TrackWalk walk{.start = start, .last = start, .pins = {layout.seat(start)}};
+  Vec2 heading = (layout.seat(start) - layout.seat(start - 1)).normalized();
+  for (int at = -1; at = track_target(layout, at, heading, walk), at != end;) {
+    if (at < 0) ++walk.last;
+    walk.pins.push_back(at < 0 ? layout.seat(walk.last) : Vec2(walk.pins.back() + layout.pitch * heading));
+    if (walk.pins.size() > 100000)
+      throw InvalidInput("Track: it does not come back to '" + layout.sprocket.name +
+                         "'. List the circles in the order in which the track meets them, each with its side.");
+  }
+  double const run = (layout.seat(walk.first) - walk.pins.back()).norm() / layout.pitch;
+  walk.length = double(walk.pins.size() - 1) + run + double(start - walk.first);
+  return walk;
+}
+
+}  // namespace detail
+
+/// The number of links, seldom whole, that go around `layout` with the tensioner's circle at `travel` [m].
+inline double track_length(TrackLayout const& layout, double travel) {
+  return detail::track_walk(layout.tensioned(travel)).length;
+}
+
+}  // namespace polybody

@@ -1,0 +1,120 @@
+// Rainflow counting: the worked example of the standard, histories whose cycles are plain, and laws that hold for any history.
+#include <polybody/analysis/rainflow.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "support/refusal.hpp"
+
+namespace rainflow_test {
+
+using namespace polybody;
+using Points = std::vector<double>;
+
+std::map<double, double> counts(std::vector<StressCycle> const& cycles) {
+  std::map<double, double> of_range;
+  for (StressCycle const& c : cycles) of_range[c.range] += c.count;
+  return of_range;
+}
+
+TEST(TurningPoints, ArePeaksValleysAndEnds) {
+  EXPECT_EQ(turning_points(Points{0, 1, 2, 2, 1, 1, -3, -3, 5}), (Points{0, 2, -3, 5}));
+  EXPECT_EQ(turning_points(Points{4, 4, 4}), Points{4});
+  EXPECT_EQ(turning_points(Points{1, 2, 3}), (Points{1, 3}));
+  EXPECT_EQ(turning_points(Points{3, 3, 2, 2, 2, 2.5}), (Points{3, 2, 2.5}));
+  EXPECT_TRUE(turning_points(Points{}).empty());
+  EXPECT_TRUE(has(refusal([] { turning_points(Points{0, std::nan("")}); }), "sample 1 is not finite"));
+}
+
+// ASTM E1049-85, Fig. 6: peaks and valleys A … I; the order, the pairs and the table of the standard.
+TEST(Rainflow, CountsTheExampleOfTheStandard) {
+  Points const history{-2, 1, -3, 5, -1, 3, -4, 4, -2};
+  std::vector<StressCycle> const expected{{3, -0.5, 0.5},                                // A–B
+                                          {4, -1, 0.5},                                  // B–C
+                                          {4, 1, 1.0},                                   // E–F
+                                          {8, 1, 0.5}, {9, 0.5, 0.5}, {8, 0, 0.5}, {6, 1, 0.5}};  // C–D, D–G, G–H, H–I
+  std::vector<StressCycle> const found = rainflow(history);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].range, expected[i].range) << i;
+    EXPECT_EQ(found[i].mean, expected[i].mean) << i;
+    EXPECT_EQ(found[i].count, expected[i].count) << i;
+  }
+  EXPECT_EQ(counts(found), (std::map<double, double>{{3, 0.5}, {4, 1.5}, {6, 0.5}, {8, 1.0}, {9, 0.5}}));
+  EXPECT_EQ(binned(found, 2.5), (std::vector<double>{0, 2.0, 0.5, 1.5}));  // up to 2.5, 5, 7.5, 10
+}
+
+// n periods of a sine from zero: every range between extremes is 2, in halves for the history begins and ends within one; the
+// first and last quarter are halves of range 1.
+TEST(Rainflow, CountsASineOncePerPeriod) {
+  Points wave;
+  for (int i = 0; i <= 4000; ++i) wave.push_back(std::sin(2 * std::numbers::pi * i / 400.0));
+  auto cycles = rainflow(wave);
+  double large = 0.0, small = 0.0;
+  for (StressCycle const& c : cycles) (c.range > 1.5 ? large : small) += c.count;
+  EXPECT_EQ(large, 9.5);
+  EXPECT_EQ(small, 1.0);
+}
+
+// By hand after §5.4.4: three cycles of 1 close within larger ranges; 0–10 is half a cycle, for it begins the history; 10, −10,
+// 5, 0 are left.
+TEST(Rainflow, FindsSmallCyclesWithinALargeOne) {
+  auto const c = counts(rainflow(Points{0, 4, 3, 8, 7, 10, -10, 0, -1, 5, 0}));
+  EXPECT_EQ(c, (std::map<double, double>{{1, 3.0}, {5, 0.5}, {10, 0.5}, {15, 0.5}, {20, 0.5}}));
+}
+
+// Whatever the history: the ranges, each as often as it is counted and twice over, make up the whole way from point to point, the
+// largest is from the lowest to the highest point, and a history upside down has the same cycles with opposite means.
+TEST(Rainflow, KeepsTheWayTheSpanAndTheSymmetry) {
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    Points history, opposite;
+    for (int i = 0; i < 300; ++i) {
+      history.push_back(double(int(random() % 41)) - 20.0);
+      opposite.push_back(-history.back());
+    }
+    auto const cycles = rainflow(history), mirrored = rainflow(opposite);
+    double way = 0.0, counted = 0.0, largest = 0.0;
+    for (std::size_t i = 1; i < history.size(); ++i) way += std::abs(history[i] - history[i - 1]);
+    for (StressCycle const& c : cycles) {
+      counted += 2.0 * c.count * c.range;
+      largest = std::max(largest, c.range);
+    }
+    EXPECT_EQ(counted, way);
+    auto const [low, high] = std::minmax_element(history.begin(), history.end());
+    EXPECT_EQ(largest, *high - *low);
+    ASSERT_EQ(cycles.size(), mirrored.size());
+    for (std::size_t i = 0; i < cycles.size(); ++i) {
+      EXPECT_EQ(cycles[i].range, mirrored[i].range);
+      EXPECT_EQ(cycles[i].mean, -mirrored[i].mean);
+    }
+  }
+}
+
+// N₀ = 2e6 at 100 MPa with m = 3: 2e6 cycles of 100 MPa are the whole life, 50 MPa lasts 8 times as long. The standard's
+// history in units of 10 MPa: D = (0.5·3³ + 1.5·4³ + 0.5·6³ + 8³ + 0.5·9³)/10³ / 2e6 = 1.094e3/1e3/2e6.
+TEST(Damage, IsLinearInCyclesAndAPowerOfTheRange) {
+  Basquin const curve{.range = 100e6, .cycles = 2e6, .exponent = 3.0};
+  EXPECT_NEAR(curve.life(50e6), 16e6, 1e-6);
+  EXPECT_NEAR(damage(std::vector<StressCycle>{{100e6, 0.0, 2e6}}, curve), 1.0, 1e-14);
+  Points history{-2, 1, -3, 5, -1, 3, -4, 4, -2};
+  for (double& x : history) x *= 10e6;
+  double const expected = (0.5 * 27 + 1.5 * 64 + 0.5 * 216 + 512 + 0.5 * 729) / 1e3 / 2e6;
+  EXPECT_NEAR(damage(rainflow(history), curve), expected, 1e-13 * expected);
+  Basquin const limited{.range = 100e6, .cycles = 2e6, .exponent = 3.0, .limit = 60e6};
+  EXPECT_NEAR(damage(rainflow(history), limited), (512 + 0.5 * 729) / 1e3 / 2e6, 1e-13 * expected);
+}
+
+TEST(Damage, RefusesCurvesThatCannotBeMeant) {
+  EXPECT_TRUE(has(refusal([] { damage({}, {.range = 0.0, .cycles = 1.0, .exponent = 3.0}); }), "Basquin: the range"));
+  EXPECT_TRUE(has(refusal([] { damage({}, {.range = 1.0, .cycles = -1.0, .exponent = 3.0}); }), "number of cycles"));
+  EXPECT_TRUE(has(refusal([] { damage({}, {.range = 1.0, .cycles = 1.0, .exponent = 0.0}); }), "exponent"));
+  EXPECT_TRUE(has(refusal([] { damage({}, {.range = 1.0, .cycles = 1.0, .exponent = 3.0, .limit = -1.0}); }), "limit"));
+  EXPECT_TRUE(has(refusal([] { binned({}, 0.0); }), "the width"));
+}
+
+}  // namespace rainflow_test

@@ -1,0 +1,122 @@
+// Snapshots of runs in files: read back as they were, and refused where they cannot be used. Runs that are taken up again:
+// tests/cases/rigid_integrators_test.cpp, rigid_recursive_test.cpp.
+#include <polybody/io/checkpoint.hpp>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "support/refusal.hpp"
+#include "support/resumed_run.hpp"
+
+namespace checkpoint_test {
+
+namespace fs = std::filesystem;
+using namespace polybody;
+
+std::string text_of(fs::path const& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+void put(fs::path const& file, std::string const& text) { std::ofstream(file, std::ios::binary) << text; }
+
+struct Checkpoints : testing::Test {
+  fs::path const folder = fs::path(testing::TempDir()) / ("polybody checkpoint " + std::to_string(::getpid()));
+  fs::path const file = folder / "run.checkpoint";
+  ~Checkpoints() override { fs::remove_all(folder); }
+};
+
+/// A snapshot with every kind of content, numbers that are hard to write among it.
+RunSnapshot rich() {
+  RunSnapshot s{.model = {3, 2, 1, 0xfedcba9876543210u}, .integrator = "Some method", .step = 1e-3, .sides = {-1, 0, 1}};
+  s.state = {VecX::LinSpaced(3, 0.1, 0.3), Vec2(-0.0, 5e-324), Vec2(1e308, 1.0 / 3.0), VecX::Constant(1, std::nan("")), 0.7, {}};
+  s.report = {.steps = 10, .iterations = 21, .factorisations = 3, .evaluations = 22, .rejected = 1};
+  s.report.last = {.taken = 1e-3, .next = 2e-3, .iterations = 2, .factorisations = 1, .evaluations = 2, .rejected = 1};
+  s.report.last.order = 5;
+  s.report.last.contraction = 0.1;
+  s.report.events = {{"stop", 0.25}};
+  s.report.stopped = true;
+  s.report.redundant = {"pin", std::string("a\0b", 3)};
+  s.report.warnings = {"", "ρ∞"};
+  return s;
+}
+
+TEST_F(Checkpoints, ReadBackAsTheyWere) {
+  RunSnapshot const s = rich();
+  write_checkpoint(file, s);
+  RunSnapshot const back = read_checkpoint(file);
+  EXPECT_EQ(back.model, s.model);
+  EXPECT_EQ(back.integrator, s.integrator);
+  EXPECT_EQ(bits(back.state), bits(s.state));
+  EXPECT_EQ(back.step, s.step);
+  EXPECT_EQ(back.sides, s.sides);
+  expect_same(back.report, s.report);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);  // no temporary
+}
+
+// FNV-1a of "", "a" and "foobar": test vectors of draft-eastlake-fnv.
+TEST_F(Checkpoints, AreSummedUpByFnv) {
+  EXPECT_EQ(checksum(""), 0xcbf29ce484222325u);
+  EXPECT_EQ(checksum("a"), 0xaf63dc4c8601ec8cu);
+  EXPECT_EQ(checksum("foobar"), 0x85944171f73967e8u);
+}
+
+TEST_F(Checkpoints, EveryDamageIsNoticed) {
+  write_checkpoint(file, rich());
+  std::string const good = text_of(file);
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    std::string bad = good;
+    bad[i] = char(bad[i] ^ (1 << (i % 8)));
+    put(file, bad);
+    EXPECT_THROW(read_checkpoint(file), IoError) << "byte " << i;
+  }
+  for (std::size_t length = 0; length < good.size(); ++length) {
+    put(file, good.substr(0, length));
+    EXPECT_THROW(read_checkpoint(file), IoError) << length << " bytes";
+  }
+  auto const told = [&](std::string const& text) {
+    put(file, text);
+    return message_of<IoError>([&] { read_checkpoint(file); });
+  };
+  auto const changed = [&](std::size_t at, char to) {
+    std::string bad = good;
+    bad[at] = to;
+    return told(bad);
+  };
+  EXPECT_TRUE(has(told("t,x\n0,1\n"), "is not a checkpoint of polybody"));
+  EXPECT_TRUE(has(told(good.substr(0, 20)), "cut off within its head"));
+  std::string const size = std::to_string(good.size()), longer = std::to_string(good.size() + 1);
+  EXPECT_TRUE(has(told(good + "x"), "has " + longer + " bytes in place of " + size));
+  std::string other = good;
+  std::uint32_t const nine = 9;
+  std::memcpy(other.data() + 12, &nine, sizeof nine);
+  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 1"));
+  other = good;
+  std::reverse(other.begin() + 8, other.begin() + 12);
+  EXPECT_TRUE(has(told(other), "another byte order"));
+  EXPECT_TRUE(has(changed(good.size() / 2, 'x'), "damaged"));
+  fs::remove(file);
+  EXPECT_TRUE(has(message_of<IoError>([&] { read_checkpoint(file); }), "cannot be read"));
+}
+
+// Chains of four and of three links in the plane: 3 coordinates and 2 rows each.
+TEST_F(Checkpoints, OfAnotherRunAreRefused) {
+  Chain<InPlane<Constraint>> const chain(4, bar_link()), shorter(3, bar_link());
+  Chain<InPlane<Constraint>>::ModelType renamed;
+  for (int i = 0; i < 4; ++i) {
+    auto const link = renamed.add(planar::Rigid(1.0, 0.1), "link " + std::to_string(i));
+    renamed.connect(InPlane<Constraint>::hinge({}), renamed.ground().at({0, 0, 0}), link.at(Vec2(0, 0)));
+  }
+  ModelIdentity const right = identity_of(System(chain.model));
+  RunSnapshot const s{.model = right, .integrator = "Radau", .sides = {1}};
+  s.require(right, "Radau", 1);
+  auto const told = [&](ModelIdentity const& model, std::string const& integrator, std::size_t events) {
+    return refusal([&] { s.require(model, integrator, events); });
+  };
+  EXPECT_TRUE(has(told(identity_of(System(shorter.model)), "Radau", 1),
+                  "12 coordinates, 12 speeds and 8 rows; this one has 9 coordinates, 9 speeds and 6 rows"));
+  EXPECT_TRUE(has(told(identity_of(System(renamed)), "Radau", 1), "other names"));
+  EXPECT_TRUE(has(told(right, "Newmark", 1), "of a run by Radau, not by Newmark"));
+  EXPECT_TRUE(has(told(right, "Radau", 2), "with 1 events, but the options have 2"));
+}
+
+}  // namespace checkpoint_test

@@ -1,0 +1,165 @@
+// The data of vehicle/m113.hpp against shared/reference/m113: the bodies and joints in tests/vehicle/data are those of its
+// bodies.csv and joints.csv without the links (places to nine digits), totals and conventions are of M113.md.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <polybody/math/quaternion.hpp>
+#include <polybody/vehicle/m113.hpp>
+
+namespace polybody {
+namespace m113_test {
+
+using m113::Side;
+
+/// The numbers of each row of a file of tests/vehicle/data behind its first `names` fields, by these fields.
+std::map<std::string, std::vector<double>> rows(char const* file, int names) {
+  std::ifstream in(std::filesystem::path(__FILE__).parent_path() / "data" / file);
+  std::map<std::string, std::vector<double>> found;
+  std::string line;
+  for (std::getline(in, line); std::getline(in, line);) {
+    std::size_t end = 0;
+    for (int i = 0; i < names; ++i) end = line.find(',', end) + 1;
+    std::istringstream fields(line.substr(end));
+    std::vector<double>& numbers = found[line.substr(0, end - 1)];
+    for (std::string field; std::getline(fields, field, ',');) numbers.push_back(std::stod(field));
+  }
+  return found;
+}
+
+char const* letter(Side side) { return side == Side::left ? "_L" : "_R"; }
+
+/// A body's mass, moments of inertia, place and angle about y against its row.
+void expect_body(std::vector<double> const& row, m113::Solid const& body, Vec3 const& place, double angle) {
+  ASSERT_EQ(row.size(), 11u);
+  EXPECT_DOUBLE_EQ(row[0], body.mass);
+  EXPECT_EQ(Vec3(row[1], row[2], row[3]), Vec3(body.inertia));
+  EXPECT_LT((Vec3(row[4], row[5], row[6]) - place).norm(), 1e-8);
+  EXPECT_LT((Vec4(row[7], row[8], row[9], row[10]) - Vec4(std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0)).norm(), 1e-8);
+}
+
+void expect_point(std::vector<double> const& row, Vec3 const& place, Vec3 const& axis) {
+  ASSERT_EQ(row.size(), 6u);
+  EXPECT_LT((Vec3(row[0], row[1], row[2]) - place).norm(), 1e-8);
+  EXPECT_EQ(Vec3(row[3], row[4], row[5]), axis);
+}
+
+TEST(M113, BodiesAreThoseOfTheReference) {
+  auto const bodies = rows("bodies.csv", 1);
+  EXPECT_EQ(bodies.size(), 27u);  // 155 less 128 links
+  expect_body(bodies.at("chassis"), m113::thesis.chassis, m113::chassis, 0.0);
+  for (Side const side : {Side::left, Side::right}) {
+    auto const row = [&](std::string const& name) {
+      SCOPED_TRACE(name + letter(side));
+      return bodies.at(name + letter(side));
+    };
+    expect_body(row("sprocket"), m113::thesis.sprocket, m113::sprocket(side), 0.0);
+    expect_body(row("idler"), m113::thesis.idler, m113::idler(side), 0.0);
+    expect_body(row("tensioner"), m113::thesis.tensioner, m113::idler(side), 0.0);
+    for (int i = 0; i < m113::wheels; ++i) {
+      expect_body(row("wheel" + std::to_string(i + 1)), m113::thesis.wheel, m113::wheel(i, side), 0.0);
+      expect_body(row("arm" + std::to_string(i + 1)), m113::thesis.arm, m113::arm(i, side), m113::arm_angle);
+    }
+  }
+}
+
+TEST(M113, JointsAndSpringsAreWhereTheReferenceHasThem) {
+  auto const joints = rows("joints.csv", 3);
+  EXPECT_EQ(joints.size(), 48u);
+  Vec3 const x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0), z(0.0, 0.0, 1.0);
+  for (Side const side : {Side::left, Side::right}) {
+    std::string const s = letter(side);
+    expect_point(joints.at("revolute+drive,chassis,sprocket" + s), m113::sprocket(side), y);
+    expect_point(joints.at("prismatic,chassis,tensioner" + s), m113::idler(side), x);
+    expect_point(joints.at("revolute,tensioner" + s + ",idler" + s), m113::idler(side), y);
+    std::string const spring = "spring k=1e6 c=1.4e4 F0=20000 ref x,chassis,tensioner" + s;
+    expect_point(joints.at(spring), m113::idler(side, m113::idler_reference_x), x);
+    for (int i = 0; i < m113::wheels; ++i) {
+      std::string const n = std::to_string(i + 1) + s;
+      expect_point(joints.at("revolute,chassis,arm" + n), m113::arm_pivot(i, side), y);
+      // The row has the wheel's centre; the arm's end lies in the arm's plane, on the same axis.
+      expect_point(joints.at("revolute,arm" + n + ",wheel" + n), m113::wheel(i, side), y);
+      Vec3 const end = m113::arm_point(i, side, m113::arm_length);
+      EXPECT_LT((end - Vec3(m113::wheel(i, side))).cross(y).norm(), 1e-12);
+      Vec3 const on_arm = m113::arm_point(i, side, m113::shock_on_arm);
+      expect_point(joints.at("shock k=1e6 c=1.5e4 l0=0.508 end on arm,chassis,arm" + n), on_arm, z);
+      expect_point(joints.at("shock end on chassis,chassis,arm" + n), on_arm + m113::shock.length * z, z);
+    }
+  }
+  EXPECT_EQ(m113::shock.stiffness, 1e6);
+  EXPECT_EQ(m113::shock.damping, 1.5e4);
+  EXPECT_EQ(m113::tensioner.stiffness, 1e6);
+  EXPECT_EQ(m113::tensioner.damping, 1.4e4);
+  EXPECT_EQ(m113::preload, 20000.0);
+}
+
+// M113.md section 3 and 10.1: 15 912.1 kg with the tensioners; the real vehicle 11.36 t.
+TEST(M113, WeighsWhatTheReferenceSays) {
+  EXPECT_NEAR(m113::thesis.total(), 15912.1, 0.05);
+  EXPECT_NEAR(m113::public_data.total(), 11.36e3, 5.0);
+}
+
+// M113.md section 1.1: every row of T3.1 is a homogeneous solid's. About its axis a cylinder has m R²/2, across it
+// m (3R² + w²)/12; a box a × b × c has m (b² + c²)/12 about the edge a. So the axes and dimensions here are the table's. Table
+// values have three to five digits.
+TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
+  double const width = 2.0 * m113::half_width;
+  auto const wheel = [&](m113::Solid const& s, double radius) {
+    EXPECT_NEAR(s.inertia.y, 0.5 * s.mass * radius * radius, 5e-4 * s.inertia.y);
+    EXPECT_NEAR(s.inertia.x, s.mass * (3.0 * radius * radius + width * width) / 12.0, 5e-4 * s.inertia.x);
+    EXPECT_EQ(s.inertia.z, s.inertia.x);
+  };
+  wheel(m113::thesis.wheel, m113::wheel_radius);
+  wheel(m113::thesis.idler, m113::idler_radius);
+  wheel(m113::thesis.sprocket, 0.2520);
+  m113::Solid const &arm = m113::thesis.arm, &link = m113::thesis.link, &chassis = m113::thesis.chassis;
+  EXPECT_NEAR(arm.inertia.x, 0.5 * arm.mass * 0.01, 5e-4 * arm.inertia.x);  // a bar of radius 0.1 m
+  EXPECT_NEAR(arm.inertia.y, arm.mass * (0.03 + m113::arm_length * m113::arm_length) / 12.0, 5e-4 * arm.inertia.y);
+  auto const box = [](m113::Solid const& s, Vec3 const& a) {  // a: its edges along x, y, z
+    EXPECT_NEAR(s.inertia.x, s.mass * (a[1] * a[1] + a[2] * a[2]) / 12.0, 1e-3 * s.inertia.x);
+    EXPECT_NEAR(s.inertia.y, s.mass * (a[0] * a[0] + a[2] * a[2]) / 12.0, 1e-3 * s.inertia.y);
+    EXPECT_NEAR(s.inertia.z, s.mass * (a[0] * a[0] + a[1] * a[1]) / 12.0, 1e-3 * s.inertia.z);
+  };
+  box(link, {0.1516, width, 2.0 * m113::half_thickness});
+  box(chassis, {4.603, 1.500, 1.287});
+}
+
+// M113.md sections 2, 6 and 8: the sprocket's radii, the speeds of Figures 3.6 and 4.3, a cable 0.0398 m high.
+TEST(M113, FollowsFromPitchAndTeeth) {
+  TrackLayout const track = m113::track();
+  EXPECT_NEAR(track.pitch_radius(), 0.246588, 5e-7);
+  EXPECT_NEAR(m113::rolling_radius, 0.242552, 5e-7);
+  EXPECT_NEAR(m113::rolling_radius * m113::chapter_3_speed, 6.064, 5e-4);
+  EXPECT_NEAR(m113::rolling_radius * m113::chapter_4_speeds[0], 7.277, 5e-4);
+  EXPECT_NEAR(m113::rolling_radius * m113::chapter_4_speeds[1], 19.404, 5e-4);
+  EXPECT_NEAR(m113::cable_height, 0.0398, 5e-5);
+  EXPECT_NEAR(m113::density * m113::cable_width * m113::cable_height * m113::pitch, 18.024, 1e-12);
+}
+
+// M113.md section 5.4: the valley's arc is centred on the radius 0.261588, its root is at 0.226588.
+TEST(M113, PinsSitOnThePitchCircle) {
+  double const centre = m113::track().pitch_radius() + m113::valley_radius - m113::pin_radius;
+  EXPECT_NEAR(centre, 0.261588, 5e-7);
+  EXPECT_NEAR(centre - m113::valley_radius, 0.226588, 5e-7);
+  EXPECT_LT(centre, m113::tip_radius);
+}
+
+// M113.md section 8: x(10 s) = 33.35, 40.02 and 106.7 m are the distances of a linear ramp, with rounded corners too.
+TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
+  for (auto const& [speed, distance] : {std::pair{25.0, 33.35}, {30.0, 40.02}, {80.0, 106.7}})
+    for (double const rounding : {0.0, 0.1}) {
+      Ramp const drive = m113::drive(speed, rounding);
+      EXPECT_EQ(drive(0.9).value, 0.0);
+      EXPECT_NEAR(drive(4.5).value, 0.5 * speed, 1e-13);
+      EXPECT_EQ(drive(8.1).value, speed);
+      EXPECT_NEAR(drive.integral(10.0) * m113::rolling_radius, distance, 0.05);
+    }
+  EXPECT_EQ(m113::drive(25.0).corners(), (std::vector{1.0, 8.0}));
+}
+
+}  // namespace m113_test
+}  // namespace polybody
