@@ -15,7 +15,7 @@
 #include <polybody/analysis/energy.hpp>
 #include <polybody/analysis/observe.hpp>
 #include <polybody/analysis/simulate.hpp>
-#include <polybody/solvers/default_solver.hpp>
+#include <polybody/solvers/auto_lu.hpp>
 
 #include "support/laws.hpp"
 
@@ -127,7 +127,7 @@ void IntegratorLaws<Case>::step_reports_what_it_took() {
   for (auto const& integrator : Case::integrators()) {
     State x = setup.start;
     System system(setup.model);
-    auto workspace = integrator.template workspace<DefaultSolver>(system);
+    auto workspace = integrator.template workspace<AutoLu>(system);
     double const h = Case::until / Case::steps;
     integrator.start(system, x, h, workspace);
     EXPECT_EQ(x.q, setup.start.q);
@@ -158,7 +158,7 @@ void IntegratorLaws<Case>::failed_step_leaves_the_state_as_it_was() {
   for (auto const& integrator : Case::integrators()) {
     State x = setup.start;
     System system(setup.model);
-    auto workspace = integrator.template workspace<DefaultSolver>(system);
+    auto workspace = integrator.template workspace<AutoLu>(system);
     double const h = Case::until / Case::steps;
     integrator.start(system, x, h, workspace);
     State const sound = x;

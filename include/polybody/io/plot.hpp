@@ -34,7 +34,7 @@ inline constexpr std::array<std::string_view, 5> gnuplot_styles{"lines", "points
 inline constexpr std::array<std::string_view, 8> palette{
     "#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
 
-inline std::string number(double value) {
+inline std::string all_digits(double value) {
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
@@ -48,7 +48,7 @@ inline std::string data_text(std::vector<Figure> const& figures) {
       std::ranges::replace(remark, '\n', ' ');
       text += (text.empty() ? "# " : "\n\n# ") + remark + '\n';
       for (std::size_t i = 0; i < curve.x.size(); ++i)
-        text += number(curve.x[i]) + ' ' + number(curve.y[i]) + '\n';
+        text += all_digits(curve.x[i]) + ' ' + all_digits(curve.y[i]) + '\n';
     }
   return text;
 }
@@ -63,7 +63,7 @@ inline std::string tick_digits(double low, double high) {
 /// The commands for one figure, whose first curve is data block `block` of the file `data`.
 inline std::string script_text(Figure const& figure, std::string const& data, std::size_t block) {
   auto const range = [](auto const& r) {
-    return r ? '[' + number((*r)[0]) + ':' + number((*r)[1]) + ']' : std::string("[*:*]");
+    return r ? '[' + all_digits((*r)[0]) + ':' + all_digits((*r)[1]) + ']' : std::string("[*:*]");
   };
   auto const digits = [&](auto const& r, auto points) {
     if (r) return tick_digits((*r)[0], (*r)[1]);
@@ -95,7 +95,7 @@ inline std::string script_text(Figure const& figure, std::string const& data, st
         std::size_t(std::ranges::find(curve_styles, curve.style) - curve_styles.begin());
     text += (i ? ", \\\n     " : "") + gnuplot_text(data) + " index " + std::to_string(block + i) +
             " using 1:2 with " + std::string(gnuplot_styles[style]);
-    text += " linewidth " + number(curve.width) + " linecolor rgb '" + std::string(palette[color]) +
+    text += " linewidth " + all_digits(curve.width) + " linecolor rgb '" + std::string(palette[color]) +
             "'";
     if (curve.style.ends_with("points")) text += " pointtype " + std::to_string(4 + color);
     text += curve.label.empty() ? " notitle" : " title " + gnuplot_text(curve.label);

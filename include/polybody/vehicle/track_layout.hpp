@@ -89,7 +89,7 @@ inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
                              "is listed twice has the same centre and radius both times.");
       } else if (double const deep = a.radius + b.radius - apart;
                  deep > 0.0 && (placed || (a.name != layout.tensioner.circle && b.name != layout.tensioner.circle))) {
-        throw InvalidInput("Track: " + track_name(a) + " and " + track_name(b) + " overlap by " + polybody::number(deep) +
+        throw InvalidInput("Track: " + track_name(a) + " and " + track_name(b) + " overlap by " + number(deep) +
                            " m. Move them apart or make them smaller.");
       }
     }

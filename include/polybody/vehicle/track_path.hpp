@@ -136,15 +136,15 @@ inline void check_wrapped(TrackPath const& path) {
                          "Move it outwards.");
     if (std::abs(turn) > 0.5 * std::numbers::pi + 1e-9) {
       int const on = std::max(path.links[i].touches, path.links[(i + n - 1) % n].touches);
-      throw InvalidInput("Track: the pitch " + polybody::number(layout.pitch) + " m is too long for " +
+      throw InvalidInput("Track: the pitch " + number(layout.pitch) + " m is too long for " +
                          (on < 0 ? "'" + layout.sprocket.name + "'" : track_name(layout.circles[on])) + ": there two links " +
-                         "make an angle of " + polybody::number(std::abs(turn) * 180.0 / std::numbers::pi) + " deg, more than a right " +
+                         "make an angle of " + number(std::abs(turn) * 180.0 / std::numbers::pi) + " deg, more than a right " +
                          "one.");
     }
   }
   TrackClearances const gaps = clearances(path);
   if (gaps.circles < -1e-9 * layout.pitch)
-    throw InvalidInput("Track: link " + std::to_string(gaps.link) + " passes " + polybody::number(-gaps.circles) + " m deep through " +
+    throw InvalidInput("Track: link " + std::to_string(gaps.link) + " passes " + number(-gaps.circles) + " m deep through " +
                        track_name(layout.circles[gaps.circle]) + ". List a wheel wherever the track meets it, with its side, " +
                        "and leave room for the links between it and its neighbours.");
 }
@@ -175,7 +175,7 @@ inline double track_travel(TrackLayout const& layout) {
                          "order in which the track meets them, a wheel that it meets above and below twice.");
     bool const few = layout.links <= shortest;
     throw InvalidInput("Track: " + std::to_string(layout.links) + " links are too " + (few ? "few" : "many") + ". With " + name +
-                       " within its travel the path takes " + polybody::number(shortest) + " to " + polybody::number(longest) +
+                       " within its travel the path takes " + number(shortest) + " to " + number(longest) +
                        " links. Change their number, or the tensioner's travel.");
   }
   for (int i = 0; i < 60; ++i) {
