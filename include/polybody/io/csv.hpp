@@ -2,7 +2,6 @@
 /// \file
 /// Tables of numbers as comma-separated values (RFC 4180); reading them back: table.hpp.
 
-#include <charconv>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include <polybody/io/atomic_file.hpp>
+#include <polybody/io/digits.hpp>
 #include <polybody/io/table.hpp>
 #include <polybody/math/errors.hpp>
 
@@ -89,8 +89,8 @@ class Csv {
       if (!std::isfinite(values[i]))
         throw InvalidInput(where() + ", column '" + columns_[i + texts] +
                            "': the value is not finite (" + number(values[i]) + ")");
-      char digits[32];
-      line_.append(digits, std::to_chars(digits, digits + sizeof digits, values[i]).ptr) += ',';
+      detail::append_digits(line_, values[i]);
+      line_ += ',';
     }
     line_.back() = '\n';
     file_.write(line_);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include <polybody/io/atomic_file.hpp>
+#include <polybody/io/digits.hpp>
 #include <polybody/io/figure.hpp>
 #include <polybody/io/gnuplot.hpp>
 #include <polybody/math/errors.hpp>
@@ -33,11 +33,6 @@ inline constexpr std::array<std::string_view, 5> gnuplot_styles{"lines", "points
 /// Colours that colour-blind readers can tell apart [Okabe & Ito 2008], strongest first.
 inline constexpr std::array<std::string_view, 8> palette{
     "#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
-
-inline std::string all_digits(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
 
 /// A block of two columns for each curve; two blank lines part the blocks.
 inline std::string data_text(std::vector<Figure> const& figures) {

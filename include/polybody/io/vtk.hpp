@@ -4,11 +4,11 @@
 /// (.vtu) for each state. Not in polybody.hpp: few programs need it.
 
 #include <bit>
-#include <charconv>
 #include <cstdint>
 
 #include <polybody/analysis/visual.hpp>
 #include <polybody/io/atomic_file.hpp>
+#include <polybody/io/digits.hpp>
 
 namespace polybody {
 
@@ -129,9 +129,7 @@ class VtkWriter {
     index.insert(0, index.size() < 6 ? 6 - index.size() : 0, '0');
     std::filesystem::path const stem = file_.stem(), grid = stem / (stem.string() + "_" + index + ".vtu");
     detail::write_vtu(file_.parent_path() / grid, parts, rest_);
-    char digits[32];
-    std::string const time(digits, std::to_chars(digits, digits + sizeof digits, x.t).ptr);
-    entries_ += "<DataSet timestep=\"" + time + "\" part=\"0\" file=\"" + detail::xml_text(grid.generic_string()) + "\"/>\n";
+    entries_ += "<DataSet timestep=\"" + detail::all_digits(x.t) + "\" part=\"0\" file=\"" + detail::xml_text(grid.generic_string()) + "\"/>\n";
     write_collection();
     last_ = x.t;
     ++count_;

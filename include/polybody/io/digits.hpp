@@ -1,0 +1,18 @@
+#pragma once
+#include <charconv>
+#include <string>
+
+namespace polybody::detail {
+
+/// Adds x to a text in the shortest form that reads back to the same double.
+inline void append_digits(std::string& text, double x) {
+  char digits[32];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+}
+inline std::string all_digits(double x) {
+  std::string text;
+  append_digits(text, x);
+  return text;
+}
+
+}  // namespace polybody::detail
