@@ -4,7 +4,9 @@
 
 #include <polybody/analysis/arc_length.hpp>
 #include <polybody/analysis/compare.hpp>
+#include <polybody/analysis/contacts.hpp>
 #include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/energy_audit.hpp>
 #include <polybody/analysis/equilibrium.hpp>
 #include <polybody/analysis/implied_curve.hpp>
 #include <polybody/analysis/initial_conditions.hpp>
@@ -30,6 +32,9 @@
 #include <polybody/bodies/rigid_euler_parameters.hpp>
 #include <polybody/bodies/sections.hpp>
 #include <polybody/bodies/sliding.hpp>
+#include <polybody/forces/axial_spring.hpp>
+#include <polybody/forces/contact.hpp>
+#include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/distributed_force.hpp>
 #include <polybody/forces/gravity.hpp>
 #include <polybody/forces/point_load.hpp>

@@ -42,8 +42,9 @@ Energy energy(System<M> const& system, State const& x) {
     if constexpr (AddsForce<P>) sum.joints += e.joint.policy.template potential<m>(gap.g);
   });
   model.for_each_force([&](auto const& e) {
-    if constexpr (HasPotential<std::decay_t<decltype(e.force)>>)
-      sum.forces += e.force.potential(detail::frames_of(e, system.data()), x.t);
+    detail::for_each_action(e, system.data(), [&](auto const& force, auto const&, auto const& frames) {
+      if constexpr (HasPotential<std::decay_t<decltype(force)>>) sum.forces += force.potential(frames, x.t);
+    });
   });
   return sum;
 }

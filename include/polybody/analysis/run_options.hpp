@@ -26,6 +26,7 @@ struct RunOptions {
   std::vector<double> corners = {};   ///< times at which a step must end, beside those of the drives and loads
   std::vector<Event> events = {};
   double assembly_tolerance = 1e-8;   ///< of the start
+  int halvings = 0;                   ///< how often a step whose Newton iteration stalls is halved before the run ends: for impacts
   bool minimum_norm = false;          ///< every state gets the multipliers of `MinimumNorm`, for a factorisation each
   int threads = 1;                    ///< that share the loops of an evaluation; for large models, results stay the same bits
 
@@ -35,6 +36,8 @@ struct RunOptions {
     if (largest_step) require_positive(*largest_step, "simulate: the largest step");
     if (!(until >= start) || !std::isfinite(until))
       throw InvalidInput("simulate: the end " + number(until) + " s lies before the start " + number(start) + " s.");
+    if (halvings < 0 || halvings > 30)
+      throw InvalidInput("simulate: a step can be halved 0 to 30 times, but " + std::to_string(halvings) + " is asked for.");
     for (Event const& event : events) {
       if (!event.value) throw InvalidInput("simulate: the event \"" + event.name + "\" has no value.");
       require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");

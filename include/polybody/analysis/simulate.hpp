@@ -73,7 +73,7 @@ class Simulation {
     bool const crumb = h < 0.01 * h_;  // one is left all the same: after a corner or an event
     State before;
     if (jumps || crumb || options_.minimum_norm || !options_.events.empty()) before = stepped();
-    StepReport const report = integrator_.step(*system_, stepped(), h, workspace_);
+    StepReport const report = step(h, options_.halvings);
     bool const reached = lands && report.taken == h;
     if (reached) stepped().t = target;
     account(report, reached);
@@ -175,6 +175,33 @@ class Simulation {
     if constexpr (NamesStableStep<I>) {
       std::string const warning = warn_of_step<I>(whole(), forward, x, h_);
       if (!warning.empty()) report_.warnings.push_back(warning);
+    }
+  }
+
+  /// One step of h, or where it stalls two of h/2 from a fresh start, and so on. When it throws, the state is as it was.
+  StepReport step(double h, int halvings) {
+    try {
+      return integrator_.step(*system_, stepped(), h, workspace_);
+    } catch (NewtonStalled const&) {
+      if (halvings == 0) throw;
+    }
+    State const before = stepped();
+    try {
+      workspace_.forward.project_velocities(*system_, stepped().q, stepped().v, stepped().t);
+      integrator_.start(*system_, stepped(), 0.5 * h, workspace_);
+      StepReport report = step(0.5 * h, halvings - 1);
+      StepReport const second = step(h - report.taken, halvings - 1);
+      report.taken += second.taken;
+      report.next = second.next;
+      report.iterations += second.iterations;
+      report.factorisations += second.factorisations;
+      report.evaluations += second.evaluations;
+      report.rejected += second.rejected + 1;
+      report.contraction = second.contraction;
+      return report;
+    } catch (...) {
+      stepped() = before;
+      throw;
     }
   }
 

@@ -19,6 +19,16 @@ concept ForceElement = requires(F const force, std::array<Frame<double>, F::mark
   force.check(name);
 };
 
+/// What a force element asks of its second marker, where that is not what it asks of its first (`needs_of_second`).
+template <class F>
+  requires requires { F::markers; }
+constexpr Observes needs_of_second() {
+  if constexpr (requires { F::needs_of_second; })
+    return F::needs_of_second;
+  else
+    return F::needs;
+}
+
 /// A force element may leave the blocks that couple its markers' bodies out of a time step's matrix by
 /// `static constexpr bool couples_bodies = false`: then Newton sees each body's own stiffness only and iterates over the rest.
 /// For contacts of many candidates: the matrix's pattern, and the order in which it is eliminated, stay as they are without

@@ -70,6 +70,7 @@ struct AlphaMethod {
   /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
   template <class M, class Solver>
   void start(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+    if (w.second_order && !second_order_terms) w.analyse(system, SecondOrder::omitted);  // it was called for by a step before
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
     StepHistory::reset(x);
     w.factored = false;
@@ -92,6 +93,11 @@ struct AlphaMethod {
   }
 
  private:
+  /// How often a step may be tried again.
+  template <class M>
+  static constexpr int efforts() {
+    return M::has_groups ? 2 : 1;
+  }
   /// v̇ changes by this much with a.
   double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
 
@@ -101,8 +107,12 @@ struct AlphaMethod {
     w.v = w.v0 + h * ((1.0 - gamma) * w.a0 + gamma * w.a);
     w.dq = h * w.v0 + h * h * ((0.5 - beta) * w.a0 + beta * w.a);
   }
-  /// … and when a changes by y, λ by the rest of it.
-  void apply(double h, bool two_sets, AlphaVectors& w) const {
+  /// … and when a changes by a part of y, λ by the rest of it.
+  void apply(double part, double h, bool two_sets, AlphaVectors& w) const {
+    if (part != 1.0) {
+      w.y *= part;
+      if (two_sets) w.back *= part;
+    }
     auto const da = w.y.head(w.v.size());
     w.a += da;
     w.vd += mass() * da;
@@ -133,17 +143,20 @@ struct AlphaMethod {
 
   /// Tangent and factorisation for steps of h where `system` was evaluated last. −1, or the unknown without a pivot.
   template <class M, class Solver>
-  Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w) const {
+  Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w, bool stand_ins = true) const {
     w.h_factored = h;
     w.age = 0;
-    return w.solver.factor(system, {mass(), h * gamma, beta * h * h},
+    return w.solver.factor(system, {mass(), h * gamma, beta * h * h, stand_ins},
                            w.second_order ? SecondOrder::included : SecondOrder::omitted, lambda);
   }
 
-  /// One step from x; x changes only when Newton converged.
+  /// One step from x; x changes only when Newton converged. What stalls is tried again with more effort: 1, full Newton with every term in
+  /// the tangent, and from the start without extrapolation; 2, the same with stand-ins for what the forces of groups do, which jump
+  /// less where friction turns round.
   template <class M, class Solver>
-  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, bool careful = false) const {
+  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, int effort = 0) const {
     StepHistory history(x);
+    bool const careful = effort > 0;
     if (careful) {
       w.vd = x.a;
       w.lambda = x.lambda;
@@ -161,7 +174,7 @@ struct AlphaMethod {
       State const& x;
       Workspace<M, Solver>& w;
       double h, look_ahead;
-      bool two_sets;
+      bool two_sets, stand_ins;
       Index bad = -1;
 
       bool evaluate() {
@@ -180,7 +193,7 @@ struct AlphaMethod {
           system.plus(x.q, w.ahead, w.q);
           system.evaluate(w.q, w.v, x.t + h);
         }
-        bad = method.refactor(system, h, w.lambda, w);
+        bad = method.refactor(system, h, w.lambda, w, stand_ins);
         return bad < 0;
       }
       double solve() {
@@ -195,20 +208,23 @@ struct AlphaMethod {
         }
         return finite ? method.measure(h, two_sets, w) : std::numeric_limits<double>::quiet_NaN();
       }
-      void apply() { method.apply(h, two_sets, w); }
+      void apply(double part) { method.apply(part, h, two_sets, w); }
     };
     NewtonOptions options = newton;
-    options.always_refactor = options.always_refactor || careful;
+    if (careful) {
+      options.always_refactor = true;
+      options.growths = 8;  // damped, it recovers
+      options.max_iterations *= 2;
+    }
     // what μ moves is large and gone at once: how it shrinks tells nothing of the rest
     options.foretell = options.foretell && !two_sets;
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
-    Problem problem{*this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets};
+    Problem problem{*this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, effort != 1};
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
-    if (report.result != NewtonResult::converged && report.result != NewtonResult::singular && !careful) {
-      // try again with every term in the tangent, full Newton, and from the start without extrapolation
+    if (report.result != NewtonResult::converged && report.result != NewtonResult::singular && effort < efforts<M>()) {
       if (!w.second_order) w.analyse(system, SecondOrder::included);
       w.factored = false;
-      return advance(system, x, h, w, true);
+      return advance(system, x, h, w, effort + 1);
     }
     if (report.result != NewtonResult::converged) detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
     // the last correction moved dq: bring q to it

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <polybody/math/types.hpp>
 
@@ -32,16 +33,19 @@ struct NewtonReport {
 ///   bool evaluate()     the right-hand side at the iterate; false when it is not finite
 ///   bool refactor()     the tangent there; false when it is singular
 ///   double solve()      the next correction; returns its scaled norm
-///   void apply()        adds it
+///   void apply()        adds it; or void apply(double part), which full Newton damps
 /// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
 /// Stops when θ/(1 − θ) ‖Δ‖ ≤ 1; fails after growing as often as `growths` says. Full Newton in a stiff direction contracts by turns
 /// (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate predicts the next correction:
-/// it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖.
+/// it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖. Where it would go in circles, as between a contact and none, half of a
+/// correction is enough: the part that is taken is halved when ‖Δ‖ exceeds the least one so far, and doubled when ‖Δ‖ shrinks by what
+/// that part explains.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
   NewtonReport report;
   double before = 0.0, earlier = 0.0;
   int grown = 0;
+  double part = 1.0, least = std::numeric_limits<double>::infinity();
   bool fresh = false;  // factored within this solve
   theta = std::pow(std::max(theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
   for (int k = 0; k < options.max_iterations; ++k) {
@@ -70,6 +74,12 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
     if (compare && before > 0.0) {
       theta = norm / before;
       report.theta = theta;
+      if (options.always_refactor) {
+        if (norm > least)
+          part *= 0.5;
+        else if (norm <= (1.1 - part) * before)
+          part = std::min(1.0, 2.0 * part);
+      }
       bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
       if (grows && norm > 1.0) {
         factored = false;
@@ -81,7 +91,11 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
         factored = false;
       }
     }
-    problem.apply();
+    if constexpr (requires { problem.apply(part); })
+      problem.apply(part);
+    else
+      problem.apply();
+    least = std::min(least, norm);
     earlier = before;
     before = norm;
     double const rate = std::min(theta, 0.99);

@@ -54,6 +54,22 @@ auto frames_of(detail::ForceEntry<F> const& e, Data<M, T> const& data) {
   return frames;
 }
 
+/// Calls visit(force, markers, frames) for the force elements of an entry: itself, or the pairs of a group that may act now. Markers are
+/// places among the entry's.
+template <class F, class M, StateScalar T, class Visit>
+void for_each_action(ForceEntry<F> const& e, Data<M, T> const& data, Visit&& visit) {
+  if constexpr (ForceGroup<F>) {
+    auto const frame = [&](Index k) -> Frame<T> const& { return data.markers[std::size_t(e.markers[std::size_t(k)])].frame; };
+    e.force.for_each_pair(frame, [&](Index i, Index j, auto const& law) {
+      visit(law, std::array<Index, 2>{i, j}, std::array<Frame<T>, 2>{frame(i), frame(j)});
+    });
+  } else {
+    std::array<Index, F::markers> all;
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = Index(k);
+    visit(e.force, all, frames_of(e, data));
+  }
+}
+
 /// λ of a joint: the multipliers of its rows, or what its policy answers to the gap.
 template <class J, int m, class M, StateScalar T>
 Vec<T, m> multiplier(JointEntry<J> const& e, Gap<m, T> const& gap, Data<M, T> const& data,
@@ -140,12 +156,14 @@ void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> 
   model.for_each_force([&](auto const& e) {
     using F = std::decay_t<decltype(e.force)>;
     double const scale = F::is_load ? load_factor : 1.0;
-    auto const wrenches = e.force.template wrenches<T>(detail::frames_of(e, data), t);
-    for (int k = 0; k < F::markers; ++k) {
-      Vec<T, 6> w;
-      w << wrenches[k].f, wrenches[k].m;
-      detail::add_pulled<T>(data.markers[std::size_t(e.markers[k])], w, -scale, r);
-    }
+    detail::for_each_action(e, data, [&](auto const& force, auto const& markers, auto const& frames) {
+      auto const wrenches = force.template wrenches<T>(frames, t);
+      for (std::size_t k = 0; k < markers.size(); ++k) {
+        Vec<T, 6> w;
+        w << wrenches[k].f, wrenches[k].m;
+        detail::add_pulled<T>(data.markers[std::size_t(e.markers[std::size_t(markers[k])])], w, -scale, r);
+      }
+    });
   });
 }
 

@@ -26,6 +26,7 @@ struct Data {
   typename M::template Gaps<T> gaps;        ///< waist 2, one for each joint
   std::vector<Wrench<double>> loads;        ///< per marker: what the tangent's second-order terms need
 
+  std::vector<Mat<double, 6, 6>> own_stiffness;  ///< per marker of the largest force group
   std::vector<double> scratch;              ///< for pulled blocks: n×18 and n×n of the widest marker
 
   Workers* workers = nullptr;               ///< threads that share the loops; none by default
@@ -54,6 +55,7 @@ struct Data {
       f.A = g.placement.axes.template cast<T>();
     }
     scratch.resize(std::size_t(widest * (widest + 18)));
+    model.for_each_force([&](auto const& e) { own_stiffness.resize(std::max(own_stiffness.size(), e.markers.size())); });
     detail::for_each_pool_beside(model.body_pools(), poses, [](auto const& pool, auto& x) { x.resize(pool.entries.size()); });
     detail::for_each_pool_beside(model.body_pools(), scratch_of_bodies, [](auto const& pool, auto& x) {
       for (auto const& e : pool.entries) x.emplace_back(e.body);

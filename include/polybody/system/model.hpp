@@ -5,7 +5,6 @@
 #include <atomic>
 #include <tuple>
 
-#include <polybody/forces/force_element.hpp>
 #include <polybody/forces/gravity.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/math/time_laws.hpp>
@@ -21,7 +20,7 @@ template <class BodyList, class JointList, class ForceList = Forces<>>
 class Model;
 
 /// `Model<Bodies<…>, Joints<…>, Forces<…>> model{Gravity{0, 0, -9.81}};` then `add`, `connect`, `apply`.
-template <Body... Bs, class... Js, ForceElement... Fs>
+template <Body... Bs, class... Js, AppliedForce... Fs>
   requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...>
 class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
@@ -45,6 +44,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   using Solution = detail::SolutionOf<typename Js::PolicyType...>;
   static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);
   static constexpr bool constant_mass = (Bs::constant_mass && ...);
+  static constexpr bool has_groups = (ForceGroup<Fs> || ...);  ///< of forces
 
   explicit Model(Gravity const& gravity = {}) : gravity_(gravity), serial_(next_serial()) {}
 
@@ -136,8 +136,10 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F, class... Ms>
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
-    static_assert(((Ms::observes >= F::needs) && ...),
-                  "This force needs more than the marker tells; a moment needs a marker with a frame or a tangent.");
+    static_assert([]<std::size_t... k>(std::index_sequence<k...>) {
+      return ((Ms::observes >= (k == 1 ? needs_of_second<F>() : F::needs)) && ...);
+    }(std::make_index_sequence<sizeof...(Ms)>{}),
+                  "This force needs more than the marker tells; a moment needs a marker with a frame or a tangent, a plane one with a frame.");
     auto& pool = std::get<std::vector<detail::ForceEntry<F>>>(forces_);
     name = detail::name_or_next(std::move(name), "force", pool.size());
     force.check("\"" + name + "\"");
@@ -150,6 +152,39 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     }, markers);
     pool.push_back(std::move(entry));
     return {serial_, Index(pool.size()) - 1, std::move(name)};
+  }
+
+  /// Applies a group of forces to its many markers; `oppose` brings the few in. \throws InvalidInput as `connect`.
+  template <OneOf<Fs...> F, class A>
+    requires ForceGroup<F>
+  ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
+    static_assert(Marker<A>::observes >= F::needs, "This force needs more than the marker tells.");
+    auto& pool = std::get<std::vector<detail::ForceEntry<F>>>(forces_);
+    name = detail::name_or_next(std::move(name), "group", pool.size());
+    group.check("\"" + name + "\"");
+    detail::ForceEntry<F> entry{group, {}, name};
+    for (Marker<A> const& m : many) {
+      require_own(m.model, name);
+      detail::require_told(m, F::needs, name);
+    }
+    for (Marker<A> const& m : many) entry.markers.push_back(publish_at(m, Mat3::Identity()));
+    entry.force.set_many(Index(many.size()));
+    pool.push_back(std::move(entry));
+    return {serial_, Index(pool.size()) - 1, std::move(name)};
+  }
+  /// One of the few that act on all of the many, by one of the group's laws. \throws InvalidInput as `connect`.
+  template <OneOf<Fs...> F, class Law, class A>
+    requires ForceGroup<F>
+  void oppose(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
+    static_assert(Marker<A>::observes >= needs_of_second<Law>(), "This force needs more than the marker tells.");
+    require_own(group.model, group.name);
+    require_own(one.model, group.name);
+    auto& entry = std::get<std::vector<detail::ForceEntry<F>>>(forces_)[std::size_t(group.index)];
+    name = detail::name_or_next(std::move(name), "opponent", entry.markers.size() - std::size_t(entry.force.many()));
+    law.check("\"" + group.name + "\", \"" + name + "\"");
+    detail::require_told(one, Law::needs, group.name);
+    entry.markers.push_back(publish_at(one, Mat3::Identity()));
+    entry.force.oppose(law, Index(entry.markers.size()) - 1, std::move(name));
   }
 
   /// The undeformed model as placed, at rest, t = 0.
@@ -197,6 +232,11 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   auto const& entry(ElementHandle<J> const& handle) const {
     require_own(handle.model, handle.name);
     return std::get<std::vector<detail::JointEntry<J>>>(joints_)[std::size_t(handle.index)];
+  }
+  template <OneOf<Fs...> F>
+  auto const& entry(ElementHandle<F> const& handle) const {
+    require_own(handle.model, handle.name);
+    return std::get<std::vector<detail::ForceEntry<F>>>(forces_)[std::size_t(handle.index)];
   }
   /// Index of a joint's type among the model's joint types.
   template <OneOf<Js...> J>

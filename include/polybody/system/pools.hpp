@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <polybody/bodies/body.hpp>
+#include <polybody/forces/force_group.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/kinematics/marker.hpp>
@@ -71,7 +72,13 @@ struct JointEntry {
 template <class F>
 struct ForceEntry {
   F force;
-  std::array<Index, F::markers> markers;
+  std::array<Index, F::markers> markers;  ///< published
+  std::string name;
+};
+template <ForceGroup F>
+struct ForceEntry<F> {
+  F force;
+  std::vector<Index> markers;
   std::string name;
 };
 

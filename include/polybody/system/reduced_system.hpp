@@ -16,6 +16,7 @@ namespace polybody {
 template <class M>
 struct Reduced {
   static constexpr bool may_have_rows = M::may_have_rows;
+  static constexpr bool has_groups = M::has_groups;
   static constexpr bool constant_mass = M::constant_mass && std::is_void_v<typename M::Solution>;
   static constexpr bool solved_by_bodies = std::is_same_v<typename M::Solution, recursive::ArticulatedBody>;
 };

@@ -335,6 +335,7 @@ class StepSecants {
   void add_force(System<M> const& system, Entry const& e, VecX& r) const {
     using F = std::decay_t<decltype(e.force)>;
     constexpr int n = F::markers;
+    static_assert(!ForceGroup<F>, "A step that conserves energy takes no force groups. Use GeneralizedAlpha.");
     static_assert(HasSecantPotential<F> || !HasPotential<F>,
                   "A step that conserves energy asks a force's potential on secants: let potential(frames, t) be a template on the "
                   "scalar of the frames.");

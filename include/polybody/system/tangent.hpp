@@ -13,6 +13,7 @@ struct TangentCoefficients {
   double mass = 0.0;
   double damping = 0.0;
   double stiffness = 0.0;
+  bool stand_ins = true;  ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
 };
 
 /// Terms ∂(Gᵀλ)/∂q and ∂(Jᵀw)/∂q: a time step may leave them out while Newton contracts; statics may not.
@@ -137,25 +138,73 @@ void add_pulled_slope(Published<double> const& a, Published<double> const& b, Ma
 
 }  // namespace detail
 
+namespace detail {
+/// What acts on the markers of a pair is told to `load`, times −scale.
+template <class Law, class Load>
+void load_pair(Law const& law, std::array<Index, 2> const& markers, std::array<Frame<double>, 2> const& frames, double t, double scale, Load&& load) {
+  auto const wrenches = law.template wrenches<double>(frames, t);
+  for (std::size_t k = 0; k < 2; ++k) {
+    Vec6 w;
+    w << wrenches[k].f, wrenches[k].m;
+    load(markers[k], -scale * w);
+  }
+}
+
+/// sink += what each marker of a group feels of its own motion alone, block by block, zero where nothing acts; with stand-ins by a
+/// law's `own_stiffness` where it has one. For statics and linearisation, which ask for all second-order terms and no mass, the exact
+/// gradient with what couples the pairs, all that may ever act.
+template <class F, class M, class Sink, class Load>
+void add_group_tangent(ForceEntry<F> const& e, double t, double scale, TangentCoefficients const& c, bool full, Data<M, double>& data,
+                       Sink& sink, Load&& load) {
+  if (full && c.mass == 0.0) {
+    e.force.for_each_candidate([&](Index i, Index j, auto const& law) {
+      std::array<Index, 2> const places = {e.markers[std::size_t(i)], e.markers[std::size_t(j)]};
+      std::array<Published<double> const*, 2> const markers = {&data.markers[std::size_t(places[0])], &data.markers[std::size_t(places[1])]};
+      std::array<Frame<double>, 2> const frames = {markers[0]->frame, markers[1]->frame};
+      add_pulled_pairs<2>(markers, -scale * wrench_gradient(law, frames, t, c.stiffness, c.damping), true, data.scratch, sink);
+      load_pair(law, places, frames, t, scale, load);
+    });
+    return;
+  }
+  auto& own = data.own_stiffness;
+  std::fill_n(own.begin(), e.markers.size(), Mat<double, 6, 6>::Zero());
+  for_each_action(e, data, [&](auto const& law, auto const& markers, auto const& frames) {
+    std::size_t const i = std::size_t(markers[0]), j = std::size_t(markers[1]);
+    if (full) load_pair(law, {e.markers[i], e.markers[j]}, frames, t, scale, load);
+    if constexpr (HasOwnStiffness<std::decay_t<decltype(law)>>)
+      if (c.stand_ins) return law.own_stiffness(frames, c.stiffness, c.damping, own[i], own[j]);
+    auto const s = wrench_gradient(law, frames, t, c.stiffness, c.damping);
+    own[i] -= s.template topLeftCorner<6, 6>();
+    own[j] -= s.template bottomRightCorner<6, 6>();
+  });
+  for (std::size_t k = 0; k < e.markers.size(); ++k)
+    add_pulled_pairs<1>({&data.markers[std::size_t(e.markers[k])]}, scale * own[k], true, data.scratch, sink);
+}
+}  // namespace detail
+
 /// sink += K and D of the force elements; `load(marker, wrench)` hears what acts where second-order terms are wanted.
 template <class M, TangentSink Sink, class Load>
 void add_force_tangents(M const& model, double t, double load_factor, TangentCoefficients const& c, bool full,
                         Data<M, double>& data, Sink& sink, Load&& load) {
   model.for_each_force([&](auto const& e) {
     using F = std::decay_t<decltype(e.force)>;
-    constexpr int n = F::markers;
     double const scale = F::is_load ? load_factor : 1.0;
-    auto const frames = detail::frames_of(e, data);
-    std::array<Published<double> const*, std::size_t(n)> markers;
-    for (int k = 0; k < n; ++k) markers[std::size_t(k)] = &data.markers[std::size_t(e.markers[k])];
-    Mat<double, 6 * n, 6 * n> const s = -scale * wrench_gradient(e.force, frames, t, c.stiffness, c.damping);
-    detail::add_pulled_pairs<n>(markers, s, full || couples_bodies<F>(), data.scratch, sink);
-    if (full) {
-      auto const wrenches = e.force.template wrenches<double>(frames, t);
-      for (int k = 0; k < n; ++k) {
-        Vec6 w;
-        w << wrenches[k].f, wrenches[k].m;
-        load(e.markers[k], -scale * w);
+    if constexpr (ForceGroup<F>) {
+      detail::add_group_tangent(e, t, scale, c, full, data, sink, load);
+    } else {
+      constexpr int n = F::markers;
+      auto const frames = detail::frames_of(e, data);
+      std::array<Published<double> const*, std::size_t(n)> markers;
+      for (int k = 0; k < n; ++k) markers[std::size_t(k)] = &data.markers[std::size_t(e.markers[k])];
+      Mat<double, 6 * n, 6 * n> const s = -scale * wrench_gradient(e.force, frames, t, c.stiffness, c.damping);
+      detail::add_pulled_pairs<n>(markers, s, full || couples_bodies<F>(), data.scratch, sink);
+      if (full) {
+        auto const wrenches = e.force.template wrenches<double>(frames, t);
+        for (int k = 0; k < n; ++k) {
+          Vec6 w;
+          w << wrenches[k].f, wrenches[k].m;
+          load(e.markers[k], -scale * w);
+        }
       }
     }
   });

@@ -1,0 +1,45 @@
+#pragma once
+#include <polybody/forces/force_element.hpp>
+
+namespace polybody {
+
+/// Spring, damper and preload along an axis that is fixed in the first body: with s how far marker b stands along it from marker a,
+/// a pushes b by −(k s + c ṡ + P) along the axis, and b pushes back. For what slides in a guide, such as the tensioner of a track.
+struct AxialSpring {
+  static constexpr int markers = 2;
+  static constexpr bool is_load = false;
+  static constexpr Observes needs = Observes::point;
+
+  Required<double> stiffness;  ///< k [N/m]
+  double damping = 0.0;        ///< c [N s/m]
+  double preload = 0.0;        ///< P [N], at s = 0
+  Vec3 axis = Vec3::UnitX();   ///< (3) unit vector in the axes of marker a's body
+
+  void check(std::string const& name) const {
+    require_not_negative(stiffness, name + ": the spring stiffness");
+    require_not_negative(damping, name + ": the damping");
+    if (!std::isfinite(preload)) throw InvalidInput(name + ": the preload must be finite, but is " + number(preload) + ".");
+    require_unit(axis, name + ": the axis");
+  }
+
+  /// With d = r_b − r_a and e the axis: s = e·d, ṡ = e·(ḋ − ω_a × d). The pair acts at r_b, so on a it has the moment d × f_a.
+  template <StateScalar T>
+  std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, double) const {
+    Vec<T, 3> const e = f[0].A * axis.template cast<T>(), d = f[1].r - f[0].r;
+    T const s = e.dot(d), rate = e.dot(f[1].v - f[0].v - f[0].w.cross(d));
+    std::array<Wrench<T>, 2> w;
+    w[0].f = e * (s * stiffness.value + rate * damping + preload);
+    w[0].m = d.cross(w[0].f);
+    w[1].f = -w[0].f;
+    return w;
+  }
+  template <StateScalar T>
+  T potential(std::array<Frame<T>, 2> const& f, double) const {
+    T const s = (f[0].A * axis.template cast<T>()).dot(f[1].r - f[0].r);
+    return s * (s * (0.5 * stiffness) + preload);
+  }
+};
+
+static_assert(ForceElement<AxialSpring> && HasPotential<AxialSpring>);
+
+}  // namespace polybody

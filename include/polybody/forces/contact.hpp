@@ -1,0 +1,233 @@
+#pragma once
+/// \file
+/// Contact between two markers: a geometry that says where they overlap, a normal force and friction.
+
+#include <polybody/forces/force_group.hpp>
+#include <polybody/forces/normal_force.hpp>
+
+namespace polybody {
+
+/// Where one face of a body hands over to the next, they share a contact: each has its part of the force and of what it stores. Parts
+/// that change store and give back too, which takes the force −(∫N dd) ∂share/∂place on a, and the opposite on b.
+template <StateScalar T>
+struct Handover {
+  T share = T(1.0);
+  Vec<T, 3> slope = Vec<T, 3>::Zero();  ///< (3) ∂share/∂place [1/m], place moving with a
+  Vec<T, 3> place = Vec<T, 3>::Zero();  ///< (3) [m]
+};
+
+/// A point where body a and body b overlap.
+template <StateScalar T>
+struct ContactPoint {
+  Vec<T, 3> place;   ///< (3) where the force acts, world axes [m]
+  Vec<T, 3> normal;  ///< (3) unit vector from b to a
+  T depth;           ///< d > 0 [m]
+  Handover<T> handover = {};
+};
+
+namespace detail {
+struct AnyPoint {
+  void operator()(ContactPoint<double> const& point) const;
+};
+}  // namespace detail
+
+/// Calls visit(point) for every point where the shapes at frames a and b overlap. `may_touch` is a cheap bound: false only where
+/// they surely do not.
+template <class G>
+concept ContactGeometry = requires(G const geometry, Frame<double> const a, Frame<double> const b, std::string const name) {
+  { G::needs } -> std::convertible_to<Observes>;
+  { geometry.may_touch(a, b) } -> std::same_as<bool>;
+  geometry.template for_each_point<double>(a, b, detail::AnyPoint{});
+  geometry.check(name);
+};
+
+/// Coulomb's friction, regularised: −μ N v/√(v² + v_s²) at the sliding velocity v. What would stick creeps, at less than v_s.
+struct Friction {
+  double coefficient = 0.0;  ///< μ
+  double slip_speed = 0.0;   ///< v_s [m/s], positive where μ is
+
+  void check(std::string const& name) const {
+    require_not_negative(coefficient, name + ": the coefficient of friction");
+    if (coefficient > 0.0) require_positive(slip_speed, name + ": the slip speed of the friction");
+  }
+};
+
+/// On a at each point the force N n + F_t, F_t the friction; on b the opposite. The point moves with either body as if it were
+/// fixed to it.
+template <ContactGeometry G, NormalForce N = SpringDamperContact>
+struct Contact {
+  using Geometry = G;
+  static constexpr int markers = 2;
+  static constexpr bool is_load = false;
+  static constexpr Observes needs = G::needs;
+  static constexpr Observes needs_of_second = [] {
+    if constexpr (requires { G::needs_of_second; })
+      return G::needs_of_second;
+    else
+      return G::needs;
+  }();
+
+  G geometry;
+  N normal;
+  Friction friction = {};
+
+  void check(std::string const& name) const {
+    geometry.check(name);
+    normal.check(name);
+    friction.check(name);
+  }
+  bool may_touch(Frame<double> const& a, Frame<double> const& b) const { return geometry.may_touch(a, b); }
+
+  /// Calls visit(point, v, N) for every point, v the velocity of a relative to b there.
+  template <StateScalar T, class Visit>
+  void for_each_point(std::array<Frame<T>, 2> const& f, Visit&& visit) const {
+    geometry.template for_each_point<T>(f[0], f[1], [&](ContactPoint<T> const& p) {
+      Vec<T, 3> const v = (f[0].v + f[0].w.cross(p.place - f[0].r)) - (f[1].v + f[1].w.cross(p.place - f[1].r));
+      visit(p, v, T(normal.template force<T>(p.depth, -v.dot(p.normal)) * p.handover.share));
+    });
+  }
+
+  /// The force on a at a point.
+  template <StateScalar T>
+  Vec<T, 3> force_at(ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) const {
+    using std::sqrt;
+    Vec<T, 3> force = p.normal * n;
+    if (friction.coefficient > 0.0) {
+      Vec<T, 3> const slip = v - p.normal * v.dot(p.normal);
+      T const speed2 = slip.squaredNorm() + friction.slip_speed * friction.slip_speed;
+      force -= slip * (n * friction.coefficient / sqrt(speed2));
+    }
+    return force;
+  }
+
+  template <StateScalar T>
+  std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, double) const {
+    std::array<Wrench<T>, 2> w;
+    auto const act = [&](Vec<T, 3> const& force, Vec<T, 3> const& place) {
+      w[0].f += force;
+      w[1].f -= force;
+      w[0].m += (place - f[0].r).cross(force);
+      w[1].m -= (place - f[1].r).cross(force);
+    };
+    for_each_point(f, [&](ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) {
+      if (value_of(n) > 0.0) act(force_at(p, v, n), p.place);
+      if (value_of(p.handover.share) < 1.0) act(p.handover.slope * -normal.template potential<T>(p.depth), p.handover.place);
+    });
+    return w;
+  }
+
+  /// Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J at each point, J = [1, −ρ×], ρ from the marker to the point, N′ the normal force's slope. For
+  /// F′ the chord of the friction, μ N/√(v² + v_s²), stands in place of its slope: never less than that, and so Newton's method
+  /// does not jump back and forth across v = 0 but comes from one side. What turns n, how N changes F_t and handovers are left out.
+  void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a, Mat<double, 6, 6>& of_b) const {
+    for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {
+      if (n <= 0.0) return;
+      double const across = normal.slope(p.depth, -v.dot(p.normal), ck, cd) * p.handover.share;
+      double along = 0.0;
+      if (friction.coefficient > 0.0) {
+        double const vn = v.dot(p.normal), speed2 = v.squaredNorm() - vn * vn;
+        along = cd * friction.coefficient * n / std::sqrt(speed2 + friction.slip_speed * friction.slip_speed);
+      }
+      add(p, across, along, f[0].r, of_a);
+      add(p, across, along, f[1].r, of_b);
+    });
+  }
+
+  double potential(std::array<Frame<double>, 2> const& f, double) const {
+    double sum = 0.0;
+    geometry.template for_each_point<double>(f[0], f[1], [&](ContactPoint<double> const& p) { sum += normal.template potential<double>(p.depth) * p.handover.share; });
+    return sum;
+  }
+
+ private:
+  static void add(ContactPoint<double> const& p, double across, double along, Vec3 const& origin, Mat<double, 6, 6>& sum) {
+    Vec3 const rho = p.place - origin, m = rho.cross(p.normal);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        double const d = across - along;
+        sum(i, j) += d * p.normal[i] * p.normal[j] + (i == j ? along : 0.0);
+        sum(3 + i, j) += d * m[i] * p.normal[j];
+        sum(i, 3 + j) += d * p.normal[i] * m[j];
+        sum(3 + i, 3 + j) += d * m[i] * m[j] + along * ((i == j ? rho.squaredNorm() : 0.0) - rho[i] * rho[j]);
+      }
+    // [1, −ρ×]ᵀ[1, −ρ×] has −ρ× above and ρ× below the diagonal
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, k = (i + 2) % 3;
+      sum(i, 3 + j) += along * rho[k];
+      sum(i, 3 + k) -= along * rho[j];
+      sum(3 + j, i) += along * rho[k];
+      sum(3 + k, i) -= along * rho[j];
+    }
+  }
+};
+
+/// A sphere of this radius about marker a on the plane z = 0 of marker b, on the side of positive z.
+struct SphereOnPlane {
+  static constexpr Observes needs = Observes::point;
+  static constexpr Observes needs_of_second = Observes::frame;
+  Required<double> radius;  ///< [m]
+
+  void check(std::string const& name) const { require_not_negative(radius, name + ": the sphere's radius"); }
+  bool may_touch(Frame<double> const& a, Frame<double> const& b) const { return (a.r - b.r).dot(b.A.col(2)) < radius; }
+  template <StateScalar T, class Visit>
+  void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
+    Vec<T, 3> const n = b.A.col(2);
+    T const depth = T(radius.value) - (a.r - b.r).dot(n);
+    if (value_of(depth) > 0.0) visit(ContactPoint<T>{a.r - n * T(radius.value), n, depth});
+  }
+};
+
+/// Spheres about both markers. Concentric ones have no normal.
+struct SphereOnSphere {
+  static constexpr Observes needs = Observes::point;
+  Required<double> radius_a;  ///< [m]
+  Required<double> radius_b;  ///< [m]
+
+  void check(std::string const& name) const {
+    require_not_negative(radius_a, name + ": the radius of the first sphere");
+    require_not_negative(radius_b, name + ": the radius of the second sphere");
+  }
+  bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
+    double const reach = radius_a + radius_b;
+    return (a.r - b.r).squaredNorm() < reach * reach;
+  }
+  template <StateScalar T, class Visit>
+  void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
+    using std::sqrt;
+    Vec<T, 3> const line = a.r - b.r;
+    T const distance = sqrt(line.squaredNorm()), depth = T(radius_a + radius_b) - distance;
+    if (!(value_of(depth) > 0.0) || value_of(distance) == 0.0) return;
+    Vec<T, 3> const n = line / distance;
+    visit(ContactPoint<T>{b.r + n * (T(radius_b.value) - depth * 0.5), n, depth});
+  }
+};
+
+/// A sphere of this radius about marker a on a cylinder about the z axis of marker b, from outside; radius zero for points of a belt.
+struct SphereOnCylinder {
+  static constexpr Observes needs = Observes::point;
+  static constexpr Observes needs_of_second = Observes::frame;
+  Required<double> radius;    ///< of the sphere [m]
+  Required<double> cylinder;  ///< radius of the cylinder [m]
+
+  void check(std::string const& name) const {
+    require_not_negative(radius, name + ": the sphere's radius");
+    require_positive(cylinder, name + ": the cylinder's radius");
+  }
+  bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
+    double const reach = radius + cylinder, along = (a.r - b.r).dot(b.A.col(2));
+    return (a.r - b.r).squaredNorm() - along * along < reach * reach;
+  }
+  template <StateScalar T, class Visit>
+  void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
+    using std::sqrt;
+    Vec<T, 3> const axis = b.A.col(2), arm = a.r - b.r, line = arm - axis * arm.dot(axis);
+    T const distance = sqrt(line.squaredNorm()), depth = T(radius + cylinder) - distance;
+    if (!(value_of(depth) > 0.0) || value_of(distance) == 0.0) return;
+    Vec<T, 3> const n = line / distance;
+    visit(ContactPoint<T>{a.r - n * T(radius.value), n, depth});
+  }
+};
+
+static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<SphereOnPlane>> && HasPotential<Contact<SphereOnSphere>>);
+
+}  // namespace polybody

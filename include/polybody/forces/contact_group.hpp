@@ -1,0 +1,72 @@
+#pragma once
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+#include <polybody/forces/force_group.hpp>
+
+namespace polybody {
+
+/// Contacts between many bodies and a few: links of a track and what it runs over, balls and walls.
+///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
+///   model.oppose(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
+/// A law is a force element of two markers, of the many the first, of the few the second. Before, `may_touch(first, second)` is
+/// asked for every pair; it should cost little more than a distance.
+template <ForceElement... Laws>
+  requires((Laws::markers == 2) && ...)
+class ContactGroup {
+ public:
+  static constexpr int markers = any_number;
+  static constexpr bool is_load = false;
+  static constexpr Observes needs = std::max({Laws::needs...});
+
+  /// One of the few.
+  template <class Law>
+  struct Opponent {
+    Law law;
+    Index marker;  ///< among the group's
+    std::string name;
+  };
+
+  /// How many of the first markers are the many. The model says so.
+  void set_many(Index count) { many_ = count; }
+  Index many() const { return many_; }
+
+  template <class Law>
+    requires(std::is_same_v<Law, Laws> || ...)
+  void oppose(Law const& law, Index marker, std::string name) {
+    std::get<std::vector<Opponent<Law>>>(few_).push_back({law, marker, std::move(name)});
+  }
+
+  void check(std::string const& name) const {
+    for_each_opponent([&](auto const& few) { few.law.check(name); });
+  }
+
+  template <class F>
+  void for_each_opponent(F&& f) const {
+    std::apply([&](auto const&... few) { (each_of(few, f), ...); }, few_);
+  }
+
+  template <class Visit>
+  void for_each_candidate(Visit&& visit) const {
+    for (Index i = 0; i < many_; ++i) for_each_opponent([&](auto const& few) { visit(i, few.marker, few.law); });
+  }
+  template <class FrameOf, class Visit>
+  void for_each_pair(FrameOf&& frame, Visit&& visit) const {
+    for (Index i = 0; i < many_; ++i)
+      for_each_opponent([&](auto const& few) {
+        if (few.law.may_touch(frame(i), frame(few.marker))) visit(i, few.marker, few.law);
+      });
+  }
+
+ private:
+  template <class Few, class F>
+  static void each_of(Few const& few, F& f) {
+    for (auto const& one : few) f(one);
+  }
+
+  std::tuple<std::vector<Opponent<Laws>>...> few_;
+  Index many_ = 0;
+};
+
+}  // namespace polybody

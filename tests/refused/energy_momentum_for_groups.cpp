@@ -1,0 +1,13 @@
+// refused: A step that conserves energy takes no force groups
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/forces/contact.hpp>
+#include <polybody/forces/contact_group.hpp>
+#include <polybody/integrators/energy_momentum.hpp>
+
+using namespace polybody;
+using Group = ContactGroup<Contact<SphereOnSphere>>;
+
+void run(Model<Bodies<planar::Rigid>, Joints<>, Forces<Group>> const& model, State& x) {
+  simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 1e-3}).run();
+}

@@ -1,0 +1,12 @@
+// refused: This force needs more than the marker tells
+#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/forces/contact.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+using OnPlane = Contact<SphereOnPlane>;
+
+// A cable does not know how it turns about its tangent, so it has no plane.
+void apply(Model<Bodies<AncfCable<>>, Joints<>, Forces<OnPlane>>& model, BodyHandle<AncfCable<>> const& cable, OnPlane const& contact) {
+  model.apply(contact, model.ground().at({0, 0, 0}), cable.at(0.5));
+}

@@ -1,0 +1,399 @@
+#pragma once
+/// \file
+/// The laws that every contact geometry obeys, alone and with a normal force and friction. A case says where bodies touch:
+///
+///     struct SphereOnPlaneCase {
+///       static SphereOnPlane geometry();
+///       static constexpr double radius;                                      // of the shape about marker a
+///       static Vec3 centre(Numbers&, Frame<double> const& b, double depth);  // where a stands to overlap by depth
+///       static Mat3 turning(Frame<double> const& a, Frame<double> const& b); // ∂n/∂r_a [1/m]
+///     };
+///     bool const obeyed = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <polybody/forces/contact.hpp>
+
+#include "support/force_differences.hpp"
+#include "support/laws.hpp"
+
+namespace polybody {
+
+using Touching = std::array<Frame<double>, 2>;
+
+/// The one point where the shapes overlap; a test failure where there is none or more.
+template <StateScalar T, class G>
+ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b) {
+  ContactPoint<T> found;
+  int count = 0;
+  geometry.template for_each_point<T>(a, b, [&](ContactPoint<T> const& p) {
+    found = p;
+    ++count;
+  });
+  EXPECT_EQ(count, 1);
+  return found;
+}
+template <class G>
+bool touch(G const& geometry, Touching const& f) {
+  int count = 0;
+  geometry.template for_each_point<double>(f[0], f[1], [&](ContactPoint<double> const&) { ++count; });
+  return count > 0;
+}
+
+template <class Case>
+struct ContactLaws {
+  static constexpr char const* suite = "ContactLaws";
+  using G = decltype(Case::geometry());
+  using Elastic = Contact<G, HertzContact>;
+  G const geometry = Case::geometry();
+  Numbers number;
+
+  /// Bodies that overlap by `depth`, turned anyhow, moving at about a metre a second.
+  Touching overlapping(double depth) {
+    Touching f{number.frame(), number.frame()};
+    f[0].r = Case::centre(number, f[1], depth);
+    return f;
+  }
+  Touching at_rest(double depth) {
+    Touching f = overlapping(depth);
+    for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
+    return f;
+  }
+  /// The velocity of a relative to b at the point.
+  static Vec3 relative(ContactPoint<double> const& p, Touching const& f) {
+    return f[0].v + f[0].w.cross(p.place - f[0].r) - f[1].v - f[1].w.cross(p.place - f[1].r);
+  }
+  template <class Law>
+  static Law with(Law law, double coefficient = 0.4) {
+    law.friction = {.coefficient = coefficient, .slip_speed = 0.3};
+    return law;
+  }
+  Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }
+  /// Calls visit(contact) for each normal force, without friction; none of them lets go of bodies that part as these do.
+  template <class Visit>
+  void with_each_contact(Visit&& visit) const {
+    visit(Contact<G>{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}});
+    visit(elastic());
+    visit(Contact<G, HuntCrossleyContact>{.geometry = geometry, .normal = {.stiffness = 4e3, .damping = 0.05}});
+  }
+  template <class Law>
+  static std::array<Mat<double, 6, 6>, 2> own(Law const& law, Touching const& f, double ck, double cd) {
+    std::array<Mat<double, 6, 6>, 2> k{Mat<double, 6, 6>::Zero(), Mat<double, 6, 6>::Zero()};
+    law.own_stiffness(f, ck, cd, k[0], k[1]);
+    return k;
+  }
+  /// What `own_stiffness` stands for.
+  template <class Law>
+  static std::array<Mat<double, 6, 6>, 2> exact(Law const& law, Touching const& f, double ck, double cd) {
+    Mat<double, 12, 12> const k = -wrench_gradient(law, f, 0.0, ck, cd);
+    return {k.template topLeftCorner<6, 6>(), k.template bottomRightCorner<6, 6>()};
+  }
+  static double smallest_eigenvalue(Mat<double, 6, 6> const& m) {
+    return Eigen::SelfAdjointEigenSolver<Mat<double, 6, 6>>(m).eigenvalues()[0];
+  }
+
+  // --- the geometry -------------------------------------------------------------------------------------------
+
+  void touches_at_the_depth_it_is_given() {
+    for (double const depth : {1e-9, 0.01, 0.1}) {
+      Touching const f = overlapping(depth);
+      ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
+      EXPECT_NEAR(p.depth, depth, 1e-14);
+      EXPECT_NEAR(p.normal.norm(), 1.0, 1e-14);
+      // the point lies on the line through a's centre, where both shapes are
+      Vec3 const arm = f[0].r - p.place;
+      EXPECT_LT(arm.cross(p.normal).norm(), 1e-14);
+      EXPECT_LE(arm.dot(p.normal), Case::radius + 1e-14);
+      EXPECT_GE(arm.dot(p.normal), Case::radius - depth - 1e-14);
+    }
+  }
+
+  void normal_is_the_slope_of_the_depth() {
+    for (int k = 0; k < 4; ++k) {
+      Touching const f = overlapping(0.1);
+      ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
+      // moving a by δ along n makes the overlap less by δ, however large δ is
+      for (double const delta : {0.05, 1e-4, -0.03}) {
+        Frame<double> apart = f[0];
+        apart.r += delta * p.normal;
+        EXPECT_NEAR(point_of(geometry, apart, f[1]).depth, p.depth - delta, 1e-14);
+      }
+      // every motion of a and b, by dual numbers: that of the body's point at the place of contact, along n
+      using D = Dual<12>;
+      Vec<D, 6> of_a, of_b;
+      for (int i = 0; i < 6; ++i) {
+        of_a[i] = D::variable(0.0, i);
+        of_b[i] = D::variable(0.0, 6 + i);
+      }
+      D const depth = point_of<D>(geometry, moved<D>(f[0], of_a), moved<D>(f[1], of_b)).depth;
+      Vec<double, 12> expected;
+      expected << -p.normal, -(p.place - f[0].r).cross(p.normal), p.normal, (p.place - f[1].r).cross(p.normal);
+      EXPECT_LT((depth.d.matrix() - expected).norm(), 1e-13);
+      // … and by differences
+      double const rate = slope_at_zero([&](double t) { return point_of(geometry, later(f[0], t), later(f[1], t)).depth; }, 1e-4);
+      EXPECT_NEAR(rate, -p.normal.dot(relative(p, f)), 1e-9);
+    }
+  }
+
+  void normal_turns_as_the_shapes_are_curved() {
+    for (int k = 0; k < 4; ++k) {
+      Touching const f = overlapping(0.05);
+      using D = Dual<3>;
+      Vec<D, 6> of_a = Vec<D, 6>::Zero();
+      for (int i = 0; i < 3; ++i) of_a[i] = D::variable(0.0, i);
+      ContactPoint<D> const p = point_of<D>(geometry, moved<D>(f[0], of_a), moved<D>(f[1], Vec<D, 6>::Zero()));
+      Mat3 turning;
+      for (int i = 0; i < 3; ++i) turning.row(i) = p.normal[i].d.matrix().transpose();
+      EXPECT_LT((turning - Case::turning(f[0], f[1])).norm(), 1e-13);
+    }
+  }
+
+  void may_touch_is_false_only_where_nothing_touches() {
+    int touching = 0, apart = 0;
+    for (int k = 0; k < 2000; ++k) {
+      Touching const f = {number.frame(), number.frame()};
+      bool const touched = touch(geometry, f);
+      touching += touched;
+      if (!geometry.may_touch(f[0], f[1])) {
+        EXPECT_FALSE(touched);
+        ++apart;
+      }
+    }
+    EXPECT_GT(touching, 20);
+    EXPECT_GT(apart, 200);
+    for (int k = 0; k < 20; ++k) {
+      Touching const near = overlapping(1e-12), far = overlapping(-1.0);
+      EXPECT_TRUE(geometry.may_touch(near[0], near[1]));
+      EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // or it would be of no use
+    }
+  }
+
+  // --- the contact --------------------------------------------------------------------------------------------
+
+  void action_is_reaction() {
+    with_each_contact([&](auto const& contact) {
+      Touching const f = overlapping(0.1);
+      auto const w = with(contact).template wrenches<double>(f, 0.0);
+      double const size = w[0].f.norm();
+      EXPECT_GT(size, 1.0);
+      EXPECT_LT((w[0].f + w[1].f).norm(), 1e-14 * size);
+      Vec3 const moment = w[0].m + f[0].r.cross(w[0].f) + w[1].m + f[1].r.cross(w[1].f);  // about the world's origin
+      EXPECT_LT(moment.norm(), 1e-13 * size);
+    });
+  }
+
+  void presses_by_the_law_at_the_depth_and_its_rate() {
+    with_each_contact([&](auto const& contact) {
+      Touching const f = overlapping(0.1);
+      ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
+      double const n = contact.normal.force(p.depth, -p.normal.dot(relative(p, f)));
+      auto const w = contact.template wrenches<double>(f, 0.0);
+      EXPECT_LT((w[0].f - n * p.normal).norm(), 1e-13 * n);
+      EXPECT_LT((w[0].m - (p.place - f[0].r).cross(w[0].f)).norm(), 1e-13 * n);
+      EXPECT_EQ(contact.potential(f, 0.0), contact.normal.potential(p.depth));
+    });
+  }
+
+  void rigid_motion_of_both_turns_the_wrench() {
+    with_each_contact([&](auto const& contact) {
+      auto const rough = with(contact);
+      Touching f = overlapping(0.1), turned = f;
+      Mat3 const turn = exp_so3<double>(number.template vec<3>());
+      Vec3 const shift = number.template vec<3>(), v = number.template vec<3>(), omega = number.template vec<3>(3.0);
+      for (Frame<double>& x : turned) {
+        x = carried(x, turn, shift);
+        x.v += v + omega.cross(x.r);  // the world may turn and drift, too
+        x.w += omega;
+      }
+      auto const before = rough.template wrenches<double>(f, 0.0), after = rough.template wrenches<double>(turned, 0.0);
+      double const size = before[0].f.norm();
+      EXPECT_GT(size, 1.0);
+      for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_LT((after[k].f - turn * before[k].f).norm(), 1e-12 * size);
+        EXPECT_LT((after[k].m - turn * before[k].m).norm(), 1e-12 * size);
+      }
+    });
+  }
+
+  void friction_opposes_sliding_and_takes_power() {
+    for (double const mu : {0.1, 0.4, 1.3}) {
+      Touching const f = overlapping(0.1);
+      Elastic const rough = with(elastic(), mu);
+      ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
+      Vec3 const v = relative(p, f), slip = v - v.dot(p.normal) * p.normal;
+      auto const w = rough.template wrenches<double>(f, 0.0), smooth = elastic().template wrenches<double>(f, 0.0);
+      Vec3 const tangential = w[0].f - smooth[0].f;
+      double const n = smooth[0].f.norm(), speed = slip.norm();
+      EXPECT_GT(speed, 0.05);
+      EXPECT_LT(std::abs(tangential.dot(p.normal)), 1e-13 * n);
+      EXPECT_LT(tangential.norm(), mu * n);
+      EXPECT_LT((tangential + mu * n * slip / std::sqrt(speed * speed + 0.3 * 0.3)).norm(), 1e-13 * n);
+      // power of both wrenches: what the overlap gives back, −U̇, and what sliding takes
+      double power = 0.0;
+      for (std::size_t k = 0; k < 2; ++k) power += w[k].f.dot(f[k].v) + w[k].m.dot(f[k].w);
+      auto const stored = [&](double t) { return rough.potential({later(f[0], t), later(f[1], t)}, 0.0); };
+      double const taken = power + slope_at_zero(stored, 1e-4);
+      EXPECT_LT(taken, 0.0);
+      EXPECT_NEAR(taken, tangential.dot(slip), 1e-9 * std::abs(power));
+    }
+  }
+
+  void damping_takes_power() {
+    Contact<G> const damped{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}};
+    for (int k = 0; k < 5; ++k) {
+      Touching const f = overlapping(0.1);
+      auto const w = damped.template wrenches<double>(f, 0.0);
+      ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
+      double const rate = p.normal.dot(relative(p, f));
+      double power = 900.0 * p.depth * -rate;  // into the spring
+      for (std::size_t i = 0; i < 2; ++i) power += w[i].f.dot(f[i].v) + w[i].m.dot(f[i].w);
+      EXPECT_NEAR(power, -7.0 * rate * rate, 1e-11);
+    }
+  }
+
+  void force_is_the_slope_of_the_potential() {
+    Touching const f = overlapping(0.1);
+    Elastic const contact = elastic();
+    VecX const w = stacked_wrenches(contact, f, 0.0);
+    for (Index j = 0; j < 12; ++j) {
+      double const slope = slope_at_zero(
+          [&](double h) {
+            Touching shifted = f;
+            Frame<double>& one = shifted[std::size_t(j / 6)];
+            one = moved<double>(one, Vec6(Vec6::Unit(j % 6) * h));
+            return contact.potential(shifted, 0.0);
+          },
+          1e-3);
+      EXPECT_NEAR(w[j], -slope, 1e-7 * w.norm());  // (h/d)⁴/30 = 3e-10 of a force that grows with d^(3/2)
+    }
+  }
+
+  void gradient_is_the_derivative_of_the_wrenches() {
+    with_each_contact([&](auto const& contact) {
+      Touching const f = overlapping(0.1);
+      for (auto const& law : {contact, with(contact)}) {
+        EXPECT_LT(gradient_mismatch(law, f, 0.0, 1.0, 0.0), 1e-8);
+        EXPECT_LT(gradient_mismatch(law, f, 0.0, 0.0, 1.0), 1e-8);
+        EXPECT_LT(gradient_mismatch(law, f, 0.0, 0.7, 31.0), 1e-8);
+      }
+    });
+  }
+
+  void does_nothing_apart() {
+    with_each_contact([&](auto const& contact) {
+      for (double const gap : {1e-12, 0.2, 1.0}) {
+        Touching const f = overlapping(-gap);
+        auto const rough = with(contact);
+        EXPECT_EQ(stacked_wrenches(rough, f, 0.0).norm(), 0.0);
+        EXPECT_EQ(rough.potential(f, 0.0), 0.0);
+        for (auto const& k : own(rough, f, 1.0, 1.0)) EXPECT_EQ(k.norm(), 0.0);
+        EXPECT_EQ(wrench_gradient(rough, f, 0.0, 1.0, 1.0).norm(), 0.0);
+      }
+    });
+  }
+
+  // bodies that part faster than the damper lets them: k d + c ḋ < 0
+  void lets_go_of_what_parts_too_fast() {
+    Contact<G> const damped = with(Contact<G>{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}});
+    Touching f = at_rest(0.01);
+    f[0].v = 2.0 * point_of(geometry, f[0], f[1]).normal + Vec3(0.3, 0.2, 0.1);
+    EXPECT_EQ(stacked_wrenches(damped, f, 0.0).norm(), 0.0);
+    for (auto const& k : own(damped, f, 1.0, 1.0)) EXPECT_EQ(k.norm(), 0.0);
+    EXPECT_GT(damped.potential(f, 0.0), 0.0);  // still compressed
+  }
+
+  // --- its stand-in for Newton's method -----------------------------------------------------------------------
+
+  void own_stiffness_is_symmetric_and_never_negative() {
+    with_each_contact([&](auto const& contact) {
+      Touching const f = overlapping(0.1);
+      for (auto const& k : own(with(contact), f, 0.7, 31.0)) {
+        EXPECT_LT((k - k.transpose()).norm(), 1e-14 * k.norm());
+        EXPECT_GT(smallest_eigenvalue(k), -1e-13 * k.norm());
+        EXPECT_GT(k.norm(), 1.0);
+      }
+    });
+  }
+
+  // What is left out of the force on a by its own shift: N ∂n/∂r, which takes stiffness away where shapes are round.
+  void own_stiffness_leaves_out_only_how_the_normal_turns() {
+    with_each_contact([&](auto const& contact) {
+      Touching const f = at_rest(0.1);
+      double const n = contact.normal.force(0.1, 0.0);
+      Mat3 const left_out = own(contact, f, 1.0, 0.0)[0].template topLeftCorner<3, 3>() -
+                            exact(contact, f, 1.0, 0.0)[0].template topLeftCorner<3, 3>();
+      EXPECT_LT((left_out - n * Case::turning(f[0], f[1])).norm(), 1e-12 * n / 0.1);
+    });
+  }
+
+  // Without friction, moving: exact in the twists and along the normal, which does not turn when a moves along it.
+  void own_stiffness_has_the_slopes_of_the_normal_force() {
+    with_each_contact([&](auto const& contact) {
+      Touching const f = overlapping(0.1);
+      auto const of_twists = own(contact, f, 0.0, 1.0), exact_of_twists = exact(contact, f, 0.0, 1.0);
+      for (std::size_t k = 0; k < 2; ++k)
+        EXPECT_LT((of_twists[k] - exact_of_twists[k]).norm(), 1e-12 * (1.0 + exact_of_twists[k].norm()));
+      Vec3 const n = point_of(geometry, f[0], f[1]).normal;
+      Mat3 const shift = own(contact, f, 1.0, 0.0)[0].template topLeftCorner<3, 3>();
+      Mat3 const exact_shift = exact(contact, f, 1.0, 0.0)[0].template topLeftCorner<3, 3>();
+      EXPECT_NEAR(n.dot(shift * n), n.dot(exact_shift * n), 1e-12 * shift.norm());
+      EXPECT_GT(n.dot(shift * n), 1.0);
+    });
+  }
+
+  // At rest the wrenches depend on the twists as the stand-in says, friction or not: at v = 0 the chord is the slope.
+  void own_stiffness_is_exact_in_the_twists_of_bodies_at_rest() {
+    with_each_contact([&](auto const& contact) {
+      for (auto const& law : {contact, with(contact)}) {
+        Touching const f = at_rest(0.1);
+        auto const stand_in = own(law, f, 0.0, 1.0), given = exact(law, f, 0.0, 1.0);
+        for (std::size_t k = 0; k < 2; ++k) EXPECT_LT((stand_in[k] - given[k]).norm(), 1e-12 * (1.0 + given[k].norm()));
+      }
+    });
+  }
+
+  // Sliding, the chord is more than the slope along the slip and the same across: own − exact = Jᵀ (μN/s)(u uᵀ/s²) J, s² = u² +
+  // v_s².
+  void own_stiffness_of_friction_is_an_upper_bound() {
+    for (double const mu : {0.1, 0.4, 1.3}) {
+      Touching const f = overlapping(0.1);
+      Elastic const rough = with(elastic(), mu);
+      ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
+      Vec3 const v = relative(p, f), slip = v - v.dot(p.normal) * p.normal;
+      double const n = rough.normal.force(p.depth, 0.0), s = std::sqrt(slip.squaredNorm() + 0.3 * 0.3);
+      auto const stand_in = own(rough, f, 0.0, 1.0), given = exact(rough, f, 0.0, 1.0);
+      for (std::size_t k = 0; k < 2; ++k) {
+        Vec6 along;
+        along << slip, (p.place - f[k].r).cross(slip);
+        Mat<double, 6, 6> const more = mu * n / (s * s * s) * along * along.transpose();
+        EXPECT_LT((stand_in[k] - given[k] - more).norm(), 1e-12 * stand_in[k].norm());
+        EXPECT_GT(more.norm(), 1e-3 * stand_in[k].norm());
+        EXPECT_GT(smallest_eigenvalue(stand_in[k] - given[k]), -1e-13 * stand_in[k].norm());
+      }
+    }
+  }
+
+  static constexpr Law<ContactLaws> laws[] = {
+      {"TouchesAtTheDepthItIsGiven", &ContactLaws::touches_at_the_depth_it_is_given},
+      {"NormalIsTheSlopeOfTheDepth", &ContactLaws::normal_is_the_slope_of_the_depth},
+      {"NormalTurnsAsTheShapesAreCurved", &ContactLaws::normal_turns_as_the_shapes_are_curved},
+      {"MayTouchIsFalseOnlyWhereNothingTouches", &ContactLaws::may_touch_is_false_only_where_nothing_touches},
+      {"ActionIsReaction", &ContactLaws::action_is_reaction},
+      {"PressesByTheLawAtTheDepthAndItsRate", &ContactLaws::presses_by_the_law_at_the_depth_and_its_rate},
+      {"RigidMotionOfBothTurnsTheWrench", &ContactLaws::rigid_motion_of_both_turns_the_wrench},
+      {"FrictionOpposesSlidingAndTakesPower", &ContactLaws::friction_opposes_sliding_and_takes_power},
+      {"DampingTakesPower", &ContactLaws::damping_takes_power},
+      {"ForceIsTheSlopeOfThePotential", &ContactLaws::force_is_the_slope_of_the_potential},
+      {"GradientIsTheDerivativeOfTheWrenches", &ContactLaws::gradient_is_the_derivative_of_the_wrenches},
+      {"DoesNothingApart", &ContactLaws::does_nothing_apart},
+      {"LetsGoOfWhatPartsTooFast", &ContactLaws::lets_go_of_what_parts_too_fast},
+      {"OwnStiffnessIsSymmetricAndNeverNegative", &ContactLaws::own_stiffness_is_symmetric_and_never_negative},
+      {"OwnStiffnessLeavesOutOnlyHowTheNormalTurns", &ContactLaws::own_stiffness_leaves_out_only_how_the_normal_turns},
+      {"OwnStiffnessHasTheSlopesOfTheNormalForce", &ContactLaws::own_stiffness_has_the_slopes_of_the_normal_force},
+      {"OwnStiffnessIsExactInTheTwistsOfBodiesAtRest", &ContactLaws::own_stiffness_is_exact_in_the_twists_of_bodies_at_rest},
+      {"OwnStiffnessOfFrictionIsAnUpperBound", &ContactLaws::own_stiffness_of_friction_is_an_upper_bound},
+  };
+};
+
+}  // namespace polybody

@@ -1,0 +1,38 @@
+#pragma once
+// The vehicle of m113_vehicle.hpp, set going.
+#include <polybody/polybody.hpp>
+#include <polybody/vehicle/settled_track.hpp>
+#include <polybody/vehicle/track_watch.hpp>
+
+namespace polybody {
+
+// Tracks at rest, found once.
+inline m113::TrackStart const& track_at_rest() {
+  static m113::TrackStart const start = m113::settled_track();
+  return start;
+}
+
+// From standstill at 0.1 s to `speed` at 0.6 s.
+inline Ramp quick_drive(double speed) { return {.target = speed, .duration = 0.5, .start = 0.1, .rounding = 0.1}; }
+
+inline GeneralizedAlpha vehicle_integrator() { return {.rho_inf = 0.8, .tolerance = 1e-5}; }
+
+// Calls see(state, system evaluated there) after each step.
+template <class M, class See>
+RunReport run_vehicle(M const& model, State& x, double until, double step, See&& see) {
+  auto run = simulate(model, x, vehicle_integrator(), {.until = until, .step = step, .halvings = 6});
+  System<M> system(model);
+  while (!run.done()) {
+    run.advance();
+    system.evaluate(x.q, x.v, x.t);
+    see(x, system);
+  }
+  return run.report();
+}
+
+template <class V>
+Frame<double> hull_of(V const& vehicle, State const& x) {
+  return frame(vehicle.model, x, vehicle.chassis[0].at(Vec3(0, 0, 0)));
+}
+
+}  // namespace polybody
