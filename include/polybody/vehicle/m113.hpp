@@ -174,6 +174,7 @@ inline constexpr ContactNumbers on_sprocket{2.0e6, 5.0e3, 0.15};
 inline constexpr ContactNumbers on_wheel{2.0e6, 5.0e3, 0.10};  ///< and on the idler, for which T3.2 has no row  [A]
 inline constexpr ContactNumbers on_ground{2.0e6, 5.0e3, 0.30};
 inline constexpr double slip_speed = 0.05;                     ///< at which friction is 1/√2 of sliding [m/s]  [A]
+inline constexpr double onset = 1.0e-4;                        ///< depth at which the damper is there in full [m]  [A]
 
 /// Corners of the pad that stand on the ground, in a link's axes  [x: C, half the pad's length; y, z: D]
 inline constexpr std::array<Triple, 4> pad{{{0.055, 0.1905, -half_thickness},

@@ -1,0 +1,222 @@
+#pragma once
+// The vehicle of Chapter 3 as a case for `compare`: one template, whatever the formulation of its tracks.
+#include <polybody/analysis/filter.hpp>
+#include <polybody/io/vtk.hpp>
+#include <polybody/polybody.hpp>
+#include <polybody/vehicle/settled_track.hpp>
+#include <polybody/vehicle/track_watch.hpp>
+#include <polybody/vehicle/vehicle_visual.hpp>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+namespace chapter3 {
+
+using namespace polybody;
+namespace fs = std::filesystem;
+
+inline constexpr int watched_pin = 20;  // of the left track, on the ground at the start
+
+struct Settings {
+  double until = 10.0;
+  double step = 5e-4;
+  double speed = m113::chapter_3_speed;
+  double left = 1.0, right = 1.0;  // of the speed: unequal ones turn
+  bool suspension = true;
+  double preload = m113::preload;
+  double rho = 0.8;
+  bool bumps = false;
+  int cut = 0;
+  double animate = 0.0;  // seconds between states, 0 for none
+  bool audit = false;
+  fs::path out = "out/tracked_vehicle";
+};
+
+// Obstacles for the bump course: 10 and 15 cm high, across both tracks and under one of them.
+inline BumpCourse course(bool bumps) {
+  if (!bumps) return BumpCourse({});
+  return BumpCourse({Bump{.x = 6.0, .length = 1.2, .height = 0.10}, {.x = 10.0, .length = 1.2, .height = 0.15, .y = 1.0, .width = 2.0},
+                     {.x = 14.0, .length = 2.0, .height = 0.15}});
+}
+
+template <class F>
+using VehicleOf = m113::Vehicle<typename F::BodyType, typename F::PolicyType, BumpCourse>;
+
+// Numbers of one state, worked out once for all outputs that ask.
+template <class V>
+class Probe {
+ public:
+  using M = typename V::ModelType;
+  Probe(std::shared_ptr<V const> vehicle, m113::TrackStart start) : vehicle_(std::move(vehicle)), start_(std::move(start)) {}
+
+  double operator()(State const& x, double Probe::*number) {
+    if (x.t != t_) look(x);
+    return this->*number;
+  }
+
+  double forward = 0, sideways = 0, height = 0, pitch = 0, yaw = 0, speed = 0, sprocket = 0, idler = 0;
+  double link_x = 0, link_z = 0, force_x = 0, force_z = 0, force = 0, gap = 0, largest_gap = 0, depth = 0, off_path = 0, off_plane = 0;
+
+  std::string deepest;  // where the deepest contact of the run was
+  double deepest_depth = 0.0, deepest_time = 0.0, torque = 0;
+
+ private:
+  void look(State const& x) {
+    t_ = x.t;
+    V const& v = *vehicle_;
+    if (!system_) system_ = std::make_unique<System<M>>(v.model);
+    system_->evaluate(x.q, x.v, x.t);
+    Frame<double> const hull = frame(v.model, x, v.chassis[0].at(Vec3(0, 0, 0)));
+    auto const& side = v.side(m113::Side::left);
+    forward = hull.r.x() - m113::chassis.x;
+    sideways = hull.r.y();
+    height = hull.r.z() - m113::chassis.z;
+    pitch = std::asin(-hull.A(2, 0));
+    yaw = std::atan2(hull.A(1, 0), hull.A(0, 0));
+    speed = hull.v.dot(hull.A.col(0));
+    Frame<double> const wheel = frame(v.model, x, side.sprocket[0].at(Vec3(0, 0, 0)));
+    sprocket = hull.A.col(1).dot(wheel.w - hull.w);
+    Vec3 const slider = hull.A.transpose() * (position(v.model, x, side.tensioner[0].at(Vec3(0, 0, 0))) - hull.r);
+    idler = slider.x() - (m113::idler_reference_x - m113::chassis.x);
+    using L = m113::LinkOf<typename V::LinkType>;
+    Vec3 const link = hull.A.transpose() * (position(v.model, x, L::middle(side.links[watched_pin])) - hull.r);
+    link_x = link.x();
+    link_z = link.z();
+    Wrench<double> const r = reaction(v.model, x, side.pins[watched_pin]);
+    force_x = r.f.x();
+    force_z = r.f.z();
+    force = r.f.norm();
+    torque = reaction(v.model, x, side.drive[0]).m.dot(hull.A.col(1));
+    largest_gap = 0.0;
+    for (int i = 0; i < m113::links; ++i) {
+      double const open = (position(v.model, x, L::front(side.links[std::size_t(i)])) -
+                           position(v.model, x, L::rear(side.links[std::size_t((i + m113::links - 1) % m113::links)]))).norm();
+      if (i == watched_pin) gap = open;
+      largest_gap = std::max(largest_gap, open);
+    }
+    depth = off_path = off_plane = 0.0;
+    for (m113::Side const s : {m113::Side::left, m113::Side::right}) {
+      m113::TrackFault const fault = m113::track_fault(v, *system_, x, s, start_);
+      if (fault.depth > deepest_depth) {
+        deepest_depth = fault.depth;
+        deepest_time = x.t;
+        deepest = (s == m113::Side::left ? "left link " : "right link ") + std::to_string(fault.link) + " in " + fault.against;
+      }
+      depth = std::max(depth, fault.depth);
+      off_path = std::max(off_path, fault.off_path);
+      off_plane = std::max(off_plane, fault.sideways);
+    }
+  }
+
+  std::shared_ptr<V const> vehicle_;
+  m113::TrackStart start_;
+  std::unique_ptr<System<M>> system_;
+  double t_ = -1.0;
+};
+
+// What became of a run, beside its histories.
+struct Outcome {
+  std::string name, trouble, deepest;
+  double depth = 0.0, deepest_time = 0.0;
+  double drives = 0.0, gravity = 0.0, kinetic = 0.0, stored = 0.0, dissipated = 0.0, unaccounted = 0.0, relative = -1.0;  // [J]
+};
+
+// The case that `compare` runs: F says what links are and how they hang together.
+struct TrackCase {
+  Settings const& settings;
+  std::vector<Outcome>* outcomes;
+
+  template <class F>
+  auto operator()(F const& f) const {
+    using V = VehicleOf<F>;
+    using M = typename V::ModelType;
+    Settings const& s = settings;
+    m113::VehicleOptions options{.suspension = s.suspension, .preload = s.preload, .cut = s.cut};
+    options.start = m113::settled_track(options);
+    std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
+    auto const vehicle = std::make_shared<V const>(f.policy, drives, options, course(s.bumps));
+    auto const probe = std::make_shared<Probe<V>>(vehicle, options.start);
+
+    std::vector<Output<M>> outputs;
+    auto const add = [&](std::string name, double Probe<V>::*number) {
+      outputs.push_back({std::move(name), [probe, number](M const&, State const& x) { return (*probe)(x, number); }});
+    };
+    add("forward position [m]", &Probe<V>::forward);
+    add("sideways position [m]", &Probe<V>::sideways);
+    add("vertical displacement [m]", &Probe<V>::height);
+    add("pitch [rad]", &Probe<V>::pitch);
+    add("yaw [rad]", &Probe<V>::yaw);
+    add("forward velocity [m/s]", &Probe<V>::speed);
+    add("sprocket speed [rad/s]", &Probe<V>::sprocket);
+    add("sprocket torque [N m]", &Probe<V>::torque);
+    add("idler travel [m]", &Probe<V>::idler);
+    add("link x in chassis [m]", &Probe<V>::link_x);
+    add("link z in chassis [m]", &Probe<V>::link_z);
+    add("joint force x [N]", &Probe<V>::force_x);
+    add("joint force z [N]", &Probe<V>::force_z);
+    add("joint force [N]", &Probe<V>::force);
+    add("joint gap [m]", &Probe<V>::gap);
+    add("largest joint gap [m]", &Probe<V>::largest_gap);
+    add("deepest contact [m]", &Probe<V>::depth);
+    add("off the path [m]", &Probe<V>::off_path);
+    add("off the middle plane [m]", &Probe<V>::off_plane);
+
+    outcomes->push_back({.name = f.name});
+    std::size_t const mine = outcomes->size() - 1;
+    auto const progress = std::make_shared<Progress>(0.0, s.until, f.name);
+    auto const audit = s.audit ? std::make_shared<EnergyAudit<M>>(vehicle->model) : nullptr;
+    auto const visual = s.animate > 0.0 ? std::make_shared<Visual<M>>(m113::vehicle_visual(*vehicle)) : nullptr;
+    auto const writer = visual ? std::make_shared<VtkWriter<M>>(s.out / (f.name + ".pvd"), *visual) : nullptr;
+    auto const next_picture = std::make_shared<double>(0.0);
+    auto observer = [=, out = outcomes, &s](M const&, State const& x) {
+      Outcome& o = (*out)[mine];
+      o.deepest = probe->deepest;
+      o.depth = probe->deepest_depth;
+      o.deepest_time = probe->deepest_time;
+      if (o.trouble.empty()) o.trouble = m113::track_trouble(*vehicle, x);
+      if (audit) {
+        audit->record(x);
+        o.drives = audit->work_of_drives();
+        o.gravity = audit->work_of_gravity();
+        o.kinetic = audit->kinetic();
+        o.stored = audit->stored();
+        o.dissipated = audit->dissipated();
+        o.unaccounted = audit->unaccounted();
+        o.relative = audit->relative();
+      }
+      if (writer && x.t >= *next_picture - 1e-9) {
+        writer->write(x);
+        *next_picture += s.animate;
+      }
+      progress->update(x.t);
+      if (x.t >= s.until) progress->finish();
+    };
+    RunOptions run{.until = s.until, .step = s.step, .halvings = 6};
+    for (m113::Side const side : {m113::Side::left, m113::Side::right}) run.events.push_back(m113::track_lost(*vehicle, side));
+    return Scenario<M>{vehicle->model, vehicle->model.reference_state(), run, std::move(outputs), observer};
+  }
+};
+
+// Pins as penalties: rows that are direction cosines get the stiffness of forces at the ends of a link's width.
+inline PenaltyPerRow<5> penalty_pin(double stiffness) {
+  double const arm2 = m113::pin_arm * m113::pin_arm;
+  Vec<double, 5> rows;
+  rows << 1.0, 1.0, 1.0, arm2, arm2;
+  return {.stiffness = Vec<double, 5>(stiffness * rows), .damping = Vec<double, 5>(m113::pin_damping * rows)};
+}
+// … and as bushings, whose third axis is the pin's.
+inline Bushing bushing_pin(double stiffness) {
+  double const arm2 = m113::pin_arm * m113::pin_arm;
+  Vec3 const along(1.0, 1.0, 1.0), about(arm2, arm2, 0.0);
+  return {.stiffness = Bushing::diagonal(stiffness * along, stiffness * about),
+          .damping = Bushing::diagonal(m113::pin_damping * along, m113::pin_damping * about)};
+}
+
+using IdealTrack = Formulation<Rigid<>, Constraint, GeneralizedAlpha>;
+using PenaltyTrack = Formulation<Rigid<>, PenaltyPerRow<5>, GeneralizedAlpha>;
+using BushingTrack = Formulation<Rigid<>, Bushing, GeneralizedAlpha>;
+using CableTrack = Formulation<AncfCable<>, AncfLinear, GeneralizedAlpha>;
+using RecursiveTrack = Formulation<Rigid<>, Recursive, GeneralizedAlpha>;
+
+}  // namespace chapter3

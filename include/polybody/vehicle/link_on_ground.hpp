@@ -1,0 +1,60 @@
+#pragma once
+/// \file
+/// A track's link on the ground. Not in polybody.hpp: of use to vehicles only.
+
+#include <vector>
+
+#include <polybody/forces/contact.hpp>
+#include <polybody/vehicle/link_axes.hpp>
+#include <polybody/vehicle/terrain.hpp>
+
+namespace polybody {
+
+/// Points of a link's pad on a terrain. Marker a is the link's centre, marker b the ground, over whose x and y the terrain's height is
+/// measured. At a point P below the ground by e = h(x, y) − z the normal is (−h_x, −h_y, 1)/√(1 + h_x² + h_y²) and d = e n_z.
+template <Terrain G = FlatGround, Observes told = Observes::frame>
+struct LinkOnGround {
+  static constexpr Observes needs = told;
+  static constexpr Observes needs_of_second = Observes::frame;
+
+  G terrain = {};
+  std::vector<Vec3> pad = {};  ///< n × (3) in the link's axes [m]; of a cable, which does not tell its sides, y counts for nothing and z is away from the ground
+
+  void check(std::string const& name) const {
+    terrain.check(name);
+    if (pad.empty()) throw InvalidInput(name + ": a link needs points that touch the ground.");
+    for (Vec3 const& p : pad) require_finite(p, name + ": a point of the pad");
+  }
+  bool may_touch(Frame<double> const& link, Frame<double> const& ground) const {
+    return (link.r - ground.r).dot(ground.A.col(2)) < terrain.highest() + reach();
+  }
+  template <StateScalar T, class Visit>
+  void for_each_point(Frame<T> const& link, Frame<T> const& ground, Visit&& visit) const {
+    using std::sqrt;
+    Vec<T, 3> const up = ground.A.col(2);
+    Mat<T, 3, 3> axes = link.A;
+    if constexpr (told != Observes::frame) {  // z across the tangent, as near as may be to the ground's
+      Vec<T, 3> const z = up - axes.col(0) * up.dot(axes.col(0));
+      axes.col(2) = z / sqrt(z.squaredNorm());
+      axes.col(1).setZero();
+    }
+    for (Vec3 const& p : pad) {
+      Vec<T, 3> const place = link.r + axes * p.template cast<T>();
+      Vec<T, 3> const local = ground.A.transpose() * (place - ground.r);
+      Height<T> const h = terrain.template height<T>(local[0], local[1]);
+      if (value_of(h.z) <= value_of(local[2])) continue;
+      T const nz = T(1.0) / sqrt(h.slope_x * h.slope_x + h.slope_y * h.slope_y + 1.0);
+      Vec<T, 3> const n = (up - ground.A.col(0) * h.slope_x - ground.A.col(1) * h.slope_y) * nz;
+      visit(ContactPoint<T>{place, n, (h.z - local[2]) * nz});
+    }
+  }
+
+ private:
+  double reach() const {
+    double far = 0.0;
+    for (Vec3 const& p : pad) far = std::max(far, p.norm());
+    return far;
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,103 @@
+#pragma once
+/// \file
+/// A track's link on a road wheel, idler or roller. Not in polybody.hpp: of use to vehicles only.
+
+#include <vector>
+
+#include <polybody/forces/contact.hpp>
+#include <polybody/vehicle/link_axes.hpp>
+
+namespace polybody {
+
+/// The rims of a roller on the inner face of a link. Marker a is the link's centre (x to the front pin, z to the roller), marker b the
+/// roller's centre with its axle along y. A rim is a circle of radius R in its middle plane; it meets the face z = h where its lowest
+/// point is above the link, |s| ≤ p/2, by d = R − (height of the axle above the face). Neighbouring faces end where the next begin; within
+/// `handover` of there the force is shared, (p/2 + ε − |s|)/2ε of it on either, so that a wheel passes from one to the next without a bump.
+/// Around a bend towards the wheel the strips above the faces overlap.
+/// [after Choi, Lee & Shabana 1998: inner-surface contact with one or both rims]
+template <Observes told = Observes::frame>
+struct LinkOnRoller {
+  static constexpr Observes needs = told;
+  static constexpr Observes needs_of_second = Observes::frame;
+
+  Required<double> pitch;           ///< p, of the link [m]
+  Required<double> half_thickness;  ///< h, from the pins' line to the face [m]
+  Required<double> half_width;      ///< of the face [m]
+  Required<double> radius;          ///< R, of the rims [m]
+  double handover = 0.03;           ///< ε [m]
+  std::vector<double> rims = {0.0}; ///< where their middle planes are along the axle [m]
+
+  void check(std::string const& name) const {
+    require_positive(pitch, name + ": the pitch of the link");
+    require_not_negative(half_thickness, name + ": the link's half thickness");
+    require_positive(half_width, name + ": the link's half width");
+    require_positive(radius, name + ": the radius of the roller");
+    if (!(handover > 0.0 && handover < 0.5 * pitch))
+      throw InvalidInput(name + ": the zone of the handover must be positive and below half the pitch, but is " + number(handover) + " m.");
+    if (rims.empty()) throw InvalidInput(name + ": a roller needs at least one rim.");
+    for (double const y : rims)
+      if (!std::isfinite(y)) throw InvalidInput(name + ": the place of a rim must be finite.");
+  }
+  bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
+    double const reach = radius + half_thickness + half_width + pitch;
+    Vec3 const arm = roller.r - link.r;
+    if (arm.squaredNorm() > reach * reach) return false;
+    double const along = arm.dot(link.A.col(0)), margin = 0.6 * pitch;
+    return std::abs(along) < margin + std::abs(roller.A.col(1).dot(link.A.col(0))) * reach;
+  }
+  template <StateScalar T, class Visit>
+  void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
+    Mat<T, 3, 3> const axes = link_axes<told, T>(link, roller.A.col(1));
+    for (double const rim : rims) {
+      Vec<T, 3> const local = axes.transpose() * (roller.r + roller.A.col(1) * T(rim) - link.r);
+      T const height = local[2] - double(half_thickness), depth = T(radius.value) - height;
+      T const to_end = T(0.5 * pitch + handover) - (value_of(local[0]) < 0.0 ? -local[0] : local[0]);
+      bool const above = value_of(to_end) > 0.0 && std::abs(value_of(local[1])) <= half_width;
+      if (!above || value_of(height) <= 0.0 || value_of(depth) <= 0.0) continue;
+      Vec<T, 3> const on_face(local[0], local[1], T(half_thickness.value));
+      ContactPoint<T> point{link.r + axes * on_face, -axes.col(2), depth};
+      if (value_of(to_end) < 2.0 * handover) {
+        double const out = value_of(local[0]) < 0.0 ? -0.5 / handover : 0.5 / handover;
+        point.handover = {to_end * (0.5 / handover), axes.col(0) * T(out), roller.r + roller.A.col(1) * T(rim)};
+      }
+      visit(point);
+    }
+  }
+};
+
+/// What keeps a track on its wheels sideways: a horn on the inner face runs between the rims and meets their inner faces. Markers as for
+/// `LinkOnRoller`. It presses along the axle by how far it is beyond its play, but by no more than how far its tip is within the
+/// rims, so that the force grows from zero also where a horn comes in beside its gap: edges are chamfered by 45°.
+template <Observes told = Observes::frame>
+struct HornOnRims {
+  static constexpr Observes needs = told;
+  static constexpr Observes needs_of_second = Observes::frame;
+
+  Vec3 tip = Vec3::Zero();    ///< (3) middle of the horn's upper end, in the link's axes [m]
+  Required<double> play;      ///< to either side before it meets a rim [m]
+  Required<double> radius;    ///< of the rims [m]
+
+  void check(std::string const& name) const {
+    require_finite(tip, name + ": the tip of the horn");
+    require_not_negative(play, name + ": the play of the horn");
+    require_positive(radius, name + ": the radius of the rims");
+  }
+  bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
+    double const reach = radius + tip.norm() + 3.0 * play;
+    return (roller.r - link.r).squaredNorm() < reach * reach;
+  }
+  template <StateScalar T, class Visit>
+  void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
+    using std::sqrt;
+    Vec<T, 3> const axle = roller.A.col(1), place = link.r + link_axes<told, T>(link, axle) * tip.template cast<T>();
+    Vec<T, 3> const arm = place - roller.r;
+    T const across = arm.dot(axle), beyond = (value_of(across) < 0.0 ? -across : across) - double(play);
+    T const within = T(radius.value) - sqrt((arm - axle * across).squaredNorm());
+    T const depth = value_of(beyond) < value_of(within) ? beyond : within;
+    if (value_of(depth) > 0.0) visit(ContactPoint<T>{place, value_of(across) < 0.0 ? axle : Vec<T, 3>(-axle), depth});
+  }
+};
+
+static_assert(ContactGeometry<LinkOnRoller<>> && ContactGeometry<LinkOnRoller<Observes::axis>> && ContactGeometry<HornOnRims<>>);
+
+}  // namespace polybody

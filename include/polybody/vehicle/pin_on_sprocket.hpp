@@ -1,0 +1,122 @@
+#pragma once
+/// \file
+/// A track's pins between the teeth of its sprocket. Not in polybody.hpp: of use to vehicles only.
+
+#include <numbers>
+#include <vector>
+
+#include <polybody/forces/contact.hpp>
+#include <polybody/vehicle/link_axes.hpp>
+
+namespace polybody {
+
+/// Round pins of radius r_p in valleys between N teeth. A valley's bottom is an arc of radius r_a > r_p to an angle φ on both sides,
+/// about a point at r_c = R_p + r_a − r_p, so that a pin at the bottom lies on the pitch circle R_p; straight flanks go on along the
+/// arc's tangents up to the tip circle R_t.
+struct SprocketProfile {
+  Required<int> teeth;             ///< N
+  Required<double> pitch;          ///< p, of the track [m]
+  Required<double> pin_radius;     ///< r_p [m]
+  Required<double> valley_radius;  ///< r_a [m]
+  Required<double> flank;          ///< φ [rad]
+  Required<double> tip_radius;     ///< R_t [m]
+
+  double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / teeth); }
+  double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }
+  /// Of a pin that just touches a tip: it is outside from here on.
+  double outer_radius() const { return tip_radius + pin_radius; }
+  /// (2) Where flank and tip circle meet, radial and tangential, from the middle of the valley.
+  Vec2 corner() const {
+    Vec2 const foot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank)), up(std::sin(flank), std::cos(flank));
+    double const b = foot.dot(up);
+    return foot + (std::sqrt(b * b - foot.squaredNorm() + tip_radius * tip_radius) - b) * up;
+  }
+
+  /// \throws InvalidInput for numbers that make no tooth.
+  void check(std::string const& name) const {
+    if (teeth < 4) throw InvalidInput(name + ": a sprocket needs at least four teeth, but has " + std::to_string(int(teeth)) + ".");
+    require_positive(pitch, name + ": the pitch of the track");
+    require_positive(pin_radius, name + ": the pins' radius");
+    if (!(valley_radius > pin_radius) || !std::isfinite(valley_radius))
+      throw InvalidInput(name + ": the radius of the valleys must be larger than the pins', but is " + number(valley_radius) + " m.");
+    if (!(flank > 0.0 && flank < 0.5 * std::numbers::pi))
+      throw InvalidInput(name + ": the arc of a valley must end between 0 and a right angle, but ends at " + number(flank) + " rad.");
+    double const foot = std::hypot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank));
+    if (!(tip_radius > foot) || !std::isfinite(tip_radius))
+      throw InvalidInput(name + ": the tips must lie outside the arcs of the valleys, whose ends are " + number(foot) + " m from the axle.");
+    Vec2 const k = corner();
+    if (std::atan2(k[1], k[0]) >= std::numbers::pi / teeth)
+      throw InvalidInput(name + ": the valleys leave nothing of the teeth. Take a smaller valley, a lower tip or fewer teeth.");
+  }
+
+  /// A pin at X along the middle of a valley and Y ≥ 0 across: overlap d and normal (radial, tangential). d and n are continuous.
+  template <StateScalar T>
+  struct Overlap {
+    T depth, radial, tangential;
+  };
+  template <StateScalar T>
+  Overlap<T> overlap(T const& x, T const& y) const {
+    using std::sqrt;
+    double const rc = arc_centre(), room = valley_radius - pin_radius, c = std::cos(flank), s = std::sin(flank);
+    T const u = rc - x;  // towards the bottom
+    Vec2 const k = corner();
+    double const along = (value_of(x) - k[0]) * s + (value_of(y) - k[1]) * c;  // beyond the flank's end
+    if (value_of(y) * c <= value_of(u) * s && value_of(u) > 0.0) {            // before the arc's end
+      T const r = sqrt(u * u + y * y);
+      if (value_of(r) <= 0.0) return {T(-room), T(1.0), T(0.0)};
+      return {r - room, u / r, -y / r};
+    }
+    if (along <= 0.0) return {u * c + y * s - room, T(c), T(-s)};
+    T const r = sqrt(x * x + y * y);
+    if (value_of(y) * k[0] >= value_of(x) * k[1]) return {T(outer_radius()) - r, x / r, y / r};
+    T const dx = x - k[0], dy = y - k[1], e = sqrt(dx * dx + dy * dy);
+    return {T(pin_radius.value) - e, dx / e, dy / e};
+  }
+};
+
+/// The front pin of a link in the teeth. Marker a is the link's centre, marker b the sprocket's centre with its axle along y.
+template <Observes told = Observes::frame>
+struct PinOnSprocket {
+  static constexpr Observes needs = told;
+  static constexpr Observes needs_of_second = Observes::frame;
+
+  SprocketProfile profile;
+  Required<double> valley;            ///< angle of any one valley in the sprocket's axes, from z towards x [rad]
+  std::vector<double> rings = {0.0};  ///< where the rings of teeth are along the axle [m]
+
+  void check(std::string const& name) const {
+    profile.check(name);
+    if (!std::isfinite(valley)) throw InvalidInput(name + ": the angle of a valley must be finite.");
+    if (rings.empty()) throw InvalidInput(name + ": a sprocket needs at least one ring of teeth.");
+    for (double const y : rings)
+      if (!std::isfinite(y)) throw InvalidInput(name + ": the place of a ring must be finite.");
+  }
+  bool may_touch(Frame<double> const& link, Frame<double> const& sprocket) const {
+    Vec3 const arm = link.r + link.A.col(0) * (0.5 * profile.pitch) - sprocket.r;
+    double const across = arm.dot(sprocket.A.col(1)), reach = 1.1 * profile.outer_radius();  // a pin may be askew
+    return arm.squaredNorm() - across * across < reach * reach;
+  }
+  template <StateScalar T, class Visit>
+  void for_each_point(Frame<T> const& link, Frame<T> const& sprocket, Visit&& visit) const {
+    Vec<T, 3> const lateral = link_axes<told, T>(link, sprocket.A.col(1)).col(1);
+    Vec<T, 3> const pin = link.r + link.A.col(0) * T(0.5 * profile.pitch) - sprocket.r;
+    for (double const ring : rings) {
+      Vec<T, 3> const arm = pin + lateral * T(ring);
+      T const x = arm.dot(sprocket.A.col(0)), z = arm.dot(sprocket.A.col(2));
+      double const step = 2.0 * std::numbers::pi / profile.teeth;
+      double const angle = std::atan2(value_of(x), value_of(z)), middle = valley + step * std::round((angle - valley) / step);
+      double const s = std::sin(middle), c = std::cos(middle);
+      T const out = x * s + z * c, side = x * c - z * s;  // along the middle of the valley, and across from z towards x
+      bool const ahead = value_of(side) >= 0.0;
+      auto const o = profile.template overlap<T>(out, ahead ? side : T(-side));
+      if (value_of(o.depth) <= 0.0) continue;
+      T const across = ahead ? o.tangential : T(-o.tangential);
+      Vec<T, 3> const n = sprocket.A.col(0) * (o.radial * s + across * c) + sprocket.A.col(2) * (o.radial * c - across * s);
+      visit(ContactPoint<T>{sprocket.r + arm - n * T(profile.pin_radius.value), n, o.depth});
+    }
+  }
+};
+
+static_assert(ContactGeometry<PinOnSprocket<>> && ContactGeometry<PinOnSprocket<Observes::axis>>);
+
+}  // namespace polybody

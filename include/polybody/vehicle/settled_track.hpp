@@ -1,0 +1,52 @@
+#pragma once
+/// \file
+/// Tracks at rest on a vehicle that does not load them yet. Not in polybody.hpp: of use to vehicles only.
+
+#include <polybody/analysis/energy.hpp>
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/vehicle/m113_vehicle.hpp>
+
+namespace polybody::m113 {
+
+/// Where tracks of rigid links come to rest on the held vehicle, over wheels that just touch the ground: the chain of straight runs of
+/// `wrap_track` knows no ground, and hangs where it is long. Found by dynamic relaxation with kinetic damping, without friction: the
+/// track is let go, and stopped where its kinetic energy is largest, again and again [Day 1965; Barnes 1999].
+/// \throws InvalidInput, NewtonStalled; Error where it does not come to rest.
+inline TrackStart settled_track(VehicleOptions options = {}) {
+  options.held = true;
+  options.friction = false;
+  options.closure = Closure::in_plane;
+  options.start = {};
+  Vehicle<> const bench(Constraint{}, {drive(0.0), drive(0.0)}, options);
+  State x = bench.model.reference_state();
+  auto const& side = bench.side(Side::left);
+  double fastest = 0.0;  // of all links since the track was let go [m/s]
+  for (int again = 0; again < 300 && (again < 10 || fastest > 1e-3); ++again) {
+    x.v.setZero();
+    x.t = 0.0;
+    auto run = simulate(bench.model, x, GeneralizedAlpha{.rho_inf = 0.0, .tolerance = 1e-6}, {.until = 1.0, .step = 2e-3, .halvings = 8});
+    double energy = 0.0, before = 0.0;
+    fastest = 0.0;
+    do {
+      run.advance();
+      before = energy;
+      energy = polybody::energy(run.system(), x).kinetic;
+      for (auto const& link : side.links) fastest = std::max(fastest, frame(bench.model, x, link.at(Vec3(0, 0, 0))).v.norm());
+    } while (!run.done() && energy > before);
+  }
+  if (fastest > 1e-3)
+    throw Error("M113: the track does not come to rest; let go, it still reaches " + number(fastest) + " m/s. Look at its length and its tensioner.");
+
+  TrackStart start{.idler_x = position(bench.model, x, side.idler[0].at(Vec3(0, 0, 0))).x(), .links = {}};
+  std::vector<Vec2> pins;
+  for (auto const& link : side.links) {
+    Vec3 const pin = position(bench.model, x, LinkOf<Rigid<>>::front(link));
+    pins.emplace_back(pin.x(), pin.z());
+  }
+  start.links = track_links(track(), pins);
+  return start;
+}
+
+}  // namespace polybody::m113

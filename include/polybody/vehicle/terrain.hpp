@@ -1,0 +1,189 @@
+#pragma once
+/// \file
+/// What vehicles drive on: a height z = h(x, y) above the plane z = 0 of the world, z up, with its slopes.
+/// Not in polybody.hpp: of use to vehicles only.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <polybody/math/dual.hpp>
+#include <polybody/math/monotone_table.hpp>
+#include <polybody/math/shape_functions.hpp>
+
+namespace polybody {
+
+/// A height and its slopes; (−∂h/∂x, −∂h/∂y, 1) is normal to the ground.
+template <StateScalar T>
+struct Height {
+  T z;        ///< h [m]
+  T slope_x;  ///< ∂h/∂x
+  T slope_y;  ///< ∂h/∂y
+};
+
+/// A height with continuous slopes, and a bound that no height exceeds, infinite where none is known: what lies above it touches
+/// nothing. Of dual numbers the slopes carry their derivatives, too.
+template <class G>
+concept Terrain = requires(G const terrain, double x, Dual<2> d, std::string const name) {
+  { terrain.template height<double>(x, x) } -> std::same_as<Height<double>>;
+  { terrain.template height<Dual<2>>(d, d) } -> std::same_as<Height<Dual<2>>>;
+  { terrain.highest() } -> std::convertible_to<double>;
+  terrain.check(name);
+};
+
+namespace detail {
+/// A height at one point and its derivatives up to the second.
+struct Relief {
+  double z = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+};
+/// The height that follows the derivatives of x and y: dh = h,x dx + h,y dy, and so for the slopes. It is NaN where x or y is.
+template <StateScalar T>
+Height<T> follow(Relief const& h, T const& x, T const& y) {
+  T const dx = x - value_of(x), dy = y - value_of(y);
+  return {dx * h.x + dy * h.y + h.z, dx * h.xx + dy * h.xy + h.x, dx * h.xy + dy * h.yy + h.y};
+}
+}  // namespace detail
+
+/// The plane at the height z.
+struct FlatGround {
+  double z = 0.0;  ///< [m]
+
+  void check(std::string const& name) const {
+    if (!std::isfinite(z)) throw InvalidInput(name + ": the height of the ground must be finite, but is " + number(z) + ".");
+  }
+  double highest() const { return z; }
+  template <StateScalar T>
+  Height<T> height(T const&, T const&) const {
+    return {T(z), T(0.0), T(0.0)};
+  }
+};
+
+/// Waves h = a sin(2πx/l) without end, the same for every y.
+struct Washboard {
+  Required<double> amplitude;   ///< a, half the height from trough to crest [m]
+  Required<double> wavelength;  ///< l [m]
+
+  void check(std::string const& name) const {
+    require_not_negative(amplitude, name + ": the amplitude");
+    require_positive(wavelength, name + ": the wavelength");
+  }
+  double highest() const { return amplitude; }
+  template <StateScalar T>
+  Height<T> height(T const& x, T const&) const {
+    using std::cos, std::sin;
+    double const k = 2.0 * std::numbers::pi / wavelength;
+    T const phase = x * k;
+    return {sin(phase) * amplitude.value, cos(phase) * (amplitude * k), T(0.0)};
+  }
+};
+
+/// A bump H c((x − x₀)/L) c((y − y₀)/W) with c(s) = ½ (1 + cos 2πs) for |s| < ½, else zero; a hole where H is negative.
+struct Bump {
+  Required<double> x;       ///< x₀, of its middle [m]
+  Required<double> length;  ///< L, along x from foot to foot [m]
+  Required<double> height;  ///< H, of its middle [m]
+  double y = 0.0;           ///< y₀, of its middle [m]
+  double width = std::numeric_limits<double>::infinity();  ///< W, along y from foot to foot [m]; infinite: c = 1
+};
+
+/// Bumps on the plane z = 0; where they overlap they add up.
+class BumpCourse {
+ public:
+  /// \throws InvalidInput naming `what` and the bump, unless lengths and widths are positive and the other numbers finite.
+  explicit BumpCourse(std::vector<Bump> bumps, std::string const& what = "BumpCourse") : bumps_(std::move(bumps)) {
+    for (std::size_t i = 0; i < bumps_.size(); ++i) {
+      Bump const& b = bumps_[i];
+      std::string const bump = what + ": bump " + std::to_string(i + 1);
+      require_finite(Vec3(b.x, b.y, b.height), bump + ": its middle and height");
+      require_positive(b.length, bump + ": the length");
+      if (!(b.width > 0.0))
+        throw InvalidInput(bump + ": the width must be positive, but is " + number(b.width) +
+                           ". Leave it out for a bump right across.");
+      double together = 0.0;  // all bumps over any point of this one overlap it
+      for (Bump const& other : bumps_)
+        if (std::abs(other.x - b.x) < 0.5 * (other.length + b.length) && std::abs(other.y - b.y) < 0.5 * (other.width + b.width))
+          together += std::max(0.0, other.height.value);
+      highest_ = std::max(highest_, together);
+    }
+  }
+
+  void check(std::string const&) const {}  ///< the constructor did
+  double highest() const { return highest_; }
+  template <StateScalar T>
+  Height<T> height(T const& x, T const& y) const {
+    detail::Relief h;
+    for (Bump const& b : bumps_) {
+      double const u = value_of(x) - b.x, v = value_of(y) - b.y;
+      if (!(std::abs(u) < 0.5 * b.length && std::abs(v) < 0.5 * b.width)) continue;
+      std::array<double, 3> const f = hump(u, b.length), g = hump(v, b.width);
+      h.z += b.height * f[0] * g[0];
+      h.x += b.height * f[1] * g[0];
+      h.y += b.height * f[0] * g[1];
+      h.xx += b.height * f[2] * g[0];
+      h.xy += b.height * f[1] * g[1];
+      h.yy += b.height * f[0] * g[2];
+    }
+    return detail::follow(h, x, y);
+  }
+
+ private:
+  /// c(u/L), its slope and its curvature by u.
+  static std::array<double, 3> hump(double u, double length) {
+    double const k = 2.0 * std::numbers::pi / length, cosine = std::cos(k * u);
+    return {0.5 * (1.0 + cosine), -0.5 * k * std::sin(k * u), -0.5 * k * k * cosine};
+  }
+
+  std::vector<Bump> bumps_;
+  double highest_ = 0.0;
+};
+
+/// A road through points (x, z), the same for every y. It rises where they rise and falls where they fall, so it has no hump that
+/// they have not [Fritsch & Carlson 1980; slopes of MonotoneTable]. At both ends it is level, and constant beyond them. Copies
+/// share the points.
+class RoadProfile {
+ public:
+  struct Point {
+    double x, z;  ///< [m]
+  };
+
+  /// \throws InvalidInput naming `what` unless there are two points or more, finite, with x strictly increasing.
+  explicit RoadProfile(std::vector<Point> const& points, std::string const& what = "RoadProfile") {
+    std::vector<MonotoneTable::Point> entries;
+    for (Point const& p : points) entries.push_back({p.x, p.z});
+    MonotoneTable const table(entries, what);
+    std::vector<Knot> knots;
+    for (Point const& p : points) knots.push_back({p.x, p.z, table.slope(p.x)});
+    knots.front().slope = knots.back().slope = 0.0;
+    for (Knot const& k : knots) highest_ = std::max(highest_, k.z);
+    knots_ = std::make_shared<std::vector<Knot> const>(std::move(knots));
+  }
+
+  void check(std::string const&) const {}  ///< the constructor did
+  double highest() const { return highest_; }
+  template <StateScalar T>
+  Height<T> height(T const& x, T const& y) const {
+    double const at = value_of(x);
+    auto const after = std::upper_bound(knots_->begin(), knots_->end(), at, [](double v, Knot const& k) { return v < k.x; });
+    if (after == knots_->begin() || after == knots_->end())
+      return detail::follow({.z = after == knots_->begin() ? knots_->front().z : knots_->back().z}, x, y);
+    Knot const &a = *(after - 1), &b = *after;
+    ShapeValues<4> const h = hermite_shape((at - a.x) / (b.x - a.x), b.x - a.x);
+    auto const of = [&](std::array<double, 4> const& s) { return s[0] * a.z + s[1] * a.slope + s[2] * b.z + s[3] * b.slope; };
+    return detail::follow({.z = of(h.s), .x = of(h.ds), .xx = of(h.dds)}, x, y);
+  }
+
+ private:
+  struct Knot {
+    double x, z, slope;
+  };
+  std::shared_ptr<std::vector<Knot> const> knots_;
+  double highest_ = -std::numeric_limits<double>::infinity();
+};
+
+static_assert(Terrain<FlatGround> && Terrain<Washboard> && Terrain<BumpCourse> && Terrain<RoadProfile>);
+
+}  // namespace polybody

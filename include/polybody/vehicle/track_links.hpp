@@ -1,0 +1,48 @@
+#pragma once
+/// \file
+/// The links of a track under each body formulation. Not in polybody.hpp: of use to vehicles only.
+
+#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/vehicle/m113.hpp>
+
+namespace polybody::m113 {
+
+/// How a link is made as a body of type B, and which points of it are its pins and its middle. `placement` is that of the link's centre,
+/// x to the front pin, z to the wheels.
+template <class B>
+struct LinkOf;
+
+namespace detail {
+inline Mat3 principal(Triple const& moments) { return Vec3(moments).asDiagonal(); }
+/// A link of steel with the section of §3.6: [m113::cable_width × cable_height], x from the rear pin to the front pin.
+inline Bar link_bar(Placement placement) {
+  placement.origin -= placement.axes.col(0) * (0.5 * pitch);
+  return {.length = pitch,
+          .section = Rectangle{.height = cable_width, .width = cable_height},
+          .material = Material{.density = density, .young = youngs_modulus, .poisson = 0.5 * youngs_modulus / shear_modulus - 1.0},
+          .placement = placement};
+}
+}  // namespace detail
+
+template <class RotationCoordinates>
+struct LinkOf<Rigid<RotationCoordinates>> {
+  using Body = Rigid<RotationCoordinates>;
+  static Body make(Solid const& solid, Placement const& at) { return Body(solid.mass, detail::principal(solid.inertia), at); }
+  static auto front(BodyHandle<Body> const& link) { return link.at(Vec3(0.5 * pitch, 0, 0)); }
+  static auto rear(BodyHandle<Body> const& link) { return link.at(Vec3(-0.5 * pitch, 0, 0)); }
+  static auto middle(BodyHandle<Body> const& link) { return link.at(Vec3(0, 0, 0)); }
+};
+
+/// Elements that run from the rear pin to the front pin, one unless said otherwise. The mass of `solid` is in the section.
+template <class Strain, int axial_points, int bending_points>
+struct LinkOf<AncfCable<Strain, axial_points, bending_points>> {
+  using Body = AncfCable<Strain, axial_points, bending_points>;
+  static Body make(Solid const&, Placement const& at) { return Body::from(detail::link_bar(at), 1); }
+  static auto front(BodyHandle<Body> const& link) { return link.at(link.body.length()); }
+  static auto rear(BodyHandle<Body> const& link) { return link.at(0.0); }
+  static auto middle(BodyHandle<Body> const& link) { return link.at(0.5 * link.body.length()); }
+};
+
+}  // namespace polybody::m113

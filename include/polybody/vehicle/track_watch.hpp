@@ -1,0 +1,126 @@
+#pragma once
+/// \file
+/// Whether tracks are where they belong: pins in the valleys of their sprocket one after the other, links on the wheels and not in them,
+/// the chain near its path. Not in polybody.hpp: of use to vehicles only.
+
+#include <cmath>
+#include <string>
+
+#include <polybody/analysis/contacts.hpp>
+#include <polybody/analysis/observe.hpp>
+#include <polybody/analysis/run_options.hpp>
+#include <polybody/vehicle/m113_vehicle.hpp>
+
+namespace polybody::m113 {
+
+/// Pins of one side on their sprocket.
+struct Seating {
+  int seated = 0;    ///< pins between the teeth
+  int lost_at = -1;  ///< the first link whose front pin does not follow the one before by one valley; −1 if all do
+  bool holds() const { return seated >= 2 && lost_at < 0; }
+};
+
+/// What a track may do wrong, in a state.
+struct TrackFault {
+  double depth = 0.0;      ///< of the deepest contact [m]
+  Index link = 0;          ///< where that is,
+  std::string against;     ///< and against what
+  double sideways = 0.0;   ///< farthest that a link's middle is off the track's middle plane of the chassis [m]
+  double off_path = 0.0;   ///< farthest that a pin is off the chain of the start, seen from the chassis [m]
+};
+
+/// Pins count that are nearer to the axle than the tips of the teeth; each of them has its valley, and links follow one another by one.
+template <class V>
+Seating seating(V const& vehicle, State const& x, Side side) {
+  auto const& parts = vehicle.side(side);
+  Frame<double> const sprocket = frame(vehicle.model, x, parts.sprocket[0].at(Vec3(0, 0, 0)));
+  using L = typename V::LinkType;
+  Seating found;
+  long before = 0;
+  bool follows = false;
+  auto const pin_of = [&](int i) -> Vec3 {
+    return sprocket.A.transpose() * (position(vehicle.model, x, LinkOf<L>::front(parts.links[std::size_t(i % links)])) - sprocket.r);
+  };
+  auto const within = [](Vec3 const& p) { return std::hypot(p.x(), p.z()) < tip_radius; };
+  int first = 0;
+  while (first < links && within(pin_of(first))) ++first;  // begin outside
+  for (int k = first; k < first + links; ++k) {
+    Vec3 const p = pin_of(k);
+    if (!within(p)) {
+      follows = false;
+      continue;
+    }
+    long const valley = std::lround((std::atan2(p.x(), p.z()) - first_valley) * teeth / (2.0 * std::numbers::pi));
+    if (follows && found.lost_at < 0 && ((valley - before) % teeth + teeth) % teeth != 1) found.lost_at = k % links;
+    ++found.seated;
+    before = valley;
+    follows = true;
+  }
+  return found;
+}
+
+/// For `RunOptions::events`: zero where a track jumps a tooth or leaves its sprocket. The vehicle must outlive the run.
+template <class V>
+Event track_lost(V const& vehicle, Side side) {
+  return {.name = std::string(side == Side::left ? "the left" : "the right") + " track leaves its sprocket",
+          .value = [&vehicle, side](State const& x) { return seating(vehicle, x, side).holds() ? 1.0 : -1.0; },
+          .stops = true,
+          .tolerance = 1e-4};
+}
+
+/// In a sentence: time, side and link of a track that is not on its sprocket; empty if both are.
+template <class V>
+std::string track_trouble(V const& vehicle, State const& x) {
+  std::string text;
+  for (Side const side : {Side::left, Side::right}) {
+    Seating const s = seating(vehicle, x, side);
+    if (s.holds()) continue;
+    if (!text.empty()) text += ' ';
+    text += "At t = " + number(x.t) + " s the " + (side == Side::left ? "left" : "right") + " track ";
+    text += s.lost_at >= 0 ? "has jumped a tooth of its sprocket at link " + std::to_string(s.lost_at) + "."
+                           : "has left its sprocket: " + std::to_string(s.seated) + " of its pins are between teeth.";
+    text += " Tighten the tensioner or accelerate less.";
+  }
+  return text;
+}
+
+/// The faults of one side; `system` must have been evaluated at x. \param start where the links were placed
+template <class V>
+TrackFault track_fault(V const& vehicle, System<typename V::ModelType> const& system, State const& x, Side side, TrackStart const& start) {
+  auto const& parts = vehicle.side(side);
+  TrackFault worst;
+  for_each_contact(system, parts.contacts[0], [&](TouchingPoint const& p) {
+    if (p.depth <= worst.depth) return;
+    worst.depth = p.depth;
+    worst.link = p.body;
+    worst.against = *p.against;
+  });
+  Frame<double> const hull = frame(vehicle.model, x, vehicle.chassis[0].at(Vec3(0, 0, 0)));
+  std::vector<Vec2> path;
+  for (TrackLink const& link : start.links) path.push_back(link.centre + 0.5 * pitch * Vec2(std::cos(link.angle), -std::sin(link.angle)));
+  for (auto const& link : parts.links) {
+    Vec3 const middle = hull.A.transpose() * (position(vehicle.model, x, LinkOf<typename V::LinkType>::middle(link)) - hull.r);
+    Vec3 const pin = hull.A.transpose() * (position(vehicle.model, x, LinkOf<typename V::LinkType>::front(link)) - hull.r);
+    worst.sideways = std::max(worst.sideways, std::abs(middle.y() - sign(side) * track_y));
+    Vec2 const p(pin.x() + m113::chassis.x, pin.z() + m113::chassis.z);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      Vec2 const a = path[i], run = path[(i + 1) % path.size()] - a;
+      double const share = std::clamp((p - a).dot(run) / run.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (p - a - share * run).norm());
+    }
+    worst.off_path = std::max(worst.off_path, nearest);
+  }
+  return worst;
+}
+
+/// A sentence where a step is longer than a sixth of the time in which a tooth passes, 2π/(N ω): such a step sees teeth as noise. Empty
+/// where it is not. \param speed ω, the sprocket's fastest [rad/s]
+inline std::string drive_warning(double speed, double step) {
+  double const passing = 2.0 * std::numbers::pi / (teeth * std::abs(speed));
+  if (step <= passing / 6.0) return {};
+  return "At " + number(speed) + " rad/s a tooth passes in " + number(1e3 * passing) + " ms, which steps of " + number(1e3 * step) +
+         " ms do not resolve. Take steps of " + number(1e3 * passing / 6.0) + " ms or less.";
+}
+
+}  // namespace polybody::m113

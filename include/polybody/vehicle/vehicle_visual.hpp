@@ -1,0 +1,69 @@
+#pragma once
+/// \file
+/// What the vehicle of m113_vehicle.hpp looks like. Not in polybody.hpp: of use to vehicles only.
+
+#include <polybody/analysis/visual.hpp>
+#include <polybody/vehicle/m113_vehicle.hpp>
+
+namespace polybody::m113 {
+
+namespace detail {
+/// The sprocket's rim, tooth by tooth, as two rings along y.
+inline Surface toothed_wheel(double width) {
+  SprocketProfile const profile{.teeth = teeth, .pitch = pitch, .pin_radius = pin_radius, .valley_radius = valley_radius, .flank = flank,
+                                .tip_radius = tip_radius};
+  Vec2 const corner = profile.corner();
+  std::vector<Vec2> outline;  // (z, x), from z towards x
+  for (int k = 0; k < teeth; ++k) {
+    double const middle = first_valley + 2.0 * std::numbers::pi * k / teeth;
+    auto const add = [&](double radial, double across) {
+      outline.emplace_back(radial * std::cos(middle) - across * std::sin(middle), radial * std::sin(middle) + across * std::cos(middle));
+    };
+    add(corner[0], -corner[1]);
+    for (int i = -3; i <= 3; ++i) {
+      double const phi = flank * i / 3.0;
+      add(profile.arc_centre() - valley_radius * std::cos(phi), valley_radius * std::sin(phi));
+    }
+    add(corner[0], corner[1]);
+  }
+  int const n = int(outline.size());
+  Surface s = swept(2, n);
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i < n; ++i) s.points[std::size_t(k * n + i)] = Vec3(outline[std::size_t(i)][1], (k - 0.5) * width, outline[std::size_t(i)][0]);
+  return s;
+}
+}  // namespace detail
+
+/// Hull, wheels with their rims, arms, sprockets with their teeth, and shoes with their horns; cables are swept.
+template <class V>
+Visual<typename V::ModelType> vehicle_visual(V const& vehicle) {
+  Visual<typename V::ModelType> visual(vehicle.model);
+  Vec3 const y = Vec3::UnitY();
+  visual.attach(vehicle.chassis[0].at(Vec3(0.1, 0, 0.35)), box({4.6, 1.5, 0.9}), "hull");
+  visual.attach(vehicle.chassis[0].at(Vec3(0.1, 0, 0.55)), box({4.6, 2.54, 0.5}), "sponsons");
+  for (auto const& side : vehicle.sides) {
+    auto const drum = [&](auto const& body, double radius, std::string const& name) {
+      for (double const rim : {-rim_y, rim_y}) visual.attach(body.at(Vec3(0, rim, 0)), cylinder(radius, rim_width, y, 32), name);
+      visual.attach(body.at(Vec3(0, 0, 0)), cylinder(0.3 * radius, 2.0 * rim_y, y), name + " hub");
+      visual.attach(body.at(Vec3(0.6 * radius, rim_y + 0.5 * rim_width, 0)), cylinder(0.1 * radius, 0.02, y), name + " bolt");
+    };
+    for (auto const& wheel : side.wheels) drum(wheel, wheel_radius, wheel.name);
+    drum(side.idler[0], idler_radius, side.idler[0].name);
+    for (auto const& arm : side.arms) visual.attach(arm.at(Vec3(0, 0, 0)), box({arm_length, 0.08, 0.08}), arm.name);
+    for (double const ring : {-tooth_y, tooth_y})
+      visual.attach(side.sprocket[0].at(Vec3(0, ring, 0)), detail::toothed_wheel(0.03), side.sprocket[0].name);
+    visual.attach(side.sprocket[0].at(Vec3(0, 0, 0)), cylinder(0.12, 2.0 * tooth_y, y), side.sprocket[0].name + " hub");
+    for (auto const& link : side.links) {
+      using Link = typename V::LinkType;
+      if constexpr (Link::observes == Observes::frame) {
+        visual.attach(LinkOf<Link>::middle(link), box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}), link.name);
+        visual.attach(link.at(Vec3(horn)), box(horn_size), link.name + " horn");
+      } else {
+        visual.sweep(link, detail::link_bar({}), 4);
+      }
+    }
+  }
+  return visual;
+}
+
+}  // namespace polybody::m113

@@ -1,0 +1,183 @@
+#include <polybody/vehicle/m113_vehicle.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/refusal.hpp"
+#include "support/vehicle_runs.hpp"
+
+using namespace polybody;
+
+namespace m113_vehicle_test {
+
+using Car = m113::Vehicle<>;
+using Drives = std::array<Ramp, 2>;
+
+Drives still() { return {m113::drive(0.0), m113::drive(0.0)}; }
+Drives quick(double left, double right) { return {quick_drive(left), quick_drive(right)}; }
+
+Car car(Drives const& drives, m113::VehicleOptions options = {}) {
+  options.start = track_at_rest();
+  return Car(Constraint{}, drives, options);
+}
+
+// Lowest place of the hull on its way [m], below the start.
+double dip_of(m113::VehicleOptions const& options, double until) {
+  Car const vehicle = car(still(), options);
+  State x = vehicle.model.reference_state();
+  double const start = hull_of(vehicle, x).r.z();
+  double lowest = 0.0;
+  run_vehicle(vehicle.model, x, until, 1e-3, [&](State const& now, auto&) { lowest = std::min(lowest, hull_of(vehicle, now).r.z() - start); });
+  return -lowest;
+}
+
+// M113.md §1.3 decodes Table 3.4: 155 bodies and the ground with seven coordinates each.
+TEST(M113Vehicle, CountsAsTheThesisDoes) {
+  m113::VehicleOptions const options{.ground_body = true};
+  Vec<double, 5> const ones = Vec<double, 5>::Ones();
+  Census const ideal = census(m113::Vehicle<Rigid<EulerParameters>>(Constraint{}, still(), options).model);
+  EXPECT_EQ(ideal.coordinates, 1092);
+  EXPECT_EQ(ideal.constraints, 924);
+  EXPECT_EQ(ideal.degrees_of_freedom, 168);
+  Census const penalty = census(m113::Vehicle<Rigid<EulerParameters>, PenaltyPerRow<5>>({1e9 * ones, 1e5 * ones}, still(), options).model);
+  EXPECT_EQ(penalty.coordinates, 1092);
+  EXPECT_EQ(penalty.constraints, 294);
+  EXPECT_EQ(penalty.degrees_of_freedom, 798);
+  // unit quaternions count the same
+  EXPECT_EQ(census(m113::Vehicle<>(Constraint{}, still(), options).model).degrees_of_freedom, 168);
+  // loops that close in their plane by two rows have the freedoms that are really there
+  EXPECT_EQ(census(Car(Constraint{}, still(), {.closure = m113::Closure::in_plane}).model).degrees_of_freedom, 164);
+  // 128 links of 8 coordinates beside 28 bodies of 7 (the ground among them); the thesis has a 29th: 1227, 1060, 167
+  Census const cable = census(m113::Vehicle<AncfCable<>, AncfLinear>({}, still(), options).model);
+  EXPECT_EQ(cable.coordinates, 1220);
+  EXPECT_EQ(cable.constraints, 166);
+  EXPECT_EQ(cable.degrees_of_freedom, 1054);
+}
+
+// Thesis Figure 3.7: 7 cm with suspension. 0.64 cm without; M113.md §9 finds 0.86 to 0.92 cm of these data.
+TEST(M113Vehicle, DropsOntoItsSpringsByTheThesisSevenCentimetres) {
+  double const sprung = dip_of({}, 0.3), bare = dip_of({.suspension = false}, 0.15);
+  EXPECT_NEAR(sprung, 0.07, 0.01);
+  EXPECT_GT(bare, 0.004);
+  EXPECT_LT(bare, 0.010);
+  EXPECT_GT(sprung / bare, 6.0);
+}
+
+TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
+  Car const vehicle = car(still());
+  State x = vehicle.model.reference_state();
+  double up = 0.0, samples = 0.0, deepest = 0.0, stray = 0.0;
+  run_vehicle(vehicle.model, x, 2.0, 1e-3, [&](State const& now, auto& system) {
+    if (now.t > 1.5) {
+      for (auto const& side : vehicle.sides)
+        for_each_contact(system, side.contacts[0], [&](TouchingPoint const& p) {
+          if (*p.against == "ground") up += p.force.z();
+        });
+      ++samples;
+    }
+    for (auto const s : {m113::Side::left, m113::Side::right}) {
+      m113::TrackFault const fault = track_fault(vehicle, system, now, s, track_at_rest());
+      deepest = std::max(deepest, fault.depth);
+      stray = std::max(stray, fault.sideways);
+    }
+  });
+  EXPECT_NEAR(up / samples, 9.81 * m113::thesis.total(), 0.01 * 9.81 * m113::thesis.total());
+  // the heaviest load at rest is that of a wheel, 15.9 t/10 on two rims: 2 mm; three times as much in the first dip
+  EXPECT_LT(deepest, 0.0062);
+  EXPECT_LT(stray, 1e-6);
+  EXPECT_LT(hull_of(vehicle, x).v.norm(), 0.05);
+}
+
+TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted) {
+  Car const vehicle = car(quick(6.0, 6.0));
+  State x = vehicle.model.reference_state();
+  EnergyAudit audit(vehicle.model);
+  audit.record(x);
+  double speed = 0.0, count = 0.0, depth = 0.0, off = 0.0;
+  bool held = true;
+  run_vehicle(vehicle.model, x, 2.2, 5e-4, [&](State const& now, auto& system) {
+    audit.record(now);
+    if (now.t > 1.0) {  // one surge on the tensioners takes 1.2 s
+      speed += hull_of(vehicle, now).v.x();
+      ++count;
+    }
+    for (auto const s : {m113::Side::left, m113::Side::right}) {
+      held = held && seating(vehicle, now, s).holds();
+      m113::TrackFault const fault = track_fault(vehicle, system, now, s, track_at_rest());
+      depth = std::max(depth, fault.depth);
+      off = std::max(off, fault.sideways);
+    }
+  });
+  EXPECT_TRUE(held);
+  EXPECT_NEAR(speed / count, 6.0 * m113::rolling_radius, 0.02 * 6.0 * m113::rolling_radius);
+  EXPECT_LT(audit.relative(), 0.01);
+  EXPECT_GT(audit.work_of_drives(), 0.5 * m113::thesis.total() * 2.0);  // of some 1.45 m/s
+  EXPECT_LT(depth, 0.010);
+  EXPECT_LT(off, 1e-3);
+  EXPECT_LT(std::abs(hull_of(vehicle, x).r.y()), 1e-4);
+  EXPECT_LT(std::abs(hull_of(vehicle, x).A(1, 0)), 1e-4);
+}
+
+TEST(M113Vehicle, MovesTheSameWhereverItsTracksAreCut) {
+  std::vector<Vec3> ends;
+  for (auto const& [cut, closure] : {std::pair{0, m113::Closure::stiff_spring}, {17, m113::Closure::stiff_spring}, {45, m113::Closure::in_plane}}) {
+    Car const vehicle = car(quick(10.0, 10.0), {.cut = cut, .closure = closure});
+    State x = vehicle.model.reference_state();
+    run_vehicle(vehicle.model, x, 0.7, 5e-4, [](auto&...) {});
+    ends.push_back(hull_of(vehicle, x).r);
+  }
+  // what a spring of 1e9 N/m gives, some 1e-5 m under 10 kN, is all that may differ
+  EXPECT_LT((ends[1] - ends[0]).norm(), 1e-4);
+  EXPECT_LT((ends[2] - ends[0]).norm(), 1e-4);
+}
+
+TEST(M113Vehicle, TurnsToTheSideOfTheSlowerTrack) {
+  Car const pivot = car(quick(5.0, -5.0));
+  State x = pivot.model.reference_state();
+  run_vehicle(pivot.model, x, 1.2, 1e-3, [](auto&...) {});
+  Frame<double> const f = hull_of(pivot, x);
+  double const track_speed = 5.0 * m113::rolling_radius;
+  EXPECT_LT(f.w.z(), -0.2 * track_speed / m113::track_y);       // to the right, and tracks that skid
+  EXPECT_GT(f.w.z(), -1.0 * track_speed / m113::track_y);       // turn it by less than if they rolled
+  EXPECT_LT(Vec3(f.v).head<2>().norm(), 0.3 * track_speed);     // about its own middle
+  for (auto const s : {m113::Side::left, m113::Side::right}) EXPECT_TRUE(seating(pivot, x, s).holds());
+}
+
+// A slack track and a drive that snatches: the teeth pass under the pins.
+TEST(M113Vehicle, TrackThatJumpsIsAnEventWithTimeAndLink) {
+  m113::VehicleOptions options{.preload = -20.0e3};
+  options.start = track_at_rest();
+  Ramp const snatch{.target = 150.0, .duration = 0.1, .start = 0.02, .rounding = 0.02};
+  Car const vehicle(Constraint{}, {snatch, snatch}, options);
+  State x = vehicle.model.reference_state();
+  auto run = simulate(vehicle.model, x, vehicle_integrator(),
+                      {.until = 3.0, .step = 5e-4, .events = {track_lost(vehicle, m113::Side::left), track_lost(vehicle, m113::Side::right)},
+                       .halvings = 8});
+  run.run();
+  ASSERT_TRUE(run.report().stopped);
+  EXPECT_TRUE(has(run.report().events.at(0).name, "track leaves its sprocket"));
+  EXPECT_NEAR(run.report().events.at(0).time, x.t, 1e-9);
+  std::string const text = track_trouble(vehicle, x);
+  EXPECT_TRUE(has(text, "At t = ")) << text;
+  EXPECT_TRUE(has(text, "track has")) << text;
+  EXPECT_TRUE(x.q.allFinite() && x.v.allFinite());
+}
+
+TEST(M113Vehicle, SpeedThatStepsDoNotResolveIsWarnedOf) {
+  EXPECT_EQ(m113::drive_warning(25.0, 1e-3), "");
+  EXPECT_EQ(m113::drive_warning(80.0, 1e-3), "");
+  // a tenth of 2π/80 s is 7.85 ms; a sixth of that 1.31 ms
+  EXPECT_TRUE(has(m113::drive_warning(80.0, 2e-3), "a tooth passes in 7.85398163 ms, which steps of 2 ms do not resolve"));
+  EXPECT_TRUE(has(m113::drive_warning(-80.0, 2e-3), "Take steps of 1.3089969"));
+}
+
+TEST(M113Vehicle, RefusesAStartThatCannotBeMeant) {
+  auto const made = [](m113::VehicleOptions const& o) { return refusal([&] { Car(Constraint{}, still(), o); }); };
+  EXPECT_TRUE(has(made({.cut = 64}), "one of 0 … 63, but 64 is asked for"));
+  EXPECT_TRUE(has(made({.cut = -1}), "but -1 is asked for"));
+  m113::VehicleOptions short_track;
+  short_track.start.links.pop_back();
+  EXPECT_TRUE(has(made(short_track), "the start needs the places of 64 links, but has 63"));
+  EXPECT_TRUE(has(made({.preload = std::numeric_limits<double>::quiet_NaN()}), "the preload must be finite"));
+}
+
+}  // namespace m113_vehicle_test
