@@ -13,7 +13,7 @@ namespace {
 struct Options : Settings {
   std::string track = "constraint", figure, turn;
   double penalty = m113::pin_stiffness;
-  bool compare = false, no_plot = false;
+  bool compare = false, halve = false, no_plot = false;
 };
 
 GeneralizedAlpha integrator(Options const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
@@ -71,6 +71,31 @@ void over_time(Options const& o, Runs const& runs, std::string const& output, st
   draw(o, f, name);
 }
 
+// Forces in the watched pin from 1 to 4 s, longitudinal and vertical, up to 30 Hz: how far those of `run` are off those of `first`, as root
+// mean squares. Samples of `run` are `every` times as many.
+double force_difference(Runs const& first, std::size_t k, Runs const& runs, std::size_t run, std::size_t every = 1) {
+  double off = 0.0, all = 0.0;
+  for (char const* const output : {"joint force x [N]", "joint force z [N]"}) {
+    LowPass const filter{.cut_off = 30.0, .mirrored = true};
+    std::vector<double> const a = low_pass(first.times(k), first.history(k, output), filter);
+    std::vector<double> const b = low_pass(runs.times(run), runs.history(run, output), filter);
+    for (std::size_t i = 0; i < a.size() && every * i < b.size(); ++i) {
+      if (first.times(k)[i] < 1.0 || first.times(k)[i] > 4.0) continue;
+      off += (a[i] - b[every * i]) * (a[i] - b[every * i]);
+      all += a[i] * a[i];
+    }
+  }
+  return std::sqrt(off / all);
+}
+
+// Over the time after 9 s, of which the first second may still be the end of the ramp's surge.
+double mean_speed(Runs const& runs, std::size_t run) {
+  auto const &t = runs.times(run), &x = runs.history(run, "forward position [m]");
+  std::size_t from = 0;
+  while (from + 1 < t.size() && t[from] < 9.0) ++from;
+  return (x.back() - x[from]) / (t.back() - t[from]);
+}
+
 void report(Options const& o, Runs const& runs) {
   write_report(runs.comparison, o.out / "comparison", !o.no_plot);
   std::cout << runs.comparison << '\n';
@@ -88,6 +113,11 @@ void report(Options const& o, Runs const& runs) {
     std::printf("               deepest contact %.2f mm (%s, t = %.3f s); pins up to %.1f mm off the path of the start, links %.2f mm off their plane\n",
                 1e3 * out.depth, out.deepest.c_str(), out.deepest_time, 1e3 * most("off the path [m]"), 1e3 * most("off the middle plane [m]"));
     std::printf("               joints open by up to %.4f mm; first dip %.2f cm\n", 1e3 * most("largest joint gap [m]"), 1e2 * most("vertical displacement [m]"));
+    if (r.times.back() > 10.0)
+      std::printf("               mean speed from 9 s on %.4f m/s; rolling without slip it is %.4f m/s\n", mean_speed(runs, k), o.speed * m113::rolling_radius);
+    if (k > 0 && r.times.back() >= 4.0 && runs.comparison.runs[0].times.back() >= 4.0)
+      std::printf("               forces in pin %d, 30 Hz, 1 to 4 s: %.2f %% (rms) off those of %s\n", watched_pin, 1e2 * force_difference(runs, 0, runs, k),
+                  runs.comparison.runs.front().name.c_str());
     if (out.relative >= 0.0)
       std::printf("               work of the drives %.1f kJ + gravity %.1f kJ = kinetic %.1f + stored %.1f + dissipated %.1f kJ, %.2f kJ (%.2f %%) left\n",
                   1e-3 * out.drives, 1e-3 * out.gravity, 1e-3 * out.kinetic, 1e-3 * out.stored, 1e-3 * out.dissipated, 1e-3 * out.unaccounted,
@@ -166,10 +196,10 @@ void figures(Options const& o) {
   }
   if (wanted(o, "3.15")) {
     Runs const r = run(o, penalty(o, 1e9), penalty(o, 1e7));
-    Figure f{.title = "Figure 3.15: joint constraint violation, penalty method", .x_label = "t [s]", .y_label = "gap [mm]", .log_y = true};
+    Figure f{.title = "Figure 3.15: joint constraint violation, penalty method", .x_label = "t [s]", .y_label = "gap [mm]", .log_y = true, .y_range = {{1e-4, 10.0}}};
     for (std::size_t k = 0; k < 2; ++k) {
       std::vector<double> gap = r.history(k, "joint gap [m]");
-      for (double& g : gap) g = std::max(g, 1e-9);
+      for (double& g : gap) g = std::max(g, 1e-7);
       f.curves.push_back(curve(k == 0 ? "k = 1e9 N/m" : "k = 1e7 N/m", r.times(k), gap, int(k), 1e3));
     }
     draw(o, f, name("15"));
@@ -187,6 +217,18 @@ void single(Options const& o) {
     f.curves.push_back(curve("", r.history(0, "forward position [m]"), r.history(0, "sideways position [m]"), 0));
     draw(o, f, "path");
   };
+  if (o.halve) {
+    Options half = o;
+    half.step = 0.5 * o.step;
+    Runs const coarse = run(o, ideal(o)), fine = run(half, ideal(half));
+    auto const x = [](Runs const& r) { return r.history(0, "forward position [m]").back(); };
+    std::printf("steps of %g and %g ms: forward position %.4f and %.4f m, %.3f %% apart", 1e3 * o.step, 1e3 * half.step, x(coarse), x(fine),
+                1e2 * std::abs(x(fine) / x(coarse) - 1.0));
+    if (o.until > 10.0) std::printf("; mean speed %.4f and %.4f m/s", mean_speed(coarse, 0), mean_speed(fine, 0));
+    if (o.until >= 4.0) std::printf("; forces in pin %d, 30 Hz, 1 to 4 s, %.2f %% (rms)", watched_pin, 1e2 * force_difference(coarse, 0, fine, 0, 2));
+    std::printf("\n");
+    return;
+  }
   if (o.track == "constraint") go(ideal(o));
   if (o.track == "penalty") go(penalty(o, o.penalty));
   if (o.track == "bushing") go(bushing(o));
@@ -204,6 +246,7 @@ int main(int argc, char** argv) {
   app.add_option("--figure", o.figure, "3.6 to 3.15 of the thesis, table (3.4), or all");
   app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--step", o.step, "[s]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_flag("--halve", o.halve, "ideal pins at this step and at half of it");
   app.add_option("--speed", o.speed, "of the sprockets after 8 s [rad/s]")->capture_default_str();
   app.add_option("--turn", o.turn, "pivot: the right track backwards; curve: the right one at 0.8 of the speed")->check(CLI::IsMember({"pivot", "curve"}));
   app.add_flag("!--no-suspension", o.suspension, "arms welded to the chassis");

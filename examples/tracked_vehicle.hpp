@@ -117,7 +117,7 @@ class Probe {
 
 // What became of a run, beside its histories.
 struct Outcome {
-  std::string name, trouble, deepest;
+  std::string name, trouble = {}, deepest = {};
   double depth = 0.0, deepest_time = 0.0;
   double drives = 0.0, gravity = 0.0, kinetic = 0.0, stored = 0.0, dissipated = 0.0, unaccounted = 0.0, relative = -1.0;  // [J]
 };

@@ -2,20 +2,17 @@
 #include <polybody/io/vtk.hpp>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <source_location>
-#include <sstream>
 
 #include <polybody/bodies/ancf_cable.hpp>
 #include <polybody/bodies/rigid.hpp>
 
 #include "support/refusal.hpp"
+#include "support/vtk_reader.hpp"
 
 namespace vtk_test {
 
@@ -62,27 +59,6 @@ struct VtkFiles : testing::Test {
     model.set_velocity(x, brick, Vec3(0, 0, 2), Vec3(0, 0, 3));
   }
 };
-
-/// What `vtk_read.py` tells, by the words before the numbers; empty where no python has VTK.
-std::vector<std::vector<std::string>> read_by_vtk(fs::path const& collection) {
-  fs::path const script = fs::path(std::source_location::current().file_name()).parent_path() / "vtk_read.py";
-  fs::path const out = collection.string() + ".txt";
-  for (char const* const python : {"python3", "/usr/bin/python3"}) {
-    std::string const what = " -B '" + script.string() + "' '" + collection.string() + "' > '" + out.string() + "' 2> /dev/null";
-    int const status = std::system((python + what).c_str());
-    int const code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    if (code == 77 || code == 127) continue;  // no VTK, no such python
-    EXPECT_EQ(code, 0);
-    std::vector<std::vector<std::string>> lines;
-    std::ifstream stream(out);
-    for (std::string line; std::getline(stream, line);) {
-      std::istringstream words(line);
-      lines.emplace_back(std::istream_iterator<std::string>(words), std::istream_iterator<std::string>());
-    }
-    return lines;
-  }
-  return {};
-}
 
 // Points: 8 + 6·4; polygons: 6 + 2 + 5·4. Numbers are float32, so seven digits.
 TEST_F(VtkFiles, AreReadByVtk) {

@@ -42,7 +42,7 @@ struct LinkOnGround {
       Vec<T, 3> const place = link.r + axes * p.template cast<T>();
       Vec<T, 3> const local = ground.A.transpose() * (place - ground.r);
       Height<T> const h = terrain.template height<T>(local[0], local[1]);
-      if (value_of(h.z) <= value_of(local[2])) continue;
+      if (!(value_of(h.z) > value_of(local[2]))) continue;  // nor where a cable stands upright
       T const nz = T(1.0) / sqrt(h.slope_x * h.slope_x + h.slope_y * h.slope_y + 1.0);
       Vec<T, 3> const n = (up - ground.A.col(0) * h.slope_x - ground.A.col(1) * h.slope_y) * nz;
       visit(ContactPoint<T>{place, n, (h.z - local[2]) * nz});

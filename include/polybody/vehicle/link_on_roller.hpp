@@ -12,7 +12,8 @@ namespace polybody {
 /// The rims of a roller on the inner face of a link. Marker a is the link's centre (x to the front pin, z to the roller), marker b the
 /// roller's centre with its axle along y. A rim is a circle of radius R in its middle plane; it meets the face z = h where its lowest
 /// point is above the link, |s| ≤ p/2, by d = R − (height of the axle above the face). Neighbouring faces end where the next begin; within
-/// `handover` of there the force is shared, (p/2 + ε − |s|)/2ε of it on either, so that a wheel passes from one to the next without a bump.
+/// `handover` of there the force is shared, x² (3 − 2x) of it with x = (p/2 + ε − |s|)/2ε on either, so that a wheel passes from one to the
+/// next without a bump.
 /// Around a bend towards the wheel the strips above the faces overlap.
 /// [after Choi, Lee & Shabana 1998: inner-surface contact with one or both rims]
 template <Observes told = Observes::frame>
@@ -39,11 +40,12 @@ struct LinkOnRoller {
       if (!std::isfinite(y)) throw InvalidInput(name + ": the place of a rim must be finite.");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
-    double const reach = radius + half_thickness + half_width + pitch;
+    double far = 0.0;
+    for (double const y : rims) far = std::max(far, std::abs(y));
+    double const reach = radius + half_thickness + half_width + pitch + far;
     Vec3 const arm = roller.r - link.r;
     if (arm.squaredNorm() > reach * reach) return false;
-    double const along = arm.dot(link.A.col(0)), margin = 0.6 * pitch;
-    return std::abs(along) < margin + std::abs(roller.A.col(1).dot(link.A.col(0))) * reach;
+    return std::abs(arm.dot(link.A.col(0))) < 0.5 * pitch + handover + std::abs(roller.A.col(1).dot(link.A.col(0))) * far;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
@@ -58,7 +60,8 @@ struct LinkOnRoller {
       ContactPoint<T> point{link.r + axes * on_face, -axes.col(2), depth};
       if (value_of(to_end) < 2.0 * handover) {
         double const out = value_of(local[0]) < 0.0 ? -0.5 / handover : 0.5 / handover;
-        point.handover = {to_end * (0.5 / handover), axes.col(0) * T(out), roller.r + roller.A.col(1) * T(rim)};
+        T const x = to_end * (0.5 / handover);
+        point.handover = {x * x * (x * -2.0 + 3.0), axes.col(0) * (x * (T(1.0) - x) * (6.0 * out)), roller.r + roller.A.col(1) * T(rim)};
       }
       visit(point);
     }
@@ -83,8 +86,9 @@ struct HornOnRims {
     require_positive(radius, name + ": the radius of the rims");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
-    double const reach = radius + tip.norm() + 3.0 * play;
-    return (roller.r - link.r).squaredNorm() < reach * reach;
+    Vec3 const arm = roller.r - link.r;
+    double const across = arm.dot(roller.A.col(1)), reach = radius + tip.norm();
+    return arm.squaredNorm() - across * across < reach * reach;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {

@@ -93,7 +93,12 @@ struct PinOnSprocket {
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& sprocket) const {
     Vec3 const arm = link.r + link.A.col(0) * (0.5 * profile.pitch) - sprocket.r;
-    double const across = arm.dot(sprocket.A.col(1)), reach = 1.1 * profile.outer_radius();  // a pin may be askew
+    double const across = arm.dot(sprocket.A.col(1));
+    double far = 0.0;
+    for (double const ring : rings) far = std::max(far, std::abs(ring));
+    Vec3 const axle = sprocket.A.col(1);
+    double const askew = told == Observes::frame ? link.A.col(1).cross(axle).norm() : std::abs(link.A.col(0).dot(axle));
+    double const reach = profile.outer_radius() + far * askew;  // of the pin's middle: at the rings it is nearer by far · askew
     return arm.squaredNorm() - across * across < reach * reach;
   }
   template <StateScalar T, class Visit>
@@ -109,7 +114,7 @@ struct PinOnSprocket {
       T const out = x * s + z * c, side = x * c - z * s;  // along the middle of the valley, and across from z towards x
       bool const ahead = value_of(side) >= 0.0;
       auto const o = profile.template overlap<T>(out, ahead ? side : T(-side));
-      if (value_of(o.depth) <= 0.0) continue;
+      if (!(value_of(o.depth) > 0.0)) continue;  // nor where a cable lies along the axle
       T const across = ahead ? o.tangential : T(-o.tangential);
       Vec<T, 3> const n = sprocket.A.col(0) * (o.radial * s + across * c) + sprocket.A.col(2) * (o.radial * c - across * s);
       visit(ContactPoint<T>{sprocket.r + arm - n * T(profile.pin_radius.value), n, o.depth});

@@ -40,12 +40,20 @@ inline TrackStart settled_track(VehicleOptions options = {}) {
     throw Error("M113: the track does not come to rest; let go, it still reaches " + number(fastest) + " m/s. Look at its length and its tensioner.");
 
   TrackStart start{.idler_x = position(bench.model, x, side.idler[0].at(Vec3(0, 0, 0))).x(), .links = {}};
+  TrackLayout const layout = track();
+  for (TrackCircle const& c : layout.circles) {
+    double const travel = (start.idler_x - c.centre[0]) * layout.tensioner.direction[0];
+    if (c.name == layout.tensioner.circle && !(travel >= layout.tensioner.least && travel <= layout.tensioner.most))
+      throw InvalidInput("M113: under a preload of " + number(options.preload) + " N the idler comes to rest " + number(travel) +
+                         " m from its place in the layout, beyond its travel of " + number(layout.tensioner.least) + " to " +
+                         number(layout.tensioner.most) + " m. Take a preload of 0 to 60 kN.");
+  }
   std::vector<Vec2> pins;
   for (auto const& link : side.links) {
     Vec3 const pin = position(bench.model, x, LinkOf<Rigid<>>::front(link));
     pins.emplace_back(pin.x(), pin.z());
   }
-  start.links = track_links(track(), pins);
+  start.links = track_links(layout, pins);
   return start;
 }
 

@@ -1,0 +1,427 @@
+// Stress after a rigid run against known answers: textbook formulas of rigid rods in motion, and what a cut-off part of a body
+// needs for its own motion. The coupled formulations are met in decoupled_and_coupled_test.cpp.
+#include <polybody/analysis/decoupled_stress.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/analysis/filter.hpp>
+#include <polybody/analysis/simulate.hpp>
+#include <polybody/bodies/matrix_structure.hpp>
+#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/integrators/adams_bashforth_moulton.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/newmark.hpp>
+#include <polybody/integrators/radau.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/weld.hpp>
+
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace decoupled_stress_test {
+
+constexpr double pi = std::numbers::pi, g = 9.81, density = 7800, young = 2e11, length = 1.5, width = 0.03, height = 0.02;
+constexpr double area = width * height, mass = density * area * length;
+
+Bar rod(Placement const& placement = {}) {
+  return {.length = length,
+          .section = Rectangle{.height = height, .width = width},
+          .material = Material{.density = density, .young = young},
+          .placement = placement};
+}
+
+using Pin = Joint<Revolute, Constraint>;
+using Ball = Joint<Spherical, Constraint>;
+using Clamp = Joint<Weld, Constraint>;
+using Arms = Model<Bodies<Rigid<>>, Joints<Pin, Ball, Clamp>, Forces<PointForce<>, PointForce<Ramp>>>;
+using Exact = RungeKutta4<Projection>;  // its accelerations satisfy the rows to rounding
+
+/// A run of `model` from x, of which `body` is recorded.
+template <class M, class B, class I>
+BodyRecord record(M const& model, BodyHandle<B> const& body, State x, I const& integrator, RunOptions const& options) {
+  LoadRecorder recorder(model);
+  recorder.add(body);
+  for (State const& now : simulate(model, x, integrator, options)) recorder.record(now);
+  return recorder.of(body);
+}
+
+double largest(std::vector<Vec6> const& a, std::vector<Vec6> const& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
+  return most;
+}
+
+// σ(x) = ½ ρ ω² (L² − x²), whatever the number of elements, and nothing else.
+TEST(DecoupledStress, OfARotatingRodIsTheCentrifugalOne) {
+  Placement const askew = Placement::at({1, 2, 3}, {0.4, -0.9, 1.7});
+  Arms model;
+  auto const arm = model.add(Rigid<>::from(rod(askew)), "arm");
+  model.connect(Pin{{.axis = askew.axes.col(2)}, {}}, model.ground().at(askew), arm.at(0.0), "pin");
+  State x = model.reference_state();
+  double const omega = 80.0;
+  Vec3 const spin = omega * askew.axes.col(2);
+  model.set_velocity(x, arm, -spin.cross(askew.origin), spin);
+  BodyRecord const run = record(model, arm, x, Exact{}, {.until = 0.01, .step = 5e-4});  // ωh = 0.04: (ωh)⁶/144 a step
+  double const whole = 0.5 * density * omega * omega * length * length;
+  for (Index const n : {1, 3, 8}) {
+    auto const stress = DecoupledStress::quasi_static(structure_of(rod(), n), run);
+    for (double const part : {0.0, 0.1, 1.0 / 3.0, 0.5, 0.77, 0.99, 1.0}) {
+      for (double const s : stress.axial_stress(rod(), part * length, 0.5 * height, 0.5 * width))
+        EXPECT_NEAR(s, whole * (1.0 - part * part), 1e-9 * whole);
+      for (double const e : stress.axial_strain(part * length))
+        EXPECT_NEAR(e, whole / young * (1.0 - part * part), 1e-9 * whole / young);
+    }
+  }
+}
+
+/// A rod hinged at its first end, swinging from the horizontal. With φ from the downward vertical, J φ¨ = −½ m g L sin φ about
+/// the hinge, J = mL²/3 + ρI L, and the part beyond the section at x, of mass m′ = ρA(L − x), needs along the rod, across it and
+/// about its own middle
+///   N = m′ (φ˙² (L + x)/2 + g cos φ),   F = m′ (φ¨ (L + x)/2 + g sin φ),   M = ½ (L − x) F + (m′ (L − x)²/12 + ρI (L − x)) φ¨.
+/// Without ρI: F = ρA g sin φ (L − x)(L − 3x)/4L and M = −ρA g sin φ x (L − x)²/4L, largest at L/3,
+/// where falling chimneys break.
+struct Swing {
+  double axial, across, bending;
+  Swing(double x, double phi, double rate, double rotary) {
+    double const beyond = density * area * (length - x), rest = length - x;
+    double const acceleration = -0.5 * mass * g * length * std::sin(phi) / (mass * length * length / 3.0 + rotary * length);
+    axial = beyond * (rate * rate * 0.5 * (length + x) + g * std::cos(phi));
+    across = beyond * (acceleration * 0.5 * (length + x) + g * std::sin(phi));
+    bending = 0.5 * rest * across + (beyond * rest * rest / 12.0 + rotary * rest) * acceleration;
+  }
+};
+
+// In the plane x–y: the rod's x axis at angle φ − π/2; turning by φ takes x towards y. What the part beyond exerts is the
+// opposite.
+template <class M, class B>
+void swings(M const& model, BodyHandle<B> const& arm) {
+  BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.until = 1.5, .step = 2e-3});
+  double const rotary = constants(rod()).rotary_inertia, weight = mass * g;
+  auto const stress = DecoupledStress::quasi_static(structure_of(rod(), 4), run);
+  double least = 10.0, most = 0.0;
+  for (double const part : {0.0, 0.2, 1.0 / 3.0, 0.5, 0.9, 1.0}) {
+    std::vector<Vec6> const forces = stress.section_forces(part * length);
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      Frame<double> const& f = run.samples[i].frame;
+      double const phi = std::atan2(f.A(1, 0), f.A(0, 0)) + 0.5 * pi;
+      Swing const at(part * length, phi, f.w[2], rotary);
+      Vec6 const expected = (Vec6() << at.axial, -at.across, 0.0, 0.0, 0.0, -at.bending).finished();
+      EXPECT_LT((forces[i] - expected).norm(), 1e-8 * weight) << part << ' ' << run.samples[i].t;
+      least = std::min(least, at.axial / weight);
+      most = std::max(most, at.axial / weight);
+    }
+  }
+  EXPECT_GT(most, 2.4);  // at the lowest point the hinge bears (1 + 3/2) m g
+  EXPECT_LT(least, 1e-3);
+}
+
+TEST(DecoupledStress, OfASwingingRodIsTheTextbooks) {
+  Arms model{Gravity{0, -g, 0}};
+  auto const arm = model.add(Rigid<>::from(rod()), "arm");
+  model.connect(Pin{{.axis = {0, 0, 1}}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
+  swings(model, arm);
+}
+
+TEST(DecoupledStress, OfASwingingRodInThePlaneIsTheTextbooks) {
+  Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Constraint>>> model{Gravity{0, -g, 0}};
+  auto const arm = model.add(planar::Rigid::from(rod()), "arm");
+  model.connect(Joint<planar::Revolute, Constraint>{}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
+  swings(model, arm);
+}
+
+TEST(DecoupledStress, OfAFallingBodyIsNone) {
+  Arms model{Gravity{0, 0, -g}};
+  auto const arm = model.add(Rigid<>::from(rod(Placement::at({0, 0, 0}, {0, 0.7, 0}))), "arm");
+  BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.until = 0.1, .step = 0.01});
+  for (Vec6 const& n : DecoupledStress::quasi_static(structure_of(rod(), 3), run).section_forces(0.4))
+    EXPECT_LT(n.norm(), 1e-12 * mass * g);
+}
+
+// A cantilever under its weight w per length: Q = w (L − x), M = w (L − x)²/2, the upper side in tension. It stays so when it may
+// vibrate but has settled. Loaded at once, in one mode φ with λ = 1.8751041, σ = 0.7340955, ω = (λ/L)² √(EI/ρA) and ∫φ²dx = L:
+// from q¨ = w/ρA · ∫φdx/L · cos ωt, ∫φdx = 2σL/λ and ∫xφdx = 2L²/λ² (twice in parts, φ'''' = (λ/L)⁴φ), the root bears
+//   ½ wL² − ∫ρA xφ q¨ dx = ½ wL² (1 − 8σ/λ³ cos ωt).
+TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
+  Arms model{Gravity{0, -g, 0}};
+  auto const arm = model.add(Rigid<>::from(rod()), "arm");
+  model.connect(Clamp{}, model.ground().at({0, 0, 0}), arm.at(0.0), "clamp");
+  BodyRecord const run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 1.0, .step = 5e-3});
+  double const lambda = 1.875104069, sigma = 0.7340955, w = density * area * g, root = 0.5 * w * length * length;
+  double const omega = std::pow(lambda / length, 2) * height * std::sqrt(young / (12.0 * density));
+  Structure const structure = structure_of(rod(), 6);
+  auto const still = DecoupledStress::quasi_static(structure, run);
+  auto const settled = DecoupledStress::vibrating(structure, run, GeneralizedAlpha{}, {});
+  for (double const x : {0.0, 0.3, 0.8, 1.4}) {
+    double const rest = length - x;
+    Vec6 const expected = (Vec6() << 0.0, -w * rest, 0.0, 0.0, 0.0, -0.5 * w * rest * rest).finished();
+    for (Vec6 const& n : still.section_forces(x)) EXPECT_LT((n - expected).norm(), 1e-9 * root);
+    EXPECT_LT(largest(still.section_forces(x), settled.section_forces(x)), 1e-7 * root);
+    double const fibre = still.axial_stress(rod(), x, 0.5 * height)[0], modulus = width * height * height / 6.0;
+    EXPECT_NEAR(fibre, 0.5 * w * rest * rest / modulus, 1e-9 * root / modulus);
+    EXPECT_NEAR(still.stress(rod(), x, 0.0, 0.0)[0].shear[0], -1.5 * w * rest / area, 1e-9 * w * length / area);
+  }
+  MatX const shape = held_modes(structure, 1);
+  auto const sudden = DecoupledStress::vibrating(structure, run, Exact{}, {.shapes = shape, .settled = false});
+  std::vector<Vec6> const forces = sudden.section_forces(0.0);
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    EXPECT_NEAR(forces[i][5] / -root, 1.0 - 8.0 * sigma / std::pow(lambda, 3) * std::cos(omega * run.samples[i].t), 0.01) << i;
+}
+
+// Cut anywhere, the part beyond needs for its own motion what the section and the loads on it give. Ball joint, follower at the
+// tip, askew, gyroscopic: all six components, rotary inertia of the section included.
+TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
+  Arms model{Gravity{1, -2, -g}};
+  Placement const askew = Placement::at({0, 0, 0}, {0.3, 0.2, -0.4});
+  auto const arm = model.add(Rigid<>::from(rod(askew)), "arm");
+  model.connect(Ball{}, model.ground().at({0, 0, 0}), arm.at(0.0, 0.01, -0.01), "ball");
+  Vec3 const push(40, 60, -80);
+  double const off_y = 0.01, off_z = 0.015, midway = 0.6;
+  model.apply(PointForce<>{.force = push, .axes = LoadAxes::marker}, arm.at(length, off_y, off_z), "tip");
+  model.apply(PointForce<>{.force = -2.0 * push, .axes = LoadAxes::marker}, arm.at(midway), "midway");
+  State x = model.reference_state();
+  Vec3 const spin(3.0, -4.0, 5.0), hinge = askew.axes * Vec3(0.0, 0.01, -0.01);
+  model.set_velocity(x, arm, -spin.cross(hinge), spin);
+  State start = x;
+  assemble(model, start);
+  BodyRecord const run = record(model, arm, start, Exact{}, {.until = 0.4, .step = 1e-3});
+  Structure const structure = structure_of(rod(), 5);
+  auto const stress = DecoupledStress::quasi_static(structure, run);
+  BarConstants const c = constants(rod());
+  double size = 0.0;
+  for (Vec6 const& n : stress.section_forces(0.5)) size = std::max(size, n.norm());
+  for (double const s : {0.0, 0.25, 0.6, 0.7, 1.2, 1.5}) {
+    std::vector<Vec6> const forces = stress.section_forces(s);
+    double const rest = length - s, beyond = c.mass_per_length * rest, along = beyond * rest * rest / 12.0;
+    Mat3 const inertia =
+        Vec3((c.rotary_inertia + *c.rotary_inertia_y) * rest, along + *c.rotary_inertia_y * rest, along + c.rotary_inertia * rest)
+            .asDiagonal();
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      BodySample const& at = run.samples[i];
+      Mat3 const to_body = at.frame.A.transpose();
+      Vec3 const omega = to_body * at.frame.w, alpha = to_body * at.angular_acceleration, middle(0.5 * s, 0, 0);
+      Vec3 const a = to_body * (at.acceleration - run.gravity) + alpha.cross(middle) + omega.cross(omega.cross(middle));
+      Vec3 force = beyond * a, moment = inertia * alpha + omega.cross(inertia * omega) + Vec3(0.5 * rest, 0, 0).cross(force);
+      if (s < length) {  // at the last end the tip's load counts as beyond
+        force -= push;
+        moment -= Vec3(rest, off_y, off_z).cross(push);
+      } else {
+        force = -push;
+        moment = -Vec3(0, off_y, off_z).cross(push);
+      }
+      if (s < midway) {
+        force += 2.0 * push;
+        moment += 2.0 * Vec3(midway - s, 0, 0).cross(push);
+      }
+      Vec6 expected;
+      expected << -force, -moment;
+      EXPECT_LT((forces[i] - expected).norm(), 1e-9 * size) << s << ' ' << i;
+    }
+  }
+  // loads that balance leave the stress the same whatever holds the structure
+  for (ReferenceConditions const& frame :
+       {ReferenceConditions::clamped(5), ReferenceConditions::clamped(2), ReferenceConditions::simply_supported(0, 5)})
+    EXPECT_LT(largest(stress.section_forces(0.7), DecoupledStress::quasi_static(structure, run, {}, frame).section_forces(0.7)),
+              1e-9 * size);
+}
+
+// Any body: an angle of two rods, given to the rigid model by its integrals. The second rod, cut anywhere, is known as above; the
+// corner hands its forces on to the first.
+TEST(DecoupledStress, OfABodyOfSeveralBarsIsThatOfEach) {
+  Bar const first = rod(Placement::at({0.2, 0, 0}));
+  Bar const second = rod(Placement::at({0.2 + length, 0, 0}, {0, 0, 0.5 * pi}));
+  Structure const structure = structure_of({first, second}, {3, 4});
+  Vec3 const centre = structure.first / structure.mass;
+  Mat3 const central = structure.second - structure.mass * centre * centre.transpose();
+  Arms model{Gravity{0, -3, -g}};
+  auto const body =
+      model.add(Rigid<>(structure.mass, central.trace() * Mat3::Identity() - central, Placement::at(centre)), "angle");
+  model.connect(Ball{}, model.ground().at({0.2, 0, 0}), body.at(Vec3(Vec3(0.2, 0, 0) - centre)), "ball");
+  BodyRecord const run = record(model, body, model.reference_state(), Exact{}, {.until = 0.5, .step = 5e-3});
+  auto const stress = DecoupledStress::quasi_static(structure, run);
+  BarConstants const c = constants(rod());
+  for (double const s : {0.0, 0.4, 1.1}) {
+    std::vector<Vec6> const forces = stress.section_forces(s, 1);
+    double const rest = length - s, beyond = c.mass_per_length * rest, along = beyond * rest * rest / 12.0;
+    Mat3 const inertia =
+        Vec3((c.rotary_inertia + *c.rotary_inertia_y) * rest, along + *c.rotary_inertia_y * rest, along + c.rotary_inertia * rest)
+            .asDiagonal();
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      BodySample const& at = run.samples[i];
+      Mat3 const to_bar = (at.frame.A * second.placement.axes).transpose();
+      Vec3 const omega = to_bar * at.frame.w, alpha = to_bar * at.angular_acceleration;
+      Vec3 const middle =
+          second.placement.axes.transpose() * (Vec3(second.placement.origin) - centre) + Vec3(s + 0.5 * rest, 0, 0);
+      Vec3 const force =
+          beyond * (to_bar * (at.acceleration - run.gravity) + alpha.cross(middle) + omega.cross(omega.cross(middle)));
+      Vec6 expected;
+      expected << -force, -(inertia * alpha + omega.cross(inertia * omega) + Vec3(0.5 * rest, 0, 0).cross(force));
+      EXPECT_LT((forces[i] - expected).norm(), 1e-9 * mass * g) << s << ' ' << i;
+    }
+  }
+  std::vector<Vec6> const before = stress.section_forces(length, 0), after = stress.section_forces(0.0, 1);
+  Mat3 const turn = second.placement.axes;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_LT((before[i].head<3>() - turn * after[i].head<3>()).norm(), 1e-9 * mass * g);
+    EXPECT_LT((before[i].tail<3>() - turn * after[i].tail<3>()).norm(), 1e-9 * mass * g);
+  }
+}
+
+// A block of eight masses without rotations, all joined by springs, driven askew by a force and a moment at its upper face: the
+// springs between the faces give the lower one what it needs for its motion.
+TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
+  double const stiff = 1e6, node_mass = 0.5;
+  std::vector<Vec3> nodes;
+  for (int i = 0; i < 8; ++i) nodes.emplace_back(i & 1 ? 0.1 : -0.1, i & 2 ? 0.15 : -0.15, i & 4 ? 0.3 : -0.3);
+  auto const along = [&](int i, int j) { return Vec3((nodes[std::size_t(j)] - nodes[std::size_t(i)]).normalized()); };
+  MatX k = MatX::Zero(24, 24);
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < i; ++j) {
+      VecX pull = VecX::Zero(24);
+      pull.segment<3>(3 * i) = -along(i, j);
+      pull.segment<3>(3 * j) = along(i, j);
+      k += stiff * pull * pull.transpose();
+    }
+  Structure const block = structure_of(Structure::Sparse((node_mass * MatX::Identity(24, 24)).sparseView()),
+                                       Structure::Sparse(k.sparseView()), nodes);
+  Model<Bodies<Rigid<>>, Joints<>, Forces<PointForce<>, PointMoment<>>> model{Gravity{0, 0, -g}};
+  Mat3 const inertia = block.second.trace() * Mat3::Identity() - block.second;
+  auto const body = model.add(Rigid<>(8 * node_mass, inertia, Placement::at({1, 0, 0}, {0.3, 0.5, 0})), "block");
+  auto const hook = body.at(Vec3(0.05, 0.02, 0.35));
+  model.apply(PointForce<>{.force = {30, -20, 400}}, hook, "lift");
+  model.apply(PointMoment<>{.moment = {3, 2, 5}}, hook, "twist");
+  BodyRecord const run = record(model, body, model.reference_state(), Exact{}, {.until = 0.1, .step = 0.005});
+  auto const stress = DecoupledStress::quasi_static(block, run, {.patch = 0.3});
+  for (std::size_t t = 0; t < run.samples.size(); ++t) {
+    BodySample const& at = run.samples[t];
+    Mat3 const to_body = at.frame.A.transpose();
+    Vec3 const omega = to_body * at.frame.w, alpha = to_body * at.angular_acceleration;
+    Vec3 force = Vec3::Zero(), moment = force;
+    for (int i = 0; i < 4; ++i) {
+      Vec3 const r = nodes[std::size_t(i)];
+      Vec3 f = -node_mass * (to_body * (at.acceleration - run.gravity) + alpha.cross(r) + omega.cross(omega.cross(r)));
+      for (int j = 4; j < 8; ++j) {
+        VecX const u = stress.displacements().col(Index(t));
+        f += stiff * along(i, j).dot(u.segment<3>(3 * j) - u.segment<3>(3 * i)) * along(i, j);
+      }
+      force += f;
+      moment += r.cross(f);
+    }
+    EXPECT_LT(force.norm(), 1e-9 * 400.0) << t;
+    EXPECT_LT(moment.norm(), 1e-9 * 400.0) << t;
+  }
+  EXPECT_TRUE(has(refusal([&] { DecoupledStress::quasi_static(block, run); }),
+                  "but 0 lie within the patch of 0 m about a load. Widen the patch."));
+}
+
+/// A clamped rod whose tip force grows by `rate` a second, in one mode φ with φᵀMφ = 1 and ω² = φᵀKφ: q¨ + ω²q = φ_tip · rate · t
+/// from rest,
+///   q = φ_tip · rate/ω² (t − sin ωt/ω).   It is read off the displacements e: K e = f − Mφ q¨ makes φᵀM e = (φᵀf − q¨)/ω² = q.
+struct Ramped {
+  Structure structure = structure_of(rod(), 3);
+  MatX shape = held_modes(structure, 1);
+  BodyRecord run;
+  double omega = std::sqrt((shape.transpose() * (structure.stiffness * shape))(0, 0)), rate = 50.0;
+
+  Ramped() {
+    Arms model;
+    auto const arm = model.add(Rigid<>::from(rod()), "arm");
+    model.connect(Clamp{}, model.ground().at({0, 0, 0}), arm.at(0.0), "clamp");
+    model.apply(PointForce<Ramp>{.force = {0, rate, rate}, .law = {.target = 1.0, .duration = 1.0}}, arm.at(length), "tip");
+    run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
+  }
+  /// The largest error beside the largest q.
+  template <class I>
+  double error(I const& integrator, int substeps) const {
+    auto const stress = DecoupledStress::vibrating(structure, run, integrator, {.shapes = shape, .substeps = substeps});
+    VecX const q = (shape.transpose() * (structure.mass_matrix() * stress.displacements())).transpose();
+    double const scale = (shape(19, 0) + shape(20, 0)) * rate / (omega * omega);
+    double worst = 0.0, most = 0.0;
+    for (std::size_t i = 0; i < run.samples.size(); ++i) {
+      double const t = run.samples[i].t, exact = scale * (t - std::sin(omega * t) / omega);
+      worst = std::max(worst, std::abs(q[Index(i)] - exact));
+      most = std::max(most, std::abs(exact));
+    }
+    EXPECT_GT(most, 0.0);
+    return worst / most;
+  }
+};
+
+// The load is a straight line between samples, so each integrator shows its own order: half the step, a quarter or a 16th of the
+// error.
+TEST(DecoupledStress, VibratesByAnyIntegrator) {
+  Ramped const r;
+  for (auto const& [coarse, fine, order] :
+       {std::tuple(r.error(GeneralizedAlpha{.rho_inf = 0.9}, 4), r.error(GeneralizedAlpha{.rho_inf = 0.9}, 8), 2),
+        {r.error(Trapezoidal{}, 4), r.error(Trapezoidal{}, 8), 2},
+        {r.error(Exact{}, 4), r.error(Exact{}, 8), 4}}) {
+    EXPECT_NEAR(std::log2(coarse / fine), order, 0.2);
+    EXPECT_LT(coarse, 0.01);
+  }
+  EXPECT_LT(r.error(Radau{}, 2), 1e-5);
+  EXPECT_LT(r.error(DormandPrince<>{}, 1), 1e-6);
+  EXPECT_LT(r.error(AdamsBashforthMoulton<>{}, 1), 1e-5);
+}
+
+TEST(DecoupledStress, RefusesInSentences) {
+  Arms model{Gravity{0, -g, 0}};
+  auto const arm = model.add(Rigid<>::from(rod()), "link 7");
+  model.connect(Pin{{.axis = {0, 0, 1}}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
+  BodyRecord const run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
+  Structure const structure = structure_of(rod(), 2);
+  auto const refused = [&](BodyRecord const& r) { return refusal([&] { DecoupledStress::quasi_static(structure, r); }); };
+
+  BodyRecord gap = run;
+  gap.samples.erase(gap.samples.begin() + 20, gap.samples.begin() + 25);
+  EXPECT_TRUE(
+      has(refused(gap),
+          "Stress of \"link 7\": there is no sample between 0.19 s and 0.25 s, a gap of more than 0.015 s. Record every step"));
+  EXPECT_EQ(DecoupledStress::quasi_static(structure, gap, {.largest_gap = 0.1}).times().size(), run.samples.size() - 5);
+  BodyRecord back = run;
+  std::swap(back.samples[3], back.samples[4]);
+  EXPECT_TRUE(has(refused(back), "do not follow each other in time"));
+  BodyRecord short_one = run;
+  short_one.samples.resize(1);
+  EXPECT_TRUE(has(refused(short_one), "fewer than two samples"));
+  BodyRecord unloaded = run;
+  for (BodySample& s : unloaded.samples) s.loads.clear();
+  EXPECT_TRUE(has(refused(unloaded), "do not balance the inertia of the structure"));
+  Bar heavy = rod();
+  heavy.material->density = 1.01 * density;
+  EXPECT_TRUE(has(refusal([&] { DecoupledStress::quasi_static(structure_of(heavy, 2), run); }),
+                  "Give the structure the mass, inertia and placement"));
+  Bar tight = rod();
+  tight.pretension = 100.0;
+  EXPECT_TRUE(has(refusal([&] { DecoupledStress::quasi_static(structure_of(tight, 2), run); }), "a pretension is not recovered"));
+
+  auto const stress = DecoupledStress::quasi_static(structure, run);
+  EXPECT_TRUE(has(refusal([&] { stress.section_forces(2.0); }), "lies outside the body"));
+  EXPECT_TRUE(has(refusal([&] { stress.section_forces(0.5, 1); }), "bar 1 does not exist"));
+  EXPECT_TRUE(
+      has(refusal([&] { low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 60.0}); }),
+          "the cut-off of 60 Hz is above Nyquist's frequency of 50 Hz, as samples are 0.01 s apart. Record in smaller steps"));
+  EXPECT_EQ(low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 15.0}).size(), run.samples.size());
+
+  EXPECT_TRUE(has(refusal([&] {
+                    DecoupledStress::vibrating(structure, run, Trapezoidal{},
+                                               {.shapes = held_modes(structure, 2, ReferenceConditions::clamped(2))});
+                  }),
+                  "the shapes move node 0, which the reference conditions hold"));
+  MatX twice = held_modes(structure, 2);
+  twice.col(1) = twice.col(0);
+  EXPECT_TRUE(has(refusal([&] { DecoupledStress::vibrating(structure, run, Trapezoidal{}, {.shapes = twice}); }),
+                  "shapes that repeat others"));
+  EXPECT_TRUE(
+      has(refusal([&] { DecoupledStress::vibrating(structure, run, Trapezoidal{}, {.substeps = 0}); }), "at least one substep"));
+  EXPECT_TRUE(has(refusal([&] { DecoupledStress::quasi_static(structure, run, {}, ReferenceConditions::none().fix(0, 0)); }),
+                  "not positive definite"));
+}
+
+}  // namespace decoupled_stress_test

@@ -1,0 +1,262 @@
+#include <polybody/vehicle/link_on_ground.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/contact_points.hpp"
+#include "support/differences.hpp"
+#include "support/frames.hpp"
+#include "support/refusal.hpp"
+
+namespace polybody {
+namespace link_on_ground_test {
+
+double const nan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<Vec3> const corners{{0.055, 0.19, -0.03}, {0.055, -0.19, -0.03}, {-0.055, 0.19, -0.03}, {-0.055, -0.19, -0.03}};
+BumpCourse const course({{.x = 0.3, .length = 2.0, .height = 0.2, .y = 0.1, .width = 1.5},
+                         {.x = -0.5, .length = 1.5, .height = -0.1}});
+
+LinkOnGround<> const flat{.pad = corners};
+LinkOnGround<BumpCourse> const rough{.terrain = course, .pad = corners};
+LinkOnGround<FlatGround, Observes::axis> const cable{.pad = {{0.055, 0, -0.03}, {-0.055, 0, -0.03}}};
+LinkOnGround<BumpCourse, Observes::axis> const rough_cable{.terrain = course, .pad = cable.pad};
+
+static_assert(ContactGeometry<LinkOnGround<>> && ContactGeometry<LinkOnGround<BumpCourse>> &&
+              ContactGeometry<LinkOnGround<RoadProfile, Observes::axis>>);
+template <class G>
+concept Drivable = requires {
+  typename LinkOnGround<G>;
+};
+static_assert(Drivable<Washboard> && !Drivable<double> && !Drivable<Bump>);
+
+Frame<double> at(Vec3 const& r, Vec3 const& turn = Vec3::Zero()) { return {.r = r, .A = exp_so3<double>(turn)}; }
+
+TEST(LinkOnGround, StandsOnItsFourCorners) {
+  Frame<double> const link = at({2.0, -1.0, 0.03 - 0.001}, {0, 0, 0.7});
+  auto const found = contact_points(flat, link, {});
+  ASSERT_EQ(found.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(found[i].depth, 0.001, 1e-16);
+    EXPECT_EQ(found[i].normal, Vec3(0, 0, 1));
+    EXPECT_EQ(found[i].handover.share, 1.0);
+    EXPECT_LT((found[i].place - (link.r + link.A * corners[i])).norm(), 1e-15);
+  }
+  EXPECT_TRUE(contact_points(flat, at({0, 0, 0.03 + 1e-9}), {}).empty());
+}
+
+// Nose down by α it stands on its front: 0.055 sin α lower.
+TEST(LinkOnGround, StandsOnTheCornersThatAreLow) {
+  double const alpha = 0.1, low = 0.03 * std::cos(alpha) + 0.055 * std::sin(alpha);
+  auto const found = contact_points(flat, at({0, 0, low - 0.002}, {0, alpha, 0}), {});
+  ASSERT_EQ(found.size(), 2u);
+  for (auto const& p : found) {
+    EXPECT_NEAR(p.depth, 0.002, 1e-16);
+    EXPECT_GT(p.place[0], 0.0);
+  }
+}
+
+TEST(LinkOnGround, KnowsHowHighTheGroundIs) {
+  LinkOnGround<> raised = flat;
+  raised.terrain.z = 0.4;
+  auto const found = contact_points(raised, at({0, 0, 0.425}), {});
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_NEAR(found[0].depth, 0.005, 1e-15);
+}
+
+/// A link anywhere over the course, near its surface and turned by up to about `tilt`, in the ground's axes.
+Frame<double> near_ground(Numbers& number, double tilt) {
+  double const x = number(1.5), y = number(1.0), z = course.height<double>(x, y).z;
+  return at({x, y, z + 0.03 + number(0.03)}, number.vec<3>(tilt));
+}
+
+// On slopes: e below h along z, the surface's tangent plane is e n_z away, and n is across both of its tangents.
+TEST(LinkOnGround, PressesAcrossTheSlope) {
+  Numbers number;
+  int compared = 0;
+  for (int k = 0; k < 500; ++k) {
+    Frame<double> const link = near_ground(number, 0.3);
+    std::size_t i = 0;
+    auto const found = contact_points(rough, link, {});
+    for (Vec3 const& corner : corners) {
+      Vec3 const p = link.r + link.A * corner;
+      double const z = course.height<double>(p[0], p[1]).z;
+      if (z <= p[2]) continue;
+      ASSERT_LT(i, found.size());
+      double const hx = slope_at_zero([&](double h) { return course.height<double>(p[0] + h, p[1]).z; }, 1e-5);
+      double const hy = slope_at_zero([&](double h) { return course.height<double>(p[0], p[1] + h).z; }, 1e-5);
+      Vec3 const& n = found[i].normal;
+      EXPECT_NEAR(n.norm(), 1.0, 1e-15);
+      EXPECT_GT(n[2], 0.0);
+      // Differences across a foot, where the curvature jumps by 2π²H/L² < 2 per metre, err by as much times h/5.
+      EXPECT_NEAR(n.dot(Vec3(1, 0, hx)), 0.0, 5e-6);
+      EXPECT_NEAR(n.dot(Vec3(0, 1, hy)), 0.0, 5e-6);
+      EXPECT_NEAR(found[i].depth, (z - p[2]) * n[2], 1e-15);
+      EXPECT_LT((found[i].place - p).norm(), 1e-15);
+      ++i;
+    }
+    EXPECT_EQ(i, found.size());
+    compared += int(i);
+  }
+  EXPECT_GT(compared, 300);
+}
+
+// A marker of the ground that is tilted and moved carries the terrain with it: the two seen from anywhere are the same.
+TEST(LinkOnGround, IsTheSameOnGroundThatIsTilted) {
+  Numbers number;
+  int compared = 0;
+  auto const expect_same = [&](auto const& geometry) {
+    for (int k = 0; k < 300; ++k) {
+      Frame<double> const link = near_ground(number, 0.3);
+      Frame<double> const ground = number.frame();
+      auto const expected = contact_points(geometry, link, {}), found = contact_points(geometry, carried(link, ground.A, ground.r), ground);
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::size_t i = 0; i < found.size(); ++i, ++compared) {
+        EXPECT_NEAR(found[i].depth, expected[i].depth, 1e-14);
+        EXPECT_LT((found[i].normal - ground.A * expected[i].normal).norm(), 1e-13);
+        EXPECT_LT((found[i].place - (ground.A * expected[i].place + ground.r)).norm(), 1e-14);
+      }
+    }
+  };
+  expect_same(flat);
+  expect_same(rough);
+  expect_same(cable);
+  expect_same(rough_cable);
+  EXPECT_GT(compared, 500);
+}
+
+// On a plane ∂d/∂r = −n exactly; on a curved one up to d times the curvature (|h″| ≤ 2π²H/L² + … < 2.5 per metre here, d ≤ 0.05
+// m).
+TEST(LinkOnGround, NormalIsTheSlopeOfTheDepth) {
+  Numbers number;
+  int compared = 0;
+  auto const expect_slope = [&](auto const& geometry, double tolerance) {
+    for (int k = 0; k < 200; ++k) {
+      Frame<double> const link = near_ground(number, 0.1);
+      auto const found = contact_points(geometry, link, {});
+      for (std::size_t i = 0; i < found.size(); ++i, ++compared)
+        for (int j = 0; j < 3; ++j) {
+          double const slope = slope_at_zero(
+              [&](double h) {
+                Frame<double> shifted = link;
+                shifted.r[j] += h;
+                auto const p = contact_points(geometry, shifted, {});
+                return p.size() == found.size() ? p[i].depth : nan;
+              },
+              1e-8);
+          EXPECT_NEAR(slope, -found[i].normal[j], 1e-7 + tolerance * found[i].depth);
+        }
+    }
+  };
+  expect_slope(flat, 0.0);
+  expect_slope(rough, 2.5);
+  EXPECT_GT(compared, 200);
+}
+
+TEST(LinkOnGround, PassesDualNumbersOn) {
+  Numbers number;
+  int compared = 0;
+  for (int k = 0; k < 200; ++k) {
+    Frame<double> const link = near_ground(number, 0.3), ground = number.frame();
+    Vec6 const motion = number.vec<6>();
+    compared += expect_contact_duals(rough, carried(link, ground.A, ground.r), ground, motion);
+    compared += expect_contact_duals(rough_cable, carried(link, ground.A, ground.r), ground, motion);
+  }
+  EXPECT_GT(compared, 100);
+}
+
+// A cable has no z of its own: its pad hangs below the tangent, whichever way that runs and however the cable's frame has rolled.
+TEST(LinkOnGround, HangsThePadOfACableBelowIt) {
+  Numbers number;
+  for (int k = 0; k < 200; ++k) {
+    double const heading = number(3.0), rise = number(0.5), d = 0.003;
+    Vec3 const x(std::cos(heading) * std::cos(rise), std::sin(heading) * std::cos(rise), std::sin(rise));
+    Vec3 const z = (Vec3::UnitZ() - x * x[2]).normalized();
+    double const low = 0.03 * z[2] + 0.055 * std::abs(x[2]);
+    for (double const way : {-1.0, 1.0}) {
+      Frame<double> link{.r = {number(), number(), low - d}};
+      Vec3 const across = Vec3(number.vec<3>()).cross(x).normalized();
+      link.A << way * x, across, way * x.cross(across);
+      auto const found = contact_points(cable, link, {});
+      ASSERT_GE(found.size(), 1u);
+      double deepest = 0.0;
+      for (auto const& p : found) {
+        Vec3 const arm = p.place - link.r;
+        EXPECT_NEAR(arm.dot(z), -0.03, 1e-14);
+        EXPECT_NEAR(std::abs(arm.dot(x)), 0.055, 1e-14);
+        EXPECT_NEAR(arm.dot(x.cross(z)), 0.0, 1e-14);
+        EXPECT_EQ(p.normal, Vec3(0, 0, 1));
+        deepest = std::max(deepest, p.depth);
+      }
+      EXPECT_NEAR(deepest, d, 1e-14);
+    }
+  }
+}
+
+TEST(LinkOnGround, OnACableIsThatOnALinkThatDoesNotRoll) {
+  Numbers number;
+  LinkOnGround<BumpCourse> middle = rough;
+  middle.pad = cable.pad;
+  int compared = 0;
+  for (int k = 0; k < 500; ++k) {
+    Frame<double> const twisted = near_ground(number, 0.5);
+    Frame<double> link = twisted;
+    Vec3 const x = link.A.col(0), z = (Vec3::UnitZ() - x * x[2]).normalized();
+    link.A << x, z.cross(x), z;
+    auto const expected = contact_points(middle, link, {}), found = contact_points(rough_cable, twisted, {});
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i, ++compared) {
+      EXPECT_NEAR(found[i].depth, expected[i].depth, 1e-14);
+      EXPECT_LT((found[i].normal - expected[i].normal).norm(), 1e-14);
+      EXPECT_LT((found[i].place - expected[i].place).norm(), 1e-14);
+    }
+  }
+  EXPECT_GT(compared, 200);
+}
+
+// One that stands upright leaves its z open: no point rather than one that is not a number.
+TEST(LinkOnGround, OfACableThatStandsUprightIsNone) {
+  Frame<double> link = at({0, 0, 0.05});
+  link.A << Vec3::UnitZ(), Vec3::UnitY(), -Vec3::UnitX();
+  EXPECT_TRUE(contact_points(cable, link, {}).empty());
+}
+
+TEST(LinkOnGround, IsNeverMissedByItsBound) {
+  Numbers number;
+  auto const missed = [&](auto const& geometry) {
+    int touching = 0, far = 0, found = 0;
+    for (int k = 0; k < 20000; ++k) {
+      Frame<double> const ground = number.frame();
+      Frame<double> link = near_ground(number, 3.0);
+      link.r[2] += std::abs(number(0.6));
+      link = carried(link, ground.A, ground.r);
+      bool const touches = !contact_points(geometry, link, ground).empty(), may = geometry.may_touch(link, ground);
+      touching += touches;
+      far += !may;
+      found += touches && !may;
+    }
+    EXPECT_GT(touching, 500);
+    EXPECT_GT(far, 500);  // it is of use
+    return found;
+  };
+  EXPECT_EQ(missed(flat), 0);
+  EXPECT_EQ(missed(rough), 0);
+  EXPECT_EQ(missed(cable), 0);
+  EXPECT_EQ(missed(rough_cable), 0);
+}
+
+TEST(LinkOnGround, RefusesNumbersThatCannotBeMeantByName) {
+  LinkOnGround<> bad = flat;
+  bad.terrain.z = nan;
+  EXPECT_TRUE(has(refusal([&] { bad.check("\"ground\""); }), "\"ground\": the height of the ground"));
+  EXPECT_TRUE(
+      has(refusal([&] { LinkOnGround<>{}.check("\"ground\""); }), "\"ground\": a link needs points that touch the ground"));
+  bad = flat;
+  bad.pad[2][1] = nan;
+  EXPECT_TRUE(has(refusal([&] { bad.check("\"ground\""); }), "\"ground\": a point of the pad"));
+  LinkOnGround<Washboard> const waves{.terrain = {.amplitude = -1.0, .wavelength = 1.0}, .pad = corners};
+  EXPECT_TRUE(has(refusal([&] { waves.check("\"ground\""); }), "\"ground\": the amplitude"));
+  EXPECT_NO_THROW(rough_cable.check("\"ground\""));
+}
+
+}  // namespace link_on_ground_test
+}  // namespace polybody

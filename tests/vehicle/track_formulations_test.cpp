@@ -1,0 +1,131 @@
+// One vehicle, tracks under five formulations.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <polybody/io/vtk.hpp>
+#include <polybody/vehicle/vehicle_visual.hpp>
+
+#include "support/vehicle_runs.hpp"
+#include "support/vtk_reader.hpp"
+
+using namespace polybody;
+
+namespace track_formulations_test {
+
+PenaltyPerRow<5> penalty(double stiffness) {
+  double const arm2 = m113::pin_arm * m113::pin_arm;
+  Vec<double, 5> rows;
+  rows << 1.0, 1.0, 1.0, arm2, arm2;
+  return {.stiffness = Vec<double, 5>(stiffness * rows), .damping = Vec<double, 5>(m113::pin_damping * rows)};
+}
+Bushing bushing() {
+  double const arm2 = m113::pin_arm * m113::pin_arm;
+  Vec3 const along(1.0, 1.0, 1.0), about(arm2, arm2, 0.0);
+  return {.stiffness = Bushing::diagonal(m113::pin_stiffness * along, m113::pin_stiffness * about),
+          .damping = Bushing::diagonal(m113::pin_damping * along, m113::pin_damping * about)};
+}
+
+struct Ride {
+  Vec3 place, velocity;                ///< of the hull at the end
+  double dip = 0.0;                    ///< [m]
+  double pull = 0.0;                   ///< mean force in pin 40 of the left track, over the last fifth [N]
+  double gap = 0.0, largest_gap = 0.0; ///< between the points of that pin at the end, and of any at any time [m]
+  bool held = true;
+};
+
+template <class Link, class P>
+Ride ride(P const& policy, double until, double speed, bool hold = false) {
+  m113::VehicleOptions options{.held = hold};
+  options.start = track_at_rest();
+  Ramp const drive = quick_drive(speed);
+  m113::Vehicle<Link, P> const vehicle(policy, {drive, drive}, options);
+  using L = m113::LinkOf<Link>;
+  auto const& side = vehicle.side(m113::Side::left);
+  State x = vehicle.model.reference_state();
+  double const start = hull_of(vehicle, x).r.z();
+  Ride r;
+  double samples = 0.0;
+  run_vehicle(vehicle.model, x, until, 5e-4, [&](State const& now, auto&) {
+    r.dip = std::max(r.dip, start - hull_of(vehicle, now).r.z());
+    for (std::size_t i = 1; i < 64; ++i) {
+      double const open = (position(vehicle.model, now, L::front(side.links[i])) - position(vehicle.model, now, L::rear(side.links[i - 1]))).norm();
+      r.largest_gap = std::max(r.largest_gap, open);
+      if (i == 40) r.gap = open;
+    }
+    if (now.t < 0.8 * until) return;
+    r.pull += reaction(vehicle.model, now, side.pins[40]).f.norm();
+    ++samples;
+  });
+  r.pull /= samples;
+  r.place = hull_of(vehicle, x).r;
+  r.velocity = hull_of(vehicle, x).v;
+  r.held = seating(vehicle, x, m113::Side::left).holds() && seating(vehicle, x, m113::Side::right).holds();
+  return r;
+}
+
+// Forward positions of all formulations within 0.15 m of each other after 10 s is what M113.md §9 expects of the thesis' claim; over
+// the first metre they agree to millimetres, as none of them is softer than contacts of 2e6 N/m.
+TEST(TrackFormulations, MoveTheVehicleAlike) {
+  Ride const ideal = ride<Rigid<>>(Constraint{}, 0.6, 8.0);
+  EXPECT_TRUE(ideal.held);
+  EXPECT_GT(ideal.place.x() + 2.006, 0.1);
+  auto const alike = [&](Ride const& other, char const* name) {
+    EXPECT_LT((other.place - ideal.place).norm(), 3e-3) << name;
+    EXPECT_LT((other.velocity - ideal.velocity).norm(), 0.05) << name;
+    EXPECT_NEAR(other.dip, ideal.dip, 1e-3) << name;
+    EXPECT_NEAR(other.pull, ideal.pull, 0.05 * ideal.pull) << name;
+    EXPECT_TRUE(other.held) << name;
+  };
+  alike(ride<Rigid<>>(penalty(m113::pin_stiffness), 0.6, 8.0), "penalty");
+  alike(ride<Rigid<>>(bushing(), 0.6, 8.0), "bushing");
+  alike(ride<AncfCable<>>(AncfLinear{}, 0.6, 8.0), "ANCF");
+  alike(ride<Rigid<>>(Recursive{}, 0.6, 8.0), "recursive");
+}
+
+// Thesis Figure 3.15: penalties open by less than 0.075 mm at 1e9 N/m and by more than 1.5 mm at 1e7 N/m under driving loads. At rest
+// they open by force over stiffness, a hundredth of it for a hundred times the stiffness.
+TEST(TrackFormulations, PenaltiesOpenByForceOverStiffness) {
+  Ride const stiff = ride<Rigid<>>(penalty(m113::pin_stiffness), 0.6, 0.0, true), soft = ride<Rigid<>>(penalty(m113::soft_pin_stiffness), 0.6, 0.0, true);
+  EXPECT_NEAR(stiff.gap, stiff.pull / m113::pin_stiffness, 0.1 * stiff.gap);
+  EXPECT_NEAR(soft.gap, soft.pull / m113::soft_pin_stiffness, 0.1 * soft.gap);
+  EXPECT_NEAR(soft.gap / stiff.gap, 100.0, 20.0);
+  EXPECT_LT(ride<Rigid<>>(penalty(m113::pin_stiffness), 0.5, 8.0).largest_gap, 0.075e-3);
+}
+
+// What ParaView shows, as VTK reads it: hull, wheels, sprockets and links where they are, nothing inside out.
+TEST(TrackFormulations, AnimationIsReadByVtk) {
+  namespace fs = std::filesystem;
+  fs::path const folder = fs::path(testing::TempDir()) / ("polybody vehicle " + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  m113::VehicleOptions options;
+  options.start = track_at_rest();
+  m113::Vehicle<> const vehicle(Constraint{}, {quick_drive(8.0), quick_drive(8.0)}, options);
+  State x = vehicle.model.reference_state();
+  auto visual = m113::vehicle_visual(vehicle);
+  VtkWriter writer(folder / "vehicle.pvd", visual);
+  writer.write(x);
+  run_vehicle(vehicle.model, x, 0.05, 1e-3, [](auto&...) {});
+  writer.write(x);
+  auto const lines = read_by_vtk(folder / "vehicle.pvd");
+  double volume = 0.0;
+  for (VisualPart const& part : visual.at(x)) {
+    EXPECT_GT(polybody::volume(part.surface), 0.0) << part.name;
+    volume += polybody::volume(part.surface);
+  }
+  fs::remove_all(folder);
+  if (lines.empty()) GTEST_SKIP() << "VTK for python is missing (Debian: python3-vtk9)";
+  int states = 0;
+  for (auto const& line : lines) {
+    if (line[0] != "state") continue;
+    ++states;
+    double const found = std::stod(line[4]), x_min = std::stod(line[5]), y_min = std::stod(line[7]), y_max = std::stod(line[8]), z_min = std::stod(line[9]);
+    EXPECT_NEAR(found, volume, 1e-3 * volume);
+    EXPECT_NEAR(x_min, -4.3, 0.1);
+    EXPECT_NEAR(y_max, m113::track_y + m113::half_width, 1e-3);  // float32
+    EXPECT_NEAR(y_min, -y_max, 1e-3);
+    EXPECT_NEAR(z_min, 0.0, 5e-3);
+  }
+  EXPECT_EQ(states, 2);
+}
+
+}  // namespace track_formulations_test

@@ -1,0 +1,181 @@
+// The M113's tracks at rest on the held vehicle against the independent computation of shared/reference/m113 (links.csv and
+// M113.md section 2.1), whose contacts are rigid. Here a pin or link that is pressed with N sinks N/2k into two rings or rims, so
+// the track is a little longer.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+
+#include <polybody/io/table.hpp>
+#include <polybody/vehicle/settled_track.hpp>
+
+#include "support/refusal.hpp"
+
+namespace polybody {
+namespace track_start_test {
+
+constexpr double pi = std::numbers::pi;
+
+/// A row of the table in M113.md section 2.1.
+struct Reference {
+  double preload, idler_x, spring, ground_run, upper_run;  ///< [N], [m], [N], [N], [N]
+};
+constexpr std::array<Reference, 4> table{{{0.0, -3.959963, 3.82e3, 1.5e3, 2.3e3},
+                                          {20e3, -3.972315, 11.47e3, 5.3e3, 6.1e3},
+                                          {40e3, -3.975523, 28.3e3, 13.6e3, 14.6e3},
+                                          {60e3, -3.976410, 47.4e3, 23.1e3, 24.3e3}}};
+
+m113::TrackStart const& settled(double preload) {
+  static std::map<double, m113::TrackStart> known;
+  auto const [entry, fresh] = known.try_emplace(preload);
+  if (fresh) entry->second = m113::settled_track({.preload = preload});
+  return entry->second;
+}
+
+Vec2 end(TrackLink const& link, double side) {
+  return link.centre + side * 0.5 * m113::pitch * Vec2(std::cos(link.angle), -std::sin(link.angle));
+}
+std::vector<Vec2> pins_of(m113::TrackStart const& start) {
+  std::vector<Vec2> pins;
+  for (TrackLink const& link : start.links) pins.push_back(end(link, 1.0));
+  return pins;
+}
+TrackLayout layout_of(m113::TrackStart const& start) {
+  TrackLayout layout = m113::track();
+  layout.circles[5].centre[0] = start.idler_x;
+  return layout;
+}
+
+double const weight = m113::thesis.link.mass * 9.81 / m113::pitch;  ///< of a metre of track [N/m]
+
+/// The highest tension in a row's equilibrium: that of the upper run, and what hangs from the top of the sprocket at most.
+double highest_tension(Reference const& row) { return row.upper_run + weight * (m113::sprocket_z + 0.28); }
+/// The depth at which two points bear N [m].
+double depth(double normal) { return normal / (2.0 * m113::on_sprocket.stiffness); }
+
+/// What the idler takes up of a longer track: it moves by the length over this  [TrackPath::pull].
+double share() {
+  TrackPath const path = wrap_track(m113::track());
+  return -path.pull.dot(path.layout.tensioner.direction);
+}
+/// How far the idler is pushed out, from above: contacts yield by ΔL with T ΔL = ΣN d, and ΣN ≤ 2π T around a convex loop, so
+/// with no mean depth above that of the sprocket, where links turn most and N = 2 T sin π/10, ΔL ≤ 2π d. The tension is that of
+/// the reference; what yields has less, as the spring gives way with the idler.
+double given_way(Reference const& row) { return 2.0 * pi * depth(2.0 * row.upper_run * std::sin(pi / 10.0)) / share(); }
+
+/// How far pins may be from the reference's: as far as the idler, and as far as the upper run hangs lower for the tension that
+/// the spring lost, w L²/8T between the sprocket and wheel 2, and as far as what it lies on yields.
+double out_of_place(Reference const& row) {
+  double const span = -m113::wheel(1, m113::Side::left).x, sag = weight * span * span / (8.0 * row.upper_run);
+  double const spring = row.preload + m113::tensioner.stiffness * (settled(row.preload).idler_x - m113::idler_reference_x);
+  return given_way(row) + sag * (row.spring / spring - 1.0) + depth(highest_tension(row));
+}
+
+/// The least gap between wheel i and the upper run.
+double gap_above(m113::TrackStart const& start, int wheel) {
+  TrackLayout const layout = layout_of(start);
+  std::vector<Vec2> const pins = pins_of(start);
+  double least = 1.0;
+  for (std::size_t i = 0; i < 64; ++i)
+    if (pins[i][1] > m113::wheel_z)
+      least = std::min(least,
+                       detail::track_gap(pins[i], pins[(i + 1) % 64], layout.half_thickness, layout.circles[std::size_t(wheel)]));
+  return least;
+}
+
+TEST(SettledTrack, Closes) {
+  for (Reference const& row : table) {
+    m113::TrackStart const& start = settled(row.preload);
+    ASSERT_EQ(start.links.size(), 64u);
+    for (std::size_t i = 0; i < 64; ++i)
+      EXPECT_LT((end(start.links[i], -1.0) - end(start.links[(i + 1) % 64], 1.0)).norm(), 1e-9 * m113::pitch) << "link " << i;
+    EXPECT_LT(clearances(layout_of(start), pins_of(start)).stretch, 1e-9 * m113::pitch);
+  }
+}
+
+// What is pressed sinks in by what the tension explains: pins on the sprocket bear 2 T sin π/10, and links, which turn by less
+// than 60° where they touch, less than T. At 20 kN that is 1.8 mm. On the ground a link's front corners are two points, too.
+TEST(SettledTrack, SinksNoDeeperThanItsTensionPresses) {
+  for (Reference const& row : table) {
+    TrackClearances const gaps = clearances(layout_of(settled(row.preload)), pins_of(settled(row.preload)), 0.0);
+    double const tension = highest_tension(row);
+    EXPECT_GT(gaps.circles, -depth(tension)) << row.preload;
+    EXPECT_GT(gaps.sprocket, -depth(2.0 * tension * std::sin(pi / 10.0))) << row.preload;
+    EXPECT_GT(gaps.ground, -depth(tension)) << row.preload;
+    EXPECT_LT(gaps.circles, 0.0) << row.preload;
+    EXPECT_LT(gaps.sprocket, 0.0) << row.preload;
+    EXPECT_LT(gaps.ground, 0.0) << row.preload;
+  }
+}
+
+// Further out than the reference's, but by no more than contacts give way: 3.0 mm at 20 kN, 7.2 mm at 40 kN.
+TEST(SettledTrack, HasItsIdlerWhereTheReferenceHas) {
+  for (Reference const& row : table) {
+    double const out = row.idler_x - settled(row.preload).idler_x;
+    EXPECT_GT(out, 0.0) << row.preload;
+    EXPECT_LT(out, given_way(row)) << row.preload;
+  }
+  EXPECT_NEAR(settled(m113::preload).idler_x, m113::idler_start_x, 3e-3);
+}
+
+TEST(SettledTrack, HasItsPinsWhereTheReferenceHas) {
+  Table const links = read_csv(std::filesystem::path(__FILE__).parent_path() / "data" / "links.csv");
+  std::vector<double> const x = links.column("pin_front_x"), z = links.column("pin_front_z");
+  std::vector<Vec2> const pins = pins_of(settled(m113::preload));
+  EXPECT_LT(out_of_place(table[1]), 15e-3);
+  for (std::size_t i = 0; i < 64; ++i) EXPECT_LT((pins[i] - Vec2(x[i], z[i])).norm(), out_of_place(table[1])) << "pin " << i;
+}
+
+// M113.md section 2.1: how far the upper run is above the wheels, in millimetres. With less tension it also lies where the
+// reference does.
+TEST(SettledTrack, LiesOnTheWheelsThatTheReferenceLiesOn) {
+  constexpr std::array<std::array<double, 5>, 4> gaps{{{0, 0, 0, 0, 0}, {17, 0, 0, 0, 0}, {44, 5, 0, 0, 16}, {58, 19, 0, 1, 23}}};
+  for (std::size_t row = 0; row < 4; ++row)
+    for (int i = 0; i < m113::wheels; ++i) {
+      double const gap = gap_above(settled(table[row].preload), i), expected = 1e-3 * gaps[row][std::size_t(i)];
+      EXPECT_NEAR(gap, expected, out_of_place(table[row])) << "wheel " << i + 1 << " at " << table[row].preload;
+      if (expected == 0.0) EXPECT_LE(gap, 0.0) << "wheel " << i + 1 << " at " << table[row].preload;
+    }
+}
+
+// A vehicle built on it starts closed, whichever pin is cut.
+TEST(SettledTrack, IsAStartForTheVehicle) {
+  for (int const cut : {0, 17}) {
+    m113::Vehicle<> const vehicle(Constraint{}, {m113::drive(25.0), m113::drive(25.0)},
+                                  {.cut = cut, .closure = m113::Closure::in_plane, .start = settled(m113::preload)});
+    State const x = vehicle.model.reference_state();
+    System system(vehicle.model);
+    EXPECT_LT(violation(system, x).position, 1e-9 * m113::pitch);
+    auto const& side = vehicle.side(m113::Side::right);
+    EXPECT_NEAR(position(vehicle.model, x, side.idler[0].at(Vec3(0, 0, 0))).x(), settled(m113::preload).idler_x, 1e-15);
+    EXPECT_NEAR(position(vehicle.model, x, side.links[3].at(Vec3(0, 0, 0))).z(), settled(m113::preload).links[3].centre[1],
+                1e-15);
+  }
+}
+
+TEST(SettledTrack, RefusesWhatCannotBeMeant) {
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(
+      has(refusal([&] { m113::settled_track({.preload = nan}); }), "\"left tensioner spring\": the preload must be finite"));
+  EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = 64}); }), "the pin that closes a track is one of 0 … 63, but 64"));
+  EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = -1}); }), "but -1"));
+  m113::VehicleOptions options;
+  options.masses.link.mass = 0.0;
+  EXPECT_TRUE(has(refusal([&] { m113::settled_track(options); }), "the mass must be positive"));
+  m113::VehicleOptions few;
+  few.start.links.pop_back();
+  EXPECT_TRUE(has(refusal([&] {
+                    m113::Vehicle<>(Constraint{}, {m113::drive(0.0), m113::drive(0.0)}, few);
+                  }),
+                  "needs the places of 64 links, but has 63"));
+}
+
+// A preload that pulls the track through its wheels, or pushes the idler into the last one, is none.
+TEST(SettledTrack, RefusesAPreloadBeyondTheTensionersTravel) {
+  for (double const bad : {1e6, -100e3})
+    EXPECT_TRUE(has(refusal([&] { m113::settled_track({.preload = bad}); }), "preload")) << bad;
+}
+
+}  // namespace track_start_test
+}  // namespace polybody
