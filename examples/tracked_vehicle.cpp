@@ -18,7 +18,10 @@ struct Options : Settings {
 
 GeneralizedAlpha integrator(Options const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
 IdealTrack ideal(Options const& o) { return {"constraint", {}, integrator(o)}; }
-PenaltyTrack penalty(Options const& o, double k) { return {k == m113::pin_stiffness ? "penalty" : "penalty " + number(k), penalty_pin(k), integrator(o)}; }
+PenaltyTrack penalty(Options const& o, double k) {
+  std::string const name = k == m113::pin_stiffness ? "penalty" : k == m113::soft_pin_stiffness ? "penalty 1e7" : "penalty " + number(k);
+  return {name, penalty_pin(k), integrator(o)};
+}
 BushingTrack bushing(Options const& o) { return {"bushing", bushing_pin(o.penalty), integrator(o)}; }
 CableTrack cable(Options const& o) { return {"ancf", {}, integrator(o)}; }
 RecursiveTrack recursive(Options const& o) { return {"recursive", {}, integrator(o)}; }

@@ -169,7 +169,7 @@ struct TrackCase {
     auto const visual = s.animate > 0.0 ? std::make_shared<Visual<M>>(m113::vehicle_visual(*vehicle)) : nullptr;
     auto const writer = visual ? std::make_shared<VtkWriter<M>>(s.out / (f.name + ".pvd"), *visual) : nullptr;
     auto const next_picture = std::make_shared<double>(0.0);
-    auto observer = [=, out = outcomes, &s](M const&, State const& x) {
+    auto observer = [=, out = outcomes, keep = visual, &s](M const&, State const& x) {
       Outcome& o = (*out)[mine];
       o.deepest = probe->deepest;
       o.depth = probe->deepest_depth;

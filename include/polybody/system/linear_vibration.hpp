@@ -24,6 +24,7 @@ template <LoadHistory Load>
 struct LinearVibration {
   static constexpr bool constant_mass = true;
   static constexpr bool may_have_rows = false;
+  static constexpr bool has_groups = false;
 
   MatX mass, damping, stiffness;  ///< (n×n)
   Load load;
