@@ -151,6 +151,27 @@ TEST(LinkOnRoller, IsConservativeAlsoInTheHandover) {
   EXPECT_GT(handing_over, 30);
 }
 
+// Beyond a face its chamfered edge meets the rim along the radius, and begins to do so from zero where the face ends.
+TEST(LinkOnRoller, EdgeMeetsTheRimBeyondTheFace) {
+  Frame<double> const link = at({0, 0, 0});
+  double const reach = radius - one_rim.chamfer, e = 0.1;
+  for (double const side : {-1.0, 1.0}) {
+    double const height = std::sqrt((reach - 0.002) * (reach - 0.002) - e * e);  // 2 mm deep
+    Vec3 const axle(side * (0.5 * pitch + e), 0.03, thick + height), edge(side * 0.5 * pitch, 0.03, thick);
+    auto const found = contact_points(one_rim, link, at(axle));
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].depth, 0.002, 1e-13);
+    EXPECT_LT((found[0].place - edge).norm(), 1e-15);
+    EXPECT_LT((found[0].normal - (edge - axle).normalized()).norm(), 1e-13);
+    // 20 mm deep in what would be the rim, but just beyond the face: no deeper than that
+    auto const just = [&](double beyond) { return contact_points(one_rim, link, at({side * (0.5 * pitch + beyond), 0, thick + reach - 0.02})); };
+    double shallow = 1.0;
+    for (auto const& p : just(1e-6)) shallow = std::min(shallow, p.depth);
+    EXPECT_NEAR(shallow, 1e-6, 1e-12);
+    EXPECT_EQ(contact_points(one_rim, link, at({side * (0.5 * pitch + e), 0, thick + std::sqrt(reach * reach - e * e) + 1e-6})).size(), 0u);
+  }
+}
+
 // Around a bend towards the wheel the strips above the faces overlap: on its way from the middle of one link to that of the next,
 // up to the bend 2 atan(p/2/(R + h)) = 0.4523 at which it touches both there, a wheel is borne by the nearer face, half of it at
 // least.

@@ -14,7 +14,9 @@ namespace polybody {
 /// point is above the link, |s| ≤ p/2, by d = R − (height of the axle above the face). Neighbouring faces end where the next begin; within
 /// `handover` of there the force is shared, x² (3 − 2x) of it with x = (p/2 + ε − |s|)/2ε on either, so that a wheel passes from one to the
 /// next without a bump.
-/// Around a bend towards the wheel the strips above the faces overlap.
+/// Around a bend towards the wheel the strips above the faces overlap. Beyond a face its edge may meet the rim, as over a bump: a point with
+/// d = R − c − (its distance from the axle), where c is the chamfer of the edge, along the radius, and by no more than it is beyond, so that
+/// the force begins at zero.
 /// [after Choi, Lee & Shabana 1998: inner-surface contact with one or both rims]
 template <Observes told = Observes::frame>
 struct LinkOnRoller {
@@ -26,6 +28,7 @@ struct LinkOnRoller {
   Required<double> half_width;      ///< of the face [m]
   Required<double> radius;          ///< R, of the rims [m]
   double handover = 0.03;           ///< ε [m]
+  double chamfer = 0.005;           ///< c [m]
   std::vector<double> rims = {0.0}; ///< where their middle planes are along the axle [m]
 
   void check(std::string const& name) const {
@@ -33,6 +36,7 @@ struct LinkOnRoller {
     require_not_negative(half_thickness, name + ": the link's half thickness");
     require_positive(half_width, name + ": the link's half width");
     require_positive(radius, name + ": the radius of the roller");
+    require_not_negative(chamfer, name + ": the chamfer of the link's edges");
     if (!(handover > 0.0 && handover < 0.5 * pitch))
       throw InvalidInput(name + ": the zone of the handover must be positive and below half the pitch, but is " + number(handover) + " m.");
     if (rims.empty()) throw InvalidInput(name + ": a roller needs at least one rim.");
@@ -45,7 +49,7 @@ struct LinkOnRoller {
     double const reach = radius + half_thickness + half_width + pitch + far;
     Vec3 const arm = roller.r - link.r;
     if (arm.squaredNorm() > reach * reach) return false;
-    return std::abs(arm.dot(link.A.col(0))) < 0.5 * pitch + handover + std::abs(roller.A.col(1).dot(link.A.col(0))) * far;
+    return std::abs(arm.dot(link.A.col(0))) < 0.5 * pitch + std::max(handover, double(radius)) + std::abs(roller.A.col(1).dot(link.A.col(0))) * far;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
@@ -53,18 +57,31 @@ struct LinkOnRoller {
     for (double const rim : rims) {
       Vec<T, 3> const local = axes.transpose() * (roller.r + roller.A.col(1) * T(rim) - link.r);
       T const height = local[2] - double(half_thickness), depth = T(radius.value) - height;
-      T const to_end = T(0.5 * pitch + handover) - (value_of(local[0]) < 0.0 ? -local[0] : local[0]);
-      bool const above = value_of(to_end) > 0.0 && std::abs(value_of(local[1])) <= half_width;
-      if (!above || value_of(height) <= 0.0 || value_of(depth) <= 0.0) continue;
+      if (std::abs(value_of(local[1])) > half_width) continue;
+      double const side = value_of(local[0]) < 0.0 ? -1.0 : 1.0;
+      T const beyond = local[0] * side - 0.5 * pitch, to_end = T(handover) - beyond;
+      if (value_of(beyond) > 0.0 && value_of(beyond) < radius) meet_edge(link, axes, local, side, beyond, height, visit);
+      if (value_of(to_end) <= 0.0 || value_of(height) <= 0.0 || value_of(depth) <= 0.0) continue;
       Vec<T, 3> const on_face(local[0], local[1], T(half_thickness.value));
       ContactPoint<T> point{link.r + axes * on_face, -axes.col(2), depth};
       if (value_of(to_end) < 2.0 * handover) {
-        double const out = value_of(local[0]) < 0.0 ? -0.5 / handover : 0.5 / handover;
         T const x = to_end * (0.5 / handover);
-        point.handover = {x * x * (x * -2.0 + 3.0), axes.col(0) * (x * (T(1.0) - x) * (6.0 * out)), roller.r + roller.A.col(1) * T(rim)};
+        point.handover = {x * x * (x * -2.0 + 3.0), axes.col(0) * (x * (T(1.0) - x) * (3.0 * side / handover)), roller.r + roller.A.col(1) * T(rim)};
       }
       visit(point);
     }
+  }
+
+ private:
+  template <StateScalar T, class Visit>
+  void meet_edge(Frame<T> const& link, Mat<T, 3, 3> const& axes, Vec<T, 3> const& local, double side, T const& beyond, T const& height,
+                 Visit& visit) const {
+    using std::sqrt;
+    T const distance = sqrt(beyond * beyond + height * height), overlap = T(radius - chamfer) - distance;
+    T const depth = value_of(overlap) < value_of(beyond) ? overlap : beyond;
+    if (!(value_of(depth) > 0.0)) return;
+    Vec<T, 3> const edge(T(0.5 * pitch * side), local[1], T(half_thickness.value));
+    visit(ContactPoint<T>{link.r + axes * edge, (axes.col(0) * (beyond * -side) - axes.col(2) * height) / distance, depth});
   }
 };
 

@@ -21,7 +21,7 @@ inline double track_cross(Vec2 const& a, Vec2 const& b) { return a[0] * b[1] - a
 
 /// A direction in which a link may lie, and by how much it then turns to the left of the one before.
 struct TrackSight {
-  Vec2 direction;  ///< (2) of length one
+  Vec2 direction = Vec2::Zero();  ///< (2) of length one
   double turn;     ///< [rad], −3π/2 < turn ≤ π/2
 };
 
