@@ -138,6 +138,32 @@ TEST(Newton, GivesUpWhenCorrectionsGrow) {
   EXPECT_LE(o.report.iterations, 5);
 }
 
+// atan x from 1.5: undamped, −1.69, 2.32, −5.11, … ever farther to either side.
+TEST(Newton, FullNewtonDampsWhatGoesBackAndForth) {
+  struct Damped : Scalar {
+    double least_part = 1.0;
+    void apply(double part) {
+      least_part = std::min(least_part, part);
+      x += part * correction;
+    }
+  };
+  auto const arc = [](double x) { return std::atan(x); };
+  auto const slope = [](double x) { return 1.0 / (1.0 + x * x); };
+  NewtonOptions const full{.max_iterations = 60, .always_refactor = true, .growths = 60};
+  bool factored = false;
+  double theta = 1.0;
+  Scalar undamped{arc, slope, 1.5};
+  EXPECT_NE(newton(undamped, full, factored, theta).result, NewtonResult::converged);
+  Damped damped{{arc, slope, 1.5}};
+  EXPECT_EQ(newton(damped, full, factored, theta).result, NewtonResult::converged);
+  EXPECT_NEAR(damped.x, 0.0, 1e-9);
+  EXPECT_LT(damped.least_part, 1.0);
+  // where full steps converge they stay full
+  Damped easy{{[](double x) { return x * x - 2.0; }, [](double x) { return 2.0 * x; }, 1.0}};
+  EXPECT_EQ(newton(easy, full, factored, theta).result, NewtonResult::converged);
+  EXPECT_EQ(easy.least_part, 1.0);
+}
+
 TEST(Newton, GivesUpAfterTheMostIterationsAllowed) {
   Scalar problem = square_root_of_two();
   Outcome const o = solve(problem, {.max_iterations = 2});
