@@ -11,6 +11,8 @@
 #include <polybody/bodies/ffr.hpp>
 #include <polybody/bodies/planar/ancf_cable.hpp>
 #include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/forces/contact.hpp>
+#include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
@@ -137,6 +139,25 @@ struct BushedBodies {
   auto const& model() const { return bodies; }
 };
 
+/// Balls in a group of contacts that fall onto the floor and onto one of them, with friction.
+struct FallingBalls {
+  using OnFloor = Contact<SphereOnPlane>;
+  using OnBall = Contact<SphereOnSphere>;
+  using Group = ContactGroup<OnFloor, OnBall>;
+  Model<Bodies<Rigid<>>, Joints<>, Forces<Group>> balls{Gravity{0, 0, -9.81}};
+
+  FallingBalls() {
+    Friction const rough{.coefficient = 0.3, .slip_speed = 0.05};
+    std::vector<Marker<Rigid<>>> middles;
+    for (double const z : {0.1, 0.31, 0.52})
+      middles.push_back(balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.1 * z, 0, z}))).at(Vec3(0, 0, 0)));
+    auto const group = balls.apply(Group{}, middles);
+    balls.oppose(group, OnFloor{{0.1}, {.stiffness = 1e4, .damping = 10.0, .onset = 1e-4}, rough}, balls.ground().at({0, 0, 0}));
+    balls.oppose(group, OnBall{{0.1, 0.1}, {.stiffness = 1e4}, rough}, balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.15, 0, 0.2}))).at(Vec3(0, 0, 0)));
+  }
+  auto const& model() const { return balls; }
+};
+
 /// A floating frame of six modes with geometric stiffening on a pin: a body whose size is known at run time.
 struct HungFrame {
   using Pin = Joint<Revolute, Constraint>;
@@ -213,6 +234,12 @@ TEST(NoAllocation, InAStepThatConservesEnergy) {
 
 TEST(NoAllocation, InAStepOfBodiesOnBushings) {
   EXPECT_EQ(in_steps<BushedBodies>(GeneralizedAlpha{.second_order_terms = true}), 0);
+}
+
+TEST(NoAllocation, InAStepOfAGroupOfContacts) {
+  EXPECT_EQ(in_steps<FallingBalls>(GeneralizedAlpha{}), 0);
+  EXPECT_EQ(in_steps<FallingBalls>(GeneralizedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<FallingBalls>(RungeKutta4<>{}), 0);
 }
 
 TEST(NoAllocation, InAStepOfAFloatingFrame) {
