@@ -18,7 +18,8 @@ struct LinkOnGround {
   static constexpr Observes needs_of_second = Observes::frame;
 
   G terrain = {};
-  std::vector<Vec3> pad = {};  ///< n × (3) in the link's axes [m]; of a cable, which does not tell its sides, y counts for nothing and z is away from the ground
+  /// n × (3) in the link's axes [m]. Of a cable, which does not tell its sides, y counts for nothing and z is away from the ground.
+  std::vector<Vec3> pad = {};
 
   void check(std::string const& name) const {
     terrain.check(name);

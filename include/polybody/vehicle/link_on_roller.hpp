@@ -49,7 +49,8 @@ struct LinkOnRoller {
     double const reach = radius + half_thickness + half_width + pitch + far;
     Vec3 const arm = roller.r - link.r;
     if (arm.squaredNorm() > reach * reach) return false;
-    return std::abs(arm.dot(link.A.col(0))) < 0.5 * pitch + std::max(handover, double(radius)) + std::abs(roller.A.col(1).dot(link.A.col(0))) * far;
+    double const margin = std::max(handover, double(radius)) + std::abs(roller.A.col(1).dot(link.A.col(0))) * far;
+    return std::abs(arm.dot(link.A.col(0))) < 0.5 * pitch + margin;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
@@ -66,7 +67,8 @@ struct LinkOnRoller {
       ContactPoint<T> point{link.r + axes * on_face, -axes.col(2), depth};
       if (value_of(to_end) < 2.0 * handover) {
         T const x = to_end * (0.5 / handover);
-        point.handover = {x * x * (x * -2.0 + 3.0), axes.col(0) * (x * (T(1.0) - x) * (3.0 * side / handover)), roller.r + roller.A.col(1) * T(rim)};
+        point.handover = {x * x * (x * -2.0 + 3.0), axes.col(0) * (x * (T(1.0) - x) * (3.0 * side / handover)),
+                          roller.r + roller.A.col(1) * T(rim)};
       }
       visit(point);
     }

@@ -48,9 +48,9 @@ struct VehicleOptions {
   bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
 };
 
-/// Chassis, and on each side sprocket, idler, tensioner, five wheels on arms and 64 links; `Link` is a link's body, `PinPolicy` how links hang
-/// together. Where pins are rows or joint coordinates, 63 of a track are, and the last one is as `Closure` says; where they are forces or linear
-/// rows, all 64 are alike.
+/// Chassis, and on each side sprocket, idler, tensioner, five wheels on arms and 64 links; `Link` is a link's body, `PinPolicy` how
+/// links hang together. Where pins are rows or joint coordinates, 63 of a track are, and the last one is as `Closure` says; where
+/// they are forces or linear rows, all 64 are alike.
 template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = FlatGround, TimeLaw Drive = Ramp>
 class Vehicle {
  public:
@@ -124,14 +124,16 @@ class Vehicle {
     Handle const sprocket = model.add(solid(options.masses.sprocket, axle), name + "sprocket");
     parts.sprocket.push_back(sprocket);
     model.connect(about_y, at(hull, centre, axle), sprocket.at(Vec3(0, 0, 0)), name + "sprocket axle");
-    parts.drive.push_back(model.connect(Driven{{.law = {drive}, .axis = y}, {}}, at(hull, centre, axle), sprocket.at(Vec3(0, 0, 0)), name + "drive"));
+    parts.drive.push_back(
+        model.connect(Driven{{.law = {drive}, .axis = y}, {}}, at(hull, centre, axle), sprocket.at(Vec3(0, 0, 0)), name + "drive"));
 
     Vec3 const idler_axle = m113::idler(s, options.start.idler_x);
     Handle const slider = model.add(solid(options.masses.tensioner, idler_axle), name + "tensioner");
     Handle const idler = model.add(solid(options.masses.idler, idler_axle), name + "idler");
     parts.tensioner.push_back(slider);
     parts.idler.push_back(idler);
-    model.connect(Slide{Prismatic{.axis = Vec3::UnitX()}, {}}, at(hull, centre, idler_axle), slider.at(Vec3(0, 0, 0)), name + "tensioner guide");
+    model.connect(Slide{Prismatic{.axis = Vec3::UnitX()}, {}}, at(hull, centre, idler_axle), slider.at(Vec3(0, 0, 0)),
+                  name + "tensioner guide");
     model.connect(about_y, slider.at(Vec3(0, 0, 0)), idler.at(Vec3(0, 0, 0)), name + "idler axle");
     model.apply(AxialSpring{.stiffness = m113::tensioner.stiffness, .damping = m113::tensioner.damping, .preload = options.preload},
                 at(hull, centre, m113::idler(s, idler_reference_x)), slider.at(Vec3(0, 0, 0)), name + "tensioner spring");
@@ -199,8 +201,8 @@ class Vehicle {
 
     auto const roller = [&](Handle const& body, double radius, std::string const& n) {
       auto const axle = body.at(Vec3(0, 0, 0));
-      model.oppose(group, law(LinkOnRoller<told>{.pitch = pitch, .half_thickness = half_thickness, .half_width = half_width, .radius = radius, .rims = rims},
-                              on_wheel), axle, n);
+      LinkOnRoller<told> const face{.pitch = pitch, .half_thickness = half_thickness, .half_width = half_width, .radius = radius, .rims = rims};
+      model.oppose(group, law(face, on_wheel), axle, n);
       Vec3 const tip = Vec3(horn) + Vec3(0, 0, 0.5 * horn_size.z);
       model.oppose(group, law(HornOnRims<told>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel), axle, n + " (horn)");
     };
@@ -210,7 +212,8 @@ class Vehicle {
                                   .tip_radius = tip_radius};
     model.oppose(group, law(PinOnSprocket<told>{.profile = profile, .valley = first_valley, .rings = rings}, on_sprocket),
                  parts.sprocket[0].at(Vec3(0, 0, 0)), name + "sprocket");
-    model.oppose(group, law(LinkOnGround<Ground, told>{.terrain = ground, .pad = corners}, on_ground), model.ground().at({0, 0, 0}), "ground");
+    LinkOnGround<Ground, told> const pads{.terrain = ground, .pad = corners};
+    model.oppose(group, law(pads, on_ground), model.ground().at({0, 0, 0}), "ground");
   }
 };
 

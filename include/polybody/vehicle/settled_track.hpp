@@ -37,7 +37,8 @@ inline TrackStart settled_track(VehicleOptions options = {}) {
     } while (!run.done() && energy > before);
   }
   if (fastest > 1e-3)
-    throw Error("M113: the track does not come to rest; let go, it still reaches " + number(fastest) + " m/s. Look at its length and its tensioner.");
+    throw Error("M113: the track does not come to rest; let go, it still reaches " + number(fastest) +
+                " m/s. Look at its length and its tensioner.");
 
   TrackStart start{.idler_x = position(bench.model, x, side.idler[0].at(Vec3(0, 0, 0))).x(), .links = {}};
   TrackLayout const layout = track();

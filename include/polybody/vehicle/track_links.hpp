@@ -5,6 +5,7 @@
 #include <polybody/bodies/ancf_cable.hpp>
 #include <polybody/bodies/rigid.hpp>
 #include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/kinematics/marker.hpp>
 #include <polybody/vehicle/m113.hpp>
 
 namespace polybody::m113 {

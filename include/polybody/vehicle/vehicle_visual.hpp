@@ -29,7 +29,10 @@ inline Surface toothed_wheel(double width) {
   int const n = int(outline.size());
   Surface s = swept(2, n);
   for (int k = 0; k < 2; ++k)
-    for (int i = 0; i < n; ++i) s.points[std::size_t(k * n + i)] = Vec3(outline[std::size_t(i)][1], (k - 0.5) * width, outline[std::size_t(i)][0]);
+    for (int i = 0; i < n; ++i) {
+      Vec2 const& p = outline[std::size_t(i)];
+      s.points[std::size_t(k * n + i)] = Vec3(p[1], (k - 0.5) * width, p[0]);
+    }
   return s;
 }
 }  // namespace detail
