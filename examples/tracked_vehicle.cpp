@@ -20,9 +20,9 @@ GeneralizedAlpha integrator(Options const& o) { return {.rho_inf = o.rho, .toler
 IdealTrack ideal(Options const& o) { return {"constraint", {}, integrator(o)}; }
 PenaltyTrack penalty(Options const& o, double k) {
   std::string const name = k == m113::pin_stiffness ? "penalty" : k == m113::soft_pin_stiffness ? "penalty 1e7" : "penalty " + number(k);
-  return {name, penalty_pin(k), integrator(o)};
+  return {name, m113::penalty_pin(k), integrator(o)};
 }
-BushingTrack bushing(Options const& o) { return {"bushing", bushing_pin(o.penalty), integrator(o)}; }
+BushingTrack bushing(Options const& o) { return {"bushing", m113::bushing_pin(o.penalty), integrator(o)}; }
 CableTrack cable(Options const& o) { return {"ancf", {}, integrator(o)}; }
 RecursiveTrack recursive(Options const& o) { return {"recursive", {}, integrator(o)}; }
 
@@ -140,8 +140,8 @@ void table_3_4(Options const& o) {
   using Euler = Rigid<EulerParameters>;
   std::cout << "Table 3.4\n";
   count("pin joint", census(m113::Vehicle<Euler, Constraint>({}, drives, options).model), "1092, 168, 924");
-  count("penalty", census(m113::Vehicle<Euler, PenaltyPerRow<5>>(penalty_pin(o.penalty), drives, options).model), "1092, 798, 294");
-  count("bushing", census(m113::Vehicle<Euler, Bushing>(bushing_pin(o.penalty), drives, options).model), "1092, 798, 294");
+  count("penalty", census(m113::Vehicle<Euler, PenaltyPerRow<5>>(m113::penalty_pin(o.penalty), drives, options).model), "1092, 798, 294");
+  count("bushing", census(m113::Vehicle<Euler, Bushing>(m113::bushing_pin(o.penalty), drives, options).model), "1092, 798, 294");
   count("ANCF", census(m113::Vehicle<AncfCable<>, AncfLinear>({}, drives, options).model), "1227, 1060, 167");
   std::cout << "  The thesis' 1227 ANCF coordinates are 29 bodies of 7 and 128 links of 8; the vehicle has 27 bodies beside the links and the ground,\n"
                "  which makes 28: 1220, 1054, 166. What the 29th is the text does not say.\n";

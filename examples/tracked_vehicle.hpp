@@ -198,21 +198,6 @@ struct TrackCase {
   }
 };
 
-// Pins as penalties: rows that are direction cosines get the stiffness of forces at the ends of a link's width.
-inline PenaltyPerRow<5> penalty_pin(double stiffness) {
-  double const arm2 = m113::pin_arm * m113::pin_arm;
-  Vec<double, 5> rows;
-  rows << 1.0, 1.0, 1.0, arm2, arm2;
-  return {.stiffness = Vec<double, 5>(stiffness * rows), .damping = Vec<double, 5>(m113::pin_damping * rows)};
-}
-// … and as bushings, whose third axis is the pin's.
-inline Bushing bushing_pin(double stiffness) {
-  double const arm2 = m113::pin_arm * m113::pin_arm;
-  Vec3 const along(1.0, 1.0, 1.0), about(arm2, arm2, 0.0);
-  return {.stiffness = Bushing::diagonal(stiffness * along, stiffness * about),
-          .damping = Bushing::diagonal(m113::pin_damping * along, m113::pin_damping * about)};
-}
-
 using IdealTrack = Formulation<Rigid<>, Constraint, GeneralizedAlpha>;
 using PenaltyTrack = Formulation<Rigid<>, PenaltyPerRow<5>, GeneralizedAlpha>;
 using BushingTrack = Formulation<Rigid<>, Bushing, GeneralizedAlpha>;

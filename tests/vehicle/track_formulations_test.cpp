@@ -12,19 +12,6 @@ using namespace polybody;
 
 namespace track_formulations_test {
 
-PenaltyPerRow<5> penalty(double stiffness) {
-  double const arm2 = m113::pin_arm * m113::pin_arm;
-  Vec<double, 5> rows;
-  rows << 1.0, 1.0, 1.0, arm2, arm2;
-  return {.stiffness = Vec<double, 5>(stiffness * rows), .damping = Vec<double, 5>(m113::pin_damping * rows)};
-}
-Bushing bushing() {
-  double const arm2 = m113::pin_arm * m113::pin_arm;
-  Vec3 const along(1.0, 1.0, 1.0), about(arm2, arm2, 0.0);
-  return {.stiffness = Bushing::diagonal(m113::pin_stiffness * along, m113::pin_stiffness * about),
-          .damping = Bushing::diagonal(m113::pin_damping * along, m113::pin_damping * about)};
-}
-
 struct Ride {
   Vec3 place, velocity;                ///< of the hull at the end
   double dip = 0.0;                    ///< [m]
@@ -76,8 +63,8 @@ TEST(TrackFormulations, MoveTheVehicleAlike) {
     EXPECT_NEAR(other.pull, ideal.pull, 0.05 * ideal.pull) << name;
     EXPECT_TRUE(other.held) << name;
   };
-  alike(ride<Rigid<>>(penalty(m113::pin_stiffness), 0.6, 8.0), "penalty");
-  alike(ride<Rigid<>>(bushing(), 0.6, 8.0), "bushing");
+  alike(ride<Rigid<>>(m113::penalty_pin(m113::pin_stiffness), 0.6, 8.0), "penalty");
+  alike(ride<Rigid<>>(m113::bushing_pin(m113::pin_stiffness), 0.6, 8.0), "bushing");
   alike(ride<AncfCable<>>(AncfLinear{}, 0.6, 8.0), "ANCF");
   alike(ride<Rigid<>>(Recursive{}, 0.6, 8.0), "recursive");
 }
@@ -85,12 +72,12 @@ TEST(TrackFormulations, MoveTheVehicleAlike) {
 // Thesis Figure 3.15: penalties open by less than 0.075 mm at 1e9 N/m and by more than 1.5 mm at 1e7 N/m under driving loads. At rest
 // they open by force over stiffness, a hundred times as far for a hundredth of it; the loop of soft pins is longer, and its tension lower.
 TEST(TrackFormulations, PenaltiesOpenByForceOverStiffness) {
-  Ride const stiff = ride<Rigid<>>(penalty(m113::pin_stiffness), 0.6, 0.0, true), soft = ride<Rigid<>>(penalty(m113::soft_pin_stiffness), 0.6, 0.0, true);
+  Ride const stiff = ride<Rigid<>>(m113::penalty_pin(m113::pin_stiffness), 0.6, 0.0, true), soft = ride<Rigid<>>(m113::penalty_pin(m113::soft_pin_stiffness), 0.6, 0.0, true);
   EXPECT_NEAR(stiff.gap, stiff.pull / m113::pin_stiffness, 0.1 * stiff.gap);
   EXPECT_NEAR(soft.gap, soft.pull / m113::soft_pin_stiffness, 0.1 * soft.gap);
   EXPECT_NEAR((soft.gap / soft.pull) / (stiff.gap / stiff.pull), 100.0, 20.0);
   EXPECT_LT(soft.pull, stiff.pull);
-  EXPECT_LT(ride<Rigid<>>(penalty(m113::pin_stiffness), 0.5, 8.0).largest_gap, 0.075e-3);
+  EXPECT_LT(ride<Rigid<>>(m113::penalty_pin(m113::pin_stiffness), 0.5, 8.0).largest_gap, 0.075e-3);
 }
 
 // What ParaView shows, as VTK reads it: hull, wheels, sprockets and links where they are, nothing inside out.

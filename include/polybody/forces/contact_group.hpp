@@ -53,10 +53,9 @@ class ContactGroup {
   }
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
-    for (Index i = 0; i < many_; ++i)
-      for_each_opponent([&](auto const& few) {
-        if (few.law.may_touch(frame(i), frame(few.marker))) visit(i, few.marker, few.law);
-      });
+    for_each_candidate([&](Index i, Index j, auto const& law) {
+      if (law.may_touch(frame(i), frame(j))) visit(i, j, law);
+    });
   }
 
  private:

@@ -182,7 +182,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     auto& entry = std::get<std::vector<detail::ForceEntry<F>>>(forces_)[std::size_t(group.index)];
     name = detail::name_or_next(std::move(name), "opponent", entry.markers.size() - std::size_t(entry.force.many()));
     law.check("\"" + group.name + "\", \"" + name + "\"");
-    detail::require_told(one, Law::needs, group.name);
+    detail::require_told(one, needs_of_second<Law>(), group.name);
     entry.markers.push_back(publish_at(one, Mat3::Identity()));
     entry.force.oppose(law, Index(entry.markers.size()) - 1, std::move(name));
   }

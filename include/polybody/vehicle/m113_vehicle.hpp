@@ -9,6 +9,7 @@
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/point_on_line.hpp>
+#include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
@@ -28,6 +29,24 @@ struct TrackStart {
   double idler_x = idler_reference_x;                       ///< [m]
   std::vector<TrackLink> links = wrap_track(track()).links;  ///< 64
 };
+
+/// The teeth of the sprockets.
+inline SprocketProfile sprocket_profile() {
+  return {.teeth = teeth, .pitch = pitch, .pin_radius = pin_radius, .valley_radius = valley_radius, .flank = flank, .tip_radius = tip_radius};
+}
+
+/// Pins as penalties of `stiffness` [N/m]: rows that are direction cosines get that of forces at the ends of a link's width.
+inline PenaltyPerRow<5> penalty_pin(double stiffness) {
+  Vec<double, 5> rows;
+  rows << 1.0, 1.0, 1.0, pin_arm * pin_arm, pin_arm * pin_arm;
+  return {.stiffness = Vec<double, 5>(stiffness * rows), .damping = Vec<double, 5>(pin_damping * rows)};
+}
+/// … and as bushings, whose third axis is the pin's.
+inline Bushing bushing_pin(double stiffness) {
+  Vec3 const along(1.0, 1.0, 1.0), about(pin_arm * pin_arm, pin_arm * pin_arm, 0.0);
+  return {.stiffness = Bushing::diagonal(stiffness * along, stiffness * about),
+          .damping = Bushing::diagonal(pin_damping * along, pin_damping * about)};
+}
 
 /// How a track of ideal pins closes. Pins about parallel axes around a loop have three rows too many.
 enum class Closure {
@@ -208,9 +227,7 @@ class Vehicle {
     };
     for (int i = 0; i < m113::wheels; ++i) roller(parts.wheels[std::size_t(i)], wheel_radius, name + "wheel " + std::to_string(i + 1));
     roller(parts.idler[0], idler_radius, name + "idler");
-    SprocketProfile const profile{.teeth = teeth, .pitch = pitch, .pin_radius = pin_radius, .valley_radius = valley_radius, .flank = flank,
-                                  .tip_radius = tip_radius};
-    model.oppose(group, law(PinOnSprocket<told>{.profile = profile, .valley = first_valley, .rings = rings}, on_sprocket),
+    model.oppose(group, law(PinOnSprocket<told>{.profile = sprocket_profile(), .valley = first_valley, .rings = rings}, on_sprocket),
                  parts.sprocket[0].at(Vec3(0, 0, 0)), name + "sprocket");
     LinkOnGround<Ground, told> const pads{.terrain = ground, .pad = corners};
     model.oppose(group, law(pads, on_ground), model.ground().at({0, 0, 0}), "ground");

@@ -10,8 +10,7 @@ namespace polybody::m113 {
 namespace detail {
 /// The sprocket's rim, tooth by tooth, as two rings along y.
 inline Surface toothed_wheel(double width) {
-  SprocketProfile const profile{.teeth = teeth, .pitch = pitch, .pin_radius = pin_radius, .valley_radius = valley_radius, .flank = flank,
-                                .tip_radius = tip_radius};
+  SprocketProfile const profile = sprocket_profile();
   Vec2 const corner = profile.corner();
   std::vector<Vec2> outline;  // (z, x), from z towards x
   for (int k = 0; k < teeth; ++k) {
