@@ -182,10 +182,51 @@ TEST(Newton, SaysWhenTheTangentIsSingular) {
 }
 
 TEST(Newton, SaysWhenTheRightHandSideIsNoNumber) {
-  Scalar problem{[](double x) { return std::sqrt(x) + 1.0; }, [](double x) { return 0.5 / std::sqrt(x); }, 1.0};
-  Outcome const o = solve(problem);  // the first correction leaves the domain
-  EXPECT_EQ(o.report.result, NewtonResult::not_finite);
-  EXPECT_EQ(problem.solutions, 1);
+  auto const f = [](double x) { return std::sqrt(x) + 1.0; };
+  auto const slope = [](double x) { return 0.5 / std::sqrt(x); };
+  Scalar outside{f, slope, -1.0};
+  EXPECT_EQ(solve(outside).report.result, NewtonResult::not_finite);
+  EXPECT_EQ(outside.solutions, 0);
+  Scalar leaves{f, slope, 1.0};  // the first correction leaves the domain: Newton's doing, a smaller step may stay inside
+  EXPECT_EQ(solve(leaves).report.result, NewtonResult::diverged);
+  EXPECT_EQ(leaves.solutions, 1);
+}
+
+// x² + 1 has no root: from 1 the first correction leads to the flat place.
+TEST(Newton, TangentThatIsSingularLaterOnIsNewtonsDoing) {
+  Scalar problem{[](double x) { return x * x + 1.0; }, [](double x) { return 2.0 * x; }, 1.0};
+  EXPECT_EQ(solve(problem, {.always_refactor = true}).report.result, NewtonResult::diverged);
+  EXPECT_EQ(problem.x, 0.0);
+}
+
+// A wrong slope throws x far away, where the next factorisation makes small corrections: small beside those before, which tells nothing,
+// but not beside the tolerance.
+TEST(Newton, SmallCorrectionAfterOneThatGrewTellsNoRate) {
+  Scalar problem{[](double x) { return x / (1.0 + std::abs(x)) - 0.5; }, [](double x) { return x == 0.0 ? 1e-6 : 1e9; }};
+  EXPECT_NE(solve(problem).report.result, NewtonResult::converged);
+  EXPECT_GT(problem.solutions, 3);
+}
+
+// Corrections that shrink by a fifth at a time while what is tolerated shrinks faster: they do contract.
+TEST(Newton, ComparesCorrectionsThemselvesWhereTheToleranceMoves) {
+  struct Moving : Scalar {
+    double tolerated = 1.0;
+    CorrectionSize solve() {
+      (void)Scalar::solve();
+      tolerated = std::max(0.1 * tolerated, 1e-6);
+      return {.norm = std::abs(correction), .tolerated = tolerated};
+    }
+  };
+  for (bool const full : {false, true}) {
+    Moving problem{{[](double x) { return x - 1.0; }, [](double) { return 1.25; }}};
+    bool factored = false;
+    double theta = 1.0;
+    NewtonReport const report = newton(problem, {.always_refactor = full}, factored, theta);
+    EXPECT_EQ(report.result, NewtonResult::converged);
+    EXPECT_EQ(report.factorisations, full ? report.iterations : 1);
+    EXPECT_NEAR(report.theta, 0.2, 1e-6);
+    EXPECT_NEAR(problem.x, 1.0, 1e-6);
+  }
 }
 
 TEST(Newton, CorrectionThatIsNoNumberIsNotApplied) {

@@ -121,13 +121,12 @@ struct AlphaMethod {
     if (two_sets) w.dq += w.back;
     w.lambda += w.y.tail(w.lambda.size());
   }
-  /// A correction beside what is tolerated.
-  double measure(double h, bool two_sets, AlphaVectors const& w) const {
+  CorrectionSize measure(double h, bool two_sets, AlphaVectors const& w) const {
     double const s = beta * h * h, n = std::sqrt(double(std::max<Index>(w.v.size(), 1)));
     double const size = 1.0 + w.vd.norm() / n;
     double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
     double const change = w.y.head(w.v.size()).norm() + (two_sets ? w.back.norm() / s : 0.0);
-    return change / n / (tolerance * size + rounding);
+    return {.norm = change / n, .tolerated = tolerance * size + rounding};
   }
   /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
   void right_hand_side(double h, bool two_sets, std::vector<Index> const& velocity_rows, AlphaVectors& w) const {
@@ -196,7 +195,7 @@ struct AlphaMethod {
         bad = method.refactor(system, h, w.lambda, w, stand_ins);
         return bad < 0;
       }
-      double solve() {
+      CorrectionSize solve() {
         w.solver.solve(system, w.rhs, w.y);
         bool const finite = w.y.allFinite();
         if (two_sets && finite) {
@@ -206,7 +205,7 @@ struct AlphaMethod {
           for (Index const i : system.velocity_rows()) w.phi[i] = 0.0;  // μ is of positions
           w.forward.least_change(system, w.phi, w.back);
         }
-        return finite ? method.measure(h, two_sets, w) : std::numeric_limits<double>::quiet_NaN();
+        return finite ? method.measure(h, two_sets, w) : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
       }
       void apply(double part) { method.apply(part, h, two_sets, w); }
     };

@@ -99,12 +99,12 @@ struct ConservingStep {
         bad = method.refactor(system, h, w);
         return bad < 0;
       }
-      double solve() {
+      CorrectionSize solve() {
         w.solver.solve(system, w.rhs, w.y);
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));
         double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
-        return w.y.allFinite() ? w.y.head(nv).norm() / n / (method.tolerance * (1.0 + w.vd.norm() / n) + rounding)
-                               : std::numeric_limits<double>::quiet_NaN();
+        return {w.y.allFinite() ? w.y.head(nv).norm() / n : std::numeric_limits<double>::quiet_NaN(),
+                method.tolerance * (1.0 + w.vd.norm() / n) + rounding};
       }
       void apply() {
         w.vd += w.y.head(nv);

@@ -166,14 +166,14 @@ struct Radau {
         bad = w.solver.factor(system, [&](auto& sink) { w.write(system, h, sink); });
         return bad < 0;
       }
-      double solve() {
+      CorrectionSize solve() {
         w.solver.solve(system, w.rhs, w.y);
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));
         double change = w.unsettled / (h * h);
         for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), nv).norm());
         double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / (h * h);
-        return w.y.allFinite() ? change / n / (method.tolerance * (1.0 + w.vd[2].norm() / n) + rounding)
-                               : std::numeric_limits<double>::quiet_NaN();
+        return {w.y.allFinite() ? change / n : std::numeric_limits<double>::quiet_NaN(),
+                method.tolerance * (1.0 + w.vd[2].norm() / n) + rounding};
       }
       void apply() {
         for (std::size_t i = 0; i < 3; ++i) {

@@ -10,7 +10,7 @@
 
 namespace polybody {
 
-/// When to stop, refactor and give up. Norms are scaled: one means "as large as the tolerance".
+/// When to stop, refactor and give up.
 struct NewtonOptions {
   int max_iterations = 20;
   double refactor_above = 0.3;   ///< contraction θ above which the factorisation is renewed
@@ -19,6 +19,7 @@ struct NewtonOptions {
   bool foretell = true;          ///< stop on what θ tells of the next correction, not on the last one itself
 };
 
+/// Singular or not finite is what the first iterate is; where a later one is, Newton diverged.
 enum class NewtonResult { converged, diverged, singular, not_finite };
 
 /// What a solve cost and how well it contracted.
@@ -29,65 +30,75 @@ struct NewtonReport {
   double theta = 0.0;  ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖
 };
 
+/// The norm of a correction, and how much of it is tolerated. That may depend on the iterate, so corrections are compared with one
+/// another by their norms.
+struct CorrectionSize {
+  double norm, tolerated = 1.0;
+};
+
 /// Solves by corrections Δ. The problem offers
-///   bool evaluate()     the right-hand side at the iterate; false when it is not finite
-///   bool refactor()     the tangent there; false when it is singular
-///   double solve()      the next correction; returns its scaled norm
-///   void apply()        adds it; or void apply(double part), which full Newton damps
+///   bool evaluate()           the right-hand side at the iterate; false when it is not finite
+///   bool refactor()           the tangent there; false when it is singular
+///   CorrectionSize solve()    the next correction; or double, its norm where 1 is tolerated
+///   void apply()              adds it; or void apply(double part), which full Newton damps
 /// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
-/// Stops when θ/(1 − θ) ‖Δ‖ ≤ 1; fails after growing as often as `growths` says. Full Newton in a stiff direction contracts by turns
-/// (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate predicts the next correction:
-/// it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖. Where it would go in circles, as between a contact and none, half of a
-/// correction is enough: the part that is taken is halved when ‖Δ‖ exceeds the least one so far, and doubled when ‖Δ‖ shrinks by what
-/// that part explains.
+/// Stops when θ/(1 − θ) ‖Δ‖ is tolerated, for a new factorisation only where corrections shrank before it, too; fails after growing as
+/// often as `growths` says. Full Newton in a stiff direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it
+/// left), so no single rate predicts the next correction: it stops when ‖Δ‖ itself is tolerated, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖. Where
+/// it would go in circles, as between a contact and none, half of a correction is enough: the part that is taken is halved unless ‖Δ‖
+/// is less than all before, and doubled when ‖Δ‖ shrinks by what that part explains.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
   NewtonReport report;
   double before = 0.0, earlier = 0.0;
   int grown = 0;
+  double worst = 0.0;  // θ of this solve so far
   double part = 1.0, least = std::numeric_limits<double>::infinity();
-  bool fresh = false;  // factored within this solve
   theta = std::pow(std::max(theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
   for (int k = 0; k < options.max_iterations; ++k) {
     if (!problem.evaluate()) {
-      report.result = NewtonResult::not_finite;
+      report.result = k == 0 ? NewtonResult::not_finite : NewtonResult::diverged;
+      factored = factored && k == 0;
       return report;
     }
-    bool compare = k > 0;
+    bool renewed = false;
     if (!factored || options.always_refactor) {
       if (!problem.refactor()) {
-        report.result = NewtonResult::singular;
+        report.result = k == 0 ? NewtonResult::singular : NewtonResult::diverged;
         factored = false;
         return report;
       }
       ++report.factorisations;
-      factored = fresh = true;
+      factored = renewed = true;
       if (k == 0) theta = 1.0;
     }
-    double const norm = problem.solve();
+    CorrectionSize const size{problem.solve()};
+    double const norm = size.norm, beside_tolerated = norm / size.tolerated;
     ++report.iterations;
-    if (!std::isfinite(norm)) {
-      report.result = fresh ? NewtonResult::singular : NewtonResult::not_finite;
+    if (!std::isfinite(beside_tolerated)) {
+      report.result = k > 0 ? NewtonResult::diverged : renewed ? NewtonResult::singular : NewtonResult::not_finite;
       factored = false;
       return report;
     }
-    if (compare && before > 0.0) {
+    bool const small = beside_tolerated <= 0.1;  // rounding no longer contracts
+    if (k > 0 && before > 0.0) {
+      worst = std::max(worst, theta);
       theta = norm / before;
       report.theta = theta;
       if (options.always_refactor) {
-        if (norm > least)
+        if (norm > 0.999 * least)
           part *= 0.5;
         else if (norm <= (1.1 - part) * before)
           part = std::min(1.0, 2.0 * part);
       }
       bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
-      if (grows && norm > 1.0) {
+      if (grows && beside_tolerated > 1.0) {
         factored = false;
         if (++grown >= options.growths) {
           report.result = NewtonResult::diverged;
           return report;
         }
-      } else if (theta > options.refactor_above) {
+      } else if (theta > options.refactor_above && !small) {
         factored = false;
       }
     }
@@ -99,9 +110,8 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
     earlier = before;
     before = norm;
     double const rate = std::min(theta, 0.99);
-    bool const small = norm <= 0.1;  // rounding no longer contracts
-    if (options.always_refactor || !options.foretell ? norm <= 1.0 : small || (theta < 1.0 && rate / (1.0 - rate) * norm <= 1.0))
-      return report;
+    bool const told = (!renewed || worst < 0.5) && theta < 1.0 && rate / (1.0 - rate) * beside_tolerated <= 1.0;
+    if (options.always_refactor || !options.foretell ? beside_tolerated <= 1.0 : small || told) return report;
   }
   report.result = NewtonResult::diverged;
   factored = false;
