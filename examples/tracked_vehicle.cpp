@@ -13,7 +13,7 @@ namespace {
 struct Options : Settings {
   std::string track = "constraint", figure, turn;
   double penalty = m113::pin_stiffness;
-  bool compare = false, halve = false, no_plot = false;
+  bool compare = false, halve = false;
 };
 
 GeneralizedAlpha integrator(Options const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
@@ -26,19 +26,6 @@ BushingTrack bushing(Options const& o) { return {"bushing", m113::bushing_pin(o.
 CableTrack cable(Options const& o) { return {"ancf", {}, integrator(o)}; }
 RecursiveTrack recursive(Options const& o) { return {"recursive", {}, integrator(o)}; }
 
-// What runs gave: comparison and outcomes side by side.
-struct Runs {
-  Comparison comparison;
-  std::vector<Outcome> outcomes;
-
-  std::vector<double> const& history(std::size_t run, std::string const& name) const {
-    auto const& r = comparison.runs[run];
-    auto const at = std::find(r.output_names.begin(), r.output_names.end(), name);
-    return r.outputs[std::size_t(at - r.output_names.begin())];
-  }
-  std::vector<double> const& times(std::size_t run) const { return comparison.runs[run].times; }
-};
-
 template <class... Fs>
 Runs run(Options const& o, Fs const&... formulations) {
   if (std::string const warning = m113::drive_warning(o.speed * std::max(std::abs(o.left), std::abs(o.right)), o.step); !warning.empty())
@@ -46,32 +33,6 @@ Runs run(Options const& o, Fs const&... formulations) {
   Runs runs;
   runs.comparison = compare(TrackCase{o, &runs.outcomes}, formulations...);
   return runs;
-}
-
-// A curve of every `every`-th sample, so that files stay small.
-Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int color, double scale = 1.0, std::size_t every = 4) {
-  Curve c{.label = std::move(label), .color = color};
-  for (std::size_t i = 0; i < x.size(); i += every) {
-    c.x.push_back(x[i]);
-    c.y.push_back(scale * y[i]);
-  }
-  return c;
-}
-
-void draw(Options const& o, Figure const& f, std::string const& name) {
-  write_figure(f, o.out / name, !o.no_plot);
-  std::cout << "  " << (o.out / name).string() << (o.no_plot ? ".gp" : ".png") << '\n';
-}
-
-void over_time(Options const& o, Runs const& runs, std::string const& output, std::string title, std::string label, std::string const& name,
-               double cut_off = 0.0, double scale = 1.0) {
-  Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = std::move(label)};
-  for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
-    std::vector<double> y = runs.history(k, output);
-    if (cut_off > 0.0) y = low_pass(runs.times(k), y, {.cut_off = cut_off, .mirrored = true});
-    f.curves.push_back(curve(runs.comparison.runs[k].name, runs.times(k), y, int(k), scale, cut_off > 0.0 || output.find("force") == std::string::npos ? 4 : 1));
-  }
-  draw(o, f, name);
 }
 
 // Forces in the watched pin from 1 to 4 s, longitudinal and vertical, up to 30 Hz: how far those of `run` are off those of `first`, as root
@@ -89,14 +50,6 @@ double force_difference(Runs const& first, std::size_t k, Runs const& runs, std:
     }
   }
   return std::sqrt(off / all);
-}
-
-// Over the time after 9 s, of which the first second may still be the end of the ramp's surge.
-double mean_speed(Runs const& runs, std::size_t run) {
-  auto const &t = runs.times(run), &x = runs.history(run, "forward position [m]");
-  std::size_t from = 0;
-  while (from + 1 < t.size() && t[from] < 9.0) ++from;
-  return (x.back() - x[from]) / (t.back() - t[from]);
 }
 
 void report(Options const& o, Runs const& runs) {

@@ -1,5 +1,5 @@
 #pragma once
-// The vehicle of Chapter 3 as a case for `compare`: one template, whatever the formulation of its tracks.
+// The vehicle of Chapters 3 and 4 as a case for `compare`: one template, whatever the formulation of its tracks.
 #include <polybody/analysis/filter.hpp>
 #include <polybody/io/vtk.hpp>
 #include <polybody/polybody.hpp>
@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 inline constexpr int watched_pin = 20;  // of the left track, on the ground at the start
 
 struct Settings {
+  m113::Solids masses = m113::thesis;
   double until = 10.0;
   double step = 5e-4;
   double speed = m113::chapter_3_speed;
@@ -31,6 +32,7 @@ struct Settings {
   double animate = 0.0;  // seconds between states, 0 for none
   bool audit = false;
   fs::path out = "out/tracked_vehicle";
+  bool no_plot = false;  // data and scripts only
 };
 
 // Obstacles for the bump course: 10 and 15 cm high, across both tracks and under one of them.
@@ -42,6 +44,13 @@ inline BumpCourse course(bool bumps) {
 
 template <class F>
 using VehicleOf = m113::Vehicle<typename F::BodyType, typename F::PolicyType, BumpCourse>;
+
+// What is built and set going: the vehicle, and where its links lay at the start.
+template <class F>
+struct Built {
+  m113::TrackStart start;
+  std::shared_ptr<VehicleOf<F> const> vehicle;
+};
 
 // Numbers of one state, worked out once for all outputs that ask.
 template <class V>
@@ -129,14 +138,25 @@ struct TrackCase {
 
   template <class F>
   auto operator()(F const& f) const {
+    return scenario(f, build(f));
+  }
+
+  template <class F>
+  Built<F> build(F const& f) const {
+    Settings const& s = settings;
+    m113::VehicleOptions options{.masses = s.masses, .suspension = s.suspension, .preload = s.preload, .cut = s.cut};
+    options.start = m113::settled_track(options);
+    std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
+    return {options.start, std::make_shared<VehicleOf<F> const>(f.policy, drives, options, course(s.bumps))};
+  }
+
+  template <class F>
+  auto scenario(F const& f, Built<F> const& built) const {
     using V = VehicleOf<F>;
     using M = typename V::ModelType;
     Settings const& s = settings;
-    m113::VehicleOptions options{.suspension = s.suspension, .preload = s.preload, .cut = s.cut};
-    options.start = m113::settled_track(options);
-    std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
-    auto const vehicle = std::make_shared<V const>(f.policy, drives, options, course(s.bumps));
-    auto const probe = std::make_shared<Probe<V>>(vehicle, options.start);
+    auto const vehicle = built.vehicle;
+    auto const probe = std::make_shared<Probe<V>>(vehicle, built.start);
 
     std::vector<Output<M>> outputs;
     auto const add = [&](std::string name, double Probe<V>::*number) {
@@ -197,6 +217,60 @@ struct TrackCase {
     return Scenario<M>{vehicle->model, vehicle->model.reference_state(), run, std::move(outputs), observer};
   }
 };
+
+// What runs gave: comparison and outcomes side by side.
+struct Runs {
+  Comparison comparison;
+  std::vector<Outcome> outcomes;
+
+  std::vector<double> const& history(std::size_t run, std::string const& name) const {
+    auto const& r = comparison.runs[run];
+    auto const at = std::find(r.output_names.begin(), r.output_names.end(), name);
+    return r.outputs[std::size_t(at - r.output_names.begin())];
+  }
+  std::vector<double> const& times(std::size_t run) const { return comparison.runs[run].times; }
+};
+
+// A curve of every `every`-th sample, so that files stay small.
+inline Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int color, double scale = 1.0,
+                   std::size_t every = 4) {
+  Curve c{.label = std::move(label), .color = color};
+  for (std::size_t i = 0; i < x.size(); i += every) {
+    c.x.push_back(x[i]);
+    c.y.push_back(scale * y[i]);
+  }
+  return c;
+}
+
+inline void draw(Settings const& o, Figure const& f, std::string const& name) {
+  write_figure(f, o.out / name, !o.no_plot);
+  std::cout << "  " << (o.out / name).string() << (o.no_plot ? ".gp" : ".png") << '\n';
+}
+
+inline Figure history_figure(Runs const& runs, std::string const& output, std::string title, std::string label, double cut_off = 0.0,
+                             double scale = 1.0) {
+  Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = std::move(label)};
+  std::size_t const every = cut_off > 0.0 || output.find("force") == std::string::npos ? 4 : 1;
+  for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
+    std::vector<double> y = runs.history(k, output);
+    if (cut_off > 0.0) y = low_pass(runs.times(k), y, {.cut_off = cut_off, .mirrored = true});
+    f.curves.push_back(curve(runs.comparison.runs[k].name, runs.times(k), y, int(k), scale, every));
+  }
+  return f;
+}
+
+inline void over_time(Settings const& o, Runs const& runs, std::string const& output, std::string title, std::string label,
+                      std::string const& name, double cut_off = 0.0, double scale = 1.0) {
+  draw(o, history_figure(runs, output, std::move(title), std::move(label), cut_off, scale), name);
+}
+
+// Over the time after `from` [s]; before 9 s there may still be the end of the ramp's surge.
+inline double mean_speed(Runs const& runs, std::size_t run, double from = 9.0) {
+  auto const &t = runs.times(run), &x = runs.history(run, "forward position [m]");
+  std::size_t first = 0;
+  while (first + 1 < t.size() && t[first] < from) ++first;
+  return (x.back() - x[first]) / (t.back() - t[first]);
+}
 
 using IdealTrack = Formulation<Rigid<>, Constraint, GeneralizedAlpha>;
 using PenaltyTrack = Formulation<Rigid<>, PenaltyPerRow<5>, GeneralizedAlpha>;

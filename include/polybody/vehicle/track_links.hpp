@@ -2,7 +2,9 @@
 /// \file
 /// The links of a track under each body formulation. Not in polybody.hpp: of use to vehicles only.
 
+#include <polybody/bodies/ancf_beam.hpp>
 #include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/lrvf.hpp>
 #include <polybody/bodies/rigid.hpp>
 #include <polybody/bodies/rigid_euler_parameters.hpp>
 #include <polybody/kinematics/marker.hpp>
@@ -17,15 +19,24 @@ struct LinkOf;
 
 namespace detail {
 inline Mat3 principal(Triple const& moments) { return Vec3(moments).asDiagonal(); }
-/// A link of steel with the section of §3.6: [m113::cable_width × cable_height], x from the rear pin to the front pin.
-inline Bar link_bar(Placement placement) {
+}  // namespace detail
+
+/// A link of steel with the section of §3.6: [m113::cable_width × cable_height], x from the rear pin to the front pin. `placement` is
+/// that of its centre.
+inline Bar link_bar(Placement placement = {}) {
   placement.origin -= placement.axes.col(0) * (0.5 * pitch);
   return {.length = pitch,
           .section = Rectangle{.height = cable_width, .width = cable_height},
           .material = Material{.density = density, .young = youngs_modulus, .poisson = 0.5 * youngs_modulus / shear_modulus - 1.0},
           .placement = placement};
 }
-}  // namespace detail
+
+/// `masses` with links of the inertia of that bar, as flexible links have it; T3.1 has that of a box 1.7 times as high.
+inline Solids with_steel_links(Solids masses = thesis) {
+  double const w = cable_width, h = cable_height, m = density * w * h * pitch, twelfth = m / 12.0;
+  masses.link = {m, {twelfth * (w * w + h * h), twelfth * (pitch * pitch + h * h), twelfth * (pitch * pitch + w * w)}};
+  return masses;
+}
 
 template <class RotationCoordinates>
 struct LinkOf<Rigid<RotationCoordinates>> {
@@ -36,14 +47,23 @@ struct LinkOf<Rigid<RotationCoordinates>> {
   static auto middle(BodyHandle<Body> const& link) { return link.at(Vec3(0, 0, 0)); }
 };
 
-/// Elements that run from the rear pin to the front pin, one unless said otherwise. The mass of `solid` is in the section.
-template <class Strain, int axial_points, int bending_points>
-struct LinkOf<AncfCable<Strain, axial_points, bending_points>> {
-  using Body = AncfCable<Strain, axial_points, bending_points>;
-  static Body make(Solid const&, Placement const& at) { return Body::from(detail::link_bar(at), 1); }
+namespace detail {
+/// One element from the rear pin to the front pin. The mass of a `Solid` is in the section.
+template <class B>
+struct BeamLink {
+  using Body = B;
+  static Body make(Solid const&, Placement const& at) { return Body::from(link_bar(at), 1); }
   static auto front(BodyHandle<Body> const& link) { return link.at(link.body.length()); }
   static auto rear(BodyHandle<Body> const& link) { return link.at(0.0); }
   static auto middle(BodyHandle<Body> const& link) { return link.at(0.5 * link.body.length()); }
 };
+}  // namespace detail
+
+template <class Strain, int axial_points, int bending_points>
+struct LinkOf<AncfCable<Strain, axial_points, bending_points>> : detail::BeamLink<AncfCable<Strain, axial_points, bending_points>> {};
+template <class Elastic>
+struct LinkOf<AncfBeam<Elastic>> : detail::BeamLink<AncfBeam<Elastic>> {};
+template <class Interpolation>
+struct LinkOf<Lrvf<Interpolation>> : detail::BeamLink<Lrvf<Interpolation>> {};
 
 }  // namespace polybody::m113

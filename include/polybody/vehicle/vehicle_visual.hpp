@@ -57,11 +57,13 @@ Visual<typename V::ModelType> vehicle_visual(V const& vehicle) {
     visual.attach(side.sprocket[0].at(Vec3(0, 0, 0)), cylinder(0.12, 2.0 * tooth_y, y), side.sprocket[0].name + " hub");
     for (auto const& link : side.links) {
       using Link = typename V::LinkType;
-      if constexpr (Link::observes == Observes::frame) {
+      if constexpr (requires { link.at(Vec3(horn)); }) {
         visual.attach(LinkOf<Link>::middle(link), box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}), link.name);
         visual.attach(link.at(Vec3(horn)), box(horn_size), link.name + " horn");
       } else {
-        visual.sweep(link, detail::link_bar({}), 4);
+        visual.sweep(link, link_bar(), 4);
+        if constexpr (Link::observes == Observes::frame)
+          visual.attach(link.at(0.5 * pitch + horn.x, 0.0, horn.z), box(horn_size), link.name + " horn");
       }
     }
   }

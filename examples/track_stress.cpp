@@ -1,0 +1,415 @@
+// Stress of a track's link (Chapter 4, Figures 4.3 to 4.12): after a run of rigid links, decoupled, beside runs of flexible links.
+//   track_stress --links ffr --speed 80
+//   track_stress --compare
+//   track_stress --figure 4.8
+#include <CLI/CLI.hpp>
+
+#include <polybody/analysis/body_record.hpp>
+#include <polybody/analysis/rainflow.hpp>
+#include <polybody/io/checkpoint.hpp>
+#include <polybody/vehicle/link_strain.hpp>
+#include <polybody/vehicle/modal_links.hpp>
+
+#include <map>
+
+#include "tracked_vehicle.hpp"
+
+using namespace chapter3;
+
+namespace {
+
+inline constexpr int watched_link = watched_pin;
+
+struct Options : Settings {
+  std::string links = "ancf", figure, recovery = "static";
+  double cut_off = 15.0;
+  bool compare = false, halve = false, restart = false, fatigue = false;
+};
+
+using CableLinks = Formulation<AncfCable<>, AncfLinear, GeneralizedAlpha>;
+using BeamLinks = Formulation<AncfBeam<ElasticLine>, AncfLinear, GeneralizedAlpha>;
+using SolidLinks = Formulation<AncfBeam<Continuum<>>, AncfLinear, GeneralizedAlpha>;
+using ModalLinks = Formulation<Ffr, Constraint, GeneralizedAlpha>;
+using RotationLinks = Formulation<Lrvf<>, Constraint, GeneralizedAlpha>;
+
+GeneralizedAlpha integrator(Options const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
+IdealTrack rigid(Options const& o) { return {"rigid", {}, integrator(o)}; }
+CableLinks cable(Options const& o) { return {"ancf", {}, integrator(o)}; }
+BeamLinks beam(Options const& o) { return {"beam", {}, integrator(o)}; }
+SolidLinks solid(Options const& o) { return {"continuum", {}, integrator(o)}; }
+ModalLinks modal(Options const& o) { return {"ffr", {}, integrator(o)}; }
+RotationLinks rotation(Options const& o) { return {"lrvf", {}, integrator(o)}; }
+
+// What a run knows of its watched link. Of rigid links the strain is worked out after the run.
+struct LinkHistory {
+  std::vector<double> strain;   // of the link, change of length over length
+  std::vector<double> bending;  // of rigid links: of the fibre towards the wheels, in the middle
+  double recording = 0.0, recovery = 0.0;  // CPU times [s]
+  std::function<void(LinkHistory&)> recover;
+};
+
+double cpu_of(auto&& work) {
+  std::clock_t const begin = std::clock();
+  work();
+  return double(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+DecoupledStress recovered(Options const& o, BodyRecord const& record) {
+  if (o.recovery == "static") return DecoupledStress::quasi_static(m113::link_structure(), record);
+  return DecoupledStress::vibrating(m113::link_structure(), record, integrator(o), {.frame = ReferenceConditions::simply_supported(0, 2)});
+}
+
+struct StressCase {
+  Options const& options;
+  std::vector<Outcome>* outcomes;
+  std::vector<std::shared_ptr<LinkHistory>>* histories;
+
+  template <class F>
+  auto operator()(F const& f) const {
+    using M = typename VehicleOf<F>::ModelType;
+    TrackCase const track{options, outcomes};
+    auto const built = track.build(f);
+    auto scenario = track.scenario(f, built);
+    auto const vehicle = built.vehicle;
+    auto const history = std::make_shared<LinkHistory>();
+    histories->push_back(history);
+    auto const& link = vehicle->side(m113::Side::left).links[watched_link];
+    if constexpr (HasRigidPoints<typename F::BodyType>) {
+      auto const recorder = std::make_shared<LoadRecorder<M>>(vehicle->model);
+      recorder->add(link);
+      scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
+        before(model, x);
+        history->recording += cpu_of([&] { recorder->record(x); });
+      };
+      history->recover = [=, o = options](LinkHistory& h) {
+        h.recovery = cpu_of([&] {
+          DecoupledStress const stress = recovered(o, recorder->of(vehicle->side(m113::Side::left).links[watched_link]));
+          h.strain = m113::link_strain(stress);
+          h.bending = m113::link_bending(stress);
+        });
+      };
+    } else {
+      scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
+        before(model, x);
+        history->strain.push_back(m113::link_strain(vehicle->model, x, vehicle->side(m113::Side::left).links[watched_link]));
+      };
+    }
+    return scenario;
+  }
+};
+
+struct StressRuns : Runs {
+  std::vector<std::shared_ptr<LinkHistory>> links;
+
+  std::string const& name(std::size_t k) const { return comparison.runs[k].name; }
+  std::vector<double> const& raw(std::size_t k) const { return links[k]->strain; }
+  std::vector<double> filtered(std::size_t k, double cut_off) const {
+    return low_pass(times(k), raw(k), {.cut_off = cut_off, .mirrored = true});
+  }
+};
+
+template <class... Fs>
+StressRuns run(Options const& o, Fs const&... formulations) {
+  if (std::string const warning = m113::drive_warning(o.speed, o.step); !warning.empty()) std::cerr << "Warning: " << warning << '\n';
+  StressRuns runs;
+  runs.comparison = compare(StressCase{o, &runs.outcomes, &runs.links}, formulations...);
+  for (auto const& link : runs.links)
+    if (link->recover) link->recover(*link);
+  return runs;
+}
+
+// Runs that several figures share are made once.
+class Cache {
+ public:
+  explicit Cache(Options const& o) : options_(o) {}
+  StressRuns const& at(double speed, double until) {
+    auto const key = std::pair(speed, until);
+    if (auto const found = runs_.find(key); found != runs_.end()) return found->second;
+    Options o = options_;
+    o.speed = speed;
+    o.until = until;
+    return runs_.emplace(key, run(o, rigid(o), cable(o))).first->second;
+  }
+
+ private:
+  Options const& options_;
+  std::map<std::pair<double, double>, StressRuns> runs_;
+};
+
+// Numbers from `from` on: of the plateau, or of all that there is.
+struct Range {
+  double mean = 0.0, least = 0.0, most = 0.0;
+};
+double plateau(std::vector<double> const& times) { return times.back() > 8.6 ? 8.5 : 0.5 * times.back(); }
+Range range_of(std::vector<double> const& times, std::vector<double> const& x, double from) {
+  Range r{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  double count = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (times[i] < from) continue;
+    r.mean += x[i];
+    r.least = std::min(r.least, x[i]);
+    r.most = std::max(r.most, x[i]);
+    ++count;
+  }
+  r.mean /= count;
+  return r;
+}
+
+// Root mean square of a − b from `from` to `to`, of that of b. Samples of `a` are `every` times as many.
+double difference(std::vector<double> const& times, std::vector<double> const& a, std::vector<double> const& b, double from, double to,
+                  std::size_t every = 1) {
+  double off = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < b.size() && every * i < a.size(); ++i) {
+    if (times[i] < from || times[i] > to) continue;
+    off += (a[every * i] - b[i]) * (a[every * i] - b[i]);
+    all += b[i] * b[i];
+  }
+  return std::sqrt(off / all);
+}
+
+// The pull of the tensioner in either run of the track, as if both left the idler level: its spring, without its damper.
+double mean_pull(Options const& o, StressRuns const& runs, std::size_t k, double from) {
+  double const travel = range_of(runs.times(k), runs.history(k, "idler travel [m]"), from).mean;
+  return 0.5 * (o.preload + m113::tensioner.stiffness * travel);
+}
+
+void report(Options const& o, StressRuns const& runs) {
+  std::printf("%g rad/s, %g s, steps of %g ms, rho %g; strain of left link %d, low pass %g Hz\n", o.speed, o.until, 1e3 * o.step, o.rho,
+              watched_link, o.cut_off);
+  std::size_t const last = runs.comparison.runs.size() - 1;
+  std::size_t beside = 0;  // ANCF cables, where they run; else the first
+  for (std::size_t k = 0; k <= last; ++k)
+    if (runs.name(k) == "ancf") beside = k;
+  for (std::size_t k = 0; k <= last; ++k) {
+    auto const& r = runs.comparison.runs[k];
+    double const from = plateau(runs.times(k)), speed = mean_speed(runs, k, from), pull = mean_pull(o, runs, k, from);
+    std::vector<double> const strain = runs.filtered(k, o.cut_off);
+    Range const e = range_of(runs.times(k), strain, from), raw = range_of(runs.times(k), runs.raw(k), from);
+    std::printf("%-10s from %.1f s on: speed %.4f m/s; strain %.3fe-5 (%.3f to %.3f), %.3f MPa; unfiltered %.2f to %.2fe-5\n", r.name.c_str(), from,
+                speed, 1e5 * e.mean, 1e5 * e.least, 1e5 * e.most, 1e-6 * m113::youngs_modulus * e.mean, 1e5 * raw.least, 1e5 * raw.most);
+    std::printf("           (T0 + m v^2/p)/EA with T0 = %.2f kN of the tensioner: %.3fe-5\n", 1e-3 * pull,
+                1e5 * m113::running_strain(speed, pull));
+    if (runs.links[k]->recover) {
+      Range const bending = range_of(runs.times(k), runs.links[k]->bending, from);
+      std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa\n", 1e-6 * m113::youngs_modulus * bending.least,
+                  1e-6 * m113::youngs_modulus * bending.most);
+    }
+    if (k != beside)
+      std::printf("           off %s: %.2f %% (rms from 1 s on), %.2f %% from %.1f s on\n", runs.name(beside).c_str(),
+                  1e2 * difference(runs.times(k), strain, runs.filtered(beside, o.cut_off), 1.0, runs.times(k).back()),
+                  1e2 * difference(runs.times(k), strain, runs.filtered(beside, o.cut_off), from, runs.times(k).back()), from);
+    std::printf("           CPU %.1f s, %.2f of %s", r.cpu, r.cpu / runs.comparison.runs.front().cpu, runs.name(0).c_str());
+    if (runs.links[k]->recover) std::printf("; record %.2f s, recovery %.2f s", runs.links[k]->recording, runs.links[k]->recovery);
+    std::printf("; %.2f iterations, %.2f factorisations a step; %ld of %ld steps halved\n", double(r.run.iterations) / double(r.run.steps),
+                double(r.run.factorisations) / double(r.run.steps), r.run.rejected, r.run.steps);
+    Outcome const& out = runs.outcomes[k];
+    if (out.relative >= 0.0)
+      std::printf("           energy: drives %.1f kJ, gravity %.1f kJ; %.3f %% not accounted for\n", 1e-3 * out.drives, 1e-3 * out.gravity, 1e2 * out.relative);
+    if (!out.trouble.empty()) std::printf("           %s\n", out.trouble.c_str());
+  }
+}
+
+// What a legend calls the run.
+std::string label_of(StressRuns const& runs, std::size_t k) {
+  static std::map<std::string, std::string> const labels{{"ancf", "ANCF cables"}, {"ffr", "FFR, modes"},        {"lrvf", "LRVF"},
+                                                         {"beam", "ANCF beams"},  {"continuum", "ANCF continuum"}};
+  return runs.links[k]->recover ? "rigid, decoupled" : labels.at(runs.name(k));
+}
+
+Figure strain_figure(Options const& o, StressRuns const& runs, std::string title, bool filter, double from, double to) {
+  Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = "axial strain [10⁻⁵]", .x_range = {{from, to}}};
+  for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
+    f.curves.push_back(curve(label_of(runs, k), runs.times(k), filter ? runs.filtered(k, o.cut_off) : runs.raw(k), int(k), 1e5, filter ? 4 : 1));
+    f.curves.back().width = k == 0 ? 3.0 : 1.2;
+  }
+  return f;
+}
+
+bool wanted(Options const& o, std::string const& figure) { return o.figure == "all" || o.figure == figure; }
+
+void figures(Options const& o) {
+  Cache cache(o);
+  double const until = std::min(o.until, 10.0), twice = 2.0 * until;
+  bool const longer = wanted(o, "4.11") || wanted(o, "4.12");
+  auto const [slow, fast] = m113::chapter_4_speeds;
+  std::string const filter = ", " + number(o.cut_off) + " Hz low pass";
+  auto const runs_at = [&](double speed) -> StressRuns const& { return cache.at(speed, speed == slow && longer ? twice : until); };
+  auto const name_of = [](std::string number) {
+    std::replace(number.begin(), number.end(), '.', '_');
+    return "figure_" + number;
+  };
+  auto const history = [&](std::string const& number, double speed, std::string const& output, std::string const& what, std::string const& label,
+                           double scale = 1.0) {
+    Figure f = history_figure(runs_at(speed), output, "Figure " + number + ": " + what + ", " + polybody::number(speed) + " rad/s", label, 0.0, scale);
+    for (std::size_t k = 0; k < f.curves.size(); ++k) f.curves[k].label = k == 0 ? "rigid links" : "ANCF links";
+    f.x_range = {{0.0, until}};
+    draw(o, f, name_of(number));
+  };
+  auto const strain = [&](std::string const& number, double speed, bool filtered, double from, double to) {
+    return strain_figure(o, runs_at(speed), "Figure " + number + ": axial strain of a link, " + polybody::number(speed) + " rad/s" + (filtered ? filter : ""),
+                         filtered, from, to);
+  };
+  for (auto const& [speed, letter] : {std::pair(slow, "a"), {fast, "b"}}) {
+    if (wanted(o, "4.3")) {
+      Figure f{.title = "Figure 4.3" + std::string(letter) + ": sprocket angular velocity", .x_label = "t [s]", .y_label = "angular velocity [rad/s]"};
+      Curve c;
+      for (int i = 0; i <= 1000; ++i) {
+        c.x.push_back(0.01 * i);
+        c.y.push_back(m113::drive(speed, 0.1)(0.01 * i).value);
+      }
+      f.curves.push_back(c);
+      draw(o, f, name_of(std::string("4.3") + letter));
+    }
+    if (wanted(o, "4.4")) history(std::string("4.4") + letter, speed, "forward position [m]", "chassis forward position", "position [m]");
+    if (wanted(o, "4.5")) history(std::string("4.5") + letter, speed, "forward velocity [m/s]", "chassis forward velocity", "velocity [m/s]");
+  }
+  if (wanted(o, "4.6")) draw(o, strain("4.6", slow, false, 0.0, until), name_of("4.6"));
+  if (wanted(o, "4.7")) history("4.7", slow, "joint force x [N]", "longitudinal joint force", "force [kN]", 1e-3);
+  if (wanted(o, "4.8")) draw(o, strain("4.8", slow, true, 0.0, until), name_of("4.8"));
+  if (wanted(o, "4.9")) draw(o, strain("4.9", fast, false, 0.0, until), name_of("4.9"));
+  if (wanted(o, "4.10")) draw(o, strain("4.10", fast, true, 0.0, until), name_of("4.10"));
+  if (wanted(o, "4.11")) draw(o, strain("4.11", slow, true, until, twice), name_of("4.11"));
+  if (wanted(o, "4.12")) {
+    Figure f = strain("4.12", slow, true, until, twice);
+    f.title = "Figure 4.12: axial stress of a link, " + number(slow) + " rad/s" + filter;
+    f.y_label = "axial stress [MPa]";
+    for (Curve& c : f.curves)
+      for (double& y : c.y) y *= 1e-11 * m113::youngs_modulus;
+    draw(o, f, name_of("4.12"));
+  }
+}
+
+// Cycles of axial stress, unfiltered, by rainflow; with S³ as damage (m = 3, as details of welds have it) they do as much as all of them
+// would with one equivalent range.
+void fatigue(Options const& o, StressRuns const& runs) {
+  Basquin const detail{.range = 80e6, .cycles = 2e6, .exponent = 3.0};
+  Figure f{.title = "Ranges of axial stress, " + number(o.speed) + " rad/s", .x_label = "range [MPa]", .y_label = "cycles in " + number(o.until) + " s", .log_y = true};
+  for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
+    std::vector<double> stress = runs.raw(k);
+    for (double& s : stress) s *= m113::youngs_modulus;
+    auto const cycles = rainflow(stress);
+    double count = 0.0, largest = 0.0;
+    for (StressCycle const& c : cycles) {
+      count += c.count;
+      largest = std::max(largest, c.range);
+    }
+    std::printf("%-10s %.0f cycles, the largest range %.2f MPa, the equivalent range %.3f MPa\n", runs.name(k).c_str(), count, 1e-6 * largest,
+                1e-6 * detail.range * std::cbrt(damage(cycles, detail) * detail.cycles / count));
+    double const width = 0.25e6;
+    std::vector<double> bins = binned(cycles, width);
+    bins.push_back(bins.back());
+    Curve c{.label = label_of(runs, k), .style = "steps", .color = int(k)};
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      c.x.push_back(1e-6 * width * double(i));
+      c.y.push_back(bins[i]);
+    }
+    f.curves.push_back(c);
+  }
+  draw(o, f, "stress_ranges");
+}
+
+// Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
+template <class F>
+void restart(Options const& o, F const& f) {
+  std::vector<Outcome> outcomes;
+  TrackCase const track{o, &outcomes};
+  auto const built = track.build(f);
+  auto const scenario = track.scenario(f, built);
+  fs::path const file = o.out / (f.name + ".checkpoint");
+  State x = scenario.start;
+  auto whole = simulate(scenario.model, x, f.integrator, scenario.options);
+  double put_away = -1.0;
+  while (!whole.done()) {
+    whole.advance();
+    if (put_away < 0.0 && x.t >= 0.5 * o.until) {
+      write_checkpoint(file, whole.snapshot());
+      put_away = x.t;
+    }
+  }
+  State y = scenario.start;
+  auto rest = resume(scenario.model, y, f.integrator, scenario.options, read_checkpoint(file));
+  while (!rest.done()) rest.advance();
+  bool const same = x.t == y.t && x.q == y.q && x.v == y.v && x.a == y.a && x.lambda == y.lambda;
+  std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", f.name.c_str(), put_away, y.t, same ? "the same bits" : "NOT the same");
+  if (!same) throw Error("The run that was taken up again ended in another state.");
+}
+
+void halve(Options const& o, auto const& formulation, auto const& of) {
+  Options half = o;
+  half.step = 0.5 * o.step;
+  StressRuns const coarse = run(o, formulation), fine = run(half, of(half));
+  double const from = std::min(1.0, 0.25 * o.until);
+  std::printf("%s, steps of %g and %g ms: filtered strain %.2f %% apart (rms from %.2g s on); CPU %.1f and %.1f s\n", formulation.name.c_str(),
+              1e3 * o.step, 1e3 * half.step, 1e2 * difference(coarse.times(0), fine.filtered(0, o.cut_off), coarse.filtered(0, o.cut_off), from, o.until, 2),
+              from, coarse.comparison.runs[0].cpu, fine.comparison.runs[0].cpu);
+}
+
+void single(Options const& o, auto const& of) {
+  auto const formulation = of(o);
+  if (o.restart) return restart(o, formulation);
+  if (o.halve) return halve(o, formulation, of);
+  StressRuns const r = run(o, formulation);
+  report(o, r);
+  if (o.fatigue) fatigue(o, r);
+  draw(o, strain_figure(o, r, "Axial strain of a link", false, 0.0, o.until), "strain");
+  draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until), "strain_filtered");
+}
+
+void all_formulations(Options const& o) {
+  StressRuns const r = run(o, rigid(o), cable(o), modal(o), rotation(o), beam(o), solid(o));
+  write_report(r.comparison, o.out / "comparison", !o.no_plot);
+  report(o, r);
+  if (o.fatigue) fatigue(o, r);
+  draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.speed) + " rad/s, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until), "strain_filtered");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  o.masses = m113::with_steel_links();
+  o.step = 1e-3;
+  o.rho = 0.5;
+  o.speed = m113::chapter_4_speeds[0];
+  o.out = "out/track_stress";
+  CLI::App app{"Stress of a track's link after a run of rigid links (decoupled) and in runs of flexible ones (Chapter 4)."};
+  app.add_option("--links", o.links, "body formulation of the links")->check(CLI::IsMember({"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"}))->capture_default_str();
+  app.add_flag("--compare", o.compare, "all formulations side by side");
+  app.add_option("--figure", o.figure, "4.3 to 4.12 of the thesis, or all");
+  app.add_option("--speed", o.speed, "of the sprockets after 8 s [rad/s]")->capture_default_str();
+  app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--step", o.step, "[s]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--rho", o.rho, "spectral radius at infinity of the integrator")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  app.add_option("--cut-off", o.cut_off, "of the low pass [Hz]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--recovery", o.recovery, "of stress after a rigid run")->check(CLI::IsMember({"static", "vibrating"}))->capture_default_str();
+  app.add_option("--preload", o.preload, "of the tensioners [N]")->capture_default_str();
+  app.add_flag("--halve", o.halve, "at this step and at half of it");
+  app.add_flag("--restart", o.restart, "whether a run that is taken up from a checkpoint in its middle ends in the same bits");
+  app.add_flag("--fatigue", o.fatigue, "counts cycles of stress by rainflow");
+  app.add_flag("--audit", o.audit, "works out where the energy went");
+  app.add_option("--out", o.out, "folder of the results")->capture_default_str();
+  app.add_flag("--no-plot", o.no_plot, "data and scripts only");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    fs::create_directories(o.out);
+    if (!o.figure.empty())
+      figures(o);
+    else if (o.compare)
+      all_formulations(o);
+    else if (o.links == "rigid")
+      single(o, rigid);
+    else if (o.links == "ancf")
+      single(o, cable);
+    else if (o.links == "ffr")
+      single(o, modal);
+    else if (o.links == "lrvf")
+      single(o, rotation);
+    else if (o.links == "beam")
+      single(o, beam);
+    else
+      single(o, solid);
+  } catch (Error const& e) {
+    std::cerr << e.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,181 @@
+// Strain of a track's link: after a run of rigid links, decoupled, and in runs of flexible links of every formulation (thesis Chapter 4).
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <polybody/analysis/body_record.hpp>
+#include <polybody/analysis/energy_audit.hpp>
+#include <polybody/analysis/filter.hpp>
+#include <polybody/vehicle/link_strain.hpp>
+#include <polybody/vehicle/modal_links.hpp>
+
+#include "support/resumed_run.hpp"
+#include "support/vehicle_runs.hpp"
+
+using namespace polybody;
+
+namespace track_stress_test {
+
+GeneralizedAlpha integrator() { return {.rho_inf = 0.5, .tolerance = 1e-5}; }
+
+/// What the watched link of the left track bore.
+struct Ride {
+  std::vector<double> times, strain;
+  std::vector<double> pull;                            ///< half of the force of the tensioner's spring [N]
+  Vec3 place = Vec3::Zero(), velocity = Vec3::Zero();  ///< of the hull at the end
+  double unaccounted = 0.0;
+  long halved = 0;
+  bool seated = true;
+
+  std::vector<double> filtered(double cut_off = 15.0) const { return low_pass(times, strain, {.cut_off = cut_off, .mirrored = true}); }
+};
+
+m113::VehicleOptions options(bool held = false) {
+  m113::VehicleOptions o{.masses = m113::with_steel_links(), .held = held};
+  o.start = track_at_rest();
+  return o;
+}
+
+template <class Link, class Pin>
+Ride ride(Ramp const& drive, double until, double step, bool held = false) {
+  m113::Vehicle<Link, Pin> const vehicle(Pin{}, {drive, drive}, options(held));
+  using M = typename m113::Vehicle<Link, Pin>::ModelType;
+  auto const& side = vehicle.side(m113::Side::left);
+  auto const& link = side.links[20];
+  State x = vehicle.model.reference_state();
+  Ride r;
+  EnergyAudit audit(vehicle.model);
+  std::optional<LoadRecorder<M>> recorder;
+  if constexpr (HasRigidPoints<Link>) {
+    recorder.emplace(vehicle.model);
+    recorder->add(link);
+  }
+  auto const look = [&] {
+    r.times.push_back(x.t);
+    audit.record(x);
+    if constexpr (HasRigidPoints<Link>)
+      recorder->record(x);
+    else
+      r.strain.push_back(m113::link_strain(vehicle.model, x, link));
+    double const travel = (hull_of(vehicle, x).A.transpose() * (position(vehicle.model, x, side.idler[0].at(Vec3(0, 0, 0))) - hull_of(vehicle, x).r)).x() +
+                          m113::chassis.x - m113::idler_reference_x;
+    r.pull.push_back(0.5 * (m113::preload + m113::tensioner.stiffness * travel));
+  };
+  auto run = simulate(vehicle.model, x, integrator(), {.until = until, .step = step, .halvings = 6});
+  look();
+  while (!run.done()) {
+    run.advance();
+    look();
+  }
+  if constexpr (HasRigidPoints<Link>) r.strain = m113::link_strain(DecoupledStress::quasi_static(m113::link_structure(), recorder->of(link)));
+  r.place = hull_of(vehicle, x).r;
+  r.velocity = hull_of(vehicle, x).v;
+  r.unaccounted = audit.relative();
+  r.halved = run.report().rejected;
+  for (m113::Side const s : {m113::Side::left, m113::Side::right}) r.seated = r.seated && seating(vehicle, x, s).holds();
+  return r;
+}
+
+/// Root mean square of a − b beside that of b, after the first tenth of a second; samples of `a` may be a multiple of those of b.
+double off(Ride const& a, Ride const& b) {
+  std::vector<double> const x = a.filtered(), y = b.filtered();
+  std::size_t const every = (x.size() - 1) / (y.size() - 1);
+  double sum = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (b.times[i] < 0.1) continue;
+    EXPECT_NEAR(a.times[every * i], b.times[i], 1e-9);
+    sum += (x[every * i] - y[i]) * (x[every * i] - y[i]);
+    all += y[i] * y[i];
+  }
+  return std::sqrt(sum / all);
+}
+
+Ramp setting_out() { return {.target = 8.0, .duration = 0.6, .start = 0.1, .rounding = 0.1}; }
+
+// Steel links at h = 1 ms. EA/p is five thousand times as stiff as a contact: whatever the formulation, a link bears the same tension, and
+// its strain is that over EA. 10 % between decoupled and ANCF, 5 % between coupled floating frames and ANCF is what Chapter 4's
+// question asks; the thesis found factors of 2 and 3.
+TEST(TrackStress, IsTheSameDecoupledAndCoupledInEveryFormulation) {
+  double const until = 0.8;
+  Ride const cable = ride<AncfCable<>, AncfLinear>(setting_out(), until, 1e-3);
+  double most = 0.0;
+  for (double const e : cable.filtered()) most = std::max(most, std::abs(e));
+  EXPECT_GT(most, 1e-6);  // 3 kN and more
+  EXPECT_LT(cable.unaccounted, 0.01);
+  EXPECT_TRUE(cable.seated);
+  auto const alike = [&](Ride const& other, double within, char const* name) {
+    EXPECT_LT(off(other, cable), within) << name;
+    EXPECT_LT((other.place - cable.place).norm(), 3e-3) << name;
+    EXPECT_LT((other.velocity - cable.velocity).norm(), 0.02) << name;
+    EXPECT_LT(other.unaccounted, 0.01) << name;
+    EXPECT_TRUE(other.seated) << name;
+    EXPECT_LE(other.halved, 2) << name;
+  };
+  alike(ride<Rigid<>, Constraint>(setting_out(), until, 1e-3), 0.1, "rigid, decoupled");
+  alike(ride<Ffr, Constraint>(setting_out(), until, 1e-3), 0.05, "FFR");
+  alike(ride<Lrvf<>, Constraint>(setting_out(), until, 1e-3), 0.05, "LRVF");
+  alike(ride<AncfBeam<ElasticLine>, AncfLinear>(setting_out(), until, 1e-3), 0.05, "ANCF beam, elastic line");
+  alike(ride<AncfBeam<Continuum<>>, AncfLinear>(setting_out(), until, 1e-3), 0.05, "ANCF beam, continuum");
+  EXPECT_LT(off(ride<AncfCable<>, AncfLinear>(setting_out(), until, 0.5e-3), cable), 0.05);
+}
+
+// Tracks that run around a held vehicle, with nothing to drive: the tensioner pulls by T₀ at either run, and the chain bears m v²/p on
+// top of it. Over the time in which a link goes round, its strain is (T₀ + m v²/p)/EA; the runs leave the idler at up to 15° from its
+// guide (2 % of T₀).
+TEST(TrackStress, FollowsTensionOverEA) {
+  for (double const speed : {30.0, 80.0}) {
+    Ramp const drive{.target = speed, .duration = 0.6, .start = 0.05, .rounding = 0.1};
+    double const v = speed * m113::rolling_radius, loop = m113::links * m113::pitch / v, until = 0.9 + loop;
+    auto const follows = [&](Ride const& r, char const* name) {
+      double strain = 0.0, pull = 0.0, count = 0.0;
+      for (std::size_t i = 0; i < r.times.size(); ++i) {
+        if (r.times[i] < until - loop) continue;
+        strain += r.strain[i];
+        pull += r.pull[i];
+        ++count;
+      }
+      double const expected = m113::running_strain(v, pull / count);
+      EXPECT_NEAR(strain / count, expected, 0.1 * expected) << name << " at " << speed << " rad/s";
+    };
+    follows(ride<Rigid<>, Constraint>(drive, until, 1e-3, true), "rigid, decoupled");
+    if (speed > 50.0) follows(ride<AncfCable<>, AncfLinear>(drive, until, 1e-3, true), "ANCF");
+  }
+}
+
+/// 130 steps, put away, 30 steps more; and the latter once again from the file.
+template <class Link, class Pin>
+void restarts_with_the_same_bits(char const* name) {
+  m113::Vehicle<Link, Pin> const vehicle(Pin{}, {setting_out(), setting_out()}, options());
+  RunOptions run_options{.until = 0.16, .step = 1e-3, .halvings = 6};
+  for (m113::Side const s : {m113::Side::left, m113::Side::right}) run_options.events.push_back(m113::track_lost(vehicle, s));
+  auto const file = std::filesystem::path(testing::TempDir()) / ("polybody track " + std::to_string(::getpid()) + ".checkpoint");
+  State x = vehicle.model.reference_state(), y;
+  auto whole = simulate(vehicle.model, x, integrator(), run_options);
+  while (!whole.done()) {
+    whole.advance();
+    if (whole.report().steps == 130) write_checkpoint(file, whole.snapshot());
+  }
+  auto rest = resume(vehicle.model, y, integrator(), run_options, read_checkpoint(file));
+  EXPECT_EQ(rest.report().steps, 130);
+  while (!rest.done()) rest.advance();
+  std::filesystem::remove(file);
+  EXPECT_EQ(bits(x), bits(y)) << name;
+  expect_same(whole.report(), rest.report());
+}
+TEST(TrackStress, RunsTakenUpFromACheckpointEndInTheSameBits) {
+  restarts_with_the_same_bits<Rigid<>, Constraint>("rigid");
+  restarts_with_the_same_bits<AncfCable<>, AncfLinear>("ANCF");
+  restarts_with_the_same_bits<Ffr, Constraint>("FFR");
+}
+
+TEST(TrackStress, FlexibleLinksHaveTheMassAndInertiaOfTheirSteel) {
+  m113::Solid const steel = m113::with_steel_links().link;
+  EXPECT_NEAR(steel.mass, m113::thesis.link.mass, 1e-9 * steel.mass);
+  Structure const s = m113::link_structure();
+  EXPECT_NEAR(s.mass, steel.mass, 1e-9 * steel.mass);
+  Vec3 const centre = s.first / s.mass;
+  Mat3 const second = s.second - s.mass * centre * centre.transpose();
+  Mat3 const inertia = second.trace() * Mat3::Identity() - second;
+  EXPECT_LT((Vec3(inertia.diagonal()) - Vec3(steel.inertia)).norm(), 1e-9 * inertia.norm());
+}
+
+}  // namespace track_stress_test
