@@ -103,8 +103,14 @@ struct StressRuns : Runs {
 
   std::string const& name(std::size_t k) const { return comparison.runs[k].name; }
   std::vector<double> const& raw(std::size_t k) const { return links[k]->strain; }
+  // Without the last sample where an event ended the run between two steps.
   std::vector<double> filtered(std::size_t k, double cut_off) const {
-    return low_pass(times(k), raw(k), {.cut_off = cut_off, .mirrored = true});
+    std::vector<double> t = times(k), y = raw(k);
+    if (comparison.runs[k].run.stopped) {
+      t.pop_back();
+      y.pop_back();
+    }
+    return low_pass(t, y, {.cut_off = cut_off, .mirrored = true});
   }
 };
 
@@ -115,6 +121,8 @@ StressRuns run(Options const& o, Fs const&... formulations) {
   runs.comparison = compare(StressCase{o, &runs.outcomes, &runs.links}, formulations...);
   for (auto const& link : runs.links)
     if (link->recover) link->recover(*link);
+  for (ComparedRun const& r : runs.comparison.runs)
+    for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
   return runs;
 }
 
@@ -387,6 +395,7 @@ int main(int argc, char** argv) {
   app.add_flag("--restart", o.restart, "whether a run that is taken up from a checkpoint in its middle ends in the same bits");
   app.add_flag("--fatigue", o.fatigue, "counts cycles of stress by rainflow");
   app.add_flag("--audit", o.audit, "works out where the energy went");
+  app.add_flag("!--unwatched", o.watched, "a track that leaves its sprocket does not end the run");
   app.add_option("--out", o.out, "folder of the results")->capture_default_str();
   app.add_flag("--no-plot", o.no_plot, "data and scripts only");
   CLI11_PARSE(app, argc, argv);

@@ -31,6 +31,7 @@ struct Settings {
   int cut = 0;
   double animate = 0.0;  // seconds between states, 0 for none
   bool audit = false;
+  bool watched = true;  // a track that leaves its sprocket ends the run
   fs::path out = "out/tracked_vehicle";
   bool no_plot = false;  // data and scripts only
 };
@@ -213,7 +214,8 @@ struct TrackCase {
       if (x.t >= s.until) progress->finish();
     };
     RunOptions run{.until = s.until, .step = s.step, .halvings = 6};
-    for (m113::Side const side : {m113::Side::left, m113::Side::right}) run.events.push_back(m113::track_lost(*vehicle, side));
+    if (s.watched)
+      for (m113::Side const side : {m113::Side::left, m113::Side::right}) run.events.push_back(m113::track_lost(*vehicle, side));
     return Scenario<M>{vehicle->model, vehicle->model.reference_state(), run, std::move(outputs), observer};
   }
 };
@@ -235,7 +237,7 @@ struct Runs {
 inline Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int color, double scale = 1.0,
                    std::size_t every = 4) {
   Curve c{.label = std::move(label), .color = color};
-  for (std::size_t i = 0; i < x.size(); i += every) {
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); i += every) {
     c.x.push_back(x[i]);
     c.y.push_back(scale * y[i]);
   }
