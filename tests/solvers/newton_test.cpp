@@ -202,31 +202,49 @@ TEST(Newton, TangentThatIsSingularLaterOnIsNewtonsDoing) {
 // A wrong slope throws x far away, where the next factorisation makes small corrections: small beside those before, which tells nothing,
 // but not beside the tolerance.
 TEST(Newton, SmallCorrectionAfterOneThatGrewTellsNoRate) {
-  Scalar problem{[](double x) { return x / (1.0 + std::abs(x)) - 0.5; }, [](double x) { return x == 0.0 ? 1e-6 : 1e9; }};
+  Scalar problem{[](double x) { return x / (1.0 + std::abs(x)) - 0.1; }, [](double x) { return x == 0.0 ? 1e-6 : 1e9; }};
   EXPECT_NE(solve(problem).report.result, NewtonResult::converged);
   EXPECT_GT(problem.solutions, 3);
 }
 
-// Corrections that shrink by a fifth at a time while what is tolerated shrinks faster: they do contract.
-TEST(Newton, ComparesCorrectionsThemselvesWhereTheToleranceMoves) {
+// Corrections that shrink to a fifth at a time while what is tolerated shrinks faster: they do contract, and are taken whole.
+TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
   struct Moving : Scalar {
-    double tolerated = 1.0;
+    double tolerated = 1.0, least_part = 1.0;
     CorrectionSize solve() {
       (void)Scalar::solve();
       tolerated = std::max(0.1 * tolerated, 1e-6);
       return {.norm = std::abs(correction), .tolerated = tolerated};
     }
+    void apply(double part) {
+      least_part = std::min(least_part, part);
+      x += part * correction;
+    }
   };
-  for (bool const full : {false, true}) {
-    Moving problem{{[](double x) { return x - 1.0; }, [](double) { return 1.25; }}};
-    bool factored = false;
-    double theta = 1.0;
-    NewtonReport const report = newton(problem, {.always_refactor = full}, factored, theta);
-    EXPECT_EQ(report.result, NewtonResult::converged);
-    EXPECT_EQ(report.factorisations, full ? report.iterations : 1);
-    EXPECT_NEAR(report.theta, 0.2, 1e-6);
-    EXPECT_NEAR(problem.x, 1.0, 1e-6);
-  }
+  Moving problem{{[](double x) { return x - 1.0; }, [](double) { return 1.25; }}};
+  bool factored = false;
+  double theta = 1.0;
+  EXPECT_EQ(newton(problem, {.always_refactor = true}, factored, theta).result, NewtonResult::converged);
+  EXPECT_EQ(problem.least_part, 1.0);
+  EXPECT_NEAR(problem.x, 1.0, 1e-6);
+}
+
+// Corrections that shrink as slowly as the damping lets them are no reason to damp more.
+TEST(Newton, DampingEnds) {
+  struct Damped : Scalar {
+    double least_part = 1.0;
+    void apply(double part) {
+      least_part = std::min(least_part, part);
+      x += part * correction;
+    }
+  };
+  // a first correction that falls into the way of a much smaller one
+  Damped problem{{[](double x) { return std::atan(x); }, [](double x) { return x == 3.0 ? 1.0 : 1.0 / (1.0 + x * x); }, 3.0}};
+  bool factored = false;
+  double theta = 1.0;
+  EXPECT_EQ(newton(problem, {.max_iterations = 40, .always_refactor = true, .growths = 40}, factored, theta).result, NewtonResult::converged);
+  EXPECT_NEAR(problem.x, 0.0, 1e-9);
+  EXPECT_GE(problem.least_part, 1.0 / 64.0);
 }
 
 TEST(Newton, CorrectionThatIsNoNumberIsNotApplied) {

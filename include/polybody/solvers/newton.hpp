@@ -30,8 +30,7 @@ struct NewtonReport {
   double theta = 0.0;  ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖
 };
 
-/// The norm of a correction, and how much of it is tolerated. That may depend on the iterate, so corrections are compared with one
-/// another by their norms.
+/// The norm of a correction, and how much of it is tolerated, which may depend on the iterate.
 struct CorrectionSize {
   double norm, tolerated = 1.0;
 };
@@ -42,18 +41,19 @@ struct CorrectionSize {
 ///   CorrectionSize solve()    the next correction; or double, its norm where 1 is tolerated
 ///   void apply()              adds it; or void apply(double part), which full Newton damps
 /// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
-/// Stops when θ/(1 − θ) ‖Δ‖ is tolerated, for a new factorisation only where corrections shrank before it, too; fails after growing as
-/// often as `growths` says. Full Newton in a stiff direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it
-/// left), so no single rate predicts the next correction: it stops when ‖Δ‖ itself is tolerated, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖. Where
-/// it would go in circles, as between a contact and none, half of a correction is enough: the part that is taken is halved unless ‖Δ‖
-/// is less than all before, and doubled when ‖Δ‖ shrinks by what that part explains.
+/// With ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no correction grew: after one
+/// that did, the next looks small beside it wherever it stands. It fails after growing as often as `growths` says.
+/// Full Newton in a stiff direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate
+/// predicts the next correction: it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves, as what is tolerated
+/// shrinks with a wild iterate's accelerations. Where it would go in circles, as between a contact and none, half of a correction is
+/// enough: the part that is taken is halved, down to 1/64, when ‖Δ‖ shrinks by less than a tenth of that part, and doubled when it shrinks by
+/// what the part explains.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
   NewtonReport report;
-  double before = 0.0, earlier = 0.0;
+  double before = 0.0, earlier = 0.0, rated = 0.0;  // norms of the last two corrections; the last one beside what was tolerated
   int grown = 0;
-  double worst = 0.0;  // θ of this solve so far
-  double part = 1.0, least = std::numeric_limits<double>::infinity();
+  double part = 1.0;
   theta = std::pow(std::max(theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
   for (int k = 0; k < options.max_iterations; ++k) {
     if (!problem.evaluate()) {
@@ -80,14 +80,12 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
       factored = false;
       return report;
     }
-    bool const small = beside_tolerated <= 0.1;  // rounding no longer contracts
     if (k > 0 && before > 0.0) {
-      worst = std::max(worst, theta);
-      theta = norm / before;
+      theta = beside_tolerated / rated;
       report.theta = theta;
       if (options.always_refactor) {
-        if (norm > 0.999 * least)
-          part *= 0.5;
+        if (norm > (1.0 - 0.1 * part) * before)
+          part = std::max(0.5 * part, 1.0 / 64.0);
         else if (norm <= (1.1 - part) * before)
           part = std::min(1.0, 2.0 * part);
       }
@@ -98,7 +96,7 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
           report.result = NewtonResult::diverged;
           return report;
         }
-      } else if (theta > options.refactor_above && !small) {
+      } else if (theta > options.refactor_above) {
         factored = false;
       }
     }
@@ -106,11 +104,12 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
       problem.apply(part);
     else
       problem.apply();
-    least = std::min(least, norm);
     earlier = before;
     before = norm;
+    rated = beside_tolerated;
     double const rate = std::min(theta, 0.99);
-    bool const told = (!renewed || worst < 0.5) && theta < 1.0 && rate / (1.0 - rate) * beside_tolerated <= 1.0;
+    bool const small = beside_tolerated <= 0.1;  // rounding no longer contracts
+    bool const told = (!renewed || grown == 0) && theta < 1.0 && rate / (1.0 - rate) * beside_tolerated <= 1.0;
     if (options.always_refactor || !options.foretell ? beside_tolerated <= 1.0 : small || told) return report;
   }
   report.result = NewtonResult::diverged;
