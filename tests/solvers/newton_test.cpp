@@ -34,6 +34,15 @@ struct Scalar {
   void apply() { x += correction; }
 };
 
+/// Takes parts of corrections.
+struct Damped : Scalar {
+  double least_part = 1.0;
+  void apply(double part) {
+    least_part = std::min(least_part, part);
+    x += part * correction;
+  }
+};
+
 Scalar square_root_of_two() {
   return {[](double x) { return x * x - 2.0; }, [](double x) { return 2.0 * x; }, 1.0};
 }
@@ -140,13 +149,6 @@ TEST(Newton, GivesUpWhenCorrectionsGrow) {
 
 // atan x from 1.5: undamped, −1.69, 2.32, −5.11, … ever farther to either side.
 TEST(Newton, FullNewtonDampsWhatGoesBackAndForth) {
-  struct Damped : Scalar {
-    double least_part = 1.0;
-    void apply(double part) {
-      least_part = std::min(least_part, part);
-      x += part * correction;
-    }
-  };
   auto const arc = [](double x) { return std::atan(x); };
   auto const slope = [](double x) { return 1.0 / (1.0 + x * x); };
   NewtonOptions const full{.max_iterations = 60, .always_refactor = true, .growths = 60};
@@ -209,19 +211,15 @@ TEST(Newton, SmallCorrectionAfterOneThatGrewTellsNoRate) {
 
 // Corrections that shrink to a fifth at a time while what is tolerated shrinks faster: they do contract, and are taken whole.
 TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
-  struct Moving : Scalar {
-    double tolerated = 1.0, least_part = 1.0;
+  struct Moving : Damped {
+    double tolerated = 1.0;
     CorrectionSize solve() {
       (void)Scalar::solve();
       tolerated = std::max(0.1 * tolerated, 1e-6);
       return {.norm = std::abs(correction), .tolerated = tolerated};
     }
-    void apply(double part) {
-      least_part = std::min(least_part, part);
-      x += part * correction;
-    }
   };
-  Moving problem{{[](double x) { return x - 1.0; }, [](double) { return 1.25; }}};
+  Moving problem{{{[](double x) { return x - 1.0; }, [](double) { return 1.25; }}}};
   bool factored = false;
   double theta = 1.0;
   EXPECT_EQ(newton(problem, {.always_refactor = true}, factored, theta).result, NewtonResult::converged);
@@ -231,13 +229,6 @@ TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
 
 // Corrections that shrink as slowly as the damping lets them are no reason to damp more.
 TEST(Newton, DampingEnds) {
-  struct Damped : Scalar {
-    double least_part = 1.0;
-    void apply(double part) {
-      least_part = std::min(least_part, part);
-      x += part * correction;
-    }
-  };
   // a first correction that falls into the way of a much smaller one
   Damped problem{{[](double x) { return std::atan(x); }, [](double x) { return x == 3.0 ? 1.0 : 1.0 / (1.0 + x * x); }, 3.0}};
   bool factored = false;
