@@ -296,6 +296,7 @@ void fatigue(Options const& o, StressRuns const& runs) {
     std::vector<double> stress = runs.raw(k);
     for (double& s : stress) s *= m113::youngs_modulus;
     auto const cycles = rainflow(stress);
+    if (cycles.empty()) continue;
     double count = 0.0, largest = 0.0;
     for (StressCycle const& c : cycles) {
       count += c.count;
@@ -313,7 +314,7 @@ void fatigue(Options const& o, StressRuns const& runs) {
     }
     f.curves.push_back(c);
   }
-  draw(o, f, "stress_ranges");
+  if (!f.curves.empty()) draw(o, f, "stress_ranges");
 }
 
 // Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
