@@ -26,15 +26,13 @@ struct Options : Settings {
   bool compare = false, halve = false, restart = false, fatigue = false;
 };
 
-using CableLinks = Formulation<AncfCable<>, AncfLinear, GeneralizedAlpha>;
 using BeamLinks = Formulation<AncfBeam<ElasticLine>, AncfLinear, GeneralizedAlpha>;
 using SolidLinks = Formulation<AncfBeam<Continuum<>>, AncfLinear, GeneralizedAlpha>;
 using ModalLinks = Formulation<Ffr, Constraint, GeneralizedAlpha>;
 using RotationLinks = Formulation<Lrvf<>, Constraint, GeneralizedAlpha>;
 
-GeneralizedAlpha integrator(Options const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
 IdealTrack rigid(Options const& o) { return {"rigid", {}, integrator(o)}; }
-CableLinks cable(Options const& o) { return {"ancf", {}, integrator(o)}; }
+CableTrack cable(Options const& o) { return {"ancf", {}, integrator(o)}; }
 BeamLinks beam(Options const& o) { return {"beam", {}, integrator(o)}; }
 SolidLinks solid(Options const& o) { return {"continuum", {}, integrator(o)}; }
 ModalLinks modal(Options const& o) { return {"ffr", {}, integrator(o)}; }
@@ -73,7 +71,7 @@ struct StressCase {
     auto const vehicle = built.vehicle;
     auto const history = std::make_shared<LinkHistory>();
     histories->push_back(history);
-    auto const& link = vehicle->side(m113::Side::left).links[watched_link];
+    auto const link = vehicle->side(m113::Side::left).links[watched_link];
     if constexpr (HasRigidPoints<typename F::BodyType>) {
       auto const recorder = std::make_shared<LoadRecorder<M>>(vehicle->model);
       recorder->add(link);
@@ -83,7 +81,7 @@ struct StressCase {
       };
       history->recover = [=, o = options](LinkHistory& h) {
         h.recovery = cpu_of([&] {
-          DecoupledStress const stress = recovered(o, recorder->of(vehicle->side(m113::Side::left).links[watched_link]));
+          DecoupledStress const stress = recovered(o, recorder->of(link));
           h.strain = m113::link_strain(stress);
           h.bending = m113::link_bending(stress);
         });
@@ -91,7 +89,7 @@ struct StressCase {
     } else {
       scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
         before(model, x);
-        history->strain.push_back(m113::link_strain(vehicle->model, x, vehicle->side(m113::Side::left).links[watched_link]));
+        history->strain.push_back(m113::link_strain(vehicle->model, x, link));
       };
     }
     return scenario;
@@ -116,7 +114,7 @@ struct StressRuns : Runs {
 
 template <class... Fs>
 StressRuns run(Options const& o, Fs const&... formulations) {
-  if (std::string const warning = m113::drive_warning(o.speed, o.step); !warning.empty()) std::cerr << "Warning: " << warning << '\n';
+  warn_of_drive(o);
   StressRuns runs;
   runs.comparison = compare(StressCase{o, &runs.outcomes, &runs.links}, formulations...);
   for (auto const& link : runs.links)

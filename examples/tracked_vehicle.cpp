@@ -16,7 +16,6 @@ struct Options : Settings {
   bool compare = false, halve = false;
 };
 
-GeneralizedAlpha integrator(Options const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
 IdealTrack ideal(Options const& o) { return {"constraint", {}, integrator(o)}; }
 PenaltyTrack penalty(Options const& o, double k) {
   std::string const name = k == m113::pin_stiffness ? "penalty" : k == m113::soft_pin_stiffness ? "penalty 1e7" : "penalty " + number(k);
@@ -28,8 +27,7 @@ RecursiveTrack recursive(Options const& o) { return {"recursive", {}, integrator
 
 template <class... Fs>
 Runs run(Options const& o, Fs const&... formulations) {
-  if (std::string const warning = m113::drive_warning(o.speed * std::max(std::abs(o.left), std::abs(o.right)), o.step); !warning.empty())
-    std::cerr << "Warning: " << warning << '\n';
+  warn_of_drive(o);
   Runs runs;
   runs.comparison = compare(TrackCase{o, &runs.outcomes}, formulations...);
   return runs;

@@ -43,6 +43,13 @@ inline BumpCourse course(bool bumps) {
                      {.x = 14.0, .length = 2.0, .height = 0.15}});
 }
 
+inline GeneralizedAlpha integrator(Settings const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
+
+inline void warn_of_drive(Settings const& o) {
+  double const fastest = o.speed * std::max(std::abs(o.left), std::abs(o.right));
+  if (std::string const warning = m113::drive_warning(fastest, o.step); !warning.empty()) std::cerr << "Warning: " << warning << '\n';
+}
+
 template <class F>
 using VehicleOf = m113::Vehicle<typename F::BodyType, typename F::PolicyType, BumpCourse>;
 

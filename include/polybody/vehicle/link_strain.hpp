@@ -30,9 +30,9 @@ inline std::vector<double> link_strain(DecoupledStress const& stress) {
 
 /// What bending adds to that in the fibre towards the wheels, just ahead of the middle, where contacts push.
 inline std::vector<double> link_bending(DecoupledStress const& stress) {
-  std::vector<double> out = stress.axial_strain(0.5 * pitch, 0.0, 0.5 * cable_height);
-  std::vector<double> const mean = stress.axial_strain(0.5 * pitch);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] -= mean[i];
+  double const by_moment = 0.5 * cable_height / *constants(link_bar()).EI_y;
+  std::vector<double> out;
+  for (Vec6 const& n : stress.section_forces(0.5 * pitch)) out.push_back(by_moment * n[4]);
   return out;
 }
 
