@@ -41,7 +41,7 @@ RotationLinks rotation(Options const& o) { return {"lrvf", {}, integrator(o)}; }
 // What a run knows of its watched link. Of rigid links the strain is worked out after the run.
 struct LinkHistory {
   std::vector<double> strain;   // of the link, change of length over length
-  std::vector<double> bending;  // of rigid links: of the fibre towards the wheels, in the middle
+  std::vector<double> bending;  // in the middle: what it adds in the fibre towards the wheels
   double recording = 0.0, recovery = 0.0;  // CPU times [s]
   std::function<void(LinkHistory&)> recover;
 };
@@ -79,7 +79,8 @@ struct StressCase {
         before(model, x);
         history->recording += cpu_of([&] { recorder->record(x); });
       };
-      history->recover = [=, o = options](LinkHistory& h) {
+      // The recorder looks into the model: it lives as long as this.
+      history->recover = [=, keep = vehicle, o = options](LinkHistory& h) {
         h.recovery = cpu_of([&] {
           DecoupledStress const stress = recovered(o, recorder->of(link));
           h.strain = m113::link_strain(stress);
@@ -90,6 +91,7 @@ struct StressCase {
       scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
         before(model, x);
         history->strain.push_back(m113::link_strain(vehicle->model, x, link));
+        history->bending.push_back(m113::link_bending(vehicle->model, x, link));
       };
     }
     return scenario;
@@ -101,14 +103,14 @@ struct StressRuns : Runs {
 
   std::string const& name(std::size_t k) const { return comparison.runs[k].name; }
   std::vector<double> const& raw(std::size_t k) const { return links[k]->strain; }
+  std::vector<double> const& bending(std::size_t k) const { return links[k]->bending; }
+  std::vector<double> filtered(std::size_t k, double cut_off) const { return filtered(k, raw(k), cut_off); }
   // Without the last sample where an event ended the run between two steps.
-  std::vector<double> filtered(std::size_t k, double cut_off) const {
-    std::vector<double> t = times(k), y = raw(k);
-    if (comparison.runs[k].run.stopped) {
-      t.pop_back();
-      y.pop_back();
-    }
-    return low_pass(t, y, {.cut_off = cut_off, .mirrored = true});
+  std::vector<double> filtered(std::size_t k, std::vector<double> y, double cut_off) const {
+    return low_pass(filtered_times(k), std::span(y).first(filtered_times(k).size()), {.cut_off = cut_off, .mirrored = true});
+  }
+  std::span<double const> filtered_times(std::size_t k) const {
+    return std::span(times(k)).first(times(k).size() - (comparison.runs[k].run.stopped ? 1 : 0));
   }
 };
 
@@ -161,16 +163,13 @@ Range range_of(std::vector<double> const& times, std::vector<double> const& x, d
   return r;
 }
 
-// Root mean square of a − b from `from` to `to`, of that of b. Samples of `a` are `every` times as many.
-double difference(std::vector<double> const& times, std::vector<double> const& a, std::vector<double> const& b, double from, double to,
-                  std::size_t every = 1) {
-  double off = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < b.size() && every * i < a.size(); ++i) {
-    if (times[i] < from || times[i] > to) continue;
-    off += (a[every * i] - b[i]) * (a[every * i] - b[i]);
-    all += b[i] * b[i];
-  }
-  return std::sqrt(off / all);
+// Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
+using Quantity = std::vector<double> const& (StressRuns::*)(std::size_t) const;
+double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from, Quantity of = &StressRuns::raw) {
+  std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of)(k), o.cut_off);
+  RmsDifference d(from, o.until);
+  d.add({as.filtered_times(i), a}, {bs.filtered_times(k), b});
+  return d.value();
 }
 
 // The pull of the tensioner in either run of the track, as if both left the idler level: its spring, without its damper.
@@ -195,15 +194,13 @@ void report(Options const& o, StressRuns const& runs) {
                 speed, 1e5 * e.mean, 1e5 * e.least, 1e5 * e.most, 1e-6 * m113::youngs_modulus * e.mean, 1e5 * raw.least, 1e5 * raw.most);
     std::printf("           (T0 + m v^2/p)/EA with T0 = %.2f kN of the tensioner: %.3fe-5\n", 1e-3 * pull,
                 1e5 * m113::running_strain(speed, pull));
-    if (runs.links[k]->recover) {
-      Range const bending = range_of(runs.times(k), runs.links[k]->bending, from);
-      std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa\n", 1e-6 * m113::youngs_modulus * bending.least,
-                  1e-6 * m113::youngs_modulus * bending.most);
-    }
-    if (k != beside)
-      std::printf("           off %s: %.2f %% (rms from 1 s on), %.2f %% from %.1f s on\n", runs.name(beside).c_str(),
-                  1e2 * difference(runs.times(k), strain, runs.filtered(beside, o.cut_off), 1.0, runs.times(k).back()),
-                  1e2 * difference(runs.times(k), strain, runs.filtered(beside, o.cut_off), from, runs.times(k).back()), from);
+    Range const bending = range_of(runs.times(k), runs.bending(k), from);
+    std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa\n", 1e-6 * m113::youngs_modulus * bending.least,
+                1e-6 * m113::youngs_modulus * bending.most);
+    for (double const since : {1.0, from})
+      if (k != beside && since < runs.times(k).back())
+        std::printf("           off %s from %.1f s on (rms): strain %.2f %%, bending %.2f %%\n", runs.name(beside).c_str(), since,
+                    1e2 * off(o, runs, k, runs, beside, since), 1e2 * off(o, runs, k, runs, beside, since, &StressRuns::bending));
     std::printf("           CPU %.1f s, %.2f of %s", r.cpu, r.cpu / runs.comparison.runs.front().cpu, runs.name(0).c_str());
     if (runs.links[k]->recover) std::printf("; record %.2f s, recovery %.2f s", runs.links[k]->recording, runs.links[k]->recovery);
     std::printf("; %.2f iterations, %.2f factorisations a step; %ld of %ld steps halved\n", double(r.run.iterations) / double(r.run.steps),
@@ -220,6 +217,16 @@ std::string label_of(StressRuns const& runs, std::size_t k) {
   static std::map<std::string, std::string> const labels{{"ancf", "ANCF cables"}, {"ffr", "FFR, modes"},        {"lrvf", "LRVF"},
                                                          {"beam", "ANCF beams"},  {"continuum", "ANCF continuum"}};
   return runs.links[k]->recover ? "rigid, decoupled" : labels.at(runs.name(k));
+}
+
+Figure bending_figure(Options const& o, StressRuns const& runs) {
+  Figure f{.title = "Stress by bending in the middle of a link, " + number(o.speed) + " rad/s",
+           .x_label = "t [s]",
+           .y_label = "stress [MPa]",
+           .x_range = {{0.95 * o.until, o.until}}};
+  for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k)
+    f.curves.push_back(curve(label_of(runs, k), runs.times(k), runs.bending(k), int(k), 1e-6 * m113::youngs_modulus, 1));
+  return f;
 }
 
 Figure strain_figure(Options const& o, StressRuns const& runs, std::string title, bool filter, double from, double to) {
@@ -347,8 +354,7 @@ void halve(Options const& o, auto const& formulation, auto const& of) {
   StressRuns const coarse = run(o, formulation), fine = run(half, of(half));
   double const from = std::min(1.0, 0.25 * o.until);
   std::printf("%s, steps of %g and %g ms: filtered strain %.2f %% apart (rms from %.2g s on); CPU %.1f and %.1f s\n", formulation.name.c_str(),
-              1e3 * o.step, 1e3 * half.step, 1e2 * difference(coarse.times(0), fine.filtered(0, o.cut_off), coarse.filtered(0, o.cut_off), from, o.until, 2),
-              from, coarse.comparison.runs[0].cpu, fine.comparison.runs[0].cpu);
+              1e3 * o.step, 1e3 * half.step, 1e2 * off(o, fine, 0, coarse, 0, from), from, coarse.comparison.runs[0].cpu, fine.comparison.runs[0].cpu);
 }
 
 void single(Options const& o, auto const& of) {
@@ -359,6 +365,7 @@ void single(Options const& o, auto const& of) {
   report(o, r);
   if (o.fatigue) fatigue(o, r);
   draw(o, strain_figure(o, r, "Axial strain of a link", false, 0.0, o.until), "strain");
+  draw(o, bending_figure(o, r), "bending");
   draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until), "strain_filtered");
 }
 
@@ -367,6 +374,7 @@ void all_formulations(Options const& o) {
   write_report(r.comparison, o.out / "comparison", !o.no_plot);
   report(o, r);
   if (o.fatigue) fatigue(o, r);
+  draw(o, bending_figure(o, r), "bending");
   draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.speed) + " rad/s, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until), "strain_filtered");
 }
 
@@ -381,6 +389,7 @@ int main(int argc, char** argv) {
   o.out = "out/track_stress";
   CLI::App app{"Stress of a track's link after a run of rigid links (decoupled) and in runs of flexible ones (Chapter 4)."};
   app.add_option("--links", o.links, "body formulation of the links")->check(CLI::IsMember({"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"}))->capture_default_str();
+  app.add_option("--elements", o.elements, "of a flexible link; 0: one, and two of a floating frame")->check(CLI::NonNegativeNumber);
   app.add_flag("--compare", o.compare, "all formulations side by side");
   app.add_option("--figure", o.figure, "4.3 to 4.12 of the thesis, or all");
   app.add_option("--speed", o.speed, "of the sprockets after 8 s [rad/s]")->capture_default_str();

@@ -34,20 +34,16 @@ Runs run(Options const& o, Fs const&... formulations) {
 }
 
 // Forces in the watched pin from 1 to 4 s, longitudinal and vertical, up to 30 Hz: how far those of `run` are off those of `first`, as root
-// mean squares. Samples of `run` are `every` times as many.
-double force_difference(Runs const& first, std::size_t k, Runs const& runs, std::size_t run, std::size_t every = 1) {
-  double off = 0.0, all = 0.0;
+// mean squares.
+double force_difference(Runs const& first, std::size_t k, Runs const& runs, std::size_t run) {
+  RmsDifference d(1.0, 4.0);
   for (char const* const output : {"joint force x [N]", "joint force z [N]"}) {
     LowPass const filter{.cut_off = 30.0, .mirrored = true};
     std::vector<double> const a = low_pass(first.times(k), first.history(k, output), filter);
     std::vector<double> const b = low_pass(runs.times(run), runs.history(run, output), filter);
-    for (std::size_t i = 0; i < a.size() && every * i < b.size(); ++i) {
-      if (first.times(k)[i] < 1.0 || first.times(k)[i] > 4.0) continue;
-      off += (a[i] - b[every * i]) * (a[i] - b[every * i]);
-      all += a[i] * a[i];
-    }
+    d.add({runs.times(run), b}, {first.times(k), a});
   }
-  return std::sqrt(off / all);
+  return d.value();
 }
 
 void report(Options const& o, Runs const& runs) {
@@ -179,7 +175,7 @@ void single(Options const& o) {
     std::printf("steps of %g and %g ms: forward position %.4f and %.4f m, %.3f %% apart", 1e3 * o.step, 1e3 * half.step, x(coarse), x(fine),
                 1e2 * std::abs(x(fine) / x(coarse) - 1.0));
     if (o.until > 10.0) std::printf("; mean speed %.4f and %.4f m/s", mean_speed(coarse, 0), mean_speed(fine, 0));
-    if (o.until >= 4.0) std::printf("; forces in pin %d, 30 Hz, 1 to 4 s, %.2f %% (rms)", watched_pin, 1e2 * force_difference(coarse, 0, fine, 0, 2));
+    if (o.until >= 4.0) std::printf("; forces in pin %d, 30 Hz, 1 to 4 s, %.2f %% (rms)", watched_pin, 1e2 * force_difference(coarse, 0, fine, 0));
     std::printf("\n");
     return;
   }

@@ -1,6 +1,7 @@
 #pragma once
 // The vehicle of Chapters 3 and 4 as a case for `compare`: one template, whatever the formulation of its tracks.
 #include <polybody/analysis/filter.hpp>
+#include <polybody/analysis/rms_difference.hpp>
 #include <polybody/io/vtk.hpp>
 #include <polybody/polybody.hpp>
 #include <polybody/vehicle/settled_track.hpp>
@@ -29,6 +30,7 @@ struct Settings {
   double rho = 0.8;
   bool bumps = false;
   int cut = 0;
+  int elements = 0;  // of a flexible link; 0: as few as its formulation does with
   double animate = 0.0;  // seconds between states, 0 for none
   bool audit = false;
   bool watched = true;  // a track that leaves its sprocket ends the run
@@ -152,7 +154,7 @@ struct TrackCase {
   template <class F>
   Built<F> build(F const& f) const {
     Settings const& s = settings;
-    m113::VehicleOptions options{.masses = s.masses, .suspension = s.suspension, .preload = s.preload, .cut = s.cut};
+    m113::VehicleOptions options{.masses = s.masses, .suspension = s.suspension, .preload = s.preload, .cut = s.cut, .link_elements = s.elements};
     options.start = m113::settled_track(options);
     std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
     return {options.start, std::make_shared<VehicleOf<F> const>(f.policy, drives, options, course(s.bumps))};

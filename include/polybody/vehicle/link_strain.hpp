@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The stretch of a track's link, from a coupled run and from a rigid run's record. Not in polybody.hpp: of use to vehicles only.
+/// The stretch and the bending of a track's link, from a coupled run and from a rigid run's record. Not in polybody.hpp: of use to vehicles only.
 
 #include <array>
 
@@ -10,29 +10,43 @@
 
 namespace polybody::m113 {
 
-/// Where strain is asked for, from the rear pin [m]: at two Gauss points, so that the mean of both is that of the link, change of
-/// length over length, though contact forces in the middle make the axial force jump there.
-inline constexpr std::array<double, 2> strain_places{pitch * (0.5 - 0.28867513459481288), pitch * (0.5 + 0.28867513459481288)};
+/// Where strain is asked for, from the rear pin [m]: at two Gauss points of either half, so that the mean of all is that of the link,
+/// change of length over length, though contact forces in the middle make the axial force jump there.
+inline constexpr std::array<double, 4> strain_places{pitch * (0.25 - 0.14433756729740644), pitch * (0.25 + 0.14433756729740644),
+                                                     pitch * (0.75 - 0.14433756729740644), pitch * (0.75 + 0.14433756729740644)};
 
 /// Mean axial strain of a flexible link.
 template <class M, class B>
 double link_strain(M const& model, State const& x, BodyHandle<B> const& link) {
-  return 0.5 * (axial_strain(model, x, link.at(strain_places[0])) + axial_strain(model, x, link.at(strain_places[1])));
+  double sum = 0.0;
+  for (double const s : strain_places) sum += axial_strain(model, x, link.at(s));
+  return sum / double(strain_places.size());
 }
 
 /// … of a rigid link at each time of its record.
 inline std::vector<double> link_strain(DecoupledStress const& stress) {
-  std::vector<double> out = stress.axial_strain(strain_places[0]);
-  std::vector<double> const other = stress.axial_strain(strain_places[1]);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = 0.5 * (out[i] + other[i]);
+  std::vector<double> out(stress.times().size(), 0.0);
+  for (double const s : strain_places) {
+    std::vector<double> const there = stress.axial_strain(s);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += there[i] / double(strain_places.size());
+  }
   return out;
 }
 
-/// What bending adds to that in the fibre towards the wheels, just ahead of the middle, where contacts push.
+/// What a moment M_y about the pins' direction adds in the fibre towards the wheels [1/(N m)].
+inline double bending_by_moment() { return 0.5 * cable_height / *constants(link_bar()).EI_y; }
+
+/// What bending adds to the axial strain in the fibre towards the wheels, just ahead of the middle, where contacts push. One element of
+/// third degree shows half of what a force there does, one of linear interpolation nothing; two elements have a node there, and show it.
+template <class M, class B>
+double link_bending(M const& model, State const& x, BodyHandle<B> const& link) {
+  return bending_by_moment() * section_forces(model, x, link.at(0.5 * pitch))[4];
+}
+
+/// … of a rigid link at each time of its record.
 inline std::vector<double> link_bending(DecoupledStress const& stress) {
-  double const by_moment = 0.5 * cable_height / *constants(link_bar()).EI_y;
   std::vector<double> out;
-  for (Vec6 const& n : stress.section_forces(0.5 * pitch)) out.push_back(by_moment * n[4]);
+  for (Vec6 const& n : stress.section_forces(0.5 * pitch)) out.push_back(bending_by_moment() * n[4]);
   return out;
 }
 

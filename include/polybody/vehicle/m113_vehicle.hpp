@@ -62,6 +62,7 @@ struct VehicleOptions {
   int cut = 0;             ///< the pin of each track that closes the loop where pins are rows
   Closure closure = Closure::stiff_spring;
   TrackStart start = {};
+  int link_elements = 0;  ///< of each flexible link; 0: one, and two of a floating frame
   bool friction = true;
   bool held = false;       ///< the chassis is welded to the ground and the arms to the chassis
   bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
@@ -115,6 +116,8 @@ class Vehicle {
                          std::to_string(options.start.links.size()) + ".");
     if (options.cut < 0 || options.cut >= links)
       throw InvalidInput("M113: the pin that closes a track is one of 0 … 63, but " + std::to_string(options.cut) + " is asked for.");
+    if (options.link_elements < 0)
+      throw InvalidInput("M113: a flexible link has one element or more, but " + std::to_string(options.link_elements) + " are asked for.");
     if (options.ground_body) {
       auto const body = model.add(solid({1.0, {1, 1, 1}}, Vec3(0, 0, 0)), "ground body");
       model.connect(Fixed{}, model.ground().at({0, 0, 0}), body.at(Vec3(0, 0, 0)), "ground weld");
@@ -183,7 +186,7 @@ class Vehicle {
   void add_links(Side s, std::string const& name, PinPolicy const& policy, VehicleOptions const& options, SideParts& parts) {
     using L = LinkOf<Link>;
     for (int i = 0; i < links; ++i)
-      parts.links.push_back(model.add(L::make(options.masses.link, options.start.links[std::size_t(i)].placement(sign(s) * track_y)),
+      parts.links.push_back(model.add(L::make(options.masses.link, options.start.links[std::size_t(i)].placement(sign(s) * track_y), options.link_elements),
                                       name + "link " + std::to_string(i)));
     parts.pins.resize(std::size_t(links));
     for (int k = 1; k <= links; ++k) {

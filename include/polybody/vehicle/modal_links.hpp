@@ -9,15 +9,16 @@
 
 namespace polybody::m113 {
 
-/// Two elements with a boundary frame at each pin, the floating frame tied to the rear one [Craig & Bampton 1968]: the six static
+/// Two elements, unless more are asked for, with a boundary frame at each pin, the floating frame tied to the rear one [Craig & Bampton 1968]: the six static
 /// shapes of the front pin's motion and the three lowest modes between the pins: torsion, bending up and down, stretch.
 template <>
 struct LinkOf<Ffr> : detail::BeamLink<Ffr> {
   static constexpr Index modes_between = 3;
-  static Ffr make(Solid const&, Placement const& at) {
+  static Ffr make(Solid const&, Placement const& at, int elements) {
     Bar const bar = link_bar(at);
-    Structure structure = structure_of(bar, 2);
-    MatX shapes = craig_bampton(structure, {0, 2}, modes_between);
+    int const n = std::max(elements, 2);
+    Structure structure = structure_of(bar, n);
+    MatX shapes = craig_bampton(structure, {0, n}, modes_between);
     return Ffr(std::move(structure), std::move(shapes), {.placement = bar.placement});
   }
 };

@@ -2,6 +2,8 @@
 /// \file
 /// The links of a track under each body formulation. Not in polybody.hpp: of use to vehicles only.
 
+#include <algorithm>
+
 #include <polybody/bodies/ancf_beam.hpp>
 #include <polybody/bodies/ancf_cable.hpp>
 #include <polybody/bodies/lrvf.hpp>
@@ -12,8 +14,8 @@
 
 namespace polybody::m113 {
 
-/// How a link is made as a body of type B, and which points of it are its pins and its middle. `placement` is that of the link's centre,
-/// x to the front pin, z to the wheels.
+/// How a link is made as a body of type B, and which points of it are its pins and its middle. `at` is the placement of the link's
+/// centre, x to the front pin, z to the wheels; `elements` how many it has if it is flexible, 0 for as few as its formulation does with.
 template <class B>
 struct LinkOf;
 
@@ -41,18 +43,18 @@ inline Solids with_steel_links(Solids masses = thesis) {
 template <class RotationCoordinates>
 struct LinkOf<Rigid<RotationCoordinates>> {
   using Body = Rigid<RotationCoordinates>;
-  static Body make(Solid const& solid, Placement const& at) { return Body(solid.mass, detail::principal(solid.inertia), at); }
+  static Body make(Solid const& solid, Placement const& at, int) { return Body(solid.mass, detail::principal(solid.inertia), at); }
   static auto front(BodyHandle<Body> const& link) { return link.at(Vec3(0.5 * pitch, 0, 0)); }
   static auto rear(BodyHandle<Body> const& link) { return link.at(Vec3(-0.5 * pitch, 0, 0)); }
   static auto middle(BodyHandle<Body> const& link) { return link.at(Vec3(0, 0, 0)); }
 };
 
 namespace detail {
-/// One element from the rear pin to the front pin. The mass of a `Solid` is in the section.
+/// From the rear pin to the front pin, one element unless more are asked for. The mass of a `Solid` is in the section.
 template <class B>
 struct BeamLink {
   using Body = B;
-  static Body make(Solid const&, Placement const& at) { return Body::from(link_bar(at), 1); }
+  static Body make(Solid const&, Placement const& at, int elements) { return Body::from(link_bar(at), std::max(elements, 1)); }
   static auto front(BodyHandle<Body> const& link) { return link.at(link.body.length()); }
   static auto rear(BodyHandle<Body> const& link) { return link.at(0.0); }
   static auto middle(BodyHandle<Body> const& link) { return link.at(0.5 * link.body.length()); }
