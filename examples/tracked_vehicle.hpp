@@ -98,8 +98,7 @@ class Probe {
     sprocket = hull.A.col(1).dot(wheel.w - hull.w);
     Vec3 const slider = hull.A.transpose() * (position(v.model, x, side.tensioner[0].at(Vec3(0, 0, 0))) - hull.r);
     idler = slider.x() - (m113::idler_reference_x - m113::chassis.x);
-    using L = m113::LinkOf<typename V::LinkType>;
-    Vec3 const link = hull.A.transpose() * (position(v.model, x, L::middle(side.links[watched_pin])) - hull.r);
+    Vec3 const link = hull.A.transpose() * (position(v.model, x, side.middle[watched_pin]) - hull.r);
     link_x = link.x();
     link_z = link.z();
     Wrench<double> const r = reaction(v.model, x, side.pins[watched_pin]);
@@ -109,8 +108,8 @@ class Probe {
     torque = reaction(v.model, x, side.drive[0]).m.dot(hull.A.col(1));
     largest_gap = 0.0;
     for (int i = 0; i < m113::links; ++i) {
-      double const open = (position(v.model, x, L::front(side.links[std::size_t(i)])) -
-                           position(v.model, x, L::rear(side.links[std::size_t((i + m113::links - 1) % m113::links)]))).norm();
+      double const open = (position(v.model, x, side.front[std::size_t(i)]) -
+                           position(v.model, x, side.rear[std::size_t((i + m113::links - 1) % m113::links)])).norm();
       if (i == watched_pin) gap = open;
       largest_gap = std::max(largest_gap, open);
     }

@@ -26,7 +26,6 @@ Ride ride(P const& policy, double until, double speed, bool hold = false) {
   options.start = track_at_rest();
   Ramp const drive = quick_drive(speed);
   m113::Vehicle<Link, P> const vehicle(policy, {drive, drive}, options);
-  using L = m113::LinkOf<Link>;
   auto const& side = vehicle.side(m113::Side::left);
   State x = vehicle.model.reference_state();
   double const start = hull_of(vehicle, x).r.z();
@@ -35,7 +34,7 @@ Ride ride(P const& policy, double until, double speed, bool hold = false) {
   run_vehicle(vehicle.model, x, until, 5e-4, [&](State const& now, auto&) {
     r.dip = std::max(r.dip, start - hull_of(vehicle, now).r.z());
     for (std::size_t i = 1; i < 64; ++i) {
-      double const open = (position(vehicle.model, now, L::front(side.links[i])) - position(vehicle.model, now, L::rear(side.links[i - 1]))).norm();
+      double const open = (position(vehicle.model, now, side.front[i]) - position(vehicle.model, now, side.rear[i - 1])).norm();
       r.largest_gap = std::max(r.largest_gap, open);
       if (i == 40) r.gap = open;
     }

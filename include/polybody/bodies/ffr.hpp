@@ -132,8 +132,7 @@ class Ffr {
     Vec<T, 3> push = alpha.cross(at.c);
     Vec<T, 3> turn = at.c.cross(along) + at.J * alpha;
     for (Index k = 0; k < deformations(); ++k) {
-      T sum(0.0);
-      for (Index j = 0; j < deformations(); ++j) sum += xdd[j] * i_.mass_matrix(j, k);
+      T sum = detail::column_times(i_.mass_matrix, k, xdd);
       if (terms_.coupling) {
         Vec<T, 3> h, c;
         i_.template columns<T>(x, k, c, h);
@@ -160,13 +159,8 @@ class Ffr {
       i_.template columns<T>(x, k, ck, hk);
       cd += ck * xd[k];
       h += hk * xd[k];
-      T f(-i_.initial_force[k]);
-      for (Index j = 0; j < n; ++j) f -= x[j] * i_.stiffness(j, k) + xd[j] * i_.damping(j, k);
-      for (std::size_t i = 0; i < 3 && terms_.coriolis; ++i) {
-        T w(0.0);
-        for (Index j = 0; j < n; ++j) w += xd[j] * gyroscopic_[i](j, k);
-        f -= omega[Index(i)] * w;
-      }
+      T f = -detail::column_times(i_.stiffness, k, x) - detail::column_times(i_.damping, k, xd) - i_.initial_force[k];
+      for (std::size_t i = 0; i < 3 && terms_.coriolis; ++i) f -= omega[Index(i)] * detail::column_times(gyroscopic_[i], k, xd);
       out[6 + k] = f;
     }
     Mat<T, 3, 3> inertia, rate;  // J, J˙, entry by entry, and ½ (Ωᵀ J Ω)_q

@@ -11,15 +11,23 @@ namespace polybody {
 
 namespace detail {
 
+/// Column k of m times x.
+template <class T>
+T column_times(MatX const& m, Index k, T const* x) {
+  if constexpr (std::is_same_v<T, double>) {
+    return m.col(k).dot(Eigen::Map<VecX const>(x, m.rows()));  // Eigen adds in packets, a compiler must not
+  } else {
+    T sum(0.0);
+    for (Index j = 0; j < m.rows(); ++j) sum += x[j] * m(j, k);
+    return sum;
+  }
+}
+
 /// xᵀ m y.
 template <class T>
 T quadratic(MatX const& m, T const* x, T const* y) {
   T sum(0.0);
-  for (Index k = 0; k < m.cols(); ++k) {
-    T column(0.0);
-    for (Index j = 0; j < m.rows(); ++j) column += x[j] * m(j, k);
-    sum += column * y[k];
-  }
+  for (Index k = 0; k < m.cols(); ++k) sum += column_times(m, k, x) * y[k];
   return sum;
 }
 
@@ -119,20 +127,15 @@ struct FfrIntegrals {
   template <class T>
   void columns(T const* x, Index k, Vec<T, 3>& c, Vec<T, 3>& h) const {
     for (std::size_t i = 0; i < 3; ++i) {
-      T ci(first_by(Index(i), k)), hi(coupling(Index(i), k));
-      for (Index j = 0; j < size(); ++j) hi += x[j] * coupling_by[i](j, k);
-      if (stiffens())
-        for (Index j = 0; j < size(); ++j) ci -= x[j] * first_second[i](j, k);
-      c[Index(i)] = ci;
-      h[Index(i)] = hi;
+      c[Index(i)] = T(first_by(Index(i), k));
+      if (stiffens()) c[Index(i)] -= detail::column_times(first_second[i], k, x);
+      h[Index(i)] = detail::column_times(coupling_by[i], k, x) + coupling(Index(i), k);
     }
   }
   /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`.
   template <class T>
   T inertia_slope(T const* x, std::size_t p, Index k) const {
-    T sum(0.0);
-    for (Index j = 0; j < size(); ++j) sum += x[j] * inertia_second[p](j, k);
-    return sum * 2.0 + inertia_by[p][k];
+    return detail::column_times(inertia_second[p], k, x) * 2.0 + inertia_by[p][k];
   }
 };
 

@@ -93,10 +93,12 @@ class Vehicle {
   using ModelType = Model<EachOnce<Bodies, Base, Link>, EachOnce<Joints, Hinge, Slide, Fixed, Driven, Pin, SpringPin, PlanePin>,
                           Forces<SpringDamper, AxialSpring, Contacts>>;
   using Handle = BodyHandle<Base>;
+  using LinkMarker = decltype(LinkOf<Link>::middle(std::declval<BodyHandle<Link> const&>()));
 
   /// One side. Pin i is in front of link i; `pins[i]` is at pin i but for the one where the loop is cut.
   struct SideParts {
     std::vector<BodyHandle<Link>> links = {};
+    std::vector<LinkMarker> front = {}, middle = {}, rear = {};  ///< of each link: front pin, middle, rear pin
     std::vector<ElementHandle<Pin>> pins = {};
     std::vector<Handle> wheels = {}, arms = {}, sprocket = {}, idler = {}, tensioner = {};  ///< the last three: one each
     std::vector<ElementHandle<Driven>> drive = {};                                          ///< one
@@ -185,13 +187,17 @@ class Vehicle {
 
   void add_links(Side s, std::string const& name, PinPolicy const& policy, VehicleOptions const& options, SideParts& parts) {
     using L = LinkOf<Link>;
-    for (int i = 0; i < links; ++i)
+    for (int i = 0; i < links; ++i) {
       parts.links.push_back(model.add(L::make(options.masses.link, options.start.links[std::size_t(i)].placement(sign(s) * track_y), options.link_elements),
                                       name + "link " + std::to_string(i)));
+      parts.front.push_back(L::front(parts.links.back()));
+      parts.middle.push_back(L::middle(parts.links.back()));
+      parts.rear.push_back(L::rear(parts.links.back()));
+    }
     parts.pins.resize(std::size_t(links));
     for (int k = 1; k <= links; ++k) {
       int const i = (options.cut + k) % links;
-      auto const before = L::rear(parts.links[std::size_t((i + links - 1) % links)]), after = L::front(parts.links[std::size_t(i)]);
+      auto const &before = parts.rear[std::size_t((i + links - 1) % links)], &after = parts.front[std::size_t(i)];
       std::string const n = name + "pin " + std::to_string(i);
       if (k < links || closes_alike)
         parts.pins[std::size_t(i)] = model.connect(Pin{Revolute{.axis = Vec3::UnitY()}, policy}, before, after, n);
@@ -216,9 +222,7 @@ class Vehicle {
     std::vector<Vec3> corners;
     for (Triple const& p : m113::pad)
       if (!points || p.y > 0.0) corners.push_back(Vec3(p.x, points ? 0.0 : p.y, p.z));
-    std::vector<decltype(LinkOf<Link>::middle(parts.links[0]))> middles;
-    for (auto const& link : parts.links) middles.push_back(LinkOf<Link>::middle(link));
-    auto const group = model.apply(Contacts{}, middles, name + "track");
+    auto const group = model.apply(Contacts{}, parts.middle, name + "track");
     parts.contacts.push_back(group);
 
     auto const roller = [&](Handle const& body, double radius, std::string const& n) {

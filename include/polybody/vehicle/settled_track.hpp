@@ -50,8 +50,8 @@ inline TrackStart settled_track(VehicleOptions options = {}) {
                          number(layout.tensioner.most) + " m. Take a preload of 0 to 60 kN.");
   }
   std::vector<Vec2> pins;
-  for (auto const& link : side.links) {
-    Vec3 const pin = position(bench.model, x, LinkOf<Rigid<>>::front(link));
+  for (auto const& front : side.front) {
+    Vec3 const pin = position(bench.model, x, front);
     pins.emplace_back(pin.x(), pin.z());
   }
   start.links = track_links(layout, pins);

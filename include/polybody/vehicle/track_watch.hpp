@@ -34,12 +34,11 @@ template <class V>
 Seating seating(V const& vehicle, State const& x, Side side) {
   auto const& parts = vehicle.side(side);
   Frame<double> const sprocket = frame(vehicle.model, x, parts.sprocket[0].at(Vec3(0, 0, 0)));
-  using L = typename V::LinkType;
   Seating found;
   long before = 0;
   bool follows = false;
   auto const pin_of = [&](int i) -> Vec3 {
-    return sprocket.A.transpose() * (position(vehicle.model, x, LinkOf<L>::front(parts.links[std::size_t(i % links)])) - sprocket.r);
+    return sprocket.A.transpose() * (position(vehicle.model, x, parts.front[std::size_t(i % links)]) - sprocket.r);
   };
   auto const within = [](Vec3 const& p) { return std::hypot(p.x(), p.z()) < tip_radius; };
   int first = 0;
@@ -98,9 +97,9 @@ TrackFault track_fault(V const& vehicle, System<typename V::ModelType> const& sy
   Frame<double> const hull = frame(vehicle.model, x, vehicle.chassis[0].at(Vec3(0, 0, 0)));
   std::vector<Vec2> path;
   for (TrackLink const& link : start.links) path.push_back(link.centre + 0.5 * pitch * Vec2(std::cos(link.angle), -std::sin(link.angle)));
-  for (auto const& link : parts.links) {
-    Vec3 const middle = hull.A.transpose() * (position(vehicle.model, x, LinkOf<typename V::LinkType>::middle(link)) - hull.r);
-    Vec3 const pin = hull.A.transpose() * (position(vehicle.model, x, LinkOf<typename V::LinkType>::front(link)) - hull.r);
+  for (std::size_t k = 0; k < parts.links.size(); ++k) {
+    Vec3 const middle = hull.A.transpose() * (position(vehicle.model, x, parts.middle[k]) - hull.r);
+    Vec3 const pin = hull.A.transpose() * (position(vehicle.model, x, parts.front[k]) - hull.r);
     worst.sideways = std::max(worst.sideways, std::abs(middle.y() - sign(side) * track_y));
     Vec2 const p(pin.x() + m113::chassis.x, pin.z() + m113::chassis.z);
     double nearest = std::numeric_limits<double>::infinity();
