@@ -61,6 +61,9 @@ class BlockFactor {
     }
   }
 
+  /// … of zeros.
+  void skip(Index, Index, Index, Index) { ++next_; }
+
   /// −1, or the unknown without a usable pivot. Rows of a loop that repeat others are dropped: see `dropped`.
   /// After a failure `reordered` may ask for the same matrix once more.
   Index factor() {

@@ -3,6 +3,7 @@
 /// A sink between the blocks of a whole tangent and a system in which some unknowns depend on others, x = P y, and some rows are left
 /// out: blocks arrive as Pᵀ b P.
 
+#include <list>
 #include <map>
 
 #include <polybody/math/block_view.hpp>
@@ -31,6 +32,7 @@ class UnknownMap {
   Index run(Index first, Index size) const {
     return run_end_[std::size_t(first)] >= first + size ? targets_[std::size_t(first)][0].unknown : -1;
   }
+  Index size() const { return Index(targets_.size()); }
   /// Of unknown i.
   std::vector<Target> const& targets(Index i) const { return targets_[std::size_t(i)]; }
 
@@ -39,9 +41,10 @@ class UnknownMap {
     struct Run {
       Index first, size, local;
     };
+    Index whole_size = 0, size = 0;
     std::vector<Run> runs;
     std::vector<std::vector<Target>> targets;  ///< of each whole unknown, by local number
-    Index size = 0;
+    std::vector<Index> chosen;  ///< where no whole unknown has more than one target, nor another factor than one: its local number, or −1
   };
   Range range(Index first, Index size) const {
     std::map<Index, Index> local;
@@ -55,10 +58,15 @@ class UnknownMap {
       else
         out.runs.push_back({unknown, 1, number});
     }
+    bool chooses = true;
     for (Index i = first; i < first + size; ++i) {
       out.targets.emplace_back();
       for (Target const& t : targets(i)) out.targets.back().push_back({local.at(t.unknown), t.factor});
+      chooses = chooses && (targets(i).empty() || plain(std::size_t(i)));
     }
+    out.whole_size = size;
+    for (std::size_t i = 0; i < out.targets.size() && chooses; ++i)
+      out.chosen.push_back(out.targets[i].empty() ? Index(-1) : out.targets[i][0].unknown);
     return out;
   }
 
@@ -68,16 +76,24 @@ class UnknownMap {
   std::vector<Index> run_end_;  // behind the last unknown of the run that i is in; i itself when it is not plain
 };
 
-/// What a mapped sink keeps from pass to pass.
+/// What a mapped sink keeps from pass to pass: ranges by their first unknown, and room for blocks, by rows.
 struct MappedBlocks {
-  std::map<std::pair<Index, Index>, UnknownMap::Range> ranges;
-  MatX half, whole;
+  std::vector<std::list<UnknownMap::Range>> ranges;
+  std::vector<double> half, whole;
+
+  static double* zeros(std::vector<double>& room, Index size) {
+    if (room.size() < std::size_t(size)) room.resize(std::size_t(size));
+    std::fill_n(room.begin(), size, 0.0);
+    return room.data();
+  }
 };
 
 template <class Sink>
 class MappedSink {
  public:
-  MappedSink(UnknownMap const& map, MappedBlocks& kept, Sink& sink) : map_(map), kept_(kept), sink_(sink) {}
+  MappedSink(UnknownMap const& map, MappedBlocks& kept, Sink& sink) : map_(map), kept_(kept), sink_(sink) {
+    kept_.ranges.resize(std::size_t(map.size()));
+  }
 
   void add(Index row, Index col, BlockView const& b) {
     Index const to_row = map_.run(row, b.rows), to_col = map_.run(col, b.cols);
@@ -87,26 +103,54 @@ class MappedSink {
     }
     UnknownMap::Range const& rows = range(row, b.rows);
     UnknownMap::Range const& cols = range(col, b.cols);
-    MatX& half = kept_.half;
-    MatX& whole = kept_.whole;
-    half.setZero(rows.size, b.cols);
-    for (Index i = 0; i < b.rows; ++i)
-      for (UnknownMap::Target const& t : rows.targets[std::size_t(i)])
-        for (Index j = 0; j < b.cols; ++j) half(t.unknown, j) += t.factor * b(i, j);
-    whole.setZero(rows.size, cols.size);
-    for (Index j = 0; j < b.cols; ++j)
-      for (UnknownMap::Target const& t : cols.targets[std::size_t(j)])
-        for (Index i = 0; i < rows.size; ++i) whole(i, t.unknown) += t.factor * half(i, j);
+    if (rows.size == 0 || cols.size == 0) return;
+    double* const whole = MappedBlocks::zeros(kept_.whole, rows.size * cols.size);
+    if (!rows.chosen.empty() && !cols.chosen.empty())
+      choose(b, rows, cols, whole);
+    else
+      multiply(b, rows, cols, whole);
+    using ByRows = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> const>;
+    ByRows const mapped(whole, rows.size, cols.size);
     for (auto const& r : rows.runs)
-      for (auto const& c : cols.runs) sink_.add(r.first, c.first, whole.block(r.local, c.local, r.size, c.size));
+      for (auto const& c : cols.runs) sink_.add(r.first, c.first, mapped.block(r.local, c.local, r.size, c.size));
+  }
+  /// A block of zeros.
+  void skip(Index row, Index col, Index height, Index width)
+    requires SkipsZeros<Sink>
+  {
+    Index const to_row = map_.run(row, height), to_col = map_.run(col, width);
+    if (to_row >= 0 && to_col >= 0) return sink_.skip(to_row, to_col, height, width);
+    for (auto const& r : range(row, height).runs)
+      for (auto const& c : range(col, width).runs) sink_.skip(r.first, c.first, r.size, c.size);
   }
 
  private:
+  /// P has one 1 in each row, or none.
+  static void choose(BlockView const& b, UnknownMap::Range const& rows, UnknownMap::Range const& cols, double* whole) {
+    for (Index i = 0; i < b.rows; ++i) {
+      Index const to = rows.chosen[std::size_t(i)];
+      if (to < 0) continue;
+      double* const out = whole + to * cols.size;
+      for (Index j = 0; j < b.cols; ++j)
+        if (Index const c = cols.chosen[std::size_t(j)]; c >= 0) out[c] += b(i, j);
+    }
+  }
+  void multiply(BlockView const& b, UnknownMap::Range const& rows, UnknownMap::Range const& cols, double* whole) {
+    double* const half = MappedBlocks::zeros(kept_.half, rows.size * b.cols);
+    for (Index i = 0; i < b.rows; ++i)
+      for (UnknownMap::Target const& t : rows.targets[std::size_t(i)])
+        for (Index j = 0; j < b.cols; ++j) half[t.unknown * b.cols + j] += t.factor * b(i, j);
+    for (Index j = 0; j < b.cols; ++j)
+      for (UnknownMap::Target const& t : cols.targets[std::size_t(j)])
+        for (Index i = 0; i < rows.size; ++i) whole[i * cols.size + t.unknown] += t.factor * half[i * b.cols + j];
+  }
+
   /// Found in the first pass, kept for the others.
   UnknownMap::Range const& range(Index first, Index size) {
-    auto const found = kept_.ranges.find({first, size});
-    if (found != kept_.ranges.end()) return found->second;
-    return kept_.ranges.emplace(std::pair(first, size), map_.range(first, size)).first->second;
+    auto& known = kept_.ranges[std::size_t(first)];
+    for (UnknownMap::Range const& r : known)
+      if (r.whole_size == size) return r;
+    return known.emplace_back(map_.range(first, size));
   }
 
   UnknownMap const& map_;

@@ -23,7 +23,23 @@ enum class SecondOrder { omitted, included };
 template <class S>
 concept TangentSink = requires(S sink, Mat3 const block) { sink.add(Index(0), Index(0), block); };
 
+/// … and may be told that the next one is zero, in place of `add`.
+template <class S>
+concept SkipsZeros = requires(S sink) { sink.skip(Index(0), Index(0), Index(0), Index(0)); };
+
 namespace detail {
+
+/// A block of zeros: what has its place in the tangent but does not act.
+template <class Sink>
+void add_zeros(Index row, Index col, Index rows, Index cols, std::vector<double>& scratch, Sink& sink) {
+  if constexpr (SkipsZeros<Sink>) {
+    sink.skip(row, col, rows, cols);
+  } else {
+    Eigen::Map<MatX> zeros(scratch.data(), rows, cols);
+    zeros.setZero();
+    sink.add(row, col, zeros);
+  }
+}
 
 /// Calls f((rows · J)ᵀ) for m rows, n×m: of fixed size through a rigid marker, else in `scratch`.
 template <int m, class F>
@@ -177,8 +193,13 @@ void add_group_tangent(ForceEntry<F> const& e, double t, double scale, TangentCo
     own[i] -= s.template topLeftCorner<6, 6>();
     own[j] -= s.template bottomRightCorner<6, 6>();
   });
-  for (std::size_t k = 0; k < e.markers.size(); ++k)
-    add_pulled_pairs<1>({&data.markers[std::size_t(e.markers[k])]}, scale * own[k], true, data.scratch, sink);
+  for (std::size_t k = 0; k < e.markers.size(); ++k) {
+    Published<double> const& p = data.markers[std::size_t(e.markers[k])];
+    if (p.columns > 0 && own[k].isZero(0.0))
+      add_zeros(p.first, p.first, p.columns, p.columns, data.scratch, sink);
+    else
+      add_pulled_pairs<1>({&p}, scale * own[k], true, data.scratch, sink);
+  }
 }
 }  // namespace detail
 
@@ -218,8 +239,13 @@ void add_load_stiffness(M const& model, VecX const& q, double ck, Data<M, double
       auto const& e = pool.entries[std::size_t(p.body)];
       using B = std::decay_t<decltype(e.body)>;
       Published<double> const& at = data.markers[std::size_t(p.published)];
+      Wrench<double> const& w = data.loads[std::size_t(p.published)];
+      if (w.f.isZero(0.0) && w.m.isZero(0.0)) {
+        detail::add_zeros(at.first, at.first, at.columns, at.columns, data.scratch, sink);
+        continue;
+      }
       auto const stiffness = [&](auto& k) {
-        e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()), data.loads[std::size_t(p.published)], k);
+        e.body.load_stiffness(p.point, detail::body_part(q, e.q0, e.body.coordinates()), w, k);
       };
       if constexpr (B::point_columns == Eigen::Dynamic) {
         MatX& k = kept[std::size_t(p.body)].point_scratch();
