@@ -92,9 +92,10 @@ void for_each_body_with_rows(M const& model, VecXOf<T> const& q, VecXOf<T> const
   });
 }
 
-/// Calls f(side, rows) for both bodies of all linear joints.
-template <class M, class F>
-void for_each_linear_side(M const& model, F&& f) {
+/// Calls f(side, rows) for both bodies of all linear joints, unless their rows are left out.
+template <class M, StateScalar T, class F>
+void for_each_linear_side(M const& model, Data<M, T> const& data, F&& f) {
+  if (!data.linear_rows) return;
   for (LinearRows const& rows : model.linear_rows())
     for (LinearSide const* const side : {&rows.a, &rows.b})
       if (side->map.cols() > 0) f(*side, rows);
@@ -143,7 +144,7 @@ void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> 
     e.body.template own_map<T>(qe, map);
     r.template segment<B::element_columns>(e.v0) += map.transpose() * lambda.template segment<B::own_rows>(e.row);
   });
-  for_each_linear_side(model, [&](LinearSide const& side, LinearRows const& rows) {
+  for_each_linear_side(model, data, [&](LinearSide const& side, LinearRows const& rows) {
     for (Index j = 0; j < side.map.cols(); ++j)
       for (Index i = 0; i < side.map.rows(); ++i) r[side.v0 + j] += lambda[rows.row + i] * side.map(i, j);
   });
@@ -179,8 +180,8 @@ void for_each_row_block(M const& model, Data<M, T> const& data, F&& f) {
 namespace detail {
 /// Adds C x of all linear joints to the rows, x by coordinates or by speeds.
 template <class M, StateScalar T>
-void add_linear_rows(M const& model, VecXOf<T> const& x, Index LinearSide::* first, VecXOf<T>& out) {
-  for_each_linear_side(model, [&](LinearSide const& side, LinearRows const& rows) {
+void add_linear_rows(M const& model, Data<M, T> const& data, VecXOf<T> const& x, Index LinearSide::* first, VecXOf<T>& out) {
+  for_each_linear_side(model, data, [&](LinearSide const& side, LinearRows const& rows) {
     for (Index j = 0; j < side.map.cols(); ++j)
       for (Index i = 0; i < side.map.rows(); ++i) out[rows.row + i] += x[side.*first + j] * side.map(i, j);
   });
@@ -205,7 +206,7 @@ void violation(M const& model, VecXOf<T> const& q, Data<M, T> const& data, VecXO
     phi.template segment<std::decay_t<decltype(gap)>::rows>(e.row) = gap.g;
   });
   detail::set_linear_rows(model, 1.0, phi);
-  detail::add_linear_rows(model, q, &LinearSide::q0, phi);
+  detail::add_linear_rows(model, data, q, &LinearSide::q0, phi);
 }
 
 /// Φ̇ = G v + Φ_t (rows).
@@ -221,7 +222,7 @@ void violation_rate(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data
     rate.template segment<std::decay_t<decltype(gap)>::rows>(e.row) = gap_rate(gap, a, b);
   });
   detail::set_linear_rows(model, 0.0, rate);
-  detail::add_linear_rows(model, v, &LinearSide::v0, rate);
+  detail::add_linear_rows(model, data, v, &LinearSide::v0, rate);
 }
 
 /// γ (rows): Φ̈ = G v̇ + γ, with Φ_tt and the frames' biases.
@@ -256,7 +257,7 @@ void rows_times(M const& model, VecX const& q, VecX const& b, Data<M, double> co
     rows += gap.Ga * a.push(b.data() + a.first);
     rows += gap.Gb * c.push(b.data() + c.first);
   });
-  detail::add_linear_rows(model, b, &LinearSide::v0, out);
+  detail::add_linear_rows(model, data, b, &LinearSide::v0, out);
 }
 
 /// out = Gᵀ b (nv) for b by rows.

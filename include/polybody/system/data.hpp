@@ -29,6 +29,9 @@ struct Data {
   std::vector<Mat<double, 6, 6>> own_stiffness;  ///< per marker of the largest force group
   std::vector<double> scratch;              ///< for pulled blocks: n×18 and n×n of the widest marker
 
+  bool linear_rows = true;                  ///< else rows of linear joints are left out, and markers that these alone read
+  std::vector<char> read;                   ///< per marker: by anything but linear joints
+
   Workers* workers = nullptr;               ///< threads that share the loops; none by default
   std::vector<T> element_forces;            ///< with workers: of all elements of a body, before they are added in order
   std::vector<double> element_tangents;     ///< the same
@@ -55,6 +58,13 @@ struct Data {
       f.A = g.placement.axes.template cast<T>();
     }
     scratch.resize(std::size_t(widest * (widest + 18)));
+    read.assign(markers.size(), 0);
+    model.for_each_joint([&](auto const& e) {
+      if constexpr (!LinearInCoordinates<typename std::decay_t<decltype(e.joint)>::PolicyType>) read[std::size_t(e.a)] = read[std::size_t(e.b)] = 1;
+    });
+    model.for_each_force([&](auto const& e) {
+      for (Index const k : e.markers) read[std::size_t(k)] = 1;
+    });
     model.for_each_force([&](auto const& e) { own_stiffness.resize(std::max(own_stiffness.size(), e.markers.size())); });
     detail::for_each_pool_beside(model.body_pools(), poses, [](auto const& pool, auto& x) { x.resize(pool.entries.size()); });
     detail::for_each_pool_beside(model.body_pools(), scratch_of_bodies, [](auto const& pool, auto& x) {

@@ -24,6 +24,7 @@ void publish(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, Data<M, T>&
     share(data.workers, Index(pool.markers.size()), data.least_markers, [&](Index begin, Index end) {
       for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
         auto const& m = pool.markers[i];
+        if (!data.linear_rows && !data.read[std::size_t(m.published)]) continue;
         auto const& e = pool.entries[std::size_t(m.body)];
         Published<T>& out = data.markers[std::size_t(m.published)];
         if constexpr (SharesPose<B, T>)

@@ -61,7 +61,7 @@ class System<Reduced<M>> {
 
   void evaluate(VecX const& q, VecX const& v, double t) {
     place(q, v);
-    whole_.evaluate(q_, v_, t);
+    whole_.evaluate_without_linear_rows(q_, v_, t);
   }
 
   /// r = Tᵀ(M(T a + b) − f) + (G T)ᵀλ.

@@ -56,13 +56,9 @@ class System {
   /// Scales gravity and loads; one except inside `equilibrium`.
   double load_factor = 1.0;
 
-  void evaluate(VecX const& q, VecX const& v, double t) {
-    q_ = q;
-    v_ = v;
-    t_ = t;
-    publish(*model_, q_, v_, data_);
-    enforce(*model_, t_, data_);
-  }
+  void evaluate(VecX const& q, VecX const& v, double t) { evaluate(q, v, t, true); }
+  /// … for one who eliminates linear joints: until the next evaluation their rows are left out, and so are markers that nothing else reads.
+  void evaluate_without_linear_rows(VecX const& q, VecX const& v, double t) { evaluate(q, v, t, false); }
 
   /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results are
   /// the same to the last bit. \throws InvalidInput for fewer than one.
@@ -153,6 +149,15 @@ class System {
   void gather(Held&, VecX const& solution, VecX& out) const { out = solution; }
 
  private:
+  void evaluate(VecX const& q, VecX const& v, double t, bool linear_rows) {
+    q_ = q;
+    v_ = v;
+    t_ = t;
+    data_.linear_rows = linear_rows;
+    publish(*model_, q_, v_, data_);
+    enforce(*model_, t_, data_);
+  }
+
   M const* model_;
   std::unique_ptr<Workers> workers_;
   Data<M> data_;

@@ -312,7 +312,7 @@ void tangent(M const& model, VecX const& q, VecX const& v, VecX const& lambda, d
     k *= c.stiffness;
     sink.add(e.v0, e.v0, k);
   });
-  for_each_linear_side(model, [&](LinearSide const& side, LinearRows const& rows) {
+  for_each_linear_side(model, data, [&](LinearSide const& side, LinearRows const& rows) {
     sink.add(side.v0, row0 + rows.row, side.map.transpose());
     sink.add(row0 + rows.row, side.v0, side.map);
   });
