@@ -91,7 +91,7 @@ struct StressCase {
       scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
         before(model, x);
         history->strain.push_back(m113::link_strain(vehicle->model, x, link));
-        history->bending.push_back(m113::link_bending(vehicle->model, x, link));
+        history->bending.push_back(m113::link_bending(vehicle->model, x, link, frame(vehicle->model, x, vehicle->chassis[0].at(Vec3(0, 0, 0))).A.col(1)));
       };
     }
     return scenario;
@@ -195,12 +195,14 @@ void report(Options const& o, StressRuns const& runs) {
     std::printf("           (T0 + m v^2/p)/EA with T0 = %.2f kN of the tensioner: %.3fe-5\n", 1e-3 * pull,
                 1e5 * m113::running_strain(speed, pull));
     Range const bending = range_of(runs.times(k), runs.bending(k), from);
-    std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa\n", 1e-6 * m113::youngs_modulus * bending.least,
+    std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa", 1e-6 * m113::youngs_modulus * bending.least,
                 1e-6 * m113::youngs_modulus * bending.most);
+    if (k > 0 && runs.links[0]->recover)
+      std::printf("; %.1f %% off %s (rms, low pass)", 1e2 * off(o, runs, k, runs, 0, from, &StressRuns::bending), runs.name(0).c_str());
+    std::printf("\n");
     for (double const since : {1.0, from})
       if (k != beside && since < runs.times(k).back())
-        std::printf("           off %s from %.1f s on (rms): strain %.2f %%, bending %.2f %%\n", runs.name(beside).c_str(), since,
-                    1e2 * off(o, runs, k, runs, beside, since), 1e2 * off(o, runs, k, runs, beside, since, &StressRuns::bending));
+        std::printf("           off %s: %.2f %% (rms from %.1f s on)\n", runs.name(beside).c_str(), 1e2 * off(o, runs, k, runs, beside, since), since);
     std::printf("           CPU %.1f s, %.2f of %s", r.cpu, r.cpu / runs.comparison.runs.front().cpu, runs.name(0).c_str());
     if (runs.links[k]->recover) std::printf("; record %.2f s, recovery %.2f s", runs.links[k]->recording, runs.links[k]->recovery);
     std::printf("; %.2f iterations, %.2f factorisations a step; %ld of %ld steps halved\n", double(r.run.iterations) / double(r.run.steps),

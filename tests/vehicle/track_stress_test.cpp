@@ -58,7 +58,7 @@ Ride ride(Ramp const& drive, double until, double step, bool held = false, int e
       recorder->record(x);
     } else {
       r.strain.push_back(m113::link_strain(vehicle.model, x, link));
-      r.bending.push_back(m113::link_bending(vehicle.model, x, link));
+      r.bending.push_back(m113::link_bending(vehicle.model, x, link, hull_of(vehicle, x).A.col(1)));
     }
     double const travel = (hull_of(vehicle, x).A.transpose() * (position(vehicle.model, x, side.idler[0].at(Vec3(0, 0, 0))) - hull_of(vehicle, x).r)).x() +
                           m113::chassis.x - m113::idler_reference_x;

@@ -5,7 +5,9 @@
 #include <array>
 
 #include <polybody/analysis/decoupled_stress.hpp>
+#include <polybody/analysis/observe.hpp>
 #include <polybody/analysis/section.hpp>
+#include <polybody/vehicle/link_axes.hpp>
 #include <polybody/vehicle/track_links.hpp>
 
 namespace polybody::m113 {
@@ -38,9 +40,13 @@ inline double bending_by_moment() { return 0.5 * cable_height / *constants(link_
 
 /// What bending adds to the axial strain in the fibre towards the wheels, just ahead of the middle, where contacts push. One element of
 /// third degree shows half of what a force there does, one of linear interpolation nothing; two elements have a node there, and show it.
+/// A cable does not know where the wheels are: `lateral`, the vehicle's y axis, tells (link_axes.hpp).
 template <class M, class B>
-double link_bending(M const& model, State const& x, BodyHandle<B> const& link) {
-  return bending_by_moment() * section_forces(model, x, link.at(0.5 * pitch))[4];
+double link_bending(M const& model, State const& x, BodyHandle<B> const& link, Vec3 const& lateral) {
+  auto const middle = link.at(0.5 * pitch);
+  Frame<double> const section = frame(model, x, middle);
+  Vec3 const moment = section.A * section_forces(model, x, middle).template tail<3>();
+  return bending_by_moment() * moment.dot(link_axes<B::observes>(section, lateral).col(1));
 }
 
 /// … of a rigid link at each time of its record.
