@@ -8,12 +8,6 @@
 
 namespace polybody {
 
-/// The samples of one quantity, in the order of time.
-struct Samples {
-  std::span<double const> times;   ///< [s]
-  std::span<double const> values;  ///< as many
-};
-
 /// (∫(a − b)² / ∫b²)^½ over the samples of b from one time to another; of vectors, component by component:
 ///   RmsDifference d(1.0, 10.0);
 ///   d.add({ta, ax}, {tb, bx});

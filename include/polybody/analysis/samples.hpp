@@ -8,7 +8,15 @@
 
 #include <polybody/math/types.hpp>
 
-namespace polybody::detail {
+namespace polybody {
+
+/// The samples of one quantity, in the order of time.
+struct Samples {
+  std::span<double const> times;   ///< [s]
+  std::span<double const> values;  ///< as many
+};
+
+namespace detail {
 
 /// \throws InvalidInput unless there are `least` finite samples, each with its time, and times rise.
 template <class = void>
@@ -26,4 +34,6 @@ void require_history(std::span<double const> times, std::span<double const> valu
   }
 }
 
-}  // namespace polybody::detail
+}  // namespace detail
+
+}  // namespace polybody
