@@ -91,7 +91,8 @@ struct StressCase {
       scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
         before(model, x);
         history->strain.push_back(m113::link_strain(vehicle->model, x, link));
-        history->bending.push_back(m113::link_bending(vehicle->model, x, link, frame(vehicle->model, x, vehicle->chassis[0].at(Vec3(0, 0, 0))).A.col(1)));
+        Vec3 const lateral = frame(vehicle->model, x, vehicle->chassis[0].at(Vec3(0, 0, 0))).A.col(1);
+        history->bending.push_back(m113::link_bending(vehicle->model, x, link, lateral));
       };
     }
     return scenario;
@@ -106,7 +107,7 @@ struct StressRuns : Runs {
   std::vector<double> const& bending(std::size_t k) const { return links[k]->bending; }
   std::vector<double> filtered(std::size_t k, double cut_off) const { return filtered(k, raw(k), cut_off); }
   // Without the last sample where an event ended the run between two steps.
-  std::vector<double> filtered(std::size_t k, std::vector<double> y, double cut_off) const {
+  std::vector<double> filtered(std::size_t k, std::vector<double> const& y, double cut_off) const {
     return low_pass(filtered_times(k), std::span(y).first(filtered_times(k).size()), {.cut_off = cut_off, .mirrored = true});
   }
   std::span<double const> filtered_times(std::size_t k) const {
@@ -164,8 +165,8 @@ Range range_of(std::vector<double> const& times, std::vector<double> const& x, d
 }
 
 // Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
-using Quantity = std::vector<double> const& (StressRuns::*)(std::size_t) const;
-double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from, Quantity of = &StressRuns::raw) {
+using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;
+double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from, Told of = &StressRuns::raw) {
   std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of)(k), o.cut_off);
   RmsDifference d(from, o.until);
   d.add({as.filtered_times(i), a}, {bs.filtered_times(k), b});
