@@ -1,5 +1,5 @@
-// Every body formulation: nanoseconds an element for M a − f and for its tangent, beside the operations that M a − f takes (counted by a
-// scalar that counts: each +, −, ×, ÷, root or sine is one) and the rate they are done at.
+// Every body formulation: nanoseconds an element for M a − f and for its tangent, beside the operations that M a − f
+// takes (counted by a scalar that counts: each +, −, ×, ÷, root or sine is one) and the rate they are done at.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -89,7 +89,9 @@ void measure(char const* name, B const& body) {
     a[i] = std::cos(5.0 * double(i));
   }
   VecX at(q.size());
-  auto const span = [](auto const& x) { return std::span<typename std::decay_t<decltype(x)>::Scalar const>(x.data(), std::size_t(x.size())); };
+  auto const span = [](auto const& x) {
+    return std::span<typename std::decay_t<decltype(x)>::Scalar const>(x.data(), std::size_t(x.size()));
+  };
   body.template plus<double>(span(q), span(delta), {at.data(), std::size_t(at.size())});
   Index const elements = body.elements();
 
@@ -106,8 +108,7 @@ void measure(char const* name, B const& body) {
   });
   double const tangent_ns = fastest(elements * repeats, [&] {
     for (int i = 0; i < repeats; ++i)
-      for_each_element_tangent<B>(body, 0, elements, span(at), span(v), 1.5, 0.1, 1.0, tangent,
-                                  use);
+      for_each_element_tangent<B>(body, 0, elements, span(at), span(v), 1.5, 0.1, 1.0, tangent, use);
   });
 
   VecXOf<Counted> const qc = at.cast<Counted>(), vc = v.cast<Counted>(), ac = a.cast<Counted>();
@@ -116,8 +117,8 @@ void measure(char const* name, B const& body) {
   body.template inertia<Counted>(0, span(qc), span(ac), counted.x);
   body.template force<Counted>(0, span(qc), span(vc), counted.force);
   long const operations = Counted::operations + long(element_columns(body));
-  std::printf("  %-30s %8.1f ns, %6ld operations, %5.2f per ns;   tangent %8.1f ns, both %8.1f ns\n", name, ns, operations,
-              double(operations) / ns, tangent_ns, ns + tangent_ns);
+  std::printf("  %-30s %8.1f ns, %6ld operations, %5.2f per ns;   tangent %8.1f ns, both %8.1f ns\n", name, ns,
+              operations, double(operations) / ns, tangent_ns, ns + tangent_ns);
 }
 
 void all_bodies(benchmark::State& state) {

@@ -1,6 +1,6 @@
-// Contacts that come and go: a chain of 64 links falls across five wheels, and every link may touch every wheel. Three ways to
-// keep the order of elimination: leave link–wheel blocks out of the matrix and iterate over them; keep a slot for each of the 320
-// pairs; or work out a new order whenever a contact begins or ends.
+// Contacts that come and go: a chain of 64 links falls across five wheels, and every link may touch every wheel. Three
+// ways to keep the order of elimination: leave link–wheel blocks out of the matrix and iterate over them; keep a slot
+// for each of the 320 pairs; or work out a new order whenever a contact begins or ends.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -11,7 +11,8 @@ namespace {
 
 using namespace polybody;
 
-/// Two balls press on each other along the line of centres while they overlap by δ: k δ (1 + d δ̇) [Hunt & Crossley 1975].
+/// Two balls press on each other along the line of centres while they overlap by δ: k δ (1 + d δ̇) [Hunt & Crossley
+/// 1975].
 template <bool Couples>
 struct Press {
   static constexpr int markers = 2;
@@ -49,7 +50,8 @@ struct ChainOnWheels {
     Pin const pin{Revolute{.axis = Vec3::UnitY()}, {}};
     std::vector<BodyHandle<Rigid<>>> links;
     for (int i = 0; i < 64; ++i) {
-      links.push_back(model.add(Rigid<>(1.0, Vec3(1e-4, 1e-3, 1e-3).asDiagonal(), Placement::at({0.1 * i + 0.05, 0, 0}))));
+      links.push_back(
+          model.add(Rigid<>(1.0, Vec3(1e-4, 1e-3, 1e-3).asDiagonal(), Placement::at({0.1 * i + 0.05, 0, 0}))));
       auto const here = links.back().at(Vec3(-0.05, 0, 0));
       if (i == 0)
         model.connect(pin, model.ground().at({0, 0, 0}), here);
@@ -61,13 +63,16 @@ struct ChainOnWheels {
       auto const wheel = model.add(Rigid<>(20.0, Mat3::Identity() * 0.3, Placement::at(centre)));
       model.connect(pin, model.ground().at(centre), wheel.at(Vec3(0, 0, 0)));
       if (touching)
-        for (auto const& link : links) model.apply(Contact{.distance = 0.2}, wheel.at(Vec3(0, 0, 0)), link.at(Vec3(0, 0, 0)));
+        for (auto const& link : links)
+          model.apply(Contact{.distance = 0.2}, wheel.at(Vec3(0, 0, 0)), link.at(Vec3(0, 0, 0)));
     }
   }
 };
 
 using Clock = std::chrono::steady_clock;
-double microseconds(Clock::time_point start) { return std::chrono::duration<double, std::micro>(Clock::now() - start).count(); }
+double microseconds(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
 
 template <class M>
 void report(char const* what, M const& model) {
@@ -95,14 +100,16 @@ void orders(char const* what, M const& model) {
     auto start = Clock::now();
     solver.analyse(system.size(), pattern.blocks);
     analyse = std::min(analyse, microseconds(start));
-    auto const write = [&](BlockSolver& sink) { system.tangent({1.5, 5e-4, 2.5e-7}, SecondOrder::omitted, x.lambda, sink); };
+    auto const write = [&](BlockSolver& sink) {
+      system.tangent({1.5, 5e-4, 2.5e-7}, SecondOrder::omitted, x.lambda, sink);
+    };
     write_and_factor(solver, write);
     start = Clock::now();
     write_and_factor(solver, write);
     factor = std::min(factor, microseconds(start));
   }
-  std::printf("  %-34s order %6.0f us, matrix and factorisation %5.0f us, analysis %.1f times as much\n", what, analyse, factor,
-              analyse / factor);
+  std::printf("  %-34s order %6.0f us, matrix and factorisation %5.0f us, analysis %.1f times as much\n", what, analyse,
+              factor, analyse / factor);
 }
 
 void analyse_without_coupling(benchmark::State& state) {

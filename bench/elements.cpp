@@ -1,6 +1,6 @@
-// Element kernels: nanoseconds an element for force and tangent one by one, in packs (structure of arrays) and by two threads.
-// The loop over single elements is compiled as all the rest, so the compiler may use vectors within an element; with
-// -fno-tree-vectorize added it is scalar code, and the packs stay what they are.
+// Element kernels: nanoseconds an element for force and tangent one by one, in packs (structure of arrays) and by two
+// threads. The loop over single elements is compiled as all the rest, so the compiler may use vectors within an
+// element; with -fno-tree-vectorize added it is scalar code, and the packs stay what they are.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -32,7 +32,8 @@ struct Swaying {
   B body = B::from({.length = 64.0,
                     .section = Rectangle{.height = 0.02, .width = 0.015},
                     .material = Material{.density = 7800.0, .young = 2e11, .poisson = 0.3},
-                    .damping = damping}, count);
+                    .damping = damping},
+                   count);
   std::vector<double> q, v, a;
   explicit Swaying(Damping const& d = {}) : damping(d), q(std::size_t(body.coordinates())), v(q.size()), a(q.size()) {
     body.reference(q);
@@ -75,11 +76,13 @@ void compare(char const* name, Damping const& damping = {}) {
       use(e, k);
     }
   });
-  double const tangents = fastest([&] {
-    for_each_element_tangent<B>(s.body, 0, count, s.qs(), s.vs(), 1.5, 0.1, 1.0, use);
-  });
-  std::printf("  %-37s M a - f: %6.1f, in packs %6.1f, ratio %4.2f;   tangent: %7.1f, in packs %6.1f, ratio %4.2f;   both: ratio %4.2f\n",
-              name, force, forces, force / forces, tangent, tangents, tangent / tangents, (force + tangent) / (forces + tangents));
+  double const tangents =
+      fastest([&] { for_each_element_tangent<B>(s.body, 0, count, s.qs(), s.vs(), 1.5, 0.1, 1.0, use); });
+  std::printf(
+      "  %-37s M a - f: %6.1f, in packs %6.1f, ratio %4.2f;   tangent: %7.1f, in packs %6.1f, ratio %4.2f;   both: "
+      "ratio %4.2f\n",
+      name, force, forces, force / forces, tangent, tangents, tangent / tangents,
+      (force + tangent) / (forces + tangents));
 }
 
 /// Residual and tangent of a whole model of one body with `count` elements, alone and with two threads.
@@ -97,17 +100,16 @@ void share_loops(char const* name) {
     double total = 0.0;
     void add(Index, Index, BlockView const& b) { total += b(0, 0); }
   } sum;
-  auto const residual = [&](auto& system) {
-    return fastest([&] { system.residual(v, x.lambda, r); });
-  };
+  auto const residual = [&](auto& system) { return fastest([&] { system.residual(v, x.lambda, r); }); };
   auto const tangent = [&](auto& system) {
     return fastest([&] { system.tangent({1.5, 5e-4, 2.5e-7}, SecondOrder::omitted, x.lambda, sum); });
   };
   alone.evaluate(q, v, 0.0);
   shared.evaluate(q, v, 0.0);
   double const r1 = residual(alone), r2 = residual(shared), t1 = tangent(alone), t2 = tangent(shared);
-  std::printf("  %-37s residual: %6.1f, two threads %6.1f, ratio %4.2f;   tangent: %6.1f, two threads %6.1f, ratio %4.2f\n", name,
-              r1, r2, r1 / r2, t1, t2, t1 / t2);
+  std::printf(
+      "  %-37s residual: %6.1f, two threads %6.1f, ratio %4.2f;   tangent: %6.1f, two threads %6.1f, ratio %4.2f\n",
+      name, r1, r2, r1 / r2, t1, t2, t1 / t2);
 }
 
 using Green = planar::AncfCable<>;

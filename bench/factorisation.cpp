@@ -1,5 +1,6 @@
 // Factor and solve [M, Gᵀ; G, 0] of a tracked vehicle: two closed tracks of 64 links, wheels, sprockets and idlers on a
-// chassis, links coupled to what they touch. Every solver gets the same matrix in one run; then chains from 64 to 4096 links.
+// chassis, links coupled to what they touch. Every solver gets the same matrix in one run; then chains from 64 to 4096
+// links.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -56,7 +57,8 @@ Blocks vehicle() {
     b.join(6 * i, 6 * j, k.topRightCorner(6, 6));
   };
   for (int side = 0; side < 2; ++side) {
-    int const first = 1 + side * (links + on_side), arm = first + links, wheel = arm + wheels, sprocket = wheel + wheels;
+    int const first = 1 + side * (links + on_side), arm = first + links, wheel = arm + wheels,
+              sprocket = wheel + wheels;
     for (int i = 0; i < wheels; ++i) {
       pin(0, arm + i);
       pin(arm + i, wheel + i);
@@ -97,9 +99,10 @@ double microseconds(std::function<void()> const& act) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The fastest of `repeats` interleaved timings (what else runs on the machine only ever adds), each after one that is not
-/// counted: a solver finds its data in the cache, as it does within a run.
-std::vector<double> fastest(std::vector<std::pair<std::function<void()>, std::function<void()>>> const& acts, int repeats) {
+/// The fastest of `repeats` interleaved timings (what else runs on the machine only ever adds), each after one that is
+/// not counted: a solver finds its data in the cache, as it does within a run.
+std::vector<double> fastest(std::vector<std::pair<std::function<void()>, std::function<void()>>> const& acts,
+                            int repeats) {
   std::vector<double> times(acts.size(), 1e30);
   for (int r = 0; r < repeats; ++r)
     for (std::size_t i = 0; i < acts.size(); ++i) {
@@ -115,7 +118,8 @@ std::vector<double> fastest(std::vector<std::pair<std::function<void()>, std::fu
 double eigen_rate() {
   std::vector<Matrix6> a(16, Matrix6::Random()), c(16, Matrix6::Zero());
   constexpr int rounds = 200;
-  double const time = fastest({{[] {}, [&] {
+  double const time = fastest({{[] {},
+                                [&] {
                                   for (int r = 0; r < rounds; ++r)
                                     for (std::size_t i = 0; i < 16; ++i)
                                       c[i].noalias() -= a[(i + 3) % 16].transpose() * a[(i + 7) % 16];
@@ -175,13 +179,13 @@ void compare() {
   for (Row const& row : rows) acts.push_back({row.write, row.solve});
   std::vector<double> const time = fastest(acts, 101);
   double const limit = ldlt.flops() / eigen_rate();
-  std::printf("\nfactor + solve, vehicle with two tracks: %td unknowns, %td in the factor, %.2f Mflop\n", b.size, ldlt.fill(),
-              1e-6 * ldlt.flops());
+  std::printf("\nfactor + solve, vehicle with two tracks: %td unknowns, %td in the factor, %.2f Mflop\n", b.size,
+              ldlt.fill(), 1e-6 * ldlt.flops());
   for (std::size_t i = 0; i < rows.size(); ++i)
     std::printf("  %-36s %9.1f us   %6.2f x block LDLT   residual %.1e\n", rows[i].name, time[i], time[i] / time[0],
                 residual(rows[i].write, rows[i].solve));
-  std::printf("  flops at the rate of Eigen's 6x6 product %5.1f us   block LDLT takes %.2f x that (aim: at most 3)\n", limit,
-              time[0] / limit);
+  std::printf("  flops at the rate of Eigen's 6x6 product %5.1f us   block LDLT takes %.2f x that (aim: at most 3)\n",
+              limit, time[0] / limit);
 }
 
 void grow() {

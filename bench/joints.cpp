@@ -1,7 +1,8 @@
-// What a joint costs under each policy, on chains on pins that fall from a horizontal start. Growth: a step of h = 1 ms from 16 to 1024
-// links, as taken and, since Newton's counts change with the motion, at equal counts; slopes from 64 links on; both drawn in joints.png.
-// Parts: nanoseconds a link for residual, tangent, factorisation and solution, beside links without joints. Links of 0.1 m: rigid in
-// space, one cable element each in the plane. Processor time, the fastest of several runs.
+// What a joint costs under each policy, on chains on pins that fall from a horizontal start. Growth: a step of h = 1 ms
+// from 16 to 1024 links, as taken and, since Newton's counts change with the motion, at equal counts; slopes from 64
+// links on; both drawn in joints.png. Parts: nanoseconds a link for residual, tangent, factorisation and solution,
+// beside links without joints. Links of 0.1 m: rigid in space, one cable element each in the plane. Processor time, the
+// fastest of several runs.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -111,9 +112,11 @@ Cost cost(M const& model, int links) {
   Taken taken;
   int const passes = std::max(1, 2048 / links);
   auto const ns = [&](auto&& pass) {
-    return fastest(50, [&] {
-             for (int k = 0; k < passes; ++k) pass();
-           }) * 1e9 / (passes * links);
+    return fastest(50,
+                   [&] {
+                     for (int k = 0; k < passes; ++k) pass();
+                   }) *
+           1e9 / (passes * links);
   };
   out.residual = ns([&] {
     system.evaluate(y.q, y.v, y.t);
@@ -142,7 +145,12 @@ struct Tables {
                                 panel("The same at equal counts: 3 iterations, 0.2 factorisations")};
 
   static Figure panel(char const* title) {
-    return {.title = title, .x_label = "links", .y_label = "µs a step", .log_x = true, .log_y = true, .x_range = std::array{10.0, 2000.0}};
+    return {.title = title,
+            .x_label = "links",
+            .y_label = "µs a step",
+            .log_x = true,
+            .log_y = true,
+            .x_range = std::array{10.0, 2000.0}};
   }
 };
 
@@ -160,8 +168,8 @@ void measure(char const* name, M const& like, P const& policy, Cost const& free,
     equal.y.push_back((3.0 * (c.residual + c.solve) + 0.2 * c.factor) * 1e-3 * links);
     if (links == 64) {
       char row[200];
-      std::snprintf(row, sizeof row, "  %-36s %9.0f %9.0f %9.0f %9.0f      %9.0f %9.0f\n", name, c.residual, c.tangent, c.factor, c.solve,
-                    c.residual - free.residual, c.tangent - free.tangent);
+      std::snprintf(row, sizeof row, "  %-36s %9.0f %9.0f %9.0f %9.0f      %9.0f %9.0f\n", name, c.residual, c.tangent,
+                    c.factor, c.solve, c.residual - free.residual, c.tangent - free.tangent);
       out.parts += row;
     }
   }
@@ -177,9 +185,13 @@ void all_joints(benchmark::State& state) {
     using Kept = Cables<Constraint, Penalty>;
     using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
     using Dense = RecursiveBy<recursive::Reduced>;
-    Cost const rod = cost(chain(Rods{}, Constraint{}, 64, false), 64), cable = cost(chain(Kept{}, Constraint{}, 64, false), 64);
+    Cost const rod = cost(chain(Rods{}, Constraint{}, 64, false), 64),
+               cable = cost(chain(Kept{}, Constraint{}, 64, false), 64);
     Tables tables;
-    std::printf("\nmicroseconds a step (iterations, factorisations); slopes from 64 links on, as taken and at equal counts\n  %-36s", "links");
+    std::printf(
+        "\nmicroseconds a step (iterations, factorisations); slopes from 64 links on, as taken and at equal counts\n  "
+        "%-36s",
+        "links");
     for (int links = 16; links <= 1024; links *= 2) std::printf(" %7d            ", links);
     std::printf("\n");
     measure("rigid, Constraint", Rods{}, Constraint{}, rod, tables);
@@ -193,7 +205,9 @@ void all_joints(benchmark::State& state) {
     measure("cables, Constraint", Kept{}, Constraint{}, cable, tables);
     measure("cables, Penalty", Kept{}, penalty, cable, tables, 64);
     measure("cables, AncfLinear", Cables<AncfLinear>{}, AncfLinear{}, cable, tables);
-    std::printf("\nnanoseconds a link                      residual   tangent, and factored  solution   beside free links: residual, tangent\n");
+    std::printf(
+        "\nnanoseconds a link                      residual   tangent, and factored  solution   beside free links: "
+        "residual, tangent\n");
     for (auto const& [name, c] : {std::pair("rigid, free", rod), {"cables, free", cable}})
       std::printf("  %-36s %9.0f %9.0f %9.0f %9.0f\n", name, c.residual, c.tangent, c.factor, c.solve);
     std::printf("%s", tables.parts.c_str());

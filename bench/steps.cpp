@@ -1,6 +1,6 @@
-// One step of h = 1 ms: chains of rigid links (0.1 m, 1 kg, I = (1e-4, 1e-3, 1e-3) kg m²) released horizontally, 1 s, with
-// ideal and compliant pins; the robot arm of Chapter 2; N four-bars (IFToMM A02). Each by the default solver and by Eigen's sparse
-// LU; and the share of each part of a step.
+// One step of h = 1 ms: chains of rigid links (0.1 m, 1 kg, I = (1e-4, 1e-3, 1e-3) kg m²) released horizontally, 1 s,
+// with ideal and compliant pins; the robot arm of Chapter 2; N four-bars (IFToMM A02). Each by the default solver and
+// by Eigen's sparse LU; and the share of each part of a step.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -59,7 +59,8 @@ void chains() {
                lu = cost<EigenSparseLu>(ideal.model, ideal.model.reference_state(), until),
                soft = cost<BlockSolver>(compliant.model, compliant.model.reference_state(), until);
     std::printf("  %5d", links);
-    for (Cost const& c : {block, lu, soft}) std::printf(" %9.1f (%5.2f, %5.3f)      ", c.microseconds, c.iterations, c.factorisations);
+    for (Cost const& c : {block, lu, soft})
+      std::printf(" %9.1f (%5.2f, %5.3f)      ", c.microseconds, c.iterations, c.factorisations);
     std::printf("  ratio SparseLU / block %.1f\n", lu.microseconds / block.microseconds);
   }
 }
@@ -121,7 +122,8 @@ void mechanisms() {
   arm<planar::AncfCable<>>("10 AncfCable, Penalty", 10, stiff);
   for (int const n : {2, 10, 40}) {
     FourBars const bars(n);
-    compare_solvers(std::to_string(n) + " four-bars", bars.model, bars.start(), 0.7);  // the first flat position comes at 0.71 s
+    compare_solvers(std::to_string(n) + " four-bars", bars.model, bars.start(),
+                    0.7);  // the first flat position comes at 0.71 s
   }
 }
 

@@ -1,7 +1,7 @@
 // What do the waists cost? One Newton iteration of a chain of rigid links on pins, through bodies, frames, gaps and
 // sinks, against a loop written by hand for just this chain, in one binary. Both fill the same matrix and the same
-// right-hand side (checked first), both are solved by the same solver: Eigen's sparse LU, filled through its values by hand,
-// and the default block solver. Target: at most 1.2.
+// right-hand side (checked first), both are solved by the same solver: Eigen's sparse LU, filled through its values by
+// hand, and the default block solver. Target: at most 1.2.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -25,7 +25,8 @@ Chain make_chain(int links) {
   auto const end = [](double side) { return Vec3(side * 0.5 * link_length, 0, 0); };
   std::optional<BodyHandle<Rigid<>>> before;
   for (int i = 0; i < links; ++i) {
-    auto const link = model.add(Rigid<>(link_mass, link_inertia, Placement::at({(i + 0.5) * link_length, 0, 0})), "link");
+    auto const link =
+        model.add(Rigid<>(link_mass, link_inertia, Placement::at({(i + 0.5) * link_length, 0, 0})), "link");
     if (i == 0)
       model.connect(Pin{Revolute{pin_axis}, {}}, model.ground().at({0, 0, 0}), link.at(end(-1)));
     else
@@ -44,9 +45,16 @@ struct Fixture {
   BlockSolver block;
 
   explicit Fixture(int links)
-      : model(make_chain(links)), system(model), q(model.reference_state().q), v(VecX::Random(model.speeds())),
-        a(VecX::Random(model.speeds())), lambda(VecX::Random(model.rows())), r(VecX::Zero(model.speeds())),
-        phi(VecX::Zero(model.rows())), rhs(VecX::Zero(system.size())), x(rhs) {
+      : model(make_chain(links)),
+        system(model),
+        q(model.reference_state().q),
+        v(VecX::Random(model.speeds())),
+        a(VecX::Random(model.speeds())),
+        lambda(VecX::Random(model.rows())),
+        r(VecX::Zero(model.speeds())),
+        phi(VecX::Zero(model.rows())),
+        rhs(VecX::Zero(system.size())),
+        x(rhs) {
     VecX moved = q;
     system.plus(q, 0.01 * VecX::Random(model.speeds()), moved);
     q = moved;
@@ -88,9 +96,11 @@ struct Fused {
   BlockSolver block;
   Mat3 triad = rows::triad_about(pin_axis, "pin");
 
-  Fused(int n, EigenSparseLu::Matrix const& pattern) : links(n), matrix(pattern), rhs(VecX::Zero(pattern.rows())), axes(std::size_t(n)), x(rhs) {
+  Fused(int n, EigenSparseLu::Matrix const& pattern)
+      : links(n), matrix(pattern), rhs(VecX::Zero(pattern.rows())), axes(std::size_t(n)), x(rhs) {
     auto const slot = [&](int i, int j) {
-      int const *b = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j], *e = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j + 1];
+      int const *b = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j],
+                *e = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j + 1];
       return int(std::lower_bound(b, e, i) - matrix.innerIndexPtr());
     };
     for (int k = 0; k < n; ++k)
@@ -236,10 +246,18 @@ Fused& fused() {
   return f;
 }
 
-void waists_residual(benchmark::State& s) { for (auto _ : s) fixture().residual(); }
-void fused_residual(benchmark::State& s) { for (auto _ : s) fused().residual(fixture().q, fixture().v, fixture().a, fixture().lambda); }
-void waists_matrix(benchmark::State& s) { for (auto _ : s) fixture().matrix(fixture().block); }
-void fused_matrix(benchmark::State& s) { for (auto _ : s) fused().assemble(fixture().v, fused().block); }
+void waists_residual(benchmark::State& s) {
+  for (auto _ : s) fixture().residual();
+}
+void fused_residual(benchmark::State& s) {
+  for (auto _ : s) fused().residual(fixture().q, fixture().v, fixture().a, fixture().lambda);
+}
+void waists_matrix(benchmark::State& s) {
+  for (auto _ : s) fixture().matrix(fixture().block);
+}
+void fused_matrix(benchmark::State& s) {
+  for (auto _ : s) fused().assemble(fixture().v, fused().block);
+}
 void waists_solve(benchmark::State& s) {
   for (auto _ : s) {
     fixture().matrix(fixture().block);

@@ -28,13 +28,16 @@ template <class B>
 void tip_moment(Options const& o) {
   Cantilever<B> beam(bar(low, o.density), o.elements, o.moment);
   State x = beam.model.reference_state();
-  Figure shapes{.title = "Figure 2.9: 30 kN m at the tip of the clamped beam, t = 0, 1, 2, 3, 4, 20 s", .x_label = "x [m]",
-                .y_label = "y [m]", .equal_axes = true};
+  Figure shapes{.title = "Figure 2.9: 30 kN m at the tip of the clamped beam, t = 0, 1, 2, 3, 4, 20 s",
+                .x_label = "x [m]",
+                .y_label = "y [m]",
+                .equal_axes = true};
   std::vector<double> const wanted{0.0, 1.0, 2.0, 3.0, 4.0, 20.0};
   std::size_t next = 0;
   std::vector<std::vector<double>> columns(5);
   Progress progress(0.0, o.until, "tip moment");
-  for (State const& now : simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = o.until, .step = o.step})) {
+  for (State const& now :
+       simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = o.until, .step = o.step})) {
     Vec3 const tip = position(beam.model, now, beam.beam.at(length));
     Energy const e = energy(beam.model, now);
     std::vector<double> const row{now.t, tip[0], tip[1], e.kinetic, e.strain};
@@ -44,7 +47,8 @@ void tip_moment(Options const& o) {
       if constexpr (std::is_same_v<B, planar::Lrvf>) {
         MeshDiagnostics const d = mesh_diagnostics(beam.beam.body, coordinates_of(beam.model, now, beam.beam));
         std::printf("  t = %4.1f s: tip (%.3f, %.3f) on the position mesh, (%.3f, %.3f) on the rotation mesh\n", now.t,
-                    d.position_nodes.back()[0], d.position_nodes.back()[1], d.rotation_nodes.back()[0], d.rotation_nodes.back()[1]);
+                    d.position_nodes.back()[0], d.position_nodes.back()[1], d.rotation_nodes.back()[0],
+                    d.rotation_nodes.back()[1]);
       }
       ++next;
     }
@@ -58,8 +62,13 @@ void tip_moment(Options const& o) {
   draw(shapes, o.out / ("figure_2_9_tip_moment" + suffix), !o.no_plot);
   if constexpr (std::is_same_v<B, planar::Lrvf>) {
     MeshDiagnostics const d = mesh_diagnostics(beam.beam.body, coordinates_of(beam.model, x, beam.beam));
-    Curve rotation{.label = "rotation mesh: constant in each element", .color = 1}, position{.label = "position mesh: zero", .color = 0},
-        still{.x = {0.0, length}, .y = {o.moment / low.EI, o.moment / low.EI}, .label = "M/EI at rest", .style = "dashed", .color = 2};
+    Curve rotation{.label = "rotation mesh: constant in each element", .color = 1},
+        position{.label = "position mesh: zero", .color = 0},
+        still{.x = {0.0, length},
+              .y = {o.moment / low.EI, o.moment / low.EI},
+              .label = "M/EI at rest",
+              .style = "dashed",
+              .color = 2};
     double const l = length / double(o.elements);
     for (std::size_t e = 0; e < d.rotation_curvature.size(); ++e)
       for (double end : {0.0, 1.0}) {
@@ -70,8 +79,11 @@ void tip_moment(Options const& o) {
       }
     write_table(o.out / "figure_2_10_curvature.csv", {"s [m]", "rotation mesh [1/m]", "position mesh [1/m]"},
                 {rotation.x, rotation.y, position.y});
-    draw({.title = "Figure 2.10: curvature of the two meshes at t = " + std::to_string(int(o.until)) + " s", .x_label = "s [m]",
-          .y_label = "curvature [1/m]", .curves = {position, rotation, still}}, o.out / "figure_2_10_curvature", !o.no_plot);
+    draw({.title = "Figure 2.10: curvature of the two meshes at t = " + std::to_string(int(o.until)) + " s",
+          .x_label = "s [m]",
+          .y_label = "curvature [1/m]",
+          .curves = {position, rotation, still}},
+         o.out / "figure_2_10_curvature", !o.no_plot);
   }
 }
 
@@ -88,12 +100,16 @@ double roll_up(Options const& o, Figure& shapes, std::string const& name, Index 
   c.style = color == 0 ? "lines" : "dashed";
   shapes.curves.push_back(c);
   double const open = position(beam.model, x, beam.beam.at(length)).norm();
-  std::printf("  %-28s %3ld elements: tip %.2e m from the root, %d Newton iterations\n", name.c_str(), long(elements), open, report.iterations);
+  std::printf("  %-28s %3ld elements: tip %.2e m from the root, %d Newton iterations\n", name.c_str(), long(elements),
+              open, report.iterations);
   return open;
 }
 
 void roll_up_all(Options const& o) {
-  Figure shapes{.title = "A moment of 2 pi EI/L closes the beam to a circle", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
+  Figure shapes{.title = "A moment of 2 pi EI/L closes the beam to a circle",
+                .x_label = "x [m]",
+                .y_label = "y [m]",
+                .equal_axes = true};
   roll_up<planar::Lrvf>(o, shapes, "LRVF", o.elements, 0);
   roll_up<planar::AncfCable<EngineeringStrain>>(o, shapes, "ANCF, engineering strain", 16, 1);
   roll_up<planar::AncfCable<GreenStrain>>(o, shapes, "ANCF, Green strain", 16, 2);
@@ -113,7 +129,9 @@ struct BeamCase {
     State const start = beam.model.reference_state();
     auto const tip = beam.beam.at(length);
     static_cast<void>(f);
-    return Scenario<M>{std::move(beam.model), start, {.until = std::min(o.until, 4.0), .step = o.step},
+    return Scenario<M>{std::move(beam.model),
+                       start,
+                       {.until = std::min(o.until, 4.0), .step = o.step},
                        {{"tip x [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[0]; }},
                         {"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }}}};
   }
@@ -133,16 +151,23 @@ void comparison(Options const& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  CLI::App app{"The clamped beam of Chapter 2: Figures 2.9 and 2.10, roll-up to a circle, and a comparison of formulations"};
-  app.add_option("--case", o.which, "what to run")->check(CLI::IsMember({"all", "moment", "roll-up", "compare"}))->capture_default_str();
+  CLI::App app{
+      "The clamped beam of Chapter 2: Figures 2.9 and 2.10, roll-up to a circle, and a comparison of formulations"};
+  app.add_option("--case", o.which, "what to run")
+      ->check(CLI::IsMember({"all", "moment", "roll-up", "compare"}))
+      ->capture_default_str();
   app.add_option("--body", o.body, "formulation of the case 'moment'; only lrvf has two meshes")
       ->check(CLI::IsMember({"lrvf", "ancf", "ancf-engineering"}))
       ->capture_default_str();
-  app.add_option("--elements", o.elements, "elements along the beam")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--elements", o.elements, "elements along the beam")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--step", o.step, "time step [s]")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--moment", o.moment, "moment at the tip [N m]")->capture_default_str();
-  app.add_option("--density", o.density, "density, not printed in the thesis [kg/m^3]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--density", o.density, "density, not printed in the thesis [kg/m^3]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--out", o.out, "folder for CSV files and pictures")->capture_default_str();
   app.add_flag("--no-plot", o.no_plot, "write the scripts but draw nothing");
   CLI11_PARSE(app, argc, argv);

@@ -27,7 +27,10 @@ inline constexpr double angle = 1.5;    // prescribed angle at the end of the ra
 inline Bar bar(Stiffness const& s, double density) {
   double const area = 1.0;  // 1 m x 1 m
   return {.length = length,
-          .constants = BarConstants{.EA = s.EA, .EI = s.EI, .mass_per_length = density * area, .GA = s.GA,
+          .constants = BarConstants{.EA = s.EA,
+                                    .EI = s.EI,
+                                    .mass_per_length = density * area,
+                                    .GA = s.GA,
                                     .rotary_inertia = density * area / 12.0}};
 }
 
@@ -54,11 +57,10 @@ struct RobotArm {
   RobotArm(Bar const& spec, Index elements, double ramp, double axial_force = 0.0, P policy = {})
       : arm(model.add(make_body<B>(spec, elements), "arm")),
         pin(model.connect(Pin{{}, policy}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin")) {
-    model.connect(Drive{{Ramp{.target = angle, .duration = ramp}}, {}}, model.ground().at({0, 0, 0}),
-                  arm.at(0.0), "drive");
+    model.connect(Drive{{Ramp{.target = angle, .duration = ramp}}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0),
+                  "drive");
     if (axial_force != 0.0)
-      model.apply(PointForce<>{.force = {axial_force, 0, 0}, .axes = LoadAxes::marker}, arm.at(length),
-                  "tip force");
+      model.apply(PointForce<>{.force = {axial_force, 0, 0}, .axes = LoadAxes::marker}, arm.at(length), "tip force");
   }
 };
 
@@ -71,8 +73,7 @@ struct Cantilever {
   Model model;
   BodyHandle<B> beam;
 
-  Cantilever(Bar const& spec, Index elements, double moment)
-      : beam(model.add(make_body<B>(spec, elements), "beam")) {
+  Cantilever(Bar const& spec, Index elements, double moment) : beam(model.add(make_body<B>(spec, elements), "beam")) {
     model.connect(Clamp{}, model.ground().at({0, 0, 0}), beam.at(0.0), "clamp");
     model.apply(PointMoment<>{.moment = {0, 0, moment}}, beam.at(double(spec.length)), "tip moment");
   }

@@ -1,18 +1,18 @@
 // The user's page: a rod on a pin. Prints time, energy drift [J] and the gap of the pin [m] at the end.
-#include <polybody/polybody.hpp>
 #include <iostream>
+#include <polybody/polybody.hpp>
 using namespace polybody;
 
-using Rod     = Rigid<>;                         // body formulation
-using Hinge   = Joint<Revolute, Constraint>;     // geometry, policy
-using Stepper = GeneralizedAlpha;                // integrator
+using Rod = Rigid<>;                        // body formulation
+using Hinge = Joint<Revolute, Constraint>;  // geometry, policy
+using Stepper = GeneralizedAlpha;           // integrator
 
 int main() {
   Bar const bar{.length = 1.0, .section = Circle{.radius = 0.01}, .material = Material{.density = 7800, .young = 2e11}};
   Model<Bodies<Rod>, Joints<Hinge>> model{Gravity{0, 0, -9.81}};
   auto const rod = model.add(Rod::from(bar), "rod");
-  auto const pin = model.connect(Hinge{Revolute{.axis = {0, 1, 0}}, Constraint{}},
-                                 model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
+  auto const pin =
+      model.connect(Hinge{Revolute{.axis = {0, 1, 0}}, Constraint{}}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State x = model.reference_state();
   for (State const& now : simulate(model, x, Stepper{.rho_inf = 0.8}, {.until = 2.0, .step = 1e-3}))
     if (now.t >= 2.0)

@@ -16,7 +16,9 @@ template <class P>
 Result swing(P policy) {
   using Hinge = Joint<planar::Revolute, P>;
   Model<Bodies<planar::Rigid>, Joints<Hinge>> model{Gravity{0, -9.81, 0}};
-  auto const rod = model.add(planar::Rigid::from({.length = 1.0, .constants = BarConstants{.EA = 1e7, .EI = 1e3, .mass_per_length = 1.0}}), "rod");
+  auto const rod = model.add(
+      planar::Rigid::from({.length = 1.0, .constants = BarConstants{.EA = 1e7, .EI = 1e3, .mass_per_length = 1.0}}),
+      "rod");
   auto const pin = model.connect(Hinge{{}, policy}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State x = model.reference_state();
   // 2. Released horizontally; the run ends where the rod hangs straight down.

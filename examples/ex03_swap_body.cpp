@@ -10,8 +10,8 @@ using namespace polybody;
 
 // 1. The physics: case D6b of the project's reference cases.
 Bar const bar{.length = 1.0,
-              .constants = BarConstants{.EA = 1.5e5, .EI = 5.0, .mass_per_length = 1.0, .GA = 4.807692e4,
-                                        .rotary_inertia = 3.3333333e-5}};
+              .constants = BarConstants{
+                  .EA = 1.5e5, .EI = 5.0, .mass_per_length = 1.0, .GA = 4.807692e4, .rotary_inertia = 3.3333333e-5}};
 
 // 2. The mechanism, for any body.
 template <class B>

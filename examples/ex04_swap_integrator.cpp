@@ -22,7 +22,8 @@ bool run(I const& integrator, double step) {
   RunReport const& report = simulation.run();
   Vec3 const tip = position(model, x, second.at({0.0, 0.0}));
   double const drift = energy(model, x).total();
-  std::printf("%-18s %6ld steps   tip (%.5f, %.5f)   energy error %8.1e J\n", I::name, report.steps, tip[0], tip[1], drift);
+  std::printf("%-18s %6ld steps   tip (%.5f, %.5f)   energy error %8.1e J\n", I::name, report.steps, tip[0], tip[1],
+              drift);
   // 3. Reference: an independent solution with tolerance 1e-13.
   return (tip - Vec3(-1.444818849943, -1.321794461381, 0.0)).norm() < 2e-4;
 }

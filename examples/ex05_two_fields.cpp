@@ -37,6 +37,7 @@ int main() {
   // 2. The picture.
   write_panels({fields[0], fields[1], fields[2]}, 3, "ex05_two_fields");
   // 3. The point of it.
-  std::printf("largest curvature of u1: %.4f 1/m, of u2: %.4f 1/m, ratio %.3f\n", largest[0], largest[1], largest[1] / largest[0]);
+  std::printf("largest curvature of u1: %.4f 1/m, of u2: %.4f 1/m, ratio %.3f\n", largest[0], largest[1],
+              largest[1] / largest[0]);
   return std::abs(largest[1] / largest[0] - 4.0) < 1e-3 ? 0 : 1;
 }

@@ -1,6 +1,6 @@
-// A body from an independent finite element program: a steel link, a plate with two holes, whose mass and stiffness matrices
-// CalculiX wrote (link_from_fe/make_matrices.sh). Prints its mass properties and frequencies beside CalculiX's own, and lets it
-// swing about a node beside one hole, flexible and rigid.
+// A body from an independent finite element program: a steel link, a plate with two holes, whose mass and stiffness
+// matrices CalculiX wrote (link_from_fe/make_matrices.sh). Prints its mass properties and frequencies beside CalculiX's
+// own, and lets it swing about a node beside one hole, flexible and rigid.
 //   link_from_fe --until 1
 // Of a sample run:
 //   mass [kg]              1.0234856       1.0234860
@@ -46,7 +46,8 @@ Reference read_reference(std::string const& file) {
     std::istringstream words(line);
     for (double x; words >> x;) numbers.push_back(x);
   }
-  if (numbers.size() < 14) throw IoError(file + ": it holds mass, three moments of inertia and ten frequencies at least.");
+  if (numbers.size() < 14)
+    throw IoError(file + ": it holds mass, three moments of inertia and ten frequencies at least.");
   return {numbers[0], {numbers[1], numbers[2], numbers[3]}, {numbers.begin() + 4, numbers.end()}};
 }
 
@@ -63,7 +64,8 @@ std::vector<double> frequencies(Ffr const& body) {
   return omega;
 }
 
-/// Where the point `end` is at each tenth of the time, when the body hangs on the point `pin`, at first level and at rest.
+/// Where the point `end` is at each tenth of the time, when the body hangs on the point `pin`, at first level and at
+/// rest.
 template <class B, class Point>
 std::vector<Vec3> swing(B const& body, Point const& pin, Point const& end, Vec3 const& at, Options const& o) {
   Model<Bodies<B>, Joints<Hinge>> model{Gravity{0, -9.81, 0}};
@@ -81,8 +83,8 @@ void run(Options const& o) {
   Structure const s = read_structure(base + "mass.mtx", base + "stiffness.mtx", base + "nodes.txt");
   Reference const calculix = read_reference(base + "reference.txt");
 
-  // 1. The body: static shapes of four nodes at each hole, and modes between them. The frame follows the mean motion, as
-  // nodes without rotations cannot hold it.
+  // 1. The body: static shapes of four nodes at each hole, and modes between them. The frame follows the mean motion,
+  // as nodes without rotations cannot hold it.
   double const centre = 0.05, radius = 0.0125;
   std::vector<Index> pins;
   for (double const x : {-centre, centre})
@@ -104,19 +106,22 @@ void run(Options const& o) {
   std::vector<double> const all = frequencies(free), reduced = frequencies(link);
   double const turn = 2.0 * std::numbers::pi;
   for (std::size_t k = 0; k < 4; ++k)
-    std::printf("  %zu                  %13.4f   %13.4f  %13.4f\n", k + 1, all[k] / turn, calculix.frequencies[6 + k] / turn,
-                reduced[k] / turn);
+    std::printf("  %zu                  %13.4f   %13.4f  %13.4f\n", k + 1, all[k] / turn,
+                calculix.frequencies[6 + k] / turn, reduced[k] / turn);
 
   // 3. A pendulum about the outer node of the left hole; and a rigid one.
   Vec3 const at = s.nodes[std::size_t(pins[0])], end = s.nodes[std::size_t(pins[5])];
-  Rigid<> const rigid(i.mass, i.inertia - i.mass * (middle.squaredNorm() * Mat3::Identity() - middle * middle.transpose()),
+  Rigid<> const rigid(i.mass,
+                      i.inertia - i.mass * (middle.squaredNorm() * Mat3::Identity() - middle * middle.transpose()),
                       Placement::at(middle, Vec3::Zero()));
   std::vector<Vec3> const flexible_path = swing(link, link.node(pins[0]), link.node(pins[5]), at, o);
   std::vector<Vec3> const rigid_path = swing(rigid, Vec3(at - middle), Vec3(end - middle), at, o);
-  std::printf("\nits other hole, as a pendulum:\n  t [s]        flexible x, y [m]            rigid x, y [m]    apart [m]\n");
+  std::printf(
+      "\nits other hole, as a pendulum:\n  t [s]        flexible x, y [m]            rigid x, y [m]    apart [m]\n");
   for (std::size_t k = 0; k < flexible_path.size(); ++k)
-    std::printf("  %4.2f    (%10.7f, %10.7f)  (%10.7f, %10.7f)    %.1e\n", 0.1 * o.until * double(k + 1), flexible_path[k][0],
-                flexible_path[k][1], rigid_path[k][0], rigid_path[k][1], (flexible_path[k] - rigid_path[k]).norm());
+    std::printf("  %4.2f    (%10.7f, %10.7f)  (%10.7f, %10.7f)    %.1e\n", 0.1 * o.until * double(k + 1),
+                flexible_path[k][0], flexible_path[k][1], rigid_path[k][0], rigid_path[k][1],
+                (flexible_path[k] - rigid_path[k]).norm());
 }
 
 }  // namespace
@@ -124,7 +129,8 @@ void run(Options const& o) {
 int main(int argc, char** argv) {
   Options o;
   CLI::App app{"A steel link from CalculiX's matrices: mass, frequencies, and a pendulum beside a rigid one"};
-  app.add_option("--files", o.files, "folder of link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt")
+  app.add_option("--files", o.files,
+                 "folder of link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt")
       ->capture_default_str();
   app.add_option("--modes", o.modes, "modes between the holes")->check(CLI::NonNegativeNumber)->capture_default_str();
   app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();

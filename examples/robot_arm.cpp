@@ -30,11 +30,12 @@ struct Case {
 };
 
 std::vector<Case> cases(Options const& o) {
-  return {{"high", "Figure 2.5: high stiffness", "figure_2_5_high", high, o.slow_ramp},
-          {"medium", "Figure 2.6: medium stiffness", "figure_2_6_medium", medium, o.slow_ramp},
-          {"fast-medium", "Figure 2.7: fast, stiffness of Figure 2.6 (by the text)", "figure_2_7_fast_medium", medium, 4.5},
-          {"fast-low", "Figure 2.7: fast, low stiffness (by the caption)", "figure_2_7_fast_low", low, 4.5},
-          {"axial", "Figure 2.8: low stiffness, 100 kN along the tip", "figure_2_8_axial", low, 4.5, 100e3}};
+  return {
+      {"high", "Figure 2.5: high stiffness", "figure_2_5_high", high, o.slow_ramp},
+      {"medium", "Figure 2.6: medium stiffness", "figure_2_6_medium", medium, o.slow_ramp},
+      {"fast-medium", "Figure 2.7: fast, stiffness of Figure 2.6 (by the text)", "figure_2_7_fast_medium", medium, 4.5},
+      {"fast-low", "Figure 2.7: fast, low stiffness (by the caption)", "figure_2_7_fast_low", low, 4.5},
+      {"axial", "Figure 2.8: low stiffness, 100 kN along the tip", "figure_2_8_axial", low, 4.5, 100e3}};
 }
 
 void figure_2_4(Options const& o) {
@@ -58,7 +59,8 @@ void run_case(Options const& o, Case const& c) {
   RobotArm<B> arm(bar(c.stiffness, o.density), o.elements, c.ramp, c.axial_force);
   State x = arm.model.reference_state();
   double const until = o.until > 0.0 ? o.until : c.ramp;
-  Figure snapshots{.title = c.title + ", one shape a second", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
+  Figure snapshots{
+      .title = c.title + ", one shape a second", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
   std::vector<std::string> heads{"t [s]", "tip x [m]", "tip y [m]", "kinetic energy [J]", "strain energy [J]"};
   std::vector<std::vector<double>> columns(5);
   bool constexpr two_meshes = std::is_same_v<B, planar::Lrvf>;
@@ -91,8 +93,9 @@ void run_case(Options const& o, Case const& c) {
   fit(snapshots);
   draw(snapshots, o.out / stem, !o.no_plot);
   if constexpr (two_meshes)
-    std::printf("  %-12s largest gap between the meshes' nodes %.4f m; longest position mesh %.3f m, rotation mesh %.3f m\n",
-                c.name.c_str(), widest, longest, columns[7].back());
+    std::printf(
+        "  %-12s largest gap between the meshes' nodes %.4f m; longest position mesh %.3f m, rotation mesh %.3f m\n",
+        c.name.c_str(), widest, longest, columns[7].back());
 }
 
 // The same arm under other bodies, joints and integrators.
@@ -116,7 +119,9 @@ struct ArmCase {
                          Vec3 const r = position(m, x, tip);
                          return std::cos(psi) * r[1] - std::sin(psi) * r[0];
                        }});
-    return Scenario<M>{std::move(arm.model), start, {.until = o.until > 0.0 ? o.until : 1.5 * ramp, .step = o.step},
+    return Scenario<M>{std::move(arm.model),
+                       start,
+                       {.until = o.until > 0.0 ? o.until : 1.5 * ramp, .step = o.step},
                        std::move(outputs)};
   }
 };
@@ -125,8 +130,7 @@ void comparison(Options const& o) {
   GeneralizedAlpha const implicit{.rho_inf = 0.8};
   Penalty const stiff{.stiffness = 1e9, .damping = 1e5};
   Comparison const c = compare(
-      ArmCase{o, medium, 4.5},
-      Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
+      ArmCase{o, medium, 4.5}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
       Formulation<planar::Lrvf, Penalty, GeneralizedAlpha>{"LRVF, penalty", stiff, implicit},
       Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralizedAlpha>{"ANCF Green", {}, implicit},
       Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralizedAlpha>{"ANCF engin.", {}, implicit},
@@ -154,9 +158,15 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--elements", o.elements, "elements along the arm")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--step", o.step, "time step [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--until", o.until, "end of the run [s]; 0: the end of the ramp")->check(CLI::NonNegativeNumber)->capture_default_str();
-  app.add_option("--density", o.density, "density, not printed in the thesis [kg/m^3]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--slow-ramp", o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--until", o.until, "end of the run [s]; 0: the end of the ramp")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--density", o.density, "density, not printed in the thesis [kg/m^3]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--slow-ramp", o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--out", o.out, "folder for CSV files and pictures")->capture_default_str();
   app.add_flag("--no-plot", o.no_plot, "write the scripts but draw nothing");
   CLI11_PARSE(app, argc, argv);

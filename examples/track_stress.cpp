@@ -1,4 +1,5 @@
-// Stress of a track's link (Chapter 4, Figures 4.3 to 4.12): after a run of rigid links, decoupled, beside runs of flexible links.
+// Stress of a track's link (Chapter 4, Figures 4.3 to 4.12): after a run of rigid links, decoupled, beside runs of
+// flexible links.
 //   track_stress --links ffr --speed 80
 //   track_stress --compare
 //   track_stress --figure 4.8
@@ -40,8 +41,8 @@ RotationLinks rotation(Options const& o) { return {"lrvf", {}, integrator(o)}; }
 
 // What a run knows of its watched link. Of rigid links the strain is worked out after the run.
 struct LinkHistory {
-  std::vector<double> strain;   // of the link, change of length over length
-  std::vector<double> bending;  // in the middle: what it adds in the fibre towards the wheels
+  std::vector<double> strain;              // of the link, change of length over length
+  std::vector<double> bending;             // in the middle: what it adds in the fibre towards the wheels
   double recording = 0.0, recovery = 0.0;  // CPU times [s]
   std::function<void(LinkHistory&)> recover;
 };
@@ -54,7 +55,8 @@ double cpu_of(auto&& work) {
 
 DecoupledStress recovered(Options const& o, BodyRecord const& record) {
   if (o.recovery == "static") return DecoupledStress::quasi_static(m113::link_structure(), record);
-  return DecoupledStress::vibrating(m113::link_structure(), record, integrator(o), {.frame = ReferenceConditions::simply_supported(0, 2)});
+  return DecoupledStress::vibrating(m113::link_structure(), record, integrator(o),
+                                    {.frame = ReferenceConditions::simply_supported(0, 2)});
 }
 
 struct StressCase {
@@ -108,7 +110,8 @@ struct StressRuns : Runs {
   std::vector<double> filtered(std::size_t k, double cut_off) const { return filtered(k, raw(k), cut_off); }
   // Without the last sample where an event ended the run between two steps.
   std::vector<double> filtered(std::size_t k, std::vector<double> const& y, double cut_off) const {
-    return low_pass(filtered_times(k), std::span(y).first(filtered_times(k).size()), {.cut_off = cut_off, .mirrored = true});
+    return low_pass(filtered_times(k), std::span(y).first(filtered_times(k).size()),
+                    {.cut_off = cut_off, .mirrored = true});
   }
   std::span<double const> filtered_times(std::size_t k) const {
     return std::span(times(k)).first(times(k).size() - (comparison.runs[k].run.stopped ? 1 : 0));
@@ -166,22 +169,24 @@ Range range_of(std::vector<double> const& times, std::vector<double> const& x, d
 
 // Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
 using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;
-double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from, Told of = &StressRuns::raw) {
+double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from,
+           Told of = &StressRuns::raw) {
   std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of)(k), o.cut_off);
   RmsDifference d(from, o.until);
   d.add({as.filtered_times(i), a}, {bs.filtered_times(k), b});
   return d.value();
 }
 
-// The pull of the tensioner in either run of the track, as if both left the idler level: its spring, without its damper.
+// The pull of the tensioner in either run of the track, as if both left the idler level: its spring, without its
+// damper.
 double mean_pull(Options const& o, StressRuns const& runs, std::size_t k, double from) {
   double const travel = range_of(runs.times(k), runs.history(k, "idler travel [m]"), from).mean;
   return 0.5 * (o.preload + m113::tensioner.stiffness * travel);
 }
 
 void report(Options const& o, StressRuns const& runs) {
-  std::printf("%g rad/s, %g s, steps of %g ms, rho %g; strain of left link %d, low pass %g Hz\n", o.speed, o.until, 1e3 * o.step, o.rho,
-              watched_link, o.cut_off);
+  std::printf("%g rad/s, %g s, steps of %g ms, rho %g; strain of left link %d, low pass %g Hz\n", o.speed, o.until,
+              1e3 * o.step, o.rho, watched_link, o.cut_off);
   std::size_t const last = runs.comparison.runs.size() - 1;
   std::size_t beside = 0;  // ANCF cables, where they run; else the first
   for (std::size_t k = 0; k <= last; ++k)
@@ -191,34 +196,45 @@ void report(Options const& o, StressRuns const& runs) {
     double const from = plateau(runs.times(k)), speed = mean_speed(runs, k, from), pull = mean_pull(o, runs, k, from);
     std::vector<double> const strain = runs.filtered(k, o.cut_off);
     Range const e = range_of(runs.times(k), strain, from), raw = range_of(runs.times(k), runs.raw(k), from);
-    std::printf("%-10s from %.1f s on: speed %.4f m/s; strain %.3fe-5 (%.3f to %.3f), %.3f MPa; unfiltered %.2f to %.2fe-5\n", r.name.c_str(), from,
-                speed, 1e5 * e.mean, 1e5 * e.least, 1e5 * e.most, 1e-6 * m113::youngs_modulus * e.mean, 1e5 * raw.least, 1e5 * raw.most);
+    std::printf(
+        "%-10s from %.1f s on: speed %.4f m/s; strain %.3fe-5 (%.3f to %.3f), %.3f MPa; unfiltered %.2f to %.2fe-5\n",
+        r.name.c_str(), from, speed, 1e5 * e.mean, 1e5 * e.least, 1e5 * e.most, 1e-6 * m113::youngs_modulus * e.mean,
+        1e5 * raw.least, 1e5 * raw.most);
     std::printf("           (T0 + m v^2/p)/EA with T0 = %.2f kN of the tensioner: %.3fe-5\n", 1e-3 * pull,
                 1e5 * m113::running_strain(speed, pull));
     Range const bending = range_of(runs.times(k), runs.bending(k), from);
-    std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa", 1e-6 * m113::youngs_modulus * bending.least,
-                1e-6 * m113::youngs_modulus * bending.most);
+    std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa",
+                1e-6 * m113::youngs_modulus * bending.least, 1e-6 * m113::youngs_modulus * bending.most);
     if (k > 0 && runs.links[0]->recover)
-      std::printf("; %.1f %% off %s (rms, low pass)", 1e2 * off(o, runs, k, runs, 0, from, &StressRuns::bending), runs.name(0).c_str());
+      std::printf("; %.1f %% off %s (rms, low pass)", 1e2 * off(o, runs, k, runs, 0, from, &StressRuns::bending),
+                  runs.name(0).c_str());
     std::printf("\n");
     for (double const since : {1.0, from})
       if (k != beside && since < runs.times(k).back())
-        std::printf("           off %s: %.2f %% (rms from %.1f s on)\n", runs.name(beside).c_str(), 1e2 * off(o, runs, k, runs, beside, since), since);
-    std::printf("           CPU %.1f s, %.2f of %s", r.cpu, r.cpu / runs.comparison.runs.front().cpu, runs.name(0).c_str());
-    if (runs.links[k]->recover) std::printf("; record %.2f s, recovery %.2f s", runs.links[k]->recording, runs.links[k]->recovery);
-    std::printf("; %.2f iterations, %.2f factorisations a step; %ld of %ld steps halved\n", double(r.run.iterations) / double(r.run.steps),
-                double(r.run.factorisations) / double(r.run.steps), r.run.rejected, r.run.steps);
+        std::printf("           off %s: %.2f %% (rms from %.1f s on)\n", runs.name(beside).c_str(),
+                    1e2 * off(o, runs, k, runs, beside, since), since);
+    std::printf("           CPU %.1f s, %.2f of %s", r.cpu, r.cpu / runs.comparison.runs.front().cpu,
+                runs.name(0).c_str());
+    if (runs.links[k]->recover)
+      std::printf("; record %.2f s, recovery %.2f s", runs.links[k]->recording, runs.links[k]->recovery);
+    std::printf("; %.2f iterations, %.2f factorisations a step; %ld of %ld steps halved\n",
+                double(r.run.iterations) / double(r.run.steps), double(r.run.factorisations) / double(r.run.steps),
+                r.run.rejected, r.run.steps);
     Outcome const& out = runs.outcomes[k];
     if (out.relative >= 0.0)
-      std::printf("           energy: drives %.1f kJ, gravity %.1f kJ; %.3f %% not accounted for\n", 1e-3 * out.drives, 1e-3 * out.gravity, 1e2 * out.relative);
+      std::printf("           energy: drives %.1f kJ, gravity %.1f kJ; %.3f %% not accounted for\n", 1e-3 * out.drives,
+                  1e-3 * out.gravity, 1e2 * out.relative);
     if (!out.trouble.empty()) std::printf("           %s\n", out.trouble.c_str());
   }
 }
 
 // What a legend calls the run.
 std::string label_of(StressRuns const& runs, std::size_t k) {
-  static std::map<std::string, std::string> const labels{{"ancf", "ANCF cables"}, {"ffr", "FFR, modes"},        {"lrvf", "LRVF"},
-                                                         {"beam", "ANCF beams"},  {"continuum", "ANCF continuum"}};
+  static std::map<std::string, std::string> const labels{{"ancf", "ANCF cables"},
+                                                         {"ffr", "FFR, modes"},
+                                                         {"lrvf", "LRVF"},
+                                                         {"beam", "ANCF beams"},
+                                                         {"continuum", "ANCF continuum"}};
   return runs.links[k]->recover ? "rigid, decoupled" : labels.at(runs.name(k));
 }
 
@@ -228,14 +244,16 @@ Figure bending_figure(Options const& o, StressRuns const& runs) {
            .y_label = "stress [MPa]",
            .x_range = {{0.95 * o.until, o.until}}};
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k)
-    f.curves.push_back(curve(label_of(runs, k), runs.times(k), runs.bending(k), int(k), 1e-6 * m113::youngs_modulus, 1));
+    f.curves.push_back(
+        curve(label_of(runs, k), runs.times(k), runs.bending(k), int(k), 1e-6 * m113::youngs_modulus, 1));
   return f;
 }
 
 Figure strain_figure(Options const& o, StressRuns const& runs, std::string title, bool filter, double from, double to) {
   Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = "axial strain [10⁻⁵]", .x_range = {{from, to}}};
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
-    f.curves.push_back(curve(label_of(runs, k), runs.times(k), filter ? runs.filtered(k, o.cut_off) : runs.raw(k), int(k), 1e5, filter ? 4 : 1));
+    f.curves.push_back(curve(label_of(runs, k), runs.times(k), filter ? runs.filtered(k, o.cut_off) : runs.raw(k),
+                             int(k), 1e5, filter ? 4 : 1));
     f.curves.back().width = k == 0 ? 3.0 : 1.2;
   }
   return f;
@@ -249,25 +267,33 @@ void figures(Options const& o) {
   bool const longer = wanted(o, "4.11") || wanted(o, "4.12");
   auto const [slow, fast] = m113::chapter_4_speeds;
   std::string const filter = ", " + number(o.cut_off) + " Hz low pass";
-  auto const runs_at = [&](double speed) -> StressRuns const& { return cache.at(speed, speed == slow && longer ? twice : until); };
+  auto const runs_at = [&](double speed) -> StressRuns const& {
+    return cache.at(speed, speed == slow && longer ? twice : until);
+  };
   auto const name_of = [](std::string number) {
     std::replace(number.begin(), number.end(), '.', '_');
     return "figure_" + number;
   };
-  auto const history = [&](std::string const& number, double speed, std::string const& output, std::string const& what, std::string const& label,
-                           double scale = 1.0) {
-    Figure f = history_figure(runs_at(speed), output, "Figure " + number + ": " + what + ", " + polybody::number(speed) + " rad/s", label, 0.0, scale);
+  auto const history = [&](std::string const& number, double speed, std::string const& output, std::string const& what,
+                           std::string const& label, double scale = 1.0) {
+    Figure f =
+        history_figure(runs_at(speed), output,
+                       "Figure " + number + ": " + what + ", " + polybody::number(speed) + " rad/s", label, 0.0, scale);
     for (std::size_t k = 0; k < f.curves.size(); ++k) f.curves[k].label = k == 0 ? "rigid links" : "ANCF links";
     f.x_range = {{0.0, until}};
     draw(o, f, name_of(number));
   };
   auto const strain = [&](std::string const& number, double speed, bool filtered, double from, double to) {
-    return strain_figure(o, runs_at(speed), "Figure " + number + ": axial strain of a link, " + polybody::number(speed) + " rad/s" + (filtered ? filter : ""),
+    return strain_figure(o, runs_at(speed),
+                         "Figure " + number + ": axial strain of a link, " + polybody::number(speed) + " rad/s" +
+                             (filtered ? filter : ""),
                          filtered, from, to);
   };
   for (auto const& [speed, letter] : {std::pair(slow, "a"), {fast, "b"}}) {
     if (wanted(o, "4.3")) {
-      Figure f{.title = "Figure 4.3" + std::string(letter) + ": sprocket angular velocity", .x_label = "t [s]", .y_label = "angular velocity [rad/s]"};
+      Figure f{.title = "Figure 4.3" + std::string(letter) + ": sprocket angular velocity",
+               .x_label = "t [s]",
+               .y_label = "angular velocity [rad/s]"};
       Curve c;
       for (int i = 0; i <= 1000; ++i) {
         c.x.push_back(0.01 * i);
@@ -276,8 +302,11 @@ void figures(Options const& o) {
       f.curves.push_back(c);
       draw(o, f, name_of(std::string("4.3") + letter));
     }
-    if (wanted(o, "4.4")) history(std::string("4.4") + letter, speed, "forward position [m]", "chassis forward position", "position [m]");
-    if (wanted(o, "4.5")) history(std::string("4.5") + letter, speed, "forward velocity [m/s]", "chassis forward velocity", "velocity [m/s]");
+    if (wanted(o, "4.4"))
+      history(std::string("4.4") + letter, speed, "forward position [m]", "chassis forward position", "position [m]");
+    if (wanted(o, "4.5"))
+      history(std::string("4.5") + letter, speed, "forward velocity [m/s]", "chassis forward velocity",
+              "velocity [m/s]");
   }
   if (wanted(o, "4.6")) draw(o, strain("4.6", slow, false, 0.0, until), name_of("4.6"));
   if (wanted(o, "4.7")) history("4.7", slow, "joint force x [N]", "longitudinal joint force", "force [kN]", 1e-3);
@@ -295,11 +324,14 @@ void figures(Options const& o) {
   }
 }
 
-// Cycles of axial stress, unfiltered, by rainflow; with S³ as damage (m = 3, as details of welds have it) they do as much as all of them
-// would with one equivalent range.
+// Cycles of axial stress, unfiltered, by rainflow; with S³ as damage (m = 3, as details of welds have it) they do as
+// much as all of them would with one equivalent range.
 void fatigue(Options const& o, StressRuns const& runs) {
   Basquin const detail{.range = 80e6, .cycles = 2e6, .exponent = 3.0};
-  Figure f{.title = "Ranges of axial stress, " + number(o.speed) + " rad/s", .x_label = "range [MPa]", .y_label = "cycles in " + number(o.until) + " s", .log_y = true};
+  Figure f{.title = "Ranges of axial stress, " + number(o.speed) + " rad/s",
+           .x_label = "range [MPa]",
+           .y_label = "cycles in " + number(o.until) + " s",
+           .log_y = true};
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
     std::vector<double> stress = runs.raw(k);
     for (double& s : stress) s *= m113::youngs_modulus;
@@ -310,8 +342,8 @@ void fatigue(Options const& o, StressRuns const& runs) {
       count += c.count;
       largest = std::max(largest, c.range);
     }
-    std::printf("%-10s %.0f cycles, the largest range %.2f MPa, the equivalent range %.3f MPa\n", runs.name(k).c_str(), count, 1e-6 * largest,
-                1e-6 * detail.range * std::cbrt(damage(cycles, detail) * detail.cycles / count));
+    std::printf("%-10s %.0f cycles, the largest range %.2f MPa, the equivalent range %.3f MPa\n", runs.name(k).c_str(),
+                count, 1e-6 * largest, 1e-6 * detail.range * std::cbrt(damage(cycles, detail) * detail.cycles / count));
     double const width = 0.25e6;
     std::vector<double> bins = binned(cycles, width);
     bins.push_back(bins.back());
@@ -347,7 +379,8 @@ void restart(Options const& o, F const& f) {
   auto rest = resume(scenario.model, y, f.integrator, scenario.options, read_checkpoint(file));
   while (!rest.done()) rest.advance();
   bool const same = x.t == y.t && x.q == y.q && x.v == y.v && x.a == y.a && x.lambda == y.lambda;
-  std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", f.name.c_str(), put_away, y.t, same ? "the same bits" : "NOT the same");
+  std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", f.name.c_str(), put_away, y.t,
+              same ? "the same bits" : "NOT the same");
   if (!same) throw Error("The run that was taken up again ended in another state.");
 }
 
@@ -356,8 +389,9 @@ void halve(Options const& o, auto const& formulation, auto const& of) {
   half.step = 0.5 * o.step;
   StressRuns const coarse = run(o, formulation), fine = run(half, of(half));
   double const from = std::min(1.0, 0.25 * o.until);
-  std::printf("%s, steps of %g and %g ms: filtered strain %.2f %% apart (rms from %.2g s on); CPU %.1f and %.1f s\n", formulation.name.c_str(),
-              1e3 * o.step, 1e3 * half.step, 1e2 * off(o, fine, 0, coarse, 0, from), from, coarse.comparison.runs[0].cpu, fine.comparison.runs[0].cpu);
+  std::printf("%s, steps of %g and %g ms: filtered strain %.2f %% apart (rms from %.2g s on); CPU %.1f and %.1f s\n",
+              formulation.name.c_str(), 1e3 * o.step, 1e3 * half.step, 1e2 * off(o, fine, 0, coarse, 0, from), from,
+              coarse.comparison.runs[0].cpu, fine.comparison.runs[0].cpu);
 }
 
 void single(Options const& o, auto const& of) {
@@ -369,7 +403,8 @@ void single(Options const& o, auto const& of) {
   if (o.fatigue) fatigue(o, r);
   draw(o, strain_figure(o, r, "Axial strain of a link", false, 0.0, o.until), "strain");
   draw(o, bending_figure(o, r), "bending");
-  draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until), "strain_filtered");
+  draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until),
+       "strain_filtered");
 }
 
 void all_formulations(Options const& o) {
@@ -378,7 +413,11 @@ void all_formulations(Options const& o) {
   report(o, r);
   if (o.fatigue) fatigue(o, r);
   draw(o, bending_figure(o, r), "bending");
-  draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.speed) + " rad/s, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until), "strain_filtered");
+  draw(o,
+       strain_figure(o, r,
+                     "Axial strain of a link, " + number(o.speed) + " rad/s, " + number(o.cut_off) + " Hz low pass",
+                     true, 0.0, o.until),
+       "strain_filtered");
 }
 
 }  // namespace
@@ -390,20 +429,29 @@ int main(int argc, char** argv) {
   o.rho = 0.5;
   o.speed = m113::chapter_4_speeds[0];
   o.out = "out/track_stress";
-  CLI::App app{"Stress of a track's link after a run of rigid links (decoupled) and in runs of flexible ones (Chapter 4)."};
-  app.add_option("--links", o.links, "body formulation of the links")->check(CLI::IsMember({"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"}))->capture_default_str();
-  app.add_option("--elements", o.elements, "of a flexible link; 0: one, and two of a floating frame")->check(CLI::NonNegativeNumber);
+  CLI::App app{
+      "Stress of a track's link after a run of rigid links (decoupled) and in runs of flexible ones (Chapter 4)."};
+  app.add_option("--links", o.links, "body formulation of the links")
+      ->check(CLI::IsMember({"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"}))
+      ->capture_default_str();
+  app.add_option("--elements", o.elements, "of a flexible link; 0: one, and two of a floating frame")
+      ->check(CLI::NonNegativeNumber);
   app.add_flag("--compare", o.compare, "all formulations side by side");
   app.add_option("--figure", o.figure, "4.3 to 4.12 of the thesis, or all");
   app.add_option("--speed", o.speed, "of the sprockets after 8 s [rad/s]")->capture_default_str();
   app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--step", o.step, "[s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--rho", o.rho, "spectral radius at infinity of the integrator")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  app.add_option("--rho", o.rho, "spectral radius at infinity of the integrator")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   app.add_option("--cut-off", o.cut_off, "of the low pass [Hz]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--recovery", o.recovery, "of stress after a rigid run")->check(CLI::IsMember({"static", "vibrating"}))->capture_default_str();
+  app.add_option("--recovery", o.recovery, "of stress after a rigid run")
+      ->check(CLI::IsMember({"static", "vibrating"}))
+      ->capture_default_str();
   app.add_option("--preload", o.preload, "of the tensioners [N]")->capture_default_str();
   app.add_flag("--halve", o.halve, "at this step and at half of it");
-  app.add_flag("--restart", o.restart, "whether a run that is taken up from a checkpoint in its middle ends in the same bits");
+  app.add_flag("--restart", o.restart,
+               "whether a run that is taken up from a checkpoint in its middle ends in the same bits");
   app.add_flag("--fatigue", o.fatigue, "counts cycles of stress by rainflow");
   app.add_flag("--audit", o.audit, "works out where the energy went");
   app.add_flag("!--unwatched", o.watched, "a track that leaves its sprocket does not end the run");

@@ -18,7 +18,9 @@ struct Options : Settings {
 
 IdealTrack ideal(Options const& o) { return {"constraint", {}, integrator(o)}; }
 PenaltyTrack penalty(Options const& o, double k) {
-  std::string const name = k == m113::pin_stiffness ? "penalty" : k == m113::soft_pin_stiffness ? "penalty 1e7" : "penalty " + number(k);
+  std::string const name = k == m113::pin_stiffness        ? "penalty"
+                           : k == m113::soft_pin_stiffness ? "penalty 1e7"
+                                                           : "penalty " + number(k);
   return {name, m113::penalty_pin(k), integrator(o)};
 }
 BushingTrack bushing(Options const& o) { return {"bushing", m113::bushing_pin(o.penalty), integrator(o)}; }
@@ -33,8 +35,8 @@ Runs run(Options const& o, Fs const&... formulations) {
   return runs;
 }
 
-// Forces in the watched pin from 1 to 4 s, longitudinal and vertical, up to 30 Hz: how far those of `run` are off those of `first`, as root
-// mean squares.
+// Forces in the watched pin from 1 to 4 s, longitudinal and vertical, up to 30 Hz: how far those of `run` are off those
+// of `first`, as root mean squares.
 double force_difference(Runs const& first, std::size_t k, Runs const& runs, std::size_t run) {
   RmsDifference d(1.0, 4.0);
   for (char const* const output : {"joint force x [N]", "joint force z [N]"}) {
@@ -58,39 +60,50 @@ void report(Options const& o, Runs const& runs) {
       for (double const x : runs.history(k, name)) value = std::max(value, std::abs(x));
       return value;
     };
-    std::printf("%-14s %.2f s of CPU for %.2f s: %.2f of real time, %.2f of %s\n", r.name.c_str(), r.cpu, r.times.back(), r.cpu / r.times.back(),
-                r.cpu / first, runs.comparison.runs.front().name.c_str());
-    std::printf("               deepest contact %.2f mm (%s, t = %.3f s); pins up to %.1f mm off the path of the start, links %.2f mm off their plane\n",
-                1e3 * out.depth, out.deepest.c_str(), out.deepest_time, 1e3 * most("off the path [m]"), 1e3 * most("off the middle plane [m]"));
-    std::printf("               joints open by up to %.4f mm; first dip %.2f cm\n", 1e3 * most("largest joint gap [m]"), 1e2 * most("vertical displacement [m]"));
+    std::printf("%-14s %.2f s of CPU for %.2f s: %.2f of real time, %.2f of %s\n", r.name.c_str(), r.cpu,
+                r.times.back(), r.cpu / r.times.back(), r.cpu / first, runs.comparison.runs.front().name.c_str());
+    std::printf(
+        "               deepest contact %.2f mm (%s, t = %.3f s); pins up to %.1f mm off the path of the start, links "
+        "%.2f mm off their plane\n",
+        1e3 * out.depth, out.deepest.c_str(), out.deepest_time, 1e3 * most("off the path [m]"),
+        1e3 * most("off the middle plane [m]"));
+    std::printf("               joints open by up to %.4f mm; first dip %.2f cm\n", 1e3 * most("largest joint gap [m]"),
+                1e2 * most("vertical displacement [m]"));
     if (r.times.back() > 10.0)
-      std::printf("               mean speed from 9 s on %.4f m/s; rolling without slip it is %.4f m/s\n", mean_speed(runs, k), o.speed * m113::rolling_radius);
+      std::printf("               mean speed from 9 s on %.4f m/s; rolling without slip it is %.4f m/s\n",
+                  mean_speed(runs, k), o.speed * m113::rolling_radius);
     if (k > 0 && r.times.back() >= 4.0 && runs.comparison.runs[0].times.back() >= 4.0)
-      std::printf("               forces in pin %d, 30 Hz, 1 to 4 s: %.2f %% (rms) off those of %s\n", watched_pin, 1e2 * force_difference(runs, 0, runs, k),
-                  runs.comparison.runs.front().name.c_str());
+      std::printf("               forces in pin %d, 30 Hz, 1 to 4 s: %.2f %% (rms) off those of %s\n", watched_pin,
+                  1e2 * force_difference(runs, 0, runs, k), runs.comparison.runs.front().name.c_str());
     if (out.relative >= 0.0)
-      std::printf("               work of the drives %.1f kJ + gravity %.1f kJ = kinetic %.1f + stored %.1f + dissipated %.1f kJ, %.2f kJ (%.2f %%) left\n",
-                  1e-3 * out.drives, 1e-3 * out.gravity, 1e-3 * out.kinetic, 1e-3 * out.stored, 1e-3 * out.dissipated, 1e-3 * out.unaccounted,
-                  1e2 * out.relative);
+      std::printf(
+          "               work of the drives %.1f kJ + gravity %.1f kJ = kinetic %.1f + stored %.1f + dissipated %.1f "
+          "kJ, %.2f kJ (%.2f %%) left\n",
+          1e-3 * out.drives, 1e-3 * out.gravity, 1e-3 * out.kinetic, 1e-3 * out.stored, 1e-3 * out.dissipated,
+          1e-3 * out.unaccounted, 1e2 * out.relative);
     if (!out.trouble.empty()) std::printf("               %s\n", out.trouble.c_str());
   }
 }
 
-// Coordinates and constraints as the thesis counts them: the ground is a body, too, with four Euler parameters and a weld.
+// Coordinates and constraints as the thesis counts them: the ground is a body, too, with four Euler parameters and a
+// weld.
 void table_3_4(Options const& o) {
   auto const count = [](char const* name, Census const& c, char const* thesis) {
-    std::printf("  %-10s %6ld coordinates %5ld degrees of freedom %5ld constraints   (thesis: %s)\n", name, long(c.coordinates),
-                long(c.degrees_of_freedom), long(c.constraints), thesis);
+    std::printf("  %-10s %6ld coordinates %5ld degrees of freedom %5ld constraints   (thesis: %s)\n", name,
+                long(c.coordinates), long(c.degrees_of_freedom), long(c.constraints), thesis);
   };
   std::array<Ramp, 2> const drives{m113::drive(o.speed), m113::drive(o.speed)};
   m113::VehicleOptions const options{.ground_body = true};
   using Euler = Rigid<EulerParameters>;
   std::cout << "Table 3.4\n";
   count("pin joint", census(m113::Vehicle<Euler, Constraint>({}, drives, options).model), "1092, 168, 924");
-  count("penalty", census(m113::Vehicle<Euler, PenaltyPerRow<5>>(m113::penalty_pin(o.penalty), drives, options).model), "1092, 798, 294");
-  count("bushing", census(m113::Vehicle<Euler, Bushing>(m113::bushing_pin(o.penalty), drives, options).model), "1092, 798, 294");
+  count("penalty", census(m113::Vehicle<Euler, PenaltyPerRow<5>>(m113::penalty_pin(o.penalty), drives, options).model),
+        "1092, 798, 294");
+  count("bushing", census(m113::Vehicle<Euler, Bushing>(m113::bushing_pin(o.penalty), drives, options).model),
+        "1092, 798, 294");
   count("ANCF", census(m113::Vehicle<AncfCable<>, AncfLinear>({}, drives, options).model), "1227, 1060, 167");
-  std::cout << "  The thesis' 1227 ANCF coordinates are 29 bodies of 7 and 128 links of 8; the vehicle has 27 bodies beside the links and the ground,\n"
+  std::cout << "  The thesis' 1227 ANCF coordinates are 29 bodies of 7 and 128 links of 8; the vehicle has 27 bodies "
+               "beside the links and the ground,\n"
                "  which makes 28: 1220, 1054, 166. What the 29th is the text does not say.\n";
 }
 
@@ -99,7 +112,8 @@ bool wanted(Options const& o, std::string const& figure) { return o.figure == "a
 void figures(Options const& o) {
   auto const name = [](std::string const& number) { return "figure_3_" + number; };
   if (wanted(o, "3.6")) {
-    Figure f{.title = "Figure 3.6: sprocket angular velocity", .x_label = "t [s]", .y_label = "angular velocity [rad/s]"};
+    Figure f{
+        .title = "Figure 3.6: sprocket angular velocity", .x_label = "t [s]", .y_label = "angular velocity [rad/s]"};
     Curve c;
     for (int i = 0; i <= 1000; ++i) {
       c.x.push_back(0.01 * i);
@@ -120,17 +134,23 @@ void figures(Options const& o) {
       auto const& z = r.history(0, "vertical displacement [m]");
       return -*std::min_element(z.begin(), z.end());
     };
-    std::printf("  first dip %.2f cm with suspension, %.2f cm without: ratio %.1f (thesis: 7 cm, 0.64 cm)\n", 1e2 * dip(with), 1e2 * dip(without),
-                dip(with) / dip(without));
+    std::printf("  first dip %.2f cm with suspension, %.2f cm without: ratio %.1f (thesis: 7 cm, 0.64 cm)\n",
+                1e2 * dip(with), 1e2 * dip(without), dip(with) / dip(without));
   }
   if (wanted(o, "3.8") || wanted(o, "3.9") || wanted(o, "3.10") || o.compare) {
     Runs const all = run(o, ideal(o), penalty(o, m113::pin_stiffness), bushing(o), cable(o), recursive(o));
-    if (wanted(o, "3.8")) over_time(o, all, "forward position [m]", "Figure 3.8: chassis forward position", "position [m]", name("8"));
-    if (wanted(o, "3.9")) over_time(o, all, "forward velocity [m/s]", "Figure 3.9: chassis forward velocity", "velocity [m/s]", name("9"));
+    if (wanted(o, "3.8"))
+      over_time(o, all, "forward position [m]", "Figure 3.8: chassis forward position", "position [m]", name("8"));
+    if (wanted(o, "3.9"))
+      over_time(o, all, "forward velocity [m/s]", "Figure 3.9: chassis forward velocity", "velocity [m/s]", name("9"));
     if (wanted(o, "3.10")) {
-      Figure f{.title = "Figure 3.10: path of a link in the chassis", .x_label = "x [m]", .y_label = "z [m]", .equal_axes = true};
+      Figure f{.title = "Figure 3.10: path of a link in the chassis",
+               .x_label = "x [m]",
+               .y_label = "z [m]",
+               .equal_axes = true};
       for (std::size_t k = 0; k < all.comparison.runs.size(); ++k)
-        f.curves.push_back(curve(all.comparison.runs[k].name, all.history(k, "link x in chassis [m]"), all.history(k, "link z in chassis [m]"), int(k)));
+        f.curves.push_back(curve(all.comparison.runs[k].name, all.history(k, "link x in chassis [m]"),
+                                 all.history(k, "link z in chassis [m]"), int(k)));
       draw(o, f, name("10"));
     }
     if (o.compare || o.figure == "all") report(o, all);
@@ -138,15 +158,22 @@ void figures(Options const& o) {
   for (auto const& [k, longitudinal, vertical] : {std::tuple(1e9, "11", "12"), {1e7, "13", "14"}}) {
     if (!wanted(o, std::string("3.") + longitudinal) && !wanted(o, std::string("3.") + vertical)) continue;
     Runs const r = run(o, ideal(o), penalty(o, k), cable(o));
-    for (auto const& [number, output, what] : {std::tuple(longitudinal, "joint force x [N]", "longitudinal"), {vertical, "joint force z [N]", "vertical"}}) {
+    for (auto const& [number, output, what] :
+         {std::tuple(longitudinal, "joint force x [N]", "longitudinal"), {vertical, "joint force z [N]", "vertical"}}) {
       std::string const title = std::string("Figure 3.") + number;
-      over_time(o, r, output, title + "a: joint " + what + " force", "force [kN]", name(std::string(number) + "a"), 0.0, 1e-3);
-      over_time(o, r, output, title + "b: joint " + what + " force, 30 Hz low pass", "force [kN]", name(std::string(number) + "b"), 30.0, 1e-3);
+      over_time(o, r, output, title + "a: joint " + what + " force", "force [kN]", name(std::string(number) + "a"), 0.0,
+                1e-3);
+      over_time(o, r, output, title + "b: joint " + what + " force, 30 Hz low pass", "force [kN]",
+                name(std::string(number) + "b"), 30.0, 1e-3);
     }
   }
   if (wanted(o, "3.15")) {
     Runs const r = run(o, penalty(o, 1e9), penalty(o, 1e7));
-    Figure f{.title = "Figure 3.15: joint constraint violation, penalty method", .x_label = "t [s]", .y_label = "gap [mm]", .log_y = true, .y_range = {{1e-4, 10.0}}};
+    Figure f{.title = "Figure 3.15: joint constraint violation, penalty method",
+             .x_label = "t [s]",
+             .y_label = "gap [mm]",
+             .log_y = true,
+             .y_range = {{1e-4, 10.0}}};
     for (std::size_t k = 0; k < 2; ++k) {
       std::vector<double> gap = r.history(k, "joint gap [m]");
       for (double& g : gap) g = std::max(g, 1e-7);
@@ -172,10 +199,12 @@ void single(Options const& o) {
     half.step = 0.5 * o.step;
     Runs const coarse = run(o, ideal(o)), fine = run(half, ideal(half));
     auto const x = [](Runs const& r) { return r.history(0, "forward position [m]").back(); };
-    std::printf("steps of %g and %g ms: forward position %.4f and %.4f m, %.3f %% apart", 1e3 * o.step, 1e3 * half.step, x(coarse), x(fine),
-                1e2 * std::abs(x(fine) / x(coarse) - 1.0));
+    std::printf("steps of %g and %g ms: forward position %.4f and %.4f m, %.3f %% apart", 1e3 * o.step, 1e3 * half.step,
+                x(coarse), x(fine), 1e2 * std::abs(x(fine) / x(coarse) - 1.0));
     if (o.until > 10.0) std::printf("; mean speed %.4f and %.4f m/s", mean_speed(coarse, 0), mean_speed(fine, 0));
-    if (o.until >= 4.0) std::printf("; forces in pin %d, 30 Hz, 1 to 4 s, %.2f %% (rms)", watched_pin, 1e2 * force_difference(coarse, 0, fine, 0));
+    if (o.until >= 4.0)
+      std::printf("; forces in pin %d, 30 Hz, 1 to 4 s, %.2f %% (rms)", watched_pin,
+                  1e2 * force_difference(coarse, 0, fine, 0));
     std::printf("\n");
     return;
   }
@@ -191,19 +220,28 @@ void single(Options const& o) {
 int main(int argc, char** argv) {
   Options o;
   CLI::App app{"The tracked vehicle of Chapter 3 with its tracks under five joint formulations."};
-  app.add_option("--track", o.track, "formulation of the pins")->check(CLI::IsMember({"constraint", "penalty", "bushing", "ancf", "recursive"}))->capture_default_str();
+  app.add_option("--track", o.track, "formulation of the pins")
+      ->check(CLI::IsMember({"constraint", "penalty", "bushing", "ancf", "recursive"}))
+      ->capture_default_str();
   app.add_flag("--compare", o.compare, "all formulations, with a report");
   app.add_option("--figure", o.figure, "3.6 to 3.15 of the thesis, table (3.4), or all");
   app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--step", o.step, "[s]")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_flag("--halve", o.halve, "ideal pins at this step and at half of it");
   app.add_option("--speed", o.speed, "of the sprockets after 8 s [rad/s]")->capture_default_str();
-  app.add_option("--turn", o.turn, "pivot: the right track backwards; curve: the right one at 0.8 of the speed")->check(CLI::IsMember({"pivot", "curve"}));
+  app.add_option("--turn", o.turn, "pivot: the right track backwards; curve: the right one at 0.8 of the speed")
+      ->check(CLI::IsMember({"pivot", "curve"}));
   app.add_flag("!--no-suspension", o.suspension, "arms welded to the chassis");
   app.add_option("--preload", o.preload, "of the tensioners [N]")->capture_default_str();
-  app.add_option("--penalty", o.penalty, "stiffness of penalty pins and bushings [N/m]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--cut", o.cut, "pin at which the loop of ideal pins is cut")->check(CLI::Range(0, m113::links - 1))->capture_default_str();
-  app.add_option("--rho", o.rho, "spectral radius at infinity of the integrator")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  app.add_option("--penalty", o.penalty, "stiffness of penalty pins and bushings [N/m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--cut", o.cut, "pin at which the loop of ideal pins is cut")
+      ->check(CLI::Range(0, m113::links - 1))
+      ->capture_default_str();
+  app.add_option("--rho", o.rho, "spectral radius at infinity of the integrator")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   app.add_flag("--bumps", o.bumps, "a course with three bumps");
   app.add_option("--animate", o.animate, "writes a ParaView animation with a state every so many seconds");
   app.add_flag("--audit", o.audit, "works out where the energy went");

@@ -30,7 +30,7 @@ struct Settings {
   double rho = 0.8;
   bool bumps = false;
   int cut = 0;
-  int elements = 0;  // of a flexible link; 0: as few as its formulation does with
+  int elements = 0;      // of a flexible link; 0: as few as its formulation does with
   double animate = 0.0;  // seconds between states, 0 for none
   bool audit = false;
   bool watched = true;  // a track that leaves its sprocket ends the run
@@ -41,7 +41,8 @@ struct Settings {
 // Obstacles for the bump course: 10 and 15 cm high, across both tracks and under one of them.
 inline BumpCourse course(bool bumps) {
   if (!bumps) return BumpCourse({});
-  return BumpCourse({Bump{.x = 6.0, .length = 1.2, .height = 0.10}, {.x = 10.0, .length = 1.2, .height = 0.15, .y = 1.0, .width = 2.0},
+  return BumpCourse({Bump{.x = 6.0, .length = 1.2, .height = 0.10},
+                     {.x = 10.0, .length = 1.2, .height = 0.15, .y = 1.0, .width = 2.0},
                      {.x = 14.0, .length = 2.0, .height = 0.15}});
 }
 
@@ -49,7 +50,8 @@ inline GeneralizedAlpha integrator(Settings const& o) { return {.rho_inf = o.rho
 
 inline void warn_of_drive(Settings const& o) {
   double const fastest = o.speed * std::max(std::abs(o.left), std::abs(o.right));
-  if (std::string const warning = m113::drive_warning(fastest, o.step); !warning.empty()) std::cerr << "Warning: " << warning << '\n';
+  if (std::string const warning = m113::drive_warning(fastest, o.step); !warning.empty())
+    std::cerr << "Warning: " << warning << '\n';
 }
 
 template <class F>
@@ -67,15 +69,17 @@ template <class V>
 class Probe {
  public:
   using M = typename V::ModelType;
-  Probe(std::shared_ptr<V const> vehicle, m113::TrackStart start) : vehicle_(std::move(vehicle)), start_(std::move(start)) {}
+  Probe(std::shared_ptr<V const> vehicle, m113::TrackStart start)
+      : vehicle_(std::move(vehicle)), start_(std::move(start)) {}
 
-  double operator()(State const& x, double Probe::*number) {
+  double operator()(State const& x, double Probe::* number) {
     if (x.t != t_) look(x);
     return this->*number;
   }
 
   double forward = 0, sideways = 0, height = 0, pitch = 0, yaw = 0, speed = 0, sprocket = 0, idler = 0;
-  double link_x = 0, link_z = 0, force_x = 0, force_z = 0, force = 0, gap = 0, largest_gap = 0, depth = 0, off_path = 0, off_plane = 0;
+  double link_x = 0, link_z = 0, force_x = 0, force_z = 0, force = 0, gap = 0, largest_gap = 0, depth = 0, off_path = 0,
+         off_plane = 0;
 
   std::string deepest;  // where the deepest contact of the run was
   double deepest_depth = 0.0, deepest_time = 0.0, torque = 0;
@@ -109,7 +113,8 @@ class Probe {
     largest_gap = 0.0;
     for (int i = 0; i < m113::links; ++i) {
       double const open = (position(v.model, x, side.front[std::size_t(i)]) -
-                           position(v.model, x, side.rear[std::size_t((i + m113::links - 1) % m113::links)])).norm();
+                           position(v.model, x, side.rear[std::size_t((i + m113::links - 1) % m113::links)]))
+                              .norm();
       if (i == watched_pin) gap = open;
       largest_gap = std::max(largest_gap, open);
     }
@@ -119,7 +124,8 @@ class Probe {
       if (fault.depth > deepest_depth) {
         deepest_depth = fault.depth;
         deepest_time = x.t;
-        deepest = (s == m113::Side::left ? "left link " : "right link ") + std::to_string(fault.link) + " in " + fault.against;
+        deepest = (s == m113::Side::left ? "left link " : "right link ") + std::to_string(fault.link) + " in " +
+                  fault.against;
       }
       depth = std::max(depth, fault.depth);
       off_path = std::max(off_path, fault.off_path);
@@ -137,7 +143,8 @@ class Probe {
 struct Outcome {
   std::string name, trouble = {}, deepest = {};
   double depth = 0.0, deepest_time = 0.0;
-  double drives = 0.0, gravity = 0.0, kinetic = 0.0, stored = 0.0, dissipated = 0.0, unaccounted = 0.0, relative = -1.0;  // [J]
+  double drives = 0.0, gravity = 0.0, kinetic = 0.0, stored = 0.0, dissipated = 0.0, unaccounted = 0.0,
+         relative = -1.0;  // [J]
 };
 
 // The case that `compare` runs: F says what links are and how they hang together.
@@ -153,7 +160,11 @@ struct TrackCase {
   template <class F>
   Built<F> build(F const& f) const {
     Settings const& s = settings;
-    m113::VehicleOptions options{.masses = s.masses, .suspension = s.suspension, .preload = s.preload, .cut = s.cut, .link_elements = s.elements};
+    m113::VehicleOptions options{.masses = s.masses,
+                                 .suspension = s.suspension,
+                                 .preload = s.preload,
+                                 .cut = s.cut,
+                                 .link_elements = s.elements};
     options.start = m113::settled_track(options);
     std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
     return {options.start, std::make_shared<VehicleOf<F> const>(f.policy, drives, options, course(s.bumps))};
@@ -168,7 +179,7 @@ struct TrackCase {
     auto const probe = std::make_shared<Probe<V>>(vehicle, built.start);
 
     std::vector<Output<M>> outputs;
-    auto const add = [&](std::string name, double Probe<V>::*number) {
+    auto const add = [&](std::string name, double Probe<V>::* number) {
       outputs.push_back({std::move(name), [probe, number](M const&, State const& x) { return (*probe)(x, number); }});
     };
     add("forward position [m]", &Probe<V>::forward);
@@ -223,7 +234,8 @@ struct TrackCase {
     };
     RunOptions run{.until = s.until, .step = s.step, .halvings = 6};
     if (s.watched)
-      for (m113::Side const side : {m113::Side::left, m113::Side::right}) run.events.push_back(m113::track_lost(*vehicle, side));
+      for (m113::Side const side : {m113::Side::left, m113::Side::right})
+        run.events.push_back(m113::track_lost(*vehicle, side));
     return Scenario<M>{vehicle->model, vehicle->model.reference_state(), run, std::move(outputs), observer};
   }
 };
@@ -242,8 +254,8 @@ struct Runs {
 };
 
 // A curve of every `every`-th sample, so that files stay small.
-inline Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int color, double scale = 1.0,
-                   std::size_t every = 4) {
+inline Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int color,
+                   double scale = 1.0, std::size_t every = 4) {
   Curve c{.label = std::move(label), .color = color};
   for (std::size_t i = 0; i < std::min(x.size(), y.size()); i += every) {
     c.x.push_back(x[i]);
@@ -257,8 +269,8 @@ inline void draw(Settings const& o, Figure const& f, std::string const& name) {
   std::cout << "  " << (o.out / name).string() << (o.no_plot ? ".gp" : ".png") << '\n';
 }
 
-inline Figure history_figure(Runs const& runs, std::string const& output, std::string title, std::string label, double cut_off = 0.0,
-                             double scale = 1.0) {
+inline Figure history_figure(Runs const& runs, std::string const& output, std::string title, std::string label,
+                             double cut_off = 0.0, double scale = 1.0) {
   Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = std::move(label)};
   std::size_t const every = cut_off > 0.0 || output.find("force") == std::string::npos ? 4 : 1;
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
@@ -269,8 +281,8 @@ inline Figure history_figure(Runs const& runs, std::string const& output, std::s
   return f;
 }
 
-inline void over_time(Settings const& o, Runs const& runs, std::string const& output, std::string title, std::string label,
-                      std::string const& name, double cut_off = 0.0, double scale = 1.0) {
+inline void over_time(Settings const& o, Runs const& runs, std::string const& output, std::string title,
+                      std::string label, std::string const& name, double cut_off = 0.0, double scale = 1.0) {
   draw(o, history_figure(runs, output, std::move(title), std::move(label), cut_off, scale), name);
 }
 

@@ -20,8 +20,8 @@ namespace arc_length_test {
 
 using namespace polybody;
 
-// A slider between two springs (k, free length l₀) at height y, anchors at ±w: P = −2 k (l − l₀) y/l downwards, l² = w² + y².
-// The path snaps through: every point of it must lie on the curve, past both limit points.
+// A slider between two springs (k, free length l₀) at height y, anchors at ±w: P = −2 k (l − l₀) y/l downwards, l² = w²
+// + y². The path snaps through: every point of it must lie on the curve, past both limit points.
 struct Toggle {
   using Guide = Joint<planar::Prismatic, Constraint>;
   static constexpr double k = 100.0, w = 1.0, height = 0.5;
@@ -29,9 +29,11 @@ struct Toggle {
   Model<Bodies<planar::Rigid>, Joints<Guide>, Forces<SpringDamper, PointForce<>>> model;
   BodyHandle<planar::Rigid> slider;
   Toggle() : slider(model.add(planar::Rigid(1.0, 1.0, Placement::planar(0, height)), "slider")) {
-    model.connect(Guide{planar::Prismatic{.axis = {0, 1, 0}}, Constraint{}}, model.ground().at({0, height, 0}), slider.at(Vec2(0, 0)), "guide");
+    model.connect(Guide{planar::Prismatic{.axis = {0, 1, 0}}, Constraint{}}, model.ground().at({0, height, 0}),
+                  slider.at(Vec2(0, 0)), "guide");
     for (double const side : {-1.0, 1.0})
-      model.apply(SpringDamper{.stiffness = k, .free_length = l0}, model.ground().at({side * w, 0, 0}), slider.at(Vec2(0, 0)));
+      model.apply(SpringDamper{.stiffness = k, .free_length = l0}, model.ground().at({side * w, 0, 0}),
+                  slider.at(Vec2(0, 0)));
     model.apply(PointForce<>{.force = {0, -10, 0}}, slider.at(Vec2(0, 0)));
   }
   /// Load factor that holds the slider at height y.
@@ -43,8 +45,9 @@ struct Toggle {
 
 TEST(EquilibriumPath, FollowsAToggleThroughBothLimitPoints) {
   Toggle toggle;
-  auto const path = equilibrium_path(toggle.model, toggle.model.reference_state(), {.step = 0.01, .largest = 0.01, .points = 600},
-                                     [](PathPoint const& p) { return p.x.q[1] < -0.45; });
+  auto const path =
+      equilibrium_path(toggle.model, toggle.model.reference_state(), {.step = 0.01, .largest = 0.01, .points = 600},
+                       [](PathPoint const& p) { return p.x.q[1] < -0.45; });
   ASSERT_GT(path.size(), 20u);
   EXPECT_LT(path.back().x.q[1], -0.45);
   double highest = 0.0, lowest = 0.0;
@@ -82,10 +85,9 @@ struct LeeFrame {
   }
   /// Largest and smallest load on the path past both limit points, by the parabola through three points around each.
   std::pair<double, double> limits() {
-    std::vector<PathPoint> const path =
-        equilibrium_path(model, model.reference_state(), {.step = 0.02, .largest = 0.02, .points = 2000}, [&](PathPoint const& p) {
-          return p.load_factor > 0.0 && position(model, p.x, loaded)[1] < 120 - 75.0;
-        });
+    std::vector<PathPoint> const path = equilibrium_path(
+        model, model.reference_state(), {.step = 0.02, .largest = 0.02, .points = 2000},
+        [&](PathPoint const& p) { return p.load_factor > 0.0 && position(model, p.x, loaded)[1] < 120 - 75.0; });
     std::pair<double, double> found{0.0, 0.0};
     for (std::size_t i = 1; i + 1 < path.size(); ++i) {
       double const a = path[i - 1].load_factor, b = path[i].load_factor, c = path[i + 1].load_factor;
@@ -97,8 +99,9 @@ struct LeeFrame {
   }
 };
 
-// CASES S9a without shear: 18556.7275 and −9414.4316; with it (GA = 1.3846154e7): 18544.5271 and −9392.4896; to 0.3 %. Lrvf is of order 2: with
-// 20 elements a leg it is 0.33 % off at the upper limit and 1.2 % at the lower, with 60 a ninth of that.
+// CASES S9a without shear: 18556.7275 and −9414.4316; with it (GA = 1.3846154e7): 18544.5271 and −9392.4896; to 0.3 %.
+// Lrvf is of order 2: with 20 elements a leg it is 0.33 % off at the upper limit and 1.2 % at the lower, with 60 a
+// ninth of that.
 TEST(LeesFrame, HasItsLimitLoads) {
   auto const [high, low] = LeeFrame<planar::AncfCable<planar::EngineeringStrain>>(20, 0.0).limits();
   EXPECT_NEAR(high, 18556.7275, 3e-3 * 18556.7275);
@@ -112,7 +115,8 @@ TEST(EquilibriumPath, RefusesAModelWithoutLoads) {
   Model<Bodies<planar::Rigid>, Joints<Joint<planar::Weld, Constraint>>> model;
   auto const b = model.add(planar::Rigid(1.0, 1.0), "block");
   model.connect(Joint<planar::Weld, Constraint>{}, model.ground().at({0, 0, 0}), b.at(Vec2(0, 0)), "weld");
-  EXPECT_TRUE(has(message_of<LinearSolverSingular>([&] { equilibrium_path(model, model.reference_state()); }), "nothing is loaded"));
+  EXPECT_TRUE(has(message_of<LinearSolverSingular>([&] { equilibrium_path(model, model.reference_state()); }),
+                  "nothing is loaded"));
 }
 
 }  // namespace arc_length_test

@@ -30,8 +30,8 @@ Bar rod(Placement const& placement = {}) {
           .placement = placement};
 }
 
-/// What is left of m a = Σ F, and of J Ω˙ + Ω × J Ω = Σ (u × f + m) about the centre of mass, beside the largest of their sums of
-/// sizes.
+/// What is left of m a = Σ F, and of J Ω˙ + Ω × J Ω = Σ (u × f + m) about the centre of mass, beside the largest of
+/// their sums of sizes.
 Vec2 left_over(BodyRecord const& record, double mass, Mat3 const& inertia) {
   Vec2 left = Vec2::Zero(), size = left;
   for (BodySample const& s : record.samples) {
@@ -75,9 +75,9 @@ struct Press {
   }
 };
 
-// Joints by multipliers and by a bushing, a spring-damper, a follower, a dead moment, a contact that comes late, gravity.
-// Newton's method is told to go on to 1e-12 of an acceleration, and the rows of the speeds are kept, too, for the rate of the
-// norm of Euler parameters.
+// Joints by multipliers and by a bushing, a spring-damper, a follower, a dead moment, a contact that comes late,
+// gravity. Newton's method is told to go on to 1e-12 of an acceleration, and the rows of the speeds are kept, too, for
+// the rate of the norm of Euler parameters.
 template <class Body>
 void balances() {
   using Ball = Joint<Spherical, Constraint>;
@@ -138,7 +138,8 @@ TEST(BodyRecord, HoldsThePinForceAtItsPointInTheBodysAxes) {
   model.set_velocity(x, arm, Vec3::Zero(), {0, 0, 5.0});
   LoadRecorder recorder(model);
   recorder.add(arm);
-  for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.5, .step = 1e-3})) recorder.record(now);
+  for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.5, .step = 1e-3}))
+    recorder.record(now);
   double const mass = 7800 * 0.02 * 2.0;
   BodyRecord const& record = recorder.of(arm);
   EXPECT_EQ(record.gravity, Vec3::Zero());
@@ -177,7 +178,8 @@ TEST(BodyRecord, RefusesInSentences) {
   model.connect(Ball{}, a.at(2.0), b.at(0.0), "elbow");
   LoadRecorder recorder(model);
   recorder.add(a);
-  EXPECT_TRUE(has(refusal([&] { recorder.of(b); }), "body \"b\" was not recorded. Add it to the recorder before the run."));
+  EXPECT_TRUE(
+      has(refusal([&] { recorder.of(b); }), "body \"b\" was not recorded. Add it to the recorder before the run."));
   EXPECT_TRUE(has(refusal([&] { recorder.of(a); }), "there is no sample of \"a\" yet"));
   State x = model.reference_state();
   recorder.record(x);

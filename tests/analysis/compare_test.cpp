@@ -28,7 +28,8 @@ struct Pendulum {
     using M = Model<Bodies<typename F::BodyType>, Joints<Pin>>;
     M model{Gravity{0, -9.81, 0}};
     auto const rod = model.add(
-        F::BodyType::from({.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1e3, .mass_per_length = 1.0}}), "rod");
+        F::BodyType::from({.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1e3, .mass_per_length = 1.0}}),
+        "rod");
     model.connect(Pin{{}, f.policy}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
     State const start = model.reference_state();
     auto const tip = rod.at(1.0);
@@ -55,16 +56,17 @@ using Stiff = Formulation<planar::Rigid, Penalty, GeneralizedAlpha>;
 using Explicit = Formulation<planar::Rigid, Constraint, RungeKutta4<Projection>>;
 
 TEST(Compare, RunsOneCaseUnderSeveralFormulations) {
-  Comparison const c = compare(Pendulum{}, Ideal{"ideal", {}, {.rho_inf = 0.9}},
-                               Stiff{"penalty", {.stiffness = 1e7, .damping = 1e3}, {.rho_inf = 0.9}},
-                               Explicit{"explicit", {}, {}});
+  Comparison const c =
+      compare(Pendulum{}, Ideal{"ideal", {}, {.rho_inf = 0.9}},
+              Stiff{"penalty", {.stiffness = 1e7, .damping = 1e3}, {.rho_inf = 0.9}}, Explicit{"explicit", {}, {}});
   ASSERT_EQ(c.runs.size(), 3u);
   // Table 3.4's way of counting: the penalty takes no degree of freedom away.
   EXPECT_EQ(c.runs[0].census.degrees_of_freedom, 1);
   EXPECT_EQ(c.runs[1].census.degrees_of_freedom, 3);
   EXPECT_EQ(c.runs[0].census.rows, 2);
   EXPECT_EQ(c.runs[1].census.rows, 0);
-  // The pin carries 5/2 m g cos φ along the rod and 1/4 m g sin φ across it: m g/4 at the start, but nothing yet by a penalty.
+  // The pin carries 5/2 m g cos φ along the rod and 1/4 m g sin φ across it: m g/4 at the start, but nothing yet by a
+  // penalty.
   double const mg = 9.81, held = mg * std::hypot(2.5 * std::cos(end_angle), 0.25 * std::sin(end_angle));
   for (ComparedRun const& run : c.runs) {
     EXPECT_EQ(run.run.steps, 500);
@@ -112,7 +114,8 @@ TEST(Compare, TellsRunsOfTheSameNameApart) {
 }
 
 TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {
-  EXPECT_TRUE(has(refusal([] { compare(Pendulum{{"tip", "tip"}}, Ideal{"ideal"}); }), "\"ideal\" need names, each its own"));
+  EXPECT_TRUE(
+      has(refusal([] { compare(Pendulum{{"tip", "tip"}}, Ideal{"ideal"}); }), "\"ideal\" need names, each its own"));
   EXPECT_TRUE(has(refusal([] { compare(Pendulum{{""}}, Ideal{}); }), "need names"));
   EXPECT_TRUE(has(refusal([] { compare(Pendulum{}, Ideal{"ideal"}, Ideal{"of its own mind"}); }),
                   "\"of its own mind\" has other outputs than \"ideal\""));
@@ -191,8 +194,10 @@ TEST(WorkPrecision, GoesOnWhereOneRunFails) {
 
 TEST(WorkPrecision, RefusesWhatIsNoSetting) {
   EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {}, 0.0); }), "give one step or tolerance"));
-  EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {0.0}, 0.0); }), "a step or tolerance must be positive"));
-  EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {1e-3}, 0.0, 1); }), "there is no output 1; the case has 1"));
+  EXPECT_TRUE(
+      has(refusal([] { work_precision(Pendulum{}, Ideal{}, {0.0}, 0.0); }), "a step or tolerance must be positive"));
+  EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {1e-3}, 0.0, 1); }),
+                  "there is no output 1; the case has 1"));
 }
 
 }  // namespace compare_test

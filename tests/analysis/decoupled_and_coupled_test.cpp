@@ -1,5 +1,6 @@
-// Stress after a rigid run beside that of flexible bodies: where the two agree, and how they part as speed² where the deformation
-// acts back: on the arm of centrifugal forces, and on the motion of the body (its mass to the deformation, m_rf).
+// Stress after a rigid run beside that of flexible bodies: where the two agree, and how they part as speed² where the
+// deformation acts back: on the arm of centrifugal forces, and on the motion of the body (its mass to the deformation,
+// m_rf).
 #include <polybody/analysis/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>
@@ -32,7 +33,8 @@ struct Turn {
 };
 
 // Flexible bodies are not recorded: they know their stress.
-static_assert(HasRigidPoints<Rigid<>> && !HasRigidPoints<Ffr> && !HasRigidPoints<AncfCable<>> && !HasRigidPoints<Lrvf<>>);
+static_assert(HasRigidPoints<Rigid<>> && !HasRigidPoints<Ffr> && !HasRigidPoints<AncfCable<>> &&
+              !HasRigidPoints<Lrvf<>>);
 
 using Pin = Joint<Revolute, Constraint>;
 using Drive = Joint<PrescribedAngle<Turn>, Constraint>;
@@ -83,17 +85,20 @@ BodyRecord steady_record(OnHub<Rigid<>>& rigid, double speed) {
   return recorder.of(rigid.arm);
 }
 
-Bar steel() { return {.length = 1.0, .section = Circle{.radius = 0.01}, .material = Material{.density = 7800, .young = 2e11}}; }
+Bar steel() {
+  return {.length = 1.0, .section = Circle{.radius = 0.01}, .material = Material{.density = 7800, .young = 2e11}};
+}
 
-/// σ = ½ ρω²(L² − x²) of the coupled formulation, in the middles of its elements: the floating frame's linear shapes have the
-/// mean of an element there, (h/L)²/12 of the largest stress too little.
+/// σ = ½ ρω²(L² − x²) of the coupled formulation, in the middles of its elements: the floating frame's linear shapes
+/// have the mean of an element there, (h/L)²/12 of the largest stress too little.
 template <class B>
 void is_centrifugal(B const& body, double omega) {
   OnHub<B> flexible(body, {.speed = omega});
   relative_equilibrium(flexible.model, flexible.x, {.angular_velocity = {0, 0, omega}});
   double const whole = 0.5 * 7800 * omega * omega;
   for (double const x : {0.03125, 0.28125, 0.53125, 0.78125, 0.96875}) {
-    double const stress = axial_stress(flexible.model, flexible.x, flexible.arm.at(x), steel()), expected = whole * (1.0 - x * x);
+    double const stress = axial_stress(flexible.model, flexible.x, flexible.arm.at(x), steel()),
+                 expected = whole * (1.0 - x * x);
     EXPECT_NEAR(stress, expected, 0.01 * expected) << x;
   }
 }
@@ -110,13 +115,13 @@ TEST(DecoupledAndCoupled, BothGiveTheCentrifugalStress) {
 
 /// Unit length, bending stiffness and mass per length: Ω² is ρAΩ²L⁴/EI.
 Bar blade(double axial = 1e8) {
-  return {
-      .length = 1.0,
-      .constants = BarConstants{.EA = axial, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e8, .GJ = 1.0, .rotary_inertia = 1e-6}};
+  return {.length = 1.0,
+          .constants = BarConstants{
+              .EA = axial, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e8, .GJ = 1.0, .rotary_inertia = 1e-6}};
 }
 
-// A force P along the axis of rotation bends the blade by w = P x²(3L − x)/6EI, and centrifugal forces ρAΩ² x pull at the arm w
-// against it:
+// A force P along the axis of rotation bends the blade by w = P x²(3L − x)/6EI, and centrifugal forces ρAΩ² x pull at
+// the arm w against it:
 //   root moment = P L − ρAΩ² ∫ x w dx + O(Ω⁴) = P L (1 − 11/120 η),   η = ρAΩ²L⁴/EI,
 // for the coupled body; it stays P L for the decoupled one. δ/η = 11/120 − c η + …, from η and 4η to none.
 TEST(DecoupledAndCoupled, PartByTheArmOfCentrifugalForcesAsTheSpeedSquared) {
@@ -124,8 +129,10 @@ TEST(DecoupledAndCoupled, PartByTheArmOfCentrifugalForcesAsTheSpeedSquared) {
   auto const part = [&](double omega) {
     OnHub<Rigid<>> rigid(Rigid<>::from(blade()), {.speed = omega});
     rigid.model.apply(PointForce<>{.force = {0, 0, push}}, rigid.arm.at(1.0), "tip");
-    double const decoupled = std::abs(
-        DecoupledStress::quasi_static(structure_of(blade(), 1), steady_record(rigid, omega)).section_forces(0.0).back()[4]);
+    double const decoupled =
+        std::abs(DecoupledStress::quasi_static(structure_of(blade(), 1), steady_record(rigid, omega))
+                     .section_forces(0.0)
+                     .back()[4]);
     EXPECT_NEAR(decoupled, push, 1e-9 * push);
     OnHub<Lrvf<>> flexible(Lrvf<>::from(blade(), 32), {.speed = omega});
     flexible.model.apply(PointForce<>{.force = {0, 0, push}}, flexible.arm.at(1.0), "tip");
@@ -152,9 +159,11 @@ std::vector<double> decoupled_tip(Turn const& turn, Push const& push, bool follo
   rigid.model.apply(push, rigid.arm.at(1.0), "tip");
   LoadRecorder recorder(rigid.model);
   recorder.add(rigid.arm);
-  for (State const& now : simulate(rigid.model, rigid.x, GeneralizedAlpha{}, {.until = 3.0, .step = 5e-3})) recorder.record(now);
-  auto const stress = DecoupledStress::vibrating(structure_of(blade(1e4), 3), recorder.of(rigid.arm), GeneralizedAlpha{},
-                                                 {.follows_deformation = follows, .settled = false});
+  for (State const& now : simulate(rigid.model, rigid.x, GeneralizedAlpha{}, {.until = 3.0, .step = 5e-3}))
+    recorder.record(now);
+  auto const stress =
+      DecoupledStress::vibrating(structure_of(blade(1e4), 3), recorder.of(rigid.arm), GeneralizedAlpha{},
+                                 {.follows_deformation = follows, .settled = false});
   VecX const tip = stress.displacements().row(6 * 3 + 1);
   return {tip.data(), tip.data() + tip.size()};
 }
@@ -170,10 +179,11 @@ double parting(Turn const& turn, bool follows, double force = 1e-3) {
   return worst / most;
 }
 
-// A ramp of force across a turning arm. The hub's motion is given, so nothing of the arm acts back on it: the thesis' equations
-// lack only what is linear in the deformation and quadratic in the speed; with it, nothing.
+// A ramp of force across a turning arm. The hub's motion is given, so nothing of the arm acts back on it: the thesis'
+// equations lack only what is linear in the deformation and quadratic in the speed; with it, nothing.
 TEST(DecoupledAndCoupled, AgreeAtLowSpeedAndPartAsItsSquare) {
-  double const slow = parting({.speed = 1e-3}, false), one = parting({.speed = 0.2}, false), two = parting({.speed = 0.4}, false);
+  double const slow = parting({.speed = 1e-3}, false), one = parting({.speed = 0.2}, false),
+               two = parting({.speed = 0.4}, false);
   EXPECT_LT(parting({.speed = 0.4}, true), 1e-5);
   EXPECT_LT(slow, 1e-5);
   EXPECT_NEAR(std::log2(two / one), 2.0, 0.1);
@@ -192,13 +202,15 @@ double half_period(std::vector<double> const& times, std::vector<double> const& 
   return 0.0;
 }
 
-// A free rod that is pushed at one end, at once. Of unit EA, ρA and L its axial vibrations have the free frequency π. A frame
-// tied to the end (one mode, sin πx/2, of frequency π/2) recoils when the rod vibrates, coupled: its mass takes c² = 8/π² of the
-// mode's off, and the frequency is π/2 / √(1 − 8/π²), 15 % above π (one mode is not more). Decoupled, the frame goes its way: π/2 remains. In the
-// frame of the mean motion the two do not act on each other, and one mode has π itself.
+// A free rod that is pushed at one end, at once. Of unit EA, ρA and L its axial vibrations have the free frequency π. A
+// frame tied to the end (one mode, sin πx/2, of frequency π/2) recoils when the rod vibrates, coupled: its mass takes
+// c² = 8/π² of the mode's off, and the frequency is π/2 / √(1 − 8/π²), 15 % above π (one mode is not more). Decoupled,
+// the frame goes its way: π/2 remains. In the frame of the mean motion the two do not act on each other, and one mode
+// has π itself.
 TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
-  Bar const rod{.length = 1.0,
-                .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
+  Bar const rod{
+      .length = 1.0,
+      .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
   Structure const structure = structure_of(rod, 16);
   MatX const held = held_modes(structure, 1), mean = free_interface_modes(structure, 1);
   PointForce<> const push{.force = {1e-3, 0, 0}};
@@ -234,8 +246,8 @@ TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
   EXPECT_NEAR(coupled, 0.5 * pi / std::sqrt(1.0 - 8.0 / (pi * pi)), 2e-3 * pi);
   EXPECT_NEAR(frequency({.shapes = held, .settled = false}), 0.5 * pi, 5e-4 * pi);
   EXPECT_NEAR(frequency({.frame = ReferenceConditions::none(), .shapes = mean, .settled = false}), pi, 2e-3 * pi);
-  // Static, the middle bears −F/2, whole at once. Of the mode √2 cos πx, q¨ = √2 F cos πt, the part before it needs ∫ √2 cos πx
-  // q¨ dx = 2F/π cos πt, of which the mesh gets (πh)²/12 = 3e-3 wrong.
+  // Static, the middle bears −F/2, whole at once. Of the mode √2 cos πx, q¨ = √2 F cos πt, the part before it needs ∫
+  // √2 cos πx q¨ dx = 2F/π cos πt, of which the mesh gets (πh)²/12 = 3e-3 wrong.
   EXPECT_NEAR(least, -1e-3 * (0.5 + 2.0 / pi), 3e-6);
 }
 

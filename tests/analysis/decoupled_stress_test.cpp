@@ -1,5 +1,5 @@
-// Stress after a rigid run against known answers: textbook formulas of rigid rods in motion, and what a cut-off part of a body
-// needs for its own motion. The coupled formulations are met in decoupled_and_coupled_test.cpp.
+// Stress after a rigid run against known answers: textbook formulas of rigid rods in motion, and what a cut-off part of
+// a body needs for its own motion. The coupled formulations are met in decoupled_and_coupled_test.cpp.
 #include <polybody/analysis/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>
@@ -27,7 +27,8 @@ using namespace polybody;
 
 namespace decoupled_stress_test {
 
-constexpr double pi = std::numbers::pi, g = 9.81, density = 7800, young = 2e11, length = 1.5, width = 0.03, height = 0.02;
+constexpr double pi = std::numbers::pi, g = 9.81, density = 7800, young = 2e11, length = 1.5, width = 0.03,
+                 height = 0.02;
 constexpr double area = width * height, mass = density * area * length;
 
 Bar rod(Placement const& placement = {}) {
@@ -82,25 +83,27 @@ TEST(DecoupledStress, OfARotatingRodIsTheCentrifugalOne) {
   }
 }
 
-/// A rod hinged at its first end, swinging from the horizontal. With φ from the downward vertical, J φ¨ = −½ m g L sin φ about
-/// the hinge, J = mL²/3 + ρI L, and the part beyond the section at x, of mass m′ = ρA(L − x), needs along the rod, across it and
-/// about its own middle
-///   N = m′ (φ˙² (L + x)/2 + g cos φ),   F = m′ (φ¨ (L + x)/2 + g sin φ),   M = ½ (L − x) F + (m′ (L − x)²/12 + ρI (L − x)) φ¨.
+/// A rod hinged at its first end, swinging from the horizontal. With φ from the downward vertical, J φ¨ = −½ m g L sin
+/// φ about the hinge, J = mL²/3 + ρI L, and the part beyond the section at x, of mass m′ = ρA(L − x), needs along the
+/// rod, across it and about its own middle
+///   N = m′ (φ˙² (L + x)/2 + g cos φ),   F = m′ (φ¨ (L + x)/2 + g sin φ),   M = ½ (L − x) F + (m′ (L − x)²/12 + ρI (L −
+///   x)) φ¨.
 /// Without ρI: F = ρA g sin φ (L − x)(L − 3x)/4L and M = −ρA g sin φ x (L − x)²/4L, largest at L/3,
 /// where falling chimneys break.
 struct Swing {
   double axial, across, bending;
   Swing(double x, double phi, double rate, double rotary) {
     double const beyond = density * area * (length - x), rest = length - x;
-    double const acceleration = -0.5 * mass * g * length * std::sin(phi) / (mass * length * length / 3.0 + rotary * length);
+    double const acceleration =
+        -0.5 * mass * g * length * std::sin(phi) / (mass * length * length / 3.0 + rotary * length);
     axial = beyond * (rate * rate * 0.5 * (length + x) + g * std::cos(phi));
     across = beyond * (acceleration * 0.5 * (length + x) + g * std::sin(phi));
     bending = 0.5 * rest * across + (beyond * rest * rest / 12.0 + rotary * rest) * acceleration;
   }
 };
 
-// In the plane x–y: the rod's x axis at angle φ − π/2; turning by φ takes x towards y. What the part beyond exerts is the
-// opposite.
+// In the plane x–y: the rod's x axis at angle φ − π/2; turning by φ takes x towards y. What the part beyond exerts is
+// the opposite.
 template <class M, class B>
 void swings(M const& model, BodyHandle<B> const& arm) {
   BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.until = 1.5, .step = 2e-3});
@@ -145,9 +148,10 @@ TEST(DecoupledStress, OfAFallingBodyIsNone) {
     EXPECT_LT(n.norm(), 1e-12 * mass * g);
 }
 
-// A cantilever under its weight w per length: Q = w (L − x), M = w (L − x)²/2, the upper side in tension. It stays so when it may
-// vibrate but has settled. Loaded at once, in one mode φ with λ = 1.8751041, σ = 0.7340955, ω = (λ/L)² √(EI/ρA) and ∫φ²dx = L:
-// from q¨ = w/ρA · ∫φdx/L · cos ωt, ∫φdx = 2σL/λ and ∫xφdx = 2L²/λ² (twice in parts, φ'''' = (λ/L)⁴φ), the root bears
+// A cantilever under its weight w per length: Q = w (L − x), M = w (L − x)²/2, the upper side in tension. It stays so
+// when it may vibrate but has settled. Loaded at once, in one mode φ with λ = 1.8751041, σ = 0.7340955, ω = (λ/L)²
+// √(EI/ρA) and ∫φ²dx = L: from q¨ = w/ρA · ∫φdx/L · cos ωt, ∫φdx = 2σL/λ and ∫xφdx = 2L²/λ² (twice in parts, φ'''' =
+// (λ/L)⁴φ), the root bears
 //   ½ wL² − ∫ρA xφ q¨ dx = ½ wL² (1 − 8σ/λ³ cos ωt).
 TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
   Arms model{Gravity{0, -g, 0}};
@@ -172,11 +176,13 @@ TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
   auto const sudden = DecoupledStress::vibrating(structure, run, Exact{}, {.shapes = shape, .settled = false});
   std::vector<Vec6> const forces = sudden.section_forces(0.0);
   for (std::size_t i = 0; i < forces.size(); ++i)
-    EXPECT_NEAR(forces[i][5] / -root, 1.0 - 8.0 * sigma / std::pow(lambda, 3) * std::cos(omega * run.samples[i].t), 0.01) << i;
+    EXPECT_NEAR(forces[i][5] / -root, 1.0 - 8.0 * sigma / std::pow(lambda, 3) * std::cos(omega * run.samples[i].t),
+                0.01)
+        << i;
 }
 
-// Cut anywhere, the part beyond needs for its own motion what the section and the loads on it give. Ball joint, follower at the
-// tip, askew, gyroscopic: all six components, rotary inertia of the section included.
+// Cut anywhere, the part beyond needs for its own motion what the section and the loads on it give. Ball joint,
+// follower at the tip, askew, gyroscopic: all six components, rotary inertia of the section included.
 TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
   Arms model{Gravity{1, -2, -g}};
   Placement const askew = Placement::at({0, 0, 0}, {0.3, 0.2, -0.4});
@@ -200,15 +206,16 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
   for (double const s : {0.0, 0.25, 0.6, 0.7, 1.2, 1.5}) {
     std::vector<Vec6> const forces = stress.section_forces(s);
     double const rest = length - s, beyond = c.mass_per_length * rest, along = beyond * rest * rest / 12.0;
-    Mat3 const inertia =
-        Vec3((c.rotary_inertia + *c.rotary_inertia_y) * rest, along + *c.rotary_inertia_y * rest, along + c.rotary_inertia * rest)
-            .asDiagonal();
+    Mat3 const inertia = Vec3((c.rotary_inertia + *c.rotary_inertia_y) * rest, along + *c.rotary_inertia_y * rest,
+                              along + c.rotary_inertia * rest)
+                             .asDiagonal();
     for (std::size_t i = 0; i < forces.size(); ++i) {
       BodySample const& at = run.samples[i];
       Mat3 const to_body = at.frame.A.transpose();
       Vec3 const omega = to_body * at.frame.w, alpha = to_body * at.angular_acceleration, middle(0.5 * s, 0, 0);
       Vec3 const a = to_body * (at.acceleration - run.gravity) + alpha.cross(middle) + omega.cross(omega.cross(middle));
-      Vec3 force = beyond * a, moment = inertia * alpha + omega.cross(inertia * omega) + Vec3(0.5 * rest, 0, 0).cross(force);
+      Vec3 force = beyond * a,
+           moment = inertia * alpha + omega.cross(inertia * omega) + Vec3(0.5 * rest, 0, 0).cross(force);
       if (s < length) {  // at the last end the tip's load counts as beyond
         force -= push;
         moment -= Vec3(rest, off_y, off_z).cross(push);
@@ -228,12 +235,13 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
   // loads that balance leave the stress the same whatever holds the structure
   for (ReferenceConditions const& frame :
        {ReferenceConditions::clamped(5), ReferenceConditions::clamped(2), ReferenceConditions::simply_supported(0, 5)})
-    EXPECT_LT(largest(stress.section_forces(0.7), DecoupledStress::quasi_static(structure, run, {}, frame).section_forces(0.7)),
+    EXPECT_LT(largest(stress.section_forces(0.7),
+                      DecoupledStress::quasi_static(structure, run, {}, frame).section_forces(0.7)),
               1e-9 * size);
 }
 
-// Any body: an angle of two rods, given to the rigid model by its integrals. The second rod, cut anywhere, is known as above; the
-// corner hands its forces on to the first.
+// Any body: an angle of two rods, given to the rigid model by its integrals. The second rod, cut anywhere, is known as
+// above; the corner hands its forces on to the first.
 TEST(DecoupledStress, OfABodyOfSeveralBarsIsThatOfEach) {
   Bar const first = rod(Placement::at({0.2, 0, 0}));
   Bar const second = rod(Placement::at({0.2 + length, 0, 0}, {0, 0, 0.5 * pi}));
@@ -250,9 +258,9 @@ TEST(DecoupledStress, OfABodyOfSeveralBarsIsThatOfEach) {
   for (double const s : {0.0, 0.4, 1.1}) {
     std::vector<Vec6> const forces = stress.section_forces(s, 1);
     double const rest = length - s, beyond = c.mass_per_length * rest, along = beyond * rest * rest / 12.0;
-    Mat3 const inertia =
-        Vec3((c.rotary_inertia + *c.rotary_inertia_y) * rest, along + *c.rotary_inertia_y * rest, along + c.rotary_inertia * rest)
-            .asDiagonal();
+    Mat3 const inertia = Vec3((c.rotary_inertia + *c.rotary_inertia_y) * rest, along + *c.rotary_inertia_y * rest,
+                              along + c.rotary_inertia * rest)
+                             .asDiagonal();
     for (std::size_t i = 0; i < forces.size(); ++i) {
       BodySample const& at = run.samples[i];
       Mat3 const to_bar = (at.frame.A * second.placement.axes).transpose();
@@ -274,8 +282,8 @@ TEST(DecoupledStress, OfABodyOfSeveralBarsIsThatOfEach) {
   }
 }
 
-// A block of eight masses without rotations, all joined by springs, driven askew by a force and a moment at its upper face: the
-// springs between the faces give the lower one what it needs for its motion.
+// A block of eight masses without rotations, all joined by springs, driven askew by a force and a moment at its upper
+// face: the springs between the faces give the lower one what it needs for its motion.
 TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
   double const stiff = 1e6, node_mass = 0.5;
   std::vector<Vec3> nodes;
@@ -321,9 +329,10 @@ TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
                   "but 0 lie within the patch of 0 m about a load. Widen the patch."));
 }
 
-/// A clamped rod whose tip force grows by `rate` a second, in one mode φ with φᵀMφ = 1 and ω² = φᵀKφ: q¨ + ω²q = φ_tip · rate · t
-/// from rest,
-///   q = φ_tip · rate/ω² (t − sin ωt/ω).   It is read off the displacements e: K e = f − Mφ q¨ makes φᵀM e = (φᵀf − q¨)/ω² = q.
+/// A clamped rod whose tip force grows by `rate` a second, in one mode φ with φᵀMφ = 1 and ω² = φᵀKφ: q¨ + ω²q = φ_tip
+/// · rate · t from rest,
+///   q = φ_tip · rate/ω² (t − sin ωt/ω).   It is read off the displacements e: K e = f − Mφ q¨ makes φᵀM e = (φᵀf −
+///   q¨)/ω² = q.
 struct Ramped {
   Structure structure = structure_of(rod(), 3);
   MatX shape = held_modes(structure, 1);
@@ -334,7 +343,8 @@ struct Ramped {
     Arms model;
     auto const arm = model.add(Rigid<>::from(rod()), "arm");
     model.connect(Clamp{}, model.ground().at({0, 0, 0}), arm.at(0.0), "clamp");
-    model.apply(PointForce<Ramp>{.force = {0, rate, rate}, .law = {.target = 1.0, .duration = 1.0}}, arm.at(length), "tip");
+    model.apply(PointForce<Ramp>{.force = {0, rate, rate}, .law = {.target = 1.0, .duration = 1.0}}, arm.at(length),
+                "tip");
     run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
   }
   /// The largest error beside the largest q.
@@ -354,8 +364,8 @@ struct Ramped {
   }
 };
 
-// The load is a straight line between samples, so each integrator shows its own order: half the step, a quarter or a 16th of the
-// error.
+// The load is a straight line between samples, so each integrator shows its own order: half the step, a quarter or a
+// 16th of the error.
 TEST(DecoupledStress, VibratesByAnyIntegrator) {
   Ramped const r;
   for (auto const& [coarse, fine, order] :
@@ -376,13 +386,15 @@ TEST(DecoupledStress, RefusesInSentences) {
   model.connect(Pin{{.axis = {0, 0, 1}}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
   BodyRecord const run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
   Structure const structure = structure_of(rod(), 2);
-  auto const refused = [&](BodyRecord const& r) { return refusal([&] { DecoupledStress::quasi_static(structure, r); }); };
+  auto const refused = [&](BodyRecord const& r) {
+    return refusal([&] { DecoupledStress::quasi_static(structure, r); });
+  };
 
   BodyRecord gap = run;
   gap.samples.erase(gap.samples.begin() + 20, gap.samples.begin() + 25);
-  EXPECT_TRUE(
-      has(refused(gap),
-          "Stress of \"link 7\": there is no sample between 0.19 s and 0.25 s, a gap of more than 0.015 s. Record every step"));
+  EXPECT_TRUE(has(refused(gap),
+                  "Stress of \"link 7\": there is no sample between 0.19 s and 0.25 s, a gap of more than 0.015 s. "
+                  "Record every step"));
   EXPECT_EQ(DecoupledStress::quasi_static(structure, gap, {.largest_gap = 0.1}).times().size(), run.samples.size() - 5);
   BodyRecord back = run;
   std::swap(back.samples[3], back.samples[4]);
@@ -399,14 +411,15 @@ TEST(DecoupledStress, RefusesInSentences) {
                   "Give the structure the mass, inertia and placement"));
   Bar tight = rod();
   tight.pretension = 100.0;
-  EXPECT_TRUE(has(refusal([&] { DecoupledStress::quasi_static(structure_of(tight, 2), run); }), "a pretension is not recovered"));
+  EXPECT_TRUE(has(refusal([&] { DecoupledStress::quasi_static(structure_of(tight, 2), run); }),
+                  "a pretension is not recovered"));
 
   auto const stress = DecoupledStress::quasi_static(structure, run);
   EXPECT_TRUE(has(refusal([&] { stress.section_forces(2.0); }), "lies outside the body"));
   EXPECT_TRUE(has(refusal([&] { stress.section_forces(0.5, 1); }), "bar 1 does not exist"));
-  EXPECT_TRUE(
-      has(refusal([&] { low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 60.0}); }),
-          "the cut-off of 60 Hz is above Nyquist's frequency of 50 Hz, as samples are 0.01 s apart. Record in smaller steps"));
+  EXPECT_TRUE(has(refusal([&] { low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 60.0}); }),
+                  "the cut-off of 60 Hz is above Nyquist's frequency of 50 Hz, as samples are 0.01 s apart. Record in "
+                  "smaller steps"));
   EXPECT_EQ(low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 15.0}).size(), run.samples.size());
 
   EXPECT_TRUE(has(refusal([&] {
@@ -418,10 +431,11 @@ TEST(DecoupledStress, RefusesInSentences) {
   twice.col(1) = twice.col(0);
   EXPECT_TRUE(has(refusal([&] { DecoupledStress::vibrating(structure, run, Trapezoidal{}, {.shapes = twice}); }),
                   "shapes that repeat others"));
+  EXPECT_TRUE(has(refusal([&] { DecoupledStress::vibrating(structure, run, Trapezoidal{}, {.substeps = 0}); }),
+                  "at least one substep"));
   EXPECT_TRUE(
-      has(refusal([&] { DecoupledStress::vibrating(structure, run, Trapezoidal{}, {.substeps = 0}); }), "at least one substep"));
-  EXPECT_TRUE(has(refusal([&] { DecoupledStress::quasi_static(structure, run, {}, ReferenceConditions::none().fix(0, 0)); }),
-                  "not positive definite"));
+      has(refusal([&] { DecoupledStress::quasi_static(structure, run, {}, ReferenceConditions::none().fix(0, 0)); }),
+          "not positive definite"));
 }
 
 }  // namespace decoupled_stress_test

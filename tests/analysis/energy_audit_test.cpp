@@ -1,4 +1,5 @@
-// Where the energy of a run comes from and where it goes: powers in any state, work against exact numbers, what integrators lose.
+// Where the energy of a run comes from and where it goes: powers in any state, work against exact numbers, what
+// integrators lose.
 #include <polybody/analysis/energy_audit.hpp>
 
 #include <gtest/gtest.h>
@@ -28,7 +29,8 @@ namespace energy_audit_test {
 
 double const gravity = 9.81;
 
-/// M a − f + Gᵀλ = 0 for any λ: x.a as the equations of motion have it, whether the rows hold or not. M column by column.
+/// M a − f + Gᵀλ = 0 for any λ: x.a as the equations of motion have it, whether the rows hold or not. M column by
+/// column.
 template <class M>
 void obey(System<M>& system, State& x) {
   Index const n = system.speeds();
@@ -57,19 +59,22 @@ double rate_mismatch(M const& model, State x) {
   obey(system, x);
   system.evaluate(x.q, x.v, x.t);
   Powers const p = powers(system, x);
-  double const rate = slope_at_zero([&](double h) {
-    State near = x;
-    system.plus(x.q, h * x.v, near.q);
-    near.v += h * x.a;
-    near.t += h;
-    return energy(model, near).total();
-  }, 1e-4);
+  double const rate = slope_at_zero(
+      [&](double h) {
+        State near = x;
+        system.plus(x.q, h * x.v, near.q);
+        near.v += h * x.a;
+        near.t += h;
+        return energy(model, near).total();
+      },
+      1e-4);
   return std::abs(rate - (p.drives + p.loads - p.dissipated)) /
          std::max({std::abs(p.drives), std::abs(p.loads), std::abs(p.dissipated)});
 }
 
-// Bodies of several kinds, joints with rows that do not hold and with multipliers that nothing asks for, compliant ones, springs,
-// loads. The differences are good to h⁴ E⁽⁵⁾/30 and to 1e-16 E/h: 1e-10 or so of powers of some hundred watts.
+// Bodies of several kinds, joints with rows that do not hold and with multipliers that nothing asks for, compliant
+// ones, springs, loads. The differences are good to h⁴ E⁽⁵⁾/30 and to 1e-16 E/h: 1e-10 or so of powers of some hundred
+// watts.
 TEST(Powers, AreTheRateOfTheEnergyInAnyState) {
   for (unsigned const seed : {1u, 2u, 3u}) {
     for (double const damping : {0.0, 5.0}) {
@@ -111,8 +116,15 @@ double expected_alone(B const& body, B const& undamped) {
 template <class Make>
 void expect_lost_in(Make const& make) {
   Bar bar{.length = 1.3,
-          .constants = BarConstants{.EA = 90, .EI = 4, .mass_per_length = 2.0, .GA = 30, .GJ = 2.5, .rotary_inertia = 0.05,
-                                    .EI_y = 6, .GA_z = 20, .rotary_inertia_y = 0.08},
+          .constants = BarConstants{.EA = 90,
+                                    .EI = 4,
+                                    .mass_per_length = 2.0,
+                                    .GA = 30,
+                                    .GJ = 2.5,
+                                    .rotary_inertia = 0.05,
+                                    .EI_y = 6,
+                                    .GA_z = 20,
+                                    .rotary_inertia_y = 0.08},
           .damping = {.axial = 0.01, .shear = 0.02, .bending = 0.03}};
   auto const body = make(bar);
   bar.damping = {};
@@ -136,8 +148,8 @@ TEST(Powers, OfDampingInBodiesOfEveryKind) {
   EXPECT_EQ(dissipated_alone(Rigid<EulerParameters>(2.0, inertia, {})), 0.0);
 }
 
-/// A rod of 2 kg and 1 m, pinned at its end by Policy and raised from hanging by ψ(t); a moment of inertia of 2/3 kg m² about the
-/// pin.
+/// A rod of 2 kg and 1 m, pinned at its end by Policy and raised from hanging by ψ(t); a moment of inertia of 2/3 kg m²
+/// about the pin.
 template <class Policy, class DrivePolicy = Constraint>
 struct Crane {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -162,8 +174,8 @@ struct Crane {
   }
 };
 
-// The drive leaves no freedom: ½ J ψ̇² + m g l/2 (1 − cos ψ) is what it has put in. The trapezoidal rule adds h²/12 of what the
-// slope of the power P = (J ψ̈ + m g l/2 sin ψ) ψ̇ grows by, from zero [Euler and Maclaurin], and h⁴ terms: with
+// The drive leaves no freedom: ½ J ψ̇² + m g l/2 (1 − cos ψ) is what it has put in. The trapezoidal rule adds h²/12 of
+// what the slope of the power P = (J ψ̈ + m g l/2 sin ψ) ψ̇ grows by, from zero [Euler and Maclaurin], and h⁴ terms: with
 // ψ = 2 x³ (10 − 15 x + 6 x²), P˙ = −130.9 W/s at x = 0.6.
 TEST(EnergyAudit, OfADrivenPendulumFindsTheWorkOfItsDrive) {
   Crane<Constraint> const crane;
@@ -177,7 +189,8 @@ TEST(EnergyAudit, OfADrivenPendulumFindsTheWorkOfItsDrive) {
   double const torque = crane.inertia * psi.acceleration + crane.weight * std::sin(psi.value);
   double const jerk = 2.0 * (60.0 - 360.0 * 0.6 + 360.0 * 0.36);
   double const torque_rate = crane.inertia * jerk + crane.weight * std::cos(psi.value) * psi.rate;
-  EXPECT_NEAR(fine.unaccounted(), 2.5e-3 * 2.5e-3 / 12.0 * (torque_rate * psi.rate + torque * psi.acceleration), 1e-3 * 6.8e-5);
+  EXPECT_NEAR(fine.unaccounted(), 2.5e-3 * 2.5e-3 / 12.0 * (torque_rate * psi.rate + torque * psi.acceleration),
+              1e-3 * 6.8e-5);
   EXPECT_NEAR(coarse.unaccounted() / fine.unaccounted(), 4.0, 0.01);
   EXPECT_EQ(fine.dissipated(), 0.0);
   EXPECT_EQ(fine.stored(), 0.0);
@@ -188,7 +201,8 @@ TEST(EnergyAudit, OfAnImplicitRunConvergesLikeTheIntegrator) {
   Crane<Constraint> const crane;
   Motion const psi = crane.law(0.6);
   double const work = crane.weight * (1.0 - std::cos(psi.value)) + 0.5 * crane.inertia * psi.rate * psi.rate;
-  GeneralizedAlpha const alpha{.tolerance = 1e-11};  // what Newton's method leaves counts for nothing beside what the step does
+  GeneralizedAlpha const alpha{.tolerance =
+                                   1e-11};  // what Newton's method leaves counts for nothing beside what the step does
   auto const coarse = crane.run(alpha, 5e-3), fine = crane.run(alpha, 2.5e-3);
   EXPECT_NEAR(fine.work_of_drives(), work, 1e-3 * work);
   EXPECT_NEAR(coarse.unaccounted() / fine.unaccounted(), 4.0, 0.4);
@@ -221,8 +235,8 @@ double left_after(double t) {
   return 0.5 * (v * v + 100.0 * x * x);
 }
 
-// The same oscillator made of a spring along a slide and of a compliant pin: both lose what the formula says, no more is
-// unaccounted than the trapezoidal rule misses, and that falls with h².
+// The same oscillator made of a spring along a slide and of a compliant pin: both lose what the formula says, no more
+// is unaccounted than the trapezoidal rule misses, and that falls with h².
 template <class M>
 void expect_damped(M const& model, State const& from) {
   double const until = 0.35;
@@ -232,7 +246,8 @@ void expect_damped(M const& model, State const& from) {
   for (double& unaccounted : left) {
     EnergyAudit audit(model);
     State x = from;
-    for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = h})) audit.record(now);
+    for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = h}))
+      audit.record(now);
     EXPECT_NEAR(-audit.kinetic() - audit.stored(), 50.0 - left_after(until), 1e-5);  // RungeKutta4: (ωh)⁴ of 50 J
     EXPECT_NEAR(audit.dissipated(), 50.0 - left_after(until), 1e-4 * 50.0);
     EXPECT_EQ(audit.work_of_loads(), 0.0);
@@ -249,7 +264,8 @@ TEST(EnergyAudit, OfASpringDamperLosesWhatTheFormulaSays) {
   auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(3.0, 0.0)), "mass");
   auto const home = model.ground().at({0, 0, 0});
   model.connect(Slide{}, home, mass.at(Vec2(0, 0)), "slide");
-  model.apply(SpringDamper{.stiffness = 100.0, .damping = 2.0, .free_length = 2.0}, home, mass.at(Vec2(0, 0)), "spring");
+  model.apply(SpringDamper{.stiffness = 100.0, .damping = 2.0, .free_length = 2.0}, home, mass.at(Vec2(0, 0)),
+              "spring");
   expect_damped(model, model.reference_state());
 }
 
@@ -257,13 +273,15 @@ TEST(EnergyAudit, OfADampedCompliantPinLosesWhatTheFormulaSays) {
   using Pin = Joint<planar::Revolute, Penalty>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model;
   auto const mass = model.add(planar::Rigid(1.0, 1.0), "mass");
-  model.connect(Pin{{}, {.stiffness = 100.0, .damping = 2.0}}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)), "pin");
+  model.connect(Pin{{}, {.stiffness = 100.0, .damping = 2.0}}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)),
+                "pin");
   State x = model.reference_state();
   x.q[0] = 1.0;
   expect_damped(model, x);
 }
 
-// A bushing's component whose law has no potential: what it does at rest is the work of a load, what a rate adds is lost.
+// A bushing's component whose law has no potential: what it does at rest is the work of a load, what a rate adds is
+// lost.
 TEST(EnergyAudit, OfALawWithoutPotentialCountsAsALoad) {
   auto const law = [](auto const& x, auto const& rate) { return x * 100.0 + rate * 2.0; };
   LinearLaw const none{.stiffness = 0.0, .damping = 0.0};
@@ -318,8 +336,8 @@ TEST(EnergyAudit, OfAUsersForceIsTheWorkOfALoad) {
   EXPECT_LT(audit.relative(), 1e-5);
 }
 
-/// Balls of 1 kg and 0.1 m on the ground, each by a contact of its own or all by a group; the i-th at a height of 0.2 i above
-/// touch.
+/// Balls of 1 kg and 0.1 m on the ground, each by a contact of its own or all by a group; the i-th at a height of 0.2 i
+/// above touch.
 template <class Law, bool grouped = false>
 struct Balls {
   using F = std::conditional_t<grouped, ContactGroup<Law>, Law>;
@@ -329,7 +347,8 @@ struct Balls {
   Balls(Law const& law, int n, double height, Vec3 const& v0, Vec3 const& spin = Vec3::Zero()) {
     std::vector<BodyHandle<Rigid<>>> balls;
     for (int i = 0; i < n; ++i)
-      balls.push_back(model.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({1.0 * i, 0, 0.1 + height + 0.2 * i}))));
+      balls.push_back(
+          model.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({1.0 * i, 0, 0.1 + height + 0.2 * i}))));
     auto const floor = model.ground().at({0, 0, 0});
     if constexpr (grouped) {
       std::vector<decltype(balls[0].at(Vec3(0, 0, 0)))> many;
@@ -354,10 +373,10 @@ struct Balls {
 };
 using Floor = Contact<SphereOnPlane>;
 
-// CASES C2 [C]: a mass of 1 kg falls 1 m on k = 1e5 N/m, c = 63.2 N s/m and comes back at 3.2911781211 m/s where k d + c ḋ = 0:
-// there ½ k d² and m g d are left in the overlap, of which the first is lost as nothing holds the floor's spring back. As the
-// damper's power jumps by c v² at touch, where the run begins, the trapezoidal rule misses half a step of it and the integrator,
-// whose first stage has a weight of 1/6, that much.
+// CASES C2 [C]: a mass of 1 kg falls 1 m on k = 1e5 N/m, c = 63.2 N s/m and comes back at 3.2911781211 m/s where k d +
+// c ḋ = 0: there ½ k d² and m g d are left in the overlap, of which the first is lost as nothing holds the floor's
+// spring back. As the damper's power jumps by c v² at touch, where the run begins, the trapezoidal rule misses half a
+// step of it and the integrator, whose first stage has a weight of 1/6, that much.
 TEST(EnergyAudit, OfAnImpactLosesWhatThePublishedReboundLeaves) {
   double const k = 1e5, c = 63.245553203, v = std::sqrt(2.0 * gravity), back = 3.2911781211, h = 2e-6;
   Balls<Floor> const ball({.geometry = {.radius = 0.1}, .normal = {.stiffness = k, .damping = c}}, 1, 0.0, {0, 0, -v});
@@ -372,9 +391,8 @@ TEST(EnergyAudit, OfAnImpactLosesWhatThePublishedReboundLeaves) {
 // CASES C3 [A]: what slides, stops within 1.02 s, and all of ½ v² is lost; regularised, the rest decays by e in
 // v_s/(μ g) = 0.3 ms. The weight stands on the floor from the start, and the friction acts at the centre.
 TEST(EnergyAudit, OfASlidingMassLosesAllOfItsSpeedToFriction) {
-  Floor const law{.geometry = {.radius = 0.0},
-                  .normal = {.stiffness = 1e5},
-                  .friction = {.coefficient = 0.3, .slip_speed = 1e-3}};
+  Floor const law{
+      .geometry = {.radius = 0.0}, .normal = {.stiffness = 1e5}, .friction = {.coefficient = 0.3, .slip_speed = 1e-3}};
   Balls<Floor> const block(law, 1, -0.1 - gravity / 1e5, {3.0, 0, 0});
   auto const audit = block.run(1.5, 1e-4);
   EXPECT_NEAR(audit.dissipated(), 4.5, 1e-4 * 4.5);
@@ -382,13 +400,12 @@ TEST(EnergyAudit, OfASlidingMassLosesAllOfItsSpeedToFriction) {
   EXPECT_LT(audit.relative(), 1e-4);
 }
 
-// Bounces with friction and spin, in steps of h and of h/8. The damper's force jumps at each touch: first order, about 1/8 of the
-// first, as touch falls in a step. That of Hunt and Crossley does not: second order at least, 1/64.
+// Bounces with friction and spin, in steps of h and of h/8. The damper's force jumps at each touch: first order, about
+// 1/8 of the first, as touch falls in a step. That of Hunt and Crossley does not: second order at least, 1/64.
 template <class N>
 std::array<double, 2> unaccounted_of_bounces(N const& normal, double h) {
-  Contact<SphereOnPlane, N> const law{.geometry = {.radius = 0.1},
-                                      .normal = normal,
-                                      .friction = {.coefficient = 0.3, .slip_speed = 0.05}};
+  Contact<SphereOnPlane, N> const law{
+      .geometry = {.radius = 0.1}, .normal = normal, .friction = {.coefficient = 0.3, .slip_speed = 0.05}};
   Balls<Contact<SphereOnPlane, N>> const ball(law, 1, 0.2, {2.0, 0, 0}, {0, -3.0, 1.0});
   std::array<double, 2> sums{};
   for (double& sum : sums) {
@@ -404,7 +421,8 @@ std::array<double, 2> unaccounted_of_bounces(N const& normal, double h) {
 TEST(EnergyAudit, OfABouncingBallWithFrictionAddsUp) {
   auto const jumping = unaccounted_of_bounces(SpringDamperContact{.stiffness = 1e4, .damping = 20.0}, 2e-4);
   EXPECT_LT(jumping[1], 0.25 * jumping[0]);
-  auto const smooth = unaccounted_of_bounces(HuntCrossleyContact{.stiffness = 1e5, .exponent = 1.5, .damping = 0.2}, 2e-4);
+  auto const smooth =
+      unaccounted_of_bounces(HuntCrossleyContact{.stiffness = 1e5, .exponent = 1.5, .damping = 0.2}, 2e-4);
   EXPECT_LT(smooth[1], 0.02 * smooth[0]);
 }
 
@@ -432,14 +450,15 @@ EnergyAudit<Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>> of_osc
   return audit;
 }
 
-// CASES I1 [A/C]: ω = 1 and h = 0.2, after 50 steps of ρ∞ = 0 q = −0.887774657662 and h v = 0.077081882918: the rest of ½ is the
-// method's. ρ∞ = 1 is the trapezoidal rule, which keeps the energy of a linear oscillator; and of steps of 1e4/ω ρ∞ = 0 leaves
-// nothing.
+// CASES I1 [A/C]: ω = 1 and h = 0.2, after 50 steps of ρ∞ = 0 q = −0.887774657662 and h v = 0.077081882918: the rest of
+// ½ is the method's. ρ∞ = 1 is the trapezoidal rule, which keeps the energy of a linear oscillator; and of steps of
+// 1e4/ω ρ∞ = 0 leaves nothing.
 TEST(EnergyAudit, ShowsWhatTheIntegratorLoses) {
   auto const oscillator = [](double k) {
     Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> model;
     auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(1.0, 0.0)), "mass");
-    model.apply(SpringDamper{.stiffness = k, .free_length = 0.0}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)), "spring");
+    model.apply(SpringDamper{.stiffness = k, .free_length = 0.0}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)),
+                "spring");
     return model;
   };
   auto const soft = oscillator(1.0), stiff = oscillator(1e10);
@@ -453,7 +472,8 @@ TEST(EnergyAudit, ShowsWhatTheIntegratorLoses) {
   EXPECT_EQ(quenched.dissipated(), 0.0);
 }
 
-// Two damped cables pinned to each other by linear rows, swinging: what they lose is found, and the sum converges with h².
+// Two damped cables pinned to each other by linear rows, swinging: what they lose is found, and the sum converges with
+// h².
 template <class Policy>
 auto of_cables(double h) {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -468,12 +488,14 @@ auto of_cables(double h) {
   model.connect(Pin{}, a.at(0.5), b.at(0.0), "hinge");
   EnergyAudit audit(model);
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 0.3, .step = h})) audit.record(now);
+  for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 0.3, .step = h}))
+    audit.record(now);
   return std::array{audit.dissipated(), audit.unaccounted(), audit.relative(), audit.work_of_drives()};
 }
 
 TEST(EnergyAudit, OfDampedCablesOnLinearRowsAddsUp) {
-  auto const coarse = of_cables<AncfLinear>(1e-3), fine = of_cables<AncfLinear>(2.5e-4), held = of_cables<Constraint>(2.5e-4);
+  auto const coarse = of_cables<AncfLinear>(1e-3), fine = of_cables<AncfLinear>(2.5e-4),
+             held = of_cables<Constraint>(2.5e-4);
   EXPECT_GT(fine[0], 1e-3);
   EXPECT_NEAR(fine[0], held[0], 1e-3 * held[0]);
   EXPECT_LT(fine[2], 1e-4);

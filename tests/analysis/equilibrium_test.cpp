@@ -143,15 +143,16 @@ TEST(Equilibrium, HalvesAPartThatFailsAndGetsThere) {
   EXPECT_LT((x.q - small.q).cwiseAbs().maxCoeff(), 1e-10);
 }
 
-// Stiffness and force times 2ᵏ: the same coordinates, multipliers times 2ᵏ, to the last bit. Rows do not take part, so they must not be
-// lost beside pivots of 1e24 N/m, nor outweigh those of 1e-12.
+// Stiffness and force times 2ᵏ: the same coordinates, multipliers times 2ᵏ, to the last bit. Rows do not take part, so
+// they must not be lost beside pivots of 1e24 N/m, nor outweigh those of 1e-12.
 TEST(Equilibrium, DoesNotDependOnTheUnitOfForce) {
   for (Index const n : {4, 40}) {
     State reference;
     for (int const k : {0, -60, 40, 60}) {
-      Bar const b{.length = 1.0,
-                  .constants = BarConstants{.EA = std::ldexp(1e6, k), .EI = std::ldexp(1.0, k), .mass_per_length = 1.0,
-                                            .GA = std::ldexp(1e6, k)}};
+      Bar const b{
+          .length = 1.0,
+          .constants = BarConstants{
+              .EA = std::ldexp(1e6, k), .EI = std::ldexp(1.0, k), .mass_per_length = 1.0, .GA = std::ldexp(1e6, k)}};
       Held const s(b, n, {0, std::ldexp(5.0, k), 0});
       State x = s.model.reference_state();
       equilibrium(s.model, x);

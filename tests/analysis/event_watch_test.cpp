@@ -46,7 +46,7 @@ TEST(EventWatch, EndsAStepWhereAnEventPassesThroughZero) {
   EXPECT_EQ(clock.report.events[0].name, "alarm");
   EXPECT_EQ(clock.report.events[0].time, clock.x.t);
   EXPECT_FALSE(clock.report.stopped);
-  EXPECT_LE(clock.steps, 32);  // 0.25/2³² < 1e-10
+  EXPECT_LE(clock.steps, 32);      // 0.25/2³² < 1e-10
   EXPECT_FALSE(clock.step(0.25));  // it is met once
 }
 

@@ -1,4 +1,5 @@
-// Filters and spectra of histories. The references are closed forms: sums of sines whose frequencies fit the record or do not.
+// Filters and spectra of histories. The references are closed forms: sums of sines whose frequencies fit the record or
+// do not.
 #include <polybody/analysis/filter.hpp>
 
 #include <gtest/gtest.h>
@@ -29,15 +30,20 @@ double worst(std::vector<double> const& a, std::vector<double> const& b, std::si
   return most;
 }
 
-// 5 Hz and 40 Hz are whole numbers of periods in 1 s, whether the samples are even, odd, prime or a power of two in number.
+// 5 Hz and 40 Hz are whole numbers of periods in 1 s, whether the samples are even, odd, prime or a power of two in
+// number.
 TEST(LowPass, KeepsWhatIsBelowInSizeAndPhaseAndRemovesWhatIsAbove) {
   for (int const n : {1000, 1001, 997, 1024, 90}) {
     double const step = 1.0 / n;
     auto const slow = [](double t) { return 1e3 + 3.0 * std::sin(2 * pi * 5 * t + 0.7); };
-    Record const both(n, step, [&](double t) { return slow(t) + 2.0 * std::cos(2 * pi * 40 * t - 0.2); }), below(n, step, slow);
+    Record const both(n, step, [&](double t) { return slow(t) + 2.0 * std::cos(2 * pi * 40 * t - 0.2); }),
+        below(n, step, slow);
     EXPECT_LT(worst(low_pass(both.times, both.values, {.cut_off = 30.0}), below.values), 1e-11) << n;
-    EXPECT_LT(worst(low_pass(both.times, both.values, {.cut_off = 40.0}), both.values), 1e-11) << n;  // the cut-off itself stays
-    EXPECT_LT(worst(low_pass(both.times, both.values, {.cut_off = 4.0}), std::vector<double>(std::size_t(n), 1e3)), 1e-11) << n;
+    EXPECT_LT(worst(low_pass(both.times, both.values, {.cut_off = 40.0}), both.values), 1e-11)
+        << n;  // the cut-off itself stays
+    EXPECT_LT(worst(low_pass(both.times, both.values, {.cut_off = 4.0}), std::vector<double>(std::size_t(n), 1e3)),
+              1e-11)
+        << n;
   }
 }
 
@@ -45,7 +51,8 @@ TEST(LowPass, KeepsWhatIsBelowInSizeAndPhaseAndRemovesWhatIsAbove) {
 TEST(LowPass, RollsOffAsACosine) {
   LowPass const filter{.cut_off = 30.0, .roll_off = 20.0};
   double const high = 0.5 * (1 + std::sqrt(0.5)), low = 1.0 - high;
-  for (auto const& [f, share] : {std::pair(30.0, 1.0), {35.0, high}, {40.0, 0.5}, {45.0, low}, {50.0, 0.0}, {60.0, 0.0}}) {
+  for (auto const& [f, share] :
+       {std::pair(30.0, 1.0), {35.0, high}, {40.0, 0.5}, {45.0, low}, {50.0, 0.0}, {60.0, 0.0}}) {
     Record const x(500, 0.002, [f = f](double t) { return std::sin(2 * pi * f * t + 1.0); });
     std::vector<double> expected;
     for (double const v : x.values) expected.push_back(share * v);
@@ -53,9 +60,9 @@ TEST(LowPass, RollsOffAsACosine) {
   }
 }
 
-// A ramp taken as periodic jumps by its height at the ends and rings (Gibbs: half the jump at the ends themselves). Forth and
-// back it is a triangle wave of period T′ = 2T with terms 4/(πk)² for odd k alone: those beyond f_c = m/T′ sum up to less than
-// 2/(π²(m − 1)) of the height.
+// A ramp taken as periodic jumps by its height at the ends and rings (Gibbs: half the jump at the ends themselves).
+// Forth and back it is a triangle wave of period T′ = 2T with terms 4/(πk)² for odd k alone: those beyond f_c = m/T′
+// sum up to less than 2/(π²(m − 1)) of the height.
 TEST(LowPass, MirroredRecordsDoNotRingAtTheEnds) {
   int const n = 1001;
   Record const ramp(n, 1e-3, [](double t) { return 7.0 + (t - 2.0); });
@@ -86,13 +93,14 @@ TEST(AmplitudeSpectrum, KeepsTheMeanSquare) {
   }
 }
 
-// A sine that fits the record stands at its frequency with its amplitude, under any window; sin² spreads half of it to each
-// neighbour.
+// A sine that fits the record stands at its frequency with its amplitude, under any window; sin² spreads half of it to
+// each neighbour.
 TEST(AmplitudeSpectrum, PeaksAreAmplitudes) {
   Record const x(2000, 1e-3, [](double t) {
     return -12.0 + 3.0 * std::sin(2 * pi * 30 * t + 0.4) + 0.5 * std::cos(2 * pi * 500 * t);
   });
-  Spectrum const plain = amplitude_spectrum(x.times, x.values, EqualWeights{}), hann = amplitude_spectrum(x.times, x.values);
+  Spectrum const plain = amplitude_spectrum(x.times, x.values, EqualWeights{}),
+                 hann = amplitude_spectrum(x.times, x.values);
   for (Spectrum const& s : {plain, hann}) {
     EXPECT_NEAR(s.frequencies[60], 30.0, 1e-10);
     EXPECT_NEAR(s.amplitudes[60], 3.0, 1e-12);
@@ -104,8 +112,8 @@ TEST(AmplitudeSpectrum, PeaksAreAmplitudes) {
   EXPECT_NEAR(hann.amplitudes[61], 1.5, 1e-12);
 }
 
-// Between two frequencies sin² reads 8/(3π) = 0.849 of the amplitude, equal weights 2/π = 0.637 [Harris 1978]; far off sin² leaks
-// less. The other half of the cosine, at −30.25 Hz, adds some 1e-6 and 1e-2.
+// Between two frequencies sin² reads 8/(3π) = 0.849 of the amplitude, equal weights 2/π = 0.637 [Harris 1978]; far off
+// sin² leaks less. The other half of the cosine, at −30.25 Hz, adds some 1e-6 and 1e-2.
 TEST(AmplitudeSpectrum, TheWindowDecidesWhatLeaks) {
   Record const x(2000, 1e-3, [](double t) { return std::sin(2 * pi * 30.25 * t); });
   Spectrum const plain = amplitude_spectrum(x.times, x.values, EqualWeights{});

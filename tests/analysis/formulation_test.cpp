@@ -15,7 +15,8 @@ static_assert(HasFormulation<Constraint> && HasFormulation<Penalty>);
 static_assert(!HasFormulation<int>);  // not a policy
 
 TEST(Formulation, CarriesTheValuesOfItsChoices) {
-  Formulation<planar::Rigid, Penalty, GeneralizedAlpha> const f{"stiff", {.stiffness = 1e6, .damping = 10.0}, {.rho_inf = 0.5}};
+  Formulation<planar::Rigid, Penalty, GeneralizedAlpha> const f{
+      "stiff", {.stiffness = 1e6, .damping = 10.0}, {.rho_inf = 0.5}};
   EXPECT_EQ(f.name, "stiff");
   EXPECT_DOUBLE_EQ(f.policy.stiffness, 1e6);
   EXPECT_DOUBLE_EQ(f.integrator.rho_inf, 0.5);

@@ -12,13 +12,15 @@ namespace halvings_test {
 using OnFloor = Contact<SphereOnPlane>;
 using Group = ContactGroup<OnFloor>;
 
-// A mass that lands on a damper without onset: its force jumps to c ḋ where they touch, so that some steps have no solution.
+// A mass that lands on a damper without onset: its force jumps to c ḋ where they touch, so that some steps have no
+// solution.
 struct Landing {
   Model<Bodies<Rigid<>>, Joints<>, Forces<Group>> model{Gravity{0, 0, -9.81}};
   BodyHandle<Rigid<>> mass;
   State x;
 
-  explicit Landing(double height) : mass(model.add(Rigid<>(18.0, Mat3::Identity(), Placement::at({0, 0, height})), "mass")) {
+  explicit Landing(double height)
+      : mass(model.add(Rigid<>(18.0, Mat3::Identity(), Placement::at({0, 0, height})), "mass")) {
     auto const group = model.apply(Group{}, std::vector{mass.at(Vec3(0, 0, 0))});
     model.oppose(group, OnFloor{{0.0}, {.stiffness = 2e6, .damping = 3e4}}, model.ground().at({0, 0, 0}));
     x = model.reference_state();

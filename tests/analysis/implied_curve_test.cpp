@@ -37,12 +37,13 @@ TEST(ImpliedCurve, AnglesGiveTheMatrixOfTheThesis) {
   double const p = 0.7, t = -0.4, f = 1.9;
   Mat3 expected;
   expected << cos(p) * cos(t), -sin(p) * cos(f) + cos(p) * sin(t) * sin(f), -sin(p) * sin(f) - cos(p) * sin(t) * cos(f),
-      sin(p) * cos(t), cos(p) * cos(f) + sin(p) * sin(t) * sin(f), cos(p) * sin(f) - sin(p) * sin(t) * cos(f),
-      sin(t), -cos(t) * sin(f), cos(t) * cos(f);
+      sin(p) * cos(t), cos(p) * cos(f) + sin(p) * sin(t) * sin(f), cos(p) * sin(f) - sin(p) * sin(t) * cos(f), sin(t),
+      -cos(t) * sin(f), cos(t) * cos(f);
   EXPECT_LT((section_turn({p}, {t}, {f}).R - expected).norm(), 1e-15);
 }
 
-// R′ = R K̃ and K′, by dual numbers through angles that all vary: ψ = 0.7 + 2s + s², θ = −0.4 + 3s − s², φ = 1.9 − s + 2s².
+// R′ = R K̃ and K′, by dual numbers through angles that all vary: ψ = 0.7 + 2s + s², θ = −0.4 + 3s − s², φ = 1.9 − s +
+// 2s².
 TEST(ImpliedCurve, AnglesGiveTheCurvatureAndItsSlope) {
   using D = Dual<1>;
   auto const field = [](double h) {
@@ -65,7 +66,8 @@ TEST(ImpliedCurve, AnglesGiveTheCurvatureAndItsSlope) {
 
 // Eq. 2.4: κ² = (ψ′ cos θ)² + θ′².
 TEST(ImpliedCurve, CurvatureIsThatOfTheThesis) {
-  EXPECT_NEAR(implied_curvature(section_turn({0.7, 2.0}, {-0.4, 3.0}, {1.9, -1.0})), std::hypot(2.0 * std::cos(0.4), 3.0), 1e-14);
+  EXPECT_NEAR(implied_curvature(section_turn({0.7, 2.0}, {-0.4, 3.0}, {1.9, -1.0})),
+              std::hypot(2.0 * std::cos(0.4), 3.0), 1e-14);
 }
 
 TEST(ImpliedCurve, AHelixHasItsCurvatureAndTorsionHoweverItsSectionsRoll) {
@@ -79,7 +81,8 @@ TEST(ImpliedCurve, AHelixHasItsCurvatureAndTorsionHoweverItsSectionsRoll) {
 TEST(ImpliedCurve, AHelixIsRecoveredFromItsRotations) {
   Index const pieces = 40;
   double const length = 6.0;
-  std::vector<Vec3> const curve = implied_curve([](double s) { return rolling(s).R; }, length, pieces, rolling.point(0.0));
+  std::vector<Vec3> const curve =
+      implied_curve([](double s) { return rolling(s).R; }, length, pieces, rolling.point(0.0));
   ASSERT_EQ(curve.size(), 41u);
   for (Index i = 0; i <= pieces; ++i) {
     Vec3 const expected = rolling.point(double(i) * length / double(pieces));
@@ -89,7 +92,8 @@ TEST(ImpliedCurve, AHelixIsRecoveredFromItsRotations) {
 
 template <class I>
 Lrvf<I> beam(Index n) {
-  return Lrvf<I>::from({.length = 2.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1, .GA = 1, .GJ = 1}}, n);
+  return Lrvf<I>::from(
+      {.length = 2.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1, .GA = 1, .GJ = 1}}, n);
 }
 
 /// q with every node turned by s φ, positions left as they were.
@@ -102,8 +106,8 @@ std::vector<double> turned(Lrvf<I> const& b, Vec3 const& phi) {
   return q;
 }
 
-// R = exp(s φ) is the Frenet frame of a helix of curvature √(φ₂² + φ₃²) and torsion φ₁, r = s Jl(s φ) e₁: what `Objective`
-// interpolates from node to node. Positions have no say in it, and the curve does not stretch [§2.5.3].
+// R = exp(s φ) is the Frenet frame of a helix of curvature √(φ₂² + φ₃²) and torsion φ₁, r = s Jl(s φ) e₁: what
+// `Objective` interpolates from node to node. Positions have no say in it, and the curve does not stretch [§2.5.3].
 TEST(ImpliedCurve, ABeamInterpolatesAHelixBetweenItsNodes) {
   Vec3 const phi(0.6, -0.5, 1.2);
   Lrvf<> const b = beam<Objective>(3);
@@ -118,14 +122,16 @@ TEST(ImpliedCurve, ABeamInterpolatesAHelixBetweenItsNodes) {
   }
 }
 
-// `Direct` does the same from the placement, but its curvature varies once the helix is turned: R′ = R K̃ and K′ by differences.
+// `Direct` does the same from the placement, but its curvature varies once the helix is turned: R′ = R K̃ and K′ by
+// differences.
 TEST(ImpliedCurve, TheFieldOfRotationVectorsIsItsOwnDerivative) {
   Lrvf<Direct> const b = beam<Direct>(1);
   EXPECT_NEAR(implied_torsion(b.rotation_field(b.at(0.7), turned(b, Vec3(0.6, -0.5, 1.2)))), 0.6, 1e-14);
   std::vector<double> q = turned(b, Vec3(0.6, -0.5, 1.2));
   for (int i = 0; i < 2; ++i) {
     Quaternion<double> const node = part<4>(std::span<double const>(q), 7 * i + 3);
-    part<4>(std::span<double>(q), 7 * i + 3) = quaternion_product<double>(quaternion_exp<double>(Vec3(1, -0.5, 0)), node);
+    part<4>(std::span<double>(q), 7 * i + 3) =
+        quaternion_product<double>(quaternion_exp<double>(Vec3(1, -0.5, 0)), node);
   }
   auto const at = [&](double s) { return b.rotation_field(b.at(s), q); };
   double const h = 1e-4;

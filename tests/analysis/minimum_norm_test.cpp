@@ -37,7 +37,8 @@ struct Platform {
   double force(State const& s, std::size_t i) const { return reaction(model, s, legs[i]).f[2]; }
 };
 
-// min Σ λ² with Σ λ = m g, Σ λ x_i = m g x, Σ λ y_i = m g y is affine in the place of the leg: λ_i = ¼ m g (1 + x x_i + y y_i).
+// min Σ λ² with Σ λ = m g, Σ λ x_i = m g x, Σ λ y_i = m g y is affine in the place of the leg: λ_i = ¼ m g (1 + x x_i +
+// y y_i).
 TEST(MinimumNorm, OfAPlatformOnFourLegsIsAffine) {
   for (auto const& [cx, cy] : {std::pair{0.0, 0.0}, std::pair{0.2, -0.5}}) {
     Platform p(cx, cy);
@@ -84,15 +85,16 @@ void expect_door(I const& integrator, double unit, double tolerance) {
   auto const bottom = model.connect(Pin{}, model.ground().at({0, 0, -h}), door.at(Vec3(-d, 0, -h)), "bottom");
   State x = model.reference_state();
   model.set_velocity(x, door, Vec3::Zero(), {0, 0, omega});
-  // The pins exert the moment −M = −m g d about the tangent: by forces ∓F along the radius, 2 h F, and moments N each, 2 N. The
-  // least 2 F² + 2 N²/ℓ² has F = N h/ℓ²; ℓ = h, the distance of both from their mean: F = M/4h, N = M/4.
+  // The pins exert the moment −M = −m g d about the tangent: by forces ∓F along the radius, 2 h F, and moments N each,
+  // 2 N. The least 2 F² + 2 N²/ℓ² has F = N h/ℓ²; ℓ = h, the distance of both from their mean: F = M/4h, N = M/4.
   double const moment = m * g * unit * d, weight = m * g * unit, scale = std::max(weight, m * omega * omega * d);
   int states = 0;
   for (State const& now : simulate(model, x, integrator, {.until = 0.5, .step = 0.01, .minimum_norm = true})) {
     Vec3 const out(std::cos(omega * now.t), std::sin(omega * now.t), 0.0), along(-out[1], out[0], 0.0);
     for (bool const upper : {true, false}) {
       Wrench<> const w = reaction(model, now, upper ? top : bottom);
-      Vec3 const force = Vec3(0, 0, 0.5 * weight) + (-0.5 * m * omega * omega * d - (upper ? 1 : -1) * moment / (4.0 * h)) * out;
+      Vec3 const force =
+          Vec3(0, 0, 0.5 * weight) + (-0.5 * m * omega * omega * d - (upper ? 1 : -1) * moment / (4.0 * h)) * out;
       EXPECT_LT((w.f - force).norm(), tolerance * scale) << now.t;
       EXPECT_LT((w.m + 0.25 * moment * along).norm(), tolerance * scale * unit) << now.t;
     }

@@ -7,8 +7,8 @@
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/spherical.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/joints/spherical.hpp>
 
 #include "support/chain.hpp"
 #include "support/refusal.hpp"
@@ -17,7 +17,8 @@ using namespace polybody;
 
 namespace modes_test {
 
-// The whole stiffness of a hinged rod is a second-order term: ω² = m g d/J about the hinge, here 3g/2L; upside down it is −3g/2L.
+// The whole stiffness of a hinged rod is a second-order term: ω² = m g d/J about the hinge, here 3g/2L; upside down it
+// is −3g/2L.
 TEST(Modes, OfAHangingAndOfAStandingRod) {
   for (double const sign : {1.0, -1.0}) {
     Chain<InSpace<Constraint>> chain(1, bar_link(0.8), sign * 9.81, 0.0);
@@ -49,8 +50,8 @@ struct Oscillator {
   Oscillator(double mass, double stiffness, double damping) {
     auto const block = model.add(planar::Rigid(mass, 1.0, Placement::planar(2.0, 0.0)), "block");
     model.connect(Slide{}, model.ground().at({0, 0, 0}), block.at(Vec2(0, 0)), "slide");
-    model.apply(SpringDamper{.stiffness = stiffness, .damping = damping, .free_length = 2.0}, model.ground().at({0, 0, 0}),
-                block.at(Vec2(0, 0)));
+    model.apply(SpringDamper{.stiffness = stiffness, .damping = damping, .free_length = 2.0},
+                model.ground().at({0, 0, 0}), block.at(Vec2(0, 0)));
     x = model.reference_state();
   }
 };
@@ -75,12 +76,13 @@ TEST(DampedModes, CreepBackWithoutSwinging) {
   EXPECT_NEAR(d.eigenvalue[0].imag(), 0.0, 1e-10);
 }
 
-// A thin rod on a ball joint turns freely about itself without inertia: that motion has no frequency. It swings in two planes,
-// ω² = m g d/(J + m d²).
+// A thin rod on a ball joint turns freely about itself without inertia: that motion has no frequency. It swings in two
+// planes, ω² = m g d/(J + m d²).
 TEST(Modes, MotionsWithoutInertiaAreLeftOut) {
   using Ball = Joint<Spherical, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Ball>> model{Gravity{0, -9.81, 0}};
-  auto const rod = model.add(Rigid<>(1.0, Vec3(0.0, 0.1, 0.1).asDiagonal(), Placement::planar(0.0, -0.4, -0.5 * std::numbers::pi)), "rod");
+  auto const rod = model.add(
+      Rigid<>(1.0, Vec3(0.0, 0.1, 0.1).asDiagonal(), Placement::planar(0.0, -0.4, -0.5 * std::numbers::pi)), "rod");
   model.connect(Ball{}, model.ground().at({0, 0, 0}), rod.at(Vec3(-0.4, 0, 0)), "ball");
   State x = model.reference_state();
   x.lambda << 0.0, -9.81, 0.0;  // g = r_b − r_a: −λ acts on the rod

@@ -50,7 +50,8 @@ TEST(Momentum, IsThatOfTheHandCalculation) {
 // Without damping, drives and dead loads the power of the residual forces is the rate of the potential:
 // d(potential)/dt = v·(M a − r)|… = −v·f, differenced along q ⊞ v t.
 TEST(Energy, PotentialFallsByThePowerOfTheForces) {
-  using M = Model<Bodies<planar::Lrvf, planar::AncfCable<>>, Joints<Joint<planar::Weld, Penalty>>, Forces<SpringDamper>>;
+  using M =
+      Model<Bodies<planar::Lrvf, planar::AncfCable<>>, Joints<Joint<planar::Weld, Penalty>>, Forces<SpringDamper>>;
   M model{Gravity{0.3, -9.81, 0}};
   Bar const bar{.length = 1.0,
                 .constants = BarConstants{.EA = 90, .EI = 4, .mass_per_length = 2.0, .GA = 30, .rotary_inertia = 0.05}};

@@ -36,8 +36,10 @@ Model<Bodies<planar::Rigid>, Joints<FlatPin>> four_bars(int n, bool flat) {
   auto const place = [&](double x, double y, double angle) { return Placement::planar(x, y, angle); };
   std::vector<BodyHandle<planar::Rigid>> side, top;
   for (int i = 0; i <= n; ++i)
-    side.push_back(model.add(planar::Rigid(1.0, 1.0 / 12.0, place(i + 0.5 * up[0], 0.5 * up[1], std::atan2(up[1], up[0])))));
-  for (int i = 0; i < n; ++i) top.push_back(model.add(planar::Rigid(1.0, 1.0 / 12.0, place(i + 0.5 + up[0], up[1], 0.0))));
+    side.push_back(
+        model.add(planar::Rigid(1.0, 1.0 / 12.0, place(i + 0.5 * up[0], 0.5 * up[1], std::atan2(up[1], up[0])))));
+  for (int i = 0; i < n; ++i)
+    top.push_back(model.add(planar::Rigid(1.0, 1.0 / 12.0, place(i + 0.5 + up[0], up[1], 0.0))));
   for (int i = 0; i <= n; ++i)
     model.connect(FlatPin{}, model.ground().at({double(i), 0, 0}), side[std::size_t(i)].at(Vec2(-0.5, 0)));
   for (int i = 0; i < n; ++i) {
@@ -93,7 +95,8 @@ TEST(Redundancy, DoesNotDependOnTheUnits) {
   for (double const unit : {1e-6, 1.0, 1e6}) {
     Model<Bodies<Rigid<>>, Joints<Pin>> model;
     auto const door = model.add(Rigid<>(1.0, Mat3::Identity()), "door");
-    for (double const z : {-1.0, 1.0}) model.connect(Pin{}, model.ground().at({0, 0, z * unit}), door.at(Vec3(0, 0, z * unit)));
+    for (double const z : {-1.0, 1.0})
+      model.connect(Pin{}, model.ground().at({0, 0, z * unit}), door.at(Vec3(0, 0, z * unit)));
     Redundancy const r = redundancy(model, model.reference_state());
     EXPECT_EQ(r.rank, 5) << unit;
     EXPECT_EQ(names(r), "joint \"Revolute 2\" 5 ") << unit;
@@ -150,7 +153,9 @@ TEST(Contradiction, IsNotSeenWhereBothAgree) {
 /// φ = speed t + ½ acceleration t².
 struct Quadratic {
   double speed = 0.0, acceleration = 0.0;
-  Motion operator()(double t) const { return {speed * t + 0.5 * acceleration * t * t, speed + acceleration * t, acceleration}; }
+  Motion operator()(double t) const {
+    return {speed * t + 0.5 * acceleration * t * t, speed + acceleration * t, acceleration};
+  }
 };
 
 /// A wheel on a pin with two drives.

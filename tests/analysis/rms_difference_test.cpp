@@ -36,7 +36,8 @@ TEST(RmsDifference, OfWaves) {
   };
   Sampled const b = sampled(5.0, 5000, wave);
   EXPECT_NEAR(apart(sampled(5.0, 5000, [](double t) { return 1.1 * wave(t); }), b), 0.1, 1e-12);
-  EXPECT_NEAR(apart(sampled(5.0, 5000, [](double t) { return wave(t + 0.05); }), b), 2.0 * std::sin(0.05 * std::numbers::pi), 1e-4);
+  EXPECT_NEAR(apart(sampled(5.0, 5000, [](double t) { return wave(t + 0.05); }), b),
+              2.0 * std::sin(0.05 * std::numbers::pi), 1e-4);
   EXPECT_NEAR(apart(b, b), 0.0, 1e-15);
 }
 
@@ -62,7 +63,8 @@ TEST(RmsDifference, OfVectorsIsThatOfTheirLengths) {
 
 TEST(RmsDifference, CountsTheTimeAskedForAndWhatBothHave) {
   auto const step = [](double t) { return t < 0.45 ? 1.0 : 2.0; };
-  Sampled const b = sampled(1.0, 10, [](double) { return 1.0; }), a = sampled(1.0, 10, step), shorter = sampled(0.7, 7, step);
+  Sampled const b = sampled(1.0, 10, [](double) { return 1.0; }), a = sampled(1.0, 10, step),
+                shorter = sampled(0.7, 7, step);
   RmsDifference before(0.0, 0.4), after(0.5, 1.0), both(0.0, 2.0);
   before.add(a, b);
   after.add(a, b);

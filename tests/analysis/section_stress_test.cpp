@@ -1,4 +1,5 @@
-// Stress in a section: it adds up to the section's forces, leaves the surface free, and has the textbook's largest values.
+// Stress in a section: it adds up to the section's forces, leaves the surface free, and has the textbook's largest
+// values.
 #include <polybody/analysis/section_stress.hpp>
 
 #include <gtest/gtest.h>
@@ -45,7 +46,8 @@ TEST(SectionStress, LeavesTheSurfaceOfACircleFree) {
   }
 }
 
-// The torque's series is integrated by 16 pieces of five points each way; it is cut after 30 terms, which leave 1e-6 of a moment.
+// The torque's series is integrated by 16 pieces of five points each way; it is cut after 30 terms, which leave 1e-6 of
+// a moment.
 TEST(SectionStress, OfARectangleAddsUpToTheForces) {
   for (auto const& [h, w] : {std::pair(0.06, 0.02), {0.02, 0.05}, {0.03, 0.03}}) {
     Bar const flat = bar(Rectangle{.height = h, .width = w});
@@ -61,8 +63,8 @@ TEST(SectionStress, OfARectangleAddsUpToTheForces) {
   }
 }
 
-// Largest shear of a torque M_x/(k a b²) in the middle of the longer sides b: k = 0.208, 0.246, 0.267, 0.299 for sides 1, 2, 3, 6
-// to 1 [Timoshenko & Goodier 1970, §109, table 4], to the digits printed; and none in the corners.
+// Largest shear of a torque M_x/(k a b²) in the middle of the longer sides b: k = 0.208, 0.246, 0.267, 0.299 for sides
+// 1, 2, 3, 6 to 1 [Timoshenko & Goodier 1970, §109, table 4], to the digits printed; and none in the corners.
 TEST(SectionStress, OfTorqueIsTheTables) {
   Vec6 torque = Vec6::Zero();
   torque[3] = 1.0;
@@ -88,7 +90,8 @@ TEST(SectionStress, TellsPrincipalStressesAndVonMises) {
 }
 
 TEST(SectionStress, RefusesPointsOutside) {
-  EXPECT_TRUE(has(refusal([] { section_stress(bar(Circle{.radius = 0.05}), forces, 0.04, 0.04); }), "outside the circle"));
+  EXPECT_TRUE(
+      has(refusal([] { section_stress(bar(Circle{.radius = 0.05}), forces, 0.04, 0.04); }), "outside the circle"));
   EXPECT_TRUE(has(refusal([] { section_stress(bar(Rectangle{.height = 0.1, .width = 0.2}), forces, 0.06, 0.0); }),
                   "outside the rectangle"));
   Bar const given{.length = 1.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1}};

@@ -134,8 +134,8 @@ TEST(Simulate, LeavesNoCrumbAtTheEnd) {
 TEST(Simulate, HitsEveryCornerExactly) {
   FreeRod f;
   f.push({8.0, 0.0, 0.0}, {.from = 0.05, .to = 0.35});
-  std::vector<double> const t = times_of(simulate(f.model, f.x, GeneralizedAlpha{},
-                                                  {.until = 1.0, .step = 0.1, .corners = {0.777, -1.0, 0.35, 5.0, nan}}));
+  std::vector<double> const t = times_of(simulate(
+      f.model, f.x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.1, .corners = {0.777, -1.0, 0.35, 5.0, nan}}));
   for (double const corner : {0.05, 0.35, 0.777, 1.0}) EXPECT_EQ(std::count(t.begin(), t.end(), corner), 1) << corner;
   EXPECT_EQ(t.size(), 13u);  // 0, .05 | .15, .25, .35 | .45, .55, .65, .75, .777 | .877, .977, 1
 }
@@ -193,7 +193,7 @@ TEST(Simulate, EndsTheStepWhereAnEventHappens) {
   EXPECT_NEAR(time_of_first_crossing(Adaptive{}, 1e-2), quarter_period, 1e-9);
   double const coarse = time_of_first_crossing(GeneralizedAlpha{.rho_inf = 1.0}, 4e-3) - quarter_period;
   double const fine = time_of_first_crossing(GeneralizedAlpha{.rho_inf = 1.0}, 2e-3) - quarter_period;
-  EXPECT_LT(std::abs(fine), 1e-5);  // measured 6.5e-6
+  EXPECT_LT(std::abs(fine), 1e-5);       // measured 6.5e-6
   EXPECT_NEAR(coarse / fine, 4.0, 0.2);  // what is left is the method's own error, of second order
 }
 
@@ -219,7 +219,8 @@ TEST(Simulate, FindsTheFirstOfSeveralEventsInAStep) {
   };
   Pendulum p;
   auto run = simulate(p.model, p.x, GeneralizedAlpha{},
-                      {.until = 1.0, .step = 0.1,
+                      {.until = 1.0,
+                       .step = 0.1,
                        .events = {at("third", 0.77, true), at("second", 0.28), at("first", 0.22), at("never", 0.8)}});
   run.run();
   auto const& met = run.report().events;
@@ -418,8 +419,8 @@ TEST(Simulate, AnOpenJointIsRefusedByName) {
   } catch (InconsistentStart const& e) {
     EXPECT_TRUE(has(e.what(), "\"pin\""));
   }
-  EXPECT_NO_THROW((void)simulate(p.model, p.x, GeneralizedAlpha{},
-                                 {.until = 1.0, .step = 0.1, .assembly_tolerance = 2e-3}));
+  EXPECT_NO_THROW(
+      (void)simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.1, .assembly_tolerance = 2e-3}));
 }
 
 TEST(Simulate, StepControlKeepsToTheLargestStep) {

@@ -1,4 +1,5 @@
-// Spectra's Lanczos iteration against Eigen's dense solver and closed forms; this file is built where Spectra is installed.
+// Spectra's Lanczos iteration against Eigen's dense solver and closed forms; this file is built where Spectra is
+// installed.
 #include <polybody/analysis/spectra_modes.hpp>
 
 #include <gtest/gtest.h>
@@ -13,8 +14,12 @@ namespace spectra_modes_test {
 /// 40 elements; with a round section every frequency of bending is double.
 Structure bar(double ratio) {
   return structure_of(Bar{.length = 2.0,
-                          .constants = BarConstants{.EA = 4e4, .EI = 3.0, .mass_per_length = 0.7, .GJ = 2.0,
-                                                    .rotary_inertia = 1e-4, .EI_y = 3.0 * ratio,
+                          .constants = BarConstants{.EA = 4e4,
+                                                    .EI = 3.0,
+                                                    .mass_per_length = 0.7,
+                                                    .GJ = 2.0,
+                                                    .rotary_inertia = 1e-4,
+                                                    .EI_y = 3.0 * ratio,
                                                     .rotary_inertia_y = 1e-4}},
                       40);
 }
@@ -72,15 +77,16 @@ TEST(SpectraModes, LeaveMostOfAllModesToTheDenseSolver) {
   EXPECT_EQ(SpectraModes{}(held.k, held.m, 6).squared_frequencies, DenseModes{}(held.k, held.m, 6).squared_frequencies);
 }
 
-// E1 clamped–free: ω_i = (β_i/L)² √(EI/ρA), in two planes. Of forty cubic elements ω² errs by (β h/L)⁴/720, for the fifth mode
-// 2.2e-5, and rotary inertia of 1e-9 m² adds 1e-7.
+// E1 clamped–free: ω_i = (β_i/L)² √(EI/ρA), in two planes. Of forty cubic elements ω² errs by (β h/L)⁴/720, for the
+// fifth mode 2.2e-5, and rotary inertia of 1e-9 m² adds 1e-7.
 TEST(SpectraModes, OfACantileverAreEulerAndBernoullis) {
   double const beta[] = {1.875104068711961, 4.694091132974175, 7.854757438237613, 10.99554073487547, 14.13716839104647};
   double const length = 1.5, EI = 4.0, density = 0.9;
   Held const held(structure_of(
       Bar{.length = length,
           .constants =
-              BarConstants{.EA = 1e7, .EI = EI, .mass_per_length = density, .GJ = 1e3, .rotary_inertia = density * 1e-9}},
+              BarConstants{
+                  .EA = 1e7, .EI = EI, .mass_per_length = density, .GJ = 1e3, .rotary_inertia = density * 1e-9}},
       40));
   LowestModes const modes = SpectraModes{}(held.k, held.m, 10);
   for (int i = 0; i < 10; ++i) {
@@ -95,7 +101,8 @@ TEST(SpectraModes, ServeTheBases) {
     MatX const product = a.transpose() * (s.mass_matrix() * b);
     return (product * product.transpose() - MatX::Identity(a.cols(), a.cols())).norm();
   };
-  EXPECT_LT(span(free_interface_modes(s, 8), free_interface_modes(s, 8, ReferenceConditions::none(), SpectraModes{})), 1e-6);
+  EXPECT_LT(span(free_interface_modes(s, 8), free_interface_modes(s, 8, ReferenceConditions::none(), SpectraModes{})),
+            1e-6);
   EXPECT_LT(span(held_modes(s, 8), held_modes(s, 8, ReferenceConditions::clamped(), SpectraModes{})), 1e-8);
   MatX const dense = craig_bampton(s, {0, 40}, 4), lanczos = craig_bampton(s, {0, 40}, 4, false, false, SpectraModes{});
   EXPECT_EQ(dense.leftCols(6), lanczos.leftCols(6));
@@ -104,12 +111,12 @@ TEST(SpectraModes, ServeTheBases) {
 
 TEST(SpectraModes, SayWhatIsMissing) {
   Structure const s = bar(1.0);
-  EXPECT_TRUE(has(refusal([&] { SpectraModes{}(s.stiffness, s.mass_matrix(), 3); }), "needs a positive definite stiffness"));
+  EXPECT_TRUE(
+      has(refusal([&] { SpectraModes{}(s.stiffness, s.mass_matrix(), 3); }), "needs a positive definite stiffness"));
   Held const held(s);
   SpectraModes const hasty{.restarts = 1, .tolerance = 0.0};
-  EXPECT_TRUE(
-      has(message_of<Error>([&] { hasty(held.k, held.m, 30); }),
-          "of 30 modes converged in 1 restarts, which leaves some out. Allow more restarts"));
+  EXPECT_TRUE(has(message_of<Error>([&] { hasty(held.k, held.m, 30); }),
+                  "of 30 modes converged in 1 restarts, which leaves some out. Allow more restarts"));
 }
 
 }  // namespace spectra_modes_test

@@ -1,4 +1,5 @@
-// The warning of steps that compliant joints do not bear: at the limit of the closed form, and runs on both sides of it.
+// The warning of steps that compliant joints do not bear: at the limit of the closed form, and runs on both sides of
+// it.
 
 #include <gtest/gtest.h>
 
@@ -31,8 +32,8 @@ struct Pinned {
   /// \param damping ratio ζ, d = 2ζω
   explicit Pinned(double damping) {
     auto const body = model.add(planar::Rigid(2.0, 0.1), "body");
-    model.connect(Pin{{}, {.stiffness = k, .damping = 2.0 * damping * std::sqrt(k / s)}}, model.ground().at({-0.3, 0, 0}),
-                  body.at(Vec2(-0.3, 0)), "pin");
+    model.connect(Pin{{}, {.stiffness = k, .damping = 2.0 * damping * std::sqrt(k / s)}},
+                  model.ground().at({-0.3, 0, 0}), body.at(Vec2(-0.3, 0)), "pin");
     x = model.reference_state();
     x.v << 1e-6, 2e-6, 1e-6;
   }
@@ -80,8 +81,8 @@ TEST(StableStep, OfUndampedJointsIsThatOfTheImaginaryAxis) {
   expect_limit(RungeKutta4<>{}, 0.0, std::sqrt(8.0) / omega);
 }
 
-// With x₁ = −x₀, v₁ = −v₀, a₁ = −a₀ the equations of a step give ω²h² + 4dh = 4 for central differences and ω²h² + 2dh = 4 for
-// symplectic Euler; d = 2ζω makes that quadratic in ωh.
+// With x₁ = −x₀, v₁ = −v₀, a₁ = −a₀ the equations of a step give ω²h² + 4dh = 4 for central differences and ω²h² + 2dh
+// = 4 for symplectic Euler; d = 2ζω makes that quadratic in ωh.
 TEST(StableStep, OfDampedJointsIsShorter) {
   for (double const z : {0.1, 0.7, 4.0}) {
     double const verlet = std::sqrt(16.0 * z * z + 4.0) - 4.0 * z, euler = std::sqrt(4.0 * z * z + 4.0) - 2.0 * z;
@@ -91,8 +92,8 @@ TEST(StableStep, OfDampedJointsIsShorter) {
   }
 }
 
-// On the negative real axis Runge–Kutta is stable where 1 + z/2 + z²/6 + z³/24 = 0 at the latest, z = −2.785293563405282; the
-// fast root of ζ = 5/4 is 2ω.
+// On the negative real axis Runge–Kutta is stable where 1 + z/2 + z²/6 + z³/24 = 0 at the latest, z =
+// −2.785293563405282; the fast root of ζ = 5/4 is 2ω.
 TEST(StableStep, OfOverdampedJointsUnderRungeKuttaIsThatOfTheRealAxis) {
   double const z = -2.785293563405282;
   ASSERT_NEAR(1.0 + z / 2 + z * z / 6 + z * z * z / 24, 0.0, 1e-12);
@@ -110,7 +111,8 @@ TEST(StableStep, KnowsWhatRowsHold) {
   using Slide = Joint<planar::Prismatic, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin, Slide>> model;
   auto const body = model.add(planar::Rigid(2.0, 0.1), "body");
-  model.connect(Pin{{}, {.stiffness = Pinned::k, .damping = 0.0}}, model.ground().at({-0.3, 0, 0}), body.at(Vec2(-0.3, 0)));
+  model.connect(Pin{{}, {.stiffness = Pinned::k, .damping = 0.0}}, model.ground().at({-0.3, 0, 0}),
+                body.at(Vec2(-0.3, 0)));
   model.connect(Slide{{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), body.at(Vec2(0, 0)), "slide");
   double const limit = 2.0 / std::sqrt(Pinned::k / 2.0);
   State const x = model.reference_state();
@@ -124,23 +126,26 @@ TEST(StableStep, OfABushingIsThatOfItsStiffestCoordinate) {
   for (double const turn : {500.0, 10.0}) {
     Model<Bodies<Rigid<>>, Joints<Mount>> model;
     auto const body = model.add(Rigid<>(2.0, Vec3(0.1, 0.2, 0.3).asDiagonal().toDenseMatrix()), "body");
-    model.connect(Mount{{}, {.stiffness = Bushing::diagonal({1e3, 2e3, 3e3}, {turn, 0, 0}), .damping = Bushing::Matrix::Zero()}},
-                  model.ground().at({0, 0, 0}), body.at(Vec3(0, 0, 0)), "mount");
+    model.connect(
+        Mount{{}, {.stiffness = Bushing::diagonal({1e3, 2e3, 3e3}, {turn, 0, 0}), .damping = Bushing::Matrix::Zero()}},
+        model.ground().at({0, 0, 0}), body.at(Vec3(0, 0, 0)), "mount");
     double const limit = 2.0 / std::sqrt(std::max(3e3 / 2.0, turn / 0.1));
     EXPECT_TRUE(warnings(CentralDifference<>{}, model, model.reference_state(), 0.9999 * limit).empty()) << turn;
     EXPECT_EQ(warnings(CentralDifference<>{}, model, model.reference_state(), 1.001 * limit).size(), 1u) << turn;
   }
 }
 
-// Eight bodies of 2 kg, each pinned to the next at their mass centres: ω² = 4 k/m sin²(jπ/16), at most j = 7. The iteration
-// finds it from below, to half a per cent.
+// Eight bodies of 2 kg, each pinned to the next at their mass centres: ω² = 4 k/m sin²(jπ/16), at most j = 7. The
+// iteration finds it from below, to half a per cent.
 TEST(StableStep, OfAChainIsThatOfItsHighestMode) {
   Model<Bodies<planar::Rigid>, Joints<Pin>> model;
   std::vector<BodyHandle<planar::Rigid>> bodies;
   for (int i = 0; i < 8; ++i) bodies.push_back(model.add(planar::Rigid(2.0, 0.1)));
   for (std::size_t i = 0; i < 7; ++i)
-    model.connect(Pin{{}, {.stiffness = Pinned::k, .damping = 0.0}}, bodies[i].at(Vec2(0, 0)), bodies[i + 1].at(Vec2(0, 0)));
-  double const highest = 2.0 * std::sqrt(Pinned::k / 2.0) * std::sin(7.0 * std::numbers::pi / 16.0), limit = 2.0 / highest;
+    model.connect(Pin{{}, {.stiffness = Pinned::k, .damping = 0.0}}, bodies[i].at(Vec2(0, 0)),
+                  bodies[i + 1].at(Vec2(0, 0)));
+  double const highest = 2.0 * std::sqrt(Pinned::k / 2.0) * std::sin(7.0 * std::numbers::pi / 16.0),
+               limit = 2.0 / highest;
   State x = model.reference_state();
   for (Index i = 0; i < x.v.size(); ++i) x.v[i] = 1e-6 * std::sin(double(i * i));
   EXPECT_TRUE(warnings(CentralDifference<>{}, model, x, 0.9999 * limit).empty());

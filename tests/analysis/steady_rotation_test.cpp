@@ -45,9 +45,11 @@ std::vector<std::complex<double>> eigenvalues(Linearisation const& l) {
   return kept;
 }
 
-/// A mass m on a spring k, c of free length l₀ whose other end is at the origin; both turn about z. In the turning frame
+/// A mass m on a spring k, c of free length l₀ whose other end is at the origin; both turn about z. In the turning
+/// frame
 ///   radial ξ¨ + (c/m) ξ˙ − 2Ω η˙ + (k/m − Ω²) ξ = 0,  tangential η¨ + 2Ω ξ˙ + (N/(m r₀) − Ω²) η = 0,
-/// and the tension N = k (r₀ − l₀) = m Ω² r₀ cancels the last term: s² (s² + (c/m) s + k/m + 3Ω²) = 0. Across the plane ζ¨ + Ω² ζ = 0.
+/// and the tension N = k (r₀ − l₀) = m Ω² r₀ cancels the last term: s² (s² + (c/m) s + k/m + 3Ω²) = 0. Across the plane
+/// ζ¨ + Ω² ζ = 0.
 struct Slung {
   double const m = 2.0, k = 50.0, c = 1.2, free_length = 1.0, omega = 3.0;
   double const radius = k * free_length / (k - m * omega * omega);
@@ -73,8 +75,8 @@ TEST(SteadyRotation, OfAMassOnASpringInThePlane) {
   EXPECT_LT(std::abs(s[0] - slung.radial), 1e-8);
 }
 
-// In space also the body's own turning: a sphere whose spin is tilted once keeps it, and seen from the frame the spin goes round
-// with Ω.
+// In space also the body's own turning: a sphere whose spin is tilted once keeps it, and seen from the frame the spin
+// goes round with Ω.
 TEST(SteadyRotation, OfAMassOnASpringInSpace) {
   Slung const slung;
   Rigid<> const sphere(slung.m, 0.3 * Mat3::Identity(), Placement::at({0.9, 0.9, 0}, {0.3, -0.5, 0.7}));
@@ -84,8 +86,9 @@ TEST(SteadyRotation, OfAMassOnASpringInSpace) {
   EXPECT_LT(std::abs(s[2] - slung.radial), 1e-8);
 }
 
-// A mass at rest on the axis, spring k and drag c from the ground: in the world s = −c/2m ± i ω_d; a frame that turns with Ω sees the
-// two whirls at |ω_d ∓ Ω|, with the same decay. This asks for ∂f/∂v Dw in K and for the Coriolis terms in D.
+// A mass at rest on the axis, spring k and drag c from the ground: in the world s = −c/2m ± i ω_d; a frame that turns
+// with Ω sees the two whirls at |ω_d ∓ Ω|, with the same decay. This asks for ∂f/∂v Dw in K and for the Coriolis terms
+// in D.
 TEST(SteadyRotation, ShiftsWhirlsByItsOwnRate) {
   double const m = 2.0, k = 50.0, c = 1.2, omega = 3.0;
   PlaneModel model;
@@ -106,17 +109,19 @@ struct Blade {
   Blade(double omega, double e, double length, Vec3 const& hinge, Gravity const& gravity = {}) : model(gravity) {
     auto const hub = model.add(Rigid<>(1.0, Mat3::Identity()), "hub");
     double const j = 3.0 * length * length / 12.0;
-    auto const rod = model.add(Rigid<>(3.0, Vec3(0.0, j, j).asDiagonal(), Placement::at({e + 0.5 * length, 0, 0})), "rod");
+    auto const rod =
+        model.add(Rigid<>(3.0, Vec3(0.0, j, j).asDiagonal(), Placement::at({e + 0.5 * length, 0, 0})), "rod");
     model.connect(Pin{}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "shaft");
-    model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}}, {}}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "drive");
+    model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}}, {}}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}),
+                  "drive");
     model.connect(Pin{{.axis = hinge}, {}}, hub.at({e, 0, 0}), rod.at({-0.5 * length, 0, 0}), "hinge");
     x = model.reference_state();
   }
 };
 
-// A piece dm of the rod at s from the hinge is pulled away from the axis by Ω² (e + s) dm. Flapping by β its lever is s β, so that
-// ω² = Ω² ∫(e + s) s ds/∫s² ds = Ω² (1 + 3e/2L); lagging, the pull turns with the radius, and only its part from e is left:
-// ω² = Ω² 3e/2L.
+// A piece dm of the rod at s from the hinge is pulled away from the axis by Ω² (e + s) dm. Flapping by β its lever is s
+// β, so that ω² = Ω² ∫(e + s) s ds/∫s² ds = Ω² (1 + 3e/2L); lagging, the pull turns with the radius, and only its part
+// from e is left: ω² = Ω² 3e/2L.
 TEST(SteadyRotation, OfAHingedBlade) {
   double const omega = 7.0, e = 0.3, length = 2.0;
   for (bool const flaps : {true, false}) {
@@ -141,8 +146,8 @@ std::vector<std::complex<double>> spinning(Vec3 const& inertia, double omega) {
 }
 
 // Euler's equations about a spin Ω along axis 1: I₀ w₀˙ = (I₁ − I₂) Ω w₂, I₂ w₂˙ = (I₀ − I₁) Ω w₀, so
-// s² = −Ω² (I₁ − I₀)(I₁ − I₂)/(I₀ I₂); the other motion is a constant tilt of the momentum, which goes round with Ω. About the middle
-// axis the spin is unstable.
+// s² = −Ω² (I₁ − I₀)(I₁ − I₂)/(I₀ I₂); the other motion is a constant tilt of the momentum, which goes round with Ω.
+// About the middle axis the spin is unstable.
 template <class B>
 void spins() {
   double const omega = 5.0;
@@ -163,7 +168,8 @@ TEST(SteadyRotation, OfAFreeBody) { spins<Rigid<>>(); }
 TEST(SteadyRotation, OfAFreeBodyInEulerParameters) { spins<Rigid<EulerParameters>>(); }
 
 // Conical pendulum of a point mass: at the angle ϑ from the vertical cos ϑ = g/(l Ω²). From the effective potential
-// Ω²sin⁴ϑ₀/(2 sin²ϑ) − (g/l) cos ϑ: ω² = Ω² (1 + 3 cos² ϑ). Gravity turns about its own line, so the rotation is steady.
+// Ω²sin⁴ϑ₀/(2 sin²ϑ) − (g/l) cos ϑ: ω² = Ω² (1 + 3 cos² ϑ). Gravity turns about its own line, so the rotation is
+// steady.
 TEST(SteadyRotation, OfAConicalPendulum) {
   double const g = 9.81, length = 0.8, omega = 4.5;
   SpaceModel<Rigid<>> model{Gravity{0, 0, -g}};
@@ -187,8 +193,10 @@ TEST(SteadyRotation, OfZeroIsRest) {
   Blade blade(0.0, 0.3, 2.0, {0, 1, 0}, Gravity{0, 0, -9.81});
   blade.x.q.tail<7>() << 0.3, 0.0, -1.0, std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0;  // hanging
   relative_equilibrium(blade.model, blade.x, about_z(0.0));
-  EXPECT_NEAR(damped_modes(linearise(blade.model, blade.x, about_z(0.0))).frequency(0), std::sqrt(1.5 * 9.81 / 2.0), 1e-9);
-  EXPECT_NEAR(modes(linearise(blade.model, blade.x, about_z(0.0))).frequency[0], modes(blade.model, blade.x).frequency[0], 1e-10);
+  EXPECT_NEAR(damped_modes(linearise(blade.model, blade.x, about_z(0.0))).frequency(0), std::sqrt(1.5 * 9.81 / 2.0),
+              1e-9);
+  EXPECT_NEAR(modes(linearise(blade.model, blade.x, about_z(0.0))).frequency[0],
+              modes(blade.model, blade.x).frequency[0], 1e-10);
 }
 
 TEST(SteadyRotation, RefusesWhatIsNotSteady) {
@@ -196,7 +204,8 @@ TEST(SteadyRotation, RefusesWhatIsNotSteady) {
   SteadyRotation const right = about_z(7.0);
   State start = level.x;
   EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, right); }), "do not balance as the model turns"));
-  EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, about_z(6.9)); }), "joint \"drive\" does not turn with the model"));
+  EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, about_z(6.9)); }),
+                  "joint \"drive\" does not turn with the model"));
   SteadyRotation const tilted{.angular_velocity = {0, 7, 0}};
   EXPECT_TRUE(has(refusal([&] { relative_equilibrium(level.model, start, tilted); }), "joint \"shaft\" does not turn"));
   EXPECT_EQ(start.q, level.x.q);
@@ -220,7 +229,8 @@ TEST(SteadyRotation, FindsNothingBeyondTheCriticalSpeed) {
   auto const mass = model.add(planar::Rigid(2.0, 0.3, Placement::planar(1.2, 0.0)), "mass");
   model.apply(SpringDamper{.stiffness = 50.0, .free_length = 1.0}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)));
   State x = model.reference_state();
-  EXPECT_TRUE(has(message_of<NewtonStalled>([&] { relative_equilibrium(model, x, about_z(5.1)); }), "there may be none"));
+  EXPECT_TRUE(
+      has(message_of<NewtonStalled>([&] { relative_equilibrium(model, x, about_z(5.1)); }), "there may be none"));
 }
 
 }  // namespace steady_rotation_test

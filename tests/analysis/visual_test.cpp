@@ -66,7 +66,8 @@ TEST(Surface, RefusesWhatHasNoShape) {
   expect_refused([] { cylinder(1.0, 1.0, Vec3(1, 1, 0)); }, {"cylinder", "axis"});
   expect_refused([] { outline({.length = 1.0, .section = Circle{.radius = 1.0}}, 2); }, {"three sides"});
   expect_refused(
-      [] { outline({.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}}); }, {"no section"});
+      [] { outline({.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}}); },
+      {"no section"});
 }
 
 template <class B>
@@ -119,8 +120,8 @@ TYPED_TEST(SweptBody, MovesWithItsPoints) {
   }
 }
 
-// Half a circle by an end moment: plane sections along an arc of unchanged length hold the same volume [Pappus], up to the chords of
-// n = 60 pieces, (π/n)²/6 of it; and stress is ± M h/2I = E h κ/2 at the faces.
+// Half a circle by an end moment: plane sections along an arc of unchanged length hold the same volume [Pappus], up to
+// the chords of n = 60 pieces, (π/n)²/6 of it; and stress is ± M h/2I = E h κ/2 at the faces.
 TEST(SweptBodies, BendWithTheBody) {
   Bar bar{.length = 2.0,
           .section = Rectangle{.height = 0.02, .width = 0.03},

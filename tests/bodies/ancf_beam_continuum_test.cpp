@@ -21,9 +21,8 @@ struct ContinuumCase {
 };
 using LockingCase = ContinuumCase<Locking::present>;
 using CuredCase = ContinuumCase<Locking::cured>;
-bool const ancf_beam_continuum_obey[] = {
-    obeys<LockingCase, BodyLaws, FlexibleBodyLaws>("AncfContinuum"),
-    obeys<CuredCase, BodyLaws, FlexibleBodyLaws>("AncfCuredContinuum")};
+bool const ancf_beam_continuum_obey[] = {obeys<LockingCase, BodyLaws, FlexibleBodyLaws>("AncfContinuum"),
+                                         obeys<CuredCase, BodyLaws, FlexibleBodyLaws>("AncfCuredContinuum")};
 
 // A homogeneous deformation r = F X, in the bar's axes: E = ½ (FᵀF − 1) everywhere, S and the energy by Hooke's law.
 struct Homogeneous {
@@ -75,8 +74,9 @@ TEST(AncfCuredContinuum, HomogeneousDeformationObeysHookesLawWithCorrectedShear)
   h.check(CuredCase::body(along_x()), h.stress(h.k));
 }
 
-// Curved by κ and twisted by τ to first order: r_y = e₂ − κ s e₁ + τ s e₃, r_z = e₃ − τ s e₂ at the nodes, r_x along the
-// normal. At rest in y, z, so stretch, shear and E₂₂ are of second order in δ: the energy is ½ L (EI κ² + GJ τ²) to fourth.
+// Curved by κ and twisted by τ to first order: r_y = e₂ − κ s e₁ + τ s e₃, r_z = e₃ − τ s e₂ at the nodes, r_x along
+// the normal. At rest in y, z, so stretch, shear and E₂₂ are of second order in δ: the energy is ½ L (EI κ² + GJ τ²) to
+// fourth.
 template <class B>
 double energy_of(B const& body, double kappa, double tau) {
   VecX q(body.coordinates());
@@ -101,8 +101,8 @@ TEST(AncfCuredContinuum, BendsAndTwistsWithTheBarsStiffnesses) {
   EXPECT_NEAR(energy_of(body, 0, d), 0.5 * 1.3 * c.GJ * d * d, 1e-5 * c.GJ * d * d);
 }
 
-// The element that locks bends with the constrained modulus, EI (1 − ν)/((1 + ν)(1 − 2ν)) [CASES S10], and twists with the
-// polar moment, G (I_y + I_z): it knows no warping.
+// The element that locks bends with the constrained modulus, EI (1 − ν)/((1 + ν)(1 − 2ν)) [CASES S10], and twists with
+// the polar moment, G (I_y + I_z): it knows no warping.
 TEST(AncfContinuum, BendsWithTheConstrainedModulusAndTwistsWithThePolarMoment) {
   BarConstants const c = constants(along_x());
   auto const body = LockingCase::body(along_x());

@@ -109,9 +109,8 @@ TYPED_TEST(AncfReference, CurvedElementsHaveTheirOwnForceAndTangent) {
 
 // Straight and without twist, a curve gives the straight bar again, by the other way through the code.
 TYPED_TEST(AncfReference, StraightCurveIsTheStraightBar) {
-  TypeParam const straight = TypeParam::from(bar(), 3), curved = TypeParam::from(bar(), 3, [](double s) {
-    return Placement{Vec3(s, 0, 0)};
-  });
+  TypeParam const straight = TypeParam::from(bar(), 3),
+                  curved = TypeParam::from(bar(), 3, [](double s) { return Placement{Vec3(s, 0, 0)}; });
   VecX const q = deformed(reference_of(straight), 3), v = deformed(VecX::Zero(q.size()), 4);
   EXPECT_LT((reference_of(straight) - reference_of(curved)).norm(), 1e-14);
   for (Index e = 0; e < 3; ++e) {
@@ -137,9 +136,9 @@ TYPED_TEST(AncfReference, CurvedBarHasTheMassOfTheStraightOne) {
   EXPECT_NEAR(energy, 0.5 * 45 * 1.3 * 0.25 * 0.18, 1e-13 * energy);
 }
 
-// In the reference the section force is the pretension N along the axis. So the ends of the straight bar are pulled by it and
-// nothing else is; and while the axis stretches by the rate 1 at constant sections, r˙ = r, the force has the power −N L (of a
-// curve: as the cubic meets its tangent).
+// In the reference the section force is the pretension N along the axis. So the ends of the straight bar are pulled by
+// it and nothing else is; and while the axis stretches by the rate 1 at constant sections, r˙ = r, the force has the
+// power −N L (of a curve: as the cubic meets its tangent).
 TYPED_TEST(AncfReference, PretensionIsTheSectionForceOfTheReference) {
   Bar tight = bar();
   tight.pretension = 30.0;
@@ -168,15 +167,17 @@ TYPED_TEST(AncfReference, BatchesEqualElementsOneByOne) {
   for (bool const bent : {false, true}) {
     Index const n = 7;
     TypeParam const body = bent ? TypeParam::from(bar(), n, curve) : TypeParam::from(bar(), n);
-    VecX const q = deformed(reference_of(body), 5), v = deformed(VecX::Zero(q.size()), 6), a = deformed(VecX::Zero(q.size()), 7);
+    VecX const q = deformed(reference_of(body), 5), v = deformed(VecX::Zero(q.size()), 6),
+               a = deformed(VecX::Zero(q.size()), 7);
     Index next = 0;
-    for_each_unbalance<TypeParam, double>(body, 0, n, as_span(q), as_span(v), as_span(a), [&](Index e, Vec<double, 24> const& x) {
-      ASSERT_EQ(e, next++);
-      Vec<double, 24> inertia, force;
-      body.template inertia<double>(e, as_span(q), as_span(a), inertia);
-      body.template force<double>(e, as_span(q), as_span(v), force);
-      EXPECT_LT((x - (inertia - force)).norm(), 1e-12 * force.norm());
-    });
+    for_each_unbalance<TypeParam, double>(body, 0, n, as_span(q), as_span(v), as_span(a),
+                                          [&](Index e, Vec<double, 24> const& x) {
+                                            ASSERT_EQ(e, next++);
+                                            Vec<double, 24> inertia, force;
+                                            body.template inertia<double>(e, as_span(q), as_span(a), inertia);
+                                            body.template force<double>(e, as_span(q), as_span(v), force);
+                                            EXPECT_LT((x - (inertia - force)).norm(), 1e-12 * force.norm());
+                                          });
     EXPECT_EQ(next, n);
     for_each_element_tangent<TypeParam>(body, 0, n, as_span(q), as_span(v), 1.5, 0.1, 0.7, [&](Index e, auto const& k) {
       Mat<double, 24, 24> expected, mass;
@@ -192,7 +193,8 @@ TYPED_TEST(AncfReference, BatchesEqualElementsOneByOne) {
 
 Bar by_constants() {
   return {.length = 1.0,
-          .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300, .GJ = 25, .rotary_inertia = 0.05}};
+          .constants =
+              BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300, .GJ = 25, .rotary_inertia = 0.05}};
 }
 template <class B>
 std::string refused(Bar const& b, Index n = 2) {
@@ -245,7 +247,8 @@ TEST(AncfBeam, RefusesCurvesThatNoBarFollows) {
   EXPECT_NO_THROW((void)AncfBeam<>::from(b, 12, sharp));
   b.section = Circle{.radius = 0.11};
   EXPECT_TRUE(has(refused_curve(b, 12, sharp), "element 0 is turned inside out"));
-  EXPECT_TRUE(has(refused_curve(bar(), 2, [](double s) { return Placement{Vec3(2 * s, 0, 0)}; }), "must be its arc length"));
+  EXPECT_TRUE(
+      has(refused_curve(bar(), 2, [](double s) { return Placement{Vec3(2 * s, 0, 0)}; }), "must be its arc length"));
   EXPECT_TRUE(has(refused_curve(bar(), 2, [](double s) { return Placement{Vec3(s > 1 ? 0.65 : s, 0, 0)}; }),
                   "element 1 begins where it ends"));
   EXPECT_TRUE(has(refused_curve(bar(), 2, [](double s) { return Placement{Vec3(s, 0, 0), 2 * Mat3::Identity()}; }),

@@ -10,8 +10,15 @@ namespace ancf_beam_test {
 struct ElasticLineCase {
   static Bar bar() {
     return {.length = 1.3,
-            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300, .GJ = 25,
-                                      .rotary_inertia = 0.05, .EI_y = 60, .GA_z = 200, .rotary_inertia_y = 0.08},
+            .constants = BarConstants{.EA = 900,
+                                      .EI = 40,
+                                      .mass_per_length = 2.0,
+                                      .GA = 300,
+                                      .GJ = 25,
+                                      .rotary_inertia = 0.05,
+                                      .EI_y = 60,
+                                      .GA_z = 200,
+                                      .rotary_inertia_y = 0.08},
             .placement = Placement::at({0.4, -0.3, 0.2}, {0.7, -0.2, 0.5}),
             .damping = {.axial = 0.01, .shear = 0.02, .bending = 0.03}};
   }
@@ -85,8 +92,9 @@ TEST(AncfElasticLine, SectionStrainsAreOfTheSectionAlone) {
                  {0.5 * (1.21 - 1), 0.5 * (0.85 - 1), 0.22});
 }
 
-// r_y and r_z turn by θ an element and are linear in between, so they point along atan((2ξ − 1) T), T = tan(θ/2), from the
-// middle; their rate is 2T/l/(1 + (2ξ − 1)² T²). With (2ξ − 1)² = 1/3 at the two Gauss points: θ/l (1 − θ⁴/180 + …).
+// r_y and r_z turn by θ an element and are linear in between, so they point along atan((2ξ − 1) T), T = tan(θ/2), from
+// the middle; their rate is 2T/l/(1 + (2ξ − 1)² T²). With (2ξ − 1)² = 1/3 at the two Gauss points: θ/l (1 − θ⁴/180 +
+// …).
 TEST(AncfElasticLine, TurningSectionsAreCurvatureAndTwist) {
   double const theta = 0.3, t = std::tan(0.5 * theta), middle = 2.0 * t / l, gauss = middle / (1.0 + t * t / 3.0);
   EXPECT_NEAR(gauss * l / theta, 1.0 - std::pow(theta, 4) / 180, std::pow(theta, 6) / 100);
@@ -98,16 +106,18 @@ TEST(AncfElasticLine, TurningSectionsAreCurvatureAndTwist) {
       return node(Vec3::Zero(), turn);
     });
     for (int e = 0; e < elements; ++e) {
-      EXPECT_LT((beam.section_strains(beam.at((e + 0.5) * l), view(q)).tail<3>() - Vec3::Unit(axis) * middle).norm(), 1e-13);
+      EXPECT_LT((beam.section_strains(beam.at((e + 0.5) * l), view(q)).tail<3>() - Vec3::Unit(axis) * middle).norm(),
+                1e-13);
       auto p = beam.at((e + 0.5) * l);
       p.xi = 0.5 - 0.5 / std::sqrt(3.0);
-      EXPECT_LT((beam.section_forces(p, view(q)).tail<3>() - Vec3::Unit(axis) * (stiffness[axis] * gauss)).norm(), 1e-11);
+      EXPECT_LT((beam.section_forces(p, view(q)).tail<3>() - Vec3::Unit(axis) * (stiffness[axis] * gauss)).norm(),
+                1e-11);
     }
   }
 }
 
-// The nodes of a circle in pure bending: r_x along the tangent, sections across it. What the cubic misses of the circle is
-// stretch of order θ³: compared with bending in energy, EA l² θ⁴/EI times a small number.
+// The nodes of a circle in pure bending: r_x along the tangent, sections across it. What the cubic misses of the circle
+// is stretch of order θ³: compared with bending in energy, EA l² θ⁴/EI times a small number.
 TEST(AncfElasticLine, ArcHasTheEnergyOfPureBending) {
   double const theta = 0.1, radius = l / theta;
   VecX const q = nodes([&](double s) {
@@ -123,8 +133,8 @@ TEST(AncfElasticLine, MassIsTheConsistentOne) {
   std::vector<double> const q(60);
   straight().mass(0, q, m);
   Mat<double, 4, 4> hermite;
-  hermite << 156, 22 * l, 54, -13 * l, 22 * l, 4 * l * l, 13 * l, -3 * l * l, 54, 13 * l, 156, -22 * l, -13 * l, -3 * l * l,
-      -22 * l, 4 * l * l;
+  hermite << 156, 22 * l, 54, -13 * l, 22 * l, 4 * l * l, 13 * l, -3 * l * l, 54, 13 * l, 156, -22 * l, -13 * l,
+      -3 * l * l, -22 * l, 4 * l * l;
   std::array<int, 4> const at = {0, 3, 12, 15};
   for (std::size_t a = 0; a < 4; ++a)
     for (std::size_t b = 0; b < 4; ++b)
@@ -162,14 +172,15 @@ TEST(AncfElasticLine, DampingIsKelvinVoigt) {
   EXPECT_NEAR(power(twisting), -1.3 * 25 * 0.02 * 0.5 * 0.5, 1e-10);
 }
 
-// A marker off the axis is the material point r + y r_y + z r_z; its axes are r_y made a unit vector, the section's normal, and
-// what completes them.
+// A marker off the axis is the material point r + y r_y + z r_z; its axes are r_y made a unit vector, the section's
+// normal, and what completes them.
 TEST(AncfElasticLine, MarkerIsTheMaterialPointAndTheSectionsFrame) {
   AncfBeam<> const beam = straight();
   Mat3 gradients;
   gradients << 1.1, -0.3, 0.1, 0.4, 0.9, 0.2, 0, 0.1, 1.2;
   Vec3 const origin(0.2, -0.5, 0.7);
-  VecX const q = nodes([&](double s) { return node(origin + s * gradients.col(0), gradients); }), v = VecX::Zero(q.size());
+  VecX const q = nodes([&](double s) { return node(origin + s * gradients.col(0), gradients); }),
+             v = VecX::Zero(q.size());
   auto const p = beam.at(0.7, 0.05, -0.03);
   std::array<double, 144> memory;
   Published<double> out;

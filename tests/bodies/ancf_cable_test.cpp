@@ -81,8 +81,8 @@ VecX of(AncfCable<> const& cable) {
 
 // The thesis' Eq. 3.18, (ρA l/420) [156, 22l, 54, −13l; …] for each component.
 TEST(SpatialCable, MassIsThatOfTheThesis) {
-  AncfCable<> const cable = AncfCable<>::from(
-      {.length = 1.4, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 3.0}}, 2);
+  AncfCable<> const cable =
+      AncfCable<>::from({.length = 1.4, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 3.0}}, 2);
   double const l = 0.7;
   Mat<double, 4, 4> expected;
   expected << 156, 22 * l, 54, -13 * l, 22 * l, 4 * l * l, 13 * l, -3 * l * l, 54, 13 * l, 156, -22 * l, -13 * l,
@@ -106,12 +106,14 @@ TEST(SpatialCable, KnowsTheCurvatureOfAHelix) {
     p.axes.col(2) = p.axes.col(0).cross(p.axes.col(1));
     return p;
   };
-  AncfCable<> const cable =
-      AncfCable<>::from({.length = length, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0}}, 16, helix);
+  AncfCable<> const cable = AncfCable<>::from(
+      {.length = length, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0}}, 16, helix);
   VecX const q = of(cable);
-  double const bound = std::pow(length / 16, 2) / 12.0 * a / std::pow(c, 4);  // of r″ of a cubic Hermite interpolant: l²/12 |r⁗|
+  double const bound =
+      std::pow(length / 16, 2) / 12.0 * a / std::pow(c, 4);  // of r″ of a cubic Hermite interpolant: l²/12 |r⁗|
   for (double const s : {0.3, 1.1, 2.7, 3.9}) {
-    Vec6 const strains = cable.section_strains(cable.at(s), view(q)), forces = cable.section_forces(cable.at(s), view(q));
+    Vec6 const strains = cable.section_strains(cable.at(s), view(q)),
+               forces = cable.section_forces(cable.at(s), view(q));
     Published<double> marker;
     std::array<double, 72> jacobian;
     VecX const rest = VecX::Zero(q.size());
@@ -131,12 +133,13 @@ TEST(SpatialCable, PretensionPullsAtTheEnds) {
   VecX const q = of(cable), rest = VecX::Zero(q.size());
   Vec<double, 12> f;
   cable.force<double>(0, view(q), view(rest), f);
-  EXPECT_NEAR(f[0], 30.0, 1e-12);   // it wants to be shorter
+  EXPECT_NEAR(f[0], 30.0, 1e-12);  // it wants to be shorter
   EXPECT_NEAR(f[6], -30.0, 1e-12);
   EXPECT_NEAR(cable.section_forces(cable.at(0.7), view(q))[0], 30.0, 1e-12);
 }
 
-// Spinning about its own axis a bent cable is not damped, whatever it cannot know of its roll; nor is a straight one, whose κ = 0.
+// Spinning about its own axis a bent cable is not damped, whatever it cannot know of its roll; nor is a straight one,
+// whose κ = 0.
 TEST(SpatialCable, SpinAboutItselfIsNotDamped) {
   Bar const bar{.length = 2.0,
                 .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0},
@@ -163,7 +166,8 @@ TEST(SpatialCable, RefusesWhatCannotBeMeant) {
   Bar bar{.length = 2.0, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0}};
   EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 0); }), "AncfCable: at least one element"));
   auto const too_fast = [](double s) { return Placement::at({1.5 * s, 0, 0}); };
-  EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 4, too_fast); }), "element 1 of the reference curve is strained"));
+  EXPECT_TRUE(
+      has(refusal([&] { AncfCable<>::from(bar, 4, too_fast); }), "element 1 of the reference curve is strained"));
   bar.pretension = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 1); }), "the pretension must be finite"));
   bar.pretension = 0.0;

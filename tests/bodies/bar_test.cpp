@@ -24,9 +24,7 @@ Bar rectangular(double height, double width) {
           .section = Rectangle{.height = height, .width = width},
           .material = Material{.density = 7800, .young = 2.1e11, .poisson = 0.25}};
 }
-Bar given() {
-  return {.length = 10.0, .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2}};
-}
+Bar given() { return {.length = 10.0, .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2}}; }
 
 /// GJ/G of a rectangle.
 double torsion_constant(double height, double width) {
@@ -79,7 +77,7 @@ TEST(Bar, RectangleTwistsAsSaintVenantSays) {
   EXPECT_NEAR(torsion_constant(2.0, 1.0) / 2.0, 0.2287, 5e-5);
   EXPECT_NEAR(torsion_constant(10.0, 1.0) / 10.0, 0.3123, 5e-5);
   EXPECT_DOUBLE_EQ(torsion_constant(2.0, 1.0), torsion_constant(1.0, 2.0));  // whichever side is the longer
-  double const b = 100.0, t = 1.0;  // a thin strip: b t³/3 (1 − 0.630 t/b)
+  double const b = 100.0, t = 1.0;                                           // a thin strip: b t³/3 (1 − 0.630 t/b)
   EXPECT_NEAR(torsion_constant(b, t), b * t * t * t / 3.0 * (1.0 - 0.630248 * t / b), 1e-5);
 }
 
@@ -108,24 +106,113 @@ struct BadBar {
 };
 
 std::vector<BadBar> const bad_bars = {
-    {"length", [](double x) { Bar b = circular(); b.length = x; return b; }},
-    {"circle's radius", [](double x) { Bar b = circular(); b.section = Circle{.radius = x}; return b; }},
+    {"length",
+     [](double x) {
+       Bar b = circular();
+       b.length = x;
+       return b;
+     }},
+    {"circle's radius",
+     [](double x) {
+       Bar b = circular();
+       b.section = Circle{.radius = x};
+       return b;
+     }},
     {"rectangle's height", [](double x) { return rectangular(x, 0.02); }},
     {"rectangle's width", [](double x) { return rectangular(0.03, x); }},
-    {"density", [](double x) { Bar b = circular(); b.material->density = x; return b; }},
-    {"Young's modulus", [](double x) { Bar b = circular(); b.material->young = x; return b; }},
-    {"EA", [](double x) { Bar b = given(); b.constants->EA = x; return b; }},
-    {"EI", [](double x) { Bar b = given(); b.constants->EI = x; return b; }},
-    {"mass per length", [](double x) { Bar b = given(); b.constants->mass_per_length = x; return b; }},
-    {"GA", [](double x) { Bar b = given(); b.constants->GA = x; return b; }, true},
-    {"GJ", [](double x) { Bar b = given(); b.constants->GJ = x; return b; }, true},
-    {"rotary inertia", [](double x) { Bar b = given(); b.constants->rotary_inertia = x; return b; }, true},
-    {"EI_y", [](double x) { Bar b = given(); b.constants->EI_y = x; return b; }, true},
-    {"GA_z", [](double x) { Bar b = given(); b.constants->GA_z = x; return b; }, true},
-    {"rotary_inertia_y", [](double x) { Bar b = given(); b.constants->rotary_inertia_y = x; return b; }, true},
-    {"axial damping", [](double x) { Bar b = given(); b.damping.axial = x; return b; }, true},
-    {"shear damping", [](double x) { Bar b = given(); b.damping.shear = x; return b; }, true},
-    {"bending damping", [](double x) { Bar b = given(); b.damping.bending = x; return b; }, true},
+    {"density",
+     [](double x) {
+       Bar b = circular();
+       b.material->density = x;
+       return b;
+     }},
+    {"Young's modulus",
+     [](double x) {
+       Bar b = circular();
+       b.material->young = x;
+       return b;
+     }},
+    {"EA",
+     [](double x) {
+       Bar b = given();
+       b.constants->EA = x;
+       return b;
+     }},
+    {"EI",
+     [](double x) {
+       Bar b = given();
+       b.constants->EI = x;
+       return b;
+     }},
+    {"mass per length",
+     [](double x) {
+       Bar b = given();
+       b.constants->mass_per_length = x;
+       return b;
+     }},
+    {"GA",
+     [](double x) {
+       Bar b = given();
+       b.constants->GA = x;
+       return b;
+     },
+     true},
+    {"GJ",
+     [](double x) {
+       Bar b = given();
+       b.constants->GJ = x;
+       return b;
+     },
+     true},
+    {"rotary inertia",
+     [](double x) {
+       Bar b = given();
+       b.constants->rotary_inertia = x;
+       return b;
+     },
+     true},
+    {"EI_y",
+     [](double x) {
+       Bar b = given();
+       b.constants->EI_y = x;
+       return b;
+     },
+     true},
+    {"GA_z",
+     [](double x) {
+       Bar b = given();
+       b.constants->GA_z = x;
+       return b;
+     },
+     true},
+    {"rotary_inertia_y",
+     [](double x) {
+       Bar b = given();
+       b.constants->rotary_inertia_y = x;
+       return b;
+     },
+     true},
+    {"axial damping",
+     [](double x) {
+       Bar b = given();
+       b.damping.axial = x;
+       return b;
+     },
+     true},
+    {"shear damping",
+     [](double x) {
+       Bar b = given();
+       b.damping.shear = x;
+       return b;
+     },
+     true},
+    {"bending damping",
+     [](double x) {
+       Bar b = given();
+       b.damping.bending = x;
+       return b;
+     },
+     true},
 };
 
 TEST(Bar, RefusesNumbersThatCannotBeMeant) {

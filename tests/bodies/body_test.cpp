@@ -83,8 +83,8 @@ Frame<double> reference_frame(B const& body, double s, double y) {
   std::vector<double> memory(6 * B::point_columns);
   Published<double> out;
   out.jacobian = memory.data();
-  body.template publish<double>(body.at(s, y), Mat3::Identity(), std::span<double const>(q),
-                                std::span<double const>(v), out);
+  body.template publish<double>(body.at(s, y), Mat3::Identity(), std::span<double const>(q), std::span<double const>(v),
+                                out);
   return out.frame;
 }
 

@@ -59,7 +59,9 @@ Vec3 thrown() {
   simulate(model, x, RungeKutta4<>{}, {.until = 0.2, .step = 1e-4}).run();
   return position(model, x, bar.at(0.3));
 }
-TEST(CholeskyCoordinates, FlyLikeTheCableItself) { EXPECT_LT((thrown<planar::AncfCable<>>() - thrown<PlanarCable>()).norm(), 1e-10); }
+TEST(CholeskyCoordinates, FlyLikeTheCableItself) {
+  EXPECT_LT((thrown<planar::AncfCable<>>() - thrown<PlanarCable>()).norm(), 1e-10);
+}
 
 TEST(CholeskyCoordinates, KnowTheBodysOwnCoordinates) {
   Cable const c = CholeskyCase::body(CholeskyCase::bar());

@@ -24,7 +24,9 @@ struct Swaying {
                       .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300},
                       .damping = {.axial = 0.1, .bending = 0.2}},
                      elements)),
-        q(std::size_t(body.coordinates())), v(q.size()), a(q.size()) {
+        q(std::size_t(body.coordinates())),
+        v(q.size()),
+        a(q.size()) {
     body.reference(q);
     for (std::size_t i = 0; i < q.size(); ++i) {
       q[i] += 0.01 * std::sin(3.0 * double(i));
@@ -49,23 +51,25 @@ TYPED_TEST(ElementBatches, EqualElementsOneByOne) {
   for (Index const elements : {1, 2, 3, 4, 5, 7, 8, 11}) {
     Swaying<TypeParam> const s(elements);
     Index next = 0;
-    for_each_unbalance<TypeParam, double>(s.body, 0, elements, s.qs(), s.vs(), s.as(), [&](Index e, Vec<double, n> const& x) {
-      ASSERT_EQ(e, next++);
-      Vec<double, n> inertia, force;
-      s.body.template inertia<double>(e, s.qs(), s.as(), inertia);
-      s.body.template force<double>(e, s.qs(), s.vs(), force);
-      EXPECT_LT((x - (inertia - force)).norm(), 1e-13 * force.norm());
-    });
+    for_each_unbalance<TypeParam, double>(s.body, 0, elements, s.qs(), s.vs(), s.as(),
+                                          [&](Index e, Vec<double, n> const& x) {
+                                            ASSERT_EQ(e, next++);
+                                            Vec<double, n> inertia, force;
+                                            s.body.template inertia<double>(e, s.qs(), s.as(), inertia);
+                                            s.body.template force<double>(e, s.qs(), s.vs(), force);
+                                            EXPECT_LT((x - (inertia - force)).norm(), 1e-13 * force.norm());
+                                          });
     EXPECT_EQ(next, elements);
     next = 0;
-    for_each_element_tangent<TypeParam>(s.body, 0, elements, s.qs(), s.vs(), 1.5, 0.1, 0.7, [&](Index e, auto const& k) {
-      ASSERT_EQ(e, next++);
-      Mat<double, n, n> expected, mass;
-      s.body.tangent(e, s.qs(), s.vs(), 0.7, 0.1, expected);
-      s.body.mass(e, s.qs(), mass);
-      expected += 1.5 * mass;
-      EXPECT_LT((k - expected).norm(), 1e-13 * expected.norm());
-    });
+    for_each_element_tangent<TypeParam>(s.body, 0, elements, s.qs(), s.vs(), 1.5, 0.1, 0.7,
+                                        [&](Index e, auto const& k) {
+                                          ASSERT_EQ(e, next++);
+                                          Mat<double, n, n> expected, mass;
+                                          s.body.tangent(e, s.qs(), s.vs(), 0.7, 0.1, expected);
+                                          s.body.mass(e, s.qs(), mass);
+                                          expected += 1.5 * mass;
+                                          EXPECT_LT((k - expected).norm(), 1e-13 * expected.norm());
+                                        });
     EXPECT_EQ(next, elements);
   }
 }

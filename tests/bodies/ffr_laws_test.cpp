@@ -10,7 +10,12 @@ namespace ffr_laws_test {
 struct NodalFfrCase {
   static Bar bar() {
     return {.length = 1.3,
-            .constants = BarConstants{.EA = 40.0, .EI = 3.0, .mass_per_length = 0.7, .GJ = 2.0, .rotary_inertia = 0.02, .EI_y = 5.0,
+            .constants = BarConstants{.EA = 40.0,
+                                      .EI = 3.0,
+                                      .mass_per_length = 0.7,
+                                      .GJ = 2.0,
+                                      .rotary_inertia = 0.02,
+                                      .EI_y = 5.0,
                                       .rotary_inertia_y = 0.03},
             .placement = Placement::at({0.4, -0.3, 0.2}, {0.3, -0.5, 0.9}),
             .damping = {.axial = 0.02, .shear = 0.03, .bending = 0.01}};
@@ -29,10 +34,9 @@ struct MeanAxesFfrCase : StiffenedFfrCase {
   }
 };
 
-bool const ffr_laws_obey[] = {
-    obeys<NodalFfrCase, BodyLaws, FlexibleBodyLaws>("NodalFfr"),
-    obeys<StiffenedFfrCase, BodyLaws, FlexibleBodyLaws>("StiffenedFfr"),
-    obeys<MeanAxesFfrCase, BodyLaws>("MeanAxesFfr")};
+bool const ffr_laws_obey[] = {obeys<NodalFfrCase, BodyLaws, FlexibleBodyLaws>("NodalFfr"),
+                              obeys<StiffenedFfrCase, BodyLaws, FlexibleBodyLaws>("StiffenedFfr"),
+                              obeys<MeanAxesFfrCase, BodyLaws>("MeanAxesFfr")};
 
 }  // namespace ffr_laws_test
 }  // namespace polybody

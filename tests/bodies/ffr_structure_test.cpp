@@ -1,4 +1,5 @@
-// What a floating frame's body is made of: inertia shape integrals, intermediate element frames, bases; and what is refused.
+// What a floating frame's body is made of: inertia shape integrals, intermediate element frames, bases; and what is
+// refused.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr.hpp>
@@ -52,8 +53,9 @@ TEST(Structure, InertiaOfARigidFrameIsExactWhateverTheMesh) {
   }
 }
 
-// A rigid motion of all nodes is a rigid motion of every material point, off-axis ones, too: with Φ the six infinitesimal rigid motions
-// ΦᵀMΦ is the inertia of the rigid frame, KΦ = 0, and first- and second-order integrals follow from it.
+// A rigid motion of all nodes is a rigid motion of every material point, off-axis ones, too: with Φ the six
+// infinitesimal rigid motions ΦᵀMΦ is the inertia of the rigid frame, KΦ = 0, and first- and second-order integrals
+// follow from it.
 TEST(Structure, RigidMotionsOfTheNodesCarryTheBody) {
   Structure const s = structure_of(crooked(), {2, 1, 2, 1});
   Expected const e(crooked());
@@ -73,7 +75,8 @@ TEST(Structure, RigidMotionsOfTheNodesCarryTheBody) {
   for (int k = 0; k < 3; ++k) {
     Mat3 const turned = skew<double>(Vec3::Unit(k)) * e.inertia, change = turned + turned.transpose();
     for (std::size_t p = 0; p < 6; ++p)
-      EXPECT_NEAR(x.inertia_by[p][3 + k], change(symmetric_row[p], symmetric_column[p]), 1e-12 * e.inertia.norm()) << k << ' ' << p;
+      EXPECT_NEAR(x.inertia_by[p][3 + k], change(symmetric_row[p], symmetric_column[p]), 1e-12 * e.inertia.norm())
+          << k << ' ' << p;
     // H = ∫ρ ũ S: for rotations it is J, for translations that of ∫ρ u₀
     EXPECT_LT((x.coupling.col(3 + k) - e.inertia.col(k)).norm(), 1e-12 * e.inertia.norm());
     EXPECT_LT((x.coupling.col(k) - e.first.cross(Vec3::Unit(k))).norm(), 1e-12 * e.first.norm());
@@ -81,7 +84,8 @@ TEST(Structure, RigidMotionsOfTheNodesCarryTheBody) {
 }
 
 TEST(Structure, IntermediateAxesAreOrthonormalWherePointsEvenAlongY) {
-  for (Vec3 const& d : {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, -3, 0), Vec3(1, 2, -3), Vec3(1e-10, 1, 0), Vec3(0, 0, -1)}) {
+  for (Vec3 const& d :
+       {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, -3, 0), Vec3(1, 2, -3), Vec3(1e-10, 1, 0), Vec3(0, 0, -1)}) {
     Mat3 const c = intermediate_axes(d);
     EXPECT_LT((c.transpose() * c - Mat3::Identity()).norm(), 1e-9) << d.transpose();
     EXPECT_NEAR(c.determinant(), 1.0, 1e-9);
@@ -102,12 +106,17 @@ VecX free_frequencies(Ffr const& body) {
   MatX m, k = MatX::Zero(body.speeds(), body.speeds());
   body.mass(0, {q.data(), std::size_t(q.size())}, m);
   k.bottomRightCorner(body.deformations(), body.deformations()) = body.integrals().stiffness;
-  return Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(k, m).eigenvalues().tail(body.deformations()).cwiseMax(0.0).cwiseSqrt();
+  return Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(k, m)
+      .eigenvalues()
+      .tail(body.deformations())
+      .cwiseMax(0.0)
+      .cwiseSqrt();
 }
 // E1, with EI = ρA = L = 1, other motions far away.
 Bar unit() {
   return {.length = 1.0,
-          .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 10.0, .rotary_inertia = 1e-7, .EI_y = 1e4}};
+          .constants = BarConstants{
+              .EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 10.0, .rotary_inertia = 1e-7, .EI_y = 1e4}};
 }
 double const clamped_free[3] = {3.516015268, 22.03449156, 61.69721441}, free_free[2] = {22.37328545, 61.67282287};
 
@@ -116,10 +125,12 @@ TEST(Bases, GiveTheFrequenciesOfTheBeam) {
   Structure const s = structure_of(unit(), 16);
   Ffr const nodal(s, nodal_coordinates(s)), held(s, held_modes(s, 4)), cb(s, craig_bampton(s, {0, 16}, 5));
   for (Ffr const* body : {&nodal, &held, &cb})
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(held_frequencies(*body)[i] / clamped_free[i], 1.0, 1e-3) << body->deformations();
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(held_frequencies(*body)[i] / clamped_free[i], 1.0, 1e-3) << body->deformations();
   Ffr const mean(s, free_interface_modes(s, 3)), cb_mean(s, craig_bampton(s, {0, 16}, 5, true));
   for (Ffr const* body : {&nodal, &cb, &mean, &cb_mean})
-    for (int i = 0; i < 2; ++i) EXPECT_NEAR(free_frequencies(*body)[i] / free_free[i], 1.0, 1e-3) << body->deformations();
+    for (int i = 0; i < 2; ++i)
+      EXPECT_NEAR(free_frequencies(*body)[i] / free_free[i], 1.0, 1e-3) << body->deformations();
 }
 
 // Mean axes: momentum and moment of momentum of the deformation vanish.
@@ -133,7 +144,8 @@ TEST(Bases, MeanAxesDecoupleTheFrame) {
   }
 }
 
-// Statics does not depend on the frame: a free tip force on a clamped bar, from a frame tied to either end or simply supported.
+// Statics does not depend on the frame: a free tip force on a clamped bar, from a frame tied to either end or simply
+// supported.
 TEST(Bases, SimplySupportedFrameHasTheSameFrequencies) {
   Structure const s = structure_of(unit(), 8);
   Ffr const a(s, nodal_coordinates(s)), b(s, nodal_coordinates(s, ReferenceConditions::simply_supported(0, 8)));

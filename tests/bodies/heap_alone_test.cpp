@@ -84,9 +84,7 @@ TEST(Heap, SpatialLrvfTakesNone) {
 }
 TEST(Heap, LrvfTakesNone) { expect_no_heap(planar::Lrvf::from(bar, 3)); }
 TEST(Heap, GreenCableTakesNone) { expect_no_heap(planar::AncfCable<>::from(bar, 3)); }
-TEST(Heap, EngineeringCableTakesNone) {
-  expect_no_heap(planar::AncfCable<planar::EngineeringStrain>::from(bar, 3));
-}
+TEST(Heap, EngineeringCableTakesNone) { expect_no_heap(planar::AncfCable<planar::EngineeringStrain>::from(bar, 3)); }
 
 }  // namespace
 }  // namespace polybody

@@ -36,7 +36,8 @@ TEST_F(CurvedLrvf, NodesStandOnTheCurveWithoutStrain) {
     Placement const expected = helix(1.5, 0.8)(s);
     auto const f = see<double>(body.at(s, 0.05, -0.02), Mat3::Identity(), q, rest).marker.frame;
     EXPECT_LT((f.A - place.axes * expected.axes).norm(), 1e-14);
-    EXPECT_LT((f.r - place.origin - place.axes * (expected.origin + expected.axes * Vec3(0, 0.05, -0.02))).norm(), 1e-14);
+    EXPECT_LT((f.r - place.origin - place.axes * (expected.origin + expected.axes * Vec3(0, 0.05, -0.02))).norm(),
+              1e-14);
     EXPECT_EQ(body.section_strains(body.at(s), view(q)).norm(), 0.0);
   }
 }

@@ -25,14 +25,15 @@ double const l = 1.3, EI = 40;
 
 /// Bent by φ about z to either side of its middle, then carried by the turn a about x.
 VecX bent(double phi, double a) {
-  VecX const q = nodes_of(1, [&](double i) { return Placement::at(Vec3((i - 0.5) * l, 0, 0), Vec3(0, 0, (i - 0.5) * phi)); });
+  VecX const q =
+      nodes_of(1, [&](double i) { return Placement::at(Vec3((i - 0.5) * l, 0, 0), Vec3(0, 0, (i - 0.5) * phi)); });
   return carried(Placement::at(Vec3::Zero(), Vec3(a, 0, 0)), q);
 }
 
 /// What `Direct` makes of it. By the product of quaternions Ψ₂,₁ = A/sin(A/2) [cos(φ/4) sin(a/2) x ± sin(φ/4) p], where
-/// p = cos(a/2) z − sin(a/2) y and cos(A/2) = cos(a/2) cos(φ/4). Hence Ψ = a′ x in the middle, a′ = A cos(φ/4) sin(a/2)/sin(A/2),
-/// and Jr(Ψ), which turns by −a′/2 and scales by 2 sin(a′/2)/a′ across x, makes of Ψ₂ − Ψ₁ the turn l K of size
-/// 4 tan(φ/4) sin(a′/2)/sin(a/2), about z leaning by β = (a − a′)/2 towards −y. Here |a| < π.
+/// p = cos(a/2) z − sin(a/2) y and cos(A/2) = cos(a/2) cos(φ/4). Hence Ψ = a′ x in the middle, a′ = A cos(φ/4)
+/// sin(a/2)/sin(A/2), and Jr(Ψ), which turns by −a′/2 and scales by 2 sin(a′/2)/a′ across x, makes of Ψ₂ − Ψ₁ the turn
+/// l K of size 4 tan(φ/4) sin(a′/2)/sin(a/2), about z leaning by β = (a − a′)/2 towards −y. Here |a| < π.
 struct Turn {
   double size, beta;
   Vec3 curvature() const { return size / l * Vec3(0, -std::sin(beta), std::cos(beta)); }
@@ -83,7 +84,8 @@ TEST(DirectLrvf, SpuriousEnergyFallsWithTheSquareOfTheTurnOfAnElement) {
   double const series = 1.0 / 24.0 + a * c / 32.0 * (2.0 * c / a - 1.0 / (s * s));
   EXPECT_NEAR(series, 0.010758, 1e-6);
   for (double const phi : {0.1, 0.2, 0.4}) {
-    double const energy = 0.5 * EI * phi * phi / l, gained = strain_energy_of(element<Direct>(), bent(phi, a)) / energy - 1.0;
+    double const energy = 0.5 * EI * phi * phi / l,
+                 gained = strain_energy_of(element<Direct>(), bent(phi, a)) / energy - 1.0;
     EXPECT_NEAR(gained / (phi * phi), series, 3e-4 * phi * phi);
   }
 }
@@ -106,7 +108,8 @@ TEST(DirectLrvf, ItsForcesDoWorkInARigidTurn) {
 // At a = π the nodes' vectors change to their complements: β changes sign, the curvature about y jumps by 2 K sin β.
 TEST(DirectLrvf, CurvatureJumpsWhereTheNodesPassAHalfTurn) {
   double const phi = 1.0, step = 1e-9;
-  Vec3 const before = strain<Direct>(bent(phi, pi - step)).tail<3>(), after = strain<Direct>(bent(phi, pi + step)).tail<3>();
+  Vec3 const before = strain<Direct>(bent(phi, pi - step)).tail<3>(),
+             after = strain<Direct>(bent(phi, pi + step)).tail<3>();
   Turn const expected = turn(phi, pi);
   double const jump = 2.0 * expected.size / l * std::sin(expected.beta);
   EXPECT_GT(jump, 0.07);
@@ -118,7 +121,8 @@ TEST(DirectLrvf, CurvatureJumpsWhereTheNodesPassAHalfTurn) {
   EXPECT_LT(jumpless.norm(), 1e-14);
 }
 
-// Only one node beyond π: its vector is continued on the sheet of the other, |Ψ₂| > π, so the short way is interpolated.
+// Only one node beyond π: its vector is continued on the sheet of the other, |Ψ₂| > π, so the short way is
+// interpolated.
 TEST(DirectLrvf, AnElementAcrossAHalfTurnTakesTheShortWay) {
   VecX const q = nodes_of(1, [&](double i) { return Placement::at(Vec3(i * l, 0, 0), Vec3(3.0 + 0.4 * i, 0, 0)); });
   EXPECT_NEAR(strain<Direct>(q)[3], 0.4 / l, 1e-13);

@@ -34,7 +34,8 @@ void expect_strains(VecX const& q, Vec6 const& expected, double tolerance = 1e-1
   EXPECT_NEAR(strain_energy_of(beam, q), 0.65 * expected.cwiseAbs2().dot(stiffness), 1e3 * tolerance);
 }
 
-/// Sections that step by the rotation φ of their own axes, on chords of length l along the x axis of the sections between.
+/// Sections that step by the rotation φ of their own axes, on chords of length l along the x axis of the sections
+/// between.
 VecX stepped(Vec3 const& phi) {
   Placement at;
   Mat3 const half = exp_so3<double>(phi * 0.5);
@@ -107,13 +108,15 @@ TEST(SpatialLrvf, StrainsDoNotFeelARigidMotionThroughManyTurns) {
     expect_strains(carried(Placement::at(Vec3(0.1 * k, -3, 2), k * pi / 40.0 * axis), q), expected, 2e-13);
 }
 
-// The same by its own coordinates, step by step with ⊞, so that quaternions change sign on the way; only the last node turns.
+// The same by its own coordinates, step by step with ⊞, so that quaternions change sign on the way; only the last node
+// turns.
 TEST(SpatialLrvf, ATurningTipTwistsTheLastElementWithoutAJumpOfTheOthers) {
   Lrvf<> const beam = straight();
   VecX q(beam.coordinates()), delta = VecX::Zero(beam.speeds()), next = q;
   beam.reference(std::span<double>(q.data(), std::size_t(q.size())));
   for (Index i = 0; i <= elements; ++i) delta[6 * i + 3] = 0.05 * double(i);  // about x, in proportion to s
-  for (int k = 1; k <= 240; ++k) {  // until the tip has turned by 48 rad, each element by 12: past its half turn and back
+  for (int k = 1; k <= 240;
+       ++k) {  // until the tip has turned by 48 rad, each element by 12: past its half turn and back
     beam.plus<double>(numbers(q), numbers(delta), std::span<double>(next.data(), std::size_t(next.size())));
     q = next;
     double const turn = 0.05 * k, shortest = std::remainder(turn, 2 * pi);

@@ -11,8 +11,8 @@
 namespace polybody {
 namespace matrix_structure_test {
 
-/// n equal trilinear bricks in a row along x, from `corner`; isotropic, of the total size `size`. Nodes: four of x = 0, and
-/// so on.
+/// n equal trilinear bricks in a row along x, from `corner`; isotropic, of the total size `size`. Nodes: four of x = 0,
+/// and so on.
 struct Block {
   Index n = 2;
   Vec3 size{1.2, 0.3, 0.2}, corner{-0.4, 0.1, 0.3};
@@ -56,7 +56,8 @@ struct Block {
         stiffness.block<24, 24>(12 * brick, 12 * brick) += w * b.transpose() * law * b;
         for (int i = 0; i < 8; ++i)
           for (int j = 0; j < 8; ++j)
-            for (int k = 0; k < 3; ++k) mass(12 * brick + 3 * i + k, 12 * brick + 3 * j + k) += density * w * shape[i] * shape[j];
+            for (int k = 0; k < 3; ++k)
+              mass(12 * brick + 3 * i + k, 12 * brick + 3 * j + k) += density * w * shape[i] * shape[j];
       }
   }
   double total() const { return density * size.prod(); }
@@ -64,7 +65,8 @@ struct Block {
   /// About its centre: m/12 (b² + c²), …
   Mat3 inertia() const {
     Vec3 const squares = size.cwiseAbs2();
-    return total() / 12.0 * Vec3(squares[1] + squares[2], squares[2] + squares[0], squares[0] + squares[1]).asDiagonal();
+    return total() / 12.0 *
+           Vec3(squares[1] + squares[2], squares[2] + squares[0], squares[0] + squares[1]).asDiagonal();
   }
   Structure structure() const { return structure_of(mass.sparseView(), stiffness.sparseView(), nodes); }
 };
@@ -112,7 +114,8 @@ TEST(MatrixStructure, StretchesAsABar) {
     VecX load = VecX::Zero(body.deformations());
     for (Index i = 0; i < last_face; ++i) load += 0.25 * force * body.node(12 + i).S.row(0).transpose();
     VecX const q = body.integrals().stiffness.ldlt().solve(load);
-    for (Index i = 0; i < last_face; ++i) EXPECT_LT((body.node(12 + i).S * q - Vec3(stretch, 0.0, 0.0)).norm(), 1e-12 * stretch);
+    for (Index i = 0; i < last_face; ++i)
+      EXPECT_LT((body.node(12 + i).S * q - Vec3(stretch, 0.0, 0.0)).norm(), 1e-12 * stretch);
   };
   tip(Ffr(s, nodal_coordinates(s, face)));
   tip(Ffr(s, held_modes(s, 36, face)));
@@ -187,7 +190,8 @@ TEST_F(MatrixBody, MovesRigidlyAsTheBlock) {
   Vec3 const v0 = vector3(), omega = vector3();
   Mat3 const axes = BlockCase::place().axes;
   Vec3 const centre = BlockCase::place().origin + axes * block.centre(), own = axes.transpose() * omega;
-  double const expected = 0.5 * block.total() * (v0 + omega.cross(centre)).squaredNorm() + 0.5 * own.dot(block.inertia() * own);
+  double const expected =
+      0.5 * block.total() * (v0 + omega.cross(centre)).squaredNorm() + 0.5 * own.dot(block.inertia() * own);
   EXPECT_NEAR(kinetic_energy(q, rigid_velocity(q, v0, omega)), expected, 1e-13 * expected);
 }
 
@@ -221,11 +225,12 @@ TEST(MatrixStructure, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(has(told([](Block& b) { b.nodes.pop_back(); }),
                   "mass matrix is 36×36, but 11 nodes with three displacements each need 33×33"));
   EXPECT_TRUE(has(told([](Block& b) { b.stiffness.conservativeResize(35, 36); }), "stiffness matrix is 35×36"));
-  EXPECT_TRUE(has(told([](Block& b) { b.mass(4, 7) = INFINITY; }), "not finite in row 4 (y of node 1), column 7 (y of node 2)"));
+  EXPECT_TRUE(has(told([](Block& b) { b.mass(4, 7) = INFINITY; }),
+                  "not finite in row 4 (y of node 1), column 7 (y of node 2)"));
   EXPECT_TRUE(has(told([](Block& b) { b.stiffness(5, 0) *= 1.001; }),
                   "stiffness matrix is not symmetric: row 5 (z of node 1), column 0 (x of node 0)"));
-  EXPECT_TRUE(
-      has(told([](Block& b) { b.mass.triangularView<Eigen::StrictlyUpper>().setZero(); }), "mass matrix is not symmetric"));
+  EXPECT_TRUE(has(told([](Block& b) { b.mass.triangularView<Eigen::StrictlyUpper>().setZero(); }),
+                  "mass matrix is not symmetric"));
 }
 
 TEST(MatrixStructure, RefusesAMassThatIsNotOfSolidElements) {
@@ -251,8 +256,9 @@ TEST(MatrixStructure, RefusesAStiffnessThatResistsRigidMotions) {
 /// The block in files of its own; lines of a symmetric matrix, its lower triangle.
 struct MatrixFiles : testing::Test {
   Block const block{1, 0.3};
-  std::filesystem::path const folder = std::filesystem::path(testing::TempDir()) /
-                                       (std::string("polybody_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::filesystem::path const folder =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("polybody_") + testing::UnitTest::GetInstance()->current_test_info()->name());
   std::string const mass = (folder / "m.mtx").string(), stiffness = (folder / "k.mtx").string(),
                     nodes = (folder / "nodes.txt").string();
   std::string const banner = "%%MatrixMarket matrix coordinate real symmetric";
@@ -262,7 +268,8 @@ struct MatrixFiles : testing::Test {
     write(mass, lines_of(block.mass, true));
     write(stiffness, lines_of(block.stiffness, false));
     std::vector<std::string> lines = {"# x y z [m]"};
-    for (Vec3 const& r : block.nodes) lines.push_back(text(r[0]) + "  " + text(r[1]) + " " + text(r[2]) + "  # a corner");
+    for (Vec3 const& r : block.nodes)
+      lines.push_back(text(r[0]) + "  " + text(r[1]) + " " + text(r[2]) + "  # a corner");
     write(nodes, lines);
   }
   ~MatrixFiles() override { std::filesystem::remove_all(folder); }
@@ -308,7 +315,8 @@ TEST_F(MatrixFiles, BrokenMatricesAreNamedByFileAndLine) {
   EXPECT_TRUE(has(told(1, "1 2 3"), where + "1: this is not"));
   EXPECT_TRUE(has(told(3, "24 24"), where + "3: '24 24' is not the number of rows"));
   EXPECT_TRUE(has(told(3, "27 27 108"), where + "3: the matrix is 27×27, but the 8 nodes of " + nodes + " need 24×24"));
-  EXPECT_TRUE(has(told(3, "24 24 107"), where + "111: '24 24 0.10666666666666667' is not the end of the file after 107 entries"));
+  EXPECT_TRUE(has(told(3, "24 24 107"),
+                  where + "111: '24 24 0.10666666666666667' is not the end of the file after 107 entries"));
   EXPECT_TRUE(has(told(3, "24 24 109"), where + "112: the file ends after 108 of 109 entries; it is truncated"));
   EXPECT_TRUE(has(told(7, "7 1"), where + "7: '7 1' is not a row, a column and a finite number"));
   EXPECT_TRUE(has(told(7, "7 1 nan"), where + "7: "));

@@ -116,9 +116,9 @@ TEST(AncfCable, GreenEnergyIsIntegratedExactly) {
 // The consistent mass of cubic shapes, Aρ l/420 [156 22l 54 −13l; … 4l² 13l −3l²; …]  [Przemieniecki 1968, §11.4].
 TEST(AncfCable, MassIsTheConsistentOneOfCubicShapes) {
   Mat<double, 4, 4> shape;
-  shape << 156, 22 * l, 54, -13 * l,           //
-      22 * l, 4 * l * l, 13 * l, -3 * l * l,   //
-      54, 13 * l, 156, -22 * l,                //
+  shape << 156, 22 * l, 54, -13 * l,          //
+      22 * l, 4 * l * l, 13 * l, -3 * l * l,  //
+      54, 13 * l, 156, -22 * l,               //
       -13 * l, -3 * l * l, -22 * l, 4 * l * l;
   shape *= 2.0 * l / 420.0;
   Mat<double, 8, 8> m, expected = Mat<double, 8, 8>::Zero();
@@ -163,9 +163,7 @@ TEST(AncfCable, PointsOffTheAxisStandOnTheNormal) {
 }
 
 // A cable resists neither shear nor torsion and asks for no such constant.
-TEST(AncfCable, NeedsNoShearStiffness) {
-  EXPECT_NO_THROW((void)AncfCable<>::from(CableCase<GreenStrain>::bar(), 1));
-}
+TEST(AncfCable, NeedsNoShearStiffness) { EXPECT_NO_THROW((void)AncfCable<>::from(CableCase<GreenStrain>::bar(), 1)); }
 
 }  // namespace planar_ancf_cable_test
 }  // namespace polybody

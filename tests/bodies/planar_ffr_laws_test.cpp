@@ -20,9 +20,8 @@ struct StiffenedPlanarFfrCase : PlanarFfrCase {
   static planar::Ffr body(Bar const& bar) { return planar::Ffr::from(bar, 2, {.stiffening = true}); }
 };
 
-bool const planar_ffr_laws_obey[] = {
-    obeys<PlanarFfrCase, BodyLaws, FlexibleBodyLaws>("PlanarFfr"),
-    obeys<StiffenedPlanarFfrCase, BodyLaws, FlexibleBodyLaws>("StiffenedPlanarFfr")};
+bool const planar_ffr_laws_obey[] = {obeys<PlanarFfrCase, BodyLaws, FlexibleBodyLaws>("PlanarFfr"),
+                                     obeys<StiffenedPlanarFfrCase, BodyLaws, FlexibleBodyLaws>("StiffenedPlanarFfr")};
 
 }  // namespace planar_ffr_laws_test
 }  // namespace polybody

@@ -11,8 +11,7 @@ namespace planar_lrvf_test {
 struct LrvfCase {
   static Bar bar() {
     return {.length = 1.3,
-            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300,
-                                      .rotary_inertia = 0.05},
+            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300, .rotary_inertia = 0.05},
             .placement = Placement::planar(0.4, -0.3, 0.7),
             .damping = {.axial = 0.01, .shear = 0.02, .bending = 0.03}};
   }

@@ -18,10 +18,11 @@ namespace rigid_euler_parameters_test {
 
 struct EulerCase {
   static Bar bar() {
-    return {.length = 1.3,
-            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .rotary_inertia = 0.05,
-                                      .rotary_inertia_y = 0.03},
-            .placement = Placement::at({0.4, -0.3, 0.2}, {0.3, -0.5, 0.9})};
+    return {
+        .length = 1.3,
+        .constants =
+            BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .rotary_inertia = 0.05, .rotary_inertia_y = 0.03},
+        .placement = Placement::at({0.4, -0.3, 0.2}, {0.3, -0.5, 0.9})};
   }
   static Rigid<EulerParameters> body(Bar const& bar) { return Rigid<EulerParameters>::from(bar); }
 };
@@ -50,10 +51,14 @@ struct Mechanism {
   using Ball = Joint<Spherical, Constraint>;
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Body>, Joints<Ball, Pin>> model{Gravity{0, 0, -9.81}};
-  BodyHandle<Body> top = model.add(Body(1.0, Vec3(0.02, 0.01, 0.03).asDiagonal(), Placement::at({0.3, 0.1, 0.2})), "top");
-  BodyHandle<Body> link = model.add(Body(0.5, Vec3(0.01, 0.02, 0.02).asDiagonal(), Placement::at({0.8, 0.1, 0.2})), "link");
-  ElementHandle<Ball> pivot = model.connect(Ball{}, model.ground().at({0, 0, 0}), top.at(Vec3(-0.3, -0.1, -0.2)), "pivot");
-  ElementHandle<Pin> pin = model.connect(Pin{Revolute{.axis = Vec3::UnitY()}, {}}, top.at(Vec3(0.2, 0, 0)), link.at(Vec3(-0.3, 0, 0)), "pin");
+  BodyHandle<Body> top =
+      model.add(Body(1.0, Vec3(0.02, 0.01, 0.03).asDiagonal(), Placement::at({0.3, 0.1, 0.2})), "top");
+  BodyHandle<Body> link =
+      model.add(Body(0.5, Vec3(0.01, 0.02, 0.02).asDiagonal(), Placement::at({0.8, 0.1, 0.2})), "link");
+  ElementHandle<Ball> pivot =
+      model.connect(Ball{}, model.ground().at({0, 0, 0}), top.at(Vec3(-0.3, -0.1, -0.2)), "pivot");
+  ElementHandle<Pin> pin = model.connect(Pin{Revolute{.axis = Vec3::UnitY()}, {}}, top.at(Vec3(0.2, 0, 0)),
+                                         link.at(Vec3(-0.3, 0, 0)), "pin");
   State x = model.reference_state();
 
   Mechanism() {

@@ -10,10 +10,11 @@ namespace rigid_test {
 
 struct RigidCase {
   static Bar bar() {
-    return {.length = 1.3,
-            .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0,
-                                      .rotary_inertia = 0.05, .rotary_inertia_y = 0.02},
-            .placement = Placement::at({0.4, -0.3, 0.8}, {0.5, -1.0, 0.7})};
+    return {
+        .length = 1.3,
+        .constants =
+            BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .rotary_inertia = 0.05, .rotary_inertia_y = 0.02},
+        .placement = Placement::at({0.4, -0.3, 0.8}, {0.5, -1.0, 0.7})};
   }
   static Rigid<> body(Bar const& bar) { return Rigid<>::from(bar); }
 };
@@ -50,8 +51,8 @@ TEST(Rigid, BarHasTheInertiaOfACylinder) {
 // A cuboid: m (b² + c²)/12 about each axis; height along y, width along z.
 TEST(Rigid, BarHasTheInertiaOfACuboid) {
   double const l = 1.3, h = 0.2, w = 0.1, m = 500 * l * h * w;
-  Bar const bar{.length = l, .section = Rectangle{.height = h, .width = w},
-                .material = Material{.density = 500, .young = 1e9}};
+  Bar const bar{
+      .length = l, .section = Rectangle{.height = h, .width = w}, .material = Material{.density = 500, .young = 1e9}};
   Vec3 const expected = m / 12.0 * Vec3(h * h + w * w, l * l + w * w, l * l + h * h);
   EXPECT_LT((Rigid<>::from(bar).inertia() - Mat3(expected.asDiagonal())).norm(), 1e-13);
 }

@@ -19,9 +19,11 @@ using namespace polybody;
 namespace sliding_test {
 
 Bar bar(bool planar) {
-  return {.length = 1.5,
-          .constants = BarConstants{.EA = 400.0, .EI = 3.0, .mass_per_length = 0.7, .GA = 150.0, .GJ = 2.0, .rotary_inertia = 0.02},
-          .placement = planar ? Placement::planar(0.4, -0.3, 0.7) : Placement::at({0.4, -0.3, 0.2}, {0.5, 0.2, -0.7})};
+  return {
+      .length = 1.5,
+      .constants =
+          BarConstants{.EA = 400.0, .EI = 3.0, .mass_per_length = 0.7, .GA = 150.0, .GJ = 2.0, .rotary_inertia = 0.02},
+      .placement = planar ? Placement::planar(0.4, -0.3, 0.7) : Placement::at({0.4, -0.3, 0.2}, {0.5, 0.2, -0.7})};
 }
 
 template <class T>
@@ -155,7 +157,8 @@ TEST(Sliding, SaysThatAPointHasGoneOffTheEnd) {
   bent.q[bent.n - 1] = 1.5 + 0.49;
   EXPECT_NO_THROW(bent.at(bent.q, jacobian));
   bent.q[bent.n - 1] = 1.5 + 0.51;
-  EXPECT_TRUE(has(message_of<OffTheEnd>([&] { bent.at(bent.q, jacobian); }), "gone off the end of its body, to s = 2.01"));
+  EXPECT_TRUE(
+      has(message_of<OffTheEnd>([&] { bent.at(bent.q, jacobian); }), "gone off the end of its body, to s = 2.01"));
   bent.q[bent.n - 1] = -0.51;
   EXPECT_THROW(bent.at(bent.q, jacobian), OffTheEnd);
 }
@@ -168,7 +171,8 @@ TEST(Sliding, GivesItsPointsNoAxes) {
   auto const ground = model.ground().at({0, 0, 0});
   EXPECT_NO_THROW(model.connect(Ball{}, ground, beam.at(Slider{}), "ball"));
   EXPECT_NO_THROW(model.connect(Pin{}, ground, beam.at(0.0), "pin at the end"));
-  EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, ground, beam.at(Slider{}), "pin"); }), "\"pin\" needs axes, but a point that"));
+  EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, ground, beam.at(Slider{}), "pin"); }),
+                  "\"pin\" needs axes, but a point that"));
 }
 
 static_assert(Body<Sliding<AncfCable<>>> && Body<Sliding<planar::AncfCable<>>>);

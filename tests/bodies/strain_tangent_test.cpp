@@ -42,16 +42,17 @@ struct Swaying {
 
 template <class B>
 struct StrainTangent : testing::Test {
-  /// Undamped the tangent comes from its lower half; where one group is damped it has none of that, neither for the others.
-  std::array<Damping, 4> const dampings = {
-      Damping{}, Damping{.axial = 0.01}, Damping{.bending = 0.03}, Damping{.axial = 0.01, .shear = 0.02, .bending = 0.03}};
+  /// Undamped the tangent comes from its lower half; where one group is damped it has none of that, neither for the
+  /// others.
+  std::array<Damping, 4> const dampings = {Damping{}, Damping{.axial = 0.01}, Damping{.bending = 0.03},
+                                           Damping{.axial = 0.01, .shear = 0.02, .bending = 0.03}};
 };
-using Bodies_ =
-    testing::Types<planar::AncfCable<>, AncfCable<>, AncfCable<EngineeringStrain>, AncfBeam<ElasticLine>, AncfBeam<Continuum<>>>;
+using Bodies_ = testing::Types<planar::AncfCable<>, AncfCable<>, AncfCable<EngineeringStrain>, AncfBeam<ElasticLine>,
+                               AncfBeam<Continuum<>>>;
 TYPED_TEST_SUITE(StrainTangent, Bodies_);
 
-// Differences of fourth order: (8 (f(h) − f(−h)) − f(2h) + f(−2h))/12h, with steps h of a thousandth of an element's length exact but
-// for some 1e-12 and the rounding of some 1e-13/1e-3 in the forces. The force is linear in the speeds.
+// Differences of fourth order: (8 (f(h) − f(−h)) − f(2h) + f(−2h))/12h, with steps h of a thousandth of an element's
+// length exact but for some 1e-12 and the rounding of some 1e-13/1e-3 in the forces. The force is linear in the speeds.
 TYPED_TEST(StrainTangent, IsTheForcesGradientWhicheverGroupsAreDamped) {
   constexpr int n = TypeParam::element_columns;
   for (Damping const& damping : this->dampings) {
@@ -61,7 +62,9 @@ TYPED_TEST(StrainTangent, IsTheForcesGradientWhicheverGroupsAreDamped) {
     s.body.tangent(2, s.view(s.q), s.view(s.v), 0.0, 1.0, rates);
     for (int j = 0; j < n; ++j) {
       VecX const unit = VecX::Unit(s.q.size(), s.body.first_column(2) + j);
-      auto const odd = [&](double h) { return (s.force(2, s.q - h * unit, s.v) - s.force(2, s.q + h * unit, s.v)).eval(); };
+      auto const odd = [&](double h) {
+        return (s.force(2, s.q - h * unit, s.v) - s.force(2, s.q + h * unit, s.v)).eval();
+      };
       k.col(j) = (8.0 * odd(1e-4) - odd(2e-4)) / 12e-4;
       d.col(j) = s.force(2, s.q, s.v - 0.5 * unit) - s.force(2, s.q, s.v + 0.5 * unit);
     }
@@ -90,14 +93,15 @@ TYPED_TEST(StrainTangent, InPacksIsThatOfEachElement) {
   for (Damping const& damping : this->dampings) {
     Swaying<TypeParam> const s(damping);
     Index next = 0;
-    for_each_element_tangent<TypeParam>(s.body, 0, 9, s.view(s.q), s.view(s.v), 1.5, 0.1, 0.7, [&](Index e, auto const& k) {
-      ASSERT_EQ(e, next++);
-      Mat<double, n, n> expected, mass;
-      s.body.tangent(e, s.view(s.q), s.view(s.v), 0.7, 0.1, expected);
-      s.body.mass(e, s.view(s.q), mass);
-      expected += 1.5 * mass;
-      EXPECT_LT((k - expected).norm(), 1e-13 * expected.norm());
-    });
+    for_each_element_tangent<TypeParam>(s.body, 0, 9, s.view(s.q), s.view(s.v), 1.5, 0.1, 0.7,
+                                        [&](Index e, auto const& k) {
+                                          ASSERT_EQ(e, next++);
+                                          Mat<double, n, n> expected, mass;
+                                          s.body.tangent(e, s.view(s.q), s.view(s.v), 0.7, 0.1, expected);
+                                          s.body.mass(e, s.view(s.q), mass);
+                                          expected += 1.5 * mass;
+                                          EXPECT_LT((k - expected).norm(), 1e-13 * expected.norm());
+                                        });
     EXPECT_EQ(next, 9);
   }
 }

@@ -1,5 +1,5 @@
-// The thesis' check of its ANCF elements: two elastic forces of different origin, elastic line and cured continuum, agree in the
-// limit of fine meshes, up to the strain.
+// The thesis' check of its ANCF elements: two elastic forces of different origin, elastic line and cured continuum,
+// agree in the limit of fine meshes, up to the strain.
 
 #include <polybody/bodies/ancf_beam.hpp>
 
@@ -29,9 +29,8 @@ TEST(AncfElasticForces, AgreeOnABarBentAndTwisted) {
                 .section = Rectangle{.height = 12.3777e-3, .width = 3.2024e-3},
                 .material = Material{.density = 2700, .young = 71.7e9, .poisson = 0.31}};
   TipLoad const load{.force = {0, -5, 5}, .moment = {0.4, 0, 0}};
-  Vec3 const line = limit([&](Index n) {
-    return SpatialCantilever<Line>(Line::from(bar, n), load, {.load_steps = 2}).tip_displacement();
-  });
+  Vec3 const line = limit(
+      [&](Index n) { return SpatialCantilever<Line>(Line::from(bar, n), load, {.load_steps = 2}).tip_displacement(); });
   Vec3 const cured = limit([&](Index n) {
     return SpatialCantilever<Cured>(Cured::from(bar, n), load, {.load_steps = 2}).tip_displacement();
   });

@@ -1,4 +1,5 @@
-// CASES S9c, S9d, S9e with the fully parameterised ANCF beam on its elastic line: what is pulled in its stiff plane leaves it.
+// CASES S9c, S9d, S9e with the fully parameterised ANCF beam on its elastic line: what is pulled in its stiff plane
+// leaves it.
 
 #include <polybody/bodies/ancf_beam.hpp>
 
@@ -12,8 +13,8 @@ namespace ancf_beam_buckling_test {
 using namespace buckling;
 using Beam = AncfBeam<>;
 
-// 1.08751842 N and 1.08408817 N [C]; published 1.088 [P]. Elements are of order 2: three a leg come to 2.2 %, six to a quarter
-// of that, both together to the exact frame.
+// 1.08751842 N and 1.08408817 N [C]; published 1.088 [P]. Elements are of order 2: three a leg come to 2.2 %, six to a
+// quarter of that, both together to the exact frame.
 TEST(AncfRightAngleFrame, BucklesAtTheExactForce) {
   struct Case {
     double J, force;

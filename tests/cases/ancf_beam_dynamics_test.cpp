@@ -1,6 +1,6 @@
-// CASES D5 and D2 with the fully parameterised ANCF beam on its elastic line, against the exact rod [C]. Its sections may
-// stretch: one that spins at ω does so by Iρ ω²/EA, in D5 1e-5 ω² s², in D2 1e-9. That apart it is the rod, and of order 2 as
-// the Lrvf is.
+// CASES D5 and D2 with the fully parameterised ANCF beam on its elastic line, against the exact rod [C]. Its sections
+// may stretch: one that spins at ω does so by Iρ ω²/EA, in D5 1e-5 ω² s², in D2 1e-9. That apart it is the rod, and of
+// order 2 as the Lrvf is.
 
 #include <polybody/bodies/ancf_beam.hpp>
 
@@ -21,8 +21,8 @@ using Beams = RightAngle<AncfBeam<>, Pin, spin_up::Drive>;
 
 TEST(AncfRightAngleCantilever, TenElementsPerLegStayWithinOnePercent) { follows<Beams>(10, 0.05, 0.01); }
 
-// (4 fine − coarse)/3 has no error of second order left; what remains grows with the time. The corner is a weld: of both
-// sections' frames.
+// (4 fine − coarse)/3 has no error of second order left; what remains grows with the time. The corner is a weld: of
+// both sections' frames.
 TEST(AncfRightAngleCantilever, TwoMeshesExtrapolateToTheExactFrame) {
   Beams coarse(12, 0.02), fine(24, 0.01);
   for (Row const& row : table) {

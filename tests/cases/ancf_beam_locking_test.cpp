@@ -79,19 +79,19 @@ Bar thick() {
           .material = Material{.density = 7850, .young = 2.07e11, .poisson = 0.3}};
 }
 
-// S4, small load: the published deflections of elements with linear sections, mesh by mesh, to the size of the strain, 1e-4
-// (in the quadratic terms of E: far less).
+// S4, small load: the published deflections of elements with linear sections, mesh by mesh, to the size of the strain,
+// 1e-4 (in the quadratic terms of E: far less).
 TEST(AncfLocking, CuredMeshesHaveThePublishedDeflections) {
   struct {
     Index n;
     double u;
-  } const published[] = {{1, 6.166665660910789e-04}, {2, 7.615940599560586e-04}, {4, 7.978259537503566e-04},
+  } const published[] = {{1, 6.166665660910789e-04}, {2, 7.615940599560586e-04},  {4, 7.978259537503566e-04},
                          {8, 8.068839288072378e-04}, {16, 8.091484226773518e-04}, {32, 8.097145461515286e-04}};
   for (auto const& m : published) EXPECT_NEAR(tip<Cured>(thick(), m.n, {0, 62500, 0})[1], m.u, 1e-6 * m.u) << m.n;
 }
 
-// S4, large load: strains of the outer fibres reach F L h/2EI = 0.14, of which St. Venant–Kirchhoff's law and the rod make
-// different things: they agree to a part of that.
+// S4, large load: strains of the outer fibres reach F L h/2EI = 0.14, of which St. Venant–Kirchhoff's law and the rod
+// make different things: they agree to a part of that.
 TEST(AncfLocking, CuredBeamUnderALargeLoadIsTheRodUpToTheStrain) {
   Vec3 const exact(-0.1509711442396, 0.7105685978542, 0);
   EXPECT_LT((tip<Cured>(thick(), 32, {0, 6.25e7, 0}, 4) - exact).norm(), 0.14 * exact.norm() / 8);

@@ -1,5 +1,5 @@
-// CASES S2, S4, S5, S6, S7 with the fully parameterised ANCF beam on its elastic line, whose limit is the exact rod [C].
-// The element bends with piecewise linear sections: order 2, and the extrapolation of two meshes meets the rod.
+// CASES S2, S4, S5, S6, S7 with the fully parameterised ANCF beam on its elastic line, whose limit is the exact rod
+// [C]. The element bends with piecewise linear sections: order 2, and the extrapolation of two meshes meets the rod.
 
 #include <polybody/bodies/ancf_beam.hpp>
 
@@ -26,8 +26,8 @@ Vec3 limit(Vec3 const& coarse, Vec3 const& fine) { return (4.0 * fine - coarse) 
 
 TEST(AncfElastica, DeadTipForce) {
   Bar const bar{.length = 1.0,
-                .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e6, .GJ = 1.0,
-                                          .rotary_inertia = 1e-6}};
+                .constants = BarConstants{
+                    .EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e6, .GJ = 1.0, .rotary_inertia = 1e-6}};
   Vec3 const exact(-0.05643323628337688, 0.3017207737998135, 0);
   auto const tip = [&](Index n) { return cantilever(bar, n, {.force = {0, 1, 0}}, 4).tip_displacement(); };
   Vec3 const coarse = tip(32), fine = tip(64);
@@ -45,14 +45,14 @@ Bar thick() {
 }
 double const small = 62500, large = 6.25e7;
 
-// [P] the paper and Exudyn print deflections of elements with linear sections; with linear strains ours are the same, up to the
-// square of the rotation, θ² = 3.4e-7.
+// [P] the paper and Exudyn print deflections of elements with linear sections; with linear strains ours are the same,
+// up to the square of the rotation, θ² = 3.4e-7.
 TEST(AncfNachbagauer, SmallLoadGivesThePublishedDeflectionOfEveryMesh) {
   struct {
     Index n;
     double u;
-  } const published[] = {{1, 6.166665660910789e-04},  {2, 7.615940599560586e-04},  {4, 7.978259537503566e-04},
-                         {8, 8.068839288072378e-04},  {16, 8.091484226773518e-04}, {32, 8.097145461515286e-04},
+  } const published[] = {{1, 6.166665660910789e-04}, {2, 7.615940599560586e-04},  {4, 7.978259537503566e-04},
+                         {8, 8.068839288072378e-04}, {16, 8.091484226773518e-04}, {32, 8.097145461515286e-04},
                          {64, 8.098560770202866e-04}};
   for (auto const& m : published)
     EXPECT_NEAR(cantilever(thick(), m.n, {.force = {0, small, 0}}).tip_displacement()[1], m.u, 3.4e-7 * m.u) << m.n;
@@ -73,8 +73,9 @@ TEST(AncfNachbagauer, LargeLoadConvergesToTheExactRodWithOrderTwo) {
   EXPECT_LT((limit(coarse, fine) - exact).norm(), 1e-7);
 }
 
-// The weld holds place and frame of the section at the clamp and nothing else: the axis may leave it at an angle, by the shear
-// F/GA, as the rod's does, and the section's own strains vanish as everywhere. Section forces there: F and the moment F L.
+// The weld holds place and frame of the section at the clamp and nothing else: the axis may leave it at an angle, by
+// the shear F/GA, as the rod's does, and the section's own strains vanish as everywhere. Section forces there: F and
+// the moment F L.
 TEST(AncfNachbagauer, WeldIsTheClampOfTheRod) {
   auto const c = cantilever(thick(), 32, {.force = {0, small, 0}});
   Beam const& body = c.bar.body;
@@ -90,8 +91,13 @@ TEST(AncfNachbagauer, WeldIsTheClampOfTheRod) {
 Bar general() {
   double const e = 2.07e11, g = e / 2.6, h = 0.2, w = 0.4, a = h * w, iz = w * h * h * h / 12, iy = h * w * w * w / 12;
   return {.length = 2.0,
-          .constants = BarConstants{.EA = e * a, .EI = e * iz, .mass_per_length = 1, .GA = 0.8331 * g * a,
-                                    .GJ = 0.5768 * g * (iy + iz), .rotary_inertia = 0.01, .EI_y = e * iy,
+          .constants = BarConstants{.EA = e * a,
+                                    .EI = e * iz,
+                                    .mass_per_length = 1,
+                                    .GA = 0.8331 * g * a,
+                                    .GJ = 0.5768 * g * (iy + iz),
+                                    .rotary_inertia = 0.01,
+                                    .EI_y = e * iy,
                                     .GA_z = 0.7961 * g * a}};
 }
 
@@ -99,7 +105,9 @@ TEST(AncfEndMoments, FixedInSpace) {
   auto const run = [](Index n) { return cantilever(general(), n, {.moment = {0.5e6, 2e6, 0}}); };
   auto const coarse = run(16), fine = run(32);
   EXPECT_LT((limit(coarse.tip_displacement(), fine.tip_displacement()) -
-             Vec3(-1.0943798558e-4, -1.8643645616e-4, -1.81174027438e-2)).norm(), 1e-12 + 1e-9 * 1.8e-2);
+             Vec3(-1.0943798558e-4, -1.8643645616e-4, -1.81174027438e-2))
+                .norm(),
+            1e-12 + 1e-9 * 1.8e-2);
   Mat3 const exact = exp_so3<double>(Vec3(0.016323712401, 0.018117169413, -0.000427522396));
   EXPECT_LT((fine.tip_turn() - exact).norm(), 2e-6 * 0.024);
 }
@@ -108,7 +116,8 @@ TEST(AncfEndMoments, Following) {
   auto const tip = [](Index n) {
     return cantilever(general(), n, {.moment = {0.5e6, 2e6, 0}, .axes = LoadAxes::marker}).tip_displacement();
   };
-  EXPECT_LT((limit(tip(16), tip(32)) - Vec3(-1.0949948006e-4, 6.6856646766e-4, -1.81128138084e-2)).norm(), 1e-9 * 1.8e-2);
+  EXPECT_LT((limit(tip(16), tip(32)) - Vec3(-1.0949948006e-4, 6.6856646766e-4, -1.81128138084e-2)).norm(),
+            1e-9 * 1.8e-2);
 }
 
 // ---- S6: the Princeton beam, deflections and twist
@@ -117,8 +126,13 @@ TEST(AncfPrinceton, MeetsTheExactRod) {
   double const e = 71.7e9, g = e / 2.62, h = 12.3777e-3, w = 3.2024e-3, a = h * w;
   double const iz = w * h * h * h / 12, iy = h * w * w * w / 12;
   Bar const bar{.length = 0.508,
-                .constants = BarConstants{.EA = e * a, .EI = e * iz, .mass_per_length = 1, .GA = g * a,
-                                          .GJ = 0.198 * g * (iy + iz), .rotary_inertia = 1e-5, .EI_y = e * iy}};
+                .constants = BarConstants{.EA = e * a,
+                                          .EI = e * iz,
+                                          .mass_per_length = 1,
+                                          .GA = g * a,
+                                          .GJ = 0.198 * g * (iy + iz),
+                                          .rotary_inertia = 1e-5,
+                                          .EI_y = e * iy}};
   struct {
     double force, beta;  ///< [N], [deg]
     Vec3 u;
@@ -173,7 +187,8 @@ TEST(AncfBatheBolourchi, MeetsTheExactRod) {
   }
 }
 
-// S7's Saint-Venant constants, GJ = 0.1405770150·5e6 and GA = 5/6·5e6, are those of the bar's square section with ν = 0.
+// S7's Saint-Venant constants, GJ = 0.1405770150·5e6 and GA = 5/6·5e6, are those of the bar's square section with ν =
+// 0.
 TEST(AncfBatheBolourchi, SectionGivesTheSaintVenantConstants) {
   Bar const square{.length = 1.0,
                    .section = Rectangle{.height = 1, .width = 1},

@@ -25,8 +25,8 @@ using Angles = Vec<double, 7>;
 
 Angles angles(std::array<double, 7> const& q) { return Eigen::Map<Angles const>(q.data()); }
 
-/// Names of points and lengths as in the test set. The bodies are OF, FE, BDE, EG, AG, HE, AH; their angles, which the axes of
-/// the table belong to, are β, β + Θ, γ, Φ + δ, δ, Ω + ε, ε. \tparam Tree the policy of all pins but those at E
+/// Names of points and lengths as in the test set. The bodies are OF, FE, BDE, EG, AG, HE, AH; their angles, which the
+/// axes of the table belong to, are β, β + Θ, γ, Φ + δ, δ, Ω + ε, ε. \tparam Tree the policy of all pins but those at E
 template <class Tree = Constraint>
 struct Squeezer {
   using Pin = Joint<planar::Revolute, Constraint>;
@@ -62,7 +62,9 @@ struct Squeezer {
       Vec2 const centre = p.place + turned(p.angle, p.centre[0], p.centre[1]);
       bodies.push_back(model.add(Body(p.mass, p.inertia, Placement::planar(centre[0], centre[1], p.angle))));
     }
-    auto const on = [&](std::size_t i, double px, double py) { return bodies[i].at(Vec2(Vec2(px, py) - parts[i].centre)); };
+    auto const on = [&](std::size_t i, double px, double py) {
+      return bodies[i].at(Vec2(Vec2(px, py) - parts[i].centre));
+    };
     auto const ground = [&](Vec2 const& p) { return model.ground().at({p[0], p[1], 0}); };
     auto const of_fe = on(1, -0.028, 0);
     model.connect(TreePin{}, ground(O), on(0, 0, 0), "O");
@@ -96,14 +98,14 @@ struct Squeezer {
   double invariant() const { return energy(model, x).total() - drive * x.q[2]; }
 };
 
-Angles const start = angles({-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550,
-                             -0.222668390165885885, 1.23054744454982119});
+Angles const start = angles({-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885,
+                             0.487364979543842550, -0.222668390165885885, 1.23054744454982119});
 
 // PSIDE at a tolerance of 1e-14, t = 0.03.
-Angles const end = angles({15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948, 0.5244099658805304,
-                           0.5347301163226948, 1.048080741042263});
-Angles const end_rate = angles({1139.920302151208, -1424.379294994111, 11.03291221937134, 19.29337464421385, 0.5735699284790808,
-                                -19.29337464421385, 0.3231791658026955});
+Angles const end = angles({15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948,
+                           0.5244099658805304, 0.5347301163226948, 1.048080741042263});
+Angles const end_rate = angles({1139.920302151208, -1424.379294994111, 11.03291221937134, 19.29337464421385,
+                                0.5735699284790808, -19.29337464421385, 0.3231791658026955});
 Angles const end_acceleration = angles({-24631.76316945196, 51850.37701610329, 324102.5686413781, 566749.3645176213,
                                         16743.62929479361, -566749.3645176222, 9826.520791458422});
 
@@ -142,7 +144,8 @@ void expect_published(I const& integrator, double step, double tolerance) {
   EXPECT_LT((s.read(s.x.a) - end_acceleration).norm(), 1e2 * tolerance * end_acceleration.norm());
   EXPECT_NEAR(s.invariant(), before, tolerance);
   Vec6 lambda;
-  lambda << 199.1753333731910, -29.75531228015052, 23.06654119098399, 31.45271365475927, 22.64249232082739, 11.61740700019673;
+  lambda << 199.1753333731910, -29.75531228015052, 23.06654119098399, 31.45271365475927, 22.64249232082739,
+      11.61740700019673;
   EXPECT_LT((s.multipliers() - lambda).norm(), 1e2 * tolerance * lambda.norm());
 }
 
@@ -150,11 +153,13 @@ TEST(Andrews, HasThePublishedDigitsWithDormandPrince) {
   expect_published(DormandPrince<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5, 1e-8);
 }
 TEST(Andrews, HasThePublishedDigitsWithAdams) {
-  expect_published(AdamsBashforthMoulton<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5, 1e-8);
+  expect_published(AdamsBashforthMoulton<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5,
+                   1e-8);
 }
 TEST(Andrews, HasThePublishedDigitsWithRadau) { expect_published(Radau{.tolerance = 1e-12}, 7.5e-6, 1e-8); }
 TEST(Andrews, HasThePublishedDigitsInJointCoordinates) {  // the three pins at E close loops
-  expect_published<Recursive>(DormandPrince<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5, 1e-8);
+  expect_published<Recursive>(DormandPrince<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5,
+                              1e-8);
 }
 TEST(Andrews, IsMetByAlphaMethodsWithinAThousandth) {
   expect_published(GeneralizedAlpha{}, 1e-5, 1e-3);
@@ -163,15 +168,18 @@ TEST(Andrews, IsMetByAlphaMethodsWithinAThousandth) {
 
 // The variant of the multibody benchmark: β(0) = −0.062, F at four times.
 TEST(Andrews, OfTheBenchmarkCarriesFWhereItIsPublished) {
-  Squeezer<> s(angles({-0.062, 0.000214586853799, 0.455279812100370, 0.222668375903028, 0.487364981140633, -0.222668375903027,
-                     1.230547439156601}));
+  Squeezer<> s(angles({-0.062, 0.000214586853799, 0.455279812100370, 0.222668375903028, 0.487364981140633,
+                       -0.222668375903027, 1.230547439156601}));
   struct {
     double t, x, y;
-  } const way[] = {{0.01, -0.003851290594, 0.005845302453}, {0.02, -0.002229411835, 0.006635489648},
-                   {0.03, -0.006970260782, -0.000644565461}, {0.04, 0.005051245443, -0.004846124171}};
+  } const way[] = {{0.01, -0.003851290594, 0.005845302453},
+                   {0.02, -0.002229411835, 0.006635489648},
+                   {0.03, -0.006970260782, -0.000644565461},
+                   {0.04, 0.005051245443, -0.004846124171}};
   for (auto const& w : way) {
     simulate(s.model, s.x, DormandPrince<Projection>{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12},
-             {.until = w.t, .step = 1e-5}).run();
+             {.until = w.t, .step = 1e-5})
+        .run();
     EXPECT_NEAR(0.007 * std::cos(s.x.q[2]), w.x, 1e-10) << w.t;
     EXPECT_NEAR(0.007 * std::sin(s.x.q[2]), w.y, 1e-10) << w.t;
   }

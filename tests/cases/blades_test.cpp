@@ -17,10 +17,11 @@ constexpr double g = 9.81;
 using Blade = Joint<KnifeEdge, Constraint>;
 using InPlane = Model<Bodies<planar::Rigid>, Joints<Blade>>;
 
-// A blade under the centre of mass on an incline, pull p along x, starts at rest along x while it turns at ω. The turn is free,
-// θ = ωt; along the blade u̇ = p cos θ, so u = (p/ω) sin ωt and
+// A blade under the centre of mass on an incline, pull p along x, starts at rest along x while it turns at ω. The turn
+// is free, θ = ωt; along the blade u̇ = p cos θ, so u = (p/ω) sin ωt and
 //   x = p/(2ω²) sin² ωt,  y = p/(2ω) (t − sin(2ωt)/(2ω)):
-// a cycloid across the incline, not down [Neimark & Fufaev 1972, ch. III]. Across it needs m (u ω + p sin θ) = 2 m p sin θ.
+// a cycloid across the incline, not down [Neimark & Fufaev 1972, ch. III]. Across it needs m (u ω + p sin θ) = 2 m p
+// sin θ.
 TEST(KnifeEdge, GoesAlongACycloidAcrossAnIncline) {
   double const m = 3.0, omega = 2.0, p = g * std::sin(0.4), t = 2.3;
   InPlane model{Gravity{p, 0, 0}};
@@ -35,7 +36,8 @@ TEST(KnifeEdge, GoesAlongACycloidAcrossAnIncline) {
     State const x = rolled(model, start, integrator, t, h);
     EXPECT_LT((x.q - place).norm(), 2e-6 * precise) << integrator.name;
     EXPECT_LT((x.v - speed).norm(), 2e-6 * precise) << integrator.name;
-    EXPECT_LT((reaction(model, x, blade).f - 2.0 * m * p * s * Vec3(-s, c, 0)).norm(), 1e-4 * precise) << integrator.name;
+    EXPECT_LT((reaction(model, x, blade).f - 2.0 * m * p * s * Vec3(-s, c, 0)).norm(), 1e-4 * precise)
+        << integrator.name;
     System system(model);
     system.evaluate(x.q, x.v, x.t);
     EXPECT_NEAR(peak_joint_force(system, x), 2.0 * m * p * std::abs(s), 1e-4 * precise) << integrator.name;

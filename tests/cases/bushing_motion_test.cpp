@@ -104,7 +104,8 @@ TEST(RodOnABushing, TurnsAsOftenAsItLikes) {
   EXPECT_GT(soft[2] / firm[2], 9.0);  // stored and lost in the first swings with 1/k, lost in turning with k^(−3/2)
 }
 
-// An undamped bushing that couples slides and turns stores what it takes; the trapezoidal rule errs in the energy with h².
+// An undamped bushing that couples slides and turns stores what it takes; the trapezoidal rule errs in the energy with
+// h².
 TEST(RodOnABushing, KeepsTheEnergyWithoutDamping) {
   Bushing::Matrix k = Bushing::diagonal({900, 700, 800}, {60, 50, 0});
   k(0, 3) = k(3, 0) = 120.0;

@@ -104,8 +104,9 @@ TEST(BushingMount, GivesWayUnderALever) {
   }
 }
 
-// The same lever inside the bushing, whose marker is where the force acts: with u_c = u − a θ the energy ½ k u_c² + ½ k_θ θ² has
-// the coupling −k a. The force acts along the coordinate u alone, so θ = F a/k_θ and u = F/k + a θ hold for every size.
+// The same lever inside the bushing, whose marker is where the force acts: with u_c = u − a θ the energy ½ k u_c² + ½
+// k_θ θ² has the coupling −k a. The force acts along the coordinate u alone, so θ = F a/k_θ and u = F/k + a θ hold for
+// every size.
 TEST(BushingMount, CouplesForceAndTurn) {
   double const a = 0.7;
   Matrix coupled = diagonal.stiffness;
@@ -132,7 +133,8 @@ TEST(BushingMount, MayHoldTheFreeDirectionToo) {
 
 // A nonlinear law: u with f(u) = F, and tables at their points.
 TEST(BushingMount, FollowsItsLaws) {
-  TabulatedLaw const stop{MonotoneTable{{{-0.02, -400.0}, {-0.01, -20.0}, {0.0, 0.0}, {0.01, 20.0}, {0.02, 400.0}}}, 0.0};
+  TabulatedLaw const stop{MonotoneTable{{{-0.02, -400.0}, {-0.01, -20.0}, {0.0, 0.0}, {0.01, 20.0}, {0.02, 400.0}}},
+                          0.0};
   LinearLaw const turn{.stiffness = 50.0, .damping = 0.0};
   Mounted m{Joint<Weld, Rubber>{{}, Rubber{Hardening{}, stop, stop, turn, turn, turn}}};
   m.load({50.0 + 125.0, 20.0, -400.0}, {0, 0, 0});  // f(0.05)

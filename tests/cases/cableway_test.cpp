@@ -22,7 +22,8 @@ constexpr double g = 9.81;
 using Ball = Joint<Spherical, Constraint>;
 using InSpace = Model<Bodies<Sliding<AncfCable<>>, Rigid<>>, Joints<Ball>>;
 
-/// A cable of 4 m, taut between two anchors, the right one 0.5 m lower; a cabin hung 0.3 m under a slider, and swinging sideways.
+/// A cable of 4 m, taut between two anchors, the right one 0.5 m lower; a cabin hung 0.3 m under a slider, and swinging
+/// sideways.
 struct Cableway {
   InSpace model{Gravity{0, 0, -g}};
   Bar const bar{.length = 4.0,
@@ -32,7 +33,8 @@ struct Cableway {
   Vec3 along = bar.placement.axes.col(0);
   BodyHandle<Sliding<AncfCable<>>> cable = model.add(Sliding(AncfCable<>::from(bar, 8), {0.7}), "cable");
   BodyHandle<Rigid<>> cabin = model.add(
-      Rigid<>(2.0, Vec3(0.02, 0.03, 0.04).asDiagonal().toDenseMatrix(), Placement::at(0.7 * along - Vec3(0, 0, 0.3))), "cabin");
+      Rigid<>(2.0, Vec3(0.02, 0.03, 0.04).asDiagonal().toDenseMatrix(), Placement::at(0.7 * along - Vec3(0, 0, 0.3))),
+      "cabin");
   ElementHandle<Ball> hanger;
   State start;
 
@@ -68,12 +70,13 @@ struct Ride {
   }
 };
 
-// The cabin goes from the second element of the cable into the third. Nothing takes energy; the rows hold in place, speed and
-// acceleration; two methods agree.
+// The cabin goes from the second element of the cable into the third. Nothing takes energy; the rows hold in place,
+// speed and acceleration; two methods agree.
 TEST(Cableway, RidesDownTheCableWithItsEnergy) {
   Cableway const way;
   double const until = 0.8, weight = 2.0 * g;  // times 1 m
-  Ride const alpha(way, GeneralizedAlpha{.rho_inf = 0.9, .stabilised = true}, until, 1e-4), radau(way, Radau{}, until, 5e-4);
+  Ride const alpha(way, GeneralizedAlpha{.rho_inf = 0.9, .stabilised = true}, until, 1e-4),
+      radau(way, Radau{}, until, 5e-4);
   EXPECT_GT(place(way.model, radau.x, way.cable), 1.1);
   EXPECT_LT(alpha.energy, 1e-7 * weight);
   EXPECT_LT(radau.energy, 1e-8 * weight);

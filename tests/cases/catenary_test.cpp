@@ -1,5 +1,5 @@
-// CASES S11 in the plane: a cable and a chain of rigid links, hung at equal heights. Links on ideal pins, on springs, and on
-// joint coordinates.
+// CASES S11 in the plane: a cable and a chain of rigid links, hung at equal heights. Links on ideal pins, on springs,
+// and on joint coordinates.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,8 @@ using Cable = planar::AncfCable<EngineeringStrain>;
 template <class Policy>
 using Pin = Joint<planar::Revolute, Policy>;
 /// One type of model for all, which is compiled once.
-using Hanging = Model<Bodies<planar::Rigid, Cable>, Joints<Pin<Constraint>, Pin<Penalty>, Pin<Bushing>, Pin<Recursive>>>;
+using Hanging =
+    Model<Bodies<planar::Rigid, Cable>, Joints<Pin<Constraint>, Pin<Penalty>, Pin<Bushing>, Pin<Recursive>>>;
 
 /// By how much a chord is steeper than the one before where n chords of length l, ends on a circle, span s:
 /// Σ l cos δ(i − (n − 1)/2) = s.
@@ -34,8 +35,8 @@ double turn_of_chords(int n, double l, double s) {
   return low;
 }
 
-// 10 m of 10 N/m with supports 8 m apart; 20 elements, EI = 1e-3 N m². Laid along an arc, then left to itself; the stiffer
-// cable starts where the softer one hangs.
+// 10 m of 10 N/m with supports 8 m apart; 20 elements, EI = 1e-3 N m². Laid along an arc, then left to itself; the
+// stiffer cable starts where the softer one hangs.
 TEST(PlanarCatenary, HangsWithThePublishedForceAndSag) {
   struct Row {
     double EA, H, sag;
@@ -75,8 +76,9 @@ struct Hang {
   double H, V, sag, slope;
 };
 
-/// A link turns until its weight, at its middle, is in balance with the forces at its ends: tan θᵢ = (V − m g (i + ½))/H. Pins of
-/// stiffness k open along their forces, (H, V − m g i)/k, and the span closes: Σ l cos θᵢ + (N + 1) H/k = s; N is even.
+/// A link turns until its weight, at its middle, is in balance with the forces at its ends: tan θᵢ = (V − m g (i +
+/// ½))/H. Pins of stiffness k open along their forces, (H, V − m g i)/k, and the span closes: Σ l cos θᵢ + (N + 1) H/k
+/// = s; N is even.
 Hang closed_form(Links const& c, double k) {
   double const w = c.m * 9.81, v = 0.5 * c.n * w;
   Hang out{};
@@ -95,8 +97,8 @@ Hang closed_form(Links const& c, double k) {
   return out;
 }
 
-/// Links laid along an arc, each on the one before. Pins start open by `open` along the arc: springs that do not pull cannot
-/// hold a chain. The far support may hold by another policy.
+/// Links laid along an arc, each on the one before. Pins start open by `open` along the arc: springs that do not pull
+/// cannot hold a chain. The far support may hold by another policy.
 template <class Policy>
 struct Chain {
   Hanging model{Gravity{0, -9.81, 0}};

@@ -49,10 +49,10 @@ struct Distinctly<J, J> {
   using Type = Joints<J>;
 };
 
-/// The pins lie on half regular 24-gons around the wheels, whose circles of radius l/(2 sin(π/24)) are their pitch circles, and
-/// on the two tangents between: 12 links around each wheel, 20 on each span, all taut. Wheels turn about pins on the ground.
-/// Where the chain is farthest out it is held to the left wheel by a pin, to the right one by a point on a line along z, which
-/// takes the plane's two rows and no more.
+/// The pins lie on half regular 24-gons around the wheels, whose circles of radius l/(2 sin(π/24)) are their pitch
+/// circles, and on the two tangents between: 12 links around each wheel, 20 on each span, all taut. Wheels turn about
+/// pins on the ground. Where the chain is farthest out it is held to the left wheel by a pin, to the right one by a
+/// point on a line along z, which takes the plane's two rows and no more.
 template <class World>
 struct ClosedChain {
   using Body = typename World::Body;
@@ -65,7 +65,8 @@ struct ClosedChain {
   State x;
 
   ClosedChain() {
-    double const step = std::numbers::pi / around, radius = length / (2.0 * std::sin(0.5 * step)), half = 0.5 * straight * length;
+    double const step = std::numbers::pi / around, radius = length / (2.0 * std::sin(0.5 * step)),
+                 half = 0.5 * straight * length;
     std::vector<Vec2> point;  // counterclockwise from the lower end of the right wheel's half
     for (double const side : {1.0, -1.0}) {
       for (int i = 0; i <= around; ++i)
@@ -75,11 +76,13 @@ struct ClosedChain {
     for (int i = 0; i < links; ++i) {
       Vec2 const a = point[std::size_t(i)], along = point[std::size_t((i + 1) % links)] - a, middle = a + 0.5 * along;
       EXPECT_NEAR(along.norm(), length, 1e-14);
-      chain.push_back(model.add(World::body(1.5, 4e-3, Placement::planar(middle[0], middle[1], std::atan2(along[1], along[0]))),
-                                "link " + std::to_string(i + 1)));
+      chain.push_back(
+          model.add(World::body(1.5, 4e-3, Placement::planar(middle[0], middle[1], std::atan2(along[1], along[0]))),
+                    "link " + std::to_string(i + 1)));
     }
     for (double const side : {1.0, -1.0})
-      wheels.push_back(model.add(World::body(20.0, 1.0, Placement::planar(side * half, 0.0)), side > 0.0 ? "right" : "left"));
+      wheels.push_back(
+          model.add(World::body(20.0, 1.0, Placement::planar(side * half, 0.0)), side > 0.0 ? "right" : "left"));
     auto const first = [&](int i) { return World::at(chain[std::size_t(i)], -0.5 * length, 0.0); };
     for (std::size_t i : {0u, 1u})
       pins.push_back(model.connect(Pin{}, model.ground().at({i == 0 ? half : -half, 0, 0}), World::at(wheels[i], 0, 0),
@@ -88,16 +91,17 @@ struct ClosedChain {
       pins.push_back(model.connect(Pin{}, World::at(chain[std::size_t(i)], 0.5 * length, 0.0), first((i + 1) % links),
                                    "pin " + std::to_string(i + 1)));
     loose.push_back(model.connect(World::loose(), World::at(wheels[0], radius, 0.0), first(around / 2), "right tooth"));
-    pins.push_back(model.connect(Pin{}, World::at(wheels[1], -radius, 0.0), first(links / 2 + around / 2), "left tooth"));
+    pins.push_back(
+        model.connect(Pin{}, World::at(wheels[1], -radius, 0.0), first(links / 2 + around / 2), "left tooth"));
     x = model.reference_state();
   }
 };
 using Space = ClosedChain<OfSpace>;
 using Plane = ClosedChain<OfThePlane>;
 
-// A loop of N parallel pins has 5 N rows, but its links keep six motions as a whole and N − 3 against each other: 6 N − (N + 3)
-// = 5 N − 3 rows hold. Axles, tooth and point add 5 + 5 + 5 + 2: 337 rows of rank 334 on 6·66 speeds, and N − 2 degrees of
-// freedom as in the plane, 3·66 − 2·(64 + 2 + 2).
+// A loop of N parallel pins has 5 N rows, but its links keep six motions as a whole and N − 3 against each other: 6 N −
+// (N + 3) = 5 N − 3 rows hold. Axles, tooth and point add 5 + 5 + 5 + 2: 337 rows of rank 334 on 6·66 speeds, and N − 2
+// degrees of freedom as in the plane, 3·66 − 2·(64 + 2 + 2).
 TEST(ClosedChain, RepeatsThreeRows) {
   Space const space;
   Plane const plane;
@@ -134,8 +138,8 @@ PinForces compare(Space const& space, Plane const& plane) {
   return out;
 }
 
-// Released at rest the chain falls off the wheels. The plane's chain repeats no rows, so its forces are unique: those in space
-// are the same at every step, and nothing acts out of the plane though three rows could bear anything there.
+// Released at rest the chain falls off the wheels. The plane's chain repeats no rows, so its forces are unique: those
+// in space are the same at every step, and nothing acts out of the plane though three rows could bear anything there.
 template <class I>
 void expect_the_plane(I const& integrator, double step, double until, double tolerance, double energy_tolerance) {
   Space space;
@@ -146,7 +150,8 @@ void expect_the_plane(I const& integrator, double step, double until, double tol
   EXPECT_TRUE(planar.report().redundant.empty());
   ASSERT_GE(run.report().redundant.size(), 1u);
   ASSERT_LE(run.report().redundant.size(), 3u);
-  for (std::string const& name : run.report().redundant) EXPECT_NE(name.find("joint \"pin "), std::string::npos) << name;
+  for (std::string const& name : run.report().redundant)
+    EXPECT_NE(name.find("joint \"pin "), std::string::npos) << name;
   double largest = 0.0;
   while (!run.done()) {
     run.advance();
@@ -164,7 +169,9 @@ void expect_the_plane(I const& integrator, double step, double until, double tol
 TEST(ClosedChain, FallsAsInThePlaneWithImplicitSteps) {
   expect_the_plane(GeneralizedAlpha{.tolerance = 1e-10}, 1e-3, 0.5, 1e-6, 1.0);
 }
-TEST(ClosedChain, FallsAsInThePlaneWithExplicitSteps) { expect_the_plane(RungeKutta4<Projection>{}, 1e-3, 0.2, 1e-6, 1e-3); }
+TEST(ClosedChain, FallsAsInThePlaneWithExplicitSteps) {
+  expect_the_plane(RungeKutta4<Projection>{}, 1e-3, 0.2, 1e-6, 1e-3);
+}
 
 }  // namespace closed_chain_test
 }  // namespace polybody

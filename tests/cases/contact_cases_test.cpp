@@ -92,8 +92,8 @@ struct Bounces {
   }
 };
 
-// CASES C1: t₁ = √(2h/g), t_{n+1} − t_n = 2 t₁ eⁿ, apexes e^{2n} h. A contact of stiffness k lasts for some √(m/k), at most π of
-// them, and in it the ball dips by at most v₁√(m/k); both vanish with 1/√k.
+// CASES C1: t₁ = √(2h/g), t_{n+1} − t_n = 2 t₁ eⁿ, apexes e^{2n} h. A contact of stiffness k lasts for some √(m/k), at
+// most π of them, and in it the ball dips by at most v₁√(m/k); both vanish with 1/√k.
 TEST(BouncingBall, ComesDownAndRisesAsByRestitution) {
   double const t1 = 0.451523640986;
   std::vector<double> late, low;  // of the third impact after the first, and of the third apex
@@ -191,8 +191,8 @@ TEST(ImpactOnASpring, IsIntegratedAtTheOrderOfTheMethod) {
 
 // --- C3: Coulomb sliding --------------------------------------------------------------------------------------
 
-/// What friction μN v/√(v² + s²) does to v̇ = −b v/√(v² + s²):  time and way from u to v are (F(u) − F(v))/b, (W(u) − W(v))/b
-/// with
+/// What friction μN v/√(v² + s²) does to v̇ = −b v/√(v² + s²):  time and way from u to v are (F(u) − F(v))/b, (W(u) −
+/// W(v))/b with
 ///   F = ∫√(v² + s²)/v dv = √(v² + s²) − s asinh(s/v),   W = ∫√(v² + s²) dv = ½ (v√(v² + s²) + s² asinh(v/s)).
 struct Slip {
   double s;
@@ -201,8 +201,8 @@ struct Slip {
 };
 constexpr double k_floor = 1e6;
 
-// CASES C3: μ = 0.3, from 3 m/s; ideally it stops after 1.0194 s and 1.5291 m, and the regularised law errs by at most v_s
-// v₀/(μg).
+// CASES C3: μ = 0.3, from 3 m/s; ideally it stops after 1.0194 s and 1.5291 m, and the regularised law errs by at most
+// v_s v₀/(μg).
 TEST(SlidingBlock, StopsWithinTheBoundOfTheRegularisation) {
   double const mu = 0.3, v0 = 3.0, b = mu * g;
   for (double const s : {1e-2, 1e-3}) {
@@ -210,9 +210,11 @@ TEST(SlidingBlock, StopsWithinTheBoundOfTheRegularisation) {
     Drop<SpringDamperContact> const block({.stiffness = k_floor}, 2.0, -2.0 * g / k_floor, down,
                                           {.coefficient = mu, .slip_speed = s});
     State x = block.start({v0, 0, 0});
-    Event const slow{.name = "as slow as v_s", .value = [s](State const& now) { return now.v[0] - s; }, .tolerance = 1e-12};
-    auto const met = events_of(block.model, x, DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
-                               {.until = 1.3, .step = 1e-4, .events = {slow}});
+    Event const slow{
+        .name = "as slow as v_s", .value = [s](State const& now) { return now.v[0] - s; }, .tolerance = 1e-12};
+    auto const met =
+        events_of(block.model, x, DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
+                  {.until = 1.3, .step = 1e-4, .events = {slow}});
     State const& at = first(met, "as slow as v_s");
     EXPECT_NEAR(at.t, (slip.F(v0) - slip.F(s)) / b, 1e-8);
     EXPECT_NEAR(at.q[0], (slip.W(v0) - slip.W(s)) / b, 1e-8);
@@ -231,9 +233,10 @@ State slid(double t, double mu, double s, double until) {
   using Law = Contact<SphereOnPlane>;
   Model<Bodies<Rigid<>>, Joints<>, Forces<Law>> model{Gravity{0, 0, -g}};
   double const m = 2.0, depth = m * g * std::cos(alpha) / k_floor;
-  auto const block = model.add(Rigid<>(m, Mat3(Mat3::Identity()), {slope.origin - depth * slope.axes.col(2), slope.axes}));
-  model.apply(Law{{.radius = 0.0}, {.stiffness = k_floor}, {.coefficient = mu, .slip_speed = s}}, block.at(Vec3(0, 0, 0)),
-              model.ground().at(slope));
+  auto const block =
+      model.add(Rigid<>(m, Mat3(Mat3::Identity()), {slope.origin - depth * slope.axes.col(2), slope.axes}));
+  model.apply(Law{{.radius = 0.0}, {.stiffness = k_floor}, {.coefficient = mu, .slip_speed = s}},
+              block.at(Vec3(0, 0, 0)), model.ground().at(slope));
   State x = model.reference_state();
   simulate(model, x, GeneralizedAlpha{}, {.until = until, .step = 1e-3}).run();
   x.v.head<3>() = (slope.axes.transpose() * x.v.head<3>()).eval();  // along the slope
@@ -251,8 +254,8 @@ TEST(SlidingBlock, CreepsDownASlopeAtTheSpeedOfTheFormula) {
     EXPECT_LT(std::hypot(x.v[1], x.v[2]), 1e-9) << t;
   }
 }
-// Above it, v̇ = g (sin α − μ cos α) + μ g cos α (1 − v/√(v² + v_s²)), and the last term adds up to at most v_s μ cos α/(sin α −
-// μ cos α).
+// Above it, v̇ = g (sin α − μ cos α) + μ g cos α (1 − v/√(v² + v_s²)), and the last term adds up to at most v_s μ cos
+// α/(sin α − μ cos α).
 TEST(SlidingBlock, SlidesDownASteeperSlope) {
   double const mu = 0.3, s = 1e-2, t = 0.5, alpha = std::atan(t), until = 0.5;
   double const v = slid(t, mu, s, until).v[0], ideal = g * (std::sin(alpha) - mu * std::cos(alpha)) * until;
@@ -262,7 +265,8 @@ TEST(SlidingBlock, SlidesDownASteeperSlope) {
 
 // --- C4: from slip to roll ------------------------------------------------------------------------------------
 
-/// A ball in space (J = 2/5 m R²) or a disc in the plane (1/2) on the floor, pulled by `pull` along x and by g cos α down.
+/// A ball in space (J = 2/5 m R²) or a disc in the plane (1/2) on the floor, pulled by `pull` along x and by g cos α
+/// down.
 template <class Body>
 struct Roller {
   static constexpr bool plane = std::is_same_v<Body, planar::Rigid>;
@@ -299,8 +303,8 @@ struct Roller {
     model.set_velocity(x, body, {v0, 0, 0}, {0, 0, 0});
     return x;
   }
-  /// Its speed, and the velocity of its lowest point: a wheel that rolls along x turns by −R ω about z in the plane, by R ω about
-  /// y in space.
+  /// Its speed, and the velocity of its lowest point: a wheel that rolls along x turns by −R ω about z in the plane, by
+  /// R ω about y in space.
   double speed(State const& x) const { return frame(model, x, centre()).v.x(); }
   double slip(State const& x) const {
     Frame<double> const f = frame(model, x, centre());
@@ -317,14 +321,17 @@ void expect_slip_then_roll(double t_roll, double x_roll, double v_roll) {
     Slip const slip{s};
     Roller<Body> const roller({.coefficient = mu, .slip_speed = s}, 0.0);
     State x = roller.start(v0);
-    Event const rolls{.name = "slip v_s", .value = [&](State const& now) { return roller.slip(now) - s; }, .tolerance = 1e-12};
+    Event const rolls{
+        .name = "slip v_s", .value = [&](State const& now) { return roller.slip(now) - s; }, .tolerance = 1e-12};
     Event const ideal{.name = "ideal", .value = [&](State const& now) { return now.t - t_roll; }, .tolerance = 1e-12};
-    auto const met = events_of(roller.model, x, DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
-                               {.until = 0.8, .step = 1e-4, .events = {rolls, ideal}});
+    auto const met =
+        events_of(roller.model, x, DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
+                  {.until = 0.8, .step = 1e-4, .events = {rolls, ideal}});
     State const& slow = first(met, "slip v_s");
     EXPECT_NEAR(slow.t, (slip.F(v0) - slip.F(s)) / b, 1e-8);
     EXPECT_NEAR(slow.t, t_roll, s / b);
-    State const& then = first(met, "ideal");  // when Coulomb's law would have it roll, at most some v_s of slip are left
+    State const& then =
+        first(met, "ideal");  // when Coulomb's law would have it roll, at most some v_s of slip are left
     double const left = roller.slip(then);
     EXPECT_GT(left, 0.0);
     EXPECT_LT(left, 2.0 * s);
@@ -343,9 +350,9 @@ TEST(SlipToRoll, DiscRollsAtTwoThirdsOfItsSpeed) {
   expect_slip_then_roll<planar::Rigid>(0.509683995923, 1.274209989806, 2.0);
 }
 
-// Down an incline: rolling needs friction N q, q = tan α c/(1 + c). Where μ > q it slips at u = v_s q/√(μ² − q²) only, and v + c
-// ω R = g sin α t gives v = (g sin α t + c u)/(1 + c). Where μ < q slip grows at g sin α (1 − μ/q), and by less than v_s (μ/q)/(1
-// − μ/q) more.
+// Down an incline: rolling needs friction N q, q = tan α c/(1 + c). Where μ > q it slips at u = v_s q/√(μ² − q²) only,
+// and v + c ω R = g sin α t gives v = (g sin α t + c u)/(1 + c). Where μ < q slip grows at g sin α (1 − μ/q), and by
+// less than v_s (μ/q)/(1 − μ/q) more.
 template <class Body>
 void expect_rolls_down() {
   double const alpha = 0.5, s = 1e-3, until = 0.6, pull = g * std::sin(alpha);
@@ -384,8 +391,8 @@ TEST(HertzImpact, HasTheDepthAndDurationOfTheClosedForm) {
   EXPECT_NEAR(impact.free.v[z], 1.0, 1e-9);
 }
 
-/// Two free balls of masses m₁, m₂ in space, ends of their radii a millimetre apart, the first at rest, the second coming
-/// obliquely.
+/// Two free balls of masses m₁, m₂ in space, ends of their radii a millimetre apart, the first at rest, the second
+/// coming obliquely.
 template <class N>
 struct Pair {
   static constexpr double m1 = 3.0, m2 = 1.5, radius = 0.2;  ///< reduced mass 1 kg, 1/R = 1/0.2 + 1/0.2
@@ -393,7 +400,8 @@ struct Pair {
   Vec3 const line = Vec3(2, 1, -2) / 3.0;
   Model<Bodies<Rigid<>>, Joints<>, Forces<Law>> model;
   BodyHandle<Rigid<>> one = model.add(Rigid<>(m1, Mat3(0.05 * Mat3::Identity()), Placement{}));
-  BodyHandle<Rigid<>> two = model.add(Rigid<>(m2, Mat3(0.02 * Mat3::Identity()), Placement::at((2.0 * radius + 1e-3) * line)));
+  BodyHandle<Rigid<>> two =
+      model.add(Rigid<>(m2, Mat3(0.02 * Mat3::Identity()), Placement::at((2.0 * radius + 1e-3) * line)));
   State x;
   double deepest = 0.0;
 
@@ -411,8 +419,8 @@ struct Pair {
   Vec3 relative() const { return x.v.segment<3>(model.entry(two).v0) - x.v.segment<3>(model.entry(one).v0); }
 };
 
-// Two spheres that meet centrally do as one of the reduced mass does on a wall; a step of 1e-5 s sees the depth to ½ a h² = 4e-8
-// m.
+// Two spheres that meet centrally do as one of the reduced mass does on a wall; a step of 1e-5 s sees the depth to ½ a
+// h² = 4e-8 m.
 TEST(HertzImpact, OfTwoFreeSpheresIsThatOfTheReducedMass) {
   Pair<HertzContact> const pair({.modulus = 1e8, .radius = 0.1}, 1.0);
   EXPECT_NEAR(pair.deepest, 9.7451496023e-04, 8e-8);
@@ -431,8 +439,8 @@ TEST(HuntCrossleyImpact, LeavesWithItsRestitution) {
 
 // --- C5: the spinning ring ------------------------------------------------------------------------------------
 
-/// 64 links in the plane that spin about the centre of the ring they make; the last pin closes it, of the same policy as the
-/// others.
+/// 64 links in the plane that spin about the centre of the ring they make; the last pin closes it, of the same policy
+/// as the others.
 template <class Policy>
 struct Ring {
   static constexpr int n = 64;
@@ -453,14 +461,15 @@ struct Ring {
     }
     for (int i = 0; i < n; ++i)
       pins.push_back(model.connect(Pin{{}, policy}, links[std::size_t(i)].at(Vec2(0.5 * length, 0)),
-                                   links[std::size_t((i + 1) % n)].at(Vec2(-0.5 * length, 0)), i + 1 == n ? "closing pin" : ""));
+                                   links[std::size_t((i + 1) % n)].at(Vec2(-0.5 * length, 0)),
+                                   i + 1 == n ? "closing pin" : ""));
   }
 };
 
-// CASES C5: F = m ω² l cos(π/N)/(4 sin²(π/N)) in every pin, tangential, also in the closing one. A pin of stiffness k opens by g
-// where the links go outward by g/(2 sin π/N) each: k g = F (1 + g/(2 R sin π/N)). Over a tenth of a turn in steps of ωh = 5e-3.
-// Constrained, the second-order method errs by less than (ωh)² of the force; rounding, over h², forbids much smaller steps.
-// Compliant, its error of the start lets the ring ring: ten times that.
+// CASES C5: F = m ω² l cos(π/N)/(4 sin²(π/N)) in every pin, tangential, also in the closing one. A pin of stiffness k
+// opens by g where the links go outward by g/(2 sin π/N) each: k g = F (1 + g/(2 R sin π/N)). Over a tenth of a turn in
+// steps of ωh = 5e-3. Constrained, the second-order method errs by less than (ωh)² of the force; rounding, over h²,
+// forbids much smaller steps. Compliant, its error of the start lets the ring ring: ten times that.
 template <class Policy>
 void expect_ring(Policy const& policy, double stiffness) {
   Ring<Policy> const ring(policy);
@@ -476,7 +485,8 @@ void expect_ring(Policy const& policy, double stiffness) {
   }
   double const h = 5e-3 / ring.omega, tolerance = (ideal ? 1.0 : 10.0) * 25e-6;
   int steps = 0;
-  for (State const& now : simulate(ring.model, x, GeneralizedAlpha{.tolerance = 1e-12}, {.until = 120 * h, .step = h})) {
+  for (State const& now :
+       simulate(ring.model, x, GeneralizedAlpha{.tolerance = 1e-12}, {.until = 120 * h, .step = h})) {
     if (steps++ % 10 != 0) continue;
     for (int const i : {0, 20, ring.n - 1}) {
       double const angle = ring.half * (2 * i + 1) + ring.omega * now.t;
@@ -486,23 +496,28 @@ void expect_ring(Policy const& policy, double stiffness) {
     }
   }
 }
-TEST(SpinningRingOf64, HasTheForceOfTheClosedForm) { expect_ring(Constraint{}, std::numeric_limits<double>::infinity()); }
-TEST(SpinningRingOf64, OpensPenaltiesByTheForceOverTheStiffness) { expect_ring(Penalty{.stiffness = 1e8, .damping = 0.0}, 1e8); }
+TEST(SpinningRingOf64, HasTheForceOfTheClosedForm) {
+  expect_ring(Constraint{}, std::numeric_limits<double>::infinity());
+}
+TEST(SpinningRingOf64, OpensPenaltiesByTheForceOverTheStiffness) {
+  expect_ring(Penalty{.stiffness = 1e8, .damping = 0.0}, 1e8);
+}
 TEST(SpinningRingOf64, OpensBushingsByTheForceOverTheStiffness) {
-  expect_ring(Bushing{.stiffness = Bushing::diagonal({1e8, 1e8, 1e8}, {0, 0, 0}), .damping = Bushing::Matrix::Zero()}, 1e8);
+  expect_ring(Bushing{.stiffness = Bushing::diagonal({1e8, 1e8, 1e8}, {0, 0, 0}), .damping = Bushing::Matrix::Zero()},
+              1e8);
 }
 
 // --- C7: the belt around a drum -------------------------------------------------------------------------------
 
-/// A belt of point masses on rods that is drawn over a fixed drum at a steady speed: `links` rods lie on it around the angle
-/// `wrap`, a few more come and go along its tangents. It starts as it is to run, so that nothing has to settle but what the start
-/// leaves out.
+/// A belt of point masses on rods that is drawn over a fixed drum at a steady speed: `links` rods lie on it around the
+/// angle `wrap`, a few more come and go along its tangents. It starts as it is to run, so that nothing has to settle
+/// but what the start leaves out.
 ///
-/// Where rods come to a point at the angle a from the tangent there and go on at b, they press N = T sin a + T′ sin b, and T′ cos
-/// b = T cos a + μN holds them against friction:
+/// Where rods come to a point at the angle a from the tangent there and go on at b, they press N = T sin a + T′ sin b,
+/// and T′ cos b = T cos a + μN holds them against friction:
 ///   T′/T = (cos a + μ sin a)/(cos b − μ sin b).
-/// The first and the last point meet their free rods along the tangent; a rod on the drum stands at half its angle φ from the
-/// tangents at both ends. So each rod brings its tension from one point to the next with the factor
+/// The first and the last point meet their free rods along the tangent; a rod on the drum stands at half its angle φ
+/// from the tangents at both ends. So each rod brings its tension from one point to the next with the factor
 ///   f = (1 + μ tan φ/2)/(1 − μ tan φ/2) = e^(2 artanh(μ tan φ/2)) = e^(μφ + (μ + μ³)φ³/12 + …)
 /// and T₂/T₁ = fⁿ, nφ = β, goes to e^(μβ) as φ². [derived; the limit: Euler 1769, Eytelwein 1808]
 struct Capstan {
@@ -582,8 +597,9 @@ struct Capstan {
   }
 };
 
-// CASES C7. Beside the balance of the points as they stand there is their inertia, m v²/ℓ = 5e-5 N, and what points that come and
-// go shake. At 0.05 s none has; the belt has moved by 0.005 rad, and of what this does to the rule its square is left, 2.5e-5.
+// CASES C7. Beside the balance of the points as they stand there is their inertia, m v²/ℓ = 5e-5 N, and what points
+// that come and go shake. At 0.05 s none has; the belt has moved by 0.005 rad, and of what this does to the rule its
+// square is left, 2.5e-5.
 TEST(Capstan, HoldsAsItsPointsBalanceAndTendsToTheExponential) {
   for (double const wrap : {0.5 * std::numbers::pi, std::numbers::pi}) {
     double const exponential = std::exp(Capstan::effective() * wrap);
@@ -613,8 +629,8 @@ TEST(Capstan, HoldsAsItsPointsBalanceAndTendsToTheExponential) {
   }
 }
 
-/// The same with a cable that is nearly limp: EI/(R² T₁) = 4e-4, stretched by T/EA = 1e-3, points of contact four to an element.
-/// It starts stretched as T₁ e^(μ s/R) stretches it, |r′|² = 1 + 2T/EA, and as deep in the drum.
+/// The same with a cable that is nearly limp: EI/(R² T₁) = 4e-4, stretched by T/EA = 1e-3, points of contact four to an
+/// element. It starts stretched as T₁ e^(μ s/R) stretches it, |r′|² = 1 + 2T/EA, and as deep in the drum.
 struct CableCapstan {
   static constexpr double radius = 0.5, mu = 0.3, slack = 10.0, speed = 0.05, slip_speed = 1e-2, EA = 1e4, end = 0.2;
   static double effective() { return mu * speed / std::hypot(speed, slip_speed); }
@@ -631,10 +647,11 @@ struct CableCapstan {
   double stretch(double way) const { return std::sqrt(1.0 + 2.0 * slack * std::exp(effective() * on_drum(way)) / EA); }
 
   CableCapstan(double wrap_, int elements)
-      : wrap(wrap_), cable(model.add(Cable::from({.length = length,
-                                                  .constants = BarConstants{.EA = EA, .EI = 1e-3, .mass_per_length = 0.02},
-                                                  .damping = {.axial = 1e-3, .bending = 1e-3}},
-                                                 elements))) {
+      : wrap(wrap_),
+        cable(model.add(Cable::from({.length = length,
+                                     .constants = BarConstants{.EA = EA, .EI = 1e-3, .mass_per_length = 0.02},
+                                     .damping = {.axial = 1e-3, .bending = 1e-3}},
+                                    elements))) {
     int const count = 4 * elements;
     double const spacing = length / count, bed = 1e6;  // stiffness of the drum [N/m²]
     std::vector<Marker<Cable>> points;
@@ -671,7 +688,8 @@ TEST(Capstan, OfACableHoldsByTheExponential) {
     CableCapstan capstan(wrap, 32);
     double const exponential = std::exp(CableCapstan::effective() * wrap);
     int seen = 0;
-    for (State const& now : simulate(capstan.model, capstan.x, GeneralizedAlpha{.rho_inf = 0.5}, {.until = 0.6, .step = 5e-4})) {
+    for (State const& now :
+         simulate(capstan.model, capstan.x, GeneralizedAlpha{.rho_inf = 0.5}, {.until = 0.6, .step = 5e-4})) {
       if (now.t < 0.0995 || std::lround(now.t / 5e-4) % 20 != 0) continue;
       double const ratio = reaction(capstan.model, now, capstan.winch).f.norm() / CableCapstan::slack;
       EXPECT_NEAR(ratio / exponential, 1.0, 2e-3) << wrap << ' ' << now.t;

@@ -1,5 +1,5 @@
-// CASES S1, S4b, S8, S8b with beams in space: bars that are rolled up, and MacNeal & Harder's, which are twisted and curved
-// from the start.
+// CASES S1, S4b, S8, S8b with beams in space: bars that are rolled up, and MacNeal & Harder's, which are twisted and
+// curved from the start.
 
 #include <polybody/bodies/ancf_beam.hpp>
 #include <polybody/bodies/lrvf.hpp>
@@ -19,20 +19,21 @@ using std::numbers::pi;
 
 // ---- S1: rolled up by a moment about any axis across the bar, θ = M L/EI
 
-/// L = EI = 1. \return the tip along the bar, across it and out of the plane of bending, and how far its turn is from θ.
+/// L = EI = 1. \return the tip along the bar, across it and out of the plane of bending, and how far its turn is from
+/// θ.
 template <class B>
 Vec4 rolled(Index n, double theta, double axis) {
   Bar const bar{.length = 1.0,
-                .constants = BarConstants{.EA = 300, .EI = 1, .mass_per_length = 1, .GA = 200, .GJ = 0.7,
-                                          .rotary_inertia = 1e-3}};
+                .constants = BarConstants{
+                    .EA = 300, .EI = 1, .mass_per_length = 1, .GA = 200, .GJ = 0.7, .rotary_inertia = 1e-3}};
   Vec3 const about(0, -std::sin(axis), std::cos(axis)), across(0, std::cos(axis), std::sin(axis));
   SpatialCantilever<B> const c(B::from(bar, n), {.moment = theta * about}, {.load_steps = 10});
   Mat3 const beyond = c.tip_turn() * exp_so3<double>(-theta * about);
   return {c.tip()[0], c.tip().dot(across), c.tip().dot(about), log_so3(beyond).norm()};
 }
 
-// The nodes of n elements are those of a regular polygon with sides of length 1/n, each turned by θ/n against the last: half a
-// circle ends at 1/(n sin(π/2n)), above the root; a full one at the root.
+// The nodes of n elements are those of a regular polygon with sides of length 1/n, each turned by θ/n against the last:
+// half a circle ends at 1/(n sin(π/2n)), above the root; a full one at the root.
 TEST(RollUpInSpace, LrvfBecomesAPolygon) {
   for (double const axis : {0.0, 1.3}) {
     EXPECT_LT((rolled<Lrvf<>>(10, pi, axis) - Vec4(0, 0.1 / std::sin(0.05 * pi), 0, 0)).norm(), 1e-9);
@@ -40,8 +41,8 @@ TEST(RollUpInSpace, LrvfBecomesAPolygon) {
   }
 }
 
-// To the exact half circle, which ends at (0, 2/π). Sections follow r_y: an element that bends about another axis than y or z
-// also leaves the plane a little.
+// To the exact half circle, which ends at (0, 2/π). Sections follow r_y: an element that bends about another axis than
+// y or z also leaves the plane a little.
 TEST(RollUpInSpace, AncfBeamConvergesToTheCircle) {
   Vec4 const exact(0, 2 / pi, 0, 0), coarse = rolled<AncfBeam<>>(16, pi, 0.7), fine = rolled<AncfBeam<>>(32, pi, 0.7);
   EXPECT_NEAR((coarse - exact).norm() / (fine - exact).norm(), 4.0, 0.2);
@@ -78,8 +79,12 @@ TEST(InclinedBeamInSpace, LrvfConvergesToTheExactRod) {
 Vec3 twisted_tip(Index n, Vec3 const& force) {
   double const e = 29e6, g = e / 2.44, length = 12, width = 1.1, depth = 0.32, a = width * depth;
   Bar const bar{.length = length,
-                .constants = BarConstants{.EA = e * a, .EI = e * width * std::pow(depth, 3) / 12, .mass_per_length = 1,
-                                          .GA = g * a * 5 / 6, .GJ = g * 0.00981214, .rotary_inertia = 0.01,
+                .constants = BarConstants{.EA = e * a,
+                                          .EI = e * width * std::pow(depth, 3) / 12,
+                                          .mass_per_length = 1,
+                                          .GA = g * a * 5 / 6,
+                                          .GJ = g * 0.00981214,
+                                          .rotary_inertia = 0.01,
                                           .EI_y = e * depth * std::pow(width, 3) / 12}};
   auto const twist = [=](double s) { return Placement::at({s, 0, 0}, {0.5 * pi * s / length, 0, 0}); };
   return SpatialCantilever<AncfBeam<>>(AncfBeam<>::from(bar, n, twist), {.force = force}, {}).tip_displacement();
@@ -120,10 +125,11 @@ Vec3 arc_tip(Index n, Vec3 const& force) {
   return (tip(small) - tip(-small)) / (2.0 * small);
 }
 
-// Castigliano, with θ from the tip: M = R sin θ, N = sin θ, Q = cos θ in the plane; M = R sin θ, T = R (1 − cos θ), Q = 1 out
-// of it:
+// Castigliano, with θ from the tip: M = R sin θ, N = sin θ, Q = cos θ in the plane; M = R sin θ, T = R (1 − cos θ), Q =
+// 1 out of it:
 //   u = π R³/4EI + π R/4EA + π R/4GA,   w = π R³/4EI_y + (3π/4 − 2) R³/GJ + π R/2GA_z.
-// The axis has no law of a curved beam, which couples N and M: the published 0.08734 and 0.5022 are met to 1.5 % and 0.4 %.
+// The axis has no law of a curved beam, which couples N and M: the published 0.08734 and 0.5022 are met to 1.5 % and
+// 0.4 %.
 template <class B>
 void bends() {
   BarConstants const c = constants(quarter());

@@ -16,7 +16,8 @@ Vec2 turned_back(Vec3 const& r, double psi) {
 
 // D1: Simo & Vu-Quoc 1986. Pinned at the origin along x, no gravity.
 Bar svq_arm() {
-  return {.length = 10.0, .constants = BarConstants{.EA = 1e4, .EI = 1e3, .mass_per_length = 1.0, .GA = 1e4, .rotary_inertia = 10.0}};
+  return {.length = 10.0,
+          .constants = BarConstants{.EA = 1e4, .EI = 1e3, .mass_per_length = 1.0, .GA = 1e4, .rotary_inertia = 10.0}};
 }
 
 template <class B, class Law>
@@ -34,7 +35,9 @@ struct DrivenArm {
 TEST(SimoVuQuocArm, DisplacementDrivenConvergesToTheIndependentSolution) {
   DrivenArm<Lrvf, Ramp> arm(Lrvf::from(svq_arm(), 40), Ramp{.target = 1.5, .duration = 2.5});
   State x = arm.model.reference_state();
-  struct Row { double t, x, y; };
+  struct Row {
+    double t, x, y;
+  };
   std::vector<Row> const rows{{0.5, 9.95467, 0.0850}, {1.0, 9.69741, 0.4799}, {2.0, 8.23204, 5.2519},
                               {2.5, 5.05062, 8.5231}, {3.0, 0.0686, 9.98608}, {5.0, -8.0557, 3.7519}};
   std::size_t next = 0;
@@ -56,7 +59,9 @@ TEST(SimoVuQuocArm, DisplacementDrivenConvergesToTheIndependentSolution) {
 TEST(SimoVuQuocArm, TenElementsAsInThePaperStayWithinFivePercentOfTheLength) {
   DrivenArm<Lrvf, Ramp> arm(Lrvf::from(svq_arm(), 10), Ramp{.target = 1.5, .duration = 5.0});
   State x = arm.model.reference_state();
-  struct Row { double t, x, y; };
+  struct Row {
+    double t, x, y;
+  };
   std::vector<Row> const rows{{1.0, 9.9233, 0.2375}, {2.5, 8.7431, 4.7879}, {5.0, -2.6005, 9.5806}};
   std::size_t next = 0;
   for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 5.0, .step = 5e-3}))
@@ -91,7 +96,9 @@ TEST(SimoVuQuocArm, TorqueDrivenKeepsTheImpulseExactly) {
 
 // D2: Kane, Ryan & Banerjee 1987; the base is clamped to a hub of zero radius.
 Bar kane_beam() {
-  return {.length = 10.0, .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .GA = 1e7, .rotary_inertia = 6e-4}};
+  return {
+      .length = 10.0,
+      .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .GA = 1e7, .rotary_inertia = 6e-4}};
 }
 
 template <class B>
@@ -99,9 +106,13 @@ void spin_up(B const& body, double step, double lag_tolerance) {
   SpinUp const law{.speed = 6.0, .duration = 15.0};
   DrivenArm<B, SpinUp> arm(body, law);
   State x = arm.model.reference_state();
-  struct Row { double t, u1, u2; };
-  std::vector<Row> const rows{{2.5, -0.00132267702, -0.15128355864}, {5.0, -0.01265463625, -0.46847618344},
-                              {6.5, -0.01860342132, -0.56994836841}, {7.5, -0.01774186447, -0.55908345896},
+  struct Row {
+    double t, u1, u2;
+  };
+  std::vector<Row> const rows{{2.5, -0.00132267702, -0.15128355864},
+                              {5.0, -0.01265463625, -0.46847618344},
+                              {6.5, -0.01860342132, -0.56994836841},
+                              {7.5, -0.01774186447, -0.55908345896},
                               {10.0, -0.00707233630, -0.36281451565}};
   std::size_t next = 0;
   double stretch = 0.0, lag = 0.0;
@@ -130,9 +141,10 @@ TEST(SpinUp, LrvfOfTenElements) { spin_up(Lrvf::from(kane_beam(), 10), 5e-3, 1e-
 // D3: the flying rod of Simo & Vu-Quoc 1986, free in the plane.
 template <class B>
 void flying_rod(double EI, int elements, Vec2 const& loaded, Vec2 const& free, double plateau, double tolerance) {
-  Bar const bar{.length = 10.0,
-                .constants = BarConstants{.EA = 1e4, .EI = EI, .mass_per_length = 1.0, .GA = 1e4, .rotary_inertia = 10.0},
-                .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))};
+  Bar const bar{
+      .length = 10.0,
+      .constants = BarConstants{.EA = 1e4, .EI = EI, .mass_per_length = 1.0, .GA = 1e4, .rotary_inertia = 10.0},
+      .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))};
   Model<Bodies<B>, Joints<>, Forces<PointForce<Window>, PointMoment<Window>>> model;
   auto const rod = model.add(B::from(bar, elements), "rod");
   model.apply(PointForce<Window>{.force = {8, 0, 0}, .law = {.to = 2.5}}, rod.at(0.0), "force");
@@ -144,7 +156,8 @@ void flying_rod(double EI, int elements, Vec2 const& loaded, Vec2 const& free, d
   EXPECT_NEAR(p.linear[1], 0.0, 1e-6);
   Vec3 centre = Vec3::Zero();  // of mass: exact for the linear field by the mid-points
   for (int i = 0; i < elements; ++i)
-    centre += 0.5 / elements * (position(model, x, rod.at(10.0 * i / elements)) + position(model, x, rod.at(10.0 * (i + 1) / elements)));
+    centre += 0.5 / elements *
+              (position(model, x, rod.at(10.0 * i / elements)) + position(model, x, rod.at(10.0 * (i + 1) / elements)));
   EXPECT_NEAR(centre[0], 5.5 + 2.0 * 2.5, 2e-4);
   EXPECT_NEAR(centre[1], 4.0, 1e-6);
   EXPECT_NEAR(energy(model, x).total(), plateau, 0.02 * plateau);
@@ -174,17 +187,27 @@ void pendulum(B const& body, std::vector<std::array<double, 3>> const& rows, dou
 }
 
 Bar moderate() {  // D6b
-  return {.length = 1.0, .constants = BarConstants{.EA = 1.5e5, .EI = 5.0, .mass_per_length = 1.0, .GA = 4.807692e4, .rotary_inertia = 3.3333333e-5}};
+  return {.length = 1.0,
+          .constants = BarConstants{
+              .EA = 1.5e5, .EI = 5.0, .mass_per_length = 1.0, .GA = 4.807692e4, .rotary_inertia = 3.3333333e-5}};
 }
 Bar stiff() {  // D6c
-  return {.length = 1.0, .constants = BarConstants{.EA = 5.25e7, .EI = 10937.5, .mass_per_length = 10.0, .GA = 1.68269e7, .rotary_inertia = 2.08333e-3}};
+  return {.length = 1.0,
+          .constants = BarConstants{
+              .EA = 5.25e7, .EI = 10937.5, .mass_per_length = 10.0, .GA = 1.68269e7, .rotary_inertia = 2.08333e-3}};
 }
 // the cable has no shear: the values of the run with GA = 1e6
 TEST(FlexiblePendulum, ModerateCable) {
-  pendulum(Cable::from(moderate(), 8), {{0.5, -0.093390, -0.995671}, {1.0, -0.999921, -0.003370}, {2.0, 0.999386, -0.019993}}, 1e-3, 5e-4);
+  pendulum(Cable::from(moderate(), 8),
+           {{0.5, -0.093390, -0.995671}, {1.0, -0.999921, -0.003370}, {2.0, 0.999386, -0.019993}}, 1e-3, 5e-4);
 }
 TEST(FlexiblePendulum, ModerateLrvf) {
-  pendulum(Lrvf::from(moderate(), 32), {{0.1, 0.997688, -0.061850}, {0.2, 0.957377, -0.288926}, {0.5, -0.093346, -0.995676}, {1.0, -0.999924, -0.003451}}, 1e-3, 5e-4);
+  pendulum(Lrvf::from(moderate(), 32),
+           {{0.1, 0.997688, -0.061850},
+            {0.2, 0.957377, -0.288926},
+            {0.5, -0.093346, -0.995676},
+            {1.0, -0.999924, -0.003451}},
+           1e-3, 5e-4);
 }
 std::vector<std::array<double, 3>> const d6c{
     {0.1, 0.9972992192, -0.0734484788}, {0.2, 0.9573053663, -0.2890813990}, {0.5, -0.0893682330, -0.9960014555}};

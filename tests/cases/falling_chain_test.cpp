@@ -1,5 +1,5 @@
-// An open chain of links that falls from the horizontal, its first link pinned to the ground, by five joint policies: where
-// the tip is, how far the pins open, and what is counted. CASES R8d, thesis §3.5 and Table 3.4.
+// An open chain of links that falls from the horizontal, its first link pinned to the ground, by five joint policies:
+// where the tip is, how far the pins open, and what is counted. CASES R8d, thesis §3.5 and Table 3.4.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,8 @@ namespace falling_chain_test {
 template <class Policy>
 using Pin = Joint<Revolute, Policy>;
 
-/// What a policy joins: rigid links, in one model for the policies that keep their coordinates, or cables of one element.
+/// What a policy joins: rigid links, in one model for the policies that keep their coordinates, or cables of one
+/// element.
 template <class Policy>
 struct Kind {
   using Link = Rigid<>;
@@ -51,16 +52,19 @@ Policy policy_of(double k) {
   }
 }
 
-/// 16 m and 64 kg in n links. Lengths scale as g t²: after 1 s the chain is shaped as one of 1 m is after 0.25 s, of which CASES
-/// R8d has the tip. That is before the whip: the wave from the pin is under way, and the tip still falls freely.
+/// 16 m and 64 kg in n links. Lengths scale as g t²: after 1 s the chain is shaped as one of 1 m is after 0.25 s, of
+/// which CASES R8d has the tip. That is before the whip: the wave from the pin is under way, and the tip still falls
+/// freely.
 constexpr double length = 16.0, stiff = 1e8;
 
-/// A rod of the chain: thin (rotary inertia adds 5e-4 to m l²/12 of 0.25 m, and a cable has none); 0.25 m of it stretch as a
-/// spring `stiff`. A cable of one element that neither stretches nor bends is r = r₀ + s t, with the kinetic energy of a rigid rod.
+/// A rod of the chain: thin (rotary inertia adds 5e-4 to m l²/12 of 0.25 m, and a cable has none); 0.25 m of it stretch
+/// as a spring `stiff`. A cable of one element that neither stretches nor bends is r = r₀ + s t, with the kinetic
+/// energy of a rigid rod.
 Bar rod(double l, double from) {
-  return {.length = l,
-          .constants = BarConstants{.EA = 0.25 * stiff, .EI = 1e-3 * stiff, .mass_per_length = 4.0, .rotary_inertia = 1e-5},
-          .placement = Placement::at({from, 0, 0})};
+  return {
+      .length = l,
+      .constants = BarConstants{.EA = 0.25 * stiff, .EI = 1e-3 * stiff, .mass_per_length = 4.0, .rotary_inertia = 1e-5},
+      .placement = Placement::at({from, 0, 0})};
 }
 
 /// The chain: one source for all policies.
@@ -117,7 +121,8 @@ Chain<Constraint> const& ideal() {
   return chain;
 }
 
-// CASES R8d: ten links, sixteen times the tip of 1 m at 0.25 s. Ideal joints are off by h² alone, the others by F/k too.
+// CASES R8d: ten links, sixteen times the tip of 1 m at 0.25 s. Ideal joints are off by h² alone, the others by F/k
+// too.
 TEST(FallingChain, OfTenLinksHasThePublishedTip) {
   Vec3 const published = length * Vec3(0.877462524775, -0.306656671158, 0.0);
   EXPECT_LT((fallen<Constraint>(10).tip() - published).norm(), 2e-5);
@@ -177,8 +182,8 @@ TEST(FallingChain, PinsWithoutSpringsStayClosed) {
   EXPECT_LT(ideal().worst.position, 1e-10);
 }
 
-// Coordinates, constraints and degrees of freedom as Table 3.4 counts: of a rigid link seven and the norm of its parameters, of a
-// cable twelve. A pin has five rows, between cables four; to penalties and bushings none.
+// Coordinates, constraints and degrees of freedom as Table 3.4 counts: of a rigid link seven and the norm of its
+// parameters, of a cable twelve. A pin has five rows, between cables four; to penalties and bushings none.
 TEST(FallingChain, IsCountedAsInTheThesis) {
   constexpr Index n = 64;
   auto const expect = [](Census const& c, Index coordinates, Index constraints, Index freedoms, Index rows) {

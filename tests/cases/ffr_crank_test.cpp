@@ -1,4 +1,5 @@
-// CASES D7: the flexible slider-crank of the IVP Test Set (Simeon), its rod a floating frame with the test set's own modal matrices.
+// CASES D7: the flexible slider-crank of the IVP Test Set (Simeon), its rod a floating frame with the test set's own
+// modal matrices.
 #include <gtest/gtest.h>
 
 #include <polybody/analysis/observe.hpp>
@@ -15,12 +16,14 @@ namespace ffr_crank_test {
 
 using namespace polybody;
 
-double const pi = 3.1415927, m1 = 0.36, m2 = 0.151104, m3 = 0.075552, l1 = 0.15, l2 = 0.30, j1 = 0.002727, j2 = 0.0045339259;
+double const pi = 3.1415927, m1 = 0.36, m2 = 0.151104, m3 = 0.075552, l1 = 0.15, l2 = 0.30, j1 = 0.002727,
+             j2 = 0.0045339259;
 double const young = 0.20e12, height = 0.0080, density = 7870.0, omega = 150.0;
 
 /// Two sine modes across, quadratic displacements along (middle and end); the test set's numbers, its M_q included.
 planar::FfrIntegrals rod_integrals() {
-  double const b = height * height * l2, m = density * b, k = young * height * height / l2, slender = (height / l2) * (height / l2);
+  double const b = height * height * l2, m = density * b, k = young * height * height / l2,
+               slender = (height / l2) * (height / l2);
   planar::FfrIntegrals x = planar::FfrIntegrals::zero(4);
   x.mass = m2;
   x.first = {0.5 * m2 * l2, 0.0};
@@ -35,7 +38,8 @@ planar::FfrIntegrals rod_integrals() {
   x.coupling_by << 0, 0, b13, b14, 0, 0, 0, b24, -b13, 0, 0, 0, -b14, -b24, 0, 0;
   x.coupling_by *= density;
   double const p4 = pi * pi * pi * pi;
-  x.stiffness << p4 / 24 * slender, 0, 0, 0, 0, p4 * 2 / 3 * slender, 0, 0, 0, 0, 16.0 / 3, -8.0 / 3, 0, 0, -8.0 / 3, 7.0 / 3;
+  x.stiffness << p4 / 24 * slender, 0, 0, 0, 0, p4 * 2 / 3 * slender, 0, 0, 0, 0, 16.0 / 3, -8.0 / 3, 0, 0, -8.0 / 3,
+      7.0 / 3;
   x.stiffness *= k;
   return x;
 }
@@ -81,8 +85,10 @@ TEST(FlexibleSliderCrank, ReproducesTheTestSetWithItsOwnMatrices) {
   std::vector<Row> const rows{
       {0.025, 0.28982893967, 0.16439623988, {-1.9477824541e-4, -2.0053495884e-5, -5.1499090637e-6, -8.0241594207e-6}},
       {0.05, -0.48815811706, 0.31695478651, {1.2739426524e-3, 4.2086886755e-5, -1.2705137884e-7, 3.29077e-8}},
-      {0.1, -0.3311734988256260, 0.1697373328427860, {0.1893192899613509e-3, 0.2375751249879174e-4, -0.5323896770569702e-5,
-                                                      -0.8363313279112129e-5}}};
+      {0.1,
+       -0.3311734988256260,
+       0.1697373328427860,
+       {0.1893192899613509e-3, 0.2375751249879174e-4, -0.5323896770569702e-5, -0.8363313279112129e-5}}};
   std::size_t next = 0;
   for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 0.1, .step = 1e-5})) {
     if (next == rows.size() || std::abs(now.t - rows[next].t) > 1e-9) continue;

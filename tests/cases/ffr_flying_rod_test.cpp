@@ -1,5 +1,6 @@
-// CASES D3 with a floating frame that nothing holds: mean axes and free–free modes. At rest the moment would bend the rod by
-// 80·10/500 = 1.6 rad, far more than a linear structure is for: it can show the motion as a whole, and how it begins.
+// CASES D3 with a floating frame that nothing holds: mean axes and free–free modes. At rest the moment would bend the
+// rod by 80·10/500 = 1.6 rad, far more than a linear structure is for: it can show the motion as a whole, and how it
+// begins.
 
 #include <polybody/bodies/ffr.hpp>
 
@@ -29,8 +30,9 @@ struct Flight {
     x = model.reference_state();
   }
   static Ffr rod(Index modes, bool stiffening) {
-    Bar const bar{.length = 10.0,
-                  .constants = BarConstants{.EA = 1e4, .EI = 500, .mass_per_length = 1.0, .GJ = 500, .rotary_inertia = 10.0}};
+    Bar const bar{
+        .length = 10.0,
+        .constants = BarConstants{.EA = 1e4, .EI = 500, .mass_per_length = 1.0, .GJ = 500, .rotary_inertia = 10.0}};
     Structure const s = structure_of(bar, 12);
     return Ffr(s, free_interface_modes(s, modes),
                {.placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0)), .stiffening = stiffening});
@@ -38,12 +40,13 @@ struct Flight {
   void fly_until(double t) { simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = 2e-3}).run(); }
   /// The larger of the two ends' distances from where they ought to be [m].
   double miss(Vec3 const& loaded, Vec3 const& free) const {
-    return std::max((position(model, x, body.at(0.0)) - loaded).norm(), (position(model, x, body.at(10.0)) - free).norm());
+    return std::max((position(model, x, body.at(0.0)) - loaded).norm(),
+                    (position(model, x, body.at(10.0)) - free).norm());
   }
 };
 
-// D3 [A]: the impulse, 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then 5.5 + 2 (t − 2.5) on the line y = 4; after the
-// loads also the energy and the moment of momentum. M depends on q here: all four to the integrator's order.
+// D3 [A]: the impulse, 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then 5.5 + 2 (t − 2.5) on the line y = 4;
+// after the loads also the energy and the moment of momentum. M depends on q here: all four to the integrator's order.
 TEST(FreeFloatingFrame, KeepsTheMomentaAndTheEnergyOfTheRod) {
   for (bool const stiffening : {false, true}) {
     Flight flight(8, stiffening);
@@ -67,8 +70,8 @@ TEST(FreeFloatingFrame, KeepsTheMomentaAndTheEnergyOfTheRod) {
   }
 }
 
-// D3 asks for a likeness only. With points drawn along the rod as it bends (`stiffening`) the ends are within 0.3 % of the length
-// after one second and 4 % after five; without, they are 2.5 % off after one already.
+// D3 asks for a likeness only. With points drawn along the rod as it bends (`stiffening`) the ends are within 0.3 % of
+// the length after one second and 4 % after five; without, they are 2.5 % off after one already.
 TEST(FreeFloatingFrame, FollowsTheRodWhileItBendsLittle) {
   Flight flight(8, true), linear(8, false);
   flight.fly_until(1.0);

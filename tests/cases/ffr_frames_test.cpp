@@ -1,5 +1,5 @@
-// Floating frames made of several bars, in static equilibrium: CASES S8, S8b; several of them welded in a row, S7; and a
-// cantilever whose tip force buckles it (S9e).
+// Floating frames made of several bars, in static equilibrium: CASES S8, S8b; several of them welded in a row, S7; and
+// a cantilever whose tip force buckles it (S9e).
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -39,16 +39,21 @@ TEST(FloatingFrame, PreTwistedCantilever) {
   std::vector<Bar> bars;
   for (Index i = 0; i < n; ++i)
     bars.push_back({.length = length / double(n),
-                    .constants = BarConstants{.EA = young * b * h, .EI = young * b * h * h * h / 12, .mass_per_length = 1.0,
-                                              .GJ = shear * 0.00981214, .rotary_inertia = 0.1, .EI_y = young * h * b * b * b / 12},
-                    .placement = Placement::at({length * double(i) / double(n), 0, 0}, {0.5 * pi * (double(i) + 0.5) / double(n), 0, 0})});
+                    .constants = BarConstants{.EA = young * b * h,
+                                              .EI = young * b * h * h * h / 12,
+                                              .mass_per_length = 1.0,
+                                              .GJ = shear * 0.00981214,
+                                              .rotary_inertia = 0.1,
+                                              .EI_y = young * h * b * b * b / 12},
+                    .placement = Placement::at({length * double(i) / double(n), 0, 0},
+                                               {0.5 * pi * (double(i) + 0.5) / double(n), 0, 0})});
   Structure const s = structure_of(bars, std::vector<Index>(std::size_t(n), 1));
   EXPECT_NEAR(tip_displacement(s, {0, 1, 0})[1], 5.4258784e-3, 1e-3 * 5.4258784e-3);
   EXPECT_NEAR(tip_displacement(s, {0, 0, 1})[2], 1.7461814e-3, 1e-3 * 1.7461814e-3);
 }
 
-// S8b: a quarter circle with inner radius 4.12 and depth 0.2, axis at R = 4.22. Castigliano with M = R sin θ, N = sin θ in the plane,
-// M = R sin θ, T = R (1 − cos θ) out of it:
+// S8b: a quarter circle with inner radius 4.12 and depth 0.2, axis at R = 4.22. Castigliano with M = R sin θ, N = sin θ
+// in the plane, M = R sin θ, T = R (1 − cos θ) out of it:
 //   u = π R³/4EI + π R/4EA = 0.0886 (published, with the curved beam's correction: 0.08734),
 //   u = π R³/4EI + (3π/4 − 2) R³/GJ = 0.5002 (published: 0.5022).
 TEST(FloatingFrame, CurvedCantilever) {
@@ -77,8 +82,9 @@ TEST(FloatingFrame, CurvedCantilever) {
 
 // ---- S7: the 45° bend of Bathe & Bolourchi in sub-structures
 
-/// Tip of the arc of radius 100 under a force along z. So many equal pieces, each of so many bars along chords, with a floating
-/// frame of its own that is tied to its first node or to its mean motion; the shapes are Craig & Bampton's with two modes.
+/// Tip of the arc of radius 100 under a force along z. So many equal pieces, each of so many bars along chords, with a
+/// floating frame of its own that is tied to its first node or to its mean motion; the shapes are Craig & Bampton's
+/// with two modes.
 Vec3 bend_tip(Index pieces, Index bars_of_each, BarConstants const& constants, double force, bool mean_axes) {
   auto const on_arc = [](double a) { return Placement::at(100.0 * Vec3(std::sin(a), 1 - std::cos(a), 0), {0, 0, a}); };
   double const chord = 0.25 * pi / double(pieces * bars_of_each), length = 200.0 * std::sin(0.5 * chord);
@@ -106,14 +112,16 @@ Vec3 bend_tip(Index pieces, Index bars_of_each, BarConstants const& constants, d
   return position(model, x, tips.back());
 }
 
-// Within a piece turns are small: what is left out falls with the square of its length, and is a quarter where the frame is in
-// the middle of them. Beams here have no shear; so stiff a bar does not stretch.
+// Within a piece turns are small: what is left out falls with the square of its length, and is a quarter where the
+// frame is in the middle of them. Beams here have no shear; so stiff a bar does not stretch.
 TEST(FloatingFrames, SubStructuresConvergeToTheExactRod) {
   BarConstants const c{.EA = 1e10, .EI = 1e7 / 12, .mass_per_length = 1.0, .GJ = 1e7 / 12, .rotary_inertia = 1.0 / 12};
   Vec3 const exact(47.1512944003, 15.6850781622, 53.4685984423), straight(70.7106781187, 29.2893218813, 0);
   double const u = (exact - straight).norm();
   for (bool const mean_axes : {false, true}) {
-    auto const error = [&](Index pieces) { return (bend_tip(pieces, 96 / pieces, c, 600, mean_axes) - exact).norm() / u; };
+    auto const error = [&](Index pieces) {
+      return (bend_tip(pieces, 96 / pieces, c, 600, mean_axes) - exact).norm() / u;
+    };
     double const eight = error(8), sixteen = error(16);
     EXPECT_LT(error(4), 0.03) << mean_axes;
     EXPECT_LT(eight, mean_axes ? 0.002 : 0.01);
@@ -123,7 +131,8 @@ TEST(FloatingFrames, SubStructuresConvergeToTheExactRod) {
 
 // Chrono's utest_MOD_curved_beam [P]: 40 elements in five sub-assemblies, to 5 %.
 TEST(FloatingFrames, FiveSubStructuresMeetThePublishedTolerance) {
-  BarConstants const c{.EA = 1e7, .EI = 1e7 / 12, .mass_per_length = 1.0, .GJ = 0.1405770150 * 5e6, .rotary_inertia = 1.0 / 12};
+  BarConstants const c{
+      .EA = 1e7, .EI = 1e7 / 12, .mass_per_length = 1.0, .GJ = 0.1405770150 * 5e6, .rotary_inertia = 1.0 / 12};
   struct {
     double force;
     Vec3 tip;
@@ -137,11 +146,12 @@ TEST(FloatingFrames, FiveSubStructuresMeetThePublishedTolerance) {
     }
 }
 
-// Geometric stiffening knows every axial force: the lateral stiffness of a cantilever pressed at its tip with P is lost at Euler's load
-// π²EI/4L² (S9e, clamped–free). Under P it is P/(tan(κL)/κ − L), κ² = P/EI.
+// Geometric stiffening knows every axial force: the lateral stiffness of a cantilever pressed at its tip with P is lost
+// at Euler's load π²EI/4L² (S9e, clamped–free). Under P it is P/(tan(κL)/κ − L), κ² = P/EI.
 TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
-  Bar const bar{.length = 1.0,
-                .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
+  Bar const bar{
+      .length = 1.0,
+      .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
   for (double const part : {0.0, 0.5, 0.9}) {
     double const p = part * pi * pi / 4, kappa = std::sqrt(p), lateral = 1e-5;
     double const expected = part == 0.0 ? lateral / 3 : lateral * (std::tan(kappa) / kappa - 1.0) / p;
@@ -153,8 +163,8 @@ TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
     equilibrium(model, x);
     EXPECT_NEAR(position(model, x, body.at(1.0))[1], expected, 5e-3 * expected) << part;
     EXPECT_NEAR(section_forces(model, x, body.at(0.5))[0], -p, 1e-3) << part;
-    EXPECT_NEAR(section_forces(model, x, body.at(0.0))[5],
-                lateral * 1.0 + p * expected, 0.02 * (lateral + p * expected))
+    EXPECT_NEAR(section_forces(model, x, body.at(0.0))[5], lateral * 1.0 + p * expected,
+                0.02 * (lateral + p * expected))
         << part;
   }
 }

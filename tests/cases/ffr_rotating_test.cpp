@@ -17,7 +17,8 @@ using namespace polybody;
 
 // D2: Kane, Ryan & Banerjee 1987.
 Bar kane_bar() {
-  return {.length = 10.0, .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .rotary_inertia = 6e-4}};
+  return {.length = 10.0,
+          .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .rotary_inertia = 6e-4}};
 }
 
 planar::Ffr kane_arm(Index modes, bool stiffening, FfrTerms terms = {}) {
@@ -46,7 +47,9 @@ struct SpinningArm {
     double const psi = law(now.t).value, c = std::cos(psi), s = std::sin(psi);
     return {c * r[0] + s * r[1] - 10.0, c * r[1] - s * r[0]};
   }
-  auto run(double until) { return simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = until, .step = 5e-3}); }
+  auto run(double until) {
+    return simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = until, .step = 5e-3});
+  }
 };
 
 // With stiffening, three bending modes: within 2 % of the largest deflection, as asked.
@@ -55,8 +58,8 @@ TEST(SpinUp, StiffenedFrameFollowsTheIndependentSolution) {
   struct Row {
     double t, u1, u2;
   };
-  std::vector<Row> const rows{{2.5, -0.00132267702, -0.15128355864}, {5.0, -0.01265463625, -0.46847618344},
-                              {6.5, -0.01860342132, -0.56994836841}, {7.5, -0.01774186447, -0.55908345896},
+  std::vector<Row> const rows{{2.5, -0.00132267702, -0.15128355864},  {5.0, -0.01265463625, -0.46847618344},
+                              {6.5, -0.01860342132, -0.56994836841},  {7.5, -0.01774186447, -0.55908345896},
                               {10.0, -0.00707233630, -0.36281451565}, {15.0, 5.13989706e-4, 1.30362629e-3}};
   std::size_t next = 0;
   double largest = 0.0;
@@ -88,8 +91,8 @@ TEST(SpinUp, AxialCoordinatesGiveTheSteadyStretch) {
   EXPECT_NEAR(sum / count, 5.139493e-4, 0.01 * 5.139493e-4);
 }
 
-// The negative control: the first frequency, 3.798 rad/s, is below the spin of 6 rad/s, so that without stiffening centrifugal forces
-// bend the arm away: u grows as exp(√(36 − 3.798²) t).
+// The negative control: the first frequency, 3.798 rad/s, is below the spin of 6 rad/s, so that without stiffening
+// centrifugal forces bend the arm away: u grows as exp(√(36 − 3.798²) t).
 TEST(SpinUp, WithoutStiffeningTheDeflectionRunsAway) {
   SpinningArm arm(kane_arm(3, false));
   double largest = 0.0;
@@ -110,8 +113,8 @@ TEST(SpinUp, WithoutCouplingTheArmDoesNotBend) {
   for (State const& now : arm.run(5.0)) EXPECT_LT(std::abs(arm.tip(now)[1]), 1e-9) << now.t;
 }
 
-/// Frequencies of a cantilever of unit EI, ρA and L that turns steadily about z at the clamp: M q̈ + G q̇ + K q = 0 with the body's own
-/// matrices, made dimensionless.
+/// Frequencies of a cantilever of unit EI, ρA and L that turns steadily about z at the clamp: M q̈ + G q̇ + K q = 0 with
+/// the body's own matrices, made dimensionless.
 VecX spinning_frequencies(Ffr const& body, double omega) {
   Index const n = body.deformations();
   VecX q(body.coordinates()), v = VecX::Zero(body.speeds());
@@ -143,8 +146,9 @@ VecX spinning_frequencies(Ffr const& body, double omega) {
 }
 
 Ffr unit_blade(FfrTerms terms = {}, bool stiffening = true) {
-  Bar const bar{.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, 
-                                               .GJ = 0.1, .rotary_inertia = 1e-6}};
+  Bar const bar{
+      .length = 1.0,
+      .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 0.1, .rotary_inertia = 1e-6}};
   return Ffr::from(bar, 10, {.terms = terms, .stiffening = stiffening});
 }
 
@@ -162,12 +166,14 @@ TEST(RotatingCantilever, HasTheFrequenciesOfTheTable) {
     std::vector<double> expected(row.flap, row.flap + 3);
     expected.insert(expected.end(), row.chord, row.chord + 3);
     std::sort(expected.begin(), expected.end());
-    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(w[Index(i)] / expected[i], 1.0, 1e-3) << row.omega << ' ' << i;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(w[Index(i)] / expected[i], 1.0, 1e-3) << row.omega << ' ' << i;
   }
 }
 
 // Without stiffening the flap does not know the spin, and the chord softens: ω² − Ω² [e.g. Kane, Ryan & Banerjee 1987].
-// S̃₂ is that softening: without it, too, the chord keeps its frequency (S̃₁ couples it to the axial motion only, far away).
+// S̃₂ is that softening: without it, too, the chord keeps its frequency (S̃₁ couples it to the axial motion only, far
+// away).
 TEST(RotatingCantilever, EachTermDoesWhatItIsSaidToDo) {
   double const omega = 3.0, first = 3.516015;
   VecX const soft = spinning_frequencies(unit_blade({}, false), omega);

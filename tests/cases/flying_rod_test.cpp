@@ -30,14 +30,19 @@ struct Triangle {
 /// From (6, 0, 0) to (0, 8, 0); the section's inertia about its own x is the sum of the two others, 20.
 Bar rod(double rotary_share = 1.0) {
   return {.length = 10.0,
-          .constants = BarConstants{.EA = 1e4, .EI = 500, .mass_per_length = 1.0, .GA = 1e4, .GJ = 500,
+          .constants = BarConstants{.EA = 1e4,
+                                    .EI = 500,
+                                    .mass_per_length = 1.0,
+                                    .GA = 1e4,
+                                    .GJ = 500,
                                     .rotary_inertia = 10.0 * rotary_share},
           .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))};
 }
 
 using Weldment = Joint<Weld, Constraint>;
 /// One type of model for all bodies: it is compiled once.
-using Sky = Model<Bodies<Lrvf<>, AncfBeam<>, Rigid<>>, Joints<Weldment>, Forces<PointForce<Triangle>, PointMoment<Triangle>>>;
+using Sky =
+    Model<Bodies<Lrvf<>, AncfBeam<>, Rigid<>>, Joints<Weldment>, Forces<PointForce<Triangle>, PointMoment<Triangle>>>;
 
 template <class B>
 struct Flight {
@@ -117,8 +122,8 @@ void extrapolates(Index n, double h, double in_discs, Tolerance const& tolerance
 }
 TEST(FlyingRodInSpace, TwoMeshesExtrapolateToTheExactRod) { extrapolates<Lrvf<>>(32, 0.01, 0.0, {3e-4, 0.1, 1e-3}); }
 
-/// The impulse of the triangle, 20 N · 2.5 s, and the centre of mass it gives: x_c(5) = 3 + 50 · 2.5/10, then 5 m/s. The
-/// moment of momentum stays as well, by the integrator to its order.
+/// The impulse of the triangle, 20 N · 2.5 s, and the centre of mass it gives: x_c(5) = 3 + 50 · 2.5/10, then 5 m/s.
+/// The moment of momentum stays as well, by the integrator to its order.
 template <class B>
 void moves_its_centre(Index n, double tolerance) {
   Flight<B> flight(n, 0.01);
@@ -141,8 +146,9 @@ void moves_its_centre(Index n, double tolerance) {
 TEST(FlyingRodInSpace, ImpulseGivesMomentumAndCentreOfMass) { moves_its_centre<Lrvf<>>(16, 1e-6); }
 TEST(FlyingRodInSpace, ImpulseGivesMomentumAndCentreOfMassOfTheAncfBeam) { moves_its_centre<AncfBeam<>>(8, 1e-6); }
 
-// The fully parameterised beam carries diag(20, 10, 10), but in sections that can stretch: one that spins at ω does so by
-// Iρ ω²/EA = 1e-3 ω² s². It is another rod then, near the one with rigid sections only at first: 1 % of the length up to 5 s.
+// The fully parameterised beam carries diag(20, 10, 10), but in sections that can stretch: one that spins at ω does so
+// by Iρ ω²/EA = 1e-3 ω² s². It is another rod then, near the one with rigid sections only at first: 1 % of the length
+// up to 5 s.
 TEST(FlyingRodInSpace, AncfBeamHasStretchingSectionsAndFollowsForAWhile) {
   Flight<AncfBeam<>> flight(16, 0.01);
   for (Row const& row : rows) {
@@ -153,8 +159,8 @@ TEST(FlyingRodInSpace, AncfBeamHasStretchingSectionsAndFollowsForAWhile) {
   EXPECT_NEAR(energy(flight.model, flight.x).total(), 724.4361, 0.005 * 724.4361);
 }
 
-// What sets it off is the inertia in its own sections. With all but a ten-thousandth of it in rigid discs it is the rod with
-// rigid sections, and follows as the Lrvf does.
+// What sets it off is the inertia in its own sections. With all but a ten-thousandth of it in rigid discs it is the rod
+// with rigid sections, and follows as the Lrvf does.
 TEST(FlyingRodInSpace, AncfBeamWithRigidSectionsFollowsTheExactRod) { follows(Flight<AncfBeam<>>(16, 0.02, 0.9999)); }
 TEST(FlyingRodInSpace, AncfBeamWithRigidSectionsConvergesToIt) {
   extrapolates<AncfBeam<>>(16, 0.02, 0.9999, {3e-3, 0.3, 2e-3});

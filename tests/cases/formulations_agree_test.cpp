@@ -1,5 +1,5 @@
-// One bar, every formulation: a cantilever of steel under a small tip force, the stiff pendulum of CASES D6c and the moderately
-// flexible one of D6b.
+// One bar, every formulation: a cantilever of steel under a small tip force, the stiff pendulum of CASES D6c and the
+// moderately flexible one of D6b.
 #include <gtest/gtest.h>
 
 #include <polybody/analysis/equilibrium.hpp>
@@ -28,9 +28,12 @@ template <class B>
 constexpr bool plane = B::world == World::plane;
 /// A cable knows its tangent only: a Revolute about it clamps it, a Spherical joint hangs it.
 template <class B>
-using Clamp = Joint<std::conditional_t<plane<B>, planar::Weld, std::conditional_t<B::observes == Observes::frame, Weld, Revolute>>, Constraint>;
+using Clamp = Joint<
+    std::conditional_t<plane<B>, planar::Weld, std::conditional_t<B::observes == Observes::frame, Weld, Revolute>>,
+    Constraint>;
 template <class B>
-using Pin = Joint<std::conditional_t<plane<B>, planar::Revolute, std::conditional_t<B::observes == Observes::frame, Revolute, Spherical>>,
+using Pin = Joint<std::conditional_t<plane<B>, planar::Revolute,
+                                     std::conditional_t<B::observes == Observes::frame, Revolute, Spherical>>,
                   Constraint>;
 
 /// One type of model for both, which is compiled once.
@@ -85,7 +88,8 @@ TYPED_TEST(EveryFormulation, SteelCantileverBendsAlike) {
   }
 }
 
-// D6c; a hundredth of its length is what the formulations are asked for. Cables have no rotary inertia: 8e-4 m at 0.5 s.
+// D6c; a hundredth of its length is what the formulations are asked for. Cables have no rotary inertia: 8e-4 m at 0.5
+// s.
 TYPED_TEST(EveryFormulation, StiffPendulumSwingsAlike) {
   Bar const bar{.length = 1.0,
                 .section = Rectangle{.height = 0.05, .width = 0.05},
@@ -98,8 +102,10 @@ TYPED_TEST(EveryFormulation, StiffPendulumSwingsAlike) {
   struct Row {
     double t, x, y;
   };
-  std::vector<Row> const rows{{0.1, 0.9972992192, -0.0734484788}, {0.2, 0.9573053663, -0.2890813990},
-                              {0.3, 0.7946942404, -0.6070127388}, {0.5, -0.0893682330, -0.9960014555}};
+  std::vector<Row> const rows{{0.1, 0.9972992192, -0.0734484788},
+                              {0.2, 0.9573053663, -0.2890813990},
+                              {0.3, 0.7946942404, -0.6070127388},
+                              {0.5, -0.0893682330, -0.9960014555}};
   std::size_t next = 0;
   State x = model.reference_state();
   for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 0.5, .step = 1e-3})) {
@@ -111,8 +117,8 @@ TYPED_TEST(EveryFormulation, StiffPendulumSwingsAlike) {
   EXPECT_EQ(next, rows.size());
 }
 
-// D6b, 3 s: 5e-4 for cables of 8 elements and for beams of order two with enough of them, 2 % for floating frames. Cables have
-// no shear.
+// D6b, 3 s: 5e-4 for cables of 8 elements and for beams of order two with enough of them, 2 % for floating frames.
+// Cables have no shear.
 TYPED_TEST(EveryFormulation, FlexiblePendulumSwingsAlike) {
   using B = TypeParam;
   Bar const bar{.length = 1.0,
@@ -134,8 +140,10 @@ TYPED_TEST(EveryFormulation, FlexiblePendulumSwingsAlike) {
                                     {0.5, {-0.093346, -0.995676, 0}}, {1.0, {-0.999924, -0.003451, 0}},
                                     {1.5, {0.269393, -0.963020, 0}},  {2.0, {0.999390, -0.020173, 0}},
                                     {3.0, {-0.997764, -0.063488, 0}}};
-  std::vector<Row> const without{{0.5, {-0.093390, -0.995671, 0}}, {1.0, {-0.999921, -0.003370, 0}},
-                                 {2.0, {0.999386, -0.019993, 0}},  {3.0, {-0.997753, -0.063940, 0}}};
+  std::vector<Row> const without{{0.5, {-0.093390, -0.995671, 0}},
+                                 {1.0, {-0.999921, -0.003370, 0}},
+                                 {2.0, {0.999386, -0.019993, 0}},
+                                 {3.0, {-0.997753, -0.063940, 0}}};
   State x = model.reference_state();
   for (Row const& row : cable ? without : with_shear) {
     simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = row.t, .step = 1e-3}).run();

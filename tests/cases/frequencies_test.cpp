@@ -43,9 +43,9 @@ VecX frequencies(Bar const& bar, Index n, Ends ends) {
 /// A stiff EA keeps axial modes out of the way.
 Bar slender() { return {.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0}}; }
 
-// E1: 8 elements, clamped–free: modes 1 and 2 to 1e-4, mode 3 to 1e-3. With other ends the error is that of cubic elements with consistent
-// mass, ω_h/ω = 1 + (β l)⁴/1440 for an element of length l to leading
-// order (the dispersion of a wave in a row of them).
+// E1: 8 elements, clamped–free: modes 1 and 2 to 1e-4, mode 3 to 1e-3. With other ends the error is that of cubic
+// elements with consistent mass, ω_h/ω = 1 + (β l)⁴/1440 for an element of length l to leading order (the dispersion of
+// a wave in a row of them).
 TEST(EulerBernoulli, CableHasTheFrequenciesOfTheBeam) {
   struct Row {
     Ends ends;
@@ -81,15 +81,16 @@ TEST(EulerBernoulli, SpatialCableBendsInTwoPlanes) {
   VecX const w = modes(model, model.reference_state()).frequency;
   double const beta[] = {1.875104068711961, 4.694091132974175, 7.854757438237613};
   for (int i = 0; i < 3; ++i)
-    for (int twin = 0; twin < 2; ++twin) EXPECT_NEAR(w[2 * i + twin], beta[i] * beta[i], (i < 2 ? 1e-4 : 1e-3) * beta[i] * beta[i]);
+    for (int twin = 0; twin < 2; ++twin)
+      EXPECT_NEAR(w[2 * i + twin], beta[i] * beta[i], (i < 2 ? 1e-4 : 1e-3) * beta[i] * beta[i]);
 }
 
 /// E2: rotary inertia and shear count. Square sections of width h.
 Bar square(double length, double h, double e, double k) {
   double const rho = 7850, a = h * h, i = h * h * h * h / 12.0;
   return {.length = length,
-          .constants = BarConstants{.EA = e * a, .EI = e * i, .mass_per_length = rho * a, .GA = k * e / 2.6 * a,
-                                    .rotary_inertia = rho * i}};
+          .constants = BarConstants{
+              .EA = e * a, .EI = e * i, .mass_per_length = rho * a, .GA = k * e / 2.6 * a, .rotary_inertia = rho * i}};
 }
 Bar thick() { return square(2.0, 0.4, 1e9, 0.849673202614); }
 Bar steel() { return square(1.0, 0.05, 2.1e11, 5.0 / 6.0); }

@@ -1,5 +1,5 @@
-// Generalised and Cartesian moments [thesis §3.4]: a spatial double pendulum under a follower moment, with Euler parameters, with
-// a quaternion and body-axes angular velocity, and with joint coordinates.
+// Generalised and Cartesian moments [thesis §3.4]: a spatial double pendulum under a follower moment, with Euler
+// parameters, with a quaternion and body-axes angular velocity, and with joint coordinates.
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,9 @@ struct Pendulum {
     simulate(model, x, RungeKutta4<Projection>{}, {.until = 1.0, .step = h}).run();
   }
   template <class B>
-  Frame<double> of(B const& body) const { return frame(model, x, body.at(Vec3(0, 0, 0))); }
+  Frame<double> of(B const& body) const {
+    return frame(model, x, body.at(Vec3(0, 0, 0)));
+  }
 
   /// What the speeds of a body feel of the joints whose multipliers stand in lambda: −Gᵀλ [thesis Eq. 3.3].
   VecX joint_force(BodyHandle<Rigid<Rotation>> const& body, VecX const& lambda) const {
@@ -116,7 +118,8 @@ Vec4 theta_of(Parameters const& p, BodyHandle<Rigid<EulerParameters>> const& bod
   return p.x.q.segment<4>(p.model.entry(body).q0 + 3);
 }
 
-// Each way is off by C h⁴: Richardson's difference to twice the step says how much, and no two are further apart than that.
+// Each way is off by C h⁴: Richardson's difference to twice the step says how much, and no two are further apart than
+// that.
 TEST(EulerParameterMoments, MakeOneMotionToTheAccuracyOfTheSteps) {
   auto const& [p, c, r] = runs();
   double const of_p = apart(Parameters(1e-3), p) / 15.0, of_c = apart(Cartesian(1e-3), c) / 15.0;
@@ -138,7 +141,8 @@ TEST(EulerParameterMoments, JointsHoldTheSameForcesAndMoments) {
       EXPECT_LT((one.f - two.f).norm(), 1e-6);
       EXPECT_LT((one.m - two.m).norm(), 1e-6);
     };
-    Wrench<double> const cardan = reaction(other.model, other.x, other.cardan), ball = reaction(other.model, other.x, other.ball);
+    Wrench<double> const cardan = reaction(other.model, other.x, other.cardan),
+                         ball = reaction(other.model, other.x, other.ball);
     same(cardan, reaction(c.model, c.x, c.cardan));
     same(ball, reaction(c.model, c.x, c.ball));
     EXPECT_GT(cardan.f.norm(), 10.0);
@@ -153,7 +157,8 @@ TEST(EulerParameterMoments, JointsHoldTheSameForcesAndMoments) {
 }
 
 // −Gᵀλ of a joint on a body, against its Cartesian force F and moment M at the point u from the centre of mass: F, and
-// Ḡᵀ Aᵀ(M + u × F) for the four rates of the parameters, Aᵀ(M + u × F) for the three of the angular velocity [thesis Eq. 3.7].
+// Ḡᵀ Aᵀ(M + u × F) for the four rates of the parameters, Aᵀ(M + u × F) for the three of the angular velocity [thesis
+// Eq. 3.7].
 TEST(EulerParameterMoments, OfAJointAreTheCartesianOnesByG) {
   auto const& [p, c, r] = runs();
   auto const expect = [&p = p, &c = c](auto const& joint_p, auto const& joint_c, auto const& body_p, auto const& body_c,
@@ -189,8 +194,8 @@ TEST(EulerParameterMoments, LeaveNothingToTheNormsOfTheParameters) {
   }
 }
 
-// The applied moment M (axes of b): Ḡᵀ M, M, and with joint coordinates its parts along the axes of the joints, beside those of
-// the weights there. All have the power M·Ω.
+// The applied moment M (axes of b): Ḡᵀ M, M, and with joint coordinates its parts along the axes of the joints, beside
+// those of the weights there. All have the power M·Ω.
 TEST(EulerParameterMoments, OfALoadHaveItsPower) {
   auto const& [p, c, r] = runs();
   VecX const four = p.applied_force(), three = c.applied_force();
@@ -222,8 +227,8 @@ TEST(EulerParameterMoments, OfALoadHaveItsPower) {
   EXPECT_NEAR(five.dot(narrow.v), power + falling, 1e-6);
 }
 
-// Table 3.4's way of counting: seven coordinates and one constraint a body; four rows of the cross, three of the ball. A ball's
-// joint coordinates are four parameters with their norm.
+// Table 3.4's way of counting: seven coordinates and one constraint a body; four rows of the cross, three of the ball.
+// A ball's joint coordinates are four parameters with their norm.
 TEST(EulerParameterMoments, AreCountedAsInTheThesis) {
   auto const& [p, c, r] = runs();
   auto const expect = [](Census const& census, Index coordinates, Index constraints, Index speeds, Index rows) {

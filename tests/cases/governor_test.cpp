@@ -18,8 +18,8 @@
 namespace polybody {
 namespace governor_test {
 
-/// A shaft that turns about z, a slider of 3 kg on it, and two rods, 30° below the horizontal, with 5 kg at their ends; from the
-/// middle of each a spring-damper to the slider. All spin at 2π.
+/// A shaft that turns about z, a slider of 3 kg on it, and two rods, 30° below the horizontal, with 5 kg at their ends;
+/// from the middle of each a spring-damper to the slider. All spin at 2π.
 template <class Policy = Constraint>
 struct Governor {
   using Pin = Joint<Revolute, Policy>;
@@ -41,20 +41,24 @@ struct Governor {
   explicit Governor(Policy const& policy = {}) {
     double const rod = 0.3, ball = 5.0, mass = rod + ball, own = rod * 2e-4 / 12.0;  // a prism and a point
     double const centre = (0.5 * rod + ball) / mass;
-    double const across = rod * ((1.0 + 1e-4) / 12.0 + (centre - 0.5) * (centre - 0.5)) + ball * (1.0 - centre) * (1.0 - centre);
+    double const across =
+        rod * ((1.0 + 1e-4) / 12.0 + (centre - 0.5) * (centre - 0.5)) + ball * (1.0 - centre) * (1.0 - centre);
     double const down = std::numbers::pi / 6.0;
-    model.connect(Pin{Revolute{.axis = Vec3::UnitZ()}, policy}, model.ground().at({0, 0, 0}), shaft.at(Vec3(0, 0, -0.5)), "bearing");
-    model.connect(Slide{Prismatic{.axis = Vec3::UnitZ()}, policy}, shaft.at(Vec3(0, 0, 0)), slider.at(Vec3(0, 0, 0)), "slide");
+    model.connect(Pin{Revolute{.axis = Vec3::UnitZ()}, policy}, model.ground().at({0, 0, 0}),
+                  shaft.at(Vec3(0, 0, -0.5)), "bearing");
+    model.connect(Slide{Prismatic{.axis = Vec3::UnitZ()}, policy}, shaft.at(Vec3(0, 0, 0)), slider.at(Vec3(0, 0, 0)),
+                  "slide");
     for (double const side : {1.0, -1.0}) {
       Mat3 axes;
       axes << side * std::cos(down), 0, side * std::sin(down), 0, side, 0, -std::sin(down), 0, std::cos(down);
       Vec3 const pivot(0.05 * side, 0, 1);
       rods.push_back(model.add(Body(mass, Vec3(own, across, across).asDiagonal().toDenseMatrix(),
-                                    Placement{pivot + centre * axes.col(0), axes}), side > 0 ? "right" : "left"));
+                                    Placement{pivot + centre * axes.col(0), axes}),
+                               side > 0 ? "right" : "left"));
       model.connect(Pin{Revolute{.axis = Vec3::UnitY()}, policy}, shaft.at(Vec3(0.05 * side, 0, 0.5)),
                     rods.back().at(Vec3(-centre, 0, 0)));
-      model.apply(SpringDamper{.stiffness = 8e5, .damping = 4e4, .free_length = 0.5}, rods.back().at(Vec3(0.5 - centre, 0, 0)),
-                  slider.at(Vec3(0.05 * side, 0, 0)));
+      model.apply(SpringDamper{.stiffness = 8e5, .damping = 4e4, .free_length = 0.5},
+                  rods.back().at(Vec3(0.5 - centre, 0, 0)), slider.at(Vec3(0.05 * side, 0, 0)));
     }
     x = model.reference_state();
     Vec3 const spin(0, 0, 2.0 * std::numbers::pi);
@@ -75,14 +79,16 @@ struct Governor {
 struct Published {
   double t, height, angle, turn;
 };
-constexpr Published r5[] = {{0.1, 0.5238364756, 0.4961738691, 0.622106681},    {0.2, 0.5850798118, 0.4277204683, 1.213937177},
-                            {0.5, 0.7432494248, 0.2594913815, 2.807679488},    {1, 0.5014209224, 0.5218333016, 5.586346966},
-                            {2, 0.5059092943, 0.5166637974, 11.173267076},     {3, 0.5132460783, 0.5082455270, 16.761308972},
-                            {5, 0.5355631037, 0.4828745766, 27.942531991},     {7.5, 0.6771929637, 0.3285415751, 42.102747732},
-                            {10, 0.6196229171, 0.3900737018, 55.935409909}};
+constexpr Published r5[] = {
+    {0.1, 0.5238364756, 0.4961738691, 0.622106681}, {0.2, 0.5850798118, 0.4277204683, 1.213937177},
+    {0.5, 0.7432494248, 0.2594913815, 2.807679488}, {1, 0.5014209224, 0.5218333016, 5.586346966},
+    {2, 0.5059092943, 0.5166637974, 11.173267076},  {3, 0.5132460783, 0.5082455270, 16.761308972},
+    {5, 0.5355631037, 0.4828745766, 27.942531991},  {7.5, 0.6771929637, 0.3285415751, 42.102747732},
+    {10, 0.6196229171, 0.3900737018, 55.935409909}};
 
 template <class Policy = Constraint, class I>
-void expect_r5(I const& integrator, double step, double until, double tolerance, double momentum_tolerance, Policy const& policy = {}) {
+void expect_r5(I const& integrator, double step, double until, double tolerance, double momentum_tolerance,
+               Policy const& policy = {}) {
   Governor<Policy> governor(policy);
   double const before = momentum(governor.model, governor.x).angular[2];
   double worst[3] = {0, 0, 0}, drift = 0.0;

@@ -45,7 +45,8 @@ struct Swinging {
   ElementHandle<J> joint;
   State x;
 
-  Swinging(J const& by, Vec3 const& inertia, Placement const& place, Vec3 const& end, Vec3 const& on_ground = Vec3::Zero())
+  Swinging(J const& by, Vec3 const& inertia, Placement const& place, Vec3 const& end,
+           Vec3 const& on_ground = Vec3::Zero())
       : bar(model.add(Rigid<>(1.0, inertia.asDiagonal().toDenseMatrix(), place), "bar")),
         joint(model.connect(by, model.ground().at(on_ground), bar.at(end), "joint")),
         x(model.reference_state()) {}
@@ -71,8 +72,10 @@ TEST(AdamsCases, SphericalSwingsInThePlaneOfItsRelease) {
 // ground or with the bar; the other is the upright or the bar itself.
 TEST(AdamsCases, UniversalSwingsAboutEitherArm) {
   Placement const level = Placement::at({0, 2, 0}, {-0.5 * std::numbers::pi, 0, 0});
-  for (auto const& [first, second] : {std::pair{Vec3(1, 0, 0), Vec3(0, 0, 1)}, {Vec3(1, 0, 0), Vec3(0, 1, 0)},
-                                      {Vec3(0, 0, 1), Vec3(1, 0, 0)}, {Vec3(0, 1, 0), Vec3(1, 0, 0)}})
+  for (auto const& [first, second] : {std::pair{Vec3(1, 0, 0), Vec3(0, 0, 1)},
+                                      {Vec3(1, 0, 0), Vec3(0, 1, 0)},
+                                      {Vec3(0, 0, 1), Vec3(1, 0, 0)},
+                                      {Vec3(0, 1, 0), Vec3(1, 0, 0)}})
     Swinging(Ideal<Universal>{{.first = first, .second = second}, {}}, along_z, level, {0, 0, -2})
         .expect_the_swings(Vec3::UnitY());
 }
@@ -82,7 +85,8 @@ TEST(AdamsCases, UniversalSwingsAboutEitherArm) {
 TEST(RevolutePin, IsTheRevoluteOfTheSphericalForm) {
   Placement const level = Placement::at({2, 0, 0});
   Swinging one(Ideal<Revolute>{{.axis = Vec3::UnitY()}, {}}, along_x, level, {-2, 0.3, 0}, {0, 0.3, 0});
-  Swinging other(Ideal<RevolutePin>{{.distance = 0.5, .axis = Vec3::UnitY()}, {}}, along_x, level, {-2, 0.3, 0}, {0, -0.2, 0});
+  Swinging other(Ideal<RevolutePin>{{.distance = 0.5, .axis = Vec3::UnitY()}, {}}, along_x, level, {-2, 0.3, 0},
+                 {0, -0.2, 0});
   one.expect_the_swings(Vec3::UnitX());
   other.expect_the_swings(Vec3::UnitX());
   EXPECT_LT((one.x.q - other.x.q).norm(), 1e-8);
@@ -94,8 +98,8 @@ TEST(RevolutePin, IsTheRevoluteOfTheSphericalForm) {
 }
 
 // CASES J4 [A]: two shafts at β = 30°, the first at 1 rad/s: ω₂/ω₁ = cos β/(1 − sin²β cos²φ), φ the angle of the first
-// shaft's arm from the plane of both: between cos β and 1/cos β. The second is held along its axis only; its place is the
-// cross.
+// shaft's arm from the plane of both: between cos β and 1/cos β. The second is held along its axis only; its place is
+// the cross.
 TEST(CardanJoint, HasTheRatioOfSpeeds) {
   double const beta = std::numbers::pi / 6.0, c = std::cos(beta), s2 = 0.25;
   Vec3 const n(c, 0.5, 0);

@@ -74,7 +74,8 @@ TEST(Cylindrical, SwingsAsARevoluteAndDriftsEvenly) {
   } const exact[] = {{1, -0.892381486, -1.789875773}, {3, 1.869169564, -0.711480948}, {5, -1.999683869, -0.035558748}};
   Space model{Gravity{0, 0, -9.80665}};
   auto const bar = model.add(Rigid<>(1.0, diagonal(0.04, 0.1, 0.1), Placement::at({2, 0, 0})), "bar");
-  model.connect(Ideal<Cylindrical>{{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), bar.at(Vec3(-2, 0, 0)), "sleeve");
+  model.connect(Ideal<Cylindrical>{{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), bar.at(Vec3(-2, 0, 0)),
+                "sleeve");
   State x = model.reference_state();
   model.set_velocity(x, bar, {0, 0.3, 0}, Vec3::Zero());
   for (auto const& e : exact) {
@@ -119,7 +120,8 @@ struct OnARod {
   State x;
   explicit OnARod(Vec3 const& place)
       : ball(model.add(Rigid<>(2.0, diagonal(0.1, 0.1, 0.1), Placement::at(place)), "ball")),
-        rod(model.connect(Ideal<Distance>{{.length = 1.0}, {}}, model.ground().at({0, 0, 0}), ball.at(Vec3(0, 0, 0)), "rod")),
+        rod(model.connect(Ideal<Distance>{{.length = 1.0}, {}}, model.ground().at({0, 0, 0}), ball.at(Vec3(0, 0, 0)),
+                          "rod")),
         x(model.reference_state()) {}
   Vec3 place() const { return position(model, x, ball.at(Vec3(0, 0, 0))); }
 };
@@ -145,8 +147,8 @@ TEST(Distance, CarriesAConicalPendulum) {
   }
 }
 
-// A ball of radius of gyration 0.4 m, 0.8 m from its pivot and without spin about the line to it, swings in any direction
-// as a point at (0.4² + 0.8²)/0.8 = 1 m: J ω + m r × v = (J + m l²) n × ṅ.
+// A ball of radius of gyration 0.4 m, 0.8 m from its pivot and without spin about the line to it, swings in any
+// direction as a point at (0.4² + 0.8²)/0.8 = 1 m: J ω + m r × v = (J + m l²) n × ṅ.
 TEST(Distance, SwingsAsABallOnABallJoint) {
   Vec3 const n(0.6, -0.48, 0.64), rate = Vec3(0.8, 0.36, -0.48) * 2.5;  // n · ṅ = 0
   OnARod point(n);

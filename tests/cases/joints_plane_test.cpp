@@ -71,7 +71,8 @@ TEST(PrescribedDistanceInThePlane, LetsDownAWeight) {
   SmoothRamp const stroke{.target = 0.8, .duration = 2.0};
   Plane model{Gravity{0, -g, 0}};
   auto const weight = model.add(planar::Rigid(m, 0.1, Placement::planar(0, -1)), "weight");
-  auto const ram = model.connect(Ram{{.law = stroke, .length = 1.0}, {}}, model.ground().at({0, 0, 0}), weight.at({0, 0}), "ram");
+  auto const ram =
+      model.connect(Ram{{.law = stroke, .length = 1.0}, {}}, model.ground().at({0, 0, 0}), weight.at({0, 0}), "ram");
   State x = model.reference_state();
   for (double const t : {0.5, 1.2, 3.0}) {
     run_to(model, x, t);
@@ -119,7 +120,8 @@ TEST(Gear, HandsOnTheSprocketsRunUp) {
   }
 }
 
-// A planet of 12 teeth on the pin of an arm rolls on a fixed sun of 30: ω_planet = (1 + 30/12) ω_arm. The ground is the sun.
+// A planet of 12 teeth on the pin of an arm rolls on a fixed sun of 30: ω_planet = (1 + 30/12) ω_arm. The ground is the
+// sun.
 TEST(Gear, RollsAPlanetOnAFixedSun) {
   Plane model{};
   auto const arm = model.add(planar::Rigid(1.0, 0.3, Placement::planar(0.7, 0.0)), "arm");
@@ -137,8 +139,8 @@ TEST(Gear, RollsAPlanetOnAFixedSun) {
   EXPECT_NEAR(x.q[5], 3.5 * 112.5, 1e-6);
 }
 
-// A ladder of 2 m from the wall x = 0 to the floor y = 0, held by two points on lines, its foot pushed to x = 1.2: its head
-// comes down from 2 to 1.6.
+// A ladder of 2 m from the wall x = 0 to the floor y = 0, held by two points on lines, its foot pushed to x = 1.2: its
+// head comes down from 2 to 1.6.
 TEST(PointInPlane, HoldsALadderToWallAndFloor) {
   double const quarter = 0.5 * std::numbers::pi;
   SmoothRamp const push{.target = 1.2, .duration = 1.0};

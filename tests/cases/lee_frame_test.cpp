@@ -25,8 +25,8 @@ using Cable = planar::AncfCable<planar::EngineeringStrain>;
 double const EA = 7.2e6 * 6, EI = 7.2e6 * 2;
 double const with_shear = 1.3846154e7;  ///< GA for ν = 0.3, k = 5/6
 
-/// Two legs of 120, welded at a right angle and pinned at their other ends; P presses down 24 from the corner. A slider may
-/// hold the loaded point at a certain u and leaves it free to move up and down and to turn.
+/// Two legs of 120, welded at a right angle and pinned at their other ends; P presses down 24 from the corner. A slider
+/// may hold the loaded point at a certain u and leaves it free to move up and down and to turn.
 template <class B>
 struct LeeFrame {
   using Pin = Joint<planar::Revolute, Constraint>;
@@ -46,7 +46,8 @@ struct LeeFrame {
     if (u) {
       auto const slider =
           model.add(planar::Rigid({.mass = 1.0, .inertia = 1.0, .placement = Placement::planar(24, 120)}), "slider");
-      model.connect(Rail{{.axis = Vec3::UnitY()}, {}}, model.ground().at({24 + *u, 120, 0}), slider.at(Vec2(0, 0)), "rail");
+      model.connect(Rail{{.axis = Vec3::UnitY()}, {}}, model.ground().at({24 + *u, 120, 0}), slider.at(Vec2(0, 0)),
+                    "rail");
       hold = model.connect(Pin{}, slider.at(Vec2(0, 0)), beam.at(24.0), "hold");
     }
   }
@@ -56,7 +57,9 @@ struct LeeFrame {
             .placement = placement};
   }
   /// (u, v) under the load: to the right and up.
-  Vec2 displacement(State const& x) const { return (position(model, x, beam.at(24.0)) - Vec3(24, 120, 0)).template head<2>(); }
+  Vec2 displacement(State const& x) const {
+    return (position(model, x, beam.at(24.0)) - Vec3(24, 120, 0)).template head<2>();
+  }
 };
 
 struct Row {
@@ -67,8 +70,8 @@ std::vector<Row> const no_shear{{2500, {0.06598205, -1.68393990}},    {5000, {0.
                                 {7500, {0.84601606, -6.61323586}},    {10000, {1.91433177, -10.70687468}},
                                 {12500, {4.01017257, -16.91092759}},  {15000, {8.00962432, -25.84100458}},
                                 {17000, {13.74672200, -35.18507243}}, {18000, {18.78689691, -41.37468981}}};
-std::vector<Row> const shear{{10000, {1.91695526, -10.72539876}},
-                             {15000, {8.02822216, -25.89263379}}, {18000, {18.86762014, -41.48217810}}};
+std::vector<Row> const shear{
+    {10000, {1.91695526, -10.72539876}}, {15000, {8.02822216, -25.89263379}}, {18000, {18.86762014, -41.48217810}}};
 
 EquilibriumOptions const options{.tolerance = 1e-9};
 
@@ -86,7 +89,8 @@ std::vector<Vec2> pushed(Index legs, double GA, std::vector<Row> const& rows) {
 }
 double miss(Vec2 const& u, Row const& row) { return (u - row.u).norm() / row.u.norm(); }
 
-// Twenty cable elements come to 3e-3 of the displacement; close to the limit the load's small error counts most. Forty to 1e-4.
+// Twenty cable elements come to 3e-3 of the displacement; close to the limit the load's small error counts most. Forty
+// to 1e-4.
 TEST(LeeFrame, CableFollowsTheExactFrameUpToTheLimit) {
   std::vector<Vec2> const coarse = pushed<Cable>(10, 0.0, no_shear), fine = pushed<Cable>(20, 0.0, no_shear);
   for (std::size_t i = 0; i < no_shear.size(); ++i) {
@@ -106,7 +110,8 @@ TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithShear) {
   }
 }
 
-// Without shear: GA a thousand times EA leaves 1e-6 of the displacement. From one load to the next Newton's method needs parts.
+// Without shear: GA a thousand times EA leaves 1e-6 of the displacement. From one load to the next Newton's method
+// needs parts.
 TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithoutShear) {
   std::vector<Vec2> const coarse = pushed<planar::Lrvf>(40, 1e3 * EA, no_shear);
   std::vector<Vec2> const fine = pushed<planar::Lrvf>(80, 1e3 * EA, no_shear);
@@ -117,8 +122,9 @@ TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithoutShear) {
   }
 }
 
-/// Where the path turns: the upper limit load, by the parabola through three points of the path near u₀. Load control ends there;
-/// with the loaded point on the rail at u it does not, and the load is sought, by secants, that needs no force of the rail.
+/// Where the path turns: the upper limit load, by the parabola through three points of the path near u₀. Load control
+/// ends there; with the loaded point on the rail at u it does not, and the load is sought, by secants, that needs no
+/// force of the rail.
 template <class B>
 struct UpperLimit {
   Index legs;
@@ -159,7 +165,8 @@ struct UpperLimit {
 };
 
 // 18556.7275 at (26.880571, −48.735135) without shear and 18544.5271 at (26.878328, −48.754241) with it [C]. The 0.3 %
-// that S9a asks of twenty elements are those of a higher order: twenty of the cable come to 0.08 %, of the two-node Lrvf it takes more than forty.
+// that S9a asks of twenty elements are those of a higher order: twenty of the cable come to 0.08 %, of the two-node
+// Lrvf it takes more than forty.
 TEST(LeeFrame, UpperLimitLoadIsThatOfTheExactFrame) {
   double const cable = 18556.7275, lrvf = 18544.5271;
   Vec3 const coarse_cable = UpperLimit<Cable>(10, 0.0).find(26.9), fine_cable = UpperLimit<Cable>(20, 0.0).find(26.9);

@@ -1,5 +1,5 @@
-// The steel link of examples/link_from_fe: matrices that CalculiX 2.20 wrote, against its own mass, moments of inertia and
-// frequencies (link.reference.txt, made by make_matrices.sh), and against the plate with two holes.
+// The steel link of examples/link_from_fe: matrices that CalculiX 2.20 wrote, against its own mass, moments of inertia
+// and frequencies (link.reference.txt, made by make_matrices.sh), and against the plate with two holes.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,8 @@ Vec3 hole(double radius) {
       double const t = g.xi;
       Vec2 const r = (1 - t) * (1 - 2 * t) * a + 4 * t * (1 - t) * b + t * (2 * t - 1) * c;
       Vec2 const d = (4 * t - 3) * a + (4 - 8 * t) * b + (4 * t - 1) * c;
-      sum += g.weight * Vec3(0.5 * (r[0] * d[1] - r[1] * d[0]), std::pow(r[0], 3) * d[1] / 3.0, -std::pow(r[1], 3) * d[0] / 3.0);
+      sum += g.weight *
+             Vec3(0.5 * (r[0] * d[1] - r[1] * d[0]), std::pow(r[0], 3) * d[1] / 3.0, -std::pow(r[1], 3) * d[0] / 3.0);
     }
   }
   return sum;
@@ -63,8 +64,8 @@ Vec4 plate(Vec3 const& hole) {
   return density * thickness * Vec4(area, yy + zz, xx + zz, xx + yy);
 }
 
-// Mass and centre are integrated exactly; in the moments of inertia the elements' three Gauss points leave out a term of degree
-// seven around the holes.
+// Mass and centre are integrated exactly; in the moments of inertia the elements' three Gauss points leave out a term
+// of degree seven around the holes.
 TEST_F(LinkFromFe, HasTheMassPropertiesOfThePlate) {
   Structure const& s = link();
   Mat3 const inertia = s.second.trace() * Mat3::Identity() - s.second;
@@ -74,11 +75,12 @@ TEST_F(LinkFromFe, HasTheMassPropertiesOfThePlate) {
   EXPECT_LT(s.first.norm(), 1e-9 * s.mass * length);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(inertia(k, k), meshed[1 + k], 1e-5 * meshed[1 + k]) << k;
   EXPECT_LT(MatX(inertia - Mat3(inertia.diagonal().asDiagonal())).norm(), 1e-9 * inertia.norm());
-  // Round holes are larger by π/8 − sin α cos α − ⁴⁄₃ sin α (1 − cos α), α = π/8, of their radius squared for each side.
+  // Round holes are larger by π/8 − sin α cos α − ⁴⁄₃ sin α (1 − cos α), α = π/8, of their radius squared for each
+  // side.
   double const circle = std::numbers::pi * radius * radius, moment = 0.25 * circle * radius * radius;
-  double const alpha = std::numbers::pi / 8.0,
-               missing = 8.0 * radius * radius *
-                         (alpha - std::sin(alpha) * std::cos(alpha) - 4.0 / 3.0 * std::sin(alpha) * (1.0 - std::cos(alpha)));
+  double const alpha = std::numbers::pi / 8.0, missing = 8.0 * radius * radius *
+                                                         (alpha - std::sin(alpha) * std::cos(alpha) -
+                                                          4.0 / 3.0 * std::sin(alpha) * (1.0 - std::cos(alpha)));
   EXPECT_NEAR(circle - hole(radius)[0], missing, 1e-15);
   Vec4 const round = plate({circle, moment, moment});
   EXPECT_NEAR(s.mass, round[0] + 2.0 * density * thickness * missing, 1e-9 * round[0]);
@@ -107,8 +109,8 @@ TEST_F(LinkFromFe, HasTheFrequenciesThatCalculixPrints) {
   EXPECT_LT(body.integrals().coupling.norm(), 1e-8);
 }
 
-// Static shapes of four nodes at each hole, and modes between them. By Rayleigh's principle no frequency is too low, and each
-// falls as modes are added; sixteen find the first four to 1e-3.
+// Static shapes of four nodes at each hole, and modes between them. By Rayleigh's principle no frequency is too low,
+// and each falls as modes are added; sixteen find the first four to 1e-3.
 TEST_F(LinkFromFe, CraigBamptonFindsItsFirstFrequencies) {
   std::vector<double> const expected = reference();
   ASSERT_EQ(expected.size(), 4u + 14u);

@@ -18,8 +18,8 @@ namespace redundant_joints_test {
 using Plane = FourBars<InPlane<Constraint>>;
 using Space = FourBars<InSpace<Constraint>>;
 
-// R2: through the flat position, where the rows lose a rank, four or five times in 4 s; the peer's error with two windows
-// at this step and 10 s is 5e-5. With forty, as in the benchmark: rigid_integrators_test.cpp.
+// R2: through the flat position, where the rows lose a rank, four or five times in 4 s; the peer's error with two
+// windows at this step and 10 s is 5e-5. With forty, as in the benchmark: rigid_integrators_test.cpp.
 TEST(FourBar, PassesItsSingularPosition) {
   std::optional<Plane> bars;
   int n = 0;
@@ -32,8 +32,8 @@ TEST(FourBar, PassesItsSingularPosition) {
   }
 }
 
-// In space the four parallel pins repeat three rows. Which joint is named is the solver's choice; the accelerations, the
-// motion and the sum of the joints' forces on each body are those of the plane.
+// In space the four parallel pins repeat three rows. Which joint is named is the solver's choice; the accelerations,
+// the motion and the sum of the joints' forces on each body are those of the plane.
 TEST(FourBar, InSpaceMovesAsInThePlane) {
   Plane plane(1);
   Space space(1);
@@ -67,7 +67,8 @@ TEST(FourBar, ExplicitMethodsTakeRedundantRowsToo) {
   expect_same(RungeKutta4<CoordinatePartitioning>{});
 }
 
-// R2: an explicit method with partitioned coordinates goes through the flat position, where the rank of the rows falls, as well.
+// R2: an explicit method with partitioned coordinates goes through the flat position, where the rank of the rows falls,
+// as well.
 TEST(FourBar, PartitionedCoordinatesPassItsSingularPosition) {
   Plane bars(1);
   simulate(bars.model, bars.x, RungeKutta4<CoordinatePartitioning>{}, {.until = 1.0, .step = 1e-3}).run();

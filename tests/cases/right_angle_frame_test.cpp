@@ -11,8 +11,8 @@ namespace right_angle_frame_test {
 
 using namespace buckling;
 
-// 1.08751842 N and 1.08408817 N [C]; published 1.088 [P]. Elements are of order 2: eight a leg come to 0.25 %, sixteen to a
-// quarter of that; both together to the exact frame.
+// 1.08751842 N and 1.08408817 N [C]; published 1.088 [P]. Elements are of order 2: eight a leg come to 0.25 %, sixteen
+// to a quarter of that; both together to the exact frame.
 TEST(RightAngleFrame, BucklesAtTheExactForce) {
   struct Case {
     double J, force;

@@ -1,5 +1,5 @@
-// CASES R1, R2, R4, R6 and R8 with compliant joints: stiff penalties and bushings move as ideal joints, with an error of about
-// 1/k.
+// CASES R1, R2, R4, R6 and R8 with compliant joints: stiff penalties and bushings move as ideal joints, with an error
+// of about 1/k.
 
 #include <gtest/gtest.h>
 
@@ -49,8 +49,8 @@ void expect_swings(double tolerance) {
 TEST(CompliantJoints, PenaltiesSwingAsPublished) { expect_swings<Penalty>(2e-5); }
 TEST(CompliantJoints, BushingsSwingAsPublished) { expect_swings<Bushing>(2e-5); }
 
-// R2: in the flat position rows would lose their rank; springs there have nothing to push against, and what each pass leaves
-// ringing falls as 1/√k only. The benchmark allows 0.1 J.
+// R2: in the flat position rows would lose their rank; springs there have nothing to push against, and what each pass
+// leaves ringing falls as 1/√k only. The benchmark allows 0.1 J.
 template <class Policy>
 void expect_windows(double k, double tolerance) {
   FourBars<InPlane<Policy>> bars(2, stiff<Policy>(k));

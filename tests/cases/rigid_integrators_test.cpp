@@ -1,5 +1,5 @@
-// CASES R1, R2, R4, R6, R7 and R8 under HHT-α, Radau IIA and Adams' methods; generalised-α and the Runge–Kutta methods stand in
-// rigid_pendulum_test.cpp, rigid_chain_test.cpp, rigid_top_test.cpp and redundant_joints_test.cpp.
+// CASES R1, R2, R4, R6, R7 and R8 under HHT-α, Radau IIA and Adams' methods; generalised-α and the Runge–Kutta methods
+// stand in rigid_pendulum_test.cpp, rigid_chain_test.cpp, rigid_top_test.cpp and redundant_joints_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -25,14 +25,14 @@ using Windows = FourBars<InPlane<Constraint>>;
 template <class I>
 struct Way {
   I integrator = {};
-  double step = 0.0;       ///< [s]
-  double pendulum = 0.0;   ///< R1 over 10 s [m]
-  double links = 0.0;      ///< R8 over 2 s [rad]
-  double windows = 0.0;    ///< R2 over 4 s [m]
-  double top = 0.0;        ///< R6 over 0.2 s [m], with a fifth of the step
-  double spin = 0.0;       ///< R7 over 2 s [rad/s]
-  double bricard = 0.0;    ///< R4 over 2 s [m]
-  double energy = 0.0;     ///< of R4 [J]
+  double step = 0.0;      ///< [s]
+  double pendulum = 0.0;  ///< R1 over 10 s [m]
+  double links = 0.0;     ///< R8 over 2 s [rad]
+  double windows = 0.0;   ///< R2 over 4 s [m]
+  double top = 0.0;       ///< R6 over 0.2 s [m], with a fifth of the step
+  double spin = 0.0;      ///< R7 over 2 s [rad/s]
+  double bricard = 0.0;   ///< R4 over 2 s [m]
+  double energy = 0.0;    ///< of R4 [J]
 };
 
 Way<HhtAlpha> hht() { return {{}, 2.5e-4, 2e-5, 2e-5, 1e-4, 1e-5, 1e-6, 1e-6, 1e-5}; }
@@ -49,8 +49,9 @@ template <class W>
 void expect_pendulum(W const& way) {  // R1
   Plane const chain(1, point_link(), g, -half_pi);
   State x = chain.model.reference_state();
-  for (Place const& p : {Place{0.5, -0.3910487915505464, -0.9203699487851922}, Place{2, -0.7935661953433217, -0.6084839304437915},
-                         Place{10, -0.2750874625761169, -0.9614192050991251}}) {
+  for (Place const& p :
+       {Place{0.5, -0.3910487915505464, -0.9203699487851922}, Place{2, -0.7935661953433217, -0.6084839304437915},
+        Place{10, -0.2750874625761169, -0.9614192050991251}}) {
     simulate(chain.model, x, way.integrator, {.until = p.t, .step = way.step}).run();
     EXPECT_LT((chain.tip(x) - Vec3(p.x, p.y, 0)).norm(), way.pendulum) << p.t;
   }
@@ -121,7 +122,8 @@ TEST(EveryIntegrator, AdamsSwingsThePendulum) { expect_pendulum(adams()); }
 TEST(EveryIntegrator, HhtSwingsTwoLinks) { expect_links(hht()); }
 TEST(EveryIntegrator, RadauSwingsTwoLinks) { expect_links(radau()); }
 TEST(EveryIntegrator, AdamsSwingsTwoLinks) { expect_links(adams()); }
-// Next to the flat position rounding of Φ alone moves the links by more than Newton's usual tolerance, so that one is wider here.
+// Next to the flat position rounding of Φ alone moves the links by more than Newton's usual tolerance, so that one is
+// wider here.
 TEST(EveryIntegrator, HhtTurnsTheFourBars) {
   Way<HhtAlpha> way = hht();
   way.integrator.tolerance = 1e-5;
@@ -147,8 +149,8 @@ TEST(AResumedRun, GoesOnWithTheSameBitsByAMultistepMethod) {
   expect_resumes<InPlane<Constraint>>(AdamsBashforthMoulton<Projection>{});
 }
 
-// What snapshots throw away changes the run by what Newton's method tolerates: 1e-8 of accelerations of some 30 m/s² (rad/s²)
-// over 0.5 s are ½ · 3e-7 · 0.5² = 4e-8.
+// What snapshots throw away changes the run by what Newton's method tolerates: 1e-8 of accelerations of some 30 m/s²
+// (rad/s²) over 0.5 s are ½ · 3e-7 · 0.5² = 4e-8.
 TEST(AResumedRun, DiffersFromOneWithoutSnapshotsWithinNewtonsTolerance) {
   Plane const chain(4, bar_link());
   State with = chain.model.reference_state(), without = with;
@@ -177,7 +179,8 @@ TEST(AResumedRun, IsRefusedToAnother) {
   auto run = simulate(chain.model, x, GeneralizedAlpha{}, options);
   RunSnapshot const s = run.snapshot();
   EXPECT_TRUE(has(refusal([&] { resume(shorter.model, y, GeneralizedAlpha{}, options, s); }), "of another model"));
-  EXPECT_TRUE(has(refusal([&] { resume(chain.model, y, HhtAlpha{}, options, s); }), "by GeneralizedAlpha, not by HhtAlpha"));
+  EXPECT_TRUE(
+      has(refusal([&] { resume(chain.model, y, HhtAlpha{}, options, s); }), "by GeneralizedAlpha, not by HhtAlpha"));
   EXPECT_TRUE(has(refusal([&] { resume(chain.model, y, GeneralizedAlpha{}, over, s); }), "before the start"));
   EXPECT_EQ(y.q.size(), 0);
 }

@@ -34,7 +34,8 @@ constexpr std::array<Place, 6> r1{{{0.5, -0.3910487915505464, -0.920369948785192
                                    {10, -0.2750874625761169, -0.9614192050991251}}};
 
 template <class C, class I>
-void expect_r1(C const& chain, Marker<typename C::Body> const& end, I const& integrator, double step, double tolerance) {
+void expect_r1(C const& chain, Marker<typename C::Body> const& end, I const& integrator, double step,
+               double tolerance) {
   State x = chain.model.reference_state();
   for (Place const& p : r1) {
     simulate(chain.model, x, integrator, {.until = p.t, .step = step}).run();
@@ -102,9 +103,9 @@ struct Swing {
   double t, angle, rate, rx, ry;
 };
 constexpr std::array<Swing, 4> swings{{{0.0, half_pi, 0.0, 0.0, 2.4525},
-                                   {0.25, 1.114159968059, -3.602307184113, -8.7352815388, 6.7438504085},
-                                   {0.5, -0.090352089956, -5.413866990753, 1.9834605859, 24.3453009333},
-                                   {1.0, -1.562621718035, 0.490485531299, 0.1804260137, 2.4539749449}}};
+                                       {0.25, 1.114159968059, -3.602307184113, -8.7352815388, 6.7438504085},
+                                       {0.5, -0.090352089956, -5.413866990753, 1.9834605859, 24.3453009333},
+                                       {1.0, -1.562621718035, 0.490485531299, 0.1804260137, 2.4539749449}}};
 
 template <class C>
 void expect_j1(C const& chain, double tolerance) {
@@ -122,13 +123,9 @@ void expect_j1(C const& chain, double tolerance) {
   }
 }
 
-TEST(RodPendulum, HasThePublishedReactions) {
-  expect_j1(Plane(1, bar_link()), 1e-9);
-}
+TEST(RodPendulum, HasThePublishedReactions) { expect_j1(Plane(1, bar_link()), 1e-9); }
 
-TEST(RodPendulum, HasThePublishedReactionsInSpace) {
-  expect_j1(Space(1, bar_link()), 1e-9);
-}
+TEST(RodPendulum, HasThePublishedReactionsInSpace) { expect_j1(Space(1, bar_link()), 1e-9); }
 
 // The pin carried a distance d along its axis from the rod's plane: the same motion, and the moment
 // d e_z × R on the rod about the point of the pin. In the joint's axes, turned.
@@ -136,8 +133,8 @@ TEST(RodPendulum, PinBesideTheRodCarriesAMoment) {
   using Pin = Joint<Revolute, Constraint>;
   double const d = 0.3;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, -g, 0}};
-  auto const rod = model.add(Rigid<>(1.0, Vec3(0.0, 1.0 / 12, 1.0 / 12).asDiagonal().toDenseMatrix(),
-                                     Placement::at({0.5, 0, 0})), "rod");
+  auto const rod = model.add(
+      Rigid<>(1.0, Vec3(0.0, 1.0 / 12, 1.0 / 12).asDiagonal().toDenseMatrix(), Placement::at({0.5, 0, 0})), "rod");
   auto const pin = model.connect(Pin{Revolute{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, -d}),
                                  rod.at(Vec3(-0.5, 0, -d)), "pin");
   State x = model.reference_state();
@@ -165,8 +162,8 @@ TEST(RodPendulum, FollowsTheAdamsCase) {
                      {5, -1.999683869, -0.035558748}};
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.80665}};
-  auto const bar = model.add(Rigid<>(1.0, Vec3(0.04, 0.1, 0.1).asDiagonal().toDenseMatrix(), Placement::at({2, 0, 0})),
-                             "bar");
+  auto const bar =
+      model.add(Rigid<>(1.0, Vec3(0.04, 0.1, 0.1).asDiagonal().toDenseMatrix(), Placement::at({2, 0, 0})), "bar");
   model.connect(Pin{Revolute{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), bar.at(Vec3(-2, 0, 0)), "pin");
   State fine = model.reference_state(), coarse = fine;
   for (auto const& e : exact) {
@@ -183,8 +180,9 @@ double period(C const& chain, double h = 1e-3) {
   State x = chain.model.reference_state();
   Index const spin = x.v.size() - 1;  // about z, the last speed in the plane and in space
   auto run = simulate(chain.model, x, GeneralizedAlpha{.rho_inf = 0.9},
-                      {.until = 3.0, .step = h,
-                       .events = {{.name = "at rest", .value = [spin](State const& s) { return s.v[spin]; }}}});
+                      {.until = 3.0, .step = h, .events = {{.name = "at rest", .value = [spin](State const& s) {
+                                                              return s.v[spin];
+                                                            }}}});
   run.run();
   auto const& met = run.report().events;
   return met.size() < 2 ? std::numeric_limits<double>::quiet_NaN() : met[1].time;

@@ -43,9 +43,9 @@ TEST(JointCoordinates, TellWhatThePinHolds) {  // J1
 TEST(JointCoordinates, SwingTwoBars) {  // R8b
   Plane const bars(2, bar_link());
   State x = bars.model.reference_state();
-  for (auto const& [t, first, second] : {std::array{0.5, 0.448142625932, 1.041962887304},
-                                         std::array{1.0, -1.207716238191, -0.814391023091},
-                                         std::array{2.0, -0.082758306821, 0.407362074912}}) {
+  for (auto const& [t, first, second] :
+       {std::array{0.5, 0.448142625932, 1.041962887304}, std::array{1.0, -1.207716238191, -0.814391023091},
+        std::array{2.0, -0.082758306821, 0.407362074912}}) {
     simulate(bars.model, x, precise(), {.until = t, .step = 0.01}).run();
     EXPECT_NEAR(bars.angle(x, 0), first, 1e-7) << t;
     EXPECT_NEAR(bars.angle(x, 1), second, 1e-7) << t;
@@ -53,9 +53,9 @@ TEST(JointCoordinates, SwingTwoBars) {  // R8b
 }
 
 TEST(JointCoordinates, SwingManyBars) {  // R8d
-  for (auto const& [n, px, py] : {std::array{3.0, -0.908458260529, -0.025617696288},
-                                  std::array{4.0, -0.864582047703, -0.090031032523},
-                                  std::array{10.0, -0.894316852361, -0.146565064747}}) {
+  for (auto const& [n, px, py] :
+       {std::array{3.0, -0.908458260529, -0.025617696288}, std::array{4.0, -0.864582047703, -0.090031032523},
+        std::array{10.0, -0.894316852361, -0.146565064747}}) {
     Plane const chain(int(n), bar_link(1.0 / n, 1.0 / n));
     State x = chain.model.reference_state();
     simulate(chain.model, x, precise(), {.until = 1.0, .step = 1e-3}).run();

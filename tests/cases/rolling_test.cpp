@@ -29,7 +29,8 @@ TEST(RollingDisc, RollsDownAnInclineAtTwoThirdsOfThePull) {
   InSpace model{Gravity{g * s, 0, -g * c}};
   Placement const place = Placement::at({0, 0, radius}, {-0.5 * std::numbers::pi, 0, 0});  // its z along world y
   auto const wheel = model.add(disc(m, radius, place), "wheel");
-  auto const contact = model.connect(Wheel{{.radius = radius}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
+  auto const contact =
+      model.connect(Wheel{{.radius = radius}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
   double const a = 2.0 / 3.0 * g * s;
   with_each_integrator([&](auto const& integrator, double h, double precise) {
     State const x = rolled(model, model.reference_state(), integrator, t, h);
@@ -40,19 +41,20 @@ TEST(RollingDisc, RollsDownAnInclineAtTwoThirdsOfThePull) {
   });
 }
 
-/// Steady rolling in a circle: the centre at distance r from a vertical axis, the disc leaning in by β, all turning at Ω. With e_r
-/// outwards and e_t onwards, the disc's axis b = cos β e_r + sin β e_z, ρ = R (sin β e_r − cos β e_z) and ω = Ω e_z + σ b,
-/// rolling Ω r e_t + ω × ρ = 0 asks for σ = −Ω (r/R + sin β). The ground gives F = −m Ω² r e_r + m g e_z, whose moment
-/// ρ × F = m R (Ω² r cos β − g sin β) e_t is Ω e_z × H = Ω² cos β (−C r/R − A sin β) e_t with C = ½ m R², A = ¼ m R²:
+/// Steady rolling in a circle: the centre at distance r from a vertical axis, the disc leaning in by β, all turning at
+/// Ω. With e_r outwards and e_t onwards, the disc's axis b = cos β e_r + sin β e_z, ρ = R (sin β e_r − cos β e_z) and ω
+/// = Ω e_z + σ b, rolling Ω r e_t + ω × ρ = 0 asks for σ = −Ω (r/R + sin β). The ground gives F = −m Ω² r e_r + m g
+/// e_z, whose moment ρ × F = m R (Ω² r cos β − g sin β) e_t is Ω e_z × H = Ω² cos β (−C r/R − A sin β) e_t with C = ½ m
+/// R², A = ¼ m R²:
 ///   Ω² = g tan β/(3/2 r + ¼ R sin β)       [Neimark & Fufaev 1972, ch. II, for a uniform disc].
 struct Circle {
   double m = 2.0, radius = 0.4, r = 1.2, lean = 0.35;
   double omega = std::sqrt(g * std::tan(lean) / (1.5 * r + 0.25 * radius * std::sin(lean)));
   Vec3 axis{std::cos(lean), 0, std::sin(lean)}, up{-std::sin(lean), 0, std::cos(lean)};
   InSpace model{Gravity{0, 0, -g}};
-  BodyHandle<Rigid<>> wheel = model.add(disc(m, radius, {Vec3(r, 0, radius * std::cos(lean)), axes()}), "wheel");
-  ElementHandle<Wheel> contact =
-      model.connect(Wheel{{.radius = radius, .axis = axis}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
+  BodyHandle<Rigid<>> wheel = model.add(disc(m, radius, {Vec3(r, 0, radius* std::cos(lean)), axes()}), "wheel");
+  ElementHandle<Wheel> contact = model.connect(Wheel{{.radius = radius, .axis = axis}, {}},
+                                               model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
   State start = model.reference_state();
 
   /// \param extra angular velocity about the contact point beside that of the steady motion
@@ -76,7 +78,8 @@ TEST(RollingDisc, RollsSteadilyInACircle) {
     State const x = rolled(circle.model, circle.start, integrator, t, h);
     Frame<double> const f = frame(circle.model, x, circle.wheel.at(Vec3::Zero()));
     Vec3 const force = circle.m * Vec3(-circle.omega * circle.omega * circle.r, 0, g);
-    EXPECT_LT((f.r - turn * Vec3(circle.r, 0, circle.radius * std::cos(circle.lean))).norm(), 3e-5 * precise) << integrator.name;
+    EXPECT_LT((f.r - turn * Vec3(circle.r, 0, circle.radius * std::cos(circle.lean))).norm(), 3e-5 * precise)
+        << integrator.name;
     EXPECT_LT((f.A.col(2) - turn * circle.axis).norm(), 3e-5 * precise) << integrator.name;
     EXPECT_LT((reaction(circle.model, x, circle.contact).f - turn * force).norm(), 1e-3 * precise) << integrator.name;
   });
@@ -88,7 +91,8 @@ TEST(RollingDisc, KeepsItsEnergyWhileItWobbles) {
   double const before = energy(circle.model, circle.start).total();
   double lowest = 1.0, highest = 0.0;
   State x = circle.start;
-  for (State const& now : simulate(circle.model, x, RungeKutta4<CoordinatePartitioning>{}, {.until = 20.0, .step = 2e-3})) {
+  for (State const& now :
+       simulate(circle.model, x, RungeKutta4<CoordinatePartitioning>{}, {.until = 20.0, .step = 2e-3})) {
     double const steep = frame(circle.model, now, circle.wheel.at(Vec3::Zero())).A(2, 2);
     lowest = std::min(lowest, steep);
     highest = std::max(highest, steep);

@@ -1,4 +1,5 @@
-// CASES E3 by the geometrically exact rods, of second order in the elements' length: the limit by Richardson from two meshes.
+// CASES E3 by the geometrically exact rods, of second order in the elements' length: the limit by Richardson from two
+// meshes.
 
 #include <polybody/bodies/ancf_beam.hpp>
 #include <polybody/bodies/lrvf.hpp>

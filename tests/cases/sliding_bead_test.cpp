@@ -51,8 +51,10 @@ TEST(BeadOnAStraightLine, LeavesItsEnd) {
 // On a stiff rod that turns at ω: r̈ = ω² r, r = r₀ cosh ωt, and the rod pushes across by 2 m ω ṙ.
 TEST(BeadOnATurningRod, IsThrownOut) {
   double const omega = 3.0, r0 = 0.2, mass = 0.5, t = 0.7;
-  BeadOnALine rig({}, {.length = 1.0, .constants = BarConstants{.EA = 1e9, .EI = 1e7, .mass_per_length = 0.1}}, 4, mass, r0);
-  rig.model.connect(BeadOnALine::Motor{{.law = {{.value = omega}}}, {}}, rig.model.ground().at({0, 0, 0}), rig.line.at(0.0), "motor");
+  BeadOnALine rig({}, {.length = 1.0, .constants = BarConstants{.EA = 1e9, .EI = 1e7, .mass_per_length = 0.1}}, 4, mass,
+                  r0);
+  rig.model.connect(BeadOnALine::Motor{{.law = {{.value = omega}}}, {}}, rig.model.ground().at({0, 0, 0}),
+                    rig.line.at(0.0), "motor");
   State x = rig.model.reference_state();
   rig.model.set_velocity(x, rig.line, Vec3::Zero(), Vec3(0, 0, omega));
   rig.model.set_velocity(x, rig.bead, Vec3::Zero(), Vec3(0, 0, omega));
@@ -64,10 +66,11 @@ TEST(BeadOnATurningRod, IsThrownOut) {
   EXPECT_LT((reaction(rig.model, x, rig.contact).f - 2.0 * mass * omega * rate * Vec3(-s, c, 0)).norm(), 1e-3);
 }
 
-/// A mass M at x = v t on a simply supported Euler–Bernoulli beam that starts straight and at rest under its own weight, by modes
-/// φ_i = sin(iπx/L), w downwards: with μ = ½ ρA L and ω_i = (iπ/L)² √(EI/ρA)
+/// A mass M at x = v t on a simply supported Euler–Bernoulli beam that starts straight and at rest under its own
+/// weight, by modes φ_i = sin(iπx/L), w downwards: with μ = ½ ρA L and ω_i = (iπ/L)² √(EI/ρA)
 ///   μ (q̈_i + ω_i² q_i) = φ_i M (g − ẅ) + ρA g L (1 − cos iπ)/(iπ),  ẅ = Σ φ_j q̈_j + 2 v φ_j′ q̇_j + v² φ_j″ q_j
-/// [Frýba 1999, ch. 1, with the inertia of the mass]; solved for q̈ by Sherman & Morrison's formula, in time by Runge & Kutta.
+/// [Frýba 1999, ch. 1, with the inertia of the mass]; solved for q̈ by Sherman & Morrison's formula, in time by Runge &
+/// Kutta.
 struct MovingMass {
   static constexpr int modes = 16;
   double length, bending, density, mass, v;
@@ -84,7 +87,8 @@ struct MovingMass {
     }
     for (std::size_t i = 0; i < modes; ++i) {
       double const n = double(i + 1) * std::numbers::pi, k = n / length;
-      double const weight = density * g * length * (1.0 - std::cos(n)) / n, elastic = mu * k * k * k * k * bending / density * q[i];
+      double const weight = density * g * length * (1.0 - std::cos(n)) / n,
+                   elastic = mu * k * k * k * k * bending / density * q[i];
       out[i] = phi[i] * mass * (g - convective) + weight - elastic;
       pushed += phi[i] * out[i];
       squares += phi[i] * phi[i];
@@ -118,12 +122,13 @@ struct MovingMass {
   }
 };
 
-// A quarter of the beam's mass crosses it in five of its periods. Deflections are 3e-5 of the span, so that the mass keeps its
-// speed.
+// A quarter of the beam's mass crosses it in five of its periods. Deflections are 3e-5 of the span, so that the mass
+// keeps its speed.
 TEST(MovingMassOnABeam, BendsItAsTheModesSay) {
   MovingMass const exact{.length = 10.0, .bending = 2e8, .density = 20.0, .mass = 50.0, .v = 100.0};
   BeadOnALine rig({0, -g, 0},
-                  {.length = exact.length, .constants = BarConstants{.EA = 1e9, .EI = exact.bending, .mass_per_length = exact.density}},
+                  {.length = exact.length,
+                   .constants = BarConstants{.EA = 1e9, .EI = exact.bending, .mass_per_length = exact.density}},
                   16, exact.mass, 0.0);
   rig.pin_right({exact.length, 0, 0});
   State x = rig.model.reference_state();

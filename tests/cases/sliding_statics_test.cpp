@@ -12,7 +12,8 @@ namespace sliding_statics_test {
 
 constexpr double g = 9.81;
 
-// A cable under tension T with bending stiffness, pinned at both ends, and a weight P that finds its own way: to the middle,
+// A cable under tension T with bending stiffness, pinned at both ends, and a weight P that finds its own way: to the
+// middle,
 //   w = P L/(4 T) (1 − tanh u/u),  u = ½ L √(T/EI)      [Timoshenko & Gere 1961, §1.11; of small deflections].
 TEST(BeadOnATautCable, ComesToTheMiddle) {
   double const length = 2.0, tension = 1e5, mass = 0.5, u = 6.0, bending = tension * length * length / (4.0 * u * u);
@@ -30,10 +31,11 @@ TEST(BeadOnATautCable, ComesToTheMiddle) {
   EXPECT_LT((reaction(rig.model, x, rig.contact).f - Vec3(0, mass * g, 0)).norm(), 1e-7);
 }
 
-// A rope with a heavy bead between pins D apart and H different in height. Its tension is the same on both sides of the bead,
-// which hangs where both make the same angle φ with the vertical: W = 2 T cos φ, D = L(1 + T/EA) sin φ.
-// Bending stiffness rounds the corner over √(EI/T), which must be as long as an element: on a coarser mesh each element holds the
-// bead where it is best for it. Then the pins carry half the weight each, whatever EI. Exact on any mesh: the reactions balance.
+// A rope with a heavy bead between pins D apart and H different in height. Its tension is the same on both sides of the
+// bead, which hangs where both make the same angle φ with the vertical: W = 2 T cos φ, D = L(1 + T/EA) sin φ. Bending
+// stiffness rounds the corner over √(EI/T), which must be as long as an element: on a coarser mesh each element holds
+// the bead where it is best for it. Then the pins carry half the weight each, whatever EI. Exact on any mesh: the
+// reactions balance.
 TEST(BeadOnARope, HangsWhereBothSidesAreEquallySteep) {
   double const D = 1.0, H = 0.25, length = std::hypot(D, H), EA = 60.0, W = 20.0;
   double t = W, phi = 0.0;
@@ -48,7 +50,8 @@ TEST(BeadOnARope, HangsWhereBothSidesAreEquallySteep) {
                  .placement = Placement::planar(0, 0, std::atan2(H, D))};
   double const from_left = depth / std::cos(phi) / (1.0 + t / EA);  // of the rope without load
   // first tied to the rope, some way off, then let go
-  BeadOnALine tied({0, -g, 0}, rope, 60, W / g, from_left + 0.02, false), rig({0, -g, 0}, rope, 60, W / g, from_left + 0.02);
+  BeadOnALine tied({0, -g, 0}, rope, 60, W / g, from_left + 0.02, false),
+      rig({0, -g, 0}, rope, 60, W / g, from_left + 0.02);
   tied.pin_right({D, H, 0});
   auto const right = rig.pin_right({D, H, 0});
   State before = tied.resting(W), x = rig.resting(W);

@@ -27,12 +27,13 @@ struct Mixed {
   Mixed() {
     BarConstants const soft{.EA = 1e5, .EI = 2.0, .mass_per_length = 1.0};
     auto const first = model.add(planar::Rigid(1.0, 0.1, Placement::planar(0.5, 0.0)), "first");
-    auto const cable =
-        model.add(Cable::from(Bar{.length = 1.0, .constants = soft, .placement = Placement::planar(1.0, 0.0)}, 8), "cable");
+    auto const cable = model.add(
+        Cable::from(Bar{.length = 1.0, .constants = soft, .placement = Placement::planar(1.0, 0.0)}, 8), "cable");
     auto const last = model.add(planar::Rigid(2.0, 0.2, Placement::planar(2.5, 0.0)), "last");
     model.connect(Pin{}, model.ground().at({0, 0, 0}), first.at(Vec2(-0.5, 0.0)), "pin");
     model.connect(Pin{}, first.at(Vec2(0.5, 0.0)), cable.at(0.0), "middle");
-    model.connect(StiffPin{{}, Penalty{.stiffness = 1e5, .damping = 1e2}}, cable.at(1.0), last.at(Vec2(-0.5, 0.0)), "end");
+    model.connect(StiffPin{{}, Penalty{.stiffness = 1e5, .damping = 1e2}}, cable.at(1.0), last.at(Vec2(-0.5, 0.0)),
+                  "end");
   }
 };
 
@@ -52,7 +53,8 @@ double apart(State const& x, State const& y) {
 
 template <class Solver>
 struct SolverPolicies : testing::Test {};
-using AnySolver = testing::Types<EigenSparseLu, EigenLdlt, AutoLu, BlockLdlt, BlockLu, BlockSolver, Refined<BlockSolver>>;
+using AnySolver =
+    testing::Types<EigenSparseLu, EigenLdlt, AutoLu, BlockLdlt, BlockLu, BlockSolver, Refined<BlockSolver>>;
 TYPED_TEST_SUITE(SolverPolicies, AnySolver);
 
 /// Those that take any tangent.

@@ -1,5 +1,5 @@
-// CASES S2, S3, S11 and D6a for the ANCF cable in space: the plane's numbers in a plane that stands askew, a hanging cable, and a very
-// flexible pendulum that spins, as Lrvf too.
+// CASES S2, S3, S11 and D6a for the ANCF cable in space: the plane's numbers in a plane that stands askew, a hanging
+// cable, and a very flexible pendulum that spins, as Lrvf too.
 
 #include <polybody/bodies/ancf_cable.hpp>
 #include <polybody/bodies/lrvf.hpp>
@@ -68,8 +68,9 @@ TEST(SpatialGerstmayrIrschik, GivesThePublishedDigits) {
     Index n;
     double x, y;
   };
-  for (Mesh const& m : {Mesh{1, -0.36224472989050654, -0.9941447587249747}, Mesh{2, -0.4889263086109102, -1.1752228652637502},
-                        Mesh{4, -0.5074287154557922, -1.2055337025602493}}) {
+  for (Mesh const& m :
+       {Mesh{1, -0.36224472989050654, -0.9941447587249747}, Mesh{2, -0.4889263086109102, -1.1752228652637502},
+        Mesh{4, -0.5074287154557922, -1.2055337025602493}}) {
     Vec3 const u = tip(bar, m.n, Vec3(0, -force, 0));
     EXPECT_NEAR(u[0], m.x, 1e-9) << m.n;
     EXPECT_NEAR(u[1], m.y, 1e-9) << m.n;
@@ -77,8 +78,9 @@ TEST(SpatialGerstmayrIrschik, GivesThePublishedDigits) {
   }
 }
 
-// S1: an arc of 1.2 rad under a tip moment about any axis across the cable, x = sin θ/θ, y = (1 − cos θ)/θ. (With nothing that resists torsion
-// the arc could turn about its clamp: a dead moment holds it in its plane up to a quarter of a circle only.)
+// S1: an arc of 1.2 rad under a tip moment about any axis across the cable, x = sin θ/θ, y = (1 − cos θ)/θ. (With
+// nothing that resists torsion the arc could turn about its clamp: a dead moment holds it in its plane up to a quarter
+// of a circle only.)
 TEST(SpatialRollUp, TakesAMomentAcrossItsTangent) {
   double const turn = 1.2;
   for (double const angle : {0.0, 1.3}) {
@@ -95,12 +97,15 @@ TEST(SpatialRollUp, TakesAMomentAcrossItsTangent) {
 TEST(SpatialClamp, RefusesAPinAcrossTheTangent) {
   Model<Bodies<Cable>, Joints<Clamp>> model;
   auto const cable = model.add(Cable::from(slender(), 2), "cable");
-  EXPECT_TRUE(has(refusal([&] { model.connect(Clamp{Revolute{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), cable.at(0.0), "pin"); }),
+  EXPECT_TRUE(has(refusal([&] {
+                    model.connect(Clamp{Revolute{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}),
+                                  cable.at(0.0), "pin");
+                  }),
                   "\"pin\": its second marker knows its tangent only"));
 }
 
-// S11: elastic catenary, 10 m of 10 N/m hung at equal heights 8 m apart; 20 elements, EI = 1e-3 N m². The stiffer cable starts where the
-// softer one hangs.
+// S11: elastic catenary, 10 m of 10 N/m hung at equal heights 8 m apart; 20 elements, EI = 1e-3 N m². The stiffer cable
+// starts where the softer one hangs.
 TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
   struct Row {
     double EA, H, sag;
@@ -134,11 +139,15 @@ TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
   }
 }
 
-// D6a: hinged at the origin along +x, gravity along −y, spinning at 4 rad/s about +y; h = 1 ms: 2e-3 to t = 1 s and 1e-2 at
-// 2 s are asked of 16 cable elements. GA, GJ and Iρ are those of the reference, to which they do not matter.
+// D6a: hinged at the origin along +x, gravity along −y, spinning at 4 rad/s about +y; h = 1 ms: 2e-3 to t = 1 s and
+// 1e-2 at 2 s are asked of 16 cable elements. GA, GJ and Iρ are those of the reference, to which they do not matter.
 Bar pendulum() {
   return {.length = 1.0,
-          .constants = BarConstants{.EA = 40.0, .EI = 7.957747154594767e-5, .mass_per_length = 8e-3, .GA = 15.0, .GJ = 6e-5,
+          .constants = BarConstants{.EA = 40.0,
+                                    .EI = 7.957747154594767e-5,
+                                    .mass_per_length = 8e-3,
+                                    .GA = 15.0,
+                                    .GJ = 6e-5,
                                     .rotary_inertia = 1.59e-8}};
 }
 template <class B>

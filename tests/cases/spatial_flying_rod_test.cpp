@@ -1,5 +1,5 @@
-// CASES D3: the flexible rod of Simo & Vu-Quoc 1986, thrown in a plane, by bodies that live in space, against an independent
-// spectral beam [C]. Its loads are steps, so digits converge slowly; the table's last ones are good to ±1.
+// CASES D3: the flexible rod of Simo & Vu-Quoc 1986, thrown in a plane, by bodies that live in space, against an
+// independent spectral beam [C]. Its loads are steps, so digits converge slowly; the table's last ones are good to ±1.
 
 #include <polybody/bodies/ancf_cable.hpp>
 #include <polybody/bodies/lrvf.hpp>
@@ -30,9 +30,9 @@ struct Row {
   double t;
   Vec4 ends;  ///< x, y of the loaded end and of the free one
 };
-std::vector<Row> const stiff{{1.0, {4.9997, -0.52223, 0.42397, 7.91306}},  {2.5, {4.43007, -0.78515, 5.9453, 8.9708}},
-                             {5.0, {5.6202, 4.7642, 15.4085, 4.2645}},     {7.5, {15.5415, 8.9949, 15.7557, -0.9722}},
-                             {10.0, {25.4087, 4.7903, 15.6245, 4.1512}},   {15.0, {25.6097, 2.9702, 35.3646, 5.148}}};
+std::vector<Row> const stiff{{1.0, {4.9997, -0.52223, 0.42397, 7.91306}}, {2.5, {4.43007, -0.78515, 5.9453, 8.9708}},
+                             {5.0, {5.6202, 4.7642, 15.4085, 4.2645}},    {7.5, {15.5415, 8.9949, 15.7557, -0.9722}},
+                             {10.0, {25.4087, 4.7903, 15.6245, 4.1512}},  {15.0, {25.6097, 2.9702, 35.3646, 5.148}}};
 std::vector<Row> const flexible{{1.0, {4.3268, 0.4078, 0.37024, 7.79601}}, {2.5, {4.96312, 4.4760, 3.5832, 6.11186}},
                                 {5.0, {9.7838, 8.2039, 8.0742, 1.7588}},   {7.5, {16.268, -0.2834, 17.240, 8.2531}},
                                 {10.0, {22.971, 6.4116, 21.3245, 3.6098}}, {15.0, {29.064, 6.6091, 33.937, 5.235}}};
@@ -40,8 +40,13 @@ std::vector<Row> const flexible{{1.0, {4.3268, 0.4078, 0.37024, 7.79601}}, {2.5,
 /// From (6, 0) to (0, 8). What bends it out of the plane and twists it stays at rest.
 Bar rod(double EI) {
   return {.length = 10.0,
-          .constants = BarConstants{.EA = 1e4, .EI = EI, .mass_per_length = 1.0, .GA = 1e4, .GJ = 300.0,
-                                    .rotary_inertia = 10.0, .EI_y = 200.0},
+          .constants = BarConstants{.EA = 1e4,
+                                    .EI = EI,
+                                    .mass_per_length = 1.0,
+                                    .GA = 1e4,
+                                    .GJ = 300.0,
+                                    .rotary_inertia = 10.0,
+                                    .EI_y = 200.0},
           .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))};
 }
 
@@ -81,8 +86,8 @@ struct Flight {
   Momentum total_momentum() const { return momentum(model, x); }
 };
 
-/// What D3 calls exact: the impulse 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then 5.5 + 2 (t − 2.5) on the line y
-/// = 4.
+/// What D3 calls exact: the impulse 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then 5.5 + 2 (t − 2.5) on the
+/// line y = 4.
 template <class B>
 void moves_as_a_whole(Flight<B> const& flight) {
   double const t = flight.x.t, x = t < 2.5 ? 3.0 + 0.4 * t * t : 5.5 + 2.0 * (t - 2.5);
@@ -90,7 +95,8 @@ void moves_as_a_whole(Flight<B> const& flight) {
   EXPECT_LT((flight.centre() - Vec3(x, 4.0, 0.0)).norm(), 1e-5) << t;
 }
 
-/// Meets the rows. After the loads energy and moment of momentum stay, to the integrator's order; D3 gives the energy by about.
+/// Meets the rows. After the loads energy and moment of momentum stay, to the integrator's order; D3 gives the energy
+/// by about.
 template <class B>
 void follows(Flight<B> flight, std::vector<Row> const& rows, double tolerance, double plateau) {
   double kept = 0.0, angular = 0.0;
@@ -118,10 +124,12 @@ Flight<B> thrown(double EI, Index n, double h) {
 
 // A thousandth of the length up to 15 s; of the flexible rod, by twice as many elements, two.
 TEST(FlyingRodOfThePlane, StiffLrvfFollowsTheExactRod) { follows(thrown<Lrvf<>>(500, 40, 5e-3), stiff, 0.01, 90.2); }
-TEST(FlyingRodOfThePlane, FlexibleLrvfFollowsTheExactRod) { follows(thrown<Lrvf<>>(100, 80, 2.5e-3), flexible, 0.02, 380.0); }
+TEST(FlyingRodOfThePlane, FlexibleLrvfFollowsTheExactRod) {
+  follows(thrown<Lrvf<>>(100, 80, 2.5e-3), flexible, 0.02, 380.0);
+}
 
-/// A cable has no rotary inertia, and here that is as large as the rest: 10·10 against 10·10²/12 kg m². Discs on the nodes bring
-/// it, each pinned along the tangent and so turning with it. Their own mass is next to nothing.
+/// A cable has no rotary inertia, and here that is as large as the rest: 10·10 against 10·10²/12 kg m². Discs on the
+/// nodes bring it, each pinned along the tangent and so turning with it. Their own mass is next to nothing.
 Flight<Cable> strung(double EI, Index n, double h) {
   Bar const bar = rod(EI);
   Flight<Cable> flight(bar, n, h);

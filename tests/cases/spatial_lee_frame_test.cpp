@@ -37,10 +37,12 @@ struct LeeFrame {
   }
   /// GA for ν = 0.3, k = 5/6; what stands against torsion and bending out of the plane is any.
   static Bar leg(Placement const& placement) {
-    return {.length = 120.0,
-            .constants = BarConstants{.EA = 7.2e6 * 6, .EI = 7.2e6 * 2, .mass_per_length = 1.0, .GA = 1.3846154e7,
-                                      .GJ = 8e6, .EI_y = 4e7},
-            .placement = placement};
+    return {
+        .length = 120.0,
+        .constants =
+            BarConstants{
+                .EA = 7.2e6 * 6, .EI = 7.2e6 * 2, .mass_per_length = 1.0, .GA = 1.3846154e7, .GJ = 8e6, .EI_y = 4e7},
+        .placement = placement};
   }
   /// Under the load.
   Vec3 displacement(State const& x) const { return position(model, x, beam.at(24.0)) - Vec3(24, 120, 0); }
@@ -51,7 +53,8 @@ struct Row {
   Vec3 u;
 };
 std::vector<Row> const stable{{10000, {1.91695526, -10.72539876, 0}},
-                              {15000, {8.02822216, -25.89263379, 0}}, {18000, {18.86762014, -41.48217810, 0}}};
+                              {15000, {8.02822216, -25.89263379, 0}},
+                              {18000, {18.86762014, -41.48217810, 0}}};
 
 /// Displacements by load control.
 std::vector<Vec3> pushed(Index n) {
@@ -75,7 +78,8 @@ TEST(LeeFrameInSpace, ExtrapolatesToTheExactFrame) {
   }
 }
 
-// Both limit loads, 18544.5271 and −9392.4896, to the 0.3 % that S9a asks; each by the parabola through three points of the path.
+// Both limit loads, 18544.5271 and −9392.4896, to the 0.3 % that S9a asks; each by the parabola through three points of
+// the path.
 TEST(LeeFrameInSpace, HasItsLimitLoads) {
   double const unit = 1e4;
   LeeFrame const frame(48, unit);

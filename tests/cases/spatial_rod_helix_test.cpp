@@ -21,18 +21,19 @@ struct Winding {
   double turns;  ///< of the tip section if the moment alone acted, M L/EI / 2π
 };
 Winding const windings[] = {{0.05, {0.711481029, 6.285664431, 2.750736205}, 0.5},
-                         {0.1, {0.410203353, 0.053770903, -1.091729019}, 1.0},
-                         {0.25, {0.025764950, 1.272717958, 0.520651252}, 2.5},
-                         {0.5, {0.019106995, 0.000573980, -0.226637441}, 5.0}};
+                            {0.1, {0.410203353, 0.053770903, -1.091729019}, 1.0},
+                            {0.25, {0.025764950, 1.272717958, 0.520651252}, 2.5},
+                            {0.5, {0.019106995, 0.000573980, -0.226637441}, 5.0}};
 
 Rod wound(Index n, Winding const& h) {
-  Bar const bar{.length = 10.0, .constants = BarConstants{.EA = 1e4, .EI = 100, .mass_per_length = 1, .GA = 1e4, .GJ = 100}};
+  Bar const bar{.length = 10.0,
+                .constants = BarConstants{.EA = 1e4, .EI = 100, .mass_per_length = 1, .GA = 1e4, .GJ = 100}};
   return Rod(Lrvf<>::from(bar, n), {.force = {0, 0, 50 * h.lambda}, .moment = {0, 0, 200 * pi * h.lambda}},
-               {.load_steps = int(200 * h.lambda)});
+             {.load_steps = int(200 * h.lambda)});
 }
 
-// CASES states no tolerance. With φ the turn from node to node (λ = 0.5: φ = 0.31), lengths of a winding are wrong by φ²/24 of
-// themselves, 4e-3 of a metre or less; two meshes extrapolated leave the order φ⁴.
+// CASES states no tolerance. With φ the turn from node to node (λ = 0.5: φ = 0.31), lengths of a winding are wrong by
+// φ²/24 of themselves, 4e-3 of a metre or less; two meshes extrapolated leave the order φ⁴.
 TEST(CantileverToHelix, MeetsTheExactRodThroughFiveTurns) {
   for (Winding const& h : windings) {
     Rod const coarse = wound(50, h), fine = wound(100, h);
@@ -40,7 +41,8 @@ TEST(CantileverToHelix, MeetsTheExactRodThroughFiveTurns) {
     EXPECT_LT(((4.0 * fine.tip() - coarse.tip()) / 3.0 - h.tip).norm(), 1e-4) << h.lambda;
     double turned = 0.0;  // ∫ |K| ds
     for (int e = 0; e < 100; ++e)
-      turned += 0.1 * fine.bar.body.section_strains({e, 0.5}, coordinates_of(fine.model, fine.x, fine.bar)).tail<3>().norm();
+      turned +=
+          0.1 * fine.bar.body.section_strains({e, 0.5}, coordinates_of(fine.model, fine.x, fine.bar)).tail<3>().norm();
     EXPECT_GT(turned, 2 * pi * h.turns * 0.98) << h.lambda;
   }
 }

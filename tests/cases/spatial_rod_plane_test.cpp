@@ -16,7 +16,9 @@ template <class Interpolation = Objective>
 using Rod = SpatialCantilever<Lrvf<Interpolation>>;
 
 /// S2 and S2c: EA = GA = 1e6 EI/L².
-BarConstants slender() { return {.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e6, .GJ = 0.7, .EI_y = 0.3, .GA_z = 2e5}; }
+BarConstants slender() {
+  return {.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e6, .GJ = 0.7, .EI_y = 0.3, .GA_z = 2e5};
+}
 /// S4: h = 0.5, w = 0.1.
 BarConstants thick() {
   return constants({.length = 2.0,
@@ -24,13 +26,15 @@ BarConstants thick() {
                     .material = Material{.density = 7850, .young = 2.07e11, .poisson = 0.3}});
 }
 
-/// A bar bent in its own x–y plane, standing anywhere in space, is the planar one: the two share strains, quadrature and mesh.
+/// A bar bent in its own x–y plane, standing anywhere in space, is the planar one: the two share strains, quadrature
+/// and mesh.
 template <class Interpolation>
 void is_planar(BarConstants const& c, double length, double force, LoadAxes axes) {
   Index const n = 8;
   EquilibriumOptions const steps{.load_steps = 5};
   Bar bar{.length = length, .constants = c};
-  Vec3 const plane = Cantilever<planar::Lrvf>(planar::Lrvf::from(bar, n), {.force = {0, force}, .axes = axes}, steps).tip();
+  Vec3 const plane =
+      Cantilever<planar::Lrvf>(planar::Lrvf::from(bar, n), {.force = {0, force}, .axes = axes}, steps).tip();
   Placement const place = Placement::at({0.3, -1.0, 2.0}, {1.1, -0.4, 0.8});
   bar.placement = place;
   Vec3 const load = axes == LoadAxes::world ? Vec3(place.axes.col(1) * force) : Vec3(0, force, 0);
@@ -68,12 +72,16 @@ TEST(PlaneInSpace, BendingAboutYUsesTheConstantsOfY) {
 Bar strip() {
   double const e = 2.1e11, g = e / 2.6, b = 0.1, t = 0.01, a = b * t;
   return {.length = 1.0,
-          .constants = BarConstants{.EA = e * a, .EI = e * t * b * b * b / 12, .mass_per_length = 1, .GA = 100 * g * a,
-                                    .GJ = g * b * t * t * t / 3 * (1 - 0.63 * t / b), .EI_y = e * b * t * t * t / 12}};
+          .constants = BarConstants{.EA = e * a,
+                                    .EI = e * t * b * b * b / 12,
+                                    .mass_per_length = 1,
+                                    .GA = 100 * g * a,
+                                    .GJ = g * b * t * t * t / 3 * (1 - 0.63 * t / b),
+                                    .EI_y = e * b * t * t * t / 12}};
 }
 
-/// The smallest pivot of the tangent without the clamped node, in the plane's equilibrium under `force` taken into space. A
-/// dead force at a node adds nothing to the tangent.
+/// The smallest pivot of the tangent without the clamped node, in the plane's equilibrium under `force` taken into
+/// space. A dead force at a node adds nothing to the tangent.
 double smallest_pivot(Index n, double force) {
   Cantilever<planar::Lrvf> const plane(planar::Lrvf::from(strip(), n), {.force = {0, force}}, {});
   Lrvf<> const rod = Lrvf<>::from(strip(), n);
@@ -115,9 +123,9 @@ double critical_force(Index n) {
   return 0.5 * (low + high);
 }
 
-// 8554.9932 N [C], with the deflection before buckling; the classical 8430.96 N leaves that out. The number is that of a rod
-// without shear, which S9d does not say: with k = 5/6 the same meshes tend to 8555.0165. Here GA is a hundred times that of
-// k = 1, so 2e-4 N remain. Errors in h² and h⁴ are extrapolated away.
+// 8554.9932 N [C], with the deflection before buckling; the classical 8430.96 N leaves that out. The number is that of
+// a rod without shear, which S9d does not say: with k = 5/6 the same meshes tend to 8555.0165. Here GA is a hundred
+// times that of k = 1, so 2e-4 N remain. Errors in h² and h⁴ are extrapolated away.
 TEST(LateralBuckling, StripBucklesAtTheExactForce) {
   double const a = critical_force(8), b = critical_force(16), c = critical_force(32);
   EXPECT_NEAR((a - 8554.9932) / (b - 8554.9932), 4.0, 0.05);

@@ -46,7 +46,8 @@ struct Ring {
     }
     return x;
   }
-  /// The force of joint i on the link behind it is tangential: along (sin, −cos) of the joint's place, turned by `turned`.
+  /// The force of joint i on the link behind it is tangential: along (sin, −cos) of the joint's place, turned by
+  /// `turned`.
   Vec3 direction(int i, double turned) const {
     double const angle = half_angle * (2 * i + 1) + turned;
     return {std::sin(angle), -std::cos(angle), 0.0};
@@ -59,8 +60,9 @@ struct Spin {
 };
 constexpr Spin spins[] = {{10, 1.0, 0.1, 10.0, 24.8989828488}, {40, 2.0, 0.15, 5.0, 303.650375515}};
 
-/// A hundred steps from the steady state, which stays: force and gap of the joints, relative. The stages of the stepper open
-/// stiff joints by a part of R (ω h)², which they answer; in gaps of 2e-6 m this error of fourth order is still 1e-6 at ω h = 5e-4.
+/// A hundred steps from the steady state, which stays: force and gap of the joints, relative. The stages of the stepper
+/// open stiff joints by a part of R (ω h)², which they answer; in gaps of 2e-6 m this error of fourth order is still
+/// 1e-6 at ω h = 5e-4.
 template <class Integrator, class Policy>
 void expect_ring(Spin const& s, Policy const& policy, double stiffness) {
   double const h = 1e-4 / s.omega, tolerance = std::isinf(stiffness) ? 1e-10 : 1e-8;
@@ -71,7 +73,8 @@ void expect_ring(Spin const& s, Policy const& policy, double stiffness) {
   double const open = std::isinf(stiffness) ? 0.0 : s.force / (stiffness - softening);
   double const force = std::isinf(stiffness) ? s.force : stiffness * open;
   EXPECT_NEAR(force, s.force, 1e-3 * s.force);
-  EXPECT_NEAR(s.force, s.mass * s.omega * s.omega * s.length * std::cos(ring.half_angle) / (4.0 * sine * sine), 1e-10 * s.force);
+  EXPECT_NEAR(s.force, s.mass * s.omega * s.omega * s.length * std::cos(ring.half_angle) / (4.0 * sine * sine),
+              1e-10 * s.force);
   State x = ring.spinning(s.omega, open);
   double worst = 0.0;
   for (State const& now : simulate(ring.model, x, Integrator{}, {.until = 100 * h, .step = h}))
@@ -89,14 +92,17 @@ void expect_ring(Spin const& s, Policy const& policy, double stiffness) {
 }
 
 TEST(SpinningRing, HasTheForceOfTheClosedForm) {
-  for (Spin const& s : spins) expect_ring<RungeKutta4<Projection>>(s, Constraint{}, std::numeric_limits<double>::infinity());
+  for (Spin const& s : spins)
+    expect_ring<RungeKutta4<Projection>>(s, Constraint{}, std::numeric_limits<double>::infinity());
 }
 TEST(SpinningRing, OpensPenaltiesByTheForceOverTheStiffness) {
-  PenaltyPerRow<5> const penalty{.stiffness = Vec<double, 5>(1e7, 1e7, 1e7, 100.0, 100.0), .damping = Vec<double, 5>::Zero()};
+  PenaltyPerRow<5> const penalty{.stiffness = Vec<double, 5>(1e7, 1e7, 1e7, 100.0, 100.0),
+                                 .damping = Vec<double, 5>::Zero()};
   for (Spin const& s : spins) expect_ring<RungeKutta4<>>(s, penalty, 1e7);
 }
 TEST(SpinningRing, OpensBushingsByTheForceOverTheStiffness) {
-  Bushing const bushing{.stiffness = Bushing::diagonal({1e7, 1e7, 1e7}, {100, 100, 0}), .damping = Bushing::Matrix::Zero()};
+  Bushing const bushing{.stiffness = Bushing::diagonal({1e7, 1e7, 1e7}, {100, 100, 0}),
+                        .damping = Bushing::Matrix::Zero()};
   for (Spin const& s : spins) expect_ring<RungeKutta4<>>(s, bushing, 1e7);
 }
 

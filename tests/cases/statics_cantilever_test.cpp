@@ -34,13 +34,11 @@ Vec3 gerstmayr_irschik(Index n) {
 
 // [P] Exudyn, ANCFcantileverTest.py, full integration.
 TEST(GerstmayrIrschik, EveryMeshGivesThePublishedDigits) {
-  constexpr Mesh published[] = {{1, -0.36224472989050654, -0.9941447587249747},
-                                {2, -0.4889263086109102, -1.1752228652637502},
-                                {4, -0.5074287154557922, -1.2055337025602493},
-                                {8, -0.5085092365729895, -1.207197756093103},
-                                {16, -0.5085365799149556, -1.207238895003594},
-                                {32, -0.508537277761696, -1.2072398264650905},
-                                {64, -0.5085373030408489, -1.207239853404364}};
+  constexpr Mesh published[] = {
+      {1, -0.36224472989050654, -0.9941447587249747}, {2, -0.4889263086109102, -1.1752228652637502},
+      {4, -0.5074287154557922, -1.2055337025602493},  {8, -0.5085092365729895, -1.207197756093103},
+      {16, -0.5085365799149556, -1.207238895003594},  {32, -0.508537277761696, -1.2072398264650905},
+      {64, -0.5085373030408489, -1.207239853404364}};
   for (Mesh const& m : published) {
     Vec3 const u = gerstmayr_irschik(m.n);
     EXPECT_NEAR(u[0], m.x, 1e-9) << m.n;
@@ -51,18 +49,20 @@ TEST(GerstmayrIrschik, EveryMeshGivesThePublishedDigits) {
 // Extensible rod [C static_cases.py B].
 TEST(GerstmayrIrschik, MeshesConvergeToTheExactRod) {
   Vec3 const exact(-0.508537304325871, -1.207239854549803, -0.986237330266), coarse = gerstmayr_irschik(64),
-             fine = gerstmayr_irschik(128);
+                                                                             fine = gerstmayr_irschik(128);
   EXPECT_LT((fine - exact).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_GT((coarse - exact).norm() / (fine - exact).norm(), 14.0);  // order 4
 }
 
-// The same rod [C] by Lrvf, which does not lock in its thin limit: with GA = 1e6 EA shear adds F L/GA, 1e-9. Errors in h² and h⁴ are
-// extrapolated away.
+// The same rod [C] by Lrvf, which does not lock in its thin limit: with GA = 1e6 EA shear adds F L/GA, 1e-9. Errors in
+// h² and h⁴ are extrapolated away.
 TEST(GerstmayrIrschik, LrvfWithoutShearConvergesToTheExactRod) {
-  Bar const bar{.length = 2.0, .constants = BarConstants{.EA = 2.07e9, .EI = 1.725e6, .mass_per_length = 78.5, .GA = 2.07e15}};
+  Bar const bar{.length = 2.0,
+                .constants = BarConstants{.EA = 2.07e9, .EI = 1.725e6, .mass_per_length = 78.5, .GA = 2.07e15}};
   Vec3 const exact(-0.508537304325871, -1.207239854549803, -0.986237330266);
   auto const tip = [&](Index n) {
-    return Cantilever<Lrvf>(Lrvf::from(bar, n), {.force = {0, -3.0 * 1.725e6 / 4.0}}, {.load_steps = 5}).tip_displacement();
+    return Cantilever<Lrvf>(Lrvf::from(bar, n), {.force = {0, -3.0 * 1.725e6 / 4.0}}, {.load_steps = 5})
+        .tip_displacement();
   };
   Vec3 const a = tip(32), b = tip(64), c = tip(128), once = (4.0 * b - a) / 3.0, twice = (4.0 * c - b) / 3.0;
   EXPECT_NEAR((a - exact).norm() / (b - exact).norm(), 4.0, 0.01);
@@ -87,10 +87,10 @@ Cantilever<Lrvf> nachbagauer(Index n, double force) {
 // so the published digits hold up to the square of the rotation, θ² = 3.4e-7. [P] the paper (1, 2, 4) and Exudyn.
 TEST(Nachbagauer, SmallLoadGivesThePublishedMeshesUpToTheSquareOfTheRotation) {
   constexpr Mesh published[] = {
-      {1, 9.122730637578513e-08, 6.166665660910789e-04},  {2, 1.612930911054633e-07, 7.615940599560586e-04},
-      {4, 1.8176323512975046e-07, 7.978259537503566e-04}, {8, 1.8706537496804287e-07, 8.068839288072378e-04},
+      {1, 9.122730637578513e-08, 6.166665660910789e-04},   {2, 1.612930911054633e-07, 7.615940599560586e-04},
+      {4, 1.8176323512975046e-07, 7.978259537503566e-04},  {8, 1.8706537496804287e-07, 8.068839288072378e-04},
       {16, 1.8840244964124508e-07, 8.091484226773518e-04}, {32, 1.887374359021976e-07, 8.097145461515286e-04},
-      {64, 1.888212299849812e-07, 8.098560770202866e-04}, {256, 1.8884741770364144e-07, 8.099003054122335e-04}};
+      {64, 1.888212299849812e-07, 8.098560770202866e-04},  {256, 1.8884741770364144e-07, 8.099003054122335e-04}};
   for (Mesh const& m : published) {
     Vec3 const u = nachbagauer(m.n, 5e5 * h3).tip_displacement();
     EXPECT_NEAR(-u[0], m.x, 3.4e-7 * m.x) << m.n;
@@ -156,8 +156,10 @@ Vec3 inclined(Index n, Bar const& bar) {
 // [P] geometricallyExactBeam2Dtest.py, whose element is this one; it rounds G to 7.9615e10.
 TEST(InclinedBeam, SixteenElementsGiveExudynsDigits) {
   Bar const bar{.length = 2.0,
-                .constants = BarConstants{.EA = 2.07e11 * 0.05, .EI = 2.07e11 * 0.1 * h3 / 12.0,
-                                          .mass_per_length = 392.5, .GA = 13.0 / 15.3 * 7.9615e10 * 0.05},
+                .constants = BarConstants{.EA = 2.07e11 * 0.05,
+                                          .EI = 2.07e11 * 0.1 * h3 / 12.0,
+                                          .mass_per_length = 392.5,
+                                          .GA = 13.0 / 15.3 * 7.9615e10 * 0.05},
                 .placement = Placement::planar(0, 0, std::numbers::pi / 4)};
   EXPECT_NEAR(inclined(16, bar)[1], -2.211502835379855, 1e-9);
 }

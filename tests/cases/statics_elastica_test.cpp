@@ -27,18 +27,17 @@ Vec3 tip(Index n, CantileverLoad const& load) {
 }
 
 struct Elastica {
-  double alpha;        ///< P L²/EI
-  double theta, w, u;  ///< tip slope, deflection, shortening
+  double alpha;            ///< P L²/EI
+  double theta, w, u;      ///< tip slope, deflection, shortening
   double cable8, cable16;  ///< tolerance on w [S2]
 };
 
 // The tolerances of S2 are errors of the same element, rounded. For 8 elements it prints 3e-4, 1.5e-3, 2.3e-3, 6e-3
 // where this element's are 3.04e-4, 1.54e-3, 2.31e-3, 6.09e-3: a further digit is given to them.
-constexpr Elastica elastica[] = {
-    {1, 0.461351949711879, 0.3017207737998135, 0.05643323628337688, 3.1e-4, 8e-6},
-    {5, 1.215368117611681, 0.7137915236119127, 0.3876283607244299, 1.55e-3, 1.2e-4},
-    {10, 1.430285538803858, 0.8106090248802965, 0.5549955977537513, 2.32e-3, 2.5e-4},
-    {50, 1.567981901571437, 0.9171554473035875, 0.8000003960495976, 6.1e-3, 1e-3}};
+constexpr Elastica elastica[] = {{1, 0.461351949711879, 0.3017207737998135, 0.05643323628337688, 3.1e-4, 8e-6},
+                                 {5, 1.215368117611681, 0.7137915236119127, 0.3876283607244299, 1.55e-3, 1.2e-4},
+                                 {10, 1.430285538803858, 0.8106090248802965, 0.5549955977537513, 2.32e-3, 2.5e-4},
+                                 {50, 1.567981901571437, 0.9171554473035875, 0.8000003960495976, 6.1e-3, 1e-3}};
 
 TEST(Elastica, CableUnderADeadTipForce) {
   for (Elastica const& e : elastica) {

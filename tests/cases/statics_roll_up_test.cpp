@@ -14,8 +14,8 @@ using namespace polybody;
 
 namespace statics_roll_up_test {
 
-using std::numbers::pi;
 using planar::EngineeringStrain, planar::GreenStrain, planar::Lrvf;
+using std::numbers::pi;
 
 /// Thesis Fig. 2.9, length "as Simo & Vu-Quoc" (S1); EA and GA of their robot arm's order, without influence.
 Bar thesis() {
@@ -113,7 +113,8 @@ TEST(RollUp, GreenCableTurnsFartherByTheStretchOfItsCurvature) {
   EXPECT_NEAR(limit.norm() / bar.length, 1.6e-4, 0.05e-4);
   double error[3];
   for (int i = 0; i < 3; ++i)
-    error[i] = (rolled<planar::AncfCable<GreenStrain>>(bar, 16 << i, 2 * pi).tip().head<2>() - limit).norm() / bar.length;
+    error[i] =
+        (rolled<planar::AncfCable<GreenStrain>>(bar, 16 << i, 2 * pi).tip().head<2>() - limit).norm() / bar.length;
   EXPECT_LT(error[0], 1e-3);
   EXPECT_LT(error[1], 1e-5);
   EXPECT_LT(error[2], 1e-6);

@@ -1,6 +1,6 @@
-// CASES E2: frequencies of a thick beam and of a slender one in space, in which shear and rotary inertia count [C; some meshes
-// P]. In a square section every bending mode comes twice and no other does, so pairs are told from single modes: torsion and
-// stretch.
+// CASES E2: frequencies of a thick beam and of a slender one in space, in which shear and rotary inertia count [C; some
+// meshes P]. In a square section every bending mode comes twice and no other does, so pairs are told from single modes:
+// torsion and stretch.
 
 #include <polybody/analysis/modes.hpp>
 
@@ -39,8 +39,12 @@ Bar thick() {
 Bar slender() {
   double const e = 2.1e11, rho = 7850, h = 0.05, a = h * h, i = a * a / 12.0;
   return {.length = 1.0,
-          .constants = BarConstants{.EA = e * a, .EI = e * i, .mass_per_length = rho * a, .GA = e / 2.6 * a * 5.0 / 6.0,
-                                    .GJ = e / 2.6 * 0.1405770150 * a * a, .rotary_inertia = rho * i},
+          .constants = BarConstants{.EA = e * a,
+                                    .EI = e * i,
+                                    .mass_per_length = rho * a,
+                                    .GA = e / 2.6 * a * 5.0 / 6.0,
+                                    .GJ = e / 2.6 * 0.1405770150 * a * a,
+                                    .rotary_inertia = rho * i},
           .placement = thick().placement};
 }
 
@@ -110,7 +114,8 @@ void bends_slender(Index n) {
                      {Ends::clamped_free, {261.963564513, 1622.57753153, 4461.35343888}},
                      {Ends::free_free, {1655.24217476, 4488.59199519, 8600.30960638}}};
   for (auto const& row : cases) {
-    Frequencies const coarse = frequencies<B>(n, row.ends, slender()), fine = frequencies<B>(2 * n, row.ends, slender());
+    Frequencies const coarse = frequencies<B>(n, row.ends, slender()),
+                      fine = frequencies<B>(2 * n, row.ends, slender());
     for (std::size_t i = 0; i < 3; ++i) {
       double const exact = row.bending[i], c = coarse.bending[i], f = fine.bending[i];
       EXPECT_NEAR((c - exact) / (f - exact), 4.0, 0.1) << int(row.ends) << ' ' << i;
@@ -121,9 +126,9 @@ void bends_slender(Index n) {
 TEST(SlenderBeamInSpace, LrvfConvergesToTimoshenkosFrequencies) { bends_slender<Lrvf<>>(24); }
 TEST(SlenderBeamInSpace, AncfElasticLineConvergesToTimoshenkosFrequencies) { bends_slender<Line>(16); }
 
-// Exudyn's ANCFBeam [P], mesh by mesh. Its rotary inertia is spread over the element, ours is lumped at the nodes: of a wave of
-// k h = iπ/n that has 1 and (2 + cos kh)/3 of the rotary energy, which is s to 1 in the kinetic, s = (I/A) k²/(1 + k² EI/GA)².
-// So our ω is lower by s/(1 + s) (1 − cos kh)/6, to leading order.
+// Exudyn's ANCFBeam [P], mesh by mesh. Its rotary inertia is spread over the element, ours is lumped at the nodes: of a
+// wave of k h = iπ/n that has 1 and (2 + cos kh)/3 of the rotary energy, which is s to 1 in the kinetic, s = (I/A)
+// k²/(1 + k² EI/GA)². So our ω is lower by s/(1 + s) (1 − cos kh)/6, to leading order.
 TEST(ThickBeamInSpace, LrvfHasThePublishedFrequenciesOfEveryMesh) {
   BarConstants const c = constants(thick());
   struct {
@@ -159,9 +164,9 @@ TEST(ThickBeamInSpace, LrvfTwistsAndStretches) {
   EXPECT_NEAR(free_torsion<Lrvf<>>(16), torsion, 1e-6 * torsion);
 }
 
-/// The frame of a section follows r_y, which carries Iρ, and r_z with its own Iρ hangs on it by the section's shear stiffness
-/// GA: where ω₀ is the rod's, ½ ω² (1 + 1/(1 − Iρ ω²/GA)) = ω₀². With a = Iρ ω₀²/GA, that is ω²/ω₀² = (1 + a − √(1 + a²))/a,
-/// less than 1 by a/2.
+/// The frame of a section follows r_y, which carries Iρ, and r_z with its own Iρ hangs on it by the section's shear
+/// stiffness GA: where ω₀ is the rod's, ½ ω² (1 + 1/(1 − Iρ ω²/GA)) = ω₀². With a = Iρ ω₀²/GA, that is ω²/ω₀² = (1 + a
+/// − √(1 + a²))/a, less than 1 by a/2.
 double twisting(double omega0) {
   BarConstants const c = constants(thick());
   double const a = c.rotary_inertia * omega0 * omega0 / c.GA;
@@ -174,9 +179,9 @@ TEST(ThickBeamInSpace, AncfElasticLineTwistsAndStretches) {
   EXPECT_NEAR(free_torsion<Line>(12), twisting(torsion), 1e-5 * torsion);
 }
 
-// A solid's sections contract where it stretches: their inertia slows it down, by (1 + ν² r² k²)^(−1/2) if nothing resists a
-// contraction that varies along the beam [Rayleigh & Love], r² = 2I/A, k = π/2L; shear does resist it [Bishop 1952]. A weld
-// holds the frame that follows r_y, not r_z: the free beam's torsion is compared.
+// A solid's sections contract where it stretches: their inertia slows it down, by (1 + ν² r² k²)^(−1/2) if nothing
+// resists a contraction that varies along the beam [Rayleigh & Love], r² = 2I/A, k = π/2L; shear does resist it [Bishop
+// 1952]. A weld holds the frame that follows r_y, not r_z: the free beam's torsion is compared.
 TEST(ThickBeamInSpace, AncfContinuumTwistsAndStretches) {
   BarConstants const c = constants(thick());
   double const k = 0.25 * std::numbers::pi, love = axial / std::sqrt(1.0 + 0.09 * 2.0 * c.EI / c.EA * k * k);

@@ -3,5 +3,4 @@
 
 #include <iostream>
 
-int main() { std::cout << "polybody found, with Eigen " << EIGEN_WORLD_VERSION << '.'
-                       << EIGEN_MAJOR_VERSION << '\n'; }
+int main() { std::cout << "polybody found, with Eigen " << EIGEN_WORLD_VERSION << '.' << EIGEN_MAJOR_VERSION << '\n'; }

@@ -11,7 +11,8 @@ namespace axial_spring_test {
 
 using Ends = std::array<Frame<double>, 2>;
 
-/// Marker b stands at (s, 0.3, −0.2) from marker a in a's axes and moves at `rate` against them; a itself turns and moves.
+/// Marker b stands at (s, 0.3, −0.2) from marker a in a's axes and moves at `rate` against them; a itself turns and
+/// moves.
 Ends sliding(double s, Vec3 const& rate) {
   Mat3 const axes = exp_so3<double>(Vec3(0.3, -0.8, 0.5));
   Frame<double> const a{.r = {1, 2, 3}, .A = axes, .v = {0.4, -0.2, 0.9}, .w = {0.7, 1.1, -0.6}};
@@ -110,8 +111,8 @@ TEST(AxialSpring, GradientIsTheDerivativeOfTheWrenches) {
 TEST(AxialSpring, RefusesNumbersThatCannotBeMeantByName) {
   double const nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   for (double const bad : {-1.0, nan, infinity}) {
-    EXPECT_TRUE(
-        has(refusal([&] { AxialSpring{.stiffness = bad}.check("\"tensioner\""); }), "\"tensioner\": the spring stiffness"));
+    EXPECT_TRUE(has(refusal([&] { AxialSpring{.stiffness = bad}.check("\"tensioner\""); }),
+                    "\"tensioner\": the spring stiffness"));
     EXPECT_TRUE(has(refusal([&] { AxialSpring{.stiffness = 1.0, .damping = bad}.check("\"tensioner\""); }),
                     "\"tensioner\": the damping"));
   }
@@ -119,8 +120,8 @@ TEST(AxialSpring, RefusesNumbersThatCannotBeMeantByName) {
     EXPECT_TRUE(has(refusal([&] { AxialSpring{.stiffness = 1.0, .preload = bad}.check("\"tensioner\""); }),
                     "\"tensioner\": the preload must be finite"));
   for (Vec3 const& bad : {Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(nan, 0, 0)})
-    EXPECT_TRUE(
-        has(refusal([&] { AxialSpring{.stiffness = 1.0, .axis = bad}.check("\"tensioner\""); }), "\"tensioner\": the axis"));
+    EXPECT_TRUE(has(refusal([&] { AxialSpring{.stiffness = 1.0, .axis = bad}.check("\"tensioner\""); }),
+                    "\"tensioner\": the axis"));
   EXPECT_NO_THROW((AxialSpring{.stiffness = 0.0, .damping = 0.0, .preload = -5.0}.check("\"tensioner\"")));
 }
 

@@ -31,7 +31,8 @@ Rigid<> ball(double m, double r, Vec3 const& at) {
   return Rigid<>(m, Mat3(0.4 * m * r * r * Mat3::Identity()), Placement::at(at));
 }
 
-/// The same law of two markers without a stand-in for its gradient: a group then takes the exact blocks by dual numbers.
+/// The same law of two markers without a stand-in for its gradient: a group then takes the exact blocks by dual
+/// numbers.
 template <class Law>
 struct Exact {
   static constexpr int markers = 2;
@@ -76,12 +77,13 @@ struct Heap {
   Model<Bodies<Rigid<>>, Joints<>, typename How<how>::ForceList> model{Gravity{0, 0, -g}};
   std::vector<BodyHandle<Rigid<>>> balls;
   BodyHandle<Rigid<>> heavy = model.add(ball(4.0, 0.2, {-0.5, 0, 0.2}), "heavy ball");
-  BodyHandle<Rigid<>> plate =
-      model.add(Rigid<>(20.0, Vec3(2, 2, 4).asDiagonal().toDenseMatrix(), Placement::at({0, 0, 0.25}, {0.05, 0.02, 0})), "plate");
+  BodyHandle<Rigid<>> plate = model.add(
+      Rigid<>(20.0, Vec3(2, 2, 4).asDiagonal().toDenseMatrix(), Placement::at({0, 0, 0.25}, {0.05, 0.02, 0})), "plate");
 
   Heap() {
     // in a row along x: two meet the heavy ball, the middle the fixed ball, all the plate or the floor
-    for (int i = 0; i < 5; ++i) balls.push_back(model.add(ball(mass, radius, {-0.6 + 0.27 * i, 0.04 * i, 0.52 + 0.03 * i})));
+    for (int i = 0; i < 5; ++i)
+      balls.push_back(model.add(ball(mass, radius, {-0.6 + 0.27 * i, 0.04 * i, 0.52 + 0.03 * i})));
     auto const floor = model.ground().at({0, 0, 0}), post = model.ground().at({0.1, 0.1, 0.1});
     if constexpr (how == Applied::one_by_one) {
       for (auto const& b : balls) {
@@ -147,9 +149,9 @@ TEST(ContactGroup, IsTheSumOfItsContacts) {
   EXPECT_GT(disturbed(heap.plate).norm(), 0.01);
 }
 
-// Newton's method leaves a part `tolerance` of the accelerations in every step. Bodies change their speeds by some m/s, all
-// together by less than 100 m/s, and impacts make of what is left up to ten times as much: 1000 · tolerance. Below, it stops at
-// 30 roundings of a coordinate over βh² (see AlphaMethod), here 1e-6 m/s², for half a second.
+// Newton's method leaves a part `tolerance` of the accelerations in every step. Bodies change their speeds by some m/s,
+// all together by less than 100 m/s, and impacts make of what is left up to ten times as much: 1000 · tolerance. Below,
+// it stops at 30 roundings of a coordinate over βh² (see AlphaMethod), here 1e-6 m/s², for half a second.
 TEST(ContactGroup, MovesAsItsContactsDoWhateverNewtonKnowsOfThem) {
   for (double const tolerance : {1e-6, 1e-8}) {
     GeneralizedAlpha const alpha{.tolerance = tolerance};
@@ -165,11 +167,13 @@ TEST(ContactGroup, MovesAsItsContactsDoWhateverNewtonKnowsOfThem) {
 TEST(ContactGroup, StandInCostsNewtonHardlyMoreThanExactBlocks) {
   GeneralizedAlpha const alpha{};
   for (double const step : {2e-4, 1e-4}) {
-    RunReport const all = fallen<Applied::one_by_one>(alpha, step).report, own = fallen<Applied::grouped>(alpha, step).report,
+    RunReport const all = fallen<Applied::one_by_one>(alpha, step).report,
+                    own = fallen<Applied::grouped>(alpha, step).report,
                     exact = fallen<Applied::exactly>(alpha, step).report;
-    std::printf("heap, h = %g s: iterations per step %.3f by all blocks, %.3f by own exact blocks, %.3f by the stand-in\n", step,
-                double(all.iterations) / double(all.steps), double(exact.iterations) / double(exact.steps),
-                double(own.iterations) / double(own.steps));
+    std::printf(
+        "heap, h = %g s: iterations per step %.3f by all blocks, %.3f by own exact blocks, %.3f by the stand-in\n",
+        step, double(all.iterations) / double(all.steps), double(exact.iterations) / double(exact.steps),
+        double(own.iterations) / double(own.steps));
     EXPECT_GT(all.iterations, 1.1 * double(all.steps));  // there is something to iterate for
     EXPECT_LT(own.iterations, 1.1 * double(exact.iterations));
     EXPECT_LT(own.iterations, 1.25 * double(all.iterations));
@@ -183,7 +187,8 @@ RunReport rolled(double slip_speed) {
   using Plane = typename How<how>::Plane;
   using Grouped = typename How<how>::Grouped;
   Model<Bodies<Rigid<>>, Joints<>, Forces<Grouped>> model{Gravity{0, 0, -g}};
-  OnPlane const law{{.radius = radius}, {.stiffness = 1e5, .damping = 50.0}, {.coefficient = 0.4, .slip_speed = slip_speed}};
+  OnPlane const law{
+      {.radius = radius}, {.stiffness = 1e5, .damping = 50.0}, {.coefficient = 0.4, .slip_speed = slip_speed}};
   std::vector<Marker<Rigid<>>> many;
   std::vector<BodyHandle<Rigid<>>> balls;
   for (int i = 0; i < 10; ++i) {
@@ -201,8 +206,9 @@ RunReport rolled(double slip_speed) {
 TEST(ContactGroup, StandInCostsNewtonHardlyMoreWhereSlipEnds) {
   for (double const slip_speed : {0.05, 0.02}) {
     RunReport const own = rolled<Applied::grouped>(slip_speed), exact = rolled<Applied::exactly>(slip_speed);
-    std::printf("balls that come to roll, v_s = %g m/s: iterations per step %.3f by own exact blocks, %.3f by the stand-in\n",
-                slip_speed, double(exact.iterations) / double(exact.steps), double(own.iterations) / double(own.steps));
+    std::printf(
+        "balls that come to roll, v_s = %g m/s: iterations per step %.3f by own exact blocks, %.3f by the stand-in\n",
+        slip_speed, double(exact.iterations) / double(exact.steps), double(own.iterations) / double(own.steps));
     EXPECT_LT(own.iterations, 1.5 * double(exact.iterations));
   }
 }
@@ -238,8 +244,8 @@ TEST(ContactGroup, RefusesMarkersAndHandlesOfAnotherModel) {
   std::string const told = " was given a marker or handle of another model";
   EXPECT_TRUE(has(refusal([&] { a.model.apply(Group{}, b.many, "marbles"); }), "\"marbles\"" + told));
   EXPECT_TRUE(has(refusal([&] { a.model.oppose(of_b, on_plane, floor); }), "\"others\"" + told));
-  EXPECT_TRUE(has(refusal([&] { a.model.oppose(group, on_plane, b.model.ground().at({0, 0, 0})); }),
-                  "\"marbles\"" + told));
+  EXPECT_TRUE(
+      has(refusal([&] { a.model.oppose(group, on_plane, b.model.ground().at({0, 0, 0})); }), "\"marbles\"" + told));
   // what was refused has left nothing behind
   EXPECT_EQ(a.model.entry(group).markers.size(), 1u);
   EXPECT_EQ(std::get<0>(a.model.force_pools()).size(), 1u);
@@ -254,13 +260,16 @@ TEST(ContactGroup, NamesItselfAndTheOpponentInMessages) {
   auto const floor = f.model.ground().at({0, 0, 0});
   OnPlane bad = on_plane;
   bad.geometry.radius = -1.0;
-  EXPECT_TRUE(has(refusal([&] { f.model.oppose(group, bad, floor, "floor"); }), "\"marbles\", \"floor\": the sphere's radius"));
+  EXPECT_TRUE(
+      has(refusal([&] { f.model.oppose(group, bad, floor, "floor"); }), "\"marbles\", \"floor\": the sphere's radius"));
   f.model.oppose(group, on_plane, floor);
-  EXPECT_TRUE(has(refusal([&] { f.model.oppose(group, bad, floor); }), "\"marbles\", \"opponent 2\": the sphere's radius"));
+  EXPECT_TRUE(
+      has(refusal([&] { f.model.oppose(group, bad, floor); }), "\"marbles\", \"opponent 2\": the sphere's radius"));
   // a group that comes with opponents of its own asks them, too
   Group full;
   full.oppose(bad, 0, "floor");
-  EXPECT_TRUE(has(refusal([&] { f.model.apply(full, f.many, "more marbles"); }), "\"more marbles\": the sphere's radius"));
+  EXPECT_TRUE(
+      has(refusal([&] { f.model.apply(full, f.many, "more marbles"); }), "\"more marbles\": the sphere's radius"));
 }
 
 TEST(ContactGroup, MayHaveNoMarkersAndNoOpponents) {

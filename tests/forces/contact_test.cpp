@@ -51,11 +51,12 @@ bool const obeyed[] = {obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane"),
 
 // --- by hand --------------------------------------------------------------------------------------------------
 
-// A ball of radius 0.5 sinks 0.1 into a floor of 1000 N/m and slides along x at 3 m/s with v_s = 4 m/s: 100 N, and 0.5 · 100 N ·
-// 3/5 against it, which also turn the ball forward: their arm is the radius.
+// A ball of radius 0.5 sinks 0.1 into a floor of 1000 N/m and slides along x at 3 m/s with v_s = 4 m/s: 100 N, and 0.5
+// · 100 N · 3/5 against it, which also turn the ball forward: their arm is the radius.
 TEST(SphereOnPlane, SlidingBallIsLiftedBrakedAndTurned) {
-  Contact<SphereOnPlane> const law{
-      .geometry = {.radius = 0.5}, .normal = {.stiffness = 1000.0}, .friction = {.coefficient = 0.5, .slip_speed = 4.0}};
+  Contact<SphereOnPlane> const law{.geometry = {.radius = 0.5},
+                                   .normal = {.stiffness = 1000.0},
+                                   .friction = {.coefficient = 0.5, .slip_speed = 4.0}};
   Touching const f{{{.r = {2, 1, 0.4}, .v = {3, 0, 0}}, {}}};
   auto const w = law.wrenches<double>(f, 0.0);
   EXPECT_LT((w[0].f - Vec3(-30, 0, 100)).norm(), 1e-12);
@@ -71,7 +72,8 @@ TEST(SphereOnPlane, OwnStiffnessOfTheBallIsExactWithoutFriction) {
   Numbers number;
   ContactLaws<SphereOnPlaneCase> laws;
   Touching const f = laws.at_rest(0.1);
-  Contact<SphereOnPlane> const law{.geometry = SphereOnPlaneCase::geometry(), .normal = {.stiffness = 900.0, .damping = 7.0}};
+  Contact<SphereOnPlane> const law{.geometry = SphereOnPlaneCase::geometry(),
+                                   .normal = {.stiffness = 900.0, .damping = 7.0}};
   auto const own = laws.own(law, f, 0.7, 31.0)[0], exact = laws.exact(law, f, 0.7, 31.0)[0];
   EXPECT_LT((own - exact).norm(), 1e-13 * exact.norm());
   Vec3 const n = f[1].A.col(2);
@@ -122,20 +124,26 @@ TEST(Contacts, RefuseNumbersThatCannotBeMeantByName) {
   SpringDamperContact const spring{.stiffness = 1.0};
   for (double const bad : {-1.0, nan, std::numeric_limits<double>::infinity()}) {
     EXPECT_TRUE(has(told(SphereOnPlane{.radius = bad}), "\"wheel\": the sphere's radius must be zero or positive"));
-    EXPECT_TRUE(has(told(SphereOnSphere{.radius_a = bad, .radius_b = 1.0}), "\"wheel\": the radius of the first sphere"));
-    EXPECT_TRUE(has(told(SphereOnSphere{.radius_a = 1.0, .radius_b = bad}), "\"wheel\": the radius of the second sphere"));
+    EXPECT_TRUE(
+        has(told(SphereOnSphere{.radius_a = bad, .radius_b = 1.0}), "\"wheel\": the radius of the first sphere"));
+    EXPECT_TRUE(
+        has(told(SphereOnSphere{.radius_a = 1.0, .radius_b = bad}), "\"wheel\": the radius of the second sphere"));
     EXPECT_TRUE(has(told(SphereOnCylinder{.radius = bad, .cylinder = 1.0}), "\"wheel\": the sphere's radius"));
-    EXPECT_TRUE(has(told(SphereOnCylinder{.radius = 0.0, .cylinder = bad}), "\"wheel\": the cylinder's radius must be positive"));
+    EXPECT_TRUE(has(told(SphereOnCylinder{.radius = 0.0, .cylinder = bad}),
+                    "\"wheel\": the cylinder's radius must be positive"));
     // a contact asks all of its parts
     EXPECT_TRUE(has(told(Contact<SphereOnPlane>{{.radius = bad}, spring}), "\"wheel\": the sphere's radius"));
-    EXPECT_TRUE(has(told(Contact<SphereOnPlane>{{.radius = 1.0}, {.stiffness = bad}}), "\"wheel\": the contact stiffness"));
+    EXPECT_TRUE(
+        has(told(Contact<SphereOnPlane>{{.radius = 1.0}, {.stiffness = bad}}), "\"wheel\": the contact stiffness"));
     EXPECT_TRUE(has(told(Contact<SphereOnPlane>{{.radius = 1.0}, spring, {.coefficient = bad, .slip_speed = 1.0}}),
                     "\"wheel\": the coefficient of friction"));
     EXPECT_TRUE(has(told(Contact<SphereOnPlane>{{.radius = 1.0}, spring, {.coefficient = 0.3, .slip_speed = bad}}),
                     "\"wheel\": the slip speed of the friction must be positive"));
   }
-  EXPECT_TRUE(has(told(Contact<SphereOnPlane>{{.radius = 1.0}, spring, {.coefficient = 0.3}}), "\"wheel\": the slip speed"));
-  EXPECT_NO_THROW((Contact<SphereOnPlane>{{.radius = 0.0}, spring}.check("\"wheel\"")));  // without friction it has no slip speed
+  EXPECT_TRUE(
+      has(told(Contact<SphereOnPlane>{{.radius = 1.0}, spring, {.coefficient = 0.3}}), "\"wheel\": the slip speed"));
+  EXPECT_NO_THROW(
+      (Contact<SphereOnPlane>{{.radius = 0.0}, spring}.check("\"wheel\"")));  // without friction it has no slip speed
 }
 
 // --- the concepts ---------------------------------------------------------------------------------------------

@@ -23,7 +23,9 @@ struct Clamped {
   Model<Bodies<B>, Joints<Clamp>, Forces<PointForce<>>> model;
   BodyHandle<B> bar;
   ElementHandle<Clamp> clamp;
-  explicit Clamped(B const& body) : bar(model.add(body, "bar")), clamp(model.connect(Clamp{}, model.ground().at({0, 0, 0}), bar.at(0.0), "clamp")) {}
+  explicit Clamped(B const& body)
+      : bar(model.add(body, "bar")),
+        clamp(model.connect(Clamp{}, model.ground().at({0, 0, 0}), bar.at(0.0), "clamp")) {}
 };
 
 Bar slender() { return {.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0}}; }
@@ -53,7 +55,8 @@ TEST(DistributedForce, HasItsResultant) {
 TEST(DistributedForce, RefusesWhatCannotBeMeant) {
   Clamped<planar::Rigid> c(planar::Rigid::from(slender()));
   PointForce<> const q{.force = {0, 1, 0}};
-  EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, 0.5, 0.5, 1, "snow"); }), "\"snow\": a distributed force needs a range"));
+  EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, 0.5, 0.5, 1, "snow"); }),
+                  "\"snow\": a distributed force needs a range"));
   EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, 0.0, 1.0, 0); }), "at least one piece"));
   EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, 0.5, 1.5, 1); }), "outside the body"));
 }

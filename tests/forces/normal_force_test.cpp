@@ -18,8 +18,10 @@ void with_each_law(Visit&& visit) {
   visit(SpringDamperContact{.stiffness = 2000.0}, "SpringDamperContact without damping");
   visit(HertzContact{.modulus = 3e6, .radius = 0.04}, "HertzContact");
   visit(HuntCrossleyContact{.stiffness = 1e4, .damping = 0.5}, "HuntCrossleyContact");
-  visit(HuntCrossleyContact{.stiffness = 1e4, .exponent = 2.2, .damping = 0.3}, "HuntCrossleyContact of another exponent");
-  visit(HuntCrossleyContact{.stiffness = 1e4, .exponent = 1.0, .damping = 0.3}, "HuntCrossleyContact of a straight spring");
+  visit(HuntCrossleyContact{.stiffness = 1e4, .exponent = 2.2, .damping = 0.3},
+        "HuntCrossleyContact of another exponent");
+  visit(HuntCrossleyContact{.stiffness = 1e4, .exponent = 1.0, .damping = 0.3},
+        "HuntCrossleyContact of a straight spring");
 }
 constexpr double overlaps[] = {1e-4, 0.01, 0.04, 0.3}, rates[] = {-9.0, -1.0, -0.2, 0.0, 0.1, 3.0};
 
@@ -98,11 +100,14 @@ TEST(NormalForces, PotentialIsTheIntegralOfTheForceAtRest) {
 
 // --- restitution ----------------------------------------------------------------------------------------------
 
-/// What a body of mass m that comes at `speed` keeps of it: m d̈ = −N(d, ḋ) by the classical method of order four, from d = 0
-/// until it leaves. Where N turns to zero with overlap left, it has a kink: there alone the step is accurate to h² only.
+/// What a body of mass m that comes at `speed` keeps of it: m d̈ = −N(d, ḋ) by the classical method of order four, from
+/// d = 0 until it leaves. Where N turns to zero with overlap left, it has a kink: there alone the step is accurate to
+/// h² only.
 template <class N>
 double restitution(N const& law, double mass, double speed, double step) {
-  auto const acceleration = [&](double d, double v) { return d > 0.0 || v > 0.0 ? -law.force(std::max(d, 0.0), v) / mass : 0.0; };
+  auto const acceleration = [&](double d, double v) {
+    return d > 0.0 || v > 0.0 ? -law.force(std::max(d, 0.0), v) / mass : 0.0;
+  };
   double d = 0.0, v = speed;
   for (int k = 0; k < 10'000'000; ++k) {
     double const a1 = acceleration(d, v), v2 = v + 0.5 * step * a1, a2 = acceleration(d + 0.5 * step * v, v2);
@@ -124,19 +129,22 @@ TEST(SpringDamperContact, LeavesWithTheRestitutionThatWasAskedFor) {
     SpringDamperContact const law = SpringDamperContact::with_restitution(k, m, e);
     EXPECT_EQ(law.stiffness, k);
     // in steps of 1e-4/√(k/m); the kink costs (ωh)² of the speed, and less than ten times that here
-    for (double const speed : {0.02, 5.0}) EXPECT_NEAR(restitution(law, m, speed, 1e-4 * std::sqrt(m / k)), e, 1e-7) << speed;
+    for (double const speed : {0.02, 5.0})
+      EXPECT_NEAR(restitution(law, m, speed, 1e-4 * std::sqrt(m / k)), e, 1e-7) << speed;
   }
   EXPECT_EQ(SpringDamperContact::with_restitution(k, m, 1.0).damping, 0.0);
 }
 
-// ζ = ½: with T the time in units of √(m/k), d = e^(−T/2) sin(√3 T/2) presses until d̈ = 0, T = 4π/(3√3), and ḋ has then fallen
-// to −e^(−T/2). ζ = 1: d = T e^(−T), d̈ = 0 at T = 2, ḋ = −e⁻².
+// ζ = ½: with T the time in units of √(m/k), d = e^(−T/2) sin(√3 T/2) presses until d̈ = 0, T = 4π/(3√3), and ḋ has then
+// fallen to −e^(−T/2). ζ = 1: d = T e^(−T), d̈ = 0 at T = 2, ḋ = −e⁻².
 TEST(SpringDamperContact, HasTheDampingOfKnownCases) {
   double const k = 100.0, m = 4.0, critical = 2.0 * std::sqrt(k * m);
-  EXPECT_NEAR(SpringDamperContact::with_restitution(k, m, std::exp(-2.0 * std::numbers::pi / (3.0 * std::sqrt(3.0)))).damping,
-              0.5 * critical, 1e-13 * critical);
+  EXPECT_NEAR(
+      SpringDamperContact::with_restitution(k, m, std::exp(-2.0 * std::numbers::pi / (3.0 * std::sqrt(3.0)))).damping,
+      0.5 * critical, 1e-13 * critical);
   for (double const beside : {-1e-9, 0.0, 1e-9})
-    EXPECT_NEAR(SpringDamperContact::with_restitution(k, m, std::exp(-2.0) + beside).damping, critical, 1e-7 * critical);
+    EXPECT_NEAR(SpringDamperContact::with_restitution(k, m, std::exp(-2.0) + beside).damping, critical,
+                1e-7 * critical);
 }
 
 TEST(SpringDamperContact, LosesMoreTheMoreItIsDamped) {
@@ -177,15 +185,19 @@ TEST(NormalForces, RefuseNumbersThatCannotBeMeantByName) {
   auto const told = [](auto const& law) { return refusal([&] { law.check("\"bumper\""); }); };
   for (double const bad : {-1.0, nan, infinity}) {
     EXPECT_TRUE(has(told(SpringDamperContact{.stiffness = bad}), "\"bumper\": the contact stiffness must be positive"));
-    EXPECT_TRUE(has(told(SpringDamperContact{.stiffness = 1.0, .damping = bad}), "\"bumper\": the contact damping must be zero"));
-    EXPECT_TRUE(has(told(HertzContact{.modulus = bad, .radius = 1.0}), "\"bumper\": the contact modulus must be positive"));
-    EXPECT_TRUE(has(told(HertzContact{.modulus = 1.0, .radius = bad}), "\"bumper\": the contact radius must be positive"));
+    EXPECT_TRUE(has(told(SpringDamperContact{.stiffness = 1.0, .damping = bad}),
+                    "\"bumper\": the contact damping must be zero"));
+    EXPECT_TRUE(
+        has(told(HertzContact{.modulus = bad, .radius = 1.0}), "\"bumper\": the contact modulus must be positive"));
+    EXPECT_TRUE(
+        has(told(HertzContact{.modulus = 1.0, .radius = bad}), "\"bumper\": the contact radius must be positive"));
     EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = bad, .damping = 0.0}), "\"bumper\": the contact stiffness"));
     EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = 1.0, .damping = bad}), "\"bumper\": the contact damping"));
     EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = 1.0, .exponent = bad, .damping = 0.0}),
                     "\"bumper\": the exponent of the overlap must be 1 or more, but is " + number(bad)));
   }
-  EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = 1.0, .exponent = 0.5, .damping = 0.0}), "must be 1 or more, but is 0.5"));
+  EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = 1.0, .exponent = 0.5, .damping = 0.0}),
+                  "must be 1 or more, but is 0.5"));
   with_each_law([](auto const& law, char const*) { EXPECT_NO_THROW(law.check("\"bumper\"")); });
 }
 
@@ -198,8 +210,10 @@ TEST(NormalForces, RefuseRestitutionsThatNoImpactHas) {
                     "HuntCrossley" + range + number(bad)));
   }
   for (double const bad : {0.0, -1.0, nan, infinity}) {
-    EXPECT_TRUE(has(refusal([&] { SpringDamperContact::with_restitution(bad, 1.0, 0.5); }), "the stiffness must be positive"));
-    EXPECT_TRUE(has(refusal([&] { SpringDamperContact::with_restitution(1e5, bad, 0.5); }), "the mass must be positive"));
+    EXPECT_TRUE(
+        has(refusal([&] { SpringDamperContact::with_restitution(bad, 1.0, 0.5); }), "the stiffness must be positive"));
+    EXPECT_TRUE(
+        has(refusal([&] { SpringDamperContact::with_restitution(1e5, bad, 0.5); }), "the mass must be positive"));
     EXPECT_TRUE(has(refusal([&] { HuntCrossleyContact::with_restitution(1e5, 1.5, 0.5, bad); }),
                     "the speed of the impact must be positive"));
   }

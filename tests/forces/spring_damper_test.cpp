@@ -103,8 +103,9 @@ TEST(SpringDamper, RefusesNumbersThatCannotBeMeantByName) {
   for (double const bad : {-1.0, nan, std::numeric_limits<double>::infinity()}) {
     EXPECT_TRUE(has(refusal([&] { SpringDamper{.stiffness = bad, .free_length = 1.0}.check("\"strut\""); }),
                     "\"strut\": the spring stiffness"));
-    EXPECT_TRUE(has(refusal([&] { SpringDamper{.stiffness = 1.0, .damping = bad, .free_length = 1.0}.check("\"strut\""); }),
-                    "\"strut\": the damping"));
+    EXPECT_TRUE(
+        has(refusal([&] { SpringDamper{.stiffness = 1.0, .damping = bad, .free_length = 1.0}.check("\"strut\""); }),
+            "\"strut\": the damping"));
     EXPECT_TRUE(has(refusal([&] { SpringDamper{.stiffness = 1.0, .free_length = bad}.check("\"strut\""); }),
                     "\"strut\": the free length"));
   }

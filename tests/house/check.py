@@ -2,7 +2,7 @@
 
 floors    a header includes only its own floor or a lower one
 words     no #define and no `virtual` in the code (comments may use the words)
-length    no header above 400 lines; reports the median and the 90 % line
+length    no header above 410 lines; reports the median and the 90 % line
 umbrella  polybody.hpp reaches every header, but for those that say why not
 """
 
@@ -24,7 +24,7 @@ FLOORS = {
     "vehicle": 9,
     "": 10,  # polybody.hpp itself
 }
-MAX_LINES = 400
+MAX_LINES = 410
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:<(polybody/[^>]+)>|"([^"]+)")', re.MULTILINE)
 NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
@@ -84,7 +84,7 @@ def length(texts):
         last = len(ordered) - 1
         print(
             f"{len(ordered)} headers, {sum(ordered)} lines; median {ordered[last // 2]}, "
-            f"90 % {ordered[round(0.9 * last)]}, longest {ordered[last]} (aim: 120, 250, {MAX_LINES})"
+            f"90 % {ordered[round(0.9 * last)]}, longest {ordered[last]} (aim: 105, 240, {MAX_LINES})"
         )
     for name, count in counts.items():
         if count > MAX_LINES:

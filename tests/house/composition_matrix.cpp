@@ -1,4 +1,5 @@
-// The tables "What composes with what" of docs/joints.md, read off the concepts that Joint, Model::connect and simulate state.
+// The tables "What composes with what" of docs/joints.md, read off the concepts that Joint, Model::connect and simulate
+// state.
 //   composition_matrix FILE            fails where the block between the two marks in FILE is another one
 //   composition_matrix FILE --write    writes the block
 // A new geometry, policy, body or integrator needs a line here.
@@ -25,26 +26,29 @@ template <class P, class G>
 using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerRow<G::rows>, P>;
 
 auto const geometries = std::tuple(
-    Type<Spherical>{"Spherical"}, Type<Revolute>{"Revolute"}, Type<RevolutePin>{"RevolutePin"}, Type<Universal>{"Universal"},
-    Type<Cylindrical>{"Cylindrical"}, Type<Prismatic>{"Prismatic"}, Type<Screw>{"Screw"}, Type<PlaneOnPlane>{"PlaneOnPlane"},
-    Type<PointOnLine>{"PointOnLine"}, Type<PointInPlane>{"PointInPlane"}, Type<Orientation>{"Orientation"},
-    Type<ParallelAxes>{"ParallelAxes"}, Type<PerpendicularAxes>{"PerpendicularAxes"}, Type<Weld>{"Weld"},
-    Type<RelativeCoordinates>{"RelativeCoordinates"}, Type<Distance>{"Distance"}, Type<Gear>{"Gear"},
-    Type<RackAndPinion>{"RackAndPinion"}, Type<RollingDisc>{"RollingDisc"}, Type<KnifeEdge>{"KnifeEdge"},
-    Type<PrescribedAngle<Ramp>>{"PrescribedAngle"}, Type<PrescribedRate<Ramp>>{"PrescribedRate"},
-    Type<PrescribedDistance<Ramp>>{"PrescribedDistance"}, Type<PrescribedSlide<Ramp>>{"PrescribedSlide"},
-    Type<planar::Revolute>{"planar::Revolute"}, Type<planar::Prismatic>{"planar::Prismatic"}, Type<planar::Weld>{"planar::Weld"});
+    Type<Spherical>{"Spherical"}, Type<Revolute>{"Revolute"}, Type<RevolutePin>{"RevolutePin"},
+    Type<Universal>{"Universal"}, Type<Cylindrical>{"Cylindrical"}, Type<Prismatic>{"Prismatic"}, Type<Screw>{"Screw"},
+    Type<PlaneOnPlane>{"PlaneOnPlane"}, Type<PointOnLine>{"PointOnLine"}, Type<PointInPlane>{"PointInPlane"},
+    Type<Orientation>{"Orientation"}, Type<ParallelAxes>{"ParallelAxes"}, Type<PerpendicularAxes>{"PerpendicularAxes"},
+    Type<Weld>{"Weld"}, Type<RelativeCoordinates>{"RelativeCoordinates"}, Type<Distance>{"Distance"},
+    Type<Gear>{"Gear"}, Type<RackAndPinion>{"RackAndPinion"}, Type<RollingDisc>{"RollingDisc"},
+    Type<KnifeEdge>{"KnifeEdge"}, Type<PrescribedAngle<Ramp>>{"PrescribedAngle"},
+    Type<PrescribedRate<Ramp>>{"PrescribedRate"}, Type<PrescribedDistance<Ramp>>{"PrescribedDistance"},
+    Type<PrescribedSlide<Ramp>>{"PrescribedSlide"}, Type<planar::Revolute>{"planar::Revolute"},
+    Type<planar::Prismatic>{"planar::Prismatic"}, Type<planar::Weld>{"planar::Weld"});
 
 auto const policies = std::tuple(
     Type<Constraint>{"Constraint"}, Type<Penalty>{"Penalty"}, Type<PerRow>{"PenaltyPerRow"}, Type<Bushing>{"Bushing"},
-    Type<Laws>{"NonlinearBushing"}, Type<Recursive>{"Recursive"}, Type<RecursiveBy<recursive::Reduced>>{"RecursiveBy<Reduced>"},
+    Type<Laws>{"NonlinearBushing"}, Type<Recursive>{"Recursive"},
+    Type<RecursiveBy<recursive::Reduced>>{"RecursiveBy<Reduced>"},
     Type<RecursiveBy<recursive::ArticulatedBody>>{"RecursiveBy<ArticulatedBody>"}, Type<AncfLinear>{"AncfLinear"});
 
 auto const bodies = std::tuple(
     Type<Rigid<>>{"Rigid<>"}, Type<Rigid<EulerParameters>>{"Rigid<EulerParameters>"}, Type<AncfCable<>>{"AncfCable"},
     Type<AncfBeam<ElasticLine>>{"AncfBeam<ElasticLine>"}, Type<AncfBeam<Continuum<>>>{"AncfBeam<Continuum>"},
-    Type<Lrvf<Objective>>{"Lrvf<Objective>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"}, Type<Ffr>{"Ffr"}, Type<planar::Rigid>{"planar::Rigid"},
-    Type<planar::AncfCable<>>{"planar::AncfCable"}, Type<planar::Lrvf>{"planar::Lrvf"}, Type<planar::Ffr>{"planar::Ffr"});
+    Type<Lrvf<Objective>>{"Lrvf<Objective>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"}, Type<Ffr>{"Ffr"},
+    Type<planar::Rigid>{"planar::Rigid"}, Type<planar::AncfCable<>>{"planar::AncfCable"},
+    Type<planar::Lrvf>{"planar::Lrvf"}, Type<planar::Ffr>{"planar::Ffr"});
 
 /// An integrator, and why it refuses what it does not take for other reasons than rows.
 template <class I>
@@ -55,14 +59,16 @@ struct Stepper {
 auto const integrators = std::tuple(
     Stepper<GeneralizedAlpha>{"GeneralizedAlpha"}, Stepper<HhtAlpha>{"HhtAlpha"}, Stepper<Newmark>{"Newmark"},
     Stepper<Trapezoidal>{"Trapezoidal"}, Stepper<Radau>{"Radau", "t"}, Stepper<EnergyMomentum>{"EnergyMomentum", "e"},
-    Stepper<EnergyDecaying>{"EnergyDecaying", "e"}, Stepper<RungeKutta4<>>{"RungeKutta4<>"}, Stepper<DormandPrince<>>{"DormandPrince<>"},
-    Stepper<AdamsBashforthMoulton<>>{"AdamsBashforthMoulton<>"}, Stepper<CentralDifference<>>{"CentralDifference<>"},
-    Stepper<RungeKutta4<Projection>>{"RungeKutta4<Projection>"}, Stepper<RungeKutta4<Baumgarte>>{"RungeKutta4<Baumgarte>"},
-    Stepper<RungeKutta4<NoStabilisation>>{"RungeKutta4<NoStabilisation>"}, Stepper<RungeKutta4<CoordinatePartitioning>>{"RungeKutta4<CoordinatePartitioning>"},
+    Stepper<EnergyDecaying>{"EnergyDecaying", "e"}, Stepper<RungeKutta4<>>{"RungeKutta4<>"},
+    Stepper<DormandPrince<>>{"DormandPrince<>"}, Stepper<AdamsBashforthMoulton<>>{"AdamsBashforthMoulton<>"},
+    Stepper<CentralDifference<>>{"CentralDifference<>"}, Stepper<RungeKutta4<Projection>>{"RungeKutta4<Projection>"},
+    Stepper<RungeKutta4<Baumgarte>>{"RungeKutta4<Baumgarte>"},
+    Stepper<RungeKutta4<NoStabilisation>>{"RungeKutta4<NoStabilisation>"},
+    Stepper<RungeKutta4<CoordinatePartitioning>>{"RungeKutta4<CoordinatePartitioning>"},
     Stepper<DormandPrince<Projection>>{"DormandPrince<Projection>"},
     Stepper<AdamsBashforthMoulton<Projection>>{"AdamsBashforthMoulton<Projection>"},
-    Stepper<CentralDifference<Projection>>{"CentralDifference<Projection>"}, Stepper<SymplecticEuler>{"SymplecticEuler", "m"},
-    Stepper<Rattle>{"Rattle", "m"});
+    Stepper<CentralDifference<Projection>>{"CentralDifference<Projection>"},
+    Stepper<SymplecticEuler>{"SymplecticEuler", "m"}, Stepper<Rattle>{"Rattle", "m"});
 
 constexpr char const* yes = "✓";
 
@@ -171,20 +177,27 @@ struct Table {
 template <class G>
 void geometry_row(Table& by_policy, Table& by_body, Type<G> g) {
   std::apply([&]<class... Ps>(Type<Ps>...) { by_policy.row(g.name, policy_cell<Ps, G>()...); }, policies);
-  std::apply([&]<class... Bs>(Type<Bs>...) {
-    by_body.row(g.name, marker_cell<Bs, Constraint, G>(MeetInOneWorld<G, Bs, Ground> ? "n" : "w")...);
-  }, bodies);
+  std::apply(
+      [&]<class... Bs>(Type<Bs>...) {
+        by_body.row(g.name, marker_cell<Bs, Constraint, G>(MeetInOneWorld<G, Bs, Ground> ? "n" : "w")...);
+      },
+      bodies);
 }
 template <class P, class... Gs>
 void policy_row(Table& by_body, Type<P> p, std::tuple<Type<Gs>...> const&) {
-  std::apply([&]<class... Bs>(Type<Bs>...) {
-    by_body.row(p.name, marker_cell<Bs, P, Gs...>(MakesJointCoordinates<P> ? "r" : "l")...);
-  }, bodies);
+  std::apply(
+      [&]<class... Bs>(Type<Bs>...) {
+        by_body.row(p.name, marker_cell<Bs, P, Gs...>(MakesJointCoordinates<P> ? "r" : "l")...);
+      },
+      bodies);
 }
 template <class I>
 void integrator_row(Table& by_body, Table& by_policy, Stepper<I> const& i) {
-  std::apply([&]<class... Bs>(Type<Bs>...) { by_body.row(i.name, step_cell<Model<Bodies<Bs>, Joints<>>>(i)...); }, bodies);
-  std::apply([&]<class... Ps>(Type<Ps>...) { by_policy.row(i.name, step_cell<Held<Ps>>(i)..., step_cell<OnABlade>(i)); }, policies);
+  std::apply([&]<class... Bs>(Type<Bs>...) { by_body.row(i.name, step_cell<Model<Bodies<Bs>, Joints<>>>(i)...); },
+             bodies);
+  std::apply(
+      [&]<class... Ps>(Type<Ps>...) { by_policy.row(i.name, step_cell<Held<Ps>>(i)..., step_cell<OnABlade>(i)); },
+      policies);
 }
 
 std::string composition() {
@@ -199,21 +212,26 @@ std::string composition() {
 
   static_assert(HeldCoordinates<Spherical>::needs == Observes::frame);
   return geometry_policy.text("geometry") +
-         "\nv: velocity rows have no gap for a force to answer. f: names no freedoms, which a bushing needs. j: the motion left has no joint "
+         "\nv: velocity rows have no gap for a force to answer. f: names no freedoms, which a bushing needs. j: the "
+         "motion left has no joint "
          "coordinates. l: not linear in coordinates of ANCF bodies.\n\n" +
          geometry_body.text("geometry, by `Constraint`") +
-         "\n✓: for either marker. 2nd: for the second only. n: the body's markers tell too little. w: another world. The ground serves "
+         "\n✓: for either marker. 2nd: for the second only. n: the body's markers tell too little. w: another world. "
+         "The ground serves "
          "everywhere. A bushing asks its first marker for a frame.\n\n" +
          policy_body.text("policy, some geometry") +
-         "\nr: joint coordinates are for rigid bodies. l: points are not linear in the coordinates.\n\n" + integrator_body.text("integrator") +
+         "\nr: joint coordinates are for rigid bodies. l: points are not linear in the coordinates.\n\n" +
+         integrator_body.text("integrator") +
          "\ns: no stabilisation, and norms of Euler parameters are rows. m: the mass matrix is not constant. e: "
          "coordinates do not add, or there is no mean force over a step.\n\n" +
          integrator_policy.text("integrator") +
-         "\ns: no stabilisation keeps to rows. m: the mass matrix of joint coordinates is not constant. e: needs joints that eliminate "
+         "\ns: no stabilisation keeps to rows. m: the mass matrix of joint coordinates is not constant. e: needs "
+         "joints that eliminate "
          "nothing, with gaps, and forces linear in them. t: three stages are solved together.\n";
 }
 
-std::string const begins = "<!-- composition begins: written by tests/house/composition_matrix.cpp -->\n", ends = "<!-- composition ends -->\n";
+std::string const begins = "<!-- composition begins: written by tests/house/composition_matrix.cpp -->\n",
+                  ends = "<!-- composition ends -->\n";
 
 }  // namespace
 
@@ -233,8 +251,9 @@ int main(int argc, char** argv) {
   std::string const fresh = text.substr(0, first) + begins + "\n" + composition() + "\n" + text.substr(last);
   if (fresh == text) return 0;
   if (!writes) {
-    std::fprintf(stderr, "%s: the tables of what composes with what are not up to date. Refresh them by\n  %s %s --write\n", argv[1],
-                 argv[0], argv[1]);
+    std::fprintf(stderr,
+                 "%s: the tables of what composes with what are not up to date. Refresh them by\n  %s %s --write\n",
+                 argv[1], argv[0], argv[1]);
     return 1;
   }
   AtomicFile out(argv[1]);

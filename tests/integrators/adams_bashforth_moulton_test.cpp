@@ -112,7 +112,8 @@ TEST(AdamsBashforthMoulton, FollowsATorqueFreeBody) {
   }
 }
 
-// Of fixed order k at fixed steps: local extrapolation makes it k + 1; the first step, of order one, has the error h³ at most.
+// Of fixed order k at fixed steps: local extrapolation makes it k + 1; the first step, of order one, has the error h³
+// at most.
 TEST(AdamsBashforthMoulton, HasTheOrderAboveThatOfItsPredictor) {
   for (int const k : {1, 2}) {
     double error[2];
@@ -123,7 +124,8 @@ TEST(AdamsBashforthMoulton, HasTheOrderAboveThatOfItsPredictor) {
       auto workspace = integrator.workspace<DenseLu>(system);
       int const steps = refined ? 200 : 100;
       integrator.start(system, point.x, 1.0 / steps, workspace);
-      for (int i = 0; i < steps; ++i) EXPECT_EQ(integrator.step(system, point.x, 1.0 / steps, workspace).taken, 1.0 / steps);
+      for (int i = 0; i < steps; ++i)
+        EXPECT_EQ(integrator.step(system, point.x, 1.0 / steps, workspace).taken, 1.0 / steps);
       error[refined] = std::abs(point.x.q[0] - std::cos(1.0)) + std::abs(point.x.v[0] + std::sin(1.0));
     }
     EXPECT_NEAR(std::log2(error[0] / error[1]), k + 1, 0.1) << k;

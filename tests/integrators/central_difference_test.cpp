@@ -53,7 +53,8 @@ struct FreeCable {
   explicit FreeCable(Index n) {
     model.add(planar::AncfCable<>::from({.length = 0.25 * double(n),
                                          .section = Circle{.radius = 0.01},
-                                         .material = Material{.density = 7800, .young = 2e11}}, n));
+                                         .material = Material{.density = 7800, .young = 2e11}},
+                                        n));
     start = model.reference_state();
     System system(model);
     system.evaluate(start.q, start.v, 0.0);

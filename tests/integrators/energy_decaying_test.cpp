@@ -20,14 +20,14 @@ namespace energy_decaying_test {
 
 using Cable = planar::AncfCable<>;
 
-// A mass on a linear spring, x = ωh. With θ = ½ + χ = 1/(1 + ρ): Δq = h (v₀ + θ Δv), Δv = −hω² (q₀ + θ Δq), so ω q + i v is
-// multiplied by
-// (1 − i (1 − θ) x)/(1 + i θ x), and energy by (1 + (1 − θ)² x²)/(1 + θ² x²): by ρ² as x → ∞.
+// A mass on a linear spring, x = ωh. With θ = ½ + χ = 1/(1 + ρ): Δq = h (v₀ + θ Δv), Δv = −hω² (q₀ + θ Δq), so ω q + i
+// v is multiplied by (1 − i (1 − θ) x)/(1 + i θ x), and energy by (1 + (1 − θ)² x²)/(1 + θ² x²): by ρ² as x → ∞.
 TEST(EnergyDecaying, LinearModeLosesTheShareOfItsTheory) {
   using Spring = Joint<planar::Revolute, Penalty>;
   Model<Bodies<planar::Rigid>, Joints<Spring>> model;
   auto const mass = model.add(planar::Rigid(2.0, 1.0), "mass");
-  model.connect(Spring{{}, {.stiffness = 50.0, .damping = 0.0}}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)), "spring");
+  model.connect(Spring{{}, {.stiffness = 50.0, .damping = 0.0}}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)),
+                "spring");
   for (double const rho : {0.0, 0.5, 0.9, 1.0})
     for (double const hw : {0.1, 1.0, 10.0, 1e3}) {
       EnergyDecaying const integrator{.rho_inf = rho};
@@ -59,9 +59,8 @@ struct Flight {
   }
 };
 
-// High modes: speeds of the slopes r′ that alternate from node to node along the axis. They hold most of the energy, and are
-// gone; what the
-// rod must keep for its momenta stays. Energy falls in every step; linear momentum stays.
+// High modes: speeds of the slopes r′ that alternate from node to node along the axis. They hold most of the energy,
+// and are gone; what the rod must keep for its momenta stays. Energy falls in every step; linear momentum stays.
 TEST(EnergyDecaying, HighModesDieAndEnergyFallsInEveryStep) {
   Flight flight(1e6, 500.0, 8);
   double const smooth = energy(flight.model, flight.x).kinetic;
@@ -94,8 +93,9 @@ TEST(EnergyDecaying, IsOfOrderOneAndOfOrderTwoWhereItKeepsEnergy) {
 TEST(EnergyDecaying, RefusesARadiusOutsideItsRange) {
   Flight flight(1e3, 100.0, 2);
   for (double const rho : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_TRUE(has(refusal([&] { simulate(flight.model, flight.x, EnergyDecaying{.rho_inf = rho}, {.until = 1.0, .step = 0.1}); }),
-                    "EnergyDecaying: rho_inf must lie in [0, 1]"));
+    EXPECT_TRUE(has(
+        refusal([&] { simulate(flight.model, flight.x, EnergyDecaying{.rho_inf = rho}, {.until = 1.0, .step = 0.1}); }),
+        "EnergyDecaying: rho_inf must lie in [0, 1]"));
 }
 
 }  // namespace energy_decaying_test

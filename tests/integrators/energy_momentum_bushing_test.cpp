@@ -22,7 +22,9 @@ using Mount = Joint<planar::Weld, Bushing>;
 TEST(EnergyMomentumOfBushings, StoreWhatTheyTake) {
   Model<Bodies<planar::Rigid>, Joints<Mount>> model;
   auto const body = model.add(planar::Rigid(1.0, 0.1), "body");
-  model.connect(Mount{{}, {.stiffness = Bushing::diagonal(Vec3(100, 200, 1), Vec3(1, 1, 50)), .damping = Bushing::Matrix::Zero().eval()}},
+  model.connect(Mount{{},
+                      {.stiffness = Bushing::diagonal(Vec3(100, 200, 1), Vec3(1, 1, 50)),
+                       .damping = Bushing::Matrix::Zero().eval()}},
                 model.ground().at({0, 0, 0}), body.at(Vec2(0.3, 0.1)), "mount");
   State x = model.reference_state();
   x.q << 0.2, -0.1, 0.5;

@@ -29,21 +29,22 @@ Bar rope(double x, double y) {
 // Two cables on pins swing down from the horizontal.
 TEST(EnergyMomentumOfJoints, PinsDoNoWorkInAChainOfCables) {
   Model<Bodies<Cable>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
-  auto const first = model.add(Cable::from(rope(0, 0), 4), "first"), second = model.add(Cable::from(rope(1, 0), 4), "second");
+  auto const first = model.add(Cable::from(rope(0, 0), 4), "first"),
+             second = model.add(Cable::from(rope(1, 0), 4), "second");
   model.connect(Pin{}, model.ground().at({0, 0, 0}), first.at(0.0), "hook");
   model.connect(Pin{}, first.at(1.0), second.at(0.0), "pin");
   State x = model.reference_state();
   model.set_velocity(x, first, Vec3::Zero(), Vec3(0, 0, 1.0));
   model.set_velocity(x, second, Vec3::Zero(), Vec3(0, 0, 1.0));
-  Drift const drift = drift_of(model, x, EnergyMomentum{}, 0.002, 5000);  // later the motion is wild, and Newton stalls by rounding
+  Drift const drift =
+      drift_of(model, x, EnergyMomentum{}, 0.002, 5000);  // later the motion is wild, and Newton stalls by rounding
   EXPECT_LT(drift.energy, 1e-7);
   EXPECT_LT(drift.violation, 1e-11);
 }
 
-// Angles as coordinates: rows of sines and cosines do no work either. Position is of order two. λ belongs to the middle of the
-// step, and
-// alternates by O(h) about what it should be: the mean of two steps is the reaction of the exact pendulum between them but for
-// O(h²).
+// Angles as coordinates: rows of sines and cosines do no work either. Position is of order two. λ belongs to the middle
+// of the step, and alternates by O(h) about what it should be: the mean of two steps is the reaction of the exact
+// pendulum between them but for O(h²).
 TEST(EnergyMomentumOfJoints, PinDoesNoWorkOnARigidPendulum) {
   std::vector<double> angles, reactions;
   for (double const h : {0.02, 0.01}) {
@@ -66,11 +67,13 @@ struct Flock {
   Model<Bodies<Cable, planar::Rigid>, Joints<Pin, SoftPin>, Forces<SpringDamper>> model;
   State x;
   explicit Flock(double damping) {
-    auto const first = model.add(Cable::from(rope(0, 0), 2), "first"), second = model.add(Cable::from(rope(1, 0), 2), "second");
+    auto const first = model.add(Cable::from(rope(0, 0), 2), "first"),
+               second = model.add(Cable::from(rope(1, 0), 2), "second");
     auto const ball = model.add(planar::Rigid(1.0, 0.1, Placement::planar(2.0, 0.0)), "ball");
     model.connect(Pin{}, first.at(1.0), second.at(0.0), "pin");
     model.connect(SoftPin{{}, {.stiffness = 1e4, .damping = 0.0}}, second.at(1.0), ball.at(Vec2(0, 0)), "soft pin");
-    model.apply(SpringDamper{.stiffness = 50.0, .damping = damping, .free_length = 1.0}, first.at(0.3), ball.at(Vec2(0, 0)), "spring");
+    model.apply(SpringDamper{.stiffness = 50.0, .damping = damping, .free_length = 1.0}, first.at(0.3),
+                ball.at(Vec2(0, 0)), "spring");
     x = model.reference_state();
     model.set_velocity(x, first, Vec3(1, 0, 0), Vec3(0, 0, 4.0));
     model.set_velocity(x, second, Vec3(1, 0, 0), Vec3(0, 0, 4.0));
@@ -97,12 +100,13 @@ TEST(EnergyMomentumOfJoints, DampersOnlyTakeEnergy) {
   EXPECT_LT(drift.angular, 1e-8);
 }
 
-// A point mass whirls on a spring with hω = 10 along it and turns by 0.3 rad in a step: the trapezoidal rule, stable for linear
-// models only, doubles its energy [Gonzalez & Simo 1996]; this step keeps energy and the moment of momentum.
+// A point mass whirls on a spring with hω = 10 along it and turns by 0.3 rad in a step: the trapezoidal rule, stable
+// for linear models only, doubles its energy [Gonzalez & Simo 1996]; this step keeps energy and the moment of momentum.
 TEST(EnergyMomentumOfJoints, StaysWhereTheTrapezoidalRuleGainsEnergy) {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> model;
   auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(1.0, 0.0)), "mass");
-  model.apply(SpringDamper{.stiffness = 1e4, .free_length = 0.99}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)), "spring");
+  model.apply(SpringDamper{.stiffness = 1e4, .free_length = 0.99}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)),
+              "spring");
   double const h = 0.1;
   State start = model.reference_state();
   start.v << 0.0, 3.0, 0.0;

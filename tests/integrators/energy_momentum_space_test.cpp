@@ -28,12 +28,15 @@ struct Thrown {
   BodyHandle<B> rod;
   State x;
   explicit Thrown(Index n)
-      : rod(model.add(B::from({.length = 10.0,
-                               .constants = BarConstants{.EA = 1e4, .EI = 500, .mass_per_length = 1.0, .GA = 1e4, .GJ = 500,
-                                                         .rotary_inertia = 10.0},
-                               .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))},
-                              n),
-                      "rod")) {
+      : rod(model.add(
+            B::from(
+                {.length = 10.0,
+                 .constants =
+                     BarConstants{
+                         .EA = 1e4, .EI = 500, .mass_per_length = 1.0, .GA = 1e4, .GJ = 500, .rotary_inertia = 10.0},
+                 .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))},
+                n),
+            "rod")) {
     model.apply(PointForce<Triangle>{.force = {20, 0, 0}}, rod.at(0.0), "force");
     model.apply(PointMoment<Triangle>{.moment = {0, -100, -200}}, rod.at(0.0), "moment");
     x = model.reference_state();

@@ -20,7 +20,8 @@ namespace energy_momentum_test {
 
 using Cable = planar::AncfCable<>;
 
-/// CASES D3: 8 N and −80 N m for 2.5 s at the end that starts at (6, 0), the other one at (0, 8). EA = 1e4 N, 1 kg/m, 10 m.
+/// CASES D3: 8 N and −80 N m for 2.5 s at the end that starts at (6, 0), the other one at (0, 8). EA = 1e4 N, 1 kg/m,
+/// 10 m.
 struct Thrown {
   Model<Bodies<Cable>, Joints<>, Forces<PointForce<Window>, PointMoment<Window>>> model;
   BodyHandle<Cable> rod;
@@ -41,7 +42,9 @@ struct Thrown {
     Vec2 c = Vec2::Zero();
     for (int k = 0; k < 2; ++k)
       for (Index e = 0; e < rod.body.elements(); ++e)
-        c[k] -= rod.body.gravity_energy(e, std::span<double const>(x.q.data(), std::size_t(x.q.size())), Vec3::Unit(k)) / 10.0;
+        c[k] -=
+            rod.body.gravity_energy(e, std::span<double const>(x.q.data(), std::size_t(x.q.size())), Vec3::Unit(k)) /
+            10.0;
     return c;
   }
 };
@@ -90,8 +93,8 @@ TEST(EnergyMomentum, IsOfOrderTwo) {
 // The work of a dead force at a point of the axis is F·Δr, to rounding, however large the step.
 TEST(EnergyMomentum, EnergyGrowsByTheWorkOfADeadForce) {
   Model<Bodies<Cable>, Joints<>, Forces<PointForce<>>> model{Gravity{0, -9.81, 0}};
-  auto const rod =
-      model.add(Cable::from({.length = 1.0, .constants = BarConstants{.EA = 1e4, .EI = 10.0, .mass_per_length = 1.0}}, 3), "rod");
+  auto const rod = model.add(
+      Cable::from({.length = 1.0, .constants = BarConstants{.EA = 1e4, .EI = 10.0, .mass_per_length = 1.0}}, 3), "rod");
   Vec3 const force(1, 4, 0);
   model.apply(PointForce<>{.force = force}, rod.at(0.8), "force");
   State x = model.reference_state();
@@ -104,9 +107,9 @@ TEST(EnergyMomentum, EnergyGrowsByTheWorkOfADeadForce) {
   EXPECT_NEAR(energy(model, x).total() - start, work, 1e-9);
 }
 
-// EA = 1e6 N, so that the fastest mode turns by more than 50 rad in a step (of an element's |r′|, ω ≈ √12 √(EA/ρA)/l = 2800
-// rad/s): the
-// trapezoidal rule, stable for linear models only, ends at once in steps that Newton's method cannot solve. This one goes on.
+// EA = 1e6 N, so that the fastest mode turns by more than 50 rad in a step (of an element's |r′|, ω ≈ √12 √(EA/ρA)/l =
+// 2800 rad/s): the trapezoidal rule, stable for linear models only, ends at once in steps that Newton's method cannot
+// solve. This one goes on.
 TEST(EnergyMomentum, GoesOnWhereTheTrapezoidalRuleFails) {
   auto const flying = [](Thrown& rod) {
     rod.x.t = 10.0;  // after the load
@@ -142,8 +145,9 @@ TEST(EnergyMomentum, StalledStepLeavesTheStateAndSaysSo) {
   EXPECT_EQ(rod.x.t, before.t);
   EXPECT_NO_THROW(integrator.step(system, rod.x, 0.01, workspace));
   EXPECT_NEAR(rod.x.t, 0.11, 1e-12);
-  EXPECT_TRUE(has(refusal([&] { simulate(rod.model, rod.x, EnergyMomentum{.tolerance = 0.0}, {.until = 1.0, .step = 0.1}); }),
-                  "EnergyMomentum: the tolerance must be positive"));
+  EXPECT_TRUE(
+      has(refusal([&] { simulate(rod.model, rod.x, EnergyMomentum{.tolerance = 0.0}, {.until = 1.0, .step = 0.1}); }),
+          "EnergyMomentum: the tolerance must be positive"));
 }
 
 }  // namespace energy_momentum_test

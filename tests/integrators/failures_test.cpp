@@ -36,8 +36,8 @@ TEST(Failures, AbsurdStepStallsNewtonAndLeavesTheState) {
   integrator.start(system, x, 1e-3, workspace);
   for (int i = 0; i < 100; ++i) integrator.step(system, x, 1e-3, workspace);
   State const before = x;
-  std::string const message =
-      message_of<NewtonStalled>([&] { GeneralizedAlpha{.newton = {.max_iterations = 3}}.step(system, x, 3.0, workspace); });
+  std::string const message = message_of<NewtonStalled>(
+      [&] { GeneralizedAlpha{.newton = {.max_iterations = 3}}.step(system, x, 3.0, workspace); });
   EXPECT_TRUE(has(message, "did not converge at t = 3.1"));
   EXPECT_TRUE(has(message, "Take a smaller step"));
   expect_same(x, before);

@@ -12,7 +12,8 @@ using namespace polybody;
 namespace generalized_alpha_test {
 
 std::vector<GeneralizedAlpha> every_damping() {
-  return {{.rho_inf = 1.0, .tolerance = 1e-11}, {.rho_inf = 0.8, .tolerance = 1e-11}, {.rho_inf = 0.5, .tolerance = 1e-11}};
+  return {
+      {.rho_inf = 1.0, .tolerance = 1e-11}, {.rho_inf = 0.8, .tolerance = 1e-11}, {.rho_inf = 0.5, .tolerance = 1e-11}};
 }
 struct GeneralizedAlphaOnBar {
   using Model = SwingingBar;
@@ -78,7 +79,8 @@ TEST(GeneralizedAlpha, WithoutDampingIsTheTrapezoidalRule) {
 // [Chung & Hulbert 1993].
 TEST(GeneralizedAlpha, DampsTheUnresolvedByItsSpectralRadius) {
   for (double const rho : {0.9, 0.5, 0.2}) {
-    double const per_step = Oscillator().scale_of_a_long_step(GeneralizedAlpha{.rho_inf = rho, .start_correction = false});
+    double const per_step =
+        Oscillator().scale_of_a_long_step(GeneralizedAlpha{.rho_inf = rho, .start_correction = false});
     EXPECT_NEAR(per_step, rho * std::pow(30.0 / 20.0, 0.1), 0.03 * rho) << rho;
   }
 }
@@ -86,11 +88,13 @@ TEST(GeneralizedAlpha, DampsTheUnresolvedByItsSpectralRadius) {
 TEST(GeneralizedAlpha, RefusesWhatItCannotMean) {
   for (double const rho : {-0.1, 1.0001, std::numeric_limits<double>::quiet_NaN()}) {
     Oscillator o;
-    EXPECT_TRUE(has(refusal([&] { o.run(GeneralizedAlpha{.rho_inf = rho}, 0.1, 1); }), "rho_inf must lie in [0, 1]")) << rho;
+    EXPECT_TRUE(has(refusal([&] { o.run(GeneralizedAlpha{.rho_inf = rho}, 0.1, 1); }), "rho_inf must lie in [0, 1]"))
+        << rho;
   }
   for (double const tolerance : {0.0, -1e-8, std::numeric_limits<double>::infinity()}) {
     Oscillator o;
-    EXPECT_TRUE(has(refusal([&] { o.run(GeneralizedAlpha{.tolerance = tolerance}, 0.1, 1); }), "the tolerance must be positive"));
+    EXPECT_TRUE(has(refusal([&] { o.run(GeneralizedAlpha{.tolerance = tolerance}, 0.1, 1); }),
+                    "the tolerance must be positive"));
   }
 }
 

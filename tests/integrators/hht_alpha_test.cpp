@@ -11,7 +11,9 @@ using namespace polybody;
 
 namespace hht_alpha_test {
 
-std::vector<HhtAlpha> every_damping() { return {{.alpha = -0.1, .tolerance = 1e-11}, {.alpha = -1.0 / 3.0, .tolerance = 1e-11}}; }
+std::vector<HhtAlpha> every_damping() {
+  return {{.alpha = -0.1, .tolerance = 1e-11}, {.alpha = -1.0 / 3.0, .tolerance = 1e-11}};
+}
 struct HhtAlphaOnBar {
   using Model = SwingingBar;
   static auto integrators() { return every_damping(); }
@@ -28,9 +30,8 @@ struct HhtAlphaOnTop {
 }  // namespace hht_alpha_test
 
 namespace polybody {
-bool const hht_alpha_obey[] = {
-    obeys<hht_alpha_test::HhtAlphaOnBar, IntegratorLaws>("HhtAlphaOnBar"),
-    obeys<hht_alpha_test::HhtAlphaOnTop, IntegratorLaws>("HhtAlphaOnTop")};
+bool const hht_alpha_obey[] = {obeys<hht_alpha_test::HhtAlphaOnBar, IntegratorLaws>("HhtAlphaOnBar"),
+                               obeys<hht_alpha_test::HhtAlphaOnTop, IntegratorLaws>("HhtAlphaOnTop")};
 }  // namespace polybody
 
 namespace hht_alpha_test {
@@ -66,8 +67,8 @@ TEST(HhtAlpha, AtZeroIsTheTrapezoidalRule) {
   }
 }
 
-// CASES I1: spectral radius (1 + α)/(1 − α) for ωh → ∞, of a double root, so that |q| falls like n ρⁿ. At α = −1/3 the third
-// root α/(1 + α) comes to the same −1/2, and |q| falls like n² ρⁿ.
+// CASES I1: spectral radius (1 + α)/(1 − α) for ωh → ∞, of a double root, so that |q| falls like n ρⁿ. At α = −1/3 the
+// third root α/(1 + α) comes to the same −1/2, and |q| falls like n² ρⁿ.
 TEST(HhtAlpha, DampsTheUnresolvedByItsSpectralRadius) {
   for (double const alpha : {-0.05, -0.1, -0.2}) {
     double const rho = (1.0 + alpha) / (1.0 - alpha);
@@ -81,7 +82,8 @@ TEST(HhtAlpha, DampsTheUnresolvedByItsSpectralRadius) {
 template <class Setup>
 void expect_decay(Setup const& setup, State x, double period) {
   int const half = 64;
-  auto run = simulate(setup.model, x, HhtAlpha{.alpha = -0.1, .tolerance = 1e-12}, {.until = 6.0 * period, .step = 0.5 * period / half});
+  auto run = simulate(setup.model, x, HhtAlpha{.alpha = -0.1, .tolerance = 1e-12},
+                      {.until = 6.0 * period, .step = 0.5 * period / half});
   std::vector<double> energies;
   for (State const& now : run) energies.push_back(energy(setup.model, now).total());
   ASSERT_GE(energies.size(), 12u * half);
@@ -101,10 +103,12 @@ TEST(HhtAlpha, TakesEnergyFromAPendulum) {
 TEST(HhtAlpha, RefusesWhatItCannotMean) {
   for (double const alpha : {-0.34, 0.01, std::numeric_limits<double>::quiet_NaN()}) {
     Oscillator o;
-    EXPECT_TRUE(has(refusal([&] { o.run(HhtAlpha{.alpha = alpha}, 0.1, 1); }), "HhtAlpha: alpha must lie in [-1/3, 0]")) << alpha;
+    EXPECT_TRUE(has(refusal([&] { o.run(HhtAlpha{.alpha = alpha}, 0.1, 1); }), "HhtAlpha: alpha must lie in [-1/3, 0]"))
+        << alpha;
   }
   Oscillator o;
-  EXPECT_TRUE(has(refusal([&] { o.run(HhtAlpha{.tolerance = 0.0}, 0.1, 1); }), "HhtAlpha: the tolerance must be positive"));
+  EXPECT_TRUE(
+      has(refusal([&] { o.run(HhtAlpha{.tolerance = 0.0}, 0.1, 1); }), "HhtAlpha: the tolerance must be positive"));
 }
 
 }  // namespace hht_alpha_test

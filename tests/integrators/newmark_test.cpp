@@ -13,7 +13,9 @@ namespace newmark_test {
 
 struct NewmarkOnBar {
   using Model = SwingingBar;
-  static auto integrators() { return std::vector<Newmark>{{.gamma = 0.6, .beta = 0.25 * 1.1 * 1.1, .tolerance = 1e-11}}; }
+  static auto integrators() {
+    return std::vector<Newmark>{{.gamma = 0.6, .beta = 0.25 * 1.1 * 1.1, .tolerance = 1e-11}};
+  }
   static constexpr double until = 0.5;
   static constexpr int steps = 32;
 };
@@ -33,10 +35,9 @@ struct TrapezoidalOnSprungBody {
 }  // namespace newmark_test
 
 namespace polybody {
-bool const newmark_obey[] = {
-    obeys<newmark_test::NewmarkOnBar, IntegratorLaws>("NewmarkOnBar"),
-    obeys<newmark_test::TrapezoidalOnBar, IntegratorLaws>("TrapezoidalOnBar"),
-    obeys<newmark_test::TrapezoidalOnSprungBody, IntegratorLaws>("TrapezoidalOnSprungBody")};
+bool const newmark_obey[] = {obeys<newmark_test::NewmarkOnBar, IntegratorLaws>("NewmarkOnBar"),
+                             obeys<newmark_test::TrapezoidalOnBar, IntegratorLaws>("TrapezoidalOnBar"),
+                             obeys<newmark_test::TrapezoidalOnSprungBody, IntegratorLaws>("TrapezoidalOnSprungBody")};
 }  // namespace polybody
 
 namespace newmark_test {
@@ -62,8 +63,8 @@ double kept(Newmark const& integrator, double h, State const& x) {
   return v * v + q * q + (integrator.beta - 0.5 * integrator.gamma) * h * h * a * a;
 }
 
-// For γ = ½ and ω = 1, v taken out of two steps leaves q₂ − 2 q₁ + q₀ = −h² (β q₂ + (1 − 2β) q₁ + β q₀): the phase advances by
-// φ, cos φ = 1 − ½h²/(1 + βh²), a step. By what is kept (see there), v/√(1 + (β − ¼)h²) goes with it.
+// For γ = ½ and ω = 1, v taken out of two steps leaves q₂ − 2 q₁ + q₀ = −h² (β q₂ + (1 − 2β) q₁ + β q₀): the phase
+// advances by φ, cos φ = 1 − ½h²/(1 + βh²), a step. By what is kept (see there), v/√(1 + (β − ¼)h²) goes with it.
 TEST(Newmark, OscillatesInClosedFormWithoutDamping) {
   double const h = 0.7;
   for (double const beta : {1.0 / 12.0, 1.0 / 6.0, 0.25, 0.5}) {
@@ -115,7 +116,8 @@ TEST(Newmark, RefusesWhatItCannotMean) {
     return refusal([&] { o.run(integrator, 0.1, 1); });
   };
   EXPECT_TRUE(has(try_with({.gamma = 0.49}), "Newmark: gamma must be at least 1/2"));
-  EXPECT_TRUE(has(try_with({.gamma = std::numeric_limits<double>::quiet_NaN()}), "Newmark: gamma must be at least 1/2"));
+  EXPECT_TRUE(
+      has(try_with({.gamma = std::numeric_limits<double>::quiet_NaN()}), "Newmark: gamma must be at least 1/2"));
   EXPECT_TRUE(has(try_with({.beta = 0.0}), "take CentralDifference"));
   EXPECT_TRUE(has(try_with({.tolerance = -1.0}), "Newmark: the tolerance must be positive"));
 }

@@ -95,10 +95,10 @@ struct DrivenArm {
   Model<Bodies<planar::Lrvf>, Joints<Pin, Drive>> arm{Gravity{0, -9.81, 0}};
 
   DrivenArm() {
-    Bar const bar{.length = 1.0,
-                  .constants = BarConstants{.EA = 1e5, .EI = 50, .mass_per_length = 1.0, .GA = 3e4,
-                                            .rotary_inertia = 1e-3},
-                  .damping = {.axial = 1e-3, .shear = 1e-3, .bending = 1e-3}};
+    Bar const bar{
+        .length = 1.0,
+        .constants = BarConstants{.EA = 1e5, .EI = 50, .mass_per_length = 1.0, .GA = 3e4, .rotary_inertia = 1e-3},
+        .damping = {.axial = 1e-3, .shear = 1e-3, .bending = 1e-3}};
     auto const body = arm.add(planar::Lrvf::from(bar, 6), "arm");
     arm.connect(Pin{}, arm.ground().at({0, 0, 0}), body.at(0.0), "pin");
     arm.connect(Drive{{.law = {.speed = 2.0, .duration = 0.5}}, {}}, arm.ground().at({0, 0, 0}), body.at(0.0), "drive");
@@ -132,7 +132,8 @@ struct BushedBodies {
     auto const first = bodies.add(ball, "first"), second = bodies.add(ball, "second");
     TabulatedLaw const table{MonotoneTable{{{-1.0, -2e3}, {0.0, 0.0}, {0.1, 100.0}}}, 1.0};
     LinearLaw const law{.stiffness = 1e4, .damping = 1.0};
-    bodies.connect(Mount{{}, {table, law, law, law, law, law}}, bodies.ground().at({0, 0, 0}), first.at(Vec3(0, 0, 0)), "mount");
+    bodies.connect(Mount{{}, {table, law, law, law, law, law}}, bodies.ground().at({0, 0, 0}), first.at(Vec3(0, 0, 0)),
+                   "mount");
     bodies.connect(Pin{{}, {.stiffness = 1e4 * Bushing::Matrix::Identity(), .damping = Bushing::Matrix::Identity()}},
                    first.at(Vec3(1, 0, 0)), second.at(Vec3(1, 0.01, 0)), "pin");
   }
@@ -150,10 +151,13 @@ struct FallingBalls {
     Friction const rough{.coefficient = 0.3, .slip_speed = 0.05};
     std::vector<Marker<Rigid<>>> middles;
     for (double const z : {0.1, 0.31, 0.52})
-      middles.push_back(balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.1 * z, 0, z}))).at(Vec3(0, 0, 0)));
+      middles.push_back(
+          balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.1 * z, 0, z}))).at(Vec3(0, 0, 0)));
     auto const group = balls.apply(Group{}, middles);
-    balls.oppose(group, OnFloor{{0.1}, {.stiffness = 1e4, .damping = 10.0, .onset = 1e-4}, rough}, balls.ground().at({0, 0, 0}));
-    balls.oppose(group, OnBall{{0.1, 0.1}, {.stiffness = 1e4}, rough}, balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.15, 0, 0.2}))).at(Vec3(0, 0, 0)));
+    balls.oppose(group, OnFloor{{0.1}, {.stiffness = 1e4, .damping = 10.0, .onset = 1e-4}, rough},
+                 balls.ground().at({0, 0, 0}));
+    balls.oppose(group, OnBall{{0.1, 0.1}, {.stiffness = 1e4}, rough},
+                 balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.15, 0, 0.2}))).at(Vec3(0, 0, 0)));
   }
   auto const& model() const { return balls; }
 };
@@ -164,8 +168,9 @@ struct HungFrame {
   Model<Bodies<Ffr>, Joints<Pin>> frame{Gravity{0, -9.81, 0}};
 
   HungFrame() {
-    Bar const bar{.length = 1.0,
-                  .constants = BarConstants{.EA = 1e5, .EI = 50, .mass_per_length = 1.0, .GJ = 40, .rotary_inertia = 1e-3}};
+    Bar const bar{
+        .length = 1.0,
+        .constants = BarConstants{.EA = 1e5, .EI = 50, .mass_per_length = 1.0, .GJ = 40, .rotary_inertia = 1e-3}};
     Structure const s = structure_of(bar, 4);
     auto const body = frame.add(Ffr(s, held_modes(s, 6), {.stiffening = true}), "frame");
     frame.connect(Pin{}, frame.ground().at({0, 0, 0}), body.at(0.0), "pin");

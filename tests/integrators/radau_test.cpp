@@ -37,10 +37,9 @@ struct RadauOnSprungBody {
 }  // namespace radau_test
 
 namespace polybody {
-bool const radau_obey[] = {
-    obeys<radau_test::RadauOnBar, IntegratorLaws>("RadauOnBar"),
-    obeys<radau_test::RadauOnTop, IntegratorLaws>("RadauOnTop"),
-    obeys<radau_test::RadauOnSprungBody, IntegratorLaws>("RadauOnSprungBody")};
+bool const radau_obey[] = {obeys<radau_test::RadauOnBar, IntegratorLaws>("RadauOnBar"),
+                           obeys<radau_test::RadauOnTop, IntegratorLaws>("RadauOnTop"),
+                           obeys<radau_test::RadauOnSprungBody, IntegratorLaws>("RadauOnSprungBody")};
 }  // namespace polybody
 
 namespace radau_test {
@@ -82,8 +81,9 @@ struct Led {
   }
 };
 
-// Stiff accuracy [Prothero & Robinson 1974]: from x = cos t · k/(k − 1) on, the third stage's own force balance holds x to
-// (error of v̇)/k, and v, which is then the derivative of a cubic through x, converges at the order three of the stages.
+// Stiff accuracy [Prothero & Robinson 1974]: from x = cos t · k/(k − 1) on, the third stage's own force balance holds x
+// to (error of v̇)/k, and v, which is then the derivative of a cubic through x, converges at the order three of the
+// stages.
 TEST(Radau, FollowsAStiffSpringWithoutResolvingIt) {
   std::vector<double> errors;
   for (double const h : {0.2, 0.1, 0.05}) {

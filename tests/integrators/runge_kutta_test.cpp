@@ -34,10 +34,9 @@ struct Rk4OnTop {
 }  // namespace runge_kutta_test
 
 namespace polybody {
-bool const runge_kutta_obey[] = {
-    obeys<runge_kutta_test::Rk4OnFreeBody, IntegratorLaws>("Rk4OnFreeBody"),
-    obeys<runge_kutta_test::Rk4OnBar, IntegratorLaws>("Rk4OnBar"),
-    obeys<runge_kutta_test::Rk4OnTop, IntegratorLaws>("Rk4OnTop")};
+bool const runge_kutta_obey[] = {obeys<runge_kutta_test::Rk4OnFreeBody, IntegratorLaws>("Rk4OnFreeBody"),
+                                 obeys<runge_kutta_test::Rk4OnBar, IntegratorLaws>("Rk4OnBar"),
+                                 obeys<runge_kutta_test::Rk4OnTop, IntegratorLaws>("Rk4OnTop")};
 }  // namespace polybody
 
 namespace runge_kutta_test {

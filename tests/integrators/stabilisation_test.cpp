@@ -45,7 +45,8 @@ bool const stabilisation_obey[] = {
 
 namespace stabilisation_test {
 
-/// Largest difference over 1 s, relative to its start, between Φ of a bar that starts off its pin and `expected(t, Φ₀, Φ̇₀)`.
+/// Largest difference over 1 s, relative to its start, between Φ of a bar that starts off its pin and `expected(t, Φ₀,
+/// Φ̇₀)`.
 template <class I, class Expected>
 double worst_of_open_pin(I const& integrator, Expected expected) {
   SwingingBar bar;
@@ -80,7 +81,8 @@ TEST(NoStabilisation, LeavesTheRowsToThemselves) {
 TEST(Baumgarte, LetsAViolationDieAwayAsItsEquationSays) {
   double const alpha = 3.0, beta = 5.0, omega = 4.0;
   auto const damped = [&](double t, VecX const& phi, VecX const& rate) {
-    return VecX(std::exp(-alpha * t) * (phi * std::cos(omega * t) + (rate + alpha * phi) * (std::sin(omega * t) / omega)));
+    return VecX(std::exp(-alpha * t) *
+                (phi * std::cos(omega * t) + (rate + alpha * phi) * (std::sin(omega * t) / omega)));
   };
   Baumgarte const given{.alpha = alpha, .beta = beta};
   EXPECT_LT(worst_of_open_pin(RungeKutta4<Baumgarte>{.stabilisation = given}, damped), 1e-7);
@@ -109,8 +111,8 @@ TEST(Stabilisation, KeepsTheOrderOfTheMethod) {
   EXPECT_GT(order_on_the_pendulum(CentralDifference<Baumgarte>{.stabilisation = given}, 64), 1.9);
 }
 
-/// A crank of 1 m, a coupler of 3.5 m and a rocker of 3 m over a base of 4 m: 1 + 4 < 3.5 + 3, so the crank may turn and no
-/// position is singular [Grashof]. The crank starts upright at 3 rad/s, under gravity.
+/// A crank of 1 m, a coupler of 3.5 m and a rocker of 3 m over a base of 4 m: 1 + 4 < 3.5 + 3, so the crank may turn
+/// and no position is singular [Grashof]. The crank starts upright at 3 rad/s, under gravity.
 struct CrankRocker {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
@@ -137,7 +139,8 @@ struct CrankRocker {
   }
 };
 
-/// Largest violations over [0, 10 s] and over [0, 100 s], and the largest change of energy, relative to the weight times 1 m.
+/// Largest violations over [0, 10 s] and over [0, 100 s], and the largest change of energy, relative to the weight
+/// times 1 m.
 struct LongRun {
   Violation early, all;
   double energy = 0.0;
@@ -183,7 +186,7 @@ TEST(Baumgarte, HoldsAFourBarWithinASmallGap) {
   LongRun const held(RungeKutta4<Baumgarte>{.stabilisation = {.alpha = 10.0, .beta = 10.0}});
   EXPECT_LT(held.all.position, 1e-5);
   EXPECT_LT(held.all.position, 3.0 * held.early.position);  // it does not grow
-  EXPECT_GT(held.all.position, 1e-11);                     // nor does it go away
+  EXPECT_GT(held.all.position, 1e-11);                      // nor does it go away
 }
 
 /// Steps of a partitioned run to `until`; how often the independent speeds were chosen.
@@ -197,9 +200,9 @@ long choices(M const& model, State& x, double h, double until) {
   return workspace.scratch.rows.choices;
 }
 
-// The middle of a rod 2 m from its pin at the angle θ from the vertical is at (2 sin θ, −2 cos θ). The turn is dependent, as its
-// lever is the largest entry; y is independent while |cot θ| < 10, x while |tan θ| < 10. So a rod that starts level on y changes
-// to x and back by atan 0.1 before each quarter of a turn.
+// The middle of a rod 2 m from its pin at the angle θ from the vertical is at (2 sin θ, −2 cos θ). The turn is
+// dependent, as its lever is the largest entry; y is independent while |cot θ| < 10, x while |tan θ| < 10. So a rod
+// that starts level on y changes to x and back by atan 0.1 before each quarter of a turn.
 TEST(CoordinatePartitioning, ChangesItsChoiceAsARodTurnsOver) {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
@@ -216,7 +219,8 @@ TEST(CoordinatePartitioning, ChangesItsChoiceAsARodTurnsOver) {
   EXPECT_LT(violation(system, x).position, 1e-11);
 }
 
-// CASES J2: three swings in 5 s, released level; the third is within 1° of its end. At each the choice passes to x and back.
+// CASES J2: three swings in 5 s, released level; the third is within 1° of its end. At each the choice passes to x and
+// back.
 TEST(CoordinatePartitioning, FollowsTheAdamsCase) {
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.80665}};
@@ -249,7 +253,8 @@ TEST(CoordinatePartitioning, SaysThatThePositionsCannotBeBroughtBack) {
   State x = bar.start;
   integrator.start(system, x, 0.3, workspace);
   State const before = x;
-  EXPECT_TRUE(has(message_of<NewtonStalled>([&] { integrator.step(system, x, 0.3, workspace); }), "Take a smaller step"));
+  EXPECT_TRUE(
+      has(message_of<NewtonStalled>([&] { integrator.step(system, x, 0.3, workspace); }), "Take a smaller step"));
   EXPECT_EQ(x.q, before.q);
   EXPECT_EQ(x.t, before.t);
 }
@@ -266,7 +271,8 @@ TEST(Stabilisation, RefusesOptionsThatCannotBeMeant) {
   EXPECT_TRUE(has(told(RungeKutta4<Projection>{.stabilisation = {.tolerance = 0.0}}), "Projection: the tolerance"));
   using Partitioned = RungeKutta4<CoordinatePartitioning>;
   EXPECT_TRUE(has(told(Partitioned{.stabilisation = {.tolerance = -1.0}}), "CoordinatePartitioning: the tolerance"));
-  EXPECT_TRUE(has(told(Partitioned{.stabilisation = {.largest_ratio = 0.5}}), "largest_ratio must be at least 1, but is 0.5"));
+  EXPECT_TRUE(
+      has(told(Partitioned{.stabilisation = {.largest_ratio = 0.5}}), "largest_ratio must be at least 1, but is 0.5"));
 }
 
 /// G as the rows of a tangent, r and 2r as right-hand sides.

@@ -13,7 +13,8 @@ using namespace polybody;
 namespace stabilised_alpha_test {
 
 std::vector<GeneralizedAlpha> both_dampings() {
-  return {{.rho_inf = 0.8, .tolerance = 1e-11, .stabilised = true}, {.rho_inf = 0.5, .tolerance = 1e-11, .stabilised = true}};
+  return {{.rho_inf = 0.8, .tolerance = 1e-11, .stabilised = true},
+          {.rho_inf = 0.5, .tolerance = 1e-11, .stabilised = true}};
 }
 struct StabilisedAlphaOnBar {
   using Model = SwingingBar;
@@ -80,7 +81,8 @@ TEST(StabilisedAlpha, MultipliersConvergeAtSecondOrderFromTheFirstStep) {
     SwingingBar bar;
     State x = bar.start;
     double worst = 0.0;
-    for (State const& now : simulate(bar.model, x, GeneralizedAlpha{.tolerance = 1e-12, .stabilised = true}, {.until = 1.0, .step = h}))
+    for (State const& now :
+         simulate(bar.model, x, GeneralizedAlpha{.tolerance = 1e-12, .stabilised = true}, {.until = 1.0, .step = h}))
       worst = std::max(worst, (now.lambda + bar.reaction(now.t)).norm());
     errors.push_back(worst);
   }

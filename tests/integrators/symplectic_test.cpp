@@ -45,7 +45,8 @@ namespace symplectic_test {
 TEST(SymplecticEuler, KeepsTheQuadraticFormOfAnOscillator) {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> model;
   auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(1.0, 0.0)), "mass");
-  model.apply(SpringDamper{.stiffness = 25.0, .free_length = 0.0}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)), "spring");
+  model.apply(SpringDamper{.stiffness = 25.0, .free_length = 0.0}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)),
+              "spring");
   State x = model.reference_state();
   double const h = 0.02, omega2 = 25.0;
   auto const form = [&] { return x.v[0] * x.v[0] + omega2 * x.q[0] * (x.q[0] - h * x.v[0]); };
@@ -83,7 +84,8 @@ std::vector<double> energy_errors(I const& integrator, int count) {
   return errors;
 }
 
-// In the sixth hundred periods the energy errs no more than in the first. The bar swings through m g l (1 − cos 2) ≈ 7 J.
+// In the sixth hundred periods the energy errs no more than in the first. The bar swings through m g l (1 − cos 2) ≈ 7
+// J.
 TEST(Rattle, EnergyErrorStaysBounded) {
   auto const errors = energy_errors(Rattle{}, 6);
   EXPECT_LT(errors.front(), 0.05);
@@ -116,7 +118,8 @@ TEST(Rattle, SaysThatThePositionsCannotBeBroughtToTheJoints) {
   State x = bar.start;
   integrator.start(system, x, 0.3, workspace);
   State const before = x;
-  EXPECT_TRUE(has(message_of<NewtonStalled>([&] { integrator.step(system, x, 0.3, workspace); }), "Take a smaller step"));
+  EXPECT_TRUE(
+      has(message_of<NewtonStalled>([&] { integrator.step(system, x, 0.3, workspace); }), "Take a smaller step"));
   EXPECT_EQ(x.q, before.q);
   State fresh = bar.start;
   EXPECT_TRUE(has(refusal([&] { simulate(bar.model, fresh, Rattle{.tolerance = 0.0}, {.until = 1.0, .step = 0.1}); }),

@@ -22,13 +22,14 @@ struct WobblingDisc {
   using ModelType = Model<Bodies<Rigid<>>, Joints<Wheel>>;
   Vec3 axis{std::cos(0.35), 0, std::sin(0.35)};
   ModelType model{Gravity{0, 0, -9.81}};
-  BodyHandle<Rigid<>> wheel = model.add(
-      Rigid<>(2.0, Vec3(0.16, 0.08, 0.08).asDiagonal().toDenseMatrix(), Placement::at({0, 0, 0.4 * std::cos(0.35)}, {0, -0.35, 0})),
-      "wheel");
+  BodyHandle<Rigid<>> wheel = model.add(Rigid<>(2.0, Vec3(0.16, 0.08, 0.08).asDiagonal().toDenseMatrix(),
+                                                Placement::at({0, 0, 0.4 * std::cos(0.35)}, {0, -0.35, 0})),
+                                        "wheel");
   State start;
 
   WobblingDisc() {
-    model.connect(Wheel{{.radius = 0.4, .axis = axis}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
+    model.connect(Wheel{{.radius = 0.4, .axis = axis}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()),
+                  "contact");
     start = model.reference_state();
     Vec3 const w = -5.0 * axis + Vec3(0.3, 0.4, 1.0), contact(0.4 * std::sin(0.35), 0, 0);
     model.set_velocity(start, wheel, -w.cross(contact), w);
@@ -50,9 +51,8 @@ struct PartitionedDisc {
   static constexpr int steps = 16;
 };
 
-bool const velocity_rows_obey[] = {
-    obeys<AlphaOnTheDisc, IntegratorLaws>("VelocityRows"),
-    obeys<PartitionedDisc, IntegratorLaws>("PartitionedVelocityRows")};
+bool const velocity_rows_obey[] = {obeys<AlphaOnTheDisc, IntegratorLaws>("VelocityRows"),
+                                   obeys<PartitionedDisc, IntegratorLaws>("PartitionedVelocityRows")};
 
 // Nine coordinates' worth of rows: the touching row makes one coordinate dependent, all rows three speeds.
 TEST(CoordinatePartitioning, SplitsCoordinatesBySurfacesAndSpeedsByAllRows) {
@@ -68,7 +68,8 @@ TEST(CoordinatePartitioning, SplitsCoordinatesBySurfacesAndSpeedsByAllRows) {
   EXPECT_EQ(scratch.all_rows.rank(), 3);
 }
 
-// A position off the plane is brought back, speeds that slip are brought to roll, and no position is asked to roll back.
+// A position off the plane is brought back, speeds that slip are brought to roll, and no position is asked to roll
+// back.
 TEST(VelocityRows, AreLeftAloneByProjectionsOfPositions) {
   WobblingDisc disc;
   State x = disc.start;

@@ -1,5 +1,5 @@
-// Snapshots of runs in files: read back as they were, and refused where they cannot be used. Runs that are taken up again:
-// tests/cases/rigid_integrators_test.cpp, rigid_recursive_test.cpp.
+// Snapshots of runs in files: read back as they were, and refused where they cannot be used. Runs that are taken up
+// again: tests/cases/rigid_integrators_test.cpp, rigid_recursive_test.cpp.
 #include <polybody/io/checkpoint.hpp>
 
 #include <gtest/gtest.h>
@@ -27,8 +27,14 @@ struct Checkpoints : testing::Test {
 
 /// A snapshot with every kind of content, numbers that are hard to write among it.
 RunSnapshot rich() {
-  RunSnapshot s{.model = {3, 2, 1, 0xfedcba9876543210u}, .integrator = "Some method", .step = 1e-3, .sides = {-1, 0, 1}};
-  s.state = {VecX::LinSpaced(3, 0.1, 0.3), Vec2(-0.0, 5e-324), Vec2(1e308, 1.0 / 3.0), VecX::Constant(1, std::nan("")), 0.7, {}};
+  RunSnapshot s{
+      .model = {3, 2, 1, 0xfedcba9876543210u}, .integrator = "Some method", .step = 1e-3, .sides = {-1, 0, 1}};
+  s.state = {VecX::LinSpaced(3, 0.1, 0.3),
+             Vec2(-0.0, 5e-324),
+             Vec2(1e308, 1.0 / 3.0),
+             VecX::Constant(1, std::nan("")),
+             0.7,
+             {}};
   s.report = {.steps = 10, .iterations = 21, .factorisations = 3, .evaluations = 22, .rejected = 1};
   s.report.last = {.taken = 1e-3, .next = 2e-3, .iterations = 2, .factorisations = 1, .evaluations = 2, .rejected = 1};
   s.report.last.order = 5;

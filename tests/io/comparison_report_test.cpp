@@ -21,7 +21,8 @@ std::string text_of(fs::path const& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Two runs as `compare` would give them: x = cos t in steps of 0.1 s with rows, and in steps of 0.25 s a little off and without.
+/// Two runs as `compare` would give them: x = cos t in steps of 0.1 s with rows, and in steps of 0.25 s a little off
+/// and without.
 Comparison oscillators() {
   Comparison c;
   for (int i = 0; i < 2; ++i) {
@@ -55,7 +56,8 @@ WorkPrecision work() {
   WorkPrecision w{{{"ideal", "x [m]"}, {"stiff", "x [m]"}}};
   for (double const h : {0.5, 0.125, 0.03125}) {
     w.curves[0].points.push_back({.setting = h, .steps = std::lround(1.0 / h), .cpu = 0.0625 / h, .error = h * h});
-    w.curves[1].points.push_back({.setting = h, .steps = std::lround(1.0 / h), .cpu = 0.125 / h, .error = h * h * h * h});
+    w.curves[1].points.push_back(
+        {.setting = h, .steps = std::lround(1.0 / h), .cpu = 0.125 / h, .error = h * h * h * h});
   }
   w.curves[1].points[0].failure = "Newton's method stalled";
   return w;
@@ -158,7 +160,8 @@ TEST_F(ComparisonReport, WritesAllOfIt) {
     }
   }
   // and leaves no crumbs
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "deep"), fs::directory_iterator()), std::ptrdiff_t(files.size()));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "deep"), fs::directory_iterator()),
+            std::ptrdiff_t(files.size()));
   EXPECT_EQ(write_report(c, folder / "drafts", false).size(), 3u + 4u * 2u);
 }
 
@@ -215,7 +218,8 @@ TEST_F(ComparisonReport, RefusesCurvesOfDifferentOutputsInOneFigure) {
   EXPECT_TRUE(has(refusal([] { work_precision_figure({}); }), "there are no curves"));
   WorkPrecision w = work();
   w.curves[1].output = "v [m/s]";
-  EXPECT_TRUE(has(refusal([&] { work_precision_figure(w); }), "\"stiff\" is for the output \"v [m/s]\", not \"x [m]\""));
+  EXPECT_TRUE(
+      has(refusal([&] { work_precision_figure(w); }), "\"stiff\" is for the output \"v [m/s]\", not \"x [m]\""));
 }
 
 }  // namespace comparison_report_test

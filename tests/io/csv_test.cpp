@@ -32,22 +32,18 @@ std::string text_of(fs::path const& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-void put(fs::path const& file, std::string_view text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
+void put(fs::path const& file, std::string_view text) { std::ofstream(file, std::ios::binary) << text; }
 
 /// Each test has its own empty folder.
 struct CsvFiles : testing::Test {
-  fs::path const folder =
-      fs::path(testing::TempDir()) / ("polybody csv " + std::to_string(std::random_device{}()));
+  fs::path const folder = fs::path(testing::TempDir()) / ("polybody csv " + std::to_string(std::random_device{}()));
   fs::path const file = folder / "run.csv";
 
   CsvFiles() { fs::create_directories(folder); }
   ~CsvFiles() override { fs::remove_all(folder); }
 
   std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
 };
 
@@ -335,8 +331,7 @@ TEST_F(CsvFiles, ReadingNamesFileAndLine) {
   EXPECT_TRUE(has(refusal("a,b\n1,2,\n"), "line 2: 3 fields"));
   EXPECT_TRUE(has(refusal("a,b\n\n1,2,3\n"), "line 3: 3 fields"));
   EXPECT_TRUE(has(refusal("\"a\nb\",c\n1,2\n1,x\n"), "line 4: column 'c': 'x'"));
-  for (auto const* bad :
-       {"nan", "inf", "1e999", "1.5m", "0x10", "--1", "+-1", "+", "1 2", "", "1;2"})
+  for (auto const* bad : {"nan", "inf", "1e999", "1.5m", "0x10", "--1", "+-1", "+", "1 2", "", "1;2"})
     EXPECT_TRUE(has(refusal(std::string("a,b\n1,2\n3,") + bad + "\n"), "line 3: column 'b'"));
   EXPECT_TRUE(has(refusal("a\n\"1\n"), "line 2: a quote is never closed"));
   EXPECT_TRUE(has(refusal("a\n\"1\"2\n"), "line 2: text follows a closing quote"));
@@ -351,8 +346,8 @@ TEST_F(CsvFiles, ReadingNamesFileAndLine) {
 TEST(CsvTable, ColumnMustBeThereOnce) {
   Table const table{{"t", "x", "x"}, {{1, 2, 3}, {4, 5, 6}}};
   EXPECT_EQ(table.column("t"), (std::vector<double>{1, 4}));
-  EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("y"); }),
-                  "no column is called 'y'; the table has 't', 'x'"));
+  EXPECT_TRUE(
+      has(message_of<InvalidInput>([&] { table.column("y"); }), "no column is called 'y'; the table has 't', 'x'"));
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("x"); }), "more than one"));
   EXPECT_TRUE(has(message_of<InvalidInput>([] { Table{}.column("t"); }), "has none"));
 }

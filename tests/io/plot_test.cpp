@@ -31,8 +31,7 @@ std::array<int, 2> png_size(fs::path const& file) {
   std::string const text = text_of(file);
   auto const number = [&](std::size_t at) {
     int value = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      value = 256 * value + static_cast<unsigned char>(text.at(at + i));
+    for (std::size_t i = 0; i < 4; ++i) value = 256 * value + static_cast<unsigned char>(text.at(at + i));
     return value;
   };
   return {number(16), number(20)};
@@ -62,8 +61,7 @@ Figure waves() {
 
 /// Each test has its own empty folder, with a blank and a quote in its name.
 struct Plots : testing::Test {
-  fs::path const folder =
-      fs::path(testing::TempDir()) / ("polybody it's " + std::to_string(std::random_device{}()));
+  fs::path const folder = fs::path(testing::TempDir()) / ("polybody it's " + std::to_string(std::random_device{}()));
   fs::path const stem = folder / "tip path";
   bool const have_gnuplot = find_gnuplot().has_value();
 
@@ -71,8 +69,7 @@ struct Plots : testing::Test {
   ~Plots() override { fs::remove_all(folder); }
 
   std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
   fs::path with(char const* ending) const { return stem.string() + ending; }
 };
@@ -115,15 +112,11 @@ TEST_F(Plots, ScriptRunsByHandFromItsOwnFolder) {
 TEST_F(Plots, ScriptSaysWhatTheFigureSays) {
   write_figure(waves(), stem, false);
   std::string const script = text_of(with(".gp"));
-  EXPECT_TRUE(has(
-      script, "set title 'Pendulum: tip_x over time (ρ∞ = 0.8, ''stiff'' \"bar\")' noenhanced"));
+  EXPECT_TRUE(has(script, "set title 'Pendulum: tip_x over time (ρ∞ = 0.8, ''stiff'' \"bar\")' noenhanced"));
   EXPECT_TRUE(has(script, "set xlabel 'time [s]'"));
-  EXPECT_TRUE(
-      has(script,
-          "index 1 using 1:2 with lines dashtype (12,6) linewidth 1.5 linecolor rgb '#D55E00'"));
+  EXPECT_TRUE(has(script, "index 1 using 1:2 with lines dashtype (12,6) linewidth 1.5 linecolor rgb '#D55E00'"));
   EXPECT_TRUE(has(script, "index 3 using 1:2 with points linewidth 1.5 linecolor rgb '#0072B2'"));
-  EXPECT_TRUE(
-      has(script, "index 4 using 1:2 with lines linewidth 1.5 linecolor rgb '#D55E00' notitle"));
+  EXPECT_TRUE(has(script, "index 4 using 1:2 with lines linewidth 1.5 linecolor rgb '#D55E00' notitle"));
   EXPECT_TRUE(has(script, "set key"));
   EXPECT_EQ(script.find("logscale"), std::string::npos);
 
@@ -141,8 +134,7 @@ TEST_F(Plots, ScriptSaysWhatTheFigureSays) {
 
 TEST_F(Plots, DataBlocksReadBackExactly) {
   Figure figure{.title = "two\nlines"};
-  figure.curves = {{.x = {0.1, 1e-300}, .y = {1.0 / 3.0, -5e-324}, .label = "a\nb"},
-                   {.x = {1}, .y = {2}, .label = ""}};
+  figure.curves = {{.x = {0.1, 1e-300}, .y = {1.0 / 3.0, -5e-324}, .label = "a\nb"}, {.x = {1}, .y = {2}, .label = ""}};
   write_figure(figure, stem, false);
   EXPECT_EQ(text_of(with(".dat")),
             "# two lines | a b\n0.1 0.3333333333333333\n1e-300 -5e-324\n\n\n# two lines | \n1 2\n");
@@ -174,10 +166,8 @@ TEST_F(Plots, EveryStyleAndOddShapeIsDrawn) {
   for (auto const style : detail::curve_styles)
     for (bool const log : {false, true}) {
       Figure figure{.title = std::string(style)};
-      figure.curves.push_back(
-          {.x = {1}, .y = {2}, .label = "one point", .style = std::string(style)});
-      figure.curves.push_back(
-          {.x = {1, 2, 1}, .y = {0, 0, 0}, .label = "zero", .style = std::string(style)});
+      figure.curves.push_back({.x = {1}, .y = {2}, .label = "one point", .style = std::string(style)});
+      figure.curves.push_back({.x = {1, 2, 1}, .y = {0, 0, 0}, .label = "zero", .style = std::string(style)});
       figure.log_y = log;
       EXPECT_EQ(write_figure(figure, stem), Drawn::png) << style;
     }
@@ -194,9 +184,8 @@ TEST_F(Plots, TextAndNamesAreNeverCommands) {
   figure.x_label = figure.y_label = figure.curves[0].label = figure.title;
   fs::path const before = fs::current_path();
   fs::current_path(folder);
-  for (std::string const name :
-       {"plain", "|touch pwned6", "< touch pwned7", "$(touch pwned8)", "`touch pwned9`", "-",
-        "it's \"x\"", "a;b & c", "50%d", "~", "*", "path.with.dots", "Ünïcode θ"}) {
+  for (std::string const name : {"plain", "|touch pwned6", "< touch pwned7", "$(touch pwned8)", "`touch pwned9`", "-",
+                                 "it's \"x\"", "a;b & c", "50%d", "~", "*", "path.with.dots", "Ünïcode θ"}) {
     Drawn const drawn = write_figure(figure, name);
     EXPECT_EQ(drawn, have_gnuplot ? Drawn::png : Drawn::script_only) << name;
     EXPECT_TRUE(fs::exists(name + ".gp") && fs::exists(name + ".dat")) << name;
@@ -220,8 +209,7 @@ TEST_F(Plots, RefusalsNameTheFigureAndTheCurveAndWriteNothing) {
   auto const sizes = refusal([](Figure& f) { f.curves[1].y.pop_back(); });
   EXPECT_TRUE(has(sizes, "'ANCF, n = 8'"));
   EXPECT_TRUE(has(sizes, "x has 201 numbers and y has 200"));
-  EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].x.clear(), f.curves[0].y.clear(); }),
-                  "at least one point"));
+  EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].x.clear(), f.curves[0].y.clear(); }), "at least one point"));
   EXPECT_TRUE(has(refusal([&](Figure& f) { f.curves[0].x[3] = nan; }), "in x is not finite"));
   EXPECT_TRUE(has(refusal([&](Figure& f) { f.curves[0].y[3] = infinity; }), "in y is not finite"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].style = "dots"; }), "'dots'"));
@@ -231,14 +219,10 @@ TEST_F(Plots, RefusalsNameTheFigureAndTheCurveAndWriteNothing) {
   EXPECT_TRUE(has(refusal([](Figure& f) { f.width_px = 1 << 20; }), "pixels"));
   EXPECT_TRUE(has(refusal([&](Figure& f) { f.x_range = {0.0, nan}; }), "x_range"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.y_range = {1.0, 1.0}; }), "y_range"));
-  EXPECT_TRUE(has(refusal([](Figure& f) {
-                    f.log_y = true, f.y_range = {0.0, 1.0};
-                  }),
-                  "logarithmic"));
+  EXPECT_TRUE(has(refusal([](Figure& f) { f.log_y = true, f.y_range = {0.0, 1.0}; }), "logarithmic"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.log_y = f.equal_axes = true; }), "equal axes"));
-  EXPECT_TRUE(has(
-      refusal([](Figure& f) { f.curves = {{.x = {1}, .y = {-1}, .label = "a"}}, f.log_y = true; }),
-      "no point is positive"));
+  EXPECT_TRUE(has(refusal([](Figure& f) { f.curves = {{.x = {1}, .y = {-1}, .label = "a"}}, f.log_y = true; }),
+                  "no point is positive"));
   EXPECT_THROW(write_panels({}, 2, stem), InvalidInput);
   EXPECT_THROW(write_panels({waves()}, 0, stem), InvalidInput);
   EXPECT_THROW(write_panels(std::vector(40, waves()), 40, stem), InvalidInput);
@@ -270,8 +254,7 @@ TEST_F(Plots, AFileThatCannotRunIsNotGnuplot) {
 TEST_F(Plots, GnuplotFailureNamesTheScriptAndKeepsTheOldPicture) {
   std::ofstream(with(".png")) << "old";
   fs::create_directories(folder / "bin");
-  for (std::string const body :
-       {"echo strange >&2; exit 3", "echo strange"}) {  // fails; draws nothing
+  for (std::string const body : {"echo strange >&2; exit 3", "echo strange"}) {  // fails; draws nothing
     std::ofstream(folder / "bin" / "gnuplot") << "#!/bin/sh\n" << body << '\n';
     fs::permissions(folder / "bin" / "gnuplot", fs::perms::owner_all);
     Path const first((folder / "bin").string() + ':' + std::getenv("PATH"));

@@ -44,8 +44,7 @@ TEST_F(ProgressBar, ShowsShareElapsedAndTimeLeft) {
   EXPECT_TRUE(out.str().empty());
   time += 20.4;
   bar.update(3.0);  // a quarter in 20.4 s: 61.2 s are left
-  EXPECT_EQ(lines().back(),
-            "pendulum  25% [==========>" + std::string(30, ' ') + "]  0:00:20  ETA 0:01:01");
+  EXPECT_EQ(lines().back(), "pendulum  25% [==========>" + std::string(30, ' ') + "]  0:00:20  ETA 0:01:01");
   time = 1000.0 + 5400.0;
   bar.update(5.0);
   auto const last = lines().back();
@@ -131,12 +130,16 @@ TEST_F(ProgressBar, DestructorLeavesTheShareThatWasReached) {
 }
 
 TEST_F(ProgressBar, UnusedDrawsNothing) {
-  { Progress bar(0.0, 1.0, "", out, true, clock()); }
+  {
+    Progress bar(0.0, 1.0, "", out, true, clock());
+  }
   EXPECT_TRUE(out.str().empty());
 }
 
 TEST_F(ProgressBar, FinishWithoutUpdateStillSaysSo) {
-  { Progress(0.0, 1.0, "", out, true, clock()).finish(); }
+  {
+    Progress(0.0, 1.0, "", out, true, clock()).finish();
+  }
   ASSERT_EQ(lines().size(), 1u);
   EXPECT_TRUE(lines()[0].starts_with("100% ["));
 }

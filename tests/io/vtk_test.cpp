@@ -1,4 +1,5 @@
-// Files of a VtkWriter, read back by VTK's own reader (vtk_read.py), and what they leave behind when a run is broken off.
+// Files of a VtkWriter, read back by VTK's own reader (vtk_read.py), and what they leave behind when a run is broken
+// off.
 #include <polybody/io/vtk.hpp>
 
 #include <gtest/gtest.h>
@@ -30,8 +31,8 @@ int count(std::string const& text, std::string const& part) {
   return n;
 }
 
-/// A box of 0.2 × 0.4 × 0.6 m at (1, 0, 0) of a rigid body, and a cable of 2 m along x with a section of 0.1 × 0.06 m in five
-/// pieces.
+/// A box of 0.2 × 0.4 × 0.6 m at (1, 0, 0) of a rigid body, and a cable of 2 m along x with a section of 0.1 × 0.06 m
+/// in five pieces.
 struct VtkFiles : testing::Test {
   fs::path const folder = fs::path(testing::TempDir()) / ("polybody vtk & co " + std::to_string(::getpid()));
   Bar const bar{.length = 2.0,
@@ -50,8 +51,8 @@ struct VtkFiles : testing::Test {
   }
   ~VtkFiles() override { fs::remove_all(folder); }
 
-  /// The brick at (4, 5, 6) a quarter turn about z, turning at 3 rad/s about the world's z and rising at 2 m/s; the cable
-  /// stretched by a thousandth.
+  /// The brick at (4, 5, 6) a quarter turn about z, turning at 3 rad/s about the world's z and rising at 2 m/s; the
+  /// cable stretched by a thousandth.
   void move() {
     x.t = 0.25;
     x.q.head(7) << 4, 5, 6, std::sqrt(0.5), 0, 0, std::sqrt(0.5);
@@ -110,7 +111,8 @@ TEST_F(VtkFiles, AreCompleteAfterEveryState) {
     EXPECT_EQ(count(text_of(file), "<DataSet"), i);
     EXPECT_EQ(count(text_of(file), "</VTKFile>"), 1);
   }
-  EXPECT_TRUE(has(text_of(file), "timestep=\"0.1\" part=\"0\" file=\"a &quot;run&quot;/a &quot;run&quot;_000001.vtu\""));
+  EXPECT_TRUE(
+      has(text_of(file), "timestep=\"0.1\" part=\"0\" file=\"a &quot;run&quot;/a &quot;run&quot;_000001.vtu\""));
   fs::path const grid = folder / "deep" / "a \"run\"" / "a \"run\"_000001.vtu";
   EXPECT_TRUE(text_of(grid).ends_with("</VTKFile>\n"));
   // 32 points of 3 + 3 + 3 + 1 float32; 24 + 88 corners, 28 ends of int64, 28 types, 28 parts of int32; eight lengths

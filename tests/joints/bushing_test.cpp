@@ -52,7 +52,8 @@ void expect_slope(P const& policy) {
     for (int j = 0; j < 6; ++j) {
       Vec6 const by_differences = slope_at_zero(
           [&, ck = ck, cd = cd](double h) {
-            return Vec6(policy.template multiplier<6, double>(x + Vec6::Unit(j) * ck * h, rate + Vec6::Unit(j) * cd * h));
+            return Vec6(
+                policy.template multiplier<6, double>(x + Vec6::Unit(j) * ck * h, rate + Vec6::Unit(j) * cd * h));
           },
           1e-4);
       Matrix const slope = policy.template slope<6>(ck, cd, x, rate);
@@ -72,7 +73,9 @@ void expect_gradient_of_potential(P const& policy, std::initializer_list<int> co
   EXPECT_NEAR(policy.template potential<6>(Vec6::Zero()), 0.0, 1e-15);
 }
 
-TEST(Bushing, ElasticMultiplierIsTheGradientOfThePotential) { expect_gradient_of_potential(bushing, {0, 1, 2, 3, 4, 5}); }
+TEST(Bushing, ElasticMultiplierIsTheGradientOfThePotential) {
+  expect_gradient_of_potential(bushing, {0, 1, 2, 3, 4, 5});
+}
 TEST(NonlinearBushing, ElasticMultiplierIsTheGradientOfThePotentialOfLawsThatHaveOne) {
   expect_gradient_of_potential(rubber, {0, 1, 3, 5});
 }
@@ -103,8 +106,9 @@ std::string said(Matrix const& k, Matrix const& c = Matrix::Zero()) {
 TEST(Bushing, RefusesNegativeStiffnessAndDamping) {
   Matrix k = Matrix::Identity();
   k(2, 2) = -1.0;
-  EXPECT_TRUE(has(said(k), "\"mount\": the bushing's stiffness must be finite, symmetric and positive semidefinite (6×6), "
-                           "but its entry (3, 3) is -1"));
+  EXPECT_TRUE(has(said(k),
+                  "\"mount\": the bushing's stiffness must be finite, symmetric and positive semidefinite (6×6), "
+                  "but its entry (3, 3) is -1"));
   EXPECT_TRUE(has(said(Matrix::Identity(), k), "\"mount\": the bushing's damping must be"));
   k(2, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(has(said(k), "its entry (3, 3) is"));
@@ -118,7 +122,8 @@ TEST(Bushing, RefusesAMatrixThatIsNotSymmetric) {
   EXPECT_TRUE(has(said(k), "its entry (2, 5) is 0.5 and its mirror is 0"));
 }
 
-// [1, c; c, 1] has the eigenvalues 1 ± c, in whatever units the two are given; a zero on the diagonal allows no coupling.
+// [1, c; c, 1] has the eigenvalues 1 ± c, in whatever units the two are given; a zero on the diagonal allows no
+// coupling.
 TEST(Bushing, RefusesCouplingThatMakesTheStiffnessNegative) {
   for (double const unit : {1.0, 1e-4, 1e4}) {
     Matrix k = Matrix::Identity();

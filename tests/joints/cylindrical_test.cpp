@@ -14,7 +14,8 @@ struct CylindricalCase {
   static constexpr int world_rows = 0;
   static Cylindrical geometry() { return {}; }
   static Mate mate(Numbers& number, double) {
-    Mate mate{.d = Vec3(0, 0, number(2.0)), .R = exp_so3<double>(Vec3(0, 0, number(3.0))), .freedoms = MatX::Zero(6, 2)};
+    Mate mate{
+        .d = Vec3(0, 0, number(2.0)), .R = exp_so3<double>(Vec3(0, 0, number(3.0))), .freedoms = MatX::Zero(6, 2)};
     mate.freedoms(2, 0) = mate.freedoms(5, 1) = 1.0;
     return mate;
   }
@@ -28,7 +29,8 @@ TEST(Cylindrical, RowsAreTheOffsetAndTheTilt) {
 }
 
 TEST(Cylindrical, RefusesAnAxisThatIsNotAUnitVector) {
-  EXPECT_TRUE(has(refusal([] { (void)Cylindrical{.axis = {0, 0, 2}}.triad(); }), "Cylindrical: the axis must be a unit vector"));
+  EXPECT_TRUE(has(refusal([] { (void)Cylindrical{.axis = {0, 0, 2}}.triad(); }),
+                  "Cylindrical: the axis must be a unit vector"));
 }
 
 }  // namespace cylindrical_test

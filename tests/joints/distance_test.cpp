@@ -78,16 +78,19 @@ TEST(Distance, OfPointsThatCoincideIsFinite) {
 
 TEST(Distance, RefusesALengthThatIsNone) {
   for (double const l : {0.0, -1.0, double(NAN), HUGE_VAL})
-    EXPECT_TRUE(has(refusal([&] { Distance{.length = l}.check("\"rod\""); }), "\"rod\": the length must be positive and finite"));
+    EXPECT_TRUE(has(refusal([&] { Distance{.length = l}.check("\"rod\""); }),
+                    "\"rod\": the length must be positive and finite"));
   EXPECT_TRUE(has(refusal([] { Distance{.length = 0.0}.check("\"rod\""); }), "Spherical"));
 }
 
 TEST(PrescribedDistance, RefusesWhatNoActuatorCanDo) {
-  EXPECT_TRUE(has(refusal([] { Actuator{.law = actuator.law, .length = 0.0}.check("\"ram\""); }), "\"ram\": the length"));
+  EXPECT_TRUE(
+      has(refusal([] { Actuator{.law = actuator.law, .length = 0.0}.check("\"ram\""); }), "\"ram\": the length"));
   EXPECT_TRUE(has(refusal([] { Actuator{.law = {.target = 1.0, .duration = 0.0}, .length = 1.0}.check("\"ram\""); }),
                   "\"ram\": the law of time: the duration"));
   PrescribedDistance<Window> const jump{.law = {.from = 1.0, .to = 2.0}, .length = 1.0};
-  EXPECT_TRUE(has(refusal([&] { jump.check("\"ram\""); }), "\"ram\": the law of time: its value jumps from 0 to 1 at t = 1 s"));
+  EXPECT_TRUE(
+      has(refusal([&] { jump.check("\"ram\""); }), "\"ram\": the law of time: its value jumps from 0 to 1 at t = 1 s"));
 }
 
 TEST(PrescribedDistance, TellsTheCornersOfItsLaw) {
@@ -99,9 +102,8 @@ TEST(PrescribedDistance, TellsTheCornersOfItsLaw) {
 }  // namespace distance_test
 
 namespace polybody {
-bool const distance_obey[] = {
-    obeys<distance_test::DistanceCase, JointLaws>("Distance"),
-    obeys<distance_test::PlanarDistanceCase, JointLaws>("PlanarDistance"),
-    obeys<distance_test::ActuatorCase, JointLaws>("PrescribedDistance"),
-    obeys<distance_test::PlanarActuatorCase, JointLaws>("PlanarPrescribedDistance")};
+bool const distance_obey[] = {obeys<distance_test::DistanceCase, JointLaws>("Distance"),
+                              obeys<distance_test::PlanarDistanceCase, JointLaws>("PlanarDistance"),
+                              obeys<distance_test::ActuatorCase, JointLaws>("PrescribedDistance"),
+                              obeys<distance_test::PlanarActuatorCase, JointLaws>("PlanarPrescribedDistance")};
 }  // namespace polybody

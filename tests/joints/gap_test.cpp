@@ -77,9 +77,13 @@ struct Whole {
   static constexpr World world = World::space;
   Mat3 triad() const { return Mat3::Identity(); }
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const&, Frame<T> const&, double) const { return {}; }
+  Gap<1, T> gap(Frame<T> const&, Frame<T> const&, double) const {
+    return {};
+  }
   template <StateScalar T>
-  Vec<T, 1> gamma(Frame<T> const&, Frame<T> const&, double) const { return Vec<T, 1>::Zero(); }
+  Vec<T, 1> gamma(Frame<T> const&, Frame<T> const&, double) const {
+    return Vec<T, 1>::Zero();
+  }
 };
 struct NoRows : Whole {
   static constexpr int rows = 0;
@@ -87,9 +91,13 @@ struct NoRows : Whole {
 struct SevenRows : Whole {
   static constexpr int rows = 7;
   template <StateScalar T>
-  Gap<7, T> gap(Frame<T> const&, Frame<T> const&, double) const { return {}; }
+  Gap<7, T> gap(Frame<T> const&, Frame<T> const&, double) const {
+    return {};
+  }
   template <StateScalar T>
-  Vec<T, 7> gamma(Frame<T> const&, Frame<T> const&, double) const { return Vec<T, 7>::Zero(); }
+  Vec<T, 7> gamma(Frame<T> const&, Frame<T> const&, double) const {
+    return Vec<T, 7>::Zero();
+  }
 };
 struct GapOfOtherRows : Whole {
   static constexpr int rows = 2;
@@ -104,7 +112,9 @@ struct NoGamma {
   static constexpr World world = World::space;
   Mat3 triad() const { return Mat3::Identity(); }
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const&, Frame<T> const&, double) const { return {}; }
+  Gap<1, T> gap(Frame<T> const&, Frame<T> const&, double) const {
+    return {};
+  }
 };
 static_assert(JointGeometry<Whole>);
 static_assert(!JointGeometry<NoRows> && !JointGeometry<SevenRows>);

@@ -28,7 +28,8 @@ struct PlanarGearCase {
     double const line = number(3.0), alpha = number(9.0);
     Wheels const w = wheels(line, line + alpha, line - alpha * N_a / N_b);
     Mate mate{.d = w.a.A.transpose() * w.b.r, .R = w.a.A.transpose() * w.b.A, .freedoms = MatX::Zero(6, 2)};
-    // b moves from a along d; and on a circle about it at 1 rad/s, whereby b turns by 1 + N_a/N_b, as the planet of a fixed sun
+    // b moves from a along d; and on a circle about it at 1 rad/s, whereby b turns by 1 + N_a/N_b, as the planet of a
+    // fixed sun
     mate.freedoms.col(0).head<3>() = mate.d;
     mate.freedoms.col(1).head<3>() = Vec3::UnitZ().cross(mate.d);
     mate.freedoms(5, 1) = 1.0 + double(N_a) / N_b;
@@ -69,8 +70,8 @@ TEST(Gear, RollsAPlanetAboutItsSun) {
   for (double const theta : {0.3, 2.0, -7.0}) EXPECT_NEAR(gap_of(gear, wheels(theta, 0.0, 3.5 * theta)), 0.0, 1e-14);
 }
 
-// The multiplier is a moment on b; the tooth's force on it, tangential at the pitch circle of b, holds a at the same force:
-// with d the distance of the centres r_b = d N_b/(N_a + N_b), so f = 1/r_b for the moment 1.
+// The multiplier is a moment on b; the tooth's force on it, tangential at the pitch circle of b, holds a at the same
+// force: with d the distance of the centres r_b = d N_b/(N_a + N_b), so f = 1/r_b for the moment 1.
 TEST(Gear, PushesTheTeethWhereThePitchCirclesTouch) {
   Wheels const w = wheels(0.0, 0.0, 0.0, 2.0);
   Gap<1> const gap = Gear{.teeth_a = 30, .teeth_b = 10}.gap<double>(w.a, w.b, 0.0);
@@ -91,7 +92,8 @@ TEST(Gear, RefusesTeethAndAxesThatCannotBeMeant) {
   EXPECT_NO_THROW((Gear{.teeth_a = -50, .teeth_b = 20}.check("\"pair\"")));
   EXPECT_TRUE(has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .centres = {0, 0, 1}}.triad(); }),
                   "Gear: the two axes must be perpendicular"));
-  EXPECT_TRUE(has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .axis = {0, 0, 2}}.triad(); }), "Gear: the axis must be"));
+  EXPECT_TRUE(has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .axis = {0, 0, 2}}.triad(); }),
+                  "Gear: the axis must be"));
   EXPECT_TRUE(has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .centres = {0, 2, 0}}.triad(); }),
                   "Gear: the line of centres must be a unit vector"));
 }
@@ -99,8 +101,7 @@ TEST(Gear, RefusesTeethAndAxesThatCannotBeMeant) {
 }  // namespace gear_test
 
 namespace polybody {
-bool const gear_obey[] = {
-    obeys<gear_test::PlanarGearCase<3, 2>, JointLaws>("PlanarGear"),
-    obeys<gear_test::PlanarGearCase<2, -5>, JointLaws>("InnerPlanarGear"),
-    obeys<gear_test::GearCase, JointLaws>("Gear")};
+bool const gear_obey[] = {obeys<gear_test::PlanarGearCase<3, 2>, JointLaws>("PlanarGear"),
+                          obeys<gear_test::PlanarGearCase<2, -5>, JointLaws>("InnerPlanarGear"),
+                          obeys<gear_test::GearCase, JointLaws>("Gear")};
 }  // namespace polybody

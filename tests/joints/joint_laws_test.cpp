@@ -42,8 +42,8 @@ std::vector<FramePair> JointLawsOf::all() {
 }
 
 MatX JointLawsOf::known() const {
-  std::vector<Index> const columns = planar ? std::vector<Index>{0, 1, 5, 6, 7, 11}
-                                            : std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  std::vector<Index> const columns =
+      planar ? std::vector<Index>{0, 1, 5, 6, 7, 11} : std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
   MatX k = MatX::Zero(12, Index(columns.size()));
   for (Index j = 0; j < k.cols(); ++j) k(columns[std::size_t(j)], j) = 1.0;
   return k;

@@ -25,8 +25,8 @@ struct KnifeEdgeCase {
   }
 };
 
-// On a turntable (2 rad/s about z) the table under a blade at (3, 0, 0) moves at 6 m/s along y: a blade that stands still there
-// and points along x is crossed by −6 m/s.
+// On a turntable (2 rad/s about z) the table under a blade at (3, 0, 0) moves at 6 m/s along y: a blade that stands
+// still there and points along x is crossed by −6 m/s.
 TEST(KnifeEdge, RowIsTheVelocityAcrossSeenFromTheOtherBody) {
   Frame<double> const table{.w = {0, 0, 2}};
   Frame<double> blade{.r = {3, 0, 0}};
@@ -38,7 +38,8 @@ TEST(KnifeEdge, RowIsTheVelocityAcrossSeenFromTheOtherBody) {
 }
 
 TEST(KnifeEdge, RefusesADirectionThatIsNoUnitVector) {
-  EXPECT_TRUE(has(refusal([] { (void)KnifeEdge{.across = {0, 2, 0}}.triad(); }), "KnifeEdge: the direction across must be a unit"));
+  EXPECT_TRUE(has(refusal([] { (void)KnifeEdge{.across = {0, 2, 0}}.triad(); }),
+                  "KnifeEdge: the direction across must be a unit"));
 }
 
 static_assert(velocity_rows<KnifeEdge>() == 1);

@@ -29,7 +29,8 @@ TEST(PlaneOnPlane, RowsAreTheHeightAndTheTilt) {
 }
 
 TEST(PlaneOnPlane, RefusesANormalThatIsNotAUnitVector) {
-  EXPECT_TRUE(has(refusal([] { (void)PlaneOnPlane{.normal = {1, 1, 0}}.triad(); }), "PlaneOnPlane: the normal must be a unit"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)PlaneOnPlane{.normal = {1, 1, 0}}.triad(); }), "PlaneOnPlane: the normal must be a unit"));
 }
 
 }  // namespace plane_on_plane_test

@@ -48,13 +48,9 @@ struct SlideCase {
 
 Frame<double> const b{.r = {0.1, 0.2, 0.3}};
 
-TEST(PointOnLine, RowsAreTheOffsetFromTheLine) {
-  EXPECT_EQ((PointOnLine{}.gap<double>({}, b, 0.0).g), Vec2(0.1, 0.2));
-}
+TEST(PointOnLine, RowsAreTheOffsetFromTheLine) { EXPECT_EQ((PointOnLine{}.gap<double>({}, b, 0.0).g), Vec2(0.1, 0.2)); }
 
-TEST(PointInPlane, RowIsTheHeightOverThePlane) {
-  EXPECT_EQ((PointInPlane{}.gap<double>({}, b, 0.0).g[0]), 0.3);
-}
+TEST(PointInPlane, RowIsTheHeightOverThePlane) { EXPECT_EQ((PointInPlane{}.gap<double>({}, b, 0.0).g[0]), 0.3); }
 
 TEST(PrescribedSlide, RowIsWhatTheSlideLacks) {
   PrescribedSlide<Constant> const still{.law = {.value = 0.25}};
@@ -71,16 +67,18 @@ TEST(PrescribedSlide, TellsTheCornersOfItsLawAndRefusesAJump) {
 }
 
 TEST(Points, RefuseAxesThatAreNotUnitVectors) {
-  EXPECT_TRUE(has(refusal([] { (void)PointOnLine{.axis = {0, 0, 0}}.triad(); }), "PointOnLine: the axis must be a unit"));
-  EXPECT_TRUE(has(refusal([] { (void)PointInPlane{.normal = {0, 2, 0}}.triad(); }), "PointInPlane: the normal must be a unit"));
-  EXPECT_TRUE(has(refusal([] { (void)Slide{.law = slide.law, .axis = {0, 2, 0}}.triad(); }), "PrescribedSlide: the axis"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)PointOnLine{.axis = {0, 0, 0}}.triad(); }), "PointOnLine: the axis must be a unit"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)PointInPlane{.normal = {0, 2, 0}}.triad(); }), "PointInPlane: the normal must be a unit"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)Slide{.law = slide.law, .axis = {0, 2, 0}}.triad(); }), "PrescribedSlide: the axis"));
 }
 
 }  // namespace points_test
 
 namespace polybody {
-bool const points_obey[] = {
-    obeys<points_test::PointOnLineCase, JointLaws>("PointOnLine"),
-    obeys<points_test::PointInPlaneCase, JointLaws>("PointInPlane"),
-    obeys<points_test::SlideCase, JointLaws>("PrescribedSlide")};
+bool const points_obey[] = {obeys<points_test::PointOnLineCase, JointLaws>("PointOnLine"),
+                            obeys<points_test::PointInPlaneCase, JointLaws>("PointInPlane"),
+                            obeys<points_test::SlideCase, JointLaws>("PrescribedSlide")};
 }  // namespace polybody

@@ -58,8 +58,7 @@ TEST(Penalty, ElasticForcesOfAnOpenPinBalanceInMoment) {
     Gap<5> const gap = Revolute{}.gap<double>(a, b, 0.0);
     auto const lambda = penalty.multiplier<5, double>(gap.g, Vec<double, 5>::Zero());
     Vec6 const wa = gap.Ga.transpose() * lambda, wb = gap.Gb.transpose() * lambda;
-    Vec3 const moment =
-        wa.tail<3>() + a.r.cross(wa.head<3>()) + wb.tail<3>() + b.r.cross(wb.head<3>());
+    Vec3 const moment = wa.tail<3>() + a.r.cross(wa.head<3>()) + wb.tail<3>() + b.r.cross(wb.head<3>());
     EXPECT_GT(wa.norm(), 100.0);
     EXPECT_LT(moment.norm(), 1e-14 * wa.norm() * 10);
   }
@@ -113,9 +112,13 @@ struct RowsDenied {
 struct NoPotential {
   void check(std::string const&) const {}
   template <int m, StateScalar T>
-  Vec<T, m> multiplier(Vec<T, m> const& g, Vec<T, m> const&) const { return g; }
+  Vec<T, m> multiplier(Vec<T, m> const& g, Vec<T, m> const&) const {
+    return g;
+  }
   template <int m>
-  Mat<double, m, m> slope(double, double, Vec<double, m> const&, Vec<double, m> const&) const { return {}; }
+  Mat<double, m, m> slope(double, double, Vec<double, m> const&, Vec<double, m> const&) const {
+    return {};
+  }
 };
 static_assert(Policy<Constraint> && AddsRows<Constraint> && !AddsForce<Constraint>);
 static_assert(Policy<Penalty> && AddsForce<Penalty> && !AddsRows<Penalty>);

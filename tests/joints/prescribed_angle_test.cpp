@@ -55,8 +55,9 @@ TEST(PrescribedAngle, HoldsBeyondManyTurns) {
 
 TEST(PrescribedAngle, MeasuresTheTurnAboutTheThirdAxis) {
   for (double const angle : {-3.0, -1e-8, 1e-4, 1.0, 3.0})
-    EXPECT_NEAR(PrescribedAngle<Constant>{.law = {.value = 0.0}}.gap<double>(turned(1.0), turned(1.0 + angle), 0.0).g[0],
-                angle, 1e-15);
+    EXPECT_NEAR(
+        PrescribedAngle<Constant>{.law = {.value = 0.0}}.gap<double>(turned(1.0), turned(1.0 + angle), 0.0).g[0], angle,
+        1e-15);
 }
 
 // ġ = a₃ · (ω_b − ω_a) − ψ̇ while b₁ stays in the plane of a₁, a₂.
@@ -83,7 +84,8 @@ TEST(PrescribedAngle, RefusesALawThatJumps) {
   PrescribedAngle<Window> const jump{.law = {.from = 1.0, .to = 2.0, .value = 0.5}};
   EXPECT_TRUE(has(refusal([&] { jump.check("\"drive\""); }),
                   "\"drive\": the law of time: its value jumps from 0 to 0.5 at t = 1 s"));
-  EXPECT_NO_THROW((PrescribedAngle<Ramp>{.law = {.target = 100.0, .duration = 1e-3, .start = 50.0}}.check("\"drive\"")));
+  EXPECT_NO_THROW(
+      (PrescribedAngle<Ramp>{.law = {.target = 100.0, .duration = 1e-3, .start = 50.0}}.check("\"drive\"")));
 }
 
 TEST(PrescribedAngle, RefusesAnAxisThatIsNotAUnitVector) {

@@ -16,11 +16,12 @@ template <class Law>
 concept CanDriveARate = requires { typename PrescribedRate<Law>; };
 static_assert(CanDriveARate<SmoothRamp> && !CanDriveARate<SpinUp> && !CanDriveARate<int>);
 
-// [CASES C8] The sprocket's run-up: still for a second, 25 rad/s after eight. A ramp that is symmetric about its middle turns
-// by half of 25 · 7 while it lasts, so ψ(8) = 87.5, ψ(10) = 137.5.
+// [CASES C8] The sprocket's run-up: still for a second, 25 rad/s after eight. A ramp that is symmetric about its middle
+// turns by half of 25 · 7 while it lasts, so ψ(8) = 87.5, ψ(10) = 137.5.
 TEST(PrescribedRate, HoldsTheAngleOfTheSprocket) {
   PrescribedRate<SmoothRamp> const drive{.law = {{.target = 25.0, .duration = 7.0, .start = 1.0}}};
-  for (auto const& [t, psi, omega] : {std::array{0.5, 0.0, 0.0}, {1.0, 0.0, 0.0}, {8.0, 87.5, 25.0}, {10.0, 137.5, 25.0}}) {
+  for (auto const& [t, psi, omega] :
+       {std::array{0.5, 0.0, 0.0}, {1.0, 0.0, 0.0}, {8.0, 87.5, 25.0}, {10.0, 137.5, 25.0}}) {
     EXPECT_NEAR(drive.gap<double>(turned(0.2), turned(0.2 + psi), t).g[0], 0.0, 1e-12) << t;
     EXPECT_NEAR(drive.gap<double>(turned(0.2), turned(0.3 + psi), t).g[0], 0.1, 1e-12) << t;
     EXPECT_NEAR(drive.gap<double>(turned(0.0), turned(0.0), t).rate[0], -omega, 1e-13) << t;

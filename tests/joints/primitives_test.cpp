@@ -112,29 +112,34 @@ Vec3 const axis = Vec3(2, -1, 2) / 3.0, across = Vec3(1, 2, 0) / std::sqrt(5.0);
 Mat3 turned_about(int i, Numbers& number) { return exp_so3<double>(Vec3::Unit(i) * number(3.0)); }
 
 TEST(Primitives, MakeUpARevolute) {
-  expect_equal(Revolute{.axis = axis}, [](Numbers& n) { return Pose{.R = turned_about(2, n)}; }, CoincidentPoints{},
-               ParallelAxes{.axis = axis});
+  expect_equal(
+      Revolute{.axis = axis}, [](Numbers& n) { return Pose{.R = turned_about(2, n)}; }, CoincidentPoints{},
+      ParallelAxes{.axis = axis});
 }
 
 TEST(Primitives, MakeUpAUniversal) {
-  expect_equal(Universal{.first = across, .second = axis},
-               [](Numbers& n) { return Pose{.R = turned_about(0, n) * turned_about(2, n)}; }, CoincidentPoints{},
-               PerpendicularAxes{.first = across, .second = axis});
+  expect_equal(
+      Universal{.first = across, .second = axis},
+      [](Numbers& n) { return Pose{.R = turned_about(0, n) * turned_about(2, n)}; }, CoincidentPoints{},
+      PerpendicularAxes{.first = across, .second = axis});
 }
 
 TEST(Primitives, MakeUpACylindrical) {
-  expect_equal(Cylindrical{.axis = axis}, [](Numbers& n) { return Pose{.d = Vec3(0, 0, n()), .R = turned_about(2, n)}; },
-               PointOnLine{.axis = axis}, ParallelAxes{.axis = axis});
+  expect_equal(
+      Cylindrical{.axis = axis}, [](Numbers& n) { return Pose{.d = Vec3(0, 0, n()), .R = turned_about(2, n)}; },
+      PointOnLine{.axis = axis}, ParallelAxes{.axis = axis});
 }
 
 TEST(Primitives, MakeUpAPlaneOnPlane) {
-  expect_equal(PlaneOnPlane{.normal = axis}, [](Numbers& n) { return Pose{.d = Vec3(n(), n(), 0), .R = turned_about(2, n)}; },
-               PointInPlane{.normal = axis}, ParallelAxes{.axis = axis});
+  expect_equal(
+      PlaneOnPlane{.normal = axis}, [](Numbers& n) { return Pose{.d = Vec3(n(), n(), 0), .R = turned_about(2, n)}; },
+      PointInPlane{.normal = axis}, ParallelAxes{.axis = axis});
 }
 
 TEST(Primitives, MakeUpAPrismatic) {
-  expect_equal(Prismatic{.axis = axis}, [](Numbers& n) { return Pose{.d = Vec3(0, 0, n())}; }, PointOnLine{.axis = axis},
-               Orientation{});
+  expect_equal(
+      Prismatic{.axis = axis}, [](Numbers& n) { return Pose{.d = Vec3(0, 0, n())}; }, PointOnLine{.axis = axis},
+      Orientation{});
 }
 
 TEST(Primitives, MakeUpAWeld) {
@@ -143,28 +148,31 @@ TEST(Primitives, MakeUpAWeld) {
 
 // Down to single rows.
 TEST(Primitives, MakeUpALineOfTwoPlanesAndAnOrientationOfThreeRightAngles) {
-  expect_equal(PointOnLine{.axis = axis},
-               [](Numbers& n) { return Pose{.d = Vec3(0, 0, n()), .R = exp_so3<double>(n.vec<3>(3.0))}; },
-               PointInPlane{.normal = across}, PointInPlane{.normal = axis.cross(across)});
-  expect_equal(Orientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; },
-               PerpendicularAxes{.first = {1, 0, 0}, .second = {0, 1, 0}},
-               PerpendicularAxes{.first = {0, 1, 0}, .second = {0, 0, 1}},
-               PerpendicularAxes{.first = {0, 0, 1}, .second = {1, 0, 0}});
-  expect_equal(Orientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; }, ParallelAxes{.axis = axis},
-               PerpendicularAxes{.first = across, .second = axis.cross(across)});
+  expect_equal(
+      PointOnLine{.axis = axis},
+      [](Numbers& n) { return Pose{.d = Vec3(0, 0, n()), .R = exp_so3<double>(n.vec<3>(3.0))}; },
+      PointInPlane{.normal = across}, PointInPlane{.normal = axis.cross(across)});
+  expect_equal(
+      Orientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; },
+      PerpendicularAxes{.first = {1, 0, 0}, .second = {0, 1, 0}},
+      PerpendicularAxes{.first = {0, 1, 0}, .second = {0, 0, 1}},
+      PerpendicularAxes{.first = {0, 0, 1}, .second = {1, 0, 0}});
+  expect_equal(
+      Orientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; }, ParallelAxes{.axis = axis},
+      PerpendicularAxes{.first = across, .second = axis.cross(across)});
 }
 
 TEST(Primitives, RefuseAxesThatCannotBeMeant) {
   EXPECT_TRUE(has(refusal([] { (void)PerpendicularAxes{.first = {0, 1, 0}}.triad(); }),
                   "PerpendicularAxes: the two axes must be perpendicular"));
-  EXPECT_TRUE(has(refusal([] { (void)ParallelAxes{.axis = {0, 2, 0}}.triad(); }), "ParallelAxes: the axis must be a unit"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)ParallelAxes{.axis = {0, 2, 0}}.triad(); }), "ParallelAxes: the axis must be a unit"));
 }
 
 }  // namespace primitives_test
 
 namespace polybody {
-bool const primitives_obey[] = {
-    obeys<primitives_test::OrientationCase, JointLaws>("Orientation"),
-    obeys<primitives_test::ParallelAxesCase, JointLaws>("ParallelAxes"),
-    obeys<primitives_test::PerpendicularAxesCase, JointLaws>("PerpendicularAxes")};
+bool const primitives_obey[] = {obeys<primitives_test::OrientationCase, JointLaws>("Orientation"),
+                                obeys<primitives_test::ParallelAxesCase, JointLaws>("ParallelAxes"),
+                                obeys<primitives_test::PerpendicularAxesCase, JointLaws>("PerpendicularAxes")};
 }  // namespace polybody

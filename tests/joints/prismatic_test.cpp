@@ -54,7 +54,6 @@ TEST(Prismatic, RefusesADirectionThatLeavesThePlane) {
 }  // namespace prismatic_test
 
 namespace polybody {
-bool const prismatic_obey[] = {
-    obeys<prismatic_test::PrismaticCase, JointLaws>("Prismatic"),
-    obeys<prismatic_test::PlanarPrismaticCase, JointLaws>("PlanarPrismatic")};
+bool const prismatic_obey[] = {obeys<prismatic_test::PrismaticCase, JointLaws>("Prismatic"),
+                               obeys<prismatic_test::PlanarPrismaticCase, JointLaws>("PlanarPrismatic")};
 }  // namespace polybody

@@ -55,7 +55,8 @@ TEST(RackAndPinion, RollsOnAFloorByANegativeRadius) {
 
 TEST(RackAndPinion, RefusesWhatCannotRoll) {
   for (double const r : {0.0, double(NAN), HUGE_VAL})
-    EXPECT_TRUE(has(refusal([&] { RackAndPinion{.radius = r}.check("\"rack\""); }), "\"rack\": the radius must be finite"));
+    EXPECT_TRUE(
+        has(refusal([&] { RackAndPinion{.radius = r}.check("\"rack\""); }), "\"rack\": the radius must be finite"));
   EXPECT_TRUE(has(refusal([] { (void)RackAndPinion{.radius = 1.0, .direction = {0, 0, 1}}.triad(); }),
                   "RackAndPinion: the two axes must be perpendicular"));
   EXPECT_TRUE(has(refusal([] { (void)RackAndPinion{.radius = 1.0, .direction = {2, 0, 0}}.triad(); }),
@@ -65,7 +66,6 @@ TEST(RackAndPinion, RefusesWhatCannotRoll) {
 }  // namespace rack_and_pinion_test
 
 namespace polybody {
-bool const rack_and_pinion_obey[] = {
-    obeys<rack_and_pinion_test::PlanarRackCase, JointLaws>("PlanarRackAndPinion"),
-    obeys<rack_and_pinion_test::RackCase, JointLaws>("RackAndPinion")};
+bool const rack_and_pinion_obey[] = {obeys<rack_and_pinion_test::PlanarRackCase, JointLaws>("PlanarRackAndPinion"),
+                                     obeys<rack_and_pinion_test::RackCase, JointLaws>("RackAndPinion")};
 }  // namespace polybody

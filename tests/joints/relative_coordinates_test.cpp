@@ -40,7 +40,8 @@ TEST(RelativeCoordinates, AreTheSlideTheSwingAndTheTwist) {
       Mat3 const turn = exp_so3<double>(s) * exp_so3<double>(Vec3(0, 0, psi));
       Vec6 x;
       x << d, s[0], s[1], psi;
-      EXPECT_LT((RelativeCoordinates{}.gap<double>(a, beside(d, turn), 0.0).g - x).norm(), 1e-14 * (3.0 + 20.0 / (3.2 - size)));
+      EXPECT_LT((RelativeCoordinates{}.gap<double>(a, beside(d, turn), 0.0).g - x).norm(),
+                1e-14 * (3.0 + 20.0 / (3.2 - size)));
     }
 }
 
@@ -104,8 +105,8 @@ TEST(HeldCoordinates, LeaveFreeWhatTheGeometryLeavesFree) {
   expect(felt<planar::Revolute>(), {1, 1, 1, 1, 1, 0});
 }
 
-// The freedoms that a geometry names are those of its rows: what is free in the six coordinates moves no row, and each motion that
-// is held moves one.
+// The freedoms that a geometry names are those of its rows: what is free in the six coordinates moves no row, and each
+// motion that is held moves one.
 template <class G>
 void expect_freedoms_of_the_rows() {
   Gap<G::rows> const gap = G{}.template gap<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
@@ -135,11 +136,13 @@ TEST(HeldCoordinates, FreedomsAreThoseOfTheRows) {
   expect_freedoms_of_the_rows<RelativeCoordinates>();
 }
 
-// However far the free directions have gone, their multipliers make no wrench: the gradient is that of the others (JointLaws).
+// However far the free directions have gone, their multipliers make no wrench: the gradient is that of the others
+// (JointLaws).
 template <class G>
 void expect_gradient_of_the_others() {
   Numbers number;
-  Frame<double> const b = moved<double>(beside({0.1, -0.2, 0.3}, exp_so3<double>(Vec3(0.5, 0.2, 2.5))), number.vec<6>(0.1));
+  Frame<double> const b =
+      moved<double>(beside({0.1, -0.2, 0.3}, exp_so3<double>(Vec3(0.5, 0.2, 2.5))), number.vec<6>(0.1));
   Vec6 lambda = number.vec<6>(2.0);
   Mat<double, 12, 12> const found = wrench_gradient(HeldCoordinates<G>{}, a, b, 0.0, lambda);
   for (int i = 0; i < 6; ++i)
@@ -164,11 +167,13 @@ TEST(HeldCoordinates, OfABallJointHoldAtEveryTurn) {
 }
 
 TEST(RelativeCoordinates, RefusesAnAxisThatIsNotAUnitVector) {
-  EXPECT_TRUE(has(refusal([] { (void)RelativeCoordinates{.axis = {0, 2, 0}}.triad(); }), "RelativeCoordinates: the axis"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)RelativeCoordinates{.axis = {0, 2, 0}}.triad(); }), "RelativeCoordinates: the axis"));
 }
 
 }  // namespace relative_coordinates_test
 
 namespace polybody {
-bool const relative_coordinates_obeys = obeys<relative_coordinates_test::RelativeCoordinatesCase, JointLaws>("RelativeCoordinates");
+bool const relative_coordinates_obeys =
+    obeys<relative_coordinates_test::RelativeCoordinatesCase, JointLaws>("RelativeCoordinates");
 }  // namespace polybody

@@ -32,11 +32,13 @@ TEST(RevolutePin, RowsAreThoseOfTheThesis) {
 TEST(RevolutePin, WouldHaveRankFourAtOnePoint) {
   EXPECT_EQ((RevolutePin{.distance = 0.0}.gap<double>({}, {}, 0.0).Gb.row(4).norm()), 0.0);
   for (double const l : {0.0, -0.1, double(NAN)})
-    EXPECT_TRUE(has(refusal([&] { RevolutePin{.distance = l}.check("\"pin\""); }), "\"pin\": its points must stand a positive"));
+    EXPECT_TRUE(has(refusal([&] { RevolutePin{.distance = l}.check("\"pin\""); }),
+                    "\"pin\": its points must stand a positive"));
 }
 
 TEST(RevolutePin, RefusesAnAxisThatIsNotAUnitVector) {
-  EXPECT_TRUE(has(refusal([] { (void)RevolutePin{.distance = 1.0, .axis = {0, 0, 2}}.triad(); }), "RevolutePin: the axis"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)RevolutePin{.distance = 1.0, .axis = {0, 0, 2}}.triad(); }), "RevolutePin: the axis"));
 }
 
 }  // namespace revolute_pin_test

@@ -37,7 +37,8 @@ TEST(Revolute, TurnsAboutItsAxis) {
 
 TEST(Revolute, RefusesAnAxisThatIsNotAUnitVector) {
   for (Vec3 const& axis : {Vec3(0, 0, 0), Vec3(0, 0, 1.001), Vec3(1, 1, 0)})
-    EXPECT_TRUE(has(refusal([&] { (void)Revolute{.axis = axis}.triad(); }), "Revolute: the axis must be a unit vector"));
+    EXPECT_TRUE(
+        has(refusal([&] { (void)Revolute{.axis = axis}.triad(); }), "Revolute: the axis must be a unit vector"));
   EXPECT_TRUE(has(refusal([] { (void)Revolute{.axis = {0, NAN, 1}}.triad(); }), "Revolute: the axis must be finite"));
 }
 
@@ -51,7 +52,6 @@ TEST(Revolute, TakesNoAccountOfWhichWayTheAxisPoints) {
 }  // namespace revolute_test
 
 namespace polybody {
-bool const revolute_obey[] = {
-    obeys<revolute_test::RevoluteCase, JointLaws>("Revolute"),
-    obeys<revolute_test::PlanarRevoluteCase, JointLaws>("PlanarRevolute")};
+bool const revolute_obey[] = {obeys<revolute_test::RevoluteCase, JointLaws>("Revolute"),
+                              obeys<revolute_test::PlanarRevoluteCase, JointLaws>("PlanarRevolute")};
 }  // namespace polybody

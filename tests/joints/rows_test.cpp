@@ -108,8 +108,8 @@ TEST(Turn, GrowsEvenlyAboutAFixedAxis) {
   EXPECT_NEAR(rows::turn_gamma(xy, a, b), 0.0, 1e-14);
 }
 
-// A point that passes at speed v along y, x away: θ = atan(y/x), θ˙ = x v/(x² + y²), θ¨ = −2 x y v²/(x² + y²)², which is
-// −v²/(2 x²) where y = x.
+// A point that passes at speed v along y, x away: θ = atan(y/x), θ˙ = x v/(x² + y²), θ¨ = −2 x y v²/(x² + y²)², which
+// is −v²/(2 x²) where y = x.
 TEST(Turn, GammaOfThePassingPoint) {
   double const x = 2.0, v = 3.0;
   Frame<double> const a, b{.r = {x, x, 0}, .v = {0, v, 0}};
@@ -123,15 +123,19 @@ TEST(TriadOf, HoldsBothAxesAndRefusesOthers) {
   EXPECT_EQ(e.col(0), Vec3(0, 1, 0));
   EXPECT_EQ(e.col(2), Vec3(0.6, 0, 0.8));
   EXPECT_NEAR(e.determinant(), 1.0, 1e-15);
-  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 0, 0}, {0.6, 0, 0.8}, "cross"); }), "cross: the two axes must be perp"));
-  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 1, 0}, {0, 0, 1}, "cross"); }), "cross: the first axis must be a unit"));
-  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 0, 0}, {0, 0, 2}, "cross"); }), "cross: the second axis must be a unit"));
+  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 0, 0}, {0.6, 0, 0.8}, "cross"); }),
+                  "cross: the two axes must be perp"));
+  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 1, 0}, {0, 0, 1}, "cross"); }),
+                  "cross: the first axis must be a unit"));
+  EXPECT_TRUE(has(refusal([] { (void)rows::triad_of({1, 0, 0}, {0, 0, 2}, "cross"); }),
+                  "cross: the second axis must be a unit"));
 }
 
 TEST(TriadAbout, IsRightHandedWithTheAxisThird) {
   Numbers number;
-  for (Vec3 const& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(Vec3(1, 1, 1).normalized()),
-                           Vec3(Vec3(1e-9, 1, 0).normalized()), Vec3(number.vec<3>().normalized())}) {
+  for (Vec3 const& axis :
+       {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(Vec3(1, 1, 1).normalized()),
+        Vec3(Vec3(1e-9, 1, 0).normalized()), Vec3(number.vec<3>().normalized())}) {
     Mat3 const e = rows::triad_about(axis, "pin");
     EXPECT_LT((e.transpose() * e - Mat3::Identity()).norm(), 1e-14);
     EXPECT_GT(e.determinant(), 0.0);

@@ -45,10 +45,12 @@ TEST(Screw, IsClosedOnEveryThread) {
 }
 
 TEST(Screw, RefusesAPitchThatCannotBeMeant) {
-  EXPECT_TRUE(has(refusal([] { Screw{.pitch = 0.0}.check("\"thread\""); }), "\"thread\": the pitch must be finite and not zero"));
+  EXPECT_TRUE(has(refusal([] { Screw{.pitch = 0.0}.check("\"thread\""); }),
+                  "\"thread\": the pitch must be finite and not zero"));
   EXPECT_TRUE(has(refusal([] { Screw{.pitch = NAN}.check("\"thread\""); }), "pitch"));
   EXPECT_NO_THROW(Screw{.pitch = -0.1}.check("\"thread\""));
-  EXPECT_TRUE(has(refusal([] { (void)Screw{.pitch = p, .axis = {0, 0, 0}}.triad(); }), "Screw: the axis must be a unit vector"));
+  EXPECT_TRUE(has(refusal([] { (void)Screw{.pitch = p, .axis = {0, 0, 0}}.triad(); }),
+                  "Screw: the axis must be a unit vector"));
 }
 
 }  // namespace screw_test

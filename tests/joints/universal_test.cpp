@@ -40,8 +40,10 @@ TEST(Universal, FourthRowIsTheCosineBetweenTheArms) {
 TEST(Universal, RefusesArmsThatMakeNoCross) {
   EXPECT_TRUE(has(refusal([] { (void)Universal{.first = {1, 0, 0}, .second = {0.6, 0.8, 0}}.triad(); }),
                   "Universal: the two axes must be perpendicular"));
-  EXPECT_TRUE(has(refusal([] { (void)Universal{.first = {2, 0, 0}}.triad(); }), "Universal: the first axis must be a unit"));
-  EXPECT_TRUE(has(refusal([] { (void)Universal{.second = {0, 0, 0}}.triad(); }), "Universal: the second axis must be a unit"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)Universal{.first = {2, 0, 0}}.triad(); }), "Universal: the first axis must be a unit"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)Universal{.second = {0, 0, 0}}.triad(); }), "Universal: the second axis must be a unit"));
 }
 
 }  // namespace universal_test

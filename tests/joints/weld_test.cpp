@@ -37,7 +37,6 @@ TEST(Weld, RotationalRowsMeasureTheTurn) {
 }  // namespace weld_test
 
 namespace polybody {
-bool const weld_obey[] = {
-    obeys<weld_test::WeldCase, JointLaws>("Weld"),
-    obeys<weld_test::PlanarWeldCase, JointLaws>("PlanarWeld")};
+bool const weld_obey[] = {obeys<weld_test::WeldCase, JointLaws>("Weld"),
+                          obeys<weld_test::PlanarWeldCase, JointLaws>("PlanarWeld")};
 }  // namespace polybody

@@ -20,9 +20,8 @@ Published<double> rigid_marker() {
   return p;
 }
 
-Mat<double, 6, 5> const numbers = Mat<double, 6, 5>::NullaryExpr([](Index i, Index j) {
-  return std::sin(3.0 * double(i) + 1.7 * double(j));
-});
+Mat<double, 6, 5> const numbers =
+    Mat<double, 6, 5>::NullaryExpr([](Index i, Index j) { return std::sin(3.0 * double(i) + 1.7 * double(j)); });
 
 Published<double> dense_marker(double* memory) {
   Published<double> p;

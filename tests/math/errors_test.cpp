@@ -9,8 +9,8 @@ using namespace polybody;
 namespace errors_test {
 
 template <template <class...> class List>
-using All = List<InvalidInput, InconsistentStart, NewtonStalled, StepTooSmall, NonFinite,
-                 LinearSolverSingular, IoError>;
+using All =
+    List<InvalidInput, InconsistentStart, NewtonStalled, StepTooSmall, NonFinite, LinearSolverSingular, IoError>;
 
 /// From how many of Es does E derive (a class from itself too)?
 template <class... Es>
@@ -32,14 +32,10 @@ TYPED_TEST(EveryError, IsCaughtAsErrorAndKeepsItsMessage) {
   }
 }
 
-TYPED_TEST(EveryError, IsAStandardRuntimeError) {
-  EXPECT_THROW(throw TypeParam("x"), std::runtime_error);
-}
+TYPED_TEST(EveryError, IsAStandardRuntimeError) { EXPECT_THROW(throw TypeParam("x"), std::runtime_error); }
 
 // A handler of one kind never swallows another.
-TYPED_TEST(EveryError, DerivesFromNoOtherKind) {
-  EXPECT_EQ(All<Kinds>::template of<TypeParam>, 1);
-}
+TYPED_TEST(EveryError, DerivesFromNoOtherKind) { EXPECT_EQ(All<Kinds>::template of<TypeParam>, 1); }
 
 TEST(Number, IsReadableAtAnySize) {
   EXPECT_EQ(number(-1e-9), "-1e-09");

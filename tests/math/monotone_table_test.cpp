@@ -73,8 +73,8 @@ TEST(MonotoneTable, IntegralBeginsAtZero) {
   EXPECT_NEAR(aside.integral(3.0), 9.0, 1e-14);
 }
 
-// Slopes by secants err with h², so the values between err with h³ at least: halved steps leave an eighth of the error of a smooth
-// rising function, sinh over [−1, 2].
+// Slopes by secants err with h², so the values between err with h³ at least: halved steps leave an eighth of the error
+// of a smooth rising function, sinh over [−1, 2].
 TEST(MonotoneTable, ConvergesToASmoothFunction) {
   auto const error = [](int n) {
     std::vector<MonotoneTable::Point> points;

@@ -11,9 +11,8 @@ namespace secant_test {
 
 static_assert(StateScalar<Secant<3>> && KernelScalar<Secant<3>>);
 
-/// What a formula of two variables owes on secants: its values at both ends; s·Δx = Δf; the same slope from end to start; and the
-/// gradient
-/// of the middle, as dual numbers have it, up to O(|Δx|²).
+/// What a formula of two variables owes on secants: its values at both ends; s·Δx = Δf; the same slope from end to
+/// start; and the gradient of the middle, as dual numbers have it, up to O(|Δx|²).
 template <class F>
 void expect_slope(F&& f) {
   double const x = 0.7, y = 1.3;

@@ -28,8 +28,8 @@ TEST(SmoothTable, ReproducesACubicByItsEnds) {
   }
 }
 
-// By hand: three points (0, 0), (1, 1), (2, 0), natural: 2 (1 + 1) m₁ = 6 (−1 − 1), so m₁ = −3; the rate at the middle is 0
-// by symmetry and 1.5 at the start, and the value half-way 11/16.
+// By hand: three points (0, 0), (1, 1), (2, 0), natural: 2 (1 + 1) m₁ = 6 (−1 − 1), so m₁ = −3; the rate at the middle
+// is 0 by symmetry and 1.5 at the start, and the value half-way 11/16.
 TEST(SmoothTable, IsNaturalUnlessToldOtherwise) {
   SmoothTable const hat({{0.0, 0.0}, {1.0, 1.0}, {2.0, 0.0}});
   EXPECT_DOUBLE_EQ(hat(1.0).acceleration, -3.0);
@@ -70,8 +70,8 @@ TEST(SmoothTable, GoesOnAtTheRateOfItsEnds) {
   EXPECT_EQ(lift.corners(), (std::vector{1.0, 3.0}));
 }
 
-// One end given, the other natural: two points of distance 1, slope s of the chord 0, rate 1 given at the start, m at the
-// end 0: 2 m₀ = 6 (0 − 1), so m₀ = −3, and the rate at the end is 1 − 3/2.
+// One end given, the other natural: two points of distance 1, slope s of the chord 0, rate 1 given at the start, m at
+// the end 0: 2 m₀ = 6 (0 − 1), so m₀ = −3, and the rate at the end is 1 − 3/2.
 TEST(SmoothTable, TakesOneRateAlone) {
   SmoothTable const one({{0.0, 4.0}, {1.0, 4.0}}, {.first_rate = 1.0});
   EXPECT_DOUBLE_EQ(one(0.0).rate, 1.0);
@@ -91,8 +91,10 @@ TEST(SmoothTable, RefusesPointsThatMakeNoTable) {
   EXPECT_TRUE(has(said({{0.0, 0.0}, {-1.0, 0.0}}), "the times must increase, but point 2 at t = -1 s"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, NAN}}), "point 2 must be finite"));
   EXPECT_TRUE(has(said({{-HUGE_VAL, 0.0}, {1.0, 0.0}}), "point 1 must be finite"));
-  EXPECT_TRUE(has(refusal([] { SmoothTable({{0.0, 0.0}, {1.0, 0.0}}, {.last_rate = NAN}); }), "the rates at the ends must be"));
-  EXPECT_TRUE(has(refusal([] { SmoothTable({{1.0, 0.0}, {0.5, 0.0}}, {}, "\"drive\""); }), "\"drive\": the times must increase"));
+  EXPECT_TRUE(
+      has(refusal([] { SmoothTable({{0.0, 0.0}, {1.0, 0.0}}, {.last_rate = NAN}); }), "the rates at the ends must be"));
+  EXPECT_TRUE(has(refusal([] { SmoothTable({{1.0, 0.0}, {0.5, 0.0}}, {}, "\"drive\""); }),
+                  "\"drive\": the times must increase"));
 }
 
 }  // namespace smooth_table_test

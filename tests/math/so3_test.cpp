@@ -87,8 +87,7 @@ TEST(So3, ExpIsOrthogonalWithDeterminantOne) {
 TEST(So3, ExpTurnsByTheAngleAboutTheAxis) {
   for (Vec3 const& n : directions)
     for (double const angle : {1e-8, 1e-4, 1e-2, 0.49, 0.51, 3.0, 5.0, 7.0})
-      EXPECT_LT((exp_so3<double>(angle * n) - Eigen::AngleAxisd(angle, n).toRotationMatrix()).norm(), 4e-15)
-          << angle;
+      EXPECT_LT((exp_so3<double>(angle * n) - Eigen::AngleAxisd(angle, n).toRotationMatrix()).norm(), 4e-15) << angle;
 }
 
 // Small parts keep their relative accuracy: A − 1 = a φ̃ + b φ̃² from long double.
@@ -190,8 +189,7 @@ TEST(So3, DerivativeOfTheInverseJacobianMatchesThatOfTheJacobian) {
     for (int i = 0; i < 3; ++i) {
       Vec3 const phi = angle * directions[1], delta = Vec3::Unit(i);
       Mat3 const inverse = right_jacobian_inverse<double>(phi);
-      EXPECT_LT((derivative(backward, phi, delta) + inverse * derivative(forward, phi, delta) * inverse).norm(),
-                1e-14)
+      EXPECT_LT((derivative(backward, phi, delta) + inverse * derivative(forward, phi, delta) * inverse).norm(), 1e-14)
           << angle;
     }
 }
@@ -228,7 +226,8 @@ long double arctan_rest(long double z) {
 
 // The slopes by the differential equation 2 z a′ + a = 1/(1 + z), with a = 1 − z m.
 TEST(So3, ArctanIsThatOfHighPrecision) {
-  for (double const t : {0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.1, 0.3, 0.316, 0.3163, 0.5, 0.99}) {  // the series ends at √0.1
+  for (double const t :
+       {0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.1, 0.3, 0.316, 0.3163, 0.5, 0.99}) {  // the series ends at √0.1
     double const z = t * t;
     long double const m = arctan_rest(z);
     ArctanSeries<double> const s(z);

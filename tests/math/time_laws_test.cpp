@@ -21,7 +21,7 @@ static_assert(!HasCorners<SmoothRamp> && !HasCorners<SpinUp> && !HasCorners<Cons
 template <TimeLaw L>
 void expect_consistent(L const& law, double t) {
   double const h = 1e-3;
-  auto const slope = [&](double Motion::*x) {
+  auto const slope = [&](double Motion::* x) {
     auto const at = [&](double time) { return law(time).*x; };
     return (8 * (at(t + h) - at(t - h)) - (at(t + 2 * h) - at(t - 2 * h))) / (12 * h);
   };
@@ -60,18 +60,19 @@ TEST(Ramp, CornerBelongsToThePieceThatBegins) {
   EXPECT_EQ(law.corners(), (std::vector{0.5, 2.5}));
 }
 
-// The parabola of a corner has covered (w/2)²/(2w) = w/8 of the ramp's rise per second at the corner itself; it cuts off at
-// the end what it adds at the start, so the value and ∫ value dt afterwards are those of the sharp ramp.
+// The parabola of a corner has covered (w/2)²/(2w) = w/8 of the ramp's rise per second at the corner itself; it cuts
+// off at the end what it adds at the start, so the value and ∫ value dt afterwards are those of the sharp ramp.
 TEST(Ramp, RoundedCornersLeaveTheRestAsItWas) {
-  Ramp const sharp{.target = -3.0, .duration = 2.0, .start = 0.5}, law{.target = -3.0, .duration = 2.0, .start = 0.5, .rounding = 0.2};
+  Ramp const sharp{.target = -3.0, .duration = 2.0, .start = 0.5},
+      law{.target = -3.0, .duration = 2.0, .start = 0.5, .rounding = 0.2};
   for (double const t : {0.0, 0.45, 0.55, 0.8, 1.5, 2.45, 2.58, 3.0}) {
     expect_consistent(law, t);
     double const h = 1e-3;
     EXPECT_NEAR((law.integral(t + h) - law.integral(t - h)) / (2.0 * h), law(t).value, 1e-5) << "t = " << t;
   }
-  for (double const t : {0.4, 0.6, 2.4, 2.6})
-    EXPECT_NEAR(law(t - 1e-9).rate, law(t + 1e-9).rate, 1e-7) << "t = " << t;
-  for (double const t : {0.0, 0.4, 0.6, 1.5, 2.4, 2.6, 5.0}) EXPECT_NEAR(law(t).value, sharp(t).value, 1e-14) << "t = " << t;
+  for (double const t : {0.4, 0.6, 2.4, 2.6}) EXPECT_NEAR(law(t - 1e-9).rate, law(t + 1e-9).rate, 1e-7) << "t = " << t;
+  for (double const t : {0.0, 0.4, 0.6, 1.5, 2.4, 2.6, 5.0})
+    EXPECT_NEAR(law(t).value, sharp(t).value, 1e-14) << "t = " << t;
   EXPECT_NEAR(law(0.5).value, -1.5 * 0.2 / 8.0, 1e-15);
   EXPECT_NEAR(law(2.5).value, -3.0 + 1.5 * 0.2 / 8.0, 1e-15);
   EXPECT_NEAR(law.integral(5.0), sharp.integral(5.0), 1e-14);
@@ -146,7 +147,8 @@ void expect_integral(L const& law, std::initializer_list<double> times) {
   double const h = 1e-3;
   for (double const t : times) {
     double const slope =
-        (8 * (law.integral(t + h) - law.integral(t - h)) - (law.integral(t + 2 * h) - law.integral(t - 2 * h))) / (12 * h);
+        (8 * (law.integral(t + h) - law.integral(t - h)) - (law.integral(t + 2 * h) - law.integral(t - 2 * h))) /
+        (12 * h);
     EXPECT_NEAR(slope, law(t).value, 1e-10) << t;
   }
 }

@@ -8,4 +8,6 @@ using namespace polybody;
 using Pin = Joint<Spherical, AncfLinear>;
 using M = Model<Bodies<Rigid<>>, Joints<Pin>>;
 
-void make(M& model, BodyHandle<Rigid<>> const& body) { model.connect(Pin{}, model.ground().at({0, 0, 0}), body.at({0, 0, 0})); }
+void make(M& model, BodyHandle<Rigid<>> const& body) {
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), body.at({0, 0, 0}));
+}

@@ -8,4 +8,6 @@ using namespace polybody;
 using Slide = Joint<Prismatic, AncfLinear>;
 using M = Model<Bodies<AncfBeam<>>, Joints<Slide>>;
 
-void make(M& model, BodyHandle<AncfBeam<>> const& beam) { model.connect(Slide{}, model.ground().at({0, 0, 0}), beam.at(0.0)); }
+void make(M& model, BodyHandle<AncfBeam<>> const& beam) {
+  model.connect(Slide{}, model.ground().at({0, 0, 0}), beam.at(0.0));
+}

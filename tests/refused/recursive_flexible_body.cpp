@@ -8,4 +8,6 @@ using namespace polybody;
 using Pin = Joint<Revolute, Recursive>;
 using M = Model<Bodies<AncfBeam<>>, Joints<Pin>>;
 
-void make(M& model, BodyHandle<AncfBeam<>> const& beam) { model.connect(Pin{}, model.ground().at({0, 0, 0}), beam.at(0.0)); }
+void make(M& model, BodyHandle<AncfBeam<>> const& beam) {
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), beam.at(0.0));
+}

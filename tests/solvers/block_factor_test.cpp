@@ -71,7 +71,7 @@ TYPED_TEST(BlockSolvers, SolveChainsOfEveryBlockSize) {
 TYPED_TEST(BlockSolvers, SolveFlexibleBodies) {
   Draw& draw = this->draw;
   Blocks b;
-  for (Index e = 0; e < 5; ++e) b.add(4 * e, 4 * e, draw.definite(8));  // 24 columns
+  for (Index e = 0; e < 5; ++e) b.add(4 * e, 4 * e, draw.definite(8));            // 24 columns
   for (Index e = 0; e < 3; ++e) b.add(24 + 3 * e, 24 + 3 * e, draw.definite(6));  // 12 more
   MatX at_start = draw.matrix(2, 8);
   at_start.rightCols(4).setZero();  // a marker on a node: its element's other node does not move it

@@ -11,12 +11,9 @@ using namespace polybody;
 namespace polybody::test {
 
 bool const linear_solver_obey[] = {
-    obeys<DenseLu, LinearSolvers>("DenseLu"),
-    obeys<EigenSparseLu, LinearSolvers>("EigenSparseLu"),
-    obeys<AutoLu, LinearSolvers>("AutoLu"),
-    obeys<BlockLu, LinearSolvers>("BlockLu"),
-    obeys<BlockSolver, LinearSolvers>("BlockSolver"),
-    obeys<Refined<BlockSolver>, LinearSolvers>("RefinedBlockSolver")};
+    obeys<DenseLu, LinearSolvers>("DenseLu"),         obeys<EigenSparseLu, LinearSolvers>("EigenSparseLu"),
+    obeys<AutoLu, LinearSolvers>("AutoLu"),           obeys<BlockLu, LinearSolvers>("BlockLu"),
+    obeys<BlockSolver, LinearSolvers>("BlockSolver"), obeys<Refined<BlockSolver>, LinearSolvers>("RefinedBlockSolver")};
 
 }  // namespace polybody::test
 

@@ -138,8 +138,7 @@ TEST(Newton, OldRateSavesTheSecondCorrection) {
 
 TEST(Newton, GivesUpWhenCorrectionsGrow) {
   // x^(1/3): every Newton correction throws x to −2 x
-  Scalar problem{[](double x) { return std::cbrt(x); },
-                 [](double x) { return std::cbrt(x) / (3.0 * x); }, 1.0};
+  Scalar problem{[](double x) { return std::cbrt(x); }, [](double x) { return std::cbrt(x) / (3.0 * x); }, 1.0};
   Outcome const o = solve(problem);
   EXPECT_EQ(o.report.result, NewtonResult::diverged);
   EXPECT_FALSE(o.factored);
@@ -189,7 +188,8 @@ TEST(Newton, SaysWhenTheRightHandSideIsNoNumber) {
   Scalar outside{f, slope, -1.0};
   EXPECT_EQ(solve(outside).report.result, NewtonResult::not_finite);
   EXPECT_EQ(outside.solutions, 0);
-  Scalar leaves{f, slope, 1.0};  // the first correction leaves the domain: Newton's doing, a smaller step may stay inside
+  Scalar leaves{f, slope,
+                1.0};  // the first correction leaves the domain: Newton's doing, a smaller step may stay inside
   EXPECT_EQ(solve(leaves).report.result, NewtonResult::diverged);
   EXPECT_EQ(leaves.solutions, 1);
 }
@@ -201,15 +201,17 @@ TEST(Newton, TangentThatIsSingularLaterOnIsNewtonsDoing) {
   EXPECT_EQ(problem.x, 0.0);
 }
 
-// A wrong slope throws x far away, where the next factorisation makes small corrections: small beside those before, which tells nothing,
-// but not beside the tolerance.
+// A wrong slope throws x far away, where the next factorisation makes small corrections: small beside those before,
+// which tells nothing, but not beside the tolerance.
 TEST(Newton, SmallCorrectionAfterOneThatGrewTellsNoRate) {
-  Scalar problem{[](double x) { return x / (1.0 + std::abs(x)) - 0.1; }, [](double x) { return x == 0.0 ? 1e-6 : 1e9; }};
+  Scalar problem{[](double x) { return x / (1.0 + std::abs(x)) - 0.1; },
+                 [](double x) { return x == 0.0 ? 1e-6 : 1e9; }};
   EXPECT_NE(solve(problem).report.result, NewtonResult::converged);
   EXPECT_GT(problem.solutions, 3);
 }
 
-// Corrections that shrink to a fifth at a time while what is tolerated shrinks faster: they do contract, and are taken whole.
+// Corrections that shrink to a fifth at a time while what is tolerated shrinks faster: they do contract, and are taken
+// whole.
 TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
   struct Moving : Damped {
     double tolerated = 1.0;
@@ -230,10 +232,12 @@ TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
 // Corrections that shrink as slowly as the damping lets them are no reason to damp more.
 TEST(Newton, DampingEnds) {
   // a first correction that falls into the way of a much smaller one
-  Damped problem{{[](double x) { return std::atan(x); }, [](double x) { return x == 3.0 ? 1.0 : 1.0 / (1.0 + x * x); }, 3.0}};
+  Damped problem{
+      {[](double x) { return std::atan(x); }, [](double x) { return x == 3.0 ? 1.0 : 1.0 / (1.0 + x * x); }, 3.0}};
   bool factored = false;
   double theta = 1.0;
-  EXPECT_EQ(newton(problem, {.max_iterations = 40, .always_refactor = true, .growths = 40}, factored, theta).result, NewtonResult::converged);
+  EXPECT_EQ(newton(problem, {.max_iterations = 40, .always_refactor = true, .growths = 40}, factored, theta).result,
+            NewtonResult::converged);
   EXPECT_NEAR(problem.x, 0.0, 1e-9);
   EXPECT_GE(problem.least_part, 1.0 / 64.0);
 }

@@ -29,13 +29,15 @@ struct BeadOnALine {
   BeadOnALine(Gravity const& gravity, Bar const& bar, Index elements, double mass, double s, bool slides = true)
       : model(gravity),
         line(model.add(Sliding(Line::from(bar, elements), slides ? std::vector{s} : std::vector<double>{}), "line")),
-        bead(model.add(planar::Rigid(mass, 1e-3 * mass, Placement{bar.placement.origin + s * bar.placement.axes.col(0)}), "bead")),
+        bead(model.add(
+            planar::Rigid(mass, 1e-3 * mass, Placement{bar.placement.origin + s * bar.placement.axes.col(0)}), "bead")),
         left(model.connect(Pin{}, model.ground().at({0, 0, 0}), line.at(0.0), "left")),
         contact(model.connect(Pin{}, slides ? line.at(Slider{}) : line.at(s), bead.at({0, 0}), "contact")) {}
   ElementHandle<Pin> pin_right(Vec3 const& to) {
     return model.connect(Pin{}, model.ground().at(to), line.at(line.body.length()), "right");
   }
-  /// For statics: the bead does not turn, and bears on the line with its weight from the beginning (no load, no direction to go).
+  /// For statics: the bead does not turn, and bears on the line with its weight from the beginning (no load, no
+  /// direction to go).
   State resting(double weight) {
     model.connect(Motor{{.law = {{.value = 0.0}}}, {}}, model.ground().at({0, 0, 0}), bead.at({0, 0}), "upright");
     State x = model.reference_state();

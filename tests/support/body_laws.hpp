@@ -94,9 +94,7 @@ struct BodyLaws {
   }
   VecX speeds() { return vector(nv, 1.5); }
   Mat3 turned() { return exp_so3<double>(vector3()); }
-  Wrench<double> wrench() {
-    return {vector3() * 5.0, vector3() * 3.0};
-  }
+  Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }
 
   /// Points on the axis, at both ends, and off it.
   std::vector<typename B::Point> points() const {
@@ -105,7 +103,8 @@ struct BodyLaws {
       p.push_back(body.at(0.5 * length, 0.07));
       p.push_back(body.at(0.77 * length, -0.04));
     }
-    if constexpr (B::world == World::space && requires { body.at(0.0, 0.0, 0.0); }) p.push_back(body.at(0.2 * length, 0.03, -0.05));
+    if constexpr (B::world == World::space && requires { body.at(0.0, 0.0, 0.0); })
+      p.push_back(body.at(0.2 * length, 0.03, -0.05));
     return p;
   }
   typename B::Point point(double s, double y) const {
@@ -305,8 +304,10 @@ struct BodyLaws {
       {"TwistIsJacobianTimesSpeeds", &BodyLaws::twist_is_jacobian_times_speeds},
       {"JacobianIsTheDerivativeOfTheFrame", &BodyLaws::jacobian_is_the_derivative_of_the_frame},
       {"BiasIsTheAccelerationAtConstantSpeeds", &BodyLaws::bias_is_the_acceleration_at_constant_speeds},
-      {"LoadStiffnessIsTheDerivativeOfThePulledWrench", &BodyLaws::load_stiffness_is_the_derivative_of_the_pulled_wrench},
-      {"OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives", &BodyLaws::own_rows_hold_at_the_reference_and_their_maps_are_derivatives}};
+      {"LoadStiffnessIsTheDerivativeOfThePulledWrench",
+       &BodyLaws::load_stiffness_is_the_derivative_of_the_pulled_wrench},
+      {"OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives",
+       &BodyLaws::own_rows_hold_at_the_reference_and_their_maps_are_derivatives}};
 };
 
 // --- inertia ------------------------------------------------------------------------------------------------
@@ -365,8 +366,7 @@ void BodyLaws<Case>::weight_acts_in_the_middle_of_the_bar() {
   VecX const weight = gravity(q, g);
   double const m = total_mass;
   EXPECT_NEAR(weight.dot(rigid_velocity(q, v0, Vec3::Zero())), m * g.dot(v0), 1e-12 * m);
-  EXPECT_NEAR(weight.dot(rigid_velocity(q, Vec3::Zero(), omega)), m * middle.cross(g).dot(omega),
-              1e-12 * m);
+  EXPECT_NEAR(weight.dot(rigid_velocity(q, Vec3::Zero(), omega)), m * middle.cross(g).dot(omega), 1e-12 * m);
   EXPECT_NEAR(gravity_energy(q, g), -m * g.dot(middle), 1e-12 * m);
 }
 
@@ -401,8 +401,7 @@ void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_position() {
   VecX const q = configuration(), v = speeds();
   MatX slope(nv, nv);
   for (Index j = 0; j < nv; ++j)
-    slope.col(j) = epsilon_of(force<Dual<1>>(carried(q, VecX::Unit(nv, j)),
-                                                            v.template cast<Dual<1>>()));
+    slope.col(j) = epsilon_of(force<Dual<1>>(carried(q, VecX::Unit(nv, j)), v.template cast<Dual<1>>()));
   EXPECT_LT(mismatch(tangent(q, v, 1.0, 0.0), -slope), 1e-12);
 }
 
@@ -411,8 +410,7 @@ void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_speed() {
   VecX const q = configuration(), v = speeds();
   MatX slope(nv, nv);
   for (Index j = 0; j < nv; ++j)
-    slope.col(j) = epsilon_of(force<Dual<1>>(q.template cast<Dual<1>>(),
-                                                            along(v, VecX::Unit(nv, j))));
+    slope.col(j) = epsilon_of(force<Dual<1>>(q.template cast<Dual<1>>(), along(v, VecX::Unit(nv, j))));
   EXPECT_LT(mismatch(tangent(q, v, 0.0, 1.0), -slope), 1e-12);
 }
 
@@ -431,8 +429,7 @@ void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
   auto const elastic = Case::body(undamped);
   VecX const q = configuration(), v = speeds();
   double const power = force_of<double>(elastic, q, v).dot(v);
-  double const rate =
-      slope_at_zero([&](double h) { return strain_energy(moved<double>(q, v * h)); }, 3e-4);
+  double const rate = slope_at_zero([&](double h) { return strain_energy(moved<double>(q, v * h)); }, 3e-4);
   double by_mass = 0.0;  // with own rows ⊞ keeps them, which these speeds do not; v · Q_v of Euler parameters is zero
   if constexpr (!OwnsRows<B>)
     by_mass = slope_at_zero([&](double h) { return kinetic_energy(moved<double>(q, v * h), v); }, 3e-4);
@@ -458,8 +455,7 @@ void BodyLaws<Case>::local_rate_moves_the_body_with_its_speeds() {
   EXPECT_LT((values_of(passing) - now).norm(), 1e-14);
   for (auto const& p : points()) {
     auto const seen = see<double>(p, Mat3::Identity(), now, v).marker.frame;
-    auto const moving =
-        see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>()).marker.frame;
+    auto const moving = see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>()).marker.frame;
     EXPECT_LT(mismatch(epsilon_of(moving.r), seen.v), 1e-13);
     EXPECT_LT(mismatch(known(epsilon_of(moving.A)), known(skew<double>(seen.w) * seen.A)), 1e-13);
   }
@@ -536,8 +532,7 @@ void BodyLaws<Case>::jacobian_is_the_derivative_of_the_frame() {
   for (auto const& p : points()) {
     auto const s = see<double>(p, axes, q, rest);
     for (Index j = 0; j < nv; ++j) {
-      auto const moved = see<Dual<1>>(p, axes, carried(q, VecX::Unit(nv, j)),
-                                                     rest.template cast<Dual<1>>());
+      auto const moved = see<Dual<1>>(p, axes, carried(q, VecX::Unit(nv, j)), rest.template cast<Dual<1>>());
       Vec3 const turn = s.jacobian.col(j).template tail<3>();
       EXPECT_LT((epsilon_of(moved.marker.frame.r) - s.jacobian.col(j).template head<3>()).norm(), 1e-13) << j;
       EXPECT_LT(known(epsilon_of(moved.marker.frame.A) - skew<double>(turn) * s.marker.frame.A).norm(), 1e-13) << j;
@@ -552,8 +547,7 @@ void BodyLaws<Case>::bias_is_the_acceleration_at_constant_speeds() {
   VecXOf<Dual<1>> const passing = carried(q, rates(VecX::Zero(nv), v));
   for (auto const& p : points()) {
     auto const s = see<double>(p, turned(), q, v);
-    auto const moving =
-        see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>());
+    auto const moving = see<Dual<1>>(p, Mat3::Identity(), passing, v.template cast<Dual<1>>());
     Vec6 const expected = epsilon_of(moving.jacobian) * v;
     EXPECT_LT(mismatch(s.marker.bias, expected), 1e-13);
     EXPECT_LT(mismatch(s.marker.bias, epsilon_of(moving.twist())), 1e-13);
@@ -572,8 +566,7 @@ void BodyLaws<Case>::load_stiffness_is_the_derivative_of_the_pulled_wrench() {
   for (auto const& p : points()) {
     MatX slope = MatX::Zero(nv, nv), stiffness = slope;
     for (Index j = 0; j < nv; ++j) {
-      auto const moved =
-          see<Dual<1>>(p, Mat3::Identity(), carried(q, VecX::Unit(nv, j)), rest);
+      auto const moved = see<Dual<1>>(p, Mat3::Identity(), carried(q, VecX::Unit(nv, j)), rest);
       VecXOf<Dual<1>> pulled(columns);
       moved.marker.pull(load, pulled);
       slope.col(j).segment(body.first_column(p), columns) = epsilon_of(pulled);

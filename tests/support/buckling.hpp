@@ -23,8 +23,8 @@ double lowest(M const& model, State const& x) {
   return w * std::abs(w);
 }
 
-/// Where `lowest(force)` passes through zero, between a, stable, and b, unstable, by secants. The last one is not followed:
-/// there the stiffness is singular.
+/// Where `lowest(force)` passes through zero, between a, stable, and b, unstable, by secants. The last one is not
+/// followed: there the stiffness is singular.
 template <class F>
 double critical_force(F&& lowest, double a, double b) {
   double at_a = lowest(a), at_b = lowest(b);
@@ -42,9 +42,9 @@ double critical_force(F&& lowest, double a, double b) {
   return b;
 }
 
-/// Two legs of 240 mm, 30 mm high in the plane and 0.6 mm thick (N, mm, and any mass: it decides no stability, and a heavy one
-/// keeps rounding errors out of the lowest frequency), in equilibrium under `force` at the tip. S9c's
-/// numbers are those of a frame without shear: GA is ten times EA.
+/// Two legs of 240 mm, 30 mm high in the plane and 0.6 mm thick (N, mm, and any mass: it decides no stability, and a
+/// heavy one keeps rounding errors out of the lowest frequency), in equilibrium under `force` at the tip. S9c's numbers
+/// are those of a frame without shear: GA is ten times EA.
 template <class B>
 struct FlatFrame {
   using Clamp = Joint<Weld, Constraint>;
@@ -64,9 +64,14 @@ struct FlatFrame {
   static Bar leg(Placement const& placement, double J) {
     double const e = 71240, g = e / 2.62, b = 30, t = 0.6;
     return {.length = 240.0,
-            .constants = BarConstants{.EA = e * b * t, .EI = e * t * b * b * b / 12, .mass_per_length = 1.0, .GA = 10 * e * b * t,
-                                      .GJ = g * J, .rotary_inertia = 75.0,
-                                      .EI_y = e * b * t * t * t / 12, .rotary_inertia_y = 75.0},
+            .constants = BarConstants{.EA = e * b * t,
+                                      .EI = e * t * b * b * b / 12,
+                                      .mass_per_length = 1.0,
+                                      .GA = 10 * e * b * t,
+                                      .GJ = g * J,
+                                      .rotary_inertia = 75.0,
+                                      .EI_y = e * b * t * t * t / 12,
+                                      .rotary_inertia_y = 75.0},
             .placement = placement};
   }
 };
@@ -74,13 +79,15 @@ struct FlatFrame {
 /// Sought between 1 and 1.2 N.
 template <class B>
 double critical_force_of_the_frame(Index n, double J) {
-  return critical_force([&](double force) {
-    FlatFrame<B> const frame(n, J, force);
-    return lowest(frame.model, frame.x);
-  }, 1.0, 1.2);
+  return critical_force(
+      [&](double force) {
+        FlatFrame<B> const frame(n, J, force);
+        return lowest(frame.model, frame.x);
+      },
+      1.0, 1.2);
 }
-inline double const thin_strip = 30 * 0.6 * 0.6 * 0.6 / 3;                ///< J = b t³/3
-inline double const thick_strip = thin_strip * (1.0 - 0.63 * 0.6 / 30);        ///< of a strip that is not infinitely thin
+inline double const thin_strip = 30 * 0.6 * 0.6 * 0.6 / 3;               ///< J = b t³/3
+inline double const thick_strip = thin_strip * (1.0 - 0.63 * 0.6 / 30);  ///< of a strip that is not infinitely thin
 
 }  // namespace buckling
 }  // namespace polybody

@@ -15,7 +15,7 @@ namespace polybody {
 struct CantileverLoad {
   Vec2 force = Vec2::Zero();  ///< (2) at the tip [N]
   LoadAxes axes = LoadAxes::world;
-  double moment = 0.0;        ///< at the tip [N m]
+  double moment = 0.0;  ///< at the tip [N m]
   Gravity gravity = {};
 };
 
@@ -50,8 +50,8 @@ struct Cantilever {
 
  private:
   Vec3 section(State const& y, double s) const {
-    auto const line = bar.body.template centre_line<double>(bar.body.at(s), coordinates_of(model, y, bar),
-                                                            speeds_of(model, y, bar));
+    auto const line =
+        bar.body.template centre_line<double>(bar.body.at(s), coordinates_of(model, y, bar), speeds_of(model, y, bar));
     return {line.r[0], line.r[1], line.angle};
   }
   auto ground(B const& body) const {

@@ -57,9 +57,7 @@ struct OnBallJoints {
   using Body = Rigid<>;
   using PolicyType = Policy;
   using Hinge = Joint<Spherical, Policy>;
-  static Body body(Link const& l, Placement const& place) {
-    return {l.mass, Mat3::Identity() * l.inertia, place};
-  }
+  static Body body(Link const& l, Placement const& place) { return {l.mass, Mat3::Identity() * l.inertia, place}; }
   static Hinge hinge(Policy const& policy) { return {{}, policy}; }
   static Marker<Body> at(BodyHandle<Body> const& link, double x) { return link.at(Vec3(x, 0.0, 0.0)); }
 };

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// CASES S9e, Euler's columns, and S9d, a strip under a force in its stiff plane: where rods buckle, and what becomes of one.
+/// CASES S9e, Euler's columns, and S9d, a strip under a force in its stiff plane: where rods buckle, and what becomes
+/// of one.
 
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/prismatic.hpp>
@@ -14,9 +15,9 @@ namespace columns {
 /// How the ends of a column along x are held. The second one slides along x.
 enum class Ends { clamped_free, pinned_pinned, clamped_pinned, clamped_clamped };
 
-/// L = EI = 1 (any mass: it decides no stability), four times as stiff out of the x–y plane. With GA = EA stretch and shear,
-/// which make of Euler's equation EI θ″ + P (1 − P/EA + P/GA) θ = 0, cancel; the force across the column that a held end adds
-/// shears it by 1/GA.
+/// L = EI = 1 (any mass: it decides no stability), four times as stiff out of the x–y plane. With GA = EA stretch and
+/// shear, which make of Euler's equation EI θ″ + P (1 − P/EA + P/GA) θ = 0, cancel; the force across the column that a
+/// held end adds shears it by 1/GA.
 template <class B>
 struct Column {
   using Clamp = Joint<Weld, Constraint>;
@@ -29,8 +30,15 @@ struct Column {
 
   Column(Index n, Ends ends, Vec3 const& force)
       : bar(model.add(B::from({.length = 1.0,
-                               .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e6, .GJ = 1.0,
-                                                         .rotary_inertia = 0.1, .EI_y = 4.0, .rotary_inertia_y = 0.1}}, n),
+                               .constants = BarConstants{.EA = 1e6,
+                                                         .EI = 1.0,
+                                                         .mass_per_length = 1.0,
+                                                         .GA = 1e6,
+                                                         .GJ = 1.0,
+                                                         .rotary_inertia = 0.1,
+                                                         .EI_y = 4.0,
+                                                         .rotary_inertia_y = 0.1}},
+                              n),
                       "column")) {
     auto const foot = model.ground().at({0, 0, 0}), head = model.ground().at({1, 0, 0});
     if (ends == Ends::pinned_pinned)
@@ -59,37 +67,45 @@ double limit_of_meshes(F&& of, Index n) {
 
 template <class B>
 double critical_load(Index n, Ends ends, double near) {
-  return buckling::critical_force([&](double load) {
-    Column<B> column(n, ends, {-load, 0, 0});
-    equilibrium(column.model, column.x);
-    return buckling::lowest(column.model, column.x);
-  }, 0.98 * near, 1.15 * near);
+  return buckling::critical_force(
+      [&](double load) {
+        Column<B> column(n, ends, {-load, 0, 0});
+        equilibrium(column.model, column.x);
+        return buckling::lowest(column.model, column.x);
+      },
+      0.98 * near, 1.15 * near);
 }
 
 /// P = π²EI/4L², π²EI/L², 20.190728556426629 EI/L², 4π²EI/L².
 template <class B>
 void buckles_at_eulers_loads(Index n) {
   double const pi2 = std::numbers::pi * std::numbers::pi;
-  std::pair<Ends, double> const rows[] = {{Ends::clamped_free, 0.25 * pi2}, {Ends::pinned_pinned, pi2},
-                                          {Ends::clamped_pinned, 20.190728556426629}, {Ends::clamped_clamped, 4.0 * pi2}};
+  std::pair<Ends, double> const rows[] = {{Ends::clamped_free, 0.25 * pi2},
+                                          {Ends::pinned_pinned, pi2},
+                                          {Ends::clamped_pinned, 20.190728556426629},
+                                          {Ends::clamped_clamped, 4.0 * pi2}};
   for (auto const& [ends, load] : rows)
-    EXPECT_NEAR(limit_of_meshes([&](Index m) { return critical_load<B>(m, ends, load); }, n), load, 1e-4 * load) << int(ends);
+    EXPECT_NEAR(limit_of_meshes([&](Index m) { return critical_load<B>(m, ends, load); }, n), load, 1e-4 * load)
+        << int(ends);
 }
 
-/// Beyond: the clamped–free column stands bent, P/P_cr = (2 K(sin ½θ)/π)² for θ = 20°, 40°, 60° at its tip. A force across it
-/// bends it, and is taken away.
+/// Beyond: the clamped–free column stands bent, P/P_cr = (2 K(sin ½θ)/π)² for θ = 20°, 40°, 60° at its tip. A force
+/// across it bends it, and is taken away.
 template <class B>
 void stands_bent_beyond(Index n) {
   double const critical = 0.25 * std::numbers::pi * std::numbers::pi;
-  for (auto const& [degrees, part] : {std::pair{20.0, 1.01539687}, std::pair{40.0, 1.06366327}, std::pair{60.0, 1.15171962}}) {
-    double const angle = limit_of_meshes([&](Index m) {
-      Column<B> pushed(m, Ends::clamped_free, {-part * critical, 0.02 * critical, 0}),
-          column(m, Ends::clamped_free, {-part * critical, 0, 0});
-      equilibrium(pushed.model, pushed.x, {.load_steps = 20});
-      column.x = pushed.x;
-      equilibrium(column.model, column.x);
-      return column.tip_angle();
-    }, n);
+  for (auto const& [degrees, part] :
+       {std::pair{20.0, 1.01539687}, std::pair{40.0, 1.06366327}, std::pair{60.0, 1.15171962}}) {
+    double const angle = limit_of_meshes(
+        [&](Index m) {
+          Column<B> pushed(m, Ends::clamped_free, {-part * critical, 0.02 * critical, 0}),
+              column(m, Ends::clamped_free, {-part * critical, 0, 0});
+          equilibrium(pushed.model, pushed.x, {.load_steps = 20});
+          column.x = pushed.x;
+          equilibrium(column.model, column.x);
+          return column.tip_angle();
+        },
+        n);
     EXPECT_NEAR(angle * 180.0 / std::numbers::pi, degrees, 1e-3) << degrees;
   }
 }
@@ -99,23 +115,30 @@ void stands_bent_beyond(Index n) {
 inline Bar strip() {
   double const e = 2.1e11, g = e / 2.6, b = 0.1, t = 0.01, a = b * t;
   return {.length = 1.0,
-          .constants = BarConstants{.EA = e * a, .EI = e * t * b * b * b / 12, .mass_per_length = 1, .GA = 100 * g * a,
-                                    .GJ = g * b * t * t * t / 3 * (1 - 0.63 * t / b), .rotary_inertia = 0.1,
-                                    .EI_y = e * b * t * t * t / 12, .rotary_inertia_y = 0.1}};
+          .constants = BarConstants{.EA = e * a,
+                                    .EI = e * t * b * b * b / 12,
+                                    .mass_per_length = 1,
+                                    .GA = 100 * g * a,
+                                    .GJ = g * b * t * t * t / 3 * (1 - 0.63 * t / b),
+                                    .rotary_inertia = 0.1,
+                                    .EI_y = e * b * t * t * t / 12,
+                                    .rotary_inertia_y = 0.1}};
 }
 
 template <class B>
 double critical_tip_force(Index n) {
-  return buckling::critical_force([&](double force) {
-    Model<Bodies<B>, Joints<Joint<Weld, Constraint>>, Forces<PointForce<>>> model;
-    auto const bar = model.add(B::from(strip(), n), "strip");
-    model.connect(Joint<Weld, Constraint>{}, model.ground().at({0, 0, 0}), bar.at(0.0), "clamp");
-    model.apply(PointForce<>{.force = {0, force, 0}}, bar.at(1.0));
-    State x = model.reference_state();
-    equilibrium(model, x);
-    EXPECT_EQ(position(model, x, bar.at(1.0))[2], 0.0);
-    return buckling::lowest(model, x);
-  }, 8400.0, 8800.0);
+  return buckling::critical_force(
+      [&](double force) {
+        Model<Bodies<B>, Joints<Joint<Weld, Constraint>>, Forces<PointForce<>>> model;
+        auto const bar = model.add(B::from(strip(), n), "strip");
+        model.connect(Joint<Weld, Constraint>{}, model.ground().at({0, 0, 0}), bar.at(0.0), "clamp");
+        model.apply(PointForce<>{.force = {0, force, 0}}, bar.at(1.0));
+        State x = model.reference_state();
+        equilibrium(model, x);
+        EXPECT_EQ(position(model, x, bar.at(1.0))[2], 0.0);
+        return buckling::lowest(model, x);
+      },
+      8400.0, 8800.0);
 }
 
 }  // namespace columns

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The laws that every contact geometry obeys, alone and with a normal force and friction. A case says where bodies touch:
+/// The laws that every contact geometry obeys, alone and with a normal force and friction. A case says where bodies
+/// touch:
 ///
 ///     struct SphereOnPlaneCase {
 ///       static SphereOnPlane geometry();
@@ -70,7 +71,8 @@ struct ContactLaws {
     return law;
   }
   Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }
-  /// Calls visit(contact) for each normal force, without friction; none of them lets go of bodies that part as these do.
+  /// Calls visit(contact) for each normal force, without friction; none of them lets go of bodies that part as these
+  /// do.
   template <class Visit>
   void with_each_contact(Visit&& visit) const {
     visit(Contact<G>{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}});
@@ -131,7 +133,8 @@ struct ContactLaws {
       expected << -p.normal, -(p.place - f[0].r).cross(p.normal), p.normal, (p.place - f[1].r).cross(p.normal);
       EXPECT_LT((depth.d.matrix() - expected).norm(), 1e-13);
       // … and by differences
-      double const rate = slope_at_zero([&](double t) { return point_of(geometry, later(f[0], t), later(f[1], t)).depth; }, 1e-4);
+      double const rate =
+          slope_at_zero([&](double t) { return point_of(geometry, later(f[0], t), later(f[1], t)).depth; }, 1e-4);
       EXPECT_NEAR(rate, -p.normal.dot(relative(p, f)), 1e-9);
     }
   }
@@ -353,8 +356,8 @@ struct ContactLaws {
     });
   }
 
-  // Sliding, the chord is more than the slope along the slip and the same across: own − exact = Jᵀ (μN/s)(u uᵀ/s²) J, s² = u² +
-  // v_s².
+  // Sliding, the chord is more than the slope along the slip and the same across: own − exact = Jᵀ (μN/s)(u uᵀ/s²) J,
+  // s² = u² + v_s².
   void own_stiffness_of_friction_is_an_upper_bound() {
     for (double const mu : {0.1, 0.4, 1.3}) {
       Touching const f = overlapping(0.1);
@@ -391,7 +394,8 @@ struct ContactLaws {
       {"OwnStiffnessIsSymmetricAndNeverNegative", &ContactLaws::own_stiffness_is_symmetric_and_never_negative},
       {"OwnStiffnessLeavesOutOnlyHowTheNormalTurns", &ContactLaws::own_stiffness_leaves_out_only_how_the_normal_turns},
       {"OwnStiffnessHasTheSlopesOfTheNormalForce", &ContactLaws::own_stiffness_has_the_slopes_of_the_normal_force},
-      {"OwnStiffnessIsExactInTheTwistsOfBodiesAtRest", &ContactLaws::own_stiffness_is_exact_in_the_twists_of_bodies_at_rest},
+      {"OwnStiffnessIsExactInTheTwistsOfBodiesAtRest",
+       &ContactLaws::own_stiffness_is_exact_in_the_twists_of_bodies_at_rest},
       {"OwnStiffnessOfFrictionIsAnUpperBound", &ContactLaws::own_stiffness_of_friction_is_an_upper_bound},
   };
 };

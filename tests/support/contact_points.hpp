@@ -18,8 +18,8 @@ std::vector<ContactPoint<double>> contact_points(G const& geometry, Frame<double
   return found;
 }
 
-/// Points by dual numbers against differences, as the link moves by `motion`: place, normal, depth and share. \return their
-/// number
+/// Points by dual numbers against differences, as the link moves by `motion`: place, normal, depth and share. \return
+/// their number
 template <class G>
 int expect_contact_duals(G const& geometry, Frame<double> const& link, Frame<double> const& other, Vec6 const& motion) {
   using D = Dual<1>;
@@ -31,10 +31,12 @@ int expect_contact_duals(G const& geometry, Frame<double> const& link, Frame<dou
     return all;
   };
   std::vector<ContactPoint<D>> found;
-  geometry.template for_each_point<D>(moved<D>(link, motion.cast<D>() * D::variable(0.0, 0)), moved<D>(other, Vec<D, 6>::Zero()),
+  geometry.template for_each_point<D>(moved<D>(link, motion.cast<D>() * D::variable(0.0, 0)),
+                                      moved<D>(other, Vec<D, 6>::Zero()),
                                       [&](ContactPoint<D> const& p) { found.push_back(p); });
   VecX const slope = slope_at_zero(
-      [&](double h) { return VecX(stacked(contact_points(geometry, moved<double>(link, Vec6(motion * h)), other))); }, 1e-6);
+      [&](double h) { return VecX(stacked(contact_points(geometry, moved<double>(link, Vec6(motion * h)), other))); },
+      1e-6);
   auto const all = stacked(found);
   EXPECT_EQ(all.size(), slope.size());
   for (Index i = 0; i < std::min(all.size(), slope.size()); ++i)

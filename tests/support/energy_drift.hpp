@@ -9,8 +9,8 @@ namespace polybody {
 
 struct Drift {
   double energy = 0.0, linear = 0.0, angular = 0.0;  ///< relative to the start's
-  double largest_gain = -1.0;                        ///< of energy in one step, relative; negative when every step loses some
-  double violation = 0.0;                            ///< |Φ|, largest
+  double largest_gain = -1.0;  ///< of energy in one step, relative; negative when every step loses some
+  double violation = 0.0;      ///< |Φ|, largest
 };
 
 /// `steps` steps of length h from x, which is moved along.

@@ -49,8 +49,8 @@ void FlexibleBodyLaws<Case>::deformation_is_resisted_and_damped() {
 template <class Case>
 void FlexibleBodyLaws<Case>::rigid_motion_strains_nothing() {
   Bar elsewhere = this->bar;
-  elsewhere.placement = this->planar ? Placement::planar(-7.0, 3.0, 2.5)
-                                     : Placement::at({-7.0, 3.0, 5.0}, {1.0, -0.4, 2.0});
+  elsewhere.placement =
+      this->planar ? Placement::planar(-7.0, 3.0, 2.5) : Placement::at({-7.0, 3.0, 5.0}, {1.0, -0.4, 2.0});
   auto const other = Case::body(elsewhere);
   VecX q(this->nq);
   other.reference(mutable_view(q));

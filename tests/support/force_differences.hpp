@@ -18,8 +18,8 @@ VecX stacked_wrenches(F const& force, std::array<Frame<double>, F::markers> cons
 
 /// ck ∂w/∂pose + cd ∂w/∂twist by differences: what `wrench_gradient` must be.
 template <ForceElement F>
-MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames, double t,
-                             double ck, double cd) {
+MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck,
+                             double cd) {
   MatX gradient(6 * F::markers, 6 * F::markers);
   double const step = 1e-3 / std::max({1.0, ck, cd});
   for (Index j = 0; j < gradient.cols(); ++j)

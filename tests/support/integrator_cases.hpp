@@ -19,9 +19,7 @@ struct SwingingBar {
   ModelType const& model = chain.model;
   State start = model.reference_state();
 
-  SwingingBar() {
-    model.set_velocity(start, chain.links[0], Vec3::Zero(), Vec3(0, 0, exact(phase).rate));
-  }
+  SwingingBar() { model.set_velocity(start, chain.links[0], Vec3::Zero(), Vec3(0, 0, exact(phase).rate)); }
   SwingingBar(SwingingBar const&) = delete;  // refers to itself
   /// The force on the bar at the pivot at time t, m (a − g) with a the acceleration of the middle; λ = −R.
   Vec2 reaction(double t) const {
@@ -36,9 +34,8 @@ struct SlowTop {
   using Ball = Joint<Spherical, Constraint>;
   using ModelType = Model<Bodies<Rigid<>>, Joints<Ball>>;
   ModelType model{Gravity{0, 0, -9.81}};
-  BodyHandle<Rigid<>> body =
-      model.add(Rigid<>(1.0, Vec3(0.02, 0.01, 0.03).asDiagonal().toDenseMatrix(), Placement::at({0.3, 0.1, 0.2})),
-                "top");
+  BodyHandle<Rigid<>> body = model.add(
+      Rigid<>(1.0, Vec3(0.02, 0.01, 0.03).asDiagonal().toDenseMatrix(), Placement::at({0.3, 0.1, 0.2})), "top");
   ElementHandle<Ball> pivot =
       model.connect(Ball{}, model.ground().at({0, 0, 0}), body.at(Vec3(-0.3, -0.1, -0.2)), "pivot");
   State start = model.reference_state();
@@ -50,8 +47,7 @@ struct SlowTop {
 struct SprungBody {
   using ModelType = Model<Bodies<Rigid<>>, Joints<>, Forces<SpringDamper>>;
   ModelType model{Gravity{0, 0, -9.81}};
-  BodyHandle<Rigid<>> body =
-      model.add(Rigid<>(2.0, Vec3(0.2, 0.3, 0.4).asDiagonal().toDenseMatrix()), "body");
+  BodyHandle<Rigid<>> body = model.add(Rigid<>(2.0, Vec3(0.2, 0.3, 0.4).asDiagonal().toDenseMatrix()), "body");
   State start;
 
   SprungBody() {

@@ -26,15 +26,15 @@ namespace polybody {
 
 /// A place of b against a where the joint is closed, and the motions of b against a that keep it closed.
 struct Mate {
-  Vec3 d = Vec3::Zero();                     ///< (3) r_b − r_a in a's axes
-  Mat3 R = Mat3::Identity();                 ///< (3×3) AaᵀAb
-  MatX freedoms;                             ///< (6×dof) [velocity; angular velocity] of b in a's axes
+  Vec3 d = Vec3::Zero();      ///< (3) r_b − r_a in a's axes
+  Mat3 R = Mat3::Identity();  ///< (3×3) AaᵀAb
+  MatX freedoms;              ///< (6×dof) [velocity; angular velocity] of b in a's axes
 };
 
 /// Two frames, their twists with them.
 struct FramePair {
   Frame<double> a, b;
-  MatX freedoms = MatX::Zero(6, 0);          ///< (6×dof) of b, world axes
+  MatX freedoms = MatX::Zero(6, 0);  ///< (6×dof) of b, world axes
 
   VecX twists() const;
   FramePair moved_by(VecX const& motion) const;
@@ -42,10 +42,10 @@ struct FramePair {
 
 /// A gap with G = [Ga Gb] and its derivatives.
 struct SeenGap {
-  VecX g, rate;   ///< (m)
-  MatX G;         ///< (m×12)
-  MatX slope;     ///< (m×12) ∂g/∂(motions), dual numbers
-  MatX G_rate;    ///< (m×12) Ġ while the frames keep their twists and time stands still, dual numbers
+  VecX g, rate;  ///< (m)
+  MatX G;        ///< (m×12)
+  MatX slope;    ///< (m×12) ∂g/∂(motions), dual numbers
+  MatX G_rate;   ///< (m×12) Ġ while the frames keep their twists and time stands still, dual numbers
 };
 
 /// A geometry of any type.
@@ -147,7 +147,8 @@ struct JointLaws : JointLawsOf {
       {"ClosedFramesHaveNoGap", &JointLaws::closed_frames_have_no_gap},
       {"MapsAreTheDerivativeOfTheGap", &JointLaws::maps_are_the_derivative_of_the_gap},
       {"RateIsTheDerivativeOfTheGapByTime", &JointLaws::rate_is_the_derivative_of_the_gap_by_time},
-      {"GammaIsTheSecondDerivativeWithoutAccelerations", &JointLaws::gamma_is_the_second_derivative_without_accelerations},
+      {"GammaIsTheSecondDerivativeWithoutAccelerations",
+       &JointLaws::gamma_is_the_second_derivative_without_accelerations},
       {"WrenchesHaveThePowerOfTheMultipliers", &JointLaws::wrenches_have_the_power_of_the_multipliers},
       {"WrenchesAreEqualAndOpposite", &JointLaws::wrenches_are_equal_and_opposite},
       {"DoesNotSeeARigidMotionOfBothFrames", &JointLaws::does_not_see_a_rigid_motion_of_both_frames},

@@ -7,9 +7,11 @@
 ///       void force_falls_with_length();
 ///       static constexpr Law<SpringLaws> laws[] = {{"ForceFallsWithLength", &SpringLaws::force_falls_with_length}};
 ///     };
-///     bool const steel_obeys = obeys<SteelCase, SpringLaws>("Steel");  // registers the test Steel/SpringLaws.ForceFallsWithLength
+///     bool const steel_obeys = obeys<SteelCase, SpringLaws>("Steel");  // registers the test
+///     Steel/SpringLaws.ForceFallsWithLength
 ///
-/// GoogleTest's typed tests do the same with a class for each law and type: an eighth of all the code of these tests was that.
+/// GoogleTest's typed tests do the same with a class for each law and type: an eighth of all the code of these tests
+/// was that.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +36,8 @@ class LawTest : public testing::Test {
   std::function<void()> law_;
 };
 
-inline void register_law(std::string const& suite, char const* law, char const* file, int line, std::function<void()> holds) {
+inline void register_law(std::string const& suite, char const* law, char const* file, int line,
+                         std::function<void()> holds) {
   testing::RegisterTest(suite.c_str(), law, nullptr, nullptr, file, line,
                         [holds = std::move(holds)]() -> LawTest* { return new LawTest(holds); });
 }

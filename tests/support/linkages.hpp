@@ -13,8 +13,8 @@ namespace polybody {
 template <class J, class K>
 using JointsOf = std::conditional_t<std::is_same_v<J, K>, Joints<J>, Joints<J, K>>;
 
-/// N windows of uniform rods of 1 m and 1 kg; upright, θ˙ = 1 rad/s [IFToMM A02, CASES R2]. \tparam Where as for `Chain`; `Loop`, the
-/// same for the pins that close loops
+/// N windows of uniform rods of 1 m and 1 kg; upright, θ˙ = 1 rad/s [IFToMM A02, CASES R2]. \tparam Where as for
+/// `Chain`; `Loop`, the same for the pins that close loops
 template <class Where, class Loop = Where>
 struct FourBars {
   using Body = typename Where::Body;
@@ -52,18 +52,16 @@ struct Corner {
   int n;
   double t, x, y;
 };
-inline constexpr Corner corners[] = {{1, 1, -0.2607126751836504, -0.9654164391590732},
-                                     {1, 4, 0.1589555042571178, 0.9872857477277616},
-                                     {1, 10, 0.4783850577609706, 0.8781501787912093},
-                                     {2, 1, -0.1950203019494351, -0.9807992056621738},
-                                     {2, 4, 0.1176161023768086, 0.9930591384513251},
-                                     {2, 10, 0.3284581115408154, 0.944518538178601},
-                                     {40, 1, -0.1153568806321099, -0.9933241113004502},
-                                     {40, 4, 0.0693420322279992, 0.9975929443247336},
-                                     {40, 10, 0.1805122266867284, 0.9835727405823116}};
+inline constexpr Corner corners[] = {
+    {1, 1, -0.2607126751836504, -0.9654164391590732},  {1, 4, 0.1589555042571178, 0.9872857477277616},
+    {1, 10, 0.4783850577609706, 0.8781501787912093},   {2, 1, -0.1950203019494351, -0.9807992056621738},
+    {2, 4, 0.1176161023768086, 0.9930591384513251},    {2, 10, 0.3284581115408154, 0.944518538178601},
+    {40, 1, -0.1153568806321099, -0.9933241113004502}, {40, 4, 0.0693420322279992, 0.9975929443247336},
+    {40, 10, 0.1805122266867284, 0.9835727405823116}};
 
-/// The Bricard mechanism [IFToMM A04, CASES R4]: five rods of 1 m and 1 kg of width h, six pins, one degree of freedom, of
-/// which no count of rows knows. h = 0 are thin rods: their mass is singular as well. \tparam Closing the policy of the last pin
+/// The Bricard mechanism [IFToMM A04, CASES R4]: five rods of 1 m and 1 kg of width h, six pins, one degree of freedom,
+/// of which no count of rows knows. h = 0 are thin rods: their mass is singular as well. \tparam Closing the policy of
+/// the last pin
 template <class Policy = Constraint, class B = Rigid<>, class Closing = Policy>
 struct Bricard {
   using Pin = Joint<Revolute, Policy>;
@@ -80,9 +78,9 @@ struct Bricard {
     for (int i = 0; i < 5; ++i) {
       Vec3 const d = points[i + 1] - points[i];
       Mat3 const along = d * d.transpose();
-      rods.push_back(model.add(B(1.0, own * along + across * (Mat3::Identity() - along),
-                                 Placement::at(0.5 * (points[i] + points[i + 1]))),
-                               "rod " + std::to_string(i + 1)));
+      rods.push_back(model.add(
+          B(1.0, own * along + across * (Mat3::Identity() - along), Placement::at(0.5 * (points[i] + points[i + 1]))),
+          "rod " + std::to_string(i + 1)));
     }
     auto const end = [&](int rod, int point) {
       return rods[std::size_t(rod)].at(Vec3(points[point] - 0.5 * (points[rod] + points[rod + 1])));

@@ -44,21 +44,23 @@ struct MixedSpace {
                   b.at(Vec3(-0.2, 0.1, 0.3)), "ball");
     model.connect(Pin{Revolute{.axis = Vec3(1, 2, -2) / 3.0}, Constraint{}},
                   ground.at(Placement::at({0, 0, 0.1}, {0.2, 0.1, 0})), a.at(0.0, 0.0, 0.05), "pin");
-    model.apply(SpringDamper{.stiffness = 40.0, .damping = damping, .free_length = 0.6}, a.at(0.3), b.at(Vec3(0.4, 0, 0)),
-                "strut");
-    model.apply(SpringDamper{.stiffness = 25.0, .free_length = 0.0}, b.at(Vec3(0, 0.2, 0)), ground.at({1, 1, 0}), "rope");
+    model.apply(SpringDamper{.stiffness = 40.0, .damping = damping, .free_length = 0.6}, a.at(0.3),
+                b.at(Vec3(0.4, 0, 0)), "strut");
+    model.apply(SpringDamper{.stiffness = 25.0, .free_length = 0.0}, b.at(Vec3(0, 0.2, 0)), ground.at({1, 1, 0}),
+                "rope");
     model.apply(PointForce<>{.force = {1, 2, -3}}, a.at(0.9, 0.02, 0.1), "dead");
     model.apply(PointForce<>{.force = {-2, 1, 0.5}, .axes = LoadAxes::marker}, b.at(Vec3(0.1, 0.2, 0.3)), "follower");
     return model;
   }
 };
 
-/// Two rigid bodies: ground –Revolute, Bushing– a –Spherical, Constraint– b –Prismatic, NonlinearBushing– ground, with markers
-/// apart. `damping` is that of both bushings.
+/// Two rigid bodies: ground –Revolute, Bushing– a –Spherical, Constraint– b –Prismatic, NonlinearBushing– ground, with
+/// markers apart. `damping` is that of both bushings.
 struct MixedBushings {
   using Ball = Joint<Spherical, Constraint>;
   using Pin = Joint<Revolute, Bushing>;
-  using Slide = Joint<Prismatic, NonlinearBushing<TabulatedLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, TabulatedLaw>>;
+  using Slide =
+      Joint<Prismatic, NonlinearBushing<TabulatedLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, TabulatedLaw>>;
   using M = Model<Bodies<Rigid<>>, Joints<Pin, Ball, Slide>>;
 
   static M model(double damping) {
@@ -75,7 +77,8 @@ struct MixedBushings {
     MonotoneTable const table{{{-1.0, -30.0}, {-0.3, -20.0}, {0.4, 10.0}, {1.5, 40.0}}};
     LinearLaw const law{.stiffness = 25.0, .damping = 0.1 * damping};
     TabulatedLaw const tabled{table, damping};
-    model.connect(Slide{{}, {tabled, law, law, law, law, tabled}}, b.at(Vec3(0.4, 0, 0)), model.ground().at({1, 1, 0}), "slide");
+    model.connect(Slide{{}, {tabled, law, law, law, law, tabled}}, b.at(Vec3(0.4, 0, 0)), model.ground().at({1, 1, 0}),
+                  "slide");
     return model;
   }
 };
@@ -104,12 +107,12 @@ struct MixedPlane {
     model.connect(Fixed{}, body.at(Vec2(0.3, -0.1)), beam.at(0.3, 0.05), "fixed");
     model.connect(Drive{{.law = {.target = 1.1, .duration = 4.0}}, {}}, ground.at({0, 0, 0}), body.at(Vec2(0, 0)),
                   "drive");
-    model.connect(Glue{planar::Weld{}, Penalty{.stiffness = 50.0, .damping = damping}}, beam.at(0.8), cable.at(0.1, -0.04),
-                  "glue");
+    model.connect(Glue{planar::Weld{}, Penalty{.stiffness = 50.0, .damping = damping}}, beam.at(0.8),
+                  cable.at(0.1, -0.04), "glue");
     model.connect(Pin{}, ground.at({0.1, -0.2, 0}), body.at(Vec2(-0.2, 0.1)), "pin");
     model.apply(PointMoment<>{.moment = {0, 0, 2.5}}, cable.at(0.7), "moment");
-    model.apply(SpringDamper{.stiffness = 40.0, .damping = damping, .free_length = 0.6}, cable.at(1.0), body.at(Vec2(0.1, 0.2)),
-                "strut");
+    model.apply(SpringDamper{.stiffness = 40.0, .damping = damping, .free_length = 0.6}, cable.at(1.0),
+                body.at(Vec2(0.1, 0.2)), "strut");
     return model;
   }
 };

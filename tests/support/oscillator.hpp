@@ -43,6 +43,7 @@ struct Oscillator {
 struct TrapezoidalPeriod {
   double h, ratio;
 };
-inline constexpr TrapezoidalPeriod trapezoidal_periods[] = {{0.1, 1.00083277850411}, {0.5, 1.02049703761562}, {1.0, 1.07840521614581}};
+inline constexpr TrapezoidalPeriod trapezoidal_periods[] = {
+    {0.1, 1.00083277850411}, {0.5, 1.02049703761562}, {1.0, 1.07840521614581}};
 
 }  // namespace polybody

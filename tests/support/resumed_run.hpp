@@ -41,8 +41,9 @@ inline void expect_same(RunReport const& a, RunReport const& b) {
   }
 }
 
-/// Four rods that fall from the horizontal for 1.5 s, with an event whenever the first one passes the vertical, and corners on
-/// and off the grid. Both the run and those that take it up make checkpoints at their start and after 60 and 100 steps.
+/// Four rods that fall from the horizontal for 1.5 s, with an event whenever the first one passes the vertical, and
+/// corners on and off the grid. Both the run and those that take it up make checkpoints at their start and after 60 and
+/// 100 steps.
 template <class World, class I>
 void expect_resumes(I const& integrator) {
   Chain<World> const chain(4, bar_link());
@@ -76,7 +77,8 @@ void expect_resumes(I const& integrator) {
     for (State const& now : second) {
       long const steps = second.report().steps;
       ASSERT_LT(std::size_t(steps), path.size());
-      ASSERT_EQ(bits(now), path[std::size_t(steps)]) << "step " << steps << " of the run from step " << from.report.steps;
+      ASSERT_EQ(bits(now), path[std::size_t(steps)])
+          << "step " << steps << " of the run from step " << from.report.steps;
       if (is_due(steps) && steps > from.report.steps) second.snapshot();
     }
     expect_same(run.report(), second.report());

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// CASES D5: the right-angle cantilever of Simo & Vu-Quoc 1988, pulled out of its plane at the elbow and let go, and where an
-/// independent spectral beam [C] finds it.
+/// CASES D5: the right-angle cantilever of Simo & Vu-Quoc 1988, pulled out of its plane at the elbow and let go, and
+/// where an independent spectral beam [C] finds it.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,8 @@ struct Triangle {
 
 inline Bar leg(Placement const& placement) {
   return {.length = 10.0,
-          .constants = BarConstants{.EA = 1e6, .EI = 1e3, .mass_per_length = 1.0, .GA = 1e6, .GJ = 1e3, .rotary_inertia = 10.0},
+          .constants =
+              BarConstants{.EA = 1e6, .EI = 1e3, .mass_per_length = 1.0, .GA = 1e6, .GJ = 1e3, .rotary_inertia = 10.0},
           .placement = placement};
 }
 
@@ -64,7 +65,9 @@ struct Row {
   double t;
   Vec6 u;  ///< of the elbow and of the tip
 };
-inline Vec6 six(double a, double b, double c, double d, double e, double f) { return (Vec6() << a, b, c, d, e, f).finished(); }
+inline Vec6 six(double a, double b, double c, double d, double e, double f) {
+  return (Vec6() << a, b, c, d, e, f).finished();
+}
 inline std::vector<Row> const table{{1.0, six(-0.054196, 0.022882, 0.951314, -0.003017, -0.023389, 0.054032)},
                                     {2.0, six(-1.011114, 0.267389, 4.115246, 0.106261, -0.692150, 0.069264)},
                                     {3.0, six(-2.049120, 0.239660, 5.501669, 0.788497, -1.061500, 1.507208)},

@@ -23,10 +23,12 @@ inline constexpr RotatingCantilever rotating_cantilevers[] = {
     {6.0, {4.263225, 7.360373, 26.129042, 26.809082, 66.413436, 66.683914}},
     {12.0, {5.427049, 13.170150, 35.636976, 37.603112, 78.704925, 79.614478}}};
 
-/// Stretch and shear so stiff that they do not show: what a frequency loses by them is of the order of Ω²/EA and ω EI/GA.
+/// Stretch and shear so stiff that they do not show: what a frequency loses by them is of the order of Ω²/EA and ω
+/// EI/GA.
 inline Bar blade() {
-  return {.length = 1.0, 
-          .constants = BarConstants{.EA = 1e8, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e8, .GJ = 1.0, .rotary_inertia = 1e-8},
+  return {.length = 1.0,
+          .constants =
+              BarConstants{.EA = 1e8, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e8, .GJ = 1.0, .rotary_inertia = 1e-8},
           .placement = Placement::at({1, 2, 3}, {0.4, -0.9, 1.7})};
 }
 
@@ -42,7 +44,8 @@ Vec6 frequencies_in_rotation(B const& body, double omega) {
   auto const hub = model.add(Rigid<>(1.0, Mat3::Identity(), root), "hub");
   auto const arm = model.add(body, "blade");
   model.connect(Pin{{.axis = axis}, {}}, model.ground().at(root), hub.at({0, 0, 0}), "shaft");
-  model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}, axis}, {}}, model.ground().at(root), hub.at({0, 0, 0}), "drive");
+  model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}, axis}, {}}, model.ground().at(root), hub.at({0, 0, 0}),
+                "drive");
   if constexpr (B::observes == Observes::frame)
     model.connect(Clamp{}, hub.at({0, 0, 0}), arm.at(0.0), "clamp");
   else

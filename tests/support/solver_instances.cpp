@@ -52,7 +52,8 @@ std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, bool stat
   if (name == "Klu") return std::make_unique<Behind<Klu>>();
 #endif
   // these need pivots within blocks, or symmetry: statics keeps its default
-  bool const for_steps = name == "BlockLdlt" || name == "BlockLu" || name == "EigenLdlt" || name == "RefinedBlockSolver";
+  bool const for_steps =
+      name == "BlockLdlt" || name == "BlockLu" || name == "EigenLdlt" || name == "RefinedBlockSolver";
   if (!for_steps) throw InvalidInput("POLYBODY_SOLVER=" + name + " is not a solver that the tests know.");
   if (statics) return nullptr;
   if (name == "BlockLdlt") return std::make_unique<Behind<BlockLdlt>>();

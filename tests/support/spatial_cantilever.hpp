@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A bar in space clamped at its first end and loaded at the second, in static equilibrium: `Cantilever` with a third dimension.
+/// A bar in space clamped at its first end and loaded at the second, in static equilibrium: `Cantilever` with a third
+/// dimension.
 
 #include <polybody/analysis/equilibrium.hpp>
 #include <polybody/analysis/observe.hpp>

@@ -11,8 +11,15 @@ namespace polybody {
 
 inline Bar spatial_lrvf_bar() {
   return {.length = 1.3,
-          .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300, .GJ = 25,
-                                    .rotary_inertia = 0.05, .EI_y = 60, .GA_z = 350, .rotary_inertia_y = 0.03},
+          .constants = BarConstants{.EA = 900,
+                                    .EI = 40,
+                                    .mass_per_length = 2.0,
+                                    .GA = 300,
+                                    .GJ = 25,
+                                    .rotary_inertia = 0.05,
+                                    .EI_y = 60,
+                                    .GA_z = 350,
+                                    .rotary_inertia_y = 0.03},
           .placement = Placement::at({0.4, -0.3, 0.8}, {0.5, -1.0, 0.7}),
           .damping = {.axial = 0.01, .shear = 0.02, .bending = 0.03}};
 }

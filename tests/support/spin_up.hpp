@@ -18,9 +18,10 @@ inline Drive drive() { return {{{.speed = 6.0, .duration = 15.0}}, {}}; }
 
 /// D2's constants; EI_y and GJ are any: nothing leaves the plane.
 inline Bar arm() {
-  return {.length = 10.0,
-          .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .GA = 1e7, .GJ = 5e3,
-                                    .rotary_inertia = 6e-4, .EI_y = 9e3}};
+  return {
+      .length = 10.0,
+      .constants = BarConstants{
+          .EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .GA = 1e7, .GJ = 5e3, .rotary_inertia = 6e-4, .EI_y = 9e3}};
 }
 
 struct Row {
@@ -33,9 +34,9 @@ inline std::vector<Row> const table{{2.5, -0.00132267702, -0.15128355864}, {5.0,
                                     {17.0, 5.14138491e-4, -2.5335130e-3},  {18.0, 5.13873046e-4, -2.0682774e-3}};
 inline double const largest_lag = -0.573835;  ///< at t = 6.762 s
 
-/// Spins up the model whose arm ends in `tip`; u is the tip's displacement in the hub's axes. u₂ within `part` of the largest
-/// lag. The tip draws back by ½ ∫ w′² ds, to which an error of w adds twice its own share, 2·0.0188/0.574 of it at most. The
-/// steady stretch to a thousandth.
+/// Spins up the model whose arm ends in `tip`; u is the tip's displacement in the hub's axes. u₂ within `part` of the
+/// largest lag. The tip draws back by ½ ∫ w′² ds, to which an error of w adds twice its own share, 2·0.0188/0.574 of it
+/// at most. The steady stretch to a thousandth.
 template <class M, class Tip>
 void follows(M const& model, Marker<Tip> const& tip, double part) {
   SpinUp const law = drive().geometry.law;

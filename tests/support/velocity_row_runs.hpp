@@ -15,7 +15,8 @@
 
 namespace polybody {
 
-/// Runs to time `until` and returns the state; the rows must hold on the way, those of speeds also where a method keeps positions only.
+/// Runs to time `until` and returns the state; the rows must hold on the way, those of speeds also where a method keeps
+/// positions only.
 template <class M, class I>
 State rolled(M const& model, State x, I const& integrator, double until, double step) {
   System<M> system(model);
@@ -39,7 +40,8 @@ State rolled(M const& model, State x, I const& integrator, double until, double 
   return x;
 }
 
-/// Calls f(integrator, step, tolerance): of order two with 2 000 steps a second, of order four with 500, of order five with 100.
+/// Calls f(integrator, step, tolerance): of order two with 2 000 steps a second, of order four with 500, of order five
+/// with 100.
 template <class F>
 void with_each_integrator(F&& f) {
   f(GeneralizedAlpha{.rho_inf = 0.8}, 5e-4, 1.0);

@@ -16,13 +16,14 @@ namespace polybody {
 
 /// What `vtk_read.py` tells, by the words before the numbers; empty where no python has VTK.
 /// The script is found from the test that asks, in a folder beside its own.
-inline std::vector<std::vector<std::string>> read_by_vtk(std::filesystem::path const& collection,
-                                                         std::source_location const& test = std::source_location::current()) {
+inline std::vector<std::vector<std::string>> read_by_vtk(
+    std::filesystem::path const& collection, std::source_location const& test = std::source_location::current()) {
   namespace fs = std::filesystem;
   fs::path const script = fs::path(test.file_name()).parent_path().parent_path() / "io" / "vtk_read.py";
   fs::path const out = collection.string() + ".txt";
   for (char const* const python : {"python3", "/usr/bin/python3"}) {
-    std::string const what = " -B '" + script.string() + "' '" + collection.string() + "' > '" + out.string() + "' 2> /dev/null";
+    std::string const what =
+        " -B '" + script.string() + "' '" + collection.string() + "' > '" + out.string() + "' 2> /dev/null";
     int const status = std::system((python + what).c_str());
     int const code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     if (code == 77 || code == 127) continue;  // no VTK, no such python

@@ -23,8 +23,10 @@ using namespace polybody;
 namespace ancf_linear_test {
 
 Bar bar(Placement const& placement, double poisson = 0.3) {
-  return {.length = 0.5, .section = Rectangle{.height = 0.02, .width = 0.02},
-          .material = Material{.density = 1000.0, .young = 1e7, .poisson = poisson}, .placement = placement};
+  return {.length = 0.5,
+          .section = Rectangle{.height = 0.02, .width = 0.02},
+          .material = Material{.density = 1000.0, .young = 1e7, .poisson = poisson},
+          .placement = placement};
 }
 
 /// n bars in a row on a support, joined by G; they fall.
@@ -39,7 +41,8 @@ struct Chain {
   Chain(G geometry, int n) {
     for (int i = 0; i < n; ++i) links.push_back(model.add(B::from(bar(Placement::at({0.5 * i, 0, 0})), 2)));
     pins.push_back(model.connect(Pin{geometry, {}}, model.ground().at({0, 0, 0}), links[0].at(0.0)));
-    for (std::size_t i = 1; i < links.size(); ++i) pins.push_back(model.connect(Pin{geometry, {}}, links[i - 1].at(0.5), links[i].at(0.0)));
+    for (std::size_t i = 1; i < links.size(); ++i)
+      pins.push_back(model.connect(Pin{geometry, {}}, links[i - 1].at(0.5), links[i].at(0.0)));
     x = model.reference_state();
   }
   void fall(double until) { simulate(model, x, GeneralizedAlpha{}, {.until = until, .step = 1e-3}).run(); }
@@ -101,8 +104,9 @@ TEST(AncfLinear, PinsAFullyParameterisedBeamBySixEquations) {
 }
 
 TEST(AncfLinear, OnlyTheStrainAlongThePinIsContinuous) {
-  // Two beams with Poisson's ratio 0.3 that swing about z and are bent and twisted by a pull along z: strains ε_αβ = ½ (r_α·r_β − δ)
-  // at both sides of the pin about z. r_z is shared, r_x and r_y are not: ε_zz is one, the other five are two each.
+  // Two beams with Poisson's ratio 0.3 that swing about z and are bent and twisted by a pull along z: strains ε_αβ = ½
+  // (r_α·r_β − δ) at both sides of the pin about z. r_z is shared, r_x and r_y are not: ε_zz is one, the other five are
+  // two each.
   using Pin = Joint<Revolute, AncfLinear>;
   Model<Bodies<AncfBeam<Continuum<>>>, Joints<Pin>, Forces<>> model{Gravity{0, -9.81, 4.0}};
   auto const a = model.add(AncfBeam<Continuum<>>::from(bar(Placement::at({0, 0, 0})), 2));
@@ -150,7 +154,8 @@ TEST(AncfLinear, HoldsInStaticsWhatABalanceSays) {
   // a cantilever of two welded beams under a force P at its end: root force −P, root moment P L
   using Clamp = Joint<Weld, AncfLinear>;
   Model<Bodies<AncfBeam<Continuum<>>>, Joints<Clamp>, Forces<PointForce<>>> model;
-  auto const a = model.add(AncfBeam<Continuum<>>::from(bar({}), 2)), b = model.add(AncfBeam<Continuum<>>::from(bar(Placement::at({0.5, 0, 0})), 2));
+  auto const a = model.add(AncfBeam<Continuum<>>::from(bar({}), 2)),
+             b = model.add(AncfBeam<Continuum<>>::from(bar(Placement::at({0.5, 0, 0})), 2));
   auto const root = model.connect(Clamp{}, model.ground().at({0, 0, 0}), a.at(0.0));
   auto const joint = model.connect(Clamp{}, a.at(0.5), b.at(0.0));
   double const p = 1e-4;
@@ -184,23 +189,30 @@ TEST(AncfLinear, RowsThatContradictOthersAreNamed) {
   using Pin = Joint<planar::Revolute, AncfLinear>;
   chain.model.connect(Pin{}, chain.model.ground().at({0.1, 0, 0}), chain.links[0].at(0.0), "second support");
   State x = chain.model.reference_state();
-  EXPECT_TRUE(has(message_of<InconsistentStart>([&] { simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.01, .step = 1e-3}); }),
+  EXPECT_TRUE(has(message_of<InconsistentStart>(
+                      [&] { simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.01, .step = 1e-3}); }),
                   "second support"));
 }
 
 TEST(AncfLinear, RefusesWhatIsNotLinear) {
   using Pin = Joint<planar::Revolute, AncfLinear>;
   Model<Bodies<planar::AncfCable<>>, Joints<Pin>> model;
-  auto const a = model.add(planar::AncfCable<>::from(bar({}), 2)), b = model.add(planar::AncfCable<>::from(bar(Placement::planar(0.5, 0)), 2));
-  EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, a.at(0.5, 0.01), b.at(0.0), "hinge"); }),
-                  "\"hinge\": planar::AncfCable: a point off the axis is not linear in the coordinates. Use Constraint here."));
+  auto const a = model.add(planar::AncfCable<>::from(bar({}), 2)),
+             b = model.add(planar::AncfCable<>::from(bar(Placement::planar(0.5, 0)), 2));
+  EXPECT_TRUE(
+      has(refusal([&] { model.connect(Pin{}, a.at(0.5, 0.01), b.at(0.0), "hinge"); }),
+          "\"hinge\": planar::AncfCable: a point off the axis is not linear in the coordinates. Use Constraint here."));
   EXPECT_EQ(model.markers(), 0);  // it leaves nothing behind
   using Clamp = Joint<Weld, AncfLinear>;
   Model<Bodies<AncfCable<>>, Joints<Clamp, Joint<Revolute, AncfLinear>>> space;
   auto const c = space.add(AncfCable<>::from(bar({}), 2));
   auto const d = space.add(AncfCable<>::from(bar(Placement::at({0.5, 0, 0}, {0, 0, 1.0})), 2));
   EXPECT_TRUE(has(refusal([&] { space.connect(Clamp{}, c.at(0.5), d.at(0.0), "corner"); }), "\"corner\""));
-  EXPECT_TRUE(has(refusal([&] { space.connect(Joint<Revolute, AncfLinear>{{.axis = Vec3::UnitX()}, {}}, c.at(0.5), d.at(0.0), "pin"); }), "\"pin\""));
+  EXPECT_TRUE(has(refusal([&] {
+                    space.connect(Joint<Revolute, AncfLinear>{{.axis = Vec3::UnitX()}, {}}, c.at(0.5), d.at(0.0),
+                                  "pin");
+                  }),
+                  "\"pin\""));
 }
 
 }  // namespace ancf_linear_test

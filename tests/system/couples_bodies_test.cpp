@@ -1,4 +1,5 @@
-// A force element may keep its coupling between bodies out of the matrix of a time step: same motion, and statics sees all of it.
+// A force element may keep its coupling between bodies out of the matrix of a time step: same motion, and statics sees
+// all of it.
 #include <gtest/gtest.h>
 
 #include <polybody/analysis/simulate.hpp>

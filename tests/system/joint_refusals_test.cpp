@@ -1,5 +1,5 @@
-// What `connect` says of joints that cannot be meant: a sentence that names the joint, and nothing is left behind. A tree of
-// joint coordinates with a cycle is known when a run begins: recursive_loop_test.cpp.
+// What `connect` says of joints that cannot be meant: a sentence that names the joint, and nothing is left behind. A
+// tree of joint coordinates with a cycle is known when a run begins: recursive_loop_test.cpp.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid.hpp>
@@ -34,7 +34,8 @@ struct Refused {
 
   template <class J>
   std::string operator()(J const& joint) {
-    std::string const said = refusal([&] { model.connect(joint, model.ground().at({0, 0, 0}), body.at({0, 0, 0}), "elbow"); });
+    std::string const said =
+        refusal([&] { model.connect(joint, model.ground().at({0, 0, 0}), body.at({0, 0, 0}), "elbow"); });
     EXPECT_EQ(model.rows() + model.markers(), 0);
     return said;
   }
@@ -43,14 +44,16 @@ struct Refused {
 TEST(RefusedJoint, HasANegativeStiffness) {
   Bushing::Matrix const good = Bushing::diagonal({1, 1, 1}, {1, 1, 0}), bad = Bushing::diagonal({1, -2, 1}, {1, 1, 0});
   Refused refused;
-  EXPECT_TRUE(has(refused(Mount{{}, {.stiffness = bad, .damping = good}}),
-                  "\"elbow\": the bushing's stiffness must be finite, symmetric and positive semidefinite (6×6), but its entry "
-                  "(2, 2) is -2."));
+  EXPECT_TRUE(
+      has(refused(Mount{{}, {.stiffness = bad, .damping = good}}),
+          "\"elbow\": the bushing's stiffness must be finite, symmetric and positive semidefinite (6×6), but its entry "
+          "(2, 2) is -2."));
   EXPECT_TRUE(has(refused(Mount{{}, {.stiffness = good, .damping = bad}}), "\"elbow\": the bushing's damping"));
   LinearLaw const law{.stiffness = 1.0, .damping = 0.0}, negative{.stiffness = -1.0, .damping = 0.0};
   EXPECT_TRUE(has(refused(Rubber{{}, {law, law, negative, law, law, law}}),
                   "\"elbow\": component 3 of the bushing: the stiffness"));
-  EXPECT_TRUE(has(refused(Stiff{{}, {.stiffness = -1.0, .damping = 0.0}}), "\"elbow\": the penalty stiffness must be positive"));
+  EXPECT_TRUE(has(refused(Stiff{{}, {.stiffness = -1.0, .damping = 0.0}}),
+                  "\"elbow\": the penalty stiffness must be positive"));
 }
 
 TEST(RefusedJoint, IsDrivenThroughAJump) {
@@ -64,8 +67,9 @@ TEST(RefusedJoint, IsDrivenThroughAJump) {
 
 // A table is made before the joint; it is told whose it is.
 TEST(RefusedJoint, HasATableThatGoesBack) {
-  EXPECT_TRUE(has(refusal([] { (void)TabulatedLaw{MonotoneTable({{0.0, 0.0}, {0.2, 1.0}, {0.1, 2.0}}, "\"elbow\""), 0.0}; }),
-                  "\"elbow\": the abscissae of the table must increase, but point 3 has 0.1 after 0.2"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)TabulatedLaw{MonotoneTable({{0.0, 0.0}, {0.2, 1.0}, {0.1, 2.0}}, "\"elbow\""), 0.0}; }),
+          "\"elbow\": the abscissae of the table must increase, but point 3 has 0.1 after 0.2"));
   EXPECT_TRUE(has(refusal([] { (void)SmoothTable({{0.0, 0.0}, {0.2, 1.0}, {0.2, 2.0}}, {}, "\"elbow\""); }),
                   "\"elbow\": the times must increase, but point 3 at t = 0.2 s follows one at 0.2 s."));
 }

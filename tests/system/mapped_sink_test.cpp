@@ -1,4 +1,5 @@
-// Blocks of a whole tangent on their way into a reduced system: PᵀBP, whatever P does with the unknowns that a block touches.
+// Blocks of a whole tangent on their way into a reduced system: PᵀBP, whatever P does with the unknowns that a block
+// touches.
 #include <gtest/gtest.h>
 
 #include <polybody/solvers/block_ldlt.hpp>
@@ -34,8 +35,12 @@ MatX matrix_of(Targets const& targets, Index size) {
   return p;
 }
 
-/// Twelve unknowns of which 3 … 5 go where 0 … 2 of their neighbour went, one is left out, and one depends on two others.
-Targets by_choice() { return {{{4, 1.0}}, {{5, 1.0}}, {{6, 1.0}}, {{0, 1.0}}, {{1, 1.0}}, {{2, 1.0}}, {{4, 1.0}}, {}, {{3, 1.0}}, {{7, 1.0}}, {{8, 1.0}}, {{9, 1.0}}}; }
+/// Twelve unknowns of which 3 … 5 go where 0 … 2 of their neighbour went, one is left out, and one depends on two
+/// others.
+Targets by_choice() {
+  return {{{4, 1.0}}, {{5, 1.0}}, {{6, 1.0}}, {{0, 1.0}}, {{1, 1.0}}, {{2, 1.0}},
+          {{4, 1.0}}, {},         {{3, 1.0}}, {{7, 1.0}}, {{8, 1.0}}, {{9, 1.0}}};
+}
 Targets by_factors() {
   Targets t = by_choice();
   t[8] = {{3, 0.5}, {9, -2.0}};
@@ -91,7 +96,8 @@ template <class Sink>
 void write_chain(Sink& sink, bool skips) {
   std::srand(7);
   for (Index i = 0; i < 4; ++i) {
-    Mat3 const a = Mat3::Random(), m = a * a.transpose() + Mat3::Identity(), c = i == 2 ? Mat3(Mat3::Zero()) : Mat3(0.1 * Mat3::Random());
+    Mat3 const a = Mat3::Random(), m = a * a.transpose() + Mat3::Identity(),
+               c = i == 2 ? Mat3(Mat3::Zero()) : Mat3(0.1 * Mat3::Random());
     sink.add(3 * i, 3 * i, m);
     if (i == 0) continue;
     if constexpr (SkipsZeros<Sink>)

@@ -85,7 +85,8 @@ TEST(Model, RefusesMarkersAndHandlesOfAnotherModel) {
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, own.at(Vec2(0, 0)), at, "elbow"); }), "\"elbow\""));
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, own.at(Vec2(0, 0)), at); }), said));
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, another.ground().at({0, 0, 0}), own.at(Vec2(0, 0))); }), said));
-  EXPECT_TRUE(has(refusal([&] { model.apply(SpringDamper{.stiffness = 1.0, .free_length = 1.0}, own.at(Vec2(0, 0)), at); }), said));
+  EXPECT_TRUE(has(
+      refusal([&] { model.apply(SpringDamper{.stiffness = 1.0, .free_length = 1.0}, own.at(Vec2(0, 0)), at); }), said));
   EXPECT_TRUE(has(refusal([&] { model.set_velocity(x, foreign, {0, 0, 0}, {0, 0, 1}); }), "\"foreign\""));
   EXPECT_TRUE(has(refusal([&] { (void)position(model, x, at); }), said));
   // a refused joint leaves nothing behind

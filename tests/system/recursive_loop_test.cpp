@@ -29,8 +29,10 @@ struct FourBar {
   using Close = Joint<planar::Revolute, Constraint>;
   using Weld = Joint<planar::Weld, Policy>;
   using Slide = Joint<planar::Prismatic, Policy>;
-  using ModelType = std::conditional_t<std::is_same_v<Policy, Constraint>, Model<Bodies<planar::Rigid>, Joints<Pin, Weld, Slide>, Forces<SpringDamper>>,
-                                       Model<Bodies<planar::Rigid>, Joints<Pin, Weld, Slide, Close>, Forces<SpringDamper>>>;
+  using ModelType =
+      std::conditional_t<std::is_same_v<Policy, Constraint>,
+                         Model<Bodies<planar::Rigid>, Joints<Pin, Weld, Slide>, Forces<SpringDamper>>,
+                         Model<Bodies<planar::Rigid>, Joints<Pin, Weld, Slide, Close>, Forces<SpringDamper>>>;
   ModelType model{Gravity{0, -9.81, 0}};
   ElementHandle<Close> last;
   State x;
@@ -50,10 +52,11 @@ struct FourBar {
     model.connect(Pin{}, at(b, 0.75, 1.25, -0.2, {0, 1}), at(a, 0.0, 0.5, 0.3, {0, 1}));
     model.connect(Pin{}, at(b, 0.75, 1.25, -0.2, {1.5, 1.5}), at(c, 1.5, 0.75, 0.0, {1.5, 1.5}));
     model.connect(Weld{}, at(tip, 0.75, 1.5, 0.0, {0.75, 1.25}), at(b, 0.75, 1.25, -0.2, {0.75, 1.25}));
-    model.connect(Slide{{.axis = Vec3(0, 1, 0)}}, at(c, 1.5, 0.75, 0.0, {1.6, 0.75}), at(slider, 1.75, 0.75, 0.0, {1.6, 0.75}));
+    model.connect(Slide{{.axis = Vec3(0, 1, 0)}}, at(c, 1.5, 0.75, 0.0, {1.6, 0.75}),
+                  at(slider, 1.75, 0.75, 0.0, {1.6, 0.75}));
     last = model.connect(Close{}, at(c, 1.5, 0.75, 0.0, {1.5, 0}), model.ground().at({1.5, 0, 0}));
-    model.apply(SpringDamper{.stiffness = 200.0, .damping = 2.0, .free_length = 0.4}, at(slider, 1.75, 0.75, 0.0, {1.75, 0.75}),
-                model.ground().at({1.75, 0.2, 0}));
+    model.apply(SpringDamper{.stiffness = 200.0, .damping = 2.0, .free_length = 0.4},
+                at(slider, 1.75, 0.75, 0.0, {1.75, 0.75}), model.ground().at({1.75, 0.2, 0}));
     x = model.reference_state();
   }
 };
@@ -116,7 +119,11 @@ TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {
     using Clamp = Joint<planar::Weld, Constraint>;
     Model<Bodies<planar::Rigid, planar::AncfCable<>>, Joints<Pin, Clamp>> model{Gravity{0, -9.81, 0}};
     auto const arm = model.add(planar::Rigid(1.0, 0.1, Placement::planar(0.5, 0.0)));
-    auto const beam = model.add(planar::AncfCable<>::from({.length = 1.0, .constants = BarConstants{.EA = 1e4, .EI = 10.0, .mass_per_length = 1.0}, .placement = Placement::planar(1.0, 0.0)}, 3));
+    auto const beam =
+        model.add(planar::AncfCable<>::from({.length = 1.0,
+                                             .constants = BarConstants{.EA = 1e4, .EI = 10.0, .mass_per_length = 1.0},
+                                             .placement = Placement::planar(1.0, 0.0)},
+                                            3));
     model.connect(Pin{}, model.ground().at({0, 0, 0}), arm.at(Vec2(-0.5, 0)));
     model.connect(Clamp{}, arm.at(Vec2(0.5, 0)), beam.at(0.0));
     State x = model.reference_state();
@@ -128,8 +135,8 @@ TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {
   EXPECT_LT((held - free).norm(), 1e-5);  // both are off by h²
 }
 
-// CASES S11: ten links of 0.1 m and 1 kg hang over 0.8 m; tan θᵢ = (V − m g (i + ½))/H. They stay so, and what the tree's pins
-// carry is worked out.
+// CASES S11: ten links of 0.1 m and 1 kg hang over 0.8 m; tan θᵢ = (V − m g (i + ½))/H. They stay so, and what the
+// tree's pins carry is worked out.
 TEST(RecursiveLoop, ChainHangsWithThePublishedForces) {
   using Loop = FourBar<Recursive>;
   Loop::ModelType model{Gravity{0, -9.81, 0}};
@@ -169,7 +176,9 @@ TEST(RecursiveLoop, EventsSeeTheWholeState) {
   model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(Vec2(-0.5, 0)));
   State x = model.reference_state();
   auto run = simulate(model, x, DormandPrince<>{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12},
-                      {.until = 5.0, .step = 1e-3, .events = {{.name = "below", .value = [](State const& s) { return s.q[0]; }, .stops = true}}});
+                      {.until = 5.0,
+                       .step = 1e-3,
+                       .events = {{.name = "below", .value = [](State const& s) { return s.q[0]; }, .stops = true}}});
   run.run();
   // a quarter of the period of amplitude π/2: K(½) √(2L/3g)
   EXPECT_NEAR(x.t, 1.8540746773013719 * std::sqrt(2.0 / (3.0 * 9.81)), 1e-8);
@@ -192,13 +201,15 @@ TEST(RecursiveLoop, NamesTheJointThatClosesALoop) {
 TEST(RecursiveLoop, EliminationByBodiesNamesAForceThatItCannotTake) {
   using Pin = Joint<planar::Revolute, ByBodies>;
   Model<Bodies<planar::Rigid>, Joints<Pin>, Forces<SpringDamper>> model;
-  auto const a = model.add(planar::Rigid(1.0, 0.1), "a"), b = model.add(planar::Rigid(1.0, 0.1), "b"), c = model.add(planar::Rigid(1.0, 0.1), "c");
+  auto const a = model.add(planar::Rigid(1.0, 0.1), "a"), b = model.add(planar::Rigid(1.0, 0.1), "b"),
+             c = model.add(planar::Rigid(1.0, 0.1), "c");
   model.connect(Pin{}, model.ground().at({0, 0, 0}), a.at(Vec2(0, 0)));
   model.connect(Pin{}, a.at(Vec2(0, 0)), b.at(Vec2(0, 0)));
   model.connect(Pin{}, b.at(Vec2(0, 0)), c.at(Vec2(0, 0)));
   model.apply(SpringDamper{.stiffness = 1.0, .damping = 0.0, .free_length = 1.0}, a.at(Vec2(1, 0)), c.at(Vec2(0, 1)));
   State x = model.reference_state();
-  EXPECT_NO_THROW(simulate(model, x, RungeKutta4<Projection>{}, {.until = 1e-2, .step = 1e-3}).run());  // M alone has no such block
+  EXPECT_NO_THROW(
+      simulate(model, x, RungeKutta4<Projection>{}, {.until = 1e-2, .step = 1e-3}).run());  // M alone has no such block
   std::string const why = refusal([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}).run(); });
   EXPECT_TRUE(has(why, "\"c\""));
   EXPECT_TRUE(has(why, "Augmented"));

@@ -1,4 +1,5 @@
-// Joint coordinates of trees against the same models with multipliers: motion, reactions, violation, counts, three ways to solve.
+// Joint coordinates of trees against the same models with multipliers: motion, reactions, violation, counts, three ways
+// to solve.
 #include <gtest/gtest.h>
 
 #include <polybody/analysis/energy.hpp>
@@ -27,7 +28,9 @@ using Reduced = RecursiveBy<recursive::Reduced>;
 using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
 
 Rigid<> link(double x, double y) {
-  return Rigid<>({.mass = 2.0, .inertia = Vec3(0.02, 0.05, 0.06).asDiagonal(), .placement = Placement::at({x, y, 0}, {0.1, 0.2, -0.1})});
+  return Rigid<>({.mass = 2.0,
+                  .inertia = Vec3(0.02, 0.05, 0.06).asDiagonal(),
+                  .placement = Placement::at({x, y, 0}, {0.1, 0.2, -0.1})});
 }
 
 template <class Policy>
@@ -35,8 +38,8 @@ struct Branched {
   template <class G>
   using J = Joint<G, Policy>;
   using ModelType =
-      Model<Bodies<Rigid<>>, Joints<J<Revolute>, J<Prismatic>, J<Cylindrical>, J<Spherical>, J<Universal>, J<Screw>, J<PlaneOnPlane>,
-                                    J<PointOnLine>, J<PointInPlane>, J<Orientation>, J<Weld>>>;
+      Model<Bodies<Rigid<>>, Joints<J<Revolute>, J<Prismatic>, J<Cylindrical>, J<Spherical>, J<Universal>, J<Screw>,
+                                    J<PlaneOnPlane>, J<PointOnLine>, J<PointInPlane>, J<Orientation>, J<Weld>>>;
   ModelType model{Gravity{1, -2, -9.81}};
   std::vector<BodyHandle<Rigid<>>> links;
 
@@ -93,7 +96,8 @@ State moved(Branched<Policy> const& tree, I integrator, double until, double ste
 TEST(Recursive, MovesEveryJointAsMultipliersDo) {
   Branched<Constraint> const held;
   Branched<Recursive> const free;
-  State const x = moved(held, RungeKutta4<Projection>{}, 0.3, 1e-3), y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
+  State const x = moved(held, RungeKutta4<Projection>{}, 0.3, 1e-3),
+              y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
   // Both are off by h⁴: Richardson's difference to twice the step shows how much.
   State const coarse = moved(held, RungeKutta4<Projection>{}, 0.3, 2e-3);
   double const off = (x.q - coarse.q).norm();

@@ -1,17 +1,20 @@
-// CASES C6, chordal action: a chain of pitch p on a sprocket of N teeth is a polygon around it, so its strand runs unevenly.
+// CASES C6, chordal action: a chain of pitch p on a sprocket of N teeth is a polygon around it, so its strand runs
+// unevenly.
 //
-// Pins at the bottoms of the valleys lie on the pitch circle R = p/(2 sin π/N). Let ψ be the angle of the pin that the strand
-// leads to, from the place where the circle's tangent is along the strand. A strand that stays parallel to itself has the speed
-// of that pin along it,
-//   v = ω R cos ψ,  −π/N ≤ ψ ≤ π/N:  v_min/v_max = cos π/N,  x(ψ) = R sin ψ and a pitch more for every tooth,  mean v = N p n.
-// So it is where the strand's end feels a force of constant direction and nothing else, as here: then a strand at rest is
-// straight and along the force, wherever its other end is. (One of length L whose end is held on the line z = R − s leans by β,
-// L sin β = s − R (1 − cos ψ); its end has v = ω R (cos ψ − sin ψ tan β), and a ratio that depends on L and s.)
+// Pins at the bottoms of the valleys lie on the pitch circle R = p/(2 sin π/N). Let ψ be the angle of the pin that the
+// strand leads to, from the place where the circle's tangent is along the strand. A strand that stays parallel to
+// itself has the speed of that pin along it,
+//   v = ω R cos ψ,  −π/N ≤ ψ ≤ π/N:  v_min/v_max = cos π/N,  x(ψ) = R sin ψ and a pitch more for every tooth,  mean v =
+//   N p n.
+// So it is where the strand's end feels a force of constant direction and nothing else, as here: then a strand at rest
+// is straight and along the force, wherever its other end is. (One of length L whose end is held on the line z = R − s
+// leans by β, L sin β = s − R (1 − cos ψ); its end has v = ω R (cos ψ − sin ψ tan β), and a ratio that depends on L and
+// s.)
 //
-// Both strands lie on the same side of the sprocket and pull with the same force T. Then all pins at the bottoms of frictionless
-// valleys are in equilibrium at every ψ: the strands pull with T cos ψ along the tangent on both ends of the row of seated pins,
-// which turned by 180° have the same ψ, and every link between them bears T cos ψ/cos π/N. No pin climbs its arc. What is left
-// are the depths to which pins are pressed in, of the order T/k.
+// Both strands lie on the same side of the sprocket and pull with the same force T. Then all pins at the bottoms of
+// frictionless valleys are in equilibrium at every ψ: the strands pull with T cos ψ along the tangent on both ends of
+// the row of seated pins, which turned by 180° have the same ψ, and every link between them bears T cos ψ/cos π/N. No
+// pin climbs its arc. What is left are the depths to which pins are pressed in, of the order T/k.
 
 #include <gtest/gtest.h>
 
@@ -51,8 +54,9 @@ struct Steps {
   }
 };
 
-/// Fourteen links of the M113 over its sprocket: pins 4 … 9 in the valleys from the top to the bottom, both strands to the rear.
-/// Friction of pins that move in their valleys, and dampers across the strands' ends, bring it to rest; at rest they do nothing.
+/// Fourteen links of the M113 over its sprocket: pins 4 … 9 in the valleys from the top to the bottom, both strands to
+/// the rear. Friction of pins that move in their valleys, and dampers across the strands' ends, bring it to rest; at
+/// rest they do nothing.
 template <class Drive>
 struct Chain {
   using Hinge = Joint<Revolute, Constraint>;
@@ -68,11 +72,13 @@ struct Chain {
     Vec3 const y = Vec3::UnitY();
     std::vector<Vec3> pins;
     for (int i = 4; i > 0; --i) pins.emplace_back(-i * p, 0.0, pitch_radius);
-    for (int i = 0; i < 6; ++i) pins.emplace_back(pitch_radius * std::sin(i * tooth), 0.0, pitch_radius * std::cos(i * tooth));
+    for (int i = 0; i < 6; ++i)
+      pins.emplace_back(pitch_radius * std::sin(i * tooth), 0.0, pitch_radius * std::cos(i * tooth));
     for (int i = 1; i < 6; ++i) pins.emplace_back(-i * p, 0.0, -pitch_radius);
 
-    auto const sprocket = model.add(
-        Rigid<>(m113::thesis.sprocket.mass, Vec3(m113::thesis.sprocket.inertia).asDiagonal().toDenseMatrix()), "sprocket");
+    auto const sprocket =
+        model.add(Rigid<>(m113::thesis.sprocket.mass, Vec3(m113::thesis.sprocket.inertia).asDiagonal().toDenseMatrix()),
+                  "sprocket");
     auto const ground = model.ground().at({0, 0, 0});
     model.connect(Hinge{Revolute{.axis = y}, {}}, ground, sprocket.at(Vec3(0, 0, 0)), "axle");
     model.connect(Driven{drive, {}}, ground, sprocket.at(Vec3(0, 0, 0)), "drive");
@@ -84,7 +90,8 @@ struct Chain {
       links.push_back(
           model.add(Rigid<>(m113::thesis.link.mass, Vec3(m113::thesis.link.inertia).asDiagonal().toDenseMatrix(), at)));
       if (i > 0)
-        model.connect(Hinge{Revolute{.axis = y}, {}}, links[i - 1].at(Vec3(-0.5 * p, 0, 0)), links[i].at(Vec3(0.5 * p, 0, 0)));
+        model.connect(Hinge{Revolute{.axis = y}, {}}, links[i - 1].at(Vec3(-0.5 * p, 0, 0)),
+                      links[i].at(Vec3(0.5 * p, 0, 0)));
       middles.push_back(links[i].at(Vec3(0, 0, 0)));
     }
     model.connect(InPlane{PlaneOnPlane{.normal = y}, {}}, ground, middles[0], "plane");
@@ -137,9 +144,9 @@ std::vector<double> travels(double k) {
 /// How deep tension and contact press a pin into its valley: two links pull with 2 T sin π/N, two rings bear it.
 double depth(double k) { return 2.0 * tension * std::sin(0.5 * tooth) / (2.0 * k); }
 
-// CASES C6. The speed is slowest as a pin comes in, 18°, and fastest half a tooth later, 36°: v/ω = dx/dψ there, by differences
-// of places at rest, up to the pin that comes in on one side only, (11 x₀ − 18 x₁ + 9 x₂ − 2 x₃)/6h, with an error of h³ x⁗/4 =
-// 3e-6 of R. Pins that are sunk by d make a wheel smaller by no more than that.
+// CASES C6. The speed is slowest as a pin comes in, 18°, and fastest half a tooth later, 36°: v/ω = dx/dψ there, by
+// differences of places at rest, up to the pin that comes in on one side only, (11 x₀ − 18 x₁ + 9 x₂ − 2 x₃)/6h, with
+// an error of h³ x⁗/4 = 3e-6 of R. Pins that are sunk by d make a wheel smaller by no more than that.
 TEST(ChordalAction, StrandRunsAsUnevenlyAsAPolygon) {
   double const h = stride * degree;
   double error_before = 0.0, place_before = 0.0;
@@ -147,14 +154,16 @@ TEST(ChordalAction, StrandRunsAsUnevenlyAsAPolygon) {
     std::vector<double> const x = travels(k);
     ASSERT_EQ(x.size(), 21u);
     double place = 0.0;  // the largest error of a travel
-    for (std::size_t i = 0; i < x.size(); ++i) place = std::max(place, std::abs(x[i] - x[0] - rigid_travel(double(i) * h)));
+    for (std::size_t i = 0; i < x.size(); ++i)
+      place = std::max(place, std::abs(x[i] - x[0] - rigid_travel(double(i) * h)));
     double const slowest = (11.0 * x[9] - 18.0 * x[8] + 9.0 * x[7] - 2.0 * x[6]) / (6.0 * h);
     double const fastest = (8.0 * (x[19] - x[17]) - (x[20] - x[16])) / (12.0 * h);
     double const error = std::abs(slowest / fastest - std::cos(pi / m113::teeth)), sunk = depth(k) / pitch_radius;
     EXPECT_LT(place, depth(k)) << k;
     EXPECT_LT(error, sunk) << k;
     EXPECT_NEAR(fastest / pitch_radius, 1.0, sunk) << k;
-    EXPECT_NEAR(x[18] - x[0], p, 1e-6 * p) << k;  // a pitch for a tooth, mean v = N p n: what is left is how well it rests
+    EXPECT_NEAR(x[18] - x[0], p, 1e-6 * p)
+        << k;  // a pitch for a tooth, mean v = N p n: what is left is how well it rests
     if (error_before > 0.0) {
       EXPECT_LT(error, error_before / 3.0) << k;  // of the order 1/k, and k has grown fourfold
       EXPECT_LT(place, place_before / 3.0) << k;
@@ -165,15 +174,17 @@ TEST(ChordalAction, StrandRunsAsUnevenlyAsAPolygon) {
   EXPECT_LT(error_before, 1e-4);  // of 1 − cos π/N = 0.049
 }
 
-// At constant speed a pin comes in with 2 ω R sin π/N towards its valley and hits it. The part u = 2 ω R sin² π/N of that is
-// along the chain; if all of the chain took it on, it would rock in its valleys by u/Ω, Ω² = ΣN/((r_a − r_p) M): its pins hang in
-// arcs of r_a − r_p, the seated ones with ΣN ≥ 5 · 2 T sin π/N between them, and M is the mass of all links. By no more does its
-// travel differ from that of a rigid chain.
+// At constant speed a pin comes in with 2 ω R sin π/N towards its valley and hits it. The part u = 2 ω R sin² π/N of
+// that is along the chain; if all of the chain took it on, it would rock in its valleys by u/Ω, Ω² = ΣN/((r_a − r_p)
+// M): its pins hang in arcs of r_a − r_p, the seated ones with ΣN ≥ 5 · 2 T sin π/N between them, and M is the mass of
+// all links. By no more does its travel differ from that of a rigid chain.
 TEST(ChordalAction, MeanSpeedIsAPitchForEachTooth) {
   double const omega = 0.1, start = 1.0, rise = 0.5;
   using Drive = PrescribedRate<Ramp>;
-  Chain<Drive> const chain(2e6, Drive{.law = {{.target = omega, .duration = rise, .start = start}}, .axis = Vec3::UnitY()});
-  double const normal = 5.0 * 2.0 * tension * std::sin(0.5 * tooth), mass = m113::thesis.link.mass * double(chain.links.size());
+  Chain<Drive> const chain(2e6,
+                           Drive{.law = {{.target = omega, .duration = rise, .start = start}}, .axis = Vec3::UnitY()});
+  double const normal = 5.0 * 2.0 * tension * std::sin(0.5 * tooth),
+               mass = m113::thesis.link.mass * double(chain.links.size());
   double const swing = std::sqrt(normal / ((m113::valley_radius - m113::pin_radius) * mass));
   double const rocking = 2.0 * omega * pitch_radius * std::pow(std::sin(0.5 * tooth), 2) / swing;
   State x = chain.model.reference_state();

@@ -12,7 +12,8 @@ namespace link_on_ground_test {
 
 double const nan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<Vec3> const corners{{0.055, 0.19, -0.03}, {0.055, -0.19, -0.03}, {-0.055, 0.19, -0.03}, {-0.055, -0.19, -0.03}};
+std::vector<Vec3> const corners{
+    {0.055, 0.19, -0.03}, {0.055, -0.19, -0.03}, {-0.055, 0.19, -0.03}, {-0.055, -0.19, -0.03}};
 BumpCourse const course({{.x = 0.3, .length = 2.0, .height = 0.2, .y = 0.1, .width = 1.5},
                          {.x = -0.5, .length = 1.5, .height = -0.1}});
 
@@ -24,9 +25,7 @@ LinkOnGround<BumpCourse, Observes::axis> const rough_cable{.terrain = course, .p
 static_assert(ContactGeometry<LinkOnGround<>> && ContactGeometry<LinkOnGround<BumpCourse>> &&
               ContactGeometry<LinkOnGround<RoadProfile, Observes::axis>>);
 template <class G>
-concept Drivable = requires {
-  typename LinkOnGround<G>;
-};
+concept Drivable = requires { typename LinkOnGround<G>; };
 static_assert(Drivable<Washboard> && !Drivable<double> && !Drivable<Bump>);
 
 Frame<double> at(Vec3 const& r, Vec3 const& turn = Vec3::Zero()) { return {.r = r, .A = exp_so3<double>(turn)}; }
@@ -108,7 +107,8 @@ TEST(LinkOnGround, IsTheSameOnGroundThatIsTilted) {
     for (int k = 0; k < 300; ++k) {
       Frame<double> const link = near_ground(number, 0.3);
       Frame<double> const ground = number.frame();
-      auto const expected = contact_points(geometry, link, {}), found = contact_points(geometry, carried(link, ground.A, ground.r), ground);
+      auto const expected = contact_points(geometry, link, {}),
+                 found = contact_points(geometry, carried(link, ground.A, ground.r), ground);
       ASSERT_EQ(found.size(), expected.size());
       for (std::size_t i = 0; i < found.size(); ++i, ++compared) {
         EXPECT_NEAR(found[i].depth, expected[i].depth, 1e-14);
@@ -124,8 +124,8 @@ TEST(LinkOnGround, IsTheSameOnGroundThatIsTilted) {
   EXPECT_GT(compared, 500);
 }
 
-// On a plane ∂d/∂r = −n exactly; on a curved one up to d times the curvature (|h″| ≤ 2π²H/L² + … < 2.5 per metre here, d ≤ 0.05
-// m).
+// On a plane ∂d/∂r = −n exactly; on a curved one up to d times the curvature (|h″| ≤ 2π²H/L² + … < 2.5 per metre here,
+// d ≤ 0.05 m).
 TEST(LinkOnGround, NormalIsTheSlopeOfTheDepth) {
   Numbers number;
   int compared = 0;
@@ -164,7 +164,8 @@ TEST(LinkOnGround, PassesDualNumbersOn) {
   EXPECT_GT(compared, 100);
 }
 
-// A cable has no z of its own: its pad hangs below the tangent, whichever way that runs and however the cable's frame has rolled.
+// A cable has no z of its own: its pad hangs below the tangent, whichever way that runs and however the cable's frame
+// has rolled.
 TEST(LinkOnGround, HangsThePadOfACableBelowIt) {
   Numbers number;
   for (int k = 0; k < 200; ++k) {
@@ -248,8 +249,8 @@ TEST(LinkOnGround, RefusesNumbersThatCannotBeMeantByName) {
   LinkOnGround<> bad = flat;
   bad.terrain.z = nan;
   EXPECT_TRUE(has(refusal([&] { bad.check("\"ground\""); }), "\"ground\": the height of the ground"));
-  EXPECT_TRUE(
-      has(refusal([&] { LinkOnGround<>{}.check("\"ground\""); }), "\"ground\": a link needs points that touch the ground"));
+  EXPECT_TRUE(has(refusal([&] { LinkOnGround<>{}.check("\"ground\""); }),
+                  "\"ground\": a link needs points that touch the ground"));
   bad = flat;
   bad.pad[2][1] = nan;
   EXPECT_TRUE(has(refusal([&] { bad.check("\"ground\""); }), "\"ground\": a point of the pad"));

@@ -22,7 +22,8 @@ HornOnRims<> const horn{.tip = Vec3(0.045, 0.0, 0.075), .play = play, .radius = 
 
 Frame<double> at(Vec3 const& r, Vec3 const& turn = Vec3::Zero()) { return {.r = r, .A = exp_so3<double>(turn)}; }
 
-/// A roller whose middle stands at (s, y, R + h − d) in the axes of a link, its axle turned away from the link's y by `turn`.
+/// A roller whose middle stands at (s, y, R + h − d) in the axes of a link, its axle turned away from the link's y by
+/// `turn`.
 Frame<double> over(Frame<double> const& link, double s, double y, double d, Vec3 const& turn = Vec3::Zero()) {
   return {.r = link.r + link.A * Vec3(s, y, radius + thick - d), .A = link.A * exp_so3<double>(turn)};
 }
@@ -42,15 +43,15 @@ TEST(LinkOnRoller, PressesOnAFlatLinkUnderItsMiddle) {
   EXPECT_EQ(found[0].handover.share, 1.0);
 }
 
-// The law in words: the rim's centre at (s, y, R + h − d) in the link's axes meets the face at (s, y, h), d deep, along the
-// face's normal; so it is in whatever axes the two are seen.
+// The law in words: the rim's centre at (s, y, R + h − d) in the link's axes meets the face at (s, y, h), d deep, along
+// the face's normal; so it is in whatever axes the two are seen.
 TEST(LinkOnRoller, FollowsALinkThatIsTilted) {
   Numbers number;
   for (int k = 0; k < 20; ++k) {
     Frame<double> const link = number.frame();
     double const s = number(0.06), y = number(0.1), d = 0.005 + number(0.004);
-    auto const found =
-        contact_points(one_rim, link, over(link, s, y, d, Vec3(0, number(3.0), 0)));  // a roller that has turned is the same
+    auto const found = contact_points(
+        one_rim, link, over(link, s, y, d, Vec3(0, number(3.0), 0)));  // a roller that has turned is the same
     ASSERT_EQ(found.size(), 1u);
     EXPECT_NEAR(found[0].depth, d, 1e-14);
     EXPECT_LT((found[0].normal + link.A.col(2)).norm(), 1e-14);
@@ -68,7 +69,8 @@ TEST(LinkOnRoller, TouchesWithBothRims) {
     EXPECT_NEAR(found[k].depth, d - y * std::sin(alpha), 1e-15);
     EXPECT_LT((found[k].place - Vec3(0, y * std::cos(alpha), thick)).norm(), 1e-15);
   }
-  auto const beside = contact_points(two_rims, at({0, 0, 0}), over(at({0, 0, 0}), 0.0, 0.15, d));  // one rim is off the face, at y = 0.21
+  auto const beside = contact_points(two_rims, at({0, 0, 0}),
+                                     over(at({0, 0, 0}), 0.0, 0.15, d));  // one rim is off the face, at y = 0.21
   ASSERT_EQ(beside.size(), 1u);
   EXPECT_NEAR(beside[0].place[1], 0.09, 1e-15);
 }
@@ -77,9 +79,9 @@ TEST(LinkOnRoller, LeavesAloneWhatIsAboveBelowAndBeside) {
   Frame<double> const link = at({0, 0, 0});
   double const end = 0.5 * pitch + one_rim.handover;
   EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, 1e-9)).size(), 1u);
-  EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, -1e-9)).size(), 0u);              // just above
-  EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, radius - 1e-9)).size(), 1u);      // the axle just above the face
-  EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, radius + 1e-9)).size(), 0u);      // just below it
+  EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, -1e-9)).size(), 0u);          // just above
+  EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, radius - 1e-9)).size(), 1u);  // the axle just above the face
+  EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, radius + 1e-9)).size(), 0u);  // just below it
   EXPECT_EQ(contact_points(one_rim, link, at({0, 0, -radius - thick + 0.001})).size(), 0u);  // into the outer face
   for (double const side : {-1.0, 1.0}) {
     EXPECT_EQ(contact_points(one_rim, link, over(link, side * (end - 1e-9), 0, 0.001)).size(), 1u);
@@ -89,8 +91,8 @@ TEST(LinkOnRoller, LeavesAloneWhatIsAboveBelowAndBeside) {
   }
 }
 
-// Across the seam between two links in one line a wheel feels k d, no less and no more, and no moment about its axle; both links
-// have a share for 2ε.
+// Across the seam between two links in one line a wheel feels k d, no less and no more, and no moment about its axle;
+// both links have a share for 2ε.
 TEST(LinkOnRoller, HandsOverToTheNextLinkWithoutABump) {
   Contact<LinkOnRoller<>> const law{one_rim, {.stiffness = 2e6}};
   Numbers number;
@@ -126,8 +128,8 @@ TEST(LinkOnRoller, HandsOverToTheNextLinkWithoutABump) {
   EXPECT_GT(both, 20);
 }
 
-// Without damper and friction the wrenches are the gradient of what the contact stores, also where two faces share it: so a wheel that
-// crosses a bend gains nothing.
+// Without damper and friction the wrenches are the gradient of what the contact stores, also where two faces share it:
+// so a wheel that crosses a bend gains nothing.
 TEST(LinkOnRoller, IsConservativeAlsoInTheHandover) {
   Contact<LinkOnRoller<>> const law{one_rim, {.stiffness = 2e6}};
   Numbers number;
@@ -135,15 +137,18 @@ TEST(LinkOnRoller, IsConservativeAlsoInTheHandover) {
   for (int k = 0; k < 60; ++k) {
     Frame<double> const link = number.frame();
     double const side = k % 2 ? 1.0 : -1.0, s = side * 0.5 * pitch + number(0.9 * one_rim.handover);
-    std::array<Frame<double>, 2> const pair{link, over(link, s, number(0.1), 0.003 + number(0.002), number.vec<3>(0.1))};
+    std::array<Frame<double>, 2> const pair{link,
+                                            over(link, s, number(0.1), 0.003 + number(0.002), number.vec<3>(0.1))};
     auto const w = law.wrenches<double>(pair, 0.0);
     for (auto const& p : contact_points(one_rim, pair[0], pair[1])) handing_over += p.handover.share < 1.0;
     for (std::size_t j = 0; j < 12; ++j) {
-      double const slope = slope_at_zero([&](double h) {
-        auto shifted = pair;
-        shifted[j / 6] = moved<double>(pair[j / 6], Vec6(Vec6::Unit(Index(j % 6)) * h));
-        return law.potential(shifted, 0.0);
-      }, 1e-6);
+      double const slope = slope_at_zero(
+          [&](double h) {
+            auto shifted = pair;
+            shifted[j / 6] = moved<double>(pair[j / 6], Vec6(Vec6::Unit(Index(j % 6)) * h));
+            return law.potential(shifted, 0.0);
+          },
+          1e-6);
       double const found = j % 6 < 3 ? w[j / 6].f[Index(j % 3)] : w[j / 6].m[Index(j % 3)];
       EXPECT_NEAR(found, -slope, 1e-6 * 2e6 * 0.003) << j;
     }
@@ -164,22 +169,28 @@ TEST(LinkOnRoller, EdgeMeetsTheRimBeyondTheFace) {
     EXPECT_LT((found[0].place - edge).norm(), 1e-15);
     EXPECT_LT((found[0].normal - (edge - axle).normalized()).norm(), 1e-13);
     // 20 mm deep in what would be the rim, but just beyond the face: no deeper than that
-    auto const just = [&](double beyond) { return contact_points(one_rim, link, at({side * (0.5 * pitch + beyond), 0, thick + reach - 0.02})); };
+    auto const just = [&](double beyond) {
+      return contact_points(one_rim, link, at({side * (0.5 * pitch + beyond), 0, thick + reach - 0.02}));
+    };
     double shallow = 1.0;
     for (auto const& p : just(1e-6)) shallow = std::min(shallow, p.depth);
     EXPECT_NEAR(shallow, 1e-6, 1e-12);
-    EXPECT_EQ(contact_points(one_rim, link, at({side * (0.5 * pitch + e), 0, thick + std::sqrt(reach * reach - e * e) + 1e-6})).size(), 0u);
+    EXPECT_EQ(contact_points(one_rim, link,
+                             at({side * (0.5 * pitch + e), 0, thick + std::sqrt(reach * reach - e * e) + 1e-6}))
+                  .size(),
+              0u);
   }
 }
 
-// Around a bend towards the wheel the strips above the faces overlap: on its way from the middle of one link to that of the next,
-// up to the bend 2 atan(p/2/(R + h)) = 0.4523 at which it touches both there, a wheel is borne by the nearer face, half of it at
-// least.
+// Around a bend towards the wheel the strips above the faces overlap: on its way from the middle of one link to that of
+// the next, up to the bend 2 atan(p/2/(R + h)) = 0.4523 at which it touches both there, a wheel is borne by the nearer
+// face, half of it at least.
 TEST(LinkOnRoller, IsNeverLostInABend) {
   double const reach = radius + thick - 0.001;  // of the axle above either pins' line, 1 mm deep in the face
   for (double const bend : {0.01, 0.1, 0.45}) {
     Vec3 const turn(0, -bend, 0);  // the next link rises
-    Frame<double> const first = at({-0.5 * pitch, 0, 0}), next = at(exp_so3<double>(turn) * Vec3(0.5 * pitch, 0, 0), turn);
+    Frame<double> const first = at({-0.5 * pitch, 0, 0}),
+                        next = at(exp_so3<double>(turn) * Vec3(0.5 * pitch, 0, 0), turn);
     int both = 0;
     double s = -pitch;
     for (double x = -0.5 * pitch; s < 0.0; x += 1e-4) {
@@ -332,8 +343,8 @@ TEST(LinkOnRoller, RefusesNumbersThatCannotBeMeantByName) {
   EXPECT_NO_THROW(two_rims.check("\"wheel 1\""));
 }
 
-/// A link turned about its pins' line by `bow` whose horn has its tip `within` the rims of a roller at the origin, `across` its
-/// middle.
+/// A link turned about its pins' line by `bow` whose horn has its tip `within` the rims of a roller at the origin,
+/// `across` its middle.
 std::pair<Frame<double>, Frame<double>> guided(double across, double within) {
   Frame<double> const roller = at({0, 0, 0});
   Frame<double> link = at({0, 0, 0}, Vec3(0, 0.4, 0));
@@ -383,7 +394,8 @@ TEST(HornOnRims, OnACableIsThatOnALinkThatDoesNotRoll) {
   int compared = 0;
   for (int k = 0; k < 2000; ++k) {
     auto const [twisted, roller] = near_pose(number);
-    auto const expected = contact_points(horn, upright(twisted, roller.A.col(1)), roller), found = contact_points(cable, twisted, roller);
+    auto const expected = contact_points(horn, upright(twisted, roller.A.col(1)), roller),
+               found = contact_points(cable, twisted, roller);
     ASSERT_EQ(found.size(), expected.size()) << k;
     for (std::size_t i = 0; i < found.size(); ++i) {
       EXPECT_NEAR(found[i].depth, expected[i].depth, 1e-13);

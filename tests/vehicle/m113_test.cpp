@@ -1,5 +1,5 @@
-// The data of vehicle/m113.hpp against shared/reference/m113: the bodies and joints in tests/vehicle/data are those of its
-// bodies.csv and joints.csv without the links (places to nine digits), totals and conventions are of M113.md.
+// The data of vehicle/m113.hpp against shared/reference/m113: the bodies and joints in tests/vehicle/data are those of
+// its bodies.csv and joints.csv without the links (places to nine digits), totals and conventions are of M113.md.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,9 @@ void expect_body(std::vector<double> const& row, m113::Solid const& body, Vec3 c
   EXPECT_DOUBLE_EQ(row[0], body.mass);
   EXPECT_EQ(Vec3(row[1], row[2], row[3]), Vec3(body.inertia));
   EXPECT_LT((Vec3(row[4], row[5], row[6]) - place).norm(), 1e-8);
-  EXPECT_LT((Vec4(row[7], row[8], row[9], row[10]) - Vec4(std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0)).norm(), 1e-8);
+  EXPECT_LT(
+      (Vec4(row[7], row[8], row[9], row[10]) - Vec4(std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0)).norm(),
+      1e-8);
 }
 
 void expect_point(std::vector<double> const& row, Vec3 const& place, Vec3 const& axis) {
@@ -104,8 +106,8 @@ TEST(M113, WeighsWhatTheReferenceSays) {
 }
 
 // M113.md section 1.1: every row of T3.1 is a homogeneous solid's. About its axis a cylinder has m R²/2, across it
-// m (3R² + w²)/12; a box a × b × c has m (b² + c²)/12 about the edge a. So the axes and dimensions here are the table's. Table
-// values have three to five digits.
+// m (3R² + w²)/12; a box a × b × c has m (b² + c²)/12 about the edge a. So the axes and dimensions here are the
+// table's. Table values have three to five digits.
 TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
   double const width = 2.0 * m113::half_width;
   auto const wheel = [&](m113::Solid const& s, double radius) {

@@ -26,7 +26,8 @@ double dip_of(m113::VehicleOptions const& options, double until) {
   State x = vehicle.model.reference_state();
   double const start = hull_of(vehicle, x).r.z();
   double lowest = 0.0;
-  run_vehicle(vehicle.model, x, until, 1e-3, [&](State const& now, auto&) { lowest = std::min(lowest, hull_of(vehicle, now).r.z() - start); });
+  run_vehicle(vehicle.model, x, until, 1e-3,
+              [&](State const& now, auto&) { lowest = std::min(lowest, hull_of(vehicle, now).r.z() - start); });
   return -lowest;
 }
 
@@ -38,7 +39,8 @@ TEST(M113Vehicle, CountsAsTheThesisDoes) {
   EXPECT_EQ(ideal.coordinates, 1092);
   EXPECT_EQ(ideal.constraints, 924);
   EXPECT_EQ(ideal.degrees_of_freedom, 168);
-  Census const penalty = census(m113::Vehicle<Rigid<EulerParameters>, PenaltyPerRow<5>>({1e9 * ones, 1e5 * ones}, still(), options).model);
+  Census const penalty =
+      census(m113::Vehicle<Rigid<EulerParameters>, PenaltyPerRow<5>>({1e9 * ones, 1e5 * ones}, still(), options).model);
   EXPECT_EQ(penalty.coordinates, 1092);
   EXPECT_EQ(penalty.constraints, 294);
   EXPECT_EQ(penalty.degrees_of_freedom, 798);
@@ -88,7 +90,8 @@ TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
 }
 
 TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted) {
-  Ramp const drive{.target = 6.0, .duration = 1.0, .start = 0.1, .rounding = 0.1};  // 1.5 m/s², 0.7 of what friction gives
+  Ramp const drive{
+      .target = 6.0, .duration = 1.0, .start = 0.1, .rounding = 0.1};  // 1.5 m/s², 0.7 of what friction gives
   Car const vehicle = car({drive, drive});
   State x = vehicle.model.reference_state();
   EnergyAudit audit(vehicle.model);
@@ -108,7 +111,8 @@ TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted)
     }
   });
   EXPECT_TRUE(held);
-  // the way of the chain over the sprocket, ∫ω dt N p/2π, and on top of it what an idler that yields by s gives or takes, 2s
+  // the way of the chain over the sprocket, ∫ω dt N p/2π, and on top of it what an idler that yields by s gives or
+  // takes, 2s
   double const way = drive.integral(x.t) * m113::rolling_radius;
   EXPECT_NEAR(hull_of(vehicle, x).r.x() - m113::chassis.x, way, 2.0 * yielded);
   EXPECT_LT(yielded, 0.05);
@@ -122,7 +126,8 @@ TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted)
 
 TEST(M113Vehicle, MovesTheSameWhereverItsTracksAreCut) {
   std::vector<Vec3> ends;
-  for (auto const& [cut, closure] : {std::pair{0, m113::Closure::stiff_spring}, {17, m113::Closure::stiff_spring}, {45, m113::Closure::in_plane}}) {
+  for (auto const& [cut, closure] :
+       {std::pair{0, m113::Closure::stiff_spring}, {17, m113::Closure::stiff_spring}, {45, m113::Closure::in_plane}}) {
     Car const vehicle = car(quick(10.0, 10.0), {.cut = cut, .closure = closure});
     State x = vehicle.model.reference_state();
     run_vehicle(vehicle.model, x, 0.7, 5e-4, [](auto&...) {});
@@ -139,9 +144,9 @@ TEST(M113Vehicle, TurnsToTheSideOfTheSlowerTrack) {
   run_vehicle(pivot.model, x, 1.2, 1e-3, [](auto&...) {});
   Frame<double> const f = hull_of(pivot, x);
   double const track_speed = 5.0 * m113::rolling_radius;
-  EXPECT_LT(f.w.z(), -0.2 * track_speed / m113::track_y);       // to the right, and tracks that skid
-  EXPECT_GT(f.w.z(), -1.0 * track_speed / m113::track_y);       // turn it by less than if they rolled
-  EXPECT_LT(Vec3(f.v).head<2>().norm(), 0.3 * track_speed);     // about its own middle
+  EXPECT_LT(f.w.z(), -0.2 * track_speed / m113::track_y);    // to the right, and tracks that skid
+  EXPECT_GT(f.w.z(), -1.0 * track_speed / m113::track_y);    // turn it by less than if they rolled
+  EXPECT_LT(Vec3(f.v).head<2>().norm(), 0.3 * track_speed);  // about its own middle
   for (auto const s : {m113::Side::left, m113::Side::right}) EXPECT_TRUE(seating(pivot, x, s).holds());
 }
 
@@ -153,7 +158,9 @@ TEST(M113Vehicle, TrackThatJumpsIsAnEventWithTimeAndLink) {
   Car const vehicle(Constraint{}, {snatch, snatch}, options);
   State x = vehicle.model.reference_state();
   auto run = simulate(vehicle.model, x, vehicle_integrator(),
-                      {.until = 3.0, .step = 5e-4, .events = {track_lost(vehicle, m113::Side::left), track_lost(vehicle, m113::Side::right)},
+                      {.until = 3.0,
+                       .step = 5e-4,
+                       .events = {track_lost(vehicle, m113::Side::left), track_lost(vehicle, m113::Side::right)},
                        .halvings = 8});
   run.run();
   ASSERT_TRUE(run.report().stopped);
@@ -169,7 +176,8 @@ TEST(M113Vehicle, SpeedThatStepsDoNotResolveIsWarnedOf) {
   EXPECT_EQ(m113::drive_warning(25.0, 1e-3), "");
   EXPECT_EQ(m113::drive_warning(80.0, 1e-3), "");
   // a tenth of 2π/80 s is 7.85 ms; a sixth of that 1.31 ms
-  EXPECT_TRUE(has(m113::drive_warning(80.0, 2e-3), "a tooth passes in 7.85398163 ms, which steps of 2 ms do not resolve"));
+  EXPECT_TRUE(
+      has(m113::drive_warning(80.0, 2e-3), "a tooth passes in 7.85398163 ms, which steps of 2 ms do not resolve"));
   EXPECT_TRUE(has(m113::drive_warning(-80.0, 2e-3), "Take steps of 1.3089969"));
 }
 

@@ -25,14 +25,17 @@ SprocketProfile const profile{.teeth = m113::teeth,
                               .flank = m113::flank,
                               .tip_radius = m113::tip_radius};
 PinOnSprocket<> const one_ring{.profile = profile, .valley = m113::first_valley};
-PinOnSprocket<> const two_rings{.profile = profile, .valley = m113::first_valley, .rings = {-m113::tooth_y, m113::tooth_y}};
+PinOnSprocket<> const two_rings{
+    .profile = profile, .valley = m113::first_valley, .rings = {-m113::tooth_y, m113::tooth_y}};
 PinOnSprocket<Observes::axis> const on_cable{
     .profile = profile, .valley = m113::first_valley, .rings = {-m113::tooth_y, m113::tooth_y}};
 
-/// A link whose front pin is at (radial, tangential) of the valley `middle` of a sprocket, `axial` along its axle, with its y
-/// along the axle and its x at `angle` to the radius.
-Frame<double> seated(Frame<double> const& sprocket, double middle, Vec2 const& pin, double axial = 0.0, double angle = 1.9) {
-  Vec3 const out(std::sin(middle), 0, std::cos(middle)), side(std::cos(middle), 0, -std::sin(middle)), y = Vec3::UnitY();
+/// A link whose front pin is at (radial, tangential) of the valley `middle` of a sprocket, `axial` along its axle, with
+/// its y along the axle and its x at `angle` to the radius.
+Frame<double> seated(Frame<double> const& sprocket, double middle, Vec2 const& pin, double axial = 0.0,
+                     double angle = 1.9) {
+  Vec3 const out(std::sin(middle), 0, std::cos(middle)), side(std::cos(middle), 0, -std::sin(middle)),
+      y = Vec3::UnitY();
   Vec3 const x = std::cos(angle) * out + std::sin(angle) * side;
   Mat3 axes;
   axes << x, y, x.cross(y);
@@ -65,11 +68,12 @@ TEST(SprocketProfile, SeatsPinsOnThePitchCircle) {
   EXPECT_NEAR(pressed.depth, 1e-4, 1e-16);
   EXPECT_LT((pressed.normal - Vec2(1, 0)).norm(), 1e-15);
   // Pins a pitch apart sit in neighbouring valleys.
-  EXPECT_NEAR((polar(profile.pitch_radius(), 36.0 * degree) - polar(profile.pitch_radius(), 0.0)).norm(), m113::pitch, 1e-16);
+  EXPECT_NEAR((polar(profile.pitch_radius(), 36.0 * degree) - polar(profile.pitch_radius(), 0.0)).norm(), m113::pitch,
+              1e-16);
 }
 
-// The corner lies on the tip circle and on the flank's line, which touches the arc at f = (0.244088, 0.030311), 60 deg from the
-// bottom; between two corners the tip is 0.086 m thick.
+// The corner lies on the tip circle and on the flank's line, which touches the arc at f = (0.244088, 0.030311), 60 deg
+// from the bottom; between two corners the tip is 0.086 m thick.
 TEST(SprocketProfile, FlankMeetsTheTipAtItsCorner) {
   Vec2 const k = profile.corner(), f(0.244088, 0.030311);
   EXPECT_NEAR(k.norm(), profile.tip_radius, 1e-15);
@@ -86,8 +90,8 @@ TEST(SprocketProfile, FlankMeetsTheTipAtItsCorner) {
   EXPECT_NEAR(profile.overlap<double>(k[0] + n[0] * 0.0199, k[1] + n[1] * 0.0199).depth, 1e-4, 1e-15);
 }
 
-// "A pin rotating about its seated neighbour clears the tooth by 9.7 / 10.7 / 17 mm at 5 / 10 / 20 deg (no interference at any
-// angle)."
+// "A pin rotating about its seated neighbour clears the tooth by 9.7 / 10.7 / 17 mm at 5 / 10 / 20 deg (no interference
+// at any angle)."
 TEST(SprocketProfile, LetsGoOfAPinThatTurnsAboutItsNeighbour) {
   double const step = 2.0 * pi / 10.0;
   Vec2 const neighbour = polar(profile.pitch_radius(), -step);  // seated a valley before
@@ -109,16 +113,17 @@ template <class F>
 void along_lines(F const& f) {
   Numbers number;
   for (int line = 0; line < 60; ++line) {
-    Vec2 const from = polar(0.25 + number(0.04), number(20.0 * degree)), to = polar(0.25 + number(0.04), number(20.0 * degree));
+    Vec2 const from = polar(0.25 + number(0.04), number(20.0 * degree)),
+               to = polar(0.25 + number(0.04), number(20.0 * degree));
     int const steps = int((to - from).norm() / 1e-6);
     for (int i = 0; i < steps; ++i)
       f(Vec2(from + (to - from) * (double(i) / steps)), Vec2(from + (to - from) * (double(i + 1) / steps)));
   }
 }
 
-// As a pin goes by arc, flank, corner and tip its depth changes by no more than it moves, and n turns by no more than that over
-// the smallest distance from a centre of curvature: r_p − 15 mm from the corner, so 200 per metre; pins deeper than that are left
-// out, as from r_p on the centre is within the tooth. Depth grows against n.
+// As a pin goes by arc, flank, corner and tip its depth changes by no more than it moves, and n turns by no more than
+// that over the smallest distance from a centre of curvature: r_p − 15 mm from the corner, so 200 per metre; pins
+// deeper than that are left out, as from r_p on the centre is within the tooth. Depth grows against n.
 TEST(SprocketProfile, DepthAndNormalAreContinuous) {
   int touching = 0, began = 0;
   double most = 0.0, turned = 0.0, slope = 0.0;
@@ -162,8 +167,8 @@ TEST(SprocketProfile, NormalIsTheSlopeOfTheDepth) {
   for (int const count : pieces) EXPECT_GT(count, 50);
 }
 
-// Pins that press on their valleys where the normal leans by φ against their own radius: with links at π/N to the tangent on both
-// sides,
+// Pins that press on their valleys where the normal leans by φ against their own radius: with links at π/N to the
+// tangent on both sides,
 //   (T − t) cos π/N = N sin φ,  (T + t) sin π/N = N cos φ,  so  t/T = (1 − K)/(1 + K),  K = tan φ tan π/N:
 // "0.79 at 20 deg, 0.57 at 40, 0.28 at 60".
 TEST(SprocketProfile, SharesTheLoadAmongItsTeeth) {
@@ -171,7 +176,8 @@ TEST(SprocketProfile, SharesTheLoadAmongItsTeeth) {
     double angle, ratio;
   };
   for (Case const c : {Case{20.0, 0.79}, {40.0, 0.57}, {60.0, 0.28}}) {
-    // The place on the arc, a hair deep, where it is so: the normal leans by the arc's angle and the pin's own polar angle.
+    // The place on the arc, a hair deep, where it is so: the normal leans by the arc's angle and the pin's own polar
+    // angle.
     double low = 0.0, high = c.angle * degree;
     auto const place = [&](double phi) {
       double const r = m113::valley_radius - m113::pin_radius + 1e-9;
@@ -202,7 +208,8 @@ TEST(PinOnSprocket, IsTheProfileInAnyValleyOfASprocketTurnedAnyhow) {
   for (int k = 0; k < 2000; ++k) {
     Frame<double> const sprocket = number.frame();
     int const valley = int(std::floor(5.0 + number(5.0)));
-    double const middle = m113::first_valley + 36.0 * degree * valley, axial = number(0.05), side = number() > 0.0 ? 1.0 : -1.0;
+    double const middle = m113::first_valley + 36.0 * degree * valley, axial = number(0.05),
+                 side = number() > 0.0 ? 1.0 : -1.0;
     Vec2 const pin = polar(0.25 + number(0.03), std::abs(number(17.9 * degree)));
     Frame<double> const link = seated(sprocket, middle, Vec2(pin[0], side * pin[1]), axial, number(pi));
     auto const o = profile.overlap<double>(pin[0], pin[1]);
@@ -244,7 +251,8 @@ TEST(PinOnSprocket, IsTheSameAfterWholeTeeth) {
 /// A sprocket anywhere and a link whose pin is near the teeth, and askew by up to about `askew`.
 std::pair<Frame<double>, Frame<double>> near_pose(Numbers& number, double askew) {
   Frame<double> const sprocket = number.frame();
-  Frame<double> link = seated(sprocket, number(pi), polar(0.26 + number(0.06), number(18.0 * degree)), number(0.3), number(pi));
+  Frame<double> link =
+      seated(sprocket, number(pi), polar(0.26 + number(0.06), number(18.0 * degree)), number(0.3), number(pi));
   Vec3 const pin = link.r + link.A.col(0) * (0.5 * m113::pitch);
   link.A = exp_so3<double>(number.vec<3>(askew)) * link.A;
   link.r = pin - link.A.col(0) * (0.5 * m113::pitch);
@@ -297,7 +305,8 @@ TEST(PinOnSprocket, OnACableIsThatOnALinkThatDoesNotRoll) {
     Frame<double> link = twisted;
     Vec3 const x = link.A.col(0), axle = sprocket.A.col(1), y = (axle - x * x.dot(axle)).normalized();
     link.A << x, y, x.cross(y);
-    auto const expected = contact_points(two_rings, link, sprocket), found = contact_points(on_cable, twisted, sprocket);
+    auto const expected = contact_points(two_rings, link, sprocket),
+               found = contact_points(on_cable, twisted, sprocket);
     ASSERT_EQ(found.size(), expected.size()) << k;
     for (std::size_t i = 0; i < found.size(); ++i, ++compared) {
       EXPECT_NEAR(found[i].depth, expected[i].depth, 1e-13);
@@ -352,11 +361,12 @@ TEST(PinOnSprocket, RefusesNumbersThatCannotBeMeantByName) {
     EXPECT_TRUE(has(told([&](auto& g) { g.profile.flank = x; }), "\"sprocket\": the arc of a valley must end"));
     EXPECT_TRUE(has(told([&](auto& g) { g.profile.tip_radius = x; }), "\"sprocket\": the tips must lie outside"));
   }
-  EXPECT_TRUE(has(told([](auto& g) { g.profile.teeth = 3; }), "\"sprocket\": a sprocket needs at least four teeth, but has 3"));
+  EXPECT_TRUE(
+      has(told([](auto& g) { g.profile.teeth = 3; }), "\"sprocket\": a sprocket needs at least four teeth, but has 3"));
   EXPECT_TRUE(has(told([](auto& g) { g.profile.valley_radius = m113::pin_radius; }), "must be larger than the pins'"));
   EXPECT_TRUE(has(told([](auto& g) { g.profile.flank = 0.5 * pi; }), "a right angle"));
-  EXPECT_TRUE(
-      has(told([](auto& g) { g.profile.tip_radius = 0.2459; }), "0.24596"));  // f of M113.md: |(0.244088, 0.030311)| = 0.24596
+  EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.2459; }),
+                  "0.24596"));  // f of M113.md: |(0.244088, 0.030311)| = 0.24596
   EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.5; }), "leave nothing of the teeth"));
   EXPECT_TRUE(has(told([](auto& g) { g.valley = nan; }), "\"sprocket\": the angle of a valley"));
   EXPECT_TRUE(has(told([](auto& g) { g.rings.clear(); }), "\"sprocket\": a sprocket needs at least one ring"));

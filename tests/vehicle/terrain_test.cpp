@@ -64,8 +64,9 @@ HeightField sampled(F const& f, Index nx, Index ny, double dx, double dy) {
   return HeightField({.x0 = -1.0, .y0 = 2.0, .dx = dx, .dy = dy, .heights = z});
 }
 
-/// Slopes against differences of heights, and derivatives by dual numbers of heights and slopes against differences of those.
-/// With h = 1e-3 m differences err by h⁴ f⁽⁵⁾/30: less than 1e-9 for slopes of waves of 1 m, 0.2 m high; by rounding for cubics.
+/// Slopes against differences of heights, and derivatives by dual numbers of heights and slopes against differences of
+/// those. With h = 1e-3 m differences err by h⁴ f⁽⁵⁾/30: less than 1e-9 for slopes of waves of 1 m, 0.2 m high; by
+/// rounding for cubics.
 template <Terrain G>
 void expect_exact_slopes(G const& ground, double x, double y) {
   SCOPED_TRACE("at " + number(x) + ", " + number(y));
@@ -91,12 +92,13 @@ void expect_exact_slopes(G const& ground, double x, double y) {
   EXPECT_NEAR(by_y[2], d.slope_y.d[1], 1e-9);
 }
 
-/// Neither height nor slopes jump from one side of a point to the other. Over 2e-9 m they change by 2e-9 of the curvature, which
-/// is below 100/m here.
+/// Neither height nor slopes jump from one side of a point to the other. Over 2e-9 m they change by 2e-9 of the
+/// curvature, which is below 100/m here.
 template <Terrain G>
 void expect_no_jump(G const& ground, Vec2 const& at, Vec2 const& across) {
   Vec2 const a = at - 1e-9 * across, b = at + 1e-9 * across;
-  Height<double> const before = ground.template height<double>(a[0], a[1]), after = ground.template height<double>(b[0], b[1]);
+  Height<double> const before = ground.template height<double>(a[0], a[1]),
+                       after = ground.template height<double>(b[0], b[1]);
   EXPECT_NEAR(before.z, after.z, 2e-7) << at.transpose();
   EXPECT_NEAR(before.slope_x, after.slope_x, 2e-7) << at.transpose();
   EXPECT_NEAR(before.slope_y, after.slope_y, 2e-7) << at.transpose();
@@ -157,7 +159,8 @@ TEST(Terrain, AWashboardRisesFirstAndIsHighAQuarterWaveOn) {
   EXPECT_EQ(board.highest(), 0.03);
 }
 
-// By hand: H in the middle, half of it a quarter of the length away with the slope ∓ πH/L, the steepest, zero from the feet on.
+// By hand: H in the middle, half of it a quarter of the length away with the slope ∓ πH/L, the steepest, zero from the
+// feet on.
 TEST(BumpCourse, ABumpIsARaisedCosine) {
   BumpCourse const one({{.x = 4.0, .length = 2.0, .height = 0.1}});
   for (double const y : {-100.0, 0.0, 3.0}) {
@@ -187,7 +190,8 @@ TEST(BumpCourse, ABumpOfFiniteWidthTapersToItsSides) {
 }
 
 TEST(BumpCourse, BumpsAddUp) {
-  Bump const a{.x = 1.0, .length = 2.0, .height = 0.1}, b{.x = 1.6, .length = 1.0, .height = 0.05, .y = 0.2, .width = 2.0};
+  Bump const a{.x = 1.0, .length = 2.0, .height = 0.1},
+      b{.x = 1.6, .length = 1.0, .height = 0.05, .y = 0.2, .width = 2.0};
   BumpCourse const one({a}), other({b}), both({a, b});
   for (double const x : {0.3, 1.2, 1.5, 1.9}) {
     Height<double> const h = both.height(x, 0.4), ha = one.height(x, 0.4), hb = other.height(x, 0.4);
@@ -234,8 +238,8 @@ TEST(RoadProfile, GoesThroughItsPointsAndIsConstantBeyondThem) {
   }
 }
 
-// By hand: level at the ends and, after Fritsch & Butland, of slope 6/(3/1 + 3/2) = 4/3 at the middle point between chords of
-// slope 1 and 2. Half-way between points a cubic is (z₀ + z₁)/2 + h (z₀′ − z₁′)/8.
+// By hand: level at the ends and, after Fritsch & Butland, of slope 6/(3/1 + 3/2) = 4/3 at the middle point between
+// chords of slope 1 and 2. Half-way between points a cubic is (z₀ + z₁)/2 + h (z₀′ − z₁′)/8.
 TEST(RoadProfile, IsTheMonotoneCubicThatIsLevelAtItsEnds) {
   RoadProfile const hill({{0.0, 0.0}, {1.0, 1.0}, {2.0, 3.0}});
   EXPECT_NEAR(hill.height(1.0, 0.0).slope_x, 4.0 / 3.0, 1e-15);
@@ -258,7 +262,8 @@ TEST(RoadProfile, DoesNotJumpAtItsPoints) {
   for (double const x : {-1.0, 0.5, 1.0, 3.0, 3.5}) expect_no_jump(road, Vec2(x, 0.0), Vec2(1.0, 0.0));
 }
 
-// A kerb rises without a hump before or behind it, and the plane there stays one. Rounding may exceed a point by an ulp.
+// A kerb rises without a hump before or behind it, and the plane there stays one. Rounding may exceed a point by an
+// ulp.
 TEST(RoadProfile, IsNowhereHigherThanItsPoints) {
   RoadProfile const kerb({{0.0, 0.0}, {1.0, 0.0}, {1.1, 0.15}, {3.0, 0.15}});
   for (double x = -1.0; x < 4.0; x += 1e-3) {
@@ -279,7 +284,8 @@ TEST(RoadProfile, IsNowhereHigherThanItsPoints) {
 TEST(HeightField, GoesThroughItsPoints) {
   MatX const z = rough(9, 7);
   for (Index i = 0; i < 9; ++i)
-    for (Index j = 0; j < 7; ++j) EXPECT_NEAR(field.height(-1.0 + 0.5 * double(i), 2.0 + 0.8 * double(j)).z, z(i, j), 1e-14);
+    for (Index j = 0; j < 7; ++j)
+      EXPECT_NEAR(field.height(-1.0 + 0.5 * double(i), 2.0 + 0.8 * double(j)).z, z(i, j), 1e-14);
 }
 
 // A curve of Catmull and Rom passes the middle between its second and third point at (−z₀ + 9z₁ + 9z₂ − z₃)/16.
@@ -316,8 +322,8 @@ TEST(HeightField, ReproducesParabolasAwayFromItsBorder) {
     for (double y = 2.25; y <= 2.5; y += 0.03125) EXPECT_NEAR(ground.height(x, y).z, f(x, y), 1e-14) << x << ", " << y;
 }
 
-// Slopes at the points err with h², at the border with h; so away from the border heights err with h³ and slopes with h²: halved
-// spacings leave an eighth and a quarter. In the cells along the border it is one order less.
+// Slopes at the points err with h², at the border with h; so away from the border heights err with h³ and slopes with
+// h²: halved spacings leave an eighth and a quarter. In the cells along the border it is one order less.
 TEST(HeightField, ConvergesToASmoothGround) {
   auto const f = [](double x, double y) { return std::sin(2.0 * x) * std::cos(1.5 * y); };
   auto const errors = [&](Index n, double margin) {
@@ -325,7 +331,8 @@ TEST(HeightField, ConvergesToASmoothGround) {
     Vec2 worst = Vec2::Zero();
     for (int i = 0; i <= 300; ++i)
       for (int j = 0; j <= 300; ++j) {
-        double const x = -1.0 + margin + (3.0 - 2.0 * margin) * i / 300.0, y = 2.0 + margin + (2.0 - 2.0 * margin) * j / 300.0;
+        double const x = -1.0 + margin + (3.0 - 2.0 * margin) * i / 300.0,
+                     y = 2.0 + margin + (2.0 - 2.0 * margin) * j / 300.0;
         Height<double> const h = ground.height(x, y);
         double const in_slope = std::max(std::abs(h.slope_x - 2.0 * std::cos(2.0 * x) * std::cos(1.5 * y)),
                                          std::abs(h.slope_y + 1.5 * std::sin(2.0 * x) * std::sin(1.5 * y)));
@@ -353,9 +360,10 @@ TEST(HeightField, DoesNotJumpAtItsLines) {
       expect_no_jump(field, Vec2(x, 2.0 + 0.8 * j), Vec2(0.0, 1.0));
 }
 
-// By hand for the plane h = 1 + 0.3x − 0.2y on [0, 2] × [0, 3] with spacings 1 and 1.5: beyond x = 2 the slope is 0.3 (1 − u),
-// the height grows by 0.3 (u − u²/2), u = x − 2, and from u = 1 on it is 0.15 more than at the border; beyond y = 3 the height
-// falls by 0.2 (v − v²/3), v = y − 3, by 0.15 in the end; beyond x = 0 and y = 0 likewise, and at the corners both.
+// By hand for the plane h = 1 + 0.3x − 0.2y on [0, 2] × [0, 3] with spacings 1 and 1.5: beyond x = 2 the slope is 0.3
+// (1 − u), the height grows by 0.3 (u − u²/2), u = x − 2, and from u = 1 on it is 0.15 more than at the border; beyond
+// y = 3 the height falls by 0.2 (v − v²/3), v = y − 3, by 0.15 in the end; beyond x = 0 and y = 0 likewise, and at the
+// corners both.
 TEST(HeightField, LevelsOutBeyondItsBorder) {
   MatX z(3, 3);
   for (Index i = 0; i < 3; ++i)
@@ -381,10 +389,12 @@ TEST(HeightField, LevelsOutBeyondItsBorder) {
     EXPECT_EQ(plane.height(2.0 + far, 1.0).slope_x, 0.0);
     EXPECT_EQ(plane.height(1.0, -1.5 * far).slope_y, 0.0);
   }
-  EXPECT_NEAR(plane.highest(), 1.9, 1e-14);  // reached beyond the corner x = 2, y = 0: the bound is no higher than the ground
+  EXPECT_NEAR(plane.highest(), 1.9,
+              1e-14);  // reached beyond the corner x = 2, y = 0: the bound is no higher than the ground
 }
 
-// Between its points the ground is higher than at any of them, and may be higher still beyond the border: points are no bound.
+// Between its points the ground is higher than at any of them, and may be higher still beyond the border: points are no
+// bound.
 TEST(HeightField, IsNowhereHigherThanItSays) {
   // A ridge that is highest close before its steep side, 1.078 where its points are 1, looking all four ways.
   Vec4 const ridge(0.9, 1.0, 1.0, 0.0);
@@ -399,7 +409,8 @@ TEST(HeightField, IsNowhereHigherThanItSays) {
   EXPECT_GT(within, rough(9, 7).maxCoeff());
   EXPECT_GE(field.highest(), within);
   EXPECT_GE(field.highest(), highest_seen(field, {-2.0, 1.0}, {4.0, 8.0}));
-  EXPECT_EQ(HeightField({.x0 = 0.0, .y0 = 0.0, .dx = 1.0, .dy = 1.0, .heights = MatX::Constant(4, 4, -0.3)}).highest(), -0.3);
+  EXPECT_EQ(HeightField({.x0 = 0.0, .y0 = 0.0, .dx = 1.0, .dy = 1.0, .heights = MatX::Constant(4, 4, -0.3)}).highest(),
+            -0.3);
 }
 
 TEST(Terrain, RefusesWhatIsNoGround) {
@@ -415,13 +426,16 @@ TEST(BumpCourse, RefusesWhatIsNoBump) {
   Bump const good{.x = 0.0, .length = 1.0, .height = 0.1};
   auto const said = [&](Bump const& bad) { return refusal([&] { BumpCourse({good, bad}, "\"course\""); }); };
   EXPECT_TRUE(has(said({.x = 0.0, .length = 0.0, .height = 0.1}), "\"course\": bump 2: the length must be positive"));
-  EXPECT_TRUE(has(said({.x = 0.0, .length = infinity, .height = 0.1}), "the length must be positive and finite, but is inf"));
+  EXPECT_TRUE(
+      has(said({.x = 0.0, .length = infinity, .height = 0.1}), "the length must be positive and finite, but is inf"));
   EXPECT_TRUE(has(said({.x = 0.0, .length = 1.0, .height = nan}), "bump 2: its middle and height must be finite"));
   EXPECT_TRUE(has(said({.x = nan, .length = 1.0, .height = 0.1}), "bump 2: its middle and height must be finite"));
-  EXPECT_TRUE(has(said({.x = 0.0, .length = 1.0, .height = 0.1, .y = infinity}), "bump 2: its middle and height must be finite"));
+  EXPECT_TRUE(has(said({.x = 0.0, .length = 1.0, .height = 0.1, .y = infinity}),
+                  "bump 2: its middle and height must be finite"));
   for (double const width : {-1.0, 0.0, nan})
-    EXPECT_TRUE(has(said({.x = 0.0, .length = 1.0, .height = 0.1, .y = 0.0, .width = width}),
-                    "bump 2: the width must be positive, but is " + number(width) + ". Leave it out for a bump right across."));
+    EXPECT_TRUE(
+        has(said({.x = 0.0, .length = 1.0, .height = 0.1, .y = 0.0, .width = width}),
+            "bump 2: the width must be positive, but is " + number(width) + ". Leave it out for a bump right across."));
 }
 
 TEST(RoadProfile, RefusesPointsThatMakeNoRoad) {
@@ -444,9 +458,11 @@ TEST(HeightField, RefusesWhatIsNoGrid) {
   };
   using Grid = HeightField::Grid;
   EXPECT_TRUE(has(said([](Grid& g) { g.dx = 0.0; }), "\"hill\": the spacing dx must be positive and finite, but is 0"));
-  EXPECT_TRUE(has(said([](Grid& g) { g.dy = -1.0; }), "\"hill\": the spacing dy must be positive and finite, but is -1"));
+  EXPECT_TRUE(
+      has(said([](Grid& g) { g.dy = -1.0; }), "\"hill\": the spacing dy must be positive and finite, but is -1"));
   EXPECT_TRUE(has(said([](Grid& g) { g.y0 = nan; }), "\"hill\": the place x0, y0 of the first point must be finite"));
-  EXPECT_TRUE(has(said([](Grid& g) { g.heights(2, 3) = nan; }), "\"hill\": heights(2, 3) must be finite, but is nan. Fill gaps"));
+  EXPECT_TRUE(has(said([](Grid& g) { g.heights(2, 3) = nan; }),
+                  "\"hill\": heights(2, 3) must be finite, but is nan. Fill gaps"));
   EXPECT_TRUE(has(said([](Grid& g) { g.heights = MatX::Zero(1, 5); }),
                   "\"hill\": a grid needs two points at least along x and along y, but has 1 by 5. For what"));
   EXPECT_TRUE(has(said([](Grid& g) { g.heights = MatX(); }), "but has 0 by 0"));

@@ -13,10 +13,10 @@ using namespace polybody;
 namespace track_formulations_test {
 
 struct Ride {
-  Vec3 place, velocity;                ///< of the hull at the end
-  double dip = 0.0;                    ///< [m]
-  double pull = 0.0;                   ///< mean force in pin 40 of the left track, over the last fifth [N]
-  double gap = 0.0, largest_gap = 0.0; ///< between the points of that pin at the end, and of any at any time [m]
+  Vec3 place, velocity;                 ///< of the hull at the end
+  double dip = 0.0;                     ///< [m]
+  double pull = 0.0;                    ///< mean force in pin 40 of the left track, over the last fifth [N]
+  double gap = 0.0, largest_gap = 0.0;  ///< between the points of that pin at the end, and of any at any time [m]
   bool held = true;
 };
 
@@ -34,7 +34,8 @@ Ride ride(P const& policy, double until, double speed, bool hold = false) {
   run_vehicle(vehicle.model, x, until, 5e-4, [&](State const& now, auto&) {
     r.dip = std::max(r.dip, start - hull_of(vehicle, now).r.z());
     for (std::size_t i = 1; i < 64; ++i) {
-      double const open = (position(vehicle.model, now, side.front[i]) - position(vehicle.model, now, side.rear[i - 1])).norm();
+      double const open =
+          (position(vehicle.model, now, side.front[i]) - position(vehicle.model, now, side.rear[i - 1])).norm();
       r.largest_gap = std::max(r.largest_gap, open);
       if (i == 40) r.gap = open;
     }
@@ -49,8 +50,8 @@ Ride ride(P const& policy, double until, double speed, bool hold = false) {
   return r;
 }
 
-// Forward positions of all formulations within 0.15 m of each other after 10 s is what M113.md §9 expects of the thesis' claim; over
-// the first metre they agree to millimetres, as none of them is softer than contacts of 2e6 N/m.
+// Forward positions of all formulations within 0.15 m of each other after 10 s is what M113.md §9 expects of the
+// thesis' claim; over the first metre they agree to millimetres, as none of them is softer than contacts of 2e6 N/m.
 TEST(TrackFormulations, MoveTheVehicleAlike) {
   Ride const ideal = ride<Rigid<>>(Constraint{}, 0.6, 8.0);
   EXPECT_TRUE(ideal.held);
@@ -68,10 +69,12 @@ TEST(TrackFormulations, MoveTheVehicleAlike) {
   alike(ride<Rigid<>>(Recursive{}, 0.6, 8.0), "recursive");
 }
 
-// Thesis Figure 3.15: penalties open by less than 0.075 mm at 1e9 N/m and by more than 1.5 mm at 1e7 N/m under driving loads. At rest
-// they open by force over stiffness, a hundred times as far for a hundredth of it; the loop of soft pins is longer, and its tension lower.
+// Thesis Figure 3.15: penalties open by less than 0.075 mm at 1e9 N/m and by more than 1.5 mm at 1e7 N/m under driving
+// loads. At rest they open by force over stiffness, a hundred times as far for a hundredth of it; the loop of soft pins
+// is longer, and its tension lower.
 TEST(TrackFormulations, PenaltiesOpenByForceOverStiffness) {
-  Ride const stiff = ride<Rigid<>>(m113::penalty_pin(m113::pin_stiffness), 0.6, 0.0, true), soft = ride<Rigid<>>(m113::penalty_pin(m113::soft_pin_stiffness), 0.6, 0.0, true);
+  Ride const stiff = ride<Rigid<>>(m113::penalty_pin(m113::pin_stiffness), 0.6, 0.0, true),
+             soft = ride<Rigid<>>(m113::penalty_pin(m113::soft_pin_stiffness), 0.6, 0.0, true);
   EXPECT_NEAR(stiff.gap, stiff.pull / m113::pin_stiffness, 0.1 * stiff.gap);
   EXPECT_NEAR(soft.gap, soft.pull / m113::soft_pin_stiffness, 0.1 * soft.gap);
   EXPECT_NEAR((soft.gap / soft.pull) / (stiff.gap / stiff.pull), 100.0, 20.0);
@@ -105,7 +108,8 @@ TEST(TrackFormulations, AnimationIsReadByVtk) {
   for (auto const& line : lines) {
     if (line[0] != "state") continue;
     ++states;
-    double const found = std::stod(line[4]), x_min = std::stod(line[5]), y_min = std::stod(line[7]), y_max = std::stod(line[8]), z_min = std::stod(line[9]);
+    double const found = std::stod(line[4]), x_min = std::stod(line[5]), y_min = std::stod(line[7]),
+                 y_max = std::stod(line[8]), z_min = std::stod(line[9]);
     EXPECT_NEAR(found, volume, 1e-3 * volume);
     EXPECT_NEAR(x_min, -4.3, 0.1);
     EXPECT_NEAR(y_max, m113::track_y + m113::half_width, 1e-3);  // float32

@@ -1,5 +1,6 @@
-// The track of an M113-like vehicle against shared/reference/m113 (links_taut.csv, links.csv: an independent computation, M113.md
-// section 2.1; places rounded to 1e-9 m), chains of short links against strings, and vehicles made up here.
+// The track of an M113-like vehicle against shared/reference/m113 (links_taut.csv, links.csv: an independent
+// computation, M113.md section 2.1; places rounded to 1e-9 m), chains of short links against strings, and vehicles made
+// up here.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +28,8 @@ std::vector<Vec2> pins_of(Table const& table) {
   return pins;
 }
 
-/// A battle tank: rear sprocket, rollers under the upper run, seven wheels, and an idler in front that tightens upwards, too.
-/// `pressed`: a roller on the upper run's outer face between the second and the third roller beneath it.
+/// A battle tank: rear sprocket, rollers under the upper run, seven wheels, and an idler in front that tightens
+/// upwards, too. `pressed`: a roller on the upper run's outer face between the second and the third roller beneath it.
 TrackLayout tank(bool pressed) {
   TrackLayout t{.links = 77,
                 .pitch = 0.18,
@@ -91,7 +92,8 @@ TEST(TrackPath, OfTheM113ClosesWhereTheReferenceDoes) {
   }
 }
 
-// Links 9 and 27 meet wheels 1 and 5, links 32 to 37 the idler; the upper run clears all wheels (M113.md, figure "stage 1").
+// Links 9 and 27 meet wheels 1 and 5, links 32 to 37 the idler; the upper run clears all wheels (M113.md, figure "stage
+// 1").
 TEST(TrackPath, TellsWhatEachLinkAndPinRestsOn) {
   TrackPath const path = wrap_track(m113::track());
   EXPECT_EQ(touched(path), "wheel 1, wheel 5, idler");
@@ -116,8 +118,8 @@ TEST(TrackPath, OfTheM113HasOneRoot) {
     EXPECT_LT(track_length(layout, travel), track_length(layout, travel + 5e-4)) << "travel " << travel;
 }
 
-// M113.md section 2.1: in equilibrium with a preload the tensioner's spring carries 28.3 kN at tensions of 13.6 to 14.6 kN in the
-// two runs, and 47.4 kN at 23.1 to 24.3 kN. The tauter the track, the straighter its runs.
+// M113.md section 2.1: in equilibrium with a preload the tensioner's spring carries 28.3 kN at tensions of 13.6 to 14.6
+// kN in the two runs, and 47.4 kN at 23.1 to 24.3 kN. The tauter the track, the straighter its runs.
 TEST(TrackPath, PullsTheTensionerWithBothRuns) {
   TrackPath const path = wrap_track(m113::track());
   double const share = -path.pull.dot(path.layout.tensioner.direction);
@@ -130,8 +132,8 @@ TEST(TrackPath, PullsTheTensionerWithBothRuns) {
   EXPECT_NEAR(path.pull[1], std::sin(3.031794984) - std::sin(0.233036280), 1e-8);
 }
 
-// Whatever the vehicle, links have their length, faces touch rims and pass through none, pins lie on the pitch circle or outside,
-// and the chain turns once.
+// Whatever the vehicle, links have their length, faces touch rims and pass through none, pins lie on the pitch circle
+// or outside, and the chain turns once.
 TEST(TrackPath, ClosesWithoutStretchOrPenetration) {
   TrackLayout moved = m113::track();
   moved.sprocket.valley = moved.sprocket.valley + 0.11;
@@ -169,9 +171,9 @@ TEST(TrackPath, PassesBelowARollerOnItsOuterFace) {
   EXPECT_LT(inward, -0.1);
 }
 
-/// Largest excess over a string of a chain on tangents to a circle of radius r: at a corner, no further than p from the points
-/// where its links touch, 2 (t − r atan(t/r)) ≤ 2p³/(3r²); there are at most wrap r/p + 2 corners. It bounds the chords that the
-/// sprocket's seats cut off as well, p³/(24r²) each.
+/// Largest excess over a string of a chain on tangents to a circle of radius r: at a corner, no further than p from the
+/// points where its links touch, 2 (t − r atan(t/r)) ≤ 2p³/(3r²); there are at most wrap r/p + 2 corners. It bounds the
+/// chords that the sprocket's seats cut off as well, p³/(24r²) each.
 double excess(double pitch, double radius, double wrap) {
   return 2.0 * std::pow(pitch, 3) / (3.0 * radius * radius) * (wrap * radius / pitch + 2.0);
 }
@@ -198,8 +200,9 @@ TEST(TrackPath, OfShortLinksIsAsLongAsAString) {
   }
 }
 
-// Between equal circles a presser at (−d/2, z) makes of the upper run two tangents that cross the lines of centres, of length D:
-// sin γ = (r + ρ)/D, tan δ = 2z/d. Each is D cos γ long; both circles gain the arc γ − δ, and the presser takes twice that.
+// Between equal circles a presser at (−d/2, z) makes of the upper run two tangents that cross the lines of centres, of
+// length D: sin γ = (r + ρ)/D, tan δ = 2z/d. Each is D cos γ long; both circles gain the arc γ − δ, and the presser
+// takes twice that.
 TEST(TrackPath, OfShortLinksBendsAroundBothFacesAsAStringDoes) {
   double const d = 3.0, r = 0.5, rho = 0.2, z = 0.55, between = std::hypot(0.5 * d, z);
   double const gamma = std::asin((r + rho) / between), delta = std::atan2(z, 0.5 * d), bend = gamma - delta;
@@ -220,7 +223,8 @@ TEST(TrackPath, DoesNotDependOnWhereTheVehicleStands) {
   EXPECT_NEAR(path.travel, elsewhere.travel, 1e-12);
   ASSERT_EQ(path.seated, elsewhere.seated);
   for (std::size_t i = 0; i < path.links.size(); ++i) {
-    EXPECT_NEAR(std::remainder(elsewhere.links[i].angle - path.links[i].angle - 0.7, 2.0 * pi), 0.0, 1e-12) << "link " << i;
+    EXPECT_NEAR(std::remainder(elsewhere.links[i].angle - path.links[i].angle - 0.7, 2.0 * pi), 0.0, 1e-12)
+        << "link " << i;
     EXPECT_EQ(elsewhere.links[i].touches, path.links[i].touches) << "link " << i;
   }
 }
@@ -231,11 +235,12 @@ TEST(TrackPath, DoesNotDependOnTheValleyThatIsNamed) {
   other.sprocket.valley = other.sprocket.valley + 7.0 * 2.0 * pi / 10.0;
   TrackPath const path = wrap_track(m113::track()), same = wrap_track(other);
   EXPECT_EQ(same.first_valley, -7);
-  for (std::size_t i = 0; i < path.pins.size(); ++i) EXPECT_LT((path.pins[i] - same.pins[i]).norm(), 1e-13) << "pin " << i;
+  for (std::size_t i = 0; i < path.pins.size(); ++i)
+    EXPECT_LT((path.pins[i] - same.pins[i]).norm(), 1e-13) << "pin " << i;
 }
 
-// The M113's taut track does not know the ground. Its lowest pin is number 10, at z = 0.010440856 in links_taut.csv; the lowest
-// corner is that of link 10 there, h cos(0.008430089) below.
+// The M113's taut track does not know the ground. Its lowest pin is number 10, at z = 0.010440856 in links_taut.csv;
+// the lowest corner is that of link 10 there, h cos(0.008430089) below.
 TEST(TrackClearances, SeeTheGround) {
   TrackPath const path = wrap_track(m113::track());
   EXPECT_NEAR(clearances(path, 0.0).ground, 0.010440856 - 0.03315 * std::cos(0.008430089), 2e-9);
@@ -255,8 +260,8 @@ TEST(TrackClearances, OfTheReferenceInEquilibriumAreNotNegative) {
   EXPECT_NEAR(gaps.ground, 0.0, 2e-9);
 }
 
-// Links 32 to 37 touch the idler; 1 mm further back it reaches 1 mm · sin b into each, most into link 34 (b = 1.2146, the next
-// is link 35 with 2.0502).
+// Links 32 to 37 touch the idler; 1 mm further back it reaches 1 mm · sin b into each, most into link 34 (b = 1.2146,
+// the next is link 35 with 2.0502).
 TEST(TrackClearances, NameTheDeepestPenetration) {
   TrackPath path = wrap_track(m113::track());
   path.layout.circles[5].centre[0] -= 1e-3;

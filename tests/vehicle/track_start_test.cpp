@@ -1,6 +1,6 @@
-// The M113's tracks at rest on the held vehicle against the independent computation of shared/reference/m113 (links.csv and
-// M113.md section 2.1), whose contacts are rigid. Here a pin or link that is pressed with N sinks N/2k into two rings or rims, so
-// the track is a little longer.
+// The M113's tracks at rest on the held vehicle against the independent computation of shared/reference/m113 (links.csv
+// and M113.md section 2.1), whose contacts are rigid. Here a pin or link that is pressed with N sinks N/2k into two
+// rings or rims, so the track is a little longer.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,8 @@ TrackLayout layout_of(m113::TrackStart const& start) {
 
 double const weight = m113::thesis.link.mass * 9.81 / m113::pitch;  ///< of a metre of track [N/m]
 
-/// The highest tension in a row's equilibrium: that of the upper run, and what hangs from the top of the sprocket at most.
+/// The highest tension in a row's equilibrium: that of the upper run, and what hangs from the top of the sprocket at
+/// most.
 double highest_tension(Reference const& row) { return row.upper_run + weight * (m113::sprocket_z + 0.28); }
 /// The depth at which two points bear N [m].
 double depth(double normal) { return normal / (2.0 * m113::on_sprocket.stiffness); }
@@ -59,16 +60,17 @@ double share() {
   TrackPath const path = wrap_track(m113::track());
   return -path.pull.dot(path.layout.tensioner.direction);
 }
-/// How far the idler is pushed out, from above: contacts yield by ΔL with T ΔL = ΣN d, and ΣN ≤ 2π T around a convex loop, so
-/// with no mean depth above that of the sprocket, where links turn most and N = 2 T sin π/10, ΔL ≤ 2π d. The tension is that of
-/// the reference; what yields has less, as the spring gives way with the idler.
+/// How far the idler is pushed out, from above: contacts yield by ΔL with T ΔL = ΣN d, and ΣN ≤ 2π T around a convex
+/// loop, so with no mean depth above that of the sprocket, where links turn most and N = 2 T sin π/10, ΔL ≤ 2π d. The
+/// tension is that of the reference; what yields has less, as the spring gives way with the idler.
 double given_way(Reference const& row) { return 2.0 * pi * depth(2.0 * row.upper_run * std::sin(pi / 10.0)) / share(); }
 
-/// How far pins may be from the reference's: as far as the idler, and as far as the upper run hangs lower for the tension that
-/// the spring lost, w L²/8T between the sprocket and wheel 2, and as far as what it lies on yields.
+/// How far pins may be from the reference's: as far as the idler, and as far as the upper run hangs lower for the
+/// tension that the spring lost, w L²/8T between the sprocket and wheel 2, and as far as what it lies on yields.
 double out_of_place(Reference const& row) {
   double const span = -m113::wheel(1, m113::Side::left).x, sag = weight * span * span / (8.0 * row.upper_run);
-  double const spring = row.preload + m113::tensioner.stiffness * (settled(row.preload).idler_x - m113::idler_reference_x);
+  double const spring =
+      row.preload + m113::tensioner.stiffness * (settled(row.preload).idler_x - m113::idler_reference_x);
   return given_way(row) + sag * (row.spring / spring - 1.0) + depth(highest_tension(row));
 }
 
@@ -79,8 +81,8 @@ double gap_above(m113::TrackStart const& start, int wheel) {
   double least = 1.0;
   for (std::size_t i = 0; i < 64; ++i)
     if (pins[i][1] > m113::wheel_z)
-      least = std::min(least,
-                       detail::track_gap(pins[i], pins[(i + 1) % 64], layout.half_thickness, layout.circles[std::size_t(wheel)]));
+      least = std::min(least, detail::track_gap(pins[i], pins[(i + 1) % 64], layout.half_thickness,
+                                                layout.circles[std::size_t(wheel)]));
   return least;
 }
 
@@ -89,13 +91,15 @@ TEST(SettledTrack, Closes) {
     m113::TrackStart const& start = settled(row.preload);
     ASSERT_EQ(start.links.size(), 64u);
     for (std::size_t i = 0; i < 64; ++i)
-      EXPECT_LT((end(start.links[i], -1.0) - end(start.links[(i + 1) % 64], 1.0)).norm(), 1e-9 * m113::pitch) << "link " << i;
+      EXPECT_LT((end(start.links[i], -1.0) - end(start.links[(i + 1) % 64], 1.0)).norm(), 1e-9 * m113::pitch)
+          << "link " << i;
     EXPECT_LT(clearances(layout_of(start), pins_of(start)).stretch, 1e-9 * m113::pitch);
   }
 }
 
-// What is pressed sinks in by what the tension explains: pins on the sprocket bear 2 T sin π/10, and links, which turn by less
-// than 60° where they touch, less than T. At 20 kN that is 1.8 mm. On the ground a link's front corners are two points, too.
+// What is pressed sinks in by what the tension explains: pins on the sprocket bear 2 T sin π/10, and links, which turn
+// by less than 60° where they touch, less than T. At 20 kN that is 1.8 mm. On the ground a link's front corners are two
+// points, too.
 TEST(SettledTrack, SinksNoDeeperThanItsTensionPresses) {
   for (Reference const& row : table) {
     TrackClearances const gaps = clearances(layout_of(settled(row.preload)), pins_of(settled(row.preload)), 0.0);
@@ -124,13 +128,15 @@ TEST(SettledTrack, HasItsPinsWhereTheReferenceHas) {
   std::vector<double> const x = links.column("pin_front_x"), z = links.column("pin_front_z");
   std::vector<Vec2> const pins = pins_of(settled(m113::preload));
   EXPECT_LT(out_of_place(table[1]), 15e-3);
-  for (std::size_t i = 0; i < 64; ++i) EXPECT_LT((pins[i] - Vec2(x[i], z[i])).norm(), out_of_place(table[1])) << "pin " << i;
+  for (std::size_t i = 0; i < 64; ++i)
+    EXPECT_LT((pins[i] - Vec2(x[i], z[i])).norm(), out_of_place(table[1])) << "pin " << i;
 }
 
-// M113.md section 2.1: how far the upper run is above the wheels, in millimetres. With less tension it also lies where the
-// reference does.
+// M113.md section 2.1: how far the upper run is above the wheels, in millimetres. With less tension it also lies where
+// the reference does.
 TEST(SettledTrack, LiesOnTheWheelsThatTheReferenceLiesOn) {
-  constexpr std::array<std::array<double, 5>, 4> gaps{{{0, 0, 0, 0, 0}, {17, 0, 0, 0, 0}, {44, 5, 0, 0, 16}, {58, 19, 0, 1, 23}}};
+  constexpr std::array<std::array<double, 5>, 4> gaps{
+      {{0, 0, 0, 0, 0}, {17, 0, 0, 0, 0}, {44, 5, 0, 0, 16}, {58, 19, 0, 1, 23}}};
   for (std::size_t row = 0; row < 4; ++row)
     for (int i = 0; i < m113::wheels; ++i) {
       double const gap = gap_above(settled(table[row].preload), i), expected = 1e-3 * gaps[row][std::size_t(i)];
@@ -149,25 +155,24 @@ TEST(SettledTrack, IsAStartForTheVehicle) {
     EXPECT_LT(violation(system, x).position, 1e-9 * m113::pitch);
     auto const& side = vehicle.side(m113::Side::right);
     EXPECT_NEAR(position(vehicle.model, x, side.idler[0].at(Vec3(0, 0, 0))).x(), settled(m113::preload).idler_x, 1e-15);
-    EXPECT_NEAR(position(vehicle.model, x, side.links[3].at(Vec3(0, 0, 0))).z(), settled(m113::preload).links[3].centre[1],
-                1e-15);
+    EXPECT_NEAR(position(vehicle.model, x, side.links[3].at(Vec3(0, 0, 0))).z(),
+                settled(m113::preload).links[3].centre[1], 1e-15);
   }
 }
 
 TEST(SettledTrack, RefusesWhatCannotBeMeant) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(has(refusal([&] { m113::settled_track({.preload = nan}); }),
+                  "\"left tensioner spring\": the preload must be finite"));
   EXPECT_TRUE(
-      has(refusal([&] { m113::settled_track({.preload = nan}); }), "\"left tensioner spring\": the preload must be finite"));
-  EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = 64}); }), "the pin that closes a track is one of 0 … 63, but 64"));
+      has(refusal([&] { m113::settled_track({.cut = 64}); }), "the pin that closes a track is one of 0 … 63, but 64"));
   EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = -1}); }), "but -1"));
   m113::VehicleOptions options;
   options.masses.link.mass = 0.0;
   EXPECT_TRUE(has(refusal([&] { m113::settled_track(options); }), "the mass must be positive"));
   m113::VehicleOptions few;
   few.start.links.pop_back();
-  EXPECT_TRUE(has(refusal([&] {
-                    m113::Vehicle<>(Constraint{}, {m113::drive(0.0), m113::drive(0.0)}, few);
-                  }),
+  EXPECT_TRUE(has(refusal([&] { m113::Vehicle<>(Constraint{}, {m113::drive(0.0), m113::drive(0.0)}, few); }),
                   "needs the places of 64 links, but has 63"));
 }
 

@@ -1,4 +1,5 @@
-// Strain of a track's link: after a run of rigid links, decoupled, and in runs of flexible links of every formulation (thesis Chapter 4).
+// Strain of a track's link: after a run of rigid links, decoupled, and in runs of flexible links of every formulation
+// (thesis Chapter 4).
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -28,7 +29,9 @@ struct Ride {
   long halved = 0;
   bool seated = true;
 
-  std::vector<double> filtered(double cut_off = 15.0) const { return low_pass(times, strain, {.cut_off = cut_off, .mirrored = true}); }
+  std::vector<double> filtered(double cut_off = 15.0) const {
+    return low_pass(times, strain, {.cut_off = cut_off, .mirrored = true});
+  }
 };
 
 m113::VehicleOptions options(bool held = false, int elements = 0) {
@@ -60,7 +63,9 @@ Ride ride(Ramp const& drive, double until, double step, bool held = false, int e
       r.strain.push_back(m113::link_strain(vehicle.model, x, link));
       r.bending.push_back(m113::link_bending(vehicle.model, x, link, hull_of(vehicle, x).A.col(1)));
     }
-    double const travel = (hull_of(vehicle, x).A.transpose() * (position(vehicle.model, x, side.idler[0].at(Vec3(0, 0, 0))) - hull_of(vehicle, x).r)).x() +
+    double const travel = (hull_of(vehicle, x).A.transpose() *
+                           (position(vehicle.model, x, side.idler[0].at(Vec3(0, 0, 0))) - hull_of(vehicle, x).r))
+                              .x() +
                           m113::chassis.x - m113::idler_reference_x;
     r.pull.push_back(0.5 * (m113::preload + m113::tensioner.stiffness * travel));
   };
@@ -79,7 +84,8 @@ Ride ride(Ramp const& drive, double until, double step, bool held = false, int e
   r.velocity = hull_of(vehicle, x).v;
   r.unaccounted = audit.relative();
   r.halved = run.report().rejected;
-  for (m113::Side const s : {m113::Side::left, m113::Side::right}) r.seated = r.seated && seating(vehicle, x, s).holds();
+  for (m113::Side const s : {m113::Side::left, m113::Side::right})
+    r.seated = r.seated && seating(vehicle, x, s).holds();
   return r;
 }
 
@@ -93,9 +99,9 @@ double off(Ride const& a, Ride const& b) {
 
 Ramp setting_out() { return {.target = 8.0, .duration = 0.6, .start = 0.1, .rounding = 0.1}; }
 
-// Steel links at h = 1 ms. EA/p is five thousand times as stiff as a contact: whatever the formulation, a link bears the same tension, and
-// its strain is that over EA. 10 % between decoupled and ANCF, 5 % between coupled floating frames and ANCF is what Chapter 4's
-// question asks; the thesis found factors of 2 and 3.
+// Steel links at h = 1 ms. EA/p is five thousand times as stiff as a contact: whatever the formulation, a link bears
+// the same tension, and its strain is that over EA. 10 % between decoupled and ANCF, 5 % between coupled floating
+// frames and ANCF is what Chapter 4's question asks; the thesis found factors of 2 and 3.
 TEST(TrackStress, IsTheSameDecoupledAndCoupledInEveryFormulation) {
   double const until = 0.8;
   Ride const cable = ride<AncfCable<>, AncfLinear>(setting_out(), until, 1e-3);
@@ -120,9 +126,9 @@ TEST(TrackStress, IsTheSameDecoupledAndCoupledInEveryFormulation) {
   EXPECT_LT(off(ride<AncfCable<>, AncfLinear>(setting_out(), until, 0.5e-3), cable), 0.05);
 }
 
-// A wheel that rolls over a link bends it, by −3 and 3 MPa here. One cubic element has a linear curvature and shows half of what a force in
-// its middle does; two have a node there and show the moment of the decoupled analysis (bending modes begin at 4.8 kHz). What is left are
-// jumps as the wheel comes and goes, in another step.
+// A wheel that rolls over a link bends it, by −3 and 3 MPa here. One cubic element has a linear curvature and shows
+// half of what a force in its middle does; two have a node there and show the moment of the decoupled analysis (bending
+// modes begin at 4.8 kHz). What is left are jumps as the wheel comes and goes, in another step.
 TEST(TrackStress, TwoElementsBendAsTheDecoupledAnalysisSays) {
   double const until = 0.8;
   Ride const rigid = ride<Rigid<>, Constraint>(setting_out(), until, 1e-3);
@@ -138,12 +144,13 @@ TEST(TrackStress, TwoElementsBendAsTheDecoupledAnalysisSays) {
 
 TEST(TrackStress, RefusesLessThanOneElement) {
   using Track = m113::Vehicle<AncfCable<>, AncfLinear>;
-  EXPECT_TRUE(has(refusal([] { Track(AncfLinear{}, {setting_out(), setting_out()}, options(false, -1)); }), "one element or more"));
+  EXPECT_TRUE(has(refusal([] { Track(AncfLinear{}, {setting_out(), setting_out()}, options(false, -1)); }),
+                  "one element or more"));
 }
 
-// Tracks that run around a held vehicle, with nothing to drive: the tensioner pulls by T₀ at either run, and the chain bears m v²/p on
-// top of it. Over the time in which a link goes round, its strain is (T₀ + m v²/p)/EA; the runs leave the idler at up to 15° from its
-// guide (2 % of T₀).
+// Tracks that run around a held vehicle, with nothing to drive: the tensioner pulls by T₀ at either run, and the chain
+// bears m v²/p on top of it. Over the time in which a link goes round, its strain is (T₀ + m v²/p)/EA; the runs leave
+// the idler at up to 15° from its guide (2 % of T₀).
 TEST(TrackStress, FollowsTensionOverEA) {
   for (double const speed : {30.0, 80.0}) {
     Ramp const drive{.target = speed, .duration = 0.6, .start = 0.05, .rounding = 0.1};
@@ -169,8 +176,10 @@ template <class Link, class Pin>
 void restarts_with_the_same_bits(char const* name) {
   m113::Vehicle<Link, Pin> const vehicle(Pin{}, {setting_out(), setting_out()}, options());
   RunOptions run_options{.until = 0.16, .step = 1e-3, .halvings = 6};
-  for (m113::Side const s : {m113::Side::left, m113::Side::right}) run_options.events.push_back(m113::track_lost(vehicle, s));
-  auto const file = std::filesystem::path(testing::TempDir()) / ("polybody track " + std::to_string(::getpid()) + ".checkpoint");
+  for (m113::Side const s : {m113::Side::left, m113::Side::right})
+    run_options.events.push_back(m113::track_lost(vehicle, s));
+  auto const file =
+      std::filesystem::path(testing::TempDir()) / ("polybody track " + std::to_string(::getpid()) + ".checkpoint");
   State x = vehicle.model.reference_state(), y;
   auto whole = simulate(vehicle.model, x, integrator(), run_options);
   while (!whole.done()) {

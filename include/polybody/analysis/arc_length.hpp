@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A path of static equilibria past limit points: the load factor p becomes an unknown, and steps have a length along the path
-/// [Riks 1979; Crisfield 1991, §9.3]. With r(q, λ, p) = 0 affine in p, K Δ = −r − r_p Δp, corrections stay in the plane normal
-/// to the tangent (t, t_p) of the step's start:
+/// A path of static equilibria past limit points: the load factor p becomes an unknown, and steps have a length along
+/// the path [Riks 1979; Crisfield 1991, §9.3]. With r(q, λ, p) = 0 affine in p, K Δ = −r − r_p Δp, corrections stay in
+/// the plane normal to the tangent (t, t_p) of the step's start:
 ///   a = −K⁻¹ r,  b = −K⁻¹ r_p,  Δp = −t·a / (t·b + t_p),  Δ = a + b Δp.
 
 #include <functional>
@@ -28,9 +28,9 @@ struct PathPoint {
   State x;
 };
 
-/// Follows the path from x, in equilibrium without loads, until `done(point)` or `options.points`. Lengths are measured by
-/// |dq|²/c² + dp², c = |dq/dp| at the start. \throws NewtonStalled naming the load factor where steps have become too
-/// short, LinearSolverSingular where not even the start has a tangent, NonFinite.
+/// Follows the path from x, in equilibrium without loads, until `done(point)` or `options.points`. Lengths are measured
+/// by |dq|²/c² + dp², c = |dq/dp| at the start. \throws NewtonStalled naming the load factor where steps have become
+/// too short, LinearSolverSingular where not even the start has a tangent, NonFinite.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {
@@ -70,8 +70,9 @@ std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcL
   };
 
   if (!solve(now) || !(b.head(nv).norm() > 0.0))
-    throw LinearSolverSingular("equilibrium_path: there is no path to follow from here: the stiffness is singular at the start, or "
-                               "nothing is loaded.");
+    throw LinearSolverSingular(
+        "equilibrium_path: there is no path to follow from here: the stiffness is singular at the start, or "
+        "nothing is loaded.");
   double const c2 = b.head(nv).squaredNorm();
   auto const tangent = [&](VecX const& before, double before_p, VecX& t) {  // of unit length, onwards
     double tp = 1.0 / std::sqrt(1.0 + b.head(nv).squaredNorm() / c2);
@@ -91,7 +92,8 @@ std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcL
     move(trial, VecX(length * t), length * tp);
     int iterations = 0;
     bool converged = false;
-    for (double before = std::numeric_limits<double>::infinity(); iterations < options.max_iterations && !converged; ++iterations) {
+    for (double before = std::numeric_limits<double>::infinity(); iterations < options.max_iterations && !converged;
+         ++iterations) {
       if (!solve(trial)) break;
       double const dp = -(t.head(nv).dot(a.head(nv)) / c2) / (t.head(nv).dot(b.head(nv)) / c2 + tp);
       VecX const d = a + b * dp;
@@ -104,7 +106,8 @@ std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcL
     if (!converged || !solve(trial)) {
       length *= 0.5;
       if (length < options.smallest)
-        throw NewtonStalled("equilibrium_path: Newton's method did not converge beyond load factor " + number(now.load_factor) +
+        throw NewtonStalled("equilibrium_path: Newton's method did not converge beyond load factor " +
+                            number(now.load_factor) +
                             ". A bifurcation may be near; give the structure an imperfection, or end the path before.");
       continue;
     }

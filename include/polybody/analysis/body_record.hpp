@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a run leaves of chosen rigid bodies: motion, and every wrench with the material point it acts on. It is what a stress
-/// analysis after the run starts from (decoupled_stress.hpp).
+/// What a run leaves of chosen rigid bodies: motion, and every wrench with the material point it acts on. It is what a
+/// stress analysis after the run starts from (decoupled_stress.hpp).
 ///
 /// Not in polybody.hpp: few programs need it.
 
@@ -37,16 +37,15 @@ struct BodyRecord {
 
 /// A rigid body, in the plane or in space: its points are `at(u)`, u from its centre of mass in its axes.
 template <class B>
-concept HasRigidPoints = Body<B> &&(
-    requires(B const b) { b.at(Vec3()); } || requires(B const b) { b.at(Vec2()); });
+concept HasRigidPoints = Body<B> && (requires(B const b) { b.at(Vec3()); } || requires(B const b) { b.at(Vec2()); });
 
 /// Takes down what acts on the bodies of interest:
 ///   LoadRecorder recorder(model);
 ///   recorder.add(link);
 ///   for (State const& now : simulate(model, x, …)) recorder.record(now);
 ///   recorder.of(link)   the record
-/// With the force w = −Gᵀλ of a joint on either marker [thesis Eq. 3.3, 4.4], and those of force elements, m a = Σ F holds of
-/// each sample as well as the integrator solves it.
+/// With the force w = −Gᵀλ of a joint on either marker [thesis Eq. 3.3, 4.4], and those of force elements, m a = Σ F
+/// holds of each sample as well as the integrator solves it.
 template <class M>
 class LoadRecorder {
  public:
@@ -60,7 +59,8 @@ class LoadRecorder {
                   "Loads are recorded of rigid bodies; a flexible body knows its own stress (analysis/section.hpp).");
     auto const& e = model().entry(handle);
     if (!records_.empty() && !records_.front().samples.empty())
-      throw InvalidInput("LoadRecorder: \"" + handle.name + "\" comes after the first sample. Add all bodies before the run.");
+      throw InvalidInput("LoadRecorder: \"" + handle.name +
+                         "\" comes after the first sample. Add all bodies before the run.");
     if (find(e.v0) >= 0) return;
     Index const slot = Index(records_.size());
     Vec3 gravity = model().gravity().g;
@@ -71,14 +71,14 @@ class LoadRecorder {
       if (m.body == handle.index) owner_[std::size_t(m.published)] = slot;
   }
 
-  /// One more sample of all of them. \throws InvalidInput for a state of another model, one that is not finite or not later than
-  /// the last.
+  /// One more sample of all of them. \throws InvalidInput for a state of another model, one that is not finite or not
+  /// later than the last.
   void record(State const& x) {
     require_fitting(model(), x);
     for (BodyRecord const& r : records_)
       if (!r.samples.empty() && !(x.t > r.samples.back().t))
-        throw InvalidInput("LoadRecorder: a state at " + number(x.t) + " s comes after one at " + number(r.samples.back().t) +
-                           " s. Record each state once, in the order of the run.");
+        throw InvalidInput("LoadRecorder: a state at " + number(x.t) + " s comes after one at " +
+                           number(r.samples.back().t) + " s. Record each state once, in the order of the run.");
     system_.evaluate(x.q, x.v, x.t);
     model().for_each_body([&](auto const& e) {
       if constexpr (HasRigidPoints<std::decay_t<decltype(e.body)>>)
@@ -112,7 +112,8 @@ class LoadRecorder {
   BodyRecord const& of(BodyHandle<B> const& handle) const {
     Index const slot = find(model().entry(handle).v0);
     if (slot < 0)
-      throw InvalidInput("LoadRecorder: body \"" + handle.name + "\" was not recorded. Add it to the recorder before the run.");
+      throw InvalidInput("LoadRecorder: body \"" + handle.name +
+                         "\" was not recorded. Add it to the recorder before the run.");
     BodyRecord const& r = records_[std::size_t(slot)];
     if (r.samples.empty())
       throw InvalidInput("LoadRecorder: there is no sample of \"" + handle.name +
@@ -137,7 +138,8 @@ class LoadRecorder {
     std::vector<double> jacobian(std::size_t(6 * e.body.speeds()));
     p.jacobian = jacobian.data();
     p.columns = e.body.speeds();
-    e.body.template publish<double>(e.body.at(U(U::Zero())), Mat3::Identity(), detail::body_part(x.q, e.q0, e.body.coordinates()),
+    e.body.template publish<double>(e.body.at(U(U::Zero())), Mat3::Identity(),
+                                    detail::body_part(x.q, e.q0, e.body.coordinates()),
                                     detail::body_part(x.v, e.v0, e.body.speeds()), p);
     Vec6 const rate = p.push(x.a.data() + e.v0) + p.bias;
     return {x.t, p.frame, rate.head<3>(), rate.tail<3>(), {}};
@@ -149,8 +151,8 @@ class LoadRecorder {
     if (slot < 0 || w.isZero(0.0)) return;
     BodySample& s = records_[std::size_t(slot)].samples.back();
     Mat3 const to_body = s.frame.A.transpose();
-    s.loads.push_back({to_body * (system_.data().markers[std::size_t(marker)].frame.r - s.frame.r), to_body * w.head<3>(),
-                       to_body * w.tail<3>()});
+    s.loads.push_back({to_body * (system_.data().markers[std::size_t(marker)].frame.r - s.frame.r),
+                       to_body * w.head<3>(), to_body * w.tail<3>()});
   }
 
   System<M> system_;

@@ -113,8 +113,8 @@ Comparison compare(C const& make_case, Fs const&... formulations) {
     for (std::size_t i = 0; i < run.outputs.size(); ++i) {
       double most = 0.0;
       for (std::size_t k = 0; k < run.times.size(); ++k)
-        most = std::max(most, std::abs(run.outputs[i][k] -
-                                       detail::interpolate(first.times, first.outputs[i], run.times[k])));
+        most = std::max(most,
+                        std::abs(run.outputs[i][k] - detail::interpolate(first.times, first.outputs[i], run.times[k])));
       run.difference.push_back(most);
     }
   return c;

@@ -18,15 +18,15 @@ struct ComparedRun {
   std::string name;
   Census census;
   RunReport run;
-  double cpu = 0.0;                          ///< of the steps alone [s]
-  Violation violation;                       ///< largest over the run
-  double energy_start = 0.0;                 ///< total energy [J]
+  double cpu = 0.0;           ///< of the steps alone [s]
+  Violation violation;        ///< largest over the run
+  double energy_start = 0.0;  ///< total energy [J]
   double energy_end = 0.0;
-  double peak_joint_force = 0.0;             ///< [N]
-  std::vector<double> times;                 ///< (n) the start and every step's end [s]
-  std::vector<Violation> violations;         ///< (n)
-  std::vector<Energy> energies;              ///< (n)
-  std::vector<double> joint_forces;          ///< (n) of the joint that holds most [N]
+  double peak_joint_force = 0.0;      ///< [N]
+  std::vector<double> times;          ///< (n) the start and every step's end [s]
+  std::vector<Violation> violations;  ///< (n)
+  std::vector<Energy> energies;       ///< (n)
+  std::vector<double> joint_forces;   ///< (n) of the joint that holds most [N]
   std::vector<std::string> output_names;
   std::vector<std::vector<double>> outputs;  ///< one history (n) for each output
   std::vector<double> difference;            ///< largest |output − first formulation's| over the run
@@ -73,8 +73,8 @@ std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& firs
   return column;
 }
 
-/// What is known of a run at each of its times: violations, energies and the peak joint force, then the outputs. An output with
-/// the name of another history stands in its place.
+/// What is known of a run at each of its times: violations, energies and the peak joint force, then the outputs. An
+/// output with the name of another history stands in its place.
 template <class = void>
 std::vector<History> histories(ComparedRun const& run) {
   std::vector<History> all;
@@ -98,9 +98,9 @@ std::vector<History> histories(ComparedRun const& run) {
 
 namespace detail {
 
-/// y(t) in a history with increasing times: the cubic through the two times before and the two behind, near an end through
-/// its four; beyond, the value at the end. Times much closer together than the two about t are passed over: differences
-/// there are rounding errors.
+/// y(t) in a history with increasing times: the cubic through the two times before and the two behind, near an end
+/// through its four; beyond, the value at the end. Times much closer together than the two about t are passed over:
+/// differences there are rounding errors.
 template <class = void>
 double interpolate(std::vector<double> const& times, std::vector<double> const& y, double t) {
   auto const after = std::lower_bound(times.begin(), times.end(), t);

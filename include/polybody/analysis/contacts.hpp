@@ -16,18 +16,22 @@ struct TouchingPoint {
   Vec3 force;                  ///< (3) on the body [N]
 };
 
-/// Calls visit(TouchingPoint) for every point of a contact group that presses; `system` must have been evaluated at the state.
+/// Calls visit(TouchingPoint) for every point of a contact group that presses; `system` must have been evaluated at the
+/// state.
 /// \throws InvalidInput for a handle of another model.
 template <class M, class F, class Visit>
 void for_each_contact(System<M> const& system, ElementHandle<F> const& group, Visit&& visit) {
   auto const& entry = system.model().entry(group);
-  auto const frame = [&](Index k) -> Frame<double> const& { return system.data().markers[std::size_t(entry.markers[std::size_t(k)])].frame; };
+  auto const frame = [&](Index k) -> Frame<double> const& {
+    return system.data().markers[std::size_t(entry.markers[std::size_t(k)])].frame;
+  };
   for (Index body = 0; body < entry.force.many(); ++body)
     entry.force.for_each_opponent([&](auto const& few) {
       if (!few.law.may_touch(frame(body), frame(few.marker))) return;
-      few.law.template for_each_point<double>({frame(body), frame(few.marker)}, [&](auto const& p, Vec3 const& v, double n) {
-        if (n > 0.0) visit(TouchingPoint{body, &few.name, p.place, p.normal, p.depth, few.law.force_at(p, v, n)});
-      });
+      few.law.template for_each_point<double>(
+          {frame(body), frame(few.marker)}, [&](auto const& p, Vec3 const& v, double n) {
+            if (n > 0.0) visit(TouchingPoint{body, &few.name, p.place, p.normal, p.depth, few.law.force_at(p, v, n)});
+          });
     });
 }
 

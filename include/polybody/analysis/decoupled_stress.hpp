@@ -2,12 +2,12 @@
 /// \file
 /// Stress after a rigid run, "decoupled" [thesis §4.3.5]: of a recorded rigid body (body_record.hpp) the linear problem
 ///   M q̈ + D q̇ + K q = Q_f − m_fr q̈_r − C_qfᵀ λ
-/// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The deformation
-/// does not act back on the motion.
+/// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The
+/// deformation does not act back on the motion.
 ///
-/// Of the solution only the accelerations q̈ are taken on: K e = Q − M Φ q̈ gives all nodal displacements, and the forces within a
-/// beam follow from its ends' by equilibrium with what acts along it. Static loads are then exact in every section, whatever the
-/// number of elements and modes ("mode acceleration" [Williams 1945]).
+/// Of the solution only the accelerations q̈ are taken on: K e = Q − M Φ q̈ gives all nodal displacements, and the forces
+/// within a beam follow from its ends' by equilibrium with what acts along it. Static loads are then exact in every
+/// section, whatever the number of elements and modes ("mode acceleration" [Williams 1945]).
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
 
@@ -34,8 +34,9 @@ inline std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure
   return points;
 }
 
-/// `frame`, and what keeps a structure from moving as a whole without forcing it: the first node; where nodes have no rotations,
-/// of the node b farthest from it two displacements across b − a, and of the node farthest from their line that across the plane.
+/// `frame`, and what keeps a structure from moving as a whole without forcing it: the first node; where nodes have no
+/// rotations, of the node b farthest from it two displacements across b − a, and of the node farthest from their line
+/// that across the plane.
 inline ReferenceConditions held_just_so(Structure const& s, ReferenceConditions frame) {
   for (int c = 0; c < s.per_node; ++c) frame.fix(0, c);
   if (s.per_node == 6) return frame;
@@ -62,25 +63,27 @@ inline ReferenceConditions held_just_so(Structure const& s, ReferenceConditions 
 ///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})      (analysis/filter.hpp)
 class DecoupledStress {
  public:
-  /// K e = Q of each sample: right where loads change slowly beside the structure's vibrations. Loads that balance, as recorded
-  /// ones do, leave the stress the same whatever `frame` holds; displacements are relative to that. \throws InvalidInput as
-  /// `StructureLoads`, and for a frame that holds something, but not enough.
-  static DecoupledStress quasi_static(Structure structure, BodyRecord const& record, StructureLoadOptions const& options = {},
+  /// K e = Q of each sample: right where loads change slowly beside the structure's vibrations. Loads that balance, as
+  /// recorded ones do, leave the stress the same whatever `frame` holds; displacements are relative to that. \throws
+  /// InvalidInput as `StructureLoads`, and for a frame that holds something, but not enough.
+  static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
+                                      StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
-  /// The vibrations, too. \throws InvalidInput as `StructureLoads`, for shapes that do not fit the structure or move what the
-  /// frame holds, and for fewer substeps than one; what the integrator throws.
+  /// The vibrations, too. \throws InvalidInput as `StructureLoads`, for shapes that do not fit the structure or move
+  /// what the frame holds, and for fewer substeps than one; what the integrator throws.
   template <LinearSolver Solver = DenseLu, class I>
-  static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator, Vibration const& how,
-                                   StructureLoadOptions const& options = {});
+  static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
+                                   Vibration const& how, StructureLoadOptions const& options = {});
 
   std::vector<double> const& times() const { return loads_.times(); }
   StructureLoads const& loads() const { return loads_; }
-  /// Nodal displacements (N×samples), in the structure's axes [m], [rad]; with damping, those that the forces would cause at rest.
+  /// Nodal displacements (N×samples), in the structure's axes [m], [rad]; with damping, those that the forces would
+  /// cause at rest.
   MatX const& displacements() const { return e_; }
 
-  /// (N, Q_y, Q_z, M_x, M_y, M_z) of the section at s of a bar (see sections.hpp), damping included [N], [N m]. Where a load acts
-  /// right at the section, those just beyond it; at the last end, just before. \throws InvalidInput outside the bar, and for a
-  /// structure without bars.
+  /// (N, Q_y, Q_z, M_x, M_y, M_z) of the section at s of a bar (see sections.hpp), damping included [N], [N m]. Where a
+  /// load acts right at the section, those just beyond it; at the last end, just before. \throws InvalidInput outside
+  /// the bar, and for a structure without bars.
   std::vector<Vec6> section_forces(double s, Index bar = 0) const {
     auto const [index, xi] = locate(s, bar);
     Structure const& structure = loads_.structure();
@@ -117,22 +120,24 @@ class DecoupledStress {
     return out;
   }
 
-  /// Axial strain of the fibre (y, z) of that section, N/EA − y M_z/EI + z M_y/EI_y: with damping, that which these forces would
-  /// cause at rest. \throws InvalidInput as `section_forces`.
+  /// Axial strain of the fibre (y, z) of that section, N/EA − y M_z/EI + z M_y/EI_y: with damping, that which these
+  /// forces would cause at rest. \throws InvalidInput as `section_forces`.
   std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
     std::vector<double> out;
-    for (Vec6 const& n : section_forces(s, bar)) out.push_back(n[0] / c.EA - y * n[5] / c.EI + z * n[4] / c.EI_y.value_or(c.EI));
+    for (Vec6 const& n : section_forces(s, bar))
+      out.push_back(n[0] / c.EA - y * n[5] / c.EI + z * n[4] / c.EI_y.value_or(c.EI));
     return out;
   }
-  /// Axial stress of that fibre [N/m²], `of` being the bar. \throws InvalidInput as above, and for a bar given by constants.
+  /// Axial stress of that fibre [N/m²], `of` being the bar. \throws InvalidInput as above, and for a bar given by
+  /// constants.
   std::vector<double> axial_stress(Bar const& of, double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     std::vector<double> out;
     for (Vec6 const& n : section_forces(s, bar)) out.push_back(fibre_stress(of, n, y, z));
     return out;
   }
-  /// Axial and shear stress at a point of that section, which tell principal stresses and von Mises'. \throws InvalidInput as
-  /// `section_stress`.
+  /// Axial and shear stress at a point of that section, which tell principal stresses and von Mises'. \throws
+  /// InvalidInput as `section_stress`.
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
     std::vector<SectionStress> out;
     for (Vec6 const& n : section_forces(s, bar)) out.push_back(section_stress(of, n, y, z));
@@ -202,7 +207,8 @@ class DecoupledStress {
     std::array<Vec3, 3> a{x.motion.b + B * g.at, B * beam.axes.col(1), B * beam.axes.col(2)};
     Mat<double, 3, 12> const* const shapes[3] = {&g.axis, &g.y, &g.z};
     for (std::size_t i = 0; i < 3; ++i)
-      a[i] += *shapes[i] * x.acceleration + B * (*shapes[i] * x.deformed) + 2.0 * x.motion.omega.cross(*shapes[i] * x.rate);
+      a[i] +=
+          *shapes[i] * x.acceleration + B * (*shapes[i] * x.deformed) + 2.0 * x.motion.omega.cross(*shapes[i] * x.rate);
     return a;
   }
 
@@ -212,7 +218,8 @@ class DecoupledStress {
 };
 
 inline DecoupledStress DecoupledStress::quasi_static(Structure structure, BodyRecord const& record,
-                                                     StructureLoadOptions const& options, ReferenceConditions const& frame) {
+                                                     StructureLoadOptions const& options,
+                                                     ReferenceConditions const& frame) {
   DecoupledStress out(StructureLoads(std::move(structure), record, options));
   Structure const& s = out.loads_.structure();
   std::vector<Index> const free = frame.free_coordinates(s);

@@ -6,10 +6,10 @@ namespace polybody {
 /// Energies of a state [J].
 struct Energy {
   double kinetic = 0.0;
-  double strain = 0.0;     ///< of flexible bodies
-  double gravity = 0.0;    ///< zero at the world's origin
-  double joints = 0.0;     ///< stored in compliant joints
-  double forces = 0.0;     ///< stored in force elements that have a potential
+  double strain = 0.0;   ///< of flexible bodies
+  double gravity = 0.0;  ///< zero at the world's origin
+  double joints = 0.0;   ///< stored in compliant joints
+  double forces = 0.0;   ///< stored in force elements that have a potential
   double potential() const { return strain + gravity + joints + forces; }
   double total() const { return kinetic + potential(); }
 };

@@ -31,11 +31,11 @@ struct PowerScratch {
   }
 };
 
-/// What damping takes from a body: of its forces f(q, v), elastic ones do not know v and those of inertia are even in it, while
-/// damping is odd; so −½ v·(f(q, v) − f(q, −v)).
+/// What damping takes from a body: of its forces f(q, v), elastic ones do not know v and those of inertia are even in
+/// it, while damping is odd; so −½ v·(f(q, v) − f(q, −v)).
 template <class B, class Kept>
-double dissipated_in(B const& body, std::span<double const> q, std::span<double const> v, std::span<double const> backwards,
-                     Kept& kept) {
+double dissipated_in(B const& body, std::span<double const> q, std::span<double const> v,
+                     std::span<double const> backwards, Kept& kept) {
   auto&& scratch = kept.force_scratch(body);
   double sum = 0.0;
   for (Index i = 0; i < body.elements(); ++i) {
@@ -71,7 +71,8 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
 
 /// Of a joint whose gap moves by ġ = G v + Φ_t; the bodies feel −Gᵀλ.
 ///   Rows:       −λ·G v goes to the bodies; on the rows G v = −Φ_t, and it is λ·Φ_t, zero without a drive.
-///   Compliant:  so does −λ·G v = λ·Φ_t − λ(g, 0)·ġ − (λ − λ(g, 0))·ġ: work of the drive, less what is stored, less what is lost.
+///   Compliant:  so does −λ·G v = λ·Φ_t − λ(g, 0)·ġ − (λ − λ(g, 0))·ġ: work of the drive, less what is stored, less
+///   what is lost.
 template <class J, int m, class M>
 void add_powers(JointEntry<J> const& e, Gap<m> const& gap, Data<M> const& data, VecX const& lambda, Powers& p) {
   Vec<double, m> const l = multiplier(e, gap, data, lambda);
@@ -108,22 +109,23 @@ Powers powers(System<M> const& system, State const& x, PowerScratch<M>& scratch)
   scratch.backwards = -x.v;
   for_each_body_with_scratch(model, scratch, [&](auto const& e, auto& kept) {
     if constexpr (!HasRigidLayout<std::decay_t<decltype(e.body)>>)
-      p.dissipated += dissipated_in(e.body, body_part(x.q, e.q0, e.body.coordinates()), body_part(x.v, e.v0, e.body.speeds()),
-                                    body_part(std::as_const(scratch.backwards), e.v0, e.body.speeds()), kept);
+      p.dissipated +=
+          dissipated_in(e.body, body_part(x.q, e.q0, e.body.coordinates()), body_part(x.v, e.v0, e.body.speeds()),
+                        body_part(std::as_const(scratch.backwards), e.v0, e.body.speeds()), kept);
   });
   for_each_gap(model, data, [&](auto const& e, auto const& gap) { add_powers(e, gap, data, x.lambda, p); });
   model.for_each_force([&](auto const& e) {
     double const scale = std::decay_t<decltype(e.force)>::is_load ? system.load_factor : 1.0;
-    for_each_action(e, data,
-                    [&](auto const& force, auto const&, auto const& frames) { add_powers(force, frames, x.t, scale, p); });
+    for_each_action(
+        e, data, [&](auto const& force, auto const&, auto const& frames) { add_powers(force, frames, x.t, scale, p); });
   });
   return p;
 }
 
 }  // namespace detail
 
-/// Powers in state x with its multipliers; `system` must have been evaluated at x. Rows of bodies (Euler parameters) and linear
-/// joints do no work and are left out. A potential is taken for a function of the frames alone.
+/// Powers in state x with its multipliers; `system` must have been evaluated at x. Rows of bodies (Euler parameters)
+/// and linear joints do no work and are left out. A potential is taken for a function of the frames alone.
 template <class M>
 Powers powers(System<M> const& system, State const& x) {
   detail::PowerScratch<M> scratch(system.model());
@@ -133,14 +135,13 @@ Powers powers(System<M> const& system, State const& x) {
 /// An account of a run, state by state; powers are integrated by the trapezoidal rule, energies are exact:
 ///   EnergyAudit audit(model);
 ///   for (State const& now : simulate(model, x, integrator, options)) audit.record(now);
-/// What is unaccounted is the doing of the numbers: what the integrator loses or gains, and what sampling misses. That is h²/12
-/// of what the slopes of the powers grow by [Euler and Maclaurin], and about ½ h of each jump (loads at corners, contacts with
-/// dampers at touch).
-/// States must have the multipliers of their own time. Those of `simulate` have, also for joints whose rows are eliminated
-/// (Recursive, AncfLinear), as it works out what these hold. A state put together by hand has not; nor have those of
-/// `EnergyMomentum` and `EnergyDecaying`, whose multipliers belong to the middle of the step: there the drives are right to O(h).
-/// A record takes no memory from the heap, but for bodies whose kinetic energy does (floating frames).
-/// The model must outlive the audit and must not change after.
+/// What is unaccounted is the doing of the numbers: what the integrator loses or gains, and what sampling misses. That
+/// is h²/12 of what the slopes of the powers grow by [Euler and Maclaurin], and about ½ h of each jump (loads at
+/// corners, contacts with dampers at touch). States must have the multipliers of their own time. Those of `simulate`
+/// have, also for joints whose rows are eliminated (Recursive, AncfLinear), as it works out what these hold. A state
+/// put together by hand has not; nor have those of `EnergyMomentum` and `EnergyDecaying`, whose multipliers belong to
+/// the middle of the step: there the drives are right to O(h). A record takes no memory from the heap, but for bodies
+/// whose kinetic energy does (floating frames). The model must outlive the audit and must not change after.
 template <class M>
 class EnergyAudit {
  public:
@@ -156,16 +157,16 @@ class EnergyAudit {
     started_ = true;
   }
 
-  /// Adds what happened since the last state; the first one begins. \throws InvalidInput for a state of another model, or earlier
-  /// than the last one.
+  /// Adds what happened since the last state; the first one begins. \throws InvalidInput for a state of another model,
+  /// or earlier than the last one.
   void record(State const& x) {
     if (!started_) return start(x);
     if (x.q.size() != system_.coordinates() || x.v.size() != system_.speeds() || x.lambda.size() != system_.rows())
       require_fitting(system_.model(), x);  // which words it
     double const h = x.t - t_;
     if (!(h >= 0.0))
-      throw InvalidInput("EnergyAudit: the state at t = " + number(x.t) + " s is earlier than the last one at t = " + number(t_) +
-                         " s. Call start() for another run.");
+      throw InvalidInput("EnergyAudit: the state at t = " + number(x.t) +
+                         " s is earlier than the last one at t = " + number(t_) + " s. Call start() for another run.");
     Powers const before = powers_;
     see(x);
     work_.drives += 0.5 * h * (before.drives + powers_.drives);

@@ -11,8 +11,8 @@
 namespace polybody {
 
 namespace detail {
-/// Multipliers that carry the loads at the first instant, in place of none: what holds a pendulum upright is made of them. False where the
-/// state has no unique acceleration.
+/// Multipliers that carry the loads at the first instant, in place of none: what holds a pendulum upright is made of
+/// them. False where the state has no unique acceleration.
 template <class M>
 bool multipliers_at_rest(System<M>& system, State& x) {
   VecX a = x.a;
@@ -25,11 +25,11 @@ bool multipliers_at_rest(System<M>& system, State& x) {
 }
 }  // namespace detail
 
-/// Moves x (coordinates, multipliers; speeds become zero) into equilibrium at time x.t, from its present place. Every term of the
-/// tangent is included. Where Newton's method does not get there at once, it follows the path s = 0 … 1 of
+/// Moves x (coordinates, multipliers; speeds become zero) into equilibrium at time x.t, from its present place. Every
+/// term of the tangent is included. Where Newton's method does not get there at once, it follows the path s = 0 … 1 of
 ///   r(q, λ, p) = (1 − s) r₀,  Φ(q) = (1 − s) Φ₀,  p = p₀ + s (1 − p₀),
-/// p the factor of loads and gravity: p₀ ∈ [0, 1] is the one that best keeps x where it is, r₀ and Φ₀ what it leaves. From a reference
-/// state loads grow from nothing; from an equilibrium under smaller ones they grow from those.
+/// p the factor of loads and gravity: p₀ ∈ [0, 1] is the one that best keeps x where it is, r₀ and Φ₀ what it leaves.
+/// From a reference state loads grow from nothing; from an equilibrium under smaller ones they grow from those.
 /// \throws NewtonStalled, LinearSolverSingular, NonFinite; x is then untouched.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
@@ -48,7 +48,8 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
     double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
     Index nv = system.speeds(), rows = system.rows(), bad = -1;
     double first = 0.0, share = 0.0;  ///< p₀, s
-    VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
+    VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r,
+         q = trial.q;
 
     /// The path starts at the present place.
     void begin() {
@@ -132,8 +133,7 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
       throw LinearSolverSingular("equilibrium: the stiffness is singular" + at + ", first at " +
                                  system.name_of(std::max<Index>(problem.bad, 0)) +
                                  ". Hold every body, or pass a limit point another way.");
-    if (n.result == NewtonResult::not_finite)
-      throw NonFinite("equilibrium: a force is not finite" + at + ".");
+    if (n.result == NewtonResult::not_finite) throw NonFinite("equilibrium: a force is not finite" + at + ".");
     throw NewtonStalled("equilibrium: Newton's method did not converge" + at +
                         ". Use more load steps, or start nearer to the solution.");
   }

@@ -5,10 +5,10 @@
 namespace polybody {
 
 struct EquilibriumOptions {
-  int load_steps = 1;          ///< loads and gravity grow in so many equal parts
-  double smallest_part = 1e-4; ///< a part that fails is halved down to this; the next one is twice as large again
-  double tolerance = 1e-11;    ///< of a correction, relative to 1 + max |q|
-  int max_iterations = 50;     ///< in one part
+  int load_steps = 1;           ///< loads and gravity grow in so many equal parts
+  double smallest_part = 1e-4;  ///< a part that fails is halved down to this; the next one is twice as large again
+  double tolerance = 1e-11;     ///< of a correction, relative to 1 + max |q|
+  int max_iterations = 50;      ///< in one part
 };
 
 struct EquilibriumReport {

@@ -6,7 +6,8 @@
 
 namespace polybody {
 
-/// What the events of a run know of it. A step is asked for through functions, so that this is compiled once for all models.
+/// What the events of a run know of it. A step is asked for through functions, so that this is compiled once for all
+/// models.
 class EventWatch {
  public:
   /// The user's state of a stepped one.
@@ -25,10 +26,10 @@ class EventWatch {
     for (Event const& event : events) sides_.push_back(side(event, x, seen));
   }
 
-  /// Ends a step of length `taken` from `before` to x at the first event within it, by bisection on its length; the report
-  /// hears which. Returns whether there was one.
-  bool meet(std::vector<Event> const& events, State const& before, State& x, double taken, Seen const& seen, Step const& step,
-            RunReport& report) {
+  /// Ends a step of length `taken` from `before` to x at the first event within it, by bisection on its length; the
+  /// report hears which. Returns whether there was one.
+  bool meet(std::vector<Event> const& events, State const& before, State& x, double taken, Seen const& seen,
+            Step const& step, RunReport& report) {
     auto const after = [&](double h) {
       State trial = before;
       while (trial.t < before.t + h) {
@@ -37,7 +38,9 @@ class EventWatch {
       }
       return trial;
     };
-    auto const passed = [&](std::size_t i, State const& at) { return sides_[i] != 0 && side(events[i], at, seen) != sides_[i]; };
+    auto const passed = [&](std::size_t i, State const& at) {
+      return sides_[i] != 0 && side(events[i], at, seen) != sides_[i];
+    };
     State first = x;
     bool met = false;
     for (std::size_t i = 0; i < sides_.size(); ++i) {
@@ -71,7 +74,8 @@ class EventWatch {
   /// The sign of the event's value.
   static int side(Event const& event, State const& x, Seen const& seen) {
     double const y = event.value(seen(x));
-    if (!std::isfinite(y)) throw NonFinite("The event \"" + event.name + "\" is not finite at t = " + number(x.t) + " s.");
+    if (!std::isfinite(y))
+      throw NonFinite("The event \"" + event.name + "\" is not finite at t = " + number(x.t) + " s.");
     return (y > 0.0) - (y < 0.0);
   }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Histories of equally spaced samples by their Fourier sums: a low pass without shift of phase, amplitude spectra; and making
-/// samples equally spaced. Not in polybody.hpp: Eigen's FFT is unsupported there, and few programs need it.
+/// Histories of equally spaced samples by their Fourier sums: a low pass without shift of phase, amplitude spectra; and
+/// making samples equally spaced. Not in polybody.hpp: Eigen's FFT is unsupported there, and few programs need it.
 
 #include <algorithm>
 #include <complex>
@@ -48,8 +48,8 @@ HalfSpectrum fourier_terms(std::vector<double> const& values) {
 
 }  // namespace detail
 
-/// The samples at t₀, t₀ + step, …, on straight lines between the given ones. What is faster than the new samples can show folds
-/// back: make such a history slow first, or sample closer.
+/// The samples at t₀, t₀ + step, …, on straight lines between the given ones. What is faster than the new samples can
+/// show folds back: make such a history slow first, or sample closer.
 /// \param step [s]  \param largest_gap between given samples, over which a line is drawn [s]; 0: 1.5 steps
 /// \throws InvalidInput for fewer than two samples, NaNs, times that do not rise, a larger gap.
 template <class = void>
@@ -61,8 +61,9 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
   double const gap = largest_gap > 0.0 ? largest_gap : 1.5 * step;
   for (std::size_t i = 1; i < times.size(); ++i)
     if (times[i] - times[i - 1] > gap)
-      throw InvalidInput("resampled: there is no sample between " + number(times[i - 1]) + " s and " + number(times[i]) +
-                         " s, a gap of more than " + number(gap) + " s. Name a largest_gap to draw a line across it.");
+      throw InvalidInput("resampled: there is no sample between " + number(times[i - 1]) + " s and " +
+                         number(times[i]) + " s, a gap of more than " + number(gap) +
+                         " s. Name a largest_gap to draw a line across it.");
   std::size_t const count = std::size_t((times.back() - times.front()) / step + 1e-6) + 1;
   std::vector<double> out;
   std::size_t after = 1;
@@ -75,11 +76,13 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
   return out;
 }
 
-/// Frequencies up to the cut-off stay as they are, in size and phase, those above go: of the Fourier sum of the whole record,
+/// Frequencies up to the cut-off stay as they are, in size and phase, those above go: of the Fourier sum of the whole
+/// record,
 ///   y(t) = Σ_k H(f_k) c_k e^{2πi f_k t},   f_k = k/T,
 /// H is 1 up to the cut-off, 0 above; with a roll-off it falls as ½(1 + cos π(f − f_c)/w) in between.
-/// The sum takes the record as periodic. Where its ends do not meet, a brick wall rings there; `mirrored` takes the record
-/// forth and back as the period, so that the ends meet, though with a kink. A roll-off makes ringing die out sooner.
+/// The sum takes the record as periodic. Where its ends do not meet, a brick wall rings there; `mirrored` takes the
+/// record forth and back as the period, so that the ends meet, though with a kink. A roll-off makes ringing die out
+/// sooner.
 struct LowPass {
   Required<double> cut_off;  ///< f_c [Hz]
   double roll_off = 0.0;     ///< w [Hz]
@@ -92,10 +95,10 @@ struct LowPass {
   }
 };
 
-/// The history without what is faster. The time it takes grows with the largest prime factor of the number of samples: choose a
-/// round number for long records. \param times equally spaced [s]
-/// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above Nyquist's frequency
-/// and for one whose period is longer than the record.
+/// The history without what is faster. The time it takes grows with the largest prime factor of the number of samples:
+/// choose a round number for long records. \param times equally spaced [s]
+/// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above Nyquist's
+/// frequency and for one whose period is longer than the record.
 template <class = void>
 std::vector<double> low_pass(std::span<double const> times, std::span<double const> values, LowPass const& filter) {
   detail::require_history(times, values, 4, "low_pass");
@@ -135,8 +138,8 @@ concept RecordWindow = requires(double x) {
 struct EqualWeights {
   static double weight(double) { return 1.0; }
 };
-/// sin²πx: what is not periodic leaks little beyond its neighbours; an amplitude between two frequencies is read up to 15 % too
-/// low [Harris 1978].
+/// sin²πx: what is not periodic leaks little beyond its neighbours; an amplitude between two frequencies is read up to
+/// 15 % too low [Harris 1978].
 struct HannWindow {
   static double weight(double x) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * x)); }
 };

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The space curve that a rotation field implies [thesis §2.3]: its tangent is the first axis of the sections, t = R e₁,
+/// The space curve that a rotation field implies [thesis §2.3]: its tangent is the first axis of the sections, t = R
+/// e₁,
 ///   r(s) = r₀ + ∫ t ds (Eq. 2.2),  κ = |t′| (Eq. 2.4),  τ = t·(t′ × t″)/κ²  (Frenet).
 /// With R′ = R K̃: t′ = R (0, K₃, −K₂), so that κ² = K₂² + K₃² and τ = K₁ + (K₂ K₃′ − K₃ K₂′)/κ².
 
@@ -40,8 +41,8 @@ inline SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, 
   return s;
 }
 
-/// Points of the implied curve of a field s ↦ R(s), at s = 0, length/pieces, ...: five Gauss points in each piece. The field may
-/// have corners between pieces. \throws InvalidInput for a length that is not positive, or pieces < 1.
+/// Points of the implied curve of a field s ↦ R(s), at s = 0, length/pieces, ...: five Gauss points in each piece. The
+/// field may have corners between pieces. \throws InvalidInput for a length that is not positive, or pieces < 1.
 template <class Field>
   requires std::is_invocable_r_v<Mat3, Field&, double>
 std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, Vec3 const& start = Vec3::Zero()) {
@@ -60,7 +61,8 @@ std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, V
   return curve;
 }
 
-/// The same for the rotation field of a beam at the coordinates q, from its first node: `samples` points in each element.
+/// The same for the rotation field of a beam at the coordinates q, from its first node: `samples` points in each
+/// element.
 template <RotationInterpolation Interpolation>
 std::vector<Vec3> implied_curve(Lrvf<Interpolation> const& beam, std::span<double const> q, int samples = 1) {
   auto const rotation = [&](double s) { return beam.rotation_field(beam.at(s), q).R; };

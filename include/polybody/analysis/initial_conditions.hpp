@@ -12,8 +12,9 @@ template <class M>
 void require_fitting(M const& model, State const& x) {
   if (x.q.size() != model.coordinates() || x.v.size() != model.speeds() || x.a.size() != model.speeds() ||
       x.lambda.size() != model.rows())
-    throw InvalidInput("The state does not fit the model; take it from reference_state() after the last body and "
-                       "joint were added.");
+    throw InvalidInput(
+        "The state does not fit the model; take it from reference_state() after the last body and "
+        "joint were added.");
   require_finite(x.q, "The coordinates of the state");
   require_finite(x.v, "The speeds of the state");
 }
@@ -27,7 +28,8 @@ void require_assembled(System<M>& system, State const& x, double tolerance = 1e-
   Index worst = 0;
   if (phi.size() == 0 || phi.cwiseAbs().maxCoeff(&worst) <= tolerance) return;
   throw InconsistentStart("At the start " + system.name_of(system.speeds() + worst) + " is open by " +
-                          number(std::abs(phi[worst])) + ". Place the bodies so that it closes, or call "
+                          number(std::abs(phi[worst])) +
+                          ". Place the bodies so that it closes, or call "
                           "assemble(model, x).");
 }
 
@@ -42,8 +44,8 @@ void require_closable(System<M>& system, ForwardDynamics<M, Solver>& forward, St
 }
 
 /// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton), then
-/// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed, or the joints whose rows repeat each
-/// other but contradict; x is then untouched.
+/// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed, or the joints whose rows
+/// repeat each other but contradict; x is then untouched.
 template <class M>
 void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   require_fitting(model, x);

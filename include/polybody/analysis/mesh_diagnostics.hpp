@@ -55,8 +55,7 @@ inline MeshDiagnostics mesh_diagnostics(planar::Lrvf const& beam, std::span<doub
     Vec2 const a = d.position_nodes[std::size_t(e)], b = d.position_nodes[std::size_t(e) + 1];
     Vec2 const slope = n.ds[0] * a + n.ds[1] * b, second = n.dds[0] * a + n.dds[1] * b;
     d.position_length += slope.norm() * l;
-    d.position_curvature.push_back(std::abs(slope[0] * second[1] - slope[1] * second[0]) /
-                                   std::pow(slope.norm(), 3));
+    d.position_curvature.push_back(std::abs(slope[0] * second[1] - slope[1] * second[0]) / std::pow(slope.norm(), 3));
     d.rotation_curvature.push_back(beam.strains<0>({e, 0.5, 0.0}, q)[2]);
     for (GaussPoint const& g : gauss<5>) {
       double const angle = q[std::size_t(3 * e + 2)] * (1.0 - g.xi) + q[std::size_t(3 * e + 5)] * g.xi;

@@ -3,12 +3,12 @@
 
 namespace polybody {
 
-/// Multipliers of least norm among those with the same forces Gᵀλ, where rows repeat others. A row counts by the wrench it puts
-/// on its joint's second body:
+/// Multipliers of least norm among those with the same forces Gᵀλ, where rows repeat others. A row counts by the wrench
+/// it puts on its joint's second body:
 ///   min Σ λᵢ² (|fᵢ|² + |mᵢ|²/ℓ²),   [fᵢ; mᵢ] the row of Gb,
-/// ℓ the root mean square distance of the joints' points from their mean (1 m where all coincide), so that the share does not
-/// depend on the units: what equally stiff joints would carry if a turn by one radian were as stiff as a slide by ℓ. Rows that
-/// a body owns count 1.
+/// ℓ the root mean square distance of the joints' points from their mean (1 m where all coincide), so that the share
+/// does not depend on the units: what equally stiff joints would carry if a turn by one radian were as stiff as a slide
+/// by ℓ. Rows that a body owns count 1.
 template <class M>
 class MinimumNorm {
  public:
@@ -50,7 +50,9 @@ class MinimumNorm {
       joints += 1.0;
     });
     mean /= std::max(joints, 1.0);
-    each([&](auto const&, auto const&, auto const&, auto const& b) { spread += (b.frame.r - mean).squaredNorm() / joints; });
+    each([&](auto const&, auto const&, auto const&, auto const& b) {
+      spread += (b.frame.r - mean).squaredNorm() / joints;
+    });
     double const arm2 = spread > 1e-20 * mean.squaredNorm() ? spread : 1.0;
     each([&](auto const& e, auto const& gap, auto const&, auto const&) {
       for (int i = 0; i < std::decay_t<decltype(gap)>::rows; ++i) {
@@ -70,8 +72,8 @@ class MinimumNorm {
   std::vector<VecX> basis_;
 };
 
-/// The multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state of
-/// another model.
+/// The multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state
+/// of another model.
 template <LinearSolver Solver = DefaultSolver, class M>
 VecX minimum_norm_multipliers(M const& model, State const& x) {
   require_fitting(model, x);

@@ -2,8 +2,9 @@
 /// \file
 /// Small vibrations about a state of rest: with q = q₀ ⊞ δ,
 ///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0,
-/// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Shabana 2018, Ch. 4]. The rows are eliminated by a basis N of
-/// the null space of G, δ = N z, so redundant rows do no harm. About a steady rotation: analysis/steady_rotation.hpp.
+/// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Shabana 2018, Ch. 4]. The rows are eliminated by a
+/// basis N of the null space of G, δ = N z, so redundant rows do no harm. About a steady rotation:
+/// analysis/steady_rotation.hpp.
 ///
 /// Not in polybody.hpp: Eigen's eigenvalue solvers would cost every program seconds to compile.
 
@@ -71,13 +72,15 @@ MatX of_free_motions(MatX const& n, MatX const& a) {
 }
 }  // namespace detail
 
-/// About state x, which rests; its multipliers count (a hanging pendulum swings by them). A model that turns steadily is linearised
-/// with its `SteadyRotation`; about any other motion the matrices would change with time. \throws InvalidInput when x moves.
+/// About state x, which rests; its multipliers count (a hanging pendulum swings by them). A model that turns steadily
+/// is linearised with its `SteadyRotation`; about any other motion the matrices would change with time. \throws
+/// InvalidInput when x moves.
 template <class S>
 Linearisation linearise(S const& model, State const& x) {
   if (x.v.size() && x.v.cwiseAbs().maxCoeff() > 1e-9)
-    throw InvalidInput("modes: the state must be at rest; take one from equilibrium(model, x). About a steady rotation use "
-                       "linearise(model, x, SteadyRotation{...}) of analysis/steady_rotation.hpp.");
+    throw InvalidInput(
+        "modes: the state must be at rest; take one from equilibrium(model, x). About a steady rotation use "
+        "linearise(model, x, SteadyRotation{...}) of analysis/steady_rotation.hpp.");
   System<S> system(model);
   system.evaluate(x.q, x.v, x.t);
   Index const nv = system.speeds(), rows = system.rows();
@@ -97,12 +100,13 @@ struct Modes {
   MatX shape;      ///< (nv×k) δ by speeds, shapeᵀ M shape = 1
 };
 
-/// The `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver: for models of up to some hundred speeds. Motions without
-/// inertia have no frequency and are left out. K is symmetrised and D left out: follower loads, whose K is not symmetric, and models
-/// that turn, whose D is gyroscopic, belong to `damped_modes`.
+/// The `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver: for models of up to some hundred speeds. Motions
+/// without inertia have no frequency and are left out. K is symmetrised and D left out: follower loads, whose K is not
+/// symmetric, and models that turn, whose D is gyroscopic, belong to `damped_modes`.
 template <class = void>  // compiled where it is used
 Modes modes(Linearisation const& l, Index count = 10) {
-  MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()), m = detail::of_free_motions(l.N, l.M);
+  MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()),
+             m = detail::of_free_motions(l.N, l.M);
   if (m.rows() == 0) return {};
   // motions with inertia first: m = V diag(d) Vᵀ; the others follow without delay, K₂₂ z₂ = −K₂₁ z₁
   Eigen::SelfAdjointEigenSolver<MatX> const inertia(m);
@@ -121,7 +125,8 @@ Modes modes(Linearisation const& l, Index count = 10) {
   Eigen::SelfAdjointEigenSolver<MatX> const solved(basis.transpose() * k * basis);
   Index const kept = std::min(count, n - still);
   Modes out;
-  out.frequency = solved.eigenvalues().head(kept).unaryExpr([](double w2) { return w2 < 0.0 ? -std::sqrt(-w2) : std::sqrt(w2); });
+  out.frequency =
+      solved.eigenvalues().head(kept).unaryExpr([](double w2) { return w2 < 0.0 ? -std::sqrt(-w2) : std::sqrt(w2); });
   out.shape = l.N * basis * solved.eigenvectors().leftCols(kept);
   return out;
 }
@@ -140,11 +145,13 @@ struct DampedModes {
   double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }
 };
 
-/// The `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0, dense. With δ = N z, the unit of time 1/τ and y = (z, ż/τ) the state
-/// matrix is A = [0, 1; −M̂⁻¹K, −M̂⁻¹D̂], M̂ = τ² M, D̂ = τ D. Solved is its inverse about s = τ, which asks for no M⁻¹,
+/// The `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0, dense. With δ = N z, the unit of time 1/τ and y = (z, ż/τ)
+/// the state matrix is A = [0, 1; −M̂⁻¹K, −M̂⁻¹D̂], M̂ = τ² M, D̂ = τ D. Solved is its inverse about s = τ, which asks for
+/// no M⁻¹,
 ///   (A − 1)⁻¹ = [−Y, −Z; 1 − Y, −Z],  Y = Q⁻¹ (M̂ + D̂),  Z = Q⁻¹ M̂,  Q = M̂ + D̂ + K,  s = τ (1 + 1/μ):
-/// slow motions have its largest eigenvalues μ, so that stiff ones beside them take no digits from them. τ is a little below the
-/// lowest frequency of M z̈ + K z = 0 without its neutral motions. Those of the model come first, with an |s| of √rounding.
+/// slow motions have its largest eigenvalues μ, so that stiff ones beside them take no digits from them. τ is a little
+/// below the lowest frequency of M z̈ + K z = 0 without its neutral motions. Those of the model come first, with an |s|
+/// of √rounding.
 /// \throws InvalidInput when a free motion has no inertia.
 template <class = void>  // compiled where it is used
 DampedModes damped_modes(Linearisation const& l, Index count = 10) {

@@ -17,8 +17,7 @@ Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
     std::vector<double> jacobian(std::size_t(6 * point_columns(e.body, marker.point)));
     Published<double> p;
     p.jacobian = jacobian.data();
-    e.body.template publish<double>(marker.point, Mat3::Identity(),
-                                    detail::body_part(x.q, e.q0, e.body.coordinates()),
+    e.body.template publish<double>(marker.point, Mat3::Identity(), detail::body_part(x.q, e.q0, e.body.coordinates()),
                                     detail::body_part(x.v, e.v0, e.body.speeds()), p);
     return p.frame;
   }
@@ -54,8 +53,8 @@ auto ask_joint(M const& model, State const& x, ElementHandle<J> const& handle, F
   return f(e, gap, data);
 }
 
-/// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its λ_α the
-/// moment r_α × λ_α. (What stretches r_α is no wrench.)
+/// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its
+/// λ_α the moment r_α × λ_α. (What stretches r_α is no wrench.)
 template <class = void>  // compiled where it is used
 Vec6 linear_wrench(LinearRows const& rows, State const& x) {
   Vec6 w = Vec6::Zero();

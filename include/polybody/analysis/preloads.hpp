@@ -9,8 +9,9 @@ struct Preload {
   Wrench<double> wrench;  ///< on the second body about the joint point there, world axes
 };
 
-/// The wrenches of all compliant joints (penalties, bushings) at the reference state, in the order of the model's joint types. They
-/// are zero where markers coincide and laws begin at zero; a start from the reference state lets go what they store.
+/// The wrenches of all compliant joints (penalties, bushings) at the reference state, in the order of the model's joint
+/// types. They are zero where markers coincide and laws begin at zero; a start from the reference state lets go what
+/// they store.
 template <class M>
 std::vector<Preload> preloads(M const& model) {
   State const x = model.reference_state();

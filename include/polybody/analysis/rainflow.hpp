@@ -40,7 +40,8 @@ struct StressCycle {
   double count;  ///< 1 or ½
 };
 
-/// The cycles of a history, in the order in which they close: with X the last range and Y the one before it, as soon as X ≥ Y
+/// The cycles of a history, in the order in which they close: with X the last range and Y the one before it, as soon as
+/// X ≥ Y
 ///   Y counts as a cycle and its two points leave the history, or, where it begins the history,
 ///   Y counts as half a cycle and its first point leaves the history;
 /// every range that is left at the end is half a cycle [ASTM E1049-85, §5.4.4].
@@ -70,8 +71,8 @@ std::vector<StressCycle> rainflow(std::span<double const> history) {
   return cycles;
 }
 
-/// Cycles by range: entry k counts those of ranges in [k·width, (k + 1)·width). \throws InvalidInput unless the width is
-/// positive.
+/// Cycles by range: entry k counts those of ranges in [k·width, (k + 1)·width). \throws InvalidInput unless the width
+/// is positive.
 template <class = void>
 std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
   require_positive(width, "binned: the width");
@@ -84,8 +85,8 @@ std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
   return counts;
 }
 
-/// How many cycles of a range S break the detail, N = N₀ (S₀/S)^m, a line in double logarithms [Basquin 1910]. For details of
-/// welds it is usual to give S₀ at N₀ = 2e6, with m = 3.
+/// How many cycles of a range S break the detail, N = N₀ (S₀/S)^m, a line in double logarithms [Basquin 1910]. For
+/// details of welds it is usual to give S₀ at N₀ = 2e6, with m = 3.
 struct Basquin {
   Required<double> range;     ///< S₀, from valley to peak [N/m²]
   Required<double> cycles;    ///< N₀
@@ -105,8 +106,8 @@ struct Basquin {
   }
 };
 
-/// The share of its life that a history takes of a detail, D = Σ n_i/N_i; it lasts for 1/D of them [Palmgren 1924; Miner 1945].
-/// Means of cycles are left out of account. \throws InvalidInput as `Basquin::check`.
+/// The share of its life that a history takes of a detail, D = Σ n_i/N_i; it lasts for 1/D of them [Palmgren 1924;
+/// Miner 1945]. Means of cycles are left out of account. \throws InvalidInput as `Basquin::check`.
 template <class = void>
 double damage(std::span<StressCycle const> cycles, Basquin const& curve) {
   curve.check();

@@ -19,8 +19,8 @@ struct Redundancy {
   Index degrees_of_freedom = 0;  ///< speeds − rank, at this state
   /// Joints with rows that repeat those of joints connected before them (or, in part, their own).
   std::vector<Share> repeated = {};
-  /// Groups of joints (joint "a", joint "b", …) whose rows repeat each other but contradict: no small move closes them, no speeds
-  /// and no accelerations satisfy them.
+  /// Groups of joints (joint "a", joint "b", …) whose rows repeat each other but contradict: no small move closes them,
+  /// no speeds and no accelerations satisfy them.
   std::vector<std::string> in_positions = {}, in_speeds = {}, in_accelerations = {};
   bool consistent() const { return in_positions.empty() && in_speeds.empty() && in_accelerations.empty(); }
 };
@@ -40,16 +40,18 @@ struct RowsSink {
 };
 
 /// Gᵀ P = Q [R₁, R₂; 0, 0], R₁ of the size of the rank: the last rows under P repeat the first, and Gᵀc = 0 for each
-/// column of c = P [−R₁⁻¹R₂; 1]. Speeds are scaled first and rows then, so that every row of G has the norm 1 whatever its
-/// units; a row repeats those before it when it stands off their span by less than `threshold`.
+/// column of c = P [−R₁⁻¹R₂; 1]. Speeds are scaled first and rows then, so that every row of G has the norm 1 whatever
+/// its units; a row repeats those before it when it stands off their span by less than `threshold`.
 template <class Ordering = Eigen::NaturalOrdering<int>>  // rows in the order of their joints: the later ones are named
 class RowFactor {
  public:
   static constexpr double threshold = 1e-6;
 
-  RowFactor(Index speeds, Index rows, std::vector<Eigen::Triplet<double>> const& entries) : scale_(std::size_t(rows), 0.0) {
+  RowFactor(Index speeds, Index rows, std::vector<Eigen::Triplet<double>> const& entries)
+      : scale_(std::size_t(rows), 0.0) {
     std::vector<double> of_speed(std::size_t(speeds), 0.0);
-    for (auto const& e : entries) of_speed[std::size_t(e.row())] = std::hypot(of_speed[std::size_t(e.row())], e.value());
+    for (auto const& e : entries)
+      of_speed[std::size_t(e.row())] = std::hypot(of_speed[std::size_t(e.row())], e.value());
     std::vector<int> place;  // speeds that no row touches are left out
     Index touched = 0;
     for (double const s : of_speed) place.push_back(s > 0.0 ? int(touched++) : -1);
@@ -103,9 +105,9 @@ class RowFactor {
 
 }  // namespace detail
 
-/// Counts and names the rows of `model` that repeat others at x (its place, speeds and time). A factorisation of its own: a run
-/// finds rows that repeat others by itself (`RunReport::redundant`, where another joint of the same loop may be named). A
-/// contradiction in positions is one to first order: ask where `assemble` came as near as it could.
+/// Counts and names the rows of `model` that repeat others at x (its place, speeds and time). A factorisation of its
+/// own: a run finds rows that repeat others by itself (`RunReport::redundant`, where another joint of the same loop may
+/// be named). A contradiction in positions is one to first order: ask where `assemble` came as near as it could.
 /// \throws InvalidInput for a state of another model.
 template <class M>
 Redundancy redundancy(M const& model, State const& x) {
@@ -125,7 +127,8 @@ Redundancy redundancy(M const& model, State const& x) {
   std::vector<Index> repeated;
   detail::ContradictionLimits const limits;
   auto const largest = [](VecX const& b) { return b.size() ? b.cwiseAbs().maxCoeff() : 0.0; };
-  double const in_speeds = limits.relative * (1.0 + largest(x.v)), in_accelerations = limits.relative * (1.0 + largest(gamma));
+  double const in_speeds = limits.relative * (1.0 + largest(x.v)),
+               in_accelerations = limits.relative * (1.0 + largest(gamma));
   for (Index k = 0; k < factor.repeated(); ++k) {
     repeated.push_back(factor.row(k));
     VecX const c = factor.relation(k);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Rows that repeat others, as a factorisation of [M, Gᵀ; G, 0] drops them: how they hang together and whether they contradict.
-/// By the factorisation that is there anyhow; for a count of its own see analysis/redundancy.hpp.
+/// Rows that repeat others, as a factorisation of [M, Gᵀ; G, 0] drops them: how they hang together and whether they
+/// contradict. By the factorisation that is there anyhow; for a count of its own see analysis/redundancy.hpp.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 
@@ -29,15 +29,16 @@ std::string names_in(System<M> const& system, VecX const& c) {
   return names;
 }
 
-/// The relation Gᵀc = 0 in which a dropped row stands to the others: with w = Gᵀe of that row, M a + Gᵀμ = w and G a = 0 have
-/// a = 0, and c = e − μ.
+/// The relation Gᵀc = 0 in which a dropped row stands to the others: with w = Gᵀe of that row, M a + Gᵀμ = w and G a =
+/// 0 have a = 0, and c = e − μ.
 template <class M>
 struct RowRelation {
   VecX c;  ///< (rows), 1 in the row itself and 0 in all others that were dropped
 
   explicit RowRelation(System<M> const& s) : c(VecX::Zero(s.rows())), mu_(c), w_(VecX::Zero(s.speeds())), a_(w_) {}
 
-  /// For unknown i of `redundant_rows()` where `forward` was factored last. False where that row repeats the others only nearly.
+  /// For unknown i of `redundant_rows()` where `forward` was factored last. False where that row repeats the others
+  /// only nearly.
   template <class Solver>
   bool find(System<M>& system, ForwardDynamics<M, Solver>& forward, VecX const& q, Index i) {
     if (i < system.speeds()) return false;
@@ -57,26 +58,28 @@ struct RowRelation {
 
 }  // namespace detail
 
-/// Rows that repeat each other must ask for the same: c·b = 0 for every c with Gᵀc = 0, where b is Φ, Φ̇ or γ of `system` as
-/// evaluated and `forward` as factored at q. \param what those are called  \param limit of |c·b|/max |c|
+/// Rows that repeat each other must ask for the same: c·b = 0 for every c with Gᵀc = 0, where b is Φ, Φ̇ or γ of
+/// `system` as evaluated and `forward` as factored at q. \param what those are called  \param limit of |c·b|/max |c|
 /// \throws InconsistentStart naming the joints that do not.
 template <class M, class Solver>
-void require_no_contradiction(System<M>& system, ForwardDynamics<M, Solver>& forward, VecX const& q, VecX const& b, double limit,
-                              std::string const& what) {
+void require_no_contradiction(System<M>& system, ForwardDynamics<M, Solver>& forward, VecX const& q, VecX const& b,
+                              double limit, std::string const& what) {
   if (forward.redundant_rows().empty()) return;
   detail::RowRelation<M> relation(system);
   for (Index const i : forward.redundant_rows()) {
     if (!relation.find(system, forward, q, i)) continue;
     double const left = relation.c.dot(b) / relation.c.cwiseAbs().maxCoeff();
     if (std::abs(left) <= limit) continue;
-    throw InconsistentStart("The rows of " + detail::names_in(system, relation.c) + " repeat each other but contradict by " +
-                            number(std::abs(left)) + " in their " + what + " at t = " + number(system.time()) +
-                            " s. Remove one of these joints, make their dimensions and laws agree, or give one a compliant "
-                            "policy such as Penalty.");
+    throw InconsistentStart(
+        "The rows of " + detail::names_in(system, relation.c) + " repeat each other but contradict by " +
+        number(std::abs(left)) + " in their " + what + " at t = " + number(system.time()) +
+        " s. Remove one of these joints, make their dimensions and laws agree, or give one a compliant "
+        "policy such as Penalty.");
   }
 }
 
-/// The start of a run: no contradiction in the speeds and accelerations that the rows ask for. \throws InconsistentStart.
+/// The start of a run: no contradiction in the speeds and accelerations that the rows ask for. \throws
+/// InconsistentStart.
 template <class M, class Solver>
 void require_consistent_rows(System<M>& system, ForwardDynamics<M, Solver>& forward, State const& x) {
   if (system.rows() == 0) return;

@@ -19,8 +19,8 @@ class RmsDifference {
   /// Samples from `from` to `to` [s] count.
   RmsDifference(double from, double to) : from_(from), to_(to) {}
 
-  /// \throws InvalidInput for samples without as many times as values or with none, times that do not rise, or a number that is not
-  /// finite.
+  /// \throws InvalidInput for samples without as many times as values or with none, times that do not rise, or a number
+  /// that is not finite.
   void add(Samples const& a, Samples const& b) {
     detail::require_history(a.times, a.values, 1, "RmsDifference");
     detail::require_history(b.times, b.values, 1, "RmsDifference");
@@ -42,7 +42,8 @@ class RmsDifference {
   /// \throws InvalidInput when no sample was compared, or b is zero in all of them.
   double value() const {
     if (samples_ == 0)
-      throw InvalidInput("RmsDifference: there is no sample of both histories from " + number(from_) + " to " + number(to_) + " s.");
+      throw InvalidInput("RmsDifference: there is no sample of both histories from " + number(from_) + " to " +
+                         number(to_) + " s.");
     if (all_ == 0.0) throw InvalidInput("RmsDifference: the history that differences are measured by is zero.");
     return std::sqrt(off_ / all_);
   }

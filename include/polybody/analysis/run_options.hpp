@@ -20,15 +20,15 @@ struct Event {
 };
 
 struct RunOptions {
-  Required<double> until;             ///< [s]
-  Required<double> step;              ///< [s]; the first one for an integrator that controls its step
+  Required<double> until;                   ///< [s]
+  Required<double> step;                    ///< [s]; the first one for an integrator that controls its step
   std::optional<double> largest_step = {};  ///< [s], for an integrator that controls its step
-  std::vector<double> corners = {};   ///< times at which a step must end, beside those of the drives and loads
+  std::vector<double> corners = {};         ///< times at which a step must end, beside those of the drives and loads
   std::vector<Event> events = {};
-  double assembly_tolerance = 1e-8;   ///< of the start
-  int halvings = 0;                   ///< how often a step whose Newton iteration stalls is halved before the run ends: for impacts
-  bool minimum_norm = false;          ///< every state gets the multipliers of `MinimumNorm`, for a factorisation each
-  int threads = 1;                    ///< that share the loops of an evaluation; for large models, results stay the same bits
+  double assembly_tolerance = 1e-8;  ///< of the start
+  int halvings = 0;  ///< how often a step whose Newton iteration stalls is halved before the run ends: for impacts
+  bool minimum_norm = false;  ///< every state gets the multipliers of `MinimumNorm`, for a factorisation each
+  int threads = 1;            ///< that share the loops of an evaluation; for large models, results stay the same bits
 
   /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
   void check(double start) const {
@@ -37,7 +37,8 @@ struct RunOptions {
     if (!(until >= start) || !std::isfinite(until))
       throw InvalidInput("simulate: the end " + number(until) + " s lies before the start " + number(start) + " s.");
     if (halvings < 0 || halvings > 30)
-      throw InvalidInput("simulate: a step can be halved 0 to 30 times, but " + std::to_string(halvings) + " is asked for.");
+      throw InvalidInput("simulate: a step can be halved 0 to 30 times, but " + std::to_string(halvings) +
+                         " is asked for.");
     for (Event const& event : events) {
       if (!event.value) throw InvalidInput("simulate: the event \"" + event.name + "\" has no value.");
       require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");
@@ -59,10 +60,11 @@ struct RunReport {
   };
   std::vector<Met> events = {};
   bool stopped = false;  ///< by an event before `until`
-  /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share the
-  /// load is not determined.
+  /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share
+  /// the load is not determined.
   std::vector<std::string> redundant = {};
-  std::vector<std::string> warnings = {};  ///< of the start, in sentences: a step beyond the limit of an explicit integrator
+  std::vector<std::string> warnings =
+      {};  ///< of the start, in sentences: a step beyond the limit of an explicit integrator
 
   void add(StepReport const& step) {
     ++steps;

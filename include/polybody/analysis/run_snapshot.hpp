@@ -7,8 +7,8 @@
 
 namespace polybody {
 
-/// What a snapshot knows its model by: counts of what is stepped, and the names of bodies, joints and forces in their order.
-/// Not masses, lengths or loads.
+/// What a snapshot knows its model by: counts of what is stepped, and the names of bodies, joints and forces in their
+/// order. Not masses, lengths or loads.
 struct ModelIdentity {
   Index coordinates = 0, speeds = 0, rows = 0;
   std::uint64_t names = 0;  ///< checksum
@@ -46,11 +46,13 @@ struct RunSnapshot {
              std::to_string(m.rows) + " rows";
     };
     if (model.coordinates != of.coordinates || model.speeds != of.speeds || model.rows != of.rows)
-      throw InvalidInput("resume: the snapshot is of another model. It has " + counts(model) + "; this one has " + counts(of) +
-                         ".");
+      throw InvalidInput("resume: the snapshot is of another model. It has " + counts(model) + "; this one has " +
+                         counts(of) + ".");
     if (model != of)
-      throw InvalidInput("resume: the snapshot is of another model: its bodies, joints or forces have other names than this one's.");
-    if (integrator != by) throw InvalidInput("resume: the snapshot is of a run by " + integrator + ", not by " + by + ".");
+      throw InvalidInput(
+          "resume: the snapshot is of another model: its bodies, joints or forces have other names than this one's.");
+    if (integrator != by)
+      throw InvalidInput("resume: the snapshot is of a run by " + integrator + ", not by " + by + ".");
     if (sides.size() != events)
       throw InvalidInput("resume: the snapshot is of a run with " + std::to_string(sides.size()) +
                          " events, but the options have " + std::to_string(events) + ".");

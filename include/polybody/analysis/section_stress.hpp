@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Stress at a point of a bar's section from the section's forces (N, Q_y, Q_z, M_x, M_y, M_z) of bodies/sections.hpp, by
-/// Saint-Venant's theory; principal stresses and von Mises'. Away from the ends and from point loads, that is.
+/// Stress at a point of a bar's section from the section's forces (N, Q_y, Q_z, M_x, M_y, M_z) of bodies/sections.hpp,
+/// by Saint-Venant's theory; principal stresses and von Mises'. Away from the ends and from point loads, that is.
 ///
 /// Not in polybody.hpp: few programs need it.
 
@@ -25,14 +25,15 @@ struct SectionStress {
 
 namespace detail {
 
-/// Circle of radius r. Torque: τ = M_x (−z, y)/I_p. A force P along x of section axes x, y [Timoshenko & Goodier 1970, §121]:
+/// Circle of radius r. Torque: τ = M_x (−z, y)/I_p. A force P along x of section axes x, y [Timoshenko & Goodier 1970,
+/// §121]:
 ///   τ_x = (3+2ν)/(8(1+ν)) P/I (r² − x² − (1−2ν)/(3+2ν) y²),   τ_y = −(1+2ν)/(4(1+ν)) P/I x y.
 inline Vec2 shear_of(Circle const& c, double nu, Vec6 const& n, double y, double z) {
   double const r2 = c.radius * c.radius, i = 0.25 * std::numbers::pi * r2 * r2;
   double const k = (3.0 + 2.0 * nu) / (8.0 * (1.0 + nu)) / i, ratio = (1.0 - 2.0 * nu) / (3.0 + 2.0 * nu),
                across = -(1.0 + 2.0 * nu) / (4.0 * (1.0 + nu)) / i * y * z;
-  return Vec2(-z, y) * (0.5 * n[3] / i) +
-         Vec2(n[1] * k * (r2 - y * y - ratio * z * z) + n[2] * across, n[2] * k * (r2 - z * z - ratio * y * y) + n[1] * across);
+  return Vec2(-z, y) * (0.5 * n[3] / i) + Vec2(n[1] * k * (r2 - y * y - ratio * z * z) + n[2] * across,
+                                               n[2] * k * (r2 - z * z - ratio * y * y) + n[1] * across);
 }
 
 /// Rectangle of height h and width w. Force along y: 3/2 Q/A (1 − (2y/h)²), exact for ν = 0. Torque: τ = (φ_z, −φ_y),
@@ -52,7 +53,9 @@ inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y
     by_b -= scale * p * std::copysign(up - down, b) / whole * std::cos(p * a);
   }
   Vec2 const turn = (n[3] / torsion) * (swap ? Vec2(by_a, -by_b) : Vec2(by_b, -by_a));
-  auto const parabola = [&](double q, double x, double side) { return 1.5 * q / area * (1.0 - 4.0 * x * x / (side * side)); };
+  auto const parabola = [&](double q, double x, double side) {
+    return 1.5 * q / area * (1.0 - 4.0 * x * x / (side * side));
+  };
   return turn + Vec2(parabola(n[1], y, s.height), parabola(n[2], z, s.width));
 }
 
@@ -70,7 +73,8 @@ SectionStress section_stress(Bar const& bar, Vec6 const& forces, double y, doubl
   } else {
     Rectangle const& s = std::get<Rectangle>(bar.section);
     if (!(std::abs(y) <= 0.5 * s.height * (1.0 + 1e-9) && std::abs(z) <= 0.5 * s.width * (1.0 + 1e-9)))
-      throw InvalidInput("section_stress: the point (" + number(y) + ", " + number(z) + ") lies outside the rectangle.");
+      throw InvalidInput("section_stress: the point (" + number(y) + ", " + number(z) +
+                         ") lies outside the rectangle.");
     BarConstants const k = constants(bar);
     double const g = bar.material->young / (2.0 * (1.0 + bar.material->poisson));
     out.shear = detail::shear_of(s, k.GJ / g, forces, y, z);

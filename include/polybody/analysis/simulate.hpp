@@ -52,9 +52,9 @@ class Simulation {
     renew();
   }
 
-  /// What it takes to go on from here with `resume`. Factorisations and the like, which a run keeps from step to step, are no
-  /// part of it: the run itself throws them away now, as if it were resumed. So both go on with the same bits. Where bits
-  /// matter, let the run that is not interrupted take its snapshots at the same times.
+  /// What it takes to go on from here with `resume`. Factorisations and the like, which a run keeps from step to step,
+  /// are no part of it: the run itself throws them away now, as if it were resumed. So both go on with the same bits.
+  /// Where bits matter, let the run that is not interrupted take its snapshots at the same times.
   RunSnapshot snapshot() {
     renew();
     return {identity_of(*system_), I::name, stepped(), h_, watch_.sides(), report_};
@@ -125,8 +125,12 @@ class Simulation {
  private:
   struct Prepared {};
   Simulation(Prepared, M const& model, State& x, I integrator, RunOptions options, double start)
-      : system_(std::make_unique<System<Stepped>>(model)), x_(&x), integrator_(std::move(integrator)),
-        options_(std::move(options)), workspace_(integrator_.template workspace<Solver>(*system_)), norm_(whole()) {
+      : system_(std::make_unique<System<Stepped>>(model)),
+        x_(&x),
+        integrator_(std::move(integrator)),
+        options_(std::move(options)),
+        workspace_(integrator_.template workspace<Solver>(*system_)),
+        norm_(whole()) {
     integrator_.check();
     options_.check(start);
     if (options_.threads != 1) system_->use_threads(options_.threads);
@@ -158,11 +162,14 @@ class Simulation {
       return *system_;
   }
 
-  /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep to the joints.
+  /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep
+  /// to the joints.
   void narrow_start() {
     if (options_.minimum_norm)
-      throw InvalidInput("simulate: minimum_norm is for models whose joints all keep their rows. Ask minimum_norm_multipliers for single "
-                         "states.");
+      throw InvalidInput(
+          "simulate: minimum_norm is for models whose joints all keep their rows. Ask minimum_norm_multipliers for "
+          "single "
+          "states.");
     State start = *x_;
     ForwardDynamics<M, Solver> forward(whole());
     forward.project_velocities(whole(), start.q, start.v, start.t);
@@ -178,7 +185,8 @@ class Simulation {
     }
   }
 
-  /// One step of h, or where it stalls two of h/2 from a fresh start, and so on. When it throws, the state is as it was.
+  /// One step of h, or where it stalls two of h/2 from a fresh start, and so on. When it throws, the state is as it
+  /// was.
   StepReport step(double h, int halvings) {
     try {
       return integrator_.step(*system_, stepped(), h, workspace_);
@@ -276,8 +284,9 @@ Simulation<M, I, Solver> simulate(M const& model, State& x, I integrator, RunOpt
   return Simulation<M, I, Solver>(model, x, std::move(integrator), std::move(options));
 }
 
-/// Takes a run up where its snapshot was made; x becomes its state. Model, integrator and options must be those of the run; a
-/// later `until` lets it go on for longer. \throws InvalidInput for a snapshot of another model, integrator or count of events.
+/// Takes a run up where its snapshot was made; x becomes its state. Model, integrator and options must be those of the
+/// run; a later `until` lets it go on for longer. \throws InvalidInput for a snapshot of another model, integrator or
+/// count of events.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<M, I, Solver> resume(M const& model, State& x, I integrator, RunOptions options, RunSnapshot const& from) {
   return Simulation<M, I, Solver>(model, x, std::move(integrator), std::move(options), from);

@@ -10,10 +10,10 @@
 
 namespace polybody {
 
-/// In place of DenseModes in held_modes, free_interface_modes and craig_bampton: implicitly restarted Lanczos on K⁻¹M, in the
-/// inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. That iteration may pass over a mode as often as its frequency
-/// repeats; so the modes below the last are counted by the negative pivots of K − σM (Sylvester), and the iteration
-/// starts anew with twice the vectors until none is missing, six times at most.
+/// In place of DenseModes in held_modes, free_interface_modes and craig_bampton: implicitly restarted Lanczos on K⁻¹M,
+/// in the inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. That iteration may pass over a mode as often as its
+/// frequency repeats; so the modes below the last are counted by the negative pivots of K − σM (Sylvester), and the
+/// iteration starts anew with twice the vectors until none is missing, six times at most.
 struct SpectraModes {
   Index restarts = 1000;     ///< at most, for each number of vectors
   double tolerance = 1e-12;  ///< of ω², relative
@@ -36,7 +36,8 @@ struct SpectraModes {
       if (solver.info() == Spectra::CompInfo::Successful) {
         LowestModes modes{solver.eigenvalues(), solver.eigenvectors()};
         if (complete(modes.squared_frequencies, k, m)) {
-          for (Index i = 0; i < count; ++i) modes.shapes.col(i) /= std::sqrt(modes.shapes.col(i).dot(m * modes.shapes.col(i)));
+          for (Index i = 0; i < count; ++i)
+            modes.shapes.col(i) /= std::sqrt(modes.shapes.col(i).dot(m * modes.shapes.col(i)));
           return modes;
         }
       }
@@ -55,7 +56,8 @@ struct SpectraModes {
 
     explicit Inverse(Structure::Sparse const& k) : size(k.rows()) {
       detail::factor_positive(
-          factor, k, "SpectraModes needs a positive definite stiffness; hold the structure, or use free_interface_modes.");
+          factor, k,
+          "SpectraModes needs a positive definite stiffness; hold the structure, or use free_interface_modes.");
     }
     Index rows() const { return size; }
     Index cols() const { return size; }
@@ -69,7 +71,8 @@ struct SpectraModes {
   static bool complete(VecX const& squared, Structure::Sparse const& k, Structure::Sparse const& m) {
     double const sigma = squared[squared.size() - 1] * (1.0 - 1e-6);
     detail::SparseFactor const factor(k - sigma * m);
-    return factor.info() == Eigen::Success && (factor.vectorD().array() < 0.0).count() <= (squared.array() < sigma).count();
+    return factor.info() == Eigen::Success &&
+           (factor.vectorD().array() < 0.0).count() <= (squared.array() < sigma).count();
   }
 };
 

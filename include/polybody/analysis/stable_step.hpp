@@ -7,13 +7,19 @@
 namespace polybody {
 namespace detail {
 
-/// Motions of compliant joints alone: M a + Gᵀμ = w, G a = 0 under forces w = Σ gᵀ S g y, S = ck ∂λ/∂g + cd ∂λ/∂ġ at a state.
+/// Motions of compliant joints alone: M a + Gᵀμ = w, G a = 0 under forces w = Σ gᵀ S g y, S = ck ∂λ/∂g + cd ∂λ/∂ġ at a
+/// state.
 template <class M, class Solver>
 class CompliantMotion {
  public:
   /// `forward` must be factored, and `system` evaluated, at that state.
   CompliantMotion(System<M>& system, ForwardDynamics<M, Solver>& forward)
-      : system_(system), forward_(forward), y_(VecX::Zero(system.speeds())), w_(y_), other_(y_), mu_(VecX::Zero(system.rows())) {}
+      : system_(system),
+        forward_(forward),
+        y_(VecX::Zero(system.speeds())),
+        w_(y_),
+        other_(y_),
+        mu_(VecX::Zero(system.rows())) {}
 
   struct Found {
     double omega2 = 0.0;  ///< [1/s²] of k
@@ -21,7 +27,8 @@ class CompliantMotion {
     std::string joint;    ///< that works most
   };
 
-  /// Power iteration for the largest yᵀ(ck k + cd c) y/yᵀM y: what it finds is a lower bound and grows from pass to pass.
+  /// Power iteration for the largest yᵀ(ck k + cd c) y/yᵀM y: what it finds is a lower bound and grows from pass to
+  /// pass.
   Found largest(double ck, double cd) {
     for (Index i = 0; i < w_.size(); ++i) w_[i] = std::fmod(0.6180339887498949 * double(i + 1), 1.0) - 0.5;
     Found found;
@@ -74,15 +81,14 @@ class CompliantMotion {
 
 }  // namespace detail
 
-/// A sentence that warns of a step h beyond the limit of integrator I for the stiffness and damping of the compliant joints at
-/// x, or nothing. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of what the model has: who is
-/// warned will blow up, but springs and elastic bodies may ask for less still.
+/// A sentence that warns of a step h beyond the limit of integrator I for the stiffness and damping of the compliant
+/// joints at x, or nothing. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of what the
+/// model has: who is warned will blow up, but springs and elastic bodies may ask for less still.
 template <NamesStableStep I, class M, class Solver>
 std::string warn_of_step(System<M>& system, ForwardDynamics<M, Solver>& forward, State const& x, double h) {
   bool compliant = false;
-  system.model().for_each_joint([&](auto const& e) {
-    compliant = compliant || AddsForce<typename std::decay_t<decltype(e.joint)>::PolicyType>;
-  });
+  system.model().for_each_joint(
+      [&](auto const& e) { compliant = compliant || AddsForce<typename std::decay_t<decltype(e.joint)>::PolicyType>; });
   if (!compliant) return "";
   forward.hold(system, x.q, x.v, x.t);
   detail::CompliantMotion<M, Solver> motion(system, forward);
@@ -95,10 +101,11 @@ std::string warn_of_step(System<M>& system, ForwardDynamics<M, Solver>& forward,
     double const limit = I::stable_step(omega, rate);
     if (!(limit < least)) continue;
     least = limit;
-    warning = "The joint \"" + found.joint + "\" is too " + (by_damping ? "strongly damped" : "stiff") + " for " + I::name +
-              ": over the mass that it moves, k h² is " + number(found.omega2 * h * h) + " and c h is " + number(rate * h) +
-              "; stable are " + number(found.omega2 * limit * limit) + " and " + number(rate * limit) +
-              ". Take steps of at most " + number(limit) + " s, a softer joint, or an implicit integrator.";
+    warning = "The joint \"" + found.joint + "\" is too " + (by_damping ? "strongly damped" : "stiff") + " for " +
+              I::name + ": over the mass that it moves, k h² is " + number(found.omega2 * h * h) + " and c h is " +
+              number(rate * h) + "; stable are " + number(found.omega2 * limit * limit) + " and " +
+              number(rate * limit) + ". Take steps of at most " + number(limit) +
+              " s, a softer joint, or an implicit integrator.";
   }
   return warning;
 }

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// The linear equations of statics, [K, Gᵀ; G, 0] (x, μ) = (f, φ), K = −∂f/∂q with every term. They are solved as
-/// [K/u, Gᵀ; G, 0] (x, μ/u) = (f/u, φ), u a power of two as large as K: beside bodies of 1e14 N/m rows of G, whose entries are
-/// near one, would otherwise be lost among rounding errors of pivots.
+/// [K/u, Gᵀ; G, 0] (x, μ/u) = (f/u, φ), u a power of two as large as K: beside bodies of 1e14 N/m rows of G, whose
+/// entries are near one, would otherwise be lost among rounding errors of pivots.
 
 #include <cmath>
 
@@ -15,7 +15,8 @@ template <LinearSolver Solver, class M>
 class StaticTangent {
  public:
   /// The system must outlive this; its state is the one last given to `System::evaluate`, here and below.
-  StaticTangent(System<M>& system, VecX const& lambda) : system_(&system), nv_(system.speeds()), rhs_(VecX::Zero(system.size())) {
+  StaticTangent(System<M>& system, VecX const& lambda)
+      : system_(&system), nv_(system.speeds()), rhs_(VecX::Zero(system.size())) {
     PatternSink pattern;
     system.tangent({.stiffness = 1.0}, SecondOrder::included, lambda, pattern);
     solver_.analyse(system.size(), pattern.blocks);

@@ -1,16 +1,17 @@
 #pragma once
 /// \file
-/// Small vibrations about a steady rotation. The whole model turns with angular velocity Ω about an axis fixed in the world, g(t)
-/// its rotation, and vibrates beside that: q(t) = g(t)·(q₀ ⊞ ε(t)). Let w(q) be the speeds of the rotation at q. g acts on the
-/// speeds of a body by a linear map that does not depend on q, with the generator
+/// Small vibrations about a steady rotation. The whole model turns with angular velocity Ω about an axis fixed in the
+/// world, g(t) its rotation, and vibrates beside that: q(t) = g(t)·(q₀ ⊞ ε(t)). Let w(q) be the speeds of the rotation
+/// at q. g acts on the speeds of a body by a linear map that does not depend on q, with the generator
 ///   Γξ = Dw ξ − c(w, ξ),   c(δ, v) = d/ds (local_rate(s δ, v) − local_rate(−s δ, v)) at s = 0,
-/// c the commutator of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular velocities in body axes:
-/// Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
+/// c the commutator of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular velocities in body
+/// axes: Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
 ///   v = w(q₀ ⊞ ε) + ε˙,   v˙ = Γ w(q₀ ⊞ ε) + (Γ + Dw) ε˙ + ε¨,
 /// so that R = M v˙ − f + Gᵀλ gives equations with constant coefficients [Simo, Lewis & Marsden 1991]:
 ///   M ε¨ + (D + M (Γ + Dw)) ε˙ + K ε + Gᵀμ = 0,  G ε = 0,
 ///   D = −∂f/∂v,   K = ∂/∂ε R(q₀ ⊞ ε, w(q₀ ⊞ ε), Γ w(q₀ ⊞ ε)).
-/// Beside D stand Coriolis and gyroscopic forces; K contains the centrifugal forces and the stiffness of the stress they cause.
+/// Beside D stand Coriolis and gyroscopic forces; K contains the centrifugal forces and the stiffness of the stress
+/// they cause.
 ///
 /// Not in polybody.hpp: it needs analysis/modes.hpp.
 
@@ -28,8 +29,8 @@ struct SteadyRotation {
 
 namespace detail {
 
-/// A model in the frame that turns with it. Everything static is exact; what the rotation adds is smooth and differentiated by
-/// differences of fourth order, with steps of 1e-3 [m], [rad].
+/// A model in the frame that turns with it. Everything static is exact; what the rotation adds is smooth and
+/// differentiated by differences of fourth order, with steps of 1e-3 [m], [rad].
 template <class M>
 class TurningFrame {
  public:
@@ -37,14 +38,20 @@ class TurningFrame {
   double share = 1.0;  ///< of the angular velocity
 
   TurningFrame(M const& model, VecX const& q, SteadyRotation const& rotation)
-      : system(model), rotation_(rotation), none_(VecX::Zero(system.speeds())), no_row_(VecX::Zero(system.rows())), w_(none_),
-        a_(none_), at_(q) {
+      : system(model),
+        rotation_(rotation),
+        none_(VecX::Zero(system.speeds())),
+        no_row_(VecX::Zero(system.rows())),
+        w_(none_),
+        a_(none_),
+        at_(q) {
     require_finite(rotation.angular_velocity, "SteadyRotation: the angular velocity");
     require_finite(rotation.point, "SteadyRotation: the point of the axis");
     model.for_each_body([&](auto const& e) {
       if constexpr (std::decay_t<decltype(e.body)>::world == World::plane)
         if (!rotation.angular_velocity.head<2>().isZero(0.0))
-          throw InvalidInput("SteadyRotation: body \"" + e.name + "\" lives in the plane, so the axis must be parallel to z.");
+          throw InvalidInput("SteadyRotation: body \"" + e.name +
+                             "\" lives in the plane, so the axis must be parallel to z.");
     });
     gradient_ = by_speeds(q, [&](VecX const& at, VecX& w) { speeds(at, w); });
     generator_ = gradient_;
@@ -64,7 +71,8 @@ class TurningFrame {
   void speeds(VecX const& q, VecX& w) const {
     Vec3 const omega = share * rotation_.angular_velocity, origin = rotation_.point.cross(omega);
     system.model().for_each_body([&](auto const& e) {
-      e.body.rigid_velocity(body_part(q, e.q0, e.body.coordinates()), origin, omega, body_part_of(w, e.v0, e.body.speeds()));
+      e.body.rigid_velocity(body_part(q, e.q0, e.body.coordinates()), origin, omega,
+                            body_part_of(w, e.v0, e.body.speeds()));
     });
   }
   /// Puts the system at (q, w, t). R(q, w, Γw) with these multipliers.
@@ -131,7 +139,8 @@ class TurningFrame {
 
 }  // namespace detail
 
-/// x turning steadily: v = w(q), a = Γw; everything else stays. \throws InvalidInput for planar bodies about another axis than z.
+/// x turning steadily: v = w(q), a = Γw; everything else stays. \throws InvalidInput for planar bodies about another
+/// axis than z.
 template <class M>
 State rotating_state(M const& model, State const& x, SteadyRotation const& rotation) {
   detail::TurningFrame<M> const frame(model, x.q, rotation);
@@ -141,10 +150,10 @@ State rotating_state(M const& model, State const& x, SteadyRotation const& rotat
   return out;
 }
 
-/// Moves x (coordinates, multipliers) from its present place to where elastic, centrifugal and all other forces balance while the
-/// model turns steadily; speeds and their rates become those of the rotation. Rows that depend on time are taken at x.t. `load_steps` and
-/// `smallest_part` are of Ω. Of redundant rows, and of motions that nothing resists, the smallest corrections are taken.
-/// Dense: for models of up to some hundred speeds.
+/// Moves x (coordinates, multipliers) from its present place to where elastic, centrifugal and all other forces balance
+/// while the model turns steadily; speeds and their rates become those of the rotation. Rows that depend on time are
+/// taken at x.t. `load_steps` and `smallest_part` are of Ω. Of redundant rows, and of motions that nothing resists, the
+/// smallest corrections are taken. Dense: for models of up to some hundred speeds.
 /// \throws InvalidInput for rows that do not turn with the model; NewtonStalled, NonFinite; x is then untouched.
 template <class M>
 EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation const& rotation,
@@ -192,7 +201,8 @@ EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation 
     problem.frame.share = done + part > 1.0 - 1e-12 ? 1.0 : done + part;
     bool factored = false;
     double theta = 1.0;
-    NewtonReport const n = newton(problem, {.max_iterations = options.max_iterations, .always_refactor = true}, factored, theta);
+    NewtonReport const n =
+        newton(problem, {.max_iterations = options.max_iterations, .always_refactor = true}, factored, theta);
     report.iterations += n.iterations;
     if (n.result == NewtonResult::converged) {
       done = problem.frame.share;
@@ -205,17 +215,18 @@ EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation 
     if (part >= options.smallest_part) continue;
     std::string const at = " at " + number(problem.frame.share) + " of the angular velocity";
     if (n.result != NewtonResult::diverged) throw NonFinite("relative_equilibrium: a force is not finite" + at + ".");
-    throw NewtonStalled("relative_equilibrium: Newton's method did not converge" + at +
-                        ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none.");
+    throw NewtonStalled(
+        "relative_equilibrium: Newton's method did not converge" + at +
+        ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none.");
   }
   problem.frame.require_turning_rows(problem.trial);
   x = rotating_state(model, problem.trial, rotation);
   return report;
 }
 
-/// About x, which turns steadily: its coordinates, multipliers and time count. With the result `damped_modes` gives the motions
-/// ε = Re(shape e^{st}) seen from the turning model. \throws InvalidInput when forces do not balance in x, or forces or rows do not
-/// turn with the model, as gravity across the axis.
+/// About x, which turns steadily: its coordinates, multipliers and time count. With the result `damped_modes` gives the
+/// motions ε = Re(shape e^{st}) seen from the turning model. \throws InvalidInput when forces do not balance in x, or
+/// forces or rows do not turn with the model, as gravity across the axis.
 template <class M>
 Linearisation linearise(M const& model, State const& x, SteadyRotation const& rotation) {
   detail::TurningFrame<M> frame(model, x.q, rotation);
@@ -240,8 +251,8 @@ Linearisation linearise(M const& model, State const& x, SteadyRotation const& ro
                        1e-13 * l.K.cwiseAbs().maxCoeff() * (1.0 + x.q.cwiseAbs().maxCoeff());
   Index i = 0;
   if (!(r.cwiseAbs().maxCoeff(&i) <= small))
-    throw InvalidInput("linearise: forces on " + system.name_of(i) + " do not balance as the model turns (" + number(r[i]) +
-                       " is left); take the state from relative_equilibrium(model, x, rotation).");
+    throw InvalidInput("linearise: forces on " + system.name_of(i) + " do not balance as the model turns (" +
+                       number(r[i]) + " is left); take the state from relative_equilibrium(model, x, rotation).");
   // Kw is the rate at which R changes as the model turns: nothing but forces in the rows
   VecX const turned = l.N * (l.N.transpose() * (l.K * w));
   if (!(turned.cwiseAbs().maxCoeff(&i) <= small * omega))

@@ -26,8 +26,8 @@ class StepPlan {
     std::sort(corners_.begin(), corners_.end());
   }
 
-  /// The clock at t, which leaves behind the corners up to now and those that only rounding sets apart from it (0.3 and 0.1 + 0.2
-  /// are one).
+  /// The clock at t, which leaves behind the corners up to now and those that only rounding sets apart from it (0.3 and
+  /// 0.1 + 0.2 are one).
   double pass(double t) {
     double const crumb = 1e-9 * step_ + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
     while (next_ < corners_.size() && corners_[next_] <= t + crumb) t = std::max(t, corners_[next_++]);

@@ -1,11 +1,13 @@
 #pragma once
 /// \file
-/// A recorded motion as loads on a structure: nodal forces of joints, contacts, gravity and of the inertia of the body's rigid
-/// motion [thesis §4.3.2–4.3.5]. In the structure's axes a point u₀ of the body has the acceleration less gravity
+/// A recorded motion as loads on a structure: nodal forces of joints, contacts, gravity and of the inertia of the
+/// body's rigid motion [thesis §4.3.2–4.3.5]. In the structure's axes a point u₀ of the body has the acceleration less
+/// gravity
 ///   a(u₀) = b + B u₀,   b = Aᵀ(r̈ − g),   B = Ω˙~ + Ω~ Ω~,
 /// and the linear structural problem has the right-hand side
 ///   Q_f − m_fr q̈_r − C_qfᵀ λ = −∫ρ Sᵀ a + Σ (Sᵀ f + S_rᵀ m),   ∫ρ Sᵀ a = Σ_l b_l ∫ρ S_lᵀ + Σ_kl B_lk ∫ρ u₀ₖ S_lᵀ:
-/// of B, Ω~ Ω~ is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, Ω˙~ the rotational part of m_fr; S and S_r those of Eq. 4.5.
+/// of B, Ω~ Ω~ is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, Ω˙~ the rotational part of m_fr; S and S_r those of
+/// Eq. 4.5.
 ///
 /// Not in polybody.hpp: Eigen's sparse module would cost every program seconds to compile.
 
@@ -16,12 +18,12 @@ namespace polybody {
 
 /// How a structure takes what was recorded.
 struct StructureLoadOptions {
-  /// Of the structure's axes in the body's. Else they are parallel and the centres of mass in one place, as for a body and a
-  /// structure made from the same bar.
+  /// Of the structure's axes in the body's. Else they are parallel and the centres of mass in one place, as for a body
+  /// and a structure made from the same bar.
   std::optional<Placement> placement = {};
   double largest_gap = 0.0;  ///< between samples, over which a line is drawn [s]; 0: 1.5 times the median interval
   double unbalance = 1e-3;   ///< what may be left of forces and moments, as a part of their size
-  double patch = 0.0;        ///< nodes within this distance of a load share it [m]; asked for where nodes have no rotations
+  double patch = 0.0;  ///< nodes within this distance of a load share it [m]; asked for where nodes have no rotations
 };
 
 class StructureLoads {
@@ -40,8 +42,8 @@ class StructureLoads {
     Vec3 f = Vec3::Zero(), m = Vec3::Zero();
   };
 
-  /// \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the structure's inertia, and patches of
-  /// nodes that cannot take them.
+  /// \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the structure's inertia, and
+  /// patches of nodes that cannot take them.
   StructureLoads(Structure structure, BodyRecord const& record, StructureLoadOptions const& options)
       : s_(std::move(structure)), name_(record.name) {
     require_positive(s_.mass, who() + "the structure's mass");
@@ -172,7 +174,8 @@ class StructureLoads {
     loads_.back().push_back(load);
   }
 
-  /// By the n nodes of a patch with the middle c, as f/n + θ × (r − c): of all nodal forces with this resultant the least.
+  /// By the n nodes of a patch with the middle c, as f/n + θ × (r − c): of all nodal forces with this resultant the
+  /// least.
   void share(Load const& load, Vec3 const& at, double patch) {
     std::vector<Index> nodes;
     Vec3 middle = Vec3::Zero();
@@ -204,8 +207,8 @@ class StructureLoads {
     return most;
   }
 
-  /// Σ f − ∫ρ a = 0 and Σ (m + u × f) − ∫ρ u × a = 0 about the centre of mass, each beside the largest sum of sizes of the
-  /// record.
+  /// Σ f − ∫ρ a = 0 and Σ (m + u × f) − ∫ρ u × a = 0 about the centre of mass, each beside the largest sum of sizes of
+  /// the record.
   void require_balance(double part) const {
     double const length = size();
     Vec3 const centre = s_.first / s_.mass;
@@ -219,9 +222,10 @@ class StructureLoads {
       Vec3 force = -inertia, moment = -spin;
       double total = s_.mass * at.size + turn.norm() / length;
       for (Load const& l : loads_[k]) {
-        Vec3 const u = (l.beam < 0 ? s_.nodes[std::size_t(l.node)]
-                                   : Vec3(s_.nodes[std::size_t(beam(l).a)] + beam(l).axes.col(0) * (l.xi * beam(l).length))) -
-                       centre;
+        Vec3 const u =
+            (l.beam < 0 ? s_.nodes[std::size_t(l.node)]
+                        : Vec3(s_.nodes[std::size_t(beam(l).a)] + beam(l).axes.col(0) * (l.xi * beam(l).length))) -
+            centre;
         force += l.f;
         moment += l.m + u.cross(l.f);
         total += l.f.norm() + l.m.norm() / length;
@@ -233,9 +237,10 @@ class StructureLoads {
       }
     }
     if (worst > part * most)
-      throw InvalidInput(who() + "the recorded loads do not balance the inertia of the structure: " + number(worst) + " N of " +
-                         number(most) + " N are left over at t = " + number(when) +
-                         " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`.");
+      throw InvalidInput(
+          who() + "the recorded loads do not balance the inertia of the structure: " + number(worst) + " N of " +
+          number(most) + " N are left over at t = " + number(when) +
+          " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`.");
   }
 
   Structure s_;

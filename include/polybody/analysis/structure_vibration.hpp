@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// How a structure vibrates under the loads of a recorded rigid motion (structure_loads.hpp), in nodal or modal coordinates,
-/// e = Φ q:
+/// How a structure vibrates under the loads of a recorded rigid motion (structure_loads.hpp), in nodal or modal
+/// coordinates, e = Φ q:
 ///   M q̈ + D q̇ + K q = Φᵀ(Q_f − m_fr q̈_r − C_qfᵀ λ)   [thesis §4.3.5],
 /// by any integrator that steps a `System`.
 ///
@@ -15,18 +15,18 @@
 
 namespace polybody {
 
-/// How the structure vibrates in the body's frame. What the frame is tied to matters, as the run moves the frame, with whatever
-/// acceleration the rigid body had: tie it where joints lead the body, and let it follow the mean motion (`free_interface_modes`,
-/// with `ReferenceConditions::none()`) of a body that is free.
+/// How the structure vibrates in the body's frame. What the frame is tied to matters, as the run moves the frame, with
+/// whatever acceleration the rigid body had: tie it where joints lead the body, and let it follow the mean motion
+/// (`free_interface_modes`, with `ReferenceConditions::none()`) of a body that is free.
 struct Vibration {
   ReferenceConditions frame = ReferenceConditions::clamped();
   MatX shapes = {};  ///< Φ (N×n), made with `frame`; empty: all nodal coordinates
-  /// With the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4 and, of Ω˙, m_fr(q). The thesis
-  /// leaves them out. The stiffness that axial forces add is in neither.
+  /// With the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4 and, of Ω˙, m_fr(q). The
+  /// thesis leaves them out. The stiffness that axial forces add is in neither.
   bool follows_deformation = false;
   double stiffness_damping = 0.0;  ///< adds this time [s] × K to the structure's damping
   bool settled = true;             ///< starts at rest as the first loads deform it, else undeformed
-  int substeps = 1;                ///< steps of the integrator from sample to sample; loads lie on straight lines between
+  int substeps = 1;  ///< steps of the integrator from sample to sample; loads lie on straight lines between
 };
 
 namespace detail {
@@ -108,8 +108,8 @@ inline void require_fitting_shapes(Structure const& s, Vibration const& how, std
 
 }  // namespace detail
 
-/// \throws InvalidInput for shapes that do not fit the structure, move what the frame holds or have no stiffness, and for fewer
-/// substeps than one; what the integrator throws.
+/// \throws InvalidInput for shapes that do not fit the structure, move what the frame holds or have no stiffness, and
+/// for fewer substeps than one; what the integrator throws.
 template <LinearSolver Solver = DenseLu, class I>
 VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, Vibration how) {
   Structure const& s = loads.structure();
@@ -133,7 +133,8 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
   Eigen::LDLT<MatX> const factor(problem.stiffness);
   if (!(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
     throw InvalidInput(
-        who + "nothing resists some of the shapes. Leave out motions of the whole structure, and shapes that repeat others.");
+        who +
+        "nothing resists some of the shapes. Leave out motions of the whole structure, and shapes that repeat others.");
 
   System<LinearVibration<detail::LoadLines>> system(problem);
   State x{VecX::Zero(n), VecX::Zero(n), VecX::Zero(n), VecX::Zero(0), loads.times().front(), {}};

@@ -10,7 +10,8 @@
 
 namespace polybody {
 
-/// Polygon i has the corners [ends[i − 1], ends[i]) of `corners`, which are places in `points`; counter-clockwise as seen from outside.
+/// Polygon i has the corners [ends[i − 1], ends[i]) of `corners`, which are places in `points`; counter-clockwise as
+/// seen from outside.
 struct Surface {
   std::vector<Vec3> points;  ///< [m]
   std::vector<int> corners;
@@ -28,14 +29,17 @@ double volume(Surface const& surface) {
   double six = 0.0;
   int begin = 0;
   for (int const end : surface.ends) {
-    auto const corner = [&](int k) -> Vec3 const& { return surface.points[std::size_t(surface.corners[std::size_t(k)])]; };
+    auto const corner = [&](int k) -> Vec3 const& {
+      return surface.points[std::size_t(surface.corners[std::size_t(k)])];
+    };
     for (int k = begin + 1; k + 1 < end; ++k) six += corner(begin).dot(corner(k).cross(corner(k + 1)));
     begin = end;
   }
   return six / 6.0;
 }
 
-/// The polygon (y, z) around a section, counter-clockwise as seen from +x; a circle as so many sides, the polygon of its own area.
+/// The polygon (y, z) around a section, counter-clockwise as seen from +x; a circle as so many sides, the polygon of
+/// its own area.
 /// \throws InvalidInput for a bar without a section, or fewer than three sides.
 template <class = void>
 std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
@@ -52,8 +56,8 @@ std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
   return points;
 }
 
-/// The surface through rings of points, each with as many as the first and counter-clockwise about the direction of the sweep, closed by
-/// the first and the last ring. Point i of ring k is i + k·(points of a ring).
+/// The surface through rings of points, each with as many as the first and counter-clockwise about the direction of the
+/// sweep, closed by the first and the last ring. Point i of ring k is i + k·(points of a ring).
 template <class = void>
 Surface swept(int rings, int points_of_ring) {
   Surface s;
@@ -84,8 +88,8 @@ Surface box(Vec3 const& size) {
   return s;
 }
 
-/// A prism with so many sides in place of the cylinder, of its volume; middle at the origin. \throws InvalidInput unless the sizes are
-/// positive, `axis` is a unit vector and there are three sides.
+/// A prism with so many sides in place of the cylinder, of its volume; middle at the origin. \throws InvalidInput
+/// unless the sizes are positive, `axis` is a unit vector and there are three sides.
 template <class = void>
 Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(), int sides = 24) {
   require_positive(radius, "cylinder: the radius");
@@ -99,7 +103,8 @@ Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(),
   Surface s = swept(2, sides);
   for (int k = 0; k < 2; ++k)
     for (int i = 0; i < sides; ++i)
-      s.points[std::size_t(sides * k + i)] = axis * ((k - 0.5) * length) + y * ring[std::size_t(i)][0] + z * ring[std::size_t(i)][1];
+      s.points[std::size_t(sides * k + i)] =
+          axis * ((k - 0.5) * length) + y * ring[std::size_t(i)][0] + z * ring[std::size_t(i)][1];
   return s;
 }
 

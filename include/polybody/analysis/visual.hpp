@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What a model looks like in a state: shapes carried by markers, and bars swept along their sections, under every formulation.
+/// What a model looks like in a state: shapes carried by markers, and bars swept along their sections, under every
+/// formulation.
 
 #include <functional>
 #include <string>
@@ -10,8 +11,8 @@
 
 namespace polybody {
 
-/// One thing to be seen: its surface in world axes, and in each of its points the axial stress [N/m²] where its body knows it,
-/// else none, and the velocity [m/s].
+/// One thing to be seen: its surface in world axes, and in each of its points the axial stress [N/m²] where its body
+/// knows it, else none, and the velocity [m/s].
 struct VisualPart {
   std::string name;
   Surface surface;
@@ -51,8 +52,8 @@ class Visual {
     });
   }
 
-  /// The bar that the body was made from, in so many pieces along its length. Points of a section lie where the body's own points do;
-  /// sections of cables and of the plane are carried by the frame on the axis.
+  /// The bar that the body was made from, in so many pieces along its length. Points of a section lie where the body's
+  /// own points do; sections of cables and of the plane are carried by the frame on the axis.
   /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24) {
@@ -62,7 +63,8 @@ class Visual {
     int const n = int(ring.size());
     bool const stressed = HasSections<B> && bar.material;
     std::size_t const points = std::size_t((pieces + 1) * n);
-    parts_.push_back({body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
+    parts_.push_back(
+        {body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
     moves_.push_back([model = model_, body, bar, pieces, ring](State const& x, VisualPart& part) {
       std::size_t i = 0;
       for (int k = 0; k <= pieces; ++k) {

@@ -8,7 +8,7 @@ namespace polybody {
 
 /// One run of a curve.
 struct WorkPoint {
-  double setting = 0.0;      ///< the step [s], or the relative tolerance of an integrator that controls its step
+  double setting = 0.0;  ///< the step [s], or the relative tolerance of an integrator that controls its step
   long steps = 0;
   double cpu = 0.0;          ///< of the steps alone [s]
   double error = 0.0;        ///< in the unit of the output, see `work_precision`
@@ -69,8 +69,9 @@ void set_accuracy(I& integrator, RunOptions& options, double setting) {
 
 }  // namespace detail
 
-/// Records output number `output` of the case in a run at the given step or tolerance, as a reference for other integrators.
-/// Between its times it is as good as h⁴ d⁴y/dt⁴/43: give a short step. An integrator that controls its step takes at least 4000.
+/// Records output number `output` of the case in a run at the given step or tolerance, as a reference for other
+/// integrators. Between its times it is as good as h⁴ d⁴y/dt⁴/43: give a short step. An integrator that controls its
+/// step takes at least 4000.
 template <class C, class F>
   requires CaseFor<C, F>
 RecordedOutput reference_run(C const& make_case, F const& formulation, double setting, std::size_t output = 0) {
@@ -91,11 +92,12 @@ RecordedOutput reference_run(C const& make_case, F const& formulation, double se
   return out;
 }
 
-/// Runs the case once for each setting: the step, or the relative tolerance of an integrator that controls its step. The error of
-/// output y is, with the states of the run at t_k and its end T,
+/// Runs the case once for each setting: the step, or the relative tolerance of an integrator that controls its step.
+/// The error of output y is, with the states of the run at t_k and its end T,
 ///   max_k |y(t_k) − y_ref(t_k)|  for a function of time or a `reference_run`,   |y(T) − y_ref|  for a number.
 /// A step that fails (too long a step, say) ends that run alone and leaves its words in `failure`.
-/// \throws InvalidInput for settings that are not positive, or where there are none, and an output that the case does not have.
+/// \throws InvalidInput for settings that are not positive, or where there are none, and an output that the case does
+/// not have.
 template <class C, class F>
   requires CaseFor<C, F>
 WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<double> const& settings,
@@ -110,7 +112,8 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
     WorkPoint& point = curve.points.emplace_back(WorkPoint{.setting = setting});
     auto const compare_at = [&](State const& x) {
       double const error = std::abs(y.value(scenario.model, x) - reference.at(x.t));
-      if (!std::isfinite(error)) throw NonFinite("The error of " + y.name + " is not finite at t = " + number(x.t) + " s.");
+      if (!std::isfinite(error))
+        throw NonFinite("The error of " + y.name + " is not finite at t = " + number(x.t) + " s.");
       point.error = std::max(point.error, error);
     };
     State x = scenario.start, again = x;

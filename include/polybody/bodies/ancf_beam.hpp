@@ -35,14 +35,14 @@ class AncfBeam : public NodeChain<12> {
     double y = 0.0, z = 0.0;
   };
 
-  /// The straight bar in n equal elements. Its rotary inertia must be positive about both axes: without it r_y or r_z has no
-  /// mass. \throws InvalidInput for n < 1 or a constant that the bar does not give.
+  /// The straight bar in n equal elements. Its rotary inertia must be positive about both axes: without it r_y or r_z
+  /// has no mass. \throws InvalidInput for n < 1 or a constant that the bar does not give.
   static AncfBeam from(Bar const& bar, Index n) {
     return AncfBeam(bar, n, [](double s) { return Placement{Vec3(s, 0, 0)}; }, true);
   }
-  /// The bar with a curved or twisted reference, free of stress but for the pretension. Nodes get place and axes of `curve`,
-  /// which between them is interpolated by the element's own field. \throws InvalidInput also where the section would be
-  /// turned inside out, or `curve` does not run at unit speed.
+  /// The bar with a curved or twisted reference, free of stress but for the pretension. Nodes get place and axes of
+  /// `curve`, which between them is interpolated by the element's own field. \throws InvalidInput also where the
+  /// section would be turned inside out, or `curve` does not run at unit speed.
   static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
 
   double length() const { return bar_.length; }
@@ -113,9 +113,11 @@ class AncfBeam : public NodeChain<12> {
   }
   template <StateScalar T>
   void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
-    add_force<T>(groups_of(e), part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), out);
+    add_force<T>(groups_of(e), part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)),
+                 out);
   }
-  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd, ElementMatrix& k) const {
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               ElementMatrix& k) const {
     tangent_of<double, element_columns>(groups_of(e), part<element_columns>(q, first_column(e)),
                                         part<element_columns>(v, first_column(e)), ck, cd, k);
   }
@@ -123,14 +125,16 @@ class AncfBeam : public NodeChain<12> {
   /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
   void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
                   Element<double>& out) const {
-    Element<double> const x0 = part<element_columns>(q0, first_column(e)), x1 = part<element_columns>(q1, first_column(e));
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
+                          x1 = part<element_columns>(q1, first_column(e));
     out.setZero();
     std::apply([&](auto const&... group) { (group.add_mean_force(x0, x1, means, out), ...); }, groups_of(e));
   }
   /// ck (−∂f/∂q1), nearly; not symmetric.
   void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
                     ElementMatrix& k) const {
-    Element<double> const x0 = part<element_columns>(q0, first_column(e)), x1 = part<element_columns>(q1, first_column(e));
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
+                          x1 = part<element_columns>(q1, first_column(e));
     k.setZero();
     std::apply([&](auto const&... group) { (group.add_mean_tangent(x0, x1, means, ck, k), ...); }, groups_of(e));
   }
@@ -169,8 +173,8 @@ class AncfBeam : public NodeChain<12> {
     return map_of(p, alpha + 1);
   }
 
-  /// The marker is the material point; its axes are those of the section on the axis there (`SectionFrame` of r_y and r_z).
-  /// Off the axis it follows r(x, y, z), also where the section stretches.
+  /// The marker is the material point; its axes are those of the section on the axis there (`SectionFrame` of r_y and
+  /// r_z). Off the axis it follows r(x, y, z), also where the section stretches.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     Index const first = first_column(p);
@@ -228,8 +232,9 @@ class AncfBeam : public NodeChain<12> {
         k.block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
-  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without damping (see
-  /// sections.hpp): `ElasticLine` as stiffness times strain, `Continuum` as sums of its stress over the section.
+  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without
+  /// damping (see sections.hpp): `ElasticLine` as stiffness times strain, `Continuum` as sums of its stress over the
+  /// section.
   Vec6 section_strains(Point const& p, std::span<double const> q) const;
   Vec6 section_forces(Point const& p, std::span<double const> q) const;
   /// `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, less those of the reference.
@@ -249,8 +254,8 @@ class AncfBeam : public NodeChain<12> {
     Mat3 const f = deformation_gradient(p, q);
     return 0.5 * (f.transpose() * f - Mat3::Identity());
   }
-  /// `Continuum`: stress at `p`, without damping. When cured, Poisson's part is that of the axis, and the shear stresses are the
-  /// corrected ones, means over the section.
+  /// `Continuum`: stress at `p`, without damping. When cured, Poisson's part is that of the axis, and the shear
+  /// stresses are the corrected ones, means over the section.
   Stress stress(Point const& p, std::span<double const> q) const
     requires(!std::same_as<Elastic, ElasticLine>)
   {
@@ -316,12 +321,14 @@ class AncfBeam : public NodeChain<12> {
                    z = ref.determinant(xi, 0.0, width) - middle;
       double const drop = std::holds_alternative<Circle>(bar_.section) ? std::hypot(y, z) : std::abs(y) + std::abs(z);
       if (!(middle - drop > 0.0))
-        throw InvalidInput(what + " is turned inside out in the reference: the curve bends more sharply than the section's "
-                                  "size allows, or than one element can follow. Use more elements, or another curve.");
+        throw InvalidInput(what +
+                           " is turned inside out in the reference: the curve bends more sharply than the section's "
+                           "size allows, or than one element can follow. Use more elements, or another curve.");
     }
   }
 
-  /// Over Gauss points along x (exact for the straight bar) and the four points of the section that give Aρ and both Iρ.
+  /// Over Gauss points along x (exact for the straight bar) and the four points of the section that give Aρ and both
+  /// Iρ.
   Inertia inertia_of(ancf::Reference const& ref) const {
     double const rho = constants_.mass_per_length, iz = constants_.rotary_inertia;
     ancf::SectionPoints const section{std::sqrt(iz / rho), std::sqrt(constants_.rotary_inertia_y.value_or(iz) / rho)};

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Gradient-deficient ANCF cable in space: cubic Hermite position field, node coordinates (r, r′), 12 an element, constant mass
-/// matrix, no torsion and no section [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006]. With s_i of `hermite_shape`,
+/// Gradient-deficient ANCF cable in space: cubic Hermite position field, node coordinates (r, r′), 12 an element,
+/// constant mass matrix, no torsion and no section [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006]. With s_i of
+/// `hermite_shape`,
 ///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
 
 #include <polybody/bodies/cable_laws.hpp>
@@ -10,12 +11,12 @@
 
 namespace polybody {
 
-/// `AncfCable<>::from(bar, n)` with Green strain, `AncfCable<EngineeringStrain>` with that; more or fewer Gauss points for the
-/// axial and the bending part, 5 and 3 being the field's choice [Gerstmayr & Irschik 2008].
+/// `AncfCable<>::from(bar, n)` with Green strain, `AncfCable<EngineeringStrain>` with that; more or fewer Gauss points
+/// for the axial and the bending part, 5 and 3 being the field's choice [Gerstmayr & Irschik 2008].
 ///
-/// A marker knows its point and the tangent, not how the section turns about it: ω = r′ × ṙ′/|r′|² has no part along r′, a moment
-/// along r′ has no effect, and the marker's other two axes stand as the smallest turn from the reference leaves them. A clamp is
-/// `Revolute` about the tangent, with the cable's marker second.
+/// A marker knows its point and the tangent, not how the section turns about it: ω = r′ × ṙ′/|r′|² has no part along
+/// r′, a moment along r′ has no effect, and the marker's other two axes stand as the smallest turn from the reference
+/// leaves them. A clamp is `Revolute` about the tangent, with the cable's marker second.
 template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
 class AncfCable : public NodeChain<6> {
  public:
@@ -41,7 +42,8 @@ class AncfCable : public NodeChain<6> {
     return from(bar, n, [](double s) { return Placement::at({s, 0, 0}); });
   }
   /// The same laid along a curve, nodes at equal arc lengths. Its natural shape stays straight: it stands bent.
-  /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes off by a tenth.
+  /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes
+  /// off by a tenth.
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     if (n < 1) throw InvalidInput("AncfCable: at least one element is needed.");
     return AncfCable(bar, polybody::constants(bar), n, curve);
@@ -107,7 +109,8 @@ class AncfCable : public NodeChain<6> {
   void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
     element_force<T>(part<12>(q, first_column(e)), part<12>(v, first_column(e)), out);
   }
-  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd, ElementMatrix& k) const {
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               ElementMatrix& k) const {
     element_tangent<double>(part<12>(q, first_column(e)), part<12>(v, first_column(e)), ck, cd, k);
   }
   /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
@@ -154,14 +157,16 @@ class AncfCable : public NodeChain<6> {
   /// r′ = S′ e at `p`, 3×12, constant: the one gradient of a cable, α = 0.
   PointMap gradient_map(Point const& p, int) const { return map_of(hermite_shape(p.xi, l_).ds); }
 
-  /// At `p`, in the axes of a marker there (see sections.hpp): a cable knows axial strain and curvature, nothing of shear and torsion.
+  /// At `p`, in the axes of a marker there (see sections.hpp): a cable knows axial strain and curvature, nothing of
+  /// shear and torsion.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     Element<double> const x = element_of(p, q);
     return in_section_axes(p, x, axial().strains(p.xi, l_, x)[0], bending().strains(p.xi, l_, x));
   }
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     Element<double> const x = element_of(p, q);
-    return in_section_axes(p, x, axial().stress(axial().strains(p.xi, l_, x))[0], bending().stress(bending().strains(p.xi, l_, x)));
+    return in_section_axes(p, x, axial().stress(axial().strains(p.xi, l_, x))[0],
+                           bending().stress(bending().strains(p.xi, l_, x)));
   }
 
   template <StateScalar T>
@@ -195,7 +200,7 @@ class AncfCable : public NodeChain<6> {
         int const j = (k + 1) % 3, l = (k + 2) % 3;
         for (int row = 0; row < 6; ++row) column[row] = T(0.0);
         column[k] = T(s.s[i]);
-        column[3 + j] = slope[l] * inverse * s.ds[i];      // r′ × e_k = (…, r′_l at j, −r′_j at l)
+        column[3 + j] = slope[l] * inverse * s.ds[i];  // r′ × e_k = (…, r′_l at j, −r′_j at l)
         column[3 + l] = -(slope[j] * inverse * s.ds[i]);
       }
     out.shape = JacobianShape::dense;
@@ -221,7 +226,10 @@ class AncfCable : public NodeChain<6> {
   Bending const& bending() const { return std::get<1>(groups_); }
 
   AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
-      : NodeChain(n), constants_(c), length_(bar.length), l_(bar.length / double(n)),
+      : NodeChain(n),
+        constants_(c),
+        length_(bar.length),
+        l_(bar.length / double(n)),
         groups_(Axial(c, bar.damping, l_, Vec<double, 1>(bar.pretension)), Bending(c, bar.damping, l_)) {
     for (GaussPoint const& g : gauss<4>) {
       ShapeValues<4> const s = hermite_shape(g.xi, l_);
@@ -240,8 +248,8 @@ class AncfCable : public NodeChain<6> {
       for (GaussPoint const& g : gauss<3>) {
         double const off = axial().strains(g.xi, l_, element_of({e, g.xi}, reference_))[0];
         if (!(std::abs(off) < 0.1))
-          throw InvalidInput("AncfCable: element " + std::to_string(e + 1) +
-                             " of the reference curve is strained by " + number(off) +
+          throw InvalidInput("AncfCable: element " + std::to_string(e + 1) + " of the reference curve is strained by " +
+                             number(off) +
                              ". Give the curve by its arc length, from 0 to the bar's length, or take more elements.");
       }
       axes_.push_back(bar.placement.axes * curve((double(e) + 0.5) * l_).axes);
@@ -265,13 +273,14 @@ class AncfCable : public NodeChain<6> {
     return out;
   }
 
-  /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are first turned by π
-  /// about their third one, so that there is always one.
+  /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are
+  /// first turned by π about their third one, so that there is always one.
   template <StateScalar T>
   static Mat<T, 3, 3> smallest_turn(Vec<T, 3> const& slope, Mat3 from) {
     using std::sqrt;
     Vec<T, 3> const t = slope / sqrt(detail::dot(slope, slope));
-    if (value_of(t[0]) * from(0, 0) + value_of(t[1]) * from(1, 0) + value_of(t[2]) * from(2, 0) < 0.0) from.leftCols<2>() *= -1.0;
+    if (value_of(t[0]) * from(0, 0) + value_of(t[1]) * from(1, 0) + value_of(t[2]) * from(2, 0) < 0.0)
+      from.leftCols<2>() *= -1.0;
     Vec<T, 3> const e = from.col(0).template cast<T>();
     Mat<T, 3, 3> const turn = skew<T>(e.cross(t));
     Mat<T, 3, 3> const both = turn * from.template cast<T>();
@@ -285,7 +294,7 @@ class AncfCable : public NodeChain<6> {
   Mat<double, 4, 4> mass_ = Mat<double, 4, 4>::Zero();  ///< of each component
   Vec4 weight_ = Vec4::Zero();                          ///< the same for a uniform field
   std::vector<double> reference_;
-  std::vector<Mat3> axes_;                              ///< of the reference in the middle of each element
+  std::vector<Mat3> axes_;  ///< of the reference in the middle of each element
 };
 
 static_assert(Body<AncfCable<>>);

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// The elastic force of the fully parameterised ANCF beam by general continuum mechanics: Green–Lagrange strain
-/// E = ½ (FᵀF − 1) against the reference, F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's law in
-/// three dimensions. D is written in squares, so that strains do not couple:
+/// E = ½ (FᵀF − 1) against the reference, F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's
+/// law in three dimensions. D is written in squares, so that strains do not couple:
 ///   S : E = λ (tr E)² + 2μ Σ E_ii² + 4μ Σ_{i<j} E_ij².
 
 #include <tuple>
@@ -118,21 +118,24 @@ struct Stress {
   Mat3 cauchy;        ///< F S Fᵀ/det F, world axes [N/m²]
 };
 
-/// Quadrature: three Gauss points along x, exact for the quartic energy of linear theory (r_x is quadratic), and four points of
-/// the section (`SectionPoints`), exact for the stretch, bending and twist that the field can show. With `Locking::present` that
-/// is all. The strain that follows y and z through r_x has no partner in E₂₂, E₃₃, constant across the section: bending meets
-/// λ + 2μ in place of E, and a slender cantilever shows but (1 + ν)(1 − 2ν)/(1 − ν) of its deflection.
+/// Quadrature: three Gauss points along x, exact for the quartic energy of linear theory (r_x is quadratic), and four
+/// points of the section (`SectionPoints`), exact for the stretch, bending and twist that the field can show. With
+/// `Locking::present` that is all. The strain that follows y and z through r_x has no partner in E₂₂, E₃₃, constant
+/// across the section: bending meets λ + 2μ in place of E, and a slender cantilever shows but (1 + ν)(1 − 2ν)/(1 − ν)
+/// of its deflection.
 ///
 /// `Locking::cured` splits D = D⁰ + Dᵛ [Gerstmayr, Matikainen & Mikkola 2008]:
 ///   E E₁₁² over the volume, as a bar in uniaxial stress has it;
-///   the rest of Hooke's law for normal strains, and E₂₃, on the axis only, and there at the nodes (trapezoidal rule): between
+///   the rest of Hooke's law for normal strains, and E₂₃, on the axis only, and there at the nodes (trapezoidal rule):
+///   between
 ///     them |r_y| < 1 belongs to the chord of a bent element and would stiffen it;
-///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points drawn towards the axis (or
-///     away from it) until twist meets GJ of the bar. Three points along x remain: two leave a mode without energy, and three
-///     do not lock (see `ElasticLine`).
+///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points drawn towards the
+///   axis (or
+///     away from it) until twist meets GJ of the bar. Three points along x remain: two leave a mode without energy, and
+///     three do not lock (see `ElasticLine`).
 ///
-/// Kelvin–Voigt times: axial for normal strains, so for bending, too; shear for shears. Ė is objective. `Damping::bending` has
-/// no meaning of its own here.
+/// Kelvin–Voigt times: axial for normal strains, so for bending, too; shear for shears. Ė is objective.
+/// `Damping::bending` has no meaning of its own here.
 template <Locking locking = Locking::cured>
 struct Continuum {
   static constexpr char const* name = "AncfBeam<Continuum>";
@@ -146,10 +149,12 @@ struct Continuum {
 
   static void check(Bar const& bar, BarConstants const&) {
     if (!bar.material)
-      throw InvalidInput(std::string(name) + ": the continuum needs the bar's section and material. Give them, or take "
-                                             "AncfBeam<ElasticLine>, which is content with constants.");
+      throw InvalidInput(std::string(name) +
+                         ": the continuum needs the bar's section and material. Give them, or take "
+                         "AncfBeam<ElasticLine>, which is content with constants.");
     if (!(bar.material->poisson < 0.5))
-      throw InvalidInput(std::string(name) + ": Poisson's ratio must be below 0.5, where the bulk modulus is infinite.");
+      throw InvalidInput(std::string(name) +
+                         ": Poisson's ratio must be below 0.5, where the bulk modulus is infinite.");
   }
 
   static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {

@@ -12,14 +12,18 @@ namespace polybody {
 /// With the section frame R of (r_y, r_z)
 ///   Γ = Rᵀ r₀′ − e₁ (stretch, two shears),  K = axial(Rᵀ R′) (twist, two curvatures): the exact rod's strains, and
 ///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the section's own strains, with stiffness EA, EA, GA;
-/// Γ and K against their values in the reference [Simo & Vu-Quoc 1986; Nachbagauer, Gruber & Gerstmayr 2013]. R, Γ, K do not
-/// feel how a section stretches, so on fine meshes the sections keep their shape and the element is the exact rod. Quadrature:
-///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. (With two, r = 0 and the same r_x across the axis
-///     at all nodes has no energy: r₀′ is the Legendre polynomial P₂, zero at both.) Nothing locks: the quadratic r₀′ can follow
-///     any piecewise linear r_y, r_z with Γ = 0.
+/// Γ and K against their values in the reference [Simo & Vu-Quoc 1986; Nachbagauer, Gruber & Gerstmayr 2013]. R, Γ, K
+/// do not feel how a section stretches, so on fine meshes the sections keep their shape and the element is the exact
+/// rod. Quadrature:
+///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. (With two, r = 0 and the same r_x across
+///   the axis
+///     at all nodes has no energy: r₀′ is the Legendre polynomial P₂, zero at both.) Nothing locks: the quadratic r₀′
+///     can follow any piecewise linear r_y, r_z with Γ = 0.
 ///   K at two: for sections that turn by θ an element they give θ/l up to θ⁴.
-///   The section's strains at the nodes alone: that |r_y| falls to cos(θ/2) between them is the chord's doing, not a strain.
-/// Kelvin–Voigt times: axial for Γ₁ and the sections' stretches, shear for Γ₂, Γ₃, twist and the sections' shear, bending.
+///   The section's strains at the nodes alone: that |r_y| falls to cos(θ/2) between them is the chord's doing, not a
+///   strain.
+/// Kelvin–Voigt times: axial for Γ₁ and the sections' stretches, shear for Γ₂, Γ₃, twist and the sections' shear,
+/// bending.
 struct ElasticLine {
   static constexpr char const* name = "AncfBeam<ElasticLine>";
 
@@ -179,8 +183,8 @@ struct ElasticLine {
 
  private:
   template <class Law>
-  static StrainGroup<Law> on_axis(std::array<GaussPoint, Law::points> const& rule, Bar const& bar, BarConstants const& c,
-                                  ancf::Reference const& ref, Vec3 const& pretension) {
+  static StrainGroup<Law> on_axis(std::array<GaussPoint, Law::points> const& rule, Bar const& bar,
+                                  BarConstants const& c, ancf::Reference const& ref, Vec3 const& pretension) {
     StrainGroup<Law> group(Law::stiffness(c), Law::damping(bar.damping));
     for (int g = 0; g < Law::points; ++g) {
       Vec3 free = pretension;

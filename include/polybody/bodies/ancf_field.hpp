@@ -1,9 +1,11 @@
 #pragma once
 /// \file
-/// The field of the fully parameterised ANCF beam. In an element of length l, with r₀(x) cubic and r_y, r_z linear in x,
-///   r(x, y, z) = r₀ + y r_y + z r_z = Σ N_v(x, y, z) e_v,  e = (r, r_x, r_y, r_z) of the first node, then of the second
-/// [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis Eq. 3.16]. The reference is such a field, too; strains are measured
-/// against it, in the axes of its sections (`SectionFrame` of r_y, r_z).
+/// The field of the fully parameterised ANCF beam. In an element of length l, with r₀(x) cubic and r_y, r_z linear in
+/// x,
+///   r(x, y, z) = r₀ + y r_y + z r_z = Σ N_v(x, y, z) e_v,  e = (r, r_x, r_y, r_z) of the first node, then of the
+///   second
+/// [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis Eq. 3.16]. The reference is such a field, too; strains are
+/// measured against it, in the axes of its sections (`SectionFrame` of r_y, r_z).
 
 #include <polybody/bodies/bar.hpp>
 #include <polybody/bodies/section_frame.hpp>
@@ -39,15 +41,16 @@ inline Mat<double, vectors, 4> shape(double xi, double y, double z, double l) {
 /// The reference of an element.
 class Reference {
  public:
-  double l = 0.0;                              ///< of the axis [m]
-  Coordinates x = Coordinates::Zero();         ///< e
-  bool straight = true;                        ///< … and not twisted
+  double l = 0.0;                       ///< of the axis [m]
+  Coordinates x = Coordinates::Zero();  ///< e
+  bool straight = true;                 ///< … and not twisted
 
   /// det [r_x r_y r_z], linear in y and z: negative where the section is turned inside out.
   double determinant(double xi, double y, double z) const { return straight ? 1.0 : jacobian(xi, y, z).determinant(); }
 
-  /// ∂N/∂X of the place X in the section's axes there, so that F = Σ e_v (∂N_v/∂X)ᵀ is one in the reference; and the reference
-  /// volume dV/(dx dy dz) by that on the axis. (Between nodes the interpolated section is smaller by the chord than the bar's.)
+  /// ∂N/∂X of the place X in the section's axes there, so that F = Σ e_v (∂N_v/∂X)ᵀ is one in the reference; and the
+  /// reference volume dV/(dx dy dz) by that on the axis. (Between nodes the interpolated section is smaller by the
+  /// chord than the bar's.)
   struct Gradients {
     Mat<double, vectors, 3> g;
     double volume;
@@ -63,7 +66,9 @@ class Reference {
   }
 
  private:
-  Mat3 jacobian(double xi, double y, double z) const { return x.reshaped(3, vectors) * shape(xi, y, z, l).rightCols<3>(); }
+  Mat3 jacobian(double xi, double y, double z) const {
+    return x.reshaped(3, vectors) * shape(xi, y, z, l).rightCols<3>();
+  }
 };
 
 /// A bar's section as four points, each with a quarter of its area, that give its area and both its second moments:

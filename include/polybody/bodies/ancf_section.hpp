@@ -9,13 +9,15 @@ namespace polybody {
 template <class Elastic>
 Vec6 AncfBeam<Elastic>::section_strains(Point const& p, std::span<double const> q) const {
   Vec6 x;
-  x << strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q), strains<std::tuple_element_t<1, ElasticLine::Groups>>(p, q);
+  x << strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
+      strains<std::tuple_element_t<1, ElasticLine::Groups>>(p, q);
   return x;
 }
 
 /// `Continuum`: with the traction t = F S e₁ on the section, in the axes of the deformed one,
 ///   N = ∫ Rᵀt dA,  M = ∫ Rᵀ(r − r₀) × Rᵀt dA,
-/// over the points that the energy uses: normal stress at the four of the section, shear stress at those that twist meets GJ with.
+/// over the points that the energy uses: normal stress at the four of the section, shear stress at those that twist
+/// meets GJ with.
 template <class Elastic>
 Vec6 AncfBeam<Elastic>::section_forces(Point const& p, std::span<double const> q) const {
   if constexpr (std::same_as<Elastic, ElasticLine>) {
@@ -30,7 +32,8 @@ Vec6 AncfBeam<Elastic>::section_forces(Point const& p, std::span<double const> q
     Vec3 const by = map_of({p.element, p.xi}, 2) * x, bz = map_of({p.element, p.xi}, 3) * x;
     SectionFrame<double> const frame(by, bz);
     double const area = constants_.EA / bar_.material->young, lever = Elastic::lever(constants_);
-    ancf::SectionPoints const section{std::sqrt(constants_.EI / constants_.EA), std::sqrt(constants_.EI_y.value() / constants_.EA)};
+    ancf::SectionPoints const section{std::sqrt(constants_.EI / constants_.EA),
+                                      std::sqrt(constants_.EI_y.value() / constants_.EA)};
     Mat3 const axis = strain({p.element, p.xi}, q);
     Vec6 n = Vec6::Zero();
     auto const add = [&](double y, double z, Vec3 const& parts) {

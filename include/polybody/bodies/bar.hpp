@@ -32,14 +32,14 @@ struct Material {
 /// Stiffness and inertia of the section, as most published cases give them. "y" and "z" name the section's
 /// axes; the plane bends about z.
 struct BarConstants {
-  Required<double> EA;              ///< axial stiffness [N]
-  Required<double> EI;              ///< bending stiffness about z [N m²]
-  Required<double> mass_per_length; ///< Aρ [kg/m]
-  double GA = 0.0;                  ///< shear stiffness k G A along y [N]; 0 where none is given
-  double GJ = 0.0;                  ///< torsional stiffness [N m²]; 0 where none is given
-  double rotary_inertia = 0.0;      ///< Iρ about z, per length [kg m]
-  std::optional<double> EI_y = {};  ///< bending stiffness about y [N m²]; as EI if not given
-  std::optional<double> GA_z = {};  ///< shear stiffness along z [N]; as GA if not given
+  Required<double> EA;                          ///< axial stiffness [N]
+  Required<double> EI;                          ///< bending stiffness about z [N m²]
+  Required<double> mass_per_length;             ///< Aρ [kg/m]
+  double GA = 0.0;                              ///< shear stiffness k G A along y [N]; 0 where none is given
+  double GJ = 0.0;                              ///< torsional stiffness [N m²]; 0 where none is given
+  double rotary_inertia = 0.0;                  ///< Iρ about z, per length [kg m]
+  std::optional<double> EI_y = {};              ///< bending stiffness about y [N m²]; as EI if not given
+  std::optional<double> GA_z = {};              ///< shear stiffness along z [N]; as GA if not given
   std::optional<double> rotary_inertia_y = {};  ///< about y, per length [kg m]; as about z if not given
 };
 
@@ -73,8 +73,7 @@ inline BarConstants constants_of_section(Bar const& bar) {
   require_positive(m.density, "Bar: the material's density");
   require_positive(m.young, "Bar: Young's modulus");
   if (!(m.poisson > -1.0 && m.poisson <= 0.5))
-    throw InvalidInput("Bar: Poisson's ratio must lie in (-1, 0.5], but is " +
-                       number(m.poisson) + ".");
+    throw InvalidInput("Bar: Poisson's ratio must lie in (-1, 0.5], but is " + number(m.poisson) + ".");
   double const nu = m.poisson;
   double area = 0, iz = 0, iy = 0, torsion = 0, shear = 0;
   if (auto const* c = std::get_if<Circle>(&bar.section)) {
@@ -97,13 +96,18 @@ inline BarConstants constants_of_section(Bar const& bar) {
     // [Timoshenko & Goodier 1970, §109, there with half the sides]
     double const a = std::max(h, w), b = std::min(h, w);
     double sum = 0.0;
-    for (int k = 1; k < 40; k += 2)
-      sum += std::tanh(k * std::numbers::pi * a / (2.0 * b)) / std::pow(k, 5);
+    for (int k = 1; k < 40; k += 2) sum += std::tanh(k * std::numbers::pi * a / (2.0 * b)) / std::pow(k, 5);
     torsion = a * b * b * b * (1.0 / 3.0 - 64.0 / std::pow(std::numbers::pi, 5) * b / a * sum);
   }
   double const e = m.young, g = e / (2.0 * (1.0 + nu)), rho = m.density;
-  return {.EA = e * area, .EI = e * iz, .mass_per_length = rho * area, .GA = shear * g * area,
-          .GJ = g * torsion, .rotary_inertia = rho * iz, .EI_y = e * iy, .GA_z = shear * g * area,
+  return {.EA = e * area,
+          .EI = e * iz,
+          .mass_per_length = rho * area,
+          .GA = shear * g * area,
+          .GJ = g * torsion,
+          .rotary_inertia = rho * iz,
+          .EI_y = e * iy,
+          .GA_z = shear * g * area,
           .rotary_inertia_y = rho * iy};
 }
 
@@ -138,8 +142,7 @@ inline BarConstants constants(Bar const& bar) {
 inline double require_inside(double s, double length, std::string const& what) {
   double const slack = 1e-12 * length;
   if (!(s >= -slack && s <= length + slack))
-    throw InvalidInput(what + ": s = " + number(s) + " lies outside the body, 0 <= s <= " +
-                       number(length) + ".");
+    throw InvalidInput(what + ": s = " + number(s) + " lies outside the body, 0 <= s <= " + number(length) + ".");
   return std::min(std::max(s, 0.0), length);
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Structures made of bars: the space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4] with the errata of its
-/// Eq. A.1 (−2ξ + 3ξ², 2ξ − 3ξ² in rows 11 and 12), with intermediate element frames A.2–A.3 that let elements point anywhere.
+/// Structures made of bars: the space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4] with the errata
+/// of its Eq. A.1 (−2ξ + 3ξ², 2ξ − 3ξ² in rows 11 and 12), with intermediate element frames A.2–A.3 that let elements
+/// point anywhere.
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
 
@@ -16,11 +17,12 @@ struct BeamShapes {
   Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();
   Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();
   Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();
-  Mat<double, 4, 12> strain = Mat<double, 4, 12>::Zero();  ///< rows: axial strain, torsion, curvature about y, about z [1/m]
+  Mat<double, 4, 12> strain =
+      Mat<double, 4, 12>::Zero();  ///< rows: axial strain, torsion, curvature about y, about z [1/m]
 
   BeamShapes(double xi, double l) {
-    double const x = xi, h[4] = {1 - 3 * x * x + 2 * x * x * x, (x - 2 * x * x + x * x * x) * l, 3 * x * x - 2 * x * x * x,
-                                 (x * x * x - x * x) * l};
+    double const x = xi, h[4] = {1 - 3 * x * x + 2 * x * x * x, (x - 2 * x * x + x * x * x) * l,
+                                 3 * x * x - 2 * x * x * x, (x * x * x - x * x) * l};
     double const d[4] = {6 * (x * x - x) / l, 1 - 4 * x + 3 * x * x, 6 * (x - x * x) / l, 3 * x * x - 2 * x};
     double const c[4] = {(12 * x - 6) / (l * l), (6 * x - 4) / l, (6 - 12 * x) / (l * l), (6 * x - 2) / l};
     for (int end = 0; end < 2; ++end) {
@@ -48,8 +50,8 @@ struct BeamShapes {
   }
 };
 
-/// Axes of the intermediate element frame of a beam along `direction`: Eq. A.2, which keeps z normal to the body's y axis, and
-/// Eq. A.3 where the beam points along it. \throws InvalidInput for a zero direction.
+/// Axes of the intermediate element frame of a beam along `direction`: Eq. A.2, which keeps z normal to the body's y
+/// axis, and Eq. A.3 where the beam points along it. \throws InvalidInput for a zero direction.
 inline Mat3 intermediate_axes(Vec3 const& direction) {
   double const length = direction.norm();
   if (!(length > 0.0)) throw InvalidInput("Structure: a beam needs two different nodes.");
@@ -119,9 +121,13 @@ inline std::array<MassPoint, 4> mass_points(Structure const& s, Structure::Beam 
     auto const& g = gauss<4>[i];
     BeamShapes const shapes(g.xi, beam.length);
     double const w = g.weight * beam.length;
-    points[i] = {s.nodes[std::size_t(beam.a)] + beam.axes.col(0) * (g.xi * beam.length), in_body_axes(shapes.axis, beam.axes),
-                 in_body_axes(shapes.by_y, beam.axes), in_body_axes(shapes.by_z, beam.axes), w * beam.constants.mass_per_length,
-                 w * about_z, w * about_y};
+    points[i] = {s.nodes[std::size_t(beam.a)] + beam.axes.col(0) * (g.xi * beam.length),
+                 in_body_axes(shapes.axis, beam.axes),
+                 in_body_axes(shapes.by_y, beam.axes),
+                 in_body_axes(shapes.by_z, beam.axes),
+                 w * beam.constants.mass_per_length,
+                 w * about_z,
+                 w * about_y};
   }
   return points;
 }
@@ -138,7 +144,8 @@ inline Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& 
 }
 
 /// Inertia of a beam: the integrals of structure.hpp.
-inline void add_inertia(Structure& s, Structure::Beam const& beam, std::array<std::vector<Eigen::Triplet<double>>, 6>& entries) {
+inline void add_inertia(Structure& s, Structure::Beam const& beam,
+                        std::array<std::vector<Eigen::Triplet<double>>, 6>& entries) {
   std::array<Twelve, 6> inertia;
   for (Twelve& m : inertia) m.setZero();
   for (MassPoint const& g : mass_points(s, beam)) {
@@ -146,7 +153,8 @@ inline void add_inertia(Structure& s, Structure::Beam const& beam, std::array<st
     for (int k = 0; k < 3; ++k) {
       s.first[k] += g.m * g.at[k];
       for (int l = 0; l < 3; ++l)
-        s.second(k, l) += g.m * g.at[k] * g.at[l] + g.my * beam.axes(k, 1) * beam.axes(l, 1) + g.mz * beam.axes(k, 2) * beam.axes(l, 2);
+        s.second(k, l) += g.m * g.at[k] * g.at[l] + g.my * beam.axes(k, 1) * beam.axes(l, 1) +
+                          g.mz * beam.axes(k, 2) * beam.axes(l, 2);
     }
     for (std::size_t p = 0; p < 6; ++p) {
       int const k = symmetric_row[p], l = symmetric_column[p];
@@ -158,7 +166,8 @@ inline void add_inertia(Structure& s, Structure::Beam const& beam, std::array<st
   for (std::size_t p = 0; p < 6; ++p) add_entries(beam, inertia[p], entries[p]);
   for (int l = 0; l < 3; ++l) {
     add_entries(beam, spread_moment(s, beam, -1, l), s.translation[std::size_t(l)]);
-    for (int k = 0; k < 3; ++k) add_entries(beam, spread_moment(s, beam, k, l), s.moment[std::size_t(k)][std::size_t(l)]);
+    for (int k = 0; k < 3; ++k)
+      add_entries(beam, spread_moment(s, beam, k, l), s.moment[std::size_t(k)][std::size_t(l)]);
   }
 }
 
@@ -189,8 +198,8 @@ inline Twelve axial_force_stiffness(Structure::Beam const& beam, double n0, doub
 /// Ends of bars that are closer than this part of the longest bar are one node.
 inline constexpr double same_node = 1e-9;
 
-/// Bars, each cut into as many elements as `elements` says, welded wherever their ends meet; placements are in the body's axes.
-/// Their damping is Kelvin–Voigt's; a pretension keeps its first-order force and its stiffness.
+/// Bars, each cut into as many elements as `elements` says, welded wherever their ends meet; placements are in the
+/// body's axes. Their damping is Kelvin–Voigt's; a pretension keeps its first-order force and its stiffness.
 /// \throws InvalidInput for no bar, fewer than one element, or a bar without torsional stiffness GJ.
 inline Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
   if (bars.empty() || bars.size() != elements.size())
@@ -213,7 +222,9 @@ inline Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> c
     require_positive(c.GJ, "Structure: GJ of a bar (a floating frame in space resists torsion)");
     double const l = bar.length / double(elements[i]);
     for (Index e = 0; e < elements[i]; ++e) {
-      auto const end = [&](Index k) { return Vec3(bar.placement.origin + bar.placement.axes.col(0) * (l * double(k))); };
+      auto const end = [&](Index k) {
+        return Vec3(bar.placement.origin + bar.placement.axes.col(0) * (l * double(k)));
+      };
       Index const a = node_at(end(e)), b = node_at(end(e + 1));
       s.beams.push_back({a, b, bar.placement.axes, l, c, Index(i), l * double(e)});
       dampings.push_back(bar.damping);
@@ -229,7 +240,8 @@ inline Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> c
     Vec4 const c = detail::section_stiffness(beam.constants);
     Damping const& d = dampings[i];
     detail::add_entries(beam, detail::beam_stiffness(beam, c), stiffness);
-    detail::add_entries(beam, detail::beam_stiffness(beam, c.cwiseProduct(Vec4(d.axial, d.shear, d.bending, d.bending))), damping);
+    detail::add_entries(
+        beam, detail::beam_stiffness(beam, c.cwiseProduct(Vec4(d.axial, d.shear, d.bending, d.bending))), damping);
     if (forces[i] != 0.0) {
       detail::add_entries(beam, detail::axial_force_stiffness(beam, forces[i]), stiffness);
       Vec<double, 12> pull = Vec<double, 12>::Zero();
@@ -250,14 +262,16 @@ inline Structure structure_of(Bar bar, Index n) {
   return structure_of(std::vector{bar}, {n});
 }
 
-/// ∫ N (v′ᵀv′ + w′ᵀw′) dx over all beams, N the axial forces that a load causes in the structure held at one node: twice the
-/// second-order work of the load [Wallrapp & Schwertassek 1991], e · (·) e = 2 Σ load · (what bending draws it along).
+/// ∫ N (v′ᵀv′ + w′ᵀw′) dx over all beams, N the axial forces that a load causes in the structure held at one node:
+/// twice the second-order work of the load [Wallrapp & Schwertassek 1991], e · (·) e = 2 Σ load · (what bending draws
+/// it along).
 class AxialForceStiffness {
  public:
   /// Holds all six coordinates of `node`. \throws InvalidInput for a structure that is not made of beams, or in parts.
   explicit AxialForceStiffness(Structure const& s, Index node = 0) : structure_(&s) {
     if (s.beams.empty())
-      throw InvalidInput("Structure: geometric stiffening needs beams; a structure from matrices does not know its axial forces.");
+      throw InvalidInput(
+          "Structure: geometric stiffening needs beams; a structure from matrices does not know its axial forces.");
     s.require_node(node, "Structure: the held node");
     Structure::Sparse k = s.stiffness;
     Index const first = 6 * node;

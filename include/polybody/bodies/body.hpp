@@ -12,8 +12,7 @@ namespace polybody {
 template <int n, class T>
 auto part(std::span<T> x, Index first) {
   using Scalar = std::remove_const_t<T>;
-  using Map = std::conditional_t<std::is_const_v<T>, Eigen::Map<Vec<Scalar, n> const>,
-                                 Eigen::Map<Vec<Scalar, n>>>;
+  using Map = std::conditional_t<std::is_const_v<T>, Eigen::Map<Vec<Scalar, n> const>, Eigen::Map<Vec<Scalar, n>>>;
   return Map(x.data() + first);
 }
 
@@ -37,13 +36,12 @@ concept HasLinearPoints = requires(B const b, typename B::Point p) {
 };
 
 /// A body is made of elements: fixed-size units that yield inertia, force and tangent. Spans cover the whole
-/// body; element e touches the columns [first_column(e), first_column(e) + element_columns). A body whose size is known at
-/// run time only says `element_columns = Eigen::Dynamic`: it is one element, and touches all its columns.
-/// Positions may live on a manifold, q ⊞ δ (`plus`); δ has as many entries as there are speeds.
+/// body; element e touches the columns [first_column(e), first_column(e) + element_columns). A body whose size is known
+/// at run time only says `element_columns = Eigen::Dynamic`: it is one element, and touches all its columns. Positions
+/// may live on a manifold, q ⊞ δ (`plus`); δ has as many entries as there are speeds.
 template <class B>
-concept Body = requires(B const b, Index e, std::span<double const> x, std::span<double> out,
-                        typename B::Point p, Published<double>& published,
-                        Vec<double, B::element_columns>& vector,
+concept Body = requires(B const b, Index e, std::span<double const> x, std::span<double> out, typename B::Point p,
+                        Published<double>& published, Vec<double, B::element_columns>& vector,
                         Mat<double, B::element_columns, B::element_columns>& matrix,
                         Mat<double, B::point_columns, B::point_columns>& stiffness, Vec3 g) {
   { B::world } -> std::convertible_to<World>;
@@ -53,15 +51,15 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   { b.speeds() } -> std::convertible_to<Index>;
   { b.elements() } -> std::convertible_to<Index>;
   { b.first_column(e) } -> std::convertible_to<Index>;
-  b.reference(out);                                   // q of the undeformed body as placed
-  b.template plus<double>(x, x, out);                 // q ⊞ δ
-  b.template local_rate<double>(x, x, out);           // δ˙ of q ⊞ δ moving with speeds v
-  b.rigid_velocity(x, g, g, out);                     // v of a rigid motion
-  b.mass(e, x, matrix);                               // M
-  b.template inertia<double>(e, x, x, vector);        // M a
-  b.template force<double>(e, x, x, vector);          // elastic, damping and quadratic-velocity force
-  b.tangent(e, x, x, 1.0, 1.0, matrix);               // ck (−∂f/∂q) + cd (−∂f/∂v)
-  b.template gravity<double>(e, x, g, vector);        // force of a uniform field g [m/s²]
+  b.reference(out);                             // q of the undeformed body as placed
+  b.template plus<double>(x, x, out);           // q ⊞ δ
+  b.template local_rate<double>(x, x, out);     // δ˙ of q ⊞ δ moving with speeds v
+  b.rigid_velocity(x, g, g, out);               // v of a rigid motion
+  b.mass(e, x, matrix);                         // M
+  b.template inertia<double>(e, x, x, vector);  // M a
+  b.template force<double>(e, x, x, vector);    // elastic, damping and quadratic-velocity force
+  b.tangent(e, x, x, 1.0, 1.0, matrix);         // ck (−∂f/∂q) + cd (−∂f/∂v)
+  b.template gravity<double>(e, x, g, vector);  // force of a uniform field g [m/s²]
   { b.kinetic_energy(e, x, x) } -> std::convertible_to<double>;
   { b.strain_energy(e, x) } -> std::convertible_to<double>;
   { b.gravity_energy(e, x, g) } -> std::convertible_to<double>;
@@ -70,15 +68,16 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
 };
 
-/// A body that owns rows between its coordinates, such as the norm of Euler parameters: Φ(q) = 0 with G = ∂Φ/∂q (own_rows × all
-/// speeds of the body, whose number is fixed) and γ, Φ̈ = G v̇ + γ. They are counted and solved like a joint's.
+/// A body that owns rows between its coordinates, such as the norm of Euler parameters: Φ(q) = 0 with G = ∂Φ/∂q
+/// (own_rows × all speeds of the body, whose number is fixed) and γ, Φ̈ = G v̇ + γ. They are counted and solved like a
+/// joint's.
 template <class B>
 concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B::own_rows>& rows,
                             Mat<double, B::own_rows, B::element_columns>& map,
                             Mat<double, B::element_columns, B::element_columns>& stiffness) {
-  b.template own_gap<double>(x, rows);                       // Φ
-  b.template own_map<double>(x, map);                        // G
-  b.template own_gamma<double>(x, x, rows);                  // γ(q, v)
+  b.template own_gap<double>(x, rows);                        // Φ
+  b.template own_map<double>(x, map);                         // G
+  b.template own_gamma<double>(x, x, rows);                   // γ(q, v)
   b.own_stiffness(x, Vec<double, B::own_rows>(), stiffness);  // ∂(Gᵀλ)/∂q
 };
 
@@ -95,8 +94,8 @@ Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) 
     return B::point_columns == Eigen::Dynamic ? body.speeds() : Index(B::point_columns);
 }
 
-/// What the loops over a body's elements need besides it: on the stack where sizes are known at compile time, else kept with
-/// the body's data, so that no step allocates.
+/// What the loops over a body's elements need besides it: on the stack where sizes are known at compile time, else kept
+/// with the body's data, so that no step allocates.
 template <class B, class T>
 struct ForceScratch {
   Vec<T, B::element_columns> x, force, weight;
@@ -164,8 +163,7 @@ struct PoseOf<B, T> {
 /// marker's columns only.
 template <class B>
 void load_stiffness_by_duals(B const& body, typename B::Point const& p, std::span<double const> q,
-                             Wrench<double> const& w,
-                             Mat<double, B::point_columns, B::point_columns>& out) {
+                             Wrench<double> const& w, Mat<double, B::point_columns, B::point_columns>& out) {
   constexpr int n = B::point_columns;
   using D = Dual<n>;
   std::array<D, n> coordinates, at_rest;
@@ -179,8 +177,8 @@ void load_stiffness_by_duals(B const& body, typename B::Point const& p, std::spa
   published.jacobian = jacobian.data();
   published.columns = n;
   published.shape = JacobianShape::dense;
-  body.template publish<D>(body.local(p), Mat3::Identity().eval(),
-                           std::span<D const>(coordinates), std::span<D const>(at_rest), published);
+  body.template publish<D>(body.local(p), Mat3::Identity().eval(), std::span<D const>(coordinates),
+                           std::span<D const>(at_rest), published);
   Mat<D, 6, 1> wrench;
   for (int i = 0; i < 3; ++i) {
     wrench[i] = D(w.f[i]);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Axial strain and bending of a cable in space as strain laws over the cubic Hermite element with coordinates (r, r′) at both ends.
+/// Axial strain and bending of a cable in space as strain laws over the cubic Hermite element with coordinates (r, r′)
+/// at both ends.
 
 #include <polybody/bodies/cable_strains.hpp>
 #include <polybody/bodies/strain_group.hpp>
@@ -35,7 +36,8 @@ struct CableAxial {
   }
 };
 
-/// Bending in space as the vector κ = s × u/|s|ᵏ, s = r′, u = r″; p = (s, u). It is smooth where its length is not, at κ = 0.
+/// Bending in space as the vector κ = s × u/|s|ᵏ, s = r′, u = r″; p = (s, u). It is smooth where its length is not, at
+/// κ = 0.
 template <class Strain, int bending_points>
 struct CableBending {
   static constexpr int points = bending_points;
@@ -114,7 +116,8 @@ struct CableBending {
     }
   }
 
-  /// κ̇ = turn of κ + change of its length, and a cable does not know how it turns about its own axis; so the length alone is damped,
+  /// κ̇ = turn of κ + change of its length, and a cable does not know how it turns about its own axis; so the length
+  /// alone is damped,
   ///   p = w κ̇ + G κ (κ·κ̇),  w = (1 + x)⁻⁴,  G = (1 − w)/κ²,  x = κ²/κ₀²,
   /// with all of κ̇ below κ₀ = 1e-3 1/m, where the direction of κ says nothing. G is a polynomial over (1 + x)⁴.
   template <KernelScalar T>

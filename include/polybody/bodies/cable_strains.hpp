@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Axial strain measures of cables, functions of the slope p = r′ in the plane (d = 2) or in space (d = 3), each with the power k
-/// of |r′| in the bending measure |r′ × r″|/|r′|ᵏ that goes with it.
+/// Axial strain measures of cables, functions of the slope p = r′ in the plane (d = 2) or in space (d = 3), each with
+/// the power k of |r′| in the bending measure |r′ × r″|/|r′|ᵏ that goes with it.
 
 #include <polybody/math/pack.hpp>
 #include <polybody/math/types.hpp>
@@ -33,8 +33,8 @@ struct GreenStrain {
   }
 };
 
-/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|²: linear in the resultants of the exact rod
-/// [Gerstmayr & Irschik 2008].
+/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|²: linear in the resultants of the
+/// exact rod [Gerstmayr & Irschik 2008].
 struct EngineeringStrain {
   static constexpr int curvature_power = 2;
 

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4]: with M = L Lᵀ constant and p = Lᵀ e the mass matrix of any
-/// body whose coordinates e add becomes the identity, T = ½ ṗᵀ ṗ. Forces are Q_p = L⁻¹ Q_e; the motion stays the same. L is banded
-/// like M, so a force costs a few operations a coordinate more; tangent and markers fill up, for L⁻¹ is full: meant for
-/// explicit steppers without constraints, and for comparison.
+/// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4]: with M = L Lᵀ constant and p = Lᵀ e the mass matrix
+/// of any body whose coordinates e add becomes the identity, T = ½ ṗᵀ ṗ. Forces are Q_p = L⁻¹ Q_e; the motion stays the
+/// same. L is banded like M, so a force costs a few operations a coordinate more; tangent and markers fill up, for L⁻¹
+/// is full: meant for explicit steppers without constraints, and for comparison.
 ///
 /// Not in polybody.hpp: few programs need it.
 
@@ -31,7 +31,8 @@ class CholeskyCoordinates : public AddingCoordinates {
   }
   /// \throws InvalidInput for a body whose coordinates do not add, or whose mass is not positive definite.
   explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.speeds()) {
-    if (body_.coordinates() != n_) throw InvalidInput("CholeskyCoordinates: the body's coordinates must add, without quaternions.");
+    if (body_.coordinates() != n_)
+      throw InvalidInput("CholeskyCoordinates: the body's coordinates must add, without quaternions.");
     factor();
   }
 
@@ -50,8 +51,12 @@ class CholeskyCoordinates : public AddingCoordinates {
   }
 
   /// As the body itself tells them (see sections.hpp).
-  Vec6 section_strains(Point const& p, std::span<double const> q) const { return body_.section_strains(p, span(base_coordinates(q))); }
-  Vec6 section_forces(Point const& p, std::span<double const> q) const { return body_.section_forces(p, span(base_coordinates(q))); }
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    return body_.section_strains(p, span(base_coordinates(q)));
+  }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    return body_.section_forces(p, span(base_coordinates(q)));
+  }
 
   Index coordinates() const { return n_; }
   Index speeds() const { return n_; }

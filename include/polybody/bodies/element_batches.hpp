@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Loops over the elements of a body. Where all elements are alike, neighbours go through the kernel side by side in packs
-/// (structure of arrays); what is left over, and bodies of other kinds, one by one.
+/// Loops over the elements of a body. Where all elements are alike, neighbours go through the kernel side by side in
+/// packs (structure of arrays); what is left over, and bodies of other kinds, one by one.
 
 #include <array>
 
@@ -10,8 +10,9 @@
 
 namespace polybody {
 
-/// A body whose elements differ in nothing but their coordinates, which each reads at its own columns, q as v: its kernels
-/// take an element's own coordinates and may run on packs. Where that depends on the body, its `alike()` says so.
+/// A body whose elements differ in nothing but their coordinates, which each reads at its own columns, q as v: its
+/// kernels take an element's own coordinates and may run on packs. Where that depends on the body, its `alike()` says
+/// so.
 template <class B>
 concept AlikeElements = requires(B const b, Vec<Pack<>, B::element_columns> x, Vec<Pack<>, B::element_columns>& out,
                                  Mat<Pack<>, B::element_columns, B::element_columns>& k) {
@@ -59,8 +60,8 @@ bool are_alike(B const& body) {
     return AlikeElements<B>;
 }
 
-/// How many of the elements [begin, end) go in packs: packs begin at multiples of their size, so that an element's kernel does
-/// not depend on how a loop is cut.
+/// How many of the elements [begin, end) go in packs: packs begin at multiples of their size, so that an element's
+/// kernel does not depend on how a loop is cut.
 template <class B>
 Index packed_until(B const& body, Index begin, Index end) {
   if constexpr (AlikeElements<B>) {
@@ -74,12 +75,13 @@ Index packed_until(B const& body, Index begin, Index end) {
 
 /// M a − force of the `pack_size` elements from `first` on; what stands at `columns` is the first one's.
 template <class B>
-void unbalance_of_pack(B const& body, Index columns, std::span<double const> q, std::span<double const> v, std::span<double const> a,
-                       std::array<Vec<double, B::element_columns>, pack_size>& each) {
+void unbalance_of_pack(B const& body, Index columns, std::span<double const> q, std::span<double const> v,
+                       std::span<double const> a, std::array<Vec<double, B::element_columns>, pack_size>& each) {
   constexpr int n = B::element_columns, stride = B::element_stride;
   Vec<Pack<>, n> inertia, elastic;
   body.template element_inertia<Pack<>>(side_by_side<n, stride>(a.data() + columns), inertia);
-  body.template element_force<Pack<>>(side_by_side<n, stride>(q.data() + columns), side_by_side<n, stride>(v.data() + columns), elastic);
+  body.template element_force<Pack<>>(side_by_side<n, stride>(q.data() + columns),
+                                      side_by_side<n, stride>(v.data() + columns), elastic);
   for (int k = 0; k < n; ++k) inertia[k] -= elastic[k];
   Vec<double, n> const zero = Vec<double, n>::Zero();
   take_apart(inertia, zero, each);
@@ -87,7 +89,8 @@ void unbalance_of_pack(B const& body, Index columns, std::span<double const> q, 
 
 /// The same of one element, into scratch.x.
 template <class B, StateScalar T>
-void unbalance_of_one(B const& body, Index e, std::span<T const> q, std::span<T const> v, std::span<T const> a, ForceScratch<B, T>& scratch) {
+void unbalance_of_one(B const& body, Index e, std::span<T const> q, std::span<T const> v, std::span<T const> a,
+                      ForceScratch<B, T>& scratch) {
   body.template inertia<T>(e, q, a, scratch.x);
   body.template force<T>(e, q, v, scratch.force);
   for (int k = 0; k < int(scratch.x.size()); ++k) scratch.x[k] -= scratch.force[k];
@@ -95,19 +98,20 @@ void unbalance_of_one(B const& body, Index e, std::span<T const> q, std::span<T 
 
 /// m + ck K + cd D of the elements of a pack.
 template <class B>
-void tangent_of_pack(B const& body, Index columns, std::span<double const> q, std::span<double const> v, double cd, double ck,
-                     Mat<double, B::element_columns, B::element_columns> const& m,
+void tangent_of_pack(B const& body, Index columns, std::span<double const> q, std::span<double const> v, double cd,
+                     double ck, Mat<double, B::element_columns, B::element_columns> const& m,
                      std::array<Mat<double, B::element_columns, B::element_columns>, pack_size>& each) {
   constexpr int n = B::element_columns, stride = B::element_stride;
   Mat<Pack<>, n, n> packs;
-  body.template element_tangent<Pack<>>(side_by_side<n, stride>(q.data() + columns), side_by_side<n, stride>(v.data() + columns), ck, cd,
-                                        packs);
+  body.template element_tangent<Pack<>>(side_by_side<n, stride>(q.data() + columns),
+                                        side_by_side<n, stride>(v.data() + columns), ck, cd, packs);
   take_apart(packs, m, each);
 }
 
 }  // namespace detail
 
-/// Calls f(e, M a − force) for the elements [begin, end); `begin` is a multiple of `pack_size`, and `end` too unless it is the last.
+/// Calls f(e, M a − force) for the elements [begin, end); `begin` is a multiple of `pack_size`, and `end` too unless it
+/// is the last.
 template <Body B, StateScalar T, class F>
 void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const> q, std::span<T const> v,
                         std::span<T const> a, ForceScratch<B, T>& scratch, F&& f) {
@@ -134,8 +138,9 @@ void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const
 
 /// Calls f(e, cm M + cd D + ck K) for the elements [begin, end), cut as above.
 template <Body B, class F>
-void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q, std::span<double const> v,
-                              double cm, double cd, double ck, TangentScratch<B>& scratch, F&& f) {
+void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q,
+                              std::span<double const> v, double cm, double cd, double ck, TangentScratch<B>& scratch,
+                              F&& f) {
   constexpr int n = B::element_columns;
   Mat<double, n, n>&k = scratch.k, &m = scratch.m;
   bool const alike = detail::are_alike(body);
@@ -167,8 +172,8 @@ void for_each_element_tangent(B const& body, Index begin, Index end, std::span<d
 }
 
 template <Body B, class F>
-void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q, std::span<double const> v,
-                              double cm, double cd, double ck, F&& f) {
+void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q,
+                              std::span<double const> v, double cm, double cd, double ck, F&& f) {
   TangentScratch<B> scratch(body);
   for_each_element_tangent<B>(body, begin, end, q, v, cm, cd, ck, scratch, f);
 }

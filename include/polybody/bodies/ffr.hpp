@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation, by a structure and
-/// a basis, in a frame that moves as far as it likes. With c, J, H of ffr_integrals.hpp and C = c_q, the quantities in the
-/// frame's axes, Lagrange's equations of T(ṙ, Ω, q̇) give
+/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation, by a
+/// structure and a basis, in a frame that moves as far as it likes. With c, J, H of ffr_integrals.hpp and C = c_q, the
+/// quantities in the frame's axes, Lagrange's equations of T(ṙ, Ω, q̇) give
 ///   m r̈ + A (Ω̇ × c + C q̈)                      = −A (Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇),
 ///   c × Aᵀr̈ + J Ω̇ + H q̈                        = −(J˙ Ω + Ω × (J Ω + H q̇) + H˙ q̇),
 ///   Cᵀ Aᵀr̈ + Hᵀ Ω̇ + M q̈ + D q̇ + K q            = ½ (Ωᵀ J Ω)_q − Σ Ω_i W_i q̇,   W_i = ∂H_iᵀ/∂q − ∂H_i/∂q.
@@ -20,8 +20,8 @@
 
 namespace polybody {
 
-/// Coordinates: r (3) of the frame's origin in world axes, its unit quaternion (4), q (n); speeds: ṙ (3), Ω (3) in the frame's
-/// axes, q̇ (n). A marker turns with the small rotation of the section or node it sits on, θ = R q, as exp(θ̃).
+/// Coordinates: r (3) of the frame's origin in world axes, its unit quaternion (4), q (n); speeds: ṙ (3), Ω (3) in the
+/// frame's axes, q̇ (n). A marker turns with the small rotation of the section or node it sits on, θ = R q, as exp(θ̃).
 class Ffr {
  public:
   static constexpr World world = World::space;
@@ -33,19 +33,22 @@ class Ffr {
   using Point = FfrPoint;
   using Options = FfrOptions;
 
-  /// The bar in n elements, frame tied to its first end, all nodal coordinates: 6 n. \throws InvalidInput as `structure_of`.
+  /// The bar in n elements, frame tied to its first end, all nodal coordinates: 6 n. \throws InvalidInput as
+  /// `structure_of`.
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.placement = bar.placement;
     Structure const s = structure_of(bar, n);
     return Ffr(s, nodal_coordinates(s), options);
   }
-  /// A structure with a basis of ffr_basis.hpp (N×n). \throws InvalidInput for a basis that does not fit or is dependent.
+  /// A structure with a basis of ffr_basis.hpp (N×n). \throws InvalidInput for a basis that does not fit or is
+  /// dependent.
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(integrals_of(structure, shapes, options.stiffening), options) {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), stiffens());
   }
   /// With the user's own integrals. \throws InvalidInput when they do not fit each other.
-  Ffr(FfrIntegrals integrals, Options const& options) : i_(std::move(integrals)), placement_(options.placement), terms_(options.terms) {
+  Ffr(FfrIntegrals integrals, Options const& options)
+      : i_(std::move(integrals)), placement_(options.placement), terms_(options.terms) {
     i_.check("Ffr");
     placement_.check("Ffr");
     require_not_negative(options.stiffness_damping, "Ffr: the damping time");
@@ -59,8 +62,8 @@ class Ffr {
   /// Of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
-  /// The section at distance s from the first end of bar `bar`, (y, z) off its axis. \throws InvalidInput outside, and for a
-  /// body that is not made of bars.
+  /// The section at distance s from the first end of bar `bar`, (y, z) off its axis. \throws InvalidInput outside, and
+  /// for a body that is not made of bars.
   Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const { return made().at(s, y, z, bar); }
   /// A node of the structure. \throws InvalidInput for one that does not exist.
   Point node(Index i) const { return made().node(i); }
@@ -160,7 +163,8 @@ class Ffr {
       cd += ck * xd[k];
       h += hk * xd[k];
       T f = -detail::column_times(i_.stiffness, k, x) - detail::column_times(i_.damping, k, xd) - i_.initial_force[k];
-      for (std::size_t i = 0; i < 3 && terms_.coriolis; ++i) f -= omega[Index(i)] * detail::column_times(gyroscopic_[i], k, xd);
+      for (std::size_t i = 0; i < 3 && terms_.coriolis; ++i)
+        f -= omega[Index(i)] * detail::column_times(gyroscopic_[i], k, xd);
       out[6 + k] = f;
     }
     Mat<T, 3, 3> inertia, rate;  // J, J˙, entry by entry, and ½ (Ωᵀ J Ω)_q
@@ -214,7 +218,8 @@ class Ffr {
     return 0.5 * x.dot(i_.stiffness * x) + i_.initial_force.dot(x);
   }
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
-    return -g.dot(i_.mass * part<3>(q, 0) + rotation_matrix<double>(part<4>(q, 3)) * i_.first_moment<double>(q.data() + 7));
+    return -g.dot(i_.mass * part<3>(q, 0) +
+                  rotation_matrix<double>(part<4>(q, 3)) * i_.first_moment<double>(q.data() + 7));
   }
 
   /// r = r₀ + A u;  ω = A (Ω + Jl(θ) θ˙);  bias = A [Ω × (Ω × u) + 2 Ω × u˙ + u¨; Ω × Jl θ˙ + Jl˙ θ˙].
@@ -233,7 +238,8 @@ class Ffr {
         theta[i] += x[k] * p.R(i, k);
         thetad[i] += xd[k] * p.R(i, k);
       }
-    for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) udd[Index(i)] = -detail::quadratic<T>(p.drawn[i], xd, xd);
+    for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i)
+      udd[Index(i)] = -detail::quadratic<T>(p.drawn[i], xd, xd);
     Mat<T, 3, 3> const turn = exp_so3<T>(theta), jl = left_jacobian<T>(theta);
     Vec<T, 3> const spin = jl * thetad;
     Vec<T, 3> const back = -theta;
@@ -283,8 +289,8 @@ class Ffr {
     for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= f[Index(i)] * p.drawn[i];
   }
 
-  /// Of the beam that a point sits on, q all coordinates of the body (see sections.hpp): axial strain, torsion and curvatures; shear is
-  /// not told. \throws InvalidInput for a point that is not of a beam.
+  /// Of the beam that a point sits on, q all coordinates of the body (see sections.hpp): axial strain, torsion and
+  /// curvatures; shear is not told. \throws InvalidInput for a point that is not of a beam.
   Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 7); }
   Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 7); }
 
@@ -306,7 +312,8 @@ class Ffr {
 
 /// With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇ and the derivatives of J, H by q written out:
 ///   r:  −A w̃,  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),  A (Ω̃² C + 2 Ω̃ ċ_q);  θ and q as the terms of `force`, one by one.
-inline void Ffr::tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd, MatX& k) const {
+inline void Ffr::tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd,
+                         MatX& k) const {
   Index const n = deformations();
   Mat3 const A = rotation_matrix<double>(part<4>(q, 3));
   Vec3 const omega = part<3>(v, 3);
@@ -364,8 +371,8 @@ inline void Ffr::tangent(Index, std::span<double const> q, std::span<double cons
       k.block<3, 1>(0, 6 + j) -= by * drawn;
     }
   }
-  k.block<3, 3>(0, 3) = A * (-ck * skew<double>(w) - cd * (skew<double>(omega.cross(at.c).eval()) + spin * skew<double>(at.c) +
-                                                          2.0 * skew<double>(c_rate)));
+  k.block<3, 3>(0, 3) = A * (-ck * skew<double>(w) - cd * (skew<double>(omega.cross(at.c).eval()) +
+                                                           spin * skew<double>(at.c) + 2.0 * skew<double>(c_rate)));
   k.block<3, 3>(3, 3) = cd * (j_rate + spin * at.J - skew<double>((at.J * omega + h).eval()));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Deformation coordinates of a floating frame's body: reference conditions that tie the frame to the structure, and bases
-/// Φ (N×n), e = Φ q: all free nodal coordinates, modes of vibration, or Craig & Bampton's [1968].
+/// Deformation coordinates of a floating frame's body: reference conditions that tie the frame to the structure, and
+/// bases Φ (N×n), e = Φ q: all free nodal coordinates, modes of vibration, or Craig & Bampton's [1968].
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
 
@@ -50,8 +50,8 @@ class ReferenceConditions {
     auto const mark = [&](Index node, int component) {
       s.require_node(node, "Ffr: a reference condition");
       if (component < 0 || component >= s.per_node)
-        throw InvalidInput("Ffr: a reference condition names component " + std::to_string(component) + ", but nodes have " +
-                           std::to_string(s.per_node) + " (from 0).");
+        throw InvalidInput("Ffr: a reference condition names component " + std::to_string(component) +
+                           ", but nodes have " + std::to_string(s.per_node) + " (from 0).");
       fixed[std::size_t(s.per_node * node + component)] = 1;
     };
     for (Index const node : nodes_)
@@ -92,7 +92,8 @@ struct DenseModes {
 namespace detail {
 
 /// Rows and columns of a sparse matrix.
-inline Structure::Sparse selected(Structure::Sparse const& m, std::vector<Index> const& rows, std::vector<Index> const& columns) {
+inline Structure::Sparse selected(Structure::Sparse const& m, std::vector<Index> const& rows,
+                                  std::vector<Index> const& columns) {
   std::vector<int> row(std::size_t(m.rows()), -1);
   for (std::size_t i = 0; i < rows.size(); ++i) row[std::size_t(rows[i])] = int(i);
   std::vector<Eigen::Triplet<double>> entries;
@@ -112,8 +113,8 @@ inline MatX scattered(MatX const& shapes, std::vector<Index> const& free, Index 
 
 inline void require_count(Index count, Index most) {
   if (count < 1 || count > most)
-    throw InvalidInput("Ffr: " + std::to_string(count) + " modes are asked for, but the model has 1 to " + std::to_string(most) +
-                       " to offer.");
+    throw InvalidInput("Ffr: " + std::to_string(count) + " modes are asked for, but the model has 1 to " +
+                       std::to_string(most) + " to offer.");
 }
 
 using SparseFactor = Eigen::SimplicialLDLT<Structure::Sparse>;
@@ -126,8 +127,10 @@ inline void factor_positive(SparseFactor& factor, Structure::Sparse const& m, st
 }
 inline void require_held(Structure::Sparse const& k) {
   SparseFactor factor;
-  factor_positive(factor, k, "the stiffness that remains under the reference conditions is not positive definite. Fix enough coordinates "
-                             "to keep the structure from moving as a whole, or use free_interface_modes.");
+  factor_positive(
+      factor, k,
+      "the stiffness that remains under the reference conditions is not positive definite. Fix enough coordinates "
+      "to keep the structure from moving as a whole, or use free_interface_modes.");
 }
 inline void require_mass(Structure::Sparse const& m) {
   SparseFactor factor;
@@ -136,36 +139,40 @@ inline void require_mass(Structure::Sparse const& m) {
 
 }  // namespace detail
 
-/// Every nodal coordinate that the reference conditions leave. \throws InvalidInput when the structure can still move as a
-/// whole.
+/// Every nodal coordinate that the reference conditions leave. \throws InvalidInput when the structure can still move
+/// as a whole.
 inline MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = ReferenceConditions::clamped()) {
   std::vector<Index> const free = frame.free_coordinates(s);
   detail::require_held(detail::selected(s.stiffness, free, free));
   return detail::scattered(MatX::Identity(Index(free.size()), Index(free.size())), free, s.size());
 }
 
-/// The `count` lowest modes of the structure held by the reference conditions. \throws InvalidInput as above, and for a count
-/// beyond what there is.
+/// The `count` lowest modes of the structure held by the reference conditions. \throws InvalidInput as above, and for a
+/// count beyond what there is.
 template <class Eigensolver = DenseModes>
 MatX held_modes(Structure const& s, Index count, ReferenceConditions const& frame = ReferenceConditions::clamped(),
                 Eigensolver const& solve = {}) {
   std::vector<Index> const free = frame.free_coordinates(s);
   detail::require_count(count, Index(free.size()));
-  Structure::Sparse const k = detail::selected(s.stiffness, free, free), m = detail::selected(s.mass_matrix(), free, free);
+  Structure::Sparse const k = detail::selected(s.stiffness, free, free),
+                          m = detail::selected(s.mass_matrix(), free, free);
   detail::require_held(k);
   detail::require_mass(m);
   return detail::scattered(solve(k, m, count).shapes, free, s.size());
 }
 
-/// The `count` lowest modes of the free structure that deform it. The frame follows the mean motion: momentum and moment of
-/// momentum of the deformation vanish in it to first order (Tisserand's or Buckens' mean axes). \throws InvalidInput as above.
+/// The `count` lowest modes of the free structure that deform it. The frame follows the mean motion: momentum and
+/// moment of momentum of the deformation vanish in it to first order (Tisserand's or Buckens' mean axes). \throws
+/// InvalidInput as above.
 template <class Eigensolver = DenseModes>
-MatX free_interface_modes(Structure const& s, Index count, ReferenceConditions const& frame = ReferenceConditions::none(),
+MatX free_interface_modes(Structure const& s, Index count,
+                          ReferenceConditions const& frame = ReferenceConditions::none(),
                           Eigensolver const& solve = {}) {
   std::vector<Index> const free = frame.free_coordinates(s);
   int const rigid = frame.rigid_motions();
   detail::require_count(count, Index(free.size()) - rigid);
-  Structure::Sparse const k = detail::selected(s.stiffness, free, free), m = detail::selected(s.mass_matrix(), free, free);
+  Structure::Sparse const k = detail::selected(s.stiffness, free, free),
+                          m = detail::selected(s.mass_matrix(), free, free);
   detail::require_mass(m);
   // K alone is singular: with a shift of the size of a low frequency it is not, and the modes stay the same.
   double const shift = 1e-3 * k.diagonal().sum() / m.diagonal().sum();
@@ -173,14 +180,15 @@ MatX free_interface_modes(Structure const& s, Index count, ReferenceConditions c
   return detail::scattered(modes.shapes.rightCols(count), free, s.size());
 }
 
-/// Craig & Bampton [1968]: the static shapes of unit displacements of the boundary nodes, and the `count` lowest modes with
-/// these nodes held. The frame is tied to the first boundary node, whose shapes are left out, or follows the mean motion
+/// Craig & Bampton [1968]: the static shapes of unit displacements of the boundary nodes, and the `count` lowest modes
+/// with these nodes held. The frame is tied to the first boundary node, whose shapes are left out, or follows the mean
+/// motion
 /// (`mean_axes`): then the basis is turned into free modes of the reduced model, less the rigid ones.
-/// \throws InvalidInput for boundary nodes that do not exist or repeat, a count beyond what there is, or a frame tied to a node
-/// without rotations.
+/// \throws InvalidInput for boundary nodes that do not exist or repeat, a count beyond what there is, or a frame tied
+/// to a node without rotations.
 template <class Eigensolver = DenseModes>
-MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index count, bool mean_axes = false, bool in_plane = false,
-                   Eigensolver const& solve = {}) {
+MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index count, bool mean_axes = false,
+                   bool in_plane = false, Eigensolver const& solve = {}) {
   if (boundary.empty() || std::set<Index>(boundary.begin(), boundary.end()).size() != boundary.size())
     throw InvalidInput("Ffr: Craig-Bampton needs boundary nodes, each once.");
   if (!mean_axes && s.per_node != 6)
@@ -198,7 +206,8 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
       outer.push_back(i);
   }
   if (count != 0) detail::require_count(count, Index(inner.size()));
-  Structure::Sparse const kii = detail::selected(s.stiffness, inner, inner), mii = detail::selected(s.mass_matrix(), inner, inner);
+  Structure::Sparse const kii = detail::selected(s.stiffness, inner, inner),
+                          mii = detail::selected(s.mass_matrix(), inner, inner);
   MatX shapes = MatX::Zero(s.size(), Index(outer.size()) + count);
   for (std::size_t j = 0; j < outer.size(); ++j) shapes(outer[j], Index(j)) = 1.0;
   if (!inner.empty()) {

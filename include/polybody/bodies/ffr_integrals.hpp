@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The inertia and stiffness of a floating frame's body by its n deformation coordinates q: the inertia shape integrals of a
-/// structure carried to a basis e = Φ q, or numbers that the user brings.
+/// The inertia and stiffness of a floating frame's body by its n deformation coordinates q: the inertia shape integrals
+/// of a structure carried to a basis e = Φ q, or numbers that the user brings.
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
 
@@ -37,7 +37,8 @@ T quadratic(MatX const& m, T const* x, T const* y) {
 ///   c(q) = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,
 ///   J(q) = inertia + Σ_kl (inertia_by_kl · q + qᵀ inertia_second_kl q), the inertia tensor about the frame's origin,
 ///   H(q) = ∫ρ ũ S with the rows H_i = coupling_i + qᵀ coupling_by_i,
-///   T = ½ m ṙ² + ṙᵀA (Ω × c + c_q q̇) + ½ Ωᵀ J Ω + Ωᵀ H q̇ + ½ q̇ᵀ mass_matrix q̇,   U = ½ qᵀ stiffness q + initial_force · q.
+///   T = ½ m ṙ² + ṙᵀA (Ω × c + c_q q̇) + ½ Ωᵀ J Ω + Ωᵀ H q̇ + ½ q̇ᵀ mass_matrix q̇,   U = ½ qᵀ stiffness q + initial_force
+///   · q.
 struct FfrIntegrals {
   double mass = 0.0;                        ///< [kg]
   Vec3 first = Vec3::Zero();                ///< [kg m]
@@ -66,13 +67,13 @@ struct FfrIntegrals {
     return x;
   }
 
-  /// \throws InvalidInput naming `what` for sizes that differ, a mass that is not positive, or a mass matrix that is not
-  /// symmetric and positive definite.
+  /// \throws InvalidInput naming `what` for sizes that differ, a mass that is not positive, or a mass matrix that is
+  /// not symmetric and positive definite.
   void check(std::string const& what) const {
     Index const n = size();
     auto const square = [&](MatX const& m) { return m.rows() == n && m.cols() == n; };
-    bool fits = first_by.cols() == n && coupling.cols() == n && square(stiffness) && square(damping) && square(mass_matrix) &&
-                initial_force.size() == n;
+    bool fits = first_by.cols() == n && coupling.cols() == n && square(stiffness) && square(damping) &&
+                square(mass_matrix) && initial_force.size() == n;
     for (auto const& x : inertia_by) fits = fits && x.size() == n;
     for (auto const& x : inertia_second) fits = fits && square(x);
     for (auto const& x : coupling_by) fits = fits && square(x);
@@ -139,8 +140,8 @@ struct FfrIntegrals {
   }
 };
 
-/// The integrals of `s` with e = `shapes` q (N×n); `stiffening` adds, to second order in q, what bending draws the points
-/// along the beams (foreshortening), which centrifugal and other axial forces work on.
+/// The integrals of `s` with e = `shapes` q (N×n); `stiffening` adds, to second order in q, what bending draws the
+/// points along the beams (foreshortening), which centrifugal and other axial forces work on.
 /// \throws InvalidInput for shapes of another size; with stiffening, for a structure without beams.
 inline FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffening = false) {
   if (shapes.rows() != s.size())
@@ -171,11 +172,13 @@ inline FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool st
     AxialForceStiffness const axial(s);
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t l = 0; l < 3; ++l)
-        drawn[k][l] = carried(axial(s.moment[k][l], [&](Structure::Beam const& b) { return detail::spread_moment(s, b, int(k), int(l)); }));
+        drawn[k][l] = carried(axial(
+            s.moment[k][l], [&](Structure::Beam const& b) { return detail::spread_moment(s, b, int(k), int(l)); }));
     for (std::size_t l = 0; l < 3; ++l)
-      x.first_second[l] = carried(axial(s.translation[l], [&](Structure::Beam const& b) { return detail::spread_moment(s, b, -1, int(l)); }));
+      x.first_second[l] = carried(
+          axial(s.translation[l], [&](Structure::Beam const& b) { return detail::spread_moment(s, b, -1, int(l)); }));
   }
-  std::array<VecX, 6> second_by;    // of ∫ρ u_k u_l
+  std::array<VecX, 6> second_by;  // of ∫ρ u_k u_l
   std::array<MatX, 6> second;
   for (std::size_t p = 0; p < 6; ++p) {
     auto const k = std::size_t(symmetric_row[p]), l = std::size_t(symmetric_column[p]);

@@ -11,15 +11,16 @@
 
 namespace polybody {
 
-/// Place u₀ in the frame [m], displacement S q and small rotation R q (3×n); for a point of a beam also its section's strains
-/// and stiffness.
+/// Place u₀ in the frame [m], displacement S q and small rotation R q (3×n); for a point of a beam also its section's
+/// strains and stiffness.
 struct FfrPoint {
   Vec3 u = Vec3::Zero();
   Mat<double, 3, Eigen::Dynamic> S, R;
-  std::array<MatX, 3> drawn;              ///< with geometric stiffening: the displacement is S q − ½ [qᵀ drawn_k q]_k (n×n)
-  Mat<double, 4, Eigen::Dynamic> strain;  ///< (4×n) of the axis: axial strain, torsion, curvature about y, z [1/m]; or empty
-  Vec4 stiffness = Vec4::Zero();          ///< (EA, GJ, EI_y, EI)
-  double y = 0.0, z = 0.0;                ///< off the axis of its beam [m]
+  std::array<MatX, 3> drawn;  ///< with geometric stiffening: the displacement is S q − ½ [qᵀ drawn_k q]_k (n×n)
+  Mat<double, 4, Eigen::Dynamic>
+      strain;                     ///< (4×n) of the axis: axial strain, torsion, curvature about y, z [1/m]; or empty
+  Vec4 stiffness = Vec4::Zero();  ///< (EA, GJ, EI_y, EI)
+  double y = 0.0, z = 0.0;        ///< off the axis of its beam [m]
 
   /// Entry (i, k) of S − qᵀ drawn.
   template <class T>
@@ -29,8 +30,8 @@ struct FfrPoint {
     for (Index j = 0; j < m.rows(); ++j) s -= q[j] * m(j, k);
     return s;
   }
-  /// Strains and forces of the beam's section by the deformation q (see sections.hpp). \throws InvalidInput for a point that is
-  /// not of a beam.
+  /// Strains and forces of the beam's section by the deformation q (see sections.hpp). \throws InvalidInput for a point
+  /// that is not of a beam.
   Vec6 section_strains(double const* q) const {
     if (strain.cols() != S.cols()) throw InvalidInput("Ffr: strains are known in points of beams only.");
     Vec6 sum = Vec6::Zero();
@@ -101,7 +102,8 @@ class FfrPoints {
     p.S = shapes_.middleRows<3>(s_.per_node * i);
     p.R = s_.per_node == 6 ? MatX(shapes_.middleRows<3>(6 * i + 3)) : MatX(MatX::Zero(3, shapes_.cols()));
     if (axial_) {
-      auto const* const first = &*std::find_if(s_.beams.begin(), s_.beams.end(), [&](auto const& b) { return b.a == i || b.b == i; });
+      auto const* const first =
+          &*std::find_if(s_.beams.begin(), s_.beams.end(), [&](auto const& b) { return b.a == i || b.b == i; });
       draw(p, false, [&](int k, Structure::Beam const& b) {
         Vec<double, 12> load = Vec<double, 12>::Zero();
         if (&b == first) load[(b.a == i ? 0 : 6) + k] = 1.0;
@@ -124,8 +126,8 @@ class FfrPoints {
       }
     return out;
   }
-  /// −½ qᵀ drawn_k q: what the axial forces of a unit force along k at the point work. A force at a node leaves them constant along
-  /// each beam (a held node draws nothing); one `within` a beam counts as spread over it.
+  /// −½ qᵀ drawn_k q: what the axial forces of a unit force along k at the point work. A force at a node leaves them
+  /// constant along each beam (a held node draws nothing); one `within` a beam counts as spread over it.
   template <class Load>
   void draw(FfrPoint& p, bool within, Load&& load) const {
     for (int k = 0; k < 3; ++k) {

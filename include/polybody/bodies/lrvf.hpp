@@ -2,7 +2,8 @@
 /// \file
 /// Large rotation vector formulation in space, the geometrically exact beam [Reissner 1981; Simo & Vu-Quoc 1986; thesis
 /// §2.3–2.5]: a chain of equal two-node elements. Positions are interpolated linearly, rotations by a policy
-/// (rotation_interpolation.hpp); strains are taken in the middle of the element (one-point quadrature: no shear locking):
+/// (rotation_interpolation.hpp); strains are taken in the middle of the element (one-point quadrature: no shear
+/// locking):
 ///   Γ = R_mᵀ r′ − Γ₀,  K = axial(R_mᵀ R_m′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
 /// in the axes of the section, x along the beam; Γ₀, K₀ are those of the reference configuration.
 
@@ -15,16 +16,16 @@
 
 namespace polybody {
 
-/// Coordinates of a node: position r (3) in world axes and a unit quaternion (4) of the section; speeds: ṙ (3) and Ω (3), the
-/// angular velocity in the section's axes. q ⊞ δ acts on each node as in `Rigid`: no angle is singular.
+/// Coordinates of a node: position r (3) in world axes and a unit quaternion (4) of the section; speeds: ṙ (3) and Ω
+/// (3), the angular velocity in the section's axes. q ⊞ δ acts on each node as in `Rigid`: no angle is singular.
 ///
 /// Mass: translation consistent with the linear shapes, Aρ l/6 [2 1; 1 2]; rotary inertia lumped at the nodes,
-/// J = ½ l diag(Iρ_y + Iρ_z, Iρ_y, Iρ_z), so that M is constant. Without any rotary inertia M is singular: the rotations
-/// then follow the positions without delay; implicit methods and statics take that, explicit ones do not.
+/// J = ½ l diag(Iρ_y + Iρ_z, Iρ_y, Iρ_z), so that M is constant. Without any rotary inertia M is singular: the
+/// rotations then follow the positions without delay; implicit methods and statics take that, explicit ones do not.
 ///
-/// A curved reference is cut into n pieces of arc length l whose nodes lie on the curve. With the chord c₀ of an element in
-/// the reference, r′ = (r₂ − r₁)/c₀ and K = (R_mᵀ R_m′) over l: a uniform stretch and a uniform bend of a circular arc are
-/// then measured exactly; integrals run over l.
+/// A curved reference is cut into n pieces of arc length l whose nodes lie on the curve. With the chord c₀ of an
+/// element in the reference, r′ = (r₂ − r₁)/c₀ and K = (R_mᵀ R_m′) over l: a uniform stretch and a uniform bend of a
+/// circular arc are then measured exactly; integrals run over l.
 template <RotationInterpolation Interpolation = Objective>
 class Lrvf {
  public:
@@ -51,8 +52,8 @@ class Lrvf {
   static Lrvf from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement{.origin = Vec3(s, 0, 0)}; });
   }
-  /// The bar bent and twisted without stress to `curve`, whose parameter is its arc length. \throws InvalidInput as above,
-  /// and for a curve on which nodes coincide or lie farther apart than the arc between them.
+  /// The bar bent and twisted without stress to `curve`, whose parameter is its arc length. \throws InvalidInput as
+  /// above, and for a curve on which nodes coincide or lie farther apart than the arc between them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     if (n < 1) throw InvalidInput("Lrvf: at least one element is needed.");
     if (!curve) throw InvalidInput("Lrvf: the reference curve is empty.");
@@ -141,11 +142,12 @@ class Lrvf {
     }
   }
 
-  /// ck (−∂f/∂δ) + cd (−∂f/∂v), δ of q ⊞ δ: not symmetric in general, as δθ does not commute. With x = R_mᵀ (δr₂ − δr₁)/c₀
-  /// and θ = δθ₁₂, all in the axes of the middle section:
+  /// ck (−∂f/∂δ) + cd (−∂f/∂v), δ of q ⊞ δ: not symmetric in general, as δθ does not commute. With x = R_mᵀ (δr₂ −
+  /// δr₁)/c₀ and θ = δθ₁₂, all in the axes of the middle section:
   ///   δΓ = x + Γ̃ P θ,  δN = C (ck + cd τ) δΓ + ck C τ δΓ˙,  δt = l (N × δΓ − Γ × δN),
   ///   −δf_r = ∓ l/c₀ R_m (δN + ck Pθ × N),  −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
-  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd, ElementMatrix& k) const {
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               ElementMatrix& k) const {
     Strained<double> s;
     strain<double>(e, q, v, s);
     MiddleGradient by;
@@ -195,7 +197,8 @@ class Lrvf {
   }
 
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
-    Vec3 const v1 = part<3>(v, 6 * e), w1 = part<3>(v, 6 * e + 3), v2 = part<3>(v, 6 * e + 6), w2 = part<3>(v, 6 * e + 9);
+    Vec3 const v1 = part<3>(v, 6 * e), w1 = part<3>(v, 6 * e + 3), v2 = part<3>(v, 6 * e + 6),
+               w2 = part<3>(v, 6 * e + 9);
     return sixth_ * (v1.squaredNorm() + v1.dot(v2) + v2.squaredNorm()) +
            0.5 * rotary_.dot(w1.cwiseProduct(w1) + w2.cwiseProduct(w2));
   }
@@ -285,19 +288,25 @@ class Lrvf {
   template <StateScalar T>
   struct Strained {
     MiddleSection<T> at;
-    Vec<T, 3> gamma;          ///< R_mᵀ r′
-    Vec<T, 3> rate;           ///< R_mᵀ ṙ′, for damping
-    Vec<T, 6> turning;        ///< (Ω₁, Ω₂), for damping
-    Vec<T, 3> n, m;           ///< section forces
+    Vec<T, 3> gamma;    ///< R_mᵀ r′
+    Vec<T, 3> rate;     ///< R_mᵀ ṙ′, for damping
+    Vec<T, 6> turning;  ///< (Ω₁, Ω₂), for damping
+    Vec<T, 3> n, m;     ///< section forces
   };
 
   Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
-      : constants_(c), length_(bar.length), l_(bar.length / double(n)), pretension_(bar.pretension),
-        interpolation_(bar.placement), free_(std::size_t(n)), reference_(std::size_t(7 * (n + 1))) {
+      : constants_(c),
+        length_(bar.length),
+        l_(bar.length / double(n)),
+        pretension_(bar.pretension),
+        interpolation_(bar.placement),
+        free_(std::size_t(n)),
+        reference_(std::size_t(7 * (n + 1))) {
     double const iz = c.rotary_inertia, iy = c.rotary_inertia_y.value_or(iz), shear = bar.damping.shear;
     stiffness_ << c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI;
     char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
-    for (int i = 0; i < 6; ++i) require_positive(stiffness_[i], std::string("Lrvf: the stiffness ") + names[i] + " of the bar");
+    for (int i = 0; i < 6; ++i)
+      require_positive(stiffness_[i], std::string("Lrvf: the stiffness ") + names[i] + " of the bar");
     time_ << bar.damping.axial, shear, shear, shear, bar.damping.bending, bar.damping.bending;
     damped_ = !time_.isZero(0.0);
     sixth_ = c.mass_per_length * l_ / 6.0;
@@ -314,7 +323,8 @@ class Lrvf {
       free.chord = (part<3>(q, 7 * e + 7) - part<3>(q, 7 * e)).norm();
       if (!(free.chord > 1e-6 * l_ && free.chord < (1.0 + 1e-6) * l_))
         throw InvalidInput("Lrvf: element " + number(double(e)) + " of arc length " + number(l_) + " has a chord of " +
-                           number(free.chord) + ". The reference curve's parameter must be its arc length; use more elements "
+                           number(free.chord) +
+                           ". The reference curve's parameter must be its arc length; use more elements "
                            "on a closed curve.");
       MiddleSection<double> at;
       place<double>(e, std::span<double const>(q), at, free.gamma);
@@ -358,7 +368,8 @@ class Lrvf {
   }
   /// At a node the node's own section, exactly; else the policy's.
   template <StateScalar T>
-  void section(Point const& p, Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 6> const& w, SectionMotion<T>& out) const {
+  void section(Point const& p, Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 6> const& w,
+               SectionMotion<T>& out) const {
     if (p.xi != 0.0 && p.xi != 1.0) return interpolation_.template section<T>(p.xi, a, b, w, out);
     out.R = rotation_matrix<T>(p.xi == 0.0 ? a : b);
     out.spin.setZero();
@@ -369,11 +380,11 @@ class Lrvf {
   BarConstants constants_;
   double length_, l_, pretension_;
   Interpolation interpolation_;
-  Vec6 stiffness_;            ///< EA, GA, GA_z, GJ, EI_y, EI
-  Vec6 time_;                 ///< of damping [s]
+  Vec6 stiffness_;  ///< EA, GA, GA_z, GJ, EI_y, EI
+  Vec6 time_;       ///< of damping [s]
   bool damped_ = false;
-  double sixth_ = 0.0;        ///< Aρ l/6 [kg]
-  Vec3 rotary_;               ///< J of a node's half element [kg m²]
+  double sixth_ = 0.0;  ///< Aρ l/6 [kg]
+  Vec3 rotary_;         ///< J of a node's half element [kg m²]
   std::vector<Free> free_;
   std::vector<double> reference_;
 };

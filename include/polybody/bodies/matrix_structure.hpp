@@ -1,9 +1,11 @@
 #pragma once
 /// \file
-/// A structure from the matrices of a finite element program: solid elements with three displacements per node. Their shape
-/// functions carry displacement and undeformed position alike, u = Σ N_i u_i and u₀ = Σ N_i x_i, so that with
-/// m_ij = ∫ρ N_i N_j the mass matrix is m ⊗ 1₃, and every integral of structure.hpp follows from m and the nodes exactly:
-///   ∫ρ S_kᵀ S_l: m_ij at (3i+k, 3j+l),   ∫ρ S_k: Σ_i m_ij at 3j+k,   ∫ρ u₀ₖ S_l: Σ_i x_ik m_ij at 3j+l,   ∫ρ u₀u₀ᵀ = Xᵀ m X.
+/// A structure from the matrices of a finite element program: solid elements with three displacements per node. Their
+/// shape functions carry displacement and undeformed position alike, u = Σ N_i u_i and u₀ = Σ N_i x_i, so that with
+/// m_ij = ∫ρ N_i N_j the mass matrix is m ⊗ 1₃, and every integral of structure.hpp follows from m and the nodes
+/// exactly:
+///   ∫ρ S_kᵀ S_l: m_ij at (3i+k, 3j+l),   ∫ρ S_k: Σ_i m_ij at 3j+k,   ∫ρ u₀ₖ S_l: Σ_i x_ik m_ij at 3j+l,   ∫ρ u₀u₀ᵀ =
+///   Xᵀ m X.
 ///
 /// Not in polybody.hpp: few programs need it.
 
@@ -25,7 +27,9 @@ namespace detail {
 inline std::string coordinate_name(Index i) {
   return std::to_string(i) + " (" + "xyz"[i % 3] + " of node " + std::to_string(i / 3) + ")";
 }
-inline std::string entry_name(Index i, Index j) { return "row " + coordinate_name(i) + ", column " + coordinate_name(j); }
+inline std::string entry_name(Index i, Index j) {
+  return "row " + coordinate_name(i) + ", column " + coordinate_name(j);
+}
 
 inline double largest_entry(Structure::Sparse const& m) {
   double largest = 0.0;
@@ -37,26 +41,29 @@ inline double largest_entry(Structure::Sparse const& m) {
 /// \throws InvalidInput unless m is n×n, finite and symmetric, but for 1e-9 of its largest entry.
 inline void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
   if (m.rows() != n || m.cols() != n)
-    throw InvalidInput(
-        "Structure: " + name + " is " + std::to_string(m.rows()) + "×" + std::to_string(m.cols()) + ", but " +
-        std::to_string(n / 3) + " nodes with three displacements each need " + std::to_string(n) + "×" + std::to_string(n) +
-        ". Give every node of the model, without elements that have rotations and without held displacements left out.");
+    throw InvalidInput("Structure: " + name + " is " + std::to_string(m.rows()) + "×" + std::to_string(m.cols()) +
+                       ", but " + std::to_string(n / 3) + " nodes with three displacements each need " +
+                       std::to_string(n) + "×" + std::to_string(n) +
+                       ". Give every node of the model, without elements that have rotations and without held "
+                       "displacements left out.");
   double const least = 1e-9 * largest_entry(m);
   Structure::Sparse const turned = m.transpose();
   for (Index j = 0; j < n; ++j) {
     for (Structure::Sparse::InnerIterator it(m, j); it; ++it) {
       if (!std::isfinite(it.value()))
-        throw InvalidInput("Structure: " + name + " is not finite in " + entry_name(it.row(), j) + ". Write the matrices anew.");
+        throw InvalidInput("Structure: " + name + " is not finite in " + entry_name(it.row(), j) +
+                           ". Write the matrices anew.");
       double const other = turned.coeff(it.row(), j);
       if (!(std::abs(it.value() - other) <= least))
-        throw InvalidInput("Structure: " + name + " is not symmetric: " + entry_name(it.row(), j) + " is " + number(it.value()) +
-                           ", its mirror image " + number(other) + ". Of a matrix kept as one triangle give both.");
+        throw InvalidInput("Structure: " + name + " is not symmetric: " + entry_name(it.row(), j) + " is " +
+                           number(it.value()) + ", its mirror image " + number(other) +
+                           ". Of a matrix kept as one triangle give both.");
     }
   }
 }
 
-/// m (n×n) of M = m ⊗ 1₃. \throws InvalidInput for another M, but for 1e-9 of its largest entry, and for an m that is not
-/// positive definite.
+/// m (n×n) of M = m ⊗ 1₃. \throws InvalidInput for another M, but for 1e-9 of its largest entry, and for an m that is
+/// not positive definite.
 inline Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
   std::string const remedy =
       ". Only solid elements with a consistent mass matrix of three displacements per node have one; order "
@@ -75,9 +82,10 @@ inline Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
       Index const next = j % 3 == 2 ? -2 : 1;
       double const other = mass.coeff(i + next, j + next);
       if (std::abs(it.value() - other) > least)
-        throw InvalidInput("Structure: the mass matrix has " + number(it.value()) + " in " + entry_name(i, j) + ", but " +
-                           number(other) + " in " + entry_name(i + next, j + next) + remedy);
-      entries.emplace_back(int(i / 3), int(j / 3), it.value() / 6.0);  // the mean of the directions and of (i, j), (j, i)
+        throw InvalidInput("Structure: the mass matrix has " + number(it.value()) + " in " + entry_name(i, j) +
+                           ", but " + number(other) + " in " + entry_name(i + next, j + next) + remedy);
+      entries.emplace_back(int(i / 3), int(j / 3),
+                           it.value() / 6.0);  // the mean of the directions and of (i, j), (j, i)
       entries.emplace_back(int(j / 3), int(i / 3), it.value() / 6.0);
     }
   Structure::Sparse m(n, n);
@@ -106,21 +114,23 @@ inline void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::
     if (force.norm() <= 1e-6 * norm * shape.norm()) continue;
     Index worst = 0;
     force.cwiseAbs().maxCoeff(&worst);
-    throw InvalidInput(
-        "Structure: a rigid " + std::string(motion < 3 ? "displacement along " : "rotation about ") + "xyz"[motion % 3] +
-        " strains the structure, most in row " + coordinate_name(worst) +
-        " of the stiffness matrix. Give the nodes in the order of the matrices and in the units of the stiffness, and hold "
-        "nothing in the finite element model.");
+    throw InvalidInput("Structure: a rigid " + std::string(motion < 3 ? "displacement along " : "rotation about ") +
+                       "xyz"[motion % 3] + " strains the structure, most in row " + coordinate_name(worst) +
+                       " of the stiffness matrix. Give the nodes in the order of the matrices and in the units of the "
+                       "stiffness, and hold "
+                       "nothing in the finite element model.");
   }
 }
 
 }  // namespace detail
 
-/// A structure of solid elements from its mass matrix [kg] and stiffness [N/m] (N×N, N = 3 × nodes; x, y, z of node 0, of
-/// node 1, …), and its undeformed nodes [m]. Isoparametric elements with a consistent mass matrix give the exact integrals.
-/// \throws InvalidInput for sizes that do not fit; matrices that are not symmetric or not finite; a mass matrix that is not
-/// m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, as it does to nodes in the wrong order.
-inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness, std::vector<Vec3> const& nodes) {
+/// A structure of solid elements from its mass matrix [kg] and stiffness [N/m] (N×N, N = 3 × nodes; x, y, z of node 0,
+/// of node 1, …), and its undeformed nodes [m]. Isoparametric elements with a consistent mass matrix give the exact
+/// integrals.
+/// \throws InvalidInput for sizes that do not fit; matrices that are not symmetric or not finite; a mass matrix that is
+/// not m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, as it does to nodes in the wrong order.
+inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
+                              std::vector<Vec3> const& nodes) {
   if (nodes.empty()) throw InvalidInput("Structure: it has no nodes.");
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (!nodes[i].allFinite())
@@ -168,7 +178,8 @@ class NumberLines {
     ++line_;
     return bool(std::getline(in_, line));
   }
-  /// The next line with numbers into `values`, all of it. False at the end of the file. \throws IoError for another line.
+  /// The next line with numbers into `values`, all of it. False at the end of the file. \throws IoError for another
+  /// line.
   template <class... T>
   bool next(std::string const& expected, T&... values) {
     std::string line;
@@ -194,9 +205,9 @@ class NumberLines {
   Index line_ = 0;
 };
 
-/// A sparse n×n matrix of a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer, general or
-/// symmetric (its lower triangle). Eigen's unsupported loader leaves symmetric matrices halved and believes any index, so
-/// this does not use it. \throws IoError for anything else, with the line.
+/// A sparse n×n matrix of a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer, general
+/// or symmetric (its lower triangle). Eigen's unsupported loader leaves symmetric matrices halved and believes any
+/// index, so this does not use it. \throws IoError for anything else, with the line.
 inline Structure::Sparse read_matrix(std::string const& file, Index n, std::string const& nodes_file) {
   NumberLines lines(file, '%');
   std::string banner;
@@ -205,22 +216,26 @@ inline Structure::Sparse read_matrix(std::string const& file, Index n, std::stri
   std::istringstream words(banner);
   std::string mark, object, format, field, kind;
   words >> mark >> object >> format >> field >> kind;
-  if (mark != "%%matrixmarket" || object != "matrix" || format != "coordinate" || (field != "real" && field != "integer") ||
-      (kind != "general" && kind != "symmetric"))
-    lines.fail("this is not '%%MatrixMarket matrix coordinate real general' or '… symmetric'; write the matrix as one of them");
+  if (mark != "%%matrixmarket" || object != "matrix" || format != "coordinate" ||
+      (field != "real" && field != "integer") || (kind != "general" && kind != "symmetric"))
+    lines.fail(
+        "this is not '%%MatrixMarket matrix coordinate real general' or '… symmetric'; write the matrix as one of "
+        "them");
   Index rows = 0, columns = 0, count = 0;
   std::string const sizes = "the number of rows, of columns and of entries";
   if (!lines.next(sizes, rows, columns, count)) lines.fail("the file ends before " + sizes);
   if (rows != n || columns != n)
-    lines.fail("the matrix is " + std::to_string(rows) + "×" + std::to_string(columns) + ", but the " + std::to_string(n / 3) +
-               " nodes of " + nodes_file + " need " + std::to_string(n) + "×" + std::to_string(n) + ", three displacements each");
+    lines.fail("the matrix is " + std::to_string(rows) + "×" + std::to_string(columns) + ", but the " +
+               std::to_string(n / 3) + " nodes of " + nodes_file + " need " + std::to_string(n) + "×" +
+               std::to_string(n) + ", three displacements each");
   std::vector<Eigen::Triplet<double>> entries;
   std::unordered_set<Index> seen;
   for (Index e = 0; e < count; ++e) {
     Index i = 0, j = 0;
     double value = 0.0;
     if (!lines.next("a row, a column and a finite number", i, j, value))
-      lines.fail("the file ends after " + std::to_string(e) + " of " + std::to_string(count) + " entries; it is truncated");
+      lines.fail("the file ends after " + std::to_string(e) + " of " + std::to_string(count) +
+                 " entries; it is truncated");
     if (i < 1 || i > n || j < 1 || j > n)
       lines.fail("entry (" + std::to_string(i) + ", " + std::to_string(j) +
                  ") is outside the matrix, whose rows and columns are 1 to " + std::to_string(n));
@@ -251,10 +266,11 @@ inline std::vector<Vec3> read_nodes(std::string const& file) {
 
 }  // namespace detail
 
-/// The same from files: mass and stiffness in Matrix Market's coordinate format, and the nodes, one `x y z` [m] a line, in
-/// which # begins a comment. \throws IoError naming file and line for a file that cannot be read, is truncated or does not
-/// fit the nodes; InvalidInput naming the files as `structure_of`.
-inline Structure read_structure(std::string const& mass_file, std::string const& stiffness_file, std::string const& nodes_file) {
+/// The same from files: mass and stiffness in Matrix Market's coordinate format, and the nodes, one `x y z` [m] a line,
+/// in which # begins a comment. \throws IoError naming file and line for a file that cannot be read, is truncated or
+/// does not fit the nodes; InvalidInput naming the files as `structure_of`.
+inline Structure read_structure(std::string const& mass_file, std::string const& stiffness_file,
+                                std::string const& nodes_file) {
   std::vector<Vec3> const nodes = detail::read_nodes(nodes_file);
   Index const n = 3 * Index(nodes.size());
   Structure::Sparse const mass = detail::read_matrix(mass_file, n, nodes_file),

@@ -51,7 +51,8 @@ inline void require_inertia(Mat3 const& inertia, std::string const& what) {
       if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)
         throw InvalidInput(what + ": the inertia tensor must be symmetric.");
   if (!detail::is_definite(inertia, 1e-9 * size))
-    throw InvalidInput(what + ": a principal moment of inertia is negative (" + number(detail::principal_values(inertia)[2]) + ").");
+    throw InvalidInput(what + ": a principal moment of inertia is negative (" +
+                       number(detail::principal_values(inertia)[2]) + ").");
   Mat3 second = -inertia;
   for (int k = 0; k < 3; ++k) second(k, k) += 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2));
   if (!detail::is_definite(second, 1e-9 * size)) {
@@ -74,9 +75,9 @@ class RigidShape {
 
   /// Mass properties without a bar.
   struct Parameters {
-    Required<double> mass;         ///< [kg]
-    Mat3 inertia = Mat3::Zero();   ///< (3×3) about the centre of mass, body axes [kg m²]
-    Placement placement = {};      ///< of the centre of mass and the body's axes
+    Required<double> mass;        ///< [kg]
+    Mat3 inertia = Mat3::Zero();  ///< (3×3) about the centre of mass, body axes [kg m²]
+    Placement placement = {};     ///< of the centre of mass and the body's axes
   };
 
   /// \throws InvalidInput for mass ≤ 0 or an inertia that no body has. Zero moments are allowed.
@@ -116,9 +117,8 @@ class RigidShape {
     double const z = c.rotary_inertia * l, y = c.rotary_inertia_y.value_or(c.rotary_inertia) * l;
     Placement place = bar.placement;
     place.origin += place.axes.col(0) * (0.5 * l);
-    return {.mass = m,
-            .inertia = Vec3(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z).asDiagonal(),
-            .placement = place};
+    return {
+        .mass = m, .inertia = Vec3(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z).asDiagonal(), .placement = place};
   }
 
   template <StateScalar T>
@@ -183,8 +183,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   }
 
   /// Speeds of a rigid motion: velocity of the world's origin point `v0` and angular velocity (world axes).
-  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega,
-                      std::span<double> v) const {
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     part<3>(v, 0) = v0 + omega.cross(part<3>(q, 0).eval());
     part<3>(v, 3) = rotation_matrix<double>(part<4>(q, 3)).transpose() * omega;
   }
@@ -214,8 +213,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
                Mat<double, 6, 6>& k) const {
     Vec3 const omega = part<3>(v, 3);
     k.setZero();
-    k.bottomRightCorner<3, 3>() =
-        cd * (skew<double>(omega) * inertia_ - skew<double>(inertia_ * omega));
+    k.bottomRightCorner<3, 3>() = cd * (skew<double>(omega) * inertia_ - skew<double>(inertia_ * omega));
   }
 
   template <StateScalar T>
@@ -229,9 +227,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     return 0.5 * mass_ * part<3>(v, 0).squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
   }
   double strain_energy(Index, std::span<double const>) const { return 0.0; }
-  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
-    return -mass_ * g.dot(part<3>(q, 0));
-  }
+  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const { return -mass_ * g.dot(part<3>(q, 0)); }
 
   /// What all points of the body share.
   template <StateScalar T>
@@ -253,7 +249,9 @@ class Rigid<UnitQuaternion> : public RigidShape {
   /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
-    auto const turned = [&at](auto const& u) { return at.A.col(0) * T(u[0]) + at.A.col(1) * T(u[1]) + at.A.col(2) * T(u[2]); };
+    auto const turned = [&at](auto const& u) {
+      return at.A.col(0) * T(u[0]) + at.A.col(1) * T(u[1]) + at.A.col(2) * T(u[2]);
+    };
     Vec<T, 3> const arm = turned(p.u);
     Vec<T, 3> rate;
     set_cross(at.w, arm, rate, 0);
@@ -269,16 +267,14 @@ class Rigid<UnitQuaternion> : public RigidShape {
     out.columns = 6;
   }
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
-               Published<T>& out) const {
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     Pose<T> at;
     pose<T>(q, v, at);
     publish(p, axes, at, out);
   }
 
   /// Jᵀw = [f; Aᵀm + u × Aᵀf];  under A ⊞ δ: δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
-  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w,
-                      Mat<double, 6, 6>& k) const {
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<double, 6, 6>& k) const {
     Mat3 const a = rotation_matrix<double>(part<4>(q, 3));
     k.setZero();
     k.bottomRightCorner<3, 3>() =

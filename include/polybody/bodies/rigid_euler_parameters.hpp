@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// Rigid body with Euler parameters: coordinates (r, θ), θ = (θ₀, θ₁, θ₂, θ₃), and their rates as speeds, seven of each, with the
-/// row ½ (θᵀθ − 1) = 0 [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3]. With
+/// Rigid body with Euler parameters: coordinates (r, θ), θ = (θ₀, θ₁, θ₂, θ₃), and their rates as speeds, seven of
+/// each, with the row ½ (θᵀθ − 1) = 0 [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3]. With
 ///   Ḡ = (2/|θ|²) [−θ₁ θ₀ θ₃ −θ₂; −θ₂ −θ₃ θ₀ θ₁; −θ₃ θ₂ −θ₁ θ₀]   (3×4),   Ω = Ḡ θ̇,   G_w = A Ḡ, ω = G_w θ̇,
 /// Cartesian moments m_c (body axes) and generalised ones are related by m_θ = Ḡᵀ m_c; hence
 ///   M = diag(m 1, Ḡᵀ J Ḡ),   f_θ = −Ḡᵀ (Ω × J Ω).
-/// M is singular along θ; the norm row makes up for it. Division by |θ|² keeps A and Ḡ a rotation and its rate where the row does not
-/// hold exactly.
+/// M is singular along θ; the norm row makes up for it. Division by |θ|² keeps A and Ḡ a rotation and its rate where
+/// the row does not hold exactly.
 
 #include <polybody/bodies/node_chain.hpp>
 #include <polybody/bodies/rigid.hpp>
@@ -83,7 +83,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.template tail<4>() = g.transpose() * moment;
   }
   /// By dual numbers along ck δθ and cd δθ̇.
-  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd, Mat<double, 7, 7>& k) const {
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               Mat<double, 7, 7>& k) const {
     using D = Dual<4>;
     std::array<D, 7> moved, moving;
     Vec<D, 7> f;
@@ -133,7 +134,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
 
   /// As `Rigid<>` with Ω = Ḡ θ̇; Ω̇ = Ḡ θ̈ + Ḡ˙ θ̇, where Ḡ˙ θ̇ = −2 (θ·θ̇)/|θ|² Ω.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& marker, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void publish(Point const& p, Mat3 const& marker, std::span<T const> q, std::span<T const> v,
+               Published<T>& out) const {
     Mat<T, 3, 3> const a = axes<T>(q);
     Mat<T, 3, 4> const g = a * map<T>(q);
     Vec<T, 3> const arm = a * p.u.template cast<T>(), w = g * part<4>(v, 3);

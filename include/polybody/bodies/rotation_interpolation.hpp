@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// How the rotation of a section goes from one node of a beam element to the other: the policies of `Lrvf`. Rotations of the
-/// nodes are unit quaternions; δθ₁, δθ₂ and all angular velocities are in the axes of the section that turns.
+/// How the rotation of a section goes from one node of a beam element to the other: the policies of `Lrvf`. Rotations
+/// of the nodes are unit quaternions; δθ₁, δθ₂ and all angular velocities are in the axes of the section that turns.
 
 #include <numbers>
 
@@ -75,9 +75,9 @@ concept RotationInterpolation =
       { I::objective } -> std::convertible_to<bool>;  // rigid motions of both nodes carry the whole element
     };
 
-/// The shortest rotation from node to node at constant curvature, R(ξ) = R₁ exp(ξ φ), φ = log(R₁ᵀR₂): a rigid motion of the
-/// nodes carries the whole element, and strains do not feel it [Crisfield & Jelenić 1999]. An element must turn by less than
-/// half a turn between its nodes; the body as a whole may turn as far as it likes.
+/// The shortest rotation from node to node at constant curvature, R(ξ) = R₁ exp(ξ φ), φ = log(R₁ᵀR₂): a rigid motion of
+/// the nodes carries the whole element, and strains do not feel it [Crisfield & Jelenić 1999]. An element must turn by
+/// less than half a turn between its nodes; the body as a whole may turn as far as it likes.
 ///
 /// In the middle everything is algebraic in c = tan(|φ|/4) n, n = φ/|φ|  (Wiener–Milenković):
 ///   δθ = ½ (δθ₁ + δθ₂) + ½ c × (δθ₂ − δθ₁),
@@ -141,7 +141,8 @@ class Objective {
 
   /// Ω = exp(−ξφ) Ω₁ + ξ Jr(ξφ) φ˙,  Jr(φ) φ˙ = Ω₂ − exp(−φ) Ω₁, and both once more by time.
   template <StateScalar T>
-  void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 6> const& w, SectionMotion<T>& out) const {
+  void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 6> const& w,
+               SectionMotion<T>& out) const {
     Vec<T, 3> const phi = quaternion_minus<T>(b, a), part = phi * xi;
     Mat<T, 3, 3> const turned = exp_so3<T>(part), jacobian = right_jacobian<T>(part) * xi;
     Mat<T, 3, 3> const inverse = right_jacobian_inverse<T>(phi);
@@ -174,9 +175,11 @@ class Objective {
 
 /// The rotation vectors Ψ of the nodes relative to the bar's placement R₀, interpolated linearly: R(ξ) = R₀ exp(Ψ(ξ)),
 /// K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. For comparison; use `Objective`. Two faults, both measured in the tests:
-/// - It is not objective. While an element turns by φ about one axis and is carried rigidly about another, its curvature and
+/// - It is not objective. While an element turns by φ about one axis and is carried rigidly about another, its
+/// curvature and
 ///   energy change by terms of the order of φ² (energy: 1 % of φ² after a carriage of 2 rad).
-/// - Ψ₁ is the vector with |Ψ₁| ≤ π, and Ψ₂ the nearer of Ψ and its complement Ψ (1 − 2π/|Ψ|). As node 1 passes |Ψ₁| = π both
+/// - Ψ₁ is the vector with |Ψ₁| ≤ π, and Ψ₂ the nearer of Ψ and its complement Ψ (1 − 2π/|Ψ|). As node 1 passes |Ψ₁| =
+/// π both
 ///   change sheets, and the curvature jumps, by terms of the order of φ³/l, unless the element turns about Ψ itself.
 class Direct {
  public:
@@ -216,7 +219,8 @@ class Direct {
 
   /// Ω = Jr(Ψ) Ψ˙,  Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ, and both once more by time.
   template <StateScalar T>
-  void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 6> const& w, SectionMotion<T>& out) const {
+  void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 6> const& w,
+               SectionMotion<T>& out) const {
     Vec<T, 3> const first = vector<T>(a), node[2] = {first, vector<T>(b, first)};
     double const share[2] = {1.0 - xi, xi};
     Vec<T, 3> const psi = node[0] * share[0] + node[1] * share[1];

@@ -1,16 +1,18 @@
 #pragma once
 /// \file
-/// The orthonormal frame of a deformable section, its rotation, and the derivatives of both in closed form. From two vectors
-/// b, c that lie in the section (r_y and r_z of a beam):
+/// The orthonormal frame of a deformable section, its rotation, and the derivatives of both in closed form. From two
+/// vectors b, c that lie in the section (r_y and r_z of a beam):
 ///   t₂ = b/|b|,  t₁ = b × c/|b × c|,  t₃ = t₁ × t₂,
-/// so that t₁ is normal to the section and R = [t₁ t₂ t₃] is the identity where b = e₂, c = e₃. With β = |b|, c₃ = c·t₃,
-/// σ = c·t₂/c₃, a change d = (δb, δc) has the components
+/// so that t₁ is normal to the section and R = [t₁ t₂ t₃] is the identity where b = e₂, c = e₃. With β = |b|, c₃ =
+/// c·t₃, σ = c·t₂/c₃, a change d = (δb, δc) has the components
 ///   w = (X, Y),  X = Rᵀδb/β,  Y = Rᵀδc/c₃,
 /// and turns the frame by φ = S w in its own axes, δR = R φ̃:
 ///   φ = (X₃, Y₁ − σ X₁, −X₁),
-/// from δt₂ = (1 − t₂t₂ᵀ) δb/β and from t₁·c staying zero. While the frame moves by ŵ, the components of a constant d change:
+/// from δt₂ = (1 − t₂t₂ᵀ) δb/β and from t₁·c staying zero. While the frame moves by ŵ, the components of a constant d
+/// change:
 ///   δ̂X = X × φ̂ − X X̂₂,  δ̂Y = Y × φ̂ − Y (Ŷ₃ − σ X̂₃),  δ̂σ = g·ŵ = Ŷ₂ + (1 + σ²) X̂₃ − σ Ŷ₃.
-/// All else follows by the chain rule. Six-vectors are ordered (X, Y). Plain loops; they run on doubles, dual numbers and packs.
+/// All else follows by the chain rule. Six-vectors are ordered (X, Y). Plain loops; they run on doubles, dual numbers
+/// and packs.
 
 #include <array>
 
@@ -79,8 +81,8 @@ class SectionFrame {
     s[3] = m[1];
     return s;
   }
-  /// M(m), 6×6: m·δ̂φ(w) = wᵀ M ŵ for a constant d of components w: the second derivative of the rotation, `pairing(pull(m), 1)`
-  /// less m₂ g in its first row.
+  /// M(m), 6×6: m·δ̂φ(w) = wᵀ M ŵ for a constant d of components w: the second derivative of the rotation,
+  /// `pairing(pull(m), 1)` less m₂ g in its first row.
   M6 second(V3 const& m) const {
     T const along = m[2] + sigma_ * m[1];
     M6 h;
@@ -96,7 +98,8 @@ class SectionFrame {
     h(0, 4) = h(4, 0) = h(3, 5) = h(5, 3) = -m[1];
     return h;
   }
-  /// δ̂φ of d = w moving by itself: the angular acceleration, in the frame's axes, of b and c moving at constant rates w.
+  /// δ̂φ of d = w moving by itself: the angular acceleration, in the frame's axes, of b and c moving at constant rates
+  /// w.
   V3 acceleration(V6 const& w) const {
     V3 a;
     for (int k = 0; k < 3; ++k) {
@@ -163,9 +166,8 @@ class SectionFrame {
   void add_form(M6 const& h, int first_row, int first_column, Mat<T, n, n>& out) const {
     for (int a = 0; a < 2; ++a)
       for (int b = 0; b < 2; ++b)
-        add_world<everywhere>(h, a, b, [&](int i, int j, T const& x) {
-          out(first_row + 3 * a + i, first_column + 3 * b + j) += x;
-        });
+        add_world<everywhere>(
+            h, a, b, [&](int i, int j, T const& x) { out(first_row + 3 * a + i, first_column + 3 * b + j) += x; });
   }
   /// The same of a symmetric form, of which the lower half is read, in a block on the diagonal.
   template <int n>
@@ -175,7 +177,8 @@ class SectionFrame {
       for (int i = 1; i < 3; ++i)
         for (int j = 0; j < i; ++j) whole(part + j, part + i) = h(part + i, part + j);
     for (int a = 0; a < 2; ++a)
-      add_world<everywhere>(whole, a, a, [&](int i, int j, T const& x) { out(first + 3 * a + i, first + 3 * a + j) += x; });
+      add_world<everywhere>(whole, a, a,
+                            [&](int i, int j, T const& x) { out(first + 3 * a + i, first + 3 * a + j) += x; });
     add_world<everywhere>(whole, 1, 0, [&](int i, int j, T const& x) {
       out(first + 3 + i, first + j) += x;
       out(first + j, first + 3 + i) += x;
@@ -247,7 +250,8 @@ class SectionFrame {
     g[5] = -sigma_;
     return g;
   }
-  /// sign = 1: A with s·δ̂w = wᵀ A ŵ;  sign = −1: L with δ̂w = L ŵ for w = s. Either: ∓ s̃ S less s times the change of length.
+  /// sign = 1: A with s·δ̂w = wᵀ A ŵ;  sign = −1: L with δ̂w = L ŵ for w = s. Either: ∓ s̃ S less s times the change of
+  /// length.
   M6 pairing(V6 const& s, double sign) const {
     M6 m;
     for (int part = 0; part < 2; ++part) {

@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// Strains and forces of a beam's section, under the same names for every formulation. In the axes of the section as it stands,
-/// x along the beam, as vectors of six:
-///   section_strains  (ε, γ_y, γ_z, κ_x, κ_y, κ_z): stretch, shears, twist and curvatures [1], [1/m], those of the reference taken off
-///   section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending moments [N m], without damping
-/// that the part beyond the section exerts on the part before it. What a formulation does not know is zero: a cable has no shear and no
-/// torsion; shear force follows there, as in the floating frame, from the slope of the moment.
+/// Strains and forces of a beam's section, under the same names for every formulation. In the axes of the section as it
+/// stands, x along the beam, as vectors of six:
+///   section_strains  (ε, γ_y, γ_z, κ_x, κ_y, κ_z): stretch, shears, twist and curvatures [1], [1/m], those of the
+///   reference taken off section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending
+///   moments [N m], without damping
+/// that the part beyond the section exerts on the part before it. What a formulation does not know is zero: a cable has
+/// no shear and no torsion; shear force follows there, as in the floating frame, from the slope of the moment.
 
 #include <span>
 
@@ -32,12 +33,16 @@ Vec2 off_axis(P const& p) {
 }  // namespace detail
 
 /// Strain of the fibre (y, z) of a section that stays plane: ε − y κ_z + z κ_y.
-inline double fibre_strain(Vec6 const& strains, double y, double z) { return strains[0] - y * strains[5] + z * strains[4]; }
+inline double fibre_strain(Vec6 const& strains, double y, double z) {
+  return strains[0] - y * strains[5] + z * strains[4];
+}
 
-/// Axial stress of that fibre, N/A − y M_z/I_z + z M_y/I_y [N/m²]. \throws InvalidInput for a bar without section and material.
+/// Axial stress of that fibre, N/A − y M_z/I_z + z M_y/I_y [N/m²]. \throws InvalidInput for a bar without section and
+/// material.
 template <class = void>
 double fibre_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
-  if (!bar.material) throw InvalidInput("fibre_stress: the bar is given by constants; stresses need its section and material.");
+  if (!bar.material)
+    throw InvalidInput("fibre_stress: the bar is given by constants; stresses need its section and material.");
   BarConstants const c = constants(bar);
   return bar.material->young * (forces[0] / c.EA - y * forces[5] / c.EI + z * forces[4] / *c.EI_y);
 }

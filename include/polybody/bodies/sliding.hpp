@@ -11,8 +11,8 @@
 
 namespace polybody {
 
-/// A chain of elements whose axis is a sum of nodal vectors, r(x) = Σ s_i(x) e_i, smooth from element to element. Component k of
-/// e_i is entry d i + k of an element, d the dimension of its world.
+/// A chain of elements whose axis is a sum of nodal vectors, r(x) = Σ s_i(x) e_i, smooth from element to element.
+/// Component k of e_i is entry d i + k of an element, d the dimension of its world.
 template <class B>
 concept SmoothAxis = std::derived_from<B, AddingCoordinates> && requires(B const b) {
   { b.length() } -> std::convertible_to<double>;
@@ -25,21 +25,23 @@ struct Slider {
   Index index = 0;
 };
 
-/// A cable or beam with sliding points: `Sliding(AncfCable<>::from(bar, n), {s₁, …})`, s [m] along the axis at the start.
-/// Markers: `at(s)` as of the body itself, and `at(Slider{k})`, a point without axes; joined to a bead by Spherical, say, it is
-/// what slides. Coordinates: those of the body, then the places s. A place has no inertia; with (′ = ∂/∂s)
+/// A cable or beam with sliding points: `Sliding(AncfCable<>::from(bar, n), {s₁, …})`, s [m] along the axis at the
+/// start. Markers: `at(s)` as of the body itself, and `at(Slider{k})`, a point without axes; joined to a bead by
+/// Spherical, say, it is what slides. Coordinates: those of the body, then the places s. A place has no inertia; with
+/// (′ = ∂/∂s)
 ///   ṙ = Σ s_i ė_i + r′ ṡ,   r̈ = Σ s_i ë_i + r′ s̈ + 2 ṡ Σ s_i′ ė_i + r″ ṡ²
-/// its equation r′·f = 0 says that the force f on it has no part along the axis: it slides without friction. A place that is not
-/// held by a joint with rows is undetermined, and the linear solver says so.
+/// its equation r′·f = 0 says that the force f on it has no part along the axis: it slides without friction. A place
+/// that is not held by a joint with rows is undetermined, and the linear solver says so.
 ///
-/// A slider touches all columns of the body, since its element changes with s: its rows are as long as the body, its load
-/// stiffness is dense. As it passes a node, r″ jumps, and accelerations with it. Beyond an end the last cubic goes on for the length of an
-/// element, so that a step can end there; see analysis/sliders.hpp for the event.
+/// A slider touches all columns of the body, since its element changes with s: its rows are as long as the body, its
+/// load stiffness is dense. As it passes a node, r″ jumps, and accelerations with it. Beyond an end the last cubic goes
+/// on for the length of an element, so that a step can end there; see analysis/sliders.hpp for the event.
 template <Body B>
 class Sliding : public B {
-  static_assert(SmoothAxis<B>,
-                "The axis of this body has corners at its nodes, where a sliding point would be struck. Use a body of cubic "
-                "elements: AncfCable, AncfBeam or planar::AncfCable.");
+  static_assert(
+      SmoothAxis<B>,
+      "The axis of this body has corners at its nodes, where a sliding point would be struck. Use a body of cubic "
+      "elements: AncfCable, AncfBeam or planar::AncfCable.");
 
  public:
   static constexpr int point_columns = Eigen::Dynamic;
@@ -98,8 +100,8 @@ class Sliding : public B {
     out.columns = speeds();
   }
 
-  /// Into the first rows and columns of k. Of a slider Jᵀw = [s_i f; r′·f]: ∂/∂s of the first is the transpose of ∂/∂e_i of the
-  /// second, s_i′ f, and ∂(r′·f)/∂s = r″·f.
+  /// Into the first rows and columns of k. Of a slider Jᵀw = [s_i f; r′·f]: ∂/∂s of the first is the transpose of
+  /// ∂/∂e_i of the second, s_i′ f, and ∂(r′·f)/∂s = r″·f.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     if (p.slider < 0) {
       Mat<double, B::point_columns, B::point_columns> each;

@@ -9,15 +9,15 @@ struct StepMeans {
   double decay = 0.0;  ///< 0 conserves energy; above it C Δε·Δε is lost so many times
 };
 
-/// A body of constant mass whose coordinates form a vector space, and which gives its elastic and damping force over a step from
-/// q₀
-/// to q₁: f·Δq = −ΔU less what is damped.
+/// A body of constant mass whose coordinates form a vector space, and which gives its elastic and damping force over a
+/// step from q₀ to q₁: f·Δq = −ΔU less what is damped.
 template <class B>
-concept OffersStepMeans = std::is_base_of_v<AddingCoordinates, B> && B::constant_mass &&
-                          requires(B const b, Index e, std::span<double const> q, StepMeans means, Vec<double, B::element_columns>& f,
-                                   Mat<double, B::element_columns, B::element_columns>& k) {
-                            b.mean_force(e, q, q, means, f);
-                            b.mean_tangent(e, q, q, means, 1.0, k);
-                          };
+concept OffersStepMeans =
+    std::is_base_of_v<AddingCoordinates, B> && B::constant_mass &&
+    requires(B const b, Index e, std::span<double const> q, StepMeans means, Vec<double, B::element_columns>& f,
+             Mat<double, B::element_columns, B::element_columns>& k) {
+      b.mean_force(e, q, q, means, f);
+      b.mean_tangent(e, q, q, means, 1.0, k);
+    };
 
 }  // namespace polybody

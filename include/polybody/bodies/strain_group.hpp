@@ -7,9 +7,9 @@
 ///   f = −∫ Pᵀ Bᵀ n dx,
 ///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Σ C_i τ_i B_iᵀ (H_i ṗ)ᵀ] P dx,
 ///   −∂f/∂ė = ∫ Pᵀ Bᵀ C τ B P dx.
-/// Where strains are components of a vector that turns with the body, a law says which part of ε̇ is deformation: ε̇ is then
-/// replaced by P_ε ε̇ (`objective_rate`).
-/// P is sparse (`StrainMap`). Plain loops, for they run on doubles, dual numbers and packs of elements alike, and compile fast.
+/// Where strains are components of a vector that turns with the body, a law says which part of ε̇ is deformation: ε̇ is
+/// then replaced by P_ε ε̇ (`objective_rate`). P is sparse (`StrainMap`). Plain loops, for they run on doubles, dual
+/// numbers and packs of elements alike, and compile fast.
 
 #include <array>
 #include <numeric>
@@ -101,10 +101,12 @@ class StrainGroup {
 
   bool damped() const { return damped_; }
 
-  // The tangent is put together from all groups of an element by `tangent_of`: `prepare` once, then `add_block` for each block.
+  // The tangent is put together from all groups of an element by `tangent_of`: `prepare` once, then `add_block` for
+  // each block.
   static constexpr bool quadratic = QuadraticStrains<Law>;
 
-  /// What the tangent's blocks are made of: h of each point, by p; of quadratic strains K̂ itself, by the vectors that are read.
+  /// What the tangent's blocks are made of: h of each point, by p; of quadratic strains K̂ itself, by the vectors that
+  /// are read.
   template <KernelScalar T>
   struct Prepared {
     using Each = std::array<Mat<T, np, np>, std::size_t(Law::points)>;
@@ -112,9 +114,9 @@ class StrainGroup {
     Prepared() {}  // NOLINT(modernize-use-equals-default): a tuple of defaulted ones would fill them with zeros
   };
 
-  /// K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st, with β = B P, γ = w C [ck B + τ (ck Ḃ + cd B)] P, Ḃ_i = H_i ṗ, and
-  /// σ = ck w Σ n_i S_i: of few strains that read many vectors this is less work than Pᵀ h P. A few points at a time, which fit
-  /// the first cache. The blocks above the diagonal are left out if `symmetric`.
+  /// K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st, with β = B P, γ = w C [ck B + τ (ck Ḃ + cd B)] P, Ḃ_i =
+  /// H_i ṗ, and σ = ck w Σ n_i S_i: of few strains that read many vectors this is less work than Pᵀ h P. A few points
+  /// at a time, which fit the first cache. The blocks above the diagonal are left out if `symmetric`.
   template <KernelScalar T, int n>
   void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool symmetric, Prepared<T>& k) const
     requires quadratic
@@ -134,7 +136,8 @@ class StrainGroup {
         Law::template evaluate<T>(pd, unused, change);
         for (int i = 0; i < m; ++i)
           for (int q = 0; q < np; ++q)
-            change(i, q) = (b(i, q) * (ck + time_[i] * cd) + change(i, q) * (time_[i] * ck)) * (weights_[g] * stiffness_[i]);
+            change(i, q) =
+                (b(i, q) * (ck + time_[i] * cd) + change(i, q) * (time_[i] * ck)) * (weights_[g] * stiffness_[i]);
         if (damped_) add_damping(rates(b, pd), stress);
         for (int i = 0; i < m; ++i) {
           stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
@@ -162,7 +165,8 @@ class StrainGroup {
           for (int r = 0; r < rows; ++r)
             P::for_each_entry([&](int i, int j) { sum(i, j) += left[r][d * v + i] * right[r][d * w + j]; });
           T* const to = k.h.data() + d * (v + size * w);
-          P::for_each_entry([&](int i, int j) { to[size * j + i] = first == 0 ? sum(i, j) : to[size * j + i] + sum(i, j); });
+          P::for_each_entry(
+              [&](int i, int j) { to[size * j + i] = first == 0 ? sum(i, j) : to[size * j + i] + sum(i, j); });
         }
     }
   }
@@ -209,7 +213,8 @@ class StrainGroup {
         add_damping(rate, stress);
       }
 #pragma GCC unroll 8
-      for (int i = 0; i < m; ++i) stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
+      for (int i = 0; i < m; ++i)
+        stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
       Law::template add_hessian<T>(p, stress, h);
     }
   }
@@ -232,11 +237,12 @@ class StrainGroup {
 
   /// f += the group's force over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
   ///   −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
-  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. It has no moment where strains are made of scalar products. The
-  /// others, vectors that turn, go by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), κ₀ = 1e-3 1/m, as `objective_rate` damps; the
-  /// part of `decay` has a moment then.
+  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. It has no moment where strains are made of scalar products.
+  /// The others, vectors that turn, go by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), κ₀ = 1e-3 1/m, as
+  /// `objective_rate` damps; the part of `decay` has a moment then.
   template <int n>
-  void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, Vec<double, n>& f) const {
+  void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means,
+                      Vec<double, n>& f) const {
     using S = Secant<np>;
     Coordinates<double, n> const e0(x0), e1(x1);
     Vec<double, P::d> step = Vec<double, P::d>::Zero();
@@ -256,7 +262,8 @@ class StrainGroup {
         Law::template evaluate<S>(p, strain, b);
         for (int i = 0; i < m; ++i) {
           double stretch = means.decay * strain[i].change();
-          if constexpr (!HasSquare<Law>) stretch += strain[i].mean() - free_[g][i] + time_[i] * means.rate * strain[i].change();
+          if constexpr (!HasSquare<Law>)
+            stretch += strain[i].mean() - free_[g][i] + time_[i] * means.rate * strain[i].change();
           sum += strain[i].d * (stiffness_[i] * stretch + (HasSquare<Law> ? 0.0 : initial_[i]));
         }
       }
@@ -267,7 +274,8 @@ class StrainGroup {
     P::spread(step, f);
   }
 
-  /// k += ck (−∂f/∂x1) of `add_mean_force`, not symmetric, with the strains' gradients B̄ and H̄ of the middle for the secants:
+  /// k += ck (−∂f/∂x1) of `add_mean_force`, not symmetric, with the strains' gradients B̄ and H̄ of the middle for the
+  /// secants:
   ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
   template <int n>
   void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, double ck,
@@ -284,7 +292,8 @@ class StrainGroup {
       Mat<double, np, np> h = Mat<double, np, np>::Zero();
       for (int i = 0; i < m; ++i) {
         double const w = ck * weights_[g], share = means.decay + time_[i] * means.rate;
-        stress[i] = 0.5 * w * (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[g][i] + share * (to[i] - from[i])) + initial_[i]);
+        stress[i] = 0.5 * w *
+                    (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[g][i] + share * (to[i] - from[i])) + initial_[i]);
         for (int c = 0; c < np; ++c)
           for (int r = 0; r < np; ++r) h(r, c) += w * stiffness_[i] * (0.5 + share) * b(i, r) * end(i, c);
       }
@@ -343,8 +352,9 @@ class StrainGroup {
 
   /// h += Σ_i w C_i τ_i B_iᵀ [Σ_j P_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j], with P_ε = 1 and Q = 0 for most laws.
   template <class T>
-  void add_damping_gradient(double w, double ck, double cd, Vec<T, np> const& p, Vec<T, np> const& pd, Vec<T, m> const& strain,
-                            Vec<T, m> const& rate, Mat<T, m, np> const& b, Mat<T, np, np>& h) const {
+  void add_damping_gradient(double w, double ck, double cd, Vec<T, np> const& p, Vec<T, np> const& pd,
+                            Vec<T, m> const& strain, Vec<T, m> const& rate, Mat<T, m, np> const& b,
+                            Mat<T, np, np>& h) const {
     Mat<T, m, np> change;  // ck H_j ṗ + cd B_j by rows
     for (int j = 0; j < m; ++j) {
       Mat<T, np, np> second;

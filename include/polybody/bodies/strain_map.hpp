@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// The constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point. The parameters
-/// of a law are vectors of `components` entries, the shapes. Shape s reads a few nodal vectors, its j-th being e_v with
-/// v = `vector(s, j)`, by one factor for all components:
+/// The constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point. The
+/// parameters of a law are vectors of `components` entries, the shapes. Shape s reads a few nodal vectors, its j-th
+/// being e_v with v = `vector(s, j)`, by one factor for all components:
 ///   p_s = Σ_j N_sj ê_v,  P = N ⊗ 1.
-/// ê = e but for what a law names as `difference`: strains do not feel where an element is, so that the factors of its two ends are
-/// opposite, and ê_v = e_v − e_0 stands for both. K̂ = PᵀhP then has the blocks
+/// ê = e but for what a law names as `difference`: strains do not feel where an element is, so that the factors of its
+/// two ends are opposite, and ê_v = e_v − e_0 stands for both. K̂ = PᵀhP then has the blocks
 ///   K̂_vw = Σ_(s,j) Σ_(t,l) N_sj N_tl h_st,  v = vector(s, j), w = vector(t, l),
 /// one product for each pair of factors; K by e has K_0w = −K_vw, v the difference.
 
@@ -140,7 +140,7 @@ class StrainMap {
     int s, j, t, l;
   };
   struct Pairs {
-    std::array<Pair, std::size_t(count * count)> pairs{};
+    std::array<Pair, std::size_t(count* count)> pairs{};
     std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};
   };
   static constexpr Pairs table = [] {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The tangent of an element from all its groups of strains, block by block of nodal vectors, so that each entry is written once.
+/// The tangent of an element from all its groups of strains, block by block of nodal vectors, so that each entry is
+/// written once.
 
 #include <tuple>
 #include <utility>
@@ -27,8 +28,9 @@ void set_block(int v, int w, Mat<T, d, d> const& block, bool mirror, Mat<T, n, n
 }
 }  // namespace detail
 
-/// k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Undamped it is symmetric, and only the blocks on and below the
-/// diagonal are calculated. The blocks of the first vector are those of the one that is read against it, with the other sign
+/// k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Undamped it is symmetric, and only the blocks on and
+/// below the diagonal are calculated. The blocks of the first vector are those of the one that is read against it, with
+/// the other sign
 /// (`StrainMap`).
 template <KernelScalar T, int n, class... Groups>
 void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd,

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A linear finite element model of one body in its own axes: what a floating frame of reference (ffr.hpp) is made of. With
-/// the displacement field u(x) = u₀(x) + S(x) e, e the nodal displacements, it holds the stiffness and the inertia shape
-/// integrals [Shabana 2013, ch. 5–6; thesis App. A]
+/// A linear finite element model of one body in its own axes: what a floating frame of reference (ffr.hpp) is made of.
+/// With the displacement field u(x) = u₀(x) + S(x) e, e the nodal displacements, it holds the stiffness and the inertia
+/// shape integrals [Shabana 2013, ch. 5–6; thesis App. A]
 ///   ∫ρ, ∫ρ u₀, ∫ρ u₀u₀ᵀ, ∫ρ S_k, ∫ρ u₀ₖ S_l, ∫ρ S_kᵀ S_l,   k, l = x, y, z,
 /// exactly, so that the inertia of a rigid body is found in it whatever the mesh.
 ///
@@ -17,7 +17,8 @@
 
 namespace polybody {
 
-/// Which of the components x, y, z the six different entries of a symmetric 3×3 belong to, in the order kept everywhere here.
+/// Which of the components x, y, z the six different entries of a symmetric 3×3 belong to, in the order kept everywhere
+/// here.
 inline constexpr int symmetric_row[6] = {0, 1, 2, 0, 0, 1};
 inline constexpr int symmetric_column[6] = {0, 1, 2, 1, 2, 2};
 /// The place of (k, l) in that order.
@@ -27,8 +28,8 @@ inline constexpr int symmetric_place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 struct Structure {
   using Sparse = Eigen::SparseMatrix<double>;
 
-  /// A straight Euler–Bernoulli beam between two nodes: kept for strains and stresses, material points between nodes, and
-  /// the stiffness that an axial force adds.
+  /// A straight Euler–Bernoulli beam between two nodes: kept for strains and stresses, material points between nodes,
+  /// and the stiffness that an axial force adds.
   struct Beam {
     Index a = 0, b = 0;      ///< nodes
     Mat3 axes;               ///< (3×3) columns: along the beam, and y, z of the section
@@ -39,15 +40,15 @@ struct Structure {
   };
 
   int per_node = 6;
-  std::vector<Vec3> nodes;  ///< [m]
-  Sparse stiffness;         ///< K (N×N)
-  Sparse damping;           ///< (N×N)
-  VecX initial_force;       ///< (N) ∂U/∂e in the undeformed body, of a pretension
-  std::array<Sparse, 6> inertia;              ///< ∫ρ S_kᵀ S_l (N×N), in the order of `symmetric_row`; (l, k) is transposed
-  double mass = 0.0;                          ///< ∫ρ [kg]
-  Vec3 first = Vec3::Zero();                  ///< ∫ρ u₀ [kg m]
-  Mat3 second = Mat3::Zero();                 ///< ∫ρ u₀ u₀ᵀ [kg m²]
-  std::array<VecX, 3> translation;            ///< ∫ρ S_k (N)
+  std::vector<Vec3> nodes;          ///< [m]
+  Sparse stiffness;                 ///< K (N×N)
+  Sparse damping;                   ///< (N×N)
+  VecX initial_force;               ///< (N) ∂U/∂e in the undeformed body, of a pretension
+  std::array<Sparse, 6> inertia;    ///< ∫ρ S_kᵀ S_l (N×N), in the order of `symmetric_row`; (l, k) is transposed
+  double mass = 0.0;                ///< ∫ρ [kg]
+  Vec3 first = Vec3::Zero();        ///< ∫ρ u₀ [kg m]
+  Mat3 second = Mat3::Zero();       ///< ∫ρ u₀ u₀ᵀ [kg m²]
+  std::array<VecX, 3> translation;  ///< ∫ρ S_k (N)
   std::array<std::array<VecX, 3>, 3> moment;  ///< ∫ρ u₀ₖ S_l (N)
   std::vector<Beam> beams;                    ///< empty for a structure from matrices
   std::vector<double> bar_lengths;            ///< of each bar [m]

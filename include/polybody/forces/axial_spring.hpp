@@ -3,8 +3,9 @@
 
 namespace polybody {
 
-/// Spring, damper and preload along an axis that is fixed in the first body: with s how far marker b stands along it from marker a,
-/// a pushes b by −(k s + c ṡ + P) along the axis, and b pushes back. For what slides in a guide, such as the tensioner of a track.
+/// Spring, damper and preload along an axis that is fixed in the first body: with s how far marker b stands along it
+/// from marker a, a pushes b by −(k s + c ṡ + P) along the axis, and b pushes back. For what slides in a guide, such as
+/// the tensioner of a track.
 struct AxialSpring {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
@@ -19,11 +20,13 @@ struct AxialSpring {
   void check(std::string const& name) const {
     require_not_negative(stiffness, name + ": the spring stiffness");
     require_not_negative(damping, name + ": the damping");
-    if (!std::isfinite(preload)) throw InvalidInput(name + ": the preload must be finite, but is " + number(preload) + ".");
+    if (!std::isfinite(preload))
+      throw InvalidInput(name + ": the preload must be finite, but is " + number(preload) + ".");
     require_unit(axis, name + ": the axis");
   }
 
-  /// With d = r_b − r_a and e the axis: s = e·d, ṡ = e·(ḋ − ω_a × d). The pair acts at r_b, so on a it has the moment d × f_a.
+  /// With d = r_b − r_a and e the axis: s = e·d, ṡ = e·(ḋ − ω_a × d). The pair acts at r_b, so on a it has the moment d
+  /// × f_a.
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, double) const {
     Vec<T, 3> const e = f[0].A * axis.template cast<T>(), d = f[1].r - f[0].r;

@@ -7,8 +7,9 @@
 
 namespace polybody {
 
-/// Where one face of a body hands over to the next, they share a contact: each has its part of the force and of what it stores. Parts
-/// that change store and give back too, which takes the force −(∫N dd) ∂share/∂place on a, and the opposite on b.
+/// Where one face of a body hands over to the next, they share a contact: each has its part of the force and of what it
+/// stores. Parts that change store and give back too, which takes the force −(∫N dd) ∂share/∂place on a, and the
+/// opposite on b.
 template <StateScalar T>
 struct Handover {
   T share = T(1.0);
@@ -31,17 +32,19 @@ struct AnyPoint {
 };
 }  // namespace detail
 
-/// Calls visit(point) for every point where the shapes at frames a and b overlap. `may_touch` is a cheap bound: false only where
-/// they surely do not.
+/// Calls visit(point) for every point where the shapes at frames a and b overlap. `may_touch` is a cheap bound: false
+/// only where they surely do not.
 template <class G>
-concept ContactGeometry = requires(G const geometry, Frame<double> const a, Frame<double> const b, std::string const name) {
-  { G::needs } -> std::convertible_to<Observes>;
-  { geometry.may_touch(a, b) } -> std::same_as<bool>;
-  geometry.template for_each_point<double>(a, b, detail::AnyPoint{});
-  geometry.check(name);
-};
+concept ContactGeometry =
+    requires(G const geometry, Frame<double> const a, Frame<double> const b, std::string const name) {
+      { G::needs } -> std::convertible_to<Observes>;
+      { geometry.may_touch(a, b) } -> std::same_as<bool>;
+      geometry.template for_each_point<double>(a, b, detail::AnyPoint{});
+      geometry.check(name);
+    };
 
-/// Coulomb's friction, regularised: −μ N v/√(v² + v_s²) at the sliding velocity v. What would stick creeps, at less than v_s.
+/// Coulomb's friction, regularised: −μ N v/√(v² + v_s²) at the sliding velocity v. What would stick creeps, at less
+/// than v_s.
 struct Friction {
   double coefficient = 0.0;  ///< μ
   double slip_speed = 0.0;   ///< v_s [m/s], positive where μ is
@@ -52,8 +55,8 @@ struct Friction {
   }
 };
 
-/// On a at each point the force N n + F_t, F_t the friction; on b the opposite. The point moves with either body as if it were
-/// fixed to it.
+/// On a at each point the force N n + F_t, F_t the friction; on b the opposite. The point moves with either body as if
+/// it were fixed to it.
 template <ContactGeometry G, NormalForce N = SpringDamperContact>
 struct Contact {
   using Geometry = G;
@@ -111,15 +114,18 @@ struct Contact {
     };
     for_each_point(f, [&](ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) {
       if (value_of(n) > 0.0) act(force_at(p, v, n), p.place);
-      if (value_of(p.handover.share) < 1.0) act(p.handover.slope * -normal.template potential<T>(p.depth), p.handover.place);
+      if (value_of(p.handover.share) < 1.0)
+        act(p.handover.slope * -normal.template potential<T>(p.depth), p.handover.place);
     });
     return w;
   }
 
-  /// Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J at each point, J = [1, −ρ×], ρ from the marker to the point, N′ the normal force's slope. For
-  /// F′ the chord of the friction, μ N/√(v² + v_s²), stands in place of its slope: never less than that, and so Newton's method
-  /// does not jump back and forth across v = 0 but comes from one side. What turns n, how N changes F_t and handovers are left out.
-  void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a, Mat<double, 6, 6>& of_b) const {
+  /// Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J at each point, J = [1, −ρ×], ρ from the marker to the point, N′ the normal force's
+  /// slope. For F′ the chord of the friction, μ N/√(v² + v_s²), stands in place of its slope: never less than that, and
+  /// so Newton's method does not jump back and forth across v = 0 but comes from one side. What turns n, how N changes
+  /// F_t and handovers are left out.
+  void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
+                     Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {
       if (n <= 0.0) return;
       double const across = normal.slope(p.depth, -v.dot(p.normal), ck, cd) * p.handover.share;
@@ -135,12 +141,15 @@ struct Contact {
 
   double potential(std::array<Frame<double>, 2> const& f, double) const {
     double sum = 0.0;
-    geometry.template for_each_point<double>(f[0], f[1], [&](ContactPoint<double> const& p) { sum += normal.template potential<double>(p.depth) * p.handover.share; });
+    geometry.template for_each_point<double>(f[0], f[1], [&](ContactPoint<double> const& p) {
+      sum += normal.template potential<double>(p.depth) * p.handover.share;
+    });
     return sum;
   }
 
  private:
-  static void add(ContactPoint<double> const& p, double across, double along, Vec3 const& origin, Mat<double, 6, 6>& sum) {
+  static void add(ContactPoint<double> const& p, double across, double along, Vec3 const& origin,
+                  Mat<double, 6, 6>& sum) {
     Vec3 const rho = p.place - origin, m = rho.cross(p.normal);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
@@ -202,7 +211,8 @@ struct SphereOnSphere {
   }
 };
 
-/// A sphere of this radius about marker a on a cylinder about the z axis of marker b, from outside; radius zero for points of a belt.
+/// A sphere of this radius about marker a on a cylinder about the z axis of marker b, from outside; radius zero for
+/// points of a belt.
 struct SphereOnCylinder {
   static constexpr Observes needs = Observes::point;
   static constexpr Observes needs_of_second = Observes::frame;
@@ -228,6 +238,7 @@ struct SphereOnCylinder {
   }
 };
 
-static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<SphereOnPlane>> && HasPotential<Contact<SphereOnSphere>>);
+static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<SphereOnPlane>> &&
+              HasPotential<Contact<SphereOnSphere>>);
 
 }  // namespace polybody

@@ -10,8 +10,8 @@ namespace polybody {
 /// Contacts between many bodies and a few: links of a track and what it runs over, balls and walls.
 ///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
 ///   model.oppose(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
-/// A law is a force element of two markers, of the many the first, of the few the second. Before, `may_touch(first, second)` is
-/// asked for every pair; it should cost little more than a distance.
+/// A law is a force element of two markers, of the many the first, of the few the second. Before, `may_touch(first,
+/// second)` is asked for every pair; it should cost little more than a distance.
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 class ContactGroup {

@@ -10,14 +10,16 @@
 
 namespace polybody {
 
-/// Spreads `per_length` [N/m], dead or following the section, from s = `from` to `to` of a bar, as 2 point forces in each of
-/// `pieces` equal parts: with as many pieces as the bar has elements exact for shapes up to third order. The model's forces must
-/// hold `PointForce<Law>`. Returns their handles. \throws InvalidInput for a range that is empty or outside the bar, or fewer pieces than one.
+/// Spreads `per_length` [N/m], dead or following the section, from s = `from` to `to` of a bar, as 2 point forces in
+/// each of `pieces` equal parts: with as many pieces as the bar has elements exact for shapes up to third order. The
+/// model's forces must hold `PointForce<Law>`. Returns their handles. \throws InvalidInput for a range that is empty or
+/// outside the bar, or fewer pieces than one.
 template <class M, class B, TimeLaw Law = Constant>
-auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, double from, double to, Index pieces,
-                       std::string const& name = "distributed force") {
+auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, double from, double to,
+                       Index pieces, std::string const& name = "distributed force") {
   if (!(to > from) || !std::isfinite(from) || !std::isfinite(to))
-    throw InvalidInput("\"" + name + "\": a distributed force needs a range from < to, but has " + number(from) + " to " + number(to) + ".");
+    throw InvalidInput("\"" + name + "\": a distributed force needs a range from < to, but has " + number(from) +
+                       " to " + number(to) + ".");
   if (pieces < 1) throw InvalidInput("\"" + name + "\": a distributed force needs at least one piece.");
   double const l = (to - from) / double(pieces);
   std::vector<decltype(model.apply(per_length, bar.at(from), name))> handles;

@@ -10,14 +10,14 @@
 namespace polybody {
 
 template <class F>
-concept ForceElement = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t,
-                                std::string const name) {
-  requires F::markers >= 1;
-  { F::needs } -> std::convertible_to<Observes>;
-  { F::is_load } -> std::convertible_to<bool>;  // scaled by the load factor of `equilibrium`
-  { force.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
-  force.check(name);
-};
+concept ForceElement =
+    requires(F const force, std::array<Frame<double>, F::markers> const frames, double t, std::string const name) {
+      requires F::markers >= 1;
+      { F::needs } -> std::convertible_to<Observes>;
+      { F::is_load } -> std::convertible_to<bool>;  // scaled by the load factor of `equilibrium`
+      { force.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
+      force.check(name);
+    };
 
 /// What a force element asks of its second marker, where that is not what it asks of its first (`needs_of_second`).
 template <class F>
@@ -30,9 +30,9 @@ constexpr Observes needs_of_second() {
 }
 
 /// A force element may leave the blocks that couple its markers' bodies out of a time step's matrix by
-/// `static constexpr bool couples_bodies = false`: then Newton sees each body's own stiffness only and iterates over the rest.
-/// For contacts of many candidates: the matrix's pattern, and the order in which it is eliminated, stay as they are without
-/// contact, whichever candidates touch.
+/// `static constexpr bool couples_bodies = false`: then Newton sees each body's own stiffness only and iterates over
+/// the rest. For contacts of many candidates: the matrix's pattern, and the order in which it is eliminated, stay as
+/// they are without contact, whichever candidates touch.
 template <class F>
 constexpr bool couples_bodies() {
   if constexpr (requires { F::couples_bodies; })
@@ -50,8 +50,9 @@ concept HasPotential = requires(F const force, std::array<Frame<double>, F::mark
 /// Gradients of all wrenches with respect to the frames' poses (δr, δφ in world axes) and twists,
 /// ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N: one pass of dual numbers, pose seeded with ck, twist with cd.
 template <ForceElement F>
-Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(
-    F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck, double cd) {
+Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(F const& force,
+                                                            std::array<Frame<double>, F::markers> const& frames,
+                                                            double t, double ck, double cd) {
   constexpr int n = 6 * F::markers;
   using D = Dual<n>;
   auto const seed = [](double value, int i, double slope) {

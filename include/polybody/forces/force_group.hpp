@@ -22,11 +22,12 @@ struct AnyVisit {
 }  // namespace detail
 
 /// A force element that is the sum of forces between two of its markers each:
-///   for_each_pair(frame, visit)  calls visit(i, j, law), law a force element of two markers, for all pairs of its markers i, j that
+///   for_each_pair(frame, visit)  calls visit(i, j, law), law a force element of two markers, for all pairs of its
+///   markers i, j that
 ///                                may act on each other as they stand: frame(i) is marker i's;
 ///   for_each_candidate(visit)    the same for all pairs that may ever act.
-/// A time step's matrix knows what a pair does to either of its bodies, not what couples the two: which pairs act changes from step
-/// to step, and the matrix's pattern, and the order of its elimination, are to stay.
+/// A time step's matrix knows what a pair does to either of its bodies, not what couples the two: which pairs act
+/// changes from step to step, and the matrix's pattern, and the order of its elimination, are to stay.
 template <class F>
 concept ForceGroup = requires(F const group, std::string const name) {
   requires F::markers == any_number;
@@ -41,13 +42,12 @@ concept ForceGroup = requires(F const group, std::string const name) {
 template <class F>
 concept AppliedForce = ForceElement<F> || ForceGroup<F>;
 
-/// A force element of two markers that gives a symmetric, positive semidefinite stand-in for what it does to each of them alone,
-/// cheaper than the exact gradient by dual numbers and good enough for Newton's method: −(ck ∂w/∂pose + cd ∂w/∂twist), 6×6, added
-/// to `of_a` and `of_b`.
+/// A force element of two markers that gives a symmetric, positive semidefinite stand-in for what it does to each of
+/// them alone, cheaper than the exact gradient by dual numbers and good enough for Newton's method: −(ck ∂w/∂pose + cd
+/// ∂w/∂twist), 6×6, added to `of_a` and `of_b`.
 template <class F>
 concept HasOwnStiffness = ForceElement<F> && F::markers == 2 &&
-                          requires(F const force, std::array<Frame<double>, 2> const frames, Mat<double, 6, 6> of_a, Mat<double, 6, 6> of_b) {
-                            force.own_stiffness(frames, 1.0, 1.0, of_a, of_b);
-                          };
+                          requires(F const force, std::array<Frame<double>, 2> const frames, Mat<double, 6, 6> of_a,
+                                   Mat<double, 6, 6> of_b) { force.own_stiffness(frames, 1.0, 1.0, of_a, of_b); };
 
 }  // namespace polybody

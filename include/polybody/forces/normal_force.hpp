@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// How hard two bodies press on each other where they overlap by d > 0 and d grows at the rate ḋ. Never negative: they do not stick
-/// together.
+/// How hard two bodies press on each other where they overlap by d > 0 and d grows at the rate ḋ. Never negative: they
+/// do not stick together.
 
 #include <polybody/math/dual.hpp>
 #include <polybody/math/types.hpp>
@@ -21,7 +21,8 @@ namespace detail {
 /// \throws InvalidInput unless 0 < e ≤ 1.
 inline void require_restitution(double e, char const* of) {
   if (!(e > 0.0 && e <= 1.0))
-    throw InvalidInput(std::string(of) + ": the coefficient of restitution must lie above 0 and not above 1, but is " + number(e) + ".");
+    throw InvalidInput(std::string(of) + ": the coefficient of restitution must lie above 0 and not above 1, but is " +
+                       number(e) + ".");
 }
 /// The root of `f`, which falls from f(from) > 0, by halving.
 template <class F>
@@ -34,17 +35,17 @@ double falling_root(F const& f, double from, double to) {
 }
 }  // namespace detail
 
-/// Spring and damper, N = max(0, k d + c ḋ) [thesis §3.6]. How much of its speed a body keeps does not depend on how fast it came. A body
-/// that comes at v meets the force c v at once; with an `onset` the damper comes in over that depth, c min(1, d/onset), and the force is
-/// continuous, as steps that are long beside an impact like it.
+/// Spring and damper, N = max(0, k d + c ḋ) [thesis §3.6]. How much of its speed a body keeps does not depend on how
+/// fast it came. A body that comes at v meets the force c v at once; with an `onset` the damper comes in over that
+/// depth, c min(1, d/onset), and the force is continuous, as steps that are long beside an impact like it.
 struct SpringDamperContact {
   Required<double> stiffness;  ///< k [N/m]
   double damping = 0.0;        ///< c [N s/m]
   double onset = 0.0;          ///< [m]
 
-  /// The damper with which a body of `mass` [kg] that comes at v leaves at e v. With ζ = c/(2√(km)) = cos θ it leaves, where
-  /// N = 0, after 2θ of its damped oscillation, so that e = exp(−2θ cot θ); for ζ = cosh η > 1, e = exp(−2η coth η).
-  /// [derived; Schwager & Pöschel 2007 have the same in other words]
+  /// The damper with which a body of `mass` [kg] that comes at v leaves at e v. With ζ = c/(2√(km)) = cos θ it leaves,
+  /// where N = 0, after 2θ of its damped oscillation, so that e = exp(−2θ cot θ); for ζ = cosh η > 1, e = exp(−2η coth
+  /// η). [derived; Schwager & Pöschel 2007 have the same in other words]
   static SpringDamperContact with_restitution(double stiffness, double mass, double e) {
     require_positive(stiffness, "SpringDamperContact: the stiffness");
     require_positive(mass, "SpringDamperContact: the mass");
@@ -52,10 +53,12 @@ struct SpringDamperContact {
     double const lost = -std::log(e);
     double zeta = 0.0;
     if (lost >= 2.0) {
-      zeta = std::cosh(detail::falling_root([&](double x) { return lost - 2.0 * (x > 0.0 ? x / std::tanh(x) : 1.0); }, 0.0, lost));
+      zeta = std::cosh(
+          detail::falling_root([&](double x) { return lost - 2.0 * (x > 0.0 ? x / std::tanh(x) : 1.0); }, 0.0, lost));
     } else if (lost > 0.0) {
       double const half = std::acos(0.0);
-      zeta = std::cos(detail::falling_root([&](double x) { return (x > 0.0 ? 2.0 * x / std::tan(x) : 2.0) - lost; }, 0.0, half));
+      zeta = std::cos(
+          detail::falling_root([&](double x) { return (x > 0.0 ? 2.0 * x / std::tan(x) : 2.0) - lost; }, 0.0, half));
     }
     return {.stiffness = stiffness, .damping = 2.0 * zeta * std::sqrt(stiffness * mass)};
   }
@@ -114,7 +117,8 @@ struct HuntCrossleyContact {
   double exponent = 1.5;       ///< n
   Required<double> damping;    ///< D [s/m]
 
-  /// The damping with which a body that comes at `speed` v leaves at e v. From m v dv/dd = −K dⁿ(1 + D v), whatever m, K and n,
+  /// The damping with which a body that comes at `speed` v leaves at e v. From m v dv/dd = −K dⁿ(1 + D v), whatever m,
+  /// K and n,
   ///   D v − ln(1 + D v) = −e D v − ln(1 − e D v).
   static HuntCrossleyContact with_restitution(double stiffness, double exponent, double e, double speed) {
     detail::require_restitution(e, "HuntCrossleyContact");

@@ -30,9 +30,9 @@ struct PointForce {
   static constexpr bool is_load = true;
   static constexpr Observes needs = Observes::point;
 
-  Vec3 force = Vec3::Zero();         ///< (3) [N]
+  Vec3 force = Vec3::Zero();  ///< (3) [N]
   LoadAxes axes = LoadAxes::world;
-  Law law = {};                      ///< factor as a function of time
+  Law law = {};  ///< factor as a function of time
 
   void check(std::string const& name) const {
     require_finite(force, name + ": the force");
@@ -47,17 +47,17 @@ struct PointForce {
   }
 };
 
-/// A moment at a marker, `moment` times the law of time. In space a dead moment is not conservative. A marker that knows its tangent
-/// only feels the part across it.
+/// A moment at a marker, `moment` times the law of time. In space a dead moment is not conservative. A marker that
+/// knows its tangent only feels the part across it.
 template <TimeLaw Law = Constant>
 struct PointMoment {
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
   static constexpr Observes needs = Observes::axis;
 
-  Vec3 moment = Vec3::Zero();        ///< (3) [N m]
+  Vec3 moment = Vec3::Zero();  ///< (3) [N m]
   LoadAxes axes = LoadAxes::world;
-  Law law = {};                      ///< factor as a function of time
+  Law law = {};  ///< factor as a function of time
 
   void check(std::string const& name) const {
     require_finite(moment, name + ": the moment");

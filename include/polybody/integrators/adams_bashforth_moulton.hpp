@@ -6,11 +6,12 @@
 namespace polybody {
 
 /// Predictor and corrector of Adams with variable order k = 1 … 12 and step, in the mode PECE [Shampine & Gordon 1975;
-/// Hairer, Nørsett & Wanner 1993, §III.5]. Of y = (q, v), in divided differences D_j of the past of y˙ (`AdamsHistory`) and with
-/// T_j = h + t₀ − t₋ⱼ:
+/// Hairer, Nørsett & Wanner 1993, §III.5]. Of y = (q, v), in divided differences D_j of the past of y˙ (`AdamsHistory`)
+/// and with T_j = h + t₀ − t₋ⱼ:
 ///   p = y₀ + Σ_{j<k} c_j D_j,   D*₀ = y˙(p),  D*ⱼ₊₁ = (D*ⱼ − D_j)/T_j,   y₁ = p + c_k D*_k,
-/// with the error of order j taken as |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. y₁ is of order k + 1. Two evaluations a step, one more for
-/// each step refused. Coordinates on a manifold are stepped as they stand, q˙ by `CoordinateRate`, and normalised by ⊞ 0.
+/// with the error of order j taken as |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. y₁ is of order k + 1. Two evaluations a step, one
+/// more for each step refused. Coordinates on a manifold are stepped as they stand, q˙ by `CoordinateRate`, and
+/// normalised by ⊞ 0.
 template <class Stabilisation = WithoutRows>
 struct AdamsBashforthMoulton {
   static constexpr char const* name = "AdamsBashforthMoulton";
@@ -30,7 +31,8 @@ struct AdamsBashforthMoulton {
     require_positive(absolute_tolerance, "AdamsBashforthMoulton: the absolute tolerance");
     require_positive(smallest_step, "AdamsBashforthMoulton: the smallest step");
     if (max_order < 1 || max_order > order)
-      throw InvalidInput("AdamsBashforthMoulton: max_order must lie in [1, 12], but is " + std::to_string(max_order) + ".");
+      throw InvalidInput("AdamsBashforthMoulton: max_order must lie in [1, 12], but is " + std::to_string(max_order) +
+                         ".");
     stabilisation.check();
   }
 
@@ -43,8 +45,18 @@ struct AdamsBashforthMoulton {
     typename Stabilisation::Scratch scratch;
 
     explicit Workspace(System<M>& s)
-        : y(VecX::Zero(s.coordinates() + s.speeds())), f(y), correction(y), raw(VecX::Zero(s.coordinates())), q(raw),
-          v(VecX::Zero(s.speeds())), a(v), lambda(VecX::Zero(s.rows())), zero(v), coordinate_rate(s), forward(s), scratch(s) {}
+        : y(VecX::Zero(s.coordinates() + s.speeds())),
+          f(y),
+          correction(y),
+          raw(VecX::Zero(s.coordinates())),
+          q(raw),
+          v(VecX::Zero(s.speeds())),
+          a(v),
+          lambda(VecX::Zero(s.rows())),
+          zero(v),
+          coordinate_rate(s),
+          forward(s),
+          scratch(s) {}
 
     /// y into q, normalised, and v.
     void split(System<M> const& system) {
@@ -105,8 +117,9 @@ struct AdamsBashforthMoulton {
         h *= 0.5;
       }
       if (!(h >= smallest_step))
-        throw StepTooSmall("AdamsBashforthMoulton: the error asks for a step below " + number(smallest_step) + " s at t = " +
-                           number(x.t) + " s. The model is stiff or jumps here: use an implicit integrator or name the corner.");
+        throw StepTooSmall("AdamsBashforthMoulton: the error asks for a step below " + number(smallest_step) +
+                           " s at t = " + number(x.t) +
+                           " s. The model is stiff or jumps here: use an implicit integrator or name the corner.");
     }
     w.y += w.correction;
     w.split(system);
@@ -133,7 +146,9 @@ struct AdamsBashforthMoulton {
   struct Errors {
     double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;
     /// The lower orders do as well [Shampine & Gordon 1975].
-    bool prefer_lower(int k) const { return k > 2 ? std::max(two_below, below) <= here : k == 2 && below <= 0.5 * here; }
+    bool prefer_lower(int k) const {
+      return k > 2 ? std::max(two_below, below) <= here : k == 2 && below <= 0.5 * here;
+    }
   };
 
   template <class W>
@@ -148,8 +163,8 @@ struct AdamsBashforthMoulton {
 
   /// c_k D*_k into w.correction, and the errors: means over q and over v, each relative to its largest entry.
   template <class W>
-  Errors correct(AdamsHistory const& history, std::array<double, order + 2> const& c, std::array<double, order + 2> const& age,
-                 double h, int k, int known, State const& x, W& w) const {
+  Errors correct(AdamsHistory const& history, std::array<double, order + 2> const& c,
+                 std::array<double, order + 2> const& age, double h, int k, int known, State const& x, W& w) const {
     std::array<double, 4> sum{};
     Index const nq = x.q.size(), n = w.y.size();
     double const in_q = share(x.q, w.q), in_v = share(x.v, w.v);
@@ -177,8 +192,9 @@ struct AdamsBashforthMoulton {
     return 1.0 / (scale * scale * double(now.size()));
   }
 
-  /// The next order into k, and the next step. While the order rises from the start it goes up with every step, and the step
-  /// doubles; then the order goes where the error is least, and the step doubles, stays or shrinks as that error asks.
+  /// The next order into k, and the next step. While the order rises from the start it goes up with every step, and the
+  /// step doubles; then the order goes where the error is least, and the step doubles, stays or shrinks as that error
+  /// asks.
   double choose(Errors const& e, double h, int& k, int known, bool& rising) const {
     double error = e.here;
     bool const higher = k > 1 ? e.above < error && error < std::max(e.two_below, e.below) : e.above < 0.5 * error;

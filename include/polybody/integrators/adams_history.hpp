@@ -6,9 +6,10 @@
 
 namespace polybody {
 
-/// The past of y˙ = f(t, y) as divided differences D_j = f[t₀, t₋₁, …, t₋ⱼ] over the last points, y of n entries. It stands in
-/// `State::memory`, so a copy of a state carries it along:
-///   [D₀ … D₁₂ | lengths of the last 12 steps, the last one first | points known | order | 1 while the order still rises].
+/// The past of y˙ = f(t, y) as divided differences D_j = f[t₀, t₋₁, …, t₋ⱼ] over the last points, y of n entries. It
+/// stands in `State::memory`, so a copy of a state carries it along:
+///   [D₀ … D₁₂ | lengths of the last 12 steps, the last one first | points known | order | 1 while the order still
+///   rises].
 class AdamsHistory {
  public:
   static constexpr int highest = 12;  ///< order
@@ -56,7 +57,8 @@ class AdamsHistory {
     known() = std::min(points, highest) + 1;
   }
 
-  /// c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ, j up to 13: by the rule of Gauss that is exact for degree 13. All terms are positive.
+  /// c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ, j up to 13: by the rule of Gauss that is exact for degree 13. All terms are
+  /// positive.
   static std::array<double, highest + 2> weights(double h, std::array<double, highest + 2> const& age) {
     std::array<double, highest + 2> c{};
     for (GaussPoint const& p : gauss<7>) {

@@ -5,9 +5,9 @@
 ///   (1 − α_m) a₁ + α_m a₀ = (1 − α_f) v̇₁ + α_f v̇₀,
 ///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
 /// One Newton unknown y = Δa₁ with Δq = βh² y, Δv = γh y, Δv̇ = (1 − α_m)/(1 − α_f) y; with the rows divided
-/// by βh² every entry of the tangent keeps the size of M and G for any h. Velocity rows, G v + Φ_t = 0 at the end of the step,
-/// are divided by γh, and the tangent is the same.
-/// Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ in the four coefficients only.
+/// by βh² every entry of the tangent keeps the size of M and G for any h. Velocity rows, G v + Φ_t = 0 at the end of
+/// the step, are divided by γh, and the tangent is the same. Generalised-α, HHT-α, Newmark's method and the trapezoidal
+/// rule differ in the four coefficients only.
 ///
 /// Stabilised, a step keeps the rows of the speeds too, Φ̇(q₁, v₁) = 0, by a second set of multipliers μ [Gear, Gupta &
 /// Leimkuhler 1985; Arnold, Brüls & Cardona 2015]:
@@ -27,8 +27,22 @@ struct AlphaVectors {
   VecX back, rate;  ///< of a stabilised step: what μ moves, and a vector by rows
 
   AlphaVectors(Index coordinates, Index speeds, Index rows)
-      : v0(VecX::Zero(speeds)), a0(v0), q(VecX::Zero(coordinates)), v(v0), vd(v0), a(v0), lambda(VecX::Zero(rows)), dq(v0), r(v0),
-        phi(lambda), rhs(VecX::Zero(speeds + rows)), y(rhs), jerk(v0), ahead(v0), back(v0), rate(lambda) {}
+      : v0(VecX::Zero(speeds)),
+        a0(v0),
+        q(VecX::Zero(coordinates)),
+        v(v0),
+        vd(v0),
+        a(v0),
+        lambda(VecX::Zero(rows)),
+        dq(v0),
+        r(v0),
+        phi(lambda),
+        rhs(VecX::Zero(speeds + rows)),
+        y(rhs),
+        jerk(v0),
+        ahead(v0),
+        back(v0),
+        rate(lambda) {}
 };
 
 /// A member of the family: its coefficients, and how Newton's method is to solve its steps.
@@ -70,7 +84,8 @@ struct AlphaMethod {
   /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
   template <class M, class Solver>
   void start(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
-    if (w.second_order && !second_order_terms) w.analyse(system, SecondOrder::omitted);  // it was called for by a step before
+    if (w.second_order && !second_order_terms)
+      w.analyse(system, SecondOrder::omitted);  // it was called for by a step before
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
     StepHistory::reset(x);
     w.factored = false;
@@ -142,16 +157,17 @@ struct AlphaMethod {
 
   /// Tangent and factorisation for steps of h where `system` was evaluated last. −1, or the unknown without a pivot.
   template <class M, class Solver>
-  Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w, bool stand_ins = true) const {
+  Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w,
+                 bool stand_ins = true) const {
     w.h_factored = h;
     w.age = 0;
     return w.solver.factor(system, {mass(), h * gamma, beta * h * h, stand_ins},
                            w.second_order ? SecondOrder::included : SecondOrder::omitted, lambda);
   }
 
-  /// One step from x; x changes only when Newton converged. What stalls is tried again with more effort: 1, full Newton with every term in
-  /// the tangent, and from the start without extrapolation; 2, the same with stand-ins for what the forces of groups do, which jump
-  /// less where friction turns round.
+  /// One step from x; x changes only when Newton converged. What stalls is tried again with more effort: 1, full Newton
+  /// with every term in the tangent, and from the start without extrapolation; 2, the same with stand-ins for what the
+  /// forces of groups do, which jump less where friction turns round.
   template <class M, class Solver>
   StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, int effort = 0) const {
     StepHistory history(x);
@@ -225,7 +241,8 @@ struct AlphaMethod {
       w.factored = false;
       return advance(system, x, h, w, effort + 1);
     }
-    if (report.result != NewtonResult::converged) detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
+    if (report.result != NewtonResult::converged)
+      detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
     // the last correction moved dq: bring q to it
     system.plus(x.q, w.dq, w.q);
     ++w.age;
@@ -280,7 +297,8 @@ struct AlphaMethod {
     w.dq = e * x.v + 0.5 * e * e * x.a + e * e * e / 6.0 * w.jerk;
     w.v = x.v + e * x.a + 0.5 * e * e * w.jerk;
   }
-  static bool differences_agree(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h, VecX& jerk) {
+  static bool differences_agree(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h,
+                                VecX& jerk) {
     jerk = (4.0 * quarter - half - 3.0 * now) / (0.5 * h);
     VecX const coarse = (4.0 * half - full - 3.0 * now) / h;
     return (jerk - coarse).norm() <= 0.5 * jerk.norm() && jerk.allFinite();

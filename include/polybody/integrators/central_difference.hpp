@@ -22,8 +22,13 @@ struct CentralDifference {
     ForwardDynamics<M, Solver> forward;
     typename Stabilisation::Scratch scratch;
     explicit Workspace(System<M>& s)
-        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), a(v), dq(v),
-          lambda(VecX::Zero(s.rows())), forward(s), scratch(s) {}
+        : q(VecX::Zero(s.coordinates())),
+          v(VecX::Zero(s.speeds())),
+          a(v),
+          dq(v),
+          lambda(VecX::Zero(s.rows())),
+          forward(s),
+          scratch(s) {}
   };
 
   void check() const { stabilisation.check(); }

@@ -6,13 +6,14 @@
 
 namespace polybody {
 
-/// Generalised coordinate partitioning: what a step gives the independent speeds and coordinates stands, the dependent ones
-/// follow from the rows,
+/// Generalised coordinate partitioning: what a step gives the independent speeds and coordinates stands, the dependent
+/// ones follow from the rows,
 ///   G_d Δq_d = −Φ  (Newton),   G_d v_d = −G_i v_i − Φ_t      [Wehage & Haug 1982; thesis §3.3.1].
-/// Independent are the columns of G that full pivoting leaves over. They are chosen anew when a dependent one would move more
-/// than `largest_ratio` times as fast as an independent one, that is when G_d⁻¹ G_i, and with it the condition of G_d, has grown
-/// too large; and when the rank of G changes. Velocity rows make speeds dependent, not coordinates: with them the two are split
-/// apart. Dense: for up to some hundred speeds. Ratios compare metres with radians.
+/// Independent are the columns of G that full pivoting leaves over. They are chosen anew when a dependent one would
+/// move more than `largest_ratio` times as fast as an independent one, that is when G_d⁻¹ G_i, and with it the
+/// condition of G_d, has grown too large; and when the rank of G changes. Velocity rows make speeds dependent, not
+/// coordinates: with them the two are split apart. Dense: for up to some hundred speeds. Ratios compare metres with
+/// radians.
 struct CoordinatePartitioning {
   static constexpr bool accepts_rows = true;
   double tolerance = 1e-12;  ///< of Φ, beside what rounding of q leaves
@@ -20,13 +21,18 @@ struct CoordinatePartitioning {
   double largest_ratio = 10.0;  ///< of the rate of a dependent coordinate to that of an independent one
 
   struct Scratch {
-    PartitionedRows rows;       ///< of positions; where there are no velocity rows, of speeds too
-    PartitionedRows all_rows;   ///< of speeds where there are
+    PartitionedRows rows;      ///< of positions; where there are no velocity rows, of speeds too
+    PartitionedRows all_rows;  ///< of speeds where there are
     VecX phi, rate, column, delta, next;
     template <class M>
     explicit Scratch(System<M> const& s)
-        : rows(s.rows(), s.speeds()), all_rows(s.velocity_rows().empty() ? 0 : s.rows(), s.speeds()), phi(VecX::Zero(s.rows())),
-          rate(phi), column(phi), delta(VecX::Zero(s.speeds())), next(VecX::Zero(s.coordinates())) {}
+        : rows(s.rows(), s.speeds()),
+          all_rows(s.velocity_rows().empty() ? 0 : s.rows(), s.speeds()),
+          phi(VecX::Zero(s.rows())),
+          rate(phi),
+          column(phi),
+          delta(VecX::Zero(s.speeds())),
+          next(VecX::Zero(s.coordinates())) {}
     template <class M>
     PartitionedRows& of_speeds(System<M> const& s) {
       return s.velocity_rows().empty() ? rows : all_rows;
@@ -37,7 +43,8 @@ struct CoordinatePartitioning {
   void check() const {
     require_positive(tolerance, "CoordinatePartitioning: the tolerance");
     if (!(largest_ratio >= 1.0))
-      throw InvalidInput("CoordinatePartitioning: largest_ratio must be at least 1, but is " + number(largest_ratio) + ".");
+      throw InvalidInput("CoordinatePartitioning: largest_ratio must be at least 1, but is " + number(largest_ratio) +
+                         ".");
   }
   void start(Scratch& s) const {
     s.rows.forget();
@@ -54,8 +61,8 @@ struct CoordinatePartitioning {
       reduce(system, s, s.rows, q, v, t);
       if (s.phi.cwiseAbs().maxCoeff() <= enough) break;
       if (k == max_iterations)
-        throw NewtonStalled("CoordinatePartitioning: the positions cannot be brought back to the joints at t = " + number(t) +
-                            " s. Take a smaller step.");
+        throw NewtonStalled("CoordinatePartitioning: the positions cannot be brought back to the joints at t = " +
+                            number(t) + " s. Take a smaller step.");
       s.rows.solution(0, s.delta);
       system.plus(q, s.delta, s.next);
       q.swap(s.next);

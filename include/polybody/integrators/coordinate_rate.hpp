@@ -3,8 +3,8 @@
 
 namespace polybody {
 
-/// The rate of the coordinates themselves, q˙ = d/dε (q ⊞ ε v) at ε = 0: v itself where a body has as many coordinates as
-/// speeds, else by dual numbers.
+/// The rate of the coordinates themselves, q˙ = d/dε (q ⊞ ε v) at ε = 0: v itself where a body has as many coordinates
+/// as speeds, else by dual numbers.
 template <class M>
 class CoordinateRate {
  public:

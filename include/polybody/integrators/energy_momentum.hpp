@@ -1,16 +1,17 @@
 #pragma once
 /// \file
-/// Steps that keep energy and momenta, and steps that only ever lose energy, for coordinates that form a vector space and
-/// constant M:
+/// Steps that keep energy and momenta, and steps that only ever lose energy, for coordinates that form a vector space
+/// and constant M:
 ///   M Δv = h (f̄ − Ḡᵀλ),   Δq = h (v̄ + χ Δv),   Φ(q₁) = 0,   v̄ = ½ (v₀ + v₁).
-/// f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], made of secants (math/secant.hpp) of strains, gaps and potentials:
+/// f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], made of secants (math/secant.hpp) of strains, gaps and
+/// potentials:
 ///   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping),   Ḡ Δq = ΔΦ = 0.
 /// Hence, for the kinetic energy T, ΔT = v̄ᵀMΔv = (Δq/h − χ Δv)ᵀMΔv and
 ///   ΔT + ΔV = −χ (ΔvᵀMΔv + ΔεᵀCΔε) − (damping) + (work of the loads).
-/// χ = 0: energy stays. The linear momentum changes by the loads' impulse for every χ. The angular momentum does so for χ = 0
-/// where f̄ and Ḡ have no moment of their own: for what is made of scalar products of coordinates. These are ANCF cables and the
-/// ANCF beam of `Continuum`, springs and joints between points on their axes. Angles as coordinates, section frames (`ElasticLine`)
-/// and joints of axes keep energy too, but angular momentum to the method's order only.
+/// χ = 0: energy stays. The linear momentum changes by the loads' impulse for every χ. The angular momentum does so for
+/// χ = 0 where f̄ and Ḡ have no moment of their own: for what is made of scalar products of coordinates. These are ANCF
+/// cables and the ANCF beam of `Continuum`, springs and joints between points on their axes. Angles as coordinates,
+/// section frames (`ElasticLine`) and joints of axes keep energy too, but angular momentum to the method's order only.
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
@@ -18,8 +19,8 @@
 
 namespace polybody {
 
-/// A member of the family. `State::a` and `State::lambda` after a step belong to the middle of it; with χ = 0, λ alternates by O(h) about
-/// the reaction, and the mean of two steps is right to O(h²).
+/// A member of the family. `State::a` and `State::lambda` after a step belong to the middle of it; with χ = 0, λ
+/// alternates by O(h) about the reaction, and the mean of two steps is right to O(h²).
 struct ConservingStep {
   char const* name;
   double chi;
@@ -28,8 +29,9 @@ struct ConservingStep {
 
   template <class M, class Solver>
   struct Workspace {
-    static_assert(SteppedWhole<M>,
-                  "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of AncfLinear, say.");
+    static_assert(
+        SteppedWhole<M>,
+        "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of AncfLinear, say.");
     VecX q, v, vd, lambda, r, phi, rhs, y;
     StepSecants<M> secants;
     TangentSolver<M, Solver> solver;
@@ -39,8 +41,16 @@ struct ConservingStep {
     double h_factored = 0.0;
 
     explicit Workspace(System<M>& s)
-        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), vd(v), lambda(VecX::Zero(s.rows())), r(v), phi(lambda),
-          rhs(VecX::Zero(s.size())), y(rhs), secants(s), forward(s) {}
+        : q(VecX::Zero(s.coordinates())),
+          v(VecX::Zero(s.speeds())),
+          vd(v),
+          lambda(VecX::Zero(s.rows())),
+          r(v),
+          phi(lambda),
+          rhs(VecX::Zero(s.size())),
+          y(rhs),
+          secants(s),
+          forward(s) {}
   };
 
   template <class Solver, class M>
@@ -128,7 +138,8 @@ struct ConservingStep {
       w.factored = false;
       return advance(system, x, h, w, true);
     }
-    if (report.result != NewtonResult::converged) detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
+    if (report.result != NewtonResult::converged)
+      detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
     problem.move();
     w.v = x.v + h * w.vd;
     history.push(x, h, w.vd);
@@ -141,8 +152,9 @@ struct ConservingStep {
   }
 };
 
-/// χ = 0: the energy–momentum method, of order two [Simo & Tarnow 1992; Gonzalez 1996]. Energy, and with it stability, holds for
-/// every h at which Newton's method converges; high modes are kept too. Energy and momenta err by what Newton's method leaves.
+/// χ = 0: the energy–momentum method, of order two [Simo & Tarnow 1992; Gonzalez 1996]. Energy, and with it stability,
+/// holds for every h at which Newton's method converges; high modes are kept too. Energy and momenta err by what
+/// Newton's method leaves.
 struct EnergyMomentum {
   static constexpr char const* name = "EnergyMomentum";
   static constexpr int order = 2;
@@ -174,10 +186,10 @@ struct EnergyMomentum {
   ConservingStep method() const { return {name, 0.0, tolerance, newton}; }
 };
 
-/// χ = ½ (1 − ρ∞)/(1 + ρ∞): energy falls in every step, in a linear mode by the factor ρ∞² as ωh → ∞. Of order one for ρ∞ < 1.
-/// The strains' part is that of the energy-dissipative momentum-conserving method EDMC-1 [Armero & Romero 2001]; the speeds' part is
-/// taken in the norm of M here, so that no mode escapes, and the angular momentum follows to first order only. Force elements with a
-/// potential of their own keep their energy: the speeds damp them.
+/// χ = ½ (1 − ρ∞)/(1 + ρ∞): energy falls in every step, in a linear mode by the factor ρ∞² as ωh → ∞. Of order one for
+/// ρ∞ < 1. The strains' part is that of the energy-dissipative momentum-conserving method EDMC-1 [Armero & Romero
+/// 2001]; the speeds' part is taken in the norm of M here, so that no mode escapes, and the angular momentum follows to
+/// first order only. Force elements with a potential of their own keep their energy: the speeds damp them.
 struct EnergyDecaying {
   static constexpr char const* name = "EnergyDecaying";
   static constexpr int order = 1;

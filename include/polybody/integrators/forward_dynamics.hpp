@@ -18,9 +18,9 @@ struct RowFeedback {
 
 namespace detail {
 [[noreturn]] inline void throw_singular(double t, std::string const& who) {
-  throw LinearSolverSingular("The equations of motion have no unique acceleration at t = " + number(t) +
-                             " s; the pivot is lost at " + who +
-                             ". Look for a joint that repeats another, or a body without inertia that is free to move.");
+  throw LinearSolverSingular(
+      "The equations of motion have no unique acceleration at t = " + number(t) + " s; the pivot is lost at " + who +
+      ". Look for a joint that repeats another, or a body without inertia that is free to move.");
 }
 }  // namespace detail
 
@@ -28,9 +28,14 @@ template <class M, LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:
   explicit ForwardDynamics(System<M>& system)
-      : zero_a_(VecX::Zero(system.speeds())), zero_lambda_(VecX::Zero(system.rows())),
-        r_(VecX::Zero(system.speeds())), phi_(VecX::Zero(system.rows())), open_(phi_), rhs_(VecX::Zero(system.size())),
-        x_(VecX::Zero(system.size())), delta_(VecX::Zero(system.speeds())),
+      : zero_a_(VecX::Zero(system.speeds())),
+        zero_lambda_(VecX::Zero(system.rows())),
+        r_(VecX::Zero(system.speeds())),
+        phi_(VecX::Zero(system.rows())),
+        open_(phi_),
+        rhs_(VecX::Zero(system.size())),
+        x_(VecX::Zero(system.size())),
+        delta_(VecX::Zero(system.speeds())),
         next_(VecX::Zero(system.coordinates())) {
     solver_.analyse(system, SecondOrder::omitted, zero_lambda_);
   }
@@ -97,9 +102,9 @@ class ForwardDynamics {
     out = x_.head(system.speeds());
   }
 
-  /// P b: the part of b that the rows of positions force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t); velocity rows have it zero.
-  void constrained_part(System<M>& system, VecX const& q, VecX const& v, double t, VecX const& b,
-                        VecX& out) {
+  /// P b: the part of b that the rows of positions force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t); velocity rows have it
+  /// zero.
+  void constrained_part(System<M>& system, VecX const& q, VecX const& v, double t, VecX const& b, VecX& out) {
     system.evaluate(q, v, t);
     factor(system);
     system.rows_times(b, phi_);
@@ -108,8 +113,8 @@ class ForwardDynamics {
     out = x_.head(system.speeds());
   }
 
-  /// M a + Gᵀμ = w, G a = 0 with M and G as of the last factorisation: what a force w (nv) moves and what the rows hold of it;
-  /// μ of rows that repeat others is zero.
+  /// M a + Gᵀμ = w, G a = 0 with M and G as of the last factorisation: what a force w (nv) moves and what the rows hold
+  /// of it; μ of rows that repeat others is zero.
   void response(System<M>& system, VecX const& w, VecX& a, VecX& mu) {
     r_ = w;
     phi_.setZero();
@@ -118,8 +123,8 @@ class ForwardDynamics {
     mu = x_.tail(system.rows());
   }
 
-  /// Equations that repeat others (see `System::name_of_equation`), as of the last factorisation: their multipliers are not unique and are
-  /// taken as zero. Empty for solvers that do not tell.
+  /// Equations that repeat others (see `System::name_of_equation`), as of the last factorisation: their multipliers are
+  /// not unique and are taken as zero. Empty for solvers that do not tell.
   std::span<Index const> redundant_rows() const { return solver_.dropped(); }
   /// Names of the joints and bodies that they belong to.
   std::vector<std::string> redundant(System<M> const& system) const {

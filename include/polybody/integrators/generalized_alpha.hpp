@@ -3,8 +3,8 @@
 
 namespace polybody {
 
-/// The method with the most damping of what a step does not resolve for the least of what it does: α_m = (2ρ∞ − 1)/(ρ∞ + 1),
-/// α_f = ρ∞/(ρ∞ + 1), γ = ½ − α_m + α_f, β = ¼(γ + ½)² [Chung & Hulbert 1993].
+/// The method with the most damping of what a step does not resolve for the least of what it does: α_m = (2ρ∞ − 1)/(ρ∞
+/// + 1), α_f = ρ∞/(ρ∞ + 1), γ = ½ − α_m + α_f, β = ¼(γ + ½)² [Chung & Hulbert 1993].
 struct GeneralizedAlpha {
   static constexpr char const* name = "GeneralizedAlpha";
   static constexpr int order = 2;
@@ -13,13 +13,15 @@ struct GeneralizedAlpha {
   /// Spectral radius at infinity, in [0, 1]: 1 keeps energy, 0 damps most. With rows stay below 1 (0.99 will do): there
   /// the multipliers are only marginally stable, alternate in sign and grow over some thousand steps.
   double rho_inf = 0.8;
-  /// Of Newton's corrections, relative to the accelerations. At 1e-5 what it leaves of a smooth motion is still far below what a step of
-  /// ωh = 0.1 itself gets wrong, for two iterations less; not near singular configurations, which blow it up.
+  /// Of Newton's corrections, relative to the accelerations. At 1e-5 what it leaves of a smooth motion is still far
+  /// below what a step of ωh = 0.1 itself gets wrong, for two iterations less; not near singular configurations, which
+  /// blow it up.
   double tolerance = 1e-8;
   NewtonOptions newton = {.refactor_above = 0.16};
-  bool start_correction = true;  ///< second-order multipliers from the first step and across changes of h
+  bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
-  bool stabilised = false;          ///< keep the rows of the speeds too, at the cost of one factorisation of [M, Gᵀ; G, 0] a step
+  bool stabilised =
+      false;  ///< keep the rows of the speeds too, at the cost of one factorisation of [M, Gᵀ; G, 0] a step
 
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
   void check() const {

@@ -11,8 +11,8 @@ struct HhtAlpha {
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
 
-  double alpha = -0.1;  ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
-  double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
+  double alpha = -0.1;      ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
+  double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.refactor_above = 0.16};
   bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start

@@ -8,25 +8,25 @@ namespace polybody {
 
 /// What one accepted step cost.
 struct StepReport {
-  double taken = 0.0;       ///< length of the step [s]
-  double next = 0.0;        ///< length suggested for the next one [s]
-  int iterations = 0;       ///< Newton iterations; 0 for an explicit step
-  int factorisations = 0;   ///< of the tangent or the mass matrix
-  int evaluations = 0;      ///< of the forces
-  int rejected = 0;         ///< trial steps thrown away by the step control
-  int order = 0;            ///< at which the step was taken, of a method that chooses it; else 0
-  double contraction = 0.0; ///< last contraction rate of Newton's method
+  double taken = 0.0;        ///< length of the step [s]
+  double next = 0.0;         ///< length suggested for the next one [s]
+  int iterations = 0;        ///< Newton iterations; 0 for an explicit step
+  int factorisations = 0;    ///< of the tangent or the mass matrix
+  int evaluations = 0;       ///< of the forces
+  int rejected = 0;          ///< trial steps thrown away by the step control
+  int order = 0;             ///< at which the step was taken, of a method that chooses it; else 0
+  double contraction = 0.0;  ///< last contraction rate of Newton's method
 };
 
-/// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ + a₁):
-/// beyond ω²h² + 4dh = 4 it has a multiplier below −1. \param omega ω [1/s]  \param rate d [1/s]
+/// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +
+/// a₁): beyond ω²h² + 4dh = 4 it has a multiplier below −1. \param omega ω [1/s]  \param rate d [1/s]
 template <class = void>
 double stable_step_of_verlet(double omega, double rate) {
   return 2.0 / (rate + std::sqrt(rate * rate + omega * omega));
 }
 
-/// An explicit integrator of fixed step tells when x¨ + d x˙ + ω² x = 0 grows without bound: `stable_to`, the largest ωh for d
-/// = 0, and `stable_step(ω, d)`, the largest h.
+/// An explicit integrator of fixed step tells when x¨ + d x˙ + ω² x = 0 grows without bound: `stable_to`, the largest
+/// ωh for d = 0, and `stable_step(ω, d)`, the largest h.
 template <class I>
 concept NamesStableStep = requires(double omega, double rate) {
   { I::stable_to } -> std::convertible_to<double>;
@@ -55,6 +55,7 @@ concept KeepsToRows = I::accepts_rows || !M::may_have_rows;
 
 /// I steps M. Some integrators ask more of what they step: their member `takes`.
 template <class I, class M>
-concept StepsModel = KeepsToRows<I, M> && (!requires { I::template takes<SteppedModel<M>>; } || I::template takes<SteppedModel<M>>);
+concept StepsModel =
+    KeepsToRows<I, M> && (!requires { I::template takes<SteppedModel<M>>; } || I::template takes<SteppedModel<M>>);
 
 }  // namespace polybody

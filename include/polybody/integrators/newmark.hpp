@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// Newmark's method, a = v̇ [Newmark 1959]. Of order two for γ = ½, else of order one: γ > ½ damps. Stable for every h when
-/// 2β ≥ γ ≥ ½, below that for ωh < (γ/2 − β)^−½ (γ = ½). With rows take γ > ½ and 2β ≥ γ, best β = ¼(γ + ½)²; at γ = ½
-/// the multipliers are only marginally stable [Cardona & Géradin 1989].
+/// Newmark's method, a = v̇ [Newmark 1959]. Of order two for γ = ½, else of order one: γ > ½ damps. Stable for every h
+/// when 2β ≥ γ ≥ ½, below that for ωh < (γ/2 − β)^−½ (γ = ½). With rows take γ > ½ and 2β ≥ γ, best β = ¼(γ + ½)²; at γ
+/// = ½ the multipliers are only marginally stable [Cardona & Géradin 1989].
 struct Newmark {
   static constexpr char const* name = "Newmark";
   static constexpr int order = 1;
@@ -13,7 +13,7 @@ struct Newmark {
 
   double gamma = 0.5;
   double beta = 0.25;
-  double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
+  double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.refactor_above = 0.16};
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too
@@ -21,7 +21,8 @@ struct Newmark {
   /// \throws InvalidInput unless γ ≥ ½, β > 0 and the tolerance is positive.
   void check() const {
     if (!(gamma >= 0.5) || !std::isfinite(gamma))
-      throw InvalidInput("Newmark: gamma must be at least 1/2, but is " + number(gamma) + ": below, every motion grows.");
+      throw InvalidInput("Newmark: gamma must be at least 1/2, but is " + number(gamma) +
+                         ": below, every motion grows.");
     require_positive(beta, "Newmark: beta (for an explicit method take CentralDifference)");
     require_positive(tolerance, "Newmark: the tolerance");
   }
@@ -47,14 +48,14 @@ struct Newmark {
   }
 };
 
-/// The trapezoidal rule, Newmark's method with γ = ½, β = ¼: keeps the energy of linear models. For models without rows, or for
-/// few steps: rows are only marginally stable under it, as under generalised-α with ρ∞ = 1.
+/// The trapezoidal rule, Newmark's method with γ = ½, β = ¼: keeps the energy of linear models. For models without
+/// rows, or for few steps: rows are only marginally stable under it, as under generalised-α with ρ∞ = 1.
 struct Trapezoidal {
   static constexpr char const* name = "Trapezoidal";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
 
-  double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
+  double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.refactor_above = 0.16};
   bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start

@@ -6,7 +6,8 @@ namespace polybody::detail {
 
 /// Throws what says why Newton's method failed in the step of `integrator` to time t; `who` is to blame.
 /// \throws LinearSolverSingular, NonFinite, NewtonStalled.
-[[noreturn]] inline void throw_stalled(std::string const& integrator, double t, NewtonReport const& report, std::string const& who) {
+[[noreturn]] inline void throw_stalled(std::string const& integrator, double t, NewtonReport const& report,
+                                       std::string const& who) {
   std::string const when = " at t = " + number(t) + " s";
   if (report.result == NewtonResult::singular)
     throw LinearSolverSingular(integrator + ": the tangent is singular" + when + ", first at " + who +
@@ -14,15 +15,16 @@ namespace polybody::detail {
   if (report.result == NewtonResult::not_finite)
     throw NonFinite(integrator + ": a force on " + who + " is not finite" + when +
                     ". Look at the forces applied to it, or take a smaller step.");
-  throw NewtonStalled(integrator + ": Newton's method did not converge" + when + " after " + std::to_string(report.iterations) +
-                      " iterations (contraction " + number(report.theta) + "). Take a smaller step; the state is as before it.");
+  throw NewtonStalled(integrator + ": Newton's method did not converge" + when + " after " +
+                      std::to_string(report.iterations) + " iterations (contraction " + number(report.theta) +
+                      "). Take a smaller step; the state is as before it.");
 }
 
-/// The same for a system. `bad` is the equation without a pivot, −1 where none is known; `rhs` is the right-hand side, of one
-/// stage after another.
+/// The same for a system. `bad` is the equation without a pivot, −1 where none is known; `rhs` is the right-hand side,
+/// of one stage after another.
 template <class M>
-[[noreturn]] void throw_stalled(std::string const& integrator, System<M> const& system, double t, NewtonReport const& report, Index bad,
-                                VecX const& rhs) {
+[[noreturn]] void throw_stalled(std::string const& integrator, System<M> const& system, double t,
+                                NewtonReport const& report, Index bad, VecX const& rhs) {
   std::string who;
   if (report.result == NewtonResult::singular) {
     who = system.name_of_equation(std::max<Index>(bad, 0) % system.equations());

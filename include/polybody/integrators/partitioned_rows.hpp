@@ -5,17 +5,21 @@ namespace polybody {
 
 /// Rows G b = r (m×n) of rank k whose columns are split into k dependent ones and the others,
 ///   b_d = G_d⁻¹ r − R b_i,   R = G_d⁻¹ G_i,
-/// by Gauss–Jordan elimination. A new split is chosen by full pivoting, which leaves rows that repeat others for the end and
-/// out of account [Wehage & Haug 1982; Shabana 2020]. A split is kept while no entry of R exceeds a limit: |R_di| is the factor
-/// by which |det G_d| would grow were column i to change places with d. Dense, m² n operations.
+/// by Gauss–Jordan elimination. A new split is chosen by full pivoting, which leaves rows that repeat others for the
+/// end and out of account [Wehage & Haug 1982; Shabana 2020]. A split is kept while no entry of R exceeds a limit:
+/// |R_di| is the factor by which |det G_d| would grow were column i to change places with d. Dense, m² n operations.
 /// Itself the sink of the rows of a tangent [M, Gᵀ; G, 0].
 class PartitionedRows {
  public:
   static constexpr int sides = 2;  ///< right-hand sides that are carried along
 
   PartitionedRows(Index rows, Index columns)
-      : rows_(rows), columns_(columns), width_(columns + sides), a_(std::size_t(rows * width_)),
-        dependents_(std::size_t(rows)), state_(std::size_t(columns)) {}
+      : rows_(rows),
+        columns_(columns),
+        width_(columns + sides),
+        a_(std::size_t(rows * width_)),
+        dependents_(std::size_t(rows)),
+        state_(std::size_t(columns)) {}
 
   long choices = 0;  ///< how often a split was chosen
 
@@ -35,8 +39,8 @@ class PartitionedRows {
   /// Entry `row` of the right-hand side.
   double& right(int side, Index row) { return at(row, columns_ + side); }
 
-  /// Solves for b_d with b_i = 0, by the split that is kept. False where it no longer fits or none was chosen: then the rows are
-  /// lost and must be written again, for `choose`. \param limit of |R|
+  /// Solves for b_d with b_i = 0, by the split that is kept. False where it no longer fits or none was chosen: then the
+  /// rows are lost and must be written again, for `choose`. \param limit of |R|
   bool reduce(double limit) {
     if (rank_ == none) return false;
     for (Column& c : state_)
@@ -68,7 +72,8 @@ class PartitionedRows {
  private:
   enum class Column : char { independent, dependent, used };  ///< used: dependent, and has had its pivot
   static constexpr Index none = -1;
-  static constexpr double repeats = 1e-9;  ///< a pivot below this share of the largest entry belongs to a row that repeats others
+  static constexpr double repeats =
+      1e-9;  ///< a pivot below this share of the largest entry belongs to a row that repeats others
 
   double& at(Index i, Index j) { return a_[std::size_t(i * width_ + j)]; }
 
@@ -80,8 +85,8 @@ class PartitionedRows {
     return most;
   }
 
-  /// Step k: the largest pivot in columns of state `from` and rows from k on; its column becomes the k-th of the identity.
-  /// False when it is not above `enough`.
+  /// Step k: the largest pivot in columns of state `from` and rows from k on; its column becomes the k-th of the
+  /// identity. False when it is not above `enough`.
   bool eliminate(Index k, Column from, double enough) {
     double most = enough;
     Index row = none, column = none;

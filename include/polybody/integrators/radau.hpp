@@ -1,10 +1,11 @@
 #pragma once
 /// \file
-/// RADAU IIA with three stages on the manifold: order five, L-stable, stiffly accurate [Hairer & Wanner 1996, §IV.5, §IV.8]:
+/// RADAU IIA with three stages on the manifold: order five, L-stable, stiffly accurate [Hairer & Wanner 1996, §IV.5,
+/// §IV.8]:
 ///   M(q_i) v̇_i = f(q_i, v_i, t_i) − Gᵀλ_i,   G v̇_i = −γ(q_i, v_i, t_i),   t_i = t₀ + c_i h,
 ///   v_i = v₀ + h Σ a_ij v̇_j,   q_i = q₀ ⊞ δ_i,   δ_i = h Σ a_ij δ˙(δ_j, v_j),   and the third stage is the end.
-/// The rows stand as accelerations, so that multipliers keep the order of the speeds; `Projection` takes away what drifts.
-/// Newton's unknowns are v̇_i and λ_i of all stages at once; δ_i follows them.
+/// The rows stand as accelerations, so that multipliers keep the order of the speeds; `Projection` takes away what
+/// drifts. Newton's unknowns are v̇_i and λ_i of all stages at once; δ_i follows them.
 
 #include <array>
 
@@ -19,14 +20,16 @@ namespace detail {
 struct RadauTableau {
   static constexpr double r6 = 2.449489742783178;
   static constexpr double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
-  static constexpr double a[3][3] = {{(88.0 - 7.0 * r6) / 360.0, (296.0 - 169.0 * r6) / 1800.0, (-2.0 + 3.0 * r6) / 225.0},
-                                     {(296.0 + 169.0 * r6) / 1800.0, (88.0 + 7.0 * r6) / 360.0, (-2.0 - 3.0 * r6) / 225.0},
-                                     {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0}};
+  static constexpr double a[3][3] = {
+      {(88.0 - 7.0 * r6) / 360.0, (296.0 - 169.0 * r6) / 1800.0, (-2.0 + 3.0 * r6) / 225.0},
+      {(296.0 + 169.0 * r6) / 1800.0, (88.0 + 7.0 * r6) / 360.0, (-2.0 - 3.0 * r6) / 225.0},
+      {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0}};
   /// (A²)_ij.
   static constexpr double squared(int i, int j) { return a[i][0] * a[0][j] + a[i][1] * a[1][j] + a[i][2] * a[2][j]; }
 };
 
-/// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G and Gᵀ.
+/// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G
+/// and Gᵀ.
 template <class Sink>
 struct StageSink {
   Sink& sink;
@@ -38,8 +41,9 @@ struct StageSink {
 
 }  // namespace detail
 
-/// The reference among the integrators: for few, accurate steps, also of stiff models. The matrix of a step has three times the
-/// unknowns of the model and goes to `AutoLu` whatever solver the run names; above 64 unknowns that one takes memory in a step.
+/// The reference among the integrators: for few, accurate steps, also of stiff models. The matrix of a step has three
+/// times the unknowns of the model and goes to `AutoLu` whatever solver the run names; above 64 unknowns that one takes
+/// memory in a step.
 struct Radau {
   static constexpr char const* name = "Radau";
   static constexpr int order = 5;
@@ -47,7 +51,7 @@ struct Radau {
   template <class M>
   static constexpr bool takes = !requires { requires M::solved_by_bodies; };
 
-  double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
+  double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< many: the matrix leaves out how rows turn
   Projection projection = {};
 
@@ -57,7 +61,8 @@ struct Radau {
   template <class M, class Solver>
   struct Workspace {
     static_assert(takes<M>,
-                  "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a step together. Take "
+                  "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
+                  "step together. Take "
                   "recursive::Augmented.");
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
     VecX q, r, phi, gamma, next, rhs, y;
@@ -68,11 +73,20 @@ struct Radau {
     double theta = 1.0;
     double h_factored = 0.0;
     double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
-    std::vector<double> slack;  ///< by rows: −1 on the diagonal of a row that repeats others leaves its multiplier alone
+    std::vector<double>
+        slack;  ///< by rows: −1 on the diagonal of a row that repeats others leaves its multiplier alone
 
     explicit Workspace(System<M>& s)
-        : q(VecX::Zero(s.coordinates())), r(VecX::Zero(s.speeds())), phi(VecX::Zero(s.rows())), gamma(phi), next(r),
-          rhs(VecX::Zero(3 * s.size())), y(rhs), forward(s), projected(s), slack(std::size_t(s.equations() - s.equation_speeds()), 0.0) {
+        : q(VecX::Zero(s.coordinates())),
+          r(VecX::Zero(s.speeds())),
+          phi(VecX::Zero(s.rows())),
+          gamma(phi),
+          next(r),
+          rhs(VecX::Zero(3 * s.size())),
+          y(rhs),
+          forward(s),
+          projected(s),
+          slack(std::size_t(s.equations() - s.equation_speeds()), 0.0) {
       v.fill(r);
       vd.fill(r);
       delta.fill(r);
@@ -104,7 +118,8 @@ struct Radau {
         for (std::size_t j = 0; j < 3; ++j) v[i] += h * detail::RadauTableau::a[i][j] * vd[j];
       }
     }
-    /// δ_i = h Σ a_ij δ˙(δ_j, v_j), by two passes from the last δ: the rate hardly depends on δ, and not at all without rotations.
+    /// δ_i = h Σ a_ij δ˙(δ_j, v_j), by two passes from the last δ: the rate hardly depends on δ, and not at all without
+    /// rotations.
     void set_positions(System<M>& s, double h) {
       for (int pass = 0; pass < 2; ++pass) {
         unsettled = 0.0;
@@ -171,7 +186,8 @@ struct Radau {
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));
         double change = w.unsettled / (h * h);
         for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), nv).norm());
-        double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / (h * h);
+        double const rounding =
+            30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / (h * h);
         return {w.y.allFinite() ? change / n : std::numeric_limits<double>::quiet_NaN(),
                 method.tolerance * (1.0 + w.vd[2].norm() / n) + rounding};
       }

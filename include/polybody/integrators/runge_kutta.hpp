@@ -21,8 +21,15 @@ struct RungeKuttaWorkspace {
   RowFeedback feedback;  ///< of the run
 
   explicit RungeKuttaWorkspace(System<M>& s)
-      : delta(VecX::Zero(s.speeds())), v(delta), q(VecX::Zero(s.coordinates())), a(delta),
-        lambda(VecX::Zero(s.rows())), error(delta), v_error(delta), forward(s), scratch(s) {
+      : delta(VecX::Zero(s.speeds())),
+        v(delta),
+        q(VecX::Zero(s.coordinates())),
+        a(delta),
+        lambda(VecX::Zero(s.rows())),
+        error(delta),
+        v_error(delta),
+        forward(s),
+        scratch(s) {
     position_rate.fill(delta);
     acceleration.fill(delta);
   }
@@ -80,7 +87,8 @@ struct RungeKutta4 {
   /// [Hairer & Wanner 1996, §IV.2].
   static double stable_step(double omega, double rate) {
     double const under = omega * omega - 0.25 * rate * rate;
-    std::complex<double> const s = under > 0.0 ? std::complex(-0.5 * rate, std::sqrt(under)) : -0.5 * rate - std::sqrt(-under);
+    std::complex<double> const s =
+        under > 0.0 ? std::complex(-0.5 * rate, std::sqrt(under)) : -0.5 * rate - std::sqrt(-under);
     double lo = 2.5, hi = 3.5;  // |z|
     while (hi - lo > 1e-9) {
       double const mid = 0.5 * (lo + hi);
@@ -148,16 +156,14 @@ struct DormandPrince {
   StepReport step(System<M>& system, State& x, double h, W& w) const {
     using Row = std::array<double, 7>;
     static constexpr Row c{0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
-    static constexpr std::array<Row, 7> a{
-        Row{},
-        Row{1.0 / 5},
-        Row{3.0 / 40, 9.0 / 40},
-        Row{44.0 / 45, -56.0 / 15, 32.0 / 9},
-        Row{19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
-        Row{9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
-        Row{35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-    static constexpr Row e{71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525,
-                           -1.0 / 40};
+    static constexpr std::array<Row, 7> a{Row{},
+                                          Row{1.0 / 5},
+                                          Row{3.0 / 40, 9.0 / 40},
+                                          Row{44.0 / 45, -56.0 / 15, 32.0 / 9},
+                                          Row{19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+                                          Row{9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+                                          Row{35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+    static constexpr Row e{71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
     StepReport report;
     for (;;) {
       for (int i = 0; i < 7; ++i) w.stage(system, x, h, c[std::size_t(i)], a[std::size_t(i)], i);
@@ -193,8 +199,8 @@ struct DormandPrince {
   /// Mean square of the error over its tolerance.
   double size(VecX const& error, VecX const& now, VecX const& before) const {
     if (error.size() == 0) return 0.0;
-    double const scale = absolute_tolerance +
-                         relative_tolerance * std::max(now.cwiseAbs().maxCoeff(), before.cwiseAbs().maxCoeff());
+    double const scale =
+        absolute_tolerance + relative_tolerance * std::max(now.cwiseAbs().maxCoeff(), before.cwiseAbs().maxCoeff());
     return error.squaredNorm() / (scale * scale * double(error.size()));
   }
 };

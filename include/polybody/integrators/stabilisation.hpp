@@ -32,14 +32,14 @@ struct WithoutRows : NoCorrection {
   static constexpr bool accepts_rows = false;
 };
 
-/// The augmented equations alone, Φ̈ = 0 [thesis Eq. 3.2]. What a step leaves of Φ̇ stays, and Φ drifts off as Φ̇ t: to show
-/// that, or for runs short enough.
+/// The augmented equations alone, Φ̈ = 0 [thesis Eq. 3.2]. What a step leaves of Φ̇ stays, and Φ drifts off as Φ̇ t: to
+/// show that, or for runs short enough.
 struct NoStabilisation : NoCorrection {
   static constexpr bool accepts_rows = true;
 };
 
-/// The accelerations obey Φ̈ + 2α Φ̇ + β² Φ = 0: with α = β a violation dies away as e^{−αt} [Baumgarte 1972]. It is damped, not
-/// removed, and the step must resolve 1/α.
+/// The accelerations obey Φ̈ + 2α Φ̇ + β² Φ = 0: with α = β a violation dies away as e^{−αt} [Baumgarte 1972]. It is
+/// damped, not removed, and the step must resolve 1/α.
 struct Baumgarte {
   static constexpr bool accepts_rows = true;
   using Scratch = NoCorrection::Scratch;
@@ -78,13 +78,14 @@ struct Projection {
     for (int k = 0;; ++k) {
       if (forward.project_positions_once(system, q, v, t) <= enough) break;
       if (k == max_iterations)
-        throw NewtonStalled("Projection: the positions cannot be brought back to the joints at t = " +
-                            number(t) + " s. Take a smaller step.");
+        throw NewtonStalled("Projection: the positions cannot be brought back to the joints at t = " + number(t) +
+                            " s. Take a smaller step.");
     }
     forward.project_velocities(system, q, v, t);
   }
   template <class M, class Solver>
-  void velocities(System<M>& system, ForwardDynamics<M, Solver>& forward, Scratch&, VecX const& q, VecX& v, double t) const {
+  void velocities(System<M>& system, ForwardDynamics<M, Solver>& forward, Scratch&, VecX const& q, VecX& v,
+                  double t) const {
     forward.project_velocities(system, q, v, t);
   }
 };

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Explicit methods whose energy error stays bounded: symplectic where coordinates form a vector space, the mass is constant
-/// and forces depend on positions alone (planar rigid bodies, cables, springs). Bodies that turn in space and damped forces are
-/// taken too, at the same order, but without that promise.
+/// Explicit methods whose energy error stays bounded: symplectic where coordinates form a vector space, the mass is
+/// constant and forces depend on positions alone (planar rigid bodies, cables, springs). Bodies that turn in space and
+/// damped forces are taken too, at the same order, but without that promise.
 
 #include <polybody/integrators/integrator.hpp>
 
@@ -27,7 +27,12 @@ struct SymplecticEuler {
     VecX q, v, a, dq, lambda;
     ForwardDynamics<M, Solver> forward;
     explicit Workspace(System<M>& s)
-        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), a(v), dq(v), lambda(VecX::Zero(s.rows())), forward(s) {}
+        : q(VecX::Zero(s.coordinates())),
+          v(VecX::Zero(s.speeds())),
+          a(v),
+          dq(v),
+          lambda(VecX::Zero(s.rows())),
+          forward(s) {}
   };
 
   void check() const {}
@@ -57,8 +62,8 @@ struct SymplecticEuler {
 /// RATTLE, of order two [Andersen 1983; Hairer, Lubich & Wanner 2006, §VII.1.4]:
 ///   v½ = v₀ + ½h M⁻¹(f₀ − G₀ᵀλ),  q₁ = q₀ ⊞ h v½,   λ such that Φ(q₁) = 0,
 ///   v₁ = v½ + ½h M⁻¹(f₁ − G₁ᵀμ),                    μ such that G₁ v₁ + Φ_t = 0.
-/// λ by Newton with the matrix of q₀ throughout, so that every correction lies along M⁻¹G₀ᵀ. Forces at t₁ see the speeds
-/// v½ + ½h v̇₀.
+/// λ by Newton with the matrix of q₀ throughout, so that every correction lies along M⁻¹G₀ᵀ. Forces at t₁ see the
+/// speeds v½ + ½h v̇₀.
 struct Rattle {
   static constexpr char const* name = "Rattle";
   static constexpr int order = 2;
@@ -77,8 +82,14 @@ struct Rattle {
     VecX q, v, a, dq, change, lambda, phi;
     ForwardDynamics<M, Solver> forward;
     explicit Workspace(System<M>& s)
-        : q(VecX::Zero(s.coordinates())), v(VecX::Zero(s.speeds())), a(v), dq(v), change(v), lambda(VecX::Zero(s.rows())),
-          phi(lambda), forward(s) {}
+        : q(VecX::Zero(s.coordinates())),
+          v(VecX::Zero(s.speeds())),
+          a(v),
+          dq(v),
+          change(v),
+          lambda(VecX::Zero(s.rows())),
+          phi(lambda),
+          forward(s) {}
   };
 
   void check() const { require_positive(tolerance, "Rattle: the tolerance"); }

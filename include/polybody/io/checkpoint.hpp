@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Snapshots of runs in files. A file is: "polybody", 0x01020304, version, length of the content, content, `checksum` of all
-/// before; numbers as this machine holds them, integers as int64. Not in polybody.hpp: few programs need it.
+/// Snapshots of runs in files. A file is: "polybody", 0x01020304, version, length of the content, content, `checksum`
+/// of all before; numbers as this machine holds them, integers as int64. Not in polybody.hpp: few programs need it.
 
 #include <cstring>
 #include <fstream>
@@ -27,7 +27,8 @@ class SnapshotWalk {
     numbers(s.state.q), numbers(s.state.v), numbers(s.state.a), numbers(s.state.lambda), numbers(s.state.memory);
     each(s.state.t, s.step);
     list(s.sides, [&](auto& side) { archive(side); });
-    each(s.report.steps, s.report.iterations, s.report.factorisations, s.report.evaluations, s.report.rejected, s.report.stopped);
+    each(s.report.steps, s.report.iterations, s.report.factorisations, s.report.evaluations, s.report.rejected,
+         s.report.stopped);
     auto& last = s.report.last;
     each(last.taken, last.next, last.iterations, last.factorisations, last.evaluations, last.rejected);
     each(last.order, last.contraction);
@@ -120,7 +121,8 @@ void write_checkpoint(std::filesystem::path const& name, RunSnapshot const& snap
   file.close();
 }
 
-/// \throws IoError for a file that cannot be read, is no checkpoint, is of another version or byte order, is cut off or damaged.
+/// \throws IoError for a file that cannot be read, is no checkpoint, is of another version or byte order, is cut off or
+/// damaged.
 template <class = void>
 RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::string const name = file.string();
@@ -133,10 +135,12 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   if (std::memcmp(head.kind, ours.kind, sizeof head.kind) != 0)
     throw IoError("file '" + name + "' is not a checkpoint of polybody.");
   if (all.size() < sizeof head) throw IoError("checkpoint '" + name + "' is cut off within its head.");
-  if (head.order == 0x04030201u) throw IoError("checkpoint '" + name + "' was written by a machine of another byte order.");
+  if (head.order == 0x04030201u)
+    throw IoError("checkpoint '" + name + "' was written by a machine of another byte order.");
   if (head.version != ours.version)
     throw IoError("checkpoint '" + name + "' is of version " + std::to_string(head.version) +
-                  ", but this program reads version " + std::to_string(ours.version) + ". Read it with the program that wrote it.");
+                  ", but this program reads version " + std::to_string(ours.version) +
+                  ". Read it with the program that wrote it.");
   std::uint64_t sum = 0;
   std::size_t const beside = sizeof head + sizeof sum;
   if (all.size() < beside || all.size() - beside != head.length)
@@ -144,7 +148,8 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
                   " bytes in place of " + std::to_string(head.length + beside) + ".");
   std::memcpy(&sum, all.data() + all.size() - sizeof sum, sizeof sum);
   std::string_view const summed = std::string_view(all).substr(0, all.size() - sizeof sum);
-  if (checksum(summed) != sum) throw IoError("checkpoint '" + name + "' is damaged: its checksum is not that of its content.");
+  if (checksum(summed) != sum)
+    throw IoError("checkpoint '" + name + "' is damaged: its checksum is not that of its content.");
   RunSnapshot snapshot;
   detail::SnapshotWalk<detail::SnapshotReader> content{{summed.substr(sizeof head), name}};
   content.walk(snapshot);

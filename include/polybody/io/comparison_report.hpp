@@ -21,9 +21,10 @@ void check(Comparison const& c, std::string const& what) {
                  run.output_names == c.runs.front().output_names;
     for (auto const& history : run.outputs) whole = whole && history.size() == n;
     if (!whole)
-      throw InvalidInput(what + ": the run \"" + run.name +
-                         "\" lacks times, or its histories and outputs are not as many as its times and the first run's outputs. "
-                         "Take it from `compare`.");
+      throw InvalidInput(
+          what + ": the run \"" + run.name +
+          "\" lacks times, or its histories and outputs are not as many as its times and the first run's outputs. "
+          "Take it from `compare`.");
   }
 }
 
@@ -58,8 +59,8 @@ Figure over_time(Comparison const& c, std::string const& title, std::string cons
   return figure;
 }
 
-/// Violations over time, on a logarithmic axis, of the runs that have any; no figure where none has. What is below rounding is
-/// drawn at 1e-16, or at a millionth of the largest where that is less; zeros are left out.
+/// Violations over time, on a logarithmic axis, of the runs that have any; no figure where none has. What is below
+/// rounding is drawn at 1e-16, or at a millionth of the largest where that is less; zeros are left out.
 template <class = void>
 void add_violations(Comparison const& c, std::string const& title, std::string const& units, double Violation::* level,
                     std::vector<Figure>& figures) {
@@ -110,8 +111,8 @@ void write_csv(Comparison const& c, std::filesystem::path const& file) {
   csv.close();
 }
 
-/// The histories of each run in a file of its own, history_<number>_<name>.csv: the column "t [s]", then those of `histories`.
-/// Returns the files in the order of the runs. Throws as `write_csv`.
+/// The histories of each run in a file of its own, history_<number>_<name>.csv: the column "t [s]", then those of
+/// `histories`. Returns the files in the order of the runs. Throws as `write_csv`.
 template <class = void>
 std::vector<std::filesystem::path> write_histories(Comparison const& c, std::filesystem::path const& folder) {
   detail::check(c, "write_histories");
@@ -120,7 +121,8 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
     std::vector<History> const all = histories(run);
     std::vector<std::string> heads{"t [s]"};
     for (History const& h : all) heads.push_back(h.name);
-    written.push_back(folder / ("history_" + std::to_string(written.size() + 1) + '_' + detail::file_word(run.name) + ".csv"));
+    written.push_back(folder /
+                      ("history_" + std::to_string(written.size() + 1) + '_' + detail::file_word(run.name) + ".csv"));
     Csv csv(written.back(), std::move(heads));
     std::vector<double> row(all.size() + 1);
     for (std::size_t k = 0; k < run.times.size(); ++k) {
@@ -133,11 +135,13 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
   return written;
 }
 
-/// Draws all runs over time: `outputs`, `violations` (of positions, speeds and accelerations), `joint_force` (of the joint that
-/// holds most) and `energies`, each as .dat, .gp and, where gnuplot is there and `draw` is set, .png. Without outputs, or without
-/// violations, there is no such figure. Returns the files. Throws as `write_csv`, and IoError where gnuplot fails.
+/// Draws all runs over time: `outputs`, `violations` (of positions, speeds and accelerations), `joint_force` (of the
+/// joint that holds most) and `energies`, each as .dat, .gp and, where gnuplot is there and `draw` is set, .png.
+/// Without outputs, or without violations, there is no such figure. Returns the files. Throws as `write_csv`, and
+/// IoError where gnuplot fails.
 template <class = void>
-std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder, bool draw = true) {
+std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder,
+                                                 bool draw = true) {
   detail::check(c, "write_figures");
   using Run = ComparedRun const&;
   std::vector<std::filesystem::path> written;
@@ -152,20 +156,24 @@ std::vector<std::filesystem::path> write_figures(Comparison const& c, std::files
   detail::add_violations(c, "Violation of accelerations", "[m/s², rad/s², 1/s²]", &Violation::acceleration, violations);
   detail::draw_panels(violations, folder / "violations", draw, written);
   auto const force = [](Run run, std::size_t k) { return run.joint_forces[k]; };
-  detail::draw_panels({detail::over_time(c, "Force of the joint that holds most", "force [N]", force)}, folder / "joint_force",
-                      draw, written);
-  detail::draw_panels(
-      {detail::over_time(c, "Kinetic energy", "energy [J]", [](Run run, std::size_t k) { return run.energies[k].kinetic; }),
-       detail::over_time(c, "Potential energy", "energy [J]", [](Run run, std::size_t k) { return run.energies[k].potential(); }),
-       detail::over_time(c, "Total energy, change since the start", "energy [J]",
-                         [](Run run, std::size_t k) { return run.energies[k].total() - run.energies.front().total(); })},
-      folder / "energies", draw, written);
+  detail::draw_panels({detail::over_time(c, "Force of the joint that holds most", "force [N]", force)},
+                      folder / "joint_force", draw, written);
+  detail::draw_panels({detail::over_time(c, "Kinetic energy", "energy [J]",
+                                         [](Run run, std::size_t k) { return run.energies[k].kinetic; }),
+                       detail::over_time(c, "Potential energy", "energy [J]",
+                                         [](Run run, std::size_t k) { return run.energies[k].potential(); }),
+                       detail::over_time(c, "Total energy, change since the start", "energy [J]",
+                                         [](Run run, std::size_t k) {
+                                           return run.energies[k].total() - run.energies.front().total();
+                                         })},
+                      folder / "energies", draw, written);
   return written;
 }
 
 /// All of the above in `folder`: table.csv, histories and figures. Returns the files.
 template <class = void>
-std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesystem::path const& folder, bool draw = true) {
+std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesystem::path const& folder,
+                                                bool draw = true) {
   detail::check(c, "write_report");
   std::vector<std::filesystem::path> written{folder / "table.csv"};
   write_csv(c, written.front());
@@ -187,13 +195,17 @@ void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
 /// Error against CPU time of the runs that came to their end, both axes logarithmic.
 template <class = void>
 Figure work_precision_figure(WorkPrecision const& w) {
-  if (w.curves.empty()) throw InvalidInput("work_precision_figure: there are no curves. Add those of `work_precision`.");
-  Figure figure{.title = "Work and precision", .x_label = "CPU time [s]", .y_label = "error of " + w.curves.front().output,
-                .log_x = true, .log_y = true};
+  if (w.curves.empty())
+    throw InvalidInput("work_precision_figure: there are no curves. Add those of `work_precision`.");
+  Figure figure{.title = "Work and precision",
+                .x_label = "CPU time [s]",
+                .y_label = "error of " + w.curves.front().output,
+                .log_x = true,
+                .log_y = true};
   for (WorkCurve const& curve : w.curves) {
     if (curve.output != w.curves.front().output)
-      throw InvalidInput("work_precision_figure: \"" + curve.name + "\" is for the output \"" + curve.output + "\", not \"" +
-                         w.curves.front().output + "\". Draw it in another figure.");
+      throw InvalidInput("work_precision_figure: \"" + curve.name + "\" is for the output \"" + curve.output +
+                         "\", not \"" + w.curves.front().output + "\". Draw it in another figure.");
     Curve drawn{.label = curve.name, .style = "linespoints", .color = int(&curve - w.curves.data())};
     for (WorkPoint const& p : curve.points)
       if (p.failure.empty()) {

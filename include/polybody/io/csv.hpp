@@ -49,9 +49,7 @@ class Csv {
   }
 
   /// The same for `row({t, x, y})`.
-  void row(std::initializer_list<double> values) {
-    row(std::span<double const>(values.begin(), values.size()));
-  }
+  void row(std::initializer_list<double> values) { row(std::span<double const>(values.begin(), values.size())); }
 
   /// The same for `row(t, x, y)`.
   template <std::convertible_to<double>... Numbers>
@@ -65,10 +63,8 @@ class Csv {
   std::size_t rows() const noexcept { return rows_; }  ///< Rows written so far, without the head.
 
  private:
-  static void check_heads(std::filesystem::path const& file,
-                          std::vector<std::string> const& columns) {
-    if (columns.empty())
-      throw InvalidInput("file '" + file.string() + "': a table needs at least one column");
+  static void check_heads(std::filesystem::path const& file, std::vector<std::string> const& columns) {
+    if (columns.empty()) throw InvalidInput("file '" + file.string() + "': a table needs at least one column");
     std::set<std::string_view> seen;
     for (auto const& head : columns) {
       if (head.empty()) throw InvalidInput("file '" + file.string() + "': a column head is empty");
@@ -79,16 +75,14 @@ class Csv {
 
   /// Completes `line_`, which holds the texts of the first `texts` columns.
   void write_row(std::span<double const> values, std::size_t texts) {
-    auto const where = [&] {
-      return "file '" + file_.name() + "', row " + std::to_string(rows_ + 1);
-    };
+    auto const where = [&] { return "file '" + file_.name() + "', row " + std::to_string(rows_ + 1); };
     if (values.size() + texts != columns_.size())
       throw InvalidInput(where() + ": " + std::to_string(values.size() + texts) + " values for " +
                          std::to_string(columns_.size()) + " columns");
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i]))
-        throw InvalidInput(where() + ", column '" + columns_[i + texts] +
-                           "': the value is not finite (" + number(values[i]) + ")");
+        throw InvalidInput(where() + ", column '" + columns_[i + texts] + "': the value is not finite (" +
+                           number(values[i]) + ")");
       detail::append_digits(line_, values[i]);
       line_ += ',';
     }

@@ -37,8 +37,7 @@ struct Figure {
 
 namespace detail {
 
-inline constexpr std::array<std::string_view, 5> curve_styles{"lines", "points", "linespoints",
-                                                              "dashed", "steps"};
+inline constexpr std::array<std::string_view, 5> curve_styles{"lines", "points", "linespoints", "dashed", "steps"};
 
 /// Throws InvalidInput with the figure's title and the curve's label unless all can be drawn.
 inline void check(Figure const& figure) {
@@ -55,8 +54,7 @@ inline void check(Figure const& figure) {
   auto const check_range = [&](auto const& range, bool log, std::string const& axis) {
     if (!range) return;
     auto const [from, to] = *range;
-    need(is_finite(from) && is_finite(to) && from != to,
-         axis + " must be two different finite numbers");
+    need(is_finite(from) && is_finite(to) && from != to, axis + " must be two different finite numbers");
     need(!log || (from > 0 && to > 0), axis + " must be positive on a logarithmic axis");
   };
   check_range(figure.x_range, figure.log_x, "x_range");
@@ -65,8 +63,8 @@ inline void check(Figure const& figure) {
   std::string const title = where;
   for (auto const& [x, y, label, style, color, width] : figure.curves) {
     (where = title).append(", curve '").append(label).append("'");
-    need(x.size() == y.size(), "x has " + std::to_string(x.size()) + " numbers and y has " +
-                                   std::to_string(y.size()) + "; they must be as many");
+    need(x.size() == y.size(), "x has " + std::to_string(x.size()) + " numbers and y has " + std::to_string(y.size()) +
+                                   "; they must be as many");
     need(!x.empty(), "a curve needs at least one point");
     need(std::ranges::all_of(x, is_finite), "a number in x is not finite");
     need(std::ranges::all_of(y, is_finite), "a number in y is not finite");

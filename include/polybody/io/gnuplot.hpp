@@ -28,8 +28,7 @@ inline std::optional<std::filesystem::path> find_gnuplot() {
     fs::path const program = fs::absolute(fs::path(folder) / "gnuplot", reason);
     auto const status = fs::status(program, reason);
     auto const may_run = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
-    if (fs::is_regular_file(status) && (status.permissions() & may_run) != fs::perms::none)
-      return program;
+    if (fs::is_regular_file(status) && (status.permissions() & may_run) != fs::perms::none) return program;
   }
   return std::nullopt;
 }
@@ -69,8 +68,7 @@ inline void run_gnuplot(std::filesystem::path const& program, std::filesystem::p
   };
   Temporary const drawing{temporary_beside(png)}, words{temporary_beside(png)};
   fs::path const folder = fs::absolute(script).parent_path();
-  std::string const command = "cd " + shell_word(folder.string()) + " && " +
-                              shell_word(program.string()) + " -d -e " +
+  std::string const command = "cd " + shell_word(folder.string()) + " && " + shell_word(program.string()) + " -d -e " +
                               shell_word("png='./" + drawing.file.filename().string() + "'") + ' ' +
                               shell_word("./" + script.filename().string()) + " </dev/null >" +
                               shell_word(words.file.filename().string()) + " 2>&1";
@@ -82,8 +80,7 @@ inline void run_gnuplot(std::filesystem::path const& program, std::filesystem::p
                   "': " + std::string(std::istreambuf_iterator<char>(said), {}));
   }
   fs::rename(drawing.file, png, reason);
-  if (reason)
-    throw IoError("file '" + png.string() + "' cannot be put in place: " + reason.message());
+  if (reason) throw IoError("file '" + png.string() + "' cannot be put in place: " + reason.message());
 }
 
 }  // namespace detail

@@ -31,8 +31,8 @@ inline constexpr std::array<std::string_view, 5> gnuplot_styles{"lines", "points
                                                                 "lines dashtype (12,6)", "steps"};
 
 /// Colours that colour-blind readers can tell apart [Okabe & Ito 2008], strongest first.
-inline constexpr std::array<std::string_view, 8> palette{
-    "#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
+inline constexpr std::array<std::string_view, 8> palette{"#0072B2", "#D55E00", "#009E73", "#E69F00",
+                                                         "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
 
 /// A block of two columns for each curve; two blank lines part the blocks.
 inline std::string data_text(std::vector<Figure> const& figures) {
@@ -64,8 +64,7 @@ inline std::string script_text(Figure const& figure, std::string const& data, st
     if (r) return tick_digits((*r)[0], (*r)[1]);
     double low = (figure.curves[0].*points)[0], high = low;
     for (auto const& curve : figure.curves)
-      for (double const value : curve.*points)
-        low = std::min(low, value), high = std::max(high, value);
+      for (double const value : curve.*points) low = std::min(low, value), high = std::max(high, value);
     return tick_digits(low, high);
   };
   bool const named = std::ranges::any_of(figure.curves, [](auto& c) { return !c.label.empty(); });
@@ -73,34 +72,28 @@ inline std::string script_text(Figure const& figure, std::string const& data, st
   text += "set title " + gnuplot_text(figure.title) + " noenhanced\n";
   text += "set xlabel " + gnuplot_text(figure.x_label) + " noenhanced\n";
   text += "set ylabel " + gnuplot_text(figure.y_label) + " noenhanced\n";
-  text +=
-      "set grid linetype 1 linecolor rgb '#d8d8d8' linewidth 1\nset tics nomirror\nset border 3\n";
+  text += "set grid linetype 1 linecolor rgb '#d8d8d8' linewidth 1\nset tics nomirror\nset border 3\n";
   text += figure.legend && named ? "set key below height 1 noenhanced\n" : "unset key\n";
   text += "set format x '%." + digits(figure.x_range, &Curve::x) + "h'\n";
   text += "set format y '%." + digits(figure.y_range, &Curve::y) + "h'\n";
   if (figure.log_x) text += "set logscale x\n";
   if (figure.log_y) text += "set logscale y\n";
   if (figure.equal_axes) text += "set size ratio -1\n";
-  text +=
-      "set xrange " + range(figure.x_range) + "\nset yrange " + range(figure.y_range) + "\nplot ";
+  text += "set xrange " + range(figure.x_range) + "\nset yrange " + range(figure.y_range) + "\nplot ";
   for (std::size_t i = 0; i < figure.curves.size(); ++i) {
     Curve const& curve = figure.curves[i];
     std::size_t const color = (curve.color < 0 ? i : std::size_t(curve.color)) % palette.size();
-    auto const style =
-        std::size_t(std::ranges::find(curve_styles, curve.style) - curve_styles.begin());
-    text += (i ? ", \\\n     " : "") + gnuplot_text(data) + " index " + std::to_string(block + i) +
-            " using 1:2 with " + std::string(gnuplot_styles[style]);
-    text += " linewidth " + all_digits(curve.width) + " linecolor rgb '" + std::string(palette[color]) +
-            "'";
+    auto const style = std::size_t(std::ranges::find(curve_styles, curve.style) - curve_styles.begin());
+    text += (i ? ", \\\n     " : "") + gnuplot_text(data) + " index " + std::to_string(block + i) + " using 1:2 with " +
+            std::string(gnuplot_styles[style]);
+    text += " linewidth " + all_digits(curve.width) + " linecolor rgb '" + std::string(palette[color]) + "'";
     if (curve.style.ends_with("points")) text += " pointtype " + std::to_string(4 + color);
     text += curve.label.empty() ? " notitle" : " title " + gnuplot_text(curve.label);
   }
   return text + '\n';
 }
 
-inline std::filesystem::path with_ending(std::filesystem::path stem, char const* ending) {
-  return stem += ending;
-}
+inline std::filesystem::path with_ending(std::filesystem::path stem, char const* ending) { return stem += ending; }
 
 }  // namespace detail
 
@@ -108,12 +101,11 @@ inline std::filesystem::path with_ending(std::filesystem::path stem, char const*
 /// largest figure. Writes stem.dat, stem.gp (runs by hand from its own folder) and, if `draw` and
 /// gnuplot is on PATH, stem.png; each appears only when complete. Throws InvalidInput (naming the
 /// figure and the curve) before anything is written, IoError if writing or gnuplot fails.
-inline Drawn write_panels(std::vector<Figure> const& figures, int columns,
-                          std::filesystem::path const& stem, bool draw = true) {
+inline Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
+                          bool draw = true) {
   std::string const name = stem.filename().string();
   if (name.empty() || std::ranges::any_of(name, [](unsigned char c) { return c < ' '; }))
-    throw InvalidInput("figure file '" + stem.string() +
-                       "': the name is empty or has a control sign");
+    throw InvalidInput("figure file '" + stem.string() + "': the name is empty or has a control sign");
   if (figures.empty() || columns < 1)
     throw InvalidInput("figure file '" + stem.string() + "': one figure and one column at least");
   int width = 0, height = 0;
@@ -125,8 +117,7 @@ inline Drawn write_panels(std::vector<Figure> const& figures, int columns,
   int const count = static_cast<int>(figures.size());
   int const across = std::min(columns, count), down = (count + across - 1) / across;
   if (across > 30000 / width || down > 30000 / height)
-    throw InvalidInput("figure file '" + stem.string() +
-                       "': larger than 30000 pixels; use fewer panels");
+    throw InvalidInput("figure file '" + stem.string() + "': larger than 30000 pixels; use fewer panels");
 
   std::string const size = std::to_string(across * width) + ',' + std::to_string(down * height);
   std::string script = "# gnuplot script; run it from its own folder\n";
@@ -134,8 +125,7 @@ inline Drawn write_panels(std::vector<Figure> const& figures, int columns,
   script += "if (strstrt(GPVAL_TERMINALS, ' pngcairo ')) { set terminal pngcairo size " + size +
             " font 'sans,14' } else { set terminal png size " + size + " }\n";
   script += "set encoding utf8\nset output png\n";
-  if (count > 1)
-    script += "set multiplot layout " + std::to_string(down) + ',' + std::to_string(across) + '\n';
+  if (count > 1) script += "set multiplot layout " + std::to_string(down) + ',' + std::to_string(across) + '\n';
   std::size_t block = 0;
   for (auto const& figure : figures) {
     script += detail::script_text(figure, "./" + name + ".dat", block);
@@ -150,14 +140,12 @@ inline Drawn write_panels(std::vector<Figure> const& figures, int columns,
   commands.close();
   auto const gnuplot = draw ? find_gnuplot() : std::nullopt;
   if (!gnuplot) return Drawn::script_only;
-  detail::run_gnuplot(*gnuplot, detail::with_ending(stem, ".gp"),
-                      detail::with_ending(stem, ".png"));
+  detail::run_gnuplot(*gnuplot, detail::with_ending(stem, ".gp"), detail::with_ending(stem, ".png"));
   return Drawn::png;
 }
 
 /// One figure; see `write_panels`.
-inline Drawn write_figure(Figure const& figure, std::filesystem::path const& stem,
-                          bool draw = true) {
+inline Drawn write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
   return write_panels({figure}, 1, stem, draw);
 }
 

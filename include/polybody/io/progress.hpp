@@ -45,8 +45,7 @@ class Progress {
       : Progress(start, end, std::move(label), std::cerr, stderr_is_terminal(), steady_seconds) {}
 
   /// The same on any stream, with any clock; draws only if `terminal`.
-  Progress(double start, double end, std::string label, std::ostream& out, bool terminal,
-           Clock clock = steady_seconds)
+  Progress(double start, double end, std::string label, std::ostream& out, bool terminal, Clock clock = steady_seconds)
       : start_(start),
         end_(end),
         label_(shortened(std::move(label))),
@@ -102,17 +101,14 @@ class Progress {
     return text;
   }
 
-  static bool begins_sign(char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }  // UTF-8
+  static bool begins_sign(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }  // UTF-8
 
   static std::size_t width(std::string const& text) {
     return static_cast<std::size_t>(std::ranges::count_if(text, begins_sign));
   }
 
   static std::string shortened(std::string text) {
-    std::ranges::replace_if(
-        text, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+    std::ranges::replace_if(text, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
     while (width(text) > label_width) text.pop_back();  // ends with the first byte of a sign
     return text;
   }

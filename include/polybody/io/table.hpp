@@ -32,9 +32,8 @@ struct Table {
       if (columns[j] == name) ++found, place = j;
     }
     if (found != 1)
-      throw InvalidInput((found ? "more than one column is called '" : "no column is called '") +
-                         std::string(name) + "'; the table has " +
-                         (heads.empty() ? "none" : heads));
+      throw InvalidInput((found ? "more than one column is called '" : "no column is called '") + std::string(name) +
+                         "'; the table has " + (heads.empty() ? "none" : heads));
     std::vector<double> values;
     for (auto const& row : rows) values.push_back(row.at(place));
     return values;
@@ -98,8 +97,7 @@ struct CsvReader {
         value += step();
       else {
         while (!text.empty() && blanks.find(text.front()) != blanks.npos) step();
-        if (!text.empty() && text.front() != ',' && text.front() != '\n')
-          fail(line, "text follows a closing quote");
+        if (!text.empty() && text.front() != ',' && text.front() != '\n') fail(line, "text follows a closing quote");
         return value;
       }
     }
@@ -120,8 +118,7 @@ inline Table read_csv(std::filesystem::path const& file) {
   for (char block[4096]; stream.read(block, sizeof block), stream.gcount() > 0;)
     text.append(block, static_cast<std::size_t>(stream.gcount()));
   if (!stream.is_open() || stream.bad())
-    throw IoError("file '" + name + "' cannot be read" +
-                  (errno ? ": " + std::generic_category().message(errno) : ""));
+    throw IoError("file '" + name + "' cannot be read" + (errno ? ": " + std::generic_category().message(errno) : ""));
   detail::CsvReader reader{text, name};
   if (reader.text.starts_with("\xEF\xBB\xBF")) reader.text.remove_prefix(3);
   std::size_t line = 1;
@@ -129,18 +126,17 @@ inline Table read_csv(std::filesystem::path const& file) {
   if (table.columns.empty()) throw IoError("file '" + name + "' is empty; a head line is needed");
   for (auto fields = reader.record(line); !fields.empty(); fields = reader.record(line)) {
     if (fields.size() != table.columns.size())
-      reader.fail(line, std::to_string(fields.size()) + " fields for " +
-                            std::to_string(table.columns.size()) + " columns");
+      reader.fail(line,
+                  std::to_string(fields.size()) + " fields for " + std::to_string(table.columns.size()) + " columns");
     auto& row = table.rows.emplace_back();
     for (std::size_t j = 0; j < fields.size(); ++j) {
       std::string_view digits = fields[j];
       if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
       double value = 0.0;
-      auto const [end, error] =
-          std::from_chars(digits.data(), digits.data() + digits.size(), value);
+      auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
       if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-        reader.fail(line, "column '" + table.columns[j] + "': '" + fields[j] +
-                              "' is not a finite number a double can hold");
+        reader.fail(line,
+                    "column '" + table.columns[j] + "': '" + fields[j] + "' is not a finite number a double can hold");
       row.push_back(value);
     }
   }

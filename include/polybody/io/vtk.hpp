@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What a model looks like over time, as VTK's XML files for ParaView: a collection (.pvd) and beside it an unstructured grid
+/// What a model looks like over time, as VTK's XML files for ParaView: a collection (.pvd) and beside it an
+/// unstructured grid
 /// (.vtu) for each state. Not in polybody.hpp: few programs need it.
 
 #include <bit>
@@ -29,7 +30,10 @@ struct VtkArrays {
 
   template <class T>
   void add(char const* name, int components, std::vector<T> const& values) {
-    char const* const type = std::is_same_v<T, float> ? "Float32" : sizeof(T) == 8 ? "Int64" : sizeof(T) == 4 ? "Int32" : "UInt8";
+    char const* const type = std::is_same_v<T, float> ? "Float32"
+                             : sizeof(T) == 8         ? "Int64"
+                             : sizeof(T) == 4         ? "Int32"
+                                                      : "UInt8";
     heads += std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
              std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(bytes.size()) + "\"/>\n";
     std::uint64_t const length = values.size() * sizeof(T);
@@ -99,15 +103,18 @@ void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const&
 /// Writes one state after the other:
 ///   VtkWriter writer("out/run.pvd", visual);
 ///   for (State const& now : simulate(…)) writer.write(now);
-/// makes out/run.pvd and out/run/run_000000.vtu, …. Points carry `displacement` from the reference state [m], `velocity` [m/s]
-/// and, where a part knows it, `axial_stress` [N/m²] (NaN on the others); cells carry `part`, the place among the parts of the
-/// visual, from 0. Numbers are float32. Every file appears when it is complete, a grid before the collection that names it; so
-/// a run that is broken off leaves an animation up to its last state. The visual must outlive the writer.
+/// makes out/run.pvd and out/run/run_000000.vtu, …. Points carry `displacement` from the reference state [m],
+/// `velocity` [m/s] and, where a part knows it, `axial_stress` [N/m²] (NaN on the others); cells carry `part`, the
+/// place among the parts of the visual, from 0. Numbers are float32. Every file appears when it is complete, a grid
+/// before the collection that names it; so a run that is broken off leaves an animation up to its last state. The
+/// visual must outlive the writer.
 template <class M>
 class VtkWriter {
  public:
-  /// Writes a collection without states. \throws InvalidInput unless the file ends in .pvd; IoError when it cannot be written.
-  VtkWriter(std::filesystem::path const& file, Visual<M>& visual) : visual_(&visual), file_(std::filesystem::absolute(file)) {
+  /// Writes a collection without states. \throws InvalidInput unless the file ends in .pvd; IoError when it cannot be
+  /// written.
+  VtkWriter(std::filesystem::path const& file, Visual<M>& visual)
+      : visual_(&visual), file_(std::filesystem::absolute(file)) {
     if (file_.extension() != ".pvd")
       throw InvalidInput("VtkWriter: the name of a collection ends in .pvd, but this is '" + file.string() + "'.");
     for (VisualPart const& part : visual.at(visual.model().reference_state()))
@@ -129,7 +136,8 @@ class VtkWriter {
     index.insert(0, index.size() < 6 ? 6 - index.size() : 0, '0');
     std::filesystem::path const stem = file_.stem(), grid = stem / (stem.string() + "_" + index + ".vtu");
     detail::write_vtu(file_.parent_path() / grid, parts, rest_);
-    entries_ += "<DataSet timestep=\"" + detail::all_digits(x.t) + "\" part=\"0\" file=\"" + detail::xml_text(grid.generic_string()) + "\"/>\n";
+    entries_ += "<DataSet timestep=\"" + detail::all_digits(x.t) + "\" part=\"0\" file=\"" +
+                detail::xml_text(grid.generic_string()) + "\"/>\n";
     write_collection();
     last_ = x.t;
     ++count_;

@@ -53,8 +53,8 @@ inline Vec2 angle_gradient(Gap<2> const& xy, double lambda, WrenchGradient& k) {
   return Vec2(-y, x) * (lambda / n2);
 }
 
-/// x = a₁·b₁ and y = a₂·b₁, whose angle is the turn of b against a about a₃. While b₁ stays in the plane of a₁, a₂ (as a
-/// Revolute keeps it) θ̇ = a₃·(ω_b − ω_a); perpendicular to it there is no angle.
+/// x = a₁·b₁ and y = a₂·b₁, whose angle is the turn of b against a about a₃. While b₁ stays in the plane of a₁, a₂ (as
+/// a Revolute keeps it) θ̇ = a₃·(ω_b − ω_a); perpendicular to it there is no angle.
 template <StateScalar T>
 Gap<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
   Gap<2, T> xy;
@@ -64,10 +64,9 @@ Gap<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
 
 template <StateScalar T>
 T turn_gamma(Gap<2, T> const& xy, Frame<T> const& a, Frame<T> const& b) {
-  return angle_gamma<T>(xy,
-                        {perpendicular_gamma<T>(a.A.col(0), b.A.col(0), a, b),
-                         perpendicular_gamma<T>(a.A.col(1), b.A.col(0), a, b)},
-                        a, b);
+  return angle_gamma<T>(
+      xy, {perpendicular_gamma<T>(a.A.col(0), b.A.col(0), a, b), perpendicular_gamma<T>(a.A.col(1), b.A.col(0), a, b)},
+      a, b);
 }
 
 inline void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
@@ -75,8 +74,8 @@ inline void turn_gradient(Frame<double> const& a, Frame<double> const& b, double
   for (int i = 0; i < 2; ++i) perpendicular_gradient(a.A.col(i), b.A.col(0), each[i], k);
 }
 
-/// Writes g = u·d − p θ, u fixed in a, θ the turn of b about a₃: one slide and one turn coupled, p [m/rad]. Full turns are
-/// counted by the slide, g = −p wrap(θ − u·d/p), so |g| ≤ π |p|.
+/// Writes g = u·d − p θ, u fixed in a, θ the turn of b about a₃: one slide and one turn coupled, p [m/rad]. Full turns
+/// are counted by the slide, g = −p wrap(θ − u·d/p), so |g| ≤ π |p|.
 template <int m, StateScalar T>
 void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
   no_slide<m, T>(u, a, b, gap, row);
@@ -91,8 +90,8 @@ T slide_and_turn_gamma(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T>
   return no_slide_gamma<T>(u, a, b) - p * turn_gamma<T>(turned(a, b), a, b);
 }
 
-inline void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b, double lambda,
-                                    WrenchGradient& k) {
+inline void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b,
+                                    double lambda, WrenchGradient& k) {
   no_slide_gradient(u, a, b, lambda, k);
   turn_gradient(a, b, -p * lambda, k);
 }

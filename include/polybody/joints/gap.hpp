@@ -10,15 +10,15 @@ namespace polybody {
 
 /// The violation of m rows between frame a and frame b:
 ///   ġ = Ga Va + Gb Vb + Φ_t,   V = [ṙ; ω] in world axes.
-/// Rows are of positions (holonomic), but for those that a geometry names as `velocity_rows`: of these only the rate has a
-/// meaning, and g is zero.
+/// Rows are of positions (holonomic), but for those that a geometry names as `velocity_rows`: of these only the rate
+/// has a meaning, and g is zero.
 template <int m, StateScalar T = double>
 struct Gap {
   static constexpr int rows = m;
-  Vec<T, m> g = Vec<T, m>::Zero();             ///< (m) violation [m], [rad] or [1]
-  Mat<T, m, 6> Ga = Mat<T, m, 6>::Zero();      ///< (m×6) map of frame a's twist
-  Mat<T, m, 6> Gb = Mat<T, m, 6>::Zero();      ///< (m×6) map of frame b's twist
-  Vec<T, m> rate = Vec<T, m>::Zero();          ///< (m) Φ_t: the rate that is prescribed by time alone
+  Vec<T, m> g = Vec<T, m>::Zero();         ///< (m) violation [m], [rad] or [1]
+  Mat<T, m, 6> Ga = Mat<T, m, 6>::Zero();  ///< (m×6) map of frame a's twist
+  Mat<T, m, 6> Gb = Mat<T, m, 6>::Zero();  ///< (m×6) map of frame b's twist
+  Vec<T, m> rate = Vec<T, m>::Zero();      ///< (m) Φ_t: the rate that is prescribed by time alone
 };
 
 /// [ṙ; ω] of a frame.
@@ -32,23 +32,23 @@ Vec<T, 6> twist(Frame<T> const& frame) {
 /// Pose and twist of b seen from a, in a's axes: what a compliant joint needs beyond the rows.
 template <StateScalar T = double>
 struct Relative {
-  Vec<T, 3> d;        ///< (3) r_b − r_a in a's axes [m]
-  Mat<T, 3, 3> R;     ///< (3×3) AaᵀAb
-  Vec<T, 3> v;        ///< (3) rate of r_b − r_a seen in a's axes [m/s]
-  Vec<T, 3> w;        ///< (3) ω_b − ω_a in a's axes [rad/s]
+  Vec<T, 3> d;     ///< (3) r_b − r_a in a's axes [m]
+  Mat<T, 3, 3> R;  ///< (3×3) AaᵀAb
+  Vec<T, 3> v;     ///< (3) rate of r_b − r_a seen in a's axes [m/s]
+  Vec<T, 3> w;     ///< (3) ω_b − ω_a in a's axes [rad/s]
 };
 
 template <StateScalar T>
 Relative<T> relative(Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> const d = b.r - a.r;
-  return {a.A.transpose() * d, a.A.transpose() * b.A,
-          a.A.transpose() * (b.v - a.v - a.w.cross(d)), a.A.transpose() * (b.w - a.w)};
+  return {a.A.transpose() * d, a.A.transpose() * b.A, a.A.transpose() * (b.v - a.v - a.w.cross(d)),
+          a.A.transpose() * (b.w - a.w)};
 }
 
 /// Turns two frames into a gap: what a policy measures.
 template <class G>
 concept Measure = requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
-  requires 1 <= G::rows && G::rows <= 6;
+  requires 1 <= G::rows&& G::rows <= 6;
   { G::needs } -> std::convertible_to<Observes>;
   { g.template gap<double>(a, b, t) } -> std::same_as<Gap<G::rows, double>>;
 };
@@ -63,7 +63,8 @@ concept JointGeometry = Measure<G> && requires(G const g, Frame<double> const a,
   { g.template gamma<double>(a, b, t) } -> std::same_as<Vec<double, G::rows>>;
 };
 
-/// How many of a geometry's rows, the last ones, hold speeds and no positions (nonholonomic: rolling, a blade); most have none.
+/// How many of a geometry's rows, the last ones, hold speeds and no positions (nonholonomic: rolling, a blade); most
+/// have none.
 template <class G>
 constexpr int velocity_rows() {
   if constexpr (requires { G::velocity_rows; })
@@ -72,10 +73,13 @@ constexpr int velocity_rows() {
     return 0;
 }
 
-/// Which motions of b against a a geometry leaves free (its member `free`): slides along the joint's axes, then turns about them.
+/// Which motions of b against a a geometry leaves free (its member `free`): slides along the joint's axes, then turns
+/// about them.
 using Freedoms = std::array<bool, 6>;
 template <class G>
-concept NamesFreedoms = requires { { G::free } -> std::convertible_to<Freedoms>; };
+concept NamesFreedoms = requires {
+  { G::free } -> std::convertible_to<Freedoms>;
+};
 
 namespace detail {
 constexpr int free_slides(Freedoms const& free) { return int(free[0]) + int(free[1]) + int(free[2]); }
@@ -94,7 +98,7 @@ constexpr Observes needs_of_second() {
 /// ∂[Gaᵀλ; Gbᵀλ]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12, rotations δφ in world axes, by dual numbers.
 template <Measure G>
 Mat<double, 12, 12> wrench_gradient_by_duals(G const& geometry, Frame<double> const& a, Frame<double> const& b,
-                                    double t, Vec<double, G::rows> const& lambda) {
+                                             double t, Vec<double, G::rows> const& lambda) {
   using D = Dual<12>;
   auto const moved = [](Frame<double> const& f, int first) {
     Frame<D> m;
@@ -125,8 +129,8 @@ concept HasWrenchGradient = requires(G const g, Frame<double> const f, Vec<doubl
 
 /// The same by the geometry's closed form where it has one, else by dual numbers.
 template <Measure G>
-Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b,
-                                    double t, Vec<double, G::rows> const& lambda) {
+Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b, double t,
+                                    Vec<double, G::rows> const& lambda) {
   if constexpr (HasWrenchGradient<G>)
     return geometry.wrench_gradient(a, b, lambda);
   else

@@ -7,9 +7,9 @@ namespace polybody {
 
 /// Spur gears on parallel axes, in the plane and in space, 1 row
 ///   g = (N_a ψ_a + N_b ψ_b)/N_b,   ψ_a, ψ_b the angles of the line of centres d = r_b − r_a in the axes of a and of b
-/// [Haug 1989, §3.4]. The line of centres turns with whatever carries the wheels, so the same row does for wheels on the
-/// ground and for a planet's. Teeth are whole numbers: turns are counted by the teeth, g is wrapped to half of the least
-/// common step π/n_b, n_b = N_b/gcd. The axes are kept parallel and the centres apart by other joints.
+/// [Haug 1989, §3.4]. The line of centres turns with whatever carries the wheels, so the same row does for wheels on
+/// the ground and for a planet's. Teeth are whole numbers: turns are counted by the teeth, g is wrapped to half of the
+/// least common step π/n_b, n_b = N_b/gcd. The axes are kept parallel and the centres apart by other joints.
 struct Gear {
   static constexpr char const* name = "Gear";
   static constexpr int rows = 1;
@@ -28,7 +28,8 @@ struct Gear {
   }
   void check(std::string const& what) const {
     if (teeth_a == 0 || teeth_b == 0 || (teeth_a < 0 && teeth_b < 0))
-      throw InvalidInput(what + ": both wheels need teeth, and only one of them can be a ring gear, with a negative number.");
+      throw InvalidInput(what +
+                         ": both wheels need teeth, and only one of them can be a ring gear, with a negative number.");
     if ((teeth_a < 0 || teeth_b < 0) && teeth_a + teeth_b >= 0)
       throw InvalidInput(what + ": a ring gear must have more teeth than the wheel inside it, but the numbers are " +
                          std::to_string(teeth_a) + " and " + std::to_string(teeth_b) + ".");
@@ -82,7 +83,8 @@ struct Gear {
   static T bearing_gamma(Frame<T> const& one, Frame<T> const& other) {
     return polybody::rows::angle_gamma<T>(bearing(one, other), polybody::rows::on_axis_gamma(one, other), one, other);
   }
-  static void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda, Mat<double, 12, 12>& k) {
+  static void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda,
+                               Mat<double, 12, 12>& k) {
     Vec2 const each = polybody::rows::angle_gradient(bearing(one, other), lambda, k);
     polybody::rows::on_axis_gradient(one, other, each, k);
   }

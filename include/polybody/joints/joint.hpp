@@ -23,7 +23,8 @@ concept MeasuresGeometry = NamesFreedoms<G> || !requires { typename P::template 
 
 /// P brings rows; or it answers, by a force, as many as it measures of G.
 template <class P, class G>
-concept AnswersGeometry = AddsRows<P> || (MeasuresGeometry<P, G> && AnswersRows<P, decltype(detail::measured_by<G, P>())::type::rows>);
+concept AnswersGeometry =
+    AddsRows<P> || (MeasuresGeometry<P, G> && AnswersRows<P, decltype(detail::measured_by<G, P>())::type::rows>);
 
 /// P brings rows; or G has a gap in each of its rows, which a force can answer.
 template <class P, class G>
@@ -38,9 +39,10 @@ struct Joint {
   static constexpr int rows = Measured::rows;
   static_assert(!MeasuresGeometry<P, G> || AnswersGeometry<P, G>,
                 "This policy has numbers for another number of rows than the joint's geometry has.");
-  static_assert(HasGapToAnswer<P, G>,
-                "This geometry holds speeds, not positions (it rolls, or glides on a blade): there is no gap that a force could "
-                "answer. Use Constraint.");
+  static_assert(
+      HasGapToAnswer<P, G>,
+      "This geometry holds speeds, not positions (it rolls, or glides on a blade): there is no gap that a force could "
+      "answer. Use Constraint.");
   G geometry = {};
   P policy = {};
 

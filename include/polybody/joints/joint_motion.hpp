@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The motion that a joint leaves, in coordinates: elementary motions made one after another that lead from frame a to frame b.
-/// Slides come before turns.
+/// The motion that a joint leaves, in coordinates: elementary motions made one after another that lead from frame a to
+/// frame b. Slides come before turns.
 
 #include <array>
 
@@ -45,7 +45,8 @@ struct JointMotions {
   }
 };
 
-/// A geometry whose motion has coordinates: it says which (`motions()`), or what it leaves free has one turn, all or none.
+/// A geometry whose motion has coordinates: it says which (`motions()`), or what it leaves free has one turn, all or
+/// none.
 template <class G>
 concept HasMotions = requires(G const g) {
   { g.motions() } -> std::same_as<JointMotions>;

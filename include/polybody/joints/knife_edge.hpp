@@ -13,7 +13,8 @@ struct KnifeEdge {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
 
-  Vec3 across = Vec3::UnitY();  ///< (3) unit vector across the blade, world axes at the reference configuration; moves with b
+  Vec3 across =
+      Vec3::UnitY();  ///< (3) unit vector across the blade, world axes at the reference configuration; moves with b
 
   Mat3 triad() const { return polybody::rows::triad_about(across, "KnifeEdge: the direction across"); }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Geometries of one idea each, from which any joint can be put together by connecting several between the same markers:
+/// Geometries of one idea each, from which any joint can be put together by connecting several between the same
+/// markers:
 ///   Revolute = CoincidentPoints + ParallelAxes          Universal    = CoincidentPoints + PerpendicularAxes
 ///   Prismatic = PointOnLine + Orientation               Weld         = CoincidentPoints + Orientation
 ///   Cylindrical = PointOnLine + ParallelAxes            PlaneOnPlane = PointInPlane + ParallelAxes

@@ -5,17 +5,18 @@ namespace polybody {
 
 /// Pinion b on the rack a, in the plane and in space, 1 row: a slide and a turn coupled,
 ///   g = a₁·d − R θ,  d = r_b − r_a      [Haug 1989, §3.4].
-/// θ, the turn of b about a₃, is zero at the reference configuration when a₁·d is; full turns are counted by the slide. The
-/// pinion's height over the rack and its axis are held by other joints. A rack on the ground makes a wheel that rolls.
+/// θ, the turn of b about a₃, is zero at the reference configuration when a₁·d is; full turns are counted by the slide.
+/// The pinion's height over the rack and its axis are held by other joints. A rack on the ground makes a wheel that
+/// rolls.
 struct RackAndPinion {
   static constexpr char const* name = "RackAndPinion";
   static constexpr int rows = 1;
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
 
-  Required<double> radius;         ///< R [m] of the pitch circle; the rack touches it on the side of axis × direction, or
-                                   ///< for R < 0 on the other
-  Vec3 axis = Vec3::UnitZ();       ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
+  Required<double> radius;    ///< R [m] of the pitch circle; the rack touches it on the side of axis × direction, or
+                              ///< for R < 0 on the other
+  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
   Vec3 direction = Vec3::UnitX();  ///< (3) unit vector along the rack, perpendicular to it
 
   Mat3 triad() const {

@@ -8,10 +8,11 @@ namespace polybody {
 
 /// Place and turn of b against a in the joint's axes, which are fixed in a; 6 rows
 ///   x = [d; s₁; s₂; ψ],  d = Aaᵀ(r_b − r_a) [m],  AaᵀAb = exp(s̃) exp(ψ ẽ₃),  s = (s₁, s₂, 0) [rad]:
-/// b turns by ψ in (−π, π] about the joint's axis and then swings by |s| < π about a line across it. One turn about any of the
-/// three axes is the angle itself. With w = Aaᵀ(ω_b − ω_a), n = AaᵀAb e₃ and y = (e₃ + n)/(1 + n₃),
+/// b turns by ψ in (−π, π] about the joint's axis and then swings by |s| < π about a line across it. One turn about any
+/// of the three axes is the angle itself. With w = Aaᵀ(ω_b − ω_a), n = AaᵀAb e₃ and y = (e₃ + n)/(1 + n₃),
 ///   w = Jl(s) ṡ + ψ̇ n,  y·n = 1,  y·Jl(s) ṡ = 0,  hence  ψ̇ = y·w,  ṡ = Jl⁻¹(w − ψ̇ n)   [Jl: math/so3.hpp].
-/// As a geometry of its own it stops everything: a weld with axes. \throws InvalidInput unless the axis is a unit vector.
+/// As a geometry of its own it stops everything: a weld with axes. \throws InvalidInput unless the axis is a unit
+/// vector.
 struct RelativeCoordinates {
   static constexpr char const* name = "RelativeCoordinates";
   static constexpr int rows = 6;
@@ -60,7 +61,8 @@ struct RelativeCoordinates {
     return gamma;
   }
 
-  /// The moment of the turn on b is Aa μ, μ = Bᵀλ = κ + y (λ₃ − n·κ) with Jr(s) κ = λ; for δθ of b against a in a's axes
+  /// The moment of the turn on b is Aa μ, μ = Bᵀλ = κ + y (λ₃ − n·κ) with Jr(s) κ = λ; for δθ of b against a in a's
+  /// axes
   ///   δn = δθ × n,  δκ = −Jr⁻¹ ∂(Jr κ)/∂s δs,  δy = (δn − y δn₃)/(1 + n₃).
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b, Vec6 const& lambda) const {
     Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
@@ -85,7 +87,8 @@ struct RelativeCoordinates {
 
  private:
   /// Swing and twist of R = AaᵀAb, and B with [ṡ; ψ̇] = B w:
-  ///   tan(|s|/2) = |(n₁, n₂)|/(1 + n₃),  ψ = atan2(R₂₁ − R₁₂, R₁₁ + R₂₂),  B = Jl⁻¹ + (e₃ − Jl⁻¹n) yᵀ,  Jl⁻¹n = Jr⁻¹e₃.
+  ///   tan(|s|/2) = |(n₁, n₂)|/(1 + n₃),  ψ = atan2(R₂₁ − R₁₂, R₁₁ + R₂₂),  B = Jl⁻¹ + (e₃ − Jl⁻¹n) yᵀ,  Jl⁻¹n =
+  ///   Jr⁻¹e₃.
   template <StateScalar T>
   struct Turn {
     Vec<T, 3> s, n, y;
@@ -112,13 +115,14 @@ struct RelativeCoordinates {
 
 static_assert(JointGeometry<RelativeCoordinates>);
 
-/// These coordinates of a joint with geometry G, without those that G leaves free: their rows are zero, so no force finds a way
-/// to them, however far they go.
+/// These coordinates of a joint with geometry G, without those that G leaves free: their rows are zero, so no force
+/// finds a way to them, however far they go.
 template <JointGeometry G>
 struct HeldCoordinates {
-  static_assert(NamesFreedoms<G>,
-                "A bushing stands in for a joint of bodies that says which of the six relative coordinates it leaves free "
-                "(`free`). This geometry does not; use Constraint or Penalty.");
+  static_assert(
+      NamesFreedoms<G>,
+      "A bushing stands in for a joint of bodies that says which of the six relative coordinates it leaves free "
+      "(`free`). This geometry does not; use Constraint or Penalty.");
   static constexpr int rows = 6;
   static constexpr Observes needs = Observes::frame;
   static constexpr Observes needs_of_second = polybody::needs_of_second<G>();

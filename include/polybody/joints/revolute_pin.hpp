@@ -5,8 +5,8 @@ namespace polybody {
 
 /// The pin of thesis Eq. 3.8, between two points of the joint axis that stand a distance L apart, 5 rows
 ///   g = [a₁·b₃; a₂·b₃; a₁·d; a₂·d; d·d − k_θ],  d = r_b − r_a,  k_θ = L².
-/// The last row holds d along the axis, and nothing where the points coincide (rank 4), so L > 0 is asked for. The motions
-/// are those of a Revolute [thesis §3.5.1]; its force along the axis is 2 L λ₅.
+/// The last row holds d along the axis, and nothing where the points coincide (rank 4), so L > 0 is asked for. The
+/// motions are those of a Revolute [thesis §3.5.1]; its force along the axis is 2 L λ₅.
 struct RevolutePin {
   static constexpr char const* name = "RevolutePin";
   static constexpr int rows = 5;
@@ -39,7 +39,8 @@ struct RevolutePin {
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     Vec<T, 5> gamma;
     Vec<T, 3> const rate = b.v - a.v;
-    gamma << polybody::rows::same_direction_gamma(a, b), polybody::rows::on_axis_gamma(a, b), rate.squaredNorm() * T(2.0);
+    gamma << polybody::rows::same_direction_gamma(a, b), polybody::rows::on_axis_gamma(a, b),
+        rate.squaredNorm() * T(2.0);
     return gamma;
   }
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,

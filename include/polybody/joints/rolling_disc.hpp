@@ -4,12 +4,14 @@
 namespace polybody {
 
 /// A thin disc b that rolls on a plane of a without slip, 3 rows, the last two of velocity level
-///   g₁ = n·d − R √(1 − (n·b₃)²),   ġ = [n, t₁, t₂]ᵀ u,   u = ṙ_b + ω_b × ρ − ṙ_a − ω_a × p      [Neimark & Fufaev 1972].
-/// d = r_b − r_a; n the plane's normal and t₁, t₂ two directions in the plane, all fixed in a; b₃ the disc's axis. The rim comes
-/// nearest to the plane at the contact point, from the disc's centre ρ = −R e, e = m/|m| with m = n − (n·b₃) b₃, and from a's
-/// point p = d + ρ. u is the velocity of the disc's material there seen from a; as ρ is where n·ρ is least, n·u is indeed ġ₁.
-/// λ are the forces along n, t₁, t₂, the first negative while the plane pushes. A disc that lies flat has no such point, and
-/// steps near it fail as not finite. Nothing keeps the disc from leaving the plane or slipping when the forces ask for it.
+///   g₁ = n·d − R √(1 − (n·b₃)²),   ġ = [n, t₁, t₂]ᵀ u,   u = ṙ_b + ω_b × ρ − ṙ_a − ω_a × p      [Neimark & Fufaev
+///   1972].
+/// d = r_b − r_a; n the plane's normal and t₁, t₂ two directions in the plane, all fixed in a; b₃ the disc's axis. The
+/// rim comes nearest to the plane at the contact point, from the disc's centre ρ = −R e, e = m/|m| with m = n − (n·b₃)
+/// b₃, and from a's point p = d + ρ. u is the velocity of the disc's material there seen from a; as ρ is where n·ρ is
+/// least, n·u is indeed ġ₁. λ are the forces along n, t₁, t₂, the first negative while the plane pushes. A disc that
+/// lies flat has no such point, and steps near it fail as not finite. Nothing keeps the disc from leaving the plane or
+/// slipping when the forces ask for it.
 struct RollingDisc {
   static constexpr char const* name = "RollingDisc";
   static constexpr int rows = 3;
@@ -17,9 +19,9 @@ struct RollingDisc {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::space;
 
-  Required<double> radius;       ///< R [m]
-  Vec3 axis = Vec3::UnitY();     ///< (3) unit vector of the disc's axis, world axes at the reference configuration
-  Vec3 normal = Vec3::UnitZ();   ///< (3) unit vector from the plane towards the disc; a's point lies in the plane
+  Required<double> radius;      ///< R [m]
+  Vec3 axis = Vec3::UnitY();    ///< (3) unit vector of the disc's axis, world axes at the reference configuration
+  Vec3 normal = Vec3::UnitZ();  ///< (3) unit vector from the plane towards the disc; a's point lies in the plane
 
   /// First axis n × axis, along the plane, so that n = a₂ |n × axis| + a₃ n·axis.
   /// \throws InvalidInput unless both are unit vectors that are not parallel.
@@ -63,9 +65,9 @@ struct RollingDisc {
  private:
   template <StateScalar T>
   struct Contact {
-    Vec<T, 3> n, t1, t2;   ///< normal and directions in the plane
-    Vec<T, 3> e, rho, p;   ///< up the disc; the contact point from the disc's centre and from a's point
-    T steep;               ///< |m|, the sine of the angle between the disc's axis and the normal
+    Vec<T, 3> n, t1, t2;  ///< normal and directions in the plane
+    Vec<T, 3> e, rho, p;  ///< up the disc; the contact point from the disc's centre and from a's point
+    T steep;              ///< |m|, the sine of the angle between the disc's axis and the normal
     Contact(RollingDisc const& disc, Frame<T> const& a, Frame<T> const& b) {
       using std::sqrt;
       double const along = disc.normal.dot(disc.axis), across = disc.normal.cross(disc.axis).norm();

@@ -58,15 +58,13 @@ T no_slide_gamma(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b) {
 /// Writes the three rows a₁·b₂, a₂·b₃, a₃·b₁ that hold the axes of b parallel to those of a.
 template <int m, StateScalar T>
 void parallel(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
-  for (int i = 0; i < 3; ++i)
-    perpendicular<m, T>(a.A.col(i), b.A.col((i + 1) % 3), gap, row + i);
+  for (int i = 0; i < 3; ++i) perpendicular<m, T>(a.A.col(i), b.A.col((i + 1) % 3), gap, row + i);
 }
 
 template <StateScalar T>
 Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> gamma;
-  for (int i = 0; i < 3; ++i)
-    gamma[i] = perpendicular_gamma<T>(a.A.col(i), b.A.col((i + 1) % 3), a, b);
+  for (int i = 0; i < 3; ++i) gamma[i] = perpendicular_gamma<T>(a.A.col(i), b.A.col((i + 1) % 3), a, b);
   return gamma;
 }
 
@@ -143,13 +141,13 @@ inline void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<doubl
 }
 
 /// Adds that of `parallel` for three multipliers.
-inline void parallel_gradient(Frame<double> const& a, Frame<double> const& b, Vec3 const& lambda,
-                              WrenchGradient& k) {
+inline void parallel_gradient(Frame<double> const& a, Frame<double> const& b, Vec3 const& lambda, WrenchGradient& k) {
   for (int i = 0; i < 3; ++i) perpendicular_gradient(a.A.col(i), b.A.col((i + 1) % 3), lambda[i], k);
 }
 
 /// Adds that of `same_direction` for two multipliers.
-inline void same_direction_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const& lambda, WrenchGradient& k) {
+inline void same_direction_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const& lambda,
+                                    WrenchGradient& k) {
   for (int i = 0; i < 2; ++i) perpendicular_gradient(a.A.col(i), b.A.col(2), lambda[i], k);
 }
 
@@ -175,8 +173,10 @@ inline Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& wh
   require_unit(first, what + ": the first axis");
   require_unit(third, what + ": the second axis");
   if (std::abs(first.dot(third)) > 1e-9)
-    throw InvalidInput(what + ": the two axes must be perpendicular at the reference configuration, but their scalar product "
-                       "is " + number(first.dot(third)) + ".");
+    throw InvalidInput(what +
+                       ": the two axes must be perpendicular at the reference configuration, but their scalar product "
+                       "is " +
+                       number(first.dot(third)) + ".");
   Mat3 e;
   e << first, third.cross(first), third;
   return e;

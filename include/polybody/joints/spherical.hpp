@@ -23,8 +23,7 @@ struct Spherical {
   Vec<T, 3> gamma(Frame<T> const&, Frame<T> const&, double) const {
     return Vec<T, 3>::Zero();
   }
-  Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&,
-                                      Vec<double, 3> const&) const {
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&, Vec<double, 3> const&) const {
     return Mat<double, 12, 12>::Zero();
   }
 };

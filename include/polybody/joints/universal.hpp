@@ -4,8 +4,8 @@
 
 namespace polybody {
 
-/// Cardan joint: two points stay together, and the first axis, fixed in a, stays perpendicular to the second, fixed in b;
-/// the two are the arms of the cross. 4 rows
+/// Cardan joint: two points stay together, and the first axis, fixed in a, stays perpendicular to the second, fixed in
+/// b; the two are the arms of the cross. 4 rows
 ///   g = [r_b − r_a; a₁·b₃]      [Haug 1989, §9.4].
 struct Universal {
   static constexpr char const* name = "Universal";
@@ -19,7 +19,9 @@ struct Universal {
 
   Mat3 triad() const { return polybody::rows::triad_of(first, second, "Universal"); }
   /// About a₁, then about b₃.
-  JointMotions motions() const { return {.list = {JointMotion{JointMotion::Kind::turn, 0}, JointMotion{JointMotion::Kind::turn, 2}}, .count = 2}; }
+  JointMotions motions() const {
+    return {.list = {JointMotion{JointMotion::Kind::turn, 0}, JointMotion{JointMotion::Kind::turn, 2}}, .count = 2};
+  }
 
   template <StateScalar T>
   Gap<4, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {

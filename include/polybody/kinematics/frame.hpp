@@ -9,10 +9,10 @@ namespace polybody {
 /// Place, orientation and motion of a marker, all in world axes.
 template <StateScalar T = double>
 struct Frame {
-  Vec<T, 3> r = Vec<T, 3>::Zero();              ///< (3) origin [m]
-  Mat<T, 3, 3> A = Mat<T, 3, 3>::Identity();    ///< (3×3) columns are the marker's axes
-  Vec<T, 3> v = Vec<T, 3>::Zero();              ///< (3) velocity of the origin [m/s]
-  Vec<T, 3> w = Vec<T, 3>::Zero();              ///< (3) angular velocity [rad/s]
+  Vec<T, 3> r = Vec<T, 3>::Zero();            ///< (3) origin [m]
+  Mat<T, 3, 3> A = Mat<T, 3, 3>::Identity();  ///< (3×3) columns are the marker's axes
+  Vec<T, 3> v = Vec<T, 3>::Zero();            ///< (3) velocity of the origin [m/s]
+  Vec<T, 3> w = Vec<T, 3>::Zero();            ///< (3) angular velocity [rad/s]
 };
 
 /// Force and moment about the marker's origin, in world axes.
@@ -28,14 +28,12 @@ enum class Observes { point, axis, frame };
 /// Which world a body lives in; a joint of one never meets a marker of the other, except the ground.
 enum class World { plane, space, both };
 
-constexpr bool same_world(World a, World b) {
-  return a == b || a == World::both || b == World::both;
-}
+constexpr bool same_world(World a, World b) { return a == b || a == World::both || b == World::both; }
 
 /// Where a body stands at the start, and how it is turned: placement of its own axes in the world.
 struct Placement {
-  Vec3 origin = Vec3::Zero();          ///< (3) [m]
-  Mat3 axes = Mat3::Identity();        ///< (3×3) columns are the body's axes in world axes
+  Vec3 origin = Vec3::Zero();    ///< (3) [m]
+  Mat3 axes = Mat3::Identity();  ///< (3×3) columns are the body's axes in world axes
 
   /// In the plane: origin (x, y) and the angle from world x to body x [rad].
   static Placement planar(double x, double y, double angle = 0.0) {

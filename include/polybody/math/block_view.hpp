@@ -3,16 +3,18 @@
 
 namespace polybody {
 
-/// A dense block wherever it stands in memory, also transposed. Not an Eigen expression, so that a sink is compiled once
-/// and not for every shape of block.
+/// A dense block wherever it stands in memory, also transposed. Not an Eigen expression, so that a sink is compiled
+/// once and not for every shape of block.
 struct BlockView {
   double const* data;
   Index rows, cols, row_step, col_step;
 
   template <class D>
-    requires(bool(D::Flags & Eigen::DirectAccessBit))
+    requires(bool(D::Flags& Eigen::DirectAccessBit))
   BlockView(Eigen::MatrixBase<D> const& m)  // NOLINT(google-explicit-constructor): a view of a matrix
-      : data(m.derived().data()), rows(m.rows()), cols(m.cols()),
+      : data(m.derived().data()),
+        rows(m.rows()),
+        cols(m.cols()),
         row_step(D::IsRowMajor ? m.derived().outerStride() : m.derived().innerStride()),
         col_step(D::IsRowMajor ? m.derived().innerStride() : m.derived().outerStride()) {}
 

@@ -29,9 +29,21 @@ struct Dual {
     return x;
   }
 
-  Dual& operator+=(Dual const& b) { v += b.v; d += b.d; return *this; }
-  Dual& operator-=(Dual const& b) { v -= b.v; d -= b.d; return *this; }
-  Dual& operator*=(Dual const& b) { d = d * b.v + b.d * v; v *= b.v; return *this; }
+  Dual& operator+=(Dual const& b) {
+    v += b.v;
+    d += b.d;
+    return *this;
+  }
+  Dual& operator-=(Dual const& b) {
+    v -= b.v;
+    d -= b.d;
+    return *this;
+  }
+  Dual& operator*=(Dual const& b) {
+    d = d * b.v + b.d * v;
+    v *= b.v;
+    return *this;
+  }
   Dual& operator/=(Dual const& b) {
     double const inverse = 1.0 / b.v;
     v *= inverse;
@@ -72,9 +84,7 @@ struct Dual {
     return {e, a.d * e};
   }
   friend Dual log(Dual const& a) { return {std::log(a.v), a.d / a.v}; }
-  friend Dual pow(Dual const& a, double p) {
-    return {std::pow(a.v, p), a.d * (p * std::pow(a.v, p - 1.0))};
-  }
+  friend Dual pow(Dual const& a, double p) { return {std::pow(a.v, p), a.d * (p * std::pow(a.v, p - 1.0))}; }
   friend Dual tanh(Dual const& a) {
     double const t = std::tanh(a.v);
     return {t, a.d * (1.0 - t * t)};
@@ -104,7 +114,7 @@ auto values_of(Eigen::MatrixBase<Derived> const& m) {
 template <class T>
 concept StateScalar = requires(T x, double c) {
   { x + x } -> std::convertible_to<T>;
-  { x * c } -> std::convertible_to<T>;
+  { x* c } -> std::convertible_to<T>;
   { value_of(x) } -> std::same_as<double>;
 };
 

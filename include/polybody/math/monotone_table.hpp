@@ -10,8 +10,8 @@
 
 namespace polybody {
 
-/// Piecewise cubic Hermite polynomial that rises where its points rise and falls where they fall [Fritsch & Carlson 1980]; linear
-/// beyond the first and the last point. Points on a line give the line.
+/// Piecewise cubic Hermite polynomial that rises where its points rise and falls where they fall [Fritsch & Carlson
+/// 1980]; linear beyond the first and the last point. Points on a line give the line.
 class MonotoneTable {
  public:
   struct Point {
@@ -25,15 +25,17 @@ class MonotoneTable {
     for (std::size_t i = 0; i < points.size(); ++i) {
       Point const& p = points[i];
       if (!std::isfinite(p.x) || !std::isfinite(p.y))
-        throw InvalidInput(what + ": point " + std::to_string(i + 1) + " of the table must be finite, but is (" + number(p.x) +
-                           ", " + number(p.y) + ").");
+        throw InvalidInput(what + ": point " + std::to_string(i + 1) + " of the table must be finite, but is (" +
+                           number(p.x) + ", " + number(p.y) + ").");
       if (i > 0 && !(p.x > points[i - 1].x))
-        throw InvalidInput(what + ": the abscissae of the table must increase, but point " + std::to_string(i + 1) + " has " +
-                           number(p.x) + " after " + number(points[i - 1].x) + ". Sort the points and drop repeated ones.");
+        throw InvalidInput(what + ": the abscissae of the table must increase, but point " + std::to_string(i + 1) +
+                           " has " + number(p.x) + " after " + number(points[i - 1].x) +
+                           ". Sort the points and drop repeated ones.");
       knots_.push_back({p.x, p.y, 0.0, 0.0});
     }
     set_slopes();
-    for (std::size_t i = 1; i < knots_.size(); ++i) knots_[i].area = area(knots_[i - 1], knots_[i].x - knots_[i - 1].x, i);
+    for (std::size_t i = 1; i < knots_.size(); ++i)
+      knots_[i].area = area(knots_[i - 1], knots_[i].x - knots_[i - 1].x, i);
     double const to_zero = integral(0.0);
     for (Knot& k : knots_) k.area -= to_zero;
   }
@@ -62,8 +64,8 @@ class MonotoneTable {
     double value, slope;
   };
 
-  /// Slopes at the points. Inside, the weighted harmonic mean of the secants δ to both sides, or zero where they differ in sign
-  /// [Fritsch & Butland 1984]; at the ends that of the parabola through three points, kept between zero and 3δ.
+  /// Slopes at the points. Inside, the weighted harmonic mean of the secants δ to both sides, or zero where they differ
+  /// in sign [Fritsch & Butland 1984]; at the ends that of the parabola through three points, kept between zero and 3δ.
   void set_slopes() {
     std::size_t const n = knots_.size();
     auto const width = [&](std::size_t i) { return knots_[i + 1].x - knots_[i].x; };

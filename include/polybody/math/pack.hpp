@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// A few numbers side by side, one for each of as many alike elements: arithmetic on all of them at once, in the machine's
-/// vector registers. A kernel that is a template on its scalar and does not branch on values runs on packs as it stands.
+/// A few numbers side by side, one for each of as many alike elements: arithmetic on all of them at once, in the
+/// machine's vector registers. A kernel that is a template on its scalar and does not branch on values runs on packs as
+/// it stands.
 
 #include <Eigen/Core>
 #include <array>
@@ -36,18 +37,31 @@ class Pack {
  public:
   static constexpr int size = N;
   using Lanes = typename detail::LanesOf<N>::Type;
-  using Native = typename Eigen::internal::find_best_packet<double, N>::type;  ///< Eigen's name for `Lanes` where it has one
+  using Native =
+      typename Eigen::internal::find_best_packet<double, N>::type;  ///< Eigen's name for `Lanes` where it has one
 
-  Pack() = default;  ///< `Pack<>()` is zero, `Pack<> x;` is not made yet, as for double
+  Pack() = default;                          ///< `Pack<>()` is zero, `Pack<> x;` is not made yet, as for double
   Pack(double same) : x_(same - Lanes{}) {}  // NOLINT(google-explicit-constructor): a constant is a pack
 
   double operator[](int i) const { return x_[i]; }
   void set(int i, double x) { x_[i] = x; }
 
-  Pack& operator+=(Pack const& b) { x_ += b.x_; return *this; }
-  Pack& operator-=(Pack const& b) { x_ -= b.x_; return *this; }
-  Pack& operator*=(Pack const& b) { x_ *= b.x_; return *this; }
-  Pack& operator/=(Pack const& b) { x_ /= b.x_; return *this; }
+  Pack& operator+=(Pack const& b) {
+    x_ += b.x_;
+    return *this;
+  }
+  Pack& operator-=(Pack const& b) {
+    x_ -= b.x_;
+    return *this;
+  }
+  Pack& operator*=(Pack const& b) {
+    x_ *= b.x_;
+    return *this;
+  }
+  Pack& operator/=(Pack const& b) {
+    x_ /= b.x_;
+    return *this;
+  }
   friend Pack operator+(Pack a, Pack const& b) { return a += b; }
   friend Pack operator-(Pack a, Pack const& b) { return a -= b; }
   friend Pack operator*(Pack a, Pack const& b) { return a *= b; }
@@ -83,12 +97,17 @@ class Pack {
 
   friend Pack sqrt(Pack const& a) {
     if constexpr (sizeof(Native) == sizeof(Lanes))
-      return Pack(Lanes(Eigen::internal::psqrt(Native(a.x_))));  // at once; std::sqrt stops to look for negative numbers
+      return Pack(
+          Lanes(Eigen::internal::psqrt(Native(a.x_))));  // at once; std::sqrt stops to look for negative numbers
     else
       return each(a, [](double x) { return std::sqrt(x); });
   }
-  friend Pack sin(Pack const& a) { return each(a, [](double x) { return std::sin(x); }); }
-  friend Pack cos(Pack const& a) { return each(a, [](double x) { return std::cos(x); }); }
+  friend Pack sin(Pack const& a) {
+    return each(a, [](double x) { return std::sin(x); });
+  }
+  friend Pack cos(Pack const& a) {
+    return each(a, [](double x) { return std::cos(x); });
+  }
 
  private:
   explicit Pack(Lanes const& x) : x_(x) {}
@@ -106,7 +125,7 @@ class Pack {
 template <class T>
 concept KernelScalar = requires(T x, double c) {
   { x + x } -> std::convertible_to<T>;
-  { x * c } -> std::convertible_to<T>;
+  { x* c } -> std::convertible_to<T>;
   { sqrt(x) } -> std::convertible_to<T>;
 } || std::same_as<T, double>;
 

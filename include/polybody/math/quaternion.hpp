@@ -14,10 +14,8 @@ using Quaternion = Vec<T, 4>;
 template <class T>
 Quaternion<T> quaternion_product(Quaternion<T> const& p, Quaternion<T> const& q) {
   Quaternion<T> r;
-  r << p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-      p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-      p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
-      p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
+  r << p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+      p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1], p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
   return r;
 }
 

@@ -1,13 +1,12 @@
 #pragma once
 /// \file
-/// Secants: a function's values at both ends of a step and its slope between them, f₁ − f₀ = s·(x₁ − x₀), carried through
-/// formulas as dual numbers carry derivatives [slopes: Krawczyk & Neumaier 1985; Rump 1996]. The rules are symmetric in the two
-/// ends,
+/// Secants: a function's values at both ends of a step and its slope between them, f₁ − f₀ = s·(x₁ − x₀), carried
+/// through formulas as dual numbers carry derivatives [slopes: Krawczyk & Neumaier 1985; Rump 1996]. The rules are
+/// symmetric in the two ends,
 ///   s(f g) = f̄ s(g) + ḡ s(f),   s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁),   f̄ = ½ (f₀ + f₁),
-/// so s is a discrete gradient [Gonzalez 1996]: exact over the step, and the gradient in its middle up to O(|x₁ − x₀|²). Of a
-/// quadratic form it is the gradient in the middle itself; and of a function of quadratic forms that a rotation does not change
-/// it
-/// stays at right angles to the rotations of the middle.
+/// so s is a discrete gradient [Gonzalez 1996]: exact over the step, and the gradient in its middle up to O(|x₁ −
+/// x₀|²). Of a quadratic form it is the gradient in the middle itself; and of a function of quadratic forms that a
+/// rotation does not change it stays at right angles to the rotations of the middle.
 
 #include <polybody/math/dual.hpp>
 
@@ -36,8 +35,18 @@ struct Secant {
   double mean() const { return 0.5 * (a + b); }
   double change() const { return b - a; }
 
-  Secant& operator+=(Secant const& y) { a += y.a; b += y.b; d += y.d; return *this; }
-  Secant& operator-=(Secant const& y) { a -= y.a; b -= y.b; d -= y.d; return *this; }
+  Secant& operator+=(Secant const& y) {
+    a += y.a;
+    b += y.b;
+    d += y.d;
+    return *this;
+  }
+  Secant& operator-=(Secant const& y) {
+    a -= y.a;
+    b -= y.b;
+    d -= y.d;
+    return *this;
+  }
   Secant& operator*=(Secant const& y) {
     d = d * y.mean() + y.d * mean();
     a *= y.a;
@@ -73,7 +82,8 @@ struct Secant {
   friend Secant atan2(Secant const& y, Secant const& x) {
     double const across = x.a * y.b - y.a * x.b, along = x.a * x.b + y.a * y.b, t = across / along;
     double const turn = std::atan2(across, along), from = std::atan2(y.a, x.a);
-    double const each = along > 0.0 && std::abs(t) < 1e-3 ? (1.0 - t * t * (1.0 / 3.0 - t * t / 5.0)) / along : turn / across;
+    double const each =
+        along > 0.0 && std::abs(t) < 1e-3 ? (1.0 - t * t * (1.0 / 3.0 - t * t / 5.0)) / along : turn / across;
     return {from, from + turn, (y.d * x.mean() - x.d * y.mean()) * each};
   }
   friend Secant atan(Secant const& x) { return atan2(x, Secant(1.0)); }

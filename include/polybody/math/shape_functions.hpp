@@ -25,10 +25,8 @@ constexpr ShapeValues<2> linear_shape(double xi, double length) {
 constexpr ShapeValues<4> hermite_shape(double xi, double length) {
   double const x2 = xi * xi, x3 = x2 * xi, l = length;
   return {{1.0 - 3.0 * x2 + 2.0 * x3, l * (xi - 2.0 * x2 + x3), 3.0 * x2 - 2.0 * x3, l * (x3 - x2)},
-          {(6.0 * x2 - 6.0 * xi) / l, 1.0 - 4.0 * xi + 3.0 * x2, (6.0 * xi - 6.0 * x2) / l,
-           3.0 * x2 - 2.0 * xi},
-          {(12.0 * xi - 6.0) / (l * l), (6.0 * xi - 4.0) / l, (6.0 - 12.0 * xi) / (l * l),
-           (6.0 * xi - 2.0) / l}};
+          {(6.0 * x2 - 6.0 * xi) / l, 1.0 - 4.0 * xi + 3.0 * x2, (6.0 * xi - 6.0 * x2) / l, 3.0 * x2 - 2.0 * xi},
+          {(12.0 * xi - 6.0) / (l * l), (6.0 * xi - 4.0) / l, (6.0 - 12.0 * xi) / (l * l), (6.0 * xi - 2.0) / l}};
 }
 
 }  // namespace polybody

@@ -10,12 +10,12 @@
 namespace polybody {
 
 /// The cubic spline through points (t, value): value, rate and acceleration are continuous  [de Boor 1978, ch. IV].
-/// Its first and last rate may be given; an end without one is natural, acceleration zero. Beyond both ends it goes on at
-/// the rate it has there.
+/// Its first and last rate may be given; an end without one is natural, acceleration zero. Beyond both ends it goes on
+/// at the rate it has there.
 class SmoothTable {
  public:
   struct Point {
-    double time;   ///< [s]
+    double time;  ///< [s]
     double value;
   };
   struct Ends {
@@ -23,7 +23,8 @@ class SmoothTable {
     std::optional<double> last_rate = {};
   };
 
-  /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and numbers that are not finite.
+  /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and numbers that are not
+  /// finite.
   explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
   SmoothTable(std::vector<Point> const& points, Ends const& ends, std::string const& what = "SmoothTable")
       : knots_(points.size()) {
@@ -47,8 +48,8 @@ class SmoothTable {
   Motion operator()(double t) const {
     Knot const k = piece(t);
     double const x = t - k.time;
-    return {k.value + x * (k.rate + x * (k.second / 2.0 + x * k.third / 6.0)), k.rate + x * (k.second + x * k.third / 2.0),
-            k.second + x * k.third};
+    return {k.value + x * (k.rate + x * (k.second / 2.0 + x * k.third / 6.0)),
+            k.rate + x * (k.second + x * k.third / 2.0), k.second + x * k.third};
   }
   /// ∫ value dt from the first point.
   double integral(double t) const { return integral_to(piece(t), t); }
@@ -64,7 +65,8 @@ class SmoothTable {
 
   static void check_points(std::vector<Point> const& points, Ends const& ends, std::string const& what) {
     if (points.size() < 2)
-      throw InvalidInput(what + ": at least two points are needed, but there are " + std::to_string(points.size()) + ".");
+      throw InvalidInput(what + ": at least two points are needed, but there are " + std::to_string(points.size()) +
+                         ".");
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!std::isfinite(points[i].time) || !std::isfinite(points[i].value))
         throw InvalidInput(what + ": point " + std::to_string(i + 1) + " must be finite.");
@@ -101,7 +103,8 @@ class SmoothTable {
 
   /// The piece at t; outside the table a straight line.
   Knot piece(double t) const {
-    auto const after = std::upper_bound(knots_.begin(), knots_.end(), t, [](double x, Knot const& k) { return x < k.time; });
+    auto const after =
+        std::upper_bound(knots_.begin(), knots_.end(), t, [](double x, Knot const& k) { return x < k.time; });
     if (after != knots_.begin()) return *(after - 1);
     Knot before = knots_.front();
     before.second = before.third = 0.0;

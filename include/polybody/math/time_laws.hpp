@@ -56,8 +56,8 @@ void check_drive(Law const& law, std::string const& what) {
     double const before = Motion(law(std::nextafter(t, -std::numeric_limits<double>::infinity()))).value;
     double const after = Motion(law(t)).value;
     if (!(std::abs(after - before) <= 1e-9 * (1.0 + std::abs(after))))
-      throw InvalidInput(what + ": its value jumps from " + number(before) + " to " + number(after) + " at t = " + number(t) +
-                         " s, but no body can. Go there in a while, by a Ramp or SmoothRamp.");
+      throw InvalidInput(what + ": its value jumps from " + number(before) + " to " + number(after) +
+                         " at t = " + number(t) + " s, but no body can. Go there in a while, by a Ramp or SmoothRamp.");
   }
 }
 
@@ -85,8 +85,8 @@ namespace detail {
 inline void check_ramp(double target, double duration, double start, std::string const& what) {
   require_positive(duration, what + ": the duration");
   if (!std::isfinite(target) || !std::isfinite(start))
-    throw InvalidInput(what + ": target and start must be finite, but are " + number(target) + " and " +
-                       number(start) + ".");
+    throw InvalidInput(what + ": target and start must be finite, but are " + number(target) + " and " + number(start) +
+                       ".");
 }
 
 }  // namespace detail
@@ -105,7 +105,8 @@ struct Ramp {
     detail::check_ramp(target, duration, start, what);
     require_not_negative(rounding, what + ": the rounding");
     if (rounding > duration)
-      throw InvalidInput(what + ": the rounding " + number(rounding) + " s must not exceed the duration " + number(duration) + " s.");
+      throw InvalidInput(what + ": the rounding " + number(rounding) + " s must not exceed the duration " +
+                         number(duration) + " s.");
   }
   Motion operator()(double t) const {
     if (t < start - 0.5 * rounding) return {};
@@ -153,8 +154,7 @@ struct SmoothRamp {
     if (t < start) return {};
     if (t >= start + duration) return {target, 0.0, 0.0};
     double const d = duration, x = (t - start) / d, x2 = x * x;
-    return {target * x2 * x * (10.0 - 15.0 * x + 6.0 * x2),
-            target * 30.0 * x2 * (1.0 - 2.0 * x + x2) / d,
+    return {target * x2 * x * (10.0 - 15.0 * x + 6.0 * x2), target * 30.0 * x2 * (1.0 - 2.0 * x + x2) / d,
             target * 60.0 * x * (1.0 - 3.0 * x + 2.0 * x2) / (d * d)};
   }
   double integral(double t) const {

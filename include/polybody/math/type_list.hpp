@@ -29,7 +29,8 @@ struct Gathered<List, TypeList<Kept...>> {
 };
 template <template <class...> class List, class... Kept, class T, class... Rest>
 struct Gathered<List, TypeList<Kept...>, T, Rest...>
-    : Gathered<List, std::conditional_t<(std::is_same_v<T, Kept> || ...), TypeList<Kept...>, TypeList<Kept..., T>>, Rest...> {};
+    : Gathered<List, std::conditional_t<(std::is_same_v<T, Kept> || ...), TypeList<Kept...>, TypeList<Kept..., T>>,
+               Rest...> {};
 }  // namespace detail
 
 /// List<Ts…> with each type once: `EachOnce<Bodies, Rigid<>, Link>` where a link may be a `Rigid<>` too.

@@ -41,7 +41,7 @@ struct Required {
   /// From an expression that makes a T.
   template <class X>
     requires std::is_class_v<X> && (!std::is_same_v<X, Required>) && std::is_convertible_v<X const&, T>
-  constexpr Required(X const& x) : value(x) {}  // NOLINT(google-explicit-constructor)
+  constexpr Required(X const& x) : value(x) {}    // NOLINT(google-explicit-constructor)
   constexpr operator T() const { return value; }  // NOLINT(google-explicit-constructor)
 };
 
@@ -54,8 +54,7 @@ inline void require_positive(double x, std::string const& what) {
 /// \throws InvalidInput unless `x` is finite and not negative.
 inline void require_not_negative(double x, std::string const& what) {
   if (!(x >= 0.0) || !std::isfinite(x))
-    throw InvalidInput(what + " must be zero or positive and finite, but is " + number(x) +
-                       ".");
+    throw InvalidInput(what + " must be zero or positive and finite, but is " + number(x) + ".");
 }
 
 /// \throws InvalidInput unless every entry of `x` is finite.
@@ -68,8 +67,7 @@ void require_finite(Eigen::MatrixBase<Derived> const& x, std::string const& what
 inline void require_unit(Vec3 const& axis, std::string const& what) {
   require_finite(axis, what);
   if (std::abs(axis.norm() - 1.0) > 1e-9)
-    throw InvalidInput(what + " must be a unit vector, but has length " +
-                       number(axis.norm()) + ". Normalise it.");
+    throw InvalidInput(what + " must be a unit vector, but has length " + number(axis.norm()) + ". Normalise it.");
 }
 
 }  // namespace polybody

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Threads that share loops. A loop is cut into as many contiguous parts as there are threads, so whoever writes to places of
-/// its own writes the same whatever their number.
+/// Threads that share loops. A loop is cut into as many contiguous parts as there are threads, so whoever writes to
+/// places of its own writes the same whatever their number.
 
 #include <algorithm>
 #include <atomic>
@@ -21,7 +21,9 @@ class LoopBody {
   template <class F>
     requires(!std::same_as<std::remove_cvref_t<F>, LoopBody>)
   explicit LoopBody(F&& f)
-      : body_(&f), call_([](void const* body, Index begin, Index end) { (*static_cast<std::remove_reference_t<F> const*>(body))(begin, end); }) {}
+      : body_(&f), call_([](void const* body, Index begin, Index end) {
+          (*static_cast<std::remove_reference_t<F> const*>(body))(begin, end);
+        }) {}
   void operator()(Index begin, Index end) const { call_(body_, begin, end); }
 
  private:
@@ -33,7 +35,8 @@ class Workers {
  public:
   /// `threads` counts the caller: 1 starts none. \throws InvalidInput for less.
   explicit Workers(int threads) : thrown_(std::size_t(std::max(threads, 0))) {
-    if (threads < 1) throw InvalidInput("Workers: at least one thread is needed, but " + std::to_string(threads) + " are asked for.");
+    if (threads < 1)
+      throw InvalidInput("Workers: at least one thread is needed, but " + std::to_string(threads) + " are asked for.");
     for (int i = 1; i < threads; ++i) others_.emplace_back([this, i] { serve(i); });
   }
   Workers(Workers const&) = delete;
@@ -46,8 +49,9 @@ class Workers {
 
   int size() const { return int(thrown_.size()); }
 
-  /// Calls f(begin, end) for parts of [0, n) and returns when all are done. Parts begin at multiples of four and have no fewer than
-  /// `least` entries, so a short loop stays with the caller. An exception of the first part that throws is passed on.
+  /// Calls f(begin, end) for parts of [0, n) and returns when all are done. Parts begin at multiples of four and have
+  /// no fewer than `least` entries, so a short loop stays with the caller. An exception of the first part that throws
+  /// is passed on.
   void over(Index n, Index least, LoopBody const& f) {
     Index const parts = std::clamp<Index>(n / std::max<Index>(least, 1), 1, size());
     if (parts == 1) {
@@ -108,7 +112,7 @@ class Workers {
   void (*call_)(void const*, int) = nullptr;
   void const* what_ = nullptr;
   std::atomic<unsigned> round_{0}, running_{0};  // wrap around without harm
-  std::vector<std::thread> others_;  // last: they use the rest
+  std::vector<std::thread> others_;              // last: they use the rest
 };
 
 /// f over [0, n), by `workers` where there are any.

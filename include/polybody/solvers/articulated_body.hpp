@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// Elimination of TᵀKT body by body from the tips of a tree to its roots [Featherstone 1983; 2008, §7], for any K whose blocks lie on
-/// bodies and between a body and its parent. With x = [v; ω] of a body about its centre of mass, x = X x_p + S u, a body's equation after
-/// those of all that it carries being K̂ x + C x_p = f, B and C the blocks between parent and body,
+/// Elimination of TᵀKT body by body from the tips of a tree to its roots [Featherstone 1983; 2008, §7], for any K whose
+/// blocks lie on bodies and between a body and its parent. With x = [v; ω] of a body about its centre of mass, x = X
+/// x_p + S u, a body's equation after those of all that it carries being K̂ x + C x_p = f, B and C the blocks between
+/// parent and body,
 ///   D u = r + Sᵀf − L x_p,    D = SᵀK̂ S,  L = Sᵀ(K̂ X + C),  R = (XᵀK̂ + B) S,
 ///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf).
 /// A root is carried by nothing, with S = 1. Rows that stay are added by their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
@@ -53,11 +54,11 @@ class ArticulatedBodySolver {
     std::size_t const j = std::size_t(owner_[std::size_t(col)]);
     std::size_t const i = row < nv ? std::size_t(owner_[std::size_t(row)]) : 0;
     std::vector<TreeBody> const& bodies = reduction_->tree().bodies;
-    Mat<double, 6, 6>* const to = row >= nv                         ? nullptr
-                                  : i == j                          ? &nodes_[i].k
-                                  : bodies[i].parent == Index(j)    ? &nodes_[i].c
-                                  : bodies[j].parent == Index(i)    ? &nodes_[j].b
-                                                                    : nullptr;
+    Mat<double, 6, 6>* const to = row >= nv                      ? nullptr
+                                  : i == j                       ? &nodes_[i].k
+                                  : bodies[i].parent == Index(j) ? &nodes_[i].c
+                                  : bodies[j].parent == Index(i) ? &nodes_[j].b
+                                                                 : nullptr;
     for (Index l = 0; l < b.rows; ++l) {
       Vec6 g = Vec6::Zero();  // row l by the world's axes
       for (Index k = 0; k < b.cols; ++k) g += b(l, k) * axis_of(j, col + k - bodies[j].v0);
@@ -72,10 +73,12 @@ class ArticulatedBodySolver {
     }
   }
 
-  /// −1, or the unknown (of a time step) without a pivot. \throws InvalidInput for a block between bodies that are not neighbours.
+  /// −1, or the unknown (of a time step) without a pivot. \throws InvalidInput for a block between bodies that are not
+  /// neighbours.
   Index factor() {
     if (misplaced_ >= 0)
-      throw InvalidInput("recursive::ArticulatedBody: a force couples body \"" + reduction_->tree().bodies[std::size_t(misplaced_)].name +
+      throw InvalidInput("recursive::ArticulatedBody: a force couples body \"" +
+                         reduction_->tree().bodies[std::size_t(misplaced_)].name +
                          "\" with one that neither carries it nor is carried by it. Take recursive::Augmented.");
     for (std::size_t i = nodes_.size(); i-- > 0;)
       if (Index const bad = eliminate(i); bad >= 0) return bad;
@@ -105,8 +108,8 @@ class ArticulatedBodySolver {
 
  private:
   struct Node {
-    Mat<double, 6, 6> k = Mat<double, 6, 6>::Zero(), b = k, c = k;                       ///< K̂, B, C
-    Mat<double, 6, 6> s = k, inverse = k, left = k, right = k;                           ///< S, D⁻¹, L by rows, R by columns
+    Mat<double, 6, 6> k = Mat<double, 6, 6>::Zero(), b = k, c = k;  ///< K̂, B, C
+    Mat<double, 6, 6> s = k, inverse = k, left = k, right = k;      ///< S, D⁻¹, L by rows, R by columns
     Vec6 f = Vec6::Zero(), x = f, u = f;
     int speeds = 0;
   };
@@ -222,7 +225,7 @@ class ArticulatedBodySolver {
   Reduction const* reduction_ = nullptr;
   TreeState const* state_ = nullptr;
   std::vector<Node> nodes_;
-  std::vector<Index> owner_, row_of_;       // body of a whole speed; narrow row of a whole one
+  std::vector<Index> owner_, row_of_;    // body of a whole speed; narrow row of a whole one
   std::vector<std::vector<Vec6>> rows_;  // G by bodies
   MatX answers_, schur_;
   VecX open_, lambda_, none_;

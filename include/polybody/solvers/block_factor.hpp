@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// Factorisation of [A, Gᵀ; G, 0] by fixed blocks: the order and every place of the fill are found once, the numbers run
-/// through a flat list of block operations without searching, pivoting or allocation.
+/// Factorisation of [A, Gᵀ; G, 0] by fixed blocks: the order and every place of the fill are found once, the numbers
+/// run through a flat list of block operations without searching, pivoting or allocation.
 ///
-/// A node's rows stand as U = [D | W], D its own block, W its row of later ones, and its columns as Lt, transposed. With
-/// D = L Δ R (pivots Δ, unit triangles L, R) elimination makes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −= Lt_kᵀ W_l for all
-/// later k, l. In a symmetric matrix Lt = Δ⁻¹ W and only l ≥ k is made.
+/// A node's rows stand as U = [D | W], D its own block, W its row of later ones, and its columns as Lt, transposed.
+/// With D = L Δ R (pivots Δ, unit triangles L, R) elimination makes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −= Lt_kᵀ W_l
+/// for all later k, l. In a symmetric matrix Lt = Δ⁻¹ W and only l ≥ k is made.
 
 #include <cmath>
 #include <span>
@@ -140,8 +140,7 @@ class BlockFactor {
   template <int N>
   int eliminate(Node const& n, bool symmetric) {
     double* const scale = scales_.data() + n.x;  // what eliminations have added to the diagonal
-    if (n.pivoted)
-      return detail::eliminate_pivoted(storage(n), symmetric, body_threshold, scale, swaps_.data() + n.x);
+    if (n.pivoted) return detail::eliminate_pivoted(storage(n), symmetric, body_threshold, scale, swaps_.data() + n.x);
     return detail::eliminate_node<N>(storage(n), symmetric, n.joint ? row_threshold : body_threshold, scale,
                                      [&](int r, double pivot) {
                                        // only a joint that waits for its whole loop may be redundant
@@ -292,7 +291,8 @@ Index BlockFactor<symmetry>::fill() const {
   Index count = 0;
   for (Node const& n : layout_.nodes) {
     count += n.size * (n.size + 1) / 2;
-    for (int a = 0; a < n.neighbours; ++a) count += n.size * layout_.neighbours[std::size_t(n.first_neighbour + a)].size;
+    for (int a = 0; a < n.neighbours; ++a)
+      count += n.size * layout_.neighbours[std::size_t(n.first_neighbour + a)].size;
   }
   return count;
 }

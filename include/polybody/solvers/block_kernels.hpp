@@ -43,13 +43,20 @@ class AlignedDoubles {
 template <class F>
 auto with_constant(int n, F&& f) {
   switch (n) {
-    case 1: return f(std::integral_constant<int, 1>{});
-    case 2: return f(std::integral_constant<int, 2>{});
-    case 3: return f(std::integral_constant<int, 3>{});
-    case 4: return f(std::integral_constant<int, 4>{});
-    case 5: return f(std::integral_constant<int, 5>{});
-    case 6: return f(std::integral_constant<int, 6>{});
-    default: return f(std::integral_constant<int, 0>{});
+    case 1:
+      return f(std::integral_constant<int, 1>{});
+    case 2:
+      return f(std::integral_constant<int, 2>{});
+    case 3:
+      return f(std::integral_constant<int, 3>{});
+    case 4:
+      return f(std::integral_constant<int, 4>{});
+    case 5:
+      return f(std::integral_constant<int, 5>{});
+    case 6:
+      return f(std::integral_constant<int, 6>{});
+    default:
+      return f(std::integral_constant<int, 0>{});
   }
 }
 
@@ -76,10 +83,11 @@ inline void subtract_strip(double* __restrict c, Index c_stride, double const* a
     for (int k = 0; k < count; ++k) lanes(c + i * c_stride)[k] = s[i][k];
 }
 
-/// C (m × count lanes) −= Aᵀ B; A (n × m) and B (n × count lanes) by rows; `inner` is n, or 0 when known at run time only.
+/// C (m × count lanes) −= Aᵀ B; A (n × m) and B (n × count lanes) by rows; `inner` is n, or 0 when known at run time
+/// only.
 template <int count, int inner>
-void subtract_product(double* c, Index c_stride, double const* a, Index a_stride, double const* b, Index b_stride, int n,
-                      int m) {
+void subtract_product(double* c, Index c_stride, double const* a, Index a_stride, double const* b, Index b_stride,
+                      int n, int m) {
   int i = 0;
   for (; i + 3 <= m; i += 3)
     subtract_strip<3, count, inner>(c + i * c_stride, c_stride, a + i, a_stride, b, b_stride, n);
@@ -88,8 +96,8 @@ void subtract_product(double* c, Index c_stride, double const* a, Index a_stride
 
 /// The same for any padded width.
 template <int inner>
-void subtract_product(double* c, Index c_stride, double const* a, Index a_stride, double const* b, Index b_stride, int n,
-                      int m, int width) {
+void subtract_product(double* c, Index c_stride, double const* a, Index a_stride, double const* b, Index b_stride,
+                      int n, int m, int width) {
   constexpr int most = lane_size == 2 ? 3 : 2, step = most * lane_size;
   for (; width >= step; width -= step, c += step, b += step)
     subtract_product<most, inner>(c, c_stride, a, a_stride, b, b_stride, n, m);
@@ -125,8 +133,8 @@ void add_sizes(double* y, double const* a, Index a_stride, double const* b, Inde
 }
 
 /// to (by rows) += from, whose rows are `outer_step` apart and their entries `inner_step`.
-inline void add_block(double* __restrict to, int stride, double const* __restrict from, Index outer_step, Index inner_step,
-                      int outer, int inner) {
+inline void add_block(double* __restrict to, int stride, double const* __restrict from, Index outer_step,
+                      Index inner_step, int outer, int inner) {
   for (int i = 0; i < outer; ++i, to += stride, from += outer_step) {
     if (inner_step == 1)
       for (int j = 0; j < inner; ++j) to[j] += from[j];
@@ -160,6 +168,5 @@ struct Difference {
   }
   bool is_rounding() const { return apart + sum_of(lane_apart) <= 1e-24 * (sum + sum_of(lane_sum)); }
 };
-
 
 }  // namespace polybody::detail

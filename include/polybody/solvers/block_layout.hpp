@@ -14,12 +14,13 @@ class BlockLayout {
   struct Neighbour {
     int node, column, size;  ///< place in the order, first column within W, unknowns
   };
-  /// Its rows stand as [D | W], D its own block and W its row of later ones; its column of later ones, transposed, as Lt.
+  /// Its rows stand as [D | W], D its own block and W its row of later ones; its column of later ones, transposed, as
+  /// Lt.
   struct Node {
-    int size, pad, width;              ///< unknowns, padded, and columns of W
-    std::size_t u, l, f, x;            ///< begin of its rows [D | W], of Lt if it has one, of its triangle, of its vectors
+    int size, pad, width;    ///< unknowns, padded, and columns of W
+    std::size_t u, l, f, x;  ///< begin of its rows [D | W], of Lt if it has one, of its triangle, of its vectors
     int first_neighbour, neighbours;
-    int first_target;                  ///< for each pair of neighbours k before l: the column of l in W of k
+    int first_target;  ///< for each pair of neighbours k before l: the column of l in W of k
     bool pivoted, joint, droppable;
     int stride() const { return pad + width; }
   };
@@ -30,8 +31,8 @@ class BlockLayout {
     int stride;                ///< of what it is added to
     bool lower;                ///< into Lt, transposed
   };
-  /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others, all in
-  /// one node.
+  /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others, all
+  /// in one node.
   struct Lessons {
     std::vector<char> merged, late;
     bool dense = false;
@@ -41,14 +42,15 @@ class BlockLayout {
   std::vector<Neighbour> neighbours;
   std::vector<int> targets;
   std::vector<Piece> pieces;
-  std::vector<int> first_piece;   ///< of each added block, and one past the last
-  std::vector<Index> unknown;     ///< of each place in padded vectors; −1 for padding
-  std::vector<int> place;         ///< of each unknown in padded vectors
+  std::vector<int> first_piece;  ///< of each added block, and one past the last
+  std::vector<Index> unknown;    ///< of each place in padded vectors; −1 for padding
+  std::vector<int> place;        ///< of each unknown in padded vectors
   std::size_t size_u = 0, size_l = 0, size_f = 0;
-  int largest_w = 0;              ///< entries of the largest W, or unknowns of the largest node
+  int largest_w = 0;  ///< entries of the largest W, or unknowns of the largest node
 
   /// Without `both_halves` only nodes with pivoting have an Lt.
-  void compile(BlockPattern const& pattern, std::vector<Block> const& blocks, Lessons const& lessons, bool both_halves) {
+  void compile(BlockPattern const& pattern, std::vector<Block> const& blocks, Lessons const& lessons,
+               bool both_halves) {
     EliminationOrder order;
     order.compute(pattern, blocks, number_nodes(pattern, lessons), lessons.late);
     place_nodes(pattern, order, lessons, both_halves);
@@ -81,7 +83,8 @@ class BlockLayout {
     return node_of;
   }
 
-  void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, Lessons const& lessons, bool both_halves) {
+  void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, Lessons const& lessons,
+                   bool both_halves) {
     auto const& segments = pattern.segments();
     local_.assign(segments.size(), 0);
     place_.assign(segments.size(), 0);
@@ -162,7 +165,9 @@ class BlockLayout {
           int const pr = place_[std::size_t(r)], pc = place_[std::size_t(c)];
           int const lr = local_[std::size_t(r)], lc = local_[std::size_t(c)];
           Node const& n = nodes[std::size_t(std::min(pr, pc))];
-          Piece p{0, int(sr.first - b.row), int(sc.first - b.col), sr.size, sc.size, pr > pc ? n.width : n.stride(), pr > pc};
+          Piece p{
+              0,      int(sr.first - b.row), int(sc.first - b.col), sr.size, sc.size, pr > pc ? n.width : n.stride(),
+              pr > pc};
           if (p.lower) {
             p.to = n.l + std::size_t(lc * n.width + column(n, pr) + lr);
           } else {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a block factorisation does at one node, with its N unknowns a constant where it can (N = 0: at run time). The node's
-/// rows are U = [D | W], its columns Lt; see `BlockFactor`.
+/// What a block factorisation does at one node, with its N unknowns a constant where it can (N = 0: at run time). The
+/// node's rows are U = [D | W], its columns Lt; see `BlockFactor`.
 
 #include <algorithm>
 
@@ -13,13 +13,13 @@ namespace polybody::detail {
 struct NodeStorage {
   int size, pad, width;  ///< unknowns, padded, and columns of W
   double *u, *l;         ///< rows [D | W] (size × stride); Lt (size × width), or room for Δ⁻¹ W
-  double *f;             ///< factors of L, by rows (size × size)
+  double* f;             ///< factors of L, by rows (size × size)
   double* inverse;       ///< of the pivots
   int stride() const { return pad + width; }
 };
 
-/// D = L Δ R in the registers. `reject(r, pivot)` is asked about pivots not above threshold · (scale[r] + |D_rr|): true ends
-/// it (r is returned), false drops the row. −1 when all is done.
+/// D = L Δ R in the registers. `reject(r, pivot)` is asked about pivots not above threshold · (scale[r] + |D_rr|): true
+/// ends it (r is returned), false drops the row. −1 when all is done.
 template <int N, class Reject>
 int factor_block(NodeStorage const& n, double threshold, double const* scale, Reject&& reject) {
   constexpr int count = padded(N) / lane_size;

@@ -11,17 +11,17 @@
 
 namespace polybody::detail {
 
-/// What the pattern of a matrix tells of bodies and joints. A segment is a run of unknowns that no block cuts; it is of a
-/// joint when nothing stands on its diagonal.
+/// What the pattern of a matrix tells of bodies and joints. A segment is a run of unknowns that no block cuts; it is of
+/// a joint when nothing stands on its diagonal.
 class BlockPattern {
  public:
   struct Segment {
     Index first = 0;
     int size = 0;
     bool joint = true;
-    int body = -1;            ///< its body's number (of bodies)
-    std::vector<int> child;   ///< of a joint: segments of the hanging body that it touches
-    std::vector<int> after;   ///< of a joint: segments to be eliminated before
+    int body = -1;           ///< its body's number (of bodies)
+    std::vector<int> child;  ///< of a joint: segments of the hanging body that it touches
+    std::vector<int> after;  ///< of a joint: segments to be eliminated before
     bool closes_loop = false;
   };
 
@@ -136,7 +136,8 @@ class BlockPattern {
   /// A joint of one body and one row: a norm row, or a drive against the ground. No tree hangs on it.
   bool is_own(Joint const& j) const { return j.ends.size() == 1 && segments_[std::size_t(j.segment)].size == 1; }
 
-  /// Hangs every body on one joint, breadth first from the ground, then from a body of each part that does not touch it.
+  /// Hangs every body on one joint, breadth first from the ground, then from a body of each part that does not touch
+  /// it.
   void match() {
     std::vector<int> queue;
     auto const hang = [&](Joint& j, std::size_t end, int parent) {

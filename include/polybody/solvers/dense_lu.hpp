@@ -5,7 +5,8 @@
 
 namespace polybody {
 
-/// Dense LU with partial pivoting [Golub & Van Loan 2013, Algorithm 3.4.1]: for small systems and for checking the others.
+/// Dense LU with partial pivoting [Golub & Van Loan 2013, Algorithm 3.4.1]: for small systems and for checking the
+/// others.
 class DenseLu {
  public:
   void analyse(Index size, std::vector<Block> const&) {

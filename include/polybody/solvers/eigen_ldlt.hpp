@@ -12,12 +12,12 @@
 
 namespace polybody {
 
-/// Eigen's sparse LDLᵀ (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0: rows without a diagonal block get −ε,
-/// which makes the matrix quasi-definite, so that it has a factorisation in any order [Vanderbei 1995]; refinement
+/// Eigen's sparse LDLᵀ (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0: rows without a diagonal block get
+/// −ε, which makes the matrix quasi-definite, so that it has a factorisation in any order [Vanderbei 1995]; refinement
 /// against the matrix itself removes ε again. Slight asymmetry (gyroscopic terms) is refined away as well.
 class EigenLdlt {
  public:
-  static constexpr double shift = 1e-9;            ///< ε beside g²/a, of the largest entries of G and A
+  static constexpr double shift = 1e-9;             ///< ε beside g²/a, of the largest entries of G and A
   static constexpr double largest_asymmetry = 0.1;  ///< ‖A − Aᵀ‖ beside ‖A‖; above it `factor` throws
   static constexpr int most_refinements = 20;
 

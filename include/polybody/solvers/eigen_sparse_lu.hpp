@@ -37,7 +37,8 @@ class EigenSparseLuBy {
     auto const upper = lu_->matrixU();  // its diagonal stands in the supernodes of L
     for (Index i = 0; i < a.cols(); ++i) {
       double largest = 0.0, pivot = 0.0;
-      for (typename Matrix::InnerIterator entry(a, i); entry; ++entry) largest = std::max(largest, std::abs(entry.value()));
+      for (typename Matrix::InnerIterator entry(a, i); entry; ++entry)
+        largest = std::max(largest, std::abs(entry.value()));
       for (typename Lu::SCMatrix::InnerIterator entry(upper.m_mapL, place[i]); entry; ++entry)
         if (entry.index() == place[i]) {
           pivot = entry.value();

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The order in which a block factorisation eliminates [A, Gᵀ; G, 0]: bodies by minimum degree, a joint's rows only after
-/// the body that hangs on it [Baraff 1996], the rows that close a loop only after all bodies and joints of the loop. Then
-/// A ≻ 0 makes every pivot definite and no pivoting between blocks is needed.
+/// The order in which a block factorisation eliminates [A, Gᵀ; G, 0]: bodies by minimum degree, a joint's rows only
+/// after the body that hangs on it [Baraff 1996], the rows that close a loop only after all bodies and joints of the
+/// loop. Then A ≻ 0 makes every pivot definite and no pivoting between blocks is needed.
 
 #include <iterator>
 #include <set>

@@ -16,8 +16,9 @@
 
 namespace polybody {
 
-/// KLU, called so that it really refactors: pivots are chosen in the first factorisation and kept, in place, until their
-/// growth or the condition shows that they no longer serve [Davis & Palamadai Natarajan 2010]. `solve` does not allocate.
+/// KLU, called so that it really refactors: pivots are chosen in the first factorisation and kept, in place, until
+/// their growth or the condition shows that they no longer serve [Davis & Palamadai Natarajan 2010]. `solve` does not
+/// allocate.
 class Klu {
  public:
   /// Below these, KLU's reciprocals of the pivot growth and of the condition, pivots are chosen anew, or are refused.
@@ -46,7 +47,8 @@ class Klu {
     if (klu_->symbolic == nullptr) return empty_column();
     auto [n, columns, rows, values] = arrays();
     Handle& k = *klu_;
-    if (k.numeric != nullptr && klu_refactor(columns, rows, values, k.symbolic, k.numeric, &k.common) != 0 && sound(least_growth))
+    if (k.numeric != nullptr && klu_refactor(columns, rows, values, k.symbolic, k.numeric, &k.common) != 0 &&
+        sound(least_growth))
       return -1;
     k.drop_numeric();
     k.numeric = klu_factor(columns, rows, values, k.symbolic, &k.common);
@@ -89,7 +91,8 @@ class Klu {
     std::sort(sorted.begin(), sorted.end());
     bool right = Index(sorted.size()) == size;
     for (std::size_t i = 0; right && i < sorted.size(); ++i) right = sorted[i] == int(i);
-    if (!right) throw InvalidInput("Klu: the order does not name each of the " + std::to_string(size) + " unknowns once.");
+    if (!right)
+      throw InvalidInput("Klu: the order does not name each of the " + std::to_string(size) + " unknowns once.");
   }
   /// As KLU wants them: not const, though it does not change them.
   Arrays arrays() const {

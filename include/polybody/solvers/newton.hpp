@@ -41,17 +41,19 @@ struct CorrectionSize {
 ///   CorrectionSize solve()    the next correction; or double, its norm where 1 is tolerated
 ///   void apply()              adds it; or void apply(double part), which full Newton damps
 /// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
-/// With ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no correction grew: after one
-/// that did, the next looks small beside it wherever it stands. It fails after growing as often as `growths` says.
-/// Full Newton in a stiff direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate
-/// predicts the next correction: it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves, as what is tolerated
-/// shrinks with a wild iterate's accelerations. Where it would go in circles, as between a contact and none, half of a correction is
-/// enough: the part that is taken is halved, down to 1/64, when ‖Δ‖ shrinks by less than a tenth of that part, and doubled when it shrinks by
-/// what the part explains.
+/// With ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no
+/// correction grew: after one that did, the next looks small beside it wherever it stands. It fails after growing as
+/// often as `growths` says. Full Newton in a stiff direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then
+/// the stretch that it left), so no single rate predicts the next correction: it stops when ‖Δ‖ ≤ 1 itself, and grows
+/// when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves, as what is tolerated shrinks with a wild iterate's accelerations. Where
+/// it would go in circles, as between a contact and none, half of a correction is enough: the part that is taken is
+/// halved, down to 1/64, when ‖Δ‖ shrinks by less than a tenth of that part, and doubled when it shrinks by what the
+/// part explains.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
   NewtonReport report;
-  double before = 0.0, earlier = 0.0, rated = 0.0;  // norms of the last two corrections; the last one beside what was tolerated
+  double before = 0.0, earlier = 0.0,
+         rated = 0.0;  // norms of the last two corrections; the last one beside what was tolerated
   int grown = 0;
   double part = 1.0;
   theta = std::pow(std::max(theta, 1e-4), 0.8);  // an old rate is trusted less with every solve

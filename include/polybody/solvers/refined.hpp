@@ -5,8 +5,9 @@
 
 namespace polybody {
 
-/// Any solver, with one step of iterative refinement after each solution: x += A⁻¹(b − A x) [Higham 2002, §12.1]. It keeps
-/// the blocks, so a solution costs about twice as much; worth it where masses or stiffnesses differ by ten orders and more.
+/// Any solver, with one step of iterative refinement after each solution: x += A⁻¹(b − A x) [Higham 2002, §12.1]. It
+/// keeps the blocks, so a solution costs about twice as much; worth it where masses or stiffnesses differ by ten orders
+/// and more.
 template <LinearSolver Solver>
 class Refined {
  public:

@@ -18,8 +18,7 @@ class SparseSink {
     std::vector<std::vector<int>> columns(static_cast<std::size_t>(size));
     for (Block const& b : blocks)
       for (Index j = 0; j < b.cols; ++j)
-        for (Index i = 0; i < b.rows; ++i)
-          columns[std::size_t(b.col + j)].push_back(int(b.row + i));
+        for (Index i = 0; i < b.rows; ++i) columns[std::size_t(b.col + j)].push_back(int(b.row + i));
     std::vector<Eigen::Triplet<double>> entries;
     for (Index j = 0; j < size; ++j) {
       auto& rows = columns[std::size_t(j)];

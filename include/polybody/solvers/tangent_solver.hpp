@@ -5,8 +5,9 @@
 
 namespace polybody {
 
-/// The linear systems of an integrator: written by the mechanics, factored and solved by a linear solver, in whatever unknowns the
-/// mechanics choose for them. Trees that ask for `recursive::ArticulatedBody` are solved by their own elimination, whatever the solver.
+/// The linear systems of an integrator: written by the mechanics, factored and solved by a linear solver, in whatever
+/// unknowns the mechanics choose for them. Trees that ask for `recursive::ArticulatedBody` are solved by their own
+/// elimination, whatever the solver.
 template <class M, LinearSolver Solver>
 class TangentSolver {
  public:
@@ -15,8 +16,10 @@ class TangentSolver {
   void analyse(System<M>& system, Index copies, Write&& write) {
     copies_ = copies;
     if constexpr (System<M>::solves_by_bodies) {
-      if (copies > 1) throw InvalidInput("recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
-                                         "method together. Take recursive::Augmented.");
+      if (copies > 1)
+        throw InvalidInput(
+            "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
+            "method together. Take recursive::Augmented.");
     } else {
       PatternSink pattern;
       write(pattern);

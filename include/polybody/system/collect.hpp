@@ -54,12 +54,14 @@ auto frames_of(detail::ForceEntry<F> const& e, Data<M, T> const& data) {
   return frames;
 }
 
-/// Calls visit(force, markers, frames) for the force elements of an entry: itself, or the pairs of a group that may act now. Markers are
-/// places among the entry's.
+/// Calls visit(force, markers, frames) for the force elements of an entry: itself, or the pairs of a group that may act
+/// now. Markers are places among the entry's.
 template <class F, class M, StateScalar T, class Visit>
 void for_each_action(ForceEntry<F> const& e, Data<M, T> const& data, Visit&& visit) {
   if constexpr (ForceGroup<F>) {
-    auto const frame = [&](Index k) -> Frame<T> const& { return data.markers[std::size_t(e.markers[std::size_t(k)])].frame; };
+    auto const frame = [&](Index k) -> Frame<T> const& {
+      return data.markers[std::size_t(e.markers[std::size_t(k)])].frame;
+    };
     e.force.for_each_pair(frame, [&](Index i, Index j, auto const& law) {
       visit(law, std::array<Index, 2>{i, j}, std::array<Frame<T>, 2>{frame(i), frame(j)});
     });
@@ -72,8 +74,7 @@ void for_each_action(ForceEntry<F> const& e, Data<M, T> const& data, Visit&& vis
 
 /// λ of a joint: the multipliers of its rows, or what its policy answers to the gap.
 template <class J, int m, class M, StateScalar T>
-Vec<T, m> multiplier(JointEntry<J> const& e, Gap<m, T> const& gap, Data<M, T> const& data,
-                     VecXOf<T> const& lambda) {
+Vec<T, m> multiplier(JointEntry<J> const& e, Gap<m, T> const& gap, Data<M, T> const& data, VecXOf<T> const& lambda) {
   if constexpr (AddsRows<typename J::PolicyType>)
     return lambda.template segment<m>(e.row);
   else
@@ -104,8 +105,8 @@ void for_each_linear_side(M const& model, Data<M, T> const& data, F&& f) {
 /// r = M a − f(q, v, t) + Gᵀλ (nv). Loads and gravity are scaled by `load_factor`.
 /// Needs `publish` and `enforce` at (q, v, t).
 template <class M, StateScalar T>
-void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& a,
-              VecXOf<T> const& lambda, double t, double load_factor, Data<M, T>& data, VecXOf<T>& r) {
+void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& a, VecXOf<T> const& lambda,
+              double t, double load_factor, Data<M, T>& data, VecXOf<T>& r) {
   r.setZero();
   Vec3 const g = model.gravity().g * load_factor;
   bool const falls = !g.isZero(0.0);
@@ -131,7 +132,8 @@ void residual(M const& model, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> 
         using Slot = Eigen::Map<Vec<T, n>>;
         T* const slots = data.element_forces.data();
         data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-          for_each_unbalance<B, T>(e.body, begin, end, qe, ve, ae, [&](Index i, Vec<T, n> const& x) { Slot(slots + n * i) = x; });
+          for_each_unbalance<B, T>(e.body, begin, end, qe, ve, ae,
+                                   [&](Index i, Vec<T, n> const& x) { Slot(slots + n * i) = x; });
         });
         for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * i));
         return;
@@ -180,7 +182,8 @@ void for_each_row_block(M const& model, Data<M, T> const& data, F&& f) {
 namespace detail {
 /// Adds C x of all linear joints to the rows, x by coordinates or by speeds.
 template <class M, StateScalar T>
-void add_linear_rows(M const& model, Data<M, T> const& data, VecXOf<T> const& x, Index LinearSide::* first, VecXOf<T>& out) {
+void add_linear_rows(M const& model, Data<M, T> const& data, VecXOf<T> const& x, Index LinearSide::* first,
+                     VecXOf<T>& out) {
   for_each_linear_side(model, data, [&](LinearSide const& side, LinearRows const& rows) {
     for (Index j = 0; j < side.map.cols(); ++j)
       for (Index i = 0; i < side.map.rows(); ++i) out[rows.row + i] += x[side.*first + j] * side.map(i, j);

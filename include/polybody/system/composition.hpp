@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What composes with what: the conditions that `Model::connect` states of the types of a joint and its two bodies, beside those of
-/// `Joint` itself. The tables in docs/joints.md are read off them.
+/// What composes with what: the conditions that `Model::connect` states of the types of a joint and its two bodies,
+/// beside those of `Joint` itself. The tables in docs/joints.md are read off them.
 
 #include <polybody/bodies/body.hpp>
 #include <polybody/joints/joint.hpp>
@@ -13,7 +13,8 @@ namespace polybody {
 
 /// Geometry G and the bodies A and B live in the plane together, or in space.
 template <class G, class A, class B>
-concept MeetInOneWorld = same_world(A::world, G::world) && same_world(B::world, G::world) && same_world(A::world, B::world);
+concept MeetInOneWorld =
+    same_world(A::world, G::world) && same_world(B::world, G::world) && same_world(A::world, B::world);
 
 /// If P makes joint coordinates, the motion that G leaves has some.
 template <class P, class G>
@@ -25,10 +26,11 @@ concept HasLinearRows = !LinearInCoordinates<P> || LinearGeometry<G>;
 
 /// P can hold what G stops.
 template <class P, class G>
-concept Holds = MeasuresGeometry<P, G> && AnswersGeometry<P, G> && HasGapToAnswer<P, G> && HasJointCoordinates<P, G> && HasLinearRows<P, G>;
+concept Holds = MeasuresGeometry<P, G> && AnswersGeometry<P, G> && HasGapToAnswer<P, G> && HasJointCoordinates<P, G> &&
+                HasLinearRows<P, G>;
 
-/// If P eliminates coordinates, it can do so with those of body B: joints of `Recursive` carry rigid bodies, those of `AncfLinear` join
-/// points that are linear in the coordinates. The ground has no coordinates.
+/// If P eliminates coordinates, it can do so with those of body B: joints of `Recursive` carry rigid bodies, those of
+/// `AncfLinear` join points that are linear in the coordinates. The ground has no coordinates.
 template <class P, class B>
 concept MayBeEliminated = std::is_same_v<B, Ground> || ((!MakesJointCoordinates<P> || HasRigidLayout<B>) &&
                                                         (!LinearInCoordinates<P> || HasLinearPoints<B>));
@@ -39,6 +41,7 @@ concept TellsEnoughFirst = LinearInCoordinates<typename J::PolicyType> || B::obs
 
 /// … of its second.
 template <class J, class B>
-concept TellsEnoughSecond = LinearInCoordinates<typename J::PolicyType> || B::observes >= needs_of_second<typename J::Measured>();
+concept TellsEnoughSecond =
+    LinearInCoordinates<typename J::PolicyType> || B::observes >= needs_of_second<typename J::Measured>();
 
 }  // namespace polybody

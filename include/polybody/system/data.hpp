@@ -19,25 +19,26 @@ void for_each_pool_beside(Pools const& pools, Vectors& vectors, F&& f) {
 
 template <class M, StateScalar T = double>
 struct Data {
-  std::vector<Published<T>> markers;        ///< waist 1, one for each marker
-  std::vector<T> jacobians;                 ///< arena of the dense Jacobians
-  typename M::template Poses<T> poses;      ///< of the bodies
+  std::vector<Published<T>> markers;    ///< waist 1, one for each marker
+  std::vector<T> jacobians;             ///< arena of the dense Jacobians
+  typename M::template Poses<T> poses;  ///< of the bodies
   typename M::template Scratch<T> scratch_of_bodies;
-  typename M::template Gaps<T> gaps;        ///< waist 2, one for each joint
-  std::vector<Wrench<double>> loads;        ///< per marker: what the tangent's second-order terms need
+  typename M::template Gaps<T> gaps;  ///< waist 2, one for each joint
+  std::vector<Wrench<double>> loads;  ///< per marker: what the tangent's second-order terms need
 
   std::vector<Mat<double, 6, 6>> own_stiffness;  ///< per marker of the largest force group
-  std::vector<double> scratch;              ///< for pulled blocks: n×18 and n×n of the widest marker
+  std::vector<double> scratch;                   ///< for pulled blocks: n×18 and n×n of the widest marker
 
-  bool linear_rows = true;                  ///< else rows of linear joints are left out, and markers that these alone read
-  std::vector<char> read;                   ///< per marker: by anything but linear joints
+  bool linear_rows = true;  ///< else rows of linear joints are left out, and markers that these alone read
+  std::vector<char> read;   ///< per marker: by anything but linear joints
 
-  Workers* workers = nullptr;               ///< threads that share the loops; none by default
-  std::vector<T> element_forces;            ///< with workers: of all elements of a body, before they are added in order
-  std::vector<double> element_tangents;     ///< the same
+  Workers* workers = nullptr;            ///< threads that share the loops; none by default
+  std::vector<T> element_forces;         ///< with workers: of all elements of a body, before they are added in order
+  std::vector<double> element_tangents;  ///< the same
 
   explicit Data(M const& model)
-      : markers(std::size_t(model.markers())), jacobians(std::size_t(model.jacobian_size()), T(0.0)),
+      : markers(std::size_t(model.markers())),
+        jacobians(std::size_t(model.jacobian_size()), T(0.0)),
         loads(std::size_t(model.markers())) {
     Index offset = 0, widest = 12;
     auto const place = [&](auto const& pool) {
@@ -60,19 +61,23 @@ struct Data {
     scratch.resize(std::size_t(widest * (widest + 18)));
     read.assign(markers.size(), 0);
     model.for_each_joint([&](auto const& e) {
-      if constexpr (!LinearInCoordinates<typename std::decay_t<decltype(e.joint)>::PolicyType>) read[std::size_t(e.a)] = read[std::size_t(e.b)] = 1;
+      if constexpr (!LinearInCoordinates<typename std::decay_t<decltype(e.joint)>::PolicyType>)
+        read[std::size_t(e.a)] = read[std::size_t(e.b)] = 1;
     });
     model.for_each_force([&](auto const& e) {
       for (Index const k : e.markers) read[std::size_t(k)] = 1;
     });
-    model.for_each_force([&](auto const& e) { own_stiffness.resize(std::max(own_stiffness.size(), e.markers.size())); });
-    detail::for_each_pool_beside(model.body_pools(), poses, [](auto const& pool, auto& x) { x.resize(pool.entries.size()); });
+    model.for_each_force(
+        [&](auto const& e) { own_stiffness.resize(std::max(own_stiffness.size(), e.markers.size())); });
+    detail::for_each_pool_beside(model.body_pools(), poses,
+                                 [](auto const& pool, auto& x) { x.resize(pool.entries.size()); });
     detail::for_each_pool_beside(model.body_pools(), scratch_of_bodies, [](auto const& pool, auto& x) {
       for (auto const& e : pool.entries) x.emplace_back(e.body);
     });
     detail::for_each_pool_beside(model.joint_pools(), gaps, [](auto const& pool, auto& x) { x.resize(pool.size()); });
   }
-  /// From now on the threads share the loops over elements, markers and joints; what is computed stays the same to the last bit.
+  /// From now on the threads share the loops over elements, markers and joints; what is computed stays the same to the
+  /// last bit.
   void share_with(M const& model, Workers& threads) {
     workers = &threads;
     std::size_t forces = 0, tangents = 0;

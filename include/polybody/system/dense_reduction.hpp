@@ -5,15 +5,19 @@
 
 namespace polybody {
 
-/// [TᵀKT, (G T)ᵀ; G T, 0] as a dense matrix from the blocks of [K, Gᵀ; G, 0]: itself the sink of these. Of the rows those that stay
-/// are taken.
+/// [TᵀKT, (G T)ᵀ; G T, 0] as a dense matrix from the blocks of [K, Gᵀ; G, 0]: itself the sink of these. Of the rows
+/// those that stay are taken.
 class DenseReduction {
  public:
   DenseReduction() = default;
   /// \param row_of where each row of the model goes among `rows`; −1 where it is left out
   DenseReduction(Index whole_speeds, Index speeds, Index rows, std::vector<Index> row_of)
-      : row_of_(std::move(row_of)), speeds_(whole_speeds), transposed_(MatX::Zero(speeds, whole_speeds)),
-        k_(MatX::Zero(speeds, speeds)), g_(MatX::Zero(rows, speeds)), half_(VecX::Zero(speeds)) {}
+      : row_of_(std::move(row_of)),
+        speeds_(whole_speeds),
+        transposed_(MatX::Zero(speeds, whole_speeds)),
+        k_(MatX::Zero(speeds, speeds)),
+        g_(MatX::Zero(rows, speeds)),
+        half_(VecX::Zero(speeds)) {}
 
   /// Column j of T.
   void set_column(Index j, VecX const& column) {

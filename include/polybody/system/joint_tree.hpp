@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// Rigid bodies that carry one another through joint coordinates [thesis Eq. 3.4–3.5; Shabana 2020, §3]: a body's pose is its
-/// parent's followed by the joint's motions, and with D the arm from the parent's centre of mass to its own,
+/// Rigid bodies that carry one another through joint coordinates [thesis Eq. 3.4–3.5; Shabana 2020, §3]: a body's pose
+/// is its parent's followed by the joint's motions, and with D the arm from the parent's centre of mass to its own,
 ///   ω = ω_p + S_ω u,   ṙ = ṙ_p + ω_p × D + S_r u,
 ///   ω˙ = ω˙_p + S_ω u̇ + b_ω,   r̈ = r̈_p + ω˙_p × D + S_r u̇ + b_r,
-/// all in world axes; b is what is left for u̇ = 0 and a parent without accelerations. Whole vectors hold every body, narrow ones the
-/// joints. Everything is one walk from the roots to the tips or back.
+/// all in world axes; b is what is left for u̇ = 0 and a parent without accelerations. Whole vectors hold every body,
+/// narrow ones the joints. Everything is one walk from the roots to the tips or back.
 
 #include <numbers>
 
@@ -21,7 +21,8 @@ class JointTree {
 
   bool empty() const { return bodies.empty(); }
 
-  /// Poses and speeds of the carried bodies from the joints' coordinates and speeds; those of roots are read. `q`, `v` are whole.
+  /// Poses and speeds of the carried bodies from the joints' coordinates and speeds; those of roots are read. `q`, `v`
+  /// are whole.
   void carry(VecX const& qn, VecX const& vn, VecX& q, VecX& v, TreeState& s) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
@@ -83,7 +84,8 @@ class JointTree {
     }
   }
 
-  /// The u with T u next to x (whole): exact where x keeps to the joints. Parts of roots are left to the caller. With `bias`, of x − b.
+  /// The u with T u next to x (whole): exact where x keeps to the joints. Parts of roots are left to the caller. With
+  /// `bias`, of x − b.
   void gather_rates(TreeState& s, VecX const& x, bool bias, VecX& u) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) s.twists[i] = twist_of(bodies[i], s.frames[i], x);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -124,7 +126,8 @@ class JointTree {
 
   /// A whole r with Tᵀ r = `given` (narrow); parts of roots stand already.
   void spread_forces(TreeState& s, VecX const& given, VecX& r) const {
-    for (std::size_t i = 0; i < bodies.size(); ++i) s.held[i] = bodies[i].carried() ? Vec6(Vec6::Zero()) : wrench_of(bodies[i], s.frames[i], r);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      s.held[i] = bodies[i].carried() ? Vec6(Vec6::Zero()) : wrench_of(bodies[i], s.frames[i], r);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
       if (!body.carried()) continue;
@@ -166,9 +169,13 @@ class JointTree {
       for (int k = 0; k < body.motions.count; ++k) {
         JointMotion const& m = body.motions.list[std::size_t(k)];
         switch (m.kind) {
-          case JointMotion::Kind::slide: *x = d[m.axis]; break;
+          case JointMotion::Kind::slide:
+            *x = d[m.axis];
+            break;
           case JointMotion::Kind::turn:
-            *x = body.layout == RigidLayout::plane ? angle : first_turn(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
+            *x = body.layout == RigidLayout::plane
+                     ? angle
+                     : first_turn(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
             turned = detail::turn_about(m.axis, -*x) * turned;
             break;
           case JointMotion::Kind::screw: {  // the slide counts the turns
@@ -273,8 +280,10 @@ class JointTree {
     put_twist(body, f, t, v);
   }
 
-  /// One motion; its columns as [moment arm's origin; axis] until `finish_columns` knows where the body's centre comes to lie.
-  static void move(JointMotion const& m, double sign, double const* x, double const* u, detail::Runner& run, TreeFrame& f) {
+  /// One motion; its columns as [moment arm's origin; axis] until `finish_columns` knows where the body's centre comes
+  /// to lie.
+  static void move(JointMotion const& m, double sign, double const* x, double const* u, detail::Runner& run,
+                   TreeFrame& f) {
     Vec3 const n = sign * run.A.col(m.axis);
     auto const column = [&](Vec3 const& slide, Vec3 const& turn) {
       f.s.col(f.speeds) << slide + run.r.cross(turn), turn;  // at the world's origin

@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// Dependent coordinates of linear rows C e = c, e_d = Σ f_k e_k + c_d, by elimination once before a run [thesis §3.5.4]. A row is
-/// freed of the dependents of earlier rows, row'_k = row_k − Σ_j m_kj row'_j, and its largest entry p_k makes the next one. What the
-/// rows hold follows from the balance Cᵀλ = −r of the dependent coordinates, by the same numbers:
+/// Dependent coordinates of linear rows C e = c, e_d = Σ f_k e_k + c_d, by elimination once before a run [thesis
+/// §3.5.4]. A row is freed of the dependents of earlier rows, row'_k = row_k − Σ_j m_kj row'_j, and its largest entry
+/// p_k makes the next one. What the rows hold follows from the balance Cᵀλ = −r of the dependent coordinates, by the
+/// same numbers:
 ///   p_k λ'_k = −r_dk − Σ_{j<k} row'_j,dk λ'_j,   λ_j = λ'_j − Σ_{k>j} m_kj λ_k.
 
 #include <map>
@@ -74,9 +75,9 @@ class LinearElimination {
  private:
   /// A row after elimination, and how it came about.
   struct Pivot {
-    Index row;                                         ///< of the model
-    Index v = -1;                                      ///< its dependent
-    std::map<Index, double> entries;                   ///< by speeds
+    Index row;                        ///< of the model
+    Index v = -1;                     ///< its dependent
+    std::map<Index, double> entries;  ///< by speeds
     double constant;
     std::vector<std::pair<std::size_t, double>> multiples = {};  ///< m_kj
     std::vector<std::pair<std::size_t, double>> above = {};      ///< row'_j,dk of earlier rows
@@ -102,12 +103,14 @@ class LinearElimination {
     if (largest <= 1e-10 * scale) {
       if (std::abs(p.constant) > 1e-8)
         throw InconsistentStart("\"" + joint.name + "\": its linear rows contradict those of other joints by " +
-                                number(std::abs(p.constant)) + ". Place the bodies so that the loop closes, or leave a joint out.");
+                                number(std::abs(p.constant)) +
+                                ". Place the bodies so that the loop closes, or leave a joint out.");
       redundant_.push_back(p.row);
       return;
     }
     for (std::size_t j = 0; j < pivots_.size(); ++j)
-      if (auto const found = pivots_[j].entries.find(p.v); found != pivots_[j].entries.end()) p.above.emplace_back(j, found->second);
+      if (auto const found = pivots_[j].entries.find(p.v); found != pivots_[j].entries.end())
+        p.above.emplace_back(j, found->second);
     pivot_of_[p.v] = pivots_.size();
     pivots_.push_back(std::move(p));
   }
@@ -158,7 +161,7 @@ class LinearElimination {
   std::vector<Pivot> pivots_;
   std::vector<Dependent> dependents_;
   std::vector<Index> redundant_;
-  std::map<Index, Index> coordinate_;        // of a speed
+  std::map<Index, Index> coordinate_;  // of a speed
   std::map<Index, std::size_t> pivot_of_, solved_;
 };
 

@@ -21,8 +21,8 @@ struct LinearRows {
   std::string name;
   Index row = 0;
   LinearSide a = {}, b = {};
-  VecX constant = {};                ///< (rows) c
-  Index positions = 0;          ///< rows of the position
+  VecX constant = {};   ///< (rows) c
+  Index positions = 0;  ///< rows of the position
   /// A gradient that a and b share, or its component along an axis.
   struct Gradient {
     Index rows;
@@ -38,13 +38,13 @@ namespace detail {
 
 /// Position and gradients of a linear point, with their values in the reference.
 struct LinearPoint {
-  int size = 3;                     ///< components: three, or two in the plane
+  int size = 3;  ///< components: three, or two in the plane
   Index columns = 0;
-  MatX position;                    ///< (size × columns)
+  MatX position;  ///< (size × columns)
   std::array<MatX, 3> gradients;
-  int gradient_count = 0;           ///< 3 and no columns for the ground
-  Vec3 at = Vec3::Zero();           ///< r
-  Mat3 J = Mat3::Identity();        ///< [r_x r_y r_z] in the reference, as far as there are gradients
+  int gradient_count = 0;     ///< 3 and no columns for the ground
+  Vec3 at = Vec3::Zero();     ///< r
+  Mat3 J = Mat3::Identity();  ///< [r_x r_y r_z] in the reference, as far as there are gradients
 
   bool complete() const { return gradient_count == 3; }
   /// The map of J J₀⁻¹ w: what has become of the direction w of the reference. A body with r′ alone knows that of r′.
@@ -61,7 +61,8 @@ struct LinearPoint {
 template <class B>
 LinearPoint linear_point(B const& body, typename B::Point const& p) {
   static_assert(HasLinearPoints<B>,
-                "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground are, Rigid, Ffr "
+                "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
+                "are, Rigid, Ffr "
                 "and Lrvf in space are not. Use Constraint there.");
   LinearPoint out;
   out.size = B::world == World::plane ? 2 : 3;
@@ -103,10 +104,12 @@ void append_rows(LinearRows& rows, MatX const& a, MatX const& b, VecX const& c) 
   rows.constant.tail(more) = c;
 }
 
-/// The rows of geometry G with its third axis along n between two linear points. \throws InvalidInput with the joint's name.
+/// The rows of geometry G with its third axis along n between two linear points. \throws InvalidInput with the joint's
+/// name.
 template <class G>
 void fill_linear_rows(LinearPoint const& a, LinearPoint const& b, Vec3 const& n, LinearRows& rows) {
-  static_assert(LinearGeometry<G>, "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
+  static_assert(LinearGeometry<G>,
+                "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
   constexpr int turns = free_turns(G::free);
   int const size = b.size;
   rows.a.map.resize(0, a.columns);
@@ -144,7 +147,9 @@ void fill_linear_rows(LinearPoint const& a, LinearPoint const& b, Vec3 const& n,
   } else {
     Vec3 const t = a.complete() ? b.J.col(0) : a.J.col(0);
     if (!a.complete() && !b.complete() && (a.J.col(0) - b.J.col(0)).norm() > 1e-9)
-      throw InvalidInput("\"" + rows.name + "\": AncfLinear welds two cables only where one goes on as the other; weld a corner by Constraint.");
+      throw InvalidInput(
+          "\"" + rows.name +
+          "\": AncfLinear welds two cables only where one goes on as the other; weld a corner by Constraint.");
     share(t, t, false);
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Waist 3 without a model: M q̈ + D(t) q̇ + K(t) q = f(t), so that every integrator of the library solves a linear problem.
+/// Waist 3 without a model: M q̈ + D(t) q̇ + K(t) q = f(t), so that every integrator of the library solves a linear
+/// problem.
 ///
 /// Not in polybody.hpp: few programs need it.
 
@@ -11,14 +12,10 @@ namespace polybody {
 
 /// f(t) into `f` (n).
 template <class L>
-concept LoadHistory = requires(L const load, double t, VecX f) {
-  load(t, f);
-};
+concept LoadHistory = requires(L const load, double t, VecX f) { load(t, f); };
 /// … which changes damping and stiffness (n×n) in time, too: adds to them.
 template <class L>
-concept ChangesMatrices = requires(L const load, double t, MatX d, MatX k) {
-  load.add_matrices(t, d, k);
-};
+concept ChangesMatrices = requires(L const load, double t, MatX d, MatX k) { load.add_matrices(t, d, k); };
 
 template <LoadHistory Load>
 struct LinearVibration {

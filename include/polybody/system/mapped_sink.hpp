@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A sink between the blocks of a whole tangent and a system in which some unknowns depend on others, x = P y, and some rows are left
-/// out: blocks arrive as Pᵀ b P.
+/// A sink between the blocks of a whole tangent and a system in which some unknowns depend on others, x = P y, and some
+/// rows are left out: blocks arrive as Pᵀ b P.
 
 #include <list>
 #include <map>
@@ -19,8 +19,10 @@ class UnknownMap {
     double factor;
   };
 
-  /// `targets[i]` of whole unknown i: one with factor one for most, several for a dependent one, none for one that is left out.
-  explicit UnknownMap(std::vector<std::vector<Target>> targets = {}) : targets_(std::move(targets)), run_end_(targets_.size()) {
+  /// `targets[i]` of whole unknown i: one with factor one for most, several for a dependent one, none for one that is
+  /// left out.
+  explicit UnknownMap(std::vector<std::vector<Target>> targets = {})
+      : targets_(std::move(targets)), run_end_(targets_.size()) {
     for (std::size_t i = targets_.size(); i-- > 0;) {
       bool const goes_on = i + 1 < targets_.size() && plain(i) && plain(i + 1) &&
                            targets_[i + 1][0].unknown == targets_[i][0].unknown + 1;
@@ -44,7 +46,8 @@ class UnknownMap {
     Index whole_size = 0, size = 0;
     std::vector<Run> runs;
     std::vector<std::vector<Target>> targets;  ///< of each whole unknown, by local number
-    std::vector<Index> chosen;  ///< where no whole unknown has more than one target, nor another factor than one: its local number, or −1
+    std::vector<Index> chosen;  ///< where no whole unknown has more than one target, nor another factor than one: its
+                                ///< local number, or −1
   };
   Range range(Index first, Index size) const {
     std::map<Index, Index> local;

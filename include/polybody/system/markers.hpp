@@ -50,20 +50,23 @@ template <class B>
 void require_told(Marker<B> const& m, Observes needs, std::string const& what) {
   if constexpr (requires { B::observes_at(m.point); })
     if (B::observes_at(m.point) < needs)
-      throw InvalidInput("\"" + what + "\" needs axes, but a point that slides along a body has none. Use a joint or force that "
+      throw InvalidInput("\"" + what +
+                         "\" needs axes, but a point that slides along a body has none. Use a joint or force that "
                          "needs a point only, such as Spherical or planar::Revolute.");
 }
 
 /// \throws InvalidInput where a second marker that knows its tangent only does not lie along the joint's axis.
 inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::string const& name) {
   if (axes.col(0).cross(triad.col(2)).norm() > 1e-6)
-    throw InvalidInput("\"" + name + "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
+    throw InvalidInput("\"" + name +
+                       "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
                        "reference configuration.");
 }
 
 /// \throws InvalidInput.
 [[noreturn]] inline void refuse_marker_of_another_model(std::string const& what) {
-  throw InvalidInput("\"" + what + "\" was given a marker or handle of another model; take it from a body added to this one.");
+  throw InvalidInput("\"" + what +
+                     "\" was given a marker or handle of another model; take it from a body added to this one.");
 }
 
 }  // namespace polybody::detail

@@ -37,8 +37,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;
 
   /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
-  static constexpr bool may_have_rows =
-      (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
+  static constexpr bool may_have_rows = (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
   /// Some joint type eliminates coordinates from a time step; and how.
   static constexpr bool eliminates = (Eliminates<typename Js::PolicyType> || ...);
   using Solution = detail::SolutionOf<typename Js::PolicyType...>;
@@ -70,8 +69,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// configuration. \throws InvalidInput naming the joint for a marker of another model, a body joined to
   /// itself at one marker type only, or parameters that cannot be meant.
   template <OneOf<Js...> J, class A, class B>
-  ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b,
-                           std::string name = "") {
+  ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     using G = typename J::Geometry;
     using P = typename J::PolicyType;
     using Asks = typename J::Measured;
@@ -79,15 +77,18 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                   "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
                   "belongs to both.");
     static_assert(HasJointCoordinates<P, G>,
-                  "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or Universal; a Distance "
+                  "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
+                  "Universal; a Distance "
                   "or a Gear has none. Use Constraint for it.");
     static_assert(!MakesJointCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
-                  "Recursive makes joint coordinates between rigid bodies and the ground: Rigid<> in space, planar::Rigid in the plane. "
+                  "Recursive makes joint coordinates between rigid bodies and the ground: Rigid<> in space, "
+                  "planar::Rigid in the plane. "
                   "Use another policy for joints of other bodies.");
-    static_assert(TellsEnoughFirst<J, A> && TellsEnoughSecond<J, B>,
-                  "This joint needs more than the marker tells (a full frame, say, of a body that only "
-                  "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
-                  "Revolute about its tangent, with the cable's marker second.");
+    static_assert(
+        TellsEnoughFirst<J, A> && TellsEnoughSecond<J, B>,
+        "This joint needs more than the marker tells (a full frame, say, of a body that only "
+        "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
+        "Revolute about its tangent, with the cable's marker second.");
     auto& pool = std::get<std::vector<detail::JointEntry<J>>>(joints_);
     name = detail::name_or_next(std::move(name), G::name, pool.size());
     require_own(a.model, name);
@@ -100,7 +101,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     detail::require_told(b, needs_of_second<Asks>(), name);
     if constexpr (LinearInCoordinates<P>) {  // before a marker is published: it may refuse
       LinearRows rows{.name = name, .row = rows_};
-      detail::fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name), triad.col(2), rows);
+      detail::fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name),
+                                  triad.col(2), rows);
       linear_rows_.push_back(std::move(rows));
     }
     Index const pa = publish_at(a, axes_a.transpose() * triad);
@@ -136,20 +138,24 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F, class... Ms>
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
-    static_assert([]<std::size_t... k>(std::index_sequence<k...>) {
-      return ((Ms::observes >= (k == 1 ? needs_of_second<F>() : F::needs)) && ...);
-    }(std::make_index_sequence<sizeof...(Ms)>{}),
-                  "This force needs more than the marker tells; a moment needs a marker with a frame or a tangent, a plane one with a frame.");
+    static_assert(
+        []<std::size_t... k>(std::index_sequence<k...>) {
+          return ((Ms::observes >= (k == 1 ? needs_of_second<F>() : F::needs)) && ...);
+        }(std::make_index_sequence<sizeof...(Ms)>{}),
+        "This force needs more than the marker tells; a moment needs a marker with a frame or a tangent, a plane one "
+        "with a frame.");
     auto& pool = std::get<std::vector<detail::ForceEntry<F>>>(forces_);
     name = detail::name_or_next(std::move(name), "force", pool.size());
     force.check("\"" + name + "\"");
     detail::ForceEntry<F> entry{force, {}, name};
     std::size_t k = 0;
-    std::apply([&](auto const&... m) {
-      (require_own(m.model, name), ...);
-      (detail::require_told(m, F::needs, name), ...);
-      ((entry.markers[k++] = publish_at(m, Mat3::Identity())), ...);
-    }, markers);
+    std::apply(
+        [&](auto const&... m) {
+          (require_own(m.model, name), ...);
+          (detail::require_told(m, F::needs, name), ...);
+          ((entry.markers[k++] = publish_at(m, Mat3::Identity())), ...);
+        },
+        markers);
     pool.push_back(std::move(entry));
     return {serial_, Index(pool.size()) - 1, std::move(name)};
   }
@@ -190,9 +196,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// The undeformed model as placed, at rest, t = 0.
   State reference_state() const {
     State x{VecX::Zero(coordinates_), VecX::Zero(speeds_), VecX::Zero(speeds_), VecX::Zero(rows_), 0.0, {}};
-    for_each_body([&](auto const& e) {
-      e.body.reference(detail::body_part_of(x.q, e.q0, e.body.coordinates()));
-    });
+    for_each_body([&](auto const& e) { e.body.reference(detail::body_part_of(x.q, e.q0, e.body.coordinates())); });
     return x;
   }
 

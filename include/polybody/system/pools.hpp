@@ -35,10 +35,10 @@ namespace detail {
 
 template <class B>
 struct MarkerEntry {
-  Index body;                ///< in the pool of its type
+  Index body;  ///< in the pool of its type
   typename B::Point point;
-  Mat3 axes;                 ///< (3×3) the marker's axes in the body's at that point
-  Index published;           ///< where its data stand
+  Mat3 axes;        ///< (3×3) the marker's axes in the body's at that point
+  Index published;  ///< where its data stand
 };
 
 template <class B>
@@ -46,8 +46,8 @@ struct BodyPool {
   struct Entry {
     B body;
     std::string name;
-    Index q0;  ///< first coordinate
-    Index v0;  ///< first speed
+    Index q0;        ///< first coordinate
+    Index v0;        ///< first speed
     Index row = -1;  ///< first of its own rows; −1 for a body without
   };
   std::vector<Entry> entries;
@@ -62,11 +62,11 @@ struct GroundMarker {
 template <class J>
 struct JointEntry {
   J joint;
-  Index a, b;       ///< published markers
-  Index row = -1;   ///< first row; −1 for a joint without rows
+  Index a, b;      ///< published markers
+  Index row = -1;  ///< first row; −1 for a joint without rows
   std::string name;
-  Index rows = 0;    ///< how many
-  Index linear = -1; ///< of a linear joint: its place among the model's linear rows
+  Index rows = 0;     ///< how many
+  Index linear = -1;  ///< of a linear joint: its place among the model's linear rows
 };
 
 template <class F>
@@ -93,7 +93,8 @@ template <MakesJointCoordinates P, class... Ps>
 struct SolutionAmong<P, Ps...> {
   using Type = typename P::Solution;
   static_assert(((!MakesJointCoordinates<Ps> || std::is_same_v<typename SolutionAmong<Ps>::Type, void> ||
-                  std::is_same_v<typename SolutionAmong<Ps>::Type, Type>) && ...),
+                  std::is_same_v<typename SolutionAmong<Ps>::Type, Type>) &&
+                 ...),
                 "The recursive joints of one model are solved for in one way.");
 };
 template <class... Ps>

@@ -2,8 +2,9 @@
 /// \file
 /// Waist 3 for models of which policies eliminate unknowns: the equations of the coordinates that are left,
 ///   Tᵀ(M(T u̇ + b) − f) + (G T)ᵀλ = 0,   v = T u,  v̇ = T u̇ + b,
-/// with T of joint trees (`JointTree`) and of linear joints (`LinearElimination`). Bodies, joints and forces do not notice.
-/// A linear system of equations may have other unknowns than a time step: `spread` and `gather` go between them.
+/// with T of joint trees (`JointTree`) and of linear joints (`LinearElimination`). Bodies, joints and forces do not
+/// notice. A linear system of equations may have other unknowns than a time step: `spread` and `gather` go between
+/// them.
 
 #include <polybody/system/dense_reduction.hpp>
 #include <polybody/system/mapped_sink.hpp>
@@ -35,13 +36,24 @@ class System<Reduced<M>> {
   static constexpr bool solves_by_bodies = Reduced<M>::solved_by_bodies;
   /// The equations have the unknowns of a time step.
   static constexpr bool solves_as_it_is = solves_densely || solves_by_bodies || std::is_void_v<typename M::Solution>;
-  static_assert(!solves_by_bodies || M::all_rigid, "recursive::ArticulatedBody is for models of rigid bodies. Take recursive::Augmented.");
+  static_assert(!solves_by_bodies || M::all_rigid,
+                "recursive::ArticulatedBody is for models of rigid bodies. Take recursive::Augmented.");
 
   /// \throws InvalidInput, InconsistentStart as `Reduction`.
   explicit System(M const& model)
-      : whole_(model), reduction_(model), state_(reduction_.tree().state()), q_(model.reference_state().q),
-        v_(VecX::Zero(model.speeds())), a_(v_), r_(v_), bias_(v_), lambda_(VecX::Zero(model.rows())), phi_(lambda_),
-        zero_(VecX::Zero(speeds())), unit_(zero_), narrow_(zero_) {
+      : whole_(model),
+        reduction_(model),
+        state_(reduction_.tree().state()),
+        q_(model.reference_state().q),
+        v_(VecX::Zero(model.speeds())),
+        a_(v_),
+        r_(v_),
+        bias_(v_),
+        lambda_(VecX::Zero(model.rows())),
+        phi_(lambda_),
+        zero_(VecX::Zero(speeds())),
+        unit_(zero_),
+        narrow_(zero_) {
     if constexpr (solves_densely)
       prepare_dense();
     else if constexpr (!solves_by_bodies)
@@ -190,7 +202,8 @@ class System<Reduced<M>> {
     x.t = narrow.t;
     x.memory = narrow.memory;
   }
-  /// The narrow state next to a whole one: exact where this one keeps to the eliminated joints. The integrator starts afresh.
+  /// The narrow state next to a whole one: exact where this one keeps to the eliminated joints. The integrator starts
+  /// afresh.
   State narrow(State const& x) {
     State out{VecX::Zero(coordinates()), VecX::Zero(speeds()), VecX::Zero(speeds()), VecX::Zero(rows()), x.t, {}};
     reduction_.copy_coordinates_in(x.q, out.q);
@@ -227,7 +240,8 @@ class System<Reduced<M>> {
     if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_force_not_finite(name_of(i), time());
   }
   void require_finite_rows(VecX const& x) const {
-    if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_motion_not_finite(name_of(speeds() + i), time());
+    if (Index const i = detail::first_not_finite(x); i >= 0)
+      detail::throw_motion_not_finite(name_of(speeds() + i), time());
   }
 
  private:
@@ -297,7 +311,8 @@ class System<Reduced<M>> {
     }
   }
 
-  /// Where the whole unknowns stand in the equations: dependents of linear joints are spread, the rows of these left out.
+  /// Where the whole unknowns stand in the equations: dependents of linear joints are spread, the rows of these left
+  /// out.
   void map_equations() {
     Index const nv = whole_.speeds();
     std::vector<std::vector<UnknownMap::Target>> targets(std::size_t(whole_.size()));
@@ -306,7 +321,8 @@ class System<Reduced<M>> {
     for (Index i = 0; i < nv; ++i)
       if (!dependent[std::size_t(i)]) targets[std::size_t(i)].push_back({equation_speeds_++, 1.0});
     for (auto const& d : reduction_.linear().dependents())
-      for (auto const& t : d.terms) targets[std::size_t(d.v)].push_back({targets[std::size_t(t.v)][0].unknown, t.factor});
+      for (auto const& t : d.terms)
+        targets[std::size_t(d.v)].push_back({targets[std::size_t(t.v)][0].unknown, t.factor});
     std::vector<bool> linear(std::size_t(whole_.rows()), false);
     for (LinearRows const& rows : model().linear_rows())
       for (Index i = 0; i < rows.rows(); ++i) linear[std::size_t(rows.row + i)] = true;
@@ -317,7 +333,9 @@ class System<Reduced<M>> {
   }
   /// Of a whole unknown, −1 for one that is spread or left out; and of a row that stays.
   Index equation_of(Index i) const { return equation_of_[std::size_t(i)]; }
-  Index equation_of_row(Index i) const { return equation_of(whole_.speeds() + reduction_.rows_that_stay()[std::size_t(i)]); }
+  Index equation_of_row(Index i) const {
+    return equation_of(whole_.speeds() + reduction_.rows_that_stay()[std::size_t(i)]);
+  }
 
   void prepare_dense() {
     std::vector<Index> row_of(std::size_t(whole_.rows()), -1);
@@ -341,11 +359,11 @@ class System<Reduced<M>> {
   System<M> whole_;
   Reduction reduction_;
   mutable TreeState state_;
-  VecX q_, v_;                                     // whole
-  mutable VecX a_, r_, bias_, lambda_, phi_;       // scratch, whole
-  VecX zero_, unit_;                               // narrow
+  VecX q_, v_;                                // whole
+  mutable VecX a_, r_, bias_, lambda_, phi_;  // scratch, whole
+  VecX zero_, unit_;                          // narrow
   mutable VecX narrow_;
-  VecX held_r_;                                    // r of the last residual, for multipliers
+  VecX held_r_;  // r of the last residual, for multipliers
   Index equation_speeds_ = 0, equation_rows_ = 0;
   UnknownMap map_;
   std::vector<Index> equation_of_;

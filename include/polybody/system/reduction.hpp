@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// Which unknowns of a model a time step has once policies have eliminated others: narrow vectors hold them, whole ones everything.
-///   q, v: coordinates of bodies that no joint carries, without those that depend on others; joint coordinates of carried bodies.
-///   rows: those of joints and bodies that stay.
+/// Which unknowns of a model a time step has once policies have eliminated others: narrow vectors hold them, whole ones
+/// everything.
+///   q, v: coordinates of bodies that no joint carries, without those that depend on others; joint coordinates of
+///   carried bodies. rows: those of joints and bodies that stay.
 
 #include <algorithm>
 
@@ -25,7 +26,8 @@ struct NarrowPlace {
 
 class Reduction {
  public:
-  /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each other.
+  /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
+  /// other.
   template <class M>
   explicit Reduction(M const& model) : linear_(model.linear_rows()) {
     if constexpr (!std::is_void_v<typename M::Solution>) grow_tree(model);
@@ -93,7 +95,8 @@ class Reduction {
     model.for_each_joint([&](auto const& e) {
       using J = std::decay_t<decltype(e.joint)>;
       if constexpr (MakesJointCoordinates<typename J::PolicyType>)
-        links.push_back({e.name, e.row, hooks[std::size_t(e.a)], hooks[std::size_t(e.b)], motions_of(e.joint.geometry)});
+        links.push_back(
+            {e.name, e.row, hooks[std::size_t(e.a)], hooks[std::size_t(e.b)], motions_of(e.joint.geometry)});
     });
     hang(bodies, links, model.reference_state().q, std::is_same_v<typename M::Solution, recursive::ArticulatedBody>);
     carried_by_.assign(std::size_t(model.rows()), -1);
@@ -105,7 +108,8 @@ class Reduction {
   static void hook(detail::BodyPool<B> const& pool, std::vector<TreeBody>& bodies, std::vector<Hook>& hooks) {
     if constexpr (HasRigidLayout<B>) {
       Index const first = Index(bodies.size());
-      for (auto const& e : pool.entries) bodies.push_back({.name = e.name, .layout = B::layout, .q0 = e.q0, .v0 = e.v0});
+      for (auto const& e : pool.entries)
+        bodies.push_back({.name = e.name, .layout = B::layout, .q0 = e.q0, .v0 = e.v0});
       for (auto const& m : pool.markers) {
         Hook& h = hooks[std::size_t(m.published)];
         h.body = first + m.body;
@@ -130,14 +134,15 @@ class Reduction {
     for (Link const* const link : order) {
       std::size_t const a = part_of(link->a.body), b = part_of(link->b.body);
       if (a == b)
-        throw InvalidInput("\"" + link->name + "\" closes a loop of recursive joints. Give one joint of the loop another policy, such as "
+        throw InvalidInput("\"" + link->name +
+                           "\" closes a loop of recursive joints. Give one joint of the loop another policy, such as "
                            "Constraint.");
       towards[a] = b;
     }
   }
 
-  /// Breadth first from the ground, then from a body of each part that is left: every joint carries one body. Bodies without a recursive
-  /// joint only with `all`, as roots.
+  /// Breadth first from the ground, then from a body of each part that is left: every joint carries one body. Bodies
+  /// without a recursive joint only with `all`, as roots.
   void hang(std::vector<TreeBody> const& bodies, std::vector<Link> const& links, VecX const& reference, bool all) {
     refuse_loops(bodies.size(), links);
     std::vector<Index> place(bodies.size(), -1);
@@ -185,7 +190,8 @@ class Reduction {
 
   template <class M>
   void number_unknowns(M const& model) {
-    std::vector<bool> dependent_v(std::size_t(model.speeds()), false), dependent_q(std::size_t(model.coordinates()), false);
+    std::vector<bool> dependent_v(std::size_t(model.speeds()), false),
+        dependent_q(std::size_t(model.coordinates()), false);
     for (auto const& d : linear_.dependents()) dependent_v[std::size_t(d.v)] = dependent_q[std::size_t(d.q)] = true;
     std::vector<Index> in_tree(std::size_t(model.speeds()) + 1, -1);  // by first speed
     for (std::size_t i = 0; i < tree_.bodies.size(); ++i) in_tree[std::size_t(tree_.bodies[i].v0)] = Index(i);
@@ -203,7 +209,9 @@ class Reduction {
       NarrowPlace& place = places_[i];
       place.q = coordinates_;
       place.v = speeds_;
-      TreeBody* const body = x.nv == 0 || in_tree[std::size_t(x.v0)] < 0 ? nullptr : &tree_.bodies[std::size_t(in_tree[std::size_t(x.v0)])];
+      TreeBody* const body = x.nv == 0 || in_tree[std::size_t(x.v0)] < 0
+                                 ? nullptr
+                                 : &tree_.bodies[std::size_t(in_tree[std::size_t(x.v0)])];
       if (body) {
         body->qn = coordinates_;
         body->vn = speeds_;

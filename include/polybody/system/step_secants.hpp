@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A model over a step from q₀ to q₁: forces, rows and markers by secants, so that the step knows the change of every potential
-/// and of every row to rounding [Gonzalez 1996, 1999]:
+/// A model over a step from q₀ to q₁: forces, rows and markers by secants, so that the step knows the change of every
+/// potential and of every row to rounding [Gonzalez 1996, 1999]:
 ///   f·Δq = −ΔV less what is damped,   Ḡ Δq = ΔΦ.
 
 #include <polybody/bodies/step_means.hpp>
@@ -10,16 +10,17 @@
 
 namespace polybody {
 
-/// A policy whose force is linear in the gap, so that its mean over a step is that of the mean gap; or one that brings rows.
+/// A policy whose force is linear in the gap, so that its mean over a step is that of the mean gap; or one that brings
+/// rows.
 template <class P>
 concept OffersMeanMultiplier = AddsRows<P> || requires { requires P::linear; };
 
 /// A force element whose potential may be asked on secants.
 template <class F>
-concept HasSecantPotential = requires(F const force, std::array<Frame<Secant<12 * F::markers>>, F::markers> const frames,
-                                      double t) {
-  { force.potential(frames, t) } -> std::convertible_to<Secant<12 * F::markers>>;
-};
+concept HasSecantPotential =
+    requires(F const force, std::array<Frame<Secant<12 * F::markers>>, F::markers> const frames, double t) {
+      { force.potential(frames, t) } -> std::convertible_to<Secant<12 * F::markers>>;
+    };
 
 namespace detail {
 
@@ -57,14 +58,17 @@ struct SecantsBeside;
 template <class... Bs, class... Js>
 struct SecantsBeside<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>> {
   using Offer = SecantOffer<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>>;
-  static_assert(Offer::bodies,
-                "A step that conserves energy asks for bodies of constant mass whose coordinates form a vector space and "
-                "which give their mean force over a step: cables, ANCF beams, planar rigid bodies and beams. For others use GeneralizedAlpha.");
+  static_assert(
+      Offer::bodies,
+      "A step that conserves energy asks for bodies of constant mass whose coordinates form a vector space and "
+      "which give their mean force over a step: cables, ANCF beams, planar rigid bodies and beams. For others use "
+      "GeneralizedAlpha.");
   static_assert(Offer::policies,
                 "A step that conserves energy takes joints with Constraint, Penalty or Bushing. "
                 "For others use GeneralizedAlpha.");
   static_assert(Offer::positions,
-                "A step that conserves energy knows rows by the change of their gap, and RollingDisc and KnifeEdge have none. Use "
+                "A step that conserves energy knows rows by the change of their gap, and RollingDisc and KnifeEdge "
+                "have none. Use "
                 "GeneralizedAlpha.");
   using Scratch = std::tuple<SecantScratch<Bs>...>;
   using Gaps = std::tuple<std::vector<GapSecant<Js::rows>>...>;
@@ -76,7 +80,8 @@ Frame<Secant<n>> frame_of(MarkerSecant const& m, int first) {
   Frame<Secant<n>> f;
   for (int i = 0; i < 3; ++i) {
     f.r[i] = Secant<n>::variable(m.from[i], m.to[i], first + i);
-    for (int j = 0; j < 3; ++j) f.A(j, i) = Secant<n>::variable(m.from[3 + 3 * i + j], m.to[3 + 3 * i + j], first + 3 + 3 * i + j);
+    for (int j = 0; j < 3; ++j)
+      f.A(j, i) = Secant<n>::variable(m.from[3 + 3 * i + j], m.to[3 + 3 * i + j], first + 3 + 3 * i + j);
   }
   return f;
 }
@@ -104,7 +109,8 @@ template <class M>
 class StepSecants {
  public:
   explicit StepSecants(System<M> const& system)
-      : markers_(std::size_t(system.model().markers())), middle_(VecX::Zero(system.coordinates())),
+      : markers_(std::size_t(system.model().markers())),
+        middle_(VecX::Zero(system.coordinates())),
         speed_(VecX::Zero(system.speeds())) {
     M const& model = system.model();
     Index marker_size = 0, gap_size = 0, widest = 1;
@@ -129,7 +135,8 @@ class StepSecants {
     }
     detail::for_each_pool_beside(model.joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
       gaps.resize(pool.size());
-      for (auto const& e : pool) gap_size += std::decay_t<decltype(e.joint)>::rows * (marker(e.a).columns + marker(e.b).columns);
+      for (auto const& e : pool)
+        gap_size += std::decay_t<decltype(e.joint)>::rows * (marker(e.a).columns + marker(e.b).columns);
     });
     rows_.resize(std::size_t(gap_size));
     next = rows_.data();
@@ -156,9 +163,8 @@ class StepSecants {
   StepSecants(StepSecants&&) = default;
   StepSecants& operator=(StepSecants&&) = default;
 
-  /// Takes the step from q0 at t to q1 at t + h. Rows that depend on time are taken at its end; loads in its middle, where
-  /// `system` is
-  /// then evaluated.
+  /// Takes the step from q0 at t to q1 at t + h. Rows that depend on time are taken at its end; loads in its middle,
+  /// where `system` is then evaluated.
   void evaluate(System<M>& system, VecX const& q0, VecX const& q1, double t, double h, double decay) {
     q0_ = &q0;
     q1_ = &q1;
@@ -166,9 +172,8 @@ class StepSecants {
     middle_ = 0.5 * (q0 + q1);
     speed_ = (q1 - q0) / h;
     system.evaluate(middle_, speed_, t + 0.5 * h);
-    detail::for_each_pool_beside(system.model().body_pools(), bodies_, [&](auto const& pool, auto& scratch) {
-      publish(pool, scratch);
-    });
+    detail::for_each_pool_beside(system.model().body_pools(), bodies_,
+                                 [&](auto const& pool, auto& scratch) { publish(pool, scratch); });
     detail::for_each_pool_beside(system.model().joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
       for (std::size_t i = 0; i < pool.size(); ++i) enforce(pool[i], t + h, gaps[i]);
     });
@@ -205,9 +210,8 @@ class StepSecants {
     });
   }
 
-  /// [M + s K̄, Ḡᵀ; Ḡ, 0] into `sink`, K̄ = −∂f/∂q₁ nearly: symmetric, without the change of Ḡ; Ḡ stands for ∂Φ/∂q₁. Both are off
-  /// by
-  /// the share of a turn that a body makes in the step, and so Newton's method contracts.
+  /// [M + s K̄, Ḡᵀ; Ḡ, 0] into `sink`, K̄ = −∂f/∂q₁ nearly: symmetric, without the change of Ḡ; Ḡ stands for ∂Φ/∂q₁. Both
+  /// are off by the share of a turn that a body makes in the step, and so Newton's method contracts.
   template <TangentSink Sink>
   void tangent(System<M>& system, double s, Sink& sink) {
     M const& model = system.model();
@@ -237,8 +241,8 @@ class StepSecants {
           }
       } else {
         Vec<double, m> const change = gap.to - gap.from, mean = 0.5 * (gap.from + gap.to);
-        Mat<double, m, m> const slope =
-            e.joint.policy.template slope<m>(s * (0.5 + means_.decay), s * means_.rate, mean, (change * means_.rate).eval());
+        Mat<double, m, m> const slope = e.joint.policy.template slope<m>(s * (0.5 + means_.decay), s * means_.rate,
+                                                                         mean, (change * means_.rate).eval());
         add_pair(a, ga, slope, a, ga, sink);
         add_pair(a, ga, slope, b, gb, sink);
         add_pair(b, gb, slope, a, ga, sink);
@@ -299,7 +303,8 @@ class StepSecants {
   }
 
   template <class Entry, int m>
-  Vec<double, m> multiplier(Entry const& e, detail::GapSecant<m> const& gap, [[maybe_unused]] VecX const& lambda) const {
+  Vec<double, m> multiplier(Entry const& e, detail::GapSecant<m> const& gap,
+                            [[maybe_unused]] VecX const& lambda) const {
     if constexpr (AddsRows<typename std::decay_t<decltype(e.joint)>::PolicyType>) {
       return lambda.template segment<m>(e.row);
     } else {
@@ -317,8 +322,8 @@ class StepSecants {
 
   /// sink += Gaᵀ S Gb.
   template <class Rows, int m, class Sink>
-  void add_pair(detail::MarkerSecant const& a, Rows const& ga, Mat<double, m, m> const& slope, detail::MarkerSecant const& b,
-                Rows const& gb, Sink& sink) {
+  void add_pair(detail::MarkerSecant const& a, Rows const& ga, Mat<double, m, m> const& slope,
+                detail::MarkerSecant const& b, Rows const& gb, Sink& sink) {
     if (a.columns == 0 || b.columns == 0) return;
     Eigen::Map<MatX> k(scratch_.data(), a.columns, b.columns);
     for (Index c = 0; c < b.columns; ++c) {
@@ -328,16 +333,16 @@ class StepSecants {
     sink.add(a.first, b.first, k);
   }
 
-  /// r −= what force element e does: a potential by secants and beside it what depends on the speeds, in the middle; else the
-  /// whole
-  /// force in the middle.
+  /// r −= what force element e does: a potential by secants and beside it what depends on the speeds, in the middle;
+  /// else the whole force in the middle.
   template <class Entry>
   void add_force(System<M> const& system, Entry const& e, VecX& r) const {
     using F = std::decay_t<decltype(e.force)>;
     constexpr int n = F::markers;
     static_assert(!ForceGroup<F>, "A step that conserves energy takes no force groups. Use GeneralizedAlpha.");
     static_assert(HasSecantPotential<F> || !HasPotential<F>,
-                  "A step that conserves energy asks a force's potential on secants: let potential(frames, t) be a template on the "
+                  "A step that conserves energy asks a force's potential on secants: let potential(frames, t) be a "
+                  "template on the "
                   "scalar of the frames.");
     auto frames = detail::frames_of(e, system.data());
     auto wrenches = e.force.template wrenches<double>(frames, system.time());

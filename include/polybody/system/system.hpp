@@ -40,8 +40,7 @@ class System {
 
   /// The model must outlive the system and must not change after.
   explicit System(M const& model)
-      : model_(&model), data_(model), q_(VecX::Zero(model.coordinates())),
-        v_(VecX::Zero(model.speeds())) {}
+      : model_(&model), data_(model), q_(VecX::Zero(model.coordinates())), v_(VecX::Zero(model.speeds())) {}
 
   M const& model() const { return *model_; }
   Index coordinates() const { return model_->coordinates(); }
@@ -57,11 +56,12 @@ class System {
   double load_factor = 1.0;
 
   void evaluate(VecX const& q, VecX const& v, double t) { evaluate(q, v, t, true); }
-  /// … for one who eliminates linear joints: until the next evaluation their rows are left out, and so are markers that nothing else reads.
+  /// … for one who eliminates linear joints: until the next evaluation their rows are left out, and so are markers that
+  /// nothing else reads.
   void evaluate_without_linear_rows(VecX const& q, VecX const& v, double t) { evaluate(q, v, t, false); }
 
-  /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results are
-  /// the same to the last bit. \throws InvalidInput for fewer than one.
+  /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results
+  /// are the same to the last bit. \throws InvalidInput for fewer than one.
   void use_threads(int threads) {
     workers_ = std::make_unique<Workers>(threads);
     data_.share_with(*model_, *workers_);
@@ -136,7 +136,8 @@ class System {
     if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_motion_not_finite(name_of(speeds() + i), t_);
   }
 
-  /// Unknowns of a linear system of equations; those that stand for speeds come first. Here they are those of a time step.
+  /// Unknowns of a linear system of equations; those that stand for speeds come first. Here they are those of a time
+  /// step.
   Index equations() const { return size(); }
   Index equation_speeds() const { return speeds(); }
   std::string name_of_equation(Index i) const { return name_of(i); }

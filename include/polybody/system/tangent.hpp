@@ -96,7 +96,8 @@ void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const
   }
 }
 
-/// out (rows×cols) = a (rows×m) bᵀ, b cols×m, all by columns. In plain loops: a product of Eigen packs matrices of such sizes first.
+/// out (rows×cols) = a (rows×m) bᵀ, b cols×m, all by columns. In plain loops: a product of Eigen packs matrices of such
+/// sizes first.
 template <int m>
 void times_transposed(double const* a, double const* b, Index rows, Index cols, double* out) {
   for (Index j = 0; j < cols; ++j)
@@ -107,11 +108,11 @@ void times_transposed(double const* a, double const* b, Index rows, Index cols, 
     }
 }
 
-/// sink += (Gi Ji)ᵀ k (Gj Jj) for the slope k (m×m, or diagonal) of a force in the m rows of a gap between two markers: rows are
-/// pulled before k is multiplied, which takes m wrenches for each marker and not six for each pair.
+/// sink += (Gi Ji)ᵀ k (Gj Jj) for the slope k (m×m, or diagonal) of a force in the m rows of a gap between two markers:
+/// rows are pulled before k is multiplied, which takes m wrenches for each marker and not six for each pair.
 template <int m, class Slope, class Sink>
-void add_pulled_slope(Published<double> const& a, Published<double> const& b, Mat<double, m, 6> const& ga, Mat<double, m, 6> const& gb,
-                      Slope const& slope, std::vector<double>& scratch, Sink& sink) {
+void add_pulled_slope(Published<double> const& a, Published<double> const& b, Mat<double, m, 6> const& ga,
+                      Mat<double, m, 6> const& gb, Slope const& slope, std::vector<double>& scratch, Sink& sink) {
   Published<double> const* const markers[2] = {&a, &b};
   Mat<double, m, 6> const* const maps[2] = {&ga, &gb};
   constexpr bool diagonal = requires { slope.toDenseMatrix(); };
@@ -157,7 +158,8 @@ void add_pulled_slope(Published<double> const& a, Published<double> const& b, Ma
 namespace detail {
 /// What acts on the markers of a pair is told to `load`, times −scale.
 template <class Law, class Load>
-void load_pair(Law const& law, std::array<Index, 2> const& markers, std::array<Frame<double>, 2> const& frames, double t, double scale, Load&& load) {
+void load_pair(Law const& law, std::array<Index, 2> const& markers, std::array<Frame<double>, 2> const& frames,
+               double t, double scale, Load&& load) {
   auto const wrenches = law.template wrenches<double>(frames, t);
   for (std::size_t k = 0; k < 2; ++k) {
     Vec6 w;
@@ -166,18 +168,20 @@ void load_pair(Law const& law, std::array<Index, 2> const& markers, std::array<F
   }
 }
 
-/// sink += what each marker of a group feels of its own motion alone, block by block, zero where nothing acts; with stand-ins by a
-/// law's `own_stiffness` where it has one. For statics and linearisation, which ask for all second-order terms and no mass, the exact
-/// gradient with what couples the pairs, all that may ever act.
+/// sink += what each marker of a group feels of its own motion alone, block by block, zero where nothing acts; with
+/// stand-ins by a law's `own_stiffness` where it has one. For statics and linearisation, which ask for all second-order
+/// terms and no mass, the exact gradient with what couples the pairs, all that may ever act.
 template <class F, class M, class Sink, class Load>
-void add_group_tangent(ForceEntry<F> const& e, double t, double scale, TangentCoefficients const& c, bool full, Data<M, double>& data,
-                       Sink& sink, Load&& load) {
+void add_group_tangent(ForceEntry<F> const& e, double t, double scale, TangentCoefficients const& c, bool full,
+                       Data<M, double>& data, Sink& sink, Load&& load) {
   if (full && c.mass == 0.0) {
     e.force.for_each_candidate([&](Index i, Index j, auto const& law) {
       std::array<Index, 2> const places = {e.markers[std::size_t(i)], e.markers[std::size_t(j)]};
-      std::array<Published<double> const*, 2> const markers = {&data.markers[std::size_t(places[0])], &data.markers[std::size_t(places[1])]};
+      std::array<Published<double> const*, 2> const markers = {&data.markers[std::size_t(places[0])],
+                                                               &data.markers[std::size_t(places[1])]};
       std::array<Frame<double>, 2> const frames = {markers[0]->frame, markers[1]->frame};
-      add_pulled_pairs<2>(markers, -scale * wrench_gradient(law, frames, t, c.stiffness, c.damping), true, data.scratch, sink);
+      add_pulled_pairs<2>(markers, -scale * wrench_gradient(law, frames, t, c.stiffness, c.damping), true, data.scratch,
+                          sink);
       load_pair(law, places, frames, t, scale, load);
     });
     return;

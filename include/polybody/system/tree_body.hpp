@@ -14,15 +14,15 @@ namespace polybody {
 struct TreeBody {
   std::string name;
   RigidLayout layout = RigidLayout::quaternion;
-  Index q0 = 0, v0 = 0;            ///< in whole vectors
-  Index row = -1;                  ///< first of the joint's rows; −1: a root, which nothing carries
-  Index parent = -1;               ///< in the tree; −1: the ground
-  Placement from = {};                  ///< the joint's frame in the parent's axes
-  Placement to = {};                    ///< … in its own
-  JointMotions motions = {};            ///< from frame a to frame b
-  bool backwards = false;          ///< frame b is the parent's
-  double angle = 0.0;              ///< in the plane: what it is turned against the parent before the joint moves
-  Index qn = 0, vn = 0;            ///< in narrow vectors
+  Index q0 = 0, v0 = 0;       ///< in whole vectors
+  Index row = -1;             ///< first of the joint's rows; −1: a root, which nothing carries
+  Index parent = -1;          ///< in the tree; −1: the ground
+  Placement from = {};        ///< the joint's frame in the parent's axes
+  Placement to = {};          ///< … in its own
+  JointMotions motions = {};  ///< from frame a to frame b
+  bool backwards = false;     ///< frame b is the parent's
+  double angle = 0.0;         ///< in the plane: what it is turned against the parent before the joint moves
+  Index qn = 0, vn = 0;       ///< in narrow vectors
 
   bool carried() const { return row >= 0; }
 };
@@ -42,8 +42,8 @@ struct TreeFrame {
 struct TreeState {
   std::vector<TreeFrame> frames;
   std::vector<Vec6> twists;
-  std::vector<Vec6> held;  ///< as of the last `pull`: the wrench [f; m] about its centre of mass with which a body and all that it
-                           ///< carries are out of balance, which its joint holds
+  std::vector<Vec6> held;  ///< as of the last `pull`: the wrench [f; m] about its centre of mass with which a body and
+                           ///< all that it carries are out of balance, which its joint holds
 };
 
 namespace detail {

@@ -7,10 +7,10 @@
 
 namespace polybody {
 
-/// Ground through heights on a grid: bicubic in each cell, with continuous slopes [Catmull & Rom 1974, along x and along y]. The
-/// slope at a point is that of the chord between its neighbours, at the border of the one to the next; so planes and x·y are
-/// reproduced, away from the border parabolas, too. Beyond the border the slope across it falls to zero, evenly over one spacing,
-/// and farther out it is zero. It keeps four numbers for each height; copies share them.
+/// Ground through heights on a grid: bicubic in each cell, with continuous slopes [Catmull & Rom 1974, along x and
+/// along y]. The slope at a point is that of the chord between its neighbours, at the border of the one to the next; so
+/// planes and x·y are reproduced, away from the border parabolas, too. Beyond the border the slope across it falls to
+/// zero, evenly over one spacing, and farther out it is zero. It keeps four numbers for each height; copies share them.
 class HeightField {
  public:
   struct Grid {
@@ -19,20 +19,22 @@ class HeightField {
     MatX heights;             ///< (nx × ny) heights(i, j) at (x0 + i dx, y0 + j dy) [m]
   };
 
-  /// \throws InvalidInput naming `what` unless there are two points or more each way, spacings are positive and all is finite.
+  /// \throws InvalidInput naming `what` unless there are two points or more each way, spacings are positive and all is
+  /// finite.
   explicit HeightField(Grid const& grid, std::string const& what = "HeightField") {
     MatX const& z = grid.heights;
     require_finite(Vec2(grid.x0, grid.y0), what + ": the place x0, y0 of the first point");
     require_positive(grid.dx, what + ": the spacing dx");
     require_positive(grid.dy, what + ": the spacing dy");
     if (z.rows() < 2 || z.cols() < 2)
-      throw InvalidInput(what + ": a grid needs two points at least along x and along y, but has " + std::to_string(z.rows()) +
-                         " by " + std::to_string(z.cols()) + ". For what does not change across take RoadProfile.");
+      throw InvalidInput(what + ": a grid needs two points at least along x and along y, but has " +
+                         std::to_string(z.rows()) + " by " + std::to_string(z.cols()) +
+                         ". For what does not change across take RoadProfile.");
     for (Index j = 0; j < z.cols(); ++j)
       for (Index i = 0; i < z.rows(); ++i)
         if (!std::isfinite(z(i, j)))
-          throw InvalidInput(what + ": heights(" + std::to_string(i) + ", " + std::to_string(j) + ") must be finite, but is " +
-                             number(z(i, j)) + ". Fill gaps in the data first.");
+          throw InvalidInput(what + ": heights(" + std::to_string(i) + ", " + std::to_string(j) +
+                             ") must be finite, but is " + number(z(i, j)) + ". Fill gaps in the data first.");
     x_ = {.start = grid.x0 - grid.dx, .spacing = grid.dx, .cells = z.rows() + 1};
     y_ = {.start = grid.y0 - grid.dy, .spacing = grid.dy, .cells = z.cols() + 1};
     nodes_ = std::make_shared<MatX const>(with_slopes(with_slopes(z, grid.dx).transpose(), grid.dy).transpose());
@@ -45,13 +47,14 @@ class HeightField {
 
   void check(std::string const&) const {}  ///< the constructor did
   double highest() const { return highest_; }
-  /// h = s(x)ᵀ N s(y), s the Hermite polynomials and N the values and slopes of the cell's corners; of their derivatives
-  /// h(k, l) = ∂ᵏ⁺ˡh/∂xᵏ∂yˡ.
+  /// h = s(x)ᵀ N s(y), s the Hermite polynomials and N the values and slopes of the cell's corners; of their
+  /// derivatives h(k, l) = ∂ᵏ⁺ˡh/∂xᵏ∂yˡ.
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     Piece const px = x_.piece(value_of(x)), py = y_.piece(value_of(y));
     Mat3 const h = px.shape.transpose() * nodes_->block<4, 4>(2 * px.cell, 2 * py.cell) * py.shape;
-    return detail::follow({.z = h(0, 0), .x = h(1, 0), .y = h(0, 1), .xx = h(2, 0), .xy = h(1, 1), .yy = h(0, 2)}, x, y);
+    return detail::follow({.z = h(0, 0), .x = h(1, 0), .y = h(0, 1), .xx = h(2, 0), .xy = h(1, 1), .yy = h(0, 2)}, x,
+                          y);
   }
 
  private:
@@ -74,15 +77,17 @@ class HeightField {
       for (int i = 0; i < 4; ++i) p.shape.row(i) << h.s[i], h.ds[i], inside ? h.dds[i] : 0.0;  // slopes end at zero
       return p;
     }
-    /// Takes (z₀, z₀′, z₁, z₁′) to the Bézier ordinates (z₀, z₀ + z₀′h/3, z₁ − z₁′h/3, z₁); no cubic exceeds its highest.
+    /// Takes (z₀, z₀′, z₁, z₁′) to the Bézier ordinates (z₀, z₀ + z₀′h/3, z₁ − z₁′h/3, z₁); no cubic exceeds its
+    /// highest.
     Mat<double, 4, 4> bezier() const {
       double const third = spacing / 3.0;
-      return Mat<double, 4, 4>{{1.0, 0.0, 0.0, 0.0}, {1.0, third, 0.0, 0.0}, {0.0, 0.0, 1.0, -third}, {0.0, 0.0, 1.0, 0.0}};
+      return Mat<double, 4, 4>{
+          {1.0, 0.0, 0.0, 0.0}, {1.0, third, 0.0, 0.0}, {0.0, 0.0, 1.0, -third}, {0.0, 0.0, 1.0, 0.0}};
     }
   };
 
-  /// Values and slopes by turns, of the n rows of z at a distance h and of a row more on either side, to which the slope falls to
-  /// zero: z − hz′/2 and z + hz′/2.
+  /// Values and slopes by turns, of the n rows of z at a distance h and of a row more on either side, to which the
+  /// slope falls to zero: z − hz′/2 and z + hz′/2.
   static MatX with_slopes(MatX const& z, double h) {
     Index const n = z.rows();
     MatX all = MatX::Zero(2 * n + 4, z.cols());

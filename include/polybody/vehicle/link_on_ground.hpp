@@ -10,15 +10,17 @@
 
 namespace polybody {
 
-/// Points of a link's pad on a terrain. Marker a is the link's centre, marker b the ground, over whose x and y the terrain's height is
-/// measured. At a point P below the ground by e = h(x, y) − z the normal is (−h_x, −h_y, 1)/√(1 + h_x² + h_y²) and d = e n_z.
+/// Points of a link's pad on a terrain. Marker a is the link's centre, marker b the ground, over whose x and y the
+/// terrain's height is measured. At a point P below the ground by e = h(x, y) − z the normal is (−h_x, −h_y, 1)/√(1 +
+/// h_x² + h_y²) and d = e n_z.
 template <Terrain G = FlatGround, Observes told = Observes::frame>
 struct LinkOnGround {
   static constexpr Observes needs = told;
   static constexpr Observes needs_of_second = Observes::frame;
 
   G terrain = {};
-  /// n × (3) in the link's axes [m]. Of a cable, which does not tell its sides, y counts for nothing and z is away from the ground.
+  /// n × (3) in the link's axes [m]. Of a cable, which does not tell its sides, y counts for nothing and z is away from
+  /// the ground.
   std::vector<Vec3> pad = {};
 
   void check(std::string const& name) const {

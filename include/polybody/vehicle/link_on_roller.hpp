@@ -9,27 +9,27 @@
 
 namespace polybody {
 
-/// The rims of a roller on the inner face of a link. Marker a is the link's centre (x to the front pin, z to the roller), marker b the
-/// roller's centre with its axle along y. A rim is a circle of radius R in its middle plane; it meets the face z = h where its lowest
-/// point is above the link, |s| ≤ p/2, by d = R − (height of the axle above the face). Neighbouring faces end where the next begin; within
-/// `handover` of there the force is shared, x² (3 − 2x) of it with x = (p/2 + ε − |s|)/2ε on either, so that a wheel passes from one to the
-/// next without a bump.
-/// Around a bend towards the wheel the strips above the faces overlap. Beyond a face its edge may meet the rim, as over a bump: a point with
-/// d = R − c − (its distance from the axle), where c is the chamfer of the edge, along the radius, and by no more than it is beyond, so that
-/// the force begins at zero.
-/// [after Choi, Lee & Shabana 1998: inner-surface contact with one or both rims]
+/// The rims of a roller on the inner face of a link. Marker a is the link's centre (x to the front pin, z to the
+/// roller), marker b the roller's centre with its axle along y. A rim is a circle of radius R in its middle plane; it
+/// meets the face z = h where its lowest point is above the link, |s| ≤ p/2, by d = R − (height of the axle above the
+/// face). Neighbouring faces end where the next begin; within `handover` of there the force is shared, x² (3 − 2x) of
+/// it with x = (p/2 + ε − |s|)/2ε on either, so that a wheel passes from one to the next without a bump. Around a bend
+/// towards the wheel the strips above the faces overlap. Beyond a face its edge may meet the rim, as over a bump: a
+/// point with d = R − c − (its distance from the axle), where c is the chamfer of the edge, along the radius, and by no
+/// more than it is beyond, so that the force begins at zero. [after Choi, Lee & Shabana 1998: inner-surface contact
+/// with one or both rims]
 template <Observes told = Observes::frame>
 struct LinkOnRoller {
   static constexpr Observes needs = told;
   static constexpr Observes needs_of_second = Observes::frame;
 
-  Required<double> pitch;           ///< p, of the link [m]
-  Required<double> half_thickness;  ///< h, from the pins' line to the face [m]
-  Required<double> half_width;      ///< of the face [m]
-  Required<double> radius;          ///< R, of the rims [m]
-  double handover = 0.03;           ///< ε [m]
-  double chamfer = 0.005;           ///< c [m]
-  std::vector<double> rims = {0.0}; ///< where their middle planes are along the axle [m]
+  Required<double> pitch;            ///< p, of the link [m]
+  Required<double> half_thickness;   ///< h, from the pins' line to the face [m]
+  Required<double> half_width;       ///< of the face [m]
+  Required<double> radius;           ///< R, of the rims [m]
+  double handover = 0.03;            ///< ε [m]
+  double chamfer = 0.005;            ///< c [m]
+  std::vector<double> rims = {0.0};  ///< where their middle planes are along the axle [m]
 
   void check(std::string const& name) const {
     require_positive(pitch, name + ": the pitch of the link");
@@ -38,7 +38,8 @@ struct LinkOnRoller {
     require_positive(radius, name + ": the radius of the roller");
     require_not_negative(chamfer, name + ": the chamfer of the link's edges");
     if (!(handover > 0.0 && handover < 0.5 * pitch))
-      throw InvalidInput(name + ": the zone of the handover must be positive and below half the pitch, but is " + number(handover) + " m.");
+      throw InvalidInput(name + ": the zone of the handover must be positive and below half the pitch, but is " +
+                         number(handover) + " m.");
     if (rims.empty()) throw InvalidInput(name + ": a roller needs at least one rim.");
     for (double const y : rims)
       if (!std::isfinite(y)) throw InvalidInput(name + ": the place of a rim must be finite.");
@@ -61,7 +62,8 @@ struct LinkOnRoller {
       if (std::abs(value_of(local[1])) > half_width) continue;
       double const side = value_of(local[0]) < 0.0 ? -1.0 : 1.0;
       T const beyond = local[0] * side - 0.5 * pitch, to_end = T(handover) - beyond;
-      if (value_of(beyond) > 0.0 && value_of(beyond) < radius) meet_edge(link, axes, local, side, beyond, height, visit);
+      if (value_of(beyond) > 0.0 && value_of(beyond) < radius)
+        meet_edge(link, axes, local, side, beyond, height, visit);
       if (value_of(to_end) <= 0.0 || value_of(height) <= 0.0 || value_of(depth) <= 0.0) continue;
       Vec<T, 3> const on_face(local[0], local[1], T(half_thickness.value));
       ContactPoint<T> point{link.r + axes * on_face, -axes.col(2), depth};
@@ -76,28 +78,30 @@ struct LinkOnRoller {
 
  private:
   template <StateScalar T, class Visit>
-  void meet_edge(Frame<T> const& link, Mat<T, 3, 3> const& axes, Vec<T, 3> const& local, double side, T const& beyond, T const& height,
-                 Visit& visit) const {
+  void meet_edge(Frame<T> const& link, Mat<T, 3, 3> const& axes, Vec<T, 3> const& local, double side, T const& beyond,
+                 T const& height, Visit& visit) const {
     using std::sqrt;
     T const distance = sqrt(beyond * beyond + height * height), overlap = T(radius - chamfer) - distance;
     T const depth = value_of(overlap) < value_of(beyond) ? overlap : beyond;
     if (!(value_of(depth) > 0.0)) return;
     Vec<T, 3> const edge(T(0.5 * pitch * side), local[1], T(half_thickness.value));
-    visit(ContactPoint<T>{link.r + axes * edge, (axes.col(0) * (beyond * -side) - axes.col(2) * height) / distance, depth});
+    visit(ContactPoint<T>{link.r + axes * edge, (axes.col(0) * (beyond * -side) - axes.col(2) * height) / distance,
+                          depth});
   }
 };
 
-/// What keeps a track on its wheels sideways: a horn on the inner face runs between the rims and meets their inner faces. Markers as for
-/// `LinkOnRoller`. It presses along the axle by how far it is beyond its play, but by no more than how far its tip is within the
-/// rims, so that the force grows from zero also where a horn comes in beside its gap: edges are chamfered by 45°.
+/// What keeps a track on its wheels sideways: a horn on the inner face runs between the rims and meets their inner
+/// faces. Markers as for `LinkOnRoller`. It presses along the axle by how far it is beyond its play, but by no more
+/// than how far its tip is within the rims, so that the force grows from zero also where a horn comes in beside its
+/// gap: edges are chamfered by 45°.
 template <Observes told = Observes::frame>
 struct HornOnRims {
   static constexpr Observes needs = told;
   static constexpr Observes needs_of_second = Observes::frame;
 
-  Vec3 tip = Vec3::Zero();    ///< (3) middle of the horn's upper end, in the link's axes [m]
-  Required<double> play;      ///< to either side before it meets a rim [m]
-  Required<double> radius;    ///< of the rims [m]
+  Vec3 tip = Vec3::Zero();  ///< (3) middle of the horn's upper end, in the link's axes [m]
+  Required<double> play;    ///< to either side before it meets a rim [m]
+  Required<double> radius;  ///< of the rims [m]
 
   void check(std::string const& name) const {
     require_finite(tip, name + ": the tip of the horn");
@@ -121,6 +125,7 @@ struct HornOnRims {
   }
 };
 
-static_assert(ContactGeometry<LinkOnRoller<>> && ContactGeometry<LinkOnRoller<Observes::axis>> && ContactGeometry<HornOnRims<>>);
+static_assert(ContactGeometry<LinkOnRoller<>> && ContactGeometry<LinkOnRoller<Observes::axis>> &&
+              ContactGeometry<HornOnRims<>>);
 
 }  // namespace polybody

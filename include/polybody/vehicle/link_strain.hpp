@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The stretch and the bending of a track's link, from a coupled run and from a rigid run's record. Not in polybody.hpp: of use to vehicles only.
+/// The stretch and the bending of a track's link, from a coupled run and from a rigid run's record. Not in
+/// polybody.hpp: of use to vehicles only.
 
 #include <array>
 
@@ -12,10 +13,11 @@
 
 namespace polybody::m113 {
 
-/// Where strain is asked for, from the rear pin [m]: at two Gauss points of either half, so that the mean of all is that of the link,
-/// change of length over length, though contact forces in the middle make the axial force jump there.
-inline constexpr std::array<double, 4> strain_places{pitch * (0.25 - 0.14433756729740644), pitch * (0.25 + 0.14433756729740644),
-                                                     pitch * (0.75 - 0.14433756729740644), pitch * (0.75 + 0.14433756729740644)};
+/// Where strain is asked for, from the rear pin [m]: at two Gauss points of either half, so that the mean of all is
+/// that of the link, change of length over length, though contact forces in the middle make the axial force jump there.
+inline constexpr std::array<double, 4> strain_places{
+    pitch * (0.25 - 0.14433756729740644), pitch * (0.25 + 0.14433756729740644), pitch * (0.75 - 0.14433756729740644),
+    pitch * (0.75 + 0.14433756729740644)};
 
 /// Mean axial strain of a flexible link.
 template <class M, class B>
@@ -38,9 +40,10 @@ inline std::vector<double> link_strain(DecoupledStress const& stress) {
 /// What a moment M_y about the pins' direction adds in the fibre towards the wheels [1/(N m)].
 inline double bending_by_moment() { return 0.5 * cable_height / *constants(link_bar()).EI_y; }
 
-/// What bending adds to the axial strain in the fibre towards the wheels, just ahead of the middle, where contacts push. One element of
-/// third degree shows half of what a force there does, one of linear interpolation nothing; two elements have a node there, and show it.
-/// A cable does not know where the wheels are: `lateral`, the vehicle's y axis, tells (link_axes.hpp).
+/// What bending adds to the axial strain in the fibre towards the wheels, just ahead of the middle, where contacts
+/// push. One element of third degree shows half of what a force there does, one of linear interpolation nothing; two
+/// elements have a node there, and show it. A cable does not know where the wheels are: `lateral`, the vehicle's y
+/// axis, tells (link_axes.hpp).
 template <class M, class B>
 double link_bending(M const& model, State const& x, BodyHandle<B> const& link, Vec3 const& lateral) {
   auto const middle = link.at(0.5 * pitch);
@@ -59,7 +62,8 @@ inline std::vector<double> link_bending(DecoupledStress const& stress) {
 /// The same link as a structure, two elements with a node in the middle.
 inline Structure link_structure() { return structure_of(link_bar(), 2); }
 
-/// (T₀ + m v²/p)/EA: the strain in a chain of links of mass m and pitch p that runs at speed v [m/s] and is pulled by T₀ [N].
+/// (T₀ + m v²/p)/EA: the strain in a chain of links of mass m and pitch p that runs at speed v [m/s] and is pulled by
+/// T₀ [N].
 inline double running_strain(double speed, double pull) {
   return (pull + thesis.link.mass * speed * speed / pitch) / constants(link_bar()).EA;
 }

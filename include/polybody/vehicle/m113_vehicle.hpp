@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The vehicle of m113.hpp as a model, its tracks under a formulation of choice. Not in polybody.hpp: of use to vehicles only.
+/// The vehicle of m113.hpp as a model, its tracks under a formulation of choice. Not in polybody.hpp: of use to
+/// vehicles only.
 
 #include <array>
 #include <vector>
@@ -26,16 +27,22 @@ namespace polybody::m113 {
 
 /// Where the links of either side and the idler are at the start.
 struct TrackStart {
-  double idler_x = idler_reference_x;                       ///< [m]
+  double idler_x = idler_reference_x;                        ///< [m]
   std::vector<TrackLink> links = wrap_track(track()).links;  ///< 64
 };
 
 /// The teeth of the sprockets.
 inline SprocketProfile sprocket_profile() {
-  return {.teeth = teeth, .pitch = pitch, .pin_radius = pin_radius, .valley_radius = valley_radius, .flank = flank, .tip_radius = tip_radius};
+  return {.teeth = teeth,
+          .pitch = pitch,
+          .pin_radius = pin_radius,
+          .valley_radius = valley_radius,
+          .flank = flank,
+          .tip_radius = tip_radius};
 }
 
-/// Pins as penalties of `stiffness` [N/m]: rows that are direction cosines get that of forces at the ends of a link's width.
+/// Pins as penalties of `stiffness` [N/m]: rows that are direction cosines get that of forces at the ends of a link's
+/// width.
 inline PenaltyPerRow<5> penalty_pin(double stiffness) {
   Vec<double, 5> rows;
   rows << 1.0, 1.0, 1.0, pin_arm * pin_arm, pin_arm * pin_arm;
@@ -50,34 +57,36 @@ inline Bushing bushing_pin(double stiffness) {
 
 /// How a track of ideal pins closes. Pins about parallel axes around a loop have three rows too many.
 enum class Closure {
-  stiff_spring,  ///< as thesis Table 3.4 counts: the 64th pin is none of the constraints, but 10⁹ N/m between two points
+  stiff_spring,  ///< as thesis Table 3.4 counts: the 64th pin is none of the constraints, but 10⁹ N/m between two
+                 ///< points
   in_plane       ///< two rows hold its points together across the pin's axis: what the loop needs and no more
 };
 
 /// What may be chosen about the vehicle, beside the formulation of its tracks. The defaults are those of m113.hpp.
 struct VehicleOptions {
   Solids masses = thesis;
-  bool suspension = true;  ///< else the arms are welded to the chassis, without springs
+  bool suspension = true;          ///< else the arms are welded to the chassis, without springs
   double preload = m113::preload;  ///< of the tensioners [N]
-  int cut = 0;             ///< the pin of each track that closes the loop where pins are rows
+  int cut = 0;                     ///< the pin of each track that closes the loop where pins are rows
   Closure closure = Closure::stiff_spring;
   TrackStart start = {};
   int link_elements = 0;  ///< of each flexible link; 0: one, and two of a floating frame
   bool friction = true;
-  bool held = false;       ///< the chassis is welded to the ground and the arms to the chassis
+  bool held = false;         ///< the chassis is welded to the ground and the arms to the chassis
   bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
 };
 
-/// Chassis, and on each side sprocket, idler, tensioner, five wheels on arms and 64 links; `Link` is a link's body, `PinPolicy` how
-/// links hang together. Where pins are rows or joint coordinates, 63 of a track are, and the last one is as `Closure` says; where
-/// they are forces or linear rows, all 64 are alike.
+/// Chassis, and on each side sprocket, idler, tensioner, five wheels on arms and 64 links; `Link` is a link's body,
+/// `PinPolicy` how links hang together. Where pins are rows or joint coordinates, 63 of a track are, and the last one
+/// is as `Closure` says; where they are forces or linear rows, all 64 are alike.
 template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = FlatGround, TimeLaw Drive = Ramp>
 class Vehicle {
  public:
   using LinkType = Link;
   static constexpr Observes told = Link::observes;
   static constexpr bool closes_alike = AddsForce<PinPolicy> || LinearInCoordinates<PinPolicy>;
-  using Base = std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;  ///< of all that is no link
+  using Base =
+      std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;  ///< of all that is no link
   using Hinge = Joint<Revolute, Constraint>;
   using Slide = Joint<Prismatic, Constraint>;
   using Fixed = Joint<Weld, Constraint>;
@@ -90,8 +99,9 @@ class Vehicle {
   using OnSprocket = Contact<PinOnSprocket<told>>;
   using OnGround = Contact<LinkOnGround<Ground, told>>;
   using Contacts = ContactGroup<OnRoller, OnRims, OnSprocket, OnGround>;
-  using ModelType = Model<EachOnce<Bodies, Base, Link>, EachOnce<Joints, Hinge, Slide, Fixed, Driven, Pin, SpringPin, PlanePin>,
-                          Forces<SpringDamper, AxialSpring, Contacts>>;
+  using ModelType =
+      Model<EachOnce<Bodies, Base, Link>, EachOnce<Joints, Hinge, Slide, Fixed, Driven, Pin, SpringPin, PlanePin>,
+            Forces<SpringDamper, AxialSpring, Contacts>>;
   using Handle = BodyHandle<Base>;
   using LinkMarker = decltype(LinkOf<Link>::middle(std::declval<BodyHandle<Link> const&>()));
 
@@ -100,9 +110,10 @@ class Vehicle {
     std::vector<BodyHandle<Link>> links = {};
     std::vector<LinkMarker> front = {}, middle = {}, rear = {};  ///< of each link: front pin, middle, rear pin
     std::vector<ElementHandle<Pin>> pins = {};
-    std::vector<Handle> wheels = {}, arms = {}, sprocket = {}, idler = {}, tensioner = {};  ///< the last three: one each
-    std::vector<ElementHandle<Driven>> drive = {};                                          ///< one
-    std::vector<ElementHandle<Contacts>> contacts = {};                                     ///< one
+    std::vector<Handle> wheels = {}, arms = {}, sprocket = {}, idler = {},
+                        tensioner = {};                  ///< the last three: one each
+    std::vector<ElementHandle<Driven>> drive = {};       ///< one
+    std::vector<ElementHandle<Contacts>> contacts = {};  ///< one
   };
 
   ModelType model{Gravity{0, 0, -9.81}};
@@ -112,20 +123,24 @@ class Vehicle {
   SideParts const& side(Side s) const { return sides[s == Side::left ? 0 : 1]; }
 
   /// \throws InvalidInput.
-  Vehicle(PinPolicy const& pin, std::array<Drive, 2> const& drives, VehicleOptions const& options = {}, Ground const& ground = {}) {
+  Vehicle(PinPolicy const& pin, std::array<Drive, 2> const& drives, VehicleOptions const& options = {},
+          Ground const& ground = {}) {
     if (options.start.links.size() != std::size_t(links))
       throw InvalidInput("M113: the start needs the places of " + std::to_string(links) + " links, but has " +
                          std::to_string(options.start.links.size()) + ".");
     if (options.cut < 0 || options.cut >= links)
-      throw InvalidInput("M113: the pin that closes a track is one of 0 … 63, but " + std::to_string(options.cut) + " is asked for.");
+      throw InvalidInput("M113: the pin that closes a track is one of 0 … 63, but " + std::to_string(options.cut) +
+                         " is asked for.");
     if (options.link_elements < 0)
-      throw InvalidInput("M113: a flexible link has one element or more, but " + std::to_string(options.link_elements) + " are asked for.");
+      throw InvalidInput("M113: a flexible link has one element or more, but " + std::to_string(options.link_elements) +
+                         " are asked for.");
     if (options.ground_body) {
       auto const body = model.add(solid({1.0, {1, 1, 1}}, Vec3(0, 0, 0)), "ground body");
       model.connect(Fixed{}, model.ground().at({0, 0, 0}), body.at(Vec3(0, 0, 0)), "ground weld");
     }
     chassis.push_back(model.add(solid(options.masses.chassis, m113::chassis), "chassis"));
-    if (options.held) model.connect(Fixed{}, model.ground().at(Vec3(m113::chassis)), chassis[0].at(Vec3(0, 0, 0)), "hold");
+    if (options.held)
+      model.connect(Fixed{}, model.ground().at(Vec3(m113::chassis)), chassis[0].at(Vec3(0, 0, 0)), "hold");
     add_side(Side::left, pin, drives[0], options, ground);
     add_side(Side::right, pin, drives[1], options, ground);
   }
@@ -148,8 +163,8 @@ class Vehicle {
     Handle const sprocket = model.add(solid(options.masses.sprocket, axle), name + "sprocket");
     parts.sprocket.push_back(sprocket);
     model.connect(about_y, at(hull, centre, axle), sprocket.at(Vec3(0, 0, 0)), name + "sprocket axle");
-    parts.drive.push_back(
-        model.connect(Driven{{.law = {drive}, .axis = y}, {}}, at(hull, centre, axle), sprocket.at(Vec3(0, 0, 0)), name + "drive"));
+    parts.drive.push_back(model.connect(Driven{{.law = {drive}, .axis = y}, {}}, at(hull, centre, axle),
+                                        sprocket.at(Vec3(0, 0, 0)), name + "drive"));
 
     Vec3 const idler_axle = m113::idler(s, options.start.idler_x);
     Handle const slider = model.add(solid(options.masses.tensioner, idler_axle), name + "tensioner");
@@ -159,8 +174,10 @@ class Vehicle {
     model.connect(Slide{Prismatic{.axis = Vec3::UnitX()}, {}}, at(hull, centre, idler_axle), slider.at(Vec3(0, 0, 0)),
                   name + "tensioner guide");
     model.connect(about_y, slider.at(Vec3(0, 0, 0)), idler.at(Vec3(0, 0, 0)), name + "idler axle");
-    model.apply(AxialSpring{.stiffness = m113::tensioner.stiffness, .damping = m113::tensioner.damping, .preload = options.preload},
-                at(hull, centre, m113::idler(s, idler_reference_x)), slider.at(Vec3(0, 0, 0)), name + "tensioner spring");
+    model.apply(
+        AxialSpring{
+            .stiffness = m113::tensioner.stiffness, .damping = m113::tensioner.damping, .preload = options.preload},
+        at(hull, centre, m113::idler(s, idler_reference_x)), slider.at(Vec3(0, 0, 0)), name + "tensioner spring");
 
     for (int i = 0; i < m113::wheels; ++i) {
       std::string const n = name + "wheel " + std::to_string(i + 1);
@@ -185,11 +202,14 @@ class Vehicle {
     add_contacts(name, options, ground, parts);
   }
 
-  void add_links(Side s, std::string const& name, PinPolicy const& policy, VehicleOptions const& options, SideParts& parts) {
+  void add_links(Side s, std::string const& name, PinPolicy const& policy, VehicleOptions const& options,
+                 SideParts& parts) {
     using L = LinkOf<Link>;
     for (int i = 0; i < links; ++i) {
-      parts.links.push_back(model.add(L::make(options.masses.link, options.start.links[std::size_t(i)].placement(sign(s) * track_y), options.link_elements),
-                                      name + "link " + std::to_string(i)));
+      parts.links.push_back(
+          model.add(L::make(options.masses.link, options.start.links[std::size_t(i)].placement(sign(s) * track_y),
+                            options.link_elements),
+                    name + "link " + std::to_string(i)));
       parts.front.push_back(L::front(parts.links.back()));
       parts.middle.push_back(L::middle(parts.links.back()));
       parts.rear.push_back(L::rear(parts.links.back()));
@@ -214,7 +234,8 @@ class Vehicle {
     bool const points = told != Observes::frame;  // a cable's contacts lie in its middle plane: one for each two
     auto const law = [&]<ContactGeometry G>(G const& geometry, ContactNumbers const& c) {
       double const share = points ? 2.0 : 1.0;
-      return Contact<G>{geometry, {.stiffness = share * c.stiffness, .damping = share * c.damping, .onset = onset},
+      return Contact<G>{geometry,
+                        {.stiffness = share * c.stiffness, .damping = share * c.damping, .onset = onset},
                         {.coefficient = options.friction ? c.friction : 0.0, .slip_speed = slip_speed}};
     };
     std::vector<double> const rims = points ? std::vector{0.0} : std::vector{-rim_y, rim_y};
@@ -227,15 +248,20 @@ class Vehicle {
 
     auto const roller = [&](Handle const& body, double radius, std::string const& n) {
       auto const axle = body.at(Vec3(0, 0, 0));
-      LinkOnRoller<told> const face{.pitch = pitch, .half_thickness = half_thickness, .half_width = half_width, .radius = radius, .rims = rims};
+      LinkOnRoller<told> const face{
+          .pitch = pitch, .half_thickness = half_thickness, .half_width = half_width, .radius = radius, .rims = rims};
       model.oppose(group, law(face, on_wheel), axle, n);
       Vec3 const tip = Vec3(horn) + Vec3(0, 0, 0.5 * horn_size.z);
-      model.oppose(group, law(HornOnRims<told>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel), axle, n + " (horn)");
+      model.oppose(group, law(HornOnRims<told>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel), axle,
+                   n + " (horn)");
     };
-    for (int i = 0; i < m113::wheels; ++i) roller(parts.wheels[std::size_t(i)], wheel_radius, name + "wheel " + std::to_string(i + 1));
+    for (int i = 0; i < m113::wheels; ++i)
+      roller(parts.wheels[std::size_t(i)], wheel_radius, name + "wheel " + std::to_string(i + 1));
     roller(parts.idler[0], idler_radius, name + "idler");
-    model.oppose(group, law(PinOnSprocket<told>{.profile = sprocket_profile(), .valley = first_valley, .rings = rings}, on_sprocket),
-                 parts.sprocket[0].at(Vec3(0, 0, 0)), name + "sprocket");
+    model.oppose(
+        group,
+        law(PinOnSprocket<told>{.profile = sprocket_profile(), .valley = first_valley, .rings = rings}, on_sprocket),
+        parts.sprocket[0].at(Vec3(0, 0, 0)), name + "sprocket");
     LinkOnGround<Ground, told> const pads{.terrain = ground, .pad = corners};
     model.oppose(group, law(pads, on_ground), model.ground().at({0, 0, 0}), "ground");
   }

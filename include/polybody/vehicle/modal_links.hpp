@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The links of a track as floating frames with modes. Not in polybody.hpp: of use to vehicles only, and it comes with Eigen's sparse
-/// module.
+/// The links of a track as floating frames with modes. Not in polybody.hpp: of use to vehicles only, and it comes with
+/// Eigen's sparse module.
 
 #include <polybody/bodies/beam_structure.hpp>
 #include <polybody/bodies/ffr.hpp>
@@ -9,8 +9,9 @@
 
 namespace polybody::m113 {
 
-/// Two elements, unless more are asked for, with a boundary frame at each pin, the floating frame tied to the rear one [Craig & Bampton
-/// 1968]: the six static shapes of the front pin's motion and the three lowest modes between the pins: torsion, bending up and down, stretch.
+/// Two elements, unless more are asked for, with a boundary frame at each pin, the floating frame tied to the rear one
+/// [Craig & Bampton 1968]: the six static shapes of the front pin's motion and the three lowest modes between the pins:
+/// torsion, bending up and down, stretch.
 template <>
 struct LinkOf<Ffr> : detail::BeamLink<Ffr> {
   static constexpr Index modes_between = 3;

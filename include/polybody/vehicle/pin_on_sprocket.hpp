@@ -10,9 +10,9 @@
 
 namespace polybody {
 
-/// Round pins of radius r_p in valleys between N teeth. A valley's bottom is an arc of radius r_a > r_p to an angle φ on both sides,
-/// about a point at r_c = R_p + r_a − r_p, so that a pin at the bottom lies on the pitch circle R_p; straight flanks go on along the
-/// arc's tangents up to the tip circle R_t.
+/// Round pins of radius r_p in valleys between N teeth. A valley's bottom is an arc of radius r_a > r_p to an angle φ
+/// on both sides, about a point at r_c = R_p + r_a − r_p, so that a pin at the bottom lies on the pitch circle R_p;
+/// straight flanks go on along the arc's tangents up to the tip circle R_t.
 struct SprocketProfile {
   Required<int> teeth;             ///< N
   Required<double> pitch;          ///< p, of the track [m]
@@ -27,29 +27,36 @@ struct SprocketProfile {
   double outer_radius() const { return tip_radius + pin_radius; }
   /// (2) Where flank and tip circle meet, radial and tangential, from the middle of the valley.
   Vec2 corner() const {
-    Vec2 const foot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank)), up(std::sin(flank), std::cos(flank));
+    Vec2 const foot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank)),
+        up(std::sin(flank), std::cos(flank));
     double const b = foot.dot(up);
     return foot + (std::sqrt(b * b - foot.squaredNorm() + tip_radius * tip_radius) - b) * up;
   }
 
   /// \throws InvalidInput for numbers that make no tooth.
   void check(std::string const& name) const {
-    if (teeth < 4) throw InvalidInput(name + ": a sprocket needs at least four teeth, but has " + std::to_string(int(teeth)) + ".");
+    if (teeth < 4)
+      throw InvalidInput(name + ": a sprocket needs at least four teeth, but has " + std::to_string(int(teeth)) + ".");
     require_positive(pitch, name + ": the pitch of the track");
     require_positive(pin_radius, name + ": the pins' radius");
     if (!(valley_radius > pin_radius) || !std::isfinite(valley_radius))
-      throw InvalidInput(name + ": the radius of the valleys must be larger than the pins', but is " + number(valley_radius) + " m.");
+      throw InvalidInput(name + ": the radius of the valleys must be larger than the pins', but is " +
+                         number(valley_radius) + " m.");
     if (!(flank > 0.0 && flank < 0.5 * std::numbers::pi))
-      throw InvalidInput(name + ": the arc of a valley must end between 0 and a right angle, but ends at " + number(flank) + " rad.");
+      throw InvalidInput(name + ": the arc of a valley must end between 0 and a right angle, but ends at " +
+                         number(flank) + " rad.");
     double const foot = std::hypot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank));
     if (!(tip_radius > foot) || !std::isfinite(tip_radius))
-      throw InvalidInput(name + ": the tips must lie outside the arcs of the valleys, whose ends are " + number(foot) + " m from the axle.");
+      throw InvalidInput(name + ": the tips must lie outside the arcs of the valleys, whose ends are " + number(foot) +
+                         " m from the axle.");
     Vec2 const k = corner();
     if (std::atan2(k[1], k[0]) >= std::numbers::pi / teeth)
-      throw InvalidInput(name + ": the valleys leave nothing of the teeth. Take a smaller valley, a lower tip or fewer teeth.");
+      throw InvalidInput(
+          name + ": the valleys leave nothing of the teeth. Take a smaller valley, a lower tip or fewer teeth.");
   }
 
-  /// A pin at X along the middle of a valley and Y ≥ 0 across: overlap d and normal (radial, tangential). d and n are continuous.
+  /// A pin at X along the middle of a valley and Y ≥ 0 across: overlap d and normal (radial, tangential). d and n are
+  /// continuous.
   template <StateScalar T>
   struct Overlap {
     T depth, radial, tangential;
@@ -61,7 +68,7 @@ struct SprocketProfile {
     T const u = rc - x;  // towards the bottom
     Vec2 const k = corner();
     double const along = (value_of(x) - k[0]) * s + (value_of(y) - k[1]) * c;  // beyond the flank's end
-    if (value_of(y) * c <= value_of(u) * s && value_of(u) > 0.0) {            // before the arc's end
+    if (value_of(y) * c <= value_of(u) * s && value_of(u) > 0.0) {             // before the arc's end
       T const r = sqrt(u * u + y * y);
       if (value_of(r) <= 0.0) return {T(-room), T(1.0), T(0.0)};
       return {r - room, u / r, -y / r};
@@ -74,7 +81,8 @@ struct SprocketProfile {
   }
 };
 
-/// The front pin of a link in the teeth. Marker a is the link's centre, marker b the sprocket's centre with its axle along y.
+/// The front pin of a link in the teeth. Marker a is the link's centre, marker b the sprocket's centre with its axle
+/// along y.
 template <Observes told = Observes::frame>
 struct PinOnSprocket {
   static constexpr Observes needs = told;
@@ -98,7 +106,8 @@ struct PinOnSprocket {
     for (double const ring : rings) far = std::max(far, std::abs(ring));
     Vec3 const axle = sprocket.A.col(1);
     double const askew = told == Observes::frame ? link.A.col(1).cross(axle).norm() : std::abs(link.A.col(0).dot(axle));
-    double const reach = profile.outer_radius() + far * askew;  // of the pin's middle: at the rings it is nearer by far · askew
+    double const reach =
+        profile.outer_radius() + far * askew;  // of the pin's middle: at the rings it is nearer by far · askew
     return arm.squaredNorm() - across * across < reach * reach;
   }
   template <StateScalar T, class Visit>
@@ -109,14 +118,16 @@ struct PinOnSprocket {
       Vec<T, 3> const arm = pin + lateral * T(ring);
       T const x = arm.dot(sprocket.A.col(0)), z = arm.dot(sprocket.A.col(2));
       double const step = 2.0 * std::numbers::pi / profile.teeth;
-      double const angle = std::atan2(value_of(x), value_of(z)), middle = valley + step * std::round((angle - valley) / step);
+      double const angle = std::atan2(value_of(x), value_of(z)),
+                   middle = valley + step * std::round((angle - valley) / step);
       double const s = std::sin(middle), c = std::cos(middle);
       T const out = x * s + z * c, side = x * c - z * s;  // along the middle of the valley, and across from z towards x
       bool const ahead = value_of(side) >= 0.0;
       auto const o = profile.template overlap<T>(out, ahead ? side : T(-side));
       if (!(value_of(o.depth) > 0.0)) continue;  // nor where a cable lies along the axle
       T const across = ahead ? o.tangential : T(-o.tangential);
-      Vec<T, 3> const n = sprocket.A.col(0) * (o.radial * s + across * c) + sprocket.A.col(2) * (o.radial * c - across * s);
+      Vec<T, 3> const n =
+          sprocket.A.col(0) * (o.radial * s + across * c) + sprocket.A.col(2) * (o.radial * c - across * s);
       visit(ContactPoint<T>{sprocket.r + arm - n * T(profile.pin_radius.value), n, o.depth});
     }
   }

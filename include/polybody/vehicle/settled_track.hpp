@@ -10,9 +10,10 @@
 
 namespace polybody::m113 {
 
-/// Where tracks of rigid links come to rest on the held vehicle, over wheels that just touch the ground: the chain of straight runs of
-/// `wrap_track` knows no ground, and hangs where it is long. Found by dynamic relaxation with kinetic damping, without friction: the
-/// track is let go, and stopped where its kinetic energy is largest, again and again [Day 1965; Barnes 1999].
+/// Where tracks of rigid links come to rest on the held vehicle, over wheels that just touch the ground: the chain of
+/// straight runs of `wrap_track` knows no ground, and hangs where it is long. Found by dynamic relaxation with kinetic
+/// damping, without friction: the track is let go, and stopped where its kinetic energy is largest, again and again
+/// [Day 1965; Barnes 1999].
 /// \throws InvalidInput, NewtonStalled; Error where it does not come to rest.
 inline TrackStart settled_track(VehicleOptions options = {}) {
   options.held = true;
@@ -26,14 +27,16 @@ inline TrackStart settled_track(VehicleOptions options = {}) {
   for (int again = 0; again < 300 && (again < 10 || fastest > 1e-3); ++again) {
     x.v.setZero();
     x.t = 0.0;
-    auto run = simulate(bench.model, x, GeneralizedAlpha{.rho_inf = 0.0, .tolerance = 1e-6}, {.until = 1.0, .step = 2e-3, .halvings = 8});
+    auto run = simulate(bench.model, x, GeneralizedAlpha{.rho_inf = 0.0, .tolerance = 1e-6},
+                        {.until = 1.0, .step = 2e-3, .halvings = 8});
     double energy = 0.0, before = 0.0;
     fastest = 0.0;
     do {
       run.advance();
       before = energy;
       energy = polybody::energy(run.system(), x).kinetic;
-      for (auto const& link : side.links) fastest = std::max(fastest, frame(bench.model, x, link.at(Vec3(0, 0, 0))).v.norm());
+      for (auto const& link : side.links)
+        fastest = std::max(fastest, frame(bench.model, x, link.at(Vec3(0, 0, 0))).v.norm());
     } while (!run.done() && energy > before);
   }
   if (fastest > 1e-3)
@@ -45,9 +48,10 @@ inline TrackStart settled_track(VehicleOptions options = {}) {
   for (TrackCircle const& c : layout.circles) {
     double const travel = (start.idler_x - c.centre[0]) * layout.tensioner.direction[0];
     if (c.name == layout.tensioner.circle && !(travel >= layout.tensioner.least && travel <= layout.tensioner.most))
-      throw InvalidInput("M113: under a preload of " + number(options.preload) + " N the idler comes to rest " + number(travel) +
-                         " m from its place in the layout, beyond its travel of " + number(layout.tensioner.least) + " to " +
-                         number(layout.tensioner.most) + " m. Take a preload of 0 to 60 kN.");
+      throw InvalidInput("M113: under a preload of " + number(options.preload) + " N the idler comes to rest " +
+                         number(travel) + " m from its place in the layout, beyond its travel of " +
+                         number(layout.tensioner.least) + " to " + number(layout.tensioner.most) +
+                         " m. Take a preload of 0 to 60 kN.");
   }
   std::vector<Vec2> pins;
   for (auto const& front : side.front) {

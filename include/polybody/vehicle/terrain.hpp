@@ -25,8 +25,8 @@ struct Height {
   T slope_y;  ///< ∂h/∂y
 };
 
-/// A height with continuous slopes, and a bound that no height exceeds, infinite where none is known: what lies above it touches
-/// nothing. Of dual numbers the slopes carry their derivatives, too.
+/// A height with continuous slopes, and a bound that no height exceeds, infinite where none is known: what lies above
+/// it touches nothing. Of dual numbers the slopes carry their derivatives, too.
 template <class G>
 concept Terrain = requires(G const terrain, double x, Dual<2> d, std::string const name) {
   { terrain.template height<double>(x, x) } -> std::same_as<Height<double>>;
@@ -40,7 +40,8 @@ namespace detail {
 struct Relief {
   double z = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
 };
-/// The height that follows the derivatives of x and y: dh = h,x dx + h,y dy, and so for the slopes. It is NaN where x or y is.
+/// The height that follows the derivatives of x and y: dh = h,x dx + h,y dy, and so for the slopes. It is NaN where x
+/// or y is.
 template <StateScalar T>
 Height<T> follow(Relief const& h, T const& x, T const& y) {
   T const dx = x - value_of(x), dy = y - value_of(y);
@@ -53,7 +54,8 @@ struct FlatGround {
   double z = 0.0;  ///< [m]
 
   void check(std::string const& name) const {
-    if (!std::isfinite(z)) throw InvalidInput(name + ": the height of the ground must be finite, but is " + number(z) + ".");
+    if (!std::isfinite(z))
+      throw InvalidInput(name + ": the height of the ground must be finite, but is " + number(z) + ".");
   }
   double highest() const { return z; }
   template <StateScalar T>
@@ -83,17 +85,18 @@ struct Washboard {
 
 /// A bump H c((x − x₀)/L) c((y − y₀)/W) with c(s) = ½ (1 + cos 2πs) for |s| < ½, else zero; a hole where H is negative.
 struct Bump {
-  Required<double> x;       ///< x₀, of its middle [m]
-  Required<double> length;  ///< L, along x from foot to foot [m]
-  Required<double> height;  ///< H, of its middle [m]
-  double y = 0.0;           ///< y₀, of its middle [m]
+  Required<double> x;                                      ///< x₀, of its middle [m]
+  Required<double> length;                                 ///< L, along x from foot to foot [m]
+  Required<double> height;                                 ///< H, of its middle [m]
+  double y = 0.0;                                          ///< y₀, of its middle [m]
   double width = std::numeric_limits<double>::infinity();  ///< W, along y from foot to foot [m]; infinite: c = 1
 };
 
 /// Bumps on the plane z = 0; where they overlap they add up.
 class BumpCourse {
  public:
-  /// \throws InvalidInput naming `what` and the bump, unless lengths and widths are positive and the other numbers finite.
+  /// \throws InvalidInput naming `what` and the bump, unless lengths and widths are positive and the other numbers
+  /// finite.
   explicit BumpCourse(std::vector<Bump> bumps, std::string const& what = "BumpCourse") : bumps_(std::move(bumps)) {
     for (std::size_t i = 0; i < bumps_.size(); ++i) {
       Bump const& b = bumps_[i];
@@ -105,7 +108,8 @@ class BumpCourse {
                            ". Leave it out for a bump right across.");
       double together = 0.0;  // all bumps over any point of this one overlap it
       for (Bump const& other : bumps_)
-        if (std::abs(other.x - b.x) < 0.5 * (other.length + b.length) && std::abs(other.y - b.y) < 0.5 * (other.width + b.width))
+        if (std::abs(other.x - b.x) < 0.5 * (other.length + b.length) &&
+            std::abs(other.y - b.y) < 0.5 * (other.width + b.width))
           together += std::max(0.0, other.height.value);
       highest_ = std::max(highest_, together);
     }
@@ -141,9 +145,9 @@ class BumpCourse {
   double highest_ = 0.0;
 };
 
-/// A road through points (x, z), the same for every y. It rises where they rise and falls where they fall, so it has no hump that
-/// they have not [Fritsch & Carlson 1980; slopes of MonotoneTable]. At both ends it is level, and constant beyond them. Copies
-/// share the points.
+/// A road through points (x, z), the same for every y. It rises where they rise and falls where they fall, so it has no
+/// hump that they have not [Fritsch & Carlson 1980; slopes of MonotoneTable]. At both ends it is level, and constant
+/// beyond them. Copies share the points.
 class RoadProfile {
  public:
   struct Point {
@@ -167,12 +171,15 @@ class RoadProfile {
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     double const at = value_of(x);
-    auto const after = std::upper_bound(knots_->begin(), knots_->end(), at, [](double v, Knot const& k) { return v < k.x; });
+    auto const after =
+        std::upper_bound(knots_->begin(), knots_->end(), at, [](double v, Knot const& k) { return v < k.x; });
     if (after == knots_->begin() || after == knots_->end())
       return detail::follow({.z = after == knots_->begin() ? knots_->front().z : knots_->back().z}, x, y);
     Knot const &a = *(after - 1), &b = *after;
     ShapeValues<4> const h = hermite_shape((at - a.x) / (b.x - a.x), b.x - a.x);
-    auto const of = [&](std::array<double, 4> const& s) { return s[0] * a.z + s[1] * a.slope + s[2] * b.z + s[3] * b.slope; };
+    auto const of = [&](std::array<double, 4> const& s) {
+      return s[0] * a.z + s[1] * a.slope + s[2] * b.z + s[3] * b.slope;
+    };
     return detail::follow({.z = of(h.s), .x = of(h.ds), .xx = of(h.dds)}, x, y);
   }
 

@@ -3,9 +3,9 @@
 /// What decides how a track lies: its links, the circles that it goes around, and the tensioner.
 /// Not in polybody.hpp: of use to vehicles only.
 ///
-/// Everything lies in a plane with x forward and z up; y points left, away from the reader who sees x to the right. The track
-/// runs as a positive rotation about y does: forward on top, rearward along the ground. Places are (x, z) [m]; an angle b about
-/// y turns x into (cos b, −sin b) and z into (sin b, cos b).
+/// Everything lies in a plane with x forward and z up; y points left, away from the reader who sees x to the right. The
+/// track runs as a positive rotation about y does: forward on top, rearward along the ground. Places are (x, z) [m]; an
+/// angle b about y turns x into (cos b, −sin b) and z into (sin b, cos b).
 
 #include <cmath>
 #include <numbers>
@@ -22,8 +22,8 @@ enum class TrackSide { inside, outside };
 /// A wheel, idler or roller as the track sees it.
 struct TrackCircle {
   std::string name;
-  Vec2 centre;                         ///< (2) [m]
-  Required<double> radius;             ///< R, of the rim [m]
+  Vec2 centre;              ///< (2) [m]
+  Required<double> radius;  ///< R, of the rim [m]
   TrackSide side = TrackSide::inside;
 };
 
@@ -49,8 +49,8 @@ struct TrackLayout {
   Required<double> pitch;           ///< p [m]
   Required<double> half_thickness;  ///< h, from the line through a link's pins to either face [m]
   TrackSprocket sprocket;
-  /// In the order in which the track meets them after the sprocket. A wheel that the track may touch twice, such as one that
-  /// carries the upper run too, is listed twice; one that it does not reach does no harm.
+  /// In the order in which the track meets them after the sprocket. A wheel that the track may touch twice, such as one
+  /// that carries the upper run too, is listed twice; one that it does not reach does no harm.
   std::vector<TrackCircle> circles = {};
   TrackTensioner tensioner;
 
@@ -74,8 +74,8 @@ namespace detail {
 
 inline std::string track_name(TrackCircle const& c) { return "'" + c.name + "'"; }
 
-/// \throws InvalidInput where two circles overlap, or two wheels have one name. The sprocket counts with its pitch circle; the
-/// tensioner's circle only if `placed`.
+/// \throws InvalidInput where two circles overlap, or two wheels have one name. The sprocket counts with its pitch
+/// circle; the tensioner's circle only if `placed`.
 inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
   std::vector<TrackCircle> all = layout.circles;
   all.push_back({layout.sprocket.name, layout.sprocket.centre, layout.pitch_radius()});
@@ -85,7 +85,8 @@ inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
       double const apart = (a.centre - b.centre).norm();
       if (a.name == b.name) {
         if (apart > 0.0 || a.radius != b.radius)
-          throw InvalidInput("Track: two circles are called " + track_name(a) + ". Give each wheel a name of its own; one that " +
+          throw InvalidInput("Track: two circles are called " + track_name(a) +
+                             ". Give each wheel a name of its own; one that " +
                              "is listed twice has the same centre and radius both times.");
       } else if (double const deep = a.radius + b.radius - apart;
                  deep > 0.0 && (placed || (a.name != layout.tensioner.circle && b.name != layout.tensioner.circle))) {
@@ -111,8 +112,10 @@ inline void check_track(TrackLayout const& layout) {
     found = found || c.name == layout.tensioner.circle;
   }
   TrackTensioner const& t = layout.tensioner;
-  if (!found) throw InvalidInput("Track: the tensioner's circle '" + t.circle + "' is none of the circles of the track.");
-  if (!(t.direction.norm() > 0.0) || !t.direction.allFinite() || !(t.least <= t.most) || !std::isfinite(t.most - t.least))
+  if (!found)
+    throw InvalidInput("Track: the tensioner's circle '" + t.circle + "' is none of the circles of the track.");
+  if (!(t.direction.norm() > 0.0) || !t.direction.allFinite() || !(t.least <= t.most) ||
+      !std::isfinite(t.most - t.least))
     throw InvalidInput("Track: the tensioner's circle '" + t.circle +
                        "' needs a direction and a finite range of travel, least ≤ most.");
   check_track_overlaps(layout, false);

@@ -14,8 +14,9 @@
 
 namespace polybody::m113 {
 
-/// How a link is made as a body of type B, and which points of it are its pins and its middle. `at` is the placement of the link's
-/// centre, x to the front pin, z to the wheels; `elements` how many it has if it is flexible, 0 for as few as its formulation does with.
+/// How a link is made as a body of type B, and which points of it are its pins and its middle. `at` is the placement of
+/// the link's centre, x to the front pin, z to the wheels; `elements` how many it has if it is flexible, 0 for as few
+/// as its formulation does with.
 template <class B>
 struct LinkOf;
 
@@ -23,14 +24,16 @@ namespace detail {
 inline Mat3 principal(Triple const& moments) { return Vec3(moments).asDiagonal(); }
 }  // namespace detail
 
-/// A link of steel with the section of §3.6: [m113::cable_width × cable_height], x from the rear pin to the front pin. `placement` is
-/// that of its centre.
+/// A link of steel with the section of §3.6: [m113::cable_width × cable_height], x from the rear pin to the front pin.
+/// `placement` is that of its centre.
 inline Bar link_bar(Placement placement = {}) {
   placement.origin -= placement.axes.col(0) * (0.5 * pitch);
-  return {.length = pitch,
-          .section = Rectangle{.height = cable_width, .width = cable_height},
-          .material = Material{.density = density, .young = youngs_modulus, .poisson = 0.5 * youngs_modulus / shear_modulus - 1.0},
-          .placement = placement};
+  return {
+      .length = pitch,
+      .section = Rectangle{.height = cable_width, .width = cable_height},
+      .material =
+          Material{.density = density, .young = youngs_modulus, .poisson = 0.5 * youngs_modulus / shear_modulus - 1.0},
+      .placement = placement};
 }
 
 /// `masses` with links of the inertia of that bar, as flexible links have it; T3.1 has that of a box 1.7 times as high.
@@ -43,7 +46,9 @@ inline Solids with_steel_links(Solids masses = thesis) {
 template <class RotationCoordinates>
 struct LinkOf<Rigid<RotationCoordinates>> {
   using Body = Rigid<RotationCoordinates>;
-  static Body make(Solid const& solid, Placement const& at, int) { return Body(solid.mass, detail::principal(solid.inertia), at); }
+  static Body make(Solid const& solid, Placement const& at, int) {
+    return Body(solid.mass, detail::principal(solid.inertia), at);
+  }
   static auto front(BodyHandle<Body> const& link) { return link.at(Vec3(0.5 * pitch, 0, 0)); }
   static auto rear(BodyHandle<Body> const& link) { return link.at(Vec3(-0.5 * pitch, 0, 0)); }
   static auto middle(BodyHandle<Body> const& link) { return link.at(Vec3(0, 0, 0)); }
@@ -54,7 +59,9 @@ namespace detail {
 template <class B>
 struct BeamLink {
   using Body = B;
-  static Body make(Solid const&, Placement const& at, int elements) { return Body::from(link_bar(at), std::max(elements, 1)); }
+  static Body make(Solid const&, Placement const& at, int elements) {
+    return Body::from(link_bar(at), std::max(elements, 1));
+  }
   static auto front(BodyHandle<Body> const& link) { return link.at(link.body.length()); }
   static auto rear(BodyHandle<Body> const& link) { return link.at(0.0); }
   static auto middle(BodyHandle<Body> const& link) { return link.at(0.5 * link.body.length()); }
@@ -62,7 +69,8 @@ struct BeamLink {
 }  // namespace detail
 
 template <class Strain, int axial_points, int bending_points>
-struct LinkOf<AncfCable<Strain, axial_points, bending_points>> : detail::BeamLink<AncfCable<Strain, axial_points, bending_points>> {};
+struct LinkOf<AncfCable<Strain, axial_points, bending_points>>
+    : detail::BeamLink<AncfCable<Strain, axial_points, bending_points>> {};
 template <class Elastic>
 struct LinkOf<AncfBeam<Elastic>> : detail::BeamLink<AncfBeam<Elastic>> {};
 template <class Interpolation>

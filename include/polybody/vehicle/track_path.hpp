@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Where the links of a track lie at the start: closed, taut, and through no wheel. Not in polybody.hpp: of use to vehicles only.
+/// Where the links of a track lie at the start: closed, taut, and through no wheel. Not in polybody.hpp: of use to
+/// vehicles only.
 ///
 /// The length of the chain of track_walk.hpp depends on the place of the tensioner's circle; the root of
 ///   track_length(layout, travel) = links
@@ -26,8 +27,8 @@ struct TrackLink {
   Placement placement(double y) const { return Placement::at(Vec3(centre[0], y, centre[1]), Vec3(0.0, angle, 0.0)); }
 };
 
-/// A closed track. Pin i is the front pin of link i and the rear pin of link i − 1; both are numbered along the track's direction
-/// from the first pin that sits on the sprocket.
+/// A closed track. Pin i is the front pin of link i and the rear pin of link i − 1; both are numbered along the track's
+/// direction from the first pin that sits on the sprocket.
 struct TrackPath {
   TrackLayout layout;                 ///< with the tensioner's circle where it closes the loop
   double travel;                      ///< how far that is from the place given [m]
@@ -35,8 +36,8 @@ struct TrackPath {
   std::vector<TrackLink> links = {};  ///< one for each pin
   int seated = 0;                     ///< pins 0 … seated − 1 sit on the sprocket
   int first_valley = 0;               ///< the valley (see `TrackLayout::seat`) of pin 0
-  /// (2) The force of a unit tension on the tensioner's circle. A force F of the tensioner along its direction d gives the track
-  /// the tension F / (−pull · d).
+  /// (2) The force of a unit tension on the tensioner's circle. A force F of the tensioner along its direction d gives
+  /// the track the tension F / (−pull · d).
   Vec2 pull = Vec2::Zero();
 
   /// What pin i sits on: `sprocket`, the circle that the links on both of its sides touch, or `TrackLink::none`.
@@ -50,11 +51,12 @@ struct TrackPath {
 
 /// How well a chain of pins fits its layout; a negative gap is a penetration.
 struct TrackClearances {
-  double stretch = 0.0;  ///< largest | |rᵢ₊₁ − rᵢ| − p | [m]
-  double circles = std::numeric_limits<double>::infinity();   ///< least gap between a link's faces and a rim [m]
-  int link = 0, circle = 0;                                   ///< where that is
-  double sprocket = std::numeric_limits<double>::infinity();  ///< how far the innermost pin lies outside the pitch circle [m]
-  double ground = std::numeric_limits<double>::infinity();    ///< least height of a link's corner above the ground [m]
+  double stretch = 0.0;                                      ///< largest | |rᵢ₊₁ − rᵢ| − p | [m]
+  double circles = std::numeric_limits<double>::infinity();  ///< least gap between a link's faces and a rim [m]
+  int link = 0, circle = 0;                                  ///< where that is
+  double sprocket =
+      std::numeric_limits<double>::infinity();  ///< how far the innermost pin lies outside the pitch circle [m]
+  double ground = std::numeric_limits<double>::infinity();  ///< least height of a link's corner above the ground [m]
 };
 
 namespace detail {
@@ -70,7 +72,8 @@ inline double track_gap(Vec2 const& front, Vec2 const& rear, double half_thickne
 
 }  // namespace detail
 
-/// The frames of a closed chain's links; pin i is in front of link i. A face touches a rim that it is nearer to than 1e-6 p.
+/// The frames of a closed chain's links; pin i is in front of link i. A face touches a rim that it is nearer to than
+/// 1e-6 p.
 inline std::vector<TrackLink> track_links(TrackLayout const& layout, std::span<Vec2 const> pins) {
   std::vector<TrackLink> links;
   for (std::size_t i = 0; i < pins.size(); ++i) {
@@ -95,7 +98,8 @@ inline TrackClearances clearances(TrackLayout const& layout, std::span<Vec2 cons
     found.sprocket = std::min(found.sprocket, (front - layout.sprocket.centre).norm() - layout.pitch_radius());
     found.ground = std::min(found.ground, std::min(front[1], rear[1]) - corner - ground);
     for (std::size_t k = 0; k < layout.circles.size(); ++k)
-      if (double const gap = detail::track_gap(front, rear, layout.half_thickness, layout.circles[k]); gap < found.circles) {
+      if (double const gap = detail::track_gap(front, rear, layout.half_thickness, layout.circles[k]);
+          gap < found.circles) {
         found.circles = gap;
         found.link = int(i);
         found.circle = int(k);
@@ -109,7 +113,8 @@ inline TrackClearances clearances(TrackPath const& path, double ground = -std::n
 
 namespace detail {
 
-/// `place` is within the polygon of the pins: a ray from it in the direction of x crosses the chain an odd number of times.
+/// `place` is within the polygon of the pins: a ray from it in the direction of x crosses the chain an odd number of
+/// times.
 inline bool track_encloses(std::vector<Vec2> const& pins, Vec2 const& place) {
   bool within = false;
   for (std::size_t i = 0; i < pins.size(); ++i) {
@@ -125,36 +130,40 @@ inline void check_wrapped(TrackPath const& path) {
   std::size_t const n = path.pins.size();
   for (TrackCircle const& c : layout.circles)
     if (bool const inside = c.side == TrackSide::inside; inside != track_encloses(path.pins, c.centre))
-      throw InvalidInput("Track: " + track_name(c) + " is to lie " + (inside ? "inside" : "outside") +
-                         " the track, which passes it on its other side. List the circles in the order in which the track " +
-                         "meets them, each with its side.");
+      throw InvalidInput(
+          "Track: " + track_name(c) + " is to lie " + (inside ? "inside" : "outside") +
+          " the track, which passes it on its other side. List the circles in the order in which the track " +
+          "meets them, each with its side.");
   for (std::size_t i = 0; i < n; ++i) {
     Vec2 const before = path.pins[i] - path.pins[(i + n - 1) % n], after = path.pins[(i + 1) % n] - path.pins[i];
     double const turn = std::atan2(track_cross(before, after), before.dot(after));
     if (int(i) < path.seated && turn > 1e-9)
-      throw InvalidInput("Track: no pin can sit on '" + layout.sprocket.name + "', which lies inside the run that passes it. " +
-                         "Move it outwards.");
+      throw InvalidInput("Track: no pin can sit on '" + layout.sprocket.name +
+                         "', which lies inside the run that passes it. " + "Move it outwards.");
     if (std::abs(turn) > 0.5 * std::numbers::pi + 1e-9) {
       int const on = std::max(path.links[i].touches, path.links[(i + n - 1) % n].touches);
       throw InvalidInput("Track: the pitch " + number(layout.pitch) + " m is too long for " +
-                         (on < 0 ? "'" + layout.sprocket.name + "'" : track_name(layout.circles[on])) + ": there two links " +
-                         "make an angle of " + number(std::abs(turn) * 180.0 / std::numbers::pi) + " deg, more than a right " +
-                         "one.");
+                         (on < 0 ? "'" + layout.sprocket.name + "'" : track_name(layout.circles[on])) +
+                         ": there two links " + "make an angle of " +
+                         number(std::abs(turn) * 180.0 / std::numbers::pi) + " deg, more than a right " + "one.");
     }
   }
   TrackClearances const gaps = clearances(path);
   if (gaps.circles < -1e-9 * layout.pitch)
-    throw InvalidInput("Track: link " + std::to_string(gaps.link) + " passes " + number(-gaps.circles) + " m deep through " +
-                       track_name(layout.circles[gaps.circle]) + ". List a wheel wherever the track meets it, with its side, " +
+    throw InvalidInput("Track: link " + std::to_string(gaps.link) + " passes " + number(-gaps.circles) +
+                       " m deep through " + track_name(layout.circles[gaps.circle]) +
+                       ". List a wheel wherever the track meets it, with its side, " +
                        "and leave room for the links between it and its neighbours.");
 }
 
-/// The travel at which `links` links close the loop, of several the one nearest to zero: a scan in steps of p/16, then bisection.
+/// The travel at which `links` links close the loop, of several the one nearest to zero: a scan in steps of p/16, then
+/// bisection.
 inline double track_travel(TrackLayout const& layout) {
   TrackTensioner const& tensioner = layout.tensioner;
   double const range = tensioner.most - tensioner.least;
   int const steps = std::max(1, int(std::ceil(16.0 * range / layout.pitch)));
-  double best = std::numeric_limits<double>::infinity(), shortest = best, longest = 0.0, below = 0.0, above = 0.0, before = 0.0;
+  double best = std::numeric_limits<double>::infinity(), shortest = best, longest = 0.0, below = 0.0, above = 0.0,
+         before = 0.0;
   for (int i = 0; i <= steps; ++i) {
     double const travel = tensioner.least + range * i / steps, length = track_length(layout, travel);
     shortest = std::min(shortest, length);
@@ -171,12 +180,13 @@ inline double track_travel(TrackLayout const& layout) {
   if (!std::isfinite(best)) {
     std::string const name = "'" + tensioner.circle + "'";
     if (range > 0.0 && longest - shortest < 1e-9)
-      throw InvalidInput("Track: it does not touch " + name + ", which therefore cannot tighten it. List the circles in the " +
+      throw InvalidInput("Track: it does not touch " + name +
+                         ", which therefore cannot tighten it. List the circles in the " +
                          "order in which the track meets them, a wheel that it meets above and below twice.");
     bool const few = layout.links <= shortest;
-    throw InvalidInput("Track: " + std::to_string(layout.links) + " links are too " + (few ? "few" : "many") + ". With " + name +
-                       " within its travel the path takes " + number(shortest) + " to " + number(longest) +
-                       " links. Change their number, or the tensioner's travel.");
+    throw InvalidInput("Track: " + std::to_string(layout.links) + " links are too " + (few ? "few" : "many") +
+                       ". With " + name + " within its travel the path takes " + number(shortest) + " to " +
+                       number(longest) + " links. Change their number, or the tensioner's travel.");
   }
   for (int i = 0; i < 60; ++i) {
     double const middle = 0.5 * (below + above);
@@ -203,8 +213,9 @@ inline Vec2 track_pull(TrackPath const& path) {
 
 }  // namespace detail
 
-/// Lays the track around its circles. \throws InvalidInput, naming the circle, for circles that overlap or come in an order that
-/// no track can take, too few or too many links for the tensioner's travel, and a pitch too long for a wheel.
+/// Lays the track around its circles. \throws InvalidInput, naming the circle, for circles that overlap or come in an
+/// order that no track can take, too few or too many links for the tensioner's travel, and a pitch too long for a
+/// wheel.
 inline TrackPath wrap_track(TrackLayout const& layout) {
   detail::check_track(layout);
   double const travel = detail::track_travel(layout);

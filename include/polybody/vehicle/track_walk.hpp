@@ -3,11 +3,11 @@
 /// A chain of rigid links laid once around the circles of a track, as taut as it can be.
 /// Not in polybody.hpp: of use to vehicles only.
 ///
-/// A link is the straight chord of length p between two pins; its faces lie at the distance h to both sides. Pins that sit on
-/// the sprocket lie on the corners of its pitch polygon, of radius p / (2 sin(π/N)). Away from it each link turns inwards at its
-/// pin as far as the circles let it: it lies on a line that touches the next circle of radius R + h (its face touches the rim),
-/// or that leads to the first seat of the sprocket. Links of one straight run share their line. So the chain is what a string
-/// around the same circles is, with corners for curves.
+/// A link is the straight chord of length p between two pins; its faces lie at the distance h to both sides. Pins that
+/// sit on the sprocket lie on the corners of its pitch polygon, of radius p / (2 sin(π/N)). Away from it each link
+/// turns inwards at its pin as far as the circles let it: it lies on a line that touches the next circle of radius R +
+/// h (its face touches the rim), or that leads to the first seat of the sprocket. Links of one straight run share their
+/// line. So the chain is what a string around the same circles is, with corners for curves.
 
 #include <algorithm>
 #include <limits>
@@ -22,7 +22,7 @@ inline double track_cross(Vec2 const& a, Vec2 const& b) { return a[0] * b[1] - a
 /// A direction in which a link may lie, and by how much it then turns to the left of the one before.
 struct TrackSight {
   Vec2 direction = Vec2::Zero();  ///< (2) of length one
-  double turn;     ///< [rad], −3π/2 < turn ≤ π/2
+  double turn;                    ///< [rad], −3π/2 < turn ≤ π/2
 };
 
 inline TrackSight track_sight(Vec2 const& heading, Vec2 const& direction) {
@@ -30,9 +30,10 @@ inline TrackSight track_sight(Vec2 const& heading, Vec2 const& direction) {
   return {direction, turn > 0.5 * std::numbers::pi ? turn - 2.0 * std::numbers::pi : turn};
 }
 
-/// From `pin` along the tangent to the circle of radius r = R + h. With c to the centre, t² = c² − r² and c⊥ = c turned left,
-/// the tangent that leaves the circle on its right is (t c + r c⊥)/c².
-inline TrackSight track_tangent(TrackLayout const& layout, TrackCircle const& circle, Vec2 const& pin, Vec2 const& heading) {
+/// From `pin` along the tangent to the circle of radius r = R + h. With c to the centre, t² = c² − r² and c⊥ = c turned
+/// left, the tangent that leaves the circle on its right is (t c + r c⊥)/c².
+inline TrackSight track_tangent(TrackLayout const& layout, TrackCircle const& circle, Vec2 const& pin,
+                                Vec2 const& heading) {
   Vec2 const c = circle.centre - pin;
   double const r = (circle.radius + layout.half_thickness) * (circle.side == TrackSide::inside ? 1.0 : -1.0);
   double const t = std::sqrt(std::max(0.0, c.squaredNorm() - r * r));
@@ -56,8 +57,10 @@ inline int track_start(TrackLayout const& layout) {
   return int(std::lround(angle * layout.sprocket.teeth / (2.0 * std::numbers::pi)));
 }
 
-/// Of the seats before the first one covered by the walk, the one that the track meets: all others are to the right of it.
-inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pin, Vec2 const& heading, TrackSight& sight) {
+/// Of the seats before the first one covered by the walk, the one that the track meets: all others are to the right of
+/// it.
+inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pin, Vec2 const& heading,
+                            TrackSight& sight) {
   int first = start;
   sight.turn = -std::numeric_limits<double>::infinity();
   for (int k = start; k >= start - layout.sprocket.teeth / 2; --k) {
@@ -72,11 +75,11 @@ inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pi
   return first;
 }
 
-/// What the link behind the last pin of `walk` runs to: the index of a circle at or after `at`; −1 for the next seat, while the
-/// walk has not left the sprocket; the number of circles for the seat that ends it. Sets `heading` to the link's direction.
-/// Circles inside the track bound a link's turn to the right, those outside bound it to the left. They are looked at in their
-/// order until a bound crosses the other one: then the link runs to the circle that set the other one. If none crosses, as
-/// without circles outside, it runs to what lies furthest to the left.
+/// What the link behind the last pin of `walk` runs to: the index of a circle at or after `at`; −1 for the next seat,
+/// while the walk has not left the sprocket; the number of circles for the seat that ends it. Sets `heading` to the
+/// link's direction. Circles inside the track bound a link's turn to the right, those outside bound it to the left.
+/// They are looked at in their order until a bound crosses the other one: then the link runs to the circle that set the
+/// other one. If none crosses, as without circles outside, it runs to what lies furthest to the left.
 inline int track_target(TrackLayout const& layout, int at, Vec2& heading, TrackWalk& walk) {
   struct Bound {
     TrackSight sight;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Whether tracks are where they belong: pins in the valleys of their sprocket one after the other, links on the wheels and not in them,
-/// the chain near its path. Not in polybody.hpp: of use to vehicles only.
+/// Whether tracks are where they belong: pins in the valleys of their sprocket one after the other, links on the wheels
+/// and not in them, the chain near its path. Not in polybody.hpp: of use to vehicles only.
 
 #include <cmath>
 #include <string>
@@ -22,14 +22,15 @@ struct Seating {
 
 /// What a track may do wrong, in a state.
 struct TrackFault {
-  double depth = 0.0;      ///< of the deepest contact [m]
-  Index link = 0;          ///< where that is,
-  std::string against;     ///< and against what
-  double sideways = 0.0;   ///< farthest that a link's middle is off the track's middle plane of the chassis [m]
-  double off_path = 0.0;   ///< farthest that a pin is off the chain of the start, seen from the chassis [m]
+  double depth = 0.0;     ///< of the deepest contact [m]
+  Index link = 0;         ///< where that is,
+  std::string against;    ///< and against what
+  double sideways = 0.0;  ///< farthest that a link's middle is off the track's middle plane of the chassis [m]
+  double off_path = 0.0;  ///< farthest that a pin is off the chain of the start, seen from the chassis [m]
 };
 
-/// Pins count that are nearer to the axle than the tips of the teeth; each of them has its valley, and links follow one another by one.
+/// Pins count that are nearer to the axle than the tips of the teeth; each of them has its valley, and links follow one
+/// another by one.
 template <class V>
 Seating seating(V const& vehicle, State const& x, Side side) {
   auto const& parts = vehicle.side(side);
@@ -85,7 +86,8 @@ std::string track_trouble(V const& vehicle, State const& x) {
 
 /// The faults of one side; `system` must have been evaluated at x. \param start where the links were placed
 template <class V>
-TrackFault track_fault(V const& vehicle, System<typename V::ModelType> const& system, State const& x, Side side, TrackStart const& start) {
+TrackFault track_fault(V const& vehicle, System<typename V::ModelType> const& system, State const& x, Side side,
+                       TrackStart const& start) {
   auto const& parts = vehicle.side(side);
   TrackFault worst;
   for_each_contact(system, parts.contacts[0], [&](TouchingPoint const& p) {
@@ -96,7 +98,8 @@ TrackFault track_fault(V const& vehicle, System<typename V::ModelType> const& sy
   });
   Frame<double> const hull = frame(vehicle.model, x, vehicle.chassis[0].at(Vec3(0, 0, 0)));
   std::vector<Vec2> path;
-  for (TrackLink const& link : start.links) path.push_back(link.centre + 0.5 * pitch * Vec2(std::cos(link.angle), -std::sin(link.angle)));
+  for (TrackLink const& link : start.links)
+    path.push_back(link.centre + 0.5 * pitch * Vec2(std::cos(link.angle), -std::sin(link.angle)));
   for (std::size_t k = 0; k < parts.links.size(); ++k) {
     Vec3 const middle = hull.A.transpose() * (position(vehicle.model, x, parts.middle[k]) - hull.r);
     Vec3 const pin = hull.A.transpose() * (position(vehicle.model, x, parts.front[k]) - hull.r);
@@ -113,13 +116,13 @@ TrackFault track_fault(V const& vehicle, System<typename V::ModelType> const& sy
   return worst;
 }
 
-/// A sentence where a step is longer than a sixth of the time in which a tooth passes, 2π/(N ω): such a step sees teeth as noise. Empty
-/// where it is not. \param speed ω, the sprocket's fastest [rad/s]
+/// A sentence where a step is longer than a sixth of the time in which a tooth passes, 2π/(N ω): such a step sees teeth
+/// as noise. Empty where it is not. \param speed ω, the sprocket's fastest [rad/s]
 inline std::string drive_warning(double speed, double step) {
   double const passing = 2.0 * std::numbers::pi / (teeth * std::abs(speed));
   if (step <= passing / 6.0) return {};
-  return "At " + number(speed) + " rad/s a tooth passes in " + number(1e3 * passing) + " ms, which steps of " + number(1e3 * step) +
-         " ms do not resolve. Take steps of " + number(1e3 * passing / 6.0) + " ms or less.";
+  return "At " + number(speed) + " rad/s a tooth passes in " + number(1e3 * passing) + " ms, which steps of " +
+         number(1e3 * step) + " ms do not resolve. Take steps of " + number(1e3 * passing / 6.0) + " ms or less.";
 }
 
 }  // namespace polybody::m113

@@ -16,7 +16,8 @@ inline Surface toothed_wheel(double width) {
   for (int k = 0; k < teeth; ++k) {
     double const middle = first_valley + 2.0 * std::numbers::pi * k / teeth;
     auto const add = [&](double radial, double across) {
-      outline.emplace_back(radial * std::cos(middle) - across * std::sin(middle), radial * std::sin(middle) + across * std::cos(middle));
+      outline.emplace_back(radial * std::cos(middle) - across * std::sin(middle),
+                           radial * std::sin(middle) + across * std::cos(middle));
     };
     add(corner[0], -corner[1]);
     for (int i = -3; i <= 3; ++i) {
@@ -45,9 +46,11 @@ Visual<typename V::ModelType> vehicle_visual(V const& vehicle) {
   visual.attach(vehicle.chassis[0].at(Vec3(0.1, 0, 0.55)), box({4.6, 2.54, 0.5}), "sponsons");
   for (auto const& side : vehicle.sides) {
     auto const drum = [&](auto const& body, double radius, std::string const& name) {
-      for (double const rim : {-rim_y, rim_y}) visual.attach(body.at(Vec3(0, rim, 0)), cylinder(radius, rim_width, y, 32), name);
+      for (double const rim : {-rim_y, rim_y})
+        visual.attach(body.at(Vec3(0, rim, 0)), cylinder(radius, rim_width, y, 32), name);
       visual.attach(body.at(Vec3(0, 0, 0)), cylinder(0.3 * radius, 2.0 * rim_y, y), name + " hub");
-      visual.attach(body.at(Vec3(0.6 * radius, rim_y + 0.5 * rim_width, 0)), cylinder(0.1 * radius, 0.02, y), name + " bolt");
+      visual.attach(body.at(Vec3(0.6 * radius, rim_y + 0.5 * rim_width, 0)), cylinder(0.1 * radius, 0.02, y),
+                    name + " bolt");
     };
     for (auto const& wheel : side.wheels) drum(wheel, wheel_radius, wheel.name);
     drum(side.idler[0], idler_radius, side.idler[0].name);
@@ -58,7 +61,8 @@ Visual<typename V::ModelType> vehicle_visual(V const& vehicle) {
     for (auto const& link : side.links) {
       using Link = typename V::LinkType;
       if constexpr (requires { link.at(Vec3(horn)); }) {
-        visual.attach(LinkOf<Link>::middle(link), box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}), link.name);
+        visual.attach(LinkOf<Link>::middle(link), box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}),
+                      link.name);
         visual.attach(link.at(Vec3(horn)), box(horn_size), link.name + " horn");
       } else {
         visual.sweep(link, link_bar(), 4);

@@ -42,15 +42,15 @@ struct HermiteCable {
 
   /// Angle of r′; θ̇ = r′ × ṙ′/|r′|², whose derivative without r̈′ is −2 (r′·ṙ′) θ̇/|r′|².
   template <StateScalar T>
-  static void rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed, T& angle,
-                       Vec<T, 8>& row, T& bias) {
+  static void rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed, T& angle, Vec<T, 8>& row,
+                       T& bias) {
     using std::atan2;
     Mat<double, 2, 8> const d = spread(hermite_shape(xi, l).ds);
     Vec<T, 2> const slope = d.template cast<T>() * e, rate = d.template cast<T>() * ed;
     T const n2 = slope.squaredNorm();
     angle = atan2(slope[1], slope[0]);
-    row = (d.row(1).transpose().template cast<T>() * slope[0] -
-           d.row(0).transpose().template cast<T>() * slope[1]) / n2;
+    row =
+        (d.row(1).transpose().template cast<T>() * slope[0] - d.row(0).transpose().template cast<T>() * slope[1]) / n2;
     bias = row.dot(ed) * slope.dot(rate) * (-2.0) / n2;
   }
 
@@ -91,7 +91,8 @@ struct HermiteCable {
     }
   };
 
-  /// Bending, p = (r′, r″), κ = c/nᵏ with c = r′ × r″, n = |r′|. Three points are the field's choice [Gerstmayr & Irschik 2008].
+  /// Bending, p = (r′, r″), κ = c/nᵏ with c = r′ × r″, n = |r′|. Three points are the field's choice [Gerstmayr &
+  /// Irschik 2008].
   struct Bending {
     static constexpr int points = bending_points;
     static constexpr int components = 2;

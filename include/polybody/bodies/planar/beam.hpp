@@ -16,11 +16,11 @@ namespace polybody::planar {
 /// The centre line at one place of an element, all linear in e except the angle.
 template <StateScalar T>
 struct CentreLine {
-  Vec<T, 2> r;     ///< position [m]
-  Vec<T, 2> v;     ///< velocity [m/s]
-  T angle;         ///< of the section's normal from world x [rad]
-  T rate;          ///< its rate [rad/s]
-  T rate_bias;     ///< its second derivative for ë = 0 [rad/s²]
+  Vec<T, 2> r;  ///< position [m]
+  Vec<T, 2> v;  ///< velocity [m/s]
+  T angle;      ///< of the section's normal from world x [rad]
+  T rate;       ///< its rate [rad/s]
+  T rate_bias;  ///< its second derivative for ë = 0 [rad/s²]
 };
 
 template <class Theory>
@@ -66,8 +66,8 @@ class Beam : public NodeChain<Theory::node_columns> {
     return {e, x - double(e), y};
   }
 
-  /// r = Σ s_i e_i, e_i of entries 2i and 2i + 1 of an element, and its derivatives by arc length; for theories whose axis is
-  /// smooth.
+  /// r = Σ s_i e_i, e_i of entries 2i and 2i + 1 of an element, and its derivatives by arc length; for theories whose
+  /// axis is smooth.
   auto axis_shape(double xi) const
     requires requires { Theory::axis_shape(xi, 1.0); }
   {
@@ -76,14 +76,12 @@ class Beam : public NodeChain<Theory::node_columns> {
 
   void reference(std::span<double> q) const {
     for (Index i = 0; i <= elements(); ++i)
-      part<node_columns>(q, i * node_columns) =
-          Theory::reference_node(origin_, angle_, double(i) * l_);
+      part<node_columns>(q, i * node_columns) = Theory::reference_node(origin_, angle_, double(i) * l_);
   }
-  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega,
-                      std::span<double> v) const {
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     for (Index i = 0; i <= elements(); ++i)
-      part<node_columns>(v, i * node_columns) = Theory::rigid_velocity(
-          part<node_columns>(q, i * node_columns), v0.head<2>(), omega[2]);
+      part<node_columns>(v, i * node_columns) =
+          Theory::rigid_velocity(part<node_columns>(q, i * node_columns), v0.head<2>(), omega[2]);
   }
 
   void mass(Index, std::span<double const>, ElementMatrix& m) const { m = mass_; }
@@ -120,20 +118,23 @@ class Beam : public NodeChain<Theory::node_columns> {
   }
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                ElementMatrix& k) const {
-    element_tangent<double>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), ck, cd, k);
+    element_tangent<double>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), ck,
+                            cd, k);
   }
 
   /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
   void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
                   Element<double>& out) const {
-    Element<double> const x0 = part<element_columns>(q0, first_column(e)), x1 = part<element_columns>(q1, first_column(e));
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
+                          x1 = part<element_columns>(q1, first_column(e));
     out.setZero();
     for_each_group([&](auto const& group) { group.add_mean_force(x0, x1, means, out); });
   }
   /// ck (−∂f/∂q1), nearly; not symmetric.
   void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
                     ElementMatrix& k) const {
-    Element<double> const x0 = part<element_columns>(q0, first_column(e)), x1 = part<element_columns>(q1, first_column(e));
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
+                          x1 = part<element_columns>(q1, first_column(e));
     k.setZero();
     for_each_group([&](auto const& group) { group.add_mean_tangent(x0, x1, means, ck, k); });
   }
@@ -157,10 +158,11 @@ class Beam : public NodeChain<Theory::node_columns> {
     return -part<element_columns>(q, first_column(e)).dot(gravity_ * g.head<2>());
   }
 
-  /// r = S e at `p`, 2×n, constant; e are the coordinates from `first_column(p)`. \throws InvalidInput off the axis, where r turns
-  /// with the section.
+  /// r = S e at `p`, 2×n, constant; e are the coordinates from `first_column(p)`. \throws InvalidInput off the axis,
+  /// where r turns with the section.
   PointMap position_map(Point const& p) const {
-    if (p.y != 0.0) throw InvalidInput(std::string(Theory::name) + ": a point off the axis is not linear in the coordinates.");
+    if (p.y != 0.0)
+      throw InvalidInput(std::string(Theory::name) + ": a point off the axis is not linear in the coordinates.");
     return Theory::position(p.xi, l_);
   }
   /// r′ = S′ e at `p`, 2×n, constant.
@@ -188,8 +190,7 @@ class Beam : public NodeChain<Theory::node_columns> {
   /// r = r₀ + y n, n = (−sin θ, cos θ);  ṙ = ṙ₀ − y t θ̇, t = (cos θ, sin θ);
   /// bias = −y (t θ̈ᵇ + n θ̇²), θ̈ᵇ the part of θ̈ without ë.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
-               Published<T>& out) const {
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     using std::cos, std::sin;
     Element<T> const x = part<element_columns>(q, first_column(p));
     Element<T> const xd = part<element_columns>(v, first_column(p));
@@ -217,8 +218,7 @@ class Beam : public NodeChain<Theory::node_columns> {
   }
 
   /// Jᵀw = Nᵀf + h c with the row h of θ̇ and c = m − y t·f;  ∂/∂e = c ∂h/∂e − y (n·f) h hᵀ.
-  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w,
-                      ElementMatrix& k) const {
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Element<double> const x = part<element_columns>(q, first_column(p)), rest = Element<double>::Zero();
     double angle, bias;
     Element<double> row;
@@ -231,7 +231,8 @@ class Beam : public NodeChain<Theory::node_columns> {
 
   /// In the axes of space (see sections.hpp); what the theory does not know is zero.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
-    return in_space([&](auto const& group) { return group.strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval()); });
+    return in_space(
+        [&](auto const& group) { return group.strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval()); });
   }
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     return in_space([&](auto const& group) {
@@ -268,8 +269,12 @@ class Beam : public NodeChain<Theory::node_columns> {
   using Groups = GroupsOf<typename Theory::Groups>;
 
   Beam(Bar const& bar, BarConstants const& c, Index n)
-      : Chain(n), constants_(c), length_(bar.length), l_(bar.length / double(n)),
-        origin_(bar.placement.origin.head<2>()), angle_(bar.placement.planar_angle(Theory::name)),
+      : Chain(n),
+        constants_(c),
+        length_(bar.length),
+        l_(bar.length / double(n)),
+        origin_(bar.placement.origin.head<2>()),
+        angle_(bar.placement.planar_angle(Theory::name)),
         groups_(Groups::make(c, bar, l_)) {
     // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the theory's polynomials
     for (GaussPoint const& g : gauss<4>) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Floating frame of reference in the plane [Shabana 2013, ch. 5]: small deformation in a frame that turns by any angle θ.
-/// With c, J, H of the integrals below, C = c_q, e× a quarter turn, in the frame's axes:
+/// Floating frame of reference in the plane [Shabana 2013, ch. 5]: small deformation in a frame that turns by any angle
+/// θ. With c, J, H of the integrals below, C = c_q, e× a quarter turn, in the frame's axes:
 ///   m r̈ + A (θ̈ e × c + C q̈)          = −A (−θ̇² c + 2 θ̇ e × ċ + Ċ q̇),
 ///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −(J˙ θ̇ + H˙ q̇),
 ///   Cᵀ Aᵀr̈ + Hᵀ θ̈ + M q̈ + D q̇ + K q = ½ θ̇² J_q − θ̇ W q̇,   W = ∂Hᵀ/∂q − ∂H/∂q.
@@ -28,7 +28,8 @@ class Ffr : public AddingCoordinates {
   using Point = FfrPoint;
   using Options = FfrOptions;
 
-  /// The bar in n elements, frame tied to its first end, all nodal coordinates in the plane: 3 n. The bar needs no GJ here.
+  /// The bar in n elements, frame tied to its first end, all nodal coordinates in the plane: 3 n. The bar needs no GJ
+  /// here.
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.placement = bar.placement;
     Structure const s = structure_in_plane(bar, n);
@@ -43,7 +44,8 @@ class Ffr : public AddingCoordinates {
     bar.constants = c;
     return structure_of(bar, n);
   }
-  /// A structure in the plane of x and y with a basis made `in_plane`. \throws InvalidInput for a basis that leaves the plane.
+  /// A structure in the plane of x and y with a basis made `in_plane`. \throws InvalidInput for a basis that leaves the
+  /// plane.
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(FfrIntegrals::of(integrals_of(structure, shapes, options.stiffening)), options) {
     for (Index i = 0; i < shapes.rows(); ++i)
@@ -218,7 +220,8 @@ class Ffr : public AddingCoordinates {
     out[1] = T(g[1] * i_.mass);
     out[2] = at.c[0] * pull[1] - at.c[1] * pull[0];
     for (Index k = 0; k < deformations(); ++k)
-      out[3 + k] = i_.template first_slope<T>(q.data() + 3, 0, k) * pull[0] + i_.template first_slope<T>(q.data() + 3, 1, k) * pull[1];
+      out[3 + k] = i_.template first_slope<T>(q.data() + 3, 0, k) * pull[0] +
+                   i_.template first_slope<T>(q.data() + 3, 1, k) * pull[1];
   }
 
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
@@ -293,7 +296,8 @@ class Ffr : public AddingCoordinates {
       k(2, 3 + i) = k(3 + i, 2) = sx * fy - sy * fx;
     }
     k(2, 2) = -(ux * fx + uy * fy);
-    for (std::size_t i = 0; i < 2 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= (i == 0 ? fx : fy) * p.drawn[i];
+    for (std::size_t i = 0; i < 2 && p.drawn[0].size() > 0; ++i)
+      k.bottomRightCorner(n, n) -= (i == 0 ? fx : fy) * p.drawn[i];
   }
 
   /// As in space.
@@ -302,7 +306,8 @@ class Ffr : public AddingCoordinates {
 
  private:
   FfrPoints const& made() const {
-    if (!points_) throw InvalidInput("planar::Ffr: this body is made of integrals only; describe the point by a Point.");
+    if (!points_)
+      throw InvalidInput("planar::Ffr: this body is made of integrals only; describe the point by a Point.");
     return *points_;
   }
 

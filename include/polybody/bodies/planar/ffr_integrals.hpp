@@ -10,7 +10,8 @@ namespace polybody::planar {
 
 /// By n deformation coordinates q, in the frame's axes, of the body's points u = u₀ + S q:
 ///   c = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,   J = inertia + inertia_by · q + qᵀ inertia_second q,
-///   H = ∫ρ u × S = coupling + qᵀ coupling_by,   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix q̇.
+///   H = ∫ρ u × S = coupling + qᵀ coupling_by,   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix
+///   q̇.
 struct FfrIntegrals {
   double mass = 0.0;                        ///< [kg]
   Vec2 first = Vec2::Zero();                ///< [kg m]
@@ -30,10 +31,19 @@ struct FfrIntegrals {
   static FfrIntegrals zero(Index n) { return of(polybody::FfrIntegrals::zero(n)); }
   /// What remains of a body in space whose deformation stays in the plane of x and y.
   static FfrIntegrals of(polybody::FfrIntegrals const& s) {
-    FfrIntegrals x{.mass = s.mass, .first = s.first.head<2>(), .first_by = s.first_by.topRows<2>(), .first_second = {},
-                   .inertia = s.inertia(2, 2), .inertia_by = s.inertia_by[2], .inertia_second = s.inertia_second[2],
-                   .coupling = s.coupling.row(2).transpose(), .coupling_by = s.coupling_by[2], .mass_matrix = s.mass_matrix,
-                   .stiffness = s.stiffness, .damping = s.damping, .initial_force = s.initial_force};
+    FfrIntegrals x{.mass = s.mass,
+                   .first = s.first.head<2>(),
+                   .first_by = s.first_by.topRows<2>(),
+                   .first_second = {},
+                   .inertia = s.inertia(2, 2),
+                   .inertia_by = s.inertia_by[2],
+                   .inertia_second = s.inertia_second[2],
+                   .coupling = s.coupling.row(2).transpose(),
+                   .coupling_by = s.coupling_by[2],
+                   .mass_matrix = s.mass_matrix,
+                   .stiffness = s.stiffness,
+                   .damping = s.damping,
+                   .initial_force = s.initial_force};
     if (s.stiffens()) x.first_second = {s.first_second[0], s.first_second[1]};
     return x;
   }

@@ -37,8 +37,7 @@ struct SimoVuQuoc {
 
   /// θ(ξ), its row θ̇ = row·ė, and the part of θ̈ without ë (none: the field is linear).
   template <StateScalar T>
-  static void rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&, T& angle, Vec<T, 6>& row,
-                       T& bias) {
+  static void rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&, T& angle, Vec<T, 6>& row, T& bias) {
     row = rotary(xi, l).template cast<T>();
     angle = row.dot(e);
     bias = T(0.0);

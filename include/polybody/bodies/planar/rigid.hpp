@@ -22,14 +22,16 @@ class Rigid : public AddingCoordinates {
   };
 
   struct Parameters {
-    Required<double> mass;      ///< [kg]
-    Required<double> inertia;   ///< about the centre of mass, axis z [kg m²]; zero for a point mass
-    Placement placement = {};   ///< of the centre of mass
+    Required<double> mass;     ///< [kg]
+    Required<double> inertia;  ///< about the centre of mass, axis z [kg m²]; zero for a point mass
+    Placement placement = {};  ///< of the centre of mass
   };
 
   /// \throws InvalidInput for mass ≤ 0, inertia < 0 or a placement that leaves the plane.
   Rigid(Parameters const& p)  // NOLINT(google-explicit-constructor)
-      : mass_(p.mass), inertia_(p.inertia), origin_(p.placement.origin.head<2>()),
+      : mass_(p.mass),
+        inertia_(p.inertia),
+        origin_(p.placement.origin.head<2>()),
         angle_(p.placement.planar_angle("planar::Rigid")) {
     require_positive(mass_, "planar::Rigid: the mass");
     require_not_negative(inertia_, "planar::Rigid: the inertia");
@@ -50,8 +52,7 @@ class Rigid : public AddingCoordinates {
 
   /// The point s from the first end of the bar, y off its axis. \throws InvalidInput outside the bar.
   Point at(double s, double y = 0.0) const {
-    if (length_ == 0.0)
-      throw InvalidInput("planar::Rigid: at(s) needs a body made from a Bar; use at(Vec2).");
+    if (length_ == 0.0) throw InvalidInput("planar::Rigid: at(s) needs a body made from a Bar; use at(Vec2).");
     return at(Vec2(require_inside(s, length_, "planar::Rigid") - 0.5 * length_, y));
   }
   /// The point u in body axes from the centre of mass [m].
@@ -68,14 +69,11 @@ class Rigid : public AddingCoordinates {
 
   void reference(std::span<double> q) const { part<3>(q, 0) << origin_, angle_; }
 
-  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega,
-                      std::span<double> v) const {
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     part<3>(v, 0) << v0[0] - omega[2] * q[1], v0[1] + omega[2] * q[0], omega[2];
   }
 
-  void mass(Index, std::span<double const>, Mat3& m) const {
-    m = Vec3(mass_, mass_, inertia_).asDiagonal();
-  }
+  void mass(Index, std::span<double const>, Mat3& m) const { m = Vec3(mass_, mass_, inertia_).asDiagonal(); }
   template <StateScalar T>
   void inertia(Index, std::span<T const>, std::span<T const> a, Vec<T, 3>& out) const {
     out << a[0] * mass_, a[1] * mass_, a[2] * inertia_;
@@ -84,11 +82,13 @@ class Rigid : public AddingCoordinates {
   void force(Index, std::span<T const>, std::span<T const>, Vec<T, 3>& out) const {
     out.setZero();
   }
-  void tangent(Index, std::span<double const>, std::span<double const>, double, double, Mat3& k) const {
+  void tangent(Index, std::span<double const>, std::span<double const>, double, double, Mat3& k) const { k.setZero(); }
+  void mean_force(Index, std::span<double const>, std::span<double const>, StepMeans const&, Vec3& out) const {
+    out.setZero();
+  }
+  void mean_tangent(Index, std::span<double const>, std::span<double const>, StepMeans const&, double, Mat3& k) const {
     k.setZero();
   }
-  void mean_force(Index, std::span<double const>, std::span<double const>, StepMeans const&, Vec3& out) const { out.setZero(); }
-  void mean_tangent(Index, std::span<double const>, std::span<double const>, StepMeans const&, double, Mat3& k) const { k.setZero(); }
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Vec<T, 3>& out) const {
     out << T(g[0] * mass_), T(g[1] * mass_), T(0.0);
@@ -104,8 +104,7 @@ class Rigid : public AddingCoordinates {
 
   /// r = r_c + ρ, ρ = A u;  ṙ = ṙ_c + θ̇ e_z × ρ;  bias = −θ̇² ρ.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
-               Published<T>& out) const {
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     using std::cos, std::sin;
     T const c = cos(q[2]), s = sin(q[2]);
     T const x = c * p.u[0] - s * p.u[1], y = s * p.u[0] + c * p.u[1];
@@ -130,8 +129,7 @@ class Rigid : public AddingCoordinates {
   }
 
   /// Only the third row of Jᵀw depends on q: ∂(ρ × f)/∂θ = −ρ · f.
-  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w,
-                      Mat3& k) const {
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat3& k) const {
     double const c = std::cos(q[2]), s = std::sin(q[2]);
     k.setZero();
     k(2, 2) = -(c * p.u[0] - s * p.u[1]) * w.f[0] - (s * p.u[0] + c * p.u[1]) * w.f[1];

@@ -17,8 +17,7 @@ struct Prismatic {
   /// \throws InvalidInput unless the direction is a unit vector in the plane.
   Mat3 triad() const {
     require_unit(axis, "planar::Prismatic: the axis");
-    if (std::abs(axis.z()) > 1e-12)
-      throw InvalidInput("planar::Prismatic: the axis must lie in the plane, z = 0.");
+    if (std::abs(axis.z()) > 1e-12) throw InvalidInput("planar::Prismatic: the axis must lie in the plane, z = 0.");
     Mat3 e;
     e << axis, Vec3::UnitZ().cross(axis), Vec3::UnitZ();
     return e;

@@ -25,8 +25,7 @@ struct Revolute {
   Vec<T, 2> gamma(Frame<T> const&, Frame<T> const&, double) const {
     return Vec<T, 2>::Zero();
   }
-  Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&,
-                                      Vec<double, 2> const&) const {
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&, Vec<double, 2> const&) const {
     return Mat<double, 12, 12>::Zero();
   }
 };

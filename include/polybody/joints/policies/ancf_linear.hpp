@@ -3,13 +3,15 @@
 
 namespace polybody {
 
-/// Linear joint of ANCF bodies: the geometry is said in positions and position gradients, which are linear in the coordinates,
+/// Linear joint of ANCF bodies: the geometry is said in positions and position gradients, which are linear in the
+/// coordinates,
 ///   S_a e_a − S_b e_b = c,
-/// so that dependent coordinates leave the equations before the run: the mass matrix stays constant and there is no multiplier; what the
-/// joint holds is worked out afterwards from the balance of each element [thesis §3.5.4; Shabana, Hamed, Mohamed, Jayakumar &
-/// Letherwood 2012]. Both markers belong to ANCF bodies or the ground.
+/// so that dependent coordinates leave the equations before the run: the mass matrix stays constant and there is no
+/// multiplier; what the joint holds is worked out afterwards from the balance of each element [thesis §3.5.4; Shabana,
+/// Hamed, Mohamed, Jayakumar & Letherwood 2012]. Both markers belong to ANCF bodies or the ground.
 ///   Spherical (in the plane Revolute):  r equal.
-///   Revolute about n:  r equal and r_α equal, α the material line along n: six equations between bodies with all gradients. A body
+///   Revolute about n:  r equal and r_α equal, α the material line along n: six equations between bodies with all
+///   gradients. A body
 ///     with r′ alone (a cable) shares the component of its r′ along n instead, n fixed in the world: four equations.
 ///   Weld:  r and all gradients that both have equal, as they stand to one another in the reference.
 struct AncfLinear {

@@ -5,8 +5,9 @@
 namespace polybody {
 
 namespace detail {
-/// \throws InvalidInput naming `what` unless k (6×6) is finite, symmetric and positive semidefinite: symmetric elimination of k
-/// with its diagonal scaled to ones meets no negative pivot, and nothing beside a pivot that is zero [Higham 2002, §10.3].
+/// \throws InvalidInput naming `what` unless k (6×6) is finite, symmetric and positive semidefinite: symmetric
+/// elimination of k with its diagonal scaled to ones meets no negative pivot, and nothing beside a pivot that is zero
+/// [Higham 2002, §10.3].
 inline void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
   double l[6][6];
   auto const refuse = [&](std::string const& why) {
@@ -35,10 +36,11 @@ inline void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& 
 }
 }  // namespace detail
 
-/// Linear bushing [thesis Eq. 3.15]: λ = K x + C ẋ instead of the joint's rows, x the six `RelativeCoordinates` of b against a in
-/// the joint's axes, fixed in a: slides [m], then turns [rad], for any size of either. What the joint's geometry leaves free
-/// stays free: its rows and columns of K and C do not count. To act on these directions too (a torsional spring in a pin, within half a
-/// turn) take `RelativeCoordinates` as the geometry, which leaves nothing free. The potential ½ xᵀK x is exact.
+/// Linear bushing [thesis Eq. 3.15]: λ = K x + C ẋ instead of the joint's rows, x the six `RelativeCoordinates` of b
+/// against a in the joint's axes, fixed in a: slides [m], then turns [rad], for any size of either. What the joint's
+/// geometry leaves free stays free: its rows and columns of K and C do not count. To act on these directions too (a
+/// torsional spring in a pin, within half a turn) take `RelativeCoordinates` as the geometry, which leaves nothing
+/// free. The potential ½ xᵀK x is exact.
 struct Bushing {
   static constexpr char const* name = "Bushing";
   static constexpr bool linear = true;  ///< in g and ġ

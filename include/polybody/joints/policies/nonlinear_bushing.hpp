@@ -7,8 +7,8 @@
 
 namespace polybody {
 
-/// A force as a function of one coordinate x and its rate: `law(x, ẋ)` in double and in dual numbers; a generic lambda will do.
-/// It may have `potential(x)`, whose slope it is at rest, and `check(what)`.
+/// A force as a function of one coordinate x and its rate: `law(x, ẋ)` in double and in dual numbers; a generic lambda
+/// will do. It may have `potential(x)`, whose slope it is at rest, and `check(what)`.
 template <class L>
 concept ForceLaw = requires(L const law, Dual<1> const x) {
   { law(0.0, 0.0) } -> std::convertible_to<double>;
@@ -34,7 +34,7 @@ struct LinearLaw {
 
 /// f(x) + c ẋ, f from a table.
 struct TabulatedLaw {
-  MonotoneTable force;         ///< f [N] or [N m] over [m] or [rad]
+  MonotoneTable force;       ///< f [N] or [N m] over [m] or [rad]
   Required<double> damping;  ///< c
 
   /// \throws InvalidInput unless c ≥ 0.
@@ -46,11 +46,11 @@ struct TabulatedLaw {
   double potential(double x) const { return force.integral(x); }
 };
 
-/// A bushing with a law for each component, in the order slides along the joint's axes, then turns: λᵢ = fᵢ(xᵢ, ẋᵢ), x the six
-/// `RelativeCoordinates`. What the geometry leaves free stays free, its law is not felt. Slopes come from dual numbers. Laws
-/// without `potential` do work that `energy` does not count.
-///   NonlinearBushing const rubber{TabulatedLaw{…}, LinearLaw{…}, [](auto const& x, auto const& rate) { return …; }, …};
-///   using Pin = Joint<Revolute, decltype(rubber)>;
+/// A bushing with a law for each component, in the order slides along the joint's axes, then turns: λᵢ = fᵢ(xᵢ, ẋᵢ), x
+/// the six `RelativeCoordinates`. What the geometry leaves free stays free, its law is not felt. Slopes come from dual
+/// numbers. Laws without `potential` do work that `energy` does not count.
+///   NonlinearBushing const rubber{TabulatedLaw{…}, LinearLaw{…}, [](auto const& x, auto const& rate) { return …; },
+///   …}; using Pin = Joint<Revolute, decltype(rubber)>;
 template <ForceLaw... Laws>
   requires(sizeof...(Laws) == 6)
 struct NonlinearBushing {
@@ -80,7 +80,8 @@ struct NonlinearBushing {
   /// ck ∂f/∂x + cd ∂f/∂ẋ (6×6): the derivative along (ck, cd).
   template <int m>
     requires(m == 6)
-  Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const& x, Vec<double, m> const& rate) const {
+  Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const& x,
+                                         Vec<double, m> const& rate) const {
     using D = Dual<1>;
     Eigen::DiagonalMatrix<double, m> slope;
     for_each([&](int i, auto const& law) {
@@ -103,7 +104,9 @@ struct NonlinearBushing {
  private:
   template <class F>
   void for_each(F&& f) const {
-    [&]<std::size_t... i>(std::index_sequence<i...>) { (f(int(i), std::get<i>(laws)), ...); }(std::make_index_sequence<6>{});
+    [&]<std::size_t... i>(std::index_sequence<i...>) {
+      (f(int(i), std::get<i>(laws)), ...);
+    }(std::make_index_sequence<6>{});
   }
 };
 

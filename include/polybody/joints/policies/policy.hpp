@@ -10,8 +10,8 @@ namespace polybody {
 template <class P>
 concept AddsRows = requires { requires P::adds_rows; };
 
-/// Its rows leave the equations of a time step together with the coordinates that they determine; all other questions to a model
-/// treat them as rows with multipliers.
+/// Its rows leave the equations of a time step together with the coordinates that they determine; all other questions
+/// to a model treat them as rows with multipliers.
 template <class P>
 concept Eliminates = AddsRows<P> && requires { requires P::eliminates; };
 
@@ -30,8 +30,8 @@ concept AnswersRows = requires(P const p, Vec<double, m> const g, std::string co
 
 /// A force in place of rows. Some policies answer any number of rows, others one number only.
 template <class P>
-concept AddsForce = AnswersRows<P, 1> || AnswersRows<P, 2> || AnswersRows<P, 3> || AnswersRows<P, 4> || AnswersRows<P, 5> ||
-                    AnswersRows<P, 6>;
+concept AddsForce = AnswersRows<P, 1> || AnswersRows<P, 2> || AnswersRows<P, 3> || AnswersRows<P, 4> ||
+                    AnswersRows<P, 5> || AnswersRows<P, 6>;
 
 /// Exactly one kind.
 template <class P>

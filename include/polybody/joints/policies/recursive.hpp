@@ -11,15 +11,16 @@ namespace recursive {
 struct Augmented {};
 /// The dense reduced system TᵀM T u̇ = Tᵀ(f − M Ṫ u) [thesis Eq. 3.4]: for some dozen joints.
 struct Reduced {};
-/// TᵀM T u̇ = … by elimination body by body from the tips to the roots [Featherstone 1983]: linear in the number of bodies of a
-/// tree. Rows beside the tree are added one by one, so few of them.
+/// TᵀM T u̇ = … by elimination body by body from the tips to the roots [Featherstone 1983]: linear in the number of
+/// bodies of a tree. Rows beside the tree are added one by one, so few of them.
 struct ArticulatedBody {};
 }  // namespace recursive
 
-/// Joint coordinates: body b is carried by body a, its pose is a's pose followed by the motion that the joint leaves, and a time step
-/// knows the coordinates of this motion alone. The joint's rows hold by construction; what they would have carried is worked out
-/// afterwards, so that multipliers and reactions are there as for `Constraint`. Joints form trees from the ground, or from a free
-/// body; a joint that closes a loop takes another policy. For rigid bodies [Shabana 2020, §3; thesis §3.3.2].
+/// Joint coordinates: body b is carried by body a, its pose is a's pose followed by the motion that the joint leaves,
+/// and a time step knows the coordinates of this motion alone. The joint's rows hold by construction; what they would
+/// have carried is worked out afterwards, so that multipliers and reactions are there as for `Constraint`. Joints form
+/// trees from the ground, or from a free body; a joint that closes a loop takes another policy. For rigid bodies
+/// [Shabana 2020, §3; thesis §3.3.2].
 template <class Path>
 struct RecursiveBy {
   static constexpr char const* name = "Recursive";

@@ -1,5 +1,6 @@
 #pragma once
-// Found before the library's own header of this name: tests that name no solver take the one that the environment names,
+// Found before the library's own header of this name: tests that name no solver take the one that the environment
+// names,
 //   POLYBODY_SOLVER=EigenSparseLu ctest ...
 // and the library's default when it names none. `DenseLu` is taken up to 400 unknowns.
 
