@@ -89,7 +89,7 @@ void report(char const* what, M const& model) {
 /// Seconds of analysis and of one factorisation of the tangent at the start.
 template <class M>
 void orders(char const* what, M const& model) {
-  System<M> system(model);
+  System system(model);
   State const x = model.reference_state();
   PatternSink pattern;
   system.evaluate(x.q, x.v, 0.0);
@@ -100,7 +100,7 @@ void orders(char const* what, M const& model) {
     auto start = Clock::now();
     solver.analyse(system.size(), pattern.blocks);
     analyse = std::min(analyse, microseconds(start));
-    auto const write = [&](BlockSolver& sink) {
+    auto const write = [&](BlockSink& sink) {
       system.tangent({1.5, 5e-4, 2.5e-7}, SecondOrder::omitted, x.lambda, sink);
     };
     write_and_factor(solver, write);
@@ -114,7 +114,7 @@ void orders(char const* what, M const& model) {
 
 void analyse_without_coupling(benchmark::State& state) {
   ChainOnWheels<false> const c;
-  System<decltype(c.model)> system(c.model);
+  System system(c.model);
   State const x = c.model.reference_state();
   PatternSink pattern;
   system.evaluate(x.q, x.v, 0.0);

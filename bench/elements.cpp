@@ -91,7 +91,7 @@ void share_loops(char const* name) {
   Model<Bodies<B>, Joints<>> model{Gravity{0, -9.81, 0}};
   Swaying<B> s;
   model.add(s.body);
-  System<decltype(model)> alone(model), shared(model);
+  System alone(model), shared(model);
   shared.use_threads(2);
   State const x = model.reference_state();
   VecX const q = Eigen::Map<VecX const>(s.q.data(), Index(s.q.size())), v = 0.0 * q;

@@ -130,7 +130,7 @@ void mechanisms() {
 /// The parts of an iteration on a chain of 64.
 struct Parts {
   Chain<Constraint> chain{64, {}};
-  System<decltype(chain.model)> system{chain.model};
+  System system{chain.model};
   State x = chain.model.reference_state();
   BlockSolver solver;
   VecX r, rhs, y;

@@ -39,7 +39,7 @@ Chain make_chain(int links) {
 // A state off rest, so that no term vanishes.
 struct Fixture {
   Chain model;
-  System<Chain> system;
+  System system;
   VecX q, v, a, lambda, r, phi, rhs, x;
   EigenSparseLu solver;
   BlockSolver block;

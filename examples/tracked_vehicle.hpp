@@ -88,7 +88,7 @@ class Probe {
   void look(State const& x) {
     t_ = x.t;
     V const& v = *vehicle_;
-    if (!system_) system_ = std::make_unique<System<M>>(v.model);
+    if (!system_) system_ = std::make_unique<System>(v.model);
     system_->evaluate(x.q, x.v, x.t);
     Frame<double> const hull = frame(v.model, x, v.chassis[0].at(Vec3(0, 0, 0)));
     auto const& side = v.side(m113::Side::left);
@@ -135,7 +135,7 @@ class Probe {
 
   std::shared_ptr<V const> vehicle_;
   m113::TrackStart start_;
-  std::unique_ptr<System<M>> system_;
+  std::unique_ptr<System> system_;
   double t_ = -1.0;
 };
 
@@ -205,7 +205,7 @@ struct TrackCase {
     outcomes->push_back({.name = f.name});
     std::size_t const mine = outcomes->size() - 1;
     auto const progress = std::make_shared<Progress>(0.0, s.until, f.name);
-    auto const audit = s.audit ? std::make_shared<EnergyAudit<M>>(vehicle->model) : nullptr;
+    auto const audit = s.audit ? std::make_shared<EnergyAudit>(vehicle->model) : nullptr;
     auto const visual = s.animate > 0.0 ? std::make_shared<Visual<M>>(m113::vehicle_visual(*vehicle)) : nullptr;
     auto const writer = visual ? std::make_shared<VtkWriter<M>>(s.out / (f.name + ".pvd"), *visual) : nullptr;
     auto const next_picture = std::make_shared<double>(0.0);

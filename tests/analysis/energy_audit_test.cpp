@@ -31,8 +31,7 @@ double const gravity = 9.81;
 
 /// M a − f + Gᵀλ = 0 for any λ: x.a as the equations of motion have it, whether the rows hold or not. M column by
 /// column.
-template <class M>
-void obey(System<M>& system, State& x) {
+void obey(System& system, State& x) {
   Index const n = system.speeds();
   VecX at_rest(n), r(n), a = VecX::Zero(n);
   MatX mass(n, n);
@@ -55,7 +54,7 @@ void obey(System<M>& system, State& x) {
 /// Ė by differences along the motion, less drives + loads − dissipated, relative to the largest of these.
 template <class M>
 double rate_mismatch(M const& model, State x) {
-  System<M> system(model);
+  System system(model);
   obey(system, x);
   system.evaluate(x.q, x.v, x.t);
   Powers const p = powers(system, x);
@@ -441,8 +440,8 @@ TEST(EnergyAudit, OfAGroupOfContactsIsThatOfTheContacts) {
 }
 
 /// A free mass of 1 kg on a spring of k [N/m] without free length, released from x = 1 m: ω² = k.
-EnergyAudit<Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>> of_oscillator(
-    Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> const& model, double rho_inf, double h, int steps) {
+EnergyAudit of_oscillator(Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> const& model, double rho_inf,
+                          double h, int steps) {
   EnergyAudit audit(model);
   State x = model.reference_state();
   GeneralizedAlpha const integrator{.rho_inf = rho_inf, .tolerance = 1e-12};

@@ -208,12 +208,12 @@ TEST(EulerParameterMoments, OfALoadHaveItsPower) {
   EXPECT_GT(std::abs(power), 1.0);
   EXPECT_NEAR(four.dot(p.x.v.segment<4>(p.model.entry(p.b).v0 + 3)), power, 1e-6);
 
-  System<Reduced<Relative::ModelType>> system(r.model);
-  State const narrow = system.narrow(r.x);
+  System system = stepped_system(r.model);
+  State const narrow = reduce(system, r.x);
   system.evaluate(narrow.q, narrow.v, narrow.t);
   VecX with(system.speeds()), without(system.speeds());
   system.residual(narrow.a, narrow.lambda, with);
-  system.whole().load_factor = 0.0;
+  system.load_factor = 0.0;
   system.residual(narrow.a, narrow.lambda, without);
   VecX const five = without - with;
   ASSERT_EQ(five.size(), 2 + 3);

@@ -34,7 +34,7 @@ TEST(EnergyDecaying, LinearModeLosesTheShareOfItsTheory) {
       State x = model.reference_state();
       x.q << 0.3, -0.2, 0.0;
       x.v << 1.0, 0.5, 0.0;
-      System system(model);
+      System system = system_for<EnergyDecaying>(model);
       auto workspace = integrator.workspace<DefaultSolver>(system);
       double const h = hw / 5.0, theta = 1.0 / (1.0 + rho);
       double const share = (1.0 + std::pow((1.0 - theta) * hw, 2)) / (1.0 + std::pow(theta * hw, 2));

@@ -129,7 +129,7 @@ TEST(EnergyMomentum, GoesOnWhereTheTrapezoidalRuleFails) {
 
 TEST(EnergyMomentum, StalledStepLeavesTheStateAndSaysSo) {
   Thrown rod(100.0, 4);
-  System system(rod.model);
+  System system = system_for<EnergyMomentum>(rod.model);
   EnergyMomentum const integrator, impatient{.newton = {.max_iterations = 2}};
   auto workspace = integrator.workspace<DefaultSolver>(system);
   integrator.start(system, rod.x, 0.01, workspace);

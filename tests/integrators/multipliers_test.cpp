@@ -15,7 +15,7 @@ namespace multipliers_test {
 /// Steps a model by h for 1 s, then by another step for 0.2 s.
 template <class M, class I>
 struct Stepper {
-  System<M> system;
+  System system;
   I integrator;
   decltype(integrator.template workspace<DenseLu>(system)) workspace;
   State x;

@@ -184,7 +184,7 @@ long in_steps(I const& integrator) {
   Case const setup;
   auto const& model = setup.model();
   State x = model.reference_state();
-  System system(model);
+  System system(model, with<entries_of<I>()>);
   auto workspace = integrator.template workspace<Solver>(system);
   double const h = 1e-5;  // stable for the explicit ones
   integrator.start(system, x, h, workspace);

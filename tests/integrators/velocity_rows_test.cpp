@@ -60,7 +60,7 @@ TEST(CoordinatePartitioning, SplitsCoordinatesBySurfacesAndSpeedsByAllRows) {
   System system(disc.model);
   CoordinatePartitioning const policy;
   CoordinatePartitioning::Scratch scratch(system);
-  ForwardDynamics<WobblingDisc::ModelType> forward(system);
+  ForwardDynamics<> forward(system);
   State x = disc.start;
   policy.start(scratch);
   policy.apply(system, forward, scratch, x.q, x.v, 0.0);

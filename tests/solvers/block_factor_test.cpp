@@ -54,7 +54,7 @@ struct BlockSolvers : testing::Test {
   /// Analyses, factors, expects success and a small residual.
   Solver solved(Blocks const& blocks, double tolerance = 1e-13) {
     Solver solver = blocks.analysed<Solver>();
-    EXPECT_EQ(write_and_factor(solver, [&](Solver& s) { blocks.write(s); }), -1);
+    EXPECT_EQ(write_and_factor(solver, [&](BlockSink& s) { blocks.write(s); }), -1);
     EXPECT_LT(residual(blocks, solver, draw), tolerance);
     return solver;
   }
@@ -165,7 +165,7 @@ TYPED_TEST(BlockSolvers, DropRowsThatRepeatOthers) {
     b.join(row, 6 * (bodies - 1), mix * dense.block(last, 6 * (bodies - 1), 5, 6));
     b.join(row, 6 * (bodies - 2), mix * dense.block(last, 6 * (bodies - 2), 5, 6));
     TypeParam solver = b.analysed<TypeParam>();
-    ASSERT_EQ(write_and_factor(solver, [&](TypeParam& s) { b.write(s); }), -1);
+    ASSERT_EQ(write_and_factor(solver, [&](BlockSink& s) { b.write(s); }), -1);
     ASSERT_EQ(solver.dropped().size(), 5u);
     for (Index const i : solver.dropped()) EXPECT_GE(i, row);
     // a right-hand side that the repeated rows do not contradict
@@ -198,7 +198,7 @@ TYPED_TEST(BlockSolvers, RepeatToTheLastBit) {
   VecX const side = VecX::Ones(b.size);
   VecX first = side, second = side;
   solver.solve(side, first);
-  write_and_factor(solver, [&](TypeParam& s) { b.write(s); });
+  write_and_factor(solver, [&](BlockSink& s) { b.write(s); });
   solver.solve(side, second);
   EXPECT_EQ(first, second);
 }
@@ -251,7 +251,7 @@ TEST(BlockLu, SolvesUnsymmetricTangents) {
     for (auto& [block, m] : b.all)
       if (block.row == block.col) m += 0.3 * draw.matrix(6, 6);
     auto solver = b.analysed<BlockLu>();
-    ASSERT_EQ(write_and_factor(solver, [&](BlockLu& s) { b.write(s); }), -1);
+    ASSERT_EQ(write_and_factor(solver, [&](BlockSink& s) { b.write(s); }), -1);
     EXPECT_LT(residual(b, solver, draw), 1e-13);
   }
 }

@@ -16,7 +16,7 @@ struct Drift {
 /// `steps` steps of length h from x, which is moved along.
 template <class M, class I>
 Drift drift_of(M const& model, State& x, I const& integrator, double h, int steps) {
-  System system(model);
+  System system = system_for<I, Entries::energy>(model);
   auto workspace = integrator.template workspace<DefaultSolver>(system);
   integrator.start(system, x, h, workspace);
   system.evaluate(x.q, x.v, x.t);

@@ -123,7 +123,7 @@ State scrambled(M const& model, unsigned seed = 1) {
   Numbers number(seed);
   State x = model.reference_state();
   VecX q = x.q;
-  System<M>(model).plus(q, number.vector(model.speeds(), 0.4), x.q);
+  System(model).plus(q, number.vector(model.speeds(), 0.4), x.q);
   x.v = number.vector(model.speeds());
   x.a = number.vector(model.speeds(), 2.0);
   x.lambda = number.vector(model.rows(), 5.0);

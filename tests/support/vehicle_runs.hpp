@@ -21,7 +21,7 @@ inline GeneralizedAlpha vehicle_integrator() { return {.rho_inf = 0.8, .toleranc
 template <class M, class See>
 RunReport run_vehicle(M const& model, State& x, double until, double step, See&& see) {
   auto run = simulate(model, x, vehicle_integrator(), {.until = until, .step = step, .halvings = 6});
-  System<M> system(model);
+  System system(model);
   while (!run.done()) {
     run.advance();
     system.evaluate(x.q, x.v, x.t);

@@ -19,7 +19,7 @@ namespace polybody {
 /// positions only.
 template <class M, class I>
 State rolled(M const& model, State x, I const& integrator, double until, double step) {
-  System<M> system(model);
+  System system(model);
   VecX rate = VecX::Zero(model.rows());
   Violation worst;
   double blades = 0.0;

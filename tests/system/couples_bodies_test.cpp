@@ -40,7 +40,7 @@ struct Row {
   }
   /// Blocks of the tangent between the two bodies.
   int couplings(SecondOrder second) {
-    System<decltype(model)> system(model);
+    System system(model);
     system.evaluate(x.q, x.v, x.t);
     PatternSink sink;
     system.tangent({1.0, 0.1, 0.01}, second, x.lambda, sink);

@@ -57,7 +57,8 @@ void expect_pulled(Targets const& targets) {
   for (int pass = 0; pass < 2; ++pass) {  // the second finds its ranges
     MatX all = MatX::Zero(whole, whole);
     Plain sink{MatX::Zero(size, size)};
-    MappedSink<Plain> mapped(map, kept, sink);
+    BlockSink receiver(sink);
+    MappedSink mapped(map, kept, receiver);
     for (int k = 0; k < 40; ++k) {
       auto const of = [&](Index n) { return Index(random() % unsigned(n)); };
       Index const rows = 1 + of(whole), cols = 1 + of(whole), row = of(whole - rows + 1), col = of(whole - cols + 1);
@@ -79,7 +80,8 @@ TEST(MappedSink, SkipsWhatItWouldAdd) {
     UnknownMap const map(targets);
     MappedBlocks kept;
     Plain added{MatX::Zero(10, 10)}, skipped{MatX::Zero(10, 10)};
-    MappedSink<Plain> adds(map, kept, added), skips(map, kept, skipped);
+    BlockSink of_added(added), of_skipped(skipped);
+    MappedSink adds(map, kept, of_added), skips(map, kept, of_skipped);
     for (Index row = 0; row < 12; ++row)
       for (Index rows = 1; row + rows <= 12; ++rows)
         for (Index col = 0; col < 12; ++col) {

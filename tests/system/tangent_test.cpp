@@ -36,9 +36,9 @@ struct Asked {
 template <class M>
 Asked ask(M const& m) {
   auto const model = std::make_shared<M const>(m);
-  auto const system = std::make_shared<System<M>>(*model);
+  auto const system = std::make_shared<System>(*model);
   system->load_factor = 0.7;
-  auto const at = [model, system](State const& x) -> System<M>& {
+  auto const at = [model, system](State const& x) -> System& {
     system->evaluate(x.q, x.v, x.t);
     return *system;
   };
@@ -61,9 +61,9 @@ Asked ask(M const& m) {
     at(x).residual(x.a, x.lambda, r);
     return r;
   };
-  a.violation = rows([](System<M>& s, VecX& y) { s.violation(y); });
-  a.violation_rate = rows([](System<M>& s, VecX& y) { s.violation_rate(y); });
-  a.acceleration_bias = rows([](System<M>& s, VecX& y) { s.acceleration_bias(y); });
+  a.violation = rows([](System& s, VecX& y) { s.violation(y); });
+  a.violation_rate = rows([](System& s, VecX& y) { s.violation_rate(y); });
+  a.acceleration_bias = rows([](System& s, VecX& y) { s.acceleration_bias(y); });
   a.tangent = [at](State const& x, TangentCoefficients c, SecondOrder second) {
     DenseLu sink;
     sink.analyse(x.v.size() + x.lambda.size(), {});
@@ -84,11 +84,11 @@ Asked ask(M const& m) {
       e.body.template plus<D>(detail::body_part(q, e.q0, n), detail::body_part(delta, e.v0, e.body.speeds()),
                               detail::body_part_of(moved_q, e.q0, n));
     });
-    Data<M, D> data(*model);
-    publish(*model, moved_q, v, data);
-    enforce(*model, x.t, data);
+    BasicSystem<D> dual(*model);
+    dual.load_factor = 0.7;
+    dual.evaluate(moved_q, v, x.t);
     VecXOf<D> const acc = x.a.cast<D>(), lambda = x.lambda.cast<D>();
-    residual(*model, moved_q, v, acc, lambda, x.t, 0.7, data, r);
+    dual.residual(acc, lambda, r);
     return VecX(r.unaryExpr([](D const& y) { return y.d[0]; }));
   };
   return a;

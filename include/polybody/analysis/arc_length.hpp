@@ -31,18 +31,17 @@ struct PathPoint {
 /// Follows the path from x, in equilibrium without loads, until `done(point)` or `options.points`. Lengths are measured
 /// by |dq|²/c² + dp², c = |dq/dp| at the start. \throws NewtonStalled naming the load factor where steps have become
 /// too short, LinearSolverSingular where not even the start has a tangent, NonFinite.
-template <LinearSolver Solver = DefaultStaticSolver, class M>
-std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcLengthOptions const& options = {},
+template <LinearSolver Solver = DefaultStaticSolver>
+std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {
   require_positive(options.step, "equilibrium_path: the step");
   require_positive(options.smallest, "equilibrium_path: the smallest step");
-  System<M> system(model);
   Index const nv = system.speeds(), rows = system.rows();
   PathPoint now{0.0, start};
   now.x.v.setZero();
   now.x.a.setZero();
   system.evaluate(now.x.q, now.x.v, now.x.t);
-  StaticTangent<Solver, M> stiffness(system, now.x.lambda);
+  StaticTangent<Solver> stiffness(system, now.x.lambda);
 
   VecX r(nv), r0(nv), r1(nv), phi(rows), a(nv + rows), b(nv + rows), q;
   // a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false where K is singular.
@@ -119,6 +118,13 @@ std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcL
     if (iterations <= 5) length = std::min(1.5 * length, options.largest);
   }
   return path;
+}
+
+template <LinearSolver Solver = DefaultStaticSolver, class M>
+std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcLengthOptions const& options = {},
+                                        std::function<bool(PathPoint const&)> const& done = {}) {
+  System system(model, with<Entries::implicit_step>);
+  return equilibrium_path<Solver>(system, start, options, done);
 }
 
 }  // namespace polybody

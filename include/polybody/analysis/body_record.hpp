@@ -50,7 +50,8 @@ template <class M>
 class LoadRecorder {
  public:
   /// The model must outlive the recorder and must not change after.
-  explicit LoadRecorder(M const& model) : system_(model), owner_(std::size_t(model.markers()), -1) {}
+  explicit LoadRecorder(M const& model)
+      : model_(&model), system_(model, with<Entries::motion>), owner_(std::size_t(model.markers()), -1) {}
 
   /// From now on this body is recorded. \throws InvalidInput after the first sample, and for a body of another model.
   template <class B>
@@ -84,27 +85,15 @@ class LoadRecorder {
       if constexpr (HasRigidPoints<std::decay_t<decltype(e.body)>>)
         if (Index const slot = find(e.v0); slot >= 0) records_[std::size_t(slot)].samples.push_back(motion(e, x));
     });
-    auto const& data = system_.data();
-    for_each_gap(model(), data, [&](auto const& e, auto const& gap) {
-      constexpr int m = std::decay_t<decltype(gap)>::rows;
-      if (owner_[std::size_t(e.a)] < 0 && owner_[std::size_t(e.b)] < 0) return;
-      Vec<double, m> const l = detail::multiplier(e, gap, data, x.lambda);
-      add_load(e.a, -detail::wrench_of<m>(gap.Ga, l));
-      add_load(e.b, -detail::wrench_of<m>(gap.Gb, l));
-    });
-    model().for_each_force([&](auto const& e) {
-      detail::for_each_action(e, data, [&](auto const& force, auto const& markers, auto const& frames) {
-        bool concerns = false;
-        for (Index const k : markers) concerns = concerns || owner_[std::size_t(e.markers[std::size_t(k)])] >= 0;
-        if (!concerns) return;
-        auto const wrenches = force.template wrenches<double>(frames, x.t);
-        for (std::size_t k = 0; k < markers.size(); ++k) {
-          Vec6 w;
-          w << wrenches[k].f, wrenches[k].m;
-          add_load(e.markers[std::size_t(markers[k])], w);
-        }
-      });
-    });
+    for (RowBlock<double> const& block : system_.data().rows)
+      for (RowEnd<double> const* const end : {&block.a, &block.b}) {
+        if (end->marker < 0 || owner_[std::size_t(end->marker)] < 0) continue;
+        double w[6];
+        wrench_at(block, *end, block.multiplier(x.lambda), w);
+        add_load(end->marker, w, -1.0);
+      }
+    system_.push_forces();
+    for (Action<double> const& action : system_.data().actions) add_load(action.marker, action.w, 1.0);
   }
 
   /// \throws InvalidInput for a body that was not recorded, or of which there is no sample yet.
@@ -122,7 +111,7 @@ class LoadRecorder {
   }
 
  private:
-  M const& model() const { return system_.model(); }
+  M const& model() const { return *model_; }
   Index find(Index v0) const {
     for (std::size_t i = 0; i < first_speeds_.size(); ++i)
       if (first_speeds_[i] == v0) return Index(i);
@@ -145,17 +134,19 @@ class LoadRecorder {
     return {x.t, p.frame, rate.head<3>(), rate.tail<3>(), {}};
   }
 
-  /// w about the marker, world axes.
-  void add_load(Index marker, Vec6 const& w) {
+  /// sign · w = [f; m] about the marker, world axes.
+  void add_load(Index marker, double const* w, double sign) {
     Index const slot = owner_[std::size_t(marker)];
-    if (slot < 0 || w.isZero(0.0)) return;
+    if (slot < 0 || std::all_of(w, w + 6, [](double e) { return e == 0.0; })) return;
+    Vec3 const f = sign * Vec3(w[0], w[1], w[2]), m = sign * Vec3(w[3], w[4], w[5]);
     BodySample& s = records_[std::size_t(slot)].samples.back();
     Mat3 const to_body = s.frame.A.transpose();
-    s.loads.push_back({to_body * (system_.data().markers[std::size_t(marker)].frame.r - s.frame.r),
-                       to_body * w.head<3>(), to_body * w.tail<3>()});
+    s.loads.push_back(
+        {to_body * (system_.data().markers[std::size_t(marker)].frame.r - s.frame.r), to_body * f, to_body * m});
   }
 
-  System<M> system_;
+  M const* model_;
+  System system_;
   std::vector<Index> owner_;         ///< of each marker: its body's record, or −1
   std::vector<Index> first_speeds_;  ///< of the recorded bodies
   std::vector<BodyRecord> records_;

@@ -71,7 +71,7 @@ ComparedRun compared_run(C const& make_case, F const& formulation, std::vector<C
   out.outputs.resize(scenario.outputs.size());
   State x = scenario.start;
   auto run = simulate(model, x, formulation.integrator, scenario.options);
-  System<M> system(model);
+  System system(model, with<Entries::energy>);
   auto const observe = [&] {
     Violation const& v = out.violations.emplace_back(violation(system, x));  // evaluates the system
     out.violation.position = std::max(out.violation.position, v.position);

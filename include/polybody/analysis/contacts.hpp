@@ -2,6 +2,7 @@
 /// \file
 /// Where the bodies of a contact group touch, and how hard.
 
+#include <polybody/system/force_entries.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -16,12 +17,23 @@ struct TouchingPoint {
   Vec3 force;                  ///< (3) on the body [N]
 };
 
+namespace detail {
+/// \throws InvalidInput for a handle of another model.
+template <class F>
+auto const& force_entry(System const& system, ElementHandle<F> const& handle) {
+  for (ForcePlace const& f : system.layout().forces)
+    if (system.layout().serial == handle.model && f.type == &type_tag<F> && f.index == handle.index)
+      return *static_cast<ForceEntry<F> const*>(f.entry);
+  refuse_marker_of_another_model(handle.name);
+}
+}  // namespace detail
+
 /// Calls visit(TouchingPoint) for every point of a contact group that presses; `system` must have been evaluated at the
 /// state.
 /// \throws InvalidInput for a handle of another model.
-template <class M, class F, class Visit>
-void for_each_contact(System<M> const& system, ElementHandle<F> const& group, Visit&& visit) {
-  auto const& entry = system.model().entry(group);
+template <class F, class Visit>
+void for_each_contact(System const& system, ElementHandle<F> const& group, Visit&& visit) {
+  auto const& entry = detail::force_entry(system, group);
   auto const frame = [&](Index k) -> Frame<double> const& {
     return system.data().markers[std::size_t(entry.markers[std::size_t(k)])].frame;
   };

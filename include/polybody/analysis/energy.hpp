@@ -1,52 +1,22 @@
 #pragma once
+#include <polybody/system/model_entries.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
-/// Energies of a state [J].
-struct Energy {
-  double kinetic = 0.0;
-  double strain = 0.0;   ///< of flexible bodies
-  double gravity = 0.0;  ///< zero at the world's origin
-  double joints = 0.0;   ///< stored in compliant joints
-  double forces = 0.0;   ///< stored in force elements that have a potential
-  double potential() const { return strain + gravity + joints + forces; }
-  double total() const { return kinetic + potential(); }
-};
-
-/// Energies of state x. Dead loads have no potential here; their work is not counted.
-template <class M>
-Energy energy(M const& model, State const& x) {
-  System<M> system(model);
-  system.evaluate(x.q, x.v, x.t);
-  return energy(system, x);
+/// Energies of state x; `system` must have been evaluated there, and made with `Entries::energy`. Dead loads have no
+/// potential here; their work is not counted. Without allocation.
+template <class = void>
+Energy energy(System const& system, State const& x) {
+  return require_entry(system.entries().first.energy, "energies")(system.entries().second, {x.q, x.v, x.t},
+                                                                  system.data());
 }
 
-/// The same without allocation; `system` must have been evaluated at x.
 template <class M>
-Energy energy(System<M> const& system, State const& x) {
-  Energy sum;
-  M const& model = system.model();
-  model.for_each_body([&](auto const& e) {
-    auto const q = detail::body_part(x.q, e.q0, e.body.coordinates());
-    auto const v = detail::body_part(x.v, e.v0, e.body.speeds());
-    for (Index i = 0; i < e.body.elements(); ++i) {
-      sum.kinetic += e.body.kinetic_energy(i, q, v);
-      sum.strain += e.body.strain_energy(i, q);
-      sum.gravity += e.body.gravity_energy(i, q, model.gravity().g);
-    }
-  });
-  for_each_gap(model, system.data(), [&](auto const& e, auto const& gap) {
-    constexpr int m = std::decay_t<decltype(gap)>::rows;
-    using P = typename std::decay_t<decltype(e.joint)>::PolicyType;
-    if constexpr (AddsForce<P>) sum.joints += e.joint.policy.template potential<m>(gap.g);
-  });
-  model.for_each_force([&](auto const& e) {
-    detail::for_each_action(e, system.data(), [&](auto const& force, auto const&, auto const& frames) {
-      if constexpr (HasPotential<std::decay_t<decltype(force)>>) sum.forces += force.potential(frames, x.t);
-    });
-  });
-  return sum;
+Energy energy(M const& model, State const& x) {
+  System system(model, with<Entries::energy>);
+  system.evaluate(x.q, x.v, x.t);
+  return energy(system, x);
 }
 
 /// Linear momentum [kg m/s] and angular momentum about the world's origin [kg m²/s], world axes:
@@ -56,31 +26,39 @@ struct Momentum {
   Vec3 angular = Vec3::Zero();
 };
 
+namespace detail {
+/// out += A x for the blocks of A among the speeds.
+struct ProductSink {
+  VecX const& x;
+  VecX& out;
+  void add(Index row, Index col, BlockView const& b) {
+    if (row >= x.size() || col >= x.size()) return;
+    for (Index i = 0; i < b.rows; ++i)
+      for (Index j = 0; j < b.cols; ++j) out[row + i] += b(i, j) * x[col + j];
+  }
+};
+}  // namespace detail
+
+/// The momentum of a system that was made with `Entries::rigid_speeds`.
+template <class = void>
+Momentum momentum(System& system, State const& x) {
+  VecX mv = VecX::Zero(system.speeds()), rigid = mv;
+  system.evaluate(x.q, x.v, x.t);
+  system.masses(detail::ProductSink{x.v, mv});
+  auto const speeds = require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions");
+  Momentum p;
+  for (int i = 0; i < 3; ++i) {
+    speeds(system.entries().second, x.q, Vec3::Unit(i), Vec3::Zero(), rigid);
+    p.linear[i] = mv.dot(rigid);
+    speeds(system.entries().second, x.q, Vec3::Zero(), Vec3::Unit(i), rigid);
+    p.angular[i] = mv.dot(rigid);
+  }
+  return p;
+}
 template <class M>
 Momentum momentum(M const& model, State const& x) {
-  Momentum p;
-  model.for_each_body([&](auto const& e) {
-    using B = std::decay_t<decltype(e.body)>;
-    constexpr int n = B::element_columns;
-    auto const q = detail::body_part(x.q, e.q0, e.body.coordinates());
-    auto const v = detail::body_part(x.v, e.v0, e.body.speeds());
-    VecX rigid(e.body.speeds());
-    auto const paired = [&](Vec3 const& v0, Vec3 const& omega) {
-      e.body.rigid_velocity(q, v0, omega, detail::body_part_of(rigid, 0, rigid.size()));
-      double sum = 0.0;
-      Vec<double, n> mv(element_columns(e.body));
-      for (Index i = 0; i < e.body.elements(); ++i) {
-        e.body.template inertia<double>(i, q, v, mv);
-        sum += mv.dot(rigid.template segment<n>(e.body.first_column(i), mv.size()));
-      }
-      return sum;
-    };
-    for (int i = 0; i < 3; ++i) {
-      p.linear[i] += paired(Vec3::Unit(i), Vec3::Zero());
-      p.angular[i] += paired(Vec3::Zero(), Vec3::Unit(i));
-    }
-  });
-  return p;
+  System system(model, with<Entries::rigid_speeds>);
+  return momentum(system, x);
 }
 
 }  // namespace polybody

@@ -13,11 +13,11 @@ namespace polybody {
 namespace detail {
 /// Multipliers that carry the loads at the first instant, in place of none: what holds a pendulum upright is made of
 /// them. False where the state has no unique acceleration.
-template <class M>
-bool multipliers_at_rest(System<M>& system, State& x) {
+template <class = void>
+bool multipliers_at_rest(System& system, State& x) {
   VecX a = x.a;
   try {
-    ForwardDynamics<M>(system).accelerations(system, x.q, x.v, x.t, a, x.lambda);
+    ForwardDynamics<DefaultSolver>(system).accelerations(system, x.q, x.v, x.t, a, x.lambda);
   } catch (Error const&) {
     return false;
   }
@@ -31,18 +31,17 @@ bool multipliers_at_rest(System<M>& system, State& x) {
 /// p the factor of loads and gravity: p₀ ∈ [0, 1] is the one that best keeps x where it is, r₀ and Φ₀ what it leaves.
 /// From a reference state loads grow from nothing; from an equilibrium under smaller ones they grow from those.
 /// \throws NewtonStalled, LinearSolverSingular, NonFinite; x is then untouched.
-template <LinearSolver Solver = DefaultStaticSolver, class M>
-EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
-  System<M> system(model);
+template <LinearSolver Solver = DefaultStaticSolver>
+EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
   State trial = x;
   trial.v.setZero();
   trial.a.setZero();
   system.evaluate(trial.q, trial.v, trial.t);
-  StaticTangent<Solver, M> tangent(system, trial.lambda);
+  StaticTangent<Solver> tangent(system, trial.lambda);
 
   struct Problem {
-    System<M>& system;
-    StaticTangent<Solver, M>& tangent;
+    System& system;
+    StaticTangent<Solver>& tangent;
     State& trial;
     double tolerance;
     double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
@@ -139,6 +138,13 @@ EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const
   }
   x = std::move(trial);
   return report;
+}
+
+/// The same of a whole model: policies that eliminate unknowns are rows here.
+template <LinearSolver Solver = DefaultStaticSolver, class M>
+EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
+  System system(model, with<Entries::implicit_step>);
+  return equilibrium<Solver>(system, x, options);
 }
 
 }  // namespace polybody

@@ -6,22 +6,33 @@
 
 namespace polybody {
 
-/// \throws InvalidInput unless x is a state of this model, as it stands after its last body and joint, with finite
-/// coordinates and speeds.
-template <class M>
-void require_fitting(M const& model, State const& x) {
-  if (x.q.size() != model.coordinates() || x.v.size() != model.speeds() || x.a.size() != model.speeds() ||
-      x.lambda.size() != model.rows())
+namespace detail {
+/// \throws InvalidInput unless x has these sizes and finite coordinates and speeds.
+template <class = void>
+void require_sizes(State const& x, Index coordinates, Index speeds, Index rows) {
+  if (x.q.size() != coordinates || x.v.size() != speeds || x.a.size() != speeds || x.lambda.size() != rows)
     throw InvalidInput(
         "The state does not fit the model; take it from reference_state() after the last body and "
         "joint were added.");
   require_finite(x.q, "The coordinates of the state");
   require_finite(x.v, "The speeds of the state");
 }
+}  // namespace detail
 
-/// \throws InconsistentStart naming the joint that is violated most, when by more than `tolerance`.
+/// \throws InvalidInput unless x is a state of this model, as it stands after its last body and joint, with finite
+/// coordinates and speeds.
 template <class M>
-void require_assembled(System<M>& system, State const& x, double tolerance = 1e-8) {
+void require_fitting(M const& model, State const& x) {
+  detail::require_sizes(x, model.coordinates(), model.speeds(), model.rows());
+}
+template <class = void>
+void require_fitting(System const& system, State const& x) {
+  ModelLayout const& whole = system.layout();
+  detail::require_sizes(x, whole.coordinates, whole.speeds, whole.rows);
+}
+/// \throws InconsistentStart naming the joint that is violated most, when by more than `tolerance`.
+template <class = void>
+void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
   system.evaluate(x.q, x.v, x.t);
   VecX phi = VecX::Zero(system.rows());
   system.violation(phi);
@@ -34,23 +45,22 @@ void require_assembled(System<M>& system, State const& x, double tolerance = 1e-
 }
 
 /// \throws InconsistentStart naming joints that stay open because their rows repeat each other with other dimensions.
-template <class M, class Solver>
-void require_closable(System<M>& system, ForwardDynamics<M, Solver>& forward, State const& x) {
+template <class Solver>
+void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (!x.q.allFinite()) return;
   forward.hold(system, x.q, x.v, x.t);
   VecX phi = VecX::Zero(system.rows());
   system.violation(phi);
-  require_no_contradiction(system, forward, x.q, phi, detail::ContradictionLimits{}.position, "positions");
+  require_no_contradiction(system, forward, phi, detail::ContradictionLimits{}.position, "positions");
 }
 
 /// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton), then
 /// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed, or the joints whose rows
 /// repeat each other but contradict; x is then untouched.
-template <class M>
-void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
-  require_fitting(model, x);
-  System<M> system(model);
-  ForwardDynamics<M> forward(system);
+template <LinearSolver Solver = DefaultSolver>
+void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
+  require_fitting(system, x);
+  ForwardDynamics<Solver> forward(system);
   State trial = x;
   double before = 0.0;
   for (int k = 0;; ++k) {
@@ -65,6 +75,12 @@ void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterat
   forward.project_velocities(system, trial.q, trial.v, trial.t);
   require_consistent_rows(system, forward, trial);
   x = std::move(trial);
+}
+
+template <class M>
+void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
+  System system(model, with<Entries::motion>);
+  assemble(system, x, tolerance, max_iterations);
 }
 
 }  // namespace polybody

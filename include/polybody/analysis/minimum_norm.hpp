@@ -9,21 +9,21 @@ namespace polybody {
 /// ℓ the root mean square distance of the joints' points from their mean (1 m where all coincide), so that the share
 /// does not depend on the units: what equally stiff joints would carry if a turn by one radian were as stiff as a slide
 /// by ℓ. Rows that a body owns count 1.
-template <class M>
-class MinimumNorm {
+template <class = void>  // compiled where it is used
+class MinimumNormOf {
  public:
-  explicit MinimumNorm(System<M> const& s) : relation_(s), weight_(VecX::Ones(s.rows())), weighted_(weight_) {}
+  explicit MinimumNormOf(System const& s) : relation_(s), weight_(VecX::Ones(s.rows())), weighted_(weight_) {}
 
   /// Replaces x.lambda; one factorisation, and a solution for each row that repeats others.
   template <class Solver>
-  void apply(System<M>& system, ForwardDynamics<M, Solver>& forward, State& x) {
+  void apply(System& system, ForwardDynamics<Solver>& forward, State& x) {
     if (system.rows() == 0) return;
     forward.hold(system, x.q, x.v, x.t);
     if (forward.redundant_rows().empty()) return;
     weigh(system);
     std::size_t count = 0;
     for (Index const i : forward.redundant_rows()) {  // a basis of the null space of Gᵀ, orthonormal under the weights
-      if (!relation_.find(system, forward, x.q, i)) continue;
+      if (!relation_.find(system, forward, i)) continue;
       VecX& c = relation_.c;
       for (int pass = 0; pass < 2; ++pass)
         for (std::size_t k = 0; k < count; ++k) c -= product(basis_[k], c) * basis_[k];
@@ -41,46 +41,50 @@ class MinimumNorm {
     return a.dot(weighted_);
   }
 
-  void weigh(System<M> const& system) {
+  void weigh(System const& system) {
     Vec3 mean = Vec3::Zero();
     double joints = 0.0, spread = 0.0;
-    auto const each = [&](auto&& f) { for_each_row_block(system.model(), system.data(), f); };
-    each([&](auto const&, auto const&, auto const&, auto const& b) {
-      mean += b.frame.r;
+    auto const each = [&](auto&& f) {
+      for (RowBlock<double> const& block : system.data().rows)
+        if (block.source == RowSource::joint) f(block, system.data().markers[std::size_t(block.b.marker)].frame.r);
+    };
+    each([&](RowBlock<double> const&, Vec3 const& place) {
+      mean += place;
       joints += 1.0;
     });
     mean /= std::max(joints, 1.0);
-    each([&](auto const&, auto const&, auto const&, auto const& b) {
-      spread += (b.frame.r - mean).squaredNorm() / joints;
-    });
+    each([&](RowBlock<double> const&, Vec3 const& place) { spread += (place - mean).squaredNorm() / joints; });
     double const arm2 = spread > 1e-20 * mean.squaredNorm() ? spread : 1.0;
-    each([&](auto const& e, auto const& gap, auto const&, auto const&) {
-      for (int i = 0; i < std::decay_t<decltype(gap)>::rows; ++i) {
+    each([&](RowBlock<double> const& block, Vec3 const&) {
+      for (int i = 0; i < block.rows; ++i) {
         double f2 = 0.0, m2 = 0.0;
         for (int j = 0; j < 3; ++j) {
-          f2 += gap.Gb(i, j) * gap.Gb(i, j);
-          m2 += gap.Gb(i, 3 + j) * gap.Gb(i, 3 + j);
+          double const f = block.b.map[block.rows * j + i], m = block.b.map[block.rows * (3 + j) + i];
+          f2 += f * f;
+          m2 += m * m;
         }
         double const w = f2 + m2 / arm2;
-        weight_[e.row + i] = w > 0.0 ? w : 1.0;
+        weight_[block.row + i] = w > 0.0 ? w : 1.0;
       }
     });
   }
 
-  detail::RowRelation<M> relation_;
+  detail::RowRelation<> relation_;
   VecX weight_, weighted_;
   std::vector<VecX> basis_;
 };
+
+using MinimumNorm = MinimumNormOf<>;
 
 /// The multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state
 /// of another model.
 template <LinearSolver Solver = DefaultSolver, class M>
 VecX minimum_norm_multipliers(M const& model, State const& x) {
   require_fitting(model, x);
-  System<M> system(model);
-  ForwardDynamics<M, Solver> forward(system);
+  System system(model, with<Entries::motion>);
+  ForwardDynamics<Solver> forward(system);
   State shared = x;
-  MinimumNorm<M>(system).apply(system, forward, shared);
+  MinimumNormOf<>(system).apply(system, forward, shared);
   return shared.lambda;
 }
 

@@ -37,8 +37,8 @@ struct DenseSink {
   }
 };
 
-template <class S>
-MatX dense_tangent(System<S>& system, TangentCoefficients const& c, VecX const& lambda) {
+template <class = void>
+MatX dense_tangent(System& system, TangentCoefficients const& c, VecX const& lambda) {
   MatX sum = MatX::Zero(system.size(), system.size());
   DenseSink sink{sum};
   system.tangent(c, SecondOrder::included, lambda, sink);
@@ -75,13 +75,12 @@ MatX of_free_motions(MatX const& n, MatX const& a) {
 /// About state x, which rests; its multipliers count (a hanging pendulum swings by them). A model that turns steadily
 /// is linearised with its `SteadyRotation`; about any other motion the matrices would change with time. \throws
 /// InvalidInput when x moves.
-template <class S>
-Linearisation linearise(S const& model, State const& x) {
+template <class = void>
+Linearisation linearise(System& system, State const& x) {
   if (x.v.size() && x.v.cwiseAbs().maxCoeff() > 1e-9)
     throw InvalidInput(
         "modes: the state must be at rest; take one from equilibrium(model, x). About a steady rotation use "
         "linearise(model, x, SteadyRotation{...}) of analysis/steady_rotation.hpp.");
-  System<S> system(model);
   system.evaluate(x.q, x.v, x.t);
   Index const nv = system.speeds(), rows = system.rows();
   Linearisation l;
@@ -92,6 +91,12 @@ Linearisation linearise(S const& model, State const& x) {
   l.G = k.bottomLeftCorner(rows, nv);
   l.N = detail::free_motions(l.G);
   return l;
+}
+
+template <class M>
+Linearisation linearise(M const& model, State const& x) {
+  System system(model, with<Entries::implicit_step>);
+  return linearise(system, x);
 }
 
 /// Undamped modes, by frequency.

@@ -2,7 +2,7 @@
 /// \file
 /// Questions about a single state: frames of points, gaps and reactions of joints, counts.
 
-#include <polybody/system/reduced_system.hpp>
+#include <polybody/solvers/reduced_coordinates.hpp>
 
 namespace polybody {
 
@@ -46,11 +46,12 @@ namespace detail {
 template <class M, class J, class F>
 auto ask_joint(M const& model, State const& x, ElementHandle<J> const& handle, F&& f) {
   auto const& e = model.entry(handle);
-  System<M> system(model);
+  System system(model, with<Entries::motion>);
   system.evaluate(x.q, x.v, x.t);
-  auto const& data = system.data();
-  auto const& gap = std::get<M::template joint_type<J>()>(data.gaps)[std::size_t(handle.index)];
-  return f(e, gap, data);
+  Index const owner = model.place_of(handle);
+  for (RowBlock<double> const& block : system.data().rows)
+    if (block.source != RowSource::body && block.owner == owner) return f(e, block, system.data());
+  throw InvalidInput("\"" + e.name + "\" has no rows.");
 }
 
 /// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its
@@ -77,7 +78,9 @@ Vec6 linear_wrench(LinearRows const& rows, State const& x) {
 template <class M, class J>
   requires(!LinearInCoordinates<typename J::PolicyType>)
 Vec<double, J::rows> gap(M const& model, State const& x, ElementHandle<J> const& joint) {
-  return detail::ask_joint(model, x, joint, [](auto const&, auto const& g, auto const&) { return g.g; });
+  return detail::ask_joint(model, x, joint, [](auto const&, RowBlock<double> const& block, auto const&) {
+    return Vec<double, J::rows>(block.g);
+  });
 }
 
 /// Axes for the components of a reaction.
@@ -88,12 +91,13 @@ enum class ReactionAxes { world, joint };
 template <class M, class J>
 Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& joint,
                         ReactionAxes axes = ReactionAxes::world) {
-  return detail::ask_joint(model, x, joint, [&](auto const& e, auto const& gap, auto const& data) {
+  return detail::ask_joint(model, x, joint, [&](auto const& e, RowBlock<double> const& block, auto const& data) {
     Vec6 w;
     if constexpr (LinearInCoordinates<typename J::PolicyType>)
-      w = -detail::linear_wrench(model.linear_rows()[std::size_t(e.linear)], x);
+      w = detail::linear_wrench(model.linear_rows()[std::size_t(e.linear)], x);
     else
-      w = -gap.Gb.transpose() * detail::multiplier(e, gap, data, x.lambda);
+      wrench_at(block, block.b, block.multiplier(x.lambda), w.data());
+    w = -w;
     Wrench<double> wrench{w.head<3>(), w.tail<3>()};
     if (axes == ReactionAxes::joint) {
       Mat3 const& axes_of_b = data.markers[std::size_t(e.b)].frame.A;
@@ -104,16 +108,18 @@ Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& 
 }
 
 /// The largest force of any joint on its second body [N], whatever its policy; `system` must have been evaluated at x.
-template <class M>
-double peak_joint_force(System<M> const& system, State const& x) {
+template <class = void>
+double peak_joint_force(System const& system, State const& x) {
   double peak = 0.0;
-  for_each_gap(system.model(), system.data(), [&](auto const& e, auto const& gap) {
-    constexpr int m = std::decay_t<decltype(gap)>::rows;
-    Vec6 const w = detail::wrench_of<m>(gap.Gb, detail::multiplier(e, gap, system.data(), x.lambda));
-    peak = std::max(peak, w.head<3>().norm());
-  });
-  for (LinearRows const& rows : system.model().linear_rows())
-    peak = std::max(peak, x.lambda.segment(rows.row, rows.positions).norm());
+  for (RowBlock<double> const& block : system.data().rows) {
+    double w[6];
+    if (block.source == RowSource::linear) {
+      for (int i = 0; i < 3; ++i) w[i] = i < block.positions ? x.lambda[block.row + i] : 0.0;
+    } else {
+      wrench_at(block, block.b, block.multiplier(x.lambda), w);
+    }
+    peak = std::max(peak, std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
+  }
   return peak;
 }
 
@@ -129,14 +135,11 @@ struct Census {
 
 template <class M>
 Census census(M const& model) {
-  auto const count = [](auto const& of) {
-    Index const constraints = of.rows() + of.coordinates() - of.speeds();
-    return Census{of.coordinates(), constraints, of.speeds(), of.rows(), of.coordinates() - constraints};
-  };
-  if constexpr (M::eliminates)
-    return count(Reduction(model));
-  else
-    return count(model);
+  Coordinates const c = coordinates_of(model);
+  Index const coordinates = c ? c.narrow->coordinates : model.coordinates();
+  Index const speeds = c ? c.narrow->speeds : model.speeds(), rows = c ? c.narrow->rows : model.rows();
+  Index const constraints = rows + coordinates - speeds;
+  return {coordinates, constraints, speeds, rows, coordinates - constraints};
 }
 
 /// Largest |Φ|, |Φ̇| and |Φ̈| of a state.
@@ -146,8 +149,8 @@ struct Violation {
   double acceleration = 0.0;
 };
 
-template <class M>
-Violation violation(System<M>& system, State const& x) {
+template <class = void>
+Violation violation(System& system, State const& x) {
   system.evaluate(x.q, x.v, x.t);
   if (system.rows() == 0) return {};
   VecX phi = VecX::Zero(system.rows()), rate = phi, second = phi;

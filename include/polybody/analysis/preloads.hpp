@@ -15,15 +15,16 @@ struct Preload {
 template <class M>
 std::vector<Preload> preloads(M const& model) {
   State const x = model.reference_state();
-  System<M> system(model);
+  System system(model, with<Entries::motion>);
   system.evaluate(x.q, x.v, x.t);
   std::vector<Preload> out;
-  for_each_gap(model, system.data(), [&](auto const& e, auto const& gap) {
-    if constexpr (AddsForce<typename std::decay_t<decltype(e.joint)>::PolicyType>) {
-      Vec6 const w = -gap.Gb.transpose() * detail::multiplier(e, gap, system.data(), x.lambda);
-      out.push_back({e.name, {w.head<3>(), w.tail<3>()}});
-    }
-  });
+  for (RowBlock<double> const& block : system.data().rows) {
+    if (block.source != RowSource::compliant) continue;
+    double w[6];
+    wrench_at(block, block.b, block.answer, w);
+    out.push_back(
+        {system.layout().joints[std::size_t(block.owner)].name, {-Vec3(w[0], w[1], w[2]), -Vec3(w[3], w[4], w[5])}});
+  }
   return out;
 }
 

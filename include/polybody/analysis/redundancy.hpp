@@ -109,15 +109,14 @@ class RowFactor {
 /// own: a run finds rows that repeat others by itself (`RunReport::redundant`, where another joint of the same loop may
 /// be named). A contradiction in positions is one to first order: ask where `assemble` came as near as it could.
 /// \throws InvalidInput for a state of another model.
-template <class M>
-Redundancy redundancy(M const& model, State const& x) {
-  require_fitting(model, x);
-  System<M> system(model);
+template <class = void>
+Redundancy redundancy(System& system, State const& x) {
+  require_fitting(system, x);
   system.evaluate(x.q, x.v, x.t);
   std::vector<Eigen::Triplet<double>> entries;
   detail::RowsSink sink{system.speeds(), entries};
   VecX phi = VecX::Zero(system.rows()), rate = phi, gamma = phi;
-  system.tangent({.mass = 1.0}, SecondOrder::omitted, phi, sink);
+  system.masses(sink);
   detail::RowFactor<> const factor(system.speeds(), system.rows(), entries);
   system.violation(phi);
   system.violation_rate(rate);
@@ -146,6 +145,12 @@ Redundancy redundancy(M const& model, State const& x) {
     ++out.repeated.back().rows;
   }
   return out;
+}
+
+template <class M>
+Redundancy redundancy(M const& model, State const& x) {
+  System system(model, with<Entries::motion>);
+  return redundancy(system, x);
 }
 
 }  // namespace polybody

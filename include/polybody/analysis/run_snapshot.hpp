@@ -4,6 +4,7 @@
 
 #include <polybody/analysis/run_options.hpp>
 #include <polybody/math/checksum.hpp>
+#include <polybody/system/system.hpp>
 
 namespace polybody {
 
@@ -17,15 +18,14 @@ struct ModelIdentity {
 };
 
 /// \param stepped the system of the model, or of what policies leave of it
-template <class M>
-ModelIdentity identity_of(System<M> const& stepped) {
+template <class = void>
+ModelIdentity identity_of(System const& stepped) {
   std::string names;
-  auto const take = [&](auto const& e) { (names += e.name) += '\n'; };
-  stepped.model().for_each_body(take);
+  for (BodyPlace const& b : stepped.layout().bodies) (names += b.name) += '\n';
   names += '\n';
-  stepped.model().for_each_joint(take);
+  for (JointPlace const& j : stepped.layout().joints) (names += j.name) += '\n';
   names += '\n';
-  stepped.model().for_each_force(take);
+  for (ForcePlace const& f : stepped.layout().forces) (names += f.name) += '\n';
   return {stepped.coordinates(), stepped.speeds(), stepped.rows(), checksum(names)};
 }
 

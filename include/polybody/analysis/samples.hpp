@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Samples of one quantity at rising times: what filters, and measures of how far two runs are apart, start from. Not
-/// in polybody.hpp.
+/// Samples of one quantity at rising times: what filters, and measures of how far two runs are apart, start from.
+///
+/// Not in polybody.hpp: few programs need it.
 
 #include <cmath>
 #include <span>

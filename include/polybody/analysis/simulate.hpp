@@ -9,29 +9,31 @@
 #include <polybody/analysis/run_snapshot.hpp>
 #include <polybody/analysis/stable_step.hpp>
 #include <polybody/analysis/step_plan.hpp>
+#include <polybody/integrators/system_for.hpp>
 
 namespace polybody {
 
+/// What a run steps, and the whole mechanism where policies eliminate unknowns of it.
+struct RunSystems {
+  std::unique_ptr<System> stepped;  // workspaces refer to it
+  std::unique_ptr<System> whole;
+};
+
 /// An input range of states: `for (State const& now : simulate(…))` yields the start and every step's end.
 /// The state given by the caller is moved along. Not copyable; begin() once.
-template <class M, class I, class Solver = DefaultSolver>
+template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
-  using Stepped = SteppedModel<M>;
-  static_assert(KeepsToRows<I, M>,
-                "This explicit integrator has no stabilisation, but joints with the Constraint policy add rows. Use "
-                "it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
-
  public:
-  Simulation(M const& model, State& x, I integrator, RunOptions options)
-      : Simulation(Prepared{}, model, x, std::move(integrator), std::move(options), x.t) {
-    require_fitting(model, x);
+  Simulation(RunSystems systems, State& x, I integrator, RunOptions options)
+      : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), x.t) {
+    require_fitting(whole(), x);
     plan_ = StepPlan(x.t, options_.until, options_.step, corners());
     require_assembled(whole(), x, options_.assembly_tolerance);
-    if constexpr (M::eliminates) narrow_start();
+    if (eliminates()) narrow_start();
     stepped().t = plan_.pass(stepped().t);
     if (!options_.events.empty()) watch_.start(options_.events, stepped(), seen());
     restart(true);
-    if constexpr (!M::eliminates) {
+    if (!eliminates()) {
       if (options_.minimum_norm) norm_.apply(*system_, workspace_.forward, x);
       warn(workspace_.forward, x);
     }
@@ -39,10 +41,10 @@ class Simulation {
   }
 
   /// Goes on from a snapshot. \throws InvalidInput for one of another model, integrator or count of events.
-  Simulation(M const& model, State& x, I integrator, RunOptions options, RunSnapshot const& from)
-      : Simulation(Prepared{}, model, x, std::move(integrator), std::move(options), from.state.t) {
+  Simulation(RunSystems systems, State& x, I integrator, RunOptions options, RunSnapshot const& from)
+      : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), from.state.t) {
     from.require(identity_of(*system_), I::name, options_.events.size());
-    x = model.reference_state();
+    if (eliminates()) x = {};
     stepped() = from.state;
     show();
     plan_ = StepPlan(x.t, options_.until, options_.step, corners());
@@ -63,7 +65,9 @@ class Simulation {
   State const& state() const { return *x_; }
   RunReport const& report() const { return report_; }
   /// What is stepped: the model, or what its policies leave of it.
-  System<Stepped>& system() { return *system_; }
+  System& system() { return *system_; }
+  /// The whole mechanism.
+  System& whole() { return whole_ ? *whole_ : *system_; }
   bool done() const { return report_.stopped || x_->t >= options_.until; }
 
   /// Takes one step: to the next grid point, or to a corner or event before it. When it throws, the state is as
@@ -82,8 +86,7 @@ class Simulation {
       bool const at_corner = jumps && stepped().t == target;
       if (at_corner) stepped().t = plan_.pass(stepped().t);
       if (met || at_corner || crumb) restart();
-      if constexpr (!M::eliminates)
-        if (options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
+      if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
       show();
     } catch (...) {
       stepped() = before;
@@ -124,8 +127,9 @@ class Simulation {
 
  private:
   struct Prepared {};
-  Simulation(Prepared, M const& model, State& x, I integrator, RunOptions options, double start)
-      : system_(std::make_unique<System<Stepped>>(model)),
+  Simulation(Prepared, RunSystems systems, State& x, I integrator, RunOptions options, double start)
+      : system_(std::move(systems.stepped)),
+        whole_(std::move(systems.whole)),
         x_(&x),
         integrator_(std::move(integrator)),
         options_(std::move(options)),
@@ -136,6 +140,8 @@ class Simulation {
     if (options_.threads != 1) system_->use_threads(options_.threads);
     h_ = std::min<double>(options_.step, largest_step());
   }
+  /// A narrow state is stepped, of which `show` makes the user's.
+  bool eliminates() const { return bool(whole_); }
 
   /// A workspace that knows no earlier step, and is ready for the next one.
   void renew() {
@@ -144,22 +150,11 @@ class Simulation {
     integrator_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, workspace_);
   }
 
-  /// The state that is stepped: the user's, or the narrow one of which `show` makes the user's.
-  State& stepped() {
-    if constexpr (M::eliminates)
-      return narrow_;
-    else
-      return *x_;
-  }
-  State const& stepped() const { return const_cast<Simulation*>(this)->stepped(); }
+  /// The state that is stepped: the user's, or the narrow one.
+  State& stepped() { return eliminates() ? narrow_ : *x_; }
+  State const& stepped() const { return eliminates() ? narrow_ : *x_; }
   void show() {
-    if constexpr (M::eliminates) system_->widen(narrow_, *x_);
-  }
-  System<M>& whole() {
-    if constexpr (M::eliminates)
-      return system_->whole();
-    else
-      return *system_;
+    if (eliminates()) expand(*system_, narrow_, *x_, scratch_);
   }
 
   /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep
@@ -171,14 +166,14 @@ class Simulation {
           "single "
           "states.");
     State start = *x_;
-    ForwardDynamics<M, Solver> forward(whole());
+    ForwardDynamics<Solver> forward(whole());
     forward.project_velocities(whole(), start.q, start.v, start.t);
     require_consistent_rows(whole(), forward, start);
     warn(forward, start);
-    narrow_ = system_->narrow(start);
+    narrow_ = reduce(*system_, start);
   }
   /// Of a step that is too long for compliant joints.
-  void warn(ForwardDynamics<M, Solver>& forward, State const& x) {
+  void warn(ForwardDynamics<Solver>& forward, State const& x) {
     if constexpr (NamesStableStep<I>) {
       std::string const warning = warn_of_step<I>(whole(), forward, x, h_);
       if (!warning.empty()) report_.warnings.push_back(warning);
@@ -218,14 +213,7 @@ class Simulation {
   /// Times at which the user, a drive or a load wants a step to end.
   std::vector<double> corners() const {
     std::vector<double> all = options_.corners;
-    auto const take = [&](auto const& law) {
-      if constexpr (HasCorners<std::decay_t<decltype(law)>>)
-        for (double t : law.corners()) all.push_back(t);
-    };
-    system_->model().for_each_joint([&](auto const& e) { take(e.joint.geometry); });
-    system_->model().for_each_force([&](auto const& e) {
-      if constexpr (requires { e.force.law; }) take(e.force.law);
-    });
+    all.insert(all.end(), system_->layout().corners.begin(), system_->layout().corners.end());
     return all;
   }
 
@@ -235,11 +223,12 @@ class Simulation {
     State fresh = stepped();  // which stays as it is when the start fails
     workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
     integrator_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
-    if constexpr (!M::eliminates)
-      if (first) require_consistent_rows(*system_, workspace_.forward, fresh);
+    if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
     stepped() = std::move(fresh);
     report_.redundant = workspace_.forward.redundant(*system_);
-    if constexpr (M::eliminates) system_->add_redundant(report_.redundant);
+    if (eliminates())
+      for (std::string const& name : system_->step_coordinates().narrow->redundant)
+        if (report_.redundant.empty() || report_.redundant.back() != name) report_.redundant.push_back(name);
   }
 
   void account(StepReport const& r, bool shortened) {
@@ -250,46 +239,59 @@ class Simulation {
 
   /// The state that events are shown.
   EventWatch::Seen seen() {
-    if constexpr (M::eliminates)
-      return [this](State const& x) -> State const& {
-        seen_ = *x_;
-        system_->widen(x, seen_);
-        return seen_;
-      };
-    else
-      return [](State const& x) -> State const& { return x; };
+    return [this](State const& x) -> State const& {
+      if (!eliminates()) return x;
+      seen_ = *x_;
+      expand(*system_, x, seen_, scratch_);
+      return seen_;
+    };
   }
   bool meet_events(State const& before, double taken) {
     auto const step = [this](State& x, double h) { return integrator_.step(*system_, x, h, workspace_).taken; };
     return watch_.meet(options_.events, before, stepped(), taken, seen(), step, report_);
   }
 
-  std::unique_ptr<System<Stepped>> system_;  // workspaces refer to it
+  std::unique_ptr<System> system_, whole_;  // workspaces refer to it
   State* x_;
   State narrow_, seen_;  // of models with eliminating policies
+  VecX scratch_;
   I integrator_;
   RunOptions options_;
-  decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System<Stepped>&>())) workspace_;
-  MinimumNorm<M> norm_;
+  decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
+  MinimumNormOf<> norm_;
   StepPlan plan_;
   EventWatch watch_;
   double h_ = 0.0;
   RunReport report_;
 };
 
+/// The systems of a run of `model` by integrator I. The model must outlive them.
+template <class I, class M>
+RunSystems run_systems(M const& model) {
+  constexpr Entries warned = NamesStableStep<I> ? Entries::compliance : Entries::motion;
+  RunSystems out;
+  if constexpr (M::eliminates) {
+    out.stepped = std::make_unique<System>(system_for<I>(model));
+    out.whole = std::make_unique<System>(model, with<warned>);
+  } else {
+    out.stepped = std::make_unique<System>(system_for<I, warned>(model));
+  }
+  return out;
+}
+
 /// Runs `model` from x: a range of states. x is moved along and holds the last state afterwards.
 /// \throws InconsistentStart, InvalidInput at once; NewtonStalled, NonFinite, … from the step that fails.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
-Simulation<M, I, Solver> simulate(M const& model, State& x, I integrator, RunOptions options) {
-  return Simulation<M, I, Solver>(model, x, std::move(integrator), std::move(options));
+Simulation<I, Solver> simulate(M const& model, State& x, I integrator, RunOptions options) {
+  return Simulation<I, Solver>(run_systems<I>(model), x, std::move(integrator), std::move(options));
 }
 
 /// Takes a run up where its snapshot was made; x becomes its state. Model, integrator and options must be those of the
 /// run; a later `until` lets it go on for longer. \throws InvalidInput for a snapshot of another model, integrator or
 /// count of events.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
-Simulation<M, I, Solver> resume(M const& model, State& x, I integrator, RunOptions options, RunSnapshot const& from) {
-  return Simulation<M, I, Solver>(model, x, std::move(integrator), std::move(options), from);
+Simulation<I, Solver> resume(M const& model, State& x, I integrator, RunOptions options, RunSnapshot const& from) {
+  return Simulation<I, Solver>(run_systems<I>(model), x, std::move(integrator), std::move(options), from);
 }
 
 }  // namespace polybody

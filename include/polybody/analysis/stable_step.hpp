@@ -9,11 +9,11 @@ namespace detail {
 
 /// Motions of compliant joints alone: M a + Gᵀμ = w, G a = 0 under forces w = Σ gᵀ S g y, S = ck ∂λ/∂g + cd ∂λ/∂ġ at a
 /// state.
-template <class M, class Solver>
+template <class Solver>
 class CompliantMotion {
  public:
   /// `forward` must be factored, and `system` evaluated, at that state.
-  CompliantMotion(System<M>& system, ForwardDynamics<M, Solver>& forward)
+  CompliantMotion(System& system, ForwardDynamics<Solver>& forward)
       : system_(system),
         forward_(forward),
         y_(VecX::Zero(system.speeds())),
@@ -49,33 +49,56 @@ class CompliantMotion {
   }
 
  private:
+  /// What a joint does to its bodies; blocks come joint by joint.
+  struct JointProducts {
+    System const& system;
+    VecX const& y;
+    VecX& out;
+    double sum = 0.0, largest = 0.0, part = 0.0;
+    std::size_t block = 0;  ///< the joint's, among the rows of the data
+    int left = 0;           ///< of its blocks
+    Index most = -1;
+
+    void add(Index row, Index col, BlockView const& b) {
+      if (left == 0) left = next_joint();
+      for (Index i = 0; i < b.rows; ++i)
+        for (Index j = 0; j < b.cols; ++j) {
+          double const w = b(i, j) * y[col + j];
+          out[row + i] += w;
+          part += y[row + i] * w;
+        }
+      if (--left > 0) return;
+      sum += part;
+      if (part > largest) {
+        largest = part;
+        most = system.data().rows[block].owner;
+      }
+      ++block;
+    }
+    /// How many blocks the next compliant joint has.
+    int next_joint() {
+      part = 0.0;
+      for (;; ++block) {
+        RowBlock<double> const& r = system.data().rows[block];
+        if (r.source != RowSource::compliant) continue;
+        auto const& markers = system.data().markers;
+        int const ends =
+            int(markers[std::size_t(r.a.marker)].columns > 0) + int(markers[std::size_t(r.b.marker)].columns > 0);
+        if (ends > 0) return ends * ends;
+      }
+    }
+  };
   /// out = Σ gᵀ S g y. Returns yᵀ out; `most` becomes the joint with the largest part of it.
   double pull(double ck, double cd, VecX& out, std::string& most) {
-    double sum = 0.0, largest = 0.0;
     out.setZero();
-    for_each_gap(system_.model(), system_.data(), [&](auto const& e, auto const& gap) {
-      using P = typename std::decay_t<decltype(e.joint)>::PolicyType;
-      if constexpr (AddsForce<P>) {
-        constexpr int m = std::decay_t<decltype(gap)>::rows;
-        Published<double> const& a = system_.data().markers[std::size_t(e.a)];
-        Published<double> const& b = system_.data().markers[std::size_t(e.b)];
-        Vec<double, m> const gy = gap.Ga * a.push(y_.data() + a.first) + gap.Gb * b.push(y_.data() + b.first);
-        Vec<double, m> const l = e.joint.policy.template slope<m>(ck, cd, gap.g, gap_rate(gap, a, b)) * gy;
-        double const part = gy.dot(l);
-        sum += part;
-        if (part > largest) {
-          largest = part;
-          most = e.name;
-        }
-        add_pulled<double>(a, wrench_of<m>(gap.Ga, l), 1.0, out);
-        add_pulled<double>(b, wrench_of<m>(gap.Gb, l), 1.0, out);
-      }
-    });
-    return sum;
+    JointProducts products{system_, y_, out};
+    system_.tangent_of(TangentPart::compliant_joints, {.damping = cd, .stiffness = ck}, products);
+    if (products.most >= 0) most = system_.layout().joints[std::size_t(products.most)].name;
+    return products.sum;
   }
 
-  System<M>& system_;
-  ForwardDynamics<M, Solver>& forward_;
+  System& system_;
+  ForwardDynamics<Solver>& forward_;
   VecX y_, w_, other_, mu_;
 };
 
@@ -84,14 +107,13 @@ class CompliantMotion {
 /// A sentence that warns of a step h beyond the limit of integrator I for the stiffness and damping of the compliant
 /// joints at x, or nothing. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of what the
 /// model has: who is warned will blow up, but springs and elastic bodies may ask for less still.
-template <NamesStableStep I, class M, class Solver>
-std::string warn_of_step(System<M>& system, ForwardDynamics<M, Solver>& forward, State const& x, double h) {
-  bool compliant = false;
-  system.model().for_each_joint(
-      [&](auto const& e) { compliant = compliant || AddsForce<typename std::decay_t<decltype(e.joint)>::PolicyType>; });
+template <NamesStableStep I, class Solver>
+std::string warn_of_step(System& system, ForwardDynamics<Solver>& forward, State const& x, double h) {
+  bool const compliant = std::any_of(system.data().rows.begin(), system.data().rows.end(),
+                                     [](auto const& block) { return block.source == RowSource::compliant; });
   if (!compliant) return "";
   forward.hold(system, x.q, x.v, x.t);
-  detail::CompliantMotion<M, Solver> motion(system, forward);
+  detail::CompliantMotion<Solver> motion(system, forward);
   std::string warning;
   double least = h;
   for (bool const by_damping : {false, true}) {

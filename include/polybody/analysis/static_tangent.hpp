@@ -11,17 +11,18 @@
 
 namespace polybody {
 
-template <LinearSolver Solver, class M>
+template <LinearSolver Solver>
 class StaticTangent {
  public:
   /// The system must outlive this; its state is the one last given to `System::evaluate`, here and below.
-  StaticTangent(System<M>& system, VecX const& lambda)
+  StaticTangent(System& system, VecX const& lambda)
       : system_(&system), nv_(system.speeds()), rhs_(VecX::Zero(system.size())) {
     PatternSink pattern;
     system.tangent({.stiffness = 1.0}, SecondOrder::included, lambda, pattern);
     solver_.analyse(system.size(), pattern.blocks);
     solver_.begin();
-    Passing sink{solver_, nv_};
+    BlockSink solver(solver_);
+    Passing sink{solver, nv_};
     write(lambda, sink);
     rescale(sink.largest);
   }
@@ -29,7 +30,7 @@ class StaticTangent {
   /// −1, or the unknown without a usable pivot.
   Index factor(VecX const& lambda) {
     double largest = 0.0;
-    Index const bad = write_and_factor(solver_, [&](Solver& solver) {
+    Index const bad = write_and_factor(solver_, [&](BlockSink& solver) {
       Passing sink{solver, nv_};
       write(lambda, sink);
       largest = unit_ * sink.largest;
@@ -49,7 +50,7 @@ class StaticTangent {
  private:
   /// Passes blocks on and keeps the largest entry of K.
   struct Passing {
-    Solver& solver;
+    BlockSink& solver;
     Index speeds;
     double largest = 0.0;
 
@@ -68,7 +69,7 @@ class StaticTangent {
     if (largest > 0.0 && std::isfinite(largest)) unit_ = std::ldexp(1.0, std::ilogb(largest));
   }
 
-  System<M>* system_;
+  System* system_;
   Index nv_;
   Solver solver_;
   double unit_ = 1.0, factored_ = 1.0;  ///< of the next factorisation and of the last one

@@ -31,14 +31,14 @@ namespace detail {
 
 /// A model in the frame that turns with it. Everything static is exact; what the rotation adds is smooth and
 /// differentiated by differences of fourth order, with steps of 1e-3 [m], [rad].
-template <class M>
+template <class = void>  // compiled where it is used
 class TurningFrame {
  public:
-  System<M> system;
+  System& system;
   double share = 1.0;  ///< of the angular velocity
 
-  TurningFrame(M const& model, VecX const& q, SteadyRotation const& rotation)
-      : system(model),
+  TurningFrame(System& of, VecX const& q, SteadyRotation const& rotation)
+      : system(of),
         rotation_(rotation),
         none_(VecX::Zero(system.speeds())),
         no_row_(VecX::Zero(system.rows())),
@@ -47,12 +47,10 @@ class TurningFrame {
         at_(q) {
     require_finite(rotation.angular_velocity, "SteadyRotation: the angular velocity");
     require_finite(rotation.point, "SteadyRotation: the point of the axis");
-    model.for_each_body([&](auto const& e) {
-      if constexpr (std::decay_t<decltype(e.body)>::world == World::plane)
-        if (!rotation.angular_velocity.head<2>().isZero(0.0))
-          throw InvalidInput("SteadyRotation: body \"" + e.name +
-                             "\" lives in the plane, so the axis must be parallel to z.");
-    });
+    for (BodyPlace const& body : system.layout().bodies)
+      if (body.planar && !rotation.angular_velocity.head<2>().isZero(0.0))
+        throw InvalidInput("SteadyRotation: body \"" + body.name +
+                           "\" lives in the plane, so the axis must be parallel to z.");
     gradient_ = by_speeds(q, [&](VecX const& at, VecX& w) { speeds(at, w); });
     generator_ = gradient_;
     double const s = 1e-3 / std::max(rotation.angular_velocity.norm(), 1e-3);
@@ -70,10 +68,8 @@ class TurningFrame {
   /// w(q).
   void speeds(VecX const& q, VecX& w) const {
     Vec3 const omega = share * rotation_.angular_velocity, origin = rotation_.point.cross(omega);
-    system.model().for_each_body([&](auto const& e) {
-      e.body.rigid_velocity(body_part(q, e.q0, e.body.coordinates()), origin, omega,
-                            body_part_of(w, e.v0, e.body.speeds()));
-    });
+    require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions")(system.entries().second, q, origin,
+                                                                                  omega, w);
   }
   /// Puts the system at (q, w, t). R(q, w, Γw) with these multipliers.
   void residual(VecX const& q, VecX const& lambda, double t, VecX& r) {
@@ -141,9 +137,9 @@ class TurningFrame {
 
 /// x turning steadily: v = w(q), a = Γw; everything else stays. \throws InvalidInput for planar bodies about another
 /// axis than z.
-template <class M>
-State rotating_state(M const& model, State const& x, SteadyRotation const& rotation) {
-  detail::TurningFrame<M> const frame(model, x.q, rotation);
+template <class = void>
+State rotating_state(System& system, State const& x, SteadyRotation const& rotation) {
+  detail::TurningFrame<> const frame(system, x.q, rotation);
   State out = x;
   frame.speeds(x.q, out.v);
   out.a = frame.generator() * out.v;
@@ -155,11 +151,11 @@ State rotating_state(M const& model, State const& x, SteadyRotation const& rotat
 /// taken at x.t. `load_steps` and `smallest_part` are of Ω. Of redundant rows, and of motions that nothing resists, the
 /// smallest corrections are taken. Dense: for models of up to some hundred speeds.
 /// \throws InvalidInput for rows that do not turn with the model; NewtonStalled, NonFinite; x is then untouched.
-template <class M>
-EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation const& rotation,
+template <class = void>
+EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
   struct Problem {
-    detail::TurningFrame<M> frame;
+    detail::TurningFrame<> frame;
     State trial;
     double tolerance, unit = 1.0;  ///< of the rows, so that their entries are as large as the stiffness
     Index nv = trial.v.size(), rows = trial.lambda.size();
@@ -192,7 +188,7 @@ EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation 
       trial.q.swap(q);
       trial.lambda += y.tail(rows);
     }
-  } problem{.frame = {model, x.q, rotation}, .trial = x, .tolerance = options.tolerance};
+  } problem{.frame = {system, x.q, rotation}, .trial = x, .tolerance = options.tolerance};
 
   EquilibriumReport report;
   double const whole = 1.0 / std::max(options.load_steps, 1);
@@ -220,18 +216,17 @@ EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation 
         ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none.");
   }
   problem.frame.require_turning_rows(problem.trial);
-  x = rotating_state(model, problem.trial, rotation);
+  x = rotating_state(system, problem.trial, rotation);
   return report;
 }
 
 /// About x, which turns steadily: its coordinates, multipliers and time count. With the result `damped_modes` gives the
 /// motions ε = Re(shape e^{st}) seen from the turning model. \throws InvalidInput when forces do not balance in x, or
 /// forces or rows do not turn with the model, as gravity across the axis.
-template <class M>
-Linearisation linearise(M const& model, State const& x, SteadyRotation const& rotation) {
-  detail::TurningFrame<M> frame(model, x.q, rotation);
+template <class = void>
+Linearisation linearise(System& system, State const& x, SteadyRotation const& rotation) {
+  detail::TurningFrame<> frame(system, x.q, rotation);
   frame.require_turning_rows(x);
-  System<M>& system = frame.system;
   Index const nv = system.speeds(), rows = system.rows();
   MatX const k = frame.stiffness(x);
   Linearisation l;
@@ -259,6 +254,31 @@ Linearisation linearise(M const& model, State const& x, SteadyRotation const& ro
     throw InvalidInput("linearise: forces on " + system.name_of(i) +
                        " do not turn with the model, as gravity or a load across the axis; no state of it is steady.");
   return l;
+}
+
+namespace detail {
+template <class M>
+System turning_system(M const& model) {
+  return System(model, with < Entries::implicit_step | Entries::rigid_speeds >);
+}
+}  // namespace detail
+
+/// The same of a model.
+template <class M>
+State rotating_state(M const& model, State const& x, SteadyRotation const& rotation) {
+  System system = detail::turning_system(model);
+  return rotating_state(system, x, rotation);
+}
+template <class M>
+EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation const& rotation,
+                                       EquilibriumOptions const& options = {}) {
+  System system = detail::turning_system(model);
+  return relative_equilibrium(system, x, rotation, options);
+}
+template <class M>
+Linearisation linearise(M const& model, State const& x, SteadyRotation const& rotation) {
+  System system = detail::turning_system(model);
+  return linearise(system, x, rotation);
 }
 
 }  // namespace polybody

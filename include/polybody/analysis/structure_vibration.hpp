@@ -122,11 +122,10 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
 
   Index const samples = Index(loads.times().size()), n = shapes.cols();
   auto const carried = [&](Structure::Sparse const& m) { return MatX(shapes.transpose() * (m * shapes)); };
-  LinearVibration<detail::LoadLines> problem{.mass = carried(s.mass_matrix()),
+  LinearVibration<detail::LoadLines> problem{.mass_matrix = carried(s.mass_matrix()),
                                              .damping = carried(s.damping),
                                              .stiffness = carried(s.stiffness),
-                                             .load = {&loads, shapes.transpose() * loads.nodal(), {}},
-                                             .name = loads.name()};
+                                             .load = {&loads, shapes.transpose() * loads.nodal(), {}}};
   problem.damping += how.stiffness_damping * problem.stiffness;
   if (how.follows_deformation)
     for (std::size_t p = 0; p < 6; ++p) problem.load.products[p] = carried(s.inertia[p]);
@@ -136,7 +135,7 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
         who +
         "nothing resists some of the shapes. Leave out motions of the whole structure, and shapes that repeat others.");
 
-  System<LinearVibration<detail::LoadLines>> system(problem);
+  System system = system_of(problem, loads.name(), true);
   State x{VecX::Zero(n), VecX::Zero(n), VecX::Zero(n), VecX::Zero(0), loads.times().front(), {}};
   if (how.settled) x.q = factor.solve(problem.load.loads.col(0));
   MatX q(n, samples), v(n, samples), a(n, samples);

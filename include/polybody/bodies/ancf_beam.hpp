@@ -214,14 +214,15 @@ class AncfBeam : public NodeChain<12> {
   }
 
   /// The force pulls through a constant S. For the moment, δ̂(m·ω) = m·(φ̂ × φ) + m·δ̂φ in the section's axes.
-  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
+  template <class T>  // compiled where it is used
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 24, 24>& k) const {
     PointMap const by = map_of(p, 2), bz = map_of(p, 3);
-    Element<double> const x = part<element_columns>(q, first_column(p));
-    SectionFrame<double> const f(by * x, bz * x);
-    Vec3 const m = f.local(w.m);
-    Mat<double, 6, 6> form = f.second(m), by_vectors = Mat<double, 6, 6>::Zero();
+    Element<T> const x = part<element_columns>(q, first_column(p));
+    SectionFrame<T> const f(by * x, bz * x);
+    Vec<T, 3> const m = f.local(w.m);
+    Mat<T, 6, 6> form = f.second(m), by_vectors = Mat<T, 6, 6>::Zero();
     for (int i = 0; i < 3; ++i) {  // φ·(m × φ̂)
-      Vec6 const left = f.pull(f.axis(i)), right = f.pull(f.cross(f.axis(i), m));
+      Vec<T, 6> const left = f.pull(f.axis(i)), right = f.pull(f.cross(f.axis(i), m));
       form += left * right.transpose();
     }
     f.add_form(form, 0, 0, by_vectors);
@@ -229,7 +230,7 @@ class AncfBeam : public NodeChain<12> {
     std::array<double, 2> const s = {1.0 - p.xi, p.xi};
     for (int a = 0; a < 2; ++a)
       for (int b = 0; b < 2; ++b)
-        k.block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
+        k.template block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
   /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without
@@ -245,9 +246,11 @@ class AncfBeam : public NodeChain<12> {
   }
 
   /// F at `p`: from the axes of the reference section to world axes.
+  template <class T = double>  // compiled where it is used
   Mat3 deformation_gradient(Point const& p, std::span<double const> q) const {
     auto const at = reference_of(p.element).gradients(p.xi, p.y, p.z);
-    return coordinates_at(p, q).reshaped(3, ancf::vectors) * at.g;
+    Element<T> const x = part<element_columns>(q, first_column(p));
+    return x.reshaped(3, ancf::vectors) * at.g;
   }
   /// Green–Lagrange strain E at `p`, in the axes of the reference section.
   Mat3 strain(Point const& p, std::span<double const> q) const {
@@ -272,6 +275,7 @@ class AncfBeam : public NodeChain<12> {
     Vec<double, ancf::vectors> first_moment = Vec<double, ancf::vectors>::Zero();
   };
 
+  template <class T = double>  // compiled where it is used
   AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight) : NodeChain(n), bar_(bar) {
     std::string const name = Elastic::name;
     if (n < 1) throw InvalidInput(name + ": at least one element is needed.");
@@ -292,8 +296,7 @@ class AncfBeam : public NodeChain<12> {
       ref.straight = straight;
       for (int node = 0; node < 2; ++node) {
         Placement const& p = nodes_[std::size_t(e + node)];
-        ref.x.segment<3>(12 * node) = p.origin;
-        for (int k = 0; k < 3; ++k) ref.x.segment<3>(12 * node + 3 + 3 * k) = p.axes.col(k);
+        for (int i = 0; i < 12; ++i) ref.x[12 * node + i] = i < 3 ? p.origin[i] : p.axes(i % 3, i / 3 - 1);
       }
       check_reference(ref, e);
       references_.push_back(ref);
@@ -305,7 +308,7 @@ class AncfBeam : public NodeChain<12> {
   /// \throws InvalidInput for a reference that is no beam.
   void check_reference(ancf::Reference const& ref, Index e) const {
     std::string const what = std::string(Elastic::name) + ": element " + std::to_string(e);
-    double const chord = (ref.x.segment<3>(12) - ref.x.segment<3>(0)).norm();
+    double const chord = std::hypot(ref.x[12] - ref.x[0], ref.x[13] - ref.x[1], ref.x[14] - ref.x[2]);
     if (!(chord > 1e-6 * l_)) throw InvalidInput(what + " begins where it ends. Use more elements, or another curve.");
     if (chord > (1.0 + 1e-6) * l_)
       throw InvalidInput(what + " is longer than its part of the bar: the curve's argument must be its arc length.");
@@ -336,11 +339,11 @@ class AncfBeam : public NodeChain<12> {
     for (GaussPoint const& g : gauss<4>)
       section.for_each([&](double y, double z) {
         double const mass = 0.25 * rho * g.weight * ref.l * ref.gradients(g.xi, y, z).volume;
-        Vec<double, ancf::vectors> const n = ancf::shape(g.xi, y, z, ref.l).col(0);
-        out.first_moment += mass * n;
+        Mat<double, ancf::vectors, 4> const n = ancf::shape(g.xi, y, z, ref.l);
+        for (int a = 0; a < ancf::vectors; ++a) out.first_moment[a] += mass * n(a, 0);
         for (int a = 0; a < ancf::vectors; ++a)
           for (int b = 0; b < ancf::vectors; ++b)
-            for (int i = 0; i < 3; ++i) out.mass(3 * a + i, 3 * b + i) += mass * n[a] * n[b];
+            for (int i = 0; i < 3; ++i) out.mass(3 * a + i, 3 * b + i) += mass * n(a, 0) * n(b, 0);
       });
     return out;
   }

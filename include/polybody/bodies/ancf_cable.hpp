@@ -64,10 +64,12 @@ class AncfCable : public NodeChain<6> {
   ShapeValues<4> axis_shape(double xi) const { return hermite_shape(xi, l_); }
 
   void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
+  template <class T = double>  // compiled where it is used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     for (Index i = 0; i <= n_; ++i) {
-      part<3>(v, 6 * i) = v0 + omega.cross(part<3>(q, 6 * i).eval());
-      part<3>(v, 6 * i + 3) = omega.cross(part<3>(q, 6 * i + 3).eval());
+      Vec<T, 3> const r = part<3>(q, 6 * i), slope = part<3>(q, 6 * i + 3);
+      part<3>(v, 6 * i) = v0 + omega.cross(r);
+      part<3>(v, 6 * i + 3) = omega.cross(slope);
     }
   }
 
@@ -136,20 +138,23 @@ class AncfCable : public NodeChain<6> {
       for (int k = 0; k < 3; ++k) out[3 * i + k] = T(weight_[i] * g[k]);
   }
 
+  template <class T = double>  // compiled where it is used
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
-    Element<double> const x = part<12>(v, first_column(e));
-    Element<double> momentum;
-    element_inertia<double>(x, momentum);
+    Element<T> const x = part<12>(v, first_column(e));
+    Element<T> momentum;
+    element_inertia<T>(x, momentum);
     return 0.5 * x.dot(momentum);
   }
   double strain_energy(Index e, std::span<double const> q) const {
     Element<double> const x = part<12>(q, first_column(e));
     return axial().energy(x) + bending().energy(x);
   }
+  template <class T = double>  // compiled where it is used
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
-    Element<double> weight;
-    gravity<double>(e, q, g, weight);
-    return -part<12>(q, first_column(e)).dot(weight);
+    Element<T> const x = part<12>(q, first_column(e));
+    Element<T> weight;
+    gravity<T>(e, q, g, weight);
+    return -x.dot(weight);
   }
 
   /// r = S e at `p`, 3×12, constant; e are the coordinates from `first_column(p)`.
@@ -208,15 +213,14 @@ class AncfCable : public NodeChain<6> {
   }
 
   /// Jᵀw has the part s_i′ (m × r′)/n² that depends on q: ∂/∂r′ = m̃/n² − 2 (m × r′) r′ᵀ/n⁴.
-  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
+  template <class T>  // compiled where it is used
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 12, 12>& k) const {
     ShapeValues<4> const s = hermite_shape(p.xi, l_);
-    Element<double> const x = element_of(p, q);
-    Vec3 slope = Vec3::Zero();
-    for (int i = 0; i < 4; ++i) slope += s.ds[i] * x.segment<3>(3 * i);
-    double const n2 = slope.squaredNorm();
-    Mat3 const each = skew<double>(w.m) / n2 - (2.0 / (n2 * n2)) * w.m.cross(slope) * slope.transpose();
+    Vec<T, 3> const slope = slope_of(s, element_of(p, q));
+    T const n2 = slope.squaredNorm();
+    Mat<T, 3, 3> const each = skew<T>(w.m) / n2 - (2.0 / (n2 * n2)) * w.m.cross(slope) * slope.transpose();
     for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) k.block<3, 3>(3 * i, 3 * j) = (s.ds[i] * s.ds[j]) * each;
+      for (int j = 0; j < 4; ++j) k.template block<3, 3>(3 * i, 3 * j) = (s.ds[i] * s.ds[j]) * each;
   }
 
  private:
@@ -225,6 +229,7 @@ class AncfCable : public NodeChain<6> {
   Axial const& axial() const { return std::get<0>(groups_); }
   Bending const& bending() const { return std::get<1>(groups_); }
 
+  template <class T = double>  // compiled where it is used
   AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
       : NodeChain(n),
         constants_(c),
@@ -233,16 +238,19 @@ class AncfCable : public NodeChain<6> {
         groups_(Axial(c, bar.damping, l_, Vec<double, 1>(bar.pretension)), Bending(c, bar.damping, l_)) {
     for (GaussPoint const& g : gauss<4>) {
       ShapeValues<4> const s = hermite_shape(g.xi, l_);
-      Vec4 const shape(s.s[0], s.s[1], s.s[2], s.s[3]);
-      mass_ += (g.weight * l_ * c.mass_per_length) * shape * shape.transpose();
-      weight_ += (g.weight * l_ * c.mass_per_length) * shape;
+      double const mass = g.weight * l_ * c.mass_per_length;
+      for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) mass_(i, j) += mass * s.s[i] * s.s[j];
+        weight_[i] += mass * s.s[i];
+      }
     }
     reference_.resize(std::size_t(coordinates()));
+    Mat<T, 3, 3> const axes = bar.placement.axes;
     for (Index i = 0; i <= n_; ++i) {
       Placement const section = curve(double(i) * l_);
       section.check(name);
-      part<3>(std::span<double>(reference_), 6 * i) = bar.placement.origin + bar.placement.axes * section.origin;
-      part<3>(std::span<double>(reference_), 6 * i + 3) = bar.placement.axes * section.axes.col(0);
+      part<3>(std::span<double>(reference_), 6 * i) = bar.placement.origin + axes * section.origin;
+      part<3>(std::span<double>(reference_), 6 * i + 3) = axes * section.axes.col(0);
     }
     for (Index e = 0; e < n_; ++e) {
       for (GaussPoint const& g : gauss<3>) {
@@ -252,7 +260,7 @@ class AncfCable : public NodeChain<6> {
                              number(off) +
                              ". Give the curve by its arc length, from 0 to the bar's length, or take more elements.");
       }
-      axes_.push_back(bar.placement.axes * curve((double(e) + 0.5) * l_).axes);
+      axes_.push_back(axes * curve((double(e) + 0.5) * l_).axes);
     }
   }
 
@@ -263,13 +271,18 @@ class AncfCable : public NodeChain<6> {
     return map;
   }
   Element<double> element_of(Point const& p, std::span<double const> q) const { return part<12>(q, first_column(p)); }
-  Vec6 in_section_axes(Point const& p, Element<double> const& x, double along, Vec3 const& bending) const {
-    ShapeValues<4> const s = hermite_shape(p.xi, l_);
+  static Vec3 slope_of(ShapeValues<4> const& s, Element<double> const& x) {
     Vec3 slope = Vec3::Zero();
-    for (int i = 0; i < 4; ++i) slope += s.ds[i] * x.segment<3>(3 * i);
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) slope[k] += s.ds[i] * x[3 * i + k];
+    return slope;
+  }
+  template <class T>
+  Vec6 in_section_axes(Point const& p, Element<double> const& x, double along, Vec<T, 3> const& bending) const {
+    Vec3 const slope = slope_of(hermite_shape(p.xi, l_), x);
     Vec6 out = Vec6::Zero();
     out[0] = along;
-    out.tail<3>() = smallest_turn<double>(slope, axes_[std::size_t(p.element)]).transpose() * bending;
+    out.tail<3>() = smallest_turn<T>(slope, axes_[std::size_t(p.element)]).transpose() * bending;
     return out;
   }
 
@@ -280,7 +293,10 @@ class AncfCable : public NodeChain<6> {
     using std::sqrt;
     Vec<T, 3> const t = slope / sqrt(detail::dot(slope, slope));
     if (value_of(t[0]) * from(0, 0) + value_of(t[1]) * from(1, 0) + value_of(t[2]) * from(2, 0) < 0.0)
-      from.leftCols<2>() *= -1.0;
+      for (int i = 0; i < 3; ++i) {
+        from(i, 0) *= -1.0;
+        from(i, 1) *= -1.0;
+      }
     Vec<T, 3> const e = from.col(0).template cast<T>();
     Mat<T, 3, 3> const turn = skew<T>(e.cross(t));
     Mat<T, 3, 3> const both = turn * from.template cast<T>();

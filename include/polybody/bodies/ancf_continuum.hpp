@@ -25,7 +25,8 @@ struct OfGradient {
   /// P for the columns `which` of F.
   static Mat<double, used, vectors - 1> map(Mat<double, vectors, 3> const& g, std::array<int, used> const& which) {
     Mat<double, used, vectors - 1> n;
-    for (int s = 0; s < used; ++s) n.row(s) = g.col(which[std::size_t(s)]).template tail<vectors - 1>().transpose();
+    for (int v = 1; v < vectors; ++v)
+      for (int s = 0; s < used; ++s) n(s, v - 1) = g(v, which[std::size_t(s)]);
     return n;
   }
 };
@@ -162,8 +163,10 @@ struct Continuum {
     double const area = c.EA / m.young, y = std::sqrt(c.EI / c.EA), z = std::sqrt(c.EI_y.value() / c.EA);
     double const axial = bar.damping.axial, shear = bar.damping.shear;
     Vec<double, 7> times, stiffness;
-    times << axial, axial, axial, axial, shear, shear, shear;
-    stiffness << m.lambda, 2.0 * m.mu, 2.0 * m.mu, 2.0 * m.mu, m.mu, m.mu, m.mu;
+    for (int i = 0; i < 7; ++i) {
+      times[i] = i < 4 ? axial : shear;
+      stiffness[i] = i == 0 ? m.lambda : i < 4 ? 2.0 * m.mu : m.mu;
+    }
     double const stretch = -bar.pretension / c.EA;  // in which the prestressed bar would be free of stress
     ancf::SectionPoints const section{y, z};
     if constexpr (cured) {
@@ -208,15 +211,17 @@ struct Continuum {
   }
 
   /// Stress at a point with strain E and, where the section meets the axis, `axis`; without damping.
-  static Mat3 second_piola(Bar const& bar, BarConstants const& c, Mat3 const& e, Mat3 const& axis) {
+  template <class T = double>  // compiled where it is used
+  static Mat3 second_piola(Bar const& bar, BarConstants const& c, Mat3 const& e, Mat3 const& at_axis) {
     Moduli const m(bar);
-    Mat3 s = m.lambda * axis.trace() * Mat3::Identity() + 2.0 * m.mu * e;
+    Mat<T, 3, 3> const axis = at_axis;
+    Mat<T, 3, 3> s = m.lambda * axis.trace() * Mat<T, 3, 3>::Identity() + 2.0 * m.mu * e;
     if constexpr (cured) {
       s(0, 0) = m.young * e(0, 0) + m.lambda * axis.trace() + (2.0 * m.mu - m.young) * axis(0, 0);
       s(0, 1) = s(1, 0) = c.GA * m.young / c.EA * 2.0 * e(0, 1);
       s(0, 2) = s(2, 0) = c.GA_z.value() * m.young / c.EA * 2.0 * e(0, 2);
     } else {
-      s += m.lambda * (e - axis).trace() * Mat3::Identity();
+      s += m.lambda * (e - axis).trace() * Mat<T, 3, 3>::Identity();
     }
     s(0, 0) += bar.pretension * m.young / c.EA;
     return s;
@@ -233,7 +238,9 @@ struct Continuum {
   /// The strains of uniaxial stress.
   static Vec<double, 7> uniaxial(double e, double nu) {
     Vec<double, 7> strain = Vec<double, 7>::Zero();
-    strain.head<4>() << (1.0 - 2.0 * nu) * e, e, -nu * e, -nu * e;
+    strain[0] = (1.0 - 2.0 * nu) * e;
+    strain[1] = e;
+    strain[2] = strain[3] = -nu * e;
     return strain;
   }
 };

@@ -45,7 +45,10 @@ struct ElasticLine {
     static Mat<double, 3, 3> map(double xi, double l) {
       ShapeValues<4> const h = hermite_shape(xi, l);
       Mat<double, 3, 3> n;
-      n << h.ds[1], h.ds[2], h.ds[3], 1.0 - xi, xi, 0.0, 1.0 - xi, xi, 0.0;
+      for (int j = 0; j < 3; ++j) {
+        n(0, j) = h.ds[std::size_t(j + 1)];
+        n(1, j) = n(2, j) = j == 0 ? 1.0 - xi : j == 1 ? xi : 0.0;
+      }
       return n;
     }
 
@@ -101,8 +104,10 @@ struct ElasticLine {
     static Mat<double, 4, 2> map(double xi, double l) {
       Mat<double, 4, 2> n;
       for (int s = 0; s < 2; ++s) {
-        n.row(s) << 1.0 - xi, xi;
-        n.row(2 + s) << -1.0 / l, 1.0 / l;
+        n(s, 0) = 1.0 - xi;
+        n(s, 1) = xi;
+        n(2 + s, 0) = -1.0 / l;
+        n(2 + s, 1) = 1.0 / l;
       }
       return n;
     }
@@ -142,7 +147,13 @@ struct ElasticLine {
     static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.EA, c.GA}; }
     static Vec3 damping(Damping const& d) { return {d.axial, d.axial, d.shear}; }
     static constexpr int vector(int s, int j) { return Bend::vector(s, j); }
-    static Mat<double, 2, 2> map(double xi, double l) { return Bend::map(xi, l).topRows<2>(); }
+    static Mat<double, 2, 2> map(double xi, double l) {
+      Mat<double, 4, 2> const n = Bend::map(xi, l);
+      Mat<double, 2, 2> top;
+      for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) top(i, j) = n(i, j);
+      return top;
+    }
 
     template <KernelScalar T>
     static void evaluate(Vec<T, 6> const& p, Vec<T, 3>& strain, Mat<T, 3, 6>& b) {
@@ -174,6 +185,7 @@ struct ElasticLine {
     require_positive(c.EI_y.value_or(c.EI), "AncfBeam<ElasticLine>: the bending stiffness EI_y of the bar");
   }
 
+  template <class = void>  // compiled where it is used
   static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
     Vec3 const pretension(-bar.pretension / c.EA, 0.0, 0.0);
     std::array<GaussPoint, 2> const nodes = {GaussPoint{0.0, 0.5}, GaussPoint{1.0, 0.5}};

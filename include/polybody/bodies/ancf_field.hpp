@@ -18,7 +18,8 @@ inline constexpr int columns = 3 * vectors;
 using Coordinates = Vec<double, columns>;
 
 /// N_v and its derivatives by x, y, z at (ξ, y, z), as columns.
-inline Mat<double, vectors, 4> shape(double xi, double y, double z, double l) {
+template <class = void>  // compiled where it is used
+Mat<double, vectors, 4> shape(double xi, double y, double z, double l) {
   ShapeValues<4> const h = hermite_shape(xi, l);
   Mat<double, vectors, 4> n = Mat<double, vectors, 4>::Zero();
   for (int node = 0; node < 2; ++node) {
@@ -46,7 +47,10 @@ class Reference {
   bool straight = true;                 ///< … and not twisted
 
   /// det [r_x r_y r_z], linear in y and z: negative where the section is turned inside out.
-  double determinant(double xi, double y, double z) const { return straight ? 1.0 : jacobian(xi, y, z).determinant(); }
+  template <class T = double>  // compiled where it is used
+  double determinant(double xi, double y, double z) const {
+    return straight ? 1.0 : jacobian<T>(xi, y, z).determinant();
+  }
 
   /// ∂N/∂X of the place X in the section's axes there, so that F = Σ e_v (∂N_v/∂X)ᵀ is one in the reference; and the
   /// reference volume dV/(dx dy dz) by that on the axis. (Between nodes the interpolated section is smaller by the
@@ -56,18 +60,23 @@ class Reference {
     double volume;
   };
   /// ∂N/∂X = [N_x N_y N_z] J₀⁻¹,  J₀ = Rᵀ [r_x r_y r_z] of the reference, R its section frame.
+  template <class T = double>  // compiled where it is used
   Gradients gradients(double xi, double y, double z) const {
-    Mat<double, vectors, 3> const natural = shape(xi, y, z, l).rightCols<3>();
+    Mat<T, vectors, 4> const n = shape(xi, y, z, l);
+    Mat<T, vectors, 3> const natural = n.template rightCols<3>();
     if (straight) return {natural, 1.0};
-    Mat3 const j = jacobian(xi, y, z);
-    SectionFrame<double> const frame(j.col(1), j.col(2));
-    Mat3 const j0 = frame.R.transpose() * j;
+    Mat<T, 3, 3> const j = jacobian<T>(xi, y, z);
+    SectionFrame<T> const frame(j.col(1), j.col(2));
+    Mat<T, 3, 3> const j0 = frame.R.transpose() * j;
     return {natural * j0.inverse(), j.determinant() / determinant(xi, 0.0, 0.0)};
   }
 
  private:
-  Mat3 jacobian(double xi, double y, double z) const {
-    return x.reshaped(3, vectors) * shape(xi, y, z, l).rightCols<3>();
+  template <class T>  // compiled where it is used
+  Mat<T, 3, 3> jacobian(double xi, double y, double z) const {
+    Vec<T, columns> const e = x;
+    Mat<T, vectors, 4> const n = shape(xi, y, z, l);
+    return e.reshaped(3, vectors) * n.template rightCols<3>();
   }
 };
 

@@ -8,9 +8,13 @@ namespace polybody {
 
 template <class Elastic>
 Vec6 AncfBeam<Elastic>::section_strains(Point const& p, std::span<double const> q) const {
+  Vec3 const stretch = strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
+             bend = strains<std::tuple_element_t<1, ElasticLine::Groups>>(p, q);
   Vec6 x;
-  x << strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
-      strains<std::tuple_element_t<1, ElasticLine::Groups>>(p, q);
+  for (int i = 0; i < 3; ++i) {
+    x[i] = stretch[i];
+    x[3 + i] = bend[i];
+  }
   return x;
 }
 
@@ -23,29 +27,32 @@ Vec6 AncfBeam<Elastic>::section_forces(Point const& p, std::span<double const> q
   if constexpr (std::same_as<Elastic, ElasticLine>) {
     Groups const& groups = groups_of(p.element);
     Vec6 n = section_strains(p, q);
-    n.head<3>() = n.head<3>().cwiseProduct(std::get<0>(groups).stiffness());
-    n.tail<3>() = n.tail<3>().cwiseProduct(std::get<1>(groups).stiffness());
+    for (int i = 0; i < 3; ++i) {
+      n[i] *= std::get<0>(groups).stiffness()[i];
+      n[3 + i] *= std::get<1>(groups).stiffness()[i];
+    }
     n[0] += bar_.pretension;
     return n;
   } else {
-    Element<double> const x = coordinates_at(p, q);
-    Vec3 const by = map_of({p.element, p.xi}, 2) * x, bz = map_of({p.element, p.xi}, 3) * x;
-    SectionFrame<double> const frame(by, bz);
+    using T = typename std::tuple_element_t<0, Groups>::Strains::Scalar;  // double, known where this is used
+    Element<T> const x = coordinates_at(p, q);
+    Vec<T, 3> const by = map_of({p.element, p.xi}, 2) * x, bz = map_of({p.element, p.xi}, 3) * x;
+    SectionFrame<T> const frame(by, bz);
     double const area = constants_.EA / bar_.material->young, lever = Elastic::lever(constants_);
     ancf::SectionPoints const section{std::sqrt(constants_.EI / constants_.EA),
                                       std::sqrt(constants_.EI_y.value() / constants_.EA)};
-    Mat3 const axis = strain({p.element, p.xi}, q);
-    Vec6 n = Vec6::Zero();
-    auto const add = [&](double y, double z, Vec3 const& parts) {
+    Mat<T, 3, 3> const axis = strain({p.element, p.xi}, q);
+    Vec<T, 6> n = Vec<T, 6>::Zero();
+    auto const add = [&](double y, double z, Vec<T, 3> const& parts) {
       Point const at{p.element, p.xi, y, z};
-      Mat3 const s = Elastic::second_piola(bar_, constants_, strain(at, q), axis);
-      Vec3 const t = frame.local(deformation_gradient(at, q) * s.col(0).cwiseProduct(parts));
-      n.head<3>() += 0.25 * area * t;
-      n.tail<3>() += 0.25 * area * frame.local(y * by + z * bz).cross(t);
+      Mat<T, 3, 3> const s = Elastic::second_piola(bar_, constants_, strain(at, q), axis);
+      Vec<T, 3> const t = frame.local(deformation_gradient(at, q) * s.col(0).cwiseProduct(parts));
+      n.template head<3>() += 0.25 * area * t;
+      n.template tail<3>() += 0.25 * area * frame.local(y * by + z * bz).cross(t);
     };
     section.for_each([&](double y, double z) {
-      add(y, z, Vec3(1, 0, 0));
-      add(lever * y, lever * z, Vec3(0, 1, 1));
+      add(y, z, Vec<T, 3>(1, 0, 0));
+      add(lever * y, lever * z, Vec<T, 3>(0, 1, 1));
     });
     return n;
   }

@@ -68,7 +68,8 @@ using ReferenceCurve = std::function<Placement(double)>;
 
 namespace detail {
 
-inline BarConstants constants_of_section(Bar const& bar) {
+template <class = void>  // compiled where it is used
+BarConstants constants_of_section(Bar const& bar) {
   Material const& m = *bar.material;
   require_positive(m.density, "Bar: the material's density");
   require_positive(m.young, "Bar: Young's modulus");
@@ -114,7 +115,8 @@ inline BarConstants constants_of_section(Bar const& bar) {
 }  // namespace detail
 
 /// The section's stiffness and inertia. \throws InvalidInput naming the quantity that cannot be meant.
-inline BarConstants constants(Bar const& bar) {
+template <class = void>  // compiled where it is used
+BarConstants constants(Bar const& bar) {
   require_positive(bar.length, "Bar: the length");
   bar.placement.check("Bar");
   require_not_negative(bar.damping.axial, "Bar: the axial damping time");

@@ -96,10 +96,12 @@ class Lrvf {
       part<3>(out, i + 3) = right_jacobian_inverse<T>(part<3>(delta, i + 3)) * part<3>(v, i + 3);
     }
   }
+  template <class T = double>  // compiled where it is used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     for (Index i = 0; i <= elements(); ++i) {
-      part<3>(v, 6 * i) = v0 + omega.cross(part<3>(q, 7 * i).eval());
-      part<3>(v, 6 * i + 3) = rotation_matrix<double>(part<4>(q, 7 * i + 3)).transpose() * omega;
+      Vec<T, 3> const r = part<3>(q, 7 * i);
+      part<3>(v, 6 * i) = v0 + omega.cross(r);
+      part<3>(v, 6 * i + 3) = rotation_matrix<T>(part<4>(q, 7 * i + 3)).transpose() * omega;
     }
   }
 
@@ -146,47 +148,54 @@ class Lrvf {
   /// δr₁)/c₀ and θ = δθ₁₂, all in the axes of the middle section:
   ///   δΓ = x + Γ̃ P θ,  δN = C (ck + cd τ) δΓ + ck C τ δΓ˙,  δt = l (N × δΓ − Γ × δN),
   ///   −δf_r = ∓ l/c₀ R_m (δN + ck Pθ × N),  −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
+  template <class T>  // compiled where it is used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
-               ElementMatrix& k) const {
-    Strained<double> s;
-    strain<double>(e, q, v, s);
+               Mat<T, 12, 12>& k) const {
+    using V3 = Vec<T, 3>;
+    using M3 = Mat<T, 3, 3>;
+    Strained<T> s;
+    strain<T>(e, q, v, s);
     MiddleGradient by;
-    Vec3 const t = l_ * s.n.cross(s.gamma);
-    interpolation_.gradient(turned<double>(q, e), turned<double>(q, e + 1), t, s.m, s.turning, by);
-    Vec3 const c1 = stiffness_.head<3>(), c2 = stiffness_.tail<3>() / l_;
-    Vec3 const full1 = c1.cwiseProduct(Vec3::Constant(ck) + cd * time_.head<3>());
-    Vec3 const full2 = c2.cwiseProduct(Vec3::Constant(ck) + cd * time_.tail<3>());
-    Mat3 const gamma = skew<double>(s.gamma), n = ck * skew<double>(s.n);
-    Mat<double, 3, 6> const slide = gamma * s.at.spin;  // Γ̃ P
-    Mat3 nx = full1.asDiagonal();
-    Mat<double, 3, 6> nt = full1.asDiagonal() * slide, mt = full2.asDiagonal() * s.at.bend;
+    V3 const t = l_ * s.n.cross(s.gamma);
+    interpolation_.gradient(turned<T>(q, e), turned<T>(q, e + 1), t, s.m, s.turning, by);
+    Vec<T, 6> const stiffness = stiffness_, time = time_;
+    V3 const c1 = stiffness.template head<3>(), c2 = stiffness.template tail<3>() / l_;
+    V3 const full1 = c1.cwiseProduct(V3::Constant(ck) + cd * time.template head<3>());
+    V3 const full2 = c2.cwiseProduct(V3::Constant(ck) + cd * time.template tail<3>());
+    M3 const gamma = skew<T>(s.gamma), n = ck * skew<T>(s.n);
+    Mat<T, 3, 6> const slide = gamma * s.at.spin;  // Γ̃ P
+    M3 nx = full1.asDiagonal();
+    Mat<T, 3, 6> nt = full1.asDiagonal() * slide, mt = full2.asDiagonal() * s.at.bend;
     if (damped_) {  // Γ˙ = u + Γ × Ω, u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:  δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ
-      Vec3 const omega = s.at.spin * s.turning;
-      Vec3 const d1 = ck * c1.cwiseProduct(time_.head<3>()), d2 = ck * c2.cwiseProduct(time_.tail<3>());
-      Mat3 const w = skew<double>(omega);
+      V3 const omega = s.at.spin * s.turning;
+      V3 const d1 = ck * c1.cwiseProduct(time.template head<3>()), d2 = ck * c2.cwiseProduct(time.template tail<3>());
+      M3 const w = skew<T>(omega);
       nx -= d1.asDiagonal() * w;
-      nt += d1.asDiagonal() * (skew<double>(s.rate) * s.at.spin - w * slide + gamma * by.spin);
+      nt += d1.asDiagonal() * (skew<T>(s.rate) * s.at.spin - w * slide + gamma * by.spin);
       mt += d2.asDiagonal() * by.bend;
     }
     double const chord = free_[std::size_t(e)].chord;
-    Mat<double, 6, 3> const pulled = s.at.spin.transpose() * (l_ * (n - gamma * nx));
-    Mat<double, 6, 6> const turn =
+    Mat<T, 6, 3> const pulled = s.at.spin.transpose() * (l_ * (n - gamma * nx));
+    Mat<T, 6, 6> const turn =
         s.at.spin.transpose() * (l_ * (n * slide - gamma * nt)) + s.at.bend.transpose() * mt + ck * by.pulled;
-    Mat3 const rr = s.at.R * (l_ / (chord * chord) * nx) * s.at.R.transpose();
-    Mat<double, 3, 6> const rt = s.at.R * (l_ / chord * (nt - n * s.at.spin));
-    Mat<double, 6, 3> const tr = pulled * (1.0 / chord) * s.at.R.transpose();
+    M3 const rr = s.at.R * (l_ / (chord * chord) * nx) * s.at.R.transpose();
+    Mat<T, 3, 6> const rt = s.at.R * (l_ / chord * (nt - n * s.at.spin));
+    Mat<T, 6, 3> const tr = pulled * (1.0 / chord) * s.at.R.transpose();
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) {
         double const si = i == 0 ? -1.0 : 1.0, sj = j == 0 ? -1.0 : 1.0;
-        k.block<3, 3>(6 * i, 6 * j) = si * sj * rr;
-        k.block<3, 3>(6 * i, 6 * j + 3) = si * rt.middleCols<3>(3 * j);
-        k.block<3, 3>(6 * i + 3, 6 * j) = sj * tr.middleRows<3>(3 * i);
-        k.block<3, 3>(6 * i + 3, 6 * j + 3) = turn.block<3, 3>(3 * i, 3 * j);
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) {
+            k(6 * i + r, 6 * j + c) = si * sj * rr(r, c);
+            k(6 * i + r, 6 * j + 3 + c) = si * rt(r, 3 * j + c);
+            k(6 * i + 3 + r, 6 * j + c) = sj * tr(3 * i + r, c);
+            k(6 * i + 3 + r, 6 * j + 3 + c) = turn(3 * i + r, 3 * j + c);
+          }
       }
     for (int i = 0; i < 2; ++i) {
-      Vec3 const omega = part<3>(v, 6 * (e + i) + 3);
-      k.block<3, 3>(6 * i + 3, 6 * i + 3) +=
-          cd * (skew<double>(omega) * rotary_.asDiagonal() - skew<double>(omega.cwiseProduct(rotary_)));
+      V3 const omega = part<3>(v, 6 * (e + i) + 3);
+      k.template block<3, 3>(6 * i + 3, 6 * i + 3) +=
+          cd * (skew<T>(omega) * rotary_.asDiagonal() - skew<T>(omega.cwiseProduct(rotary_)));
     }
   }
 
@@ -196,14 +205,16 @@ class Lrvf {
     for (int i = 0; i < 3; ++i) out[i] = out[6 + i] = T(3.0 * sixth_ * g[i]);
   }
 
+  template <class T = double>  // compiled where it is used
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
-    Vec3 const v1 = part<3>(v, 6 * e), w1 = part<3>(v, 6 * e + 3), v2 = part<3>(v, 6 * e + 6),
-               w2 = part<3>(v, 6 * e + 9);
+    Vec<T, 3> const v1 = part<3>(v, 6 * e), w1 = part<3>(v, 6 * e + 3), v2 = part<3>(v, 6 * e + 6),
+                    w2 = part<3>(v, 6 * e + 9);
     return sixth_ * (v1.squaredNorm() + v1.dot(v2) + v2.squaredNorm()) +
            0.5 * rotary_.dot(w1.cwiseProduct(w1) + w2.cwiseProduct(w2));
   }
+  template <class T = double>  // compiled where it is used
   double strain_energy(Index e, std::span<double const> q) const {
-    Vec6 const x = section_strains({e, 0.5}, q);
+    Vec<T, 6> const x = section_strains({e, 0.5}, q);
     return l_ * (0.5 * x.dot(stiffness_.cwiseProduct(x)) + pretension_ * x[0]);
   }
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
@@ -217,12 +228,14 @@ class Lrvf {
     place<double>(p.element, q, at, gamma);
     Free const& free = free_[std::size_t(p.element)];
     Vec6 x;
-    x << gamma - free.gamma, (at.turn - free.turn) / l_;
+    for (int i = 0; i < 3; ++i) x[i] = gamma[i] - free.gamma[i];
+    for (int i = 0; i < 3; ++i) x[3 + i] = (at.turn[i] - free.turn[i]) / l_;
     return x;
   }
   /// (N, M) of the element of `p`, without damping [N], [N m].
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
-    Vec6 n = stiffness_.cwiseProduct(section_strains(p, q));
+    Vec6 n = section_strains(p, q);
+    for (int i = 0; i < 6; ++i) n[i] *= stiffness_[i];
     n[0] += pretension_;
     return n;
   }
@@ -265,14 +278,14 @@ class Lrvf {
   }
 
   /// Jᵀw = [(1 − ξ) f; P₁ᵀ c; ξ f; P₂ᵀ c], c = ρ × Rᵀf + Rᵀm: by dual numbers in the nodes' rotations alone.
+  template <StateScalar D = Dual<6>>  // compiled where it is used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
-    using D = Dual<6>;
     Index const e = p.element;
     SectionMotion<D> s;
     section<D>(p, detail::turning_quaternion<6>(turned<double>(q, e), 0),
                detail::turning_quaternion<6>(turned<double>(q, e + 1), 3), Vec<D, 6>::Zero(), s);
-    Vec<D, 3> const f = s.R.transpose() * w.f.cast<D>(), m = s.R.transpose() * w.m.cast<D>();
-    Vec<D, 3> const c = Vec3(0, p.y, p.z).cast<D>().eval().cross(f) + m;
+    Vec<D, 3> const f = s.R.transpose() * w.f.template cast<D>(), m = s.R.transpose() * w.m.template cast<D>();
+    Vec<D, 3> const off(0.0, p.y, p.z), c = off.cross(f) + m;
     Vec<D, 6> const torque = s.spin.transpose() * c;
     k.setZero();
     for (int i = 0; i < 6; ++i)
@@ -294,6 +307,7 @@ class Lrvf {
     Vec<T, 3> n, m;     ///< section forces
   };
 
+  template <class T = double>  // compiled where it is used
   Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
       : constants_(c),
         length_(bar.length),
@@ -303,24 +317,26 @@ class Lrvf {
         free_(std::size_t(n)),
         reference_(std::size_t(7 * (n + 1))) {
     double const iz = c.rotary_inertia, iy = c.rotary_inertia_y.value_or(iz), shear = bar.damping.shear;
-    stiffness_ << c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI;
+    stiffness_ = Vec<T, 6>{{c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI}};
     char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
     for (int i = 0; i < 6; ++i)
       require_positive(stiffness_[i], std::string("Lrvf: the stiffness ") + names[i] + " of the bar");
-    time_ << bar.damping.axial, shear, shear, shear, bar.damping.bending, bar.damping.bending;
-    damped_ = !time_.isZero(0.0);
+    time_ = Vec<T, 6>{{bar.damping.axial, shear, shear, shear, bar.damping.bending, bar.damping.bending}};
+    for (int i = 0; i < 6; ++i) damped_ = damped_ || time_[i] != 0.0;
     sixth_ = c.mass_per_length * l_ / 6.0;
-    rotary_ = 0.5 * l_ * Vec3(iy + iz, iy, iz);
+    rotary_ = 0.5 * l_ * Vec<T, 3>(iy + iz, iy, iz);
     std::span<double> const q(reference_);
+    Mat<T, 3, 3> const axes = bar.placement.axes;
     for (Index i = 0; i <= n; ++i) {
       Placement const section = curve(double(i) * l_);
       section.check("Lrvf: the reference curve");
-      part<3>(q, 7 * i) = bar.placement.origin + bar.placement.axes * section.origin;
-      part<4>(q, 7 * i + 3) = quaternion_of(bar.placement.axes * section.axes);
+      part<3>(q, 7 * i) = bar.placement.origin + axes * section.origin;
+      part<4>(q, 7 * i + 3) = quaternion_of(axes * section.axes);
     }
     for (Index e = 0; e < n; ++e) {
       Free& free = free_[std::size_t(e)];
-      free.chord = (part<3>(q, 7 * e + 7) - part<3>(q, 7 * e)).norm();
+      Vec<T, 3> const from = part<3>(q, 7 * e), to = part<3>(q, 7 * e + 7);
+      free.chord = (to - from).norm();
       if (!(free.chord > 1e-6 * l_ && free.chord < (1.0 + 1e-6) * l_))
         throw InvalidInput("Lrvf: element " + number(double(e)) + " of arc length " + number(l_) + " has a chord of " +
                            number(free.chord) +

@@ -16,7 +16,8 @@ namespace polybody {
 namespace detail {
 
 /// A + shift·1 has positive pivots.
-inline bool is_definite(Mat3 const& a, double shift) {
+template <class = void>  // compiled where it is used
+bool is_definite(Mat3 const& a, double shift) {
   double const d0 = a(0, 0) + shift, l10 = a(1, 0) / d0, l20 = a(2, 0) / d0;
   double const d1 = a(1, 1) + shift - l10 * a(1, 0), c21 = a(2, 1) - l20 * a(1, 0);
   double const d2 = a(2, 2) + shift - l20 * a(2, 0) - c21 * c21 / d1;
@@ -24,7 +25,8 @@ inline bool is_definite(Mat3 const& a, double shift) {
 }
 
 /// Eigenvalues of a symmetric matrix, descending, to 1e-8 of the largest: for messages [Smith 1961].
-inline std::array<double, 3> principal_values(Mat3 const& a) {
+template <class = void>  // compiled where it is used
+std::array<double, 3> principal_values(Mat3 const& a) {
   double const mean = (a(0, 0) + a(1, 1) + a(2, 2)) / 3.0;
   double const x = a(0, 0) - mean, y = a(1, 1) - mean, z = a(2, 2) - mean;
   double const u = a(1, 0), v = a(2, 0), w = a(2, 1);
@@ -40,7 +42,8 @@ inline std::array<double, 3> principal_values(Mat3 const& a) {
 
 /// \throws InvalidInput unless `inertia` can belong to a mass distribution: symmetric, principal moments
 /// not negative and none greater than the sum of the others; that is, ½ tr(J) 1 − J ⪰ 0.
-inline void require_inertia(Mat3 const& inertia, std::string const& what) {
+template <class = void>  // compiled where it is used
+void require_inertia(Mat3 const& inertia, std::string const& what) {
   require_finite(inertia, what + ": the inertia");
   double const size = std::max({std::abs(inertia(0, 0)), std::abs(inertia(1, 1)), std::abs(inertia(2, 2)),
                                 std::abs(inertia(1, 0)), std::abs(inertia(2, 0)), std::abs(inertia(2, 1)),
@@ -53,8 +56,10 @@ inline void require_inertia(Mat3 const& inertia, std::string const& what) {
   if (!detail::is_definite(inertia, 1e-9 * size))
     throw InvalidInput(what + ": a principal moment of inertia is negative (" +
                        number(detail::principal_values(inertia)[2]) + ").");
-  Mat3 second = -inertia;
-  for (int k = 0; k < 3; ++k) second(k, k) += 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2));
+  Mat3 second;
+  double const half_trace = 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) second(i, j) = i == j ? half_trace - inertia(i, j) : -inertia(i, j);
   if (!detail::is_definite(second, 1e-9 * size)) {
     std::array<double, 3> const i = detail::principal_values(inertia);
     throw InvalidInput(what + ": the principal moments of inertia " + number(i[0]) + ", " + number(i[1]) + ", " +
@@ -81,11 +86,13 @@ class RigidShape {
   };
 
   /// \throws InvalidInput for mass ≤ 0 or an inertia that no body has. Zero moments are allowed.
+  template <class = void>  // compiled where it is used
   RigidShape(Parameters const& p) : mass_(p.mass), inertia_(p.inertia), placement_(p.placement) {  // NOLINT
     require_positive(mass_, "Rigid: the mass");
     require_inertia(inertia_, "Rigid");
     placement_.check("Rigid");
   }
+  template <class = void>  // compiled where it is used
   RigidShape(double mass, Mat3 const& inertia, Placement const& placement = {})
       : RigidShape(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
 
@@ -93,12 +100,14 @@ class RigidShape {
   Mat3 const& inertia() const { return inertia_; }
 
   /// The point s from the first end of the bar, (y, z) off its axis. \throws InvalidInput outside the bar.
+  template <class = void>  // compiled where it is used
   Point at(double s, double y = 0.0, double z = 0.0) const {
     if (length_ == 0.0)
       throw InvalidInput("Rigid: at(s) needs a body made from a Bar; use at(Vec3) from the centre of mass.");
     return at(Vec3(require_inside(s, length_, "Rigid") - 0.5 * length_, y, z));
   }
   /// The point u in body axes from the centre of mass [m].
+  template <class = void>  // compiled where it is used
   Point at(Vec3 const& u) const {
     require_finite(u, "Rigid: the point");
     return {u};
@@ -110,15 +119,19 @@ class RigidShape {
 
  protected:
   /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
-  explicit RigidShape(Bar const& bar) : RigidShape(parameters(bar)) { length_ = bar.length; }
+  template <class = void>  // compiled where it is used
+  explicit RigidShape(Bar const& bar) : RigidShape(parameters(bar)) {
+    length_ = bar.length;
+  }
+  template <class T = double>  // compiled where it is used
   static Parameters parameters(Bar const& bar) {
     BarConstants const c = constants(bar);
     double const l = bar.length, m = c.mass_per_length * l;
     double const z = c.rotary_inertia * l, y = c.rotary_inertia_y.value_or(c.rotary_inertia) * l;
     Placement place = bar.placement;
-    place.origin += place.axes.col(0) * (0.5 * l);
-    return {
-        .mass = m, .inertia = Vec3(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z).asDiagonal(), .placement = place};
+    for (int i = 0; i < 3; ++i) place.origin[i] += place.axes(i, 0) * (0.5 * l);
+    Vec<T, 3> const moments(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z);
+    return {.mass = m, .inertia = moments.asDiagonal(), .placement = place};
   }
 
   template <StateScalar T>
@@ -159,11 +172,15 @@ class Rigid<UnitQuaternion> : public RigidShape {
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
   /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
-  static Rigid from(Bar const& bar) { return Rigid(bar); }
+  template <class = void>  // compiled where it is used
+  static Rigid from(Bar const& bar) {
+    return Rigid(bar);
+  }
 
   Index coordinates() const { return 7; }
   Index speeds() const { return 6; }
 
+  template <class = void>  // compiled where it is used
   void reference(std::span<double> q) const {
     part<3>(q, 0) = placement_.origin;
     part<4>(q, 3) = quaternion_of(placement_.axes);
@@ -183,15 +200,20 @@ class Rigid<UnitQuaternion> : public RigidShape {
   }
 
   /// Speeds of a rigid motion: velocity of the world's origin point `v0` and angular velocity (world axes).
+  template <class T = double>  // compiled where it is used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
-    part<3>(v, 0) = v0 + omega.cross(part<3>(q, 0).eval());
-    part<3>(v, 3) = rotation_matrix<double>(part<4>(q, 3)).transpose() * omega;
+    Vec<T, 3> const r = part<3>(q, 0);
+    part<3>(v, 0) = v0 + omega.cross(r);
+    part<3>(v, 3) = rotation_matrix<T>(part<4>(q, 3)).transpose() * omega;
   }
 
-  void mass(Index, std::span<double const>, Mat<double, 6, 6>& m) const {
+  template <class T>  // compiled where it is used
+  void mass(Index, std::span<double const>, Mat<T, 6, 6>& m) const {
     m.setZero();
-    m.diagonal().head<3>().setConstant(mass_);
-    m.bottomRightCorner<3, 3>() = inertia_;
+    for (int i = 0; i < 3; ++i) {
+      m(i, i) = mass_;
+      for (int j = 0; j < 3; ++j) m(3 + i, 3 + j) = inertia_(i, j);
+    }
   }
 
   template <StateScalar T>
@@ -209,11 +231,11 @@ class Rigid<UnitQuaternion> : public RigidShape {
   }
 
   /// −∂f/∂Ω = Ω̃ J − (J Ω)~.
-  void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd,
-               Mat<double, 6, 6>& k) const {
-    Vec3 const omega = part<3>(v, 3);
+  template <class T>  // compiled where it is used
+  void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
+    Vec<T, 3> const omega = part<3>(v, 3);
     k.setZero();
-    k.bottomRightCorner<3, 3>() = cd * (skew<double>(omega) * inertia_ - skew<double>(inertia_ * omega));
+    k.template bottomRightCorner<3, 3>() = cd * (skew<T>(omega) * inertia_ - skew<T>(inertia_ * omega));
   }
 
   template <StateScalar T>
@@ -222,12 +244,17 @@ class Rigid<UnitQuaternion> : public RigidShape {
     out.template tail<3>().setZero();
   }
 
+  template <class T = double>  // compiled where it is used
   double kinetic_energy(Index, std::span<double const>, std::span<double const> v) const {
-    Vec3 const omega = part<3>(v, 3);
-    return 0.5 * mass_ * part<3>(v, 0).squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
+    Vec<T, 3> const speed = part<3>(v, 0), omega = part<3>(v, 3);
+    return 0.5 * mass_ * speed.squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
   }
   double strain_energy(Index, std::span<double const>) const { return 0.0; }
-  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const { return -mass_ * g.dot(part<3>(q, 0)); }
+  template <class T = double>  // compiled where it is used
+  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
+    Vec<T, 3> const r = part<3>(q, 0);
+    return -mass_ * g.dot(r);
+  }
 
   /// What all points of the body share.
   template <StateScalar T>
@@ -274,14 +301,15 @@ class Rigid<UnitQuaternion> : public RigidShape {
   }
 
   /// Jᵀw = [f; Aᵀm + u × Aᵀf];  under A ⊞ δ: δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
-  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<double, 6, 6>& k) const {
-    Mat3 const a = rotation_matrix<double>(part<4>(q, 3));
+  template <class T>  // compiled where it is used
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 6, 6>& k) const {
+    Mat<T, 3, 3> const a = rotation_matrix<T>(part<4>(q, 3));
     k.setZero();
-    k.bottomRightCorner<3, 3>() =
-        skew<double>(a.transpose() * w.m) + skew<double>(p.u) * skew<double>(a.transpose() * w.f);
+    k.template bottomRightCorner<3, 3>() = skew<T>(a.transpose() * w.m) + skew<T>(p.u) * skew<T>(a.transpose() * w.f);
   }
 
  private:
+  template <class = void>  // compiled where it is used
   explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
 

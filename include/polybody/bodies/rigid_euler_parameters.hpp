@@ -27,21 +27,27 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
   /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
-  static Rigid from(Bar const& bar) { return Rigid(bar); }
+  template <class = void>  // compiled where it is used
+  static Rigid from(Bar const& bar) {
+    return Rigid(bar);
+  }
 
   Point const& local(Point const& p) const { return p; }
   Index coordinates() const { return 7; }
   Index speeds() const { return 7; }
 
+  template <class = void>  // compiled where it is used
   void reference(std::span<double> q) const {
     part<3>(q, 0) = placement_.origin;
     part<4>(q, 3) = quaternion_of(placement_.axes);
   }
   /// θ̇ = ¼ |θ|² Ḡᵀ Ω.
+  template <class T = double>  // compiled where it is used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
-    part<3>(v, 0) = v0 + omega.cross(part<3>(q, 0).eval());
-    Vec4 const theta = part<4>(q, 3);
-    part<4>(v, 3) = (0.25 * theta.squaredNorm()) * map<double>(q).transpose() * (axes<double>(q).transpose() * omega);
+    Vec<T, 3> const r = part<3>(q, 0);
+    Vec<T, 4> const theta = part<4>(q, 3);
+    part<3>(v, 0) = v0 + omega.cross(r);
+    part<4>(v, 3) = (0.25 * theta.squaredNorm()) * map<T>(q).transpose() * (axes<T>(q).transpose() * omega);
   }
 
   /// Ḡ (3×4) at q: Ω = Ḡ θ̇, and m_θ = Ḡᵀ m for a moment m in body axes.
@@ -60,11 +66,12 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     return a / (q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]);
   }
 
-  void mass(Index, std::span<double const> q, Mat<double, 7, 7>& m) const {
-    Mat<double, 3, 4> const g = map<double>(q);
+  template <class T>  // compiled where it is used
+  void mass(Index, std::span<double const> q, Mat<T, 7, 7>& m) const {
+    Mat<T, 3, 4> const g = map<T>(q);
     m.setZero();
-    m.diagonal().head<3>().setConstant(mass_);
-    m.bottomRightCorner<4, 4>() = g.transpose() * inertia_ * g;
+    for (int i = 0; i < 3; ++i) m(i, i) = mass_;
+    m.template bottomRightCorner<4, 4>() = g.transpose() * inertia_ * g;
   }
   template <StateScalar T>
   void inertia(Index, std::span<T const> q, std::span<T const> a, Vec<T, 7>& out) const {
@@ -83,9 +90,9 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.template tail<4>() = g.transpose() * moment;
   }
   /// By dual numbers along ck δθ and cd δθ̇.
+  template <StateScalar D = Dual<4>>  // compiled where it is used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<double, 7, 7>& k) const {
-    using D = Dual<4>;
     std::array<D, 7> moved, moving;
     Vec<D, 7> f;
     auto const pass = [&](bool by_position, double scale) {
@@ -95,7 +102,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
         if (i >= 3) (by_position ? moved : moving)[std::size_t(i)].d[i - 3] = scale;
       }
       force<D>(e, std::span<D const>(moved), std::span<D const>(moving), f);
-      for (int i = 3; i < 7; ++i) k.block<1, 4>(i, 3) -= f[i].d.matrix().transpose();
+      for (int i = 3; i < 7; ++i)
+        for (int j = 0; j < 4; ++j) k(i, 3 + j) -= f[i].d[j];
     };
     k.setZero();
     if (ck != 0.0) pass(true, ck);
@@ -107,12 +115,17 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.template head<3>() = (g * mass_).template cast<T>();
     out.template tail<4>().setZero();
   }
+  template <class T = double>  // compiled where it is used
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    Vec3 const omega = map<double>(q) * part<4>(v, 3);
-    return 0.5 * mass_ * part<3>(v, 0).squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
+    Vec<T, 3> const speed = part<3>(v, 0), omega = map<T>(q) * part<4>(v, 3);
+    return 0.5 * mass_ * speed.squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
   }
   double strain_energy(Index, std::span<double const>) const { return 0.0; }
-  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const { return -mass_ * g.dot(part<3>(q, 0)); }
+  template <class T = double>  // compiled where it is used
+  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
+    Vec<T, 3> const r = part<3>(q, 0);
+    return -mass_ * g.dot(r);
+  }
 
   /// Φ = ½ (θᵀθ − 1), G = [0, θᵀ], γ = θ̇ᵀθ̇, ∂(Gᵀλ)/∂q = λ on θ.
   template <StateScalar T>
@@ -127,9 +140,10 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   void own_gamma(std::span<T const>, std::span<T const> v, Vec<T, 1>& gamma) const {
     gamma[0] = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];
   }
+  template <class = void>  // compiled where it is used
   void own_stiffness(std::span<double const>, Vec<double, 1> const& lambda, Mat<double, 7, 7>& k) const {
     k.setZero();
-    k.diagonal().tail<4>().setConstant(lambda[0]);
+    for (int i = 3; i < 7; ++i) k(i, i) = lambda[0];
   }
 
   /// As `Rigid<>` with Ω = Ḡ θ̇; Ω̇ = Ḡ θ̈ + Ḡ˙ θ̇, where Ḡ˙ θ̇ = −2 (θ·θ̇)/|θ|² Ω.
@@ -154,11 +168,13 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.shape = JacobianShape::dense;
     out.columns = 7;
   }
+  template <class = void>  // compiled where it is used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<double, 7, 7>& k) const {
     load_stiffness_by_duals(*this, p, q, w, k);
   }
 
  private:
+  template <class = void>  // compiled where it is used
   explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
 

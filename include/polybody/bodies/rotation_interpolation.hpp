@@ -45,9 +45,11 @@ namespace detail {
 /// q ⊞ δ for a small δ, whose three components are the variables number `first` and on.
 template <int n>
 Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first) {
-  Quaternion<Dual<n>> out = q.cast<Dual<n>>();
+  Quaternion<Dual<n>> out(q[0], q[1], q[2], q[3]);
   for (int i = 0; i < 3; ++i) {
-    Quaternion<double> const slope = quaternion_product<double>(q, 0.5 * Quaternion<double>::Unit(i + 1));
+    Quaternion<double> half = Quaternion<double>::Zero();
+    half[i + 1] = 0.5;
+    Quaternion<double> const slope = quaternion_product<double>(q, half);
     for (int k = 0; k < 4; ++k) out[k].d[first + i] = slope[k];
   }
   return out;
@@ -109,33 +111,37 @@ class Objective {
       }
   }
 
-  void gradient(Quaternion<double> const& a, Quaternion<double> const& b, Vec3 const& t, Vec3 const& m, Vec6 const& w,
-                MiddleGradient& out) const {
-    Vec3 const c = quarter<double>(a, b);
-    double const z = c.squaredNorm();
-    ArctanSeries<double> const s(z);
-    Mat3 const x = skew<double>(c), outer = c * c.transpose();
-    Mat<double, 3, 6> by_nodes;  // ∂c
+  template <class T>  // compiled where it is used
+  void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
+                Vec<T, 6> const& w, MiddleGradient& out) const {
+    using V3 = Vec<T, 3>;
+    using M3 = Mat<T, 3, 3>;
+    V3 const c = quarter<T>(a, b);
+    T const z = c.squaredNorm();
+    ArctanSeries<T> const s(z);
+    M3 const x = skew<T>(c), outer = c * c.transpose();
+    Mat<T, 3, 6> by_nodes;  // ∂c
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) {
-        double const even = 0.5 * outer(i, j) + (i == j ? 0.25 * (1.0 - z) : 0.0);
+        T const even = 0.5 * outer(i, j) + (i == j ? 0.25 * (1.0 - z) : 0.0);
         by_nodes(i, j) = 0.5 * x(i, j) - even;
         by_nodes(i, 3 + j) = 0.5 * x(i, j) + even;
       }
     // by c: of 2a c × y, and of h c × (c × y)
-    auto const odd = [&](Vec3 const& y) -> Mat3 {
-      return 4.0 * s.da * c.cross(y) * c.transpose() - 2.0 * s.a * skew<double>(y);
+    auto const odd = [&](V3 const& y) -> M3 {
+      return 4.0 * s.da * c.cross(y) * c.transpose() - 2.0 * s.a * skew<T>(y);
     };
-    auto const even = [&](Vec3 const& y) -> Mat3 {
-      Vec3 const once = c.cross(y);
-      Mat3 const along = 2.0 * (s.da + s.dm) * c.cross(once) * c.transpose();
-      return along - (s.a + s.m) * (skew<double>(once) + x * skew<double>(y));
+    auto const even = [&](V3 const& y) -> M3 {
+      V3 const once = c.cross(y);
+      M3 const along = 2.0 * (s.da + s.dm) * c.cross(once) * c.transpose();
+      return along - (s.a + s.m) * (skew<T>(once) + x * skew<T>(y));
     };
-    Vec3 const sum = w.head<3>() + w.tail<3>(), difference = w.tail<3>() - w.head<3>();
-    Mat3 const half = 0.5 * skew<double>(t) + even(m), other = odd(m);
-    out.pulled.topRows<3>() = -(half + other) * by_nodes;
-    out.pulled.bottomRows<3>() = (half - other) * by_nodes;
-    out.spin = -0.5 * skew<double>(difference) * by_nodes;
+    V3 const sum = w.template head<3>() + w.template tail<3>(),
+             difference = w.template tail<3>() - w.template head<3>();
+    M3 const half = 0.5 * skew<T>(t) + even(m), other = odd(m);
+    out.pulled.template topRows<3>() = -(half + other) * by_nodes;
+    out.pulled.template bottomRows<3>() = (half - other) * by_nodes;
+    out.spin = -0.5 * skew<T>(difference) * by_nodes;
     out.bend = (odd(sum) + even(difference)) * by_nodes;
   }
 
@@ -158,9 +164,10 @@ class Objective {
     out.bias = first.cross(own) + right_jacobian_derivative<T>(part, rate) * rate * (xi * xi) + jacobian * second;
   }
 
-  SectionTurn turn(double xi, double l, Quaternion<double> const& a, Quaternion<double> const& b) const {
-    Vec3 const phi = quaternion_minus<double>(b, a);
-    return {rotation_matrix<double>(a) * exp_so3<double>(xi * phi), phi / l, Vec3::Zero()};
+  template <class T>  // compiled where it is used
+  SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
+    Vec<T, 3> const phi = quaternion_minus<T>(b, a);
+    return {rotation_matrix<T>(a) * exp_so3<T>(xi * phi), phi / l, Vec<T, 3>::Zero()};
   }
 
  private:
@@ -184,6 +191,7 @@ class Objective {
 class Direct {
  public:
   static constexpr bool objective = false;
+  template <class = void>  // compiled where it is used
   explicit Direct(Placement const& placement) : from_(quaternion_of(placement.axes)), axes_(placement.axes) {}
 
   template <StateScalar T>
@@ -202,19 +210,21 @@ class Direct {
   }
 
   /// By dual numbers.
-  void gradient(Quaternion<double> const& a, Quaternion<double> const& b, Vec3 const& t, Vec3 const& m, Vec6 const& w,
-                MiddleGradient& out) const {
+  template <class T>  // compiled where it is used
+  void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
+                Vec<T, 6> const& w, MiddleGradient& out) const {
     MiddleSection<Dual<6>> at;
     middle<Dual<6>>(detail::turning_quaternion<6>(a, 0), detail::turning_quaternion<6>(b, 3), at);
     out.pulled.setZero();
     out.spin.setZero();
     out.bend.setZero();
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 6; ++j) {
-        out.pulled.row(j) += (t[i] * at.spin(i, j).d + m[i] * at.bend(i, j).d).matrix().transpose();
-        out.spin.row(i) += (w[j] * at.spin(i, j).d).matrix().transpose();
-        out.bend.row(i) += (w[j] * at.bend(i, j).d).matrix().transpose();
-      }
+      for (int j = 0; j < 6; ++j)
+        for (int k = 0; k < 6; ++k) {
+          out.pulled(j, k) += t[i] * at.spin(i, j).d[k] + m[i] * at.bend(i, j).d[k];
+          out.spin(i, k) += w[j] * at.spin(i, j).d[k];
+          out.bend(i, k) += w[j] * at.bend(i, j).d[k];
+        }
   }
 
   /// Ω = Jr(Ψ) Ψ˙,  Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ, and both once more by time.
@@ -241,10 +251,10 @@ class Direct {
     out.bias = right_jacobian_derivative<T>(psi, rate) * rate + jacobian * second;
   }
 
-  SectionTurn turn(double xi, double l, Quaternion<double> const& a, Quaternion<double> const& b) const {
-    Vec3 const first = vector<double>(a), rate = (vector<double>(b, first) - first) / l, psi = first + xi * l * rate;
-    return {axes_ * exp_so3<double>(psi), right_jacobian<double>(psi) * rate,
-            right_jacobian_derivative<double>(psi, rate) * rate};
+  template <class T>  // compiled where it is used
+  SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
+    Vec<T, 3> const first = vector<T>(a), rate = (vector<T>(b, first) - first) / l, psi = first + xi * l * rate;
+    return {axes_ * exp_so3<T>(psi), right_jacobian<T>(psi) * rate, right_jacobian_derivative<T>(psi, rate) * rate};
   }
 
  private:

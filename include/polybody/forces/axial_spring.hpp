@@ -17,6 +17,7 @@ struct AxialSpring {
   double preload = 0.0;        ///< P [N], at s = 0
   Vec3 axis = Vec3::UnitX();   ///< (3) unit vector in the axes of marker a's body
 
+  template <class = void>  // compiled where it is used
   void check(std::string const& name) const {
     require_not_negative(stiffness, name + ": the spring stiffness");
     require_not_negative(damping, name + ": the damping");
@@ -29,18 +30,30 @@ struct AxialSpring {
   /// × f_a.
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, double) const {
-    Vec<T, 3> const e = f[0].A * axis.template cast<T>(), d = f[1].r - f[0].r;
-    T const s = e.dot(d), rate = e.dot(f[1].v - f[0].v - f[0].w.cross(d));
+    Vec<T, 3> const e = direction(f[0]), d = f[1].r - f[0].r, turning = f[0].w.cross(d);
+    Vec<T, 3> const v = f[1].v - f[0].v, seen = v - turning;
+    T const s = e.dot(d), rate = e.dot(seen);
+    T const push = s * stiffness.value + rate * damping + preload;
     std::array<Wrench<T>, 2> w;
-    w[0].f = e * (s * stiffness.value + rate * damping + preload);
-    w[0].m = d.cross(w[0].f);
-    w[1].f = -w[0].f;
+    Vec<T, 3> const force(e[0] * push, e[1] * push, e[2] * push);
+    w[0].f = force;
+    w[0].m = d.cross(force);
+    w[1].f = -force;
     return w;
   }
   template <StateScalar T>
   T potential(std::array<Frame<T>, 2> const& f, double) const {
-    T const s = (f[0].A * axis.template cast<T>()).dot(f[1].r - f[0].r);
+    Vec<T, 3> const d = f[1].r - f[0].r;
+    T const s = direction(f[0]).dot(d);
     return s * (s * (0.5 * stiffness) + preload);
+  }
+
+ private:
+  template <StateScalar T>
+  Vec<T, 3> direction(Frame<T> const& f) const {
+    Vec<T, 3> e;
+    for (int i = 0; i < 3; ++i) e[i] = f.A(i, 0) * axis[0] + f.A(i, 1) * axis[1] + f.A(i, 2) * axis[2];
+    return e;
   }
 };
 

@@ -13,8 +13,8 @@ namespace polybody {
 template <StateScalar T>
 struct Handover {
   T share = T(1.0);
-  Vec<T, 3> slope = Vec<T, 3>::Zero();  ///< (3) ∂share/∂place [1/m], place moving with a
-  Vec<T, 3> place = Vec<T, 3>::Zero();  ///< (3) [m]
+  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m], place moving with a
+  Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) [m]
 };
 
 /// A point where body a and body b overlap.
@@ -30,6 +30,11 @@ namespace detail {
 struct AnyPoint {
   void operator()(ContactPoint<double> const& point) const;
 };
+/// p + n x.
+template <StateScalar T>
+Vec<T, 3> shifted(Vec<T, 3> const& p, Vec<T, 3> const& n, T const& x) {
+  return {p[0] + n[0] * x, p[1] + n[1] * x, p[2] + n[2] * x};
+}
 }  // namespace detail
 
 /// Calls visit(point) for every point where the shapes at frames a and b overlap. `may_touch` is a cheap bound: false
@@ -85,8 +90,11 @@ struct Contact {
   template <StateScalar T, class Visit>
   void for_each_point(std::array<Frame<T>, 2> const& f, Visit&& visit) const {
     geometry.template for_each_point<T>(f[0], f[1], [&](ContactPoint<T> const& p) {
-      Vec<T, 3> const v = (f[0].v + f[0].w.cross(p.place - f[0].r)) - (f[1].v + f[1].w.cross(p.place - f[1].r));
-      visit(p, v, T(normal.template force<T>(p.depth, -v.dot(p.normal)) * p.handover.share));
+      Vec<T, 3> const arm_a = p.place - f[0].r, arm_b = p.place - f[1].r;
+      Vec<T, 3> const turn_a = f[0].w.cross(arm_a), turn_b = f[1].w.cross(arm_b);
+      Vec<T, 3> v;
+      for (int i = 0; i < 3; ++i) v[i] = (f[0].v[i] + turn_a[i]) - (f[1].v[i] + turn_b[i]);
+      visit(p, v, T(normal.template force<T>(p.depth, T(-v.dot(p.normal))) * p.handover.share));
     });
   }
 
@@ -94,11 +102,11 @@ struct Contact {
   template <StateScalar T>
   Vec<T, 3> force_at(ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) const {
     using std::sqrt;
-    Vec<T, 3> force = p.normal * n;
+    Vec<T, 3> force(p.normal[0] * n, p.normal[1] * n, p.normal[2] * n);
     if (friction.coefficient > 0.0) {
-      Vec<T, 3> const slip = v - p.normal * v.dot(p.normal);
-      T const speed2 = slip.squaredNorm() + friction.slip_speed * friction.slip_speed;
-      force -= slip * (n * friction.coefficient / sqrt(speed2));
+      Vec<T, 3> const slip = detail::shifted<T>(v, p.normal, -v.dot(p.normal));
+      T const speed2 = slip.dot(slip) + friction.slip_speed * friction.slip_speed;
+      force = detail::shifted<T>(force, slip, -(n * friction.coefficient / sqrt(speed2)));
     }
     return force;
   }
@@ -107,15 +115,22 @@ struct Contact {
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, double) const {
     std::array<Wrench<T>, 2> w;
     auto const act = [&](Vec<T, 3> const& force, Vec<T, 3> const& place) {
-      w[0].f += force;
-      w[1].f -= force;
-      w[0].m += (place - f[0].r).cross(force);
-      w[1].m -= (place - f[1].r).cross(force);
+      Vec<T, 3> const arm_a = place - f[0].r, arm_b = place - f[1].r;
+      Vec<T, 3> const of_a = arm_a.cross(force), of_b = arm_b.cross(force);
+      for (int i = 0; i < 3; ++i) {
+        w[0].f[i] += force[i];
+        w[1].f[i] -= force[i];
+        w[0].m[i] += of_a[i];
+        w[1].m[i] -= of_b[i];
+      }
     };
     for_each_point(f, [&](ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) {
       if (value_of(n) > 0.0) act(force_at(p, v, n), p.place);
-      if (value_of(p.handover.share) < 1.0)
-        act(p.handover.slope * -normal.template potential<T>(p.depth), p.handover.place);
+      if (value_of(p.handover.share) < 1.0) {
+        Vec<T, 3> const& s = p.handover.slope;
+        T const stored = -normal.template potential<T>(p.depth);
+        act({s[0] * stored, s[1] * stored, s[2] * stored}, p.handover.place);
+      }
     });
     return w;
   }
@@ -131,7 +146,7 @@ struct Contact {
       double const across = normal.slope(p.depth, -v.dot(p.normal), ck, cd) * p.handover.share;
       double along = 0.0;
       if (friction.coefficient > 0.0) {
-        double const vn = v.dot(p.normal), speed2 = v.squaredNorm() - vn * vn;
+        double const vn = v.dot(p.normal), speed2 = v.dot(v) - vn * vn;
         along = cd * friction.coefficient * n / std::sqrt(speed2 + friction.slip_speed * friction.slip_speed);
       }
       add(p, across, along, f[0].r, of_a);
@@ -151,13 +166,14 @@ struct Contact {
   static void add(ContactPoint<double> const& p, double across, double along, Vec3 const& origin,
                   Mat<double, 6, 6>& sum) {
     Vec3 const rho = p.place - origin, m = rho.cross(p.normal);
+    double const rho2 = rho.dot(rho);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         double const d = across - along;
         sum(i, j) += d * p.normal[i] * p.normal[j] + (i == j ? along : 0.0);
         sum(3 + i, j) += d * m[i] * p.normal[j];
         sum(i, 3 + j) += d * p.normal[i] * m[j];
-        sum(3 + i, 3 + j) += d * m[i] * m[j] + along * ((i == j ? rho.squaredNorm() : 0.0) - rho[i] * rho[j]);
+        sum(3 + i, 3 + j) += d * m[i] * m[j] + along * ((i == j ? rho2 : 0.0) - rho[i] * rho[j]);
       }
     // [1, −ρ×]ᵀ[1, −ρ×] has −ρ× above and ρ× below the diagonal
     for (int i = 0; i < 3; ++i) {
@@ -177,12 +193,16 @@ struct SphereOnPlane {
   Required<double> radius;  ///< [m]
 
   void check(std::string const& name) const { require_not_negative(radius, name + ": the sphere's radius"); }
-  bool may_touch(Frame<double> const& a, Frame<double> const& b) const { return (a.r - b.r).dot(b.A.col(2)) < radius; }
+  template <class = void>  // compiled where it is used
+  bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
+    Vec3 const arm = a.r - b.r, n(b.A(0, 2), b.A(1, 2), b.A(2, 2));
+    return arm.dot(n) < radius;
+  }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
-    Vec<T, 3> const n = b.A.col(2);
-    T const depth = T(radius.value) - (a.r - b.r).dot(n);
-    if (value_of(depth) > 0.0) visit(ContactPoint<T>{a.r - n * T(radius.value), n, depth});
+    Vec<T, 3> const arm = a.r - b.r, n(b.A(0, 2), b.A(1, 2), b.A(2, 2));
+    T const depth = T(radius.value) - arm.dot(n);
+    if (value_of(depth) > 0.0) visit(ContactPoint<T>{detail::shifted<T>(a.r, n, T(-radius.value)), n, depth});
   }
 };
 
@@ -196,18 +216,20 @@ struct SphereOnSphere {
     require_not_negative(radius_a, name + ": the radius of the first sphere");
     require_not_negative(radius_b, name + ": the radius of the second sphere");
   }
+  template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
+    Vec3 const line = a.r - b.r;
     double const reach = radius_a + radius_b;
-    return (a.r - b.r).squaredNorm() < reach * reach;
+    return line.dot(line) < reach * reach;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
     using std::sqrt;
     Vec<T, 3> const line = a.r - b.r;
-    T const distance = sqrt(line.squaredNorm()), depth = T(radius_a + radius_b) - distance;
+    T const distance = sqrt(line.dot(line)), depth = T(radius_a + radius_b) - distance;
     if (!(value_of(depth) > 0.0) || value_of(distance) == 0.0) return;
-    Vec<T, 3> const n = line / distance;
-    visit(ContactPoint<T>{b.r + n * (T(radius_b.value) - depth * 0.5), n, depth});
+    Vec<T, 3> const n(line[0] / distance, line[1] / distance, line[2] / distance);
+    visit(ContactPoint<T>{detail::shifted<T>(b.r, n, T(radius_b.value) - depth * 0.5), n, depth});
   }
 };
 
@@ -223,18 +245,21 @@ struct SphereOnCylinder {
     require_not_negative(radius, name + ": the sphere's radius");
     require_positive(cylinder, name + ": the cylinder's radius");
   }
+  template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
-    double const reach = radius + cylinder, along = (a.r - b.r).dot(b.A.col(2));
-    return (a.r - b.r).squaredNorm() - along * along < reach * reach;
+    Vec3 const arm = a.r - b.r, axis(b.A(0, 2), b.A(1, 2), b.A(2, 2));
+    double const reach = radius + cylinder, along = arm.dot(axis);
+    return arm.dot(arm) - along * along < reach * reach;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
     using std::sqrt;
-    Vec<T, 3> const axis = b.A.col(2), arm = a.r - b.r, line = arm - axis * arm.dot(axis);
-    T const distance = sqrt(line.squaredNorm()), depth = T(radius + cylinder) - distance;
+    Vec<T, 3> const axis(b.A(0, 2), b.A(1, 2), b.A(2, 2)), arm = a.r - b.r;
+    Vec<T, 3> const line = detail::shifted<T>(arm, axis, -arm.dot(axis));
+    T const distance = sqrt(line.dot(line)), depth = T(radius + cylinder) - distance;
     if (!(value_of(depth) > 0.0) || value_of(distance) == 0.0) return;
-    Vec<T, 3> const n = line / distance;
-    visit(ContactPoint<T>{a.r - n * T(radius.value), n, depth});
+    Vec<T, 3> const n(line[0] / distance, line[1] / distance, line[2] / distance);
+    visit(ContactPoint<T>{detail::shifted<T>(a.r, n, T(-radius.value)), n, depth});
   }
 };
 

@@ -62,22 +62,25 @@ Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(F const& force,
   };
   std::array<Frame<D>, F::markers> moved;
   for (int k = 0; k < F::markers; ++k) {
-    Vec<D, 3> phi;
     for (int i = 0; i < 3; ++i) {
       moved[k].r[i] = seed(frames[k].r[i], 6 * k + i, ck);
       moved[k].v[i] = seed(frames[k].v[i], 6 * k + i, cd);
-      phi[i] = seed(0.0, 6 * k + 3 + i, ck);
       moved[k].w[i] = seed(frames[k].w[i], 6 * k + 3 + i, cd);
+      int const j = (i + 1) % 3, l = (i + 2) % 3;
+      for (int c = 0; c < 3; ++c) {  // δA = δφ × A
+        moved[k].A(i, c) = seed(frames[k].A(i, c), 6 * k + 3 + j, ck * frames[k].A(l, c));
+        moved[k].A(i, c).d[6 * k + 3 + l] = -ck * frames[k].A(j, c);
+      }
     }
-    moved[k].A = frames[k].A.template cast<D>() + skew<D>(phi) * frames[k].A.template cast<D>();
   }
   std::array<Wrench<D>, F::markers> const w = force.template wrenches<D>(moved, t);
   Mat<double, n, n> gradient;
   for (int k = 0; k < F::markers; ++k)
-    for (int i = 0; i < 3; ++i) {
-      gradient.row(6 * k + i) = w[k].f[i].d.matrix().transpose();
-      gradient.row(6 * k + 3 + i) = w[k].m[i].d.matrix().transpose();
-    }
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < n; ++j) {
+        gradient(6 * k + i, j) = w[k].f[i].d[j];
+        gradient(6 * k + 3 + i, j) = w[k].m[i].d[j];
+      }
   return gradient;
 }
 

@@ -17,8 +17,11 @@ namespace detail {
 
 template <StateScalar T>
 Vec<T, 3> load_in_world(Vec3 const& load, double scale, LoadAxes axes, Frame<T> const& frame) {
-  Vec<T, 3> const given = (load * scale).template cast<T>();
-  return axes == LoadAxes::world ? given : (frame.A * given).eval();
+  double const x = load[0] * scale, y = load[1] * scale, z = load[2] * scale;
+  if (axes == LoadAxes::world) return {T(x), T(y), T(z)};
+  Vec<T, 3> turned;
+  for (int i = 0; i < 3; ++i) turned[i] = frame.A(i, 0) * x + frame.A(i, 1) * y + frame.A(i, 2) * z;
+  return turned;
 }
 
 }  // namespace detail

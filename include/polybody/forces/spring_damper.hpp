@@ -25,25 +25,24 @@ struct SpringDamper {
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& frames, double) const {
     using std::sqrt;
     Vec<T, 3> const d = frames[1].r - frames[0].r, rate = frames[1].v - frames[0].v;
-    T const l2 = d.squaredNorm();
-    Vec<T, 3> pull;
-    if (free_length == 0.0 && damping == 0.0) {
-      pull = d * T(stiffness.value);
-    } else {
-      T const l = sqrt(l2);
+    T pull = T(stiffness.value);
+    if (free_length != 0.0 || damping != 0.0) {
+      T const l = sqrt(d.dot(d));
       T const tension = (l - T(free_length.value)) * stiffness.value + d.dot(rate) / l * damping;
-      pull = d * (tension / l);
+      pull = tension / l;
     }
     std::array<Wrench<T>, 2> w;
-    w[0].f = pull;
-    w[1].f = -pull;
+    Vec<T, 3> const f(d[0] * pull, d[1] * pull, d[2] * pull);
+    w[0].f = f;
+    w[1].f = -f;
     return w;
   }
 
   template <StateScalar T>
   T potential(std::array<Frame<T>, 2> const& frames, double) const {
     using std::sqrt;
-    T const l2 = (frames[1].r - frames[0].r).squaredNorm();
+    Vec<T, 3> const d = frames[1].r - frames[0].r;
+    T const l2 = d.dot(d);
     if (free_length == 0.0) return l2 * (0.5 * stiffness);
     T const x = sqrt(l2) - T(free_length.value);
     return x * x * (0.5 * stiffness);

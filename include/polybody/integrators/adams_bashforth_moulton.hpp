@@ -1,7 +1,7 @@
 #pragma once
 #include <polybody/integrators/adams_history.hpp>
-#include <polybody/integrators/coordinate_rate.hpp>
 #include <polybody/integrators/stabilisation.hpp>
+#include <polybody/system/system.hpp>
 
 namespace polybody {
 
@@ -10,7 +10,7 @@ namespace polybody {
 /// and with T_j = h + t₀ − t₋ⱼ:
 ///   p = y₀ + Σ_{j<k} c_j D_j,   D*₀ = y˙(p),  D*ⱼ₊₁ = (D*ⱼ − D_j)/T_j,   y₁ = p + c_k D*_k,
 /// with the error of order j taken as |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. y₁ is of order k + 1. Two evaluations a step, one
-/// more for each step refused. Coordinates on a manifold are stepped as they stand, q˙ by `CoordinateRate`, and
+/// more for each step refused. Coordinates on a manifold are stepped as they stand, q˙ by `coordinate_rates`, and
 /// normalised by ⊞ 0.
 template <class Stabilisation = WithoutRows>
 struct AdamsBashforthMoulton {
@@ -18,6 +18,7 @@ struct AdamsBashforthMoulton {
   static constexpr int order = AdamsHistory::highest;  ///< the highest
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
   static constexpr bool controls_step = true;
+  static constexpr Entries entries = Entries::coordinate_rates;
 
   double relative_tolerance = 1e-8;
   double absolute_tolerance = 1e-10;
@@ -36,15 +37,16 @@ struct AdamsBashforthMoulton {
     stabilisation.check();
   }
 
-  template <class M, class Solver>
+  template <class Solver>
   struct Workspace {
     VecX y, f, correction;  ///< of (q, v)
     VecX raw, q, v, a, lambda, zero;
-    CoordinateRate<M> coordinate_rate;
-    ForwardDynamics<M, Solver> forward;
+    VecXOf<Dual<1>> dual;  ///< room for the rates of coordinates
+    VecX q_rate;
+    ForwardDynamics<Solver> forward;
     typename Stabilisation::Scratch scratch;
 
-    explicit Workspace(System<M>& s)
+    explicit Workspace(System& s)
         : y(VecX::Zero(s.coordinates() + s.speeds())),
           f(y),
           correction(y),
@@ -54,30 +56,32 @@ struct AdamsBashforthMoulton {
           a(v),
           lambda(VecX::Zero(s.rows())),
           zero(v),
-          coordinate_rate(s),
+          dual(VecXOf<Dual<1>>::Zero(2 * s.layout().coordinates + s.layout().speeds)),
+          q_rate(q),
           forward(s),
           scratch(s) {}
 
     /// y into q, normalised, and v.
-    void split(System<M> const& system) {
+    void split(System const& system) {
       raw = y.head(raw.size());
       v = y.tail(v.size());
       system.plus(raw, zero, q);
     }
     /// y˙ at (q, v, t) into f.
-    void rates(System<M>& system, double t, RowFeedback const& feedback) {
+    void rates(System& system, double t, RowFeedback const& feedback) {
       forward.accelerations(system, q, v, t, a, lambda, feedback);
-      coordinate_rate(system, q, v, f.head(q.size()));
+      polybody::coordinate_rates(system, q, v, dual, q_rate);
+      f.head(q.size()) = q_rate;
       f.tail(a.size()) = a;
     }
   };
-  template <class Solver, class M>
-  Workspace<M, Solver> workspace(System<M>& system) const {
-    return Workspace<M, Solver>(system);
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
   }
 
-  template <class M, class W>
-  void start(System<M>& system, State& x, double, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double, W& w) const {
     check();
     stabilisation.start(w.scratch);
     w.q = x.q;
@@ -89,8 +93,8 @@ struct AdamsBashforthMoulton {
   }
 
   /// Takes at most h, less where the error asks for it. \throws StepTooSmall.
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     AdamsHistory history(x.memory, w.y.size());
     RowFeedback const feedback = stabilisation.feedback();
     auto const age = history.ages();

@@ -55,35 +55,35 @@ struct AlphaMethod {
   bool second_order_terms;
   bool stabilised;
 
-  template <class M, class Solver>
+  template <class Solver>
   struct Workspace : AlphaVectors {
-    TangentSolver<M, Solver> solver;
-    ForwardDynamics<M, Solver> forward;
+    TangentSolver<Solver> solver;
+    ForwardDynamics<Solver> forward;
     bool factored = false;
     bool second_order = false;
     double theta = 1.0;
     double h_factored = 0.0;
     int age = 0;  ///< steps that the factorisation has served
 
-    explicit Workspace(System<M>& s) : AlphaVectors(s.coordinates(), s.speeds(), s.rows()), forward(s) {}
+    explicit Workspace(System& s) : AlphaVectors(s.coordinates(), s.speeds(), s.rows()), forward(s) {}
 
-    void analyse(System<M>& s, SecondOrder second) {
-      solver.analyse(s, second, lambda);
+    void analyse(System& s, SecondOrder second) {
+      solver.analyse(s, 1, [&](BlockSink& sink) { s.tangent({1.0, 1.0, 1.0}, second, lambda, sink); });
       second_order = second == SecondOrder::included;
       factored = false;
     }
   };
 
-  template <class Solver, class M>
-  Workspace<M, Solver> workspace(System<M>& system) const {
-    Workspace<M, Solver> w(system);
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    Workspace<Solver> w(system);
     w.analyse(system, second_order_terms ? SecondOrder::included : SecondOrder::omitted);
     return w;
   }
 
   /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
-  template <class M, class Solver>
-  void start(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     if (w.second_order && !second_order_terms)
       w.analyse(system, SecondOrder::omitted);  // it was called for by a step before
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
@@ -95,8 +95,8 @@ struct AlphaMethod {
     (void)refactor(system, h, x.lambda, w);
   }
 
-  template <class M, class Solver>
-  StepReport step(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     StepHistory const history(x);
     w.v0 = x.v;
     w.a0 = history.own();
@@ -109,10 +109,7 @@ struct AlphaMethod {
 
  private:
   /// How often a step may be tried again.
-  template <class M>
-  static constexpr int efforts() {
-    return M::has_groups ? 2 : 1;
-  }
+  static int efforts(System const& s) { return s.layout().has_groups ? 2 : 1; }
   /// v̇ changes by this much with a.
   double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
 
@@ -156,20 +153,20 @@ struct AlphaMethod {
   }
 
   /// Tangent and factorisation for steps of h where `system` was evaluated last. −1, or the unknown without a pivot.
-  template <class M, class Solver>
-  Index refactor(System<M>& system, double h, VecX const& lambda, Workspace<M, Solver>& w,
-                 bool stand_ins = true) const {
+  template <class Solver>
+  Index refactor(System& system, double h, VecX const& lambda, Workspace<Solver>& w, bool stand_ins = true) const {
     w.h_factored = h;
     w.age = 0;
-    return w.solver.factor(system, {mass(), h * gamma, beta * h * h, stand_ins},
-                           w.second_order ? SecondOrder::included : SecondOrder::omitted, lambda);
+    TangentCoefficients const c{mass(), h * gamma, beta * h * h, stand_ins};
+    SecondOrder const second = w.second_order ? SecondOrder::included : SecondOrder::omitted;
+    return w.solver.factor([&](BlockSink& sink) { system.tangent(c, second, lambda, sink); });
   }
 
   /// One step from x; x changes only when Newton converged. What stalls is tried again with more effort: 1, full Newton
   /// with every term in the tangent, and from the start without extrapolation; 2, the same with stand-ins for what the
   /// forces of groups do, which jump less where friction turns round.
-  template <class M, class Solver>
-  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, int effort = 0) const {
+  template <class Solver>
+  StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     StepHistory history(x);
     bool const careful = effort > 0;
     if (careful) {
@@ -185,9 +182,9 @@ struct AlphaMethod {
 
     struct Problem {
       AlphaMethod const& method;
-      System<M>& system;
+      System& system;
       State const& x;
-      Workspace<M, Solver>& w;
+      Workspace<Solver>& w;
       double h, look_ahead;
       bool two_sets, stand_ins;
       Index bad = -1;
@@ -212,7 +209,7 @@ struct AlphaMethod {
         return bad < 0;
       }
       CorrectionSize solve() {
-        w.solver.solve(system, w.rhs, w.y);
+        w.solver.solve(w.rhs, w.y);
         bool const finite = w.y.allFinite();
         if (two_sets && finite) {
           w.back = method.beta * h * h * w.y.head(system.speeds());
@@ -236,7 +233,8 @@ struct AlphaMethod {
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
     Problem problem{*this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, effort != 1};
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
-    if (report.result != NewtonResult::converged && report.result != NewtonResult::singular && effort < efforts<M>()) {
+    if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
+        effort < efforts(system)) {
       if (!w.second_order) w.analyse(system, SecondOrder::included);
       w.factored = false;
       return advance(system, x, h, w, effort + 1);
@@ -259,8 +257,8 @@ struct AlphaMethod {
   /// C = 1/6 − β − Δ/2, P the part that the rows force); start there, and follow it when h changes. The defect of
   /// a step is h³ (C v̈ + [v, v̇]/12): q(t + h) = q ⊞ (h v + ½h² v̇ + h³(v̈/6 + [v, v̇]/12)), and the rows undo it.
   /// [derived from Arnold & Brüls 2007, Lemma 1; the bracket as in Arnold, Brüls & Cardona 2015]
-  template <class M, class Solver>
-  void correct(System<M>& system, State const& x, double h_old, double h_new, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  void correct(System& system, State const& x, double h_old, double h_new, Workspace<Solver>& w) const {
     double const delta = alpha_m - alpha_f, c = 1.0 / 6.0 - beta - 0.5 * delta;
     w.a0 += delta * (h_new - h_old) * w.jerk;
     if (system.rows() == 0 || stabilised) return;  // μ moves no speeds
@@ -278,8 +276,8 @@ struct AlphaMethod {
   /// the two disagree, or where following q⃛ itself for h would change the acceleration by as much as q⃛ does
   /// (ωh above 1.7 in an oscillator: after an impulse the stiff part carries q⃛). Then the motion is not
   /// resolved by steps of h and a correction would be noise.
-  template <class M, class Solver>
-  bool jerk_at_start(System<M>& system, State const& x, double h, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  bool jerk_at_start(System& system, State const& x, double h, Workspace<Solver>& w) const {
     w.jerk.setZero();
     auto const acceleration_after = [&](double e) {
       follow(x, e, w);

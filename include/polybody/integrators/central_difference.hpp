@@ -16,12 +16,12 @@ struct CentralDifference {
 
   Stabilisation stabilisation = {};
 
-  template <class M, class Solver>
+  template <class Solver>
   struct Workspace {
     VecX q, v, a, dq, lambda;
-    ForwardDynamics<M, Solver> forward;
+    ForwardDynamics<Solver> forward;
     typename Stabilisation::Scratch scratch;
-    explicit Workspace(System<M>& s)
+    explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           v(VecX::Zero(s.speeds())),
           a(v),
@@ -32,17 +32,17 @@ struct CentralDifference {
   };
 
   void check() const { stabilisation.check(); }
-  template <class Solver, class M>
-  Workspace<M, Solver> workspace(System<M>& system) const {
-    return Workspace<M, Solver>(system);
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double, W& w) const {
     stabilisation.start(w.scratch);
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda, stabilisation.feedback());
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     w.v = x.v + 0.5 * h * x.a;
     w.dq = h * w.v;
     system.plus(x.q, w.dq, w.q);

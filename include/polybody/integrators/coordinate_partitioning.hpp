@@ -24,8 +24,7 @@ struct CoordinatePartitioning {
     PartitionedRows rows;      ///< of positions; where there are no velocity rows, of speeds too
     PartitionedRows all_rows;  ///< of speeds where there are
     VecX phi, rate, column, delta, next;
-    template <class M>
-    explicit Scratch(System<M> const& s)
+    explicit Scratch(System const& s)
         : rows(s.rows(), s.speeds()),
           all_rows(s.velocity_rows().empty() ? 0 : s.rows(), s.speeds()),
           phi(VecX::Zero(s.rows())),
@@ -33,10 +32,7 @@ struct CoordinatePartitioning {
           column(phi),
           delta(VecX::Zero(s.speeds())),
           next(VecX::Zero(s.coordinates())) {}
-    template <class M>
-    PartitionedRows& of_speeds(System<M> const& s) {
-      return s.velocity_rows().empty() ? rows : all_rows;
-    }
+    PartitionedRows& of_speeds(System const& s) { return s.velocity_rows().empty() ? rows : all_rows; }
   };
 
   /// \throws InvalidInput unless the tolerance is positive and the largest ratio at least 1.
@@ -53,8 +49,8 @@ struct CoordinatePartitioning {
   RowFeedback feedback() const { return {}; }
 
   /// \throws NewtonStalled when the positions cannot be brought back.
-  template <class M, class Solver>
-  void apply(System<M>& system, ForwardDynamics<M, Solver>& forward, Scratch& s, VecX& q, VecX& v, double t) const {
+  template <class Solver>
+  void apply(System& system, ForwardDynamics<Solver>& forward, Scratch& s, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
     double const enough = tolerance + 16.0 * std::numeric_limits<double>::epsilon() * q.cwiseAbs().maxCoeff();
     for (int k = 0;; ++k) {
@@ -71,8 +67,8 @@ struct CoordinatePartitioning {
     s.rows.solution(1, s.delta);
     v += s.delta;
   }
-  template <class M, class Solver>
-  void velocities(System<M>& system, ForwardDynamics<M, Solver>&, Scratch& s, VecX const& q, VecX& v, double t) const {
+  template <class Solver>
+  void velocities(System& system, ForwardDynamics<Solver>&, Scratch& s, VecX const& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
     PartitionedRows& rows = s.of_speeds(system);
     reduce(system, s, rows, q, v, t);
@@ -82,8 +78,8 @@ struct CoordinatePartitioning {
 
  private:
   /// Right-hand sides −Φ and −Φ̇ at (q, v, t), and one of the two reduced.
-  template <class M>
-  void reduce(System<M>& system, Scratch& s, PartitionedRows& rows, VecX const& q, VecX const& v, double t) const {
+  template <class = void>
+  void reduce(System& system, Scratch& s, PartitionedRows& rows, VecX const& q, VecX const& v, double t) const {
     system.evaluate(q, v, t);
     system.violation(s.phi);
     system.violation_rate(s.rate);
@@ -92,12 +88,12 @@ struct CoordinatePartitioning {
     write(system, s, rows);
     rows.choose();
   }
-  template <class M>
-  static void write(System<M>& system, Scratch& s, PartitionedRows& rows) {
+  template <class = void>
+  static void write(System& system, Scratch& s, PartitionedRows& rows) {
     rows.begin();
-    if constexpr (System<M>::solves_as_it_is && !System<M>::solves_by_bodies) {
-      system.tangent({}, SecondOrder::omitted, s.phi, rows);
-    } else {  // the tangent is in other unknowns
+    if (!system.step_coordinates()) {
+      system.masses(rows);
+    } else {  // the matrix is in other unknowns
       s.delta.setZero();
       for (Index j = 0; j < system.speeds(); ++j) {
         s.delta[j] = 1.0;

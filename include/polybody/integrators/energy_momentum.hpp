@@ -27,20 +27,17 @@ struct ConservingStep {
   double tolerance;
   NewtonOptions newton;
 
-  template <class M, class Solver>
+  template <class Solver>
   struct Workspace {
-    static_assert(
-        SteppedWhole<M>,
-        "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of AncfLinear, say.");
     VecX q, v, vd, lambda, r, phi, rhs, y;
-    StepSecants<M> secants;
-    TangentSolver<M, Solver> solver;
-    ForwardDynamics<M, Solver> forward;
+    StepSecants secants;
+    TangentSolver<Solver> solver;
+    ForwardDynamics<Solver> forward;
     bool factored = false;
     double theta = 1.0;
     double h_factored = 0.0;
 
-    explicit Workspace(System<M>& s)
+    explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           v(VecX::Zero(s.speeds())),
           vd(v),
@@ -53,25 +50,25 @@ struct ConservingStep {
           forward(s) {}
   };
 
-  template <class Solver, class M>
-  Workspace<M, Solver> workspace(System<M>& system) const {
-    return Workspace<M, Solver>(system);
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
   }
 
   /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
-  template <class M, class Solver>
-  void start(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
     StepHistory::reset(x);
-    w.secants.evaluate(system, x.q, x.q, x.t, h, chi);
-    w.solver.analyse(system, 1, [&](PatternSink& sink) { w.secants.tangent(system, scale(h), sink); });
+    w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi});
+    w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
     w.factored = false;
     (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
   }
 
   /// x changes only when Newton's method converged.
-  template <class M, class Solver>
-  StepReport step(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     return advance(system, x, h, w, false);
   }
 
@@ -79,28 +76,28 @@ struct ConservingStep {
   /// Δq = h v₀ + s a with Δv = h a.
   double scale(double h) const { return (0.5 + chi) * h * h; }
 
-  template <class M, class Solver>
-  Index refactor(System<M>& system, double h, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  Index refactor(System& system, double h, Workspace<Solver>& w) const {
     w.h_factored = h;
-    return w.solver.factor(system, [&](Solver& sink) { w.secants.tangent(system, scale(h), sink); });
+    return w.solver.factor([&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
   }
 
-  template <class M, class Solver>
-  StepReport advance(System<M>& system, State& x, double h, Workspace<M, Solver>& w, bool careful) const {
+  template <class Solver>
+  StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, bool careful) const {
     struct Problem {
       ConservingStep const& method;
-      System<M>& system;
+      System& system;
       State const& x;
-      Workspace<M, Solver>& w;
+      Workspace<Solver>& w;
       double h, s;
       Index nv, rows, bad = -1;
 
       void move() { w.q = x.q + h * x.v + s * w.vd; }
       bool evaluate() {
         move();
-        w.secants.evaluate(system, x.q, w.q, x.t, h, method.chi);
+        w.secants.evaluate(system, {&x.q, &w.q, x.t, h, method.chi});
         w.secants.residual(system, w.vd, w.lambda, w.r);
-        w.secants.violation(system.model(), w.phi);
+        w.secants.violation(w.phi);
         w.rhs.head(nv) = -w.r;
         w.rhs.tail(rows) = w.phi / -s;
         return w.rhs.allFinite();
@@ -110,7 +107,7 @@ struct ConservingStep {
         return bad < 0;
       }
       CorrectionSize solve() {
-        w.solver.solve(system, w.rhs, w.y);
+        w.solver.solve(w.rhs, w.y);
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));
         double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
         return {w.y.allFinite() ? w.y.head(nv).norm() / n : std::numeric_limits<double>::quiet_NaN(),
@@ -159,8 +156,7 @@ struct EnergyMomentum {
   static constexpr char const* name = "EnergyMomentum";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
-  template <class M>
-  static constexpr bool takes = OffersSecants<M>;
+  static constexpr Entries entries = Entries::implicit_step | Entries::secants;
 
   double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50, .refactor_above = 0.16};
@@ -168,17 +164,17 @@ struct EnergyMomentum {
   /// \throws InvalidInput unless the tolerance is positive.
   void check() const { require_positive(tolerance, "EnergyMomentum: the tolerance"); }
 
-  template <class Solver, class M>
-  auto workspace(System<M>& system) const {
+  template <class Solver>
+  auto workspace(System& system) const {
     return method().template workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double h, W& w) const {
     check();
     method().start(system, x, h, w);
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     return method().step(system, x, h, w);
   }
 
@@ -194,8 +190,7 @@ struct EnergyDecaying {
   static constexpr char const* name = "EnergyDecaying";
   static constexpr int order = 1;
   static constexpr bool accepts_rows = true;
-  template <class M>
-  static constexpr bool takes = OffersSecants<M>;
+  static constexpr Entries entries = Entries::implicit_step | Entries::secants;
 
   double rho_inf = 0.9;      ///< of a mode of strain as ωh → ∞, in [0, 1]; 1 keeps energy
   double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
@@ -208,17 +203,17 @@ struct EnergyDecaying {
     require_positive(tolerance, "EnergyDecaying: the tolerance");
   }
 
-  template <class Solver, class M>
-  auto workspace(System<M>& system) const {
+  template <class Solver>
+  auto workspace(System& system) const {
     return method().template workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double h, W& w) const {
     check();
     method().start(system, x, h, w);
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     return method().step(system, x, h, w);
   }
 

@@ -17,6 +17,27 @@ struct RowFeedback {
 };
 
 namespace detail {
+/// The first entry that is NaN or infinite, or −1.
+template <class = void>
+Index first_not_finite(VecX const& x) {
+  for (Index i = 0; i < x.size(); ++i)
+    if (!std::isfinite(x[i])) return i;
+  return -1;
+}
+/// \throws NonFinite naming body and time when an entry of x (by speeds) is NaN or infinite.
+template <class = void>
+void require_finite_force(System const& s, VecX const& x) {
+  if (Index const i = first_not_finite(x); i >= 0)
+    throw NonFinite("A force on " + s.name_of(i) + " is not finite at t = " + number(s.at().t) +
+                    " s. Look at the forces applied to it and at the state before.");
+}
+/// \throws NonFinite naming joint and time when an entry of x (by rows) is NaN or infinite.
+template <class = void>
+void require_finite_rows(System const& s, VecX const& x) {
+  if (Index const i = first_not_finite(x); i >= 0)
+    throw NonFinite("The motion at " + s.name_of(s.speeds() + i) + " is not finite at t = " + number(s.at().t) +
+                    " s. Look at the state before, or take a smaller step.");
+}
 [[noreturn]] inline void throw_singular(double t, std::string const& who) {
   throw LinearSolverSingular(
       "The equations of motion have no unique acceleration at t = " + number(t) + " s; the pivot is lost at " + who +
@@ -24,10 +45,10 @@ namespace detail {
 }
 }  // namespace detail
 
-template <class M, LinearSolver Solver = DefaultSolver>
+template <LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:
-  explicit ForwardDynamics(System<M>& system)
+  explicit ForwardDynamics(System& system)
       : zero_a_(VecX::Zero(system.speeds())),
         zero_lambda_(VecX::Zero(system.rows())),
         r_(VecX::Zero(system.speeds())),
@@ -37,16 +58,16 @@ class ForwardDynamics {
         x_(VecX::Zero(system.size())),
         delta_(VecX::Zero(system.speeds())),
         next_(VecX::Zero(system.coordinates())) {
-    solver_.analyse(system, SecondOrder::omitted, zero_lambda_);
+    solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
   /// M a + Gᵀλ = f, G a = −γ − what is fed back, at (q, v, t). \throws LinearSolverSingular, NonFinite.
-  void accelerations(System<M>& system, VecX const& q, VecX const& v, double t, VecX& a, VecX& lambda,
+  void accelerations(System& system, VecX const& q, VecX const& v, double t, VecX& a, VecX& lambda,
                      RowFeedback const& feedback = {}) {
     system.evaluate(q, v, t);
     factor(system);
     system.residual(zero_a_, zero_lambda_, r_);
-    system.require_finite_force(r_);
+    detail::require_finite_force(system, r_);
     system.acceleration_bias(phi_);
     if (feedback.rate != 0.0) {
       system.violation_rate(open_);
@@ -56,14 +77,14 @@ class ForwardDynamics {
       system.violation(open_);
       phi_ += feedback.position * open_;
     }
-    system.require_finite_rows(phi_);
+    detail::require_finite_rows(system, phi_);
     solve(system, -1.0, -1.0);
     a = x_.head(system.speeds());
     lambda = x_.tail(system.rows());
   }
 
   /// The smallest change of v (in the norm of M) that satisfies G v + Φ_t = 0. Returns max |change|.
-  double project_velocities(System<M>& system, VecX const& q, VecX& v, double t) {
+  double project_velocities(System& system, VecX const& q, VecX& v, double t) {
     if (system.rows() == 0) return 0.0;
     system.evaluate(q, v, t);
     factor(system);
@@ -74,7 +95,7 @@ class ForwardDynamics {
   }
 
   /// One Gauss–Newton step of the smallest change of q (in the norm of M) towards Φ = 0; returns |Φ| before.
-  double project_positions_once(System<M>& system, VecX& q, VecX const& v, double t) {
+  double project_positions_once(System& system, VecX& q, VecX const& v, double t) {
     system.evaluate(q, v, t);
     system.violation(phi_);
     double const before = phi_.size() ? phi_.cwiseAbs().maxCoeff() : 0.0;
@@ -89,14 +110,14 @@ class ForwardDynamics {
   }
 
   /// Factors the matrix at (q, v, t) for `least_change`.
-  void hold(System<M>& system, VecX const& q, VecX const& v, double t) {
+  void hold(System& system, VecX const& q, VecX const& v, double t) {
     system.evaluate(q, v, t);
     factor(system);
   }
 
   /// out = −M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ φ: the smallest change (in the norm of M) with G out = −φ, with M and G as of the last
   /// factorisation.
-  void least_change(System<M>& system, VecX const& phi, VecX& out) {
+  void least_change(System& system, VecX const& phi, VecX& out) {
     phi_ = phi;
     solve(system, 0.0, -1.0);
     out = x_.head(system.speeds());
@@ -104,7 +125,7 @@ class ForwardDynamics {
 
   /// P b: the part of b that the rows of positions force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t); velocity rows have it
   /// zero.
-  void constrained_part(System<M>& system, VecX const& q, VecX const& v, double t, VecX const& b, VecX& out) {
+  void constrained_part(System& system, VecX const& q, VecX const& v, double t, VecX const& b, VecX& out) {
     system.evaluate(q, v, t);
     factor(system);
     system.rows_times(b, phi_);
@@ -115,7 +136,7 @@ class ForwardDynamics {
 
   /// M a + Gᵀμ = w, G a = 0 with M and G as of the last factorisation: what a force w (nv) moves and what the rows hold
   /// of it; μ of rows that repeat others is zero.
-  void response(System<M>& system, VecX const& w, VecX& a, VecX& mu) {
+  void response(System& system, VecX const& w, VecX& a, VecX& mu) {
     r_ = w;
     phi_.setZero();
     solve(system, 1.0, 0.0);
@@ -123,37 +144,37 @@ class ForwardDynamics {
     mu = x_.tail(system.rows());
   }
 
-  /// Equations that repeat others (see `System::name_of_equation`), as of the last factorisation: their multipliers are
+  /// Equations that repeat others (see `name_of_equation`), as of the last factorisation: their multipliers are
   /// not unique and are taken as zero. Empty for solvers that do not tell.
   std::span<Index const> redundant_rows() const { return solver_.dropped(); }
   /// Names of the joints and bodies that they belong to.
-  std::vector<std::string> redundant(System<M> const& system) const {
+  std::vector<std::string> redundant(System const& system) const {
     std::vector<std::string> names;
     for (Index const i : solver_.dropped()) {
-      std::string name = system.name_of_equation(i);
+      std::string name = name_of_equation(system, i);
       if (names.empty() || names.back() != name) names.push_back(std::move(name));
     }
     return names;
   }
 
  private:
-  void factor(System<M>& system) {
-    if (M::constant_mass && system.rows() == 0 && factored_) return;
-    Index const bad = solver_.factor(system, {.mass = 1.0}, SecondOrder::omitted, zero_lambda_);
-    if (bad >= 0) detail::throw_singular(system.time(), system.name_of_equation(bad));
+  void factor(System& system) {
+    if (system.rows() == 0 && factored_ && has_constant_mass(system)) return;
+    Index const bad = solver_.factor([&](BlockSink& sink) { system.masses(sink); });
+    if (bad >= 0) detail::throw_singular(system.at().t, name_of_equation(system, bad));
     factored_ = true;
   }
 
   /// [M, Gᵀ; G, 0] x = [r_scale r; phi_scale φ].
-  void solve(System<M>& system, double r_scale, double phi_scale) {
+  void solve(System& system, double r_scale, double phi_scale) {
     rhs_.head(system.speeds()) = r_scale * r_;
     rhs_.tail(system.rows()) = phi_scale * phi_;
     if (r_scale == 0.0) rhs_.head(system.speeds()).setZero();
-    solver_.solve(system, rhs_, x_);
-    if (Index const i = detail::first_not_finite(x_); i >= 0) detail::throw_singular(system.time(), system.name_of(i));
+    solver_.solve(rhs_, x_);
+    if (Index const i = detail::first_not_finite(x_); i >= 0) detail::throw_singular(system.at().t, system.name_of(i));
   }
 
-  TangentSolver<M, Solver> solver_;
+  TangentSolver<Solver> solver_;
   bool factored_ = false;
   VecX zero_a_, zero_lambda_, r_, phi_, open_, rhs_, x_, delta_, next_;
 };

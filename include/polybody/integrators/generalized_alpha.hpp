@@ -9,6 +9,7 @@ struct GeneralizedAlpha {
   static constexpr char const* name = "GeneralizedAlpha";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
+  static constexpr Entries entries = Entries::implicit_step;
 
   /// Spectral radius at infinity, in [0, 1]: 1 keeps energy, 0 damps most. With rows stay below 1 (0.99 will do): there
   /// the multipliers are only marginally stable, alternate in sign and grow over some thousand steps.
@@ -30,17 +31,17 @@ struct GeneralizedAlpha {
     require_positive(tolerance, "GeneralizedAlpha: the tolerance");
   }
 
-  template <class Solver, class M>
-  auto workspace(System<M>& system) const {
+  template <class Solver>
+  auto workspace(System& system) const {
     return method().template workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double h, W& w) const {
     check();
     method().start(system, x, h, w);
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     return method().step(system, x, h, w);
   }
 

@@ -10,6 +10,7 @@ struct HhtAlpha {
   static constexpr char const* name = "HhtAlpha";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
+  static constexpr Entries entries = Entries::implicit_step;
 
   double alpha = -0.1;      ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
   double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
@@ -25,17 +26,17 @@ struct HhtAlpha {
     require_positive(tolerance, "HhtAlpha: the tolerance");
   }
 
-  template <class Solver, class M>
-  auto workspace(System<M>& system) const {
+  template <class Solver>
+  auto workspace(System& system) const {
     return method().template workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double h, W& w) const {
     check();
     method().start(system, x, h, w);
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     return method().step(system, x, h, w);
   }
 

@@ -33,29 +33,35 @@ concept NamesStableStep = requires(double omega, double rate) {
   { I::stable_step(omega, rate) } -> std::convertible_to<double>;
 };
 
-/// An integrator is a value with options. Its workspace for a system is allocated once:
+/// An integrator is a value with options that steps a `System`, of whatever origin. Its workspace is allocated once:
 ///   auto w = integrator.template workspace<Solver>(system);
 ///   integrator.start(system, x, h, w);      after a start, a jump or an event
 ///   integrator.step(system, x, h, w);       x is untouched when it throws; takes at most h
-template <class I, class M, class Solver = DefaultSolver>
-concept Integrator = requires(I const i, System<M>& system, State& x, double h) {
-  { I::name } -> std::convertible_to<char const*>;
-  { I::order } -> std::convertible_to<int>;
-  { I::accepts_rows } -> std::convertible_to<bool>;
-  i.check();
-  i.start(system, x, h, *std::declval<decltype(i.template workspace<Solver>(system))*>());
-  {
-    i.step(system, x, h, *std::declval<decltype(i.template workspace<Solver>(system))*>())
-  } -> std::same_as<StepReport>;
-};
+/// The workspace has a member `forward`, a `ForwardDynamics<Solver>`. Static members say what it is and what it asks:
+///   name, order, accepts_rows
+///   entries                   the groups of entries that a step calls (`Entries::motion` where it is not there)
+///   controls_step             it chooses its step                             } true, or not there
+///   needs_constant_mass       it asks for bodies of constant mass             }
+///   solves_stages_together    one linear system holds the model several times }
+template <class I, class Solver = DefaultSolver>
+concept Integrator =
+    requires(I const i, System& system, State& x, double h, decltype(i.template workspace<Solver>(system))& workspace) {
+      { I::name } -> std::convertible_to<char const*>;
+      { I::order } -> std::convertible_to<int>;
+      { I::accepts_rows } -> std::convertible_to<bool>;
+      i.check();
+      i.start(system, x, h, workspace);
+      { i.step(system, x, h, workspace) } -> std::same_as<StepReport>;
+      { workspace.forward } -> std::same_as<ForwardDynamics<Solver>&>;
+    };
 
-/// Joints bring no rows into a step of model M, or integrator I keeps to them.
-template <class I, class M>
-concept KeepsToRows = I::accepts_rows || !M::may_have_rows;
-
-/// I steps M. Some integrators ask more of what they step: their member `takes`.
-template <class I, class M>
-concept StepsModel =
-    KeepsToRows<I, M> && (!requires { I::template takes<SteppedModel<M>>; } || I::template takes<SteppedModel<M>>);
+/// The groups of entries that integrator I asks of a model.
+template <class I>
+constexpr Entries entries_of() {
+  if constexpr (requires { I::entries; })
+    return I::entries;
+  else
+    return Entries::motion;
+}
 
 }  // namespace polybody

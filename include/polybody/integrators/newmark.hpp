@@ -10,6 +10,7 @@ struct Newmark {
   static constexpr char const* name = "Newmark";
   static constexpr int order = 1;
   static constexpr bool accepts_rows = true;
+  static constexpr Entries entries = Entries::implicit_step;
 
   double gamma = 0.5;
   double beta = 0.25;
@@ -27,17 +28,17 @@ struct Newmark {
     require_positive(tolerance, "Newmark: the tolerance");
   }
 
-  template <class Solver, class M>
-  auto workspace(System<M>& system) const {
+  template <class Solver>
+  auto workspace(System& system) const {
     return method().template workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double h, W& w) const {
     check();
     method().start(system, x, h, w);
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     return method().step(system, x, h, w);
   }
 
@@ -54,6 +55,7 @@ struct Trapezoidal {
   static constexpr char const* name = "Trapezoidal";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
+  static constexpr Entries entries = Entries::implicit_step;
 
   double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.refactor_above = 0.16};
@@ -64,17 +66,17 @@ struct Trapezoidal {
   /// \throws InvalidInput unless the tolerance is positive.
   void check() const { require_positive(tolerance, "Trapezoidal: the tolerance"); }
 
-  template <class Solver, class M>
-  auto workspace(System<M>& system) const {
+  template <class Solver>
+  auto workspace(System& system) const {
     return method().template workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double h, W& w) const {
     check();
     method().start(system, x, h, w);
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     return method().step(system, x, h, w);
   }
 

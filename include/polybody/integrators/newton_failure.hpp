@@ -22,12 +22,12 @@ namespace polybody::detail {
 
 /// The same for a system. `bad` is the equation without a pivot, −1 where none is known; `rhs` is the right-hand side,
 /// of one stage after another.
-template <class M>
-[[noreturn]] void throw_stalled(std::string const& integrator, System<M> const& system, double t,
+template <class = void>
+[[noreturn]] void throw_stalled(std::string const& integrator, System const& system, double t,
                                 NewtonReport const& report, Index bad, VecX const& rhs) {
   std::string who;
   if (report.result == NewtonResult::singular) {
-    who = system.name_of_equation(std::max<Index>(bad, 0) % system.equations());
+    who = name_of_equation(system, std::max<Index>(bad, 0) % equations_of(system));
   } else if (report.result == NewtonResult::not_finite) {
     Index const i = first_not_finite(rhs);
     who = system.name_of((i < 0 ? rhs.size() - 1 : i) % system.size());

@@ -30,9 +30,8 @@ struct RadauTableau {
 
 /// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G
 /// and Gᵀ.
-template <class Sink>
 struct StageSink {
-  Sink& sink;
+  BlockSink& sink;
   Index row0, col0, speeds;
   void add(Index row, Index col, BlockView const& b) {
     if (row0 == col0 || (row < speeds && col < speeds)) sink.add(row0 + row, col0 + col, b);
@@ -48,8 +47,8 @@ struct Radau {
   static constexpr char const* name = "Radau";
   static constexpr int order = 5;
   static constexpr bool accepts_rows = true;
-  template <class M>
-  static constexpr bool takes = !requires { requires M::solved_by_bodies; };
+  static constexpr Entries entries = Entries::tangent;
+  static constexpr bool solves_stages_together = true;
 
   double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< many: the matrix leaves out how rows turn
@@ -58,16 +57,12 @@ struct Radau {
   /// \throws InvalidInput unless the tolerance is positive.
   void check() const { require_positive(tolerance, "Radau: the tolerance"); }
 
-  template <class M, class Solver>
+  template <class Solver>
   struct Workspace {
-    static_assert(takes<M>,
-                  "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
-                  "step together. Take "
-                  "recursive::Augmented.");
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
     VecX q, r, phi, gamma, next, rhs, y;
-    TangentSolver<M, AutoLu> solver;
-    ForwardDynamics<M, Solver> forward;
+    TangentSolver<AutoLu> solver;
+    ForwardDynamics<Solver> forward;
     Projection::Scratch projected;
     bool factored = false;
     double theta = 1.0;
@@ -76,7 +71,7 @@ struct Radau {
     std::vector<double>
         slack;  ///< by rows: −1 on the diagonal of a row that repeats others leaves its multiplier alone
 
-    explicit Workspace(System<M>& s)
+    explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           r(VecX::Zero(s.speeds())),
           phi(VecX::Zero(s.rows())),
@@ -86,27 +81,27 @@ struct Radau {
           y(rhs),
           forward(s),
           projected(s),
-          slack(std::size_t(s.equations() - s.equation_speeds()), 0.0) {
+          slack(std::size_t(equations_of(s) - equation_speeds_of(s)), 0.0) {
       v.fill(r);
       vd.fill(r);
       delta.fill(r);
       rate.fill(r);
       lambda.fill(phi);
-      solver.analyse(s, 3, [&](PatternSink& pattern) { write(s, 1.0, pattern); });
+      solver.analyse(s, 3, [&](BlockSink& pattern) { write(s, 1.0, pattern); });
     }
 
     /// The matrix of Newton's method where `s` was evaluated last: block (i, j) is
     ///   δ_ij [M, Gᵀ; G, slack] + h a_ij D + h² (A²)_ij K.
-    template <class Sink>
-    void write(System<M>& s, double h, Sink& sink) {
+    void write(System& s, double h, BlockSink& sink) {
+      Index const n = equations_of(s), speeds = equation_speeds_of(s);
       using T = detail::RadauTableau;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
-          detail::StageSink<Sink> stage{sink, i * s.equations(), j * s.equations(), s.equation_speeds()};
+          detail::StageSink stage{sink, i * n, j * n, speeds};
           s.tangent({i == j ? 1.0 : 0.0, h * T::a[i][j], h * h * T::squared(i, j)}, SecondOrder::omitted, phi, stage);
           if (i == j)
             for (std::size_t k = 0; k < slack.size(); ++k) {
-              Index const at = s.equation_speeds() + Index(k);
+              Index const at = speeds + Index(k);
               stage.add(at, at, Eigen::Map<Mat<double, 1, 1> const>(&slack[k]));
             }
         }
@@ -120,7 +115,7 @@ struct Radau {
     }
     /// δ_i = h Σ a_ij δ˙(δ_j, v_j), by two passes from the last δ: the rate hardly depends on δ, and not at all without
     /// rotations.
-    void set_positions(System<M>& s, double h) {
+    void set_positions(System& s, double h) {
       for (int pass = 0; pass < 2; ++pass) {
         unsettled = 0.0;
         for (std::size_t j = 0; j < 3; ++j) s.local_rate(delta[j], v[j], rate[j]);
@@ -135,26 +130,26 @@ struct Radau {
     }
   };
 
-  template <class Solver, class M>
-  Workspace<M, Solver> workspace(System<M>& system) const {
-    return Workspace<M, Solver>(system);
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
   }
-  template <class M, class Solver>
-  void start(System<M>& system, State& x, double, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  void start(System& system, State& x, double, Workspace<Solver>& w) const {
     check();
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
     std::fill(w.slack.begin(), w.slack.end(), 0.0);
-    for (Index const i : w.forward.redundant_rows()) w.slack[std::size_t(i - system.equation_speeds())] = -1.0;
+    for (Index const i : w.forward.redundant_rows()) w.slack[std::size_t(i - equation_speeds_of(system))] = -1.0;
     w.factored = false;
   }
 
-  template <class M, class Solver>
-  StepReport step(System<M>& system, State& x, double h, Workspace<M, Solver>& w) const {
+  template <class Solver>
+  StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     struct Problem {
       Radau const& method;
-      System<M>& system;
+      System& system;
       State const& x;
-      Workspace<M, Solver>& w;
+      Workspace<Solver>& w;
       double h;
       Index nv, rows, bad = -1;
 
@@ -178,11 +173,11 @@ struct Radau {
       bool refactor() {
         evaluate_stage(1);
         w.h_factored = h;
-        bad = w.solver.factor(system, [&](auto& sink) { w.write(system, h, sink); });
+        bad = w.solver.factor([&](BlockSink& sink) { w.write(system, h, sink); });
         return bad < 0;
       }
       CorrectionSize solve() {
-        w.solver.solve(system, w.rhs, w.y);
+        w.solver.solve(w.rhs, w.y);
         double const n = std::sqrt(double(std::max<Index>(nv, 1)));
         double change = w.unsettled / (h * h);
         for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), nv).norm());

@@ -12,15 +12,15 @@ namespace polybody {
 namespace detail {
 
 /// Stages of an explicit method: positions, speeds and their rates.
-template <class M, class Solver, class Stabilisation, int stages>
+template <class Solver, class Stabilisation, int stages>
 struct RungeKuttaWorkspace {
   std::array<VecX, stages> position_rate, acceleration;
   VecX delta, v, q, a, lambda, error, v_error;
-  ForwardDynamics<M, Solver> forward;
+  ForwardDynamics<Solver> forward;
   typename Stabilisation::Scratch scratch;
   RowFeedback feedback;  ///< of the run
 
-  explicit RungeKuttaWorkspace(System<M>& s)
+  explicit RungeKuttaWorkspace(System& s)
       : delta(VecX::Zero(s.speeds())),
         v(delta),
         q(VecX::Zero(s.coordinates())),
@@ -34,7 +34,7 @@ struct RungeKuttaWorkspace {
     acceleration.fill(delta);
   }
 
-  void start(System<M>& system, State& x, Stabilisation const& stabilisation) {
+  void start(System& system, State& x, Stabilisation const& stabilisation) {
     stabilisation.start(scratch);
     feedback = stabilisation.feedback();
     forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda, feedback);
@@ -42,7 +42,7 @@ struct RungeKuttaWorkspace {
 
   /// Rates at x + h Σ row[j] k_j into stage i.
   template <std::size_t n>
-  void stage(System<M>& system, State const& x, double h, double c, std::array<double, n> const& row, int i) {
+  void stage(System& system, State const& x, double h, double c, std::array<double, n> const& row, int i) {
     combine(x, h, row, i);
     system.plus(x.q, delta, q);
     system.local_rate(delta, v, position_rate[std::size_t(i)]);
@@ -62,7 +62,7 @@ struct RungeKuttaWorkspace {
   }
 
   /// Projects the combined result and makes it the state at t + h.
-  void accept(System<M>& system, State& x, double h, Stabilisation const& stabilisation) {
+  void accept(System& system, State& x, double h, Stabilisation const& stabilisation) {
     system.plus(x.q, delta, q);
     stabilisation.apply(system, forward, scratch, q, v, x.t + h);
     forward.accelerations(system, q, v, x.t + h, a, lambda, feedback);
@@ -101,16 +101,16 @@ struct RungeKutta4 {
   Stabilisation stabilisation = {};
 
   void check() const { stabilisation.check(); }
-  template <class Solver, class M>
-  auto workspace(System<M>& system) const {
-    return detail::RungeKuttaWorkspace<M, Solver, Stabilisation, 4>(system);
+  template <class Solver>
+  auto workspace(System& system) const {
+    return detail::RungeKuttaWorkspace<Solver, Stabilisation, 4>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double, W& w) const {
     w.start(system, x, stabilisation);
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     using Row = std::array<double, 4>;
     w.stage(system, x, h, 0.0, Row{}, 0);
     w.stage(system, x, h, 0.5, Row{0.5}, 1);
@@ -141,19 +141,19 @@ struct DormandPrince {
     require_positive(smallest_step, "DormandPrince: the smallest step");
     stabilisation.check();
   }
-  template <class Solver, class M>
-  auto workspace(System<M>& system) const {
-    return detail::RungeKuttaWorkspace<M, Solver, Stabilisation, 7>(system);
+  template <class Solver>
+  auto workspace(System& system) const {
+    return detail::RungeKuttaWorkspace<Solver, Stabilisation, 7>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double, W& w) const {
     check();
     w.start(system, x, stabilisation);
   }
 
   /// Takes at most h, less where the error asks for it. \throws StepTooSmall.
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     using Row = std::array<double, 7>;
     static constexpr Row c{0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
     static constexpr std::array<Row, 7> a{Row{},

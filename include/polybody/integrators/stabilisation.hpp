@@ -15,16 +15,15 @@ namespace polybody {
 /// What policies have in common that need no memory and correct nothing.
 struct NoCorrection {
   struct Scratch {
-    template <class M>
-    explicit Scratch(System<M> const&) {}
+    explicit Scratch(System const&) {}
   };
   void check() const {}
   void start(Scratch&) const {}
   RowFeedback feedback() const { return {}; }
-  template <class M, class Solver>
-  void apply(System<M>&, ForwardDynamics<M, Solver>&, Scratch&, VecX&, VecX&, double) const {}
-  template <class M, class Solver>
-  void velocities(System<M>&, ForwardDynamics<M, Solver>&, Scratch&, VecX const&, VecX&, double) const {}
+  template <class Solver>
+  void apply(System&, ForwardDynamics<Solver>&, Scratch&, VecX&, VecX&, double) const {}
+  template <class Solver>
+  void velocities(System&, ForwardDynamics<Solver>&, Scratch&, VecX const&, VecX&, double) const {}
 };
 
 /// Where none is named: for models whose joints bring no rows.
@@ -52,10 +51,10 @@ struct Baumgarte {
   }
   void start(Scratch&) const {}
   RowFeedback feedback() const { return {.rate = 2.0 * alpha, .position = beta * beta}; }
-  template <class M, class Solver>
-  void apply(System<M>&, ForwardDynamics<M, Solver>&, Scratch&, VecX&, VecX&, double) const {}
-  template <class M, class Solver>
-  void velocities(System<M>&, ForwardDynamics<M, Solver>&, Scratch&, VecX const&, VecX&, double) const {}
+  template <class Solver>
+  void apply(System&, ForwardDynamics<Solver>&, Scratch&, VecX&, VecX&, double) const {}
+  template <class Solver>
+  void velocities(System&, ForwardDynamics<Solver>&, Scratch&, VecX const&, VecX&, double) const {}
 };
 
 /// After every step the positions are brought back to Φ = 0 by Gauss–Newton and the velocities to Φ̇ = 0, both
@@ -71,8 +70,8 @@ struct Projection {
   RowFeedback feedback() const { return {}; }
 
   /// \throws NewtonStalled when the positions cannot be brought back.
-  template <class M, class Solver>
-  void apply(System<M>& system, ForwardDynamics<M, Solver>& forward, Scratch&, VecX& q, VecX& v, double t) const {
+  template <class Solver>
+  void apply(System& system, ForwardDynamics<Solver>& forward, Scratch&, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
     double const enough = tolerance * (1.0 + q.cwiseAbs().maxCoeff());
     for (int k = 0;; ++k) {
@@ -83,9 +82,8 @@ struct Projection {
     }
     forward.project_velocities(system, q, v, t);
   }
-  template <class M, class Solver>
-  void velocities(System<M>& system, ForwardDynamics<M, Solver>& forward, Scratch&, VecX const& q, VecX& v,
-                  double t) const {
+  template <class Solver>
+  void velocities(System& system, ForwardDynamics<Solver>& forward, Scratch&, VecX const& q, VecX& v, double t) const {
     forward.project_velocities(system, q, v, t);
   }
 };

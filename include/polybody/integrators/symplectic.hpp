@@ -13,20 +13,18 @@ struct SymplecticEuler {
   static constexpr char const* name = "SymplecticEuler";
   static constexpr int order = 1;
   static constexpr bool accepts_rows = false;
-  template <class M>
-  static constexpr bool takes = M::constant_mass;
+  static constexpr bool needs_constant_mass = true;
   static constexpr double stable_to = 2.0;  ///< ωh
   /// Where ω²h² + 2dh = 4 a multiplier passes −1.
   static double stable_step(double omega, double rate) {
     return 4.0 / (rate + std::sqrt(rate * rate + 4.0 * omega * omega));
   }
 
-  template <class M, class Solver>
+  template <class Solver>
   struct Workspace {
-    static_assert(takes<M>, "SymplecticEuler asks for bodies of constant mass matrix.");
     VecX q, v, a, dq, lambda;
-    ForwardDynamics<M, Solver> forward;
-    explicit Workspace(System<M>& s)
+    ForwardDynamics<Solver> forward;
+    explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           v(VecX::Zero(s.speeds())),
           a(v),
@@ -36,16 +34,16 @@ struct SymplecticEuler {
   };
 
   void check() const {}
-  template <class Solver, class M>
-  Workspace<M, Solver> workspace(System<M>& system) const {
-    return Workspace<M, Solver>(system);
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double, W& w) const {
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
   }
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     w.v = x.v + h * x.a;
     w.dq = h * w.v;
     system.plus(x.q, w.dq, w.q);
@@ -68,20 +66,18 @@ struct Rattle {
   static constexpr char const* name = "Rattle";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
-  template <class M>
-  static constexpr bool takes = M::constant_mass;
+  static constexpr bool needs_constant_mass = true;
   static constexpr double stable_to = 2.0;  ///< ωh
   static double stable_step(double omega, double rate) { return stable_step_of_verlet(omega, rate); }
 
   double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
   int max_iterations = 50;   ///< each gains a factor of about 1/(hω)
 
-  template <class M, class Solver>
+  template <class Solver>
   struct Workspace {
-    static_assert(takes<M>, "Rattle asks for bodies of constant mass matrix.");
     VecX q, v, a, dq, change, lambda, phi;
-    ForwardDynamics<M, Solver> forward;
-    explicit Workspace(System<M>& s)
+    ForwardDynamics<Solver> forward;
+    explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           v(VecX::Zero(s.speeds())),
           a(v),
@@ -93,18 +89,18 @@ struct Rattle {
   };
 
   void check() const { require_positive(tolerance, "Rattle: the tolerance"); }
-  template <class Solver, class M>
-  Workspace<M, Solver> workspace(System<M>& system) const {
-    return Workspace<M, Solver>(system);
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
   }
-  template <class M, class W>
-  void start(System<M>& system, State& x, double, W& w) const {
+  template <class W>
+  void start(System& system, State& x, double, W& w) const {
     w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
   }
 
   /// \throws NewtonStalled when the positions cannot be brought to the joints.
-  template <class M, class W>
-  StepReport step(System<M>& system, State& x, double h, W& w) const {
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
     w.dq = h * x.v + (0.5 * h * h) * x.a;
     system.plus(x.q, w.dq, w.q);
     StepReport report{.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
@@ -127,8 +123,8 @@ struct Rattle {
 
  private:
   /// Moves dq along M⁻¹G₀ᵀ until Φ(q₀ ⊞ dq) = 0; how many corrections it took.
-  template <class M, class W>
-  int close(System<M>& system, State const& x, double h, W& w) const {
+  template <class W>
+  int close(System& system, State const& x, double h, W& w) const {
     double const enough = tolerance * (1.0 + x.q.cwiseAbs().maxCoeff());
     w.forward.hold(system, x.q, x.v, x.t);
     for (int k = 0; k <= max_iterations; ++k) {

@@ -35,7 +35,10 @@ Gap<1, T> angle(Gap<2, T> const& xy) {
 /// γ of θ from those of x and y: (x γ_y − y γ_x − 2 θ̇ (x ẋ + y ẏ))/n².
 template <StateScalar T>
 T angle_gamma(Gap<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> const& a, Frame<T> const& b) {
-  Vec<T, 2> const rate = xy.Ga * twist(a) + xy.Gb * twist(b);
+  T rate[2] = {T(0.0), T(0.0)};
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 3; ++j)
+      rate[i] += xy.Ga(i, j) * a.v[j] + xy.Ga(i, 3 + j) * a.w[j] + xy.Gb(i, j) * b.v[j] + xy.Gb(i, 3 + j) * b.w[j];
   T const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
   T const turning = (x * rate[1] - y * rate[0]) / n2;
   return (x * gamma[1] - y * gamma[0] - 2.0 * turning * (x * rate[0] + y * rate[1])) / n2;
@@ -43,14 +46,18 @@ T angle_gamma(Gap<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> const& a, Fr
 
 /// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ), G_r = (x G_x + y G_y)/n²: what the wrench of θ changes by as x and y change in it.
 /// The rest is the change of their own maps under the multipliers λ (−y, x)/n², which are returned.
-inline Vec2 angle_gradient(Gap<2> const& xy, double lambda, WrenchGradient& k) {
+template <class = void>  // compiled where it is used
+Vec2 angle_gradient(Gap<2> const& xy, double lambda, WrenchGradient& k) {
   double const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
-  Mat<double, 2, 12> g;
-  g << xy.Ga, xy.Gb;
-  Vec<double, 12> const turning = (x * g.row(1) - y * g.row(0)).transpose() / n2;
-  Vec<double, 12> const growing = (x * g.row(0) + y * g.row(1)).transpose() * (lambda / n2);
-  k -= turning * growing.transpose() + growing * turning.transpose();
-  return Vec2(-y, x) * (lambda / n2);
+  double turning[12], growing[12];
+  for (int j = 0; j < 12; ++j) {
+    Mat<double, 2, 6> const& g = j < 6 ? xy.Ga : xy.Gb;
+    turning[j] = (x * g(1, j % 6) - y * g(0, j % 6)) / n2;
+    growing[j] = (x * g(0, j % 6) + y * g(1, j % 6)) * (lambda / n2);
+  }
+  for (int j = 0; j < 12; ++j)
+    for (int i = 0; i < 12; ++i) k(i, j) -= turning[i] * growing[j] + growing[i] * turning[j];
+  return {-y * (lambda / n2), x * (lambda / n2)};
 }
 
 /// x = a₁·b₁ and y = a₂·b₁, whose angle is the turn of b against a about a₃. While b₁ stays in the plane of a₁, a₂ (as
@@ -58,20 +65,21 @@ inline Vec2 angle_gradient(Gap<2> const& xy, double lambda, WrenchGradient& k) {
 template <StateScalar T>
 Gap<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
   Gap<2, T> xy;
-  for (int i = 0; i < 2; ++i) perpendicular<2, T>(a.A.col(i), b.A.col(0), xy, i);
+  for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 0), xy, i);
   return xy;
 }
 
 template <StateScalar T>
 T turn_gamma(Gap<2, T> const& xy, Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> const axis = axis_of(b, 0);
   return angle_gamma<T>(
-      xy, {perpendicular_gamma<T>(a.A.col(0), b.A.col(0), a, b), perpendicular_gamma<T>(a.A.col(1), b.A.col(0), a, b)},
-      a, b);
+      xy, {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)}, a, b);
 }
 
-inline void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
+template <class = void>  // compiled where it is used
+void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
   Vec2 const each = angle_gradient(turned(a, b), lambda, k);
-  for (int i = 0; i < 2; ++i) perpendicular_gradient(a.A.col(i), b.A.col(0), each[i], k);
+  for (int i = 0; i < 2; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, 0), each[i], k);
 }
 
 /// Writes g = u·d − p θ, u fixed in a, θ the turn of b about a₃: one slide and one turn coupled, p [m/rad]. Full turns
@@ -81,8 +89,10 @@ void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> co
   no_slide<m, T>(u, a, b, gap, row);
   Gap<1, T> const turn = angle(turned(a, b));
   gap.g[row] = -p * wrapped<T>(turn.g[0] - gap.g[row] / p);
-  gap.Ga.row(row) -= turn.Ga * T(p);
-  gap.Gb.row(row) -= turn.Gb * T(p);
+  for (int j = 0; j < 6; ++j) {
+    gap.Ga(row, j) -= turn.Ga(0, j) * p;
+    gap.Gb(row, j) -= turn.Gb(0, j) * p;
+  }
 }
 
 template <StateScalar T>
@@ -90,8 +100,9 @@ T slide_and_turn_gamma(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T>
   return no_slide_gamma<T>(u, a, b) - p * turn_gamma<T>(turned(a, b), a, b);
 }
 
-inline void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b,
-                                    double lambda, WrenchGradient& k) {
+template <class = void>  // compiled where it is used
+void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b, double lambda,
+                             WrenchGradient& k) {
   no_slide_gradient(u, a, b, lambda, k);
   turn_gradient(a, b, -p * lambda, k);
 }

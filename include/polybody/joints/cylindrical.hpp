@@ -15,7 +15,10 @@ struct Cylindrical {
 
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the slide and the turn, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "Cylindrical: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "Cylindrical: the axis");
+  }
 
   template <StateScalar T>
   Gap<4, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
@@ -26,15 +29,16 @@ struct Cylindrical {
   }
   template <StateScalar T>
   Vec<T, 4> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 4> gamma;
-    gamma << polybody::rows::on_axis_gamma(a, b), polybody::rows::same_direction_gamma(a, b);
-    return gamma;
+    Vec<T, 2> const on_axis = polybody::rows::on_axis_gamma(a, b),
+                    parallel = polybody::rows::same_direction_gamma(a, b);
+    return {on_axis[0], on_axis[1], parallel[0], parallel[1]};
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 4> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::on_axis_gradient(a, b, lambda.head<2>(), k);
-    polybody::rows::same_direction_gradient(a, b, lambda.tail<2>(), k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::on_axis_gradient(a, b, {lambda[0], lambda[1]}, k);
+    polybody::rows::same_direction_gradient(a, b, {lambda[2], lambda[3]}, k);
     return k;
   }
 };

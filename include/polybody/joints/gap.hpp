@@ -8,6 +8,16 @@
 
 namespace polybody {
 
+namespace detail {
+/// `M::Zero()` without an expression type for each M.
+template <class M>
+M zeros() {
+  M m;
+  for (int i = 0; i < int(M::SizeAtCompileTime); ++i) m.data()[i] = typename M::Scalar(0.0);
+  return m;
+}
+}  // namespace detail
+
 /// The violation of m rows between frame a and frame b:
 ///   ġ = Ga Va + Gb Vb + Φ_t,   V = [ṙ; ω] in world axes.
 /// Rows are of positions (holonomic), but for those that a geometry names as `velocity_rows`: of these only the rate
@@ -15,17 +25,26 @@ namespace polybody {
 template <int m, StateScalar T = double>
 struct Gap {
   static constexpr int rows = m;
-  Vec<T, m> g = Vec<T, m>::Zero();         ///< (m) violation [m], [rad] or [1]
-  Mat<T, m, 6> Ga = Mat<T, m, 6>::Zero();  ///< (m×6) map of frame a's twist
-  Mat<T, m, 6> Gb = Mat<T, m, 6>::Zero();  ///< (m×6) map of frame b's twist
-  Vec<T, m> rate = Vec<T, m>::Zero();      ///< (m) Φ_t: the rate that is prescribed by time alone
+  Vec<T, m> g = detail::zeros<Vec<T, m>>();         ///< (m) violation [m], [rad] or [1]
+  Mat<T, m, 6> Ga = detail::zeros<Mat<T, m, 6>>();  ///< (m×6) map of frame a's twist
+  Mat<T, m, 6> Gb = detail::zeros<Mat<T, m, 6>>();  ///< (m×6) map of frame b's twist
+  Vec<T, m> rate = detail::zeros<Vec<T, m>>();      ///< (m) Φ_t: the rate that is prescribed by time alone
 };
+
+/// Axis i of a frame, a column of A.
+template <StateScalar T>
+Vec<T, 3> axis_of(Frame<T> const& frame, int i) {
+  return {frame.A(0, i), frame.A(1, i), frame.A(2, i)};
+}
 
 /// [ṙ; ω] of a frame.
 template <StateScalar T>
 Vec<T, 6> twist(Frame<T> const& frame) {
   Vec<T, 6> v;
-  v << frame.v, frame.w;
+  for (int i = 0; i < 3; ++i) {
+    v[i] = frame.v[i];
+    v[3 + i] = frame.w[i];
+  }
   return v;
 }
 
@@ -95,29 +114,30 @@ constexpr Observes needs_of_second() {
     return G::needs;
 }
 
-/// ∂[Gaᵀλ; Gbᵀλ]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12, rotations δφ in world axes, by dual numbers.
-template <Measure G>
+/// ∂[Gaᵀλ; Gbᵀλ]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12, rotations δφ in world axes, by dual numbers: δA = δφ × A.
+template <Measure G, class D = Dual<12>>
 Mat<double, 12, 12> wrench_gradient_by_duals(G const& geometry, Frame<double> const& a, Frame<double> const& b,
                                              double t, Vec<double, G::rows> const& lambda) {
-  using D = Dual<12>;
   auto const moved = [](Frame<double> const& f, int first) {
     Frame<D> m;
-    Vec<D, 3> phi;
     for (int i = 0; i < 3; ++i) {
       m.r[i] = D::variable(f.r[i], first + i);
-      phi[i] = D::variable(0.0, first + 3 + i);
+      for (int j = 0; j < 3; ++j) {
+        m.A(i, j) = D(f.A(i, j));
+        m.A(i, j).d[first + 3 + (i + 1) % 3] = f.A((i + 2) % 3, j);
+        m.A(i, j).d[first + 3 + (i + 2) % 3] = -f.A((i + 1) % 3, j);
+      }
     }
-    m.A = f.A.cast<D>() + skew<D>(phi) * f.A.cast<D>();
     return m;
   };
   Gap<G::rows, D> const gap = geometry.template gap<D>(moved(a, 0), moved(b, 6), t);
-  Vec<D, 6> const wa = gap.Ga.transpose() * lambda.template cast<D>();
-  Vec<D, 6> const wb = gap.Gb.transpose() * lambda.template cast<D>();
-  Mat<double, 12, 12> k;
-  for (int i = 0; i < 6; ++i) {
-    k.row(i) = wa[i].d.matrix().transpose();
-    k.row(i + 6) = wb[i].d.matrix().transpose();
-  }
+  auto k = detail::zeros<Mat<double, 12, 12>>();
+  for (int r = 0; r < G::rows; ++r)
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 12; ++j) {
+        k(i, j) += gap.Ga(r, i).d[j] * lambda[r];
+        k(i + 6, j) += gap.Gb(r, i).d[j] * lambda[r];
+      }
   return k;
 }
 

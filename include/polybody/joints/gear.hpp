@@ -21,6 +21,7 @@ struct Gear {
   Vec3 axis = Vec3::UnitZ();     ///< (3) unit vector of both wheels' axes, world axes at the reference configuration
   Vec3 centres = Vec3::UnitX();  ///< (3) unit vector from a's centre to b's there, perpendicular to it
 
+  template <class = void>  // compiled where it is used
   Mat3 triad() const {
     require_unit(axis, "Gear: the axis");
     require_unit(centres, "Gear: the line of centres");
@@ -41,9 +42,11 @@ struct Gear {
     Gap<1, T> const of_a = polybody::rows::angle(bearing(a, b)), of_b = polybody::rows::angle(bearing(b, a));
     Gap<1, T> gap;
     T const turns = of_a.g[0] * n.a + of_b.g[0] * n.b;
-    gap.g[0] = polybody::rows::wrapped<T>(turns - std::numbers::pi * n.b) / n.b;  // b's bearing points the other way
-    gap.Ga = of_a.Ga * T(n.a / n.b) + of_b.Gb;
-    gap.Gb = of_a.Gb * T(n.a / n.b) + of_b.Ga;
+    gap.g[0] = polybody::rows::wrapped(turns - std::numbers::pi * n.b) / n.b;  // b's bearing points the other way
+    for (int j = 0; j < 6; ++j) {
+      gap.Ga(0, j) = of_a.Ga(0, j) * (n.a / n.b) + of_b.Gb(0, j);
+      gap.Gb(0, j) = of_a.Gb(0, j) * (n.a / n.b) + of_b.Ga(0, j);
+    }
     return gap;
   }
   template <StateScalar T>
@@ -51,10 +54,11 @@ struct Gear {
     Ratio const n = ratio();
     return Vec<T, 1>(bearing_gamma(a, b) * (n.a / n.b) + bearing_gamma(b, a));
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     Ratio const n = ratio();
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero(), back = k;
+    Mat<double, 12, 12> k = detail::zeros<Mat<double, 12, 12>>(), back = k;
     bearing_gradient(a, b, lambda[0] * n.a / n.b, k);
     bearing_gradient(b, a, lambda[0], back);
     for (int i = 0; i < 12; ++i)
@@ -81,8 +85,9 @@ struct Gear {
   }
   template <StateScalar T>
   static T bearing_gamma(Frame<T> const& one, Frame<T> const& other) {
-    return polybody::rows::angle_gamma<T>(bearing(one, other), polybody::rows::on_axis_gamma(one, other), one, other);
+    return polybody::rows::angle_gamma(bearing(one, other), polybody::rows::on_axis_gamma(one, other), one, other);
   }
+  template <class = void>  // compiled where it is used
   static void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda,
                                Mat<double, 12, 12>& k) {
     Vec2 const each = polybody::rows::angle_gradient(bearing(one, other), lambda, k);

@@ -16,20 +16,26 @@ struct KnifeEdge {
   Vec3 across =
       Vec3::UnitY();  ///< (3) unit vector across the blade, world axes at the reference configuration; moves with b
 
-  Mat3 triad() const { return polybody::rows::triad_about(across, "KnifeEdge: the direction across"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(across, "KnifeEdge: the direction across");
+  }
 
   template <StateScalar T>
   Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<1, T> gap;
-    Vec<T, 3> const n = b.A.col(2), d = b.r - a.r;
-    gap.Ga << -n.transpose(), n.cross(d).transpose();
-    gap.Gb.template leftCols<3>() = n.transpose();
+    Vec<T, 3> const n = axis_of(b, 2), d = b.r - a.r, c = n.cross(d);
+    for (int i = 0; i < 3; ++i) {
+      gap.Ga(0, i) = -n[i];
+      gap.Ga(0, 3 + i) = c[i];
+      gap.Gb(0, i) = n[i];
+    }
     return gap;
   }
   /// γ = (ω_b × b₃)·u − b₃·(ω_a × (ṙ_b − ṙ_a)).
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 3> const n = b.A.col(2), d = b.r - a.r, rate = b.v - a.v, u = rate - a.w.cross(d);
+    Vec<T, 3> const n = axis_of(b, 2), d = b.r - a.r, rate = b.v - a.v, wd = a.w.cross(d), u = rate - wd;
     return Vec<T, 1>(b.w.cross(n).dot(u) - n.dot(a.w.cross(rate)));
   }
 };

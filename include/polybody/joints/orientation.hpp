@@ -21,11 +21,12 @@ struct Orientation {
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return polybody::rows::parallel_gamma<T>(a, b);
+    return polybody::rows::parallel_gamma(a, b);
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 3> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    auto k = detail::zeros<Mat<double, 12, 12>>();
     polybody::rows::parallel_gradient(a, b, lambda, k);
     return k;
   }

@@ -16,26 +16,29 @@ struct PlaneOnPlane {
 
   Vec3 normal = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(normal, "PlaneOnPlane: the normal"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(normal, "PlaneOnPlane: the normal");
+  }
 
   template <StateScalar T>
   Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<3, T> gap;
-    polybody::rows::no_slide<3, T>(a.A.col(2), a, b, gap, 0);
+    polybody::rows::no_slide(axis_of(a, 2), a, b, gap, 0);
     polybody::rows::same_direction(a, b, gap, 1);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 3> gamma;
-    gamma << polybody::rows::no_slide_gamma<T>(a.A.col(2), a, b), polybody::rows::same_direction_gamma(a, b);
-    return gamma;
+    Vec<T, 2> const parallel = polybody::rows::same_direction_gamma(a, b);
+    return {polybody::rows::no_slide_gamma(axis_of(a, 2), a, b), parallel[0], parallel[1]};
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 3> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::no_slide_gradient(a.A.col(2), a, b, lambda[0], k);
-    polybody::rows::same_direction_gradient(a, b, lambda.tail<2>(), k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::no_slide_gradient(axis_of(a, 2), a, b, lambda[0], k);
+    polybody::rows::same_direction_gradient(a, b, {lambda[1], lambda[2]}, k);
     return k;
   }
 };

@@ -16,22 +16,26 @@ struct PointInPlane {
 
   Vec3 normal = Vec3::UnitY();  ///< (3) unit vector, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(normal, "PointInPlane: the normal"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(normal, "PointInPlane: the normal");
+  }
 
   template <StateScalar T>
   Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<1, T> gap;
-    polybody::rows::no_slide<1, T>(a.A.col(2), a, b, gap, 0);
+    polybody::rows::no_slide(axis_of(a, 2), a, b, gap, 0);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::rows::no_slide_gamma<T>(a.A.col(2), a, b));
+    return Vec<T, 1>(polybody::rows::no_slide_gamma(axis_of(a, 2), a, b));
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::no_slide_gradient(a.A.col(2), a, b, lambda[0], k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::no_slide_gradient(axis_of(a, 2), a, b, lambda[0], k);
     return k;
   }
 };

@@ -15,7 +15,10 @@ struct PointOnLine {
 
   Vec3 axis = Vec3::UnitX();  ///< (3) unit vector of the line, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "PointOnLine: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "PointOnLine: the axis");
+  }
 
   template <StateScalar T>
   Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
@@ -27,9 +30,10 @@ struct PointOnLine {
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return polybody::rows::on_axis_gamma(a, b);
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 2> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    auto k = detail::zeros<Mat<double, 12, 12>>();
     polybody::rows::on_axis_gradient(a, b, lambda, k);
     return k;
   }

@@ -21,7 +21,10 @@ struct PrescribedAngle {
   Law law;                    ///< angle [rad], rate and acceleration as functions of time [s]
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "PrescribedAngle: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "PrescribedAngle: the axis");
+  }
   void check(std::string const& what) const { check_drive(law, what + ": the law of time"); }
   std::vector<double> corners() const { return corners_of(law); }
 
@@ -29,17 +32,18 @@ struct PrescribedAngle {
   Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double t) const {
     Motion const psi = law(t);
     Gap<1, T> gap = polybody::rows::angle(polybody::rows::turned(a, b));
-    gap.g[0] = polybody::rows::wrapped<T>(gap.g[0] - psi.value);
+    gap.g[0] = polybody::rows::wrapped(gap.g[0] - psi.value);
     gap.rate[0] = T(-psi.rate);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
-    return Vec<T, 1>(polybody::rows::turn_gamma<T>(polybody::rows::turned(a, b), a, b) - Motion(law(t)).acceleration);
+    return Vec<T, 1>(polybody::rows::turn_gamma(polybody::rows::turned(a, b), a, b) - Motion(law(t)).acceleration);
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    auto k = detail::zeros<Mat<double, 12, 12>>();
     polybody::rows::turn_gradient(a, b, lambda[0], k);
     return k;
   }

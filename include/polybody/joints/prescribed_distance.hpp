@@ -35,9 +35,10 @@ struct PrescribedDistance {
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
     return Vec<T, 1>(polybody::rows::distance_gamma(a, b) - Motion(law(t)).acceleration);
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    auto k = detail::zeros<Mat<double, 12, 12>>();
     polybody::rows::distance_gradient(a, b, lambda[0], k);
     return k;
   }

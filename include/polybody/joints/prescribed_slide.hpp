@@ -18,7 +18,10 @@ struct PrescribedSlide {
   Law law;                    ///< slide s [m], rate and acceleration as functions of time [s]
   Vec3 axis = Vec3::UnitX();  ///< (3) unit vector, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "PrescribedSlide: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "PrescribedSlide: the axis");
+  }
   void check(std::string const& what) const { check_drive(law, what + ": the law of time"); }
   std::vector<double> corners() const { return corners_of(law); }
 
@@ -26,19 +29,20 @@ struct PrescribedSlide {
   Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double t) const {
     Motion const s = law(t);
     Gap<1, T> gap;
-    polybody::rows::no_slide<1, T>(a.A.col(2), a, b, gap, 0);
+    polybody::rows::no_slide(axis_of(a, 2), a, b, gap, 0);
     gap.g[0] -= s.value;
     gap.rate[0] = T(-s.rate);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
-    return Vec<T, 1>(polybody::rows::no_slide_gamma<T>(a.A.col(2), a, b) - Motion(law(t)).acceleration);
+    return Vec<T, 1>(polybody::rows::no_slide_gamma(axis_of(a, 2), a, b) - Motion(law(t)).acceleration);
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::no_slide_gradient(a.A.col(2), a, b, lambda[0], k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::no_slide_gradient(axis_of(a, 2), a, b, lambda[0], k);
     return k;
   }
 };

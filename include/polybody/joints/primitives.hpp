@@ -29,22 +29,26 @@ struct PerpendicularAxes {
   Vec3 first = Vec3::UnitX();   ///< (3) unit vector a₁, world axes at the reference configuration
   Vec3 second = Vec3::UnitY();  ///< (3) unit vector b₃, perpendicular to it
 
-  Mat3 triad() const { return polybody::rows::triad_of(first, second, "PerpendicularAxes"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_of(first, second, "PerpendicularAxes");
+  }
 
   template <StateScalar T>
   Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<1, T> gap;
-    polybody::rows::perpendicular<1, T>(a.A.col(0), b.A.col(2), gap, 0);
+    polybody::rows::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 0);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::rows::perpendicular_gamma<T>(a.A.col(0), b.A.col(2), a, b));
+    return Vec<T, 1>(polybody::rows::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b));
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::perpendicular_gradient(a.A.col(0), b.A.col(2), lambda[0], k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[0], k);
     return k;
   }
 };
@@ -60,7 +64,10 @@ struct ParallelAxes {
 
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "ParallelAxes: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "ParallelAxes: the axis");
+  }
 
   template <StateScalar T>
   Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
@@ -72,9 +79,10 @@ struct ParallelAxes {
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return polybody::rows::same_direction_gamma(a, b);
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 2> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
+    auto k = detail::zeros<Mat<double, 12, 12>>();
     polybody::rows::same_direction_gradient(a, b, lambda, k);
     return k;
   }

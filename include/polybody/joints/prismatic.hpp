@@ -14,30 +14,32 @@ struct Prismatic {
 
   Vec3 axis = Vec3::UnitX();  ///< (3) unit vector of the slide, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "Prismatic: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "Prismatic: the axis");
+  }
 
   template <StateScalar T>
   Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<5, T> gap;
-    polybody::rows::no_slide<5, T>(a.A.col(0), a, b, gap, 0);
-    polybody::rows::no_slide<5, T>(a.A.col(1), a, b, gap, 1);
+    polybody::rows::no_slide(axis_of(a, 0), a, b, gap, 0);
+    polybody::rows::no_slide(axis_of(a, 1), a, b, gap, 1);
     polybody::rows::parallel(a, b, gap, 2);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 5> gamma;
-    gamma[0] = polybody::rows::no_slide_gamma<T>(a.A.col(0), a, b);
-    gamma[1] = polybody::rows::no_slide_gamma<T>(a.A.col(1), a, b);
-    gamma.template tail<3>() = polybody::rows::parallel_gamma<T>(a, b);
-    return gamma;
+    Vec<T, 2> const on_axis = polybody::rows::on_axis_gamma(a, b);
+    Vec<T, 3> const parallel = polybody::rows::parallel_gamma(a, b);
+    return {on_axis[0], on_axis[1], parallel[0], parallel[1], parallel[2]};
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::no_slide_gradient(a.A.col(0), a, b, lambda[0], k);
-    polybody::rows::no_slide_gradient(a.A.col(1), a, b, lambda[1], k);
-    polybody::rows::parallel_gradient(a, b, lambda.tail<3>(), k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::no_slide_gradient(axis_of(a, 0), a, b, lambda[0], k);
+    polybody::rows::no_slide_gradient(axis_of(a, 1), a, b, lambda[1], k);
+    polybody::rows::parallel_gradient(a, b, {lambda[2], lambda[3], lambda[4]}, k);
     return k;
   }
 };

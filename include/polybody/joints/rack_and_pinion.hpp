@@ -19,6 +19,7 @@ struct RackAndPinion {
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
   Vec3 direction = Vec3::UnitX();  ///< (3) unit vector along the rack, perpendicular to it
 
+  template <class = void>  // compiled where it is used
   Mat3 triad() const {
     require_unit(axis, "RackAndPinion: the axis");
     require_unit(direction, "RackAndPinion: the direction");
@@ -32,17 +33,18 @@ struct RackAndPinion {
   template <StateScalar T>
   Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<1, T> gap;
-    polybody::rows::slide_and_turn<1, T>(a.A.col(0), radius, a, b, gap, 0);
+    polybody::rows::slide_and_turn(axis_of(a, 0), radius, a, b, gap, 0);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::rows::slide_and_turn_gamma<T>(a.A.col(0), radius, a, b));
+    return Vec<T, 1>(polybody::rows::slide_and_turn_gamma(axis_of(a, 0), radius, a, b));
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::slide_and_turn_gradient(a.A.col(0), radius, a, b, lambda[0], k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::slide_and_turn_gradient(axis_of(a, 0), radius, a, b, lambda[0], k);
     return k;
   }
 };

@@ -22,7 +22,10 @@ struct RelativeCoordinates {
 
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the third axis, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "RelativeCoordinates: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "RelativeCoordinates: the axis");
+  }
 
   template <StateScalar T>
   Gap<6, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
@@ -35,16 +38,21 @@ struct RelativeCoordinates {
   /// Writes the first three rows.
   template <StateScalar T>
   static void slide(Frame<T> const& a, Frame<T> const& b, Gap<6, T>& gap) {
-    for (int i = 0; i < 3; ++i) polybody::rows::no_slide<6, T>(a.A.col(i), a, b, gap, i);
+    for (int i = 0; i < 3; ++i) polybody::rows::no_slide(axis_of(a, i), a, b, gap, i);
   }
   /// Writes the last three.
   template <StateScalar T>
   static void turn(Frame<T> const& a, Frame<T> const& b, Gap<6, T>& gap) {
     Turn<T> const x(a, b);
-    Mat<T, 3, 3> const map = x.map * a.A.transpose();
-    gap.g.template tail<3>() << x.s[0], x.s[1], x.psi;
-    gap.Ga.template bottomRightCorner<3, 3>() = -map;
-    gap.Gb.template bottomRightCorner<3, 3>() = map;
+    Mat<T, 3, 3> const map = product<T>(x.map, transposed<T>(a.A));
+    gap.g[3] = x.s[0];
+    gap.g[4] = x.s[1];
+    gap.g[5] = x.psi;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        gap.Ga(3 + i, 3 + j) = -map(i, j);
+        gap.Gb(3 + i, 3 + j) = map(i, j);
+      }
   }
 
   /// Of the turn: ẇ = −ω_a × w while the frames keep their ω, and the rate of w = Jl ṡ + ψ̇ n leaves
@@ -52,40 +60,83 @@ struct RelativeCoordinates {
   template <StateScalar T>
   Vec<T, 6> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     Turn<T> const x(a, b);
-    Vec<T, 3> const wa = a.A.transpose() * a.w, w = a.A.transpose() * b.w - wa, rate = x.map * w;
-    Vec<T, 3> const swing(rate[0], rate[1], T(0.0)), minus_s = -x.s;
-    Vec<T, 3> const left = right_jacobian_derivative<T>(minus_s, swing) * swing - wa.cross(w) - w.cross(x.n) * rate[2];
+    Mat<T, 3, 3> const back = transposed<T>(a.A);
+    Vec<T, 3> const wa = times<T>(back, a.w), wb = times<T>(back, b.w), w = wb - wa, rate = times<T>(x.map, w);
+    Vec<T, 3> const swing(rate[0], rate[1], T(0.0)), minus_s(-x.s[0], -x.s[1], T(0.0));
+    Vec<T, 3> const turning = wa.cross(w), n_rate = w.cross(x.n);
+    Vec<T, 3> left = times<T>(right_jacobian_derivative<T>(minus_s, swing), swing);
+    for (int i = 0; i < 3; ++i) left[i] = left[i] - turning[i] - n_rate[i] * rate[2];
+    left = times<T>(x.map, left);
     Vec<T, 6> gamma;
-    for (int i = 0; i < 3; ++i) gamma[i] = polybody::rows::no_slide_gamma<T>(a.A.col(i), a, b);
-    gamma.template tail<3>() = x.map * left;
+    for (int i = 0; i < 3; ++i) {
+      gamma[i] = polybody::rows::no_slide_gamma(axis_of(a, i), a, b);
+      gamma[3 + i] = left[i];
+    }
     return gamma;
   }
 
   /// The moment of the turn on b is Aa μ, μ = Bᵀλ = κ + y (λ₃ − n·κ) with Jr(s) κ = λ; for δθ of b against a in a's
   /// axes
   ///   δn = δθ × n,  δκ = −Jr⁻¹ ∂(Jr κ)/∂s δs,  δy = (δn − y δn₃)/(1 + n₃).
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b, Vec6 const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::no_slide_gradient(a.A * lambda.head<3>(), a, b, 1.0, k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::no_slide_gradient(times<double>(a.A, {lambda[0], lambda[1], lambda[2]}), a, b, 1.0, k);
     Turn<double> const x(a, b);
-    Mat3 const inverse = right_jacobian_inverse<double>(x.s);
-    Vec3 const l = lambda.tail<3>(), kappa = inverse * l;
-    Mat3 swing = x.map, n_slope = -skew<double>(x.n);
-    swing.row(2).setZero();
-    Mat3 const kappa_slope = -inverse * right_jacobian_derivative<double>(x.s, kappa) * swing;
+    Mat3 const inverse = right_jacobian_inverse<double>(x.s), n_fall = skew<double>(x.n);  // δn = −n_fall δθ
+    Vec3 const l(lambda[3], lambda[4], lambda[5]), kappa = times<double>(inverse, l);
+    Mat3 swing = x.map;
+    for (int j = 0; j < 3; ++j) swing(2, j) = 0.0;
+    Mat3 const kappa_fall =
+        product<double>(product<double>(inverse, right_jacobian_derivative<double>(x.s, kappa)), swing);
     double const along = l[2] - x.n.dot(kappa);
-    Mat3 const y_slope = (n_slope - x.y * n_slope.row(2)) / (1.0 + x.n[2]);
-    Mat3 const slope =
-        kappa_slope + y_slope * along - x.y * (kappa.transpose() * n_slope + x.n.transpose() * kappa_slope);
-    Mat3 const of_b = a.A * slope * a.A.transpose(), of_a = -of_b - skew<double>(a.A * (kappa + x.y * along));
-    k.block<3, 3>(9, 9) += of_b;
-    k.block<3, 3>(9, 3) += of_a;
-    k.block<3, 3>(3, 9) -= of_b;
-    k.block<3, 3>(3, 3) -= of_a;
+    Mat3 slope;
+    Vec3 moment;
+    for (int j = 0; j < 3; ++j) {
+      double fall = 0.0;
+      for (int i = 0; i < 3; ++i) fall += kappa[i] * n_fall(i, j) + x.n[i] * kappa_fall(i, j);
+      for (int i = 0; i < 3; ++i) {
+        double const y_fall = (n_fall(i, j) - x.y[i] * n_fall(2, j)) / (1.0 + x.n[2]);
+        slope(i, j) = x.y[i] * fall - kappa_fall(i, j) - y_fall * along;
+      }
+      moment[j] = kappa[j] + x.y[j] * along;
+    }
+    Mat3 const of_b = product<double>(product<double>(a.A, slope), transposed<double>(a.A));
+    Mat3 const turn = skew<double>(times<double>(a.A, moment));
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) {
+        double const of_a = of_b(i, j) + turn(i, j);
+        k(9 + i, 9 + j) += of_b(i, j);
+        k(9 + i, 3 + j) -= of_a;
+        k(3 + i, 9 + j) -= of_b(i, j);
+        k(3 + i, 3 + j) += of_a;
+      }
     return k;
   }
 
+  /// m x.
+  template <StateScalar T>
+  static Vec<T, 3> times(Mat<T, 3, 3> const& m, Vec<T, 3> const& x) {
+    return {m(0, 0) * x[0] + m(0, 1) * x[1] + m(0, 2) * x[2], m(1, 0) * x[0] + m(1, 1) * x[1] + m(1, 2) * x[2],
+            m(2, 0) * x[0] + m(2, 1) * x[1] + m(2, 2) * x[2]};
+  }
+
  private:
+  template <StateScalar T>
+  static Mat<T, 3, 3> product(Mat<T, 3, 3> const& m, Mat<T, 3, 3> const& x) {
+    Mat<T, 3, 3> out;
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) out(i, j) = m(i, 0) * x(0, j) + m(i, 1) * x(1, j) + m(i, 2) * x(2, j);
+    return out;
+  }
+  template <StateScalar T>
+  static Mat<T, 3, 3> transposed(Mat<T, 3, 3> const& m) {
+    Mat<T, 3, 3> out;
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) out(i, j) = m(j, i);
+    return out;
+  }
+
   /// Swing and twist of R = AaᵀAb, and B with [ṡ; ψ̇] = B w:
   ///   tan(|s|/2) = |(n₁, n₂)|/(1 + n₃),  ψ = atan2(R₂₁ − R₁₂, R₁₁ + R₂₂),  B = Jl⁻¹ + (e₃ − Jl⁻¹n) yᵀ,  Jl⁻¹n =
   ///   Jr⁻¹e₃.
@@ -96,19 +147,18 @@ struct RelativeCoordinates {
     Mat<T, 3, 3> map;
     Turn(Frame<T> const& a, Frame<T> const& b) {
       using std::atan2;
-      Mat<T, 3, 3> const R = a.A.transpose() * b.A;
-      n = R.col(2);
+      Mat<T, 3, 3> const R = product<T>(transposed<T>(a.A), b.A);
+      n = Vec<T, 3>(R(0, 2), R(1, 2), R(2, 2));
       T const c = 1.0 + n[2];
-      y = n / c;
-      y[2] = T(1.0);
-      s = Vec<T, 3>(-y[1], y[0], T(0.0));
-      s = s * (2.0 * ArctanSeries<T>(s.squaredNorm()).a);
+      y = Vec<T, 3>(n[0] / c, n[1] / c, T(1.0));
+      T const stretch = 2.0 * ArctanSeries<T>(T(y[0] * y[0] + y[1] * y[1])).a;
+      s = Vec<T, 3>(-y[1] * stretch, y[0] * stretch, T(0.0));
       psi = atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
-      map = right_jacobian_inverse<T>(s);
-      Vec<T, 3> const rest = -map.col(2);
-      map.transposeInPlace();  // Jl = Jrᵀ
-      map += rest * y.transpose();
-      map.row(2) = y.transpose();
+      Mat<T, 3, 3> const inverse = right_jacobian_inverse<T>(s);  // Jl = Jrᵀ
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 2; ++i) map(i, j) = inverse(j, i) - inverse(i, 2) * y[j];
+        map(2, j) = y[j];
+      }
     }
   };
 };
@@ -136,8 +186,7 @@ struct HeldCoordinates {
     for (int i = 0; i < 6; ++i)
       if (G::free[std::size_t(i)]) {
         gap.g[i] = T(0.0);
-        gap.Ga.row(i).setZero();
-        gap.Gb.row(i).setZero();
+        for (int j = 0; j < 6; ++j) gap.Ga(i, j) = gap.Gb(i, j) = T(0.0);
       }
     return gap;
   }
@@ -145,8 +194,9 @@ struct HeldCoordinates {
     for (int i = 0; i < 6; ++i)
       if (G::free[std::size_t(i)]) lambda[i] = 0.0;
     if constexpr (!may_turn) return RelativeCoordinates{}.wrench_gradient(a, b, lambda);
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::no_slide_gradient(a.A * lambda.head<3>(), a, b, 1.0, k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    Vec3 const force = RelativeCoordinates::times<double>(a.A, {lambda[0], lambda[1], lambda[2]});
+    polybody::rows::no_slide_gradient(force, a, b, 1.0, k);
     return k;
   }
 };

@@ -16,28 +16,32 @@ struct Revolute {
 
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the pin, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "Revolute: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "Revolute: the axis");
+  }
 
   template <StateScalar T>
   Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<5, T> gap;
     polybody::rows::coincident(a, b, gap);
-    polybody::rows::perpendicular<5, T>(a.A.col(0), b.A.col(2), gap, 3);
-    polybody::rows::perpendicular<5, T>(a.A.col(1), b.A.col(2), gap, 4);
+    polybody::rows::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 3);
+    polybody::rows::perpendicular(axis_of(a, 1), axis_of(b, 2), gap, 4);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 5> gamma = Vec<T, 5>::Zero();
-    gamma[3] = polybody::rows::perpendicular_gamma<T>(a.A.col(0), b.A.col(2), a, b);
-    gamma[4] = polybody::rows::perpendicular_gamma<T>(a.A.col(1), b.A.col(2), a, b);
+    Vec<T, 5> gamma = detail::zeros<Vec<T, 5>>();
+    gamma[3] = polybody::rows::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b);
+    gamma[4] = polybody::rows::perpendicular_gamma(axis_of(a, 1), axis_of(b, 2), a, b);
     return gamma;
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::perpendicular_gradient(a.A.col(0), b.A.col(2), lambda[3], k);
-    polybody::rows::perpendicular_gradient(a.A.col(1), b.A.col(2), lambda[4], k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[3], k);
+    polybody::rows::perpendicular_gradient(axis_of(a, 1), axis_of(b, 2), lambda[4], k);
     return k;
   }
 };

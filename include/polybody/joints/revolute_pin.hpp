@@ -17,7 +17,10 @@ struct RevolutePin {
   Required<double> distance;  ///< L [m]
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the pin, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "RevolutePin: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "RevolutePin: the axis");
+  }
   void check(std::string const& what) const {
     if (!(distance > 0.0) || !std::isfinite(distance))
       throw InvalidInput(what + ": its points must stand a positive, finite distance apart along the axis, but it is " +
@@ -30,24 +33,26 @@ struct RevolutePin {
     polybody::rows::same_direction(a, b, gap, 0);
     polybody::rows::on_axis(a, b, gap, 2);
     Vec<T, 3> const d = b.r - a.r;
-    gap.g[4] = d.squaredNorm() - double(distance) * distance;
-    gap.Ga.row(4).template head<3>() = d.transpose() * T(-2.0);
-    gap.Gb.row(4).template head<3>() = d.transpose() * T(2.0);
+    gap.g[4] = d.dot(d) - double(distance) * distance;
+    for (int i = 0; i < 3; ++i) {
+      gap.Ga(4, i) = d[i] * -2.0;
+      gap.Gb(4, i) = d[i] * 2.0;
+    }
     return gap;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 5> gamma;
+    Vec<T, 2> const parallel = polybody::rows::same_direction_gamma(a, b),
+                    on_axis = polybody::rows::on_axis_gamma(a, b);
     Vec<T, 3> const rate = b.v - a.v;
-    gamma << polybody::rows::same_direction_gamma(a, b), polybody::rows::on_axis_gamma(a, b),
-        rate.squaredNorm() * T(2.0);
-    return gamma;
+    return {parallel[0], parallel[1], on_axis[0], on_axis[1], T(rate.dot(rate) * 2.0)};
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::same_direction_gradient(a, b, lambda.head<2>(), k);
-    polybody::rows::on_axis_gradient(a, b, lambda.segment<2>(2), k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::same_direction_gradient(a, b, {lambda[0], lambda[1]}, k);
+    polybody::rows::on_axis_gradient(a, b, {lambda[2], lambda[3]}, k);
     for (int i = 0; i < 3; ++i) {
       k(i, i) += 2.0 * lambda[4];
       k(i, i + 6) -= 2.0 * lambda[4];

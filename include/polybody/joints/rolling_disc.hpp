@@ -25,6 +25,7 @@ struct RollingDisc {
 
   /// First axis n × axis, along the plane, so that n = a₂ |n × axis| + a₃ n·axis.
   /// \throws InvalidInput unless both are unit vectors that are not parallel.
+  template <class = void>  // compiled where it is used
   Mat3 triad() const {
     require_unit(axis, "RollingDisc: the axis");
     require_unit(normal, "RollingDisc: the normal");
@@ -42,8 +43,13 @@ struct RollingDisc {
     gap.g[0] = c.n.dot(c.p);
     for (int i = 0; i < 3; ++i) {
       Vec<T, 3> const direction = c.direction(i);
-      gap.Ga.row(i) << -direction.transpose(), direction.cross(c.p).transpose();
-      gap.Gb.row(i) << direction.transpose(), c.rho.cross(direction).transpose();
+      Vec<T, 3> const about_a = direction.cross(c.p), about_b = c.rho.cross(direction);
+      for (int j = 0; j < 3; ++j) {
+        gap.Ga(i, j) = -direction[j];
+        gap.Ga(i, 3 + j) = about_a[j];
+        gap.Gb(i, j) = direction[j];
+        gap.Gb(i, 3 + j) = about_b[j];
+      }
     }
     return gap;
   }
@@ -51,13 +57,21 @@ struct RollingDisc {
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     Contact<T> const c(*this, a, b);
-    Vec<T, 3> const axis_b = b.A.col(2), n_rate = a.w.cross(c.n), axis_rate = b.w.cross(axis_b);
+    Vec<T, 3> const axis_b = axis_of(b, 2), n_rate = a.w.cross(c.n), axis_rate = b.w.cross(axis_b);
     T const tilt = c.n.dot(axis_b), tilt_rate = n_rate.dot(axis_b) + c.n.dot(axis_rate);
-    Vec<T, 3> const m_rate = n_rate - axis_b * tilt_rate - axis_rate * tilt;
-    Vec<T, 3> const rho_rate = (m_rate - c.e * c.e.dot(m_rate)) * (-radius / c.steep), d_rate = b.v - a.v;
-    Vec<T, 3> const u = d_rate + b.w.cross(c.rho) - a.w.cross(c.p);
-    Vec<T, 3> const turning = b.w.cross(rho_rate) - a.w.cross(d_rate + rho_rate);
-    Vec<T, 3> gamma;
+    Vec<T, 3> m_rate, rho_rate, p_rate, u, turning, gamma;
+    for (int i = 0; i < 3; ++i) m_rate[i] = n_rate[i] - axis_b[i] * tilt_rate - axis_rate[i] * tilt;
+    T const along = c.e.dot(m_rate), scale = -radius / c.steep;
+    for (int i = 0; i < 3; ++i) {
+      rho_rate[i] = (m_rate[i] - c.e[i] * along) * scale;
+      p_rate[i] = b.v[i] - a.v[i] + rho_rate[i];
+    }
+    Vec<T, 3> const by_b = b.w.cross(c.rho), by_a = a.w.cross(c.p);
+    Vec<T, 3> const turn_b = b.w.cross(rho_rate), turn_a = a.w.cross(p_rate);
+    for (int i = 0; i < 3; ++i) {
+      u[i] = b.v[i] - a.v[i] + by_b[i] - by_a[i];
+      turning[i] = turn_b[i] - turn_a[i];
+    }
     for (int i = 0; i < 3; ++i) gamma[i] = a.w.cross(c.direction(i)).dot(u) + c.direction(i).dot(turning);
     return gamma;
   }
@@ -71,14 +85,18 @@ struct RollingDisc {
     Contact(RollingDisc const& disc, Frame<T> const& a, Frame<T> const& b) {
       using std::sqrt;
       double const along = disc.normal.dot(disc.axis), across = disc.normal.cross(disc.axis).norm();
-      n = a.A.col(1) * T(across) + a.A.col(2) * T(along);
-      t1 = a.A.col(0);
+      for (int i = 0; i < 3; ++i) n[i] = a.A(i, 1) * across + a.A(i, 2) * along;
+      t1 = axis_of(a, 0);
       t2 = n.cross(t1);
-      Vec<T, 3> const m = n - b.A.col(2) * n.dot(b.A.col(2));
-      steep = sqrt(m.squaredNorm());
-      e = m / steep;
-      rho = e * T(-disc.radius);
-      p = b.r - a.r + rho;
+      Vec<T, 3> const axis_b = axis_of(b, 2);
+      T const tilt = n.dot(axis_b);
+      for (int i = 0; i < 3; ++i) e[i] = n[i] - axis_b[i] * tilt;
+      steep = sqrt(e.dot(e));
+      for (int i = 0; i < 3; ++i) {
+        e[i] = e[i] / steep;
+        rho[i] = e[i] * -disc.radius;
+        p[i] = b.r[i] - a.r[i] + rho[i];
+      }
     }
     Vec<T, 3> const& direction(int i) const { return i == 0 ? n : i == 1 ? t1 : t2; }
   };

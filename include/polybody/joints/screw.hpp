@@ -16,7 +16,10 @@ struct Screw {
   Required<double> pitch;     ///< p, slide for each radian [m/rad], the lead over 2π; negative for a left-handed thread
   Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
 
-  Mat3 triad() const { return polybody::rows::triad_about(axis, "Screw: the axis"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_about(axis, "Screw: the axis");
+  }
   JointMotions motions() const { return {.list = {JointMotion{JointMotion::Kind::screw, 2, pitch}}, .count = 1}; }
   void check(std::string const& what) const {
     if (!std::isfinite(pitch) || pitch == 0.0)
@@ -29,22 +32,23 @@ struct Screw {
     Gap<5, T> gap;
     polybody::rows::on_axis(a, b, gap, 0);
     polybody::rows::same_direction(a, b, gap, 2);
-    polybody::rows::slide_and_turn<5, T>(a.A.col(2), pitch, a, b, gap, 4);
+    polybody::rows::slide_and_turn(axis_of(a, 2), pitch, a, b, gap, 4);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 5> gamma;
-    gamma << polybody::rows::on_axis_gamma(a, b), polybody::rows::same_direction_gamma(a, b),
-        polybody::rows::slide_and_turn_gamma<T>(a.A.col(2), pitch, a, b);
-    return gamma;
+    Vec<T, 2> const on_axis = polybody::rows::on_axis_gamma(a, b),
+                    parallel = polybody::rows::same_direction_gamma(a, b);
+    return {on_axis[0], on_axis[1], parallel[0], parallel[1],
+            polybody::rows::slide_and_turn_gamma<T>(axis_of(a, 2), pitch, a, b)};
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::on_axis_gradient(a, b, lambda.head<2>(), k);
-    polybody::rows::same_direction_gradient(a, b, lambda.segment<2>(2), k);
-    polybody::rows::slide_and_turn_gradient(a.A.col(2), pitch, a, b, lambda[4], k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::on_axis_gradient(a, b, {lambda[0], lambda[1]}, k);
+    polybody::rows::same_direction_gradient(a, b, {lambda[2], lambda[3]}, k);
+    polybody::rows::slide_and_turn_gradient(axis_of(a, 2), pitch, a, b, lambda[4], k);
     return k;
   }
 };

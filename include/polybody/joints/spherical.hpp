@@ -21,10 +21,11 @@ struct Spherical {
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const&, Frame<T> const&, double) const {
-    return Vec<T, 3>::Zero();
+    return detail::zeros<Vec<T, 3>>();
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&, Vec<double, 3> const&) const {
-    return Mat<double, 12, 12>::Zero();
+    return detail::zeros<Mat<double, 12, 12>>();
   }
 };
 

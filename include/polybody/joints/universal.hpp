@@ -17,7 +17,10 @@ struct Universal {
   Vec3 first = Vec3::UnitX();   ///< (3) unit vector a₁, world axes at the reference configuration
   Vec3 second = Vec3::UnitY();  ///< (3) unit vector b₃, perpendicular to it
 
-  Mat3 triad() const { return polybody::rows::triad_of(first, second, "Universal"); }
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::rows::triad_of(first, second, "Universal");
+  }
   /// About a₁, then about b₃.
   JointMotions motions() const {
     return {.list = {JointMotion{JointMotion::Kind::turn, 0}, JointMotion{JointMotion::Kind::turn, 2}}, .count = 2};
@@ -27,19 +30,20 @@ struct Universal {
   Gap<4, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<4, T> gap;
     polybody::rows::coincident(a, b, gap);
-    polybody::rows::perpendicular<4, T>(a.A.col(0), b.A.col(2), gap, 3);
+    polybody::rows::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 3);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 4> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 4> gamma = Vec<T, 4>::Zero();
-    gamma[3] = polybody::rows::perpendicular_gamma<T>(a.A.col(0), b.A.col(2), a, b);
+    Vec<T, 4> gamma = detail::zeros<Vec<T, 4>>();
+    gamma[3] = polybody::rows::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b);
     return gamma;
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 4> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::perpendicular_gradient(a.A.col(0), b.A.col(2), lambda[3], k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[3], k);
     return k;
   }
 };

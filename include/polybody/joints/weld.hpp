@@ -22,14 +22,16 @@ struct Weld {
   }
   template <StateScalar T>
   Vec<T, 6> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 6> gamma = Vec<T, 6>::Zero();
-    gamma.template tail<3>() = polybody::rows::parallel_gamma<T>(a, b);
+    Vec<T, 6> gamma = detail::zeros<Vec<T, 6>>();
+    Vec<T, 3> const parallel = polybody::rows::parallel_gamma(a, b);
+    for (int i = 0; i < 3; ++i) gamma[3 + i] = parallel[i];
     return gamma;
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 6> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::parallel_gradient(a, b, lambda.tail<3>(), k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::parallel_gradient(a, b, {lambda[3], lambda[4], lambda[5]}, k);
     return k;
   }
 };

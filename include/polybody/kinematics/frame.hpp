@@ -36,24 +36,37 @@ struct Placement {
   Mat3 axes = Mat3::Identity();  ///< (3×3) columns are the body's axes in world axes
 
   /// In the plane: origin (x, y) and the angle from world x to body x [rad].
+  template <class = void>  // compiled where it is used
   static Placement planar(double x, double y, double angle = 0.0) {
     return {Vec3(x, y, 0.0), exp_so3<double>(Vec3(0.0, 0.0, angle))};
   }
   /// Origin and rotation vector [rad].
+  template <class = void>  // compiled where it is used
   static Placement at(Vec3 const& origin, Vec3 const& rotation = Vec3::Zero()) {
     return {origin, exp_so3<double>(rotation)};
   }
 
   /// \throws InvalidInput naming `what` unless finite and orthonormal, right-handed.
+  template <class = void>  // compiled where it is used
   void check(std::string const& what) const {
     require_finite(origin, what + ": the placement's origin");
     require_finite(axes, what + ": the placement's axes");
-    if ((axes.transpose() * axes - Mat3::Identity()).norm() > 1e-9 || axes.determinant() < 0.0)
+    double off = 0.0, determinant = 0.0;  // off: |AᵀA − 1|²
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, k = (i + 2) % 3;
+      determinant += axes(i, 0) * (axes(j, 1) * axes(k, 2) - axes(k, 1) * axes(j, 2));
+      for (int n = 0; n < 3; ++n) {
+        double const dot = axes(0, i) * axes(0, n) + axes(1, i) * axes(1, n) + axes(2, i) * axes(2, n);
+        off += (i == n ? dot - 1.0 : dot) * (i == n ? dot - 1.0 : dot);
+      }
+    }
+    if (std::sqrt(off) > 1e-9 || determinant < 0.0)
       throw InvalidInput(what + ": the placement's axes must be orthonormal and right-handed.");
   }
 
   /// The angle about world z of a planar placement [rad].
   /// \throws InvalidInput when the placement leaves the plane z = 0.
+  template <class = void>  // compiled where it is used
   double planar_angle(std::string const& what) const {
     check(what);
     if (std::abs(origin.z()) > 1e-12 || std::abs(axes(2, 2) - 1.0) > 1e-12)

@@ -28,10 +28,12 @@ struct Ground {
   using Point = Placement;
 
   /// The marker at `origin` [m], axes parallel to the world's.
+  template <class = void>  // compiled where it is used
   Point at(Vec3 const& origin) const {
     require_finite(origin, "Ground: the point");
     return Placement::at(origin);
   }
+  template <class = void>  // compiled where it is used
   Point at(Placement const& placement) const {
     placement.check("Ground");
     return placement;

@@ -18,6 +18,9 @@ struct BlockView {
         row_step(D::IsRowMajor ? m.derived().outerStride() : m.derived().innerStride()),
         col_step(D::IsRowMajor ? m.derived().innerStride() : m.derived().outerStride()) {}
 
+  BlockView(double const* first, Index height, Index width, Index down, Index right)
+      : data(first), rows(height), cols(width), row_step(down), col_step(right) {}
+
   double operator()(Index i, Index j) const { return data[i * row_step + j * col_step]; }
 };
 

@@ -13,17 +13,13 @@ using Quaternion = Vec<T, 4>;
 
 template <class T>
 Quaternion<T> quaternion_product(Quaternion<T> const& p, Quaternion<T> const& q) {
-  Quaternion<T> r;
-  r << p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-      p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1], p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
-  return r;
+  return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+          p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1], p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
 }
 
 template <class T>
 Quaternion<T> conjugate(Quaternion<T> const& q) {
-  Quaternion<T> r;
-  r << q[0], -q[1], -q[2], -q[3];
-  return r;
+  return {q[0], -q[1], -q[2], -q[3]};
 }
 
 /// Rotation matrix A(q), 3×3, of a unit quaternion, written where it is to stand.
@@ -58,9 +54,7 @@ Quaternion<T> quaternion_exp(Vec<T, 3> const& phi) {
   Vec<T, 3> const half = phi * 0.5;
   T const x = half.squaredNorm();
   RotationSeries<T> const s(x);
-  Quaternion<T> q;
-  q << 1.0 - x * s.b, half * s.a;
-  return q;
+  return {1.0 - x * s.b, half[0] * s.a, half[1] * s.a, half[2] * s.a};
 }
 
 /// log(q): the rotation vector of a unit quaternion, |φ| ≤ π [rad]. q and −q give the same vector.
@@ -94,7 +88,8 @@ Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
 }
 
 /// The unit quaternion of a rotation matrix (w ≥ 0).
-inline Quaternion<double> quaternion_of(Mat3 const& a) {
+template <class = void>  // compiled where it is used
+Quaternion<double> quaternion_of(Mat3 const& a) {
   Eigen::Quaterniond const e(a);
   Quaternion<double> q(e.w(), e.x(), e.y(), e.z());
   q.normalize();
@@ -102,6 +97,9 @@ inline Quaternion<double> quaternion_of(Mat3 const& a) {
 }
 
 /// log of a rotation matrix: rotation vector with |φ| ≤ π [rad].
-inline Vec3 log_so3(Mat3 const& a) { return quaternion_log<double>(quaternion_of(a)); }
+template <class = void>  // compiled where it is used
+Vec3 log_so3(Mat3 const& a) {
+  return quaternion_log<double>(quaternion_of(a));
+}
 
 }  // namespace polybody

@@ -14,8 +14,27 @@ namespace polybody {
 template <class T>
 Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
   Mat<T, 3, 3> s;
-  s << T(0), -a[2], a[1], a[2], T(0), -a[0], -a[1], a[0], T(0);
+  for (int i = 0; i < 3; ++i) {
+    int const j = (i + 1) % 3, k = (i + 2) % 3;
+    s(i, i) = T(0);
+    s(j, i) = a[k];
+    s(i, j) = -a[k];
+  }
   return s;
+}
+
+/// 1 + b ã + c ã², entry by entry: matrix products of Eigen would cost more to compile.
+template <class T>
+Mat<T, 3, 3> one_and_skew(Vec<T, 3> const& a, T const& b, T const& c) {
+  Mat<T, 3, 3> m;
+  for (int i = 0; i < 3; ++i) {
+    int const j = (i + 1) % 3, k = (i + 2) % 3;
+    T const odd = a[k] * b, even = a[i] * a[j] * c;
+    m(i, i) = 1.0 - (a[j] * a[j] + a[k] * a[k]) * c;
+    m(j, i) = even + odd;
+    m(i, j) = even - odd;
+  }
+  return m;
 }
 
 /// The coefficients of exp and its Jacobian as functions of x = |φ|², by series near zero:
@@ -94,16 +113,14 @@ struct ArctanSeries {
 template <class T>
 Mat<T, 3, 3> exp_so3(Vec<T, 3> const& phi) {
   RotationSeries<T> const s(phi.squaredNorm());
-  Mat<T, 3, 3> const h = skew(phi);
-  return Mat<T, 3, 3>::Identity() + h * s.a + (h * h) * s.b;
+  return one_and_skew<T>(phi, s.a, s.b);
 }
 
 /// Right Jacobian Jr(φ) = 1 − b φ̃ + c φ̃²: exp(φ + δ) ≈ exp(φ) exp(Jr δ), and ω_body = Jr φ̇.
 template <class T>
 Mat<T, 3, 3> right_jacobian(Vec<T, 3> const& phi) {
   RotationSeries<T> const s(phi.squaredNorm());
-  Mat<T, 3, 3> const h = skew(phi);
-  return Mat<T, 3, 3>::Identity() - h * s.b + (h * h) * s.c;
+  return one_and_skew<T>(phi, -s.b, s.c);
 }
 
 /// Left Jacobian Jl(φ) = Jr(−φ): ω_world = Jl φ̇.
@@ -127,8 +144,7 @@ Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
   } else {
     e = (1.0 - s.a / (2.0 * s.b)) / x;
   }
-  Mat<T, 3, 3> const h = skew(phi);
-  return Mat<T, 3, 3>::Identity() + h * 0.5 + (h * h) * e;
+  return one_and_skew<T>(phi, T(0.5), e);
 }
 
 /// ∂(Jr(φ) x)/∂φ at fixed x, 3×3:

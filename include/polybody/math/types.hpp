@@ -60,14 +60,18 @@ inline void require_not_negative(double x, std::string const& what) {
 /// \throws InvalidInput unless every entry of `x` is finite.
 template <class Derived>
 void require_finite(Eigen::MatrixBase<Derived> const& x, std::string const& what) {
-  if (!x.allFinite()) throw InvalidInput(what + " must be finite, but has a NaN or an infinity.");
+  typename Derived::PlainObject const& m = x.derived();  // an expression is evaluated; in loops, which compile fast
+  for (Index j = 0; j < m.cols(); ++j)
+    for (Index i = 0; i < m.rows(); ++i)
+      if (!std::isfinite(m(i, j))) throw InvalidInput(what + " must be finite, but has a NaN or an infinity.");
 }
 
 /// \throws InvalidInput unless `axis` has length one (to 1e-9).
 inline void require_unit(Vec3 const& axis, std::string const& what) {
   require_finite(axis, what);
-  if (std::abs(axis.norm() - 1.0) > 1e-9)
-    throw InvalidInput(what + " must be a unit vector, but has length " + number(axis.norm()) + ". Normalise it.");
+  double const length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+  if (std::abs(length - 1.0) > 1e-9)
+    throw InvalidInput(what + " must be a unit vector, but has length " + number(length) + ". Normalise it.");
 }
 
 }  // namespace polybody

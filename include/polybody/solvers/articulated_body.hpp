@@ -13,10 +13,11 @@
 
 namespace polybody {
 
-class ArticulatedBodySolver {
+template <class = void>  // compiled where it is used
+class ArticulatedBodySolverOf {
  public:
   /// Whose tree it is, and where its bodies are; both must outlive the use of the solver. Allocates the first time.
-  void attach(Reduction const& reduction, TreeState const& state) {
+  void attach(ReductionOf<> const& reduction, TreeState const& state) {
     reduction_ = &reduction;
     state_ = &state;
     if (!nodes_.empty()) return;
@@ -195,7 +196,7 @@ class ArticulatedBodySolver {
         for (int k = 0; k < n.speeds; ++k) n.u[k] += n.inverse(k, c) * given[c];  // D⁻¹ (r + Sᵀf)
       if (bodies[i].parent < 0) continue;
       Vec6& f = nodes_[std::size_t(bodies[i].parent)].f;
-      JointTree::add_back(n.f, state_->frames[i].arm, f);
+      JointTreeOf<>::add_back(n.f, state_->frames[i].arm, f);
       for (int k = 0; k < n.speeds; ++k) f -= n.u[k] * n.right.col(k);
     }
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -207,7 +208,7 @@ class ArticulatedBodySolver {
         for (int k = 0; k < n.speeds; ++k) by_parent[k] = n.left.row(k).dot(p);
         for (int c = 0; c < n.speeds; ++c)
           for (int k = 0; k < n.speeds; ++k) n.u[k] -= n.inverse(k, c) * by_parent[c];
-        JointTree::add_carried(p, state_->frames[i].arm, n.x);
+        JointTreeOf<>::add_carried(p, state_->frames[i].arm, n.x);
       }
       for (int k = 0; k < n.speeds; ++k) {
         n.x += n.u[k] * n.s.col(k);
@@ -222,7 +223,7 @@ class ArticulatedBodySolver {
     return sum;
   }
 
-  Reduction const* reduction_ = nullptr;
+  ReductionOf<> const* reduction_ = nullptr;
   TreeState const* state_ = nullptr;
   std::vector<Node> nodes_;
   std::vector<Index> owner_, row_of_;    // body of a whole speed; narrow row of a whole one
@@ -232,5 +233,7 @@ class ArticulatedBodySolver {
   DenseLu loops_;
   Index misplaced_ = -1;
 };
+
+using ArticulatedBodySolver = ArticulatedBodySolverOf<>;
 
 }  // namespace polybody

@@ -31,6 +31,12 @@ class BlockFactor {
   /// Systems up to this size fall back on one dense block with pivoting.
   static constexpr Index dense_limit = 64;
 
+  BlockFactor() = default;
+  BlockFactor(BlockFactor const&) = delete;  // its slots point into its storage
+  BlockFactor& operator=(BlockFactor const&) = delete;
+  BlockFactor(BlockFactor&&) = default;
+  BlockFactor& operator=(BlockFactor&&) = default;
+
   void analyse(Index size, std::vector<Block> const& blocks) {
     size_ = size;
     blocks_ = blocks;
@@ -49,20 +55,12 @@ class BlockFactor {
   /// Adds a block; the blocks come in the analysed order.
   void add(Index, Index, BlockView const& b) {
     int const end = layout_.first_piece[++next_];
-    for (int k = layout_.first_piece[next_ - 1]; k < end; ++k) {
-      detail::BlockLayout::Piece const& p = layout_.pieces[std::size_t(k)];
-      if constexpr (!two_sided)
-        if (p.lower) continue;
-      double const* const from = b.data + p.row * b.row_step + p.col * b.col_step;
-      if (p.lower)
-        detail::add_block(l_.data() + p.to, p.stride, from, b.col_step, b.row_step, p.cols, p.rows);
-      else
-        detail::add_block(u_.data() + p.to, p.stride, from, b.row_step, b.col_step, p.rows, p.cols);
-    }
+    for (int k = layout_.first_piece[next_ - 1]; k < end; ++k) slots_[std::size_t(k)].add(b);
   }
-
-  /// … of zeros.
+  /// A block of zeros.
   void skip(Index, Index, Index, Index) { ++next_; }
+  /// Where blocks go; as long as the solver is not analysed again and does not change its order (`reordered`).
+  BlockSlots slots() const { return {slots_.data(), layout_.first_piece.data()}; }
 
   /// −1, or the unknown without a usable pivot. Rows of a loop that repeat others are dropped: see `dropped`.
   /// After a failure `reordered` may ask for the same matrix once more.
@@ -127,6 +125,12 @@ class BlockFactor {
     swaps_.assign(layout_.unknown.size(), 0);
     dropped_.assign(std::size_t(size_), 0);
     dropped_count_ = 0;
+    slots_.clear();
+    for (detail::BlockLayout::Piece const& p : layout_.pieces) {
+      bool const read = two_sided || !p.lower;
+      double* const to = (p.lower ? l_.data() : u_.data()) + (read ? p.to : 0);
+      slots_.push_back({to, p.row, p.col, read ? p.rows : 0, read ? p.cols : 0, p.stride, p.lower});
+    }
   }
   bool is_symmetric() const;
 
@@ -182,7 +186,8 @@ class BlockFactor {
   detail::BlockLayout layout_;
   detail::BlockLayout::Lessons lessons_;
   bool reordered_ = false, symmetric_ = false;
-  std::size_t next_ = 0;  // block to be added
+  std::size_t next_ = 0;           // block to be added
+  std::vector<BlockPiece> slots_;  // of the pieces of all blocks
   std::vector<int> swaps_;
   std::vector<Index> dropped_;
   std::size_t dropped_count_ = 0;

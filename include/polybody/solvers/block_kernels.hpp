@@ -132,17 +132,6 @@ void add_sizes(double* y, double const* a, Index a_stride, double const* b, Inde
   }
 }
 
-/// to (by rows) += from, whose rows are `outer_step` apart and their entries `inner_step`.
-inline void add_block(double* __restrict to, int stride, double const* __restrict from, Index outer_step,
-                      Index inner_step, int outer, int inner) {
-  for (int i = 0; i < outer; ++i, to += stride, from += outer_step) {
-    if (inner_step == 1)
-      for (int j = 0; j < inner; ++j) to[j] += from[j];
-    else
-      for (int j = 0; j < inner; ++j) to[j] += from[j * inner_step];
-  }
-}
-
 inline double sum_of(Lane const& x) {
   double total = x[0];
   for (int k = 1; k < lane_size; ++k) total += x[k];

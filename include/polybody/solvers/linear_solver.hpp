@@ -1,24 +1,13 @@
 #pragma once
 /// \file
-/// What a linear solver offers: it is itself the sink into which the tangent is written.
+/// What a linear solver offers: it receives the blocks of the matrix, by `add` or in the slots that it names.
 
 #include <algorithm>
 #include <vector>
 
-#include <polybody/math/block_view.hpp>
+#include <polybody/math/block_sink.hpp>
 
 namespace polybody {
-
-/// Place of a block in the matrix.
-struct Block {
-  Index row, col, rows, cols;
-};
-
-/// Records where blocks go, in the order in which they come.
-struct PatternSink {
-  std::vector<Block> blocks;
-  void add(Index row, Index col, BlockView const& b) { blocks.push_back({row, col, b.rows, b.cols}); }
-};
 
 /// analyse (once, allocates) → begin → add… → factor → solve…; the blocks come in the analysed order.
 template <class S>
@@ -32,11 +21,12 @@ concept LinearSolver = requires(S s, std::vector<Block> const blocks, Mat3 const
 
 /// Writes the matrix into the solver and factors it; twice where the solver asks for it in another order.
 /// Returns −1, or the column without a usable pivot.
-template <LinearSolver S, class Write>
-Index write_and_factor(S& solver, Write&& write) {
+template <LinearSolver S>
+Index write_and_factor(S& solver, BlockWriter const& write) {
   for (;;) {
     solver.begin();
-    write(solver);
+    BlockSink sink(solver);
+    write(sink);
     Index const bad = solver.factor();
     if constexpr (requires { solver.reordered(); })
       if (bad >= 0 && solver.reordered()) continue;

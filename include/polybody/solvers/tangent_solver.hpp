@@ -1,77 +1,66 @@
 #pragma once
-#include <polybody/solvers/articulated_body.hpp>
+#include <span>
+
 #include <polybody/solvers/linear_solver.hpp>
-#include <polybody/system/reduced_system.hpp>
+#include <polybody/system/system.hpp>
 
 namespace polybody {
 
 /// The linear systems of an integrator: written by the mechanics, factored and solved by a linear solver, in whatever
-/// unknowns the mechanics choose for them. Trees that ask for `recursive::ArticulatedBody` are solved by their own
-/// elimination, whatever the solver.
-template <class M, LinearSolver Solver>
+/// unknowns the mechanics choose for them. Trees that are their own solver are solved by their own elimination,
+/// whatever the solver.
+template <LinearSolver Solver>
 class TangentSolver {
  public:
   /// Allocates all there is to be. \param copies of the unknowns, side by side, as a method of several stages has them
-  template <class Write>
-  void analyse(System<M>& system, Index copies, Write&& write) {
+  void analyse(System& system, Index copies, BlockWriter const& write) {
     copies_ = copies;
-    if constexpr (System<M>::solves_by_bodies) {
+    coordinates_ = system.step_coordinates();
+    size_ = system.size();
+    equations_ = coordinates_ ? coordinates_.narrow->equations : size_;
+    if (coordinates_) held_ = coordinates_.entries->held(coordinates_.self.get());
+    if (solves_by_bodies()) {
       if (copies > 1)
         throw InvalidInput(
-            "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
-            "method together. Take recursive::Augmented.");
+            "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a method "
+            "together. Take recursive::Augmented.");
     } else {
       PatternSink pattern;
-      write(pattern);
-      solver_.analyse(copies * system.equations(), pattern.blocks);
+      BlockSink sink(pattern);
+      write(sink);
+      solver_.analyse(copies * equations_, pattern.blocks);
     }
-    if constexpr (!System<M>::solves_as_it_is) {
-      rhs_.setZero(copies * system.equations());
+    if (coordinates_) {
+      rhs_.setZero(copies * equations_);
       x_ = rhs_;
-      part_.setZero(system.size());
+      part_.setZero(size_);
       solution_ = part_;
-      equations_.setZero(system.equations());
+      equation_.setZero(equations_);
     }
-  }
-  /// … for the tangent itself.
-  void analyse(System<M>& system, SecondOrder second, VecX const& lambda) {
-    analyse(system, 1, [&](PatternSink& sink) { system.tangent({1.0, 1.0, 1.0}, second, lambda, sink); });
   }
 
   /// Writes and factors where `system` was evaluated last. −1, or the equation without a pivot (`name_of_equation`).
-  template <class Write>
-  Index factor(System<M>& system, Write&& write) {
-    system.hold(held_);
-    if constexpr (System<M>::solves_by_bodies) {
-      solver_.attach(system.reduction(), held_);
-      solver_.begin();
-      write(solver_);
-      return solver_.factor();
-    } else {
-      return write_and_factor(solver_, [&](Solver& sink) { write(sink); });
-    }
-  }
-  Index factor(System<M>& system, TangentCoefficients const& c, SecondOrder second, VecX const& lambda) {
-    return factor(system, [&](auto& sink) { system.tangent(c, second, lambda, sink); });
+  Index factor(BlockWriter const& write) {
+    if (coordinates_) coordinates_.entries->hold(coordinates_.self.get(), held_.get());
+    if (solves_by_bodies()) return coordinates_.entries->factor(coordinates_.self.get(), held_.get(), write);
+    return write_and_factor(solver_, write);
   }
 
   /// x by the unknowns of the time step.
-  void solve(System<M>& system, VecX const& rhs, VecX& x) {
-    if constexpr (System<M>::solves_as_it_is) {
-      solver_.solve(rhs, x);
-    } else {
-      Index const n = system.size(), m = system.equations();
-      for (Index k = 0; k < copies_; ++k) {
-        part_ = rhs.segment(k * n, n);
-        system.spread(held_, part_, equations_);
-        rhs_.segment(k * m, m) = equations_;
-      }
-      solver_.solve(rhs_, x_);
-      for (Index k = 0; k < copies_; ++k) {
-        equations_ = x_.segment(k * m, m);
-        system.gather(held_, equations_, solution_);
-        x.segment(k * n, n) = solution_;
-      }
+  void solve(VecX const& rhs, VecX& x) {
+    if (!coordinates_) return solver_.solve(rhs, x);
+    if (solves_by_bodies()) return coordinates_.entries->solve(held_.get(), rhs, x);
+    Index const n = size_, m = equations_;
+    for (Index k = 0; k < copies_; ++k) {
+      part_ = rhs.segment(k * n, n);
+      coordinates_.entries->to_equations(coordinates_.self.get(), held_.get(), part_, equation_);
+      rhs_.segment(k * m, m) = equation_;
+    }
+    solver_.solve(rhs_, x_);
+    for (Index k = 0; k < copies_; ++k) {
+      equation_ = x_.segment(k * m, m);
+      coordinates_.entries->from_equations(coordinates_.self.get(), held_.get(), equation_, solution_);
+      x.segment(k * n, n) = solution_;
     }
   }
 
@@ -84,10 +73,28 @@ class TangentSolver {
   }
 
  private:
-  std::conditional_t<System<M>::solves_by_bodies, ArticulatedBodySolver, Solver> solver_;
-  typename System<M>::Held held_;
-  Index copies_ = 1;
-  VecX rhs_, x_, part_, solution_, equations_;
+  bool solves_by_bodies() const { return coordinates_ && coordinates_.narrow->solves_by_bodies; }
+
+  Solver solver_;
+  Coordinates coordinates_;
+  HeldPlace held_;
+  Index copies_ = 1, size_ = 0, equations_ = 0;
+  VecX rhs_, x_, part_, solution_, equation_;
 };
+
+/// Unknowns of the linear equations of a system, of which those that stand for speeds come first.
+inline Index equations_of(System const& s) {
+  return s.step_coordinates() ? s.step_coordinates().narrow->equations : s.size();
+}
+inline Index equation_speeds_of(System const& s) {
+  return s.step_coordinates() ? s.step_coordinates().narrow->equation_speeds : s.speeds();
+}
+/// Name of the body or joint behind an unknown of the equations.
+template <class = void>
+std::string name_of_equation(System const& s, Index i) {
+  if (!s.step_coordinates() || s.step_coordinates().narrow->whole_unknown.empty()) return s.name_of(i);
+  Index const whole = s.step_coordinates().narrow->whole_unknown[std::size_t(i)];
+  return whole >= 0 ? s.layout().name_of(whole) : "unknown";
+}
 
 }  // namespace polybody

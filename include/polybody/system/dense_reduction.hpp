@@ -1,17 +1,19 @@
 #pragma once
 #include <vector>
 
-#include <polybody/math/block_view.hpp>
+#include <polybody/math/block_sink.hpp>
 
 namespace polybody {
 
 /// [TᵀKT, (G T)ᵀ; G T, 0] as a dense matrix from the blocks of [K, Gᵀ; G, 0]: itself the sink of these. Of the rows
 /// those that stay are taken.
-class DenseReduction {
+/// Compiled where it is used.
+template <class = void>
+class DenseReductionOf {
  public:
-  DenseReduction() = default;
+  DenseReductionOf() = default;
   /// \param row_of where each row of the model goes among `rows`; −1 where it is left out
-  DenseReduction(Index whole_speeds, Index speeds, Index rows, std::vector<Index> row_of)
+  DenseReductionOf(Index whole_speeds, Index speeds, Index rows, std::vector<Index> row_of)
       : row_of_(std::move(row_of)),
         speeds_(whole_speeds),
         transposed_(MatX::Zero(speeds, whole_speeds)),
@@ -45,8 +47,7 @@ class DenseReduction {
     }
   }
   /// The matrix, block by block.
-  template <class Sink>
-  void write(Sink& sink) const {
+  void write(BlockSink& sink) const {
     sink.add(0, 0, k_);
     if (g_.rows() == 0) return;
     sink.add(0, k_.rows(), g_.transpose());
@@ -59,5 +60,7 @@ class DenseReduction {
   MatX transposed_, k_, g_;
   VecX half_;
 };
+
+using DenseReduction = DenseReductionOf<>;
 
 }  // namespace polybody

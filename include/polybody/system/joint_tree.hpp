@@ -14,7 +14,8 @@
 
 namespace polybody {
 
-class JointTree {
+template <class = void>  // compiled where it is used
+class JointTreeOf {
  public:
   /// Bodies in an order in which each stands behind its parent.
   std::vector<TreeBody> bodies;
@@ -212,6 +213,26 @@ class JointTree {
     });
   }
 
+  /// q˙ of the joint coordinates.
+  void coordinate_rates(VecX const& q, VecX const& v, VecX& rate) const {
+    using D = Dual<1>;
+    for_each_motion([&](JointMotion const& m, Index qn, Index vn) {
+      if (m.kind != JointMotion::Kind::ball) {
+        rate[qn] = v[vn];
+        return;
+      }
+      Quaternion<D> p;
+      Vec<D, 3> turn;
+      for (int i = 0; i < 4; ++i) p[i] = D(q[qn + i]);
+      for (int i = 0; i < 3; ++i) {
+        turn[i] = D(0.0);
+        turn[i].d[0] = v[vn + i];
+      }
+      Quaternion<D> const moved = quaternion_plus<D>(p, turn);
+      for (int i = 0; i < 4; ++i) rate[qn + i] = moved[i].d[0];
+    });
+  }
+
   TreeState state() const {
     return {std::vector<TreeFrame>(bodies.size()), std::vector<Vec6>(bodies.size()), std::vector<Vec6>(bodies.size())};
   }
@@ -353,5 +374,7 @@ class JointTree {
 
   TreeFrame ground_ = {};
 };
+
+using JointTree = JointTreeOf<>;
 
 }  // namespace polybody

@@ -6,8 +6,7 @@
 #include <list>
 #include <map>
 
-#include <polybody/math/block_view.hpp>
-#include <polybody/system/tangent.hpp>
+#include <polybody/math/block_sink.hpp>
 
 namespace polybody {
 
@@ -91,10 +90,9 @@ struct MappedBlocks {
   }
 };
 
-template <class Sink>
 class MappedSink {
  public:
-  MappedSink(UnknownMap const& map, MappedBlocks& kept, Sink& sink) : map_(map), kept_(kept), sink_(sink) {
+  MappedSink(UnknownMap const& map, MappedBlocks& kept, BlockSink& sink) : map_(map), kept_(kept), sink_(sink) {
     kept_.ranges.resize(std::size_t(map.size()));
   }
 
@@ -112,15 +110,12 @@ class MappedSink {
       choose(b, rows, cols, whole);
     else
       multiply(b, rows, cols, whole);
-    using ByRows = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> const>;
-    ByRows const mapped(whole, rows.size, cols.size);
     for (auto const& r : rows.runs)
-      for (auto const& c : cols.runs) sink_.add(r.first, c.first, mapped.block(r.local, c.local, r.size, c.size));
+      for (auto const& c : cols.runs)
+        sink_.add(r.first, c.first, BlockView(whole + r.local * cols.size + c.local, r.size, c.size, cols.size, 1));
   }
   /// A block of zeros.
-  void skip(Index row, Index col, Index height, Index width)
-    requires SkipsZeros<Sink>
-  {
+  void skip(Index row, Index col, Index height, Index width) {
     Index const to_row = map_.run(row, height), to_col = map_.run(col, width);
     if (to_row >= 0 && to_col >= 0) return sink_.skip(to_row, to_col, height, width);
     for (auto const& r : range(row, height).runs)
@@ -158,7 +153,7 @@ class MappedSink {
 
   UnknownMap const& map_;
   MappedBlocks& kept_;
-  Sink& sink_;
+  BlockSink& sink_;
 };
 
 }  // namespace polybody

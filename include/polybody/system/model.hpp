@@ -35,6 +35,9 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Data that depend on the joint types: one gap for each joint.
   template <StateScalar T>
   using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;
+  /// And what compliant joints answer.
+  template <StateScalar T>
+  using Answers = std::tuple<std::vector<Vec<T, Js::rows>>...>;
 
   /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
   static constexpr bool may_have_rows = (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
@@ -241,6 +244,17 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   auto const& entry(ElementHandle<F> const& handle) const {
     require_own(handle.model, handle.name);
     return std::get<std::vector<detail::ForceEntry<F>>>(forces_)[std::size_t(handle.index)];
+  }
+  /// Place of a joint among all of them, in the order of the types. \throws InvalidInput as `entry`.
+  template <OneOf<Js...> J>
+  Index place_of(ElementHandle<J> const& handle) const {
+    require_own(handle.model, handle.name);
+    Index before = 0;
+    bool found = false;
+    ((found = found || std::is_same_v<J, Js>,
+      before += found ? 0 : Index(std::get<std::vector<detail::JointEntry<Js>>>(joints_).size())),
+     ...);
+    return before + handle.index;
   }
   /// Index of a joint's type among the model's joint types.
   template <OneOf<Js...> J>

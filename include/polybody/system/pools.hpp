@@ -61,6 +61,7 @@ struct GroundMarker {
 
 template <class J>
 struct JointEntry {
+  using JointType = J;
   J joint;
   Index a, b;      ///< published markers
   Index row = -1;  ///< first row; −1 for a joint without rows

@@ -7,29 +7,20 @@
 
 #include <algorithm>
 
+#include <polybody/system/entries.hpp>
 #include <polybody/system/joint_tree.hpp>
 #include <polybody/system/linear_elimination.hpp>
 #include <polybody/system/model.hpp>
 
 namespace polybody {
 
-/// Where one body stands in narrow vectors.
-struct NarrowPlace {
-  enum class Kind : unsigned char {
-    as_it_is,  ///< all its coordinates
-    reduced,   ///< some of them; they add
-    carried    ///< those of its joint
-  };
-  Kind kind = Kind::as_it_is;
-  Index q = 0, v = 0, coordinates = 0, speeds = 0;
-};
-
-class Reduction {
+template <class = void>  // compiled where it is used
+class ReductionOf {
  public:
   /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
   /// other.
   template <class M>
-  explicit Reduction(M const& model) : linear_(model.linear_rows()) {
+  explicit ReductionOf(M const& model) : linear_(model.linear_rows()) {
     if constexpr (!std::is_void_v<typename M::Solution>) grow_tree(model);
     number_unknowns(model);
     number_rows(model);
@@ -38,7 +29,7 @@ class Reduction {
   Index coordinates() const { return coordinates_; }
   Index speeds() const { return speeds_; }
   Index rows() const { return Index(rows_.size()); }
-  JointTree const& tree() const { return tree_; }
+  JointTreeOf<> const& tree() const { return tree_; }
   LinearElimination const& linear() const { return linear_; }
   /// In the order in which `for_each_body` goes.
   std::vector<NarrowPlace> const& places() const { return places_; }
@@ -253,12 +244,14 @@ class Reduction {
   }
 
   LinearElimination linear_;
-  JointTree tree_;
+  JointTreeOf<> tree_;
   std::vector<Index> order_;
   Index coordinates_ = 0, speeds_ = 0;
   std::vector<NarrowPlace> places_;
   std::vector<std::pair<Index, Index>> same_q_, same_v_;  // narrow, whole
   std::vector<Index> whole_speed_, rows_, velocity_rows_, carried_by_;
 };
+
+using Reduction = ReductionOf<>;
 
 }  // namespace polybody

@@ -1,381 +1,64 @@
 #pragma once
 /// \file
-/// A model over a step from q₀ to q₁: forces, rows and markers by secants, so that the step knows the change of every
+/// A system over a step from q₀ to q₁: forces, rows and markers by secants, so that the step knows the change of every
 /// potential and of every row to rounding [Gonzalez 1996, 1999]:
 ///   f·Δq = −ΔV less what is damped,   Ḡ Δq = ΔΦ.
 
-#include <polybody/bodies/step_means.hpp>
-#include <polybody/math/secant.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
-/// A policy whose force is linear in the gap, so that its mean over a step is that of the mean gap; or one that brings
-/// rows.
-template <class P>
-concept OffersMeanMultiplier = AddsRows<P> || requires { requires P::linear; };
-
-/// A force element whose potential may be asked on secants.
-template <class F>
-concept HasSecantPotential =
-    requires(F const force, std::array<Frame<Secant<12 * F::markers>>, F::markers> const frames, double t) {
-      { force.potential(frames, t) } -> std::convertible_to<Secant<12 * F::markers>>;
-    };
-
-namespace detail {
-
-/// What a model offers a step that conserves energy.
-template <class BodyPools, class JointPools>
-struct SecantOffer;
-template <class... Bs, class... Js>
-struct SecantOffer<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>> {
-  static constexpr bool bodies = (OffersStepMeans<Bs> && ...);
-  static constexpr bool policies = (OffersMeanMultiplier<typename Js::PolicyType> && ...);
-  static constexpr bool positions = ((velocity_rows<typename Js::Geometry>() == 0) && ...);
+/// A step of length h from q0 at t to q1; `decay` as in `StepMeans`.
+struct SecantStep {
+  VecX const* q0 = nullptr;
+  VecX const* q1 = nullptr;
+  double t = 0.0, h = 0.0, decay = 0.0;
 };
 
-/// Place and axes of a marker (r, then A column by column) at both ends, and their slopes by its columns.
-struct MarkerSecant {
-  Vec<double, 12> from, to;
-  double* slopes = nullptr;  ///< 12×columns
-  Index first = 0, columns = 0;
+/// A model's entries for such steps; `self` is what `make` made.
+struct SecantEntries {
+  std::shared_ptr<void> (*make)(void const* m, Data<double> const& data);
+  void (*evaluate)(void* self, SecantStep const& step);
+  void (*residual)(void* self, Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r);
+  void (*violation)(void* self, VecX& phi);
+  void (*tangent)(void* self, double scale, BlockSink& sink);
 };
 
-template <int m>
-struct GapSecant {
-  Vec<double, m> from, to;
-  double* rows_a = nullptr;  ///< Ḡ by the columns of marker a, m×columns
-  double* rows_b = nullptr;
-};
-
-template <class B>
-struct SecantScratch {
-  std::vector<Secant<B::point_columns>> q, rest, jacobian;
-};
-
-template <class BodyPools, class JointPools>
-struct SecantsBeside;
-template <class... Bs, class... Js>
-struct SecantsBeside<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>> {
-  using Offer = SecantOffer<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>>;
-  static_assert(
-      Offer::bodies,
-      "A step that conserves energy asks for bodies of constant mass whose coordinates form a vector space and "
-      "which give their mean force over a step: cables, ANCF beams, planar rigid bodies and beams. For others use "
-      "GeneralizedAlpha.");
-  static_assert(Offer::policies,
-                "A step that conserves energy takes joints with Constraint, Penalty or Bushing. "
-                "For others use GeneralizedAlpha.");
-  static_assert(Offer::positions,
-                "A step that conserves energy knows rows by the change of their gap, and RollingDisc and KnifeEdge "
-                "have none. Use "
-                "GeneralizedAlpha.");
-  using Scratch = std::tuple<SecantScratch<Bs>...>;
-  using Gaps = std::tuple<std::vector<GapSecant<Js::rows>>...>;
-};
-
-/// The frame of a marker whose twelve numbers are variables from `first` on.
-template <int n>
-Frame<Secant<n>> frame_of(MarkerSecant const& m, int first) {
-  Frame<Secant<n>> f;
-  for (int i = 0; i < 3; ++i) {
-    f.r[i] = Secant<n>::variable(m.from[i], m.to[i], first + i);
-    for (int j = 0; j < 3; ++j)
-      f.A(j, i) = Secant<n>::variable(m.from[3 + 3 * i + j], m.to[3 + 3 * i + j], first + 3 + 3 * i + j);
-  }
-  return f;
-}
-
-/// By the columns of a marker, what is given by its twelve numbers.
-inline double pulled(MarkerSecant const& m, double const* by_frame, Index column) {
-  double sum = 0.0;
-  for (int j = 0; j < 12; ++j) sum += by_frame[j] * m.slopes[12 * column + j];
-  return sum;
-}
-
-}  // namespace detail
-
-/// A model that is stepped whole, as no policy eliminates anything.
-template <class M>
-concept SteppedWhole = requires { typename M::BodyPools; };
-
-/// What a step that conserves energy asks of a model.
-template <class M>
-concept OffersSecants = SteppedWhole<M> && detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::bodies &&
-                        detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::policies &&
-                        detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::positions;
-
-template <class M>
 class StepSecants {
  public:
-  explicit StepSecants(System<M> const& system)
-      : markers_(std::size_t(system.model().markers())),
+  /// \throws InvalidInput for a system that was made without `Entries::secants`.
+  explicit StepSecants(System const& system)
+      : entries_(require_entry(system.entries().first.secants, "secants")),
+        self_(entries_->make(system.entries().second, system.data())),
         middle_(VecX::Zero(system.coordinates())),
-        speed_(VecX::Zero(system.speeds())) {
-    M const& model = system.model();
-    Index marker_size = 0, gap_size = 0, widest = 1;
-    for (std::size_t i = 0; i < markers_.size(); ++i) {
-      Published<double> const& p = system.data().markers[i];
-      markers_[i].first = p.first;
-      markers_[i].columns = p.columns;
-      marker_size += 12 * p.columns;
-      widest = std::max(widest, p.columns);
-    }
-    slopes_.resize(std::size_t(marker_size));
-    double* next = slopes_.data();
-    for (detail::MarkerSecant& m : markers_) {
-      m.slopes = next;
-      next += 12 * m.columns;
-    }
-    for (detail::GroundMarker const& g : model.ground_markers()) {
-      detail::MarkerSecant& m = markers_[std::size_t(g.published)];
-      m.from.template head<3>() = g.placement.origin;
-      for (int i = 0; i < 3; ++i) m.from.template segment<3>(3 + 3 * i) = g.placement.axes.col(i);
-      m.to = m.from;
-    }
-    detail::for_each_pool_beside(model.joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
-      gaps.resize(pool.size());
-      for (auto const& e : pool)
-        gap_size += std::decay_t<decltype(e.joint)>::rows * (marker(e.a).columns + marker(e.b).columns);
-    });
-    rows_.resize(std::size_t(gap_size));
-    next = rows_.data();
-    detail::for_each_pool_beside(model.joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
-      for (std::size_t i = 0; i < pool.size(); ++i) {
-        constexpr Index m = std::decay_t<decltype(pool[i].joint)>::rows;
-        gaps[i].rows_a = next;
-        gaps[i].rows_b = next + m * marker(pool[i].a).columns;
-        next = gaps[i].rows_b + m * marker(pool[i].b).columns;
-      }
-    });
-    detail::for_each_pool_beside(model.body_pools(), bodies_, [](auto const& pool, auto& scratch) {
-      using B = std::decay_t<decltype(pool.entries.front().body)>;
-      Index size = 0;
-      for (auto const& e : pool.entries) size = std::max(size, e.body.coordinates());
-      scratch.q.resize(std::size_t(size));
-      scratch.rest.resize(std::size_t(size));
-      scratch.jacobian.resize(std::size_t(6 * B::point_columns));
-    });
-    scratch_.resize(std::size_t(widest * widest));
-  }
-  StepSecants(StepSecants const&) = delete;  // markers and gaps point into the arenas
-  StepSecants& operator=(StepSecants const&) = delete;
-  StepSecants(StepSecants&&) = default;
-  StepSecants& operator=(StepSecants&&) = default;
+        speed_(VecX::Zero(system.speeds())) {}
 
-  /// Takes the step from q0 at t to q1 at t + h. Rows that depend on time are taken at its end; loads in its middle,
-  /// where `system` is then evaluated.
-  void evaluate(System<M>& system, VecX const& q0, VecX const& q1, double t, double h, double decay) {
-    q0_ = &q0;
-    q1_ = &q1;
-    means_ = {1.0 / h, decay};
-    middle_ = 0.5 * (q0 + q1);
-    speed_ = (q1 - q0) / h;
-    system.evaluate(middle_, speed_, t + 0.5 * h);
-    detail::for_each_pool_beside(system.model().body_pools(), bodies_,
-                                 [&](auto const& pool, auto& scratch) { publish(pool, scratch); });
-    detail::for_each_pool_beside(system.model().joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
-      for (std::size_t i = 0; i < pool.size(); ++i) enforce(pool[i], t + h, gaps[i]);
-    });
+  /// Takes the step. Rows that depend on time are taken at its end; loads in its middle, where `system` is then
+  /// evaluated.
+  void evaluate(System& system, SecantStep const& step) {
+    rate_ = 1.0 / step.h;
+    for (Index i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * ((*step.q0)[i] + (*step.q1)[i]);
+    for (Index i = 0; i < speed_.size(); ++i) speed_[i] = ((*step.q1)[i] - (*step.q0)[i]) / step.h;
+    system.evaluate(middle_, speed_, step.t + 0.5 * step.h);
+    entries_->evaluate(self_.get(), step);
   }
-
   /// r = M a − f + Ḡᵀλ over the step (nv).
-  void residual(System<M>& system, VecX const& a, VecX const& lambda, VecX& r) {
-    M const& model = system.model();
-    r.setZero();
-    model.for_each_body([&](auto const& e) {
-      using B = std::decay_t<decltype(e.body)>;
-      Vec<double, B::element_columns> inertia, force, weight;
-      for (Index i = 0; i < e.body.elements(); ++i) {
-        e.body.template inertia<double>(i, part_of(middle_, e), part_of(a, e), inertia);
-        e.body.mean_force(i, part_of(*q0_, e), part_of(*q1_, e), means_, force);
-        e.body.template gravity<double>(i, part_of(middle_, e), model.gravity().g, weight);
-        double* const rows = r.data() + e.v0 + e.body.first_column(i);
-        for (int k = 0; k < B::element_columns; ++k) rows[k] += inertia[k] - force[k] - weight[k];
-      }
-    });
-    for_each_joint(model, [&](auto const& e, auto const& gap) {
-      constexpr int m = std::decay_t<decltype(e.joint)>::rows;
-      Vec<double, m> const l = multiplier(e, gap, lambda);
-      add_rows<m>(marker(e.a), gap.rows_a, l, r);
-      add_rows<m>(marker(e.b), gap.rows_b, l, r);
-    });
-    model.for_each_force([&](auto const& e) { add_force(system, e, r); });
+  void residual(System const& system, VecX const& a, VecX const& lambda, VecX& r) const {
+    entries_->residual(self_.get(), system.data(), a, lambda, r);
   }
-
   /// Φ(q₁).
-  void violation(M const& model, VecX& phi) const {
-    for_each_joint(model, [&](auto const& e, auto const& gap) {
-      if (e.row >= 0) phi.segment(e.row, gap.to.size()) = gap.to;
-    });
-  }
-
+  void violation(VecX& phi) const { entries_->violation(self_.get(), phi); }
   /// [M + s K̄, Ḡᵀ; Ḡ, 0] into `sink`, K̄ = −∂f/∂q₁ nearly: symmetric, without the change of Ḡ; Ḡ stands for ∂Φ/∂q₁. Both
   /// are off by the share of a turn that a body makes in the step, and so Newton's method contracts.
-  template <TangentSink Sink>
-  void tangent(System<M>& system, double s, Sink& sink) {
-    M const& model = system.model();
-    Index const row0 = model.speeds();
-    model.for_each_body([&](auto const& e) {
-      using B = std::decay_t<decltype(e.body)>;
-      Mat<double, B::element_columns, B::element_columns> k, mass;
-      for (Index i = 0; i < e.body.elements(); ++i) {
-        e.body.mean_tangent(i, part_of(*q0_, e), part_of(*q1_, e), means_, s, k);
-        e.body.mass(i, part_of(middle_, e), mass);
-        k += mass;
-        sink.add(e.v0 + e.body.first_column(i), e.v0 + e.body.first_column(i), k);
-      }
-    });
-    for_each_joint(model, [&](auto const& e, auto const& gap) {
-      using J = std::decay_t<decltype(e.joint)>;
-      constexpr int m = J::rows;
-      using Rows = Eigen::Map<Mat<double, m, Eigen::Dynamic> const>;
-      detail::MarkerSecant const& a = marker(e.a);
-      detail::MarkerSecant const& b = marker(e.b);
-      Rows const ga(gap.rows_a, m, a.columns), gb(gap.rows_b, m, b.columns);
-      if constexpr (AddsRows<typename J::PolicyType>) {
-        for (auto const& [p, g] : {std::pair<detail::MarkerSecant const&, Rows const&>(a, ga), {b, gb}})
-          if (p.columns > 0) {
-            sink.add(p.first, row0 + e.row, g.transpose());
-            sink.add(row0 + e.row, p.first, g);
-          }
-      } else {
-        Vec<double, m> const change = gap.to - gap.from, mean = 0.5 * (gap.from + gap.to);
-        Mat<double, m, m> const slope = e.joint.policy.template slope<m>(s * (0.5 + means_.decay), s * means_.rate,
-                                                                         mean, (change * means_.rate).eval());
-        add_pair(a, ga, slope, a, ga, sink);
-        add_pair(a, ga, slope, b, gb, sink);
-        add_pair(b, gb, slope, a, ga, sink);
-        add_pair(b, gb, slope, b, gb, sink);
-      }
-    });
-    system.force_tangents({.damping = s * means_.rate, .stiffness = 0.5 * s}, sink);
+  void tangent(System& system, double s, BlockSink& sink) {
+    entries_->tangent(self_.get(), s, sink);
+    system.tangent_of(TangentPart::force_elements, {.damping = s * rate_, .stiffness = 0.5 * s}, sink);
   }
 
  private:
-  template <class Entry>
-  static auto part_of(VecX const& x, Entry const& e) {
-    return detail::body_part(x, e.q0, e.body.coordinates());
-  }
-  detail::MarkerSecant const& marker(Index i) const { return markers_[std::size_t(i)]; }
-  template <class F>
-  void for_each_joint(M const& model, F&& f) const {
-    detail::for_each_pool_beside(model.joint_pools(), gaps_, [&](auto const& pool, auto const& gaps) {
-      for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], gaps[i]);
-    });
-  }
-
-  template <class Pool, class Scratch>
-  void publish(Pool const& pool, Scratch& scratch) {
-    using B = std::decay_t<decltype(pool.entries.front().body)>;
-    constexpr int n = B::point_columns;
-    using S = Secant<n>;
-    for (auto const& p : pool.markers) {
-      auto const& e = pool.entries[std::size_t(p.body)];
-      Index const first = e.body.first_column(p.point);
-      for (int i = 0; i < n; ++i)
-        scratch.q[std::size_t(first + i)] = S::variable((*q0_)[e.q0 + first + i], (*q1_)[e.q0 + first + i], i);
-      Published<S> out;
-      out.jacobian = scratch.jacobian.data();
-      e.body.template publish<S>(p.point, p.axes, std::span<S const>(scratch.q), std::span<S const>(scratch.rest), out);
-      detail::MarkerSecant& m = markers_[std::size_t(p.published)];
-      for (int j = 0; j < 12; ++j) {
-        S const& x = j < 3 ? out.frame.r[j] : out.frame.A(j % 3, j / 3 - 1);
-        m.from[j] = x.a;
-        m.to[j] = x.b;
-        for (int c = 0; c < n; ++c) m.slopes[12 * c + j] = x.d[c];
-      }
-    }
-  }
-
-  template <class Entry, int m>
-  void enforce(Entry const& e, double t, detail::GapSecant<m>& out) const {
-    using S = Secant<24>;
-    detail::MarkerSecant const& a = marker(e.a);
-    detail::MarkerSecant const& b = marker(e.b);
-    Vec<S, m> const g = e.joint.measure().template gap<S>(detail::frame_of<24>(a, 0), detail::frame_of<24>(b, 12), t).g;
-    for (int i = 0; i < m; ++i) {
-      out.from[i] = g[i].a;
-      out.to[i] = g[i].b;
-      for (Index c = 0; c < a.columns; ++c) out.rows_a[m * c + i] = detail::pulled(a, g[i].d.data(), c);
-      for (Index c = 0; c < b.columns; ++c) out.rows_b[m * c + i] = detail::pulled(b, g[i].d.data() + 12, c);
-    }
-  }
-
-  template <class Entry, int m>
-  Vec<double, m> multiplier(Entry const& e, detail::GapSecant<m> const& gap,
-                            [[maybe_unused]] VecX const& lambda) const {
-    if constexpr (AddsRows<typename std::decay_t<decltype(e.joint)>::PolicyType>) {
-      return lambda.template segment<m>(e.row);
-    } else {
-      Vec<double, m> const change = gap.to - gap.from;
-      return e.joint.policy.template multiplier<m, double>((0.5 * (gap.from + gap.to) + means_.decay * change).eval(),
-                                                           (means_.rate * change).eval());
-    }
-  }
-
-  template <int m>
-  static void add_rows(detail::MarkerSecant const& p, double const* rows, Vec<double, m> const& lambda, VecX& r) {
-    for (Index c = 0; c < p.columns; ++c)
-      for (int i = 0; i < m; ++i) r[p.first + c] += rows[m * c + i] * lambda[i];
-  }
-
-  /// sink += Gaᵀ S Gb.
-  template <class Rows, int m, class Sink>
-  void add_pair(detail::MarkerSecant const& a, Rows const& ga, Mat<double, m, m> const& slope,
-                detail::MarkerSecant const& b, Rows const& gb, Sink& sink) {
-    if (a.columns == 0 || b.columns == 0) return;
-    Eigen::Map<MatX> k(scratch_.data(), a.columns, b.columns);
-    for (Index c = 0; c < b.columns; ++c) {
-      Vec<double, m> const scaled = slope * gb.col(c);
-      for (Index r = 0; r < a.columns; ++r) k(r, c) = ga.col(r).dot(scaled);
-    }
-    sink.add(a.first, b.first, k);
-  }
-
-  /// r −= what force element e does: a potential by secants and beside it what depends on the speeds, in the middle;
-  /// else the whole force in the middle.
-  template <class Entry>
-  void add_force(System<M> const& system, Entry const& e, VecX& r) const {
-    using F = std::decay_t<decltype(e.force)>;
-    constexpr int n = F::markers;
-    static_assert(!ForceGroup<F>, "A step that conserves energy takes no force groups. Use GeneralizedAlpha.");
-    static_assert(HasSecantPotential<F> || !HasPotential<F>,
-                  "A step that conserves energy asks a force's potential on secants: let potential(frames, t) be a "
-                  "template on the "
-                  "scalar of the frames.");
-    auto frames = detail::frames_of(e, system.data());
-    auto wrenches = e.force.template wrenches<double>(frames, system.time());
-    if constexpr (HasSecantPotential<F>) {
-      for (auto& f : frames) f.v = f.w = Vec3::Zero();
-      auto const at_rest = e.force.template wrenches<double>(frames, system.time());
-      std::array<Frame<Secant<12 * n>>, std::size_t(n)> moving;
-      for (int k = 0; k < n; ++k) {
-        moving[std::size_t(k)] = detail::frame_of<12 * n>(marker(e.markers[std::size_t(k)]), 12 * k);
-        wrenches[std::size_t(k)].f -= at_rest[std::size_t(k)].f;
-        wrenches[std::size_t(k)].m -= at_rest[std::size_t(k)].m;
-      }
-      Secant<12 * n> const potential = e.force.potential(moving, system.time());
-      for (int k = 0; k < n; ++k) {
-        detail::MarkerSecant const& p = marker(e.markers[std::size_t(k)]);
-        for (Index c = 0; c < p.columns; ++c) r[p.first + c] += detail::pulled(p, potential.d.data() + 12 * k, c);
-      }
-    }
-    for (int k = 0; k < n; ++k) {
-      Vec6 w;
-      w << wrenches[std::size_t(k)].f, wrenches[std::size_t(k)].m;
-      detail::add_pulled<double>(system.data().markers[std::size_t(e.markers[std::size_t(k)])], w, -1.0, r);
-    }
-  }
-
-  VecX const* q0_ = nullptr;
-  VecX const* q1_ = nullptr;
-  StepMeans means_;
-  std::vector<detail::MarkerSecant> markers_;
-  using Beside = detail::SecantsBeside<typename M::BodyPools, typename M::JointPools>;
-  typename Beside::Scratch bodies_;
-  typename Beside::Gaps gaps_;
-  std::vector<double> slopes_, rows_, scratch_;  ///< arenas of the markers and the gaps; room for one block
+  SecantEntries const* entries_;
+  std::shared_ptr<void> self_;
+  double rate_ = 0.0;
   VecX middle_, speed_;
 };
 

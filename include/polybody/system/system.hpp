@@ -2,185 +2,340 @@
 /// \file
 /// Waist 3: what an integrator or a solver sees of the mechanics,
 ///   M(q) v̇ = f(q, v, t) − Gᵀλ,   Φ(q, t) = 0,   q moves by ⊞.
+/// Models' types end here: one table of functions fills arrays, which are assembled into these equations. Where
+/// policies eliminate unknowns, the equations are those of what is left,
+///   Tᵀ(M(T u̇ + b) − f) + (G T)ᵀλ = 0,   v = T u,  v̇ = T u̇ + b.
 
-#include <memory>
+#include <cmath>
 
-#include <polybody/system/tangent.hpp>
+#include <polybody/system/assembly.hpp>
+#include <polybody/system/coordinates.hpp>
 
 namespace polybody {
 
-namespace detail {
-/// The first entry that is NaN or infinite, or −1.
-inline Index first_not_finite(VecX const& x) {
-  for (Index i = 0; i < x.size(); ++i)
-    if (!std::isfinite(x[i])) return i;
-  return -1;
-}
-[[noreturn]] inline void throw_force_not_finite(std::string const& who, double t) {
-  throw NonFinite("A force on " + who + " is not finite at t = " + number(t) +
-                  " s. Look at the forces applied to it and at the state before.");
-}
-[[noreturn]] inline void throw_motion_not_finite(std::string const& who, double t) {
-  throw NonFinite("The motion at " + who + " is not finite at t = " + number(t) +
-                  " s. Look at the state before, or take a smaller step.");
-}
-/// Whose unknown it is, as messages say it.
-struct Owner {
-  char const* kind = nullptr;
-  std::string const* name = nullptr;
-  std::string text() const { return name ? kind + (" \"" + *name) + '"' : "unknown"; }
-};
-}  // namespace detail
+/// Names groups of entries in a constructor: `System(model, with<Entries::tangent>)`.
+template <Entries groups>
+struct With {};
+template <Entries groups>
+inline constexpr With<groups> with{};
 
-/// A model with its scratch. `evaluate` sets the state at which everything else is asked.
+/// \throws InvalidInput where an entry was not asked for.
+template <class F>
+F require_entry(F entry, char const* group) {
+  if (!entry)
+    throw InvalidInput(std::string("This system was made without ") + group +
+                       ". Name them where it is made: System(model, with<Entries::...>).");
+  return entry;
+}
+
+/// Defined where models are known (system/model_entries.hpp, system/typed_data.hpp).
 template <class M>
-class System {
+ModelLayout layout_of(M const& model);
+namespace detail {
+template <class M, StateScalar T>
+class DataMaker;
+}
+
+/// Parts of the tangent that may be asked for alone.
+enum class TangentPart { compliant_joints, force_elements };
+
+/// The equations of a model with their scratch. `evaluate` sets the state at which everything else is asked.
+template <StateScalar T>
+class BasicSystem {
  public:
-  using ModelType = M;
+  using Vector = VecXOf<T>;
 
-  /// The model must outlive the system and must not change after.
-  explicit System(M const& model)
-      : model_(&model), data_(model), q_(VecX::Zero(model.coordinates())), v_(VecX::Zero(model.speeds())) {}
+  /// The whole mechanism. The model must outlive the system and must not change after.
+  template <class M, Entries wanted = Entries::questions>
+    requires requires { sizeof(EntriesOf<M, T, wanted>); }
+  explicit BasicSystem(M const& model, With<wanted> = {}, Coordinates coordinates = {})
+      : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), detail::DataMaker<M, T>::make(model),
+                    std::move(coordinates)) {}
+  /// From entries of any origin.
+  BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
+              Coordinates coordinates)
+      : model_(model),
+        entries_(entries),
+        layout_(std::move(layout)),
+        coordinates_(std::move(coordinates)),
+        data_(std::move(data)) {
+    q_.setConstant(layout_.coordinates, T(0.0));
+    v_.setConstant(layout_.speeds, T(0.0));
+    if (coordinates_) {
+      whole_a_ = whole_r_ = v_;
+      whole_rows_.setConstant(layout_.rows, T(0.0));
+      whole_lambda_ = whole_rows_;
+      still_.setConstant(speeds(), T(0.0));
+    }
+  }
 
-  M const& model() const { return *model_; }
-  Index coordinates() const { return model_->coordinates(); }
-  Index speeds() const { return model_->speeds(); }
-  Index rows() const { return model_->rows(); }
-  /// Rows without a position: Φ is zero there, Φ̇ and γ are not.
-  std::vector<Index> const& velocity_rows() const { return model_->velocity_rows(); }
+  /// Places and names in the whole model.
+  ModelLayout const& layout() const { return layout_; }
+  Coordinates const& step_coordinates() const { return coordinates_; }
+  Data<T> const& data() const { return data_; }
+  /// The model's entries, and what they take for the model.
+  std::pair<ModelEntries<T> const&, void const*> entries() const { return {entries_, model_}; }
+  /// Whole coordinates and speeds, and time, of the last evaluation.
+  At<T> at() const { return {q_, v_, t_}; }
+
+  Index coordinates() const { return coordinates_ ? coordinates_.narrow->coordinates : layout_.coordinates; }
+  Index speeds() const { return coordinates_ ? coordinates_.narrow->speeds : layout_.speeds; }
+  Index rows() const { return coordinates_ ? coordinates_.narrow->rows : layout_.rows; }
   Index size() const { return speeds() + rows(); }
-  double time() const { return t_; }
-  Data<M> const& data() const { return data_; }
+  /// Rows without a position: Φ is zero there, Φ̇ and γ are not.
+  std::vector<Index> const& velocity_rows() const {
+    return coordinates_ ? coordinates_.narrow->velocity_rows : layout_.velocity_rows;
+  }
 
   /// Scales gravity and loads; one except inside `equilibrium`.
   double load_factor = 1.0;
 
-  void evaluate(VecX const& q, VecX const& v, double t) { evaluate(q, v, t, true); }
-  /// … for one who eliminates linear joints: until the next evaluation their rows are left out, and so are markers that
-  /// nothing else reads.
-  void evaluate_without_linear_rows(VecX const& q, VecX const& v, double t) { evaluate(q, v, t, false); }
+  void evaluate(Vector const& q, Vector const& v, double t) {
+    t_ = t;
+    data_.linear_rows = !coordinates_;
+    if (coordinates_) {
+      if constexpr (std::same_as<T, double>) coordinates_.entries->expand(coordinates_.self.get(), q, v, q_, v_);
+    } else {
+      q_ = q;
+      v_ = v;
+    }
+    entries_.publish(model_, at(), data_);
+    entries_.measure_gaps(model_, at(), data_);
+  }
 
   /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results
   /// are the same to the last bit. \throws InvalidInput for fewer than one.
   void use_threads(int threads) {
     workers_ = std::make_unique<Workers>(threads);
-    data_.share_with(*model_, *workers_);
+    entries_.share_loops(model_, data_, *workers_);
   }
 
   /// r = M a − f + Gᵀλ (nv).
-  void residual(VecX const& a, VecX const& lambda, VecX& r) {
-    polybody::residual(*model_, q_, v_, a, lambda, t_, load_factor, data_, r);
+  void residual(Vector const& a, Vector const& lambda, Vector& r) {
+    if (!coordinates_) return whole_residual(a, lambda, r);
+    if constexpr (std::same_as<T, double>) {
+      coordinates_.entries->expand_rates(coordinates_.self.get(), a, true, whole_a_);
+      expand_rows(lambda, whole_lambda_);
+      whole_residual(whole_a_, whole_lambda_, whole_r_);
+      coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, r);
+    }
   }
+  /// The wrenches of the force elements into `data().actions`, as `residual` does.
+  void push_forces() { entries_.push_forces(model_, t_, data_); }
   /// Φ (rows); zero for velocity rows.
-  void violation(VecX& phi) const { polybody::violation(*model_, q_, data_, phi); }
-  void violation_rate(VecX& rate) const { polybody::violation_rate(*model_, q_, v_, data_, rate); }
-  void acceleration_bias(VecX& gamma) const { polybody::acceleration_bias(*model_, q_, v_, t_, data_, gamma); }
-  /// out = G b (rows) for b by speeds.
-  void rows_times(VecX const& b, VecX& out) const { polybody::rows_times(*model_, q_, b, data_, out); }
-  /// [cm M + cd D + ck K, Gᵀ; G, 0] (size × size) into `sink`.
-  template <TangentSink Sink>
-  void tangent(TangentCoefficients const& c, SecondOrder second, VecX const& lambda, Sink& sink) {
-    polybody::tangent(*model_, q_, v_, lambda, t_, load_factor, c, second, data_, sink);
+  void violation(Vector& phi) {
+    polybody::violation(data_, whole_rows(phi));
+    take_rows(phi);
   }
-  /// cd D + ck K of the force elements alone, with second-order terms, into `sink`.
-  template <TangentSink Sink>
-  void force_tangents(TangentCoefficients const& c, Sink& sink) {
-    std::fill(data_.loads.begin(), data_.loads.end(), Wrench<double>{});
-    add_force_tangents(*model_, t_, load_factor, c, true, data_, sink, [&](Index marker, Vec6 const& w) {
-      data_.loads[std::size_t(marker)].f += w.head<3>();
-      data_.loads[std::size_t(marker)].m += w.tail<3>();
+  /// Φ̇ = G v + Φ_t (rows).
+  void violation_rate(Vector& rate) {
+    polybody::violation_rate(data_, v_, whole_rows(rate));
+    take_rows(rate);
+  }
+  /// γ (rows): Φ̈ = G v̇ + γ.
+  void acceleration_bias(Vector& gamma) {
+    Vector& whole = whole_rows(gamma);
+    for (RowBlock<T> const& block : data_.rows)
+      if (block.source == RowSource::linear)
+        for (int i = 0; i < block.rows; ++i) whole[block.row + i] = T(0.0);
+    entries_.measure_gamma(model_, at(), data_, whole);
+    add_biases(data_, whole);
+    if constexpr (std::same_as<T, double>)
+      if (coordinates_) {  // γ + G b
+        coordinates_.entries->expand_rates(coordinates_.self.get(), still_, true, whole_a_);
+        whole_lambda_ = whole;
+        polybody::rows_times(data_, whole_a_, whole);
+        whole += whole_lambda_;
+      }
+    take_rows(gamma);
+  }
+  /// out = G b (rows) for b by speeds.
+  void rows_times(Vector const& b, Vector& out) {
+    if constexpr (std::same_as<T, double>)
+      if (coordinates_) {
+        coordinates_.entries->expand_rates(coordinates_.self.get(), b, false, whole_a_);
+        polybody::rows_times(data_, whole_a_, whole_rows_);
+        return take_rows(out);
+      }
+    polybody::rows_times(data_, b, out);
+  }
+  /// out = Gᵀ b (speeds) for b by rows.
+  void rows_transposed_times(Vector const& b, Vector& out) {
+    if constexpr (std::same_as<T, double>)
+      if (coordinates_) {
+        expand_rows(b, whole_lambda_);
+        polybody::rows_transposed_times(data_, whole_lambda_, whole_r_);
+        return coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, out);
+      }
+    polybody::rows_transposed_times(data_, b, out);
+  }
+
+  /// [cm M + cd D + ck K, Gᵀ; G, 0] (size × size), by the unknowns of the equations, into a receiver of blocks.
+  template <TakesBlocks S>
+  void tangent(TangentCoefficients const& c, SecondOrder second, Vector const& lambda, S&& receiver) {
+    with_sink(receiver, [&](BlockSink& sink) {
+      write_equations([&](BlockSink& whole) { write_tangent(c, second, lambda, whole); }, sink);
     });
-    add_load_stiffness(*model_, q_, c.stiffness, data_, sink);
+  }
+  /// [M, Gᵀ; G, 0], likewise.
+  template <TakesBlocks S>
+  void masses(S&& receiver) {
+    with_sink(receiver, [&](BlockSink& sink) {
+      write_equations(
+          [&](BlockSink& whole) {
+            entries_.masses(model_, at(), data_, whole);
+            write_rows(data_, layout_.speeds, whole);
+          },
+          sink);
+    });
+  }
+  /// cd D + ck K of the compliant joints alone, joint by joint; or of the force elements, with second-order terms.
+  template <TakesBlocks S>
+  void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver) {
+    with_sink(receiver, [&](BlockSink& sink) {
+      if (part == TangentPart::compliant_joints)
+        return require_entry(entries_.compliant_tangents, "tangents")(model_, c, data_, sink);
+      clear_loads();
+      c.full = true;
+      require_entry(entries_.force_tangents, "tangents")(model_, t_, load_factor, c, data_, sink);
+      require_entry(entries_.load_stiffness, "second-order terms")(model_, at(), c.stiffness, data_, sink);
+    });
   }
 
   /// out = q ⊞ delta.
-  void plus(VecX const& q, VecX const& delta, VecX& out) const {
-    model_->for_each_body([&](auto const& e) {
-      Index const n = e.body.coordinates(), m = e.body.speeds();
-      e.body.template plus<double>(detail::body_part(q, e.q0, n), detail::body_part(delta, e.v0, m),
-                                   detail::body_part_of(out, e.q0, n));
-    });
+  void plus(Vector const& q, Vector const& delta, Vector& out) const {
+    if constexpr (std::same_as<T, double>)
+      if (coordinates_) coordinates_.entries->plus(coordinates_.self.get(), q, delta, out);
+    entries_.plus(model_, narrow_places(), q, delta, out);
   }
   /// The rate of delta in q ⊞ delta when the model moves with speeds v.
-  void local_rate(VecX const& delta, VecX const& v, VecX& out) const {
-    model_->for_each_body([&](auto const& e) {
-      Index const m = e.body.speeds();
-      e.body.template local_rate<double>(detail::body_part(delta, e.v0, m), detail::body_part(v, e.v0, m),
-                                         detail::body_part_of(out, e.v0, m));
-    });
+  void local_rate(Vector const& delta, Vector const& v, Vector& out) const {
+    if constexpr (std::same_as<T, double>)
+      if (coordinates_) coordinates_.entries->local_rate(coordinates_.self.get(), delta, v, out);
+    entries_.local_rate(model_, narrow_places(), delta, v, out);
   }
 
   /// Name of the body that owns speed i, or of the joint that owns row i − nv.
   std::string name_of(Index i) const {
-    detail::Owner owner;
-    Index const row = i - speeds();
-    model_->for_each_body([&](auto const& e) {
-      using B = std::decay_t<decltype(e.body)>;
-      if (row < 0 && i >= e.v0 && i < e.v0 + e.body.speeds()) owner = {"body", &e.name};
-      if constexpr (OwnsRows<B>)
-        if (row >= 0 && row >= e.row && row < e.row + B::own_rows) owner = {"body", &e.name};
-    });
-    if (row >= 0)
-      model_->for_each_joint([&](auto const& e) {
-        if (e.row >= 0 && row >= e.row && row < e.row + e.rows) owner = {"joint", &e.name};
-      });
-    return owner.text();
+    if (!coordinates_) return layout_.name_of(i);
+    NarrowLayout const& n = *coordinates_.narrow;
+    return layout_.name_of(i < n.speeds ? n.whole_speed[std::size_t(i)]
+                                        : layout_.speeds + n.rows_that_stay[std::size_t(i - n.speeds)]);
   }
-
-  /// \throws NonFinite naming body and time when an entry of x (by speeds) is NaN or infinite.
-  void require_finite_force(VecX const& x) const {
-    if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_force_not_finite(name_of(i), t_);
-  }
-  /// \throws NonFinite naming joint and time when an entry of x (by rows) is NaN or infinite.
-  void require_finite_rows(VecX const& x) const {
-    if (Index const i = detail::first_not_finite(x); i >= 0) detail::throw_motion_not_finite(name_of(speeds() + i), t_);
-  }
-
-  /// Unknowns of a linear system of equations; those that stand for speeds come first. Here they are those of a time
-  /// step.
-  Index equations() const { return size(); }
-  Index equation_speeds() const { return speeds(); }
-  std::string name_of_equation(Index i) const { return name_of(i); }
-  /// What goes between the two (see reduced_system.hpp): nothing.
-  struct Held {};
-  static constexpr bool solves_as_it_is = true;
-  static constexpr bool solves_by_bodies = false;
-  void hold(Held&) const {}
-  void spread(Held&, VecX const& rhs, VecX& out) const { out = rhs; }
-  void gather(Held&, VecX const& solution, VecX& out) const { out = solution; }
 
  private:
-  void evaluate(VecX const& q, VecX const& v, double t, bool linear_rows) {
-    q_ = q;
-    v_ = v;
-    t_ = t;
-    data_.linear_rows = linear_rows;
-    publish(*model_, q_, v_, data_);
-    enforce(*model_, t_, data_);
+  NarrowPlace const* narrow_places() const { return coordinates_ ? coordinates_.narrow->places.data() : nullptr; }
+
+  template <class S, class F>
+  static void with_sink(S& receiver, F&& f) {
+    if constexpr (std::same_as<std::remove_cvref_t<S>, BlockSink>) {
+      f(receiver);
+    } else {
+      BlockSink sink(receiver);
+      f(sink);
+    }
+  }
+  void write_equations(BlockWriter const& write, BlockSink& sink) {
+    if (coordinates_)
+      coordinates_.entries->write(coordinates_.self.get(), write, sink);
+    else
+      write(sink);
   }
 
-  M const* model_;
+  void whole_residual(Vector const& a, Vector const& lambda, Vector& r) {
+    for (Index i = 0; i < r.size(); ++i) r[i] = T(0.0);
+    entries_.element_forces(model_, at(), a, load_factor, data_, r);
+    add_row_forces(data_, lambda, r);
+    push_forces();
+    add_actions(data_, layout_, load_factor, r);
+  }
+  void write_tangent(TangentCoefficients c, SecondOrder second, Vector const& given, BlockSink& sink) {
+    c.full = second == SecondOrder::included;
+    Vector const& lambda = c.full && coordinates_ ? whole_multipliers(given) : given;
+    if (c.full) clear_loads();
+    require_entry(entries_.element_tangents, "tangents")(model_, at(), c, data_, sink);
+    write_rows(data_, layout_.speeds, sink);
+    entries_.compliant_tangents(model_, c, data_, sink);
+    if (c.full)
+      require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), lambda, c.stiffness, data_, sink);
+    entries_.force_tangents(model_, t_, load_factor, c, data_, sink);
+    if (c.full) entries_.load_stiffness(model_, at(), c.stiffness, data_, sink);
+  }
+  Vector const& whole_multipliers(Vector const& lambda) {
+    expand_rows(lambda, whole_lambda_);
+    if constexpr (std::same_as<T, double>)
+      coordinates_.entries->recover_multipliers(coordinates_.self.get(), data_, whole_lambda_);
+    return whole_lambda_;
+  }
+  void clear_loads() {
+    for (Wrench<double>& w : data_.loads) w = {};
+  }
+
+  /// Rows of a step are written as they are, or taken from whole ones afterwards.
+  Vector& whole_rows(Vector& narrow) { return coordinates_ ? whole_rows_ : narrow; }
+  void take_rows(Vector& narrow) const {
+    if (!coordinates_) return;
+    std::vector<Index> const& stay = coordinates_.narrow->rows_that_stay;
+    for (std::size_t i = 0; i < stay.size(); ++i) narrow[Index(i)] = whole_rows_[stay[i]];
+  }
+  void expand_rows(Vector const& narrow, Vector& whole) const { coordinates_.narrow->expand_rows(narrow, whole); }
+
+  void const* model_;
+  ModelEntries<T> entries_;
+  ModelLayout layout_;
+  Coordinates coordinates_;
   std::unique_ptr<Workers> workers_;
-  Data<M> data_;
-  VecX q_, v_;
+  Data<T> data_;
+  Vector q_, v_;  // whole
   double t_ = 0.0;
+  Vector whole_a_, whole_r_, whole_rows_, whole_lambda_, still_;  // scratch of a system with coordinates of its own
 };
 
-/// What an integrator may ask of the mechanics.
-template <class S>
-concept MechanicalSystem = requires(S s, S const c, VecX const x, VecX out, double t) {
-  { c.coordinates() } -> std::convertible_to<Index>;
-  { c.speeds() } -> std::convertible_to<Index>;
-  { c.rows() } -> std::convertible_to<Index>;
-  s.evaluate(x, x, t);
-  s.residual(x, x, out);
-  c.violation(out);
-  c.violation_rate(out);
-  c.acceleration_bias(out);
-  c.rows_times(x, out);
-  c.plus(x, x, out);
-  c.local_rate(x, x, out);
-  { c.name_of(Index(0)) } -> std::convertible_to<std::string>;
-};
+using System = BasicSystem<double>;
+
+/// The state of a time step next to a whole one: exact where this one keeps to the eliminated joints. The integrator
+/// starts afresh.
+template <class = void>
+State reduce(System const& s, State const& x) {
+  State out = x;
+  if (Coordinates const& c = s.step_coordinates()) c.entries->narrow(c.self.get(), x, out);
+  return out;
+}
+/// The whole state of a stepped one, with what eliminated joints hold as multipliers. `r` is scratch.
+template <class = void>
+void expand(System& s, State const& stepped, State& x, VecX& r) {
+  Coordinates const& c = s.step_coordinates();
+  if (!c) {
+    x = stepped;
+    return;
+  }
+  s.evaluate(stepped.q, stepped.v, stepped.t);
+  x.q = s.at().q;
+  x.v = s.at().v;
+  r.resize(s.speeds());
+  s.residual(stepped.a, stepped.lambda, r);
+  x.a.resize(x.v.size());
+  c.entries->expand_rates(c.self.get(), stepped.a, true, x.a);
+  x.lambda.resize(s.layout().rows);
+  c.narrow->expand_rows(stepped.lambda, x.lambda);
+  c.entries->recover_multipliers(c.self.get(), s.data(), x.lambda);
+  x.t = stepped.t;
+  x.memory = stepped.memory;
+}
+
+/// q˙ when the model moves with speeds v; `room` (2 nq + nv of the whole model) is scratch.
+template <class = void>
+void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& room, VecX& rate) {
+  Coordinates const& c = s.step_coordinates();
+  if (c) c.entries->coordinate_rates(c.self.get(), q, v, rate);
+  auto const& [entries, model] = s.entries();
+  require_entry(entries.coordinate_rates, "rates of coordinates")(model, c ? c.narrow->places.data() : nullptr, q, v,
+                                                                  room, rate);
+}
+
+/// M does not depend on q.
+inline bool has_constant_mass(System const& s) {
+  return s.layout().constant_mass && (!s.step_coordinates() || s.step_coordinates().narrow->keeps_mass_constant);
+}
 
 }  // namespace polybody

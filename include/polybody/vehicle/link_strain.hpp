@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The stretch and the bending of a track's link, from a coupled run and from a rigid run's record. Not in
-/// polybody.hpp: of use to vehicles only.
+/// The stretch and the bending of a track's link, from a coupled run and from a rigid run's record.
+///
+/// Not in polybody.hpp: of use to vehicles only.
 
 #include <array>
 

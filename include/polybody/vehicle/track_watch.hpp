@@ -86,8 +86,7 @@ std::string track_trouble(V const& vehicle, State const& x) {
 
 /// The faults of one side; `system` must have been evaluated at x. \param start where the links were placed
 template <class V>
-TrackFault track_fault(V const& vehicle, System<typename V::ModelType> const& system, State const& x, Side side,
-                       TrackStart const& start) {
+TrackFault track_fault(V const& vehicle, System const& system, State const& x, Side side, TrackStart const& start) {
   auto const& parts = vehicle.side(side);
   TrackFault worst;
   for_each_contact(system, parts.contacts[0], [&](TouchingPoint const& p) {

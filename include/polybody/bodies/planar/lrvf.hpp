@@ -27,13 +27,23 @@ struct SimoVuQuoc {
   static Vec3 rigid_velocity(Vec3 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], omega};
   }
+  template <class = void>  // compiled where it is used
   static Mat<double, 2, 6> position(double xi, double) {
-    Mat<double, 2, 6> n;
-    n << 1.0 - xi, 0, 0, xi, 0, 0, 0, 1.0 - xi, 0, 0, xi, 0;
+    Mat<double, 2, 6> n = Mat<double, 2, 6>::Zero();
+    for (int i = 0; i < 2; ++i) {
+      n(i, i) = 1.0 - xi;
+      n(i, 3 + i) = xi;
+    }
     return n;
   }
   /// The row of θ in the kinetic energy ½ ∫ Iρ θ̇² dx.
-  static Vec6 rotary(double xi, double) { return Vec6(0, 0, 1.0 - xi, 0, 0, xi); }
+  template <class = void>  // compiled where it is used
+  static Vec6 rotary(double xi, double) {
+    Vec6 row = Vec6::Zero();
+    row[2] = 1.0 - xi;
+    row[5] = xi;
+    return row;
+  }
 
   /// θ(ξ), its row θ̇ = row·ė, and the part of θ̈ without ë (none: the field is linear).
   template <StateScalar T>
@@ -44,7 +54,10 @@ struct SimoVuQuoc {
   }
 
   /// ∂²θ/∂e²: none.
-  static void rotation_hessian(double, double, Vec6 const&, Mat<double, 6, 6>& h) { h.setZero(); }
+  template <class = void>  // compiled where it is used
+  static void rotation_hessian(double, double, Vec6 const&, Mat<double, 6, 6>& h) {
+    h.setZero();
+  }
 
   /// Axial, shear and bending strain at the one Gauss point; p = (x′, y′, θ, θ′).
   struct Section {
@@ -58,6 +71,7 @@ struct SimoVuQuoc {
 
     static constexpr int reach = 2;
     static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
+    template <class = void>  // compiled where it is used
     static Mat<double, 4, 2> map(double xi, double l) {
       ShapeValues<2> const n = linear_shape(xi, l);
       Mat<double, 4, 2> p;

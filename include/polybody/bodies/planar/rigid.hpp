@@ -28,34 +28,39 @@ class Rigid : public AddingCoordinates {
   };
 
   /// \throws InvalidInput for mass ≤ 0, inertia < 0 or a placement that leaves the plane.
+  template <class = void>     // compiled where it is used
   Rigid(Parameters const& p)  // NOLINT(google-explicit-constructor)
       : mass_(p.mass),
         inertia_(p.inertia),
-        origin_(p.placement.origin.head<2>()),
+        origin_(p.placement.origin[0], p.placement.origin[1]),
         angle_(p.placement.planar_angle("planar::Rigid")) {
     require_positive(mass_, "planar::Rigid: the mass");
     require_not_negative(inertia_, "planar::Rigid: the inertia");
   }
+  template <class = void>  // compiled where it is used
   Rigid(double mass, double inertia, Placement const& placement = {})
       : Rigid(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
 
   /// The bar as a rigid body; its origin is the bar's middle.
+  template <class = void>  // compiled where it is used
   static Rigid from(Bar const& bar) {
     BarConstants const c = constants(bar);
     double const l = bar.length, m = c.mass_per_length * l;
     Placement place = bar.placement;
-    place.origin += place.axes.col(0) * (0.5 * l);
+    for (int i = 0; i < 3; ++i) place.origin[i] += place.axes(i, 0) * (0.5 * l);
     Rigid body(m, m * l * l / 12.0 + c.rotary_inertia * l, place);
     body.length_ = l;
     return body;
   }
 
   /// The point s from the first end of the bar, y off its axis. \throws InvalidInput outside the bar.
+  template <class = void>  // compiled where it is used
   Point at(double s, double y = 0.0) const {
     if (length_ == 0.0) throw InvalidInput("planar::Rigid: at(s) needs a body made from a Bar; use at(Vec2).");
     return at(Vec2(require_inside(s, length_, "planar::Rigid") - 0.5 * length_, y));
   }
   /// The point u in body axes from the centre of mass [m].
+  template <class = void>  // compiled where it is used
   Point at(Vec2 const& u) const {
     require_finite(u, "planar::Rigid: the point");
     return {u};
@@ -67,31 +72,47 @@ class Rigid : public AddingCoordinates {
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }
 
-  void reference(std::span<double> q) const { part<3>(q, 0) << origin_, angle_; }
-
-  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
-    part<3>(v, 0) << v0[0] - omega[2] * q[1], v0[1] + omega[2] * q[0], omega[2];
+  void reference(std::span<double> q) const {
+    q[0] = origin_[0];
+    q[1] = origin_[1];
+    q[2] = angle_;
   }
 
-  void mass(Index, std::span<double const>, Mat3& m) const { m = Vec3(mass_, mass_, inertia_).asDiagonal(); }
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
+    v[0] = v0[0] - omega[2] * q[1];
+    v[1] = v0[1] + omega[2] * q[0];
+    v[2] = omega[2];
+  }
+
+  template <class = void>  // compiled where it is used
+  void mass(Index, std::span<double const>, Mat3& m) const {
+    m.setZero();
+    m(0, 0) = m(1, 1) = mass_;
+    m(2, 2) = inertia_;
+  }
   template <StateScalar T>
   void inertia(Index, std::span<T const>, std::span<T const> a, Vec<T, 3>& out) const {
-    out << a[0] * mass_, a[1] * mass_, a[2] * inertia_;
+    out = {a[0] * mass_, a[1] * mass_, a[2] * inertia_};
   }
   template <StateScalar T>
   void force(Index, std::span<T const>, std::span<T const>, Vec<T, 3>& out) const {
     out.setZero();
   }
-  void tangent(Index, std::span<double const>, std::span<double const>, double, double, Mat3& k) const { k.setZero(); }
+  template <class = void>  // compiled where it is used
+  void tangent(Index, std::span<double const>, std::span<double const>, double, double, Mat3& k) const {
+    k.setZero();
+  }
+  template <class = void>  // compiled where it is used
   void mean_force(Index, std::span<double const>, std::span<double const>, StepMeans const&, Vec3& out) const {
     out.setZero();
   }
+  template <class = void>  // compiled where it is used
   void mean_tangent(Index, std::span<double const>, std::span<double const>, StepMeans const&, double, Mat3& k) const {
     k.setZero();
   }
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Vec<T, 3>& out) const {
-    out << T(g[0] * mass_), T(g[1] * mass_), T(0.0);
+    out = {T(g[0] * mass_), T(g[1] * mass_), T(0.0)};
   }
 
   double kinetic_energy(Index, std::span<double const>, std::span<double const> v) const {
@@ -129,6 +150,7 @@ class Rigid : public AddingCoordinates {
   }
 
   /// Only the third row of Jᵀw depends on q: ∂(ρ × f)/∂θ = −ρ · f.
+  template <class = void>  // compiled where it is used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat3& k) const {
     double const c = std::cos(q[2]), s = std::sin(q[2]);
     k.setZero();

@@ -16,17 +16,20 @@ struct Revolute {
   template <StateScalar T>
   Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<2, T> gap;
-    gap.g = (b.r - a.r).template head<2>();
-    gap.Ga(0, 0) = gap.Ga(1, 1) = T(-1.0);
-    gap.Gb(0, 0) = gap.Gb(1, 1) = T(1.0);
+    for (int i = 0; i < 2; ++i) {
+      gap.g[i] = b.r[i] - a.r[i];
+      gap.Ga(i, i) = T(-1.0);
+      gap.Gb(i, i) = T(1.0);
+    }
     return gap;
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const&, Frame<T> const&, double) const {
-    return Vec<T, 2>::Zero();
+    return detail::zeros<Vec<T, 2>>();
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&, Vec<double, 2> const&) const {
-    return Mat<double, 12, 12>::Zero();
+    return detail::zeros<Mat<double, 12, 12>>();
   }
 };
 

@@ -16,22 +16,25 @@ struct Weld {
   template <StateScalar T>
   Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
     Gap<3, T> gap;
-    gap.g.template head<2>() = (b.r - a.r).template head<2>();
-    gap.Ga(0, 0) = gap.Ga(1, 1) = T(-1.0);
-    gap.Gb(0, 0) = gap.Gb(1, 1) = T(1.0);
-    polybody::rows::perpendicular<3, T>(a.A.col(1), b.A.col(0), gap, 2);
+    for (int i = 0; i < 2; ++i) {
+      gap.g[i] = b.r[i] - a.r[i];
+      gap.Ga(i, i) = T(-1.0);
+      gap.Gb(i, i) = T(1.0);
+    }
+    polybody::rows::perpendicular(axis_of(a, 1), axis_of(b, 0), gap, 2);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 3> gamma = Vec<T, 3>::Zero();
-    gamma[2] = polybody::rows::perpendicular_gamma<T>(a.A.col(1), b.A.col(0), a, b);
+    Vec<T, 3> gamma = detail::zeros<Vec<T, 3>>();
+    gamma[2] = polybody::rows::perpendicular_gamma(axis_of(a, 1), axis_of(b, 0), a, b);
     return gamma;
   }
+  template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 3> const& lambda) const {
-    Mat<double, 12, 12> k = Mat<double, 12, 12>::Zero();
-    polybody::rows::perpendicular_gradient(a.A.col(1), b.A.col(0), lambda[2], k);
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::rows::perpendicular_gradient(axis_of(a, 1), axis_of(b, 0), lambda[2], k);
     return k;
   }
 };

@@ -8,7 +8,8 @@ namespace detail {
 /// \throws InvalidInput naming `what` unless k (6×6) is finite, symmetric and positive semidefinite: symmetric
 /// elimination of k with its diagonal scaled to ones meets no negative pivot, and nothing beside a pivot that is zero
 /// [Higham 2002, §10.3].
-inline void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
+template <class = void>  // compiled where it is used
+void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
   double l[6][6];
   auto const refuse = [&](std::string const& why) {
     throw InvalidInput(what + " must be finite, symmetric and positive semidefinite (6×6), but " + why + ".");
@@ -52,8 +53,9 @@ struct Bushing {
   Required<Matrix> damping;    ///< (6×6) C, the same times seconds
 
   /// A matrix with these numbers along and about the joint's axes and no coupling.
+  template <class = void>  // compiled where it is used
   static Matrix diagonal(Vec3 const& along, Vec3 const& about) {
-    Matrix k = Matrix::Zero();
+    auto k = detail::zeros<Matrix>();
     for (int i = 0; i < 3; ++i) {
       k(i, i) = along[i];
       k(i + 3, i + 3) = about[i];
@@ -62,6 +64,7 @@ struct Bushing {
   }
 
   /// \throws InvalidInput unless K and C are symmetric and positive semidefinite; `what` is the joint's name.
+  template <class = void>  // compiled where it is used
   void check(std::string const& what) const {
     detail::require_semidefinite(stiffness.value, what + ": the bushing's stiffness");
     detail::require_semidefinite(damping.value, what + ": the bushing's damping");
@@ -70,7 +73,7 @@ struct Bushing {
   template <int m, StateScalar T>
     requires(m == 6)
   Vec<T, m> multiplier(Vec<T, m> const& x, Vec<T, m> const& rate) const {
-    Vec<T, m> lambda = Vec<T, m>::Zero();
+    auto lambda = detail::zeros<Vec<T, m>>();
     for (int j = 0; j < m; ++j)
       for (int i = 0; i < m; ++i) lambda[i] += x[j] * stiffness.value(i, j) + rate[j] * damping.value(i, j);
     return lambda;
@@ -79,13 +82,19 @@ struct Bushing {
   template <int m>
     requires(m == 6)
   Matrix slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {
-    return ck * stiffness.value + cd * damping.value;
+    Matrix slope;
+    for (int j = 0; j < m; ++j)
+      for (int i = 0; i < m; ++i) slope(i, j) = ck * stiffness.value(i, j) + cd * damping.value(i, j);
+    return slope;
   }
   /// ½ xᵀK x [J].
   template <int m>
     requires(m == 6)
   double potential(Vec<double, m> const& x) const {
-    return 0.5 * x.dot(stiffness.value * x);
+    double sum = 0.0;
+    for (int j = 0; j < m; ++j)
+      for (int i = 0; i < m; ++i) sum += x[i] * stiffness.value(i, j) * x[j];
+    return 0.5 * sum;
   }
 };
 

@@ -78,14 +78,13 @@ struct NonlinearBushing {
     return lambda;
   }
   /// ck ∂f/∂x + cd ∂f/∂ẋ (6×6): the derivative along (ck, cd).
-  template <int m>
+  template <int m, class D = Dual<1>>
     requires(m == 6)
   Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const& x,
                                          Vec<double, m> const& rate) const {
-    using D = Dual<1>;
     Eigen::DiagonalMatrix<double, m> slope;
     for_each([&](int i, auto const& law) {
-      D const f = law(D(x[i], D::Partials(ck)), D(rate[i], D::Partials(cd)));
+      D const f = law(D(x[i], typename D::Partials(ck)), D(rate[i], typename D::Partials(cd)));
       slope.diagonal()[i] = f.d[0];
     });
     return slope;

@@ -20,17 +20,23 @@ struct Penalty {
 
   template <int m, StateScalar T>
   Vec<T, m> multiplier(Vec<T, m> const& g, Vec<T, m> const& g_rate) const {
-    return g * T(stiffness.value) + g_rate * T(damping.value);
+    Vec<T, m> lambda;
+    for (int i = 0; i < m; ++i) lambda[i] = g[i] * stiffness.value + g_rate[i] * damping.value;
+    return lambda;
   }
   /// ck ∂λ/∂g + cd ∂λ/∂ġ (m×m).
   template <int m>
   Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {
-    return Eigen::DiagonalMatrix<double, m>(Vec<double, m>::Constant(ck * stiffness + cd * damping));
+    Eigen::DiagonalMatrix<double, m> slope;
+    for (int i = 0; i < m; ++i) slope.diagonal()[i] = ck * stiffness + cd * damping;
+    return slope;
   }
   /// The energy that the spring stores [J].
   template <int m>
   double potential(Vec<double, m> const& g) const {
-    return 0.5 * stiffness * g.squaredNorm();
+    double sum = 0.0;
+    for (int i = 0; i < m; ++i) sum += g[i] * g[i];
+    return 0.5 * stiffness * sum;
   }
 };
 
@@ -63,17 +69,21 @@ struct PenaltyPerRow {
   template <int m>
     requires(m == n)
   Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {
-    return Eigen::DiagonalMatrix<double, m>(ck * stiffness.value + cd * damping.value);
+    Eigen::DiagonalMatrix<double, m> slope;
+    for (int i = 0; i < m; ++i) slope.diagonal()[i] = ck * stiffness.value[i] + cd * damping.value[i];
+    return slope;
   }
   /// The energy that the springs store [J].
   template <int m>
     requires(m == n)
   double potential(Vec<double, m> const& g) const {
-    return 0.5 * g.dot(stiffness.value.cwiseProduct(g));
+    double sum = 0.0;
+    for (int i = 0; i < m; ++i) sum += g[i] * (stiffness.value[i] * g[i]);
+    return 0.5 * sum;
   }
 };
 
 static_assert(AddsForce<Penalty> && !AddsRows<Penalty>);
-static_assert(AnswersRows<PenaltyPerRow<5>, 5> && !AnswersRows<PenaltyPerRow<5>, 3>);
+static_assert(AnswersRows<PenaltyPerRow<1>, 1> && !AnswersRows<PenaltyPerRow<1>, 2>);
 
 }  // namespace polybody

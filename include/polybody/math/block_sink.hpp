@@ -1,0 +1,125 @@
+#pragma once
+/// \file
+/// Where the blocks of a matrix go: one type, whatever receives them, so that who writes a matrix is compiled once.
+
+#include <concepts>
+#include <utility>
+#include <vector>
+
+#include <polybody/math/block_view.hpp>
+
+namespace polybody {
+
+/// Place of a block in the matrix.
+struct Block {
+  Index row, col, rows, cols;
+};
+
+/// A part of a block and its place in a solver's storage: entry (i, j) is added to to[i stride + j]; transposed, to
+/// to[j stride + i].
+struct BlockPiece {
+  double* to;
+  int row, col, rows, cols;  ///< the part, within the block
+  int stride;
+  bool transposed;
+
+  void add(BlockView const& b) const {
+    double const* const from = b.data + row * b.row_step + col * b.col_step;
+    if (transposed)
+      add_runs({from, cols, rows, b.col_step, b.row_step});
+    else
+      add_runs({from, rows, cols, b.row_step, b.col_step});
+  }
+
+ private:
+  void add_runs(BlockView const& b) const {
+    double* __restrict at = to;
+    double const* __restrict from = b.data;
+    for (Index i = 0; i < b.rows; ++i, at += stride, from += b.row_step) {
+      if (b.col_step == 1)
+        for (Index j = 0; j < b.cols; ++j) at[j] += from[j];
+      else
+        for (Index j = 0; j < b.cols; ++j) at[j] += from[j * b.col_step];
+    }
+  }
+};
+
+/// The pieces of all blocks in the order in which they come: those of block k are [first[k], first[k + 1]).
+struct BlockSlots {
+  BlockPiece const* pieces = nullptr;
+  int const* first = nullptr;
+};
+
+/// A receiver of blocks that is called for each of them: `add(row, col, block)`, always in the same order.
+template <class S>
+concept TakesBlocks = requires(S target, BlockView const& b) { target.add(Index(0), Index(0), b); };
+
+/// A receiver that is told of a block of zeros without its numbers.
+template <class S>
+concept SkipsZeros = requires(S target) { target.skip(Index(0), Index(0), Index(0), Index(0)); };
+
+/// A receiver that has laid its storage out: block k goes straight to its slots.
+template <class S>
+concept OffersSlots = requires(S const target) {
+  { target.slots() } -> std::convertible_to<BlockSlots>;
+};
+
+/// Passes blocks on to a receiver: into its slots, or by a call for each. The receiver must outlive the sink.
+class BlockSink {
+ public:
+  template <TakesBlocks S>
+    requires(!std::same_as<std::remove_cvref_t<S>, BlockSink>)
+  explicit BlockSink(S& target) : target_(&target) {
+    if constexpr (OffersSlots<S>) slots_ = target.slots();
+    add_ = [](void* to, Index row, Index col, BlockView const& b) { static_cast<S*>(to)->add(row, col, b); };
+    skip_ = [](void* to, Index row, Index col, Index rows, Index cols) {
+      if constexpr (SkipsZeros<S>) {
+        static_cast<S*>(to)->skip(row, col, rows, cols);
+      } else {
+        static constexpr double zero = 0.0;
+        static_cast<S*>(to)->add(row, col, BlockView(&zero, rows, cols, 0, 0));
+      }
+    };
+  }
+
+  void add(Index row, Index col, BlockView const& b) {
+    if (!slots_.first) return add_(target_, row, col, b);
+    int const end = *++slots_.first;
+    for (int k = slots_.first[-1]; k < end; ++k) slots_.pieces[k].add(b);
+  }
+  /// A block of zeros: what has its place in the matrix but does not act.
+  void skip(Index row, Index col, Index rows, Index cols) {
+    if (slots_.first)
+      ++slots_.first;
+    else
+      skip_(target_, row, col, rows, cols);
+  }
+
+ private:
+  void* target_;
+  void (*add_)(void*, Index, Index, BlockView const&);
+  void (*skip_)(void*, Index, Index, Index, Index);
+  BlockSlots slots_;
+};
+
+/// Whoever writes the blocks of a matrix into a sink: a callable of any type, which must outlive this.
+class BlockWriter {
+ public:
+  template <class F>
+    requires(!std::same_as<std::remove_cvref_t<F>, BlockWriter> && std::invocable<F const&, BlockSink&>)
+  BlockWriter(F const& f)  // NOLINT(google-explicit-constructor): stands for the callable
+      : what_(&f), call_([](void const* what, BlockSink& sink) { (*static_cast<F const*>(what))(sink); }) {}
+  void operator()(BlockSink& sink) const { call_(what_, sink); }
+
+ private:
+  void const* what_;
+  void (*call_)(void const*, BlockSink&);
+};
+
+/// Records where blocks go, in the order in which they come.
+struct PatternSink {
+  std::vector<Block> blocks;
+  void add(Index row, Index col, BlockView const& b) { blocks.push_back({row, col, b.rows, b.cols}); }
+};
+
+}  // namespace polybody

@@ -1,0 +1,339 @@
+#pragma once
+/// \file
+/// The coordinates of a time step of models whose policies eliminate unknowns: T of joint trees (`JointTree`) and of
+/// linear joints (`LinearElimination`). Bodies, joints and forces do not notice.
+
+#include <polybody/solvers/articulated_body.hpp>
+#include <polybody/system/dense_reduction.hpp>
+#include <polybody/system/mapped_sink.hpp>
+#include <polybody/system/model_entries.hpp>
+#include <polybody/system/reduction.hpp>
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// `Solution` says how the equations of joint coordinates are solved; void where there are linear joints only.
+template <class Solution>
+class ReducedCoordinates {
+ public:
+  /// The dense system TᵀKT is solved, else the sparse one of all bodies with the tree's rows.
+  static constexpr bool solves_densely = std::is_same_v<Solution, recursive::Reduced>;
+  /// The tree itself is the solver: the tangent is written as it is for the whole model.
+  static constexpr bool solves_by_bodies = std::is_same_v<Solution, recursive::ArticulatedBody>;
+  /// The equations have the unknowns of a time step.
+  static constexpr bool solves_as_it_is = solves_densely || solves_by_bodies || std::is_void_v<Solution>;
+
+  /// \throws InvalidInput, InconsistentStart as `Reduction`.
+  template <class M>
+  explicit ReducedCoordinates(M const& model)
+      : reduction_(model),
+        state_(reduction_.tree().state()),
+        q_(model.reference_state().q),
+        v_(VecX::Zero(model.speeds())),
+        a_(v_),
+        narrow_(VecX::Zero(reduction_.speeds())),
+        unit_(narrow_),
+        last_r_(v_),
+        whole_speeds_(model.speeds()),
+        whole_rows_(model.rows()) {
+    if constexpr (solves_densely)
+      prepare_dense();
+    else if constexpr (!solves_by_bodies)
+      map_equations(model);
+  }
+
+  NarrowLayout narrow_layout(ModelLayout const& whole) const {
+    NarrowLayout n{.coordinates = reduction_.coordinates(),
+                   .speeds = reduction_.speeds(),
+                   .rows = reduction_.rows(),
+                   .velocity_rows = reduction_.velocity_rows(),
+                   .places = reduction_.places(),
+                   .rows_that_stay = reduction_.rows_that_stay(),
+                   .solves_by_bodies = solves_by_bodies,
+                   .keeps_mass_constant = std::is_void_v<Solution>};
+    for (Index i = 0; i < n.speeds; ++i) n.whole_speed.push_back(reduction_.whole_speed(i));
+    for (Index const row : reduction_.linear().redundant()) {
+      std::string name = whole.name_of(whole.speeds + row);
+      if (n.redundant.empty() || n.redundant.back() != name) n.redundant.push_back(std::move(name));
+    }
+    n.equations = n.speeds + n.rows;
+    n.equation_speeds = n.speeds;
+    if constexpr (!solves_densely && !solves_by_bodies) {
+      n.equations = equation_speeds_ + equation_rows_;
+      n.equation_speeds = equation_speeds_;
+      n.whole_unknown.assign(std::size_t(n.equations), -1);
+      for (Index i = Index(equation_of_.size()); i-- > 0;)
+        if (equation_of(i) >= 0) n.whole_unknown[std::size_t(equation_of(i))] = i;
+    }
+    return n;
+  }
+
+  static constexpr CoordinatesEntries entries() {
+    return {.expand = &expand,
+            .expand_rates = &expand_rates,
+            .reduce = &reduce,
+            .recover_multipliers = &recover_multipliers,
+            .plus = &plus,
+            .local_rate = &local_rate,
+            .coordinate_rates = &coordinate_rates,
+            .narrow = &narrow,
+            .write = &write,
+            .held = &held,
+            .hold = &hold,
+            .to_equations = &to_equations,
+            .from_equations = &from_equations,
+            .factor = &factor,
+            .solve = &solve};
+  }
+  static constexpr CoordinatesEntries table = entries();
+
+ private:
+  using Self = ReducedCoordinates;
+  static Self& of(void* c) { return *static_cast<Self*>(c); }
+
+  static void expand(void* c, VecX const& q, VecX const& v, VecX& whole_q, VecX& whole_v) {
+    of(c).place(q, v);
+    whole_q = of(c).q_;
+    whole_v = of(c).v_;
+  }
+  static void expand_rates(void* c, VecX const& u, bool bias, VecX& out) {
+    of(c).reduction_.copy_speeds_out(u, out);
+    of(c).reduction_.linear().spread_rates(out);
+    of(c).reduction_.tree().spread_rates(of(c).state_, u, bias, out);
+  }
+  static void reduce(void* c, VecX& r, VecX& out) {
+    of(c).last_r_ = r;
+    of(c).reduction_.linear().pull(r);
+    of(c).reduction_.tree().pull(of(c).state_, r, out);
+    of(c).reduction_.copy_speeds_in(r, out);
+  }
+
+  static void recover_multipliers(void* c, Data<double> const& data, VecX& lambda) {
+    Self& s = of(c);
+    s.reduction_.linear().multipliers(s.last_r_, lambda);
+    if constexpr (!std::is_void_v<Solution>) {
+      s.a_ = s.last_r_;
+      s.reduction_.tree().pull(s.state_, s.a_, s.narrow_);
+      for (RowBlock<double> const& block : data.rows)
+        if (block.source == RowSource::joint && s.reduction_.carried_by(block.row) >= 0)
+          s.recover_multiplier(block, data, lambda);
+    }
+  }
+  /// λ of a joint of the tree: Gᵀλ is what it holds, by the rows' least squares.
+  void recover_multiplier(RowBlock<double> const& block, Data<double> const& data, VecX& lambda) {
+    std::size_t const i = std::size_t(reduction_.carried_by(block.row));
+    RowEnd<double> const& end = reduction_.tree().bodies[i].backwards ? block.a : block.b;
+    int const m = block.rows;
+    Vec6 w = state_.held[i];
+    Vec3 const rho = data.markers[std::size_t(end.marker)].frame.r - state_.frames[i].r;
+    w.template tail<3>() -= rho.cross(w.template head<3>());
+    Mat<double, 6, 6> gram = Mat<double, 6, 6>::Identity();
+    double right[6] = {};
+    for (int k = 0; k < m; ++k) {
+      for (int l = 0; l < 6; ++l) right[k] -= end.map[m * l + k] * w[l];
+      for (int j = 0; j < m; ++j) {
+        double sum = 0.0;
+        for (int l = 0; l < 6; ++l) sum += end.map[m * l + k] * end.map[m * l + j];
+        gram(k, j) = sum;
+      }
+    }
+    invert_leading(gram, m);
+    for (int k = 0; k < m; ++k) {
+      double sum = 0.0;
+      for (int j = 0; j < m; ++j) sum += gram(k, j) * right[j];
+      lambda[block.row + k] = sum;
+    }
+  }
+
+  static void plus(void* c, VecX const& q, VecX const& delta, VecX& out) {
+    of(c).reduction_.tree().plus(q, delta, out);
+  }
+  static void local_rate(void* c, VecX const& delta, VecX const& v, VecX& out) {
+    of(c).reduction_.tree().local_rate(delta, v, out);
+  }
+
+  static void coordinate_rates(void* c, VecX const& q, VecX const& v, VecX& rate) {
+    of(c).reduction_.tree().coordinate_rates(q, v, rate);
+  }
+
+  static void narrow(void* c, State const& x, State& out) {
+    Self& s = of(c);
+    ReductionOf<> const& r = s.reduction_;
+    out = {VecX::Zero(r.coordinates()), VecX::Zero(r.speeds()), VecX::Zero(r.speeds()), VecX::Zero(r.rows()), x.t, {}};
+    r.copy_coordinates_in(x.q, out.q);
+    r.copy_speeds_in(x.v, out.v);
+    r.copy_speeds_in(x.a, out.a);
+    r.copy_rows_in(x.lambda, out.lambda);
+    r.tree().read_coordinates(x.q, x.v, s.state_, out.q);
+    s.place(out.q, out.v);
+    r.tree().gather_rates(s.state_, x.v, false, out.v);
+    s.place(out.q, out.v);
+    r.tree().gather_rates(s.state_, x.a, true, out.a);
+  }
+
+  static void write(void* c, BlockWriter const& write_whole, BlockSink& sink) {
+    Self& s = of(c);
+    if constexpr (solves_densely) {
+      for (Index j = 0; j < s.unit_.size(); ++j) {
+        s.unit_[j] = 1.0;
+        expand_rates(c, s.unit_, false, s.a_);
+        s.dense_.set_column(j, s.a_);
+        s.unit_[j] = 0.0;
+      }
+      s.dense_.begin();
+      BlockSink dense(s.dense_);
+      write_whole(dense);
+      s.dense_.write(sink);
+    } else if constexpr (solves_by_bodies) {
+      write_whole(sink);
+    } else {
+      MappedSink mapped(s.map_, s.mapped_, sink);
+      BlockSink whole(mapped);
+      write_whole(whole);
+    }
+  }
+
+  /// What a factorisation keeps.
+  struct Held {
+    TreeState state;
+    ArticulatedBodySolverOf<> solver;
+  };
+  static HeldPlace held(void*) {
+    if constexpr (solves_by_bodies) return std::make_shared<Held>();
+    return std::make_shared<TreeState>();
+  }
+  static void hold(void* c, void* h) {
+    if constexpr (solves_by_bodies)
+      static_cast<Held*>(h)->state = of(c).state_;
+    else if constexpr (!solves_as_it_is)
+      *static_cast<TreeState*>(h) = of(c).state_;
+  }
+  static Index factor(void* c, void* h, BlockWriter const& write_whole) {
+    if constexpr (solves_by_bodies) {
+      Held& held = *static_cast<Held*>(h);
+      held.solver.attach(of(c).reduction_, held.state);
+      held.solver.begin();
+      BlockSink sink(held.solver);
+      write_whole(sink);
+      return held.solver.factor();
+    }
+    return -1;
+  }
+  static void solve(void* h, VecX const& rhs, VecX& x) {
+    if constexpr (solves_by_bodies) static_cast<Held*>(h)->solver.solve(rhs, x);
+  }
+
+  static void to_equations(void* c, void* h, VecX const& rhs, VecX& out) {
+    if constexpr (solves_as_it_is) {
+      out = rhs;
+    } else {
+      Self& s = of(c);
+      Index const nv = s.reduction_.speeds();
+      s.narrow_ = rhs.head(nv);
+      s.a_.setZero();
+      s.reduction_.copy_speeds_out(s.narrow_, s.a_);
+      s.reduction_.tree().spread_forces(*static_cast<TreeState*>(h), s.narrow_, s.a_);
+      out.setZero();
+      for (Index i = 0; i < s.a_.size(); ++i)
+        if (Index const to = s.equation_of(i); to >= 0) out[to] = s.a_[i];
+      for (Index i = 0; i < s.reduction_.rows(); ++i) out[s.equation_of_row(i)] = rhs[nv + i];
+    }
+  }
+  static void from_equations(void* c, void* h, VecX const& solution, VecX& out) {
+    if constexpr (solves_as_it_is) {
+      out = solution;
+    } else {
+      Self& s = of(c);
+      s.a_.setZero();
+      for (Index i = 0; i < s.a_.size(); ++i)
+        if (Index const from = s.equation_of(i); from >= 0) s.a_[i] = solution[from];
+      s.reduction_.copy_speeds_in(s.a_, s.narrow_);
+      s.reduction_.tree().gather_rates(*static_cast<TreeState*>(h), s.a_, false, s.narrow_);
+      Index const nv = s.reduction_.speeds();
+      out.head(nv) = s.narrow_;
+      for (Index i = 0; i < s.reduction_.rows(); ++i) out[nv + i] = solution[s.equation_of_row(i)];
+    }
+  }
+
+  /// q_, v_ and the tree from narrow coordinates and speeds.
+  void place(VecX const& q, VecX const& v) {
+    reduction_.copy_coordinates_out(q, q_);
+    reduction_.copy_speeds_out(v, v_);
+    reduction_.linear().spread_coordinates(q_);
+    reduction_.linear().spread_rates(v_);
+    reduction_.tree().carry(q, v, q_, v_, state_);
+  }
+
+  /// Where the whole unknowns stand in the equations: dependents of linear joints are spread, the rows of these left
+  /// out.
+  template <class M>
+  void map_equations(M const& model) {
+    Index const nv = whole_speeds_;
+    std::vector<std::vector<UnknownMap::Target>> targets(std::size_t(nv + whole_rows_));
+    std::vector<bool> dependent(std::size_t(nv), false);
+    for (auto const& d : reduction_.linear().dependents()) dependent[std::size_t(d.v)] = true;
+    for (Index i = 0; i < nv; ++i)
+      if (!dependent[std::size_t(i)]) targets[std::size_t(i)].push_back({equation_speeds_++, 1.0});
+    for (auto const& d : reduction_.linear().dependents())
+      for (auto const& t : d.terms)
+        targets[std::size_t(d.v)].push_back({targets[std::size_t(t.v)][0].unknown, t.factor});
+    std::vector<bool> linear(std::size_t(whole_rows_), false);
+    for (LinearRows const& rows : model.linear_rows())
+      for (Index i = 0; i < rows.rows(); ++i) linear[std::size_t(rows.row + i)] = true;
+    for (Index i = 0; i < whole_rows_; ++i)
+      if (!linear[std::size_t(i)]) targets[std::size_t(nv + i)].push_back({equation_speeds_ + equation_rows_++, 1.0});
+    map_ = UnknownMap(std::move(targets));
+    for (Index i = 0; i < nv + whole_rows_; ++i) equation_of_.push_back(map_.run(i, 1));
+  }
+  /// Place of a whole unknown, −1 for one that is spread or left out; and of a row that stays.
+  Index equation_of(Index i) const { return equation_of_[std::size_t(i)]; }
+  Index equation_of_row(Index i) const {
+    return equation_of(whole_speeds_ + reduction_.rows_that_stay()[std::size_t(i)]);
+  }
+
+  void prepare_dense() {
+    std::vector<Index> row_of(std::size_t(whole_rows_), -1);
+    for (Index i = 0; i < reduction_.rows(); ++i) row_of[std::size_t(reduction_.rows_that_stay()[std::size_t(i)])] = i;
+    dense_ = DenseReductionOf<>(whole_speeds_, reduction_.speeds(), reduction_.rows(), std::move(row_of));
+  }
+
+  ReductionOf<> reduction_;
+  TreeState state_;
+  VecX q_, v_, a_;               // whole
+  VecX narrow_, unit_, last_r_;  // the last one: of the last residual that was reduced, whole
+  Index whole_speeds_, whole_rows_;
+  Index equation_speeds_ = 0, equation_rows_ = 0;
+  UnknownMap map_;
+  std::vector<Index> equation_of_;
+  MappedBlocks mapped_;
+  DenseReductionOf<> dense_;
+};
+
+}  // namespace detail
+
+/// The coordinates of a time step of `model`; none where its joints eliminate nothing.
+/// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
+/// other.
+template <class M>
+Coordinates coordinates_of(M const& model) {
+  if constexpr (M::eliminates) {
+    using Solution = typename M::Solution;
+    static_assert(!std::is_same_v<Solution, recursive::ArticulatedBody> || M::all_rigid,
+                  "recursive::ArticulatedBody is for models of rigid bodies. Take recursive::Augmented.");
+    using Reduced = detail::ReducedCoordinates<Solution>;
+    auto self = std::make_shared<Reduced>(model);
+    auto narrow = std::make_shared<NarrowLayout>(self->narrow_layout(layout_of(model)));
+    return {std::move(self), &Reduced::table, std::move(narrow)};
+  } else {
+    return {};
+  }
+}
+
+/// What a time step is about: the mechanism without what its policies eliminate.
+template <class M, Entries wanted = Entries::implicit_step>
+System stepped_system(M const& model, With<wanted> = {}) {
+  return System(model, with<wanted>, coordinates_of(model));
+}
+
+}  // namespace polybody

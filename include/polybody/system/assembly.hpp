@@ -1,0 +1,155 @@
+#pragma once
+/// \file
+/// Sums over waist 2: every operation with G, Φ and λ, and the right-hand sides, as plain loops over row blocks and
+/// actions. Nothing here knows a model.
+
+#include <polybody/system/layout.hpp>
+#include <polybody/system/pulled_blocks.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// Calls f(block) for all blocks that are rows of the model now.
+template <StateScalar T, class F>
+void for_each_row_block(Data<T> const& data, F&& f) {
+  for (RowBlock<T> const& block : data.rows)
+    if (block.row >= 0 && !data.leaves_out(block)) f(block);
+}
+
+/// r += mapᵀ λ of an end.
+template <StateScalar T>
+void add_end(RowEnd<T> const& end, int rows, T const* lambda, Data<T> const& data, T* r) {
+  if (end.marker < 0) {
+    for (Index c = 0; c < end.columns; ++c)
+      for (int k = 0; k < rows; ++k) r[end.first + c] += end.map[rows * c + k] * lambda[k];
+    return;
+  }
+  Published<T> const& p = data.markers[std::size_t(end.marker)];
+  if (p.shape == JacobianShape::ground) return;
+  T w[6];
+  with_rows(rows, [&](auto m) {
+    if constexpr (m > 0) wrench_of<m>(end.map, lambda, w);
+  });
+  add_pulled(p, w, 1.0, r);
+}
+
+/// out (rows) += map · x of an end, x the twist that its marker has with the speeds v, or these themselves.
+template <StateScalar T>
+void add_rate(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& v, T* out) {
+  T twist[6];
+  T const* x = v.data() + end.first;
+  if (end.marker >= 0) {
+    read_twist(data.markers[std::size_t(end.marker)].frame, twist);
+    x = twist;
+  }
+  with_rows(rows, [&](auto m) { add_mapped<m>(end.map, end.columns, x, rows, out); });
+}
+/// The same for rates b that the state does not have.
+template <StateScalar T>
+void add_product(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& b, T* out) {
+  Vec<T, 6> twist;
+  T const* x = b.data() + end.first;
+  if (end.marker >= 0) {
+    Published<T> const& p = data.markers[std::size_t(end.marker)];
+    if (p.shape == JacobianShape::ground) return;
+    twist = p.push(b.data() + p.first);
+    x = twist.data();
+  }
+  with_rows(rows, [&](auto m) { add_mapped<m>(end.map, end.columns, x, rows, out); });
+}
+
+}  // namespace detail
+
+/// r += Gᵀλ of all rows, and −Jᵀw of what compliant joints answer.
+template <StateScalar T>
+void add_row_forces(Data<T> const& data, VecXOf<T> const& lambda, VecXOf<T>& r) {
+  for (RowBlock<T> const& block : data.rows) {
+    if (data.leaves_out(block)) continue;
+    T const* const l = block.multiplier(lambda);
+    detail::add_end(block.a, block.rows, l, data, r.data());
+    detail::add_end(block.b, block.rows, l, data, r.data());
+  }
+}
+
+/// r −= Jᵀw of all force elements, loads times `load_factor`.
+template <StateScalar T>
+void add_actions(Data<T> const& data, ModelLayout const& layout, double load_factor, VecXOf<T>& r) {
+  for (Action<T> const& action : data.actions) {
+    double const scale = layout.forces[std::size_t(action.source)].is_load ? load_factor : 1.0;
+    detail::add_pulled(data.markers[std::size_t(action.marker)], action.w, -scale, r.data());
+  }
+}
+
+/// Φ (rows); zero for velocity rows.
+template <StateScalar T>
+void violation(Data<T> const& data, VecXOf<T>& phi) {
+  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
+    for (int i = 0; i < block.rows; ++i) phi[block.row + i] = block.g[i];
+  });
+}
+
+/// Φ̇ = G v + Φ_t (rows).
+template <StateScalar T>
+void violation_rate(Data<T> const& data, VecXOf<T> const& v, VecXOf<T>& rate) {
+  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
+    T* const out = rate.data() + block.row;
+    for (int i = 0; i < block.rows; ++i) out[i] = block.rate ? block.rate[i] : T(0.0);
+    detail::add_rate(block.a, block.rows, data, v, out);
+    detail::add_rate(block.b, block.rows, data, v, out);
+  });
+}
+
+/// gamma += Ga · bias + Gb · bias: what the frames of moving bodies bring beyond J v̇.
+template <StateScalar T>
+void add_biases(Data<T> const& data, VecXOf<T>& gamma) {
+  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
+    for (RowEnd<T> const* const end : {&block.a, &block.b})
+      if (end->marker >= 0)
+        detail::with_rows(block.rows, [&](auto m) {
+          detail::add_mapped<m>(end->map, 6, data.markers[std::size_t(end->marker)].bias.data(), block.rows,
+                                gamma.data() + block.row);
+        });
+  });
+}
+
+/// out = G b (rows) for b by speeds.
+template <StateScalar T>
+void rows_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
+  for (Index i = 0; i < out.size(); ++i) out[i] = T(0.0);
+  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
+    detail::add_product(block.a, block.rows, data, b, out.data() + block.row);
+    detail::add_product(block.b, block.rows, data, b, out.data() + block.row);
+  });
+}
+
+/// out = Gᵀ b (speeds) for b by rows.
+template <StateScalar T>
+void rows_transposed_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
+  for (Index i = 0; i < out.size(); ++i) out[i] = T(0.0);
+  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
+    detail::add_end(block.a, block.rows, b.data() + block.row, data, out.data());
+    detail::add_end(block.b, block.rows, b.data() + block.row, data, out.data());
+  });
+}
+
+/// Gᵀ and G, which begins at row `first`, block by block into `sink`.
+template <class = void>
+void write_rows(Data<double>& data, Index first, BlockSink& sink) {
+  detail::for_each_row_block(data, [&](RowBlock<double> const& block) {
+    Index const row = first + block.row;
+    for (RowEnd<double> const* const end : {&block.a, &block.b}) {
+      if (end->marker >= 0) {
+        detail::with_rows(block.rows, [&](auto m) {
+          if constexpr (m > 0)
+            detail::add_pulled_rows<m>(data.markers[std::size_t(end->marker)], end->map, row, data.scratch, sink);
+        });
+      } else if (end->columns > 0) {
+        sink.add(end->first, row, BlockView(end->map, end->columns, block.rows, block.rows, 1));
+        sink.add(row, end->first, BlockView(end->map, block.rows, end->columns, 1, block.rows));
+      }
+    }
+  });
+}
+
+}  // namespace polybody

@@ -1,0 +1,75 @@
+#pragma once
+/// \file
+/// Between the unknowns of a time step and those of the whole model, where policies eliminate some: v = T u,
+/// v̇ = T u̇ + b. A table of functions, so that programs whose joints eliminate nothing compile none of it.
+
+#include <polybody/math/block_sink.hpp>
+#include <polybody/system/entries.hpp>
+#include <polybody/system/state.hpp>
+
+namespace polybody {
+
+/// What is known of narrow vectors beside the functions.
+struct NarrowLayout {
+  Index coordinates = 0, speeds = 0, rows = 0;
+  std::vector<Index> velocity_rows;    ///< narrow
+  std::vector<NarrowPlace> places;     ///< of the bodies, in the order of the layout
+  std::vector<Index> whole_speed;      ///< behind a narrow one; of a joint coordinate, the first of the carried body
+  std::vector<Index> rows_that_stay;   ///< by their number in the model
+  std::vector<std::string> redundant;  ///< joints whose linear rows repeat others
+
+  /// A linear system of equations may have other unknowns than a time step; those that stand for speeds come first.
+  Index equations = 0, equation_speeds = 0;
+  std::vector<Index> whole_unknown;  ///< behind an equation; empty where they are those of a step
+  bool solves_by_bodies = false;     ///< the tree itself is the solver
+  bool keeps_mass_constant = false;  ///< T is constant
+
+  /// Multipliers of all rows from those of a step; zero for rows that are eliminated.
+  template <StateScalar T>
+  void expand_rows(VecXOf<T> const& of_step, VecXOf<T>& whole) const {
+    for (Index i = 0; i < whole.size(); ++i) whole[i] = T(0.0);
+    for (std::size_t i = 0; i < rows_that_stay.size(); ++i) whole[rows_that_stay[i]] = of_step[Index(i)];
+  }
+};
+
+/// What a factorisation keeps of the state at which its matrix was written; for trees that are their own solver, that
+/// solver.
+using HeldPlace = std::shared_ptr<void>;
+
+struct CoordinatesEntries {
+  /// Whole q, v from narrow ones; this place is kept for what follows.
+  void (*expand)(void* c, VecX const& q, VecX const& v, VecX& whole_q, VecX& whole_v);
+  /// T u, or T u + b.
+  void (*expand_rates)(void* c, VecX const& u, bool bias, VecX& out);
+  /// out = Tᵀ r; r is used up, and kept as it was for the multipliers.
+  void (*reduce)(void* c, VecX& r, VecX& out);
+  /// Multipliers of eliminated joints from the last r that was reduced, M a − f + Gᵀλ without them.
+  void (*recover_multipliers)(void* c, Data<double> const& data, VecX& lambda);
+  /// q ⊞ δ and its rate for joint coordinates; other bodies see to their own.
+  void (*plus)(void* c, VecX const& q, VecX const& delta, VecX& out);
+  void (*local_rate)(void* c, VecX const& delta, VecX const& v, VecX& out);
+  void (*coordinate_rates)(void* c, VecX const& q, VecX const& v, VecX& rate);
+  /// The narrow state next to a whole one: exact where this one keeps to the eliminated joints.
+  void (*narrow)(void* c, State const& x, State& out);
+
+  /// The whole tangent that `write` gives, in the unknowns of the equations.
+  void (*write)(void* c, BlockWriter const& write, BlockSink& sink);
+  HeldPlace (*held)(void* c);
+  void (*hold)(void* c, void* held);
+  /// A right-hand side of a time step as one of the equations, and a solution of these as one of the step's unknowns.
+  void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out);
+  void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out);
+  /// For trees that are their own solver.
+  Index (*factor)(void* c, void* held, BlockWriter const& write);
+  void (*solve)(void* held, VecX const& rhs, VecX& x);
+};
+
+/// Coordinates with their functions; none where a policy eliminates nothing.
+struct Coordinates {
+  std::shared_ptr<void> self;
+  CoordinatesEntries const* entries = nullptr;
+  std::shared_ptr<NarrowLayout const> narrow;
+  explicit operator bool() const { return entries != nullptr; }
+};
+
+}  // namespace polybody

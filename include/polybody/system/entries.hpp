@@ -1,0 +1,136 @@
+#pragma once
+/// \file
+/// The door between a model and everything above it: one table of plain functions, made where the model's type is
+/// known. Each is a loop over the model's pools; what they compute stands in `Data` afterwards.
+
+#include <polybody/math/block_sink.hpp>
+#include <polybody/math/dual.hpp>
+#include <polybody/system/data.hpp>
+#include <polybody/system/layout.hpp>
+
+namespace polybody {
+
+/// Coefficients of the tangent cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
+struct TangentCoefficients {
+  double mass = 0.0;
+  double damping = 0.0;
+  double stiffness = 0.0;
+  bool stand_ins = true;  ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
+  bool full = false;      ///< with second-order terms; a system sets it
+};
+
+/// Terms ∂(Gᵀλ)/∂q and ∂(Jᵀw)/∂q: a time step may leave them out while Newton contracts; statics may not.
+enum class SecondOrder { omitted, included };
+
+/// Which groups of entries a table holds. An algorithm names what it needs, and no more is compiled.
+enum class Entries : unsigned {
+  motion = 0,             ///< markers, gaps, forces, M, ⊞: always there
+  tangent = 1,            ///< cm M + cd D + ck K
+  second_order = 2,       ///< the tangent's second-order terms
+  coordinate_rates = 4,   ///< q˙
+  energy = 8,             ///< energies and powers
+  rigid_speeds = 16,      ///< speeds of a rigid motion
+  secants = 32,           ///< means over a step, for steps that conserve energy
+  compliance = 64,        ///< the slopes of compliant joints; part of `tangent`
+  implicit_step = 3,      ///< tangent and second_order
+  questions = 15,  ///< what a system is made with where nothing else is named
+};
+constexpr Entries operator|(Entries a, Entries b) { return Entries(unsigned(a) | unsigned(b)); }
+constexpr bool contains(Entries all, Entries some) { return (unsigned(all) & unsigned(some)) == unsigned(some); }
+
+/// Energies of a state [J].
+struct Energy {
+  double kinetic = 0.0;
+  double strain = 0.0;   ///< of flexible bodies
+  double gravity = 0.0;  ///< zero at the world's origin
+  double joints = 0.0;   ///< stored in compliant joints
+  double forces = 0.0;   ///< stored in force elements that have a potential
+  double potential() const { return strain + gravity + joints + forces; }
+  double total() const { return kinetic + potential(); }
+};
+
+/// Powers in a state [W]; gravity, and what stores energy, are counted by `energy`.
+struct Powers {
+  double drives = 0.0;      ///< of what time prescribes in joints, on bodies and compliant joints
+  double loads = 0.0;       ///< of loads, and of forces that have no potential
+  double dissipated = 0.0;  ///< in damped bodies, compliant joints, dampers and contacts; positive when lost
+};
+
+/// Where one body stands in narrow vectors, those of a time step that policies have taken unknowns from.
+struct NarrowPlace {
+  enum class Kind : unsigned char {
+    as_it_is,  ///< all its coordinates
+    reduced,   ///< some of them; they add
+    carried    ///< those of its joint
+  };
+  Kind kind = Kind::as_it_is;
+  Index q = 0, v = 0, coordinates = 0, speeds = 0;
+};
+
+/// A state as entries are handed it: q (nq), v (nv), t.
+template <StateScalar T>
+struct At {
+  VecXOf<T> const& q;
+  VecXOf<T> const& v;
+  double t;
+};
+
+/// The mean forces of a step, by secants (system/secant_entries.hpp).
+struct SecantEntries;
+
+/// The functions; `m` is the model. Those of a group that was not asked for are null.
+template <StateScalar T>
+struct ModelEntries {
+  using Vector = VecXOf<T>;
+
+  /// Markers; then the gaps of all row blocks and what compliant joints answer.
+  void (*publish)(void const* m, At<T> at, Data<T>& data) = nullptr;
+  void (*measure_gaps)(void const* m, At<T> at, Data<T>& data) = nullptr;
+  /// γ of all rows without G's markers' biases, into out.
+  void (*measure_gamma)(void const* m, At<T> at, Data<T> const& data, Vector& out) = nullptr;
+  /// r += M a − f of all bodies, gravity times `load_factor`.
+  void (*element_forces)(void const* m, At<T> at, Vector const& a, double load_factor, Data<T>& data,
+                         Vector& r) = nullptr;
+  /// The wrenches of all force elements into data.actions.
+  void (*push_forces)(void const* m, double t, Data<T>& data) = nullptr;
+  /// q ⊞ δ and the rate of δ; with `places`, in narrow vectors.
+  void (*plus)(void const* m, NarrowPlace const* places, Vector const& q, Vector const& delta, Vector& out) = nullptr;
+  void (*local_rate)(void const* m, NarrowPlace const* places, Vector const& delta, Vector const& v,
+                     Vector& out) = nullptr;
+  /// From now on the threads share the loops; what is computed stays the same to the last bit.
+  void (*share_loops)(void const* m, Data<T>& data, Workers& threads) = nullptr;
+  /// M, element by element.
+  void (*masses)(void const* m, At<T> at, Data<T>& data, BlockSink& sink) = nullptr;
+
+  /// The tangent of bodies, of compliant joints and of force elements; with second-order terms,
+  /// wrenches are added to data.loads.
+  void (*element_tangents)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
+                           BlockSink& sink) = nullptr;
+  void (*compliant_tangents)(void const* m, TangentCoefficients const& c, Data<T>& data, BlockSink& sink) = nullptr;
+  void (*force_tangents)(void const* m, double t, double load_factor, TangentCoefficients const& c, Data<T>& data,
+                         BlockSink& sink) = nullptr;
+
+  /// ck ∂(Gᵀλ)/∂q of joints and of bodies' own rows; ck ∂(Jᵀw)/∂q of data.loads.
+  void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, double ck, Data<T>& data,
+                          BlockSink& sink) = nullptr;
+  void (*load_stiffness)(void const* m, At<T> at, double ck, Data<T>& data, BlockSink& sink) = nullptr;
+
+  /// q˙; `room` (2 nq + nv) is scratch.
+  void (*coordinate_rates)(void const* m, NarrowPlace const* places, Vector const& q, Vector const& v,
+                           VecXOf<Dual<1>>& room, Vector& rate) = nullptr;
+
+  Energy (*energy)(void const* m, At<T> at, Data<T> const& data) = nullptr;
+  /// `backwards` is −v.
+  Powers (*powers)(void const* m, At<T> at, VecX const& backwards, VecX const& lambda, double load_factor,
+                   Data<T> const& data) = nullptr;
+
+  void (*rigid_speeds)(void const* m, Vector const& q, Vec3 const& v0, Vec3 const& omega, Vector& v) = nullptr;
+
+  SecantEntries const* secants = nullptr;
+};
+
+/// The table for a model of type M; specialised where model types are known (system/model_entries.hpp).
+template <class M, StateScalar T, Entries wanted>
+struct EntriesOf;
+
+}  // namespace polybody

@@ -1,0 +1,67 @@
+#pragma once
+/// \file
+/// Where the parts of a model stand in its vectors, and what they are called: all that is asked about a model without
+/// its type.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+struct BodyPlace {
+  std::string name;
+  Index q0 = 0, coordinates = 0;
+  Index v0 = 0, speeds = 0;
+  Index row = -1, rows = 0;  ///< rows of its own
+  bool planar = false;
+};
+
+struct JointPlace {
+  std::string name;
+  Index a = -1, b = -1;      ///< published markers
+  Index row = -1, rows = 0;  ///< none of a compliant joint
+  bool eliminated = false;   ///< from a time step
+};
+
+struct ForcePlace {
+  std::string name;
+  void const* type = nullptr;   ///< tells types of forces apart
+  Index index = 0;              ///< among the forces of its type
+  void const* entry = nullptr;  ///< in the model's pool
+  bool is_load = false;
+};
+
+/// Counts, places and names of a model; bodies, joints and forces in the order of their types.
+struct ModelLayout {
+  std::uint64_t serial = 0;  ///< of the model, as its handles know it
+  Index coordinates = 0, speeds = 0, rows = 0;
+  std::vector<Index> velocity_rows;  ///< rows without a position, ascending
+  std::vector<BodyPlace> bodies;
+  std::vector<JointPlace> joints;
+  std::vector<ForcePlace> forces;
+  std::vector<double> corners;  ///< times at which a drive or a load wants a step to end
+  bool constant_mass = false;
+  bool has_groups = false;  ///< of forces
+
+  /// Name of the body that owns speed i, or of the joint or body that owns row i − speeds.
+  std::string name_of(Index i) const {
+    Index const row = i - speeds;
+    for (BodyPlace const& b : bodies)
+      if (row < 0 ? i >= b.v0 && i < b.v0 + b.speeds : row >= b.row && row < b.row + b.rows)
+        return "body \"" + b.name + '"';
+    for (JointPlace const& j : joints)
+      if (row >= 0 && row >= j.row && row < j.row + j.rows) return "joint \"" + j.name + '"';
+    return "unknown";
+  }
+};
+
+namespace detail {
+/// An address for each type.
+template <class>
+inline constexpr char type_tag = 0;
+}  // namespace detail
+
+}  // namespace polybody

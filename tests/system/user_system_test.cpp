@@ -1,0 +1,142 @@
+// A system of a user's own equations, without bodies and joints, under the integrators of the library.
+#include <gtest/gtest.h>
+
+#include <polybody/polybody.hpp>
+#include <polybody/system/user_system.hpp>
+
+namespace user_system_test {
+namespace {
+
+using namespace polybody;
+
+/// x¨ = −ω² x: x = cos ωt.
+struct Oscillator {
+  double omega = 3.0;
+  Index speeds() const { return 1; }
+  void mass(VecX const&, MatX& m) const { m(0, 0) = 2.0; }
+  void force(VecX const& q, VecX const&, double, VecX& f) const { f[0] = -2.0 * omega * omega * q[0]; }
+};
+
+/// A point of mass m on a circle of radius 1 in the plane, Φ = ½ (x² + y² − 1).
+struct Pendulum {
+  Index speeds() const { return 2; }
+  Index rows() const { return 1; }
+  void mass(VecX const&, MatX& m) const { m = 3.0 * MatX::Identity(2, 2); }
+  void force(VecX const&, VecX const&, double, VecX& f) const { f << 0.0, -3.0 * 9.81; }
+  void tangent(VecX const&, VecX const&, double, double, double, MatX& k) const { k.setZero(2, 2); }
+  void violation(VecX const& q, double, VecX& phi) const { phi[0] = 0.5 * (q.squaredNorm() - 1.0); }
+  void jacobian(VecX const& q, double, MatX& g) const { g = q.transpose(); }
+  void rate(VecX const&, double, VecX& phi_t) const { phi_t[0] = 0.0; }
+  void gamma(VecX const&, VecX const& v, double, VecX& gamma) const { gamma[0] = v.squaredNorm(); }
+};
+static_assert(UserMechanics<Oscillator> && !OffersRows<Oscillator> && !OffersForceTangent<Oscillator>);
+static_assert(OffersRows<Pendulum> && OffersForceTangent<Pendulum> && !UserMechanics<int>);
+
+State at(System const& system, VecX const& q) {
+  VecX const none = VecX::Zero(system.speeds());
+  return {q, none, none, VecX::Zero(system.rows()), 0.0, {}};
+}
+
+template <class I>
+State run(System& system, State x, I const& integrator, double h, double until) {
+  auto w = integrator.template workspace<BlockSolver>(system);
+  integrator.check();
+  integrator.start(system, x, h, w);
+  while (x.t < until - 1e-9) integrator.step(system, x, std::min(h, until - x.t), w);
+  return x;
+}
+
+template <class I>
+void expect_cosine(I const& integrator, double h, double tolerance) {
+  System system = system_of(Oscillator{}, "mass", true);
+  State const x = run(system, at(system, VecX::Ones(1)), integrator, h, 1.0);
+  EXPECT_NEAR(x.q[0], std::cos(3.0), tolerance) << I::name;
+  EXPECT_NEAR(x.v[0], -3.0 * std::sin(3.0), 3.0 * tolerance) << I::name;
+}
+
+TEST(UserSystem, OscillatesUnderEveryKindOfIntegrator) {
+  expect_cosine(GeneralizedAlpha{.rho_inf = 1.0}, 1e-3, 3e-6);
+  expect_cosine(HhtAlpha{}, 1e-3, 1e-4);
+  expect_cosine(Radau{}, 0.02, 1e-8);
+  expect_cosine(RungeKutta4<>{}, 0.01, 1e-6);
+  expect_cosine(DormandPrince<>{}, 0.1, 1e-6);
+  expect_cosine(AdamsBashforthMoulton<>{}, 0.1, 1e-6);
+  expect_cosine(CentralDifference<>{}, 1e-3, 3e-6);
+  expect_cosine(SymplecticEuler{}, 1e-4, 2e-3);
+  expect_cosine(Rattle{}, 1e-3, 3e-6);
+}
+
+// Energy is kept to the method's accuracy, and the multiplier is the pull of the thread: |λ| q = m (v² + g·down).
+TEST(UserSystem, SwingsOnItsRow) {
+  System system = system_of(Pendulum{});
+  State const start = at(system, Vec2(1.0, 0.0));
+  auto const check = [&](auto const& integrator, double h, double tolerance) {
+    State const x = run(system, start, integrator, h, 1.0);
+    EXPECT_NEAR(x.q.norm(), 1.0, 1e-9);
+    EXPECT_NEAR(0.5 * x.v.squaredNorm() + 9.81 * x.q[1], 0.0, tolerance);
+    EXPECT_NEAR(x.lambda[0], 3.0 * (x.v.squaredNorm() - 9.81 * x.q[1]), 100.0 * tolerance);
+  };
+  check(GeneralizedAlpha{}, 1e-3, 1e-4);
+  check(Radau{}, 0.01, 1e-7);
+  check(RungeKutta4<Projection>{}, 1e-3, 1e-7);
+}
+
+TEST(UserSystem, NamesItselfInErrors) {
+  struct Broken : Oscillator {
+    void force(VecX const&, VecX const&, double, VecX& f) const { f[0] = std::numeric_limits<double>::quiet_NaN(); }
+  };
+  System system = system_of(Broken{}, "rotor");
+  try {
+    run(system, at(system, VecX::Ones(1)), GeneralizedAlpha{}, 1e-3, 0.1);
+    FAIL();
+  } catch (NonFinite const& e) {
+    EXPECT_NE(std::string(e.what()).find("body \"rotor\""), std::string::npos) << e.what();
+  }
+}
+
+TEST(System, RefusesWhatItWasMadeWithout) {
+  Model<Bodies<Rigid<>>, Joints<>> model;
+  model.add(Rigid<>(1.0, Mat3::Identity()));
+  System system(model, with<Entries::motion>);
+  State const x = model.reference_state();
+  system.evaluate(x.q, x.v, x.t);
+  PatternSink sink;
+  EXPECT_THROW(system.tangent({.mass = 1.0}, SecondOrder::omitted, x.lambda, sink), InvalidInput);
+  EXPECT_THROW((void)energy(system, x), InvalidInput);
+}
+
+/// G by columns and Gᵀ by columns are each other's transpose, of every source of rows: frames, Euler parameters, linear
+/// joints.
+TEST(System, ProductsWithRowsAndTheirTransposeAgree) {
+  using Pin = Joint<Revolute, Constraint>;
+  using Ball = Joint<Spherical, AncfLinear>;
+  Model<Bodies<Rigid<EulerParameters>, AncfCable<>>, Joints<Pin, Ball>> model;
+  Bar const bar{.length = 1.0, .section = Circle{.radius = 0.01}, .material = Material{.density = 7800, .young = 2e11}};
+  auto const rod = model.add(Rigid<EulerParameters>::from(bar), "rod");
+  auto const first = model.add(AncfCable<>::from(bar, 2), "first");
+  Bar second_bar = bar;
+  second_bar.placement = Placement::at({1.0, 0, 0});
+  auto const second = model.add(AncfCable<>::from(second_bar, 2), "second");
+  model.connect(Pin{Revolute{.axis = {0, 1, 0}}, {}}, model.ground().at({0, 0, 0}), rod.at(0.0));
+  model.connect(Ball{}, first.at(1.0), second.at(0.0));
+  System system(model, with<Entries::motion>);
+  State const x = model.reference_state();
+  system.evaluate(x.q, x.v, x.t);
+  Index const n = system.speeds(), m = system.rows();
+  MatX g(m, n), gt(n, m);
+  VecX row(m), column(n);
+  for (Index j = 0; j < n; ++j) {
+    system.rows_times(VecX::Unit(n, j), row);
+    g.col(j) = row;
+  }
+  for (Index i = 0; i < m; ++i) {
+    system.rows_transposed_times(VecX::Unit(m, i), column);
+    gt.col(i) = column;
+  }
+  EXPECT_GT(m, 5 + 1 + 2);
+  for (Index i = 0; i < m; ++i) EXPECT_GT(gt.col(i).norm(), 0.1) << i;
+  EXPECT_LT((g - gt.transpose()).norm(), 1e-14 * g.norm());
+}
+
+}  // namespace
+}  // namespace user_system_test
