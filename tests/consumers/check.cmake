@@ -1,5 +1,5 @@
 # cmake -DWAY=<way> -DBUILD=... (see CMakeLists.txt) -P check.cmake
-# Installs polybody, or builds and runs consumer.cpp against it in one of five ways.
+# Installs polybody, or builds and runs consumer.cpp against it in one of six ways.
 
 set(here ${CMAKE_CURRENT_LIST_DIR})
 set(dir ${WORK}/${WAY})
@@ -34,6 +34,22 @@ elseif(WAY STREQUAL "add_subdirectory")
 
 elseif(WAY STREQUAL "fetch_content")
   build_and_run(fetch_content -DFETCHCONTENT_SOURCE_DIR_POLYBODY=${SOURCE})
+
+elseif(WAY STREQUAL "precompiled")
+  set(common -DCMAKE_PREFIX_PATH=${prefix} -DVERSION=${VERSION})
+  # what is no target of the build is refused in a sentence
+  foreach(wrong IN ITEMS nothing polybody::polybody)
+    execute_process(
+      COMMAND ${CMAKE_COMMAND} -S ${here}/precompiled -B ${dir}_refused --fresh -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+              ${common} -DWRONG=${wrong}
+      RESULT_VARIABLE failed
+      OUTPUT_QUIET
+      ERROR_VARIABLE said)
+    if(NOT failed OR NOT said MATCHES "polybody_precompile: \"${wrong}\" is")
+      message(FATAL_ERROR "polybody_precompile(${wrong}) is not refused in a sentence:\n${said}")
+    endif()
+  endforeach()
+  build_and_run(precompiled ${common})
 
 elseif(WAY STREQUAL "pkg_config")
   # No CMake at all: c++ -std=c++20 consumer.cpp $(pkg-config --cflags polybody)

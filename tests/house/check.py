@@ -1,14 +1,25 @@
-"""House rules, read off the headers:  check.py RULE INCLUDE_DIR
+"""House rules, read off the headers:  check.py RULE INCLUDE_DIR [--shrink]
 
-floors    a header includes only its own floor or a lower one
-words     no #define and no `virtual` in the code (comments may use the words)
-length    no header above 410 lines; reports the median and the 90 % line
-umbrella  polybody.hpp reaches every header, but for those that say why not
+floors     a header includes only its own floor or a lower one
+words      no #define and no `virtual` in the code (comments may use the words)
+length     no header above 410 lines; reports the median and the 90 % line
+umbrella   polybody.hpp reaches every header, but for those that say why not
+functions  no function above 60 lines, none with more than 6 parameters
+waist      integrators, solvers and analyses take the mechanics through its interface: they name no pool of a model, no
+           `detail::` of another folder, and no model as template parameter
+comments   no line of a comment begins with "Of" or "…"
+system     BasicSystem has at most 25 public member functions, its constructors not counted
+
+functions, waist and comments have a list of what they still allow, <rule>_allowed.txt beside this file: a `key` or
+`key count` on each line. The lists only shrink: an entry that offends no longer is an error, too. --shrink takes such
+entries off.
 """
 
 import re
 import sys
 from pathlib import Path
+
+import cpp_reader
 
 FLOORS = {
     "math": 0,
@@ -25,6 +36,13 @@ FLOORS = {
     "": 10,  # polybody.hpp itself
 }
 MAX_LINES = 410
+MAX_FUNCTION_LINES = 60
+MAX_PARAMETERS = 6
+MAX_SYSTEM_FUNCTIONS = 25
+
+BEHIND_WAIST = ("integrators", "solvers", "analysis", "run", "statics", "vibration", "stress", "compare", "signals")
+POOLS = re.compile(r"\b(?:(?:body|joint|force)_pools|for_each_(?:body|joint|force|gap)|BodyPool)\b")
+VAGUE = re.compile(r"(?://+<?|^[ \t]*\*|/\*+)[ \t]*(Of|…)(?=[ \t]|$)", re.MULTILINE)
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:<(polybody/[^>]+)>|"([^"]+)")', re.MULTILINE)
 NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
@@ -107,19 +125,164 @@ def umbrella(texts):
             yield f"{name} is not reached from {top}, and does not say why (Not in polybody.hpp: …)"
 
 
-RULES = {f.__name__: f for f in (floors, words, length, umbrella)}
+def declarations(name, text):
+    try:
+        return list(cpp_reader.declarations(text))
+    except ValueError as e:
+        sys.exit(f"{name}: {e}")
 
 
-def main(rule, root):
+def short(name):
+    """polybody/bodies/rigid.hpp -> bodies/rigid.hpp"""
+    return name.removeprefix("polybody/")
+
+
+def offending_functions(texts):
+    """{header:function: [sentences]}, one for each overload that offends, dearest first."""
+    rows = []
+    for name, text in texts.items():
+        for d in declarations(name, text):
+            lines = d.last - d.first + 1
+            if d.kind == "function" and d.body and (lines > MAX_FUNCTION_LINES or d.parameters > MAX_PARAMETERS):
+                rows.append((-lines, -d.parameters, f"{short(name)}:{d.name}", f"{name}:{d.first}: {d.name}"))
+    found = {}
+    for lines, parameters, key, where in sorted(rows):
+        told = f"{where}: {-lines} lines, {-parameters} parameters (at most {MAX_FUNCTION_LINES}, {MAX_PARAMETERS})"
+        found.setdefault(key, []).append(told)
+    return found
+
+
+def takes_model(code):
+    """Whether a template has a parameter M that is a type."""
+    for m in re.finditer(r"\btemplate\s*(?=<)", code):
+        parameters = code[m.end() : cpp_reader.after_angles(code, m.end())]
+        if re.search(r"(?:\b(?!int\b|bool\b|Index\b)\w+|>)\s+M\b", parameters):
+            return True
+    return False
+
+
+def offending_waist(texts):
+    details = {}  # {name in a namespace detail: folders that define it}
+    for name, text in texts.items():
+        for d in declarations(name, text):
+            if "detail" in d.scopes and "::" not in d.name:
+                details.setdefault(d.name, set()).add(folder(name))
+    found = {}
+    for name, text in texts.items():
+        if folder(name) not in BEHIND_WAIST:
+            continue
+        code = cpp_reader.code_of(text)
+        named = {m: f"names {m}, which is the model's own affair" for m in POOLS.findall(code)}
+        for other in re.findall(r"\bdetail::(\w+)", code):
+            if folder(name) not in details.get(other, {folder(name)}):
+                named[f"detail::{other}"] = f"uses detail::{other} of {', '.join(sorted(details[other]))}"
+        if re.search(r"\bSystem\s*<", code):
+            named["System<"] = "names System<…>: a model as template parameter"
+        if takes_model(code):
+            named["template <class M>"] = "has a template parameter M: a model"
+        for what, told in sorted(named.items()):
+            found[f"{short(name)}:{what}"] = [f"{name}: {told}"]
+    return found
+
+
+def offending_comments(texts):
+    found = {}
+    for name, text in texts.items():
+        strings = re.compile(r'(//[^\n]*|/\*.*?\*/)|"(?:\\.|[^"\\\n])*"', re.DOTALL)
+        text = strings.sub(lambda m: m[1] or '""', text)
+        for m in VAGUE.finditer(text):
+            told = f'{name}:{text.count(chr(10), 0, m.start(1)) + 1}: a comment begins with "{m[1]}": say of what'
+            found.setdefault(short(name), []).append(told)
+    return found
+
+
+def list_of(rule):
+    return Path(__file__).with_name(f"{rule}_allowed.txt")
+
+
+def allowed(rule):
+    """{key: count} of the list of a rule."""
+    found = {}
+    for line in list_of(rule).read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            key, count = re.fullmatch(r"(.*?)(?: (\d+))?", line).groups()
+            found[key] = int(count or 1)
+    return found
+
+
+def beyond_list(rule, offenders, tell=False):
+    """Sentences on offenders that the list of the rule does not allow, and on entries that it should no longer have."""
+    old = allowed(rule)
+    listed = [told for key, all_told in offenders.items() if key in old for told in all_told]
+    print(f"allowed by {rule}_allowed.txt: {len(listed)}")
+    for told in listed if tell else ():
+        print(f"  {told}")
+    for key, all_told in offenders.items():
+        if len(all_told) > old.get(key, 0):
+            yield from all_told
+            if key in old:
+                yield f"{key}: {len(all_told)} of these, {old[key]} allowed"
+    for key, count in old.items():
+        left = len(offenders.get(key, []))
+        if left < count:
+            yield f"{key}: " + (f"only {left} left of {count}" if left else "no longer an offender") + (
+                f": {'lower it on' if left else 'take it off'} the list {rule}_allowed.txt (--shrink does)")
+
+
+def shrink(rule, offenders):
+    path = list_of(rule)
+    comments = [line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
+    kept = {key: min(count, len(offenders.get(key, []))) for key, count in allowed(rule).items()}
+    path.write_text("\n".join(comments + entries(kept)) + "\n", encoding="utf-8")
+
+
+def entries(counts):
+    return [key if count == 1 else f"{key} {count}" for key, count in sorted(counts.items()) if count]
+
+
+OFFENDERS = {"functions": offending_functions, "waist": offending_waist, "comments": offending_comments}
+
+
+def functions(texts):
+    yield from beyond_list("functions", offending_functions(texts), tell=True)
+
+
+def waist(texts):
+    yield from beyond_list("waist", offending_waist(texts))
+
+
+def comments(texts):
+    yield from beyond_list("comments", offending_comments(texts))
+
+
+def system(texts):
+    name = "polybody/system/system.hpp"
+    count = sum(
+        d.kind == "function" and d.public and not d.friend
+        and bool(re.fullmatch(r"BasicSystem::(?!BasicSystem$|~)[^:]+", d.name))
+        for d in declarations(name, texts.get(name, ""))
+    )
+    if count > MAX_SYSTEM_FUNCTIONS:
+        yield f"{name}: BasicSystem has {count} public member functions, more than {MAX_SYSTEM_FUNCTIONS}"
+
+
+RULES = {f.__name__: f for f in (floors, words, length, umbrella, functions, waist, comments, system)}
+
+
+def main(rule, root, shrinks=False):
     texts = headers(Path(root))
     if not texts:
         sys.exit(f"no header under {root}/polybody")
+    if shrinks:
+        shrink(rule, OFFENDERS[rule](texts))
     found = list(RULES[rule](texts))
     print(*found, sep="\n")
     return 1 if found else 0
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3 or sys.argv[1] not in RULES:
+    asked = [a for a in sys.argv[1:] if a != "--shrink"]
+    shrinks = len(asked) < len(sys.argv) - 1
+    if len(asked) != 2 or asked[0] not in (OFFENDERS if shrinks else RULES):
         sys.exit(__doc__)
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(main(*asked, shrinks))

@@ -1,8 +1,11 @@
 """Tests of check.py: each rule finds what it must find, and nothing else."""
 
+import tempfile
 import unittest
+from pathlib import Path
 
 import check
+import cpp_reader
 
 GOOD = {
     "polybody/polybody.hpp": "#include <polybody/bodies/rigid.hpp>\n",
@@ -13,6 +16,18 @@ GOOD = {
 
 
 class Check(unittest.TestCase):
+    def setUp(self):
+        self.lists = tempfile.TemporaryDirectory()
+        self.addCleanup(self.lists.cleanup)
+        list_of, folder = check.list_of, Path(self.lists.name)
+        self.addCleanup(setattr, check, "list_of", list_of)
+        check.list_of = lambda rule: folder / f"{rule}_allowed.txt"
+        for rule in check.OFFENDERS:
+            self.allow(rule)
+
+    def allow(self, rule, *lines):
+        check.list_of(rule).write_text("\n".join(("# of old", *lines)) + "\n", encoding="utf-8")
+
     def found(self, rule, **changes):
         renamed = {f"polybody/{k.replace('__', '/')}.hpp": v for k, v in changes.items()}
         return list(check.RULES[rule](GOOD | renamed))
@@ -39,6 +54,100 @@ class Check(unittest.TestCase):
     def test_umbrella(self):
         self.assertEqual(len(self.found("umbrella", math__lonely="")), 1)
         self.assertEqual(self.found("umbrella", math__lonely="/// Not in polybody.hpp: needs a library.\n"), [])
+
+    def test_functions(self):
+        long = lambda n: "int f() {\n" + "  ++a;\n" * n + "}\n"
+        self.assertEqual(self.found("functions", math__so3=long(58)), [])
+        self.assertEqual(len(self.found("functions", math__so3=long(59))), 1)
+        self.assertEqual(len(self.found("functions", math__so3="int f(int, int, int, int, int, int, int) {}")), 1)
+        for text in ("int f(A<int, 2> a, int, int, int, int, int g = h(1, 2)) {}",
+                     "int f(int, int, int, int, int, int, int);",
+                     "namespace a {\nstruct B {\n" + "int c;\n" * 90 + "};\n}\n"):
+            self.assertEqual(self.found("functions", math__so3=text), [], text)
+
+    def test_waist(self):
+        for text in ("for_each_body(f);", "m.body_pools();", "detail::BodyPool<B> p;", "void f(System<M>&);",
+                     "template <class B, class M>\nvoid f(M const& model);"):
+            self.assertEqual(len(self.found("waist", integrators__x=text)), 1, text)
+            self.assertEqual(self.found("waist", system__x=text), [], text)
+        mass = "namespace polybody::detail {\nint mass();\n}"
+        self.assertEqual(len(self.found("waist", system__y=mass, solvers__x="int a = detail::mass();")), 1)
+        self.assertEqual(self.found("waist", solvers__y=mass, solvers__x="int a = detail::mass();"), [])
+        good = "// for_each_body, System<M>\ntemplate <int M> struct A;\nBasicSystem<S>& s;"
+        self.assertEqual(self.found("waist", solvers__x=good), [])
+
+    def test_comments(self):
+        for line in ("/// Of a run.", "int a;  ///< … in its own", "  // Of it", "/* Of it */"):
+            self.assertEqual(len(self.found("comments", math__so3=line)), 1, line)
+        for line in ("/// Offers a run.", "/// …}; ends", 'auto a = "// Of it";', "/// A part of it."):
+            self.assertEqual(self.found("comments", math__so3=line), [], line)
+
+    def test_lists_only_shrink(self):
+        bad = "void f(int, int, int, int, int, int, int) {}\n"
+        self.allow("functions", "math/so3.hpp:f")
+        self.assertEqual(self.found("functions", math__so3=bad), [])
+        self.assertEqual(len(self.found("functions", math__so3=bad * 2)), 3)  # two overloads, one more than allowed
+        self.assertIn("take it off", self.found("functions")[0])
+        self.allow("functions", "math/so3.hpp:f 2")
+        self.assertIn("lower it", self.found("functions", math__so3=bad)[0])
+        check.shrink("functions", check.offending_functions({"polybody/math/so3.hpp": bad}))
+        self.assertEqual(check.list_of("functions").read_text(encoding="utf-8"), "# of old\nmath/so3.hpp:f\n")
+
+    def test_system(self):
+        body = lambda n: ("template <class M>\nclass BasicSystem {\n public:\n  BasicSystem();\n"
+                          + "".join(f"  int f{i}() const;\n" for i in range(n)) + " private:\n  int c();\n};")
+        self.assertEqual(self.found("system", system__system=body(25)), [])
+        self.assertEqual(len(self.found("system", system__system=body(26))), 1)
+
+
+class Reader(unittest.TestCase):
+    def functions(self, text):
+        return [(d.name, d.first, d.last, d.parameters)
+                for d in cpp_reader.declarations(text) if d.kind == "function" and d.body]
+
+    def test_finds_functions(self):
+        for text, *expected in (
+            ("int f(int a) {\n  return a;\n}", ("f", 1, 3, 1)),
+            ("template <class T = int, int n = (1 < 2)>\n  requires(n > 1) && A<T>\n"
+             "[[nodiscard]] inline auto f(T... a) -> B<T> {\n}",
+             ("f", 1, 4, 1)),
+            ("template <class T>\n  requires requires(T t) { t.f(); }\nvoid g(T a, std::map<int, int> b) {}",
+             ("g", 1, 3, 2)),
+            ("struct A {\n  A(int a, int b)\n      : a{a}, b_(b), C<int>{1} {\n  }\n};", ("A::A", 2, 4, 2)),
+            ("struct A { bool operator()(int a) const noexcept(x(1)) { return {}; } operator T() const { return {}; }"
+             " ~A() {} };",
+             ("A::operator()", 1, 1, 1), ("A::operator T", 1, 1, 0), ("A::~A", 1, 1, 0)),
+            ("struct A { friend auto operator<=>(A const& a, A const& b) { return 0; } A& operator++() {} };",
+             ("A::operator<=>", 1, 1, 2), ("A::operator++", 1, 1, 0)),
+            ("void A<B<C...>>::f(std::function<void(int, int)> g = [](int a, int b) { return a; })\n"
+             "  requires(n == 1)\n{}",
+             ("A::f", 1, 3, 1)),
+            ("decltype(auto) f() {}\nextern \"C\" { void g(void) {} }\n"
+             "namespace a::b { inline namespace c { void h() {} } }",
+             ("f", 1, 1, 0), ("g", 2, 2, 0), ("h", 3, 3, 0)),
+            ("void f() {\n  auto g = [](int a) { if constexpr (requires { a.b(); }) { } };\n"
+             "  struct A { void h() {} };\n}",
+             ("f", 1, 4, 0)),
+            ("char c = '{'; int n = 1'000; auto s = R\"(})\"; // {\nvoid f() {}", ("f", 2, 2, 0)),
+        ):
+            self.assertEqual(self.functions(text), expected, text)
+
+    def test_leaves_the_rest(self):
+        for text in ("template <class S> concept A = requires(S s) { s.f(); } && B<S>;", "enum class E { a, b };", "enum { a };",
+                     "inline constexpr std::array<int, 2> a{1, 2};", "using F = std::function<void(int)>;",
+                     "struct A { std::vector<int> a{f(1)}; B b = f({1}); };",
+                     "constexpr auto f = [](int a) { return a; };",
+                     "struct A;\nstruct B : C<decltype(f())> { int a; } b;", "static_assert(A<B>{}(1));",
+                     "void f();\nA() = default;\nvirtual void g() = 0;"):
+            self.assertEqual(self.functions(text), [], text)
+
+    def test_knows_who_may_call(self):
+        text = "class A { int a(); public: int b(); protected: int c(); }; struct B { int d(); private: int e(); };"
+        self.assertEqual([d.name for d in cpp_reader.declarations(text) if d.kind == "function" and d.public], ["A::b", "B::d"])
+
+    def test_names_what_is_not_closed(self):
+        with self.assertRaisesRegex(ValueError, "line 2"):
+            list(cpp_reader.declarations("int a;\nvoid f() {\n"))
 
 
 if __name__ == "__main__":
