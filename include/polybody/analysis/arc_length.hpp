@@ -10,6 +10,7 @@
 
 #include <polybody/analysis/static_tangent.hpp>
 #include <polybody/solvers/default_solver.hpp>
+#include <polybody/system/model_entries.hpp>
 
 namespace polybody {
 

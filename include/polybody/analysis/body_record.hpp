@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <polybody/analysis/initial_conditions.hpp>
+#include <polybody/system/model_entries.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {

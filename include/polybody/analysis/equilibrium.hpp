@@ -7,6 +7,7 @@
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/newton.hpp>
+#include <polybody/system/model_entries.hpp>
 
 namespace polybody {
 

@@ -3,6 +3,7 @@
 /// Consistent starts: assembly of positions, projection of velocities, accelerations and multipliers.
 
 #include <polybody/analysis/repeated_rows.hpp>
+#include <polybody/system/model_entries.hpp>
 
 namespace polybody {
 

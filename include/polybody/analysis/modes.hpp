@@ -16,6 +16,7 @@
 #include <Eigen/QR>
 
 #include <polybody/solvers/linear_solver.hpp>
+#include <polybody/system/model_entries.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {

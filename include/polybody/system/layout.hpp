@@ -12,7 +12,7 @@
 namespace polybody {
 
 struct BodyPlace {
-  std::string name;
+  std::string name = {};
   Index q0 = 0, coordinates = 0;
   Index v0 = 0, speeds = 0;
   Index row = -1, rows = 0;  ///< rows of its own
@@ -20,14 +20,14 @@ struct BodyPlace {
 };
 
 struct JointPlace {
-  std::string name;
+  std::string name = {};
   Index a = -1, b = -1;      ///< published markers
   Index row = -1, rows = 0;  ///< none of a compliant joint
   bool eliminated = false;   ///< from a time step
 };
 
 struct ForcePlace {
-  std::string name;
+  std::string name = {};
   void const* type = nullptr;   ///< tells types of forces apart
   Index index = 0;              ///< among the forces of its type
   void const* entry = nullptr;  ///< in the model's pool
@@ -38,11 +38,11 @@ struct ForcePlace {
 struct ModelLayout {
   std::uint64_t serial = 0;  ///< of the model, as its handles know it
   Index coordinates = 0, speeds = 0, rows = 0;
-  std::vector<Index> velocity_rows;  ///< rows without a position, ascending
-  std::vector<BodyPlace> bodies;
-  std::vector<JointPlace> joints;
-  std::vector<ForcePlace> forces;
-  std::vector<double> corners;  ///< times at which a drive or a load wants a step to end
+  std::vector<Index> velocity_rows = {};  ///< rows without a position, ascending
+  std::vector<BodyPlace> bodies = {};
+  std::vector<JointPlace> joints = {};
+  std::vector<ForcePlace> forces = {};
+  std::vector<double> corners = {};  ///< times at which a drive or a load wants a step to end
   bool constant_mass = false;
   bool has_groups = false;  ///< of forces
 
