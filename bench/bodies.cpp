@@ -4,8 +4,8 @@
 
 #include <chrono>
 #include <cstdio>
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/planar/ffr.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/polybody.hpp>
 
 namespace {

@@ -14,8 +14,8 @@
 #include <numbers>
 #include <sstream>
 
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/matrix_structure.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/ffr/matrix_structure.hpp>
 #include <polybody/polybody.hpp>
 
 using namespace polybody;

@@ -5,9 +5,9 @@
 //   track_stress --figure 4.8
 #include <CLI/CLI.hpp>
 
-#include <polybody/analysis/body_record.hpp>
-#include <polybody/analysis/rainflow.hpp>
 #include <polybody/io/checkpoint.hpp>
+#include <polybody/run/body_record.hpp>
+#include <polybody/signals/rainflow.hpp>
 #include <polybody/vehicle/link_strain.hpp>
 #include <polybody/vehicle/modal_links.hpp>
 

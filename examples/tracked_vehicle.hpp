@@ -1,9 +1,9 @@
 #pragma once
 // The vehicle of Chapters 3 and 4 as a case for `compare`: one template, whatever the formulation of its tracks.
-#include <polybody/analysis/filter.hpp>
-#include <polybody/analysis/rms_difference.hpp>
 #include <polybody/io/vtk.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/signals/filter.hpp>
+#include <polybody/signals/rms_difference.hpp>
 #include <polybody/vehicle/settled_track.hpp>
 #include <polybody/vehicle/track_watch.hpp>
 #include <polybody/vehicle/vehicle_visual.hpp>

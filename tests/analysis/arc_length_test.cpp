@@ -1,18 +1,18 @@
 // Paths of equilibria past limit points: a toggle of two springs in closed form, and CASES S9a (Lee's frame).
-#include <polybody/analysis/arc_length.hpp>
+#include <polybody/statics/arc_length.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/run/observe.hpp>
 
 #include "support/refusal.hpp"
 

@@ -1,11 +1,10 @@
 // What a run leaves of a rigid body: with every wrench on it at its point, Newton's and Euler's equations hold.
-#include <polybody/analysis/body_record.hpp>
+#include <polybody/run/body_record.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
@@ -16,6 +15,7 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"
 
@@ -98,7 +98,7 @@ void balances() {
   model.apply(PointForce<>{.force = {50, 300, -200}, .axes = LoadAxes::marker}, b.at(2.0, -0.05, 0.0), "follower");
   model.apply(PointMoment<>{.moment = {30, -40, 50}}, a.at(0.7), "moment");
   auto const group = model.apply(Group{}, std::vector{a.at(1.9), b.at(2.0)}, "contacts");
-  model.oppose(group, Press{}, model.ground().at({0, 0, -2.2}), "floor");
+  model.pair_with(group, Press{}, model.ground().at({0, 0, -2.2}), "floor");
 
   LoadRecorder recorder(model);
   recorder.add(b);

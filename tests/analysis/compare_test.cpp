@@ -1,12 +1,12 @@
-#include <polybody/analysis/compare.hpp>
+#include <polybody/compare/compare.hpp>
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <sstream>
 
-#include <polybody/analysis/work_precision.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/compare/work_precision.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>

@@ -1,17 +1,14 @@
 // Stress after a rigid run beside that of flexible bodies: where the two agree, and how they part as speed² where the
 // deformation acts back: on the arm of centrifugal forces, and on the motion of the body (its mass to the deformation,
 // m_rf).
-#include <polybody/analysis/decoupled_stress.hpp>
+#include <polybody/stress/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/section.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/analysis/steady_rotation.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
@@ -19,6 +16,9 @@
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/stress/section.hpp>
+#include <polybody/vibration/steady_rotation.hpp>
 
 using namespace polybody;
 

@@ -1,14 +1,12 @@
 // Stress after a rigid run against known answers: textbook formulas of rigid rods in motion, and what a cut-off part of
 // a body needs for its own motion. The coupled formulations are met in decoupled_and_coupled_test.cpp.
-#include <polybody/analysis/decoupled_stress.hpp>
+#include <polybody/stress/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/filter.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/matrix_structure.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ffr/matrix_structure.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
@@ -20,6 +18,8 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/signals/filter.hpp>
 
 #include "support/refusal.hpp"
 

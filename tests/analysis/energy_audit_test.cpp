@@ -1,15 +1,14 @@
 // Where the energy of a run comes from and where it goes: powers in any state, work against exact numbers, what
 // integrators lose.
-#include <polybody/analysis/energy_audit.hpp>
+#include <polybody/run/energy_audit.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/user_force.hpp>
@@ -18,6 +17,7 @@
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/recursive.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/differences.hpp"
 #include "support/mixed_models.hpp"
@@ -353,7 +353,7 @@ struct Balls {
       std::vector<decltype(balls[0].at(Vec3(0, 0, 0)))> many;
       for (auto const& b : balls) many.push_back(b.at(Vec3(0, 0, 0)));
       auto const group = model.apply(F{}, many, "balls");
-      model.oppose(group, law, floor, "ground");
+      model.pair_with(group, law, floor, "ground");
     } else {
       for (auto const& b : balls) model.apply(law, b.at(Vec3(0, 0, 0)), floor);
     }

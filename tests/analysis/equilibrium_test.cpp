@@ -1,11 +1,11 @@
-#include <polybody/analysis/equilibrium.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
+#include <polybody/run/observe.hpp>
 
 #include <gtest/gtest.h>
 

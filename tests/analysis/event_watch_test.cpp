@@ -1,4 +1,4 @@
-#include <polybody/analysis/event_watch.hpp>
+#include <polybody/run/event_watch.hpp>
 
 #include <gtest/gtest.h>
 

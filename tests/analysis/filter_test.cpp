@@ -1,6 +1,6 @@
 // Filters and spectra of histories. The references are closed forms: sums of sines whose frequencies fit the record or
 // do not.
-#include <polybody/analysis/filter.hpp>
+#include <polybody/signals/filter.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include <polybody/analysis/formulation.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/compare/formulation.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 

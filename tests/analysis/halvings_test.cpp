@@ -22,7 +22,7 @@ struct Landing {
   explicit Landing(double height)
       : mass(model.add(Rigid<>(18.0, Mat3::Identity(), Placement::at({0, 0, height})), "mass")) {
     auto const group = model.apply(Group{}, std::vector{mass.at(Vec3(0, 0, 0))});
-    model.oppose(group, OnFloor{{0.0}, {.stiffness = 2e6, .damping = 3e4}}, model.ground().at({0, 0, 0}));
+    model.pair_with(group, OnFloor{{0.0}, {.stiffness = 2e6, .damping = 3e4}}, model.ground().at({0, 0, 0}));
     x = model.reference_state();
   }
   RunReport run(int halvings) {

@@ -1,4 +1,4 @@
-#include <polybody/analysis/implied_curve.hpp>
+#include <polybody/compare/implied_curve.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Consistent starts, on a rod on a pin and on a four-bar of uniform rods (crank 1, coupler 2, rocker 1.5, base 2).
-#include <polybody/analysis/initial_conditions.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/run/initial_conditions.hpp>
+#include <polybody/run/observe.hpp>
 #include <polybody/system/model.hpp>
 
 #include <gtest/gtest.h>

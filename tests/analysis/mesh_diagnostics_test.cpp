@@ -1,4 +1,4 @@
-#include <polybody/analysis/mesh_diagnostics.hpp>
+#include <polybody/compare/mesh_diagnostics.hpp>
 
 #include <gtest/gtest.h>
 

@@ -2,16 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace polybody {
 namespace minimum_norm_test {

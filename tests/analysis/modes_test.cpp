@@ -1,14 +1,14 @@
-#include <polybody/analysis/modes.hpp>
+#include <polybody/vibration/modes.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 #include "support/chain.hpp"
 #include "support/refusal.hpp"

@@ -1,9 +1,9 @@
 // Energies, momenta and what is asked of a single state.
-#include <polybody/analysis/observe.hpp>
+#include <polybody/run/observe.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
+#include <polybody/run/energy.hpp>
 
 #include "support/mixed_models.hpp"
 #include "support/refusal.hpp"

@@ -1,6 +1,6 @@
 // Rainflow counting: the worked example of the standard, histories whose cycles are plain, and laws that hold for any
 // history.
-#include <polybody/analysis/rainflow.hpp>
+#include <polybody/signals/rainflow.hpp>
 
 #include <gtest/gtest.h>
 

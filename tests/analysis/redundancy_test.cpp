@@ -2,17 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/redundancy.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
-#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/run/redundancy.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/linkages.hpp"
 #include "support/refusal.hpp"

@@ -1,7 +1,7 @@
 // How far histories are apart.
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/rms_difference.hpp>
+#include <polybody/signals/rms_difference.hpp>
 
 #include <numbers>
 

@@ -1,6 +1,6 @@
 // Stress in a section: it adds up to the section's forces, leaves the surface free, and has the textbook's largest
 // values.
-#include <polybody/analysis/section_stress.hpp>
+#include <polybody/stress/section_stress.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // What a run owes its user, on a rigid uniform rod that hangs on a pin (m = 1, L = 1, g = 9.81) and on a free rod.
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 #include <polybody/system/model.hpp>
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // Spectra's Lanczos iteration against Eigen's dense solver and closed forms; this file is built where Spectra is
 // installed.
-#include <polybody/analysis/spectra_modes.hpp>
+#include <polybody/vibration/spectra_modes.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/beam_structure.hpp>
+#include <polybody/bodies/ffr/beam_structure.hpp>
 
 #include "support/refusal.hpp"
 

@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
@@ -15,6 +14,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"
 

@@ -1,10 +1,10 @@
-#include <polybody/analysis/steady_rotation.hpp>
+#include <polybody/vibration/steady_rotation.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
-#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/forces/user_force.hpp>
 #include <polybody/joints/joint.hpp>

@@ -1,4 +1,4 @@
-#include <polybody/analysis/step_plan.hpp>
+#include <polybody/run/step_plan.hpp>
 
 #include <gtest/gtest.h>
 

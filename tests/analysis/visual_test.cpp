@@ -3,16 +3,16 @@
 
 #include <map>
 #include <numbers>
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/visual.hpp>
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
+#include <polybody/io/visual.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 #include "support/refusal.hpp"
 

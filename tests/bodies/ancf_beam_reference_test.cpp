@@ -1,7 +1,7 @@
 // Curved references, pretension, packs of elements, and bars that are refused.
 
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/element_batches.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/shared/element_batches.hpp>
 
 #include <gtest/gtest.h>
 

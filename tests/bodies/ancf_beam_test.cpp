@@ -1,4 +1,4 @@
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 
 #include <gtest/gtest.h>
 

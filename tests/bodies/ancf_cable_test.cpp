@@ -1,9 +1,9 @@
-#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/element_batches.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/shared/element_batches.hpp>
 
 #include "support/flexible_body_laws.hpp"
 #include "support/refusal.hpp"

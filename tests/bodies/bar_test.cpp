@@ -1,4 +1,4 @@
-#include <polybody/bodies/bar.hpp>
+#include <polybody/bodies/shared/bar.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/shared/body.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <vector>
 
 #include "support/differences.hpp"

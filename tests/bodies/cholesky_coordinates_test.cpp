@@ -1,14 +1,14 @@
 // Cholesky coordinates: identity mass, the laws of every body, the same motion.
-#include <polybody/bodies/cholesky_coordinates.hpp>
+#include <polybody/bodies/ancf/cholesky_coordinates.hpp>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/flexible_body_laws.hpp"
 #include "support/refusal.hpp"

@@ -1,10 +1,10 @@
-#include <polybody/bodies/element_batches.hpp>
+#include <polybody/bodies/shared/element_batches.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <vector>
 
 using namespace polybody;

@@ -1,6 +1,6 @@
 // The floating frame of reference in space obeys the laws of every body: nodal coordinates, with and without geometric
 // stiffening, modes, mean axes, and a frame of two bars.
-#include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
 
 #include "support/flexible_body_laws.hpp"
 

@@ -2,8 +2,8 @@
 // refused.
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 
 #include "support/refusal.hpp"
 

@@ -9,11 +9,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 
 namespace polybody {
 namespace {

@@ -1,6 +1,6 @@
 // The spatial Lrvf on a curved and twisted reference.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include "support/body_laws.hpp"
 #include "support/spatial_lrvf.hpp"

@@ -1,7 +1,7 @@
 // The laws of all bodies and of flexible ones for the spatial Lrvf with rotation vectors interpolated as they are.
 // Three of them speak of rigid motions of a bent body, which it fails: lrvf_direct_test.cpp measures by how much.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include "support/flexible_body_laws.hpp"
 #include "support/spatial_lrvf.hpp"

@@ -1,6 +1,6 @@
 // The spatial Lrvf with rotation vectors interpolated as they are: by how much it fails to be objective.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include <numbers>
 

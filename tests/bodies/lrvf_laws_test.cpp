@@ -1,6 +1,6 @@
 // The laws of all bodies and of flexible ones for the spatial Lrvf.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include "support/flexible_body_laws.hpp"
 #include "support/spatial_lrvf.hpp"

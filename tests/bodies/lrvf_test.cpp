@@ -1,4 +1,4 @@
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include <gtest/gtest.h>
 

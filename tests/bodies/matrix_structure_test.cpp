@@ -1,9 +1,9 @@
 // A structure from matrices: a block of 8-node bricks made here by Gauss quadrature; and what is refused.
-#include <polybody/bodies/matrix_structure.hpp>
+#include <polybody/bodies/ffr/matrix_structure.hpp>
 
 #include <filesystem>
 
-#include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
 
 #include "support/body_laws.hpp"
 #include "support/refusal.hpp"

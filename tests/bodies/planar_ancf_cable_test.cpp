@@ -1,4 +1,4 @@
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 
 #include <gtest/gtest.h>
 

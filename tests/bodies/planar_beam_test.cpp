@@ -1,9 +1,9 @@
-#include <polybody/bodies/planar/beam.hpp>
+#include <polybody/bodies/shared/planar_beam.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <vector>
 
 #include "support/refusal.hpp"

@@ -1,5 +1,5 @@
 // The floating frame of reference in the plane obeys the laws of every body.
-#include <polybody/bodies/planar/ffr.hpp>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
 
 #include "support/flexible_body_laws.hpp"
 

@@ -1,4 +1,4 @@
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 
 #include <gtest/gtest.h>
 

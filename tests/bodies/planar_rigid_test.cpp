@@ -1,4 +1,4 @@
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 
 #include <gtest/gtest.h>
 

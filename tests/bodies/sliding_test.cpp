@@ -1,10 +1,10 @@
-#include <polybody/bodies/sliding.hpp>
+#include <polybody/bodies/shared/sliding.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/revolute.hpp>

@@ -1,11 +1,11 @@
-#include <polybody/bodies/strain_group.hpp>
+#include <polybody/bodies/shared/strain_group.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
-#include <polybody/bodies/strain_tangent.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/shared/strain_tangent.hpp>
 #include <random>
 
 using namespace polybody;

@@ -1,11 +1,11 @@
-#include <polybody/bodies/strain_tangent.hpp>
+#include <polybody/bodies/shared/strain_tangent.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/element_batches.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/shared/element_batches.hpp>
 
 using namespace polybody;
 

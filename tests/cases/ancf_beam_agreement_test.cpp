@@ -1,7 +1,7 @@
 // The thesis' check of its ANCF elements: two elastic forces of different origin, elastic line and cured continuum,
 // agree in the limit of fine meshes, up to the strain.
 
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 
 #include <gtest/gtest.h>
 

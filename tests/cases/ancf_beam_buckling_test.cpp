@@ -1,7 +1,7 @@
 // CASES S9c, S9d, S9e with the fully parameterised ANCF beam on its elastic line: what is pulled in its stiff plane
 // leaves it.
 
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 
 #include "support/columns.hpp"
 #include "support/solver_instances.hpp"

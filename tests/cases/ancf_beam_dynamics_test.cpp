@@ -2,7 +2,7 @@
 // may stretch: one that spins at ω does so by Iρ ω²/EA, in D5 1e-5 ω² s², in D2 1e-9. That apart it is the rod, and of
 // order 2 as the Lrvf is.
 
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 
 #include <polybody/joints/revolute.hpp>
 

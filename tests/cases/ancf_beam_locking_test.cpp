@@ -1,6 +1,6 @@
 // CASES S10 and S4 with the ANCF beam by continuum mechanics: what locks, by how much, and that the cure removes it.
 
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 
 #include <gtest/gtest.h>
 

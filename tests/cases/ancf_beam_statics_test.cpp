@@ -1,7 +1,7 @@
 // CASES S2, S4, S5, S6, S7 with the fully parameterised ANCF beam on its elastic line, whose limit is the exact rod
 // [C]. The element bends with piecewise linear sections: order 2, and the extrapolation of two meshes meets the rod.
 
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 
 #include <gtest/gtest.h>
 

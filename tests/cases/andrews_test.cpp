@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
@@ -16,6 +13,9 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/recursive.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace polybody {
 namespace andrews_test {

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/knife_edge.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/run/energy.hpp>
 
 #include "support/velocity_row_runs.hpp"
 

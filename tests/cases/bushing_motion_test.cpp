@@ -1,12 +1,12 @@
 // A rod on a bushing in place of its pin: CASES J1, and against the ideal pin through several turns.
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,17 +1,17 @@
 // A body on a bushing against closed forms: CASES J3.
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/modes.hpp>
-#include <polybody/analysis/preloads.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/energy.hpp>
 #include <polybody/solvers/dense_lu.hpp>
+#include <polybody/statics/equilibrium.hpp>
+#include <polybody/statics/preloads.hpp>
+#include <polybody/vibration/modes.hpp>
 
 #include <gtest/gtest.h>
 

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/sliders.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/spherical.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/sliders.hpp>
 
 #include "support/solver_instances.hpp"
 

@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/recursive.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 namespace polybody {
 namespace catenary_test {

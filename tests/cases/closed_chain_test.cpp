@@ -2,18 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/redundancy.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/redundancy.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace polybody {
 namespace closed_chain_test {

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <numbers>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/point_load.hpp>
@@ -22,6 +19,9 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/prescribed_distance.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 using namespace polybody;
 
@@ -573,11 +573,11 @@ struct Capstan {
                           model.ground().at(Vec3(places.back() + line * tangent(wrap))), "winch");
     model.apply(PointForce<>{.force = -slack * tangent(0.0)}, points.front(), "slack end");
     auto const belt = model.apply(ContactGroup<OnDrum>{}, points, "belt");
-    model.oppose(belt,
-                 OnDrum{{.radius = 0.0, .cylinder = radius},
-                        {.stiffness = k, .exponent = 1.0, .damping = 10.0},
-                        {.coefficient = mu, .slip_speed = slip_speed}},
-                 model.ground().at({0, 0, 0}), "drum");
+    model.pair_with(belt,
+                    OnDrum{{.radius = 0.0, .cylinder = radius},
+                           {.stiffness = k, .exponent = 1.0, .damping = 10.0},
+                           {.coefficient = mu, .slip_speed = slip_speed}},
+                    model.ground().at({0, 0, 0}), "drum");
     x = model.reference_state();
     for (std::size_t i = 0; i < nodes.size(); ++i) model.set_velocity(x, nodes[i], speed * ways[i], {0, 0, 0});
   }
@@ -674,11 +674,11 @@ struct CableCapstan {
                           model.ground().at(Vec3(place + line * tangent(wrap))), "winch");
     model.apply(PointForce<>{.force = -slack * tangent(0.0)}, points.front(), "slack end");
     auto const belt = model.apply(ContactGroup<OnDrum>{}, points, "cable");
-    model.oppose(belt,
-                 OnDrum{{.radius = 0.0, .cylinder = radius},
-                        {.stiffness = bed * spacing, .exponent = 1.0, .damping = 5.0},
-                        {.coefficient = mu, .slip_speed = slip_speed}},
-                 model.ground().at({0, 0, 0}), "drum");
+    model.pair_with(belt,
+                    OnDrum{{.radius = 0.0, .cylinder = radius},
+                           {.stiffness = bed * spacing, .exponent = 1.0, .damping = 5.0},
+                           {.coefficient = mu, .slip_speed = slip_speed}},
+                    model.ground().at({0, 0, 0}), "drum");
     x.lambda = VecX::Zero(model.rows());
   }
 };

@@ -1,8 +1,8 @@
 // CASES S1, S4b, S8, S8b with beams in space: bars that are rolled up, and MacNeal & Harder's, which are twisted and
 // curved from the start.
 
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // CASES S9e by Lrvf: Euler's columns with all four ends, and the bent column beyond.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include "support/columns.hpp"
 #include "support/solver_instances.hpp"

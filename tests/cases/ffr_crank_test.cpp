@@ -2,15 +2,15 @@
 // modal matrices.
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/ffr.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace ffr_crank_test {
 

@@ -2,15 +2,15 @@
 // rod by 80·10/500 = 1.6 rad, far more than a linear structure is for: it can show the motion as a whole, and how it
 // begins.
 
-#include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/solver_instances.hpp"
 

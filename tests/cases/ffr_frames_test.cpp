@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/section.hpp>
-#include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/statics/equilibrium.hpp>
+#include <polybody/stress/section.hpp>
 
 namespace ffr_frames_test {
 

@@ -1,18 +1,18 @@
 // CASES D4: a flexible rod thrown through space, free of any support, against an independent spectral beam [C].
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/solver_instances.hpp"
 

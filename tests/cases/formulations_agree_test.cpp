@@ -2,15 +2,11 @@
 // moderately flexible one of D6b.
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/section.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/planar/ffr.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
@@ -19,6 +15,10 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/statics/equilibrium.hpp>
+#include <polybody/stress/section.hpp>
 
 namespace formulations_agree_test {
 

@@ -1,18 +1,18 @@
 // CASES E1, E2 and S9e: vibrations of straight beams, and where a pressed one buckles.
 
-#include <polybody/analysis/modes.hpp>
+#include <polybody/vibration/modes.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 using namespace polybody;
 

@@ -5,14 +5,14 @@
 
 #include <Eigen/Geometry>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/universal.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace polybody {
 namespace generalised_moments_test {

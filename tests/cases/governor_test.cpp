@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
@@ -14,6 +11,9 @@
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace polybody {
 namespace governor_test {

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
 #include <polybody/joints/primitives.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/revolute_pin.hpp>
 #include <polybody/joints/universal.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/solver_instances.hpp"
 

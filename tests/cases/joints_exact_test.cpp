@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/cylindrical.hpp>
@@ -15,6 +13,8 @@
 #include <polybody/joints/screw.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/math/smooth_table.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/solver_instances.hpp"
 

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/gear.hpp>
@@ -13,6 +11,8 @@
 #include <polybody/joints/prescribed_distance.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
 #include <polybody/joints/prescribed_slide.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"
 #include "support/solver_instances.hpp"

@@ -1,18 +1,18 @@
 // CASES S9a: Lee's frame up to its upper limit load, against the exact frame [C].
 
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 #include "support/solver_instances.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <numbers>
 
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/matrix_structure.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/ffr/matrix_structure.hpp>
 
 namespace polybody {
 namespace link_from_fe_test {

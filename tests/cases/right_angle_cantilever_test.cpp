@@ -1,6 +1,6 @@
 // CASES D5: the right-angle cantilever of Simo & Vu-Quoc 1988 by Lrvf.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include "support/right_angle_cantilever.hpp"
 #include "support/solver_instances.hpp"

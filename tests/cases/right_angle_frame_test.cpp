@@ -1,6 +1,6 @@
 // CASES S9c: a right-angle frame of two flat strips, pulled in its plane, buckles sideways (Argyris); by Lrvf.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include "support/buckling.hpp"
 #include "support/solver_instances.hpp"

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"
 

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/policies/bushing.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/linkages.hpp"
 

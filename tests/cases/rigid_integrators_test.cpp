@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/linkages.hpp"
 #include "support/refusal.hpp"

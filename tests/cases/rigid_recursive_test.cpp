@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/policies/recursive.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/linkages.hpp"
 #include "support/resumed_run.hpp"

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/integrator_cases.hpp"
 

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/rolling_disc.hpp>
+#include <polybody/run/energy.hpp>
 
 #include "support/velocity_row_runs.hpp"
 

@@ -1,7 +1,7 @@
 // CASES E3: cantilevers that turn steadily, by linearisation about the rotation.
 
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
 
 #include "support/rotating_cantilever.hpp"
 

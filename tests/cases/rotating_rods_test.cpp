@@ -1,8 +1,8 @@
 // CASES E3 by the geometrically exact rods, of second order in the elements' length: the limit by Richardson from two
 // meshes.
 
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include "support/rotating_cantilever.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/run/energy.hpp>
 
 #include "support/bead_on_a_line.hpp"
 #include "support/refusal.hpp"

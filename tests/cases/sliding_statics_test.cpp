@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/equilibrium.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 #include "support/bead_on_a_line.hpp"
 

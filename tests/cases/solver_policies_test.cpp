@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/run/simulate.hpp>
 #include <polybody/solvers/auto_lu.hpp>
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>

@@ -1,19 +1,19 @@
 // CASES S2, S3, S11 and D6a for the ANCF cable in space: the plane's numbers in a plane that stands askew, a hanging
 // cable, and a very flexible pendulum that spins, as Lrvf too.
 
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 #include "support/refusal.hpp"
 

@@ -1,19 +1,19 @@
 // CASES D3: the flexible rod of Simo & Vu-Quoc 1986, thrown in a plane, by bodies that live in space, against an
 // independent spectral beam [C]. Its loads are steps, so digits converge slowly; the table's last ones are good to ±1.
 
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/solver_instances.hpp"
 

@@ -1,18 +1,18 @@
 // CASES S9a: Lee's frame by the spatial Lrvf, which stays in its plane, against the exact frame with shear [C].
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include <polybody/analysis/arc_length.hpp>
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/statics/arc_length.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 #include "support/solver_instances.hpp"
 

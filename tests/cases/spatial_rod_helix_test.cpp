@@ -1,6 +1,6 @@
 // CASES S9f, Ibrahimbegović 1997: a cantilever wound into a helix by a space-fixed moment and a force along its axis.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include <gtest/gtest.h>
 

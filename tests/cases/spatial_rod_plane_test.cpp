@@ -1,7 +1,7 @@
 // CASES S2, S2c, S4, S9d: the plane's problems, and numbers, with the spatial Lrvf, and how a strip leaves its plane.
 
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // CASES S5 to S8: cantilevers in space, against the exact rod [C] with the same constants. Elements are of order 2: two
 // meshes extrapolated, (4 u₂ₙ − uₙ)/3, meet the exact numbers to their printed digits.
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 #include <gtest/gtest.h>
 

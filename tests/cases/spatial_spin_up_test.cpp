@@ -1,8 +1,8 @@
 // CASES D2 by bodies that live in space.
 
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/weld.hpp>

@@ -1,8 +1,8 @@
 // Two balls on top of each other on a floor, m ẍ₁ = −k x₁ + k (x₂ − x₁), m ẍ₂ = −k (x₂ − x₁): ω² = (3 ∓ √5)/2 k/m.
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/modes.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/vibration/modes.hpp>
 
 using namespace polybody;
 
@@ -38,8 +38,8 @@ TEST(StackedBalls, OfAGroupRestAndSwingAsThoseOneByOne) {
   single.model.apply(ball, single.balls[1], single.balls[0]);
   Stack<Forces<Group>> grouped;
   auto const group = grouped.model.apply(Group{}, grouped.balls);
-  grouped.model.oppose(group, floor, grouped.model.ground().at({0, 0, 0}));
-  grouped.model.oppose(group, ball, grouped.balls[0]);
+  grouped.model.pair_with(group, floor, grouped.model.ground().at({0, 0, 0}));
+  grouped.model.pair_with(group, ball, grouped.balls[0]);
   auto const judge = [](auto& stack) {
     State x = stack.model.reference_state();
     EXPECT_LE(equilibrium(stack.model, x).iterations, 3);

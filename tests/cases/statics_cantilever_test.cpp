@@ -1,8 +1,8 @@
 // CASES S3, S4, S4b: short cantilevers with stretch and shear, against published numbers mesh by mesh and against the
 // exact rod [C].
 
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 
 #include <gtest/gtest.h>
 

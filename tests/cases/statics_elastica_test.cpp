@@ -2,8 +2,8 @@
 // follows the section. References: inextensible, unshearable rod [C], elliptic integrals and shooting; S2 agrees with
 // the five decimals of Mattiasson 1981 [M]. Here EA = GA = 1e6 EI/L², L = EI = 1.
 
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // CASES S1: a cantilever rolled up by a tip moment. Pure bending, so the exact answer is [A] an arc of curvature
 // M/EI without stretch or shear: x = (L/θ) sin θ, y = (L/θ)(1 − cos θ), θ = ML/EI.
 
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 
 #include <gtest/gtest.h>
 

@@ -2,14 +2,14 @@
 // meshes P]. In a square section every bending mode comes twice and no other does, so pairs are told from single modes:
 // torsion and stretch.
 
-#include <polybody/analysis/modes.hpp>
+#include <polybody/vibration/modes.hpp>
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>

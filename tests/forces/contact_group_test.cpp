@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"
 
@@ -97,10 +97,10 @@ struct Heap {
       std::vector<Marker<Rigid<>>> many;
       for (auto const& b : balls) many.push_back(b.at(Vec3(0, 0, 0)));
       auto const group = model.apply(typename How<how>::Grouped{}, many, "balls");
-      model.oppose(group, Plane{on_plane}, floor, "floor");
-      model.oppose(group, Plane{on_plane}, plate.at(Vec3(0, 0, 0)), "plate");
-      model.oppose(group, Ball{on_fixed}, post, "post");
-      model.oppose(group, Ball{on_free}, heavy.at(Vec3(0, 0, 0)), "heavy ball");
+      model.pair_with(group, Plane{on_plane}, floor, "floor");
+      model.pair_with(group, Plane{on_plane}, plate.at(Vec3(0, 0, 0)), "plate");
+      model.pair_with(group, Ball{on_fixed}, post, "post");
+      model.pair_with(group, Ball{on_free}, heavy.at(Vec3(0, 0, 0)), "heavy ball");
     }
   }
   State start() const {
@@ -195,7 +195,7 @@ RunReport rolled(double slip_speed) {
     balls.push_back(model.add(ball(mass, radius, {0, 0.3 * i, radius - mass * g / 1e5})));
     many.push_back(balls.back().at(Vec3(0, 0, 0)));
   }
-  model.oppose(model.apply(Grouped{}, many), Plane{law}, model.ground().at({0, 0, 0}));
+  model.pair_with(model.apply(Grouped{}, many), Plane{law}, model.ground().at({0, 0, 0}));
   State x = model.reference_state();
   for (int i = 0; i < 10; ++i) model.set_velocity(x, balls[std::size_t(i)], {0.1 + 0.1 * i, 0, 0}, {0, 0, 0});
   RunReport const report = simulate(model, x, GeneralizedAlpha{}, {.until = 0.5, .step = 1e-3}).run();
@@ -223,9 +223,9 @@ TEST(ContactGroup, EnergyCountsWhatItStores) {
     many.push_back(model.add(ball(mass, radius, {100.0 * depth, 0, radius - depth})).at(Vec3(0, 0, 0)));
   auto const group = model.apply(Group{}, many);
   EXPECT_EQ(energy(model, model.reference_state()).forces, 0.0);
-  model.oppose(group, on_plane, model.ground().at({0, 0, 0}));
+  model.pair_with(group, on_plane, model.ground().at({0, 0, 0}));
   EXPECT_NEAR(energy(model, model.reference_state()).forces, 0.5 * 2e4 * (1e-4 + 4e-4), 1e-12);
-  model.oppose(group, on_fixed, model.ground().at({1.0 + radius + 0.3 - 0.05, 0, radius - 0.01}));
+  model.pair_with(group, on_fixed, model.ground().at({1.0 + radius + 0.3 - 0.05, 0, radius - 0.01}));
   EXPECT_NEAR(energy(model, model.reference_state()).forces, 5.0 + 2e5 * std::pow(0.05, 2.5) / 2.5, 1e-10);
 }
 
@@ -243,9 +243,9 @@ TEST(ContactGroup, RefusesMarkersAndHandlesOfAnotherModel) {
   auto const floor = a.model.ground().at({0, 0, 0});
   std::string const told = " was given a marker or handle of another model";
   EXPECT_TRUE(has(refusal([&] { a.model.apply(Group{}, b.many, "marbles"); }), "\"marbles\"" + told));
-  EXPECT_TRUE(has(refusal([&] { a.model.oppose(of_b, on_plane, floor); }), "\"others\"" + told));
+  EXPECT_TRUE(has(refusal([&] { a.model.pair_with(of_b, on_plane, floor); }), "\"others\"" + told));
   EXPECT_TRUE(
-      has(refusal([&] { a.model.oppose(group, on_plane, b.model.ground().at({0, 0, 0})); }), "\"marbles\"" + told));
+      has(refusal([&] { a.model.pair_with(group, on_plane, b.model.ground().at({0, 0, 0})); }), "\"marbles\"" + told));
   // what was refused has left nothing behind
   EXPECT_EQ(a.model.entry(group).markers.size(), 1u);
   EXPECT_EQ(std::get<0>(a.model.force_pools()).size(), 1u);
@@ -260,14 +260,14 @@ TEST(ContactGroup, NamesItselfAndTheOpponentInMessages) {
   auto const floor = f.model.ground().at({0, 0, 0});
   OnPlane bad = on_plane;
   bad.geometry.radius = -1.0;
+  EXPECT_TRUE(has(refusal([&] { f.model.pair_with(group, bad, floor, "floor"); }),
+                  "\"marbles\", \"floor\": the sphere's radius"));
+  f.model.pair_with(group, on_plane, floor);
   EXPECT_TRUE(
-      has(refusal([&] { f.model.oppose(group, bad, floor, "floor"); }), "\"marbles\", \"floor\": the sphere's radius"));
-  f.model.oppose(group, on_plane, floor);
-  EXPECT_TRUE(
-      has(refusal([&] { f.model.oppose(group, bad, floor); }), "\"marbles\", \"opponent 2\": the sphere's radius"));
+      has(refusal([&] { f.model.pair_with(group, bad, floor); }), "\"marbles\", \"opponent 2\": the sphere's radius"));
   // a group that comes with opponents of its own asks them, too
   Group full;
-  full.oppose(bad, 0, "floor");
+  full.pair_with(bad, 0, "floor");
   EXPECT_TRUE(
       has(refusal([&] { f.model.apply(full, f.many, "more marbles"); }), "\"more marbles\": the sphere's radius"));
 }
@@ -276,7 +276,7 @@ TEST(ContactGroup, MayHaveNoMarkersAndNoOpponents) {
   Floor f;
   auto const empty = f.model.apply(Group{}, std::vector<Marker<Rigid<>>>{});
   f.model.apply(Group{}, f.many);
-  f.model.oppose(empty, on_plane, f.model.ground().at({0, 0, 0}));
+  f.model.pair_with(empty, on_plane, f.model.ground().at({0, 0, 0}));
   State x = f.model.reference_state();
   simulate(f.model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 0.01}).run();
   EXPECT_EQ(x.q, f.model.reference_state().q);

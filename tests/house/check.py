@@ -30,17 +30,22 @@ FLOORS = {
     "system": 4,
     "solvers": 5,
     "integrators": 6,
-    "analysis": 7,
-    "io": 8,
-    "vehicle": 9,
-    "": 10,  # polybody.hpp itself
+    "signals": 7,
+    "run": 7,
+    "statics": 8,
+    "vibration": 8,
+    "stress": 9,
+    "compare": 9,
+    "io": 10,
+    "vehicle": 11,
+    "": 12,  # polybody.hpp itself
 }
 MAX_LINES = 410
 MAX_FUNCTION_LINES = 60
 MAX_PARAMETERS = 6
 MAX_SYSTEM_FUNCTIONS = 25
 
-BEHIND_WAIST = ("integrators", "solvers", "analysis", "run", "statics", "vibration", "stress", "compare", "signals")
+BEHIND_WAIST = ("integrators", "solvers", "run", "statics", "vibration", "stress", "compare", "signals")
 POOLS = re.compile(r"\b(?:(?:body|joint|force)_pools|for_each_(?:body|joint|force|gap)|BodyPool)\b")
 VAGUE = re.compile(r"(?://+<?|^[ \t]*\*|/\*+)[ \t]*(Of|…)(?=[ \t]|$)", re.MULTILINE)
 
@@ -62,7 +67,7 @@ def includes(name, texts):
 
 
 def folder(name):
-    """polybody/bodies/planar/rigid.hpp -> bodies"""
+    """polybody/bodies/rigid/planar_rigid.hpp -> bodies"""
     parts = name.split("/")
     return parts[1] if len(parts) > 2 else ""
 
@@ -133,7 +138,7 @@ def declarations(name, text):
 
 
 def short(name):
-    """polybody/bodies/rigid.hpp -> bodies/rigid.hpp"""
+    """polybody/bodies/rigid/rigid.hpp -> bodies/rigid/rigid.hpp"""
     return name.removeprefix("polybody/")
 
 

@@ -8,9 +8,9 @@ import check
 import cpp_reader
 
 GOOD = {
-    "polybody/polybody.hpp": "#include <polybody/bodies/rigid.hpp>\n",
-    "polybody/bodies/rigid.hpp": '#include "polybody/math/so3.hpp"\n#include "mass.hpp"\n',
-    "polybody/bodies/mass.hpp": "#include <Eigen/Dense>\n#include <vector>\n",
+    "polybody/polybody.hpp": "#include <polybody/bodies/rigid/rigid.hpp>\n",
+    "polybody/bodies/rigid/rigid.hpp": '#include "polybody/math/so3.hpp"\n#include "mass.hpp"\n',
+    "polybody/bodies/rigid/mass.hpp": "#include <Eigen/Dense>\n#include <vector>\n",
     "polybody/math/so3.hpp": '// no #define, virtual work\n/* virtual */ auto s = "virtual";\n',
 }
 
@@ -37,11 +37,11 @@ class Check(unittest.TestCase):
             self.assertEqual(self.found(rule), [], rule)
 
     def test_floors(self):
-        for line in ('#include "polybody/bodies/rigid.hpp"', "#  include <polybody/bodies/rigid.hpp>",
-                     '#include "../bodies/rigid.hpp"', '#include "polybody/math/none.hpp"'):
+        for line in ('#include "polybody/bodies/rigid/rigid.hpp"', "#  include <polybody/bodies/rigid/rigid.hpp>",
+                     '#include "../bodies/rigid/rigid.hpp"', '#include "polybody/math/none.hpp"'):
             self.assertEqual(len(self.found("floors", math__so3=line)), 1, line)
         self.assertEqual(len(self.found("floors", cellar__x="")), 1)
-        self.assertEqual(self.found("floors", math__so3="// #include <polybody/bodies/rigid.hpp>"), [])
+        self.assertEqual(self.found("floors", math__so3="// #include <polybody/bodies/rigid/rigid.hpp>"), [])
 
     def test_words(self):
         self.assertEqual(len(self.found("words", math__so3="int a;\n# define PI 3\n")), 1)

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/planar/ffr.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/polybody.hpp>
 
 using namespace polybody;
@@ -213,12 +213,10 @@ std::string composition() {
   static_assert(HeldCoordinates<Spherical>::needs == Observes::frame);
   return geometry_policy.text("geometry") +
          "\nv: velocity rows have no gap for a force to answer. f: names no freedoms, which a bushing needs. j: the "
-         "motion left has no joint "
-         "coordinates. l: not linear in coordinates of ANCF bodies.\n\n" +
+         "motion left has no joint coordinates. l: not linear in coordinates of ANCF bodies.\n\n" +
          geometry_body.text("geometry, by `Constraint`") +
          "\n✓: for either marker. 2nd: for the second only. n: the body's markers tell too little. w: another world. "
-         "The ground serves "
-         "everywhere. A bushing asks its first marker for a frame.\n\n" +
+         "The ground serves everywhere. A bushing asks its first marker for a frame.\n\n" +
          policy_body.text("policy, some geometry") +
          "\nr: joint coordinates are for rigid bodies. l: points are not linear in the coordinates.\n\n" +
          integrator_body.text("integrator") +
@@ -226,8 +224,7 @@ std::string composition() {
          "coordinates do not add, or there is no mean force over a step.\n\n" +
          integrator_policy.text("integrator") +
          "\ns: no stabilisation keeps to rows. m: the mass matrix of joint coordinates is not constant. e: needs "
-         "joints that eliminate "
-         "nothing, with gaps, and forces linear in them. t: three stages are solved together.\n";
+         "joints that eliminate nothing, with gaps, and forces linear in them. t: three stages are solved together.\n";
 }
 
 std::string const begins = "<!-- composition begins: written by tests/house/composition_matrix.cpp -->\n",

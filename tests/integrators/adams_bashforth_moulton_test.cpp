@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/integrator_cases.hpp"
 #include "support/refusal.hpp"

@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 
 #include "support/integrator_cases.hpp"
 #include "support/integrator_laws.hpp"

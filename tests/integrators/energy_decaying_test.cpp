@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/energy_drift.hpp"
 #include "support/refusal.hpp"

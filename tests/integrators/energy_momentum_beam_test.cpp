@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 
 #include "support/energy_drift.hpp"
 #include "support/solver_instances.hpp"

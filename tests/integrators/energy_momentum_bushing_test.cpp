@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/bushing.hpp>

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/integrators/newmark.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/energy_drift.hpp"
 #include "support/integrator_cases.hpp"

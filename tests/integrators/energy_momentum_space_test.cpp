@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/forces/point_load.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/energy_drift.hpp"
 #include "support/solver_instances.hpp"

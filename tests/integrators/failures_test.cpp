@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
@@ -10,6 +9,7 @@
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"
 #include "support/refusal.hpp"

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"
 

@@ -6,11 +6,9 @@
 #include <cstdlib>
 #include <new>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/ffr.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/lrvf.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/spring_damper.hpp>
@@ -24,6 +22,8 @@
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/simulate.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 
 #include "support/chain.hpp"
@@ -154,10 +154,10 @@ struct FallingBalls {
       middles.push_back(
           balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.1 * z, 0, z}))).at(Vec3(0, 0, 0)));
     auto const group = balls.apply(Group{}, middles);
-    balls.oppose(group, OnFloor{{0.1}, {.stiffness = 1e4, .damping = 10.0, .onset = 1e-4}, rough},
-                 balls.ground().at({0, 0, 0}));
-    balls.oppose(group, OnBall{{0.1, 0.1}, {.stiffness = 1e4}, rough},
-                 balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.15, 0, 0.2}))).at(Vec3(0, 0, 0)));
+    balls.pair_with(group, OnFloor{{0.1}, {.stiffness = 1e4, .damping = 10.0, .onset = 1e-4}, rough},
+                    balls.ground().at({0, 0, 0}));
+    balls.pair_with(group, OnBall{{0.1, 0.1}, {.stiffness = 1e4}, rough},
+                    balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.15, 0, 0.2}))).at(Vec3(0, 0, 0)));
   }
   auto const& model() const { return balls; }
 };

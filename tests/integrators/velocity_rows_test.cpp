@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/rolling_disc.hpp>
 

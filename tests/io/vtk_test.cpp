@@ -9,8 +9,8 @@
 #include <iterator>
 #include <map>
 
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 
 #include "support/refusal.hpp"
 #include "support/vtk_reader.hpp"

@@ -1,6 +1,6 @@
 // refused: AncfLinear knows Spherical, Revolute and Weld
 // It says nothing of what it leaves free.
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/system/model.hpp>

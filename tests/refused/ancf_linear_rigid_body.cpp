@@ -1,5 +1,5 @@
 // refused: both markers must be linear in them
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/system/model.hpp>

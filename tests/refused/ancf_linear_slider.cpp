@@ -1,5 +1,5 @@
 // refused: AncfLinear knows Spherical, Revolute and Weld
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/system/model.hpp>

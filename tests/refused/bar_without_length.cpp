@@ -1,4 +1,4 @@
 // refused: Required
-#include <polybody/bodies/bar.hpp>
+#include <polybody/bodies/shared/bar.hpp>
 
 polybody::Bar bar{.section = polybody::Circle{.radius = 0.1}};

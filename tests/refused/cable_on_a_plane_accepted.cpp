@@ -1,5 +1,5 @@
 // accepted
-#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/system/model.hpp>
@@ -12,5 +12,5 @@ void apply(Model<Bodies<AncfCable<>>, Joints<>, Forces<OnPlane, Group>>& model, 
            OnPlane const& contact) {
   model.apply(contact, cable.at(0.5), model.ground().at({0, 0, 0}));
   auto const group = model.apply(Group{}, std::vector{cable.at(0.0), cable.at(0.5)});
-  model.oppose(group, contact, model.ground().at({0, 0, 0}));
+  model.pair_with(group, contact, model.ground().at({0, 0, 0}));
 }

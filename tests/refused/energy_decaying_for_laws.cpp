@@ -1,9 +1,9 @@
 // refused: takes joints with Constraint, Penalty or Bushing
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
+#include <polybody/run/simulate.hpp>
 
 using namespace polybody;
 using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>;

@@ -1,9 +1,9 @@
 // refused: A step that conserves energy takes no force groups
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
+#include <polybody/run/simulate.hpp>
 
 using namespace polybody;
 using Group = ContactGroup<Contact<SphereOnSphere>>;

@@ -1,7 +1,7 @@
 // refused: whose coordinates form a vector space
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
+#include <polybody/run/simulate.hpp>
 
 using namespace polybody;
 using M = Model<Bodies<Rigid<>>, Joints<>>;

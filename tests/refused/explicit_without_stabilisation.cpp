@@ -1,8 +1,8 @@
 // refused: has no stabilisation
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
+#include <polybody/run/simulate.hpp>
 
 using namespace polybody;
 using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Constraint>>>;

@@ -1,5 +1,5 @@
 // refused: A joint of the plane joins planar bodies
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/screw.hpp>
 #include <polybody/system/model.hpp>
 

@@ -1,5 +1,5 @@
 // accepted
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/system/model.hpp>
 

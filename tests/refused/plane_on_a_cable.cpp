@@ -1,5 +1,5 @@
 // refused: This force needs more than the marker tells
-#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/system/model.hpp>
 

@@ -1,8 +1,8 @@
 // refused: not for the stages of a step together
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/planar/revolute.hpp>
+#include <polybody/run/simulate.hpp>
 
 using namespace polybody;
 using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, RecursiveBy<recursive::ArticulatedBody>>>>;

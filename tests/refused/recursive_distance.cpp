@@ -1,5 +1,5 @@
 // refused: Recursive needs a joint whose motion has coordinates
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/system/model.hpp>

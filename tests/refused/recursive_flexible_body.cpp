@@ -1,5 +1,5 @@
 // refused: Recursive makes joint coordinates between rigid bodies
-#include <polybody/bodies/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/system/model.hpp>

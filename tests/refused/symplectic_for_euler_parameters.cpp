@@ -1,7 +1,7 @@
 // refused: asks for bodies of constant mass
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/integrators/symplectic.hpp>
+#include <polybody/run/simulate.hpp>
 
 using namespace polybody;
 using M = Model<Bodies<Rigid<EulerParameters>>, Joints<>>;

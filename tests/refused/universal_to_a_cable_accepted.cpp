@@ -1,5 +1,5 @@
 // accepted
-#include <polybody/bodies/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/joints/universal.hpp>
 #include <polybody/system/model.hpp>
 

@@ -2,13 +2,13 @@
 /// \file
 /// A bead on a flexible line in the plane.
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/sliders.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/sliders.hpp>
 
 #include "support/solver_instances.hpp"
 

@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <polybody/bodies/bar.hpp>
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/shared/body.hpp>
 #include <random>
 #include <vector>
 

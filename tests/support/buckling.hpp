@@ -6,12 +6,12 @@
 
 #include <numbers>
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/modes.hpp>
-#include <polybody/analysis/observe.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/statics/equilibrium.hpp>
+#include <polybody/vibration/modes.hpp>
 
 namespace polybody {
 namespace buckling {

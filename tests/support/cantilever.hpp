@@ -3,11 +3,11 @@
 /// A planar bar clamped at its first end, loaded at the second and by gravity, in static equilibrium: the
 /// frame of the static reference cases.
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 namespace polybody {
 

@@ -2,13 +2,13 @@
 /// \file
 /// Pendulums: links hinged in a row, at rest in one line, under gravity along −y; in the plane or in space.
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
+#include <polybody/run/observe.hpp>
 
 namespace polybody {
 

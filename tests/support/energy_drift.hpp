@@ -2,8 +2,8 @@
 /// \file
 /// What a run without loads keeps: the largest departures of energy and momenta on the way.
 
-#include <polybody/analysis/energy.hpp>
 #include <polybody/integrators/integrator.hpp>
+#include <polybody/run/energy.hpp>
 
 namespace polybody {
 

@@ -12,9 +12,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 #include <polybody/solvers/auto_lu.hpp>
 
 #include "support/laws.hpp"

@@ -1,9 +1,9 @@
 #pragma once
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/run/simulate.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 
 namespace polybody {

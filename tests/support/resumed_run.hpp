@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <bit>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/io/checkpoint.hpp>
+#include <polybody/run/simulate.hpp>
 #include <vector>
 
 #include "support/chain.hpp"

@@ -7,13 +7,13 @@
 
 #include <numbers>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace polybody {
 namespace right_angle_cantilever {

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/steady_rotation.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/vibration/steady_rotation.hpp>
 
 namespace polybody {
 

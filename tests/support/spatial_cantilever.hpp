@@ -3,11 +3,11 @@
 /// A bar in space clamped at its first end and loaded at the second, in static equilibrium: `Cantilever` with a third
 /// dimension.
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 namespace polybody {
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/lrvf.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 
 namespace polybody {
 

@@ -1,12 +1,9 @@
 // Linear joints of ANCF bodies [thesis §3.5.4]: the same motion and reactions as with multipliers, without them.
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/equilibrium.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
@@ -15,6 +12,9 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/statics/equilibrium.hpp>
 
 #include "support/refusal.hpp"
 

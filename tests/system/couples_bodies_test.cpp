@@ -2,10 +2,10 @@
 // all of it.
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace couples_bodies_test {
 

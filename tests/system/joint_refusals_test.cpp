@@ -2,7 +2,7 @@
 // tree of joint coordinates with a cycle is known when a run begins: recursive_loop_test.cpp.
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>

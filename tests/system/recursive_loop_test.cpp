@@ -1,10 +1,8 @@
 // Joint coordinates in the plane: loops closed by another policy, implicit steps, flexible bodies on a tree, refusals.
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/planar/ancf_cable.hpp>
-#include <polybody/bodies/planar/rigid.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
@@ -12,6 +10,8 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/recursive.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"
 

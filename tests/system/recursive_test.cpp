@@ -2,10 +2,7 @@
 // to solve.
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/cylindrical.hpp>
 #include <polybody/joints/orientation.hpp>
@@ -19,6 +16,9 @@
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/universal.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 
 using namespace polybody;
 

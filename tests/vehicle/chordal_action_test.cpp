@@ -18,9 +18,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
-#include <polybody/bodies/rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
@@ -29,6 +27,8 @@
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 #include <polybody/vehicle/m113.hpp>
 #include <polybody/vehicle/pin_on_sprocket.hpp>
 
@@ -109,11 +109,12 @@ struct Chain {
                                   .valley_radius = m113::valley_radius,
                                   .flank = m113::flank,
                                   .tip_radius = m113::tip_radius};
-    model.oppose(model.apply(Teeth{}, middles, "chain"),
-                 Contact<PinOnSprocket<>>{{.profile = profile, .valley = 0.0, .rings = {-m113::tooth_y, m113::tooth_y}},
-                                          {.stiffness = k, .damping = 2.5e-3 * k, .onset = m113::onset},
-                                          {.coefficient = m113::on_sprocket.friction, .slip_speed = m113::slip_speed}},
-                 sprocket.at(Vec3(0, 0, 0)), "sprocket");
+    model.pair_with(
+        model.apply(Teeth{}, middles, "chain"),
+        Contact<PinOnSprocket<>>{{.profile = profile, .valley = 0.0, .rings = {-m113::tooth_y, m113::tooth_y}},
+                                 {.stiffness = k, .damping = 2.5e-3 * k, .onset = m113::onset},
+                                 {.coefficient = m113::on_sprocket.friction, .slip_speed = m113::slip_speed}},
+        sprocket.at(Vec3(0, 0, 0)), "sprocket");
   }
 
   /// The pin at the end of the strand that comes in.

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <polybody/analysis/body_record.hpp>
-#include <polybody/analysis/energy_audit.hpp>
-#include <polybody/analysis/filter.hpp>
-#include <polybody/analysis/rms_difference.hpp>
+#include <polybody/run/body_record.hpp>
+#include <polybody/run/energy_audit.hpp>
+#include <polybody/signals/filter.hpp>
+#include <polybody/signals/rms_difference.hpp>
 #include <polybody/vehicle/link_strain.hpp>
 #include <polybody/vehicle/modal_links.hpp>
 

@@ -9,7 +9,7 @@ namespace polybody {
 
 /// Contacts between many bodies and a few: links of a track and what it runs over, balls and walls.
 ///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
-///   model.oppose(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
+///   model.pair_with(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
 /// A law is a force element of two markers, of the many the first, of the few the second. Before, `may_touch(first,
 /// second)` is asked for every pair; it should cost little more than a distance.
 template <ForceElement... Laws>
@@ -34,7 +34,7 @@ class ContactGroup {
 
   template <class Law>
     requires(std::is_same_v<Law, Laws> || ...)
-  void oppose(Law const& law, Index marker, std::string name) {
+  void pair_with(Law const& law, Index marker, std::string name) {
     std::get<std::vector<Opponent<Law>>>(few_).push_back({law, marker, std::move(name)});
   }
 

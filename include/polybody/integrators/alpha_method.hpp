@@ -229,7 +229,7 @@ struct AlphaMethod {
       options.max_iterations *= 2;
     }
     // what μ moves is large and gone at once: how it shrinks tells nothing of the rest
-    options.foretell = options.foretell && !two_sets;
+    options.predictive_stop = options.predictive_stop && !two_sets;
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
     Problem problem{*this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, effort != 1};
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include <polybody/analysis/run_snapshot.hpp>
 #include <polybody/io/atomic_file.hpp>
+#include <polybody/run/run_snapshot.hpp>
 
 namespace polybody {
 

@@ -2,7 +2,7 @@
 /// \file
 /// A comparison, and what accuracy costs, as files: tables, histories and figures.
 
-#include <polybody/analysis/work_precision.hpp>
+#include <polybody/compare/work_precision.hpp>
 #include <polybody/io/csv.hpp>
 #include <polybody/io/plot.hpp>
 

@@ -7,9 +7,9 @@
 #include <bit>
 #include <cstdint>
 
-#include <polybody/analysis/visual.hpp>
 #include <polybody/io/atomic_file.hpp>
 #include <polybody/io/digits.hpp>
+#include <polybody/io/visual.hpp>
 
 namespace polybody {
 

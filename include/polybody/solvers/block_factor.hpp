@@ -41,7 +41,7 @@ class BlockFactor {
     size_ = size;
     blocks_ = blocks;
     pattern_.analyse(size, blocks);
-    lessons_ = {std::vector<char>(pattern_.segments().size(), 0), std::vector<char>(pattern_.segments().size(), 0)};
+    hints_ = {std::vector<char>(pattern_.segments().size(), 0), std::vector<char>(pattern_.segments().size(), 0)};
     reordered_ = false;
     compile();
   }
@@ -116,7 +116,7 @@ class BlockFactor {
   using Neighbour = detail::BlockLayout::Neighbour;
 
   void compile() {
-    layout_.compile(pattern_, blocks_, lessons_, two_sided);
+    layout_.compile(pattern_, blocks_, hints_, two_sided);
     u_ = detail::AlignedDoubles(layout_.size_u);
     l_ = detail::AlignedDoubles(layout_.size_l);
     f_ = detail::AlignedDoubles(layout_.size_f);
@@ -184,7 +184,7 @@ class BlockFactor {
   std::vector<Block> blocks_;
   detail::BlockPattern pattern_;
   detail::BlockLayout layout_;
-  detail::BlockLayout::Lessons lessons_;
+  detail::BlockLayout::NodeHints hints_;
   bool reordered_ = false, symmetric_ = false;
   std::size_t next_ = 0;           // block to be added
   std::vector<BlockPiece> slots_;  // of the pieces of all blocks
@@ -214,14 +214,14 @@ template <Symmetry symmetry>
 Index BlockFactor<symmetry>::failed(Node const& n, int r) {
   Index const unknown = layout_.unknown[n.x + std::size_t(r)];
   double const pivot = u_.data()[n.u + std::size_t(r * n.stride() + r)];
-  if (!std::isfinite(pivot) || lessons_.dense) return unknown;
+  if (!std::isfinite(pivot) || hints_.dense) return unknown;
   auto const& segments = pattern_.segments();
   auto const& segment = segments[std::size_t(pattern_.of(unknown))];
   bool changed = false;
   if (!n.pivoted && n.joint) {  // what hangs on it cannot carry it alone: it waits for all others
     for (std::size_t s = 0; s < segments.size(); ++s)
-      if (segments[s].first == segment.first && !lessons_.late[s]) {
-        lessons_.late[s] = 1;
+      if (segments[s].first == segment.first && !hints_.late[s]) {
+        hints_.late[s] = 1;
         changed = true;
       }
   } else if (!n.pivoted) {  // a singular body: it and its joint become one; so do those like it
@@ -230,15 +230,15 @@ Index BlockFactor<symmetry>::failed(Node const& n, int r) {
       return primary < 0 ? 0 : segments[std::size_t(primary)].size;
     };
     for (std::size_t s = 0; s < segments.size(); ++s)
-      if (!segments[s].joint && !lessons_.merged[s] && segments[s].size == segment.size &&
+      if (!segments[s].joint && !hints_.merged[s] && segments[s].size == segment.size &&
           rows(segments[s].body) == rows(segment.body)) {
-        lessons_.merged[s] = 1;
+        hints_.merged[s] = 1;
         changed = true;
       }
   }
   if (!changed) {
     if (size_ > dense_limit) return unknown;
-    lessons_.dense = true;
+    hints_.dense = true;
   }
   compile();
   reordered_ = true;

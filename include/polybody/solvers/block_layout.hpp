@@ -33,7 +33,7 @@ class BlockLayout {
   };
   /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others, all
   /// in one node.
-  struct Lessons {
+  struct NodeHints {
     std::vector<char> merged, late;
     bool dense = false;
   };
@@ -49,23 +49,23 @@ class BlockLayout {
   int largest_w = 0;  ///< entries of the largest W, or unknowns of the largest node
 
   /// Without `both_halves` only nodes with pivoting have an Lt.
-  void compile(BlockPattern const& pattern, std::vector<Block> const& blocks, Lessons const& lessons,
+  void compile(BlockPattern const& pattern, std::vector<Block> const& blocks, NodeHints const& hints,
                bool both_halves) {
     EliminationOrder order;
-    order.compute(pattern, blocks, number_nodes(pattern, lessons), lessons.late);
-    place_nodes(pattern, order, lessons, both_halves);
+    order.compute(pattern, blocks, number_nodes(pattern, hints), hints.late);
+    place_nodes(pattern, order, hints, both_halves);
     find_targets();
     place_pieces(pattern, blocks);
   }
 
  private:
-  static std::vector<int> number_nodes(BlockPattern const& pattern, Lessons const& lessons) {
+  static std::vector<int> number_nodes(BlockPattern const& pattern, NodeHints const& hints) {
     auto const& segments = pattern.segments();
-    std::vector<int> node_of(segments.size(), lessons.dense ? 0 : -1);
-    if (lessons.dense) return node_of;
+    std::vector<int> node_of(segments.size(), hints.dense ? 0 : -1);
+    if (hints.dense) return node_of;
     int count = 0;
     for (std::size_t s = 0; s < segments.size(); ++s) {
-      if (!lessons.merged[s] || node_of[s] >= 0) continue;
+      if (!hints.merged[s] || node_of[s] >= 0) continue;
       auto const take = [&](int t) { node_of[std::size_t(t)] = count; };
       int const body = segments[s].body, primary = pattern.primary(body);
       take(int(s));
@@ -83,7 +83,7 @@ class BlockLayout {
     return node_of;
   }
 
-  void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, Lessons const& lessons,
+  void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, NodeHints const& hints,
                    bool both_halves) {
     auto const& segments = pattern.segments();
     local_.assign(segments.size(), 0);
@@ -109,10 +109,10 @@ class BlockLayout {
       for (int const s : from.segments) {
         auto const& segment = segments[std::size_t(s)];
         n.joint = n.joint && segment.joint;
-        n.droppable = n.droppable && segment.joint && (segment.closes_loop || lessons.late[std::size_t(s)]);
+        n.droppable = n.droppable && segment.joint && (segment.closes_loop || hints.late[std::size_t(s)]);
         for (int i = 0; i < segment.size; ++i) unknown.push_back(segment.first + i);
       }
-      n.pivoted = lessons.dense || from.segments.size() > 1;
+      n.pivoted = hints.dense || from.segments.size() > 1;
       n.u = size_u;
       n.l = size_l;
       n.f = size_f;

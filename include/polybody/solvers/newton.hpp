@@ -16,7 +16,7 @@ struct NewtonOptions {
   double refactor_above = 0.3;   ///< contraction θ above which the factorisation is renewed
   bool always_refactor = false;  ///< full Newton
   int growths = 2;               ///< of the corrections, after which it gives up
-  bool foretell = true;          ///< stop on what θ tells of the next correction, not on the last one itself
+  bool predictive_stop = true;   ///< stop on what θ tells of the next correction, not on the last one itself
 };
 
 /// Singular or not finite is what the first iterate is; where a later one is, Newton diverged.
@@ -111,8 +111,9 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
     rated = beside_tolerated;
     double const rate = std::min(theta, 0.99);
     bool const small = beside_tolerated <= 0.1;  // rounding no longer contracts
-    bool const told = (!renewed || grown == 0) && theta < 1.0 && rate / (1.0 - rate) * beside_tolerated <= 1.0;
-    if (options.always_refactor || !options.foretell ? beside_tolerated <= 1.0 : small || told) return report;
+    bool const predicted = (!renewed || grown == 0) && theta < 1.0 && rate / (1.0 - rate) * beside_tolerated <= 1.0;
+    if (options.always_refactor || !options.predictive_stop ? beside_tolerated <= 1.0 : small || predicted)
+      return report;
   }
   report.result = NewtonResult::diverged;
   factored = false;

@@ -99,13 +99,13 @@ class ReducedCoordinates {
   }
   static void expand_rates(void* c, VecX const& u, bool bias, VecX& out) {
     of(c).reduction_.copy_speeds_out(u, out);
-    of(c).reduction_.linear().spread_rates(out);
-    of(c).reduction_.tree().spread_rates(of(c).state_, u, bias, out);
+    of(c).reduction_.linear().expand_rates(out);
+    of(c).reduction_.tree().expand_rates(of(c).state_, u, bias, out);
   }
   static void reduce(void* c, VecX& r, VecX& out) {
     of(c).last_r_ = r;
-    of(c).reduction_.linear().pull(r);
-    of(c).reduction_.tree().pull(of(c).state_, r, out);
+    of(c).reduction_.linear().reduce_forces(r);
+    of(c).reduction_.tree().reduce_forces(of(c).state_, r, out);
     of(c).reduction_.copy_speeds_in(r, out);
   }
 
@@ -114,7 +114,7 @@ class ReducedCoordinates {
     s.reduction_.linear().multipliers(s.last_r_, lambda);
     if constexpr (!std::is_void_v<Solution>) {
       s.a_ = s.last_r_;
-      s.reduction_.tree().pull(s.state_, s.a_, s.narrow_);
+      s.reduction_.tree().reduce_forces(s.state_, s.a_, s.narrow_);
       for (RowBlock<double> const& block : data.rows)
         if (block.source == RowSource::joint && s.reduction_.carried_by(block.row) >= 0)
           s.recover_multiplier(block, data, lambda);
@@ -167,9 +167,9 @@ class ReducedCoordinates {
     r.copy_rows_in(x.lambda, out.lambda);
     r.tree().read_coordinates(x.q, x.v, s.state_, out.q);
     s.place(out.q, out.v);
-    r.tree().gather_rates(s.state_, x.v, false, out.v);
+    r.tree().reduce_rates(s.state_, x.v, false, out.v);
     s.place(out.q, out.v);
-    r.tree().gather_rates(s.state_, x.a, true, out.a);
+    r.tree().reduce_rates(s.state_, x.a, true, out.a);
   }
 
   static void write(void* c, BlockWriter const& write_whole, BlockSink& sink) {
@@ -233,7 +233,7 @@ class ReducedCoordinates {
       s.narrow_ = rhs.head(nv);
       s.a_.setZero();
       s.reduction_.copy_speeds_out(s.narrow_, s.a_);
-      s.reduction_.tree().spread_forces(*static_cast<TreeState*>(h), s.narrow_, s.a_);
+      s.reduction_.tree().expand_forces(*static_cast<TreeState*>(h), s.narrow_, s.a_);
       out.setZero();
       for (Index i = 0; i < s.a_.size(); ++i)
         if (Index const to = s.equation_of(i); to >= 0) out[to] = s.a_[i];
@@ -249,7 +249,7 @@ class ReducedCoordinates {
       for (Index i = 0; i < s.a_.size(); ++i)
         if (Index const from = s.equation_of(i); from >= 0) s.a_[i] = solution[from];
       s.reduction_.copy_speeds_in(s.a_, s.narrow_);
-      s.reduction_.tree().gather_rates(*static_cast<TreeState*>(h), s.a_, false, s.narrow_);
+      s.reduction_.tree().reduce_rates(*static_cast<TreeState*>(h), s.a_, false, s.narrow_);
       Index const nv = s.reduction_.speeds();
       out.head(nv) = s.narrow_;
       for (Index i = 0; i < s.reduction_.rows(); ++i) out[nv + i] = solution[s.equation_of_row(i)];
@@ -260,9 +260,9 @@ class ReducedCoordinates {
   void place(VecX const& q, VecX const& v) {
     reduction_.copy_coordinates_out(q, q_);
     reduction_.copy_speeds_out(v, v_);
-    reduction_.linear().spread_coordinates(q_);
-    reduction_.linear().spread_rates(v_);
-    reduction_.tree().carry(q, v, q_, v_, state_);
+    reduction_.linear().expand_coordinates(q_);
+    reduction_.linear().expand_rates(v_);
+    reduction_.tree().expand_state(q, v, q_, v_, state_);
   }
 
   /// Where the whole unknowns stand in the equations: dependents of linear joints are spread, the rows of these left

@@ -3,7 +3,7 @@
 /// What composes with what: the conditions that `Model::connect` states of the types of a joint and its two bodies,
 /// beside those of `Joint` itself. The tables in docs/joints.md are read off them.
 
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/shared/body.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/recursive.hpp>

@@ -2,7 +2,7 @@
 /// \file
 /// A model's entries of forces: what elements of bodies and force elements push.
 
-#include <polybody/bodies/element_batches.hpp>
+#include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/system/motion_entries.hpp>
 
 namespace polybody::detail {

@@ -24,7 +24,7 @@ class JointTreeOf {
 
   /// Poses and speeds of the carried bodies from the joints' coordinates and speeds; those of roots are read. `q`, `v`
   /// are whole.
-  void carry(VecX const& qn, VecX const& vn, VecX& q, VecX& v, TreeState& s) const {
+  void expand_state(VecX const& qn, VecX const& vn, VecX& q, VecX& v, TreeState& s) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
       TreeFrame& f = s.frames[i];
@@ -68,7 +68,7 @@ class JointTreeOf {
   }
 
   /// out = T u, or T u + b with `bias`: whole from narrow, where the parts of roots stand already.
-  void spread_rates(TreeState& s, VecX const& u, bool bias, VecX& out) const {
+  void expand_rates(TreeState& s, VecX const& u, bool bias, VecX& out) const {
     std::vector<Vec6>& twist = s.twists;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
@@ -87,7 +87,7 @@ class JointTreeOf {
 
   /// The u with T u next to x (whole): exact where x keeps to the joints. Parts of roots are left to the caller. With
   /// `bias`, of x − b.
-  void gather_rates(TreeState& s, VecX const& x, bool bias, VecX& u) const {
+  void reduce_rates(TreeState& s, VecX const& x, bool bias, VecX& u) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) s.twists[i] = twist_of(bodies[i], s.frames[i], x);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
@@ -110,7 +110,7 @@ class JointTreeOf {
   }
 
   /// out = Tᵀ r: narrow from whole. Parts of roots: in r, where the caller reads them.
-  void pull(TreeState& s, VecX& r, VecX& out) const {
+  void reduce_forces(TreeState& s, VecX& r, VecX& out) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) s.held[i] = wrench_of(bodies[i], s.frames[i], r);
     for (std::size_t i = bodies.size(); i-- > 0;) {
       TreeBody const& body = bodies[i];
@@ -126,7 +126,7 @@ class JointTreeOf {
   }
 
   /// A whole r with Tᵀ r = `given` (narrow); parts of roots stand already.
-  void spread_forces(TreeState& s, VecX const& given, VecX& r) const {
+  void expand_forces(TreeState& s, VecX const& given, VecX& r) const {
     for (std::size_t i = 0; i < bodies.size(); ++i)
       s.held[i] = bodies[i].carried() ? Vec6(Vec6::Zero()) : wrench_of(bodies[i], s.frames[i], r);
     for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -40,14 +40,14 @@ class LinearElimination {
   std::vector<Index> const& redundant() const { return redundant_; }
 
   /// Dependent coordinates, and speeds or accelerations, from the independent ones.
-  void spread_coordinates(VecX& q) const {
+  void expand_coordinates(VecX& q) const {
     for (Dependent const& d : dependents_) {
       double sum = d.constant;
       for (Term const& t : d.terms) sum += t.factor * q[t.q];
       q[d.q] = sum;
     }
   }
-  void spread_rates(VecX& v) const {
+  void expand_rates(VecX& v) const {
     for (Dependent const& d : dependents_) {
       double sum = 0.0;
       for (Term const& t : d.terms) sum += t.factor * v[t.v];
@@ -55,7 +55,7 @@ class LinearElimination {
     }
   }
   /// Forces of dependent coordinates go to those on which they depend.
-  void pull(VecX& r) const {
+  void reduce_forces(VecX& r) const {
     for (Dependent const& d : dependents_)
       for (Term const& t : d.terms) r[t.v] += t.factor * r[d.v];
   }

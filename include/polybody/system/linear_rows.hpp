@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/shared/body.hpp>
 #include <polybody/system/composition.hpp>
 
 namespace polybody {
@@ -62,8 +62,7 @@ template <class B>
 LinearPoint linear_point(B const& body, typename B::Point const& p) {
   static_assert(HasLinearPoints<B>,
                 "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
-                "are, Rigid, Ffr "
-                "and Lrvf in space are not. Use Constraint there.");
+                "are, Rigid, Ffr and Lrvf in space are not. Use Constraint there.");
   LinearPoint out;
   out.size = B::world == World::plane ? 2 : 3;
   std::vector<double> reference(std::size_t(body.coordinates()));

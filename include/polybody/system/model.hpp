@@ -81,12 +81,10 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                   "belongs to both.");
     static_assert(HasJointCoordinates<P, G>,
                   "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
-                  "Universal; a Distance "
-                  "or a Gear has none. Use Constraint for it.");
+                  "Universal; a Distance or a Gear has none. Use Constraint for it.");
     static_assert(!MakesJointCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
                   "Recursive makes joint coordinates between rigid bodies and the ground: Rigid<> in space, "
-                  "planar::Rigid in the plane. "
-                  "Use another policy for joints of other bodies.");
+                  "planar::Rigid in the plane. Use another policy for joints of other bodies.");
     static_assert(
         TellsEnoughFirst<J, A> && TellsEnoughSecond<J, B>,
         "This joint needs more than the marker tells (a full frame, say, of a body that only "
@@ -163,7 +161,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return {serial_, Index(pool.size()) - 1, std::move(name)};
   }
 
-  /// Applies a group of forces to its many markers; `oppose` brings the few in. \throws InvalidInput as `connect`.
+  /// Applies a group of forces to its many markers; `pair_with` brings the few in. \throws InvalidInput as `connect`.
   template <OneOf<Fs...> F, class A>
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
@@ -184,7 +182,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// One of the few that act on all of the many, by one of the group's laws. \throws InvalidInput as `connect`.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
-  void oppose(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
+  void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     static_assert(Marker<A>::observes >= needs_of_second<Law>(), "This force needs more than the marker tells.");
     require_own(group.model, group.name);
     require_own(one.model, group.name);
@@ -193,7 +191,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     law.check("\"" + group.name + "\", \"" + name + "\"");
     detail::require_told(one, needs_of_second<Law>(), group.name);
     entry.markers.push_back(publish_at(one, Mat3::Identity()));
-    entry.force.oppose(law, Index(entry.markers.size()) - 1, std::move(name));
+    entry.force.pair_with(law, Index(entry.markers.size()) - 1, std::move(name));
   }
 
   /// The undeformed model as placed, at rest, t = 0.

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/shared/body.hpp>
 #include <polybody/forces/force_group.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/recursive.hpp>

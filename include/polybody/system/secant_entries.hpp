@@ -4,7 +4,7 @@
 /// potential and of every row to rounding [Gonzalez 1996, 1999]:
 ///   f·Δq = −ΔV less what is damped,   Ḡ Δq = ΔΦ.
 
-#include <polybody/bodies/step_means.hpp>
+#include <polybody/bodies/shared/step_means.hpp>
 #include <polybody/math/secant.hpp>
 #include <polybody/system/force_entries.hpp>
 #include <polybody/system/pulled_blocks.hpp>
@@ -70,8 +70,7 @@ struct SecantsBeside<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEn
                 "For others use GeneralizedAlpha.");
   static_assert(Offer::positions,
                 "A step that conserves energy knows rows by the change of their gap, and RollingDisc and KnifeEdge "
-                "have none. Use "
-                "GeneralizedAlpha.");
+                "have none. Use GeneralizedAlpha.");
   using Scratch = std::tuple<SecantScratch<Bs>...>;
   using Gaps = std::tuple<std::vector<GapSecant<Js::rows>>...>;
 };
@@ -345,8 +344,7 @@ class TypedSecants {
     static_assert(!ForceGroup<F>, "A step that conserves energy takes no force groups. Use GeneralizedAlpha.");
     static_assert(HasSecantPotential<F> || !HasPotential<F>,
                   "A step that conserves energy asks a force's potential on secants: let potential(frames, t) be a "
-                  "template on the "
-                  "scalar of the frames.");
+                  "template on the scalar of the frames.");
     auto frames = frames_of(e, data);
     auto wrenches = e.force.template wrenches<double>(frames, middle_time());
     if constexpr (HasSecantPotential<F>) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polybody/bodies/body.hpp>
+#include <polybody/bodies/shared/body.hpp>
 #include <polybody/joints/joint_motion.hpp>
 
 namespace polybody {

@@ -9,9 +9,9 @@ namespace polybody {
 /// (3×3) x from the link's rear pin to its front pin, y along its pins, z towards the wheels. What tells a full frame
 /// has its own; a cable tells its tangent only, and its y is taken across that, as near as may be to `lateral`, the
 /// axle of what it touches.
-template <Observes told, StateScalar T>
+template <Observes observed, StateScalar T>
 Mat<T, 3, 3> link_axes(Frame<T> const& link, Vec<T, 3> const& lateral) {
-  if constexpr (told == Observes::frame) {
+  if constexpr (observed == Observes::frame) {
     return link.A;
   } else {
     using std::sqrt;

@@ -13,9 +13,9 @@ namespace polybody {
 /// Points of a link's pad on a terrain. Marker a is the link's centre, marker b the ground, over whose x and y the
 /// terrain's height is measured. At a point P below the ground by e = h(x, y) − z the normal is (−h_x, −h_y, 1)/√(1 +
 /// h_x² + h_y²) and d = e n_z.
-template <Terrain G = FlatGround, Observes told = Observes::frame>
+template <Terrain G = FlatGround, Observes observed = Observes::frame>
 struct LinkOnGround {
-  static constexpr Observes needs = told;
+  static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
   G terrain = {};
@@ -36,7 +36,7 @@ struct LinkOnGround {
     using std::sqrt;
     Vec<T, 3> const up = ground.A.col(2);
     Mat<T, 3, 3> axes = link.A;
-    if constexpr (told != Observes::frame) {  // z across the tangent, as near as may be to the ground's
+    if constexpr (observed != Observes::frame) {  // z across the tangent, as near as may be to the ground's
       Vec<T, 3> const z = up - axes.col(0) * up.dot(axes.col(0));
       axes.col(2) = z / sqrt(z.squaredNorm());
       axes.col(1).setZero();

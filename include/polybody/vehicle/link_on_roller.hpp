@@ -18,9 +18,9 @@ namespace polybody {
 /// point with d = R − c − (its distance from the axle), where c is the chamfer of the edge, along the radius, and by no
 /// more than it is beyond, so that the force begins at zero. [after Choi, Lee & Shabana 1998: inner-surface contact
 /// with one or both rims]
-template <Observes told = Observes::frame>
+template <Observes observed = Observes::frame>
 struct LinkOnRoller {
-  static constexpr Observes needs = told;
+  static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
   Required<double> pitch;            ///< p, of the link [m]
@@ -55,7 +55,7 @@ struct LinkOnRoller {
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
-    Mat<T, 3, 3> const axes = link_axes<told, T>(link, roller.A.col(1));
+    Mat<T, 3, 3> const axes = link_axes<observed, T>(link, roller.A.col(1));
     for (double const rim : rims) {
       Vec<T, 3> const local = axes.transpose() * (roller.r + roller.A.col(1) * T(rim) - link.r);
       T const height = local[2] - double(half_thickness), depth = T(radius.value) - height;
@@ -94,9 +94,9 @@ struct LinkOnRoller {
 /// faces. Markers as for `LinkOnRoller`. It presses along the axle by how far it is beyond its play, but by no more
 /// than how far its tip is within the rims, so that the force grows from zero also where a horn comes in beside its
 /// gap: edges are chamfered by 45°.
-template <Observes told = Observes::frame>
+template <Observes observed = Observes::frame>
 struct HornOnRims {
-  static constexpr Observes needs = told;
+  static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
   Vec3 tip = Vec3::Zero();  ///< (3) middle of the horn's upper end, in the link's axes [m]
@@ -116,7 +116,8 @@ struct HornOnRims {
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
     using std::sqrt;
-    Vec<T, 3> const axle = roller.A.col(1), place = link.r + link_axes<told, T>(link, axle) * tip.template cast<T>();
+    Vec<T, 3> const axle = roller.A.col(1),
+                    place = link.r + link_axes<observed, T>(link, axle) * tip.template cast<T>();
     Vec<T, 3> const arm = place - roller.r;
     T const across = arm.dot(axle), beyond = (value_of(across) < 0.0 ? -across : across) - double(play);
     T const within = T(radius.value) - sqrt((arm - axle * across).squaredNorm());

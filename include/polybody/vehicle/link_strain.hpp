@@ -6,9 +6,9 @@
 
 #include <array>
 
-#include <polybody/analysis/decoupled_stress.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/section.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/stress/decoupled_stress.hpp>
+#include <polybody/stress/section.hpp>
 #include <polybody/vehicle/link_axes.hpp>
 #include <polybody/vehicle/track_links.hpp>
 

@@ -83,7 +83,7 @@ template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = 
 class Vehicle {
  public:
   using LinkType = Link;
-  static constexpr Observes told = Link::observes;
+  static constexpr Observes observed = Link::observes;
   static constexpr bool closes_alike = AddsForce<PinPolicy> || LinearInCoordinates<PinPolicy>;
   using Base =
       std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;  ///< of all that is no link
@@ -94,10 +94,10 @@ class Vehicle {
   using Pin = Joint<Revolute, PinPolicy>;
   using SpringPin = std::conditional_t<closes_alike, Pin, Joint<Spherical, Penalty>>;
   using PlanePin = std::conditional_t<closes_alike, Pin, Joint<PointOnLine, Constraint>>;
-  using OnRoller = Contact<LinkOnRoller<told>>;
-  using OnRims = Contact<HornOnRims<told>>;
-  using OnSprocket = Contact<PinOnSprocket<told>>;
-  using OnGround = Contact<LinkOnGround<Ground, told>>;
+  using OnRoller = Contact<LinkOnRoller<observed>>;
+  using OnRims = Contact<HornOnRims<observed>>;
+  using OnSprocket = Contact<PinOnSprocket<observed>>;
+  using OnGround = Contact<LinkOnGround<Ground, observed>>;
   using Contacts = ContactGroup<OnRoller, OnRims, OnSprocket, OnGround>;
   using ModelType =
       Model<EachOnce<Bodies, Base, Link>, EachOnce<Joints, Hinge, Slide, Fixed, Driven, Pin, SpringPin, PlanePin>,
@@ -231,7 +231,7 @@ class Vehicle {
   }
 
   void add_contacts(std::string const& name, VehicleOptions const& options, Ground const& ground, SideParts& parts) {
-    bool const points = told != Observes::frame;  // a cable's contacts lie in its middle plane: one for each two
+    bool const points = observed != Observes::frame;  // a cable's contacts lie in its middle plane: one for each two
     auto const law = [&]<ContactGeometry G>(G const& geometry, ContactNumbers const& c) {
       double const share = points ? 2.0 : 1.0;
       return Contact<G>{geometry,
@@ -248,22 +248,22 @@ class Vehicle {
 
     auto const roller = [&](Handle const& body, double radius, std::string const& n) {
       auto const axle = body.at(Vec3(0, 0, 0));
-      LinkOnRoller<told> const face{
+      LinkOnRoller<observed> const face{
           .pitch = pitch, .half_thickness = half_thickness, .half_width = half_width, .radius = radius, .rims = rims};
-      model.oppose(group, law(face, on_wheel), axle, n);
+      model.pair_with(group, law(face, on_wheel), axle, n);
       Vec3 const tip = Vec3(horn) + Vec3(0, 0, 0.5 * horn_size.z);
-      model.oppose(group, law(HornOnRims<told>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel), axle,
-                   n + " (horn)");
+      model.pair_with(group, law(HornOnRims<observed>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel), axle,
+                      n + " (horn)");
     };
     for (int i = 0; i < m113::wheels; ++i)
       roller(parts.wheels[std::size_t(i)], wheel_radius, name + "wheel " + std::to_string(i + 1));
     roller(parts.idler[0], idler_radius, name + "idler");
-    model.oppose(
-        group,
-        law(PinOnSprocket<told>{.profile = sprocket_profile(), .valley = first_valley, .rings = rings}, on_sprocket),
-        parts.sprocket[0].at(Vec3(0, 0, 0)), name + "sprocket");
-    LinkOnGround<Ground, told> const pads{.terrain = ground, .pad = corners};
-    model.oppose(group, law(pads, on_ground), model.ground().at({0, 0, 0}), "ground");
+    model.pair_with(group,
+                    law(PinOnSprocket<observed>{.profile = sprocket_profile(), .valley = first_valley, .rings = rings},
+                        on_sprocket),
+                    parts.sprocket[0].at(Vec3(0, 0, 0)), name + "sprocket");
+    LinkOnGround<Ground, observed> const pads{.terrain = ground, .pad = corners};
+    model.pair_with(group, law(pads, on_ground), model.ground().at({0, 0, 0}), "ground");
   }
 };
 

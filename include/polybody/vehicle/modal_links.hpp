@@ -3,8 +3,8 @@
 /// The links of a track as floating frames with modes. Not in polybody.hpp: of use to vehicles only, and it comes with
 /// Eigen's sparse module.
 
-#include <polybody/bodies/beam_structure.hpp>
-#include <polybody/bodies/ffr.hpp>
+#include <polybody/bodies/ffr/beam_structure.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/vehicle/track_links.hpp>
 
 namespace polybody::m113 {

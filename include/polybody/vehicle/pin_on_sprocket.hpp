@@ -83,9 +83,9 @@ struct SprocketProfile {
 
 /// The front pin of a link in the teeth. Marker a is the link's centre, marker b the sprocket's centre with its axle
 /// along y.
-template <Observes told = Observes::frame>
+template <Observes observed = Observes::frame>
 struct PinOnSprocket {
-  static constexpr Observes needs = told;
+  static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
   SprocketProfile profile;
@@ -105,14 +105,15 @@ struct PinOnSprocket {
     double far = 0.0;
     for (double const ring : rings) far = std::max(far, std::abs(ring));
     Vec3 const axle = sprocket.A.col(1);
-    double const askew = told == Observes::frame ? link.A.col(1).cross(axle).norm() : std::abs(link.A.col(0).dot(axle));
+    double const askew =
+        observed == Observes::frame ? link.A.col(1).cross(axle).norm() : std::abs(link.A.col(0).dot(axle));
     double const reach =
         profile.outer_radius() + far * askew;  // of the pin's middle: at the rings it is nearer by far · askew
     return arm.squaredNorm() - across * across < reach * reach;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& sprocket, Visit&& visit) const {
-    Vec<T, 3> const lateral = link_axes<told, T>(link, sprocket.A.col(1)).col(1);
+    Vec<T, 3> const lateral = link_axes<observed, T>(link, sprocket.A.col(1)).col(1);
     Vec<T, 3> const pin = link.r + link.A.col(0) * T(0.5 * profile.pitch) - sprocket.r;
     for (double const ring : rings) {
       Vec<T, 3> const arm = pin + lateral * T(ring);

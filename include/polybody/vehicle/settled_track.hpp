@@ -2,10 +2,10 @@
 /// \file
 /// Tracks at rest on a vehicle that does not load them yet. Not in polybody.hpp: of use to vehicles only.
 
-#include <polybody/analysis/energy.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/simulate.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 #include <polybody/vehicle/m113_vehicle.hpp>
 
 namespace polybody::m113 {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include <polybody/bodies/ancf_beam.hpp>
-#include <polybody/bodies/ancf_cable.hpp>
-#include <polybody/bodies/lrvf.hpp>
-#include <polybody/bodies/rigid.hpp>
-#include <polybody/bodies/rigid_euler_parameters.hpp>
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/kinematics/marker.hpp>
 #include <polybody/vehicle/m113.hpp>
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include <polybody/analysis/contacts.hpp>
-#include <polybody/analysis/observe.hpp>
-#include <polybody/analysis/run_options.hpp>
+#include <polybody/run/contacts.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/run_options.hpp>
 #include <polybody/vehicle/m113_vehicle.hpp>
 
 namespace polybody::m113 {

@@ -2,7 +2,7 @@
 /// \file
 /// What the vehicle of m113_vehicle.hpp looks like. Not in polybody.hpp: of use to vehicles only.
 
-#include <polybody/analysis/visual.hpp>
+#include <polybody/io/visual.hpp>
 #include <polybody/vehicle/m113_vehicle.hpp>
 
 namespace polybody::m113 {

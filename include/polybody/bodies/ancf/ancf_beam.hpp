@@ -1,0 +1,410 @@
+#pragma once
+/// \file
+/// Fully parameterised two-node ANCF beam in space: node coordinates (r, r_x, r_y, r_z), twelve a node, of the field in
+/// ancf_field.hpp. Constant mass matrix; coordinates add. Where its elastic force comes from is a policy.
+/// [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis §3.5.4]
+
+#include <vector>
+
+#include <polybody/bodies/ancf/ancf_continuum.hpp>
+#include <polybody/bodies/ancf/ancf_elastic_line.hpp>
+#include <polybody/bodies/shared/node_chain.hpp>
+#include <polybody/bodies/shared/strain_tangent.hpp>
+
+namespace polybody {
+
+/// `AncfBeam<>::from(bar, n)`, `AncfBeam<Continuum<>>::from(bar, n, curve)`.
+template <class Elastic = ElasticLine>
+class AncfBeam : public NodeChain<12> {
+ public:
+  static constexpr World world = World::space;
+  static constexpr Observes observes = Observes::frame;
+  static constexpr bool constant_mass = true;
+  static_assert(element_columns == ancf::columns);
+  static constexpr bool packs_pay = true;
+  template <class T>
+  using Element = Vec<T, element_columns>;
+  using ElementMatrix = Mat<double, element_columns, element_columns>;
+  using PointMap = Mat<double, 3, element_columns>;
+  static constexpr int gradients = 3;  ///< that are linear in the coordinates
+
+  /// A material point: element, place ξ ∈ [0, 1] on it, and distances y, z off the axis in the reference [m].
+  struct Point {
+    Index element = 0;
+    double xi = 0.0;
+    double y = 0.0, z = 0.0;
+  };
+
+  /// The straight bar in n equal elements. Its rotary inertia must be positive about both axes: without it r_y or r_z
+  /// has no mass. \throws InvalidInput for n < 1 or a constant that the bar does not give.
+  static AncfBeam from(Bar const& bar, Index n) {
+    return AncfBeam(bar, n, [](double s) { return Placement{Vec3(s, 0, 0)}; }, true);
+  }
+  /// The bar with a curved or twisted reference, free of stress but for the pretension. Nodes get place and axes of
+  /// `curve`, which between them is interpolated by the element's own field. \throws InvalidInput also where the
+  /// section would be turned inside out, or `curve` does not run at unit speed.
+  static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
+
+  double length() const { return bar_.length; }
+  double element_length() const { return l_; }
+  BarConstants const& constants() const { return constants_; }
+  /// All elements have the same reference.
+  bool alike() const { return groups_.size() == 1; }
+
+  /// The point s from the first end, (y, z) off the axis. \throws InvalidInput outside the bar.
+  Point at(double s, double y = 0.0, double z = 0.0) const {
+    double const x = require_inside(s, bar_.length, Elastic::name) / l_;
+    if (!std::isfinite(y) || !std::isfinite(z))
+      throw InvalidInput(std::string(Elastic::name) + ": y and z of a point must be finite.");
+    Index const e = std::min(Index(x), n_ - 1);
+    return {e, x - double(e), y, z};
+  }
+
+  /// r₀ = Σ s_v e_v on the axis, and its derivatives by arc length.
+  ShapeValues<ancf::vectors> axis_shape(double xi) const {
+    ShapeValues<4> const h = hermite_shape(xi, l_);
+    ShapeValues<ancf::vectors> out{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::size_t const v = i < 2 ? i : i + 2;  // r, r_x of each node
+      out.s[v] = h.s[i];
+      out.ds[v] = h.ds[i];
+      out.dds[v] = h.dds[i];
+    }
+    return out;
+  }
+
+  void reference(std::span<double> q) const {
+    for (Index i = 0; i <= n_; ++i) {
+      Placement const& p = nodes_[std::size_t(i)];
+      part<3>(q, i * node_columns) = bar_.placement.origin + bar_.placement.axes * p.origin;
+      Mat3 const axes = bar_.placement.axes * p.axes;
+      for (int k = 0; k < 3; ++k) part<3>(q, i * node_columns + 3 + 3 * k) = axes.col(k);
+    }
+  }
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
+    for (Index i = 0; i < coordinates(); i += 3) {
+      part<3>(v, i) = omega.cross(part<3>(q, i).eval());
+      if (i % node_columns == 0) part<3>(v, i) += v0;
+    }
+  }
+
+  void mass(Index e, std::span<double const>, ElementMatrix& m) const { m = inertia_of(e).mass; }
+
+  /// M a of an element's own accelerations, for elements that are alike.
+  template <KernelScalar T>
+  void element_inertia(Element<T> const& a, Element<T>& out) const {
+    times_mass(inertia_[0], a, out);
+  }
+  /// Elastic and damping force from an element's own coordinates and speeds, for elements that are alike.
+  template <KernelScalar T>
+  void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
+    add_force(groups_[0], x, xd, out);
+  }
+  /// ck (−∂f/∂x) + cd (−∂f/∂xd), for elements that are alike.
+  template <KernelScalar T>
+  void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd,
+                       Mat<T, element_columns, element_columns>& k) const {
+    tangent_of<T, element_columns>(groups_[0], x, xd, ck, cd, k);
+  }
+
+  template <StateScalar T>
+  void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
+    times_mass<T>(inertia_of(e), part<element_columns>(a, first_column(e)), out);
+  }
+  template <StateScalar T>
+  void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
+    add_force<T>(groups_of(e), part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)),
+                 out);
+  }
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               ElementMatrix& k) const {
+    tangent_of<double, element_columns>(groups_of(e), part<element_columns>(q, first_column(e)),
+                                        part<element_columns>(v, first_column(e)), ck, cd, k);
+  }
+
+  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
+  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
+                  Element<double>& out) const {
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
+                          x1 = part<element_columns>(q1, first_column(e));
+    out.setZero();
+    std::apply([&](auto const&... group) { (group.add_mean_force(x0, x1, means, out), ...); }, groups_of(e));
+  }
+  /// ck (−∂f/∂q1), nearly; not symmetric.
+  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
+                    ElementMatrix& k) const {
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
+                          x1 = part<element_columns>(q1, first_column(e));
+    k.setZero();
+    std::apply([&](auto const&... group) { (group.add_mean_tangent(x0, x1, means, ck, k), ...); }, groups_of(e));
+  }
+
+  template <StateScalar T>
+  void gravity(Index e, std::span<T const>, Vec3 const& g, Element<T>& out) const {
+    Inertia const& inertia = inertia_of(e);
+    for (int v = 0; v < ancf::vectors; ++v)
+      for (int i = 0; i < 3; ++i) out[3 * v + i] = T(inertia.first_moment[v] * g[i]);
+  }
+
+  double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
+    Element<double> const xd = part<element_columns>(v, first_column(e));
+    Element<double> momentum;
+    times_mass<double>(inertia_of(e), xd, momentum);
+    return 0.5 * xd.dot(momentum);
+  }
+  /// A pretensioned bar has energy in its reference.
+  double strain_energy(Index e, std::span<double const> q) const {
+    Element<double> const x = part<element_columns>(q, first_column(e));
+    double u = 0.0;
+    std::apply([&](auto const&... group) { ((u += group.energy(x)), ...); }, groups_of(e));
+    return u;
+  }
+  double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
+    Element<double> weight;
+    gravity<double>(e, q, g, weight);
+    return -part<element_columns>(q, first_column(e)).dot(weight);
+  }
+
+  /// r = S e at `p`, 3×24, constant: S is also the Jacobian of ṙ. e are the coordinates from `first_column(p)`.
+  PointMap position_map(Point const& p) const { return map_of(p, 0); }
+  /// ∂r/∂x, ∂r/∂y, ∂r/∂z = S_α e at `p` for α = 0, 1, 2, 3×24, constant.
+  PointMap gradient_map(Point const& p, int alpha) const {
+    if (alpha < 0 || alpha > 2) throw InvalidInput("AncfBeam: the gradient's direction must be 0, 1 or 2 for x, y, z.");
+    return map_of(p, alpha + 1);
+  }
+
+  /// The marker is the material point; its axes are those of the section on the axis there (`SectionFrame` of r_y and
+  /// r_z). Off the axis it follows r(x, y, z), also where the section stretches.
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+    Index const first = first_column(p);
+    Mat<double, ancf::vectors, 4> const n = ancf::shape(p.xi, p.y, p.z, l_);
+    Vec<T, 3> r[3], rate[3];  // r, r_y, r_z
+    for (int k = 0; k < 3; ++k) {
+      r[k].setZero();
+      rate[k].setZero();
+      for (int a = 0; a < ancf::vectors; ++a) {
+        double const s = n(a, k == 0 ? 0 : k + 1);
+        if (s == 0.0) continue;
+        for (int i = 0; i < 3; ++i) {
+          r[k][i] += q[std::size_t(first + 3 * a + i)] * s;
+          rate[k][i] += v[std::size_t(first + 3 * a + i)] * s;
+        }
+      }
+    }
+    SectionFrame<T> const f(r[1], r[2]);
+    Vec<T, 6> const w = f.components(rate[1], rate[2]);
+    out.frame.r = r[0];
+    out.frame.v = rate[0];
+    out.frame.A = f.R * axes.template cast<T>();
+    out.frame.w = f.world(f.spin(w));
+    out.bias.template head<3>().setZero();
+    out.bias.template tail<3>() = f.world(f.acceleration(w));
+    Mat<T, 3, 6> const turn = turning(f);
+    Eigen::Map<Mat<T, 6, element_columns>> j(out.jacobian);
+    j.setZero();
+    for (int a = 0; a < ancf::vectors; ++a)
+      for (int i = 0; i < 3; ++i) {
+        j(i, 3 * a + i) = T(n(a, 0));
+        for (int k = 0; k < 3; ++k)
+          if (a % 4 >= 2) j(3 + k, 3 * a + i) = turn(k, 3 * (a % 4 - 2) + i) * n(a, a % 4);
+      }
+    out.shape = JacobianShape::dense;
+    out.columns = element_columns;
+  }
+
+  /// The force pulls through a constant S. For the moment, δ̂(m·ω) = m·(φ̂ × φ) + m·δ̂φ in the section's axes.
+  template <class T>  // compiled where it is used
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 24, 24>& k) const {
+    PointMap const by = map_of(p, 2), bz = map_of(p, 3);
+    Element<T> const x = part<element_columns>(q, first_column(p));
+    SectionFrame<T> const f(by * x, bz * x);
+    Vec<T, 3> const m = f.local(w.m);
+    Mat<T, 6, 6> form = f.second(m), by_vectors = Mat<T, 6, 6>::Zero();
+    for (int i = 0; i < 3; ++i) {  // φ·(m × φ̂)
+      Vec<T, 6> const left = f.pull(f.axis(i)), right = f.pull(f.cross(f.axis(i), m));
+      form += left * right.transpose();
+    }
+    f.add_form(form, 0, 0, by_vectors);
+    k.setZero();
+    std::array<double, 2> const s = {1.0 - p.xi, p.xi};
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b)
+        k.template block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
+  }
+
+  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without
+  /// damping (see sections.hpp): `ElasticLine` as stiffness times strain, `Continuum` as sums of its stress over the
+  /// section.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const;
+  Vec6 section_forces(Point const& p, std::span<double const> q) const;
+  /// `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, less those of the reference.
+  Vec3 section_deformation(Point const& p, std::span<double const> q) const
+    requires std::same_as<Elastic, ElasticLine>
+  {
+    return strains<std::tuple_element_t<2, Groups>>(p, q);
+  }
+
+  /// F at `p`: from the axes of the reference section to world axes.
+  template <class T = double>  // compiled where it is used
+  Mat3 deformation_gradient(Point const& p, std::span<double const> q) const {
+    auto const at = reference_of(p.element).gradients(p.xi, p.y, p.z);
+    Element<T> const x = part<element_columns>(q, first_column(p));
+    return x.reshaped(3, ancf::vectors) * at.g;
+  }
+  /// Green–Lagrange strain E at `p`, in the axes of the reference section.
+  Mat3 strain(Point const& p, std::span<double const> q) const {
+    Mat3 const f = deformation_gradient(p, q);
+    return 0.5 * (f.transpose() * f - Mat3::Identity());
+  }
+  /// `Continuum`: stress at `p`, without damping. When cured, Poisson's part is that of the axis, and the shear
+  /// stresses are the corrected ones, means over the section.
+  Stress stress(Point const& p, std::span<double const> q) const
+    requires(!std::same_as<Elastic, ElasticLine>)
+  {
+    Mat3 const f = deformation_gradient(p, q);
+    Mat3 const s = Elastic::second_piola(bar_, constants_, strain(p, q), strain({p.element, p.xi}, q));
+    return {s, f * s * f.transpose() / f.determinant()};
+  }
+
+ private:
+  using Groups = typename Elastic::Groups;
+  /// M = ∫ρ NᵀN dV, the same for the three components, and ∫ρ N dV.
+  struct Inertia {
+    ElementMatrix mass = ElementMatrix::Zero();
+    Vec<double, ancf::vectors> first_moment = Vec<double, ancf::vectors>::Zero();
+  };
+
+  template <class T = double>  // compiled where it is used
+  AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight) : NodeChain(n), bar_(bar) {
+    std::string const name = Elastic::name;
+    if (n < 1) throw InvalidInput(name + ": at least one element is needed.");
+    constants_ = polybody::constants(bar);
+    require_positive(constants_.rotary_inertia, name + ": the rotary inertia of the bar, the only mass of r_y,");
+    require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
+                     name + ": the rotary inertia of the bar about y, the only mass of r_z,");
+    Elastic::check(bar, constants_);
+    l_ = bar.length / double(n);
+    for (Index i = 0; i <= n; ++i) {
+      double const s = std::min(double(i) * l_, length());
+      nodes_.push_back(curve(s));
+      nodes_.back().check(name + ": the reference curve at s = " + number(s));
+    }
+    for (Index e = 0; e < (straight ? Index(1) : n); ++e) {
+      ancf::Reference ref;
+      ref.l = l_;
+      ref.straight = straight;
+      for (int node = 0; node < 2; ++node) {
+        Placement const& p = nodes_[std::size_t(e + node)];
+        for (int i = 0; i < 12; ++i) ref.x[12 * node + i] = i < 3 ? p.origin[i] : p.axes(i % 3, i / 3 - 1);
+      }
+      check_reference(ref, e);
+      references_.push_back(ref);
+      groups_.push_back(Elastic::make(bar_, constants_, ref));
+      inertia_.push_back(inertia_of(ref));
+    }
+  }
+
+  /// \throws InvalidInput for a reference that is no beam.
+  void check_reference(ancf::Reference const& ref, Index e) const {
+    std::string const what = std::string(Elastic::name) + ": element " + std::to_string(e);
+    double const chord = std::hypot(ref.x[12] - ref.x[0], ref.x[13] - ref.x[1], ref.x[14] - ref.x[2]);
+    if (!(chord > 1e-6 * l_)) throw InvalidInput(what + " begins where it ends. Use more elements, or another curve.");
+    if (chord > (1.0 + 1e-6) * l_)
+      throw InvalidInput(what + " is longer than its part of the bar: the curve's argument must be its arc length.");
+    double height = 0.0, width = 0.0;  // half of each
+    if (auto const* r = std::get_if<Rectangle>(&bar_.section)) {
+      height = 0.5 * r->height;
+      width = 0.5 * r->width;
+    } else if (auto const* c = std::get_if<Circle>(&bar_.section)) {
+      height = width = c->radius;
+    }
+    for (double const xi : {0.0, 0.5, 1.0}) {
+      double const middle = ref.determinant(xi, 0.0, 0.0), y = ref.determinant(xi, height, 0.0) - middle,
+                   z = ref.determinant(xi, 0.0, width) - middle;
+      double const drop = std::holds_alternative<Circle>(bar_.section) ? std::hypot(y, z) : std::abs(y) + std::abs(z);
+      if (!(middle - drop > 0.0))
+        throw InvalidInput(what +
+                           " is turned inside out in the reference: the curve bends more sharply than the section's "
+                           "size allows, or than one element can follow. Use more elements, or another curve.");
+    }
+  }
+
+  /// Over Gauss points along x (exact for the straight bar) and the four points of the section that give Aρ and both
+  /// Iρ.
+  Inertia inertia_of(ancf::Reference const& ref) const {
+    double const rho = constants_.mass_per_length, iz = constants_.rotary_inertia;
+    ancf::SectionPoints const section{std::sqrt(iz / rho), std::sqrt(constants_.rotary_inertia_y.value_or(iz) / rho)};
+    Inertia out;
+    for (GaussPoint const& g : gauss<4>)
+      section.for_each([&](double y, double z) {
+        double const mass = 0.25 * rho * g.weight * ref.l * ref.gradients(g.xi, y, z).volume;
+        Mat<double, ancf::vectors, 4> const n = ancf::shape(g.xi, y, z, ref.l);
+        for (int a = 0; a < ancf::vectors; ++a) out.first_moment[a] += mass * n(a, 0);
+        for (int a = 0; a < ancf::vectors; ++a)
+          for (int b = 0; b < ancf::vectors; ++b)
+            for (int i = 0; i < 3; ++i) out.mass(3 * a + i, 3 * b + i) += mass * n(a, 0) * n(b, 0);
+      });
+    return out;
+  }
+  template <class T>
+  std::size_t which(std::vector<T> const& each, Index e) const {
+    return each.size() == 1 ? 0 : std::size_t(e);
+  }
+  Inertia const& inertia_of(Index e) const { return inertia_[which(inertia_, e)]; }
+  Groups const& groups_of(Index e) const { return groups_[which(groups_, e)]; }
+  ancf::Reference const& reference_of(Index e) const { return references_[which(references_, e)]; }
+  Element<double> coordinates_at(Point const& p, std::span<double const> q) const {
+    return part<element_columns>(q, first_column(p));
+  }
+  template <class Group>
+  Vec3 strains(Point const& p, std::span<double const> q) const {
+    return Group::strains(p.xi, l_, coordinates_at(p, q)) - Group::strains(p.xi, l_, reference_of(p.element).x);
+  }
+
+  template <KernelScalar T>
+  static void times_mass(Inertia const& inertia, Element<T> const& a, Element<T>& out) {
+    for (int r = 0; r < element_columns; ++r) {
+      T sum(0.0);
+      for (int v = 0; v < ancf::vectors; ++v) sum += a[3 * v + r % 3] * inertia.mass(r, 3 * v + r % 3);
+      out[r] = sum;
+    }
+  }
+  template <KernelScalar T>
+  static void add_force(Groups const& groups, Element<T> const& x, Element<T> const& xd, Element<T>& out) {
+    for (int i = 0; i < element_columns; ++i) out[i] = T(0.0);
+    std::apply([&](auto const&... group) { (group.template add_force<T>(x, xd, out), ...); }, groups);
+  }
+
+  PointMap map_of(Point const& p, int derivative) const {
+    Mat<double, ancf::vectors, 4> const n = ancf::shape(p.xi, p.y, p.z, l_);
+    PointMap map = PointMap::Zero();
+    for (int a = 0; a < ancf::vectors; ++a)
+      for (int i = 0; i < 3; ++i) map(i, 3 * a + i) = n(a, derivative);
+    return map;
+  }
+  /// ω in world axes by the rates of (r_y, r_z), 3×6.
+  template <class T>
+  static Mat<T, 3, 6> turning(SectionFrame<T> const& f) {
+    Mat<T, 3, 6> local, turn;
+    for (int k = 0; k < 3; ++k) f.to_vectors(f.pull(f.axis(k)), k, 0, local);
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 3; ++i)
+        turn(i, j) = f.R(i, 0) * local(0, j) + f.R(i, 1) * local(1, j) + f.R(i, 2) * local(2, j);
+    return turn;
+  }
+
+  Bar bar_;
+  BarConstants constants_{.EA = 0.0, .EI = 0.0, .mass_per_length = 0.0};
+  double l_ = 0.0;
+  std::vector<Placement> nodes_;             ///< in the bar's axes
+  std::vector<ancf::Reference> references_;  ///< one where all elements are alike, or one each; the next two as well
+  std::vector<Groups> groups_;
+  std::vector<Inertia> inertia_;
+};
+
+static_assert(Body<AncfBeam<>> && Body<AncfBeam<Continuum<>>>);
+
+}  // namespace polybody
+
+#include <polybody/bodies/ancf/ancf_section.hpp>

@@ -1,0 +1,318 @@
+#pragma once
+/// \file
+/// Gradient-deficient ANCF cable in space: cubic Hermite position field, node coordinates (r, r′), 12 an element,
+/// constant mass matrix, no torsion and no section [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006]. With s_i of
+/// `hermite_shape`,
+///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
+
+#include <polybody/bodies/ancf/cable_laws.hpp>
+#include <polybody/bodies/shared/node_chain.hpp>
+#include <polybody/bodies/shared/strain_tangent.hpp>
+
+namespace polybody {
+
+/// `AncfCable<>::from(bar, n)` with Green strain, `AncfCable<EngineeringStrain>` with that; more or fewer Gauss points
+/// for the axial and the bending part, 5 and 3 being the field's choice [Gerstmayr & Irschik 2008].
+///
+/// A marker knows its point and the tangent, not how the section turns about it: ω = r′ × ṙ′/|r′|² has no part along
+/// r′, a moment along r′ has no effect, and the marker's other two axes stand as the smallest turn from the reference
+/// leaves them. A clamp is `Revolute` about the tangent, with the cable's marker second.
+template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
+class AncfCable : public NodeChain<6> {
+ public:
+  static constexpr World world = World::space;
+  static constexpr Observes observes = Observes::axis;
+  static constexpr bool constant_mass = true;
+  static constexpr bool packs_pay = true;
+  static constexpr char const* name = "AncfCable";
+  template <class T>
+  using Element = Vec<T, 12>;
+  using ElementMatrix = Mat<double, 12, 12>;
+  using PointMap = Mat<double, 3, 12>;
+  static constexpr int gradients = 1;  ///< that are linear in the coordinates
+
+  /// A material point of the axis: element, and place ξ ∈ [0, 1] on it.
+  struct Point {
+    Index element = 0;
+    double xi = 0.0;
+  };
+
+  /// The bar in n equal elements. \throws InvalidInput for n < 1.
+  static AncfCable from(Bar const& bar, Index n) {
+    return from(bar, n, [](double s) { return Placement::at({s, 0, 0}); });
+  }
+  /// The same laid along a curve, nodes at equal arc lengths. Its natural shape stays straight: it stands bent.
+  /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes
+  /// off by a tenth.
+  static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
+    if (n < 1) throw InvalidInput("AncfCable: at least one element is needed.");
+    return AncfCable(bar, polybody::constants(bar), n, curve);
+  }
+
+  double length() const { return length_; }
+  double element_length() const { return l_; }
+  BarConstants const& constants() const { return constants_; }
+
+  /// The point s from the first end. \throws InvalidInput outside the bar.
+  Point at(double s) const {
+    double const x = require_inside(s, length_, name) / l_;
+    Index const e = std::min(Index(x), n_ - 1);
+    return {e, x - double(e)};
+  }
+
+  /// r = Σ s_i e_i, e_i of entries 3i … 3i + 2 of an element, and its derivatives by arc length.
+  ShapeValues<4> axis_shape(double xi) const { return hermite_shape(xi, l_); }
+
+  void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
+  template <class T = double>  // compiled where it is used
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
+    for (Index i = 0; i <= n_; ++i) {
+      Vec<T, 3> const r = part<3>(q, 6 * i), slope = part<3>(q, 6 * i + 3);
+      part<3>(v, 6 * i) = v0 + omega.cross(r);
+      part<3>(v, 6 * i + 3) = omega.cross(slope);
+    }
+  }
+
+  void mass(Index, std::span<double const>, ElementMatrix& m) const {
+    m.setZero();
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        for (int k = 0; k < 3; ++k) m(3 * i + k, 3 * j + k) = mass_(i, j);
+  }
+
+  /// M a of an element's own accelerations.
+  template <KernelScalar T>
+  void element_inertia(Element<T> const& a, Element<T>& out) const {
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) {
+        T sum = a[k] * mass_(i, 0);
+        for (int j = 1; j < 4; ++j) sum += a[3 * j + k] * mass_(i, j);
+        out[3 * i + k] = sum;
+      }
+  }
+  /// Elastic and damping force from an element's own coordinates and speeds.
+  template <KernelScalar T>
+  void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
+    for (int i = 0; i < 12; ++i) out[i] = T(0.0);
+    axial().template add_force<T>(x, xd, out);
+    bending().template add_force<T>(x, xd, out);
+  }
+  /// ck (−∂f/∂x) + cd (−∂f/∂xd).
+  template <KernelScalar T>
+  void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd, Mat<T, 12, 12>& k) const {
+    tangent_of<T, 12>(groups_, x, xd, ck, cd, k);
+  }
+
+  template <StateScalar T>
+  void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
+    element_inertia<T>(part<12>(a, first_column(e)), out);
+  }
+  template <StateScalar T>
+  void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
+    element_force<T>(part<12>(q, first_column(e)), part<12>(v, first_column(e)), out);
+  }
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               ElementMatrix& k) const {
+    element_tangent<double>(part<12>(q, first_column(e)), part<12>(v, first_column(e)), ck, cd, k);
+  }
+  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
+  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
+                  Element<double>& out) const {
+    Element<double> const x0 = part<12>(q0, first_column(e)), x1 = part<12>(q1, first_column(e));
+    out.setZero();
+    axial().add_mean_force(x0, x1, means, out);
+    bending().add_mean_force(x0, x1, means, out);
+  }
+  /// ck (−∂f/∂q1), nearly; not symmetric.
+  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
+                    ElementMatrix& k) const {
+    Element<double> const x0 = part<12>(q0, first_column(e)), x1 = part<12>(q1, first_column(e));
+    k.setZero();
+    axial().add_mean_tangent(x0, x1, means, ck, k);
+    bending().add_mean_tangent(x0, x1, means, ck, k);
+  }
+
+  template <StateScalar T>
+  void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) out[3 * i + k] = T(weight_[i] * g[k]);
+  }
+
+  template <class T = double>  // compiled where it is used
+  double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
+    Element<T> const x = part<12>(v, first_column(e));
+    Element<T> momentum;
+    element_inertia<T>(x, momentum);
+    return 0.5 * x.dot(momentum);
+  }
+  double strain_energy(Index e, std::span<double const> q) const {
+    Element<double> const x = part<12>(q, first_column(e));
+    return axial().energy(x) + bending().energy(x);
+  }
+  template <class T = double>  // compiled where it is used
+  double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
+    Element<T> const x = part<12>(q, first_column(e));
+    Element<T> weight;
+    gravity<T>(e, q, g, weight);
+    return -x.dot(weight);
+  }
+
+  /// r = S e at `p`, 3×12, constant; e are the coordinates from `first_column(p)`.
+  PointMap position_map(Point const& p) const { return map_of(hermite_shape(p.xi, l_).s); }
+  /// r′ = S′ e at `p`, 3×12, constant: the one gradient of a cable, α = 0.
+  PointMap gradient_map(Point const& p, int) const { return map_of(hermite_shape(p.xi, l_).ds); }
+
+  /// At `p`, in the axes of a marker there (see sections.hpp): a cable knows axial strain and curvature, nothing of
+  /// shear and torsion.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    Element<double> const x = element_of(p, q);
+    return in_section_axes(p, x, axial().strains(p.xi, l_, x)[0], bending().strains(p.xi, l_, x));
+  }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    Element<double> const x = element_of(p, q);
+    return in_section_axes(p, x, axial().stress(axial().strains(p.xi, l_, x))[0],
+                           bending().stress(bending().strains(p.xi, l_, x)));
+  }
+
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+    ShapeValues<4> const s = hermite_shape(p.xi, l_);
+    Index const first = first_column(p);
+    Vec<T, 3> r, slope, v_r, rate;
+    for (int k = 0; k < 3; ++k) {
+      r[k] = slope[k] = v_r[k] = rate[k] = T(0.0);
+      for (int i = 0; i < 4; ++i) {
+        r[k] += q[first + 3 * i + k] * s.s[i];
+        slope[k] += q[first + 3 * i + k] * s.ds[i];
+        v_r[k] += v[first + 3 * i + k] * s.s[i];
+        rate[k] += v[first + 3 * i + k] * s.ds[i];
+      }
+    }
+    T const inverse = T(1.0) / detail::dot(slope, slope);
+    Vec<T, 3> const w = slope.cross(rate) * inverse;
+    out.frame.r = r;
+    out.frame.v = v_r;
+    out.frame.w = w;
+    out.frame.A = smallest_turn<T>(slope, axes_[std::size_t(p.element)]) * axes.template cast<T>();
+    T const fade = detail::dot(slope, rate) * inverse * (-2.0);  // ω˙ = r′ × r̈′/n² − 2 (r′·ṙ′) ω/n²
+    for (int k = 0; k < 3; ++k) {
+      out.bias[k] = T(0.0);
+      out.bias[3 + k] = w[k] * fade;
+    }
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) {
+        T* const column = out.jacobian + 6 * (3 * i + k);
+        int const j = (k + 1) % 3, l = (k + 2) % 3;
+        for (int row = 0; row < 6; ++row) column[row] = T(0.0);
+        column[k] = T(s.s[i]);
+        column[3 + j] = slope[l] * inverse * s.ds[i];  // r′ × e_k = (…, r′_l at j, −r′_j at l)
+        column[3 + l] = -(slope[j] * inverse * s.ds[i]);
+      }
+    out.shape = JacobianShape::dense;
+    out.columns = 12;
+  }
+
+  /// Jᵀw has the part s_i′ (m × r′)/n² that depends on q: ∂/∂r′ = m̃/n² − 2 (m × r′) r′ᵀ/n⁴.
+  template <class T>  // compiled where it is used
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 12, 12>& k) const {
+    ShapeValues<4> const s = hermite_shape(p.xi, l_);
+    Vec<T, 3> const slope = slope_of(s, element_of(p, q));
+    T const n2 = slope.squaredNorm();
+    Mat<T, 3, 3> const each = skew<T>(w.m) / n2 - (2.0 / (n2 * n2)) * w.m.cross(slope) * slope.transpose();
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) k.template block<3, 3>(3 * i, 3 * j) = (s.ds[i] * s.ds[j]) * each;
+  }
+
+ private:
+  using Axial = StrainGroup<CableAxial<Strain, axial_points>>;
+  using Bending = StrainGroup<CableBending<Strain, bending_points>>;
+  Axial const& axial() const { return std::get<0>(groups_); }
+  Bending const& bending() const { return std::get<1>(groups_); }
+
+  template <class T = double>  // compiled where it is used
+  AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
+      : NodeChain(n),
+        constants_(c),
+        length_(bar.length),
+        l_(bar.length / double(n)),
+        groups_(Axial(c, bar.damping, l_, Vec<double, 1>(bar.pretension)), Bending(c, bar.damping, l_)) {
+    for (GaussPoint const& g : gauss<4>) {
+      ShapeValues<4> const s = hermite_shape(g.xi, l_);
+      double const mass = g.weight * l_ * c.mass_per_length;
+      for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) mass_(i, j) += mass * s.s[i] * s.s[j];
+        weight_[i] += mass * s.s[i];
+      }
+    }
+    reference_.resize(std::size_t(coordinates()));
+    Mat<T, 3, 3> const axes = bar.placement.axes;
+    for (Index i = 0; i <= n_; ++i) {
+      Placement const section = curve(double(i) * l_);
+      section.check(name);
+      part<3>(std::span<double>(reference_), 6 * i) = bar.placement.origin + axes * section.origin;
+      part<3>(std::span<double>(reference_), 6 * i + 3) = axes * section.axes.col(0);
+    }
+    for (Index e = 0; e < n_; ++e) {
+      for (GaussPoint const& g : gauss<3>) {
+        double const off = axial().strains(g.xi, l_, element_of({e, g.xi}, reference_))[0];
+        if (!(std::abs(off) < 0.1))
+          throw InvalidInput("AncfCable: element " + std::to_string(e + 1) + " of the reference curve is strained by " +
+                             number(off) +
+                             ". Give the curve by its arc length, from 0 to the bar's length, or take more elements.");
+      }
+      axes_.push_back(axes * curve((double(e) + 0.5) * l_).axes);
+    }
+  }
+
+  static PointMap map_of(std::array<double, 4> const& s) {
+    PointMap map = PointMap::Zero();
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) map(k, 3 * i + k) = s[std::size_t(i)];
+    return map;
+  }
+  Element<double> element_of(Point const& p, std::span<double const> q) const { return part<12>(q, first_column(p)); }
+  static Vec3 slope_of(ShapeValues<4> const& s, Element<double> const& x) {
+    Vec3 slope = Vec3::Zero();
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) slope[k] += s.ds[i] * x[3 * i + k];
+    return slope;
+  }
+  template <class T>
+  Vec6 in_section_axes(Point const& p, Element<double> const& x, double along, Vec<T, 3> const& bending) const {
+    Vec3 const slope = slope_of(hermite_shape(p.xi, l_), x);
+    Vec6 out = Vec6::Zero();
+    out[0] = along;
+    out.tail<3>() = smallest_turn<T>(slope, axes_[std::size_t(p.element)]).transpose() * bending;
+    return out;
+  }
+
+  /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are
+  /// first turned by π about their third one, so that there is always one.
+  template <StateScalar T>
+  static Mat<T, 3, 3> smallest_turn(Vec<T, 3> const& slope, Mat3 from) {
+    using std::sqrt;
+    Vec<T, 3> const t = slope / sqrt(detail::dot(slope, slope));
+    if (value_of(t[0]) * from(0, 0) + value_of(t[1]) * from(1, 0) + value_of(t[2]) * from(2, 0) < 0.0)
+      for (int i = 0; i < 3; ++i) {
+        from(i, 0) *= -1.0;
+        from(i, 1) *= -1.0;
+      }
+    Vec<T, 3> const e = from.col(0).template cast<T>();
+    Mat<T, 3, 3> const turn = skew<T>(e.cross(t));
+    Mat<T, 3, 3> const both = turn * from.template cast<T>();
+    return from.template cast<T>() + both + turn * both * (T(1.0) / (detail::dot(e, t) + 1.0));
+  }
+
+  BarConstants constants_;
+  double length_;
+  double l_;
+  std::tuple<Axial, Bending> groups_;
+  Mat<double, 4, 4> mass_ = Mat<double, 4, 4>::Zero();  ///< of each component
+  Vec4 weight_ = Vec4::Zero();                          ///< the same for a uniform field
+  std::vector<double> reference_;
+  std::vector<Mat3> axes_;  ///< of the reference in the middle of each element
+};
+
+static_assert(Body<AncfCable<>>);
+
+}  // namespace polybody

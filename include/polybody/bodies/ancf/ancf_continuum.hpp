@@ -1,0 +1,248 @@
+#pragma once
+/// \file
+/// The elastic force of the fully parameterised ANCF beam by general continuum mechanics: Green–Lagrange strain
+/// E = ½ (FᵀF − 1) against the reference, F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's
+/// law in three dimensions. D is written in squares, so that strains do not couple:
+///   S : E = λ (tr E)² + 2μ Σ E_ii² + 4μ Σ_{i<j} E_ij².
+
+#include <tuple>
+
+#include <polybody/bodies/ancf/ancf_field.hpp>
+#include <polybody/bodies/shared/strain_group.hpp>
+
+namespace polybody {
+
+namespace ancf {
+
+/// Strains of columns of F, the shapes, which read all nodal vectors.
+template <int used>
+struct OfGradient {
+  static constexpr int components = 3;
+  static constexpr int parameters = 3 * used;
+  static constexpr int reach = vectors - 1;
+  static constexpr int difference = vectors / 2;
+  static constexpr int vector(int, int j) { return j + 1; }
+  /// P for the columns `which` of F.
+  static Mat<double, used, vectors - 1> map(Mat<double, vectors, 3> const& g, std::array<int, used> const& which) {
+    Mat<double, used, vectors - 1> n;
+    for (int v = 1; v < vectors; ++v)
+      for (int s = 0; s < used; ++s) n(s, v - 1) = g(v, which[std::size_t(s)]);
+    return n;
+  }
+};
+
+/// E₁₁ = ½ (f₁·f₁ − 1); p = f₁.
+struct AlongStrain : OfGradient<1> {
+  static constexpr int points = 12;
+  static constexpr int strains = 1;
+
+  template <KernelScalar T>
+  static void evaluate(Vec<T, 3> const& p, Vec<T, 1>& strain, Mat<T, 1, 3>& b) {
+    strain[0] = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) * 0.5 - 0.5;
+    for (int i = 0; i < 3; ++i) b(0, i) = p[i];
+  }
+  template <KernelScalar T>
+  static void add_hessian(Vec<T, 1> const& n, Mat<T, 1, 1>& s) {
+    s(0, 0) += n[0];
+  }
+};
+
+/// (2E₁₂, 2E₁₃) = (f₁·f₂, f₁·f₃); p = (f₁, f₂, f₃).
+struct ShearStrains : OfGradient<3> {
+  static constexpr int points = 12;
+  static constexpr int strains = 2;
+
+  template <KernelScalar T>
+  static void evaluate(Vec<T, 9> const& p, Vec<T, 2>& strain, Mat<T, 2, 9>& b) {
+    for (int j = 0; j < 2; ++j) {
+      int const f = 3 + 3 * j;
+      strain[j] = p[0] * p[f] + p[1] * p[f + 1] + p[2] * p[f + 2];
+      for (int i = 0; i < 3; ++i) {
+        b(j, i) = p[f + i];
+        b(j, f + i) = p[i];
+        b(j, 6 - 3 * j + i) = T(0.0);
+      }
+    }
+  }
+  template <KernelScalar T>
+  static void add_hessian(Vec<T, 2> const& n, Mat<T, 3, 3>& s) {
+    for (int j = 0; j < 2; ++j) {
+      s(0, 1 + j) += n[j];
+      s(1 + j, 0) += n[j];
+    }
+  }
+};
+
+/// (tr E, E₁₁, E₂₂, E₃₃, 2E₂₃, 2E₁₃, 2E₁₂); p = (f₁, f₂, f₃).
+template <int at_points>
+struct GreenStrains : OfGradient<3> {
+  static constexpr int points = at_points;
+  static constexpr int strains = 7;
+
+  template <KernelScalar T>
+  static void evaluate(Vec<T, 9> const& p, Vec<T, 7>& strain, Mat<T, 7, 9>& b) {
+    for (int i = 0; i < 7; ++i)
+      for (int k = 0; k < 9; ++k) b(i, k) = T(0.0);
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, k = (i + 2) % 3;  // the shear beside axis i
+      strain[1 + i] = T(-0.5);
+      strain[4 + i] = T(0.0);
+      for (int a = 0; a < 3; ++a) {
+        strain[1 + i] += p[3 * i + a] * p[3 * i + a] * 0.5;
+        strain[4 + i] += p[3 * j + a] * p[3 * k + a];
+        b(0, 3 * i + a) = b(1 + i, 3 * i + a) = p[3 * i + a];
+        b(4 + i, 3 * j + a) = p[3 * k + a];
+        b(4 + i, 3 * k + a) = p[3 * j + a];
+      }
+    }
+    strain[0] = strain[1] + strain[2] + strain[3];
+  }
+  template <KernelScalar T>
+  static void add_hessian(Vec<T, 7> const& n, Mat<T, 3, 3>& s) {
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, k = (i + 2) % 3;
+      s(i, i) += n[0] + n[1 + i];
+      s(j, k) += n[4 + i];
+      s(k, j) += n[4 + i];
+    }
+  }
+};
+
+}  // namespace ancf
+
+/// Whether a `Continuum` beam is left to lock.
+enum class Locking { present, cured };
+
+/// Stress at a point.
+struct Stress {
+  Mat3 second_piola;  ///< S, in the axes of the reference section [N/m²]
+  Mat3 cauchy;        ///< F S Fᵀ/det F, world axes [N/m²]
+};
+
+/// Quadrature: three Gauss points along x, exact for the quartic energy of linear theory (r_x is quadratic), and four
+/// points of the section (`SectionPoints`), exact for the stretch, bending and twist that the field can show. With
+/// `Locking::present` that is all. The strain that follows y and z through r_x has no partner in E₂₂, E₃₃, constant
+/// across the section: bending meets λ + 2μ in place of E, and a slender cantilever shows but (1 + ν)(1 − 2ν)/(1 − ν)
+/// of its deflection.
+///
+/// `Locking::cured` splits D = D⁰ + Dᵛ [Gerstmayr, Matikainen & Mikkola 2008]:
+///   E E₁₁² over the volume, as a bar in uniaxial stress has it;
+///   the rest of Hooke's law for normal strains, and E₂₃, on the axis only, and there at the nodes (trapezoidal rule):
+///   between
+///     them |r_y| < 1 belongs to the chord of a bent element and would stiffen it;
+///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points drawn towards the
+///   axis (or
+///     away from it) until twist meets GJ of the bar. Three points along x remain: two leave a mode without energy, and
+///     three do not lock (see `ElasticLine`).
+///
+/// Kelvin–Voigt times: axial for normal strains, so for bending, too; shear for shears. Ė is objective.
+/// `Damping::bending` has no meaning of its own here.
+template <Locking locking = Locking::cured>
+struct Continuum {
+  static constexpr char const* name = "AncfBeam<Continuum>";
+  static constexpr bool cured = locking == Locking::cured;
+
+  using Volume = StrainGroup<ancf::GreenStrains<12>>;
+  using Along = StrainGroup<ancf::AlongStrain>;
+  using Shear = StrainGroup<ancf::ShearStrains>;
+  using Across = StrainGroup<ancf::GreenStrains<2>>;
+  using Groups = std::conditional_t<cured, std::tuple<Along, Shear, Across>, std::tuple<Volume>>;
+
+  static void check(Bar const& bar, BarConstants const&) {
+    if (!bar.material)
+      throw InvalidInput(std::string(name) +
+                         ": the continuum needs the bar's section and material. Give them, or take "
+                         "AncfBeam<ElasticLine>, which is content with constants.");
+    if (!(bar.material->poisson < 0.5))
+      throw InvalidInput(std::string(name) +
+                         ": Poisson's ratio must be below 0.5, where the bulk modulus is infinite.");
+  }
+
+  static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
+    Moduli const m(bar);
+    double const area = c.EA / m.young, y = std::sqrt(c.EI / c.EA), z = std::sqrt(c.EI_y.value() / c.EA);
+    double const axial = bar.damping.axial, shear = bar.damping.shear;
+    Vec<double, 7> times, stiffness;
+    for (int i = 0; i < 7; ++i) {
+      times[i] = i < 4 ? axial : shear;
+      stiffness[i] = i == 0 ? m.lambda : i < 4 ? 2.0 * m.mu : m.mu;
+    }
+    double const stretch = -bar.pretension / c.EA;  // in which the prestressed bar would be free of stress
+    ancf::SectionPoints const section{y, z};
+    if constexpr (cured) {
+      stiffness[1] -= m.young;
+      stiffness[5] = stiffness[6] = 0.0;
+      Across across(area * stiffness, times);
+      for (int node = 0; node < 2; ++node) {
+        auto const at = ref.gradients(node, 0.0, 0.0);
+        across.set_point(node, 0.5 * ref.l, ancf::GreenStrains<2>::map(at.g, {0, 1, 2}), uniaxial(stretch, m.poisson));
+      }
+      Along along(Vec<double, 1>(double(c.EA)), Vec<double, 1>(axial));
+      Shear shears(Vec2(c.GA, c.GA_z.value()), Vec2(shear, shear));
+      double const lever = Continuum::lever(c);
+      int k = 0;
+      for (GaussPoint const& g : gauss<3>)
+        section.for_each([&](double a, double b) {
+          double const weight = 0.25 * g.weight * ref.l;
+          auto const at = ref.gradients(g.xi, a, b), beside = ref.gradients(g.xi, lever * a, lever * b);
+          along.set_point(k, weight * at.volume, ancf::AlongStrain::map(at.g, {0}), Vec<double, 1>(stretch));
+          shears.set_point(k++, weight * beside.volume, ancf::ShearStrains::map(beside.g, {0, 1, 2}));
+        });
+      return {along, shears, across};
+    } else {
+      Volume volume(area * stiffness, times);
+      int k = 0;
+      for (GaussPoint const& g : gauss<3>)
+        section.for_each([&](double a, double b) {
+          auto const at = ref.gradients(g.xi, a, b);
+          volume.set_point(k++, 0.25 * g.weight * ref.l * at.volume, ancf::GreenStrains<12>::map(at.g, {0, 1, 2}),
+                           uniaxial(stretch, m.poisson));
+        });
+      return {volume};
+    }
+  }
+
+  /// Where shear is measured: this many times as far from the axis as the points of the section.
+  static double lever(BarConstants const& c) {
+    if constexpr (cured)
+      return std::sqrt(c.GJ * c.EA / (c.GA * c.EI_y.value() + c.GA_z.value() * c.EI));
+    else
+      return 1.0;
+  }
+
+  /// Stress at a point with strain E and, where the section meets the axis, `axis`; without damping.
+  template <class T = double>  // compiled where it is used
+  static Mat3 second_piola(Bar const& bar, BarConstants const& c, Mat3 const& e, Mat3 const& at_axis) {
+    Moduli const m(bar);
+    Mat<T, 3, 3> const axis = at_axis;
+    Mat<T, 3, 3> s = m.lambda * axis.trace() * Mat<T, 3, 3>::Identity() + 2.0 * m.mu * e;
+    if constexpr (cured) {
+      s(0, 0) = m.young * e(0, 0) + m.lambda * axis.trace() + (2.0 * m.mu - m.young) * axis(0, 0);
+      s(0, 1) = s(1, 0) = c.GA * m.young / c.EA * 2.0 * e(0, 1);
+      s(0, 2) = s(2, 0) = c.GA_z.value() * m.young / c.EA * 2.0 * e(0, 2);
+    } else {
+      s += m.lambda * (e - axis).trace() * Mat<T, 3, 3>::Identity();
+    }
+    s(0, 0) += bar.pretension * m.young / c.EA;
+    return s;
+  }
+
+ private:
+  struct Moduli {
+    double young, poisson, lambda, mu;
+    explicit Moduli(Bar const& bar) : young(bar.material->young), poisson(bar.material->poisson) {
+      mu = young / (2.0 * (1.0 + poisson));
+      lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
+    }
+  };
+  /// The strains of uniaxial stress.
+  static Vec<double, 7> uniaxial(double e, double nu) {
+    Vec<double, 7> strain = Vec<double, 7>::Zero();
+    strain[0] = (1.0 - 2.0 * nu) * e;
+    strain[1] = e;
+    strain[2] = strain[3] = -nu * e;
+    return strain;
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,210 @@
+#pragma once
+/// \file
+/// The elastic force of the fully parameterised ANCF beam by structural mechanics on its axis.
+
+#include <tuple>
+
+#include <polybody/bodies/ancf/ancf_field.hpp>
+#include <polybody/bodies/shared/strain_group.hpp>
+
+namespace polybody {
+
+/// With the section frame R of (r_y, r_z)
+///   Γ = Rᵀ r₀′ − e₁ (stretch, two shears),  K = axial(Rᵀ R′) (twist, two curvatures): the exact rod's strains, and
+///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the section's own strains, with stiffness EA, EA, GA;
+/// Γ and K against their values in the reference [Simo & Vu-Quoc 1986; Nachbagauer, Gruber & Gerstmayr 2013]. R, Γ, K
+/// do not feel how a section stretches, so on fine meshes the sections keep their shape and the element is the exact
+/// rod. Quadrature:
+///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. (With two, r = 0 and the same r_x across
+///   the axis
+///     at all nodes has no energy: r₀′ is the Legendre polynomial P₂, zero at both.) Nothing locks: the quadratic r₀′
+///     can follow any piecewise linear r_y, r_z with Γ = 0.
+///   K at two: for sections that turn by θ an element they give θ/l up to θ⁴.
+///   The section's strains at the nodes alone: that |r_y| falls to cos(θ/2) between them is the chord's doing, not a
+///   strain.
+/// Kelvin–Voigt times: axial for Γ₁ and the sections' stretches, shear for Γ₂, Γ₃, twist and the sections' shear,
+/// bending.
+struct ElasticLine {
+  static constexpr char const* name = "AncfBeam<ElasticLine>";
+
+  /// Γ; p = (r₀′, r_y, r_z).
+  struct Stretch {
+    static constexpr int points = 3;
+    static constexpr int components = 3;
+    static constexpr int parameters = 9;
+    static constexpr int strains = 3;
+    static constexpr int reach = 3;
+    static constexpr int difference = 4;
+
+    static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.GA, c.GA_z.value_or(c.GA)}; }
+    static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.shear}; }
+    static constexpr int vector(int s, int j) {
+      if (s == 0) return j == 0 ? 1 : 3 + j;
+      return j < 2 ? 4 * j + 1 + s : -1;
+    }
+    static Mat<double, 3, 3> map(double xi, double l) {
+      ShapeValues<4> const h = hermite_shape(xi, l);
+      Mat<double, 3, 3> n;
+      for (int j = 0; j < 3; ++j) {
+        n(0, j) = h.ds[std::size_t(j + 1)];
+        n(1, j) = n(2, j) = j == 0 ? 1.0 - xi : j == 1 ? xi : 0.0;
+      }
+      return n;
+    }
+
+    /// u = Rᵀ r₀′:  δu = Rᵀ δr₀′ + u × φ.
+    template <KernelScalar T>
+    static void evaluate(Vec<T, 9> const& p, Vec<T, 3>& strain, Mat<T, 3, 9>& b) {
+      SectionFrame<T> const f({p[3], p[4], p[5]}, {p[6], p[7], p[8]});
+      Vec<T, 3> const u = f.local({p[0], p[1], p[2]});
+      for (int i = 0; i < 3; ++i) {
+        strain[i] = i == 0 ? u[0] - 1.0 : u[i];
+        for (int k = 0; k < 3; ++k) b(i, k) = f.R(k, i);
+        f.to_vectors(f.pull(f.cross(f.axis(i), u)), i, 3, b);
+      }
+    }
+    /// n·δ̂δu = α·(φ̂ × n) + α̂·(φ × n) + φᵀ (u nᵀ − (n·u) 1) φ̂ + (n × u)·δ̂φ, α = Rᵀ δr₀′.
+    template <KernelScalar T>
+    static void add_hessian(Vec<T, 9> const& p, Vec<T, 3> const& n, Mat<T, 9, 9>& h) {
+      SectionFrame<T> const f({p[3], p[4], p[5]}, {p[6], p[7], p[8]});
+      Vec<T, 3> const u = f.local({p[0], p[1], p[2]});
+      Mat<T, 6, 6> twice = f.second(f.cross(n, u));
+      T const nu = f.dot(n, u);
+      Vec<T, 6> const pn = f.pull(n), pu = f.pull(u);
+      constexpr std::array<int, 3> turning = {0, 2, 3};  // the components that turn the frame
+      for (int const i : turning)
+        for (int const j : turning) twice(i, j) += pu[i] * pn[j];
+      Vec<T, 3> const nw = f.world(n);
+      Mat<T, 3, 9> across;
+      for (int k = 0; k < 3; ++k) {
+        Vec<T, 6> const s = f.pull(f.axis(k));
+        for (int const i : turning)
+          for (int const j : turning) twice(i, j) -= nu * s[i] * s[j];
+        f.to_vectors(f.pull(f.local(f.cross(nw, f.axis(k)))), k, 3, across);  // e_k·(ω̂ × n) = (n × e_k)·ω̂
+        for (int j = 3; j < 9; ++j) {
+          h(k, j) += across(k, j);
+          h(j, k) += across(k, j);
+        }
+      }
+      f.add_symmetric(twice, 3, h);
+    }
+  };
+
+  /// K; p = (r_y, r_z, r_y′, r_z′).
+  struct Bend {
+    static constexpr int points = 2;
+    static constexpr int components = 3;
+    static constexpr int parameters = 12;
+    static constexpr int strains = 3;
+    static constexpr int reach = 2;
+
+    static Vec3 stiffness(BarConstants const& c) { return {c.GJ, c.EI_y.value_or(c.EI), c.EI}; }
+    static Vec3 damping(Damping const& d) { return {d.shear, d.bending, d.bending}; }
+    static constexpr int vector(int s, int j) { return 4 * j + 2 + s % 2; }
+    static Mat<double, 4, 2> map(double xi, double l) {
+      Mat<double, 4, 2> n;
+      for (int s = 0; s < 2; ++s) {
+        n(s, 0) = 1.0 - xi;
+        n(s, 1) = xi;
+        n(2 + s, 0) = -1.0 / l;
+        n(2 + s, 1) = 1.0 / l;
+      }
+      return n;
+    }
+
+    template <KernelScalar T>
+    static void evaluate(Vec<T, 12> const& p, Vec<T, 3>& strain, Mat<T, 3, 12>& b) {
+      SectionFrame<T> const f({p[0], p[1], p[2]}, {p[3], p[4], p[5]});
+      Vec<T, 6> const w = f.components({p[6], p[7], p[8]}, {p[9], p[10], p[11]});
+      strain = f.spin(w);
+      Mat<T, 3, 6> const k = f.curvature_gradient(w);
+      for (int i = 0; i < 3; ++i) {
+        Vec<T, 6> row;
+        for (int j = 0; j < 6; ++j) row[j] = k(i, j);
+        f.to_vectors(row, i, 0, b);
+        f.to_vectors(f.pull(f.axis(i)), i, 6, b);
+      }
+    }
+    template <KernelScalar T>
+    static void add_hessian(Vec<T, 12> const& p, Vec<T, 3> const& n, Mat<T, 12, 12>& h) {
+      SectionFrame<T> const f({p[0], p[1], p[2]}, {p[3], p[4], p[5]});
+      Vec<T, 6> const w = f.components({p[6], p[7], p[8]}, {p[9], p[10], p[11]});
+      Mat<T, 6, 6> twice, mixed;
+      f.curvature_hessian(w, n, twice, mixed);
+      f.add_symmetric(twice, 0, h);
+      f.add_second(mixed, 6, 0, h);
+    }
+  };
+
+  /// The section's own strains; p = (r_y, r_z).
+  struct Section {
+    static constexpr int points = 2;
+    static constexpr int components = 3;
+    static constexpr int parameters = 6;
+    static constexpr int strains = 3;
+    static constexpr int reach = 2;
+
+    static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.EA, c.GA}; }
+    static Vec3 damping(Damping const& d) { return {d.axial, d.axial, d.shear}; }
+    static constexpr int vector(int s, int j) { return Bend::vector(s, j); }
+    static Mat<double, 2, 2> map(double xi, double l) {
+      Mat<double, 4, 2> const n = Bend::map(xi, l);
+      Mat<double, 2, 2> top;
+      for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) top(i, j) = n(i, j);
+      return top;
+    }
+
+    template <KernelScalar T>
+    static void evaluate(Vec<T, 6> const& p, Vec<T, 3>& strain, Mat<T, 3, 6>& b) {
+      strain[0] = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) * 0.5 - 0.5;
+      strain[1] = (p[3] * p[3] + p[4] * p[4] + p[5] * p[5]) * 0.5 - 0.5;
+      strain[2] = p[0] * p[3] + p[1] * p[4] + p[2] * p[5];
+      for (int i = 0; i < 3; ++i) {
+        b(0, i) = b(2, 3 + i) = p[i];
+        b(1, 3 + i) = b(2, i) = p[3 + i];
+        b(0, 3 + i) = b(1, i) = T(0.0);
+      }
+    }
+    template <KernelScalar T>
+    static void add_hessian(Vec<T, 6> const&, Vec<T, 3> const& n, Mat<T, 6, 6>& h) {
+      for (int i = 0; i < 3; ++i) {
+        h(i, i) += n[0];
+        h(3 + i, 3 + i) += n[1];
+        h(i, 3 + i) += n[2];
+        h(3 + i, i) += n[2];
+      }
+    }
+  };
+  using Groups = std::tuple<StrainGroup<Stretch>, StrainGroup<Bend>, StrainGroup<Section>>;
+
+  static void check(Bar const&, BarConstants const& c) {
+    require_positive(c.GA, "AncfBeam<ElasticLine>: the shear stiffness GA of the bar");
+    require_positive(c.GA_z.value_or(c.GA), "AncfBeam<ElasticLine>: the shear stiffness GA_z of the bar");
+    require_positive(c.GJ, "AncfBeam<ElasticLine>: the torsional stiffness GJ of the bar");
+    require_positive(c.EI_y.value_or(c.EI), "AncfBeam<ElasticLine>: the bending stiffness EI_y of the bar");
+  }
+
+  template <class = void>  // compiled where it is used
+  static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
+    Vec3 const pretension(-bar.pretension / c.EA, 0.0, 0.0);
+    std::array<GaussPoint, 2> const nodes = {GaussPoint{0.0, 0.5}, GaussPoint{1.0, 0.5}};
+    return {on_axis<Stretch>(gauss<3>, bar, c, ref, pretension), on_axis<Bend>(gauss<2>, bar, c, ref, Vec3::Zero()),
+            on_axis<Section>(nodes, bar, c, ref, Vec3::Zero())};
+  }
+
+ private:
+  template <class Law>
+  static StrainGroup<Law> on_axis(std::array<GaussPoint, Law::points> const& rule, Bar const& bar,
+                                  BarConstants const& c, ancf::Reference const& ref, Vec3 const& pretension) {
+    StrainGroup<Law> group(Law::stiffness(c), Law::damping(bar.damping));
+    for (int g = 0; g < Law::points; ++g) {
+      Vec3 free = pretension;
+      if (!ref.straight) free += StrainGroup<Law>::strains(rule[g].xi, ref.l, ref.x);
+      group.set_point(g, rule[g].weight * ref.l, Law::map(rule[g].xi, ref.l), free);
+    }
+    return group;
+  }
+};
+
+}  // namespace polybody

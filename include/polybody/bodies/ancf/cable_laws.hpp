@@ -1,0 +1,171 @@
+#pragma once
+/// \file
+/// Axial strain and bending of a cable in space as strain laws over the cubic Hermite element with coordinates (r, r′)
+/// at both ends.
+
+#include <polybody/bodies/ancf/cable_strains.hpp>
+#include <polybody/bodies/shared/strain_group.hpp>
+#include <polybody/math/shape_functions.hpp>
+
+namespace polybody {
+
+/// Axial strain in space, p = r′. Five points integrate ε² of the cubic field exactly.
+template <class Strain, int axial_points>
+struct CableAxial {
+  static constexpr int points = axial_points;
+  static constexpr int components = 3;
+  static constexpr int parameters = 3;
+  static constexpr int strains = 1;
+  static constexpr int reach = 3;
+  static constexpr int difference = 2;
+
+  static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EA)); }
+  static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.axial); }
+  static constexpr int vector(int, int j) { return j + 1; }
+  static Mat<double, 1, 3> map(double xi, double l) {
+    ShapeValues<4> const s = hermite_shape(xi, l);
+    return {s.ds[1], s.ds[2], s.ds[3]};
+  }
+  template <KernelScalar T>
+  static void evaluate(Vec<T, 3> const& p, Vec<T, 1>& strain, Mat<T, 1, 3>& b) {
+    Strain::template axial<T, 3>(p, strain, b);
+  }
+  template <KernelScalar T>
+  static void add_hessian(Vec<T, 3> const& p, Vec<T, 1> const& n, Mat<T, 3, 3>& h) {
+    Strain::template add_axial_hessian<T, 3>(p, n[0], h);
+  }
+};
+
+/// Bending in space as the vector κ = s × u/|s|ᵏ, s = r′, u = r″; p = (s, u). It is smooth where its length is not, at
+/// κ = 0.
+template <class Strain, int bending_points>
+struct CableBending {
+  static constexpr int points = bending_points;
+  static constexpr int components = 3;
+  static constexpr int parameters = 6;
+  static constexpr int strains = 3;
+  static constexpr int reach = 3;
+  static constexpr int difference = 2;
+  static constexpr int k = Strain::curvature_power;
+
+  static Vec3 stiffness(BarConstants const& c) { return Vec3::Constant(c.EI); }
+  static Vec3 damping(Damping const& d) { return Vec3::Constant(d.bending); }
+  static constexpr int vector(int, int j) { return j + 1; }
+  static Mat<double, 2, 3> map(double xi, double l) {
+    ShapeValues<4> const s = hermite_shape(xi, l);
+    Mat<double, 2, 3> n;
+    for (int j = 0; j < 3; ++j) {
+      n(0, j) = s.ds[j + 1];
+      n(1, j) = s.dds[j + 1];
+    }
+    return n;
+  }
+
+  /// With c = s × u: ∂κ/∂s = −ũ/nᵏ − k κ sᵀ/n², ∂κ/∂u = s̃/nᵏ.
+  template <KernelScalar T>
+  static void evaluate(Vec<T, 6> const& p, Vec<T, 3>& strain, Mat<T, 3, 6>& b) {
+    T const inverse2 = T(1.0) / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), inverse = power(inverse2);
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, l = (i + 2) % 3;
+      strain[i] = (p[j] * p[3 + l] - p[l] * p[3 + j]) * inverse;
+      T const pull = strain[i] * inverse2 * double(k);
+      b(i, i) = -(pull * p[i]);
+      b(i, j) = p[3 + l] * inverse - pull * p[j];
+      b(i, l) = -(p[3 + j] * inverse) - pull * p[l];
+      b(i, 3 + i) = T(0.0);
+      b(i, 3 + j) = -(p[l] * inverse);
+      b(i, 3 + l) = p[j] * inverse;
+    }
+  }
+
+  /// κ·κ = ((s·s)(u·u) − (s·u)²)/n²ᵏ.
+  template <KernelScalar T>
+  static T square(Vec<T, 6> const& p) {
+    T const ss = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], uu = p[3] * p[3] + p[4] * p[4] + p[5] * p[5];
+    T const su = p[0] * p[3] + p[1] * p[4] + p[2] * p[5], inverse = power(T(1.0) / ss);
+    return (ss * uu - su * su) * (inverse * inverse);
+  }
+
+  /// For w·κ = c/nᵏ, c = w·(s × u) with ∂c/∂s = a = u × w, ∂c/∂u = d = w × s, ∂²c/∂s∂u = −w̃:
+  ///   ∂²/∂s² = (−k (a sᵀ + s aᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²/∂s∂u = −w̃/nᵏ − k s dᵀ/nᵏ⁺².
+  template <KernelScalar T>
+  static void add_hessian(Vec<T, 6> const& p, Vec<T, 3> const& w, Mat<T, 6, 6>& h) {
+    T const inverse2 = T(1.0) / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), inverse = power(inverse2);
+    T const pull = inverse * inverse2 * double(k);
+    T a[3], d[3];
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, l = (i + 2) % 3;
+      a[i] = p[3 + j] * w[l] - p[3 + l] * w[j];
+      d[i] = w[j] * p[l] - w[l] * p[j];
+    }
+    T const c = a[0] * p[0] + a[1] * p[1] + a[2] * p[2], along = c * inverse2 * double(k + 2);
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, l = (i + 2) % 3;
+      for (int q = 0; q < 3; ++q) {
+        h(i, q) += pull * (along * p[i] * p[q] - a[i] * p[q] - p[i] * a[q]);
+        T const mixed = -(pull * p[i] * d[q]);
+        h(i, 3 + q) += mixed;
+        h(3 + q, i) += mixed;
+      }
+      h(i, i) -= pull * c;
+      T const turn = w[l] * inverse, back = w[j] * inverse;  // −w̃ has w_l at (i, j) and −w_j at (i, l)
+      h(i, 3 + j) += turn;
+      h(3 + j, i) += turn;
+      h(i, 3 + l) -= back;
+      h(3 + l, i) -= back;
+    }
+  }
+
+  /// κ̇ = turn of κ + change of its length, and a cable does not know how it turns about its own axis; so the length
+  /// alone is damped,
+  ///   p = w κ̇ + G κ (κ·κ̇),  w = (1 + x)⁻⁴,  G = (1 − w)/κ²,  x = κ²/κ₀²,
+  /// with all of κ̇ below κ₀ = 1e-3 1/m, where the direction of κ says nothing. G is a polynomial over (1 + x)⁴.
+  template <KernelScalar T>
+  static void objective_rate(Vec<T, 3> const& strain, Vec<T, 3>& rate) {
+    Blend<T> const f(strain);
+    T const along = detail::dot(strain, rate);
+    for (int i = 0; i < 3; ++i) rate[i] = rate[i] * f.w + strain[i] * (f.g * along);
+  }
+  /// ∂p/∂κ̇ = w 1 + G κ κᵀ;  ∂p/∂κ = κ̇ w′ᵀ + G ((κ·κ̇) 1 + κ κ̇ᵀ) + κ (κ·κ̇) G′ᵀ.
+  template <KernelScalar T>
+  static void objective_rate_gradients(Vec<T, 3> const& strain, Vec<T, 3> const& rate, Mat<T, 3, 3>& by_rate,
+                                       Mat<T, 3, 3>& by_strain) {
+    Blend<T> const f(strain);
+    T const along = detail::dot(strain, rate);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        by_rate(i, j) = f.g * strain[i] * strain[j];
+        by_strain(i, j) = (rate[i] * f.dw + strain[i] * along * f.dg) * strain[j] + f.g * strain[i] * rate[j];
+      }
+    for (int i = 0; i < 3; ++i) {
+      by_rate(i, i) += f.w;
+      by_strain(i, i) += f.g * along;
+    }
+  }
+
+ private:
+  template <class T>
+  static T power(T const& inverse2) {  // 1/nᵏ
+    using std::sqrt;
+    if constexpr (k == 2)
+      return inverse2;
+    else
+      return inverse2 * sqrt(inverse2);
+  }
+  /// w, G and their gradients' factors of κ.
+  template <class T>
+  struct Blend {
+    T w, g, dw, dg;
+    explicit Blend(Vec<T, 3> const& strain) {
+      constexpr double each = 1e6;  // 1/κ₀²
+      T const x = detail::dot(strain, strain) * each, over = T(1.0) / (x + 1.0);
+      T const over2 = over * over, n = x * (x * (x + 4.0) + 6.0) + 4.0;
+      w = over2 * over2;
+      g = n * w * each;
+      dw = w * over * (-8.0 * each);
+      dg = ((x * (x * 3.0 + 8.0) + 6.0) - n * over * 4.0) * w * (2.0 * each * each);
+    }
+  };
+};
+
+}  // namespace polybody

@@ -1,0 +1,170 @@
+#pragma once
+/// \file
+/// Gradient-deficient ANCF cable in the plane: cubic Hermite position field, node coordinates (x, y, x′, y′),
+/// constant mass matrix, no rotation coordinate and no rotary inertia
+/// [Berzeri & Shabana 2000; Gerstmayr & Irschik 2008; thesis Eq. 3.16–3.20].
+
+#include <polybody/bodies/ancf/cable_strains.hpp>
+#include <polybody/bodies/shared/planar_beam.hpp>
+#include <polybody/math/shape_functions.hpp>
+
+namespace polybody::planar {
+
+using polybody::EngineeringStrain, polybody::GreenStrain;
+
+/// The Theory of `AncfCable`, with so many Gauss points for axial strain and bending.
+template <class Strain, int axial_points = 5, int bending_points = 3>
+struct HermiteCable {
+  static constexpr char const* name = "planar::AncfCable";
+  static constexpr int node_columns = 4;
+  static constexpr bool packs_pay = true;
+  static constexpr std::array<int, 2> section_rows = {0, 5};
+  static constexpr int gradients = 1;  ///< that are linear in the coordinates
+
+  static void check(BarConstants const&) {}
+  static Vec4 reference_node(Vec2 const& origin, double angle, double s) {
+    double const c = std::cos(angle), d = std::sin(angle);
+    return {origin[0] + s * c, origin[1] + s * d, c, d};
+  }
+  static Vec4 rigid_velocity(Vec4 const& node, Vec2 const& v0, double omega) {
+    return {v0[0] - omega * node[1], v0[1] + omega * node[0], -omega * node[3], omega * node[2]};
+  }
+  static Mat<double, 2, 8> spread(std::array<double, 4> const& s) {
+    Mat<double, 2, 8> n = Mat<double, 2, 8>::Zero();
+    for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = s[i];
+    return n;
+  }
+  static Mat<double, 2, 8> position(double xi, double l) { return spread(hermite_shape(xi, l).s); }
+  static Mat<double, 2, 8> gradient(double xi, double l) { return spread(hermite_shape(xi, l).ds); }
+  static ShapeValues<4> axis_shape(double xi, double l) { return hermite_shape(xi, l); }
+  /// A cable has no rotary inertia.
+  static Vec<double, 8> rotary(double, double) { return Vec<double, 8>::Zero(); }
+
+  /// Angle of r′; θ̇ = r′ × ṙ′/|r′|², whose derivative without r̈′ is −2 (r′·ṙ′) θ̇/|r′|².
+  template <StateScalar T>
+  static void rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed, T& angle, Vec<T, 8>& row,
+                       T& bias) {
+    using std::atan2;
+    Mat<double, 2, 8> const d = spread(hermite_shape(xi, l).ds);
+    Vec<T, 2> const slope = d.template cast<T>() * e, rate = d.template cast<T>() * ed;
+    T const n2 = slope.squaredNorm();
+    angle = atan2(slope[1], slope[0]);
+    row =
+        (d.row(1).transpose().template cast<T>() * slope[0] - d.row(0).transpose().template cast<T>() * slope[1]) / n2;
+    bias = row.dot(ed) * slope.dot(rate) * (-2.0) / n2;
+  }
+
+  /// ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).
+  static void rotation_hessian(double xi, double l, Vec<double, 8> const& e, Mat<double, 8, 8>& h) {
+    Mat<double, 2, 8> const d = spread(hermite_shape(xi, l).ds);
+    Vec2 const slope = d * e;
+    double const x = slope[0], y = slope[1], n4 = std::pow(slope.squaredNorm(), 2);
+    Mat<double, 2, 2> of_slope;
+    of_slope << 2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y;
+    h = d.transpose() * (of_slope / n4) * d;
+  }
+
+  /// Axial strain, p = r′. Five points integrate ε² of the cubic field exactly.
+  struct Axial {
+    static constexpr int points = axial_points;
+    static constexpr int components = 2;
+    static constexpr int parameters = 2;
+    static constexpr int strains = 1;
+    static constexpr int reach = 3;
+    static constexpr int difference = 2;
+
+    static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EA)); }
+    static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.axial); }
+    static constexpr int vector(int, int j) { return j + 1; }
+    static Mat<double, 1, 3> map(double xi, double l) {
+      ShapeValues<4> const s = hermite_shape(xi, l);
+      return {s.ds[1], s.ds[2], s.ds[3]};
+    }
+
+    template <KernelScalar T>
+    static void evaluate(Vec<T, 2> const& p, Vec<T, 1>& strain, Mat<T, 1, 2>& b) {
+      Strain::template axial<T, 2>(p, strain, b);
+    }
+    template <KernelScalar T>
+    static void add_hessian(Vec<T, 2> const& p, Vec<T, 1> const& n, Mat<T, 2, 2>& h) {
+      Strain::template add_axial_hessian<T, 2>(p, n[0], h);
+    }
+  };
+
+  /// Bending, p = (r′, r″), κ = c/nᵏ with c = r′ × r″, n = |r′|. Three points are the field's choice [Gerstmayr &
+  /// Irschik 2008].
+  struct Bending {
+    static constexpr int points = bending_points;
+    static constexpr int components = 2;
+    static constexpr int parameters = 4;
+    static constexpr int strains = 1;
+    static constexpr int reach = 3;
+    static constexpr int difference = 2;
+    static constexpr int k = Strain::curvature_power;
+
+    static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EI)); }
+    static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.bending); }
+    static constexpr int vector(int, int j) { return j + 1; }
+    static Mat<double, 2, 3> map(double xi, double l) {
+      ShapeValues<4> const s = hermite_shape(xi, l);
+      Mat<double, 2, 3> n;
+      for (int j = 0; j < 3; ++j) {
+        n(0, j) = s.ds[j + 1];
+        n(1, j) = s.dds[j + 1];
+      }
+      return n;
+    }
+
+    template <KernelScalar T>
+    static void evaluate(Vec<T, 4> const& p, Vec<T, 1>& strain, Mat<T, 1, 4>& b) {
+      T const inverse2 = one_over(p), inverse = power(inverse2);
+      T const kappa = (p[0] * p[3] - p[1] * p[2]) * inverse, pull = kappa * inverse2 * double(k);
+      strain[0] = kappa;
+      b(0, 0) = p[3] * inverse - pull * p[0];
+      b(0, 1) = -p[2] * inverse - pull * p[1];
+      b(0, 2) = -p[1] * inverse;
+      b(0, 3) = p[0] * inverse;
+    }
+    /// With s = r′, u = ∂c/∂s, w = ∂c/∂r″, and J = ∂²c/∂s∂r″ (a quarter turn):
+    ///   ∂²κ/∂s² = (−k (u sᵀ + s uᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²κ/∂s∂r″ = J/nᵏ − k s wᵀ/nᵏ⁺².
+    template <KernelScalar T>
+    static void add_hessian(Vec<T, 4> const& p, Vec<T, 1> const& n, Mat<T, 4, 4>& h) {
+      T const inverse2 = one_over(p), each = power(inverse2) * n[0], a = each * inverse2 * double(k);
+      T const c = p[0] * p[3] - p[1] * p[2], along = c * inverse2 * double(k + 2), x = a * p[0], y = a * p[1];
+      h(0, 0) += x * (along * p[0] - p[3] * 2.0) - a * c;
+      h(1, 1) += y * (along * p[1] + p[2] * 2.0) - a * c;
+      T const across = x * (along * p[1] + p[2]) - y * p[3];
+      h(0, 1) += across;
+      h(1, 0) += across;
+      T const of_second[2][2] = {{x * p[1], each - x * p[0]}, {y * p[1] - each, -(y * p[0])}};
+      for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j) {
+          h(i, 2 + j) += of_second[i][j];
+          h(2 + j, i) += of_second[i][j];
+        }
+    }
+
+   private:
+    template <class T>
+    static T one_over(Vec<T, 4> const& p) {  // 1/n²
+      return T(1.0) / (p[0] * p[0] + p[1] * p[1]);
+    }
+    template <class T>
+    static T power(T const& inverse2) {  // 1/nᵏ
+      using std::sqrt;
+      if constexpr (k == 2)
+        return inverse2;
+      else
+        return inverse2 * sqrt(inverse2);
+    }
+  };
+  using Groups = std::tuple<Axial, Bending>;
+};
+
+/// Planar ANCF cable: `AncfCable<>::from(bar, n)`, `AncfCable<EngineeringStrain>::from(bar, n)`.
+template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
+using AncfCable = Beam<HermiteCable<Strain, axial_points, bending_points>>;
+
+static_assert(Body<AncfCable<>>);
+
+}  // namespace polybody::planar

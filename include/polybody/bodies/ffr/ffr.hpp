@@ -1,0 +1,381 @@
+#pragma once
+/// \file
+/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation, by a
+/// structure and a basis, in a frame that moves as far as it likes. With c, J, H of ffr_integrals.hpp and C = c_q, the
+/// quantities in the frame's axes, Lagrange's equations of T(ṙ, Ω, q̇) give
+///   m r̈ + A (Ω̇ × c + C q̈)                      = −A (Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇),
+///   c × Aᵀr̈ + J Ω̇ + H q̈                        = −(J˙ Ω + Ω × (J Ω + H q̇) + H˙ q̇),
+///   Cᵀ Aᵀr̈ + Hᵀ Ω̇ + M q̈ + D q̇ + K q            = ½ (Ωᵀ J Ω)_q − Σ Ω_i W_i q̇,   W_i = ∂H_iᵀ/∂q − ∂H_i/∂q.
+/// In the thesis' words H and C are m_rf, Σ Ω_i W_i is 2 S̃₁, and the part of ½ (ΩᵀJΩ)_q that grows with q is −S̃₂ q.
+///
+/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+
+#include <memory>
+
+#include <polybody/bodies/ffr/ffr_basis.hpp>
+#include <polybody/bodies/ffr/ffr_integrals.hpp>
+#include <polybody/bodies/ffr/ffr_options.hpp>
+#include <polybody/bodies/ffr/ffr_points.hpp>
+#include <polybody/bodies/shared/body.hpp>
+
+namespace polybody {
+
+/// Coordinates: r (3) of the frame's origin in world axes, its unit quaternion (4), q (n); speeds: ṙ (3), Ω (3) in the
+/// frame's axes, q̇ (n). A marker turns with the small rotation of the section or node it sits on, θ = R q, as exp(θ̃).
+class Ffr {
+ public:
+  static constexpr World world = World::space;
+  static constexpr Observes observes = Observes::frame;
+  static constexpr bool constant_mass = false;
+  static constexpr int element_columns = Eigen::Dynamic;  ///< one element: the whole body
+  static constexpr int point_columns = Eigen::Dynamic;
+
+  using Point = FfrPoint;
+  using Options = FfrOptions;
+
+  /// The bar in n elements, frame tied to its first end, all nodal coordinates: 6 n. \throws InvalidInput as
+  /// `structure_of`.
+  static Ffr from(Bar const& bar, Index n, Options options = {}) {
+    options.placement = bar.placement;
+    Structure const s = structure_of(bar, n);
+    return Ffr(s, nodal_coordinates(s), options);
+  }
+  /// A structure with a basis of ffr_basis.hpp (N×n). \throws InvalidInput for a basis that does not fit or is
+  /// dependent.
+  Ffr(Structure structure, MatX shapes, Options const& options = {})
+      : Ffr(integrals_of(structure, shapes, options.stiffening), options) {
+    points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), stiffens());
+  }
+  /// With the user's own integrals. \throws InvalidInput when they do not fit each other.
+  Ffr(FfrIntegrals integrals, Options const& options)
+      : i_(std::move(integrals)), placement_(options.placement), terms_(options.terms) {
+    i_.check("Ffr");
+    placement_.check("Ffr");
+    require_not_negative(options.stiffness_damping, "Ffr: the damping time");
+    i_.damping += options.stiffness_damping * i_.stiffness;
+    for (std::size_t i = 0; i < 3; ++i) gyroscopic_[i] = i_.coupling_by[i] - i_.coupling_by[i].transpose();
+  }
+
+  FfrIntegrals const& integrals() const { return i_; }
+  bool stiffens() const { return i_.stiffens(); }
+  Index deformations() const { return i_.size(); }
+  /// Of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
+  double length() const { return made().length(); }
+
+  /// The section at distance s from the first end of bar `bar`, (y, z) off its axis. \throws InvalidInput outside, and
+  /// for a body that is not made of bars.
+  Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const { return made().at(s, y, z, bar); }
+  /// A node of the structure. \throws InvalidInput for one that does not exist.
+  Point node(Index i) const { return made().node(i); }
+  /// What the body is made of. \throws InvalidInput for a body made of the user's own integrals.
+  Structure const& structure() const { return made().structure(); }
+  /// A point as the user describes it. \throws InvalidInput for matrices that are not 3×n.
+  Point at(Point const& p) const {
+    if (p.S.cols() != deformations() || p.R.cols() != deformations())
+      throw InvalidInput("Ffr: S and R of a point must be 3×n, n the number of deformation coordinates.");
+    return p;
+  }
+
+  Index coordinates() const { return 7 + deformations(); }
+  Index speeds() const { return 6 + deformations(); }
+  Index elements() const { return 1; }
+  Index first_column(Index) const { return 0; }
+  Index first_column(Point const&) const { return 0; }
+
+  void reference(std::span<double> q) const {
+    std::fill(q.begin(), q.end(), 0.0);
+    part<3>(q, 0) = placement_.origin;
+    part<4>(q, 3) = quaternion_of(placement_.axes);
+  }
+  template <StateScalar T>
+  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
+    part<3>(out, 0) = part<3>(q, 0) + part<3>(delta, 0);
+    part<4>(out, 3) = quaternion_plus<T>(part<4>(q, 3), part<3>(delta, 3));
+    for (std::size_t i = 6; i < delta.size(); ++i) out[i + 1] = q[i + 1] + delta[i];
+  }
+  template <StateScalar T>
+  void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
+    std::copy(v.begin(), v.end(), out.begin());
+    part<3>(out, 3) = right_jacobian_inverse<T>(part<3>(delta, 3)) * part<3>(v, 3);
+  }
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
+    std::fill(v.begin(), v.end(), 0.0);
+    part<3>(v, 0) = v0 + omega.cross(part<3>(q, 0).eval());
+    part<3>(v, 3) = rotation_matrix<double>(part<4>(q, 3)).transpose() * omega;
+  }
+
+  void mass(Index, std::span<double const> q, MatX& m) const {
+    Index const n = deformations();
+    Mat3 const a = rotation_matrix<double>(part<4>(q, 3));
+    Moments<double> x;
+    i_.moments<double>(q.data() + 7, x);
+    m.setZero(6 + n, 6 + n);
+    m.topLeftCorner<3, 3>().diagonal().setConstant(i_.mass);
+    m.block<3, 3>(0, 3) = -a * skew<double>(x.c);
+    m.block<3, 3>(3, 0) = m.block<3, 3>(0, 3).transpose();
+    m.block<3, 3>(3, 3) = x.J;
+    m.bottomRightCorner(n, n) = i_.mass_matrix;
+    if (!terms_.coupling) return;
+    for (Index k = 0; k < n; ++k) {
+      Vec3 h, c;
+      i_.columns<double>(q.data() + 7, k, c, h);
+      m.block<3, 1>(0, 6 + k) = a * c;
+      m.block<3, 1>(3, 6 + k) = h;
+      m.block<1, 3>(6 + k, 0) = m.block<3, 1>(0, 6 + k).transpose();
+      m.block<1, 3>(6 + k, 3) = h.transpose();
+    }
+  }
+  template <StateScalar T>
+  void inertia(Index, std::span<T const> q, std::span<T const> a, VecXOf<T>& out) const {
+    Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
+    Vec<T, 3> const ar = part<3>(a, 0), alpha = part<3>(a, 3), along = A.transpose() * ar;
+    T const *const x = q.data() + 7, *const xdd = a.data() + 6;
+    Moments<T> at;
+    i_.template moments<T>(x, at);
+    Vec<T, 3> push = alpha.cross(at.c);
+    Vec<T, 3> turn = at.c.cross(along) + at.J * alpha;
+    for (Index k = 0; k < deformations(); ++k) {
+      T sum = detail::column_times(i_.mass_matrix, k, xdd);
+      if (terms_.coupling) {
+        Vec<T, 3> h, c;
+        i_.template columns<T>(x, k, c, h);
+        for (int i = 0; i < 3; ++i) {
+          sum += along[i] * c[i] + alpha[i] * h[i];
+          push[i] += c[i] * xdd[k];
+          turn[i] += h[i] * xdd[k];
+        }
+      }
+      out[6 + k] = sum;
+    }
+    out.template head<3>() = ar * T(i_.mass) + A * push;
+    out.template segment<3>(3) = turn;
+  }
+
+  template <StateScalar T>
+  void force(Index, std::span<T const> q, std::span<T const> v, VecXOf<T>& out) const {
+    Vec<T, 3> const omega = part<3>(v, 3);
+    T const *const x = q.data() + 7, *const xd = v.data() + 6;
+    Index const n = deformations();
+    Vec<T, 3> cd = Vec<T, 3>::Zero(), h = cd, cdd = cd, hd = cd;  // ċ, H q̇, Ċ q̇, H˙ q̇
+    for (Index k = 0; k < n; ++k) {
+      Vec<T, 3> hk, ck;
+      i_.template columns<T>(x, k, ck, hk);
+      cd += ck * xd[k];
+      h += hk * xd[k];
+      T f = -detail::column_times(i_.stiffness, k, x) - detail::column_times(i_.damping, k, xd) - i_.initial_force[k];
+      for (std::size_t i = 0; i < 3 && terms_.coriolis; ++i)
+        f -= omega[Index(i)] * detail::column_times(gyroscopic_[i], k, xd);
+      out[6 + k] = f;
+    }
+    Mat<T, 3, 3> inertia, rate;  // J, J˙, entry by entry, and ½ (Ωᵀ J Ω)_q
+    for (std::size_t p = 0; p < 6; ++p) {
+      int const a = symmetric_row[p], b = symmetric_column[p];
+      T const product = omega[a] * omega[b] * (a == b ? 0.5 : 1.0);
+      T j(i_.inertia(a, b)), jd(0.0);
+      for (Index k = 0; k < n; ++k) {
+        T const slope = i_.template inertia_slope<T>(x, p, k);
+        double const by = i_.inertia_by[p][k];
+        j += (slope + by) * 0.5 * x[k];
+        jd += slope * xd[k];
+        out[6 + k] += product * (terms_.centrifugal ? slope : T(by));
+      }
+      inertia(a, b) = inertia(b, a) = j;
+      rate(a, b) = rate(b, a) = jd;
+    }
+    for (std::size_t i = 0; i < 3 && stiffens(); ++i) {
+      cdd[Index(i)] = -detail::quadratic<T>(i_.first_second[i], xd, xd);
+      hd[Index(i)] = detail::quadratic<T>(i_.coupling_by[i], xd, xd);
+    }
+    Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
+    Vec<T, 3> const c = i_.template first_moment<T>(x);
+    out.template head<3>() = -(A * (omega.cross(omega.cross(c)) + omega.cross(cd) * T(2.0) + cdd));
+    out.template segment<3>(3) = -(rate * omega + omega.cross(inertia * omega + h) + hd);
+  }
+
+  void tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd, MatX& k) const;
+
+  template <StateScalar T>
+  void gravity(Index, std::span<T const> q, Vec3 const& g, VecXOf<T>& out) const {
+    Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
+    Vec<T, 3> const pull = A.transpose() * g.template cast<T>();
+    T const* const x = q.data() + 7;
+    out.template head<3>() = (g * i_.mass).template cast<T>();
+    out.template segment<3>(3) = i_.template first_moment<T>(x).cross(pull);
+    for (Index k = 0; k < deformations(); ++k) {
+      Vec<T, 3> c, h;
+      i_.template columns<T>(x, k, c, h);
+      out[6 + k] = c.dot(pull);
+    }
+  }
+
+  double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
+    VecX mv(speeds());
+    inertia<double>(0, q, v, mv);
+    return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));
+  }
+  double strain_energy(Index, std::span<double const> q) const {
+    Eigen::Map<VecX const> const x(q.data() + 7, deformations());
+    return 0.5 * x.dot(i_.stiffness * x) + i_.initial_force.dot(x);
+  }
+  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
+    return -g.dot(i_.mass * part<3>(q, 0) +
+                  rotation_matrix<double>(part<4>(q, 3)) * i_.first_moment<double>(q.data() + 7));
+  }
+
+  /// r = r₀ + A u;  ω = A (Ω + Jl(θ) θ˙);  bias = A [Ω × (Ω × u) + 2 Ω × u˙ + u¨; Ω × Jl θ˙ + Jl˙ θ˙].
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+    Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
+    Vec<T, 3> const omega = part<3>(v, 3);
+    T const *const x = q.data() + 7, *const xd = v.data() + 6;
+    Index const n = deformations();
+    Vec<T, 3> u = p.u.template cast<T>(), theta = Vec<T, 3>::Zero(), ud = theta, udd = theta, thetad = theta;
+    for (Index k = 0; k < n; ++k)
+      for (int i = 0; i < 3; ++i) {
+        T const s = p.slope(x, i, k);  // S − qᵀ drawn; u = u₀ + ½ (S + slope) q
+        u[i] += (s + p.S(i, k)) * 0.5 * x[k];
+        ud[i] += s * xd[k];
+        theta[i] += x[k] * p.R(i, k);
+        thetad[i] += xd[k] * p.R(i, k);
+      }
+    for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i)
+      udd[Index(i)] = -detail::quadratic<T>(p.drawn[i], xd, xd);
+    Mat<T, 3, 3> const turn = exp_so3<T>(theta), jl = left_jacobian<T>(theta);
+    Vec<T, 3> const spin = jl * thetad;
+    Vec<T, 3> const back = -theta;
+    out.frame.r = part<3>(q, 0) + A * u;
+    out.frame.A = A * turn * axes.template cast<T>();
+    out.frame.v = part<3>(v, 0) + A * (omega.cross(u) + ud);
+    out.frame.w = A * (omega + spin);
+    out.bias.template head<3>() = A * (omega.cross(omega.cross(u)) + omega.cross(ud) * T(2.0) + udd);
+    out.bias.template tail<3>() = A * (omega.cross(spin) - right_jacobian_derivative<T>(back, thetad) * thetad);
+    Eigen::Map<Mat<T, 6, Eigen::Dynamic>> j(out.jacobian, 6, 6 + n);
+    j.setZero();
+    for (int i = 0; i < 3; ++i) j(i, i) = T(1.0);
+    j.template block<3, 3>(0, 3) = -A * skew<T>(u);
+    j.template block<3, 3>(3, 3) = A;
+    Mat<T, 3, 3> const ajl = A * jl;
+    for (Index k = 0; k < n; ++k) {
+      Vec<T, 3> s, r;
+      for (int i = 0; i < 3; ++i) {
+        s[i] = p.slope(x, i, k);
+        r[i] = T(p.R(i, k));
+      }
+      j.template block<3, 1>(0, 6 + k) = A * s;
+      j.template block<3, 1>(3, 6 + k) = ajl * r;
+    }
+    out.shape = JacobianShape::dense;
+    out.columns = 6 + n;
+  }
+
+  /// Jᵀw = [f; u × F + N; Sᵀ F + Rᵀ Jr(θ) N] with F = Aᵀf, N = Aᵀm, by q ⊞ δ.
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
+    Index const n = deformations();
+    Mat3 const A = rotation_matrix<double>(part<4>(q, 3));
+    double const* const x = q.data() + 7;
+    Vec3 const f = A.transpose() * w.f, m = A.transpose() * w.m;
+    Vec3 u = p.u, theta = Vec3::Zero();
+    for (Index c = 0; c < n; ++c) theta += p.R.col(c) * x[c];
+    Mat3 const turn = right_jacobian<double>(theta).transpose(), bend = right_jacobian_derivative<double>(theta, m);
+    k.setZero(6 + n, 6 + n);
+    for (Index c = 0; c < n; ++c) {
+      Vec3 const s(p.slope(x, 0, c), p.slope(x, 1, c), p.slope(x, 2, c)), r = p.R.col(c), bent = bend * r;
+      u += (0.5 * x[c]) * (s + p.S.col(c));
+      k.block<3, 1>(3, 6 + c) = s.cross(f);
+      k.block<1, 3>(6 + c, 3) = (s.cross(f) + (turn * r).cross(m)).transpose();
+      for (Index d = 0; d < n; ++d) k(6 + d, 6 + c) = p.R.col(d).dot(bent);
+    }
+    k.block<3, 3>(3, 3) = skew<double>(u) * skew<double>(f) + skew<double>(m);
+    for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= f[Index(i)] * p.drawn[i];
+  }
+
+  /// Of the beam that a point sits on, q all coordinates of the body (see sections.hpp): axial strain, torsion and
+  /// curvatures; shear is not told. \throws InvalidInput for a point that is not of a beam.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 7); }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 7); }
+
+ private:
+  template <class T>
+  using Moments = FfrIntegrals::Moments<T>;
+
+  FfrPoints const& made() const {
+    if (!points_) throw InvalidInput("Ffr: this body is made of integrals only; describe the point by a Point.");
+    return *points_;
+  }
+
+  FfrIntegrals i_;
+  Placement placement_;
+  std::array<MatX, 3> gyroscopic_;  ///< W_iᵀ
+  FfrTerms terms_;
+  std::shared_ptr<FfrPoints const> points_;
+};
+
+/// With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇ and the derivatives of J, H by q written out:
+///   r:  −A w̃,  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),  A (Ω̃² C + 2 Ω̃ ċ_q);  θ and q as the terms of `force`, one by one.
+inline void Ffr::tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd,
+                         MatX& k) const {
+  Index const n = deformations();
+  Mat3 const A = rotation_matrix<double>(part<4>(q, 3));
+  Vec3 const omega = part<3>(v, 3);
+  Mat3 const spin = skew<double>(omega);
+  Eigen::Map<VecX const> const x(q.data() + 7, n), xd(v.data() + 6, n);
+  Moments<double> at;
+  i_.moments<double>(x.data(), at);
+  k.setZero(6 + n, 6 + n);
+  auto kq = k.bottomRightCorner(n, n);
+  kq = ck * i_.stiffness + cd * i_.damping;
+  Vec3 c_rate = Vec3::Zero(), h = Vec3::Zero();
+  Mat3 j_rate = Mat3::Zero();
+  for (Index i = 0; i < n; ++i) {
+    Vec3 c, hk;
+    i_.columns<double>(x.data(), i, c, hk);
+    c_rate += c * xd[i];
+    h += hk * xd[i];
+    k.block<3, 1>(0, 6 + i) = A * (ck * spin * (spin * c) + 2.0 * cd * spin * c);
+    k.block<3, 1>(3, 6 + i) = cd * spin * hk;
+  }
+  // J: slope_p (n) = ∂J_p/∂q, bent_p = ∂(J˙_p)/∂q
+  for (std::size_t p = 0; p < 6; ++p) {
+    int const a = symmetric_row[p], b = symmetric_column[p];
+    bool const off = a != b;
+    for (Index i = 0; i < n; ++i) {
+      double const slope = i_.inertia_slope<double>(x.data(), p, i), bent = 2.0 * i_.inertia_second[p].col(i).dot(xd);
+      double const used = terms_.centrifugal ? slope : i_.inertia_by[p][i];
+      j_rate(a, b) += slope * xd[i];
+      if (off) j_rate(b, a) += slope * xd[i];
+      Vec3 by = Vec3::Zero();  // ∂(J Ω)/∂q_i of this entry, per slope
+      by[a] += omega[b];
+      if (off) by[b] += omega[a];
+      k.block<3, 1>(3, 6 + i) += ck * (bent * by + slope * spin * by) + cd * slope * by;
+      k(6 + i, 3 + a) -= cd * used * omega[b];
+      if (off) k(6 + i, 3 + b) -= cd * used * omega[a];
+    }
+    if (terms_.centrifugal) kq -= (ck * (off ? 2.0 : 1.0) * omega[a] * omega[b]) * i_.inertia_second[p];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    MatX const& m = i_.coupling_by[i];
+    for (Index j = 0; j < n; ++j) {
+      double const left = m.row(j).dot(xd), right = m.col(j).dot(xd);  // (m q̇)_j, (mᵀ q̇)_j
+      k.block<3, 1>(3, 6 + j) += ck * left * spin.col(Index(i));
+      k(3 + Index(i), 6 + j) += cd * (stiffens() ? left + right : 0.0);
+      if (terms_.coriolis) k(6 + j, 3 + Index(i)) += cd * (right - left);
+    }
+    if (terms_.coriolis) kq += (cd * omega[Index(i)]) * (m.transpose() - m);
+  }
+  Vec3 w = omega.cross(omega.cross(at.c)) + 2.0 * omega.cross(c_rate);
+  for (std::size_t i = 0; i < 3 && stiffens(); ++i) {
+    Vec3 const by = A * (2.0 * ck * spin.col(Index(i)) + 2.0 * cd * Vec3::Unit(Index(i)));
+    for (Index j = 0; j < n; ++j) {
+      double const drawn = i_.first_second[i].col(j).dot(xd);  // −∂ċ_i/∂q_j
+      w[Index(i)] -= drawn * xd[j];
+      k.block<3, 1>(0, 6 + j) -= by * drawn;
+    }
+  }
+  k.block<3, 3>(0, 3) = A * (-ck * skew<double>(w) - cd * (skew<double>(omega.cross(at.c).eval()) +
+                                                           spin * skew<double>(at.c) + 2.0 * skew<double>(c_rate)));
+  k.block<3, 3>(3, 3) = cd * (j_rate + spin * at.J - skew<double>((at.J * omega + h).eval()));
+}
+
+static_assert(Body<Ffr>);
+
+}  // namespace polybody

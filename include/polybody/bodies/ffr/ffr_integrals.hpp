@@ -1,0 +1,206 @@
+#pragma once
+/// \file
+/// The inertia and stiffness of a floating frame's body by its n deformation coordinates q: the inertia shape integrals
+/// of a structure carried to a basis e = Φ q, or numbers that the user brings.
+///
+/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+
+#include <polybody/bodies/ffr/beam_structure.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// Column k of m times x.
+template <class T>
+T column_times(MatX const& m, Index k, T const* x) {
+  if constexpr (std::is_same_v<T, double>) {
+    return m.col(k).dot(Eigen::Map<VecX const>(x, m.rows()));  // Eigen adds in packets, a compiler must not
+  } else {
+    T sum(0.0);
+    for (Index j = 0; j < m.rows(); ++j) sum += x[j] * m(j, k);
+    return sum;
+  }
+}
+
+/// xᵀ m y.
+template <class T>
+T quadratic(MatX const& m, T const* x, T const* y) {
+  T sum(0.0);
+  for (Index k = 0; k < m.cols(); ++k) sum += column_times(m, k, x) * y[k];
+  return sum;
+}
+
+}  // namespace detail
+
+/// In the axes of the floating frame, of the body's points u = u₀ + S q:
+///   c(q) = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,
+///   J(q) = inertia + Σ_kl (inertia_by_kl · q + qᵀ inertia_second_kl q), the inertia tensor about the frame's origin,
+///   H(q) = ∫ρ ũ S with the rows H_i = coupling_i + qᵀ coupling_by_i,
+///   T = ½ m ṙ² + ṙᵀA (Ω × c + c_q q̇) + ½ Ωᵀ J Ω + Ωᵀ H q̇ + ½ q̇ᵀ mass_matrix q̇,   U = ½ qᵀ stiffness q + initial_force
+///   · q.
+struct FfrIntegrals {
+  double mass = 0.0;                        ///< [kg]
+  Vec3 first = Vec3::Zero();                ///< [kg m]
+  Mat<double, 3, Eigen::Dynamic> first_by;  ///< (3×n) ∫ρ S
+  std::array<MatX, 3> first_second;         ///< (n×n) symmetric; empty without geometric stiffening
+  Mat3 inertia = Mat3::Zero();              ///< [kg m²]
+  std::array<VecX, 6> inertia_by;           ///< (n) entries xx, yy, zz, xy, xz, yz
+  std::array<MatX, 6> inertia_second;       ///< (n×n) symmetric
+  Mat<double, 3, Eigen::Dynamic> coupling;  ///< (3×n)
+  std::array<MatX, 3> coupling_by;          ///< (n×n)
+  MatX mass_matrix, stiffness, damping;     ///< (n×n)
+  VecX initial_force;                       ///< (n)
+
+  Index size() const { return mass_matrix.rows(); }
+
+  /// All zero, for n deformation coordinates.
+  static FfrIntegrals zero(Index n) {
+    FfrIntegrals x;
+    x.first_by.setZero(3, n);
+    x.coupling.setZero(3, n);
+    x.inertia_by.fill(VecX::Zero(n));
+    x.inertia_second.fill(MatX::Zero(n, n));
+    x.coupling_by.fill(MatX::Zero(n, n));
+    x.mass_matrix = x.stiffness = x.damping = MatX::Zero(n, n);
+    x.initial_force = VecX::Zero(n);
+    return x;
+  }
+
+  /// \throws InvalidInput naming `what` for sizes that differ, a mass that is not positive, or a mass matrix that is
+  /// not symmetric and positive definite.
+  void check(std::string const& what) const {
+    Index const n = size();
+    auto const square = [&](MatX const& m) { return m.rows() == n && m.cols() == n; };
+    bool fits = first_by.cols() == n && coupling.cols() == n && square(stiffness) && square(damping) &&
+                square(mass_matrix) && initial_force.size() == n;
+    for (auto const& x : inertia_by) fits = fits && x.size() == n;
+    for (auto const& x : inertia_second) fits = fits && square(x);
+    for (auto const& x : coupling_by) fits = fits && square(x);
+    for (auto const& x : first_second) fits = fits && (x.size() == 0 || square(x));
+    if (!fits) throw InvalidInput(what + ": its integrals are not all of one size, that of the mass matrix.");
+    require_positive(mass, what + ": the mass");
+    require_finite(mass_matrix, what + ": the mass matrix");
+    require_finite(stiffness, what + ": the stiffness matrix");
+    MatX l = mass_matrix;  // L D Lᵀ, and D must be positive
+    bool positive = (l - l.transpose()).norm() <= 1e-9 * l.norm();
+    for (Index k = 0; k < n; ++k) {
+      positive = positive && l(k, k) > 1e-13 * mass_matrix(k, k);
+      for (Index j = k + 1; j < n; ++j)
+        for (Index i = k + 1; i < n; ++i) l(i, j) -= l(i, k) * l(k, j) / l(k, k);
+    }
+    if (!positive)
+      throw InvalidInput(what + ": the mass matrix of its deformation is not symmetric and positive definite.");
+  }
+  bool stiffens() const { return first_second[0].size() > 0; }
+
+  template <class T>
+  struct Moments {
+    Vec<T, 3> c;
+    Mat<T, 3, 3> J;
+  };
+
+  /// c(q) and J(q).
+  template <class T>
+  void moments(T const* x, Moments<T>& out) const {
+    Vec<T, 6> j;
+    for (int p = 0; p < 6; ++p) {
+      j[p] = T(inertia(symmetric_row[p], symmetric_column[p]));
+      for (Index k = 0; k < size(); ++k)
+        j[p] += (inertia_slope<T>(x, std::size_t(p), k) + inertia_by[std::size_t(p)][k]) * 0.5 * x[k];
+    }
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) out.J(i, k) = j[symmetric_place[i][k]];
+    out.c = first_moment<T>(x);
+  }
+  /// c(q).
+  template <class T>
+  Vec<T, 3> first_moment(T const* x) const {
+    Vec<T, 3> c;
+    for (int i = 0; i < 3; ++i) {
+      c[i] = T(first[i]);
+      for (Index k = 0; k < size(); ++k) c[i] += x[k] * first_by(i, k);
+      if (stiffens()) c[i] -= detail::quadratic<T>(first_second[std::size_t(i)], x, x) * 0.5;
+    }
+    return c;
+  }
+  /// Column k of C(q) = c_q and of H(q).
+  template <class T>
+  void columns(T const* x, Index k, Vec<T, 3>& c, Vec<T, 3>& h) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      c[Index(i)] = T(first_by(Index(i), k));
+      if (stiffens()) c[Index(i)] -= detail::column_times(first_second[i], k, x);
+      h[Index(i)] = detail::column_times(coupling_by[i], k, x) + coupling(Index(i), k);
+    }
+  }
+  /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`.
+  template <class T>
+  T inertia_slope(T const* x, std::size_t p, Index k) const {
+    return detail::column_times(inertia_second[p], k, x) * 2.0 + inertia_by[p][k];
+  }
+};
+
+/// The integrals of `s` with e = `shapes` q (N×n); `stiffening` adds, to second order in q, what bending draws the
+/// points along the beams (foreshortening), which centrifugal and other axial forces work on.
+/// \throws InvalidInput for shapes of another size; with stiffening, for a structure without beams.
+inline FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffening = false) {
+  if (shapes.rows() != s.size())
+    throw InvalidInput("Ffr: the shapes have " + std::to_string(shapes.rows()) + " rows, but the structure has " +
+                       std::to_string(s.size()) + " nodal coordinates.");
+  FfrIntegrals x = FfrIntegrals::zero(shapes.cols());
+  auto const carried = [&](Structure::Sparse const& m) { return MatX(shapes.transpose() * (m * shapes)); };
+  x.mass = s.mass;
+  x.first = s.first;
+  x.inertia = s.second.trace() * Mat3::Identity() - s.second;
+  std::array<MatX, 6> products;  // ∫ρ S_kᵀ S_l
+  for (std::size_t p = 0; p < 6; ++p) products[p] = carried(s.inertia[p]);
+  x.mass_matrix = products[0] + products[1] + products[2];
+  x.mass_matrix = (0.5 * (x.mass_matrix + x.mass_matrix.transpose())).eval();
+  x.stiffness = carried(s.stiffness);
+  x.stiffness = (0.5 * (x.stiffness + x.stiffness.transpose())).eval();
+  x.damping = carried(s.damping);
+  x.initial_force = shapes.transpose() * s.initial_force;
+
+  std::array<std::array<VecX, 3>, 3> moment;  // ∫ρ u₀ₖ S_l
+  for (std::size_t k = 0; k < 3; ++k) {
+    x.first_by.row(Index(k)) = (shapes.transpose() * s.translation[k]).transpose();
+    for (std::size_t l = 0; l < 3; ++l) moment[k][l] = shapes.transpose() * s.moment[k][l];
+  }
+  // What bending draws along the beams: −½ qᵀ drawn_kl q = ∫ρ u₀ₖ (second-order displacement along l).
+  std::array<std::array<MatX, 3>, 3> drawn;
+  if (stiffening) {
+    AxialForceStiffness const axial(s);
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t l = 0; l < 3; ++l)
+        drawn[k][l] = carried(axial(
+            s.moment[k][l], [&](Structure::Beam const& b) { return detail::spread_moment(s, b, int(k), int(l)); }));
+    for (std::size_t l = 0; l < 3; ++l)
+      x.first_second[l] = carried(
+          axial(s.translation[l], [&](Structure::Beam const& b) { return detail::spread_moment(s, b, -1, int(l)); }));
+  }
+  std::array<VecX, 6> second_by;  // of ∫ρ u_k u_l
+  std::array<MatX, 6> second;
+  for (std::size_t p = 0; p < 6; ++p) {
+    auto const k = std::size_t(symmetric_row[p]), l = std::size_t(symmetric_column[p]);
+    second_by[p] = moment[k][l] + moment[l][k];
+    second[p] = 0.5 * (products[p] + products[p].transpose());
+    if (stiffening) second[p] -= 0.5 * (drawn[k][l] + drawn[l][k]);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::size_t const j = (i + 1) % 3, k = (i + 2) % 3;
+    x.inertia_by[i] = second_by[j] + second_by[k];
+    x.inertia_second[i] = second[j] + second[k];
+    x.inertia_by[i + 3] = -second_by[i + 3];
+    x.inertia_second[i + 3] = -second[i + 3];
+    // H_i = ∫ρ (u_j S_k − u_k S_j)
+    x.coupling.row(Index(i)) = (moment[j][k] - moment[k][j]).transpose();
+    auto const p = std::size_t(symmetric_place[j][k]);
+    bool const as_kept = symmetric_row[p] == int(j);  // else ∫ρ S_jᵀ S_k is the kept one, transposed
+    MatX const jk = as_kept ? products[p] : MatX(products[p].transpose());
+    x.coupling_by[i] = jk - jk.transpose();
+    if (stiffening) x.coupling_by[i] -= drawn[j][k] - drawn[k][j];
+  }
+  return x;
+}
+
+}  // namespace polybody

@@ -1,0 +1,148 @@
+#pragma once
+/// \file
+/// Material points of a floating frame's body: what its displacement, small rotation and strain are made of.
+///
+/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+
+#include <algorithm>
+#include <optional>
+
+#include <polybody/bodies/ffr/beam_structure.hpp>
+
+namespace polybody {
+
+/// Place u₀ in the frame [m], displacement S q and small rotation R q (3×n); for a point of a beam also its section's
+/// strains and stiffness.
+struct FfrPoint {
+  Vec3 u = Vec3::Zero();
+  Mat<double, 3, Eigen::Dynamic> S, R;
+  std::array<MatX, 3> drawn;  ///< with geometric stiffening: the displacement is S q − ½ [qᵀ drawn_k q]_k (n×n)
+  Mat<double, 4, Eigen::Dynamic>
+      strain;                     ///< (4×n) of the axis: axial strain, torsion, curvature about y, z [1/m]; or empty
+  Vec4 stiffness = Vec4::Zero();  ///< (EA, GJ, EI_y, EI)
+  double y = 0.0, z = 0.0;        ///< off the axis of its beam [m]
+
+  /// Entry (i, k) of S − qᵀ drawn.
+  template <class T>
+  T slope(T const* q, int i, Index k) const {
+    T s(S(i, k));
+    MatX const& m = drawn[std::size_t(i)];
+    for (Index j = 0; j < m.rows(); ++j) s -= q[j] * m(j, k);
+    return s;
+  }
+  /// Strains and forces of the beam's section by the deformation q (see sections.hpp). \throws InvalidInput for a point
+  /// that is not of a beam.
+  Vec6 section_strains(double const* q) const {
+    if (strain.cols() != S.cols()) throw InvalidInput("Ffr: strains are known in points of beams only.");
+    Vec6 sum = Vec6::Zero();
+    for (Index k = 0; k < strain.cols(); ++k)
+      for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
+    return sum;
+  }
+  Vec6 section_forces(double const* q) const {
+    Vec6 n = section_strains(q);
+    for (int i = 0; i < 4; ++i) n[i == 0 ? 0 : i + 2] *= stiffness[i];
+    return n;
+  }
+};
+
+/// Makes the points of a structure with e = Φ q.
+class FfrPoints {
+ public:
+  FfrPoints(Structure structure, MatX shapes, bool stiffening) : s_(std::move(structure)), shapes_(std::move(shapes)) {
+    if (stiffening) axial_.emplace(s_);
+  }
+  FfrPoints(FfrPoints const&) = delete;
+  FfrPoints& operator=(FfrPoints const&) = delete;
+
+  Structure const& structure() const { return s_; }
+  MatX const& shapes() const { return shapes_; }
+
+  /// Of the first bar [m]. \throws InvalidInput without bars.
+  double length() const {
+    if (s_.beams.empty()) throw InvalidInput("Ffr: only a body made of bars has a length.");
+    return s_.bar_lengths.front();
+  }
+  /// The point at distance s from the first end of a bar, (y, z) off its axis. \throws InvalidInput outside the bar.
+  FfrPoint at(double s, double y, double z, Index bar) const {
+    if (s_.beams.empty()) throw InvalidInput("Ffr: at(s) needs a body made from bars; use node(i).");
+    if (bar < 0 || bar >= Index(s_.bar_lengths.size()))
+      throw InvalidInput("Ffr: bar " + std::to_string(bar) + " does not exist; the body is made of " +
+                         std::to_string(s_.bar_lengths.size()) + ".");
+    double const inside = require_inside(s, s_.bar_lengths[std::size_t(bar)], "Ffr");
+    if (!std::isfinite(y) || !std::isfinite(z)) throw InvalidInput("Ffr: y and z of a point must be finite.");
+    Structure::Beam const* beam = nullptr;
+    for (Structure::Beam const& b : s_.beams)
+      if (b.bar == bar && (!beam || b.start <= inside)) beam = &b;
+    double const xi = std::min((inside - beam->start) / beam->length, 1.0);
+    BeamShapes const shapes(xi, beam->length);
+    FfrPoint p;
+    p.u = s_.nodes[std::size_t(beam->a)] + beam->axes * Vec3(inside - beam->start, y, z);
+    Mat<double, 3, 12> const spread = detail::in_body_axes(shapes.axis + y * shapes.by_y + z * shapes.by_z, beam->axes);
+    p.S = of_nodes(*beam, spread);
+    p.R = of_nodes(*beam, detail::in_body_axes(shapes.rotation, beam->axes));
+    p.strain = of_nodes(*beam, detail::by_body_axes<4>(shapes.strain, beam->axes));
+    p.stiffness = detail::section_stiffness(beam->constants);
+    p.y = y;
+    p.z = z;
+    if (axial_)
+      draw(p, xi > 1e-9 && xi < 1.0 - 1e-9, [&](int k, Structure::Beam const& b) {
+        Vec<double, 12> load = Vec<double, 12>::Zero();
+        for (int j = 0; j < 12 && &b == beam; ++j) load[j] = spread(k, j);
+        return load;
+      });
+    return p;
+  }
+
+  /// A node. \throws InvalidInput for one that does not exist.
+  FfrPoint node(Index i) const {
+    s_.require_node(i, "Ffr");
+    FfrPoint p;
+    p.u = s_.nodes[std::size_t(i)];
+    p.S = shapes_.middleRows<3>(s_.per_node * i);
+    p.R = s_.per_node == 6 ? MatX(shapes_.middleRows<3>(6 * i + 3)) : MatX(MatX::Zero(3, shapes_.cols()));
+    if (axial_) {
+      auto const* const first =
+          &*std::find_if(s_.beams.begin(), s_.beams.end(), [&](auto const& b) { return b.a == i || b.b == i; });
+      draw(p, false, [&](int k, Structure::Beam const& b) {
+        Vec<double, 12> load = Vec<double, 12>::Zero();
+        if (&b == first) load[(b.a == i ? 0 : 6) + k] = 1.0;
+        return load;
+      });
+    }
+    return p;
+  }
+
+ private:
+  /// m (rows × 12) of a beam's nodal coordinates, by q.
+  template <int rows>
+  Mat<double, rows, Eigen::Dynamic> of_nodes(Structure::Beam const& beam, Mat<double, rows, 12> const& m) const {
+    Mat<double, rows, Eigen::Dynamic> out(rows, shapes_.cols());
+    for (Index k = 0; k < shapes_.cols(); ++k)
+      for (int i = 0; i < rows; ++i) {
+        double sum = 0.0;
+        for (int j = 0; j < 12; ++j) sum += m(i, j) * shapes_(6 * (j < 6 ? beam.a : beam.b) + j % 6, k);
+        out(i, k) = sum;
+      }
+    return out;
+  }
+  /// −½ qᵀ drawn_k q: what the axial forces of a unit force along k at the point work. A force at a node leaves them
+  /// constant along each beam (a held node draws nothing); one `within` a beam counts as spread over it.
+  template <class Load>
+  void draw(FfrPoint& p, bool within, Load&& load) const {
+    for (int k = 0; k < 3; ++k) {
+      VecX nodal = VecX::Zero(s_.size());
+      for (Structure::Beam const& b : s_.beams) detail::add_entries(b, load(k, b), nodal);
+      Structure::Sparse const m = (*axial_)(nodal, [&](Structure::Beam const& b) {
+        return within ? load(k, b) : Vec<double, 12>(Vec<double, 12>::Zero());
+      });
+      p.drawn[std::size_t(k)] = shapes_.transpose() * (m * shapes_);
+    }
+  }
+
+  Structure s_;
+  MatX shapes_;
+  std::optional<AxialForceStiffness> axial_;
+};
+
+}  // namespace polybody

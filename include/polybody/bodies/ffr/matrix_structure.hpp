@@ -1,0 +1,284 @@
+#pragma once
+/// \file
+/// A structure from the matrices of a finite element program: solid elements with three displacements per node. Their
+/// shape functions carry displacement and undeformed position alike, u = Σ N_i u_i and u₀ = Σ N_i x_i, so that with
+/// m_ij = ∫ρ N_i N_j the mass matrix is m ⊗ 1₃, and every integral of structure.hpp follows from m and the nodes
+/// exactly:
+///   ∫ρ S_kᵀ S_l: m_ij at (3i+k, 3j+l),   ∫ρ S_k: Σ_i m_ij at 3j+k,   ∫ρ u₀ₖ S_l: Σ_i x_ik m_ij at 3j+l,   ∫ρ u₀u₀ᵀ =
+///   Xᵀ m X.
+///
+/// Not in polybody.hpp: few programs need it.
+
+#include <fstream>
+#include <limits>
+#include <locale>
+#include <sstream>
+#include <unordered_set>
+
+#include <Eigen/SparseCholesky>
+
+#include <polybody/bodies/ffr/structure.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// Row or column i of a matrix with x, y, z of every node.
+inline std::string coordinate_name(Index i) {
+  return std::to_string(i) + " (" + "xyz"[i % 3] + " of node " + std::to_string(i / 3) + ")";
+}
+inline std::string entry_name(Index i, Index j) {
+  return "row " + coordinate_name(i) + ", column " + coordinate_name(j);
+}
+
+inline double largest_entry(Structure::Sparse const& m) {
+  double largest = 0.0;
+  for (Index j = 0; j < m.outerSize(); ++j)
+    for (Structure::Sparse::InnerIterator it(m, j); it; ++it) largest = std::max(largest, std::abs(it.value()));
+  return largest;
+}
+
+/// \throws InvalidInput unless m is n×n, finite and symmetric, but for 1e-9 of its largest entry.
+inline void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
+  if (m.rows() != n || m.cols() != n)
+    throw InvalidInput("Structure: " + name + " is " + std::to_string(m.rows()) + "×" + std::to_string(m.cols()) +
+                       ", but " + std::to_string(n / 3) + " nodes with three displacements each need " +
+                       std::to_string(n) + "×" + std::to_string(n) +
+                       ". Give every node of the model, without elements that have rotations and without held "
+                       "displacements left out.");
+  double const least = 1e-9 * largest_entry(m);
+  Structure::Sparse const turned = m.transpose();
+  for (Index j = 0; j < n; ++j) {
+    for (Structure::Sparse::InnerIterator it(m, j); it; ++it) {
+      if (!std::isfinite(it.value()))
+        throw InvalidInput("Structure: " + name + " is not finite in " + entry_name(it.row(), j) +
+                           ". Write the matrices anew.");
+      double const other = turned.coeff(it.row(), j);
+      if (!(std::abs(it.value() - other) <= least))
+        throw InvalidInput("Structure: " + name + " is not symmetric: " + entry_name(it.row(), j) + " is " +
+                           number(it.value()) + ", its mirror image " + number(other) +
+                           ". Of a matrix kept as one triangle give both.");
+    }
+  }
+}
+
+/// m (n×n) of M = m ⊗ 1₃. \throws InvalidInput for another M, but for 1e-9 of its largest entry, and for an m that is
+/// not positive definite.
+inline Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
+  std::string const remedy =
+      ". Only solid elements with a consistent mass matrix of three displacements per node have one; order "
+      "the displacements x, y, z of node 0, x, y, z of node 1, and so on.";
+  double const largest = largest_entry(mass), least = 1e-9 * largest;
+  Index const n = mass.rows() / 3;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index j = 0; j < mass.cols(); ++j)
+    for (Structure::Sparse::InnerIterator it(mass, j); it; ++it) {
+      Index const i = it.row();
+      if (i % 3 != j % 3) {
+        if (std::abs(it.value()) > least)
+          throw InvalidInput("Structure: the mass matrix couples different directions in " + entry_name(i, j) + remedy);
+        continue;
+      }
+      Index const next = j % 3 == 2 ? -2 : 1;
+      double const other = mass.coeff(i + next, j + next);
+      if (std::abs(it.value() - other) > least)
+        throw InvalidInput("Structure: the mass matrix has " + number(it.value()) + " in " + entry_name(i, j) +
+                           ", but " + number(other) + " in " + entry_name(i + next, j + next) + remedy);
+      entries.emplace_back(int(i / 3), int(j / 3),
+                           it.value() / 6.0);  // the mean of the directions and of (i, j), (j, i)
+      entries.emplace_back(int(j / 3), int(i / 3), it.value() / 6.0);
+    }
+  Structure::Sparse m(n, n);
+  m.setFromTriplets(entries.begin(), entries.end());
+  Eigen::SimplicialLDLT<Structure::Sparse> const factor(m);
+  for (Index k = 0; k < n; ++k)
+    if (!(factor.vectorD()[k] > 1e-13 * largest))
+      throw InvalidInput("Structure: the mass matrix is not positive definite; it fails at node " +
+                         std::to_string(factor.permutationPinv().indices()[k]) +
+                         ". Every node needs mass: leave out nodes of no element.");
+  return m;
+}
+
+/// \throws InvalidInput when a motion of the whole structure strains it: ‖K φ‖ > 1e-6 ‖K‖ ‖φ‖.
+inline void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<Vec3> const& nodes) {
+  Vec3 middle = Vec3::Zero();
+  for (Vec3 const& r : nodes) middle += r / double(nodes.size());
+  double const norm = stiffness.norm();
+  for (int motion = 0; motion < 6; ++motion) {
+    VecX shape(stiffness.cols());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      Vec3 const unit = Vec3::Unit(motion % 3);
+      shape.segment<3>(3 * Index(i)) = motion < 3 ? unit : Vec3(unit.cross(nodes[i] - middle));
+    }
+    VecX const force = stiffness * shape;
+    if (force.norm() <= 1e-6 * norm * shape.norm()) continue;
+    Index worst = 0;
+    force.cwiseAbs().maxCoeff(&worst);
+    throw InvalidInput("Structure: a rigid " + std::string(motion < 3 ? "displacement along " : "rotation about ") +
+                       "xyz"[motion % 3] + " strains the structure, most in row " + coordinate_name(worst) +
+                       " of the stiffness matrix. Give the nodes in the order of the matrices and in the units of the "
+                       "stiffness, and hold nothing in the finite element model.");
+  }
+}
+
+}  // namespace detail
+
+/// A structure of solid elements from its mass matrix [kg] and stiffness [N/m] (N×N, N = 3 × nodes; x, y, z of node 0,
+/// of node 1, …), and its undeformed nodes [m]. Isoparametric elements with a consistent mass matrix give the exact
+/// integrals.
+/// \throws InvalidInput for sizes that do not fit; matrices that are not symmetric or not finite; a mass matrix that is
+/// not m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, as it does to nodes in the wrong order.
+inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
+                              std::vector<Vec3> const& nodes) {
+  if (nodes.empty()) throw InvalidInput("Structure: it has no nodes.");
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (!nodes[i].allFinite())
+      throw InvalidInput("Structure: node " + std::to_string(i) + " is not finite. Give x, y, z in metres.");
+  Structure s;
+  s.per_node = 3;
+  s.nodes = nodes;
+  detail::require_symmetric(mass, s.size(), "the mass matrix");
+  detail::require_symmetric(stiffness, s.size(), "the stiffness matrix");
+  Structure::Sparse const m = detail::scalar_mass(mass);
+  detail::require_free_of_rigid_work(stiffness, nodes);
+  s.clear();
+  s.stiffness = 0.5 * (stiffness + Structure::Sparse(stiffness.transpose()));
+  std::array<std::vector<Eigen::Triplet<double>>, 6> inertia;
+  for (Index j = 0; j < m.cols(); ++j)
+    for (Structure::Sparse::InnerIterator it(m, j); it; ++it) {
+      Index const i = it.row();
+      double const value = it.value();
+      Vec3 const &a = nodes[std::size_t(i)], &b = nodes[std::size_t(j)];
+      s.mass += value;
+      s.first += value * a;
+      s.second += value * a * b.transpose();
+      for (std::size_t l = 0; l < 3; ++l) {
+        s.translation[l][3 * j + Index(l)] += value;
+        for (std::size_t k = 0; k < 3; ++k) s.moment[k][l][3 * j + Index(l)] += a[Index(k)] * value;
+      }
+      for (std::size_t p = 0; p < 6; ++p)
+        inertia[p].emplace_back(int(3 * i) + symmetric_row[p], int(3 * j) + symmetric_column[p], value);
+    }
+  for (std::size_t p = 0; p < 6; ++p) s.inertia[p].setFromTriplets(inertia[p].begin(), inertia[p].end());
+  return s;
+}
+
+namespace detail {
+
+/// Lines of numbers in a text file. What follows the comment character, and empty lines, are passed over.
+class NumberLines {
+ public:
+  /// \throws IoError for a file that cannot be read.
+  NumberLines(std::string const& file, char comment) : file_(file), in_(file), comment_(comment) {
+    if (!in_) throw IoError(file + ": it cannot be opened. Check the path, and that it may be read.");
+  }
+  /// The next line as it stands; false at the end.
+  bool raw(std::string& line) {
+    ++line_;
+    return bool(std::getline(in_, line));
+  }
+  /// The next line with numbers into `values`, all of it. False at the end of the file. \throws IoError for another
+  /// line.
+  template <class... T>
+  bool next(std::string const& expected, T&... values) {
+    std::string line;
+    do {
+      if (!raw(line)) return false;
+      line.resize(std::min(line.find(comment_), line.size()));
+    } while (line.find_first_not_of(" \t\r") == std::string::npos);
+    std::istringstream words(line);
+    words.imbue(std::locale::classic());
+    std::string rest;
+    if (!(words >> ... >> values) || (words >> rest)) fail("'" + line.substr(0, 60) + "' is not " + expected);
+    return true;
+  }
+  /// \throws IoError with the file and the line.
+  [[noreturn]] void fail(std::string const& what) const {
+    throw IoError(file_ + ", line " + std::to_string(line_) + ": " + what + ".");
+  }
+
+ private:
+  std::string file_;
+  std::ifstream in_;
+  char comment_;
+  Index line_ = 0;
+};
+
+/// A sparse n×n matrix of a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer, general
+/// or symmetric (its lower triangle). Eigen's unsupported loader leaves symmetric matrices halved and believes any
+/// index, so this does not use it. \throws IoError for anything else, with the line.
+inline Structure::Sparse read_matrix(std::string const& file, Index n, std::string const& nodes_file) {
+  NumberLines lines(file, '%');
+  std::string banner;
+  lines.raw(banner);
+  for (char& c : banner) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  std::istringstream words(banner);
+  std::string mark, object, format, field, kind;
+  words >> mark >> object >> format >> field >> kind;
+  if (mark != "%%matrixmarket" || object != "matrix" || format != "coordinate" ||
+      (field != "real" && field != "integer") || (kind != "general" && kind != "symmetric"))
+    lines.fail(
+        "this is not '%%MatrixMarket matrix coordinate real general' or '… symmetric'; write the matrix as one of "
+        "them");
+  Index rows = 0, columns = 0, count = 0;
+  std::string const sizes = "the number of rows, of columns and of entries";
+  if (!lines.next(sizes, rows, columns, count)) lines.fail("the file ends before " + sizes);
+  if (rows != n || columns != n)
+    lines.fail("the matrix is " + std::to_string(rows) + "×" + std::to_string(columns) + ", but the " +
+               std::to_string(n / 3) + " nodes of " + nodes_file + " need " + std::to_string(n) + "×" +
+               std::to_string(n) + ", three displacements each");
+  std::vector<Eigen::Triplet<double>> entries;
+  std::unordered_set<Index> seen;
+  for (Index e = 0; e < count; ++e) {
+    Index i = 0, j = 0;
+    double value = 0.0;
+    if (!lines.next("a row, a column and a finite number", i, j, value))
+      lines.fail("the file ends after " + std::to_string(e) + " of " + std::to_string(count) +
+                 " entries; it is truncated");
+    if (i < 1 || i > n || j < 1 || j > n)
+      lines.fail("entry (" + std::to_string(i) + ", " + std::to_string(j) +
+                 ") is outside the matrix, whose rows and columns are 1 to " + std::to_string(n));
+    if (kind == "symmetric" && i < j)
+      lines.fail("a symmetric matrix is written by its lower triangle, but this entry is above the diagonal");
+    if (!seen.insert(n * i + j).second)
+      lines.fail("entry (" + std::to_string(i) + ", " + std::to_string(j) + ") stands here a second time");
+    entries.emplace_back(int(i - 1), int(j - 1), value);
+    if (kind == "symmetric" && i != j) entries.emplace_back(int(j - 1), int(i - 1), value);
+  }
+  lines.next("the end of the file after " + std::to_string(count) + " entries");
+  Structure::Sparse m(n, n);
+  m.setFromTriplets(entries.begin(), entries.end());
+  return m;
+}
+
+/// One `x y z` [m] a line. \throws IoError for other lines, or none.
+inline std::vector<Vec3> read_nodes(std::string const& file) {
+  NumberLines lines(file, '#');
+  std::vector<Vec3> nodes;
+  Vec3 r;
+  while (lines.next("x y z of a node", r[0], r[1], r[2])) nodes.push_back(r);
+  if (nodes.empty()) lines.fail("the file has no nodes; give x y z of one in each line");
+  if (nodes.size() > std::size_t(std::numeric_limits<int>::max() / 3))
+    lines.fail("these are more nodes than a sparse matrix can number");
+  return nodes;
+}
+
+}  // namespace detail
+
+/// The same from files: mass and stiffness in Matrix Market's coordinate format, and the nodes, one `x y z` [m] a line,
+/// in which # begins a comment. \throws IoError naming file and line for a file that cannot be read, is truncated or
+/// does not fit the nodes; InvalidInput naming the files as `structure_of`.
+inline Structure read_structure(std::string const& mass_file, std::string const& stiffness_file,
+                                std::string const& nodes_file) {
+  std::vector<Vec3> const nodes = detail::read_nodes(nodes_file);
+  Index const n = 3 * Index(nodes.size());
+  Structure::Sparse const mass = detail::read_matrix(mass_file, n, nodes_file),
+                          stiffness = detail::read_matrix(stiffness_file, n, nodes_file);
+  try {
+    return structure_of(mass, stiffness, nodes);
+  } catch (InvalidInput const& error) {
+    throw InvalidInput(mass_file + ", " + stiffness_file + ", " + nodes_file + ": " + error.what());
+  }
+}
+
+}  // namespace polybody

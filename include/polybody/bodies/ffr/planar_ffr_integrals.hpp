@@ -1,0 +1,104 @@
+#pragma once
+/// \file
+/// The inertia and stiffness of a planar floating frame's body by its deformation coordinates.
+///
+/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+
+#include <polybody/bodies/ffr/ffr_integrals.hpp>
+
+namespace polybody::planar {
+
+/// By n deformation coordinates q, in the frame's axes, of the body's points u = u₀ + S q:
+///   c = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,   J = inertia + inertia_by · q + qᵀ inertia_second q,
+///   H = ∫ρ u × S = coupling + qᵀ coupling_by,   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix
+///   q̇.
+struct FfrIntegrals {
+  double mass = 0.0;                        ///< [kg]
+  Vec2 first = Vec2::Zero();                ///< [kg m]
+  Mat<double, 2, Eigen::Dynamic> first_by;  ///< (2×n) ∫ρ S
+  std::array<MatX, 2> first_second;         ///< (n×n) symmetric; empty without geometric stiffening
+  double inertia = 0.0;                     ///< about the frame's origin [kg m²]
+  VecX inertia_by;                          ///< (n) 2 ∫ρ u₀ · S
+  MatX inertia_second;                      ///< (n×n) symmetric; ∫ρ SᵀS but for stiffening
+  VecX coupling;                            ///< (n) ∫ρ u₀ × S
+  MatX coupling_by;                         ///< (n×n) ∫ρ (S_xᵀ S_y − S_yᵀ S_x)
+  MatX mass_matrix, stiffness, damping;     ///< (n×n)
+  VecX initial_force;                       ///< (n)
+
+  Index size() const { return mass_matrix.rows(); }
+  bool stiffens() const { return first_second[0].size() > 0; }
+
+  static FfrIntegrals zero(Index n) { return of(polybody::FfrIntegrals::zero(n)); }
+  /// What remains of a body in space whose deformation stays in the plane of x and y.
+  static FfrIntegrals of(polybody::FfrIntegrals const& s) {
+    FfrIntegrals x{.mass = s.mass,
+                   .first = s.first.head<2>(),
+                   .first_by = s.first_by.topRows<2>(),
+                   .first_second = {},
+                   .inertia = s.inertia(2, 2),
+                   .inertia_by = s.inertia_by[2],
+                   .inertia_second = s.inertia_second[2],
+                   .coupling = s.coupling.row(2).transpose(),
+                   .coupling_by = s.coupling_by[2],
+                   .mass_matrix = s.mass_matrix,
+                   .stiffness = s.stiffness,
+                   .damping = s.damping,
+                   .initial_force = s.initial_force};
+    if (s.stiffens()) x.first_second = {s.first_second[0], s.first_second[1]};
+    return x;
+  }
+  /// The same numbers in the form of space. \throws InvalidInput as `polybody::FfrIntegrals::check`.
+  void check(std::string const& what) const {
+    polybody::FfrIntegrals x = polybody::FfrIntegrals::zero(size());
+    x.mass = mass;
+    x.mass_matrix = mass_matrix;
+    x.stiffness = stiffness;
+    x.damping = damping;
+    x.initial_force = initial_force;
+    x.first_by.resize(3, first_by.cols());
+    x.coupling.resize(3, coupling.size());
+    x.inertia_by[2] = inertia_by;
+    x.inertia_second[2] = inertia_second;
+    x.coupling_by[2] = coupling_by;
+    for (std::size_t i = 0; i < 2; ++i) x.first_second[i] = first_second[i];
+    x.check(what);
+    require_positive(inertia, what + ": the inertia about the frame's origin");
+  }
+
+  template <class T>
+  struct Moments {
+    T c[2], J;
+  };
+  template <class T>
+  void moments(T const* x, Moments<T>& out) const {
+    out.J = T(inertia);
+    for (Index k = 0; k < size(); ++k) out.J += (inertia_slope<T>(x, k) + inertia_by[k]) * 0.5 * x[k];
+    for (int i = 0; i < 2; ++i) {
+      out.c[i] = T(first[i]);
+      for (Index k = 0; k < size(); ++k) out.c[i] += x[k] * first_by(i, k);
+      if (stiffens()) out.c[i] -= detail::quadratic<T>(first_second[std::size_t(i)], x, x) * 0.5;
+    }
+  }
+  /// Entry (i, k) of C, entry k of H, and of J_q.
+  template <class T>
+  T first_slope(T const* x, int i, Index k) const {
+    T sum(first_by(i, k));
+    MatX const& m = first_second[std::size_t(i)];
+    for (Index j = 0; j < m.rows(); ++j) sum -= x[j] * m(j, k);
+    return sum;
+  }
+  template <class T>
+  T coupling_at(T const* x, Index k) const {
+    T sum(coupling[k]);
+    for (Index j = 0; j < size(); ++j) sum += x[j] * coupling_by(j, k);
+    return sum;
+  }
+  template <class T>
+  T inertia_slope(T const* x, Index k) const {
+    T sum(0.0);
+    for (Index j = 0; j < size(); ++j) sum += x[j] * inertia_second(j, k);
+    return sum * 2.0 + inertia_by[k];
+  }
+};
+
+}  // namespace polybody::planar

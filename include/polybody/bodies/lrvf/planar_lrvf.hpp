@@ -1,0 +1,114 @@
+#pragma once
+/// \file
+/// Large rotation vector formulation in the plane: position and rotation fields interpolated linearly and
+/// independently, one-point (selective) quadrature of the strains
+///   ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ)
+/// [Simo & Vu-Quoc 1986; thesis Eq. 2.7–2.10]. Node coordinates (x, y, θ).
+
+#include <polybody/bodies/shared/planar_beam.hpp>
+#include <polybody/math/shape_functions.hpp>
+
+namespace polybody::planar {
+
+/// The Theory of `Lrvf`.
+struct SimoVuQuoc {
+  static constexpr char const* name = "planar::Lrvf";
+  static constexpr int node_columns = 3;
+  static constexpr bool packs_pay = false;  ///< most of its time goes into one sine and one cosine
+  static constexpr std::array<int, 3> section_rows = {0, 1, 5};
+  static constexpr int gradients = 0;  ///< that are linear in the coordinates
+
+  static void check(BarConstants const& c) {
+    require_positive(c.GA, "planar::Lrvf: the shear stiffness GA of the bar");
+  }
+  static Vec3 reference_node(Vec2 const& origin, double angle, double s) {
+    return {origin[0] + s * std::cos(angle), origin[1] + s * std::sin(angle), angle};
+  }
+  static Vec3 rigid_velocity(Vec3 const& node, Vec2 const& v0, double omega) {
+    return {v0[0] - omega * node[1], v0[1] + omega * node[0], omega};
+  }
+  template <class = void>  // compiled where it is used
+  static Mat<double, 2, 6> position(double xi, double) {
+    Mat<double, 2, 6> n = Mat<double, 2, 6>::Zero();
+    for (int i = 0; i < 2; ++i) {
+      n(i, i) = 1.0 - xi;
+      n(i, 3 + i) = xi;
+    }
+    return n;
+  }
+  /// The row of θ in the kinetic energy ½ ∫ Iρ θ̇² dx.
+  template <class = void>  // compiled where it is used
+  static Vec6 rotary(double xi, double) {
+    Vec6 row = Vec6::Zero();
+    row[2] = 1.0 - xi;
+    row[5] = xi;
+    return row;
+  }
+
+  /// θ(ξ), its row θ̇ = row·ė, and the part of θ̈ without ë (none: the field is linear).
+  template <StateScalar T>
+  static void rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&, T& angle, Vec<T, 6>& row, T& bias) {
+    row = rotary(xi, l).template cast<T>();
+    angle = row.dot(e);
+    bias = T(0.0);
+  }
+
+  /// ∂²θ/∂e²: none.
+  template <class = void>  // compiled where it is used
+  static void rotation_hessian(double, double, Vec6 const&, Mat<double, 6, 6>& h) {
+    h.setZero();
+  }
+
+  /// Axial, shear and bending strain at the one Gauss point; p = (x′, y′, θ, θ′).
+  struct Section {
+    static constexpr int points = 1;
+    static constexpr int components = 1;
+    static constexpr int parameters = 4;
+    static constexpr int strains = 3;
+
+    static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.GA, c.EI}; }
+    static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.bending}; }
+
+    static constexpr int reach = 2;
+    static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
+    template <class = void>  // compiled where it is used
+    static Mat<double, 4, 2> map(double xi, double l) {
+      ShapeValues<2> const n = linear_shape(xi, l);
+      Mat<double, 4, 2> p;
+      for (int j = 0; j < 2; ++j) {
+        p(0, j) = p(1, j) = p(3, j) = n.ds[j];
+        p(2, j) = n.s[j];
+      }
+      return p;
+    }
+    template <KernelScalar T>
+    static void evaluate(Vec<T, 4> const& p, Vec<T, 3>& strain, Mat<T, 3, 4>& b) {
+      using std::cos, std::sin;
+      T const c = cos(p[2]), s = sin(p[2]);
+      T const stretch = c * p[0] + s * p[1], slide = c * p[1] - s * p[0];
+      strain[0] = stretch - 1.0;
+      strain[1] = slide;
+      strain[2] = p[3];
+      b << c, s, slide, T(0), -s, c, -stretch, T(0), T(0), T(0), T(0), T(1);
+    }
+    template <KernelScalar T>
+    static void add_hessian(Vec<T, 4> const& p, Vec<T, 3> const& n, Mat<T, 4, 4>& h) {
+      using std::cos, std::sin;
+      T const c = cos(p[2]), s = sin(p[2]);
+      T const x = -(s * n[0]) - c * n[1], y = c * n[0] - s * n[1];  // with θ
+      h(0, 2) += x;
+      h(2, 0) += x;
+      h(1, 2) += y;
+      h(2, 1) += y;
+      h(2, 2) -= (c * p[0] + s * p[1]) * n[0] + (c * p[1] - s * p[0]) * n[1];
+    }
+  };
+  using Groups = std::tuple<Section>;
+};
+
+/// Planar geometrically exact beam with linear elements: `Lrvf::from(bar, n)`.
+using Lrvf = Beam<SimoVuQuoc>;
+
+static_assert(Body<Lrvf>);
+
+}  // namespace polybody::planar

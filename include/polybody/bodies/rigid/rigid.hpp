@@ -1,0 +1,318 @@
+#pragma once
+/// \file
+/// Rigid body in space. Coordinates (r, q): r the centre of mass in world axes, q a unit quaternion;
+/// speeds (ṙ, Ω): Ω the angular velocity in body axes. Newton–Euler:
+///   m r̈ = f,   J Ω˙ + Ω × J Ω = Aᵀ m_c.   [Shabana 2020, §3.5; Brüls, Cardona & Arnold 2012]
+
+#include <algorithm>
+#include <concepts>
+#include <numbers>
+
+#include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/shared/body.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// A + shift·1 has positive pivots.
+template <class = void>  // compiled where it is used
+bool is_definite(Mat3 const& a, double shift) {
+  double const d0 = a(0, 0) + shift, l10 = a(1, 0) / d0, l20 = a(2, 0) / d0;
+  double const d1 = a(1, 1) + shift - l10 * a(1, 0), c21 = a(2, 1) - l20 * a(1, 0);
+  double const d2 = a(2, 2) + shift - l20 * a(2, 0) - c21 * c21 / d1;
+  return d0 > 0.0 && d1 > 0.0 && d2 > 0.0;
+}
+
+/// Eigenvalues of a symmetric matrix, descending, to 1e-8 of the largest: for messages [Smith 1961].
+template <class = void>  // compiled where it is used
+std::array<double, 3> principal_values(Mat3 const& a) {
+  double const mean = (a(0, 0) + a(1, 1) + a(2, 2)) / 3.0;
+  double const x = a(0, 0) - mean, y = a(1, 1) - mean, z = a(2, 2) - mean;
+  double const u = a(1, 0), v = a(2, 0), w = a(2, 1);
+  double const p = std::sqrt((x * x + y * y + z * z + 2.0 * (u * u + v * v + w * w)) / 6.0);
+  double const det = x * (y * z - w * w) - u * (u * z - v * w) + v * (u * w - v * y);
+  double const angle = p > 0.0 ? std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0 : 0.0;
+  double const largest = mean + 2.0 * p * std::cos(angle);
+  double const least = mean + 2.0 * p * std::cos(angle + 2.0 * std::numbers::pi / 3.0);
+  return {largest, 3.0 * mean - largest - least, least};
+}
+
+}  // namespace detail
+
+/// \throws InvalidInput unless `inertia` can belong to a mass distribution: symmetric, principal moments
+/// not negative and none greater than the sum of the others; that is, ½ tr(J) 1 − J ⪰ 0.
+template <class = void>  // compiled where it is used
+void require_inertia(Mat3 const& inertia, std::string const& what) {
+  require_finite(inertia, what + ": the inertia");
+  double const size = std::max({std::abs(inertia(0, 0)), std::abs(inertia(1, 1)), std::abs(inertia(2, 2)),
+                                std::abs(inertia(1, 0)), std::abs(inertia(2, 0)), std::abs(inertia(2, 1)),
+                                std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
+  if (size == 0.0) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < i; ++j)
+      if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)
+        throw InvalidInput(what + ": the inertia tensor must be symmetric.");
+  if (!detail::is_definite(inertia, 1e-9 * size))
+    throw InvalidInput(what + ": a principal moment of inertia is negative (" +
+                       number(detail::principal_values(inertia)[2]) + ").");
+  Mat3 second;
+  double const half_trace = 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) second(i, j) = i == j ? half_trace - inertia(i, j) : -inertia(i, j);
+  if (!detail::is_definite(second, 1e-9 * size)) {
+    std::array<double, 3> const i = detail::principal_values(inertia);
+    throw InvalidInput(what + ": the principal moments of inertia " + number(i[0]) + ", " + number(i[1]) + ", " +
+                       number(i[2]) + " violate the triangle inequality; no body has them.");
+  }
+}
+
+/// Mass properties, placement and points: what a rigid body has however its rotation is written.
+class RigidShape {
+ public:
+  static constexpr World world = World::space;
+  static constexpr Observes observes = Observes::frame;
+
+  /// A material point, in body axes from the centre of mass [m].
+  struct Point {
+    Vec3 u = Vec3::Zero();
+  };
+
+  /// Mass properties without a bar.
+  struct Parameters {
+    Required<double> mass;        ///< [kg]
+    Mat3 inertia = Mat3::Zero();  ///< (3×3) about the centre of mass, body axes [kg m²]
+    Placement placement = {};     ///< of the centre of mass and the body's axes
+  };
+
+  /// \throws InvalidInput for mass ≤ 0 or an inertia that no body has. Zero moments are allowed.
+  template <class = void>  // compiled where it is used
+  RigidShape(Parameters const& p) : mass_(p.mass), inertia_(p.inertia), placement_(p.placement) {  // NOLINT
+    require_positive(mass_, "Rigid: the mass");
+    require_inertia(inertia_, "Rigid");
+    placement_.check("Rigid");
+  }
+  template <class = void>  // compiled where it is used
+  RigidShape(double mass, Mat3 const& inertia, Placement const& placement = {})
+      : RigidShape(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
+
+  double mass() const { return mass_; }
+  Mat3 const& inertia() const { return inertia_; }
+
+  /// The point s from the first end of the bar, (y, z) off its axis. \throws InvalidInput outside the bar.
+  template <class = void>  // compiled where it is used
+  Point at(double s, double y = 0.0, double z = 0.0) const {
+    if (length_ == 0.0)
+      throw InvalidInput("Rigid: at(s) needs a body made from a Bar; use at(Vec3) from the centre of mass.");
+    return at(Vec3(require_inside(s, length_, "Rigid") - 0.5 * length_, y, z));
+  }
+  /// The point u in body axes from the centre of mass [m].
+  template <class = void>  // compiled where it is used
+  Point at(Vec3 const& u) const {
+    require_finite(u, "Rigid: the point");
+    return {u};
+  }
+
+  Index elements() const { return 1; }
+  Index first_column(Index) const { return 0; }
+  Index first_column(Point const&) const { return 0; }
+
+ protected:
+  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
+  template <class = void>  // compiled where it is used
+  explicit RigidShape(Bar const& bar) : RigidShape(parameters(bar)) {
+    length_ = bar.length;
+  }
+  template <class T = double>  // compiled where it is used
+  static Parameters parameters(Bar const& bar) {
+    BarConstants const c = constants(bar);
+    double const l = bar.length, m = c.mass_per_length * l;
+    double const z = c.rotary_inertia * l, y = c.rotary_inertia_y.value_or(c.rotary_inertia) * l;
+    Placement place = bar.placement;
+    for (int i = 0; i < 3; ++i) place.origin[i] += place.axes(i, 0) * (0.5 * l);
+    Vec<T, 3> const moments(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z);
+    return {.mass = m, .inertia = moments.asDiagonal(), .placement = place};
+  }
+
+  template <StateScalar T>
+  Vec<T, 3> inertia_times(Vec<T, 3> const& x) const {
+    Vec<T, 3> y;
+    for (int i = 0; i < 3; ++i) y[i] = x[0] * inertia_(i, 0) + x[1] * inertia_(i, 1) + x[2] * inertia_(i, 2);
+    return y;
+  }
+  /// a × b into three entries of `out`; Eigen's goes through memory, and waits for it.
+  template <class A, class Out>
+  static void set_cross(A const& a, A const& b, Out& out, int first) {
+    out[first] = a[1] * b[2] - a[2] * b[1];
+    out[first + 1] = a[2] * b[0] - a[0] * b[2];
+    out[first + 2] = a[0] * b[1] - a[1] * b[0];
+  }
+
+  double mass_;
+  Mat3 inertia_;
+  Placement placement_;
+  double length_ = 0.0;
+};
+
+/// How `Rigid` writes its rotation: unit quaternion with body-frame angular velocity as speeds.
+struct UnitQuaternion {};
+
+/// A rigid body: `Rigid<>`, or `Rigid<EulerParameters>` of bodies/rigid/rigid_euler_parameters.hpp.
+template <class Rotation = UnitQuaternion>
+class Rigid;
+
+template <>
+class Rigid<UnitQuaternion> : public RigidShape {
+ public:
+  static constexpr bool constant_mass = true;
+  static constexpr int element_columns = 6;
+  static constexpr int point_columns = 6;
+  static constexpr RigidLayout layout = RigidLayout::quaternion;
+
+  using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
+
+  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
+  template <class = void>  // compiled where it is used
+  static Rigid from(Bar const& bar) {
+    return Rigid(bar);
+  }
+
+  Index coordinates() const { return 7; }
+  Index speeds() const { return 6; }
+
+  template <class = void>  // compiled where it is used
+  void reference(std::span<double> q) const {
+    part<3>(q, 0) = placement_.origin;
+    part<4>(q, 3) = quaternion_of(placement_.axes);
+  }
+
+  template <StateScalar T>
+  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
+    part<3>(out, 0) = part<3>(q, 0) + part<3>(delta, 0);
+    part<4>(out, 3) = quaternion_plus<T>(part<4>(q, 3), part<3>(delta, 3));
+  }
+
+  /// δ˙ with q ⊞ δ(t) moving with v: Ω = Jr(δ) δ˙.
+  template <StateScalar T>
+  void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
+    part<3>(out, 0) = part<3>(v, 0);
+    part<3>(out, 3) = right_jacobian_inverse<T>(part<3>(delta, 3)) * part<3>(v, 3);
+  }
+
+  /// Speeds of a rigid motion: velocity of the world's origin point `v0` and angular velocity (world axes).
+  template <class T = double>  // compiled where it is used
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
+    Vec<T, 3> const r = part<3>(q, 0);
+    part<3>(v, 0) = v0 + omega.cross(r);
+    part<3>(v, 3) = rotation_matrix<T>(part<4>(q, 3)).transpose() * omega;
+  }
+
+  template <class T>  // compiled where it is used
+  void mass(Index, std::span<double const>, Mat<T, 6, 6>& m) const {
+    m.setZero();
+    for (int i = 0; i < 3; ++i) {
+      m(i, i) = mass_;
+      for (int j = 0; j < 3; ++j) m(3 + i, 3 + j) = inertia_(i, j);
+    }
+  }
+
+  template <StateScalar T>
+  void inertia(Index, std::span<T const>, std::span<T const> a, Vec<T, 6>& out) const {
+    out.template head<3>() = part<3>(a, 0) * T(mass_);
+    out.template tail<3>() = inertia_times<T>(part<3>(a, 3));
+  }
+
+  /// The gyroscopic force −Ω × J Ω.
+  template <StateScalar T>
+  void force(Index, std::span<T const>, std::span<T const> v, Vec<T, 6>& out) const {
+    Vec<T, 3> const omega = part<3>(v, 3), spin = inertia_times<T>(omega);
+    out.template head<3>().setZero();
+    set_cross(spin, omega, out, 3);
+  }
+
+  /// −∂f/∂Ω = Ω̃ J − (J Ω)~.
+  template <class T>  // compiled where it is used
+  void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
+    Vec<T, 3> const omega = part<3>(v, 3);
+    k.setZero();
+    k.template bottomRightCorner<3, 3>() = cd * (skew<T>(omega) * inertia_ - skew<T>(inertia_ * omega));
+  }
+
+  template <StateScalar T>
+  void gravity(Index, std::span<T const>, Vec3 const& g, Vec<T, 6>& out) const {
+    out.template head<3>() = (g * mass_).template cast<T>();
+    out.template tail<3>().setZero();
+  }
+
+  template <class T = double>  // compiled where it is used
+  double kinetic_energy(Index, std::span<double const>, std::span<double const> v) const {
+    Vec<T, 3> const speed = part<3>(v, 0), omega = part<3>(v, 3);
+    return 0.5 * mass_ * speed.squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
+  }
+  double strain_energy(Index, std::span<double const>) const { return 0.0; }
+  template <class T = double>  // compiled where it is used
+  double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
+    Vec<T, 3> const r = part<3>(q, 0);
+    return -mass_ * g.dot(r);
+  }
+
+  /// What all points of the body share.
+  template <StateScalar T>
+  struct Pose {
+    Vec<T, 3> r, v, w;  ///< of the centre of mass, world axes
+    Mat<T, 3, 3> A;
+  };
+
+  template <StateScalar T>
+  void pose(std::span<T const> q, std::span<T const> v, Pose<T>& out) const {
+    set_rotation<T>(part<4>(q, 3), out.A);
+    for (int i = 0; i < 3; ++i) {
+      out.r[i] = q[i];
+      out.v[i] = v[i];
+      out.w[i] = out.A(i, 0) * v[3] + out.A(i, 1) * v[4] + out.A(i, 2) * v[5];
+    }
+  }
+
+  /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
+    auto const turned = [&at](auto const& u) {
+      return at.A.col(0) * T(u[0]) + at.A.col(1) * T(u[1]) + at.A.col(2) * T(u[2]);
+    };
+    Vec<T, 3> const arm = turned(p.u);
+    Vec<T, 3> rate;
+    set_cross(at.w, arm, rate, 0);
+    out.frame.r = at.r + arm;
+    for (int i = 0; i < 3; ++i) out.frame.A.col(i) = turned(axes.col(i));
+    out.frame.v = at.v + rate;
+    out.frame.w = at.w;
+    set_cross(at.w, rate, out.bias, 0);
+    out.bias.template tail<3>().setZero();
+    out.body_axes = at.A;
+    out.arm = arm;
+    out.shape = JacobianShape::rigid;
+    out.columns = 6;
+  }
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+    Pose<T> at;
+    pose<T>(q, v, at);
+    publish(p, axes, at, out);
+  }
+
+  /// Jᵀw = [f; Aᵀm + u × Aᵀf];  under A ⊞ δ: δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
+  template <class T>  // compiled where it is used
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 6, 6>& k) const {
+    Mat<T, 3, 3> const a = rotation_matrix<T>(part<4>(q, 3));
+    k.setZero();
+    k.template bottomRightCorner<3, 3>() = skew<T>(a.transpose() * w.m) + skew<T>(p.u) * skew<T>(a.transpose() * w.f);
+  }
+
+ private:
+  template <class = void>  // compiled where it is used
+  explicit Rigid(Bar const& bar) : RigidShape(bar) {}
+};
+
+static_assert(Body<Rigid<>>);
+
+}  // namespace polybody

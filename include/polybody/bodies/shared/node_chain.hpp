@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// What bodies share whose coordinates form a vector space, and those of them that are chains of nodes.
+
+#include <polybody/bodies/shared/body.hpp>
+
+namespace polybody {
+
+/// Coordinates that add: q ⊞ δ = q + δ, and δ moves with the speeds.
+struct AddingCoordinates {
+  template <StateScalar T>
+  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
+    for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i] + delta[i];
+  }
+  template <StateScalar T>
+  void local_rate(std::span<T const>, std::span<T const> v, std::span<T> out) const {
+    for (std::size_t i = 0; i < v.size(); ++i) out[i] = v[i];
+  }
+};
+
+/// n elements between n + 1 nodes of so many coordinates each, one after another.
+template <int columns>
+class NodeChain : public AddingCoordinates {
+ public:
+  static constexpr int node_columns = columns;
+  static constexpr int element_columns = 2 * columns;
+  static constexpr int point_columns = element_columns;
+  static constexpr int element_stride = columns;
+
+  Index coordinates() const { return (n_ + 1) * columns; }
+  Index speeds() const { return coordinates(); }
+  Index elements() const { return n_; }
+  Index first_column(Index e) const { return e * columns; }
+  /// Of a point, which knows its element.
+  template <class P>
+    requires requires(P p) { p.element; }
+  Index first_column(P const& p) const {
+    return first_column(p.element);
+  }
+  /// The point in a chain of its own element alone.
+  template <class P>
+    requires requires(P p) { p.element; }
+  P local(P p) const {
+    p.element = 0;
+    return p;
+  }
+
+ protected:
+  explicit NodeChain(Index n) : n_(n) {}
+  Index n_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,315 @@
+#pragma once
+/// \file
+/// A flexible bar in the plane as a chain of equal two-node elements. What is interpolated and which strains
+/// follow is a policy, the Theory; layout, mass, gravity and markers are here once, energy, force and tangent in
+/// `StrainGroup`.
+
+#include <tuple>
+#include <vector>
+
+#include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/shared/node_chain.hpp>
+#include <polybody/bodies/shared/strain_tangent.hpp>
+
+namespace polybody::planar {
+
+/// The centre line at one place of an element, all linear in e except the angle.
+template <StateScalar T>
+struct CentreLine {
+  Vec<T, 2> r;  ///< position [m]
+  Vec<T, 2> v;  ///< velocity [m/s]
+  T angle;      ///< of the section's normal from world x [rad]
+  T rate;       ///< its rate [rad/s]
+  T rate_bias;  ///< its second derivative for ë = 0 [rad/s²]
+};
+
+template <class Theory>
+class Beam : public NodeChain<Theory::node_columns> {
+ public:
+  static constexpr World world = World::plane;
+  static constexpr Observes observes = Observes::frame;
+  static constexpr bool constant_mass = true;
+  using Chain = NodeChain<Theory::node_columns>;
+  using Chain::coordinates, Chain::element_columns, Chain::elements, Chain::first_column, Chain::node_columns;
+  static constexpr bool packs_pay = Theory::packs_pay;
+  template <class T>
+  using Element = Vec<T, element_columns>;
+  using ElementMatrix = Mat<double, element_columns, element_columns>;
+  using PointMap = Mat<double, 2, element_columns>;
+  static constexpr int gradients = Theory::gradients;  ///< of the position, that are linear in the coordinates
+
+  /// A material point: element, place ξ ∈ [0, 1] on it, and distance y off the axis [m].
+  struct Point {
+    Index element = 0;
+    double xi = 0.0;
+    double y = 0.0;
+  };
+
+  /// The bar in n equal elements. \throws InvalidInput for n < 1, a placement that leaves the plane, or a
+  /// stiffness that the theory needs and the bar does not give.
+  static Beam from(Bar const& bar, Index n) {
+    if (n < 1) throw InvalidInput(std::string(Theory::name) + ": at least one element is needed.");
+    BarConstants const c = polybody::constants(bar);
+    Theory::check(c);
+    return Beam(bar, c, n);
+  }
+
+  double length() const { return length_; }
+  double element_length() const { return l_; }
+  BarConstants const& constants() const { return constants_; }
+
+  /// The point s from the first end, y off the axis. \throws InvalidInput outside the bar.
+  Point at(double s, double y = 0.0) const {
+    double const x = require_inside(s, length_, Theory::name) / l_;
+    if (!std::isfinite(y)) throw InvalidInput(std::string(Theory::name) + ": y of a point must be finite.");
+    Index const e = std::min(Index(x), elements() - 1);
+    return {e, x - double(e), y};
+  }
+
+  /// r = Σ s_i e_i, e_i of entries 2i and 2i + 1 of an element, and its derivatives by arc length; for theories whose
+  /// axis is smooth.
+  auto axis_shape(double xi) const
+    requires requires { Theory::axis_shape(xi, 1.0); }
+  {
+    return Theory::axis_shape(xi, l_);
+  }
+
+  void reference(std::span<double> q) const {
+    for (Index i = 0; i <= elements(); ++i)
+      part<node_columns>(q, i * node_columns) = Theory::reference_node(origin_, angle_, double(i) * l_);
+  }
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
+    for (Index i = 0; i <= elements(); ++i)
+      part<node_columns>(v, i * node_columns) =
+          Theory::rigid_velocity(part<node_columns>(q, i * node_columns), v0.head<2>(), omega[2]);
+  }
+
+  void mass(Index, std::span<double const>, ElementMatrix& m) const { m = mass_; }
+
+  /// M a of an element's own accelerations.
+  template <KernelScalar T>
+  void element_inertia(Element<T> const& a, Element<T>& out) const {
+    for (int i = 0; i < element_columns; ++i) {
+      T sum = a[0] * mass_(i, 0);
+      for (int j = 1; j < element_columns; ++j) sum += a[j] * mass_(i, j);
+      out[i] = sum;
+    }
+  }
+  /// Elastic and damping force from an element's own coordinates and speeds.
+  template <KernelScalar T>
+  void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
+    for (int i = 0; i < element_columns; ++i) out[i] = T(0.0);
+    for_each_group([&](auto const& group) { group.template add_force<T>(x, xd, out); });
+  }
+  /// ck (−∂f/∂x) + cd (−∂f/∂xd).
+  template <KernelScalar T>
+  void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd,
+                       Mat<T, element_columns, element_columns>& k) const {
+    tangent_of<T, element_columns>(groups_, x, xd, ck, cd, k);
+  }
+
+  template <StateScalar T>
+  void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
+    element_inertia<T>(part<element_columns>(a, first_column(e)), out);
+  }
+  template <StateScalar T>
+  void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
+    element_force<T>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), out);
+  }
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               ElementMatrix& k) const {
+    element_tangent<double>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), ck,
+                            cd, k);
+  }
+
+  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
+  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
+                  Element<double>& out) const {
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
+                          x1 = part<element_columns>(q1, first_column(e));
+    out.setZero();
+    for_each_group([&](auto const& group) { group.add_mean_force(x0, x1, means, out); });
+  }
+  /// ck (−∂f/∂q1), nearly; not symmetric.
+  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
+                    ElementMatrix& k) const {
+    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
+                          x1 = part<element_columns>(q1, first_column(e));
+    k.setZero();
+    for_each_group([&](auto const& group) { group.add_mean_tangent(x0, x1, means, ck, k); });
+  }
+
+  template <StateScalar T>
+  void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
+    out = (gravity_ * g.head<2>()).template cast<T>();
+  }
+
+  double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
+    auto const x = part<element_columns>(v, first_column(e));
+    return 0.5 * x.dot(mass_ * x);
+  }
+  double strain_energy(Index e, std::span<double const> q) const {
+    Element<double> const x = part<element_columns>(q, first_column(e));
+    double u = 0.0;
+    for_each_group([&](auto const& group) { u += group.energy(x); });
+    return u;
+  }
+  double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
+    return -part<element_columns>(q, first_column(e)).dot(gravity_ * g.head<2>());
+  }
+
+  /// r = S e at `p`, 2×n, constant; e are the coordinates from `first_column(p)`. \throws InvalidInput off the axis,
+  /// where r turns with the section.
+  PointMap position_map(Point const& p) const {
+    if (p.y != 0.0)
+      throw InvalidInput(std::string(Theory::name) + ": a point off the axis is not linear in the coordinates.");
+    return Theory::position(p.xi, l_);
+  }
+  /// r′ = S′ e at `p`, 2×n, constant.
+  PointMap gradient_map(Point const& p, int) const
+    requires(Theory::gradients > 0)
+  {
+    return Theory::gradient(p.xi, l_);
+  }
+
+  /// Position, angle and motion of the centre line at `p`.
+  template <StateScalar T>
+  CentreLine<T> centre_line(Point const& p, std::span<T const> q, std::span<T const> v) const {
+    Element<T> const x = part<element_columns>(q, first_column(p));
+    Element<T> const xd = part<element_columns>(v, first_column(p));
+    Mat<double, 2, element_columns> const n = Theory::position(p.xi, l_);
+    CentreLine<T> c;
+    c.r = n.template cast<T>() * x;
+    c.v = n.template cast<T>() * xd;
+    Element<T> unused;
+    Theory::template rotation<T>(p.xi, l_, x, xd, c.angle, unused, c.rate_bias);
+    c.rate = unused.dot(xd);
+    return c;
+  }
+
+  /// r = r₀ + y n, n = (−sin θ, cos θ);  ṙ = ṙ₀ − y t θ̇, t = (cos θ, sin θ);
+  /// bias = −y (t θ̈ᵇ + n θ̇²), θ̈ᵇ the part of θ̈ without ë.
+  template <StateScalar T>
+  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+    using std::cos, std::sin;
+    Element<T> const x = part<element_columns>(q, first_column(p));
+    Element<T> const xd = part<element_columns>(v, first_column(p));
+    Mat<double, 2, element_columns> const shape = Theory::position(p.xi, l_);
+    T angle, rate_bias;
+    Element<T> row;  // θ̇ = row · ė
+    Theory::template rotation<T>(p.xi, l_, x, xd, angle, row, rate_bias);
+    T const c = cos(angle), s = sin(angle), rate = row.dot(xd);
+    Vec<T, 2> const t(c, s), n(-s, c);
+    Mat<T, 3, 3> a;
+    a << c, -s, T(0), s, c, T(0), T(0), T(0), T(1);
+    out.frame.A = a * axes.template cast<T>();
+    out.frame.r << shape.template cast<T>() * x + n * p.y, T(0);
+    out.frame.v << shape.template cast<T>() * xd - t * (rate * p.y), T(0);
+    out.frame.w << T(0), T(0), rate;
+    out.bias.setZero();
+    out.bias.template head<2>() = (t * rate_bias + n * (rate * rate)) * (-p.y);
+    out.bias[5] = rate_bias;
+    Eigen::Map<Mat<T, 6, element_columns>> j(out.jacobian);
+    j.setZero();
+    j.template topRows<2>() = shape.template cast<T>() - (t * p.y) * row.transpose();
+    j.row(5) = row.transpose();
+    out.shape = JacobianShape::dense;
+    out.columns = element_columns;
+  }
+
+  /// Jᵀw = Nᵀf + h c with the row h of θ̇ and c = m − y t·f;  ∂/∂e = c ∂h/∂e − y (n·f) h hᵀ.
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
+    Element<double> const x = part<element_columns>(q, first_column(p)), rest = Element<double>::Zero();
+    double angle, bias;
+    Element<double> row;
+    Theory::template rotation<double>(p.xi, l_, x, rest, angle, row, bias);
+    double const c = std::cos(angle), s = std::sin(angle);
+    Theory::rotation_hessian(p.xi, l_, x, k);
+    k *= w.m[2] - p.y * (c * w.f[0] + s * w.f[1]);
+    k -= (p.y * (c * w.f[1] - s * w.f[0])) * row * row.transpose();
+  }
+
+  /// In the axes of space (see sections.hpp); what the theory does not know is zero.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    return in_space(
+        [&](auto const& group) { return group.strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval()); });
+  }
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    return in_space([&](auto const& group) {
+      return group.stress(group.strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval()));
+    });
+  }
+  /// Strains of group G (in the order of the theory) at `p`, and their stress resultants without damping.
+  template <int G>
+  auto strains(Point const& p, std::span<double const> q) const {
+    return std::get<G>(groups_).strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval());
+  }
+  /// Section forces of group G without damping [N], [N m].
+  template <int G>
+  auto resultants(Point const& p, std::span<double const> q) const {
+    return std::get<G>(groups_).stress(strains<G>(p, q));
+  }
+
+ private:
+  template <class List>
+  struct GroupsOf;
+  template <class... Laws>
+  struct GroupsOf<std::tuple<Laws...>> {
+    using type = std::tuple<StrainGroup<Laws>...>;
+    /// A pretension is the first stress of the first group, along the axis.
+    static type make(BarConstants const& c, Bar const& bar, double l) {
+      type groups(StrainGroup<Laws>(c, bar.damping, l)...);
+      using First = std::tuple_element_t<0, type>;
+      typename First::Strains initial = First::Strains::Zero();
+      initial[0] = bar.pretension;
+      std::get<0>(groups) = First(c, bar.damping, l, initial);
+      return groups;
+    }
+  };
+  using Groups = GroupsOf<typename Theory::Groups>;
+
+  Beam(Bar const& bar, BarConstants const& c, Index n)
+      : Chain(n),
+        constants_(c),
+        length_(bar.length),
+        l_(bar.length / double(n)),
+        origin_(bar.placement.origin.head<2>()),
+        angle_(bar.placement.planar_angle(Theory::name)),
+        groups_(Groups::make(c, bar, l_)) {
+    // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the theory's polynomials
+    for (GaussPoint const& g : gauss<4>) {
+      Mat<double, 2, element_columns> const s = Theory::position(g.xi, l_);
+      mass_ += g.weight * l_ * c.mass_per_length * s.transpose() * s;
+      Element<double> const rot = Theory::rotary(g.xi, l_);
+      mass_ += g.weight * l_ * c.rotary_inertia * rot * rot.transpose();
+      gravity_ += g.weight * l_ * c.mass_per_length * s.transpose();
+    }
+  }
+
+  /// Entries of the groups one after another, where the theory says they belong.
+  template <class F>
+  Vec6 in_space(F&& of_group) const {
+    Vec6 out = Vec6::Zero();
+    std::size_t k = 0;
+    for_each_group([&](auto const& group) {
+      auto const x = of_group(group);
+      for (Index i = 0; i < x.size(); ++i) out[Theory::section_rows[k++]] = x[i];
+    });
+    return out;
+  }
+  template <class F>
+  void for_each_group(F&& f) const {
+    std::apply([&](auto const&... group) { (f(group), ...); }, groups_);
+  }
+
+  BarConstants constants_;
+  double length_;
+  double l_;
+  Vec2 origin_;
+  double angle_;
+  typename Groups::type groups_;
+  ElementMatrix mass_ = ElementMatrix::Zero();
+  Mat<double, element_columns, 2> gravity_ = Mat<double, element_columns, 2>::Zero();
+};
+
+}  // namespace polybody::planar

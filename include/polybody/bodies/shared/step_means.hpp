@@ -1,0 +1,23 @@
+#pragma once
+#include <polybody/bodies/shared/node_chain.hpp>
+
+namespace polybody {
+
+/// How strains are taken over a step that conserves energy: ε̄ + decay Δε, and ε̇ = rate Δε.
+struct StepMeans {
+  double rate = 0.0;   ///< 1/h [1/s]
+  double decay = 0.0;  ///< 0 conserves energy; above it C Δε·Δε is lost so many times
+};
+
+/// A body of constant mass whose coordinates form a vector space, and which gives its elastic and damping force over a
+/// step from q₀ to q₁: f·Δq = −ΔU less what is damped.
+template <class B>
+concept OffersStepMeans =
+    std::is_base_of_v<AddingCoordinates, B> && B::constant_mass &&
+    requires(B const b, Index e, std::span<double const> q, StepMeans means, Vec<double, B::element_columns>& f,
+             Mat<double, B::element_columns, B::element_columns>& k) {
+      b.mean_force(e, q, q, means, f);
+      b.mean_tangent(e, q, q, means, 1.0, k);
+    };
+
+}  // namespace polybody

@@ -1,0 +1,130 @@
+#pragma once
+/// \file
+/// One case under several formulations, side by side.
+
+#include <ctime>
+
+#include <polybody/compare/comparison.hpp>
+#include <polybody/compare/formulation.hpp>
+
+namespace polybody {
+
+/// A number of interest that every formulation of a case can answer.
+template <class M>
+struct Output {
+  std::string name;  ///< with its unit
+  std::function<double(M const&, State const&)> value;
+};
+
+/// What a case makes of a formulation: the model, its start, the run and the outputs.
+template <class M>
+struct Scenario {
+  M model;
+  State start;
+  RunOptions options;
+  std::vector<Output<M>> outputs = {};
+  std::function<void(M const&, State const&)> observer = {};  ///< called at every state, not timed
+};
+
+/// A case is called with a formulation and returns a Scenario of whatever model type that leads to.
+template <class C, class F>
+concept CaseFor = requires(C const c, F const f) {
+  { c(f).model };
+  { c(f).start } -> std::convertible_to<State>;
+};
+
+namespace detail {
+
+/// The formulation's own name, or else its integrator's, told from those of earlier runs.
+template <class F>
+std::string name_of(F const& formulation, std::vector<ComparedRun> const& earlier) {
+  std::string const own = formulation.name.empty() ? decltype(formulation.integrator)::name : formulation.name;
+  std::string name = own;
+  auto const taken = [&](ComparedRun const& run) { return run.name == name; };
+  for (int i = 2; std::any_of(earlier.begin(), earlier.end(), taken); ++i) name = own + " (" + std::to_string(i) + ")";
+  return name;
+}
+
+/// \throws InvalidInput unless the outputs of a run have names, all different, and are those of the earlier runs.
+template <class = void>
+void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earlier) {
+  std::vector<std::string> names = run.output_names;
+  std::sort(names.begin(), names.end());
+  bool const named = names.empty() || !names.front().empty();
+  if (!named || std::adjacent_find(names.begin(), names.end()) != names.end())
+    throw InvalidInput("compare: the outputs of \"" + run.name + "\" need names, each its own.");
+  if (!earlier.empty() && run.output_names != earlier.front().output_names)
+    throw InvalidInput("compare: \"" + run.name + "\" has other outputs than \"" + earlier.front().name +
+                       "\". Let the case name the same ones, in the same order, for every formulation.");
+}
+
+template <class F, class C>
+ComparedRun compared_run(C const& make_case, F const& formulation, std::vector<ComparedRun> const& earlier) {
+  auto scenario = make_case(formulation);
+  using M = std::decay_t<decltype(scenario.model)>;
+  M const& model = scenario.model;
+  ComparedRun out;
+  out.name = name_of(formulation, earlier);
+  out.census = census(model);
+  for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
+  check_outputs(out, earlier);
+  out.outputs.resize(scenario.outputs.size());
+  State x = scenario.start;
+  auto run = simulate(model, x, formulation.integrator, scenario.options);
+  System system(model, with<Entries::energy>);
+  auto const observe = [&] {
+    Violation const& v = out.violations.emplace_back(violation(system, x));  // evaluates the system
+    out.violation.position = std::max(out.violation.position, v.position);
+    out.violation.velocity = std::max(out.violation.velocity, v.velocity);
+    out.violation.acceleration = std::max(out.violation.acceleration, v.acceleration);
+    out.energies.push_back(energy(system, x));
+    out.joint_forces.push_back(peak_joint_force(system, x));
+    out.peak_joint_force = std::max(out.peak_joint_force, out.joint_forces.back());
+    out.times.push_back(x.t);
+    for (std::size_t i = 0; i < scenario.outputs.size(); ++i)
+      out.outputs[i].push_back(scenario.outputs[i].value(model, x));
+    if (scenario.observer) scenario.observer(model, x);
+  };
+  observe();
+  while (!run.done()) {
+    std::clock_t const begin = std::clock();
+    run.advance();
+    out.cpu += double(std::clock() - begin) / CLOCKS_PER_SEC;
+    observe();
+  }
+  out.energy_start = out.energies.front().total();
+  out.energy_end = out.energies.back().total();
+  out.run = run.report();
+  return out;
+}
+
+}  // namespace detail
+
+/// Runs the case under each formulation (given as values: a policy without default numbers needs its own).
+/// \throws InvalidInput for outputs that are not the same for all, and what `simulate` throws.
+template <class C, class... Fs>
+  requires(CaseFor<C, Fs> && ...)
+Comparison compare(C const& make_case, Fs const&... formulations) {
+  Comparison c;
+  (c.runs.push_back(detail::compared_run(make_case, formulations, c.runs)), ...);
+  if (c.runs.empty()) return c;
+  ComparedRun const& first = c.runs.front();
+  for (ComparedRun& run : c.runs)
+    for (std::size_t i = 0; i < run.outputs.size(); ++i) {
+      double most = 0.0;
+      for (std::size_t k = 0; k < run.times.size(); ++k)
+        most = std::max(most,
+                        std::abs(run.outputs[i][k] - detail::interpolate(first.times, first.outputs[i], run.times[k])));
+      run.difference.push_back(most);
+    }
+  return c;
+}
+
+/// The same for formulations whose numbers all have defaults: compare<F1, F2, …>(case).
+template <class... Fs, class C>
+  requires(sizeof...(Fs) > 0 && (CaseFor<C, Fs> && ...))
+Comparison compare(C const& make_case) {
+  return compare(make_case, Fs{}...);
+}
+
+}  // namespace polybody

@@ -1,0 +1,168 @@
+#pragma once
+/// \file
+/// What a comparison of formulations found: numbers and histories of each run, and the table of them all.
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
+
+namespace polybody {
+
+/// One column of the report.
+struct ComparedRun {
+  std::string name;
+  Census census;
+  RunReport run;
+  double cpu = 0.0;           ///< of the steps alone [s]
+  Violation violation;        ///< largest over the run
+  double energy_start = 0.0;  ///< total energy [J]
+  double energy_end = 0.0;
+  double peak_joint_force = 0.0;      ///< [N]
+  std::vector<double> times;          ///< (n) the start and every step's end [s]
+  std::vector<Violation> violations;  ///< (n)
+  std::vector<Energy> energies;       ///< (n)
+  std::vector<double> joint_forces;   ///< (n) of the joint that holds most [N]
+  std::vector<std::string> output_names;
+  std::vector<std::vector<double>> outputs;  ///< one history (n) for each output
+  std::vector<double> difference;            ///< largest |output − first formulation's| over the run
+};
+
+struct Comparison {
+  std::vector<ComparedRun> runs;
+};
+
+/// A number and what it is called, with its unit.
+struct Quantity {
+  std::string name;
+  double value;
+};
+
+/// A quantity at the times of a run.
+struct History {
+  std::string name;
+  std::vector<double> values;
+};
+
+/// The column of the report for one run, beside the `first` one.
+template <class = void>  // compiled where it is used
+std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& first) {
+  double const steps = double(std::max(run.run.steps, 1L));
+  std::vector<Quantity> column{{"coordinates", double(run.census.coordinates)},
+                               {"constraints", double(run.census.constraints)},
+                               {"degrees of freedom", double(run.census.degrees_of_freedom)},
+                               {"multiplier rows", double(run.census.rows)},
+                               {"steps", double(run.run.steps)},
+                               {"Newton iterations a step", double(run.run.iterations) / steps},
+                               {"factorisations a step", double(run.run.factorisations) / steps},
+                               {"CPU time [s]", run.cpu},
+                               {"CPU ratio to the first", run.cpu / std::max(first.cpu, 1e-9)},
+                               {"position violation", run.violation.position},
+                               {"velocity violation", run.violation.velocity},
+                               {"acceleration violation", run.violation.acceleration},
+                               {"energy at the end - at the start [J]", run.energy_end - run.energy_start},
+                               {"peak joint force [N]", run.peak_joint_force}};
+  for (std::size_t i = 0; i < run.outputs.size(); ++i) {
+    column.push_back({"end: " + run.output_names[i], run.outputs[i].back()});
+    column.push_back({"most off the first: " + run.output_names[i], run.difference[i]});
+  }
+  return column;
+}
+
+/// What is known of a run at each of its times: violations, energies and the peak joint force, then the outputs. An
+/// output with the name of another history stands in its place.
+template <class = void>
+std::vector<History> histories(ComparedRun const& run) {
+  std::vector<History> all;
+  for (char const* name : {"position violation", "velocity violation", "acceleration violation", "kinetic energy [J]",
+                           "strain energy [J]", "gravity energy [J]", "energy of joints [J]", "energy of forces [J]",
+                           "total energy [J]", "peak joint force [N]"})
+    all.push_back({name, {}});
+  for (std::size_t k = 0; k < run.times.size(); ++k) {
+    Violation const& v = run.violations[k];
+    Energy const& e = run.energies[k];
+    double const now[] = {v.position, v.velocity, v.acceleration, e.kinetic, e.strain,
+                          e.gravity,  e.joints,   e.forces,       e.total(), run.joint_forces[k]};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i].values.push_back(now[i]);
+  }
+  for (std::size_t i = 0; i < run.outputs.size(); ++i) {
+    std::erase_if(all, [&](History const& h) { return h.name == run.output_names[i]; });
+    all.push_back({run.output_names[i], run.outputs[i]});
+  }
+  return all;
+}
+
+namespace detail {
+
+/// y(t) in a history with increasing times: the cubic through the two times before and the two behind, near an end
+/// through its four; beyond, the value at the end. Times much closer together than the two about t are passed over:
+/// differences there are rounding errors.
+template <class = void>
+double interpolate(std::vector<double> const& times, std::vector<double> const& y, double t) {
+  auto const after = std::lower_bound(times.begin(), times.end(), t);
+  if (after == times.begin()) return y.front();
+  if (after == times.end()) return y.back();
+  std::size_t hi = std::size_t(after - times.begin()), lo = hi - 1, place[4] = {lo, hi}, count = 2;
+  double const apart = 0.1 * (times[hi] - times[lo]);
+  auto const one_before = [&] {
+    for (std::size_t k = lo; k-- > 0 && count < 4;)
+      if (times[lo] - times[k] >= apart) {
+        place[count++] = lo = k;
+        return;
+      }
+  };
+  auto const one_behind = [&] {
+    for (std::size_t k = hi; ++k < times.size() && count < 4;)
+      if (times[k] - times[hi] >= apart) {
+        place[count++] = hi = k;
+        return;
+      }
+  };
+  one_before();
+  one_behind();
+  one_before();
+  one_behind();
+  double sum = 0.0;
+  for (std::size_t a = 0; a < count; ++a) {
+    double weight = 1.0;
+    for (std::size_t b = 0; b < count; ++b)
+      if (b != a) weight *= (t - times[place[b]]) / (times[place[a]] - times[place[b]]);
+    sum += weight * y[place[a]];
+  }
+  return sum;
+}
+
+}  // namespace detail
+
+/// The report as a table, one line a quantity and one column a formulation.
+template <class = void>
+std::ostream& operator<<(std::ostream& out, Comparison const& c) {
+  if (c.runs.empty()) return out;
+  std::vector<std::vector<Quantity>> columns;
+  std::size_t wide = 14, label = 0;
+  for (ComparedRun const& run : c.runs) {
+    columns.push_back(quantities(run, c.runs.front()));
+    wide = std::max(wide, run.name.size() + 2);
+    for (Quantity const& q : columns.back()) label = std::max(label, q.name.size() + 1);
+  }
+  std::ios state(nullptr);
+  state.copyfmt(out);
+  out << std::left << std::setw(int(label)) << "" << std::right << std::setprecision(4);
+  for (ComparedRun const& run : c.runs) out << std::setw(int(wide)) << run.name;
+  for (std::size_t i = 0; i < columns.front().size(); ++i) {
+    out << '\n' << std::left << std::setw(int(label)) << columns.front()[i].name << std::right;
+    for (auto const& column : columns) {
+      double const x = column[i].value;
+      out << std::setw(int(wide));
+      x == std::round(x) && std::abs(x) < 1e9 ? out << long(x) : out << x;
+    }
+  }
+  out.copyfmt(state);
+  return out << '\n';
+}
+
+}  // namespace polybody

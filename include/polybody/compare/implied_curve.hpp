@@ -1,0 +1,72 @@
+#pragma once
+/// \file
+/// The space curve that a rotation field implies [thesis §2.3]: its tangent is the first axis of the sections, t = R
+/// e₁,
+///   r(s) = r₀ + ∫ t ds (Eq. 2.2),  κ = |t′| (Eq. 2.4),  τ = t·(t′ × t″)/κ²  (Frenet).
+/// With R′ = R K̃: t′ = R (0, K₃, −K₂), so that κ² = K₂² + K₃² and τ = K₁ + (K₂ K₃′ − K₃ K₂′)/κ².
+
+#include <concepts>
+#include <vector>
+
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/math/quadrature.hpp>
+
+namespace polybody {
+
+/// κ of the implied curve [1/m].
+inline double implied_curvature(SectionTurn const& s) { return std::hypot(s.K[1], s.K[2]); }
+
+/// τ of the implied curve [1/m]; NaN where the curve is straight and has none.
+inline double implied_torsion(SectionTurn const& s) {
+  return s.K[0] + (s.K[1] * s.dK[2] - s.K[2] * s.dK[1]) / (s.K[1] * s.K[1] + s.K[2] * s.K[2]);
+}
+
+/// An angle along a bar: its value [rad] and its first two derivatives by arc length.
+struct AngleAlong {
+  double value = 0.0, slope = 0.0, second = 0.0;
+};
+
+/// The rotation field of Eq. 2.1 at one section: ψ about Z, then θ about −Y, then φ about −X:
+///   R = exp(ψ e₃) exp(−θ e₂) exp(−φ e₁),  K = −φ′ e₁ + exp(φ e₁) (−θ′ e₂ + exp(θ e₂) ψ′ e₃).
+inline SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAlong const& phi) {
+  Vec3 const x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+  Mat3 const about_z = exp_so3<double>(psi.value * z), about_y = exp_so3<double>(theta.value * y);
+  Mat3 const about_x = exp_so3<double>(phi.value * x);
+  Vec3 const yawed = about_y * z, inner = psi.slope * yawed - theta.slope * y;
+  SectionTurn s;
+  s.R = about_z * about_y.transpose() * about_x.transpose();
+  s.K = about_x * inner - phi.slope * x;
+  Vec3 const rate = psi.second * yawed + psi.slope * theta.slope * y.cross(yawed) - theta.second * y;
+  s.dK = about_x * (phi.slope * x.cross(inner) + rate) - phi.second * x;
+  return s;
+}
+
+/// Points of the implied curve of a field s ↦ R(s), at s = 0, length/pieces, ...: five Gauss points in each piece. The
+/// field may have corners between pieces. \throws InvalidInput for a length that is not positive, or pieces < 1.
+template <class Field>
+  requires std::is_invocable_r_v<Mat3, Field&, double>
+std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, Vec3 const& start = Vec3::Zero()) {
+  require_positive(length, "implied_curve: the length");
+  if (pieces < 1) throw InvalidInput("implied_curve: at least one piece is needed.");
+  double const part = length / double(pieces);
+  std::vector<Vec3> curve{start};
+  for (Index i = 0; i < pieces; ++i) {
+    Vec3 r = curve.back();
+    for (GaussPoint const& g : gauss<5>) {
+      Mat3 const axes = rotation((double(i) + g.xi) * part);
+      r += g.weight * part * axes.col(0);
+    }
+    curve.push_back(r);
+  }
+  return curve;
+}
+
+/// The same for the rotation field of a beam at the coordinates q, from its first node: `samples` points in each
+/// element.
+template <RotationInterpolation Interpolation>
+std::vector<Vec3> implied_curve(Lrvf<Interpolation> const& beam, std::span<double const> q, int samples = 1) {
+  auto const rotation = [&](double s) { return beam.rotation_field(beam.at(s), q).R; };
+  return implied_curve(rotation, beam.length(), beam.elements() * samples, part<3>(q, 0));
+}
+
+}  // namespace polybody

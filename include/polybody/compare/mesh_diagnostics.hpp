@@ -1,0 +1,68 @@
+#pragma once
+/// \file
+/// The two curves of a large-rotation-vector beam. Its position field gives one; its rotation field implies
+/// another, r(s) = r(0) + ∫ t₁(θ) ds [thesis Eq. 2.2, 2.17]. Their nodes, lengths and curvatures side by side.
+
+#include <span>
+#include <vector>
+
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+
+namespace polybody {
+
+struct MeshDiagnostics {
+  std::vector<Vec2> position_nodes;        ///< nodes of the position mesh [m]
+  std::vector<Vec2> rotation_nodes;        ///< the same material points on the curve the rotations imply [m]
+  double largest_gap = 0.0;                ///< between the two, over all nodes [m]
+  double position_length = 0.0;            ///< arc length of the position mesh [m]
+  double rotation_length = 0.0;            ///< arc length of the implied curve [m]
+  std::vector<double> position_curvature;  ///< |r′ × r″|/|r′|³ in the middle of each element [1/m], Eq. 2.16
+  std::vector<double> rotation_curvature;  ///< θ′ in each element [1/m], Eq. 2.15
+};
+
+/// Points of the curve that the rotation field implies: `samples` in each element and the first node.
+inline std::vector<Vec2> implied_curve(planar::Lrvf const& beam, std::span<double const> q, int samples = 1) {
+  std::vector<double> const rest(q.size(), 0.0);
+  auto const at = [&](Index e, double xi) {
+    return beam.centre_line<double>({e, xi, 0.0}, q, std::span<double const>(rest));
+  };
+  double const part = beam.element_length() / samples;
+  std::vector<Vec2> curve{at(0, 0.0).r};
+  for (Index e = 0; e < beam.elements(); ++e)
+    for (int i = 0; i < samples; ++i) {
+      Vec2 r = curve.back();
+      for (GaussPoint const& g : gauss<5>) {
+        double const angle = at(e, (i + g.xi) / samples).angle;
+        r += g.weight * part * Vec2(std::cos(angle), std::sin(angle));
+      }
+      curve.push_back(r);
+    }
+  return curve;
+}
+
+/// Both meshes of a beam at the coordinates q (see `coordinates_of`).
+inline MeshDiagnostics mesh_diagnostics(planar::Lrvf const& beam, std::span<double const> q) {
+  MeshDiagnostics d;
+  double const l = beam.element_length();
+  d.rotation_nodes = implied_curve(beam, q);
+  for (Index i = 0; i <= beam.elements(); ++i) {
+    Vec2 const r = part<2>(q, 3 * i);
+    d.position_nodes.push_back(r);
+    d.largest_gap = std::max(d.largest_gap, (r - d.rotation_nodes[std::size_t(i)]).norm());
+  }
+  ShapeValues<2> const n = linear_shape(0.5, l);
+  for (Index e = 0; e < beam.elements(); ++e) {
+    Vec2 const a = d.position_nodes[std::size_t(e)], b = d.position_nodes[std::size_t(e) + 1];
+    Vec2 const slope = n.ds[0] * a + n.ds[1] * b, second = n.dds[0] * a + n.dds[1] * b;
+    d.position_length += slope.norm() * l;
+    d.position_curvature.push_back(std::abs(slope[0] * second[1] - slope[1] * second[0]) / std::pow(slope.norm(), 3));
+    d.rotation_curvature.push_back(beam.strains<0>({e, 0.5, 0.0}, q)[2]);
+    for (GaussPoint const& g : gauss<5>) {
+      double const angle = q[std::size_t(3 * e + 2)] * (1.0 - g.xi) + q[std::size_t(3 * e + 5)] * g.xi;
+      d.rotation_length += g.weight * l * std::hypot(std::cos(angle), std::sin(angle));
+    }
+  }
+  return d;
+}
+
+}  // namespace polybody

@@ -1,0 +1,136 @@
+#pragma once
+/// \file
+/// What accuracy costs: one case at several steps or tolerances, error against CPU time.
+
+#include <polybody/compare/compare.hpp>
+
+namespace polybody {
+
+/// One run of a curve.
+struct WorkPoint {
+  double setting = 0.0;  ///< the step [s], or the relative tolerance of an integrator that controls its step
+  long steps = 0;
+  double cpu = 0.0;          ///< of the steps alone [s]
+  double error = 0.0;        ///< in the unit of the output, see `work_precision`
+  std::string failure = {};  ///< why there is no result; then only the setting has a meaning
+};
+
+/// All runs of one formulation.
+struct WorkCurve {
+  std::string name;
+  std::string output;  ///< of which the error is
+  std::vector<WorkPoint> points = {};
+};
+
+/// Curves of several formulations for one output.
+struct WorkPrecision {
+  std::vector<WorkCurve> curves;
+};
+
+/// An output in a recorded run, y(t) by cubics through its times.
+struct RecordedOutput {
+  std::vector<double> times, values;
+  double operator()(double t) const { return detail::interpolate(times, values, t); }
+};
+
+/// What an output should be: a function of time or a `reference_run`, or a number for the end of the run.
+struct OutputReference {
+  std::function<double(double)> at;  ///< y_ref(t)
+  bool only_at_end = false;
+
+  OutputReference(double end) : at([end](double) { return end; }), only_at_end(true) {}
+  template <class F>
+    requires std::is_invocable_r_v<double, F const&, double>
+  OutputReference(F const& y) : at(y) {}
+};
+
+namespace detail {
+
+/// \throws InvalidInput unless the case has that output.
+template <class S>
+auto const& output_of(S const& scenario, std::size_t output, std::string const& what) {
+  if (output >= scenario.outputs.size())
+    throw InvalidInput(what + ": there is no output " + std::to_string(output) + "; the case has " +
+                       std::to_string(scenario.outputs.size()) + ", counted from 0.");
+  return scenario.outputs[output];
+}
+
+/// Makes `setting` the step, or the relative tolerance, with which the absolute one goes in proportion.
+template <class I>
+void set_accuracy(I& integrator, RunOptions& options, double setting) {
+  require_positive(setting, "work_precision: a step or tolerance");
+  if constexpr (requires { I::controls_step; }) {
+    integrator.absolute_tolerance *= setting / integrator.relative_tolerance;
+    integrator.relative_tolerance = setting;
+  } else {
+    options.step = setting;
+  }
+}
+
+}  // namespace detail
+
+/// Records output number `output` of the case in a run at the given step or tolerance, as a reference for other
+/// integrators. Between its times it is as good as h⁴ d⁴y/dt⁴/43: give a short step. An integrator that controls its
+/// step takes at least 4000.
+template <class C, class F>
+  requires CaseFor<C, F>
+RecordedOutput reference_run(C const& make_case, F const& formulation, double setting, std::size_t output = 0) {
+  auto scenario = make_case(formulation);
+  auto const& value = detail::output_of(scenario, output, "reference_run").value;
+  auto integrator = formulation.integrator;
+  RunOptions& options = scenario.options;
+  detail::set_accuracy(integrator, options, setting);
+  State x = scenario.start;
+  double const longest = (options.until - x.t) / 4000.0;
+  if constexpr (requires { decltype(integrator)::controls_step; })
+    if (longest > 0.0) options.largest_step = std::min(options.largest_step.value_or(longest), longest);
+  RecordedOutput out;
+  for (State const& now : simulate(scenario.model, x, integrator, options)) {
+    out.times.push_back(now.t);
+    out.values.push_back(value(scenario.model, now));
+  }
+  return out;
+}
+
+/// Runs the case once for each setting: the step, or the relative tolerance of an integrator that controls its step.
+/// The error of output y is, with the states of the run at t_k and its end T,
+///   max_k |y(t_k) − y_ref(t_k)|  for a function of time or a `reference_run`,   |y(T) − y_ref|  for a number.
+/// A step that fails (too long a step, say) ends that run alone and leaves its words in `failure`.
+/// \throws InvalidInput for settings that are not positive, or where there are none, and an output that the case does
+/// not have.
+template <class C, class F>
+  requires CaseFor<C, F>
+WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<double> const& settings,
+                         OutputReference const& reference, std::size_t output = 0) {
+  auto scenario = make_case(formulation);
+  auto const& y = detail::output_of(scenario, output, "work_precision");
+  if (settings.empty()) throw InvalidInput("work_precision: give one step or tolerance at least.");
+  WorkCurve curve{detail::name_of(formulation, {}), y.name};
+  for (double const setting : settings) {
+    auto integrator = formulation.integrator;
+    detail::set_accuracy(integrator, scenario.options, setting);
+    WorkPoint& point = curve.points.emplace_back(WorkPoint{.setting = setting});
+    auto const compare_at = [&](State const& x) {
+      double const error = std::abs(y.value(scenario.model, x) - reference.at(x.t));
+      if (!std::isfinite(error))
+        throw NonFinite("The error of " + y.name + " is not finite at t = " + number(x.t) + " s.");
+      point.error = std::max(point.error, error);
+    };
+    State x = scenario.start, again = x;
+    auto run = simulate(scenario.model, x, integrator, scenario.options);
+    try {
+      std::clock_t const begin = std::clock();
+      point.steps = run.run().steps;
+      point.cpu = double(std::clock() - begin) / CLOCKS_PER_SEC;
+      if (reference.only_at_end)
+        compare_at(x);
+      else  // a second run, so that nothing stands between the steps that are timed
+        for (State const& now : simulate(scenario.model, again, integrator, scenario.options)) compare_at(now);
+    } catch (Error const& failed) {
+      point.failure = failed.what();
+    }
+  }
+  return curve;
+}
+
+}  // namespace polybody

@@ -1,0 +1,102 @@
+#pragma once
+/// \file
+/// What a model looks like in a state: shapes carried by markers, and bars swept along their sections, under every
+/// formulation.
+
+#include <functional>
+#include <string>
+
+#include <polybody/io/surface.hpp>
+#include <polybody/stress/section.hpp>
+
+namespace polybody {
+
+/// One thing to be seen: its surface in world axes, and in each of its points the axial stress [N/m²] where its body
+/// knows it, else none, and the velocity [m/s].
+struct VisualPart {
+  std::string name;
+  Surface surface;
+  std::vector<double> axial_stress;
+  std::vector<Vec3> velocities = {};
+};
+
+namespace detail {
+/// Point i of a part stands at `point` in the axes of a frame, and moves with it.
+template <class = void>
+void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, std::size_t i) {
+  Vec3 const arm = f.A * point;
+  part.surface.points[i] = f.r + arm;
+  part.velocities[i] = f.v + f.w.cross(arm);
+}
+}  // namespace detail
+
+/// The visual geometry of a model, put together once and then asked for any state:
+///   Visual visual(model);
+///   visual.attach(chassis.at({0, 0, 0}), box({4, 2, 1}));   carried by the marker's frame
+///   visual.sweep(beam, bar, 20);                            the bar's section along the body, deformed as the body is
+///   for (VisualPart const& part : visual.at(x)) ...
+/// The model must outlive it.
+template <class M>
+class Visual {
+ public:
+  explicit Visual(M const& model) : model_(&model) {}
+
+  /// The shape's axes are the marker's. \throws InvalidInput for a marker of another model.
+  template <class B>
+  void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape") {
+    model_->require_own(marker.model, name);
+    parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
+    moves_.push_back([model = model_, marker, points = shape.points](State const& x, VisualPart& part) {
+      Frame<double> const f = frame(*model, x, marker);
+      for (std::size_t i = 0; i < points.size(); ++i) detail::place_point(f, points[i], part, i);
+    });
+  }
+
+  /// The bar that the body was made from, in so many pieces along its length. Points of a section lie where the body's
+  /// own points do; sections of cables and of the plane are carried by the frame on the axis.
+  /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
+  template <class B>
+  void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24) {
+    model_->require_own(body.model, body.name);
+    if (pieces < 1) throw InvalidInput("\"" + body.name + "\": a sweep needs at least one piece.");
+    std::vector<Vec2> const ring = outline(bar, sides);
+    int const n = int(ring.size());
+    bool const stressed = HasSections<B> && bar.material;
+    std::size_t const points = std::size_t((pieces + 1) * n);
+    parts_.push_back(
+        {body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
+    moves_.push_back([model = model_, body, bar, pieces, ring](State const& x, VisualPart& part) {
+      std::size_t i = 0;
+      for (int k = 0; k <= pieces; ++k) {
+        double const s = bar.length * double(k) / double(pieces);
+        Marker<B> const axis = body.at(s);
+        Frame<double> const f = frame(*model, x, axis);
+        Vec6 forces = Vec6::Zero();
+        if constexpr (HasSections<B>)
+          if (!part.axial_stress.empty()) forces = section_forces(*model, x, axis);
+        for (Vec2 const& p : ring) {
+          if (!part.axial_stress.empty()) part.axial_stress[i] = fibre_stress(bar, forces, p[0], p[1]);
+          if constexpr (B::world == World::space && requires { body.at(s, p[0], p[1]); })
+            detail::place_point(frame(*model, x, body.at(s, p[0], p[1])), Vec3::Zero(), part, i++);
+          else
+            detail::place_point(f, Vec3(0, p[0], p[1]), part, i++);
+        }
+      }
+    });
+  }
+
+  M const& model() const { return *model_; }
+
+  /// All parts in state x; valid until asked again.
+  std::vector<VisualPart> const& at(State const& x) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) moves_[i](x, parts_[i]);
+    return parts_;
+  }
+
+ private:
+  M const* model_;
+  std::vector<VisualPart> parts_;
+  std::vector<std::function<void(State const&, VisualPart&)>> moves_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,110 @@
+#pragma once
+/// \file
+/// Where the energy of a run comes from and where it goes:
+///   work of the drives + of the loads + of gravity = Δ kinetic + Δ stored + dissipated + unaccounted.
+/// For exact motions nothing is unaccounted.
+
+#include <polybody/run/energy.hpp>
+#include <polybody/run/initial_conditions.hpp>
+
+namespace polybody {
+
+/// Powers in state x with its multipliers; `system` must have been evaluated at x, and made with `Entries::energy`.
+/// `backwards` (nv) is scratch. Rows of bodies (Euler parameters) and linear joints do no work and are left out. A
+/// potential is taken for a function of the frames alone.
+template <class = void>
+Powers powers(System const& system, State const& x, VecX& backwards) {
+  backwards = -x.v;
+  return require_entry(system.entries().first.powers, "energies")(system.entries().second, {x.q, x.v, x.t}, backwards,
+                                                                  x.lambda, system.load_factor, system.data());
+}
+template <class = void>
+Powers powers(System const& system, State const& x) {
+  VecX backwards;
+  return powers(system, x, backwards);
+}
+
+/// An account of a run, state by state; powers are integrated by the trapezoidal rule, energies are exact:
+///   EnergyAudit audit(model);
+///   for (State const& now : simulate(model, x, integrator, options)) audit.record(now);
+/// What is unaccounted is the doing of the numbers: what the integrator loses or gains, and what sampling misses. That
+/// is h²/12 of what the slopes of the powers grow by [Euler and Maclaurin], and about ½ h of each jump (loads at
+/// corners, contacts with dampers at touch). States must have the multipliers of their own time. Those of `simulate`
+/// have, also for joints whose rows are eliminated (Recursive, AncfLinear), as it works out what these hold. A state
+/// put together by hand has not; nor have those of `EnergyMomentum` and `EnergyDecaying`, whose multipliers belong to
+/// the middle of the step: there the drives are right to O(h). A record takes no memory from the heap, but for bodies
+/// whose kinetic energy does (floating frames). The model must outlive the audit and must not change after.
+class EnergyAudit {
+ public:
+  template <class M>
+  explicit EnergyAudit(M const& model)
+      : system_(model, with<Entries::energy>), backwards_(VecX::Zero(model.speeds())) {}
+
+  /// Begins anew at x. \throws InvalidInput when x does not fit the model.
+  void start(State const& x) {
+    require_fitting(system_, x);
+    see(x);
+    first_ = last_;
+    work_ = {};
+    turnover_ = last_.kinetic;
+    started_ = true;
+  }
+
+  /// Adds what happened since the last state; the first one begins. \throws InvalidInput for a state of another model,
+  /// or earlier than the last one.
+  void record(State const& x) {
+    if (!started_) return start(x);
+    if (x.q.size() != system_.coordinates() || x.v.size() != system_.speeds() || x.lambda.size() != system_.rows())
+      require_fitting(system_, x);  // which words it
+    double const h = x.t - t_;
+    if (!(h >= 0.0))
+      throw InvalidInput("EnergyAudit: the state at t = " + number(x.t) +
+                         " s is earlier than the last one at t = " + number(t_) + " s. Call start() for another run.");
+    Powers const before = powers_;
+    see(x);
+    work_.drives += 0.5 * h * (before.drives + powers_.drives);
+    work_.loads += 0.5 * h * (before.loads + powers_.loads);
+    work_.dissipated += 0.5 * h * (before.dissipated + powers_.dissipated);
+    double const in = std::abs(work_.drives) + std::abs(work_.loads) + std::abs(work_of_gravity());
+    double const out = std::abs(kinetic()) + std::abs(stored()) + std::abs(work_.dissipated);
+    turnover_ = std::max({turnover_, in, out, last_.kinetic});
+  }
+
+  /// Since the start [J].
+  double work_of_drives() const { return work_.drives; }
+  double work_of_loads() const { return work_.loads; }
+  double work_of_gravity() const { return first_.gravity - last_.gravity; }
+  double kinetic() const { return last_.kinetic - first_.kinetic; }  ///< gained
+  double stored() const {                                            ///< in bodies, compliant joints and forces
+    return (last_.strain - first_.strain) + (last_.joints - first_.joints) + (last_.forces - first_.forces);
+  }
+  double dissipated() const { return work_.dissipated; }
+
+  /// What does not add up [J]: positive where the integrator loses energy.
+  double unaccounted() const {
+    return work_of_drives() + work_of_loads() + work_of_gravity() - kinetic() - stored() - dissipated();
+  }
+  /// Its size against the largest sum so far of what came in, or of what it became, or the largest kinetic energy.
+  double relative() const { return turnover_ > 0.0 ? std::abs(unaccounted()) / turnover_ : 0.0; }
+
+  /// In the last state.
+  Powers const& powers() const { return powers_; }
+  Energy const& energy() const { return last_; }
+
+ private:
+  void see(State const& x) {
+    system_.evaluate(x.q, x.v, x.t);
+    last_ = polybody::energy(system_, x);
+    powers_ = polybody::powers(system_, x, backwards_);
+    t_ = x.t;
+  }
+
+  System system_;
+  VecX backwards_;
+  Energy first_, last_;
+  Powers powers_, work_;  // work_: their integrals [J]
+  double t_ = 0.0, turnover_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace polybody

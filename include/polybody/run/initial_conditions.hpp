@@ -1,0 +1,87 @@
+#pragma once
+/// \file
+/// Consistent starts: assembly of positions, projection of velocities, accelerations and multipliers.
+
+#include <polybody/run/repeated_rows.hpp>
+#include <polybody/system/model_entries.hpp>
+
+namespace polybody {
+
+namespace detail {
+/// \throws InvalidInput unless x has these sizes and finite coordinates and speeds.
+template <class = void>
+void require_sizes(State const& x, Index coordinates, Index speeds, Index rows) {
+  if (x.q.size() != coordinates || x.v.size() != speeds || x.a.size() != speeds || x.lambda.size() != rows)
+    throw InvalidInput(
+        "The state does not fit the model; take it from reference_state() after the last body and "
+        "joint were added.");
+  require_finite(x.q, "The coordinates of the state");
+  require_finite(x.v, "The speeds of the state");
+}
+}  // namespace detail
+
+/// \throws InvalidInput unless x is a state of this model, as it stands after its last body and joint, with finite
+/// coordinates and speeds.
+template <class M>
+void require_fitting(M const& model, State const& x) {
+  detail::require_sizes(x, model.coordinates(), model.speeds(), model.rows());
+}
+template <class = void>
+void require_fitting(System const& system, State const& x) {
+  ModelLayout const& whole = system.layout();
+  detail::require_sizes(x, whole.coordinates, whole.speeds, whole.rows);
+}
+/// \throws InconsistentStart naming the joint that is violated most, when by more than `tolerance`.
+template <class = void>
+void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
+  system.evaluate(x.q, x.v, x.t);
+  VecX phi = VecX::Zero(system.rows());
+  system.violation(phi);
+  Index worst = 0;
+  if (phi.size() == 0 || phi.cwiseAbs().maxCoeff(&worst) <= tolerance) return;
+  throw InconsistentStart("At the start " + system.name_of(system.speeds() + worst) + " is open by " +
+                          number(std::abs(phi[worst])) +
+                          ". Place the bodies so that it closes, or call "
+                          "assemble(model, x).");
+}
+
+/// \throws InconsistentStart naming joints that stay open because their rows repeat each other with other dimensions.
+template <class Solver>
+void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+  if (!x.q.allFinite()) return;
+  forward.hold(system, x.q, x.v, x.t);
+  VecX phi = VecX::Zero(system.rows());
+  system.violation(phi);
+  require_no_contradiction(system, forward, phi, detail::ContradictionLimits{}.position, "positions");
+}
+
+/// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton), then
+/// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed, or the joints whose rows
+/// repeat each other but contradict; x is then untouched.
+template <LinearSolver Solver = DefaultSolver>
+void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
+  require_fitting(system, x);
+  ForwardDynamics<Solver> forward(system);
+  State trial = x;
+  double before = 0.0;
+  for (int k = 0;; ++k) {
+    before = forward.project_positions_once(system, trial.q, trial.v, trial.t);
+    if (before <= tolerance) break;
+    if (k == max_iterations || !std::isfinite(before)) {
+      require_closable(system, forward, trial);
+      require_assembled(system, trial, tolerance);
+      throw InconsistentStart("assemble: the joints cannot be closed from this start.");
+    }
+  }
+  forward.project_velocities(system, trial.q, trial.v, trial.t);
+  require_consistent_rows(system, forward, trial);
+  x = std::move(trial);
+}
+
+template <class M>
+void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
+  System system(model, with<Entries::motion>);
+  assemble(system, x, tolerance, max_iterations);
+}
+
+}  // namespace polybody

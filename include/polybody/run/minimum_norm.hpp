@@ -1,0 +1,91 @@
+#pragma once
+#include <polybody/run/initial_conditions.hpp>
+
+namespace polybody {
+
+/// Multipliers of least norm among those with the same forces Gᵀλ, where rows repeat others. A row counts by the wrench
+/// it puts on its joint's second body:
+///   min Σ λᵢ² (|fᵢ|² + |mᵢ|²/ℓ²),   [fᵢ; mᵢ] the row of Gb,
+/// ℓ the root mean square distance of the joints' points from their mean (1 m where all coincide), so that the share
+/// does not depend on the units: what equally stiff joints would carry if a turn by one radian were as stiff as a slide
+/// by ℓ. Rows that a body owns count 1.
+template <class = void>  // compiled where it is used
+class MinimumNormOf {
+ public:
+  explicit MinimumNormOf(System const& s) : relation_(s), weight_(VecX::Ones(s.rows())), weighted_(weight_) {}
+
+  /// Replaces x.lambda; one factorisation, and a solution for each row that repeats others.
+  template <class Solver>
+  void apply(System& system, ForwardDynamics<Solver>& forward, State& x) {
+    if (system.rows() == 0) return;
+    forward.hold(system, x.q, x.v, x.t);
+    if (forward.redundant_rows().empty()) return;
+    weigh(system);
+    std::size_t count = 0;
+    for (Index const i : forward.redundant_rows()) {  // a basis of the null space of Gᵀ, orthonormal under the weights
+      if (!relation_.find(system, forward, i)) continue;
+      VecX& c = relation_.c;
+      for (int pass = 0; pass < 2; ++pass)
+        for (std::size_t k = 0; k < count; ++k) c -= product(basis_[k], c) * basis_[k];
+      c /= std::sqrt(product(c, c));
+      x.lambda -= product(c, x.lambda) * c;
+      if (count == basis_.size()) basis_.emplace_back();
+      basis_[count++] = c;
+    }
+  }
+
+ private:
+  double product(VecX const& a, VecX const& b) {
+    weighted_ = b;
+    weighted_.array() *= weight_.array();
+    return a.dot(weighted_);
+  }
+
+  void weigh(System const& system) {
+    Vec3 mean = Vec3::Zero();
+    double joints = 0.0, spread = 0.0;
+    auto const each = [&](auto&& f) {
+      for (RowBlock<double> const& block : system.data().rows)
+        if (block.source == RowSource::joint) f(block, system.data().markers[std::size_t(block.b.marker)].frame.r);
+    };
+    each([&](RowBlock<double> const&, Vec3 const& place) {
+      mean += place;
+      joints += 1.0;
+    });
+    mean /= std::max(joints, 1.0);
+    each([&](RowBlock<double> const&, Vec3 const& place) { spread += (place - mean).squaredNorm() / joints; });
+    double const arm2 = spread > 1e-20 * mean.squaredNorm() ? spread : 1.0;
+    each([&](RowBlock<double> const& block, Vec3 const&) {
+      for (int i = 0; i < block.rows; ++i) {
+        double f2 = 0.0, m2 = 0.0;
+        for (int j = 0; j < 3; ++j) {
+          double const f = block.b.map[block.rows * j + i], m = block.b.map[block.rows * (3 + j) + i];
+          f2 += f * f;
+          m2 += m * m;
+        }
+        double const w = f2 + m2 / arm2;
+        weight_[block.row + i] = w > 0.0 ? w : 1.0;
+      }
+    });
+  }
+
+  detail::RowRelation<> relation_;
+  VecX weight_, weighted_;
+  std::vector<VecX> basis_;
+};
+
+using MinimumNorm = MinimumNormOf<>;
+
+/// The multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state
+/// of another model.
+template <LinearSolver Solver = DefaultSolver, class M>
+VecX minimum_norm_multipliers(M const& model, State const& x) {
+  require_fitting(model, x);
+  System system(model, with<Entries::motion>);
+  ForwardDynamics<Solver> forward(system);
+  State shared = x;
+  MinimumNormOf<>(system).apply(system, forward, shared);
+  return shared.lambda;
+}
+
+}  // namespace polybody

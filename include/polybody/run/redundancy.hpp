@@ -1,0 +1,156 @@
+#pragma once
+/// \file
+/// How many of a model's rows say something new: the rank of G by a sparse rank-revealing QR factorisation of Gᵀ.
+
+#include <Eigen/SparseQR>
+
+#include <polybody/run/initial_conditions.hpp>
+
+namespace polybody {
+
+/// What the rows of a model do at a state.
+struct Redundancy {
+  struct Share {
+    std::string name;  ///< joint "a"
+    Index rows;        ///< of it that repeat others
+  };
+  Index rows = 0;
+  Index rank = 0;                ///< of G
+  Index degrees_of_freedom = 0;  ///< speeds − rank, at this state
+  /// Joints with rows that repeat those of joints connected before them (or, in part, their own).
+  std::vector<Share> repeated = {};
+  /// Groups of joints (joint "a", joint "b", …) whose rows repeat each other but contradict: no small move closes them,
+  /// no speeds and no accelerations satisfy them.
+  std::vector<std::string> in_positions = {}, in_speeds = {}, in_accelerations = {};
+  bool consistent() const { return in_positions.empty() && in_speeds.empty() && in_accelerations.empty(); }
+};
+
+namespace detail {
+
+/// Takes G out of the blocks of a tangent, transposed.
+struct RowsSink {
+  Index speeds;
+  std::vector<Eigen::Triplet<double>>& entries;
+  void add(Index row, Index col, BlockView const& b) {
+    if (row >= speeds || col < speeds) return;
+    for (Index j = 0; j < b.cols; ++j)
+      for (Index i = 0; i < b.rows; ++i)
+        if (b(i, j) != 0.0) entries.emplace_back(int(row + i), int(col - speeds + j), b(i, j));
+  }
+};
+
+/// Gᵀ P = Q [R₁, R₂; 0, 0], R₁ of the size of the rank: the last rows under P repeat the first, and Gᵀc = 0 for each
+/// column of c = P [−R₁⁻¹R₂; 1]. Speeds are scaled first and rows then, so that every row of G has the norm 1 whatever
+/// its units; a row repeats those before it when it stands off their span by less than `threshold`.
+template <class Ordering = Eigen::NaturalOrdering<int>>  // rows in the order of their joints: the later ones are named
+class RowFactor {
+ public:
+  static constexpr double threshold = 1e-6;
+
+  RowFactor(Index speeds, Index rows, std::vector<Eigen::Triplet<double>> const& entries)
+      : scale_(std::size_t(rows), 0.0) {
+    std::vector<double> of_speed(std::size_t(speeds), 0.0);
+    for (auto const& e : entries)
+      of_speed[std::size_t(e.row())] = std::hypot(of_speed[std::size_t(e.row())], e.value());
+    std::vector<int> place;  // speeds that no row touches are left out
+    Index touched = 0;
+    for (double const s : of_speed) place.push_back(s > 0.0 ? int(touched++) : -1);
+    auto const scaled = [&](auto const& e) { return e.value() / of_speed[std::size_t(e.row())]; };
+    for (auto const& e : entries) scale_[std::size_t(e.col())] = std::hypot(scale_[std::size_t(e.col())], scaled(e));
+    for (double& s : scale_) s = s > 0.0 ? 1.0 / s : 1.0;
+    std::vector<Eigen::Triplet<double>> kept;
+    for (auto const& e : entries)
+      kept.emplace_back(place[std::size_t(e.row())], e.col(), scaled(e) * scale_[std::size_t(e.col())]);
+    Eigen::SparseMatrix<double> transposed(touched, rows);
+    transposed.setFromTriplets(kept.begin(), kept.end());
+    qr_.setPivotThreshold(threshold);
+    if (touched > 0) qr_.compute(transposed);
+    rank_ = touched > 0 ? qr_.rank() : 0;
+  }
+
+  Index rank() const { return rank_; }
+  Index repeated() const { return Index(scale_.size()) - rank_; }
+  /// The k-th row that repeats others.
+  Index row(Index k) const { return rank_ > 0 ? qr_.colsPermutation().indices()[rank_ + k] : k; }
+  /// c (rows) of it.
+  VecX relation(Index k) const {
+    VecX x = VecX::Zero(rank_), c = VecX::Zero(Index(scale_.size()));
+    c[row(k)] = scale_[std::size_t(row(k))];
+    if (rank_ == 0) return c;
+    auto const& r = qr_.matrixR();
+    auto const column = [&](Index j, auto&& f) {
+      for (typename Qr::QRMatrixType::InnerIterator e(r, j); e; ++e)
+        if (e.row() < rank_) f(e.row(), e.value());
+    };
+    column(rank_ + k, [&](Index i, double value) { x[i] = value; });
+    for (Index j = rank_; j-- > 0;) {
+      double pivot = 0.0;
+      column(j, [&](Index i, double value) { pivot = i == j ? value : pivot; });
+      x[j] /= pivot;
+      column(j, [&](Index i, double value) { x[i] -= i < j ? value * x[j] : 0.0; });
+    }
+    for (Index j = 0; j < rank_; ++j) {
+      Index const i = qr_.colsPermutation().indices()[j];
+      c[i] = -scale_[std::size_t(i)] * x[j];
+    }
+    return c;
+  }
+
+ private:
+  using Qr = Eigen::SparseQR<Eigen::SparseMatrix<double>, Ordering>;
+  std::vector<double> scale_;
+  Qr qr_;
+  Index rank_ = 0;
+};
+
+}  // namespace detail
+
+/// Counts and names the rows of `model` that repeat others at x (its place, speeds and time). A factorisation of its
+/// own: a run finds rows that repeat others by itself (`RunReport::redundant`, where another joint of the same loop may
+/// be named). A contradiction in positions is one to first order: ask where `assemble` came as near as it could.
+/// \throws InvalidInput for a state of another model.
+template <class = void>
+Redundancy redundancy(System& system, State const& x) {
+  require_fitting(system, x);
+  system.evaluate(x.q, x.v, x.t);
+  std::vector<Eigen::Triplet<double>> entries;
+  detail::RowsSink sink{system.speeds(), entries};
+  VecX phi = VecX::Zero(system.rows()), rate = phi, gamma = phi;
+  system.masses(sink);
+  detail::RowFactor<> const factor(system.speeds(), system.rows(), entries);
+  system.violation(phi);
+  system.violation_rate(rate);
+  system.acceleration_bias(gamma);
+
+  Redundancy out{.rows = system.rows(), .rank = factor.rank(), .degrees_of_freedom = system.speeds() - factor.rank()};
+  std::vector<Index> repeated;
+  detail::ContradictionLimits const limits;
+  auto const largest = [](VecX const& b) { return b.size() ? b.cwiseAbs().maxCoeff() : 0.0; };
+  double const in_speeds = limits.relative * (1.0 + largest(x.v)),
+               in_accelerations = limits.relative * (1.0 + largest(gamma));
+  for (Index k = 0; k < factor.repeated(); ++k) {
+    repeated.push_back(factor.row(k));
+    VecX const c = factor.relation(k);
+    auto const compare = [&](VecX const& b, double limit, std::vector<std::string>& found) {
+      if (std::abs(c.dot(b)) > limit * largest(c)) found.push_back(detail::names_in(system, c));
+    };
+    compare(phi, limits.position, out.in_positions);
+    compare(rate, in_speeds, out.in_speeds);
+    compare(gamma, in_accelerations, out.in_accelerations);
+  }
+  std::sort(repeated.begin(), repeated.end());
+  for (Index const row : repeated) {
+    std::string const name = system.name_of(system.speeds() + row);
+    if (out.repeated.empty() || out.repeated.back().name != name) out.repeated.push_back({name, 0});
+    ++out.repeated.back().rows;
+  }
+  return out;
+}
+
+template <class M>
+Redundancy redundancy(M const& model, State const& x) {
+  System system(model, with<Entries::motion>);
+  return redundancy(system, x);
+}
+
+}  // namespace polybody

@@ -1,0 +1,97 @@
+#pragma once
+/// \file
+/// Rows that repeat others, as a factorisation of [M, Gᵀ; G, 0] drops them: how they hang together and whether they
+/// contradict. By the factorisation that is there anyhow; for a count of its own see run/redundancy.hpp.
+
+#include <polybody/integrators/forward_dynamics.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// The largest |c·b| over max |c| of rows with Gᵀc = 0 that counts as rounding, for b of a state's Φ, Φ̇ and γ.
+struct ContradictionLimits {
+  double position = 1e-8;
+  double relative = 1e-6;  ///< for Φ̇ to 1 + max |v|, for γ to 1 + max |γ|
+};
+
+/// Names of the joints that take part in c (rows), each once: joint "a", joint "b".
+template <class = void>
+std::string names_in(System const& system, VecX const& c) {
+  std::string names, last;
+  double const enough = 1e-6 * c.cwiseAbs().maxCoeff();
+  for (Index i = 0; i < c.size(); ++i) {
+    if (std::abs(c[i]) <= enough) continue;
+    std::string const name = system.name_of(system.speeds() + i);
+    if (name == last) continue;
+    names += (names.empty() ? "" : ", ") + name;
+    last = name;
+  }
+  return names;
+}
+
+/// The relation Gᵀc = 0 in which a dropped row stands to the others: with w = Gᵀe of that row, M a + Gᵀμ = w and G a =
+/// 0 have a = 0, and c = e − μ.
+template <class = void>  // compiled where it is used
+struct RowRelation {
+  VecX c;  ///< (rows), 1 in the row itself and 0 in all others that were dropped
+
+  explicit RowRelation(System const& s) : c(VecX::Zero(s.rows())), mu_(c), w_(VecX::Zero(s.speeds())), a_(w_) {}
+
+  /// For unknown i of `redundant_rows()` where `forward` was factored last. False where that row repeats the others
+  /// only nearly.
+  template <class Solver>
+  bool find(System& system, ForwardDynamics<Solver>& forward, Index i) {
+    if (i < system.speeds()) return false;
+    c.setZero();
+    c[i - system.speeds()] = 1.0;
+    system.rows_transposed_times(c, w_);
+    double const size = w_.size() ? w_.cwiseAbs().maxCoeff() : 0.0;
+    forward.response(system, w_, a_, mu_);
+    c -= mu_;
+    system.rows_transposed_times(c, w_);
+    return size == 0.0 || w_.cwiseAbs().maxCoeff() <= 1e-6 * size;
+  }
+
+ private:
+  VecX mu_, w_, a_;
+};
+
+}  // namespace detail
+
+/// Rows that repeat each other must ask for the same: c·b = 0 for every c with Gᵀc = 0, where b is Φ, Φ̇ or γ of
+/// `system` as evaluated and `forward` as factored. \param what those are called  \param limit of |c·b|/max |c|
+/// \throws InconsistentStart naming the joints that do not.
+template <class Solver>
+void require_no_contradiction(System& system, ForwardDynamics<Solver>& forward, VecX const& b, double limit,
+                              std::string const& what) {
+  if (forward.redundant_rows().empty()) return;
+  detail::RowRelation<> relation(system);
+  for (Index const i : forward.redundant_rows()) {
+    if (!relation.find(system, forward, i)) continue;
+    double const left = relation.c.dot(b) / relation.c.cwiseAbs().maxCoeff();
+    if (std::abs(left) <= limit) continue;
+    throw InconsistentStart(
+        "The rows of " + detail::names_in(system, relation.c) + " repeat each other but contradict by " +
+        number(std::abs(left)) + " in their " + what + " at t = " + number(system.at().t) +
+        " s. Remove one of these joints, make their dimensions and laws agree, or give one a compliant "
+        "policy such as Penalty.");
+  }
+}
+
+/// The start of a run: no contradiction in the speeds and accelerations that the rows ask for. \throws
+/// InconsistentStart.
+template <class Solver>
+void require_consistent_rows(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+  if (system.rows() == 0) return;
+  forward.hold(system, x.q, x.v, x.t);
+  if (forward.redundant_rows().empty()) return;
+  detail::ContradictionLimits const limits;
+  VecX b = VecX::Zero(system.rows());
+  system.violation_rate(b);
+  double const fastest = x.v.size() ? x.v.cwiseAbs().maxCoeff() : 0.0;
+  require_no_contradiction(system, forward, b, limits.relative * (1.0 + fastest), "speeds");
+  system.acceleration_bias(b);
+  require_no_contradiction(system, forward, b, limits.relative * (1.0 + b.cwiseAbs().maxCoeff()), "accelerations");
+}
+
+}  // namespace polybody

@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// A run as it can be put away and taken up again.
+
+#include <polybody/math/checksum.hpp>
+#include <polybody/run/run_options.hpp>
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+/// What a snapshot knows its model by: counts of what is stepped, and the names of bodies, joints and forces in their
+/// order. Not masses, lengths or loads.
+struct ModelIdentity {
+  Index coordinates = 0, speeds = 0, rows = 0;
+  std::uint64_t names = 0;  ///< checksum
+
+  bool operator==(ModelIdentity const&) const = default;
+};
+
+/// \param stepped the system of the model, or of what policies leave of it
+template <class = void>
+ModelIdentity identity_of(System const& stepped) {
+  std::string names;
+  for (BodyPlace const& b : stepped.layout().bodies) (names += b.name) += '\n';
+  names += '\n';
+  for (JointPlace const& j : stepped.layout().joints) (names += j.name) += '\n';
+  names += '\n';
+  for (ForcePlace const& f : stepped.layout().forces) (names += f.name) += '\n';
+  return {stepped.coordinates(), stepped.speeds(), stepped.rows(), checksum(names)};
+}
+
+/// All that a run needs to go on, beside its model, integrator and options: these must be those of the run.
+struct RunSnapshot {
+  ModelIdentity model;
+  std::string integrator;  ///< its name
+  State state;             ///< as it is stepped, with the integrator's memory: without what policies eliminate
+  double step = 0.0;       ///< the next one, of an integrator that controls its step [s]
+  std::vector<int> sides;  ///< of zero on which the events stand
+  RunReport report;
+
+  /// \throws InvalidInput unless model, integrator and count of events are these.
+  template <class = void>
+  void require(ModelIdentity const& of, std::string const& by, std::size_t events) const {
+    auto const counts = [](ModelIdentity const& m) {
+      return std::to_string(m.coordinates) + " coordinates, " + std::to_string(m.speeds) + " speeds and " +
+             std::to_string(m.rows) + " rows";
+    };
+    if (model.coordinates != of.coordinates || model.speeds != of.speeds || model.rows != of.rows)
+      throw InvalidInput("resume: the snapshot is of another model. It has " + counts(model) + "; this one has " +
+                         counts(of) + ".");
+    if (model != of)
+      throw InvalidInput(
+          "resume: the snapshot is of another model: its bodies, joints or forces have other names than this one's.");
+    if (integrator != by)
+      throw InvalidInput("resume: the snapshot is of a run by " + integrator + ", not by " + by + ".");
+    if (sides.size() != events)
+      throw InvalidInput("resume: the snapshot is of a run with " + std::to_string(sides.size()) +
+                         " events, but the options have " + std::to_string(events) + ".");
+  }
+};
+
+}  // namespace polybody

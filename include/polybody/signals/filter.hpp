@@ -1,0 +1,178 @@
+#pragma once
+/// \file
+/// Histories of equally spaced samples by their Fourier sums: a low pass without shift of phase, amplitude spectra; and
+/// making samples equally spaced. Not in polybody.hpp: Eigen's FFT is unsupported there, and few programs need it.
+
+#include <algorithm>
+#include <complex>
+#include <concepts>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <unsupported/Eigen/FFT>
+
+#include <polybody/signals/samples.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// The step of equally spaced samples [s]: intervals may be off by a thousandth. \throws InvalidInput for others.
+template <class = void>
+double equal_step(std::span<double const> times, std::string const& who) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
+  std::vector<double> sorted = intervals;
+  auto const middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  for (std::size_t i = 0; i < intervals.size(); ++i)
+    if (std::abs(intervals[i] - *middle) > 1e-3 * *middle)
+      throw InvalidInput(who + ": the samples at " + number(times[i]) + " s and " + number(times[i + 1]) + " s lie " +
+                         number(intervals[i]) + " s apart, others " + number(*middle) +
+                         " s. Make them equally spaced with resampled, or close the gap.");
+  return (times.back() - times.front()) / double(intervals.size());
+}
+
+using HalfSpectrum = std::vector<std::complex<double>>;  ///< the terms of frequencies 0, 1/T, … up to Nyquist's
+
+template <class = void>
+HalfSpectrum fourier_terms(std::vector<double> const& values) {
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  HalfSpectrum terms;
+  fft.fwd(terms, values);
+  return terms;
+}
+
+}  // namespace detail
+
+/// The samples at t₀, t₀ + step, …, on straight lines between the given ones. What is faster than the new samples can
+/// show folds back: make such a history slow first, or sample closer.
+/// \param step [s]  \param largest_gap between given samples, over which a line is drawn [s]; 0: 1.5 steps
+/// \throws InvalidInput for fewer than two samples, NaNs, times that do not rise, a larger gap.
+template <class = void>
+std::vector<double> resampled(std::span<double const> times, std::span<double const> values, double step,
+                              double largest_gap = 0.0) {
+  detail::require_history(times, values, 2, "resampled");
+  require_positive(step, "resampled: the step");
+  require_not_negative(largest_gap, "resampled: the largest gap");
+  double const gap = largest_gap > 0.0 ? largest_gap : 1.5 * step;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (times[i] - times[i - 1] > gap)
+      throw InvalidInput("resampled: there is no sample between " + number(times[i - 1]) + " s and " +
+                         number(times[i]) + " s, a gap of more than " + number(gap) +
+                         " s. Name a largest_gap to draw a line across it.");
+  std::size_t const count = std::size_t((times.back() - times.front()) / step + 1e-6) + 1;
+  std::vector<double> out;
+  std::size_t after = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    double const t = times.front() + double(i) * step;
+    while (after + 1 < times.size() && times[after] < t) ++after;
+    double const share = std::min((t - times[after - 1]) / (times[after] - times[after - 1]), 1.0);
+    out.push_back((1.0 - share) * values[after - 1] + share * values[after]);
+  }
+  return out;
+}
+
+/// Frequencies up to the cut-off stay as they are, in size and phase, those above go: of the Fourier sum of the whole
+/// record,
+///   y(t) = Σ_k H(f_k) c_k e^{2πi f_k t},   f_k = k/T,
+/// H is 1 up to the cut-off, 0 above; with a roll-off it falls as ½(1 + cos π(f − f_c)/w) in between.
+/// The sum takes the record as periodic. Where its ends do not meet, a brick wall rings there; `mirrored` takes the
+/// record forth and back as the period, so that the ends meet, though with a kink. A roll-off makes ringing die out
+/// sooner.
+struct LowPass {
+  Required<double> cut_off;  ///< f_c [Hz]
+  double roll_off = 0.0;     ///< w [Hz]
+  bool mirrored = false;
+
+  /// H at f [Hz].
+  double share(double f) const {
+    if (f <= cut_off * (1.0 + 1e-12)) return 1.0;
+    return f < cut_off + roll_off ? 0.5 * (1.0 + std::cos(std::numbers::pi * (f - cut_off) / roll_off)) : 0.0;
+  }
+};
+
+/// The history without what is faster. The time it takes grows with the largest prime factor of the number of samples:
+/// choose a round number for long records. \param times equally spaced [s]
+/// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above Nyquist's
+/// frequency and for one whose period is longer than the record.
+template <class = void>
+std::vector<double> low_pass(std::span<double const> times, std::span<double const> values, LowPass const& filter) {
+  detail::require_history(times, values, 4, "low_pass");
+  require_positive(filter.cut_off, "low_pass: the cut-off");
+  require_not_negative(filter.roll_off, "low_pass: the roll-off");
+  double const step = detail::equal_step(times, "low_pass"), nyquist = 0.5 / step;
+  if (filter.cut_off > nyquist * (1.0 + 1e-9))
+    throw InvalidInput("low_pass: the cut-off of " + number(filter.cut_off) + " Hz is above Nyquist's frequency of " +
+                       number(nyquist) + " Hz, as samples are " + number(step) +
+                       " s apart. Record in smaller steps or lower the cut-off.");
+  if (filter.cut_off * step * double(values.size()) < 1.0)
+    throw InvalidInput("low_pass: the record of " + number(step * double(values.size())) +
+                       " s is shorter than a period of the cut-off, " + number(1.0 / filter.cut_off) +
+                       " s. Record for longer or raise the cut-off.");
+
+  std::vector<double> period(values.begin(), values.end());
+  if (filter.mirrored) period.insert(period.end(), values.rbegin() + 1, values.rend() - 1);
+  double mean = 0.0;
+  for (double const x : period) mean += x / double(period.size());
+  for (double& x : period) x -= mean;
+  detail::HalfSpectrum terms = detail::fourier_terms(period);
+  for (std::size_t k = 0; k < terms.size(); ++k) terms[k] *= filter.share(double(k) / (step * double(period.size())));
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  fft.inv(period, terms, Eigen::Index(period.size()));
+  period.resize(values.size());
+  for (double& x : period) x += mean;
+  return period;
+}
+
+/// A window weighs the samples of a record by where they stand in it, x ∈ [0, 1), before its spectrum is taken.
+template <class W>
+concept RecordWindow = requires(double x) {
+  { W::weight(x) } -> std::convertible_to<double>;
+};
+/// All alike: exact for what is periodic in the record.
+struct EqualWeights {
+  static double weight(double) { return 1.0; }
+};
+/// sin²πx: what is not periodic leaks little beyond its neighbours; an amplitude between two frequencies is read up to
+/// 15 % too low [Harris 1978].
+struct HannWindow {
+  static double weight(double x) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * x)); }
+};
+
+/// Amplitudes by frequency: x(t) = Σ_k a_k cos(2π f_k t + φ_k), a₀ = |mean|.
+struct Spectrum {
+  std::vector<double> frequencies;  ///< [Hz]
+  std::vector<double> amplitudes;   ///< in the unit of the samples
+};
+
+/// Amplitudes of equally spaced samples, less their mean, under a window: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i
+/// (Nyquist's without the 2). \throws InvalidInput as `low_pass`.
+template <RecordWindow W = HannWindow>
+Spectrum amplitude_spectrum(std::span<double const> times, std::span<double const> values, W const& = {}) {
+  detail::require_history(times, values, 4, "amplitude_spectrum");
+  double const step = detail::equal_step(times, "amplitude_spectrum");
+  std::size_t const n = values.size();
+  double mean = 0.0, total = 0.0;
+  for (double const x : values) mean += x / double(n);
+  std::vector<double> weighted;
+  for (std::size_t i = 0; i < n; ++i) {
+    double const w = W::weight(double(i) / double(n));
+    weighted.push_back(w * (values[i] - mean));
+    total += w;
+  }
+  detail::HalfSpectrum const terms = detail::fourier_terms(weighted);
+  Spectrum out;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    out.frequencies.push_back(double(k) / (step * double(n)));
+    out.amplitudes.push_back((2 * k == n ? 1.0 : 2.0) * std::abs(terms[k]) / total);
+  }
+  out.amplitudes.front() = std::abs(mean);
+  return out;
+}
+
+}  // namespace polybody

@@ -1,0 +1,240 @@
+#pragma once
+/// \file
+/// Stress after a rigid run, "decoupled" [thesis §4.3.5]: of a recorded rigid body (body_record.hpp) the linear problem
+///   M q̈ + D q̇ + K q = Q_f − m_fr q̈_r − C_qfᵀ λ
+/// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The
+/// deformation does not act back on the motion.
+///
+/// Of the solution only the accelerations q̈ are taken on: K e = Q − M Φ q̈ gives all nodal displacements, and the forces
+/// within a beam follow from its ends' by equilibrium with what acts along it. Static loads are then exact in every
+/// section, whatever the number of elements and modes ("mode acceleration" [Williams 1945]).
+///
+/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+
+#include <polybody/stress/section_stress.hpp>
+#include <polybody/stress/structure_vibration.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// As `mass_points` of a beam, of its part up to ξ.
+inline std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam const& beam, double xi) {
+  std::array<MassPoint, 4> points = mass_points(s, beam);
+  for (std::size_t i = 0; i < 4; ++i) {
+    MassPoint& p = points[i];
+    double const at = gauss<4>[i].xi * xi;
+    BeamShapes const shapes(at, beam.length);
+    p.at = s.nodes[std::size_t(beam.a)] + beam.axes.col(0) * (at * beam.length);
+    p.axis = in_body_axes(shapes.axis, beam.axes);
+    p.y = in_body_axes(shapes.by_y, beam.axes);
+    p.z = in_body_axes(shapes.by_z, beam.axes);
+    for (double* const part : {&p.m, &p.my, &p.mz}) *part *= xi;
+  }
+  return points;
+}
+
+/// `frame`, and what keeps a structure from moving as a whole without forcing it: the first node; where nodes have no
+/// rotations, of the node b farthest from it two displacements across b − a, and of the node farthest from their line
+/// that across the plane.
+inline ReferenceConditions statically_determinate(Structure const& s, ReferenceConditions frame) {
+  for (int c = 0; c < s.per_node; ++c) frame.fix(0, c);
+  if (s.per_node == 6) return frame;
+  auto const farthest = [&](auto const& measure) {
+    Index best = 0;
+    for (Index i = 1; i < Index(s.nodes.size()); ++i)
+      if (measure(i).squaredNorm() > measure(best).squaredNorm()) best = i;
+    return best;
+  };
+  auto const from_first = [&](Index i) { return Vec3(s.nodes[std::size_t(i)] - s.nodes.front()); };
+  Index const b = farthest(from_first);
+  Vec3 const line = from_first(b);
+  auto const off_line = [&](Index i) { return Vec3(line.cross(from_first(i))); };
+  Index const c = farthest(off_line);
+  int along = 0, across = 0;
+  line.cwiseAbs().maxCoeff(&along);
+  off_line(c).cwiseAbs().maxCoeff(&across);
+  return frame.fix(b, (along + 1) % 3).fix(b, (along + 2) % 3).fix(c, across);
+}
+
+}  // namespace detail
+
+/// Histories of section forces, strains and stresses, at the times of the record. To filter one:
+///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})      (signals/filter.hpp)
+class DecoupledStress {
+ public:
+  /// K e = Q of each sample: right where loads change slowly beside the structure's vibrations. Loads that balance, as
+  /// recorded ones do, leave the stress the same whatever `frame` holds; displacements are relative to that. \throws
+  /// InvalidInput as `StructureLoads`, and for a frame that holds something, but not enough.
+  static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
+                                      StructureLoadOptions const& options = {},
+                                      ReferenceConditions const& frame = ReferenceConditions::none());
+  /// The vibrations, too. \throws InvalidInput as `StructureLoads`, for shapes that do not fit the structure or move
+  /// what the frame holds, and for fewer substeps than one; what the integrator throws.
+  template <LinearSolver Solver = DenseLu, class I>
+  static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
+                                   Vibration const& how, StructureLoadOptions const& options = {});
+
+  std::vector<double> const& times() const { return loads_.times(); }
+  StructureLoads const& loads() const { return loads_; }
+  /// Nodal displacements (N×samples), in the structure's axes [m], [rad]; with damping, those that the forces would
+  /// cause at rest.
+  MatX const& displacements() const { return e_; }
+
+  /// (N, Q_y, Q_z, M_x, M_y, M_z) of the section at s of a bar (see sections.hpp), damping included [N], [N m]. Where a
+  /// load acts right at the section, those just beyond it; at the last end, just before. \throws InvalidInput outside
+  /// the bar, and for a structure without bars.
+  std::vector<Vec6> section_forces(double s, Index bar = 0) const {
+    auto const [index, xi] = locate(s, bar);
+    Structure const& structure = loads_.structure();
+    Structure::Beam const& beam = structure.beams[std::size_t(index)];
+    bool const last = xi == 1.0;
+    Vec3 const start = structure.nodes[std::size_t(beam.a)], cut = start + beam.axes.col(0) * (xi * beam.length);
+    auto const whole = detail::mass_points(structure, beam), before = detail::mass_points_before(structure, beam, xi);
+    detail::Twelve const k = detail::beam_stiffness(beam, detail::section_stiffness(beam.constants));
+    std::vector<Vec6> out;
+    for (std::size_t i = 0; i < times().size(); ++i) {
+      Local const at = local(beam, i);
+      Vec<double, 12> ends = k * at.e;  // what the rest of the structure exerts on the beam's ends
+      for (detail::MassPoint const& g : whole) {
+        auto const [a, ay, az] = acceleration(at, g, beam);
+        ends += g.m * (g.axis.transpose() * a) + g.my * (g.y.transpose() * ay) + g.mz * (g.z.transpose() * az);
+      }
+      for (StructureLoads::Load const& l : loads_.loads(i))
+        if (l.beam == index) ends -= loads_.on_beam(l);
+      Vec3 force = ends.head<3>(), moment = ends.segment<3>(3) + (start - cut).cross(ends.head<3>());
+      for (detail::MassPoint const& g : before) {
+        auto const [a, ay, az] = acceleration(at, g, beam);
+        force -= g.m * a;
+        moment -= (g.at - cut).cross(g.m * a) + g.my * beam.axes.col(1).cross(ay) + g.mz * beam.axes.col(2).cross(az);
+      }
+      for (StructureLoads::Load const& l : loads_.loads(i))
+        if (l.beam == index && (last ? l.xi < 1.0 - same : l.xi <= xi + same)) {
+          force += l.f;
+          moment += l.m + (start + beam.axes.col(0) * (l.xi * beam.length) - cut).cross(l.f);
+        }
+      Vec6 n;
+      n << beam.axes.transpose() * force, beam.axes.transpose() * moment;
+      out.push_back(-n);
+    }
+    return out;
+  }
+
+  /// Axial strain of the fibre (y, z) of that section, N/EA − y M_z/EI + z M_y/EI_y: with damping, that which these
+  /// forces would cause at rest. \throws InvalidInput as `section_forces`.
+  std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
+    BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
+    std::vector<double> out;
+    for (Vec6 const& n : section_forces(s, bar))
+      out.push_back(n[0] / c.EA - y * n[5] / c.EI + z * n[4] / c.EI_y.value_or(c.EI));
+    return out;
+  }
+  /// Axial stress of that fibre [N/m²], `of` being the bar. \throws InvalidInput as above, and for a bar given by
+  /// constants.
+  std::vector<double> axial_stress(Bar const& of, double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
+    std::vector<double> out;
+    for (Vec6 const& n : section_forces(s, bar)) out.push_back(fibre_stress(of, n, y, z));
+    return out;
+  }
+  /// Axial and shear stress at a point of that section, which tell principal stresses and von Mises'. \throws
+  /// InvalidInput as `section_stress`.
+  std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
+    std::vector<SectionStress> out;
+    for (Vec6 const& n : section_forces(s, bar)) out.push_back(section_stress(of, n, y, z));
+    return out;
+  }
+
+ private:
+  static constexpr double same = 1e-9;  ///< ξ of a load and of a section that are one place
+
+  /// Of one beam at one sample: displacements and their rates by its ends (12).
+  struct Local {
+    StructureLoads::Motion const& motion;
+    Vec<double, 12> e, deformed, rate, acceleration;
+  };
+
+  explicit DecoupledStress(StructureLoads loads) : loads_(std::move(loads)) {
+    if (!loads_.structure().initial_force.isZero(0.0))
+      throw InvalidInput("Stress of \"" + loads_.name() +
+                         "\": a pretension is not recovered. Make the structure without it, and add its "
+                         "stress afterwards.");
+  }
+
+  /// K e = loads, the structure held as `frame` says; where that lets it move as a whole, by `statically_determinate`.
+  void settle(ReferenceConditions const& frame, MatX const& loads) {
+    Structure const& s = loads_.structure();
+    std::vector<Index> free = frame.free_coordinates(s);
+    detail::SparseFactor factor(detail::selected(s.stiffness, free, free));
+    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff())) {
+      free = detail::statically_determinate(s, frame).free_coordinates(s);
+      detail::factor_positive(factor, detail::selected(s.stiffness, free, free),
+                              "the structure moves without deformation, though it is held.");
+    }
+    MatX rhs(Index(free.size()), loads.cols());
+    for (std::size_t i = 0; i < free.size(); ++i) rhs.row(Index(i)) = loads.row(free[i]);
+    e_ = detail::scattered(factor.solve(rhs), free, s.size());
+  }
+
+  std::pair<Index, double> locate(double s, Index bar) const {
+    Structure const& structure = loads_.structure();
+    std::string const who = "Stress of \"" + loads_.name() + '"';
+    if (bar < 0 || bar >= Index(structure.bar_lengths.size()))
+      throw InvalidInput(who + ": bar " + std::to_string(bar) + " does not exist; the structure is made of " +
+                         std::to_string(structure.bar_lengths.size()) + " bars.");
+    double const inside = require_inside(s, structure.bar_lengths[std::size_t(bar)], who);
+    Index found = -1;
+    for (std::size_t i = 0; i < structure.beams.size(); ++i) {
+      Structure::Beam const& b = structure.beams[i];
+      if (b.bar == bar && (found < 0 || b.start <= inside + same * b.length)) found = Index(i);
+    }
+    Structure::Beam const& b = structure.beams[std::size_t(found)];
+    double const xi = std::clamp((inside - b.start) / b.length, 0.0, 1.0);
+    return {found, xi > 1.0 - same ? 1.0 : xi};
+  }
+
+  Local local(Structure::Beam const& beam, std::size_t sample) const {
+    auto const of = [&](MatX const& m) {
+      Vec<double, 12> x = Vec<double, 12>::Zero();
+      for (int j = 0; j < 12 && m.size() > 0; ++j) x[j] = m(6 * (j < 6 ? beam.a : beam.b) + j % 6, Index(sample));
+      return x;
+    };
+    return {loads_.motion(sample), of(e_), of(vibration_.deformed), of(vibration_.rate), of(vibration_.acceleration)};
+  }
+
+  /// Less gravity, at a point of the axis, and its slopes along y and z of the section.
+  std::array<Vec3, 3> acceleration(Local const& x, detail::MassPoint const& g, Structure::Beam const& beam) const {
+    Mat3 const& B = x.motion.B;
+    std::array<Vec3, 3> a{x.motion.b + B * g.at, B * beam.axes.col(1), B * beam.axes.col(2)};
+    Mat<double, 3, 12> const* const shapes[3] = {&g.axis, &g.y, &g.z};
+    for (std::size_t i = 0; i < 3; ++i)
+      a[i] +=
+          *shapes[i] * x.acceleration + B * (*shapes[i] * x.deformed) + 2.0 * x.motion.omega.cross(*shapes[i] * x.rate);
+    return a;
+  }
+
+  StructureLoads loads_;
+  VibrationHistory vibration_;
+  MatX e_;  ///< (N×samples)
+};
+
+inline DecoupledStress DecoupledStress::quasi_static(Structure structure, BodyRecord const& record,
+                                                     StructureLoadOptions const& options,
+                                                     ReferenceConditions const& frame) {
+  DecoupledStress out(StructureLoads(std::move(structure), record, options));
+  Structure const& s = out.loads_.structure();
+  std::vector<Index> const free = frame.free_coordinates(s);
+  if (Index(free.size()) < s.size()) detail::require_held(detail::selected(s.stiffness, free, free));
+  out.settle(frame, out.loads_.nodal());
+  return out;
+}
+
+template <LinearSolver Solver, class I>
+DecoupledStress DecoupledStress::vibrating(Structure structure, BodyRecord const& record, I const& integrator,
+                                           Vibration const& how, StructureLoadOptions const& options) {
+  DecoupledStress out(StructureLoads(std::move(structure), record, options));
+  out.vibration_ = vibration_of<Solver>(out.loads_, integrator, how);
+  out.settle(how.frame, out.loads_.nodal() - out.vibration_.inertia(out.loads_));
+  return out;
+}
+
+}  // namespace polybody

@@ -1,0 +1,55 @@
+#pragma once
+/// \file
+/// What a section feels in a state: the questions of bodies/shared/sections.hpp asked by marker, so that they are
+/// written once for every formulation.
+
+#include <polybody/bodies/shared/sections.hpp>
+#include <polybody/run/observe.hpp>
+
+namespace polybody {
+
+namespace detail {
+template <class M, class B, class F>
+auto ask_section(M const& model, State const& x, Marker<B> const& marker, F&& f) {
+  static_assert(HasSections<B>,
+                "Sections are asked of a flexible beam's marker; a rigid body and the ground do not strain.");
+  model.require_own(marker.model, "section");
+  auto const& e = std::get<BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)];
+  return f(e.body, marker.point, body_part(x.q, e.q0, e.body.coordinates()));
+}
+}  // namespace detail
+
+/// (ε, γ_y, γ_z, κ_x, κ_y, κ_z) of the marker's section. \throws InvalidInput for a marker of another model.
+template <class M, class B>
+Vec6 section_strains(M const& model, State const& x, Marker<B> const& marker) {
+  return detail::ask_section(model, x, marker,
+                             [](B const& b, auto const& p, auto q) { return b.section_strains(p, q); });
+}
+/// (N, Q_y, Q_z, M_x, M_y, M_z) of the marker's section [N], [N m].
+template <class M, class B>
+Vec6 section_forces(M const& model, State const& x, Marker<B> const& marker) {
+  return detail::ask_section(model, x, marker,
+                             [](B const& b, auto const& p, auto q) { return b.section_forces(p, q); });
+}
+
+/// Curvature of the axis less that of the reference, √(κ_y² + κ_z²) [1/m].
+template <class M, class B>
+double curvature(M const& model, State const& x, Marker<B> const& marker) {
+  Vec6 const e = section_strains(model, x, marker);
+  return std::hypot(e[4], e[5]);
+}
+/// Axial strain of the fibre through the marker's point.
+template <class M, class B>
+double axial_strain(M const& model, State const& x, Marker<B> const& marker) {
+  Vec2 const off = detail::off_axis(marker.point);
+  return fibre_strain(section_strains(model, x, marker), off[0], off[1]);
+}
+/// Axial stress of that fibre [N/m²], `bar` being what the body was made from. \throws InvalidInput for a bar without
+/// section and material.
+template <class M, class B>
+double axial_stress(M const& model, State const& x, Marker<B> const& marker, Bar const& bar) {
+  Vec2 const off = detail::off_axis(marker.point);
+  return fibre_stress(bar, section_forces(model, x, marker), off[0], off[1]);
+}
+
+}  // namespace polybody

@@ -1,0 +1,253 @@
+#pragma once
+/// \file
+/// A recorded motion as loads on a structure: nodal forces of joints, contacts, gravity and of the inertia of the
+/// body's rigid motion [thesis §4.3.2–4.3.5]. In the structure's axes a point u₀ of the body has the acceleration less
+/// gravity
+///   a(u₀) = b + B u₀,   b = Aᵀ(r̈ − g),   B = Ω˙~ + Ω~ Ω~,
+/// and the linear structural problem has the right-hand side
+///   Q_f − m_fr q̈_r − C_qfᵀ λ = −∫ρ Sᵀ a + Σ (Sᵀ f + S_rᵀ m),   ∫ρ Sᵀ a = Σ_l b_l ∫ρ S_lᵀ + Σ_kl B_lk ∫ρ u₀ₖ S_lᵀ:
+/// of B, Ω~ Ω~ is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, Ω˙~ the rotational part of m_fr; S and S_r those of
+/// Eq. 4.5.
+///
+/// Not in polybody.hpp: Eigen's sparse module would cost every program seconds to compile.
+
+#include <polybody/bodies/ffr/beam_structure.hpp>
+#include <polybody/run/body_record.hpp>
+
+namespace polybody {
+
+/// How a structure takes what was recorded.
+struct StructureLoadOptions {
+  /// Of the structure's axes in the body's. Else they are parallel and the centres of mass in one place, as for a body
+  /// and a structure made from the same bar.
+  std::optional<Placement> placement = {};
+  double largest_gap = 0.0;  ///< between samples, over which a line is drawn [s]; 0: 1.5 times the median interval
+  double unbalance = 1e-3;   ///< what may be left of forces and moments, as a part of their size
+  double patch = 0.0;  ///< nodes within this distance of a load share it [m]; asked for where nodes have no rotations
+};
+
+class StructureLoads {
+ public:
+  /// Motion in the structure's axes, of its origin.
+  struct Motion {
+    Vec3 b = Vec3::Zero();      ///< acceleration less gravity [m/s²]
+    Vec3 omega = Vec3::Zero();  ///< Ω [rad/s]
+    Mat3 B = Mat3::Zero();      ///< Ω˙~ + Ω~ Ω~ [1/s²]
+    double size = 0.0;          ///< |r̈| + |g|: what b is the difference of [m/s²]
+  };
+  /// A wrench in the structure's axes about the place on a beam, or the node, that takes it.
+  struct Load {
+    Index beam = -1, node = -1;
+    double xi = 0.0;  ///< along the beam
+    Vec3 f = Vec3::Zero(), m = Vec3::Zero();
+  };
+
+  /// \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the structure's inertia, and
+  /// patches of nodes that cannot take them.
+  StructureLoads(Structure structure, BodyRecord const& record, StructureLoadOptions const& options)
+      : s_(std::move(structure)), name_(record.name) {
+    require_positive(s_.mass, who() + "the structure's mass");
+    require_positive(options.unbalance, who() + "the unbalance");
+    require_not_negative(options.patch, who() + "the patch");
+    require_no_gaps(record, options.largest_gap);
+    Placement place{.origin = -s_.first / s_.mass};
+    if (options.placement) place = *options.placement;
+    place.check(who() + "the structure");
+    for (BodySample const& sample : record.samples) {
+      times_.push_back(sample.t);
+      motions_.push_back(motion(sample, record.gravity, place));
+      loads_.emplace_back();
+      for (RecordedLoad const& l : sample.loads) {
+        Load load{.f = place.axes.transpose() * l.f, .m = place.axes.transpose() * l.m};
+        Vec3 const at = place.axes.transpose() * (l.at - place.origin);
+        if (s_.per_node == 3)
+          share(load, at, options.patch);
+        else
+          take(load, at);
+      }
+    }
+    require_balance(options.unbalance);
+  }
+
+  std::string const& name() const { return name_; }
+  Structure const& structure() const { return s_; }
+  std::vector<double> const& times() const { return times_; }
+  Motion const& motion(std::size_t k) const { return motions_[k]; }
+  std::vector<Load> const& loads(std::size_t k) const { return loads_[k]; }
+
+  /// Nodal forces of sample k (N).
+  VecX nodal(std::size_t k) const {
+    Motion const& at = motions_[k];
+    VecX q = VecX::Zero(s_.size());
+    for (std::size_t l = 0; l < 3; ++l) {
+      q -= at.b[Index(l)] * s_.translation[l];
+      for (std::size_t i = 0; i < 3; ++i) q -= at.B(Index(l), Index(i)) * s_.moment[i][l];
+    }
+    for (Load const& load : loads_[k])
+      if (load.beam >= 0) {
+        detail::add_entries(beam(load), on_beam(load), q);
+      } else {
+        q.segment<3>(s_.per_node * load.node) += load.f;
+        if (s_.per_node == 6) q.segment<3>(6 * load.node + 3) += load.m;
+      }
+    return q;
+  }
+
+  /// … of all samples (N×samples).
+  MatX nodal() const {
+    MatX q(s_.size(), Index(times_.size()));
+    for (std::size_t k = 0; k < times_.size(); ++k) q.col(Index(k)) = nodal(k);
+    return q;
+  }
+
+  /// The part of a load's nodal forces on its beam (12).
+  Vec<double, 12> on_beam(Load const& load) const {
+    BeamShapes const shapes(load.xi, beam(load).length);
+    Mat3 const& axes = beam(load).axes;
+    return detail::in_body_axes(shapes.axis, axes).transpose() * load.f +
+           detail::in_body_axes(shapes.rotation, axes).transpose() * load.m;
+  }
+  Structure::Beam const& beam(Load const& load) const { return s_.beams[std::size_t(load.beam)]; }
+
+ private:
+  std::string who() const { return "Stress of \"" + name_ + "\": "; }
+
+  void require_no_gaps(BodyRecord const& record, double largest) const {
+    if (record.samples.size() < 2) throw InvalidInput(who() + "its record has fewer than two samples.");
+    require_not_negative(largest, who() + "the largest gap");
+    auto const between = [&](std::size_t k) {
+      return number(record.samples[k].t) + " s and " + number(record.samples[k + 1].t) + " s";
+    };
+    std::vector<double> intervals;
+    for (std::size_t k = 0; k + 1 < record.samples.size(); ++k) {
+      intervals.push_back(record.samples[k + 1].t - record.samples[k].t);
+      if (!(intervals[k] > 0.0))
+        throw InvalidInput(who() + "the samples at " + between(k) + " do not follow each other in time.");
+    }
+    std::vector<double> sorted = intervals;
+    auto const middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    double const gap = largest > 0.0 ? largest : 1.5 * *middle;
+    for (std::size_t k = 0; k < intervals.size(); ++k)
+      if (intervals[k] > gap * (1.0 + 1e-9))
+        throw InvalidInput(who() + "there is no sample between " + between(k) + ", a gap of more than " + number(gap) +
+                           " s. Record every step, or name a largest_gap to draw a line across it.");
+  }
+
+  Motion motion(BodySample const& sample, Vec3 const& gravity, Placement const& place) const {
+    Mat3 const axes = sample.frame.A * place.axes;
+    Motion x;
+    x.omega = axes.transpose() * sample.frame.w;
+    Vec3 const alpha = axes.transpose() * sample.angular_acceleration;
+    x.B = skew<double>(alpha) + skew<double>(x.omega) * skew<double>(x.omega);
+    x.b = axes.transpose() * (sample.acceleration - gravity) + x.B * (place.axes.transpose() * place.origin);
+    x.size = sample.acceleration.norm() + gravity.norm();
+    if (!x.b.allFinite() || !x.B.allFinite())
+      throw NonFinite(who() + "the recorded motion at t = " + number(sample.t) + " s is not finite.");
+    return x;
+  }
+
+  /// By the nearest section of a beam, which is rigid, or by the nearest node.
+  void take(Load load, Vec3 const& at) {
+    Vec3 held = Vec3::Zero();
+    double least = std::numeric_limits<double>::infinity();
+    auto const nearer = [&](Vec3 const& r) {
+      double const distance = (r - at).norm();
+      if (!(distance < least)) return false;
+      least = distance;
+      held = r;
+      return true;
+    };
+    for (std::size_t i = 0; i < s_.beams.size(); ++i) {
+      Structure::Beam const& b = s_.beams[i];
+      Vec3 const start = s_.nodes[std::size_t(b.a)], along = b.axes.col(0);
+      double const xi = std::clamp((at - start).dot(along) / b.length, 0.0, 1.0);
+      if (nearer(start + along * (xi * b.length))) {
+        load.beam = Index(i);
+        load.xi = xi;
+      }
+    }
+    if (s_.beams.empty())
+      for (std::size_t i = 0; i < s_.nodes.size(); ++i)
+        if (nearer(s_.nodes[i])) load.node = Index(i);
+    load.m += (at - held).cross(load.f);
+    loads_.back().push_back(load);
+  }
+
+  /// By the n nodes of a patch with the middle c, as f/n + θ × (r − c): of all nodal forces with this resultant the
+  /// least.
+  void share(Load const& load, Vec3 const& at, double patch) {
+    std::vector<Index> nodes;
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t i = 0; i < s_.nodes.size(); ++i)
+      if ((s_.nodes[i] - at).norm() <= patch) {
+        nodes.push_back(Index(i));
+        middle += s_.nodes[i];
+      }
+    double const count = double(nodes.size());
+    middle /= std::max(count, 1.0);
+    Mat3 spread = Mat3::Zero();  // Σ d² 1 − d dᵀ
+    for (Index const i : nodes) {
+      Vec3 const d = s_.nodes[std::size_t(i)] - middle;
+      spread += d.squaredNorm() * Mat3::Identity() - d * d.transpose();
+    }
+    if (!(spread.determinant() > 1e-9 * std::pow(spread.trace() / 3.0, 3)))
+      throw InvalidInput(who() + "nodes without rotations take a load by three or more that are not in line, but " +
+                         std::to_string(nodes.size()) + " lie within the patch of " + number(patch) +
+                         " m about a load. Widen the patch.");
+    Vec3 const theta = spread.inverse() * (load.m + (at - middle).cross(load.f));
+    for (Index const i : nodes)
+      loads_.back().push_back(
+          {.node = i, .f = load.f / count + theta.cross(s_.nodes[std::size_t(i)] - middle), .m = Vec3::Zero()});
+  }
+
+  double size() const {
+    double most = 0.0;
+    for (Vec3 const& r : s_.nodes) most = std::max(most, (r - s_.nodes.front()).norm());
+    return most;
+  }
+
+  /// Σ f − ∫ρ a = 0 and Σ (m + u × f) − ∫ρ u × a = 0 about the centre of mass, each beside the largest sum of sizes of
+  /// the record.
+  void require_balance(double part) const {
+    double const length = size();
+    Vec3 const centre = s_.first / s_.mass;
+    Mat3 const second = s_.second - s_.mass * centre * centre.transpose();
+    double worst = 0.0, most = 0.0, when = 0.0;
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      Motion const& at = motions_[k];
+      Mat3 const turn = at.B * second;
+      Vec3 const inertia = s_.mass * (at.b + at.B * centre),
+                 spin(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1));
+      Vec3 force = -inertia, moment = -spin;
+      double total = s_.mass * at.size + turn.norm() / length;
+      for (Load const& l : loads_[k]) {
+        Vec3 const u =
+            (l.beam < 0 ? s_.nodes[std::size_t(l.node)]
+                        : Vec3(s_.nodes[std::size_t(beam(l).a)] + beam(l).axes.col(0) * (l.xi * beam(l).length))) -
+            centre;
+        force += l.f;
+        moment += l.m + u.cross(l.f);
+        total += l.f.norm() + l.m.norm() / length;
+      }
+      most = std::max(most, total);
+      if (double const left = force.norm() + moment.norm() / length; left > worst) {
+        worst = left;
+        when = times_[k];
+      }
+    }
+    if (worst > part * most)
+      throw InvalidInput(
+          who() + "the recorded loads do not balance the inertia of the structure: " + number(worst) + " N of " +
+          number(most) + " N are left over at t = " + number(when) +
+          " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`.");
+  }
+
+  Structure s_;
+  std::string name_;
+  std::vector<double> times_;
+  std::vector<Motion> motions_;
+  std::vector<std::vector<Load>> loads_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,166 @@
+#pragma once
+/// \file
+/// How a structure vibrates under the loads of a recorded rigid motion (structure_loads.hpp), in nodal or modal
+/// coordinates, e = Φ q:
+///   M q̈ + D q̇ + K q = Φᵀ(Q_f − m_fr q̈_r − C_qfᵀ λ)   [thesis §4.3.5],
+/// by any integrator that steps a `System`.
+///
+/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+
+#include <polybody/bodies/ffr/ffr_basis.hpp>
+#include <polybody/integrators/integrator.hpp>
+#include <polybody/solvers/dense_lu.hpp>
+#include <polybody/stress/structure_loads.hpp>
+#include <polybody/system/linear_vibration.hpp>
+
+namespace polybody {
+
+/// How the structure vibrates in the body's frame. What the frame is tied to matters, as the run moves the frame, with
+/// whatever acceleration the rigid body had: tie it where joints lead the body, and let it follow the mean motion
+/// (`free_interface_modes`, with `ReferenceConditions::none()`) of a body that is free.
+struct Vibration {
+  ReferenceConditions frame = ReferenceConditions::clamped();
+  MatX shapes = {};  ///< Φ (N×n), made with `frame`; empty: all nodal coordinates
+  /// With the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4 and, of Ω˙, m_fr(q). The
+  /// thesis leaves them out. The stiffness that axial forces add is in neither.
+  bool follows_deformation = false;
+  double stiffness_damping = 0.0;  ///< adds this time [s] × K to the structure's damping
+  bool settled = true;             ///< starts at rest as the first loads deform it, else undeformed
+  int substeps = 1;  ///< steps of the integrator from sample to sample; loads lie on straight lines between
+};
+
+namespace detail {
+
+/// Σ_kl x_kl ∫ρ S_kᵀ S_l.
+template <class Matrix>
+Matrix weighted(Mat3 const& x, std::array<Matrix, 6> const& inertia) {
+  Matrix sum = x(0, 0) * inertia[0] + x(1, 1) * inertia[1] + x(2, 2) * inertia[2];
+  for (std::size_t p = 3; p < 6; ++p) {
+    Matrix const back = inertia[p].transpose();
+    sum += x(symmetric_row[p], symmetric_column[p]) * inertia[p] + x(symmetric_column[p], symmetric_row[p]) * back;
+  }
+  return sum;
+}
+
+/// Loads by q on straight lines between the samples; with `products`, what follows the deformation.
+struct LoadLines {
+  StructureLoads const* of;
+  MatX loads;                    ///< (n×samples)
+  std::array<MatX, 6> products;  ///< Φᵀ ∫ρ S_kᵀ S_l Φ; or empty
+
+  std::pair<Index, double> between(double t) const {
+    std::vector<double> const& times = of->times();
+    Index const after =
+        std::clamp<Index>(std::upper_bound(times.begin(), times.end(), t) - times.begin(), 1, Index(times.size()) - 1);
+    double const t0 = times[std::size_t(after) - 1], t1 = times[std::size_t(after)];
+    return {after, std::clamp((t - t0) / (t1 - t0), 0.0, 1.0)};
+  }
+  void operator()(double t, VecX& f) const {
+    auto const [after, share] = between(t);
+    f = (1.0 - share) * loads.col(after - 1) + share * loads.col(after);
+  }
+  void add_matrices(double t, MatX& damping, MatX& stiffness) const {
+    if (products[0].size() == 0) return;
+    auto const [after, share] = between(t);
+    StructureLoads::Motion const &x = of->motion(std::size_t(after) - 1), &y = of->motion(std::size_t(after));
+    damping += weighted<MatX>(2.0 * skew<double>((1.0 - share) * x.omega + share * y.omega), products);
+    stiffness += weighted<MatX>((1.0 - share) * x.B + share * y.B, products);
+  }
+};
+
+static_assert(ChangesMatrices<LoadLines> && !LoadHistory<int>);
+
+}  // namespace detail
+
+/// Of the nodal coordinates (N×samples): as far as they enter the inertia forces, else empty.
+struct VibrationHistory {
+  MatX deformed, rate;  ///< Φ q, Φ q̇: of a vibration that follows the deformation
+  MatX acceleration;    ///< Φ q̈
+
+  /// M Φ q̈ + 2 S̃₁ Φ q̇ + … (N×samples): what is missing of K e beside the loads.
+  template <class = void>
+  MatX inertia(StructureLoads const& loads) const {
+    Structure const& s = loads.structure();
+    MatX sum = s.mass_matrix() * acceleration;
+    for (Index k = 0; k < deformed.cols(); ++k) {
+      StructureLoads::Motion const& at = loads.motion(std::size_t(k));
+      sum.col(k) += detail::weighted<Structure::Sparse>(at.B, s.inertia) * deformed.col(k) +
+                    detail::weighted<Structure::Sparse>(2.0 * skew<double>(at.omega), s.inertia) * rate.col(k);
+    }
+    return sum;
+  }
+};
+
+namespace detail {
+
+/// \throws InvalidInput for shapes of another size, and such as move what the frame holds.
+inline void require_fitting_shapes(Structure const& s, Vibration const& how, std::string const& who) {
+  if (how.shapes.rows() != s.size())
+    throw InvalidInput(who + "the shapes have " + std::to_string(how.shapes.rows()) + " rows, but the structure has " +
+                       std::to_string(s.size()) + " nodal coordinates.");
+  std::vector<char> held(std::size_t(s.size()), 1);
+  for (Index const i : how.frame.free_coordinates(s)) held[std::size_t(i)] = 0;
+  for (Index i = 0; i < s.size(); ++i)
+    if (held[std::size_t(i)] && !how.shapes.row(i).isZero(0.0))
+      throw InvalidInput(who + "the shapes move node " + std::to_string(i / s.per_node) +
+                         ", which the reference conditions hold. Name the conditions that the shapes were made with.");
+}
+
+}  // namespace detail
+
+/// \throws InvalidInput for shapes that do not fit the structure, move what the frame holds or have no stiffness, and
+/// for fewer substeps than one; what the integrator throws.
+template <LinearSolver Solver = DenseLu, class I>
+VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, Vibration how) {
+  Structure const& s = loads.structure();
+  std::string const who = "Stress of \"" + loads.name() + "\": ";
+  require_not_negative(how.stiffness_damping, who + "the damping time");
+  if (how.substeps < 1) throw InvalidInput(who + "each interval needs at least one substep.");
+  if (how.shapes.size() == 0) how.shapes = nodal_coordinates(s, how.frame);
+  detail::require_fitting_shapes(s, how, who);
+  MatX const& shapes = how.shapes;
+
+  Index const samples = Index(loads.times().size()), n = shapes.cols();
+  auto const carried = [&](Structure::Sparse const& m) { return MatX(shapes.transpose() * (m * shapes)); };
+  LinearVibration<detail::LoadLines> problem{.mass_matrix = carried(s.mass_matrix()),
+                                             .damping = carried(s.damping),
+                                             .stiffness = carried(s.stiffness),
+                                             .load = {&loads, shapes.transpose() * loads.nodal(), {}}};
+  problem.damping += how.stiffness_damping * problem.stiffness;
+  if (how.follows_deformation)
+    for (std::size_t p = 0; p < 6; ++p) problem.load.products[p] = carried(s.inertia[p]);
+  Eigen::LDLT<MatX> const factor(problem.stiffness);
+  if (!(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
+    throw InvalidInput(
+        who +
+        "nothing resists some of the shapes. Leave out motions of the whole structure, and shapes that repeat others.");
+
+  System system = system_of(problem, loads.name(), true);
+  State x{VecX::Zero(n), VecX::Zero(n), VecX::Zero(n), VecX::Zero(0), loads.times().front(), {}};
+  if (how.settled) x.q = factor.solve(problem.load.loads.col(0));
+  MatX q(n, samples), v(n, samples), a(n, samples);
+  auto const keep = [&](Index k) {
+    q.col(k) = x.q;
+    v.col(k) = x.v;
+    a.col(k) = x.a;
+  };
+  integrator.check();
+  auto workspace = integrator.template workspace<Solver>(system);
+  double next = (loads.times()[1] - loads.times()[0]) / how.substeps;
+  integrator.start(system, x, next, workspace);
+  keep(0);
+  for (Index k = 1; k < samples; ++k) {
+    double const from = x.t, target = loads.times()[std::size_t(k)], piece = (target - from) / how.substeps;
+    if constexpr (!requires { I::controls_step; }) next = piece;
+    while (target - x.t > 1e-9 * piece) {
+      StepReport const report = integrator.step(system, x, std::min(next, target - x.t), workspace);
+      if constexpr (requires { I::controls_step; }) next = std::min(report.next, target - from);
+    }
+    x.t = target;
+    keep(k);
+  }
+  if (!how.follows_deformation) return {{}, {}, shapes * a};
+  return {shapes * q, shapes * v, shapes * a};
+}
+
+}  // namespace polybody

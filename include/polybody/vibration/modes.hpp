@@ -1,0 +1,205 @@
+#pragma once
+/// \file
+/// Small vibrations about a state of rest: with q = q₀ ⊞ δ,
+///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0,
+/// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Shabana 2018, Ch. 4]. The rows are eliminated by a
+/// basis N of the null space of G, δ = N z, so redundant rows do no harm. About a steady rotation:
+/// vibration/steady_rotation.hpp.
+///
+/// Not in polybody.hpp: Eigen's eigenvalue solvers would cost every program seconds to compile.
+
+#include <algorithm>
+#include <complex>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+#include <polybody/solvers/linear_solver.hpp>
+#include <polybody/system/model_entries.hpp>
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+/// The matrices about a state, dense; and a basis of the motions that the rows leave free.
+struct Linearisation {
+  MatX M, D, K;  ///< (nv×nv)
+  MatX G;        ///< (rows×nv)
+  MatX N;        ///< (nv×free) orthonormal, G N = 0
+};
+
+namespace detail {
+/// Adds up blocks in a dense matrix.
+struct DenseSink {
+  MatX& sum;
+  void add(Index row, Index col, BlockView const& b) {
+    for (Index j = 0; j < b.cols; ++j)
+      for (Index i = 0; i < b.rows; ++i) sum(row + i, col + j) += b(i, j);
+  }
+};
+
+template <class = void>
+MatX dense_tangent(System& system, TangentCoefficients const& c, VecX const& lambda) {
+  MatX sum = MatX::Zero(system.size(), system.size());
+  DenseSink sink{sum};
+  system.tangent(c, SecondOrder::included, lambda, sink);
+  return sum;
+}
+
+/// A basis of the motions that rows G leave free: orthonormal, G N = 0.
+template <class = void>  // compiled where it is used
+MatX free_motions(MatX const& g) {
+  if (g.rows() == 0) return MatX::Identity(g.cols(), g.cols());
+  Eigen::ColPivHouseholderQR<MatX> qr(g.transpose());
+  qr.setThreshold(1e-10);
+  MatX const q = qr.householderQ();
+  return q.rightCols(g.cols() - qr.rank());
+}
+
+/// The smallest x of those that leave the least of A x = b; pivots below `threshold` count as zero.
+template <class = void>
+MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
+  Eigen::CompleteOrthogonalDecomposition<MatX> solver(a.rows(), a.cols());
+  solver.setThreshold(threshold);
+  solver.compute(a);
+  return solver.solve(b);
+}
+
+/// Nᵀ A N.
+template <class = void>
+MatX of_free_motions(MatX const& n, MatX const& a) {
+  MatX const an = a * n;
+  return n.transpose() * an;
+}
+}  // namespace detail
+
+/// About state x, which rests; its multipliers count (a hanging pendulum swings by them). A model that turns steadily
+/// is linearised with its `SteadyRotation`; about any other motion the matrices would change with time. \throws
+/// InvalidInput when x moves.
+template <class = void>
+Linearisation linearise(System& system, State const& x) {
+  if (x.v.size() && x.v.cwiseAbs().maxCoeff() > 1e-9)
+    throw InvalidInput(
+        "modes: the state must be at rest; take one from equilibrium(model, x). About a steady rotation use "
+        "linearise(model, x, SteadyRotation{...}) of vibration/steady_rotation.hpp.");
+  system.evaluate(x.q, x.v, x.t);
+  Index const nv = system.speeds(), rows = system.rows();
+  Linearisation l;
+  l.M = detail::dense_tangent(system, {.mass = 1.0}, x.lambda).topLeftCorner(nv, nv);
+  l.D = detail::dense_tangent(system, {.damping = 1.0}, x.lambda).topLeftCorner(nv, nv);
+  MatX const k = detail::dense_tangent(system, {.stiffness = 1.0}, x.lambda);
+  l.K = k.topLeftCorner(nv, nv);
+  l.G = k.bottomLeftCorner(rows, nv);
+  l.N = detail::free_motions(l.G);
+  return l;
+}
+
+template <class M>
+Linearisation linearise(M const& model, State const& x) {
+  System system(model, with<Entries::implicit_step>);
+  return linearise(system, x);
+}
+
+/// Undamped modes, by frequency.
+struct Modes {
+  VecX frequency;  ///< (k) ω [rad/s], ascending; −√(−ω²) where the state is unstable
+  MatX shape;      ///< (nv×k) δ by speeds, shapeᵀ M shape = 1
+};
+
+/// The `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver: for models of up to some hundred speeds. Motions
+/// without inertia have no frequency and are left out. K is symmetrised and D left out: follower loads, whose K is not
+/// symmetric, and models that turn, whose D is gyroscopic, belong to `damped_modes`.
+template <class = void>  // compiled where it is used
+Modes modes(Linearisation const& l, Index count = 10) {
+  MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()),
+             m = detail::of_free_motions(l.N, l.M);
+  if (m.rows() == 0) return {};
+  // motions with inertia first: m = V diag(d) Vᵀ; the others follow without delay, K₂₂ z₂ = −K₂₁ z₁
+  Eigen::SelfAdjointEigenSolver<MatX> const inertia(m);
+  VecX const& d = inertia.eigenvalues();
+  Index const n = d.size();
+  Index still = 0;
+  while (still < n && d[still] <= 1e-13 * d[n - 1]) ++still;
+  MatX const v1 = inertia.eigenvectors().rightCols(n - still), v2 = inertia.eigenvectors().leftCols(still);
+  MatX basis = v1;
+  if (still > 0) {
+    MatX const k22 = v2.transpose() * k * v2, k21 = v2.transpose() * k * v1;
+    if (k22.norm() > 1e-12 * k.norm()) basis -= v2 * detail::smallest_solution(k22, k21, 1e-12);
+  }
+  VecX const scale = d.tail(n - still).cwiseSqrt().cwiseInverse();
+  basis = basis * scale.asDiagonal();
+  Eigen::SelfAdjointEigenSolver<MatX> const solved(basis.transpose() * k * basis);
+  Index const kept = std::min(count, n - still);
+  Modes out;
+  out.frequency =
+      solved.eigenvalues().head(kept).unaryExpr([](double w2) { return w2 < 0.0 ? -std::sqrt(-w2) : std::sqrt(w2); });
+  out.shape = l.N * basis * solved.eigenvectors().leftCols(kept);
+  return out;
+}
+/// The same about x, a state of rest in equilibrium. \throws InvalidInput when x moves.
+template <class S>
+Modes modes(S const& model, State const& x, Index count = 10) {
+  return modes(linearise(model, x), count);
+}
+
+/// Damped modes δ = Re(shape e^{s t}).
+struct DampedModes {
+  Eigen::VectorXcd eigenvalue;  ///< (k) s [1/s], by |s|; of conjugate pairs the one above the real axis
+  Eigen::MatrixXcd shape;       ///< (nv×k)
+  /// Frequency |s| [rad/s] and damping ratio −Re s/|s| of mode i.
+  double frequency(Index i) const { return std::abs(eigenvalue[i]); }
+  double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }
+};
+
+/// The `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0, dense. With δ = N z, the unit of time 1/τ and y = (z, ż/τ)
+/// the state matrix is A = [0, 1; −M̂⁻¹K, −M̂⁻¹D̂], M̂ = τ² M, D̂ = τ D. Solved is its inverse about s = τ, which asks for
+/// no M⁻¹,
+///   (A − 1)⁻¹ = [−Y, −Z; 1 − Y, −Z],  Y = Q⁻¹ (M̂ + D̂),  Z = Q⁻¹ M̂,  Q = M̂ + D̂ + K,  s = τ (1 + 1/μ):
+/// slow motions have its largest eigenvalues μ, so that stiff ones beside them take no digits from them. τ is a little
+/// below the lowest frequency of M z̈ + K z = 0 without its neutral motions. Those of the model come first, with an |s|
+/// of √rounding.
+/// \throws InvalidInput when a free motion has no inertia.
+template <class = void>  // compiled where it is used
+DampedModes damped_modes(Linearisation const& l, Index count = 10) {
+  MatX m = detail::of_free_motions(l.N, l.M), d = detail::of_free_motions(l.N, l.D);
+  MatX const k = detail::of_free_motions(l.N, l.K);
+  Index const n = m.rows();
+  if (n == 0) return {};
+  Eigen::LLT<MatX> const inertia(m);
+  VecX const pivots = inertia.matrixLLT().diagonal();
+  if (inertia.info() != Eigen::Success || pivots.minCoeff() <= 1e-7 * pivots.maxCoeff())
+    throw InvalidInput("damped_modes: a free motion of the model has no inertia; hold it or give it some.");
+  double const slowest = detail::smallest_solution(k, m, 1e-9).norm();  // at least 1/ω²
+  double const tau = slowest > 0.0 ? 0.7 / std::sqrt(slowest) : 1.0;
+  m *= tau * tau;
+  d *= tau;
+  MatX inverse(2 * n, 2 * n);
+  inverse.topLeftCorner(n, n) = -m - d;
+  inverse.topRightCorner(n, n) = -m;
+  inverse.topRows(n) = MatX(m + d + k).partialPivLu().solve(inverse.topRows(n).eval());
+  inverse.bottomRows(n) = inverse.topRows(n);
+  inverse.bottomLeftCorner(n, n).diagonal().array() += 1.0;
+  Eigen::EigenSolver<MatX> const solved(inverse);
+  Eigen::VectorXcd const s = tau * (1.0 + solved.eigenvalues().array().inverse());
+  std::vector<Index> order;
+  for (Index i = 0; i < 2 * n; ++i)
+    if (s[i].imag() >= 0.0) order.push_back(i);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(s[a]) < std::abs(s[b]); });
+  order.resize(std::min(order.size(), std::size_t(count)));
+  DampedModes out;
+  out.eigenvalue.resize(Index(order.size()));
+  out.shape.resize(l.N.rows(), Index(order.size()));
+  Eigen::MatrixXcd const vectors = solved.eigenvectors();
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    out.eigenvalue[Index(i)] = s[order[i]];
+    out.shape.col(Index(i)) = l.N * vectors.col(order[i]).head(n);
+  }
+  return out;
+}
+/// The same about x. \throws InvalidInput also when x moves.
+template <class S>
+DampedModes damped_modes(S const& model, State const& x, Index count = 10) {
+  return damped_modes(linearise(model, x), count);
+}
+
+}  // namespace polybody

@@ -1,0 +1,284 @@
+#pragma once
+/// \file
+/// Small vibrations about a steady rotation. The whole model turns with angular velocity Ω about an axis fixed in the
+/// world, g(t) its rotation, and vibrates beside that: q(t) = g(t)·(q₀ ⊞ ε(t)). Let w(q) be the speeds of the rotation
+/// at q. g acts on the speeds of a body by a linear map that does not depend on q, with the generator
+///   Γξ = Dw ξ − c(w, ξ),   c(δ, v) = d/ds (local_rate(s δ, v) − local_rate(−s δ, v)) at s = 0,
+/// c the commutator of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular velocities in body
+/// axes: Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
+///   v = w(q₀ ⊞ ε) + ε˙,   v˙ = Γ w(q₀ ⊞ ε) + (Γ + Dw) ε˙ + ε¨,
+/// so that R = M v˙ − f + Gᵀλ gives equations with constant coefficients [Simo, Lewis & Marsden 1991]:
+///   M ε¨ + (D + M (Γ + Dw)) ε˙ + K ε + Gᵀμ = 0,  G ε = 0,
+///   D = −∂f/∂v,   K = ∂/∂ε R(q₀ ⊞ ε, w(q₀ ⊞ ε), Γ w(q₀ ⊞ ε)).
+/// Beside D stand Coriolis and gyroscopic forces; K contains the centrifugal forces and the stiffness of the stress
+/// they cause.
+///
+/// Not in polybody.hpp: it needs vibration/modes.hpp.
+
+#include <polybody/solvers/newton.hpp>
+#include <polybody/statics/equilibrium_options.hpp>
+#include <polybody/vibration/modes.hpp>
+
+namespace polybody {
+
+/// A model turns as a whole about an axis.
+struct SteadyRotation {
+  Vec3 angular_velocity = Vec3::Zero();  ///< (3) Ω, world axes [rad/s]
+  Vec3 point = Vec3::Zero();             ///< (3) any point of the axis, world axes [m]
+};
+
+namespace detail {
+
+/// A model in the frame that turns with it. Everything static is exact; what the rotation adds is smooth and
+/// differentiated by differences of fourth order, with steps of 1e-3 [m], [rad].
+template <class = void>  // compiled where it is used
+class TurningFrame {
+ public:
+  System& system;
+  double share = 1.0;  ///< of the angular velocity
+
+  TurningFrame(System& of, VecX const& q, SteadyRotation const& rotation)
+      : system(of),
+        rotation_(rotation),
+        none_(VecX::Zero(system.speeds())),
+        no_row_(VecX::Zero(system.rows())),
+        w_(none_),
+        a_(none_),
+        at_(q) {
+    require_finite(rotation.angular_velocity, "SteadyRotation: the angular velocity");
+    require_finite(rotation.point, "SteadyRotation: the point of the axis");
+    for (BodyPlace const& body : system.layout().bodies)
+      if (body.planar && !rotation.angular_velocity.head<2>().isZero(0.0))
+        throw InvalidInput("SteadyRotation: body \"" + body.name +
+                           "\" lives in the plane, so the axis must be parallel to z.");
+    gradient_ = by_speeds(q, [&](VecX const& at, VecX& w) { speeds(at, w); });
+    generator_ = gradient_;
+    double const s = 1e-3 / std::max(rotation.angular_velocity.norm(), 1e-3);
+    VecX w(none_), there(none_), back(none_), one(none_);
+    speeds(q, w);
+    for (Index j = 0; j < one.size(); ++j) {
+      one[j] = 1.0;
+      system.local_rate(s * w, one, there);
+      system.local_rate(-s * w, one, back);
+      generator_.col(j) -= (there - back) / s;
+      one[j] = 0.0;
+    }
+  }
+
+  /// w(q).
+  void speeds(VecX const& q, VecX& w) const {
+    Vec3 const omega = share * rotation_.angular_velocity, origin = rotation_.point.cross(omega);
+    require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions")(system.entries().second, q, origin,
+                                                                                  omega, w);
+  }
+  /// Puts the system at (q, w, t). R(q, w, Γw) with these multipliers.
+  void residual(VecX const& q, VecX const& lambda, double t, VecX& r) {
+    speeds(q, w_);
+    a_.noalias() = share * generator_ * w_;
+    system.evaluate(q, w_, t);
+    system.residual(a_, lambda, r);
+  }
+  /// [K, Gᵀ; G, 0] at x.
+  MatX stiffness(State const& x) {
+    system.evaluate(x.q, none_, x.t);
+    MatX k = dense_tangent(system, {.stiffness = 1.0}, x.lambda);
+    VecX rest(none_);
+    k.topLeftCorner(none_.size(), none_.size()) += by_speeds(x.q, [&](VecX const& q, VecX& r) {
+      residual(q, no_row_, x.t, r);
+      system.evaluate(q, none_, x.t);
+      system.residual(none_, no_row_, rest);
+      r -= rest;
+    });
+    return k;
+  }
+  /// Dw + Γ, and Γ, at the whole angular velocity and the first q.
+  MatX rate_matrix() const { return gradient_ + generator_; }
+  MatX const& generator() const { return generator_; }
+
+  /// \throws InvalidInput for rows that do not turn with the model: Φ˙ = G w + Φ_t must vanish.
+  void require_turning_rows(State const& x) {
+    VecX rate(no_row_);
+    speeds(x.q, w_);
+    system.evaluate(x.q, w_, x.t);
+    system.violation_rate(rate);
+    Index i = 0;
+    if (rate.size() && !(rate.cwiseAbs().maxCoeff(&i) <= 1e-8 * w_.cwiseAbs().maxCoeff()))
+      throw InvalidInput("SteadyRotation: " + system.name_of(system.speeds() + i) +
+                         " does not turn with the model (its gap grows at a rate of " + number(rate[i]) +
+                         "). Give it the axis, and a drive the rate, of the rotation.");
+  }
+
+ private:
+  /// ∂f/∂ε (nv×nv) at q ⊞ ε: (8 (f(h) − f(−h)) − (f(2h) − f(−2h)))/12h.
+  template <class F>
+  MatX by_speeds(VecX const& q, F&& f) {
+    double const h = 1e-3;
+    Index const n = none_.size();
+    MatX slopes = MatX::Zero(n, n);
+    VecX step(none_), value(none_);
+    for (Index j = 0; j < n; ++j) {
+      for (auto const& [steps, weight] : {std::pair{-2.0, 1.0}, {-1.0, -8.0}, {1.0, 8.0}, {2.0, -1.0}}) {
+        step[j] = steps * h;
+        system.plus(q, step, at_);
+        f(at_, value);
+        slopes.col(j) += (weight / (12.0 * h)) * value;
+      }
+      step[j] = 0.0;
+    }
+    return slopes;
+  }
+
+  SteadyRotation rotation_;
+  VecX none_, no_row_, w_, a_, at_;
+  MatX gradient_, generator_;
+};
+
+}  // namespace detail
+
+/// x turning steadily: v = w(q), a = Γw; everything else stays. \throws InvalidInput for planar bodies about another
+/// axis than z.
+template <class = void>
+State rotating_state(System& system, State const& x, SteadyRotation const& rotation) {
+  detail::TurningFrame<> const frame(system, x.q, rotation);
+  State out = x;
+  frame.speeds(x.q, out.v);
+  out.a = frame.generator() * out.v;
+  return out;
+}
+
+/// Moves x (coordinates, multipliers) from its present place to where elastic, centrifugal and all other forces balance
+/// while the model turns steadily; speeds and their rates become those of the rotation. Rows that depend on time are
+/// taken at x.t. `load_steps` and `smallest_part` are of Ω. Of redundant rows, and of motions that nothing resists, the
+/// smallest corrections are taken. Dense: for models of up to some hundred speeds.
+/// \throws InvalidInput for rows that do not turn with the model; NewtonStalled, NonFinite; x is then untouched.
+template <class = void>
+EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
+                                       EquilibriumOptions const& options = {}) {
+  struct Problem {
+    detail::TurningFrame<> frame;
+    State trial;
+    double tolerance, unit = 1.0;  ///< of the rows, so that their entries are as large as the stiffness
+    Index nv = trial.v.size(), rows = trial.lambda.size();
+    MatX k = {};
+    VecX r = VecX::Zero(nv), phi = VecX::Zero(rows), rhs = VecX::Zero(nv + rows), y = rhs, q = trial.q;
+
+    bool evaluate() {
+      frame.residual(trial.q, trial.lambda, trial.t, r);
+      frame.system.violation(phi);
+      rhs << -r, -phi;
+      return rhs.allFinite();
+    }
+    bool refactor() {
+      k = frame.stiffness(trial);
+      if (!k.allFinite()) return false;
+      double const largest = k.topLeftCorner(nv, nv).cwiseAbs().maxCoeff();
+      unit = largest > 0.0 ? largest : 1.0;
+      k.bottomRows(rows) *= unit;
+      k.rightCols(rows) *= unit;
+      return true;
+    }
+    double solve() {
+      rhs.tail(rows) *= unit;
+      y = detail::smallest_solution(k, rhs, 1e-12);
+      y.tail(rows) *= unit;
+      return y.head(nv).cwiseAbs().maxCoeff() / (tolerance * (1.0 + trial.q.cwiseAbs().maxCoeff()));
+    }
+    void apply() {
+      frame.system.plus(trial.q, y.head(nv), q);
+      trial.q.swap(q);
+      trial.lambda += y.tail(rows);
+    }
+  } problem{.frame = {system, x.q, rotation}, .trial = x, .tolerance = options.tolerance};
+
+  EquilibriumReport report;
+  double const whole = 1.0 / std::max(options.load_steps, 1);
+  for (double done = 0.0, part = whole; done < 1.0;) {
+    State const before = problem.trial;
+    problem.frame.share = done + part > 1.0 - 1e-12 ? 1.0 : done + part;
+    bool factored = false;
+    double theta = 1.0;
+    NewtonReport const n =
+        newton(problem, {.max_iterations = options.max_iterations, .always_refactor = true}, factored, theta);
+    report.iterations += n.iterations;
+    if (n.result == NewtonResult::converged) {
+      done = problem.frame.share;
+      part = std::min(2.0 * part, whole);
+      ++report.parts;
+      continue;
+    }
+    problem.trial = before;
+    part *= 0.5;
+    if (part >= options.smallest_part) continue;
+    std::string const at = " at " + number(problem.frame.share) + " of the angular velocity";
+    if (n.result != NewtonResult::diverged) throw NonFinite("relative_equilibrium: a force is not finite" + at + ".");
+    throw NewtonStalled(
+        "relative_equilibrium: Newton's method did not converge" + at +
+        ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none.");
+  }
+  problem.frame.require_turning_rows(problem.trial);
+  x = rotating_state(system, problem.trial, rotation);
+  return report;
+}
+
+/// About x, which turns steadily: its coordinates, multipliers and time count. With the result `damped_modes` gives the
+/// motions ε = Re(shape e^{st}) seen from the turning model. \throws InvalidInput when forces do not balance in x, or
+/// forces or rows do not turn with the model, as gravity across the axis.
+template <class = void>
+Linearisation linearise(System& system, State const& x, SteadyRotation const& rotation) {
+  detail::TurningFrame<> frame(system, x.q, rotation);
+  frame.require_turning_rows(x);
+  Index const nv = system.speeds(), rows = system.rows();
+  MatX const k = frame.stiffness(x);
+  Linearisation l;
+  l.K = k.topLeftCorner(nv, nv);
+  l.G = k.bottomLeftCorner(rows, nv);
+  l.N = detail::free_motions(l.G);
+  VecX w(nv), r(nv);
+  frame.speeds(x.q, w);
+  frame.residual(x.q, x.lambda, x.t, r);
+  l.M = detail::dense_tangent(system, {.mass = 1.0}, x.lambda).topLeftCorner(nv, nv);
+  l.D = detail::dense_tangent(system, {.damping = 1.0}, x.lambda).topLeftCorner(nv, nv) + l.M * frame.rate_matrix();
+
+  // against the forces of the rotation and of the rows, and the rounding errors of the stiffness
+  double const omega = rotation.angular_velocity.norm();
+  double const pull = rows ? (l.G.transpose() * x.lambda).cwiseAbs().maxCoeff() : 0.0;
+  double const small = 1e-6 * (omega * (l.M * w).cwiseAbs().maxCoeff() + pull) +
+                       1e-13 * l.K.cwiseAbs().maxCoeff() * (1.0 + x.q.cwiseAbs().maxCoeff());
+  Index i = 0;
+  if (!(r.cwiseAbs().maxCoeff(&i) <= small))
+    throw InvalidInput("linearise: forces on " + system.name_of(i) + " do not balance as the model turns (" +
+                       number(r[i]) + " is left); take the state from relative_equilibrium(model, x, rotation).");
+  // Kw is the rate at which R changes as the model turns: nothing but forces in the rows
+  VecX const turned = l.N * (l.N.transpose() * (l.K * w));
+  if (!(turned.cwiseAbs().maxCoeff(&i) <= small * omega))
+    throw InvalidInput("linearise: forces on " + system.name_of(i) +
+                       " do not turn with the model, as gravity or a load across the axis; no state of it is steady.");
+  return l;
+}
+
+namespace detail {
+template <class M>
+System turning_system(M const& model) {
+  return System(model, with < Entries::implicit_step | Entries::rigid_speeds >);
+}
+}  // namespace detail
+
+/// The same of a model.
+template <class M>
+State rotating_state(M const& model, State const& x, SteadyRotation const& rotation) {
+  System system = detail::turning_system(model);
+  return rotating_state(system, x, rotation);
+}
+template <class M>
+EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation const& rotation,
+                                       EquilibriumOptions const& options = {}) {
+  System system = detail::turning_system(model);
+  return relative_equilibrium(system, x, rotation, options);
+}
+template <class M>
+Linearisation linearise(M const& model, State const& x, SteadyRotation const& rotation) {
+  System system = detail::turning_system(model);
+  return linearise(system, x, rotation);
+}
+
+}  // namespace polybody
