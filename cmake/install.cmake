@@ -8,14 +8,21 @@ set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/polybody)
 install(TARGETS polybody EXPORT polybodyTargets FILE_SET HEADERS FILE_SET optional)
 install(EXPORT polybodyTargets NAMESPACE polybody:: DESTINATION ${package_dir})
 
-# polybodyConfig.cmake, good for both trees: it loads polybodyTargets.cmake and polybodyPrecompile.cmake beside it.
+# polybodyConfig.cmake, good for both trees: it loads polybodyTargets.cmake, polybodyPrecompile.cmake and
+# polybodyCompiled.cmake beside it.
 configure_package_config_file(
   cmake/polybodyConfig.cmake.in polybodyConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(
   polybodyConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 configure_file(cmake/polybodyPrecompile.cmake polybodyPrecompile.cmake COPYONLY)
+configure_file(cmake/polybodyCompiled.cmake polybodyCompiled.cmake COPYONLY)
+file(GLOB compiled_sources RELATIVE ${PROJECT_SOURCE_DIR}/cmake CONFIGURE_DEPENDS cmake/compiled/*.cpp)
+foreach(source IN LISTS compiled_sources)
+  configure_file(cmake/${source} ${source} COPYONLY)
+endforeach()
+install(DIRECTORY cmake/compiled DESTINATION ${package_dir})
 install(FILES ${PROJECT_BINARY_DIR}/polybodyConfig.cmake ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake
-              cmake/polybodyPrecompile.cmake DESTINATION ${package_dir})
+              cmake/polybodyPrecompile.cmake cmake/polybodyCompiled.cmake DESTINATION ${package_dir})
 
 # The build tree: -Dpolybody_DIR=<build directory>.
 export(EXPORT polybodyTargets NAMESPACE polybody:: FILE polybodyTargets.cmake)

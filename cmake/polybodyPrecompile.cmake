@@ -1,5 +1,5 @@
 # polybody_precompile(<target>...)
-# Gives each target a precompiled <polybody/polybody.hpp>. Targets that are compiled alike share one, built in this build
+# Gives each target a precompiled <polybody/polybody.hpp>, or <polybody/compiled.hpp> if it links polybody::compiled. Targets that are compiled alike share one, built in this build
 # tree by the object library polybody_pch (the header of an imported target cannot be shared, hence the function); each
 # further set of compile settings makes one more, polybody_pch_<hash>.
 #
@@ -91,10 +91,15 @@ function(_polybody_precompile target)
     message(FATAL_ERROR "polybody_precompile: target \"${target}\" does not link polybody::polybody.")
   endif()
 
+  set(header <polybody/polybody.hpp>)
+  if(polybody_compiled IN_LIST libraries)
+    set(header <polybody/compiled.hpp>)
+  endif()
+
   # the settings
   get_property(own_settings GLOBAL PROPERTY _polybody_own_settings)
   get_property(gathered_settings GLOBAL PROPERTY _polybody_gathered_settings)
-  set(key "")
+  set(key "${header}\n")
   foreach(setting IN LISTS own_settings)
     get_target_property(${setting} "${target}" ${setting})
     string(APPEND key "${setting}=${${setting}}\n")
@@ -140,7 +145,7 @@ function(_polybody_precompile target)
     endif()
     set_property(GLOBAL PROPERTY _polybody_pch_${hash} ${pch})
     set(source ${CMAKE_BINARY_DIR}/polybody_pch/polybody_pch.cpp) # CMake makes no precompiled header without a source
-    file(CONFIGURE OUTPUT ${source} CONTENT "// Compiled with the precompiled <polybody/polybody.hpp> and nothing else.\n")
+    file(CONFIGURE OUTPUT ${source} CONTENT "// Compiled with a precompiled header of polybody and nothing else.\n")
     add_library(${pch} OBJECT EXCLUDE_FROM_ALL ${source})
     foreach(setting IN LISTS own_settings gathered_settings)
       if("${${setting}}" MATCHES "-NOTFOUND$" OR "${${setting}}" STREQUAL "")
@@ -154,7 +159,7 @@ function(_polybody_precompile target)
       target_compile_options(${pch} PRIVATE ${CMAKE_CXX_COMPILE_OPTIONS_PIE})
     endif()
     target_link_libraries(${pch} PRIVATE polybody::polybody)
-    target_precompile_headers(${pch} PRIVATE <polybody/polybody.hpp>)
+    target_precompile_headers(${pch} PRIVATE ${header})
   endif()
   target_precompile_headers("${target}" REUSE_FROM ${pch})
 endfunction()

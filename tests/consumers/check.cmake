@@ -1,5 +1,5 @@
 # cmake -DWAY=<way> -DBUILD=... (see CMakeLists.txt) -P check.cmake
-# Installs polybody, or builds and runs consumer.cpp against it in one of six ways.
+# Installs polybody, or builds and runs consumer.cpp against it in one of the ways below.
 
 set(here ${CMAKE_CURRENT_LIST_DIR})
 set(dir ${WORK}/${WAY})
@@ -50,6 +50,26 @@ elseif(WAY STREQUAL "precompiled")
     endif()
   endforeach()
   build_and_run(precompiled ${common})
+
+elseif(WAY STREQUAL "compiled")
+  # Flags for another machine than FLAGS are for: longer packs, or shorter ones.
+  set(other "")
+  cmake_host_system_information(RESULT processor QUERY OS_PLATFORM)
+  if(processor STREQUAL "x86_64")
+    execute_process(COMMAND sh -c "echo __AVX__ | ${COMPILER} ${FLAGS} -E -x c++ - | tail -1" OUTPUT_VARIABLE avx)
+    set(other -mavx2)
+    if(avx MATCHES "^1")
+      set(other -mno-avx)
+    endif()
+  endif()
+  build_and_run(compiled -DCMAKE_PREFIX_PATH=${prefix} -DVERSION=${VERSION} "-DOTHER_MACHINE=${other}")
+  if(other)
+    execute_process(COMMAND ${CMAKE_COMMAND} --build ${dir} --target other RESULT_VARIABLE failed OUTPUT_VARIABLE said
+                    ERROR_VARIABLE said)
+    if(NOT failed OR NOT said MATCHES "undefined reference[^\n]*Build")
+      message(FATAL_ERROR "A program for another machine (${other}) links with the library, or fails otherwise:\n${said}")
+    endif()
+  endif()
 
 elseif(WAY STREQUAL "pkg_config")
   # No CMake at all: c++ -std=c++20 consumer.cpp $(pkg-config --cflags polybody)

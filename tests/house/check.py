@@ -261,7 +261,7 @@ def comments(texts):
 
 
 def system(texts):
-    name = "polybody/system/system.hpp"
+    name = "polybody/system/basic_system.hpp"
     count = sum(
         d.kind == "function" and d.public and not d.friend
         and bool(re.fullmatch(r"BasicSystem::(?!BasicSystem$|~)[^:]+", d.name))

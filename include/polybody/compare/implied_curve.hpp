@@ -28,10 +28,13 @@ struct AngleAlong {
 
 /// The rotation field of Eq. 2.1 at one section: ψ about Z, then θ about −Y, then φ about −X:
 ///   R = exp(ψ e₃) exp(−θ e₂) exp(−φ e₁),  K = −φ′ e₁ + exp(φ e₁) (−θ′ e₂ + exp(θ e₂) ψ′ e₃).
-inline SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAlong const& phi) {
+template <class T = double>  // compiled where it is used
+SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAlong const& phi) {
+  using Vec3 = Vec<T, 3>;
+  using Mat3 = Mat<T, 3, 3>;
   Vec3 const x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
-  Mat3 const about_z = exp_so3<double>(psi.value * z), about_y = exp_so3<double>(theta.value * y);
-  Mat3 const about_x = exp_so3<double>(phi.value * x);
+  Mat3 const about_z = exp_so3<T>(psi.value * z), about_y = exp_so3<T>(theta.value * y);
+  Mat3 const about_x = exp_so3<T>(phi.value * x);
   Vec3 const yawed = about_y * z, inner = psi.slope * yawed - theta.slope * y;
   SectionTurn s;
   s.R = about_z * about_y.transpose() * about_x.transpose();
@@ -54,7 +57,7 @@ std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, V
     Vec3 r = curve.back();
     for (GaussPoint const& g : gauss<5>) {
       Mat3 const axes = rotation((double(i) + g.xi) * part);
-      r += g.weight * part * axes.col(0);
+      for (int k = 0; k < 3; ++k) r[k] += g.weight * part * axes(k, 0);
     }
     curve.push_back(r);
   }

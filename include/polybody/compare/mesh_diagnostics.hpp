@@ -3,6 +3,7 @@
 /// The two curves of a large-rotation-vector beam. Its position field gives one; its rotation field implies
 /// another, r(s) = r(0) + ∫ t₁(θ) ds [thesis Eq. 2.2, 2.17]. Their nodes, lengths and curvatures side by side.
 
+#include <concepts>
 #include <span>
 #include <vector>
 
@@ -21,19 +22,21 @@ struct MeshDiagnostics {
 };
 
 /// Points of the curve that the rotation field implies: `samples` in each element and the first node.
-inline std::vector<Vec2> implied_curve(planar::Lrvf const& beam, std::span<double const> q, int samples = 1) {
+template <std::same_as<planar::Lrvf> Beam>
+std::vector<Vec2> implied_curve(Beam const& beam, std::span<double const> q, int samples = 1) {
   std::vector<double> const rest(q.size(), 0.0);
   auto const at = [&](Index e, double xi) {
-    return beam.centre_line<double>({e, xi, 0.0}, q, std::span<double const>(rest));
+    return beam.template centre_line<double>({e, xi, 0.0}, q, std::span<double const>(rest));
   };
   double const part = beam.element_length() / samples;
-  std::vector<Vec2> curve{at(0, 0.0).r};
+  Vec2 r = at(0, 0.0).r;
+  std::vector<Vec2> curve{r};
   for (Index e = 0; e < beam.elements(); ++e)
     for (int i = 0; i < samples; ++i) {
-      Vec2 r = curve.back();
       for (GaussPoint const& g : gauss<5>) {
         double const angle = at(e, (i + g.xi) / samples).angle;
-        r += g.weight * part * Vec2(std::cos(angle), std::sin(angle));
+        r[0] += g.weight * part * std::cos(angle);
+        r[1] += g.weight * part * std::sin(angle);
       }
       curve.push_back(r);
     }
@@ -41,22 +44,28 @@ inline std::vector<Vec2> implied_curve(planar::Lrvf const& beam, std::span<doubl
 }
 
 /// Both meshes of a beam at the coordinates q (see `coordinates_of`).
-inline MeshDiagnostics mesh_diagnostics(planar::Lrvf const& beam, std::span<double const> q) {
+template <std::same_as<planar::Lrvf> Beam>
+MeshDiagnostics mesh_diagnostics(Beam const& beam, std::span<double const> q) {
   MeshDiagnostics d;
   double const l = beam.element_length();
   d.rotation_nodes = implied_curve(beam, q);
   for (Index i = 0; i <= beam.elements(); ++i) {
-    Vec2 const r = part<2>(q, 3 * i);
+    Vec2 const r(q[std::size_t(3 * i)], q[std::size_t(3 * i + 1)]), &other = d.rotation_nodes[std::size_t(i)];
     d.position_nodes.push_back(r);
-    d.largest_gap = std::max(d.largest_gap, (r - d.rotation_nodes[std::size_t(i)]).norm());
+    d.largest_gap = std::max(d.largest_gap, std::hypot(r[0] - other[0], r[1] - other[1]));
   }
   ShapeValues<2> const n = linear_shape(0.5, l);
   for (Index e = 0; e < beam.elements(); ++e) {
     Vec2 const a = d.position_nodes[std::size_t(e)], b = d.position_nodes[std::size_t(e) + 1];
-    Vec2 const slope = n.ds[0] * a + n.ds[1] * b, second = n.dds[0] * a + n.dds[1] * b;
-    d.position_length += slope.norm() * l;
-    d.position_curvature.push_back(std::abs(slope[0] * second[1] - slope[1] * second[0]) / std::pow(slope.norm(), 3));
-    d.rotation_curvature.push_back(beam.strains<0>({e, 0.5, 0.0}, q)[2]);
+    Vec2 slope, second;
+    for (int k = 0; k < 2; ++k) {
+      slope[k] = n.ds[0] * a[k] + n.ds[1] * b[k];
+      second[k] = n.dds[0] * a[k] + n.dds[1] * b[k];
+    }
+    double const length = std::hypot(slope[0], slope[1]);
+    d.position_length += length * l;
+    d.position_curvature.push_back(std::abs(slope[0] * second[1] - slope[1] * second[0]) / std::pow(length, 3));
+    d.rotation_curvature.push_back(beam.template strains<0>({e, 0.5, 0.0}, q)[2]);
     for (GaussPoint const& g : gauss<5>) {
       double const angle = q[std::size_t(3 * e + 2)] * (1.0 - g.xi) + q[std::size_t(3 * e + 5)] * g.xi;
       d.rotation_length += g.weight * l * std::hypot(std::cos(angle), std::sin(angle));

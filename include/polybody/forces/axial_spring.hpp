@@ -57,6 +57,4 @@ struct AxialSpring {
   }
 };
 
-static_assert(ForceElement<AxialSpring> && HasPotential<AxialSpring>);
-
 }  // namespace polybody

@@ -263,7 +263,4 @@ struct SphereOnCylinder {
   }
 };
 
-static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<SphereOnPlane>> &&
-              HasPotential<Contact<SphereOnSphere>>);
-
 }  // namespace polybody

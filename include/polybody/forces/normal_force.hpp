@@ -152,6 +152,4 @@ struct HuntCrossleyContact {
   }
 };
 
-static_assert(NormalForce<SpringDamperContact> && NormalForce<HertzContact> && NormalForce<HuntCrossleyContact>);
-
 }  // namespace polybody

@@ -75,6 +75,4 @@ struct PointMoment {
   }
 };
 
-static_assert(ForceElement<PointForce<>> && ForceElement<PointMoment<>>);
-
 }  // namespace polybody

@@ -49,6 +49,4 @@ struct SpringDamper {
   }
 };
 
-static_assert(ForceElement<SpringDamper> && HasPotential<SpringDamper>);
-
 }  // namespace polybody

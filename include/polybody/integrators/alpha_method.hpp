@@ -99,7 +99,7 @@ struct AlphaMethod {
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     StepHistory const history(x);
     w.v0 = x.v;
-    w.a0 = history.own();
+    history.own(w.a0);
     double const shifted = history.shifted();  // the length for which v and a stand off; 0 after a start
     if (start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
         (shifted == 0.0 || h * w.jerk.norm() <= 0.5 * x.a.norm()))  // else the step does not resolve it
@@ -115,9 +115,11 @@ struct AlphaMethod {
 
   /// a, v and Δq of a step of h from x where v̇ becomes w.vd.
   void predict(State const& x, double h, AlphaVectors& w) const {
-    w.a = (alpha_f * x.a + (1.0 - alpha_f) * w.vd - alpha_m * w.a0) / (1.0 - alpha_m);
-    w.v = w.v0 + h * ((1.0 - gamma) * w.a0 + gamma * w.a);
-    w.dq = h * w.v0 + h * h * ((0.5 - beta) * w.a0 + beta * w.a);
+    for (Index i = 0; i < w.a.size(); ++i) {
+      w.a[i] = (alpha_f * x.a[i] + (1.0 - alpha_f) * w.vd[i] - alpha_m * w.a0[i]) / (1.0 - alpha_m);
+      w.v[i] = w.v0[i] + h * ((1.0 - gamma) * w.a0[i] + gamma * w.a[i]);
+      w.dq[i] = h * w.v0[i] + h * h * ((0.5 - beta) * w.a0[i] + beta * w.a[i]);
+    }
   }
   /// … and when a changes by a part of y, λ by the rest of it.
   void apply(double part, double h, bool two_sets, AlphaVectors& w) const {
@@ -125,29 +127,34 @@ struct AlphaMethod {
       w.y *= part;
       if (two_sets) w.back *= part;
     }
-    auto const da = w.y.head(w.v.size());
-    w.a += da;
-    w.vd += mass() * da;
-    w.v += h * gamma * da;
-    w.dq += beta * h * h * da;
+    Index const nv = w.v.size();
+    for (Index i = 0; i < nv; ++i) {
+      double const da = w.y[i];
+      w.a[i] += da;
+      w.vd[i] += mass() * da;
+      w.v[i] += h * gamma * da;
+      w.dq[i] += beta * h * h * da;
+    }
     if (two_sets) w.dq += w.back;
-    w.lambda += w.y.tail(w.lambda.size());
+    for (Index i = 0; i < w.lambda.size(); ++i) w.lambda[i] += w.y[nv + i];
   }
   CorrectionSize measure(double h, bool two_sets, AlphaVectors const& w) const {
     double const s = beta * h * h, n = std::sqrt(double(std::max<Index>(w.v.size(), 1)));
     double const size = 1.0 + w.vd.norm() / n;
     double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
-    double const change = w.y.head(w.v.size()).norm() + (two_sets ? w.back.norm() / s : 0.0);
+    double square = 0.0;
+    for (Index i = 0; i < w.v.size(); ++i) square += w.y[i] * w.y[i];
+    double const change = std::sqrt(square) + (two_sets ? w.back.norm() / s : 0.0);
     return {.norm = change / n, .tolerated = tolerance * size + rounding};
   }
   /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
   void right_hand_side(double h, bool two_sets, std::vector<Index> const& velocity_rows, AlphaVectors& w) const {
     Index const nv = w.v.size(), rows = w.lambda.size();
-    w.rhs.head(nv) = -w.r;
+    for (Index i = 0; i < nv; ++i) w.rhs[i] = -w.r[i];
     if (two_sets) {
-      w.rhs.tail(rows) = w.rate / -(h * gamma);
+      for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.rate[i] / -(h * gamma);
     } else {
-      w.rhs.tail(rows) = w.phi / -(beta * h * h);
+      for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.phi[i] / -(beta * h * h);
       for (Index const i : velocity_rows) w.rhs[nv + i] = w.rate[i] / -(h * gamma);
     }
   }
@@ -161,6 +168,51 @@ struct AlphaMethod {
     SecondOrder const second = w.second_order ? SecondOrder::included : SecondOrder::omitted;
     return w.solver.factor([&](BlockSink& sink) { system.tangent(c, second, lambda, sink); });
   }
+
+  /// A step as Newton's method sees it.
+  template <class Solver>
+  struct Problem {
+    AlphaMethod const& method;
+    System& system;
+    State const& x;
+    Workspace<Solver>& w;
+    double h, look_ahead;
+    bool two_sets, stand_ins;
+    Index bad = -1;
+
+    bool evaluate() {
+      system.plus(x.q, w.dq, w.q);
+      system.evaluate(w.q, w.v, x.t + h);
+      system.residual(w.vd, w.lambda, w.r);
+      system.violation(w.phi);
+      if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
+      method.right_hand_side(h, two_sets, system.velocity_rows(), w);
+      return w.rhs.allFinite();
+    }
+    bool refactor() {
+      double const ahead = std::min(look_ahead * w.age, 4.0) * h;
+      if (ahead > 0.0) {
+        for (Index i = 0; i < w.v.size(); ++i) w.ahead[i] = w.dq[i] + ahead * w.v[i];
+        system.plus(x.q, w.ahead, w.q);
+        system.evaluate(w.q, w.v, x.t + h);
+      }
+      bad = method.refactor(system, h, w.lambda, w, stand_ins);
+      return bad < 0;
+    }
+    CorrectionSize solve() {
+      w.solver.solve(w.rhs, w.y);
+      bool const finite = w.y.allFinite();
+      if (two_sets && finite) {
+        for (Index i = 0; i < system.speeds(); ++i) w.back[i] = method.beta * h * h * w.y[i];
+        system.rows_times(w.back, w.rate);
+        w.phi += w.rate;
+        for (Index const i : system.velocity_rows()) w.phi[i] = 0.0;  // μ is of positions
+        w.forward.least_change(system, w.phi, w.back);
+      }
+      return finite ? method.measure(h, two_sets, w) : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
+    }
+    void apply(double part) { method.apply(part, h, two_sets, w); }
+  };
 
   /// One step from x; x changes only when Newton converged. What stalls is tried again with more effort: 1, full Newton
   /// with every term in the tangent, and from the start without extrapolation; 2, the same with stand-ins for what the
@@ -180,48 +232,6 @@ struct AlphaMethod {
     if (two_sets) w.forward.hold(system, x.q, x.v, x.t);
     if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
 
-    struct Problem {
-      AlphaMethod const& method;
-      System& system;
-      State const& x;
-      Workspace<Solver>& w;
-      double h, look_ahead;
-      bool two_sets, stand_ins;
-      Index bad = -1;
-
-      bool evaluate() {
-        system.plus(x.q, w.dq, w.q);
-        system.evaluate(w.q, w.v, x.t + h);
-        system.residual(w.vd, w.lambda, w.r);
-        system.violation(w.phi);
-        if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
-        method.right_hand_side(h, two_sets, system.velocity_rows(), w);
-        return w.rhs.allFinite();
-      }
-      bool refactor() {
-        double const ahead = std::min(look_ahead * w.age, 4.0) * h;
-        if (ahead > 0.0) {
-          w.ahead = w.dq + ahead * w.v;
-          system.plus(x.q, w.ahead, w.q);
-          system.evaluate(w.q, w.v, x.t + h);
-        }
-        bad = method.refactor(system, h, w.lambda, w, stand_ins);
-        return bad < 0;
-      }
-      CorrectionSize solve() {
-        w.solver.solve(w.rhs, w.y);
-        bool const finite = w.y.allFinite();
-        if (two_sets && finite) {
-          w.back = method.beta * h * h * w.y.head(system.speeds());
-          system.rows_times(w.back, w.rate);
-          w.phi += w.rate;
-          for (Index const i : system.velocity_rows()) w.phi[i] = 0.0;  // μ is of positions
-          w.forward.least_change(system, w.phi, w.back);
-        }
-        return finite ? method.measure(h, two_sets, w) : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
-      }
-      void apply(double part) { method.apply(part, h, two_sets, w); }
-    };
     NewtonOptions options = newton;
     if (careful) {
       options.always_refactor = true;
@@ -231,7 +241,7 @@ struct AlphaMethod {
     // what μ moves is large and gone at once: how it shrinks tells nothing of the rest
     options.predictive_stop = options.predictive_stop && !two_sets;
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
-    Problem problem{*this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, effort != 1};
+    Problem<Solver> problem{*this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, effort != 1};
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
         effort < efforts(system)) {
@@ -260,16 +270,16 @@ struct AlphaMethod {
   template <class Solver>
   void correct(System& system, State const& x, double h_old, double h_new, Workspace<Solver>& w) const {
     double const delta = alpha_m - alpha_f, c = 1.0 / 6.0 - beta - 0.5 * delta;
-    w.a0 += delta * (h_new - h_old) * w.jerk;
+    for (Index i = 0; i < w.a0.size(); ++i) w.a0[i] += delta * (h_new - h_old) * w.jerk[i];
     if (system.rows() == 0 || stabilised) return;  // μ moves no speeds
     // [v, v̇]/12: rates in coordinates ⊞ are v + ½[δ, v] + even terms of δ
-    w.dq = h_new * x.v;
+    for (Index i = 0; i < w.dq.size(); ++i) w.dq[i] = h_new * x.v[i];
     system.local_rate(w.dq, x.a, w.v);
-    w.dq = -w.dq;
+    for (Index i = 0; i < w.dq.size(); ++i) w.dq[i] = -w.dq[i];
     system.local_rate(w.dq, x.a, w.a);
-    w.jerk = c * w.jerk + (w.v - w.a) / (12.0 * h_new);
+    for (Index i = 0; i < w.jerk.size(); ++i) w.jerk[i] = c * w.jerk[i] + (w.v[i] - w.a[i]) / (12.0 * h_new);
     w.forward.constrained_part(system, x.q, x.v, x.t, w.jerk, w.v);
-    w.v0 += (h_new * h_new - h_old * h_old) * w.v;
+    for (Index i = 0; i < w.v0.size(); ++i) w.v0[i] += (h_new * h_new - h_old * h_old) * w.v[i];
   }
 
   /// q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. False where
@@ -288,18 +298,28 @@ struct AlphaMethod {
     };
     VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);
     return differences_agree(x.a, quarter, half, full, h, w.jerk) &&
-           (acceleration_after(h) - full).norm() <= 0.5 * h * w.jerk.norm();
+           distance(acceleration_after(h), full) <= 0.5 * h * w.jerk.norm();
+  }
+  static double distance(VecX const& a, VecX const& b) {
+    double square = 0.0;
+    for (Index i = 0; i < a.size(); ++i) square += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(square);
   }
   /// Δq and v after e seconds with w.jerk.
   static void follow(State const& x, double e, AlphaVectors& w) {
-    w.dq = e * x.v + 0.5 * e * e * x.a + e * e * e / 6.0 * w.jerk;
-    w.v = x.v + e * x.a + 0.5 * e * e * w.jerk;
+    for (Index i = 0; i < w.v.size(); ++i) {
+      w.dq[i] = e * x.v[i] + 0.5 * e * e * x.a[i] + e * e * e / 6.0 * w.jerk[i];
+      w.v[i] = x.v[i] + e * x.a[i] + 0.5 * e * e * w.jerk[i];
+    }
   }
   static bool differences_agree(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h,
                                 VecX& jerk) {
-    jerk = (4.0 * quarter - half - 3.0 * now) / (0.5 * h);
-    VecX const coarse = (4.0 * half - full - 3.0 * now) / h;
-    return (jerk - coarse).norm() <= 0.5 * jerk.norm() && jerk.allFinite();
+    VecX coarse(now.size());
+    for (Index i = 0; i < now.size(); ++i) {
+      jerk[i] = (4.0 * quarter[i] - half[i] - 3.0 * now[i]) / (0.5 * h);
+      coarse[i] = (4.0 * half[i] - full[i] - 3.0 * now[i]) / h;
+    }
+    return distance(jerk, coarse) <= 0.5 * jerk.norm() && jerk.allFinite();
   }
 };
 

@@ -3,6 +3,7 @@
 /// Accelerations and multipliers of a state, and projections onto the rows: all through the matrix
 /// [M, Gᵀ; G, 0] [thesis Eq. 3.2].
 
+#include <algorithm>
 #include <span>
 
 #include <polybody/solvers/default_solver.hpp>
@@ -71,16 +72,16 @@ class ForwardDynamics {
     system.acceleration_bias(phi_);
     if (feedback.rate != 0.0) {
       system.violation_rate(open_);
-      phi_ += feedback.rate * open_;
+      for (Index i = 0; i < phi_.size(); ++i) phi_[i] += feedback.rate * open_[i];
     }
     if (feedback.position != 0.0) {
       system.violation(open_);
-      phi_ += feedback.position * open_;
+      for (Index i = 0; i < phi_.size(); ++i) phi_[i] += feedback.position * open_[i];
     }
     detail::require_finite_rows(system, phi_);
     solve(system, -1.0, -1.0);
-    a = x_.head(system.speeds());
-    lambda = x_.tail(system.rows());
+    take(0, system.speeds(), a);
+    take(system.speeds(), system.rows(), lambda);
   }
 
   /// The smallest change of v (in the norm of M) that satisfies G v + Φ_t = 0. Returns max |change|.
@@ -90,19 +91,25 @@ class ForwardDynamics {
     factor(system);
     system.violation_rate(phi_);
     solve(system, 0.0, -1.0);
-    v += x_.head(system.speeds());
-    return x_.head(system.speeds()).cwiseAbs().maxCoeff();
+    double largest = 0.0;
+    for (Index i = 0; i < v.size(); ++i) {
+      v[i] += x_[i];
+      if (!(std::abs(x_[i]) <= largest)) largest = std::abs(x_[i]);
+    }
+    return largest;
   }
 
   /// One Gauss–Newton step of the smallest change of q (in the norm of M) towards Φ = 0; returns |Φ| before.
   double project_positions_once(System& system, VecX& q, VecX const& v, double t) {
     system.evaluate(q, v, t);
     system.violation(phi_);
-    double const before = phi_.size() ? phi_.cwiseAbs().maxCoeff() : 0.0;
+    double before = 0.0;
+    for (Index i = 0; i < phi_.size(); ++i)
+      if (!(std::abs(phi_[i]) <= before)) before = std::abs(phi_[i]);  // a NaN stays
     if (before == 0.0) return before;
     factor(system);
     solve(system, 0.0, -1.0);
-    delta_ = x_.head(system.speeds());
+    take(0, system.speeds(), delta_);
     next_ = q;
     system.plus(q, delta_, next_);
     q.swap(next_);
@@ -120,7 +127,7 @@ class ForwardDynamics {
   void least_change(System& system, VecX const& phi, VecX& out) {
     phi_ = phi;
     solve(system, 0.0, -1.0);
-    out = x_.head(system.speeds());
+    take(0, system.speeds(), out);
   }
 
   /// P b: the part of b that the rows of positions force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t); velocity rows have it
@@ -131,7 +138,7 @@ class ForwardDynamics {
     system.rows_times(b, phi_);
     for (Index const i : system.velocity_rows()) phi_[i] = 0.0;
     solve(system, 0.0, 1.0);
-    out = x_.head(system.speeds());
+    take(0, system.speeds(), out);
   }
 
   /// M a + Gᵀμ = w, G a = 0 with M and G as of the last factorisation: what a force w (nv) moves and what the rows hold
@@ -140,8 +147,8 @@ class ForwardDynamics {
     r_ = w;
     phi_.setZero();
     solve(system, 1.0, 0.0);
-    a = x_.head(system.speeds());
-    mu = x_.tail(system.rows());
+    take(0, system.speeds(), a);
+    take(system.speeds(), system.rows(), mu);
   }
 
   /// Equations that repeat others (see `name_of_equation`), as of the last factorisation: their multipliers are
@@ -167,11 +174,17 @@ class ForwardDynamics {
 
   /// [M, Gᵀ; G, 0] x = [r_scale r; phi_scale φ].
   void solve(System& system, double r_scale, double phi_scale) {
-    rhs_.head(system.speeds()) = r_scale * r_;
-    rhs_.tail(system.rows()) = phi_scale * phi_;
-    if (r_scale == 0.0) rhs_.head(system.speeds()).setZero();
+    Index const n = system.speeds();
+    for (Index i = 0; i < n; ++i) rhs_[i] = r_scale == 0.0 ? 0.0 : r_scale * r_[i];
+    for (Index i = 0; i < system.rows(); ++i) rhs_[n + i] = phi_scale * phi_[i];
     solver_.solve(rhs_, x_);
     if (Index const i = detail::first_not_finite(x_); i >= 0) detail::throw_singular(system.at().t, system.name_of(i));
+  }
+
+  /// out = x_ from entry `first` on.
+  void take(Index first, Index n, VecX& out) const {
+    out.resize(n);
+    std::copy_n(x_.data() + first, n, out.data());
   }
 
   TangentSolver<Solver> solver_;

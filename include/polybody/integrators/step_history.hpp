@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -13,8 +14,9 @@ namespace polybody {
 class StepHistory {
   static constexpr int kept = 5;
   static Index size(Index nv, Index rows) { return (kept + 1) * nv + kept * rows + kept + 1; }
-  auto a(int back) const { return memory_.segment(back * nv_, nv_); }
-  auto lambda(int back) const { return memory_.segment((kept + 1) * nv_ + (back - 1) * rows_, rows_); }
+  double* a(int back) const { return memory_.data() + back * nv_; }
+  double* lambda(int back) const { return memory_.data() + (kept + 1) * nv_ + (back - 1) * rows_; }
+  static void copy(double const* from, Index n, double* to) { std::copy(from, from + n, to); }
   double& length(int back) const { return memory_[memory_.size() - 1 - back]; }
 
   Index nv_, rows_;
@@ -31,29 +33,30 @@ class StepHistory {
   static void reset(State& x) {
     Index const nv = x.a.size();
     x.memory.setZero(size(nv, x.lambda.size()));
-    x.memory.head(nv) = x.a;
+    copy(x.a.data(), nv, x.memory.data());
   }
 
-  auto own() const { return memory_.head(nv_); }
+  /// The method's own entries into `out` (nv).
+  void own(VecX& out) const { copy(memory_.data(), nv_, out.data()); }
   double shifted() const { return memory_[memory_.size() - 1]; }
 
   /// As if a step h had ended at x and v̇ had changed at the rate `jerk` in it.
   void pretend(State const& x, VecX const& jerk, double h) {
-    a(1) = x.a - h * jerk;
-    lambda(1) = x.lambda;
+    for (Index i = 0; i < nv_; ++i) a(1)[i] = x.a[i] - h * jerk[i];
+    copy(x.lambda.data(), rows_, lambda(1));
     length(1) = h;
   }
 
   /// Makes x, from which a step h was taken, the last one; `own` are the method's entries after it.
   void push(State const& x, double h, VecX const& own) {
-    memory_.head(nv_) = own;
+    copy(own.data(), nv_, memory_.data());
     for (int back = kept; back > 1; --back) {
-      a(back) = a(back - 1);
-      lambda(back) = lambda(back - 1);
+      copy(a(back - 1), nv_, a(back));
+      copy(lambda(back - 1), rows_, lambda(back));
       length(back) = length(back - 1);
     }
-    a(1) = x.a;
-    lambda(1) = x.lambda;
+    copy(x.a.data(), nv_, a(1));
+    copy(x.lambda.data(), rows_, lambda(1));
     length(1) = h;
     memory_[memory_.size() - 1] = h;
   }
@@ -74,8 +77,10 @@ class StepHistory {
   bool jerk(State const& x, VecX& out) const {
     double const h1 = length(1), h2 = length(2);
     if (h1 == 0.0) return false;
-    out = (x.a - a(1)) / h1;
-    if (h2 > 0.0) out += h1 / (h1 + h2) * ((x.a - a(1)) / h1 - (a(1) - a(2)) / h2);
+    for (Index i = 0; i < nv_; ++i) {
+      double const last = (x.a[i] - a(1)[i]) / h1;
+      out[i] = h2 > 0.0 ? last + h1 / (h1 + h2) * (last - (a(1)[i] - a(2)[i]) / h2) : last;
+    }
     return true;
   }
 
@@ -90,22 +95,26 @@ class StepHistory {
     return c;
   }
 
-  /// Of `known` points, `now` the first and `get(i)` the others.
+  /// From `known` points, `now` the first and `get(i)` the others, into `out`.
   template <class Get>
   static void extrapolate(Times const& t, int known, double h, VecX const& now, Get&& get, VecX& out) {
     int best = 1;
     double least = std::numeric_limits<double>::infinity();
+    auto const add = [&](double factor, double const* from) {
+      for (Index k = 0; k < out.size(); ++k) out[k] += factor * from[k];
+    };
     for (int n = 1; n < known; ++n) {
       out = now;
-      for (int i = 1; i <= n; ++i) out -= weight(t, i, 1, n + 1, 0.0) * get(i);
+      for (int i = 1; i <= n; ++i) add(-weight(t, i, 1, n + 1, 0.0), get(i));
       double const error = out.squaredNorm();
       if (error < least) {
         least = error;
         best = n;
       }
     }
-    out = weight(t, 0, 0, best, h) * now;
-    for (int i = 1; i < best; ++i) out += weight(t, i, 0, best, h) * get(i);
+    double const first = weight(t, 0, 0, best, h);
+    for (Index k = 0; k < out.size(); ++k) out[k] = first * now[k];
+    for (int i = 1; i < best; ++i) add(weight(t, i, 0, best, h), get(i));
   }
 };
 

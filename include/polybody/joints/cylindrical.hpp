@@ -43,6 +43,4 @@ struct Cylindrical {
   }
 };
 
-static_assert(JointGeometry<Cylindrical>);
-
 }  // namespace polybody

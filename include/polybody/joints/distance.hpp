@@ -41,6 +41,4 @@ struct Distance {
   }
 };
 
-static_assert(JointGeometry<Distance>);
-
 }  // namespace polybody

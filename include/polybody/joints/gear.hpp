@@ -95,6 +95,4 @@ struct Gear {
   }
 };
 
-static_assert(JointGeometry<Gear>);
-
 }  // namespace polybody

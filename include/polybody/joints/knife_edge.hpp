@@ -40,6 +40,4 @@ struct KnifeEdge {
   }
 };
 
-static_assert(JointGeometry<KnifeEdge>);
-
 }  // namespace polybody

@@ -32,6 +32,4 @@ struct Orientation {
   }
 };
 
-static_assert(JointGeometry<Orientation>);
-
 }  // namespace polybody

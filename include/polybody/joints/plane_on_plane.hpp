@@ -43,6 +43,4 @@ struct PlaneOnPlane {
   }
 };
 
-static_assert(JointGeometry<PlaneOnPlane>);
-
 }  // namespace polybody

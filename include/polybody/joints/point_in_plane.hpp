@@ -40,6 +40,4 @@ struct PointInPlane {
   }
 };
 
-static_assert(JointGeometry<PointInPlane>);
-
 }  // namespace polybody

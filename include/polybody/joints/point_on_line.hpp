@@ -39,6 +39,4 @@ struct PointOnLine {
   }
 };
 
-static_assert(JointGeometry<PointOnLine>);
-
 }  // namespace polybody

@@ -49,6 +49,4 @@ struct PrescribedAngle {
   }
 };
 
-static_assert(JointGeometry<PrescribedAngle<Ramp>>);
-
 }  // namespace polybody

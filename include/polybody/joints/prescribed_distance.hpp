@@ -44,6 +44,4 @@ struct PrescribedDistance {
   }
 };
 
-static_assert(JointGeometry<PrescribedDistance<Ramp>>);
-
 }  // namespace polybody

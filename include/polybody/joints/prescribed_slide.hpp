@@ -47,6 +47,4 @@ struct PrescribedSlide {
   }
 };
 
-static_assert(JointGeometry<PrescribedSlide<Ramp>>);
-
 }  // namespace polybody

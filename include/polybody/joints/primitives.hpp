@@ -88,6 +88,4 @@ struct ParallelAxes {
   }
 };
 
-static_assert(JointGeometry<PerpendicularAxes> && JointGeometry<ParallelAxes>);
-
 }  // namespace polybody

@@ -49,6 +49,4 @@ struct RackAndPinion {
   }
 };
 
-static_assert(JointGeometry<RackAndPinion>);
-
 }  // namespace polybody

@@ -163,8 +163,6 @@ struct RelativeCoordinates {
   };
 };
 
-static_assert(JointGeometry<RelativeCoordinates>);
-
 /// These coordinates of a joint with geometry G, without those that G leaves free: their rows are zero, so no force
 /// finds a way to them, however far they go.
 template <JointGeometry G>

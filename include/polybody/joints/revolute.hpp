@@ -46,6 +46,4 @@ struct Revolute {
   }
 };
 
-static_assert(JointGeometry<Revolute>);
-
 }  // namespace polybody

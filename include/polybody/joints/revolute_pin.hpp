@@ -63,6 +63,4 @@ struct RevolutePin {
   }
 };
 
-static_assert(JointGeometry<RevolutePin>);
-
 }  // namespace polybody

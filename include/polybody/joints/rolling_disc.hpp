@@ -102,6 +102,4 @@ struct RollingDisc {
   };
 };
 
-static_assert(JointGeometry<RollingDisc>);
-
 }  // namespace polybody

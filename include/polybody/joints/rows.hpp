@@ -25,8 +25,8 @@ void coincident(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row = 
 /// Writes g = u·w: ġ = (u × w)·(ω_a − ω_b).
 template <int m, StateScalar T>
 void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, Gap<m, T>& gap, int row) {
-  Vec<T, 3> const c = u.cross(w);
-  gap.g[row] = u.dot(w);
+  Vec<T, 3> const c = cross(u, w);
+  gap.g[row] = dot(u, w);
   for (int i = 0; i < 3; ++i) {
     gap.Ga(row, 3 + i) = c[i];
     gap.Gb(row, 3 + i) = -c[i];
@@ -36,15 +36,15 @@ void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, Gap<m, T>& gap, int r
 /// γ of `perpendicular`: 2 (ω_a × u)·(ω_b × w) + (ω_a × (ω_a × u))·w + u·(ω_b × (ω_b × w)).
 template <StateScalar T>
 inline T perpendicular_gamma(Vec<T, 3> const& u, Vec<T, 3> const& w, Frame<T> const& a, Frame<T> const& b) {
-  Vec<T, 3> const ud = a.w.cross(u), wd = b.w.cross(w), udd = a.w.cross(ud), wdd = b.w.cross(wd);
-  return 2.0 * ud.dot(wd) + udd.dot(w) + u.dot(wdd);
+  Vec<T, 3> const ud = cross(a.w, u), wd = cross(b.w, w), udd = cross(a.w, ud), wdd = cross(b.w, wd);
+  return 2.0 * dot(ud, wd) + dot(udd, w) + dot(u, wdd);
 }
 
 /// Writes g = u·d: ġ = u·(v_b − v_a) + (u × d)·ω_a.
 template <int m, StateScalar T>
 void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
-  Vec<T, 3> const d = b.r - a.r, c = u.cross(d);
-  gap.g[row] = u.dot(d);
+  Vec<T, 3> const d = difference(b.r, a.r), c = cross(u, d);
+  gap.g[row] = dot(u, d);
   for (int i = 0; i < 3; ++i) {
     gap.Ga(row, i) = -u[i];
     gap.Ga(row, 3 + i) = c[i];
@@ -55,8 +55,8 @@ void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b, Gap<m, T
 /// γ of `no_slide`: 2 (ω_a × u)·(v_b − v_a) + (ω_a × (ω_a × u))·d.
 template <StateScalar T>
 inline T no_slide_gamma(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b) {
-  Vec<T, 3> const ud = a.w.cross(u), udd = a.w.cross(ud), d = b.r - a.r, rate = b.v - a.v;
-  return 2.0 * ud.dot(rate) + udd.dot(d);
+  Vec<T, 3> const ud = cross(a.w, u), udd = cross(a.w, ud), d = difference(b.r, a.r), rate = difference(b.v, a.v);
+  return 2.0 * dot(ud, rate) + dot(udd, d);
 }
 
 /// Writes the three rows a₁·b₂, a₂·b₃, a₃·b₁ that hold the axes of b parallel to those of a.
@@ -100,8 +100,8 @@ Vec<T, 2> on_axis_gamma(Frame<T> const& a, Frame<T> const& b) {
 template <int m, StateScalar T>
 void distance(Frame<T> const& a, Frame<T> const& b, double length, Gap<m, T>& gap, int row = 0) {
   using std::sqrt;
-  Vec<T, 3> const line = b.r - a.r;
-  T const d = sqrt(line.dot(line));
+  Vec<T, 3> const line = difference(b.r, a.r);
+  T const d = sqrt(squared_norm(line));
   gap.g[row] = d - length;
   for (int i = 0; i < 3; ++i) {
     T const e = value_of(d) > 0.0 ? T(line[i] / d) : T(i == 0 ? 1.0 : 0.0);
@@ -114,9 +114,9 @@ void distance(Frame<T> const& a, Frame<T> const& b, double length, Gap<m, T>& ga
 template <StateScalar T>
 T distance_gamma(Frame<T> const& a, Frame<T> const& b) {
   using std::sqrt;
-  Vec<T, 3> const d = b.r - a.r, rate = b.v - a.v;
-  T const d2 = d.dot(d), along = d.dot(rate);
-  return (rate.dot(rate) - along * along / d2) / sqrt(d2);
+  Vec<T, 3> const d = difference(b.r, a.r), rate = difference(b.v, a.v);
+  T const d2 = squared_norm(d), along = dot(d, rate);
+  return (squared_norm(rate) - along * along / d2) / sqrt(d2);
 }
 
 /// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: the wrenches of rows with multipliers, rotations in world axes.
@@ -125,7 +125,7 @@ using WrenchGradient = Mat<double, 12, 12>;
 /// Adds λ times that of `perpendicular`: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ) δφ_b.
 template <class = void>  // compiled where it is used
 void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchGradient& k) {
-  double const uw = u.dot(w);
+  double const uw = dot(u, w);
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
       double const one = i == j ? uw : 0.0, a = lambda * (u[i] * w[j] - one), b = lambda * (one - w[i] * u[j]);
@@ -140,12 +140,12 @@ void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchG
 template <class = void>  // compiled where it is used
 void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> const& b, double lambda,
                        WrenchGradient& k) {
-  Vec3 const d = b.r - a.r;
-  double const ud = u.dot(d);
-  Mat3 const cross = skew<double>(u);
+  Vec3 const d = difference(b.r, a.r);
+  double const ud = dot(u, d);
+  Mat3 const across = skew<double>(u);
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
-      double const turn = lambda * cross(i, j);
+      double const turn = lambda * across(i, j);
       k(i, 3 + j) += turn;
       k(3 + i, j) -= turn;
       k(3 + i, 3 + j) += lambda * (u[i] * d[j] - (i == j ? ud : 0.0));
@@ -175,8 +175,8 @@ void on_axis_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const
 /// Adds λ times that of `distance`: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
 template <class = void>  // compiled where it is used
 void distance_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
-  Vec3 const d = b.r - a.r;
-  double const d2 = d.dot(d), tension = lambda / std::sqrt(d2);
+  Vec3 const d = difference(b.r, a.r);
+  double const d2 = squared_norm(d), tension = lambda / std::sqrt(d2);
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
       double const turn = tension * ((i == j ? 1.0 : 0.0) - d[i] * d[j] / d2);
@@ -205,12 +205,12 @@ template <class = void>  // compiled where it is used
 Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
   require_unit(first, what + ": the first axis");
   require_unit(third, what + ": the second axis");
-  if (std::abs(first.dot(third)) > 1e-9)
+  if (std::abs(dot(first, third)) > 1e-9)
     throw InvalidInput(what +
                        ": the two axes must be perpendicular at the reference configuration, but their scalar product "
                        "is " +
-                       number(first.dot(third)) + ".");
-  return columns(first, third.cross(first), third);
+                       number(dot(first, third)) + ".");
+  return columns(first, cross(third, first), third);
 }
 
 /// A right-handed triad whose third axis is `axis`. \throws InvalidInput unless it is a unit vector.
@@ -222,9 +222,9 @@ Mat3 triad_about(Vec3 const& axis, std::string const& what) {
     if (std::abs(axis[i]) < std::abs(axis[smallest])) smallest = i;
   Vec3 first;
   for (int i = 0; i < 3; ++i) first[i] = (i == smallest ? 1.0 : 0.0) - axis[smallest] * axis[i];
-  double const length = std::sqrt(first.dot(first));
+  double const length = std::sqrt(squared_norm(first));
   for (int i = 0; i < 3; ++i) first[i] /= length;
-  return columns(first, axis.cross(first), axis);
+  return columns(first, cross(axis, first), axis);
 }
 
 }  // namespace polybody::rows

@@ -53,6 +53,4 @@ struct Screw {
   }
 };
 
-static_assert(JointGeometry<Screw>);
-
 }  // namespace polybody

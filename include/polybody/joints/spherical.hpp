@@ -29,6 +29,4 @@ struct Spherical {
   }
 };
 
-static_assert(JointGeometry<Spherical>);
-
 }  // namespace polybody

@@ -48,6 +48,4 @@ struct Universal {
   }
 };
 
-static_assert(JointGeometry<Universal>);
-
 }  // namespace polybody

@@ -51,8 +51,8 @@ Mat<T, 3, 3> rotation_matrix(Quaternion<T> const& q) {
 template <class T>
 Quaternion<T> quaternion_exp(Vec<T, 3> const& phi) {
   using std::sqrt;
-  Vec<T, 3> const half = phi * 0.5;
-  T const x = half.squaredNorm();
+  Vec<T, 3> const half(phi[0] * 0.5, phi[1] * 0.5, phi[2] * 0.5);
+  T const x = squared_norm(half);
   RotationSeries<T> const s(x);
   return {1.0 - x * s.b, half[0] * s.a, half[1] * s.a, half[2] * s.a};
 }
@@ -62,15 +62,17 @@ template <class T>
 Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
   using std::atan2, std::sqrt;
   T const sign = value_of(q[0]) < 0.0 ? T(-1.0) : T(1.0);
-  Vec<T, 3> const v = q.template tail<3>() * sign;
+  Vec<T, 3> const v(q[1] * sign, q[2] * sign, q[3] * sign);
   T const w = q[0] * sign;
-  T const x = v.squaredNorm();
+  T const x = squared_norm(v);
   if (value_of(x) < 1e-8) {  // atan(n)/n with n² = x/w²; the next term is 1e-24
     T const n2 = x / (w * w);
-    return v * (2.0 / w * (1.0 - n2 * (1.0 / 3.0 - n2 * 0.2)));
+    T const factor = 2.0 / w * (1.0 - n2 * (1.0 / 3.0 - n2 * 0.2));
+    return {v[0] * factor, v[1] * factor, v[2] * factor};
   }
   T const n = sqrt(x);
-  return v * (2.0 * atan2(n, w) / n);
+  T const factor = 2.0 * atan2(n, w) / n;
+  return {v[0] * factor, v[1] * factor, v[2] * factor};
 }
 
 /// q ⊞ δ = q exp(δ): δ (3) in body axes [rad]; the result is normalised.
@@ -78,7 +80,8 @@ template <class T>
 Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
   using std::sqrt;
   Quaternion<T> const r = quaternion_product<T>(q, quaternion_exp<T>(delta));
-  return r / sqrt(r.squaredNorm());
+  T const size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+  return {r[0] / size, r[1] / size, r[2] / size, r[3] / size};
 }
 
 /// q ⊟ p = log(p⁻¹ q): the δ with p ⊞ δ = q (up to sign of the quaternion).
@@ -90,10 +93,29 @@ Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
 /// The unit quaternion of a rotation matrix (w ≥ 0).
 template <class = void>  // compiled where it is used
 Quaternion<double> quaternion_of(Mat3 const& a) {
-  Eigen::Quaterniond const e(a);
-  Quaternion<double> q(e.w(), e.x(), e.y(), e.z());
-  q.normalize();
-  return q[0] < 0.0 ? Quaternion<double>(-q) : q;
+  // by the largest of 4w², 4x², 4y², 4z², whose square root loses no digits [Shepperd 1978]
+  double const trace = a(0, 0) + a(1, 1) + a(2, 2);
+  int largest = -1;  // of the axes; −1: w
+  double most = trace;
+  for (int i = 0; i < 3; ++i)
+    if (a(i, i) > most) {
+      most = a(i, i);
+      largest = i;
+    }
+  double q[4];
+  if (largest < 0) {
+    q[0] = 1.0 + trace;
+    for (int i = 0; i < 3; ++i) q[1 + i] = a((i + 2) % 3, (i + 1) % 3) - a((i + 1) % 3, (i + 2) % 3);
+  } else {
+    int const i = largest, j = (i + 1) % 3, k = (i + 2) % 3;
+    q[0] = a(k, j) - a(j, k);
+    q[1 + i] = 1.0 + 2.0 * a(i, i) - trace;
+    q[1 + j] = a(j, i) + a(i, j);
+    q[1 + k] = a(k, i) + a(i, k);
+  }
+  double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (q[0] < 0.0) size = -size;
+  return {q[0] / size, q[1] / size, q[2] / size, q[3] / size};
 }
 
 /// log of a rotation matrix: rotation vector with |φ| ≤ π [rad].

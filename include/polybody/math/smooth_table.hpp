@@ -119,6 +119,4 @@ class SmoothTable {
   std::vector<double> corners_;
 };
 
-static_assert(HasIntegral<SmoothTable> && HasCorners<SmoothTable>);
-
 }  // namespace polybody

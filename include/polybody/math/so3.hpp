@@ -10,6 +10,24 @@
 
 namespace polybody {
 
+/// |a|², a·b, a − b and a × b: products and reductions of Eigen would cost more to compile.
+template <class T>
+T squared_norm(Vec<T, 3> const& a) {
+  return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+}
+template <class T>
+T dot(Vec<T, 3> const& a, Vec<T, 3> const& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class T>
+Vec<T, 3> difference(Vec<T, 3> const& a, Vec<T, 3> const& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <class T>
+Vec<T, 3> cross(Vec<T, 3> const& a, Vec<T, 3> const& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 /// ã with ã b = a × b, 3×3.
 template <class T>
 Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
@@ -112,27 +130,27 @@ struct ArctanSeries {
 /// exp(φ̃) = 1 + a φ̃ + b φ̃²  (Rodrigues), 3×3; φ in [rad].
 template <class T>
 Mat<T, 3, 3> exp_so3(Vec<T, 3> const& phi) {
-  RotationSeries<T> const s(phi.squaredNorm());
+  RotationSeries<T> const s(squared_norm(phi));
   return one_and_skew<T>(phi, s.a, s.b);
 }
 
 /// Right Jacobian Jr(φ) = 1 − b φ̃ + c φ̃²: exp(φ + δ) ≈ exp(φ) exp(Jr δ), and ω_body = Jr φ̇.
 template <class T>
 Mat<T, 3, 3> right_jacobian(Vec<T, 3> const& phi) {
-  RotationSeries<T> const s(phi.squaredNorm());
+  RotationSeries<T> const s(squared_norm(phi));
   return one_and_skew<T>(phi, -s.b, s.c);
 }
 
 /// Left Jacobian Jl(φ) = Jr(−φ): ω_world = Jl φ̇.
 template <class T>
 Mat<T, 3, 3> left_jacobian(Vec<T, 3> const& phi) {
-  return right_jacobian<T>(-phi);
+  return right_jacobian<T>({-phi[0], -phi[1], -phi[2]});
 }
 
 /// Jr(φ)⁻¹ = 1 + ½ φ̃ + e φ̃², e = (1 − (a/2b))/|φ|², for |φ| < 2π.
 template <class T>
 Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
-  T const x = phi.squaredNorm();
+  T const x = squared_norm(phi);
   RotationSeries<T> const s(x);
   T e;
   if (value_of(x) < 0.25) {
@@ -151,13 +169,20 @@ Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
 ///   2 (c′ φ × (φ × x) − b′ φ × x) φᵀ + b x̃ − c ((φ × x)~ + φ̃ x̃),  b′, c′ the slopes of b, c.
 template <class T>
 Mat<T, 3, 3> right_jacobian_derivative(Vec<T, 3> const& phi, Vec<T, 3> const& x) {
-  T const angle2 = phi.squaredNorm();
+  T const angle2 = squared_norm(phi), along_x = phi[0] * x[0] + phi[1] * x[1] + phi[2] * x[2];
   RotationSeries<T> const s(angle2);
   RotationSlopes<T> const slope(angle2);
-  Vec<T, 3> const once = phi.cross(x), twice = phi.cross(once);
-  Vec<T, 3> const along = (twice * slope.c - once * slope.b) * 2.0;
-  Mat<T, 3, 3> const h = skew(phi), hx = skew(x);
-  return along * phi.transpose() + hx * s.b - (skew(once) + h * hx) * s.c;
+  Vec<T, 3> const once = cross(phi, x), twice = cross(phi, once);
+  Mat<T, 3, 3> const of_x = skew(x), of_once = skew(once);
+  Mat<T, 3, 3> d;
+  for (int i = 0; i < 3; ++i) {
+    T const along = (twice[i] * slope.c - once[i] * slope.b) * 2.0;
+    for (int j = 0; j < 3; ++j) {
+      T const both = i == j ? T(x[i] * phi[j] - along_x) : T(x[i] * phi[j]);  // φ̃ x̃ = x φᵀ − (φ·x) 1
+      d(i, j) = along * phi[j] + of_x(i, j) * s.b - (of_once(i, j) + both) * s.c;
+    }
+  }
+  return d;
 }
 
 }  // namespace polybody

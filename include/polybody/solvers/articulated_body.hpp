@@ -13,8 +13,17 @@
 
 namespace polybody {
 
-template <class = void>  // compiled where it is used
+/// T is `double`: a template, so that a program without joint coordinates compiles none of it.
+template <class T = double>
 class ArticulatedBodySolverOf {
+  using Vec3 = Vec<T, 3>;
+  using Vec6 = Vec<T, 6>;
+  using Mat6 = Mat<T, 6, 6>;
+  using VecX = VecXOf<T>;
+  using MatX = MatXOf<T>;
+  using TreeFrame = TreeFrameOf<T>;
+  using TreeState = TreeStateOf<T>;
+
  public:
   /// Whose tree it is, and where its bodies are; both must outlive the use of the solver. Allocates the first time.
   void attach(ReductionOf<> const& reduction, TreeState const& state) {
@@ -55,11 +64,11 @@ class ArticulatedBodySolverOf {
     std::size_t const j = std::size_t(owner_[std::size_t(col)]);
     std::size_t const i = row < nv ? std::size_t(owner_[std::size_t(row)]) : 0;
     std::vector<TreeBody> const& bodies = reduction_->tree().bodies;
-    Mat<double, 6, 6>* const to = row >= nv                      ? nullptr
-                                  : i == j                       ? &nodes_[i].k
-                                  : bodies[i].parent == Index(j) ? &nodes_[i].c
-                                  : bodies[j].parent == Index(i) ? &nodes_[j].b
-                                                                 : nullptr;
+    Mat6* const to = row >= nv                      ? nullptr
+                     : i == j                       ? &nodes_[i].k
+                     : bodies[i].parent == Index(j) ? &nodes_[i].c
+                     : bodies[j].parent == Index(i) ? &nodes_[j].b
+                                                    : nullptr;
     for (Index l = 0; l < b.rows; ++l) {
       Vec6 g = Vec6::Zero();  // row l by the world's axes
       for (Index k = 0; k < b.cols; ++k) g += b(l, k) * axis_of(j, col + k - bodies[j].v0);
@@ -109,8 +118,8 @@ class ArticulatedBodySolverOf {
 
  private:
   struct Node {
-    Mat<double, 6, 6> k = Mat<double, 6, 6>::Zero(), b = k, c = k;  ///< K̂, B, C
-    Mat<double, 6, 6> s = k, inverse = k, left = k, right = k;      ///< S, D⁻¹, L by rows, R by columns
+    Mat6 k = Mat6::Zero(), b = k, c = k;           ///< K̂, B, C
+    Mat6 s = k, inverse = k, left = k, right = k;  ///< S, D⁻¹, L by rows, R by columns
     Vec6 f = Vec6::Zero(), x = f, u = f;
     int speeds = 0;
   };
@@ -124,7 +133,7 @@ class ArticulatedBodySolverOf {
     else if (k < 3)
       axis[k] = 1.0;
     else
-      axis.tail<3>() = state_->frames[i].A.col(k - 3);
+      axis.template tail<3>() = state_->frames[i].A.col(k - 3);
     return axis;
   }
 
@@ -140,15 +149,15 @@ class ArticulatedBodySolverOf {
       for (int k = 0; k < n.speeds; ++k) n.s.col(k) = axis_of(i, k);
     }
     int const d = n.speeds;
-    Mat<double, 6, 6> const ks = n.k * n.s;
+    Mat6 const ks = n.k * n.s;
     double largest = 0.0;
     for (int r = 0; r < d; ++r)
       for (int c = 0; c < d; ++c) largest = std::max(largest, std::abs(n.inverse(r, c) = n.s.col(r).dot(ks.col(c))));
     if (int const bad = invert(n.inverse, d, largest); bad >= 0) return body.vn + bad;
     if (body.parent < 0) return -1;
-    Mat<double, 6, 6> shift = Mat<double, 6, 6>::Identity();  // X
-    shift.topRightCorner<3, 3>() = -skew<double>(frame.arm);
-    Mat<double, 6, 6> const kx = n.k * shift + n.c;
+    Mat6 shift = Mat6::Identity();  // X
+    shift.template topRightCorner<3, 3>() = -skew<T>(frame.arm);
+    Mat6 const kx = n.k * shift + n.c;
     for (int r = 0; r < d; ++r) {
       n.left.row(r) = n.s.col(r).transpose() * kx;
       n.right.col(r) = shift.transpose() * ks.col(r) + n.b * n.s.col(r);
@@ -160,8 +169,8 @@ class ArticulatedBodySolverOf {
     return -1;
   }
   /// The leading n×n inverted with pivoting. −1, or the column that has no pivot.
-  static int invert(Mat<double, 6, 6>& a, int n, double size) {
-    Mat<double, 6, 6> out = Mat<double, 6, 6>::Identity();
+  static int invert(Mat6& a, int n, double size) {
+    Mat6 out = Mat6::Identity();
     for (int k = 0; k < n; ++k) {
       int best = k;
       for (int r = k + 1; r < n; ++r)
@@ -196,7 +205,7 @@ class ArticulatedBodySolverOf {
         for (int k = 0; k < n.speeds; ++k) n.u[k] += n.inverse(k, c) * given[c];  // D⁻¹ (r + Sᵀf)
       if (bodies[i].parent < 0) continue;
       Vec6& f = nodes_[std::size_t(bodies[i].parent)].f;
-      JointTreeOf<>::add_back(n.f, state_->frames[i].arm, f);
+      JointTreeOf<T>::add_back(n.f, state_->frames[i].arm, f);
       for (int k = 0; k < n.speeds; ++k) f -= n.u[k] * n.right.col(k);
     }
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -208,7 +217,7 @@ class ArticulatedBodySolverOf {
         for (int k = 0; k < n.speeds; ++k) by_parent[k] = n.left.row(k).dot(p);
         for (int c = 0; c < n.speeds; ++c)
           for (int k = 0; k < n.speeds; ++k) n.u[k] -= n.inverse(k, c) * by_parent[c];
-        JointTreeOf<>::add_carried(p, state_->frames[i].arm, n.x);
+        JointTreeOf<T>::add_carried(p, state_->frames[i].arm, n.x);
       }
       for (int k = 0; k < n.speeds; ++k) {
         n.x += n.u[k] * n.s.col(k);

@@ -6,6 +6,4 @@ namespace polybody {
 /// Block LDLᵀ of a symmetric matrix; the half below the diagonal is not read.
 using BlockLdlt = BlockFactor<Symmetry::assumed>;
 
-static_assert(LinearSolver<BlockLdlt>);
-
 }  // namespace polybody

@@ -8,6 +8,4 @@ using BlockLu = BlockFactor<Symmetry::none>;
 /// Block LU that does the half of the work when the matrix is symmetric.
 using BlockSolver = BlockFactor<Symmetry::measured>;
 
-static_assert(LinearSolver<BlockLu> && LinearSolver<BlockSolver>);
-
 }  // namespace polybody

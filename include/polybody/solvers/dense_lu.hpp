@@ -74,6 +74,4 @@ class DenseLu {
   std::vector<Index> swaps_;
 };
 
-static_assert(LinearSolver<DenseLu>);
-
 }  // namespace polybody

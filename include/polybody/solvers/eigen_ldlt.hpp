@@ -109,6 +109,4 @@ class EigenLdlt {
   std::unique_ptr<Ldlt> ldlt_ = std::make_unique<Ldlt>();  // Eigen's does not move
 };
 
-static_assert(LinearSolver<EigenLdlt>);
-
 }  // namespace polybody

@@ -43,50 +43,9 @@ class ReducedCoordinates {
       map_equations(model);
   }
 
-  NarrowLayout narrow_layout(ModelLayout const& whole) const {
-    NarrowLayout n{.coordinates = reduction_.coordinates(),
-                   .speeds = reduction_.speeds(),
-                   .rows = reduction_.rows(),
-                   .velocity_rows = reduction_.velocity_rows(),
-                   .places = reduction_.places(),
-                   .rows_that_stay = reduction_.rows_that_stay(),
-                   .solves_by_bodies = solves_by_bodies,
-                   .keeps_mass_constant = std::is_void_v<Solution>};
-    for (Index i = 0; i < n.speeds; ++i) n.whole_speed.push_back(reduction_.whole_speed(i));
-    for (Index const row : reduction_.linear().redundant()) {
-      std::string name = whole.name_of(whole.speeds + row);
-      if (n.redundant.empty() || n.redundant.back() != name) n.redundant.push_back(std::move(name));
-    }
-    n.equations = n.speeds + n.rows;
-    n.equation_speeds = n.speeds;
-    if constexpr (!solves_densely && !solves_by_bodies) {
-      n.equations = equation_speeds_ + equation_rows_;
-      n.equation_speeds = equation_speeds_;
-      n.whole_unknown.assign(std::size_t(n.equations), -1);
-      for (Index i = Index(equation_of_.size()); i-- > 0;)
-        if (equation_of(i) >= 0) n.whole_unknown[std::size_t(equation_of(i))] = i;
-    }
-    return n;
-  }
+  NarrowLayout narrow_layout(ModelLayout const& whole) const;
 
-  static constexpr CoordinatesEntries entries() {
-    return {.expand = &expand,
-            .expand_rates = &expand_rates,
-            .reduce = &reduce,
-            .recover_multipliers = &recover_multipliers,
-            .plus = &plus,
-            .local_rate = &local_rate,
-            .coordinate_rates = &coordinate_rates,
-            .narrow = &narrow,
-            .write = &write,
-            .held = &held,
-            .hold = &hold,
-            .to_equations = &to_equations,
-            .from_equations = &from_equations,
-            .factor = &factor,
-            .solve = &solve};
-  }
-  static constexpr CoordinatesEntries table = entries();
+  static CoordinatesEntries const table;
 
  private:
   using Self = ReducedCoordinates;
@@ -98,7 +57,7 @@ class ReducedCoordinates {
     whole_v = of(c).v_;
   }
   static void expand_rates(void* c, VecX const& u, bool bias, VecX& out) {
-    of(c).reduction_.copy_speeds_out(u, out);
+    of(c).reduction_.expand_speeds(u, out);
     of(c).reduction_.linear().expand_rates(out);
     of(c).reduction_.tree().expand_rates(of(c).state_, u, bias, out);
   }
@@ -106,7 +65,7 @@ class ReducedCoordinates {
     of(c).last_r_ = r;
     of(c).reduction_.linear().reduce_forces(r);
     of(c).reduction_.tree().reduce_forces(of(c).state_, r, out);
-    of(c).reduction_.copy_speeds_in(r, out);
+    of(c).reduction_.reduce_speeds(r, out);
   }
 
   static void recover_multipliers(void* c, Data<double> const& data, VecX& lambda) {
@@ -161,10 +120,10 @@ class ReducedCoordinates {
     Self& s = of(c);
     ReductionOf<> const& r = s.reduction_;
     out = {VecX::Zero(r.coordinates()), VecX::Zero(r.speeds()), VecX::Zero(r.speeds()), VecX::Zero(r.rows()), x.t, {}};
-    r.copy_coordinates_in(x.q, out.q);
-    r.copy_speeds_in(x.v, out.v);
-    r.copy_speeds_in(x.a, out.a);
-    r.copy_rows_in(x.lambda, out.lambda);
+    r.reduce_coordinates(x.q, out.q);
+    r.reduce_speeds(x.v, out.v);
+    r.reduce_speeds(x.a, out.a);
+    r.reduce_rows(x.lambda, out.lambda);
     r.tree().read_coordinates(x.q, x.v, s.state_, out.q);
     s.place(out.q, out.v);
     r.tree().reduce_rates(s.state_, x.v, false, out.v);
@@ -188,7 +147,7 @@ class ReducedCoordinates {
     } else if constexpr (solves_by_bodies) {
       write_whole(sink);
     } else {
-      MappedSink mapped(s.map_, s.mapped_, sink);
+      MappedSinkOf<> mapped(s.map_, s.mapped_, sink);
       BlockSink whole(mapped);
       write_whole(whole);
     }
@@ -232,7 +191,7 @@ class ReducedCoordinates {
       Index const nv = s.reduction_.speeds();
       s.narrow_ = rhs.head(nv);
       s.a_.setZero();
-      s.reduction_.copy_speeds_out(s.narrow_, s.a_);
+      s.reduction_.expand_speeds(s.narrow_, s.a_);
       s.reduction_.tree().expand_forces(*static_cast<TreeState*>(h), s.narrow_, s.a_);
       out.setZero();
       for (Index i = 0; i < s.a_.size(); ++i)
@@ -248,7 +207,7 @@ class ReducedCoordinates {
       s.a_.setZero();
       for (Index i = 0; i < s.a_.size(); ++i)
         if (Index const from = s.equation_of(i); from >= 0) s.a_[i] = solution[from];
-      s.reduction_.copy_speeds_in(s.a_, s.narrow_);
+      s.reduction_.reduce_speeds(s.a_, s.narrow_);
       s.reduction_.tree().reduce_rates(*static_cast<TreeState*>(h), s.a_, false, s.narrow_);
       Index const nv = s.reduction_.speeds();
       out.head(nv) = s.narrow_;
@@ -258,8 +217,8 @@ class ReducedCoordinates {
 
   /// q_, v_ and the tree from narrow coordinates and speeds.
   void place(VecX const& q, VecX const& v) {
-    reduction_.copy_coordinates_out(q, q_);
-    reduction_.copy_speeds_out(v, v_);
+    reduction_.expand_coordinates(q, q_);
+    reduction_.expand_speeds(v, v_);
     reduction_.linear().expand_coordinates(q_);
     reduction_.linear().expand_rates(v_);
     reduction_.tree().expand_state(q, v, q_, v_, state_);
@@ -309,6 +268,51 @@ class ReducedCoordinates {
   MappedBlocks mapped_;
   DenseReductionOf<> dense_;
 };
+
+template <class Solution>
+NarrowLayout ReducedCoordinates<Solution>::narrow_layout(ModelLayout const& whole) const {
+  NarrowLayout n{.coordinates = reduction_.coordinates(),
+                 .speeds = reduction_.speeds(),
+                 .rows = reduction_.rows(),
+                 .velocity_rows = reduction_.velocity_rows(),
+                 .places = reduction_.places(),
+                 .rows_that_stay = reduction_.rows_that_stay(),
+                 .solves_by_bodies = solves_by_bodies,
+                 .keeps_mass_constant = std::is_void_v<Solution>};
+  for (Index i = 0; i < n.speeds; ++i) n.whole_speed.push_back(reduction_.whole_speed(i));
+  for (Index const row : reduction_.linear().redundant()) {
+    std::string name = whole.name_of(whole.speeds + row);
+    if (n.redundant.empty() || n.redundant.back() != name) n.redundant.push_back(std::move(name));
+  }
+  n.equations = n.speeds + n.rows;
+  n.equation_speeds = n.speeds;
+  if constexpr (!solves_densely && !solves_by_bodies) {
+    n.equations = equation_speeds_ + equation_rows_;
+    n.equation_speeds = equation_speeds_;
+    n.whole_unknown.assign(std::size_t(n.equations), -1);
+    for (Index i = Index(equation_of_.size()); i-- > 0;)
+      if (equation_of(i) >= 0) n.whole_unknown[std::size_t(equation_of(i))] = i;
+  }
+  return n;
+}
+
+template <class Solution>
+constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = {
+    .expand = &ReducedCoordinates::expand,
+    .expand_rates = &ReducedCoordinates::expand_rates,
+    .reduce = &ReducedCoordinates::reduce,
+    .recover_multipliers = &ReducedCoordinates::recover_multipliers,
+    .plus = &ReducedCoordinates::plus,
+    .local_rate = &ReducedCoordinates::local_rate,
+    .coordinate_rates = &ReducedCoordinates::coordinate_rates,
+    .narrow = &ReducedCoordinates::narrow,
+    .write = &ReducedCoordinates::write,
+    .held = &ReducedCoordinates::held,
+    .hold = &ReducedCoordinates::hold,
+    .to_equations = &ReducedCoordinates::to_equations,
+    .from_equations = &ReducedCoordinates::from_equations,
+    .factor = &ReducedCoordinates::factor,
+    .solve = &ReducedCoordinates::solve};
 
 }  // namespace detail
 

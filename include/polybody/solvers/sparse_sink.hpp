@@ -9,9 +9,10 @@
 
 namespace polybody {
 
-class SparseSink {
+template <class T = double>  // compiled where it is used
+class SparseSinkOf {
  public:
-  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;
 
   /// Finds each entry's place in the values once, so that `add` never searches.
   void analyse(Index size, std::vector<Block> const& blocks) {
@@ -19,7 +20,7 @@ class SparseSink {
     for (Block const& b : blocks)
       for (Index j = 0; j < b.cols; ++j)
         for (Index i = 0; i < b.rows; ++i) columns[std::size_t(b.col + j)].push_back(int(b.row + i));
-    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<Eigen::Triplet<T>> entries;
     for (Index j = 0; j < size; ++j) {
       auto& rows = columns[std::size_t(j)];
       std::sort(rows.begin(), rows.end());
@@ -42,7 +43,7 @@ class SparseSink {
     cursor_ = 0;
   }
   void add(Index, Index, BlockView const& b) {
-    double* const values = a_.valuePtr();
+    T* const values = a_.valuePtr();
     std::int32_t const* slot = slots_.data() + cursor_;
     for (Index j = 0; j < b.cols; ++j)
       for (Index i = 0; i < b.rows; ++i) values[*slot++] += b(i, j);
@@ -55,5 +56,7 @@ class SparseSink {
   std::vector<std::int32_t> slots_;
   std::size_t cursor_ = 0;
 };
+
+using SparseSink = SparseSinkOf<>;
 
 }  // namespace polybody

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 
 #include <polybody/solvers/linear_solver.hpp>
@@ -52,15 +53,15 @@ class TangentSolver {
     if (solves_by_bodies()) return coordinates_.entries->solve(held_.get(), rhs, x);
     Index const n = size_, m = equations_;
     for (Index k = 0; k < copies_; ++k) {
-      part_ = rhs.segment(k * n, n);
+      std::copy_n(rhs.data() + k * n, n, part_.data());
       coordinates_.entries->to_equations(coordinates_.self.get(), held_.get(), part_, equation_);
-      rhs_.segment(k * m, m) = equation_;
+      std::copy_n(equation_.data(), m, rhs_.data() + k * m);
     }
     solver_.solve(rhs_, x_);
     for (Index k = 0; k < copies_; ++k) {
-      equation_ = x_.segment(k * m, m);
+      std::copy_n(x_.data() + k * m, m, equation_.data());
       coordinates_.entries->from_equations(coordinates_.self.get(), held_.get(), equation_, solution_);
-      x.segment(k * n, n) = solution_;
+      std::copy_n(solution_.data(), n, x.data() + k * n);
     }
   }
 

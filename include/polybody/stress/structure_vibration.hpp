@@ -68,8 +68,6 @@ struct LoadLines {
   }
 };
 
-static_assert(ChangesMatrices<LoadLines> && !LoadHistory<int>);
-
 }  // namespace detail
 
 /// Of the nodal coordinates (N×samples): as far as they enter the inertia forces, else empty.

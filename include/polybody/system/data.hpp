@@ -6,12 +6,20 @@
 #include <vector>
 
 #include <polybody/kinematics/frame.hpp>
+#include <polybody/math/pack.hpp>
 #include <polybody/math/workers.hpp>
 #include <polybody/system/row_block.hpp>
 
 namespace polybody {
 
-template <StateScalar T = double>
+/// How code is compiled where it decides what data look like: numbers in a pack, and the alignment of fixed-size
+/// matrices [bytes]. It is a part of the type, so that objects compiled for different machines do not link.
+struct Build {
+  int pack = pack_size;
+  int alignment = EIGEN_MAX_ALIGN_BYTES;
+};
+
+template <StateScalar T = double, Build build = Build{}>
 struct Data {
   std::vector<Published<T>> markers;  ///< waist 1, one for each marker
   std::vector<T> jacobians;           ///< arena of the dense Jacobians

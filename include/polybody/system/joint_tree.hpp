@@ -14,8 +14,17 @@
 
 namespace polybody {
 
-template <class = void>  // compiled where it is used
+/// T is `double`: a template, so that a program without joint coordinates compiles none of it.
+template <class T = double>
 class JointTreeOf {
+  using Vec3 = Vec<T, 3>;
+  using Vec6 = Vec<T, 6>;
+  using Mat3 = Mat<T, 3, 3>;
+  using Mat6 = Mat<T, 6, 6>;
+  using VecX = VecXOf<T>;
+  using TreeFrame = TreeFrameOf<T>;
+  using TreeState = TreeStateOf<T>;
+
  public:
   /// Bodies in an order in which each stands behind its parent.
   std::vector<TreeBody> bodies;
@@ -33,7 +42,7 @@ class JointTreeOf {
         continue;
       }
       TreeFrame const& p = body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
-      detail::Runner run{p.r, p.v, Vec3::Zero(), p.A, p.w, Vec3::Zero()};
+      detail::RunnerOf<T> run{p.r, p.v, Vec3::Zero(), p.A, p.w, Vec3::Zero()};
       run.go(p.A * body.from.origin);
       run.A = p.A * body.from.axes;
       f.angle = p.angle + body.angle;
@@ -177,7 +186,7 @@ class JointTreeOf {
             *x = body.layout == RigidLayout::plane
                      ? angle
                      : first_turn(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
-            turned = detail::turn_about(m.axis, -*x) * turned;
+            turned = detail::turn_about<T>(m.axis, -*x) * turned;
             break;
           case JointMotion::Kind::screw: {  // the slide counts the turns
             double const rest = first_turn(m.axis, turned, false, body.motions, k), full = 2.0 * std::numbers::pi;
@@ -185,7 +194,7 @@ class JointTreeOf {
             break;
           }
           case JointMotion::Kind::ball: {
-            Quaternion<double> const p4 = quaternion_of(turned);
+            Quaternion<T> const p4 = quaternion_of(turned);
             for (int j = 0; j < 4; ++j) x[j] = p4[j];
           }
         }
@@ -198,7 +207,7 @@ class JointTreeOf {
   void plus(VecX const& q, VecX const& delta, VecX& out) const {
     for_each_motion([&](JointMotion const& m, Index qn, Index vn) {
       if (m.kind == JointMotion::Kind::ball)
-        out.segment<4>(qn) = quaternion_plus<double>(q.segment<4>(qn), delta.segment<3>(vn));
+        out.template segment<4>(qn) = quaternion_plus<T>(q.template segment<4>(qn), delta.template segment<3>(vn));
       else
         out[qn] = q[qn] + delta[vn];
     });
@@ -207,7 +216,8 @@ class JointTreeOf {
   void local_rate(VecX const& delta, VecX const& v, VecX& out) const {
     for_each_motion([&](JointMotion const& m, Index, Index vn) {
       if (m.kind == JointMotion::Kind::ball)
-        out.segment<3>(vn) = right_jacobian_inverse<double>(delta.segment<3>(vn)) * v.segment<3>(vn);
+        out.template segment<3>(vn) =
+            right_jacobian_inverse<T>(delta.template segment<3>(vn)) * v.template segment<3>(vn);
       else
         out[vn] = v[vn];
     });
@@ -245,17 +255,17 @@ class JointTreeOf {
       t[1] = x[body.v0 + 1];
       t[5] = x[body.v0 + 2];
     } else {
-      t.head<3>() = x.segment<3>(body.v0);
-      t.tail<3>() = f.A * x.segment<3>(body.v0 + 3);
+      t.template head<3>() = x.template segment<3>(body.v0);
+      t.template tail<3>() = f.A * x.template segment<3>(body.v0 + 3);
     }
     return t;
   }
   static void put_twist(TreeBody const& body, TreeFrame const& f, Vec6 const& t, VecX& x) {
     if (body.layout == RigidLayout::plane) {
-      x.segment<3>(body.v0) << t[0], t[1], t[5];
+      x.template segment<3>(body.v0) << t[0], t[1], t[5];
     } else {
-      x.segment<3>(body.v0) = t.head<3>();
-      x.segment<3>(body.v0 + 3) = f.A.transpose() * t.tail<3>();
+      x.template segment<3>(body.v0) = t.template head<3>();
+      x.template segment<3>(body.v0 + 3) = f.A.transpose() * t.template tail<3>();
     }
   }
   /// Generalised forces and wrenches change in the same way, for A is orthogonal.
@@ -264,15 +274,15 @@ class JointTreeOf {
 
   /// t += the rigid motion of the parent at a body `arm` away.
   static void add_carried(Vec6 const& parent, Vec3 const& arm, Vec6& t) {
-    Vec3 const w = parent.tail<3>();
-    t.head<3>() += parent.head<3>() + w.cross(arm);
-    t.tail<3>() += w;
+    Vec3 const w = parent.template tail<3>();
+    t.template head<3>() += parent.template head<3>() + w.cross(arm);
+    t.template tail<3>() += w;
   }
   /// parent += a wrench of the body, `arm` away.
   static void add_back(Vec6 const& w, Vec3 const& arm, Vec6& parent) {
-    Vec3 const f = w.head<3>();
-    parent.head<3>() += f;
-    parent.tail<3>() += w.tail<3>() + arm.cross(f);
+    Vec3 const f = w.template head<3>();
+    parent.template head<3>() += f;
+    parent.template tail<3>() += w.template tail<3>() + arm.cross(f);
   }
 
  private:
@@ -280,21 +290,21 @@ class JointTreeOf {
     if (body.layout == RigidLayout::plane) {
       f.r << q[body.q0], q[body.q0 + 1], 0.0;
       f.angle = q[body.q0 + 2];
-      f.A = detail::turn_about(2, f.angle);
+      f.A = detail::turn_about<T>(2, f.angle);
     } else {
-      f.r = q.segment<3>(body.q0);
-      f.A = rotation_matrix<double>(q.segment<4>(body.q0 + 3));
+      f.r = q.template segment<3>(body.q0);
+      f.A = rotation_matrix<T>(q.template segment<4>(body.q0 + 3));
     }
     Vec6 const t = twist_of(body, f, v);
-    f.v = t.head<3>();
-    f.w = t.tail<3>();
+    f.v = t.template head<3>();
+    f.w = t.template tail<3>();
   }
   static void write(TreeBody const& body, TreeFrame const& f, VecX& q, VecX& v) {
     if (body.layout == RigidLayout::plane) {
-      q.segment<3>(body.q0) << f.r[0], f.r[1], f.angle;
+      q.template segment<3>(body.q0) << f.r[0], f.r[1], f.angle;
     } else {
-      q.segment<3>(body.q0) = f.r;
-      q.segment<4>(body.q0 + 3) = quaternion_of(f.A);
+      q.template segment<3>(body.q0) = f.r;
+      q.template segment<4>(body.q0 + 3) = quaternion_of(f.A);
     }
     Vec6 t;
     t << f.v, f.w;
@@ -303,7 +313,7 @@ class JointTreeOf {
 
   /// One motion; its columns as [moment arm's origin; axis] until `finish_columns` knows where the body's centre comes
   /// to lie.
-  static void move(JointMotion const& m, double sign, double const* x, double const* u, detail::Runner& run,
+  static void move(JointMotion const& m, double sign, double const* x, double const* u, detail::RunnerOf<T>& run,
                    TreeFrame& f) {
     Vec3 const n = sign * run.A.col(m.axis);
     auto const column = [&](Vec3 const& slide, Vec3 const& turn) {
@@ -320,11 +330,11 @@ class JointTreeOf {
         column(m.pitch * n, n);
         if (m.kind == JointMotion::Kind::screw) run.slide(n, m.pitch * x[0], m.pitch * u[0]);
         run.turn(u[0] * n);
-        run.A = run.A * detail::turn_about(m.axis, sign * x[0]);
+        run.A = run.A * detail::turn_about<T>(m.axis, sign * x[0]);
         f.angle += sign * x[0];
         break;
       case JointMotion::Kind::ball: {
-        Mat3 const turned = rotation_matrix<double>(Quaternion<double>(x[0], x[1], x[2], x[3]));
+        Mat3 const turned = rotation_matrix<T>(Quaternion<T>(x[0], x[1], x[2], x[3]));
         Mat3 const b = sign > 0.0 ? Mat3(run.A * turned) : run.A;  // the axes of frame b
         for (int k = 0; k < 3; ++k) column(Vec3::Zero(), sign * b.col(k));
         run.turn(sign * (b.col(0) * u[0] + b.col(1) * u[1] + b.col(2) * u[2]));
@@ -334,7 +344,7 @@ class JointTreeOf {
   }
   /// JointMotions were gone through from the last: columns into the order of the coordinates.
   static void reverse_columns(TreeBody const& body, TreeFrame& f) {
-    Mat<double, 6, 6> const back = f.s;
+    Mat6 const back = f.s;
     int to = 0, end = f.speeds;
     for (JointMotion const& m : body.motions) {
       end -= m.speeds();
@@ -344,8 +354,8 @@ class JointTreeOf {
   /// From the world's origin to the centre of mass; and (SᵀS)⁻¹.
   static void finish_columns(TreeFrame& f) {
     for (int k = 0; k < f.speeds; ++k) {
-      Vec3 const turn = f.s.col(k).tail<3>();
-      f.s.col(k).head<3>() += turn.cross(f.r);
+      Vec3 const turn = f.s.col(k).template tail<3>();
+      f.s.col(k).template head<3>() += turn.cross(f.r);
     }
     for (int i = 0; i < f.speeds; ++i)
       for (int j = 0; j < f.speeds; ++j) f.inverse(i, j) = f.s.col(i).dot(f.s.col(j));

@@ -13,22 +13,23 @@
 
 namespace polybody {
 
-class LinearElimination {
+template <class T = double>  // compiled where it is used
+class LinearEliminationOf {
  public:
   /// An independent coordinate and its factor.
   struct Term {
     Index q, v;
-    double factor;
+    T factor;
   };
   struct Dependent {
     Index q, v;
-    double constant;
+    T constant;
     std::vector<Term> terms;
   };
 
-  LinearElimination() = default;
+  LinearEliminationOf() = default;
   /// \throws InconsistentStart when rows contradict each other; those that repeat others are left out.
-  explicit LinearElimination(std::vector<LinearRows> const& joints) {
+  explicit LinearEliminationOf(std::vector<LinearRows> const& joints) {
     for (LinearRows const& rows : joints)
       for (Index i = 0; i < rows.rows(); ++i) take(rows, i);
     for (std::size_t k = pivots_.size(); k-- > 0;) solve_for(k);
@@ -40,14 +41,14 @@ class LinearElimination {
   std::vector<Index> const& redundant() const { return redundant_; }
 
   /// Dependent coordinates, and speeds or accelerations, from the independent ones.
-  void expand_coordinates(VecX& q) const {
+  void expand_coordinates(VecXOf<T>& q) const {
     for (Dependent const& d : dependents_) {
       double sum = d.constant;
       for (Term const& t : d.terms) sum += t.factor * q[t.q];
       q[d.q] = sum;
     }
   }
-  void expand_rates(VecX& v) const {
+  void expand_rates(VecXOf<T>& v) const {
     for (Dependent const& d : dependents_) {
       double sum = 0.0;
       for (Term const& t : d.terms) sum += t.factor * v[t.v];
@@ -55,12 +56,12 @@ class LinearElimination {
     }
   }
   /// Forces of dependent coordinates go to those on which they depend.
-  void reduce_forces(VecX& r) const {
+  void reduce_forces(VecXOf<T>& r) const {
     for (Dependent const& d : dependents_)
       for (Term const& t : d.terms) r[t.v] += t.factor * r[d.v];
   }
   /// λ of the rows, for r = M a − f + … without them. Zero for rows that repeat others.
-  void multipliers(VecX const& r, VecX& lambda) const {
+  void multipliers(VecXOf<T> const& r, VecXOf<T>& lambda) const {
     for (Index const i : redundant_) lambda[i] = 0.0;
     for (std::size_t k = 0; k < pivots_.size(); ++k) {
       Pivot const& p = pivots_[k];
@@ -77,10 +78,10 @@ class LinearElimination {
   struct Pivot {
     Index row;                        ///< of the model
     Index v = -1;                     ///< its dependent
-    std::map<Index, double> entries;  ///< by speeds
-    double constant;
-    std::vector<std::pair<std::size_t, double>> multiples = {};  ///< m_kj
-    std::vector<std::pair<std::size_t, double>> above = {};      ///< row'_j,dk of earlier rows
+    std::map<Index, T> entries;  ///< by speeds
+    T constant;
+    std::vector<std::pair<std::size_t, T>> multiples = {};  ///< m_kj
+    std::vector<std::pair<std::size_t, T>> above = {};      ///< row'_j,dk of earlier rows
   };
 
   void take(LinearRows const& joint, Index i) {
@@ -138,7 +139,7 @@ class LinearElimination {
   void solve_for(std::size_t k) {
     Pivot const& p = pivots_[k];
     double const pivot = p.entries.at(p.v);
-    std::map<Index, double> factors;
+    std::map<Index, T> factors;
     double constant = p.constant / pivot;
     for (auto const& [v, entry] : p.entries) {
       if (v == p.v) continue;
@@ -164,5 +165,7 @@ class LinearElimination {
   std::map<Index, Index> coordinate_;  // of a speed
   std::map<Index, std::size_t> pivot_of_, solved_;
 };
+
+using LinearElimination = LinearEliminationOf<>;
 
 }  // namespace polybody

@@ -37,7 +37,12 @@ struct LinearRows {
 namespace detail {
 
 /// Position and gradients of a linear point, with their values in the reference.
-struct LinearPoint {
+template <class T>
+struct LinearPointOf {
+  using Vec3 = Vec<T, 3>;
+  using Mat3 = Mat<T, 3, 3>;
+  using MatX = MatXOf<T>;
+
   int size = 3;  ///< components: three, or two in the plane
   Index columns = 0;
   MatX position;  ///< (size × columns)
@@ -57,19 +62,20 @@ struct LinearPoint {
     return map;
   }
 };
+using LinearPoint = LinearPointOf<double>;
 
-template <class B>
-LinearPoint linear_point(B const& body, typename B::Point const& p) {
+template <class B, class T = double>
+LinearPointOf<T> linear_point(B const& body, typename B::Point const& p) {
   static_assert(HasLinearPoints<B>,
                 "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
                 "are, Rigid, Ffr and Lrvf in space are not. Use Constraint there.");
-  LinearPoint out;
+  LinearPointOf<T> out;
   out.size = B::world == World::plane ? 2 : 3;
   std::vector<double> reference(std::size_t(body.coordinates()));
   body.reference(reference);
   auto const position = body.position_map(p);
   out.columns = position.cols();
-  Eigen::Map<VecX const> const e(reference.data() + body.first_column(p), out.columns);
+  Eigen::Map<VecXOf<T> const> const e(reference.data() + body.first_column(p), out.columns);
   out.position = position;
   out.at.head(out.size) = out.position * e;
   out.gradient_count = B::gradients;
@@ -81,32 +87,38 @@ LinearPoint linear_point(B const& body, typename B::Point const& p) {
   return out;
 }
 
-template <class = void>  // compiled where it is used
-LinearPoint linear_ground(Placement const& placement, int size) {
-  LinearPoint out;
+template <class T = double>
+LinearPointOf<T> linear_ground(Placement const& placement, int size) {
+  LinearPointOf<T> out;
   out.size = size;
-  out.position = MatX(size, 0);
+  out.position.resize(size, 0);
   out.gradient_count = 3;
   out.at = placement.origin;
   return out;
 }
 
 /// Appends Φ = (C_b e_b) − (C_a e_a) − c.
-template <class = void>
-void append_rows(LinearRows& rows, MatX const& a, MatX const& b, VecX const& c) {
-  Index const before = rows.rows(), more = c.size();
-  rows.a.map.conservativeResize(before + more, a.cols());
-  rows.b.map.conservativeResize(before + more, b.cols());
-  rows.constant.conservativeResize(before + more);
-  rows.a.map.bottomRows(more) = -a;
-  rows.b.map.bottomRows(more) = b;
-  rows.constant.tail(more) = c;
+template <class T>
+void append_rows(LinearRows& rows, MatXOf<T> const& a, MatXOf<T> const& b, VecXOf<T> const& c) {
+  auto const append = [](auto& to, T sign, auto const& more) {
+    Index const before = to.rows();
+    to.conservativeResize(before + more.rows(), more.cols());
+    for (Index j = 0; j < more.cols(); ++j)
+      for (Index i = 0; i < more.rows(); ++i) to(before + i, j) = sign * more(i, j);
+  };
+  append(rows.a.map, -1.0, a);
+  append(rows.b.map, 1.0, b);
+  append(rows.constant, 1.0, c);
 }
 
 /// The rows of geometry G with its third axis along n between two linear points. \throws InvalidInput with the joint's
 /// name.
-template <class G>
-void fill_linear_rows(LinearPoint const& a, LinearPoint const& b, Vec3 const& n, LinearRows& rows) {
+template <class G, class T>
+void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std::type_identity_t<Vec<T, 3>> const& n,
+                      LinearRows& rows) {
+  using Vec3 = Vec<T, 3>;
+  using VecX = VecXOf<T>;
+  using MatX = MatXOf<T>;
   static_assert(LinearGeometry<G>,
                 "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
   constexpr int turns = free_turns(G::free);
@@ -115,7 +127,7 @@ void fill_linear_rows(LinearPoint const& a, LinearPoint const& b, Vec3 const& n,
   rows.b.map.resize(0, b.columns);
   // the ground's part stands in the constants: r_a − r_b of what has no columns
   Vec3 const still = (a.columns == 0 ? a.at : Vec3(Vec3::Zero())) - (b.columns == 0 ? b.at : Vec3(Vec3::Zero()));
-  append_rows(rows, a.position, b.position, still.head(size));
+  append_rows<T>(rows, a.position, b.position, still.head(size));
   rows.positions = size;
   if constexpr (turns == 3 || (turns == 1 && G::world == World::plane)) return;
   auto const share = [&](Vec3 const& of_a, Vec3 const& of_b, bool along_axis_only) {
@@ -123,12 +135,12 @@ void fill_linear_rows(LinearPoint const& a, LinearPoint const& b, Vec3 const& n,
     VecX c = ((a.columns == 0 ? of_a : Vec3(Vec3::Zero())) - (b.columns == 0 ? of_b : Vec3(Vec3::Zero()))).head(size);
     rows.gradients.push_back({along_axis_only ? 1 : Index(size), cb, of_b, n});
     if (along_axis_only) {
-      Eigen::RowVectorXd const axis = n.head(size).transpose();
+      Mat<T, 1, Eigen::Dynamic> const axis = n.head(size).transpose();
       ca = (axis * ca).eval();
       cb = (axis * cb).eval();
       c = VecX::Constant(1, axis * c);
     }
-    append_rows(rows, ca, cb, c);
+    append_rows<T>(rows, ca, cb, c);
   };
   if constexpr (turns == 1) {
     if (a.complete() && b.complete()) {

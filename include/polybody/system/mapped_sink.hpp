@@ -3,24 +3,26 @@
 /// A sink between the blocks of a whole tangent and a system in which some unknowns depend on others, x = P y, and some
 /// rows are left out: blocks arrive as Pᵀ b P.
 
+#include <algorithm>
 #include <list>
-#include <map>
+#include <vector>
 
 #include <polybody/math/block_sink.hpp>
 
 namespace polybody {
 
 /// Where the unknowns of a whole system go.
-class UnknownMap {
+template <class T = double>  // compiled where it is used
+class UnknownMapOf {
  public:
   struct Target {
     Index unknown;
-    double factor;
+    T factor;
   };
 
   /// `targets[i]` of whole unknown i: one with factor one for most, several for a dependent one, none for one that is
   /// left out.
-  explicit UnknownMap(std::vector<std::vector<Target>> targets = {})
+  explicit UnknownMapOf(std::vector<std::vector<Target>> targets = {})
       : targets_(std::move(targets)), run_end_(targets_.size()) {
     for (std::size_t i = targets_.size(); i-- > 0;) {
       bool const goes_on = i + 1 < targets_.size() && plain(i) && plain(i + 1) &&
@@ -49,12 +51,17 @@ class UnknownMap {
                                 ///< local number, or −1
   };
   Range range(Index first, Index size) const {
-    std::map<Index, Index> local;
+    std::vector<Index> touched;
     for (Index i = first; i < first + size; ++i)
-      for (Target const& t : targets(i)) local[t.unknown] = 0;
+      for (Target const& t : targets(i)) touched.push_back(t.unknown);
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    auto const local = [&](Index unknown) {
+      return Index(std::lower_bound(touched.begin(), touched.end(), unknown) - touched.begin());
+    };
     Range out;
-    for (auto& [unknown, number] : local) {
-      number = out.size++;
+    for (Index const unknown : touched) {
+      Index const number = out.size++;
       if (!out.runs.empty() && out.runs.back().first + out.runs.back().size == unknown)
         ++out.runs.back().size;
       else
@@ -63,7 +70,7 @@ class UnknownMap {
     bool chooses = true;
     for (Index i = first; i < first + size; ++i) {
       out.targets.emplace_back();
-      for (Target const& t : targets(i)) out.targets.back().push_back({local.at(t.unknown), t.factor});
+      for (Target const& t : targets(i)) out.targets.back().push_back({local(t.unknown), t.factor});
       chooses = chooses && (targets(i).empty() || plain(std::size_t(i)));
     }
     out.whole_size = size;
@@ -79,20 +86,27 @@ class UnknownMap {
 };
 
 /// What a mapped sink keeps from pass to pass: ranges by their first unknown, and room for blocks, by rows.
-struct MappedBlocks {
-  std::vector<std::list<UnknownMap::Range>> ranges;
-  std::vector<double> half, whole;
+template <class T = double>
+struct MappedBlocksOf {
+  std::vector<std::list<typename UnknownMapOf<T>::Range>> ranges;
+  std::vector<T> half, whole;
 
-  static double* zeros(std::vector<double>& room, Index size) {
+  static T* zeros(std::vector<T>& room, Index size) {
     if (room.size() < std::size_t(size)) room.resize(std::size_t(size));
     std::fill_n(room.begin(), size, 0.0);
     return room.data();
   }
 };
 
-class MappedSink {
+template <class T = double>
+class MappedSinkOf {
+  using Map = UnknownMapOf<T>;
+  using Kept = MappedBlocksOf<T>;
+  using Range = typename Map::Range;
+  using Target = typename Map::Target;
+
  public:
-  MappedSink(UnknownMap const& map, MappedBlocks& kept, BlockSink& sink) : map_(map), kept_(kept), sink_(sink) {
+  MappedSinkOf(Map const& map, Kept& kept, BlockSink& sink) : map_(map), kept_(kept), sink_(sink) {
     kept_.ranges.resize(std::size_t(map.size()));
   }
 
@@ -102,10 +116,10 @@ class MappedSink {
       sink_.add(to_row, to_col, b);
       return;
     }
-    UnknownMap::Range const& rows = range(row, b.rows);
-    UnknownMap::Range const& cols = range(col, b.cols);
+    Range const& rows = range(row, b.rows);
+    Range const& cols = range(col, b.cols);
     if (rows.size == 0 || cols.size == 0) return;
-    double* const whole = MappedBlocks::zeros(kept_.whole, rows.size * cols.size);
+    double* const whole = Kept::zeros(kept_.whole, rows.size * cols.size);
     if (!rows.chosen.empty() && !cols.chosen.empty())
       choose(b, rows, cols, whole);
     else
@@ -124,7 +138,7 @@ class MappedSink {
 
  private:
   /// P has one 1 in each row, or none.
-  static void choose(BlockView const& b, UnknownMap::Range const& rows, UnknownMap::Range const& cols, double* whole) {
+  static void choose(BlockView const& b, Range const& rows, Range const& cols, double* whole) {
     for (Index i = 0; i < b.rows; ++i) {
       Index const to = rows.chosen[std::size_t(i)];
       if (to < 0) continue;
@@ -133,27 +147,31 @@ class MappedSink {
         if (Index const c = cols.chosen[std::size_t(j)]; c >= 0) out[c] += b(i, j);
     }
   }
-  void multiply(BlockView const& b, UnknownMap::Range const& rows, UnknownMap::Range const& cols, double* whole) {
-    double* const half = MappedBlocks::zeros(kept_.half, rows.size * b.cols);
+  void multiply(BlockView const& b, Range const& rows, Range const& cols, double* whole) {
+    double* const half = Kept::zeros(kept_.half, rows.size * b.cols);
     for (Index i = 0; i < b.rows; ++i)
-      for (UnknownMap::Target const& t : rows.targets[std::size_t(i)])
+      for (Target const& t : rows.targets[std::size_t(i)])
         for (Index j = 0; j < b.cols; ++j) half[t.unknown * b.cols + j] += t.factor * b(i, j);
     for (Index j = 0; j < b.cols; ++j)
-      for (UnknownMap::Target const& t : cols.targets[std::size_t(j)])
+      for (Target const& t : cols.targets[std::size_t(j)])
         for (Index i = 0; i < rows.size; ++i) whole[i * cols.size + t.unknown] += t.factor * half[i * b.cols + j];
   }
 
   /// Found in the first pass, kept for the others.
-  UnknownMap::Range const& range(Index first, Index size) {
+  Range const& range(Index first, Index size) {
     auto& known = kept_.ranges[std::size_t(first)];
-    for (UnknownMap::Range const& r : known)
+    for (Range const& r : known)
       if (r.whole_size == size) return r;
     return known.emplace_back(map_.range(first, size));
   }
 
-  UnknownMap const& map_;
-  MappedBlocks& kept_;
+  Map const& map_;
+  Kept& kept_;
   BlockSink& sink_;
 };
+
+using UnknownMap = UnknownMapOf<>;
+using MappedBlocks = MappedBlocksOf<>;
+using MappedSink = MappedSinkOf<>;
 
 }  // namespace polybody

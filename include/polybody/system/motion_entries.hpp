@@ -11,7 +11,17 @@ namespace polybody {
 /// ġ = Ga Va + Gb Vb + Φ_t of a gap between two frames.
 template <int m, StateScalar T>
 Vec<T, m> gap_rate(Gap<m, T> const& gap, Frame<T> const& a, Frame<T> const& b) {
-  return gap.Ga * twist(a) + gap.Gb * twist(b) + gap.rate;
+  Vec<T, 6> const va = twist(a), vb = twist(b);
+  Vec<T, m> rate;
+  for (int i = 0; i < m; ++i) {
+    T by_a = gap.Ga(i, 0) * va[0], by_b = gap.Gb(i, 0) * vb[0];
+    for (int j = 1; j < 6; ++j) {
+      by_a += gap.Ga(i, j) * va[j];
+      by_b += gap.Gb(i, j) * vb[j];
+    }
+    rate[i] = by_a + by_b + gap.rate[i];
+  }
+  return rate;
 }
 
 }  // namespace polybody

@@ -14,7 +14,7 @@
 
 namespace polybody {
 
-template <class = void>  // compiled where it is used
+template <class T = double>  // compiled where it is used
 class ReductionOf {
  public:
   /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
@@ -29,8 +29,8 @@ class ReductionOf {
   Index coordinates() const { return coordinates_; }
   Index speeds() const { return speeds_; }
   Index rows() const { return Index(rows_.size()); }
-  JointTreeOf<> const& tree() const { return tree_; }
-  LinearElimination const& linear() const { return linear_; }
+  JointTreeOf<T> const& tree() const { return tree_; }
+  LinearEliminationOf<T> const& linear() const { return linear_; }
   /// In the order in which `for_each_body` goes.
   std::vector<NarrowPlace> const& places() const { return places_; }
   /// Rows that stay, by their number in the model.
@@ -43,23 +43,23 @@ class ReductionOf {
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
   /// What is the same in both, narrow to whole and back.
-  void copy_coordinates_out(VecX const& narrow, VecX& whole) const {
+  void expand_coordinates(VecX const& narrow, VecX& whole) const {
     for (auto const& [n, w] : same_q_) whole[w] = narrow[n];
   }
-  void copy_coordinates_in(VecX const& whole, VecX& narrow) const {
+  void reduce_coordinates(VecX const& whole, VecX& narrow) const {
     for (auto const& [n, w] : same_q_) narrow[n] = whole[w];
   }
-  void copy_speeds_out(VecX const& narrow, VecX& whole) const {
+  void expand_speeds(VecX const& narrow, VecX& whole) const {
     for (auto const& [n, w] : same_v_) whole[w] = narrow[n];
   }
-  void copy_speeds_in(VecX const& whole, VecX& narrow) const {
+  void reduce_speeds(VecX const& whole, VecX& narrow) const {
     for (auto const& [n, w] : same_v_) narrow[n] = whole[w];
   }
-  void copy_rows_out(VecX const& narrow, VecX& whole) const {
+  void expand_rows(VecX const& narrow, VecX& whole) const {
     whole.setZero();
     for (std::size_t i = 0; i < rows_.size(); ++i) whole[rows_[i]] = narrow[Index(i)];
   }
-  void copy_rows_in(VecX const& whole, VecX& narrow) const {
+  void reduce_rows(VecX const& whole, VecX& narrow) const {
     for (std::size_t i = 0; i < rows_.size(); ++i) narrow[Index(i)] = whole[rows_[i]];
   }
 
@@ -111,73 +111,11 @@ class ReductionOf {
   }
 
   /// \throws InvalidInput naming the first joint, as they were connected, between bodies that joints before it connect.
-  static void refuse_loops(std::size_t bodies, std::vector<Link> const& links) {
-    std::vector<std::size_t> towards(bodies + 1);  // the ground is last
-    for (std::size_t i = 0; i <= bodies; ++i) towards[i] = i;
-    auto const part_of = [&](Index body) {
-      std::size_t i = body < 0 ? bodies : std::size_t(body);
-      while (towards[i] != i) i = towards[i] = towards[towards[i]];
-      return i;
-    };
-    std::vector<Link const*> order;
-    for (Link const& link : links) order.push_back(&link);
-    std::sort(order.begin(), order.end(), [](Link const* a, Link const* b) { return a->row < b->row; });
-    for (Link const* const link : order) {
-      std::size_t const a = part_of(link->a.body), b = part_of(link->b.body);
-      if (a == b)
-        throw InvalidInput("\"" + link->name +
-                           "\" closes a loop of recursive joints. Give one joint of the loop another policy, such as "
-                           "Constraint.");
-      towards[a] = b;
-    }
-  }
+  static void refuse_loops(std::size_t bodies, std::vector<Link> const& links);
 
   /// Breadth first from the ground, then from a body of each part that is left: every joint carries one body. Bodies
   /// without a recursive joint only with `all`, as roots.
-  void hang(std::vector<TreeBody> const& bodies, std::vector<Link> const& links, VecX const& reference, bool all) {
-    refuse_loops(bodies.size(), links);
-    std::vector<Index> place(bodies.size(), -1);
-    std::vector<bool> used(links.size(), false);
-    auto const carry_from = [&](Index body) {  // −1: the ground
-      for (std::size_t k = 0; k < links.size(); ++k) {
-        Link const& link = links[k];
-        if (used[k] || (link.a.body != body && link.b.body != body)) continue;
-        used[k] = true;
-        bool const backwards = link.a.body != body;
-        Hook const& from = backwards ? link.b : link.a;
-        Hook const& to = backwards ? link.a : link.b;
-        TreeBody next = bodies[std::size_t(to.body)];
-        next.row = link.row;
-        next.parent = body < 0 ? -1 : place[std::size_t(body)];
-        next.from = from.frame;
-        next.to = to.frame;
-        next.motions = link.motions;
-        next.backwards = backwards;
-        if (next.layout == RigidLayout::plane)
-          next.angle = reference[next.q0 + 2] - (body < 0 ? 0.0 : reference[bodies[std::size_t(body)].q0 + 2]);
-        place[std::size_t(to.body)] = Index(tree_.bodies.size());
-        order_.push_back(to.body);
-        tree_.bodies.push_back(std::move(next));
-      }
-    };
-    auto const grow = [&](std::size_t from) {
-      for (std::size_t i = from; i < order_.size(); ++i) carry_from(order_[i]);
-    };
-    carry_from(-1);
-    grow(0);
-    for (std::size_t k = 0; k < links.size(); ++k) {
-      if (used[k]) continue;
-      Index const root = std::min(links[k].a.body, links[k].b.body);
-      place[std::size_t(root)] = Index(tree_.bodies.size());
-      tree_.bodies.push_back(bodies[std::size_t(root)]);
-      order_.push_back(root);
-      grow(order_.size() - 1);
-    }
-    order_.clear();
-    if (!all) return;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-      if (place[i] < 0) tree_.bodies.push_back(bodies[i]);
-  }
+  void hang(std::vector<TreeBody> const& bodies, std::vector<Link> const& links, VecX const& reference, bool all);
 
   template <class M>
   void number_unknowns(M const& model) {
@@ -243,14 +181,83 @@ class ReductionOf {
       velocity_rows_.push_back(Index(std::lower_bound(rows_.begin(), rows_.end(), i) - rows_.begin()));
   }
 
-  LinearElimination linear_;
-  JointTreeOf<> tree_;
+  LinearEliminationOf<T> linear_;
+  JointTreeOf<T> tree_;
   std::vector<Index> order_;
   Index coordinates_ = 0, speeds_ = 0;
   std::vector<NarrowPlace> places_;
   std::vector<std::pair<Index, Index>> same_q_, same_v_;  // narrow, whole
   std::vector<Index> whole_speed_, rows_, velocity_rows_, carried_by_;
 };
+
+template <class T>
+void ReductionOf<T>::refuse_loops(std::size_t bodies, std::vector<Link> const& links) {
+  std::vector<std::size_t> towards(bodies + 1);  // the ground is last
+  for (std::size_t i = 0; i <= bodies; ++i) towards[i] = i;
+  auto const part_of = [&](Index body) {
+    std::size_t i = body < 0 ? bodies : std::size_t(body);
+    while (towards[i] != i) i = towards[i] = towards[towards[i]];
+    return i;
+  };
+  std::vector<Link const*> order;
+  for (Link const& link : links) order.push_back(&link);
+  std::sort(order.begin(), order.end(), [](Link const* a, Link const* b) { return a->row < b->row; });
+  for (Link const* const link : order) {
+    std::size_t const a = part_of(link->a.body), b = part_of(link->b.body);
+    if (a == b)
+      throw InvalidInput("\"" + link->name +
+                         "\" closes a loop of recursive joints. Give one joint of the loop another policy, such as "
+                         "Constraint.");
+    towards[a] = b;
+  }
+}
+
+template <class T>
+void ReductionOf<T>::hang(std::vector<TreeBody> const& bodies, std::vector<Link> const& links, VecX const& reference,
+                          bool all) {
+  refuse_loops(bodies.size(), links);
+  std::vector<Index> place(bodies.size(), -1);
+  std::vector<bool> used(links.size(), false);
+  auto const carry_from = [&](Index body) {  // −1: the ground
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      Link const& link = links[k];
+      if (used[k] || (link.a.body != body && link.b.body != body)) continue;
+      used[k] = true;
+      bool const backwards = link.a.body != body;
+      Hook const& from = backwards ? link.b : link.a;
+      Hook const& to = backwards ? link.a : link.b;
+      TreeBody next = bodies[std::size_t(to.body)];
+      next.row = link.row;
+      next.parent = body < 0 ? -1 : place[std::size_t(body)];
+      next.from = from.frame;
+      next.to = to.frame;
+      next.motions = link.motions;
+      next.backwards = backwards;
+      if (next.layout == RigidLayout::plane)
+        next.angle = reference[next.q0 + 2] - (body < 0 ? 0.0 : reference[bodies[std::size_t(body)].q0 + 2]);
+      place[std::size_t(to.body)] = Index(tree_.bodies.size());
+      order_.push_back(to.body);
+      tree_.bodies.push_back(std::move(next));
+    }
+  };
+  auto const grow = [&](std::size_t from) {
+    for (std::size_t i = from; i < order_.size(); ++i) carry_from(order_[i]);
+  };
+  carry_from(-1);
+  grow(0);
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    if (used[k]) continue;
+    Index const root = std::min(links[k].a.body, links[k].b.body);
+    place[std::size_t(root)] = Index(tree_.bodies.size());
+    tree_.bodies.push_back(bodies[std::size_t(root)]);
+    order_.push_back(root);
+    grow(order_.size() - 1);
+  }
+  order_.clear();
+  if (!all) return;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (place[i] < 0) tree_.bodies.push_back(bodies[i]);
+}
 
 using Reduction = ReductionOf<>;
 

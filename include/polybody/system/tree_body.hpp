@@ -28,28 +28,33 @@ struct TreeBody {
 };
 
 /// Where a body of a tree is and how it may move.
-struct TreeFrame {
-  Vec3 r = Vec3::Zero(), v = Vec3::Zero(), w = Vec3::Zero(), arm = Vec3::Zero();
-  Mat3 A = Mat3::Identity();
-  double angle = 0.0;
+template <class T>
+struct TreeFrameOf {
+  Vec<T, 3> r = Vec<T, 3>::Zero(), v = r, w = r, arm = r;
+  Mat<T, 3, 3> A = Mat<T, 3, 3>::Identity();
+  T angle = 0.0;
   int speeds = 0;
-  Mat<double, 6, 6> s = Mat<double, 6, 6>::Zero();        ///< S = [S_r; S_ω] by columns
-  Mat<double, 6, 6> inverse = Mat<double, 6, 6>::Zero();  ///< (SᵀS)⁻¹
-  Vec6 bias = Vec6::Zero();                               ///< [b_r; b_ω]
+  Mat<T, 6, 6> s = Mat<T, 6, 6>::Zero();        ///< S = [S_r; S_ω] by columns
+  Mat<T, 6, 6> inverse = Mat<T, 6, 6>::Zero();  ///< (SᵀS)⁻¹
+  Vec<T, 6> bias = Vec<T, 6>::Zero();           ///< [b_r; b_ω]
 };
+using TreeFrame = TreeFrameOf<double>;
 
 /// Scratch of a tree.
-struct TreeState {
-  std::vector<TreeFrame> frames;
-  std::vector<Vec6> twists;
-  std::vector<Vec6> held;  ///< as of the last `pull`: the wrench [f; m] about its centre of mass with which a body and
-                           ///< all that it carries are out of balance, which its joint holds
+template <class T>
+struct TreeStateOf {
+  std::vector<TreeFrameOf<T>> frames;
+  std::vector<Vec<T, 6>> twists;
+  std::vector<Vec<T, 6>> held;  ///< as of the last `reduce_forces`: the wrench [f; m] about its centre of mass with
+                                ///< which a body and all that it carries are out of balance, which its joint holds
 };
+using TreeState = TreeStateOf<double>;
 
 namespace detail {
 
 /// a → a⁻¹ for the leading n×n of a positive definite matrix, by Gauss–Jordan elimination.
-inline void invert_leading(Mat<double, 6, 6>& a, int n) {
+template <class T>
+void invert_leading(Mat<T, 6, 6>& a, int n) {
   for (int k = 0; k < n; ++k) {
     double const pivot = 1.0 / a(k, k);
     a(k, k) = 1.0;
@@ -64,10 +69,11 @@ inline void invert_leading(Mat<double, 6, 6>& a, int n) {
 }
 
 /// The turn by an angle about axis k of the frame itself.
-inline Mat3 turn_about(int k, double angle) {
+template <class T>
+Mat<T, 3, 3> turn_about(int k, double angle) {
   int const i = (k + 1) % 3, j = (k + 2) % 3;
   double const c = std::cos(angle), s = std::sin(angle);
-  Mat3 m = Mat3::Identity();
+  Mat<T, 3, 3> m = Mat<T, 3, 3>::Identity();
   m(i, i) = m(j, j) = c;
   m(j, i) = s;
   m(i, j) = -s;
@@ -75,7 +81,11 @@ inline Mat3 turn_about(int k, double angle) {
 }
 
 /// A frame on its way through the motions of a joint, with what its own acceleration has beyond u̇.
-struct Runner {
+template <class T>
+struct RunnerOf {
+  using Vec3 = Vec<T, 3>;
+  using Mat3 = Mat<T, 3, 3>;
+
   Vec3 r, v, a;
   Mat3 A;
   Vec3 w, alpha;

@@ -403,8 +403,6 @@ class AncfBeam : public NodeChain<12> {
   std::vector<Inertia> inertia_;
 };
 
-static_assert(Body<AncfBeam<>> && Body<AncfBeam<Continuum<>>>);
-
 }  // namespace polybody
 
 #include <polybody/bodies/ancf/ancf_section.hpp>

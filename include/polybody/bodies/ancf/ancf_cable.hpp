@@ -313,6 +313,4 @@ class AncfCable : public NodeChain<6> {
   std::vector<Mat3> axes_;  ///< of the reference in the middle of each element
 };
 
-static_assert(Body<AncfCable<>>);
-
 }  // namespace polybody

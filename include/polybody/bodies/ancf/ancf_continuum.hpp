@@ -113,6 +113,28 @@ struct GreenStrains : OfGradient<3> {
 /// Whether a `Continuum` beam is left to lock.
 enum class Locking { present, cured };
 
+namespace ancf {
+
+/// The strain groups of a `Continuum`, by name: a `Continuum` alone compiles none of them.
+template <Locking>
+struct ContinuumGroups;
+template <>
+struct ContinuumGroups<Locking::present> {
+  using Number = double;
+  using Volume = StrainGroup<GreenStrains<12>>;
+  using type = std::tuple<Volume>;
+};
+template <>
+struct ContinuumGroups<Locking::cured> {
+  using Number = double;
+  using Along = StrainGroup<AlongStrain>;
+  using Shear = StrainGroup<ShearStrains>;
+  using Across = StrainGroup<GreenStrains<2>>;
+  using type = std::tuple<Along, Shear, Across>;
+};
+
+}  // namespace ancf
+
 /// Stress at a point.
 struct Stress {
   Mat3 second_piola;  ///< S, in the axes of the reference section [N/m²]
@@ -128,12 +150,10 @@ struct Stress {
 /// `Locking::cured` splits D = D⁰ + Dᵛ [Gerstmayr, Matikainen & Mikkola 2008]:
 ///   E E₁₁² over the volume, as a bar in uniaxial stress has it;
 ///   the rest of Hooke's law for normal strains, and E₂₃, on the axis only, and there at the nodes (trapezoidal rule):
-///   between
-///     them |r_y| < 1 belongs to the chord of a bent element and would stiffen it;
+///   between the nodes |r_y| < 1 belongs to the chord of a bent element and would stiffen it;
 ///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points drawn towards the
-///   axis (or
-///     away from it) until twist meets GJ of the bar. Three points along x remain: two leave a mode without energy, and
-///     three do not lock (see `ElasticLine`).
+///   axis (or away from it) until twist meets GJ of the bar. Three points along x remain: two leave a mode without
+///   energy, and three do not lock (see `ElasticLine`).
 ///
 /// Kelvin–Voigt times: axial for normal strains, so for bending, too; shear for shears. Ė is objective.
 /// `Damping::bending` has no meaning of its own here.
@@ -142,11 +162,8 @@ struct Continuum {
   static constexpr char const* name = "AncfBeam<Continuum>";
   static constexpr bool cured = locking == Locking::cured;
 
-  using Volume = StrainGroup<ancf::GreenStrains<12>>;
-  using Along = StrainGroup<ancf::AlongStrain>;
-  using Shear = StrainGroup<ancf::ShearStrains>;
-  using Across = StrainGroup<ancf::GreenStrains<2>>;
-  using Groups = std::conditional_t<cured, std::tuple<Along, Shear, Across>, std::tuple<Volume>>;
+  using Parts = ancf::ContinuumGroups<locking>;
+  using Groups = typename Parts::type;
 
   static void check(Bar const& bar, BarConstants const&) {
     if (!bar.material)
@@ -162,7 +179,7 @@ struct Continuum {
     Moduli const m(bar);
     double const area = c.EA / m.young, y = std::sqrt(c.EI / c.EA), z = std::sqrt(c.EI_y.value() / c.EA);
     double const axial = bar.damping.axial, shear = bar.damping.shear;
-    Vec<double, 7> times, stiffness;
+    Vec<typename Parts::Number, 7> times, stiffness;
     for (int i = 0; i < 7; ++i) {
       times[i] = i < 4 ? axial : shear;
       stiffness[i] = i == 0 ? m.lambda : i < 4 ? 2.0 * m.mu : m.mu;
@@ -172,25 +189,27 @@ struct Continuum {
     if constexpr (cured) {
       stiffness[1] -= m.young;
       stiffness[5] = stiffness[6] = 0.0;
-      Across across(area * stiffness, times);
+      typename Parts::Across across(area * stiffness, times);
       for (int node = 0; node < 2; ++node) {
         auto const at = ref.gradients(node, 0.0, 0.0);
         across.set_point(node, 0.5 * ref.l, ancf::GreenStrains<2>::map(at.g, {0, 1, 2}), uniaxial(stretch, m.poisson));
       }
-      Along along(Vec<double, 1>(double(c.EA)), Vec<double, 1>(axial));
-      Shear shears(Vec2(c.GA, c.GA_z.value()), Vec2(shear, shear));
+      using N = typename Parts::Number;
+      typename Parts::Along along(Vec<N, 1>(double(c.EA)), Vec<N, 1>(axial));
+      typename Parts::Shear shears(Vec<N, 2>(c.GA, c.GA_z.value()), Vec<N, 2>(shear, shear));
       double const lever = Continuum::lever(c);
       int k = 0;
       for (GaussPoint const& g : gauss<3>)
         section.for_each([&](double a, double b) {
           double const weight = 0.25 * g.weight * ref.l;
           auto const at = ref.gradients(g.xi, a, b), beside = ref.gradients(g.xi, lever * a, lever * b);
-          along.set_point(k, weight * at.volume, ancf::AlongStrain::map(at.g, {0}), Vec<double, 1>(stretch));
+          along.set_point(k, weight * at.volume, ancf::AlongStrain::map(at.g, {0}),
+                          Vec<typename Parts::Number, 1>(stretch));
           shears.set_point(k++, weight * beside.volume, ancf::ShearStrains::map(beside.g, {0, 1, 2}));
         });
       return {along, shears, across};
     } else {
-      Volume volume(area * stiffness, times);
+      typename Parts::Volume volume(area * stiffness, times);
       int k = 0;
       for (GaussPoint const& g : gauss<3>)
         section.for_each([&](double a, double b) {

@@ -185,12 +185,13 @@ struct ElasticLine {
     require_positive(c.EI_y.value_or(c.EI), "AncfBeam<ElasticLine>: the bending stiffness EI_y of the bar");
   }
 
-  template <class = void>  // compiled where it is used
-  static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
-    Vec3 const pretension(-bar.pretension / c.EA, 0.0, 0.0);
+  template <class Line = ElasticLine>  // compiled where it is used
+  static typename Line::Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
+    Vec3 const pretension(-bar.pretension / c.EA, 0.0, 0.0), none(0.0, 0.0, 0.0);
     std::array<GaussPoint, 2> const nodes = {GaussPoint{0.0, 0.5}, GaussPoint{1.0, 0.5}};
-    return {on_axis<Stretch>(gauss<3>, bar, c, ref, pretension), on_axis<Bend>(gauss<2>, bar, c, ref, Vec3::Zero()),
-            on_axis<Section>(nodes, bar, c, ref, Vec3::Zero())};
+    return {on_axis<typename Line::Stretch>(gauss<3>, bar, c, ref, pretension),
+            on_axis<typename Line::Bend>(gauss<2>, bar, c, ref, none),
+            on_axis<typename Line::Section>(nodes, bar, c, ref, none)};
   }
 
  private:

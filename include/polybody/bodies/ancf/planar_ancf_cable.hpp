@@ -165,6 +165,4 @@ struct HermiteCable {
 template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
 using AncfCable = Beam<HermiteCable<Strain, axial_points, bending_points>>;
 
-static_assert(Body<AncfCable<>>);
-
 }  // namespace polybody::planar

@@ -376,6 +376,4 @@ inline void Ffr::tangent(Index, std::span<double const> q, std::span<double cons
   k.block<3, 3>(3, 3) = cd * (j_rate + spin * at.J - skew<double>((at.J * omega + h).eval()));
 }
 
-static_assert(Body<Ffr>);
-
 }  // namespace polybody

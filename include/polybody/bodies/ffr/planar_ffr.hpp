@@ -318,6 +318,4 @@ class Ffr : public AddingCoordinates {
   std::shared_ptr<FfrPoints const> points_;
 };
 
-static_assert(Body<Ffr>);
-
 }  // namespace polybody::planar

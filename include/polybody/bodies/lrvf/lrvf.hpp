@@ -405,6 +405,4 @@ class Lrvf {
   std::vector<double> reference_;
 };
 
-static_assert(Body<Lrvf<Objective>> && Body<Lrvf<Direct>>);
-
 }  // namespace polybody

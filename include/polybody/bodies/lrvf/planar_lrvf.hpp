@@ -109,6 +109,4 @@ struct SimoVuQuoc {
 /// Planar geometrically exact beam with linear elements: `Lrvf::from(bar, n)`.
 using Lrvf = Beam<SimoVuQuoc>;
 
-static_assert(Body<Lrvf>);
-
 }  // namespace polybody::planar

@@ -278,6 +278,4 @@ class Direct {
   Mat3 axes_;
 };
 
-static_assert(RotationInterpolation<Objective> && RotationInterpolation<Direct>);
-
 }  // namespace polybody

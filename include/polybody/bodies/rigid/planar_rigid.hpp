@@ -165,6 +165,4 @@ class Rigid : public AddingCoordinates {
   double length_ = 0.0;
 };
 
-static_assert(Body<Rigid>);
-
 }  // namespace polybody::planar

@@ -140,6 +140,10 @@ class RigidShape {
     for (int i = 0; i < 3; ++i) y[i] = x[0] * inertia_(i, 0) + x[1] * inertia_(i, 1) + x[2] * inertia_(i, 2);
     return y;
   }
+  template <class T>
+  Vec<T, 3> axis_of_inertia(int j) const {
+    return {inertia_(0, j), inertia_(1, j), inertia_(2, j)};
+  }
   /// a × b into three entries of `out`; Eigen's goes through memory, and waits for it.
   template <class A, class Out>
   static void set_cross(A const& a, A const& b, Out& out, int first) {
@@ -182,21 +186,25 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   template <class = void>  // compiled where it is used
   void reference(std::span<double> q) const {
-    part<3>(q, 0) = placement_.origin;
-    part<4>(q, 3) = quaternion_of(placement_.axes);
+    Quaternion<double> const turn = quaternion_of(placement_.axes);
+    for (std::size_t i = 0; i < 3; ++i) q[i] = placement_.origin[Index(i)];
+    for (std::size_t i = 0; i < 4; ++i) q[3 + i] = turn[Index(i)];
   }
 
   template <StateScalar T>
   void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    part<3>(out, 0) = part<3>(q, 0) + part<3>(delta, 0);
-    part<4>(out, 3) = quaternion_plus<T>(part<4>(q, 3), part<3>(delta, 3));
+    for (std::size_t i = 0; i < 3; ++i) out[i] = q[i] + delta[i];
+    Quaternion<T> const turned = quaternion_plus<T>({q[3], q[4], q[5], q[6]}, {delta[3], delta[4], delta[5]});
+    for (std::size_t i = 0; i < 4; ++i) out[3 + i] = turned[Index(i)];
   }
 
   /// δ˙ with q ⊞ δ(t) moving with v: Ω = Jr(δ) δ˙.
   template <StateScalar T>
   void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
-    part<3>(out, 0) = part<3>(v, 0);
-    part<3>(out, 3) = right_jacobian_inverse<T>(part<3>(delta, 3)) * part<3>(v, 3);
+    Mat<T, 3, 3> const jacobian = right_jacobian_inverse<T>({delta[3], delta[4], delta[5]});
+    for (std::size_t i = 0; i < 3; ++i) out[i] = v[i];
+    for (int i = 0; i < 3; ++i)
+      out[std::size_t(3 + i)] = jacobian(i, 0) * v[3] + jacobian(i, 1) * v[4] + jacobian(i, 2) * v[5];
   }
 
   /// Speeds of a rigid motion: velocity of the world's origin point `v0` and angular velocity (world axes).
@@ -218,42 +226,52 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   template <StateScalar T>
   void inertia(Index, std::span<T const>, std::span<T const> a, Vec<T, 6>& out) const {
-    out.template head<3>() = part<3>(a, 0) * T(mass_);
-    out.template tail<3>() = inertia_times<T>(part<3>(a, 3));
+    Vec<T, 3> const spin = inertia_times<T>({a[3], a[4], a[5]});
+    for (int i = 0; i < 3; ++i) {
+      out[i] = a[std::size_t(i)] * T(mass_);
+      out[3 + i] = spin[i];
+    }
   }
 
   /// The gyroscopic force −Ω × J Ω.
   template <StateScalar T>
   void force(Index, std::span<T const>, std::span<T const> v, Vec<T, 6>& out) const {
-    Vec<T, 3> const omega = part<3>(v, 3), spin = inertia_times<T>(omega);
-    out.template head<3>().setZero();
+    Vec<T, 3> const omega(v[3], v[4], v[5]), spin = inertia_times<T>(omega);
+    for (int i = 0; i < 3; ++i) out[i] = T(0.0);
     set_cross(spin, omega, out, 3);
   }
 
   /// −∂f/∂Ω = Ω̃ J − (J Ω)~.
   template <class T>  // compiled where it is used
   void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
-    Vec<T, 3> const omega = part<3>(v, 3);
+    Vec<T, 3> const omega(v[3], v[4], v[5]);
+    Mat<T, 3, 3> const of_spin = skew<T>(inertia_times<T>(omega));
     k.setZero();
-    k.template bottomRightCorner<3, 3>() = cd * (skew<T>(omega) * inertia_ - skew<T>(inertia_ * omega));
+    for (int j = 0; j < 3; ++j) {
+      Vec<T, 3> across;  // Ω × column j of J
+      set_cross(omega, axis_of_inertia<T>(j), across, 0);
+      for (int i = 0; i < 3; ++i) k(3 + i, 3 + j) = cd * (across[i] - of_spin(i, j));
+    }
   }
 
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Vec<T, 6>& out) const {
-    out.template head<3>() = (g * mass_).template cast<T>();
-    out.template tail<3>().setZero();
+    for (int i = 0; i < 3; ++i) {
+      out[i] = T(g[i] * mass_);
+      out[3 + i] = T(0.0);
+    }
   }
 
   template <class T = double>  // compiled where it is used
   double kinetic_energy(Index, std::span<double const>, std::span<double const> v) const {
-    Vec<T, 3> const speed = part<3>(v, 0), omega = part<3>(v, 3);
-    return 0.5 * mass_ * speed.squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
+    Vec<T, 3> const omega(v[3], v[4], v[5]), spin = inertia_times<T>(omega);
+    return 0.5 * mass_ * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) +
+           0.5 * (omega[0] * spin[0] + omega[1] * spin[1] + omega[2] * spin[2]);
   }
   double strain_energy(Index, std::span<double const>) const { return 0.0; }
   template <class T = double>  // compiled where it is used
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
-    Vec<T, 3> const r = part<3>(q, 0);
-    return -mass_ * g.dot(r);
+    return -mass_ * (g[0] * q[0] + g[1] * q[1] + g[2] * q[2]);
   }
 
   /// What all points of the body share.
@@ -265,7 +283,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   template <StateScalar T>
   void pose(std::span<T const> q, std::span<T const> v, Pose<T>& out) const {
-    set_rotation<T>(part<4>(q, 3), out.A);
+    set_rotation<T>({q[3], q[4], q[5], q[6]}, out.A);
     for (int i = 0; i < 3; ++i) {
       out.r[i] = q[i];
       out.v[i] = v[i];
@@ -276,18 +294,20 @@ class Rigid<UnitQuaternion> : public RigidShape {
   /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
-    auto const turned = [&at](auto const& u) {
-      return at.A.col(0) * T(u[0]) + at.A.col(1) * T(u[1]) + at.A.col(2) * T(u[2]);
-    };
-    Vec<T, 3> const arm = turned(p.u);
-    Vec<T, 3> rate;
+    Vec<T, 3> arm, rate;
+    for (int i = 0; i < 3; ++i) {
+      T const x = at.A(i, 0), y = at.A(i, 1), z = at.A(i, 2);
+      arm[i] = x * T(p.u[0]) + y * T(p.u[1]) + z * T(p.u[2]);
+      for (int j = 0; j < 3; ++j) out.frame.A(i, j) = x * T(axes(0, j)) + y * T(axes(1, j)) + z * T(axes(2, j));
+    }
     set_cross(at.w, arm, rate, 0);
-    out.frame.r = at.r + arm;
-    for (int i = 0; i < 3; ++i) out.frame.A.col(i) = turned(axes.col(i));
-    out.frame.v = at.v + rate;
-    out.frame.w = at.w;
     set_cross(at.w, rate, out.bias, 0);
-    out.bias.template tail<3>().setZero();
+    for (int i = 0; i < 3; ++i) {
+      out.frame.r[i] = at.r[i] + arm[i];
+      out.frame.v[i] = at.v[i] + rate[i];
+      out.bias[3 + i] = T(0.0);
+    }
+    out.frame.w = at.w;
     out.body_axes = at.A;
     out.arm = arm;
     out.shape = JacobianShape::rigid;
@@ -303,16 +323,22 @@ class Rigid<UnitQuaternion> : public RigidShape {
   /// Jᵀw = [f; Aᵀm + u × Aᵀf];  under A ⊞ δ: δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
   template <class T>  // compiled where it is used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 6, 6>& k) const {
-    Mat<T, 3, 3> const a = rotation_matrix<T>(part<4>(q, 3));
+    Mat<T, 3, 3> const a = rotation_matrix<T>({q[3], q[4], q[5], q[6]});
+    Vec<T, 3> f, m;
+    for (int i = 0; i < 3; ++i) {
+      f[i] = a(0, i) * w.f[0] + a(1, i) * w.f[1] + a(2, i) * w.f[2];
+      m[i] = a(0, i) * w.m[0] + a(1, i) * w.m[1] + a(2, i) * w.m[2];
+    }
+    T const along = p.u[0] * f[0] + p.u[1] * f[1] + p.u[2] * f[2];  // ũ f̃ = f uᵀ − (u·f) 1
+    Mat<T, 3, 3> const of_moment = skew<T>(m);
     k.setZero();
-    k.template bottomRightCorner<3, 3>() = skew<T>(a.transpose() * w.m) + skew<T>(p.u) * skew<T>(a.transpose() * w.f);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) k(3 + i, 3 + j) = of_moment(i, j) + (f[i] * p.u[j] - (i == j ? along : T(0.0)));
   }
 
  private:
   template <class = void>  // compiled where it is used
   explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
-
-static_assert(Body<Rigid<>>);
 
 }  // namespace polybody

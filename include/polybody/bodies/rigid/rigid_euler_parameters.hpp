@@ -178,6 +178,4 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
 
-static_assert(Body<Rigid<EulerParameters>> && OwnsRows<Rigid<EulerParameters>> && !OwnsRows<Rigid<>>);
-
 }  // namespace polybody

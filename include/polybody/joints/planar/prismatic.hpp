@@ -44,6 +44,4 @@ struct Prismatic {
   }
 };
 
-static_assert(JointGeometry<Prismatic>);
-
 }  // namespace polybody::planar

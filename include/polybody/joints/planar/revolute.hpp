@@ -33,6 +33,4 @@ struct Revolute {
   }
 };
 
-static_assert(JointGeometry<Revolute>);
-
 }  // namespace polybody::planar

@@ -39,6 +39,4 @@ struct Weld {
   }
 };
 
-static_assert(JointGeometry<Weld>);
-
 }  // namespace polybody::planar

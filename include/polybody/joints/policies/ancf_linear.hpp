@@ -29,6 +29,4 @@ concept LinearInCoordinates = Eliminates<P> && requires { requires P::linear; };
 template <class G>
 concept LinearGeometry = NamesFreedoms<G> && detail::free_slides(G::free) == 0 && detail::free_turns(G::free) != 2;
 
-static_assert(Policy<AncfLinear> && LinearInCoordinates<AncfLinear>);
-
 }  // namespace polybody

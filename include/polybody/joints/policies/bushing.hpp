@@ -98,6 +98,4 @@ struct Bushing {
   }
 };
 
-static_assert(AnswersRows<Bushing, 6> && !AnswersRows<Bushing, 5> && Policy<Bushing>);
-
 }  // namespace polybody

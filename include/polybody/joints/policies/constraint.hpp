@@ -10,6 +10,4 @@ struct Constraint {
   static constexpr bool adds_rows = true;
 };
 
-static_assert(AddsRows<Constraint> && !AddsForce<Constraint>);
-
 }  // namespace polybody

@@ -83,7 +83,4 @@ struct PenaltyPerRow {
   }
 };
 
-static_assert(AddsForce<Penalty> && !AddsRows<Penalty>);
-static_assert(AnswersRows<PenaltyPerRow<1>, 1> && !AnswersRows<PenaltyPerRow<1>, 2>);
-
 }  // namespace polybody

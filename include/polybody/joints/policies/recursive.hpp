@@ -35,6 +35,4 @@ using Recursive = RecursiveBy<recursive::Augmented>;
 template <class P>
 concept MakesJointCoordinates = Eliminates<P> && requires { typename P::Solution; };
 
-static_assert(Policy<Recursive> && MakesJointCoordinates<Recursive>);
-
 }  // namespace polybody

@@ -1,0 +1,14 @@
+// A part of polybody::compiled: what is asked of a model once its type is erased (see polybody/compiled.hpp).
+#include <polybody/compiled.hpp>
+
+namespace polybody {
+
+template class BasicSystem<double>;
+template class ReductionOf<double>;
+template class detail::ReducedCoordinates<void>;
+template class detail::ReducedCoordinates<recursive::Augmented>;
+template class detail::ReducedCoordinates<recursive::Reduced>;
+template class detail::ReducedCoordinates<recursive::ArticulatedBody>;
+template void assemble<DefaultSolver>(System&, State&, double, int);
+
+}  // namespace polybody

@@ -1,0 +1,304 @@
+#pragma once
+/// \file
+/// A run: a range of states, from step to step, that ends steps at corners, events and stop conditions. What its
+/// functions do stands outside the class so that a program that links `polybody::compiled` does not compile it again.
+
+#include <memory>
+
+#include <polybody/run/event_watch.hpp>
+#include <polybody/run/minimum_norm.hpp>
+#include <polybody/run/run_snapshot.hpp>
+#include <polybody/run/stable_step.hpp>
+#include <polybody/run/step_plan.hpp>
+
+namespace polybody {
+
+/// What a run steps, and the whole mechanism where policies eliminate unknowns of it.
+struct RunSystems {
+  std::unique_ptr<System> stepped;  // workspaces refer to it
+  std::unique_ptr<System> whole;
+};
+
+/// An input range of states: `for (State const& now : simulate(…))` yields the start and every step's end.
+/// The state given by the caller is moved along. Not copyable; begin() once.
+template <Integrator I, class Solver = DefaultSolver>
+class Simulation {
+ public:
+  Simulation(RunSystems systems, State& x, I integrator, RunOptions options);
+
+  /// Goes on from a snapshot. \throws InvalidInput for one of another model, integrator or count of events.
+  Simulation(RunSystems systems, State& x, I integrator, RunOptions options, RunSnapshot const& from);
+  ~Simulation();
+  Simulation(Simulation const&) = delete;
+  Simulation& operator=(Simulation const&) = delete;
+
+  /// What it takes to go on from here with `resume`. Factorisations and the like, which a run keeps from step to step,
+  /// are no part of it: the run itself throws them away now, as if it were resumed. So both go on with the same bits.
+  /// Where bits matter, let the run that is not interrupted take its snapshots at the same times.
+  RunSnapshot snapshot();
+
+  State const& state() const { return *x_; }
+  RunReport const& report() const { return report_; }
+  /// What is stepped: the model, or what its policies leave of it.
+  System& system() { return *system_; }
+  /// The whole mechanism.
+  System& whole() { return whole_ ? *whole_ : *system_; }
+  bool done() const { return report_.stopped || x_->t >= options_.until; }
+
+  /// Takes one step: to the next grid point, or to a corner or event before it. When it throws, the state is as
+  /// it was before.
+  void advance();
+
+  struct Sentinel {};
+  class Iterator {
+   public:
+    using value_type = State;
+    using difference_type = std::ptrdiff_t;
+    explicit Iterator(Simulation* run) : run_(run) {}
+    State const& operator*() const { return run_->state(); }
+    Iterator& operator++() {
+      if (run_->done())
+        finished_ = true;
+      else
+        run_->advance();
+      return *this;
+    }
+    void operator++(int) { ++*this; }
+    bool operator==(Sentinel) const { return finished_; }
+
+   private:
+    Simulation* run_;
+    bool finished_ = false;
+  };
+  Iterator begin() { return Iterator(this); }
+  Sentinel end() const { return {}; }
+
+  /// Runs to the end. Returns the report.
+  RunReport const& run();
+
+ private:
+  struct Prepared {};
+  Simulation(Prepared, RunSystems systems, State& x, I integrator, RunOptions options, double start)
+      : system_(std::move(systems.stepped)),
+        whole_(std::move(systems.whole)),
+        x_(&x),
+        integrator_(std::move(integrator)),
+        options_(std::move(options)),
+        workspace_(integrator_.template workspace<Solver>(*system_)),
+        norm_(whole()) {
+    integrator_.check();
+    options_.check(start);
+    if (options_.threads != 1) system_->use_threads(options_.threads);
+    h_ = std::min<double>(options_.step, largest_step());
+  }
+  /// A narrow state is stepped, of which `show` makes the user's.
+  bool eliminates() const { return bool(whole_); }
+
+  /// A workspace that knows no earlier step, and is ready for the next one.
+  void renew() {
+    workspace_ = integrator_.template workspace<Solver>(*system_);
+    State ready = stepped();  // whose memory `start` clears
+    integrator_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, workspace_);
+  }
+
+  /// The state that is stepped: the user's, or the narrow one.
+  State& stepped() { return eliminates() ? narrow_ : *x_; }
+  State const& stepped() const { return eliminates() ? narrow_ : *x_; }
+  void show() {
+    if (eliminates()) expand(*system_, narrow_, *x_, scratch_);
+  }
+
+  /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep
+  /// to the joints.
+  void narrow_start();
+  /// Warns of a step that is too long for compliant joints.
+  void warn(ForwardDynamics<Solver>& forward, State const& x) {
+    if constexpr (NamesStableStep<I>) {
+      std::string const warning = warn_of_step<I>(whole(), forward, x, h_);
+      if (!warning.empty()) report_.warnings.push_back(warning);
+    }
+  }
+
+  /// One step of h, or where it stalls two of h/2 from a fresh start, and so on. When it throws, the state is as it
+  /// was.
+  StepReport step(double h, int halvings);
+
+  double largest_step() const { return options_.largest_step.value_or(std::numeric_limits<double>::infinity()); }
+
+  /// Times at which the user, a drive or a load wants a step to end.
+  std::vector<double> corners() const {
+    std::vector<double> all = options_.corners;
+    all.insert(all.end(), system_->layout().corners.begin(), system_->layout().corners.end());
+    return all;
+  }
+
+  /// After a start, corner or event: speeds onto the rows, then consistent accelerations. The integrator may look
+  /// ahead as far as the next step goes, not across a corner.
+  void restart(bool first = false);
+
+  void account(StepReport const& r, bool shortened) {
+    report_.add(r);
+    if constexpr (requires { I::controls_step; })
+      h_ = std::min(shortened ? std::max(r.next, h_) : r.next, largest_step());
+  }
+
+  /// The state that events are shown.
+  EventWatch::Seen seen() {
+    return [this](State const& x) -> State const& {
+      if (!eliminates()) return x;
+      seen_ = *x_;
+      expand(*system_, x, seen_, scratch_);
+      return seen_;
+    };
+  }
+  bool meet_events(State const& before, double taken) {
+    auto const step = [this](State& x, double h) { return integrator_.step(*system_, x, h, workspace_).taken; };
+    return watch_.meet(options_.events, before, stepped(), taken, seen(), step, report_);
+  }
+
+  std::unique_ptr<System> system_, whole_;  // workspaces refer to it
+  State* x_;
+  State narrow_, seen_;  // of models with eliminating policies
+  VecX scratch_;
+  I integrator_;
+  RunOptions options_;
+  decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
+  MinimumNormOf<> norm_;
+  StepPlan plan_;
+  EventWatch watch_;
+  double h_ = 0.0;
+  RunReport report_;
+};
+
+template <Integrator I, class Solver>
+Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, RunOptions options)
+    : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), x.t) {
+  require_fitting(whole(), x);
+  plan_ = StepPlan(x.t, options_.until, options_.step, corners());
+  require_assembled(whole(), x, options_.assembly_tolerance);
+  if (eliminates()) narrow_start();
+  stepped().t = plan_.pass(stepped().t);
+  if (!options_.events.empty()) watch_.start(options_.events, stepped(), seen());
+  restart(true);
+  if (!eliminates()) {
+    if (options_.minimum_norm) norm_.apply(*system_, workspace_.forward, x);
+    warn(workspace_.forward, x);
+  }
+  show();
+}
+
+
+template <Integrator I, class Solver>
+Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, RunOptions options, RunSnapshot const& from)
+    : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), from.state.t) {
+  from.require(identity_of(*system_), I::name, options_.events.size());
+  if (eliminates()) x = {};
+  stepped() = from.state;
+  show();
+  plan_ = StepPlan(x.t, options_.until, options_.step, corners());
+  if constexpr (requires { I::controls_step; }) h_ = std::min(from.step, largest_step());
+  watch_ = EventWatch(from.sides);
+  report_ = from.report;
+  renew();
+}
+
+
+template <Integrator I, class Solver>
+Simulation<I, Solver>::~Simulation() = default;
+
+template <Integrator I, class Solver>
+RunSnapshot Simulation<I, Solver>::snapshot() {
+  renew();
+  return {identity_of(*system_), I::name, stepped(), h_, watch_.sides(), report_};
+}
+
+
+template <Integrator I, class Solver>
+void Simulation<I, Solver>::advance() {
+  auto const [target, h, lands, jumps] = plan_.next(stepped().t, h_);
+  bool const crumb = h < 0.01 * h_;  // one is left all the same: after a corner or an event
+  State before;
+  if (jumps || crumb || options_.minimum_norm || !options_.events.empty()) before = stepped();
+  StepReport const report = step(h, options_.halvings);
+  bool const reached = lands && report.taken == h;
+  if (reached) stepped().t = target;
+  account(report, reached);
+  try {
+    bool const met = !options_.events.empty() && meet_events(before, report.taken);
+    bool const at_corner = jumps && stepped().t == target;
+    if (at_corner) stepped().t = plan_.pass(stepped().t);
+    if (met || at_corner || crumb) restart();
+    if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
+    show();
+  } catch (...) {
+    stepped() = before;
+    show();
+    throw;
+  }
+}
+
+template <Integrator I, class Solver>
+RunReport const& Simulation<I, Solver>::run() {
+  while (!done()) advance();
+  return report_;
+}
+
+
+template <Integrator I, class Solver>
+void Simulation<I, Solver>::narrow_start() {
+  if (options_.minimum_norm)
+    throw InvalidInput(
+        "simulate: minimum_norm is for models whose joints all keep their rows. Ask minimum_norm_multipliers for "
+        "single states.");
+  State start = *x_;
+  ForwardDynamics<Solver> forward(whole());
+  forward.project_velocities(whole(), start.q, start.v, start.t);
+  require_consistent_rows(whole(), forward, start);
+  warn(forward, start);
+  narrow_ = reduce(*system_, start);
+}
+
+
+template <Integrator I, class Solver>
+StepReport Simulation<I, Solver>::step(double h, int halvings) {
+  try {
+    return integrator_.step(*system_, stepped(), h, workspace_);
+  } catch (NewtonStalled const&) {
+    if (halvings == 0) throw;
+  }
+  State const before = stepped();
+  try {
+    workspace_.forward.project_velocities(*system_, stepped().q, stepped().v, stepped().t);
+    integrator_.start(*system_, stepped(), 0.5 * h, workspace_);
+    StepReport report = step(0.5 * h, halvings - 1);
+    StepReport const second = step(h - report.taken, halvings - 1);
+    report.taken += second.taken;
+    report.next = second.next;
+    report.iterations += second.iterations;
+    report.factorisations += second.factorisations;
+    report.evaluations += second.evaluations;
+    report.rejected += second.rejected + 1;
+    report.contraction = second.contraction;
+    return report;
+  } catch (...) {
+    stepped() = before;
+    throw;
+  }
+}
+
+
+template <Integrator I, class Solver>
+void Simulation<I, Solver>::restart(bool first) {
+  State fresh = stepped();  // which stays as it is when the start fails
+  workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
+  integrator_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
+  if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
+  stepped() = std::move(fresh);
+  report_.redundant = workspace_.forward.redundant(*system_);
+  if (eliminates())
+    for (std::string const& name : system_->step_coordinates().narrow->redundant)
+      if (report_.redundant.empty() || report_.redundant.back() != name) report_.redundant.push_back(name);
+}
+
+
+}  // namespace polybody

@@ -1,0 +1,193 @@
+#pragma once
+/// \file
+/// Waist 3: what an integrator or a solver sees of the mechanics,
+///   M(q) v̇ = f(q, v, t) − Gᵀλ,   Φ(q, t) = 0,   q moves by ⊞.
+/// Models' types end here: one table of functions fills arrays, which are assembled into these equations. Where
+/// policies eliminate unknowns, the equations are those of what is left,
+///   Tᵀ(M(T u̇ + b) − f) + (G T)ᵀλ = 0,   v = T u,  v̇ = T u̇ + b.
+
+#include <cmath>
+
+#include <polybody/system/assembly.hpp>
+#include <polybody/system/coordinates.hpp>
+
+namespace polybody {
+
+/// Names groups of entries in a constructor: `System(model, with<Entries::tangent>)`.
+template <Entries groups>
+struct With {};
+template <Entries groups>
+inline constexpr With<groups> with{};
+
+/// \throws InvalidInput where an entry was not asked for.
+template <class F>
+F require_entry(F entry, char const* group) {
+  if (!entry)
+    throw InvalidInput(std::string("This system was made without ") + group +
+                       ". Name them where it is made: System(model, with<Entries::...>).");
+  return entry;
+}
+
+/// Defined where models are known (system/model_entries.hpp, system/typed_data.hpp).
+template <class M>
+ModelLayout layout_of(M const& model);
+namespace detail {
+template <class M, StateScalar T>
+class DataMaker;
+}
+
+/// Parts of the tangent that may be asked for alone.
+enum class TangentPart { compliant_joints, force_elements };
+
+/// The equations of a model with their scratch. `evaluate` sets the state at which everything else is asked.
+template <StateScalar T>
+class BasicSystem {
+ public:
+  using Vector = VecXOf<T>;
+
+  /// The whole mechanism. The model must outlive the system and must not change after.
+  template <class M, Entries wanted = Entries::questions>
+    requires requires { sizeof(EntriesOf<M, T, wanted>); }
+  explicit BasicSystem(M const& model, With<wanted> = {}, Coordinates coordinates = {})
+      : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), detail::DataMaker<M, T>::make(model),
+                    std::move(coordinates)) {}
+  /// From entries of any origin.
+  BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
+              Coordinates coordinates);
+  BasicSystem(BasicSystem&&) noexcept;
+  ~BasicSystem();
+
+  /// Places and names in the whole model.
+  ModelLayout const& layout() const { return layout_; }
+  Coordinates const& step_coordinates() const { return coordinates_; }
+  Data<T> const& data() const { return data_; }
+  /// The model's entries, and what they take for the model.
+  std::pair<ModelEntries<T> const&, void const*> entries() const { return {entries_, model_}; }
+  /// Whole coordinates and speeds, and time, of the last evaluation.
+  At<T> at() const { return {q_, v_, t_}; }
+
+  Index coordinates() const { return coordinates_ ? coordinates_.narrow->coordinates : layout_.coordinates; }
+  Index speeds() const { return coordinates_ ? coordinates_.narrow->speeds : layout_.speeds; }
+  Index rows() const { return coordinates_ ? coordinates_.narrow->rows : layout_.rows; }
+  Index size() const { return speeds() + rows(); }
+  /// Rows without a position: Φ is zero there, Φ̇ and γ are not.
+  std::vector<Index> const& velocity_rows() const {
+    return coordinates_ ? coordinates_.narrow->velocity_rows : layout_.velocity_rows;
+  }
+
+  /// Scales gravity and loads; one except inside `equilibrium`.
+  double load_factor = 1.0;
+
+  void evaluate(Vector const& q, Vector const& v, double t);
+
+  /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results
+  /// are the same to the last bit. \throws InvalidInput for fewer than one.
+  void use_threads(int threads);
+
+  /// r = M a − f + Gᵀλ (nv).
+  void residual(Vector const& a, Vector const& lambda, Vector& r);
+  /// The wrenches of the force elements into `data().actions`, as `residual` does.
+  void push_forces() { entries_.push_forces(model_, t_, data_); }
+  /// Φ (rows); zero for velocity rows.
+  void violation(Vector& phi);
+  /// Φ̇ = G v + Φ_t (rows).
+  void violation_rate(Vector& rate);
+  /// γ (rows): Φ̈ = G v̇ + γ.
+  void acceleration_bias(Vector& gamma);
+  /// out = G b (rows) for b by speeds.
+  void rows_times(Vector const& b, Vector& out);
+  /// out = Gᵀ b (speeds) for b by rows.
+  void rows_transposed_times(Vector const& b, Vector& out);
+
+  /// [cm M + cd D + ck K, Gᵀ; G, 0] (size × size), by the unknowns of the equations, into a receiver of blocks.
+  template <TakesBlocks S>
+  void tangent(TangentCoefficients const& c, SecondOrder second, Vector const& lambda, S&& receiver) {
+    with_sink(receiver, [&](BlockSink& sink) {
+      write_equations([&](BlockSink& whole) { write_tangent(c, second, lambda, whole); }, sink);
+    });
+  }
+  /// [M, Gᵀ; G, 0], likewise.
+  template <TakesBlocks S>
+  void masses(S&& receiver) {
+    with_sink(receiver, [&](BlockSink& sink) {
+      write_equations(
+          [&](BlockSink& whole) {
+            entries_.masses(model_, at(), data_, whole);
+            write_rows(data_, layout_.speeds, whole);
+          },
+          sink);
+    });
+  }
+  /// cd D + ck K of the compliant joints alone, joint by joint; or of the force elements, with second-order terms.
+  template <TakesBlocks S>
+  void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver) {
+    with_sink(receiver, [&](BlockSink& sink) {
+      if (part == TangentPart::compliant_joints)
+        return require_entry(entries_.compliant_tangents, "tangents")(model_, c, data_, sink);
+      clear_loads();
+      c.full = true;
+      require_entry(entries_.force_tangents, "tangents")(model_, t_, load_factor, c, data_, sink);
+      require_entry(entries_.load_stiffness, "second-order terms")(model_, at(), c.stiffness, data_, sink);
+    });
+  }
+
+  /// out = q ⊞ delta.
+  void plus(Vector const& q, Vector const& delta, Vector& out) const;
+  /// The rate of delta in q ⊞ delta when the model moves with speeds v.
+  void local_rate(Vector const& delta, Vector const& v, Vector& out) const;
+
+  /// Name of the body that owns speed i, or of the joint that owns row i − nv.
+  std::string name_of(Index i) const;
+
+ private:
+  NarrowPlace const* narrow_places() const { return coordinates_ ? coordinates_.narrow->places.data() : nullptr; }
+
+  template <class S, class F>
+  static void with_sink(S& receiver, F&& f) {
+    if constexpr (std::same_as<std::remove_cvref_t<S>, BlockSink>) {
+      f(receiver);
+    } else {
+      BlockSink sink(receiver);
+      f(sink);
+    }
+  }
+  void write_equations(BlockWriter const& write, BlockSink& sink) {
+    if (coordinates_)
+      coordinates_.entries->write(coordinates_.self.get(), write, sink);
+    else
+      write(sink);
+  }
+
+  void whole_residual(Vector const& a, Vector const& lambda, Vector& r);
+  void write_tangent(TangentCoefficients c, SecondOrder second, Vector const& given, BlockSink& sink);
+  Vector const& whole_multipliers(Vector const& lambda) {
+    expand_rows(lambda, whole_lambda_);
+    if constexpr (std::same_as<T, double>)
+      coordinates_.entries->recover_multipliers(coordinates_.self.get(), data_, whole_lambda_);
+    return whole_lambda_;
+  }
+  void clear_loads() {
+    for (Wrench<double>& w : data_.loads) w = {};
+  }
+
+  /// Rows of a step are written as they are, or taken from whole ones afterwards.
+  Vector& whole_rows(Vector& narrow) { return coordinates_ ? whole_rows_ : narrow; }
+  void take_rows(Vector& narrow) const {
+    if (!coordinates_) return;
+    std::vector<Index> const& stay = coordinates_.narrow->rows_that_stay;
+    for (std::size_t i = 0; i < stay.size(); ++i) narrow[Index(i)] = whole_rows_[stay[i]];
+  }
+  void expand_rows(Vector const& narrow, Vector& whole) const { coordinates_.narrow->expand_rows(narrow, whole); }
+
+  void const* model_;
+  ModelEntries<T> entries_;
+  ModelLayout layout_;
+  Coordinates coordinates_;
+  std::unique_ptr<Workers> workers_;
+  Data<T> data_;
+  Vector q_, v_;  // whole
+  double t_ = 0.0;
+  Vector whole_a_, whole_r_, whole_rows_, whole_lambda_, still_;  // scratch of a system with coordinates of its own
+};
+
+}  // namespace polybody

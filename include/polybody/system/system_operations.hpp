@@ -1,0 +1,161 @@
+#pragma once
+/// \file
+/// What the functions of `BasicSystem` do. They stand outside the class so that a program that links
+/// `polybody::compiled` does not compile them again.
+
+#include <polybody/system/basic_system.hpp>
+
+namespace polybody {
+
+template <StateScalar T>
+BasicSystem<T>::BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
+            Coordinates coordinates)
+    : model_(model),
+      entries_(entries),
+      layout_(std::move(layout)),
+      coordinates_(std::move(coordinates)),
+      data_(std::move(data)) {
+  q_.setConstant(layout_.coordinates, T(0.0));
+  v_.setConstant(layout_.speeds, T(0.0));
+  if (coordinates_) {
+    whole_a_ = whole_r_ = v_;
+    whole_rows_.setConstant(layout_.rows, T(0.0));
+    whole_lambda_ = whole_rows_;
+    still_.setConstant(speeds(), T(0.0));
+  }
+}
+
+template <StateScalar T>
+BasicSystem<T>::BasicSystem(BasicSystem&&) noexcept = default;
+template <StateScalar T>
+BasicSystem<T>::~BasicSystem() = default;
+
+template <StateScalar T>
+void BasicSystem<T>::evaluate(Vector const& q, Vector const& v, double t) {
+  t_ = t;
+  data_.linear_rows = !coordinates_;
+  if (coordinates_) {
+    if constexpr (std::same_as<T, double>) coordinates_.entries->expand(coordinates_.self.get(), q, v, q_, v_);
+  } else {
+    q_ = q;
+    v_ = v;
+  }
+  entries_.publish(model_, at(), data_);
+  entries_.measure_gaps(model_, at(), data_);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::use_threads(int threads) {
+  workers_ = std::make_unique<Workers>(threads);
+  entries_.share_loops(model_, data_, *workers_);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::residual(Vector const& a, Vector const& lambda, Vector& r) {
+  if (!coordinates_) return whole_residual(a, lambda, r);
+  if constexpr (std::same_as<T, double>) {
+    coordinates_.entries->expand_rates(coordinates_.self.get(), a, true, whole_a_);
+    expand_rows(lambda, whole_lambda_);
+    whole_residual(whole_a_, whole_lambda_, whole_r_);
+    coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, r);
+  }
+}
+
+template <StateScalar T>
+void BasicSystem<T>::violation(Vector& phi) {
+  polybody::violation(data_, whole_rows(phi));
+  take_rows(phi);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::violation_rate(Vector& rate) {
+  polybody::violation_rate(data_, v_, whole_rows(rate));
+  take_rows(rate);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::acceleration_bias(Vector& gamma) {
+  Vector& whole = whole_rows(gamma);
+  for (RowBlock<T> const& block : data_.rows)
+    if (block.source == RowSource::linear)
+      for (int i = 0; i < block.rows; ++i) whole[block.row + i] = T(0.0);
+  entries_.measure_gamma(model_, at(), data_, whole);
+  add_biases(data_, whole);
+  if constexpr (std::same_as<T, double>)
+    if (coordinates_) {  // γ + G b
+      coordinates_.entries->expand_rates(coordinates_.self.get(), still_, true, whole_a_);
+      whole_lambda_ = whole;
+      polybody::rows_times(data_, whole_a_, whole);
+      whole += whole_lambda_;
+    }
+  take_rows(gamma);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::rows_times(Vector const& b, Vector& out) {
+  if constexpr (std::same_as<T, double>)
+    if (coordinates_) {
+      coordinates_.entries->expand_rates(coordinates_.self.get(), b, false, whole_a_);
+      polybody::rows_times(data_, whole_a_, whole_rows_);
+      return take_rows(out);
+    }
+  polybody::rows_times(data_, b, out);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::rows_transposed_times(Vector const& b, Vector& out) {
+  if constexpr (std::same_as<T, double>)
+    if (coordinates_) {
+      expand_rows(b, whole_lambda_);
+      polybody::rows_transposed_times(data_, whole_lambda_, whole_r_);
+      return coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, out);
+    }
+  polybody::rows_transposed_times(data_, b, out);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::plus(Vector const& q, Vector const& delta, Vector& out) const {
+  if constexpr (std::same_as<T, double>)
+    if (coordinates_) coordinates_.entries->plus(coordinates_.self.get(), q, delta, out);
+  entries_.plus(model_, narrow_places(), q, delta, out);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::local_rate(Vector const& delta, Vector const& v, Vector& out) const {
+  if constexpr (std::same_as<T, double>)
+    if (coordinates_) coordinates_.entries->local_rate(coordinates_.self.get(), delta, v, out);
+  entries_.local_rate(model_, narrow_places(), delta, v, out);
+}
+
+template <StateScalar T>
+std::string BasicSystem<T>::name_of(Index i) const {
+  if (!coordinates_) return layout_.name_of(i);
+  NarrowLayout const& n = *coordinates_.narrow;
+  return layout_.name_of(i < n.speeds ? n.whole_speed[std::size_t(i)]
+                                      : layout_.speeds + n.rows_that_stay[std::size_t(i - n.speeds)]);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::whole_residual(Vector const& a, Vector const& lambda, Vector& r) {
+  for (Index i = 0; i < r.size(); ++i) r[i] = T(0.0);
+  entries_.element_forces(model_, at(), a, load_factor, data_, r);
+  add_row_forces(data_, lambda, r);
+  push_forces();
+  add_actions(data_, layout_, load_factor, r);
+}
+
+template <StateScalar T>
+void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Vector const& given, BlockSink& sink) {
+  c.full = second == SecondOrder::included;
+  Vector const& lambda = c.full && coordinates_ ? whole_multipliers(given) : given;
+  if (c.full) clear_loads();
+  require_entry(entries_.element_tangents, "tangents")(model_, at(), c, data_, sink);
+  write_rows(data_, layout_.speeds, sink);
+  entries_.compliant_tangents(model_, c, data_, sink);
+  if (c.full)
+    require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), lambda, c.stiffness, data_, sink);
+  entries_.force_tangents(model_, t_, load_factor, c, data_, sink);
+  if (c.full) entries_.load_stiffness(model_, at(), c.stiffness, data_, sink);
+}
+
+}  // namespace polybody
