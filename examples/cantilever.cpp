@@ -45,7 +45,7 @@ void tip_moment(Options const& o) {
     if (next < wanted.size() && now.t >= wanted[next] - 1e-9) {
       add_snapshot(shapes, beam.model, now, beam.beam, length);
       if constexpr (std::is_same_v<B, planar::Lrvf>) {
-        MeshDiagnostics const d = mesh_diagnostics(beam.beam.body, coordinates_of(beam.model, now, beam.beam));
+        MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, now, beam.beam));
         std::printf("  t = %4.1f s: tip (%.3f, %.3f) on the position mesh, (%.3f, %.3f) on the rotation mesh\n", now.t,
                     d.position_nodes.back()[0], d.position_nodes.back()[1], d.rotation_nodes.back()[0],
                     d.rotation_nodes.back()[1]);
@@ -61,7 +61,7 @@ void tip_moment(Options const& o) {
   fit(shapes);
   draw(shapes, o.out / ("figure_2_9_tip_moment" + suffix), !o.no_plot);
   if constexpr (std::is_same_v<B, planar::Lrvf>) {
-    MeshDiagnostics const d = mesh_diagnostics(beam.beam.body, coordinates_of(beam.model, x, beam.beam));
+    MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
     Curve rotation{.label = "rotation mesh: constant in each element", .color = 1},
         position{.label = "position mesh: zero", .color = 0},
         still{.x = {0.0, length},

@@ -23,7 +23,7 @@ Curve shape_of(M const& model, State const& x, BodyHandle<B> const& handle, doub
 template <class M>
 Curve implied_shape_of(M const& model, State const& x, BodyHandle<planar::Lrvf> const& handle) {
   Curve c;
-  for (Vec2 const& r : implied_curve(handle.body, coordinates_of(model, x, handle), 6)) {
+  for (Vec2 const& r : implied_curve(handle.body(), coordinates_of(model, x, handle), 6)) {
     c.x.push_back(r[0]);
     c.y.push_back(r[1]);
   }

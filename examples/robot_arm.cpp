@@ -75,7 +75,7 @@ void run_case(Options const& o, Case const& c) {
     Energy const e = energy(arm.model, now);
     std::vector<double> row{now.t, tip[0], tip[1], e.kinetic, e.strain};
     if constexpr (two_meshes) {
-      MeshDiagnostics const d = mesh_diagnostics(arm.arm.body, coordinates_of(arm.model, now, arm.arm));
+      MeshDiagnostics const d = mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm));
       row.insert(row.end(), {d.largest_gap, d.position_length, d.rotation_length});
       widest = std::max(widest, d.largest_gap);
       longest = std::max(longest, d.position_length);

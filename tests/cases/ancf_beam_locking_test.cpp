@@ -61,10 +61,10 @@ void stretches_freely() {
   double const strain = 1e-6;
   SpatialCantilever<B> const c(B::from(bar, 4), {.force = {constants(bar).EA * strain, 0, 0}}, {});
   EXPECT_NEAR(c.tip_displacement()[0], strain, 1e-5 * strain);
-  Mat3 const e = c.bar.body.strain(c.bar.body.at(0.4), c.coordinates());
+  Mat3 const e = c.bar.body().strain(c.bar.body().at(0.4), c.coordinates());
   EXPECT_NEAR(e(1, 1), -0.3 * strain, 1e-5 * strain);
   EXPECT_NEAR(e(2, 2), -0.3 * strain, 1e-5 * strain);
-  Mat3 const s = c.bar.body.stress(c.bar.body.at(0.4), c.coordinates()).cauchy;
+  Mat3 const s = c.bar.body().stress(c.bar.body().at(0.4), c.coordinates()).cauchy;
   EXPECT_NEAR(s(0, 0), 2e11 * strain, 1e-5 * 2e11 * strain);
   EXPECT_NEAR(s(1, 1), 0.0, 1e-5 * 2e11 * strain);
 }

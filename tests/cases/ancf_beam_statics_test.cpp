@@ -78,7 +78,7 @@ TEST(AncfNachbagauer, LargeLoadConvergesToTheExactRodWithOrderTwo) {
 // the moment F L.
 TEST(AncfNachbagauer, WeldIsTheClampOfTheRod) {
   auto const c = cantilever(thick(), 32, {.force = {0, small, 0}});
-  Beam const& body = c.bar.body;
+  Beam const& body = c.bar.body();
   auto const clamp = body.at(0.0), inside = body.at(0.5 * body.element_length());
   double const ga = body.constants().GA;
   EXPECT_NEAR(body.section_strains(clamp, c.coordinates())[1], small / ga, 2e-3 * small / ga);

@@ -23,8 +23,8 @@ using Frames = Model<Bodies<Ffr>, Joints<Clamp>, Forces<PointForce<>>>;
 Vec3 tip_displacement(Structure const& s, Vec3 const& force) {
   Frames model;
   auto const body = model.add(Ffr(s, nodal_coordinates(s)), "frame");
-  model.connect(Clamp{}, model.ground().at({0, 0, 0}), body.at(body.body.node(0)), "clamp");
-  auto const tip = body.at(body.body.node(Index(s.nodes.size()) - 1));
+  model.connect(Clamp{}, model.ground().at({0, 0, 0}), body.at(body.body().node(0)), "clamp");
+  auto const tip = body.at(body.body().node(Index(s.nodes.size()) - 1));
   model.apply(PointForce<>{.force = force}, tip);
   State x = model.reference_state();
   Vec3 const start = position(model, x, tip);
@@ -99,12 +99,12 @@ Vec3 bend_tip(Index pieces, Index bars_of_each, BarConstants const& constants, d
   std::vector<Marker<Ffr>> tips;
   for (Index i = 0; i < pieces; ++i) {
     auto const piece = model.add(Ffr(s, shapes, {.placement = on_arc(chord * double(i * bars_of_each))}));
-    auto const root = piece.at(piece.body.node(0));
+    auto const root = piece.at(piece.body().node(0));
     if (i == 0)
       model.connect(Clamp{}, model.ground().at({0, 0, 0}), root, "clamp");
     else
       model.connect(Clamp{}, tips.back(), root, "weld");
-    tips.push_back(piece.at(piece.body.node(bars_of_each)));
+    tips.push_back(piece.at(piece.body().node(bars_of_each)));
   }
   model.apply(PointForce<>{.force = {0, 0, force}}, tips.back());
   State x = model.reference_state();

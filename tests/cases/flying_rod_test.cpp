@@ -135,7 +135,7 @@ void moves_its_centre(Index n, double tolerance) {
     Vec3 centre = Vec3::Zero();
     auto const q = coordinates_of(flight.model, flight.x, flight.body);
     for (int k = 0; k < 3; ++k)  // −m x_c is the energy in a field of 1 m/s², m = 10 kg
-      for (Index e = 0; e < n; ++e) centre[k] -= flight.body.body.gravity_energy(e, q, Vec3::Unit(k)) / 10.0;
+      for (Index e = 0; e < n; ++e) centre[k] -= flight.body.body().gravity_energy(e, q, Vec3::Unit(k)) / 10.0;
     EXPECT_LT((centre - Vec3(15.5 + 5.0 * (t - 5.0), 4.0, 0.0)).norm(), tolerance) << t;
     if (t > 5.0) {
       EXPECT_LT((p.angular - angular).norm(), 2e-5 * angular.norm());

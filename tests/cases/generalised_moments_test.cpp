@@ -59,7 +59,7 @@ struct Pendulum {
     VecX with(model.speeds()), without(model.speeds());
     system.residual(x.a, lambda, with);
     system.residual(x.a, VecX::Zero(model.rows()), without);
-    return (without - with).segment(model.entry(body).v0, body.body.speeds());
+    return (without - with).segment(model.entry(body).v0, body.body().speeds());
   }
   /// The multipliers of one joint, zero elsewhere.
   template <class J>
@@ -77,7 +77,7 @@ struct Pendulum {
     system.residual(x.a, x.lambda, with);
     system.load_factor = 0.0;
     system.residual(x.a, x.lambda, without);
-    return (without - with).segment(model.entry(b).v0 + 3, b.body.speeds() - 3);
+    return (without - with).segment(model.entry(b).v0 + 3, b.body().speeds() - 3);
   }
 };
 

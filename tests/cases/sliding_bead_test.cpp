@@ -133,7 +133,7 @@ TEST(MovingMassOnABeam, BendsItAsTheModesSay) {
   rig.pin_right({exact.length, 0, 0});
   State x = rig.model.reference_state();
   rig.model.set_velocity(x, rig.bead, Vec3(exact.v, 0, 0), Vec3::Zero());
-  x.v[rig.line.body.column_of(Slider{})] = exact.v;
+  x.v[rig.line.body().column_of(Slider{})] = exact.v;
   double const h = 2e-5;
   int const n = 4800;
   std::vector<double> const expected = exact.deflections(h, n, 2);

@@ -79,7 +79,8 @@ struct Flight {
     Vec3 sum = Vec3::Zero();
     auto const q = coordinates_of(model, x, body);
     for (int k = 0; k < 3; ++k)
-      for (Index e = 0; e < body.body.elements(); ++e) sum[k] -= body.body.gravity_energy(e, q, Vec3::Unit(k)) / 10.0;
+      for (Index e = 0; e < body.body().elements(); ++e)
+        sum[k] -= body.body().gravity_energy(e, q, Vec3::Unit(k)) / 10.0;
     return sum;
   }
   double total_energy() const { return energy(model, x).total(); }

@@ -42,7 +42,8 @@ TEST(CantileverToHelix, MeetsTheExactRodThroughFiveTurns) {
     double turned = 0.0;  // ∫ |K| ds
     for (int e = 0; e < 100; ++e)
       turned +=
-          0.1 * fine.bar.body.section_strains({e, 0.5}, coordinates_of(fine.model, fine.x, fine.bar)).tail<3>().norm();
+          0.1 *
+          fine.bar.body().section_strains({e, 0.5}, coordinates_of(fine.model, fine.x, fine.bar)).tail<3>().norm();
     EXPECT_GT(turned, 2 * pi * h.turns * 0.98) << h.lambda;
   }
 }

@@ -112,8 +112,8 @@ TEST(Nachbagauer, SmallLoadFollowsLinearTheory) {
 // every element, which stretches and shears its chord, and the moments balance at each node,
 //   EI (κ_k − κ_{k+1}) = ½ l (s_k + s_{k+1}),  s = F·[(1 + ε) t₂ − γ t₁],  κ_{n+1} = s_{n+1} = 0.
 void balances(Cantilever<Lrvf> const& c, Index n, Vec2 const& force) {
-  BarConstants const k = c.bar.body.constants();
-  double const l = c.bar.body.element_length();
+  BarConstants const k = c.bar.body().constants();
+  double const l = c.bar.body().element_length();
   double curvature = 0.0, pull = 0.0;  // of the element beyond
   for (Index e = n; e-- > 0;) {
     Vec3 const a = c.at(double(e) * l), b = c.at(double(e + 1) * l);
@@ -122,7 +122,7 @@ void balances(Cantilever<Lrvf> const& c, Index n, Vec2 const& force) {
     double const stretch = force.dot(t1) / k.EA, shear = force.dot(t2) / k.GA;
     EXPECT_LT(((b - a).head<2>() - l * ((1.0 + stretch) * t1 + shear * t2)).norm(), 1e-12);
     double const s = force.dot((1.0 + stretch) * t2 - shear * t1);
-    EXPECT_NEAR(k.EI * (bend - curvature), 0.5 * l * (s + pull), 1e-10 * force.norm() * c.bar.body.length());
+    EXPECT_NEAR(k.EI * (bend - curvature), 0.5 * l * (s + pull), 1e-10 * force.norm() * c.bar.body().length());
     curvature = bend;
     pull = s;
   }

@@ -69,7 +69,7 @@ TEST(RollUp, ThesisFigure29StaticValues) {
   Index const n = 10;
   Cantilever<Lrvf> const c(Lrvf::from(thesis(), n), {.moment = 3e4}, {});
   for (double const s : {0.5, 4.5, 9.5}) {  // the Gauss points of three elements
-    Vec3 const strain = c.bar.body.strains<0>(c.bar.body.at(s), coordinates_of(c.model, c.x, c.bar));
+    Vec3 const strain = c.bar.body().strains<0>(c.bar.body().at(s), coordinates_of(c.model, c.x, c.bar));
     EXPECT_LT((strain - Vec3(0, 0, 0.360144058)).norm(), 5e-10) << s;
   }
   double const half = 0.5 * c.tip()[2] / double(n), chord = half / std::sin(half);

@@ -16,7 +16,7 @@ double largest_gap(Stiffness const& stiffness, double ramp, double density = 785
   State x = arm.model.reference_state();
   double gap = 0.0;
   for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = ramp, .step = 5e-3}))
-    gap = std::max(gap, mesh_diagnostics(arm.arm.body, coordinates_of(arm.model, now, arm.arm)).largest_gap);
+    gap = std::max(gap, mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm)).largest_gap);
   return gap;
 }
 
@@ -30,7 +30,7 @@ TEST(ThesisChapter2, AxialForceStretchesThePositionMeshOnly) {
   State x = arm.model.reference_state();
   double longest = 0.0;
   for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 4.5, .step = 5e-3})) {
-    MeshDiagnostics const d = mesh_diagnostics(arm.arm.body, coordinates_of(arm.model, now, arm.arm));
+    MeshDiagnostics const d = mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm));
     longest = std::max(longest, d.position_length);
     ASSERT_NEAR(d.rotation_length, 10.0, 1e-12);
   }
@@ -41,7 +41,7 @@ TEST(ThesisChapter2, TipMomentBringsTheMeshesApart) {
   chapter2::Cantilever<Lrvf> beam(bar(low, 7850.0), 10, 30e3);
   State x = beam.model.reference_state();
   simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 2.0, .step = 1e-3}).run();
-  MeshDiagnostics const d = mesh_diagnostics(beam.beam.body, coordinates_of(beam.model, x, beam.beam));
+  MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
   EXPECT_NEAR(d.position_nodes.back()[0], 8.832, 1e-3);
   EXPECT_NEAR(d.position_nodes.back()[1], 1.874, 1e-3);
   EXPECT_NEAR(d.rotation_nodes.back()[0], 8.789, 1e-3);

@@ -6,6 +6,7 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/run/contacts.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -246,6 +247,11 @@ TEST(ContactGroup, RefusesMarkersAndHandlesOfAnotherModel) {
   EXPECT_TRUE(has(refusal([&] { a.model.pair_with(of_b, on_plane, floor); }), "\"others\"" + told));
   EXPECT_TRUE(
       has(refusal([&] { a.model.pair_with(group, on_plane, b.model.ground().at({0, 0, 0})); }), "\"marbles\"" + told));
+  ElementHandle<Group> const unset;
+  EXPECT_TRUE(has(refusal([&] { a.model.pair_with(unset, on_plane, floor); }), "A handle made by default"));
+  System const system(a.model, with<Entries::motion>);
+  EXPECT_TRUE(has(refusal([&] { for_each_contact(system, of_b, [](auto const&) {}); }), "\"others\"" + told));
+  EXPECT_TRUE(has(refusal([&] { for_each_contact(system, unset, [](auto const&) {}); }), "A handle made by default"));
   // what was refused has left nothing behind
   EXPECT_EQ(a.model.entry(group).markers.size(), 1u);
   EXPECT_EQ(std::get<0>(a.model.force_pools()).size(), 1u);

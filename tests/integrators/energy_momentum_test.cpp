@@ -41,9 +41,9 @@ struct Thrown {
   Vec2 centre() const {  // −m x_c is the energy in a field of 1 m/s², m = 10 kg
     Vec2 c = Vec2::Zero();
     for (int k = 0; k < 2; ++k)
-      for (Index e = 0; e < rod.body.elements(); ++e)
+      for (Index e = 0; e < rod.body().elements(); ++e)
         c[k] -=
-            rod.body.gravity_energy(e, std::span<double const>(x.q.data(), std::size_t(x.q.size())), Vec3::Unit(k)) /
+            rod.body().gravity_energy(e, std::span<double const>(x.q.data(), std::size_t(x.q.size())), Vec3::Unit(k)) /
             10.0;
     return c;
   }

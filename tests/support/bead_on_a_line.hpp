@@ -34,7 +34,7 @@ struct BeadOnALine {
         left(model.connect(Pin{}, model.ground().at({0, 0, 0}), line.at(0.0), "left")),
         contact(model.connect(Pin{}, slides ? line.at(Slider{}) : line.at(s), bead.at({0, 0}), "contact")) {}
   ElementHandle<Pin> pin_right(Vec3 const& to) {
-    return model.connect(Pin{}, model.ground().at(to), line.at(line.body.length()), "right");
+    return model.connect(Pin{}, model.ground().at(to), line.at(line.body().length()), "right");
   }
   /// For statics: the bead does not turn, and bears on the line with its weight from the beginning (no load, no
   /// direction to go).

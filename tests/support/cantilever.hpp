@@ -45,13 +45,13 @@ struct Cantilever {
 
   /// Position and angle of the section at `s` from the clamp; the angle of `Lrvf` counts full turns.
   Vec3 at(double s) const { return section(x, s); }
-  Vec3 tip() const { return at(bar.body.length()); }
-  Vec3 tip_displacement() const { return tip() - section(model.reference_state(), bar.body.length()); }
+  Vec3 tip() const { return at(bar.body().length()); }
+  Vec3 tip_displacement() const { return tip() - section(model.reference_state(), bar.body().length()); }
 
  private:
   Vec3 section(State const& y, double s) const {
-    auto const line =
-        bar.body.template centre_line<double>(bar.body.at(s), coordinates_of(model, y, bar), speeds_of(model, y, bar));
+    auto const line = bar.body().template centre_line<double>(bar.body().at(s), coordinates_of(model, y, bar),
+                                                              speeds_of(model, y, bar));
     return {line.r[0], line.r[1], line.angle};
   }
   auto ground(B const& body) const {

@@ -42,7 +42,7 @@ struct SpatialCantilever {
   }
 
   std::span<double const> coordinates() const { return coordinates_of(model, x, bar); }
-  Marker<B> end() const { return bar.at(bar.body.length()); }
+  Marker<B> end() const { return bar.at(bar.body().length()); }
   Frame<double> section(double s) const { return frame(model, x, bar.at(s)); }
   Vec3 tip() const { return position(model, x, end()); }
   Vec3 tip_displacement() const { return tip() - position(model, model.reference_state(), end()); }

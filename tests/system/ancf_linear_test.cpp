@@ -117,10 +117,10 @@ TEST(AncfLinear, OnlyTheStrainAlongThePinIsContinuous) {
   simulate(model, x, GeneralizedAlpha{.rho_inf = 0.5}, {.until = 0.3, .step = 1e-3}).run();
   auto const strains = [&](auto const& body, double s) {
     auto const& e = model.entry(body);
-    auto const p = body.body.at(s);
+    auto const p = body.body().at(s);
     Eigen::Map<VecX const> const q(x.q.data() + e.q0 + e.body.first_column(p), 24);
     Mat3 j;
-    for (int k = 0; k < 3; ++k) j.col(k) = body.body.gradient_map(p, k) * q;
+    for (int k = 0; k < 3; ++k) j.col(k) = body.body().gradient_map(p, k) * q;
     return Mat3(0.5 * (j.transpose() * j - Mat3::Identity()));
   };
   Mat3 const left = strains(a, 0.5), right = strains(b, 0.0);

@@ -63,7 +63,7 @@ struct Branched {
     Vec3 const off(0.1, -0.05, 0.02);
     auto const b = links[std::size_t(carried)].at(off);
     // the joint point in the world, on both bodies
-    Rigid<> const& body = links[std::size_t(carried)].body;
+    Rigid<> const& body = links[std::size_t(carried)].body();
     std::vector<double> q(7);
     body.reference(q);
     Mat3 const axes = rotation_matrix<double>(Quaternion<double>(q[3], q[4], q[5], q[6]));
@@ -72,7 +72,7 @@ struct Branched {
       model.connect(joint, model.ground().at(point), b);
       return;
     }
-    links[std::size_t(carrier)].body.reference(q);
+    links[std::size_t(carrier)].body().reference(q);
     auto const a = links[std::size_t(carrier)].at(axes.transpose() * (point - Vec3(q[0], q[1], q[2])));
     if (carried % 2 == 0)
       model.connect(joint, a, b);

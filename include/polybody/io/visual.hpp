@@ -57,7 +57,7 @@ class Visual {
   /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24) {
-    model_->require_own(body.model, body.name);
+    model_->require_own(body);
     if (pieces < 1) throw InvalidInput("\"" + body.name + "\": a sweep needs at least one piece.");
     std::vector<Vec2> const ring = outline(bar, sides);
     int const n = int(ring.size());

@@ -5,9 +5,19 @@
 #include <cstdint>
 #include <string>
 
+#include <polybody/kinematics/body_entries.hpp>
 #include <polybody/kinematics/frame.hpp>
 
 namespace polybody {
+
+namespace detail {
+/// \throws InvalidInput for the serial number of no model.
+inline void require_filled(std::uint64_t model) {
+  if (model == 0)
+    throw InvalidInput(
+        "A handle made by default names nothing in a model. Assign it what add, connect or apply returned.");
+}
+}  // namespace detail
 
 /// A material point of a body of type B in the model with this serial number.
 template <class B>
@@ -40,37 +50,53 @@ struct Ground {
   }
 };
 
-/// Handle of a body in a model: names it and makes markers on it.
+/// Handle of a body in a model: names it and makes markers on it. One made by default names nothing and refuses to be
+/// used until a handle is assigned to it.
 template <class B>
 struct BodyHandle {
   std::uint64_t model = 0;
   Index index = 0;
-  std::string name;
-  B body;
+  std::string name = {};
+  /// The model's bodies of this type, shared with the model and not copied; none for the ground.
+  std::shared_ptr<std::vector<detail::BodyEntry<B>> const> bodies = {};
 
-  /// A marker at a material point; arguments as the body's own `at`. \throws InvalidInput with its name.
+  /// The body as the model holds it; the reference is valid until a body of this type is added to the model.
+  /// \throws InvalidInput for a handle made by default.
+  B const& body() const {
+    detail::require_filled(bodies || std::is_same_v<B, Ground> ? model : 0);
+    if constexpr (std::is_same_v<B, Ground>) {
+      static constexpr Ground ground = {};
+      return ground;
+    } else {
+      return (*bodies)[std::size_t(index)].body;
+    }
+  }
+
+  /// A marker at a material point; arguments as the body's own `at`. \throws InvalidInput with its name, or for a
+  /// handle made by default.
   template <class... Args>
     requires requires(B const b, Args... args) { b.at(args...); }
   Marker<B> at(Args const&... args) const {
-    return named([&] { return body.at(args...); });
+    return named([&](B const& on) { return on.at(args...); });
   }
   /// The same for a point in braces.
   Marker<B> at(Vec3 const& point) const
     requires(B::world != World::plane) && requires(B const b, Vec3 p) { b.at(p); }
   {
-    return named([&] { return body.at(point); });
+    return named([&](B const& on) { return on.at(point); });
   }
   Marker<B> at(Vec2 const& point) const
     requires(B::world == World::plane) && requires(B const b, Vec2 p) { b.at(p); }
   {
-    return named([&] { return body.at(point); });
+    return named([&](B const& on) { return on.at(point); });
   }
 
  private:
   template <class F>
   Marker<B> named(F&& point) const {
+    B const& on = body();
     try {
-      return {model, index, point()};
+      return {model, index, point(on)};
     } catch (InvalidInput const& e) {
       throw InvalidInput("\"" + name + "\": " + e.what());
     }

@@ -24,6 +24,7 @@ auto const& force_entry(System const& system, ElementHandle<F> const& handle) {
   for (ForcePlace const& f : system.layout().forces)
     if (system.layout().serial == handle.model && f.type == &type_tag<F> && f.index == handle.index)
       return *static_cast<ForceEntry<F> const*>(f.entry);
+  require_filled(handle.model);
   refuse_marker_of_another_model(handle.name);
 }
 }  // namespace detail

@@ -55,18 +55,17 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   BodyHandle<B> add(B const& body, std::string name = "") {
     auto& pool = std::get<detail::BodyPool<B>>(bodies_);
     name = detail::name_or_next(std::move(name), "body", std::size_t(count_bodies_));
-    pool.entries.push_back({body, name, coordinates_, speeds_});
-    if constexpr (OwnsRows<B>) {
-      pool.entries.back().row = rows_;
-      rows_ += B::own_rows;
-    }
-    coordinates_ += body.coordinates();
-    speeds_ += body.speeds();
+    detail::BodyEntry<B> entry{body, name, coordinates_, speeds_};
+    if constexpr (OwnsRows<B>) entry.row = rows_;
+    pool.entries.push_back(std::move(entry));
+    if constexpr (OwnsRows<B>) rows_ += B::own_rows;
+    coordinates_ += pool.entries.back().body.coordinates();
+    speeds_ += pool.entries.back().body.speeds();
     ++count_bodies_;
-    return {serial_, Index(pool.entries.size()) - 1, std::move(name), body};
+    return {serial_, Index(pool.entries.size()) - 1, std::move(name), pool.entries.shared()};
   }
 
-  BodyHandle<Ground> ground() const { return {serial_, 0, "ground", {}}; }
+  BodyHandle<Ground> ground() const { return {serial_, 0, "ground"}; }
 
   /// Joins marker a to marker b. The joint's axes are those of its geometry in world axes at the reference
   /// configuration. \throws InvalidInput naming the joint for a marker of another model, a body joined to
@@ -184,7 +183,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires ForceGroup<F>
   void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     static_assert(Marker<A>::observes >= needs_of_second<Law>(), "This force needs more than the marker tells.");
-    require_own(group.model, group.name);
+    require_own(group);
     require_own(one.model, group.name);
     auto& entry = std::get<std::vector<detail::ForceEntry<F>>>(forces_)[std::size_t(group.index)];
     name = detail::name_or_next(std::move(name), "opponent", entry.markers.size() - std::size_t(entry.force.many()));
@@ -227,26 +226,26 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   std::vector<detail::GroundMarker> const& ground_markers() const { return ground_; }
   std::vector<LinearRows> const& linear_rows() const { return linear_rows_; }
 
-  /// \throws InvalidInput when the handle is of another model.
+  /// \throws InvalidInput when the handle is of another model, or made by default.
   template <OneOf<Bs...> B>
   auto const& entry(BodyHandle<B> const& handle) const {
-    require_own(handle.model, handle.name);
+    require_own(handle);
     return std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(handle.index)];
   }
   template <OneOf<Js...> J>
   auto const& entry(ElementHandle<J> const& handle) const {
-    require_own(handle.model, handle.name);
+    require_own(handle);
     return std::get<std::vector<detail::JointEntry<J>>>(joints_)[std::size_t(handle.index)];
   }
   template <OneOf<Fs...> F>
   auto const& entry(ElementHandle<F> const& handle) const {
-    require_own(handle.model, handle.name);
+    require_own(handle);
     return std::get<std::vector<detail::ForceEntry<F>>>(forces_)[std::size_t(handle.index)];
   }
   /// Place of a joint among all of them, in the order of the types. \throws InvalidInput as `entry`.
   template <OneOf<Js...> J>
   Index place_of(ElementHandle<J> const& handle) const {
-    require_own(handle.model, handle.name);
+    require_own(handle);
     Index before = 0;
     bool found = false;
     ((found = found || std::is_same_v<J, Js>,
@@ -279,6 +278,12 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// \throws InvalidInput when `serial` is another model's.
   void require_own(std::uint64_t serial, std::string const& what) const {
     if (serial != serial_) detail::refuse_marker_of_another_model(what);
+  }
+  /// \throws InvalidInput for a handle of another model, or one made by default.
+  template <class Handle>
+  void require_own(Handle const& handle) const {
+    detail::require_filled(handle.model);
+    require_own(handle.model, handle.name);
   }
 
  private:

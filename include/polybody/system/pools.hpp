@@ -23,12 +23,12 @@ struct Joints {};
 template <class... Fs>
 struct Forces {};
 
-/// Handle of a joint or a force element in a model.
+/// Handle of a joint or a force element in a model. One made by default names nothing and is refused.
 template <class Element>
 struct ElementHandle {
   std::uint64_t model = 0;
   Index index = 0;
-  std::string name;
+  std::string name = {};
 };
 
 namespace detail {
@@ -43,14 +43,7 @@ struct MarkerEntry {
 
 template <class B>
 struct BodyPool {
-  struct Entry {
-    B body;
-    std::string name;
-    Index q0;        ///< first coordinate
-    Index v0;        ///< first speed
-    Index row = -1;  ///< first of its own rows; −1 for a body without
-  };
-  std::vector<Entry> entries;
+  BodyEntries<B> entries;
   std::vector<MarkerEntry<B>> markers;
 };
 

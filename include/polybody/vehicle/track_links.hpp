@@ -62,9 +62,9 @@ struct BeamLink {
   static Body make(Solid const&, Placement const& at, int elements) {
     return Body::from(link_bar(at), std::max(elements, 1));
   }
-  static auto front(BodyHandle<Body> const& link) { return link.at(link.body.length()); }
+  static auto front(BodyHandle<Body> const& link) { return link.at(link.body().length()); }
   static auto rear(BodyHandle<Body> const& link) { return link.at(0.0); }
-  static auto middle(BodyHandle<Body> const& link) { return link.at(0.5 * link.body.length()); }
+  static auto middle(BodyHandle<Body> const& link) { return link.at(0.5 * link.body().length()); }
 };
 }  // namespace detail
 

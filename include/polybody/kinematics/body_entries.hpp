@@ -1,0 +1,75 @@
+#pragma once
+/// \file
+/// The bodies of one type as a model and its handles hold them.
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <polybody/math/types.hpp>
+
+namespace polybody::detail {
+
+/// A body in a model, and where its coordinates and speeds stand in the model's.
+template <class B>
+struct BodyEntry {
+  B body;
+  std::string name;
+  Index q0;        ///< first coordinate
+  Index v0;        ///< first speed
+  Index row = -1;  ///< first of its own rows; −1 for a body without
+};
+
+/// The entries stand by value one after another, so loops read them without an indirection. Handles share the array: a
+/// body is in memory once, and is there as long as its model or a handle of it. A copied model gets an array of its
+/// own.
+template <class B>
+class BodyEntries {
+ public:
+  using Entry = BodyEntry<B>;
+
+  BodyEntries() = default;
+  BodyEntries(BodyEntries const& other) {
+    if (other.array_) array_ = std::make_shared<std::vector<Entry>>(*other.array_);
+    see();
+  }
+  BodyEntries(BodyEntries&& other) noexcept : array_(std::move(other.array_)) {
+    see();
+    other.see();
+  }
+  BodyEntries& operator=(BodyEntries other) noexcept {
+    array_.swap(other.array_);
+    see();
+    return *this;
+  }
+  ~BodyEntries() = default;
+
+  void push_back(Entry entry) {
+    if (!array_) array_ = std::make_shared<std::vector<Entry>>();
+    array_->push_back(std::move(entry));
+    see();
+  }
+
+  std::size_t size() const { return size_; }
+  Entry const& operator[](std::size_t i) const { return first_[i]; }
+  Entry const& front() const { return *first_; }
+  Entry const& back() const { return first_[size_ - 1]; }
+  Entry const* begin() const { return first_; }
+  Entry const* end() const { return first_ + size_; }
+
+  /// The array, for a handle; it grows with the model.
+  std::shared_ptr<std::vector<Entry> const> shared() const { return array_; }
+
+ private:
+  void see() {
+    first_ = array_ ? array_->data() : nullptr;
+    size_ = array_ ? array_->size() : 0;
+  }
+
+  std::shared_ptr<std::vector<Entry>> array_;  ///< none before the first body
+  Entry const* first_ = nullptr;               ///< of the array
+  std::size_t size_ = 0;
+};
+
+}  // namespace polybody::detail
