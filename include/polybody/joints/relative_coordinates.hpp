@@ -55,7 +55,7 @@ struct RelativeCoordinates {
       }
   }
 
-  /// Of the turn: ẇ = −ω_a × w while the frames keep their ω, and the rate of w = Jl ṡ + ψ̇ n leaves
+  /// The turn has w = Jl ṡ + ψ̇ n, and ẇ = −ω_a × w while the frames keep their ω, so that
   ///   [s̈; ψ̈] = B (ẇ − J̇l ṡ − ψ̇ ṅ),  ṅ = w × n.
   template <StateScalar T>
   Vec<T, 6> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

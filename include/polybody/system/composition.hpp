@@ -39,7 +39,7 @@ concept MayBeEliminated = std::is_same_v<B, Ground> || ((!MakesJointCoordinates<
 template <class J, class B>
 concept TellsEnoughFirst = LinearInCoordinates<typename J::PolicyType> || B::observes >= J::Measured::needs;
 
-/// … of its second.
+/// A marker of body B tells as much as joint J asks of its second marker.
 template <class J, class B>
 concept TellsEnoughSecond =
     LinearInCoordinates<typename J::PolicyType> || B::observes >= needs_of_second<typename J::Measured>();

@@ -31,12 +31,12 @@ class UnknownMapOf {
     }
   }
 
-  /// The first of `size` unknowns that follow one another there as here; −1 where they do not.
+  /// The target of unknown `first` where `size` unknowns from it on go to consecutive targets with factor one; else −1.
   Index run(Index first, Index size) const {
     return run_end_[std::size_t(first)] >= first + size ? targets_[std::size_t(first)][0].unknown : -1;
   }
   Index size() const { return Index(targets_.size()); }
-  /// Of unknown i.
+  /// The unknowns that whole unknown i goes to, with their factors.
   std::vector<Target> const& targets(Index i) const { return targets_[std::size_t(i)]; }
 
   /// All unknowns that a range touches, in runs.

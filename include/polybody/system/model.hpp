@@ -35,7 +35,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Data that depend on the joint types: one gap for each joint.
   template <StateScalar T>
   using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;
-  /// And what compliant joints answer.
+  /// The multipliers that compliant joints answer with, one vector for each joint.
   template <StateScalar T>
   using Answers = std::tuple<std::vector<Vec<T, Js::rows>>...>;
 
@@ -123,7 +123,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return {serial_, Index(pool.size()) - 1, std::move(name)};
   }
 
-  /// Applies a force element to one marker, or between two.
+  /// Applies a force element to one marker, or between two. \throws InvalidInput as `connect`.
   template <OneOf<Fs...> F, class A>
     requires(F::markers == 1)
   ElementHandle<F> apply(F const& force, Marker<A> const& a, std::string name = "") {
@@ -134,7 +134,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   ElementHandle<F> apply(F const& force, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     return apply(force, std::tuple(a, b), std::move(name));
   }
-  /// … or among any number of markers. \throws InvalidInput as `connect`.
+  /// Applies a force element to the markers of a tuple. \throws InvalidInput as `connect`.
   template <OneOf<Fs...> F, class... Ms>
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {

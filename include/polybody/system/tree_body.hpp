@@ -18,10 +18,10 @@ struct TreeBody {
   Index row = -1;             ///< first of the joint's rows; −1: a root, which nothing carries
   Index parent = -1;          ///< in the tree; −1: the ground
   Placement from = {};        ///< the joint's frame in the parent's axes
-  Placement to = {};          ///< … in its own
+  Placement to = {};          ///< the joint's frame in the body's own axes
   JointMotions motions = {};  ///< from frame a to frame b
   bool backwards = false;     ///< frame b is the parent's
-  double angle = 0.0;         ///< in the plane: what it is turned against the parent before the joint moves
+  double angle = 0.0;         ///< in the plane: its turn against the parent in the reference
   Index qn = 0, vn = 0;       ///< in narrow vectors
 
   bool carried() const { return row >= 0; }

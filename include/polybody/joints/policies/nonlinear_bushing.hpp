@@ -47,10 +47,10 @@ struct TabulatedLaw {
 };
 
 /// A bushing with a law for each component, in the order slides along the joint's axes, then turns: λᵢ = fᵢ(xᵢ, ẋᵢ), x
-/// the six `RelativeCoordinates`. What the geometry leaves free stays free, its law is not felt. Slopes come from dual
-/// numbers. Laws without `potential` do work that `energy` does not count.
-///   NonlinearBushing const rubber{TabulatedLaw{…}, LinearLaw{…}, [](auto const& x, auto const& rate) { return …; },
-///   …}; using Pin = Joint<Revolute, decltype(rubber)>;
+/// the six `RelativeCoordinates`. What the geometry leaves free stays free, and its law has no effect. Slopes come from
+/// dual numbers. Laws without `potential` do work that `energy` does not count.
+///   NonlinearBushing const rubber{TabulatedLaw{…}, LinearLaw{…}, [](auto x, auto rate) { return …; }, …};
+///   using Pin = Joint<Revolute, decltype(rubber)>;
 template <ForceLaw... Laws>
   requires(sizeof...(Laws) == 6)
 struct NonlinearBushing {
@@ -89,7 +89,7 @@ struct NonlinearBushing {
     });
     return slope;
   }
-  /// Of the laws that have one [J].
+  /// The energy of the laws that have a potential [J].
   template <int m>
     requires(m == 6)
   double potential(Vec<double, m> const& x) const {
