@@ -28,8 +28,8 @@ struct Held {
   Structure::Sparse k, m;
   explicit Held(Structure const& s) {
     std::vector<Index> const free = ReferenceConditions::clamped().free_coordinates(s);
-    k = detail::selected(s.stiffness, free, free);
-    m = detail::selected(s.mass_matrix(), free, free);
+    k = submatrix(s.stiffness, free, free);
+    m = submatrix(s.mass_matrix(), free, free);
   }
 };
 

@@ -90,20 +90,20 @@ class DecoupledStress {
     Structure::Beam const& beam = structure.beams[std::size_t(index)];
     bool const last = xi == 1.0;
     Vec3 const start = structure.nodes[std::size_t(beam.a)], cut = start + beam.axes.col(0) * (xi * beam.length);
-    auto const whole = detail::mass_points(structure, beam), before = detail::mass_points_before(structure, beam, xi);
-    detail::Twelve const k = detail::beam_stiffness(beam, detail::section_stiffness(beam.constants));
+    auto const whole = mass_points(structure, beam), before = detail::mass_points_before(structure, beam, xi);
+    BeamMatrix const k = beam_stiffness(beam, section_stiffness(beam.constants));
     std::vector<Vec6> out;
     for (std::size_t i = 0; i < times().size(); ++i) {
       Local const at = local(beam, i);
       Vec<double, 12> ends = k * at.e;  // what the rest of the structure exerts on the beam's ends
-      for (detail::MassPoint const& g : whole) {
+      for (MassPoint const& g : whole) {
         auto const [a, ay, az] = acceleration(at, g, beam);
         ends += g.m * (g.axis.transpose() * a) + g.my * (g.y.transpose() * ay) + g.mz * (g.z.transpose() * az);
       }
       for (StructureLoads::Load const& l : loads_.loads(i))
         if (l.beam == index) ends -= loads_.on_beam(l);
       Vec3 force = ends.head<3>(), moment = ends.segment<3>(3) + (start - cut).cross(ends.head<3>());
-      for (detail::MassPoint const& g : before) {
+      for (MassPoint const& g : before) {
         auto const [a, ay, az] = acceleration(at, g, beam);
         force -= g.m * a;
         moment -= (g.at - cut).cross(g.m * a) + g.my * beam.axes.col(1).cross(ay) + g.mz * beam.axes.col(2).cross(az);
@@ -164,15 +164,15 @@ class DecoupledStress {
   void settle(ReferenceConditions const& frame, MatX const& loads) {
     Structure const& s = loads_.structure();
     std::vector<Index> free = frame.free_coordinates(s);
-    detail::SparseFactor factor(detail::selected(s.stiffness, free, free));
+    SparseFactor factor(submatrix(s.stiffness, free, free));
     if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff())) {
       free = detail::statically_determinate(s, frame).free_coordinates(s);
-      detail::factor_positive(factor, detail::selected(s.stiffness, free, free),
-                              "the structure moves without deformation, though it is held.");
+      factor_positive(factor, submatrix(s.stiffness, free, free),
+                      "the structure moves without deformation, though it is held.");
     }
     MatX rhs(Index(free.size()), loads.cols());
     for (std::size_t i = 0; i < free.size(); ++i) rhs.row(Index(i)) = loads.row(free[i]);
-    e_ = detail::scattered(factor.solve(rhs), free, s.size());
+    e_ = scatter_rows(factor.solve(rhs), free, s.size());
   }
 
   std::pair<Index, double> locate(double s, Index bar) const {
@@ -202,7 +202,7 @@ class DecoupledStress {
   }
 
   /// Less gravity, at a point of the axis, and its slopes along y and z of the section.
-  std::array<Vec3, 3> acceleration(Local const& x, detail::MassPoint const& g, Structure::Beam const& beam) const {
+  std::array<Vec3, 3> acceleration(Local const& x, MassPoint const& g, Structure::Beam const& beam) const {
     Mat3 const& B = x.motion.B;
     std::array<Vec3, 3> a{x.motion.b + B * g.at, B * beam.axes.col(1), B * beam.axes.col(2)};
     Mat<double, 3, 12> const* const shapes[3] = {&g.axis, &g.y, &g.z};
@@ -223,7 +223,7 @@ inline DecoupledStress DecoupledStress::quasi_static(Structure structure, BodyRe
   DecoupledStress out(StructureLoads(std::move(structure), record, options));
   Structure const& s = out.loads_.structure();
   std::vector<Index> const free = frame.free_coordinates(s);
-  if (Index(free.size()) < s.size()) detail::require_held(detail::selected(s.stiffness, free, free));
+  if (Index(free.size()) < s.size()) require_held(submatrix(s.stiffness, free, free));
   out.settle(frame, out.loads_.nodal());
   return out;
 }

@@ -85,7 +85,7 @@ class StructureLoads {
     }
     for (Load const& load : loads_[k])
       if (load.beam >= 0) {
-        detail::add_entries(beam(load), on_beam(load), q);
+        add_entries(beam(load), on_beam(load), q);
       } else {
         q.segment<3>(s_.per_node * load.node) += load.f;
         if (s_.per_node == 6) q.segment<3>(6 * load.node + 3) += load.m;
@@ -104,8 +104,8 @@ class StructureLoads {
   Vec<double, 12> on_beam(Load const& load) const {
     BeamShapes const shapes(load.xi, beam(load).length);
     Mat3 const& axes = beam(load).axes;
-    return detail::in_body_axes(shapes.axis, axes).transpose() * load.f +
-           detail::in_body_axes(shapes.rotation, axes).transpose() * load.m;
+    return in_body_axes(shapes.axis, axes).transpose() * load.f +
+           in_body_axes(shapes.rotation, axes).transpose() * load.m;
   }
   Structure::Beam const& beam(Load const& load) const { return s_.beams[std::size_t(load.beam)]; }
 

@@ -51,11 +51,11 @@ struct SpectraModes {
   /// y = K⁻¹ x, as Spectra wants it.
   struct Inverse {
     using Scalar = double;
-    detail::SparseFactor factor;
+    SparseFactor factor;
     Index size;
 
     explicit Inverse(Structure::Sparse const& k) : size(k.rows()) {
-      detail::factor_positive(
+      factor_positive(
           factor, k,
           "SpectraModes needs a positive definite stiffness; hold the structure, or use free_interface_modes.");
     }
@@ -70,7 +70,7 @@ struct SpectraModes {
   /// No frequency below the last is missing.
   static bool complete(VecX const& squared, Structure::Sparse const& k, Structure::Sparse const& m) {
     double const sigma = squared[squared.size() - 1] * (1.0 - 1e-6);
-    detail::SparseFactor const factor(k - sigma * m);
+    SparseFactor const factor(k - sigma * m);
     return factor.info() == Eigen::Success &&
            (factor.vectorD().array() < 0.0).count() <= (squared.array() < sigma).count();
   }

@@ -10,7 +10,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <polybody/bodies/ffr/structure.hpp>
+#include <polybody/bodies/ffr/structure_factor.hpp>
 
 namespace polybody {
 
@@ -91,47 +91,12 @@ struct DenseModes {
 
 namespace detail {
 
-/// Rows and columns of a sparse matrix.
-inline Structure::Sparse selected(Structure::Sparse const& m, std::vector<Index> const& rows,
-                                  std::vector<Index> const& columns) {
-  std::vector<int> row(std::size_t(m.rows()), -1);
-  for (std::size_t i = 0; i < rows.size(); ++i) row[std::size_t(rows[i])] = int(i);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t j = 0; j < columns.size(); ++j)
-    for (Structure::Sparse::InnerIterator it(m, columns[j]); it; ++it)
-      if (row[std::size_t(it.row())] >= 0) entries.emplace_back(row[std::size_t(it.row())], int(j), it.value());
-  Structure::Sparse out(Index(rows.size()), Index(columns.size()));
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
-
-inline MatX scattered(MatX const& shapes, std::vector<Index> const& free, Index size) {
-  MatX out = MatX::Zero(size, shapes.cols());
-  for (std::size_t i = 0; i < free.size(); ++i) out.row(free[i]) = shapes.row(Index(i));
-  return out;
-}
-
 inline void require_count(Index count, Index most) {
   if (count < 1 || count > most)
     throw InvalidInput("Ffr: " + std::to_string(count) + " modes are asked for, but the model has 1 to " +
                        std::to_string(most) + " to offer.");
 }
 
-using SparseFactor = Eigen::SimplicialLDLT<Structure::Sparse>;
-
-/// \throws InvalidInput with `what` unless m is positive definite.
-inline void factor_positive(SparseFactor& factor, Structure::Sparse const& m, std::string const& what) {
-  factor.compute(m);
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
-    throw InvalidInput("Ffr: " + what);
-}
-inline void require_held(Structure::Sparse const& k) {
-  SparseFactor factor;
-  factor_positive(
-      factor, k,
-      "the stiffness that remains under the reference conditions is not positive definite. Fix enough coordinates "
-      "to keep the structure from moving as a whole, or use free_interface_modes.");
-}
 inline void require_mass(Structure::Sparse const& m) {
   SparseFactor factor;
   factor_positive(factor, m, "the structure's mass matrix is not positive definite.");
@@ -143,8 +108,8 @@ inline void require_mass(Structure::Sparse const& m) {
 /// as a whole.
 inline MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = ReferenceConditions::clamped()) {
   std::vector<Index> const free = frame.free_coordinates(s);
-  detail::require_held(detail::selected(s.stiffness, free, free));
-  return detail::scattered(MatX::Identity(Index(free.size()), Index(free.size())), free, s.size());
+  require_held(submatrix(s.stiffness, free, free));
+  return scatter_rows(MatX::Identity(Index(free.size()), Index(free.size())), free, s.size());
 }
 
 /// The `count` lowest modes of the structure held by the reference conditions. \throws InvalidInput as above, and for a
@@ -154,11 +119,10 @@ MatX held_modes(Structure const& s, Index count, ReferenceConditions const& fram
                 Eigensolver const& solve = {}) {
   std::vector<Index> const free = frame.free_coordinates(s);
   detail::require_count(count, Index(free.size()));
-  Structure::Sparse const k = detail::selected(s.stiffness, free, free),
-                          m = detail::selected(s.mass_matrix(), free, free);
-  detail::require_held(k);
+  Structure::Sparse const k = submatrix(s.stiffness, free, free), m = submatrix(s.mass_matrix(), free, free);
+  require_held(k);
   detail::require_mass(m);
-  return detail::scattered(solve(k, m, count).shapes, free, s.size());
+  return scatter_rows(solve(k, m, count).shapes, free, s.size());
 }
 
 /// The `count` lowest modes of the free structure that deform it. The frame follows the mean motion: momentum and
@@ -171,13 +135,12 @@ MatX free_interface_modes(Structure const& s, Index count,
   std::vector<Index> const free = frame.free_coordinates(s);
   int const rigid = frame.rigid_motions();
   detail::require_count(count, Index(free.size()) - rigid);
-  Structure::Sparse const k = detail::selected(s.stiffness, free, free),
-                          m = detail::selected(s.mass_matrix(), free, free);
+  Structure::Sparse const k = submatrix(s.stiffness, free, free), m = submatrix(s.mass_matrix(), free, free);
   detail::require_mass(m);
   // K alone is singular: with a shift of the size of a low frequency it is not, and the modes stay the same.
   double const shift = 1e-3 * k.diagonal().sum() / m.diagonal().sum();
   LowestModes const modes = solve(Structure::Sparse(k + shift * m), m, count + rigid);
-  return detail::scattered(modes.shapes.rightCols(count), free, s.size());
+  return scatter_rows(modes.shapes.rightCols(count), free, s.size());
 }
 
 /// Craig & Bampton [1968]: the static shapes of unit displacements of the boundary nodes, and the `count` lowest modes
@@ -206,18 +169,17 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
       outer.push_back(i);
   }
   if (count != 0) detail::require_count(count, Index(inner.size()));
-  Structure::Sparse const kii = detail::selected(s.stiffness, inner, inner),
-                          mii = detail::selected(s.mass_matrix(), inner, inner);
+  Structure::Sparse const kii = submatrix(s.stiffness, inner, inner), mii = submatrix(s.mass_matrix(), inner, inner);
   MatX shapes = MatX::Zero(s.size(), Index(outer.size()) + count);
   for (std::size_t j = 0; j < outer.size(); ++j) shapes(outer[j], Index(j)) = 1.0;
   if (!inner.empty()) {
-    detail::SparseFactor factor;
-    detail::factor_positive(factor, kii, "the stiffness between the boundary nodes is not positive definite.");
-    MatX const follow = -factor.solve(MatX(detail::selected(s.stiffness, inner, outer)));
-    shapes.leftCols(Index(outer.size())) += detail::scattered(follow, inner, s.size());
+    SparseFactor factor;
+    factor_positive(factor, kii, "the stiffness between the boundary nodes is not positive definite.");
+    MatX const follow = -factor.solve(MatX(submatrix(s.stiffness, inner, outer)));
+    shapes.leftCols(Index(outer.size())) += scatter_rows(follow, inner, s.size());
     if (count > 0) {
       detail::require_mass(mii);
-      shapes.rightCols(count) = detail::scattered(solve(kii, mii, count).shapes, inner, s.size());
+      shapes.rightCols(count) = scatter_rows(solve(kii, mii, count).shapes, inner, s.size());
     }
   }
   if (!mean_axes) return shapes;

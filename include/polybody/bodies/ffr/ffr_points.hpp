@@ -78,11 +78,11 @@ class FfrPoints {
     BeamShapes const shapes(xi, beam->length);
     FfrPoint p;
     p.u = s_.nodes[std::size_t(beam->a)] + beam->axes * Vec3(inside - beam->start, y, z);
-    Mat<double, 3, 12> const spread = detail::in_body_axes(shapes.axis + y * shapes.by_y + z * shapes.by_z, beam->axes);
+    Mat<double, 3, 12> const spread = in_body_axes(shapes.axis + y * shapes.by_y + z * shapes.by_z, beam->axes);
     p.S = of_nodes(*beam, spread);
-    p.R = of_nodes(*beam, detail::in_body_axes(shapes.rotation, beam->axes));
-    p.strain = of_nodes(*beam, detail::by_body_axes<4>(shapes.strain, beam->axes));
-    p.stiffness = detail::section_stiffness(beam->constants);
+    p.R = of_nodes(*beam, in_body_axes(shapes.rotation, beam->axes));
+    p.strain = of_nodes(*beam, by_body_axes<4>(shapes.strain, beam->axes));
+    p.stiffness = section_stiffness(beam->constants);
     p.y = y;
     p.z = z;
     if (axial_)
@@ -132,7 +132,7 @@ class FfrPoints {
   void draw(FfrPoint& p, bool within, Load&& load) const {
     for (int k = 0; k < 3; ++k) {
       VecX nodal = VecX::Zero(s_.size());
-      for (Structure::Beam const& b : s_.beams) detail::add_entries(b, load(k, b), nodal);
+      for (Structure::Beam const& b : s_.beams) add_entries(b, load(k, b), nodal);
       Structure::Sparse const m = (*axial_)(nodal, [&](Structure::Beam const& b) {
         return within ? load(k, b) : Vec<double, 12>(Vec<double, 12>::Zero());
       });

@@ -1,0 +1,146 @@
+#pragma once
+/// \file
+/// One beam of a structure: shape functions, stiffness and points of mass of the space beam element of thesis App. A
+/// [Przemieniecki 1968, §5.6, §11.4], in the axes of the body that it is part of.
+///
+/// Not in polybody.hpp: Eigen's sparse module would cost every program seconds to compile.
+
+#include <polybody/bodies/ffr/structure.hpp>
+#include <polybody/math/quadrature.hpp>
+
+namespace polybody {
+
+/// Shape functions of Eq. A.1, in the element's axes with nodal coordinates (u, v, w, θx, θy, θz) at either end: the
+/// displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, the section's rotation `rotation` e.
+struct BeamShapes {
+  Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();
+  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();
+  Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();
+  Mat<double, 4, 12> strain =
+      Mat<double, 4, 12>::Zero();  ///< rows: axial strain, torsion, curvature about y, about z [1/m]
+
+  BeamShapes(double xi, double l) {
+    double const x = xi, h[4] = {1 - 3 * x * x + 2 * x * x * x, (x - 2 * x * x + x * x * x) * l,
+                                 3 * x * x - 2 * x * x * x, (x * x * x - x * x) * l};
+    double const d[4] = {6 * (x * x - x) / l, 1 - 4 * x + 3 * x * x, 6 * (x - x * x) / l, 3 * x * x - 2 * x};
+    double const c[4] = {(12 * x - 6) / (l * l), (6 * x - 4) / l, (6 - 12 * x) / (l * l), (6 * x - 2) / l};
+    for (int end = 0; end < 2; ++end) {
+      int const u = 6 * end, v = u + 1, w = u + 2, tx = u + 3, ty = u + 4, tz = u + 5, i = 2 * end;
+      double const linear = end == 0 ? 1 - x : x, slope = end == 0 ? -1 / l : 1 / l;
+      axis(0, u) = linear;
+      axis(1, v) = axis(2, w) = h[i];
+      axis(1, tz) = h[i + 1];
+      axis(2, ty) = -h[i + 1];
+      rotation(0, tx) = linear;  // (θx, −w′, v′)
+      rotation(1, w) = -d[i];
+      rotation(1, ty) = d[i + 1];
+      rotation(2, v) = d[i];
+      rotation(2, tz) = d[i + 1];
+      strain(0, u) = strain(1, tx) = slope;  // (u′, θx′, −w″, v″)
+      strain(2, w) = -c[i];
+      strain(2, ty) = c[i + 1];
+      strain(3, v) = c[i];
+      strain(3, tz) = c[i + 1];
+    }
+    by_y.row(0) = -rotation.row(2);  // θ × (0, y, z)
+    by_y.row(2) = rotation.row(0);
+    by_z.row(0) = rotation.row(1);
+    by_z.row(1) = -rotation.row(0);
+  }
+};
+
+// What follows runs once, when a body is made: plain loops, for they compile fast.
+
+/// A matrix by the nodal coordinates of a beam's two ends, in the body's axes.
+using BeamMatrix = Mat<double, 12, 12>;
+
+/// m from the element's axes to the body's in its columns: m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
+template <int rows>
+Mat<double, rows, 12> by_body_axes(Mat<double, rows, 12> const& m, Mat3 const& axes) {
+  Mat<double, rows, 12> out;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < 12; ++j) {
+      int const block = 3 * (j / 3);
+      out(i, j) = m(i, block) * axes(j % 3, 0) + m(i, block + 1) * axes(j % 3, 1) + m(i, block + 2) * axes(j % 3, 2);
+    }
+  return out;
+}
+/// m from the element's axes to the body's in its columns and rows: C m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
+inline Mat<double, 3, 12> in_body_axes(Mat<double, 3, 12> const& m, Mat3 const& axes) {
+  Mat<double, 3, 12> const t = by_body_axes<3>(m, axes);
+  Mat<double, 3, 12> out;
+  for (int j = 0; j < 12; ++j)
+    for (int i = 0; i < 3; ++i) out(i, j) = axes(i, 0) * t(0, j) + axes(i, 1) * t(1, j) + axes(i, 2) * t(2, j);
+  return out;
+}
+/// Adds the matrix of one beam to the entries of the structure's.
+inline void add_entries(Structure::Beam const& beam, BeamMatrix const& m,
+                        std::vector<Eigen::Triplet<double>>& entries) {
+  auto const dof = [&](int i) { return int(6 * (i < 6 ? beam.a : beam.b) + i % 6); };
+  for (int i = 0; i < 12; ++i)
+    for (int j = 0; j < 12; ++j)
+      if (m(i, j) != 0.0) entries.emplace_back(dof(i), dof(j), m(i, j));
+}
+/// Adds nodal values of one beam to those of the structure (N).
+inline void add_entries(Structure::Beam const& beam, Vec<double, 12> const& x, VecX& sum) {
+  for (int i = 0; i < 12; ++i) sum[6 * (i < 6 ? beam.a : beam.b) + i % 6] += x[i];
+}
+
+/// A point of a beam at a Gauss point, in the body's axes, with its part of ∫ρ, ∫ρy², ∫ρz².
+struct MassPoint {
+  Vec3 at;
+  Mat<double, 3, 12> axis, y, z;
+  double m, my, mz;
+};
+/// The four Gauss points of a beam, which are exact for products of cubics.
+inline std::array<MassPoint, 4> mass_points(Structure const& s, Structure::Beam const& beam) {
+  std::array<MassPoint, 4> points;
+  double const about_z = beam.constants.rotary_inertia, about_y = beam.constants.rotary_inertia_y.value_or(about_z);
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto const& g = gauss<4>[i];
+    BeamShapes const shapes(g.xi, beam.length);
+    double const w = g.weight * beam.length;
+    points[i] = {s.nodes[std::size_t(beam.a)] + beam.axes.col(0) * (g.xi * beam.length),
+                 in_body_axes(shapes.axis, beam.axes),
+                 in_body_axes(shapes.by_y, beam.axes),
+                 in_body_axes(shapes.by_z, beam.axes),
+                 w * beam.constants.mass_per_length,
+                 w * about_z,
+                 w * about_y};
+  }
+  return points;
+}
+
+namespace detail {
+/// sum += w aᵀ b for a row a and a row b.
+template <class A, class B>
+void add_product(double w, A const& a, int row_a, B const& b, int row_b, BeamMatrix& sum) {
+  for (int j = 0; j < 12; ++j)
+    for (int i = 0; i < 12; ++i) sum(i, j) += w * a(row_a, i) * b(row_b, j);
+}
+}  // namespace detail
+
+/// ∫ Bᵀ diag(c) B: with two Gauss points the closed form of Eq. A.5 [Przemieniecki 1968, Eq. 5.116 without shear].
+inline BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
+  BeamMatrix k = BeamMatrix::Zero();
+  for (auto const& g : gauss<2>) {
+    Mat<double, 4, 12> const b = by_body_axes<4>(BeamShapes(g.xi, beam.length).strain, beam.axes);
+    for (int i = 0; i < 4; ++i) detail::add_product(g.weight * beam.length * c[i], b, i, b, i, k);
+  }
+  return k;
+}
+/// (EA, GJ, EI_y, EI_z) of a section: its stiffness against axial strain, torsion and bending about y and z.
+inline Vec4 section_stiffness(BarConstants const& c) { return {c.EA, c.GJ, c.EI_y.value_or(c.EI), c.EI}; }
+
+/// ∫ N (v′ᵀv′ + w′ᵀw′) dx: what an axial force N(ξ) = n₀ + n₁ ξ + n₂ ξ² [N] adds to the stiffness.
+inline BeamMatrix axial_force_stiffness(Structure::Beam const& beam, double n0, double n1 = 0.0, double n2 = 0.0) {
+  BeamMatrix k = BeamMatrix::Zero();
+  for (auto const& g : gauss<4>) {
+    Mat<double, 3, 12> const slopes = by_body_axes<3>(BeamShapes(g.xi, beam.length).rotation, beam.axes);
+    double const n = n0 + g.xi * (n1 + g.xi * n2);
+    for (int i = 1; i < 3; ++i) detail::add_product(g.weight * beam.length * n, slopes, i, slopes, i, k);
+  }
+  return k;
+}
+
+}  // namespace polybody
