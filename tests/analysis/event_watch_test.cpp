@@ -23,12 +23,13 @@ struct Clock {
   bool step(double h) {
     State const before = x;
     x.t += h;
-    auto const again = [this](State& s, double length) {
+    EventWatch::Step const again = [this](State& s, double length) {
       ++steps;
       s.t += length;
       return length;
     };
-    return watch.meet(events, before, x, h, seen(), again, report);
+    EventWatch::Seen const same = seen();
+    return watch.meet(events, {before, h, same, again}, x, report);
   }
 };
 
@@ -87,11 +88,11 @@ TEST(EventWatch, ShowsEventsWhatTheUserSees) {
   RunReport report;
   State const before = x;
   x.t = 0.8;
-  auto const step = [](State& s, double h) {
+  EventWatch::Step const again = [](State& s, double h) {
     s.t += h;
     return h;
   };
-  EXPECT_TRUE(watch.meet(events, before, x, 0.8, twice, step, report));
+  EXPECT_TRUE(watch.meet(events, {before, 0.8, twice, again}, x, report));
   EXPECT_NEAR(x.t, 0.5, 1e-10);
 }
 

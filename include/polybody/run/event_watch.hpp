@@ -6,17 +6,24 @@
 
 namespace polybody {
 
-/// What the events of a run know of it. A step is asked for through functions, so that this is compiled once for all
-/// models.
+/// On which side of zero the events of a run stand. A step is taken through a function, so that this is compiled once
+/// for all models.
 class EventWatch {
  public:
   /// The user's state of a stepped one.
   using Seen = std::function<State const&(State const&)>;
-  /// A step from a state, of at most so many seconds; the state moves along. Returns the length taken.
+  /// Takes a step from a state, of at most so many seconds; the state moves along. Returns the length taken.
   using Step = std::function<double(State&, double)>;
+  /// A step that a run has taken.
+  struct Taken {
+    State const& before;
+    double length;  ///< [s]
+    Seen const& seen;
+    Step const& again;  ///< takes another one from a state
+  };
 
   EventWatch() = default;
-  /// Of events that stand on these sides.
+  /// Events that stand on these sides.
   explicit EventWatch(std::vector<int> sides) : sides_(std::move(sides)) {}
   std::vector<int> const& sides() const { return sides_; }
 
@@ -26,31 +33,22 @@ class EventWatch {
     for (Event const& event : events) sides_.push_back(side(event, x, seen));
   }
 
-  /// Ends a step of length `taken` from `before` to x at the first event within it, by bisection on its length; the
-  /// report hears which. Returns whether there was one.
-  bool meet(std::vector<Event> const& events, State const& before, State& x, double taken, Seen const& seen,
-            Step const& step, RunReport& report) {
-    auto const after = [&](double h) {
-      State trial = before;
-      while (trial.t < before.t + h) {
-        double const left = before.t + h - trial.t;
-        if (step(trial, left) == left) break;
-      }
-      return trial;
-    };
+  /// Ends a step to x at the first event within it, by bisection on its length; the report is told which. Returns
+  /// whether there was one.
+  bool meet(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
     auto const passed = [&](std::size_t i, State const& at) {
-      return sides_[i] != 0 && side(events[i], at, seen) != sides_[i];
+      return sides_[i] != 0 && side(events[i], at, step.seen) != sides_[i];
     };
     State first = x;
     bool met = false;
     for (std::size_t i = 0; i < sides_.size(); ++i) {
       if (!passed(i, x)) continue;
       met = true;
-      double lo = 0.0, hi = taken;
+      double lo = 0.0, hi = step.length;
       while (hi - lo > events[i].tolerance) {
         double const mid = 0.5 * (lo + hi);
         if (mid <= lo || mid >= hi) break;
-        State trial = after(mid);
+        State trial = after(step, mid);
         if (!passed(i, trial)) {
           lo = mid;
           continue;
@@ -65,12 +63,21 @@ class EventWatch {
         report.events.push_back({events[i].name, x.t});
         report.stopped = report.stopped || events[i].stops;
       }
-      sides_[i] = side(events[i], x, seen);
+      sides_[i] = side(events[i], x, step.seen);
     }
     return met;
   }
 
  private:
+  /// The state h seconds after the beginning of a step.
+  static State after(Taken const& step, double h) {
+    State x = step.before;
+    while (x.t < step.before.t + h) {
+      double const left = step.before.t + h - x.t;
+      if (step.again(x, left) == left) break;
+    }
+    return x;
+  }
   /// The sign of the event's value.
   static int side(Event const& event, State const& x, Seen const& seen) {
     double const y = event.value(seen(x));

@@ -32,9 +32,9 @@ class Simulation {
   Simulation(Simulation const&) = delete;
   Simulation& operator=(Simulation const&) = delete;
 
-  /// What it takes to go on from here with `resume`. Factorisations and the like, which a run keeps from step to step,
-  /// are no part of it: the run itself throws them away now, as if it were resumed. So both go on with the same bits.
-  /// Where bits matter, let the run that is not interrupted take its snapshots at the same times.
+  /// What `resume` needs to go on from here. Factorisations, and whatever else a run keeps from step to step, are not
+  /// part of it: this run drops them now, so that it and a resumed run go on with the same bits. To get the bits of an
+  /// interrupted run from one that is not interrupted, take snapshots at the same times.
   RunSnapshot snapshot();
 
   State const& state() const { return *x_; }
@@ -111,7 +111,7 @@ class Simulation {
   /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep
   /// to the joints.
   void narrow_start();
-  /// Warns of a step that is too long for compliant joints.
+  /// Adds a warning to the report where the step is too long for compliant joints.
   void warn(ForwardDynamics<Solver>& forward, State const& x) {
     if constexpr (NamesStableStep<I>) {
       std::string const warning = warn_of_step<I>(whole(), forward, x, h_);
@@ -152,8 +152,11 @@ class Simulation {
     };
   }
   bool meet_events(State const& before, double taken) {
-    auto const step = [this](State& x, double h) { return integrator_.step(*system_, x, h, workspace_).taken; };
-    return watch_.meet(options_.events, before, stepped(), taken, seen(), step, report_);
+    EventWatch::Step const again = [this](State& x, double h) {
+      return integrator_.step(*system_, x, h, workspace_).taken;
+    };
+    EventWatch::Seen const shown = seen();
+    return watch_.meet(options_.events, {before, taken, shown, again}, stepped(), report_);
   }
 
   std::unique_ptr<System> system_, whole_;  // workspaces refer to it
@@ -216,7 +219,7 @@ RunSnapshot Simulation<I, Solver>::snapshot() {
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::advance() {
   auto const [target, h, lands, jumps] = plan_.next(stepped().t, h_);
-  bool const crumb = h < 0.01 * h_;  // one is left all the same: after a corner or an event
+  bool const crumb = h < 0.01 * h_;  // a tiny step, left over after a corner or an event
   State before;
   if (jumps || crumb || options_.minimum_norm || !options_.events.empty()) before = stepped();
   StepReport const report = step(h, options_.halvings);

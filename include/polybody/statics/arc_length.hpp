@@ -6,6 +6,7 @@
 ///   a = −K⁻¹ r,  b = −K⁻¹ r_p,  Δp = −t·a / (t·b + t_p),  Δ = a + b Δp.
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include <polybody/solvers/default_solver.hpp>
@@ -29,6 +30,94 @@ struct PathPoint {
   State x;
 };
 
+namespace detail {
+
+/// The equations of a path at a point, and the tangent (t, t_p) that a step sets out along.
+template <class Solver>
+class PathEquations {
+ public:
+  /// `start` is in equilibrium without loads. \throws LinearSolverSingular where the path has no tangent there.
+  PathEquations(System& system, PathPoint const& start)
+      : system_(system), nv_(system.speeds()), rows_(system.rows()), stiffness_(evaluated(start), start.x.lambda) {
+    if (!solve(start) || !(b_.head(nv_).norm() > 0.0))
+      throw LinearSolverSingular(
+          "equilibrium_path: there is no path to follow from here: the stiffness is singular at the start, or "
+          "nothing is loaded.");
+    c2_ = b_.head(nv_).squaredNorm();
+    t_ = b_;
+    turn();
+  }
+
+  /// The tangent where the equations were solved last, of unit length and onwards.
+  void turn() {
+    double tp = 1.0 / std::sqrt(1.0 + b_.head(nv_).squaredNorm() / c2_);
+    next_ = b_ * tp;
+    if (next_.head(nv_).dot(t_.head(nv_)) / c2_ + tp * tp_ < 0.0) {
+      next_ = -next_;
+      tp = -tp;
+    }
+    t_.swap(next_);
+    tp_ = tp;
+  }
+  /// Moves a point along the tangent.
+  void predict(PathPoint& point, double length) { move(point, VecX(length * t_), length * tp_); }
+  /// Newton's corrections of a point in the plane normal to the tangent: how many it takes; −1 where they do not
+  /// converge, or K is singular.
+  int correct(PathPoint& trial, ArcLengthOptions const& options) {
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < options.max_iterations; ++k) {
+      if (!solve(trial)) return -1;
+      double const dp = -(t_.head(nv_).dot(a_.head(nv_)) / c2_) / (t_.head(nv_).dot(b_.head(nv_)) / c2_ + tp_);
+      VecX const d = a_ + b_ * dp;
+      double const size = d.head(nv_).cwiseAbs().maxCoeff() / (1.0 + trial.x.q.cwiseAbs().maxCoeff());
+      if (!(size < 1e3) || (k > 3 && size > before)) return -1;
+      move(trial, d, dp);
+      if (size <= options.tolerance) return solve(trial) ? k + 1 : -1;
+      before = size;
+    }
+    return -1;
+  }
+
+ private:
+  System& evaluated(PathPoint const& at) {
+    system_.evaluate(at.x.q, at.x.v, at.x.t);
+    return system_;
+  }
+  /// a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false where K is singular. \throws NonFinite.
+  bool solve(PathPoint const& at) {
+    evaluated(at);
+    for (auto const& [factor, out] : {std::pair{0.0, &r0_}, std::pair{1.0, &r1_}, std::pair{at.load_factor, &r_}}) {
+      system_.load_factor = factor;
+      system_.residual(at.x.a, at.x.lambda, *out);
+    }
+    system_.violation(phi_);
+    if (!r_.allFinite() || !phi_.allFinite())
+      throw NonFinite("equilibrium_path: a force is not finite at load factor " + number(at.load_factor) + ".");
+    if (stiffness_.factor(at.x.lambda) >= 0) return false;
+    stiffness_.solve(-r_, -phi_, a_);
+    stiffness_.solve(r0_ - r1_, VecX::Zero(rows_), b_);
+    return a_.allFinite() && b_.allFinite();
+  }
+  void move(PathPoint& point, VecX const& by, double load) {
+    VecX const dq = by.head(nv_);
+    q_ = point.x.q;
+    system_.plus(point.x.q, dq, q_);
+    point.x.q.swap(q_);
+    point.x.lambda += by.tail(rows_);
+    point.load_factor += load;
+  }
+
+  System& system_;
+  Index nv_, rows_;
+  StaticTangent<Solver> stiffness_;
+  VecX r_ = VecX::Zero(nv_), r0_ = r_, r1_ = r_, phi_ = VecX::Zero(rows_), q_;
+  VecX a_ = VecX::Zero(nv_ + rows_), b_ = a_;
+  VecX t_ = a_, next_ = a_;  ///< (nv + rows)
+  double tp_ = 1.0, c2_ = 1.0;
+};
+
+}  // namespace detail
+
 /// Follows the path from x, in equilibrium without loads, until `done(point)` or `options.points`. Lengths are measured
 /// by |dq|²/c² + dp², c = |dq/dp| at the start. \throws NewtonStalled naming the load factor where steps have become
 /// too short, LinearSolverSingular where not even the start has a tangent, NonFinite.
@@ -37,73 +126,17 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
                                         std::function<bool(PathPoint const&)> const& done = {}) {
   require_positive(options.step, "equilibrium_path: the step");
   require_positive(options.smallest, "equilibrium_path: the smallest step");
-  Index const nv = system.speeds(), rows = system.rows();
   PathPoint now{0.0, start};
   now.x.v.setZero();
   now.x.a.setZero();
-  system.evaluate(now.x.q, now.x.v, now.x.t);
-  StaticTangent<Solver> stiffness(system, now.x.lambda);
-
-  VecX r(nv), r0(nv), r1(nv), phi(rows), a(nv + rows), b(nv + rows), q;
-  // a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false where K is singular.
-  auto const solve = [&](PathPoint const& at) {
-    system.evaluate(at.x.q, at.x.v, at.x.t);
-    for (auto const& [factor, out] : {std::pair{0.0, &r0}, std::pair{1.0, &r1}, std::pair{at.load_factor, &r}}) {
-      system.load_factor = factor;
-      system.residual(at.x.a, at.x.lambda, *out);
-    }
-    system.violation(phi);
-    if (!r.allFinite() || !phi.allFinite())
-      throw NonFinite("equilibrium_path: a force is not finite at load factor " + number(at.load_factor) + ".");
-    if (stiffness.factor(at.x.lambda) >= 0) return false;
-    stiffness.solve(-r, -phi, a);
-    stiffness.solve(r0 - r1, VecX::Zero(rows), b);
-    return a.allFinite() && b.allFinite();
-  };
-  auto const move = [&](PathPoint& point, VecX const& by, double load) {
-    VecX const dq = by.head(nv);
-    q = point.x.q;
-    system.plus(point.x.q, dq, q);
-    point.x.q.swap(q);
-    point.x.lambda += by.tail(rows);
-    point.load_factor += load;
-  };
-
-  if (!solve(now) || !(b.head(nv).norm() > 0.0))
-    throw LinearSolverSingular(
-        "equilibrium_path: there is no path to follow from here: the stiffness is singular at the start, or "
-        "nothing is loaded.");
-  double const c2 = b.head(nv).squaredNorm();
-  auto const tangent = [&](VecX const& before, double before_p, VecX& t) {  // of unit length, onwards
-    double tp = 1.0 / std::sqrt(1.0 + b.head(nv).squaredNorm() / c2);
-    t = b * tp;
-    if (t.head(nv).dot(before.head(nv)) / c2 + tp * before_p < 0.0) {
-      t = -t;
-      tp = -tp;
-    }
-    return tp;
-  };
+  detail::PathEquations<Solver> equations(system, now);
   std::vector<PathPoint> path;
-  VecX t = b, next = b;
-  double tp = tangent(b, 1.0, next), length = std::min(options.step, options.largest);
-  t = next;
+  double length = std::min(options.step, options.largest);
   while (int(path.size()) < options.points) {
     PathPoint trial = now;
-    move(trial, VecX(length * t), length * tp);
-    int iterations = 0;
-    bool converged = false;
-    for (double before = std::numeric_limits<double>::infinity(); iterations < options.max_iterations && !converged;
-         ++iterations) {
-      if (!solve(trial)) break;
-      double const dp = -(t.head(nv).dot(a.head(nv)) / c2) / (t.head(nv).dot(b.head(nv)) / c2 + tp);
-      VecX const d = a + b * dp;
-      double const size = d.head(nv).cwiseAbs().maxCoeff() / (1.0 + trial.x.q.cwiseAbs().maxCoeff());
-      if (!(size < 1e3) || (iterations > 3 && size > before)) break;
-      move(trial, d, dp);
-      converged = size <= options.tolerance;
-      before = size;
-    }
-    if (!converged || !solve(trial)) {
+    equations.predict(trial, length);
+    int const iterations = equations.correct(trial, options);
+    if (iterations < 0) {
       length *= 0.5;
       if (length < options.smallest)
         throw NewtonStalled("equilibrium_path: Newton's method did not converge beyond load factor " +
@@ -111,8 +144,7 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
                             ". A bifurcation may be near; give the structure an imperfection, or end the path before.");
       continue;
     }
-    tp = tangent(t, tp, next);
-    t = next;
+    equations.turn();
     now = trial;
     path.push_back(now);
     if (done && done(now)) break;

@@ -5,7 +5,7 @@
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/newton.hpp>
-#include <polybody/statics/equilibrium_options.hpp>
+#include <polybody/statics/load_steps.hpp>
 #include <polybody/statics/static_tangent.hpp>
 #include <polybody/system/model_entries.hpp>
 
@@ -24,6 +24,79 @@ bool multipliers_at_rest(System& system, State& x) {
   }
   return true;
 }
+
+/// The equations of `equilibrium` for Newton's method, at a share s of the path.
+template <class Solver>
+struct EquilibriumPath {
+  System& system;
+  StaticTangent<Solver>& tangent;
+  State& trial;
+  double tolerance;
+  double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
+  Index nv = system.speeds(), rows = system.rows(), bad = -1;
+  double first = 0.0, share = 0.0;  ///< p₀, s
+  VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
+
+  /// The path starts at the present place.
+  void begin() {
+    system.evaluate(trial.q, trial.v, trial.t);
+    system.load_factor = 0.0;
+    system.residual(trial.a, trial.lambda, r0);
+    system.load_factor = 1.0;
+    system.residual(trial.a, trial.lambda, r);
+    r -= r0;
+    double const loads = r.squaredNorm();
+    first = loads > 0.0 ? std::clamp(-r0.dot(r) / loads, 0.0, 1.0) : 0.0;
+    r0 += first * r;
+    system.violation(phi0);
+  }
+  void advance(double s) {
+    share = s;
+    system.load_factor = first + s * (1.0 - first);
+  }
+
+  bool evaluate() {
+    system.evaluate(trial.q, trial.v, trial.t);
+    system.residual(trial.a, trial.lambda, r);
+    system.violation(phi);
+    r = (1.0 - share) * r0 - r;
+    phi = (1.0 - share) * phi0 - phi;
+    return r.allFinite() && phi.allFinite();
+  }
+  bool refactor() {
+    bad = tangent.factor(trial.lambda);
+    return bad < 0;
+  }
+  double solve() {
+    tangent.solve(r, phi, y);
+    dq = y.head(nv);
+    Index largest = 0;
+    double const step = dq.cwiseAbs().maxCoeff(&largest), size = trial.q.cwiseAbs().maxCoeff();
+    if (!(step < far && size < far)) {  // nothing but rounding errors resists
+      bad = largest;
+      return std::numeric_limits<double>::infinity();
+    }
+    return step / (tolerance * (1.0 + size));
+  }
+  void apply() {
+    system.plus(trial.q, dq, q);
+    trial.q.swap(q);
+    trial.lambda += y.tail(rows);
+  }
+
+  /// \throws LinearSolverSingular, NonFinite, NewtonStalled as the result says.
+  [[noreturn]] void refuse(NewtonResult result) const {
+    std::string const at = " at load factor " + number(system.load_factor);
+    if (result == NewtonResult::singular)
+      throw LinearSolverSingular("equilibrium: the stiffness is singular" + at + ", first at " +
+                                 system.name_of(std::max<Index>(bad, 0)) +
+                                 ". Hold every body, or pass a limit point another way.");
+    if (result == NewtonResult::not_finite) throw NonFinite("equilibrium: a force is not finite" + at + ".");
+    throw NewtonStalled("equilibrium: Newton's method did not converge" + at +
+                        ". Use more load steps, or start nearer to the solution.");
+  }
+};
+
 }  // namespace detail
 
 /// Moves x (coordinates, multipliers; speeds become zero) into equilibrium at time x.t, from its present place. Every
@@ -39,103 +112,34 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
   trial.a.setZero();
   system.evaluate(trial.q, trial.v, trial.t);
   StaticTangent<Solver> tangent(system, trial.lambda);
-
-  struct Problem {
-    System& system;
-    StaticTangent<Solver>& tangent;
-    State& trial;
-    double tolerance;
-    double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
-    Index nv = system.speeds(), rows = system.rows(), bad = -1;
-    double first = 0.0, share = 0.0;  ///< p₀, s
-    VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r,
-         q = trial.q;
-
-    /// The path starts at the present place.
-    void begin() {
-      system.evaluate(trial.q, trial.v, trial.t);
-      system.load_factor = 0.0;
-      system.residual(trial.a, trial.lambda, r0);
-      system.load_factor = 1.0;
-      system.residual(trial.a, trial.lambda, r);
-      r -= r0;
-      double const loads = r.squaredNorm();
-      first = loads > 0.0 ? std::clamp(-r0.dot(r) / loads, 0.0, 1.0) : 0.0;
-      r0 += first * r;
-      system.violation(phi0);
-    }
-    void advance(double s) {
-      share = s;
-      system.load_factor = first + s * (1.0 - first);
-    }
-    bool evaluate() {
-      system.evaluate(trial.q, trial.v, trial.t);
-      system.residual(trial.a, trial.lambda, r);
-      system.violation(phi);
-      r = (1.0 - share) * r0 - r;
-      phi = (1.0 - share) * phi0 - phi;
-      return r.allFinite() && phi.allFinite();
-    }
-    bool refactor() {
-      bad = tangent.factor(trial.lambda);
-      return bad < 0;
-    }
-    double solve() {
-      tangent.solve(r, phi, y);
-      dq = y.head(nv);
-      Index largest = 0;
-      double const step = dq.cwiseAbs().maxCoeff(&largest), size = trial.q.cwiseAbs().maxCoeff();
-      if (!(step < far && size < far)) {  // nothing but rounding errors resists
-        bad = largest;
-        return std::numeric_limits<double>::infinity();
-      }
-      return step / (tolerance * (1.0 + size));
-    }
-    void apply() {
-      system.plus(trial.q, dq, q);
-      trial.q.swap(q);
-      trial.lambda += y.tail(rows);
-    }
-  } problem{system, tangent, trial, options.tolerance};
-
+  detail::EquilibriumPath<Solver> path{system, tangent, trial, options.tolerance};
+  NewtonOptions const newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
   EquilibriumReport report;
-  NewtonOptions newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
-  double const whole = 1.0 / std::max(options.load_steps, 1);
-  double done = 0.0, part = whole;
+  LoadSteps steps(options);
   bool primed = false;
-  problem.begin();
-  while (done < 1.0) {
+  path.begin();
+  while (!steps.done()) {
     State const before = trial;
-    problem.advance(done + part > 1.0 - 1e-12 ? 1.0 : done + part);
+    path.advance(steps.next());
     bool factored = false;
     double theta = 1.0;
-    NewtonReport const n = newton(problem, newton_options, factored, theta);
+    NewtonReport const n = newton(path, newton_options, factored, theta);
     report.iterations += n.iterations;
     if (n.result == NewtonResult::converged) {
-      done = problem.share;
+      steps.reach_next();
       ++report.parts;
-      part = std::min(2.0 * part, whole);
       continue;
     }
     trial = before;
     if (n.result == NewtonResult::singular && !primed) {
       primed = true;
       if (detail::multipliers_at_rest(system, trial)) {
-        problem.begin();
-        done = 0.0;
+        path.begin();
+        steps.restart();
         continue;
       }
     }
-    part *= 0.5;
-    if (part >= options.smallest_part) continue;
-    std::string const at = " at load factor " + number(system.load_factor);
-    if (n.result == NewtonResult::singular)
-      throw LinearSolverSingular("equilibrium: the stiffness is singular" + at + ", first at " +
-                                 system.name_of(std::max<Index>(problem.bad, 0)) +
-                                 ". Hold every body, or pass a limit point another way.");
-    if (n.result == NewtonResult::not_finite) throw NonFinite("equilibrium: a force is not finite" + at + ".");
-    throw NewtonStalled("equilibrium: Newton's method did not converge" + at +
-                        ". Use more load steps, or start nearer to the solution.");
+    if (!steps.halve()) path.refuse(n.result);
   }
   x = std::move(trial);
   return report;

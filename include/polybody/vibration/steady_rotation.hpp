@@ -16,7 +16,7 @@
 /// Not in polybody.hpp: it needs vibration/modes.hpp.
 
 #include <polybody/solvers/newton.hpp>
-#include <polybody/statics/equilibrium_options.hpp>
+#include <polybody/statics/load_steps.hpp>
 #include <polybody/vibration/modes.hpp>
 
 namespace polybody {
@@ -133,6 +133,53 @@ class TurningFrame {
   MatX gradient_, generator_;
 };
 
+/// The equations of a steady rotation for Newton's method, at a share of the angular velocity.
+template <class = void>  // compiled where it is used
+struct TurningEquilibrium {
+  TurningFrame<> frame;
+  State trial;
+  double tolerance, unit = 1.0;  ///< of the rows, so that their entries are as large as the stiffness
+  Index nv = trial.v.size(), rows = trial.lambda.size();
+  MatX k = {};
+  VecX r = VecX::Zero(nv), phi = VecX::Zero(rows), rhs = VecX::Zero(nv + rows), y = rhs, q = trial.q;
+
+  bool evaluate() {
+    frame.residual(trial.q, trial.lambda, trial.t, r);
+    frame.system.violation(phi);
+    rhs << -r, -phi;
+    return rhs.allFinite();
+  }
+  bool refactor() {
+    k = frame.stiffness(trial);
+    if (!k.allFinite()) return false;
+    double const largest = k.topLeftCorner(nv, nv).cwiseAbs().maxCoeff();
+    unit = largest > 0.0 ? largest : 1.0;
+    k.bottomRows(rows) *= unit;
+    k.rightCols(rows) *= unit;
+    return true;
+  }
+  double solve() {
+    rhs.tail(rows) *= unit;
+    y = smallest_solution(k, rhs, 1e-12);
+    y.tail(rows) *= unit;
+    return y.head(nv).cwiseAbs().maxCoeff() / (tolerance * (1.0 + trial.q.cwiseAbs().maxCoeff()));
+  }
+  void apply() {
+    frame.system.plus(trial.q, y.head(nv), q);
+    trial.q.swap(q);
+    trial.lambda += y.tail(rows);
+  }
+
+  /// \throws NonFinite, NewtonStalled as the result says.
+  [[noreturn]] void refuse(NewtonResult result) const {
+    std::string const at = " at " + number(frame.share) + " of the angular velocity";
+    if (result != NewtonResult::diverged) throw NonFinite("relative_equilibrium: a force is not finite" + at + ".");
+    throw NewtonStalled(
+        "relative_equilibrium: Newton's method did not converge" + at +
+        ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none.");
+  }
+};
+
 }  // namespace detail
 
 /// x turning steadily: v = w(q), a = Γw; everything else stays. \throws InvalidInput for planar bodies about another
@@ -154,66 +201,23 @@ State rotating_state(System& system, State const& x, SteadyRotation const& rotat
 template <class = void>
 EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
-  struct Problem {
-    detail::TurningFrame<> frame;
-    State trial;
-    double tolerance, unit = 1.0;  ///< of the rows, so that their entries are as large as the stiffness
-    Index nv = trial.v.size(), rows = trial.lambda.size();
-    MatX k = {};
-    VecX r = VecX::Zero(nv), phi = VecX::Zero(rows), rhs = VecX::Zero(nv + rows), y = rhs, q = trial.q;
-
-    bool evaluate() {
-      frame.residual(trial.q, trial.lambda, trial.t, r);
-      frame.system.violation(phi);
-      rhs << -r, -phi;
-      return rhs.allFinite();
-    }
-    bool refactor() {
-      k = frame.stiffness(trial);
-      if (!k.allFinite()) return false;
-      double const largest = k.topLeftCorner(nv, nv).cwiseAbs().maxCoeff();
-      unit = largest > 0.0 ? largest : 1.0;
-      k.bottomRows(rows) *= unit;
-      k.rightCols(rows) *= unit;
-      return true;
-    }
-    double solve() {
-      rhs.tail(rows) *= unit;
-      y = detail::smallest_solution(k, rhs, 1e-12);
-      y.tail(rows) *= unit;
-      return y.head(nv).cwiseAbs().maxCoeff() / (tolerance * (1.0 + trial.q.cwiseAbs().maxCoeff()));
-    }
-    void apply() {
-      frame.system.plus(trial.q, y.head(nv), q);
-      trial.q.swap(q);
-      trial.lambda += y.tail(rows);
-    }
-  } problem{.frame = {system, x.q, rotation}, .trial = x, .tolerance = options.tolerance};
-
+  detail::TurningEquilibrium<> problem{.frame = {system, x.q, rotation}, .trial = x, .tolerance = options.tolerance};
+  NewtonOptions const newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
   EquilibriumReport report;
-  double const whole = 1.0 / std::max(options.load_steps, 1);
-  for (double done = 0.0, part = whole; done < 1.0;) {
+  for (LoadSteps steps(options); !steps.done();) {
     State const before = problem.trial;
-    problem.frame.share = done + part > 1.0 - 1e-12 ? 1.0 : done + part;
+    problem.frame.share = steps.next();
     bool factored = false;
     double theta = 1.0;
-    NewtonReport const n =
-        newton(problem, {.max_iterations = options.max_iterations, .always_refactor = true}, factored, theta);
+    NewtonReport const n = newton(problem, newton_options, factored, theta);
     report.iterations += n.iterations;
     if (n.result == NewtonResult::converged) {
-      done = problem.frame.share;
-      part = std::min(2.0 * part, whole);
+      steps.reach_next();
       ++report.parts;
       continue;
     }
     problem.trial = before;
-    part *= 0.5;
-    if (part >= options.smallest_part) continue;
-    std::string const at = " at " + number(problem.frame.share) + " of the angular velocity";
-    if (n.result != NewtonResult::diverged) throw NonFinite("relative_equilibrium: a force is not finite" + at + ".");
-    throw NewtonStalled(
-        "relative_equilibrium: Newton's method did not converge" + at +
-        ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none.");
+    if (!steps.halve()) problem.refuse(n.result);
   }
   problem.frame.require_turning_rows(problem.trial);
   x = rotating_state(system, problem.trial, rotation);
