@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a comparison of formulations found: numbers and histories of each run, and the table of them all.
+/// Results of a comparison of formulations: numbers and histories of each run, and a table of all.
 
 #include <algorithm>
 #include <cmath>
@@ -73,8 +73,8 @@ std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& firs
   return column;
 }
 
-/// What is known of a run at each of its times: violations, energies and the peak joint force, then the outputs. An
-/// output with the name of another history stands in its place.
+/// The quantities known at each time of a run: violations, energies and the peak joint force, then the outputs. An
+/// output with the name of another history replaces it.
 template <class = void>
 std::vector<History> histories(ComparedRun const& run) {
   std::vector<History> all;
@@ -98,9 +98,9 @@ std::vector<History> histories(ComparedRun const& run) {
 
 namespace detail {
 
-/// y(t) in a history with increasing times: the cubic through the two times before and the two behind, near an end
-/// through its four; beyond, the value at the end. Times much closer together than the two about t are passed over:
-/// differences there are rounding errors.
+/// y(t) in a history with increasing times: the cubic through two times before t and two after it, near an end through
+/// the four times there; beyond an end, the value at the end. Times much closer together than the two about t are left
+/// out, as differences there are rounding errors.
 template <class = void>
 double interpolate(std::vector<double> const& times, std::vector<double> const& y, double t) {
   auto const after = std::lower_bound(times.begin(), times.end(), t);

@@ -55,7 +55,7 @@ auto const& output_of(S const& scenario, std::size_t output, std::string const& 
   return scenario.outputs[output];
 }
 
-/// Makes `setting` the step, or the relative tolerance, with which the absolute one goes in proportion.
+/// Makes `setting` the step, or the relative tolerance; the absolute tolerance changes in proportion.
 template <class I>
 void set_accuracy(I& integrator, RunOptions& options, double setting) {
   require_positive(setting, "work_precision: a step or tolerance");
@@ -95,7 +95,7 @@ RecordedOutput reference_run(C const& make_case, F const& formulation, double se
 /// Runs the case once for each setting: the step, or the relative tolerance of an integrator that controls its step.
 /// The error of output y is, with the states of the run at t_k and its end T,
 ///   max_k |y(t_k) − y_ref(t_k)|  for a function of time or a `reference_run`,   |y(T) − y_ref|  for a number.
-/// A step that fails (too long a step, say) ends that run alone and leaves its words in `failure`.
+/// A step that fails, such as one that is too long, ends that run only; `failure` holds the message.
 /// \throws InvalidInput for settings that are not positive, or where there are none, and an output that the case does
 /// not have.
 template <class C, class F>

@@ -14,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Goes through what a snapshot holds, one way for both directions: `archive(x)` writes or reads a number.
+/// Visits all numbers of a snapshot in the same order for writing and reading: `archive(x)` writes or reads one.
 template <class Archive>
 class SnapshotWalk {
  public:
@@ -101,7 +101,7 @@ inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', '
 
 }  // namespace detail
 
-/// Puts a snapshot away; the file appears when it is complete, until then an older one stays:
+/// Writes a snapshot to a file, which replaces an older one when it is complete:
 ///   if (run.report().steps % 1000 == 0) write_checkpoint("out/run.checkpoint", run.snapshot());
 /// and later, in another process,
 ///   auto run = resume(model, x, GeneralizedAlpha{}, options, read_checkpoint("out/run.checkpoint"));

@@ -23,7 +23,7 @@ struct Surface {
   }
 };
 
-/// The volume that a closed surface holds, Σ p₀·(p_i × p_{i+1})/6 over the triangles of its polygons [m³].
+/// The volume inside a closed surface, Σ p₀·(p_i × p_{i+1})/6 over the triangles of its polygons [m³].
 template <class = void>
 double volume(Surface const& surface) {
   double six = 0.0;
@@ -38,8 +38,8 @@ double volume(Surface const& surface) {
   return six / 6.0;
 }
 
-/// The polygon (y, z) around a section, counter-clockwise as seen from +x; a circle as so many sides, the polygon of
-/// its own area.
+/// The polygon (y, z) around a section, counter-clockwise as seen from +x. A circle becomes a polygon of so many sides
+/// and the same area.
 /// \throws InvalidInput for a bar without a section, or fewer than three sides.
 template <class = void>
 std::vector<Vec2> outline(Bar const& bar, int sides = 24) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Rows that repeat others, as a factorisation of [M, Gᵀ; G, 0] drops them: how they hang together and whether they
-/// contradict. By the factorisation that is there anyhow; for a count of its own see run/redundancy.hpp.
+/// Rows that repeat others and that a factorisation of [M, Gᵀ; G, 0] drops: their relations to other rows, and whether
+/// they contradict. This uses the factorisation of a run; run/redundancy.hpp makes one of its own.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 

@@ -26,9 +26,9 @@ struct RunOptions {
   std::vector<double> corners = {};         ///< times at which a step must end, beside those of the drives and loads
   std::vector<Event> events = {};
   double assembly_tolerance = 1e-8;  ///< of the start
-  int halvings = 0;  ///< how often a step whose Newton iteration stalls is halved before the run ends: for impacts
-  bool minimum_norm = false;  ///< every state gets the multipliers of `MinimumNorm`, for a factorisation each
-  int threads = 1;            ///< that share the loops of an evaluation; for large models, results stay the same bits
+  int halvings = 0;                  ///< how often a step whose Newton iteration stalls may be halved, as at impacts
+  bool minimum_norm = false;         ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
+  int threads = 1;  ///< that share the loops of an evaluation; for large models, results stay the same bits
 
   /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
   void check(double start) const {
@@ -46,7 +46,7 @@ struct RunOptions {
   }
 };
 
-/// What a run has cost so far, and which events it met.
+/// The cost of a run so far, and the events that it met.
 struct RunReport {
   long steps = 0;
   long iterations = 0;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A run as it can be put away and taken up again.
+/// A run that can be stored and resumed.
 
 #include <polybody/math/checksum.hpp>
 #include <polybody/run/run_options.hpp>
@@ -8,8 +8,8 @@
 
 namespace polybody {
 
-/// What a snapshot knows its model by: counts of what is stepped, and the names of bodies, joints and forces in their
-/// order. Not masses, lengths or loads.
+/// What identifies the model of a snapshot: the numbers of its unknowns in a step, and the names of bodies, joints and
+/// forces in their order. Masses, lengths and loads are not compared.
 struct ModelIdentity {
   Index coordinates = 0, speeds = 0, rows = 0;
   std::uint64_t names = 0;  ///< checksum
@@ -17,7 +17,7 @@ struct ModelIdentity {
   bool operator==(ModelIdentity const&) const = default;
 };
 
-/// \param stepped the system of the model, or of what policies leave of it
+/// \param stepped the system that a run steps: of the model, or of the unknowns that its policies leave
 template <class = void>
 ModelIdentity identity_of(System const& stepped) {
   std::string names;
@@ -29,7 +29,7 @@ ModelIdentity identity_of(System const& stepped) {
   return {stepped.coordinates(), stepped.speeds(), stepped.rows(), checksum(names)};
 }
 
-/// All that a run needs to go on, beside its model, integrator and options: these must be those of the run.
+/// All that a run needs to go on, except its model, integrator and options, which must be the same.
 struct RunSnapshot {
   ModelIdentity model;
   std::string integrator;  ///< its name

@@ -49,7 +49,7 @@ class CompliantMotion {
   }
 
  private:
-  /// What a joint does to its bodies; blocks come joint by joint.
+  /// Products of the joints' tangents with y; blocks come joint by joint.
   struct JointProducts {
     System const& system;
     VecX const& y;
@@ -106,7 +106,7 @@ class CompliantMotion {
 
 /// A sentence that warns of a step h beyond the limit of integrator I for the stiffness and damping of the compliant
 /// joints at x, or nothing. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of what the
-/// model has: who is warned will blow up, but springs and elastic bodies may ask for less still.
+/// model has: a step that is warned of is unstable; springs and elastic bodies may need a smaller one still.
 template <NamesStableStep I, class Solver>
 std::string warn_of_step(System& system, ForwardDynamics<Solver>& forward, State const& x, double h) {
   bool const compliant = std::any_of(system.data().rows.begin(), system.data().rows.end(),

@@ -19,15 +19,15 @@ class StepPlan {
   };
 
   StepPlan() = default;
-  /// Of a run from `start` to `until` with steps of about `step` [s]; corners outside of it are left out.
+  /// A run from `start` to `until` with steps of about `step` [s]; corners outside of it are left out.
   StepPlan(double start, double until, double step, std::vector<double> corners)
       : until_(until), step_(step), corners_(std::move(corners)) {
     std::erase_if(corners_, [&](double t) { return !(t > start) || !(t <= until); });
     std::sort(corners_.begin(), corners_.end());
   }
 
-  /// The clock at t, which leaves behind the corners up to now and those that only rounding sets apart from it (0.3 and
-  /// 0.1 + 0.2 are one).
+  /// Passes the corners up to t, and those that differ from it by rounding only (0.3 and 0.1 + 0.2 are one). Returns t,
+  /// or the time of the last corner passed or of the end where it is that within rounding.
   double pass(double t) {
     double const crumb = 1e-9 * step_ + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
     while (next_ < corners_.size() && corners_[next_] <= t + crumb) t = std::max(t, corners_[next_++]);
@@ -38,13 +38,14 @@ class StepPlan {
   Next next(double t, double h) const {
     bool const corner = next_ < corners_.size();
     double const target = corner ? corners_[next_] : until_, left = target - t;
-    // rather a longer step than a crumb left over: over its square, rows would be rounding errors
+    // A step may be 1 % longer than asked for, so that no tiny one is left: rows divided by its square would be
+    // rounding errors.
     bool const lands = 1.01 * h >= left;
     return {target, !lands ? h : corner ? until_just_before(target, t) : left, lands, lands && corner};
   }
 
  private:
-  /// A law that changes at a corner still holds its old value just before it: the length of a step that ends there.
+  /// The length of a step that ends just before a corner, where a law still has its old value.
   static double until_just_before(double corner, double t) {
     double h = std::nextafter(corner, t) - t;
     while (t + h >= corner) h = std::nextafter(h, 0.0);

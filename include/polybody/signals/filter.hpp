@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Histories of equally spaced samples by their Fourier sums: a low pass without shift of phase, amplitude spectra; and
-/// making samples equally spaced. Not in polybody.hpp: Eigen's FFT is unsupported there, and few programs need it.
+/// A low pass without phase shift and amplitude spectra of equally spaced samples, by their Fourier sums; resampling at
+/// equal steps. Not in polybody.hpp: Eigen's FFT is in its unsupported modules, and few programs need it.
 
 #include <algorithm>
 #include <complex>
@@ -48,8 +48,8 @@ HalfSpectrum fourier_terms(std::vector<double> const& values) {
 
 }  // namespace detail
 
-/// The samples at t₀, t₀ + step, …, on straight lines between the given ones. What is faster than the new samples can
-/// show folds back: make such a history slow first, or sample closer.
+/// The samples at t₀, t₀ + step, …, linear between the given ones. Frequencies above half of the new sampling rate
+/// alias: take a smaller step for such a history.
 /// \param step [s]  \param largest_gap between given samples, over which a line is drawn [s]; 0: 1.5 steps
 /// \throws InvalidInput for fewer than two samples, NaNs, times that do not rise, a larger gap.
 template <class = void>
@@ -76,13 +76,13 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
   return out;
 }
 
-/// Frequencies up to the cut-off stay as they are, in size and phase, those above go: of the Fourier sum of the whole
+/// Keeps frequencies up to the cut-off in amplitude and phase and removes those above. In the Fourier sum of the whole
 /// record,
 ///   y(t) = Σ_k H(f_k) c_k e^{2πi f_k t},   f_k = k/T,
 /// H is 1 up to the cut-off, 0 above; with a roll-off it falls as ½(1 + cos π(f − f_c)/w) in between.
-/// The sum takes the record as periodic. Where its ends do not meet, a brick wall rings there; `mirrored` takes the
-/// record forth and back as the period, so that the ends meet, though with a kink. A roll-off makes ringing die out
-/// sooner.
+/// The sum takes the record as periodic. Where its ends do not meet, a sharp cut-off rings there; `mirrored` takes the
+/// record and its mirror image as the period, so that the ends meet, though with a kink. A roll-off makes ringing die
+/// out sooner.
 struct LowPass {
   Required<double> cut_off;  ///< f_c [Hz]
   double roll_off = 0.0;     ///< w [Hz]
@@ -95,8 +95,8 @@ struct LowPass {
   }
 };
 
-/// The history without what is faster. The time it takes grows with the largest prime factor of the number of samples:
-/// choose a round number for long records. \param times equally spaced [s]
+/// The history without frequencies above the cut-off. The computing time grows with the largest prime factor of the
+/// number of samples: choose a round number for long records. \param times equally spaced [s]
 /// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above Nyquist's
 /// frequency and for one whose period is longer than the record.
 template <class = void>
@@ -129,17 +129,17 @@ std::vector<double> low_pass(std::span<double const> times, std::span<double con
   return period;
 }
 
-/// A window weighs the samples of a record by where they stand in it, x ∈ [0, 1), before its spectrum is taken.
+/// A window weights the samples of a record by their place in it, x ∈ [0, 1), before the spectrum is taken.
 template <class W>
 concept RecordWindow = requires(double x) {
   { W::weight(x) } -> std::convertible_to<double>;
 };
-/// All alike: exact for what is periodic in the record.
+/// Weight one: exact for what is periodic in the record.
 struct EqualWeights {
   static double weight(double) { return 1.0; }
 };
-/// sin²πx: what is not periodic leaks little beyond its neighbours; an amplitude between two frequencies is read up to
-/// 15 % too low [Harris 1978].
+/// sin²πx: what is not periodic leaks little beyond neighbouring frequencies; an amplitude between two frequencies is
+/// up to 15 % too low [Harris 1978].
 struct HannWindow {
   static double weight(double x) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * x)); }
 };

@@ -14,7 +14,7 @@
 
 namespace polybody {
 
-/// The peaks and valleys of a history, with its first and last sample; of equal samples in a row the first. \throws
+/// The peaks and valleys of a history, with its first and last sample; the first of equal samples in a row. \throws
 /// InvalidInput for a NaN.
 template <class = void>
 std::vector<double> turning_points(std::span<double const> history) {
@@ -106,8 +106,8 @@ struct Basquin {
   }
 };
 
-/// The share of its life that a history takes of a detail, D = Σ n_i/N_i; it lasts for 1/D of them [Palmgren 1924;
-/// Miner 1945]. Means of cycles are left out of account. \throws InvalidInput as `Basquin::check`.
+/// The damage D = Σ n_i/N_i that a history does to a detail, which endures 1/D such histories [Palmgren 1924; Miner
+/// 1945]. Mean stresses of cycles are neglected. \throws InvalidInput as `Basquin::check`.
 template <class = void>
 double damage(std::span<StressCycle const> cycles, Basquin const& curve) {
   curve.check();

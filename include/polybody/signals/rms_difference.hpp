@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How far one history lies off another. Not in polybody.hpp: few programs need it.
+/// The relative root mean square difference of two histories. Not in polybody.hpp: few programs need it.
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace polybody {
 ///   d.add({ta, ax}, {tb, bx});
 ///   d.add({ta, ay}, {tb, by});
 ///   d.value()
-/// Between its samples a is linear, so that it may have others than b, such as those of half the step.
+/// a is linear between its samples, so its times may differ from those of b, as in a run with half the step.
 class RmsDifference {
  public:
   /// Samples from `from` to `to` [s] count.

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Samples of one quantity at rising times: what filters, and measures of how far two runs are apart, start from.
+/// Samples of one quantity at rising times, as filters and differences of runs take them.
 ///
 /// Not in polybody.hpp: few programs need it.
 

@@ -5,9 +5,9 @@
 /// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The
 /// deformation does not act back on the motion.
 ///
-/// Of the solution only the accelerations q̈ are taken on: K e = Q − M Φ q̈ gives all nodal displacements, and the forces
-/// within a beam follow from its ends' by equilibrium with what acts along it. Static loads are then exact in every
-/// section, whatever the number of elements and modes ("mode acceleration" [Williams 1945]).
+/// Only the accelerations q̈ of the solution are used: K e = Q − M Φ q̈ gives all nodal displacements, and the forces
+/// within a beam follow from those at its ends by equilibrium with what acts along it. The stress of static loads is
+/// then exact in every section, whatever the number of elements and modes ("mode acceleration" [Williams 1945]).
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
 
@@ -18,7 +18,7 @@ namespace polybody {
 
 namespace detail {
 
-/// As `mass_points` of a beam, of its part up to ξ.
+/// The `mass_points` of a beam's part up to ξ.
 inline std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam const& beam, double xi) {
   std::array<MassPoint, 4> points = mass_points(s, beam);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -63,13 +63,13 @@ inline ReferenceConditions statically_determinate(Structure const& s, ReferenceC
 ///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})      (signals/filter.hpp)
 class DecoupledStress {
  public:
-  /// K e = Q of each sample: right where loads change slowly beside the structure's vibrations. Loads that balance, as
-  /// recorded ones do, leave the stress the same whatever `frame` holds; displacements are relative to that. \throws
-  /// InvalidInput as `StructureLoads`, and for a frame that holds something, but not enough.
+  /// K e = Q of each sample: right where loads change slowly compared with the structure's vibrations. Loads that
+  /// balance, as recorded ones do, cause the same stress whatever `frame` holds; displacements are relative to it.
+  /// \throws InvalidInput as `StructureLoads`, and for a frame that holds something, but not enough.
   static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
                                       StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
-  /// The vibrations, too. \throws InvalidInput as `StructureLoads`, for shapes that do not fit the structure or move
+  /// With vibrations. \throws InvalidInput as `StructureLoads`, for shapes that do not fit the structure or move
   /// what the frame holds, and for fewer substeps than one; what the integrator throws.
   template <LinearSolver Solver = DenseLu, class I>
   static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
@@ -77,8 +77,8 @@ class DecoupledStress {
 
   std::vector<double> const& times() const { return loads_.times(); }
   StructureLoads const& loads() const { return loads_; }
-  /// Nodal displacements (N×samples), in the structure's axes [m], [rad]; with damping, those that the forces would
-  /// cause at rest.
+  /// Nodal displacements (N×samples), in the structure's axes [m], [rad]; with damping, those that the forces cause at
+  /// rest.
   MatX const& displacements() const { return e_; }
 
   /// (N, Q_y, Q_z, M_x, M_y, M_z) of the section at s of a bar (see sections.hpp), damping included [N], [N m]. Where a
@@ -147,7 +147,7 @@ class DecoupledStress {
  private:
   static constexpr double same = 1e-9;  ///< ξ of a load and of a section that are one place
 
-  /// Of one beam at one sample: displacements and their rates by its ends (12).
+  /// One beam at one sample: nodal displacements of its ends and their rates (12).
   struct Local {
     StructureLoads::Motion const& motion;
     Vec<double, 12> e, deformed, rate, acceleration;
@@ -201,7 +201,7 @@ class DecoupledStress {
     return {loads_.motion(sample), of(e_), of(vibration_.deformed), of(vibration_.rate), of(vibration_.acceleration)};
   }
 
-  /// Less gravity, at a point of the axis, and its slopes along y and z of the section.
+  /// Acceleration less gravity at a point of the axis, and its slopes along y and z of the section.
   std::array<Vec3, 3> acceleration(Local const& x, MassPoint const& g, Structure::Beam const& beam) const {
     Mat3 const& B = x.motion.B;
     std::array<Vec3, 3> a{x.motion.b + B * g.at, B * beam.axes.col(1), B * beam.axes.col(2)};

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Stress at a point of a bar's section from the section's forces (N, Q_y, Q_z, M_x, M_y, M_z) of
-/// bodies/shared/sections.hpp, by Saint-Venant's theory; principal stresses and von Mises'. Away from the ends and from
-/// point loads, that is.
+/// bodies/shared/sections.hpp, by Saint-Venant's theory, which holds away from the ends and from point loads; principal
+/// stresses and von Mises'.
 ///
 /// Not in polybody.hpp: few programs need it.
 

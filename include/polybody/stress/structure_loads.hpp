@@ -16,10 +16,10 @@
 
 namespace polybody {
 
-/// How a structure takes what was recorded.
+/// How a recorded motion becomes loads on a structure.
 struct StructureLoadOptions {
-  /// Of the structure's axes in the body's. Else they are parallel and the centres of mass in one place, as for a body
-  /// and a structure made from the same bar.
+  /// Placement of the structure's axes in the body's. None: the axes are parallel and the centres of mass coincide, as
+  /// for a body and a structure made from the same bar.
   std::optional<Placement> placement = {};
   double largest_gap = 0.0;  ///< between samples, over which a line is drawn [s]; 0: 1.5 times the median interval
   double unbalance = 1e-3;   ///< what may be left of forces and moments, as a part of their size
@@ -93,7 +93,7 @@ class StructureLoads {
     return q;
   }
 
-  /// … of all samples (N×samples).
+  /// Nodal forces of all samples (N×samples).
   MatX nodal() const {
     MatX q(s_.size(), Index(times_.size()));
     for (std::size_t k = 0; k < times_.size(); ++k) q.col(Index(k)) = nodal(k);
@@ -147,7 +147,7 @@ class StructureLoads {
     return x;
   }
 
-  /// By the nearest section of a beam, which is rigid, or by the nearest node.
+  /// Puts a load on the nearest section of a beam, which is rigid, or on the nearest node.
   void take(Load load, Vec3 const& at) {
     Vec3 held = Vec3::Zero();
     double least = std::numeric_limits<double>::infinity();
@@ -174,8 +174,8 @@ class StructureLoads {
     loads_.back().push_back(load);
   }
 
-  /// By the n nodes of a patch with the middle c, as f/n + θ × (r − c): of all nodal forces with this resultant the
-  /// least.
+  /// Shares a load among the n nodes of a patch with the middle c, as f/n + θ × (r − c): the least nodal forces with
+  /// this resultant.
   void share(Load const& load, Vec3 const& at, double patch) {
     std::vector<Index> nodes;
     Vec3 middle = Vec3::Zero();
@@ -207,8 +207,8 @@ class StructureLoads {
     return most;
   }
 
-  /// Σ f − ∫ρ a = 0 and Σ (m + u × f) − ∫ρ u × a = 0 about the centre of mass, each beside the largest sum of sizes of
-  /// the record.
+  /// Checks Σ f − ∫ρ a = 0 and Σ (m + u × f) − ∫ρ u × a = 0 about the centre of mass, relative to the largest sum of
+  /// sizes of the record.
   void require_balance(double part) const {
     double const length = size();
     Vec3 const centre = s_.first / s_.mass;

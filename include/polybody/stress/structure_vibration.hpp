@@ -15,14 +15,14 @@
 
 namespace polybody {
 
-/// How the structure vibrates in the body's frame. What the frame is tied to matters, as the run moves the frame, with
-/// whatever acceleration the rigid body had: tie it where joints lead the body, and let it follow the mean motion
-/// (`free_interface_modes`, with `ReferenceConditions::none()`) of a body that is free.
+/// How the structure vibrates in the body's frame. The frame moves as the rigid body did, so it matters what it is tied
+/// to: tie it where joints guide the body, and let it follow the mean motion (`free_interface_modes`, with
+/// `ReferenceConditions::none()`) of a body that is free.
 struct Vibration {
   ReferenceConditions frame = ReferenceConditions::clamped();
   MatX shapes = {};  ///< Φ (N×n), made with `frame`; empty: all nodal coordinates
-  /// With the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4 and, of Ω˙, m_fr(q). The
-  /// thesis leaves them out. The stiffness that axial forces add is in neither.
+  /// Includes the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4, and m_fr(q) of Ω˙. The
+  /// thesis leaves them out. The stiffness that axial forces add is left out in either case.
   bool follows_deformation = false;
   double stiffness_damping = 0.0;  ///< adds this time [s] × K to the structure's damping
   bool settled = true;             ///< starts at rest as the first loads deform it, else undeformed
@@ -42,7 +42,7 @@ Matrix weighted(Mat3 const& x, std::array<Matrix, 6> const& inertia) {
   return sum;
 }
 
-/// Loads by q on straight lines between the samples; with `products`, what follows the deformation.
+/// Loads by q, linear between the samples; with `products`, also the terms that follow the deformation.
 struct LoadLines {
   StructureLoads const* of;
   MatX loads;                    ///< (n×samples)
@@ -70,12 +70,12 @@ struct LoadLines {
 
 }  // namespace detail
 
-/// Of the nodal coordinates (N×samples): as far as they enter the inertia forces, else empty.
+/// Histories of the nodal coordinates (N×samples); empty where they do not enter the inertia forces.
 struct VibrationHistory {
   MatX deformed, rate;  ///< Φ q, Φ q̇: of a vibration that follows the deformation
   MatX acceleration;    ///< Φ q̈
 
-  /// M Φ q̈ + 2 S̃₁ Φ q̇ + … (N×samples): what is missing of K e beside the loads.
+  /// Inertia forces M Φ q̈ + 2 S̃₁ Φ q̇ + … (N×samples), with K e = loads − these.
   template <class = void>
   MatX inertia(StructureLoads const& loads) const {
     Structure const& s = loads.structure();

@@ -3,7 +3,7 @@
 /// Small vibrations about a state of rest: with q = q₀ ⊞ δ,
 ///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0,
 /// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Shabana 2018, Ch. 4]. The rows are eliminated by a
-/// basis N of the null space of G, δ = N z, so redundant rows do no harm. About a steady rotation:
+/// basis N of the null space of G, δ = N z, so redundant rows do no harm. Vibrations about a steady rotation are in
 /// vibration/steady_rotation.hpp.
 ///
 /// Not in polybody.hpp: Eigen's eigenvalue solvers would cost every program seconds to compile.
@@ -56,7 +56,7 @@ MatX free_motions(MatX const& g) {
   return q.rightCols(g.cols() - qr.rank());
 }
 
-/// The smallest x of those that leave the least of A x = b; pivots below `threshold` count as zero.
+/// The smallest least-squares solution of A x = b; pivots below `threshold` count as zero.
 template <class = void>
 MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
   Eigen::CompleteOrthogonalDecomposition<MatX> solver(a.rows(), a.cols());
@@ -155,7 +155,7 @@ struct DampedModes {
 /// the state matrix is A = [0, 1; −M̂⁻¹K, −M̂⁻¹D̂], M̂ = τ² M, D̂ = τ D. Solved is its inverse about s = τ, which asks for
 /// no M⁻¹,
 ///   (A − 1)⁻¹ = [−Y, −Z; 1 − Y, −Z],  Y = Q⁻¹ (M̂ + D̂),  Z = Q⁻¹ M̂,  Q = M̂ + D̂ + K,  s = τ (1 + 1/μ):
-/// slow motions have its largest eigenvalues μ, so that stiff ones beside them take no digits from them. τ is a little
+/// slow motions have its largest eigenvalues μ, so that stiff ones do not spoil their digits. τ is a little
 /// below the lowest frequency of M z̈ + K z = 0 without its neutral motions. Those of the model come first, with an |s|
 /// of √rounding.
 /// \throws InvalidInput when a free motion has no inertia.

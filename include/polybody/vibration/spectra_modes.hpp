@@ -11,9 +11,9 @@
 namespace polybody {
 
 /// In place of DenseModes in held_modes, free_interface_modes and craig_bampton: implicitly restarted Lanczos on K⁻¹M,
-/// in the inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. That iteration may pass over a mode as often as its
-/// frequency repeats; so the modes below the last are counted by the negative pivots of K − σM (Sylvester), and the
-/// iteration starts anew with twice the vectors until none is missing, six times at most.
+/// in the inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. The iteration may miss modes of a repeated
+/// frequency; so the modes below the last are counted by the negative pivots of K − σM (Sylvester), and the iteration
+/// starts anew with twice the vectors until none is missing, six times at most.
 struct SpectraModes {
   Index restarts = 1000;     ///< at most, for each number of vectors
   double tolerance = 1e-12;  ///< of ω², relative

@@ -195,8 +195,8 @@ State rotating_state(System& system, State const& x, SteadyRotation const& rotat
 
 /// Moves x (coordinates, multipliers) from its present place to where elastic, centrifugal and all other forces balance
 /// while the model turns steadily; speeds and their rates become those of the rotation. Rows that depend on time are
-/// taken at x.t. `load_steps` and `smallest_part` are of Ω. Of redundant rows, and of motions that nothing resists, the
-/// smallest corrections are taken. Dense: for models of up to some hundred speeds.
+/// taken at x.t. `load_steps` and `smallest_part` divide Ω. The smallest corrections are taken where rows are redundant
+/// or nothing resists a motion. Dense: for models of up to some hundred speeds.
 /// \throws InvalidInput for rows that do not turn with the model; NewtonStalled, NonFinite; x is then untouched.
 template <class = void>
 EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
