@@ -75,7 +75,7 @@ struct StressCase {
     histories->push_back(history);
     auto const link = vehicle->side(m113::Side::left).links[watched_link];
     if constexpr (HasRigidPoints<typename F::BodyType>) {
-      auto const recorder = std::make_shared<LoadRecorder<M>>(vehicle->model);
+      auto const recorder = std::make_shared<LoadRecorder>(vehicle->model);
       recorder->add(link);
       scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
         before(model, x);

@@ -206,8 +206,8 @@ struct TrackCase {
     std::size_t const mine = outcomes->size() - 1;
     auto const progress = std::make_shared<Progress>(0.0, s.until, f.name);
     auto const audit = s.audit ? std::make_shared<EnergyAudit>(vehicle->model) : nullptr;
-    auto const visual = s.animate > 0.0 ? std::make_shared<Visual<M>>(m113::vehicle_visual(*vehicle)) : nullptr;
-    auto const writer = visual ? std::make_shared<VtkWriter<M>>(s.out / (f.name + ".pvd"), *visual) : nullptr;
+    auto const visual = s.animate > 0.0 ? std::make_shared<Visual>(m113::vehicle_visual(*vehicle)) : nullptr;
+    auto const writer = visual ? std::make_shared<VtkWriter>(s.out / (f.name + ".pvd"), *visual) : nullptr;
     auto const next_picture = std::make_shared<double>(0.0);
     auto observer = [=, out = outcomes, keep = visual, &s](M const&, State const& x) {
       Outcome& o = (*out)[mine];

@@ -73,12 +73,14 @@
 #include <polybody/math/monotone_table.hpp>
 #include <polybody/math/smooth_table.hpp>
 #include <polybody/math/time_laws.hpp>
+#include <polybody/run/census.hpp>
 #include <polybody/run/contacts.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/observe.hpp>
+#include <polybody/run/points.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/run/sliders.hpp>

@@ -10,6 +10,7 @@
 #include <polybody/joints/spherical.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
 #include <polybody/run/sliders.hpp>
 
 #include "support/solver_instances.hpp"

@@ -4,6 +4,7 @@
 
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/run/energy.hpp>
+#include <polybody/run/simulate.hpp>
 
 #include "support/bead_on_a_line.hpp"
 #include "support/refusal.hpp"

@@ -5,8 +5,9 @@ words      no #define and no `virtual` in the code (comments may use the words)
 length     no header above 410 lines; reports the median and the 90 % line
 umbrella   polybody.hpp reaches every header, but for those that say why not
 functions  no function above 60 lines, none with more than 6 parameters
-waist      integrators, solvers and analyses take the mechanics through its interface: they name no pool of a model, no
-           `detail::` of another folder, and no model as template parameter
+waist      integrators, solvers, analyses and io take the mechanics through its interface: they name no pool of a model, no
+           `detail::` of another folder, and no model as template parameter, but for doors: functions of at most five
+           lines, and records without functions
 comments   no line of a comment begins with "Of" or "…"
 system     BasicSystem has at most 25 public member functions, its constructors not counted
 
@@ -44,8 +45,9 @@ MAX_LINES = 410
 MAX_FUNCTION_LINES = 60
 MAX_PARAMETERS = 6
 MAX_SYSTEM_FUNCTIONS = 25
+MAX_DOOR_LINES = 5
 
-BEHIND_WAIST = ("integrators", "solvers", "run", "statics", "vibration", "stress", "compare", "signals")
+BEHIND_WAIST = ("integrators", "solvers", "run", "statics", "vibration", "stress", "compare", "signals", "io")
 POOLS = re.compile(r"\b(?:(?:body|joint|force)_pools|for_each_(?:body|joint|force|gap)|BodyPool)\b")
 VAGUE = re.compile(r"(?://+<?|^[ \t]*\*|/\*+)[ \t]*(Of|…)(?=[ \t]|$)", re.MULTILINE)
 
@@ -157,13 +159,20 @@ def offending_functions(texts):
     return found
 
 
-def takes_model(code):
-    """Whether a template has a parameter M that is a type."""
-    for m in re.finditer(r"\btemplate\s*(?=<)", code):
-        parameters = code[m.end() : cpp_reader.after_angles(code, m.end())]
+def takes_model(head):
+    """Whether a declaration is a template with a parameter M that is a type."""
+    for m in re.finditer(r"\btemplate\s*(?=<)", head):
+        parameters = head[m.end() : cpp_reader.after_angles(head, m.end())]
         if re.search(r"(?:\b(?!int\b|bool\b|Index\b)\w+|>)\s+M\b", parameters):
             return True
     return False
+
+
+def is_door(d, all_of_header):
+    """Whether a template on a model only hands it on: a short function, or a record without functions."""
+    if d.kind == "class":
+        return not any(o.kind == "function" and o.name.startswith(f"{d.name}::") for o in all_of_header)
+    return d.kind == "function" and d.body and d.lines <= MAX_DOOR_LINES
 
 
 def offending_waist(texts):
@@ -183,8 +192,11 @@ def offending_waist(texts):
                 named[f"detail::{other}"] = f"uses detail::{other} of {', '.join(sorted(details[other]))}"
         if re.search(r"\bSystem\s*<", code):
             named["System<"] = "names System<…>: a model as template parameter"
-        if takes_model(code):
-            named["template <class M>"] = "has a template parameter M: a model"
+        declared = declarations(name, text)
+        if behind := [d for d in declared if takes_model(d.head) and not is_door(d, declared)]:
+            named["template <class M>"] = (
+                f"{behind[0].name} has a template parameter M, a model, and is no door of at most {MAX_DOOR_LINES} lines"
+            )
         for what, told in sorted(named.items()):
             found[f"{short(name)}:{what}"] = [f"{name}: {told}"]
     return found

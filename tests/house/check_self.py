@@ -66,8 +66,10 @@ class Check(unittest.TestCase):
             self.assertEqual(self.found("functions", math__so3=text), [], text)
 
     def test_waist(self):
+        door = lambda n: "template <class M>\nvoid f(M const& model) {\n" + "  g(model);\n" * n + "}"
         for text in ("for_each_body(f);", "m.body_pools();", "detail::BodyPool<B> p;", "void f(System<M>&);",
-                     "template <class B, class M>\nvoid f(M const& model);"):
+                     "template <class B, class M>\nvoid f(M const& model);", door(6),
+                     "template <class M>\nstruct A {\n  M const& m;\n  void f() {}\n};"):
             self.assertEqual(len(self.found("waist", integrators__x=text)), 1, text)
             self.assertEqual(self.found("waist", system__x=text), [], text)
         mass = "namespace polybody::detail {\nint mass();\n}"
@@ -75,6 +77,9 @@ class Check(unittest.TestCase):
         self.assertEqual(self.found("waist", solvers__y=mass, solvers__x="int a = detail::mass();"), [])
         good = "// for_each_body, System<M>\ntemplate <int M> struct A;\nBasicSystem<S>& s;"
         self.assertEqual(self.found("waist", solvers__x=good), [])
+        for text in (door(5), "struct A {\n  template <class M>\n  explicit A(M const& m)\n      : a_(m) {}\n};",
+                     "template <class M>\nstruct A {\n  M model;\n  std::function<void(M const&)> f = {};\n};"):
+            self.assertEqual(self.found("waist", run__x=text), [], text)
 
     def test_comments(self):
         for line in ("/// Of a run.", "int a;  ///< … in its own", "  // Of it", "/* Of it */"):

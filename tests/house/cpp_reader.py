@@ -23,6 +23,8 @@ class Declaration:
     last: int  # line of its closing brace, or of its semicolon
     parameters: int = 0  # of a function
     body: bool = False  # whether it is a function with one
+    lines: int = 0  # between the braces of its body
+    head: str = ""  # what stands before its brace or semicolon
     public: bool = True
     friend: bool = False
 
@@ -234,7 +236,7 @@ def declarations(text):
             if start is None:
                 start = i
             at = lambda kind, name, last, **more: Declaration(
-                kind, "::".join((*classes, name)), scopes, line(start), line(last), public=public,
+                kind, "::".join((*classes, name)), scopes, line(start), line(last), public=public, head=code[start:i],
                 friend=bool(re.match(r"friend\b", bare(code[start:i], friends=True))), **more)
             if c in "([":
                 i = partner[i] + 1
@@ -261,7 +263,8 @@ def declarations(text):
                     start = None
                 elif kind == "function":
                     name, place, words, _ = parameter_list(head)
-                    yield at("function", name, close, parameters=count_parameters(words, place), body=True)
+                    yield at("function", name, close, parameters=count_parameters(words, place), body=True,
+                             lines=max(line(close) - line(i) - 1, 0))
                     start = None
                 elif kind == "enum":
                     yield at("enum", re.match(r"enum\b\s*(?:class\s+|struct\s+)?(\w*)", bare(head))[1] or "(unnamed)", close)

@@ -41,7 +41,7 @@ struct VtkFiles : testing::Test {
   Model<Bodies<Rigid<>, Cable>, Joints<>> model;
   BodyHandle<Rigid<>> brick = model.add(Rigid<>(2.0, Mat3::Identity()), "brick");
   BodyHandle<Cable> cable = model.add(Cable::from(bar, 5), "cable");
-  Visual<decltype(model)> visual{model};
+  Visual visual{model};
   State x = model.reference_state();
 
   VtkFiles() {

@@ -49,7 +49,7 @@ Ride ride(Ramp const& drive, double until, double step, bool held = false, int e
   State x = vehicle.model.reference_state();
   Ride r;
   EnergyAudit audit(vehicle.model);
-  std::optional<LoadRecorder<M>> recorder;
+  std::optional<LoadRecorder> recorder;
   if constexpr (HasRigidPoints<Link>) {
     recorder.emplace(vehicle.model);
     recorder->add(link);

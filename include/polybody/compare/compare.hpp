@@ -6,6 +6,7 @@
 
 #include <polybody/compare/comparison.hpp>
 #include <polybody/compare/formulation.hpp>
+#include <polybody/run/simulate.hpp>
 
 namespace polybody {
 
@@ -58,21 +59,14 @@ void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earli
                        "\". Let the case name the same ones, in the same order, for every formulation.");
 }
 
-template <class F, class C>
-ComparedRun compared_run(C const& make_case, F const& formulation, std::vector<ComparedRun> const& earlier) {
-  auto scenario = make_case(formulation);
-  using M = std::decay_t<decltype(scenario.model)>;
-  M const& model = scenario.model;
-  ComparedRun out;
-  out.name = name_of(formulation, earlier);
-  out.census = census(model);
-  for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
-  check_outputs(out, earlier);
-  out.outputs.resize(scenario.outputs.size());
-  State x = scenario.start;
-  auto run = simulate(model, x, formulation.integrator, scenario.options);
-  System system(model, with<Entries::energy>);
-  auto const observe = [&] {
+/// The questions that are asked about every state of a run, whatever the case's model.
+struct CaseQuestions {
+  System system;  ///< made with the entries of `energy`
+  std::vector<std::function<double(State const&)>> outputs = {};
+  std::function<void(State const&)> observer = {};
+
+  template <class = void>  // compiled where it is used
+  void note(State const& x, ComparedRun& out) {
     Violation const& v = out.violations.emplace_back(violation(system, x));  // evaluates the system
     out.violation.position = std::max(out.violation.position, v.position);
     out.violation.velocity = std::max(out.violation.velocity, v.velocity);
@@ -81,20 +75,49 @@ ComparedRun compared_run(C const& make_case, F const& formulation, std::vector<C
     out.joint_forces.push_back(peak_joint_force(system, x));
     out.peak_joint_force = std::max(out.peak_joint_force, out.joint_forces.back());
     out.times.push_back(x.t);
-    for (std::size_t i = 0; i < scenario.outputs.size(); ++i)
-      out.outputs[i].push_back(scenario.outputs[i].value(model, x));
-    if (scenario.observer) scenario.observer(model, x);
-  };
-  observe();
+    for (std::size_t i = 0; i < outputs.size(); ++i) out.outputs[i].push_back(outputs[i](x));
+    if (observer) observer(x);
+  }
+};
+
+/// The questions of a scenario, which must outlive them.
+template <class S>
+CaseQuestions questions_of(S& scenario) {
+  auto const& model = scenario.model;
+  CaseQuestions questions{System(model, with<Entries::energy>)};
+  for (auto& o : scenario.outputs) questions.outputs.push_back([&](State const& x) { return o.value(model, x); });
+  if (scenario.observer) questions.observer = [&](State const& x) { scenario.observer(model, x); };
+  return questions;
+}
+
+/// Runs to the end and notes every state; only the steps are timed.
+template <class Run>
+void record_run(Run& run, CaseQuestions& questions, ComparedRun& out) {
+  questions.note(run.state(), out);
   while (!run.done()) {
     std::clock_t const begin = std::clock();
     run.advance();
     out.cpu += double(std::clock() - begin) / CLOCKS_PER_SEC;
-    observe();
+    questions.note(run.state(), out);
   }
   out.energy_start = out.energies.front().total();
   out.energy_end = out.energies.back().total();
   out.run = run.report();
+}
+
+template <class F, class C>
+ComparedRun compared_run(C const& make_case, F const& formulation, std::vector<ComparedRun> const& earlier) {
+  auto scenario = make_case(formulation);
+  ComparedRun out;
+  out.name = name_of(formulation, earlier);
+  out.census = census(scenario.model);
+  for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
+  check_outputs(out, earlier);
+  out.outputs.resize(scenario.outputs.size());
+  State x = scenario.start;
+  auto run = simulate(scenario.model, x, formulation.integrator, scenario.options);
+  CaseQuestions questions = questions_of(scenario);
+  record_run(run, questions, out);
   return out;
 }
 

@@ -9,7 +9,7 @@
 
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
-#include <polybody/run/simulate.hpp>
+#include <polybody/run/run_options.hpp>
 
 namespace polybody {
 

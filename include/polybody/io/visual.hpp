@@ -6,8 +6,10 @@
 #include <functional>
 #include <string>
 
+#include <polybody/bodies/shared/sections.hpp>
 #include <polybody/io/surface.hpp>
-#include <polybody/stress/section.hpp>
+#include <polybody/run/points.hpp>
+#include <polybody/system/model_entries.hpp>
 
 namespace polybody {
 
@@ -35,21 +37,24 @@ void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, st
 ///   visual.attach(chassis.at({0, 0, 0}), box({4, 2, 1}));   carried by the marker's frame
 ///   visual.sweep(beam, bar, 20);                            the bar's section along the body, deformed as the body is
 ///   for (VisualPart const& part : visual.at(x)) ...
-/// The model must outlive it.
-template <class M>
+/// The model must outlive it and must not change after.
 class Visual {
  public:
-  explicit Visual(M const& model) : model_(&model) {}
+  template <class M>
+  explicit Visual(M const& model) : layout_(layout_of(model)), reference_(model.reference_state()) {}
 
   /// The shape's axes are the marker's. \throws InvalidInput for a marker of another model.
   template <class B>
   void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape") {
-    model_->require_own(marker.model, name);
-    parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
-    moves_.push_back([model = model_, marker, points = shape.points](State const& x, VisualPart& part) {
-      Frame<double> const f = frame(*model, x, marker);
-      for (std::size_t i = 0; i < points.size(); ++i) detail::place_point(f, points[i], part, i);
-    });
+    BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, marker, name))];
+    carry(shape, std::move(name),
+          [place, point = marker.point](State const& x) { return frame(body_in_state<B>(place, x), point); });
+  }
+  template <class = void>
+  void attach(Marker<Ground> const& marker, Surface const& shape, std::string name = "shape") {
+    require_own(layout_, marker.model, name);
+    Frame<double> const f{.r = marker.point.origin, .A = marker.point.axes};
+    carry(shape, std::move(name), [f](State const&) { return f; });
   }
 
   /// The bar that the body was made from, in so many pieces along its length. Points of a section lie where the body's
@@ -57,7 +62,7 @@ class Visual {
   /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24) {
-    model_->require_own(body);
+    BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, body))];
     if (pieces < 1) throw InvalidInput("\"" + body.name + "\": a sweep needs at least one piece.");
     std::vector<Vec2> const ring = outline(bar, sides);
     int const n = int(ring.size());
@@ -65,19 +70,20 @@ class Visual {
     std::size_t const points = std::size_t((pieces + 1) * n);
     parts_.push_back(
         {body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
-    moves_.push_back([model = model_, body, bar, pieces, ring](State const& x, VisualPart& part) {
+    moves_.push_back([place, body, bar, pieces, ring](State const& x, VisualPart& part) {
+      BodyInState<B> const b = body_in_state<B>(place, x);
       std::size_t i = 0;
       for (int k = 0; k <= pieces; ++k) {
         double const s = bar.length * double(k) / double(pieces);
         Marker<B> const axis = body.at(s);
-        Frame<double> const f = frame(*model, x, axis);
+        Frame<double> const f = frame(b, axis.point);
         Vec6 forces = Vec6::Zero();
         if constexpr (HasSections<B>)
-          if (!part.axial_stress.empty()) forces = section_forces(*model, x, axis);
+          if (!part.axial_stress.empty()) forces = b.body.section_forces(axis.point, b.q);
         for (Vec2 const& p : ring) {
           if (!part.axial_stress.empty()) part.axial_stress[i] = fibre_stress(bar, forces, p[0], p[1]);
           if constexpr (B::world == World::space && requires { body.at(s, p[0], p[1]); })
-            detail::place_point(frame(*model, x, body.at(s, p[0], p[1])), Vec3::Zero(), part, i++);
+            detail::place_point(frame(b, body.at(s, p[0], p[1]).point), Vec3::Zero(), part, i++);
           else
             detail::place_point(f, Vec3(0, p[0], p[1]), part, i++);
         }
@@ -85,7 +91,8 @@ class Visual {
     });
   }
 
-  M const& model() const { return *model_; }
+  /// The state in which the model is undeformed as placed.
+  State const& reference() const { return reference_; }
 
   /// All parts in state x; valid until asked again.
   std::vector<VisualPart> const& at(State const& x) {
@@ -94,7 +101,18 @@ class Visual {
   }
 
  private:
-  M const* model_;
+  /// One more part, whose points stand in the axes of a frame.
+  template <class F>
+  void carry(Surface const& shape, std::string name, F&& frame_in) {
+    parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
+    moves_.push_back([frame_in = std::forward<F>(frame_in), points = shape.points](State const& x, VisualPart& part) {
+      Frame<double> const f = frame_in(x);
+      for (std::size_t i = 0; i < points.size(); ++i) detail::place_point(f, points[i], part, i);
+    });
+  }
+
+  ModelLayout layout_;
+  State reference_;
   std::vector<VisualPart> parts_;
   std::vector<std::function<void(State const&, VisualPart&)>> moves_;
 };

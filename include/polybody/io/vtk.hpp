@@ -1,8 +1,7 @@
 #pragma once
 /// \file
 /// What a model looks like over time, as VTK's XML files for ParaView: a collection (.pvd) and beside it an
-/// unstructured grid
-/// (.vtu) for each state. Not in polybody.hpp: few programs need it.
+/// unstructured grid (.vtu) for each state. Not in polybody.hpp: few programs need it.
 
 #include <bit>
 #include <cstdint>
@@ -108,16 +107,16 @@ void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const&
 /// place among the parts of the visual, from 0. Numbers are float32. Every file appears when it is complete, a grid
 /// before the collection that names it; so a run that is broken off leaves an animation up to its last state. The
 /// visual must outlive the writer.
-template <class M>
-class VtkWriter {
+template <class = void>  // compiled where it is used
+class VtkWriterOf {
  public:
   /// Writes a collection without states. \throws InvalidInput unless the file ends in .pvd; IoError when it cannot be
   /// written.
-  VtkWriter(std::filesystem::path const& file, Visual<M>& visual)
+  VtkWriterOf(std::filesystem::path const& file, Visual& visual)
       : visual_(&visual), file_(std::filesystem::absolute(file)) {
     if (file_.extension() != ".pvd")
       throw InvalidInput("VtkWriter: the name of a collection ends in .pvd, but this is '" + file.string() + "'.");
-    for (VisualPart const& part : visual.at(visual.model().reference_state()))
+    for (VisualPart const& part : visual.at(visual.reference()))
       rest_.insert(rest_.end(), part.surface.points.begin(), part.surface.points.end());
     write_collection();
   }
@@ -153,12 +152,14 @@ class VtkWriter {
     file.close();
   }
 
-  Visual<M>* visual_;
+  Visual* visual_;
   std::filesystem::path file_;
   std::vector<Vec3> rest_;
   std::string entries_;
   std::size_t count_ = 0;
   double last_ = -std::numeric_limits<double>::infinity();
 };
+
+using VtkWriter = VtkWriterOf<>;
 
 }  // namespace polybody

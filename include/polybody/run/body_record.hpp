@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a run leaves of chosen rigid bodies: motion, and every wrench with the material point it acts on. It is what a
-/// stress analysis after the run starts from (decoupled_stress.hpp).
+/// Records of chosen rigid bodies in a run: their motion, and every wrench on them with the material point it acts on.
+/// A stress analysis after the run starts from them (decoupled_stress.hpp).
 ///
 /// Not in polybody.hpp: few programs need it.
 
@@ -9,6 +9,7 @@
 
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/system/model_entries.hpp>
+#include <polybody/system/places.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -40,55 +41,67 @@ struct BodyRecord {
 template <class B>
 concept HasRigidPoints = Body<B> && (requires(B const b) { b.at(Vec3()); } || requires(B const b) { b.at(Vec2()); });
 
-/// Takes down what acts on the bodies of interest:
+namespace detail {
+/// Motion of the centre of mass, twist˙ = J v̇ + bias.
+template <HasRigidPoints B>
+BodySample motion_of_centre(BodyPlace const& place, State const& x) {
+  using U = std::conditional_t<B::world == World::plane, Vec2, Vec3>;
+  BodyInState<B> const b = body_in_state<B>(place, x);
+  std::vector<double> jacobian;
+  Published<double> const p = publish(b, b.body.at(U(U::Zero())), jacobian);
+  Vec6 const rate = p.push(x.a.data() + place.v0) + p.bias;
+  return {x.t, p.frame, rate.head<3>(), rate.tail<3>(), {}};
+}
+}  // namespace detail
+
+/// Records what acts on the bodies of interest:
 ///   LoadRecorder recorder(model);
 ///   recorder.add(link);
 ///   for (State const& now : simulate(model, x, …)) recorder.record(now);
 ///   recorder.of(link)   the record
-/// With the force w = −Gᵀλ of a joint on either marker [thesis Eq. 3.3, 4.4], and those of force elements, m a = Σ F
-/// holds of each sample as well as the integrator solves it.
-template <class M>
-class LoadRecorder {
+/// The loads are −Gᵀλ of each joint on either marker [thesis Eq. 3.3, 4.4] and the wrenches of force elements; m a = Σ
+/// F holds in each sample as accurately as the integrator solves it.
+template <class = void>  // compiled where it is used
+class LoadRecorderOf {
  public:
   /// The model must outlive the recorder and must not change after.
-  explicit LoadRecorder(M const& model)
-      : model_(&model), system_(model, with<Entries::motion>), owner_(std::size_t(model.markers()), -1) {}
+  template <class M>
+  explicit LoadRecorderOf(M const& model)
+      : system_(model, with<Entries::motion>), recorded_(system_.layout().bodies.size(), -1) {}
 
   /// From now on this body is recorded. \throws InvalidInput after the first sample, and for a body of another model.
   template <class B>
   void add(BodyHandle<B> const& handle) {
     static_assert(HasRigidPoints<B>,
                   "Loads are recorded of rigid bodies; a flexible body knows its own stress (stress/section.hpp).");
-    auto const& e = model().entry(handle);
+    Index const body = index_of(system_.layout(), handle);
     if (!records_.empty() && !records_.front().samples.empty())
       throw InvalidInput("LoadRecorder: \"" + handle.name +
                          "\" comes after the first sample. Add all bodies before the run.");
-    if (find(e.v0) >= 0) return;
-    Index const slot = Index(records_.size());
-    Vec3 gravity = model().gravity().g;
-    if (B::world == World::plane) gravity[2] = 0.0;
-    records_.push_back({e.name, gravity, {}});
-    first_speeds_.push_back(e.v0);
-    for (auto const& m : std::get<detail::BodyPool<B>>(model().body_pools()).markers)
-      if (m.body == handle.index) owner_[std::size_t(m.published)] = slot;
+    Index& slot = recorded_[std::size_t(body)];
+    if (slot >= 0) return;
+    slot = Index(records_.size());
+    BodyPlace const& place = system_.layout().bodies[std::size_t(body)];
+    Vec3 gravity = system_.layout().gravity;
+    if (place.planar) gravity[2] = 0.0;
+    records_.push_back({place.name, gravity, {}});
+    motions_.push_back({body, &detail::motion_of_centre<B>});
   }
 
   /// One more sample of all of them. \throws InvalidInput for a state of another model, one that is not finite or not
   /// later than the last.
   void record(State const& x) {
-    require_fitting(model(), x);
+    require_fitting(system_, x);
     for (BodyRecord const& r : records_)
       if (!r.samples.empty() && !(x.t > r.samples.back().t))
         throw InvalidInput("LoadRecorder: a state at " + number(x.t) + " s comes after one at " +
                            number(r.samples.back().t) + " s. Record each state once, in the order of the run.");
     system_.evaluate(x.q, x.v, x.t);
-    model().for_each_body([&](auto const& e) {
-      if constexpr (HasRigidPoints<std::decay_t<decltype(e.body)>>)
-        if (Index const slot = find(e.v0); slot >= 0) records_[std::size_t(slot)].samples.push_back(motion(e, x));
-    });
+    for (std::size_t i = 0; i < records_.size(); ++i)
+      records_[i].samples.push_back(motions_[i].of(system_.layout().bodies[std::size_t(motions_[i].body)], x));
     for (RowBlock<double> const& block : system_.data().rows)
       for (RowEnd<double> const* const end : {&block.a, &block.b}) {
-        if (end->marker < 0 || owner_[std::size_t(end->marker)] < 0) continue;
+        if (end->marker < 0 || record_of(end->marker) < 0) continue;
         double w[6];
         wrench_at(block, *end, block.multiplier(x.lambda), w);
         add_load(end->marker, w, -1.0);
@@ -100,7 +113,7 @@ class LoadRecorder {
   /// \throws InvalidInput for a body that was not recorded, or of which there is no sample yet.
   template <class B>
   BodyRecord const& of(BodyHandle<B> const& handle) const {
-    Index const slot = find(model().entry(handle).v0);
+    Index const slot = recorded_[std::size_t(index_of(system_.layout(), handle))];
     if (slot < 0)
       throw InvalidInput("LoadRecorder: body \"" + handle.name +
                          "\" was not recorded. Add it to the recorder before the run.");
@@ -112,32 +125,21 @@ class LoadRecorder {
   }
 
  private:
-  M const& model() const { return *model_; }
-  Index find(Index v0) const {
-    for (std::size_t i = 0; i < first_speeds_.size(); ++i)
-      if (first_speeds_[i] == v0) return Index(i);
-    return -1;
-  }
+  /// A recorded body, and what asks it for its motion.
+  struct Recorded {
+    Index body;
+    BodySample (*of)(BodyPlace const&, State const&);
+  };
 
-  /// twist˙ = J v̇ + bias of the centre of mass.
-  template <class Entry>
-  BodySample motion(Entry const& e, State const& x) const {
-    using B = std::decay_t<decltype(e.body)>;
-    using U = std::conditional_t<B::world == World::plane, Vec2, Vec3>;
-    Published<double> p;
-    std::vector<double> jacobian(std::size_t(6 * e.body.speeds()));
-    p.jacobian = jacobian.data();
-    p.columns = e.body.speeds();
-    e.body.template publish<double>(e.body.at(U(U::Zero())), Mat3::Identity(),
-                                    detail::body_part(x.q, e.q0, e.body.coordinates()),
-                                    detail::body_part(x.v, e.v0, e.body.speeds()), p);
-    Vec6 const rate = p.push(x.a.data() + e.v0) + p.bias;
-    return {x.t, p.frame, rate.head<3>(), rate.tail<3>(), {}};
+  /// Place of the record of the body that a marker is on, or −1.
+  Index record_of(Index marker) const {
+    Index const body = system_.layout().owners[std::size_t(marker)];
+    return body < 0 ? -1 : recorded_[std::size_t(body)];
   }
 
   /// sign · w = [f; m] about the marker, world axes.
   void add_load(Index marker, double const* w, double sign) {
-    Index const slot = owner_[std::size_t(marker)];
+    Index const slot = record_of(marker);
     if (slot < 0 || std::all_of(w, w + 6, [](double e) { return e == 0.0; })) return;
     Vec3 const f = sign * Vec3(w[0], w[1], w[2]), m = sign * Vec3(w[3], w[4], w[5]);
     BodySample& s = records_[std::size_t(slot)].samples.back();
@@ -146,11 +148,12 @@ class LoadRecorder {
         {to_body * (system_.data().markers[std::size_t(marker)].frame.r - s.frame.r), to_body * f, to_body * m});
   }
 
-  M const* model_;
   System system_;
-  std::vector<Index> owner_;         ///< of each marker: its body's record, or −1
-  std::vector<Index> first_speeds_;  ///< of the recorded bodies
+  std::vector<Index> recorded_;  ///< of each body: its record, or −1
+  std::vector<Recorded> motions_;
   std::vector<BodyRecord> records_;
 };
+
+using LoadRecorder = LoadRecorderOf<>;
 
 }  // namespace polybody

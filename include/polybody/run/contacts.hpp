@@ -2,7 +2,7 @@
 /// \file
 /// Where the bodies of a contact group touch, and how hard.
 
-#include <polybody/system/force_entries.hpp>
+#include <polybody/system/places.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -17,29 +17,18 @@ struct TouchingPoint {
   Vec3 force;                  ///< (3) on the body [N]
 };
 
-namespace detail {
-/// \throws InvalidInput for a handle of another model.
-template <class F>
-auto const& force_entry(System const& system, ElementHandle<F> const& handle) {
-  for (ForcePlace const& f : system.layout().forces)
-    if (system.layout().serial == handle.model && f.type == &type_tag<F> && f.index == handle.index)
-      return *static_cast<ForceEntry<F> const*>(f.entry);
-  require_filled(handle.model);
-  refuse_marker_of_another_model(handle.name);
-}
-}  // namespace detail
-
 /// Calls visit(TouchingPoint) for every point of a contact group that presses; `system` must have been evaluated at the
 /// state.
 /// \throws InvalidInput for a handle of another model.
 template <class F, class Visit>
 void for_each_contact(System const& system, ElementHandle<F> const& group, Visit&& visit) {
-  auto const& entry = detail::force_entry(system, group);
+  ForcePlace const& place = system.layout().forces[std::size_t(index_of_force(system.layout(), group))];
+  F const& contact = *static_cast<F const*>(place.force);
   auto const frame = [&](Index k) -> Frame<double> const& {
-    return system.data().markers[std::size_t(entry.markers[std::size_t(k)])].frame;
+    return system.data().markers[std::size_t(place.markers[std::size_t(k)])].frame;
   };
-  for (Index body = 0; body < entry.force.many(); ++body)
-    entry.force.for_each_opponent([&](auto const& few) {
+  for (Index body = 0; body < contact.many(); ++body)
+    contact.for_each_opponent([&](auto const& few) {
       if (!few.law.may_touch(frame(body), frame(few.marker))) return;
       few.law.template for_each_point<double>(
           {frame(body), frame(few.marker)}, [&](auto const& p, Vec3 const& v, double n) {

@@ -6,9 +6,9 @@ namespace polybody {
 /// Multipliers of least norm among those with the same forces Gᵀλ, where rows repeat others. A row counts by the wrench
 /// it puts on its joint's second body:
 ///   min Σ λᵢ² (|fᵢ|² + |mᵢ|²/ℓ²),   [fᵢ; mᵢ] the row of Gb,
-/// ℓ the root mean square distance of the joints' points from their mean (1 m where all coincide), so that the share
-/// does not depend on the units: what equally stiff joints would carry if a turn by one radian were as stiff as a slide
-/// by ℓ. Rows that a body owns count 1.
+/// ℓ the root mean square distance of the joints' points from their mean (1 m where all coincide), so that the result
+/// does not depend on the units. Equally stiff joints would share the load in this way if a turn by one radian were as
+/// stiff as a displacement by ℓ. Rows that a body owns have the weight 1.
 template <class = void>  // compiled where it is used
 class MinimumNormOf {
  public:
@@ -78,14 +78,18 @@ using MinimumNorm = MinimumNormOf<>;
 
 /// The multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state
 /// of another model.
-template <LinearSolver Solver = DefaultSolver, class M>
-VecX minimum_norm_multipliers(M const& model, State const& x) {
-  require_fitting(model, x);
-  System system(model, with<Entries::motion>);
+template <LinearSolver Solver = DefaultSolver>
+VecX minimum_norm_multipliers(System& system, State const& x) {
+  require_fitting(system, x);
   ForwardDynamics<Solver> forward(system);
   State shared = x;
   MinimumNormOf<>(system).apply(system, forward, shared);
   return shared.lambda;
+}
+template <LinearSolver Solver = DefaultSolver, class M>
+VecX minimum_norm_multipliers(M const& model, State const& x) {
+  System system(model, with<Entries::motion>);
+  return minimum_norm_multipliers<Solver>(system, x);
 }
 
 }  // namespace polybody

@@ -2,22 +2,14 @@
 /// \file
 /// What a run is asked for, and what it reports.
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <polybody/integrators/integrator.hpp>
+#include <polybody/run/event.hpp>
 
 namespace polybody {
-
-/// Something that happens when `value` passes through zero (in either direction). The step ends there.
-struct Event {
-  std::string name;
-  std::function<double(State const&)> value;
-  bool stops = false;        ///< ends the run
-  double tolerance = 1e-10;  ///< in time [s]
-};
 
 struct RunOptions {
   Required<double> until;                   ///< [s]

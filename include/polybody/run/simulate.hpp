@@ -11,14 +11,10 @@ namespace polybody {
 template <class I, class M>
 RunSystems run_systems(M const& model) {
   constexpr Entries warned = NamesStableStep<I> ? Entries::compliance : Entries::motion;
-  RunSystems out;
-  if constexpr (M::eliminates) {
-    out.stepped = std::make_unique<System>(system_for<I>(model));
-    out.whole = std::make_unique<System>(model, with<warned>);
-  } else {
-    out.stepped = std::make_unique<System>(system_for<I, warned>(model));
-  }
-  return out;
+  if constexpr (M::eliminates)
+    return {std::make_unique<System>(system_for<I>(model)), std::make_unique<System>(model, with<warned>)};
+  else
+    return {std::make_unique<System>(system_for<I, warned>(model)), nullptr};
 }
 
 /// Runs `model` from x: a range of states. x is moved along and holds the last state afterwards.

@@ -3,9 +3,19 @@
 /// Questions about points that slide along a body (bodies/shared/sliding.hpp).
 
 #include <polybody/bodies/shared/sliding.hpp>
-#include <polybody/run/simulate.hpp>
+#include <polybody/kinematics/marker.hpp>
+#include <polybody/run/event.hpp>
 
 namespace polybody {
+
+namespace detail {
+/// The event that coordinate i reaches 0 or `length`; it stops the run.
+inline Event reaches_an_end(std::string const& name, Slider slider, Index i, double length) {
+  return {.name = "slider " + std::to_string(slider.index) + " of \"" + name + "\" reaches an end",
+          .value = [i, length](State const& x) { return std::min(x.q[i], length - x.q[i]); },
+          .stops = true};
+}
+}  // namespace detail
 
 /// Where a slider is along the axis of its body [m]. \throws InvalidInput for one that the body has not.
 template <class M, class B>
@@ -18,11 +28,7 @@ double place(M const& model, State const& x, BodyHandle<Sliding<B>> const& handl
 template <class M, class B>
 Event reaches_an_end(M const& model, BodyHandle<Sliding<B>> const& handle, Slider slider = {}) {
   auto const& e = model.entry(handle);
-  Index const i = e.q0 + e.body.column_of(slider);
-  double const length = e.body.length();
-  return {.name = "slider " + std::to_string(slider.index) + " of \"" + e.name + "\" reaches an end",
-          .value = [i, length](State const& x) { return std::min(x.q[i], length - x.q[i]); },
-          .stops = true};
+  return detail::reaches_an_end(e.name, slider, e.q0 + e.body.column_of(slider), e.body.length());
 }
 
 }  // namespace polybody

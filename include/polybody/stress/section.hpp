@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// What a section feels in a state: the questions of bodies/shared/sections.hpp asked by marker, so that they are
-/// written once for every formulation.
+/// Strains, forces and stress of a section in a state: the questions of bodies/shared/sections.hpp asked by marker, so
+/// that they are written once for every formulation.
 
 #include <polybody/bodies/shared/sections.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/system/places.hpp>
 
 namespace polybody {
 
@@ -13,9 +13,8 @@ template <class M, class B, class F>
 auto ask_section(M const& model, State const& x, Marker<B> const& marker, F&& f) {
   static_assert(HasSections<B>,
                 "Sections are asked of a flexible beam's marker; a rigid body and the ground do not strain.");
-  model.require_own(marker.model, "section");
-  auto const& e = std::get<BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)];
-  return f(e.body, marker.point, body_part(x.q, e.q0, e.body.coordinates()));
+  BodyInState<B> const b = body_in_state(model, x, marker, "section");
+  return f(b.body, marker.point, b.q);
 }
 }  // namespace detail
 
@@ -41,14 +40,14 @@ double curvature(M const& model, State const& x, Marker<B> const& marker) {
 /// Axial strain of the fibre through the marker's point.
 template <class M, class B>
 double axial_strain(M const& model, State const& x, Marker<B> const& marker) {
-  Vec2 const off = detail::off_axis(marker.point);
+  Vec2 const off = off_axis(marker.point);
   return fibre_strain(section_strains(model, x, marker), off[0], off[1]);
 }
 /// Axial stress of that fibre [N/m²], `bar` being what the body was made from. \throws InvalidInput for a bar without
 /// section and material.
 template <class M, class B>
 double axial_stress(M const& model, State const& x, Marker<B> const& marker, Bar const& bar) {
-  Vec2 const off = detail::off_axis(marker.point);
+  Vec2 const off = off_axis(marker.point);
   return fibre_stress(bar, section_forces(model, x, marker), off[0], off[1]);
 }
 

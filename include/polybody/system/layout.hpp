@@ -11,26 +11,35 @@
 
 namespace polybody {
 
+struct LinearRows;
+
 struct BodyPlace {
   std::string name = {};
   Index q0 = 0, coordinates = 0;
   Index v0 = 0, speeds = 0;
   Index row = -1, rows = 0;  ///< rows of its own
   bool planar = false;
+  void const* type = nullptr;  ///< tells types of bodies apart
+  Index index = 0;             ///< among the bodies of its type
+  void const* body = nullptr;  ///< the body itself, in the model
 };
 
 struct JointPlace {
   std::string name = {};
-  Index a = -1, b = -1;      ///< published markers
-  Index row = -1, rows = 0;  ///< none of a compliant joint
-  bool eliminated = false;   ///< from a time step
+  Index a = -1, b = -1;           ///< published markers
+  Index row = -1, rows = 0;       ///< none of a compliant joint
+  bool eliminated = false;        ///< from a time step
+  void const* type = nullptr;     ///< tells types of joints apart
+  Index index = 0;                ///< among the joints of its type
+  LinearRows const* linear = {};  ///< rows of a joint that is linear in coordinates, in the model
 };
 
 struct ForcePlace {
   std::string name = {};
-  void const* type = nullptr;   ///< tells types of forces apart
-  Index index = 0;              ///< among the forces of its type
-  void const* entry = nullptr;  ///< in the model's pool
+  void const* type = nullptr;       ///< tells types of forces apart
+  Index index = 0;                  ///< among the forces of its type
+  void const* force = nullptr;      ///< the force element itself, in the model
+  std::vector<Index> markers = {};  ///< published
   bool is_load = false;
 };
 
@@ -42,6 +51,8 @@ struct ModelLayout {
   std::vector<BodyPlace> bodies = {};
   std::vector<JointPlace> joints = {};
   std::vector<ForcePlace> forces = {};
+  std::vector<Index> owners = {};    ///< of each published marker: the body, −1 for the ground
+  Vec3 gravity = Vec3::Zero();       ///< (3) world axes [m/s²]
   std::vector<double> corners = {};  ///< times at which a drive or a load wants a step to end
   bool constant_mass = false;
   bool has_groups = false;  ///< of forces

@@ -65,6 +65,30 @@ void add_corners(Law const& law, std::vector<double>& all) {
     for (double const t : law.corners()) all.push_back(t);
 }
 
+/// Type and index of elements that come type by type.
+struct CountOfType {
+  void const* type = nullptr;
+  Index index = -1;
+  template <class T>
+  void next() {
+    index = type == &type_tag<T> ? index + 1 : 0;
+    type = &type_tag<T>;
+  }
+};
+
+/// The body of each published marker, by its place in the layout; −1 for the ground.
+template <class M>
+std::vector<Index> owners_of_markers(M const& model) {
+  std::vector<Index> owners(std::size_t(model.markers()), -1);
+  Index before = 0;
+  auto const note = [&](auto const& pool) {
+    for (auto const& m : pool.markers) owners[std::size_t(m.published)] = before + m.body;
+    before += Index(pool.entries.size());
+  };
+  std::apply([&](auto const&... pool) { (note(pool), ...); }, model.body_pools());
+  return owners;
+}
+
 }  // namespace detail
 
 /// Counts, places and names of `model`, which must outlive what is done with them.
@@ -75,27 +99,31 @@ ModelLayout layout_of(M const& model) {
                   .speeds = model.speeds(),
                   .rows = model.rows(),
                   .velocity_rows = model.velocity_rows(),
+                  .owners = detail::owners_of_markers(model),
+                  .gravity = model.gravity().g,
                   .constant_mass = M::constant_mass,
                   .has_groups = M::has_groups};
+  detail::CountOfType count;
   model.for_each_body([&](auto const& e) {
     using B = std::decay_t<decltype(e.body)>;
+    count.next<B>();
     Index own = 0;
     if constexpr (OwnsRows<B>) own = B::own_rows;
-    out.bodies.push_back(
-        {e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own, B::world == World::plane});
+    out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own,
+                          B::world == World::plane, count.type, count.index, &e.body});
   });
   model.for_each_joint([&](auto const& e) {
-    using P = typename std::decay_t<decltype(e.joint)>::PolicyType;
-    out.joints.push_back({e.name, e.a, e.b, e.row, e.rows, Eliminates<P>});
+    using J = std::decay_t<decltype(e.joint)>;
+    count.next<J>();
+    LinearRows const* const linear = e.linear < 0 ? nullptr : &model.linear_rows()[std::size_t(e.linear)];
+    out.joints.push_back(
+        {e.name, e.a, e.b, e.row, e.rows, Eliminates<typename J::PolicyType>, count.type, count.index, linear});
     detail::add_corners(e.joint.geometry, out.corners);
   });
-  void const* type = nullptr;
-  Index index = 0;
   model.for_each_force([&](auto const& e) {
     using F = std::decay_t<decltype(e.force)>;
-    index = type == &detail::type_tag<F> ? index + 1 : 0;
-    type = &detail::type_tag<F>;
-    out.forces.push_back({e.name, type, index, &e, F::is_load});
+    count.next<F>();
+    out.forces.push_back({e.name, count.type, count.index, &e.force, {e.markers.begin(), e.markers.end()}, F::is_load});
     if constexpr (requires { e.force.law; }) detail::add_corners(e.force.law, out.corners);
   });
   return out;

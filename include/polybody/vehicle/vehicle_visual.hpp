@@ -39,8 +39,8 @@ inline Surface toothed_wheel(double width) {
 
 /// Hull, wheels with their rims, arms, sprockets with their teeth, and shoes with their horns; cables are swept.
 template <class V>
-Visual<typename V::ModelType> vehicle_visual(V const& vehicle) {
-  Visual<typename V::ModelType> visual(vehicle.model);
+Visual vehicle_visual(V const& vehicle) {
+  Visual visual(vehicle.model);
   Vec3 const y = Vec3::UnitY();
   visual.attach(vehicle.chassis[0].at(Vec3(0.1, 0, 0.35)), box({4.6, 1.5, 0.9}), "hull");
   visual.attach(vehicle.chassis[0].at(Vec3(0.1, 0, 0.55)), box({4.6, 2.54, 0.5}), "sponsons");

@@ -21,8 +21,7 @@ concept HasSections = requires(B const b, typename B::Point p, std::span<double 
   { b.section_forces(p, q) } -> std::convertible_to<Vec6>;
 };
 
-namespace detail {
-/// A point's place off the axis, as far as its type has one.
+/// (y, z) of a point off the axis [m]; zero where its type has none.
 template <class P>
 Vec2 off_axis(P const& p) {
   Vec2 x = Vec2::Zero();
@@ -30,7 +29,6 @@ Vec2 off_axis(P const& p) {
   if constexpr (requires { p.z; }) x[1] = p.z;
   return x;
 }
-}  // namespace detail
 
 /// Strain of the fibre (y, z) of a section that stays plane: ε − y κ_z + z κ_y.
 inline double fibre_strain(Vec6 const& strains, double y, double z) {

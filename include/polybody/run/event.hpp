@@ -1,0 +1,17 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include <polybody/system/state.hpp>
+
+namespace polybody {
+
+/// Something that happens when `value` passes through zero (in either direction). The step ends there.
+struct Event {
+  std::string name;
+  std::function<double(State const&)> value;
+  bool stops = false;        ///< ends the run
+  double tolerance = 1e-10;  ///< in time [s]
+};
+
+}  // namespace polybody

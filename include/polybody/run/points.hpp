@@ -1,0 +1,42 @@
+#pragma once
+/// \file
+/// Questions about a single body in a state: frames of its points, its coordinates and speeds.
+
+#include <polybody/system/places.hpp>
+
+namespace polybody {
+
+/// Frame of a material point of a body.
+template <class B>
+Frame<double> frame(BodyInState<B> const& body, typename B::Point const& point) {
+  std::vector<double> jacobian;
+  return publish(body, point, jacobian).frame;
+}
+/// Frame of a material point in state x. \throws InvalidInput for a marker of another model.
+template <class M, class B>
+Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
+  return frame(body_in_state(model, x, marker, "frame"), marker.point);
+}
+template <class M>
+Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) {
+  model.require_own(marker.model, "frame");
+  return {.r = marker.point.origin, .A = marker.point.axes};
+}
+
+/// Position of a material point [m].
+template <class M, class B>
+Vec3 position(M const& model, State const& x, Marker<B> const& marker) {
+  return frame(model, x, marker).r;
+}
+
+/// Coordinates of one body in state x, to be handed to the body's own questions (strains, centre line).
+template <class M, class B>
+std::span<double const> coordinates_of(M const& model, State const& x, BodyHandle<B> const& handle) {
+  return body_in_state(model, x, handle).q;
+}
+template <class M, class B>
+std::span<double const> speeds_of(M const& model, State const& x, BodyHandle<B> const& handle) {
+  return body_in_state(model, x, handle).v;
+}
+
+}  // namespace polybody

@@ -1,0 +1,102 @@
+#pragma once
+/// \file
+/// Where a handle's body, joint or force stands in a layout, and a body with its part of a state: what questions about
+/// one part of a model are answered from.
+
+#include <span>
+
+#include <polybody/bodies/shared/body.hpp>
+#include <polybody/kinematics/marker.hpp>
+#include <polybody/system/layout.hpp>
+#include <polybody/system/markers.hpp>
+#include <polybody/system/state.hpp>
+
+namespace polybody {
+
+/// \throws InvalidInput naming `what` unless a handle or marker of the model with this serial number is of this one.
+template <class = void>
+void require_own(ModelLayout const& layout, std::uint64_t serial, std::string const& what) {
+  if (serial != layout.serial) detail::refuse_marker_of_another_model(what);
+}
+
+namespace detail {
+/// The place of the T with this index among those of its type. \throws InvalidInput naming `what` where the model that
+/// it belongs to is not that of the places.
+template <class T, class Place>
+Index index_of(std::vector<Place> const& places, bool own, Index index, std::string const& what) {
+  if (own)
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (places[i].type == &type_tag<T> && places[i].index == index) return Index(i);
+  refuse_marker_of_another_model(what);
+}
+}  // namespace detail
+
+/// Index of a body in `layout.bodies`. \throws InvalidInput for a handle of another model, or one made by default.
+template <class B>
+Index index_of(ModelLayout const& layout, BodyHandle<B> const& handle) {
+  detail::require_filled(handle.model);
+  return detail::index_of<B>(layout.bodies, handle.model == layout.serial, handle.index, handle.name);
+}
+/// Index of a marker's body in `layout.bodies`. \throws InvalidInput naming `what` for a marker of another model.
+template <class B>
+Index index_of(ModelLayout const& layout, Marker<B> const& marker, std::string const& what) {
+  return detail::index_of<B>(layout.bodies, marker.model == layout.serial, marker.body, what);
+}
+/// Index of a joint in `layout.joints`, `RowBlock::owner` of its rows. \throws InvalidInput as above.
+template <class J>
+Index index_of_joint(ModelLayout const& layout, ElementHandle<J> const& handle) {
+  detail::require_filled(handle.model);
+  return detail::index_of<J>(layout.joints, handle.model == layout.serial, handle.index, handle.name);
+}
+/// Index of a force element in `layout.forces`, `Action::source` of its wrenches. \throws InvalidInput as above.
+template <class F>
+Index index_of_force(ModelLayout const& layout, ElementHandle<F> const& handle) {
+  detail::require_filled(handle.model);
+  return detail::index_of<F>(layout.forces, handle.model == layout.serial, handle.index, handle.name);
+}
+
+/// A body with its own coordinates and speeds in a state; it refers to both.
+template <class B>
+struct BodyInState {
+  B const& body;
+  std::span<double const> q, v;
+};
+
+namespace detail {
+template <class B, class Entry>
+BodyInState<B> entry_in_state(Entry const& e, State const& x) {
+  return {e.body, body_part(x.q, e.q0, e.body.coordinates()), body_part(x.v, e.v0, e.body.speeds())};
+}
+}  // namespace detail
+
+/// \param place of a body of type B
+template <class B>
+BodyInState<B> body_in_state(BodyPlace const& place, State const& x) {
+  return {*static_cast<B const*>(place.body), detail::body_part(x.q, place.q0, place.coordinates),
+          detail::body_part(x.v, place.v0, place.speeds)};
+}
+/// \throws InvalidInput for a handle of another model.
+template <class M, class B>
+BodyInState<B> body_in_state(M const& model, State const& x, BodyHandle<B> const& handle) {
+  return detail::entry_in_state<B>(model.entry(handle), x);
+}
+/// The body of a marker. \throws InvalidInput for one of another model, naming `question`.
+template <class M, class B>
+BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& marker, std::string const& question) {
+  model.require_own(marker.model, question);
+  return detail::entry_in_state<B>(std::get<detail::BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)],
+                                   x);
+}
+
+/// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
+template <class B>
+Published<double> publish(BodyInState<B> const& b, typename B::Point const& point, std::vector<double>& jacobian) {
+  Published<double> p;
+  p.columns = point_columns(b.body, point);
+  jacobian.resize(std::size_t(6 * p.columns));
+  p.jacobian = jacobian.data();
+  b.body.template publish<double>(point, Mat3::Identity(), b.q, b.v, p);
+  return p;
+}
+
+}  // namespace polybody
