@@ -27,17 +27,18 @@ Powers powers(System const& system, State const& x) {
 /// An account of a run, state by state; powers are integrated by the trapezoidal rule, energies are exact:
 ///   EnergyAudit audit(model);
 ///   for (State const& now : simulate(model, x, integrator, options)) audit.record(now);
-/// What is unaccounted is the doing of the numbers: what the integrator loses or gains, and what sampling misses. That
-/// is h²/12 of what the slopes of the powers grow by [Euler and Maclaurin], and about ½ h of each jump (loads at
-/// corners, contacts with dampers at touch). States must have the multipliers of their own time. Those of `simulate`
-/// have, also for joints whose rows are eliminated (Recursive, AncfLinear), as it works out what these hold. A state
-/// put together by hand has not; nor have those of `EnergyMomentum` and `EnergyDecaying`, whose multipliers belong to
-/// the middle of the step: there the drives are right to O(h). A record takes no memory from the heap, but for bodies
-/// whose kinetic energy does (floating frames). The model must outlive the audit and must not change after.
-class EnergyAudit {
+/// What is unaccounted is numerical: what the integrator loses or gains, and the error of the trapezoidal rule. The
+/// rule errs by h²/12 times the growth of the powers' slopes [Euler and Maclaurin], and by about ½ h times each jump
+/// (loads at corners, contacts with dampers at touch). States must have the multipliers of their own time. The states
+/// of `simulate` have them, also for joints whose rows are eliminated (Recursive, AncfLinear). States put together by
+/// hand do not have them, nor do those of `EnergyMomentum` and `EnergyDecaying`, whose multipliers belong to the middle
+/// of the step: there the work of drives is right to O(h). A record does not allocate, except where the kinetic energy
+/// of a body does (floating frames). The model must outlive the audit and must not change after.
+template <class = void>  // compiled where it is used
+class EnergyAuditOf {
  public:
   template <class M>
-  explicit EnergyAudit(M const& model)
+  explicit EnergyAuditOf(M const& model)
       : system_(model, with<Entries::energy>), backwards_(VecX::Zero(model.speeds())) {}
 
   /// Begins anew at x. \throws InvalidInput when x does not fit the model.
@@ -50,8 +51,8 @@ class EnergyAudit {
     started_ = true;
   }
 
-  /// Adds what happened since the last state; the first one begins. \throws InvalidInput for a state of another model,
-  /// or earlier than the last one.
+  /// Adds the works since the last state; the first state begins the account. \throws InvalidInput for a state of
+  /// another model, or earlier than the last one.
   void record(State const& x) {
     if (!started_) return start(x);
     if (x.q.size() != system_.coordinates() || x.v.size() != system_.speeds() || x.lambda.size() != system_.rows())
@@ -84,7 +85,8 @@ class EnergyAudit {
   double unaccounted() const {
     return work_of_drives() + work_of_loads() + work_of_gravity() - kinetic() - stored() - dissipated();
   }
-  /// Its size against the largest sum so far of what came in, or of what it became, or the largest kinetic energy.
+  /// |unaccounted| relative to the largest value so far of the work put in, of what it became, or of the kinetic
+  /// energy.
   double relative() const { return turnover_ > 0.0 ? std::abs(unaccounted()) / turnover_ : 0.0; }
 
   /// In the last state.
@@ -106,5 +108,7 @@ class EnergyAudit {
   double t_ = 0.0, turnover_ = 0.0;
   bool started_ = false;
 };
+
+using EnergyAudit = EnergyAuditOf<>;
 
 }  // namespace polybody

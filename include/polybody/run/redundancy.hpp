@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How many of a model's rows say something new: the rank of G by a sparse rank-revealing QR factorisation of Gᵀ.
+/// How many of a model's rows are independent: the rank of G by a sparse rank-revealing QR factorisation of Gᵀ.
 
 #include <Eigen/SparseQR>
 
@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// What the rows of a model do at a state.
+/// Rank and contradictions of a model's rows at a state.
 struct Redundancy {
   struct Share {
     std::string name;  ///< joint "a"
@@ -28,6 +28,7 @@ struct Redundancy {
 namespace detail {
 
 /// Takes G out of the blocks of a tangent, transposed.
+template <class = void>  // compiled where it is used
 struct RowsSink {
   Index speeds;
   std::vector<Eigen::Triplet<double>>& entries;
@@ -105,16 +106,16 @@ class RowFactor {
 
 }  // namespace detail
 
-/// Counts and names the rows of `model` that repeat others at x (its place, speeds and time). A factorisation of its
-/// own: a run finds rows that repeat others by itself (`RunReport::redundant`, where another joint of the same loop may
-/// be named). A contradiction in positions is one to first order: ask where `assemble` came as near as it could.
+/// Counts and names the rows of `model` that repeat others at x (its place, speeds and time), by a factorisation of its
+/// own. A run finds such rows by itself, too, but may name another joint of the same loop (`RunReport::redundant`). A
+/// contradiction in positions is found to first order: ask at the state where `assemble` stopped.
 /// \throws InvalidInput for a state of another model.
 template <class = void>
 Redundancy redundancy(System& system, State const& x) {
   require_fitting(system, x);
   system.evaluate(x.q, x.v, x.t);
   std::vector<Eigen::Triplet<double>> entries;
-  detail::RowsSink sink{system.speeds(), entries};
+  detail::RowsSink<> sink{system.speeds(), entries};
   VecX phi = VecX::Zero(system.rows()), rate = phi, gamma = phi;
   system.masses(sink);
   detail::RowFactor<> const factor(system.speeds(), system.rows(), entries);
