@@ -7,6 +7,8 @@ set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/polybody)
 
 install(TARGETS polybody EXPORT polybodyTargets FILE_SET HEADERS FILE_SET optional)
 install(EXPORT polybodyTargets NAMESPACE polybody:: DESTINATION ${package_dir})
+install(TARGETS polybody_testing EXPORT polybodyTestingTargets FILE_SET HEADERS)
+install(EXPORT polybodyTestingTargets NAMESPACE polybody:: DESTINATION ${package_dir})
 
 # polybodyConfig.cmake, good for both trees: it loads polybodyTargets.cmake, polybodyPrecompile.cmake and
 # polybodyCompiled.cmake beside it.
@@ -26,11 +28,13 @@ install(FILES ${PROJECT_BINARY_DIR}/polybodyConfig.cmake ${PROJECT_BINARY_DIR}/p
 
 # The build tree: -Dpolybody_DIR=<build directory>.
 export(EXPORT polybodyTargets NAMESPACE polybody:: FILE polybodyTargets.cmake)
+export(EXPORT polybodyTestingTargets NAMESPACE polybody:: FILE polybodyTestingTargets.cmake)
 
-# polybody.pc: paths are relative to the file itself, so the installed tree may be moved.
+# polybody.pc and polybody-testing.pc: paths are relative to the file itself, so the installed tree may be moved.
 set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 file(RELATIVE_PATH pc_to_prefix ${CMAKE_INSTALL_FULL_DATADIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 configure_file(cmake/polybody.pc.in polybody.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/polybody.pc DESTINATION ${pkgconfig_dir})
+configure_file(cmake/polybody-testing.pc.in polybody-testing.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/polybody.pc ${PROJECT_BINARY_DIR}/polybody-testing.pc DESTINATION ${pkgconfig_dir})
 
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

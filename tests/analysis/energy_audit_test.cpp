@@ -18,12 +18,13 @@
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/run/simulate.hpp>
+#include <polybody/testing/differences.hpp>
 
-#include "support/differences.hpp"
 #include "support/mixed_models.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace energy_audit_test {
 

@@ -5,12 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/testing/differences.hpp>
+
 #include <random>
 
-#include "support/differences.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace ancf_beam_reference_test {
 
 static_assert(AlikeElements<AncfBeam<>> && AlikeElements<AncfBeam<Continuum<>>>);

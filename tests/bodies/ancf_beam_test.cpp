@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "support/flexible_body_laws.hpp"
+#include <polybody/testing/flexible_body_laws.hpp>
 
 namespace polybody {
+using namespace laws;
 namespace ancf_beam_test {
 
 struct ElasticLineCase {

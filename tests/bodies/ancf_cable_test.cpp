@@ -4,11 +4,12 @@
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/shared/element_batches.hpp>
+#include <polybody/testing/flexible_body_laws.hpp>
 
-#include "support/flexible_body_laws.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace ancf_cable_test {
 
 template <class Strain>

@@ -6,11 +6,11 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/testing/differences.hpp>
 #include <vector>
 
-#include "support/differences.hpp"
-
 namespace polybody {
+using namespace laws;
 namespace body_test {
 
 static_assert(Body<Rigid<>> && Body<Rigid<UnitQuaternion>>);

@@ -9,11 +9,12 @@
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
+#include <polybody/testing/flexible_body_laws.hpp>
 
-#include "support/flexible_body_laws.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace cholesky_coordinates_test {
 
 using Cable = CholeskyCoordinates<AncfCable<>>;

@@ -2,9 +2,10 @@
 // stiffening, modes, mean axes, and a frame of two bars.
 #include <polybody/bodies/ffr/ffr.hpp>
 
-#include "support/flexible_body_laws.hpp"
+#include <polybody/testing/flexible_body_laws.hpp>
 
 namespace polybody {
+using namespace laws;
 namespace ffr_laws_test {
 
 struct NodalFfrCase {

@@ -2,10 +2,12 @@
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
-#include "support/body_laws.hpp"
+#include <polybody/testing/body_laws.hpp>
+
 #include "support/spatial_lrvf.hpp"
 
 namespace polybody {
+using namespace laws;
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(BodyLaws);
 namespace lrvf_curved_test {
 
@@ -30,7 +32,7 @@ struct CurvedLrvf : testing::Test, BodyLaws<CurvedCase> {};
 
 TEST_F(CurvedLrvf, NodesStandOnTheCurveWithoutStrain) {
   VecX const q = reference(), rest = VecX::Zero(nv);
-  Placement const& place = bar.placement;
+  Placement const place = CurvedCase::bar().placement;
   for (int i = 0; i <= 3; ++i) {
     double const s = i * 1.3 / 3.0;
     Placement const expected = helix(1.5, 0.8)(s);

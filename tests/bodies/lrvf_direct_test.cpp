@@ -2,12 +2,14 @@
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
+#include <polybody/testing/differences.hpp>
+
 #include <numbers>
 
-#include "support/differences.hpp"
 #include "support/spatial_lrvf.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace lrvf_direct_test {
 
 double const pi = std::numbers::pi;

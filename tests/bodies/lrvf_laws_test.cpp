@@ -2,10 +2,12 @@
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
-#include "support/flexible_body_laws.hpp"
+#include <polybody/testing/flexible_body_laws.hpp>
+
 #include "support/spatial_lrvf.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace lrvf_laws_test {
 
 struct SpatialLrvfCase {

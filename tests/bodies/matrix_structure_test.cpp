@@ -4,11 +4,12 @@
 #include <filesystem>
 
 #include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/testing/body_laws.hpp>
 
-#include "support/body_laws.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace matrix_structure_test {
 
 /// n equal trilinear bricks in a row along x, from `corner`; isotropic, of the total size `size`. Nodes: four of x = 0,

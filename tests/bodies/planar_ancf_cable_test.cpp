@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "support/flexible_body_laws.hpp"
+#include <polybody/testing/flexible_body_laws.hpp>
 
 namespace polybody {
+using namespace laws;
 namespace planar_ancf_cable_test {
 
 using planar::AncfCable, planar::EngineeringStrain, planar::GreenStrain;

@@ -1,9 +1,10 @@
 // The floating frame of reference in the plane obeys the laws of every body.
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 
-#include "support/flexible_body_laws.hpp"
+#include <polybody/testing/flexible_body_laws.hpp>
 
 namespace polybody {
+using namespace laws;
 namespace planar_ffr_laws_test {
 
 struct PlanarFfrCase {

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/flexible_body_laws.hpp"
+#include <polybody/testing/flexible_body_laws.hpp>
+
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace planar_lrvf_test {
 
 struct LrvfCase {

@@ -10,10 +10,10 @@
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
-
-#include "support/body_laws.hpp"
+#include <polybody/testing/body_laws.hpp>
 
 namespace polybody {
+using namespace laws;
 namespace rigid_euler_parameters_test {
 
 struct EulerCase {

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/body_laws.hpp"
+#include <polybody/testing/body_laws.hpp>
+
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace rigid_test {
 
 struct RigidCase {

@@ -10,11 +10,12 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/system/system.hpp>
+#include <polybody/testing/frames.hpp>
 
-#include "support/frames.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace sliding_test {
 

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/contact_laws.hpp"
+#include <polybody/testing/contact_laws.hpp>
+
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace contact_test {
 

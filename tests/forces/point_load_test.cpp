@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/force_differences.hpp"
+#include <polybody/testing/force_differences.hpp>
+
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace point_load_test {
 

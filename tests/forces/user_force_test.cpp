@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "support/force_differences.hpp"
+#include <polybody/testing/force_differences.hpp>
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace user_force_test {
 

@@ -5,11 +5,12 @@
 #include <Eigen/Eigenvalues>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/testing/integrator_laws.hpp>
 
 #include "support/integrator_cases.hpp"
-#include "support/integrator_laws.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace central_difference_test {
 
@@ -24,12 +25,14 @@ struct CentralDifferenceOnBar {
   static auto integrators() { return std::vector<CentralDifference<Projection>>(1); }
   static constexpr double until = 0.5;
   static constexpr int steps = 32;
+  static constexpr bool keeps_accelerations = false;  // they belong to the predicted speeds
 };
 struct CentralDifferenceOnTop {
   using Model = SlowTop;
   static auto integrators() { return std::vector<CentralDifference<Projection>>(1); }
   static constexpr double until = 0.5;
   static constexpr int steps = 64;
+  static constexpr bool keeps_accelerations = false;  // they belong to the predicted speeds
 };
 
 }  // namespace central_difference_test

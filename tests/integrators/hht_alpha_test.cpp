@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/testing/integrator_laws.hpp>
+
 #include "support/integrator_cases.hpp"
-#include "support/integrator_laws.hpp"
 #include "support/oscillator.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace hht_alpha_test {
 

@@ -5,13 +5,14 @@
 #include <complex>
 
 #include <polybody/forces/user_force.hpp>
+#include <polybody/testing/integrator_laws.hpp>
 
 #include "support/integrator_cases.hpp"
-#include "support/integrator_laws.hpp"
 #include "support/oscillator.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace radau_test {
 

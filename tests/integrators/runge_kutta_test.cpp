@@ -3,12 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <polybody/forces/user_force.hpp>
+#include <polybody/testing/integrator_laws.hpp>
 
 #include "support/integrator_cases.hpp"
-#include "support/integrator_laws.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace runge_kutta_test {
 

@@ -4,11 +4,12 @@
 
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
+#include <polybody/testing/integrator_laws.hpp>
 
 #include "support/integrator_cases.hpp"
-#include "support/integrator_laws.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace stabilised_alpha_test {
 

@@ -9,11 +9,12 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/rolling_disc.hpp>
+#include <polybody/testing/integrator_laws.hpp>
 
-#include "support/integrator_laws.hpp"
 #include "support/solver_instances.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace velocity_rows_test {
 
 /// A disc of 0.4 m that rolls and wobbles; its axis leans by 0.35 rad.

@@ -6,13 +6,15 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/frames.hpp>
+
 #include <Eigen/LU>
 
-#include "support/differences.hpp"
-#include "support/frames.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace bushing_test {
 

@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "support/frames.hpp"
+#include <polybody/testing/frames.hpp>
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace gap_test {
 

@@ -4,11 +4,12 @@
 
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/testing/joint_laws.hpp>
 
-#include "support/joint_laws.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace knife_edge_test {
 

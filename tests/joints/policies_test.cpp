@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "support/differences.hpp"
-#include "support/frames.hpp"
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/frames.hpp>
+
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace policies_test {
 

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/joint_laws.hpp"
+#include <polybody/testing/joint_laws.hpp>
+
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace prescribed_angle_test {
 

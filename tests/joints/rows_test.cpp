@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/frames.hpp"
+#include <polybody/testing/frames.hpp>
+
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace rows_test {
 

@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "support/joint_laws.hpp"
+#include <polybody/testing/joint_laws.hpp>
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace weld_test {
 

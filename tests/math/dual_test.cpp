@@ -2,14 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/testing/differences.hpp>
+
 #include <Eigen/Dense>
 #include <limits>
 #include <numbers>
 #include <type_traits>
 
-#include "support/differences.hpp"
-
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace dual_test {
 

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/testing/differences.hpp>
+
 #include <numbers>
 
-#include "support/differences.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace monotone_table_test {
 

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/differences.hpp"
+#include <polybody/testing/differences.hpp>
+
 #include "support/refusal.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace smooth_table_test {
 

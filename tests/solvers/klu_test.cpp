@@ -3,9 +3,10 @@
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/klu.hpp>
 
-#include "support/linear_solver_laws.hpp"
+#include <polybody/testing/linear_solver_laws.hpp>
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace polybody::test {
 bool const klu_obeys = obeys<Klu, LinearSolvers>("Klu");
@@ -14,7 +15,7 @@ bool const klu_obeys = obeys<Klu, LinearSolvers>("Klu");
 namespace klu_test {
 
 template <class Solver>
-Solver analysed(Solver solver, test::Blocks const& blocks) {
+Solver analysed(Solver solver, laws::Blocks const& blocks) {
   PatternSink pattern;
   blocks.write(pattern, 1);
   solver.analyse(blocks.size(), pattern.blocks);
@@ -22,14 +23,14 @@ Solver analysed(Solver solver, test::Blocks const& blocks) {
 }
 
 TEST(Klu, SolvesInAnOrderThatIsGiven) {
-  test::Blocks const blocks{8};
+  laws::Blocks const blocks{8};
   auto block = analysed(BlockLdlt(), blocks);
   auto klu = analysed(Klu(block.order()), blocks);
   for (unsigned const seed : {1u, 2u}) {
     klu.begin();
     blocks.write(klu, seed);
     ASSERT_EQ(klu.factor(), -1);
-    MatX const a = test::plain(blocks, seed);
+    MatX const a = laws::plain(blocks, seed);
     VecX const expected = VecX::Random(blocks.size());
     VecX x = a * expected;
     klu.solve(x, x);
@@ -38,7 +39,7 @@ TEST(Klu, SolvesInAnOrderThatIsGiven) {
 }
 
 TEST(Klu, RefusesAnOrderThatIsNone) {
-  EXPECT_THROW(analysed(Klu(std::vector<int>(88, 3)), test::Blocks{8}), InvalidInput);
+  EXPECT_THROW(analysed(Klu(std::vector<int>(88, 3)), laws::Blocks{8}), InvalidInput);
 }
 
 // Kept pivots that have become tiny: they are chosen anew.

@@ -4,9 +4,10 @@
 #include <polybody/solvers/block_lu.hpp>
 #include <polybody/solvers/refined.hpp>
 
-#include "support/linear_solver_laws.hpp"
+#include <polybody/testing/linear_solver_laws.hpp>
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace polybody::test {
 
@@ -19,7 +20,7 @@ bool const linear_solver_obey[] = {
 
 // Masses of 1 and 1e9 beside each other, known solution: refinement leaves a residual of rounding size.
 TEST(Refined, LeavesLessThanTheSolverAlone) {
-  test::Blocks const blocks{12};
+  laws::Blocks const blocks{12};
   Eigen::VectorXd scale(blocks.size());
   for (Index i = 0; i < scale.size(); ++i) scale[i] = i % 3 == 0 ? 1e5 : 1.0;
   struct Scaled {

@@ -5,9 +5,8 @@
 #include <vector>
 
 #include <polybody/forces/contact.hpp>
-
-#include "support/differences.hpp"
-#include "support/frames.hpp"
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/frames.hpp>
 
 namespace polybody {
 
@@ -31,11 +30,13 @@ int expect_contact_duals(G const& geometry, Frame<double> const& link, Frame<dou
     return all;
   };
   std::vector<ContactPoint<D>> found;
-  geometry.template for_each_point<D>(moved<D>(link, motion.cast<D>() * D::variable(0.0, 0)),
-                                      moved<D>(other, Vec<D, 6>::Zero()),
+  geometry.template for_each_point<D>(laws::moved<D>(link, motion.cast<D>() * D::variable(0.0, 0)),
+                                      laws::moved<D>(other, Vec<D, 6>::Zero()),
                                       [&](ContactPoint<D> const& p) { found.push_back(p); });
-  VecX const slope = slope_at_zero(
-      [&](double h) { return VecX(stacked(contact_points(geometry, moved<double>(link, Vec6(motion * h)), other))); },
+  VecX const slope = laws::slope_at_zero(
+      [&](double h) {
+        return VecX(stacked(contact_points(geometry, laws::moved<double>(link, Vec6(motion * h)), other)));
+      },
       1e-6);
   auto const all = stacked(found);
   EXPECT_EQ(all.size(), slope.size());

@@ -18,8 +18,7 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/system/system.hpp>
-
-#include "support/frames.hpp"
+#include <polybody/testing/frames.hpp>
 
 namespace polybody {
 
@@ -120,7 +119,7 @@ struct MixedPlane {
 /// A state away from the reference: coordinates, speeds, accelerations, multipliers, t = 1.3.
 template <class M>
 State scrambled(M const& model, unsigned seed = 1) {
-  Numbers number(seed);
+  laws::Numbers number(seed);
   State x = model.reference_state();
   VecX q = x.q;
   System(model).plus(q, number.vector(model.speeds(), 0.4), x.q);

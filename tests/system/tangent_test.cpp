@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/differences.hpp"
+#include <polybody/testing/differences.hpp>
+
 #include "support/mixed_models.hpp"
 
 using namespace polybody;
+using namespace polybody::laws;
 
 namespace tangent_test {
 

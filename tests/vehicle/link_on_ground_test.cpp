@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/frames.hpp>
+
 #include "support/contact_points.hpp"
-#include "support/differences.hpp"
-#include "support/frames.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace link_on_ground_test {
 
 double const nan = std::numeric_limits<double>::quiet_NaN();

@@ -5,14 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/frames.hpp>
 #include <polybody/vehicle/m113.hpp>
 
 #include "support/contact_points.hpp"
-#include "support/differences.hpp"
-#include "support/frames.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace pin_on_sprocket_test {
 
 constexpr double pi = std::numbers::pi, degree = pi / 180.0;

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/testing/differences.hpp>
+
 #include <random>
 
-#include "support/differences.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
+using namespace laws;
 namespace terrain_test {
 
 constexpr double pi = std::numbers::pi;

@@ -1,8 +1,10 @@
 #pragma once
 /// \file
 /// Derivatives by central differences of fourth order.
+///
+/// Not in polybody.hpp: for tests.
 
-namespace polybody {
+namespace polybody::laws {
 
 /// f′(0) of a function of one number, with values in double or in Eigen vectors:
 /// [8 (f(h) − f(−h)) − (f(2h) − f(−2h))]/12h, error h⁴ f⁽⁵⁾/30  [Abramowitz & Stegun 1964, 25.3.21].
@@ -13,4 +15,4 @@ auto slope_at_zero(F&& f, double h = 1e-3) {
   return Value((near * 8.0 - far) / (12.0 * h));
 }
 
-}  // namespace polybody
+}  // namespace polybody::laws

@@ -1,15 +1,19 @@
 #pragma once
-// What every linear solver must do, on the same matrices:
-//   bool const obeyed = obeys<DenseLu, LinearSolvers>("DenseLu");
-#include <gtest/gtest.h>
+/// \file
+/// The laws that every linear solver obeys, on the same matrices. The solver is its own case:
+///
+///     bool const dense_lu_obeys = obeys<DenseLu, LinearSolvers>("DenseLu");
+///
+/// Not in polybody.hpp: needs GoogleTest.
+
+#include <cstdlib>
 
 #include <Eigen/Dense>
 
 #include <polybody/solvers/linear_solver.hpp>
+#include <polybody/testing/laws.hpp>
 
-#include "support/laws.hpp"
-
-namespace polybody::test {
+namespace polybody::laws {
 
 /// Bodies of six columns in a row, joints of five rows between neighbours: [M, Gᵀ; G, 0], with blocks that
 /// overlap (a second spring on body 0) and come in a fixed order.
@@ -65,9 +69,13 @@ struct LinearSolvers {
     return solver;
   }
 
+  /// |x − A⁻¹b| < 1e-10 |A⁻¹b| for several matrices of one pattern, and several b of one factorisation.
   void solve_what_full_pivoting_solves();
+  /// `factor` names a column of the zero matrix, and serves a sound one afterwards.
   void name_a_column_of_a_singular_matrix();
+  /// Where two joints have the same rows, `factor` names a column of one; or the solver drops its rows and tells them.
   void name_one_of_two_equal_joints();
+  /// A system without unknowns is factored and solved.
   void nothing_is_solved_at_once();
 
   static constexpr char const* suite = "LinearSolvers";
@@ -159,4 +167,4 @@ void LinearSolvers<Solver>::nothing_is_solved_at_once() {
   EXPECT_EQ(x.size(), 0);
 }
 
-}  // namespace polybody::test
+}  // namespace polybody::laws

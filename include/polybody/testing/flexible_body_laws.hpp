@@ -1,30 +1,37 @@
 #pragma once
 /// \file
-/// What a body that deforms owes beyond BodyLaws; with the same case:
+/// What a body that deforms owes beyond BodyLaws; with the same case, whose body is damped:
 ///
-///     bool const obeyed = obeys<LrvfCase, FlexibleBodyLaws>("Lrvf");
+///     bool const lrvf_obeys = obeys<LrvfCase, BodyLaws, FlexibleBodyLaws>("Lrvf");
+///
+/// A case without a Bar also says
+///
+///     static Dumbbell elsewhere();  // the same body placed elsewhere and turned
+///
+/// Not in polybody.hpp: needs GoogleTest.
 
-#include "support/body_laws.hpp"
+#include <polybody/testing/body_laws.hpp>
 
-namespace polybody {
+namespace polybody::laws {
 
 template <class Case>
 struct FlexibleBodyLaws : BodyLaws<Case> {
-  typename BodyLaws<Case>::B const undamped = [] {
-    Bar bar = Case::bar();
-    bar.damping = {};
-    return Case::body(bar);
-  }();
+  typename BodyLaws<Case>::B const undamped = BodyOf<Case>::undamped();
   /// Elastic force and that of damping, without what inertia adds at speeds.
   VecX damping_force(VecX const& q, VecX const& v) {
     return this->template force<double>(q, v) - this->template force_of<double>(undamped, q, v);
   }
   VecX internal_force(VecX const& q, VecX const& v) { return this->force_at_rest(q) + damping_force(q, v); }
 
+  /// The case's configuration has U > 0, f ≠ 0 and a damping force, so that the other laws compare numbers, not zeros.
   void deformation_is_resisted_and_damped();
+  /// f = 0 and U = 0 in the reference of the same body placed elsewhere: a rigid motion of its own.
   void rigid_motion_strains_nothing();
+  /// f·v = 0 for v of a rigid motion superposed on any state, damping included.
   void internal_forces_are_in_equilibrium();
+  /// f(q, v) = f(q, 0) for v of a rigid motion.
   void rigid_velocity_is_not_damped();
+  /// Damping takes vᵀD v > 0, D = Dᵀ = −∂f/∂v, out of the motion.
   void damping_takes_energy();
 
   static constexpr char const* suite = "FlexibleBodyLaws";
@@ -36,7 +43,6 @@ struct FlexibleBodyLaws : BodyLaws<Case> {
       {"DampingTakesEnergy", &FlexibleBodyLaws::damping_takes_energy}};
 };
 
-// The cases of this suite are such that the other laws compare numbers, not zeros.
 template <class Case>
 void FlexibleBodyLaws<Case>::deformation_is_resisted_and_damped() {
   VecX const q = this->configuration(), v = this->speeds();
@@ -45,21 +51,25 @@ void FlexibleBodyLaws<Case>::deformation_is_resisted_and_damped() {
   EXPECT_GT(mismatch(this->template force<double>(q, v), this->force_at_rest(q)), 1e-3);
 }
 
-// The same bar placed elsewhere is a rigid motion of the reference.
 template <class Case>
 void FlexibleBodyLaws<Case>::rigid_motion_strains_nothing() {
-  Bar elsewhere = this->bar;
-  elsewhere.placement =
-      this->planar ? Placement::planar(-7.0, 3.0, 2.5) : Placement::at({-7.0, 3.0, 5.0}, {1.0, -0.4, 2.0});
-  auto const other = Case::body(elsewhere);
+  auto const other = [] {
+    if constexpr (MadeFromBar<Case>) {
+      Bar bar = Case::bar();
+      bar.placement = FlexibleBodyLaws::planar ? Placement::planar(-7.0, 3.0, 2.5)
+                                               : Placement::at({-7.0, 3.0, 5.0}, {1.0, -0.4, 2.0});
+      return Case::body(bar);
+    } else {
+      return Case::elsewhere();
+    }
+  }();
   VecX q(this->nq);
   other.reference(mutable_view(q));
-  double const size = this->c.EA + this->c.EI;
+  double const size = BodyOf<Case>::stiffness();
   EXPECT_LT(this->force_at_rest(q).norm(), 1e-10 * size);
   EXPECT_LT(this->strain_energy(q), 1e-20 * size);
 }
 
-// Internal forces, damping included, do no work in a rigid motion superposed on any state.
 template <class Case>
 void FlexibleBodyLaws<Case>::internal_forces_are_in_equilibrium() {
   if (!FlexibleBodyLaws::objective) GTEST_SKIP() << "it says that it is not objective";
@@ -77,7 +87,6 @@ void FlexibleBodyLaws<Case>::rigid_velocity_is_not_damped() {
   EXPECT_LT(this->damping_force(q, v).norm(), 1e-13 * (1.0 + this->force_at_rest(q).norm()));
 }
 
-// Damping takes vᵀ D v, D = −∂f/∂v, out of the motion; never less than nothing.
 template <class Case>
 void FlexibleBodyLaws<Case>::damping_takes_energy() {
   for (int i = 0; i < 20; ++i) {
@@ -92,4 +101,4 @@ void FlexibleBodyLaws<Case>::damping_takes_energy() {
   }
 }
 
-}  // namespace polybody
+}  // namespace polybody::laws

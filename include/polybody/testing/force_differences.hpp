@@ -1,11 +1,17 @@
 #pragma once
+/// \file
+/// The wrenches of a force element as one vector, and their derivatives by differences.
+///
+/// Not in polybody.hpp: for tests.
+
 #include <algorithm>
+#include <array>
+
 #include <polybody/forces/force_element.hpp>
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/frames.hpp>
 
-#include "support/differences.hpp"
-#include "support/frames.hpp"
-
-namespace polybody {
+namespace polybody::laws {
 
 /// All wrenches of a force element, [f; m] for each marker.
 template <ForceElement F>
@@ -46,4 +52,4 @@ double gradient_mismatch(F const& force, std::array<Frame<double>, F::markers> c
   return (given - expected).cwiseAbs().maxCoeff() / (1.0 + expected.cwiseAbs().maxCoeff());
 }
 
-}  // namespace polybody
+}  // namespace polybody::laws

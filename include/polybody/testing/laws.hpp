@@ -1,6 +1,15 @@
 #pragma once
 /// \file
-/// Laws that many types obey, each a test. A suite is a template with its laws as members and a list of them:
+/// Laws that many types obey, each a test of GoogleTest. The suites beside this header are those of the library's own
+/// types: `BodyLaws`, `FlexibleBodyLaws`, `JointLaws`, `PolicyLaws`, `ForceLaws`, `ContactLaws`, `IntegratorLaws`,
+/// `LinearSolvers`, `UserSystemLaws`. A type of your own is tested by one line beside a case that makes it:
+///
+///     bool const bead_obeys = polybody::laws::obeys<BeadCase, polybody::laws::JointLaws>("Bead");
+///
+/// The program links `polybody::testing`, which brings GoogleTest and its main. The namespace is not `testing`, as
+/// `using namespace polybody` would then hide GoogleTest's own.
+///
+/// A suite is a template with its laws as members and a list of them:
 ///
 ///     template <class Case>
 ///     struct SpringLaws {
@@ -10,15 +19,17 @@
 ///     bool const steel_obeys = obeys<SteelCase, SpringLaws>("Steel");  // registers the test
 ///     Steel/SpringLaws.ForceFallsWithLength
 ///
-/// GoogleTest's typed tests do the same with a class for each law and type: an eighth of all the code of these tests
-/// was that.
+/// GoogleTest's typed tests do the same with a class for each law and type, which takes longer to compile.
+///
+/// Not in polybody.hpp: needs GoogleTest.
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <string>
+#include <utility>
 
-namespace polybody {
+namespace polybody::laws {
 
 template <class Laws>
 struct Law {
@@ -27,7 +38,7 @@ struct Law {
 };
 
 /// A test of one law: made anew, so that laws do not see one another.
-class LawTest : public testing::Test {
+class LawTest : public ::testing::Test {
  public:
   explicit LawTest(std::function<void()> law) : law_(std::move(law)) {}
 
@@ -38,8 +49,8 @@ class LawTest : public testing::Test {
 
 inline void register_law(std::string const& suite, char const* law, char const* file, int line,
                          std::function<void()> holds) {
-  testing::RegisterTest(suite.c_str(), law, nullptr, nullptr, file, line,
-                        [holds = std::move(holds)]() -> LawTest* { return new LawTest(holds); });
+  ::testing::RegisterTest(suite.c_str(), law, nullptr, nullptr, file, line,
+                          [holds = std::move(holds)]() -> LawTest* { return new LawTest(holds); });
 }
 
 template <class Laws>
@@ -51,11 +62,12 @@ void register_laws(std::string const& suite, char const* file, int line) {
     });
 }
 
-/// Registers the laws of each suite for a case, under its name.
+/// Registers the laws of each suite for a case, as tests named `name/Suite.Law`. For the initialiser of a variable, so
+/// that it runs before `main`.
 template <class Case, template <class> class... Suites>
 bool obeys(std::string const& name, char const* file = __builtin_FILE(), int line = __builtin_LINE()) {
   (register_laws<Suites<Case>>(name + "/" + Suites<Case>::suite, file, line), ...);
   return true;
 }
 
-}  // namespace polybody
+}  // namespace polybody::laws

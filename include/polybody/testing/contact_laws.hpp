@@ -9,38 +9,19 @@
 ///       static Vec3 centre(Numbers&, Frame<double> const& b, double depth);  // where a stands to overlap by depth
 ///       static Mat3 turning(Frame<double> const& a, Frame<double> const& b); // ∂n/∂r_a [1/m]
 ///     };
-///     bool const obeyed = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");
+///     bool const sphere_obeys = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");
+///
+/// Not in polybody.hpp: needs GoogleTest.
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <polybody/forces/contact.hpp>
 
-#include "support/force_differences.hpp"
-#include "support/laws.hpp"
+#include <polybody/testing/contact_probe.hpp>
+#include <polybody/testing/force_differences.hpp>
+#include <polybody/testing/laws.hpp>
 
-namespace polybody {
-
-using Touching = std::array<Frame<double>, 2>;
-
-/// The one point where the shapes overlap; a test failure where there is none or more.
-template <StateScalar T, class G>
-ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b) {
-  ContactPoint<T> found;
-  int count = 0;
-  geometry.template for_each_point<T>(a, b, [&](ContactPoint<T> const& p) {
-    found = p;
-    ++count;
-  });
-  EXPECT_EQ(count, 1);
-  return found;
-}
-template <class G>
-bool touch(G const& geometry, Touching const& f) {
-  int count = 0;
-  geometry.template for_each_point<double>(f[0], f[1], [&](ContactPoint<double> const&) { ++count; });
-  return count > 0;
-}
+namespace polybody::laws {
 
 template <class Case>
 struct ContactLaws {
@@ -132,7 +113,7 @@ struct ContactLaws {
       Vec<double, 12> expected;
       expected << -p.normal, -(p.place - f[0].r).cross(p.normal), p.normal, (p.place - f[1].r).cross(p.normal);
       EXPECT_LT((depth.d.matrix() - expected).norm(), 1e-13);
-      // … and by differences
+      // the same by differences
       double const rate =
           slope_at_zero([&](double t) { return point_of(geometry, later(f[0], t), later(f[1], t)).depth; }, 1e-4);
       EXPECT_NEAR(rate, -p.normal.dot(relative(p, f)), 1e-9);
@@ -400,4 +381,4 @@ struct ContactLaws {
   };
 };
 
-}  // namespace polybody
+}  // namespace polybody::laws

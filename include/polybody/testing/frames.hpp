@@ -1,11 +1,14 @@
 #pragma once
 /// \file
 /// Frames that look random and are the same in every run, and how frames move.
+///
+/// Not in polybody.hpp: for tests.
 
-#include <polybody/kinematics/frame.hpp>
 #include <random>
 
-namespace polybody {
+#include <polybody/kinematics/frame.hpp>
+
+namespace polybody::laws {
 
 /// Numbers in [−size, size].
 class Numbers {
@@ -59,4 +62,4 @@ inline Frame<double> carried(Frame<double> const& f, Mat3 const& turn, Vec3 cons
   return {.r = turn * f.r + shift, .A = turn * f.A, .v = turn * f.v, .w = turn * f.w};
 }
 
-}  // namespace polybody
+}  // namespace polybody::laws

@@ -1,0 +1,87 @@
+#pragma once
+/// \file
+/// What the laws of bodies read off a case, and the small things that they compute with.
+///
+/// Not in polybody.hpp: for tests.
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/shared/body.hpp>
+
+namespace polybody::laws {
+
+template <class V>
+auto view(V const& x) {
+  return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
+}
+template <class V>
+auto mutable_view(V& x) {
+  return std::span<typename V::Scalar>(x.data(), std::size_t(x.size()));
+}
+
+/// The ε part of a matrix of Dual<1>.
+inline MatX epsilon_of(MatXOf<Dual<1>> const& m) {
+  return m.unaryExpr([](Dual<1> const& x) { return x.d[0]; });
+}
+
+/// |a − b| against |b|, or against one where b is smaller.
+inline double mismatch(MatX const& a, MatX const& b) { return (a - b).norm() / std::max(1.0, b.norm()); }
+
+/// The smallest pivot of L D Lᵀ without exchanges: positive exactly for a positive definite matrix.
+inline double smallest_pivot(MatX m) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Index k = 0; k < m.rows(); ++k) {
+    smallest = std::min(smallest, m(k, k));
+    for (Index i = k + 1; i < m.rows(); ++i)
+      for (Index j = k + 1; j < m.rows(); ++j) m(i, j) -= m(i, k) * m(k, j) / m(k, k);
+  }
+  return smallest;
+}
+
+/// The body of the case is made from a Bar.
+template <class Case>
+concept MadeFromBar = requires { Case::body(Case::bar()); };
+
+/// What a case says of its body, with or without a Bar.
+template <class Case>
+struct BodyOf {
+  static auto body() { return Case::body(); }
+  static auto undamped() {
+    if constexpr (requires { Case::undamped(); })
+      return Case::undamped();
+    else
+      return Case::body();
+  }
+  static double mass() { return Case::mass(); }
+  static Vec3 centre() { return Case::centre(); }
+  static double stiffness() {
+    if constexpr (requires { Case::stiffness; })
+      return Case::stiffness;
+    else
+      return 1.0;
+  }
+};
+template <MadeFromBar Case>
+struct BodyOf<Case> {
+  static auto body() { return Case::body(Case::bar()); }
+  static auto undamped() {
+    Bar bar = Case::bar();
+    bar.damping = {};
+    return Case::body(bar);
+  }
+  static double mass() { return constants(Case::bar()).mass_per_length * Case::bar().length; }
+  static Vec3 centre() {
+    Bar const bar = Case::bar();
+    return bar.placement.origin + bar.placement.axes.col(0) * (0.5 * bar.length);
+  }
+  static double stiffness() {
+    BarConstants const c = constants(Case::bar());
+    return c.EA + c.EI;
+  }
+};
+
+}  // namespace polybody::laws

@@ -1,0 +1,34 @@
+#pragma once
+/// \file
+/// Where a contact geometry says that two frames touch.
+///
+/// Not in polybody.hpp: needs GoogleTest.
+
+#include <gtest/gtest.h>
+
+#include <polybody/forces/contact.hpp>
+
+namespace polybody::laws {
+
+using Touching = std::array<Frame<double>, 2>;
+
+/// The one point where the shapes overlap; a test failure where there is none or more.
+template <StateScalar T, class G>
+ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b) {
+  ContactPoint<T> found;
+  int count = 0;
+  geometry.template for_each_point<T>(a, b, [&](ContactPoint<T> const& p) {
+    found = p;
+    ++count;
+  });
+  EXPECT_EQ(count, 1);
+  return found;
+}
+template <class G>
+bool touch(G const& geometry, Touching const& f) {
+  int count = 0;
+  geometry.template for_each_point<double>(f[0], f[1], [&](ContactPoint<double> const&) { ++count; });
+  return count > 0;
+}
+
+}  // namespace polybody::laws

@@ -1,0 +1,155 @@
+#pragma once
+/// \file
+/// The laws that every force element obeys. A case says which element, and where its markers may be:
+///
+///     struct SpringCase {
+///       static SpringDamper force();
+///       static std::array<Frame<double>, 2> frames(Numbers&);  // not needed where any places do
+///     };
+///     bool const spring_obeys = obeys<SpringCase, ForceLaws>("Spring");
+///
+/// Not in polybody.hpp: needs GoogleTest.
+
+#include <polybody/testing/force_differences.hpp>
+#include <polybody/testing/laws.hpp>
+
+namespace polybody::laws {
+
+template <class Case>
+struct ForceLaws {
+  using F = decltype(Case::force());
+  static constexpr int markers = F::markers;
+  using Frames = std::array<Frame<double>, std::size_t(markers)>;
+  static constexpr bool internal = markers > 1 && !F::is_load;  ///< acts between its markers, on nothing else
+
+  F const force = Case::force();
+  double const t = 1.3;
+  Numbers number;
+
+  Frames frames() {
+    if constexpr (requires { Case::frames(number); }) {
+      return Case::frames(number);
+    } else {
+      Frames all;
+      for (Frame<double>& f : all) f = number.frame();
+      return all;
+    }
+  }
+  std::array<Wrench<double>, std::size_t(markers)> wrenches(Frames const& f) const {
+    return force.template wrenches<double>(f, t);
+  }
+  static Observes needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
+
+  /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, by differences: what is written for any scalar has no branch or
+  /// conversion that hides a derivative.
+  void gradient_is_the_derivative_of_the_wrenches() {
+    for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}})
+      EXPECT_LT(gradient_mismatch(force, frames(), t, ck, cd), 1e-7) << ck << ' ' << cd;
+  }
+
+  /// The wrenches do not depend on axes and angular velocity of a marker that need only be a point, and have no moment
+  /// there.
+  void asks_no_more_than_it_says() {
+    Frames const given = frames();
+    Frames turned = given;
+    for (int k = 0; k < markers; ++k)
+      if (needs(k) == Observes::point) {
+        turned[std::size_t(k)].A = exp_so3<double>(number.template vec<3>(2.0));
+        turned[std::size_t(k)].w = number.template vec<3>();
+      }
+    EXPECT_EQ(stacked_wrenches(force, turned, t), stacked_wrenches(force, given, t));
+    for (int k = 0; k < markers; ++k)
+      if (needs(k) == Observes::point) {
+        EXPECT_EQ(wrenches(given)[std::size_t(k)].m.norm(), 0.0);
+      }
+  }
+
+  /// Σ f = 0 and Σ (m + r × f) = 0 of an element between two markers or more that is no load.
+  void action_is_reaction() {
+    if (!internal) GTEST_SKIP() << "it acts from outside";
+    Frames const f = frames();
+    auto const w = wrenches(f);
+    Vec3 force_sum = Vec3::Zero(), moment = Vec3::Zero();
+    double size = 0.0;
+    for (std::size_t k = 0; k < w.size(); ++k) {
+      force_sum += w[k].f;
+      moment += w[k].m + f[k].r.cross(w[k].f);
+      size += w[k].f.norm() + w[k].m.norm();
+    }
+    EXPECT_GT(size, 0.0);
+    EXPECT_LT(force_sum.norm(), 1e-13 * size);
+    EXPECT_LT(moment.norm(), 1e-12 * size);
+  }
+
+  /// All frames and their twists turned and shifted together turn the wrenches, of an element between its markers.
+  void rigid_motion_turns_the_wrenches() {
+    if (!internal) GTEST_SKIP() << "it acts from outside";
+    Frames const f = frames();
+    Mat3 const turn = exp_so3<double>(number.template vec<3>(2.0));
+    Vec3 const shift = number.template vec<3>(4.0);
+    Frames elsewhere;
+    for (std::size_t k = 0; k < f.size(); ++k) elsewhere[k] = carried(f[k], turn, shift);
+    auto const before = wrenches(f), after = wrenches(elsewhere);
+    double const size = 1.0 + stacked_wrenches(force, f, t).norm();
+    for (std::size_t k = 0; k < f.size(); ++k) {
+      EXPECT_LT((after[k].f - turn * before[k].f).norm(), 1e-12 * size);
+      EXPECT_LT((after[k].m - turn * before[k].m).norm(), 1e-12 * size);
+    }
+  }
+
+  /// w = −∂U/∂pose at rest, of an element that has a potential.
+  void wrenches_at_rest_are_the_slope_of_the_potential() {
+    if constexpr (!HasPotential<F>) {
+      GTEST_SKIP() << "it has no potential";
+    } else {
+      Frames f = frames();
+      for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
+      VecX const w = stacked_wrenches(force, f, t);
+      EXPECT_GT(w.norm(), 0.0);
+      for (Index j = 0; j < w.size(); ++j) {
+        double const slope = slope_at_zero([&](double h) {
+          Frames near = f;
+          Frame<double>& one = near[std::size_t(j / 6)];
+          one = moved<double>(one, Vec6(Vec6::Unit(j % 6) * h));
+          return double(force.potential(near, t));
+        });
+        EXPECT_NEAR(w[j], -slope, 1e-7 * (1.0 + w.norm())) << j;
+      }
+    }
+  }
+
+  /// Σ w·V ≤ −U˙: an element with a potential gives back what it stores, and no more.
+  void gives_back_no_more_than_its_potential() {
+    if constexpr (!HasPotential<F>) {
+      GTEST_SKIP() << "it has no potential";
+    } else {
+      for (int i = 0; i < 10; ++i) {
+        Frames const f = frames();
+        double power = 0.0;
+        for (std::size_t k = 0; k < f.size(); ++k) {
+          Wrench<double> const w = wrenches(f)[k];
+          power += w.f.dot(f[k].v) + w.m.dot(f[k].w);
+        }
+        double const rate = slope_at_zero(
+            [&](double h) {
+              Frames near = f;
+              for (Frame<double>& x : near) x = later(x, h);
+              return double(force.potential(near, t));
+            },
+            1e-4);
+        EXPECT_LT(power + rate, 1e-6 * (1.0 + std::abs(power)));
+      }
+    }
+  }
+
+  static constexpr char const* suite = "ForceLaws";
+  static constexpr Law<ForceLaws> laws[] = {
+      {"GradientIsTheDerivativeOfTheWrenches", &ForceLaws::gradient_is_the_derivative_of_the_wrenches},
+      {"AsksNoMoreThanItSays", &ForceLaws::asks_no_more_than_it_says},
+      {"ActionIsReaction", &ForceLaws::action_is_reaction},
+      {"RigidMotionTurnsTheWrenches", &ForceLaws::rigid_motion_turns_the_wrenches},
+      {"WrenchesAtRestAreTheSlopeOfThePotential", &ForceLaws::wrenches_at_rest_are_the_slope_of_the_potential},
+      {"GivesBackNoMoreThanItsPotential", &ForceLaws::gives_back_no_more_than_its_potential}};
+};
+
+}  // namespace polybody::laws

@@ -1,0 +1,238 @@
+#pragma once
+/// \file
+/// The laws that every joint geometry obeys. A case says how its frames fit together:
+///
+///     struct RevoluteCase {
+///       static constexpr bool planar = false;      // its frames stay in the plane z = 0
+///       static constexpr int world_rows = 3;       // leading rows given in world axes
+///       static Revolute geometry();
+///       static Mate mate(Numbers&, double t);      // how b may stand against a at time t
+///     };
+///     bool const revolute_obeys = obeys<RevoluteCase, JointLaws>("Revolute");
+///
+/// Derivatives are taken with dual numbers along motions of the frames, [δr; φ] in world axes. The geometry is asked
+/// through a few functions, so that the laws are compiled once in a file, however many geometries it tests.
+///
+/// Not in polybody.hpp: needs GoogleTest.
+
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/joint_probe.hpp>
+#include <polybody/testing/laws.hpp>
+
+namespace polybody::laws {
+
+/// The laws themselves, of a geometry of any type. V = [ṙ; ω] of both frames, G = [Ga Gb].
+struct JointLawsOf {
+  static constexpr double tolerance = 1e-12;
+  AnyGeometry const geometry;
+  bool const planar = geometry.planar;
+  Index const m = geometry.rows, held = m - geometry.velocity_rows;  ///< rows, and those of them that hold positions
+  double const t = 1.3;
+  Numbers number;
+
+  explicit JointLawsOf(AnyGeometry g) : geometry(std::move(g)) {}
+
+  /// Frames that fit, and frames where b was then moved away.
+  std::vector<FramePair> closed();
+  std::vector<FramePair> open();
+  std::vector<FramePair> all();
+  /// The motions of two frames that their world knows, as a 0/1 matrix (12×n).
+  MatX known() const;
+  VecX multipliers();
+  VecX wrenches(FramePair const& p, VecX const& lambda) const;
+
+  /// g = 0 where the case says that b fits to a; g ≠ 0 where b was moved away.
+  void closed_frames_have_no_gap();
+  /// G = ∂g/∂(motions of the frames). Velocity rows have g = 0 everywhere.
+  void maps_are_the_derivative_of_the_gap();
+  /// `rate` = Φ_t = ∂g/∂t.
+  void rate_is_the_derivative_of_the_gap_by_time();
+  /// γ = d/dt (G V + Φ_t) while V stands still: along the motion by dual numbers, in time by differences.
+  void gamma_is_the_second_derivative_without_accelerations();
+  /// Gaᵀλ·Va + Gbᵀλ·Vb = λ·(ġ − Φ_t), ġ along the motion.
+  void wrenches_have_the_power_of_the_multipliers();
+  /// f_a + f_b = 0 always. Moments balance about every point while the joint is closed; open, rows in world axes leave
+  /// the moment d × f, f the force of these rows (none for a force along d, a spring's).
+  void wrenches_are_equal_and_opposite();
+  /// Both frames and their twists turned and shifted together: rows in world axes turn with them, the others stay.
+  void does_not_see_a_rigid_motion_of_both_frames();
+  /// `wrench_gradient` = ∂(Gᵀλ)/∂(motions of the frames), in closed form or by dual numbers, against differences.
+  void wrench_gradient_is_the_derivative_of_the_wrenches();
+  /// G has full rank where the joint is closed, G T = 0 for the case's freedoms T, and rows and freedoms are as many as
+  /// the motions of b.
+  void rows_and_freedoms_make_up_all_motions();
+};
+
+template <class Case>
+struct JointLaws : JointLawsOf {
+  JointLaws() : JointLawsOf(any_geometry<Case>()) {}
+
+  static constexpr char const* suite = "JointLaws";
+  static constexpr Law<JointLaws> laws[] = {
+      {"ClosedFramesHaveNoGap", &JointLaws::closed_frames_have_no_gap},
+      {"MapsAreTheDerivativeOfTheGap", &JointLaws::maps_are_the_derivative_of_the_gap},
+      {"RateIsTheDerivativeOfTheGapByTime", &JointLaws::rate_is_the_derivative_of_the_gap_by_time},
+      {"GammaIsTheSecondDerivativeWithoutAccelerations",
+       &JointLaws::gamma_is_the_second_derivative_without_accelerations},
+      {"WrenchesHaveThePowerOfTheMultipliers", &JointLaws::wrenches_have_the_power_of_the_multipliers},
+      {"WrenchesAreEqualAndOpposite", &JointLaws::wrenches_are_equal_and_opposite},
+      {"DoesNotSeeARigidMotionOfBothFrames", &JointLaws::does_not_see_a_rigid_motion_of_both_frames},
+      {"WrenchGradientIsTheDerivativeOfTheWrenches", &JointLaws::wrench_gradient_is_the_derivative_of_the_wrenches},
+      {"RowsAndFreedomsMakeUpAllMotions", &JointLaws::rows_and_freedoms_make_up_all_motions}};
+};
+
+inline std::vector<FramePair> JointLawsOf::closed() {
+  std::vector<FramePair> pairs(3);
+  for (FramePair& p : pairs) {
+    Mate const mate = geometry.mate(number, t);
+    p.a = number.frame(planar);
+    p.b = number.frame(planar);
+    p.b.r = p.a.r + p.a.A * mate.d;
+    p.b.A = p.a.A * mate.R;
+    p.freedoms.resize(6, mate.freedoms.cols());
+    p.freedoms << p.a.A * mate.freedoms.topRows<3>(), p.a.A * mate.freedoms.bottomRows<3>();
+  }
+  return pairs;
+}
+
+inline std::vector<FramePair> JointLawsOf::open() {
+  std::vector<FramePair> pairs = closed();
+  for (FramePair& p : pairs) p.b = moved<double>(p.b, number.motion(planar, 0.4));
+  return pairs;
+}
+
+inline std::vector<FramePair> JointLawsOf::all() {
+  std::vector<FramePair> pairs = closed();
+  for (FramePair& p : open()) pairs.push_back(std::move(p));
+  return pairs;
+}
+
+inline MatX JointLawsOf::known() const {
+  std::vector<Index> const columns =
+      planar ? std::vector<Index>{0, 1, 5, 6, 7, 11} : std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  MatX k = MatX::Zero(12, Index(columns.size()));
+  for (Index j = 0; j < k.cols(); ++j) k(columns[std::size_t(j)], j) = 1.0;
+  return k;
+}
+
+inline VecX JointLawsOf::multipliers() { return number.vector(m, 3.0); }
+
+inline VecX JointLawsOf::wrenches(FramePair const& p, VecX const& lambda) const {
+  return geometry.gap(p, t).G.transpose() * lambda;
+}
+
+/// The moment of both wrenches about a point.
+inline Vec3 moment_about(FramePair const& p, VecX const& w, Vec3 const& about) {
+  Vec3 const fa = w.segment<3>(0), fb = w.segment<3>(6);
+  return w.segment<3>(3) + (p.a.r - about).cross(fa) + w.segment<3>(9) + (p.b.r - about).cross(fb);
+}
+
+inline void JointLawsOf::closed_frames_have_no_gap() {
+  for (FramePair const& p : closed()) EXPECT_LT(geometry.gap(p, t).g.norm(), 1e-14);
+  if (held == 0) return;
+  for (FramePair const& p : open()) EXPECT_GT(geometry.gap(p, t).g.norm(), 1e-3);
+}
+
+// Velocity rows have no gap, so that nothing is to be differentiated.
+inline void JointLawsOf::maps_are_the_derivative_of_the_gap() {
+  for (FramePair const& p : all()) {
+    SeenGap const seen = geometry.gap_with_slopes(p, t);
+    EXPECT_LT(((seen.G - seen.slope).topRows(held) * known()).norm(), tolerance);
+    EXPECT_TRUE(seen.g.tail(m - held).isZero(0.0) && seen.slope.bottomRows(m - held).isZero(0.0));
+  }
+}
+
+inline void JointLawsOf::rate_is_the_derivative_of_the_gap_by_time() {
+  for (FramePair const& p : all()) {
+    VecX const slope = slope_at_zero([&](double h) { return geometry.gap(p, t + h).g; });
+    EXPECT_LT((geometry.gap(p, t).rate - slope).norm(), tolerance);
+  }
+}
+
+inline void JointLawsOf::gamma_is_the_second_derivative_without_accelerations() {
+  for (FramePair const& p : all()) {
+    VecX const v = p.twists();
+    VecX const by_time = slope_at_zero(
+        [&](double h) {
+          SeenGap const later = geometry.gap(p, t + h);
+          return VecX(later.G * v + later.rate);
+        },
+        1e-2);
+    VecX const expected = geometry.gap_with_slopes(p, t).G_rate * v + by_time;
+    EXPECT_LT((geometry.gamma(p, t) - expected).norm(), tolerance * (1.0 + expected.norm()));
+  }
+}
+
+inline void JointLawsOf::wrenches_have_the_power_of_the_multipliers() {
+  for (FramePair const& p : all()) {
+    VecX const lambda = multipliers(), v = p.twists();
+    SeenGap const seen = geometry.gap_with_slopes(p, t);
+    VecX rate = seen.slope * v;
+    rate.tail(m - held) = seen.G.bottomRows(m - held) * v;
+    EXPECT_NEAR(wrenches(p, lambda).dot(v), lambda.dot(rate), tolerance * (1.0 + lambda.norm() * rate.norm()));
+  }
+}
+
+inline void JointLawsOf::wrenches_are_equal_and_opposite() {
+  for (FramePair const& p : all()) {
+    VecX const lambda = multipliers(), w = wrenches(p, lambda);
+    Vec3 f = Vec3::Zero(), about = number.vec<3>(5.0);
+    if (planar) about[2] = 0.0;
+    f.head(geometry.world_rows) = lambda.head(geometry.world_rows);
+    EXPECT_LT((w.segment<3>(0) + w.segment<3>(6)).norm(), tolerance);
+    EXPECT_LT((moment_about(p, w, about) - (p.b.r - p.a.r).cross(f)).norm(), 10 * tolerance);
+  }
+  for (FramePair const& p : closed())
+    EXPECT_LT(moment_about(p, wrenches(p, multipliers()), Vec3::Zero()).norm(), 10 * tolerance);
+}
+
+inline void JointLawsOf::does_not_see_a_rigid_motion_of_both_frames() {
+  for (FramePair const& p : all()) {
+    Vec6 const motion = number.motion(planar, 2.0);
+    Mat3 const turn = exp_so3<double>(motion.tail<3>());
+    Vec3 const shift = motion.head<3>();
+    FramePair const q{carried(p.a, turn, shift), carried(p.b, turn, shift)};
+    Index const n = geometry.world_rows;
+    MatX rows = MatX::Identity(m, m), back = MatX::Zero(12, 12);
+    rows.topLeftCorner(n, n) = turn.topLeftCorner(n, n);
+    for (int i = 0; i < 12; i += 3) back.block<3, 3>(i, i) = turn.transpose();
+    SeenGap const before = geometry.gap(p, t), after = geometry.gap(q, t);
+    EXPECT_LT((after.g - rows * before.g).norm(), tolerance);
+    EXPECT_LT((after.rate - rows * before.rate).norm(), tolerance);
+    EXPECT_LT(((after.G - rows * before.G * back) * known()).norm(), tolerance);
+    EXPECT_LT((geometry.gamma(q, t) - rows * geometry.gamma(p, t)).norm(), 10 * tolerance);
+  }
+}
+
+inline void JointLawsOf::wrench_gradient_is_the_derivative_of_the_wrenches() {
+  MatX const k = known();
+  for (FramePair const& p : all()) {
+    VecX const lambda = multipliers();
+    MatX slope(12, k.cols());
+    for (Index j = 0; j < k.cols(); ++j)
+      slope.col(j) = slope_at_zero([&](double h) { return wrenches(p.moved_by(k.col(j) * h), lambda); });
+    EXPECT_LT((k.transpose() * (geometry.gradient(p, t, lambda) * k - slope)).norm(), 1e-9);
+  }
+}
+
+inline void JointLawsOf::rows_and_freedoms_make_up_all_motions() {
+  MatX const k = known();
+  auto const smallest_part = [](MatX a) {  // of a row that the rows before it do not explain
+    double smallest = a.row(0).norm();
+    for (Index i = 1; i < a.rows(); ++i) {
+      a.row(i - 1).normalize();
+      for (Index j = 0; j < i; ++j) a.row(i) -= a.row(i).dot(a.row(j)) * a.row(j);
+      smallest = std::min(smallest, a.row(i).norm());
+    }
+    return smallest;
+  };
+  for (FramePair const& p : closed()) {
+    EXPECT_EQ(m + p.freedoms.cols(), k.cols() / 2);
+    MatX const g = geometry.gap(p, t).G;
+    EXPECT_GT(smallest_part(g * k), 0.3);
+    EXPECT_GT(smallest_part((g * k).rightCols(k.cols() / 2)), 0.3);
+    EXPECT_LT((g.rightCols<6>() * p.freedoms).norm(), tolerance);
+  }
+}
+
+}  // namespace polybody::laws

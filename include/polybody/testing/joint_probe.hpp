@@ -1,0 +1,107 @@
+#pragma once
+/// \file
+/// A joint geometry of any type between two frames: its gap, and the derivatives of it that the laws compare.
+///
+/// Not in polybody.hpp: for tests.
+
+#include <functional>
+#include <vector>
+
+#include <polybody/joints/gap.hpp>
+#include <polybody/testing/frames.hpp>
+
+namespace polybody::laws {
+
+/// A place of b against a where the joint is closed, and the motions of b against a that keep it closed.
+struct Mate {
+  Vec3 d = Vec3::Zero();      ///< (3) r_b − r_a in a's axes
+  Mat3 R = Mat3::Identity();  ///< (3×3) AaᵀAb
+  MatX freedoms;              ///< (6×dof) [velocity; angular velocity] of b in a's axes
+};
+
+/// Two frames, their twists with them.
+struct FramePair {
+  Frame<double> a, b;
+  MatX freedoms = MatX::Zero(6, 0);  ///< (6×dof) of b, world axes
+
+  VecX twists() const;
+  FramePair moved_by(VecX const& motion) const;
+};
+
+/// A gap with G = [Ga Gb] and its derivatives.
+struct SeenGap {
+  VecX g, rate;  ///< (m)
+  MatX G;        ///< (m×12)
+  MatX slope;    ///< (m×12) ∂g/∂(motions), dual numbers
+  MatX G_rate;   ///< (m×12) Ġ while the frames keep their twists and time stands still, dual numbers
+};
+
+/// A geometry of any type.
+struct AnyGeometry {
+  Index rows = 0, world_rows = 0, velocity_rows = 0;
+  bool planar = false;
+  std::function<SeenGap(FramePair const&, double)> gap, gap_with_slopes;
+  std::function<VecX(FramePair const&, double)> gamma;
+  std::function<MatX(FramePair const&, double, VecX const&)> gradient;
+  std::function<Mate(Numbers&, double)> mate;
+};
+
+template <class Case>
+AnyGeometry any_geometry() {
+  using G = decltype(Case::geometry());
+  using D = Dual<12>;
+  static constexpr int m = G::rows;
+  static auto const geometry = Case::geometry();
+  auto const gap = [](FramePair const& p, double t) {
+    Gap<m> const x = geometry.template gap<double>(p.a, p.b, t);
+    SeenGap seen{x.g, x.rate, MatX(m, 12), {}, {}};
+    seen.G << x.Ga, x.Gb;
+    return seen;
+  };
+  auto const by_duals = [gap](FramePair const& p, double t) {
+    SeenGap seen = gap(p, t);
+    seen.slope.resize(m, 12);
+    seen.G_rate.resize(m, 12);
+    auto const see = [&](Frame<D> const& a, Frame<D> const& b, auto&& keep) {
+      Gap<m, D> const x = geometry.template gap<D>(a, b, t);
+      for (Index i = 0; i < m; ++i) keep(i, x);
+    };
+    Vec<D, 6> of_a, of_b;
+    for (int i = 0; i < 6; ++i) {
+      of_a[i] = D::variable(0.0, i);
+      of_b[i] = D::variable(0.0, i + 6);
+    }
+    see(moved<D>(p.a, of_a), moved<D>(p.b, of_b),
+        [&](Index i, auto const& x) { seen.slope.row(i) = x.g[i].d.matrix().transpose(); });
+    D const time = D::variable(0.0, 0);
+    see(later<D>(p.a, time), later<D>(p.b, time), [&](Index i, auto const& x) {
+      for (int j = 0; j < 6; ++j) {
+        seen.G_rate(i, j) = x.Ga(i, j).d[0];
+        seen.G_rate(i, j + 6) = x.Gb(i, j).d[0];
+      }
+    });
+    return seen;
+  };
+  return {.rows = m,
+          .world_rows = Case::world_rows,
+          .velocity_rows = velocity_rows<G>(),
+          .planar = Case::planar,
+          .gap = gap,
+          .gap_with_slopes = by_duals,
+          .gamma = [](FramePair const& p, double t) { return VecX(geometry.template gamma<double>(p.a, p.b, t)); },
+          .gradient = [](FramePair const& p, double t,
+                         VecX const& lambda) { return MatX(wrench_gradient<G>(geometry, p.a, p.b, t, lambda)); },
+          .mate = &Case::mate};
+}
+
+inline VecX FramePair::twists() const {
+  VecX v(12);
+  v << twist(a), twist(b);
+  return v;
+}
+
+inline FramePair FramePair::moved_by(VecX const& motion) const {
+  return {moved<double>(a, motion.head<6>()), moved<double>(b, motion.tail<6>())};
+}
+
+}  // namespace polybody::laws

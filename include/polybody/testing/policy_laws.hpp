@@ -1,0 +1,90 @@
+#pragma once
+/// \file
+/// The laws that every policy obeys that answers rows by a force −Gᵀλ(g, ġ). A case says which, and how large gaps are:
+///
+///     struct PenaltyCase {
+///       static constexpr int rows = 3;      // that it is asked to answer
+///       static Penalty policy();
+///       static constexpr double gap = 0.1;  // about which g is tried [m], [rad]; one where it is not said
+///     };
+///     bool const penalty_obeys = obeys<PenaltyCase, PolicyLaws>("Penalty");
+///
+/// Not in polybody.hpp: needs GoogleTest.
+
+#include <polybody/joints/policies/policy.hpp>
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/frames.hpp>
+#include <polybody/testing/laws.hpp>
+
+namespace polybody::laws {
+
+template <class Case>
+struct PolicyLaws {
+  using P = decltype(Case::policy());
+  static constexpr int m = Case::rows;
+  static_assert(AnswersRows<P, m> && Policy<P>);
+  using Row = Vec<double, m>;
+
+  P const policy = Case::policy();
+  Numbers number;
+
+  static double size() {
+    if constexpr (requires { Case::gap; })
+      return Case::gap;
+    else
+      return 1.0;
+  }
+  Row gap() { return number.template vec<m>(size()); }
+  Row rate() { return number.template vec<m>(); }
+  Row multiplier(Row const& g, Row const& g_rate) const { return policy.template multiplier<m, double>(g, g_rate); }
+
+  /// `slope`(ck, cd) = ck ∂λ/∂g + cd ∂λ/∂ġ, by dual numbers.
+  void slope_is_the_derivative_of_the_multiplier() {
+    using D = Dual<1>;
+    for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}}) {
+      Row const g = gap(), g_rate = rate();
+      Mat<double, m, m> const slope = policy.template slope<m>(ck, cd, g, g_rate);
+      for (int j = 0; j < m; ++j) {
+        Vec<D, m> of_g = g.template cast<D>(), of_rate = g_rate.template cast<D>();
+        of_g[j].d[0] = ck;
+        of_rate[j].d[0] = cd;
+        Vec<D, m> const lambda = policy.template multiplier<m, D>(of_g, of_rate);
+        for (int i = 0; i < m; ++i) EXPECT_NEAR(lambda[i].d[0], slope(i, j), 1e-12 * (1.0 + slope.norm()));
+      }
+    }
+  }
+
+  /// λ(g, 0) = ∂U/∂g.
+  void elastic_multiplier_is_the_slope_of_the_potential() {
+    Row const g = gap(), lambda = multiplier(g, Row::Zero());
+    EXPECT_GT(lambda.norm(), 0.0);
+    for (int i = 0; i < m; ++i) {
+      double const slope = slope_at_zero(
+          [&](double h) { return double(policy.template potential<m>(Row(g + Row::Unit(i) * h))); }, 1e-3 * size());
+      EXPECT_NEAR(lambda[i], slope, 1e-8 * (1.0 + lambda.norm()));
+    }
+  }
+
+  /// λ(0, 0) = 0 and U(0) = 0: nothing pulls at a joint that is closed and at rest.
+  void closed_joint_is_at_rest() {
+    EXPECT_EQ(multiplier(Row::Zero(), Row::Zero()).norm(), 0.0);
+    EXPECT_EQ(policy.template potential<m>(Row::Zero()), 0.0);
+  }
+
+  /// (λ(g, ġ) − λ(g, 0))·ġ ≥ 0: what depends on the rate takes energy out.
+  void damping_takes_power() {
+    for (int k = 0; k < 10; ++k) {
+      Row const g = gap(), g_rate = rate();
+      EXPECT_GE((multiplier(g, g_rate) - multiplier(g, Row::Zero())).dot(g_rate), 0.0);
+    }
+  }
+
+  static constexpr char const* suite = "PolicyLaws";
+  static constexpr Law<PolicyLaws> laws[] = {
+      {"SlopeIsTheDerivativeOfTheMultiplier", &PolicyLaws::slope_is_the_derivative_of_the_multiplier},
+      {"ElasticMultiplierIsTheSlopeOfThePotential", &PolicyLaws::elastic_multiplier_is_the_slope_of_the_potential},
+      {"ClosedJointIsAtRest", &PolicyLaws::closed_joint_is_at_rest},
+      {"DampingTakesPower", &PolicyLaws::damping_takes_power}};
+};
+
+}  // namespace polybody::laws

@@ -1,0 +1,138 @@
+#pragma once
+/// \file
+/// The laws that equations obey of which `system_of` makes a system. A case says which, and where they hold:
+///
+///     struct DoublePendulumCase {
+///       static DoublePendulum equations();
+///       static VecX coordinates(Numbers&);  // not needed where any numbers in [−1, 1] do
+///     };
+///     bool const pendulum_obeys = obeys<DoublePendulumCase, UserSystemLaws>("DoublePendulum");
+///
+/// Not in polybody.hpp: needs GoogleTest.
+
+#include <polybody/system/user_system.hpp>
+#include <polybody/testing/differences.hpp>
+#include <polybody/testing/frames.hpp>
+#include <polybody/testing/laws.hpp>
+
+namespace polybody::laws {
+
+template <class Case>
+struct UserSystemLaws {
+  using E = decltype(Case::equations());
+  static_assert(UserMechanics<E>);
+  static constexpr double wild = 1e9;  ///< stands in every argument before it is written
+
+  E const equations = Case::equations();
+  Index const n = equations.speeds();
+  double const t = 1.3;
+  Numbers number;
+
+  VecX coordinates() {
+    if constexpr (requires { Case::coordinates(number); })
+      return Case::coordinates(number);
+    else
+      return number.vector(n);
+  }
+  MatX mass(VecX const& q, double before = wild) const {
+    MatX m = MatX::Constant(n, n, before);
+    equations.mass(q, m);
+    return m;
+  }
+  VecX force(VecX const& q, VecX const& v) const {
+    VecX f = VecX::Constant(n, wild);
+    equations.force(q, v, t, f);
+    return f;
+  }
+  Index rows() const {
+    if constexpr (OffersRows<E>)
+      return equations.rows();
+    else
+      return 0;
+  }
+  VecX violation(VecX const& q, double at) const {
+    VecX phi = VecX::Constant(rows(), wild);
+    if constexpr (OffersRows<E>) equations.violation(q, at, phi);
+    return phi;
+  }
+  MatX jacobian(VecX const& q, double at) const {
+    MatX g = MatX::Constant(rows(), n, wild);
+    if constexpr (OffersRows<E>) equations.jacobian(q, at, g);
+    return g;
+  }
+  VecX rate(VecX const& q, double at) const {
+    VecX phi_t = VecX::Constant(rows(), wild);
+    if constexpr (OffersRows<E>) equations.rate(q, at, phi_t);
+    return phi_t;
+  }
+
+  /// M = Mᵀ, written over whatever stood there, and vᵀM v > 0.
+  void mass_is_symmetric_and_positive() {
+    VecX const q = coordinates();
+    MatX const m = mass(q);
+    EXPECT_EQ(m, mass(q, 0.0));
+    EXPECT_LT((m - m.transpose()).norm(), 1e-14 * m.norm());
+    for (int k = 0; k < 10; ++k) {
+      VecX const v = number.vector(n);
+      EXPECT_GT(v.dot(m * v), 0.0);
+    }
+  }
+
+  /// `tangent` = −(ck ∂f/∂q + cd ∂f/∂v), where the equations give one.
+  void tangent_is_the_derivative_of_the_force() {
+    if constexpr (!OffersForceTangent<E>) {
+      GTEST_SKIP() << "its tangent comes from differences";
+    } else {
+      VecX const q = coordinates(), v = number.vector(n);
+      for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}}) {
+        MatX k = MatX::Constant(n, n, wild), expected(n, n);
+        equations.tangent(q, v, t, ck, cd, k);
+        for (Index j = 0; j < n; ++j) {
+          VecX const unit = VecX::Unit(n, j);
+          VecX const by_position = slope_at_zero([&](double h) { return force(q + h * unit, v); });
+          VecX const by_speed = slope_at_zero([&](double h) { return force(q, v + h * unit); });
+          expected.col(j) = -(ck * by_position + cd * by_speed);
+        }
+        EXPECT_LT((k - expected).norm(), 1e-8 * (1.0 + expected.norm())) << ck << ' ' << cd;
+      }
+    }
+  }
+
+  /// G = ∂Φ/∂q and Φ_t = ∂Φ/∂t, of equations with rows.
+  void jacobian_and_rate_are_the_derivatives_of_the_violation() {
+    if (rows() == 0) GTEST_SKIP() << "it has no rows";
+    VecX const q = coordinates();
+    MatX const g = jacobian(q, t);
+    for (Index j = 0; j < n; ++j) {
+      VecX const slope = slope_at_zero([&](double h) { return violation(q + h * VecX::Unit(n, j), t); });
+      EXPECT_LT((g.col(j) - slope).norm(), 1e-9 * (1.0 + g.norm())) << j;
+    }
+    VecX const by_time = slope_at_zero([&](double h) { return violation(q, t + h); });
+    EXPECT_LT((rate(q, t) - by_time).norm(), 1e-9 * (1.0 + by_time.norm()));
+  }
+
+  /// γ = d/dt (G v + Φ_t) along q + v t while v stands still, so that Φ̈ = G v̇ + γ.
+  void gamma_is_the_second_derivative_without_accelerations() {
+    if constexpr (!OffersRows<E>) {
+      GTEST_SKIP() << "it has no rows";
+    } else {
+      VecX const q = coordinates(), v = number.vector(n);
+      VecX gamma = VecX::Constant(rows(), wild);
+      equations.gamma(q, v, t, gamma);
+      VecX const expected =
+          slope_at_zero([&](double h) { return VecX(jacobian(q + h * v, t + h) * v + rate(q + h * v, t + h)); });
+      EXPECT_LT((gamma - expected).norm(), 1e-9 * (1.0 + expected.norm()));
+    }
+  }
+
+  static constexpr char const* suite = "UserSystemLaws";
+  static constexpr Law<UserSystemLaws> laws[] = {
+      {"MassIsSymmetricAndPositive", &UserSystemLaws::mass_is_symmetric_and_positive},
+      {"TangentIsTheDerivativeOfTheForce", &UserSystemLaws::tangent_is_the_derivative_of_the_force},
+      {"JacobianAndRateAreTheDerivativesOfTheViolation",
+       &UserSystemLaws::jacobian_and_rate_are_the_derivatives_of_the_violation},
+      {"GammaIsTheSecondDerivativeWithoutAccelerations",
+       &UserSystemLaws::gamma_is_the_second_derivative_without_accelerations}};
+};
+
+}  // namespace polybody::laws
