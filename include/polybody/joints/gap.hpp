@@ -73,7 +73,8 @@ concept Measure = requires(G const g, Frame<double> const a, Frame<double> const
 };
 
 /// A joint geometry measures the motions that it stops. Its markers get axes that coincide at the reference
-/// configuration: `triad()` in world axes; the joint's axis is the third.
+/// configuration: `triad()` in world axes; the joint's axis is the third. It may have `check(name)`, which `connect`
+/// calls with the joint's name, and `corners()`, times at which steps are to end; `docs/extending.md` lists what else.
 template <class G>
 concept JointGeometry = Measure<G> && requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
   { G::name } -> std::convertible_to<char const*>;

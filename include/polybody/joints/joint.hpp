@@ -1,6 +1,7 @@
 #pragma once
 #include <type_traits>
 
+#include <polybody/joints/joint_refusals.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 
@@ -31,16 +32,18 @@ template <class P, class G>
 concept HasGapToAnswer = AddsRows<P> || velocity_rows<G>() == 0;
 
 /// A joint is a geometry (which motions it stops) and a policy (how it stops them).
-template <JointGeometry G, Policy P>
+template <class G, class P>
 struct Joint {
+  static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::asked);
+  static_assert(Policy<P> || detail::PolicyRefusal<P>::asked);
   using Geometry = G;
   using PolicyType = P;
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
   static constexpr int rows = Measured::rows;
-  static_assert(!MeasuresGeometry<P, G> || AnswersGeometry<P, G>,
+  static_assert(!Policy<P> || !MeasuresGeometry<P, G> || AnswersGeometry<P, G>,
                 "This policy has numbers for another number of rows than the joint's geometry has.");
   static_assert(
-      HasGapToAnswer<P, G>,
+      !Policy<P> || HasGapToAnswer<P, G>,
       "This geometry holds speeds, not positions (it rolls, or glides on a blade): there is no gap that a force could "
       "answer. Use Constraint.");
   G geometry = {};

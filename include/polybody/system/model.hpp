@@ -11,13 +11,18 @@
 #include <polybody/math/type_list.hpp>
 #include <polybody/system/composition.hpp>
 #include <polybody/system/linear_rows.hpp>
+#include <polybody/system/list_refusals.hpp>
 #include <polybody/system/markers.hpp>
 #include <polybody/system/state.hpp>
 
 namespace polybody {
 
+/// Chosen only for lists that make no model: says why.
 template <class BodyList, class JointList, class ForceList = Forces<>>
-class Model;
+class Model {
+  static_assert(detail::ListRefusal<BodyList>::asked && detail::ListRefusal<JointList>::asked &&
+                detail::ListRefusal<ForceList>::asked);
+};
 
 /// `Model<Bodies<…>, Joints<…>, Forces<…>> model{Gravity{0, 0, -9.81}};` then `add`, `connect`, `apply`.
 template <Body... Bs, class... Js, AppliedForce... Fs>

@@ -1,0 +1,82 @@
+#pragma once
+/// \file
+/// Why a type is no geometry or no policy, in a sentence that names what is missing.
+
+#include <utility>
+
+#include <polybody/joints/policies/policy.hpp>
+
+namespace polybody::detail {
+
+template <class P, int m>
+concept GivesMultiplier = requires(P const p, Vec<double, m> const g) {
+  { p.template multiplier<m, double>(g, g) } -> std::convertible_to<Vec<double, m>>;
+};
+template <class P, int m>
+concept GivesSlope = requires(P const p, Vec<double, m> const g) {
+  { p.template slope<m>(1.0, 1.0, g, g) } -> std::convertible_to<Mat<double, m, m>>;
+};
+template <class P, int m>
+concept GivesPotential = requires(P const p, Vec<double, m> const g) {
+  { p.template potential<m>(g) } -> std::convertible_to<double>;
+};
+
+/// The members that the concept `JointGeometry` asks, one by one; a and b are frames of a scalar T.
+template <class G>
+struct GeometryRefusal {
+  static_assert(
+      requires {
+        { G::name } -> std::convertible_to<char const*>;
+        { G::needs } -> std::convertible_to<Observes>;
+        { G::world } -> std::convertible_to<World>;
+      }, "A joint geometry needs static constants: char const* name, Observes needs and World world.");
+  static_assert(
+      requires { requires 1 <= G::rows&& G::rows <= 6; },
+      "A joint geometry needs a static constant: int rows, from 1 to 6.");
+  static_assert(
+      requires(G const g) {
+        { g.triad() } -> std::convertible_to<Mat3>;
+      }, "A joint geometry needs triad() const: the joint's axes, world axes at the reference configuration.");
+  static_assert(
+      requires(G const g, Frame<double> const a, double t) {
+        { g.template gap<double>(a, a, t) } -> std::same_as<Gap<G::rows, double>>;
+      }, "A joint geometry needs gap<T>(a, b, t) const, which returns Gap<rows, T>.");
+  static_assert(
+      requires(G const g, Frame<double> const a, double t) {
+        { g.template gamma<double>(a, a, t) } -> std::same_as<Vec<double, G::rows>>;
+      },
+      "A joint geometry needs gamma<T>(a, b, t) const, which returns Vec<T, rows>: what its gap's second derivative "
+      "has beyond the accelerations.");
+  static constexpr bool asked = true;
+};
+
+/// Instantiated for what is no `Policy`.
+template <class P>
+struct PolicyRefusal {
+  template <int... m>
+  static constexpr int members(std::integer_sequence<int, m...>) {
+    return ((GivesMultiplier<P, m + 1> ? 1 : 0) | ...) | ((GivesSlope<P, m + 1> ? 2 : 0) | ...) |
+           ((GivesPotential<P, m + 1> ? 4 : 0) | ...);
+  }
+  static constexpr int given = members(std::make_integer_sequence<int, 6>{});
+
+  static_assert(!(AddsRows<P> && AddsForce<P>),
+                "A policy brings rows (adds_rows) or answers them by a force (multiplier), not both.");
+  static_assert(AddsRows<P> || given != 0,
+                "A policy has a static constant adds_rows = true; or it answers rows by a force and has check, "
+                "multiplier, slope and potential.");
+  static_assert(AddsRows<P> || given == 0 || (given & 1) != 0,
+                "A policy that answers rows needs multiplier<m, T>(g, rate) const, which returns lambda as Vec<T, m>.");
+  static_assert(AddsRows<P> || given == 0 || (given & 2) != 0,
+                "A policy that answers rows needs slope<m>(ck, cd, g, rate) const: ck d(lambda)/dg + cd "
+                "d(lambda)/d(rate), m x m.");
+  static_assert(AddsRows<P> || given == 0 || (given & 4) != 0,
+                "A policy that answers rows needs potential<m>(g) const: the energy that it stores.");
+  static_assert(
+      AddsRows<P> || given != 7 || requires(P const p, std::string const what) { p.check(what); },
+      "A policy that answers rows needs check(what) const, which throws InvalidInput for parameters that "
+      "cannot be meant.");
+  static constexpr bool asked = true;
+};
+
+}  // namespace polybody::detail

@@ -1,0 +1,132 @@
+#pragma once
+/// \file
+/// Why a list of types makes no model, in a sentence that names what is missing.
+
+#include <polybody/bodies/shared/body.hpp>
+#include <polybody/math/type_list.hpp>
+#include <polybody/system/pools.hpp>
+
+namespace polybody::detail {
+
+using In = std::span<double const>;
+using Out = std::span<double>;
+
+/// The members that the concept `Body` asks, one by one. In the sentences q and v are the body's coordinates and
+/// speeds, spans of a scalar T where the member is a template, e an element, p a `Point`.
+template <class B>
+struct BodyRefusal {
+  static_assert(requires { typename B::Point; }, "A body needs a type Point: a place on it where a marker may stand.");
+  static_assert(
+      requires {
+        { B::world } -> std::convertible_to<World>;
+        { B::observes } -> std::convertible_to<Observes>;
+        { B::constant_mass } -> std::convertible_to<bool>;
+      }, "A body needs static constants: World world, Observes observes and bool constant_mass.");
+  static_assert(
+      requires {
+        { B::element_columns } -> std::convertible_to<int>;
+        { B::point_columns } -> std::convertible_to<int>;
+      },
+      "A body needs static constants: int element_columns and int point_columns, the speeds that an element and a "
+      "marker touch.");
+  static_assert(
+      requires(B const b) {
+        { b.coordinates() } -> std::convertible_to<Index>;
+        { b.speeds() } -> std::convertible_to<Index>;
+        { b.elements() } -> std::convertible_to<Index>;
+      }, "A body needs coordinates(), speeds() and elements() const: how many it has.");
+  static_assert(
+      requires(B const b, Index e, typename B::Point p) {
+        { b.first_column(e) } -> std::convertible_to<Index>;
+        { b.first_column(p) } -> std::convertible_to<Index>;
+      }, "A body needs first_column(e) and first_column(p) const: the first speed that an element and a marker touch.");
+  static_assert(
+      requires(B const b, Out out) { b.reference(out); },
+      "A body needs reference(q) const, which writes its coordinates as placed.");
+  static_assert(
+      requires(B const b, In x, Out out) {
+        b.template plus<double>(x, x, out);
+        b.template local_rate<double>(x, x, out);
+      },
+      "A body needs plus<T>(q, delta, out) and local_rate<T>(delta, v, out) const; one whose coordinates add inherits "
+      "both from AddingCoordinates.");
+  static_assert(
+      requires(B const b, In x, Out out, Vec3 u) { b.rigid_velocity(x, u, u, out); },
+      "A body needs rigid_velocity(q, v0, omega, v) const: its speeds in a rigid motion.");
+  static_assert(
+      requires(B const b, Index e, In x, Mat<double, B::element_columns, B::element_columns>& m) { b.mass(e, x, m); },
+      "A body needs mass(e, q, m) const: the mass matrix of an element.");
+  static_assert(
+      requires(B const b, Index e, In x, Vec<double, B::element_columns>& f) {
+        b.template inertia<double>(e, x, x, f);
+      }, "A body needs inertia<T>(e, q, a, out) const: M a of an element.");
+  static_assert(
+      requires(B const b, Index e, In x, Vec<double, B::element_columns>& f) { b.template force<double>(e, x, x, f); },
+      "A body needs force<T>(e, q, v, out) const: elastic, damping and quadratic-velocity force of an element.");
+  static_assert(
+      requires(B const b, Index e, In x, Mat<double, B::element_columns, B::element_columns>& k) {
+        b.tangent(e, x, x, 1.0, 1.0, k);
+      }, "A body needs tangent(e, q, v, ck, cd, k) const: -(ck df/dq + cd df/dv) of an element.");
+  static_assert(
+      requires(B const b, Index e, In x, Vec3 g, Vec<double, B::element_columns>& f) {
+        b.template gravity<double>(e, x, g, f);
+      }, "A body needs gravity<T>(e, q, g, out) const: the force of a uniform field on an element.");
+  static_assert(
+      requires(B const b, Index e, In x, Vec3 g) {
+        { b.kinetic_energy(e, x, x) } -> std::convertible_to<double>;
+        { b.strain_energy(e, x) } -> std::convertible_to<double>;
+        { b.gravity_energy(e, x, g) } -> std::convertible_to<double>;
+      }, "A body needs kinetic_energy(e, q, v), strain_energy(e, q) and gravity_energy(e, q, g) const.");
+  static_assert(
+      requires(B const b, typename B::Point p, Mat3 const& axes, In x, Published<double>& out) {
+        b.template publish<double>(p, axes, x, x, out);
+      }, "A body needs publish<T>(p, axes, q, v, published) const: frame, Jacobian and bias of a marker.");
+  static_assert(
+      requires(B const b, typename B::Point p, In x, Wrench<double> w,
+               Mat<double, B::point_columns, B::point_columns>& k) { b.load_stiffness(p, x, w, k); },
+      "A body needs load_stiffness(p, q, w, k) const: d(J'w)/dq of a marker, such as load_stiffness_by_duals.");
+};
+
+/// The members that the concept `ForceElement` asks.
+template <class F>
+struct ForceRefusal {
+  static_assert(
+      requires { requires F::markers >= 1; },
+      "A force element needs a static constant: int markers, at least 1; a group of them, what ForceGroup asks.");
+  static_assert(
+      requires {
+        { F::needs } -> std::convertible_to<Observes>;
+        { F::is_load } -> std::convertible_to<bool>;
+      }, "A force element needs static constants: Observes needs and bool is_load.");
+  static_assert(
+      requires(F const f, std::array<Frame<double>, F::markers> const frames, double t) {
+        { f.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
+      },
+      "A force element needs wrenches<T>(std::array<Frame<T>, markers> frames, double t) const, which returns "
+      "std::array<Wrench<T>, markers>.");
+  static_assert(
+      requires(F const f, std::string name) { f.check(name); },
+      "A force element needs check(name) const, which throws InvalidInput for parameters that cannot be meant.");
+};
+
+template <class List>
+struct ListRefusal {
+  static_assert(sizeof(List) == 0, "A model is named by lists: Model<Bodies<...>, Joints<...>, Forces<...>>.");
+};
+template <class... Bs>
+struct ListRefusal<Bodies<Bs...>> {
+  static_assert(Distinct<Bs...>, "A body type stands twice in a model's Bodies; once serves any number of bodies.");
+  static constexpr bool asked = ((Body<Bs> || sizeof(BodyRefusal<Bs>) > 0) && ...);
+};
+template <class... Js>
+struct ListRefusal<Joints<Js...>> {
+  static_assert(Distinct<Js...>, "A joint type stands twice in a model's Joints; once serves any number of joints.");
+  static constexpr bool asked = true;
+};
+template <class... Fs>
+struct ListRefusal<Forces<Fs...>> {
+  static_assert(Distinct<Fs...>, "A force type stands twice in a model's Forces; once serves any number of forces.");
+  static constexpr bool asked = ((AppliedForce<Fs> || sizeof(ForceRefusal<Fs>) > 0) && ...);
+};
+
+}  // namespace polybody::detail

@@ -1,0 +1,12 @@
+// refused: A body needs tangent
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+
+struct Block : planar::Rigid {
+  using planar::Rigid::Rigid;
+  void tangent() const {}  // hides the one with its arguments
+};
+
+void add(Model<Bodies<Block>, Joints<>>& model) { model.add(Block(1.0, 1.0)); }

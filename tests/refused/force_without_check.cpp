@@ -1,0 +1,12 @@
+// refused: A force element needs check
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+
+struct Spring : SpringDamper {
+  void check() const {}  // hides the one with its argument
+};
+
+Model<Bodies<planar::Rigid>, Joints<>, Forces<Spring>> model;

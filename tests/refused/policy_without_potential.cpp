@@ -1,0 +1,11 @@
+// refused: A policy that answers rows needs potential
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/spherical.hpp>
+
+using namespace polybody;
+
+struct Mount : Penalty {
+  void potential() const {}  // hides the one with its argument
+};
+
+Joint<Spherical, Mount> const joint{{}, {{.stiffness = 1.0, .damping = 0.0}}};
