@@ -1,5 +1,6 @@
 # cmake -DWAY=<way> -DBUILD=... (see CMakeLists.txt) -P check.cmake
-# Installs polybody, or builds and runs consumer.cpp against it in one of the ways below.
+# Installs polybody, or builds and runs consumer.cpp against it in one of several ways; `extensions` builds types of a
+# user's own, runs them and their laws.
 
 set(here ${CMAKE_CURRENT_LIST_DIR})
 set(dir ${WORK}/${WAY})
@@ -71,6 +72,19 @@ elseif(WAY STREQUAL "compiled")
     endif()
   endif()
 
+elseif(WAY STREQUAL "extensions")
+  # the page shows each header, and no other
+  file(READ ${SOURCE}/docs/extending.md page)
+  file(GLOB headers RELATIVE ${here}/extensions ${here}/extensions/*.hpp)
+  string(REGEX MATCHALL "\n## [^\n]*: `[^`]*\\.hpp`" shown "${page}")
+  list(TRANSFORM shown REPLACE ".*`(.*)`" "\\1")
+  list(SORT shown)
+  if(NOT shown STREQUAL headers)
+    message(FATAL_ERROR "docs/extending.md shows ${shown}, but there are ${headers}")
+  endif()
+  build_and_run(extensions -DCMAKE_PREFIX_PATH=${prefix} -DVERSION=${VERSION})
+  run(${CMAKE_CTEST_COMMAND} --test-dir ${dir} --output-on-failure)
+
 elseif(WAY STREQUAL "pkg_config")
   # No CMake at all: c++ -std=c++20 consumer.cpp $(pkg-config --cflags polybody)
   find_program(PKG_CONFIG NAMES pkg-config pkgconf REQUIRED)
@@ -84,6 +98,11 @@ elseif(WAY STREQUAL "pkg_config")
   file(MAKE_DIRECTORY ${dir})
   run(${COMPILER} -std=c++20 ${FLAGS} ${cflags} ${here}/consumer.cpp -o ${dir}/consumer)
   run(${dir}/consumer)
+  # the law suites, where GoogleTest tells pkg-config of itself
+  execute_process(COMMAND ${PKG_CONFIG} --exists gtest_main RESULT_VARIABLE without_gtest)
+  if(NOT without_gtest)
+    run(${PKG_CONFIG} --exists --print-errors "polybody-testing = ${VERSION}")
+  endif()
 
 else()
   message(FATAL_ERROR "no way named '${WAY}'")

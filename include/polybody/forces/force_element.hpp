@@ -9,6 +9,8 @@
 
 namespace polybody {
 
+/// The concept of a force element; `check(name)` is called by `apply` with its name. It may have a member `law` with
+/// `corners()`, times at which steps are to end; `docs/extending.md` lists what else.
 template <class F>
 concept ForceElement =
     requires(F const force, std::array<Frame<double>, F::markers> const frames, double t, std::string const name) {

@@ -38,7 +38,8 @@ concept HasLinearPoints = requires(B const b, typename B::Point p) {
 /// A body is made of elements: fixed-size units that yield inertia, force and tangent. Spans cover the whole
 /// body; element e touches the columns [first_column(e), first_column(e) + element_columns). A body whose size is known
 /// at run time only says `element_columns = Eigen::Dynamic`: it is one element, and touches all its columns. Positions
-/// may live on a manifold, q ⊞ δ (`plus`); δ has as many entries as there are speeds.
+/// may live on a manifold, q ⊞ δ (`plus`); δ has as many entries as there are speeds. A `Point` is copied and has a
+/// default; `at(…)` makes one. `docs/extending.md` tells what each member gives, and what else a body may have.
 template <class B>
 concept Body = requires(B const b, Index e, std::span<double const> x, std::span<double> out, typename B::Point p,
                         Published<double>& published, Vec<double, B::element_columns>& vector,

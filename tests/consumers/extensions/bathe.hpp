@@ -1,0 +1,142 @@
+#pragma once
+// A user's own integrator: what the concept `polybody::Integrator` asks, written on `System` alone.
+#include <polybody/polybody.hpp>
+
+namespace own {
+
+using namespace polybody;
+
+/// Bathe's method of two sub-steps, of order two and L-stable [Bank et al. 1985; Bathe & Baig 2005]: the trapezoidal
+/// rule to t + (2 − √2) h, then the backward formula of second order, on q₀ ⊞ δ with δ˙ = local_rate(δ, v):
+///   y₁ = y₀ + b (y˙₀ + y˙₁),  y₂ = c₁ y₁ − c₀ y₀ + b y˙₂,  y = (δ, v),  b = (1 − √½) h,  2 c₁ = √2 + 1,  2 c₀ = √2 −
+///   1,
+/// each with M v̇ + Gᵀλ = f and Φ = 0 at its end. The step ends with speeds on the rows and accelerations that belong to
+/// them.
+struct Bathe {
+  static constexpr char const* name = "Bathe";
+  static constexpr int order = 2;
+  static constexpr bool accepts_rows = true;
+  static constexpr Entries entries = Entries::tangent;  ///< what it calls beside `Entries::motion`
+
+  double tolerance = 1e-13;  ///< of Newton's corrections of δ, relative to 1 + max |q|
+  int max_iterations = 30;
+
+  void check() const { require_positive(tolerance, "Bathe: the tolerance"); }
+
+  /// Everything that a step needs, allocated once. Simulations ask `forward` for consistent starts.
+  template <class Solver>
+  struct Workspace {
+    VecX q, v, a, lambda, delta, rate, known_delta, known_v, r, phi, phi_rate, rhs, y;
+    TangentSolver<Solver> solver;
+    ForwardDynamics<Solver> forward;
+
+    explicit Workspace(System& s)
+        : q(VecX::Zero(s.coordinates())),
+          v(VecX::Zero(s.speeds())),
+          a(v),
+          lambda(VecX::Zero(s.rows())),
+          delta(v),
+          rate(v),
+          known_delta(v),
+          known_v(v),
+          r(v),
+          phi(lambda),
+          phi_rate(lambda),
+          rhs(VecX::Zero(s.size())),
+          y(rhs),
+          forward(s) {
+      solver.analyse(s, 1, [&](BlockSink& sink) { s.tangent({1.0, 1.0, 1.0}, SecondOrder::omitted, lambda, sink); });
+    }
+  };
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
+  }
+
+  /// Consistent accelerations; q and v stay.
+  template <class W>
+  void start(System& system, State& x, double, W& w) const {
+    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+  }
+
+  /// x changes only at the end, when nothing throws any more.
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
+    double const root = std::sqrt(2.0), b = (1.0 - 0.5 * root) * h;
+    StepReport report{.taken = h, .next = h};
+    w.a = x.a;
+    w.lambda = x.lambda;
+    w.known_delta = b * x.v;
+    w.known_v = x.v + b * x.a;
+    solve(system, x, x.t + (2.0 - root) * h, b, w, report);
+    w.known_delta = 0.5 * (root + 1.0) * w.delta;
+    w.known_v = 0.5 * (root + 1.0) * w.v - 0.5 * (root - 1.0) * x.v;
+    solve(system, x, x.t + h, b, w, report);
+    w.forward.project_velocities(system, w.q, w.v, x.t + h);
+    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda);
+    x.q.swap(w.q);
+    x.v.swap(w.v);
+    x.a.swap(w.a);
+    x.lambda.swap(w.lambda);
+    x.t += h;
+    report.evaluations += 2;
+    return report;
+  }
+
+ private:
+  /// v = known_v + b v̇ and δ = known_delta + b δ˙ with the balance and the rows at time t. Newton's unknowns are Δv̇ and
+  /// Δλ: Δv = b Δv̇, Δδ = b² Δv̇, and the rows are divided by b².
+  template <class W>
+  void solve(System& system, State const& x, double t, double b, W& w, StepReport& report) const {
+    Index const nv = system.speeds(), rows = system.rows();
+    double const enough = tolerance * (1.0 + x.q.cwiseAbs().maxCoeff());
+    w.v = w.known_v + b * w.a;
+    w.delta = w.known_delta + b * w.v;
+    for (int k = 0; k < max_iterations; ++k) {
+      move(system, x, b, w);
+      system.evaluate(w.q, w.v, t);
+      system.residual(w.a, w.lambda, w.r);
+      system.violation(w.phi);
+      w.rhs.head(nv) = -w.r;
+      w.rhs.tail(rows) = w.phi / -(b * b);
+      if (!system.velocity_rows().empty()) {  // these have a rate only
+        system.violation_rate(w.phi_rate);
+        for (Index const i : system.velocity_rows()) w.rhs[nv + i] = w.phi_rate[i] / -b;
+      }
+      ++report.evaluations;
+      if (!w.rhs.allFinite())
+        throw NonFinite("Bathe: the forces or the rows are not finite at t = " + number(t) +
+                        " s. Take a smaller step.");
+      if (k == 0) {
+        TangentCoefficients const c{.mass = 1.0, .damping = b, .stiffness = b * b};
+        Index const bad =
+            w.solver.factor([&](BlockSink& sink) { system.tangent(c, SecondOrder::omitted, w.lambda, sink); });
+        if (bad >= 0)
+          throw LinearSolverSingular("Bathe: the step has no unique solution at t = " + number(t) + " s; see " +
+                                     name_of_equation(system, bad) + ".");
+        ++report.factorisations;
+      }
+      w.solver.solve(w.rhs, w.y);
+      w.a += w.y.head(nv);
+      w.lambda += w.y.tail(rows);
+      w.v = w.known_v + b * w.a;
+      ++report.iterations;
+      if (b * b * w.y.head(nv).norm() <= enough) {
+        move(system, x, b, w);
+        return;
+      }
+    }
+    throw NewtonStalled("Bathe: Newton's method does not converge at t = " + number(t) + " s. Take a smaller step.");
+  }
+  /// δ and q that belong to v.
+  template <class W>
+  void move(System& system, State const& x, double b, W& w) const {
+    system.local_rate(w.delta, w.v, w.rate);
+    w.delta = w.known_delta + b * w.rate;
+    system.plus(x.q, w.delta, w.q);
+  }
+};
+
+static_assert(Integrator<Bathe>);
+
+}  // namespace own
