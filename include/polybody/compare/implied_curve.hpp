@@ -30,16 +30,16 @@ struct AngleAlong {
 ///   R = exp(ψ e₃) exp(−θ e₂) exp(−φ e₁),  K = −φ′ e₁ + exp(φ e₁) (−θ′ e₂ + exp(θ e₂) ψ′ e₃).
 template <class T = double>  // compiled where it is used
 SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAlong const& phi) {
-  using Vec3 = Vec<T, 3>;
-  using Mat3 = Mat<T, 3, 3>;
-  Vec3 const x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
-  Mat3 const about_z = exp_so3<T>(psi.value * z), about_y = exp_so3<T>(theta.value * y);
-  Mat3 const about_x = exp_so3<T>(phi.value * x);
-  Vec3 const yawed = about_y * z, inner = psi.slope * yawed - theta.slope * y;
+  using V = Vec<T, 3>;
+  using M = Mat<T, 3, 3>;
+  V const x = V::UnitX(), y = V::UnitY(), z = V::UnitZ();
+  M const about_z = exp_so3<T>(psi.value * z), about_y = exp_so3<T>(theta.value * y);
+  M const about_x = exp_so3<T>(phi.value * x);
+  V const yawed = about_y * z, inner = psi.slope * yawed - theta.slope * y;
   SectionTurn s;
   s.R = about_z * about_y.transpose() * about_x.transpose();
   s.K = about_x * inner - phi.slope * x;
-  Vec3 const rate = psi.second * yawed + psi.slope * theta.slope * y.cross(yawed) - theta.second * y;
+  V const rate = psi.second * yawed + psi.slope * theta.slope * y.cross(yawed) - theta.second * y;
   s.dK = about_x * (phi.slope * x.cross(inner) + rate) - phi.second * x;
   return s;
 }

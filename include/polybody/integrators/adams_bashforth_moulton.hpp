@@ -63,16 +63,16 @@ struct AdamsBashforthMoulton {
 
     /// y into q, normalised, and v.
     void split(System const& system) {
-      raw = y.head(raw.size());
-      v = y.tail(v.size());
+      std::copy_n(y.data(), raw.size(), raw.data());
+      std::copy_n(y.data() + raw.size(), v.size(), v.data());
       system.plus(raw, zero, q);
     }
     /// y˙ at (q, v, t) into f.
     void rates(System& system, double t, RowFeedback const& feedback) {
-      forward.accelerations(system, q, v, t, a, lambda, feedback);
+      forward.accelerations(system, {q, v, t}, a, lambda, feedback);
       polybody::coordinate_rates(system, q, v, dual, q_rate);
-      f.head(q.size()) = q_rate;
-      f.tail(a.size()) = a;
+      std::copy_n(q_rate.data(), q.size(), f.data());
+      std::copy_n(a.data(), a.size(), f.data() + q.size());
     }
   };
   template <class Solver>
@@ -109,7 +109,7 @@ struct AdamsBashforthMoulton {
       w.split(system);
       w.rates(system, x.t + h, feedback);
       report.evaluations += 1;
-      e = correct(history, c, age, h, k, known, x, w);
+      e = correct(history, Trial{c, age, h, k, known}, x, w);
       if (e.here <= 1.0) break;
       ++report.rejected;
       if (known > 1) rising = false;
@@ -155,10 +155,17 @@ struct AdamsBashforthMoulton {
     }
   };
 
+  /// A step of length h at order k, with the weights of its differences and the ages of the `known` points before it.
+  struct Trial {
+    std::array<double, order + 2> const &c, &age;
+    double h;
+    int k, known;
+  };
+
   template <class W>
   void predict(AdamsHistory const& history, std::array<double, order + 2> const& c, int k, State const& x, W& w) const {
-    w.y.head(x.q.size()) = x.q;
-    w.y.tail(x.v.size()) = x.v;
+    std::copy_n(x.q.data(), x.q.size(), w.y.data());
+    std::copy_n(x.v.data(), x.v.size(), w.y.data() + x.q.size());
     for (int j = 0; j < k; ++j) {
       double const* const d = history.difference(j);
       for (Index i = 0; i < w.y.size(); ++i) w.y[i] += c[std::size_t(j)] * d[i];
@@ -167,8 +174,8 @@ struct AdamsBashforthMoulton {
 
   /// c_k D*_k into w.correction, and the errors: means over q and over v, each relative to its largest entry.
   template <class W>
-  Errors correct(AdamsHistory const& history, std::array<double, order + 2> const& c,
-                 std::array<double, order + 2> const& age, double h, int k, int known, State const& x, W& w) const {
+  Errors correct(AdamsHistory const& history, Trial const& trial, State const& x, W& w) const {
+    auto const& [c, age, h, k, known] = trial;
     std::array<double, 4> sum{};
     Index const nq = x.q.size(), n = w.y.size();
     double const in_q = share(x.q, w.q), in_v = share(x.v, w.v);

@@ -86,7 +86,7 @@ struct AlphaMethod {
   void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     if (w.second_order && !second_order_terms)
       w.analyse(system, SecondOrder::omitted);  // it was called for by a step before
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     StepHistory::reset(x);
     w.factored = false;
     if (start_correction && jerk_at_start(system, x, h, w)) StepHistory(x).pretend(x, w.jerk, h);
@@ -293,7 +293,7 @@ struct AlphaMethod {
       follow(x, e, w);
       system.plus(x.q, w.dq, w.q);
       VecX a = x.a;
-      w.forward.accelerations(system, w.q, w.v, x.t + e, a, w.lambda);
+      w.forward.accelerations(system, {w.q, w.v, x.t + e}, a, w.lambda);
       return a;
     };
     VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);

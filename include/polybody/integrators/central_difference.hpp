@@ -39,7 +39,7 @@ struct CentralDifference {
   template <class W>
   void start(System& system, State& x, double, W& w) const {
     stabilisation.start(w.scratch);
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda, stabilisation.feedback());
+    w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda, stabilisation.feedback());
   }
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
@@ -48,7 +48,7 @@ struct CentralDifference {
     system.plus(x.q, w.dq, w.q);
     w.v += 0.5 * h * x.a;  // predicted, for forces that depend on speed
     stabilisation.apply(system, w.forward, w.scratch, w.q, w.v, x.t + h);
-    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda, stabilisation.feedback());
+    w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda, stabilisation.feedback());
     w.v = x.v + 0.5 * h * (x.a + w.a);
     stabilisation.velocities(system, w.forward, w.scratch, w.q, w.v, x.t + h);
     x.q.swap(w.q);

@@ -58,7 +58,7 @@ struct ConservingStep {
   /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
   template <class Solver>
   void start(System& system, State& x, double h, Workspace<Solver>& w) const {
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     StepHistory::reset(x);
     w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi});
     w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
@@ -82,42 +82,47 @@ struct ConservingStep {
     return w.solver.factor([&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
   }
 
+  /// A step as Newton's method sees it.
+  template <class Solver>
+  struct Problem {
+    ConservingStep const& method;
+    System& system;
+    State const& x;
+    Workspace<Solver>& w;
+    double h, s;
+    Index nv, rows, bad = -1;
+
+    void move() {
+      for (Index i = 0; i < w.q.size(); ++i) w.q[i] = x.q[i] + h * x.v[i] + s * w.vd[i];
+    }
+    bool evaluate() {
+      move();
+      w.secants.evaluate(system, {&x.q, &w.q, x.t, h, method.chi});
+      w.secants.residual(system, w.vd, w.lambda, w.r);
+      w.secants.violation(w.phi);
+      for (Index i = 0; i < nv; ++i) w.rhs[i] = -w.r[i];
+      for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.phi[i] / -s;
+      return w.rhs.allFinite();
+    }
+    bool refactor() {
+      bad = method.refactor(system, h, w);
+      return bad < 0;
+    }
+    CorrectionSize solve() {
+      w.solver.solve(w.rhs, w.y);
+      double const n = std::sqrt(double(std::max<Index>(nv, 1)));
+      double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
+      return {w.y.allFinite() ? w.y.head(nv).norm() / n : std::numeric_limits<double>::quiet_NaN(),
+              method.tolerance * (1.0 + w.vd.norm() / n) + rounding};
+    }
+    void apply() {
+      for (Index i = 0; i < nv; ++i) w.vd[i] += w.y[i];
+      for (Index i = 0; i < rows; ++i) w.lambda[i] += w.y[nv + i];
+    }
+  };
+
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, bool careful) const {
-    struct Problem {
-      ConservingStep const& method;
-      System& system;
-      State const& x;
-      Workspace<Solver>& w;
-      double h, s;
-      Index nv, rows, bad = -1;
-
-      void move() { w.q = x.q + h * x.v + s * w.vd; }
-      bool evaluate() {
-        move();
-        w.secants.evaluate(system, {&x.q, &w.q, x.t, h, method.chi});
-        w.secants.residual(system, w.vd, w.lambda, w.r);
-        w.secants.violation(w.phi);
-        w.rhs.head(nv) = -w.r;
-        w.rhs.tail(rows) = w.phi / -s;
-        return w.rhs.allFinite();
-      }
-      bool refactor() {
-        bad = method.refactor(system, h, w);
-        return bad < 0;
-      }
-      CorrectionSize solve() {
-        w.solver.solve(w.rhs, w.y);
-        double const n = std::sqrt(double(std::max<Index>(nv, 1)));
-        double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
-        return {w.y.allFinite() ? w.y.head(nv).norm() / n : std::numeric_limits<double>::quiet_NaN(),
-                method.tolerance * (1.0 + w.vd.norm() / n) + rounding};
-      }
-      void apply() {
-        w.vd += w.y.head(nv);
-        w.lambda += w.y.tail(rows);
-      }
-    };
     StepHistory history(x);
     if (careful) {
       w.vd.setZero();  // the mean of what a step does not resolve
@@ -129,7 +134,7 @@ struct ConservingStep {
     NewtonOptions options = newton;
     options.always_refactor = options.always_refactor || careful;
     if (careful) options.growths = 10;
-    Problem problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows()};
+    Problem<Solver> problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows()};
     NewtonReport const report = polybody::newton(problem, options, w.factored, w.theta);
     if (report.result != NewtonResult::converged && !careful) {  // full Newton, from no acceleration at all
       w.factored = false;
@@ -138,7 +143,7 @@ struct ConservingStep {
     if (report.result != NewtonResult::converged)
       detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
     problem.move();
-    w.v = x.v + h * w.vd;
+    for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
     history.push(x, h, w.vd);
     x.q.swap(w.q);
     x.v.swap(w.v);

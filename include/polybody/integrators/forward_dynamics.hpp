@@ -62,10 +62,9 @@ class ForwardDynamics {
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
-  /// M a + Gᵀλ = f, G a = −γ − what is fed back, at (q, v, t). \throws LinearSolverSingular, NonFinite.
-  void accelerations(System& system, VecX const& q, VecX const& v, double t, VecX& a, VecX& lambda,
-                     RowFeedback const& feedback = {}) {
-    system.evaluate(q, v, t);
+  /// M a + Gᵀλ = f, G a = −γ − what is fed back, there. \throws LinearSolverSingular, NonFinite.
+  void accelerations(System& system, At<double> const& at, VecX& a, VecX& lambda, RowFeedback const& feedback = {}) {
+    system.evaluate(at.q, at.v, at.t);
     factor(system);
     system.residual(zero_a_, zero_lambda_, r_);
     detail::require_finite_force(system, r_);

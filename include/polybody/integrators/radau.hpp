@@ -137,7 +137,7 @@ struct Radau {
   template <class Solver>
   void start(System& system, State& x, double, Workspace<Solver>& w) const {
     check();
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     std::fill(w.slack.begin(), w.slack.end(), 0.0);
     for (Index const i : w.forward.redundant_rows()) w.slack[std::size_t(i - equation_speeds_of(system))] = -1.0;
     w.factored = false;
@@ -145,55 +145,6 @@ struct Radau {
 
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
-    struct Problem {
-      Radau const& method;
-      System& system;
-      State const& x;
-      Workspace<Solver>& w;
-      double h;
-      Index nv, rows, bad = -1;
-
-      void evaluate_stage(std::size_t i) {
-        system.plus(x.q, w.delta[i], w.q);
-        system.evaluate(w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h);
-      }
-      bool evaluate() {
-        w.set_positions(system, h);
-        for (std::size_t i = 0; i < 3; ++i) {
-          evaluate_stage(i);
-          system.residual(w.vd[i], w.lambda[i], w.r);
-          system.acceleration_bias(w.gamma);
-          system.rows_times(w.vd[i], w.phi);
-          w.phi += w.gamma;
-          w.rhs.segment(Index(i) * (nv + rows), nv) = -w.r;
-          w.rhs.segment(Index(i) * (nv + rows) + nv, rows) = -w.phi;
-        }
-        return w.rhs.allFinite();
-      }
-      bool refactor() {
-        evaluate_stage(1);
-        w.h_factored = h;
-        bad = w.solver.factor([&](BlockSink& sink) { w.write(system, h, sink); });
-        return bad < 0;
-      }
-      CorrectionSize solve() {
-        w.solver.solve(w.rhs, w.y);
-        double const n = std::sqrt(double(std::max<Index>(nv, 1)));
-        double change = w.unsettled / (h * h);
-        for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), nv).norm());
-        double const rounding =
-            30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / (h * h);
-        return {w.y.allFinite() ? change / n : std::numeric_limits<double>::quiet_NaN(),
-                method.tolerance * (1.0 + w.vd[2].norm() / n) + rounding};
-      }
-      void apply() {
-        for (std::size_t i = 0; i < 3; ++i) {
-          w.vd[i] += w.y.segment(Index(i) * (nv + rows), nv);
-          w.lambda[i] += w.y.segment(Index(i) * (nv + rows) + nv, rows);
-        }
-        w.set_speeds(x.v, h);
-      }
-    };
     for (std::size_t i = 0; i < 3; ++i) {
       w.vd[i] = x.a;
       w.lambda[i] = x.lambda;
@@ -201,7 +152,7 @@ struct Radau {
     }
     w.set_speeds(x.v, h);
     if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
-    Problem problem{*this, system, x, w, h, system.speeds(), system.rows()};
+    Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows()};
     NewtonReport const report = polybody::newton(problem, newton, w.factored, w.theta);
     if (report.result != NewtonResult::converged)
       detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
@@ -223,6 +174,60 @@ struct Radau {
     x.t += h;
     return {h, h, report.iterations, report.factorisations, 3 * report.iterations, 0, 0, report.theta};
   }
+
+ private:
+  /// A step as Newton's method sees it.
+  template <class Solver>
+  struct Problem {
+    Radau const& method;
+    System& system;
+    State const& x;
+    Workspace<Solver>& w;
+    double h;
+    Index nv, rows, bad = -1;
+
+    void evaluate_stage(std::size_t i) {
+      system.plus(x.q, w.delta[i], w.q);
+      system.evaluate(w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h);
+    }
+    bool evaluate() {
+      w.set_positions(system, h);
+      for (std::size_t i = 0; i < 3; ++i) {
+        evaluate_stage(i);
+        system.residual(w.vd[i], w.lambda[i], w.r);
+        system.acceleration_bias(w.gamma);
+        system.rows_times(w.vd[i], w.phi);
+        Index const first = Index(i) * (nv + rows);
+        for (Index k = 0; k < nv; ++k) w.rhs[first + k] = -w.r[k];
+        for (Index k = 0; k < rows; ++k) w.rhs[first + nv + k] = -(w.phi[k] + w.gamma[k]);
+      }
+      return w.rhs.allFinite();
+    }
+    bool refactor() {
+      evaluate_stage(1);
+      w.h_factored = h;
+      bad = w.solver.factor([&](BlockSink& sink) { w.write(system, h, sink); });
+      return bad < 0;
+    }
+    CorrectionSize solve() {
+      w.solver.solve(w.rhs, w.y);
+      double const n = std::sqrt(double(std::max<Index>(nv, 1)));
+      double change = w.unsettled / (h * h);
+      for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), nv).norm());
+      double const rounding =
+          30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / (h * h);
+      return {w.y.allFinite() ? change / n : std::numeric_limits<double>::quiet_NaN(),
+              method.tolerance * (1.0 + w.vd[2].norm() / n) + rounding};
+    }
+    void apply() {
+      for (std::size_t i = 0; i < 3; ++i) {
+        Index const first = Index(i) * (nv + rows);
+        for (Index k = 0; k < nv; ++k) w.vd[i][k] += w.y[first + k];
+        for (Index k = 0; k < rows; ++k) w.lambda[i][k] += w.y[first + nv + k];
+      }
+      w.set_speeds(x.v, h);
+    }
+  };
 };
 
 }  // namespace polybody

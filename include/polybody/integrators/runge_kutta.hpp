@@ -37,7 +37,7 @@ struct RungeKuttaWorkspace {
   void start(System& system, State& x, Stabilisation const& stabilisation) {
     stabilisation.start(scratch);
     feedback = stabilisation.feedback();
-    forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda, feedback);
+    forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda, feedback);
   }
 
   /// Rates at x + h Σ row[j] k_j into stage i.
@@ -46,7 +46,7 @@ struct RungeKuttaWorkspace {
     combine(x, h, row, i);
     system.plus(x.q, delta, q);
     system.local_rate(delta, v, position_rate[std::size_t(i)]);
-    forward.accelerations(system, q, v, x.t + c * h, acceleration[std::size_t(i)], lambda, feedback);
+    forward.accelerations(system, {q, v, x.t + c * h}, acceleration[std::size_t(i)], lambda, feedback);
   }
 
   /// delta, v = h Σ_{j<count} weights[j] k_j (plus v₀).
@@ -65,7 +65,7 @@ struct RungeKuttaWorkspace {
   void accept(System& system, State& x, double h, Stabilisation const& stabilisation) {
     system.plus(x.q, delta, q);
     stabilisation.apply(system, forward, scratch, q, v, x.t + h);
-    forward.accelerations(system, q, v, x.t + h, a, lambda, feedback);
+    forward.accelerations(system, {q, v, x.t + h}, a, lambda, feedback);
     x.q.swap(q);
     x.v.swap(v);
     x.a.swap(a);

@@ -40,14 +40,14 @@ struct SymplecticEuler {
   }
   template <class W>
   void start(System& system, State& x, double, W& w) const {
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
   }
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     w.v = x.v + h * x.a;
     w.dq = h * w.v;
     system.plus(x.q, w.dq, w.q);
-    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda);
+    w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
     x.q.swap(w.q);
     x.v.swap(w.v);
     x.a.swap(w.a);
@@ -95,7 +95,7 @@ struct Rattle {
   }
   template <class W>
   void start(System& system, State& x, double, W& w) const {
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
   }
 
   /// \throws NewtonStalled when the positions cannot be brought to the joints.
@@ -110,7 +110,7 @@ struct Rattle {
     }
     w.dq /= h;  // v½
     w.v = w.dq + 0.5 * h * x.a;
-    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda);
+    w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
     w.v = w.dq + 0.5 * h * w.a;
     w.forward.project_velocities(system, w.q, w.v, x.t + h);
     x.q.swap(w.q);

@@ -190,9 +190,9 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
   show();
 }
 
-
 template <Integrator I, class Solver>
-Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, RunOptions options, RunSnapshot const& from)
+Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, RunOptions options,
+                                  RunSnapshot const& from)
     : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), from.state.t) {
   from.require(identity_of(*system_), I::name, options_.events.size());
   if (eliminates()) x = {};
@@ -205,7 +205,6 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
   renew();
 }
 
-
 template <Integrator I, class Solver>
 Simulation<I, Solver>::~Simulation() = default;
 
@@ -214,7 +213,6 @@ RunSnapshot Simulation<I, Solver>::snapshot() {
   renew();
   return {identity_of(*system_), I::name, stepped(), h_, watch_.sides(), report_};
 }
-
 
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::advance() {
@@ -246,7 +244,6 @@ RunReport const& Simulation<I, Solver>::run() {
   return report_;
 }
 
-
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::narrow_start() {
   if (options_.minimum_norm)
@@ -260,7 +257,6 @@ void Simulation<I, Solver>::narrow_start() {
   warn(forward, start);
   narrow_ = reduce(*system_, start);
 }
-
 
 template <Integrator I, class Solver>
 StepReport Simulation<I, Solver>::step(double h, int halvings) {
@@ -289,7 +285,6 @@ StepReport Simulation<I, Solver>::step(double h, int halvings) {
   }
 }
 
-
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::restart(bool first) {
   State fresh = stepped();  // which stays as it is when the start fails
@@ -302,6 +297,5 @@ void Simulation<I, Solver>::restart(bool first) {
     for (std::string const& name : system_->step_coordinates().narrow->redundant)
       if (report_.redundant.empty() || report_.redundant.back() != name) report_.redundant.push_back(name);
 }
-
 
 }  // namespace polybody

@@ -35,6 +35,48 @@ struct CorrectionSize {
   double norm, tolerated = 1.0;
 };
 
+namespace detail {
+
+/// How the corrections of Newton's method shrink, and the part of them that is taken.
+struct NewtonProgress {
+  double before = 0.0, earlier = 0.0;  ///< norms of the last correction and of the one before it
+  double rated = 0.0;                  ///< the last one beside what was tolerated
+  double part = 1.0;
+  int grown = 0;
+
+  /// Rates the next correction by the last one. False where corrections grew too often.
+  bool rate(CorrectionSize const& size, NewtonOptions const& options, bool& factored, double& theta) {
+    double const norm = size.norm, beside_tolerated = norm / size.tolerated;
+    theta = beside_tolerated / rated;
+    if (options.always_refactor) {
+      if (norm > (1.0 - 0.1 * part) * before)
+        part = std::max(0.5 * part, 1.0 / 64.0);
+      else if (norm <= (1.1 - part) * before)
+        part = std::min(1.0, 2.0 * part);
+    }
+    bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
+    if (grows && beside_tolerated > 1.0) {
+      factored = false;
+      return ++grown < options.growths;
+    }
+    if (theta > options.refactor_above) factored = false;
+    return true;
+  }
+
+  /// The correction has been applied: whether it was the last one. \param renewed the factorisation is of this iterate
+  bool ends(CorrectionSize const& size, NewtonOptions const& options, bool renewed, double theta) {
+    earlier = before;
+    before = size.norm;
+    rated = size.norm / size.tolerated;
+    if (options.always_refactor || !options.predictive_stop) return rated <= 1.0;
+    double const contraction = std::min(theta, 0.99);
+    bool const small = rated <= 0.1;  // rounding no longer contracts
+    return small || ((!renewed || grown == 0) && theta < 1.0 && contraction / (1.0 - contraction) * rated <= 1.0);
+  }
+};
+
+}  // namespace detail
+
 /// Solves by corrections Δ. The problem offers
 ///   bool evaluate()           the right-hand side at the iterate; false when it is not finite
 ///   bool refactor()           the tangent there; false when it is singular
@@ -52,10 +94,12 @@ struct CorrectionSize {
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
   NewtonReport report;
-  double before = 0.0, earlier = 0.0,
-         rated = 0.0;  // norms of the last two corrections; the last one beside what was tolerated
-  int grown = 0;
-  double part = 1.0;
+  detail::NewtonProgress progress;
+  auto const fail = [&](NewtonResult result) {
+    report.result = result;
+    factored = false;
+    return report;
+  };
   theta = std::pow(std::max(theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
   for (int k = 0; k < options.max_iterations; ++k) {
     if (!problem.evaluate()) {
@@ -65,59 +109,27 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
     }
     bool renewed = false;
     if (!factored || options.always_refactor) {
-      if (!problem.refactor()) {
-        report.result = k == 0 ? NewtonResult::singular : NewtonResult::diverged;
-        factored = false;
-        return report;
-      }
+      if (!problem.refactor()) return fail(k == 0 ? NewtonResult::singular : NewtonResult::diverged);
       ++report.factorisations;
       factored = renewed = true;
       if (k == 0) theta = 1.0;
     }
     CorrectionSize const size{problem.solve()};
-    double const norm = size.norm, beside_tolerated = norm / size.tolerated;
     ++report.iterations;
-    if (!std::isfinite(beside_tolerated)) {
-      report.result = k > 0 ? NewtonResult::diverged : renewed ? NewtonResult::singular : NewtonResult::not_finite;
-      factored = false;
-      return report;
-    }
-    if (k > 0 && before > 0.0) {
-      theta = beside_tolerated / rated;
+    if (!std::isfinite(size.norm / size.tolerated))
+      return fail(k > 0 ? NewtonResult::diverged : renewed ? NewtonResult::singular : NewtonResult::not_finite);
+    if (k > 0 && progress.before > 0.0) {
+      bool const shrinks = progress.rate(size, options, factored, theta);
       report.theta = theta;
-      if (options.always_refactor) {
-        if (norm > (1.0 - 0.1 * part) * before)
-          part = std::max(0.5 * part, 1.0 / 64.0);
-        else if (norm <= (1.1 - part) * before)
-          part = std::min(1.0, 2.0 * part);
-      }
-      bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
-      if (grows && beside_tolerated > 1.0) {
-        factored = false;
-        if (++grown >= options.growths) {
-          report.result = NewtonResult::diverged;
-          return report;
-        }
-      } else if (theta > options.refactor_above) {
-        factored = false;
-      }
+      if (!shrinks) return fail(NewtonResult::diverged);
     }
-    if constexpr (requires { problem.apply(part); })
-      problem.apply(part);
+    if constexpr (requires { problem.apply(progress.part); })
+      problem.apply(progress.part);
     else
       problem.apply();
-    earlier = before;
-    before = norm;
-    rated = beside_tolerated;
-    double const rate = std::min(theta, 0.99);
-    bool const small = beside_tolerated <= 0.1;  // rounding no longer contracts
-    bool const predicted = (!renewed || grown == 0) && theta < 1.0 && rate / (1.0 - rate) * beside_tolerated <= 1.0;
-    if (options.always_refactor || !options.predictive_stop ? beside_tolerated <= 1.0 : small || predicted)
-      return report;
+    if (progress.ends(size, options, renewed, theta)) return report;
   }
-  report.result = NewtonResult::diverged;
-  factored = false;
-  return report;
+  return fail(NewtonResult::diverged);
 }
 
 }  // namespace polybody

@@ -18,7 +18,7 @@ template <class = void>
 bool multipliers_at_rest(System& system, State& x) {
   VecX a = x.a;
   try {
-    ForwardDynamics<DefaultSolver>(system).accelerations(system, x.q, x.v, x.t, a, x.lambda);
+    ForwardDynamics<DefaultSolver>(system).accelerations(system, {x.q, x.v, x.t}, a, x.lambda);
   } catch (Error const&) {
     return false;
   }

@@ -76,8 +76,8 @@ class LinearEliminationOf {
  private:
   /// A row after elimination, and how it came about.
   struct Pivot {
-    Index row;                        ///< of the model
-    Index v = -1;                     ///< its dependent
+    Index row;                   ///< of the model
+    Index v = -1;                ///< its dependent
     std::map<Index, T> entries;  ///< by speeds
     T constant;
     std::vector<std::pair<std::size_t, T>> multiples = {};  ///< m_kj

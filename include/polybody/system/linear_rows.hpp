@@ -116,9 +116,9 @@ void append_rows(LinearRows& rows, MatXOf<T> const& a, MatXOf<T> const& b, VecXO
 template <class G, class T>
 void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std::type_identity_t<Vec<T, 3>> const& n,
                       LinearRows& rows) {
-  using Vec3 = Vec<T, 3>;
-  using VecX = VecXOf<T>;
-  using MatX = MatXOf<T>;
+  using V = Vec<T, 3>;
+  using Vx = VecXOf<T>;
+  using Mx = MatXOf<T>;
   static_assert(LinearGeometry<G>,
                 "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
   constexpr int turns = free_turns(G::free);
@@ -126,19 +126,19 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
   rows.a.map.resize(0, a.columns);
   rows.b.map.resize(0, b.columns);
   // the ground's part stands in the constants: r_a − r_b of what has no columns
-  Vec3 const still = (a.columns == 0 ? a.at : Vec3(Vec3::Zero())) - (b.columns == 0 ? b.at : Vec3(Vec3::Zero()));
+  V const still = (a.columns == 0 ? a.at : V(V::Zero())) - (b.columns == 0 ? b.at : V(V::Zero()));
   append_rows<T>(rows, a.position, b.position, still.head(size));
   rows.positions = size;
   if constexpr (turns == 3 || (turns == 1 && G::world == World::plane)) return;
-  auto const share = [&](Vec3 const& of_a, Vec3 const& of_b, bool along_axis_only) {
-    MatX ca = a.carried(of_a), cb = b.carried(of_b);
-    VecX c = ((a.columns == 0 ? of_a : Vec3(Vec3::Zero())) - (b.columns == 0 ? of_b : Vec3(Vec3::Zero()))).head(size);
+  auto const share = [&](V const& of_a, V const& of_b, bool along_axis_only) {
+    Mx ca = a.carried(of_a), cb = b.carried(of_b);
+    Vx c = ((a.columns == 0 ? of_a : V(V::Zero())) - (b.columns == 0 ? of_b : V(V::Zero()))).head(size);
     rows.gradients.push_back({along_axis_only ? 1 : Index(size), cb, of_b, n});
     if (along_axis_only) {
       Mat<T, 1, Eigen::Dynamic> const axis = n.head(size).transpose();
       ca = (axis * ca).eval();
       cb = (axis * cb).eval();
-      c = VecX::Constant(1, axis * c);
+      c = Vx::Constant(1, axis * c);
     }
     append_rows<T>(rows, ca, cb, c);
   };
@@ -146,17 +146,17 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
     if (a.complete() && b.complete()) {
       share(n, n, false);
     } else {
-      Vec3 const t_a = a.complete() ? b.J.col(0) : a.J.col(0), t_b = b.complete() ? a.J.col(0) : b.J.col(0);
+      V const t_a = a.complete() ? b.J.col(0) : a.J.col(0), t_b = b.complete() ? a.J.col(0) : b.J.col(0);
       if (std::abs(n.dot(t_a)) > 1e-9 || std::abs(n.dot(t_b)) > 1e-9)
         throw InvalidInput("\"" + rows.name + "\": the pin of a cable must be perpendicular to it.");
       share(t_a, t_b, true);
     }
   } else if (a.complete() && b.complete()) {
-    for (int k = 0; k < size; ++k) share(Vec3::Unit(k), Vec3::Unit(k), false);
+    for (int k = 0; k < size; ++k) share(V::Unit(k), V::Unit(k), false);
   } else if (a.gradient_count == 0 || b.gradient_count == 0) {
     throw InvalidInput("\"" + rows.name + "\": AncfLinear welds bodies with position gradients. Use Constraint here.");
   } else {
-    Vec3 const t = a.complete() ? b.J.col(0) : a.J.col(0);
+    V const t = a.complete() ? b.J.col(0) : a.J.col(0);
     if (!a.complete() && !b.complete() && (a.J.col(0) - b.J.col(0)).norm() > 1e-9)
       throw InvalidInput(
           "\"" + rows.name +

@@ -9,7 +9,7 @@ namespace polybody {
 
 template <StateScalar T>
 BasicSystem<T>::BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
-            Coordinates coordinates)
+                            Coordinates coordinates)
     : model_(model),
       entries_(entries),
       layout_(std::move(layout)),

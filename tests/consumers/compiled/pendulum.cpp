@@ -24,7 +24,8 @@ double drop(Policy policy, I integrator) {
 }
 
 int main() {
-  double const implicit = drop(Constraint{}, GeneralizedAlpha{}), stages = drop(Constraint{}, RungeKutta4<Projection>{});
+  double const implicit = drop(Constraint{}, GeneralizedAlpha{}),
+               stages = drop(Constraint{}, RungeKutta4<Projection>{});
   double const joint = drop(Recursive{}, GeneralizedAlpha{});
   // θ¨ = 1.5 g cos θ from rest by a series in t²: θ = w t²/2 − w³ t⁶/240 + …, w = 1.5 g
   double const w = 1.5 * 9.81, t2 = 0.09;

@@ -56,7 +56,7 @@ struct Bathe {
   /// Consistent accelerations; q and v stay.
   template <class W>
   void start(System& system, State& x, double, W& w) const {
-    w.forward.accelerations(system, x.q, x.v, x.t, x.a, x.lambda);
+    w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
   }
 
   /// x changes only at the end, when nothing throws any more.
@@ -73,7 +73,7 @@ struct Bathe {
     w.known_v = 0.5 * (root + 1.0) * w.v - 0.5 * (root - 1.0) * x.v;
     solve(system, x, x.t + h, b, w, report);
     w.forward.project_velocities(system, w.q, w.v, x.t + h);
-    w.forward.accelerations(system, w.q, w.v, x.t + h, w.a, w.lambda);
+    w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
     x.q.swap(w.q);
     x.v.swap(w.v);
     x.a.swap(w.a);
