@@ -43,7 +43,6 @@ m113::VehicleOptions options(bool held = false, int elements = 0) {
 template <class Link, class Pin>
 Ride ride(Ramp const& drive, double until, double step, bool held = false, int elements = 0) {
   m113::Vehicle<Link, Pin> const vehicle(Pin{}, {drive, drive}, options(held, elements));
-  using M = typename m113::Vehicle<Link, Pin>::ModelType;
   auto const& side = vehicle.side(m113::Side::left);
   auto const& link = side.links[20];
   State x = vehicle.model.reference_state();
