@@ -5,9 +5,10 @@
 ///
 /// Not in polybody.hpp: few programs need it.
 
+#include <algorithm>
 #include <optional>
 
-#include <polybody/run/initial_conditions.hpp>
+#include <polybody/run/fitting.hpp>
 #include <polybody/system/model_entries.hpp>
 #include <polybody/system/places.hpp>
 #include <polybody/system/system.hpp>

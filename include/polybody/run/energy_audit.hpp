@@ -5,7 +5,7 @@
 /// For exact motions nothing is unaccounted.
 
 #include <polybody/run/energy.hpp>
-#include <polybody/run/initial_conditions.hpp>
+#include <polybody/run/fitting.hpp>
 
 namespace polybody {
 

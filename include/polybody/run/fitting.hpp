@@ -1,0 +1,34 @@
+#pragma once
+/// \file
+/// Whether a state is one of a model.
+
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+namespace detail {
+/// \throws InvalidInput unless x has these sizes and finite coordinates and speeds.
+template <class = void>
+void require_sizes(State const& x, Index coordinates, Index speeds, Index rows) {
+  if (x.q.size() != coordinates || x.v.size() != speeds || x.a.size() != speeds || x.lambda.size() != rows)
+    throw InvalidInput(
+        "The state does not fit the model; take it from reference_state() after the last body and "
+        "joint were added.");
+  require_finite(x.q, "The coordinates of the state");
+  require_finite(x.v, "The speeds of the state");
+}
+}  // namespace detail
+
+/// \throws InvalidInput unless x is a state of this model, as it stands after its last body and joint, with finite
+/// coordinates and speeds.
+template <class M>
+void require_fitting(M const& model, State const& x) {
+  detail::require_sizes(x, model.coordinates(), model.speeds(), model.rows());
+}
+template <class = void>
+void require_fitting(System const& system, State const& x) {
+  ModelLayout const& whole = system.layout();
+  detail::require_sizes(x, whole.coordinates, whole.speeds, whole.rows);
+}
+
+}  // namespace polybody
