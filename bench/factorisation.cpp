@@ -241,7 +241,7 @@ void block_product(benchmark::State& state) {
   b.zero();
   c.zero();
   for (auto _ : state) {
-    detail::subtract_product<6>(c.data(), 8, a.data(), 8, b.data(), 8, 6, 6, detail::padded(6));
+    detail::subtract_product<6>({c.data(), 8}, {a.data(), 8}, {b.data(), 8}, 6, 6, detail::padded(6));
     benchmark::DoNotOptimize(c.data());
   }
 }

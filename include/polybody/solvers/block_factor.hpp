@@ -71,7 +71,7 @@ class BlockFactor {
     symmetric_ = symmetric;
     scales_.zero();
     for (Node const& node : layout_.nodes) {
-      int const bad = detail::with_constant(node.pivoted ? 0 : node.size, [&](auto n) {
+      int const bad = with_constant(node.pivoted ? 0 : node.size, [&](auto n) {
         int const lost = eliminate<n>(node, symmetric);
         if (lost < 0) symmetric ? update<n, true>(node) : update<n, false>(node);
         return lost;
@@ -165,15 +165,15 @@ class BlockFactor {
       Node const& k = layout_.nodes[std::size_t(of[a].node)];
       double* const rows = u_.data() + k.u;
       double const *const wa = w + of[a].column, *const la = l + of[a].column;
-      detail::add_sizes<N>(scales_.data() + k.x, la, n.width, wa, stride, n.size, k.pad);
-      detail::subtract_product<N>(rows, k.stride(), la, n.width, wa, stride, n.size, k.size, k.pad);
+      detail::add_sizes<N>(scales_.data() + k.x, {la, n.width}, {wa, stride}, n.size, k.pad);
+      detail::subtract_product<N>({rows, k.stride()}, {la, n.width}, {wa, stride}, n.size, k.size, k.pad);
       for (int b = a + 1; b < n.neighbours; ++b) {
         int const column = *target++, width = detail::padded(of[b].size);
-        detail::subtract_product<N>(rows + k.pad + column, k.stride(), la, n.width, w + of[b].column, stride, n.size,
-                                    k.size, width);
+        detail::subtract_product<N>({rows + k.pad + column, k.stride()}, {la, n.width}, {w + of[b].column, stride},
+                                    n.size, k.size, width);
         if (!symmetric)
-          detail::subtract_product<N>(l_.data() + k.l + column, k.width, wa, stride, l + of[b].column, n.width, n.size,
-                                      k.size, width);
+          detail::subtract_product<N>({l_.data() + k.l + column, k.width}, {wa, stride}, {l + of[b].column, n.width},
+                                      n.size, k.size, width);
       }
     }
   }
@@ -255,7 +255,7 @@ void BlockFactor<symmetry>::solve(double const* b, double* x) const {
     if (n.pivoted)
       for (int r = 0; r < n.size; ++r) std::swap(y[r], y[swaps_[n.x + std::size_t(r)]]);
     detail::NodeStorage const s = storage(n);
-    detail::with_constant(n.size, [&](auto size) {
+    with_constant(n.size, [&](auto size) {
       detail::solve_lower<size>(s, y);
       bool const kept = keeps_columns(n);
       double const *const lt = kept ? s.l : s.u + s.pad, *z = y;
@@ -270,7 +270,7 @@ void BlockFactor<symmetry>::solve(double const* b, double* x) const {
   }
   for (auto n = layout_.nodes.rbegin(); n != layout_.nodes.rend(); ++n) {
     detail::NodeStorage const s = storage(*n);
-    detail::with_constant(n->size, [&](auto size) {
+    with_constant(n->size, [&](auto size) {
       detail::pass_up<size>(s, all + n->first_neighbour, n->neighbours, layout_.nodes.data(), w, w + n->x);
       detail::solve_upper<size>(s, w + n->x);
     });

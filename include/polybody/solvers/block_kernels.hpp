@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 #include <cstring>
-#include <type_traits>
 #include <vector>
 
 #include <polybody/math/pack.hpp>
+#include <polybody/math/with_constant.hpp>
 
 namespace polybody::detail {
 
@@ -39,72 +39,58 @@ class AlignedDoubles {
   std::vector<Four> quads_;
 };
 
-/// Calls f with N = 1 … 6 as a constant, or 0 for any other number.
-template <class F>
-auto with_constant(int n, F&& f) {
-  switch (n) {
-    case 1:
-      return f(std::integral_constant<int, 1>{});
-    case 2:
-      return f(std::integral_constant<int, 2>{});
-    case 3:
-      return f(std::integral_constant<int, 3>{});
-    case 4:
-      return f(std::integral_constant<int, 4>{});
-    case 5:
-      return f(std::integral_constant<int, 5>{});
-    case 6:
-      return f(std::integral_constant<int, 6>{});
-    default:
-      return f(std::integral_constant<int, 0>{});
-  }
-}
+/// Rows of a block: the first one, and from each to the next.
+template <class T>
+struct RowsOf {
+  T* first;
+  Index stride;
+  T* operator[](Index i) const { return first + i * stride; }
+  /// The same rows from column k on.
+  RowsOf operator+(Index k) const { return {first + k, stride}; }
+};
+using BlockRows = RowsOf<double>;
+using ConstBlockRows = RowsOf<double const>;
 
 /// `strip` rows of C −= Aᵀ B, held in registers.
 template <int strip, int count, int inner>
-inline void subtract_strip(double* __restrict c, Index c_stride, double const* a, Index a_stride, double const* b,
-                           Index b_stride, int n) {
+inline void subtract_strip(double* __restrict c, Index stride, ConstBlockRows a, ConstBlockRows b, int n) {
   Lane s[strip][count];
 #pragma GCC unroll 4
   for (int i = 0; i < strip; ++i)
 #pragma GCC unroll 4
-    for (int k = 0; k < count; ++k) s[i][k] = lanes(c + i * c_stride)[k];
+    for (int k = 0; k < count; ++k) s[i][k] = lanes(c + i * stride)[k];
 #pragma GCC unroll 8
   for (int p = 0; p < (inner > 0 ? inner : n); ++p)
 #pragma GCC unroll 4
     for (int i = 0; i < strip; ++i) {
-      double const f = a[p * a_stride + i];
+      double const f = a[p][i];
 #pragma GCC unroll 4
-      for (int k = 0; k < count; ++k) s[i][k] -= f * lanes(b + p * b_stride)[k];
+      for (int k = 0; k < count; ++k) s[i][k] -= f * lanes(b[p])[k];
     }
 #pragma GCC unroll 4
   for (int i = 0; i < strip; ++i)
 #pragma GCC unroll 4
-    for (int k = 0; k < count; ++k) lanes(c + i * c_stride)[k] = s[i][k];
+    for (int k = 0; k < count; ++k) lanes(c + i * stride)[k] = s[i][k];
 }
 
 /// C (m × count lanes) −= Aᵀ B; A (n × m) and B (n × count lanes) by rows; `inner` is n, or 0 when known at run time
 /// only.
 template <int count, int inner>
-void subtract_product(double* c, Index c_stride, double const* a, Index a_stride, double const* b, Index b_stride,
-                      int n, int m) {
+void subtract_product(BlockRows c, ConstBlockRows a, ConstBlockRows b, int n, int m) {
   int i = 0;
-  for (; i + 3 <= m; i += 3)
-    subtract_strip<3, count, inner>(c + i * c_stride, c_stride, a + i, a_stride, b, b_stride, n);
-  for (; i < m; ++i) subtract_strip<1, count, inner>(c + i * c_stride, c_stride, a + i, a_stride, b, b_stride, n);
+  for (; i + 3 <= m; i += 3) subtract_strip<3, count, inner>(c[i], c.stride, a + i, b, n);
+  for (; i < m; ++i) subtract_strip<1, count, inner>(c[i], c.stride, a + i, b, n);
 }
 
 /// The same for any padded width.
 template <int inner>
-void subtract_product(double* c, Index c_stride, double const* a, Index a_stride, double const* b, Index b_stride,
-                      int n, int m, int width) {
+void subtract_product(BlockRows c, ConstBlockRows a, ConstBlockRows b, int n, int m, int width) {
   constexpr int most = lane_size == 2 ? 3 : 2, step = most * lane_size;
-  for (; width >= step; width -= step, c += step, b += step)
-    subtract_product<most, inner>(c, c_stride, a, a_stride, b, b_stride, n, m);
+  for (; width >= step; width -= step, c = c + step, b = b + step) subtract_product<most, inner>(c, a, b, n, m);
   if (lane_size == 2 && width == 2 * lane_size)
-    subtract_product<2, inner>(c, c_stride, a, a_stride, b, b_stride, n, m);
+    subtract_product<2, inner>(c, a, b, n, m);
   else if (width > 0)
-    subtract_product<1, inner>(c, c_stride, a, a_stride, b, b_stride, n, m);
+    subtract_product<1, inner>(c, a, b, n, m);
 }
 
 /// y −= f x, `width` padded.
@@ -119,13 +105,13 @@ inline void scale_row(double* y, double f, double const* x, int width) {
 
 /// y += Σ |a_r b_r| over n rows, entry by entry; `inner` is n, or 0 when known at run time only.
 template <int inner>
-void add_sizes(double* y, double const* a, Index a_stride, double const* b, Index b_stride, int n, int width) {
+void add_sizes(double* y, ConstBlockRows a, ConstBlockRows b, int n, int width) {
   using Bits [[gnu::vector_size(8 * lane_size)]] = long long;
   for (int k = 0; k < width / lane_size; ++k) {
     Lane sum = lanes(y)[k];
 #pragma GCC unroll 8
     for (int r = 0; r < (inner > 0 ? inner : n); ++r) {
-      Bits const product = Bits(Lane(lanes(a + r * a_stride)[k] * lanes(b + r * b_stride)[k]));
+      Bits const product = Bits(Lane(lanes(a[r])[k] * lanes(b[r])[k]));
       sum += Lane(product & 0x7fffffffffffffffLL);  // without its sign
     }
     lanes(y)[k] = sum;

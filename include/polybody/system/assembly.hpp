@@ -28,7 +28,7 @@ void add_end(RowEnd<T> const& end, int rows, T const* lambda, Data<T> const& dat
   Published<T> const& p = data.markers[std::size_t(end.marker)];
   if (p.shape == JacobianShape::ground) return;
   T w[6];
-  with_rows(rows, [&](auto m) {
+  with_constant(rows, [&](auto m) {
     if constexpr (m > 0) wrench_of<m>(end.map, lambda, w);
   });
   add_pulled(p, w, 1.0, r);
@@ -43,7 +43,7 @@ void add_rate(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> con
     read_twist(data.markers[std::size_t(end.marker)].frame, twist);
     x = twist;
   }
-  with_rows(rows, [&](auto m) { add_mapped<m>(end.map, end.columns, x, rows, out); });
+  with_constant(rows, [&](auto m) { add_mapped<m>(end.map, end.columns, x, rows, out); });
 }
 /// The same for rates b that the state does not have.
 template <StateScalar T>
@@ -56,7 +56,7 @@ void add_product(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> 
     twist = p.push(b.data() + p.first);
     x = twist.data();
   }
-  with_rows(rows, [&](auto m) { add_mapped<m>(end.map, end.columns, x, rows, out); });
+  with_constant(rows, [&](auto m) { add_mapped<m>(end.map, end.columns, x, rows, out); });
 }
 
 }  // namespace detail
@@ -106,7 +106,7 @@ void add_biases(Data<T> const& data, VecXOf<T>& gamma) {
   detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
     for (RowEnd<T> const* const end : {&block.a, &block.b})
       if (end->marker >= 0)
-        detail::with_rows(block.rows, [&](auto m) {
+        with_constant(block.rows, [&](auto m) {
           detail::add_mapped<m>(end->map, 6, data.markers[std::size_t(end->marker)].bias.data(), block.rows,
                                 gamma.data() + block.row);
         });
@@ -140,7 +140,7 @@ void write_rows(Data<double>& data, Index first, BlockSink& sink) {
     Index const row = first + block.row;
     for (RowEnd<double> const* const end : {&block.a, &block.b}) {
       if (end->marker >= 0) {
-        detail::with_rows(block.rows, [&](auto m) {
+        with_constant(block.rows, [&](auto m) {
           if constexpr (m > 0)
             detail::add_pulled_rows<m>(data.markers[std::size_t(end->marker)], end->map, row, data.scratch, sink);
         });

@@ -3,9 +3,8 @@
 /// Waist 2 as data: the rows of joints and bodies, and who pushes which marker, after geometries and policies have
 /// spoken. Their types are gone.
 
-#include <type_traits>
-
 #include <polybody/kinematics/published.hpp>
+#include <polybody/math/with_constant.hpp>
 
 namespace polybody {
 
@@ -51,27 +50,6 @@ struct Action {
 };
 
 namespace detail {
-
-/// Calls f with m = 1 … 6 as a constant, or 0 for any other number.
-template <class F>
-void with_rows(int m, F&& f) {
-  switch (m) {
-    case 1:
-      return f(std::integral_constant<int, 1>{});
-    case 2:
-      return f(std::integral_constant<int, 2>{});
-    case 3:
-      return f(std::integral_constant<int, 3>{});
-    case 4:
-      return f(std::integral_constant<int, 4>{});
-    case 5:
-      return f(std::integral_constant<int, 5>{});
-    case 6:
-      return f(std::integral_constant<int, 6>{});
-    default:
-      return f(std::integral_constant<int, 0>{});
-  }
-}
 
 /// r[columns of the marker] += sign · Jᵀ w.
 template <StateScalar T>
@@ -133,7 +111,7 @@ template <StateScalar T>
 void wrench_at(RowBlock<T> const& block, RowEnd<T> const& end, T const* lambda, T* out) {
   for (int i = 0; i < 6; ++i) out[i] = T(0.0);
   if (end.marker < 0) return;
-  detail::with_rows(block.rows, [&](auto m) {
+  with_constant(block.rows, [&](auto m) {
     if constexpr (m > 0) detail::wrench_of<m>(end.map, lambda, out);
   });
 }

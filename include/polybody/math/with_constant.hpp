@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// A small number known at run time as a constant of the compiler, so that loops over it are unrolled.
+
+#include <type_traits>
+
+namespace polybody {
+
+/// Calls f with N = 1 … 6 as a constant, or 0 for any other number.
+template <class F>
+auto with_constant(int n, F&& f) {
+  switch (n) {
+    case 1:
+      return f(std::integral_constant<int, 1>{});
+    case 2:
+      return f(std::integral_constant<int, 2>{});
+    case 3:
+      return f(std::integral_constant<int, 3>{});
+    case 4:
+      return f(std::integral_constant<int, 4>{});
+    case 5:
+      return f(std::integral_constant<int, 5>{});
+    case 6:
+      return f(std::integral_constant<int, 6>{});
+    default:
+      return f(std::integral_constant<int, 0>{});
+  }
+}
+
+}  // namespace polybody
