@@ -104,11 +104,11 @@ void measure(char const* name, B const& body) {
   int const repeats = elements < 16 ? 64 : 1;  // the clock is not that fine
   double const ns = fastest(elements * repeats, [&] {
     for (int i = 0; i < repeats; ++i)
-      for_each_unbalance<B, double>(body, 0, elements, span(at), span(v), span(a), force, use);
+      for_each_unbalance<B, double>(body, {0, elements}, {span(at), span(v), span(a)}, force, use);
   });
   double const tangent_ns = fastest(elements * repeats, [&] {
     for (int i = 0; i < repeats; ++i)
-      for_each_element_tangent<B>(body, 0, elements, span(at), span(v), 1.5, 0.1, 1.0, tangent, use);
+      for_each_element_tangent<B>(body, {0, elements}, {span(at), span(v)}, {1.5, 0.1, 1.0}, tangent, use);
   });
 
   VecXOf<Counted> const qc = at.cast<Counted>(), vc = v.cast<Counted>(), ac = a.cast<Counted>();

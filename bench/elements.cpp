@@ -65,7 +65,8 @@ void compare(char const* name, Damping const& damping = {}) {
       use(e, x);
     }
   });
-  double const forces = fastest([&] { for_each_unbalance<B, double>(s.body, 0, count, s.qs(), s.vs(), s.as(), use); });
+  double const forces =
+      fastest([&] { for_each_unbalance<B, double>(s.body, {0, count}, {s.qs(), s.vs(), s.as()}, use); });
   double const tangent = fastest([&] {
     Mat<double, n, n> k, m;
     s.body.mass(0, s.qs(), m);
@@ -77,7 +78,7 @@ void compare(char const* name, Damping const& damping = {}) {
     }
   });
   double const tangents =
-      fastest([&] { for_each_element_tangent<B>(s.body, 0, count, s.qs(), s.vs(), 1.5, 0.1, 1.0, use); });
+      fastest([&] { for_each_element_tangent<B>(s.body, {0, count}, {s.qs(), s.vs()}, {1.5, 0.1, 1.0}, use); });
   std::printf(
       "  %-37s M a - f: %6.1f, in packs %6.1f, ratio %4.2f;   tangent: %7.1f, in packs %6.1f, ratio %4.2f;   both: "
       "ratio %4.2f\n",
@@ -120,7 +121,8 @@ void packs(benchmark::State& state) {
   Swaying<B> const s;
   double sum = 0.0;
   for (auto _ : state)
-    for_each_unbalance<B, double>(s.body, 0, count, s.qs(), s.vs(), s.as(), [&](Index, auto const& x) { sum += x[0]; });
+    for_each_unbalance<B, double>(s.body, {0, count}, {s.qs(), s.vs(), s.as()},
+                                  [&](Index, auto const& x) { sum += x[0]; });
   benchmark::DoNotOptimize(sum);
   state.SetItemsProcessed(state.iterations() * count);
 }

@@ -172,7 +172,7 @@ TYPED_TEST(AncfReference, BatchesEqualElementsOneByOne) {
     VecX const q = deformed(reference_of(body), 5), v = deformed(VecX::Zero(q.size()), 6),
                a = deformed(VecX::Zero(q.size()), 7);
     Index next = 0;
-    for_each_unbalance<TypeParam, double>(body, 0, n, as_span(q), as_span(v), as_span(a),
+    for_each_unbalance<TypeParam, double>(body, {0, n}, {as_span(q), as_span(v), as_span(a)},
                                           [&](Index e, Vec<double, 24> const& x) {
                                             ASSERT_EQ(e, next++);
                                             Vec<double, 24> inertia, force;
@@ -181,13 +181,14 @@ TYPED_TEST(AncfReference, BatchesEqualElementsOneByOne) {
                                             EXPECT_LT((x - (inertia - force)).norm(), 1e-12 * force.norm());
                                           });
     EXPECT_EQ(next, n);
-    for_each_element_tangent<TypeParam>(body, 0, n, as_span(q), as_span(v), 1.5, 0.1, 0.7, [&](Index e, auto const& k) {
-      Mat<double, 24, 24> expected, mass;
-      body.tangent(e, as_span(q), as_span(v), 0.7, 0.1, expected);
-      body.mass(e, as_span(q), mass);
-      expected += 1.5 * mass;
-      EXPECT_LT((k - expected).norm(), 1e-12 * expected.norm()) << e;
-    });
+    for_each_element_tangent<TypeParam>(body, {0, n}, {as_span(q), as_span(v)}, {1.5, 0.1, 0.7},
+                                        [&](Index e, auto const& k) {
+                                          Mat<double, 24, 24> expected, mass;
+                                          body.tangent(e, as_span(q), as_span(v), 0.7, 0.1, expected);
+                                          body.mass(e, as_span(q), mass);
+                                          expected += 1.5 * mass;
+                                          EXPECT_LT((k - expected).norm(), 1e-12 * expected.norm()) << e;
+                                        });
   }
 }
 

@@ -51,7 +51,7 @@ TYPED_TEST(ElementBatches, EqualElementsOneByOne) {
   for (Index const elements : {1, 2, 3, 4, 5, 7, 8, 11}) {
     Swaying<TypeParam> const s(elements);
     Index next = 0;
-    for_each_unbalance<TypeParam, double>(s.body, 0, elements, s.qs(), s.vs(), s.as(),
+    for_each_unbalance<TypeParam, double>(s.body, {0, elements}, {s.qs(), s.vs(), s.as()},
                                           [&](Index e, Vec<double, n> const& x) {
                                             ASSERT_EQ(e, next++);
                                             Vec<double, n> inertia, force;
@@ -61,7 +61,7 @@ TYPED_TEST(ElementBatches, EqualElementsOneByOne) {
                                           });
     EXPECT_EQ(next, elements);
     next = 0;
-    for_each_element_tangent<TypeParam>(s.body, 0, elements, s.qs(), s.vs(), 1.5, 0.1, 0.7,
+    for_each_element_tangent<TypeParam>(s.body, {0, elements}, {s.qs(), s.vs()}, {1.5, 0.1, 0.7},
                                         [&](Index e, auto const& k) {
                                           ASSERT_EQ(e, next++);
                                           Mat<double, n, n> expected, mass;
@@ -81,7 +81,7 @@ TYPED_TEST(ElementBatches, DoNotDependOnHowALoopIsCut) {
   Swaying<TypeParam> const s(elements);
   std::vector<Vec<double, n>> whole, parts;
   auto const run = [&](std::vector<Vec<double, n>>& out, Index begin, Index end) {
-    for_each_unbalance<TypeParam, double>(s.body, begin, end, s.qs(), s.vs(), s.as(),
+    for_each_unbalance<TypeParam, double>(s.body, {begin, end}, {s.qs(), s.vs(), s.as()},
                                           [&](Index, Vec<double, n> const& x) { out.push_back(x); });
   };
   run(whole, 0, elements);

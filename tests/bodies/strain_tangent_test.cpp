@@ -93,7 +93,7 @@ TYPED_TEST(StrainTangent, InPacksIsThatOfEachElement) {
   for (Damping const& damping : this->dampings) {
     Swaying<TypeParam> const s(damping);
     Index next = 0;
-    for_each_element_tangent<TypeParam>(s.body, 0, 9, s.view(s.q), s.view(s.v), 1.5, 0.1, 0.7,
+    for_each_element_tangent<TypeParam>(s.body, {0, 9}, {s.view(s.q), s.view(s.v)}, {1.5, 0.1, 0.7},
                                         [&](Index e, auto const& k) {
                                           ASSERT_EQ(e, next++);
                                           Mat<double, n, n> expected, mass;

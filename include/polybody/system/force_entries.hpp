@@ -89,14 +89,13 @@ struct ForceEntries {
     constexpr int n = B::element_columns;
     bool const falls = u.g[0] != 0.0 || u.g[1] != 0.0 || u.g[2] != 0.0;
     auto&& scratch = kept.force_scratch(e.body);
-    auto const qe = Motion::coordinates(e, u.at.q);
-    auto const ve = Motion::speeds(e, u.at.v), ae = Motion::speeds(e, u.a);
+    BodyMotion<T> const motion{Motion::coordinates(e, u.at.q), Motion::speeds(e, u.at.v), Motion::speeds(e, u.a)};
     auto const add = [&](Index i, auto const& x) {
       T* const rows = r.data() + e.v0 + e.body.first_column(i);
       int const size = n == Eigen::Dynamic ? int(x.size()) : n;
       for (int k = 0; k < size; ++k) rows[k] += x[k];
       if (falls) {
-        e.body.template gravity<T>(i, qe, u.g, scratch.weight);
+        e.body.template gravity<T>(i, motion.q, u.g, scratch.weight);
         for (int k = 0; k < size; ++k) rows[k] -= scratch.weight[k];
       }
     };
@@ -106,13 +105,13 @@ struct ForceEntries {
         using Slot = Eigen::Map<Vec<T, n>>;
         T* const slots = data.element_forces.data();
         data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-          for_each_unbalance<B, T>(e.body, begin, end, qe, ve, ae,
+          for_each_unbalance<B, T>(e.body, {begin, end}, motion,
                                    [&](Index i, Vec<T, n> const& x) { Slot(slots + n * i) = x; });
         });
         for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * i));
         return;
       }
-    for_each_unbalance<B, T>(e.body, 0, elements, qe, ve, ae, scratch, add);
+    for_each_unbalance<B, T>(e.body, {0, elements}, motion, scratch, add);
   }
 };
 

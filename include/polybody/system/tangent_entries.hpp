@@ -110,7 +110,8 @@ struct TangentEntries {
     using B = std::decay_t<decltype(e.body)>;
     constexpr int n = B::element_columns;
     auto&& scratch = kept.tangent_scratch(e.body);
-    auto const qe = Motion::coordinates(e, at.q), ve = Motion::speeds(e, at.v);
+    BodyMotion<> const motion{Motion::coordinates(e, at.q), Motion::speeds(e, at.v)};
+    ElementCoefficients const coefficients{c.mass, c.damping, c.stiffness};
     auto const add = [&](Index i, auto const& k) {
       Index const first = e.v0 + e.body.first_column(i);
       sink.add(first, first, k);
@@ -121,13 +122,13 @@ struct TangentEntries {
         using Slot = Eigen::Map<Mat<double, n, n>>;
         double* const slots = data.element_tangents.data();
         data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-          for_each_element_tangent<B>(e.body, begin, end, qe, ve, c.mass, c.damping, c.stiffness,
+          for_each_element_tangent<B>(e.body, {begin, end}, motion, coefficients,
                                       [&](Index i, Mat<double, n, n> const& k) { Slot(slots + n * n * i) = k; });
         });
         for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * n * i));
         return;
       }
-    for_each_element_tangent<B>(e.body, 0, elements, qe, ve, c.mass, c.damping, c.stiffness, scratch, add);
+    for_each_element_tangent<B>(e.body, {0, elements}, motion, coefficients, scratch, add);
   }
 
   template <class F>

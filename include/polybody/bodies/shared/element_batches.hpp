@@ -23,6 +23,21 @@ concept AlikeElements = requires(B const b, Vec<Pack<>, B::element_columns> x, V
   b.template element_tangent<Pack<>>(x, x, 1.0, 1.0, k);
 };
 
+/// Elements [begin, end) of a body. `begin` is a multiple of `pack_size`, and `end` too unless it is the number of
+/// elements.
+struct ElementRange {
+  Index begin, end;
+};
+/// Coordinates, speeds and accelerations of a body.
+template <StateScalar T = double>
+struct BodyMotion {
+  std::span<T const> q, v, a = {};
+};
+/// Coefficients of cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
+struct ElementCoefficients {
+  double mass, damping, stiffness;
+};
+
 namespace detail {
 
 /// The coordinates of `pack_size` neighbours; `x` points to the first one's.
@@ -60,28 +75,29 @@ bool are_alike(B const& body) {
     return AlikeElements<B>;
 }
 
-/// How many of the elements [begin, end) go in packs: packs begin at multiples of their size, so that an element's
-/// kernel does not depend on how a loop is cut.
+/// End of the elements of a range that go in packs: packs begin at multiples of their size, so that an element's kernel
+/// does not depend on how a loop is cut.
 template <class B>
-Index packed_until(B const& body, Index begin, Index end) {
+Index packed_until(B const& body, ElementRange range) {
   if constexpr (AlikeElements<B>) {
-    if (!are_alike(body)) return begin;
+    if (!are_alike(body)) return range.begin;
     Index const whole = body.elements() / pack_size * pack_size;
-    return std::max(begin, std::min(end, whole));
+    return std::max(range.begin, std::min(range.end, whole));
   } else {
-    return begin;
+    return range.begin;
   }
 }
 
-/// M a − force of the `pack_size` elements from `first` on; what stands at `columns` is the first one's.
+/// M a − force of the `pack_size` elements from `first` on.
 template <class B>
-void unbalance_of_pack(B const& body, Index columns, std::span<double const> q, std::span<double const> v,
-                       std::span<double const> a, std::array<Vec<double, B::element_columns>, pack_size>& each) {
+void unbalance_of_pack(B const& body, Index first, BodyMotion<> const& x,
+                       std::array<Vec<double, B::element_columns>, pack_size>& each) {
   constexpr int n = B::element_columns, stride = B::element_stride;
+  Index const column = body.first_column(first);
   Vec<Pack<>, n> inertia, elastic;
-  body.template element_inertia<Pack<>>(side_by_side<n, stride>(a.data() + columns), inertia);
-  body.template element_force<Pack<>>(side_by_side<n, stride>(q.data() + columns),
-                                      side_by_side<n, stride>(v.data() + columns), elastic);
+  body.template element_inertia<Pack<>>(side_by_side<n, stride>(x.a.data() + column), inertia);
+  body.template element_force<Pack<>>(side_by_side<n, stride>(x.q.data() + column),
+                                      side_by_side<n, stride>(x.v.data() + column), elastic);
   for (int k = 0; k < n; ++k) inertia[k] -= elastic[k];
   Vec<double, n> const zero = Vec<double, n>::Zero();
   take_apart(inertia, zero, each);
@@ -89,93 +105,90 @@ void unbalance_of_pack(B const& body, Index columns, std::span<double const> q, 
 
 /// The same of one element, into scratch.x.
 template <class B, StateScalar T>
-void unbalance_of_one(B const& body, Index e, std::span<T const> q, std::span<T const> v, std::span<T const> a,
-                      ForceScratch<B, T>& scratch) {
-  body.template inertia<T>(e, q, a, scratch.x);
-  body.template force<T>(e, q, v, scratch.force);
+void unbalance_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScratch<B, T>& scratch) {
+  body.template inertia<T>(e, x.q, x.a, scratch.x);
+  body.template force<T>(e, x.q, x.v, scratch.force);
   for (int k = 0; k < int(scratch.x.size()); ++k) scratch.x[k] -= scratch.force[k];
 }
 
-/// m + ck K + cd D of the elements of a pack.
+/// `inertia` + cd D + ck K of the `pack_size` elements from `first` on.
 template <class B>
-void tangent_of_pack(B const& body, Index columns, std::span<double const> q, std::span<double const> v, double cd,
-                     double ck, Mat<double, B::element_columns, B::element_columns> const& m,
+void tangent_of_pack(B const& body, Index first, BodyMotion<> const& x, ElementCoefficients c,
+                     Mat<double, B::element_columns, B::element_columns> const& inertia,
                      std::array<Mat<double, B::element_columns, B::element_columns>, pack_size>& each) {
   constexpr int n = B::element_columns, stride = B::element_stride;
+  Index const column = body.first_column(first);
   Mat<Pack<>, n, n> packs;
-  body.template element_tangent<Pack<>>(side_by_side<n, stride>(q.data() + columns),
-                                        side_by_side<n, stride>(v.data() + columns), ck, cd, packs);
-  take_apart(packs, m, each);
+  body.template element_tangent<Pack<>>(side_by_side<n, stride>(x.q.data() + column),
+                                        side_by_side<n, stride>(x.v.data() + column), c.stiffness, c.damping, packs);
+  take_apart(packs, inertia, each);
 }
 
 }  // namespace detail
 
-/// Calls f(e, M a − force) for the elements [begin, end); `begin` is a multiple of `pack_size`, and `end` too unless it
-/// is the last.
+/// Calls f(e, M a − force) for the elements of a range.
 template <Body B, StateScalar T, class F>
-void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const> q, std::span<T const> v,
-                        std::span<T const> a, ForceScratch<B, T>& scratch, F&& f) {
+void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& x, ForceScratch<B, T>& scratch, F&& f) {
+  auto [e, end] = range;
   if constexpr (AlikeElements<B> && std::same_as<T, double>) {
-    Index const packed = detail::packed_until(body, begin, end);
+    Index const packed = detail::packed_until(body, range);
     std::array<Vec<double, B::element_columns>, pack_size> each;
-    for (; begin < packed; begin += pack_size) {
-      detail::unbalance_of_pack(body, body.first_column(begin), q, v, a, each);
-      for (int l = 0; l < pack_size; ++l) f(begin + l, each[std::size_t(l)]);
+    for (; e < packed; e += pack_size) {
+      detail::unbalance_of_pack(body, e, x, each);
+      for (int l = 0; l < pack_size; ++l) f(e + l, each[std::size_t(l)]);
     }
   }
-  for (; begin < end; ++begin) {
-    detail::unbalance_of_one<B, T>(body, begin, q, v, a, scratch);
-    f(begin, scratch.x);
+  for (; e < end; ++e) {
+    detail::unbalance_of_one<B, T>(body, e, x, scratch);
+    f(e, scratch.x);
   }
 }
 
 template <Body B, StateScalar T, class F>
-void for_each_unbalance(B const& body, Index begin, Index end, std::span<T const> q, std::span<T const> v,
-                        std::span<T const> a, F&& f) {
+void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& x, F&& f) {
   ForceScratch<B, T> scratch(body);
-  for_each_unbalance<B, T>(body, begin, end, q, v, a, scratch, f);
+  for_each_unbalance<B, T>(body, range, x, scratch, f);
 }
 
-/// Calls f(e, cm M + cd D + ck K) for the elements [begin, end), cut as above.
+/// Calls f(e, cm M + cd D + ck K) for the elements of a range.
 template <Body B, class F>
-void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q,
-                              std::span<double const> v, double cm, double cd, double ck, TangentScratch<B>& scratch,
-                              F&& f) {
+void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> const& x, ElementCoefficients c,
+                              TangentScratch<B>& scratch, F&& f) {
   constexpr int n = B::element_columns;
   Mat<double, n, n>&k = scratch.k, &m = scratch.m;
   bool const alike = detail::are_alike(body);
   bool first_mass = true;
   auto const inertia = [&](Index e) {
     if (first_mass || !alike) {
-      body.mass(e, q, m);
-      m *= cm;
+      body.mass(e, x.q, m);
+      m *= c.mass;
     }
     first_mass = false;
   };
+  auto [e, end] = range;
   if constexpr (AlikeElements<B>) {
-    Index const packed = detail::packed_until(body, begin, end);
+    Index const packed = detail::packed_until(body, range);
     std::array<Mat<double, n, n>, pack_size> each;
-    if (begin < packed) inertia(begin);
-    for (; begin < packed; begin += pack_size) {
-      detail::tangent_of_pack(body, body.first_column(begin), q, v, cd, ck, m, each);
-      for (int l = 0; l < pack_size; ++l) f(begin + l, each[std::size_t(l)]);
+    if (e < packed) inertia(e);
+    for (; e < packed; e += pack_size) {
+      detail::tangent_of_pack(body, e, x, c, m, each);
+      for (int l = 0; l < pack_size; ++l) f(e + l, each[std::size_t(l)]);
     }
   }
-  for (; begin < end; ++begin) {
-    body.tangent(begin, q, v, ck, cd, k);
-    if (cm != 0.0) {
-      inertia(begin);
+  for (; e < end; ++e) {
+    body.tangent(e, x.q, x.v, c.stiffness, c.damping, k);
+    if (c.mass != 0.0) {
+      inertia(e);
       k += m;
     }
-    f(begin, k);
+    f(e, k);
   }
 }
 
 template <Body B, class F>
-void for_each_element_tangent(B const& body, Index begin, Index end, std::span<double const> q,
-                              std::span<double const> v, double cm, double cd, double ck, F&& f) {
+void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> const& x, ElementCoefficients c, F&& f) {
   TangentScratch<B> scratch(body);
-  for_each_element_tangent<B>(body, begin, end, q, v, cm, cd, ck, scratch, f);
+  for_each_element_tangent<B>(body, range, x, c, scratch, f);
 }
 
 }  // namespace polybody
