@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation, by a
-/// structure and a basis, in a frame that moves as far as it likes. With c, J, H of ffr_integrals.hpp and C = c_q, the
+/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation, given by a
+/// structure and a basis, in a frame whose motion may be large. With c, J, H of ffr_integrals.hpp and C = c_q, the
 /// quantities in the frame's axes, Lagrange's equations of T(ṙ, Ω, q̇) give
 ///   m r̈ + A (Ω̇ × c + C q̈)                      = −A (Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇),
 ///   c × Aᵀr̈ + J Ω̇ + H q̈                        = −(J˙ Ω + Ω × (J Ω + H q̇) + H˙ q̇),
 ///   Cᵀ Aᵀr̈ + Hᵀ Ω̇ + M q̈ + D q̇ + K q            = ½ (Ωᵀ J Ω)_q − Σ Ω_i W_i q̇,   W_i = ∂H_iᵀ/∂q − ∂H_i/∂q.
-/// In the thesis' words H and C are m_rf, Σ Ω_i W_i is 2 S̃₁, and the part of ½ (ΩᵀJΩ)_q that grows with q is −S̃₂ q.
+/// In the thesis H and C are called m_rf, Σ Ω_i W_i is 2 S̃₁, and the part of ½ (ΩᵀJΩ)_q that grows with q is −S̃₂ q.
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
 
@@ -16,6 +16,7 @@
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 #include <polybody/bodies/ffr/ffr_options.hpp>
 #include <polybody/bodies/ffr/ffr_points.hpp>
+#include <polybody/bodies/ffr/ffr_tangent.hpp>
 #include <polybody/bodies/shared/body.hpp>
 
 namespace polybody {
@@ -59,7 +60,7 @@ class Ffr {
   FfrIntegrals const& integrals() const { return i_; }
   bool stiffens() const { return i_.stiffens(); }
   Index deformations() const { return i_.size(); }
-  /// Of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
+  /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
   /// The section at distance s from the first end of bar `bar`, (y, z) off its axis. \throws InvalidInput outside, and
@@ -67,7 +68,7 @@ class Ffr {
   Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const { return made().at(s, y, z, bar); }
   /// A node of the structure. \throws InvalidInput for one that does not exist.
   Point node(Index i) const { return made().node(i); }
-  /// What the body is made of. \throws InvalidInput for a body made of the user's own integrals.
+  /// The structure that the body is made of. \throws InvalidInput for a body made of the user's own integrals.
   Structure const& structure() const { return made().structure(); }
   /// A point as the user describes it. \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
@@ -192,7 +193,9 @@ class Ffr {
     out.template segment<3>(3) = -(rate * omega + omega.cross(inertia * omega + h) + hd);
   }
 
-  void tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd, MatX& k) const;
+  void tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd, MatX& k) const {
+    FfrTangent(i_, terms_, q, v).write(ck, cd, k);
+  }
 
   template <StateScalar T>
   void gravity(Index, std::span<T const> q, Vec3 const& g, VecXOf<T>& out) const {
@@ -289,8 +292,8 @@ class Ffr {
     for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= f[Index(i)] * p.drawn[i];
   }
 
-  /// Of the beam that a point sits on, q all coordinates of the body (see sections.hpp): axial strain, torsion and
-  /// curvatures; shear is not told. \throws InvalidInput for a point that is not of a beam.
+  /// Axial strain, torsion and curvatures of the beam that a point is on, and its section forces (see sections.hpp); q
+  /// are all coordinates of the body. Shear is zero. \throws InvalidInput for a point that is not on a beam.
   Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 7); }
   Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 7); }
 
@@ -309,71 +312,5 @@ class Ffr {
   FfrTerms terms_;
   std::shared_ptr<FfrPoints const> points_;
 };
-
-/// With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇ and the derivatives of J, H by q written out:
-///   r:  −A w̃,  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),  A (Ω̃² C + 2 Ω̃ ċ_q);  θ and q as the terms of `force`, one by one.
-inline void Ffr::tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd,
-                         MatX& k) const {
-  Index const n = deformations();
-  Mat3 const A = rotation_matrix<double>(part<4>(q, 3));
-  Vec3 const omega = part<3>(v, 3);
-  Mat3 const spin = skew<double>(omega);
-  Eigen::Map<VecX const> const x(q.data() + 7, n), xd(v.data() + 6, n);
-  Moments<double> at;
-  i_.moments<double>(x.data(), at);
-  k.setZero(6 + n, 6 + n);
-  auto kq = k.bottomRightCorner(n, n);
-  kq = ck * i_.stiffness + cd * i_.damping;
-  Vec3 c_rate = Vec3::Zero(), h = Vec3::Zero();
-  Mat3 j_rate = Mat3::Zero();
-  for (Index i = 0; i < n; ++i) {
-    Vec3 c, hk;
-    i_.columns<double>(x.data(), i, c, hk);
-    c_rate += c * xd[i];
-    h += hk * xd[i];
-    k.block<3, 1>(0, 6 + i) = A * (ck * spin * (spin * c) + 2.0 * cd * spin * c);
-    k.block<3, 1>(3, 6 + i) = cd * spin * hk;
-  }
-  // J: slope_p (n) = ∂J_p/∂q, bent_p = ∂(J˙_p)/∂q
-  for (std::size_t p = 0; p < 6; ++p) {
-    int const a = symmetric_row[p], b = symmetric_column[p];
-    bool const off = a != b;
-    for (Index i = 0; i < n; ++i) {
-      double const slope = i_.inertia_slope<double>(x.data(), p, i), bent = 2.0 * i_.inertia_second[p].col(i).dot(xd);
-      double const used = terms_.centrifugal ? slope : i_.inertia_by[p][i];
-      j_rate(a, b) += slope * xd[i];
-      if (off) j_rate(b, a) += slope * xd[i];
-      Vec3 by = Vec3::Zero();  // ∂(J Ω)/∂q_i of this entry, per slope
-      by[a] += omega[b];
-      if (off) by[b] += omega[a];
-      k.block<3, 1>(3, 6 + i) += ck * (bent * by + slope * spin * by) + cd * slope * by;
-      k(6 + i, 3 + a) -= cd * used * omega[b];
-      if (off) k(6 + i, 3 + b) -= cd * used * omega[a];
-    }
-    if (terms_.centrifugal) kq -= (ck * (off ? 2.0 : 1.0) * omega[a] * omega[b]) * i_.inertia_second[p];
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    MatX const& m = i_.coupling_by[i];
-    for (Index j = 0; j < n; ++j) {
-      double const left = m.row(j).dot(xd), right = m.col(j).dot(xd);  // (m q̇)_j, (mᵀ q̇)_j
-      k.block<3, 1>(3, 6 + j) += ck * left * spin.col(Index(i));
-      k(3 + Index(i), 6 + j) += cd * (stiffens() ? left + right : 0.0);
-      if (terms_.coriolis) k(6 + j, 3 + Index(i)) += cd * (right - left);
-    }
-    if (terms_.coriolis) kq += (cd * omega[Index(i)]) * (m.transpose() - m);
-  }
-  Vec3 w = omega.cross(omega.cross(at.c)) + 2.0 * omega.cross(c_rate);
-  for (std::size_t i = 0; i < 3 && stiffens(); ++i) {
-    Vec3 const by = A * (2.0 * ck * spin.col(Index(i)) + 2.0 * cd * Vec3::Unit(Index(i)));
-    for (Index j = 0; j < n; ++j) {
-      double const drawn = i_.first_second[i].col(j).dot(xd);  // −∂ċ_i/∂q_j
-      w[Index(i)] -= drawn * xd[j];
-      k.block<3, 1>(0, 6 + j) -= by * drawn;
-    }
-  }
-  k.block<3, 3>(0, 3) = A * (-ck * skew<double>(w) - cd * (skew<double>(omega.cross(at.c).eval()) +
-                                                           spin * skew<double>(at.c) + 2.0 * skew<double>(c_rate)));
-  k.block<3, 3>(3, 3) = cd * (j_rate + spin * at.J - skew<double>((at.J * omega + h).eval()));
-}
 
 }  // namespace polybody
