@@ -8,15 +8,17 @@
 
 #include <polybody/bodies/ancf/ancf_continuum.hpp>
 #include <polybody/bodies/ancf/ancf_elastic_line.hpp>
-#include <polybody/bodies/shared/node_chain.hpp>
-#include <polybody/bodies/shared/strain_tangent.hpp>
+#include <polybody/bodies/shared/elastic_chain.hpp>
 
 namespace polybody {
 
 /// `AncfBeam<>::from(bar, n)`, `AncfBeam<Continuum<>>::from(bar, n, curve)`.
 template <class Elastic = ElasticLine>
-class AncfBeam : public NodeChain<12> {
+class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
+  using Chain = ElasticChain<12, typename Elastic::Groups>;
+
  public:
+  using Chain::coordinates, Chain::element_columns, Chain::elements, Chain::first_column, Chain::node_columns;
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = true;
@@ -24,7 +26,7 @@ class AncfBeam : public NodeChain<12> {
   static constexpr bool packs_pay = true;
   template <class T>
   using Element = Vec<T, element_columns>;
-  using ElementMatrix = Mat<double, element_columns, element_columns>;
+  using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<double, 3, element_columns>;
   static constexpr int gradients = 3;  ///< that are linear in the coordinates
 
@@ -48,15 +50,13 @@ class AncfBeam : public NodeChain<12> {
   double length() const { return bar_.length; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
-  /// All elements have the same reference.
-  bool alike() const { return groups_.size() == 1; }
 
   /// The point s from the first end, (y, z) off the axis. \throws InvalidInput outside the bar.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, bar_.length, Elastic::name) / l_;
     if (!std::isfinite(y) || !std::isfinite(z))
       throw InvalidInput(std::string(Elastic::name) + ": y and z of a point must be finite.");
-    Index const e = std::min(Index(x), n_ - 1);
+    Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e), y, z};
   }
 
@@ -74,7 +74,7 @@ class AncfBeam : public NodeChain<12> {
   }
 
   void reference(std::span<double> q) const {
-    for (Index i = 0; i <= n_; ++i) {
+    for (Index i = 0; i <= elements(); ++i) {
       Placement const& p = nodes_[std::size_t(i)];
       part<3>(q, i * node_columns) = bar_.placement.origin + bar_.placement.axes * p.origin;
       Mat3 const axes = bar_.placement.axes * p.axes;
@@ -95,50 +95,10 @@ class AncfBeam : public NodeChain<12> {
   void element_inertia(Element<T> const& a, Element<T>& out) const {
     times_mass(inertia_[0], a, out);
   }
-  /// Elastic and damping force from an element's own coordinates and speeds, for elements that are alike.
-  template <KernelScalar T>
-  void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
-    add_force(groups_[0], x, xd, out);
-  }
-  /// ck (−∂f/∂x) + cd (−∂f/∂xd), for elements that are alike.
-  template <KernelScalar T>
-  void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd,
-                       Mat<T, element_columns, element_columns>& k) const {
-    tangent_of<T, element_columns>(groups_[0], x, xd, ck, cd, k);
-  }
-
   template <StateScalar T>
   void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
-    times_mass<T>(inertia_of(e), part<element_columns>(a, first_column(e)), out);
+    times_mass<T>(inertia_of(e), this->of_element(e, a), out);
   }
-  template <StateScalar T>
-  void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
-    add_force<T>(groups_of(e), part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)),
-                 out);
-  }
-  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
-               ElementMatrix& k) const {
-    tangent_of<double, element_columns>(groups_of(e), part<element_columns>(q, first_column(e)),
-                                        part<element_columns>(v, first_column(e)), ck, cd, k);
-  }
-
-  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
-  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
-                  Element<double>& out) const {
-    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
-                          x1 = part<element_columns>(q1, first_column(e));
-    out.setZero();
-    std::apply([&](auto const&... group) { (group.add_mean_force(x0, x1, means, out), ...); }, groups_of(e));
-  }
-  /// ck (−∂f/∂q1), nearly; not symmetric.
-  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
-                    ElementMatrix& k) const {
-    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
-                          x1 = part<element_columns>(q1, first_column(e));
-    k.setZero();
-    std::apply([&](auto const&... group) { (group.add_mean_tangent(x0, x1, means, ck, k), ...); }, groups_of(e));
-  }
-
   template <StateScalar T>
   void gravity(Index e, std::span<T const>, Vec3 const& g, Element<T>& out) const {
     Inertia const& inertia = inertia_of(e);
@@ -147,22 +107,15 @@ class AncfBeam : public NodeChain<12> {
   }
 
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
-    Element<double> const xd = part<element_columns>(v, first_column(e));
+    Element<double> const xd = this->of_element(e, v);
     Element<double> momentum;
     times_mass<double>(inertia_of(e), xd, momentum);
     return 0.5 * xd.dot(momentum);
   }
-  /// A pretensioned bar has energy in its reference.
-  double strain_energy(Index e, std::span<double const> q) const {
-    Element<double> const x = part<element_columns>(q, first_column(e));
-    double u = 0.0;
-    std::apply([&](auto const&... group) { ((u += group.energy(x)), ...); }, groups_of(e));
-    return u;
-  }
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     Element<double> weight;
     gravity<double>(e, q, g, weight);
-    return -part<element_columns>(q, first_column(e)).dot(weight);
+    return -this->of_element(e, q).dot(weight);
   }
 
   /// r = S e at `p`, 3×24, constant: S is also the Jacobian of ṙ. e are the coordinates from `first_column(p)`.
@@ -217,7 +170,7 @@ class AncfBeam : public NodeChain<12> {
   template <class T>  // compiled where it is used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 24, 24>& k) const {
     PointMap const by = map_of(p, 2), bz = map_of(p, 3);
-    Element<T> const x = part<element_columns>(q, first_column(p));
+    Element<T> const x = this->of_element(p.element, q);
     SectionFrame<T> const f(by * x, bz * x);
     Vec<T, 3> const m = f.local(w.m);
     Mat<T, 6, 6> form = f.second(m), by_vectors = Mat<T, 6, 6>::Zero();
@@ -233,30 +186,38 @@ class AncfBeam : public NodeChain<12> {
         k.template block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
-  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section; and the forces, without
-  /// damping (see sections.hpp): `ElasticLine` as stiffness times strain, `Continuum` as sums of its stress over the
-  /// section.
-  Vec6 section_strains(Point const& p, std::span<double const> q) const;
-  Vec6 section_forces(Point const& p, std::span<double const> q) const;
+  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section (see sections.hpp).
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    Vec3 const stretch = strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
+               bend = strains<std::tuple_element_t<1, ElasticLine::Groups>>(p, q);
+    Vec6 x;
+    for (int i = 0; i < 3; ++i) {
+      x[i] = stretch[i];
+      x[3 + i] = bend[i];
+    }
+    return x;
+  }
+  /// Forces of the section without damping: stiffness times strain of `ElasticLine`, integrals of the stress of
+  /// `Continuum`.
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    if constexpr (std::same_as<Elastic, ElasticLine>)
+      return Elastic::section_forces(bar_, this->groups_of(p.element), section_strains(p, q));
+    else
+      return Elastic::section_forces(bar_, constants_, deformation(p, q), p.xi);
+  }
   /// `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, less those of the reference.
   Vec3 section_deformation(Point const& p, std::span<double const> q) const
     requires std::same_as<Elastic, ElasticLine>
   {
-    return strains<std::tuple_element_t<2, Groups>>(p, q);
+    return strains<std::tuple_element_t<2, typename Elastic::Groups>>(p, q);
   }
 
   /// F at `p`: from the axes of the reference section to world axes.
-  template <class T = double>  // compiled where it is used
   Mat3 deformation_gradient(Point const& p, std::span<double const> q) const {
-    auto const at = reference_of(p.element).gradients(p.xi, p.y, p.z);
-    Element<T> const x = part<element_columns>(q, first_column(p));
-    return x.reshaped(3, ancf::vectors) * at.g;
+    return deformation(p, q).gradient(p.xi, p.y, p.z);
   }
   /// Green–Lagrange strain E at `p`, in the axes of the reference section.
-  Mat3 strain(Point const& p, std::span<double const> q) const {
-    Mat3 const f = deformation_gradient(p, q);
-    return 0.5 * (f.transpose() * f - Mat3::Identity());
-  }
+  Mat3 strain(Point const& p, std::span<double const> q) const { return deformation(p, q).strain(p.xi, p.y, p.z); }
   /// `Continuum`: stress at `p`, without damping. When cured, Poisson's part is that of the axis, and the shear
   /// stresses are the corrected ones, means over the section.
   Stress stress(Point const& p, std::span<double const> q) const
@@ -268,7 +229,6 @@ class AncfBeam : public NodeChain<12> {
   }
 
  private:
-  using Groups = typename Elastic::Groups;
   /// M = ∫ρ NᵀN dV, the same for the three components, and ∫ρ N dV.
   struct Inertia {
     ElementMatrix mass = ElementMatrix::Zero();
@@ -276,10 +236,10 @@ class AncfBeam : public NodeChain<12> {
   };
 
   template <class T = double>  // compiled where it is used
-  AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight) : NodeChain(n), bar_(bar) {
+  AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight)
+      : Chain(n), bar_(bar), constants_(polybody::constants(bar)) {
     std::string const name = Elastic::name;
     if (n < 1) throw InvalidInput(name + ": at least one element is needed.");
-    constants_ = polybody::constants(bar);
     require_positive(constants_.rotary_inertia, name + ": the rotary inertia of the bar, the only mass of r_y,");
     require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
                      name + ": the rotary inertia of the bar about y, the only mass of r_z,");
@@ -300,7 +260,7 @@ class AncfBeam : public NodeChain<12> {
       }
       check_reference(ref, e);
       references_.push_back(ref);
-      groups_.push_back(Elastic::make(bar_, constants_, ref));
+      this->add_groups(Elastic::make(bar_, constants_, ref));
       inertia_.push_back(inertia_of(ref));
     }
   }
@@ -352,14 +312,14 @@ class AncfBeam : public NodeChain<12> {
     return each.size() == 1 ? 0 : std::size_t(e);
   }
   Inertia const& inertia_of(Index e) const { return inertia_[which(inertia_, e)]; }
-  Groups const& groups_of(Index e) const { return groups_[which(groups_, e)]; }
   ancf::Reference const& reference_of(Index e) const { return references_[which(references_, e)]; }
-  Element<double> coordinates_at(Point const& p, std::span<double const> q) const {
-    return part<element_columns>(q, first_column(p));
+  ancf::Deformation deformation(Point const& p, std::span<double const> q) const {
+    return {reference_of(p.element), this->of_element(p.element, q)};
   }
   template <class Group>
   Vec3 strains(Point const& p, std::span<double const> q) const {
-    return Group::strains(p.xi, l_, coordinates_at(p, q)) - Group::strains(p.xi, l_, reference_of(p.element).x);
+    return Group::strains(p.xi, l_, this->of_element(p.element, q)) -
+           Group::strains(p.xi, l_, reference_of(p.element).x);
   }
 
   template <KernelScalar T>
@@ -370,12 +330,6 @@ class AncfBeam : public NodeChain<12> {
       out[r] = sum;
     }
   }
-  template <KernelScalar T>
-  static void add_force(Groups const& groups, Element<T> const& x, Element<T> const& xd, Element<T>& out) {
-    for (int i = 0; i < element_columns; ++i) out[i] = T(0.0);
-    std::apply([&](auto const&... group) { (group.template add_force<T>(x, xd, out), ...); }, groups);
-  }
-
   PointMap map_of(Point const& p, int derivative) const {
     Mat<double, ancf::vectors, 4> const n = ancf::shape(p.xi, p.y, p.z, l_);
     PointMap map = PointMap::Zero();
@@ -395,14 +349,11 @@ class AncfBeam : public NodeChain<12> {
   }
 
   Bar bar_;
-  BarConstants constants_{.EA = 0.0, .EI = 0.0, .mass_per_length = 0.0};
+  BarConstants constants_;
   double l_ = 0.0;
   std::vector<Placement> nodes_;             ///< in the bar's axes
-  std::vector<ancf::Reference> references_;  ///< one where all elements are alike, or one each; the next two as well
-  std::vector<Groups> groups_;
+  std::vector<ancf::Reference> references_;  ///< one where all elements are alike, or one each; `inertia_` as well
   std::vector<Inertia> inertia_;
 };
 
 }  // namespace polybody
-
-#include <polybody/bodies/ancf/ancf_section.hpp>

@@ -6,10 +6,13 @@
 ///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
 
 #include <polybody/bodies/ancf/cable_laws.hpp>
-#include <polybody/bodies/shared/node_chain.hpp>
-#include <polybody/bodies/shared/strain_tangent.hpp>
+#include <polybody/bodies/shared/elastic_chain.hpp>
 
 namespace polybody {
+
+template <class Strain, int axial_points, int bending_points>
+using CableGroups =
+    std::tuple<StrainGroup<CableAxial<Strain, axial_points>>, StrainGroup<CableBending<Strain, bending_points>>>;
 
 /// `AncfCable<>::from(bar, n)` with Green strain, `AncfCable<EngineeringStrain>` with that; more or fewer Gauss points
 /// for the axial and the bending part, 5 and 3 being the field's choice [Gerstmayr & Irschik 2008].
@@ -18,8 +21,14 @@ namespace polybody {
 /// r′, a moment along r′ has no effect, and the marker's other two axes stand as the smallest turn from the reference
 /// leaves them. A clamp is `Revolute` about the tangent, with the cable's marker second.
 template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
-class AncfCable : public NodeChain<6> {
+class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bending_points>> {
+  using Groups = CableGroups<Strain, axial_points, bending_points>;
+  using Axial = std::tuple_element_t<0, Groups>;
+  using Bending = std::tuple_element_t<1, Groups>;
+  using Chain = ElasticChain<6, Groups>;
+
  public:
+  using Chain::coordinates, Chain::elements, Chain::first_column;
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::axis;
   static constexpr bool constant_mass = true;
@@ -27,7 +36,7 @@ class AncfCable : public NodeChain<6> {
   static constexpr char const* name = "AncfCable";
   template <class T>
   using Element = Vec<T, 12>;
-  using ElementMatrix = Mat<double, 12, 12>;
+  using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<double, 3, 12>;
   static constexpr int gradients = 1;  ///< that are linear in the coordinates
 
@@ -56,7 +65,7 @@ class AncfCable : public NodeChain<6> {
   /// The point s from the first end. \throws InvalidInput outside the bar.
   Point at(double s) const {
     double const x = require_inside(s, length_, name) / l_;
-    Index const e = std::min(Index(x), n_ - 1);
+    Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e)};
   }
 
@@ -66,7 +75,7 @@ class AncfCable : public NodeChain<6> {
   void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
   template <class T = double>  // compiled where it is used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
-    for (Index i = 0; i <= n_; ++i) {
+    for (Index i = 0; i <= elements(); ++i) {
       Vec<T, 3> const r = part<3>(q, 6 * i), slope = part<3>(q, 6 * i + 3);
       part<3>(v, 6 * i) = v0 + omega.cross(r);
       part<3>(v, 6 * i + 3) = omega.cross(slope);
@@ -90,48 +99,10 @@ class AncfCable : public NodeChain<6> {
         out[3 * i + k] = sum;
       }
   }
-  /// Elastic and damping force from an element's own coordinates and speeds.
-  template <KernelScalar T>
-  void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
-    for (int i = 0; i < 12; ++i) out[i] = T(0.0);
-    axial().template add_force<T>(x, xd, out);
-    bending().template add_force<T>(x, xd, out);
-  }
-  /// ck (−∂f/∂x) + cd (−∂f/∂xd).
-  template <KernelScalar T>
-  void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd, Mat<T, 12, 12>& k) const {
-    tangent_of<T, 12>(groups_, x, xd, ck, cd, k);
-  }
-
   template <StateScalar T>
   void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
-    element_inertia<T>(part<12>(a, first_column(e)), out);
+    element_inertia<T>(this->of_element(e, a), out);
   }
-  template <StateScalar T>
-  void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
-    element_force<T>(part<12>(q, first_column(e)), part<12>(v, first_column(e)), out);
-  }
-  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
-               ElementMatrix& k) const {
-    element_tangent<double>(part<12>(q, first_column(e)), part<12>(v, first_column(e)), ck, cd, k);
-  }
-  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
-  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
-                  Element<double>& out) const {
-    Element<double> const x0 = part<12>(q0, first_column(e)), x1 = part<12>(q1, first_column(e));
-    out.setZero();
-    axial().add_mean_force(x0, x1, means, out);
-    bending().add_mean_force(x0, x1, means, out);
-  }
-  /// ck (−∂f/∂q1), nearly; not symmetric.
-  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
-                    ElementMatrix& k) const {
-    Element<double> const x0 = part<12>(q0, first_column(e)), x1 = part<12>(q1, first_column(e));
-    k.setZero();
-    axial().add_mean_tangent(x0, x1, means, ck, k);
-    bending().add_mean_tangent(x0, x1, means, ck, k);
-  }
-
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
     for (int i = 0; i < 4; ++i)
@@ -144,10 +115,6 @@ class AncfCable : public NodeChain<6> {
     Element<T> momentum;
     element_inertia<T>(x, momentum);
     return 0.5 * x.dot(momentum);
-  }
-  double strain_energy(Index e, std::span<double const> q) const {
-    Element<double> const x = part<12>(q, first_column(e));
-    return axial().energy(x) + bending().energy(x);
   }
   template <class T = double>  // compiled where it is used
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
@@ -224,18 +191,16 @@ class AncfCable : public NodeChain<6> {
   }
 
  private:
-  using Axial = StrainGroup<CableAxial<Strain, axial_points>>;
-  using Bending = StrainGroup<CableBending<Strain, bending_points>>;
-  Axial const& axial() const { return std::get<0>(groups_); }
-  Bending const& bending() const { return std::get<1>(groups_); }
+  Axial const& axial() const { return std::get<0>(this->groups_of(0)); }
+  Bending const& bending() const { return std::get<1>(this->groups_of(0)); }
 
   template <class T = double>  // compiled where it is used
   AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
-      : NodeChain(n),
+      : Chain(n, {{Axial(c, bar.damping, bar.length / double(n), Vec<double, 1>(bar.pretension)),
+                   Bending(c, bar.damping, bar.length / double(n))}}),
         constants_(c),
         length_(bar.length),
-        l_(bar.length / double(n)),
-        groups_(Axial(c, bar.damping, l_, Vec<double, 1>(bar.pretension)), Bending(c, bar.damping, l_)) {
+        l_(bar.length / double(n)) {
     for (GaussPoint const& g : gauss<4>) {
       ShapeValues<4> const s = hermite_shape(g.xi, l_);
       double const mass = g.weight * l_ * c.mass_per_length;
@@ -246,13 +211,13 @@ class AncfCable : public NodeChain<6> {
     }
     reference_.resize(std::size_t(coordinates()));
     Mat<T, 3, 3> const axes = bar.placement.axes;
-    for (Index i = 0; i <= n_; ++i) {
+    for (Index i = 0; i <= elements(); ++i) {
       Placement const section = curve(double(i) * l_);
       section.check(name);
       part<3>(std::span<double>(reference_), 6 * i) = bar.placement.origin + axes * section.origin;
       part<3>(std::span<double>(reference_), 6 * i + 3) = axes * section.axes.col(0);
     }
-    for (Index e = 0; e < n_; ++e) {
+    for (Index e = 0; e < elements(); ++e) {
       for (GaussPoint const& g : gauss<3>) {
         double const off = axial().strains(g.xi, l_, element_of({e, g.xi}, reference_))[0];
         if (!(std::abs(off) < 0.1))
@@ -306,7 +271,6 @@ class AncfCable : public NodeChain<6> {
   BarConstants constants_;
   double length_;
   double l_;
-  std::tuple<Axial, Bending> groups_;
   Mat<double, 4, 4> mass_ = Mat<double, 4, 4>::Zero();  ///< of each component
   Vec4 weight_ = Vec4::Zero();                          ///< the same for a uniform field
   std::vector<double> reference_;

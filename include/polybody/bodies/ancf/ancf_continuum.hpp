@@ -246,6 +246,35 @@ struct Continuum {
     return s;
   }
 
+  /// With the traction t = F S e₁ on the section, in the axes of the deformed one,
+  ///   N = ∫ Rᵀt dA,  M = ∫ Rᵀ(r − r₀) × Rᵀt dA,
+  /// over the points that the energy uses: normal stress at the four of the section, shear stress at those that twist
+  /// meets GJ with.
+  template <class T = double>  // compiled where it is used
+  static Vec6 section_forces(Bar const& bar, BarConstants const& c, ancf::Deformation const& field, double xi) {
+    Vec<T, 3> by, bz;  // r_y, r_z
+    for (int i = 0; i < 3; ++i) {
+      by[i] = (1.0 - xi) * field.e[6 + i] + xi * field.e[18 + i];
+      bz[i] = (1.0 - xi) * field.e[9 + i] + xi * field.e[21 + i];
+    }
+    SectionFrame<T> const frame(by, bz);
+    double const area = c.EA / bar.material->young, lever = Continuum::lever(c);
+    ancf::SectionPoints const section{std::sqrt(c.EI / c.EA), std::sqrt(c.EI_y.value() / c.EA)};
+    Mat<T, 3, 3> const axis = field.strain(xi, 0.0, 0.0);
+    Vec<T, 6> n = Vec<T, 6>::Zero();
+    auto const add = [&](double y, double z, Vec<T, 3> const& parts) {
+      Mat<T, 3, 3> const s = second_piola(bar, c, field.strain(xi, y, z), axis);
+      Vec<T, 3> const t = frame.local(field.gradient(xi, y, z) * s.col(0).cwiseProduct(parts));
+      n.template head<3>() += 0.25 * area * t;
+      n.template tail<3>() += 0.25 * area * frame.local(y * by + z * bz).cross(t);
+    };
+    section.for_each([&](double y, double z) {
+      add(y, z, Vec<T, 3>(1, 0, 0));
+      add(lever * y, lever * z, Vec<T, 3>(0, 1, 1));
+    });
+    return n;
+  }
+
  private:
   struct Moduli {
     double young, poisson, lambda, mu;

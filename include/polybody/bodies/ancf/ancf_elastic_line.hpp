@@ -194,6 +194,17 @@ struct ElasticLine {
             on_axis<typename Line::Section>(nodes, bar, c, ref, none)};
   }
 
+  /// Stiffness times the section's strains (Γ, K), and the pretension.
+  static Vec6 section_forces(Bar const& bar, Groups const& groups, Vec6 const& strains) {
+    Vec6 n = strains;
+    for (int i = 0; i < 3; ++i) {
+      n[i] *= std::get<0>(groups).stiffness()[i];
+      n[3 + i] *= std::get<1>(groups).stiffness()[i];
+    }
+    n[0] += bar.pretension;
+    return n;
+  }
+
  private:
   template <class Law>
   static StrainGroup<Law> on_axis(std::array<GaussPoint, Law::points> const& rule, Bar const& bar,

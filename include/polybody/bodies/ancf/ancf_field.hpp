@@ -44,7 +44,7 @@ class Reference {
  public:
   double l = 0.0;                       ///< of the axis [m]
   Coordinates x = Coordinates::Zero();  ///< e
-  bool straight = true;                 ///< … and not twisted
+  bool straight = true;                 ///< neither bent nor twisted
 
   /// det [r_x r_y r_z], linear in y and z: negative where the section is turned inside out.
   template <class T = double>  // compiled where it is used
@@ -77,6 +77,25 @@ class Reference {
     Vec<T, columns> const e = x;
     Mat<T, vectors, 4> const n = shape(xi, y, z, l);
     return e.reshaped(3, vectors) * n.template rightCols<3>();
+  }
+};
+
+/// An element deformed to the coordinates e.
+struct Deformation {
+  Reference const& reference;
+  Coordinates e;
+
+  /// F: from the axes of the reference section to world axes.
+  template <class T = double>  // compiled where it is used
+  Mat3 gradient(double xi, double y, double z) const {
+    Vec<T, columns> const x = e;
+    return x.reshaped(3, vectors) * reference.gradients(xi, y, z).g;
+  }
+  /// Green–Lagrange strain E, in the axes of the reference section.
+  template <class T = double>  // compiled where it is used
+  Mat3 strain(double xi, double y, double z) const {
+    Mat<T, 3, 3> const f = gradient(xi, y, z);
+    return 0.5 * (f.transpose() * f - Mat<T, 3, 3>::Identity());
   }
 };
 

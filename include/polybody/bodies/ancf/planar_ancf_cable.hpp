@@ -42,16 +42,17 @@ struct HermiteCable {
 
   /// Angle of r′; θ̇ = r′ × ṙ′/|r′|², whose derivative without r̈′ is −2 (r′·ṙ′) θ̇/|r′|².
   template <StateScalar T>
-  static void rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed, T& angle, Vec<T, 8>& row,
-                       T& bias) {
+  static SectionAngle<T, 8> rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed) {
     using std::atan2;
     Mat<double, 2, 8> const d = spread(hermite_shape(xi, l).ds);
     Vec<T, 2> const slope = d.template cast<T>() * e, rate = d.template cast<T>() * ed;
     T const n2 = slope.squaredNorm();
-    angle = atan2(slope[1], slope[0]);
-    row =
+    SectionAngle<T, 8> out;
+    out.angle = atan2(slope[1], slope[0]);
+    out.row =
         (d.row(1).transpose().template cast<T>() * slope[0] - d.row(0).transpose().template cast<T>() * slope[1]) / n2;
-    bias = row.dot(ed) * slope.dot(rate) * (-2.0) / n2;
+    out.bias = out.row.dot(ed) * slope.dot(rate) * (-2.0) / n2;
+    return out;
   }
 
   /// ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).

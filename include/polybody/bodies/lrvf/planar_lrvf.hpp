@@ -45,12 +45,11 @@ struct SimoVuQuoc {
     return row;
   }
 
-  /// θ(ξ), its row θ̇ = row·ė, and the part of θ̈ without ë (none: the field is linear).
+  /// θ(ξ); the field is linear, so that there is no bias.
   template <StateScalar T>
-  static void rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&, T& angle, Vec<T, 6>& row, T& bias) {
-    row = rotary(xi, l).template cast<T>();
-    angle = row.dot(e);
-    bias = T(0.0);
+  static SectionAngle<T, 6> rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&) {
+    Vec<T, 6> const row = rotary(xi, l).template cast<T>();
+    return {row.dot(e), row, T(0.0)};
   }
 
   /// ∂²θ/∂e²: none.

@@ -1,15 +1,34 @@
 #pragma once
 /// \file
-/// A flexible bar in the plane as a chain of equal two-node elements. What is interpolated and which strains
-/// follow is a policy, the Theory; layout, mass, gravity and markers are here once, energy, force and tangent in
-/// `StrainGroup`.
+/// A flexible bar in the plane as a chain of equal two-node elements. A policy, the Theory, says what is interpolated
+/// and which strains follow; mass, gravity and markers stand here, elastic forces in `ElasticChain`.
 
 #include <tuple>
 #include <vector>
 
 #include <polybody/bodies/shared/bar.hpp>
-#include <polybody/bodies/shared/node_chain.hpp>
-#include <polybody/bodies/shared/strain_tangent.hpp>
+#include <polybody/bodies/shared/elastic_chain.hpp>
+
+namespace polybody::detail {
+
+/// The groups of strains of the laws of a theory.
+template <class Laws>
+struct GroupsOf;
+template <class... Laws>
+struct GroupsOf<std::tuple<Laws...>> {
+  using type = std::tuple<StrainGroup<Laws>...>;
+  /// A pretension is the first stress of the first group, along the axis.
+  static type make(BarConstants const& c, Bar const& bar, double l) {
+    type groups(StrainGroup<Laws>(c, bar.damping, l)...);
+    using First = std::tuple_element_t<0, type>;
+    typename First::Strains initial = First::Strains::Zero();
+    initial[0] = bar.pretension;
+    std::get<0>(groups) = First(c, bar.damping, l, initial);
+    return groups;
+  }
+};
+
+}  // namespace polybody::detail
 
 namespace polybody::planar {
 
@@ -23,13 +42,23 @@ struct CentreLine {
   T rate_bias;  ///< its second derivative for ë = 0 [rad/s²]
 };
 
+/// Angle of a section by the coordinates e of its element.
+template <StateScalar T, int n>
+struct SectionAngle {
+  T angle;        ///< θ [rad]
+  Vec<T, n> row;  ///< θ̇ = row · ė
+  T bias;         ///< θ̈ for ë = 0 [rad/s²]
+};
+
 template <class Theory>
-class Beam : public NodeChain<Theory::node_columns> {
+class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf<typename Theory::Groups>::type> {
+  using Groups = detail::GroupsOf<typename Theory::Groups>;
+
  public:
   static constexpr World world = World::plane;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = true;
-  using Chain = NodeChain<Theory::node_columns>;
+  using Chain = ElasticChain<Theory::node_columns, typename Groups::type>;
   using Chain::coordinates, Chain::element_columns, Chain::elements, Chain::first_column, Chain::node_columns;
   static constexpr bool packs_pay = Theory::packs_pay;
   template <class T>
@@ -95,50 +124,10 @@ class Beam : public NodeChain<Theory::node_columns> {
       out[i] = sum;
     }
   }
-  /// Elastic and damping force from an element's own coordinates and speeds.
-  template <KernelScalar T>
-  void element_force(Element<T> const& x, Element<T> const& xd, Element<T>& out) const {
-    for (int i = 0; i < element_columns; ++i) out[i] = T(0.0);
-    for_each_group([&](auto const& group) { group.template add_force<T>(x, xd, out); });
-  }
-  /// ck (−∂f/∂x) + cd (−∂f/∂xd).
-  template <KernelScalar T>
-  void element_tangent(Element<T> const& x, Element<T> const& xd, double ck, double cd,
-                       Mat<T, element_columns, element_columns>& k) const {
-    tangent_of<T, element_columns>(groups_, x, xd, ck, cd, k);
-  }
-
   template <StateScalar T>
   void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
-    element_inertia<T>(part<element_columns>(a, first_column(e)), out);
+    element_inertia<T>(this->of_element(e, a), out);
   }
-  template <StateScalar T>
-  void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
-    element_force<T>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), out);
-  }
-  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
-               ElementMatrix& k) const {
-    element_tangent<double>(part<element_columns>(q, first_column(e)), part<element_columns>(v, first_column(e)), ck,
-                            cd, k);
-  }
-
-  /// The same over a step from q0 to q1 as `StepMeans` say: f·Δq = −ΔU less what is damped.
-  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
-                  Element<double>& out) const {
-    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
-                          x1 = part<element_columns>(q1, first_column(e));
-    out.setZero();
-    for_each_group([&](auto const& group) { group.add_mean_force(x0, x1, means, out); });
-  }
-  /// ck (−∂f/∂q1), nearly; not symmetric.
-  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
-                    ElementMatrix& k) const {
-    Element<double> const x0 = part<element_columns>(q0, first_column(e)),
-                          x1 = part<element_columns>(q1, first_column(e));
-    k.setZero();
-    for_each_group([&](auto const& group) { group.add_mean_tangent(x0, x1, means, ck, k); });
-  }
-
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
     out = (gravity_ * g.head<2>()).template cast<T>();
@@ -147,12 +136,6 @@ class Beam : public NodeChain<Theory::node_columns> {
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
     auto const x = part<element_columns>(v, first_column(e));
     return 0.5 * x.dot(mass_ * x);
-  }
-  double strain_energy(Index e, std::span<double const> q) const {
-    Element<double> const x = part<element_columns>(q, first_column(e));
-    double u = 0.0;
-    for_each_group([&](auto const& group) { u += group.energy(x); });
-    return u;
   }
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     return -part<element_columns>(q, first_column(e)).dot(gravity_ * g.head<2>());
@@ -175,15 +158,15 @@ class Beam : public NodeChain<Theory::node_columns> {
   /// Position, angle and motion of the centre line at `p`.
   template <StateScalar T>
   CentreLine<T> centre_line(Point const& p, std::span<T const> q, std::span<T const> v) const {
-    Element<T> const x = part<element_columns>(q, first_column(p));
-    Element<T> const xd = part<element_columns>(v, first_column(p));
+    Element<T> const x = this->of_element(p.element, q), xd = this->of_element(p.element, v);
     Mat<double, 2, element_columns> const n = Theory::position(p.xi, l_);
     CentreLine<T> c;
     c.r = n.template cast<T>() * x;
     c.v = n.template cast<T>() * xd;
-    Element<T> unused;
-    Theory::template rotation<T>(p.xi, l_, x, xd, c.angle, unused, c.rate_bias);
-    c.rate = unused.dot(xd);
+    auto const turned = Theory::template rotation<T>(p.xi, l_, x, xd);
+    c.angle = turned.angle;
+    c.rate = turned.row.dot(xd);
+    c.rate_bias = turned.bias;
     return c;
   }
 
@@ -192,12 +175,9 @@ class Beam : public NodeChain<Theory::node_columns> {
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     using std::cos, std::sin;
-    Element<T> const x = part<element_columns>(q, first_column(p));
-    Element<T> const xd = part<element_columns>(v, first_column(p));
+    Element<T> const x = this->of_element(p.element, q), xd = this->of_element(p.element, v);
     Mat<double, 2, element_columns> const shape = Theory::position(p.xi, l_);
-    T angle, rate_bias;
-    Element<T> row;  // θ̇ = row · ė
-    Theory::template rotation<T>(p.xi, l_, x, xd, angle, row, rate_bias);
+    auto const [angle, row, rate_bias] = Theory::template rotation<T>(p.xi, l_, x, xd);
     T const c = cos(angle), s = sin(angle), rate = row.dot(xd);
     Vec<T, 2> const t(c, s), n(-s, c);
     Mat<T, 3, 3> a;
@@ -219,63 +199,41 @@ class Beam : public NodeChain<Theory::node_columns> {
 
   /// Jᵀw = Nᵀf + h c with the row h of θ̇ and c = m − y t·f;  ∂/∂e = c ∂h/∂e − y (n·f) h hᵀ.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
-    Element<double> const x = part<element_columns>(q, first_column(p)), rest = Element<double>::Zero();
-    double angle, bias;
-    Element<double> row;
-    Theory::template rotation<double>(p.xi, l_, x, rest, angle, row, bias);
-    double const c = std::cos(angle), s = std::sin(angle);
+    Element<double> const x = this->of_element(p.element, q), rest = Element<double>::Zero();
+    SectionAngle<double, element_columns> const turned = Theory::template rotation<double>(p.xi, l_, x, rest);
+    double const c = std::cos(turned.angle), s = std::sin(turned.angle);
     Theory::rotation_hessian(p.xi, l_, x, k);
     k *= w.m[2] - p.y * (c * w.f[0] + s * w.f[1]);
-    k -= (p.y * (c * w.f[1] - s * w.f[0])) * row * row.transpose();
+    k -= (p.y * (c * w.f[1] - s * w.f[0])) * turned.row * turned.row.transpose();
   }
 
-  /// In the axes of space (see sections.hpp); what the theory does not know is zero.
+  /// Strains and forces of the section in the axes of space (see sections.hpp); what the theory does not know is zero.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
-    return in_space(
-        [&](auto const& group) { return group.strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval()); });
+    return in_space([&](auto const& group) { return group.strains(p.xi, l_, this->of_element(p.element, q)); });
   }
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
-    return in_space([&](auto const& group) {
-      return group.stress(group.strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval()));
-    });
+    return in_space(
+        [&](auto const& group) { return group.stress(group.strains(p.xi, l_, this->of_element(p.element, q))); });
   }
   /// Strains of group G (in the order of the theory) at `p`, and their stress resultants without damping.
   template <int G>
   auto strains(Point const& p, std::span<double const> q) const {
-    return std::get<G>(groups_).strains(p.xi, l_, part<element_columns>(q, first_column(p)).eval());
+    return std::get<G>(this->groups_of(0)).strains(p.xi, l_, this->of_element(p.element, q));
   }
   /// Section forces of group G without damping [N], [N m].
   template <int G>
   auto resultants(Point const& p, std::span<double const> q) const {
-    return std::get<G>(groups_).stress(strains<G>(p, q));
+    return std::get<G>(this->groups_of(0)).stress(strains<G>(p, q));
   }
 
  private:
-  template <class List>
-  struct GroupsOf;
-  template <class... Laws>
-  struct GroupsOf<std::tuple<Laws...>> {
-    using type = std::tuple<StrainGroup<Laws>...>;
-    /// A pretension is the first stress of the first group, along the axis.
-    static type make(BarConstants const& c, Bar const& bar, double l) {
-      type groups(StrainGroup<Laws>(c, bar.damping, l)...);
-      using First = std::tuple_element_t<0, type>;
-      typename First::Strains initial = First::Strains::Zero();
-      initial[0] = bar.pretension;
-      std::get<0>(groups) = First(c, bar.damping, l, initial);
-      return groups;
-    }
-  };
-  using Groups = GroupsOf<typename Theory::Groups>;
-
   Beam(Bar const& bar, BarConstants const& c, Index n)
-      : Chain(n),
+      : Chain(n, {Groups::make(c, bar, bar.length / double(n))}),
         constants_(c),
         length_(bar.length),
         l_(bar.length / double(n)),
         origin_(bar.placement.origin.head<2>()),
-        angle_(bar.placement.planar_angle(Theory::name)),
-        groups_(Groups::make(c, bar, l_)) {
+        angle_(bar.placement.planar_angle(Theory::name)) {
     // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the theory's polynomials
     for (GaussPoint const& g : gauss<4>) {
       Mat<double, 2, element_columns> const s = Theory::position(g.xi, l_);
@@ -291,15 +249,11 @@ class Beam : public NodeChain<Theory::node_columns> {
   Vec6 in_space(F&& of_group) const {
     Vec6 out = Vec6::Zero();
     std::size_t k = 0;
-    for_each_group([&](auto const& group) {
+    this->for_each_group(0, [&](auto const& group) {
       auto const x = of_group(group);
       for (Index i = 0; i < x.size(); ++i) out[Theory::section_rows[k++]] = x[i];
     });
     return out;
-  }
-  template <class F>
-  void for_each_group(F&& f) const {
-    std::apply([&](auto const&... group) { (f(group), ...); }, groups_);
   }
 
   BarConstants constants_;
@@ -307,7 +261,6 @@ class Beam : public NodeChain<Theory::node_columns> {
   double l_;
   Vec2 origin_;
   double angle_;
-  typename Groups::type groups_;
   ElementMatrix mass_ = ElementMatrix::Zero();
   Mat<double, element_columns, 2> gravity_ = Mat<double, element_columns, 2>::Zero();
 };

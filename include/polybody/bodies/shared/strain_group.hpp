@@ -11,66 +11,24 @@
 /// then replaced by P_ε ε̇ (`objective_rate`). P is sparse (`StrainMap`). Plain loops, for they run on doubles, dual
 /// numbers and packs of elements alike, and compile fast.
 
-#include <array>
 #include <numeric>
 
-#include <polybody/bodies/shared/step_means.hpp>
-#include <polybody/bodies/shared/strain_laws.hpp>
-#include <polybody/math/quadrature.hpp>
-#include <polybody/math/secant.hpp>
+#include <polybody/bodies/shared/strain_points.hpp>
 
 namespace polybody {
 
+/// Force and tangent of an element by the strains of a law.
 template <StrainFunctions Law>
-class StrainGroup {
- public:
-  static constexpr int np = Law::parameters, m = Law::strains;
+class StrainGroup : public StrainPoints<Law> {
+  using Points = StrainPoints<Law>;
+  using Points::quadratic, Points::stiffness_, Points::time_, Points::initial_, Points::damped_, Points::maps_,
+      Points::products_, Points::weights_, Points::free_;
 
-  using P = StrainMap<Law>;
-  using Map = typename P::Factors;
+ public:
+  using Points::np, Points::m, Points::Points;
+  using typename Points::P;
   template <class T, int n>
   using Coordinates = typename P::template Coordinates<T, n>;
-  using Strains = Vec<double, m>;
-
-  StrainGroup() = default;
-  /// At the Gauss points of elements of length l [m]; `initial` is the stress in the reference configuration.
-  StrainGroup(BarConstants const& c, Damping const& d, double l, Strains const& initial = Strains::Zero())
-    requires StrainLaw<Law>
-      : StrainGroup(Law::stiffness(c), Law::damping(d)) {
-    initial_ = initial;
-    for (int g = 0; g < Law::points; ++g)
-      set_point(g, gauss<Law::points>[g].weight * l, Law::map(gauss<Law::points>[g].xi, l));
-  }
-  /// With C and τ [s]; `set_point` gives each of the points.
-  StrainGroup(Strains const& stiffness, Strains const& time) : stiffness_(stiffness), time_(time) {
-    damped_ = !time_.isZero(0.0);
-    free_.fill(Strains::Zero());
-  }
-  /// Weight [m], factors of P, and strains free of stress of point g.
-  void set_point(int g, double weight, Map const& map, Strains const& free = Strains::Zero()) {
-    weights_[g] = weight;
-    maps_[g] = map;
-    free_[g] = free;
-    for (std::size_t k = 0; k < products_.size(); ++k) {
-      auto const [s, j, t, l] = P::table.pairs[k];
-      products_[k][g] = map(s, j) * map(t, l);
-    }
-  }
-
-  Strains const& stiffness() const { return stiffness_; }
-  /// The stress of strains without damping.
-  Strains stress(Strains const& strain) const { return stiffness_.cwiseProduct(strain) + initial_; }
-
-  /// ε at ξ of an element of length l with coordinates x.
-  template <int n>
-  static Strains strains(double xi, double l, Vec<double, n> const& x)
-    requires StrainLaw<Law>
-  {
-    Vec<double, m> strain;
-    Mat<double, m, np> b;
-    Law::template evaluate<double>(P::parameters(Law::map(xi, l), Coordinates<double, n>(x)), strain, b);
-    return strain;
-  }
 
   /// f += the group's force at coordinates x, rates xd.
   template <KernelScalar T, int n>
@@ -99,12 +57,8 @@ class StrainGroup {
     P::spread(step, f);
   }
 
-  bool damped() const { return damped_; }
-
   // The tangent is put together from all groups of an element by `tangent_of`: `prepare` once, then `add_block` for
   // each block.
-  static constexpr bool quadratic = QuadraticStrains<Law>;
-
   /// What the tangent's blocks are made of: h of each point, by p; of quadratic strains K̂ itself, by the vectors that
   /// are read.
   template <KernelScalar T>
@@ -188,34 +142,34 @@ class StrainGroup {
     Coordinates<T, n> const e(x), ed(xd);
     for (int g = 0; g < Law::points; ++g) {
       Mat<T, np, np>& h = hs.h[g];
-      Vec<T, np> const p = P::parameters(maps_[g], e);
-      Vec<T, m> stress;
-      Mat<T, m, np> b;
-      Law::template evaluate<T>(p, stress, b);
+      Moving<T> at;
+      at.p = P::parameters(maps_[g], e);
+      Law::template evaluate<T>(at.p, at.strain, at.b);
 #pragma GCC unroll 8
       for (int r = 0; r < np; ++r) {
         Vec<T, m> scaled;
 #pragma GCC unroll 8
-        for (int i = 0; i < m; ++i) scaled[i] = b(i, r) * (weights_[g] * stiffness_[i] * ck);
+        for (int i = 0; i < m; ++i) scaled[i] = at.b(i, r) * (weights_[g] * stiffness_[i] * ck);
 #pragma GCC unroll 8
         for (int c = 0; c <= r; ++c) {
-          T sum = scaled[0] * b(0, c);
+          T sum = scaled[0] * at.b(0, c);
 #pragma GCC unroll 8
-          for (int i = 1; i < m; ++i) sum += scaled[i] * b(i, c);
+          for (int i = 1; i < m; ++i) sum += scaled[i] * at.b(i, c);
           h(r, c) = sum;
           h(c, r) = sum;
         }
       }
+      Vec<T, m> stress = at.strain;
       if (damped_) {
-        Vec<T, np> const pd = P::parameters(maps_[g], ed);
-        Vec<T, m> const rate = rates(b, pd);
-        add_damping_gradient(weights_[g], ck, cd, p, pd, stress, rate, b, h);
-        add_damping(rate, stress);
+        at.pd = P::parameters(maps_[g], ed);
+        at.rate = rates(at.b, at.pd);
+        add_damping_gradient(weights_[g], ck, cd, at, h);
+        add_damping(at.rate, stress);
       }
 #pragma GCC unroll 8
       for (int i = 0; i < m; ++i)
         stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
-      Law::template add_hessian<T>(p, stress, h);
+      Law::template add_hessian<T>(at.p, stress, h);
     }
   }
   /// `block` += the group's share of K̂_vw.
@@ -235,99 +189,15 @@ class StrainGroup {
     }
   }
 
-  /// f += the group's force over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
-  ///   −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
-  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. It has no moment where strains are made of scalar products.
-  /// The others, vectors that turn, go by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), κ₀ = 1e-3 1/m, as
-  /// `objective_rate` damps; the part of `decay` has a moment then.
-  template <int n>
-  void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means,
-                      Vec<double, n>& f) const {
-    using S = Secant<np>;
-    Coordinates<double, n> const e0(x0), e1(x1);
-    Vec<double, P::d> step = Vec<double, P::d>::Zero();
-    for (int g = 0; g < Law::points; ++g) {
-      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
-      Vec<S, np> p;
-      for (int k = 0; k < np; ++k) p[k] = S::variable(p0[k], p1[k], k);
-      typename S::Slope sum = S::Slope::Zero();
-      if constexpr (HasSquare<Law>) {
-        S const z = Law::template square<S>(p);
-        double const damped = time_[0] * means.rate * z.change() / (2.0 * (z.mean() + 1e-6));
-        sum = z.d * (0.5 * stiffness_[0] * (1.0 + damped));
-      }
-      if (!HasSquare<Law> || means.decay > 0.0) {
-        Vec<S, m> strain;
-        Mat<S, m, np> b;
-        Law::template evaluate<S>(p, strain, b);
-        for (int i = 0; i < m; ++i) {
-          double stretch = means.decay * strain[i].change();
-          if constexpr (!HasSquare<Law>)
-            stretch += strain[i].mean() - free_[g][i] + time_[i] * means.rate * strain[i].change();
-          sum += strain[i].d * (stiffness_[i] * stretch + (HasSquare<Law> ? 0.0 : initial_[i]));
-        }
-      }
-      Vec<double, np> pull;
-      for (int k = 0; k < np; ++k) pull[k] = weights_[g] * sum[k];
-      P::subtract_pulled(maps_[g], pull, f, step);
-    }
-    P::spread(step, f);
-  }
-
-  /// k += ck (−∂f/∂x1) of `add_mean_force`, not symmetric, with the strains' gradients B̄ and H̄ of the middle for the
-  /// secants:
-  ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
-  template <int n>
-  void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, double ck,
-                        Mat<double, n, n>& k) const {
-    Coordinates<double, n> const e0(x0), e1(x1);
-    for (int g = 0; g < Law::points; ++g) {
-      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
-      Vec<double, np> const middle = 0.5 * (p0 + p1);
-      Strains from, to, stress;
-      Mat<double, m, np> b, end;
-      Law::template evaluate<double>(p0, from, b);
-      Law::template evaluate<double>(p1, to, end);
-      Law::template evaluate<double>(middle, stress, b);
-      Mat<double, np, np> h = Mat<double, np, np>::Zero();
-      for (int i = 0; i < m; ++i) {
-        double const w = ck * weights_[g], share = means.decay + time_[i] * means.rate;
-        stress[i] = 0.5 * w *
-                    (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[g][i] + share * (to[i] - from[i])) + initial_[i]);
-        for (int c = 0; c < np; ++c)
-          for (int r = 0; r < np; ++r) h(r, c) += w * stiffness_[i] * (0.5 + share) * b(i, r) * end(i, c);
-      }
-      if constexpr (quadratic) {
-        Mat<double, P::shapes, P::shapes> of_shapes = Mat<double, P::shapes, P::shapes>::Zero();
-        Law::template add_hessian<double>(stress, of_shapes);
-        for (int c = 0; c < np; ++c)
-          for (int r = c % P::d; r < np; r += P::d) h(r, c) += of_shapes(r / P::d, c / P::d);
-      } else {
-        Law::template add_hessian<double>(middle, stress, h);
-      }
-      P::add_mapped(maps_[g], h, k);
-    }
-  }
-
-  /// The energy stored [J].
-  template <int n>
-  double energy(Vec<double, n> const& x) const {
-    double u = 0.0;
-    Coordinates<double, n> const e(x);
-    for (int g = 0; g < Law::points; ++g) {
-      Vec<double, m> strain;
-      Mat<double, m, np> b;
-      Law::template evaluate<double>(P::parameters(maps_[g], e), strain, b);
-#pragma GCC unroll 8
-      for (int i = 0; i < m; ++i) {
-        double const stretch = strain[i] - free_[g][i];
-        u += weights_[g] * (0.5 * stiffness_[i] * stretch + initial_[i]) * stretch;
-      }
-    }
-    return u;
-  }
-
  private:
+  /// A point in motion.
+  template <class T>
+  struct Moving {
+    Vec<T, np> p, pd;
+    Vec<T, m> strain, rate;
+    Mat<T, m, np> b;  ///< B
+  };
+
   /// ε̇ = B ṗ.
   template <class T>
   static Vec<T, m> rates(Mat<T, m, np> const& b, Vec<T, np> const& pd) {
@@ -352,9 +222,7 @@ class StrainGroup {
 
   /// h += Σ_i w C_i τ_i B_iᵀ [Σ_j P_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j], with P_ε = 1 and Q = 0 for most laws.
   template <class T>
-  void add_damping_gradient(double w, double ck, double cd, Vec<T, np> const& p, Vec<T, np> const& pd,
-                            Vec<T, m> const& strain, Vec<T, m> const& rate, Mat<T, m, np> const& b,
-                            Mat<T, np, np>& h) const {
+  void add_damping_gradient(double w, double ck, double cd, Moving<T> const& at, Mat<T, np, np>& h) const {
     Mat<T, m, np> change;  // ck H_j ṗ + cd B_j by rows
     for (int j = 0; j < m; ++j) {
       Mat<T, np, np> second;
@@ -362,40 +230,30 @@ class StrainGroup {
       for (int c = 0; c < np; ++c)
         for (int r = 0; r < np; ++r) second(r, c) = T(0.0);
       for (int i = 0; i < m; ++i) only[i] = T(i == j ? ck : 0.0);
-      Law::template add_hessian<T>(p, only, second);
+      Law::template add_hessian<T>(at.p, only, second);
       for (int c = 0; c < np; ++c) {
-        T sum = b(j, c) * cd;
-        for (int q = 0; q < np; ++q) sum += second(c, q) * pd[q];
+        T sum = at.b(j, c) * cd;
+        for (int q = 0; q < np; ++q) sum += second(c, q) * at.pd[q];
         change(j, c) = sum;
       }
     }
     if constexpr (HasObjectiveRate<Law>) {
       Mat<T, m, m> by_rate, by_strain;
-      Law::template objective_rate_gradients<T>(strain, rate, by_rate, by_strain);
+      Law::template objective_rate_gradients<T>(at.strain, at.rate, by_rate, by_strain);
       Mat<T, m, np> const whole = change;
       for (int i = 0; i < m; ++i)
         for (int c = 0; c < np; ++c) {
           T sum(0.0);
-          for (int j = 0; j < m; ++j) sum += by_rate(i, j) * whole(j, c) + by_strain(i, j) * b(j, c) * ck;
+          for (int j = 0; j < m; ++j) sum += by_rate(i, j) * whole(j, c) + by_strain(i, j) * at.b(j, c) * ck;
           change(i, c) = sum;
         }
     }
     for (int i = 0; i < m; ++i)
       for (int c = 0; c < np; ++c) {
         T const factor = change(i, c) * (w * stiffness_[i] * time_[i]);
-        for (int r = 0; r < np; ++r) h(r, c) += b(i, r) * factor;
+        for (int r = 0; r < np; ++r) h(r, c) += at.b(i, r) * factor;
       }
   }
-
-  Strains stiffness_ = Strains::Zero();
-  Strains time_ = Strains::Zero();
-  Strains initial_ = Strains::Zero();
-  bool damped_ = false;
-  std::array<Map, std::size_t(Law::points)> maps_;
-  /// Of two factors, for each pair.
-  std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
-  std::array<double, Law::points> weights_;  ///< [m]
-  std::array<Strains, Law::points> free_;    ///< ε⁰
 };
 
 }  // namespace polybody

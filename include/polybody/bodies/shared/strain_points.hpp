@@ -1,0 +1,175 @@
+#pragma once
+/// \file
+/// The quadrature points of a group of strains (see strain_group.hpp): energy, and the mean force over a step, whose
+/// work is the change of the energy.
+
+#include <array>
+
+#include <polybody/bodies/shared/step_means.hpp>
+#include <polybody/bodies/shared/strain_laws.hpp>
+#include <polybody/math/quadrature.hpp>
+#include <polybody/math/secant.hpp>
+
+namespace polybody {
+
+/// Weights, maps and free strains of the points, and C, τ and n⁰, which are the same at all of them.
+template <StrainFunctions Law>
+class StrainPoints {
+ public:
+  static constexpr int np = Law::parameters, m = Law::strains;
+
+  using P = StrainMap<Law>;
+  using Map = typename P::Factors;
+  template <class T, int n>
+  using Coordinates = typename P::template Coordinates<T, n>;
+  using Strains = Vec<double, m>;
+
+  StrainPoints() = default;
+  /// At the Gauss points of elements of length l [m]; `initial` is the stress in the reference configuration.
+  StrainPoints(BarConstants const& c, Damping const& d, double l, Strains const& initial = Strains::Zero())
+    requires StrainLaw<Law>
+      : StrainPoints(Law::stiffness(c), Law::damping(d)) {
+    initial_ = initial;
+    for (int g = 0; g < Law::points; ++g)
+      set_point(g, gauss<Law::points>[g].weight * l, Law::map(gauss<Law::points>[g].xi, l));
+  }
+  /// With C and τ [s]; `set_point` gives each of the points.
+  StrainPoints(Strains const& stiffness, Strains const& time) : stiffness_(stiffness), time_(time) {
+    damped_ = !time_.isZero(0.0);
+    free_.fill(Strains::Zero());
+  }
+  /// Weight [m], factors of P, and strains free of stress of point g.
+  void set_point(int g, double weight, Map const& map, Strains const& free = Strains::Zero()) {
+    weights_[g] = weight;
+    maps_[g] = map;
+    free_[g] = free;
+    for (std::size_t k = 0; k < products_.size(); ++k) {
+      auto const [s, j, t, l] = P::table.pairs[k];
+      products_[k][g] = map(s, j) * map(t, l);
+    }
+  }
+
+  Strains const& stiffness() const { return stiffness_; }
+  /// The stress of strains without damping.
+  Strains stress(Strains const& strain) const { return stiffness_.cwiseProduct(strain) + initial_; }
+
+  /// ε at ξ of an element of length l with coordinates x.
+  template <int n>
+  static Strains strains(double xi, double l, Vec<double, n> const& x)
+    requires StrainLaw<Law>
+  {
+    Vec<double, m> strain;
+    Mat<double, m, np> b;
+    Law::template evaluate<double>(P::parameters(Law::map(xi, l), Coordinates<double, n>(x)), strain, b);
+    return strain;
+  }
+
+  bool damped() const { return damped_; }
+
+  /// The energy stored [J].
+  template <int n>
+  double energy(Vec<double, n> const& x) const {
+    double u = 0.0;
+    Coordinates<double, n> const e(x);
+    for (int g = 0; g < Law::points; ++g) {
+      Vec<double, m> strain;
+      Mat<double, m, np> b;
+      Law::template evaluate<double>(P::parameters(maps_[g], e), strain, b);
+#pragma GCC unroll 8
+      for (int i = 0; i < m; ++i) {
+        double const stretch = strain[i] - free_[g][i];
+        u += weights_[g] * (0.5 * stiffness_[i] * stretch + initial_[i]) * stretch;
+      }
+    }
+    return u;
+  }
+
+  /// f += the group's force over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
+  ///   −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
+  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. It has no moment where strains are made of scalar products.
+  /// The others, vectors that turn, go by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), κ₀ = 1e-3 1/m, as
+  /// `objective_rate` damps; the part of `decay` has a moment then.
+  template <int n>
+  void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means,
+                      Vec<double, n>& f) const {
+    using S = Secant<np>;
+    Coordinates<double, n> const e0(x0), e1(x1);
+    Vec<double, P::d> step = Vec<double, P::d>::Zero();
+    for (int g = 0; g < Law::points; ++g) {
+      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
+      Vec<S, np> p;
+      for (int k = 0; k < np; ++k) p[k] = S::variable(p0[k], p1[k], k);
+      typename S::Slope sum = S::Slope::Zero();
+      if constexpr (HasSquare<Law>) {
+        S const z = Law::template square<S>(p);
+        double const damped = time_[0] * means.rate * z.change() / (2.0 * (z.mean() + 1e-6));
+        sum = z.d * (0.5 * stiffness_[0] * (1.0 + damped));
+      }
+      if (!HasSquare<Law> || means.decay > 0.0) {
+        Vec<S, m> strain;
+        Mat<S, m, np> b;
+        Law::template evaluate<S>(p, strain, b);
+        for (int i = 0; i < m; ++i) {
+          double stretch = means.decay * strain[i].change();
+          if constexpr (!HasSquare<Law>)
+            stretch += strain[i].mean() - free_[g][i] + time_[i] * means.rate * strain[i].change();
+          sum += strain[i].d * (stiffness_[i] * stretch + (HasSquare<Law> ? 0.0 : initial_[i]));
+        }
+      }
+      Vec<double, np> pull;
+      for (int k = 0; k < np; ++k) pull[k] = weights_[g] * sum[k];
+      P::subtract_pulled(maps_[g], pull, f, step);
+    }
+    P::spread(step, f);
+  }
+
+  /// k += ck (−∂f/∂x1) of `add_mean_force`, not symmetric, with the strains' gradients B̄ and H̄ of the middle for the
+  /// secants:
+  ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
+  template <int n>
+  void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, double ck,
+                        Mat<double, n, n>& k) const {
+    Coordinates<double, n> const e0(x0), e1(x1);
+    for (int g = 0; g < Law::points; ++g) {
+      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
+      Vec<double, np> const middle = 0.5 * (p0 + p1);
+      Strains from, to, stress;
+      Mat<double, m, np> b, end;
+      Law::template evaluate<double>(p0, from, b);
+      Law::template evaluate<double>(p1, to, end);
+      Law::template evaluate<double>(middle, stress, b);
+      Mat<double, np, np> h = Mat<double, np, np>::Zero();
+      for (int i = 0; i < m; ++i) {
+        double const w = ck * weights_[g], share = means.decay + time_[i] * means.rate;
+        stress[i] = 0.5 * w *
+                    (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[g][i] + share * (to[i] - from[i])) + initial_[i]);
+        for (int c = 0; c < np; ++c)
+          for (int r = 0; r < np; ++r) h(r, c) += w * stiffness_[i] * (0.5 + share) * b(i, r) * end(i, c);
+      }
+      if constexpr (quadratic) {
+        Mat<double, P::shapes, P::shapes> of_shapes = Mat<double, P::shapes, P::shapes>::Zero();
+        Law::template add_hessian<double>(stress, of_shapes);
+        for (int c = 0; c < np; ++c)
+          for (int r = c % P::d; r < np; r += P::d) h(r, c) += of_shapes(r / P::d, c / P::d);
+      } else {
+        Law::template add_hessian<double>(middle, stress, h);
+      }
+      P::add_mapped(maps_[g], h, k);
+    }
+  }
+
+ protected:
+  static constexpr bool quadratic = QuadraticStrains<Law>;
+
+  Strains stiffness_ = Strains::Zero();
+  Strains time_ = Strains::Zero();
+  Strains initial_ = Strains::Zero();
+  bool damped_ = false;
+  std::array<Map, std::size_t(Law::points)> maps_;
+  /// Products of two factors, for each pair.
+  std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
+  std::array<double, Law::points> weights_;  ///< [m]
+  std::array<Strains, Law::points> free_;    ///< ε⁰
+};
+
+}  // namespace polybody
