@@ -10,8 +10,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <polybody/bodies/lrvf/rotation_interpolation.hpp>
-#include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/lrvf/lrvf_section.hpp>
 #include <polybody/bodies/shared/body.hpp>
 
 namespace polybody {
@@ -128,9 +127,9 @@ class Lrvf {
   /// f_r = ± l/c₀ R_m N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ; and −Ω × J Ω at the nodes.
   template <StateScalar T>
   void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
-    Strained<T> s;
+    StrainedSection<T> s;
     strain<T>(e, q, v, s);
-    Vec<T, 3> const pull = s.at.R * s.n * (l_ / free_[std::size_t(e)].chord), t = s.n.cross(s.gamma) * l_;
+    Vec<T, 3> const pull = s.at.R * s.n * (l_ / s.chord), t = s.n.cross(s.gamma) * l_;
     Vec<T, 6> const torque = s.at.spin.transpose() * t + s.at.bend.transpose() * s.m;
     for (int i = 0; i < 2; ++i) {
       Vec<T, 3> const omega = part<3>(v, 6 * (e + i) + 3);
@@ -144,54 +143,17 @@ class Lrvf {
     }
   }
 
-  /// ck (−∂f/∂δ) + cd (−∂f/∂v), δ of q ⊞ δ: not symmetric in general, as δθ does not commute. With x = R_mᵀ (δr₂ −
-  /// δr₁)/c₀ and θ = δθ₁₂, all in the axes of the middle section:
-  ///   δΓ = x + Γ̃ P θ,  δN = C (ck + cd τ) δΓ + ck C τ δΓ˙,  δt = l (N × δΓ − Γ × δN),
-  ///   −δf_r = ∓ l/c₀ R_m (δN + ck Pθ × N),  −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
+  /// ck (−∂f/∂δ) + cd (−∂f/∂v), δ of q ⊞ δ: not symmetric in general, as δθ does not commute.
   template <class T>  // compiled where it is used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     using V3 = Vec<T, 3>;
-    using M3 = Mat<T, 3, 3>;
-    Strained<T> s;
+    StrainedSection<T> s;
     strain<T>(e, q, v, s);
     MiddleGradient by;
     V3 const t = l_ * s.n.cross(s.gamma);
     interpolation_.gradient(turned<T>(q, e), turned<T>(q, e + 1), t, s.m, s.turning, by);
-    Vec<T, 6> const stiffness = stiffness_, time = time_;
-    V3 const c1 = stiffness.template head<3>(), c2 = stiffness.template tail<3>() / l_;
-    V3 const full1 = c1.cwiseProduct(V3::Constant(ck) + cd * time.template head<3>());
-    V3 const full2 = c2.cwiseProduct(V3::Constant(ck) + cd * time.template tail<3>());
-    M3 const gamma = skew<T>(s.gamma), n = ck * skew<T>(s.n);
-    Mat<T, 3, 6> const slide = gamma * s.at.spin;  // Γ̃ P
-    M3 nx = full1.asDiagonal();
-    Mat<T, 3, 6> nt = full1.asDiagonal() * slide, mt = full2.asDiagonal() * s.at.bend;
-    if (damped_) {  // Γ˙ = u + Γ × Ω, u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:  δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ
-      V3 const omega = s.at.spin * s.turning;
-      V3 const d1 = ck * c1.cwiseProduct(time.template head<3>()), d2 = ck * c2.cwiseProduct(time.template tail<3>());
-      M3 const w = skew<T>(omega);
-      nx -= d1.asDiagonal() * w;
-      nt += d1.asDiagonal() * (skew<T>(s.rate) * s.at.spin - w * slide + gamma * by.spin);
-      mt += d2.asDiagonal() * by.bend;
-    }
-    double const chord = free_[std::size_t(e)].chord;
-    Mat<T, 6, 3> const pulled = s.at.spin.transpose() * (l_ * (n - gamma * nx));
-    Mat<T, 6, 6> const turn =
-        s.at.spin.transpose() * (l_ * (n * slide - gamma * nt)) + s.at.bend.transpose() * mt + ck * by.pulled;
-    M3 const rr = s.at.R * (l_ / (chord * chord) * nx) * s.at.R.transpose();
-    Mat<T, 3, 6> const rt = s.at.R * (l_ / chord * (nt - n * s.at.spin));
-    Mat<T, 6, 3> const tr = pulled * (1.0 / chord) * s.at.R.transpose();
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j) {
-        double const si = i == 0 ? -1.0 : 1.0, sj = j == 0 ? -1.0 : 1.0;
-        for (int c = 0; c < 3; ++c)
-          for (int r = 0; r < 3; ++r) {
-            k(6 * i + r, 6 * j + c) = si * sj * rr(r, c);
-            k(6 * i + r, 6 * j + 3 + c) = si * rt(r, 3 * j + c);
-            k(6 * i + 3 + r, 6 * j + c) = sj * tr(3 * i + r, c);
-            k(6 * i + 3 + r, 6 * j + 3 + c) = turn(3 * i + r, 3 * j + c);
-          }
-      }
+    section_.tangent(s, by, ck, cd, k);
     for (int i = 0; i < 2; ++i) {
       V3 const omega = part<3>(v, 6 * (e + i) + 3);
       k.template block<3, 3>(6 * i + 3, 6 * i + 3) +=
@@ -212,10 +174,8 @@ class Lrvf {
     return sixth_ * (v1.squaredNorm() + v1.dot(v2) + v2.squaredNorm()) +
            0.5 * rotary_.dot(w1.cwiseProduct(w1) + w2.cwiseProduct(w2));
   }
-  template <class T = double>  // compiled where it is used
   double strain_energy(Index e, std::span<double const> q) const {
-    Vec<T, 6> const x = section_strains({e, 0.5}, q);
-    return l_ * (0.5 * x.dot(stiffness_.cwiseProduct(x)) + pretension_ * x[0]);
+    return l_ * section_.energy(section_strains({e, 0.5}, q));
   }
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     return -3.0 * sixth_ * g.dot(part<3>(q, 7 * e) + part<3>(q, 7 * e + 7));
@@ -234,10 +194,7 @@ class Lrvf {
   }
   /// (N, M) of the element of `p`, without damping [N], [N m].
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
-    Vec6 n = section_strains(p, q);
-    for (int i = 0; i < 6; ++i) n[i] *= stiffness_[i];
-    n[0] += pretension_;
-    return n;
+    return section_.forces(section_strains(p, q));
   }
   /// The rotation field at `p`, with its curvature (reference included).
   SectionTurn rotation_field(Point const& p, std::span<double const> q) const {
@@ -298,31 +255,17 @@ class Lrvf {
     double chord = 1.0;  ///< c₀ [m]
     Vec3 gamma, turn;    ///< Γ₀, l K₀
   };
-  template <StateScalar T>
-  struct Strained {
-    MiddleSection<T> at;
-    Vec<T, 3> gamma;    ///< R_mᵀ r′
-    Vec<T, 3> rate;     ///< R_mᵀ ṙ′, for damping
-    Vec<T, 6> turning;  ///< (Ω₁, Ω₂), for damping
-    Vec<T, 3> n, m;     ///< section forces
-  };
 
   template <class T = double>  // compiled where it is used
   Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
       : constants_(c),
         length_(bar.length),
         l_(bar.length / double(n)),
-        pretension_(bar.pretension),
         interpolation_(bar.placement),
+        section_(bar, c, l_),
         free_(std::size_t(n)),
         reference_(std::size_t(7 * (n + 1))) {
-    double const iz = c.rotary_inertia, iy = c.rotary_inertia_y.value_or(iz), shear = bar.damping.shear;
-    stiffness_ = Vec<T, 6>{{c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI}};
-    char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
-    for (int i = 0; i < 6; ++i)
-      require_positive(stiffness_[i], std::string("Lrvf: the stiffness ") + names[i] + " of the bar");
-    time_ = Vec<T, 6>{{bar.damping.axial, shear, shear, shear, bar.damping.bending, bar.damping.bending}};
-    for (int i = 0; i < 6; ++i) damped_ = damped_ || time_[i] != 0.0;
+    double const iz = c.rotary_inertia, iy = c.rotary_inertia_y.value_or(iz);
     sixth_ = c.mass_per_length * l_ / 6.0;
     rotary_ = 0.5 * l_ * Vec<T, 3>(iy + iz, iy, iz);
     std::span<double> const q(reference_);
@@ -358,29 +301,18 @@ class Lrvf {
     Vec<T, 3> const slope = (part<3>(q, 7 * e + 7) - part<3>(q, 7 * e)) * T(1.0 / free_[std::size_t(e)].chord);
     gamma = at.R.transpose() * slope;
   }
-  /// Strains and section forces, with damping: stress = C (strain + τ strain˙).
+  /// Strains and section forces of an element.
   template <StateScalar T>
-  void strain(Index e, std::span<T const> q, std::span<T const> v, Strained<T>& s) const {
+  void strain(Index e, std::span<T const> q, std::span<T const> v, StrainedSection<T>& s) const {
     Free const& free = free_[std::size_t(e)];
+    s.chord = free.chord;
     place<T>(e, q, s.at, s.gamma);
-    Vec<T, 3> const turn = s.at.turn - free.turn.template cast<T>();
     s.n = s.gamma - free.gamma.template cast<T>();
-    s.m = turn;
+    s.m = s.at.turn - free.turn.template cast<T>();
     s.turning << part<3>(v, 6 * e + 3), part<3>(v, 6 * e + 9);
-    if (damped_) {
+    if (section_.damped())
       s.rate = s.at.R.transpose() * (part<3>(v, 6 * e + 6) - part<3>(v, 6 * e)) * T(1.0 / free.chord);
-      Vec<T, 3> const spin = s.at.spin * s.turning, bend = s.at.bend * s.turning;
-      Vec<T, 3> const slide = s.rate + s.gamma.cross(spin);
-      for (int i = 0; i < 3; ++i) {
-        s.n[i] += slide[i] * time_[i];
-        s.m[i] += bend[i] * time_[3 + i];
-      }
-    }
-    for (int i = 0; i < 3; ++i) {
-      s.n[i] *= stiffness_[i];
-      s.m[i] *= stiffness_[3 + i] / l_;
-    }
-    s.n[0] += pretension_;
+    section_.stress(s);
   }
   /// At a node the node's own section, exactly; else the policy's.
   template <StateScalar T>
@@ -394,11 +326,9 @@ class Lrvf {
   }
 
   BarConstants constants_;
-  double length_, l_, pretension_;
+  double length_, l_;
   Interpolation interpolation_;
-  Vec6 stiffness_;  ///< EA, GA, GA_z, GJ, EI_y, EI
-  Vec6 time_;       ///< of damping [s]
-  bool damped_ = false;
+  LrvfSection section_;
   double sixth_ = 0.0;  ///< Aρ l/6 [kg]
   Vec3 rotary_;         ///< J of a node's half element [kg m²]
   std::vector<Free> free_;
