@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// Spring, damper and preload along an axis that is fixed in the first body: with s how far marker b stands along it
-/// from marker a, a pushes b by −(k s + c ṡ + P) along the axis, and b pushes back. For what slides in a guide, such as
-/// the tensioner of a track.
+/// Spring, damper and preload along an axis that is fixed in the first body. With s the distance of marker b from
+/// marker a along the axis, a pushes b by −(k s + c ṡ + P) along it, and b pushes back. For bodies that slide in a
+/// guide, such as the tensioner of a track.
 struct AxialSpring {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;

@@ -7,9 +7,9 @@
 
 namespace polybody {
 
-/// Where one face of a body hands over to the next, they share a contact: each has its part of the force and of what it
-/// stores. Parts that change store and give back too, which takes the force −(∫N dd) ∂share/∂place on a, and the
-/// opposite on b.
+/// The share of a face in a contact, near the place where one face of a body hands over to the next: each face has its
+/// share of the force and of the potential. A share that varies with the place makes the force −(∫N dd) ∂share/∂place
+/// on a, and the opposite on b.
 template <StateScalar T>
 struct Handover {
   T share = T(1.0);
@@ -37,8 +37,8 @@ Vec<T, 3> shifted(Vec<T, 3> const& p, Vec<T, 3> const& n, T const& x) {
 }
 }  // namespace detail
 
-/// Calls visit(point) for every point where the shapes at frames a and b overlap. `may_touch` is a cheap bound: false
-/// only where they surely do not.
+/// Calls visit(point) for every point where the shapes at frames a and b overlap. `may_touch` is a cheap test before:
+/// it is false only where they cannot overlap.
 template <class G>
 concept ContactGeometry =
     requires(G const geometry, Frame<double> const a, Frame<double> const b, std::string const name) {
@@ -48,8 +48,8 @@ concept ContactGeometry =
       geometry.check(name);
     };
 
-/// Coulomb's friction, regularised: −μ N v/√(v² + v_s²) at the sliding velocity v. What would stick creeps, at less
-/// than v_s.
+/// Coulomb's friction, regularised: −μ N v/√(v² + v_s²) at the sliding velocity v. In place of sticking, bodies creep
+/// at less than v_s.
 struct Friction {
   double coefficient = 0.0;  ///< μ
   double slip_speed = 0.0;   ///< v_s [m/s], positive where μ is
@@ -136,9 +136,9 @@ struct Contact {
   }
 
   /// Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J at each point, J = [1, −ρ×], ρ from the marker to the point, N′ the normal force's
-  /// slope. For F′ the chord of the friction, μ N/√(v² + v_s²), stands in place of its slope: never less than that, and
-  /// so Newton's method does not jump back and forth across v = 0 but comes from one side. What turns n, how N changes
-  /// F_t and handovers are left out.
+  /// slope. F′ is the chord of the friction, μ N/√(v² + v_s²), which is never less than its slope: so Newton's method
+  /// approaches v = 0 from one side and does not jump across. The turning of n, the change of F_t with N, and handovers
+  /// are left out.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
                      Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {

@@ -10,8 +10,8 @@ namespace polybody {
 /// Contacts between many bodies and a few: links of a track and what it runs over, balls and walls.
 ///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
 ///   model.pair_with(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
-/// A law is a force element of two markers, of the many the first, of the few the second. Before, `may_touch(first,
-/// second)` is asked for every pair; it should cost little more than a distance.
+/// A law is a force element of two markers: the first is one of the many, the second one of the few. It is evaluated
+/// only where its `may_touch(first, second)` is true, which should cost little more than a distance.
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 class ContactGroup {
@@ -28,7 +28,7 @@ class ContactGroup {
     std::string name;
   };
 
-  /// How many of the first markers are the many. The model says so.
+  /// The first `count` markers are the many; the model sets this.
   void set_many(Index count) { many_ = count; }
   Index many() const { return many_; }
 

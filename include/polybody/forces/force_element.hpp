@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a force element supplies: wrenches on its markers as a function of their frames. Its tangent comes
-/// from dual numbers.
+/// The concept of a force element: wrenches on its markers as a function of their frames. Its tangent comes from dual
+/// numbers.
 
 #include <array>
 
@@ -21,7 +21,7 @@ concept ForceElement =
       force.check(name);
     };
 
-/// What a force element asks of its second marker, where that is not what it asks of its first (`needs_of_second`).
+/// What the second marker of a force element must observe: `needs_of_second`, or `needs` as for the first.
 template <class F>
   requires requires { F::markers; }
 constexpr Observes needs_of_second() {
@@ -32,9 +32,9 @@ constexpr Observes needs_of_second() {
 }
 
 /// A force element may leave the blocks that couple its markers' bodies out of a time step's matrix by
-/// `static constexpr bool couples_bodies = false`: then Newton sees each body's own stiffness only and iterates over
-/// the rest. For contacts of many candidates: the matrix's pattern, and the order in which it is eliminated, stay as
-/// they are without contact, whichever candidates touch.
+/// `static constexpr bool couples_bodies = false`: then Newton's matrix holds each body's own stiffness only. This is
+/// for contacts of many candidates: the pattern of the matrix and the order of its elimination stay as they are without
+/// contact, whichever candidates touch.
 template <class F>
 constexpr bool couples_bodies() {
   if constexpr (requires { F::couples_bodies; })

@@ -10,7 +10,7 @@ namespace polybody {
 inline constexpr int any_number = -1;
 
 namespace detail {
-/// Stand-ins by which a concept asks.
+/// Arguments for the checks of a concept.
 struct AnyFrame {
   Frame<double> const& operator()(Index marker) const;
 };
@@ -26,8 +26,8 @@ struct AnyVisit {
 ///   markers i, j that
 ///                                may act on each other as they stand: frame(i) is marker i's;
 ///   for_each_candidate(visit)    the same for all pairs that may ever act.
-/// A time step's matrix knows what a pair does to either of its bodies, not what couples the two: which pairs act
-/// changes from step to step, and the matrix's pattern, and the order of its elimination, are to stay.
+/// The matrix of a time step holds the blocks of each body of a pair, not those that couple the two: which pairs act
+/// changes from step to step, while the pattern of the matrix and the order of its elimination stay.
 template <class F>
 concept ForceGroup = requires(F const group, std::string const name) {
   requires F::markers == any_number;
@@ -38,13 +38,13 @@ concept ForceGroup = requires(F const group, std::string const name) {
   group.check(name);
 };
 
-/// What a model may hold among its forces.
+/// A force that a model may hold.
 template <class F>
 concept AppliedForce = ForceElement<F> || ForceGroup<F>;
 
-/// A force element of two markers that gives a symmetric, positive semidefinite stand-in for what it does to each of
-/// them alone, cheaper than the exact gradient by dual numbers and good enough for Newton's method: −(ck ∂w/∂pose + cd
-/// ∂w/∂twist), 6×6, added to `of_a` and `of_b`.
+/// A force element of two markers that approximates its own stiffness at each of them, −(ck ∂w/∂pose + cd ∂w/∂twist),
+/// by symmetric, positive semidefinite 6×6 matrices, added to `of_a` and `of_b`. They are cheaper than the exact
+/// gradient by dual numbers and good enough for Newton's method.
 template <class F>
 concept HasOwnStiffness = ForceElement<F> && F::markers == 2 &&
                           requires(F const force, std::array<Frame<double>, 2> const frames, Mat<double, 6, 6> of_a,

@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// N(d, ḋ) [N]; a slope ck ∂N/∂d + cd ∂N/∂ḋ, never negative; and what it stores, ∫ N(d, 0) dd [J].
+/// N(d, ḋ) [N]; a slope ck ∂N/∂d + cd ∂N/∂ḋ, never negative; and its potential, ∫ N(d, 0) dd [J].
 template <class N>
 concept NormalForce = requires(N const law, double d, double rate, std::string const name) {
   { law.template force<double>(d, rate) } -> std::convertible_to<double>;

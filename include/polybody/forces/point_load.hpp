@@ -51,7 +51,7 @@ struct PointForce {
 };
 
 /// A moment at a marker, `moment` times the law of time. In space a dead moment is not conservative. A marker that
-/// knows its tangent only feels the part across it.
+/// observes only its tangent takes the part across it.
 template <TimeLaw Law = Constant>
 struct PointMoment {
   static constexpr int markers = 1;

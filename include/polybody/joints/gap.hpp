@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Waist 2: what a policy sees of a joint, whatever its geometry is.
+/// Waist 2: the gap, all that a policy knows of a joint.
 
 #include <array>
 
@@ -64,7 +64,7 @@ Relative<T> relative(Frame<T> const& a, Frame<T> const& b) {
           a.A.transpose() * (b.w - a.w)};
 }
 
-/// Turns two frames into a gap: what a policy measures.
+/// A function from two frames to a gap, which a policy answers.
 template <class G>
 concept Measure = requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
   requires 1 <= G::rows&& G::rows <= 6;
@@ -106,7 +106,7 @@ constexpr int free_slides(Freedoms const& free) { return int(free[0]) + int(free
 constexpr int free_turns(Freedoms const& free) { return int(free[3]) + int(free[4]) + int(free[5]); }
 }  // namespace detail
 
-/// What a geometry asks of its second marker, where that is less than of its first (`needs_of_second`).
+/// What the second marker of a geometry must observe: `needs_of_second`, or `needs` as for the first.
 template <Measure G>
 constexpr Observes needs_of_second() {
   if constexpr (requires { G::needs_of_second; })

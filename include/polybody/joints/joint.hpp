@@ -8,7 +8,7 @@
 namespace polybody {
 
 namespace detail {
-/// What policy P measures of geometry G: its rows, unless P names something else.
+/// The measure that policy P takes of geometry G: its rows, unless P names another one.
 template <class G, class P>
 constexpr auto measured_by() {
   if constexpr (requires { typename P::template Measured<G>; })
@@ -18,16 +18,16 @@ constexpr auto measured_by() {
 }
 }  // namespace detail
 
-/// What P measures of G is there: a bushing measures what G says that it does not leave free.
+/// G has what P measures: a bushing measures the directions that G does not name as free.
 template <class P, class G>
 concept MeasuresGeometry = NamesFreedoms<G> || !requires { typename P::template Measured<G>; };
 
-/// P brings rows; or it answers, by a force, as many as it measures of G.
+/// P adds rows, or answers as many components by a force as it measures of G.
 template <class P, class G>
 concept AnswersGeometry =
     AddsRows<P> || (MeasuresGeometry<P, G> && AnswersRows<P, decltype(detail::measured_by<G, P>())::type::rows>);
 
-/// P brings rows; or G has a gap in each of its rows, which a force can answer.
+/// P adds rows, or G has a gap in each of its rows, which a force can answer.
 template <class P, class G>
 concept HasGapToAnswer = AddsRows<P> || velocity_rows<G>() == 0;
 
@@ -49,7 +49,7 @@ struct Joint {
   G geometry = {};
   P policy = {};
 
-  /// What gives the gap that the policy answers: the geometry itself for most.
+  /// The measure whose gap the policy answers: the geometry itself for most policies.
   decltype(auto) measure() const {
     if constexpr (std::is_same_v<Measured, G>)
       return (geometry);

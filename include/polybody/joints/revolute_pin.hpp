@@ -5,7 +5,7 @@ namespace polybody {
 
 /// The pin of thesis Eq. 3.8, between two points of the joint axis that stand a distance L apart, 5 rows
 ///   g = [a₁·b₃; a₂·b₃; a₁·d; a₂·d; d·d − k_θ],  d = r_b − r_a,  k_θ = L².
-/// The last row holds d along the axis, and nothing where the points coincide (rank 4), so L > 0 is asked for. The
+/// The last row holds d along the axis. For L = 0 it would hold nothing (rank 4), so L must be positive. The
 /// motions are those of a Revolute [thesis §3.5.1]; its force along the axis is 2 L λ₅.
 struct RevolutePin {
   static constexpr char const* name = "RevolutePin";

@@ -54,7 +54,7 @@ struct BlockSlots {
 template <class S>
 concept TakesBlocks = requires(S target, BlockView const& b) { target.add(Index(0), Index(0), b); };
 
-/// A receiver that is told of a block of zeros without its numbers.
+/// A receiver that takes a block of zeros without its numbers.
 template <class S>
 concept SkipsZeros = requires(S target) { target.skip(Index(0), Index(0), Index(0), Index(0)); };
 
@@ -87,7 +87,7 @@ class BlockSink {
     int const end = *++slots_.first;
     for (int k = slots_.first[-1]; k < end; ++k) slots_.pieces[k].add(b);
   }
-  /// A block of zeros: what has its place in the matrix but does not act.
+  /// A block of zeros: it has its place in the matrix but does not act.
   void skip(Index row, Index col, Index rows, Index cols) {
     if (slots_.first)
       ++slots_.first;

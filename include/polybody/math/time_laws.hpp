@@ -38,7 +38,7 @@ void check_law(Law const& law, std::string const& what) {
   if constexpr (requires { law.check(what); }) law.check(what);
 }
 
-/// The corners of a law, none for one that does not tell.
+/// The corners of a law; none for a law without `corners()`.
 template <TimeLaw Law>
 std::vector<double> corners_of(Law const& law) {
   if constexpr (HasCorners<Law>)
@@ -47,7 +47,7 @@ std::vector<double> corners_of(Law const& law) {
     return {};
 }
 
-/// For a law that moves a body. \throws InvalidInput as `check_law`, and where its value jumps.
+/// Checks a law that moves a body. \throws InvalidInput as `check_law`, and where its value jumps.
 template <TimeLaw Law>
 void check_drive(Law const& law, std::string const& what) {
   check_law(law, what);
@@ -94,7 +94,7 @@ inline void check_ramp(double target, double duration, double start, std::string
 /// 0 until `start`, then linear to `target` in `duration`, constant afterwards. The rate jumps at both
 /// ends; the value at a corner is that of the piece that begins there. With a `rounding` w each corner is a
 /// parabola instead, from w/2 before to w/2 after it: value = slope s²/(2w), s = t − corner + w/2. Then only
-/// the acceleration jumps, and what follows both corners has the same value and integral.
+/// the acceleration jumps; after both corners value and integral are those without rounding.
 struct Ramp {
   Required<double> target;
   Required<double> duration;

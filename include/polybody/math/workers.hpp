@@ -14,10 +14,10 @@
 
 namespace polybody {
 
-/// The body of a loop over [begin, end), whatever its type: what shares a loop is compiled once.
+/// The body of a loop over [begin, end). Its type is erased, so that `Workers` are compiled once.
 class LoopBody {
  public:
-  /// Of f, which must outlive it.
+  /// Calls f, which must outlive this.
   template <class F>
     requires(!std::same_as<std::remove_cvref_t<F>, LoopBody>)
   explicit LoopBody(F&& f)

@@ -6,9 +6,9 @@
 
 namespace polybody {
 
-/// (3×3) x from the link's rear pin to its front pin, y along its pins, z towards the wheels. What tells a full frame
-/// has its own; a cable tells its tangent only, and its y is taken across that, as near as may be to `lateral`, the
-/// axle of what it touches.
+/// (3×3) x from the link's rear pin to its front pin, y along its pins, z towards the wheels. A marker with a full
+/// frame has these axes itself. A cable has its tangent only: its y is the direction across the tangent that is nearest
+/// to `lateral`, the axle of the body that it touches.
 template <Observes observed, StateScalar T>
 Mat<T, 3, 3> link_axes(Frame<T> const& link, Vec<T, 3> const& lateral) {
   if constexpr (observed == Observes::frame) {

@@ -19,8 +19,7 @@ struct LinkOnGround {
   static constexpr Observes needs_of_second = Observes::frame;
 
   G terrain = {};
-  /// n × (3) in the link's axes [m]. Of a cable, which does not tell its sides, y counts for nothing and z is away from
-  /// the ground.
+  /// n × (3) in the link's axes [m]. A cable has no roll: there y is ignored and z points away from the ground.
   std::vector<Vec3> pad = {};
 
   void check(std::string const& name) const {

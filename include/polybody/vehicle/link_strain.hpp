@@ -14,8 +14,8 @@
 
 namespace polybody::m113 {
 
-/// Where strain is asked for, from the rear pin [m]: at two Gauss points of either half, so that the mean of all is
-/// that of the link, change of length over length, though contact forces in the middle make the axial force jump there.
+/// Places where strain is taken, from the rear pin [m]: two Gauss points of either half. The mean over them is the
+/// change of the link's length over its length, also where contact forces make the axial force jump in the middle.
 inline constexpr std::array<double, 4> strain_places{
     pitch * (0.25 - 0.14433756729740644), pitch * (0.25 + 0.14433756729740644), pitch * (0.75 - 0.14433756729740644),
     pitch * (0.75 + 0.14433756729740644)};
@@ -28,7 +28,7 @@ double link_strain(M const& model, State const& x, BodyHandle<B> const& link) {
   return sum / double(strain_places.size());
 }
 
-/// … of a rigid link at each time of its record.
+/// Mean axial strain of a rigid link at each time of its record.
 inline std::vector<double> link_strain(DecoupledStress const& stress) {
   std::vector<double> out(stress.times().size(), 0.0);
   for (double const s : strain_places) {
@@ -38,13 +38,12 @@ inline std::vector<double> link_strain(DecoupledStress const& stress) {
   return out;
 }
 
-/// What a moment M_y about the pins' direction adds in the fibre towards the wheels [1/(N m)].
+/// Axial strain in the fibre towards the wheels by a unit moment M_y about the pins' direction [1/(N m)].
 inline double bending_by_moment() { return 0.5 * cable_height / *constants(link_bar()).EI_y; }
 
-/// What bending adds to the axial strain in the fibre towards the wheels, just ahead of the middle, where contacts
-/// push. One element of third degree shows half of what a force there does, one of linear interpolation nothing; two
-/// elements have a node there, and show it. A cable does not know where the wheels are: `lateral`, the vehicle's y
-/// axis, tells (link_axes.hpp).
+/// Axial strain by bending in the fibre towards the wheels, just ahead of the middle, where contacts push. One cubic
+/// element shows half of the effect of a force there, one linear element none; two elements have a node there and show
+/// it in full. A cable needs `lateral`, the vehicle's y axis, to know the side of the wheels (link_axes.hpp).
 template <class M, class B>
 double link_bending(M const& model, State const& x, BodyHandle<B> const& link, Vec3 const& lateral) {
   auto const middle = link.at(0.5 * pitch);
@@ -53,7 +52,7 @@ double link_bending(M const& model, State const& x, BodyHandle<B> const& link, V
   return bending_by_moment() * moment.dot(link_axes<B::observes>(section, lateral).col(1));
 }
 
-/// … of a rigid link at each time of its record.
+/// Bending strain of a rigid link at each time of its record.
 inline std::vector<double> link_bending(DecoupledStress const& stress) {
   std::vector<double> out;
   for (Vec6 const& n : stress.section_forces(0.5 * pitch)) out.push_back(bending_by_moment() * n[4]);

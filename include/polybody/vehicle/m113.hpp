@@ -42,7 +42,7 @@ struct Solid {
 struct Solids {
   Solid chassis, sprocket, idler, wheel, arm, link, tensioner;
 
-  /// Of the whole vehicle [kg].
+  /// Mass of the whole vehicle [kg].
   constexpr double total() const {
     double const side = sprocket.mass + idler.mass + tensioner.mass + 5.0 * (wheel.mass + arm.mass) + 64.0 * link.mass;
     return chassis.mass + 2.0 * side;
@@ -171,7 +171,7 @@ inline constexpr double pin_arm = half_width;        ///< [m]  [A]
 // ---------------------------------------------------------------------------------------------------------------
 // contact
 
-/// Of each contact point  [T3.2].
+/// Parameters of one contact point  [T3.2].
 struct ContactNumbers {
   double stiffness;  ///< [N/m]
   double damping;    ///< [N s/m]

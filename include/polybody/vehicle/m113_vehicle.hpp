@@ -48,7 +48,7 @@ inline PenaltyPerRow<5> penalty_pin(double stiffness) {
   rows << 1.0, 1.0, 1.0, pin_arm * pin_arm, pin_arm * pin_arm;
   return {.stiffness = Vec<double, 5>(stiffness * rows), .damping = Vec<double, 5>(pin_damping * rows)};
 }
-/// … and as bushings, whose third axis is the pin's.
+/// Pins as bushings of `stiffness` [N/m], whose third axis is the pin's.
 inline Bushing bushing_pin(double stiffness) {
   Vec3 const along(1.0, 1.0, 1.0), about(pin_arm * pin_arm, pin_arm * pin_arm, 0.0);
   return {.stiffness = Bushing::diagonal(stiffness * along, stiffness * about),
@@ -57,12 +57,11 @@ inline Bushing bushing_pin(double stiffness) {
 
 /// How a track of ideal pins closes. Pins about parallel axes around a loop have three rows too many.
 enum class Closure {
-  stiff_spring,  ///< as thesis Table 3.4 counts: the 64th pin is none of the constraints, but 10⁹ N/m between two
-                 ///< points
-  in_plane       ///< two rows hold its points together across the pin's axis: what the loop needs and no more
+  stiff_spring,  ///< the 64th pin is no constraint but 10⁹ N/m between two points, as thesis Table 3.4 counts
+  in_plane       ///< two rows hold its points together across the pin's axis: the loop needs no more
 };
 
-/// What may be chosen about the vehicle, beside the formulation of its tracks. The defaults are those of m113.hpp.
+/// Options of the vehicle besides the formulation of its tracks. The defaults are those of m113.hpp.
 struct VehicleOptions {
   Solids masses = thesis;
   bool suspension = true;          ///< else the arms are welded to the chassis, without springs

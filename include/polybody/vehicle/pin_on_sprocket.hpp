@@ -23,9 +23,9 @@ struct SprocketProfile {
 
   double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / teeth); }
   double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }
-  /// Of a pin that just touches a tip: it is outside from here on.
+  /// Distance from the axle of a pin that just touches a tip; a pin further away touches nothing [m].
   double outer_radius() const { return tip_radius + pin_radius; }
-  /// (2) Where flank and tip circle meet, radial and tangential, from the middle of the valley.
+  /// (2) Point where flank and tip circle meet, radial and tangential, seen from the middle of the valley [m].
   Vec2 corner() const {
     Vec2 const foot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank)),
         up(std::sin(flank), std::cos(flank));

@@ -10,9 +10,9 @@
 
 namespace polybody::m113 {
 
-/// Where tracks of rigid links come to rest on the held vehicle, over wheels that just touch the ground: the chain of
-/// straight runs of `wrap_track` knows no ground, and hangs where it is long. Found by dynamic relaxation with kinetic
-/// damping, without friction: the track is let go, and stopped where its kinetic energy is largest, again and again
+/// Rest position of tracks of rigid links on the held vehicle, whose wheels just touch the ground. `wrap_track` lays
+/// straight runs and knows no ground; a long run sags. The rest position is found by dynamic relaxation with kinetic
+/// damping, without friction: the track is released and stopped at each maximum of its kinetic energy, until it rests
 /// [Day 1965; Barnes 1999].
 /// \throws InvalidInput, NewtonStalled; Error where it does not come to rest.
 inline TrackStart settled_track(VehicleOptions options = {}) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What decides how a track lies: its links, the circles that it goes around, and the tensioner.
+/// The layout of a track: its links, the circles that it goes around, and the tensioner.
 /// Not in polybody.hpp: of use to vehicles only.
 ///
 /// Everything lies in a plane with x forward and z up; y points left, away from the reader who sees x to the right. The
@@ -19,7 +19,7 @@ namespace polybody {
 /// Whether the track goes around a circle, which its inner faces touch, or passes by it with its outer faces.
 enum class TrackSide { inside, outside };
 
-/// A wheel, idler or roller as the track sees it.
+/// A wheel, idler or roller: a circle in the plane of the track.
 struct TrackCircle {
   std::string name;
   Vec2 centre;              ///< (2) [m]

@@ -7,7 +7,7 @@
 /// sit on the sprocket lie on the corners of its pitch polygon, of radius p / (2 sin(π/N)). Away from it each link
 /// turns inwards at its pin as far as the circles let it: it lies on a line that touches the next circle of radius R +
 /// h (its face touches the rim), or that leads to the first seat of the sprocket. Links of one straight run share their
-/// line. So the chain is what a string around the same circles is, with corners for curves.
+/// line. The chain is a taut string around the same circles, with corners in place of arcs.
 
 #include <algorithm>
 #include <limits>
@@ -57,8 +57,8 @@ inline int track_start(TrackLayout const& layout) {
   return int(std::lround(angle * layout.sprocket.teeth / (2.0 * std::numbers::pi)));
 }
 
-/// Of the seats before the first one covered by the walk, the one that the track meets: all others are to the right of
-/// it.
+/// The seat that the track meets among those before the first one covered by the walk: all others are to the right of
+/// the line to it.
 inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pin, Vec2 const& heading,
                             TrackSight& sight) {
   int first = start;
@@ -75,11 +75,11 @@ inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pi
   return first;
 }
 
-/// What the link behind the last pin of `walk` runs to: the index of a circle at or after `at`; −1 for the next seat,
+/// Target of the link behind the last pin of `walk`: the index of a circle at or after `at`; −1 for the next seat,
 /// while the walk has not left the sprocket; the number of circles for the seat that ends it. Sets `heading` to the
 /// link's direction. Circles inside the track bound a link's turn to the right, those outside bound it to the left.
-/// They are looked at in their order until a bound crosses the other one: then the link runs to the circle that set the
-/// other one. If none crosses, as without circles outside, it runs to what lies furthest to the left.
+/// They are visited in their order until one bound crosses the other: then the link runs to the circle that set the
+/// other one. If no bounds cross, as without circles outside, it runs to the target furthest to the left.
 inline int track_target(TrackLayout const& layout, int at, Vec2& heading, TrackWalk& walk) {
   struct Bound {
     TrackSight sight;

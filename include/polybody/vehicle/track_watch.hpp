@@ -115,8 +115,8 @@ TrackFault track_fault(V const& vehicle, System const& system, State const& x, S
   return worst;
 }
 
-/// A sentence where a step is longer than a sixth of the time in which a tooth passes, 2π/(N ω): such a step sees teeth
-/// as noise. Empty where it is not. \param speed ω, the sprocket's fastest [rad/s]
+/// A warning for a step longer than a sixth of the time in which a tooth passes, 2π/(N ω): such a step does not resolve
+/// the teeth. Empty for a shorter step. \param speed ω, the sprocket's fastest [rad/s]
 inline std::string drive_warning(double speed, double step) {
   double const passing = 2.0 * std::numbers::pi / (teeth * std::abs(speed));
   if (step <= passing / 6.0) return {};

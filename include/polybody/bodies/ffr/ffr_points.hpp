@@ -58,7 +58,7 @@ class FfrPoints {
   Structure const& structure() const { return s_; }
   MatX const& shapes() const { return shapes_; }
 
-  /// Of the first bar [m]. \throws InvalidInput without bars.
+  /// Length of the first bar [m]. \throws InvalidInput without bars.
   double length() const {
     if (s_.beams.empty()) throw InvalidInput("Ffr: only a body made of bars has a length.");
     return s_.bar_lengths.front();

@@ -64,7 +64,7 @@ class Ffr : public AddingCoordinates {
 
   FfrIntegrals const& integrals() const { return i_; }
   Index deformations() const { return i_.size(); }
-  /// Of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
+  /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
   Point at(double s, double y = 0.0, Index bar = 0) const { return made().at(s, y, 0.0, bar); }

@@ -31,7 +31,7 @@ class NodeChain : public AddingCoordinates {
   Index speeds() const { return coordinates(); }
   Index elements() const { return n_; }
   Index first_column(Index e) const { return e * columns; }
-  /// Of a point, which knows its element.
+  /// First column of the element that a point is on.
   template <class P>
     requires requires(P p) { p.element; }
   Index first_column(P const& p) const {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What an element's strains say of themselves, for `StrainGroup`.
+/// Concepts of the strains that `StrainGroup` takes.
 
 #include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/strain_map.hpp>
@@ -29,7 +29,7 @@ concept StrainFunctions = requires(Vec<double, L::parameters> const p, Vec<doubl
   requires QuadraticStrains<L> || requires { L::template add_hessian<double>(p, e, h); };  // h += Σ n_i H_i for given n
 };
 
-/// … that also know their parameters along the axis of a bar, and their stiffness.
+/// Strains that also know their parameters along the axis of a bar, their stiffness and their damping.
 template <class L>
 concept StrainLaw = StrainFunctions<L> && requires(BarConstants const c, Damping const d) {
   { L::map(0.5, 1.0) } -> std::convertible_to<typename StrainMap<L>::Factors>;  // P's factors at ξ, length l

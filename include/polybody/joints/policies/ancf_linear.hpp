@@ -3,11 +3,11 @@
 
 namespace polybody {
 
-/// Linear joint of ANCF bodies: the geometry is said in positions and position gradients, which are linear in the
+/// Linear joint of ANCF bodies: the geometry is stated in positions and position gradients, which are linear in the
 /// coordinates,
 ///   S_a e_a − S_b e_b = c,
 /// so that dependent coordinates leave the equations before the run: the mass matrix stays constant and there is no
-/// multiplier; what the joint holds is worked out afterwards from the balance of each element [thesis §3.5.4; Shabana,
+/// multiplier; reactions are computed afterwards from the balance of each element [thesis §3.5.4; Shabana,
 /// Hamed, Mohamed, Jayakumar & Letherwood 2012]. Both markers belong to ANCF bodies or the ground.
 ///   Spherical (in the plane Revolute):  r equal.
 ///   Revolute about n:  r equal and r_α equal, α the material line along n: six equations between bodies with all
@@ -25,7 +25,7 @@ struct AncfLinear {
 template <class P>
 concept LinearInCoordinates = Eliminates<P> && requires { requires P::linear; };
 
-/// What such rows can say: that points coincide, and axes or whole frames with them.
+/// A geometry that such rows can state: points coincide, and axes or whole frames with them.
 template <class G>
 concept LinearGeometry = NamesFreedoms<G> && detail::free_slides(G::free) == 0 && detail::free_turns(G::free) != 2;
 

@@ -16,11 +16,11 @@ struct Reduced {};
 struct ArticulatedBody {};
 }  // namespace recursive
 
-/// Joint coordinates: body b is carried by body a, its pose is a's pose followed by the motion that the joint leaves,
-/// and a time step knows the coordinates of this motion alone. The joint's rows hold by construction; what they would
-/// have carried is worked out afterwards, so that multipliers and reactions are there as for `Constraint`. Joints form
-/// trees from the ground, or from a free body; a joint that closes a loop takes another policy. For rigid bodies
-/// [Shabana 2020, §3; thesis §3.3.2].
+/// Joint coordinates: body b is carried by body a, its pose is a's pose followed by the motion that the joint leaves
+/// free, and the unknowns of a time step are the coordinates of this motion alone. The joint's rows hold by
+/// construction; their multipliers and reactions are computed afterwards, as for `Constraint`. Joints form trees from
+/// the ground, or from a free body; a joint that closes a loop takes another policy. For rigid bodies [Shabana 2020,
+/// §3; thesis §3.3.2].
 template <class Path>
 struct RecursiveBy {
   static constexpr char const* name = "Recursive";
