@@ -127,7 +127,9 @@ TEST(Handles, GiveABodyThatMayBeAddedAgain) {
   for (int i = 0; i < 8; ++i) model.add(first.body());
   EXPECT_EQ(model.body_count(), 9);
   model.for_each_body([&](auto const& e) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(e.body)>, Ffr>) EXPECT_EQ(e.body.length(), 1.0);
+    if constexpr (std::is_same_v<std::decay_t<decltype(e.body)>, Ffr>) {
+      EXPECT_EQ(e.body.length(), 1.0);
+    }
   });
 }
 
