@@ -2,6 +2,13 @@
 /// \file
 /// polybody: one model, every formulation. Includes everything.
 
+// The headers that refuse wrong pairings come first: a compiler's message begins with what includes what.
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/relative_coordinates.hpp>
+#include <polybody/system/model.hpp>
+
+#include <polybody/integrators/system_for.hpp>
+
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
@@ -44,7 +51,6 @@
 #include <polybody/joints/cylindrical.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/gear.hpp>
-#include <polybody/joints/joint.hpp>
 #include <polybody/joints/knife_edge.hpp>
 #include <polybody/joints/orientation.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
@@ -62,7 +68,6 @@
 #include <polybody/joints/primitives.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/rack_and_pinion.hpp>
-#include <polybody/joints/relative_coordinates.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/revolute_pin.hpp>
 #include <polybody/joints/rolling_disc.hpp>

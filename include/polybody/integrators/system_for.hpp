@@ -27,7 +27,8 @@ concept FindsSecants = !contains(entries_of<I>(), Entries::secants) || OffersSec
 
 /// I steps M.
 template <class I, class M>
-concept StepsModel = KeepsToRows<I, M> && FindsConstantMass<I, M> && SolvesItsStages<I, M> && FindsSecants<I, M>;
+concept StepsModel =
+    KeepsToRows<I, M> && FindsConstantMass<I, M> && SolvesItsBodies<M> && SolvesItsStages<I, M> && FindsSecants<I, M>;
 
 /// What integrator I steps of `model`, with the entries that it calls and `more`. The model must outlive it.
 template <class I, Entries more = Entries::motion, class M>
@@ -36,15 +37,33 @@ System system_for(M const& model) {
                 "This explicit integrator has no stabilisation, but joints with the Constraint policy add rows. Use "
                 "it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
   static_assert(FindsConstantMass<I, M>, "This integrator asks for bodies of constant mass matrix. Use RungeKutta4.");
+  static_assert(SolvesItsBodies<M>,
+                "recursive::ArticulatedBody is for models of rigid bodies. Take recursive::Augmented.");
   static_assert(SolvesItsStages<I, M>,
                 "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
                 "step together. Take recursive::Augmented.");
-  constexpr bool secants = contains(entries_of<I>(), Entries::secants);
-  static_assert(!secants || SteppedWhole<M>,
-                "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of "
-                "AncfLinear, say.");
-  if constexpr (StepsModel<I, M> || (secants && SteppedWhole<M>))
-    return stepped_system(model, with < entries_of<I>() | more >);
+  if constexpr (contains(entries_of<I>(), Entries::secants)) {
+    using Offer = SecantOffer<M>;
+    static_assert(SteppedWhole<M>,
+                  "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of "
+                  "AncfLinear, say.");
+    static_assert(
+        Offer::bodies,
+        "A step that conserves energy asks for bodies of constant mass whose coordinates form a vector space and "
+        "which give their mean force over a step: cables, ANCF beams, planar rigid bodies and beams. For others use "
+        "GeneralizedAlpha.");
+    static_assert(Offer::policies || !SteppedWhole<M>,
+                  "A step that conserves energy takes joints with Constraint, Penalty or Bushing. "
+                  "For others use GeneralizedAlpha.");
+    static_assert(Offer::positions,
+                  "A step that conserves energy knows rows by the change of their gap, and RollingDisc and KnifeEdge "
+                  "have none. Use GeneralizedAlpha.");
+    static_assert(Offer::elements, "A step that conserves energy takes no force groups. Use GeneralizedAlpha.");
+    static_assert(Offer::potentials,
+                  "A step that conserves energy asks a force's potential on secants: let potential(frames, t) be a "
+                  "template on the scalar of the frames.");
+  }
+  if constexpr (StepsModel<I, M>) return stepped_system(model, with < entries_of<I>() | more >);
 }
 
 }  // namespace polybody

@@ -316,6 +316,10 @@ constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = {
 
 }  // namespace detail
 
+/// Joints of M that are solved for body by body are in a model of rigid bodies.
+template <class M>
+concept SolvesItsBodies = !std::is_same_v<typename M::Solution, recursive::ArticulatedBody> || M::all_rigid;
+
 /// The coordinates of a time step of `model`; none where its joints eliminate nothing.
 /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
 /// other.
@@ -323,7 +327,7 @@ template <class M>
 Coordinates coordinates_of(M const& model) {
   if constexpr (M::eliminates) {
     using Solution = typename M::Solution;
-    static_assert(!std::is_same_v<Solution, recursive::ArticulatedBody> || M::all_rigid,
+    static_assert(SolvesItsBodies<M>,
                   "recursive::ArticulatedBody is for models of rigid bodies. Take recursive::Augmented.");
     using Reduced = detail::ReducedCoordinates<Solution>;
     auto self = std::make_shared<Reduced>(model);

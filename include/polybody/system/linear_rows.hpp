@@ -64,11 +64,8 @@ struct LinearPointOf {
 };
 using LinearPoint = LinearPointOf<double>;
 
-template <class B, class T = double>
+template <HasLinearPoints B, class T = double>
 LinearPointOf<T> linear_point(B const& body, typename B::Point const& p) {
-  static_assert(HasLinearPoints<B>,
-                "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
-                "are, Rigid, Ffr and Lrvf in space are not. Use Constraint there.");
   LinearPointOf<T> out;
   out.size = B::world == World::plane ? 2 : 3;
   std::vector<double> reference(std::size_t(body.coordinates()));
@@ -113,14 +110,12 @@ void append_rows(LinearRows& rows, MatXOf<T> const& a, MatXOf<T> const& b, VecXO
 
 /// The rows of geometry G with its third axis along n between two linear points. \throws InvalidInput with the joint's
 /// name.
-template <class G, class T>
+template <LinearGeometry G, class T>
 void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std::type_identity_t<Vec<T, 3>> const& n,
                       LinearRows& rows) {
   using V = Vec<T, 3>;
   using Vx = VecXOf<T>;
   using Mx = MatXOf<T>;
-  static_assert(LinearGeometry<G>,
-                "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
   constexpr int turns = free_turns(G::free);
   int const size = b.size;
   rows.a.map.resize(0, a.columns);

@@ -90,6 +90,12 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                   "Recursive makes joint coordinates between rigid bodies and the ground: Rigid<> in space, "
                   "planar::Rigid in the plane. Use another policy for joints of other bodies.");
     static_assert(
+        !LinearInCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
+        "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
+        "are, Rigid, Ffr and Lrvf in space are not. Use Constraint there.");
+    static_assert(HasLinearRows<P, G>,
+                  "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
+    static_assert(
         TellsEnoughFirst<J, A> && TellsEnoughSecond<J, B>,
         "This joint needs more than the marker tells (a full frame, say, of a body that only "
         "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "

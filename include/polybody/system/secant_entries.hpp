@@ -26,14 +26,26 @@ concept HasSecantPotential =
 
 namespace detail {
 
-/// What a model offers a step that conserves energy.
-template <class BodyPools, class JointPools>
-struct SecantOffer;
-template <class... Bs, class... Js>
-struct SecantOffer<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>> {
+/// A force that stores energy gives it on secants, too; a group of forces is judged by itself.
+template <class F>
+constexpr bool gives_secants() {
+  if constexpr (ForceGroup<F>)
+    return true;
+  else
+    return HasSecantPotential<F> || !HasPotential<F>;
+}
+
+template <class BodyPools, class JointPools, class ForcePools>
+struct OfferOfPools;
+template <class... Bs, class... Js, class... Fs>
+struct OfferOfPools<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>,
+                    std::tuple<std::vector<ForceEntry<Fs>>...>> {
   static constexpr bool bodies = (OffersStepMeans<Bs> && ...);
   static constexpr bool policies = (OffersMeanMultiplier<typename Js::PolicyType> && ...);
   static constexpr bool positions = ((velocity_rows<typename Js::Geometry>() == 0) && ...);
+  static constexpr bool elements = !(ForceGroup<Fs> || ...);
+  static constexpr bool potentials = (gives_secants<Fs>() && ...);
+  static constexpr bool all = bodies && policies && positions && elements && potentials;
 };
 
 /// Place and axes of a marker (r, then A column by column) at both ends, and their slopes by its columns.
@@ -59,18 +71,6 @@ template <class BodyPools, class JointPools>
 struct SecantsBeside;
 template <class... Bs, class... Js>
 struct SecantsBeside<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>> {
-  using Offer = SecantOffer<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>>;
-  static_assert(
-      Offer::bodies,
-      "A step that conserves energy asks for bodies of constant mass whose coordinates form a vector space and "
-      "which give their mean force over a step: cables, ANCF beams, planar rigid bodies and beams. For others use "
-      "GeneralizedAlpha.");
-  static_assert(Offer::policies,
-                "A step that conserves energy takes joints with Constraint, Penalty or Bushing. "
-                "For others use GeneralizedAlpha.");
-  static_assert(Offer::positions,
-                "A step that conserves energy knows rows by the change of their gap, and RollingDisc and KnifeEdge "
-                "have none. Use GeneralizedAlpha.");
   using Scratch = std::tuple<SecantScratch<Bs>...>;
   using Gaps = std::tuple<std::vector<GapSecant<Js::rows>>...>;
 };
@@ -100,16 +100,23 @@ inline double pulled(MarkerSecant const& m, double const* by_frame, Index column
 template <class M>
 concept SteppedWhole = !M::eliminates;
 
+/// What model M offers a step that conserves energy.
+template <class M>
+using SecantOffer = detail::OfferOfPools<typename M::BodyPools, typename M::JointPools, typename M::ForcePools>;
+
 /// What a step that conserves energy asks of a model.
 template <class M>
-concept OffersSecants = SteppedWhole<M> && detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::bodies &&
-                        detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::policies &&
-                        detail::SecantOffer<typename M::BodyPools, typename M::JointPools>::positions;
+concept OffersSecants = SteppedWhole<M> && SecantOffer<M>::all;
 
 namespace detail {
 
 template <class M>
 class TypedSecants {
+  static_assert(
+      OffersSecants<M>,
+      "This model does not offer what a step that conserves energy asks for: system_for<EnergyMomentum>(model) "
+      "says what it is.");
+
  public:
   static constexpr SecantEntries entries() {
     return {.make = [](void const* m, Data<double> const& data) -> std::shared_ptr<void> {
@@ -341,10 +348,6 @@ class TypedSecants {
   void add_force(Data<double> const& data, Entry const& e, VecX& r) const {
     using F = std::decay_t<decltype(e.force)>;
     constexpr int n = F::markers;
-    static_assert(!ForceGroup<F>, "A step that conserves energy takes no force groups. Use GeneralizedAlpha.");
-    static_assert(HasSecantPotential<F> || !HasPotential<F>,
-                  "A step that conserves energy asks a force's potential on secants: let potential(frames, t) be a "
-                  "template on the scalar of the frames.");
     auto frames = frames_of(e, data);
     auto wrenches = e.force.template wrenches<double>(frames, middle_time());
     if constexpr (HasSecantPotential<F>) {

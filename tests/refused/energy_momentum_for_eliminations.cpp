@@ -1,0 +1,10 @@
+// refused: asks for joints that eliminate nothing
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/integrators/energy_momentum.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/run/simulate.hpp>
+
+using namespace polybody;
+using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Recursive>>>;
+
+void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 1e-3}); }

@@ -1,0 +1,11 @@
+// refused: The recursive joints of one model are solved for in one way
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/system/model.hpp>
+
+using namespace polybody;
+
+Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, RecursiveBy<recursive::ArticulatedBody>>,
+                                    Joint<planar::Prismatic, RecursiveBy<recursive::Reduced>>>>
+    model;

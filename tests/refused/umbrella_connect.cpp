@@ -1,0 +1,10 @@
+// refused: A joint of the plane joins planar bodies
+// With the umbrella a compiler's message may begin with a long list of what includes what.
+#include <polybody/polybody.hpp>
+
+using namespace polybody;
+using Ball = Joint<Spherical, Constraint>;
+
+void connect(Model<Bodies<planar::Rigid>, Joints<Ball>>& model, BodyHandle<planar::Rigid> const& body) {
+  model.connect(Ball{}, model.ground().at({0, 0, 0}), body.at({0, 0}));
+}

@@ -1,0 +1,4 @@
+// refused: there is no gap that a force could
+#include <polybody/polybody.hpp>
+
+polybody::Joint<polybody::KnifeEdge, polybody::Penalty> const joint{{}, {.stiffness = 1e7, .damping = 1e3}};
