@@ -31,6 +31,13 @@ constexpr Observes needs_of_second() {
     return F::needs;
 }
 
+/// The markers Ms of a force element F, in their order, tell what it asks of them.
+template <class F, class... Ms>
+constexpr bool tell_enough() {
+  int k = 0;
+  return ((Ms::observes >= (k++ == 1 ? needs_of_second<F>() : F::needs)) && ...);
+}
+
 /// A force element may leave the blocks that couple its markers' bodies out of a time step's matrix by
 /// `static constexpr bool couples_bodies = false`: then Newton's matrix holds each body's own stiffness only. This is
 /// for contacts of many candidates: the pattern of the matrix and the order of its elimination stay as they are without

@@ -150,9 +150,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
     static_assert(
-        []<std::size_t... k>(std::index_sequence<k...>) {
-          return ((Ms::observes >= (k == 1 ? needs_of_second<F>() : F::needs)) && ...);
-        }(std::make_index_sequence<sizeof...(Ms)>{}),
+        tell_enough<F, Ms...>(),
         "This force needs more than the marker tells; a moment needs a marker with a frame or a tangent, a plane one "
         "with a frame.");
     auto& pool = std::get<std::vector<detail::ForceEntry<F>>>(forces_);
