@@ -2,7 +2,7 @@
 
 floors     a header includes only its own floor or a lower one
 words      no #define and no `virtual` in the code (comments may use the words)
-length     no header above 410 lines; reports the median and the 90 % line
+length     no header above 380 lines; reports the median and the 90 % line
 umbrella   polybody.hpp reaches every header, but for those that say why not
 functions  no function above 60 lines, none with more than 6 parameters
 waist      integrators, solvers, analyses and io take the mechanics through its interface: they name no pool of a model, no
@@ -42,7 +42,7 @@ FLOORS = {
     "testing": 12,
     "": 13,  # polybody.hpp itself
 }
-MAX_LINES = 410
+MAX_LINES = 380
 MAX_FUNCTION_LINES = 60
 MAX_PARAMETERS = 6
 MAX_SYSTEM_FUNCTIONS = 25

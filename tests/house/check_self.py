@@ -48,8 +48,8 @@ class Check(unittest.TestCase):
         self.assertEqual(len(self.found("words", math__so3="struct A { virtual void f(); };")), 1)
 
     def test_length(self):
-        self.assertEqual(len(self.found("length", math__so3="//\n" * 411)), 1)
-        self.assertEqual(self.found("length", math__so3="//\n" * 410), [])
+        self.assertEqual(len(self.found("length", math__so3="//\n" * 381)), 1)
+        self.assertEqual(self.found("length", math__so3="//\n" * 380), [])
 
     def test_umbrella(self):
         self.assertEqual(len(self.found("umbrella", math__lonely="")), 1)

@@ -4,49 +4,13 @@
 /// potential and of every row to rounding [Gonzalez 1996, 1999]:
 ///   f·Δq = −ΔV less what is damped,   Ḡ Δq = ΔΦ.
 
-#include <polybody/bodies/shared/step_means.hpp>
 #include <polybody/math/secant.hpp>
 #include <polybody/system/force_entries.hpp>
 #include <polybody/system/pulled_blocks.hpp>
+#include <polybody/system/secant_offer.hpp>
 #include <polybody/system/step_secants.hpp>
 
-namespace polybody {
-
-/// A policy whose force is linear in the gap, so that its mean over a step is that of the mean gap; or one that brings
-/// rows.
-template <class P>
-concept OffersMeanMultiplier = AddsRows<P> || requires { requires P::linear; };
-
-/// A force element whose potential may be asked on secants.
-template <class F>
-concept HasSecantPotential =
-    requires(F const force, std::array<Frame<Secant<12 * F::markers>>, F::markers> const frames, double t) {
-      { force.potential(frames, t) } -> std::convertible_to<Secant<12 * F::markers>>;
-    };
-
-namespace detail {
-
-/// A force that stores energy gives it on secants, too; a group of forces is judged by itself.
-template <class F>
-constexpr bool gives_secants() {
-  if constexpr (ForceGroup<F>)
-    return true;
-  else
-    return HasSecantPotential<F> || !HasPotential<F>;
-}
-
-template <class BodyPools, class JointPools, class ForcePools>
-struct OfferOfPools;
-template <class... Bs, class... Js, class... Fs>
-struct OfferOfPools<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>,
-                    std::tuple<std::vector<ForceEntry<Fs>>...>> {
-  static constexpr bool bodies = (OffersStepMeans<Bs> && ...);
-  static constexpr bool policies = (OffersMeanMultiplier<typename Js::PolicyType> && ...);
-  static constexpr bool positions = ((velocity_rows<typename Js::Geometry>() == 0) && ...);
-  static constexpr bool elements = !(ForceGroup<Fs> || ...);
-  static constexpr bool potentials = (gives_secants<Fs>() && ...);
-  static constexpr bool all = bodies && policies && positions && elements && potentials;
-};
+namespace polybody::detail {
 
 /// Place and axes of a marker (r, then A column by column) at both ends, and their slopes by its columns.
 struct MarkerSecant {
@@ -93,22 +57,6 @@ inline double pulled(MarkerSecant const& m, double const* by_frame, Index column
   for (int j = 0; j < 12; ++j) sum += by_frame[j] * m.slopes[12 * column + j];
   return sum;
 }
-
-}  // namespace detail
-
-/// A model that is stepped whole, as no policy eliminates anything.
-template <class M>
-concept SteppedWhole = !M::eliminates;
-
-/// What model M offers a step that conserves energy.
-template <class M>
-using SecantOffer = detail::OfferOfPools<typename M::BodyPools, typename M::JointPools, typename M::ForcePools>;
-
-/// What a step that conserves energy asks of a model.
-template <class M>
-concept OffersSecants = SteppedWhole<M> && SecantOffer<M>::all;
-
-namespace detail {
 
 template <class M>
 class TypedSecants {
@@ -386,5 +334,4 @@ class TypedSecants {
   VecX middle_;
 };
 
-}  // namespace detail
-}  // namespace polybody
+}  // namespace polybody::detail
