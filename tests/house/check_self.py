@@ -101,8 +101,8 @@ class Check(unittest.TestCase):
     def test_system(self):
         body = lambda n: ("template <class M>\nclass BasicSystem {\n public:\n  BasicSystem();\n"
                           + "".join(f"  int f{i}() const;\n" for i in range(n)) + " private:\n  int c();\n};")
-        self.assertEqual(self.found("system", system__system=body(25)), [])
-        self.assertEqual(len(self.found("system", system__system=body(26))), 1)
+        self.assertEqual(self.found("system", system__basic_system=body(25)), [])
+        self.assertEqual(len(self.found("system", system__basic_system=body(26))), 1)
 
 
 class Reader(unittest.TestCase):

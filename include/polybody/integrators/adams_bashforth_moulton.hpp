@@ -195,7 +195,7 @@ struct AdamsBashforthMoulton {
     };
     return {error(k - 2), error(k - 1), error(k), k < order ? error(k + 1) : std::numeric_limits<double>::infinity()};
   }
-  /// Of an entry's square in the mean square of the error over its tolerance.
+  /// The share of an entry's square in the mean square of the error over its tolerance.
   double share(VecX const& before, VecX const& now) const {
     if (now.size() == 0) return 0.0;
     double const scale =

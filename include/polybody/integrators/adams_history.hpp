@@ -21,7 +21,7 @@ class AdamsHistory {
     memory.tail<3>().setOnes();
   }
 
-  /// Of a state after `reset`. \throws InvalidInput for another.
+  /// The history in a state's memory after `reset`. \throws InvalidInput for a memory without one.
   AdamsHistory(VecX& memory, Index n) : memory_(memory), n_(n) {
     if (memory.size() != (highest + 1) * n + highest + 3)
       throw InvalidInput("This state has no memory of a run: call start before step.");

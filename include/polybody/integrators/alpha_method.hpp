@@ -121,7 +121,7 @@ struct AlphaMethod {
       w.dq[i] = h * w.v0[i] + h * h * ((0.5 - beta) * w.a0[i] + beta * w.a[i]);
     }
   }
-  /// … and when a changes by a part of y, λ by the rest of it.
+  /// The same after a correction: a changes by the first part of y, λ by the rest.
   void apply(double part, double h, bool two_sets, AlphaVectors& w) const {
     if (part != 1.0) {
       w.y *= part;

@@ -14,9 +14,9 @@ struct GeneralizedAlpha {
   /// Spectral radius at infinity, in [0, 1]: 1 keeps energy, 0 damps most. With rows stay below 1 (0.99 will do): there
   /// the multipliers are only marginally stable, alternate in sign and grow over some thousand steps.
   double rho_inf = 0.8;
-  /// Of Newton's corrections, relative to the accelerations. At 1e-5 what it leaves of a smooth motion is still far
-  /// below what a step of ωh = 0.1 itself gets wrong, for two iterations less; not near singular configurations, which
-  /// blow it up.
+  /// Tolerance of Newton's corrections, relative to the accelerations. At 1e-5 the error that is left of a smooth
+  /// motion is still far below the error of a step of ωh = 0.1, and a step takes two iterations less. Near singular
+  /// configurations, which amplify that error, leave it at 1e-8.
   double tolerance = 1e-8;
   NewtonOptions newton = {.refactor_above = 0.16};
   bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h

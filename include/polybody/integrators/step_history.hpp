@@ -23,7 +23,7 @@ class StepHistory {
   VecX& memory_;
 
  public:
-  /// Of a state after `reset`. \throws InvalidInput for another.
+  /// The history of a state after `reset`. \throws InvalidInput for a state without one.
   explicit StepHistory(State& x) : nv_(x.a.size()), rows_(x.lambda.size()), memory_(x.memory) {
     if (memory_.size() != size(nv_, rows_))
       throw InvalidInput("This state has no memory of a run: call start before step.");

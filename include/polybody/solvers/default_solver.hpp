@@ -7,9 +7,9 @@
 
 namespace polybody {
 
-/// Of time steps.
+/// The solver of time steps.
 using DefaultSolver = BlockSolver;
-/// Of statics, where a block may be without a pivot of its own.
+/// The solver of statics, where a block may be without a pivot of its own.
 using DefaultStaticSolver = AutoLu;
 
 }  // namespace polybody

@@ -59,7 +59,7 @@ class EigenSparseLuBy {
   std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();  // Eigen's does not move
 };
 
-/// … in the order of COLAMD.
+/// Eigen's sparse LU in the order of COLAMD.
 using EigenSparseLu = EigenSparseLuBy<Eigen::COLAMDOrdering<int>>;
 
 }  // namespace polybody

@@ -118,15 +118,16 @@ class JointTreeOf {
     }
   }
 
-  /// out = Tᵀ r: narrow from whole. Parts of roots: in r, where the caller reads them.
+  /// out = Tᵀ r: narrow from whole. Parts of roots: in r, where the caller reads them. Generalised forces and wrenches
+  /// change in the same way as speeds and twists, for A is orthogonal.
   void reduce_forces(TreeState& s, VecX& r, VecX& out) const {
-    for (std::size_t i = 0; i < bodies.size(); ++i) s.held[i] = wrench_of(bodies[i], s.frames[i], r);
+    for (std::size_t i = 0; i < bodies.size(); ++i) s.held[i] = twist_of(bodies[i], s.frames[i], r);
     for (std::size_t i = bodies.size(); i-- > 0;) {
       TreeBody const& body = bodies[i];
       TreeFrame const& f = s.frames[i];
       Vec6 const& w = s.held[i];
       if (!body.carried()) {
-        put_wrench(body, f, w, r);
+        put_twist(body, f, w, r);
         continue;
       }
       for (int k = 0; k < f.speeds; ++k) out[body.vn + k] = f.s.col(k).dot(w);
@@ -137,7 +138,7 @@ class JointTreeOf {
   /// A whole r with Tᵀ r = `given` (narrow); parts of roots stand already.
   void expand_forces(TreeState& s, VecX const& given, VecX& r) const {
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      s.held[i] = bodies[i].carried() ? Vec6(Vec6::Zero()) : wrench_of(bodies[i], s.frames[i], r);
+      s.held[i] = bodies[i].carried() ? Vec6(Vec6::Zero()) : twist_of(bodies[i], s.frames[i], r);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
       if (!body.carried()) continue;
@@ -154,7 +155,7 @@ class JointTreeOf {
       add_back(w, f.arm, carried);
       s.held[std::size_t(body.parent)] -= carried;
     }
-    for (std::size_t i = 0; i < bodies.size(); ++i) put_wrench(bodies[i], s.frames[i], s.held[i], r);
+    for (std::size_t i = 0; i < bodies.size(); ++i) put_twist(bodies[i], s.frames[i], s.held[i], r);
   }
 
   /// Joint coordinates from whole ones.
@@ -185,11 +186,12 @@ class JointTreeOf {
           case JointMotion::Kind::turn:
             *x = body.layout == RigidLayout::plane
                      ? angle
-                     : first_turn(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
+                     : detail::first_turn<T>(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
             turned = detail::turn_about<T>(m.axis, -*x) * turned;
             break;
           case JointMotion::Kind::screw: {  // the slide counts the turns
-            double const rest = first_turn(m.axis, turned, false, body.motions, k), full = 2.0 * std::numbers::pi;
+            double const rest = detail::first_turn<T>(m.axis, turned, false, body.motions, k),
+                         full = 2.0 * std::numbers::pi;
             *x = rest + full * std::round((d[m.axis] / m.pitch - rest) / full);
             break;
           }
@@ -268,10 +270,6 @@ class JointTreeOf {
       x.template segment<3>(body.v0 + 3) = f.A.transpose() * t.template tail<3>();
     }
   }
-  /// Generalised forces and wrenches change in the same way, for A is orthogonal.
-  static Vec6 wrench_of(TreeBody const& body, TreeFrame const& f, VecX const& r) { return twist_of(body, f, r); }
-  static void put_wrench(TreeBody const& body, TreeFrame const& f, Vec6 const& w, VecX& r) { put_twist(body, f, w, r); }
-
   /// t += the rigid motion of the parent at a body `arm` away.
   static void add_carried(Vec6 const& parent, Vec3 const& arm, Vec6& t) {
     Vec3 const w = parent.template tail<3>();
@@ -360,14 +358,6 @@ class JointTreeOf {
     for (int i = 0; i < f.speeds; ++i)
       for (int j = 0; j < f.speeds; ++j) f.inverse(i, j) = f.s.col(i).dot(f.s.col(j));
     detail::invert_leading(f.inverse, f.speeds);
-  }
-
-  /// The first of one or two turns that make R: R = turn(axis) or turn(axis) turn(other).
-  static double first_turn(int axis, Mat3 const& r, bool followed, JointMotions const& motions, int k) {
-    int const i = (axis + 1) % 3, j = (axis + 2) % 3;
-    if (!followed) return std::atan2(r(j, i), r(i, i));
-    // the second axis, as the first turn leaves it
-    return motions.list[std::size_t(k + 1)].axis == i ? std::atan2(r(j, i), r(i, i)) : std::atan2(-r(i, j), r(j, j));
   }
 
   template <class F>

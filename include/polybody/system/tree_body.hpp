@@ -80,6 +80,15 @@ Mat<T, 3, 3> turn_about(int k, double angle) {
   return m;
 }
 
+/// The first of one or two turns that make R: R = turn(axis) or turn(axis) turn(other).
+template <class T>
+double first_turn(int axis, Mat<T, 3, 3> const& r, bool followed, JointMotions const& motions, int k) {
+  int const i = (axis + 1) % 3, j = (axis + 2) % 3;
+  if (!followed) return std::atan2(r(j, i), r(i, i));
+  // the second axis, as the first turn leaves it
+  return motions.list[std::size_t(k + 1)].axis == i ? std::atan2(r(j, i), r(i, i)) : std::atan2(-r(i, j), r(j, j));
+}
+
 /// A frame on its way through the motions of a joint, with what its own acceleration has beyond u̇.
 template <class T>
 struct RunnerOf {

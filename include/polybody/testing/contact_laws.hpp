@@ -1,8 +1,6 @@
 #pragma once
 /// \file
-/// The laws that every contact geometry obeys, alone and with a normal force and friction. A case says where bodies
-/// touch:
-///
+/// The laws of contact geometries, alone and with a normal force and friction. A case says where bodies touch:
 ///     struct SphereOnPlaneCase {
 ///       static SphereOnPlane geometry();
 ///       static constexpr double radius;                                      // of the shape about marker a
@@ -10,7 +8,6 @@
 ///       static Mat3 turning(Frame<double> const& a, Frame<double> const& b); // ∂n/∂r_a [1/m]
 ///     };
 ///     bool const sphere_obeys = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");
-///
 /// Not in polybody.hpp: needs GoogleTest.
 
 #include <gtest/gtest.h>
@@ -52,8 +49,7 @@ struct ContactLaws {
     return law;
   }
   Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }
-  /// Calls visit(contact) for each normal force, without friction; none of them lets go of bodies that part as these
-  /// do.
+  /// Calls visit(contact) for each normal force, without friction; none lets go of bodies that part as these do.
   template <class Visit>
   void with_each_contact(Visit&& visit) const {
     visit(Contact<G>{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}});
