@@ -12,7 +12,8 @@
 namespace polybody::detail {
 
 /// A node is what is eliminated at once: one segment, or several that were merged.
-struct EliminationOrder {
+class EliminationOrder {
+ public:
   struct Node {
     std::vector<int> segments;
     std::vector<int> neighbours;  ///< by place in the order, ascending; all later than the node itself
@@ -22,100 +23,121 @@ struct EliminationOrder {
   /// `node_of` gives each segment's node, numbered from zero without gaps. A joint in `late` waits for all that is not.
   void compute(BlockPattern const& pattern, std::vector<Block> const& blocks, std::vector<int> const& node_of,
                std::vector<char> const& late) {
-    auto const& segments = pattern.segments();
-    std::size_t const count = segments.empty() ? 0 : std::size_t(*std::max_element(node_of.begin(), node_of.end())) + 1;
-    std::vector<Node> all(count);
-    std::vector<long> size(count, 0);
-    for (std::size_t s = 0; s < segments.size(); ++s) {
-      all[std::size_t(node_of[s])].segments.push_back(int(s));
-      size[std::size_t(node_of[s])] += segments[s].size;
+    std::size_t const count = node_of.empty() ? 0 : std::size_t(*std::max_element(node_of.begin(), node_of.end())) + 1;
+    left_.assign(count, {});
+    remaining_early_ = 0;
+    ready_.clear();
+    find_neighbours(pattern, blocks, node_of);
+    find_waits(pattern, node_of, late);
+    for (std::size_t n = 0; n < count; ++n) {
+      measure(left_[n]);
+      if (may_go(left_[n])) ready_.insert({left_[n].degree, int(n)});
     }
-    // the graph
-    std::vector<std::vector<int>> adjacent(count);
+    nodes.clear();
+    nodes.reserve(count);
+    while (nodes.size() < count) eliminate(next());
+    for (Node& node : nodes) {
+      for (int& k : node.neighbours) k = at(k).place;
+      std::sort(node.neighbours.begin(), node.neighbours.end());
+    }
+  }
+
+ private:
+  struct Candidate {
+    Node node;                  ///< neighbours by number
+    std::vector<int> releases;  ///< nodes that wait for this one
+    long size = 0, degree = 0;  ///< unknowns of the node, and of its neighbours
+    int waits = 0;              ///< for so many nodes
+    int place = -1;             ///< in the order, once eliminated
+    bool late = false;
+  };
+
+  Candidate& at(int n) { return left_[std::size_t(n)]; }
+  static void sort_once(std::vector<int>& v) {
+    std::sort(v.begin(), v.end());
+    v.erase(std::unique(v.begin(), v.end()), v.end());
+  }
+
+  void find_neighbours(BlockPattern const& pattern, std::vector<Block> const& blocks, std::vector<int> const& node_of) {
+    for (std::size_t s = 0; s < node_of.size(); ++s) {
+      at(node_of[s]).node.segments.push_back(int(s));
+      at(node_of[s]).size += pattern.segments()[s].size;
+    }
     for (Block const& b : blocks) {
       if (b.rows == 0 || b.cols == 0) continue;
       pattern.for_each_segment(b.row, b.rows, [&](int r) {
         pattern.for_each_segment(b.col, b.cols, [&](int c) {
           int const i = node_of[std::size_t(r)], j = node_of[std::size_t(c)];
           if (i == j) return;
-          adjacent[std::size_t(i)].push_back(j);
-          adjacent[std::size_t(j)].push_back(i);
+          at(i).node.neighbours.push_back(j);
+          at(j).node.neighbours.push_back(i);
         });
       });
     }
-    auto const tidy = [](std::vector<int>& v) {
-      std::sort(v.begin(), v.end());
-      v.erase(std::unique(v.begin(), v.end()), v.end());
-    };
-    for (auto& v : adjacent) tidy(v);
-    // what waits for what
-    std::vector<std::vector<int>> releases(count);
-    std::vector<int> waits(count, 0);
-    std::size_t remaining_early = 0;
-    std::vector<char> is_late(count, 0);
-    for (std::size_t n = 0; n < count; ++n) {
+    for (Candidate& k : left_) sort_once(k.node.neighbours);
+  }
+  void find_waits(BlockPattern const& pattern, std::vector<int> const& node_of, std::vector<char> const& late) {
+    for (std::size_t n = 0; n < left_.size(); ++n) {
       std::vector<int> after;
-      for (int const s : all[n].segments) {
-        if (late[std::size_t(s)]) is_late[n] = 1;
-        for (int const before : segments[std::size_t(s)].after)
+      for (int const s : left_[n].node.segments) {
+        if (late[std::size_t(s)]) left_[n].late = true;
+        for (int const before : pattern.segments()[std::size_t(s)].after)
           if (node_of[std::size_t(before)] != int(n)) after.push_back(node_of[std::size_t(before)]);
       }
-      tidy(after);
-      waits[n] = int(after.size());
-      for (int const before : after) releases[std::size_t(before)].push_back(int(n));
-      if (!is_late[n]) ++remaining_early;
-    }
-    // minimum degree among those that wait for nothing
-    std::vector<long> degree(count, 0);
-    std::set<std::pair<long, int>> ready;
-    std::vector<char> done(count, 0);
-    auto const measure = [&](std::size_t n) {
-      degree[n] = 0;
-      for (int const k : adjacent[n]) degree[n] += size[std::size_t(k)];
-    };
-    auto const may_go = [&](std::size_t n) { return waits[n] <= 0 && (!is_late[n] || remaining_early == 0); };
-    for (std::size_t n = 0; n < count; ++n) {
-      measure(n);
-      if (may_go(n)) ready.insert({degree[n], int(n)});
-    }
-    std::vector<int> place(count, -1), merged;
-    nodes.clear();
-    nodes.reserve(count);
-    while (nodes.size() < count) {
-      if (ready.empty()) {  // joints that wait for each other, across loops: the next one in order
-        std::size_t next = 0;
-        while (done[next]) ++next;
-        for (std::size_t n = next; n < count; ++n)
-          if (!done[n] && waits[n] < waits[next]) next = n;
-        ready.insert({degree[next], int(next)});
-      }
-      std::size_t const n = std::size_t(ready.begin()->second);
-      ready.erase(ready.begin());
-      done[n] = 1;
-      place[n] = int(nodes.size());
-      for (int const k : adjacent[n]) {
-        auto& of_k = adjacent[std::size_t(k)];
-        bool const queued = ready.erase({degree[std::size_t(k)], k}) > 0;
-        merged.clear();
-        std::set_union(of_k.begin(), of_k.end(), adjacent[n].begin(), adjacent[n].end(), std::back_inserter(merged));
-        std::erase_if(merged, [&](int m) { return m == k || m == int(n); });
-        of_k.swap(merged);
-        measure(std::size_t(k));
-        if (queued) ready.insert({degree[std::size_t(k)], k});
-      }
-      for (int const k : releases[n])
-        if (--waits[std::size_t(k)] <= 0 && !done[std::size_t(k)] && may_go(std::size_t(k)))
-          ready.insert({degree[std::size_t(k)], k});
-      if (!is_late[n] && --remaining_early == 0)
-        for (std::size_t k = 0; k < count; ++k)
-          if (!done[k] && may_go(k)) ready.insert({degree[k], int(k)});
-      nodes.push_back({std::move(all[n].segments), std::move(adjacent[n])});
-    }
-    for (Node& node : nodes) {
-      for (int& k : node.neighbours) k = place[std::size_t(k)];
-      std::sort(node.neighbours.begin(), node.neighbours.end());
+      sort_once(after);
+      left_[n].waits = int(after.size());
+      for (int const before : after) at(before).releases.push_back(int(n));
+      if (!left_[n].late) ++remaining_early_;
     }
   }
+
+  void measure(Candidate& n) {
+    n.degree = 0;
+    for (int const k : n.node.neighbours) n.degree += at(k).size;
+  }
+  bool may_go(Candidate const& n) const { return n.waits <= 0 && (!n.late || remaining_early_ == 0); }
+
+  /// The node of least degree among those that wait for nothing. Joints may wait for each other, across loops: then the
+  /// first of those that wait for the fewest.
+  int next() {
+    if (!ready_.empty()) {
+      int const n = ready_.begin()->second;
+      ready_.erase(ready_.begin());
+      return n;
+    }
+    int best = -1;
+    for (int n = 0; n < int(left_.size()); ++n)
+      if (at(n).place < 0 && (best < 0 || at(n).waits < at(best).waits)) best = n;
+    return best;
+  }
+
+  /// Gives node n the next place. Its neighbours become neighbours of each other, and what waited for it may go.
+  void eliminate(int n) {
+    Candidate& gone = at(n);
+    gone.place = int(nodes.size());
+    for (int const k : gone.node.neighbours) {
+      std::vector<int>& of_k = at(k).node.neighbours;
+      bool const queued = ready_.erase({at(k).degree, k}) > 0;
+      merged_.clear();
+      std::set_union(of_k.begin(), of_k.end(), gone.node.neighbours.begin(), gone.node.neighbours.end(),
+                     std::back_inserter(merged_));
+      std::erase_if(merged_, [&](int m) { return m == k || m == n; });
+      of_k.swap(merged_);
+      measure(at(k));
+      if (queued) ready_.insert({at(k).degree, k});
+    }
+    for (int const k : gone.releases)
+      if (--at(k).waits <= 0 && at(k).place < 0 && may_go(at(k))) ready_.insert({at(k).degree, k});
+    if (!gone.late && --remaining_early_ == 0)
+      for (int k = 0; k < int(left_.size()); ++k)
+        if (at(k).place < 0 && may_go(at(k))) ready_.insert({at(k).degree, k});
+    nodes.push_back(std::move(gone.node));
+  }
+
+  std::vector<Candidate> left_;
+  std::size_t remaining_early_ = 0;       ///< nodes that are not late
+  std::set<std::pair<long, int>> ready_;  ///< (degree, node)
+  std::vector<int> merged_;
 };
 
 }  // namespace polybody::detail
