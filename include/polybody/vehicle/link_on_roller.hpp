@@ -10,14 +10,14 @@
 namespace polybody {
 
 /// The rims of a roller on the inner face of a link. Marker a is the link's centre (x to the front pin, z to the
-/// roller), marker b the roller's centre with its axle along y. A rim is a circle of radius R in its middle plane; it
-/// meets the face z = h where its lowest point is above the link, |s| ≤ p/2, by d = R − (height of the axle above the
-/// face). Neighbouring faces end where the next begin; within `handover` of there the force is shared, x² (3 − 2x) of
-/// it with x = (p/2 + ε − |s|)/2ε on either, so that a wheel passes from one to the next without a bump. Around a bend
-/// towards the wheel the strips above the faces overlap. Beyond a face its edge may meet the rim, as over a bump: a
-/// point with d = R − c − (its distance from the axle), where c is the chamfer of the edge, along the radius, and by no
-/// more than it is beyond, so that the force begins at zero. [after Choi, Lee & Shabana 1998: inner-surface contact
-/// with one or both rims]
+/// roller), marker b the roller's centre with its axle along y. A rim is a circle of radius R in its middle plane. It
+/// meets the face z = h where its lowest point is above the link, |s| ≤ p/2, with depth d = R − (height of the axle
+/// above the face). Each face ends where the next one begins. Within `handover` of that place both carry the share
+/// x² (3 − 2x) of the force, x = (p/2 + ε − |s|)/2ε, so that a wheel passes from one to the next without a bump. In a
+/// bend towards the wheel the strips above the faces overlap. Beyond a face its edge may meet the rim, as over a bump:
+/// the depth of this point is d = R − c − (its distance from the axle), c the chamfer of the edge along the radius, but
+/// at most its distance beyond the face, so that the force begins at zero. [after Choi, Lee & Shabana 1998:
+/// inner-surface contact with one or both rims]
 template <Observes observed = Observes::frame>
 struct LinkOnRoller {
   static constexpr Observes needs = observed;
@@ -63,7 +63,7 @@ struct LinkOnRoller {
       double const side = value_of(local[0]) < 0.0 ? -1.0 : 1.0;
       T const beyond = local[0] * side - 0.5 * pitch, to_end = T(handover) - beyond;
       if (value_of(beyond) > 0.0 && value_of(beyond) < radius)
-        meet_edge(link, axes, local, side, beyond, height, visit);
+        meet_edge<T>(link, axes, {local[1], side, beyond, height}, visit);
       if (value_of(to_end) <= 0.0 || value_of(height) <= 0.0 || value_of(depth) <= 0.0) continue;
       Vec<T, 3> const on_face(local[0], local[1], T(half_thickness.value));
       ContactPoint<T> point{link.r + axes * on_face, -axes.col(2), depth};
@@ -77,23 +77,30 @@ struct LinkOnRoller {
   }
 
  private:
+  /// Where the axle stands over an edge of the face.
+  template <StateScalar T>
+  struct OverEdge {
+    T across;          ///< along the edge, from the middle of the link [m]
+    double side;       ///< 1: the front edge, −1: the other
+    T beyond, height;  ///< outwards from the edge, and above the face [m]
+  };
   template <StateScalar T, class Visit>
-  void meet_edge(Frame<T> const& link, Mat<T, 3, 3> const& axes, Vec<T, 3> const& local, double side, T const& beyond,
-                 T const& height, Visit& visit) const {
+  void meet_edge(Frame<T> const& link, Mat<T, 3, 3> const& axes, OverEdge<T> const& axle, Visit& visit) const {
     using std::sqrt;
-    T const distance = sqrt(beyond * beyond + height * height), overlap = T(radius - chamfer) - distance;
-    T const depth = value_of(overlap) < value_of(beyond) ? overlap : beyond;
+    T const distance = sqrt(axle.beyond * axle.beyond + axle.height * axle.height),
+            overlap = T(radius - chamfer) - distance;
+    T const depth = value_of(overlap) < value_of(axle.beyond) ? overlap : axle.beyond;
     if (!(value_of(depth) > 0.0)) return;
-    Vec<T, 3> const edge(T(0.5 * pitch * side), local[1], T(half_thickness.value));
-    visit(ContactPoint<T>{link.r + axes * edge, (axes.col(0) * (beyond * -side) - axes.col(2) * height) / distance,
-                          depth});
+    Vec<T, 3> const edge(T(0.5 * pitch * axle.side), axle.across, T(half_thickness.value));
+    Vec<T, 3> const normal = (axes.col(0) * (axle.beyond * -axle.side) - axes.col(2) * axle.height) / distance;
+    visit(ContactPoint<T>{link.r + axes * edge, normal, depth});
   }
 };
 
-/// What keeps a track on its wheels sideways: a horn on the inner face runs between the rims and meets their inner
-/// faces. Markers as for `LinkOnRoller`. It presses along the axle by how far it is beyond its play, but by no more
-/// than how far its tip is within the rims, so that the force grows from zero also where a horn comes in beside its
-/// gap: edges are chamfered by 45°.
+/// Lateral guide of a track: a horn on the inner face of a link runs between the rims of a wheel and meets their inner
+/// faces. Markers as for `LinkOnRoller`. The force is along the axle; its depth is the distance beyond the play, but at
+/// most the distance of the tip within the rims. So the force grows from zero also where a horn enters beside its gap:
+/// edges are chamfered by 45°.
 template <Observes observed = Observes::frame>
 struct HornOnRims {
   static constexpr Observes needs = observed;
