@@ -33,7 +33,7 @@ Bar slender() { return {.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI 
 // CASES S2b, q L³/EI = 5: tip at (1 − 0.15334, 0.49591); tolerance as in statics_elastica_test.cpp, stretch and 2e-6.
 TEST(DistributedForce, BendsTheElastica) {
   Clamped<Cable> c(Cable::from(slender(), 64));
-  apply_distributed(c.model, c.bar, PointForce<>{.force = {0, 5, 0}}, 0.0, 1.0, 64);
+  apply_distributed(c.model, c.bar, PointForce<>{.force = {0, 5, 0}}, {.from = 0.0, .to = 1.0, .pieces = 64});
   State x = c.model.reference_state();
   equilibrium(c.model, x, {.load_steps = 10});
   Vec3 const tip = position(c.model, x, c.bar.at(1.0));
@@ -44,7 +44,7 @@ TEST(DistributedForce, BendsTheElastica) {
 // Over a part of a rigid bar: the clamp carries q (b − a) and its moment q (b² − a²)/2.
 TEST(DistributedForce, HasItsResultant) {
   Clamped<planar::Rigid> c(planar::Rigid::from(slender()));
-  apply_distributed(c.model, c.bar, PointForce<>{.force = {0, 8, 0}}, 0.25, 0.75, 1);
+  apply_distributed(c.model, c.bar, PointForce<>{.force = {0, 8, 0}}, {.from = 0.25, .to = 0.75, .pieces = 1});
   State x = c.model.reference_state();
   equilibrium(c.model, x);
   auto const r = reaction(c.model, x, c.clamp);
@@ -55,10 +55,12 @@ TEST(DistributedForce, HasItsResultant) {
 TEST(DistributedForce, RefusesWhatCannotBeMeant) {
   Clamped<planar::Rigid> c(planar::Rigid::from(slender()));
   PointForce<> const q{.force = {0, 1, 0}};
-  EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, 0.5, 0.5, 1, "snow"); }),
+  EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, {.from = 0.5, .to = 0.5, .pieces = 1}, "snow"); }),
                   "\"snow\": a distributed force needs a range"));
-  EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, 0.0, 1.0, 0); }), "at least one piece"));
-  EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, 0.5, 1.5, 1); }), "outside the body"));
+  EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, {.from = 0.0, .to = 1.0, .pieces = 0}); }),
+                  "at least one piece"));
+  EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, {.from = 0.5, .to = 1.5, .pieces = 1}); }),
+                  "outside the body"));
 }
 
 }  // namespace distributed_force_test

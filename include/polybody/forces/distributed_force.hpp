@@ -10,13 +10,21 @@
 
 namespace polybody {
 
-/// Spreads `per_length` [N/m], dead or following the section, from s = `from` to `to` of a bar, as 2 point forces in
-/// each of `pieces` equal parts: with as many pieces as the bar has elements exact for shapes up to third order. The
-/// model's forces must hold `PointForce<Law>`. Returns their handles. \throws InvalidInput for a range that is empty or
-/// outside the bar, or fewer pieces than one.
+/// A part of a bar, measured from its first end, cut into equal pieces.
+struct BarRange {
+  Required<double> from, to;  ///< [m]
+  Required<Index> pieces;
+};
+
+/// Spreads `per_length` [N/m], dead or following the section, over a range of a bar, as two point forces on each piece.
+/// That is exact for shapes up to third order if there are as many pieces as elements. The model's forces must hold
+/// `PointForce<Law>`. Returns their handles. \throws InvalidInput for a range that is empty or outside the bar, or
+/// fewer pieces than one.
 template <class M, class B, TimeLaw Law = Constant>
-auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, double from, double to,
-                       Index pieces, std::string const& name = "distributed force") {
+auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, BarRange const& range,
+                       std::string const& name = "distributed force") {
+  double const from = range.from, to = range.to;
+  Index const pieces = range.pieces;
   if (!(to > from) || !std::isfinite(from) || !std::isfinite(to))
     throw InvalidInput("\"" + name + "\": a distributed force needs a range from < to, but has " + number(from) +
                        " to " + number(to) + ".");
