@@ -8,16 +8,6 @@
 
 namespace polybody {
 
-namespace detail {
-/// `M::Zero()` without an expression type for each M.
-template <class M>
-M zeros() {
-  M m;
-  for (int i = 0; i < int(M::SizeAtCompileTime); ++i) m.data()[i] = typename M::Scalar(0.0);
-  return m;
-}
-}  // namespace detail
-
 /// The violation of m rows between frame a and frame b:
 ///   ġ = Ga Va + Gb Vb + Φ_t,   V = [ṙ; ω] in world axes.
 /// Rows are of positions (holonomic), but for those that a geometry names as `velocity_rows`: of these only the rate

@@ -28,6 +28,22 @@ Vec<T, 3> cross(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+/// A B and AᵀB, 3×3, likewise.
+template <class T>
+Mat<T, 3, 3> product(Mat<T, 3, 3> const& a, Mat<T, 3, 3> const& b) {
+  Mat<T, 3, 3> m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = a(i, 0) * b(0, j) + a(i, 1) * b(1, j) + a(i, 2) * b(2, j);
+  return m;
+}
+template <class T>
+Mat<T, 3, 3> transposed_product(Mat<T, 3, 3> const& a, Mat<T, 3, 3> const& b) {
+  Mat<T, 3, 3> m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = a(0, i) * b(0, j) + a(1, i) * b(1, j) + a(2, i) * b(2, j);
+  return m;
+}
+
 /// ã with ã b = a × b, 3×3.
 template <class T>
 Mat<T, 3, 3> skew(Vec<T, 3> const& a) {

@@ -33,6 +33,16 @@ using VecXOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 template <class T>
 using MatXOf = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
+namespace detail {
+/// `M::Zero()` without an expression type for each M.
+template <class M>
+M zeros() {
+  M m;
+  for (int i = 0; i < int(M::SizeAtCompileTime); ++i) m.data()[i] = typename M::Scalar(0.0);
+  return m;
+}
+}  // namespace detail
+
 /// A number that decides physics: it has no default, so a forgotten one does not compile.
 template <class T>
 struct Required {

@@ -12,7 +12,7 @@ namespace polybody {
 template <class = void>  // compiled where it is used
 class MinimumNormOf {
  public:
-  explicit MinimumNormOf(System const& s) : relation_(s), weight_(VecX::Ones(s.rows())), weighted_(weight_) {}
+  explicit MinimumNormOf(System const& s) : relation_(s), weight_(VecX::Ones(s.rows())) {}
 
   /// Replaces x.lambda; one factorisation, and a solution for each row that repeats others.
   template <class Solver>
@@ -26,9 +26,10 @@ class MinimumNormOf {
       if (!relation_.find(system, forward, i)) continue;
       VecX& c = relation_.c;
       for (int pass = 0; pass < 2; ++pass)
-        for (std::size_t k = 0; k < count; ++k) c -= product(basis_[k], c) * basis_[k];
-      c /= std::sqrt(product(c, c));
-      x.lambda -= product(c, x.lambda) * c;
+        for (std::size_t k = 0; k < count; ++k) add(-product(basis_[k], c), basis_[k], c);
+      double const length = std::sqrt(product(c, c));
+      for (Index k = 0; k < c.size(); ++k) c[k] /= length;
+      add(-product(c, x.lambda), c, x.lambda);
       if (count == basis_.size()) basis_.emplace_back();
       basis_[count++] = c;
     }
@@ -36,9 +37,13 @@ class MinimumNormOf {
 
  private:
   double product(VecX const& a, VecX const& b) {
-    weighted_ = b;
-    weighted_.array() *= weight_.array();
-    return a.dot(weighted_);
+    double sum = 0.0;
+    for (Index i = 0; i < a.size(); ++i) sum += a[i] * (b[i] * weight_[i]);
+    return sum;
+  }
+
+  static void add(double factor, VecX const& b, VecX& to) {
+    for (Index i = 0; i < b.size(); ++i) to[i] += factor * b[i];
   }
 
   void weigh(System const& system) {
@@ -49,12 +54,12 @@ class MinimumNormOf {
         if (block.source == RowSource::joint) f(block, system.data().markers[std::size_t(block.b.marker)].frame.r);
     };
     each([&](RowBlock<double> const&, Vec3 const& place) {
-      mean += place;
+      for (int i = 0; i < 3; ++i) mean[i] += place[i];
       joints += 1.0;
     });
-    mean /= std::max(joints, 1.0);
-    each([&](RowBlock<double> const&, Vec3 const& place) { spread += (place - mean).squaredNorm() / joints; });
-    double const arm2 = spread > 1e-20 * mean.squaredNorm() ? spread : 1.0;
+    for (int i = 0; i < 3; ++i) mean[i] /= std::max(joints, 1.0);
+    each([&](RowBlock<double> const&, Vec3 const& place) { spread += squared_norm(difference(place, mean)) / joints; });
+    double const arm2 = spread > 1e-20 * squared_norm(mean) ? spread : 1.0;
     each([&](RowBlock<double> const& block, Vec3 const&) {
       for (int i = 0; i < block.rows; ++i) {
         double f2 = 0.0, m2 = 0.0;
@@ -70,7 +75,7 @@ class MinimumNormOf {
   }
 
   detail::RowRelation<> relation_;
-  VecX weight_, weighted_;
+  VecX weight_;
   std::vector<VecX> basis_;
 };
 

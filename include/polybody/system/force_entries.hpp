@@ -92,7 +92,8 @@ struct ForceEntries {
     BodyMotion<T> const motion{Motion::coordinates(e, u.at.q), Motion::speeds(e, u.at.v), Motion::speeds(e, u.a)};
     auto const add = [&](Index i, auto const& x) {
       T* const rows = r.data() + e.v0 + e.body.first_column(i);
-      int const size = n == Eigen::Dynamic ? int(x.size()) : n;
+      int size = n;
+      if constexpr (n == Eigen::Dynamic) size = int(x.size());
       for (int k = 0; k < size; ++k) rows[k] += x[k];
       if (falls) {
         e.body.template gravity<T>(i, motion.q, u.g, scratch.weight);
@@ -102,13 +103,12 @@ struct ForceEntries {
     Index const elements = e.body.elements();
     if constexpr (n != Eigen::Dynamic)
       if (data.workers && elements >= 2 * data.least_elements) {
-        using Slot = Eigen::Map<Vec<T, n>>;
         T* const slots = data.element_forces.data();
         data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
           for_each_unbalance<B, T>(e.body, {begin, end}, motion,
-                                   [&](Index i, Vec<T, n> const& x) { Slot(slots + n * i) = x; });
+                                   [&](Index i, Vec<T, n> const& x) { std::copy_n(x.data(), n, slots + n * i); });
         });
-        for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * i));
+        for (Index i = 0; i < elements; ++i) add(i, slots + n * i);
         return;
       }
     for_each_unbalance<B, T>(e.body, {0, elements}, motion, scratch, add);

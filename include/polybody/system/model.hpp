@@ -116,8 +116,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                                   triad.col(2), rows);
       linear_rows_.push_back(std::move(rows));
     }
-    Index const pa = publish_at(a, axes_a.transpose() * triad);
-    Index const pb = publish_at(b, axes_b.transpose() * triad);
+    Index const pa = publish_at(a, transposed_product(axes_a, triad));
+    Index const pb = publish_at(b, transposed_product(axes_b, triad));
     detail::JointEntry<J> entry{joint, pa, pb, -1, name};
     if constexpr (LinearInCoordinates<P>) {
       entry.linear = Index(linear_rows_.size()) - 1;
@@ -317,7 +317,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <class B>
   Index publish_at(Marker<B> const& m, Mat3 const& axes) {
     if constexpr (std::is_same_v<B, Ground>) {
-      ground_.push_back({{m.point.origin, m.point.axes * axes}, markers_});
+      ground_.push_back({{m.point.origin, product(m.point.axes, axes)}, markers_});
     } else {
       jacobian_size_ += detail::add_marker(std::get<detail::BodyPool<B>>(bodies_), m, axes, markers_);
     }

@@ -119,13 +119,13 @@ struct TangentEntries {
     Index const elements = e.body.elements();
     if constexpr (n != Eigen::Dynamic)
       if (data.workers && elements >= 2 * data.least_elements) {
-        using Slot = Eigen::Map<Mat<double, n, n>>;
         double* const slots = data.element_tangents.data();
         data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-          for_each_element_tangent<B>(e.body, {begin, end}, motion, coefficients,
-                                      [&](Index i, Mat<double, n, n> const& k) { Slot(slots + n * n * i) = k; });
+          for_each_element_tangent<B>(
+              e.body, {begin, end}, motion, coefficients,
+              [&](Index i, Mat<double, n, n> const& k) { std::copy_n(k.data(), n * n, slots + n * n * i); });
         });
-        for (Index i = 0; i < elements; ++i) add(i, Slot(slots + n * n * i));
+        for (Index i = 0; i < elements; ++i) add(i, BlockView(slots + n * n * i, n, n, 1, n));
         return;
       }
     for_each_element_tangent<B>(e.body, {0, elements}, motion, coefficients, scratch, add);
@@ -198,9 +198,10 @@ struct TangentEntries {
                                  Data<double>& data, BlockSink& sink) {
     constexpr int m = J::rows;
     Published<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
-    Vec<double, m> const l(multipliers);
+    Vec<double, m> l;
+    for (int i = 0; i < m; ++i) l[i] = multipliers[i];
     Mat<double, 12, 12> s = wrench_gradient(e.joint.measure(), a.frame, b.frame, x.at.t, l);
-    s *= x.ck;
+    for (int i = 0; i < 144; ++i) s.data()[i] *= x.ck;
     std::array<Wrench<double>, 2> on_markers;
     for (auto const& [map, w] : {std::pair(gap.Ga.data(), &on_markers[0]), std::pair(gap.Gb.data(), &on_markers[1])}) {
       double fm[6];

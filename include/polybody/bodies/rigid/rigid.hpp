@@ -130,8 +130,11 @@ class RigidShape {
     double const z = c.rotary_inertia * l, y = c.rotary_inertia_y.value_or(c.rotary_inertia) * l;
     Placement place = bar.placement;
     for (int i = 0; i < 3; ++i) place.origin[i] += place.axes(i, 0) * (0.5 * l);
-    Vec<T, 3> const moments(y + z, m * l * l / 12.0 + y, m * l * l / 12.0 + z);
-    return {.mass = m, .inertia = moments.asDiagonal(), .placement = place};
+    auto inertia = detail::zeros<Mat<T, 3, 3>>();
+    inertia(0, 0) = y + z;
+    inertia(1, 1) = m * l * l / 12.0 + y;
+    inertia(2, 2) = m * l * l / 12.0 + z;
+    return {.mass = m, .inertia = inertia, .placement = place};
   }
 
   template <StateScalar T>
@@ -217,7 +220,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   template <class T>  // compiled where it is used
   void mass(Index, std::span<double const>, Mat<T, 6, 6>& m) const {
-    m.setZero();
+    m = detail::zeros<Mat<T, 6, 6>>();
     for (int i = 0; i < 3; ++i) {
       m(i, i) = mass_;
       for (int j = 0; j < 3; ++j) m(3 + i, 3 + j) = inertia_(i, j);
@@ -246,7 +249,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
     Vec<T, 3> const omega(v[3], v[4], v[5]);
     Mat<T, 3, 3> const of_spin = skew<T>(inertia_times<T>(omega));
-    k.setZero();
+    k = detail::zeros<Mat<T, 6, 6>>();
     for (int j = 0; j < 3; ++j) {
       Vec<T, 3> across;  // Ω × column j of J
       set_cross(omega, axis_of_inertia<T>(j), across, 0);
@@ -331,7 +334,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
     T const along = p.u[0] * f[0] + p.u[1] * f[1] + p.u[2] * f[2];  // ũ f̃ = f uᵀ − (u·f) 1
     Mat<T, 3, 3> const of_moment = skew<T>(m);
-    k.setZero();
+    k = detail::zeros<Mat<T, 6, 6>>();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) k(3 + i, 3 + j) = of_moment(i, j) + (f[i] * p.u[j] - (i == j ? along : T(0.0)));
   }

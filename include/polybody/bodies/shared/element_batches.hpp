@@ -161,7 +161,7 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
   auto const inertia = [&](Index e) {
     if (first_mass || !alike) {
       body.mass(e, x.q, m);
-      m *= c.mass;
+      for (Index i = 0; i < m.size(); ++i) m.data()[i] *= c.mass;
     }
     first_mass = false;
   };
@@ -179,7 +179,7 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
     body.tangent(e, x.q, x.v, c.stiffness, c.damping, k);
     if (c.mass != 0.0) {
       inertia(e);
-      k += m;
+      for (Index i = 0; i < k.size(); ++i) k.data()[i] += m.data()[i];
     }
     f(e, k);
   }
