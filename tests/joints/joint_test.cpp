@@ -28,9 +28,8 @@ TEST(Joint, NeedsNoNumbersUnlessItsPolicyDoes) {
   static_assert(std::is_default_constructible_v<Joint<Revolute, Constraint>>);
 }
 
-template <class G, class P>
-concept CanJoin = requires { typename Joint<G, P>; };
-static_assert(CanJoin<Revolute, Constraint> && CanJoin<Revolute, Penalty>);
-static_assert(!CanJoin<Constraint, Revolute> && !CanJoin<Revolute, double> && !CanJoin<double, Penalty>);
+// What makes no joint is refused in a sentence (tests/refused): a geometry in place of a policy, or numbers.
+static_assert(JointGeometry<Revolute> && Policy<Constraint> && Policy<Penalty>);
+static_assert(!JointGeometry<Constraint> && !Policy<Revolute> && !JointGeometry<double> && !Policy<double>);
 
 }  // namespace joint_test
