@@ -62,7 +62,8 @@ class ForwardDynamics {
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
-  /// M a + Gᵀλ = f, G a = −γ − what is fed back, there. \throws LinearSolverSingular, NonFinite.
+  /// M a + Gᵀλ = f, G a = −γ − what is fed back, at the coordinates, speeds and time `at`. \throws
+  /// LinearSolverSingular, NonFinite.
   void accelerations(System& system, At<double> const& at, VecX& a, VecX& lambda, RowFeedback const& feedback = {}) {
     system.evaluate(at.q, at.v, at.t);
     factor(system);

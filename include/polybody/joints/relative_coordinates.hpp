@@ -123,13 +123,6 @@ struct RelativeCoordinates {
 
  private:
   template <StateScalar T>
-  static Mat<T, 3, 3> product(Mat<T, 3, 3> const& m, Mat<T, 3, 3> const& x) {
-    Mat<T, 3, 3> out;
-    for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 3; ++i) out(i, j) = m(i, 0) * x(0, j) + m(i, 1) * x(1, j) + m(i, 2) * x(2, j);
-    return out;
-  }
-  template <StateScalar T>
   static Mat<T, 3, 3> transposed(Mat<T, 3, 3> const& m) {
     Mat<T, 3, 3> out;
     for (int j = 0; j < 3; ++j)
@@ -147,7 +140,7 @@ struct RelativeCoordinates {
     Mat<T, 3, 3> map;
     Turn(Frame<T> const& a, Frame<T> const& b) {
       using std::atan2;
-      Mat<T, 3, 3> const R = product<T>(transposed<T>(a.A), b.A);
+      Mat<T, 3, 3> const R = transposed_product<T>(a.A, b.A);
       n = Vec<T, 3>(R(0, 2), R(1, 2), R(2, 2));
       T const c = 1.0 + n[2];
       y = Vec<T, 3>(n[0] / c, n[1] / c, T(1.0));

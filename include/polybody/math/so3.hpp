@@ -185,7 +185,7 @@ Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
 ///   2 (c′ φ × (φ × x) − b′ φ × x) φᵀ + b x̃ − c ((φ × x)~ + φ̃ x̃),  b′, c′ the slopes of b, c.
 template <class T>
 Mat<T, 3, 3> right_jacobian_derivative(Vec<T, 3> const& phi, Vec<T, 3> const& x) {
-  T const angle2 = squared_norm(phi), along_x = phi[0] * x[0] + phi[1] * x[1] + phi[2] * x[2];
+  T const angle2 = squared_norm(phi), along_x = dot(phi, x);
   RotationSeries<T> const s(angle2);
   RotationSlopes<T> const slope(angle2);
   Vec<T, 3> const once = cross(phi, x), twice = cross(phi, once);
