@@ -7,9 +7,6 @@ endif()
 
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-# Every header must compile on its own: target all_verify_interface_header_sets.
-set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ON)
-
 # ccache, when it is there. The sloppiness is what it needs to cache precompiled headers;
 # the base directory lets a second clone of the project use the first one's results.
 find_program(CCACHE ccache)

@@ -10,8 +10,5 @@ target_link_libraries(polybody_testing INTERFACE polybody GTest::gtest_main)
 set_target_properties(polybody_testing PROPERTIES EXPORT_NAME testing)
 
 if(PROJECT_IS_TOP_LEVEL)
-  find_package(GTest QUIET)
-  if(NOT GTest_FOUND)
-    set_target_properties(polybody_testing PROPERTIES VERIFY_INTERFACE_HEADER_SETS OFF)
-  endif()
+  find_package(GTest QUIET) # seen by all folders
 endif()

@@ -17,6 +17,28 @@ extern template class detail::ReducedCoordinates<recursive::Reduced>;
 extern template class detail::ReducedCoordinates<recursive::ArticulatedBody>;
 extern template void assemble<DefaultSolver>(System&, State&, double, int);
 
+extern template struct BodyKernels<Rigid<>, double>;
+extern template struct BodyKernels<Rigid<EulerParameters>, double>;
+extern template struct BodyKernels<planar::Rigid, double>;
+extern template struct BodyKernels<planar::AncfCable<>, double>;
+extern template struct BodyKernels<planar::Lrvf, double>;
+extern template struct BodyKernels<AncfBeam<>, double>;
+extern template struct BodyKernels<AncfCable<>, double>;
+extern template AncfCable<>::AncfCable(Bar const&, BarConstants const&, Index, ReferenceCurve const&);
+extern template struct BodyKernels<AncfBeam<Continuum<>>, double>;
+extern template AncfBeam<Continuum<>>::AncfBeam(Bar const&, Index, ReferenceCurve const&, bool);
+extern template struct BodyKernels<Lrvf<>, double>;
+extern template Lrvf<>::Lrvf(Bar const&, BarConstants const&, Index, ReferenceCurve const&);
+extern template struct JointKernels<Joint<Revolute, Constraint>, double>;
+extern template struct JointKernels<Joint<Spherical, Constraint>, double>;
+extern template struct JointKernels<Joint<Weld, Constraint>, double>;
+extern template struct JointKernels<Joint<planar::Revolute, Constraint>, double>;
+extern template void detail::place_ground(std::vector<detail::GroundMarker> const&, Index, Index, Data<double>&);
+extern template void detail::place_linear_rows(std::vector<LinearRows> const&, double*, Data<double>&);
+extern template void detail::measure_linear_rows(std::vector<LinearRows> const&, VecX const&, Data<double> const&,
+                                                 double*);
+extern template BarConstants constants<void>(Bar const&);
+
 extern template class Simulation<GeneralizedAlpha>;
 extern template class Simulation<HhtAlpha>;
 extern template class Simulation<Newmark>;

@@ -28,14 +28,6 @@ F require_entry(F entry, char const* group) {
   return entry;
 }
 
-/// Defined where models are known (system/model_entries.hpp, system/typed_data.hpp).
-template <class M>
-ModelLayout layout_of(M const& model);
-namespace detail {
-template <class M, StateScalar T>
-class DataMaker;
-}
-
 /// Parts of the tangent that may be asked for alone.
 enum class TangentPart { compliant_joints, force_elements };
 
@@ -49,7 +41,7 @@ class BasicSystem {
   template <class M, Entries wanted = Entries::questions>
     requires requires { sizeof(EntriesOf<M, T, wanted>); }
   explicit BasicSystem(M const& model, With<wanted> = {}, Coordinates coordinates = {})
-      : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), detail::DataMaker<M, T>::make(model),
+      : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), EntriesOf<M, T, wanted>::make_data(model),
                     std::move(coordinates)) {}
   /// From entries of any origin.
   BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,

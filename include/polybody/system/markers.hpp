@@ -26,25 +26,6 @@ Mat3 checked_triad(J const& joint, std::string const& name) {
   }
 }
 
-/// Axes (3×3) of a body at a point, as placed.
-template <class B>
-Mat3 reference_axes(B const& body, typename B::Point const& point) {
-  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0);
-  std::vector<double> jacobian(6 * v.size());
-  body.reference(q);
-  Published<double> out;
-  out.jacobian = jacobian.data();
-  body.template publish<double>(point, Mat3::Identity(), std::span<double const>(q), std::span<double const>(v), out);
-  return out.frame.A;
-}
-
-/// A marker of a body goes into the pool. Returns the size of its Jacobian.
-template <class B>
-Index add_marker(BodyPool<B>& pool, Marker<B> const& m, Mat3 const& axes, Index published) {
-  pool.markers.push_back({m.body, m.point, axes, published});
-  return 6 * point_columns(pool.entries[std::size_t(m.body)].body, m.point);
-}
-
 /// \throws InvalidInput where a point of the body tells less than its others do.
 template <class B>
 void require_told(Marker<B> const& m, Observes needs, std::string const& what) {

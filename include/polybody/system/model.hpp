@@ -9,6 +9,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/math/time_laws.hpp>
 #include <polybody/math/type_list.hpp>
+#include <polybody/system/body_kernels.hpp>
 #include <polybody/system/composition.hpp>
 #include <polybody/system/linear_rows.hpp>
 #include <polybody/system/list_refusals.hpp>
@@ -60,9 +61,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   BodyHandle<B> add(B const& body, std::string name = "") {
     auto& pool = std::get<detail::BodyPool<B>>(bodies_);
     name = detail::name_or_next(std::move(name), "body", std::size_t(count_bodies_));
-    detail::BodyEntry<B> entry{body, name, coordinates_, speeds_};
-    if constexpr (OwnsRows<B>) entry.row = rows_;
-    pool.entries.push_back(std::move(entry));
+    BodyKernels<B, double>::add(pool, body, name, coordinates_, speeds_, OwnsRows<B> ? rows_ : -1);
     if constexpr (OwnsRows<B>) rows_ += B::own_rows;
     coordinates_ += pool.entries.back().body.coordinates();
     speeds_ += pool.entries.back().body.speeds();
@@ -310,7 +309,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     if constexpr (std::is_same_v<B, Ground>) {
       return m.point.axes;
     } else {
-      return detail::reference_axes(std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(m.body)].body, m.point);
+      return BodyKernels<B, double>::reference_axes(std::get<detail::BodyPool<B>>(bodies_), m);
     }
   }
 
@@ -319,7 +318,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     if constexpr (std::is_same_v<B, Ground>) {
       ground_.push_back({{m.point.origin, product(m.point.axes, axes)}, markers_});
     } else {
-      jacobian_size_ += detail::add_marker(std::get<detail::BodyPool<B>>(bodies_), m, axes, markers_);
+      jacobian_size_ += BodyKernels<B, double>::add_marker(std::get<detail::BodyPool<B>>(bodies_), m, axes, markers_);
     }
     return markers_++;
   }

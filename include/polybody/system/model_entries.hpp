@@ -1,131 +1,203 @@
 #pragma once
 /// \file
 /// The table of a model's entries, and its layout: the only place where a model's type turns into functions and data.
+/// The loops are those of its types (body_kernels.hpp, joint_kernels.hpp, force_kernels.hpp), one after another.
 
-#include <polybody/system/energy_entries.hpp>
 #include <polybody/system/secant_entries.hpp>
-#include <polybody/system/tangent_entries.hpp>
+#include <polybody/system/typed_data.hpp>
 
 namespace polybody {
+
+namespace detail {
+
+/// The entries of a model, for scalar T.
+template <class M, StateScalar T>
+struct ModelLoops;
+template <class... Bs, class... Js, class... Fs, StateScalar T>
+struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
+  using M = Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>;
+  using Typed = TypedData<M, T>;
+  using Vector = VecXOf<T>;
+  static M const& model_of(void const* m) { return *static_cast<M const*>(m); }
+  template <class B>
+  static BodyPool<B> const& bodies(void const* m) {
+    return std::get<BodyPool<B>>(model_of(m).body_pools());
+  }
+  template <class J>
+  static std::vector<JointEntry<J>> const& joints(void const* m) {
+    return std::get<std::vector<JointEntry<J>>>(model_of(m).joint_pools());
+  }
+  template <class F>
+  static std::vector<ForceEntry<F>> const& forces(void const* m) {
+    return std::get<std::vector<ForceEntry<F>>>(model_of(m).force_pools());
+  }
+  template <class B>
+  static BodyData<B, T>& of_bodies(Data<T> const& data) {
+    return std::get<BodyData<B, T>>(Typed::of(data).bodies);
+  }
+  template <class J>
+  static JointData<J, T>& of_joints(Data<T> const& data) {
+    return std::get<JointData<J, T>>(Typed::of(data).joints);
+  }
+
+  static void publish([[maybe_unused]] void const* m, [[maybe_unused]] At<T> at, [[maybe_unused]] Data<T>& data) {
+    (BodyKernels<Bs, T>::publish(bodies<Bs>(m), of_bodies<Bs>(data), at, data), ...);
+  }
+  /// Every joint's gap, what compliant joints answer, and the rows that bodies own or that are linear.
+  static void measure_gaps([[maybe_unused]] void const* m, [[maybe_unused]] At<T> at, [[maybe_unused]] Data<T>& data) {
+    [[maybe_unused]] T* next = Typed::of(data).own_rows.data();
+    ((next = BodyKernels<Bs, T>::measure_own_rows(bodies<Bs>(m), at, next)), ...);
+    measure_linear_rows(model_of(m).linear_rows(), at.q, data, next);
+    (JointKernels<Js, T>::measure(joints<Js>(m), of_joints<Js>(data), at.t, data), ...);
+  }
+  static void measure_gamma([[maybe_unused]] void const* m, [[maybe_unused]] At<T> at,
+                            [[maybe_unused]] Data<T> const& data, [[maybe_unused]] Vector& out) {
+    (BodyKernels<Bs, T>::own_gamma(bodies<Bs>(m), at, out), ...);
+    (JointKernels<Js, T>::gamma(joints<Js>(m), at.t, data, out), ...);
+  }
+  static void element_forces([[maybe_unused]] void const* m, [[maybe_unused]] At<T> at,
+                             [[maybe_unused]] Vector const& a, [[maybe_unused]] double load_factor,
+                             [[maybe_unused]] Data<T>& data, [[maybe_unused]] Vector& r) {
+    Unbalance<T> const u{at, a, model_of(m).gravity().g * load_factor};
+    (BodyKernels<Bs, T>::add_forces(bodies<Bs>(m), of_bodies<Bs>(data), u, data, r), ...);
+  }
+  static void push_forces([[maybe_unused]] void const* m, [[maybe_unused]] double t, [[maybe_unused]] Data<T>& data) {
+    [[maybe_unused]] Action<T>* next = data.actions.data();
+    ((next = ForceKernels<Fs, T>::push(forces<Fs>(m), t, data, next)), ...);
+  }
+  static void plus([[maybe_unused]] void const* m, [[maybe_unused]] NarrowPlace const* places,
+                   [[maybe_unused]] Vector const& q, [[maybe_unused]] Vector const& delta,
+                   [[maybe_unused]] Vector& out) {
+    ((places = BodyKernels<Bs, T>::plus(bodies<Bs>(m), places, q, delta, out)), ...);
+  }
+  static void local_rate([[maybe_unused]] void const* m, [[maybe_unused]] NarrowPlace const* places,
+                         [[maybe_unused]] Vector const& delta, [[maybe_unused]] Vector const& v,
+                         [[maybe_unused]] Vector& out) {
+    ((places = BodyKernels<Bs, T>::local_rate(bodies<Bs>(m), places, delta, v, out)), ...);
+  }
+  static void share_loops([[maybe_unused]] void const* m, [[maybe_unused]] Data<T>& data,
+                          [[maybe_unused]] Workers& threads) {
+    data.workers = &threads;
+    std::size_t of_forces = 0, of_tangents = 0;
+    (BodyKernels<Bs, T>::count_shared(bodies<Bs>(m), of_forces, of_tangents), ...);
+    data.element_forces.resize(of_forces);
+    data.element_tangents.resize(of_tangents);
+  }
+
+  static void masses([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
+                     [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
+    (BodyKernels<Bs, double>::masses(bodies<Bs>(m), of_bodies<Bs>(data), at, sink), ...);
+  }
+  static void element_tangents([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
+                               [[maybe_unused]] TangentCoefficients const& c, [[maybe_unused]] Data<double>& data,
+                               [[maybe_unused]] BlockSink& sink) {
+    (BodyKernels<Bs, double>::tangents(bodies<Bs>(m), of_bodies<Bs>(data), at, c, data, sink), ...);
+  }
+  static void compliant_tangents([[maybe_unused]] void const* m, [[maybe_unused]] TangentCoefficients const& c,
+                                 [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
+    (JointKernels<Js, double>::slopes(joints<Js>(m), of_joints<Js>(data), c, data, sink), ...);
+  }
+  static void force_tangents([[maybe_unused]] void const* m, [[maybe_unused]] double t,
+                             [[maybe_unused]] double load_factor, [[maybe_unused]] TangentCoefficients const& c,
+                             [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
+    (ForceKernels<Fs, double>::tangents(forces<Fs>(m), t, load_factor, c, data, sink), ...);
+  }
+  static void joint_stiffness([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
+                              [[maybe_unused]] VecX const& lambda, [[maybe_unused]] double ck,
+                              [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
+    [[maybe_unused]] StiffnessAt const x{at, ck};
+    (BodyKernels<Bs, double>::own_stiffness(bodies<Bs>(m), lambda, x, sink), ...);
+    (JointKernels<Js, double>::stiffness(joints<Js>(m), of_joints<Js>(data), lambda, x, data, sink), ...);
+  }
+  static void load_stiffness([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at, [[maybe_unused]] double ck,
+                             [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
+    [[maybe_unused]] StiffnessAt const x{at, ck};
+    (BodyKernels<Bs, double>::load_stiffness(bodies<Bs>(m), of_bodies<Bs>(data), x, data, sink), ...);
+  }
+  static void coordinate_rates([[maybe_unused]] void const* m, [[maybe_unused]] NarrowPlace const* places,
+                               [[maybe_unused]] VecX const& q, [[maybe_unused]] VecX const& v,
+                               [[maybe_unused]] VecXOf<Dual<1>>& room, [[maybe_unused]] VecX& rate) {
+    ((places = BodyKernels<Bs, double>::coordinate_rates(bodies<Bs>(m), places, q, v, room, rate)), ...);
+  }
+  static void rigid_speeds([[maybe_unused]] void const* m, [[maybe_unused]] VecX const& q,
+                           [[maybe_unused]] Vec3 const& v0, [[maybe_unused]] Vec3 const& omega,
+                           [[maybe_unused]] VecX& v) {
+    (BodyKernels<Bs, double>::rigid_speeds(bodies<Bs>(m), q, v0, omega, v), ...);
+  }
+  static Energy energy([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
+                       [[maybe_unused]] Data<double> const& data) {
+    Energy sum;
+    (BodyKernels<Bs, double>::add_energy(bodies<Bs>(m), at, model_of(m).gravity().g, sum), ...);
+    ((sum.joints += JointKernels<Js, double>::energy(joints<Js>(m), of_joints<Js>(data))), ...);
+    ((sum.forces += ForceKernels<Fs, double>::energy(forces<Fs>(m), at.t, data)), ...);
+    return sum;
+  }
+  /// Rows of bodies (Euler parameters) and linear joints do no work and are left out.
+  static Powers powers([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
+                       [[maybe_unused]] VecX const& backwards, [[maybe_unused]] VecX const& lambda,
+                       [[maybe_unused]] double load_factor, [[maybe_unused]] Data<double> const& data) {
+    Powers p;
+    ((p.dissipated += BodyKernels<Bs, double>::dissipated(bodies<Bs>(m), of_bodies<Bs>(data), at, backwards)), ...);
+    (JointKernels<Js, double>::add_powers(joints<Js>(m), of_joints<Js>(data), lambda, data, p), ...);
+    (ForceKernels<Fs, double>::add_powers(forces<Fs>(m), at.t, load_factor, data, p), ...);
+    return p;
+  }
+};
+
+}  // namespace detail
 
 /// The entries of model type M for the groups `wanted`.
 template <class... Bs, class... Js, class... Fs, StateScalar T, Entries wanted>
 struct EntriesOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> {
   using M = Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>;
+  using Loops = detail::ModelLoops<M, T>;
 
   static constexpr ModelEntries<T> make() {
-    using Motion = detail::MotionEntries<M, T>;
-    using Force = detail::ForceEntries<M, T>;
-    ModelEntries<T> out{.publish = &Motion::publish,
-                        .measure_gaps = &Motion::measure_gaps,
-                        .measure_gamma = &Motion::measure_gamma,
-                        .element_forces = &Force::element_forces,
-                        .push_forces = &Force::push_forces,
-                        .plus = &Motion::plus,
-                        .local_rate = &Motion::local_rate,
-                        .share_loops = [](void const* m, Data<T>& data, Workers& threads) {
-                          share_loops(Motion::model_of(m), data, threads);
-                        }};
+    ModelEntries<T> out{.publish = &Loops::publish,
+                        .measure_gaps = &Loops::measure_gaps,
+                        .measure_gamma = &Loops::measure_gamma,
+                        .element_forces = &Loops::element_forces,
+                        .push_forces = &Loops::push_forces,
+                        .plus = &Loops::plus,
+                        .local_rate = &Loops::local_rate,
+                        .share_loops = &Loops::share_loops};
     if constexpr (std::same_as<T, double>) add_for_numbers(out);
     return out;
   }
   static constexpr ModelEntries<T> table = make();
+  static Data<T> make_data(M const& model) { return detail::DataMaker<M, T>::make(model); }
 
  private:
   static constexpr void add_for_numbers(ModelEntries<double>& out) {
-    using Motion = detail::MotionEntries<M, double>;
-    using Tangent = detail::TangentEntries<M>;
-    out.masses = &detail::ForceEntries<M, double>::masses;
+    out.masses = &Loops::masses;
     if constexpr (contains(wanted, Entries::tangent)) {
-      out.element_tangents = &Tangent::element_tangents;
-      out.force_tangents = &Tangent::force_tangents;
+      out.element_tangents = &Loops::element_tangents;
+      out.force_tangents = &Loops::force_tangents;
     }
     if constexpr (contains(wanted, Entries::tangent) || contains(wanted, Entries::compliance))
-      out.compliant_tangents = &Tangent::compliant_tangents;
+      out.compliant_tangents = &Loops::compliant_tangents;
     if constexpr (contains(wanted, Entries::second_order)) {
-      out.joint_stiffness = &Tangent::joint_stiffness;
-      out.load_stiffness = &Tangent::load_stiffness;
+      out.joint_stiffness = &Loops::joint_stiffness;
+      out.load_stiffness = &Loops::load_stiffness;
     }
-    if constexpr (contains(wanted, Entries::coordinate_rates)) out.coordinate_rates = &Motion::coordinate_rates;
+    if constexpr (contains(wanted, Entries::coordinate_rates)) out.coordinate_rates = &Loops::coordinate_rates;
     if constexpr (contains(wanted, Entries::energy)) {
-      out.energy = &detail::EnergyEntries<M>::energy;
-      out.powers = &detail::EnergyEntries<M>::powers;
+      out.energy = &Loops::energy;
+      out.powers = &Loops::powers;
     }
     if constexpr (contains(wanted, Entries::secants)) out.secants = &detail::TypedSecants<M>::table;
-    if constexpr (contains(wanted, Entries::rigid_speeds)) out.rigid_speeds = &Motion::rigid_speeds;
+    if constexpr (contains(wanted, Entries::rigid_speeds)) out.rigid_speeds = &Loops::rigid_speeds;
   }
 };
-
-namespace detail {
-
-/// Times at which a drive or a load wants a step to end.
-template <class Law>
-void add_corners(Law const& law, std::vector<double>& all) {
-  if constexpr (HasCorners<Law>)
-    for (double const t : law.corners()) all.push_back(t);
-}
-
-/// Type and index of elements that come type by type.
-struct CountOfType {
-  void const* type = nullptr;
-  Index index = -1;
-  template <class T>
-  void next() {
-    index = type == &type_tag<T> ? index + 1 : 0;
-    type = &type_tag<T>;
-  }
-};
-
-/// The body of each published marker, by its place in the layout; −1 for the ground.
-template <class M>
-std::vector<Index> owners_of_markers(M const& model) {
-  std::vector<Index> owners(std::size_t(model.markers()), -1);
-  Index before = 0;
-  auto const note = [&](auto const& pool) {
-    for (auto const& m : pool.markers) owners[std::size_t(m.published)] = before + m.body;
-    before += Index(pool.entries.size());
-  };
-  std::apply([&](auto const&... pool) { (note(pool), ...); }, model.body_pools());
-  return owners;
-}
-
-}  // namespace detail
 
 /// Counts, places and names of `model`, which must outlive what is done with them.
-template <class M>
-ModelLayout layout_of(M const& model) {
-  ModelLayout out{.serial = model.serial(),
-                  .coordinates = model.coordinates(),
-                  .speeds = model.speeds(),
-                  .rows = model.rows(),
-                  .velocity_rows = model.velocity_rows(),
-                  .owners = detail::owners_of_markers(model),
-                  .gravity = model.gravity().g,
-                  .constant_mass = M::constant_mass,
-                  .has_groups = M::has_groups};
-  detail::CountOfType count;
-  model.for_each_body([&](auto const& e) {
-    using B = std::decay_t<decltype(e.body)>;
-    count.next<B>();
-    Index own = 0;
-    if constexpr (OwnsRows<B>) own = B::own_rows;
-    out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own,
-                          B::world == World::plane, count.type, count.index, &e.body});
-  });
-  model.for_each_joint([&](auto const& e) {
-    using J = std::decay_t<decltype(e.joint)>;
-    count.next<J>();
-    LinearRows const* const linear = e.linear < 0 ? nullptr : &model.linear_rows()[std::size_t(e.linear)];
-    out.joints.push_back(
-        {e.name, e.a, e.b, e.row, e.rows, Eliminates<typename J::PolicyType>, count.type, count.index, linear});
-    detail::add_corners(e.joint.geometry, out.corners);
-  });
-  model.for_each_force([&](auto const& e) {
-    using F = std::decay_t<decltype(e.force)>;
-    count.next<F>();
-    out.forces.push_back({e.name, count.type, count.index, &e.force, {e.markers.begin(), e.markers.end()}, F::is_load});
-    if constexpr (requires { e.force.law; }) detail::add_corners(e.force.law, out.corners);
-  });
+template <class... Bs, class... Js, class... Fs>
+ModelLayout layout_of(Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> const& model) {
+  using Loops = detail::ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, double>;
+  ModelLayout out = detail::counts_of(model);
+  (BodyKernels<Bs, double>::describe(Loops::template bodies<Bs>(&model), out), ...);
+  (JointKernels<Js, double>::describe(Loops::template joints<Js>(&model), model.linear_rows(), out), ...);
+  (ForceKernels<Fs, double>::describe(Loops::template forces<Fs>(&model), out), ...);
   return out;
 }
 

@@ -5,9 +5,7 @@
 
 #include <span>
 
-#include <polybody/bodies/shared/body.hpp>
-#include <polybody/kinematics/marker.hpp>
-#include <polybody/system/layout.hpp>
+#include <polybody/system/body_kernels.hpp>
 #include <polybody/system/markers.hpp>
 #include <polybody/system/state.hpp>
 
@@ -91,12 +89,7 @@ BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& ma
 /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
 template <class B>
 Published<double> publish(BodyInState<B> const& b, typename B::Point const& point, std::vector<double>& jacobian) {
-  Published<double> p;
-  p.columns = point_columns(b.body, point);
-  jacobian.resize(std::size_t(6 * p.columns));
-  p.jacobian = jacobian.data();
-  b.body.template publish<double>(point, Mat3::Identity(), b.q, b.v, p);
-  return p;
+  return BodyKernels<B, double>::publish_point(b.body, point, b.q, b.v, jacobian);
 }
 
 }  // namespace polybody

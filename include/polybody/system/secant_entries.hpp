@@ -5,12 +5,20 @@
 ///   f·Δq = −ΔV less what is damped,   Ḡ Δq = ΔΦ.
 
 #include <polybody/math/secant.hpp>
-#include <polybody/system/force_entries.hpp>
-#include <polybody/system/pulled_blocks.hpp>
+#include <polybody/system/force_kernels.hpp>
+#include <polybody/system/model.hpp>
 #include <polybody/system/secant_offer.hpp>
 #include <polybody/system/step_secants.hpp>
 
 namespace polybody::detail {
+
+/// Calls f(pool, vector) for the pools of a model and what stands beside them.
+template <class Pools, class Vectors, class F>
+void for_each_pool_beside(Pools const& pools, Vectors& vectors, F&& f) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (f(std::get<I>(pools), std::get<I>(vectors)), ...);
+  }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
+}
 
 /// Place and axes of a marker (r, then A column by column) at both ends, and their slopes by its columns.
 struct MarkerSecant {

@@ -12,6 +12,8 @@
 #include "lennard_jones.hpp"
 #include "point_on_parabola.hpp"
 
+extern template struct polybody::BodyKernels<own::Dumbbell, double>;  // compiled in dumbbell.cpp
+
 namespace own {
 namespace {
 

@@ -235,35 +235,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     Vec<double, ancf::vectors> first_moment = Vec<double, ancf::vectors>::Zero();
   };
 
-  template <class T = double>  // compiled where it is used
-  AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight)
-      : Chain(n), bar_(bar), constants_(polybody::constants(bar)) {
-    std::string const name = Elastic::name;
-    if (n < 1) throw InvalidInput(name + ": at least one element is needed.");
-    require_positive(constants_.rotary_inertia, name + ": the rotary inertia of the bar, the only mass of r_y,");
-    require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
-                     name + ": the rotary inertia of the bar about y, the only mass of r_z,");
-    Elastic::check(bar, constants_);
-    l_ = bar.length / double(n);
-    for (Index i = 0; i <= n; ++i) {
-      double const s = std::min(double(i) * l_, length());
-      nodes_.push_back(curve(s));
-      nodes_.back().check(name + ": the reference curve at s = " + number(s));
-    }
-    for (Index e = 0; e < (straight ? Index(1) : n); ++e) {
-      ancf::Reference ref;
-      ref.l = l_;
-      ref.straight = straight;
-      for (int node = 0; node < 2; ++node) {
-        Placement const& p = nodes_[std::size_t(e + node)];
-        for (int i = 0; i < 12; ++i) ref.x[12 * node + i] = i < 3 ? p.origin[i] : p.axes(i % 3, i / 3 - 1);
-      }
-      check_reference(ref, e);
-      references_.push_back(ref);
-      this->add_groups(Elastic::make(bar_, constants_, ref));
-      inertia_.push_back(inertia_of(ref));
-    }
-  }
+  AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight);
 
   /// \throws InvalidInput for a reference that is no beam.
   void check_reference(ancf::Reference const& ref, Index e) const {
@@ -355,5 +327,35 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   std::vector<ancf::Reference> references_;  ///< one where all elements are alike, or one each; `inertia_` as well
   std::vector<Inertia> inertia_;
 };
+
+template <class Elastic>
+AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight)
+    : Chain(n), bar_(bar), constants_(polybody::constants(bar)) {
+  std::string const name = Elastic::name;
+  if (n < 1) throw InvalidInput(name + ": at least one element is needed.");
+  require_positive(constants_.rotary_inertia, name + ": the rotary inertia of the bar, the only mass of r_y,");
+  require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
+                   name + ": the rotary inertia of the bar about y, the only mass of r_z,");
+  Elastic::check(bar, constants_);
+  l_ = bar.length / double(n);
+  for (Index i = 0; i <= n; ++i) {
+    double const s = std::min(double(i) * l_, length());
+    nodes_.push_back(curve(s));
+    nodes_.back().check(name + ": the reference curve at s = " + number(s));
+  }
+  for (Index e = 0; e < (straight ? Index(1) : n); ++e) {
+    ancf::Reference ref;
+    ref.l = l_;
+    ref.straight = straight;
+    for (int node = 0; node < 2; ++node) {
+      Placement const& p = nodes_[std::size_t(e + node)];
+      for (int i = 0; i < 12; ++i) ref.x[12 * node + i] = i < 3 ? p.origin[i] : p.axes(i % 3, i / 3 - 1);
+    }
+    check_reference(ref, e);
+    references_.push_back(ref);
+    this->add_groups(Elastic::make(bar_, constants_, ref));
+    inertia_.push_back(inertia_of(ref));
+  }
+}
 
 }  // namespace polybody

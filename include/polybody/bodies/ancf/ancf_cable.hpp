@@ -194,40 +194,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   Axial const& axial() const { return std::get<0>(this->groups_of(0)); }
   Bending const& bending() const { return std::get<1>(this->groups_of(0)); }
 
-  template <class T = double>  // compiled where it is used
-  AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
-      : Chain(n, {{Axial(c, bar.damping, bar.length / double(n), Vec<double, 1>(bar.pretension)),
-                   Bending(c, bar.damping, bar.length / double(n))}}),
-        constants_(c),
-        length_(bar.length),
-        l_(bar.length / double(n)) {
-    for (GaussPoint const& g : gauss<4>) {
-      ShapeValues<4> const s = hermite_shape(g.xi, l_);
-      double const mass = g.weight * l_ * c.mass_per_length;
-      for (int i = 0; i < 4; ++i) {
-        for (int j = 0; j < 4; ++j) mass_(i, j) += mass * s.s[i] * s.s[j];
-        weight_[i] += mass * s.s[i];
-      }
-    }
-    reference_.resize(std::size_t(coordinates()));
-    Mat<T, 3, 3> const axes = bar.placement.axes;
-    for (Index i = 0; i <= elements(); ++i) {
-      Placement const section = curve(double(i) * l_);
-      section.check(name);
-      part<3>(std::span<double>(reference_), 6 * i) = bar.placement.origin + axes * section.origin;
-      part<3>(std::span<double>(reference_), 6 * i + 3) = axes * section.axes.col(0);
-    }
-    for (Index e = 0; e < elements(); ++e) {
-      for (GaussPoint const& g : gauss<3>) {
-        double const off = axial().strains(g.xi, l_, element_of({e, g.xi}, reference_))[0];
-        if (!(std::abs(off) < 0.1))
-          throw InvalidInput("AncfCable: element " + std::to_string(e + 1) + " of the reference curve is strained by " +
-                             number(off) +
-                             ". Give the curve by its arc length, from 0 to the bar's length, or take more elements.");
-      }
-      axes_.push_back(axes * curve((double(e) + 0.5) * l_).axes);
-    }
-  }
+  AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve);
 
   static PointMap map_of(std::array<double, 4> const& s) {
     PointMap map = PointMap::Zero();
@@ -276,5 +243,41 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   std::vector<double> reference_;
   std::vector<Mat3> axes_;  ///< of the reference in the middle of each element
 };
+
+template <class Strain, int axial_points, int bending_points>
+AncfCable<Strain, axial_points, bending_points>::AncfCable(Bar const& bar, BarConstants const& c, Index n,
+                                                           ReferenceCurve const& curve)
+    : Chain(n, {{Axial(c, bar.damping, bar.length / double(n), Vec<double, 1>(bar.pretension)),
+                 Bending(c, bar.damping, bar.length / double(n))}}),
+      constants_(c),
+      length_(bar.length),
+      l_(bar.length / double(n)) {
+  for (GaussPoint const& g : gauss<4>) {
+    ShapeValues<4> const s = hermite_shape(g.xi, l_);
+    double const mass = g.weight * l_ * c.mass_per_length;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) mass_(i, j) += mass * s.s[i] * s.s[j];
+      weight_[i] += mass * s.s[i];
+    }
+  }
+  reference_.resize(std::size_t(coordinates()));
+  Mat<double, 3, 3> const axes = bar.placement.axes;
+  for (Index i = 0; i <= elements(); ++i) {
+    Placement const section = curve(double(i) * l_);
+    section.check(name);
+    part<3>(std::span<double>(reference_), 6 * i) = bar.placement.origin + axes * section.origin;
+    part<3>(std::span<double>(reference_), 6 * i + 3) = axes * section.axes.col(0);
+  }
+  for (Index e = 0; e < elements(); ++e) {
+    for (GaussPoint const& g : gauss<3>) {
+      double const off = axial().strains(g.xi, l_, element_of({e, g.xi}, reference_))[0];
+      if (!(std::abs(off) < 0.1))
+        throw InvalidInput("AncfCable: element " + std::to_string(e + 1) + " of the reference curve is strained by " +
+                           number(off) +
+                           ". Give the curve by its arc length, from 0 to the bar's length, or take more elements.");
+    }
+    axes_.push_back(axes * curve((double(e) + 0.5) * l_).axes);
+  }
+}
 
 }  // namespace polybody

@@ -256,40 +256,7 @@ class Lrvf {
     Vec3 gamma, turn;    ///< Γ₀, l K₀
   };
 
-  template <class T = double>  // compiled where it is used
-  Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
-      : constants_(c),
-        length_(bar.length),
-        l_(bar.length / double(n)),
-        interpolation_(bar.placement),
-        section_(bar, c, l_),
-        free_(std::size_t(n)),
-        reference_(std::size_t(7 * (n + 1))) {
-    double const iz = c.rotary_inertia, iy = c.rotary_inertia_y.value_or(iz);
-    sixth_ = c.mass_per_length * l_ / 6.0;
-    rotary_ = 0.5 * l_ * Vec<T, 3>(iy + iz, iy, iz);
-    std::span<double> const q(reference_);
-    Mat<T, 3, 3> const axes = bar.placement.axes;
-    for (Index i = 0; i <= n; ++i) {
-      Placement const section = curve(double(i) * l_);
-      section.check("Lrvf: the reference curve");
-      part<3>(q, 7 * i) = bar.placement.origin + axes * section.origin;
-      part<4>(q, 7 * i + 3) = quaternion_of(axes * section.axes);
-    }
-    for (Index e = 0; e < n; ++e) {
-      Free& free = free_[std::size_t(e)];
-      Vec<T, 3> const from = part<3>(q, 7 * e), to = part<3>(q, 7 * e + 7);
-      free.chord = (to - from).norm();
-      if (!(free.chord > 1e-6 * l_ && free.chord < (1.0 + 1e-6) * l_))
-        throw InvalidInput("Lrvf: element " + number(double(e)) + " of arc length " + number(l_) + " has a chord of " +
-                           number(free.chord) +
-                           ". The reference curve's parameter must be its arc length; use more elements "
-                           "on a closed curve.");
-      MiddleSection<double> at;
-      place<double>(e, std::span<double const>(q), at, free.gamma);
-      free.turn = at.turn;
-    }
-  }
+  Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve);
 
   template <StateScalar T>
   static Quaternion<T> turned(std::span<T const> q, Index node) {
@@ -334,5 +301,40 @@ class Lrvf {
   std::vector<Free> free_;
   std::vector<double> reference_;
 };
+
+template <RotationInterpolation Interpolation>
+Lrvf<Interpolation>::Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
+    : constants_(c),
+      length_(bar.length),
+      l_(bar.length / double(n)),
+      interpolation_(bar.placement),
+      section_(bar, c, l_),
+      free_(std::size_t(n)),
+      reference_(std::size_t(7 * (n + 1))) {
+  double const iz = c.rotary_inertia, iy = c.rotary_inertia_y.value_or(iz);
+  sixth_ = c.mass_per_length * l_ / 6.0;
+  rotary_ = 0.5 * l_ * Vec<double, 3>(iy + iz, iy, iz);
+  std::span<double> const q(reference_);
+  Mat<double, 3, 3> const axes = bar.placement.axes;
+  for (Index i = 0; i <= n; ++i) {
+    Placement const section = curve(double(i) * l_);
+    section.check("Lrvf: the reference curve");
+    part<3>(q, 7 * i) = bar.placement.origin + axes * section.origin;
+    part<4>(q, 7 * i + 3) = quaternion_of(axes * section.axes);
+  }
+  for (Index e = 0; e < n; ++e) {
+    Free& free = free_[std::size_t(e)];
+    Vec<double, 3> const from = part<3>(q, 7 * e), to = part<3>(q, 7 * e + 7);
+    free.chord = (to - from).norm();
+    if (!(free.chord > 1e-6 * l_ && free.chord < (1.0 + 1e-6) * l_))
+      throw InvalidInput("Lrvf: element " + number(double(e)) + " of arc length " + number(l_) + " has a chord of " +
+                         number(free.chord) +
+                         ". The reference curve's parameter must be its arc length; use more elements "
+                         "on a closed curve.");
+    MiddleSection<double> at;
+    place<double>(e, std::span<double const>(q), at, free.gamma);
+    free.turn = at.turn;
+  }
+}
 
 }  // namespace polybody

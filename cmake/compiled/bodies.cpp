@@ -1,0 +1,20 @@
+// A part of polybody::compiled: the loops over common bodies and joints (see polybody/compiled.hpp).
+#include <polybody/compiled.hpp>
+
+namespace polybody {
+
+template struct BodyKernels<Rigid<>, double>;
+template struct BodyKernels<Rigid<EulerParameters>, double>;
+template struct BodyKernels<planar::Rigid, double>;
+template struct BodyKernels<planar::AncfCable<>, double>;
+template struct BodyKernels<planar::Lrvf, double>;
+template struct JointKernels<Joint<Revolute, Constraint>, double>;
+template struct JointKernels<Joint<Spherical, Constraint>, double>;
+template struct JointKernels<Joint<Weld, Constraint>, double>;
+template struct JointKernels<Joint<planar::Revolute, Constraint>, double>;
+template void detail::place_ground(std::vector<detail::GroundMarker> const&, Index, Index, Data<double>&);
+template void detail::place_linear_rows(std::vector<LinearRows> const&, double*, Data<double>&);
+template void detail::measure_linear_rows(std::vector<LinearRows> const&, VecX const&, Data<double> const&, double*);
+template BarConstants constants<void>(Bar const&);
+
+}  // namespace polybody

@@ -1,0 +1,318 @@
+#pragma once
+/// \file
+/// What a model does with all its bodies of one type: loops that know the type of the body and not that of the model. A
+/// program compiles them once for all its models; `extern template struct BodyKernels<MyBody, double>;` leaves even that
+/// to another object file (see polybody/compiled.hpp).
+
+#include <polybody/bodies/shared/element_batches.hpp>
+#include <polybody/system/entries.hpp>
+#include <polybody/system/layout.hpp>
+#include <polybody/system/pools.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// Kept with a model's data for its bodies of one type: a pose for each body whose points share one, and scratch.
+template <class B, StateScalar T>
+struct BodyData {
+  std::vector<typename PoseOf<B, T>::Type> poses;
+  std::vector<KeptScratch<B, T>> scratch;
+};
+
+/// How much of the arena of Jacobians is taken, and the columns of the widest marker.
+struct MarkerArena {
+  Index taken = 0, widest = 12;
+};
+
+/// What M a − f is asked for.
+template <StateScalar T>
+struct Unbalance {
+  At<T> at;
+  VecXOf<T> const& a;
+  Vec3 g;
+};
+
+/// Where and by which factor second-order terms are taken.
+struct StiffnessAt {
+  At<double> at;
+  double ck;
+};
+
+}  // namespace detail
+
+/// The loops over the bodies of type B, for scalar T. Those of energies, masses and tangents are for numbers.
+template <class B, StateScalar T>
+struct BodyKernels {
+  using Pool = detail::BodyPool<B>;
+  using Entry = detail::BodyEntry<B>;
+  using Kept = detail::BodyData<B, T>;
+  using Vector = VecXOf<T>;
+
+  /// Puts a body into the pool whose coordinates, speeds and own rows begin there.
+  static void add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row);
+  /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
+  static Published<double> publish_point(B const& body, typename B::Point const& point, std::span<double const> q,
+                                         std::span<double const> v, std::vector<double>& jacobian);
+  /// Axes (3×3) at a marker's point, as placed.
+  static Mat3 reference_axes(Pool const& pool, Marker<B> const& marker);
+  /// Puts a marker into the pool. Returns the size of its Jacobian.
+  static Index add_marker(Pool& pool, Marker<B> const& marker, Mat3 const& axes, Index published);
+
+  /// Counts, places and names.
+  static void describe(Pool const& pool, ModelLayout& out);
+  /// Room for what is kept, and a place for each marker.
+  static void place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data);
+  /// Numbers that the rows of the bodies take in their arena; and a block for each, from `next` on, `owner` being the
+  /// first body's place. Returns the end.
+  static Index own_size(Pool const& pool);
+  static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
+  /// The numbers that threads write for the elements of one body: forces, tangents.
+  static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
+
+  /// Every marker's frame, Jacobian and bias.
+  static void publish(Pool const& pool, Kept& kept, At<T> at, Data<T>& data);
+  /// Gap and map of the bodies' own rows, from `next` on; returns the end. And their γ.
+  static T* measure_own_rows(Pool const& pool, At<T> at, T* next);
+  static void own_gamma(Pool const& pool, At<T> at, Vector& out);
+  /// q ⊞ δ and the rate of δ; with `places`, in narrow vectors. Return the place after the last body's.
+  static NarrowPlace const* plus(Pool const& pool, NarrowPlace const* places, Vector const& q, Vector const& delta,
+                                 Vector& out);
+  static NarrowPlace const* local_rate(Pool const& pool, NarrowPlace const* places, Vector const& delta,
+                                       Vector const& v, Vector& out);
+  /// r += M a − f.
+  static void add_forces(Pool const& pool, Kept& kept, detail::Unbalance<T> const& u, Data<T>& data, Vector& r);
+
+  /// q˙ = d/dε (q ⊞ ε v) at ε = 0: v itself where a body has as many coordinates as speeds, else by dual numbers in
+  /// `room` (2 nq + nv).
+  static NarrowPlace const* coordinate_rates(Pool const& pool, NarrowPlace const* places, VecX const& q, VecX const& v,
+                                             VecXOf<Dual<1>>& room, VecX& rate);
+  static void rigid_speeds(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);
+  static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);
+  static void tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c, Data<double>& data,
+                       BlockSink& sink);
+  /// ck ∂(Gᵀλ)/∂q of the bodies' own rows.
+  static void own_stiffness(Pool const& pool, VecX const& lambda, detail::StiffnessAt const& x, BlockSink& sink);
+  /// ck ∂(Jᵀw)/∂q for the wrenches w in data.loads, marker by marker.
+  static void load_stiffness(Pool const& pool, Kept& kept, detail::StiffnessAt const& x, Data<double>& data,
+                             BlockSink& sink);
+  static void add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum);
+  /// What damping takes from the bodies: of their forces f(q, v), elastic ones do not know v and those of inertia are
+  /// even in it, while damping is odd; so −½ v·(f(q, v) − f(q, −v)). `backwards` is −v.
+  static double dissipated(Pool const& pool, Kept& kept, At<double> at, VecX const& backwards);
+
+ private:
+  static constexpr int n = B::element_columns;
+  static std::span<T const> coordinates(Entry const& e, Vector const& q) {
+    return {q.data() + e.q0, std::size_t(e.body.coordinates())};
+  }
+  static std::span<T const> speeds(Entry const& e, Vector const& v) {
+    return {v.data() + e.v0, std::size_t(e.body.speeds())};
+  }
+  /// Where a body stands in vectors that may be narrow.
+  static NarrowPlace place_of(Entry const& e, NarrowPlace const*& places) {
+    if (places) return *places++;
+    return {NarrowPlace::Kind::as_it_is, e.q0, e.v0, e.body.coordinates(), e.body.speeds()};
+  }
+};
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row) {
+  pool.entries.push_back({body, name, q0, v0, row});
+}
+template <class B, StateScalar T>
+Mat3 BodyKernels<B, T>::reference_axes(Pool const& pool, Marker<B> const& marker) {
+  B const& body = pool.entries[std::size_t(marker.body)].body;
+  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0), jacobian;
+  body.reference(q);
+  return publish_point(body, marker.point, q, v, jacobian).frame.A;
+}
+template <class B, StateScalar T>
+Published<double> BodyKernels<B, T>::publish_point(B const& body, typename B::Point const& point,
+                                                   std::span<double const> q, std::span<double const> v,
+                                                   std::vector<double>& jacobian) {
+  Published<double> out;
+  out.columns = point_columns(body, point);
+  jacobian.resize(std::size_t(6 * out.columns));
+  out.jacobian = jacobian.data();
+  body.template publish<double>(point, Mat3::Identity(), q, v, out);
+  return out;
+}
+template <class B, StateScalar T>
+Index BodyKernels<B, T>::add_marker(Pool& pool, Marker<B> const& marker, Mat3 const& axes, Index published) {
+  pool.markers.push_back({marker.body, marker.point, axes, published});
+  return 6 * point_columns(pool.entries[std::size_t(marker.body)].body, marker.point);
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
+  Index own = 0, index = 0;
+  if constexpr (OwnsRows<B>) own = B::own_rows;
+  for (auto const& m : pool.markers) out.owners[std::size_t(m.published)] = Index(out.bodies.size()) + m.body;
+  for (Entry const& e : pool.entries)
+    out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own,
+                          B::world == World::plane, &detail::type_tag<B>, index++, &e.body});
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data) {
+  kept.poses.resize(pool.entries.size());
+  kept.scratch.reserve(pool.entries.size());
+  for (Entry const& e : pool.entries) kept.scratch.emplace_back(e.body);
+  for (auto const& m : pool.markers) {
+    Entry const& e = pool.entries[std::size_t(m.body)];
+    Published<T>& p = data.markers[std::size_t(m.published)];
+    p.first = e.v0 + e.body.first_column(m.point);
+    p.columns = point_columns(e.body, m.point);
+    p.jacobian = data.jacobians.data() + arena.taken;
+    arena.taken += 6 * p.columns;
+    arena.widest = std::max(arena.widest, p.columns);
+  }
+}
+
+template <class B, StateScalar T>
+Index BodyKernels<B, T>::own_size(Pool const& pool) {
+  if constexpr (OwnsRows<B>)
+    return Index(pool.entries.size()) * B::own_rows * (1 + n);
+  else
+    return 0;
+}
+template <class B, StateScalar T>
+T* BodyKernels<B, T>::place_rows(Pool const& pool, Index owner, T* next, Data<T>& data) {
+  if constexpr (OwnsRows<B>)
+    for (Entry const& e : pool.entries) {
+      constexpr int m = B::own_rows;
+      data.rows.push_back({.source = RowSource::body,
+                           .row = e.row,
+                           .rows = m,
+                           .owner = owner++,
+                           .a = {.first = e.v0, .columns = n, .map = next + m},
+                           .g = next});
+      next += m * (1 + n);
+    }
+  return next;
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents) {
+  for (Entry const& e : pool.entries) {
+    std::size_t const columns = std::size_t(element_columns(e.body)), elements = std::size_t(e.body.elements());
+    if (elements < std::size_t(2 * Data<T>::least_elements)) continue;
+    forces = std::max(forces, columns * elements);
+    tangents = std::max(tangents, columns * columns * elements);
+  }
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::publish(Pool const& pool, Kept& kept, At<T> at, Data<T>& data) {
+  if constexpr (SharesPose<B, T>)
+    share(data.workers, Index(kept.poses.size()), data.least_markers, [&](Index begin, Index end) {
+      for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+        Entry const& e = pool.entries[i];
+        e.body.template pose<T>(coordinates(e, at.q), speeds(e, at.v), kept.poses[i]);
+      }
+    });
+  share(data.workers, Index(pool.markers.size()), data.least_markers, [&](Index begin, Index end) {
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      auto const& p = pool.markers[i];
+      if (!data.linear_rows && !data.read[std::size_t(p.published)]) continue;
+      Published<T>& out = data.markers[std::size_t(p.published)];
+      Entry const& e = pool.entries[std::size_t(p.body)];
+      if constexpr (SharesPose<B, T>)
+        e.body.publish(p.point, p.axes, kept.poses[std::size_t(p.body)], out);
+      else
+        e.body.template publish<T>(p.point, p.axes, coordinates(e, at.q), speeds(e, at.v), out);
+    }
+  });
+}
+
+template <class B, StateScalar T>
+T* BodyKernels<B, T>::measure_own_rows(Pool const& pool, At<T> at, T* next) {
+  if constexpr (OwnsRows<B>)
+    for (Entry const& e : pool.entries) {
+      constexpr int m = B::own_rows;
+      Vec<T, m> own;
+      Mat<T, m, n> map;
+      e.body.template own_gap<T>(coordinates(e, at.q), own);
+      e.body.template own_map<T>(coordinates(e, at.q), map);
+      for (int i = 0; i < m; ++i) *next++ = own[i];
+      for (int i = 0; i < m * n; ++i) *next++ = map.data()[i];
+    }
+  return next;
+}
+template <class B, StateScalar T>
+void BodyKernels<B, T>::own_gamma(Pool const& pool, At<T> at, Vector& out) {
+  if constexpr (OwnsRows<B>)
+    for (Entry const& e : pool.entries) {
+      Vec<T, B::own_rows> own;
+      e.body.template own_gamma<T>(coordinates(e, at.q), speeds(e, at.v), own);
+      for (int i = 0; i < B::own_rows; ++i) out[e.row + i] = own[i];
+    }
+}
+
+template <class B, StateScalar T>
+NarrowPlace const* BodyKernels<B, T>::plus(Pool const& pool, NarrowPlace const* places, Vector const& q,
+                                           Vector const& delta, Vector& out) {
+  for (Entry const& e : pool.entries) {
+    NarrowPlace const p = place_of(e, places);
+    if (p.kind == NarrowPlace::Kind::carried) continue;
+    auto const qe = detail::body_part(q, p.q, p.coordinates), de = detail::body_part(delta, p.v, p.speeds);
+    auto const to = detail::body_part_of(out, p.q, p.coordinates);
+    if (p.kind == NarrowPlace::Kind::as_it_is)
+      e.body.template plus<T>(qe, de, to);
+    else
+      for (std::size_t i = 0; i < qe.size(); ++i) to[i] = qe[i] + de[i];
+  }
+  return places;
+}
+template <class B, StateScalar T>
+NarrowPlace const* BodyKernels<B, T>::local_rate(Pool const& pool, NarrowPlace const* places, Vector const& delta,
+                                                 Vector const& v, Vector& out) {
+  for (Entry const& e : pool.entries) {
+    NarrowPlace const p = place_of(e, places);
+    if (p.kind == NarrowPlace::Kind::carried) continue;
+    auto const de = detail::body_part(delta, p.v, p.speeds), ve = detail::body_part(v, p.v, p.speeds);
+    auto const to = detail::body_part_of(out, p.v, p.speeds);
+    if (p.kind == NarrowPlace::Kind::as_it_is)
+      e.body.template local_rate<T>(de, ve, to);
+    else
+      for (std::size_t i = 0; i < ve.size(); ++i) to[i] = ve[i];
+  }
+  return places;
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::add_forces(Pool const& pool, Kept& kept, detail::Unbalance<T> const& u, Data<T>& data,
+                                   Vector& r) {
+  bool const falls = u.g[0] != 0.0 || u.g[1] != 0.0 || u.g[2] != 0.0;
+  for (std::size_t b = 0; b < pool.entries.size(); ++b) {
+    Entry const& e = pool.entries[b];
+    auto&& scratch = kept.scratch[b].force_scratch(e.body);
+    BodyMotion<T> const motion{coordinates(e, u.at.q), speeds(e, u.at.v), speeds(e, u.a)};
+    auto const add = [&](Index i, T const* x) {
+      T* const rows = r.data() + e.v0 + e.body.first_column(i);
+      int size = n;
+      if constexpr (n == Eigen::Dynamic) size = int(scratch.weight.size());
+      for (int k = 0; k < size; ++k) rows[k] += x[k];
+      if (falls) {
+        e.body.template gravity<T>(i, motion.q, u.g, scratch.weight);
+        for (int k = 0; k < size; ++k) rows[k] -= scratch.weight[k];
+      }
+    };
+    Index const elements = e.body.elements();
+    if constexpr (n != Eigen::Dynamic)
+      if (data.workers && elements >= 2 * data.least_elements) {
+        T* const slots = data.element_forces.data();
+        data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
+          for_each_unbalance<B, T>(e.body, {begin, end}, motion,
+                                   [&](Index i, Vec<T, n> const& x) { std::copy_n(x.data(), n, slots + n * i); });
+        });
+        for (Index i = 0; i < elements; ++i) add(i, slots + n * i);
+        continue;
+      }
+    for_each_unbalance<B, T>(e.body, {0, elements}, motion, scratch,
+                             [&](Index i, Vec<T, n> const& x) { add(i, x.data()); });
+  }
+}
+
+}  // namespace polybody

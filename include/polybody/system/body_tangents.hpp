@@ -1,0 +1,159 @@
+#pragma once
+/// \file
+/// The kernels of bodies that are for numbers: rates, masses, tangents and energies (declared in body_kernels.hpp).
+
+#include <polybody/system/body_kernels.hpp>
+
+namespace polybody {
+
+template <class B, StateScalar T>
+NarrowPlace const* BodyKernels<B, T>::coordinate_rates(Pool const& pool, NarrowPlace const* places, VecX const& q,
+                                                       VecX const& v, VecXOf<Dual<1>>& room, VecX& rate) {
+  using D = Dual<1>;
+  D* const delta = room.data() + q.size();
+  D* const out = delta + v.size();
+  for (Entry const& e : pool.entries) {
+    NarrowPlace const p = place_of(e, places);
+    if (p.kind == NarrowPlace::Kind::carried) continue;
+    Index const width = p.coordinates, k = p.speeds;
+    if (width == k) {
+      for (Index i = 0; i < width; ++i) rate[p.q + i] = v[p.v + i];
+      continue;
+    }
+    for (Index i = 0; i < width; ++i) room[p.q + i] = D(q[p.q + i]);
+    for (Index i = 0; i < k; ++i) {
+      delta[p.v + i] = D(0.0);
+      delta[p.v + i].d[0] = v[p.v + i];
+    }
+    e.body.template plus<D>(std::span<D const>(room.data() + p.q, std::size_t(width)),
+                            std::span<D const>(delta + p.v, std::size_t(k)),
+                            std::span<D>(out + p.q, std::size_t(width)));
+    for (Index i = 0; i < width; ++i) rate[p.q + i] = out[p.q + i].d[0];
+  }
+  return places;
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::rigid_speeds(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v) {
+  for (Entry const& e : pool.entries)
+    e.body.rigid_velocity(coordinates(e, q), v0, omega, detail::body_part_of(v, e.v0, e.body.speeds()));
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink) {
+  for (std::size_t b = 0; b < pool.entries.size(); ++b) {
+    Entry const& e = pool.entries[b];
+    auto&& scratch = kept.scratch[b].tangent_scratch(e.body);
+    bool const alike = detail::are_alike(e.body);
+    for (Index i = 0; i < e.body.elements(); ++i) {
+      if (i == 0 || !alike) e.body.mass(i, coordinates(e, at.q), scratch.m);
+      Index const first = e.v0 + e.body.first_column(i);
+      sink.add(first, first, scratch.m);
+    }
+  }
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c,
+                                 Data<double>& data, BlockSink& sink) {
+  ElementCoefficients const coefficients{c.mass, c.damping, c.stiffness};
+  for (std::size_t b = 0; b < pool.entries.size(); ++b) {
+    Entry const& e = pool.entries[b];
+    auto&& scratch = kept.scratch[b].tangent_scratch(e.body);
+    BodyMotion<> const motion{coordinates(e, at.q), speeds(e, at.v)};
+    Index const elements = e.body.elements();
+    if constexpr (n != Eigen::Dynamic)
+      if (data.workers && elements >= 2 * data.least_elements) {
+        double* const slots = data.element_tangents.data();
+        data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
+          for_each_element_tangent<B>(
+              e.body, {begin, end}, motion, coefficients,
+              [&](Index i, Mat<double, n, n> const& k) { std::copy_n(k.data(), n * n, slots + n * n * i); });
+        });
+        for (Index i = 0; i < elements; ++i) {
+          Index const first = e.v0 + e.body.first_column(i);
+          sink.add(first, first, BlockView(slots + n * n * i, n, n, 1, n));
+        }
+        continue;
+      }
+    for_each_element_tangent<B>(e.body, {0, elements}, motion, coefficients, scratch,
+                                [&](Index i, Mat<double, n, n> const& k) {
+                                  Index const first = e.v0 + e.body.first_column(i);
+                                  sink.add(first, first, k);
+                                });
+  }
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::own_stiffness(Pool const& pool, VecX const& lambda, detail::StiffnessAt const& x,
+                                      BlockSink& sink) {
+  if constexpr (OwnsRows<B>)
+    for (Entry const& e : pool.entries) {
+      Mat<double, n, n> k;
+      Vec<double, B::own_rows> const l(lambda.data() + e.row);
+      e.body.own_stiffness(coordinates(e, x.at.q), l, k);
+      k *= x.ck;
+      sink.add(e.v0, e.v0, k);
+    }
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::load_stiffness(Pool const& pool, Kept& kept, detail::StiffnessAt const& x, Data<double>& data,
+                                       BlockSink& sink) {
+  for (auto const& p : pool.markers) {
+    Entry const& e = pool.entries[std::size_t(p.body)];
+    Published<double> const& marker = data.markers[std::size_t(p.published)];
+    Wrench<double> const& w = data.loads[std::size_t(p.published)];
+    bool acts = false;
+    for (int i = 0; i < 3; ++i) acts = acts || w.f[i] != 0.0 || w.m[i] != 0.0;
+    if (!acts) {
+      sink.skip(marker.first, marker.first, marker.columns, marker.columns);
+      continue;
+    }
+    auto const q = coordinates(e, x.at.q);
+    if constexpr (B::point_columns == Eigen::Dynamic) {
+      MatX& k = kept.scratch[std::size_t(p.body)].point_scratch();
+      e.body.load_stiffness(p.point, q, w, k);
+      auto of_marker = k.topLeftCorner(marker.columns, marker.columns);
+      of_marker *= x.ck;
+      sink.add(marker.first, marker.first, of_marker);
+    } else {
+      Mat<double, B::point_columns, B::point_columns> k;
+      e.body.load_stiffness(p.point, q, w, k);
+      for (Index i = 0; i < k.size(); ++i) k.data()[i] *= x.ck;
+      sink.add(marker.first, marker.first, k);
+    }
+  }
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum) {
+  for (Entry const& e : pool.entries) {
+    auto const q = coordinates(e, at.q), v = speeds(e, at.v);
+    for (Index i = 0; i < e.body.elements(); ++i) {
+      sum.kinetic += e.body.kinetic_energy(i, q, v);
+      sum.strain += e.body.strain_energy(i, q);
+      sum.gravity += e.body.gravity_energy(i, q, g);
+    }
+  }
+}
+
+template <class B, StateScalar T>
+double BodyKernels<B, T>::dissipated(Pool const& pool, Kept& kept, At<double> at, VecX const& backwards) {
+  double sum = 0.0;
+  if constexpr (!HasRigidLayout<B>)
+    for (std::size_t b = 0; b < pool.entries.size(); ++b) {
+      Entry const& e = pool.entries[b];
+      auto&& scratch = kept.scratch[b].force_scratch(e.body);
+      auto const q = coordinates(e, at.q), v = speeds(e, at.v), back = speeds(e, backwards);
+      for (Index i = 0; i < e.body.elements(); ++i) {
+        e.body.template force<double>(i, q, v, scratch.force);
+        e.body.template force<double>(i, q, back, scratch.x);
+        double const* const speed = v.data() + e.body.first_column(i);
+        for (Index k = 0; k < scratch.x.size(); ++k) sum += 0.5 * speed[k] * (scratch.x[k] - scratch.force[k]);
+      }
+    }
+  return sum;
+}
+
+}  // namespace polybody

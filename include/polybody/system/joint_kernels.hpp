@@ -1,0 +1,258 @@
+#pragma once
+/// \file
+/// What a model does with all its joints of one type: loops that know the type of the joint and not that of the model
+/// (compare body_kernels.hpp).
+
+#include <new>
+
+#include <polybody/joints/joint.hpp>
+#include <polybody/math/time_laws.hpp>
+#include <polybody/system/body_tangents.hpp>
+#include <polybody/system/linear_rows.hpp>
+#include <polybody/system/pulled_blocks.hpp>
+
+namespace polybody {
+
+/// ġ = Ga Va + Gb Vb + Φ_t of a gap between two frames.
+template <int m, StateScalar T>
+Vec<T, m> gap_rate(Gap<m, T> const& gap, Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 6> const va = twist(a), vb = twist(b);
+  Vec<T, m> rate;
+  for (int i = 0; i < m; ++i) {
+    T by_a = gap.Ga(i, 0) * va[0], by_b = gap.Gb(i, 0) * vb[0];
+    for (int j = 1; j < 6; ++j) {
+      by_a += gap.Ga(i, j) * va[j];
+      by_b += gap.Gb(i, j) * vb[j];
+    }
+    rate[i] = by_a + by_b + gap.rate[i];
+  }
+  return rate;
+}
+
+namespace detail {
+
+/// Kept with a model's data for its joints of one type: a gap for each, and what it answers if it is compliant.
+template <class J, StateScalar T>
+struct JointData {
+  std::vector<Gap<J::rows, T>> gaps;
+  std::vector<Vec<T, J::rows>> answers;
+};
+
+/// Times at which a drive or a load wants a step to end.
+template <class Law>
+void add_corners(Law const& law, std::vector<double>& all) {
+  if constexpr (HasCorners<Law>)
+    for (double const t : law.corners()) all.push_back(t);
+}
+
+/// Adds −scale · w of wrenches to the loads of their markers.
+template <std::size_t n>
+void add_loads(std::array<Wrench<double>, n> const& w, std::array<Index, n> const& markers, double scale,
+               Data<double>& data) {
+  for (std::size_t k = 0; k < n; ++k) {
+    Wrench<double>& to = data.loads[std::size_t(markers[k])];
+    for (int i = 0; i < 3; ++i) {
+      to.f[i] -= scale * w[k].f[i];
+      to.m[i] -= scale * w[k].m[i];
+    }
+  }
+}
+
+/// λ(g, 0) in the rows that store no energy: laws of a bushing without a potential.
+template <class P, int m>
+Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
+  if constexpr (requires { std::get<0>(policy.laws); })
+    [&]<std::size_t... i>(std::index_sequence<i...>) {
+      auto const clear = [&](std::size_t k, auto const& law) {
+        if constexpr (requires { law.potential(0.0); }) rest[Index(k)] = 0.0;
+      };
+      (clear(i, std::get<i>(policy.laws)), ...);
+    }(std::make_index_sequence<std::size_t(m)>{});
+  else
+    for (int i = 0; i < m; ++i) rest[i] = 0.0;
+  return rest;
+}
+
+}  // namespace detail
+
+/// The loops over the joints of type J, for scalar T; those of energies and tangents are for numbers. Linear joints have
+/// no gap: their rows are the model's (linear_rows.hpp).
+template <class J, StateScalar T>
+struct JointKernels {
+  using P = typename J::PolicyType;
+  using Pool = std::vector<detail::JointEntry<J>>;
+  using Kept = detail::JointData<J, T>;
+  static constexpr bool linear = LinearInCoordinates<P>, compliant = !AddsRows<P>;
+
+  /// Counts, places and names.
+  static void describe(Pool const& pool, std::vector<LinearRows> const& linear_rows, ModelLayout& out);
+  /// A gap and a block of rows for each joint; `owner` is the first joint's place. The blocks of linear joints stand
+  /// from `first_linear` on, and are told their owners.
+  static void place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data);
+
+  /// Every gap, and what compliant joints answer.
+  static void measure(Pool const& pool, Kept& kept, double t, Data<T>& data);
+  /// γ of the rows without the markers' biases.
+  static void gamma(Pool const& pool, double t, Data<T> const& data, VecXOf<T>& out);
+
+  /// K and D of compliant joints, by the slope of what they answer.
+  static void slopes(Pool const& pool, Kept const& kept, TangentCoefficients const& c, Data<double>& data,
+                     BlockSink& sink);
+  /// ck ∂(Gᵀλ)/∂q; adds Gᵀλ to the loads.
+  static void stiffness(Pool const& pool, Kept const& kept, VecX const& lambda, detail::StiffnessAt const& x,
+                        Data<double>& data, BlockSink& sink);
+  /// What compliant joints store.
+  static double energy(Pool const& pool, Kept const& kept);
+  /// What a joint does whose gap moves by ġ = G v + Φ_t; the bodies feel −Gᵀλ.
+  ///   Rows:       −λ·G v goes to the bodies; on the rows G v = −Φ_t, and it is λ·Φ_t, zero without a drive.
+  ///   Compliant:  so does −λ·G v = λ·Φ_t − λ(g, 0)·ġ − (λ − λ(g, 0))·ġ: work of the drive, less what is stored, less
+  ///   what is lost.
+  static void add_powers(Pool const& pool, Kept const& kept, VecX const& lambda, Data<double> const& data, Powers& p);
+};
+
+template <class J, StateScalar T>
+void JointKernels<J, T>::describe(Pool const& pool, std::vector<LinearRows> const& linear_rows, ModelLayout& out) {
+  Index index = 0;
+  for (auto const& e : pool) {
+    LinearRows const* const rows = e.linear < 0 ? nullptr : &linear_rows[std::size_t(e.linear)];
+    out.joints.push_back({e.name, e.a, e.b, e.row, e.rows, Eliminates<P>, &detail::type_tag<J>, index++, rows});
+    detail::add_corners(e.joint.geometry, out.corners);
+  }
+}
+
+template <class J, StateScalar T>
+void JointKernels<J, T>::place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data) {
+  kept.gaps.resize(pool.size());
+  kept.answers.resize(pool.size());
+  for (std::size_t i = 0; i < pool.size(); ++i, ++owner) {
+    auto const& e = pool[i];
+    if constexpr (linear) {
+      data.rows[std::size_t(first_linear + e.linear)].owner = owner;
+    } else {
+      data.read[std::size_t(e.a)] = data.read[std::size_t(e.b)] = 1;
+      Gap<J::rows, T>& gap = kept.gaps[i];
+      RowBlock<T> block{.source = compliant ? RowSource::compliant : RowSource::joint,
+                        .row = e.row,
+                        .rows = J::rows,
+                        .owner = owner,
+                        .a = {e.a, 0, 6, gap.Ga.data()},
+                        .b = {e.b, 0, 6, gap.Gb.data()},
+                        .g = gap.g.data(),
+                        .rate = gap.rate.data()};
+      if constexpr (compliant) block.answer = kept.answers[i].data();
+      data.rows.push_back(block);
+    }
+  }
+}
+
+template <class J, StateScalar T>
+void JointKernels<J, T>::measure(Pool const& pool, Kept& kept, double t, Data<T>& data) {
+  if constexpr (!linear)
+    share(data.workers, Index(pool.size()), data.least_markers, [&](Index begin, Index end) {
+      for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+        auto const& e = pool[i];
+        Frame<T> const &a = data.markers[std::size_t(e.a)].frame, &b = data.markers[std::size_t(e.b)].frame;
+        using G = Gap<J::rows, T>;  // made where it stands: assigned, it would be copied
+        static_assert(std::is_trivially_destructible_v<G>);
+        ::new (static_cast<void*>(&kept.gaps[i])) G(e.joint.measure().template gap<T>(a, b, t));
+        if constexpr (compliant)
+          kept.answers[i] =
+              e.joint.policy.template multiplier<J::rows, T>(kept.gaps[i].g, gap_rate(kept.gaps[i], a, b));
+      }
+    });
+}
+
+template <class J, StateScalar T>
+void JointKernels<J, T>::gamma(Pool const& pool, double t, Data<T> const& data, VecXOf<T>& out) {
+  if constexpr (!linear && !compliant)
+    for (auto const& e : pool) {
+      Vec<T, J::rows> const gamma = e.joint.geometry.template gamma<T>(data.markers[std::size_t(e.a)].frame,
+                                                                       data.markers[std::size_t(e.b)].frame, t);
+      for (int i = 0; i < J::rows; ++i) out[e.row + i] = gamma[i];
+    }
+}
+
+template <class J, StateScalar T>
+void JointKernels<J, T>::slopes(Pool const& pool, Kept const& kept, TangentCoefficients const& c, Data<double>& data,
+                                BlockSink& sink) {
+  if constexpr (!linear && compliant)
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      constexpr int m = J::rows;
+      auto const& e = pool[i];
+      Gap<m, double> const& gap = kept.gaps[i];
+      Published<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
+      auto const slope =
+          e.joint.policy.template slope<m>(c.stiffness, c.damping, gap.g, gap_rate(gap, a.frame, b.frame));
+      double const* const maps[2] = {gap.Ga.data(), gap.Gb.data()};
+      if constexpr (requires { slope.toDenseMatrix(); })
+        detail::add_pulled_slope<m, true>({&a, &b}, maps, slope.diagonal().data(), data.scratch, sink);
+      else
+        detail::add_pulled_slope<m, false>({&a, &b}, maps, slope.data(), data.scratch, sink);
+    }
+}
+
+template <class J, StateScalar T>
+void JointKernels<J, T>::stiffness(Pool const& pool, Kept const& kept, VecX const& lambda, detail::StiffnessAt const& x,
+                                   Data<double>& data, BlockSink& sink) {
+  if constexpr (!linear)
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      constexpr int m = J::rows;
+      auto const& e = pool[i];
+      Gap<m, double> const& gap = kept.gaps[i];
+      double const* const multipliers = compliant ? kept.answers[i].data() : lambda.data() + e.row;
+      Published<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
+      Vec<double, m> l;
+      for (int k = 0; k < m; ++k) l[k] = multipliers[k];
+      Mat<double, 12, 12> s = wrench_gradient(e.joint.measure(), a.frame, b.frame, x.at.t, l);
+      for (int k = 0; k < 144; ++k) s.data()[k] *= x.ck;
+      std::array<Wrench<double>, 2> on_markers;
+      double const* const maps[2] = {gap.Ga.data(), gap.Gb.data()};
+      for (std::size_t end = 0; end < 2; ++end) {
+        double fm[6];
+        detail::wrench_of<m>(maps[end], multipliers, fm);
+        for (int k = 0; k < 3; ++k) {
+          on_markers[end].f[k] = fm[k];
+          on_markers[end].m[k] = fm[3 + k];
+        }
+      }
+      detail::add_loads(on_markers, {e.a, e.b}, -1.0, data);
+      detail::add_pulled_pairs<2>({&a, &b}, s.data(), true, data.scratch, sink);
+    }
+}
+
+template <class J, StateScalar T>
+double JointKernels<J, T>::energy(Pool const& pool, Kept const& kept) {
+  double sum = 0.0;
+  if constexpr (!linear && compliant)
+    for (std::size_t i = 0; i < pool.size(); ++i)
+      sum += pool[i].joint.policy.template potential<J::rows>(kept.gaps[i].g);
+  return sum;
+}
+
+template <class J, StateScalar T>
+void JointKernels<J, T>::add_powers(Pool const& pool, Kept const& kept, VecX const& lambda, Data<double> const& data,
+                                    Powers& p) {
+  if constexpr (!linear)
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      constexpr int m = J::rows;
+      auto const& e = pool[i];
+      Gap<m, double> const& gap = kept.gaps[i];
+      Vec<double, m> const rate =
+          gap_rate(gap, data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame);
+      if constexpr (compliant) {
+        Vec<double, m> const zero = Vec<double, m>::Zero();
+        Vec<double, m> const l = e.joint.policy.template multiplier<m, double>(gap.g, rate);
+        Vec<double, m> const rest = e.joint.policy.template multiplier<m, double>(gap.g, zero);
+        Vec<double, m> const lossless = detail::rest_without_potential(e.joint.policy, rest);
+        for (int k = 0; k < m; ++k) {
+          p.drives += l[k] * gap.rate[k];
+          p.loads -= lossless[k] * rate[k];
+          p.dissipated += (l[k] - rest[k]) * rate[k];
+        }
+      } else {
+        for (int k = 0; k < m; ++k) p.drives -= lambda[e.row + k] * (rate[k] - gap.rate[k]);
+      }
+    }
+}
+
+}  // namespace polybody
