@@ -66,6 +66,11 @@ TEST_F(Checkpoints, AreSummedUpByFnv) {
   EXPECT_EQ(checksum("foobar"), 0x85944171f73967e8u);
 }
 
+TEST_F(Checkpoints, AFolderIsNoCheckpoint) {
+  std::string const folder = std::filesystem::path(file).parent_path().string();
+  EXPECT_TRUE(has(message_of<IoError>([&] { read_checkpoint(folder); }), "cannot be read"));
+}
+
 TEST_F(Checkpoints, EveryDamageIsNoticed) {
   write_checkpoint(file, rich());
   std::string const good = text_of(file);

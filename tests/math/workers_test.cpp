@@ -78,4 +78,10 @@ TEST(Workers, LoopsWithoutAnyRunAsTheyStand) {
   EXPECT_EQ(sum, 10);
 }
 
+TEST(Workers, MoreThreadsThanAnyMachineHasAreRefused) {
+  std::string const said = refusal([] { Workers(1'000'000); });
+  EXPECT_TRUE(has(said, "1000000 threads")) << said;
+  EXPECT_TRUE(has(said, "processors")) << said;
+}
+
 }  // namespace workers_test

@@ -4,9 +4,9 @@
 
 using namespace polybody;
 
-struct Block : planar::Rigid {
+struct Crate : planar::Rigid {
   using planar::Rigid::Rigid;
   void tangent() const {}  // hides the one with its arguments
 };
 
-void add(Model<Bodies<Block>, Joints<>>& model) { model.add(Block(1.0, 1.0)); }
+void add(Model<Bodies<Crate>, Joints<>>& model) { model.add(Crate(1.0, 1.0)); }

@@ -5,7 +5,6 @@
 
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 #include <polybody/io/atomic_file.hpp>
 #include <polybody/run/run_snapshot.hpp>
@@ -127,7 +126,9 @@ template <class = void>
 RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::string const name = file.string();
   std::ifstream stream(file, std::ios::binary);
-  std::string const all{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::string all;
+  for (char block[4096]; stream.read(block, sizeof block), stream.gcount() > 0;)  // of a folder: bad, and no exception
+    all.append(block, static_cast<std::size_t>(stream.gcount()));
   if (!stream.is_open() || stream.bad()) throw IoError("checkpoint '" + name + "' cannot be read.");
   detail::CheckpointHead const ours = detail::checkpoint_head;
   detail::CheckpointHead head = {};

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <concepts>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -33,19 +34,28 @@ class LoopBody {
 
 class Workers {
  public:
-  /// `threads` counts the caller: 1 starts none. \throws InvalidInput for less.
+  static constexpr int most = 4096;  ///< threads
+
+  /// `threads` counts the caller: 1 starts none. \throws InvalidInput for less, and for more than the system starts.
   explicit Workers(int threads) : thrown_(std::size_t(std::max(threads, 0))) {
     if (threads < 1)
       throw InvalidInput("Workers: at least one thread is needed, but " + std::to_string(threads) + " are asked for.");
-    for (int i = 1; i < threads; ++i) others_.emplace_back([this, i] { serve(i); });
+    if (threads > most)
+      throw InvalidInput("Workers: " + std::to_string(threads) + " threads are asked for, more than the " +
+                         std::to_string(most) + " that are served. Ask for no more than there are processors.");
+    try {
+      for (int i = 1; i < threads; ++i) others_.emplace_back([this, i] { serve(i); });
+    } catch (std::system_error const& error) {
+      std::size_t const started = others_.size() + 1;
+      end();
+      throw InvalidInput("Workers: of " + std::to_string(threads) + " threads the system starts " +
+                         std::to_string(started) + " only (" + error.what() +
+                         "). Ask for no more than it has processors.");
+    }
   }
   Workers(Workers const&) = delete;
   Workers& operator=(Workers const&) = delete;
-  ~Workers() {
-    call_ = nullptr;
-    wake();
-    for (std::thread& t : others_) t.join();
-  }
+  ~Workers() { end(); }
 
   int size() const { return int(thrown_.size()); }
 
@@ -81,6 +91,11 @@ class Workers {
   }
 
  private:
+  void end() {
+    call_ = nullptr;
+    wake();
+    for (std::thread& t : others_) t.join();
+  }
   void wake() {
     running_.store(unsigned(size() - 1));
     round_.fetch_add(1);

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// What a model does with all its bodies of one type: loops that know the type of the body and not that of the model. A
-/// program compiles them once for all its models; `extern template struct BodyKernels<MyBody, double>;` leaves even that
-/// to another object file (see polybody/compiled.hpp).
+/// program compiles them once for all its models; `extern template struct BodyKernels<MyBody, double>;` leaves even
+/// that to another object file (see polybody/compiled.hpp).
 
 #include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/system/entries.hpp>

@@ -57,8 +57,8 @@ struct ForceKernels {
   /// Wrenches of all, from action `next` on; returns the end.
   static Action<T>* push(Pool const& pool, double t, Data<T> const& data, Action<T>* next);
 
-  static void tangents(Pool const& pool, double t, double load_factor, TangentCoefficients const& c,
-                       Data<double>& data, BlockSink& sink);
+  static void tangents(Pool const& pool, double t, double load_factor, TangentCoefficients const& c, Data<double>& data,
+                       BlockSink& sink);
   static double energy(Pool const& pool, double t, Data<double> const& data);
   /// With a potential, what wrenches are at rest is stored, and what motion adds is lost. A potential is taken for a
   /// function of the frames alone.
@@ -71,8 +71,8 @@ struct ForceKernels {
   /// by a law's `own_stiffness` where it has one.
   static void group_tangent(Entry const& e, double t, double scale, TangentCoefficients const& c, Data<double>& data,
                             BlockSink& sink);
-  /// The exact gradient with what couples the pairs, all that may ever act: statics and linearisation, which ask for all
-  /// second-order terms and no mass.
+  /// The exact gradient with what couples the pairs, all that may ever act: statics and linearisation, which ask for
+  /// all second-order terms and no mass.
   static void whole_group_tangent(Entry const& e, double t, double scale, TangentCoefficients const& c,
                                   Data<double>& data, BlockSink& sink);
   static std::array<Index, 2> places(Entry const& e, std::array<Index, 2> const& pair) {

@@ -75,8 +75,8 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
 
 }  // namespace detail
 
-/// The loops over the joints of type J, for scalar T; those of energies and tangents are for numbers. Linear joints have
-/// no gap: their rows are the model's (linear_rows.hpp).
+/// The loops over the joints of type J, for scalar T; those of energies and tangents are for numbers. Linear joints
+/// have no gap: their rows are the model's (linear_rows.hpp).
 template <class J, StateScalar T>
 struct JointKernels {
   using P = typename J::PolicyType;

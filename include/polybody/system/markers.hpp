@@ -36,6 +36,17 @@ void require_told(Marker<B> const& m, Observes needs, std::string const& what) {
                          "needs a point only, such as Spherical or planar::Revolute.");
 }
 
+/// \throws InvalidInput where the ground or a rigid body is joined to itself.
+template <class A, class B>
+void require_apart([[maybe_unused]] Marker<A> const& a, [[maybe_unused]] Marker<B> const& b,
+                   [[maybe_unused]] std::string const& name) {
+  if constexpr (std::is_same_v<A, Ground> && std::is_same_v<B, Ground>)
+    throw InvalidInput("\"" + name + "\" joins the ground to itself. Give it a marker of a body.");
+  else if constexpr (std::is_same_v<A, B> && HasRigidLayout<A>)
+    if (a.body == b.body)
+      throw InvalidInput("\"" + name + "\" joins a rigid body to itself. Give it markers of two bodies.");
+}
+
 /// \throws InvalidInput where a second marker that knows its tangent only does not lie along the joint's axis.
 inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::string const& name) {
   if (axes.col(0).cross(triad.col(2)).norm() > 1e-6)

@@ -72,8 +72,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   BodyHandle<Ground> ground() const { return {serial_, 0, "ground"}; }
 
   /// Joins marker a to marker b. The joint's axes are those of its geometry in world axes at the reference
-  /// configuration. \throws InvalidInput naming the joint for a marker of another model, a body joined to
-  /// itself at one marker type only, or parameters that cannot be meant.
+  /// configuration. \throws InvalidInput naming the joint for a marker of another model, a rigid body
+  /// or the ground joined to itself, or parameters that cannot be meant.
   template <OneOf<Js...> J, class A, class B>
   ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     using G = typename J::Geometry;
@@ -103,6 +103,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     name = detail::name_or_next(std::move(name), G::name, pool.size());
     require_own(a.model, name);
     require_own(b.model, name);
+    detail::require_apart(a, b, name);
     Mat3 const triad = detail::checked_triad(joint, name);
     Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
     if constexpr (!LinearInCoordinates<P> && B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)

@@ -15,6 +15,9 @@ BasicSystem<T>::BasicSystem(void const* model, ModelEntries<T> const& entries, M
       layout_(std::move(layout)),
       coordinates_(std::move(coordinates)),
       data_(std::move(data)) {
+  if (layout_.speeds == 0)
+    throw InvalidInput(
+        "The model has no body that moves: add one by model.add(body) before the model is asked or run.");
   q_.setConstant(layout_.coordinates, T(0.0));
   v_.setConstant(layout_.speeds, T(0.0));
   if (coordinates_) {

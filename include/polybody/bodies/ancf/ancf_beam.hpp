@@ -332,7 +332,7 @@ template <class Elastic>
 AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight)
     : Chain(n), bar_(bar), constants_(polybody::constants(bar)) {
   std::string const name = Elastic::name;
-  if (n < 1) throw InvalidInput(name + ": at least one element is needed.");
+  require_elements(n, name);
   require_positive(constants_.rotary_inertia, name + ": the rotary inertia of the bar, the only mass of r_y,");
   require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
                    name + ": the rotary inertia of the bar about y, the only mass of r_z,");

@@ -54,7 +54,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes
   /// off by a tenth.
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
-    if (n < 1) throw InvalidInput("AncfCable: at least one element is needed.");
+    require_elements(n, "AncfCable");
     return AncfCable(bar, polybody::constants(bar), n, curve);
   }
 

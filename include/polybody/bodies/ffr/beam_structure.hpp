@@ -91,7 +91,7 @@ inline Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> c
   for (std::size_t i = 0; i < bars.size(); ++i) {
     Bar const& bar = bars[i];
     BarConstants const c = constants(bar);
-    if (elements[i] < 1) throw InvalidInput("Structure: each bar needs at least one element.");
+    require_elements(elements[i], "Structure: bar " + std::to_string(i + 1));
     require_positive(c.GJ, "Structure: GJ of a bar (a floating frame in space resists torsion)");
     double const l = bar.length / double(elements[i]);
     for (Index e = 0; e < elements[i]; ++e) {

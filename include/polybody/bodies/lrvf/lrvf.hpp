@@ -54,7 +54,7 @@ class Lrvf {
   /// The bar bent and twisted without stress to `curve`, whose parameter is its arc length. \throws InvalidInput as
   /// above, and for a curve on which nodes coincide or lie farther apart than the arc between them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
-    if (n < 1) throw InvalidInput("Lrvf: at least one element is needed.");
+    require_elements(n, "Lrvf");
     if (!curve) throw InvalidInput("Lrvf: the reference curve is empty.");
     return Lrvf(bar, polybody::constants(bar), n, curve);
   }

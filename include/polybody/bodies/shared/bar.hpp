@@ -140,6 +140,13 @@ BarConstants constants(Bar const& bar) {
   return c;
 }
 
+/// \throws InvalidInput naming `what` unless a bar is cut into 1 … 10⁷ elements.
+inline void require_elements(Index n, std::string const& what) {
+  if (n < 1) throw InvalidInput(what + ": at least one element is needed.");
+  if (n > 10'000'000)
+    throw InvalidInput(what + ": " + std::to_string(n) + " elements are more than memory holds. Use at most 10000000.");
+}
+
 /// \throws InvalidInput unless 0 ≤ s ≤ length (to 1e-12 of the length); returns s within the bar.
 inline double require_inside(double s, double length, std::string const& what) {
   double const slack = 1e-12 * length;

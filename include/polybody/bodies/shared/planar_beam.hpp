@@ -77,7 +77,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// The bar in n equal elements. \throws InvalidInput for n < 1, a placement that leaves the plane, or a
   /// stiffness that the theory needs and the bar does not give.
   static Beam from(Bar const& bar, Index n) {
-    if (n < 1) throw InvalidInput(std::string(Theory::name) + ": at least one element is needed.");
+    require_elements(n, Theory::name);
     BarConstants const c = polybody::constants(bar);
     Theory::check(c);
     return Beam(bar, c, n);
