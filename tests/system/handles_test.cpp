@@ -60,7 +60,6 @@ TEST(Handles, RefuseToBeUsedBeforeTheyAreAssigned) {
   EXPECT_TRUE(has(refusal([&] { (void)rig.ground.at({0, 0, 0}); }), empty));
   EXPECT_TRUE(has(refusal([&] { (void)model.entry(rig.hub); }), empty));
   EXPECT_TRUE(has(refusal([&] { (void)model.entry(rig.ball); }), empty));
-  EXPECT_TRUE(has(refusal([&] { (void)model.place_of(rig.ball); }), empty));
   EXPECT_TRUE(has(refusal([&] { model.set_velocity(x, rig.arms[1], {0, 0, 0}, {0, 0, 1}); }), empty));
   EXPECT_TRUE(has(refusal([&] { (void)coordinates_of(model, x, rig.hub); }), empty));
   EXPECT_TRUE(has(refusal([&] { (void)reaction(model, x, rig.ball); }), empty));

@@ -33,17 +33,6 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   using BodyPools = std::tuple<detail::BodyPool<Bs>...>;
   using JointPools = std::tuple<std::vector<detail::JointEntry<Js>>...>;
   using ForcePools = std::tuple<std::vector<detail::ForceEntry<Fs>>...>;
-  /// Data that depend on the body types: one pose for each body whose points share one.
-  template <StateScalar T>
-  using Poses = std::tuple<std::vector<typename detail::PoseOf<Bs, T>::Type>...>;
-  template <StateScalar T>
-  using Scratch = std::tuple<std::vector<detail::KeptScratch<Bs, T>>...>;
-  /// Data that depend on the joint types: one gap for each joint.
-  template <StateScalar T>
-  using Gaps = std::tuple<std::vector<Gap<Js::rows, T>>...>;
-  /// The multipliers that compliant joints answer with, one vector for each joint.
-  template <StateScalar T>
-  using Answers = std::tuple<std::vector<Vec<T, Js::rows>>...>;
 
   /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
   static constexpr bool may_have_rows = (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
@@ -251,25 +240,6 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     require_own(handle);
     return std::get<std::vector<detail::ForceEntry<F>>>(forces_)[std::size_t(handle.index)];
   }
-  /// Place of a joint among all of them, in the order of the types. \throws InvalidInput as `entry`.
-  template <OneOf<Js...> J>
-  Index place_of(ElementHandle<J> const& handle) const {
-    require_own(handle);
-    Index before = 0;
-    bool found = false;
-    ((found = found || std::is_same_v<J, Js>,
-      before += found ? 0 : Index(std::get<std::vector<detail::JointEntry<Js>>>(joints_).size())),
-     ...);
-    return before + handle.index;
-  }
-  /// Index of a joint's type among the model's joint types.
-  template <OneOf<Js...> J>
-  static constexpr std::size_t joint_type() {
-    std::size_t i = 0, found = 0;
-    ((std::is_same_v<J, Js> ? found = i++ : i++), ...);
-    return found;
-  }
-
   /// Calls f(entry) for every body, in the order of the types.
   template <class F>
   void for_each_body(F&& f) const {

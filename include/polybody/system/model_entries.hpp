@@ -21,15 +21,15 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   static M const& model_of(void const* m) { return *static_cast<M const*>(m); }
   template <class B>
   static BodyPool<B> const& bodies(void const* m) {
-    return std::get<BodyPool<B>>(model_of(m).body_pools());
+    return bodies_of<B>(model_of(m));
   }
   template <class J>
   static std::vector<JointEntry<J>> const& joints(void const* m) {
-    return std::get<std::vector<JointEntry<J>>>(model_of(m).joint_pools());
+    return joints_of<J>(model_of(m));
   }
   template <class F>
   static std::vector<ForceEntry<F>> const& forces(void const* m) {
-    return std::get<std::vector<ForceEntry<F>>>(model_of(m).force_pools());
+    return forces_of<F>(model_of(m));
   }
   template <class B>
   static BodyData<B, T>& of_bodies(Data<T> const& data) {
@@ -193,11 +193,10 @@ struct EntriesOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> 
 /// Counts, places and names of `model`, which must outlive what is done with them.
 template <class... Bs, class... Js, class... Fs>
 ModelLayout layout_of(Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> const& model) {
-  using Loops = detail::ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, double>;
   ModelLayout out = detail::counts_of(model);
-  (BodyKernels<Bs, double>::describe(Loops::template bodies<Bs>(&model), out), ...);
-  (JointKernels<Js, double>::describe(Loops::template joints<Js>(&model), model.linear_rows(), out), ...);
-  (ForceKernels<Fs, double>::describe(Loops::template forces<Fs>(&model), out), ...);
+  (BodyKernels<Bs, double>::describe(detail::bodies_of<Bs>(model), out), ...);
+  (JointKernels<Js, double>::describe(detail::joints_of<Js>(model), model.linear_rows(), out), ...);
+  (ForceKernels<Fs, double>::describe(detail::forces_of<Fs>(model), out), ...);
   return out;
 }
 

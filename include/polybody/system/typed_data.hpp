@@ -7,6 +7,20 @@
 
 namespace polybody::detail {
 
+/// The pools of a model by the types that they hold.
+template <class B, class M>
+BodyPool<B> const& bodies_of(M const& model) {
+  return std::get<BodyPool<B>>(model.body_pools());
+}
+template <class J, class M>
+std::vector<JointEntry<J>> const& joints_of(M const& model) {
+  return std::get<std::vector<JointEntry<J>>>(model.joint_pools());
+}
+template <class F, class M>
+std::vector<ForceEntry<F>> const& forces_of(M const& model) {
+  return std::get<std::vector<ForceEntry<F>>>(model.force_pools());
+}
+
 /// What a model's data keep for its types of bodies and joints.
 template <class M, StateScalar T>
 struct TypedData;
@@ -88,45 +102,33 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     Data<T> data;
     place_ground(model.ground_markers(), model.markers(), model.jacobian_size(), data);
     MarkerArena arena;
-    (BodyKernels<Bs, T>::place_markers(bodies<Bs>(model), std::get<BodyData<Bs, T>>(typed->bodies), arena, data), ...);
+    (BodyKernels<Bs, T>::place_markers(bodies_of<Bs>(model), std::get<BodyData<Bs, T>>(typed->bodies), arena, data),
+     ...);
     data.scratch.resize(std::size_t(arena.widest * (arena.widest + 18)));
     place_rows(model, *typed, data);
     Index owner = 0;
-    ((ForceKernels<Fs, T>::place(forces<Fs>(model), owner, data), owner += Index(forces<Fs>(model).size())), ...);
+    ((ForceKernels<Fs, T>::place(forces_of<Fs>(model), owner, data), owner += Index(forces_of<Fs>(model).size())), ...);
     data.kept = typed;
     return data;
   }
 
  private:
-  template <class B>
-  static BodyPool<B> const& bodies(M const& model) {
-    return std::get<BodyPool<B>>(model.body_pools());
-  }
-  template <class J>
-  static std::vector<JointEntry<J>> const& joints(M const& model) {
-    return std::get<std::vector<JointEntry<J>>>(model.joint_pools());
-  }
-  template <class F>
-  static std::vector<ForceEntry<F>> const& forces(M const& model) {
-    return std::get<std::vector<ForceEntry<F>>>(model.force_pools());
-  }
-
   /// Those of bodies, of linear joints, of joints between frames.
   static void place_rows(M const& model, Typed& typed, Data<T>& data) {
     Index size = size_of(model.linear_rows());
-    ((size += BodyKernels<Bs, T>::own_size(bodies<Bs>(model))), ...);
+    ((size += BodyKernels<Bs, T>::own_size(bodies_of<Bs>(model))), ...);
     typed.own_rows.assign(std::size_t(size), T(0.0));
     T* next = typed.own_rows.data();
     Index owner = 0;
-    ((next = BodyKernels<Bs, T>::place_rows(bodies<Bs>(model), owner, next, data),
-      owner += Index(bodies<Bs>(model).entries.size())),
+    ((next = BodyKernels<Bs, T>::place_rows(bodies_of<Bs>(model), owner, next, data),
+      owner += Index(bodies_of<Bs>(model).entries.size())),
      ...);
     Index const first_linear = Index(data.rows.size());
     place_linear_rows(model.linear_rows(), next, data);
     owner = 0;
-    ((JointKernels<Js, T>::place(joints<Js>(model), std::get<JointData<Js, T>>(typed.joints), owner, first_linear,
+    ((JointKernels<Js, T>::place(joints_of<Js>(model), std::get<JointData<Js, T>>(typed.joints), owner, first_linear,
                                  data),
-      owner += Index(joints<Js>(model).size())),
+      owner += Index(joints_of<Js>(model).size())),
      ...);
   }
 };
