@@ -4,9 +4,9 @@
 /// of all before; numbers as this machine holds them, integers as int64. Not in polybody.hpp: few programs need it.
 
 #include <cstring>
-#include <fstream>
 
 #include <polybody/io/atomic_file.hpp>
+#include <polybody/io/file_content.hpp>
 #include <polybody/run/run_snapshot.hpp>
 
 namespace polybody {
@@ -125,11 +125,9 @@ void write_checkpoint(std::filesystem::path const& name, RunSnapshot const& snap
 template <class = void>
 RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::string const name = file.string();
-  std::ifstream stream(file, std::ios::binary);
-  std::string all;
-  for (char block[4096]; stream.read(block, sizeof block), stream.gcount() > 0;)  // of a folder: bad, and no exception
-    all.append(block, static_cast<std::size_t>(stream.gcount()));
-  if (!stream.is_open() || stream.bad()) throw IoError("checkpoint '" + name + "' cannot be read.");
+  std::optional<std::string> const content_of_file = detail::content_of(file);
+  if (!content_of_file) throw IoError("checkpoint '" + name + "' cannot be read.");
+  std::string const& all = *content_of_file;
   detail::CheckpointHead const ours = detail::checkpoint_head;
   detail::CheckpointHead head = {};
   std::memcpy(&head, all.data(), std::min(all.size(), sizeof head));

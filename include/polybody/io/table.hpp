@@ -6,13 +6,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include <polybody/io/file_content.hpp>
 #include <polybody/math/errors.hpp>
 
 namespace polybody {
@@ -113,13 +112,10 @@ struct CsvReader {
 inline Table read_csv(std::filesystem::path const& file) {
   std::string const name = file.string();
   errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::string text;
-  for (char block[4096]; stream.read(block, sizeof block), stream.gcount() > 0;)
-    text.append(block, static_cast<std::size_t>(stream.gcount()));
-  if (!stream.is_open() || stream.bad())
+  std::optional<std::string> const text = detail::content_of(file);
+  if (!text)
     throw IoError("file '" + name + "' cannot be read" + (errno ? ": " + std::generic_category().message(errno) : ""));
-  detail::CsvReader reader{text, name};
+  detail::CsvReader reader{*text, name};
   if (reader.text.starts_with("\xEF\xBB\xBF")) reader.text.remove_prefix(3);
   std::size_t line = 1;
   Table table{reader.record(line), {}};

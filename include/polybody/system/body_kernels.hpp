@@ -109,10 +109,16 @@ struct BodyKernels {
   static std::span<T const> speeds(Entry const& e, Vector const& v) {
     return {v.data() + e.v0, std::size_t(e.body.speeds())};
   }
-  /// Where a body stands in vectors that may be narrow.
-  static NarrowPlace place_of(Entry const& e, NarrowPlace const*& places) {
-    if (places) return *places++;
-    return {NarrowPlace::Kind::as_it_is, e.q0, e.v0, e.body.coordinates(), e.body.speeds()};
+  /// Calls f(entry, place) for the bodies that stand in vectors which may be narrow. Returns the place after the
+  /// last's.
+  template <class F>
+  static NarrowPlace const* for_each_place(Pool const& pool, NarrowPlace const* places, F&& f) {
+    for (Entry const& e : pool.entries) {
+      NarrowPlace const whole{NarrowPlace::Kind::as_it_is, e.q0, e.v0, e.body.coordinates(), e.body.speeds()};
+      NarrowPlace const& p = places ? *places++ : whole;
+      if (p.kind != NarrowPlace::Kind::carried) f(e, p);
+    }
+    return places;
   }
 };
 
@@ -253,32 +259,26 @@ void BodyKernels<B, T>::own_gamma(Pool const& pool, At<T> at, Vector& out) {
 template <class B, StateScalar T>
 NarrowPlace const* BodyKernels<B, T>::plus(Pool const& pool, NarrowPlace const* places, Vector const& q,
                                            Vector const& delta, Vector& out) {
-  for (Entry const& e : pool.entries) {
-    NarrowPlace const p = place_of(e, places);
-    if (p.kind == NarrowPlace::Kind::carried) continue;
+  return for_each_place(pool, places, [&](Entry const& e, NarrowPlace const& p) {
     auto const qe = detail::body_part(q, p.q, p.coordinates), de = detail::body_part(delta, p.v, p.speeds);
     auto const to = detail::body_part_of(out, p.q, p.coordinates);
     if (p.kind == NarrowPlace::Kind::as_it_is)
       e.body.template plus<T>(qe, de, to);
     else
       for (std::size_t i = 0; i < qe.size(); ++i) to[i] = qe[i] + de[i];
-  }
-  return places;
+  });
 }
 template <class B, StateScalar T>
 NarrowPlace const* BodyKernels<B, T>::local_rate(Pool const& pool, NarrowPlace const* places, Vector const& delta,
                                                  Vector const& v, Vector& out) {
-  for (Entry const& e : pool.entries) {
-    NarrowPlace const p = place_of(e, places);
-    if (p.kind == NarrowPlace::Kind::carried) continue;
+  return for_each_place(pool, places, [&](Entry const& e, NarrowPlace const& p) {
     auto const de = detail::body_part(delta, p.v, p.speeds), ve = detail::body_part(v, p.v, p.speeds);
     auto const to = detail::body_part_of(out, p.v, p.speeds);
     if (p.kind == NarrowPlace::Kind::as_it_is)
       e.body.template local_rate<T>(de, ve, to);
     else
       for (std::size_t i = 0; i < ve.size(); ++i) to[i] = ve[i];
-  }
-  return places;
+  });
 }
 
 template <class B, StateScalar T>

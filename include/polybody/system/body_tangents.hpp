@@ -12,13 +12,11 @@ NarrowPlace const* BodyKernels<B, T>::coordinate_rates(Pool const& pool, NarrowP
   using D = Dual<1>;
   D* const delta = room.data() + q.size();
   D* const out = delta + v.size();
-  for (Entry const& e : pool.entries) {
-    NarrowPlace const p = place_of(e, places);
-    if (p.kind == NarrowPlace::Kind::carried) continue;
+  return for_each_place(pool, places, [&](Entry const& e, NarrowPlace const& p) {
     Index const width = p.coordinates, k = p.speeds;
     if (width == k) {
       for (Index i = 0; i < width; ++i) rate[p.q + i] = v[p.v + i];
-      continue;
+      return;
     }
     for (Index i = 0; i < width; ++i) room[p.q + i] = D(q[p.q + i]);
     for (Index i = 0; i < k; ++i) {
@@ -29,8 +27,7 @@ NarrowPlace const* BodyKernels<B, T>::coordinate_rates(Pool const& pool, NarrowP
                             std::span<D const>(delta + p.v, std::size_t(k)),
                             std::span<D>(out + p.q, std::size_t(width)));
     for (Index i = 0; i < width; ++i) rate[p.q + i] = out[p.q + i].d[0];
-  }
-  return places;
+  });
 }
 
 template <class B, StateScalar T>

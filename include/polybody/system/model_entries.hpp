@@ -10,7 +10,7 @@ namespace polybody {
 
 namespace detail {
 
-/// The entries of a model, for scalar T.
+/// The entries of a model, for scalar T. A list of joints or forces may be empty: hence arguments that may be unused.
 template <class M, StateScalar T>
 struct ModelLoops;
 template <class... Bs, class... Js, class... Fs, StateScalar T>
@@ -40,43 +40,35 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     return std::get<JointData<J, T>>(Typed::of(data).joints);
   }
 
-  static void publish([[maybe_unused]] void const* m, [[maybe_unused]] At<T> at, [[maybe_unused]] Data<T>& data) {
+  static void publish(void const* m, At<T> at, Data<T>& data) {
     (BodyKernels<Bs, T>::publish(bodies<Bs>(m), of_bodies<Bs>(data), at, data), ...);
   }
   /// Every joint's gap, what compliant joints answer, and the rows that bodies own or that are linear.
-  static void measure_gaps([[maybe_unused]] void const* m, [[maybe_unused]] At<T> at, [[maybe_unused]] Data<T>& data) {
-    [[maybe_unused]] T* next = Typed::of(data).own_rows.data();
+  static void measure_gaps(void const* m, At<T> at, Data<T>& data) {
+    T* next = Typed::of(data).own_rows.data();
     ((next = BodyKernels<Bs, T>::measure_own_rows(bodies<Bs>(m), at, next)), ...);
     measure_linear_rows(model_of(m).linear_rows(), at.q, data, next);
     (JointKernels<Js, T>::measure(joints<Js>(m), of_joints<Js>(data), at.t, data), ...);
   }
-  static void measure_gamma([[maybe_unused]] void const* m, [[maybe_unused]] At<T> at,
-                            [[maybe_unused]] Data<T> const& data, [[maybe_unused]] Vector& out) {
+  static void measure_gamma(void const* m, At<T> at, Data<T> const& data, Vector& out) {
     (BodyKernels<Bs, T>::own_gamma(bodies<Bs>(m), at, out), ...);
     (JointKernels<Js, T>::gamma(joints<Js>(m), at.t, data, out), ...);
   }
-  static void element_forces([[maybe_unused]] void const* m, [[maybe_unused]] At<T> at,
-                             [[maybe_unused]] Vector const& a, [[maybe_unused]] double load_factor,
-                             [[maybe_unused]] Data<T>& data, [[maybe_unused]] Vector& r) {
+  static void element_forces(void const* m, At<T> at, Vector const& a, double load_factor, Data<T>& data, Vector& r) {
     Unbalance<T> const u{at, a, model_of(m).gravity().g * load_factor};
     (BodyKernels<Bs, T>::add_forces(bodies<Bs>(m), of_bodies<Bs>(data), u, data, r), ...);
   }
-  static void push_forces([[maybe_unused]] void const* m, [[maybe_unused]] double t, [[maybe_unused]] Data<T>& data) {
+  static void push_forces([[maybe_unused]] void const* m, [[maybe_unused]] double t, Data<T>& data) {
     [[maybe_unused]] Action<T>* next = data.actions.data();
     ((next = ForceKernels<Fs, T>::push(forces<Fs>(m), t, data, next)), ...);
   }
-  static void plus([[maybe_unused]] void const* m, [[maybe_unused]] NarrowPlace const* places,
-                   [[maybe_unused]] Vector const& q, [[maybe_unused]] Vector const& delta,
-                   [[maybe_unused]] Vector& out) {
+  static void plus(void const* m, NarrowPlace const* places, Vector const& q, Vector const& delta, Vector& out) {
     ((places = BodyKernels<Bs, T>::plus(bodies<Bs>(m), places, q, delta, out)), ...);
   }
-  static void local_rate([[maybe_unused]] void const* m, [[maybe_unused]] NarrowPlace const* places,
-                         [[maybe_unused]] Vector const& delta, [[maybe_unused]] Vector const& v,
-                         [[maybe_unused]] Vector& out) {
+  static void local_rate(void const* m, NarrowPlace const* places, Vector const& delta, Vector const& v, Vector& out) {
     ((places = BodyKernels<Bs, T>::local_rate(bodies<Bs>(m), places, delta, v, out)), ...);
   }
-  static void share_loops([[maybe_unused]] void const* m, [[maybe_unused]] Data<T>& data,
-                          [[maybe_unused]] Workers& threads) {
+  static void share_loops(void const* m, Data<T>& data, Workers& threads) {
     data.workers = &threads;
     std::size_t of_forces = 0, of_tangents = 0;
     (BodyKernels<Bs, T>::count_shared(bodies<Bs>(m), of_forces, of_tangents), ...);
@@ -84,48 +76,40 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     data.element_tangents.resize(of_tangents);
   }
 
-  static void masses([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
-                     [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
+  static void masses(void const* m, At<double> at, Data<double>& data, BlockSink& sink) {
     (BodyKernels<Bs, double>::masses(bodies<Bs>(m), of_bodies<Bs>(data), at, sink), ...);
   }
-  static void element_tangents([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
-                               [[maybe_unused]] TangentCoefficients const& c, [[maybe_unused]] Data<double>& data,
-                               [[maybe_unused]] BlockSink& sink) {
+  static void element_tangents(void const* m, At<double> at, TangentCoefficients const& c, Data<double>& data,
+                               BlockSink& sink) {
     (BodyKernels<Bs, double>::tangents(bodies<Bs>(m), of_bodies<Bs>(data), at, c, data, sink), ...);
   }
-  static void compliant_tangents([[maybe_unused]] void const* m, [[maybe_unused]] TangentCoefficients const& c,
-                                 [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
+  static void compliant_tangents([[maybe_unused]] void const* m, TangentCoefficients const& c, Data<double>& data,
+                                 BlockSink& sink) {
     (JointKernels<Js, double>::slopes(joints<Js>(m), of_joints<Js>(data), c, data, sink), ...);
   }
   static void force_tangents([[maybe_unused]] void const* m, [[maybe_unused]] double t,
-                             [[maybe_unused]] double load_factor, [[maybe_unused]] TangentCoefficients const& c,
-                             [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
+                             [[maybe_unused]] double load_factor, TangentCoefficients const& c, Data<double>& data,
+                             BlockSink& sink) {
     (ForceKernels<Fs, double>::tangents(forces<Fs>(m), t, load_factor, c, data, sink), ...);
   }
-  static void joint_stiffness([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
-                              [[maybe_unused]] VecX const& lambda, [[maybe_unused]] double ck,
-                              [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
-    [[maybe_unused]] StiffnessAt const x{at, ck};
+  static void joint_stiffness(void const* m, At<double> at, VecX const& lambda, double ck, Data<double>& data,
+                              BlockSink& sink) {
+    StiffnessAt const x{at, ck};
     (BodyKernels<Bs, double>::own_stiffness(bodies<Bs>(m), lambda, x, sink), ...);
     (JointKernels<Js, double>::stiffness(joints<Js>(m), of_joints<Js>(data), lambda, x, data, sink), ...);
   }
-  static void load_stiffness([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at, [[maybe_unused]] double ck,
-                             [[maybe_unused]] Data<double>& data, [[maybe_unused]] BlockSink& sink) {
-    [[maybe_unused]] StiffnessAt const x{at, ck};
+  static void load_stiffness(void const* m, At<double> at, double ck, Data<double>& data, BlockSink& sink) {
+    StiffnessAt const x{at, ck};
     (BodyKernels<Bs, double>::load_stiffness(bodies<Bs>(m), of_bodies<Bs>(data), x, data, sink), ...);
   }
-  static void coordinate_rates([[maybe_unused]] void const* m, [[maybe_unused]] NarrowPlace const* places,
-                               [[maybe_unused]] VecX const& q, [[maybe_unused]] VecX const& v,
-                               [[maybe_unused]] VecXOf<Dual<1>>& room, [[maybe_unused]] VecX& rate) {
+  static void coordinate_rates(void const* m, NarrowPlace const* places, VecX const& q, VecX const& v,
+                               VecXOf<Dual<1>>& room, VecX& rate) {
     ((places = BodyKernels<Bs, double>::coordinate_rates(bodies<Bs>(m), places, q, v, room, rate)), ...);
   }
-  static void rigid_speeds([[maybe_unused]] void const* m, [[maybe_unused]] VecX const& q,
-                           [[maybe_unused]] Vec3 const& v0, [[maybe_unused]] Vec3 const& omega,
-                           [[maybe_unused]] VecX& v) {
+  static void rigid_speeds(void const* m, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v) {
     (BodyKernels<Bs, double>::rigid_speeds(bodies<Bs>(m), q, v0, omega, v), ...);
   }
-  static Energy energy([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
-                       [[maybe_unused]] Data<double> const& data) {
+  static Energy energy(void const* m, At<double> at, Data<double> const& data) {
     Energy sum;
     (BodyKernels<Bs, double>::add_energy(bodies<Bs>(m), at, model_of(m).gravity().g, sum), ...);
     ((sum.joints += JointKernels<Js, double>::energy(joints<Js>(m), of_joints<Js>(data))), ...);
@@ -133,9 +117,8 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     return sum;
   }
   /// Rows of bodies (Euler parameters) and linear joints do no work and are left out.
-  static Powers powers([[maybe_unused]] void const* m, [[maybe_unused]] At<double> at,
-                       [[maybe_unused]] VecX const& backwards, [[maybe_unused]] VecX const& lambda,
-                       [[maybe_unused]] double load_factor, [[maybe_unused]] Data<double> const& data) {
+  static Powers powers(void const* m, At<double> at, VecX const& backwards, VecX const& lambda,
+                       [[maybe_unused]] double load_factor, Data<double> const& data) {
     Powers p;
     ((p.dissipated += BodyKernels<Bs, double>::dissipated(bodies<Bs>(m), of_bodies<Bs>(data), at, backwards)), ...);
     (JointKernels<Js, double>::add_powers(joints<Js>(m), of_joints<Js>(data), lambda, data, p), ...);

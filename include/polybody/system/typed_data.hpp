@@ -123,7 +123,7 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     ((next = BodyKernels<Bs, T>::place_rows(bodies_of<Bs>(model), owner, next, data),
       owner += Index(bodies_of<Bs>(model).entries.size())),
      ...);
-    Index const first_linear = Index(data.rows.size());
+    [[maybe_unused]] Index const first_linear = Index(data.rows.size());
     place_linear_rows(model.linear_rows(), next, data);
     owner = 0;
     ((JointKernels<Js, T>::place(joints_of<Js>(model), std::get<JointData<Js, T>>(typed.joints), owner, first_linear,

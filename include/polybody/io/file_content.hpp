@@ -1,0 +1,23 @@
+#pragma once
+/// \file
+/// The whole of a file as a string.
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+namespace polybody::detail {
+
+/// Nothing where the file cannot be read, as a folder cannot.
+template <class = void>  // compiled where it is used
+std::optional<std::string> content_of(std::filesystem::path const& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  for (char block[4096]; stream.read(block, sizeof block), stream.gcount() > 0;)
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  if (!stream.is_open() || stream.bad()) return std::nullopt;
+  return text;
+}
+
+}  // namespace polybody::detail
