@@ -29,6 +29,7 @@
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/distributed_force.hpp>
 #include <polybody/forces/gravity.hpp>
+#include <polybody/forces/maxwell_element.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/forces/user_force.hpp>

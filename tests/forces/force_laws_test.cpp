@@ -1,5 +1,6 @@
 // The laws of force elements, of those of the library.
 #include <polybody/forces/axial_spring.hpp>
+#include <polybody/forces/maxwell_element.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 
@@ -19,6 +20,9 @@ struct AxialSpringCase {
     return {.stiffness = 70.0, .damping = 2.0, .preload = 5.0, .axis = Vec3(2, -1, 2) / 3.0};
   }
 };
+struct MaxwellCase {
+  static MaxwellElement force() { return {.stiffness = 80.0, .damping = 3.0, .free_length = 0.7}; }
+};
 struct DeadForceCase {
   static PointForce<> force() { return {.force = {1, 2, 3}, .axes = LoadAxes::world}; }
 };
@@ -27,7 +31,8 @@ struct FollowerMomentCase {
 };
 bool const forces_obey[] = {
     obeys<SpringDamperCase, ForceLaws>("SpringDamper"), obeys<AxialSpringCase, ForceLaws>("AxialSpring"),
-    obeys<DeadForceCase, ForceLaws>("PointForce"), obeys<FollowerMomentCase, ForceLaws>("PointMoment")};
+    obeys<MaxwellCase, ForceLaws>("MaxwellElement"), obeys<DeadForceCase, ForceLaws>("PointForce"),
+    obeys<FollowerMomentCase, ForceLaws>("PointMoment")};
 
 }  // namespace force_laws_test
 }  // namespace polybody

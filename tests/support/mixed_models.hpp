@@ -116,6 +116,55 @@ struct MixedPlane {
   }
 };
 
+/// A pull along the line between two markers with two first-order states, which enter it as a product and follow the
+/// markers' places and, by `damping`, their speeds.
+struct LaggingPull {
+  static constexpr int markers = 2, states = 2;
+  static constexpr bool is_load = true;
+  static constexpr Observes needs = Observes::point;
+
+  double damping = 0.0;
+
+  void check(std::string const&) const {}
+  template <StateScalar T>
+  std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, std::array<T, 2> const& z, double t) const {
+    T const pull = z[0] * (z[1] + 1.0) * 5.0 + 8.0 * t;
+    std::array<Wrench<T>, 2> w;
+    for (int i = 0; i < 3; ++i) {
+      w[0].f[i] = (f[1].r[i] - f[0].r[i]) * pull;
+      w[1].f[i] = -w[0].f[i];
+    }
+    return w;
+  }
+  template <StateScalar T>
+  std::array<T, 2> rates(std::array<Frame<T>, 2> const& f, std::array<T, 2> const& z, double t) const {
+    Vec<T, 3> const d = f[1].r - f[0].r, v = f[1].v - f[0].v;
+    return {d.dot(d) * 3.0 - z[0] * z[1] + t, d.dot(v) * damping - z[1] * 4.0 + z[0]};
+  }
+  std::array<double, 2> initial_states() const { return {0.25, -0.5}; }
+};
+
+/// A rigid body on a pin and a cable in the plane, and pulls with first-order states among them and the ground.
+struct MixedStates {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  using M = Model<Bodies<planar::Rigid, planar::AncfCable<>>, Joints<Pin>, Forces<LaggingPull, PointForce<>>>;
+
+  static M model(double damping) {
+    M model{Gravity{0.3, -9.81, 0}};
+    Bar const bar{.length = 1.0,
+                  .constants = BarConstants{.EA = 90, .EI = 4, .mass_per_length = 2.0},
+                  .placement = Placement::planar(0.2, 0.1, 0.5)};
+    auto const cable = model.add(planar::AncfCable<>::from(bar, 2), "cable");
+    auto const ground = model.ground();
+    model.apply(LaggingPull{damping}, cable.at(0.9), ground.at({1.0, 0.5, 0}), "rope");
+    auto const body = model.add(planar::Rigid(2.0, 0.3, Placement::planar(-0.3, 0.2, 1.0)), "body");
+    model.apply(LaggingPull{damping}, body.at(Vec2(1.5, 2.0)), cable.at(0.3), "tie");
+    model.apply(PointForce<>{.force = {1, 2, 0}, .axes = LoadAxes::marker}, cable.at(0.7), "follower");
+    model.connect(Pin{}, ground.at({0.1, -0.2, 0}), body.at(Vec2(-0.2, 0.1)), "pin");
+    return model;
+  }
+};
+
 /// A state away from the reference: coordinates, speeds, accelerations, multipliers, t = 1.3.
 template <class M>
 State scrambled(M const& model, unsigned seed = 1) {

@@ -251,5 +251,6 @@ TEST_P(Tangent, SecondOrderTermsCount) {
 INSTANTIATE_TEST_SUITE_P(Space, Tangent, testing::Values([](double c) { return ask(MixedSpace::model(c)); }));
 INSTANTIATE_TEST_SUITE_P(Plane, Tangent, testing::Values([](double c) { return ask(MixedPlane::model(c)); }));
 INSTANTIATE_TEST_SUITE_P(Bushings, Tangent, testing::Values([](double c) { return ask(MixedBushings::model(c)); }));
+INSTANTIATE_TEST_SUITE_P(States, Tangent, testing::Values([](double c) { return ask(MixedStates::model(c)); }));
 
 }  // namespace tangent_test

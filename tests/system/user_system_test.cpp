@@ -4,6 +4,8 @@
 #include <polybody/polybody.hpp>
 #include <polybody/system/user_system.hpp>
 
+#include <unsupported/Eigen/MatrixFunctions>
+
 namespace user_system_test {
 namespace {
 
@@ -92,6 +94,83 @@ TEST(UserSystem, NamesItselfInErrors) {
   } catch (NonFinite const& e) {
     EXPECT_NE(std::string(e.what()).find("body \"rotor\""), std::string::npos) << e.what();
   }
+}
+
+/// z˙ = A z: a spiral, in first-order states alone.
+struct Spiral {
+  Index states() const { return 2; }
+  void rates(VecX const& z, double, VecX& h) const { h << -0.5 * z[0] - 3.0 * z[1], 3.0 * z[0] - 0.5 * z[1]; }
+};
+/// The oscillator whose spring force lags behind: 2 ẍ = −18 u − x, τ u̇ = x − u. With u = x it would be the one above.
+struct LaggingSpring {
+  double lag = 0.05;
+  Index speeds() const { return 1; }
+  Index states() const { return 1; }
+  void mass(VecX const&, MatX& m) const { m(0, 0) = 2.0; }
+  void force(VecX const& q, VecX const& v, VecX const& z, double, VecX& f) const {
+    f[0] = -18.0 * z[0] - q[0] - 2.0 * v[0];
+  }
+  void rates(VecX const& q, VecX const&, VecX const& z, double, VecX& h) const { h[0] = (q[0] - z[0]) / lag; }
+  Mat3 matrix() const {
+    Mat3 a;
+    a << 0, 1, 0, -0.5, -1, -9, 1 / lag, 0, -1 / lag;
+    return a;
+  }
+};
+/// Three reactions of very different speeds [Robertson 1966; Hairer & Wanner 1996, §IV.1].
+struct Robertson {
+  Index states() const { return 3; }
+  void rates(VecX const& z, double, VecX& h) const {
+    double const slow = 0.04 * z[0], fast = 3e7 * z[1] * z[1], middle = 1e4 * z[1] * z[2];
+    h << middle - slow, slow - middle - fast, fast;
+  }
+};
+static_assert(UserRates<Spiral> && UserMechanicsWithStates<LaggingSpring>);
+static_assert(!UserMechanics<LaggingSpring> && !UserRates<LaggingSpring> && UserEquations<Oscillator>);
+
+template <class I>
+void expect_states(I const& integrator, double h, double tolerance) {
+  System spiral = system_of(Spiral{});
+  State x = at(spiral, VecX(0));
+  x.v << 1.0, 0.0;
+  x = run(spiral, x, integrator, h, 1.0);
+  double const shrunk = std::exp(-0.5);
+  EXPECT_NEAR(x.v[0], shrunk * std::cos(3.0), tolerance) << I::name;
+  EXPECT_NEAR(x.v[1], shrunk * std::sin(3.0), tolerance) << I::name;
+
+  System spring = system_of(LaggingSpring{}, "spring", true);
+  State y = at(spring, VecX::Ones(1));
+  y.v << 0.0, 0.5;
+  y = run(spring, y, integrator, h, 1.0);
+  Vec3 const expected = LaggingSpring{}.matrix().exp() * Vec3(1.0, 0.0, 0.5);
+  EXPECT_LT((Vec3(y.q[0], y.v[0], y.v[1]) - expected).norm(), 20.0 * tolerance) << I::name;
+}
+
+TEST(UserSystem, MayBeOfFirstOrder) {
+  expect_states(GeneralizedAlpha{.rho_inf = 1.0}, 1e-3, 3e-6);
+  expect_states(HhtAlpha{}, 1e-3, 1e-5);
+  expect_states(Radau{}, 0.02, 1e-8);
+  expect_states(RungeKutta4<>{}, 0.01, 1e-6);
+  expect_states(DormandPrince<>{}, 0.1, 1e-6);
+  expect_states(AdamsBashforthMoulton<>{}, 0.1, 1e-6);
+  expect_states(CentralDifference<>{}, 1e-3, 1e-5);
+  expect_states(SymplecticEuler{}, 1e-4, 2e-3);
+}
+
+// The concentrations at t = 40, to the digits that the documentation of CVODE prints of its example cvRoberts.
+TEST(UserSystem, FollowsStiffReactions) {
+  System system = system_of(Robertson{}, "reactor");
+  State x = at(system, VecX(0));
+  x.v << 1.0, 0.0, 0.0;
+  Radau const radau{.tolerance = 1e-12};
+  auto w = radau.workspace<BlockSolver>(system);
+  double h = 1e-5;
+  radau.start(system, x, h, w);
+  for (; x.t < 40.0 - 1e-9; h *= 1.05) radau.step(system, x, std::min(h, 40.0 - x.t), w);
+  EXPECT_NEAR(x.v[0], 0.7158, 5e-5);
+  EXPECT_NEAR(x.v[1], 9.185e-6, 1e-9);
+  EXPECT_NEAR(x.v[2], 0.2842, 5e-5);
+  EXPECT_NEAR(x.v.sum(), 1.0, 1e-10);
 }
 
 TEST(System, RefusesWhatItWasMadeWithout) {

@@ -9,17 +9,39 @@
 
 namespace polybody {
 
+/// How many first-order states a force element has of its own: `static constexpr int states`, or none.
+template <class F>
+constexpr int states_of() {
+  if constexpr (requires { F::states; })
+    return F::states;
+  else
+    return 0;
+}
+
+/// Wrenches on the markers as a function of their frames.
+template <class F>
+concept GivesWrenches = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t) {
+  { force.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
+};
+/// A force element with first-order states z of its own, such as a controller, a valve or a material that creeps:
+/// wrenches as a function of frames and states, and the rates ż = h(frames, z, t). It may have `initial_states()`, z of
+/// the reference state; else they are zero.
+template <class F>
+concept HasStates = states_of<F>() > 0 && requires(F const force, std::array<Frame<double>, F::markers> const frames,
+                                                   std::array<double, states_of<F>()> const z, double t) {
+  { force.template wrenches<double>(frames, z, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
+  { force.template rates<double>(frames, z, t) } -> std::same_as<std::array<double, states_of<F>()>>;
+};
+
 /// The concept of a force element; `check(name)` is called by `apply` with its name. It may have a member `law` with
 /// `corners()`, times at which steps are to end; `docs/extending.md` lists what else.
 template <class F>
-concept ForceElement =
-    requires(F const force, std::array<Frame<double>, F::markers> const frames, double t, std::string const name) {
-      requires F::markers >= 1;
-      { F::needs } -> std::convertible_to<Observes>;
-      { F::is_load } -> std::convertible_to<bool>;  // scaled by the load factor of `equilibrium`
-      { force.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
-      force.check(name);
-    };
+concept ForceElement = requires(F const force, std::string const name) {
+  requires F::markers >= 1;
+  { F::needs } -> std::convertible_to<Observes>;
+  { F::is_load } -> std::convertible_to<bool>;  // scaled by the load factor of `equilibrium`
+  force.check(name);
+} && (GivesWrenches<F> || HasStates<F>);
 
 /// What the second marker of a force element must observe: `needs_of_second`, or `needs` as for the first.
 template <class F>
@@ -56,40 +78,62 @@ concept HasPotential = requires(F const force, std::array<Frame<double>, F::mark
   { force.potential(frames, t) } -> std::convertible_to<double>;
 };
 
-/// Gradients of all wrenches with respect to the frames' poses (δr, δφ in world axes) and twists,
-/// ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N: one pass of dual numbers, pose seeded with ck, twist with cd.
+namespace detail {
+
+/// A dual number with slope in direction i.
+template <int n>
+Dual<n> seeded(double value, int i, double slope) {
+  Dual<n> x(value);
+  x.d[i] = slope;
+  return x;
+}
+/// A frame as a function of its pose (δr, δφ in world axes) and twist, six directions from `first` on: pose seeded with
+/// ck, twist with cd.
+template <int n>
+Frame<Dual<n>> seeded_frame(Frame<double> const& f, int first, double ck, double cd) {
+  Frame<Dual<n>> moved;
+  for (int i = 0; i < 3; ++i) {
+    moved.r[i] = seeded<n>(f.r[i], first + i, ck);
+    moved.v[i] = seeded<n>(f.v[i], first + i, cd);
+    moved.w[i] = seeded<n>(f.w[i], first + 3 + i, cd);
+    int const j = (i + 1) % 3, l = (i + 2) % 3;
+    for (int c = 0; c < 3; ++c) {  // δA = δφ × A
+      moved.A(i, c) = seeded<n>(f.A(i, c), first + 3 + j, ck * f.A(l, c));
+      moved.A(i, c).d[first + 3 + l] = -ck * f.A(j, c);
+    }
+  }
+  return moved;
+}
+/// Those of all markers, one after another.
+template <int n, std::size_t markers>
+std::array<Frame<Dual<n>>, markers> seeded_frames(std::array<Frame<double>, markers> const& frames, double ck,
+                                                  double cd) {
+  std::array<Frame<Dual<n>>, markers> moved;
+  for (std::size_t k = 0; k < markers; ++k) moved[k] = seeded_frame<n>(frames[k], 6 * int(k), ck, cd);
+  return moved;
+}
+/// The slopes of the wrenches, 6N×n, into the first rows of `gradient`.
+template <int n, std::size_t markers, int rows>
+void copy_slopes(std::array<Wrench<Dual<n>>, markers> const& w, Mat<double, rows, n>& gradient) {
+  for (std::size_t k = 0; k < markers; ++k)
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < n; ++j) {
+        gradient(6 * int(k) + i, j) = w[k].f[i].d[j];
+        gradient(6 * int(k) + 3 + i, j) = w[k].m[i].d[j];
+      }
+}
+
+}  // namespace detail
+
+/// Gradients of all wrenches with respect to the frames' poses and twists, ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N, by one
+/// pass of dual numbers.
 template <ForceElement F>
 Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(F const& force,
                                                             std::array<Frame<double>, F::markers> const& frames,
                                                             double t, double ck, double cd) {
   constexpr int n = 6 * F::markers;
-  using D = Dual<n>;
-  auto const seed = [](double value, int i, double slope) {
-    D x(value);
-    x.d[i] = slope;
-    return x;
-  };
-  std::array<Frame<D>, F::markers> moved;
-  for (int k = 0; k < F::markers; ++k) {
-    for (int i = 0; i < 3; ++i) {
-      moved[k].r[i] = seed(frames[k].r[i], 6 * k + i, ck);
-      moved[k].v[i] = seed(frames[k].v[i], 6 * k + i, cd);
-      moved[k].w[i] = seed(frames[k].w[i], 6 * k + 3 + i, cd);
-      int const j = (i + 1) % 3, l = (i + 2) % 3;
-      for (int c = 0; c < 3; ++c) {  // δA = δφ × A
-        moved[k].A(i, c) = seed(frames[k].A(i, c), 6 * k + 3 + j, ck * frames[k].A(l, c));
-        moved[k].A(i, c).d[6 * k + 3 + l] = -ck * frames[k].A(j, c);
-      }
-    }
-  }
-  std::array<Wrench<D>, F::markers> const w = force.template wrenches<D>(moved, t);
   Mat<double, n, n> gradient;
-  for (int k = 0; k < F::markers; ++k)
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < n; ++j) {
-        gradient(6 * k + i, j) = w[k].f[i].d[j];
-        gradient(6 * k + 3 + i, j) = w[k].m[i].d[j];
-      }
+  detail::copy_slopes(force.template wrenches<Dual<n>>(detail::seeded_frames<n>(frames, ck, cd), t), gradient);
   return gradient;
 }
 

@@ -28,4 +28,35 @@ UserForce<N, Law> user_force(Law law) {
   return {std::move(law)};
 }
 
+/// A user's force with S first-order states, by two generic lambdas over frames, states and time,
+///   auto f = user_force<2, 1>([](auto const& frames, auto const& z, double t) { … return std::array{w_a, w_b}; },
+///                             [](auto const& frames, auto const& z, double t) { … return std::array{rate}; });
+/// where the states have the scalar of the frames.
+template <int N, int S, class Law, class Rates>
+struct UserForceWithStates {
+  static constexpr int markers = N;
+  static constexpr int states = S;
+  static constexpr bool is_load = true;
+  static constexpr Observes needs = Observes::point;
+
+  Law law;
+  Rates rates_law;
+
+  void check(std::string const&) const {}
+
+  template <StateScalar T>
+  std::array<Wrench<T>, N> wrenches(std::array<Frame<T>, N> const& frames, std::array<T, S> const& z, double t) const {
+    return law(frames, z, t);
+  }
+  template <StateScalar T>
+  std::array<T, S> rates(std::array<Frame<T>, N> const& frames, std::array<T, S> const& z, double t) const {
+    return rates_law(frames, z, t);
+  }
+};
+
+template <int N, int S, class Law, class Rates>
+UserForceWithStates<N, S, Law, Rates> user_force(Law law, Rates rates) {
+  return {std::move(law), std::move(rates)};
+}
+
 }  // namespace polybody

@@ -1,5 +1,6 @@
 #pragma once
 #include <polybody/integrators/adams_history.hpp>
+#include <polybody/integrators/error_tolerance.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 #include <polybody/system/system.hpp>
 
@@ -109,7 +110,7 @@ struct AdamsBashforthMoulton {
       w.split(system);
       w.rates(system, x.t + h, feedback);
       report.evaluations += 1;
-      e = correct(history, Trial{c, age, h, k, known}, x, w);
+      e = correct(history, Trial{c, age, h, k, known, system.layout().states}, x, w);
       if (e.here <= 1.0) break;
       ++report.rejected;
       if (known > 1) rising = false;
@@ -160,6 +161,7 @@ struct AdamsBashforthMoulton {
     std::array<double, order + 2> const &c, &age;
     double h;
     int k, known;
+    Index states;  ///< first-order ones, the last of y
   };
 
   template <class W>
@@ -172,17 +174,22 @@ struct AdamsBashforthMoulton {
     }
   }
 
-  /// c_k D*_k into w.correction, and the errors: means over q and over v, each relative to its largest entry.
+  /// c_k D*_k into w.correction, and the errors: means over q and over v, each relative to its largest entry, and over
+  /// first-order states, each relative to itself.
   template <class W>
   Errors correct(AdamsHistory const& history, Trial const& trial, State const& x, W& w) const {
-    auto const& [c, age, h, k, known] = trial;
+    auto const& [c, age, h, k, known, states] = trial;
     std::array<double, 4> sum{};
-    Index const nq = x.q.size(), n = w.y.size();
-    double const in_q = share(x.q, w.q), in_v = share(x.v, w.v);
+    Index const nq = x.q.size(), n = w.y.size(), bodies = x.v.size() - states;
+    detail::ErrorTolerance const tolerance{absolute_tolerance, relative_tolerance};
+    double const in_q = share(tolerance.of_all(x.q, w.q, nq), nq),
+                 in_v = share(tolerance.of_all(x.v, w.v, bodies), bodies);
+    auto const in_state = [&](Index i) { return 2.0 * share(tolerance.of_one(x.v[i], w.v[i]), states); };
     for (Index i = 0; i < n; ++i) {
+      double const in = i < nq ? in_q : i < nq + bodies ? in_v : in_state(i - nq);
       double d = w.f[i];
       for (int j = 0; j <= std::min(k + 1, known); ++j) {  // d is D*_j
-        if (j >= k - 2) sum[std::size_t(j - k + 2)] += (i < nq ? in_q : in_v) * d * d;
+        if (j >= k - 2) sum[std::size_t(j - k + 2)] += in * d * d;
         if (j == k) w.correction[i] = c[std::size_t(k)] * d;
         if (j < known) d = (d - history.difference(j)[i]) / (h + age[std::size_t(j)]);
       }
@@ -195,13 +202,8 @@ struct AdamsBashforthMoulton {
     };
     return {error(k - 2), error(k - 1), error(k), k < order ? error(k + 1) : std::numeric_limits<double>::infinity()};
   }
-  /// The share of an entry's square in the mean square of the error over its tolerance.
-  double share(VecX const& before, VecX const& now) const {
-    if (now.size() == 0) return 0.0;
-    double const scale =
-        absolute_tolerance + relative_tolerance * std::max(now.cwiseAbs().maxCoeff(), before.cwiseAbs().maxCoeff());
-    return 1.0 / (scale * scale * double(now.size()));
-  }
+  /// The share of an entry's square in the mean square of n errors over what is tolerated.
+  static double share(double tolerated, Index n) { return 1.0 / (tolerated * tolerated * double(n)); }
 
   /// The next order into k, and the next step. While the order rises from the start it goes up with every step, and the
   /// step doubles; then the order goes where the error is least, and the step doubles, stays or shrinks as that error

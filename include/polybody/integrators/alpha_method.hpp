@@ -6,8 +6,9 @@
 ///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
 /// One Newton unknown y = Δa₁ with Δq = βh² y, Δv = γh y, Δv̇ = (1 − α_m)/(1 − α_f) y; with the rows divided
 /// by βh² every entry of the tangent keeps the size of M and G for any h. Velocity rows, G v + Φ_t = 0 at the end of
-/// the step, are divided by γh, and the tangent is the same. Generalised-α, HHT-α, Newmark's method and the trapezoidal
-/// rule differ in the four coefficients only.
+/// the step, are divided by γh, and the tangent is the same. First-order states follow the formulas of a and v, which
+/// are those of the family for ż = h(z, t) [Jansen, Whiting & Hulbert 2000]. Generalised-α, HHT-α, Newmark's method and
+/// the trapezoidal rule differ in the four coefficients only.
 ///
 /// Stabilised, a step keeps the rows of the speeds too, Φ̇(q₁, v₁) = 0, by a second set of multipliers μ [Gear, Gupta &
 /// Leimkuhler 1985; Arnold, Brüls & Cardona 2015]:
@@ -25,8 +26,9 @@ struct AlphaVectors {
   VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
   VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
   VecX back, rate;  ///< of a stabilised step: what μ moves, and a vector by rows
+  Index states;     ///< first-order ones, the last of the speeds
 
-  AlphaVectors(Index coordinates, Index speeds, Index rows)
+  AlphaVectors(Index coordinates, Index speeds, Index rows, Index first_order)
       : v0(VecX::Zero(speeds)),
         a0(v0),
         q(VecX::Zero(coordinates)),
@@ -42,7 +44,8 @@ struct AlphaVectors {
         jerk(v0),
         ahead(v0),
         back(v0),
-        rate(lambda) {}
+        rate(lambda),
+        states(first_order) {}
 };
 
 /// A member of the family: its coefficients, and how Newton's method is to solve its steps.
@@ -65,7 +68,8 @@ struct AlphaMethod {
     double h_factored = 0.0;
     int age = 0;  ///< steps that the factorisation has served
 
-    explicit Workspace(System& s) : AlphaVectors(s.coordinates(), s.speeds(), s.rows()), forward(s) {}
+    explicit Workspace(System& s)
+        : AlphaVectors(s.coordinates(), s.speeds(), s.rows(), s.layout().states), forward(s) {}
 
     void analyse(System& s, SecondOrder second) {
       solver.analyse(s, 1, [&](BlockSink& sink) { s.tangent({1.0, 1.0, 1.0}, second, lambda, sink); });
@@ -139,13 +143,17 @@ struct AlphaMethod {
     for (Index i = 0; i < w.lambda.size(); ++i) w.lambda[i] += w.y[nv + i];
   }
   CorrectionSize measure(double h, bool two_sets, AlphaVectors const& w) const {
-    double const s = beta * h * h, n = std::sqrt(double(std::max<Index>(w.v.size(), 1)));
-    double const size = 1.0 + w.vd.norm() / n;
-    double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
-    double square = 0.0;
-    for (Index i = 0; i < w.v.size(); ++i) square += w.y[i] * w.y[i];
+    Index const bodies = w.v.size() - w.states;
+    double const s = beta * h * h, n = std::sqrt(double(std::max<Index>(bodies, 1)));
+    double square = 0.0, moved = 0.0;
+    for (Index i = 0; i < bodies; ++i) {
+      square += w.y[i] * w.y[i];
+      moved += w.vd[i] * w.vd[i];
+    }
     double const change = std::sqrt(square) + (two_sets ? w.back.norm() / s : 0.0);
-    return {.norm = change / n, .tolerated = tolerance * size + rounding};
+    CorrectionSize const size{.norm = change / n,
+                              .tolerated = tolerance * (1.0 + std::sqrt(moved) / n) + detail::rounding_of(w.q, s)};
+    return detail::StatesInStep{w.states, w.v, w.vd, gamma * h}.join(size, tolerance, w.y.data());
   }
   /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
   void right_hand_side(double h, bool two_sets, std::vector<Index> const& velocity_rows, AlphaVectors& w) const {

@@ -12,6 +12,7 @@
 /// χ = 0 where f̄ and Ḡ have no moment of their own: for what is made of scalar products of coordinates. These are ANCF
 /// cables and the ANCF beam of `Continuum`, springs and joints between points on their axes. Angles as coordinates,
 /// section frames (`ElasticLine`) and joints of axes keep energy too, but angular momentum to the method's order only.
+/// First-order states take the midpoint, Δz = h · h(q̄, v̄, z̄, t̄).
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
@@ -60,7 +61,7 @@ struct ConservingStep {
   void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     StepHistory::reset(x);
-    w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi});
+    w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi, &x.v, &x.a});
     w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
     w.factored = false;
     (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
@@ -97,7 +98,7 @@ struct ConservingStep {
     }
     bool evaluate() {
       move();
-      w.secants.evaluate(system, {&x.q, &w.q, x.t, h, method.chi});
+      w.secants.evaluate(system, {&x.q, &w.q, x.t, h, method.chi, &x.v, &w.vd});
       w.secants.residual(system, w.vd, w.lambda, w.r);
       w.secants.violation(w.phi);
       for (Index i = 0; i < nv; ++i) w.rhs[i] = -w.r[i];
@@ -110,10 +111,12 @@ struct ConservingStep {
     }
     CorrectionSize solve() {
       w.solver.solve(w.rhs, w.y);
-      double const n = std::sqrt(double(std::max<Index>(nv, 1)));
-      double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
-      return {w.y.allFinite() ? w.y.head(nv).norm() / n : std::numeric_limits<double>::quiet_NaN(),
-              method.tolerance * (1.0 + w.vd.norm() / n) + rounding};
+      Index const bodies = nv - system.layout().states;
+      double const n = std::sqrt(double(std::max<Index>(bodies, 1)));
+      CorrectionSize const size{
+          w.y.allFinite() ? w.y.head(bodies).norm() / n : std::numeric_limits<double>::quiet_NaN(),
+          method.tolerance * (1.0 + w.vd.head(bodies).norm() / n) + detail::rounding_of(w.q, s)};
+      return detail::StatesInStep{system.layout().states, w.v, w.vd, h}.join(size, method.tolerance, w.y.data());
     }
     void apply() {
       for (Index i = 0; i < nv; ++i) w.vd[i] += w.y[i];

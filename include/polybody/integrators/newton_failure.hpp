@@ -1,6 +1,6 @@
 #pragma once
+#include <polybody/integrators/correction_size.hpp>
 #include <polybody/integrators/integrator.hpp>
-#include <polybody/solvers/newton.hpp>
 
 namespace polybody::detail {
 

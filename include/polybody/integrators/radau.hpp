@@ -5,7 +5,8 @@
 ///   M(q_i) v̇_i = f(q_i, v_i, t_i) − Gᵀλ_i,   G v̇_i = −γ(q_i, v_i, t_i),   t_i = t₀ + c_i h,
 ///   v_i = v₀ + h Σ a_ij v̇_j,   q_i = q₀ ⊞ δ_i,   δ_i = h Σ a_ij δ˙(δ_j, v_j),   and the third stage is the end.
 /// The rows stand as accelerations, so that multipliers keep the order of the speeds; `Projection` takes away what
-/// drifts. Newton's unknowns are v̇_i and λ_i of all stages at once; δ_i follows them.
+/// drifts. Newton's unknowns are v̇_i and λ_i of all stages at once; δ_i follows them. First-order states are among the
+/// v_i.
 
 #include <array>
 
@@ -211,13 +212,16 @@ struct Radau {
     }
     CorrectionSize solve() {
       w.solver.solve(w.rhs, w.y);
-      double const n = std::sqrt(double(std::max<Index>(nv, 1)));
+      Index const bodies = nv - system.layout().states;
+      double const n = std::sqrt(double(std::max<Index>(bodies, 1)));
       double change = w.unsettled / (h * h);
-      for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), nv).norm());
-      double const rounding =
-          30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / (h * h);
-      return {w.y.allFinite() ? change / n : std::numeric_limits<double>::quiet_NaN(),
-              method.tolerance * (1.0 + w.vd[2].norm() / n) + rounding};
+      for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), bodies).norm());
+      CorrectionSize size{w.y.allFinite() ? change / n : std::numeric_limits<double>::quiet_NaN(),
+                          method.tolerance * (1.0 + w.vd[2].head(bodies).norm() / n) + detail::rounding_of(w.q, h * h)};
+      for (std::size_t i = 0; i < 3; ++i)
+        size = detail::StatesInStep{system.layout().states, w.v[i], w.vd[i], h}.join(
+            size, method.tolerance, w.y.data() + Index(i) * (nv + rows));
+      return size;
     }
     void apply() {
       for (std::size_t i = 0; i < 3; ++i) {

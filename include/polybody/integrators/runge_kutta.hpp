@@ -6,6 +6,7 @@
 #include <array>
 #include <complex>
 
+#include <polybody/integrators/error_tolerance.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 
 namespace polybody {
@@ -175,7 +176,7 @@ struct DormandPrince {
         w.error += (h * e[j]) * w.position_rate[j];
         w.v_error += (h * e[j]) * w.acceleration[j];
       }
-      double const error = std::sqrt(0.5 * (size(w.error, w.delta, x.q) + size(w.v_error, w.v, x.v)));
+      double const error = std::sqrt(mean_square(x, system.speeds() - system.layout().states, w));
       double const factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 5.0);
       if (error <= 1.0) {
         w.combine(x, h, a[6], 6);
@@ -196,12 +197,14 @@ struct DormandPrince {
   }
 
  private:
-  /// Mean square of the error over its tolerance.
-  double size(VecX const& error, VecX const& now, VecX const& before) const {
-    if (error.size() == 0) return 0.0;
-    double const scale =
-        absolute_tolerance + relative_tolerance * std::max(now.cwiseAbs().maxCoeff(), before.cwiseAbs().maxCoeff());
-    return error.squaredNorm() / (scale * scale * double(error.size()));
+  /// Mean square of the error over what is tolerated, of positions and speeds together and of first-order states.
+  template <class W>
+  double mean_square(State const& x, Index bodies, W const& w) const {
+    detail::ErrorTolerance const tolerance{absolute_tolerance, relative_tolerance};
+    double const of_q = std::max(tolerance.of_all(x.q, x.q, x.q.size()), tolerance.of_all(w.delta, w.delta, bodies));
+    return 0.5 * (tolerance.mean_square(w.error, bodies, of_q) +
+                  tolerance.mean_square(w.v_error, bodies, tolerance.of_all(x.v, w.v, bodies))) +
+           tolerance.mean_square_each(w.v_error, x.v, w.v, bodies);
   }
 };
 

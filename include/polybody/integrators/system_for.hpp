@@ -37,8 +37,10 @@ System system_for(M const& model) {
                 "This explicit integrator has no stabilisation, but joints with the Constraint policy add rows. Use "
                 "it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
   static_assert(FindsConstantMass<I, M>, "This integrator asks for bodies of constant mass matrix. Use RungeKutta4.");
-  static_assert(SolvesItsBodies<M>,
-                "recursive::ArticulatedBody is for models of rigid bodies. Take recursive::Augmented.");
+  static_assert(
+      SolvesItsBodies<M>,
+      "recursive::ArticulatedBody is for models of rigid bodies whose forces have no first-order states. Take "
+      "recursive::Augmented.");
   static_assert(SolvesItsStages<I, M>,
                 "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
                 "step together. Take recursive::Augmented.");

@@ -21,6 +21,7 @@ struct BlockView {
   BlockView(double const* first, Index height, Index width, Index down, Index right)
       : data(first), rows(height), cols(width), row_step(down), col_step(right) {}
 
+  BlockView transposed() const { return {data, cols, rows, col_step, row_step}; }
   double operator()(Index i, Index j) const { return data[i * row_step + j * col_step]; }
 };
 

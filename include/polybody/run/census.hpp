@@ -17,7 +17,7 @@ struct Census {
 inline Census census(ModelLayout const& whole, Coordinates const& c) {
   Index const coordinates = c ? c.narrow->coordinates : whole.coordinates;
   Index const speeds = c ? c.narrow->speeds : whole.speeds, rows = c ? c.narrow->rows : whole.rows;
-  Index const constraints = rows + coordinates - speeds;
+  Index const constraints = rows + coordinates - (speeds - whole.states);
   return {coordinates, constraints, speeds, rows, coordinates - constraints};
 }
 template <class M>

@@ -16,7 +16,7 @@ struct Redundancy {
   };
   Index rows = 0;
   Index rank = 0;                ///< of G
-  Index degrees_of_freedom = 0;  ///< speeds − rank, at this state
+  Index degrees_of_freedom = 0;  ///< speeds of bodies − rank, at this state
   /// Joints with rows that repeat those of joints connected before them (or, in part, their own).
   std::vector<Share> repeated = {};
   /// Groups of joints (joint "a", joint "b", …) whose rows repeat each other but contradict: no small move closes them,
@@ -123,7 +123,9 @@ Redundancy redundancy(System& system, State const& x) {
   system.violation_rate(rate);
   system.acceleration_bias(gamma);
 
-  Redundancy out{.rows = system.rows(), .rank = factor.rank(), .degrees_of_freedom = system.speeds() - factor.rank()};
+  Redundancy out{.rows = system.rows(),
+                 .rank = factor.rank(),
+                 .degrees_of_freedom = system.layout().body_speeds() - factor.rank()};
   std::vector<Index> repeated;
   detail::ContradictionLimits const limits;
   auto const largest = [](VecX const& b) { return b.size() ? b.cwiseAbs().maxCoeff() : 0.0; };

@@ -316,9 +316,10 @@ constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = {
 
 }  // namespace detail
 
-/// Joints of M that are solved for body by body are in a model of rigid bodies.
+/// Joints of M that are solved for body by body are in a model of rigid bodies, without first-order states.
 template <class M>
-concept SolvesItsBodies = !std::is_same_v<typename M::Solution, recursive::ArticulatedBody> || M::all_rigid;
+concept SolvesItsBodies =
+    !std::is_same_v<typename M::Solution, recursive::ArticulatedBody> || (M::all_rigid && !M::has_states);
 
 /// The coordinates of a time step of `model`; none where its joints eliminate nothing.
 /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
@@ -327,8 +328,10 @@ template <class M>
 Coordinates coordinates_of(M const& model) {
   if constexpr (M::eliminates) {
     using Solution = typename M::Solution;
-    static_assert(SolvesItsBodies<M>,
-                  "recursive::ArticulatedBody is for models of rigid bodies. Take recursive::Augmented.");
+    static_assert(
+        SolvesItsBodies<M>,
+        "recursive::ArticulatedBody is for models of rigid bodies whose forces have no first-order states. Take "
+        "recursive::Augmented.");
     using Reduced = detail::ReducedCoordinates<Solution>;
     auto self = std::make_shared<Reduced>(model);
     auto narrow = std::make_shared<NarrowLayout>(self->narrow_layout(layout_of(model)));

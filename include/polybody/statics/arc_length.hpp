@@ -103,6 +103,8 @@ class PathEquations {
     q_ = point.x.q;
     system_.plus(point.x.q, dq, q_);
     point.x.q.swap(q_);
+    Index const states = system_.layout().states;
+    point.x.v.tail(states) += dq.tail(states);
     point.x.lambda += by.tail(rows_);
     point.load_factor += load;
   }
@@ -127,7 +129,7 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
   require_positive(options.step, "equilibrium_path: the step");
   require_positive(options.smallest, "equilibrium_path: the smallest step");
   PathPoint now{0.0, start};
-  now.x.v.setZero();
+  now.x.v.head(now.x.v.size() - system.layout().states).setZero();
   now.x.a.setZero();
   detail::PathEquations<Solver> equations(system, now);
   std::vector<PathPoint> path;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Static equilibrium: f(q) − Gᵀλ = 0, Φ(q) = 0 at v = 0, by full Newton with load steps.
+/// Static equilibrium: f(q, z) − Gᵀλ = 0, Φ(q) = 0 and h(q, z) = 0 at v = 0, by full Newton with load steps.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/solvers/default_solver.hpp>
@@ -33,7 +33,7 @@ struct EquilibriumPath {
   State& trial;
   double tolerance;
   double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
-  Index nv = system.speeds(), rows = system.rows(), bad = -1;
+  Index nv = system.speeds(), rows = system.rows(), states = system.layout().states, bad = -1;
   double first = 0.0, share = 0.0;  ///< p₀, s
   VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
 
@@ -70,6 +70,7 @@ struct EquilibriumPath {
   double solve() {
     tangent.solve(r, phi, y);
     dq = y.head(nv);
+    for (Index i = nv - states; i < nv; ++i) dq[i] /= 1.0 + std::abs(trial.v[i]);  // each by its own unit
     Index largest = 0;
     double const step = dq.cwiseAbs().maxCoeff(&largest), size = trial.q.cwiseAbs().maxCoeff();
     if (!(step < far && size < far)) {  // nothing but rounding errors resists
@@ -81,6 +82,7 @@ struct EquilibriumPath {
   void apply() {
     system.plus(trial.q, dq, q);
     trial.q.swap(q);
+    trial.v.tail(states) += y.segment(nv - states, states);
     trial.lambda += y.tail(rows);
   }
 
@@ -99,7 +101,8 @@ struct EquilibriumPath {
 
 }  // namespace detail
 
-/// Moves x (coordinates, multipliers; speeds become zero) into equilibrium at time x.t, from its present place. Every
+/// Moves x (coordinates, first-order states, multipliers; speeds become zero) into equilibrium at time x.t, from its
+/// present place. Every
 /// term of the tangent is included. Where Newton's method does not get there at once, it follows the path s = 0 … 1 of
 ///   r(q, λ, p) = (1 − s) r₀,  Φ(q) = (1 − s) Φ₀,  p = p₀ + s (1 − p₀),
 /// p the factor of loads and gravity: p₀ ∈ [0, 1] is the one that best keeps x where it is, r₀ and Φ₀ what it leaves.
@@ -108,7 +111,7 @@ struct EquilibriumPath {
 template <LinearSolver Solver = DefaultStaticSolver>
 EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
   State trial = x;
-  trial.v.setZero();
+  trial.v.head(trial.v.size() - system.layout().states).setZero();
   trial.a.setZero();
   system.evaluate(trial.q, trial.v, trial.t);
   StaticTangent<Solver> tangent(system, trial.lambda);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The linear equations of statics, [K, Gᵀ; G, 0] (x, μ) = (f, φ), K = −∂f/∂q with every term. They are solved as
+/// The linear equations of statics, [K, Gᵀ; G, 0] (x, μ) = (f, φ), K = −∂f/∂q with every term; x and f have first-order
+/// states and their rates behind coordinates and forces. They are solved as
 /// [K/u, Gᵀ; G, 0] (x, μ/u) = (f/u, φ), u a power of two as large as K: beside bodies of 1e14 N/m rows of G, whose
 /// entries are near one, would otherwise be lost among rounding errors of pivots.
 
@@ -18,7 +19,7 @@ class StaticTangent {
   StaticTangent(System& system, VecX const& lambda)
       : system_(&system), nv_(system.speeds()), rhs_(VecX::Zero(system.size())) {
     PatternSink pattern;
-    system.tangent({.stiffness = 1.0}, SecondOrder::included, lambda, pattern);
+    system.tangent({.stiffness = 1.0, .states = 1.0}, SecondOrder::included, lambda, pattern);
     solver_.analyse(system.size(), pattern.blocks);
     solver_.begin();
     BlockSink solver(solver_);
@@ -63,7 +64,7 @@ class StaticTangent {
   };
 
   void write(VecX const& lambda, Passing& sink) {
-    system_->tangent({.stiffness = 1.0 / unit_}, SecondOrder::included, lambda, sink);
+    system_->tangent({.stiffness = 1.0 / unit_, .states = 1.0 / unit_}, SecondOrder::included, lambda, sink);
   }
   void rescale(double largest) {
     if (largest > 0.0 && std::isfinite(largest)) unit_ = std::ldexp(1.0, std::ilogb(largest));

@@ -2,6 +2,8 @@
 /// \file
 /// Waist 3: what an integrator or a solver sees of the mechanics,
 ///   M(q) v̇ = f(q, v, t) − Gᵀλ,   Φ(q, t) = 0,   q moves by ⊞.
+/// First-order states, ż = h(q, v, z, t), are the last of the speeds: speeds whose mass is one and which move no
+/// coordinate. What integrates v with its rates integrates z.
 /// Models' types end here: one table of functions fills arrays, which are assembled into these equations. Where
 /// policies eliminate unknowns, the equations are those of what is left,
 ///   Tᵀ(M(T u̇ + b) − f) + (G T)ᵀλ = 0,   v = T u,  v̇ = T u̇ + b.

@@ -25,6 +25,8 @@ struct Data {
   std::vector<T> jacobians;           ///< arena of the dense Jacobians
   std::vector<RowBlock<T>> rows;      ///< waist 2, one for each joint and each body that owns rows
   std::vector<Action<T>> actions;     ///< what force elements do, one for each marker of each
+  std::vector<T> states, rates;       ///< first-order ones of force elements, z and ż
+  Index first_state = 0;              ///< among the speeds
 
   std::vector<Wrench<double>> loads;             ///< per marker: what the tangent's second-order terms need
   std::vector<Mat<double, 6, 6>> own_stiffness;  ///< per marker of the largest force group

@@ -15,8 +15,9 @@ struct TangentCoefficients {
   double mass = 0.0;
   double damping = 0.0;
   double stiffness = 0.0;
-  bool stand_ins = true;  ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
-  bool full = false;      ///< with second-order terms; a system sets it
+  bool stand_ins = true;    ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
+  bool full = false;        ///< with second-order terms; a system sets it
+  double states = damping;  ///< of −∂f/∂z and −∂h/∂z, z first-order states; a step takes them with its speeds
 };
 
 /// Terms ∂(Gᵀλ)/∂q and ∂(Jᵀw)/∂q: a time step may leave them out while Newton contracts; statics may not.

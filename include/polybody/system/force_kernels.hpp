@@ -3,6 +3,7 @@
 /// What a model does with all its force elements of one type: loops that know the type of the force and not that of the
 /// model (compare body_kernels.hpp).
 
+#include <polybody/forces/force_states.hpp>
 #include <polybody/system/joint_kernels.hpp>
 
 namespace polybody {
@@ -16,8 +17,15 @@ auto frames_of(ForceEntry<F> const& e, Data<T> const& data) {
   return frames;
 }
 
-/// Calls visit(force, markers, frames) for the force elements of an entry: itself, or the pairs of a group that may act
-/// now. Markers are places among the entry's.
+template <HasStates F, StateScalar T>
+std::array<T, F::states> states_of(ForceEntry<F> const& e, Data<T> const& data) {
+  std::array<T, F::states> z;
+  for (std::size_t s = 0; s < z.size(); ++s) z[s] = data.states[std::size_t(e.state) + s];
+  return z;
+}
+
+/// Calls visit(force, markers, frames) for the force elements of an entry: itself, at its states as they are, or the
+/// pairs of a group that may act now. Markers are places among the entry's.
 template <class F, StateScalar T, class Visit>
 void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit) {
   if constexpr (ForceGroup<F>) {
@@ -30,7 +38,12 @@ void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit)
   } else {
     std::array<Index, F::markers> all;
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = Index(k);
-    visit(e.force, all, frames_of(e, data));
+    if constexpr (HasStates<F>) {
+      auto const z = states_of(e, data);
+      visit(AtStates<F, T>{e.force, z}, all, frames_of(e, data));
+    } else {
+      visit(e.force, all, frames_of(e, data));
+    }
   }
 }
 
@@ -52,11 +65,13 @@ struct ForceKernels {
 
   /// Places and names.
   static void describe(Pool const& pool, ModelLayout& out);
-  /// An action for each marker; `owner` is the first force's place.
+  /// An action for each marker, and room; `owner` is the first force's place.
   static void place(Pool const& pool, Index owner, Data<T>& data);
-  /// Wrenches of all, from action `next` on; returns the end.
-  static Action<T>* push(Pool const& pool, double t, Data<T> const& data, Action<T>* next);
+  /// Wrenches of all, from action `next` on, and the rates of their states; returns the end of the actions.
+  static Action<T>* push(Pool const& pool, double t, Data<T>& data, Action<T>* next);
 
+  /// The identity, for the rates of their states, which begin at speed `first`.
+  static void masses(Pool const& pool, Index first, BlockSink& sink);
   static void tangents(Pool const& pool, double t, double load_factor, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);
   static double energy(Pool const& pool, double t, Data<double> const& data);
@@ -67,6 +82,8 @@ struct ForceKernels {
  private:
   static void tangent(Entry const& e, double t, double scale, TangentCoefficients const& c, Data<double>& data,
                       BlockSink& sink);
+  static void tangent_with_states(Entry const& e, double t, double scale, TangentCoefficients const& c,
+                                  Data<double>& data, BlockSink& sink);
   /// What each marker of a group feels of its own motion alone, block by block, zero where nothing acts; with stand-ins
   /// by a law's `own_stiffness` where it has one.
   static void group_tangent(Entry const& e, double t, double scale, TangentCoefficients const& c, Data<double>& data,
@@ -86,6 +103,10 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
   for (Entry const& e : pool) {
     out.forces.push_back(
         {e.name, &detail::type_tag<F>, index++, &e.force, {e.markers.begin(), e.markers.end()}, F::is_load});
+    if constexpr (HasStates<F>) {
+      out.forces.back().v0 = out.body_speeds() + e.state;
+      out.forces.back().states = F::states;
+    }
     if constexpr (requires { e.force.law; }) detail::add_corners(e.force.law, out.corners);
   }
 }
@@ -97,13 +118,18 @@ void ForceKernels<F, T>::place(Pool const& pool, Index owner, Data<T>& data) {
       data.read[std::size_t(k)] = 1;
       data.actions.push_back({.source = owner, .marker = k});
     }
+    if constexpr (HasStates<F>) {
+      for (Index const k : e.markers)
+        data.scratch.resize(
+            std::max(data.scratch.size(), std::size_t(F::states * data.markers[std::size_t(k)].columns)));
+    }
     data.own_stiffness.resize(std::max(data.own_stiffness.size(), e.markers.size()));
     ++owner;
   }
 }
 
 template <class F, StateScalar T>
-Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T> const& data, Action<T>* next) {
+Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, Action<T>* next) {
   for (Entry const& e : pool) {
     Action<T>* const actions = next;
     next += e.markers.size();
@@ -117,8 +143,20 @@ Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T> const& d
           actions[markers[k]].w[3 + i] += wrenches[k].m[i];
         }
     });
+    if constexpr (HasStates<F>) {
+      auto const rates = e.force.template rates<T>(detail::frames_of(e, data), detail::states_of(e, data), t);
+      std::copy(rates.begin(), rates.end(), data.rates.begin() + e.state);
+    }
   }
   return next;
+}
+
+template <class F, StateScalar T>
+void ForceKernels<F, T>::masses(Pool const& pool, Index first, BlockSink& sink) {
+  if constexpr (HasStates<F>) {
+    Mat<double, F::states, F::states> const one = Mat<double, F::states, F::states>::Identity();
+    for (Entry const& e : pool) sink.add(first + e.state, first + e.state, one);
+  }
 }
 
 template <class F, StateScalar T>
@@ -126,7 +164,9 @@ void ForceKernels<F, T>::tangents(Pool const& pool, double t, double load_factor
                                   Data<double>& data, BlockSink& sink) {
   double const scale = F::is_load ? load_factor : 1.0;
   for (Entry const& e : pool)
-    if constexpr (!ForceGroup<F>)
+    if constexpr (HasStates<F>)
+      tangent_with_states(e, t, scale, c, data, sink);
+    else if constexpr (!ForceGroup<F>)
       tangent(e, t, scale, c, data, sink);
     else if (c.full && c.mass == 0.0)
       whole_group_tangent(e, t, scale, c, data, sink);
@@ -164,7 +204,7 @@ void ForceKernels<F, T>::add_powers(Pool const& pool, double t, double load_fact
 template <class F, StateScalar T>
 void ForceKernels<F, T>::tangent(Entry const& e, double t, double scale, TangentCoefficients const& c,
                                  Data<double>& data, BlockSink& sink) {
-  if constexpr (!ForceGroup<F>) {
+  if constexpr (!ForceGroup<F> && !HasStates<F>) {
     constexpr int n = F::markers;
     auto const frames = detail::frames_of(e, data);
     std::array<Published<double> const*, std::size_t(n)> markers;
@@ -173,6 +213,39 @@ void ForceKernels<F, T>::tangent(Entry const& e, double t, double scale, Tangent
     for (Index i = 0; i < s.size(); ++i) s.data()[i] *= -scale;
     detail::add_pulled_pairs<n>(markers, s.data(), c.full || couples_bodies<F>(), data.scratch, sink);
     if (c.full) detail::add_loads(e.force.template wrenches<double>(frames, t), e.markers, scale, data);
+  }
+}
+
+/// With w the wrenches, h the rates and x the frames: blocks −Jᵀ ∂w/∂x J, −Jᵀ ∂w/∂z, −∂h/∂x J and cm − ∂h/∂z, all by
+/// their coefficients.
+template <class F, StateScalar T>
+void ForceKernels<F, T>::tangent_with_states(Entry const& e, double t, double scale, TangentCoefficients const& c,
+                                             Data<double>& data, BlockSink& sink) {
+  if constexpr (HasStates<F>) {
+    constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
+    auto const frames = detail::frames_of(e, data);
+    auto const z = detail::states_of(e, data);
+    Mat<double, size, size> s = gradient_with_states(e.force, frames, z, t, {c.stiffness, c.damping, c.states});
+    for (int j = 0; j < size; ++j)
+      for (int i = 0; i < size; ++i) s(i, j) *= i < first ? -scale : -1.0;
+    for (int i = first; i < size; ++i) s(i, i) += c.mass;
+    double const* const entries = s.data();
+    Index const at = data.first_state + e.state;
+    auto const marker = [&](int k) -> Published<double> const& {
+      return data.markers[std::size_t(e.markers[std::size_t(k)])];
+    };
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        detail::add_pulled_pair(marker(i), marker(j), entries + 6 * i + 6 * size * j, size, data.scratch, sink);
+    for (int k = 0; k < n; ++k) {
+      Published<double> const& p = marker(k);
+      if (p.columns == 0) continue;
+      sink.add(p.first, at, detail::pulled<m>(p, entries + 6 * k + size * first, 1, size, data.scratch));
+      sink.add(at, p.first, detail::pulled<m>(p, entries + first + 6 * size * k, size, 1, data.scratch).transposed());
+    }
+    sink.add(at, at, BlockView(entries + (size + 1) * first, m, m, 1, size));
+    if (c.full)
+      detail::add_loads(AtStates<F, double>{e.force, z}.template wrenches<double>(frames, t), e.markers, scale, data);
   }
 }
 

@@ -41,12 +41,14 @@ struct ForcePlace {
   void const* force = nullptr;      ///< the force element itself, in the model
   std::vector<Index> markers = {};  ///< published
   bool is_load = false;
+  Index v0 = -1, states = 0;  ///< first-order states of its own, among the speeds
 };
 
 /// Counts, places and names of a model; bodies, joints and forces in the order of their types.
 struct ModelLayout {
   std::uint64_t serial = 0;  ///< of the model, as its handles know it
   Index coordinates = 0, speeds = 0, rows = 0;
+  Index states = 0;                       ///< first-order ones: the last of the speeds
   std::vector<Index> velocity_rows = {};  ///< rows without a position, ascending
   std::vector<BodyPlace> bodies = {};
   std::vector<JointPlace> joints = {};
@@ -57,7 +59,10 @@ struct ModelLayout {
   bool constant_mass = false;
   bool has_groups = false;  ///< of forces
 
-  /// Name of the body that owns speed i, or of the joint or body that owns row i − speeds.
+  Index body_speeds() const { return speeds - states; }
+
+  /// Name of the body that owns speed i, or the force whose first-order state it is; or of the joint or body that owns
+  /// row i − speeds.
   std::string name_of(Index i) const {
     Index const row = i - speeds;
     for (BodyPlace const& b : bodies)
@@ -65,6 +70,8 @@ struct ModelLayout {
         return "body \"" + b.name + '"';
     for (JointPlace const& j : joints)
       if (row >= 0 && row >= j.row && row < j.row + j.rows) return "joint \"" + j.name + '"';
+    for (ForcePlace const& f : forces)
+      if (row < 0 && i >= f.v0 && i < f.v0 + f.states) return "force \"" + f.name + '"';
     return "unknown";
   }
 };

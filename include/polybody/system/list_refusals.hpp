@@ -99,11 +99,12 @@ struct ForceRefusal {
         { F::is_load } -> std::convertible_to<bool>;
       }, "A force element needs static constants: Observes needs and bool is_load.");
   static_assert(
-      requires(F const f, std::array<Frame<double>, F::markers> const frames, double t) {
-        { f.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
-      },
+      GivesWrenches<F> || states_of<F>() > 0,
       "A force element needs wrenches<T>(std::array<Frame<T>, markers> frames, double t) const, which returns "
       "std::array<Wrench<T>, markers>.");
+  static_assert(HasStates<F> || states_of<F>() == 0,
+                "A force element with states needs wrenches<T>(std::array<Frame<T>, markers> frames, std::array<T, "
+                "states> z, double t) const and rates<T> of the same arguments, which returns std::array<T, states>.");
   static_assert(
       requires(F const f, std::string name) { f.check(name); },
       "A force element needs check(name) const, which throws InvalidInput for parameters that cannot be meant.");

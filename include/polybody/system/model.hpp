@@ -42,6 +42,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);
   static constexpr bool constant_mass = (Bs::constant_mass && ...);
   static constexpr bool has_groups = (ForceGroup<Fs> || ...);  ///< of forces
+  static constexpr bool has_states = (HasStates<Fs> || ...);   ///< first-order ones, of forces
 
   explicit Model(Gravity const& gravity = {}) : gravity_(gravity), serial_(next_serial()) {}
 
@@ -154,6 +155,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
           ((entry.markers[k++] = publish_at(m, Mat3::Identity())), ...);
         },
         markers);
+    entry.state = states_;
+    states_ += states_of<F>();
     pool.push_back(std::move(entry));
     return {serial_, Index(pool.size()) - 1, std::move(name)};
   }
@@ -191,11 +194,30 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     entry.force.pair_with(law, Index(entry.markers.size()) - 1, std::move(name));
   }
 
-  /// The undeformed model as placed, at rest, t = 0.
+  /// The undeformed model as placed, at rest, t = 0, with the initial states of its forces.
   State reference_state() const {
-    State x{VecX::Zero(coordinates_), VecX::Zero(speeds_), VecX::Zero(speeds_), VecX::Zero(rows_), 0.0, {}};
+    State x{VecX::Zero(coordinates_), VecX::Zero(speeds()), VecX::Zero(speeds()), VecX::Zero(rows_), 0.0, {}};
     for_each_body([&](auto const& e) { e.body.reference(detail::body_part_of(x.q, e.q0, e.body.coordinates())); });
+    if constexpr (has_states)
+      for_each_force([&](auto const& e) {
+        if constexpr (requires { e.force.initial_states(); }) {
+          auto const z = e.force.initial_states();
+          std::copy(z.begin(), z.end(), x.v.data() + speeds_ + e.state);
+        }
+      });
     return x;
+  }
+
+  /// The first-order states of a force element in x. \throws InvalidInput as `entry`.
+  template <OneOf<Fs...> F>
+    requires HasStates<F>
+  std::span<double, F::states> states(State& x, ElementHandle<F> const& force) const {
+    return std::span<double, F::states>(x.v.data() + speeds_ + entry(force).state, F::states);
+  }
+  template <OneOf<Fs...> F>
+    requires HasStates<F>
+  std::span<double const, F::states> states(State const& x, ElementHandle<F> const& force) const {
+    return std::span<double const, F::states>(x.v.data() + speeds_ + entry(force).state, F::states);
   }
 
   /// Gives a body the speeds of a rigid motion: `v0` is the velocity of the body-fixed point that is at the
@@ -209,7 +231,9 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
 
   Gravity const& gravity() const { return gravity_; }
   Index coordinates() const { return coordinates_; }
-  Index speeds() const { return speeds_; }
+  /// Speeds of the bodies, and first-order states of forces behind them.
+  Index speeds() const { return speeds_ + states_; }
+  Index states() const { return states_; }
   Index rows() const { return rows_; }
   /// Those of the rows that hold speeds and no positions, ascending.
   std::vector<Index> const& velocity_rows() const { return velocity_rows_; }
@@ -320,7 +344,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   std::vector<detail::GroundMarker> ground_;
   std::vector<LinearRows> linear_rows_;
   std::vector<Index> velocity_rows_;
-  Index coordinates_ = 0, speeds_ = 0, rows_ = 0, markers_ = 0, jacobian_size_ = 0, count_bodies_ = 0;
+  Index coordinates_ = 0, speeds_ = 0, states_ = 0, rows_ = 0, markers_ = 0, jacobian_size_ = 0, count_bodies_ = 0;
 };
 
 }  // namespace polybody

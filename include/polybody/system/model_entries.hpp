@@ -78,6 +78,7 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
 
   static void masses(void const* m, At<double> at, Data<double>& data, BlockSink& sink) {
     (BodyKernels<Bs, double>::masses(bodies<Bs>(m), of_bodies<Bs>(data), at, sink), ...);
+    (ForceKernels<Fs, double>::masses(forces<Fs>(m), data.first_state, sink), ...);
   }
   static void element_tangents(void const* m, At<double> at, TangentCoefficients const& c, Data<double>& data,
                                BlockSink& sink) {

@@ -68,6 +68,7 @@ struct ForceEntry {
   F force;
   std::array<Index, F::markers> markers;  ///< published
   std::string name;
+  Index state = 0;  ///< first of its own, among the model's first-order states
 };
 template <ForceGroup F>
 struct ForceEntry<F> {

@@ -40,22 +40,25 @@ void pull_dense(Published<double> const& p, double const* w, Index down, Index r
     }
 }
 
+/// Jᵀ w of m wrenches, columns×m, in `scratch`; entry i of wrench k is w[down i + right k].
+template <int m>
+BlockView pulled(Published<double> const& p, double const* w, Index down, Index right, std::vector<double>& scratch) {
+  if (p.shape == JacobianShape::rigid) {  // by rows, as sinks store a body before its joint
+    pull_rigid<m>(p, w, down, right, scratch.data());
+    return {scratch.data(), 6, m, m, 1};
+  }
+  pull_dense(p, w, down, right, m, scratch.data());
+  return {scratch.data(), p.columns, m, 1, p.columns};
+}
+
 /// Writes (map J)ᵀ and its mirror for the m rows of a marker's end from `row` on.
 template <int m>
 void add_pulled_rows(Published<double> const& p, double const* map, Index row, std::vector<double>& scratch,
                      BlockSink& sink) {
   if (p.columns == 0) return;
-  if (p.shape == JacobianShape::rigid) {
-    double out[6 * m];  // by rows, as sinks store a body before its joint
-    pull_rigid<m>(p, map, m, 1, out);
-    sink.add(p.first, row, BlockView(out, 6, m, m, 1));
-    sink.add(row, p.first, BlockView(out, m, 6, 1, m));
-    return;
-  }
-  Index const n = p.columns;
-  pull_dense(p, map, m, 1, m, scratch.data());
-  sink.add(p.first, row, BlockView(scratch.data(), n, m, 1, n));
-  sink.add(row, p.first, BlockView(scratch.data(), m, n, n, 1));
+  BlockView const columns = pulled<m>(p, map, m, 1, scratch);
+  sink.add(p.first, row, columns);
+  sink.add(row, p.first, columns.transposed());
 }
 
 /// sink += JaᵀS Jb; entry (i, j) of S stands at s[i + stride j].

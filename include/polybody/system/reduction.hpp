@@ -3,7 +3,7 @@
 /// Which unknowns of a model a time step has once policies have eliminated others: narrow vectors hold them, whole ones
 /// everything.
 ///   q, v: coordinates of bodies that no joint carries, without those that depend on others; joint coordinates of
-///   carried bodies. rows: those of joints and bodies that stay.
+///   carried bodies; first-order states. rows: those of joints and bodies that stay.
 
 #include <algorithm>
 
@@ -164,6 +164,10 @@ class ReductionOf {
       }
       place.coordinates = coordinates_ - place.q;
       place.speeds = speeds_ - place.v;
+    }
+    for (Index j = model.speeds() - model.states(); j < model.speeds(); ++j) {
+      same_v_.emplace_back(speeds_++, j);
+      whole_speed_.push_back(j);
     }
   }
 

@@ -168,7 +168,16 @@ class TypedSecants {
       add_rows<m>(marker(e.a), gap.rows_a, l, r);
       add_rows<m>(marker(e.b), gap.rows_b, l, r);
     });
-    model_.for_each_force([&](auto const& e) { add_force(data, e, r); });
+    model_.for_each_force([&](auto const& e) {
+      add_force(data, e, r);
+      if constexpr (HasStates<std::decay_t<decltype(e.force)>>) {
+        auto const rates = e.force.template rates<double>(frames_of(e, data), states_of(e, data), middle_time());
+        for (std::size_t s = 0; s < rates.size(); ++s) {
+          Index const i = data.first_state + e.state + Index(s);
+          r[i] += a[i] - rates[s];
+        }
+      }
+    });
   }
 
   /// Φ(q₁).
@@ -215,6 +224,11 @@ class TypedSecants {
         add_pair(b, gb, slope, b, gb, sink);
       }
     });
+    std::apply(
+        [&](auto const&... pool) {
+          (ForceKernels<decltype(pool.front().force), double>::masses(pool, row0 - model_.states(), sink), ...);
+        },
+        model_.force_pools());
   }
 
  private:
@@ -305,7 +319,10 @@ class TypedSecants {
     using F = std::decay_t<decltype(e.force)>;
     constexpr int n = F::markers;
     auto frames = frames_of(e, data);
-    auto wrenches = e.force.template wrenches<double>(frames, middle_time());
+    std::array<Wrench<double>, std::size_t(n)> wrenches;
+    for_each_action(e, data, [&](auto const& force, auto const&, auto const& there) {
+      wrenches = force.template wrenches<double>(there, middle_time());
+    });
     if constexpr (HasSecantPotential<F>) {
       for (auto& f : frames) f.v = f.w = Vec3::Zero();
       auto const at_rest = e.force.template wrenches<double>(frames, middle_time());

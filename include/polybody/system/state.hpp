@@ -4,11 +4,12 @@
 
 namespace polybody {
 
-/// The state of a model.
+/// The state of a model. First-order states z are speeds without a coordinate: they stand behind the speeds of the
+/// bodies in v, and ż in a.
 template <StateScalar T = double>
 struct StateOf {
   VecXOf<T> q;       ///< (nq) coordinates
-  VecXOf<T> v;       ///< (nv) speeds
+  VecXOf<T> v;       ///< (nv) speeds, then first-order states
   VecXOf<T> a;       ///< (nv) rates of the speeds
   VecXOf<T> lambda;  ///< (rows) multipliers; the joints' generalised force is −Gᵀλ
   double t = 0.0;    ///< time [s]

@@ -13,6 +13,8 @@ struct SecantStep {
   VecX const* q0 = nullptr;
   VecX const* q1 = nullptr;
   double t = 0.0, h = 0.0, decay = 0.0;
+  VecX const* v0 = nullptr;  ///< the first-order states behind the speeds at t
+  VecX const* a = nullptr;   ///< and their rates over the step
 };
 
 /// A model's entries for such steps; `self` is what `make` made.
@@ -33,12 +35,14 @@ class StepSecants {
         middle_(VecX::Zero(system.coordinates())),
         speed_(VecX::Zero(system.speeds())) {}
 
-  /// Takes the step. Rows that depend on time are taken at its end; loads in its middle, where `system` is then
-  /// evaluated.
+  /// Takes the step. Rows that depend on time are taken at its end; loads and first-order states in its middle, where
+  /// `system` is then evaluated.
   void evaluate(System& system, SecantStep const& step) {
-    rate_ = 1.0 / step.h;
+    h_ = step.h;
+    Index const bodies = system.layout().body_speeds();
     for (Index i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * ((*step.q0)[i] + (*step.q1)[i]);
-    for (Index i = 0; i < speed_.size(); ++i) speed_[i] = ((*step.q1)[i] - (*step.q0)[i]) / step.h;
+    for (Index i = 0; i < bodies; ++i) speed_[i] = ((*step.q1)[i] - (*step.q0)[i]) / step.h;
+    for (Index i = bodies; i < speed_.size(); ++i) speed_[i] = (*step.v0)[i] + 0.5 * step.h * (*step.a)[i];
     system.evaluate(middle_, speed_, step.t + 0.5 * step.h);
     entries_->evaluate(self_.get(), step);
   }
@@ -52,13 +56,13 @@ class StepSecants {
   /// are off by the share of a turn that a body makes in the step, and so Newton's method contracts.
   void tangent(System& system, double s, BlockSink& sink) {
     entries_->tangent(self_.get(), s, sink);
-    system.tangent_of(TangentPart::force_elements, {.damping = s * rate_, .stiffness = 0.5 * s}, sink);
+    system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink);
   }
 
  private:
   SecantEntries const* entries_;
   std::shared_ptr<void> self_;
-  double rate_ = 0.0;
+  double h_ = 0.0;
   VecX middle_, speed_;
 };
 

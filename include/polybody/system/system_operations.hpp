@@ -43,6 +43,7 @@ void BasicSystem<T>::evaluate(Vector const& q, Vector const& v, double t) {
     q_ = q;
     v_ = v;
   }
+  for (std::size_t i = 0; i < data_.states.size(); ++i) data_.states[i] = v_[data_.first_state + Index(i)];
   entries_.publish(model_, at(), data_);
   entries_.measure_gaps(model_, at(), data_);
 }
@@ -145,6 +146,10 @@ void BasicSystem<T>::whole_residual(Vector const& a, Vector const& lambda, Vecto
   add_row_forces(data_, lambda, r);
   push_forces();
   add_actions(data_, layout_, load_factor, r);
+  for (std::size_t i = 0; i < data_.rates.size(); ++i) {
+    Index const k = data_.first_state + Index(i);
+    r[k] += a[k] - data_.rates[i];
+  }
 }
 
 template <StateScalar T>

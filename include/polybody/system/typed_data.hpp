@@ -106,6 +106,9 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
      ...);
     data.scratch.resize(std::size_t(arena.widest * (arena.widest + 18)));
     place_rows(model, *typed, data);
+    data.states.assign(std::size_t(model.states()), T(0.0));
+    data.rates = data.states;
+    data.first_state = model.speeds() - model.states();
     Index owner = 0;
     ((ForceKernels<Fs, T>::place(forces_of<Fs>(model), owner, data), owner += Index(forces_of<Fs>(model).size())), ...);
     data.kept = typed;
@@ -140,6 +143,7 @@ ModelLayout counts_of(M const& model) {
           .coordinates = model.coordinates(),
           .speeds = model.speeds(),
           .rows = model.rows(),
+          .states = model.states(),
           .velocity_rows = model.velocity_rows(),
           .owners = std::vector<Index>(std::size_t(model.markers()), -1),
           .gravity = model.gravity().g,

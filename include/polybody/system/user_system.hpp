@@ -8,6 +8,11 @@
 ///     void force(VecX const& q, VecX const& v, double t, VecX& f) const { f[0] = -50.0 * q[0]; }
 ///   };
 ///   System system = system_of(Oscillator{});
+/// First-order equations ż = h(z, t), alone or beside these:
+///   struct VanDerPol {
+///     Index states() const { return 2; }
+///     void rates(VecX const& z, double t, VecX& h) const { h << z[1], (1.0 - z[0] * z[0]) * z[1] - z[0]; }
+///   };
 ///
 /// Not in polybody.hpp: few programs need it.
 
@@ -15,6 +20,21 @@
 
 namespace polybody {
 
+/// ż = h(z, t), to be written over (n).
+template <class E>
+concept UserRates = requires(E const e, VecX const& z, double t, VecX& h) {
+  { e.states() } -> std::convertible_to<Index>;
+  e.rates(z, t, h);
+};
+/// M(q) v̇ = f(q, v, z, t) with q̇ = v beside ż = h(q, v, z, t): mass matrix (n×n), force (n) and rates.
+template <class E>
+concept UserMechanicsWithStates = requires(E const e, VecX const& x, double t, MatX& m, VecX& f) {
+  { e.speeds() } -> std::convertible_to<Index>;
+  { e.states() } -> std::convertible_to<Index>;
+  e.mass(x, m);
+  e.force(x, x, x, t, f);
+  e.rates(x, x, x, t, f);
+};
 /// M(q) v̇ = f(q, v, t) with q̇ = v: mass matrix (n×n) and force (n), both to be written over.
 template <class E>
 concept UserMechanics = requires(E const e, VecX const& x, double t, MatX& m, VecX& f) {
@@ -22,6 +42,9 @@ concept UserMechanics = requires(E const e, VecX const& x, double t, MatX& m, Ve
   e.mass(x, m);
   e.force(x, x, t, f);
 };
+/// Equations of which `system_of` makes a system.
+template <class E>
+concept UserEquations = UserMechanics<E> || UserMechanicsWithStates<E> || UserRates<E>;
 /// It gives −(ck ∂f/∂q + cd ∂f/∂v) (n×n), which implicit steps ask for; else it comes from central differences.
 template <class E>
 concept OffersForceTangent = requires(E const e, VecX const& x, double t, MatX& k) { e.tangent(x, x, t, 1.0, 1.0, k); };
@@ -37,20 +60,26 @@ concept OffersRows = requires(E const e, VecX const& x, double t, MatX& g, VecX&
 
 namespace detail {
 
-template <UserMechanics E>
+template <UserEquations E>
 struct UserEntries {
   E mechanics;
-  mutable MatX m, k;
+  Index n = 0, states = 0;  ///< speeds without first-order states, and these
+  mutable MatX m, k, m_n;   ///< of all; m_n, k_n: of the speeds alone
   mutable VecX f, ma;
-  mutable MatX g;
-  mutable VecX phi, rate, q_near, f_near;
+  mutable VecX v_n, z, f_n, h;  ///< parts of v and f
+  mutable MatX g, k_n;
+  mutable VecX phi, rate, x_near, f_near;
 
   explicit UserEntries(E e) : mechanics(std::move(e)) {
-    Index const n = mechanics.speeds();
-    m.setZero(n, n);
+    if constexpr (requires { mechanics.speeds(); }) n = mechanics.speeds();
+    if constexpr (requires { mechanics.states(); }) states = mechanics.states();
+    m.setIdentity(n + states, n + states);
     k = m;
-    f.setZero(n);
-    ma = q_near = f_near = f;
+    m_n = k_n = MatX::Zero(n, n);
+    f.setZero(n + states);
+    ma = f_near = f;
+    v_n = f_n = VecX::Zero(n);
+    z = h = VecX::Zero(states);
     if constexpr (OffersRows<E>) {
       g.setZero(mechanics.rows(), n);
       phi.setZero(mechanics.rows());
@@ -67,53 +96,83 @@ struct UserEntries {
     }
   }
   static void measure_gamma(void const* self, At<double> at, Data<double> const&, VecX& out) {
-    if constexpr (OffersRows<E>) of(self).mechanics.gamma(at.q, at.v, at.t, out);
+    if constexpr (OffersRows<E>) {
+      of(self).v_n = at.v.head(of(self).n);
+      of(self).mechanics.gamma(at.q, of(self).v_n, at.t, out);
+    }
+  }
+  /// M with ones for the states; f and h.
+  void find_mass(VecX const& q) const {
+    if constexpr (!UserRates<E>) {
+      mechanics.mass(q, m_n);
+      m.topLeftCorner(n, n) = m_n;
+    }
+  }
+  void find_force(VecX const& q, VecX const& v, double t, VecX& out) const {
+    if constexpr (UserMechanicsWithStates<E>) {
+      v_n = v.head(n);
+      z = v.tail(states);
+      mechanics.force(q, v_n, z, t, f_n);
+      mechanics.rates(q, v_n, z, t, h);
+      out << f_n, h;
+    } else if constexpr (UserRates<E>) {
+      mechanics.rates(v, t, out);
+    } else {
+      mechanics.force(q, v, t, out);
+    }
   }
   static void element_forces(void const* self, At<double> at, VecX const& a, double, Data<double>&, VecX& r) {
-    of(self).mechanics.mass(at.q, of(self).m);
-    of(self).mechanics.force(at.q, at.v, at.t, of(self).f);
-    of(self).ma.noalias() = of(self).m * a;
-    r += of(self).ma;
-    r -= of(self).f;
+    UserEntries const& s = of(self);
+    s.find_mass(at.q);
+    s.find_force(at.q, at.v, at.t, s.f);
+    s.ma.noalias() = s.m * a;
+    r += s.ma;
+    r -= s.f;
   }
   static void masses(void const* self, At<double> at, Data<double>&, BlockSink& sink) {
-    of(self).mechanics.mass(at.q, of(self).m);
+    of(self).find_mass(at.q);
     sink.add(0, 0, of(self).m);
   }
   static void element_tangents(void const* self, At<double> at, TangentCoefficients const& c, Data<double>&,
                                BlockSink& sink) {
     UserEntries const& s = of(self);
-    s.mechanics.mass(at.q, s.m);
-    if constexpr (OffersForceTangent<E>)
-      s.mechanics.tangent(at.q, at.v, at.t, c.stiffness, c.damping, s.k);
-    else
-      s.differences(at, c);
+    s.find_mass(at.q);
+    if constexpr (UserMechanics<E> && OffersForceTangent<E>) {
+      s.mechanics.tangent(at.q, at.v, at.t, c.stiffness, c.damping, s.k_n);
+      s.k = s.k_n;
+    } else {
+      s.k.setZero();
+      s.differences(at, c.stiffness, at.q, 0, s.n);
+      s.differences(at, c.damping, at.v, 0, s.n);
+      s.differences(at, c.states, at.v, s.n, s.states);
+    }
     s.k += c.mass * s.m;
     sink.add(0, 0, s.k);
   }
-  /// k = −(ck ∂f/∂q + cd ∂f/∂v), of second order in the step of 1e-6.
-  void differences(At<double> at, TangentCoefficients const& c) const {
-    k.setZero();
-    for (bool const by_speed : {false, true}) {
-      double const factor = by_speed ? c.damping : c.stiffness;
-      VecX const& x = by_speed ? at.v : at.q;
-      q_near = x;
-      for (Index j = 0; j < x.size() && factor != 0.0; ++j) {
-        double const h = 1e-6 * (1.0 + std::abs(x[j]));
-        for (double const side : {-h, h}) {
-          q_near[j] = x[j] + side;
-          mechanics.force(by_speed ? at.q : q_near, by_speed ? q_near : at.v, at.t, f_near);
-          k.col(j) -= factor / (2.0 * side) * f_near;
-        }
-        q_near[j] = x[j];
+  /// k −= factor ∂(f, h)/∂x for `count` entries of x, which is q or v, of second order in the step of 1e-6.
+  void differences(At<double> at, double factor, VecX const& x, Index first, Index count) const {
+    if (factor == 0.0) return;
+    x_near = x;
+    bool const by_q = &x == &at.q;
+    for (Index j = first; j < first + count; ++j) {
+      double const step = 1e-6 * (1.0 + std::abs(x[j]));
+      for (double const side : {-step, step}) {
+        x_near[j] = x[j] + side;
+        find_force(by_q ? x_near : at.q, by_q ? at.v : x_near, at.t, f_near);
+        k.col(j) -= factor / (2.0 * side) * f_near;
       }
+      x_near[j] = x[j];
     }
   }
-  static void plus(void const*, NarrowPlace const*, VecX const& q, VecX const& delta, VecX& out) { out = q + delta; }
-  static void local_rate(void const*, NarrowPlace const*, VecX const&, VecX const& v, VecX& out) { out = v; }
+  static void plus(void const*, NarrowPlace const*, VecX const& q, VecX const& delta, VecX& out) {
+    out = q + delta.head(q.size());
+  }
+  static void local_rate(void const* self, NarrowPlace const*, VecX const&, VecX const& v, VecX& out) {
+    out.head(of(self).n) = v.head(of(self).n);
+  }
   static void coordinate_rates(void const*, NarrowPlace const*, VecX const&, VecX const& v, VecXOf<Dual<1>>&,
                                VecX& rate) {
-    rate = v;
+    rate = v.head(rate.size());
   }
 
   static constexpr ModelEntries<double> entries() {
@@ -139,12 +198,16 @@ struct UserEntries {
 
 /// The system of these equations, which it keeps. `name` is what messages call it. The second-order terms of its rows,
 /// which some implicit steps ask for when they stall, are left out.
-template <UserMechanics E>
+template <UserEquations E>
 System system_of(E mechanics, std::string name = "system", bool constant_mass = false) {
   auto self = std::make_shared<detail::UserEntries<E>>(std::move(mechanics));
-  Index const n = self->f.size(), rows = self->phi.size();
-  ModelLayout layout{.coordinates = n, .speeds = n, .rows = rows, .constant_mass = constant_mass};
-  layout.bodies.push_back({name, 0, n, 0, n});
+  Index const n = self->n, states = self->states, rows = self->phi.size();
+  ModelLayout layout{.coordinates = n,
+                     .speeds = n + states,
+                     .rows = rows,
+                     .states = states,
+                     .constant_mass = constant_mass || UserRates<E>};
+  layout.bodies.push_back({name, 0, n, 0, n + states});
   Data<double> data;
   if (rows > 0) {
     layout.joints.push_back({name, -1, -1, 0, rows});

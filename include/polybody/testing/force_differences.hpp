@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include <polybody/forces/force_element.hpp>
+#include <polybody/forces/force_states.hpp>
 #include <polybody/testing/differences.hpp>
 #include <polybody/testing/frames.hpp>
 
@@ -22,6 +22,29 @@ VecX stacked_wrenches(F const& force, std::array<Frame<double>, F::markers> cons
   return all;
 }
 
+/// The same at states z of a force element, and their rates behind the wrenches.
+template <HasStates F>
+VecX stacked_answer(F const& force, std::array<Frame<double>, F::markers> const& frames,
+                    std::array<double, F::states> const& z, double t) {
+  VecX all(6 * F::markers + F::states);
+  all.head(6 * F::markers) = stacked_wrenches(AtStates<F, double>{force, z}, frames, t);
+  auto const rates = force.template rates<double>(frames, z, t);
+  std::copy(rates.begin(), rates.end(), all.data() + 6 * F::markers);
+  return all;
+}
+
+/// Frames of which one has moved in direction j of its pose, by ck h, and of its twist, by cd h.
+template <std::size_t markers>
+std::array<Frame<double>, markers> shifted(std::array<Frame<double>, markers> frames, Index j, double ck, double cd,
+                                           double h) {
+  Frame<double>& f = frames[std::size_t(j / 6)];
+  Vec6 const unit = Vec6::Unit(j % 6);
+  f = moved<double>(f, unit * (ck * h));
+  f.v += unit.head<3>() * (cd * h);
+  f.w += unit.tail<3>() * (cd * h);
+  return frames;
+}
+
 /// ck ∂w/∂pose + cd ∂w/∂twist by differences: what `wrench_gradient` must be.
 template <ForceElement F>
 MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck,
@@ -29,15 +52,26 @@ MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::marker
   MatX gradient(6 * F::markers, 6 * F::markers);
   double const step = 1e-3 / std::max({1.0, ck, cd});
   for (Index j = 0; j < gradient.cols(); ++j)
+    gradient.col(j) =
+        slope_at_zero([&](double h) { return stacked_wrenches(force, shifted(frames, j, ck, cd, h), t); }, step);
+  return gradient;
+}
+/// The same of wrenches and rates: what `gradient_with_states` must be.
+template <HasStates F>
+MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames,
+                             std::array<double, F::states> const& z, double t, SlopeFactors const& by) {
+  Index const first = 6 * F::markers, n = first + F::states;
+  MatX gradient(n, n);
+  double const step = 1e-3 / std::max({1.0, by.pose, by.twist, by.states});
+  for (Index j = 0; j < first; ++j)
+    gradient.col(j) = slope_at_zero(
+        [&](double h) { return stacked_answer(force, shifted(frames, j, by.pose, by.twist, h), z, t); }, step);
+  for (Index j = first; j < n; ++j)
     gradient.col(j) = slope_at_zero(
         [&](double h) {
-          auto shifted = frames;
-          Frame<double>& f = shifted[std::size_t(j / 6)];
-          Vec6 const unit = Vec6::Unit(j % 6);
-          f = moved<double>(f, unit * (ck * h));
-          f.v += unit.head<3>() * (cd * h);
-          f.w += unit.tail<3>() * (cd * h);
-          return stacked_wrenches(force, shifted, t);
+          auto near = z;
+          near[std::size_t(j - first)] += by.states * h;
+          return stacked_answer(force, frames, near, t);
         },
         step);
   return gradient;

@@ -25,6 +25,7 @@ struct ForceLaws {
   F const force = Case::force();
   double const t = 1.3;
   Numbers number;
+  std::array<double, std::size_t(states_of<F>())> const z = some_states();  ///< of an element with states
 
   Frames frames() {
     if constexpr (requires { Case::frames(number); }) {
@@ -35,20 +36,46 @@ struct ForceLaws {
       return all;
     }
   }
+  std::array<double, std::size_t(states_of<F>())> some_states() {
+    std::array<double, std::size_t(states_of<F>())> some{};
+    for (double& x : some) x = number();
+    return some;
+  }
+  /// The element, at its states if it has any.
+  auto law() const {
+    if constexpr (HasStates<F>)
+      return AtStates<F, double>{force, z};
+    else
+      return force;
+  }
+  VecX stacked(Frames const& f) const {
+    if constexpr (HasStates<F>)
+      return stacked_answer(force, f, z, t);
+    else
+      return stacked_wrenches(force, f, t);
+  }
   std::array<Wrench<double>, std::size_t(markers)> wrenches(Frames const& f) const {
-    return force.template wrenches<double>(f, t);
+    return law().template wrenches<double>(f, t);
   }
   static Observes needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
 
-  /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, by differences: what is written for any scalar has no branch or
-  /// conversion that hides a derivative.
+  /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, with states `gradient_with_states`, by differences: what is
+  /// written for any scalar has no branch or conversion that hides a derivative.
   void gradient_is_the_derivative_of_the_wrenches() {
     for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}})
-      EXPECT_LT(gradient_mismatch(force, frames(), t, ck, cd), 1e-7) << ck << ' ' << cd;
+      if constexpr (HasStates<F>) {
+        Frames const f = frames();
+        MatX const expected = gradient_by_differences(force, f, z, t, {ck, cd, 1.0 + cd});
+        MatX const given = gradient_with_states(force, f, z, t, {ck, cd, 1.0 + cd});
+        EXPECT_LT((given - expected).cwiseAbs().maxCoeff(), 1e-7 * (1.0 + expected.cwiseAbs().maxCoeff()))
+            << ck << ' ' << cd;
+      } else {
+        EXPECT_LT(gradient_mismatch(force, frames(), t, ck, cd), 1e-7) << ck << ' ' << cd;
+      }
   }
 
-  /// The wrenches do not depend on axes and angular velocity of a marker that need only be a point, and have no moment
-  /// there.
+  /// Wrenches and rates do not depend on axes and angular velocity of a marker that need only be a point, and the
+  /// wrenches have no moment there.
   void asks_no_more_than_it_says() {
     Frames const given = frames();
     Frames turned = given;
@@ -57,7 +84,7 @@ struct ForceLaws {
         turned[std::size_t(k)].A = exp_so3<double>(number.template vec<3>(2.0));
         turned[std::size_t(k)].w = number.template vec<3>();
       }
-    EXPECT_EQ(stacked_wrenches(force, turned, t), stacked_wrenches(force, given, t));
+    EXPECT_EQ(stacked(turned), stacked(given));
     for (int k = 0; k < markers; ++k)
       if (needs(k) == Observes::point) {
         EXPECT_EQ(wrenches(given)[std::size_t(k)].m.norm(), 0.0);
@@ -81,7 +108,8 @@ struct ForceLaws {
     EXPECT_LT(moment.norm(), 1e-12 * size);
   }
 
-  /// All frames and their twists turned and shifted together turn the wrenches, of an element between its markers.
+  /// All frames and their twists turned and shifted together turn the wrenches and leave the rates, of an element
+  /// between its markers.
   void rigid_motion_turns_the_wrenches() {
     if (!internal) GTEST_SKIP() << "it acts from outside";
     Frames const f = frames();
@@ -90,11 +118,13 @@ struct ForceLaws {
     Frames elsewhere;
     for (std::size_t k = 0; k < f.size(); ++k) elsewhere[k] = carried(f[k], turn, shift);
     auto const before = wrenches(f), after = wrenches(elsewhere);
-    double const size = 1.0 + stacked_wrenches(force, f, t).norm();
+    double const size = 1.0 + stacked(f).norm();
     for (std::size_t k = 0; k < f.size(); ++k) {
       EXPECT_LT((after[k].f - turn * before[k].f).norm(), 1e-12 * size);
       EXPECT_LT((after[k].m - turn * before[k].m).norm(), 1e-12 * size);
     }
+    Index const states = states_of<F>();
+    EXPECT_LT((stacked(elsewhere).tail(states) - stacked(f).tail(states)).norm(), 1e-12 * size);
   }
 
   /// w = −∂U/∂pose at rest, of an element that has a potential.
@@ -104,7 +134,7 @@ struct ForceLaws {
     } else {
       Frames f = frames();
       for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
-      VecX const w = stacked_wrenches(force, f, t);
+      VecX const w = stacked(f);
       EXPECT_GT(w.norm(), 0.0);
       for (Index j = 0; j < w.size(); ++j) {
         double const slope = slope_at_zero([&](double h) {

@@ -3,8 +3,9 @@
 /// Small vibrations about a state of rest: with q = q₀ ⊞ δ,
 ///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0,
 /// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Shabana 2018, Ch. 4]. The rows are eliminated by a
-/// basis N of the null space of G, δ = N z, so redundant rows do no harm. Vibrations about a steady rotation are in
-/// vibration/steady_rotation.hpp.
+/// basis N of the null space of G, δ = N z, so redundant rows do no harm. First-order states are the rates of motions
+/// that nothing else depends on: M has one there, K no column, and the last columns of N are theirs. Vibrations about a
+/// steady rotation are in vibration/steady_rotation.hpp.
 ///
 /// Not in polybody.hpp: Eigen's eigenvalue solvers would cost every program seconds to compile.
 
@@ -23,9 +24,10 @@ namespace polybody {
 
 /// The matrices about a state, dense; and a basis of the motions that the rows leave free.
 struct Linearisation {
-  MatX M, D, K;  ///< (nv×nv)
-  MatX G;        ///< (rows×nv)
-  MatX N;        ///< (nv×free) orthonormal, G N = 0
+  MatX M, D, K;      ///< (nv×nv)
+  MatX G;            ///< (rows×nv)
+  MatX N;            ///< (nv×free) orthonormal, G N = 0
+  Index states = 0;  ///< first-order ones, the last of δ̇
 };
 
 namespace detail {
@@ -46,14 +48,20 @@ MatX dense_tangent(System& system, TangentCoefficients const& c, VecX const& lam
   return sum;
 }
 
-/// A basis of the motions that rows G leave free: orthonormal, G N = 0.
+/// A basis of the motions that rows G leave free: orthonormal, G N = 0; the last `states` columns are those of G that
+/// rows do not hold.
 template <class = void>  // compiled where it is used
-MatX free_motions(MatX const& g) {
+MatX free_motions(MatX const& g, Index states = 0) {
   if (g.rows() == 0) return MatX::Identity(g.cols(), g.cols());
-  Eigen::ColPivHouseholderQR<MatX> qr(g.transpose());
+  Index const bodies = g.cols() - states;
+  Eigen::ColPivHouseholderQR<MatX> qr(g.leftCols(bodies).transpose());
   qr.setThreshold(1e-10);
   MatX const q = qr.householderQ();
-  return q.rightCols(g.cols() - qr.rank());
+  Index const free = bodies - qr.rank();
+  MatX n = MatX::Zero(g.cols(), free + states);
+  n.topLeftCorner(bodies, free) = q.rightCols(free);
+  n.bottomRightCorner(states, states).setIdentity();
+  return n;
 }
 
 /// The smallest least-squares solution of A x = b; pivots below `threshold` count as zero.
@@ -78,7 +86,9 @@ MatX of_free_motions(MatX const& n, MatX const& a) {
 /// InvalidInput when x moves.
 template <class = void>
 Linearisation linearise(System& system, State const& x) {
-  if (x.v.size() && x.v.cwiseAbs().maxCoeff() > 1e-9)
+  Index const states = system.layout().states;
+  VecX const speeds = x.v.head(x.v.size() - states);
+  if (speeds.size() && speeds.cwiseAbs().maxCoeff() > 1e-9)
     throw InvalidInput(
         "modes: the state must be at rest; take one from equilibrium(model, x). About a steady rotation use "
         "linearise(model, x, SteadyRotation{...}) of vibration/steady_rotation.hpp.");
@@ -90,7 +100,8 @@ Linearisation linearise(System& system, State const& x) {
   MatX const k = detail::dense_tangent(system, {.stiffness = 1.0}, x.lambda);
   l.K = k.topLeftCorner(nv, nv);
   l.G = k.bottomLeftCorner(rows, nv);
-  l.N = detail::free_motions(l.G);
+  l.N = detail::free_motions(l.G, states);
+  l.states = states;
   return l;
 }
 
@@ -111,6 +122,9 @@ struct Modes {
 /// symmetric, and models that turn, whose D is gyroscopic, belong to `damped_modes`.
 template <class = void>  // compiled where it is used
 Modes modes(Linearisation const& l, Index count = 10) {
+  if (l.states > 0)
+    throw InvalidInput(
+        "modes: the model has first-order states, with which undamped modes do not exist. Take damped_modes.");
   MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()),
              m = detail::of_free_motions(l.N, l.M);
   if (m.rows() == 0) return {};
@@ -145,7 +159,7 @@ Modes modes(S const& model, State const& x, Index count = 10) {
 /// Damped modes δ = Re(shape e^{s t}).
 struct DampedModes {
   Eigen::VectorXcd eigenvalue;  ///< (k) s [1/s], by |s|; of conjugate pairs the one above the real axis
-  Eigen::MatrixXcd shape;       ///< (nv×k)
+  Eigen::MatrixXcd shape;       ///< (nv×k) of first-order states, what they are and not their integral
   /// Frequency |s| [rad/s] and damping ratio −Re s/|s| of mode i.
   double frequency(Index i) const { return std::abs(eigenvalue[i]); }
   double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }
@@ -157,19 +171,24 @@ struct DampedModes {
 ///   (A − 1)⁻¹ = [−Y, −Z; 1 − Y, −Z],  Y = Q⁻¹ (M̂ + D̂),  Z = Q⁻¹ M̂,  Q = M̂ + D̂ + K,  s = τ (1 + 1/μ):
 /// slow motions have its largest eigenvalues μ, so that stiff ones do not spoil their digits. τ is a little
 /// below the lowest frequency of M z̈ + K z = 0 without its neutral motions. Those of the model come first, with an |s|
-/// of √rounding.
+/// of √rounding. First-order states bring one mode each; the motions whose rates they are stand in no equation and
+/// leave the matrix.
 /// \throws InvalidInput when a free motion has no inertia.
 template <class = void>  // compiled where it is used
 DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   MatX m = detail::of_free_motions(l.N, l.M), d = detail::of_free_motions(l.N, l.D);
   MatX const k = detail::of_free_motions(l.N, l.K);
-  Index const n = m.rows();
+  Index const n = m.rows(), bodies = n - l.states;
   if (n == 0) return {};
-  Eigen::LLT<MatX> const inertia(m);
-  VecX const pivots = inertia.matrixLLT().diagonal();
-  if (inertia.info() != Eigen::Success || pivots.minCoeff() <= 1e-7 * pivots.maxCoeff())
-    throw InvalidInput("damped_modes: a free motion of the model has no inertia; hold it or give it some.");
-  double const slowest = detail::smallest_solution(k, m, 1e-9).norm();  // at least 1/ω²
+  MatX const k_bodies = k.topLeftCorner(bodies, bodies), m_bodies = m.topLeftCorner(bodies, bodies);
+  double slowest = 0.0;
+  if (bodies > 0) {
+    Eigen::LLT<MatX> const inertia(m_bodies);
+    VecX const pivots = inertia.matrixLLT().diagonal();
+    if (inertia.info() != Eigen::Success || pivots.minCoeff() <= 1e-7 * pivots.maxCoeff())
+      throw InvalidInput("damped_modes: a free motion of the model has no inertia; hold it or give it some.");
+    slowest = detail::smallest_solution(k_bodies, m_bodies, 1e-9).norm();  // at least 1/ω²
+  }
   double const tau = slowest > 0.0 ? 0.7 / std::sqrt(slowest) : 1.0;
   m *= tau * tau;
   d *= tau;
@@ -179,10 +198,15 @@ DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   inverse.topRows(n) = MatX(m + d + k).partialPivLu().solve(inverse.topRows(n).eval());
   inverse.bottomRows(n) = inverse.topRows(n);
   inverse.bottomLeftCorner(n, n).diagonal().array() += 1.0;
+  if (l.states > 0) {
+    inverse.middleRows(bodies, n) = inverse.bottomRows(n).eval();
+    inverse.middleCols(bodies, n) = inverse.rightCols(n).eval();
+    inverse.conservativeResize(bodies + n, bodies + n);
+  }
   Eigen::EigenSolver<MatX> const solved(inverse);
   Eigen::VectorXcd const s = tau * (1.0 + solved.eigenvalues().array().inverse());
   std::vector<Index> order;
-  for (Index i = 0; i < 2 * n; ++i)
+  for (Index i = 0; i < s.size(); ++i)
     if (s[i].imag() >= 0.0) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(s[a]) < std::abs(s[b]); });
   order.resize(std::min(order.size(), std::size_t(count)));
@@ -192,7 +216,9 @@ DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   Eigen::MatrixXcd const vectors = solved.eigenvectors();
   for (std::size_t i = 0; i < order.size(); ++i) {
     out.eigenvalue[Index(i)] = s[order[i]];
-    out.shape.col(Index(i)) = l.N * vectors.col(order[i]).head(n);
+    Eigen::VectorXcd motion = vectors.col(order[i]).head(n);
+    motion.tail(l.states) = tau * vectors.col(order[i]).tail(l.states);
+    out.shape.col(Index(i)) = l.N * motion;
   }
   return out;
 }

@@ -47,6 +47,8 @@ class TurningFrame {
         at_(q) {
     require_finite(rotation.angular_velocity, "SteadyRotation: the angular velocity");
     require_finite(rotation.point, "SteadyRotation: the point of the axis");
+    if (system.layout().states > 0)
+      throw InvalidInput("SteadyRotation: the model has first-order states, which a steady rotation does not know.");
     for (BodyPlace const& body : system.layout().bodies)
       if (body.planar && !rotation.angular_velocity.head<2>().isZero(0.0))
         throw InvalidInput("SteadyRotation: body \"" + body.name +

@@ -1,0 +1,12 @@
+// refused: recursive::ArticulatedBody is for models of rigid bodies whose forces have no first-order states
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/forces/maxwell_element.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/run/simulate.hpp>
+
+using namespace polybody;
+using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, RecursiveBy<recursive::ArticulatedBody>>>,
+                Forces<MaxwellElement>>;
+
+void run(M const& model, State& x) { simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}); }
