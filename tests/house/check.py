@@ -42,7 +42,7 @@ FLOORS = {
     "testing": 12,
     "": 13,  # polybody.hpp itself
 }
-MAX_LINES = 380
+MAX_LINES, MOST_LINES, MEDIAN_LINES = 380, 240, 105  # of all headers, of nine in ten, of half
 MAX_FUNCTION_LINES = 60
 MAX_PARAMETERS = 6
 MAX_SYSTEM_FUNCTIONS = 25
@@ -106,12 +106,14 @@ def words(texts):
 def length(texts):
     counts = {name: len(text.splitlines()) for name, text in texts.items()}
     ordered = sorted(counts.values())
-    if ordered:
+    if len(ordered) >= 10:
         last = len(ordered) - 1
-        print(
-            f"{len(ordered)} headers, {sum(ordered)} lines; median {ordered[last // 2]}, "
-            f"90 % {ordered[round(0.9 * last)]}, longest {ordered[last]} (aim: 105, 240, {MAX_LINES})"
-        )
+        median, most = ordered[last // 2], ordered[round(0.9 * last)]
+        print(f"{len(ordered)} headers, {sum(ordered)} lines; median {median}, 90 % {most}, longest {ordered[last]}")
+        if median > MEDIAN_LINES:
+            yield f"the median header has {median} lines, more than {MEDIAN_LINES}"
+        if most > MOST_LINES:
+            yield f"nine headers of ten have at most {most} lines, more than {MOST_LINES}"
     for name, count in counts.items():
         if count > MAX_LINES:
             yield f"{name}: {count} lines, more than {MAX_LINES}"

@@ -11,6 +11,7 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
+#include <polybody/forces/maxwell_element.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
@@ -178,6 +179,21 @@ struct HungFrame {
   auto const& model() const { return frame; }
 };
 
+/// An ANCF cable whose end hangs on a Maxwell element: a force with a first-order state.
+struct CreepingCable {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::AncfCable<>>, Joints<Pin>, Forces<MaxwellElement>> cable{Gravity{0, -9.81, 0}};
+
+  CreepingCable() {
+    Bar const bar{.length = 1.0, .constants = BarConstants{.EA = 1e4, .EI = 5, .mass_per_length = 1.0}};
+    auto const body = cable.add(planar::AncfCable<>::from(bar, 6), "cable");
+    cable.connect(Pin{}, cable.ground().at({0, 0, 0}), body.at(0.0), "pin");
+    cable.apply(MaxwellElement{.stiffness = 100.0, .damping = 10.0, .free_length = 0.5}, cable.ground().at({1, 0.6, 0}),
+                body.at(1.0), "damper");
+  }
+  auto const& model() const { return cable; }
+};
+
 /// Pieces of memory taken by 40 steps, from the first one, with a change of length in mid-run.
 template <class Case, class Solver = BlockSolver, class I>
 long in_steps(I const& integrator) {
@@ -251,6 +267,12 @@ TEST(NoAllocation, InAStepOfAFloatingFrame) {
   EXPECT_EQ(in_steps<HungFrame>(GeneralizedAlpha{}), 0);
   EXPECT_EQ(in_steps<HungFrame>(GeneralizedAlpha{.second_order_terms = true}), 0);
   EXPECT_EQ(in_steps<HungFrame>(RungeKutta4<Projection>{}), 0);
+}
+
+TEST(NoAllocation, InAStepWithFirstOrderStates) {
+  EXPECT_EQ(in_steps<CreepingCable>(GeneralizedAlpha{}), 0);
+  EXPECT_EQ(in_steps<CreepingCable>(EnergyMomentum{}), 0);
+  EXPECT_EQ(in_steps<CreepingCable>(DormandPrince<Projection>{}), 0);
 }
 
 TEST(NoAllocation, InAskingForTheEnergyOfASystem) {

@@ -46,6 +46,13 @@ struct AlphaVectors {
         back(v0),
         rate(lambda),
         states(first_order) {}
+
+  /// f(first, end) holds of the speeds of bodies and of the first-order states.
+  template <class F>
+  bool of_each_part(F&& f) const {
+    Index const bodies = v.size() - states;
+    return f(0, bodies) && (states == 0 || f(bodies, v.size()));
+  }
 };
 
 /// A member of the family: its coefficients, and how Newton's method is to solve its steps.
@@ -106,7 +113,9 @@ struct AlphaMethod {
     history.own(w.a0);
     double const shifted = history.shifted();  // the length for which v and a stand off; 0 after a start
     if (start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
-        (shifted == 0.0 || h * w.jerk.norm() <= 0.5 * x.a.norm()))  // else the step does not resolve it
+        (shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else the step does not resolve it
+          return h * norm(w.jerk, first, end) <= 0.5 * norm(x.a, first, end);
+        })))
       correct(system, x, shifted, h, w);
     return advance(system, x, h, w);
   }
@@ -305,12 +314,14 @@ struct AlphaMethod {
       return a;
     };
     VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);
-    return differences_agree(x.a, quarter, half, full, h, w.jerk) &&
-           distance(acceleration_after(h), full) <= 0.5 * h * w.jerk.norm();
+    if (!differences_agree(x.a, quarter, half, full, h, w)) return false;
+    VecX const change = acceleration_after(h) - full;
+    return w.of_each_part(
+        [&](Index first, Index end) { return norm(change, first, end) <= 0.5 * h * norm(w.jerk, first, end); });
   }
-  static double distance(VecX const& a, VecX const& b) {
+  static double norm(VecX const& a, Index first, Index end) {
     double square = 0.0;
-    for (Index i = 0; i < a.size(); ++i) square += (a[i] - b[i]) * (a[i] - b[i]);
+    for (Index i = first; i < end; ++i) square += a[i] * a[i];
     return std::sqrt(square);
   }
   /// Δq and v after e seconds with w.jerk.
@@ -321,13 +332,15 @@ struct AlphaMethod {
     }
   }
   static bool differences_agree(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h,
-                                VecX& jerk) {
-    VecX coarse(now.size());
+                                AlphaVectors& w) {
+    VecX mismatch(now.size());
     for (Index i = 0; i < now.size(); ++i) {
-      jerk[i] = (4.0 * quarter[i] - half[i] - 3.0 * now[i]) / (0.5 * h);
-      coarse[i] = (4.0 * half[i] - full[i] - 3.0 * now[i]) / h;
+      w.jerk[i] = (4.0 * quarter[i] - half[i] - 3.0 * now[i]) / (0.5 * h);
+      mismatch[i] = w.jerk[i] - (4.0 * half[i] - full[i] - 3.0 * now[i]) / h;
     }
-    return distance(jerk, coarse) <= 0.5 * jerk.norm() && jerk.allFinite();
+    return w.jerk.allFinite() && w.of_each_part([&](Index first, Index end) {
+      return norm(mismatch, first, end) <= 0.5 * norm(w.jerk, first, end);
+    });
   }
 };
 

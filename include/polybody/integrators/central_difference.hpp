@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/integrators/explicit_step.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 
 namespace polybody {
@@ -17,18 +18,9 @@ struct CentralDifference {
   Stabilisation stabilisation = {};
 
   template <class Solver>
-  struct Workspace {
-    VecX q, v, a, dq, lambda;
-    ForwardDynamics<Solver> forward;
+  struct Workspace : detail::ExplicitStep<Solver> {
     typename Stabilisation::Scratch scratch;
-    explicit Workspace(System& s)
-        : q(VecX::Zero(s.coordinates())),
-          v(VecX::Zero(s.speeds())),
-          a(v),
-          dq(v),
-          lambda(VecX::Zero(s.rows())),
-          forward(s),
-          scratch(s) {}
+    explicit Workspace(System& s) : detail::ExplicitStep<Solver>(s), scratch(s) {}
   };
 
   void check() const { stabilisation.check(); }
@@ -51,11 +43,7 @@ struct CentralDifference {
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda, stabilisation.feedback());
     w.v = x.v + 0.5 * h * (x.a + w.a);
     stabilisation.velocities(system, w.forward, w.scratch, w.q, w.v, x.t + h);
-    x.q.swap(w.q);
-    x.v.swap(w.v);
-    x.a.swap(w.a);
-    x.lambda.swap(w.lambda);
-    x.t += h;
+    w.accept(x, h);
     return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
   }
 };

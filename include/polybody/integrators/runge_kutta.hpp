@@ -7,6 +7,7 @@
 #include <complex>
 
 #include <polybody/integrators/error_tolerance.hpp>
+#include <polybody/integrators/explicit_step.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 
 namespace polybody {
@@ -14,25 +15,17 @@ namespace detail {
 
 /// Stages of an explicit method: positions, speeds and their rates.
 template <class Solver, class Stabilisation, int stages>
-struct RungeKuttaWorkspace {
+struct RungeKuttaWorkspace : ExplicitStep<Solver> {
+  using Next = ExplicitStep<Solver>;
+  using Next::dq, Next::q, Next::v, Next::a, Next::lambda, Next::forward;
   std::array<VecX, stages> position_rate, acceleration;
-  VecX delta, v, q, a, lambda, error, v_error;
-  ForwardDynamics<Solver> forward;
+  VecX error, v_error;
   typename Stabilisation::Scratch scratch;
   RowFeedback feedback;  ///< of the run
 
-  explicit RungeKuttaWorkspace(System& s)
-      : delta(VecX::Zero(s.speeds())),
-        v(delta),
-        q(VecX::Zero(s.coordinates())),
-        a(delta),
-        lambda(VecX::Zero(s.rows())),
-        error(delta),
-        v_error(delta),
-        forward(s),
-        scratch(s) {
-    position_rate.fill(delta);
-    acceleration.fill(delta);
+  explicit RungeKuttaWorkspace(System& s) : Next(s), error(v), v_error(v), scratch(s) {
+    position_rate.fill(v);
+    acceleration.fill(v);
   }
 
   void start(System& system, State& x, Stabilisation const& stabilisation) {
@@ -45,33 +38,29 @@ struct RungeKuttaWorkspace {
   template <std::size_t n>
   void stage(System& system, State const& x, double h, double c, std::array<double, n> const& row, int i) {
     combine(x, h, row, i);
-    system.plus(x.q, delta, q);
-    system.local_rate(delta, v, position_rate[std::size_t(i)]);
+    system.plus(x.q, dq, q);
+    system.local_rate(dq, v, position_rate[std::size_t(i)]);
     forward.accelerations(system, {q, v, x.t + c * h}, acceleration[std::size_t(i)], lambda, feedback);
   }
 
-  /// delta, v = h Σ_{j<count} weights[j] k_j (plus v₀).
+  /// dq, v = h Σ_{j<count} weights[j] k_j (plus v₀).
   template <std::size_t n>
   void combine(State const& x, double h, std::array<double, n> const& weights, int count) {
-    delta.setZero();
+    dq.setZero();
     v = x.v;
     for (int j = 0; j < count; ++j) {
       if (weights[std::size_t(j)] == 0.0) continue;
-      delta += (h * weights[std::size_t(j)]) * position_rate[std::size_t(j)];
+      dq += (h * weights[std::size_t(j)]) * position_rate[std::size_t(j)];
       v += (h * weights[std::size_t(j)]) * acceleration[std::size_t(j)];
     }
   }
 
   /// Projects the combined result and makes it the state at t + h.
   void accept(System& system, State& x, double h, Stabilisation const& stabilisation) {
-    system.plus(x.q, delta, q);
+    system.plus(x.q, dq, q);
     stabilisation.apply(system, forward, scratch, q, v, x.t + h);
     forward.accelerations(system, {q, v, x.t + h}, a, lambda, feedback);
-    x.q.swap(q);
-    x.v.swap(v);
-    x.a.swap(a);
-    x.lambda.swap(lambda);
-    x.t += h;
+    Next::accept(x, h);
   }
 };
 
@@ -201,7 +190,7 @@ struct DormandPrince {
   template <class W>
   double mean_square(State const& x, Index bodies, W const& w) const {
     detail::ErrorTolerance const tolerance{absolute_tolerance, relative_tolerance};
-    double const of_q = std::max(tolerance.of_all(x.q, x.q, x.q.size()), tolerance.of_all(w.delta, w.delta, bodies));
+    double const of_q = std::max(tolerance.of_all(x.q, x.q, x.q.size()), tolerance.of_all(w.dq, w.dq, bodies));
     return 0.5 * (tolerance.mean_square(w.error, bodies, of_q) +
                   tolerance.mean_square(w.v_error, bodies, tolerance.of_all(x.v, w.v, bodies))) +
            tolerance.mean_square_each(w.v_error, x.v, w.v, bodies);

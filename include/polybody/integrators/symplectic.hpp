@@ -4,7 +4,7 @@
 /// constant and forces depend on positions alone (planar rigid bodies, cables, springs). Bodies that turn in space and
 /// damped forces are taken too, at the same order, but without that promise.
 
-#include <polybody/integrators/integrator.hpp>
+#include <polybody/integrators/explicit_step.hpp>
 
 namespace polybody {
 
@@ -20,23 +20,10 @@ struct SymplecticEuler {
     return 4.0 / (rate + std::sqrt(rate * rate + 4.0 * omega * omega));
   }
 
-  template <class Solver>
-  struct Workspace {
-    VecX q, v, a, dq, lambda;
-    ForwardDynamics<Solver> forward;
-    explicit Workspace(System& s)
-        : q(VecX::Zero(s.coordinates())),
-          v(VecX::Zero(s.speeds())),
-          a(v),
-          dq(v),
-          lambda(VecX::Zero(s.rows())),
-          forward(s) {}
-  };
-
   void check() const {}
   template <class Solver>
-  Workspace<Solver> workspace(System& system) const {
-    return Workspace<Solver>(system);
+  auto workspace(System& system) const {
+    return detail::ExplicitStep<Solver>(system);
   }
   template <class W>
   void start(System& system, State& x, double, W& w) const {
@@ -48,11 +35,7 @@ struct SymplecticEuler {
     w.dq = h * w.v;
     system.plus(x.q, w.dq, w.q);
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
-    x.q.swap(w.q);
-    x.v.swap(w.v);
-    x.a.swap(w.a);
-    x.lambda.swap(w.lambda);
-    x.t += h;
+    w.accept(x, h);
     return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
   }
 };
@@ -74,18 +57,9 @@ struct Rattle {
   int max_iterations = 50;   ///< each gains a factor of about 1/(hω)
 
   template <class Solver>
-  struct Workspace {
-    VecX q, v, a, dq, change, lambda, phi;
-    ForwardDynamics<Solver> forward;
-    explicit Workspace(System& s)
-        : q(VecX::Zero(s.coordinates())),
-          v(VecX::Zero(s.speeds())),
-          a(v),
-          dq(v),
-          change(v),
-          lambda(VecX::Zero(s.rows())),
-          phi(lambda),
-          forward(s) {}
+  struct Workspace : detail::ExplicitStep<Solver> {
+    VecX change, phi;
+    explicit Workspace(System& s) : detail::ExplicitStep<Solver>(s), change(this->v), phi(this->lambda) {}
   };
 
   void check() const { require_positive(tolerance, "Rattle: the tolerance"); }
@@ -113,11 +87,7 @@ struct Rattle {
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
     w.v = w.dq + 0.5 * h * w.a;
     w.forward.project_velocities(system, w.q, w.v, x.t + h);
-    x.q.swap(w.q);
-    x.v.swap(w.v);
-    x.a.swap(w.a);
-    x.lambda.swap(w.lambda);
-    x.t += h;
+    w.accept(x, h);
     return report;
   }
 

@@ -38,6 +38,31 @@ struct BodyRecord {
   std::vector<BodySample> samples;
 };
 
+/// \throws InvalidInput, which begins with `who`, for fewer than two samples, samples that do not rise in time and
+/// intervals longer than `largest` [s]; 0: than 1.5 times the median.
+template <class = void>  // compiled where it is used
+void require_no_gaps(BodyRecord const& record, double largest, std::string const& who) {
+  if (record.samples.size() < 2) throw InvalidInput(who + "its record has fewer than two samples.");
+  require_not_negative(largest, who + "the largest gap");
+  auto const between = [&](std::size_t k) {
+    return number(record.samples[k].t) + " s and " + number(record.samples[k + 1].t) + " s";
+  };
+  std::vector<double> intervals;
+  for (std::size_t k = 0; k + 1 < record.samples.size(); ++k) {
+    intervals.push_back(record.samples[k + 1].t - record.samples[k].t);
+    if (!(intervals[k] > 0.0))
+      throw InvalidInput(who + "the samples at " + between(k) + " do not follow each other in time.");
+  }
+  std::vector<double> sorted = intervals;
+  auto const middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  double const gap = largest > 0.0 ? largest : 1.5 * *middle;
+  for (std::size_t k = 0; k < intervals.size(); ++k)
+    if (intervals[k] > gap * (1.0 + 1e-9))
+      throw InvalidInput(who + "there is no sample between " + between(k) + ", a gap of more than " + number(gap) +
+                         " s. Record every step, or name a largest_gap to draw a line across it.");
+}
+
 /// A rigid body, in the plane or in space: its points are `at(u)`, u from its centre of mass in its axes.
 template <class B>
 concept HasRigidPoints = Body<B> && (requires(B const b) { b.at(Vec3()); } || requires(B const b) { b.at(Vec2()); });

@@ -122,6 +122,12 @@ class ArticulatedBodySolverOf {
     Mat6 s = k, inverse = k, left = k, right = k;  ///< S, D⁻¹, L by rows, R by columns
     Vec6 f = Vec6::Zero(), x = f, u = f;
     int speeds = 0;
+
+    /// u += part · D⁻¹ given.
+    void add_answer(double part, Vec6 const& given) {
+      for (int j = 0; j < speeds; ++j)
+        for (int i = 0; i < speeds; ++i) u[i] += part * (inverse(i, j) * given[j]);
+    }
   };
 
   static Index speeds_of(TreeBody const& body) { return body.layout == RigidLayout::plane ? 3 : 6; }
@@ -153,7 +159,7 @@ class ArticulatedBodySolverOf {
     double largest = 0.0;
     for (int r = 0; r < d; ++r)
       for (int c = 0; c < d; ++c) largest = std::max(largest, std::abs(n.inverse(r, c) = n.s.col(r).dot(ks.col(c))));
-    if (int const bad = invert(n.inverse, d, largest); bad >= 0) return body.vn + bad;
+    if (int const bad = invert_with_pivots(n.inverse, d, largest); bad >= 0) return body.vn + bad;
     if (body.parent < 0) return -1;
     Mat6 shift = Mat6::Identity();  // X
     shift.template topRightCorner<3, 3>() = -skew<T>(frame.arm);
@@ -168,29 +174,6 @@ class ArticulatedBodySolverOf {
       for (int c = 0; c < d; ++c) p.k -= n.inverse(r, c) * n.right.col(r) * n.left.row(c);
     return -1;
   }
-  /// The leading n×n inverted with pivoting. −1, or the column that has no pivot.
-  static int invert(Mat6& a, int n, double size) {
-    Mat6 out = Mat6::Identity();
-    for (int k = 0; k < n; ++k) {
-      int best = k;
-      for (int r = k + 1; r < n; ++r)
-        if (std::abs(a(r, k)) > std::abs(a(best, k))) best = r;
-      if (!(std::abs(a(best, k)) > 1e-14 * size)) return k;
-      a.row(k).swap(a.row(best));
-      out.row(k).swap(out.row(best));
-      double const inverse = 1.0 / a(k, k);
-      a.row(k) *= inverse;
-      out.row(k) *= inverse;
-      for (int r = 0; r < n; ++r) {
-        double const f = a(r, k);
-        if (r == k || f == 0.0) continue;
-        a.row(r) -= f * a.row(k);
-        out.row(r) -= f * out.row(k);
-      }
-    }
-    a = out;
-    return -1;
-  }
 
   /// u of all joints for generalised forces r and the nodes' f (used up); the nodes' x.
   template <class Out>
@@ -201,8 +184,7 @@ class ArticulatedBodySolverOf {
       Vec6 given = Vec6::Zero();
       for (int k = 0; k < n.speeds; ++k) given[k] = r[bodies[i].vn + k] + n.s.col(k).dot(n.f);
       n.u.setZero();
-      for (int c = 0; c < n.speeds; ++c)
-        for (int k = 0; k < n.speeds; ++k) n.u[k] += n.inverse(k, c) * given[c];  // D⁻¹ (r + Sᵀf)
+      n.add_answer(1.0, given);  // D⁻¹ (r + Sᵀf)
       if (bodies[i].parent < 0) continue;
       Vec6& f = nodes_[std::size_t(bodies[i].parent)].f;
       JointTreeOf<T>::add_back(n.f, state_->frames[i].arm, f);
@@ -215,8 +197,7 @@ class ArticulatedBodySolverOf {
         Vec6 const& p = nodes_[std::size_t(bodies[i].parent)].x;
         Vec6 by_parent = Vec6::Zero();
         for (int k = 0; k < n.speeds; ++k) by_parent[k] = n.left.row(k).dot(p);
-        for (int c = 0; c < n.speeds; ++c)
-          for (int k = 0; k < n.speeds; ++k) n.u[k] -= n.inverse(k, c) * by_parent[c];
+        n.add_answer(-1.0, by_parent);
         JointTreeOf<T>::add_carried(p, state_->frames[i].arm, n.x);
       }
       for (int k = 0; k < n.speeds; ++k) {
@@ -242,7 +223,5 @@ class ArticulatedBodySolverOf {
   DenseLu loops_;
   Index misplaced_ = -1;
 };
-
-using ArticulatedBodySolver = ArticulatedBodySolverOf<>;
 
 }  // namespace polybody

@@ -49,7 +49,7 @@ class StructureLoads {
     require_positive(s_.mass, who() + "the structure's mass");
     require_positive(options.unbalance, who() + "the unbalance");
     require_not_negative(options.patch, who() + "the patch");
-    require_no_gaps(record, options.largest_gap);
+    require_no_gaps(record, options.largest_gap, who());
     Placement place{.origin = -s_.first / s_.mass};
     if (options.placement) place = *options.placement;
     place.check(who() + "the structure");
@@ -111,28 +111,6 @@ class StructureLoads {
 
  private:
   std::string who() const { return "Stress of \"" + name_ + "\": "; }
-
-  void require_no_gaps(BodyRecord const& record, double largest) const {
-    if (record.samples.size() < 2) throw InvalidInput(who() + "its record has fewer than two samples.");
-    require_not_negative(largest, who() + "the largest gap");
-    auto const between = [&](std::size_t k) {
-      return number(record.samples[k].t) + " s and " + number(record.samples[k + 1].t) + " s";
-    };
-    std::vector<double> intervals;
-    for (std::size_t k = 0; k + 1 < record.samples.size(); ++k) {
-      intervals.push_back(record.samples[k + 1].t - record.samples[k].t);
-      if (!(intervals[k] > 0.0))
-        throw InvalidInput(who() + "the samples at " + between(k) + " do not follow each other in time.");
-    }
-    std::vector<double> sorted = intervals;
-    auto const middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    double const gap = largest > 0.0 ? largest : 1.5 * *middle;
-    for (std::size_t k = 0; k < intervals.size(); ++k)
-      if (intervals[k] > gap * (1.0 + 1e-9))
-        throw InvalidInput(who() + "there is no sample between " + between(k) + ", a gap of more than " + number(gap) +
-                           " s. Record every step, or name a largest_gap to draw a line across it.");
-  }
 
   Motion motion(BodySample const& sample, Vec3 const& gravity, Placement const& place) const {
     Mat3 const axes = sample.frame.A * place.axes;

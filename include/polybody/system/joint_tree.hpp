@@ -357,7 +357,7 @@ class JointTreeOf {
     }
     for (int i = 0; i < f.speeds; ++i)
       for (int j = 0; j < f.speeds; ++j) f.inverse(i, j) = f.s.col(i).dot(f.s.col(j));
-    detail::invert_leading(f.inverse, f.speeds);
+    invert_leading(f.inverse, f.speeds);
   }
 
   template <class F>

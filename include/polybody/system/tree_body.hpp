@@ -50,8 +50,6 @@ struct TreeStateOf {
 };
 using TreeState = TreeStateOf<double>;
 
-namespace detail {
-
 /// a → a⁻¹ for the leading n×n of a positive definite matrix, by Gauss–Jordan elimination.
 template <class T>
 void invert_leading(Mat<T, 6, 6>& a, int n) {
@@ -67,6 +65,31 @@ void invert_leading(Mat<T, 6, 6>& a, int n) {
     }
   }
 }
+
+/// The same of any matrix, by pivoting. −1, or the column that has no pivot beside entries of this size.
+template <class T>
+int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
+  Mat<T, 6, 6> out = Mat<T, 6, 6>::Identity();
+  for (int k = 0; k < n; ++k) {
+    int best = k;
+    for (int r = k + 1; r < n; ++r)
+      if (std::abs(a(r, k)) > std::abs(a(best, k))) best = r;
+    if (!(std::abs(a(best, k)) > 1e-14 * size)) return k;
+    T factors[6];
+    for (int r = 0; r < n; ++r) factors[r] = a(r == best ? k : r, k);
+    T const inverse = 1.0 / a(best, k);
+    for (auto* const m : {&a, &out}) {
+      m->row(k).swap(m->row(best));
+      m->row(k) *= inverse;
+      for (int r = 0; r < n; ++r)
+        if (r != k && factors[r] != 0.0) m->row(r) -= factors[r] * m->row(k);
+    }
+  }
+  a = out;
+  return -1;
+}
+
+namespace detail {
 
 /// The turn by an angle about axis k of the frame itself.
 template <class T>

@@ -99,21 +99,15 @@ class CholeskyCoordinates : public AddingCoordinates {
     assemble<T>(out, [&](Index i, auto& f) { body_.template gravity<T>(i, span(e), g, f); });
   }
   double kinetic_energy(Index, std::span<double const>, std::span<double const> v) const {
-    double sum = 0.0;
-    for (double const x : v) sum += 0.5 * x * x;
-    return sum;
+    return 0.5 * Eigen::Map<VecX const>(v.data(), n_).squaredNorm();
   }
   double strain_energy(Index, std::span<double const> q) const {
     VecX const& e = base_of<double>(q, 0);
-    double sum = 0.0;
-    for (Index i = 0; i < body_.elements(); ++i) sum += body_.strain_energy(i, span(e));
-    return sum;
+    return over_elements([&](Index i) { return body_.strain_energy(i, span(e)); });
   }
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
     VecX const& e = base_of<double>(q, 0);
-    double sum = 0.0;
-    for (Index i = 0; i < body_.elements(); ++i) sum += body_.gravity_energy(i, span(e), g);
-    return sum;
+    return over_elements([&](Index i) { return body_.gravity_energy(i, span(e), g); });
   }
 
   /// J_p = J_e L⁻ᵀ.
@@ -152,14 +146,21 @@ class CholeskyCoordinates : public AddingCoordinates {
   static auto span(V const& x) {
     return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
   }
-  double l(Index i, Index j) const { return factor_[std::size_t(i * (band_ + 1) + j - i + band_)]; }
+  template <class F>
+  double over_elements(F&& energy) const {
+    double sum = 0.0;
+    for (Index i = 0; i < body_.elements(); ++i) sum += energy(i);
+    return sum;
+  }
+  double l(Index i, Index j) const { return factor_[place(i, j)]; }
+  std::size_t place(Index i, Index j) const { return std::size_t(i * (band_ + 1) + j - i + band_); }
 
   /// M = L Lᵀ within the band.
   void factor() {
     constexpr int width = B::element_columns;
     band_ = std::min<Index>(width - 1, n_ - 1);
     factor_.assign(std::size_t(n_ * (band_ + 1)), 0.0);
-    auto const at = [&](Index i, Index j) -> double& { return factor_[std::size_t(i * (band_ + 1) + j - i + band_)]; };
+    auto const at = [&](Index i, Index j) -> double& { return factor_[place(i, j)]; };
     VecX reference(n_);
     body_.reference({reference.data(), std::size_t(n_)});
     Mat<double, width, width> m;
@@ -173,12 +174,9 @@ class CholeskyCoordinates : public AddingCoordinates {
       for (Index j = std::max<Index>(0, i - band_); j <= i; ++j) {
         double sum = at(i, j);
         for (Index k = std::max<Index>(0, i - band_); k < j; ++k) sum -= at(i, k) * at(j, k);
-        if (j < i) {
-          at(i, j) = sum / at(j, j);
-        } else {
-          if (!(sum > 0.0)) throw InvalidInput("CholeskyCoordinates: the body's mass matrix is not positive definite.");
-          at(i, i) = std::sqrt(sum);
-        }
+        if (j == i && !(sum > 0.0))
+          throw InvalidInput("CholeskyCoordinates: the body's mass matrix is not positive definite.");
+        at(i, j) = j < i ? sum / at(j, j) : std::sqrt(sum);
       }
   }
   /// x = Lᵀ x.

@@ -1,0 +1,30 @@
+#pragma once
+#include <polybody/integrators/integrator.hpp>
+
+namespace polybody::detail {
+
+/// The next state of an explicit one-step method, and what it takes to get there.
+template <class Solver>
+struct ExplicitStep {
+  VecX q, v, a, dq, lambda;
+  ForwardDynamics<Solver> forward;
+
+  explicit ExplicitStep(System& s)
+      : q(VecX::Zero(s.coordinates())),
+        v(VecX::Zero(s.speeds())),
+        a(v),
+        dq(v),
+        lambda(VecX::Zero(s.rows())),
+        forward(s) {}
+
+  /// Makes it the state at t + h.
+  void accept(State& x, double h) {
+    x.q.swap(q);
+    x.v.swap(v);
+    x.a.swap(a);
+    x.lambda.swap(lambda);
+    x.t += h;
+  }
+};
+
+}  // namespace polybody::detail
