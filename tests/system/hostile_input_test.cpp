@@ -51,5 +51,63 @@ TEST(HostileInput, MoreElementsThanMemoryHoldsAreRefused) {
   EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 0); }), "AncfCable: at least one element is needed"));
 }
 
+// A quaternion of another norm would be a body of another size.
+TEST(HostileInput, QuaternionsOfAnotherNormAreRefused) {
+  Model<Bodies<Rigid<>>, Joints<Pin>> model;
+  model.add(Rigid<>::from(bar), "first");
+  model.add(Rigid<>::from(bar), "second");
+  for (double const norm : {0.0, 0.5, 2.0, 1e200}) {
+    State x = model.reference_state();
+    x.q.tail<4>() = Vec<double, 4>(norm, 0, 0, 0);
+    auto const run = [&] { simulate(model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3}); };
+    EXPECT_TRUE(has(refusal(run), "body \"second\" are those of no place")) << norm;
+  }
+}
+
+// Between coincident points a spring has no direction: 0/0.
+TEST(HostileInput, ASpringBetweenCoincidentPointsIsNamed) {
+  Model<Bodies<Rigid<>>, Joints<>, Forces<SpringDamper>> model;
+  auto const rod = model.add(Rigid<>::from(bar), "rod");
+  model.apply(SpringDamper{.stiffness = 10.0, .free_length = 0.5}, model.ground().at({0, 0, 0}), rod.at(0.0), "strut");
+  State x = model.reference_state();
+  std::string const said = "is not finite at t = 0 s, that of \"strut\"";
+  EXPECT_TRUE(
+      has(message_of<NonFinite>([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3}); }), said));
+  EXPECT_TRUE(
+      has(message_of<NonFinite>([&] { simulate(model, x, RungeKutta4<>{}, {.until = 0.1, .step = 1e-3}); }), said));
+}
+
+template <class I>
+void expect_finite(I const& integrator) {
+  Model<Bodies<Rigid<>>, Joints<>> model{Gravity{0, 0, -9.81}};
+  Mat3 const inertia = Vec3(1.0, 2.0, 3.0).asDiagonal();
+  model.add(Rigid<>(1.0, inertia), "still");
+  model.add(Rigid<>(1.0, inertia), "wild");
+  for (Index const i : {6, 9, 10})
+    for (double const speed : {1e100, 1e200, 1e308}) {
+      State x = model.reference_state();
+      x.v[i] = speed;
+      try {
+        for (State const& now : simulate(model, x, integrator, {.until = 1.0, .step = 0.1})) {
+          ASSERT_TRUE(now.q.allFinite() && now.v.allFinite()) << I::name << ' ' << i << ' ' << speed;
+          ASSERT_NEAR((now.q.tail<4>().norm()), 1.0, 1e-9) << I::name << ' ' << i << ' ' << speed;
+        }
+      } catch (Error const& error) {
+        EXPECT_TRUE(x.q.allFinite() && x.v.allFinite()) << error.what();
+        EXPECT_FALSE(has(error.what(), "\"still\"")) << error.what();
+      }
+    }
+}
+TEST(HostileInput, WildSpeedsEndInAnErrorAndNotInNaN) {
+  expect_finite(GeneralizedAlpha{});
+  expect_finite(Radau{});
+  expect_finite(RungeKutta4<>{});
+  expect_finite(CentralDifference<>{});
+  expect_finite(Rattle{});
+  expect_finite(SymplecticEuler{});
+  expect_finite(DormandPrince<>{});
+  expect_finite(AdamsBashforthMoulton<>{});
+}
+
 }  // namespace
 }  // namespace polybody::hostile_input_test

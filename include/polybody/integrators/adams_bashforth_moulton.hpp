@@ -135,6 +135,7 @@ struct AdamsBashforthMoulton {
     report.taken = h;
     report.order = k;
     report.next = std::max(choose(e, h, k, known, rising), smallest_step);
+    detail::require_finite_end(system, w.q, w.v, x.t + h);
     history.push(h, w.f);
     history.order() = k;
     history.rising() = rising;

@@ -267,9 +267,10 @@ struct AlphaMethod {
       return advance(system, x, h, w, effort + 1);
     }
     if (report.result != NewtonResult::converged)
-      detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
+      detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     // the last correction moved dq: bring q to it
     system.plus(x.q, w.dq, w.q);
+    detail::require_finite_end(system, w.q, w.v, x.t + h);
     ++w.age;
     history.push(x, h, w.a);
     x.q.swap(w.q);

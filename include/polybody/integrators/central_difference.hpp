@@ -43,7 +43,7 @@ struct CentralDifference {
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda, stabilisation.feedback());
     w.v = x.v + 0.5 * h * (x.a + w.a);
     stabilisation.velocities(system, w.forward, w.scratch, w.q, w.v, x.t + h);
-    w.accept(x, h);
+    w.accept(system, x, h);
     return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
   }
 };

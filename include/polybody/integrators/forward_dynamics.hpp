@@ -25,12 +25,20 @@ Index first_not_finite(VecX const& x) {
     if (!std::isfinite(x[i])) return i;
   return -1;
 }
-/// \throws NonFinite naming body and time when an entry of x (by speeds) is NaN or infinite.
+/// Names the force element that pushes with a force that is NaN or infinite, where one does.
+template <class = void>
+std::string whose_force(System const& s) {
+  for (Action<double> const& action : s.data().actions)
+    for (double const w : action.w)
+      if (!std::isfinite(w)) return ", that of \"" + s.layout().forces[std::size_t(action.source)].name + '"';
+  return "";
+}
+/// \throws NonFinite naming body, force element and time when an entry of x (by speeds) is NaN or infinite.
 template <class = void>
 void require_finite_force(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
-    throw NonFinite("A force on " + s.name_of(i) + " is not finite at t = " + number(s.at().t) +
-                    " s. Look at the forces applied to it and at the state before.");
+    throw NonFinite("A force on " + s.name_of(i) + " is not finite at t = " + number(s.at().t) + " s" + whose_force(s) +
+                    ". Look at the forces applied to it, whose markers may coincide, and at the state before.");
 }
 /// \throws NonFinite naming joint and time when an entry of x (by rows) is NaN or infinite.
 template <class = void>
@@ -38,6 +46,14 @@ void require_finite_rows(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
     throw NonFinite("The motion at " + s.name_of(s.speeds() + i) + " is not finite at t = " + number(s.at().t) +
                     " s. Look at the state before, or take a smaller step.");
+}
+/// What a step ends at. \throws NonFinite naming body and time when a coordinate or a speed is NaN or infinite.
+template <class = void>
+void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
+  Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
+  if (in_v < 0 && in_q < 0) return;
+  throw NonFinite("The motion of " + (in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)) +
+                  " is not finite at t = " + number(t) + " s. Look at its speed and the forces on it before.");
 }
 [[noreturn]] inline void throw_singular(double t, std::string const& who) {
   throw LinearSolverSingular(

@@ -4,35 +4,36 @@
 
 namespace polybody::detail {
 
-/// Throws what says why Newton's method failed in the step of `integrator` to time t; `who` is to blame.
+/// The linear equations that Newton's method solved last, of one stage after another.
+struct StepEquations {
+  Index bad;  ///< the one without a pivot; −1 where none is known
+  VecX const &rhs, &solution;
+};
+
+/// Throws what says why Newton's method failed in the step of `integrator` to time t, and who is to blame. Where there
+/// is a pivot for each equation, and yet no finite solution, that is the body whose motion is wild.
 /// \throws LinearSolverSingular, NonFinite, NewtonStalled.
-[[noreturn]] inline void throw_stalled(std::string const& integrator, double t, NewtonReport const& report,
-                                       std::string const& who) {
+template <class = void>
+[[noreturn]] void throw_stalled(std::string const& integrator, System const& system, double t,
+                                NewtonReport const& report, StepEquations const& last) {
   std::string const when = " at t = " + number(t) + " s";
-  if (report.result == NewtonResult::singular)
-    throw LinearSolverSingular(integrator + ": the tangent is singular" + when + ", first at " + who +
+  auto const owner = [&](VecX const& x) {
+    Index const i = first_not_finite(x);
+    return system.name_of((i < 0 ? x.size() - 1 : i) % system.size());
+  };
+  if (report.result == NewtonResult::singular && last.bad >= 0)
+    throw LinearSolverSingular(integrator + ": the tangent is singular" + when + ", first at " +
+                               name_of_equation(system, last.bad % equations_of(system)) +
                                ". Look for a joint that repeats another, or a free body without inertia.");
+  if (report.result == NewtonResult::singular)
+    throw NonFinite(integrator + ": the motion of " + owner(last.solution) + " is not finite" + when +
+                    ". Look at its speed and the forces on it before, or take a smaller step.");
   if (report.result == NewtonResult::not_finite)
-    throw NonFinite(integrator + ": a force on " + who + " is not finite" + when +
+    throw NonFinite(integrator + ": a force on " + owner(last.rhs) + " is not finite" + when + whose_force(system) +
                     ". Look at the forces applied to it, or take a smaller step.");
   throw NewtonStalled(integrator + ": Newton's method did not converge" + when + " after " +
                       std::to_string(report.iterations) + " iterations (contraction " + number(report.theta) +
                       "). Take a smaller step; the state is as before it.");
-}
-
-/// The same for a system. `bad` is the equation without a pivot, −1 where none is known; `rhs` is the right-hand side,
-/// of one stage after another.
-template <class = void>
-[[noreturn]] void throw_stalled(std::string const& integrator, System const& system, double t,
-                                NewtonReport const& report, Index bad, VecX const& rhs) {
-  std::string who;
-  if (report.result == NewtonResult::singular) {
-    who = name_of_equation(system, std::max<Index>(bad, 0) % equations_of(system));
-  } else if (report.result == NewtonResult::not_finite) {
-    Index const i = first_not_finite(rhs);
-    who = system.name_of((i < 0 ? rhs.size() - 1 : i) % system.size());
-  }
-  throw_stalled(integrator, t, report, who);
 }
 
 }  // namespace polybody::detail

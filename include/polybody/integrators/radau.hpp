@@ -156,7 +156,7 @@ struct Radau {
     Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows()};
     NewtonReport const report = polybody::newton(problem, newton, w.factored, w.theta);
     if (report.result != NewtonResult::converged)
-      detail::throw_stalled(name, system, x.t + h, report, problem.bad, w.rhs);
+      detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     w.set_positions(system, h);
     system.plus(x.q, w.delta[2], w.q);
     projection.apply(system, w.forward, w.projected, w.q, w.v[2], x.t + h);
@@ -168,6 +168,7 @@ struct Radau {
       w.forward.least_change(system, w.phi, w.next);
       w.vd[2] += w.next;
     }
+    detail::require_finite_end(system, w.q, w.v[2], x.t + h);
     x.q.swap(w.q);
     x.v.swap(w.v[2]);
     x.a.swap(w.vd[2]);

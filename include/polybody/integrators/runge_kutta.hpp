@@ -60,7 +60,7 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
     system.plus(x.q, dq, q);
     stabilisation.apply(system, forward, scratch, q, v, x.t + h);
     forward.accelerations(system, {q, v, x.t + h}, a, lambda, feedback);
-    Next::accept(x, h);
+    Next::accept(system, x, h);
   }
 };
 

@@ -35,7 +35,7 @@ struct SymplecticEuler {
     w.dq = h * w.v;
     system.plus(x.q, w.dq, w.q);
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
-    w.accept(x, h);
+    w.accept(system, x, h);
     return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
   }
 };
@@ -87,7 +87,7 @@ struct Rattle {
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
     w.v = w.dq + 0.5 * h * w.a;
     w.forward.project_velocities(system, w.q, w.v, x.t + h);
-    w.accept(x, h);
+    w.accept(system, x, h);
     return report;
   }
 

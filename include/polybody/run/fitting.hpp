@@ -31,4 +31,18 @@ void require_fitting(System const& system, State const& x) {
   detail::require_sizes(x, whole.coordinates, whole.speeds, whole.rows);
 }
 
+/// \throws InvalidInput naming a body whose coordinates are those of no place, as a quaternion whose norm is not one:
+/// ⊞ 0 would change them. \param x of the whole model
+template <class = void>
+void require_places(System const& system, State const& x) {
+  VecX const none = VecX::Zero(x.v.size());
+  VecX there = x.q;
+  system.plus(x.q, none, there);
+  for (Index i = 0; i < there.size(); ++i)
+    if (!(std::abs(there[i] - x.q[i]) <= 1e-6 * (1.0 + std::abs(x.q[i]))))
+      throw InvalidInput("The coordinates of " + name_of_coordinate(system, i) +
+                         " are those of no place: a quaternion must have norm one. Take them from reference_state(), "
+                         "and turn a body by unit quaternions.");
+}
+
 }  // namespace polybody

@@ -177,6 +177,7 @@ template <Integrator I, class Solver>
 Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, RunOptions options)
     : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), x.t) {
   require_fitting(whole(), x);
+  require_places(whole(), x);
   plan_ = StepPlan(x.t, options_.until, options_.step, corners());
   require_assembled(whole(), x, options_.assembly_tolerance);
   if (eliminates()) narrow_start();

@@ -49,6 +49,19 @@ void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual
                                                                   room, rate);
 }
 
+/// Name of the body that coordinate i of the system's steps belongs to.
+template <class = void>
+std::string name_of_coordinate(System const& s, Index i) {
+  Coordinates const& c = s.step_coordinates();
+  std::vector<BodyPlace> const& bodies = s.layout().bodies;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    Index const first = c ? c.narrow->places[k].q : bodies[k].q0;
+    Index const count = c ? c.narrow->places[k].coordinates : bodies[k].coordinates;
+    if (i >= first && i < first + count) return "body \"" + bodies[k].name + '"';
+  }
+  return "unknown";
+}
+
 /// M does not depend on q.
 inline bool has_constant_mass(System const& s) {
   return s.layout().constant_mass && (!s.step_coordinates() || s.step_coordinates().narrow->keeps_mass_constant);
