@@ -56,21 +56,19 @@ concept HasPotential = requires(F const force, std::array<Frame<double>, F::mark
   { force.potential(frames, t) } -> std::convertible_to<double>;
 };
 
-/// Gradients of all wrenches with respect to the frames' poses (δr, δφ in world axes) and twists,
-/// ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N: one pass of dual numbers, pose seeded with ck, twist with cd.
-template <ForceElement F>
-Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(F const& force,
-                                                            std::array<Frame<double>, F::markers> const& frames,
-                                                            double t, double ck, double cd) {
-  constexpr int n = 6 * F::markers;
-  using D = Dual<n>;
+namespace detail {
+/// Knows no force: those of as many markers share it. Frames as functions of their poses (δr, δφ in world axes), seeded
+/// with ck, and twists, seeded with cd.
+template <std::size_t N>
+std::array<Frame<Dual<int(6 * N)>>, N> seeded(std::array<Frame<double>, N> const& frames, double ck, double cd) {
+  using D = Dual<int(6 * N)>;
   auto const seed = [](double value, int i, double slope) {
     D x(value);
     x.d[i] = slope;
     return x;
   };
-  std::array<Frame<D>, F::markers> moved;
-  for (int k = 0; k < F::markers; ++k) {
+  std::array<Frame<D>, N> moved;
+  for (int k = 0; k < int(N); ++k) {
     for (int i = 0; i < 3; ++i) {
       moved[k].r[i] = seed(frames[k].r[i], 6 * k + i, ck);
       moved[k].v[i] = seed(frames[k].v[i], 6 * k + i, cd);
@@ -82,15 +80,29 @@ Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(F const& force,
       }
     }
   }
-  std::array<Wrench<D>, F::markers> const w = force.template wrenches<D>(moved, t);
+  return moved;
+}
+template <std::size_t N>
+Mat<double, int(6 * N), int(6 * N)> slopes(std::array<Wrench<Dual<int(6 * N)>>, N> const& w) {
+  constexpr int n = int(6 * N);
   Mat<double, n, n> gradient;
-  for (int k = 0; k < F::markers; ++k)
+  for (int k = 0; k < int(N); ++k)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < n; ++j) {
         gradient(6 * k + i, j) = w[k].f[i].d[j];
         gradient(6 * k + 3 + i, j) = w[k].m[i].d[j];
       }
   return gradient;
+}
+}  // namespace detail
+
+/// Gradients of all wrenches with respect to the frames' poses (δr, δφ in world axes) and twists,
+/// ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N: one pass of dual numbers, pose seeded with ck, twist with cd.
+template <ForceElement F>
+Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(F const& force,
+                                                            std::array<Frame<double>, F::markers> const& frames,
+                                                            double t, double ck, double cd) {
+  return detail::slopes(force.template wrenches<Dual<6 * F::markers>>(detail::seeded(frames, ck, cd), t));
 }
 
 }  // namespace polybody

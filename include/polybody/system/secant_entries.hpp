@@ -304,7 +304,7 @@ class TypedSecants {
   void add_force(Data<double> const& data, Entry const& e, VecX& r) const {
     using F = std::decay_t<decltype(e.force)>;
     constexpr int n = F::markers;
-    auto frames = frames_of(e, data);
+    auto frames = frames_at(e.markers, data);
     auto wrenches = e.force.template wrenches<double>(frames, middle_time());
     if constexpr (HasSecantPotential<F>) {
       for (auto& f : frames) f.v = f.w = Vec3::Zero();
