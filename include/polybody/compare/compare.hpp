@@ -36,10 +36,14 @@ concept CaseFor = requires(C const c, F const f) {
 
 namespace detail {
 
-/// The formulation's own name, or else its integrator's, told from those of earlier runs.
+/// The formulation's own name, or else its integrator's.
 template <class F>
-std::string name_of(F const& formulation, std::vector<ComparedRun> const& earlier) {
-  std::string const own = formulation.name.empty() ? decltype(formulation.integrator)::name : formulation.name;
+std::string name_of(F const& formulation) {
+  return formulation.name.empty() ? decltype(formulation.integrator)::name : formulation.name;
+}
+/// The name, told from those of earlier runs.
+template <class = void>
+std::string name_beside(std::vector<ComparedRun> const& earlier, std::string const& own) {
   std::string name = own;
   auto const taken = [&](ComparedRun const& run) { return run.name == name; };
   for (int i = 2; std::any_of(earlier.begin(), earlier.end(), taken); ++i) name = own + " (" + std::to_string(i) + ")";
@@ -109,7 +113,7 @@ template <class F, class C>
 ComparedRun compared_run(C const& make_case, F const& formulation, std::vector<ComparedRun> const& earlier) {
   auto scenario = make_case(formulation);
   ComparedRun out;
-  out.name = name_of(formulation, earlier);
+  out.name = name_beside(earlier, name_of(formulation));
   out.census = census(scenario.model);
   for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
   check_outputs(out, earlier);
@@ -121,6 +125,20 @@ ComparedRun compared_run(C const& make_case, F const& formulation, std::vector<C
   return out;
 }
 
+/// How far the outputs of each run are off those of the first.
+template <class = void>
+void compare_with_first(Comparison& c) {
+  if (c.runs.empty()) return;
+  ComparedRun const& first = c.runs.front();
+  for (ComparedRun& run : c.runs)
+    for (std::size_t i = 0; i < run.outputs.size(); ++i) {
+      double most = 0.0;
+      for (std::size_t k = 0; k < run.times.size(); ++k)
+        most = std::max(most, std::abs(run.outputs[i][k] - interpolate(first.times, first.outputs[i], run.times[k])));
+      run.difference.push_back(most);
+    }
+}
+
 }  // namespace detail
 
 /// Runs the case under each formulation (given as values: a policy without default numbers needs its own).
@@ -130,16 +148,7 @@ template <class C, class... Fs>
 Comparison compare(C const& make_case, Fs const&... formulations) {
   Comparison c;
   (c.runs.push_back(detail::compared_run(make_case, formulations, c.runs)), ...);
-  if (c.runs.empty()) return c;
-  ComparedRun const& first = c.runs.front();
-  for (ComparedRun& run : c.runs)
-    for (std::size_t i = 0; i < run.outputs.size(); ++i) {
-      double most = 0.0;
-      for (std::size_t k = 0; k < run.times.size(); ++k)
-        most = std::max(most,
-                        std::abs(run.outputs[i][k] - detail::interpolate(first.times, first.outputs[i], run.times[k])));
-      run.difference.push_back(most);
-    }
+  detail::compare_with_first(c);
   return c;
 }
 

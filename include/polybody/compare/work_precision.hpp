@@ -105,7 +105,7 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
   auto scenario = make_case(formulation);
   auto const& y = detail::output_of(scenario, output, "work_precision");
   if (settings.empty()) throw InvalidInput("work_precision: give one step or tolerance at least.");
-  WorkCurve curve{detail::name_of(formulation, {}), y.name};
+  WorkCurve curve{detail::name_of(formulation), y.name};
   for (double const setting : settings) {
     auto integrator = formulation.integrator;
     detail::set_accuracy(integrator, scenario.options, setting);

@@ -30,6 +30,19 @@ namespace detail {
 struct AnyPoint {
   void operator()(ContactPoint<double> const& point) const;
 };
+/// A visitor of points without its type: a geometry is compiled once for each scalar, whatever is asked at its points.
+template <StateScalar T>
+class PointVisitor {
+ public:
+  template <class Visit>
+  explicit PointVisitor(Visit const& visit)
+      : visit_(&visit), call_([](void const* f, ContactPoint<T> const& p) { (*static_cast<Visit const*>(f))(p); }) {}
+  void operator()(ContactPoint<T> const& point) const { call_(visit_, point); }
+
+ private:
+  void const* visit_;
+  void (*call_)(void const*, ContactPoint<T> const&);
+};
 /// p + n x.
 template <StateScalar T>
 Vec<T, 3> shifted(Vec<T, 3> const& p, Vec<T, 3> const& n, T const& x) {
@@ -89,13 +102,14 @@ struct Contact {
   /// Calls visit(point, v, N) for every point, v the velocity of a relative to b there.
   template <StateScalar T, class Visit>
   void for_each_point(std::array<Frame<T>, 2> const& f, Visit&& visit) const {
-    geometry.template for_each_point<T>(f[0], f[1], [&](ContactPoint<T> const& p) {
+    auto const at_point = [&](ContactPoint<T> const& p) {
       Vec<T, 3> const arm_a = p.place - f[0].r, arm_b = p.place - f[1].r;
       Vec<T, 3> const turn_a = f[0].w.cross(arm_a), turn_b = f[1].w.cross(arm_b);
       Vec<T, 3> v;
       for (int i = 0; i < 3; ++i) v[i] = (f[0].v[i] + turn_a[i]) - (f[1].v[i] + turn_b[i]);
       visit(p, v, T(normal.template force<T>(p.depth, T(-v.dot(p.normal))) * p.handover.share));
-    });
+    };
+    geometry.template for_each_point<T>(f[0], f[1], detail::PointVisitor<T>(at_point));
   }
 
   /// The force on a at a point.
@@ -156,9 +170,10 @@ struct Contact {
 
   double potential(std::array<Frame<double>, 2> const& f, double) const {
     double sum = 0.0;
-    geometry.template for_each_point<double>(f[0], f[1], [&](ContactPoint<double> const& p) {
+    auto const at_point = [&](ContactPoint<double> const& p) {
       sum += normal.template potential<double>(p.depth) * p.handover.share;
-    });
+    };
+    geometry.template for_each_point<double>(f[0], f[1], detail::PointVisitor<double>(at_point));
     return sum;
   }
 

@@ -2,6 +2,8 @@
 /// \file
 /// Where the bodies of a contact group touch, and how hard.
 
+#include <functional>
+
 #include <polybody/system/places.hpp>
 #include <polybody/system/system.hpp>
 
@@ -17,11 +19,24 @@ struct TouchingPoint {
   Vec3 force;                  ///< (3) on the body [N]
 };
 
+using TouchingPointVisit = std::function<void(TouchingPoint const&)>;
+
+namespace detail {
+/// The points of one pair that press.
+template <class Law>
+void visit_touching(Law const& law, std::array<Frame<double>, 2> const& frames, Index body, std::string const& against,
+                    TouchingPointVisit const& visit) {
+  law.template for_each_point<double>(frames, [&](auto const& p, Vec3 const& v, double n) {
+    if (n > 0.0) visit({body, &against, p.place, p.normal, p.depth, law.force_at(p, v, n)});
+  });
+}
+}  // namespace detail
+
 /// Calls visit(TouchingPoint) for every point of a contact group that presses; `system` must have been evaluated at the
 /// state.
 /// \throws InvalidInput for a handle of another model.
-template <class F, class Visit>
-void for_each_contact(System const& system, ElementHandle<F> const& group, Visit&& visit) {
+template <class F>
+void for_each_contact(System const& system, ElementHandle<F> const& group, TouchingPointVisit const& visit) {
   ForcePlace const& place = system.layout().forces[std::size_t(index_of_force(system.layout(), group))];
   F const& contact = *static_cast<F const*>(place.force);
   auto const frame = [&](Index k) -> Frame<double> const& {
@@ -29,11 +44,8 @@ void for_each_contact(System const& system, ElementHandle<F> const& group, Visit
   };
   for (Index body = 0; body < contact.many(); ++body)
     contact.for_each_opponent([&](auto const& few) {
-      if (!few.law.may_touch(frame(body), frame(few.marker))) return;
-      few.law.template for_each_point<double>(
-          {frame(body), frame(few.marker)}, [&](auto const& p, Vec3 const& v, double n) {
-            if (n > 0.0) visit(TouchingPoint{body, &few.name, p.place, p.normal, p.depth, few.law.force_at(p, v, n)});
-          });
+      if (few.law.may_touch(frame(body), frame(few.marker)))
+        detail::visit_touching(few.law, {frame(body), frame(few.marker)}, body, few.name, visit);
     });
 }
 

@@ -40,7 +40,7 @@ class ReducedCoordinates {
     if constexpr (solves_densely)
       prepare_dense();
     else if constexpr (!solves_by_bodies)
-      map_equations(model);
+      map_equations(model.linear_rows());
   }
 
   NarrowLayout narrow_layout(ModelLayout const& whole) const;
@@ -226,8 +226,7 @@ class ReducedCoordinates {
 
   /// Where the whole unknowns stand in the equations: dependents of linear joints are spread, the rows of these left
   /// out.
-  template <class M>
-  void map_equations(M const& model) {
+  void map_equations(std::vector<LinearRows> const& linear_rows) {
     Index const nv = whole_speeds_;
     std::vector<std::vector<UnknownMap::Target>> targets(std::size_t(nv + whole_rows_));
     std::vector<bool> dependent(std::size_t(nv), false);
@@ -238,7 +237,7 @@ class ReducedCoordinates {
       for (auto const& t : d.terms)
         targets[std::size_t(d.v)].push_back({targets[std::size_t(t.v)][0].unknown, t.factor});
     std::vector<bool> linear(std::size_t(whole_rows_), false);
-    for (LinearRows const& rows : model.linear_rows())
+    for (LinearRows const& rows : linear_rows)
       for (Index i = 0; i < rows.rows(); ++i) linear[std::size_t(rows.row + i)] = true;
     for (Index i = 0; i < whole_rows_; ++i)
       if (!linear[std::size_t(i)]) targets[std::size_t(nv + i)].push_back({equation_speeds_ + equation_rows_++, 1.0});

@@ -34,10 +34,13 @@ namespace detail {
 /// Σ_kl x_kl ∫ρ S_kᵀ S_l.
 template <class Matrix>
 Matrix weighted(Mat3 const& x, std::array<Matrix, 6> const& inertia) {
-  Matrix sum = x(0, 0) * inertia[0] + x(1, 1) * inertia[1] + x(2, 2) * inertia[2];
+  Matrix sum = x(0, 0) * inertia[0];
+  for (std::size_t p = 1; p < 3; ++p) sum += x(Index(p), Index(p)) * inertia[p];
   for (std::size_t p = 3; p < 6; ++p) {
     Matrix const back = inertia[p].transpose();
-    sum += x(symmetric_row[p], symmetric_column[p]) * inertia[p] + x(symmetric_column[p], symmetric_row[p]) * back;
+    Matrix both = x(symmetric_row[p], symmetric_column[p]) * inertia[p];
+    both += x(symmetric_column[p], symmetric_row[p]) * back;
+    sum += both;
   }
   return sum;
 }
@@ -119,7 +122,10 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
   MatX const& shapes = how.shapes;
 
   Index const samples = Index(loads.times().size()), n = shapes.cols();
-  auto const carried = [&](Structure::Sparse const& m) { return MatX(shapes.transpose() * (m * shapes)); };
+  auto const carried = [&](Structure::Sparse const& m) {
+    MatX const images = m * shapes;
+    return MatX(shapes.transpose() * images);
+  };
   LinearVibration<detail::LoadLines> problem{.mass_matrix = carried(s.mass_matrix()),
                                              .damping = carried(s.damping),
                                              .stiffness = carried(s.stiffness),

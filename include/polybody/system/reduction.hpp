@@ -22,8 +22,15 @@ class ReductionOf {
   template <class M>
   explicit ReductionOf(M const& model) : linear_(model.linear_rows()) {
     if constexpr (!std::is_void_v<typename M::Solution>) grow_tree(model);
-    number_unknowns(model);
-    number_rows(model);
+    std::vector<Extent> extents;
+    model.for_each_body([&](auto const& e) { extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.speeds()}); });
+    number_unknowns(extents, model.coordinates(), model.speeds(), model.states());
+    std::vector<bool> gone(std::size_t(model.rows()), false);
+    model.for_each_joint([&](auto const& e) {
+      using J = std::decay_t<decltype(e.joint)>;
+      if constexpr (Eliminates<typename J::PolicyType>) std::fill_n(gone.begin() + e.row, e.rows, true);
+    });
+    number_rows(gone, model.velocity_rows());
   }
 
   Index coordinates() const { return coordinates_; }
@@ -76,6 +83,11 @@ class ReductionOf {
     JointMotions motions;
   };
 
+  /// Where a body stands in the whole model.
+  struct Extent {
+    Index q0, nq, v0, nv;
+  };
+
   template <class M>
   void grow_tree(M const& model) {
     std::vector<TreeBody> bodies;
@@ -117,18 +129,11 @@ class ReductionOf {
   /// without a recursive joint only with `all`, as roots.
   void hang(std::vector<TreeBody> const& bodies, std::vector<Link> const& links, VecX const& reference, bool all);
 
-  template <class M>
-  void number_unknowns(M const& model) {
-    std::vector<bool> dependent_v(std::size_t(model.speeds()), false),
-        dependent_q(std::size_t(model.coordinates()), false);
+  void number_unknowns(std::vector<Extent> const& extents, Index coordinates, Index speeds, Index states) {
+    std::vector<bool> dependent_v(std::size_t(speeds), false), dependent_q(std::size_t(coordinates), false);
     for (auto const& d : linear_.dependents()) dependent_v[std::size_t(d.v)] = dependent_q[std::size_t(d.q)] = true;
-    std::vector<Index> in_tree(std::size_t(model.speeds()) + 1, -1);  // by first speed
+    std::vector<Index> in_tree(std::size_t(speeds) + 1, -1);  // by first speed
     for (std::size_t i = 0; i < tree_.bodies.size(); ++i) in_tree[std::size_t(tree_.bodies[i].v0)] = Index(i);
-    struct Extent {
-      Index q0, nq, v0, nv;
-    };
-    std::vector<Extent> extents;
-    model.for_each_body([&](auto const& e) { extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.speeds()}); });
     places_.resize(extents.size());
     std::vector<std::size_t> order(extents.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -165,23 +170,17 @@ class ReductionOf {
       place.coordinates = coordinates_ - place.q;
       place.speeds = speeds_ - place.v;
     }
-    for (Index j = model.speeds() - model.states(); j < model.speeds(); ++j) {
+    for (Index j = speeds - states; j < speeds; ++j) {
       same_v_.emplace_back(speeds_++, j);
       whole_speed_.push_back(j);
     }
   }
 
-  template <class M>
-  void number_rows(M const& model) {
-    std::vector<bool> gone(std::size_t(model.rows()), false);
-    model.for_each_joint([&](auto const& e) {
-      using J = std::decay_t<decltype(e.joint)>;
-      if constexpr (Eliminates<typename J::PolicyType>)
-        for (Index i = 0; i < e.rows; ++i) gone[std::size_t(e.row + i)] = true;
-    });
-    for (Index i = 0; i < model.rows(); ++i)
+  /// \param gone the rows that policies eliminate
+  void number_rows(std::vector<bool> const& gone, std::vector<Index> const& of_velocity) {
+    for (Index i = 0; i < Index(gone.size()); ++i)
       if (!gone[std::size_t(i)]) rows_.push_back(i);
-    for (Index const i : model.velocity_rows())
+    for (Index const i : of_velocity)
       velocity_rows_.push_back(Index(std::lower_bound(rows_.begin(), rows_.end(), i) - rows_.begin()));
   }
 

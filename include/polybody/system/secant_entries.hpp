@@ -171,7 +171,8 @@ class TypedSecants {
     model_.for_each_force([&](auto const& e) {
       add_force(data, e, r);
       if constexpr (HasStates<std::decay_t<decltype(e.force)>>) {
-        auto const rates = e.force.template rates<double>(frames_of(e, data), states_of(e, data), middle_time());
+        auto const rates =
+            e.force.template rates<double>(frames_at(e.markers, data), states_of(e, data), middle_time());
         for (std::size_t s = 0; s < rates.size(); ++s) {
           Index const i = data.first_state + e.state + Index(s);
           r[i] += a[i] - rates[s];
@@ -318,10 +319,10 @@ class TypedSecants {
   void add_force(Data<double> const& data, Entry const& e, VecX& r) const {
     using F = std::decay_t<decltype(e.force)>;
     constexpr int n = F::markers;
-    auto frames = frames_of(e, data);
+    auto frames = frames_at(e.markers, data);
     std::array<Wrench<double>, std::size_t(n)> wrenches;
-    for_each_action(e, data, [&](auto const& force, auto const&, auto const& there) {
-      wrenches = force.template wrenches<double>(there, middle_time());
+    for_each_action(e, data, [&](auto const& law, auto const&, auto const&) {
+      wrenches = law.template wrenches<double>(frames, middle_time());
     });
     if constexpr (HasSecantPotential<F>) {
       for (auto& f : frames) f.v = f.w = Vec3::Zero();

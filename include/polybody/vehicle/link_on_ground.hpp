@@ -28,25 +28,30 @@ struct LinkOnGround {
     for (Vec3 const& p : pad) require_finite(p, name + ": a point of the pad");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& ground) const {
-    return (link.r - ground.r).dot(ground.A.col(2)) < terrain.highest() + reach();
+    Vec3 const up = detail::column<double>(ground.A, 2);
+    return difference<double>(link.r, ground.r).dot(up) < terrain.highest() + reach();
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& ground, Visit&& visit) const {
     using std::sqrt;
-    Vec<T, 3> const up = ground.A.col(2);
+    Vec<T, 3> const up = detail::column<T>(ground.A, 2);
     Mat<T, 3, 3> axes = link.A;
     if constexpr (observed != Observes::frame) {  // z across the tangent, as near as may be to the ground's
-      Vec<T, 3> const z = up - axes.col(0) * up.dot(axes.col(0));
-      axes.col(2) = z / sqrt(z.squaredNorm());
-      axes.col(1).setZero();
+      Vec<T, 3> const z = detail::across<T>(up, detail::column<T>(axes, 0));
+      T const length = sqrt(z.squaredNorm());
+      for (int i = 0; i < 3; ++i) {
+        axes(i, 1) = T(0.0);
+        axes(i, 2) = z[i] / length;
+      }
     }
     for (Vec3 const& p : pad) {
-      Vec<T, 3> const place = link.r + axes * p.template cast<T>();
-      Vec<T, 3> const local = ground.A.transpose() * (place - ground.r);
+      Vec<T, 3> const place = detail::point_in<T>(link.r, axes, {T(p[0]), T(p[1]), T(p[2])});
+      Vec<T, 3> const arm = difference<T>(place, ground.r), local = ground.A.transpose() * arm;
       Height<T> const h = terrain.template height<T>(local[0], local[1]);
       if (!(value_of(h.z) > value_of(local[2]))) continue;  // nor where a cable stands upright
       T const nz = T(1.0) / sqrt(h.slope_x * h.slope_x + h.slope_y * h.slope_y + 1.0);
-      Vec<T, 3> const n = (up - ground.A.col(0) * h.slope_x - ground.A.col(1) * h.slope_y) * nz;
+      Vec<T, 3> n;
+      for (int i = 0; i < 3; ++i) n[i] = (up[i] - ground.A(i, 0) * h.slope_x - ground.A(i, 1) * h.slope_y) * nz;
       visit(ContactPoint<T>{place, n, (h.z - local[2]) * nz});
     }
   }

@@ -48,16 +48,19 @@ struct LinkOnRoller {
     double far = 0.0;
     for (double const y : rims) far = std::max(far, std::abs(y));
     double const reach = radius + half_thickness + half_width + pitch + far;
-    Vec3 const arm = roller.r - link.r;
+    Vec3 const arm = difference<double>(roller.r, link.r), x = detail::column<double>(link.A, 0);
     if (arm.squaredNorm() > reach * reach) return false;
-    double const margin = std::max(handover, double(radius)) + std::abs(roller.A.col(1).dot(link.A.col(0))) * far;
-    return std::abs(arm.dot(link.A.col(0))) < 0.5 * pitch + margin;
+    double const askew = std::abs(detail::column<double>(roller.A, 1).dot(x));
+    double const margin = std::max(handover, double(radius)) + askew * far;
+    return std::abs(arm.dot(x)) < 0.5 * pitch + margin;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
-    Mat<T, 3, 3> const axes = link_axes<observed, T>(link, roller.A.col(1));
+    Vec<T, 3> const axle = detail::column<T>(roller.A, 1);
+    Mat<T, 3, 3> const axes = link_axes<observed, T>(link, axle);
     for (double const rim : rims) {
-      Vec<T, 3> const local = axes.transpose() * (roller.r + roller.A.col(1) * T(rim) - link.r);
+      Vec<T, 3> const middle = detail::shifted<T>(roller.r, axle, T(rim)), arm = difference<T>(middle, link.r);
+      Vec<T, 3> const local = axes.transpose() * arm;
       T const height = local[2] - double(half_thickness), depth = T(radius.value) - height;
       if (std::abs(value_of(local[1])) > half_width) continue;
       double const side = value_of(local[0]) < 0.0 ? -1.0 : 1.0;
@@ -66,11 +69,10 @@ struct LinkOnRoller {
         meet_edge<T>(link, axes, {local[1], side, beyond, height}, visit);
       if (value_of(to_end) <= 0.0 || value_of(height) <= 0.0 || value_of(depth) <= 0.0) continue;
       Vec<T, 3> const on_face(local[0], local[1], T(half_thickness.value));
-      ContactPoint<T> point{link.r + axes * on_face, -axes.col(2), depth};
+      ContactPoint<T> point{detail::point_in<T>(link.r, axes, on_face), {-axes(0, 2), -axes(1, 2), -axes(2, 2)}, depth};
       if (value_of(to_end) < 2.0 * handover) {
-        T const x = to_end * (0.5 / handover);
-        point.handover = {x * x * (x * -2.0 + 3.0), axes.col(0) * (x * (T(1.0) - x) * (3.0 * side / handover)),
-                          roller.r + roller.A.col(1) * T(rim)};
+        T const x = to_end * (0.5 / handover), slope = x * (T(1.0) - x) * (3.0 * side / handover);
+        point.handover = {x * x * (x * -2.0 + 3.0), detail::scaled<T>(detail::column<T>(axes, 0), slope), middle};
       }
       visit(point);
     }
@@ -92,8 +94,10 @@ struct LinkOnRoller {
     T const depth = value_of(overlap) < value_of(axle.beyond) ? overlap : axle.beyond;
     if (!(value_of(depth) > 0.0)) return;
     Vec<T, 3> const edge(T(0.5 * pitch * axle.side), axle.across, T(half_thickness.value));
-    Vec<T, 3> const normal = (axes.col(0) * (axle.beyond * -axle.side) - axes.col(2) * axle.height) / distance;
-    visit(ContactPoint<T>{link.r + axes * edge, normal, depth});
+    T const forward = axle.beyond * -axle.side;
+    Vec<T, 3> normal;
+    for (int i = 0; i < 3; ++i) normal[i] = (axes(i, 0) * forward - axes(i, 2) * axle.height) / distance;
+    visit(ContactPoint<T>{detail::point_in<T>(link.r, axes, edge), normal, depth});
   }
 };
 
@@ -116,20 +120,22 @@ struct HornOnRims {
     require_positive(radius, name + ": the radius of the rims");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
-    Vec3 const arm = roller.r - link.r;
-    double const across = arm.dot(roller.A.col(1)), reach = radius + tip.norm();
+    Vec3 const arm = difference<double>(roller.r, link.r);
+    double const across = arm.dot(detail::column<double>(roller.A, 1)), reach = radius + tip.norm();
     return arm.squaredNorm() - across * across < reach * reach;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
     using std::sqrt;
-    Vec<T, 3> const axle = roller.A.col(1),
-                    place = link.r + link_axes<observed, T>(link, axle) * tip.template cast<T>();
-    Vec<T, 3> const arm = place - roller.r;
+    Vec<T, 3> const axle = detail::column<T>(roller.A, 1);
+    Vec<T, 3> const place =
+        detail::point_in<T>(link.r, link_axes<observed, T>(link, axle), {T(tip[0]), T(tip[1]), T(tip[2])});
+    Vec<T, 3> const arm = difference<T>(place, roller.r);
     T const across = arm.dot(axle), beyond = (value_of(across) < 0.0 ? -across : across) - double(play);
-    T const within = T(radius.value) - sqrt((arm - axle * across).squaredNorm());
+    T const within = T(radius.value) - sqrt(detail::shifted<T>(arm, axle, -across).squaredNorm());
     T const depth = value_of(beyond) < value_of(within) ? beyond : within;
-    if (value_of(depth) > 0.0) visit(ContactPoint<T>{place, value_of(across) < 0.0 ? axle : Vec<T, 3>(-axle), depth});
+    if (value_of(depth) > 0.0)
+      visit(ContactPoint<T>{place, value_of(across) < 0.0 ? axle : detail::scaled<T>(axle, T(-1.0)), depth});
   }
 };
 

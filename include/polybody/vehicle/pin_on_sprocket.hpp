@@ -100,24 +100,26 @@ struct PinOnSprocket {
       if (!std::isfinite(y)) throw InvalidInput(name + ": the place of a ring must be finite.");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& sprocket) const {
-    Vec3 const arm = link.r + link.A.col(0) * (0.5 * profile.pitch) - sprocket.r;
-    double const across = arm.dot(sprocket.A.col(1));
+    Vec3 const x = detail::column<double>(link.A, 0), axle = detail::column<double>(sprocket.A, 1);
+    Vec3 const arm = difference<double>(detail::shifted<double>(link.r, x, 0.5 * profile.pitch), sprocket.r);
+    double const across = arm.dot(axle);
     double far = 0.0;
     for (double const ring : rings) far = std::max(far, std::abs(ring));
-    Vec3 const axle = sprocket.A.col(1);
-    double const askew =
-        observed == Observes::frame ? link.A.col(1).cross(axle).norm() : std::abs(link.A.col(0).dot(axle));
+    double const askew = observed == Observes::frame ? cross<double>(detail::column<double>(link.A, 1), axle).norm()
+                                                     : std::abs(x.dot(axle));
     double const reach =
         profile.outer_radius() + far * askew;  // of the pin's middle: at the rings it is nearer by far · askew
     return arm.squaredNorm() - across * across < reach * reach;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& sprocket, Visit&& visit) const {
-    Vec<T, 3> const lateral = link_axes<observed, T>(link, sprocket.A.col(1)).col(1);
-    Vec<T, 3> const pin = link.r + link.A.col(0) * T(0.5 * profile.pitch) - sprocket.r;
+    Vec<T, 3> const lateral = detail::column<T>(link_axes<observed, T>(link, detail::column<T>(sprocket.A, 1)), 1);
+    Vec<T, 3> const along = detail::column<T>(link.A, 0), axis_x = detail::column<T>(sprocket.A, 0),
+                    axis_z = detail::column<T>(sprocket.A, 2);
+    Vec<T, 3> const pin = difference<T>(detail::shifted<T>(link.r, along, T(0.5 * profile.pitch)), sprocket.r);
     for (double const ring : rings) {
-      Vec<T, 3> const arm = pin + lateral * T(ring);
-      T const x = arm.dot(sprocket.A.col(0)), z = arm.dot(sprocket.A.col(2));
+      Vec<T, 3> const arm = detail::shifted<T>(pin, lateral, T(ring));
+      T const x = arm.dot(axis_x), z = arm.dot(axis_z);
       double const step = 2.0 * std::numbers::pi / profile.teeth;
       double const angle = std::atan2(value_of(x), value_of(z)),
                    middle = valley + step * std::round((angle - valley) / step);
@@ -127,9 +129,10 @@ struct PinOnSprocket {
       auto const o = profile.template overlap<T>(out, ahead ? side : T(-side));
       if (!(value_of(o.depth) > 0.0)) continue;  // nor where a cable lies along the axle
       T const across = ahead ? o.tangential : T(-o.tangential);
-      Vec<T, 3> const n =
-          sprocket.A.col(0) * (o.radial * s + across * c) + sprocket.A.col(2) * (o.radial * c - across * s);
-      visit(ContactPoint<T>{sprocket.r + arm - n * T(profile.pin_radius.value), n, o.depth});
+      T const by_x = o.radial * s + across * c, by_z = o.radial * c - across * s;
+      Vec<T, 3> const n = detail::shifted<T>(detail::scaled<T>(axis_x, by_x), axis_z, by_z);
+      Vec<T, 3> const middle_of_pin = detail::sum<T>(sprocket.r, arm);
+      visit(ContactPoint<T>{detail::shifted<T>(middle_of_pin, n, -T(profile.pin_radius.value)), n, o.depth});
     }
   }
 };

@@ -1,0 +1,180 @@
+#pragma once
+/// \file
+/// What a model does as its bodies are added, joined and loaded. These functions know the types of a joint or force and
+/// of its bodies, and not the model's: a program compiles them once for all its models.
+
+#include <atomic>
+
+#include <polybody/forces/gravity.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/system/body_kernels.hpp>
+#include <polybody/system/composition.hpp>
+#include <polybody/system/linear_rows.hpp>
+#include <polybody/system/markers.hpp>
+
+namespace polybody::detail {
+
+/// Tells models apart.
+inline std::uint64_t next_serial() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+/// What a model counts, and what it keeps beside the pools of its types.
+struct ModelParts {
+  Gravity gravity;
+  std::uint64_t serial;
+  std::vector<GroundMarker> ground = {};
+  std::vector<LinearRows> linear_rows = {};
+  std::vector<Index> velocity_rows = {};
+  Index coordinates = 0, speeds = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
+
+  /// \throws InvalidInput when `model` is the serial number of another one.
+  void require_own(std::uint64_t model, std::string const& what) const {
+    if (model != serial) refuse_marker_of_another_model(what);
+  }
+};
+
+/// A marker beside the pool of its body; the ground has none.
+template <class B>
+struct PooledMarker {
+  Marker<B> const& marker;
+  BodyPool<B>& pool;
+};
+template <>
+struct PooledMarker<Ground> {
+  Marker<Ground> const& marker;
+};
+
+/// Axes (3×3) at a marker's point, as placed.
+template <class B>
+Mat3 reference_axes(PooledMarker<B> const& m) {
+  if constexpr (std::is_same_v<B, Ground>)
+    return m.marker.point.axes;
+  else
+    return BodyKernels<B, double>::reference_axes(m.pool, m.marker);
+}
+
+/// The number of the published marker that stands at m with these axes.
+template <class B>
+Index publish_at(ModelParts& parts, PooledMarker<B> const& m, Mat3 const& axes) {
+  if constexpr (std::is_same_v<B, Ground>)
+    parts.ground.push_back({{m.marker.point.origin, product(m.marker.point.axes, axes)}, parts.markers});
+  else
+    parts.jacobian_size += BodyKernels<B, double>::add_marker(m.pool, m.marker, axes, parts.markers);
+  return parts.markers++;
+}
+
+/// The linear point of a marker, and where its body stands; the ground takes the world of the other.
+/// \throws InvalidInput naming the joint `what` for a point that is not linear in the coordinates.
+template <class B>
+LinearPoint linear_side(PooledMarker<B> const& m, World other, LinearSide& side, std::string const& what) {
+  if constexpr (std::is_same_v<B, Ground>) {
+    return linear_ground(m.marker.point, other == World::plane ? 2 : 3);
+  } else {
+    auto const& e = m.pool.entries[std::size_t(m.marker.body)];
+    side.q0 = e.q0 + e.body.first_column(m.marker.point);
+    side.v0 = e.v0 + e.body.first_column(m.marker.point);
+    try {
+      return linear_point(e.body, m.marker.point);
+    } catch (InvalidInput const& error) {
+      throw InvalidInput("\"" + what + "\": " + error.what() + " Use Constraint here.");
+    }
+  }
+}
+
+template <class B>
+BodyHandle<B> add_body(ModelParts& parts, BodyPool<B>& pool, B const& body, std::string name) {
+  name = name_or_next(std::move(name), "body", std::size_t(parts.bodies));
+  BodyKernels<B, double>::add(pool, body, name, parts.coordinates, parts.speeds, OwnsRows<B> ? parts.rows : -1);
+  if constexpr (OwnsRows<B>) parts.rows += B::own_rows;
+  parts.coordinates += pool.entries.back().body.coordinates();
+  parts.speeds += pool.entries.back().body.speeds();
+  ++parts.bodies;
+  return {parts.serial, Index(pool.entries.size()) - 1, std::move(name), pool.entries.shared()};
+}
+
+/// \throws InvalidInput naming the joint.
+template <class J, class A, class B>
+ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, J const& joint,
+                           PooledMarker<A> const& a, PooledMarker<B> const& b, std::string name) {
+  using G = typename J::Geometry;
+  using P = typename J::PolicyType;
+  using Asks = typename J::Measured;
+  name = name_or_next(std::move(name), G::name, pool.size());
+  parts.require_own(a.marker.model, name);
+  parts.require_own(b.marker.model, name);
+  require_apart(a.marker, b.marker, name);
+  Mat3 const triad = checked_triad(joint, name);
+  Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
+  if constexpr (!LinearInCoordinates<P> && B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)
+    require_along_tangent(axes_b, triad, name);
+  require_told(a.marker, Asks::needs, name);
+  require_told(b.marker, needs_of_second<Asks>(), name);
+  if constexpr (LinearInCoordinates<P>) {  // before a marker is published: it may refuse
+    LinearRows rows{.name = name, .row = parts.rows};
+    fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name), triad.col(2),
+                        rows);
+    parts.linear_rows.push_back(std::move(rows));
+  }
+  Index const pa = publish_at(parts, a, transposed_product(axes_a, triad));
+  Index const pb = publish_at(parts, b, transposed_product(axes_b, triad));
+  JointEntry<J> entry{joint, pa, pb, -1, name};
+  if constexpr (LinearInCoordinates<P>) {
+    entry.linear = Index(parts.linear_rows.size()) - 1;
+    entry.rows = parts.linear_rows.back().rows();
+  } else if constexpr (AddsRows<P>) {
+    entry.rows = J::rows;
+  }
+  if constexpr (AddsRows<P>) {
+    entry.row = parts.rows;
+    parts.rows += entry.rows;
+    for (Index i = polybody::velocity_rows<G>(); i > 0; --i) parts.velocity_rows.push_back(parts.rows - i);
+  }
+  pool.push_back(std::move(entry));
+  return {parts.serial, Index(pool.size()) - 1, std::move(name)};
+}
+
+/// A force element among the markers. \throws InvalidInput naming it.
+template <class F, class... Bs>
+ElementHandle<F> add_force(ModelParts& parts, std::vector<ForceEntry<F>>& pool, F const& force, std::string name,
+                           PooledMarker<Bs> const&... markers) {
+  name = name_or_next(std::move(name), "force", pool.size());
+  force.check("\"" + name + "\"");
+  (parts.require_own(markers.marker.model, name), ...);
+  (require_told(markers.marker, F::needs, name), ...);
+  pool.push_back({force, {publish_at(parts, markers, Mat3::Identity())...}, name, parts.states});
+  parts.states += states_of<F>();
+  return {parts.serial, Index(pool.size()) - 1, std::move(name)};
+}
+
+/// A group of forces with its many markers. \throws InvalidInput naming it.
+template <class F, class B>
+ElementHandle<F> add_group(ModelParts& parts, std::vector<ForceEntry<F>>& pool, F const& group,
+                           std::vector<PooledMarker<B>> const& many, std::string name) {
+  name = name_or_next(std::move(name), "group", pool.size());
+  group.check("\"" + name + "\"");
+  ForceEntry<F> entry{group, {}, name};
+  for (PooledMarker<B> const& m : many) {
+    parts.require_own(m.marker.model, name);
+    require_told(m.marker, F::needs, name);
+  }
+  for (PooledMarker<B> const& m : many) entry.markers.push_back(publish_at(parts, m, Mat3::Identity()));
+  entry.force.set_many(Index(many.size()));
+  pool.push_back(std::move(entry));
+  return {parts.serial, Index(pool.size()) - 1, std::move(name)};
+}
+
+/// One of the few of a group, with its law. \throws InvalidInput naming the group.
+template <class F, class Law, class B>
+void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, PooledMarker<B> const& one,
+                  std::string name) {
+  parts.require_own(one.marker.model, group.name);
+  name = name_or_next(std::move(name), "opponent", group.markers.size() - std::size_t(group.force.many()));
+  law.check("\"" + group.name + "\", \"" + name + "\"");
+  require_told(one.marker, needs_of_second<Law>(), group.name);
+  group.markers.push_back(publish_at(parts, one, Mat3::Identity()));
+  group.force.pair_with(law, Index(group.markers.size()) - 1, std::move(name));
+}
+
+}  // namespace polybody::detail
