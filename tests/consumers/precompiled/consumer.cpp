@@ -1,4 +1,4 @@
-// The program that each consumer project builds: the whole library through its umbrella.
+// A program that includes the whole library through its umbrella.
 #include <polybody/polybody.hpp>
 
 #include <iostream>
