@@ -1,7 +1,8 @@
 # polybody_precompile(<target>...)
-# Gives each target a precompiled <polybody/polybody.hpp>, or <polybody/compiled.hpp> if it links polybody::compiled. Targets that are compiled alike share one, built in this build
-# tree by the object library polybody_pch (the header of an imported target cannot be shared, hence the function); each
-# further set of compile settings makes one more, polybody_pch_<hash>.
+# Gives each target a precompiled <polybody/polybody.hpp>; if it links polybody::compiled, it and that library get a
+# precompiled <polybody/compiled.hpp>. Targets that are compiled alike share one, built in this build tree by the object
+# library polybody_pch (the header of an imported target cannot be shared, hence the function); each further set of compile
+# settings makes one more, polybody_pch_<hash>.
 #
 #   find_package(polybody REQUIRED)
 #   add_executable(app app.cpp)
@@ -94,6 +95,9 @@ function(_polybody_precompile target)
   set(header <polybody/polybody.hpp>)
   if(polybody_compiled IN_LIST libraries)
     set(header <polybody/compiled.hpp>)
+    _polybody_precompile(polybody_compiled)
+  elseif("${target}" STREQUAL "polybody_compiled")
+    set(header <polybody/compiled.hpp>)
   endif()
 
   # the settings
@@ -115,6 +119,9 @@ function(_polybody_precompile target)
         list(APPEND values ${more})
       endif()
     endforeach()
+    if(setting STREQUAL "COMPILE_FEATURES") # polybody asks for C++20: an older standard changes nothing
+      list(FILTER values EXCLUDE REGEX "^cxx_std_(98|11|14|17|20)$")
+    endif()
     set(${setting} "${values}")
     string(APPEND key "${setting}=${values}\n")
   endforeach()

@@ -1,6 +1,11 @@
-// The program that each consumer project builds: the whole library through its umbrella.
-#include <polybody/polybody.hpp>
+// The program that most consumer projects build: one header, as these projects are about where the headers are found.
+// Those that include all of the installed ones are `precompiled` and `compiled`.
+#include <polybody/kinematics/frame.hpp>
 
 #include <iostream>
 
-int main() { std::cout << "polybody found, with Eigen " << EIGEN_WORLD_VERSION << '.' << EIGEN_MAJOR_VERSION << '\n'; }
+int main() {
+  polybody::Frame<double> const frame;
+  std::cout << "polybody found, a frame at " << frame.r.transpose() << ", with Eigen " << EIGEN_WORLD_VERSION << '.'
+            << EIGEN_MAJOR_VERSION << '\n';
+}

@@ -1,4 +1,4 @@
-# cmake -DCOMPILER=<c++> -DSOURCE=<file.cpp> -DINCLUDES=<dir|dir|...> -DLINES=<n> -P check.cmake
+# cmake -DCOMPILER=<c++> -DSOURCE=<file.cpp> -DINCLUDES=<dir|dir|...> -DPRECOMPILED=<header or nothing> -DLINES=<n> -P check.cmake
 # Succeeds when the compiler accepts SOURCE, or refuses it with the sentence of its first line among the first n lines of
 # the message.
 
@@ -10,6 +10,10 @@ elseif(NOT first_line STREQUAL "// accepted")
 endif()
 
 string(REGEX REPLACE "([^|]+)\\|?" "-isystem;\\1;" include_flags "${INCLUDES}")
+
+if(PRECOMPILED) # as <header>.gch, for g++ and for clang++
+  list(APPEND include_flags -include ${PRECOMPILED})
+endif()
 
 # No option but what a program needs, so the message is the one that a user reads; LC_ALL: plain ASCII quotes.
 execute_process(
