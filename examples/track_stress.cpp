@@ -93,7 +93,7 @@ struct StressCase {
       scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
         before(model, x);
         history->strain.push_back(m113::link_strain(vehicle->model, x, link));
-        Vec3 const lateral = frame(vehicle->model, x, vehicle->chassis[0].at(Vec3(0, 0, 0))).A.col(1);
+        Vec3 const lateral = vehicle->hull(x).A.col(1);
         history->bending.push_back(m113::link_bending(vehicle->model, x, link, lateral));
       };
     }
@@ -357,6 +357,18 @@ void fatigue(Options const& o, StressRuns const& runs) {
   if (!f.curves.empty()) draw(o, f, "stress_ranges");
 }
 
+// Runs to the end and puts the first state from `at` [s] on away in a file; returns its time.
+double put_away(Simulation<GeneralizedAlpha>& run, double at, fs::path const& file) {
+  double done_at = -1.0;
+  while (!run.done()) {
+    run.advance();
+    if (done_at >= 0.0 || run.state().t < at) continue;
+    write_checkpoint(file, run.snapshot());
+    done_at = run.state().t;
+  }
+  return done_at;
+}
+
 // Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
 template <class F>
 void restart(Options const& o, F const& f) {
@@ -367,44 +379,40 @@ void restart(Options const& o, F const& f) {
   fs::path const file = o.out / (f.name + ".checkpoint");
   State x = scenario.start;
   auto whole = simulate(scenario.model, x, f.integrator, scenario.options);
-  double put_away = -1.0;
-  while (!whole.done()) {
-    whole.advance();
-    if (put_away < 0.0 && x.t >= 0.5 * o.until) {
-      write_checkpoint(file, whole.snapshot());
-      put_away = x.t;
-    }
-  }
+  double const at = put_away(whole, 0.5 * o.until, file);
   State y = scenario.start;
   auto rest = resume(scenario.model, y, f.integrator, scenario.options, read_checkpoint(file));
   while (!rest.done()) rest.advance();
   bool const same = x.t == y.t && x.q == y.q && x.v == y.v && x.a == y.a && x.lambda == y.lambda;
-  std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", f.name.c_str(), put_away, y.t,
+  std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", f.name.c_str(), at, y.t,
               same ? "the same bits" : "NOT the same");
   if (!same) throw Error("The run that was taken up again ended in another state.");
 }
 
-void halve(Options const& o, auto const& formulation, auto const& of) {
-  Options half = o;
-  half.step = 0.5 * o.step;
-  StressRuns const coarse = run(o, formulation), fine = run(half, of(half));
+void compare_steps(Options const& o, StressRuns const& coarse, StressRuns const& fine) {
   double const from = std::min(1.0, 0.25 * o.until);
   std::printf("%s, steps of %g and %g ms: filtered strain %.2f %% apart (rms from %.2g s on); CPU %.1f and %.1f s\n",
-              formulation.name.c_str(), 1e3 * o.step, 1e3 * half.step, 1e2 * off(o, fine, 0, coarse, 0, from), from,
+              coarse.name(0).c_str(), 1e3 * o.step, 0.5e3 * o.step, 1e2 * off(o, fine, 0, coarse, 0, from), from,
               coarse.comparison.runs[0].cpu, fine.comparison.runs[0].cpu);
 }
 
-void single(Options const& o, auto const& of) {
-  auto const formulation = of(o);
-  if (o.restart) return restart(o, formulation);
-  if (o.halve) return halve(o, formulation, of);
-  StressRuns const r = run(o, formulation);
+void show(Options const& o, StressRuns const& r) {
   report(o, r);
   if (o.fatigue) fatigue(o, r);
   draw(o, strain_figure(o, r, "Axial strain of a link", false, 0.0, o.until), "strain");
   draw(o, bending_figure(o, r), "bending");
   draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until),
        "strain_filtered");
+}
+
+void single(Options const& o, auto const& of) {
+  auto const formulation = of(o);
+  if (o.restart) return restart(o, formulation);
+  StressRuns const runs = run(o, formulation);
+  if (!o.halve) return show(o, runs);
+  Options half = o;
+  half.step = 0.5 * o.step;
+  compare_steps(o, runs, run(half, of(half)));
 }
 
 void all_formulations(Options const& o) {

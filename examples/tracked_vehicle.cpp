@@ -94,14 +94,14 @@ void table_3_4(Options const& o) {
   };
   std::array<Ramp, 2> const drives{m113::drive(o.speed), m113::drive(o.speed)};
   m113::VehicleOptions const options{.ground_body = true};
-  using Euler = Rigid<EulerParameters>;
+  BumpCourse const ground = course(false);
   std::cout << "Table 3.4\n";
-  count("pin joint", census(m113::Vehicle<Euler, Constraint>({}, drives, options).model), "1092, 168, 924");
-  count("penalty", census(m113::Vehicle<Euler, PenaltyPerRow<5>>(m113::penalty_pin(o.penalty), drives, options).model),
+  count("pin joint", census(VehicleOf<IdealTrack>({}, drives, options, ground).model), "1092, 168, 924");
+  count("penalty", census(VehicleOf<PenaltyTrack>(m113::penalty_pin(o.penalty), drives, options, ground).model),
         "1092, 798, 294");
-  count("bushing", census(m113::Vehicle<Euler, Bushing>(m113::bushing_pin(o.penalty), drives, options).model),
+  count("bushing", census(VehicleOf<BushingTrack>(m113::bushing_pin(o.penalty), drives, options, ground).model),
         "1092, 798, 294");
-  count("ANCF", census(m113::Vehicle<AncfCable<>, AncfLinear>({}, drives, options).model), "1227, 1060, 167");
+  count("ANCF", census(VehicleOf<CableTrack>({}, drives, options, ground).model), "1227, 1060, 167");
   std::cout << "  The thesis' 1227 ANCF coordinates are 29 bodies of 7 and 128 links of 8; the vehicle has 27 bodies "
                "beside the links and the ground,\n"
                "  which makes 28: 1220, 1054, 166. What the 29th is the text does not say.\n";
@@ -183,17 +183,17 @@ void figures(Options const& o) {
   }
 }
 
+void show(Options const& o, Runs const& r) {
+  report(o, r);
+  over_time(o, r, "vertical displacement [m]", "Chassis vertical displacement", "displacement [m]", "height");
+  over_time(o, r, "forward velocity [m/s]", "Chassis forward velocity", "velocity [m/s]", "velocity");
+  over_time(o, r, "joint force [N]", "Force in a pin, 30 Hz low pass", "force [kN]", "pin_force", 30.0, 1e-3);
+  Figure f{.title = "Path of the chassis", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
+  f.curves.push_back(curve("", r.history(0, "forward position [m]"), r.history(0, "sideways position [m]"), 0));
+  draw(o, f, "path");
+}
+
 void single(Options const& o) {
-  auto const go = [&](auto const& formulation) {
-    Runs const r = run(o, formulation);
-    report(o, r);
-    over_time(o, r, "vertical displacement [m]", "Chassis vertical displacement", "displacement [m]", "height");
-    over_time(o, r, "forward velocity [m/s]", "Chassis forward velocity", "velocity [m/s]", "velocity");
-    over_time(o, r, "joint force [N]", "Force in a pin, 30 Hz low pass", "force [kN]", "pin_force", 30.0, 1e-3);
-    Figure f{.title = "Path of the chassis", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
-    f.curves.push_back(curve("", r.history(0, "forward position [m]"), r.history(0, "sideways position [m]"), 0));
-    draw(o, f, "path");
-  };
   if (o.halve) {
     Options half = o;
     half.step = 0.5 * o.step;
@@ -208,11 +208,11 @@ void single(Options const& o) {
     std::printf("\n");
     return;
   }
-  if (o.track == "constraint") go(ideal(o));
-  if (o.track == "penalty") go(penalty(o, o.penalty));
-  if (o.track == "bushing") go(bushing(o));
-  if (o.track == "ancf") go(cable(o));
-  if (o.track == "recursive") go(recursive(o));
+  if (o.track == "constraint") show(o, run(o, ideal(o)));
+  if (o.track == "penalty") show(o, run(o, penalty(o, o.penalty)));
+  if (o.track == "bushing") show(o, run(o, bushing(o)));
+  if (o.track == "ancf") show(o, run(o, cable(o)));
+  if (o.track == "recursive") show(o, run(o, recursive(o)));
 }
 
 }  // namespace

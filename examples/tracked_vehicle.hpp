@@ -65,12 +65,15 @@ struct Built {
 };
 
 // Numbers of one state, worked out once for all outputs that ask.
-template <class V>
 class Probe {
  public:
-  using M = typename V::ModelType;
-  Probe(std::shared_ptr<V const> vehicle, m113::TrackStart start)
-      : vehicle_(std::move(vehicle)), start_(std::move(start)) {}
+  template <class V>
+  Probe(std::shared_ptr<V const> const& vehicle, m113::TrackStart start)
+      : vehicle_(vehicle), start_(std::move(start)), system_(vehicle->model, with<Entries::motion>) {
+    auto const& side = vehicle->side(m113::Side::left);
+    pin_ = index_of_joint(system_.layout(), side.pins[watched_pin]);
+    drive_ = index_of_joint(system_.layout(), side.drive[0]);
+  }
 
   double operator()(State const& x, double Probe::* number) {
     if (x.t != t_) look(x);
@@ -87,40 +90,36 @@ class Probe {
  private:
   void look(State const& x) {
     t_ = x.t;
-    V const& v = *vehicle_;
-    if (!system_) system_ = std::make_unique<System>(v.model);
-    system_->evaluate(x.q, x.v, x.t);
-    Frame<double> const hull = frame(v.model, x, v.chassis[0].at(Vec3(0, 0, 0)));
-    auto const& side = v.side(m113::Side::left);
+    system_.evaluate(x.q, x.v, x.t);
+    Frame<double> const hull = vehicle_->hull(x);
+    m113::Track const& track = vehicle_->track(m113::Side::left);
     forward = hull.r.x() - m113::chassis.x;
     sideways = hull.r.y();
     height = hull.r.z() - m113::chassis.z;
     pitch = std::asin(-hull.A(2, 0));
     yaw = std::atan2(hull.A(1, 0), hull.A(0, 0));
     speed = hull.v.dot(hull.A.col(0));
-    Frame<double> const wheel = frame(v.model, x, side.sprocket[0].at(Vec3(0, 0, 0)));
-    sprocket = hull.A.col(1).dot(wheel.w - hull.w);
-    Vec3 const slider = hull.A.transpose() * (position(v.model, x, side.tensioner[0].at(Vec3(0, 0, 0))) - hull.r);
+    sprocket = hull.A.col(1).dot(track.sprocket(x).w - hull.w);
+    Vec3 const slider = hull.A.transpose() * (track.tensioner(x).r - hull.r);
     idler = slider.x() - (m113::idler_reference_x - m113::chassis.x);
-    Vec3 const link = hull.A.transpose() * (position(v.model, x, side.middle[watched_pin]) - hull.r);
+    Vec3 const link = hull.A.transpose() * (track.middle[watched_pin](x).r - hull.r);
     link_x = link.x();
     link_z = link.z();
-    Wrench<double> const r = reaction(v.model, x, side.pins[watched_pin]);
+    Wrench<double> const r = reaction_of(system_, x, pin_);
     force_x = r.f.x();
     force_z = r.f.z();
     force = r.f.norm();
-    torque = reaction(v.model, x, side.drive[0]).m.dot(hull.A.col(1));
+    torque = reaction_of(system_, x, drive_).m.dot(hull.A.col(1));
     largest_gap = 0.0;
     for (int i = 0; i < m113::links; ++i) {
-      double const open = (position(v.model, x, side.front[std::size_t(i)]) -
-                           position(v.model, x, side.rear[std::size_t((i + m113::links - 1) % m113::links)]))
-                              .norm();
+      double const open =
+          (track.front[std::size_t(i)](x).r - track.rear[std::size_t((i + m113::links - 1) % m113::links)](x).r).norm();
       if (i == watched_pin) gap = open;
       largest_gap = std::max(largest_gap, open);
     }
     depth = off_path = off_plane = 0.0;
     for (m113::Side const s : {m113::Side::left, m113::Side::right}) {
-      m113::TrackFault const fault = m113::track_fault(v, *system_, x, s, start_);
+      m113::TrackFault const fault = m113::track_fault(*vehicle_, system_, x, s, start_);
       if (fault.depth > deepest_depth) {
         deepest_depth = fault.depth;
         deepest_time = x.t;
@@ -133,9 +132,10 @@ class Probe {
     }
   }
 
-  std::shared_ptr<V const> vehicle_;
+  std::shared_ptr<m113::TrackedVehicle const> vehicle_;
   m113::TrackStart start_;
-  std::unique_ptr<System> system_;
+  System system_;
+  Index pin_ = 0, drive_ = 0;  // places of the joints in the layout
   double t_ = -1.0;
 };
 
@@ -145,6 +145,90 @@ struct Outcome {
   double depth = 0.0, deepest_time = 0.0;
   double drives = 0.0, gravity = 0.0, kinetic = 0.0, stored = 0.0, dissipated = 0.0, unaccounted = 0.0,
          relative = -1.0;  // [J]
+};
+
+// The outputs of every run.
+inline constexpr std::pair<char const*, double Probe::*> asked[] = {
+    {"forward position [m]", &Probe::forward},
+    {"sideways position [m]", &Probe::sideways},
+    {"vertical displacement [m]", &Probe::height},
+    {"pitch [rad]", &Probe::pitch},
+    {"yaw [rad]", &Probe::yaw},
+    {"forward velocity [m/s]", &Probe::speed},
+    {"sprocket speed [rad/s]", &Probe::sprocket},
+    {"sprocket torque [N m]", &Probe::torque},
+    {"idler travel [m]", &Probe::idler},
+    {"link x in chassis [m]", &Probe::link_x},
+    {"link z in chassis [m]", &Probe::link_z},
+    {"joint force x [N]", &Probe::force_x},
+    {"joint force z [N]", &Probe::force_z},
+    {"joint force [N]", &Probe::force},
+    {"joint gap [m]", &Probe::gap},
+    {"largest joint gap [m]", &Probe::largest_gap},
+    {"deepest contact [m]", &Probe::depth},
+    {"off the path [m]", &Probe::off_path},
+    {"off the middle plane [m]", &Probe::off_plane},
+};
+
+// What is done at every state of a run beside its outputs.
+class Watch {
+ public:
+  Watch(Settings const& s, std::string const& name, std::shared_ptr<m113::TrackedVehicle const> vehicle,
+        std::shared_ptr<Probe> probe)
+      : vehicle_(std::move(vehicle)),
+        probe_(std::move(probe)),
+        progress_(0.0, s.until, name),
+        until_(s.until),
+        every_(s.animate) {}
+
+  void audit(EnergyAudit audit) { audit_ = std::make_unique<EnergyAudit>(std::move(audit)); }
+  void animate(Visual visual, fs::path const& file) {
+    visual_ = std::make_unique<Visual>(std::move(visual));
+    writer_ = std::make_unique<VtkWriter>(file, *visual_);
+  }
+
+  void see(State const& x, Outcome& o) {
+    o.deepest = probe_->deepest;
+    o.depth = probe_->deepest_depth;
+    o.deepest_time = probe_->deepest_time;
+    if (o.trouble.empty()) o.trouble = m113::track_trouble(*vehicle_, x);
+    if (audit_) {
+      audit_->record(x);
+      o.drives = audit_->work_of_drives();
+      o.gravity = audit_->work_of_gravity();
+      o.kinetic = audit_->kinetic();
+      o.stored = audit_->stored();
+      o.dissipated = audit_->dissipated();
+      o.unaccounted = audit_->unaccounted();
+      o.relative = audit_->relative();
+    }
+    if (writer_ && x.t >= next_picture_ - 1e-9) {
+      writer_->write(x);
+      next_picture_ += every_;
+    }
+    progress_.update(x.t);
+    if (x.t >= until_) progress_.finish();
+  }
+
+ private:
+  std::shared_ptr<m113::TrackedVehicle const> vehicle_;
+  std::shared_ptr<Probe> probe_;
+  Progress progress_;
+  double until_, every_, next_picture_ = 0.0;
+  std::unique_ptr<EnergyAudit> audit_;
+  std::unique_ptr<Visual> visual_;
+  std::unique_ptr<VtkWriter> writer_;
+};
+
+// What `compare` takes of a case; the model is the vehicle's own, not a copy.
+template <class V, class M = typename V::ModelType>
+struct TrackScenario {
+  std::shared_ptr<V const> vehicle;
+  M const& model;
+  State start;
+  RunOptions options;
+  std::vector<Output<M>> outputs;
+  std::function<void(M const&, State const&)> observer;
 };
 
 // The case that `compare` runs: F says what links are and how they hang together.
@@ -165,78 +249,34 @@ struct TrackCase {
                                  .preload = s.preload,
                                  .cut = s.cut,
                                  .link_elements = s.elements};
-    options.start = m113::settled_track(options);
+    options.start = m113::settled_track(options, course(s.bumps));
     std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
     return {options.start, std::make_shared<VehicleOf<F> const>(f.policy, drives, options, course(s.bumps))};
   }
 
   template <class F>
   auto scenario(F const& f, Built<F> const& built) const {
-    using V = VehicleOf<F>;
-    using M = typename V::ModelType;
+    using M = typename VehicleOf<F>::ModelType;
     Settings const& s = settings;
     auto const vehicle = built.vehicle;
-    auto const probe = std::make_shared<Probe<V>>(vehicle, built.start);
-
+    auto const probe = std::make_shared<Probe>(vehicle, built.start);
     std::vector<Output<M>> outputs;
-    auto const add = [&](std::string name, double Probe<V>::* number) {
-      outputs.push_back({std::move(name), [probe, number](M const&, State const& x) { return (*probe)(x, number); }});
-    };
-    add("forward position [m]", &Probe<V>::forward);
-    add("sideways position [m]", &Probe<V>::sideways);
-    add("vertical displacement [m]", &Probe<V>::height);
-    add("pitch [rad]", &Probe<V>::pitch);
-    add("yaw [rad]", &Probe<V>::yaw);
-    add("forward velocity [m/s]", &Probe<V>::speed);
-    add("sprocket speed [rad/s]", &Probe<V>::sprocket);
-    add("sprocket torque [N m]", &Probe<V>::torque);
-    add("idler travel [m]", &Probe<V>::idler);
-    add("link x in chassis [m]", &Probe<V>::link_x);
-    add("link z in chassis [m]", &Probe<V>::link_z);
-    add("joint force x [N]", &Probe<V>::force_x);
-    add("joint force z [N]", &Probe<V>::force_z);
-    add("joint force [N]", &Probe<V>::force);
-    add("joint gap [m]", &Probe<V>::gap);
-    add("largest joint gap [m]", &Probe<V>::largest_gap);
-    add("deepest contact [m]", &Probe<V>::depth);
-    add("off the path [m]", &Probe<V>::off_path);
-    add("off the middle plane [m]", &Probe<V>::off_plane);
+    for (auto const& [name, number] : asked)
+      outputs.push_back({name, [probe, number = number](M const&, State const& x) { return (*probe)(x, number); }});
 
     outcomes->push_back({.name = f.name});
-    std::size_t const mine = outcomes->size() - 1;
-    auto const progress = std::make_shared<Progress>(0.0, s.until, f.name);
-    auto const audit = s.audit ? std::make_shared<EnergyAudit>(vehicle->model) : nullptr;
-    auto const visual = s.animate > 0.0 ? std::make_shared<Visual>(m113::vehicle_visual(*vehicle)) : nullptr;
-    auto const writer = visual ? std::make_shared<VtkWriter>(s.out / (f.name + ".pvd"), *visual) : nullptr;
-    auto const next_picture = std::make_shared<double>(0.0);
-    auto observer = [=, out = outcomes, keep = visual, &s](M const&, State const& x) {
-      Outcome& o = (*out)[mine];
-      o.deepest = probe->deepest;
-      o.depth = probe->deepest_depth;
-      o.deepest_time = probe->deepest_time;
-      if (o.trouble.empty()) o.trouble = m113::track_trouble(*vehicle, x);
-      if (audit) {
-        audit->record(x);
-        o.drives = audit->work_of_drives();
-        o.gravity = audit->work_of_gravity();
-        o.kinetic = audit->kinetic();
-        o.stored = audit->stored();
-        o.dissipated = audit->dissipated();
-        o.unaccounted = audit->unaccounted();
-        o.relative = audit->relative();
-      }
-      if (writer && x.t >= *next_picture - 1e-9) {
-        writer->write(x);
-        *next_picture += s.animate;
-      }
-      progress->update(x.t);
-      if (x.t >= s.until) progress->finish();
+    auto const watch = std::make_shared<Watch>(s, f.name, vehicle, probe);
+    if (s.audit) watch->audit(EnergyAudit(vehicle->model));
+    if (s.animate > 0.0) watch->animate(m113::vehicle_visual(*vehicle), s.out / (f.name + ".pvd"));
+    auto observer = [watch, out = outcomes, mine = outcomes->size() - 1](M const&, State const& x) {
+      watch->see(x, (*out)[mine]);
     };
     RunOptions run{.until = s.until, .step = s.step, .halvings = 6};
     if (s.watched)
       for (m113::Side const side : {m113::Side::left, m113::Side::right})
         run.events.push_back(m113::track_lost(*vehicle, side));
-    return Scenario<M>{vehicle->model, vehicle->model.reference_state(), run, std::move(outputs), observer};
+    return TrackScenario<VehicleOf<F>>{vehicle, vehicle->model,     vehicle->model.reference_state(),
+                                       run,     std::move(outputs), observer};
   }
 };
 

@@ -55,6 +55,25 @@ TEST(M113Vehicle, CountsAsTheThesisDoes) {
   EXPECT_EQ(cable.degrees_of_freedom, 1054);
 }
 
+TEST(M113Vehicle, AnswersOfItsTracksAreThoseOfItsModel) {
+  Car const vehicle = car(quick(8.0, 8.0));
+  State x = vehicle.model.reference_state();
+  run_vehicle(vehicle.model, x, 0.02, 1e-3, [](State const&, auto&) {});
+  EXPECT_EQ(vehicle.hull(x).r, hull_of(vehicle, x).r);
+  for (auto const s : {m113::Side::left, m113::Side::right}) {
+    auto const& side = vehicle.side(s);
+    m113::Track const& track = vehicle.track(s);
+    EXPECT_EQ(track.sprocket(x).w, frame(vehicle.model, x, side.sprocket[0].at(Vec3(0, 0, 0))).w);
+    EXPECT_EQ(track.tensioner(x).r, position(vehicle.model, x, side.tensioner[0].at(Vec3(0, 0, 0))));
+    ASSERT_EQ(track.front.size(), std::size_t(m113::links));
+    for (std::size_t i = 0; i < track.front.size(); ++i) {
+      EXPECT_EQ(track.front[i](x).r, position(vehicle.model, x, side.front[i]));
+      EXPECT_EQ(track.middle[i](x).r, position(vehicle.model, x, side.middle[i]));
+      EXPECT_EQ(track.rear[i](x).r, position(vehicle.model, x, side.rear[i]));
+    }
+  }
+}
+
 // Thesis Figure 3.7: 7 cm with suspension. 0.64 cm without; M113.md §9 finds 0.86 to 0.92 cm of these data.
 TEST(M113Vehicle, DropsOntoItsSpringsByTheThesisSevenCentimetres) {
   double const sprung = dip_of({}, 0.3), bare = dip_of({.suspension = false}, 0.15);

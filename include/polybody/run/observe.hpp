@@ -11,13 +11,12 @@ namespace polybody {
 
 namespace detail {
 
-/// The rows of a joint. \throws InvalidInput for a handle of another model.
-template <class J>
-RowBlock<double> const& rows_of(System const& system, ElementHandle<J> const& joint) {
-  Index const owner = index_of_joint(system.layout(), joint);
+/// The rows of a joint, by its place in the layout.
+template <class = void>  // compiled where it is used
+RowBlock<double> const& rows_of(System const& system, Index joint) {
   for (RowBlock<double> const& block : system.data().rows)
-    if (block.source != RowSource::body && block.owner == owner) return block;
-  throw InvalidInput("\"" + joint.name + "\" has no rows.");
+    if (block.source != RowSource::body && block.owner == joint) return block;
+  throw InvalidInput("\"" + system.layout().joints[std::size_t(joint)].name + "\" has no rows.");
 }
 
 /// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its
@@ -45,7 +44,7 @@ Vec6 linear_wrench(LinearRows const& rows, State const& x) {
 template <class J>
   requires(!LinearInCoordinates<typename J::PolicyType>)
 Vec<double, J::rows> gap(System const& system, ElementHandle<J> const& joint) {
-  return Vec<double, J::rows>(detail::rows_of(system, joint).g);
+  return Vec<double, J::rows>(detail::rows_of(system, index_of_joint(system.layout(), joint)).g);
 }
 /// Violation of a joint's rows in state x. \throws InvalidInput as above.
 template <class M, class J>
@@ -59,16 +58,15 @@ Vec<double, J::rows> gap(M const& model, State const& x, ElementHandle<J> const&
 /// Axes for the components of a reaction.
 enum class ReactionAxes { world, joint };
 
-/// Force and moment that the joint exerts on its second body, about the joint point there:
+/// Force and moment that a joint exerts on its second body, about the joint point there:
 /// −Gbᵀλ [thesis Eq. 3.3 and the rule of equipollent forces]; "joint" are the axes of the second marker. `system` must
-/// have been evaluated at x. \throws InvalidInput for a handle of another model.
-template <class J>
-Wrench<double> reaction(System const& system, State const& x, ElementHandle<J> const& joint,
-                        ReactionAxes axes = ReactionAxes::world) {
+/// have been evaluated at x. \param joint its place in the layout, as `index_of_joint` finds it
+template <class = void>  // compiled where it is used
+Wrench<double> reaction_of(System const& system, State const& x, Index joint, ReactionAxes axes = ReactionAxes::world) {
+  JointPlace const& place = system.layout().joints[std::size_t(joint)];
   RowBlock<double> const& block = detail::rows_of(system, joint);
-  JointPlace const& place = system.layout().joints[std::size_t(block.owner)];
   Vec6 w;
-  if constexpr (LinearInCoordinates<typename J::PolicyType>)
+  if (block.source == RowSource::linear)
     w = detail::linear_wrench(*place.linear, x);
   else
     wrench_at(block, block.b, block.multiplier(x.lambda), w.data());
@@ -79,6 +77,12 @@ Wrench<double> reaction(System const& system, State const& x, ElementHandle<J> c
     wrench = {axes_of_b.transpose() * wrench.f, axes_of_b.transpose() * wrench.m};
   }
   return wrench;
+}
+/// The same of the joint that a handle names. \throws InvalidInput for a handle of another model.
+template <class J>
+Wrench<double> reaction(System const& system, State const& x, ElementHandle<J> const& joint,
+                        ReactionAxes axes = ReactionAxes::world) {
+  return reaction_of(system, x, index_of_joint(system.layout(), joint), axes);
 }
 /// The same in state x of a model. \throws InvalidInput as above.
 template <class M, class J>

@@ -2,6 +2,8 @@
 /// \file
 /// Questions about a single body in a state: frames of its points, its coordinates and speeds.
 
+#include <functional>
+
 #include <polybody/system/places.hpp>
 
 namespace polybody {
@@ -21,6 +23,15 @@ template <class M>
 Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) {
   model.require_own(marker.model, "frame");
   return {.r = marker.point.origin, .A = marker.point.axes};
+}
+
+/// The frame of a material point as a question to any state, without the types of the body and its model.
+using FrameIn = std::function<Frame<double>(State const&)>;
+
+/// The question keeps the body, and serves the states of the model that made the handle. \param marker on that body
+template <class B>
+FrameIn frame_in(BodyHandle<B> const& body, Marker<B> const& marker) {
+  return [body, point = marker.point](State const& x) { return frame(body_in_state(body, x), point); };
 }
 
 /// Position of a material point [m].

@@ -73,6 +73,11 @@ BodyInState<B> body_in_state(BodyPlace const& place, State const& x) {
   return {*static_cast<B const*>(place.body), detail::body_part(x.q, place.q0, place.coordinates),
           detail::body_part(x.v, place.v0, place.speeds)};
 }
+/// \param x a state of the model that made the handle
+template <class B>
+BodyInState<B> body_in_state(BodyHandle<B> const& handle, State const& x) {
+  return detail::entry_in_state<B>((*handle.bodies)[std::size_t(handle.index)], x);
+}
 /// \throws InvalidInput for a handle of another model.
 template <class M, class B>
 BodyInState<B> body_in_state(M const& model, State const& x, BodyHandle<B> const& handle) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <polybody/forces/axial_spring.hpp>
-#include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/policies/bushing.hpp>
@@ -17,11 +16,11 @@
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>
 #include <polybody/system/model.hpp>
-#include <polybody/vehicle/link_on_ground.hpp>
-#include <polybody/vehicle/link_on_roller.hpp>
-#include <polybody/vehicle/pin_on_sprocket.hpp>
+#include <polybody/vehicle/hull.hpp>
+#include <polybody/vehicle/track_contacts.hpp>
 #include <polybody/vehicle/track_links.hpp>
 #include <polybody/vehicle/track_path.hpp>
+#include <polybody/vehicle/tracked_vehicle.hpp>
 
 namespace polybody::m113 {
 
@@ -30,16 +29,6 @@ struct TrackStart {
   double idler_x = idler_reference_x;                        ///< [m]
   std::vector<TrackLink> links = wrap_track(track()).links;  ///< 64
 };
-
-/// The teeth of the sprockets.
-inline SprocketProfile sprocket_profile() {
-  return {.teeth = teeth,
-          .pitch = pitch,
-          .pin_radius = pin_radius,
-          .valley_radius = valley_radius,
-          .flank = flank,
-          .tip_radius = tip_radius};
-}
 
 /// Pins as penalties of `stiffness` [N/m]: rows that are direction cosines get that of forces at the ends of a link's
 /// width.
@@ -75,11 +64,63 @@ struct VehicleOptions {
   bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
 };
 
+/// \throws InvalidInput.
+template <class = void>  // compiled where it is used
+void check(VehicleOptions const& options) {
+  if (options.start.links.size() != std::size_t(links))
+    throw InvalidInput("M113: the start needs the places of " + std::to_string(links) + " links, but has " +
+                       std::to_string(options.start.links.size()) + ".");
+  if (options.cut < 0 || options.cut >= links)
+    throw InvalidInput("M113: the pin that closes a track is one of 0 … 63, but " + std::to_string(options.cut) +
+                       " is asked for.");
+  if (options.link_elements < 0)
+    throw InvalidInput("M113: a flexible link has one element or more, but " + std::to_string(options.link_elements) +
+                       " are asked for.");
+}
+
+/// The bodies that carry one track.
+template <class Base>
+struct Carriers {
+  std::vector<BodyHandle<Base>> wheels = {}, arms = {}, sprocket = {}, idler = {},
+                                tensioner = {};  ///< the last three: one each
+
+  /// \param bodies the chassis and those of `hull`
+  void set(HullSide const& hull, std::vector<BodyHandle<Base>> const& bodies, Track& track) {
+    sprocket = {bodies[hull.sprocket]};
+    tensioner = {bodies[hull.tensioner]};
+    idler = {bodies[hull.idler]};
+    for (int i = 0; i < m113::wheels; ++i) {
+      wheels.push_back(bodies[hull.wheel(i)]);
+      arms.push_back(bodies[hull.arm(i)]);
+    }
+    track.sprocket = frame_in(sprocket[0], sprocket[0].at(Vec3(0, 0, 0)));
+    track.tensioner = frame_in(tensioner[0], tensioner[0].at(Vec3(0, 0, 0)));
+  }
+};
+
+/// The links of one track.
+template <class Link>
+struct LinkParts {
+  std::vector<BodyHandle<Link>> links = {};
+  std::vector<Marker<Link>> front = {}, middle = {}, rear = {};  ///< of each link: front pin, middle, rear pin
+
+  void add(BodyHandle<Link> const& link, Track& track) {
+    using L = LinkOf<Link>;
+    links.push_back(link);
+    front.push_back(L::front(link));
+    middle.push_back(L::middle(link));
+    rear.push_back(L::rear(link));
+    track.front.push_back(frame_in(link, front.back()));
+    track.middle.push_back(frame_in(link, middle.back()));
+    track.rear.push_back(frame_in(link, rear.back()));
+  }
+};
+
 /// Chassis, and on each side sprocket, idler, tensioner, five wheels on arms and 64 links; `Link` is a link's body,
 /// `PinPolicy` how links hang together. Where pins are rows or joint coordinates, 63 of a track are, and the last one
 /// is as `Closure` says; where they are forces or linear rows, all 64 are alike.
 template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = FlatGround, TimeLaw Drive = Ramp>
-class Vehicle {
+class Vehicle : public TrackedVehicle {
  public:
   using LinkType = Link;
   static constexpr Observes observed = Link::observes;
@@ -93,24 +134,17 @@ class Vehicle {
   using Pin = Joint<Revolute, PinPolicy>;
   using SpringPin = std::conditional_t<closes_alike, Pin, Joint<Spherical, Penalty>>;
   using PlanePin = std::conditional_t<closes_alike, Pin, Joint<PointOnLine, Constraint>>;
-  using OnRoller = Contact<LinkOnRoller<observed>>;
-  using OnRims = Contact<HornOnRims<observed>>;
-  using OnSprocket = Contact<PinOnSprocket<observed>>;
-  using OnGround = Contact<LinkOnGround<Ground, observed>>;
-  using Contacts = ContactGroup<OnRoller, OnRims, OnSprocket, OnGround>;
+  using OfLinks = LinkContacts<observed>;
+  using Contacts = ContactGroup<typename OfLinks::OnRoller, typename OfLinks::OnRims, typename OfLinks::OnSprocket,
+                                typename OfLinks::template OnGround<Ground>>;
   using ModelType =
       Model<EachOnce<Bodies, Base, Link>, EachOnce<Joints, Hinge, Slide, Fixed, Driven, Pin, SpringPin, PlanePin>,
             Forces<SpringDamper, AxialSpring, Contacts>>;
   using Handle = BodyHandle<Base>;
-  using LinkMarker = decltype(LinkOf<Link>::middle(std::declval<BodyHandle<Link> const&>()));
 
   /// One side. Pin i is in front of link i; `pins[i]` is at pin i but for the one where the loop is cut.
-  struct SideParts {
-    std::vector<BodyHandle<Link>> links = {};
-    std::vector<LinkMarker> front = {}, middle = {}, rear = {};  ///< of each link: front pin, middle, rear pin
+  struct SideParts : Carriers<Base>, LinkParts<Link> {
     std::vector<ElementHandle<Pin>> pins = {};
-    std::vector<Handle> wheels = {}, arms = {}, sprocket = {}, idler = {},
-                        tensioner = {};                  ///< the last three: one each
     std::vector<ElementHandle<Driven>> drive = {};       ///< one
     std::vector<ElementHandle<Contacts>> contacts = {};  ///< one
   };
@@ -124,20 +158,13 @@ class Vehicle {
   /// \throws InvalidInput.
   Vehicle(PinPolicy const& pin, std::array<Drive, 2> const& drives, VehicleOptions const& options = {},
           Ground const& ground = {}) {
-    if (options.start.links.size() != std::size_t(links))
-      throw InvalidInput("M113: the start needs the places of " + std::to_string(links) + " links, but has " +
-                         std::to_string(options.start.links.size()) + ".");
-    if (options.cut < 0 || options.cut >= links)
-      throw InvalidInput("M113: the pin that closes a track is one of 0 … 63, but " + std::to_string(options.cut) +
-                         " is asked for.");
-    if (options.link_elements < 0)
-      throw InvalidInput("M113: a flexible link has one element or more, but " + std::to_string(options.link_elements) +
-                         " are asked for.");
+    check(options);
     if (options.ground_body) {
       auto const body = model.add(solid({1.0, {1, 1, 1}}, Vec3(0, 0, 0)), "ground body");
       model.connect(Fixed{}, model.ground().at({0, 0, 0}), body.at(Vec3(0, 0, 0)), "ground weld");
     }
     chassis.push_back(model.add(solid(options.masses.chassis, m113::chassis), "chassis"));
+    hull = frame_in(chassis[0], chassis[0].at(Vec3(0, 0, 0)));
     if (options.held)
       model.connect(Fixed{}, model.ground().at(Vec3(m113::chassis)), chassis[0].at(Vec3(0, 0, 0)), "hold");
     add_side(Side::left, pin, drives[0], options, ground);
@@ -148,70 +175,54 @@ class Vehicle {
   static Base solid(Solid const& s, Vec3 const& centre, double about_y = 0.0) {
     return Base(s.mass, detail::principal(s.inertia), Placement::at(centre, Vec3(0, about_y, 0)));
   }
-  /// The marker at the world's point `place` of a body whose axes are parallel to the world's.
-  static auto at(Handle const& body, Vec3 const& centre, Vec3 const& place) { return body.at(Vec3(place - centre)); }
 
   void add_side(Side s, PinPolicy const& pin, Drive const& drive, VehicleOptions const& options, Ground const& ground) {
     SideParts& parts = sides[s == Side::left ? 0 : 1];
-    std::string const name = s == Side::left ? "left " : "right ";
-    Handle const& hull = chassis[0];
-    Vec3 const centre = m113::chassis, y = Vec3::UnitY();
-    Hinge const about_y{Revolute{.axis = y}, {}};
+    HullSide const of_side = hull_side(s, options.masses, options.start.idler_x, options.suspension && !options.held);
+    std::vector<Handle> bodies{chassis[0]};
+    for (HullBody const& b : of_side.bodies) bodies.push_back(model.add(solid(b.solid, b.centre, b.about_y), b.name));
+    parts.set(of_side, bodies, tracks[s == Side::left ? 0 : 1]);
+    for (HullJoint const& j : of_side.joints)
+      join(j, bodies[j.a].at(j.at_a), bodies[j.b].at(j.at_b), drive, options, parts);
+    add_links(s, of_side.name, pin, options, parts);
+    add_contacts(s, of_side.name, options, ground);
+  }
 
-    Vec3 const axle = m113::sprocket(s);
-    Handle const sprocket = model.add(solid(options.masses.sprocket, axle), name + "sprocket");
-    parts.sprocket.push_back(sprocket);
-    model.connect(about_y, at(hull, centre, axle), sprocket.at(Vec3(0, 0, 0)), name + "sprocket axle");
-    parts.drive.push_back(model.connect(Driven{{.law = {drive}, .axis = y}, {}}, at(hull, centre, axle),
-                                        sprocket.at(Vec3(0, 0, 0)), name + "drive"));
-
-    Vec3 const idler_axle = m113::idler(s, options.start.idler_x);
-    Handle const slider = model.add(solid(options.masses.tensioner, idler_axle), name + "tensioner");
-    Handle const idler = model.add(solid(options.masses.idler, idler_axle), name + "idler");
-    parts.tensioner.push_back(slider);
-    parts.idler.push_back(idler);
-    model.connect(Slide{Prismatic{.axis = Vec3::UnitX()}, {}}, at(hull, centre, idler_axle), slider.at(Vec3(0, 0, 0)),
-                  name + "tensioner guide");
-    model.connect(about_y, slider.at(Vec3(0, 0, 0)), idler.at(Vec3(0, 0, 0)), name + "idler axle");
-    model.apply(
-        AxialSpring{
-            .stiffness = m113::tensioner.stiffness, .damping = m113::tensioner.damping, .preload = options.preload},
-        at(hull, centre, m113::idler(s, idler_reference_x)), slider.at(Vec3(0, 0, 0)), name + "tensioner spring");
-
-    for (int i = 0; i < m113::wheels; ++i) {
-      std::string const n = name + "wheel " + std::to_string(i + 1);
-      Vec3 const hub = m113::wheel(i, s), pivot = m113::arm_pivot(i, s), lower = m113::arm_point(i, s, shock_on_arm);
-      Vec3 const middle = m113::arm(i, s), upper = lower + Vec3(0, 0, shock.length);
-      Handle const wheel = model.add(solid(options.masses.wheel, hub), n);
-      Handle const arm = model.add(solid(options.masses.arm, middle, arm_angle), n + " arm");
-      Mat3 const into = exp_so3<double>(Vec3(0, -arm_angle, 0));
-      auto const on_arm = [&](Vec3 const& place) { return arm.at(Vec3(into * (place - middle))); };
-      model.connect(about_y, on_arm(hub), wheel.at(Vec3(0, 0, 0)), n + " axle");
-      if (options.suspension && !options.held) {
-        model.connect(about_y, at(hull, centre, pivot), on_arm(pivot), n + " pivot");
+  void join(HullJoint const& j, Marker<Base> const& a, Marker<Base> const& b, Drive const& drive,
+            VehicleOptions const& options, SideParts& parts) {
+    Vec3 const y = Vec3::UnitY();
+    switch (j.kind) {
+      case HullJoint::Kind::axle:
+        model.connect(Hinge{Revolute{.axis = y}, {}}, a, b, j.name);
+        break;
+      case HullJoint::Kind::mount:
+        model.connect(Fixed{}, a, b, j.name);
+        break;
+      case HullJoint::Kind::guide:
+        model.connect(Slide{Prismatic{.axis = Vec3::UnitX()}, {}}, a, b, j.name);
+        break;
+      case HullJoint::Kind::drive:
+        parts.drive.push_back(model.connect(Driven{{.law = {drive}, .axis = y}, {}}, a, b, j.name));
+        break;
+      case HullJoint::Kind::tensioner:
+        model.apply(
+            AxialSpring{
+                .stiffness = m113::tensioner.stiffness, .damping = m113::tensioner.damping, .preload = options.preload},
+            a, b, j.name);
+        break;
+      case HullJoint::Kind::shock:
         model.apply(SpringDamper{.stiffness = shock.stiffness, .damping = shock.damping, .free_length = shock.length},
-                    at(hull, centre, upper), on_arm(lower), n + " shock");
-      } else {
-        model.connect(Fixed{}, at(hull, centre, pivot), on_arm(pivot), n + " mount");
-      }
-      parts.wheels.push_back(wheel);
-      parts.arms.push_back(arm);
+                    a, b, j.name);
+        break;
     }
-    add_links(s, name, pin, options, parts);
-    add_contacts(name, options, ground, parts);
   }
 
   void add_links(Side s, std::string const& name, PinPolicy const& policy, VehicleOptions const& options,
                  SideParts& parts) {
-    using L = LinkOf<Link>;
     for (int i = 0; i < links; ++i) {
-      parts.links.push_back(
-          model.add(L::make(options.masses.link, options.start.links[std::size_t(i)].placement(sign(s) * track_y),
-                            options.link_elements),
-                    name + "link " + std::to_string(i)));
-      parts.front.push_back(L::front(parts.links.back()));
-      parts.middle.push_back(L::middle(parts.links.back()));
-      parts.rear.push_back(L::rear(parts.links.back()));
+      Placement const place = options.start.links[std::size_t(i)].placement(sign(s) * track_y);
+      Link const link = LinkOf<Link>::make(options.masses.link, place, options.link_elements);
+      parts.add(model.add(link, name + "link " + std::to_string(i)), tracks[s == Side::left ? 0 : 1]);
     }
     parts.pins.resize(std::size_t(links));
     for (int k = 1; k <= links; ++k) {
@@ -229,40 +240,23 @@ class Vehicle {
     }
   }
 
-  void add_contacts(std::string const& name, VehicleOptions const& options, Ground const& ground, SideParts& parts) {
-    bool const points = observed != Observes::frame;  // a cable's contacts lie in its middle plane: one for each two
-    auto const law = [&]<ContactGeometry G>(G const& geometry, ContactNumbers const& c) {
-      double const share = points ? 2.0 : 1.0;
-      return Contact<G>{geometry,
-                        {.stiffness = share * c.stiffness, .damping = share * c.damping, .onset = onset},
-                        {.coefficient = options.friction ? c.friction : 0.0, .slip_speed = slip_speed}};
-    };
-    std::vector<double> const rims = points ? std::vector{0.0} : std::vector{-rim_y, rim_y};
-    std::vector<double> const rings = points ? std::vector{0.0} : std::vector{-tooth_y, tooth_y};
-    std::vector<Vec3> corners;
-    for (Triple const& p : m113::pad)
-      if (!points || p.y > 0.0) corners.push_back(Vec3(p.x, points ? 0.0 : p.y, p.z));
+  void add_contacts(Side s, std::string const& name, VehicleOptions const& options, Ground const& ground) {
+    SideParts& parts = sides[s == Side::left ? 0 : 1];
+    OfLinks const of_links{options.friction};
     auto const group = model.apply(Contacts{}, parts.middle, name + "track");
     parts.contacts.push_back(group);
-
-    auto const roller = [&](Handle const& body, double radius, std::string const& n) {
-      auto const axle = body.at(Vec3(0, 0, 0));
-      LinkOnRoller<observed> const face{
-          .pitch = pitch, .half_thickness = half_thickness, .half_width = half_width, .radius = radius, .rims = rims};
-      model.pair_with(group, law(face, on_wheel), axle, n);
-      Vec3 const tip = Vec3(horn) + Vec3(0, 0, 0.5 * horn_size.z);
-      model.pair_with(group, law(HornOnRims<observed>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel), axle,
-                      n + " (horn)");
+    tracks[s == Side::left ? 0 : 1].contacts = [group](System const& system, TouchingPointVisit const& visit) {
+      for_each_contact(system, group, visit);
     };
-    for (int i = 0; i < m113::wheels; ++i)
-      roller(parts.wheels[std::size_t(i)], wheel_radius, name + "wheel " + std::to_string(i + 1));
-    roller(parts.idler[0], idler_radius, name + "idler");
-    model.pair_with(group,
-                    law(PinOnSprocket<observed>{.profile = sprocket_profile(), .valley = first_valley, .rings = rings},
-                        on_sprocket),
-                    parts.sprocket[0].at(Vec3(0, 0, 0)), name + "sprocket");
-    LinkOnGround<Ground, observed> const pads{.terrain = ground, .pad = corners};
-    model.pair_with(group, law(pads, on_ground), model.ground().at({0, 0, 0}), "ground");
+    auto const roller = [&](Handle const& body, double radius) {
+      auto const axle = body.at(Vec3(0, 0, 0));
+      model.pair_with(group, of_links.on_roller(radius), axle, body.name);
+      model.pair_with(group, of_links.on_rims(radius), axle, body.name + " (horn)");
+    };
+    for (Handle const& wheel : parts.wheels) roller(wheel, wheel_radius);
+    roller(parts.idler[0], idler_radius);
+    model.pair_with(group, of_links.on_teeth(), parts.sprocket[0].at(Vec3(0, 0, 0)), parts.sprocket[0].name);
+    model.pair_with(group, of_links.on_terrain(ground), model.ground().at({0, 0, 0}), "ground");
   }
 };
 

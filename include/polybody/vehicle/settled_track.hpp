@@ -13,14 +13,16 @@ namespace polybody::m113 {
 /// Rest position of tracks of rigid links on the held vehicle, whose wheels just touch the ground. `wrap_track` lays
 /// straight runs and knows no ground; a long run sags. The rest position is found by dynamic relaxation with kinetic
 /// damping, without friction: the track is released and stopped at each maximum of its kinetic energy, until it rests
-/// [Day 1965; Barnes 1999].
+/// [Day 1965; Barnes 1999]. \param ground level under the vehicle; a program that drives on the same type of ground
+/// compiles one vehicle for both
 /// \throws InvalidInput, NewtonStalled; Error where it does not come to rest.
-inline TrackStart settled_track(VehicleOptions options = {}) {
+template <Terrain Ground = FlatGround>
+TrackStart settled_track(VehicleOptions options = {}, Ground const& ground = {}) {
   options.held = true;
   options.friction = false;
   options.closure = Closure::in_plane;
   options.start = {};
-  Vehicle<> const bench(Constraint{}, {drive(0.0), drive(0.0)}, options);
+  Vehicle<Rigid<>, Constraint, Ground> const bench(Constraint{}, {drive(0.0), drive(0.0)}, options, ground);
   State x = bench.model.reference_state();
   auto const& side = bench.side(Side::left);
   double fastest = 0.0;  // of all links since the track was let go [m/s]

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include <polybody/run/contacts.hpp>
-#include <polybody/run/observe.hpp>
 #include <polybody/run/run_options.hpp>
 #include <polybody/vehicle/m113_vehicle.hpp>
 
@@ -31,15 +29,15 @@ struct TrackFault {
 
 /// Pins count that are nearer to the axle than the tips of the teeth; each of them has its valley, and links follow one
 /// another by one.
-template <class V>
-Seating seating(V const& vehicle, State const& x, Side side) {
-  auto const& parts = vehicle.side(side);
-  Frame<double> const sprocket = frame(vehicle.model, x, parts.sprocket[0].at(Vec3(0, 0, 0)));
+template <class = void>  // compiled where it is used
+Seating seating(TrackedVehicle const& vehicle, State const& x, Side side) {
+  Track const& track = vehicle.track(side);
+  Frame<double> const sprocket = track.sprocket(x);
   Seating found;
   long before = 0;
   bool follows = false;
   auto const pin_of = [&](int i) -> Vec3 {
-    return sprocket.A.transpose() * (position(vehicle.model, x, parts.front[std::size_t(i % links)]) - sprocket.r);
+    return sprocket.A.transpose() * (track.front[std::size_t(i % links)](x).r - sprocket.r);
   };
   auto const within = [](Vec3 const& p) { return std::hypot(p.x(), p.z()) < tip_radius; };
   int first = 0;
@@ -60,8 +58,8 @@ Seating seating(V const& vehicle, State const& x, Side side) {
 }
 
 /// For `RunOptions::events`: zero where a track jumps a tooth or leaves its sprocket. The vehicle must outlive the run.
-template <class V>
-Event track_lost(V const& vehicle, Side side) {
+template <class = void>
+Event track_lost(TrackedVehicle const& vehicle, Side side) {
   return {.name = std::string(side == Side::left ? "the left" : "the right") + " track leaves its sprocket",
           .value = [&vehicle, side](State const& x) { return seating(vehicle, x, side).holds() ? 1.0 : -1.0; },
           .stops = true,
@@ -69,8 +67,8 @@ Event track_lost(V const& vehicle, Side side) {
 }
 
 /// In a sentence: time, side and link of a track that is not on its sprocket; empty if both are.
-template <class V>
-std::string track_trouble(V const& vehicle, State const& x) {
+template <class = void>
+std::string track_trouble(TrackedVehicle const& vehicle, State const& x) {
   std::string text;
   for (Side const side : {Side::left, Side::right}) {
     Seating const s = seating(vehicle, x, side);
@@ -85,23 +83,24 @@ std::string track_trouble(V const& vehicle, State const& x) {
 }
 
 /// The faults of one side; `system` must have been evaluated at x. \param start where the links were placed
-template <class V>
-TrackFault track_fault(V const& vehicle, System const& system, State const& x, Side side, TrackStart const& start) {
-  auto const& parts = vehicle.side(side);
+template <class = void>
+TrackFault track_fault(TrackedVehicle const& vehicle, System const& system, State const& x, Side side,
+                       TrackStart const& start) {
+  Track const& track = vehicle.track(side);
   TrackFault worst;
-  for_each_contact(system, parts.contacts[0], [&](TouchingPoint const& p) {
+  track.contacts(system, [&](TouchingPoint const& p) {
     if (p.depth <= worst.depth) return;
     worst.depth = p.depth;
     worst.link = p.body;
     worst.against = *p.against;
   });
-  Frame<double> const hull = frame(vehicle.model, x, vehicle.chassis[0].at(Vec3(0, 0, 0)));
+  Frame<double> const hull = vehicle.hull(x);
   std::vector<Vec2> path;
   for (TrackLink const& link : start.links)
     path.push_back(link.centre + 0.5 * pitch * Vec2(std::cos(link.angle), -std::sin(link.angle)));
-  for (std::size_t k = 0; k < parts.links.size(); ++k) {
-    Vec3 const middle = hull.A.transpose() * (position(vehicle.model, x, parts.middle[k]) - hull.r);
-    Vec3 const pin = hull.A.transpose() * (position(vehicle.model, x, parts.front[k]) - hull.r);
+  for (std::size_t k = 0; k < track.front.size(); ++k) {
+    Vec3 const middle = hull.A.transpose() * (track.middle[k](x).r - hull.r);
+    Vec3 const pin = hull.A.transpose() * (track.front[k](x).r - hull.r);
     worst.sideways = std::max(worst.sideways, std::abs(middle.y() - sign(side) * track_y));
     Vec2 const p(pin.x() + m113::chassis.x, pin.z() + m113::chassis.z);
     double nearest = std::numeric_limits<double>::infinity();

@@ -35,41 +35,55 @@ inline Surface toothed_wheel(double width) {
     }
   return s;
 }
+
+template <class Base>
+void attach_hull(Visual& visual, BodyHandle<Base> const& chassis) {
+  visual.attach(chassis.at(Vec3(0.1, 0, 0.35)), box({4.6, 1.5, 0.9}), "hull");
+  visual.attach(chassis.at(Vec3(0.1, 0, 0.55)), box({4.6, 2.54, 0.5}), "sponsons");
+}
+
+/// A wheel or the idler.
+template <class Base>
+void attach_drum(Visual& visual, BodyHandle<Base> const& body, double radius) {
+  Vec3 const y = Vec3::UnitY();
+  for (double const rim : {-rim_y, rim_y})
+    visual.attach(body.at(Vec3(0, rim, 0)), cylinder(radius, rim_width, y, 32), body.name);
+  visual.attach(body.at(Vec3(0, 0, 0)), cylinder(0.3 * radius, 2.0 * rim_y, y), body.name + " hub");
+  visual.attach(body.at(Vec3(0.6 * radius, rim_y + 0.5 * rim_width, 0)), cylinder(0.1 * radius, 0.02, y),
+                body.name + " bolt");
+}
+
+template <class Base>
+void attach_sprocket(Visual& visual, BodyHandle<Base> const& sprocket) {
+  for (double const ring : {-tooth_y, tooth_y})
+    visual.attach(sprocket.at(Vec3(0, ring, 0)), toothed_wheel(0.03), sprocket.name);
+  visual.attach(sprocket.at(Vec3(0, 0, 0)), cylinder(0.12, 2.0 * tooth_y, Vec3::UnitY()), sprocket.name + " hub");
+}
+
+template <class Link>
+void attach_link(Visual& visual, BodyHandle<Link> const& link) {
+  if constexpr (requires { link.at(Vec3(horn)); }) {
+    visual.attach(LinkOf<Link>::middle(link), box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}), link.name);
+    visual.attach(link.at(Vec3(horn)), box(horn_size), link.name + " horn");
+  } else {
+    visual.sweep(link, link_bar(), 4);
+    if constexpr (Link::observes == Observes::frame)
+      visual.attach(link.at(0.5 * pitch + horn.x, 0.0, horn.z), box(horn_size), link.name + " horn");
+  }
+}
 }  // namespace detail
 
 /// Hull, wheels with their rims, arms, sprockets with their teeth, and shoes with their horns; cables are swept.
 template <class V>
 Visual vehicle_visual(V const& vehicle) {
   Visual visual(vehicle.model);
-  Vec3 const y = Vec3::UnitY();
-  visual.attach(vehicle.chassis[0].at(Vec3(0.1, 0, 0.35)), box({4.6, 1.5, 0.9}), "hull");
-  visual.attach(vehicle.chassis[0].at(Vec3(0.1, 0, 0.55)), box({4.6, 2.54, 0.5}), "sponsons");
+  detail::attach_hull(visual, vehicle.chassis[0]);
   for (auto const& side : vehicle.sides) {
-    auto const drum = [&](auto const& body, double radius, std::string const& name) {
-      for (double const rim : {-rim_y, rim_y})
-        visual.attach(body.at(Vec3(0, rim, 0)), cylinder(radius, rim_width, y, 32), name);
-      visual.attach(body.at(Vec3(0, 0, 0)), cylinder(0.3 * radius, 2.0 * rim_y, y), name + " hub");
-      visual.attach(body.at(Vec3(0.6 * radius, rim_y + 0.5 * rim_width, 0)), cylinder(0.1 * radius, 0.02, y),
-                    name + " bolt");
-    };
-    for (auto const& wheel : side.wheels) drum(wheel, wheel_radius, wheel.name);
-    drum(side.idler[0], idler_radius, side.idler[0].name);
+    for (auto const& wheel : side.wheels) detail::attach_drum(visual, wheel, wheel_radius);
+    detail::attach_drum(visual, side.idler[0], idler_radius);
     for (auto const& arm : side.arms) visual.attach(arm.at(Vec3(0, 0, 0)), box({arm_length, 0.08, 0.08}), arm.name);
-    for (double const ring : {-tooth_y, tooth_y})
-      visual.attach(side.sprocket[0].at(Vec3(0, ring, 0)), detail::toothed_wheel(0.03), side.sprocket[0].name);
-    visual.attach(side.sprocket[0].at(Vec3(0, 0, 0)), cylinder(0.12, 2.0 * tooth_y, y), side.sprocket[0].name + " hub");
-    for (auto const& link : side.links) {
-      using Link = typename V::LinkType;
-      if constexpr (requires { link.at(Vec3(horn)); }) {
-        visual.attach(LinkOf<Link>::middle(link), box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}),
-                      link.name);
-        visual.attach(link.at(Vec3(horn)), box(horn_size), link.name + " horn");
-      } else {
-        visual.sweep(link, link_bar(), 4);
-        if constexpr (Link::observes == Observes::frame)
-          visual.attach(link.at(0.5 * pitch + horn.x, 0.0, horn.z), box(horn_size), link.name + " horn");
-      }
-    }
+    detail::attach_sprocket(visual, side.sprocket[0]);
+    for (auto const& link : side.links) detail::attach_link(visual, link);
   }
   return visual;
 }

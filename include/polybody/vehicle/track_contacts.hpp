@@ -1,0 +1,71 @@
+#pragma once
+/// \file
+/// What the links of the vehicle of m113.hpp touch. Not in polybody.hpp: of use to vehicles only.
+
+#include <polybody/forces/contact_group.hpp>
+#include <polybody/vehicle/link_on_ground.hpp>
+#include <polybody/vehicle/link_on_roller.hpp>
+#include <polybody/vehicle/m113.hpp>
+#include <polybody/vehicle/pin_on_sprocket.hpp>
+
+namespace polybody::m113 {
+
+/// The teeth of the sprockets.
+inline SprocketProfile sprocket_profile() {
+  return {.teeth = teeth,
+          .pitch = pitch,
+          .pin_radius = pin_radius,
+          .valley_radius = valley_radius,
+          .flank = flank,
+          .tip_radius = tip_radius};
+}
+
+/// The contacts of links whose middle observes so much: a cable's lie in its middle plane, one for each two.
+template <Observes observed>
+struct LinkContacts {
+  using OnRoller = Contact<LinkOnRoller<observed>>;
+  using OnRims = Contact<HornOnRims<observed>>;
+  using OnSprocket = Contact<PinOnSprocket<observed>>;
+  template <Terrain Ground>
+  using OnGround = Contact<LinkOnGround<Ground, observed>>;
+  static constexpr bool in_plane = observed != Observes::frame;
+
+  bool friction = true;
+
+  OnRoller on_roller(double radius) const {
+    return law(LinkOnRoller<observed>{.pitch = pitch,
+                                      .half_thickness = half_thickness,
+                                      .half_width = half_width,
+                                      .radius = radius,
+                                      .rims = in_plane ? std::vector{0.0} : std::vector{-rim_y, rim_y}},
+               on_wheel);
+  }
+  OnRims on_rims(double radius) const {
+    Vec3 const tip(horn.x, horn.y, horn.z + 0.5 * horn_size.z);
+    return law(HornOnRims<observed>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel);
+  }
+  OnSprocket on_teeth() const {
+    return law(PinOnSprocket<observed>{.profile = sprocket_profile(),
+                                       .valley = first_valley,
+                                       .rings = in_plane ? std::vector{0.0} : std::vector{-tooth_y, tooth_y}},
+               on_sprocket);
+  }
+  template <Terrain Ground>
+  OnGround<Ground> on_terrain(Ground const& ground) const {
+    std::vector<Vec3> corners;
+    for (Triple const& p : pad)
+      if (!in_plane || p.y > 0.0) corners.push_back(Vec3(p.x, in_plane ? 0.0 : p.y, p.z));
+    return law(LinkOnGround<Ground, observed>{.terrain = ground, .pad = corners}, on_ground);
+  }
+
+ private:
+  template <ContactGeometry G>
+  Contact<G> law(G const& geometry, ContactNumbers const& c) const {
+    double const share = in_plane ? 2.0 : 1.0;
+    return {geometry,
+            {.stiffness = share * c.stiffness, .damping = share * c.damping, .onset = onset},
+            {.coefficient = friction ? c.friction : 0.0, .slip_speed = slip_speed}};
+  }
+};
+
+}  // namespace polybody::m113
