@@ -183,13 +183,13 @@ class Vehicle : public TrackedVehicle {
     for (HullBody const& b : of_side.bodies) bodies.push_back(model.add(solid(b.solid, b.centre, b.about_y), b.name));
     parts.set(of_side, bodies, tracks[s == Side::left ? 0 : 1]);
     for (HullJoint const& j : of_side.joints)
-      join(j, bodies[j.a].at(j.at_a), bodies[j.b].at(j.at_b), drive, options.preload, parts);
+      join(j, bodies[j.a].at(j.at_a), bodies[j.b].at(j.at_b), drive, options, parts);
     add_links(s, of_side.name, pin, options, parts);
     add_contacts(s, of_side.name, options, ground);
   }
 
-  void join(HullJoint const& j, Marker<Base> const& a, Marker<Base> const& b, Drive const& drive, double preload,
-            SideParts& parts) {
+  void join(HullJoint const& j, Marker<Base> const& a, Marker<Base> const& b, Drive const& drive,
+            VehicleOptions const& options, SideParts& parts) {
     Vec3 const y = Vec3::UnitY();
     switch (j.kind) {
       case HullJoint::Kind::axle:
@@ -206,7 +206,8 @@ class Vehicle : public TrackedVehicle {
         break;
       case HullJoint::Kind::tensioner:
         model.apply(
-            AxialSpring{.stiffness = m113::tensioner.stiffness, .damping = m113::tensioner.damping, .preload = preload},
+            AxialSpring{
+                .stiffness = m113::tensioner.stiffness, .damping = m113::tensioner.damping, .preload = options.preload},
             a, b, j.name);
         break;
       case HullJoint::Kind::shock:
