@@ -19,7 +19,7 @@ std::array<Frame<T>, n> frames_at(std::array<Index, n> const& at, Data<T> const&
 }
 
 template <HasStates F, StateScalar T>
-std::array<T, F::states> states_of(ForceEntry<F> const& e, Data<T> const& data) {
+std::array<T, F::states> states_in(ForceEntry<F> const& e, Data<T> const& data) {
   std::array<T, F::states> z;
   for (std::size_t s = 0; s < z.size(); ++s) z[s] = data.states[std::size_t(e.state) + s];
   return z;
@@ -40,7 +40,7 @@ void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit)
     std::array<Index, F::markers> all;
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = Index(k);
     if constexpr (HasStates<F>) {
-      auto const z = states_of(e, data);
+      auto const z = states_in(e, data);
       visit(AtStates<F, T>{e.force, z}, all, e.markers);
     } else {
       visit(e.force, all, e.markers);
@@ -122,7 +122,7 @@ template <HasStates F>
 void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& data, BlockSink& sink) {
   constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
   auto const frames = frames_at(e.markers, data);
-  auto const z = states_of(e, data);
+  auto const z = states_in(e, data);
   Mat<double, size, size> s = gradient_with_states(e.force, frames, z, x.t, {x.c.stiffness, x.c.damping, x.c.states});
   for (int j = 0; j < size; ++j)
     for (int i = 0; i < size; ++i) s(i, j) *= i < first ? -x.scale : -1.0;
@@ -235,7 +235,7 @@ Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, A
       detail::add_wrenches(law, at, t, data, to);
     });
     if constexpr (HasStates<F>) {
-      auto const rates = e.force.template rates<T>(detail::frames_at(e.markers, data), detail::states_of(e, data), t);
+      auto const rates = e.force.template rates<T>(detail::frames_at(e.markers, data), detail::states_in(e, data), t);
       std::copy(rates.begin(), rates.end(), data.rates.begin() + e.state);
     }
   }

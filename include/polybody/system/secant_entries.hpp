@@ -172,7 +172,7 @@ class TypedSecants {
       add_force(data, e, r);
       if constexpr (HasStates<std::decay_t<decltype(e.force)>>) {
         auto const rates =
-            e.force.template rates<double>(frames_at(e.markers, data), states_of(e, data), middle_time());
+            e.force.template rates<double>(frames_at(e.markers, data), states_in(e, data), middle_time());
         for (std::size_t s = 0; s < rates.size(); ++s) {
           Index const i = data.first_state + e.state + Index(s);
           r[i] += a[i] - rates[s];
