@@ -141,7 +141,7 @@ struct AlphaMethod {
   CorrectionSize measure(double h, bool two_sets, AlphaVectors const& w) const {
     double const s = beta * h * h, n = std::sqrt(double(std::max<Index>(w.v.size(), 1)));
     double const size = 1.0 + w.vd.norm() / n;
-    double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + w.q.cwiseAbs().maxCoeff()) / s;
+    double const rounding = 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + largest_size(w.q)) / s;
     double square = 0.0;
     for (Index i = 0; i < w.v.size(); ++i) square += w.y[i] * w.y[i];
     double const change = std::sqrt(square) + (two_sets ? w.back.norm() / s : 0.0);
@@ -187,7 +187,7 @@ struct AlphaMethod {
       system.violation(w.phi);
       if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
       method.right_hand_side(h, two_sets, system.velocity_rows(), w);
-      return w.rhs.allFinite();
+      return all_finite(w.rhs);
     }
     bool refactor() {
       double const ahead = std::min(look_ahead * w.age, 4.0) * h;
@@ -201,7 +201,7 @@ struct AlphaMethod {
     }
     CorrectionSize solve() {
       w.solver.solve(w.rhs, w.y);
-      bool const finite = w.y.allFinite();
+      bool const finite = all_finite(w.y);
       if (two_sets && finite) {
         for (Index i = 0; i < system.speeds(); ++i) w.back[i] = method.beta * h * h * w.y[i];
         system.rows_times(w.back, w.rate);
@@ -319,7 +319,7 @@ struct AlphaMethod {
       jerk[i] = (4.0 * quarter[i] - half[i] - 3.0 * now[i]) / (0.5 * h);
       coarse[i] = (4.0 * half[i] - full[i] - 3.0 * now[i]) / h;
     }
-    return distance(jerk, coarse) <= 0.5 * jerk.norm() && jerk.allFinite();
+    return distance(jerk, coarse) <= 0.5 * jerk.norm() && all_finite(jerk);
   }
 };
 
