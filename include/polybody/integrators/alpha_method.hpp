@@ -204,7 +204,7 @@ struct AlphaMethod {
       system.violation(w.phi);
       if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
       method.right_hand_side(h, two_sets, system.velocity_rows(), w);
-      return w.rhs.allFinite();
+      return all_finite(w.rhs);
     }
     bool refactor() {
       double const ahead = std::min(look_ahead * w.age, 4.0) * h;
@@ -218,7 +218,7 @@ struct AlphaMethod {
     }
     CorrectionSize solve() {
       w.solver.solve(w.rhs, w.y);
-      bool const finite = w.y.allFinite();
+      bool const finite = all_finite(w.y);
       if (two_sets && finite) {
         for (Index i = 0; i < system.speeds(); ++i) w.back[i] = method.beta * h * h * w.y[i];
         system.rows_times(w.back, w.rate);
@@ -339,7 +339,7 @@ struct AlphaMethod {
       w.jerk[i] = (4.0 * quarter[i] - half[i] - 3.0 * now[i]) / (0.5 * h);
       mismatch[i] = w.jerk[i] - (4.0 * half[i] - full[i] - 3.0 * now[i]) / h;
     }
-    return w.jerk.allFinite() && w.of_each_part([&](Index first, Index end) {
+    return all_finite(w.jerk) && w.of_each_part([&](Index first, Index end) {
       return norm(mismatch, first, end) <= 0.5 * norm(w.jerk, first, end);
     });
   }

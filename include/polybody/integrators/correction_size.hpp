@@ -10,17 +10,9 @@
 
 namespace polybody::detail {
 
-/// Max |x|; zero where there is none.
-inline double largest_of(VecX const& x) {
-  double most = 0.0;
-  for (Index i = 0; i < x.size(); ++i)
-    if (!(std::abs(x[i]) <= most)) most = std::abs(x[i]);  // a NaN stays
-  return most;
-}
-
 /// What rounding of q leaves of a correction that moves q by s times as much.
 inline double rounding_of(VecX const& q, double s) {
-  return 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + largest_of(q)) / s;
+  return 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + largest_size(q)) / s;
 }
 
 /// First-order states, the last `count` of the speeds `v` with their rates. Each has a unit of its own.

@@ -103,7 +103,7 @@ struct ConservingStep {
       w.secants.violation(w.phi);
       for (Index i = 0; i < nv; ++i) w.rhs[i] = -w.r[i];
       for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.phi[i] / -s;
-      return w.rhs.allFinite();
+      return all_finite(w.rhs);
     }
     bool refactor() {
       bad = method.refactor(system, h, w);
@@ -114,7 +114,7 @@ struct ConservingStep {
       Index const bodies = nv - system.layout().states;
       double const n = std::sqrt(double(std::max<Index>(bodies, 1)));
       CorrectionSize const size{
-          w.y.allFinite() ? w.y.head(bodies).norm() / n : std::numeric_limits<double>::quiet_NaN(),
+          all_finite(w.y) ? w.y.head(bodies).norm() / n : std::numeric_limits<double>::quiet_NaN(),
           method.tolerance * (1.0 + w.vd.head(bodies).norm() / n) + detail::rounding_of(w.q, s)};
       return detail::StatesInStep{system.layout().states, w.v, w.vd, h}.join(size, method.tolerance, w.y.data());
     }

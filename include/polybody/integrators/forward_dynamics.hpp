@@ -107,21 +107,16 @@ class ForwardDynamics {
     factor(system);
     system.violation_rate(phi_);
     solve(system, 0.0, -1.0);
-    double largest = 0.0;
-    for (Index i = 0; i < v.size(); ++i) {
-      v[i] += x_[i];
-      if (!(std::abs(x_[i]) <= largest)) largest = std::abs(x_[i]);
-    }
-    return largest;
+    take(0, system.speeds(), delta_);
+    for (Index i = 0; i < v.size(); ++i) v[i] += delta_[i];
+    return largest_size(delta_);
   }
 
   /// One Gauss–Newton step of the smallest change of q (in the norm of M) towards Φ = 0; returns |Φ| before.
   double project_positions_once(System& system, VecX& q, VecX const& v, double t) {
     system.evaluate(q, v, t);
     system.violation(phi_);
-    double before = 0.0;
-    for (Index i = 0; i < phi_.size(); ++i)
-      if (!(std::abs(phi_[i]) <= before)) before = std::abs(phi_[i]);  // a NaN stays
+    double const before = largest_size(phi_);
     if (before == 0.0) return before;
     factor(system);
     solve(system, 0.0, -1.0);

@@ -203,7 +203,7 @@ struct Radau {
         for (Index k = 0; k < nv; ++k) w.rhs[first + k] = -w.r[k];
         for (Index k = 0; k < rows; ++k) w.rhs[first + nv + k] = -(w.phi[k] + w.gamma[k]);
       }
-      return w.rhs.allFinite();
+      return all_finite(w.rhs);
     }
     bool refactor() {
       evaluate_stage(1);
@@ -217,7 +217,7 @@ struct Radau {
       double const n = std::sqrt(double(std::max<Index>(bodies, 1)));
       double change = w.unsettled / (h * h);
       for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), bodies).norm());
-      CorrectionSize size{w.y.allFinite() ? change / n : std::numeric_limits<double>::quiet_NaN(),
+      CorrectionSize size{all_finite(w.y) ? change / n : std::numeric_limits<double>::quiet_NaN(),
                           method.tolerance * (1.0 + w.vd[2].head(bodies).norm() / n) + detail::rounding_of(w.q, h * h)};
       for (std::size_t i = 0; i < 3; ++i)
         size = detail::StatesInStep{system.layout().states, w.v[i], w.vd[i], h}.join(

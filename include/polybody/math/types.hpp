@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include <polybody/math/errors.hpp>
@@ -56,32 +57,52 @@ struct Required {
 };
 
 /// \throws InvalidInput unless `x` is finite and positive; `what` names the object and the quantity.
-inline void require_positive(double x, std::string const& what) {
+inline void require_positive(double x, std::string_view what) {
   if (!(x > 0.0) || !std::isfinite(x))
-    throw InvalidInput(what + " must be positive and finite, but is " + number(x) + ".");
+    throw InvalidInput(std::string(what) + " must be positive and finite, but is " + number(x) + ".");
 }
 
 /// \throws InvalidInput unless `x` is finite and not negative.
-inline void require_not_negative(double x, std::string const& what) {
+inline void require_not_negative(double x, std::string_view what) {
   if (!(x >= 0.0) || !std::isfinite(x))
-    throw InvalidInput(what + " must be zero or positive and finite, but is " + number(x) + ".");
+    throw InvalidInput(std::string(what) + " must be zero or positive and finite, but is " + number(x) + ".");
 }
 
 /// \throws InvalidInput unless every entry of `x` is finite.
 template <class Derived>
-void require_finite(Eigen::MatrixBase<Derived> const& x, std::string const& what) {
+void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what) {
   typename Derived::PlainObject const& m = x.derived();  // an expression is evaluated; in loops, which compile fast
   for (Index j = 0; j < m.cols(); ++j)
     for (Index i = 0; i < m.rows(); ++i)
-      if (!std::isfinite(m(i, j))) throw InvalidInput(what + " must be finite, but has a NaN or an infinity.");
+      if (!std::isfinite(m(i, j)))
+        throw InvalidInput(std::string(what) + " must be finite, but has a NaN or an infinity.");
+}
+
+/// Whether every entry of `x` is finite.
+inline bool all_finite(VecX const& x) {
+  for (Index i = 0; i < x.size(); ++i)
+    if (!std::isfinite(x[i])) return false;
+  return true;
+}
+
+/// max |xᵢ|: zero without entries, NaN if one is.
+inline double largest_size(VecX const& x) {
+  double largest = 0.0;
+  for (Index i = 0; i < x.size(); ++i) {
+    if (std::abs(x[i]) <= largest) continue;
+    largest = std::abs(x[i]);
+    if (std::isnan(largest)) break;
+  }
+  return largest;
 }
 
 /// \throws InvalidInput unless `axis` has length one (to 1e-9).
-inline void require_unit(Vec3 const& axis, std::string const& what) {
+inline void require_unit(Vec3 const& axis, std::string_view what) {
   require_finite(axis, what);
   double const length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
   if (std::abs(length - 1.0) > 1e-9)
-    throw InvalidInput(what + " must be a unit vector, but has length " + number(length) + ". Normalise it.");
+    throw InvalidInput(std::string(what) + " must be a unit vector, but has length " + number(length) +
+                       ". Normalise it.");
 }
 
 }  // namespace polybody

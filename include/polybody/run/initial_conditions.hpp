@@ -15,7 +15,9 @@ void require_assembled(System& system, State const& x, double tolerance = 1e-8) 
   VecX phi = VecX::Zero(system.rows());
   system.violation(phi);
   Index worst = 0;
-  if (phi.size() == 0 || phi.cwiseAbs().maxCoeff(&worst) <= tolerance) return;
+  for (Index i = 1; i < phi.size(); ++i)
+    if (std::abs(phi[i]) > std::abs(phi[worst])) worst = i;
+  if (phi.size() == 0 || std::abs(phi[worst]) <= tolerance) return;
   throw InconsistentStart("At the start " + system.name_of(system.speeds() + worst) + " is open by " +
                           number(std::abs(phi[worst])) +
                           ". Place the bodies so that it closes, or call "
@@ -25,7 +27,7 @@ void require_assembled(System& system, State const& x, double tolerance = 1e-8) 
 /// \throws InconsistentStart naming joints that stay open because their rows repeat each other with other dimensions.
 template <class Solver>
 void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
-  if (!x.q.allFinite()) return;
+  if (!all_finite(x.q)) return;
   forward.hold(system, x.q, x.v, x.t);
   VecX phi = VecX::Zero(system.rows());
   system.violation(phi);

@@ -127,7 +127,7 @@ Violation violation(System& system, State const& x) {
   VecX of_accelerations = phi;
   system.rows_times(x.a, of_accelerations);
   second += of_accelerations;
-  return {phi.cwiseAbs().maxCoeff(), rate.cwiseAbs().maxCoeff(), second.cwiseAbs().maxCoeff()};
+  return {largest_size(phi), largest_size(rate), largest_size(second)};
 }
 
 }  // namespace polybody

@@ -128,14 +128,13 @@ Redundancy redundancy(System& system, State const& x) {
                  .degrees_of_freedom = system.layout().body_speeds() - factor.rank()};
   std::vector<Index> repeated;
   detail::ContradictionLimits const limits;
-  auto const largest = [](VecX const& b) { return b.size() ? b.cwiseAbs().maxCoeff() : 0.0; };
-  double const in_speeds = limits.relative * (1.0 + largest(x.v)),
-               in_accelerations = limits.relative * (1.0 + largest(gamma));
+  double const in_speeds = limits.relative * (1.0 + largest_size(x.v)),
+               in_accelerations = limits.relative * (1.0 + largest_size(gamma));
   for (Index k = 0; k < factor.repeated(); ++k) {
     repeated.push_back(factor.row(k));
     VecX const c = factor.relation(k);
     auto const compare = [&](VecX const& b, double limit, std::vector<std::string>& found) {
-      if (std::abs(c.dot(b)) > limit * largest(c)) found.push_back(detail::names_in(system, c));
+      if (std::abs(c.dot(b)) > limit * largest_size(c)) found.push_back(detail::names_in(system, c));
     };
     compare(phi, limits.position, out.in_positions);
     compare(rate, in_speeds, out.in_speeds);

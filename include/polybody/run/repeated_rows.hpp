@@ -18,7 +18,7 @@ struct ContradictionLimits {
 template <class = void>
 std::string names_in(System const& system, VecX const& c) {
   std::string names, last;
-  double const enough = 1e-6 * c.cwiseAbs().maxCoeff();
+  double const enough = 1e-6 * largest_size(c);
   for (Index i = 0; i < c.size(); ++i) {
     if (std::abs(c[i]) <= enough) continue;
     std::string const name = system.name_of(system.speeds() + i);
@@ -45,11 +45,11 @@ struct RowRelation {
     c.setZero();
     c[i - system.speeds()] = 1.0;
     system.rows_transposed_times(c, w_);
-    double const size = w_.size() ? w_.cwiseAbs().maxCoeff() : 0.0;
+    double const size = largest_size(w_);
     forward.response(system, w_, a_, mu_);
     c -= mu_;
     system.rows_transposed_times(c, w_);
-    return size == 0.0 || w_.cwiseAbs().maxCoeff() <= 1e-6 * size;
+    return size == 0.0 || largest_size(w_) <= 1e-6 * size;
   }
 
  private:
@@ -68,7 +68,9 @@ void require_no_contradiction(System& system, ForwardDynamics<Solver>& forward, 
   detail::RowRelation<> relation(system);
   for (Index const i : forward.redundant_rows()) {
     if (!relation.find(system, forward, i)) continue;
-    double const left = relation.c.dot(b) / relation.c.cwiseAbs().maxCoeff();
+    double sum = 0.0;
+    for (Index k = 0; k < b.size(); ++k) sum += relation.c[k] * b[k];
+    double const left = sum / largest_size(relation.c);
     if (std::abs(left) <= limit) continue;
     throw InconsistentStart(
         "The rows of " + detail::names_in(system, relation.c) + " repeat each other but contradict by " +
@@ -88,10 +90,9 @@ void require_consistent_rows(System& system, ForwardDynamics<Solver>& forward, S
   detail::ContradictionLimits const limits;
   VecX b = VecX::Zero(system.rows());
   system.violation_rate(b);
-  double const fastest = x.v.size() ? x.v.cwiseAbs().maxCoeff() : 0.0;
-  require_no_contradiction(system, forward, b, limits.relative * (1.0 + fastest), "speeds");
+  require_no_contradiction(system, forward, b, limits.relative * (1.0 + largest_size(x.v)), "speeds");
   system.acceleration_bias(b);
-  require_no_contradiction(system, forward, b, limits.relative * (1.0 + b.cwiseAbs().maxCoeff()), "accelerations");
+  require_no_contradiction(system, forward, b, limits.relative * (1.0 + largest_size(b)), "accelerations");
 }
 
 }  // namespace polybody

@@ -159,8 +159,9 @@ class BlockLayout {
     pieces.clear();
     first_piece.assign(1, 0);
     for (Block const& b : blocks) {
-      pattern.for_each_segment(b.row, b.rows, [&](int r) {
-        pattern.for_each_segment(b.col, b.cols, [&](int c) {
+      BlockPattern::Range const rows = pattern.covered(b.row, b.rows), columns = pattern.covered(b.col, b.cols);
+      for (int r = rows.begin; r < rows.end; ++r)
+        for (int c = columns.begin; c < columns.end; ++c) {
           auto const &sr = pattern.segments()[std::size_t(r)], &sc = pattern.segments()[std::size_t(c)];
           int const pr = place_[std::size_t(r)], pc = place_[std::size_t(c)];
           int const lr = local_[std::size_t(r)], lc = local_[std::size_t(c)];
@@ -174,8 +175,7 @@ class BlockLayout {
             p.to = n.u + std::size_t(lr * n.stride() + (pr == pc ? 0 : n.pad + column(n, pc)) + lc);
           }
           pieces.push_back(p);
-        });
-      });
+        }
       first_piece.push_back(int(pieces.size()));
     }
   }

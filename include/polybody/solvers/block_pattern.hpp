@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -34,12 +35,13 @@ class BlockPattern {
 
   std::vector<Segment> const& segments() const { return segments_; }
   int of(Index unknown) const { return segment_of_[std::size_t(unknown)]; }
-  /// Segments that block b covers, by rows or columns.
-  template <class F>
-  void for_each_segment(Index first, Index count, F&& f) const {
-    for (int s = count > 0 ? of(first) : int(segments_.size());
-         s < int(segments_.size()) && segments_[std::size_t(s)].first < first + count; ++s)
-      f(s);
+  /// Segments from `begin` up to `end`, without it.
+  struct Range {
+    int begin, end;
+  };
+  /// Segments that a block covers by its `count` rows or columns from the unknown `first` on.
+  Range covered(Index first, Index count) const {
+    return count > 0 ? Range{of(first), of(first + count - 1) + 1} : Range{0, 0};
   }
   /// The joint on which a body hangs, and others of it alone; −1 and none for a free one.
   int primary(int body) const { return bodies_[std::size_t(body)].primary; }
@@ -74,10 +76,11 @@ class BlockPattern {
   }
 
   void mark(Block const& b) {
-    for_each_segment(b.row, b.rows, [&](int s) {
+    Range const rows = covered(b.row, b.rows);
+    for (int s = rows.begin; s < rows.end; ++s) {
       Segment& segment = segments_[std::size_t(s)];
       if (segment.first >= b.col && segment.first < b.col + b.cols) segment.joint = false;
-    });
+    }
   }
 
   /// Bodies are what the square blocks on the diagonal tie together.
@@ -90,8 +93,9 @@ class BlockPattern {
     };
     for (Block const& b : blocks) {
       if (b.row != b.col || b.rows != b.cols || b.rows == 0) continue;
-      int const first = find(of(b.row));
-      for_each_segment(b.row, b.rows, [&](int s) { root[std::size_t(find(s))] = first; });
+      Range const tied = covered(b.row, b.rows);
+      int const first = find(tied.begin);
+      for (int s = tied.begin; s < tied.end; ++s) root[std::size_t(find(s))] = first;
     }
     bodies_.clear();
     joints_.clear();
@@ -110,27 +114,29 @@ class BlockPattern {
       segments_[s].body = n;
       bodies_[std::size_t(n)].segments.push_back(int(s));
     }
-    // A block in the rows of a joint is one end of it: the columns of one marker.
     for (Block const& b : blocks) {
-      if (b.rows == 0 || b.cols == 0) continue;
-      for_each_segment(b.row, b.rows, [&](int row) {
-        if (!segments_[std::size_t(row)].joint) return;
-        Joint& joint = joints_[std::size_t(joint_of[std::size_t(row)])];
-        auto& ends = joint.ends;
-        for_each_segment(b.col, b.cols, [&](int col) {
-          int const body = segments_[std::size_t(col)].body;
-          if (body < 0) {
-            joint.meets_rows = true;
-            return;
-          }
-          auto end = std::find_if(ends.begin(), ends.end(), [&](auto const& e) { return e.first == body; });
-          if (end == ends.end()) end = ends.insert(end, {body, {}});
-          if (std::find(end->second.begin(), end->second.end(), col) == end->second.end()) end->second.push_back(col);
-        });
-      });
+      Range const rows = covered(b.row, b.rows), columns = covered(b.col, b.cols);
+      for (int row = rows.begin; row < rows.end; ++row)
+        if (segments_[std::size_t(row)].joint) touch(joints_[std::size_t(joint_of[std::size_t(row)])], columns);
     }
     for (std::size_t j = 0; j < joints_.size(); ++j)
       for (auto const& end : joints_[j].ends) bodies_[std::size_t(end.first)].joints.push_back(int(j));
+  }
+
+  /// A block in the rows of a joint is one end of it: the columns of one marker.
+  void touch(Joint& joint, Range columns) {
+    for (int s = columns.begin; s < columns.end; ++s) {
+      int const body = segments_[std::size_t(s)].body;
+      if (body < 0) {
+        joint.meets_rows = true;
+        continue;
+      }
+      std::size_t end = 0;
+      while (end < joint.ends.size() && joint.ends[end].first != body) ++end;
+      if (end == joint.ends.size()) joint.ends.push_back({body, {}});
+      std::vector<int>& touched = joint.ends[end].second;
+      if (std::find(touched.begin(), touched.end(), s) == touched.end()) touched.push_back(s);
+    }
   }
 
   /// A joint of one body and one row: a norm row, or a drive against the ground. No tree hangs on it.
@@ -166,12 +172,10 @@ class BlockPattern {
       }
     };
     spread();
-    std::vector<int> by_degree(bodies_.size());
-    std::iota(by_degree.begin(), by_degree.end(), 0);
-    std::stable_sort(by_degree.begin(), by_degree.end(), [&](int a, int b) {
-      return bodies_[std::size_t(a)].joints.size() > bodies_[std::size_t(b)].joints.size();
-    });
-    for (int const root : by_degree) {
+    std::set<std::pair<long, int>> left;  // −joints, body: the one with most joints comes first
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      if (!bodies_[b].visited) left.insert({-long(bodies_[b].joints.size()), int(b)});
+    for (auto const& [joints, root] : left) {
       if (bodies_[std::size_t(root)].visited) continue;
       bodies_[std::size_t(root)].visited = true;
       queue.push_back(root);

@@ -24,7 +24,8 @@ class EliminationOrder {
   void compute(BlockPattern const& pattern, std::vector<Block> const& blocks, std::vector<int> const& node_of,
                std::vector<char> const& late) {
     std::size_t const count = node_of.empty() ? 0 : std::size_t(*std::max_element(node_of.begin(), node_of.end())) + 1;
-    left_.assign(count, {});
+    left_.clear();
+    left_.resize(count);
     remaining_early_ = 0;
     ready_.clear();
     find_neighbours(pattern, blocks, node_of);
@@ -64,15 +65,14 @@ class EliminationOrder {
       at(node_of[s]).size += pattern.segments()[s].size;
     }
     for (Block const& b : blocks) {
-      if (b.rows == 0 || b.cols == 0) continue;
-      pattern.for_each_segment(b.row, b.rows, [&](int r) {
-        pattern.for_each_segment(b.col, b.cols, [&](int c) {
+      BlockPattern::Range const rows = pattern.covered(b.row, b.rows), columns = pattern.covered(b.col, b.cols);
+      for (int r = rows.begin; r < rows.end; ++r)
+        for (int c = columns.begin; c < columns.end; ++c) {
           int const i = node_of[std::size_t(r)], j = node_of[std::size_t(c)];
-          if (i == j) return;
+          if (i == j) continue;
           at(i).node.neighbours.push_back(j);
           at(j).node.neighbours.push_back(i);
-        });
-      });
+        }
     }
     for (Candidate& k : left_) sort_once(k.node.neighbours);
   }

@@ -141,17 +141,19 @@ BarConstants constants(Bar const& bar) {
 }
 
 /// \throws InvalidInput naming `what` unless a bar is cut into 1 … 10⁷ elements.
-inline void require_elements(Index n, std::string const& what) {
-  if (n < 1) throw InvalidInput(what + ": at least one element is needed.");
+inline void require_elements(Index n, std::string_view what) {
+  if (n < 1) throw InvalidInput(std::string(what) + ": at least one element is needed.");
   if (n > 10'000'000)
-    throw InvalidInput(what + ": " + std::to_string(n) + " elements are more than memory holds. Use at most 10000000.");
+    throw InvalidInput(std::string(what) + ": " + std::to_string(n) +
+                       " elements are more than memory holds. Use at most 10000000.");
 }
 
 /// \throws InvalidInput unless 0 ≤ s ≤ length (to 1e-12 of the length); returns s within the bar.
-inline double require_inside(double s, double length, std::string const& what) {
+inline double require_inside(double s, double length, std::string_view what) {
   double const slack = 1e-12 * length;
   if (!(s >= -slack && s <= length + slack))
-    throw InvalidInput(what + ": s = " + number(s) + " lies outside the body, 0 <= s <= " + number(length) + ".");
+    throw InvalidInput(std::string(what) + ": s = " + number(s) +
+                       " lies outside the body, 0 <= s <= " + number(length) + ".");
   return std::min(std::max(s, 0.0), length);
 }
 
