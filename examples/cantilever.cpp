@@ -1,10 +1,10 @@
 // The clamped beam of Chapter 2 under a moment at its tip (Figures 2.9 and 2.10), and the same beam rolled into a full
 // circle under several formulations.
 //   cantilever --case all --out out/cantilever
-#include <CLI/CLI.hpp>
 #include <numbers>
 
 #include "chapter2_plots.hpp"
+#include "support/command_line.hpp"
 
 using namespace chapter2;
 namespace fs = std::filesystem;
@@ -151,26 +151,19 @@ void comparison(Options const& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  CLI::App app{
+  CommandLine line{
       "The clamped beam of Chapter 2: Figures 2.9 and 2.10, roll-up to a circle, and a comparison of formulations"};
-  app.add_option("--case", o.which, "what to run")
-      ->check(CLI::IsMember({"all", "moment", "roll-up", "compare"}))
-      ->capture_default_str();
-  app.add_option("--body", o.body, "formulation of the case 'moment'; only lrvf has two meshes")
-      ->check(CLI::IsMember({"lrvf", "ancf", "ancf-engineering"}))
-      ->capture_default_str();
-  app.add_option("--elements", o.elements, "elements along the beam")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--step", o.step, "time step [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--moment", o.moment, "moment at the tip [N m]")->capture_default_str();
-  app.add_option("--density", o.density, "density, not printed in the thesis [kg/m^3]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--out", o.out, "folder for CSV files and pictures")->capture_default_str();
-  app.add_flag("--no-plot", o.no_plot, "write the scripts but draw nothing");
-  CLI11_PARSE(app, argc, argv);
+  line.one_of("--case", &o.which, {"all", "moment", "roll-up", "compare"}, "what to run");
+  line.one_of("--body", &o.body, {"lrvf", "ancf", "ancf-engineering"},
+              "formulation of the case 'moment'; only lrvf has two meshes");
+  line.positive("--elements", &o.elements, "elements along the beam");
+  line.positive("--step", &o.step, "time step [s]");
+  line.positive("--until", &o.until, "end of the run [s]");
+  line.option("--moment", &o.moment, "moment at the tip [N m]");
+  line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
+  line.option("--out", &o.out, "folder for CSV files and pictures");
+  line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
+  if (auto const code = line.parse(argc, argv)) return *code;
   try {
     bool const all = o.which == "all";
     if (all || o.which == "moment") {

@@ -6,7 +6,6 @@
 //   mass [kg]              1.0234856       1.0234860
 //   free frequencies [Hz]  free modes        CalculiX  Craig-Bampton
 //     1                      4356.5182       4356.5180      4357.2652
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -17,6 +16,8 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/matrix_structure.hpp>
 #include <polybody/polybody.hpp>
+
+#include "support/command_line.hpp"
 
 using namespace polybody;
 
@@ -128,14 +129,13 @@ void run(Options const& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  CLI::App app{"A steel link from CalculiX's matrices: mass, frequencies, and a pendulum beside a rigid one"};
-  app.add_option("--files", o.files,
-                 "folder of link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt")
-      ->capture_default_str();
-  app.add_option("--modes", o.modes, "modes between the holes")->check(CLI::NonNegativeNumber)->capture_default_str();
-  app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--step", o.step, "time step [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  CommandLine line{"A steel link from CalculiX's matrices: mass, frequencies, and a pendulum beside a rigid one"};
+  line.option("--files", &o.files,
+              "folder of link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt");
+  line.not_negative("--modes", &o.modes, "modes between the holes");
+  line.positive("--until", &o.until, "end of the run [s]");
+  line.positive("--step", &o.step, "time step [s]");
+  if (auto const code = line.parse(argc, argv)) return *code;
   try {
     run(o);
   } catch (Error const& e) {

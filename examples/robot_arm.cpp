@@ -1,8 +1,8 @@
 // The flexible robot arm of Chapter 2 (Figures 2.4 to 2.8) under several formulations, side by side.
 //   robot_arm --case all --out out/robot_arm
-#include <CLI/CLI.hpp>
 
 #include "chapter2_plots.hpp"
+#include "support/command_line.hpp"
 
 using namespace chapter2;
 namespace fs = std::filesystem;
@@ -149,27 +149,20 @@ void run_cases(Options const& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  CLI::App app{"The flexible robot arm of Chapter 2: Figures 2.4 to 2.8, and the same arm under several formulations"};
-  app.add_option("--case", o.which, "what to run")
-      ->check(CLI::IsMember({"all", "angle", "high", "medium", "fast-medium", "fast-low", "axial", "compare"}))
-      ->capture_default_str();
-  app.add_option("--body", o.body, "formulation of the snapshots; only lrvf has two meshes")
-      ->check(CLI::IsMember({"lrvf", "ancf", "ancf-engineering", "rigid"}))
-      ->capture_default_str();
-  app.add_option("--elements", o.elements, "elements along the arm")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--step", o.step, "time step [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--until", o.until, "end of the run [s]; 0: the end of the ramp")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_option("--density", o.density, "density, not printed in the thesis [kg/m^3]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--slow-ramp", o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--out", o.out, "folder for CSV files and pictures")->capture_default_str();
-  app.add_flag("--no-plot", o.no_plot, "write the scripts but draw nothing");
-  CLI11_PARSE(app, argc, argv);
+  CommandLine line{
+      "The flexible robot arm of Chapter 2: Figures 2.4 to 2.8, and the same arm under several formulations"};
+  line.one_of("--case", &o.which, {"all", "angle", "high", "medium", "fast-medium", "fast-low", "axial", "compare"},
+              "what to run");
+  line.one_of("--body", &o.body, {"lrvf", "ancf", "ancf-engineering", "rigid"},
+              "formulation of the snapshots; only lrvf has two meshes");
+  line.positive("--elements", &o.elements, "elements along the arm");
+  line.positive("--step", &o.step, "time step [s]");
+  line.not_negative("--until", &o.until, "end of the run [s]; 0: the end of the ramp");
+  line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
+  line.positive("--slow-ramp", &o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]");
+  line.option("--out", &o.out, "folder for CSV files and pictures");
+  line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
+  if (auto const code = line.parse(argc, argv)) return *code;
   try {
     if (o.which == "all" || o.which == "angle") figure_2_4(o);
     if (o.body == "lrvf") run_cases<planar::Lrvf>(o);

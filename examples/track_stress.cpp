@@ -3,7 +3,6 @@
 //   track_stress --links ffr --speed 80
 //   track_stress --compare
 //   track_stress --figure 4.8
-#include <CLI/CLI.hpp>
 
 #include <polybody/io/checkpoint.hpp>
 #include <polybody/run/body_record.hpp>
@@ -13,6 +12,7 @@
 
 #include <map>
 
+#include "support/command_line.hpp"
 #include "tracked_vehicle.hpp"
 
 using namespace chapter3;
@@ -437,35 +437,29 @@ int main(int argc, char** argv) {
   o.rho = 0.5;
   o.speed = m113::chapter_4_speeds[0];
   o.out = "out/track_stress";
-  CLI::App app{
+  CommandLine line{
       "Stress of a track's link after a run of rigid links (decoupled) and in runs of flexible ones (Chapter 4)."};
-  app.add_option("--links", o.links, "body formulation of the links")
-      ->check(CLI::IsMember({"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"}))
-      ->capture_default_str();
-  app.add_option("--elements", o.elements, "of a flexible link; 0: one, and two of a floating frame")
-      ->check(CLI::NonNegativeNumber);
-  app.add_flag("--compare", o.compare, "all formulations side by side");
-  app.add_option("--figure", o.figure, "4.3 to 4.12 of the thesis, or all");
-  app.add_option("--speed", o.speed, "of the sprockets after 8 s [rad/s]")->capture_default_str();
-  app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--step", o.step, "[s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--rho", o.rho, "spectral radius at infinity of the integrator")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  app.add_option("--cut-off", o.cut_off, "of the low pass [Hz]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--recovery", o.recovery, "of stress after a rigid run")
-      ->check(CLI::IsMember({"static", "vibrating"}))
-      ->capture_default_str();
-  app.add_option("--preload", o.preload, "of the tensioners [N]")->capture_default_str();
-  app.add_flag("--halve", o.halve, "at this step and at half of it");
-  app.add_flag("--restart", o.restart,
-               "whether a run that is taken up from a checkpoint in its middle ends in the same bits");
-  app.add_flag("--fatigue", o.fatigue, "counts cycles of stress by rainflow");
-  app.add_flag("--audit", o.audit, "works out where the energy went");
-  app.add_flag("!--unwatched", o.watched, "a track that leaves its sprocket does not end the run");
-  app.add_option("--out", o.out, "folder of the results")->capture_default_str();
-  app.add_flag("--no-plot", o.no_plot, "data and scripts only");
-  CLI11_PARSE(app, argc, argv);
+  line.one_of("--links", &o.links, {"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"},
+              "body formulation of the links");
+  line.not_negative("--elements", &o.elements, "of a flexible link; 0: one, and two of a floating frame");
+  line.flag("--compare", &o.compare, "all formulations side by side");
+  line.option("--figure", &o.figure, "4.3 to 4.12 of the thesis, or all");
+  line.option("--speed", &o.speed, "of the sprockets after 8 s [rad/s]");
+  line.positive("--until", &o.until, "end of the run [s]");
+  line.positive("--step", &o.step, "[s]");
+  line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
+  line.positive("--cut-off", &o.cut_off, "of the low pass [Hz]");
+  line.one_of("--recovery", &o.recovery, {"static", "vibrating"}, "of stress after a rigid run");
+  line.option("--preload", &o.preload, "of the tensioners [N]");
+  line.flag("--halve", &o.halve, "at this step and at half of it");
+  line.flag("--restart", &o.restart,
+            "whether a run that is taken up from a checkpoint in its middle ends in the same bits");
+  line.flag("--fatigue", &o.fatigue, "counts cycles of stress by rainflow");
+  line.flag("--audit", &o.audit, "works out where the energy went");
+  line.flag("!--unwatched", &o.watched, "a track that leaves its sprocket does not end the run");
+  line.option("--out", &o.out, "folder of the results");
+  line.flag("--no-plot", &o.no_plot, "data and scripts only");
+  if (auto const code = line.parse(argc, argv)) return *code;
   try {
     fs::create_directories(o.out);
     if (!o.figure.empty())

@@ -2,9 +2,9 @@
 //   tracked_vehicle --track penalty --until 3
 //   tracked_vehicle --compare
 //   tracked_vehicle --figure 3.11
-#include <CLI/CLI.hpp>
 
 #include "tracked_vehicle.hpp"
+#include "support/command_line.hpp"
 
 using namespace chapter3;
 
@@ -219,35 +219,28 @@ void single(Options const& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  CLI::App app{"The tracked vehicle of Chapter 3 with its tracks under five joint formulations."};
-  app.add_option("--track", o.track, "formulation of the pins")
-      ->check(CLI::IsMember({"constraint", "penalty", "bushing", "ancf", "recursive"}))
-      ->capture_default_str();
-  app.add_flag("--compare", o.compare, "all formulations, with a report");
-  app.add_option("--figure", o.figure, "3.6 to 3.15 of the thesis, table (3.4), or all");
-  app.add_option("--until", o.until, "end of the run [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--step", o.step, "[s]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_flag("--halve", o.halve, "ideal pins at this step and at half of it");
-  app.add_option("--speed", o.speed, "of the sprockets after 8 s [rad/s]")->capture_default_str();
-  app.add_option("--turn", o.turn, "pivot: the right track backwards; curve: the right one at 0.8 of the speed")
-      ->check(CLI::IsMember({"pivot", "curve"}));
-  app.add_flag("!--no-suspension", o.suspension, "arms welded to the chassis");
-  app.add_option("--preload", o.preload, "of the tensioners [N]")->capture_default_str();
-  app.add_option("--penalty", o.penalty, "stiffness of penalty pins and bushings [N/m]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--cut", o.cut, "pin at which the loop of ideal pins is cut")
-      ->check(CLI::Range(0, m113::links - 1))
-      ->capture_default_str();
-  app.add_option("--rho", o.rho, "spectral radius at infinity of the integrator")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  app.add_flag("--bumps", o.bumps, "a course with three bumps");
-  app.add_option("--animate", o.animate, "writes a ParaView animation with a state every so many seconds");
-  app.add_flag("--audit", o.audit, "works out where the energy went");
-  app.add_option("--out", o.out, "folder of the results")->capture_default_str();
-  app.add_flag("--no-plot", o.no_plot, "data and scripts only");
-  CLI11_PARSE(app, argc, argv);
+  CommandLine line{"The tracked vehicle of Chapter 3 with its tracks under five joint formulations."};
+  line.one_of("--track", &o.track, {"constraint", "penalty", "bushing", "ancf", "recursive"},
+              "formulation of the pins");
+  line.flag("--compare", &o.compare, "all formulations, with a report");
+  line.option("--figure", &o.figure, "3.6 to 3.15 of the thesis, table (3.4), or all");
+  line.positive("--until", &o.until, "end of the run [s]");
+  line.positive("--step", &o.step, "[s]");
+  line.flag("--halve", &o.halve, "ideal pins at this step and at half of it");
+  line.option("--speed", &o.speed, "of the sprockets after 8 s [rad/s]");
+  line.one_of("--turn", &o.turn, {"pivot", "curve"},
+              "pivot: the right track backwards; curve: the right one at 0.8 of the speed");
+  line.flag("!--no-suspension", &o.suspension, "arms welded to the chassis");
+  line.option("--preload", &o.preload, "of the tensioners [N]");
+  line.positive("--penalty", &o.penalty, "stiffness of penalty pins and bushings [N/m]");
+  line.between("--cut", &o.cut, 0, m113::links - 1, "pin at which the loop of ideal pins is cut");
+  line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
+  line.flag("--bumps", &o.bumps, "a course with three bumps");
+  line.option("--animate", &o.animate, "writes a ParaView animation with a state every so many seconds");
+  line.flag("--audit", &o.audit, "works out where the energy went");
+  line.option("--out", &o.out, "folder of the results");
+  line.flag("--no-plot", &o.no_plot, "data and scripts only");
+  if (auto const code = line.parse(argc, argv)) return *code;
   if (o.turn == "pivot") o.right = -1.0;
   if (o.turn == "curve") o.right = 0.8;
   try {

@@ -109,8 +109,8 @@ TEST(Compare, TellsRunsOfTheSameNameApart) {
   std::vector<ComparedRun> runs(2);
   runs[0].name = "ideal";
   runs[1].name = "ideal (2)";
-  EXPECT_EQ(detail::name_of(Ideal{"ideal"}, runs), "ideal (3)");
-  EXPECT_EQ(detail::name_of(Ideal{}, runs), "GeneralizedAlpha");
+  EXPECT_EQ(detail::name_beside(runs, detail::name_of(Ideal{"ideal"})), "ideal (3)");
+  EXPECT_EQ(detail::name_beside(runs, detail::name_of(Ideal{})), "GeneralizedAlpha");
 }
 
 TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {

@@ -1,0 +1,43 @@
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace {
+CLI::Option* add(CLI::App& app, std::string const& name, CommandLine::Value value, std::string const& help) {
+  CLI::Option* const option = std::visit([&](auto* to) { return app.add_option(name, *to, help); }, value);
+  if (auto* const* text = std::get_if<std::string*>(&value); !text || !(*text)->empty()) option->capture_default_str();
+  return option;
+}
+}  // namespace
+
+CommandLine::CommandLine(std::string const& description) : app_(std::make_unique<CLI::App>(description)) {}
+CommandLine::~CommandLine() = default;
+
+void CommandLine::option(std::string const& name, Value value, std::string const& help) {
+  add(*app_, name, value, help);
+}
+void CommandLine::positive(std::string const& name, Value value, std::string const& help) {
+  add(*app_, name, value, help)->check(CLI::PositiveNumber);
+}
+void CommandLine::not_negative(std::string const& name, Value value, std::string const& help) {
+  add(*app_, name, value, help)->check(CLI::NonNegativeNumber);
+}
+void CommandLine::between(std::string const& name, Value value, double least, double most, std::string const& help) {
+  add(*app_, name, value, help)->check(CLI::Range(least, most));
+}
+void CommandLine::one_of(std::string const& name, std::string* value, std::vector<std::string> const& all,
+                         std::string const& help) {
+  add(*app_, name, value, help)->check(CLI::IsMember(all));
+}
+void CommandLine::flag(std::string const& name, bool* value, std::string const& help) {
+  app_->add_flag(name, *value, help);
+}
+
+std::optional<int> CommandLine::parse(int argc, char** argv) {
+  try {
+    app_->parse(argc, argv);
+  } catch (CLI::ParseError const& error) {
+    return app_->exit(error);
+  }
+  return std::nullopt;
+}
