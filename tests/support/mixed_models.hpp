@@ -128,7 +128,7 @@ struct LaggingPull {
   void check(std::string const&) const {}
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, std::array<T, 2> const& z, double t) const {
-    T const pull = z[0] * (z[1] + 1.0) * 5.0 + 8.0 * t;
+    T const pull = z[0] * (z[1] + 1.0) * 5.0 + 1000.0 * t;
     std::array<Wrench<T>, 2> w;
     for (int i = 0; i < 3; ++i) {
       w[0].f[i] = (f[1].r[i] - f[0].r[i]) * pull;
