@@ -18,13 +18,6 @@ struct RowFeedback {
 };
 
 namespace detail {
-/// The first entry that is NaN or infinite, or −1.
-template <class = void>
-Index first_not_finite(VecX const& x) {
-  for (Index i = 0; i < x.size(); ++i)
-    if (!std::isfinite(x[i])) return i;
-  return -1;
-}
 /// Names the force element that pushes with a force that is NaN or infinite, where one does.
 template <class = void>
 std::string whose_force(System const& s) {
@@ -189,7 +182,7 @@ class ForwardDynamics {
     for (Index i = 0; i < n; ++i) rhs_[i] = r_scale == 0.0 ? 0.0 : r_scale * r_[i];
     for (Index i = 0; i < system.rows(); ++i) rhs_[n + i] = phi_scale * phi_[i];
     solver_.solve(rhs_, x_);
-    if (Index const i = detail::first_not_finite(x_); i >= 0) detail::throw_singular(system.at().t, system.name_of(i));
+    if (Index const i = first_not_finite(x_); i >= 0) detail::throw_singular(system.at().t, system.name_of(i));
   }
 
   /// out = x_ from entry `first` on.

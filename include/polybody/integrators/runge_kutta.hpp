@@ -190,7 +190,7 @@ struct DormandPrince {
   template <class W>
   double mean_square(State const& x, Index bodies, W const& w) const {
     detail::ErrorTolerance const tolerance{absolute_tolerance, relative_tolerance};
-    double const of_q = std::max(tolerance.of_all(x.q, x.q, x.q.size()), tolerance.of_all(w.dq, w.dq, bodies));
+    double const of_q = tolerance.of_all(x.q, w.dq, std::max(x.q.size(), w.dq.size()));  // states move no coordinate
     return 0.5 * (tolerance.mean_square(w.error, bodies, of_q) +
                   tolerance.mean_square(w.v_error, bodies, tolerance.of_all(x.v, w.v, bodies))) +
            tolerance.mean_square_each(w.v_error, x.v, w.v, bodies);

@@ -78,12 +78,13 @@ void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what) 
         throw InvalidInput(std::string(what) + " must be finite, but has a NaN or an infinity.");
 }
 
-/// Whether every entry of `x` is finite.
-inline bool all_finite(VecX const& x) {
+/// The first entry of `x` that is NaN or infinite, or −1.
+inline Index first_not_finite(VecX const& x) {
   for (Index i = 0; i < x.size(); ++i)
-    if (!std::isfinite(x[i])) return false;
-  return true;
+    if (!std::isfinite(x[i])) return i;
+  return -1;
 }
+inline bool all_finite(VecX const& x) { return first_not_finite(x) < 0; }
 
 /// max |xᵢ|: zero without entries, NaN if one is.
 inline double largest_size(VecX const& x) {
