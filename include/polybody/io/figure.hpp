@@ -40,7 +40,8 @@ namespace detail {
 inline constexpr std::array<std::string_view, 5> curve_styles{"lines", "points", "linespoints", "dashed", "steps"};
 
 /// Throws InvalidInput with the figure's title and the curve's label unless all can be drawn.
-inline void check(Figure const& figure) {
+template <class = void>  // compiled where it is used
+void check(Figure const& figure) {
   std::string where = "figure '" + figure.title + "'";
   auto const need = [&](bool good, std::string_view rule) {
     if (!good) throw InvalidInput(where + ": " + std::string(rule));

@@ -17,7 +17,8 @@
 namespace polybody {
 
 /// The first executable `gnuplot` in the folders of the environment variable PATH, if any.
-inline std::optional<std::filesystem::path> find_gnuplot() {
+template <class = void>  // compiled where it is used
+std::optional<std::filesystem::path> find_gnuplot() {
   namespace fs = std::filesystem;
   char const* const path = std::getenv("PATH");
   for (std::string_view rest = path ? path : ""; !rest.empty();) {
@@ -36,17 +37,22 @@ inline std::optional<std::filesystem::path> find_gnuplot() {
 namespace detail {
 
 /// `text` in single quotes, each single quote inside replaced by `escape`.
-inline std::string single_quoted(std::string_view text, std::string_view escape) {
+template <class = void>
+std::string single_quoted(std::string_view text, std::string_view escape) {
   std::string quoted = "'";
   for (char const c : text) c == '\'' ? quoted += escape : quoted += c;
   return quoted + '\'';
 }
 
 /// One word for a POSIX shell.
-inline std::string shell_word(std::string_view text) { return single_quoted(text, R"('\'')"); }
+template <class = void>
+std::string shell_word(std::string_view text) {
+  return single_quoted(text, R"('\'')");
+}
 
 /// A gnuplot string expression; nothing in it is special (gnuplot runs `...` in double quotes).
-inline std::string gnuplot_text(std::string_view text) {
+template <class = void>
+std::string gnuplot_text(std::string_view text) {
   std::string expression = single_quoted(text, "''");
   for (std::size_t at = 0; (at = expression.find('\n', at)) != expression.npos; at += 7)
     expression.replace(at, 1, "'.\"\\n\".'");
@@ -56,8 +62,9 @@ inline std::string gnuplot_text(std::string_view text) {
 /// Runs `program` in the folder of `script` with the gnuplot variable png set to the name of a
 /// temporary file, which then takes the place of `png`. Throws IoError with the script's name and
 /// gnuplot's own words.
-inline void run_gnuplot(std::filesystem::path const& program, std::filesystem::path const& script,
-                        std::filesystem::path const& png) {
+template <class = void>
+void run_gnuplot(std::filesystem::path const& program, std::filesystem::path const& script,
+                 std::filesystem::path const& png) {
   namespace fs = std::filesystem;
   struct Temporary {
     fs::path file;

@@ -35,7 +35,8 @@ inline constexpr std::array<std::string_view, 8> palette{"#0072B2", "#D55E00", "
                                                          "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
 
 /// A block of two columns for each curve; two blank lines part the blocks.
-inline std::string data_text(std::vector<Figure> const& figures) {
+template <class = void>  // compiled where it is used
+std::string data_text(std::vector<Figure> const& figures) {
   std::string text;
   for (auto const& figure : figures)
     for (auto const& curve : figure.curves) {
@@ -49,14 +50,16 @@ inline std::string data_text(std::vector<Figure> const& figures) {
 }
 
 /// How many digits tell the marks of an axis apart: six, or more for a small span far from zero.
-inline std::string tick_digits(double low, double high) {
+template <class = void>
+std::string tick_digits(double low, double high) {
   double const share = std::max(std::abs(low), std::abs(high)) / std::abs(high - low);
   double const digits = share < 1e16 ? std::ceil(std::log10(share)) + 3 : 6;
   return std::to_string(static_cast<int>(std::clamp(digits, 6.0, 17.0)));
 }
 
 /// The commands for one figure, whose first curve is data block `block` of the file `data`.
-inline std::string script_text(Figure const& figure, std::string const& data, std::size_t block) {
+template <class = void>
+std::string script_text(Figure const& figure, std::string const& data, std::size_t block) {
   auto const range = [](auto const& r) {
     return r ? '[' + all_digits((*r)[0]) + ':' + all_digits((*r)[1]) + ']' : std::string("[*:*]");
   };
@@ -93,7 +96,10 @@ inline std::string script_text(Figure const& figure, std::string const& data, st
   return text + '\n';
 }
 
-inline std::filesystem::path with_ending(std::filesystem::path stem, char const* ending) { return stem += ending; }
+template <class = void>
+std::filesystem::path with_ending(std::filesystem::path stem, char const* ending) {
+  return stem += ending;
+}
 
 }  // namespace detail
 
@@ -101,8 +107,9 @@ inline std::filesystem::path with_ending(std::filesystem::path stem, char const*
 /// largest figure. Writes stem.dat, stem.gp (runs by hand from its own folder) and, if `draw` and
 /// gnuplot is on PATH, stem.png; each appears only when complete. Throws InvalidInput (naming the
 /// figure and the curve) before anything is written, IoError if writing or gnuplot fails.
-inline Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
-                          bool draw = true) {
+template <class = void>
+Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
+                   bool draw = true) {
   std::string const name = stem.filename().string();
   if (name.empty() || std::ranges::any_of(name, [](unsigned char c) { return c < ' '; }))
     throw InvalidInput("figure file '" + stem.string() + "': the name is empty or has a control sign");
@@ -145,7 +152,8 @@ inline Drawn write_panels(std::vector<Figure> const& figures, int columns, std::
 }
 
 /// One figure; see `write_panels`.
-inline Drawn write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
+template <class = void>
+Drawn write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
   return write_panels({figure}, 1, stem, draw);
 }
 

@@ -84,13 +84,14 @@ Surface box(Vec3 const& size) {
   Surface s = swept(2, 4);
   Vec2 const at[] = {{0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}, {0.5, -0.5}};
   for (int k = 0; k < 2; ++k)
-    for (int i = 0; i < 4; ++i) s.points[std::size_t(4 * k + i)] = Vec3(k - 0.5, at[i][0], at[i][1]).cwiseProduct(size);
+    for (int i = 0; i < 4; ++i)
+      s.points[std::size_t(4 * k + i)] = {(k - 0.5) * size[0], at[i][0] * size[1], at[i][1] * size[2]};
   return s;
 }
 
 /// A prism with so many sides in place of the cylinder, of its volume; middle at the origin. \throws InvalidInput
 /// unless the sizes are positive, `axis` is a unit vector and there are three sides.
-template <class = void>
+template <class T = double>  // compiled where it is used
 Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(), int sides = 24) {
   require_positive(radius, "cylinder: the radius");
   require_positive(length, "cylinder: the length");
@@ -99,12 +100,12 @@ Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(),
   int smallest = 0;
   for (int i = 1; i < 3; ++i)
     if (std::abs(axis[i]) < std::abs(axis[smallest])) smallest = i;
-  Vec3 const y = axis.cross(Vec3::Unit(smallest)).normalized(), z = axis.cross(y);
+  Vec<T, 3> const x = axis, y = x.cross(Vec<T, 3>::Unit(smallest)).normalized(), z = x.cross(y);
   Surface s = swept(2, sides);
   for (int k = 0; k < 2; ++k)
     for (int i = 0; i < sides; ++i)
       s.points[std::size_t(sides * k + i)] =
-          axis * ((k - 0.5) * length) + y * ring[std::size_t(i)][0] + z * ring[std::size_t(i)][1];
+          x * ((k - 0.5) * length) + y * ring[std::size_t(i)][0] + z * ring[std::size_t(i)][1];
   return s;
 }
 

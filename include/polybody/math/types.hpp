@@ -34,6 +34,11 @@ using VecXOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 template <class T>
 using MatXOf = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
+/// double, as a name that depends on T: an expression with it is compiled where a template is used, not where it
+/// stands.
+template <class T>
+using RealFor = std::conditional_t<true, double, T>;
+
 namespace detail {
 /// `M::Zero()` without an expression type for each M.
 template <class M>

@@ -21,17 +21,17 @@ RowBlock<double> const& rows_of(System const& system, Index joint) {
 
 /// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its
 /// λ_α the moment r_α × λ_α. (What stretches r_α is no wrench.)
-template <class = void>  // compiled where it is used
-Vec6 linear_wrench(LinearRows const& rows, State const& x) {
-  Vec6 w = Vec6::Zero();
+template <class T>  // compiled where it is used
+Vec<T, 6> linear_wrench(LinearRows const& rows, StateOf<T> const& x) {
+  Vec<T, 6> w = Vec<T, 6>::Zero();
   Index const size = rows.positions;
   w.head(size) = x.lambda.segment(rows.row, size);
   Index row = size;
   for (LinearRows::Gradient const& g : rows.gradients) {
-    Vec3 now = g.fixed, force = g.axis * x.lambda[rows.row + row];
+    Vec<T, 3> now = g.fixed, force = g.axis * x.lambda[rows.row + row];
     if (g.map.cols() > 0) now.head(size) = g.map * x.q.segment(rows.b.q0, g.map.cols());
     if (g.rows > 1) force.head(size) = x.lambda.segment(rows.row + row, size);
-    w.tail<3>() += now.cross(force);
+    w.template tail<3>() += now.cross(force);
     row += g.rows;
   }
   return w;
@@ -61,19 +61,20 @@ enum class ReactionAxes { world, joint };
 /// Force and moment that a joint exerts on its second body, about the joint point there:
 /// −Gbᵀλ [thesis Eq. 3.3 and the rule of equipollent forces]; "joint" are the axes of the second marker. `system` must
 /// have been evaluated at x. \param joint its place in the layout, as `index_of_joint` finds it
-template <class = void>  // compiled where it is used
-Wrench<double> reaction_of(System const& system, State const& x, Index joint, ReactionAxes axes = ReactionAxes::world) {
+template <class T>  // compiled where it is used
+Wrench<T> reaction_of(BasicSystem<T> const& system, StateOf<T> const& x, Index joint,
+                      ReactionAxes axes = ReactionAxes::world) {
   JointPlace const& place = system.layout().joints[std::size_t(joint)];
   RowBlock<double> const& block = detail::rows_of(system, joint);
-  Vec6 w;
+  Vec<T, 6> w;
   if (block.source == RowSource::linear)
     w = detail::linear_wrench(*place.linear, x);
   else
     wrench_at(block, block.b, block.multiplier(x.lambda), w.data());
   w = -w;
-  Wrench<double> wrench{w.head<3>(), w.tail<3>()};
+  Wrench<T> wrench{w.template head<3>(), w.template tail<3>()};
   if (axes == ReactionAxes::joint) {
-    Mat3 const& axes_of_b = system.data().markers[std::size_t(place.b)].frame.A;
+    Mat<T, 3, 3> const& axes_of_b = system.data().markers[std::size_t(place.b)].frame.A;
     wrench = {axes_of_b.transpose() * wrench.f, axes_of_b.transpose() * wrench.m};
   }
   return wrench;

@@ -73,7 +73,7 @@ class BlockFactor {
     for (Node const& node : layout_.nodes) {
       int const bad = with_constant(node.pivoted ? 0 : node.size, [&](auto n) {
         int const lost = eliminate<n>(node, symmetric);
-        if (lost < 0) symmetric ? update<n, true>(node) : update<n, false>(node);
+        if (lost < 0) update<n>(node, symmetric);
         return lost;
       });
       if (bad >= 0) return failed(node, bad);
@@ -154,8 +154,8 @@ class BlockFactor {
                                      });
   }
 
-  template <int N, bool symmetric>
-  void update(Node const& n) {
+  template <int N>
+  void update(Node const& n, bool symmetric) {
     detail::NodeStorage const s = storage(n);
     double const *const w = s.u + s.pad, *const l = s.l;
     Neighbour const* const of = layout_.neighbours.data() + n.first_neighbour;

@@ -85,9 +85,11 @@ class ReducedCoordinates {
     RowEnd<double> const& end = reduction_.tree().bodies[i].backwards ? block.a : block.b;
     int const m = block.rows;
     Vec6 w = state_.held[i];
-    Vec3 const rho = data.markers[std::size_t(end.marker)].frame.r - state_.frames[i].r;
-    w.template tail<3>() -= rho.cross(w.template head<3>());
-    Mat<double, 6, 6> gram = Mat<double, 6, 6>::Identity();
+    Vec3 const &at = data.markers[std::size_t(end.marker)].frame.r, &origin = state_.frames[i].r;
+    double const rho[3] = {at[0] - origin[0], at[1] - origin[1], at[2] - origin[2]};
+    for (int k = 0; k < 3; ++k) w[3 + k] -= rho[(k + 1) % 3] * w[(k + 2) % 3] - rho[(k + 2) % 3] * w[(k + 1) % 3];
+    auto gram = zeros<Mat<RealFor<Solution>, 6, 6>>();
+    for (int k = m; k < 6; ++k) gram(k, k) = 1.0;
     double right[6] = {};
     for (int k = 0; k < m; ++k) {
       for (int l = 0; l < 6; ++l) right[k] -= end.map[m * l + k] * w[l];

@@ -8,7 +8,7 @@ namespace polybody {
 /// [TᵀKT, (G T)ᵀ; G T, 0] as a dense matrix from the blocks of [K, Gᵀ; G, 0]: itself the sink of these. Of the rows
 /// those that stay are taken.
 /// Compiled where it is used.
-template <class = void>
+template <class T = double>
 class DenseReductionOf {
  public:
   DenseReductionOf() = default;
@@ -16,10 +16,10 @@ class DenseReductionOf {
   DenseReductionOf(Index whole_speeds, Index speeds, Index rows, std::vector<Index> row_of)
       : row_of_(std::move(row_of)),
         speeds_(whole_speeds),
-        transposed_(MatX::Zero(speeds, whole_speeds)),
-        k_(MatX::Zero(speeds, speeds)),
-        g_(MatX::Zero(rows, speeds)),
-        half_(VecX::Zero(speeds)) {}
+        transposed_(MatXOf<T>::Zero(speeds, whole_speeds)),
+        k_(MatXOf<T>::Zero(speeds, speeds)),
+        g_(MatXOf<T>::Zero(rows, speeds)),
+        half_(VecXOf<T>::Zero(speeds)) {}
 
   /// Column j of T.
   void set_column(Index j, VecX const& column) {
@@ -57,8 +57,8 @@ class DenseReductionOf {
  private:
   std::vector<Index> row_of_;
   Index speeds_ = 0;
-  MatX transposed_, k_, g_;
-  VecX half_;
+  MatXOf<T> transposed_, k_, g_;
+  VecXOf<T> half_;
 };
 
 using DenseReduction = DenseReductionOf<>;

@@ -226,8 +226,8 @@ class JointTreeOf {
   }
 
   /// q˙ of the joint coordinates.
+  template <class D = Dual<1>>  // compiled where it is used
   void coordinate_rates(VecX const& q, VecX const& v, VecX& rate) const {
-    using D = Dual<1>;
     for_each_motion([&](JointMotion const& m, Index qn, Index vn) {
       if (m.kind != JointMotion::Kind::ball) {
         rate[qn] = v[vn];

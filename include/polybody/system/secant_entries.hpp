@@ -22,7 +22,7 @@ void for_each_pool_beside(Pools const& pools, Vectors& vectors, F&& f) {
 
 /// Place and axes of a marker (r, then A column by column) at both ends, and their slopes by its columns.
 struct MarkerSecant {
-  Vec<double, 12> from, to;
+  std::array<double, 12> from = {}, to = {};
   double* slopes = nullptr;  ///< 12×columns
   Index first = 0, columns = 0;
 };
@@ -47,14 +47,16 @@ struct SecantsBeside<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEn
   using Gaps = std::tuple<std::vector<GapSecant<Js::rows>>...>;
 };
 
-/// The frame of a marker whose twelve numbers are variables from `first` on.
-template <int n>
-Frame<Secant<n>> frame_of(MarkerSecant const& m, int first) {
-  Frame<Secant<n>> f;
+/// The frame of a marker whose twelve numbers are variables of S, a `Secant`, from `first` on.
+template <class S>
+Frame<S> frame_of(MarkerSecant const& m, int first) {
+  Frame<S> f;
   for (int i = 0; i < 3; ++i) {
-    f.r[i] = Secant<n>::variable(m.from[i], m.to[i], first + i);
-    for (int j = 0; j < 3; ++j)
-      f.A(j, i) = Secant<n>::variable(m.from[3 + 3 * i + j], m.to[3 + 3 * i + j], first + 3 + 3 * i + j);
+    f.r[i] = S::variable(m.from[std::size_t(i)], m.to[std::size_t(i)], first + i);
+    for (int j = 0; j < 3; ++j) {
+      int const k = 3 + 3 * i + j;
+      f.A(j, i) = S::variable(m.from[std::size_t(k)], m.to[std::size_t(k)], first + k);
+    }
   }
   return f;
 }
@@ -104,8 +106,8 @@ class TypedSecants {
     }
     for (GroundMarker const& g : model.ground_markers()) {
       MarkerSecant& m = markers_[std::size_t(g.published)];
-      m.from.template head<3>() = g.placement.origin;
-      for (int i = 0; i < 3; ++i) m.from.template segment<3>(3 + 3 * i) = g.placement.axes.col(i);
+      for (std::size_t j = 0; j < 12; ++j)
+        m.from[j] = j < 3 ? g.placement.origin[Index(j)] : g.placement.axes(Index(j % 3), Index(j / 3 - 1));
       m.to = m.from;
     }
     for_each_pool_beside(model.joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
@@ -262,19 +264,18 @@ class TypedSecants {
       MarkerSecant& m = markers_[std::size_t(p.published)];
       for (int j = 0; j < 12; ++j) {
         S const& x = j < 3 ? out.frame.r[j] : out.frame.A(j % 3, j / 3 - 1);
-        m.from[j] = x.a;
-        m.to[j] = x.b;
+        m.from[std::size_t(j)] = x.a;
+        m.to[std::size_t(j)] = x.b;
         for (int c = 0; c < n; ++c) m.slopes[12 * c + j] = x.d[c];
       }
     }
   }
 
-  template <class Entry, int m>
+  template <class Entry, int m, class S = Secant<24>>  // compiled where it is used
   void measure_gaps(Entry const& e, double t, GapSecant<m>& out) const {
-    using S = Secant<24>;
     MarkerSecant const& a = marker(e.a);
     MarkerSecant const& b = marker(e.b);
-    Vec<S, m> const g = e.joint.measure().template gap<S>(frame_of<24>(a, 0), frame_of<24>(b, 12), t).g;
+    Vec<S, m> const g = e.joint.measure().template gap<S>(frame_of<S>(a, 0), frame_of<S>(b, 12), t).g;
     for (int i = 0; i < m; ++i) {
       out.from[i] = g[i].a;
       out.to[i] = g[i].b;
@@ -329,7 +330,7 @@ class TypedSecants {
       auto const at_rest = e.force.template wrenches<double>(frames, middle_time());
       std::array<Frame<Secant<12 * n>>, std::size_t(n)> moving;
       for (int k = 0; k < n; ++k) {
-        moving[std::size_t(k)] = frame_of<12 * n>(marker(e.markers[std::size_t(k)]), 12 * k);
+        moving[std::size_t(k)] = frame_of<Secant<12 * n>>(marker(e.markers[std::size_t(k)]), 12 * k);
         wrenches[std::size_t(k)].f -= at_rest[std::size_t(k)].f;
         wrenches[std::size_t(k)].m -= at_rest[std::size_t(k)].m;
       }

@@ -37,7 +37,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = typename Chain::ElementMatrix;
-  using PointMap = Mat<double, 3, 12>;
+  using PointMap = Mat<RealFor<Strain>, 3, 12>;
   static constexpr int gradients = 1;  ///< that are linear in the coordinates
 
   /// A material point of the axis: element, and place ξ ∈ [0, 1] on it.
@@ -197,14 +197,14 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   AncfCable(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve);
 
   static PointMap map_of(std::array<double, 4> const& s) {
-    PointMap map = PointMap::Zero();
+    PointMap map = detail::zeros<PointMap>();
     for (int i = 0; i < 4; ++i)
       for (int k = 0; k < 3; ++k) map(k, 3 * i + k) = s[std::size_t(i)];
     return map;
   }
   Element<double> element_of(Point const& p, std::span<double const> q) const { return part<12>(q, first_column(p)); }
   static Vec3 slope_of(ShapeValues<4> const& s, Element<double> const& x) {
-    Vec3 slope = Vec3::Zero();
+    Vec3 slope(0.0, 0.0, 0.0);
     for (int i = 0; i < 4; ++i)
       for (int k = 0; k < 3; ++k) slope[k] += s.ds[i] * x[3 * i + k];
     return slope;
@@ -238,8 +238,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   BarConstants constants_;
   double length_;
   double l_;
-  Mat<double, 4, 4> mass_ = Mat<double, 4, 4>::Zero();  ///< of each component
-  Vec4 weight_ = Vec4::Zero();                          ///< the same for a uniform field
+  Mat<RealFor<Strain>, 4, 4> mass_ = detail::zeros<decltype(mass_)>();  ///< of each component
+  Vec4 weight_ = detail::zeros<Vec4>();                                 ///< the same for a uniform field
   std::vector<double> reference_;
   std::vector<Mat3> axes_;  ///< of the reference in the middle of each element
 };
@@ -261,7 +261,7 @@ AncfCable<Strain, axial_points, bending_points>::AncfCable(Bar const& bar, BarCo
     }
   }
   reference_.resize(std::size_t(coordinates()));
-  Mat<double, 3, 3> const axes = bar.placement.axes;
+  Mat<RealFor<Strain>, 3, 3> const axes = bar.placement.axes;
   for (Index i = 0; i <= elements(); ++i) {
     Placement const section = curve(double(i) * l_);
     section.check(name);

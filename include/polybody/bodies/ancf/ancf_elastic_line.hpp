@@ -195,6 +195,7 @@ struct ElasticLine {
   }
 
   /// Stiffness times the section's strains (Γ, K), and the pretension.
+  template <class Groups>  // compiled where it is used
   static Vec6 section_forces(Bar const& bar, Groups const& groups, Vec6 const& strains) {
     Vec6 n = strains;
     for (int i = 0; i < 3; ++i) {

@@ -19,10 +19,17 @@ struct CableAxial {
   static constexpr int reach = 3;
   static constexpr int difference = 2;
 
-  static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EA)); }
-  static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.axial); }
+  template <class T = double>  // compiled where it is used
+  static Vec<T, 1> stiffness(BarConstants const& c) {
+    return Vec<T, 1>(double(c.EA));
+  }
+  template <class T = double>
+  static Vec<T, 1> damping(Damping const& d) {
+    return Vec<T, 1>(d.axial);
+  }
   static constexpr int vector(int, int j) { return j + 1; }
-  static Mat<double, 1, 3> map(double xi, double l) {
+  template <class T = double>
+  static Mat<T, 1, 3> map(double xi, double l) {
     ShapeValues<4> const s = hermite_shape(xi, l);
     return {s.ds[1], s.ds[2], s.ds[3]};
   }
@@ -48,12 +55,13 @@ struct CableBending {
   static constexpr int difference = 2;
   static constexpr int k = Strain::curvature_power;
 
-  static Vec3 stiffness(BarConstants const& c) { return Vec3::Constant(c.EI); }
-  static Vec3 damping(Damping const& d) { return Vec3::Constant(d.bending); }
+  static Vec3 stiffness(BarConstants const& c) { return {c.EI, c.EI, c.EI}; }
+  static Vec3 damping(Damping const& d) { return {d.bending, d.bending, d.bending}; }
   static constexpr int vector(int, int j) { return j + 1; }
-  static Mat<double, 2, 3> map(double xi, double l) {
+  template <class T = double>
+  static Mat<T, 2, 3> map(double xi, double l) {
     ShapeValues<4> const s = hermite_shape(xi, l);
-    Mat<double, 2, 3> n;
+    Mat<T, 2, 3> n;
     for (int j = 0; j < 3; ++j) {
       n(0, j) = s.ds[j + 1];
       n(1, j) = s.dds[j + 1];

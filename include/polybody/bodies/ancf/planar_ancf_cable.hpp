@@ -29,38 +29,48 @@ struct HermiteCable {
   static Vec4 rigid_velocity(Vec4 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], -omega * node[3], omega * node[2]};
   }
-  static Mat<double, 2, 8> spread(std::array<double, 4> const& s) {
-    Mat<double, 2, 8> n = Mat<double, 2, 8>::Zero();
-    for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = s[i];
+  template <class T = double>  // compiled where it is used
+  static Mat<T, 2, 8> spread(std::array<double, 4> const& s) {
+    Mat<T, 2, 8> n = Mat<T, 2, 8>::Zero();
+    for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = T(s[i]);
     return n;
   }
-  static Mat<double, 2, 8> position(double xi, double l) { return spread(hermite_shape(xi, l).s); }
-  static Mat<double, 2, 8> gradient(double xi, double l) { return spread(hermite_shape(xi, l).ds); }
+  template <class T = double>
+  static Mat<T, 2, 8> position(double xi, double l) {
+    return spread<T>(hermite_shape(xi, l).s);
+  }
+  template <class T = double>
+  static Mat<T, 2, 8> gradient(double xi, double l) {
+    return spread<T>(hermite_shape(xi, l).ds);
+  }
   static ShapeValues<4> axis_shape(double xi, double l) { return hermite_shape(xi, l); }
   /// A cable has no rotary inertia.
-  static Vec<double, 8> rotary(double, double) { return Vec<double, 8>::Zero(); }
+  template <class T = double>
+  static Vec<T, 8> rotary(double, double) {
+    return Vec<T, 8>::Zero();
+  }
 
   /// Angle of r′; θ̇ = r′ × ṙ′/|r′|², whose derivative without r̈′ is −2 (r′·ṙ′) θ̇/|r′|².
   template <StateScalar T>
   static SectionAngle<T, 8> rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed) {
     using std::atan2;
-    Mat<double, 2, 8> const d = spread(hermite_shape(xi, l).ds);
-    Vec<T, 2> const slope = d.template cast<T>() * e, rate = d.template cast<T>() * ed;
+    Mat<T, 2, 8> const d = gradient<T>(xi, l);
+    Vec<T, 2> const slope = d * e, rate = d * ed;
     T const n2 = slope.squaredNorm();
     SectionAngle<T, 8> out;
     out.angle = atan2(slope[1], slope[0]);
-    out.row =
-        (d.row(1).transpose().template cast<T>() * slope[0] - d.row(0).transpose().template cast<T>() * slope[1]) / n2;
+    out.row = (d.row(1).transpose() * slope[0] - d.row(0).transpose() * slope[1]) / n2;
     out.bias = out.row.dot(ed) * slope.dot(rate) * (-2.0) / n2;
     return out;
   }
 
   /// ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).
-  static void rotation_hessian(double xi, double l, Vec<double, 8> const& e, Mat<double, 8, 8>& h) {
-    Mat<double, 2, 8> const d = spread(hermite_shape(xi, l).ds);
-    Vec2 const slope = d * e;
-    double const x = slope[0], y = slope[1], n4 = std::pow(slope.squaredNorm(), 2);
-    Mat<double, 2, 2> of_slope;
+  template <class T>
+  static void rotation_hessian(double xi, double l, Vec<T, 8> const& e, Mat<T, 8, 8>& h) {
+    Mat<T, 2, 8> const d = gradient<T>(xi, l);
+    Vec<T, 2> const slope = d * e;
+    T const x = slope[0], y = slope[1], n4 = std::pow(slope.squaredNorm(), 2);
+    Mat<T, 2, 2> of_slope;
     of_slope << 2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y;
     h = d.transpose() * (of_slope / n4) * d;
   }
@@ -74,10 +84,17 @@ struct HermiteCable {
     static constexpr int reach = 3;
     static constexpr int difference = 2;
 
-    static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EA)); }
-    static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.axial); }
+    template <class T = double>  // compiled where it is used
+    static Vec<T, 1> stiffness(BarConstants const& c) {
+      return Vec<T, 1>(double(c.EA));
+    }
+    template <class T = double>
+    static Vec<T, 1> damping(Damping const& d) {
+      return Vec<T, 1>(d.axial);
+    }
     static constexpr int vector(int, int j) { return j + 1; }
-    static Mat<double, 1, 3> map(double xi, double l) {
+    template <class T = double>
+    static Mat<T, 1, 3> map(double xi, double l) {
       ShapeValues<4> const s = hermite_shape(xi, l);
       return {s.ds[1], s.ds[2], s.ds[3]};
     }
@@ -103,12 +120,19 @@ struct HermiteCable {
     static constexpr int difference = 2;
     static constexpr int k = Strain::curvature_power;
 
-    static Vec<double, 1> stiffness(BarConstants const& c) { return Vec<double, 1>(double(c.EI)); }
-    static Vec<double, 1> damping(Damping const& d) { return Vec<double, 1>(d.bending); }
+    template <class T = double>
+    static Vec<T, 1> stiffness(BarConstants const& c) {
+      return Vec<T, 1>(double(c.EI));
+    }
+    template <class T = double>
+    static Vec<T, 1> damping(Damping const& d) {
+      return Vec<T, 1>(d.bending);
+    }
     static constexpr int vector(int, int j) { return j + 1; }
-    static Mat<double, 2, 3> map(double xi, double l) {
+    template <class T = double>
+    static Mat<T, 2, 3> map(double xi, double l) {
       ShapeValues<4> const s = hermite_shape(xi, l);
-      Mat<double, 2, 3> n;
+      Mat<T, 2, 3> n;
       for (int j = 0; j < 3; ++j) {
         n(0, j) = s.ds[j + 1];
         n(1, j) = s.dds[j + 1];

@@ -177,8 +177,10 @@ class Lrvf {
   double strain_energy(Index e, std::span<double const> q) const {
     return l_ * section_.energy(section_strains({e, 0.5}, q));
   }
+  template <class T = double>  // compiled where it is used
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
-    return -3.0 * sixth_ * g.dot(part<3>(q, 7 * e) + part<3>(q, 7 * e + 7));
+    Vec<T, 3> const r1 = part<3>(q, 7 * e), r2 = part<3>(q, 7 * e + 7);
+    return -3.0 * sixth_ * g.dot(r1 + r2);
   }
 
   /// (Γ, K) of the element of `p` in the axes of its section [1], [1/m]: see sections.hpp.
@@ -313,7 +315,7 @@ Lrvf<Interpolation>::Lrvf(Bar const& bar, BarConstants const& c, Index n, Refere
       reference_(std::size_t(7 * (n + 1))) {
   double const iz = c.rotary_inertia, iy = c.rotary_inertia_y.value_or(iz);
   sixth_ = c.mass_per_length * l_ / 6.0;
-  rotary_ = 0.5 * l_ * Vec<double, 3>(iy + iz, iy, iz);
+  for (int i = 0; i < 3; ++i) rotary_[i] = 0.5 * l_ * (i == 0 ? iy + iz : i == 1 ? iy : iz);
   std::span<double> const q(reference_);
   Mat<double, 3, 3> const axes = bar.placement.axes;
   for (Index i = 0; i <= n; ++i) {

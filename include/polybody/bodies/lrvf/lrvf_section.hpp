@@ -83,16 +83,18 @@ class LrvfSection {
     M3 nx = full1.asDiagonal();
     Mat<T, 3, 6> nt = full1.asDiagonal() * slide, mt = full2.asDiagonal() * s.at.bend;
     if (damped_) {  // Γ˙ = u + Γ × Ω, u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:  δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ
+      Mat<T, 3, 6> const &spin_change = by.spin, &bend_change = by.bend;
       V3 const omega = s.at.spin * s.turning;
       V3 const d1 = ck * c1.cwiseProduct(time.template head<3>()), d2 = ck * c2.cwiseProduct(time.template tail<3>());
       M3 const w = skew<T>(omega);
       nx -= d1.asDiagonal() * w;
-      nt += d1.asDiagonal() * (skew<T>(s.rate) * s.at.spin - w * slide + gamma * by.spin);
-      mt += d2.asDiagonal() * by.bend;
+      nt += d1.asDiagonal() * (skew<T>(s.rate) * s.at.spin - w * slide + gamma * spin_change);
+      mt += d2.asDiagonal() * bend_change;
     }
+    Mat<T, 6, 6> const& pulled_change = by.pulled;
     Mat<T, 6, 3> const pulled = s.at.spin.transpose() * (l_ * (n - gamma * nx));
     Mat<T, 6, 6> const turn =
-        s.at.spin.transpose() * (l_ * (n * slide - gamma * nt)) + s.at.bend.transpose() * mt + ck * by.pulled;
+        s.at.spin.transpose() * (l_ * (n * slide - gamma * nt)) + s.at.bend.transpose() * mt + ck * pulled_change;
     M3 const rr = s.at.R * (l_ / (s.chord * s.chord) * nx) * s.at.R.transpose();
     Mat<T, 3, 6> const rt = s.at.R * (l_ / s.chord * (nt - n * s.at.spin));
     Mat<T, 6, 3> const tr = pulled * (1.0 / s.chord) * s.at.R.transpose();

@@ -27,34 +27,34 @@ struct SimoVuQuoc {
   static Vec3 rigid_velocity(Vec3 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], omega};
   }
-  template <class = void>  // compiled where it is used
-  static Mat<double, 2, 6> position(double xi, double) {
-    Mat<double, 2, 6> n = Mat<double, 2, 6>::Zero();
+  template <class T = double>  // compiled where it is used
+  static Mat<T, 2, 6> position(double xi, double) {
+    Mat<T, 2, 6> n = Mat<T, 2, 6>::Zero();
     for (int i = 0; i < 2; ++i) {
-      n(i, i) = 1.0 - xi;
-      n(i, 3 + i) = xi;
+      n(i, i) = T(1.0 - xi);
+      n(i, 3 + i) = T(xi);
     }
     return n;
   }
   /// The row of θ in the kinetic energy ½ ∫ Iρ θ̇² dx.
-  template <class = void>  // compiled where it is used
-  static Vec6 rotary(double xi, double) {
-    Vec6 row = Vec6::Zero();
-    row[2] = 1.0 - xi;
-    row[5] = xi;
+  template <class T = double>  // compiled where it is used
+  static Vec<T, 6> rotary(double xi, double) {
+    Vec<T, 6> row = Vec<T, 6>::Zero();
+    row[2] = T(1.0 - xi);
+    row[5] = T(xi);
     return row;
   }
 
   /// θ(ξ); the field is linear, so that there is no bias.
   template <StateScalar T>
   static SectionAngle<T, 6> rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&) {
-    Vec<T, 6> const row = rotary(xi, l).template cast<T>();
+    Vec<T, 6> const row = rotary<T>(xi, l);
     return {row.dot(e), row, T(0.0)};
   }
 
   /// ∂²θ/∂e²: none.
-  template <class = void>  // compiled where it is used
-  static void rotation_hessian(double, double, Vec6 const&, Mat<double, 6, 6>& h) {
+  template <class T>  // compiled where it is used
+  static void rotation_hessian(double, double, Vec<T, 6> const&, Mat<T, 6, 6>& h) {
     h.setZero();
   }
 
@@ -70,10 +70,10 @@ struct SimoVuQuoc {
 
     static constexpr int reach = 2;
     static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
-    template <class = void>  // compiled where it is used
-    static Mat<double, 4, 2> map(double xi, double l) {
+    template <class T = double>  // compiled where it is used
+    static Mat<T, 4, 2> map(double xi, double l) {
       ShapeValues<2> const n = linear_shape(xi, l);
-      Mat<double, 4, 2> p;
+      Mat<T, 4, 2> p;
       for (int j = 0; j < 2; ++j) {
         p(0, j) = p(1, j) = p(3, j) = n.ds[j];
         p(2, j) = n.s[j];

@@ -139,8 +139,9 @@ class Objective {
     V3 const sum = w.template head<3>() + w.template tail<3>(),
              difference = w.template tail<3>() - w.template head<3>();
     M3 const half = 0.5 * skew<T>(t) + even(m), other = odd(m);
-    out.pulled.template topRows<3>() = -(half + other) * by_nodes;
-    out.pulled.template bottomRows<3>() = (half - other) * by_nodes;
+    Mat<T, 6, 6>& pulled = out.pulled;
+    pulled.template topRows<3>() = -(half + other) * by_nodes;
+    pulled.template bottomRows<3>() = (half - other) * by_nodes;
     out.spin = -0.5 * skew<T>(difference) * by_nodes;
     out.bend = (odd(sum) + even(difference)) * by_nodes;
   }
@@ -210,11 +211,11 @@ class Direct {
   }
 
   /// By dual numbers.
-  template <class T>  // compiled where it is used
+  template <class T, StateScalar D = Dual<6>>  // compiled where it is used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, MiddleGradient& out) const {
-    MiddleSection<Dual<6>> at;
-    middle<Dual<6>>(detail::turning_quaternion<6>(a, 0), detail::turning_quaternion<6>(b, 3), at);
+    MiddleSection<D> at;
+    middle<D>(detail::turning_quaternion<6>(a, 0), detail::turning_quaternion<6>(b, 3), at);
     out.pulled.setZero();
     out.spin.setZero();
     out.bend.setZero();

@@ -90,9 +90,9 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.template tail<4>() = g.transpose() * moment;
   }
   /// By dual numbers along ck δθ and cd δθ̇.
-  template <StateScalar D = Dual<4>>  // compiled where it is used
+  template <class T, StateScalar D = Dual<4>>  // compiled where it is used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
-               Mat<double, 7, 7>& k) const {
+               Mat<T, 7, 7>& k) const {
     std::array<D, 7> moved, moving;
     Vec<D, 7> f;
     auto const pass = [&](bool by_position, double scale) {
@@ -112,8 +112,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
 
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Vec<T, 7>& out) const {
-    out.template head<3>() = (g * mass_).template cast<T>();
-    out.template tail<4>().setZero();
+    for (int i = 0; i < 7; ++i) out[i] = T(i < 3 ? g[i] * mass_ : 0.0);
   }
   template <class T = double>  // compiled where it is used
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
@@ -140,8 +139,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   void own_gamma(std::span<T const>, std::span<T const> v, Vec<T, 1>& gamma) const {
     gamma[0] = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];
   }
-  template <class = void>  // compiled where it is used
-  void own_stiffness(std::span<double const>, Vec<double, 1> const& lambda, Mat<double, 7, 7>& k) const {
+  template <class T>  // compiled where it is used
+  void own_stiffness(std::span<double const>, Vec<T, 1> const& lambda, Mat<T, 7, 7>& k) const {
     k.setZero();
     for (int i = 3; i < 7; ++i) k(i, i) = lambda[0];
   }
@@ -168,8 +167,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.shape = JacobianShape::dense;
     out.columns = 7;
   }
-  template <class = void>  // compiled where it is used
-  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<double, 7, 7>& k) const {
+  template <class T>  // compiled where it is used
+  void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 7, 7>& k) const {
     load_stiffness_by_duals(*this, p, q, w, k);
   }
 
