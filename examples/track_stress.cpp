@@ -4,130 +4,34 @@
 //   track_stress --compare
 //   track_stress --figure 4.8
 
-#include <polybody/io/checkpoint.hpp>
-#include <polybody/run/body_record.hpp>
+#include <polybody/compare/join.hpp>
 #include <polybody/signals/rainflow.hpp>
 #include <polybody/vehicle/link_strain.hpp>
-#include <polybody/vehicle/modal_links.hpp>
 
 #include <map>
 
 #include "support/command_line.hpp"
-#include "tracked_vehicle.hpp"
+#include "track_stress/stress_runs.hpp"
 
-using namespace chapter3;
+using namespace chapter4;
 
 namespace {
 
-inline constexpr int watched_link = watched_pin;
-
-struct Options : Settings {
-  std::string links = "ancf", figure, recovery = "static";
-  double cut_off = 15.0;
-  bool compare = false, halve = false, restart = false, fatigue = false;
-};
-
-using BeamLinks = Formulation<AncfBeam<ElasticLine>, AncfLinear, GeneralizedAlpha>;
-using SolidLinks = Formulation<AncfBeam<Continuum<>>, AncfLinear, GeneralizedAlpha>;
-using ModalLinks = Formulation<Ffr, Constraint, GeneralizedAlpha>;
-using RotationLinks = Formulation<Lrvf<>, Constraint, GeneralizedAlpha>;
-
-IdealTrack rigid(Options const& o) { return {"rigid", {}, integrator(o)}; }
-CableTrack cable(Options const& o) { return {"ancf", {}, integrator(o)}; }
-BeamLinks beam(Options const& o) { return {"beam", {}, integrator(o)}; }
-SolidLinks solid(Options const& o) { return {"continuum", {}, integrator(o)}; }
-ModalLinks modal(Options const& o) { return {"ffr", {}, integrator(o)}; }
-RotationLinks rotation(Options const& o) { return {"lrvf", {}, integrator(o)}; }
-
-// What a run knows of its watched link. Of rigid links the strain is worked out after the run.
-struct LinkHistory {
-  std::vector<double> strain;              // of the link, change of length over length
-  std::vector<double> bending;             // in the middle: what it adds in the fibre towards the wheels
-  double recording = 0.0, recovery = 0.0;  // CPU times [s]
-  std::function<void(LinkHistory&)> recover;
-};
-
-double cpu_of(auto&& work) {
-  std::clock_t const begin = std::clock();
-  work();
-  return double(std::clock() - begin) / CLOCKS_PER_SEC;
-}
-
-DecoupledStress recovered(Options const& o, BodyRecord const& record) {
-  if (o.recovery == "static") return DecoupledStress::quasi_static(m113::link_structure(), record);
-  return DecoupledStress::vibrating(m113::link_structure(), record, integrator(o),
-                                    {.frame = ReferenceConditions::simply_supported(0, 2)});
-}
-
-struct StressCase {
-  Options const& options;
-  std::vector<Outcome>* outcomes;
-  std::vector<std::shared_ptr<LinkHistory>>* histories;
-
-  template <class F>
-  auto operator()(F const& f) const {
-    using M = typename VehicleOf<F>::ModelType;
-    TrackCase const track{options, outcomes};
-    auto const built = track.build(f);
-    auto scenario = track.scenario(f, built);
-    auto const vehicle = built.vehicle;
-    auto const history = std::make_shared<LinkHistory>();
-    histories->push_back(history);
-    auto const link = vehicle->side(m113::Side::left).links[watched_link];
-    if constexpr (HasRigidPoints<typename F::BodyType>) {
-      auto const recorder = std::make_shared<LoadRecorder>(vehicle->model);
-      recorder->add(link);
-      scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
-        before(model, x);
-        history->recording += cpu_of([&] { recorder->record(x); });
-      };
-      // The recorder looks into the model: it lives as long as this.
-      history->recover = [=, keep = vehicle, o = options](LinkHistory& h) {
-        h.recovery = cpu_of([&] {
-          DecoupledStress const stress = recovered(o, recorder->of(link));
-          h.strain = m113::link_strain(stress);
-          h.bending = m113::link_bending(stress);
-        });
-      };
-    } else {
-      scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
-        before(model, x);
-        history->strain.push_back(m113::link_strain(vehicle->model, x, link));
-        Vec3 const lateral = vehicle->hull(x).A.col(1);
-        history->bending.push_back(m113::link_bending(vehicle->model, x, link, lateral));
-      };
-    }
-    return scenario;
-  }
-};
-
-struct StressRuns : Runs {
-  std::vector<std::shared_ptr<LinkHistory>> links;
-
-  std::string const& name(std::size_t k) const { return comparison.runs[k].name; }
-  std::vector<double> const& raw(std::size_t k) const { return links[k]->strain; }
-  std::vector<double> const& bending(std::size_t k) const { return links[k]->bending; }
-  std::vector<double> filtered(std::size_t k, double cut_off) const { return filtered(k, raw(k), cut_off); }
-  // Without the last sample where an event ended the run between two steps.
-  std::vector<double> filtered(std::size_t k, std::vector<double> const& y, double cut_off) const {
-    return low_pass(filtered_times(k), std::span(y).first(filtered_times(k).size()),
-                    {.cut_off = cut_off, .mirrored = true});
-  }
-  std::span<double const> filtered_times(std::size_t k) const {
-    return std::span(times(k)).first(times(k).size() - (comparison.runs[k].run.stopped ? 1 : 0));
-  }
-};
-
-template <class... Fs>
-StressRuns run(Options const& o, Fs const&... formulations) {
+// The runs of several formulations side by side.
+StressRuns run(Options const& o, std::vector<Links> const& formulations) {
   warn_of_drive(o);
-  StressRuns runs;
-  runs.comparison = compare(StressCase{o, &runs.outcomes, &runs.links}, formulations...);
-  for (auto const& link : runs.links)
-    if (link->recover) link->recover(*link);
-  for (ComparedRun const& r : runs.comparison.runs)
-    for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
-  return runs;
+  StressRuns all;
+  std::vector<Comparison> apart;
+  for (Links const& links : formulations) {
+    StressRuns one = links.run(o);
+    for (ComparedRun const& r : one.comparison.runs)
+      for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
+    apart.push_back(std::move(one.comparison));
+    all.outcomes.insert(all.outcomes.end(), one.outcomes.begin(), one.outcomes.end());
+    all.links.insert(all.links.end(), one.links.begin(), one.links.end());
+  }
+  all.comparison = join(apart);
+  return all;
 }
 
 // Runs that several figures share are made once.
@@ -140,7 +44,7 @@ class Cache {
     Options o = options_;
     o.speed = speed;
     o.until = until;
-    return runs_.emplace(key, run(o, rigid(o), cable(o))).first->second;
+    return runs_.emplace(key, run(o, {rigid_links(), cable_links()})).first->second;
   }
 
  private:
@@ -357,38 +261,6 @@ void fatigue(Options const& o, StressRuns const& runs) {
   if (!f.curves.empty()) draw(o, f, "stress_ranges");
 }
 
-// Runs to the end and puts the first state from `at` [s] on away in a file; returns its time.
-double put_away(Simulation<GeneralizedAlpha>& run, double at, fs::path const& file) {
-  double done_at = -1.0;
-  while (!run.done()) {
-    run.advance();
-    if (done_at >= 0.0 || run.state().t < at) continue;
-    write_checkpoint(file, run.snapshot());
-    done_at = run.state().t;
-  }
-  return done_at;
-}
-
-// Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
-template <class F>
-void restart(Options const& o, F const& f) {
-  std::vector<Outcome> outcomes;
-  TrackCase const track{o, &outcomes};
-  auto const built = track.build(f);
-  auto const scenario = track.scenario(f, built);
-  fs::path const file = o.out / (f.name + ".checkpoint");
-  State x = scenario.start;
-  auto whole = simulate(scenario.model, x, f.integrator, scenario.options);
-  double const at = put_away(whole, 0.5 * o.until, file);
-  State y = scenario.start;
-  auto rest = resume(scenario.model, y, f.integrator, scenario.options, read_checkpoint(file));
-  while (!rest.done()) rest.advance();
-  bool const same = x.t == y.t && x.q == y.q && x.v == y.v && x.a == y.a && x.lambda == y.lambda;
-  std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", f.name.c_str(), at, y.t,
-              same ? "the same bits" : "NOT the same");
-  if (!same) throw Error("The run that was taken up again ended in another state.");
-}
-
 void compare_steps(Options const& o, StressRuns const& coarse, StressRuns const& fine) {
   double const from = std::min(1.0, 0.25 * o.until);
   std::printf("%s, steps of %g and %g ms: filtered strain %.2f %% apart (rms from %.2g s on); CPU %.1f and %.1f s\n",
@@ -405,18 +277,18 @@ void show(Options const& o, StressRuns const& r) {
        "strain_filtered");
 }
 
-void single(Options const& o, auto const& of) {
-  auto const formulation = of(o);
-  if (o.restart) return restart(o, formulation);
-  StressRuns const runs = run(o, formulation);
+void single(Options const& o, Links const& links) {
+  if (o.restart) return links.restart(o);
+  StressRuns const runs = run(o, {links});
   if (!o.halve) return show(o, runs);
   Options half = o;
   half.step = 0.5 * o.step;
-  compare_steps(o, runs, run(half, of(half)));
+  compare_steps(o, runs, run(half, {links}));
 }
 
 void all_formulations(Options const& o) {
-  StressRuns const r = run(o, rigid(o), cable(o), modal(o), rotation(o), beam(o), solid(o));
+  StressRuns const r =
+      run(o, {rigid_links(), cable_links(), modal_links(), rotation_links(), beam_links(), continuum_links()});
   write_report(r.comparison, o.out / "comparison", !o.no_plot);
   report(o, r);
   if (o.fatigue) fatigue(o, r);
@@ -467,17 +339,17 @@ int main(int argc, char** argv) {
     else if (o.compare)
       all_formulations(o);
     else if (o.links == "rigid")
-      single(o, rigid);
+      single(o, rigid_links());
     else if (o.links == "ancf")
-      single(o, cable);
+      single(o, cable_links());
     else if (o.links == "ffr")
-      single(o, modal);
+      single(o, modal_links());
     else if (o.links == "lrvf")
-      single(o, rotation);
+      single(o, rotation_links());
     else if (o.links == "beam")
-      single(o, beam);
+      single(o, beam_links());
     else
-      single(o, solid);
+      single(o, continuum_links());
   } catch (Error const& e) {
     std::cerr << e.what() << '\n';
     return 1;

@@ -22,6 +22,7 @@
 #include <polybody/bodies/shared/sliding.hpp>
 #include <polybody/compare/compare.hpp>
 #include <polybody/compare/implied_curve.hpp>
+#include <polybody/compare/join.hpp>
 #include <polybody/compare/mesh_diagnostics.hpp>
 #include <polybody/compare/work_precision.hpp>
 #include <polybody/forces/axial_spring.hpp>

@@ -1,4 +1,4 @@
-#include <polybody/compare/compare.hpp>
+#include <polybody/compare/join.hpp>
 
 #include <gtest/gtest.h>
 
@@ -93,6 +93,24 @@ TEST(Compare, RunsOneCaseUnderSeveralFormulations) {
   EXPECT_LT(c.runs[0].violation.position, 1e-12);
   EXPECT_EQ(c.runs[1].violation.position, 0.0);
   EXPECT_LT(c.runs[2].violation.velocity, 1e-10);
+}
+
+TEST(Compare, JoinsRunsThatWereMadeApart) {
+  Ideal const ideal{"ideal", {}, {.rho_inf = 0.9}};
+  Stiff const stiff{"stiff", {.stiffness = 1e5, .damping = 1e2}, {.rho_inf = 0.9}};
+  Comparison const at_once = compare(Pendulum{}, ideal, stiff),
+                   joined = join({compare(Pendulum{}, ideal), compare(Pendulum{}, stiff)});
+  ASSERT_EQ(joined.runs.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(joined.runs[k].name, at_once.runs[k].name);
+    EXPECT_EQ(joined.runs[k].outputs, at_once.runs[k].outputs);
+    EXPECT_EQ(joined.runs[k].difference, at_once.runs[k].difference);
+  }
+  EXPECT_GT(joined.runs[1].difference[0], 1e-5);
+  // A name that stands twice, and outputs that are others.
+  EXPECT_EQ(join({at_once, at_once}).runs[3].name, "stiff (2)");
+  Comparison const other = compare(Pendulum{.outputs = {"y [m]"}}, ideal);
+  EXPECT_TRUE(has(refusal([&] { join({at_once, other}); }), "\"ideal (2)\" has other outputs than \"ideal\""));
 }
 
 TEST(Compare, TypesAloneDoWhereEveryNumberHasADefault) {

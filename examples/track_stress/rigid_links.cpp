@@ -1,0 +1,3 @@
+#include "stress_case.hpp"
+
+chapter4::Links chapter4::rigid_links() { return links_of<IdealTrack>("rigid"); }

@@ -1,0 +1,116 @@
+#pragma once
+// The case of Chapter 4 for `compare`: the tracked vehicle, whose watched link tells its strain.
+#include <polybody/compare/compare.hpp>
+#include <polybody/io/checkpoint.hpp>
+#include <polybody/run/body_record.hpp>
+#include <polybody/vehicle/link_strain.hpp>
+
+#include "stress_runs.hpp"
+
+namespace chapter4 {
+
+double cpu_of(auto&& work) {
+  std::clock_t const begin = std::clock();
+  work();
+  return double(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+template <class = void>  // compiled where it is used
+DecoupledStress recovered(Options const& o, BodyRecord const& record) {
+  if (o.recovery == "static") return DecoupledStress::quasi_static(m113::link_structure(), record);
+  return DecoupledStress::vibrating(m113::link_structure(), record, integrator(o),
+                                    {.frame = ReferenceConditions::simply_supported(0, 2)});
+}
+
+struct StressCase {
+  Options const& options;
+  std::vector<Outcome>* outcomes;
+  std::vector<std::shared_ptr<LinkHistory>>* histories;
+
+  template <class F>
+  auto operator()(F const& f) const {
+    using M = typename VehicleOf<F>::ModelType;
+    TrackCase const track{options, outcomes};
+    auto const built = track.build(f);
+    auto scenario = track.scenario(f, built);
+    auto const vehicle = built.vehicle;
+    auto const history = std::make_shared<LinkHistory>();
+    histories->push_back(history);
+    auto const link = vehicle->side(m113::Side::left).links[watched_link];
+    if constexpr (HasRigidPoints<typename F::BodyType>) {
+      auto const recorder = std::make_shared<LoadRecorder>(vehicle->model);
+      recorder->add(link);
+      scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
+        before(model, x);
+        history->recording += cpu_of([&] { recorder->record(x); });
+      };
+      // The recorder looks into the model: it lives as long as this.
+      history->recover = [=, keep = vehicle, o = options](LinkHistory& h) {
+        h.recovery = cpu_of([&] {
+          DecoupledStress const stress = recovered(o, recorder->of(link));
+          h.strain = m113::link_strain(stress);
+          h.bending = m113::link_bending(stress);
+        });
+      };
+    } else {
+      scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
+        before(model, x);
+        history->strain.push_back(m113::link_strain(vehicle->model, x, link));
+        Vec3 const lateral = vehicle->hull(x).A.col(1);
+        history->bending.push_back(m113::link_bending(vehicle->model, x, link, lateral));
+      };
+    }
+    return scenario;
+  }
+};
+
+// The run of one formulation.
+template <class F>
+StressRuns run(Options const& o, F const& formulation) {
+  StressRuns runs;
+  runs.comparison = compare(StressCase{o, &runs.outcomes, &runs.links}, formulation);
+  for (auto const& link : runs.links)
+    if (link->recover) link->recover(*link);
+  return runs;
+}
+
+// Runs to the end and puts the first state from `at` [s] on away in a file; returns its time.
+inline double put_away(Simulation<GeneralizedAlpha>& run, double at, fs::path const& file) {
+  double done_at = -1.0;
+  while (!run.done()) {
+    run.advance();
+    if (done_at >= 0.0 || run.state().t < at) continue;
+    write_checkpoint(file, run.snapshot());
+    done_at = run.state().t;
+  }
+  return done_at;
+}
+
+// Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
+template <class F>
+void restart(Options const& o, F const& f) {
+  std::vector<Outcome> outcomes;
+  TrackCase const track{o, &outcomes};
+  auto const built = track.build(f);
+  auto const scenario = track.scenario(f, built);
+  fs::path const file = o.out / (f.name + ".checkpoint");
+  State x = scenario.start;
+  auto whole = simulate(scenario.model, x, f.integrator, scenario.options);
+  double const at = put_away(whole, 0.5 * o.until, file);
+  State y = scenario.start;
+  auto rest = resume(scenario.model, y, f.integrator, scenario.options, read_checkpoint(file));
+  while (!rest.done()) rest.advance();
+  bool const same = x.t == y.t && x.q == y.q && x.v == y.v && x.a == y.a && x.lambda == y.lambda;
+  std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", f.name.c_str(), at, y.t,
+              same ? "the same bits" : "NOT the same");
+  if (!same) throw Error("The run that was taken up again ended in another state.");
+}
+
+template <class F>
+Links links_of(std::string const& name) {
+  auto const formulation = [name](Options const& o) { return F{name, {}, integrator(o)}; };
+  return {[=](Options const& o) { return run(o, formulation(o)); },
+          [=](Options const& o) { restart(o, formulation(o)); }};
+}
+
+}  // namespace chapter4
