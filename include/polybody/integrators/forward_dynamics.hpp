@@ -8,6 +8,7 @@
 
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/tangent_solver.hpp>
+#include <polybody/system/step_bounds.hpp>
 
 namespace polybody {
 
@@ -69,6 +70,14 @@ class ForwardDynamics {
         delta_(VecX::Zero(system.speeds())),
         next_(VecX::Zero(system.coordinates())) {
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
+  }
+
+  StepBounds bounds;  ///< of the run; without limits until it begins
+
+  /// What every step asks before it accepts its end. \throws NonFinite, Diverged.
+  void require_end(System& system, StepEnd const& end) {
+    detail::require_finite_end(system, end.q, end.v, end.t);
+    bounds.require(system, end);
   }
 
   /// M a + Gᵀλ = f, G a = −γ − what is fed back, at the coordinates, speeds and time `at`. \throws

@@ -96,10 +96,15 @@ class Simulation {
 
   /// A workspace that knows no earlier step, and is ready for the next one.
   void renew() {
+    StepBounds bounds = std::move(workspace_.forward.bounds);
     workspace_ = integrator_.template workspace<Solver>(*system_);
+    workspace_.forward.bounds = std::move(bounds);
     State ready = stepped();  // whose memory `start` clears
     integrator_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, workspace_);
   }
+
+  /// The limits of steps hold from this state on.
+  void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, stepped().q, stepped().v, stepped().t); }
 
   /// The state that is stepped: the user's, or the narrow one.
   State& stepped() { return eliminates() ? narrow_ : *x_; }
@@ -204,6 +209,7 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
   watch_ = EventWatch(from.sides);
   report_ = from.report;
   renew();
+  bound();
 }
 
 template <Integrator I, class Solver>
@@ -293,6 +299,7 @@ void Simulation<I, Solver>::restart(bool first) {
   integrator_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
   if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
   stepped() = std::move(fresh);
+  bound();
   report_.redundant = workspace_.forward.redundant(*system_);
   if (eliminates())
     for (std::string const& name : system_->step_coordinates().narrow->redundant)
