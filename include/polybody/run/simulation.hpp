@@ -173,6 +173,7 @@ class Simulation {
   decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
   StepPlan plan_;
+  StepRow row_;
   EventWatch watch_;
   double h_ = 0.0;
   RunReport report_;
@@ -206,6 +207,7 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
   show();
   plan_ = StepPlan(x.t, options_.until, options_.step, corners());
   if constexpr (requires { I::controls_step; }) h_ = std::min(from.step, largest_step());
+  row_ = from.row;
   watch_ = EventWatch(from.sides);
   report_ = from.report;
   renew();
@@ -218,7 +220,7 @@ Simulation<I, Solver>::~Simulation() = default;
 template <Integrator I, class Solver>
 RunSnapshot Simulation<I, Solver>::snapshot() {
   renew();
-  return {identity_of(*system_), I::name, stepped(), h_, watch_.sides(), report_};
+  return {identity_of(*system_), I::name, stepped(), h_, row_, watch_.sides(), report_};
 }
 
 template <Integrator I, class Solver>
@@ -227,9 +229,10 @@ void Simulation<I, Solver>::advance() {
   bool const crumb = h < 0.01 * h_;  // a tiny step, left over after a corner or an event
   State before;
   if (jumps || crumb || options_.minimum_norm || !options_.events.empty()) before = stepped();
+  double const from = stepped().t;
   StepReport const report = step(h, options_.halvings);
   bool const reached = lands && report.taken == h;
-  if (reached) stepped().t = target;
+  stepped().t = reached ? target : row_.after(from, report.taken);
   account(report, reached);
   try {
     bool const met = !options_.events.empty() && meet_events(before, report.taken);

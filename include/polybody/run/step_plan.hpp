@@ -9,6 +9,20 @@
 
 namespace polybody {
 
+/// Steps of one length in a row: they end at t₀ + k h, so that rounding does not add up.
+struct StepRow {
+  double start = 0.0, length = 0.0;  ///< t₀ and h [s]
+  double count = 0.0;                ///< k
+
+  double end() const { return start + count * length; }
+  /// The end of a step from t that took `taken` seconds. One of another length, or from elsewhere, begins a row.
+  double after(double t, double taken) {
+    if (t != end() || taken != length) *this = {t, taken, 0.0};
+    count += 1.0;
+    return end();
+  }
+};
+
 /// The corners of a run and what is left of it.
 class StepPlan {
  public:
