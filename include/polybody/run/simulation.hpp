@@ -184,6 +184,7 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
     : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), x.t) {
   require_fitting(whole(), x);
   require_places(whole(), x);
+  require_computable(whole(), x);
   plan_ = StepPlan(x.t, options_.until, options_.step, corners());
   require_assembled(whole(), x, options_.assembly_tolerance);
   if (eliminates()) narrow_start();

@@ -63,6 +63,12 @@ struct ModelLayout {
 
   Index body_speeds() const { return speeds - states; }
 
+  /// Name of the body that owns coordinate i.
+  std::string name_of_coordinate(Index i) const {
+    for (BodyPlace const& b : bodies)
+      if (i >= b.q0 && i < b.q0 + b.coordinates) return "body \"" + b.name + '"';
+    return "unknown";
+  }
   /// Name of the body that owns speed i, or the force whose first-order state it is; or of the joint or body that owns
   /// row i − speeds.
   std::string name_of(Index i) const {
