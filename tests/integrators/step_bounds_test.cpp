@@ -181,6 +181,33 @@ TEST(StepBounds, WhatASpringHeldExplainsEnergy) {
   EXPECT_NEAR(x.v[0], -10.0, 1e-6);
 }
 
+/// A spring to a point that moves off along x: its potential knows time, and time works on it.
+struct Tow {
+  static constexpr int markers = 1;
+  static constexpr bool is_load = false;
+  static constexpr Observes needs = Observes::point;
+  double stiffness = 100.0, speed = 2.0;
+
+  void check(std::string const&) const {}
+  template <class T>
+  std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const& at, double t) const {
+    Wrench<T> w;
+    w.f[0] = (speed * t - at[0].r[0]) * stiffness;
+    return {w};
+  }
+  double potential(std::array<Frame<double>, 1> const& at, double t) const {
+    return 0.5 * stiffness * (speed * t - at[0].r[0]) * (speed * t - at[0].r[0]);
+  }
+};
+TEST(StepBounds, APotentialThatDependsOnTimeIsNotJudged) {
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<Tow>> model;
+  auto const mass = model.add(planar::Rigid(1.0, 1.0), "mass");
+  model.apply(Tow{}, mass.at(Vec2(0, 0)), "tow");
+  State x = model.reference_state();
+  simulate(model, x, RungeKutta4<>{}, {.until = 0.1 * std::numbers::pi, .step = 1e-3}).run();
+  EXPECT_NEAR(x.v[0], 4.0, 1e-6);  // x = u (t − sin ωt/ω), ω = 10, half a period on
+}
+
 TEST(StepBounds, LimitsWithoutAMeaningAreRefused) {
   for (StepLimits const& wrong : {StepLimits{.violation = 0.0}, StepLimits{.energy = 0.5},
                                   StepLimits{.violation = std::numeric_limits<double>::quiet_NaN()}}) {

@@ -65,7 +65,7 @@ void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earli
 
 /// The questions that are asked about every state of a run, whatever the case's model.
 struct CaseQuestions {
-  System system;  ///< made with the entries of `energy`
+  System system;
   std::vector<std::function<double(State const&)>> outputs = {};
   std::function<void(State const&)> observer = {};
 
@@ -88,7 +88,7 @@ struct CaseQuestions {
 template <class S>
 CaseQuestions questions_of(S& scenario) {
   auto const& model = scenario.model;
-  CaseQuestions questions{System(model, with<Entries::energy>)};
+  CaseQuestions questions{System(model, with<Entries::motion>)};
   for (auto& o : scenario.outputs) questions.outputs.push_back([&](State const& x) { return o.value(model, x); });
   if (scenario.observer) questions.observer = [&](State const& x) { scenario.observer(model, x); };
   return questions;

@@ -23,7 +23,8 @@ struct StepEnd {
 
 /// The limits of a run, with the account of what may have changed its energy E = T + V since the last start:
 ///   E − E₀ ≤ limit · (T₀ + |V₀| + |change of the potential of gravity| + ∫|power of loads, drives and forces| dt).
-/// Loads, drives, and forces without a potential are counted by the size of their power at the end of each step. The
+/// Loads, drives, and forces without a potential are counted by the size of their power at the end of each step; where
+/// a potential depends on time there is no such account, and no verdict. The
 /// account is not balanced to its last digit: it tells an explosion from a motion. It is looked at whenever the speeds
 /// have grown by a factor √10, so a run that does not grow pays for a sum of squares and for the power of its loads.
 class StepBounds {
@@ -76,6 +77,7 @@ class StepBounds {
   double judged_ = 0.0;                 ///< Σ v² beyond which the energy is looked at
   double worked_ = 0.0;                 ///< ∫|power| dt [J]
   Energy start_;                        ///< E₀
+  double began_ = 0.0;                  ///< at this time [s]
   std::vector<std::size_t> actions_;    ///< of forces without a potential
   std::vector<std::size_t> compliant_;  ///< joints that do not store all that they take
   std::vector<Drive> drives_;
@@ -97,6 +99,7 @@ void StepBounds::begin(System& system, StepLimits const& limits, VecX const& q, 
   auto const& [entries, model] = system.entries();
   energy_ = entries.energy ? limits.energy : std::numeric_limits<double>::infinity();
   if (entries.energy) start_ = entries.energy(model, system.at(), data);
+  began_ = t;
   judged_ = energy_ < std::numeric_limits<double>::infinity() ? 10.0 * squares(v) : energy_;
   worked_ = 0.0;
   actions_.clear();
@@ -182,6 +185,8 @@ template <class>
 void StepBounds::judge_energy(System& system, StepEnd const& end) const {
   auto const& [entries, model] = system.entries();
   Energy const now = entries.energy(model, system.at(), system.data());
+  At<double> const& at = system.at();
+  if (entries.energy(model, {at.q, at.v, began_}, system.data()).forces != now.forces) return;
   double const gained = now.total() - start_.total();
   double const explained = start_.kinetic + std::abs(start_.strain) + std::abs(start_.joints) +
                            std::abs(start_.forces) + std::abs(now.gravity - start_.gravity) + worked_;
