@@ -148,6 +148,20 @@ TEST(Simulate, AResumedRunKeepsTheClock) {
   EXPECT_EQ(rest, std::vector<double>(t.begin() + 77, t.end()));
 }
 
+// 0.77 − 0.76 is not 0.01: a last step of that length would set what follows apart from a run that went through.
+TEST(Simulate, ARunThatGoesOnLaterHasTheBitsOfOneThatWentThrough) {
+  Pendulum whole, parted;
+  auto through = simulate(whole.model, whole.x, GeneralizedAlpha{}, {.until = 2.0, .step = 0.01});
+  for (int k = 0; k < 77; ++k) through.advance();
+  (void)through.snapshot();
+  through.run();
+  auto first = simulate(parted.model, parted.x, GeneralizedAlpha{}, {.until = 0.77, .step = 0.01});
+  first.run();
+  State x;
+  resume(parted.model, x, GeneralizedAlpha{}, {.until = 2.0, .step = 0.01}, first.snapshot()).run();
+  expect_same(x, whole.x);
+}
+
 // Over a crumb of a step h the rows would fix accelerations and reactions by rounding errors over h².
 TEST(Simulate, LeavesNoCrumbAtTheEnd) {
   double const step = (1.0 - 1e-7) / 1000.0;

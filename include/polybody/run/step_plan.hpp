@@ -43,7 +43,7 @@ class StepPlan {
   /// Passes the corners up to t, and those that differ from it by rounding only (0.3 and 0.1 + 0.2 are one). Returns t,
   /// or the time of the last corner passed or of the end where it is that within rounding.
   double pass(double t) {
-    double const crumb = 1e-9 * step_ + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
+    double const crumb = 1e-9 * step_ + rounding(t);
     while (next_ < corners_.size() && corners_[next_] <= t + crumb) t = std::max(t, corners_[next_++]);
     return until_ - t <= crumb ? until_ : t;
   }
@@ -55,10 +55,13 @@ class StepPlan {
     // A step may be 1 % longer than asked for, so that no tiny one is left: rows divided by its square would be
     // rounding errors.
     bool const lands = 1.01 * h >= left;
-    return {target, !lands ? h : corner ? until_just_before(target, t) : left, lands, lands && corner};
+    if (lands && corner) return {target, until_just_before(target, t), true, true};
+    // A last step that only rounding sets apart is as long as the others: a run that goes on later had it, too.
+    return {target, lands && std::abs(left - h) > rounding(t) ? left : h, lands, false};
   }
 
  private:
+  static double rounding(double t) { return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t); }
   /// The length of a step that ends just before a corner, where a law still has its old value.
   static double until_just_before(double corner, double t) {
     double h = std::nextafter(corner, t) - t;
