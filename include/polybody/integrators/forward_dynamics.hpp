@@ -104,8 +104,10 @@ class ForwardDynamics {
 
   /// What every step asks before it accepts its end. \throws NonFinite, Diverged.
   void require_end(System& system, StepEnd const& end) {
-    detail::require_finite_end(system, end.q, end.v, end.t);
-    bounds.require(system, end);
+    double const squares = end.v.squaredNorm();
+    if (!(squares + end.q.squaredNorm() <= largest_number * largest_number))
+      detail::require_finite_end(system, end.q, end.v, end.t);  // number by number
+    bounds.require(system, end, squares);
   }
 
   /// M a + Gᵀλ = f, G a = −γ − what is fed back, at the coordinates, speeds and time `at`. \throws

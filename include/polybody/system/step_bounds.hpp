@@ -3,6 +3,7 @@
 /// What no step of a sound run leaves behind: rows that are open, and energy that no work explains. Newton's method
 /// stops beside the size of the accelerations, so a motion that explodes converges, too.
 
+#include <limits>
 #include <vector>
 
 #include <polybody/system/system.hpp>
@@ -24,9 +25,9 @@ struct StepEnd {
 /// The limits of a run, with the account of what may have changed its energy E = T + V since the last start:
 ///   E − E₀ ≤ limit · (T₀ + |V₀| + |change of the potential of gravity| + ∫|power of loads, drives and forces| dt).
 /// Loads, drives, and forces without a potential are counted by the size of their power at the end of each step; where
-/// a potential depends on time there is no such account, and no verdict. The
-/// account is not balanced to its last digit: it tells an explosion from a motion. It is looked at whenever the speeds
-/// have grown by a factor √10, so a run that does not grow pays for a sum of squares and for the power of its loads.
+/// a potential depends on time there is no such account, and no verdict. The account is not balanced to its last digit:
+/// it tells an explosion from a motion. It is looked at whenever the speeds have grown by a factor √10, so a run that
+/// does not grow pays for a sum of squares and for the power of its loads.
 class StepBounds {
  public:
   /// Begins anew at q, v, t. Without this call nothing is checked.
@@ -34,50 +35,50 @@ class StepBounds {
   void begin(System& system, StepLimits const& limits, VecX const& q, VecX const& v, double t);
 
   /// \throws Diverged for a step that ends beyond a limit. `system` may have been evaluated near the end only: what
-  /// looks wrong there is judged at the end itself.
+  /// looks wrong there is judged at the end itself. \param squares Σ v²
   template <class = void>
-  void require(System& system, StepEnd const& end) {
-    if (!begun_) return;
+  void require(System& system, StepEnd const& end, double squares) {
     if (counts_work_) worked_ += end.h * power(system, end.lambda);
-    if (!(squares(end.v) > judged_) && !(largest_gap(system.data()) > open_)) return;
-    judge(system, end);
+    if (squares > judged_ || any_open()) judge(system, end, squares);
   }
 
  private:
-  static double squares(VecX const& v) {
-    double sum = 0.0;
-    for (Index i = 0; i < v.size(); ++i) sum += v[i] * v[i];
-    return sum;
-  }
-  static double largest_gap(Data<double> const& data) {
-    double largest = 0.0;
-    for (RowBlock<double> const& block : data.rows) {
-      if (block.row < 0 || data.leaves_out(block)) continue;
-      for (int i = 0; i < block.rows; ++i) largest = std::max(largest, std::abs(block.g[i]));
-    }
-    return largest;
+  bool any_open() const {
+    for (Gaps const& gaps : gaps_)
+      for (int i = 0; i < gaps.rows; ++i)
+        if (std::abs(gaps.g[i]) > open_) return true;
+    return false;
   }
   template <class = void>
   double power(System const& system, VecX const& lambda) const;
   template <class = void>
-  void judge(System& system, StepEnd const& end);
+  void judge(System& system, StepEnd const& end, double squares);
   template <class = void>
-  void judge_rows(System& system, double t) const;
+  [[noreturn]] void refuse_open(System const& system, double t) const;
   template <class = void>
   void judge_energy(System& system, StepEnd const& end) const;
 
+  /// The rows of a block, in the data of the system.
+  struct Gaps {
+    double const* g;
+    int rows;
+    Index first;
+  };
   struct Drive {
     std::size_t block;
     Index row;  ///< in a step; −1 for a compliant joint
   };
 
-  bool begun_ = false, counts_work_ = false;
-  double open_ = 0.0;                   ///< the limit for |Φ|
-  double energy_ = 0.0;                 ///< the limit, a factor
-  double judged_ = 0.0;                 ///< Σ v² beyond which the energy is looked at
-  double worked_ = 0.0;                 ///< ∫|power| dt [J]
-  Energy start_;                        ///< E₀
-  double began_ = 0.0;                  ///< at this time [s]
+  static constexpr double never = std::numeric_limits<double>::infinity();
+
+  bool counts_work_ = false;
+  double open_ = never;    ///< the limit for |Φ|
+  double energy_ = never;  ///< the limit, a factor
+  double judged_ = never;  ///< Σ v² beyond which the energy is looked at
+  double worked_ = 0.0;    ///< ∫|power| dt [J]
+  Energy start_;           ///< E₀
+  double began_ = 0.0;     ///< at this time [s]
+  std::vector<Gaps> gaps_;
   std::vector<std::size_t> actions_;    ///< of forces without a potential
   std::vector<std::size_t> compliant_;  ///< joints that do not store all that they take
   std::vector<Drive> drives_;
@@ -97,11 +98,12 @@ void StepBounds::begin(System& system, StepLimits const& limits, VecX const& q, 
     }
   open_ = limits.violation * std::max({1.0, most[0] - least[0], most[1] - least[1], most[2] - least[2]});
   auto const& [entries, model] = system.entries();
-  energy_ = entries.energy ? limits.energy : std::numeric_limits<double>::infinity();
+  energy_ = entries.energy ? limits.energy : never;
   if (entries.energy) start_ = entries.energy(model, system.at(), data);
   began_ = t;
-  judged_ = energy_ < std::numeric_limits<double>::infinity() ? 10.0 * squares(v) : energy_;
+  judged_ = energy_ < never ? 10.0 * v.squaredNorm() : never;
   worked_ = 0.0;
+  gaps_.clear();
   actions_.clear();
   drives_.clear();
   compliant_.clear();
@@ -112,6 +114,7 @@ void StepBounds::begin(System& system, StepLimits const& limits, VecX const& q, 
     RowBlock<double> const& block = data.rows[i];
     if (block.source == RowSource::compliant && !layout.joints[std::size_t(block.owner)].stores)
       compliant_.push_back(i);
+    if (block.row >= 0 && !data.leaves_out(block)) gaps_.push_back({block.g, block.rows, block.row});
     if (!block.rate) continue;
     Index row = block.row;
     if (narrow && row >= 0) {
@@ -122,9 +125,7 @@ void StepBounds::begin(System& system, StepLimits const& limits, VecX const& q, 
     }
     drives_.push_back({i, row});
   }
-  counts_work_ =
-      energy_ < std::numeric_limits<double>::infinity() && !(actions_.empty() && drives_.empty() && compliant_.empty());
-  begun_ = true;
+  counts_work_ = energy_ < never && !(actions_.empty() && drives_.empty() && compliant_.empty());
 }
 
 /// Σ |power|: w · twist of forces, λ · Φ_t of drives, λ · ġ of compliant joints that do not store what they take.
@@ -155,25 +156,23 @@ double StepBounds::power(System const& system, VecX const& lambda) const {
 }
 
 template <class>
-void StepBounds::judge(System& system, StepEnd const& end) {
+void StepBounds::judge(System& system, StepEnd const& end, double squares) {
   system.evaluate(end.q, end.v, end.t);
-  judge_rows(system, end.t);
-  double const now = squares(end.v);
-  if (!(now > judged_)) return;
+  if (any_open()) refuse_open(system, end.t);
+  if (!(squares > judged_)) return;
   judge_energy(system, end);
-  judged_ = 10.0 * now;
+  judged_ = 10.0 * squares;
 }
 
 template <class>
-void StepBounds::judge_rows(System& system, double t) const {
-  if (!(largest_gap(system.data()) > open_)) return;
+void StepBounds::refuse_open(System const& system, double t) const {
   Index row = 0;
   double largest = 0.0;
-  for (RowBlock<double> const& block : system.data().rows)
-    for (int i = 0; i < block.rows && block.row >= 0 && !system.data().leaves_out(block); ++i)
-      if (std::abs(block.g[i]) > largest) {
-        largest = std::abs(block.g[i]);
-        row = block.row + i;
+  for (Gaps const& gaps : gaps_)
+    for (int i = 0; i < gaps.rows; ++i)
+      if (std::abs(gaps.g[i]) > largest) {
+        largest = std::abs(gaps.g[i]);
+        row = gaps.first + i;
       }
   throw Diverged("The step to t = " + number(t) + " s leaves " + system.layout().name_of(system.layout().speeds + row) +
                  " open by " + number(largest) +
