@@ -25,8 +25,7 @@ Chain make_chain(int links) {
   auto const end = [](double side) { return Vec3(side * 0.5 * link_length, 0, 0); };
   std::optional<BodyHandle<Rigid<>>> before;
   for (int i = 0; i < links; ++i) {
-    auto const link =
-        model.add(Rigid<>(link_mass, link_inertia, Placement::at({(i + 0.5) * link_length, 0, 0})), "link");
+    auto const link = model.add(Rigid<>(link_mass, link_inertia, Placement::at({(i + 0.5) * link_length, 0, 0})));
     if (i == 0)
       model.connect(Pin{Revolute{pin_axis}, {}}, model.ground().at({0, 0, 0}), link.at(end(-1)));
     else

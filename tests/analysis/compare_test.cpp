@@ -139,6 +139,29 @@ TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {
                   "\"of its own mind\" has other outputs than \"ideal\""));
 }
 
+// A penalty of 1e16 under steps of 0.1 s explodes; the others' results are kept, beside the first that came to its end.
+TEST(Compare, NamesTheRunThatFailedAndKeepsTheOthers) {
+  auto const coarse = [](auto const& f) {
+    auto scenario = Pendulum{}(f);
+    if (f.name == "absurd") scenario.options.step = 0.1;
+    return scenario;
+  };
+  Stiff const absurd{"absurd", {.stiffness = 1e16, .damping = 0.0}, {.newton = {.max_iterations = 1}}};
+  try {
+    compare(coarse, absurd, Ideal{"ideal"}, Explicit{"explicit", {}, {}});
+    FAIL() << "a run that failed went unnoticed";
+  } catch (ComparisonFailed const& failed) {
+    EXPECT_TRUE(has(failed.what(), "compare: runs failed. \"absurd\": "));
+    EXPECT_TRUE(has(failed.what(), "at t = 0.1 s"));
+    ASSERT_EQ(failed.finished.runs.size(), 2u);
+    EXPECT_EQ(failed.finished.runs[0].name, "ideal");
+    for (ComparedRun const& run : failed.finished.runs) {
+      EXPECT_NEAR(run.outputs[0].back(), -std::cos(end_angle), 2e-5) << run.name;
+      EXPECT_EQ(run.difference.size(), 1u);
+    }
+  }
+}
+
 TEST(Compare, InterpolatesHistories) {
   std::vector<double> const t{0.0, 1.0, 3.0}, y{0.0, 2.0, 6.0};
   EXPECT_DOUBLE_EQ(detail::interpolate(t, y, 0.5), 1.0);

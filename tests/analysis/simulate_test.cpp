@@ -117,6 +117,51 @@ TEST(Simulate, RoundingOfTheClockCostsNoStep) {
   EXPECT_EQ(report.steps, 30000);
 }
 
+// t = t₀ + k h: 0.1 s summed 1000 times is 1.4e-12 s off.
+TEST(Simulate, TheClockDoesNotAddUpRounding) {
+  FreeRod f;
+  std::vector<double> const t = times_of(simulate(f.model, f.x, GeneralizedAlpha{}, {.until = 100.0, .step = 0.1}));
+  ASSERT_EQ(t.size(), 1001u);
+  for (std::size_t k = 0; k < t.size(); ++k) EXPECT_EQ(t[k], double(k) * 0.1);
+}
+TEST(Simulate, TheClockCountsAnewFromAnEvent) {
+  FreeRod f;
+  f.x.t = -1.0 / 3.0;
+  Event const event{.name = "early", .value = [](State const& x) { return x.t - 0.06; }};
+  auto run = simulate(f.model, f.x, GeneralizedAlpha{}, {.until = 50.0, .step = 0.1, .events = {event}});
+  std::vector<double> const t = times_of(run);
+  ASSERT_EQ(run.report().events.size(), 1u);
+  double const met = run.report().events[0].time;
+  std::size_t const at = std::size_t(std::find(t.begin(), t.end(), met) - t.begin());
+  ASSERT_EQ(at, 4u);
+  for (std::size_t k = 0; k < at; ++k) EXPECT_EQ(t[k], -1.0 / 3.0 + double(k) * 0.1);
+  for (std::size_t k = at; k + 1 < t.size(); ++k) EXPECT_EQ(t[k], met + double(k - at) * 0.1);
+}
+TEST(Simulate, AResumedRunKeepsTheClock) {
+  FreeRod whole, parted;
+  RunOptions const options{.until = 20.0, .step = 0.1};
+  std::vector<double> const t = times_of(simulate(whole.model, whole.x, GeneralizedAlpha{}, options));
+  auto first = simulate(parted.model, parted.x, GeneralizedAlpha{}, options);
+  for (int k = 0; k < 77; ++k) first.advance();
+  State x;
+  std::vector<double> const rest = times_of(resume(parted.model, x, GeneralizedAlpha{}, options, first.snapshot()));
+  EXPECT_EQ(rest, std::vector<double>(t.begin() + 77, t.end()));
+}
+
+// 0.77 − 0.76 is not 0.01: a last step of that length would set what follows apart from a run that went through.
+TEST(Simulate, ARunThatGoesOnLaterHasTheBitsOfOneThatWentThrough) {
+  Pendulum whole, parted;
+  auto through = simulate(whole.model, whole.x, GeneralizedAlpha{}, {.until = 2.0, .step = 0.01});
+  for (int k = 0; k < 77; ++k) through.advance();
+  (void)through.snapshot();
+  through.run();
+  auto first = simulate(parted.model, parted.x, GeneralizedAlpha{}, {.until = 0.77, .step = 0.01});
+  first.run();
+  State x;
+  resume(parted.model, x, GeneralizedAlpha{}, {.until = 2.0, .step = 0.01}, first.snapshot()).run();
+  expect_same(x, whole.x);
+}
+
 // Over a crumb of a step h the rows would fix accelerations and reactions by rounding errors over h².
 TEST(Simulate, LeavesNoCrumbAtTheEnd) {
   double const step = (1.0 - 1e-7) / 1000.0;

@@ -104,7 +104,7 @@ Vec3 bend_tip(Index pieces, Index bars_of_each, BarConstants const& constants, d
     if (i == 0)
       model.connect(Clamp{}, model.ground().at({0, 0, 0}), root, "clamp");
     else
-      model.connect(Clamp{}, tips.back(), root, "weld");
+      model.connect(Clamp{}, tips.back(), root);
     tips.push_back(piece.at(piece.body().node(bars_of_each)));
   }
   model.apply(PointForce<>{.force = {0, 0, force}}, tips.back());

@@ -58,8 +58,8 @@ struct Flight {
     for (Index i = 0; in_discs > 0.0 && i <= n; ++i) {
       double const s = 10.0 * double(i) / double(n), length = (i == 0 || i == n ? 5.0 : 10.0) / double(n);
       Mat3 const inertia = (in_discs * length * Vec3(20, 10, 10)).asDiagonal();
-      auto const disc = model.add(Rigid<>(1e-8, inertia, {first.origin + s * first.axes.col(0), first.axes}), "disc");
-      model.connect(Weldment{}, disc.at(Vec3(0, 0, 0)), body.at(s), "hub");
+      auto const disc = model.add(Rigid<>(1e-8, inertia, {first.origin + s * first.axes.col(0), first.axes}));
+      model.connect(Weldment{}, disc.at(Vec3(0, 0, 0)), body.at(s));
     }
     x = model.reference_state();
   }

@@ -138,8 +138,8 @@ Flight<Cable> strung(double EI, Index n, double h) {
   for (Index i = 0; i <= n; ++i) {
     double const s = 10.0 * double(i) / double(n), share = (i == 0 || i == n ? 0.5 : 1.0) * 10.0 / double(n);
     auto const disc = flight.model.add(
-        Rigid<>(1e-8, 10.0 * share * Mat3::Identity(), {bar.placement.origin + s * along, bar.placement.axes}), "disc");
-    flight.model.connect(Pin{Revolute{.axis = along}, {}}, disc.at(Vec3(0, 0, 0)), flight.body.at(s), "hub");
+        Rigid<>(1e-8, 10.0 * share * Mat3::Identity(), {bar.placement.origin + s * along, bar.placement.axes}));
+    flight.model.connect(Pin{Revolute{.axis = along}, {}}, disc.at(Vec3(0, 0, 0)), flight.body.at(s));
     if (i == 0) flight.turn(disc.at(Vec3(0, 0, 0)));
   }
   flight.x = flight.model.reference_state();

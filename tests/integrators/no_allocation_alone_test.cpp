@@ -204,6 +204,7 @@ long in_steps(I const& integrator) {
   auto workspace = integrator.template workspace<Solver>(system);
   double const h = 1e-5;  // stable for the explicit ones
   integrator.start(system, x, h, workspace);
+  workspace.forward.bounds.begin(system, {}, x.q, x.v, x.t);
   long const before = taken;
   for (int i = 0; i < 20; ++i) integrator.step(system, x, h, workspace);
   for (int i = 0; i < 20; ++i) integrator.step(system, x, 0.25 * h, workspace);

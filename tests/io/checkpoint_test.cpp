@@ -27,8 +27,11 @@ struct Checkpoints : testing::Test {
 
 /// A snapshot with every kind of content, numbers that are hard to write among it.
 RunSnapshot rich() {
-  RunSnapshot s{
-      .model = {3, 2, 1, 0xfedcba9876543210u}, .integrator = "Some method", .step = 1e-3, .sides = {-1, 0, 1}};
+  RunSnapshot s{.model = {3, 2, 1, 0xfedcba9876543210u},
+                .integrator = "Some method",
+                .step = 1e-3,
+                .row = {0.25, 1e-3, 7.0},
+                .sides = {-1, 0, 1}};
   s.state = {VecX::LinSpaced(3, 0.1, 0.3),
              Vec2(-0.0, 5e-324),
              Vec2(1e308, 1.0 / 3.0),
@@ -55,6 +58,8 @@ TEST_F(Checkpoints, ReadBackAsTheyWere) {
   EXPECT_EQ(bits(back.state), bits(s.state));
   EXPECT_EQ(back.step, s.step);
   EXPECT_EQ(back.sides, s.sides);
+  EXPECT_EQ(back.row.end(), s.row.end());
+  EXPECT_EQ(back.row.count, 7.0);
   expect_same(back.report, s.report);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);  // no temporary
 }
@@ -100,7 +105,7 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
   std::string other = good;
   std::uint32_t const nine = 9;
   std::memcpy(other.data() + 12, &nine, sizeof nine);
-  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 1"));
+  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 2"));
   other = good;
   std::reverse(other.begin() + 8, other.begin() + 12);
   EXPECT_TRUE(has(told(other), "another byte order"));

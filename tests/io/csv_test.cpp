@@ -169,15 +169,29 @@ TEST_F(CsvFiles, NothingUnderTheFinalNameUntilClosed) {
   EXPECT_EQ(files(), 1u);
 }
 
-TEST_F(CsvFiles, ExceptionLeavesNoFileAndKeepsTheOldOne) {
-  auto const interrupted = [&] {
+TEST_F(CsvFiles, AnExceptionKeepsTheRowsSoFar) {
+  auto const interrupted = [&](int rows) {
     Csv csv(file, {"x"});
-    csv.row(1);
+    for (int i = 0; i < rows; ++i) csv.row(i);
     throw std::runtime_error("stop");
   };
-  EXPECT_THROW(interrupted(), std::runtime_error);
+  EXPECT_THROW(interrupted(0), std::runtime_error);
   EXPECT_EQ(files(), 0u);
   put(file, "old");
+  EXPECT_THROW(interrupted(0), std::runtime_error);
+  EXPECT_EQ(text_of(file), "old");
+  EXPECT_THROW(interrupted(5000), std::runtime_error);
+  EXPECT_EQ(read_csv(file).rows.size(), 5000u);
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(CsvFiles, AnExceptionLeavesNothingOfAFileWhosePartsAreOfNoUse) {
+  put(file, "old");
+  auto const interrupted = [&] {
+    AtomicFile out(file);
+    out.write("half");
+    throw std::runtime_error("stop");
+  };
   EXPECT_THROW(interrupted(), std::runtime_error);
   EXPECT_EQ(text_of(file), "old");
   EXPECT_EQ(files(), 1u);

@@ -3,11 +3,15 @@
 #include <polybody/io/vtk.hpp>
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <thread>
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
@@ -137,6 +141,35 @@ TEST_F(VtkFiles, AStateThatCannotBeWrittenLeavesTheOthers) {
   fs::remove(folder / "run" / "run_000001.vtu");
   writer.write(x);
   EXPECT_EQ(count(text_of(file), "<DataSet"), 2);
+}
+
+// A program that writes without pause is killed at some time: what is there can be read, and nothing else is there.
+TEST_F(VtkFiles, AKillLeavesNoTemporaryFile) {
+  fs::path const file = folder / "run.pvd";
+  for (int i = 0; i < 50; ++i) {
+    pid_t const child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) try {
+        VtkWriter writer(file, visual);
+        for (;; x.t += 0.1) writer.write(x);
+      } catch (...) {
+        _exit(1);
+      }
+    for (int k = 0; k < 100000 && !fs::exists(folder / "run" / "run_000009.vtu"); ++k)
+      std::this_thread::sleep_for(std::chrono::microseconds(300));
+    kill(child, SIGKILL);
+    ASSERT_EQ(waitpid(child, nullptr, 0), child);
+    for (auto const& entry : fs::recursive_directory_iterator(folder))
+      EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();
+    std::string const text = text_of(file);
+    EXPECT_TRUE(text.ends_with("</VTKFile>\n"));
+    for (int k = 0; k < count(text, "<DataSet"); ++k) {
+      std::string const index = std::to_string(k);
+      fs::path const grid = folder / "run" / ("run_" + std::string(6 - index.size(), '0') + index + ".vtu");
+      EXPECT_TRUE(text_of(grid).ends_with("</VTKFile>\n")) << grid;
+    }
+    fs::remove_all(folder / "run");
+  }
 }
 
 TEST_F(VtkFiles, RefuseANameThatParaViewWouldNotKnow) {

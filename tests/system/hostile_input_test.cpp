@@ -90,6 +90,7 @@ void expect_finite(I const& integrator) {
       try {
         for (State const& now : simulate(model, x, integrator, {.until = 1.0, .step = 0.1})) {
           ASSERT_TRUE(now.q.allFinite() && now.v.allFinite()) << I::name << ' ' << i << ' ' << speed;
+          ASSERT_TRUE(std::isfinite(energy(model, now).total())) << I::name << ' ' << i << ' ' << speed;
           ASSERT_NEAR((now.q.tail<4>().norm()), 1.0, 1e-9) << I::name << ' ' << i << ' ' << speed;
         }
       } catch (Error const& error) {
@@ -107,6 +108,68 @@ TEST(HostileInput, WildSpeedsEndInAnErrorAndNotInNaN) {
   expect_finite(SymplecticEuler{});
   expect_finite(DormandPrince<>{});
   expect_finite(AdamsBashforthMoulton<>{});
+}
+
+/// A rod, free or on a pin, that is pushed or falls.
+struct Pushed {
+  using Hinge = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Hinge>, Forces<PointForce<>>> model;
+  State x;
+
+  Pushed(bool pinned, double force, double gravity) : model(Gravity{0, -gravity, 0}) {
+    auto const rod = model.add(planar::Rigid(1.0, 1.0), "rod");
+    if (pinned) model.connect(Hinge{}, model.ground().at({-1, 0, 0}), rod.at(Vec2(-1, 0)), "pin");
+    model.apply(PointForce<>{.force = {0, force, 0}}, rod.at(Vec2(0.5, 0)), "push");
+    x = model.reference_state();
+  }
+  /// What a run says that cannot go well.
+  template <class I>
+  std::string message(I const& integrator) {
+    std::string said;
+    try {
+      simulate(model, x, integrator, {.until = 0.02, .step = 0.01}).run();
+      ADD_FAILURE() << I::name << " goes through";
+    } catch (NonFinite const& error) {
+      said = error.what();
+    } catch (StepTooSmall const& error) {
+      said = error.what();
+    } catch (std::exception const& error) {
+      ADD_FAILURE() << I::name << ": " << error.what();
+    }
+    EXPECT_TRUE(x.q.allFinite() && x.v.allFinite() && x.a.allFinite() && x.lambda.allFinite()) << said;
+    EXPECT_TRUE(std::isfinite(energy(model, x).total())) << said;
+    return said;
+  }
+};
+
+template <class I>
+void expect_refused(I const& integrator) {
+  for (bool const pinned : {false, true})
+    for (double const size : {1e160, 1e300, 1e308}) {
+      std::string const said = Pushed(pinned, size, 0.0).message(integrator);
+      EXPECT_TRUE(has(said, "\"push\"") || has(said, "the error asks for a step below")) << size << ' ' << pinned;
+      Pushed(pinned, 1.0, size).message(integrator);
+    }
+}
+// A sum that overflows is no joint that repeats another.
+TEST(HostileInput, ForcesThatOverflowAreNamedAndNotCalledSingular) {
+  expect_refused(GeneralizedAlpha{});
+  expect_refused(Radau{});
+  expect_refused(EnergyMomentum{});
+  expect_refused(RungeKutta4<Projection>{});
+  expect_refused(DormandPrince<Projection>{});
+}
+
+TEST(HostileInput, NumbersWhoseSquaresOverflowAreRefusedAtTheStart) {
+  for (double const size : {1e151, 1e200, 1e308}) {
+    Pushed fast(false, 1.0, 0.0), far(false, 1.0, 0.0);
+    fast.x.v[0] = far.x.q[0] = size;
+    RunOptions const options{.until = 0.1, .step = 0.01};
+    EXPECT_TRUE(has(refusal([&] { simulate(fast.model, fast.x, GeneralizedAlpha{}, options); }),
+                    "A speed of body \"rod\" is " + number(size)));
+    EXPECT_TRUE(has(refusal([&] { simulate(far.model, far.x, GeneralizedAlpha{}, options); }),
+                    "A coordinate of body \"rod\" is " + number(size)));
+  }
 }
 
 }  // namespace

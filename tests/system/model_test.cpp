@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -50,6 +52,42 @@ TEST(Model, NamesWhatHasNoName) {
   EXPECT_EQ(system.name_of(5), "body \"boom\"");
   EXPECT_EQ(system.name_of(9), "joint \"" + first.name + "\"");
   EXPECT_EQ(system.name_of(12), "joint \"" + second.name + "\"");
+}
+
+// Records, files and messages tell parts apart by their names.
+TEST(Model, RefusesANameThatIsTaken) {
+  using Soft = Joint<planar::Revolute, Penalty>;
+  Model<Bodies<planar::Rigid>, Joints<Pin, Soft>, Forces<PointForce<>, PointMoment<>>> model;
+  auto const boom = model.add(bar(), "boom");
+  auto const ground = model.ground().at({0, 0, 0});
+  EXPECT_TRUE(has(refusal([&] { model.add(bar(), "boom"); }), "There is a body \"boom\" already"));
+  model.connect(Pin{}, ground, boom.at(Vec2(0, 0)), "boom");  // a joint may be called as a body
+  Soft const soft{{}, Penalty{.stiffness = 1.0, .damping = 0.0}};
+  EXPECT_TRUE(has(refusal([&] { model.connect(soft, ground, boom.at(Vec2(0, 0)), "boom"); }), "a joint \"boom\""));
+  model.apply(PointForce<>{.force = {1, 0, 0}}, boom.at(Vec2(0, 0)), "push");
+  EXPECT_TRUE(has(refusal([&] { model.apply(PointMoment<>{.moment = {0, 0, 1}}, boom.at(Vec2(0, 0)), "push"); }),
+                  "a force \"push\""));
+  EXPECT_EQ(model.body_count(), 1);  // a refusal leaves the model as it was
+  EXPECT_EQ(model.markers(), 3);
+  EXPECT_EQ(model.rows(), 2);
+  EXPECT_EQ(model.add(bar(), "jib").name, "jib");
+}
+
+// Types have pools of their own, but names are those of the whole model; and what is given comes first.
+TEST(Model, GivesNamesThatAreFree) {
+  using Soft = Joint<planar::Revolute, Penalty>;
+  Model<Bodies<planar::Rigid>, Joints<Pin, Soft>, Forces<PointForce<>, PointMoment<>>> model;
+  auto const second = model.add(bar(), "body 2"), free = model.add(bar()), next = model.add(bar());
+  EXPECT_EQ(free.name, "body 3");
+  EXPECT_EQ(next.name, "body 4");
+  auto const ground = model.ground().at({0, 0, 0});
+  auto const hard = model.connect(Pin{}, ground, second.at(Vec2(0, 0)));
+  auto const soft = model.connect(Soft{{}, Penalty{.stiffness = 1.0, .damping = 0.0}}, ground, free.at(Vec2(0, 0)));
+  EXPECT_NE(hard.name, soft.name);
+  auto const push = model.apply(PointForce<>{.force = {1, 0, 0}}, free.at(Vec2(0, 0)));
+  auto const turn = model.apply(PointMoment<>{.moment = {0, 0, 1}}, free.at(Vec2(0, 0)));
+  EXPECT_EQ(push.name, "force 1");
+  EXPECT_EQ(turn.name, "force 2");
 }
 
 // The reference state puts every joint's markers where the user placed the bodies.

@@ -101,7 +101,7 @@ struct Chain {
       double const x = i < 7 ? 0.5 * p : -0.5 * p;
       Vec3 const above = pins[i < 7 ? i : i + 1] + Vec3(0, 0, 100.0);
       model.apply(SpringDamper{.stiffness = 0.0, .damping = 200.0, .free_length = 0.0}, model.ground().at(above),
-                  links[i].at(Vec3(x, 0, 0)), "sway");
+                  links[i].at(Vec3(x, 0, 0)));
     }
     SprocketProfile const profile{.teeth = m113::teeth,
                                   .pitch = p,

@@ -65,7 +65,7 @@ void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earli
 
 /// The questions that are asked about every state of a run, whatever the case's model.
 struct CaseQuestions {
-  System system;  ///< made with the entries of `energy`
+  System system;
   std::vector<std::function<double(State const&)>> outputs = {};
   std::function<void(State const&)> observer = {};
 
@@ -88,7 +88,7 @@ struct CaseQuestions {
 template <class S>
 CaseQuestions questions_of(S& scenario) {
   auto const& model = scenario.model;
-  CaseQuestions questions{System(model, with<Entries::energy>)};
+  CaseQuestions questions{System(model, with<Entries::motion>)};
   for (auto& o : scenario.outputs) questions.outputs.push_back([&](State const& x) { return o.value(model, x); });
   if (scenario.observer) questions.observer = [&](State const& x) { scenario.observer(model, x); };
   return questions;
@@ -109,20 +109,26 @@ void record_run(Run& run, CaseQuestions& questions, ComparedRun& out) {
   out.run = run.report();
 }
 
+/// Adds the run of a formulation to c, or a sentence to `failures`.
 template <class F, class C>
-ComparedRun compared_run(C const& make_case, F const& formulation, std::vector<ComparedRun> const& earlier) {
+void add_run(C const& make_case, F const& formulation, Comparison& c, std::string& failures) {
   auto scenario = make_case(formulation);
   ComparedRun out;
-  out.name = name_beside(earlier, name_of(formulation));
+  out.name = name_beside(c.runs, name_of(formulation));
   out.census = census(scenario.model);
   for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
-  check_outputs(out, earlier);
+  check_outputs(out, c.runs);
   out.outputs.resize(scenario.outputs.size());
   State x = scenario.start;
-  auto run = simulate(scenario.model, x, formulation.integrator, scenario.options);
-  CaseQuestions questions = questions_of(scenario);
-  record_run(run, questions, out);
-  return out;
+  try {
+    auto run = simulate(scenario.model, x, formulation.integrator, scenario.options);
+    CaseQuestions questions = questions_of(scenario);
+    record_run(run, questions, out);
+  } catch (Error const& failed) {
+    failures += " \"" + out.name + "\": " + failed.what();
+    return;
+  }
+  c.runs.push_back(std::move(out));
 }
 
 /// How far the outputs of each run are off those of the first.
@@ -142,13 +148,16 @@ void compare_with_first(Comparison& c) {
 }  // namespace detail
 
 /// Runs the case under each formulation (given as values: a policy without default numbers needs its own).
-/// \throws InvalidInput for outputs that are not the same for all, and what `simulate` throws.
+/// \throws InvalidInput for outputs that are not the same for all, and what the case throws; ComparisonFailed, after
+/// the other runs and with their results, where `simulate` or an output throws an `Error`.
 template <class C, class... Fs>
   requires(CaseFor<C, Fs> && ...)
 Comparison compare(C const& make_case, Fs const&... formulations) {
   Comparison c;
-  (c.runs.push_back(detail::compared_run(make_case, formulations, c.runs)), ...);
+  std::string failures;
+  (detail::add_run(make_case, formulations, c, failures), ...);
   detail::compare_with_first(c);
+  if (!failures.empty()) throw ComparisonFailed("compare: runs failed." + failures, std::move(c));
   return c;
 }
 

@@ -36,6 +36,14 @@ struct Comparison {
   std::vector<ComparedRun> runs;
 };
 
+/// Runs of a comparison failed; the message names each with its reason.
+class ComparisonFailed : public Error {
+ public:
+  ComparisonFailed(std::string const& message, Comparison others) : Error(message), finished(std::move(others)) {}
+
+  Comparison finished;  ///< the runs that came to their end
+};
+
 /// A number and what it is called, with its unit.
 struct Quantity {
   std::string name;

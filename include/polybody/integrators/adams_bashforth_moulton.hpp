@@ -135,7 +135,7 @@ struct AdamsBashforthMoulton {
     report.taken = h;
     report.order = k;
     report.next = std::max(choose(e, h, k, known, rising), smallest_step);
-    detail::require_finite_end(system, w.q, w.v, x.t + h);
+    w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     history.push(h, w.f);
     history.order() = k;
     history.rising() = rising;

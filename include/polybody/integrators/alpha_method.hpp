@@ -270,7 +270,7 @@ struct AlphaMethod {
       detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     // the last correction moved dq: bring q to it
     system.plus(x.q, w.dq, w.q);
-    detail::require_finite_end(system, w.q, w.v, x.t + h);
+    w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     ++w.age;
     history.push(x, h, w.a);
     x.q.swap(w.q);

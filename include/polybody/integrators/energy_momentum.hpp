@@ -147,7 +147,7 @@ struct ConservingStep {
       detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     problem.move();
     for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
-    detail::require_finite_end(system, w.q, w.v, x.t + h);
+    w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     history.push(x, h, w.vd);
     x.q.swap(w.q);
     x.v.swap(w.v);

@@ -17,9 +17,9 @@ struct ExplicitStep {
         lambda(VecX::Zero(s.rows())),
         forward(s) {}
 
-  /// Makes it the state at t + h. \throws NonFinite.
-  void accept(System const& system, State& x, double h) {
-    require_finite_end(system, q, v, x.t + h);
+  /// Makes it the state at t + h. \throws NonFinite, Diverged.
+  void accept(System& system, State& x, double h) {
+    forward.require_end(system, {q, v, lambda, x.t + h, h});
     x.q.swap(q);
     x.v.swap(v);
     x.a.swap(a);

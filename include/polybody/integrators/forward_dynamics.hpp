@@ -8,6 +8,7 @@
 
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/tangent_solver.hpp>
+#include <polybody/system/step_bounds.hpp>
 
 namespace polybody {
 
@@ -18,27 +19,35 @@ struct RowFeedback {
 };
 
 namespace detail {
-/// Names the force element that pushes with a force that is NaN or infinite, where one does.
+/// Names the force element that pushes with a force that is NaN, infinite or too large, where one does.
 template <class = void>
 std::string whose_force(System const& s) {
   for (Action<double> const& action : s.data().actions)
     for (double const w : action.w)
-      if (!std::isfinite(w)) return ", that of \"" + s.layout().forces[std::size_t(action.source)].name + '"';
+      if (!(std::abs(w) <= largest_number))
+        return ", that of \"" + s.layout().forces[std::size_t(action.source)].name + '"';
   return "";
+}
+/// The same as a sentence of its own, for motions that it may have caused.
+template <class = void>
+std::string and_whose_force(System const& s) {
+  std::string const whose = whose_force(s);
+  return whose.empty() ? "" : " A force is not finite or too large" + whose + '.';
 }
 /// \throws NonFinite naming body, force element and time when an entry of x (by speeds) is NaN or infinite.
 template <class = void>
 void require_finite_force(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
-    throw NonFinite("A force on " + s.name_of(i) + " is not finite at t = " + number(s.at().t) + " s" + whose_force(s) +
+    throw NonFinite("A force on " + s.name_of(i) + how_not_finite(x[i]) + " at t = " + number(s.at().t) + " s" +
+                    whose_force(s) +
                     ". Look at the forces applied to it, whose markers may coincide, and at the state before.");
 }
 /// \throws NonFinite naming joint and time when an entry of x (by rows) is NaN or infinite.
 template <class = void>
 void require_finite_rows(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
-    throw NonFinite("The motion at " + s.name_of(s.speeds() + i) + " is not finite at t = " + number(s.at().t) +
-                    " s. Look at the state before, or take a smaller step.");
+    throw NonFinite("The motion at " + s.name_of(s.speeds() + i) + how_not_finite(x[i]) + " at t = " +
+                    number(s.at().t) + " s. Look at the state before, or take a smaller step." + and_whose_force(s));
 }
 /// What a step ends at. \throws NonFinite naming body and time when a coordinate or a speed is NaN or infinite.
 template <class = void>
@@ -46,9 +55,29 @@ void require_finite_end(System const& s, VecX const& q, VecX const& v, double t)
   Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
   if (in_v < 0 && in_q < 0) return;
   throw NonFinite("The motion of " + (in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)) +
-                  " is not finite at t = " + number(t) + " s. Look at its speed and the forces on it before.");
+                  how_not_finite(in_v < 0 ? q[in_q] : v[in_v]) + " at t = " + number(t) +
+                  " s. Look at its speed and the forces on it before." + and_whose_force(s));
 }
-[[noreturn]] inline void throw_singular(double t, std::string const& who) {
+/// \throws NonFinite when the place of the last evaluation is none: before a matrix is called singular there.
+template <class = void>
+void require_finite_place(System const& s) {
+  auto const& [q, v, t] = s.at();
+  Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
+  if (in_v < 0 && in_q < 0) return;
+  throw NonFinite("The motion of " + (in_v < 0 ? s.layout().name_of_coordinate(in_q) : s.layout().name_of(in_v)) +
+                  how_not_finite(in_v < 0 ? q[in_q] : v[in_v]) + " at t = " + number(t) +
+                  " s. Look at the forces on it, or take a smaller step." + and_whose_force(s));
+}
+/// The equations at the last evaluation, whose right-hand side is `rhs`, have no finite solution. Where numbers in them
+/// are too large, that is the reason; else the matrix is singular, first noticed at `who`.
+/// \throws NonFinite, LinearSolverSingular.
+template <class = void>
+[[noreturn]] void throw_unsolvable(System const& s, VecX const& rhs, std::string const& who) {
+  double const t = s.at().t;
+  require_finite_place(s);
+  if (Index const i = first_not_finite(rhs); i >= 0)
+    throw NonFinite("The right-hand side of " + s.name_of(i) + how_not_finite(rhs[i]) + " at t = " + number(t) +
+                    " s. Look at the forces on it and at its speed." + and_whose_force(s));
   throw LinearSolverSingular(
       "The equations of motion have no unique acceleration at t = " + number(t) + " s; the pivot is lost at " + who +
       ". Look for a joint that repeats another, or a body without inertia that is free to move.");
@@ -69,6 +98,16 @@ class ForwardDynamics {
         delta_(VecX::Zero(system.speeds())),
         next_(VecX::Zero(system.coordinates())) {
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
+  }
+
+  StepBounds bounds;  ///< of the run; without limits until it begins
+
+  /// What every step asks before it accepts its end. \throws NonFinite, Diverged.
+  void require_end(System& system, StepEnd const& end) {
+    double const squares = end.v.squaredNorm();
+    if (!(squares + end.q.squaredNorm() <= largest_number * largest_number))
+      detail::require_finite_end(system, end.q, end.v, end.t);  // number by number
+    bounds.require(system, end, squares);
   }
 
   /// M a + Gᵀλ = f, G a = −γ − what is fed back, at the coordinates, speeds and time `at`. \throws
@@ -172,7 +211,7 @@ class ForwardDynamics {
   void factor(System& system) {
     if (system.rows() == 0 && factored_ && has_constant_mass(system)) return;
     Index const bad = solver_.factor([&](BlockSink& sink) { system.masses(sink); });
-    if (bad >= 0) detail::throw_singular(system.at().t, name_of_equation(system, bad));
+    if (bad >= 0) detail::throw_unsolvable(system, {}, name_of_equation(system, bad));
     factored_ = true;
   }
 
@@ -182,7 +221,7 @@ class ForwardDynamics {
     for (Index i = 0; i < n; ++i) rhs_[i] = r_scale == 0.0 ? 0.0 : r_scale * r_[i];
     for (Index i = 0; i < system.rows(); ++i) rhs_[n + i] = phi_scale * phi_[i];
     solver_.solve(rhs_, x_);
-    if (Index const i = first_not_finite(x_); i >= 0) detail::throw_singular(system.at().t, system.name_of(i));
+    if (Index const i = first_not_finite(x_); i >= 0) detail::throw_unsolvable(system, rhs_, system.name_of(i));
   }
 
   /// out = x_ from entry `first` on.

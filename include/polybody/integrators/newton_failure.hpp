@@ -21,13 +21,16 @@ template <class = void>
     Index const i = first_not_finite(x);
     return system.name_of((i < 0 ? x.size() - 1 : i) % system.size());
   };
-  if (report.result == NewtonResult::singular && last.bad >= 0)
+  if (report.result == NewtonResult::singular && last.bad >= 0) {
+    require_finite_place(system);
     throw LinearSolverSingular(integrator + ": the tangent is singular" + when + ", first at " +
                                name_of_equation(system, last.bad % equations_of(system)) +
                                ". Look for a joint that repeats another, or a free body without inertia.");
+  }
   if (report.result == NewtonResult::singular)
     throw NonFinite(integrator + ": the motion of " + owner(last.solution) + " is not finite" + when +
-                    ". Look at its speed and the forces on it before, or take a smaller step.");
+                    ". Look at its speed and the forces on it before, or take a smaller step." +
+                    and_whose_force(system));
   if (report.result == NewtonResult::not_finite)
     throw NonFinite(integrator + ": a force on " + owner(last.rhs) + " is not finite" + when + whose_force(system) +
                     ". Look at the forces applied to it, or take a smaller step.");

@@ -168,7 +168,7 @@ struct Radau {
       w.forward.least_change(system, w.phi, w.next);
       w.vd[2] += w.next;
     }
-    detail::require_finite_end(system, w.q, w.v[2], x.t + h);
+    w.forward.require_end(system, {w.q, w.v[2], w.lambda[2], x.t + h, h});
     x.q.swap(w.q);
     x.v.swap(w.v[2]);
     x.a.swap(w.vd[2]);

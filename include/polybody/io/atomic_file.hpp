@@ -32,8 +32,9 @@ inline std::filesystem::path temporary_beside(std::filesystem::path const& file)
 
 /// Writes bytes to a hidden temporary file in the same folder and renames it into place on
 /// `close()`, so a reader sees the old file or the whole new one, never a half-written one.
-/// Destroyed without `close()`: closes, unless an exception is in flight or a write has failed;
-/// then the temporary is removed and whatever was there before stays. Move-only.
+/// Destroyed without `close()`: closes, unless a write has failed, or an exception is in flight and
+/// `keep_on_exception()` was not called; then the temporary is removed and whatever was there before
+/// stays. Move-only.
 class AtomicFile {
  public:
   /// Creates the parent folders and opens the temporary file. A symbolic link is followed.
@@ -66,6 +67,7 @@ class AtomicFile {
     std::swap(file_, taken.file_);
     std::swap(failed_, taken.failed_);
     std::swap(exceptions_, taken.exceptions_);
+    std::swap(kept_, taken.kept_);
     return *this;
   }
 
@@ -73,7 +75,7 @@ class AtomicFile {
   ~AtomicFile() {
     if (!file_) return;
     try {
-      failed_ || std::uncaught_exceptions() > exceptions_ ? discard() : close();
+      failed_ || (!kept_ && std::uncaught_exceptions() > exceptions_) ? discard() : close();
     } catch (std::exception const& error) {
       std::fprintf(stderr, "polybody: %s\n", error.what());
     }
@@ -88,6 +90,9 @@ class AtomicFile {
     failed_ = true;
     fail("cannot be written", {errno, std::generic_category()});
   }
+
+  /// What is written is of use although more was to come: an exception puts it in place, too.
+  void keep_on_exception() noexcept { kept_ = true; }
 
   /// Flushes and renames into place; a second call does nothing. Throws IoError (file name and the
   /// system's reason), also if an earlier write failed; the temporary is then removed.
@@ -126,7 +131,7 @@ class AtomicFile {
   std::string name_;
   std::filesystem::path target_, temporary_;
   std::unique_ptr<std::FILE, Closer> file_;
-  bool failed_ = false;
+  bool failed_ = false, kept_ = false;
   int exceptions_ = std::uncaught_exceptions();
 };
 

@@ -24,7 +24,7 @@ class SnapshotWalk {
     each(s.model.coordinates, s.model.speeds, s.model.rows, s.model.names);
     text(s.integrator);
     numbers(s.state.q), numbers(s.state.v), numbers(s.state.a), numbers(s.state.lambda), numbers(s.state.memory);
-    each(s.state.t, s.step);
+    each(s.state.t, s.step, s.row.start, s.row.length, s.row.count);
     list(s.sides, [&](auto& side) { archive(side); });
     each(s.report.steps, s.report.iterations, s.report.factorisations, s.report.evaluations, s.report.rejected,
          s.report.stopped);
@@ -96,7 +96,7 @@ struct CheckpointHead {
   std::uint32_t order, version;
   std::uint64_t length;
 };
-inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 1u, 0u};
+inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 2u, 0u};
 
 }  // namespace detail
 

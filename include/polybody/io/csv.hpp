@@ -22,7 +22,8 @@
 namespace polybody {
 
 /// Writes a table, one head line and then rows of numbers in the shortest form that reads back to
-/// the same double. The file appears under its name on `close()` (see AtomicFile). Move-only.
+/// the same double. The file appears under its name on `close()` (see AtomicFile), and where an
+/// exception ends the loop that writes it: with the rows so far, if there are any. Move-only.
 class Csv {
  public:
   /// `columns`: the heads, with their units ("t [s]"); not empty and all different, else
@@ -88,7 +89,7 @@ class Csv {
     }
     line_.back() = '\n';
     file_.write(line_);
-    ++rows_;
+    if (rows_++ == 0) file_.keep_on_exception();
   }
 
   static std::string quoted(std::string const& head) {

@@ -6,8 +6,8 @@
 #include <bit>
 #include <cstdint>
 
-#include <polybody/io/atomic_file.hpp>
 #include <polybody/io/digits.hpp>
+#include <polybody/io/file_in_place.hpp>
 #include <polybody/io/visual.hpp>
 
 namespace polybody {
@@ -88,13 +88,13 @@ void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const&
   arrays.heads += "</CellData>\n</Piece>\n";
 
   std::string const order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-  AtomicFile file(name);
+  FileInPlace file(name);
   file.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" + order +
              "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n" + arrays.heads +
              "</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
   file.write(arrays.bytes);
   file.write("\n</AppendedData>\n</VTKFile>\n");
-  file.close();
+  file.flush();
 }
 
 }  // namespace detail
@@ -104,21 +104,19 @@ void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const&
 ///   for (State const& now : simulate(…)) writer.write(now);
 /// makes out/run.pvd and out/run/run_000000.vtu, …. Points carry `displacement` from the reference state [m],
 /// `velocity` [m/s] and, where a part knows it, `axial_stress` [N/m²] (NaN on the others); cells carry `part`, the
-/// place among the parts of the visual, from 0. Numbers are float32. Every file appears when it is complete, a grid
-/// before the collection that names it; so a run that is broken off leaves an animation up to its last state. The
-/// visual must outlive the writer.
+/// place among the parts of the visual, from 0. Numbers are float32. A grid is complete before the collection names it,
+/// and the collection is whole after every state; so a run that is broken off, even by a signal, leaves an animation up
+/// to its last state, and no temporary file. The visual must outlive the writer.
 template <class = void>  // compiled where it is used
 class VtkWriterOf {
  public:
   /// Writes a collection without states. \throws InvalidInput unless the file ends in .pvd; IoError when it cannot be
   /// written.
   VtkWriterOf(std::filesystem::path const& file, Visual& visual)
-      : visual_(&visual), file_(std::filesystem::absolute(file)) {
-    if (file_.extension() != ".pvd")
-      throw InvalidInput("VtkWriter: the name of a collection ends in .pvd, but this is '" + file.string() + "'.");
+      : visual_(&visual), file_(std::filesystem::absolute(file)), collection_((check(file), file_)) {
     for (VisualPart const& part : visual.at(visual.reference()))
       rest_.insert(rest_.end(), part.surface.points.begin(), part.surface.points.end());
-    write_collection();
+    add("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n");
   }
 
   /// \throws InvalidInput unless times rise, NonFinite, IoError.
@@ -135,9 +133,8 @@ class VtkWriterOf {
     index.insert(0, index.size() < 6 ? 6 - index.size() : 0, '0');
     std::filesystem::path const stem = file_.stem(), grid = stem / (stem.string() + "_" + index + ".vtu");
     detail::write_vtu(file_.parent_path() / grid, parts, rest_);
-    entries_ += "<DataSet timestep=\"" + detail::all_digits(x.t) + "\" part=\"0\" file=\"" +
-                detail::xml_text(grid.generic_string()) + "\"/>\n";
-    write_collection();
+    add("<DataSet timestep=\"" + detail::all_digits(x.t) + "\" part=\"0\" file=\"" +
+        detail::xml_text(grid.generic_string()) + "\"/>\n");
     last_ = x.t;
     ++count_;
   }
@@ -145,17 +142,23 @@ class VtkWriterOf {
   std::size_t states() const { return count_; }  ///< written so far
 
  private:
-  void write_collection() const {
-    AtomicFile file(file_);
-    file.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" + entries_ +
-               "</Collection>\n</VTKFile>\n");
-    file.close();
+  static void check(std::filesystem::path const& file) {
+    if (file.extension() != ".pvd")
+      throw InvalidInput("VtkWriter: the name of a collection ends in .pvd, but this is '" + file.string() + "'.");
+  }
+  /// Writes an entry over the end of the collection, and the end behind it, by one call of the system.
+  void add(std::string const& entry) {
+    collection_.go_to(end_);
+    collection_.write(entry + "</Collection>\n</VTKFile>\n");
+    collection_.flush();
+    end_ += entry.size();
   }
 
   Visual* visual_;
   std::filesystem::path file_;
+  FileInPlace collection_;
+  std::size_t end_ = 0;  ///< of the entries [bytes]
   std::vector<Vec3> rest_;
-  std::string entries_;
   std::size_t count_ = 0;
   double last_ = -std::numeric_limits<double>::infinity();
 };

@@ -39,6 +39,12 @@ class NewtonStalled : public Error {
   using Error::Error;
 };
 
+/// A step that converged, but left joints open or energy that no work explains; the state is as it was before the step.
+class Diverged : public Error {
+ public:
+  using Error::Error;
+};
+
 /// A point that slides along a body has gone off its end.
 class OffTheEnd : public Error {
  public:

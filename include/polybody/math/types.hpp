@@ -83,11 +83,20 @@ void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what) 
         throw InvalidInput(std::string(what) + " must be finite, but has a NaN or an infinity.");
 }
 
-/// The first entry of `x` that is NaN or infinite, or −1.
+/// Beyond it squares, and with them energies and norms, are no longer finite.
+inline constexpr double largest_number = 1e150;
+
+/// The first entry of `x` that is NaN, infinite or beyond `largest_number`, or −1.
 inline Index first_not_finite(VecX const& x) {
   for (Index i = 0; i < x.size(); ++i)
-    if (!std::isfinite(x[i])) return i;
+    if (!(std::abs(x[i]) <= largest_number)) return i;
   return -1;
+}
+/// " is not finite", or by how much x is too large.
+template <class = void>  // compiled where it is used
+std::string how_not_finite(double x) {
+  return std::isfinite(x) ? " is " + number(x) + ", beyond " + number(largest_number) + " whose square is not finite,"
+                          : " is not finite";
 }
 inline bool all_finite(VecX const& x) { return first_not_finite(x) < 0; }
 

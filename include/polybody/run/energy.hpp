@@ -4,8 +4,8 @@
 
 namespace polybody {
 
-/// Energies of state x; `system` must have been evaluated there, and made with `Entries::energy`. Dead loads have no
-/// potential here; their work is not counted. Without allocation.
+/// Energies of state x; `system` must have been evaluated there. Dead loads have no potential here; their work is not
+/// counted. Without allocation.
 template <class = void>
 Energy energy(System const& system, State const& x) {
   return require_entry(system.entries().first.energy, "energies")(system.entries().second, {x.q, x.v, x.t},
@@ -14,7 +14,7 @@ Energy energy(System const& system, State const& x) {
 
 template <class M>
 Energy energy(M const& model, State const& x) {
-  System system(model, with<Entries::energy>);
+  System system(model, with<Entries::motion>);
   system.evaluate(x.q, x.v, x.t);
   return energy(system, x);
 }

@@ -32,8 +32,8 @@ Powers powers(System const& system, State const& x) {
 /// (loads at corners, contacts with dampers at touch). States must have the multipliers of their own time. The states
 /// of `simulate` have them, also for joints whose rows are eliminated (Recursive, AncfLinear). States put together by
 /// hand do not have them, nor do those of `EnergyMomentum` and `EnergyDecaying`, whose multipliers belong to the middle
-/// of the step: there the work of drives is right to O(h). A record does not allocate, except where the kinetic energy
-/// of a body does (floating frames). The model must outlive the audit and must not change after.
+/// of the step: there the work of drives is right to O(h). A record does not allocate. The model must outlive the audit
+/// and must not change after.
 template <class = void>  // compiled where it is used
 class EnergyAuditOf {
  public:

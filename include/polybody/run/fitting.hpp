@@ -45,4 +45,16 @@ void require_places(System const& system, State const& x) {
                          "and turn a body by unit quaternions.");
 }
 
+/// \throws InvalidInput naming a body whose coordinates or speeds are so large that squares of them, and with them
+/// energies, are not finite. \param x of the whole model
+template <class = void>
+void require_computable(System const& system, State const& x) {
+  ModelLayout const& whole = system.layout();
+  Index const in_q = first_not_finite(x.q), in_v = first_not_finite(x.v);
+  if (in_q < 0 && in_v < 0) return;
+  throw InvalidInput(
+      "A " + (in_v < 0 ? "coordinate of " + whole.name_of_coordinate(in_q) : "speed of " + whole.name_of(in_v)) +
+      how_not_finite(in_v < 0 ? x.q[in_q] : x.v[in_v]) + " in the state. Give a smaller one.");
+}
+
 }  // namespace polybody

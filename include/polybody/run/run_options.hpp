@@ -20,6 +20,7 @@ struct RunOptions {
   double assembly_tolerance = 1e-8;  ///< of the start
   int halvings = 0;                  ///< how often a step whose Newton iteration stalls may be halved, as at impacts
   bool minimum_norm = false;         ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
+  StepLimits limits = {};            ///< of a step's end: open joints, and energy that no work explains
   int threads = 1;  ///< that share the loops of an evaluation; for large models, results stay the same bits
 
   /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
@@ -31,6 +32,9 @@ struct RunOptions {
     if (halvings < 0 || halvings > 30)
       throw InvalidInput("simulate: a step can be halved 0 to 30 times, but " + std::to_string(halvings) +
                          " is asked for.");
+    if (!(limits.violation > 0.0) || !(limits.energy >= 1.0))
+      throw InvalidInput("simulate: limits.violation must be positive and limits.energy at least one, but they are " +
+                         number(limits.violation) + " and " + number(limits.energy) + ".");
     for (Event const& event : events) {
       if (!event.value) throw InvalidInput("simulate: the event \"" + event.name + "\" has no value.");
       require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");

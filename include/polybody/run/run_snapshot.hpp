@@ -4,6 +4,7 @@
 
 #include <polybody/math/checksum.hpp>
 #include <polybody/run/run_options.hpp>
+#include <polybody/run/step_plan.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -35,6 +36,7 @@ struct RunSnapshot {
   std::string integrator;  ///< its name
   State state;             ///< as it is stepped, with the integrator's memory: without what policies eliminate
   double step = 0.0;       ///< the next one, of an integrator that controls its step [s]
+  StepRow row;             ///< of the last step
   std::vector<int> sides;  ///< of zero on which the events stand
   RunReport report;
 

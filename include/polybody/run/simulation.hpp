@@ -96,10 +96,15 @@ class Simulation {
 
   /// A workspace that knows no earlier step, and is ready for the next one.
   void renew() {
+    StepBounds bounds = std::move(workspace_.forward.bounds);
     workspace_ = integrator_.template workspace<Solver>(*system_);
+    workspace_.forward.bounds = std::move(bounds);
     State ready = stepped();  // whose memory `start` clears
     integrator_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, workspace_);
   }
+
+  /// The limits of steps hold from this state on.
+  void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, stepped().q, stepped().v, stepped().t); }
 
   /// The state that is stepped: the user's, or the narrow one.
   State& stepped() { return eliminates() ? narrow_ : *x_; }
@@ -168,6 +173,7 @@ class Simulation {
   decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
   StepPlan plan_;
+  StepRow row_;
   EventWatch watch_;
   double h_ = 0.0;
   RunReport report_;
@@ -178,6 +184,7 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
     : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), x.t) {
   require_fitting(whole(), x);
   require_places(whole(), x);
+  require_computable(whole(), x);
   plan_ = StepPlan(x.t, options_.until, options_.step, corners());
   require_assembled(whole(), x, options_.assembly_tolerance);
   if (eliminates()) narrow_start();
@@ -201,9 +208,11 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
   show();
   plan_ = StepPlan(x.t, options_.until, options_.step, corners());
   if constexpr (requires { I::controls_step; }) h_ = std::min(from.step, largest_step());
+  row_ = from.row;
   watch_ = EventWatch(from.sides);
   report_ = from.report;
   renew();
+  bound();
 }
 
 template <Integrator I, class Solver>
@@ -212,7 +221,7 @@ Simulation<I, Solver>::~Simulation() = default;
 template <Integrator I, class Solver>
 RunSnapshot Simulation<I, Solver>::snapshot() {
   renew();
-  return {identity_of(*system_), I::name, stepped(), h_, watch_.sides(), report_};
+  return {identity_of(*system_), I::name, stepped(), h_, row_, watch_.sides(), report_};
 }
 
 template <Integrator I, class Solver>
@@ -221,9 +230,10 @@ void Simulation<I, Solver>::advance() {
   bool const crumb = h < 0.01 * h_;  // a tiny step, left over after a corner or an event
   State before;
   if (jumps || crumb || options_.minimum_norm || !options_.events.empty()) before = stepped();
+  double const from = stepped().t;
   StepReport const report = step(h, options_.halvings);
   bool const reached = lands && report.taken == h;
-  if (reached) stepped().t = target;
+  stepped().t = reached ? target : row_.after(from, report.taken);
   account(report, reached);
   try {
     bool const met = !options_.events.empty() && meet_events(before, report.taken);
@@ -293,6 +303,7 @@ void Simulation<I, Solver>::restart(bool first) {
   integrator_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
   if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
   stepped() = std::move(fresh);
+  bound();
   report_.redundant = workspace_.forward.redundant(*system_);
   if (eliminates())
     for (std::string const& name : system_->step_coordinates().narrow->redundant)

@@ -9,6 +9,20 @@
 
 namespace polybody {
 
+/// Steps of one length in a row: they end at t₀ + k h, so that rounding does not add up.
+struct StepRow {
+  double start = 0.0, length = 0.0;  ///< t₀ and h [s]
+  double count = 0.0;                ///< k
+
+  double end() const { return start + count * length; }
+  /// The end of a step from t that took `taken` seconds. One of another length, or from elsewhere, begins a row.
+  double after(double t, double taken) {
+    if (t != end() || taken != length) *this = {t, taken, 0.0};
+    count += 1.0;
+    return end();
+  }
+};
+
 /// The corners of a run and what is left of it.
 class StepPlan {
  public:
@@ -29,7 +43,7 @@ class StepPlan {
   /// Passes the corners up to t, and those that differ from it by rounding only (0.3 and 0.1 + 0.2 are one). Returns t,
   /// or the time of the last corner passed or of the end where it is that within rounding.
   double pass(double t) {
-    double const crumb = 1e-9 * step_ + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
+    double const crumb = 1e-9 * step_ + rounding(t);
     while (next_ < corners_.size() && corners_[next_] <= t + crumb) t = std::max(t, corners_[next_++]);
     return until_ - t <= crumb ? until_ : t;
   }
@@ -41,10 +55,13 @@ class StepPlan {
     // A step may be 1 % longer than asked for, so that no tiny one is left: rows divided by its square would be
     // rounding errors.
     bool const lands = 1.01 * h >= left;
-    return {target, !lands ? h : corner ? until_just_before(target, t) : left, lands, lands && corner};
+    if (lands && corner) return {target, until_just_before(target, t), true, true};
+    // A last step that only rounding sets apart is as long as the others: a run that goes on later had it, too.
+    return {target, lands && std::abs(left - h) > rounding(t) ? left : h, lands, false};
   }
 
  private:
+  static double rounding(double t) { return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t); }
   /// The length of a step that ends just before a corner, where a law still has its old value.
   static double until_just_before(double corner, double t) {
     double h = std::nextafter(corner, t) - t;

@@ -11,6 +11,7 @@
 #include <polybody/system/composition.hpp>
 #include <polybody/system/linear_rows.hpp>
 #include <polybody/system/markers.hpp>
+#include <polybody/system/names.hpp>
 
 namespace polybody::detail {
 
@@ -27,6 +28,7 @@ struct ModelParts {
   std::vector<GroundMarker> ground = {};
   std::vector<LinearRows> linear_rows = {};
   std::vector<Index> velocity_rows = {};
+  Names body_names = {}, joint_names = {}, force_names = {};
   Index coordinates = 0, speeds = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
 
   /// \throws InvalidInput when `model` is the serial number of another one.
@@ -85,12 +87,14 @@ LinearPoint linear_side(PooledMarker<B> const& m, World other, LinearSide& side,
 
 template <class B>
 BodyHandle<B> add_body(ModelParts& parts, BodyPool<B>& pool, B const& body, std::string name) {
-  name = name_or_next(std::move(name), "body", std::size_t(parts.bodies));
+  name = parts.body_names.given_or_next(std::move(name), "body", std::size_t(parts.bodies));
+  parts.body_names.require_free(name, "body");
   BodyKernels<B, double>::add(pool, body, name, parts.coordinates, parts.speeds, OwnsRows<B> ? parts.rows : -1);
   if constexpr (OwnsRows<B>) parts.rows += B::own_rows;
   parts.coordinates += pool.entries.back().body.coordinates();
   parts.speeds += pool.entries.back().body.speeds();
   ++parts.bodies;
+  parts.body_names.take(name);
   return {parts.serial, Index(pool.entries.size()) - 1, std::move(name), pool.entries.shared()};
 }
 
@@ -101,7 +105,7 @@ ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, 
   using G = typename J::Geometry;
   using P = typename J::PolicyType;
   using Asks = typename J::Measured;
-  name = name_or_next(std::move(name), G::name, pool.size());
+  name = parts.joint_names.given_or_next(std::move(name), G::name, pool.size());
   parts.require_own(a.marker.model, name);
   parts.require_own(b.marker.model, name);
   require_apart(a.marker, b.marker, name);
@@ -111,6 +115,7 @@ ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, 
     require_along_tangent(axes_b, triad, name);
   require_told(a.marker, Asks::needs, name);
   require_told(b.marker, needs_of_second<Asks>(), name);
+  parts.joint_names.require_free(name, "joint");
   if constexpr (LinearInCoordinates<P>) {  // before a marker is published: it may refuse
     LinearRows rows{.name = name, .row = parts.rows};
     fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name), triad.col(2),
@@ -132,6 +137,7 @@ ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, 
     for (Index i = polybody::velocity_rows<G>(); i > 0; --i) parts.velocity_rows.push_back(parts.rows - i);
   }
   pool.push_back(std::move(entry));
+  parts.joint_names.take(name);
   return {parts.serial, Index(pool.size()) - 1, std::move(name)};
 }
 
@@ -139,12 +145,14 @@ ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, 
 template <class F, class... Bs>
 ElementHandle<F> add_force(ModelParts& parts, std::vector<ForceEntry<F>>& pool, F const& force, std::string name,
                            PooledMarker<Bs> const&... markers) {
-  name = name_or_next(std::move(name), "force", pool.size());
+  name = parts.force_names.given_or_next(std::move(name), "force", pool.size());
   force.check("\"" + name + "\"");
   (parts.require_own(markers.marker.model, name), ...);
   (require_told(markers.marker, F::needs, name), ...);
+  parts.force_names.require_free(name, "force");
   pool.push_back({force, {publish_at(parts, markers, Mat3::Identity())...}, name, parts.states});
   parts.states += states_of<F>();
+  parts.force_names.take(name);
   return {parts.serial, Index(pool.size()) - 1, std::move(name)};
 }
 
@@ -152,16 +160,18 @@ ElementHandle<F> add_force(ModelParts& parts, std::vector<ForceEntry<F>>& pool, 
 template <class F, class B>
 ElementHandle<F> add_group(ModelParts& parts, std::vector<ForceEntry<F>>& pool, F const& group,
                            std::vector<PooledMarker<B>> const& many, std::string name) {
-  name = name_or_next(std::move(name), "group", pool.size());
+  name = parts.force_names.given_or_next(std::move(name), "group", pool.size());
   group.check("\"" + name + "\"");
   ForceEntry<F> entry{group, {}, name};
   for (PooledMarker<B> const& m : many) {
     parts.require_own(m.marker.model, name);
     require_told(m.marker, F::needs, name);
   }
+  parts.force_names.require_free(name, "force");
   for (PooledMarker<B> const& m : many) entry.markers.push_back(publish_at(parts, m, Mat3::Identity()));
   entry.force.set_many(Index(many.size()));
   pool.push_back(std::move(entry));
+  parts.force_names.take(name);
   return {parts.serial, Index(pool.size()) - 1, std::move(name)};
 }
 

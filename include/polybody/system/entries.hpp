@@ -25,11 +25,11 @@ enum class SecondOrder { omitted, included };
 
 /// Which groups of entries a table holds. An algorithm names what it needs, and no more is compiled.
 enum class Entries : unsigned {
-  motion = 0,            ///< markers, gaps, forces, M, ⊞: always there
+  motion = 0,            ///< markers, gaps, forces, M, ⊞, energies: always there
   tangent = 1,           ///< cm M + cd D + ck K
   second_order = 2,      ///< the tangent's second-order terms
   coordinate_rates = 4,  ///< q˙
-  energy = 8,            ///< energies and powers
+  energy = 8,            ///< powers
   rigid_speeds = 16,     ///< speeds of a rigid motion
   secants = 32,          ///< means over a step, for steps that conserve energy
   compliance = 64,       ///< the slopes of compliant joints; part of `tangent`

@@ -77,6 +77,14 @@ void add_wrenches(L const& law, std::array<Index, L::markers> const& at, double 
     }
 }
 
+/// All that F does has a potential; of groups this is not asked.
+template <class F>
+constexpr bool stores() {
+  if constexpr (ForceGroup<F> || HasStates<F>)
+    return false;
+  else
+    return HasPotential<F>;
+}
 template <class L>
 double potential_of(L const& law, std::array<Index, L::markers> const& at, double t, Data<double> const& data) {
   if constexpr (HasPotential<L>)
@@ -201,6 +209,7 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
       out.forces.back().v0 = out.body_speeds() + e.state;
       out.forces.back().states = F::states;
     }
+    out.forces.back().stores = detail::stores<F>();
     if constexpr (requires { e.force.law; }) detail::add_corners(e.force.law, out.corners);
   }
 }

@@ -58,6 +58,19 @@ void add_loads(std::array<Wrench<double>, n> const& w, std::array<Index, n> cons
   }
 }
 
+template <class L>
+inline constexpr bool law_has_potential = requires(L const& law) { law.potential(0.0); };
+/// Every law of a bushing has a potential; other policies have one by their concept.
+template <class P>
+constexpr bool has_potential() {
+  if constexpr (requires(P const& p) { std::get<0>(p.laws); })
+    return []<class... Laws>(std::tuple<Laws...> const*) {
+      return (law_has_potential<Laws> && ...);
+    }(static_cast<decltype(P::laws) const*>(nullptr));
+  else
+    return true;
+}
+
 /// λ(g, 0) in the rows that store no energy: laws of a bushing without a potential.
 template <class P, int m>
 Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
@@ -115,7 +128,8 @@ void JointKernels<J, T>::describe(Pool const& pool, std::vector<LinearRows> cons
   Index index = 0;
   for (auto const& e : pool) {
     LinearRows const* const rows = e.linear < 0 ? nullptr : &linear_rows[std::size_t(e.linear)];
-    out.joints.push_back({e.name, e.a, e.b, e.row, e.rows, Eliminates<P>, &detail::type_tag<J>, index++, rows});
+    out.joints.push_back({e.name, e.a, e.b, e.row, e.rows, Eliminates<P>, &detail::type_tag<J>, index++, rows,
+                          !compliant || detail::has_potential<P>()});
     detail::add_corners(e.joint.geometry, out.corners);
   }
 }

@@ -32,6 +32,7 @@ struct JointPlace {
   void const* type = nullptr;     ///< tells types of joints apart
   Index index = 0;                ///< among the joints of its type
   LinearRows const* linear = {};  ///< rows of a joint that is linear in coordinates, in the model
+  bool stores = true;             ///< of a compliant joint: all rows have a potential
 };
 
 struct ForcePlace {
@@ -42,6 +43,7 @@ struct ForcePlace {
   std::vector<Index> markers = {};  ///< published
   bool is_load = false;
   Index v0 = -1, states = 0;  ///< first-order states of its own, among the speeds
+  bool stores = false;        ///< it has a potential
 };
 
 /// Counts, places and names of a model; bodies, joints and forces in the order of their types.
@@ -61,6 +63,12 @@ struct ModelLayout {
 
   Index body_speeds() const { return speeds - states; }
 
+  /// Name of the body that owns coordinate i.
+  std::string name_of_coordinate(Index i) const {
+    for (BodyPlace const& b : bodies)
+      if (i >= b.q0 && i < b.q0 + b.coordinates) return "body \"" + b.name + '"';
+    return "unknown";
+  }
   /// Name of the body that owns speed i, or the force whose first-order state it is; or of the joint or body that owns
   /// row i − speeds.
   std::string name_of(Index i) const {

@@ -39,7 +39,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
 
   explicit Model(Gravity const& gravity = {}) : parts_{gravity, detail::next_serial()} {}
 
-  /// Adds a body; the name appears in every message about it.
+  /// Adds a body; the name appears in every message about it, and no other body has it. Without a name it gets one.
   template <OneOf<Bs...> B>
   BodyHandle<B> add(B const& body, std::string name = "") {
     return detail::add_body(parts_, std::get<detail::BodyPool<B>>(bodies_), body, std::move(name));

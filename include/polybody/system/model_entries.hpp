@@ -154,6 +154,7 @@ struct EntriesOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> 
  private:
   static constexpr void add_for_numbers(ModelEntries<double>& out) {
     out.masses = &Loops::masses;
+    out.energy = &Loops::energy;
     if constexpr (contains(wanted, Entries::tangent)) {
       out.element_tangents = &Loops::element_tangents;
       out.force_tangents = &Loops::force_tangents;
@@ -165,10 +166,7 @@ struct EntriesOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> 
       out.load_stiffness = &Loops::load_stiffness;
     }
     if constexpr (contains(wanted, Entries::coordinate_rates)) out.coordinate_rates = &Loops::coordinate_rates;
-    if constexpr (contains(wanted, Entries::energy)) {
-      out.energy = &Loops::energy;
-      out.powers = &Loops::powers;
-    }
+    if constexpr (contains(wanted, Entries::energy)) out.powers = &Loops::powers;
     if constexpr (contains(wanted, Entries::secants)) out.secants = &detail::TypedSecants<M>::table;
     if constexpr (contains(wanted, Entries::rigid_speeds)) out.rigid_speeds = &Loops::rigid_speeds;
   }

@@ -31,7 +31,7 @@ TrackStart settled_track(VehicleOptions options = {}, Ground const& ground = {})
     x.t = 0.0;
     auto run = simulate(bench.model, x, GeneralizedAlpha{.rho_inf = 0.0, .tolerance = 1e-6},
                         {.until = 1.0, .step = 2e-3, .halvings = 8});
-    System asked(bench.model, with<Entries::energy>);
+    System asked(bench.model, with<Entries::motion>);
     double energy = 0.0, before = 0.0;
     fastest = 0.0;
     do {

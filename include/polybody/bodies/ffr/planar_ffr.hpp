@@ -225,13 +225,15 @@ class Ffr : public AddingCoordinates {
   }
 
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    VecX mv(speeds());
+    static thread_local VecX mv;  // an energy is asked for within steps, too
+    mv.resize(speeds());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));
   }
   double strain_energy(Index, std::span<double const> q) const {
-    Eigen::Map<VecX const> const x(q.data() + 3, deformations());
-    return 0.5 * x.dot(i_.stiffness * x) + i_.initial_force.dot(x);
+    double const* const x = q.data() + 3;
+    return 0.5 * detail::quadratic<double>(i_.stiffness, x, x) +
+           i_.initial_force.dot(Eigen::Map<VecX const>(x, deformations()));
   }
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
     FfrIntegrals::Moments<double> at;

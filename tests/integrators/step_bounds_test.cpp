@@ -1,0 +1,222 @@
+// Steps that converge and yet are wrong: open joints, and energy that no work explains. And motions that gain much
+// energy by right.
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/user_force.hpp>
+#include <polybody/integrators/energy_momentum.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/system/model.hpp>
+
+#include "support/refusal.hpp"
+
+namespace polybody {
+namespace step_bounds_test {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr StepLimits off{infinity, infinity};
+
+Bar round_bar(double length, double radius, double young, Placement const& placement = {}) {
+  return {.length = length,
+          .section = Circle{.radius = radius},
+          .material = Material{.density = 7800.0, .young = young},
+          .placement = placement};
+}
+
+void expect_same(State const& a, State const& b) {
+  EXPECT_EQ(a.q, b.q);
+  EXPECT_EQ(a.v, b.v);
+  EXPECT_EQ(a.a, b.a);
+  EXPECT_EQ(a.lambda, b.lambda);
+  EXPECT_EQ(a.memory, b.memory);
+  EXPECT_EQ(a.t, b.t);
+}
+
+/// Runs until a step is refused as Diverged, which must leave the state as it was. Returns the message.
+template <class Run>
+std::string message_of_divergence(Run&& run, State const& x) {
+  State before = x;
+  std::string const message = message_of<Diverged>([&] {
+    while (!run.done()) {
+      before = x;
+      run.advance();
+    }
+  });
+  expect_same(x, before);
+  return message;
+}
+
+/// A rod of steel on a pin of stiffness 1e16, released from the horizontal: ω h is about 1e6 at h = 0.01 s.
+struct StiffPendulum {
+  using Pin = Joint<Revolute, Penalty>;
+  Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
+  State x;
+
+  StiffPendulum() {
+    auto const rod = model.add(Rigid<>::from(round_bar(1.0, 0.01, 2e11)), "rod");
+    model.connect(Pin{Revolute{.axis = {0, 1, 0}}, Penalty{.stiffness = 1e16, .damping = 0.0}},
+                  model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
+    x = model.reference_state();
+  }
+};
+
+TEST(StepBounds, EnergyThatNoWorkExplainsEndsTheRun) {
+  StiffPendulum wild, p;
+  simulate(wild.model, wild.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01, .limits = off}).run();
+  EXPECT_GT(energy(wild.model, wild.x).total(), 1e18);  // a fall of 1 m gives 12 J
+  auto run = simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01});
+  std::string const message = message_of_divergence(run, p.x);
+  EXPECT_TRUE(has(message, "The step to t = 0.0"));
+  EXPECT_TRUE(has(message, "body \"rod\" moves fastest"));
+  EXPECT_TRUE(has(message, "take a smaller step"));
+  EXPECT_TRUE(has(message, "limits.energy"));
+  EXPECT_LT(energy(p.model, p.x).total(), 1e4);
+}
+
+/// Two cranks at 60 rad/s and a coupler that yields like rubber and buckles.
+struct BucklingCoupler {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::Rigid, planar::Ffr>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+  State x;
+
+  BucklingCoupler() {
+    double const up = 0.5 * std::numbers::pi, length = 0.3, omega = 60.0;
+    auto const crank = [&](double at, char const* name) {
+      return model.add(planar::Rigid::from(round_bar(length, 0.01, 2e11, Placement::planar(at, 0, up))), name);
+    };
+    auto const left = crank(0.0, "left crank"), right = crank(1.0, "right crank");
+    auto const coupler =
+        model.add(planar::Ffr::from(round_bar(1.0, 0.005, 2e9, Placement::planar(0, length)), 4), "coupler");
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), left.at(0.0), "left bearing");
+    model.connect(Pin{}, model.ground().at({1, 0, 0}), right.at(0.0), "right bearing");
+    model.connect(Pin{}, left.at(length), coupler.at(0.0), "left pin");
+    model.connect(Pin{}, right.at(length), coupler.at(1.0), "right pin");
+    x = model.reference_state();
+    for (auto const& body : {left, right}) model.set_velocity(x, body, {0, 0, 0}, {0, 0, -omega});
+    model.set_velocity(x, coupler, {length * omega, 0, 0}, {0, 0, 0});
+  }
+};
+
+TEST(StepBounds, AnOpenJointEndsTheRun) {
+  BucklingCoupler wild, m;
+  System system(wild.model, with<Entries::motion>);
+  double most = 0.0;
+  for (State const& now : simulate(wild.model, wild.x, GeneralizedAlpha{}, {.until = 2.0, .step = 1e-3, .limits = off}))
+    most = std::max(most, violation(system, now).position);
+  EXPECT_GT(most, 1.0);  // with pins 1 m apart
+  auto run = simulate(m.model, m.x, GeneralizedAlpha{}, {.until = 2.0, .step = 1e-3});
+  std::string const message = message_of_divergence(run, m.x);
+  EXPECT_TRUE(has(message, "leaves joint \""));
+  EXPECT_TRUE(has(message, "pin\" open by"));
+  EXPECT_TRUE(has(message, "limits.violation"));
+  EXPECT_LT(violation(system, m.x).position, 1e-6);
+}
+
+/// A wheel on a bearing, at rest.
+template <class... Drives>
+struct Wheel {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Pin, Drives...>> model;
+  BodyHandle<planar::Rigid> wheel = model.add(planar::Rigid(1.0, 1.0), "wheel");
+  Wheel() { model.connect(Pin{}, model.ground().at({0, 0, 0}), wheel.at(Vec2(0, 0)), "bearing"); }
+};
+
+struct Uniform {
+  Motion operator()(double t) const { return {5.0 * t * t, 10.0 * t, 10.0}; }
+};
+
+template <class I>
+void expect_spun_up(I const& integrator) {
+  using Drive = Joint<PrescribedAngle<Uniform>, Constraint>;
+  Wheel<Drive> w;
+  w.model.connect(Drive{{Uniform{}}, {}}, w.model.ground().at({0, 0, 0}), w.wheel.at(Vec2(0, 0)), "drive");
+  State x = w.model.reference_state();
+  simulate(w.model, x, integrator, {.until = 10.0, .step = 0.01}).run();
+  EXPECT_NEAR(x.v[2], 100.0, 1e-6);
+}
+
+// From nothing to 5 kJ: the drive's work.
+TEST(StepBounds, ADriveExplainsEnergy) {
+  expect_spun_up(GeneralizedAlpha{});
+  expect_spun_up(RungeKutta4<Projection>{});
+  expect_spun_up(EnergyMomentum{});
+}
+
+// θ¨ = θ˙ from θ˙ = 1e-3: the kinetic energy grows by e²⁰, the work of the force.
+TEST(StepBounds, AForceWithoutPotentialExplainsEnergy) {
+  auto const push = user_force<1>([](auto const& frames, double) {
+    using T = std::decay_t<decltype(frames[0].r[0])>;
+    Wrench<T> w;
+    w.m[2] = frames[0].w[2];
+    return std::array{w};
+  });
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<std::remove_const_t<decltype(push)>>> model;
+  auto const wheel = model.add(planar::Rigid(1.0, 1.0), "wheel");
+  model.apply(push, wheel.at(Vec2(0, 0)), "push");
+  State x = model.reference_state();
+  x.v[2] = 1e-3;
+  simulate(model, x, GeneralizedAlpha{}, {.until = 10.0, .step = 0.01}).run();
+  EXPECT_NEAR(x.v[2], 1e-3 * std::exp(10.0), 3e-3);  // the method's error is h² t/12 = 8e-5 of it
+}
+
+// A spring that is stretched at the start gives ½ k (1 m)² = 50 J to a mass at rest.
+TEST(StepBounds, WhatASpringHeldExplainsEnergy) {
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> model;
+  auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(2.0, 0.0)), "mass");
+  model.apply(SpringDamper{.stiffness = 100.0, .damping = 0.0, .free_length = 1.0}, model.ground().at({0, 0, 0}),
+              mass.at(Vec2(0, 0)), "spring");
+  State x = model.reference_state();
+  simulate(model, x, RungeKutta4<>{}, {.until = 0.05 * std::numbers::pi, .step = 1e-3}).run();  // a quarter: ω = 10
+  EXPECT_NEAR(x.v[0], -10.0, 1e-6);
+}
+
+/// A spring to a point that moves off along x: its potential knows time, and time works on it.
+struct Tow {
+  static constexpr int markers = 1;
+  static constexpr bool is_load = false;
+  static constexpr Observes needs = Observes::point;
+  double stiffness = 100.0, speed = 2.0;
+
+  void check(std::string const&) const {}
+  template <class T>
+  std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const& at, double t) const {
+    Wrench<T> w;
+    w.f[0] = (speed * t - at[0].r[0]) * stiffness;
+    return {w};
+  }
+  double potential(std::array<Frame<double>, 1> const& at, double t) const {
+    return 0.5 * stiffness * (speed * t - at[0].r[0]) * (speed * t - at[0].r[0]);
+  }
+};
+TEST(StepBounds, APotentialThatDependsOnTimeIsNotJudged) {
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<Tow>> model;
+  auto const mass = model.add(planar::Rigid(1.0, 1.0), "mass");
+  model.apply(Tow{}, mass.at(Vec2(0, 0)), "tow");
+  State x = model.reference_state();
+  simulate(model, x, RungeKutta4<>{}, {.until = 0.1 * std::numbers::pi, .step = 1e-3}).run();
+  EXPECT_NEAR(x.v[0], 4.0, 1e-6);  // x = u (t − sin ωt/ω), ω = 10, half a period on
+}
+
+TEST(StepBounds, LimitsWithoutAMeaningAreRefused) {
+  for (StepLimits const& wrong : {StepLimits{.violation = 0.0}, StepLimits{.energy = 0.5},
+                                  StepLimits{.violation = std::numeric_limits<double>::quiet_NaN()}}) {
+    StiffPendulum p;
+    EXPECT_TRUE(
+        has(refusal([&] { simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01, .limits = wrong}); }),
+            "limits.violation must be positive and limits.energy at least one"));
+  }
+}
+
+}  // namespace step_bounds_test
+}  // namespace polybody
