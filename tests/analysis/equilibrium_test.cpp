@@ -121,11 +121,23 @@ TEST(Equilibrium, NamesTheBodyThatNothingHolds) {
     }
 }
 
-TEST(Equilibrium, NamesTheJointThatIsThereTwice) {
+// A clamp made twice: the later one is dropped and named, and everything else is as with one. Made at another place, it
+// is refused.
+TEST(Equilibrium, DropsTheJointThatIsThereTwice) {
   for (Index const n : {4, 40}) {
-    Held s(bar(1e4), n, {0, 1, 0});
-    s.model.connect(Clamp{}, s.model.ground().at({0, 0, 0}), s.beam.at(0.0), "again");
-    EXPECT_TRUE(has(refused<LinearSolverSingular>(s.model, s.model.reference_state()), "joint \"")) << n;
+    Held once(bar(1e4), n, {0, 1, 0}), twice(bar(1e4), n, {0, 1, 0}), apart(bar(1e4), n, {0, 1, 0});
+    auto const again = twice.model.connect(Clamp{}, twice.model.ground().at({0, 0, 0}), twice.beam.at(0.0), "again");
+    State x = once.model.reference_state(), y = twice.model.reference_state();
+    EXPECT_TRUE(equilibrium(once.model, x).redundant.empty());
+    EquilibriumReport const report = equilibrium(twice.model, y);
+    EXPECT_EQ(report.redundant, std::vector<std::string>{"joint \"again\""});
+    EXPECT_TRUE(report.neutral.empty());
+    EXPECT_LT((x.q - y.q).cwiseAbs().maxCoeff(), 1e-10) << n;
+    EXPECT_LT((reaction(once.model, x, once.clamp).m - reaction(twice.model, y, twice.clamp).m).norm(), 1e-8) << n;
+    EXPECT_EQ(reaction(twice.model, y, again).f, Vec3(0, 0, 0)) << n;
+
+    apart.model.connect(Clamp{}, apart.model.ground().at({0, 0.01, 0}), apart.beam.at(0.0), "elsewhere");
+    EXPECT_TRUE(has(refused<InconsistentStart>(apart.model, apart.model.reference_state()), "joint \"")) << n;
   }
 }
 

@@ -223,6 +223,17 @@ TEST(SteadyRotation, RefusesWhatIsNotSteady) {
                   "body \"disc\" lives in the plane"));
 }
 
+// Least corrections leave alone what nothing resists: a body that falls along the axis is no steady rotation.
+TEST(SteadyRotation, NamesTheBodyThatForcesPushWhereNothingResists) {
+  SpaceModel<Rigid<>> model{Gravity{0, 0, -1.0}};
+  model.add(Rigid<>(1.0, Vec3(0.1, 0.2, 0.3).asDiagonal().toDenseMatrix()), "top");
+  State x = model.reference_state();
+  State const before = x;
+  EXPECT_TRUE(
+      has(message_of<LinearSolverSingular>([&] { relative_equilibrium(model, x, about_z(2.0)); }), "body \"top\""));
+  EXPECT_TRUE(x.q == before.q && x.v == before.v);
+}
+
 // A spring softer than m Ω² holds the mass nowhere.
 TEST(SteadyRotation, FindsNothingBeyondTheCriticalSpeed) {
   PlaneModel model;

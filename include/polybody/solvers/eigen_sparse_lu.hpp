@@ -19,7 +19,7 @@ class EigenSparseLuBy {
   }
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
-  /// −1, or a column whose pivot is below 1e-14 of the column's largest entry.
+  /// −1, or the first column, as they are eliminated, whose pivot is below 1e-14 of the column's largest entry.
   Index factor() {
     Matrix const& a = sink_.matrix();
     if (a.cols() == 0) return -1;
@@ -35,6 +35,7 @@ class EigenSparseLuBy {
       return 0;
     }
     auto const upper = lu_->matrixU();  // its diagonal stands in the supernodes of L
+    Index lost = -1;
     for (Index i = 0; i < a.cols(); ++i) {
       double largest = 0.0, pivot = 0.0;
       for (typename Matrix::InnerIterator entry(a, i); entry; ++entry)
@@ -44,9 +45,9 @@ class EigenSparseLuBy {
           pivot = entry.value();
           break;
         }
-      if (!(std::abs(pivot) > 1e-14 * largest)) return i;
+      if (!(std::abs(pivot) > 1e-14 * largest) && (lost < 0 || place[i] < place[lost])) lost = i;
     }
-    return -1;
+    return lost;
   }
   void solve(VecX const& b, VecX& x) const {
     if (b.size() > 0) x = lu_->solve(b);

@@ -4,13 +4,15 @@
 /// the path [Riks 1979; Crisfield 1991, §9.3]. With r(q, λ, p) = 0 affine in p, K Δ = −r − r_p Δp, corrections stay in
 /// the plane normal to the tangent (t, t_p) of the step's start:
 ///   a = −K⁻¹ r,  b = −K⁻¹ r_p,  Δp = −t·a / (t·b + t_p),  Δ = a + b Δp.
+/// A path that sets out with rows that repeat others, or with freedoms that no load excites, takes a and b of least
+/// norm.
 
 #include <functional>
 #include <limits>
 #include <vector>
 
 #include <polybody/solvers/default_solver.hpp>
-#include <polybody/statics/static_tangent.hpp>
+#include <polybody/statics/least_norm.hpp>
 #include <polybody/system/model_entries.hpp>
 
 namespace polybody {
@@ -38,7 +40,15 @@ class PathEquations {
  public:
   /// `start` is in equilibrium without loads. \throws LinearSolverSingular where the path has no tangent there.
   PathEquations(System& system, PathPoint const& start)
-      : system_(system), nv_(system.speeds()), rows_(system.rows()), stiffness_(evaluated(start), start.x.lambda) {
+      : system_(system),
+        nv_(system.speeds()),
+        rows_(system.rows()),
+        stiffness_(evaluated(start), start.x.lambda),
+        least_(system, stiffness_) {
+    if (stiffness_.factor(start.x.lambda) >= 0 || stiffness_.growth() > LeastNorm<Solver>::suspicious) {
+      takes_least_ = least_.factor(start.x.lambda) < 0 && !least_.pins().empty();
+      if (!takes_least_) stiffness_.remove_springs(start.x.lambda);
+    }
     if (!solve(start) || !(b_.head(nv_).norm() > 0.0))
       throw LinearSolverSingular(
           "equilibrium_path: there is no path to follow from here: the stiffness is singular at the start, or "
@@ -93,10 +103,16 @@ class PathEquations {
     system_.violation(phi_);
     if (!r_.allFinite() || !phi_.allFinite())
       throw NonFinite("equilibrium_path: a force is not finite at load factor " + number(at.load_factor) + ".");
-    if (stiffness_.factor(at.x.lambda) >= 0) return false;
-    stiffness_.solve(-r_, -phi_, a_);
-    stiffness_.solve(r0_ - r1_, VecX::Zero(rows_), b_);
-    return a_.allFinite() && b_.allFinite();
+    if ((takes_least_ ? least_.factor(at.x.lambda) : stiffness_.factor(at.x.lambda)) >= 0) return false;
+    return solve_for(-r_, -phi_, at, a_) && solve_for(r0_ - r1_, VecX::Zero(rows_), at, b_);
+  }
+  /// False where a freedom that nothing resists is excited.
+  bool solve_for(VecX const& f, VecX const& phi, PathPoint const& at, VecX& out) {
+    if (takes_least_)
+      least_.solve(f, phi, at.x.lambda, out);
+    else
+      stiffness_.solve(f, phi, out);
+    return out.allFinite() && !(takes_least_ && least_.excited() >= 0);
   }
   void move(PathPoint& point, VecX const& by, double load) {
     VecX const dq = by.head(nv_);
@@ -112,6 +128,8 @@ class PathEquations {
   System& system_;
   Index nv_, rows_;
   StaticTangent<Solver> stiffness_;
+  LeastNorm<Solver> least_;
+  bool takes_least_ = false;
   VecX r_ = VecX::Zero(nv_), r0_ = r_, r1_ = r_, phi_ = VecX::Zero(rows_), q_;
   VecX a_ = VecX::Zero(nv_ + rows_), b_ = a_;
   VecX t_ = a_, next_ = a_;  ///< (nv + rows)

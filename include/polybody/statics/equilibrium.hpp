@@ -4,9 +4,8 @@
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/solvers/default_solver.hpp>
-#include <polybody/solvers/newton.hpp>
+#include <polybody/statics/equilibrium_equations.hpp>
 #include <polybody/statics/load_steps.hpp>
-#include <polybody/statics/static_tangent.hpp>
 #include <polybody/system/model_entries.hpp>
 
 namespace polybody {
@@ -25,124 +24,105 @@ bool multipliers_at_rest(System& system, State& x) {
   return true;
 }
 
-/// The equations of `equilibrium` for Newton's method, at a share s of the path.
+/// Newton's method at the present share; what it cost goes into the report.
 template <class Solver>
-struct EquilibriumPath {
-  System& system;
-  StaticTangent<Solver>& tangent;
-  State& trial;
-  double tolerance;
-  double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
-  Index nv = system.speeds(), rows = system.rows(), states = system.layout().states, bad = -1;
-  double first = 0.0, share = 0.0;  ///< p₀, s
-  VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
+NewtonResult correct(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
+  bool factored = false;
+  double theta = 1.0;
+  NewtonReport const n =
+      newton(path, {.max_iterations = options.max_iterations, .always_refactor = true}, factored, theta);
+  report.iterations += n.iterations;
+  return n.result;
+}
 
-  /// The path starts at the present place.
-  void begin() {
-    system.evaluate(trial.q, trial.v, trial.t);
-    system.load_factor = 0.0;
-    system.residual(trial.a, trial.lambda, r0);
-    system.load_factor = 1.0;
-    system.residual(trial.a, trial.lambda, r);
-    r -= r0;
-    double const loads = r.squaredNorm();
-    first = loads > 0.0 ? std::clamp(-r0.dot(r) / loads, 0.0, 1.0) : 0.0;
-    r0 += first * r;
-    system.violation(phi0);
-  }
-  void advance(double s) {
-    share = s;
-    system.load_factor = first + s * (1.0 - first);
-  }
-
-  bool evaluate() {
-    system.evaluate(trial.q, trial.v, trial.t);
-    system.residual(trial.a, trial.lambda, r);
-    system.violation(phi);
-    r = (1.0 - share) * r0 - r;
-    phi = (1.0 - share) * phi0 - phi;
-    return r.allFinite() && phi.allFinite();
-  }
-  bool refactor() {
-    bad = tangent.factor(trial.lambda);
-    return bad < 0;
-  }
-  double solve() {
-    tangent.solve(r, phi, y);
-    dq = y.head(nv);
-    for (Index i = nv - states; i < nv; ++i) dq[i] /= 1.0 + std::abs(trial.v[i]);  // each by its own unit
-    Index largest = 0;
-    double const step = dq.cwiseAbs().maxCoeff(&largest), size = trial.q.cwiseAbs().maxCoeff();
-    if (!(step < far && size < far)) {  // nothing but rounding errors resists
-      bad = largest;
-      return std::numeric_limits<double>::infinity();
-    }
-    return step / (tolerance * (1.0 + size));
-  }
-  void apply() {
-    system.plus(trial.q, dq, q);
-    trial.q.swap(q);
-    trial.v.tail(states) += y.segment(nv - states, states);
-    trial.lambda += y.tail(rows);
-  }
-
-  /// \throws LinearSolverSingular, NonFinite, NewtonStalled as the result says.
-  [[noreturn]] void refuse(NewtonResult result) const {
-    std::string const at = " at load factor " + number(system.load_factor);
-    if (result == NewtonResult::singular)
-      throw LinearSolverSingular("equilibrium: the stiffness is singular" + at + ", first at " +
-                                 system.name_of(std::max<Index>(bad, 0)) +
-                                 ". Hold every body, or pass a limit point another way.");
-    if (result == NewtonResult::not_finite) throw NonFinite("equilibrium: a force is not finite" + at + ".");
-    throw NewtonStalled("equilibrium: Newton's method did not converge" + at +
-                        ". Use more load steps, or start nearer to the solution.");
-  }
-};
-
-}  // namespace detail
-
-/// Moves x (coordinates, first-order states, multipliers; speeds become zero) into equilibrium at time x.t, from its
-/// present place. Every
-/// term of the tangent is included. Where Newton's method does not get there at once, it follows the path s = 0 … 1 of
-///   r(q, λ, p) = (1 − s) r₀,  Φ(q) = (1 − s) Φ₀,  p = p₀ + s (1 − p₀),
-/// p the factor of loads and gravity: p₀ ∈ [0, 1] is the one that best keeps x where it is, r₀ and Φ₀ what it leaves.
-/// From a reference state loads grow from nothing; from an equilibrium under smaller ones they grow from those.
-/// \throws NewtonStalled, LinearSolverSingular, NonFinite; x is then untouched.
-template <LinearSolver Solver = DefaultStaticSolver>
-EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
-  State trial = x;
-  trial.v.head(trial.v.size() - system.layout().states).setZero();
-  trial.a.setZero();
-  system.evaluate(trial.q, trial.v, trial.t);
-  StaticTangent<Solver> tangent(system, trial.lambda);
-  detail::EquilibriumPath<Solver> path{system, tangent, trial, options.tolerance};
-  NewtonOptions const newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
-  EquilibriumReport report;
+/// Follows the path from the present place to its end. What stopped it; `path.trial` is then the last place in
+/// equilibrium.
+template <class Solver>
+NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
   LoadSteps steps(options);
   bool primed = false;
   path.begin();
   while (!steps.done()) {
-    State const before = trial;
+    State const before = path.trial;
     path.advance(steps.next());
-    bool factored = false;
-    double theta = 1.0;
-    NewtonReport const n = newton(path, newton_options, factored, theta);
-    report.iterations += n.iterations;
-    if (n.result == NewtonResult::converged) {
+    NewtonResult const result = correct(path, options, report);
+    if (result == NewtonResult::converged) {
       steps.reach_next();
       ++report.parts;
       continue;
     }
-    trial = before;
-    if (n.result == NewtonResult::singular && !primed) {
+    path.trial = before;
+    if (result == NewtonResult::singular && !primed) {
       primed = true;
-      if (detail::multipliers_at_rest(system, trial)) {
+      if (multipliers_at_rest(path.system, path.trial)) {
         path.begin();
         steps.restart();
         continue;
       }
     }
-    if (!steps.halve()) path.refuse(n.result);
+    if (!steps.halve()) return result;
+  }
+  return NewtonResult::converged;
+}
+
+/// The path once more, from `start`, by corrections of least norm. Whether it ends in equilibrium: the last corrections
+/// are those of a tangent at the end itself, whose springs are reported.
+template <class Solver>
+bool follow_least(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
+                  EquilibriumReport& report) {
+  path.trial = start;
+  path.takes_least = true;
+  if (follow(path, options, report) != NewtonResult::converged) return false;
+  if (correct(path, options, report) != NewtonResult::converged) return false;
+  path.report_springs(report);
+  path.system.evaluate(path.trial.q, path.trial.v, path.trial.t);
+  path.require_closed();
+  path.least.drop_multipliers(path.trial.lambda);
+  return true;
+}
+
+}  // namespace detail
+
+/// Moves x (coordinates, first-order states, multipliers; speeds become zero) into equilibrium at time x.t, from its
+/// present place. Every term of the tangent is included. Where Newton's method does not get there at once, it follows
+/// the path s = 0 … 1 of
+///   r(q, λ, p) = (1 − s) r₀,  Φ(q) = (1 − s) Φ₀,  p = p₀ + s (1 − p₀),
+/// p the factor of loads and gravity: p₀ ∈ [0, 1] is the one that best keeps x where it is, r₀ and Φ₀ what it leaves.
+/// From a reference state loads grow from nothing; from an equilibrium under smaller ones they grow from those.
+/// Where the tangent has no inverse, the path is followed once more by corrections of least norm (`LeastNorm`): rows
+/// that repeat others are dropped, their multipliers zero, and freedoms that no load excites move as little as they
+/// can; the report names both. \throws NewtonStalled; LinearSolverSingular, naming the motion where a load excites one
+/// that nothing resists; InconsistentStart for rows that repeat others but contradict them; NonFinite. x is then
+/// untouched.
+template <LinearSolver Solver = DefaultStaticSolver>
+EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
+  State trial = x;
+  trial.v.head(trial.v.size() - system.layout().states).setZero();
+  trial.a.setZero();
+  State const start = trial;
+  system.evaluate(trial.q, trial.v, trial.t);
+  StaticTangent<Solver> tangent(system, trial.lambda);
+  LeastNorm<Solver> least(system, tangent);
+  detail::EquilibriumPath<Solver> path{system, tangent, least, trial, options.tolerance};
+  EquilibriumReport report;
+  NewtonResult const result = detail::follow(path, options, report);
+  std::string const at = path.place();
+  Index const bad = path.bad;
+  if (result == NewtonResult::converged) {
+    bool const neutral = path.is_singular();
+    path.report_springs(report);
+    State const found = trial;
+    if (neutral && !detail::follow_least(path, start, options, report)) {
+      trial = found;
+      report.neutral.clear();
+    }
+  } else {
+    bool const singular =
+        result == NewtonResult::singular || (result == NewtonResult::diverged && path.finds_springs());
+    if (!singular || !detail::follow_least(path, start, options, report)) {
+      path.refuse_excited();
+      path.refuse(result, bad, at);
+    }
   }
   x = std::move(trial);
   return report;
@@ -151,7 +131,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
 /// The same of a whole model: policies that eliminate unknowns are rows here.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
-  System system(model, with<Entries::implicit_step>);
+  System system(model, with < Entries::implicit_step | Entries::rigid_speeds >);
   return equilibrium<Solver>(system, x, options);
 }
 

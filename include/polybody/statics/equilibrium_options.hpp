@@ -2,6 +2,9 @@
 /// \file
 /// What a search for an equilibrium is asked, and what it reports.
 
+#include <string>
+#include <vector>
+
 namespace polybody {
 
 struct EquilibriumOptions {
@@ -14,6 +17,11 @@ struct EquilibriumOptions {
 struct EquilibriumReport {
   int parts = 0;
   int iterations = 0;
+  /// Motions about the equilibrium that nothing resists and no load excites: body "payload" turns about (0, 0, 1)
+  /// through (0, 0, -2). The search has moved along them as little as it could.
+  std::vector<std::string> neutral = {};
+  /// Joints and bodies with rows that repeat others, once for each such row: their multipliers are zero.
+  std::vector<std::string> redundant = {};
 };
 
 }  // namespace polybody

@@ -172,6 +172,18 @@ struct TurningEquilibrium {
     trial.lambda += y.tail(rows);
   }
 
+  /// \throws LinearSolverSingular naming what forces push where nothing resists: it takes no part in least corrections.
+  void require_balance() {
+    evaluate();
+    double const load = rows ? (k.topRightCorner(nv, rows) * (trial.lambda / unit)).cwiseAbs().maxCoeff() : 0.0;
+    double const small = 1e-6 * load + (tolerance + 1e-12) * unit * (1.0 + trial.q.cwiseAbs().maxCoeff());
+    Index i = 0;
+    if (!(r.cwiseAbs().maxCoeff(&i) <= small))
+      throw LinearSolverSingular("relative_equilibrium: nothing resists a motion of " + frame.system.name_of(i) +
+                                 " that forces excite as the model turns (" + number(r[i]) +
+                                 " is left). Hold every body.");
+  }
+
   /// \throws NonFinite, NewtonStalled as the result says.
   [[noreturn]] void refuse(NewtonResult result) const {
     std::string const at = " at " + number(frame.share) + " of the angular velocity";
@@ -199,7 +211,8 @@ State rotating_state(System& system, State const& x, SteadyRotation const& rotat
 /// while the model turns steadily; speeds and their rates become those of the rotation. Rows that depend on time are
 /// taken at x.t. `load_steps` and `smallest_part` divide Ω. The smallest corrections are taken where rows are redundant
 /// or nothing resists a motion. Dense: for models of up to some hundred speeds.
-/// \throws InvalidInput for rows that do not turn with the model; NewtonStalled, NonFinite; x is then untouched.
+/// \throws InvalidInput for rows that do not turn with the model; LinearSolverSingular naming a body that forces push
+/// where nothing resists; NewtonStalled, NonFinite; x is then untouched.
 template <class = void>
 EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
@@ -222,6 +235,7 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
     if (!steps.halve()) problem.refuse(n.result);
   }
   problem.frame.require_turning_rows(problem.trial);
+  problem.require_balance();
   x = rotating_state(system, problem.trial, rotation);
   return report;
 }

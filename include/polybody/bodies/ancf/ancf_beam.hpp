@@ -336,6 +336,7 @@ AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve
   require_positive(constants_.rotary_inertia, name + ": the rotary inertia of the bar, the only mass of r_y,");
   require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
                    name + ": the rotary inertia of the bar about y, the only mass of r_z,");
+  require_polar_inertia_of_points(constants_, name);
   Elastic::check(bar, constants_);
   l_ = bar.length / double(n);
   for (Index i = 0; i <= n; ++i) {

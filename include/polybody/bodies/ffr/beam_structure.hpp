@@ -91,6 +91,7 @@ inline Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> c
   for (std::size_t i = 0; i < bars.size(); ++i) {
     Bar const& bar = bars[i];
     BarConstants const c = constants(bar);
+    require_polar_inertia_of_points(c, "Structure");
     require_elements(elements[i], "Structure: bar " + std::to_string(i + 1));
     require_positive(c.GJ, "Structure: GJ of a bar (a floating frame in space resists torsion)");
     double const l = bar.length / double(elements[i]);

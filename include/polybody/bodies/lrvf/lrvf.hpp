@@ -313,9 +313,9 @@ Lrvf<Interpolation>::Lrvf(Bar const& bar, BarConstants const& c, Index n, Refere
       section_(bar, c, l_),
       free_(std::size_t(n)),
       reference_(std::size_t(7 * (n + 1))) {
-  double const iz = c.rotary_inertia, iy = c.rotary_inertia_y.value_or(iz);
   sixth_ = c.mass_per_length * l_ / 6.0;
-  for (int i = 0; i < 3; ++i) rotary_[i] = 0.5 * l_ * (i == 0 ? iy + iz : i == 1 ? iy : iz);
+  Vec3 const inertias = rotary_inertias(c);
+  for (int i = 0; i < 3; ++i) rotary_[i] = 0.5 * l_ * inertias[i];
   std::span<double> const q(reference_);
   Mat<double, 3, 3> const axes = bar.placement.axes;
   for (Index i = 0; i <= n; ++i) {

@@ -131,7 +131,7 @@ class RigidShape {
     Placement place = bar.placement;
     for (int i = 0; i < 3; ++i) place.origin[i] += place.axes(i, 0) * (0.5 * l);
     auto inertia = detail::zeros<Mat<T, 3, 3>>();
-    inertia(0, 0) = y + z;
+    inertia(0, 0) = c.polar_inertia ? *c.polar_inertia * l : y + z;
     inertia(1, 1) = m * l * l / 12.0 + y;
     inertia(2, 2) = m * l * l / 12.0 + z;
     return {.mass = m, .inertia = inertia, .placement = place};

@@ -41,7 +41,15 @@ struct BarConstants {
   std::optional<double> EI_y = {};              ///< bending stiffness about y [N m²]; as EI if not given
   std::optional<double> GA_z = {};              ///< shear stiffness along z [N]; as GA if not given
   std::optional<double> rotary_inertia_y = {};  ///< about y, per length [kg m]; as about z if not given
+  std::optional<double> polar_inertia = {};     ///< about the axis, per length [kg m]; Iρ_y + Iρ_z if not given
 };
+
+/// Iρ of a section about the axes x (the bar's), y and z, per length [kg m].
+template <class = void>  // compiled where it is used
+Vec3 rotary_inertias(BarConstants const& c) {
+  double const z = c.rotary_inertia, y = c.rotary_inertia_y.value_or(z);
+  return Vec3(c.polar_inertia.value_or(y + z), y, z);
+}
 
 /// Kelvin–Voigt damping: stress = stiffness · (strain + time · strain rate), objective by construction.
 struct Damping {
@@ -137,7 +145,19 @@ BarConstants constants(Bar const& bar) {
   require_not_negative(c.EI_y.value_or(0.0), "Bar: EI_y");
   require_not_negative(c.GA_z.value_or(0.0), "Bar: GA_z");
   require_not_negative(c.rotary_inertia_y.value_or(0.0), "Bar: rotary_inertia_y");
+  require_not_negative(c.polar_inertia.value_or(0.0), "Bar: polar_inertia");
   return c;
+}
+
+/// A body whose mass stands in material points has ∫ρ(y² + z²) about its axis. \throws InvalidInput naming `what` for
+/// another polar inertia.
+template <class = void>  // compiled where it is used
+void require_polar_inertia_of_points(BarConstants const& c, std::string const& what) {
+  Vec3 const i = rotary_inertias(c);
+  if (std::abs(i[0] - (i[1] + i[2])) > 1e-9 * (i[1] + i[2]))
+    throw InvalidInput(what + ": the polar inertia is " + number(i[0]) + " kg m, but that of its material points is " +
+                       "Iρ_y + Iρ_z = " + number(i[1] + i[2]) +
+                       " kg m. Leave it out, or take Lrvf or Rigid, whose sections are rigid.");
 }
 
 /// \throws InvalidInput naming `what` unless a bar is cut into 1 … 10⁷ elements.

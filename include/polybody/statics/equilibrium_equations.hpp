@@ -1,0 +1,138 @@
+#pragma once
+#include <polybody/solvers/newton.hpp>
+#include <polybody/statics/equilibrium_options.hpp>
+#include <polybody/statics/least_norm.hpp>
+#include <polybody/statics/neutral_motion.hpp>
+#include <polybody/system/state.hpp>
+
+namespace polybody::detail {
+
+/// The equations of `equilibrium` for Newton's method, at a share s of the path.
+template <class Solver>
+struct EquilibriumPath {
+  System& system;
+  StaticTangent<Solver>& tangent;
+  LeastNorm<Solver>& least;
+  State& trial;
+  double tolerance;
+  bool takes_least = false;                                  ///< corrections by `least`
+  double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
+  Index nv = system.speeds(), rows = system.rows(), states = system.layout().states, bad = -1;
+  double first = 0.0, share = 0.0;  ///< p₀, s
+  VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
+
+  /// The path starts at the present place.
+  void begin() {
+    system.evaluate(trial.q, trial.v, trial.t);
+    system.load_factor = 0.0;
+    system.residual(trial.a, trial.lambda, r0);
+    system.load_factor = 1.0;
+    system.residual(trial.a, trial.lambda, r);
+    r -= r0;
+    double const loads = r.squaredNorm();
+    first = loads > 0.0 ? std::clamp(-r0.dot(r) / loads, 0.0, 1.0) : 0.0;
+    r0 += first * r;
+    system.violation(phi0);
+  }
+  void advance(double s) {
+    share = s;
+    system.load_factor = first + s * (1.0 - first);
+  }
+
+  bool evaluate() {
+    system.evaluate(trial.q, trial.v, trial.t);
+    system.residual(trial.a, trial.lambda, r);
+    system.violation(phi);
+    r = (1.0 - share) * r0 - r;
+    phi = (1.0 - share) * phi0 - phi;
+    return r.allFinite() && phi.allFinite();
+  }
+  bool refactor() {
+    bad = takes_least ? least.factor(trial.lambda) : tangent.factor(trial.lambda);
+    return bad < 0;
+  }
+  double solve() {
+    if (takes_least)
+      least.solve(r, phi, trial.lambda, y);
+    else
+      tangent.solve(r, phi, y);
+    if (takes_least && least.excited() >= 0) return std::numeric_limits<double>::infinity();
+    dq = y.head(nv);
+    for (Index i = nv - states; i < nv; ++i) dq[i] /= 1.0 + std::abs(trial.v[i]);  // each by its own unit
+    Index largest = 0;
+    double const step = dq.cwiseAbs().maxCoeff(&largest), size = trial.q.cwiseAbs().maxCoeff();
+    if (!(step < far && size < far)) {  // nothing but rounding errors resists
+      bad = largest;
+      return std::numeric_limits<double>::infinity();
+    }
+    return step / (tolerance * (1.0 + size));
+  }
+  void apply() {
+    system.plus(trial.q, dq, q);
+    trial.q.swap(q);
+    trial.v.tail(states) += y.segment(nv - states, states);
+    trial.lambda += y.tail(rows);
+  }
+
+  /// Whether the tangent has no inverse where the path has come to; `least` then holds its springs.
+  bool is_singular() {
+    if (!(tangent.growth() > LeastNorm<Solver>::suspicious)) return false;
+    return finds_springs();
+  }
+  bool finds_springs() {
+    system.evaluate(trial.q, trial.v, trial.t);
+    return least.factor(trial.lambda) < 0 && !least.pins().empty();
+  }
+  /// \throws LinearSolverSingular naming the motion that a load excites and nothing resists.
+  void refuse_excited() const {
+    if (!takes_least || least.excited() < 0) return;
+    std::size_t const k = std::size_t(least.excited());
+    Index const i = least.pins()[k];
+    throw LinearSolverSingular("equilibrium: the stiffness is singular" + place() + ", first at " + system.name_of(i) +
+                               ": nothing resists that " + name_of_motion(system, least.motion(k), i) +
+                               ", and the loads excite this motion. Hold every body, or pass a limit point another "
+                               "way.");
+  }
+  /// \throws InconsistentStart naming a joint that repeats others but does not close where they do.
+  void require_closed() const {
+    double const limit = 1e-8 * (1.0 + largest_size(trial.q));
+    VecX open = phi;
+    system.violation(open);
+    for (Index const i : least.pins())
+      if (i >= nv && !(std::abs(open[i - nv]) <= limit))
+        throw InconsistentStart("equilibrium: " + system.name_of(i) + " stays open by " +
+                                number(std::abs(open[i - nv])) +
+                                ", as its rows repeat those of other joints but contradict them. Remove one of these "
+                                "joints, make their dimensions and laws agree, or give one a compliant policy such as "
+                                "Penalty.");
+  }
+  std::string place() const { return " at load factor " + number(system.load_factor); }
+  /// \throws LinearSolverSingular, NonFinite, NewtonStalled as the result says.
+  [[noreturn]] void refuse(NewtonResult result, Index first_bad, std::string const& at) const {
+    if (result == NewtonResult::singular)
+      throw LinearSolverSingular("equilibrium: the stiffness is singular" + at + ", first at " +
+                                 system.name_of(std::max<Index>(first_bad, 0)) +
+                                 ". Hold every body, or pass a limit point another way.");
+    if (result == NewtonResult::not_finite) throw NonFinite("equilibrium: a force is not finite" + at + ".");
+    throw NewtonStalled("equilibrium: Newton's method did not converge" + at +
+                        ". Use more load steps, or start nearer to the solution.");
+  }
+  /// The names of what `least` found.
+  void report_springs(EquilibriumReport& report) const {
+    report.neutral.clear();
+    report.redundant.clear();
+    auto const add_row = [&](Index i) {
+      std::string name = system.name_of(i);
+      if (std::find(report.redundant.begin(), report.redundant.end(), name) == report.redundant.end())
+        report.redundant.push_back(std::move(name));
+    };
+    for (Index const i : tangent.dropped()) add_row(i);
+    for (std::size_t k = 0; k < least.pins().size(); ++k)
+      if (Index const i = least.pins()[k]; i < nv)
+        report.neutral.push_back(name_of_motion(system, least.motion(k), i));
+      else
+        add_row(i);
+  }
+};
+
+}  // namespace polybody::detail

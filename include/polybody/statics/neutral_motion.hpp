@@ -1,0 +1,110 @@
+#pragma once
+#include <polybody/system/system.hpp>
+
+namespace polybody::detail {
+
+/// How a body moves with the speeds z of a model, as a rigid one does.
+struct RigidPart {
+  Vec3 velocity = Vec3::Zero();  ///< (3) of its point at the world's origin, world axes
+  Vec3 turn = Vec3::Zero();      ///< (3) angular velocity, world axes
+  double left = 0.0;             ///< |what no rigid motion explains| / |speeds of the body|
+};
+
+/// By least squares: the speeds of the six motions (three in the plane), made orthogonal one after the other.
+template <class = void>  // compiled where it is used
+RigidPart rigid_part(System const& system, BodyPlace const& body, VecX const& z) {
+  auto const entry = require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions");
+  VecX all = VecX::Zero(system.layout().speeds), rest(body.speeds);
+  std::vector<VecX> columns;
+  std::vector<Vec6> motions;
+  auto const dot = [](VecX const& a, VecX const& b) {
+    double sum = 0.0;
+    for (Index i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+  };
+  for (Index i = 0; i < body.speeds; ++i) rest[i] = z[body.v0 + i];
+  double const whole = std::sqrt(dot(rest, rest));
+  Vec6 found = zeros<Vec6>();
+  for (int const k : {0, 1, 2, 3, 4, 5}) {
+    if (body.planar && (k == 2 || k == 3 || k == 4)) continue;
+    Vec6 motion = zeros<Vec6>();
+    motion[k] = 1.0;
+    entry(system.entries().second, system.at().q, Vec3(motion[0], motion[1], motion[2]),
+          Vec3(motion[3], motion[4], motion[5]), all);
+    VecX column(body.speeds);
+    for (Index i = 0; i < body.speeds; ++i) column[i] = all[body.v0 + i];
+    double const before = std::sqrt(dot(column, column));
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      double const part = dot(columns[j], column);
+      for (Index i = 0; i < column.size(); ++i) column[i] -= part * columns[j][i];
+      for (int i = 0; i < 6; ++i) motion[i] -= part * motions[j][i];
+    }
+    double const length = std::sqrt(dot(column, column));
+    if (!(length > 1e-9 * before)) continue;  // the spin of a straight cable moves nothing
+    for (Index i = 0; i < column.size(); ++i) column[i] /= length;
+    for (int i = 0; i < 6; ++i) motion[i] /= length;
+    double const part = dot(column, rest);
+    for (Index i = 0; i < column.size(); ++i) rest[i] -= part * column[i];
+    for (int i = 0; i < 6; ++i) found[i] += part * motion[i];
+    columns.push_back(std::move(column));
+    motions.push_back(motion);
+  }
+  return {Vec3(found[0], found[1], found[2]), Vec3(found[3], found[4], found[5]),
+          whole > 0.0 ? std::sqrt(dot(rest, rest)) / whole : 0.0};
+}
+
+/// "(0, 0, 1)", to six digits behind the point.
+template <class = void>
+std::string in_brackets(Vec3 const& x) {
+  std::string text;
+  for (int i = 0; i < 3; ++i) text += (i > 0 ? ", " : "(") + number(std::round(1e6 * x[i]) / 1e6 + 0.0);
+  return text + ')';
+}
+
+/// What a rigid motion is called: it moves along a direction or turns about an axis through a point, or both.
+template <class = void>
+std::string text_of(RigidPart const& part, double reach) {
+  double const v = std::sqrt(squared_norm(part.velocity)), w = std::sqrt(squared_norm(part.turn));
+  auto const direction = [](Vec3 x) {
+    double length = std::sqrt(squared_norm(x)), largest = 0.0;
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(x[i]) > (1.0 + 1e-6) * std::abs(largest)) largest = x[i];
+    if (largest < 0.0) length = -length;
+    for (int i = 0; i < 3; ++i) x[i] /= length;
+    return x;
+  };
+  if (part.left > 1e-5 || !(v + w > 0.0)) return "changes its shape";
+  if (w * reach <= 1e-6 * v) return "moves along " + in_brackets(direction(part.velocity));
+  Vec3 const axis = direction(part.turn), lever = part.turn.cross(part.velocity);
+  Vec3 point;
+  for (int i = 0; i < 3; ++i) point[i] = lever[i] / (w * w);
+  std::string text = "turns about " + in_brackets(axis) + " through " + in_brackets(point);
+  double along = 0.0;
+  for (int i = 0; i < 3; ++i) along += axis[i] * part.velocity[i];
+  if (std::abs(along) > 1e-6 * (v + w * reach)) text += " and moves along it";
+  return text;
+}
+
+/// The motion z of a model, named by the body of unknown i: body "payload" turns about (0, 0, 1) through (0, 0, -2).
+template <class = void>
+std::string name_of_motion(System const& system, VecX const& z, Index i) {
+  std::string text = system.name_of(i);
+  if (system.step_coordinates() || system.entries().first.rigid_speeds == nullptr) return text;
+  double const reach = 1.0 + largest_size(system.at().q);
+  int others = 0;
+  double largest = 0.0;
+  for (Index k = 0; k < system.speeds(); ++k) largest = std::max(largest, std::abs(z[k]));
+  for (BodyPlace const& body : system.layout().bodies) {
+    bool moves = false;
+    for (Index k = body.v0; k < body.v0 + body.speeds; ++k) moves = moves || std::abs(z[k]) > 1e-6 * largest;
+    if (i >= body.v0 && i < body.v0 + body.speeds)
+      text += ' ' + text_of(rigid_part(system, body, z), reach);
+    else if (moves)
+      ++others;
+  }
+  if (others > 0)
+    text += ", and " + std::to_string(others) + (others > 1 ? " other bodies" : " other body") + " with it";
+  return text;
+}
+
+}  // namespace polybody::detail

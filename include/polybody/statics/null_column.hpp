@@ -1,0 +1,60 @@
+#pragma once
+#include <polybody/statics/static_tangent.hpp>
+
+namespace polybody::detail {
+
+/// A column z beside A z and |A| |z|.
+struct NullColumn {
+  VecX z, product, size;
+
+  /// What is left of A z is rounding: of its terms, or of entries of z, which those of A, near one at most, multiply.
+  bool is_null() const { return largest_size(product) <= 1e-13 * largest_size(size) + 1e-15 * largest_size(z); }
+};
+
+/// Adds up A z and |A| |z| of all columns.
+struct NullColumnSink {
+  std::vector<NullColumn>& columns;
+
+  void add(Index row, Index col, BlockView const& b) {
+    for (NullColumn& c : columns)
+      for (Index j = 0; j < b.cols; ++j) {
+        double const z = c.z[col + j];
+        if (z == 0.0) continue;
+        for (Index i = 0; i < b.rows; ++i) {
+          c.product[row + i] += b(i, j) * z;
+          c.size[row + i] += std::abs(b(i, j) * z);
+        }
+      }
+  }
+};
+
+template <LinearSolver Solver>
+void multiply(StaticTangent<Solver>& tangent, VecX const& lambda, std::vector<NullColumn>& columns) {
+  if (columns.empty()) return;
+  for (NullColumn& c : columns) c.product = c.size = VecX::Zero(c.z.size());
+  NullColumnSink sink{columns};
+  tangent.write_scaled(lambda, sink);
+}
+
+/// Σ aᵢ bᵢ over the first n.
+inline double dot_of_first(Index n, VecX const& a, VecX const& b) {
+  double sum = 0.0;
+  for (Index i = 0; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+inline void add_scaled(double factor, VecX const& z, VecX& to) {
+  for (Index i = 0; i < z.size(); ++i) to[i] += factor * z[i];
+}
+/// Makes the last vector normal to those before it, and of unit length, by its first n entries (Gram–Schmidt, twice).
+template <class = void>
+void make_orthonormal(std::vector<VecX>& vectors, Index n) {
+  VecX& last = vectors.back();
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t k = 0; k + 1 < vectors.size(); ++k)
+      add_scaled(-dot_of_first(n, vectors[k], last), vectors[k], last);
+    double const length = std::sqrt(dot_of_first(n, last, last));
+    for (Index i = 0; i < last.size(); ++i) last[i] /= length;
+  }
+}
+
+}  // namespace polybody::detail

@@ -1,0 +1,188 @@
+// Equilibria whose stiffness has no inverse: rows that repeat others, and motions that nothing resists.
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/joints/distance.hpp>
+#include <polybody/joints/planar/weld.hpp>
+#include <polybody/run/minimum_norm.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/statics/arc_length.hpp>
+#include <polybody/statics/equilibrium.hpp>
+
+#include "support/chain.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace neutral_equilibrium_test {
+
+/// Rods of 1 m and 1 kg, pinned to each other, the first and the last one to the ground. \tparam Where as for `Chain`
+template <class Where>
+struct HungChain {
+  using Body = typename Where::Body;
+  Model<Bodies<Body>, Joints<typename Where::Hinge>> model{Gravity{0, -9.81, 0}};
+  std::vector<BodyHandle<Body>> rods;
+  std::vector<ElementHandle<typename Where::Hinge>> pins;
+  State x;
+  EquilibriumReport report;
+
+  explicit HungChain(int n) {
+    std::vector<Vec3> points{{0, 0, 0}};
+    for (int i = 0; i < n; ++i) {
+      double const slope = 2.0 * (i + 0.5) / n - 1.0 + (n > 2 ? 0.1 * std::sin(7.0 * i) : 0.0);
+      points.push_back(points.back() + Vec3(std::cos(slope), std::sin(slope), 0));
+      Vec3 const middle = 0.5 * (points[std::size_t(i)] + points.back());
+      rods.push_back(model.add(Where::body(bar_link(), Placement::planar(middle.x(), middle.y(), slope))));
+    }
+    auto const pin = Where::hinge({});
+    auto const name = [](int i) { return "pin " + std::to_string(i); };
+    pins.push_back(model.connect(pin, model.ground().at({0, 0, 0}), Where::at(rods[0], -0.5), name(0)));
+    for (int i = 1; i < n; ++i)
+      pins.push_back(
+          model.connect(pin, Where::at(rods[std::size_t(i) - 1], 0.5), Where::at(rods[std::size_t(i)], -0.5), name(i)));
+    pins.push_back(model.connect(pin, Where::at(rods.back(), 0.5), model.ground().at(points.back()), name(n)));
+    x = model.reference_state();
+    report = equilibrium(model, x);
+  }
+};
+
+// In space the parallel pins repeat three rows: the chain hangs as in the plane, and the joints bear the same forces.
+// Two rods of half span c and sag s, c² + s² = 1: each end bears m g upwards and H = m g c/(2 s) inwards.
+TEST(HungChain, InSpaceHangsAsInThePlane) {
+  for (int const n : {2, 3, 6, 20}) {
+    HungChain<InPlane<Constraint>> const plane(n);
+    HungChain<InSpace<Constraint>> const space(n);
+    EXPECT_TRUE(plane.report.redundant.empty());
+    EXPECT_FALSE(space.report.redundant.empty()) << n;
+    EXPECT_TRUE(space.report.neutral.empty()) << n;
+    for (std::size_t i = 0; i < plane.pins.size(); ++i) {
+      Vec3 const a = reaction(plane.model, plane.x, plane.pins[i]).f,
+                 b = reaction(space.model, space.x, space.pins[i]).f;
+      EXPECT_LT((a - b).norm(), 1e-8 * (1.0 + a.norm())) << n << ' ' << i;
+      EXPECT_TRUE(space.x.lambda.allFinite());
+    }
+    if (n != 2) continue;
+    double const half = position(space.model, space.x, InSpace<Constraint>::at(space.rods[0], 0.5)).x();
+    double const sag = std::sqrt(1.0 - half * half);
+    Vec3 const end = reaction(space.model, space.x, space.pins[0]).f;
+    EXPECT_NEAR(std::abs(end.y()), 9.81, 1e-9);
+    EXPECT_NEAR(std::abs(end.x()), 9.81 * half / (2.0 * sag), 1e-8);
+  }
+}
+
+// On ball joints nothing repeats, but each rod spins about its own line.
+TEST(HungChain, OnBallJointsSpinsRodByRod) {
+  int const n = 12;
+  HungChain<InPlane<Constraint>> const plane(n);
+  HungChain<OnBallJoints<Constraint>> const balls(n);
+  EXPECT_TRUE(balls.report.redundant.empty());
+  ASSERT_EQ(balls.report.neutral.size(), std::size_t(n));
+  for (std::size_t i = 0; i < balls.rods.size(); ++i) {
+    EXPECT_TRUE(has(balls.report.neutral[i], "body \"" + balls.rods[i].name + "\" turns about ("));
+    EXPECT_LT((position(plane.model, plane.x, InPlane<Constraint>::at(plane.rods[i], 0.5)) -
+               position(balls.model, balls.x, OnBallJoints<Constraint>::at(balls.rods[i], 0.5)))
+                  .norm(),
+              1e-9)
+        << i;
+  }
+}
+
+// Two rods side by side: the second one's row is dropped, and on request both share the load.
+TEST(RowsThatRepeat, BearNothingOrShareTheLoad) {
+  Model<Bodies<Rigid<>>, Joints<Joint<Distance, Constraint>>> model{Gravity{0, 0, -9.81}};
+  auto const payload = model.add(Rigid<>(3.0, 0.2 * Mat3::Identity(), Placement::at({0.5, 0, -2.0})), "payload");
+  Joint<Distance, Constraint> const rod{Distance{.length = Vec3(0.5, 0, -1.5).norm()}};
+  for (char const* name : {"rope", "rope again"})
+    model.connect(rod, model.ground().at({0, 0, 0}), payload.at(Vec3(0, 0, 0.5)), name);
+  State x = model.reference_state();
+  EquilibriumReport const report = equilibrium(model, x);
+  EXPECT_EQ(report.redundant, std::vector<std::string>{"joint \"rope again\""});
+  EXPECT_EQ(report.neutral.size(), 1u);
+  EXPECT_NEAR(x.lambda[0], 29.43, 1e-9);
+  EXPECT_EQ(x.lambda[1], 0.0);
+  VecX const shared = minimum_norm_multipliers(model, x);
+  EXPECT_NEAR(shared[0], 0.5 * 29.43, 1e-9);
+  EXPECT_NEAR(shared[1], 0.5 * 29.43, 1e-9);
+}
+
+// A payload on a rod hangs below its hook, whatever the start. Only its spin about the vertical is free, and is named.
+TEST(NeutralFreedom, OfAPayloadIsItsSpin) {
+  for (Vec3 const& start : {Vec3(0, 0, -2.5), Vec3(0.3, 0.2, -2.0)})
+    for (Vec3 const& eye : {Vec3(0, 0, 0.5), Vec3(0.1, 0.05, 0.5)}) {
+      double const length = (start + eye).norm();
+      Model<Bodies<Rigid<>>, Joints<Joint<Distance, Constraint>>> model{Gravity{0, 0, -9.81}};
+      auto const payload =
+          model.add(Rigid<>(3.0, Vec3(0.1, 0.2, 0.3).asDiagonal().toDenseMatrix(), Placement::at(start)), "payload");
+      auto const rope = model.connect(Joint<Distance, Constraint>{Distance{.length = length}},
+                                      model.ground().at({0, 0, 0}), payload.at(eye), "rope");
+      State x = model.reference_state();
+      EquilibriumReport const report = equilibrium(model, x);
+      EXPECT_EQ(report.neutral, std::vector<std::string>{"body \"payload\" turns about (0, 0, 1) through (0, 0, 0)"});
+      EXPECT_LT((position(model, x, payload.at(Vec3(0, 0, 0))) - Vec3(0, 0, -length - eye.norm())).norm(), 1e-9);
+      EXPECT_NEAR(std::abs(reaction(model, x, rope).f.z()), 3.0 * 9.81, 1e-9);
+      if (start.x() == 0.0 && eye.x() == 0.0) EXPECT_LT(std::abs(x.q[6]), 1e-12);  // it is where it was
+    }
+}
+
+using Float = Model<Bodies<planar::Lrvf>, Joints<Joint<planar::Weld, Constraint>>, Forces<PointForce<>>>;
+
+/// A beam that floats, pulled along its axis by `left` and `right`.
+struct Floating {
+  Float model;
+  Vec3 const along{std::cos(0.7), std::sin(0.7), 0};
+  BodyHandle<planar::Lrvf> beam;
+
+  Floating(Index n, double left, double right)
+      : beam(model.add(
+            planar::Lrvf::from({.length = 2.0,
+                                .constants = BarConstants{.EA = 1e4, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e4},
+                                .placement = Placement::planar(0.3, 0.2, 0.7)},
+                               n),
+            "beam")) {
+    model.apply(PointForce<>{.force = Vec3(-left * along)}, beam.at(0.0));
+    model.apply(PointForce<>{.force = Vec3(right * along)}, beam.at(2.0));
+  }
+};
+
+// Under F at both ends it is longer by F L/EA, and its middle stays: of all such places the one that moves least. 4
+// elements go to the dense solver, 40 to the sparse one. The path by arc length goes the same way.
+TEST(NeutralFreedom, OfABeamInTensionIsToMove) {
+  for (Index const n : {4, 40}) {
+    Floating const s(n, 10.0, 10.0);
+    State x = s.model.reference_state();
+    Vec3 const middle = position(s.model, x, s.beam.at(1.0));
+    EquilibriumReport const report = equilibrium(s.model, x);
+    EXPECT_EQ(report.neutral.size(), 2u) << n;
+    for (std::string const& motion : report.neutral) EXPECT_TRUE(has(motion, "body \"beam\" moves along ("));
+    auto const judge = [&](State const& at, double tolerance) {
+      Vec3 const ends = position(s.model, at, s.beam.at(2.0)) - position(s.model, at, s.beam.at(0.0));
+      EXPECT_LT((ends - (2.0 + 10.0 * 2.0 / 1e4) * s.along).norm(), tolerance) << n;
+      EXPECT_LT((position(s.model, at, s.beam.at(1.0)) - middle).norm(), tolerance) << n;
+    };
+    judge(x, 1e-11);
+    auto const path = equilibrium_path(s.model, s.model.reference_state(), {.step = 0.25, .largest = 0.25},
+                                       [](PathPoint const& p) { return p.load_factor > 0.999; });
+    Vec3 const ends =
+        position(s.model, path.back().x, s.beam.at(2.0)) - position(s.model, path.back().x, s.beam.at(0.0));
+    EXPECT_NEAR(ends.norm(), 2.0 + path.back().load_factor * 20.0 / 1e4, 1e-9) << n;
+  }
+}
+
+// One part in a thousand more at one end: the beam flies off, and the message says where to.
+TEST(NeutralFreedom, ThatALoadExcitesIsRefused) {
+  for (Index const n : {4, 40}) {
+    Floating const s(n, 10.0, 10.01);
+    State x = s.model.reference_state();
+    State const before = x;
+    std::string const text = message_of<LinearSolverSingular>([&] { equilibrium(s.model, x); });
+    EXPECT_TRUE(has(text, "nothing resists that body \"beam\"")) << n;
+    EXPECT_TRUE(has(text, "the loads excite this motion")) << n;
+    EXPECT_TRUE(x.q == before.q && x.v == before.v) << n;
+    EXPECT_THROW(equilibrium_path(s.model, before), LinearSolverSingular) << n;
+  }
+}
+
+}  // namespace neutral_equilibrium_test
