@@ -19,9 +19,7 @@ inline double rounding_of(VecX const& q) {
   return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(square / double(std::max<Index>(q.size(), 1))));
 }
 /// What that leaves of a correction that moves q by s times as much.
-inline double rounding_of(VecX const& q, double s) {
-  return 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + largest_size(q)) / s;
-}
+inline double rounding_of(VecX const& q, double s) { return rounding_of(q) / s; }
 
 /// out = x, moved by some last places of what it is made of, `q`. The signs follow no pattern that a model could share.
 /// x and out may be the same.
