@@ -66,7 +66,7 @@ struct NewtonProgress {
   /// Whether corrections stay where they are, so that it may be rounding that they consist of.
   bool stalls(CorrectionSize const& size, bool shrinks) const {
     bool const grew = size.norm >= before, twice = size.norm > 0.5 * before && before > 0.5 * earlier && earlier > 0.0;
-    return !shrinks || ((grew || twice) && size.norm <= 100.0 * size.tolerated);
+    return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);
   }
 
   /// The correction has been applied: whether it was the last one. \param renewed the factorisation is of this iterate
