@@ -166,6 +166,19 @@ TEST(Andrews, IsMetByAlphaMethodsWithinAThousandth) {
   expect_published(HhtAlpha{}, 1e-5, 1e-3);
 }
 
+// Small steps keep order two: what Newton's method may leave for rounding follows the sizes of all coordinates, not the
+// angle that has turned farthest, and so stays below the error of the step.
+TEST(Andrews, SmallStepsOfAlphaMethodsKeepTheirOrder) {
+  auto const error = [](double step) {
+    Squeezer<> s(start);
+    simulate(s.model, s.x, GeneralizedAlpha{}, {.until = 0.01, .step = step}).run();
+    return (s.read(s.x.q).head<3>() - Vec3(2.1601131315315, -1.8833642311070, 0.15851675800)).norm();
+  };
+  double const coarse = error(2e-6), fine = error(1e-6);
+  EXPECT_LT(fine, 1e-7);
+  EXPECT_NEAR(coarse / fine, 4.0, 0.4);
+}
+
 // The variant of the multibody benchmark: β(0) = −0.062, F at four times.
 TEST(Andrews, OfTheBenchmarkCarriesFWhereItIsPublished) {
   Squeezer<> s(angles({-0.062, 0.000214586853799, 0.455279812100370, 0.222668375903028, 0.487364981140633,

@@ -4,6 +4,7 @@
 
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
@@ -18,23 +19,58 @@ namespace redundant_joints_test {
 using Plane = FourBars<InPlane<Constraint>>;
 using Space = FourBars<InSpace<Constraint>>;
 
-// R2: through the flat position, where the rows lose a rank, four or five times in 4 s; the peer's error with two
-// windows at this step and 10 s is 5e-5. With forty, as in the benchmark: rigid_integrators_test.cpp.
+/// What a run of four-bars ends with.
+struct Turned {
+  double error;   ///< of the corner [m]
+  double energy;  ///< that was lost or gained [J]
+};
+template <class I>
+Turned turn(Corner const& e, I const& integrator, double step) {
+  Plane bars(e.n);
+  double const before = energy(bars.model, bars.x).total();
+  simulate(bars.model, bars.x, integrator, {.until = e.t, .step = step}).run();
+  return {(bars.corner() - Vec3(e.x, e.y, 0)).norm(), std::abs(energy(bars.model, bars.x).total() - before)};
+}
+Corner corner(int n, double t) {
+  return *std::find_if(std::begin(corners), std::end(corners), [&](Corner const& c) { return c.n == n && c.t == t; });
+}
+GeneralizedAlpha const light{.rho_inf = 0.95}, stabilised{.rho_inf = 0.95, .stabilised = true};
+
+// R2: through the flat position, where the rows lose a rank for each window, ten times in 10 s; the peer's error with
+// two windows at this step is 5e-5, and 0.1 J is what the benchmark allows.
 TEST(FourBar, PassesItsSingularPosition) {
-  std::optional<Plane> bars;
-  int n = 0;
-  for (Corner const& e : corners) {
-    if (e.n == 40 || (e.n == 1 && e.t == 10.0)) continue;
-    if (e.n != n) bars.emplace(n = e.n);
-    simulate(bars->model, bars->x, GeneralizedAlpha{.rho_inf = 0.95}, {.until = e.t, .step = 1e-3}).run();
-    EXPECT_NEAR(bars->corner()[0], e.x, 1e-4) << e.n << " bars at " << e.t;
-    EXPECT_NEAR(bars->corner()[1], e.y, 1e-4) << e.n << " bars at " << e.t;
+  for (int const n : {1, 2, 40}) {
+    auto const expect = [&](char const* who, Turned const& r) {
+      EXPECT_LT(r.error, 1e-4) << who << ", " << n;
+      EXPECT_LT(r.energy, 1e-3) << who << ", " << n;
+    };
+    Corner const end = corner(n, n == 40 ? 4 : 10);
+    expect("generalised-α", turn(end, GeneralizedAlpha{}, 1e-3));
+    expect("generalised-α, ρ∞ = 0.95", turn(end, light, 1e-3));
+    if (n < 40) expect("stabilised", turn(end, stabilised, 1e-3));  // forty: not under every linear solver
+    expect("HHT", turn(end, HhtAlpha{}, 1e-3));
   }
+  EXPECT_LT(turn(corner(2, 10), light, 1e-3).error, 5e-5);
+}
+
+// Steps come as near to the flat position as they are small; there corrections are rounding that a nearly singular
+// matrix blows up.
+TEST(FourBar, PassesItsSingularPositionInSmallSteps) {
+  auto const expect = [](char const* who, Turned const& r) {
+    EXPECT_LT(r.error, 1.1e-6) << who;
+    EXPECT_LT(r.energy, 1e-5) << who;
+  };
+  expect("generalised-α", turn(corner(2, 10), GeneralizedAlpha{}, 1.25e-4));
+  expect("generalised-α, ρ∞ = 0.95", turn(corner(2, 10), light, 1.25e-4));
+  expect("stabilised", turn(corner(2, 10), stabilised, 1.25e-4));
+  expect("HHT", turn(corner(2, 10), HhtAlpha{}, 1.25e-4));
+  EXPECT_LT(turn(corner(1, 4), GeneralizedAlpha{}, 6.25e-5).error, 1e-6);
+  EXPECT_LT(turn(corner(40, 1), GeneralizedAlpha{}, 2.5e-4).error, 3e-6);
 }
 
 // In space the four parallel pins repeat three rows. Which joint is named is the solver's choice; the accelerations,
 // the motion and the sum of the joints' forces on each body are those of the plane.
-TEST(FourBar, InSpaceMovesAsInThePlane) {
+TEST(RedundantFourBar, InSpaceMovesAsInThePlane) {
   Plane plane(1);
   Space space(1);
   GeneralizedAlpha const integrator{.tolerance = 1e-10};
@@ -55,7 +91,7 @@ TEST(FourBar, InSpaceMovesAsInThePlane) {
   EXPECT_EQ(plane.x.t, space.x.t);
 }
 
-TEST(FourBar, ExplicitMethodsTakeRedundantRowsToo) {
+TEST(RedundantFourBar, ExplicitMethodsTakeItToo) {
   auto const expect_same = [](auto const& integrator) {
     Plane plane(1);
     Space space(1);

@@ -251,4 +251,43 @@ TEST(Newton, CorrectionThatIsNoNumberIsNotApplied) {
   EXPECT_FALSE(o.factored);
 }
 
+/// f comes with noise of either sign, far above the tolerance.
+struct Noisy : Scalar {
+  double noise = 1e-8;
+  bool evaluate() {
+    bool const finite = Scalar::evaluate();
+    residual += evaluations % 2 == 0 ? noise : -noise;
+    return finite;
+  }
+};
+/// Knows its noise.
+struct AwareOfNoise : Noisy {
+  int asked = 0;
+  bool is_rounding(double norm) {
+    ++asked;
+    return norm * tolerance <= 3.0 * noise;
+  }
+};
+
+// Corrections that noise keeps alive fail unless the problem says that they are noise; the last one is then left out.
+TEST(Newton, StopsWhereCorrectionsAreRounding) {
+  auto const f = [](double x) { return x - 2.0; };
+  auto const slope = [](double) { return 1.0; };
+  for (bool const full : {false, true}) {
+    bool factored = false;
+    double theta = 1.0;
+    Noisy noisy{{.f = f, .slope = slope, .x = 1.0}};
+    EXPECT_EQ(newton(noisy, {.always_refactor = full, .predictive_stop = false}, factored, theta).result,
+              NewtonResult::diverged);
+    factored = false;
+    theta = 1.0;
+    AwareOfNoise aware{{{.f = f, .slope = slope, .x = 1.0}}};
+    EXPECT_EQ(newton(aware, {.always_refactor = full, .predictive_stop = false}, factored, theta).result,
+              NewtonResult::converged);
+    EXPECT_EQ(aware.asked, 1);
+    EXPECT_TRUE(factored);
+    EXPECT_NEAR(aware.x, 2.0, 2e-8);
+  }
+}
+
 }  // namespace newton_test

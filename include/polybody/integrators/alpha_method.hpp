@@ -25,8 +25,9 @@ namespace polybody {
 struct AlphaVectors {
   VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
   VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
-  VecX back, rate;  ///< of a stabilised step: what μ moves, and a vector by rows
-  Index states;     ///< first-order ones, the last of the speeds
+  VecX back, rate;       ///< of a stabilised step: what μ moves, and a vector by rows
+  VecX kept, kept_back;  ///< corrections while others are looked at
+  Index states;          ///< first-order ones, the last of the speeds
 
   AlphaVectors(Index coordinates, Index speeds, Index rows, Index first_order)
       : v0(VecX::Zero(speeds)),
@@ -45,6 +46,8 @@ struct AlphaVectors {
         ahead(v0),
         back(v0),
         rate(lambda),
+        kept(rhs),
+        kept_back(v0),
         states(first_order) {}
 
   /// f(first, end) holds of the speeds of bodies and of the first-order states.
@@ -194,11 +197,12 @@ struct AlphaMethod {
     State const& x;
     Workspace<Solver>& w;
     double h, look_ahead;
-    bool two_sets, stand_ins;
+    bool two_sets, holds_anew, stand_ins;
     Index bad = -1;
 
-    bool evaluate() {
-      system.plus(x.q, w.dq, w.q);
+    bool evaluate() { return evaluate_at(w.dq); }
+    bool evaluate_at(VecX const& dq) {
+      system.plus(x.q, dq, w.q);
       system.evaluate(w.q, w.v, x.t + h);
       system.residual(w.vd, w.lambda, w.r);
       system.violation(w.phi);
@@ -213,6 +217,7 @@ struct AlphaMethod {
         system.plus(x.q, w.ahead, w.q);
         system.evaluate(w.q, w.v, x.t + h);
       }
+      if (holds_anew) w.forward.hold(system, w.q, w.v, x.t + h);
       bad = method.refactor(system, h, w.lambda, w, stand_ins);
       return bad < 0;
     }
@@ -229,11 +234,31 @@ struct AlphaMethod {
       return finite ? method.measure(h, two_sets, w) : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
     }
     void apply(double part) { method.apply(part, h, two_sets, w); }
+    bool is_rounding(double norm) {
+      if (!detail::closed_to_rounding(w.phi, w.q)) return false;
+      w.kept_back = w.back;
+      auto const moved = [&] {
+        detail::jiggle(w.dq, w.q, w.ahead);
+        evaluate_at(w.ahead);
+        detail::jiggle(w.phi, w.q, w.phi);
+        detail::jiggle(w.rate, w.v, w.rate);
+        method.right_hand_side(h, two_sets, system.velocity_rows(), w);
+        bool const finite = std::isfinite(solve().norm);
+        w.back -= w.kept_back;
+        return finite;
+      };
+      bool const answer =
+          detail::is_rounding(w.y, norm, w.kept, moved, [&] { return method.measure(h, two_sets, w).norm; });
+      w.back.swap(w.kept_back);
+      return answer;
+    }
   };
 
   /// One step from x; x changes only when Newton converged. What stalls is tried again with more effort: 1, full Newton
-  /// with every term in the tangent, and from the start without extrapolation; 2, the same with stand-ins for what the
-  /// forces of groups do, which jump less where friction turns round.
+  /// with every term in the tangent, and from the start without extrapolation, and μ acts along Gᵀ of the iterate (as
+  /// G turns by more than it is from one end of the step to the other, next to a singular position, Gᵀ of the start
+  /// does not do); 2, the same with stand-ins for what the forces of groups do, which jump less where friction turns
+  /// round.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     StepHistory history(x);
@@ -258,7 +283,8 @@ struct AlphaMethod {
     // what μ moves is large and gone at once: how it shrinks tells nothing of the rest
     options.predictive_stop = options.predictive_stop && !two_sets;
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
-    Problem<Solver> problem{*this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, effort != 1};
+    Problem<Solver> problem{
+        *this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, two_sets && careful, effort != 1};
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
         effort < efforts(system)) {
@@ -271,6 +297,7 @@ struct AlphaMethod {
     // the last correction moved dq: bring q to it
     system.plus(x.q, w.dq, w.q);
     w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+    if (w.solver.lost_rank()) w.factored = false;
     ++w.age;
     history.push(x, h, w.a);
     x.q.swap(w.q);

@@ -4,15 +4,44 @@
 /// accelerations.
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include <polybody/solvers/newton.hpp>
 
 namespace polybody::detail {
 
-/// What rounding of q leaves of a correction that moves q by s times as much.
-inline double rounding_of(VecX const& q, double s) {
-  return 30.0 * std::numeric_limits<double>::epsilon() * (1.0 + largest_size(q)) / s;
+/// By how much rounding moves the coordinates in the mean: coordinate i by ε |q_i|, what stands for a direction or an
+/// arm by ε. A mean, as corrections are measured by theirs: one angle of many turns does not speak for all.
+inline double rounding_of(VecX const& q) {
+  double square = 0.0;
+  for (Index i = 0; i < q.size(); ++i) square += q[i] * q[i];
+  return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(square / double(std::max<Index>(q.size(), 1))));
+}
+/// What that leaves of a correction that moves q by s times as much.
+inline double rounding_of(VecX const& q, double s) { return rounding_of(q) / s; }
+
+/// out = x, moved by some last places of what it is made of, `q`. The signs follow no pattern that a model could share.
+/// x and out may be the same.
+inline void jiggle(VecX const& x, VecX const& q, VecX& out) {
+  double const size = 4.0 * rounding_of(q);
+  for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + ((std::uint32_t(i + 1) * 2654435769u >> 31) != 0 ? size : -size);
+}
+/// Rows of positions that are open by more than this are open by more than rounding.
+inline bool closed_to_rounding(VecX const& phi, VecX const& q) { return largest_size(phi) <= 1e3 * rounding_of(q); }
+
+/// Whether rounding is what the correction y, of the size `norm`, consists of: it is another one as coordinates and
+/// rows move by some last places. Next to a singular position the rows' rounding comes out of their inverse many times
+/// larger, and so does that of stretches out of light nodes. \param moved solves for it there, into y, and says whether
+/// it is finite  \param measure the norm of what is in y  \param kept holds y meanwhile, which is the same afterwards
+template <class Moved, class Measure>
+bool is_rounding(VecX& y, double norm, VecX& kept, Moved&& moved, Measure&& measure) {
+  kept = y;
+  bool const finite = moved();
+  y -= kept;
+  bool const differs = finite && measure() >= 0.5 * norm;
+  y.swap(kept);
+  return differs;
 }
 
 /// First-order states, the last `count` of the speeds `v` with their rates. Each has a unit of its own.

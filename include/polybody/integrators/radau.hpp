@@ -11,35 +11,11 @@
 #include <array>
 
 #include <polybody/integrators/newton_failure.hpp>
+#include <polybody/integrators/radau_tableau.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 #include <polybody/solvers/auto_lu.hpp>
 
 namespace polybody {
-namespace detail {
-
-/// a_ij and c_i [Hairer & Wanner 1996, Table IV.5.6].
-struct RadauTableau {
-  static constexpr double r6 = 2.449489742783178;
-  static constexpr double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
-  static constexpr double a[3][3] = {
-      {(88.0 - 7.0 * r6) / 360.0, (296.0 - 169.0 * r6) / 1800.0, (-2.0 + 3.0 * r6) / 225.0},
-      {(296.0 + 169.0 * r6) / 1800.0, (88.0 + 7.0 * r6) / 360.0, (-2.0 - 3.0 * r6) / 225.0},
-      {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0}};
-  /// (A²)_ij.
-  static constexpr double squared(int i, int j) { return a[i][0] * a[0][j] + a[i][1] * a[1][j] + a[i][2] * a[2][j]; }
-};
-
-/// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G
-/// and Gᵀ.
-struct StageSink {
-  BlockSink& sink;
-  Index row0, col0, speeds;
-  void add(Index row, Index col, BlockView const& b) {
-    if (row0 == col0 || (row < speeds && col < speeds)) sink.add(row0 + row, col0 + col, b);
-  }
-};
-
-}  // namespace detail
 
 /// The reference among the integrators: for few, accurate steps, also of stiff models. The matrix of a step has three
 /// times the unknowns of the model and goes to `AutoLu` whatever solver the run names; above 64 unknowns that one takes
@@ -61,7 +37,7 @@ struct Radau {
   template <class Solver>
   struct Workspace {
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
-    VecX q, r, phi, gamma, next, rhs, y;
+    VecX q, r, phi, gamma, next, rhs, y, kept;
     TangentSolver<AutoLu> solver;
     ForwardDynamics<Solver> forward;
     Projection::Scratch projected;
@@ -80,6 +56,7 @@ struct Radau {
           next(r),
           rhs(VecX::Zero(3 * s.size())),
           y(rhs),
+          kept(rhs),
           forward(s),
           projected(s),
           slack(std::size_t(equations_of(s) - equation_speeds_of(s)), 0.0) {
@@ -146,17 +123,19 @@ struct Radau {
 
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-      w.vd[i] = x.a;
-      w.lambda[i] = x.lambda;
-      w.delta[i] = detail::RadauTableau::c[i] * h * x.v;
+    NewtonReport report;
+    for (bool const careful : {false, true}) {  // what stalls is tried again by full Newton
+      foretell(x, h, w);
+      if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+      NewtonOptions options = newton;
+      options.always_refactor = options.always_refactor || careful;
+      if (careful) options.growths = 8;
+      Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows()};
+      report = polybody::newton(problem, options, w.factored, w.theta);
+      if (report.result == NewtonResult::converged) break;
+      if (careful || report.result != NewtonResult::diverged)
+        detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     }
-    w.set_speeds(x.v, h);
-    if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
-    Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows()};
-    NewtonReport const report = polybody::newton(problem, newton, w.factored, w.theta);
-    if (report.result != NewtonResult::converged)
-      detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     w.set_positions(system, h);
     system.plus(x.q, w.delta[2], w.q);
     projection.apply(system, w.forward, w.projected, w.q, w.v[2], x.t + h);
@@ -178,6 +157,17 @@ struct Radau {
   }
 
  private:
+  /// Stages as they are with the accelerations and speeds at x.
+  template <class Solver>
+  static void foretell(State const& x, double h, Workspace<Solver>& w) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      w.vd[i] = x.a;
+      w.lambda[i] = x.lambda;
+      w.delta[i] = detail::RadauTableau::c[i] * h * x.v;
+    }
+    w.set_speeds(x.v, h);
+  }
+
   /// A step as Newton's method sees it.
   template <class Solver>
   struct Problem {
@@ -188,17 +178,19 @@ struct Radau {
     double h;
     Index nv, rows, bad = -1;
 
-    void evaluate_stage(std::size_t i) {
-      system.plus(x.q, w.delta[i], w.q);
+    void evaluate_stage(std::size_t i, VecX const& delta) {
+      system.plus(x.q, delta, w.q);
       system.evaluate(w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h);
     }
-    bool evaluate() {
+    bool evaluate(bool jiggled = false) {
       w.set_positions(system, h);
       for (std::size_t i = 0; i < 3; ++i) {
-        evaluate_stage(i);
+        if (jiggled) detail::jiggle(w.delta[i], w.q, w.next);
+        evaluate_stage(i, jiggled ? w.next : w.delta[i]);
         system.residual(w.vd[i], w.lambda[i], w.r);
         system.acceleration_bias(w.gamma);
         system.rows_times(w.vd[i], w.phi);
+        if (jiggled) detail::jiggle(w.phi, w.vd[i], w.phi);
         Index const first = Index(i) * (nv + rows);
         for (Index k = 0; k < nv; ++k) w.rhs[first + k] = -w.r[k];
         for (Index k = 0; k < rows; ++k) w.rhs[first + nv + k] = -(w.phi[k] + w.gamma[k]);
@@ -206,13 +198,16 @@ struct Radau {
       return all_finite(w.rhs);
     }
     bool refactor() {
-      evaluate_stage(1);
+      evaluate_stage(1, w.delta[1]);
       w.h_factored = h;
       bad = w.solver.factor([&](BlockSink& sink) { w.write(system, h, sink); });
       return bad < 0;
     }
     CorrectionSize solve() {
       w.solver.solve(w.rhs, w.y);
+      return measure();
+    }
+    CorrectionSize measure() const {
       Index const bodies = nv - system.layout().states;
       double const n = std::sqrt(double(std::max<Index>(bodies, 1)));
       double change = w.unsettled / (h * h);
@@ -224,13 +219,18 @@ struct Radau {
             size, method.tolerance, w.y.data() + Index(i) * (nv + rows));
       return size;
     }
-    void apply() {
+    void apply(double part) {
+      if (part != 1.0) w.y *= part;
       for (std::size_t i = 0; i < 3; ++i) {
         Index const first = Index(i) * (nv + rows);
         for (Index k = 0; k < nv; ++k) w.vd[i][k] += w.y[first + k];
         for (Index k = 0; k < rows; ++k) w.lambda[i][k] += w.y[first + nv + k];
       }
       w.set_speeds(x.v, h);
+    }
+    bool is_rounding(double norm) {
+      auto const moved = [&] { return evaluate(true) && std::isfinite(solve().norm); };
+      return detail::is_rounding(w.y, norm, w.kept, moved, [&] { return measure().norm; });
     }
   };
 };

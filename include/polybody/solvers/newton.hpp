@@ -63,6 +63,12 @@ struct NewtonProgress {
     return true;
   }
 
+  /// Whether corrections stay where they are, so that it may be rounding that they consist of.
+  bool stalls(CorrectionSize const& size, bool shrinks) const {
+    bool const grew = size.norm >= before, twice = size.norm > 0.5 * before && before > 0.5 * earlier && earlier > 0.0;
+    return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);
+  }
+
   /// The correction has been applied: whether it was the last one. \param renewed the factorisation is of this iterate
   bool ends(CorrectionSize const& size, NewtonOptions const& options, bool renewed, double theta) {
     earlier = before;
@@ -82,6 +88,7 @@ struct NewtonProgress {
 ///   bool refactor()           the tangent there; false when it is singular
 ///   CorrectionSize solve()    the next correction; or double, its norm where 1 is tolerated
 ///   void apply()              adds it; or void apply(double part), which full Newton damps
+///   bool is_rounding(double)  (or not there) whether a correction of this norm is what rounding of the iterate leaves
 /// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
 /// With ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no
 /// correction grew: after one that did, the next looks small beside it wherever it stands. It fails after growing as
@@ -119,8 +126,15 @@ NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& facto
     if (!std::isfinite(size.norm / size.tolerated))
       return fail(k > 0 ? NewtonResult::diverged : renewed ? NewtonResult::singular : NewtonResult::not_finite);
     if (k > 0 && progress.before > 0.0) {
-      bool const shrinks = progress.rate(size, options, factored, theta);
+      double const rate_before = theta;
+      bool const factored_before = factored, shrinks = progress.rate(size, options, factored, theta);
       report.theta = theta;
+      if constexpr (requires { problem.is_rounding(size.norm); })
+        if (size.norm > size.tolerated && progress.stalls(size, shrinks) && problem.is_rounding(size.norm)) {
+          theta = rate_before;
+          factored = factored_before;
+          return report;
+        }
       if (!shrinks) return fail(NewtonResult::diverged);
     }
     if constexpr (requires { problem.apply(progress.part); })

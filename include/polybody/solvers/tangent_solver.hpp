@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include <polybody/solvers/linear_solver.hpp>
@@ -44,8 +45,14 @@ class TangentSolver {
   Index factor(BlockWriter const& write) {
     if (coordinates_) coordinates_.entries->hold(coordinates_.self.get(), held_.get());
     if (solves_by_bodies()) return coordinates_.entries->factor(coordinates_.self.get(), held_.get(), write);
-    return write_and_factor(solver_, write);
+    Index const bad = write_and_factor(solver_, write);
+    fewest_dropped_ = std::min(fewest_dropped_, dropped().size());
+    return bad;
   }
+
+  /// The last factorisation dropped rows that an earlier one held: it is of a singular position, beside which those
+  /// rows hold again, and it would leave them open.
+  bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 
   /// x by the unknowns of the time step.
   void solve(VecX const& rhs, VecX& x) {
@@ -79,6 +86,7 @@ class TangentSolver {
   Solver solver_;
   Coordinates coordinates_;
   HeldPlace held_;
+  std::size_t fewest_dropped_ = std::numeric_limits<std::size_t>::max();
   Index copies_ = 1, size_ = 0, equations_ = 0;
   VecX rhs_, x_, part_, solution_, equation_;
 };

@@ -1,0 +1,180 @@
+#pragma once
+/// \file
+/// Steps that keep energy and momenta, and steps that only ever lose energy, for coordinates that form a vector space
+/// and constant M:
+///   M Δv = h (f̄ − Ḡᵀλ),   Δq = h (v̄ + χ Δv),   Φ(q₁) = 0,   v̄ = ½ (v₀ + v₁).
+/// f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], made of secants (math/secant.hpp) of strains, gaps and
+/// potentials:
+///   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping),   Ḡ Δq = ΔΦ = 0.
+/// Hence, for the kinetic energy T, ΔT = v̄ᵀMΔv = (Δq/h − χ Δv)ᵀMΔv and
+///   ΔT + ΔV = −χ (ΔvᵀMΔv + ΔεᵀCΔε) − (damping) + (work of the loads).
+/// χ = 0: energy stays. The linear momentum changes by the loads' impulse for every χ. The angular momentum does so for
+/// χ = 0 where f̄ and Ḡ have no moment of their own: for what is made of scalar products of coordinates. These are ANCF
+/// cables and the ANCF beam of `Continuum`, springs and joints between points on their axes. Angles as coordinates,
+/// section frames (`ElasticLine`) and joints of axes keep energy too, but angular momentum to the method's order only.
+/// First-order states take the midpoint, Δz = h · h(q̄, v̄, z̄, t̄).
+
+#include <polybody/integrators/newton_failure.hpp>
+#include <polybody/integrators/step_history.hpp>
+#include <polybody/system/step_secants.hpp>
+
+namespace polybody {
+
+/// A member of the family. `State::a` and `State::lambda` after a step belong to the middle of it; with χ = 0, λ
+/// alternates by O(h) about the reaction, and the mean of two steps is right to O(h²).
+struct ConservingStep {
+  char const* name;
+  double chi;
+  double tolerance;
+  NewtonOptions newton;
+
+  template <class Solver>
+  struct Workspace {
+    VecX q, v, vd, lambda, r, phi, rhs, y, kept;
+    StepSecants secants;
+    TangentSolver<Solver> solver;
+    ForwardDynamics<Solver> forward;
+    bool factored = false;
+    double theta = 1.0;
+    double h_factored = 0.0;
+
+    explicit Workspace(System& s)
+        : q(VecX::Zero(s.coordinates())),
+          v(VecX::Zero(s.speeds())),
+          vd(v),
+          lambda(VecX::Zero(s.rows())),
+          r(v),
+          phi(lambda),
+          rhs(VecX::Zero(s.size())),
+          y(rhs),
+          kept(rhs),
+          secants(s),
+          forward(s) {}
+  };
+
+  template <class Solver>
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
+  }
+
+  /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
+  template <class Solver>
+  void start(System& system, State& x, double h, Workspace<Solver>& w) const {
+    w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
+    StepHistory::reset(x);
+    w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi, &x.v, &x.a});
+    w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
+    w.factored = false;
+    (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
+  }
+
+  /// x changes only when Newton's method converged.
+  template <class Solver>
+  StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
+    return advance(system, x, h, w, false);
+  }
+
+ private:
+  /// Δq = h v₀ + s a with Δv = h a.
+  double scale(double h) const { return (0.5 + chi) * h * h; }
+
+  template <class Solver>
+  Index refactor(System& system, double h, Workspace<Solver>& w) const {
+    w.h_factored = h;
+    return w.solver.factor([&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
+  }
+
+  /// A step as Newton's method sees it.
+  template <class Solver>
+  struct Problem {
+    ConservingStep const& method;
+    System& system;
+    State const& x;
+    Workspace<Solver>& w;
+    double h, s;
+    Index nv, rows, bad = -1;
+
+    void move() {
+      for (Index i = 0; i < w.q.size(); ++i) w.q[i] = x.q[i] + h * x.v[i] + s * w.vd[i];
+    }
+    bool evaluate() {
+      move();
+      return evaluate_here();
+    }
+    bool evaluate_here() {
+      w.secants.evaluate(system, {&x.q, &w.q, x.t, h, method.chi, &x.v, &w.vd});
+      w.secants.residual(system, w.vd, w.lambda, w.r);
+      w.secants.violation(w.phi);
+      for (Index i = 0; i < nv; ++i) w.rhs[i] = -w.r[i];
+      for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.phi[i] / -s;
+      return all_finite(w.rhs);
+    }
+    bool refactor() {
+      bad = method.refactor(system, h, w);
+      return bad < 0;
+    }
+    CorrectionSize solve() {
+      w.solver.solve(w.rhs, w.y);
+      return measure();
+    }
+    CorrectionSize measure() const {
+      Index const bodies = nv - system.layout().states;
+      double const n = std::sqrt(double(std::max<Index>(bodies, 1)));
+      CorrectionSize const size{
+          all_finite(w.y) ? w.y.head(bodies).norm() / n : std::numeric_limits<double>::quiet_NaN(),
+          method.tolerance * (1.0 + w.vd.head(bodies).norm() / n) + detail::rounding_of(w.q, s)};
+      return detail::StatesInStep{system.layout().states, w.v, w.vd, h}.join(size, method.tolerance, w.y.data());
+    }
+    void apply() {
+      for (Index i = 0; i < nv; ++i) w.vd[i] += w.y[i];
+      for (Index i = 0; i < rows; ++i) w.lambda[i] += w.y[nv + i];
+    }
+    bool is_rounding(double norm) {
+      if (!detail::closed_to_rounding(w.phi, w.q)) return false;
+      auto const moved = [&] {
+        detail::jiggle(w.q, w.q, w.q);
+        evaluate_here();
+        detail::jiggle(w.phi, w.q, w.phi);
+        for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.phi[i] / -s;
+        return std::isfinite(solve().norm);
+      };
+      return detail::is_rounding(w.y, norm, w.kept, moved, [&] { return measure().norm; });
+    }
+  };
+
+  template <class Solver>
+  StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, bool careful) const {
+    StepHistory history(x);
+    if (careful) {
+      w.vd.setZero();  // the mean of what a step does not resolve
+      w.lambda = x.lambda;
+    } else {
+      history.extrapolate(x, h, w.vd, w.lambda);
+    }
+    if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+    NewtonOptions options = newton;
+    options.always_refactor = options.always_refactor || careful;
+    if (careful) options.growths = 10;
+    Problem<Solver> problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows()};
+    NewtonReport const report = polybody::newton(problem, options, w.factored, w.theta);
+    if (report.result != NewtonResult::converged && !careful) {  // full Newton, from no acceleration at all
+      w.factored = false;
+      return advance(system, x, h, w, true);
+    }
+    if (report.result != NewtonResult::converged)
+      detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
+    problem.move();
+    for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
+    w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+    if (w.solver.lost_rank()) w.factored = false;
+    history.push(x, h, w.vd);
+    x.q.swap(w.q);
+    x.v.swap(w.v);
+    x.a.swap(w.vd);
+    x.lambda.swap(w.lambda);
+    x.t += h;
+    return {h, h, report.iterations, report.factorisations, report.iterations, 0, 0, report.theta};
+  }
+};
+
+}  // namespace polybody

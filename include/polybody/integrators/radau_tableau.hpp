@@ -1,0 +1,28 @@
+#pragma once
+#include <polybody/math/block_sink.hpp>
+
+namespace polybody::detail {
+
+/// a_ij and c_i [Hairer & Wanner 1996, Table IV.5.6].
+struct RadauTableau {
+  static constexpr double r6 = 2.449489742783178;
+  static constexpr double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
+  static constexpr double a[3][3] = {
+      {(88.0 - 7.0 * r6) / 360.0, (296.0 - 169.0 * r6) / 1800.0, (-2.0 + 3.0 * r6) / 225.0},
+      {(296.0 + 169.0 * r6) / 1800.0, (88.0 + 7.0 * r6) / 360.0, (-2.0 - 3.0 * r6) / 225.0},
+      {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0}};
+  /// (A²)_ij.
+  static constexpr double squared(int i, int j) { return a[i][0] * a[0][j] + a[i][1] * a[1][j] + a[i][2] * a[2][j]; }
+};
+
+/// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G
+/// and Gᵀ.
+struct StageSink {
+  BlockSink& sink;
+  Index row0, col0, speeds;
+  void add(Index row, Index col, BlockView const& b) {
+    if (row0 == col0 || (row < speeds && col < speeds)) sink.add(row0 + row, col0 + col, b);
+  }
+};
+
+}  // namespace polybody::detail
