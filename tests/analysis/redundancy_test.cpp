@@ -96,7 +96,8 @@ TEST(Redundancy, DoesNotDependOnTheUnits) {
     Model<Bodies<Rigid<>>, Joints<Pin>> model;
     auto const door = model.add(Rigid<>(1.0, Mat3::Identity()), "door");
     for (double const z : {-1.0, 1.0})
-      model.connect(Pin{}, model.ground().at({0, 0, z * unit}), door.at(Vec3(0, 0, z * unit)));
+      model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, z * unit}),
+                    door.at(Vec3(0, 0, z * unit)));
     Redundancy const r = redundancy(model, model.reference_state());
     EXPECT_EQ(r.rank, 5) << unit;
     EXPECT_EQ(names(r), "joint \"Revolute 2\" 5 ") << unit;

@@ -111,9 +111,9 @@ struct Blade {
     double const j = 3.0 * length * length / 12.0;
     auto const rod =
         model.add(Rigid<>(3.0, Vec3(0.0, j, j).asDiagonal(), Placement::at({e + 0.5 * length, 0, 0})), "rod");
-    model.connect(Pin{}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "shaft");
-    model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}}, {}}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}),
-                  "drive");
+    model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "shaft");
+    model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}, Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
+                  hub.at({0, 0, 0}), "drive");
     model.connect(Pin{{.axis = hinge}, {}}, hub.at({e, 0, 0}), rod.at({-0.5 * length, 0, 0}), "hinge");
     x = model.reference_state();
   }

@@ -171,8 +171,8 @@ TEST(Sliding, GivesItsPointsNoAxes) {
   auto const beam = model.add(Sliding(AncfBeam<>::from(bar(false), 3), {0.1}), "beam");
   auto const ground = model.ground().at({0, 0, 0});
   EXPECT_NO_THROW(model.connect(Ball{}, ground, beam.at(Slider{}), "ball"));
-  EXPECT_NO_THROW(model.connect(Pin{}, ground, beam.at(0.0), "pin at the end"));
-  EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, ground, beam.at(Slider{}), "pin"); }),
+  EXPECT_NO_THROW(model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, ground, beam.at(0.0), "pin at the end"));
+  EXPECT_TRUE(has(refusal([&] { model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, ground, beam.at(Slider{}), "pin"); }),
                   "\"pin\" needs axes, but a point that"));
 }
 

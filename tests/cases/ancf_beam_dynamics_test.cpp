@@ -41,7 +41,7 @@ TEST(AncfRightAngleCantilever, TwoMeshesExtrapolateToTheExactFrame) {
 TEST(AncfSpinUp, TenElements) {
   Beams::ModelType model;
   auto const arm = model.add(AncfBeam<>::from(spin_up::arm(), 10), "arm");
-  model.connect(Pin{}, model.ground().at({0, 0, 0}), arm.at(0.0), "axle");
+  model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "axle");
   model.connect(spin_up::drive(), model.ground().at({0, 0, 0}), arm.at(0.0), "drive");
   spin_up::follows(model, arm.at(10.0), 1e-2);
 }

@@ -33,7 +33,8 @@ struct Rod {
 
   explicit Rod(typename J::PolicyType const& policy, double beside = 0.0) {
     Vec3 const at(0, 0, -beside);
-    pin = model.connect(J{{}, policy}, model.ground().at(at), rod.at(Vec3(at - Vec3(0.5, 0, 0))), "pin");
+    pin = model.connect(J{{.axis = Vec3::UnitZ()}, policy}, model.ground().at(at), rod.at(Vec3(at - Vec3(0.5, 0, 0))),
+                        "pin");
   }
   /// Released, spinning about the pin.
   State start(double spin) const {

@@ -29,6 +29,7 @@ struct OfSpace {
     return {mass, Vec3(0.3 * across, 0.8 * across, across).asDiagonal().toDenseMatrix(), place};
   }
   static Marker<Body> at(BodyHandle<Body> const& body, double x, double y) { return body.at(Vec3(x, y, 0)); }
+  static Pin pin() { return {Revolute{.axis = Vec3::UnitZ()}, {}}; }
   static Loose loose() { return {PointOnLine{.axis = Vec3::UnitZ()}, {}}; }
 };
 struct OfThePlane {
@@ -37,6 +38,7 @@ struct OfThePlane {
   using Loose = Pin;
   static Body body(double mass, double across, Placement const& place) { return {mass, across, place}; }
   static Marker<Body> at(BodyHandle<Body> const& body, double x, double y) { return body.at(Vec2(x, y)); }
+  static Pin pin() { return {}; }
   static Loose loose() { return {}; }
 };
 
@@ -85,14 +87,14 @@ struct ClosedChain {
           model.add(World::body(20.0, 1.0, Placement::planar(side * half, 0.0)), side > 0.0 ? "right" : "left"));
     auto const first = [&](int i) { return World::at(chain[std::size_t(i)], -0.5 * length, 0.0); };
     for (std::size_t i : {0u, 1u})
-      pins.push_back(model.connect(Pin{}, model.ground().at({i == 0 ? half : -half, 0, 0}), World::at(wheels[i], 0, 0),
-                                   i == 0 ? "right axle" : "left axle"));
+      pins.push_back(model.connect(World::pin(), model.ground().at({i == 0 ? half : -half, 0, 0}),
+                                   World::at(wheels[i], 0, 0), i == 0 ? "right axle" : "left axle"));
     for (int i = 0; i < links; ++i)
-      pins.push_back(model.connect(Pin{}, World::at(chain[std::size_t(i)], 0.5 * length, 0.0), first((i + 1) % links),
-                                   "pin " + std::to_string(i + 1)));
+      pins.push_back(model.connect(World::pin(), World::at(chain[std::size_t(i)], 0.5 * length, 0.0),
+                                   first((i + 1) % links), "pin " + std::to_string(i + 1)));
     loose.push_back(model.connect(World::loose(), World::at(wheels[0], radius, 0.0), first(around / 2), "right tooth"));
     pins.push_back(
-        model.connect(Pin{}, World::at(wheels[1], -radius, 0.0), first(links / 2 + around / 2), "left tooth"));
+        model.connect(World::pin(), World::at(wheels[1], -radius, 0.0), first(links / 2 + around / 2), "left tooth"));
     x = model.reference_state();
   }
 };

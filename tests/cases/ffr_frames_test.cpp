@@ -147,27 +147,46 @@ TEST(FloatingFrames, FiveSubStructuresMeetThePublishedTolerance) {
     }
 }
 
-// Geometric stiffening knows every axial force: the lateral stiffness of a cantilever pressed at its tip with P is lost
-// at Euler's load π²EI/4L² (S9e, clamped–free). Under P it is P/(tan(κL)/κ − L), κ² = P/EI.
-TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
-  Bar const bar{
-      .length = 1.0,
-      .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
-  for (double const part : {0.0, 0.5, 0.9}) {
-    double const p = part * pi * pi / 4, kappa = std::sqrt(p), lateral = 1e-5;
-    double const expected = part == 0.0 ? lateral / 3 : lateral * (std::tan(kappa) / kappa - 1.0) / p;
-    Frames model;
-    auto const body = model.add(Ffr::from(bar, 6, {.stiffening = true}), "column");
+/// L = EI = 1, all but inextensible.
+Bar column() {
+  return {.length = 1.0,
+          .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
+}
+/// A cantilever pressed at its tip with p and pushed across with `lateral`, in equilibrium.
+struct Pressed {
+  Frames model;
+  BodyHandle<Ffr> body;
+  State x;
+  Pressed(double p, double lateral, FfrOptions const& options = {})
+      : body(model.add(Ffr::from(column(), 6, options), "column")) {
     model.connect(Clamp{}, model.ground().at({0, 0, 0}), body.at(0.0), "clamp");
     model.apply(PointForce<>{.force = {-p, lateral, 0}}, body.at(1.0));
-    State x = model.reference_state();
+    x = model.reference_state();
     equilibrium(model, x);
-    EXPECT_NEAR(position(model, x, body.at(1.0))[1], expected, 5e-3 * expected) << part;
-    EXPECT_NEAR(section_forces(model, x, body.at(0.5))[0], -p, 1e-3) << part;
-    EXPECT_NEAR(section_forces(model, x, body.at(0.0))[5], lateral * 1.0 + p * expected,
-                0.02 * (lateral + p * expected))
-        << part;
   }
+  double deflection() const { return position(model, x, body.at(1.0))[1]; }
+};
+
+// Geometric stiffening knows every axial force: the lateral stiffness of a cantilever pressed at its tip with
+// P is lost at Euler's load π²EI/4L² (S9e, clamped–free). Under P it is P/(tan(κL)/κ − L), κ² = P/EI.
+TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
+  for (double const part : {0.0, 0.17, 0.5, 0.9}) {
+    double const p = part * pi * pi / 4, kappa = std::sqrt(p), lateral = 1e-5;
+    double const expected = part == 0.0 ? lateral / 3 : lateral * (std::tan(kappa) / kappa - 1.0) / p;
+    Pressed const stiff(p, lateral, {.stiffening = true});
+    EXPECT_NEAR(stiff.deflection(), expected, 5e-3 * expected) << part;
+    auto const forces = [&](double s) { return section_forces(stiff.model, stiff.x, stiff.body.at(s)); };
+    EXPECT_NEAR(forces(0.5)[0], -p, 1e-3) << part;
+    EXPECT_NEAR(forces(0.0)[5], lateral * 1.0 + p * expected, 0.02 * (lateral + p * expected)) << part;
+  }
+}
+
+// Without it the deflection is P L³/3EI however hard the tip is pressed, 17 % too little at 0.17 of Euler's load.
+TEST(FloatingFrame, WithoutStiffeningNoForceBuckles) {
+  double const p = 0.17 * 0.25 * std::numbers::pi * std::numbers::pi, kappa = std::sqrt(p);
+  double const unpressed = 1e-5 / 3, pressed = 1e-5 * (std::tan(kappa) / kappa - 1.0) / p;
+  EXPECT_NEAR(Pressed(p, 1e-5).deflection(), unpressed, 1e-3 * unpressed);
+  EXPECT_NEAR(1.0 - unpressed / pressed, 0.17, 0.005);
 }
 
 }  // namespace ffr_frames_test

@@ -42,7 +42,8 @@ TEST(Screw, LowersANutAtTheExactRate) {
   Space model{Gravity{0, 0, -g}};
   auto const nut = model.add(Rigid<>(m, diagonal(0.1, 0.1, inertia)), "nut");
   auto const ground = model.ground().at({0, 0, 0});
-  auto const thread = model.connect(Ideal<Screw>{{.pitch = p}, {}}, ground, nut.at(Vec3(0, 0, 0)), "thread");
+  auto const thread =
+      model.connect(Ideal<Screw>{{.pitch = p, .axis = Vec3::UnitZ()}, {}}, ground, nut.at(Vec3(0, 0, 0)), "thread");
   State x = model.reference_state();
   for (double const t : {0.5, 1.0, 3.0}) {
     run_to(model, x, t);
@@ -61,7 +62,8 @@ TEST(Screw, LowersANutAtTheExactRate) {
 TEST(Screw, LowersANutByImplicitSteps) {
   Space model{Gravity{0, 0, -g}};
   auto const nut = model.add(Rigid<>(2.0, diagonal(0.1, 0.1, 0.05)), "nut");
-  model.connect(Ideal<Screw>{{.pitch = 0.1}, {}}, model.ground().at({0, 0, 0}), nut.at(Vec3(0, 0, 0)), "thread");
+  model.connect(Ideal<Screw>{{.pitch = 0.1, .axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
+                nut.at(Vec3(0, 0, 0)), "thread");
   State x = model.reference_state();
   simulate(model, x, GeneralizedAlpha{}, {.until = 3.0, .step = 0.01}).run();
   EXPECT_NEAR(position(model, x, nut.at(Vec3(0, 0, 0)))[2], -0.5 * g * 2.0 / 7.0 * 9.0, 1e-8);

@@ -146,7 +146,8 @@ TEST(RedundantJoint, IsNamedAndHarmless) {
   auto const swing = [](std::vector<char const*> const& pins, std::vector<std::string>& redundant) {
     Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
     auto const rod = model.add(Rigid<>(1.0, Vec3(0.1, 0.2, 0.2).asDiagonal().toDenseMatrix()), "rod");
-    for (char const* name : pins) model.connect(Pin{}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
+    for (char const* name : pins)
+      model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
     State x = model.reference_state();
     auto run = simulate(model, x, GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
     run.run();

@@ -30,9 +30,9 @@ struct LeeFrame {
   LeeFrame(Index n, double P)
       : column(model.add(Lrvf<>::from(leg(Placement::planar(0, 0, 0.5 * std::numbers::pi)), n), "column")),
         beam(model.add(Lrvf<>::from(leg(Placement::planar(0, 120)), n), "beam")) {
-    model.connect(Pin{}, model.ground().at({0, 0, 0}), column.at(0.0), "foot");
+    model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), column.at(0.0), "foot");
     model.connect(Corner{}, column.at(120.0), beam.at(0.0), "corner");
-    model.connect(Pin{}, model.ground().at({120, 120, 0}), beam.at(120.0), "support");
+    model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({120, 120, 0}), beam.at(120.0), "support");
     model.apply(PointForce<>{.force = {0, -P, 0}}, beam.at(24.0), "P");
   }
   /// GA for ν = 0.3, k = 5/6; what stands against torsion and bending out of the plane is any.

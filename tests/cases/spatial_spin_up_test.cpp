@@ -24,7 +24,7 @@ void spins_up(Index n, double part) {
   Model<Bodies<Rigid<>, Cable, Lrvf<>>, Joints<Pin, Fixed, spin_up::Drive>> model;  // one type for both bodies
   auto const arm = model.add(B::from(spin_up::arm(), n), "arm");
   auto const hub = model.add(Rigid<>(1.0, Mat3::Identity()), "hub").at(Vec3(0, 0, 0));
-  model.connect(Pin{}, model.ground().at({0, 0, 0}), hub, "axle");
+  model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), hub, "axle");
   model.connect(spin_up::drive(), model.ground().at({0, 0, 0}), hub, "drive");
   if constexpr (B::observes == Observes::frame) {
     model.connect(Fixed{}, hub, arm.at(0.0), "clamp");

@@ -33,7 +33,8 @@ struct Ring {
                                 "link " + std::to_string(i + 1)));
     }
     for (int i = 0; i < n; ++i)
-      pins.push_back(model.connect(Pin{{}, policy}, links[std::size_t(i)].at(Vec3(0.5 * length, 0, 0)),
+      pins.push_back(model.connect(Pin{{.axis = Vec3::UnitZ()}, policy},
+                                   links[std::size_t(i)].at(Vec3(0.5 * length, 0, 0)),
                                    links[std::size_t((i + 1) % n)].at(Vec3(-0.5 * length, 0, 0))));
   }
   /// Spinning, links moved outward so that every joint opens by `gap`: two ends by `gap`/(2 sin π/N) each.

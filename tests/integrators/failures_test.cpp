@@ -101,7 +101,7 @@ TEST(Failures, DoubledJointIsNamed) {
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
   auto const rod = model.add(Rigid<>(1.0, Vec3(0.1, 0.2, 0.2).asDiagonal().toDenseMatrix()), "rod");
   for (char const* name : {"pin", "pin again"})
-    model.connect(Pin{}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
+    model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
   State x = model.reference_state();
   auto const expect_named = [&](auto&& act) {
     std::string const message = message_of<LinearSolverSingular>(act);

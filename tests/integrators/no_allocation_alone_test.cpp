@@ -133,9 +133,10 @@ struct BushedBodies {
     auto const first = bodies.add(ball, "first"), second = bodies.add(ball, "second");
     TabulatedLaw const table{MonotoneTable{{{-1.0, -2e3}, {0.0, 0.0}, {0.1, 100.0}}}, 1.0};
     LinearLaw const law{.stiffness = 1e4, .damping = 1.0};
-    bodies.connect(Mount{{}, {table, law, law, law, law, law}}, bodies.ground().at({0, 0, 0}), first.at(Vec3(0, 0, 0)),
-                   "mount");
-    bodies.connect(Pin{{}, {.stiffness = 1e4 * Bushing::Matrix::Identity(), .damping = Bushing::Matrix::Identity()}},
+    bodies.connect(Mount{{.axis = Vec3::UnitZ()}, {table, law, law, law, law, law}}, bodies.ground().at({0, 0, 0}),
+                   first.at(Vec3(0, 0, 0)), "mount");
+    bodies.connect(Pin{{.axis = Vec3::UnitZ()},
+                       {.stiffness = 1e4 * Bushing::Matrix::Identity(), .damping = Bushing::Matrix::Identity()}},
                    first.at(Vec3(1, 0, 0)), second.at(Vec3(1, 0.01, 0)), "pin");
   }
   auto const& model() const { return bodies; }
@@ -174,7 +175,7 @@ struct HungFrame {
         .constants = BarConstants{.EA = 1e5, .EI = 50, .mass_per_length = 1.0, .GJ = 40, .rotary_inertia = 1e-3}};
     Structure const s = structure_of(bar, 4);
     auto const body = frame.add(Ffr(s, held_modes(s, 6), {.stiffening = true}), "frame");
-    frame.connect(Pin{}, frame.ground().at({0, 0, 0}), body.at(0.0), "pin");
+    frame.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, frame.ground().at({0, 0, 0}), body.at(0.0), "pin");
   }
   auto const& model() const { return frame; }
 };

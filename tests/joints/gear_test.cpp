@@ -92,12 +92,14 @@ TEST(Gear, RefusesTeethAndAxesThatCannotBeMeant) {
   for (auto const& [a, b] : {std::pair{20, -20}, {20, -10}, {-10, 20}})
     EXPECT_TRUE(has(said(a, b), "\"pair\": a ring gear must have"));
   EXPECT_NO_THROW((Gear{.teeth_a = -50, .teeth_b = 20}.check("\"pair\"")));
-  EXPECT_TRUE(has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .centres = {0, 0, 1}}.triad(); }),
-                  "Gear: the two axes must be perpendicular"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .axis = {0, 0, 1}, .centres = {0, 0, 1}}.triad(); }),
+          "Gear: the two axes must be perpendicular"));
   EXPECT_TRUE(has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .axis = {0, 0, 2}}.triad(); }),
                   "Gear: the axis must be"));
-  EXPECT_TRUE(has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .centres = {0, 2, 0}}.triad(); }),
-                  "Gear: the line of centres must be a unit vector"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .axis = {0, 0, 1}, .centres = {0, 2, 0}}.triad(); }),
+          "Gear: the line of centres must be a unit vector"));
 }
 
 }  // namespace gear_test

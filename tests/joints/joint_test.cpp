@@ -13,7 +13,7 @@ TEST(Joint, IsAGeometryAndAPolicy) {
   using Soft = Joint<Revolute, Penalty>;
   static_assert(std::is_same_v<Soft::Geometry, Revolute> && std::is_same_v<Soft::PolicyType, Penalty>);
   Soft const soft{Revolute{.axis = {0, 1, 0}}, Penalty{.stiffness = 5.0, .damping = 0.1}};
-  EXPECT_EQ(soft.geometry.axis, Vec3(0, 1, 0));
+  EXPECT_EQ(Vec3(soft.geometry.axis), Vec3(0, 1, 0));
   EXPECT_EQ(double(soft.policy.stiffness), 5.0);
 }
 
@@ -24,7 +24,7 @@ TEST(Joint, HasTheRowsOfItsGeometryUnderEveryPolicy) {
 
 TEST(Joint, NeedsNoNumbersUnlessItsPolicyDoes) {
   Joint<Revolute, Constraint> const pin{};
-  EXPECT_EQ(pin.geometry.axis, Vec3(0, 0, 1));
+  EXPECT_FALSE(pin.geometry.axis.given());
   static_assert(std::is_default_constructible_v<Joint<Revolute, Constraint>>);
 }
 

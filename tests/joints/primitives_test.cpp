@@ -165,7 +165,7 @@ TEST(Primitives, MakeUpALineOfTwoPlanesAndAnOrientationOfThreeRightAngles) {
 }
 
 TEST(Primitives, RefuseAxesThatCannotBeMeant) {
-  EXPECT_TRUE(has(refusal([] { (void)PerpendicularAxes{.first = {0, 1, 0}}.triad(); }),
+  EXPECT_TRUE(has(refusal([] { (void)PerpendicularAxes{.first = {0, 1, 0}, .second = {0, 1, 0}}.triad(); }),
                   "PerpendicularAxes: the two axes must be perpendicular"));
   EXPECT_TRUE(
       has(refusal([] { (void)ParallelAxes{.axis = {0, 2, 0}}.triad(); }), "ParallelAxes: the axis must be a unit"));

@@ -59,10 +59,12 @@ TEST(RackAndPinion, RefusesWhatCannotRoll) {
   for (double const r : {0.0, double(NAN), HUGE_VAL})
     EXPECT_TRUE(
         has(refusal([&] { RackAndPinion{.radius = r}.check("\"rack\""); }), "\"rack\": the radius must be finite"));
-  EXPECT_TRUE(has(refusal([] { (void)RackAndPinion{.radius = 1.0, .direction = {0, 0, 1}}.triad(); }),
-                  "RackAndPinion: the two axes must be perpendicular"));
-  EXPECT_TRUE(has(refusal([] { (void)RackAndPinion{.radius = 1.0, .direction = {2, 0, 0}}.triad(); }),
-                  "RackAndPinion: the direction must be a unit vector"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)RackAndPinion{.radius = 1.0, .axis = {0, 0, 1}, .direction = {0, 0, 1}}.triad(); }),
+          "RackAndPinion: the two axes must be perpendicular"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)RackAndPinion{.radius = 1.0, .axis = {0, 0, 1}, .direction = {2, 0, 0}}.triad(); }),
+          "RackAndPinion: the direction must be a unit vector"));
 }
 
 }  // namespace rack_and_pinion_test

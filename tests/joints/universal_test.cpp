@@ -27,8 +27,8 @@ struct UniversalCase {
 TEST(Universal, TakesBothArmsOfTheCross) {
   Universal const joint{.first = {0.6, 0.8, 0}, .second = {0, 0, -1}};
   Mat3 const e = joint.triad();
-  EXPECT_EQ(e.col(0), joint.first);
-  EXPECT_EQ(e.col(2), joint.second);
+  EXPECT_EQ(e.col(0), Vec3(joint.first));
+  EXPECT_EQ(e.col(2), Vec3(joint.second));
   EXPECT_LT((e.transpose() * e - Mat3::Identity()).norm(), 1e-15);
   EXPECT_GT(e.determinant(), 0.0);
 }
@@ -42,10 +42,10 @@ TEST(Universal, FourthRowIsTheCosineBetweenTheArms) {
 TEST(Universal, RefusesArmsThatMakeNoCross) {
   EXPECT_TRUE(has(refusal([] { (void)Universal{.first = {1, 0, 0}, .second = {0.6, 0.8, 0}}.triad(); }),
                   "Universal: the two axes must be perpendicular"));
-  EXPECT_TRUE(
-      has(refusal([] { (void)Universal{.first = {2, 0, 0}}.triad(); }), "Universal: the first axis must be a unit"));
-  EXPECT_TRUE(
-      has(refusal([] { (void)Universal{.second = {0, 0, 0}}.triad(); }), "Universal: the second axis must be a unit"));
+  EXPECT_TRUE(has(refusal([] { (void)Universal{.first = {2, 0, 0}, .second = {0, 1, 0}}.triad(); }),
+                  "Universal: the first axis must be a unit"));
+  EXPECT_TRUE(has(refusal([] { (void)Universal{.first = {1, 0, 0}, .second = {0, 0, 0}}.triad(); }),
+                  "Universal: the second axis must be a unit"));
 }
 
 }  // namespace universal_test

@@ -42,13 +42,13 @@ struct Column {
                       "column")) {
     auto const foot = model.ground().at({0, 0, 0}), head = model.ground().at({1, 0, 0});
     if (ends == Ends::pinned_pinned)
-      model.connect(Pin{}, foot, bar.at(0.0), "pin");
+      model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, foot, bar.at(0.0), "pin");
     else
       model.connect(Clamp{}, foot, bar.at(0.0), "clamp");
     if (ends == Ends::clamped_clamped)
-      model.connect(Guide{}, head, bar.at(1.0), "guide");
+      model.connect(Guide{{.axis = Vec3::UnitX()}, {}}, head, bar.at(1.0), "guide");
     else if (ends != Ends::clamped_free)
-      model.connect(Slide{}, head, bar.at(1.0), "slide");
+      model.connect(Slide{{.axis = Vec3::UnitX()}, {}}, head, bar.at(1.0), "slide");
     model.apply(PointForce<>{.force = force}, bar.at(1.0));
     x = model.reference_state();
   }

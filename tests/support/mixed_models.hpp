@@ -76,8 +76,8 @@ struct MixedBushings {
     MonotoneTable const table{{{-1.0, -30.0}, {-0.3, -20.0}, {0.4, 10.0}, {1.5, 40.0}}};
     LinearLaw const law{.stiffness = 25.0, .damping = 0.1 * damping};
     TabulatedLaw const tabled{table, damping};
-    model.connect(Slide{{}, {tabled, law, law, law, law, tabled}}, b.at(Vec3(0.4, 0, 0)), model.ground().at({1, 1, 0}),
-                  "slide");
+    model.connect(Slide{{.axis = Vec3::UnitX()}, {tabled, law, law, law, law, tabled}}, b.at(Vec3(0.4, 0, 0)),
+                  model.ground().at({1, 1, 0}), "slide");
     return model;
   }
 };

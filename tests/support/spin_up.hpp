@@ -14,7 +14,7 @@ namespace polybody {
 namespace spin_up {
 
 using Drive = Joint<PrescribedAngle<SpinUp>, Constraint>;
-inline Drive drive() { return {{{.speed = 6.0, .duration = 15.0}}, {}}; }
+inline Drive drive() { return {{{.speed = 6.0, .duration = 15.0}, Vec3::UnitZ()}, {}}; }
 
 /// D2's constants; EI_y and GJ are any: nothing leaves the plane.
 inline Bar arm() {

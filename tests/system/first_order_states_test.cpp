@@ -207,7 +207,7 @@ struct Slide {
   ElementHandle<Servo> servo;
   Slide() {
     auto const body = model.add(Rigid<>(mass, Mat3::Identity()), "mass");
-    model.connect(Guide{}, model.ground().at({0, 0, 0}), body.at(Vec3(0, 0, 0)), "guide");
+    model.connect(Guide{{.axis = Vec3::UnitX()}, {}}, model.ground().at({0, 0, 0}), body.at(Vec3(0, 0, 0)), "guide");
     servo = model.apply(Servo{}, model.ground().at({0, 0, 0}), body.at(Vec3(0, 0, 0)), "servo");
   }
 };

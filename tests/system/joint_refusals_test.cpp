@@ -74,5 +74,81 @@ TEST(RefusedJoint, HasATableThatGoesBack) {
                   "\"elbow\": the times must increase, but point 3 at t = 0.2 s follows one at 0.2 s."));
 }
 
+template <class G>
+using Ideal = Joint<G, Constraint>;
+using Motor = PrescribedAngle<Ramp>;
+using Ramming = PrescribedSlide<Ramp>;
+Ramp const ramp{.target = 1.0, .duration = 1.0};
+
+/// A rigid body beside the ground, and what joins them.
+template <class B, class... Gs>
+struct Joined {
+  using Place = std::conditional_t<B::world == World::plane, Vec2, Vec3>;
+  Model<Bodies<B>, Joints<Ideal<Gs>...>> model;
+  BodyHandle<B> body;
+  explicit Joined(B const& b) : body(model.add(b, "body")) {}
+  /// What `connect` says; nothing where it takes the joint.
+  template <class G>
+  std::string operator()(G const& geometry, std::string const& name) {
+    Index const before = model.rows() + model.markers();
+    std::string said;
+    try {
+      model.connect(Ideal<G>{geometry, {}}, model.ground().at({0, 0, 0}), body.at(Place(Place::Zero())), name);
+    } catch (InvalidInput const& error) {
+      said = error.what();
+    }
+    if (!said.empty()) {
+      EXPECT_EQ(model.rows() + model.markers(), before);
+    }
+    return said;
+  }
+};
+
+TEST(RefusedJoint, LeavesItsAxisOut) {
+  Joined<Rigid<>, Revolute, Cylindrical, Prismatic, Screw, PointOnLine, PointInPlane, PlaneOnPlane, ParallelAxes,
+         Universal, RelativeCoordinates, Gear, Motor, Ramming>
+      space(Rigid<>(1.0, Mat3::Identity()));
+  std::string const hint =
+      "is not given. It has no default: give it as a unit vector, world axes at the reference "
+      "configuration, such as {0, 0, 1}.";
+  EXPECT_EQ(space(Revolute{}, "pin"), "\"pin\": Revolute: the axis " + hint);
+  EXPECT_EQ(space(Motor{.law = ramp}, "drive"), "\"drive\": PrescribedAngle: the axis " + hint);
+  EXPECT_EQ(space(Ramming{.law = ramp}, "ram"), "\"ram\": PrescribedSlide: the axis " + hint);
+  EXPECT_EQ(space(PointInPlane{}, "foot"), "\"foot\": PointInPlane: the normal " + hint);
+  EXPECT_EQ(space(Universal{.first = {1, 0, 0}}, "cross"), "\"cross\": Universal: the second axis " + hint);
+  for (std::string const& said :
+       {space(Cylindrical{}, "it"), space(Prismatic{}, "it"), space(Screw{.pitch = 0.1}, "it"),
+        space(PointOnLine{}, "it"), space(PlaneOnPlane{}, "it"), space(ParallelAxes{}, "it"),
+        space(RelativeCoordinates{}, "it"), space(Gear{.teeth_a = 1, .teeth_b = 1}, "it")})
+    EXPECT_TRUE(has(said, hint)) << said;
+}
+
+// In the plane a turn is about the normal; a direction within it is asked for.
+TEST(RefusedJoint, NeedsNoAxisOfATurnInThePlane) {
+  Joined<planar::Rigid, Motor, RelativeCoordinates, Ramming, PointInPlane> plane(planar::Rigid(1.0, 1.0));
+  EXPECT_EQ(plane(Motor{.law = ramp}, "drive"), "");
+  EXPECT_EQ(plane(RelativeCoordinates{}, "mount"), "");
+  EXPECT_TRUE(has(plane(Ramming{.law = ramp}, "ram"), "PrescribedSlide: the axis is not given"));
+  EXPECT_TRUE(has(plane(PointInPlane{}, "foot"), "PointInPlane: the normal is not given"));
+}
+
+TEST(RefusedJoint, DrivesATurnThatItsPinDoesNotLeave) {
+  using Space = Joined<Rigid<>, Revolute, Spherical, Motor>;
+  std::string const why =
+      "\"drive\" drives a turn about (0, 0, 1), but \"pin\" leaves these bodies a turn about (0, 1, 0) alone (world "
+      "axes "
+      "at the reference configuration). Give the drive the axis of the pin.";
+  Revolute const pin{.axis = {0, 1, 0}};
+  Motor const across{.law = ramp, .axis = {0, 0, 1}}, along{.law = ramp, .axis = {0, -1, 0}};
+  Space pin_first(Rigid<>(1.0, Mat3::Identity())), drive_first = pin_first, ball = pin_first;
+  EXPECT_EQ(pin_first(pin, "pin"), "");
+  EXPECT_EQ(pin_first(across, "drive"), why);
+  EXPECT_EQ(pin_first(along, "drive"), "");
+  EXPECT_EQ(drive_first(across, "drive"), "");
+  EXPECT_EQ(drive_first(pin, "pin"), why);
+  EXPECT_EQ(ball(Spherical{}, "ball"), "");
+  EXPECT_EQ(ball(across, "drive"), "");
+}
+
 }  // namespace joint_refusals_test
 }  // namespace polybody

@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include <polybody/joints/angle.hpp>
+#include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
@@ -18,12 +19,12 @@ struct Gear {
 
   Required<int> teeth_a;         ///< N_a
   Required<int> teeth_b;         ///< N_b; of an internal (ring) gear the number is negative
-  Vec3 axis = Vec3::UnitZ();     ///< (3) unit vector of both wheels' axes, world axes at the reference configuration
+  TurnAxis axis = {};            ///< (3) unit vector of both wheels' axes, world axes at the reference configuration
   Vec3 centres = Vec3::UnitX();  ///< (3) unit vector from a's centre to b's there, perpendicular to it
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    require_unit(axis, "Gear: the axis");
+    require_unit(axis.told("Gear: the axis"), "Gear: the axis");
     require_unit(centres, "Gear: the line of centres");
     return polybody::rows::triad_of(centres, axis, "Gear");
   }

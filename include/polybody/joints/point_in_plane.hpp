@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
@@ -14,7 +14,7 @@ struct PointInPlane {
   static constexpr World world = World::both;
   static constexpr Freedoms free = {true, true, false, true, true, true};
 
-  Vec3 normal = Vec3::UnitY();  ///< (3) unit vector, world axes at the reference configuration
+  JointAxis normal = {};  ///< (3) unit vector, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
@@ -13,7 +13,7 @@ struct PointOnLine {
   static constexpr World world = World::space;
   static constexpr Freedoms free = {false, false, true, true, true, true};
 
-  Vec3 axis = Vec3::UnitX();  ///< (3) unit vector of the line, world axes at the reference configuration
+  JointAxis axis = {};  ///< (3) unit vector of the line, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

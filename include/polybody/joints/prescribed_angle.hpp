@@ -3,6 +3,7 @@
 /// A relative angle prescribed as a function of time, in the plane and in space.
 
 #include <polybody/joints/angle.hpp>
+#include <polybody/joints/joint_axis.hpp>
 #include <polybody/math/time_laws.hpp>
 
 namespace polybody {
@@ -18,8 +19,8 @@ struct PrescribedAngle {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
 
-  Law law;                    ///< angle [rad], rate and acceleration as functions of time [s]
-  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
+  Law law;             ///< angle [rad], rate and acceleration as functions of time [s]
+  TurnAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

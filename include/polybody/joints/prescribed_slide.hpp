@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/joint_axis.hpp>
 #include <polybody/math/time_laws.hpp>
 
 namespace polybody {
@@ -15,8 +15,8 @@ struct PrescribedSlide {
   static constexpr Observes needs_of_second = Observes::point;
   static constexpr World world = World::both;
 
-  Law law;                    ///< slide s [m], rate and acceleration as functions of time [s]
-  Vec3 axis = Vec3::UnitX();  ///< (3) unit vector, world axes at the reference configuration
+  Law law;              ///< slide s [m], rate and acceleration as functions of time [s]
+  JointAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

@@ -26,12 +26,13 @@ struct PerpendicularAxes {
   static constexpr Observes needs_of_second = Observes::axis;
   static constexpr World world = World::space;
 
-  Vec3 first = Vec3::UnitX();   ///< (3) unit vector a₁, world axes at the reference configuration
-  Vec3 second = Vec3::UnitY();  ///< (3) unit vector b₃, perpendicular to it
+  JointAxis first = {};   ///< (3) unit vector a₁, world axes at the reference configuration
+  JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to it
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_of(first, second, "PerpendicularAxes");
+    return polybody::rows::triad_of(first.told("PerpendicularAxes: the first axis"),
+                                    second.told("PerpendicularAxes: the second axis"), "PerpendicularAxes");
   }
 
   template <StateScalar T>
@@ -62,7 +63,7 @@ struct ParallelAxes {
   static constexpr World world = World::space;
   static constexpr Freedoms free = {true, true, true, false, false, true};
 
-  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
+  JointAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

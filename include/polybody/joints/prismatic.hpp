@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
@@ -12,7 +12,7 @@ struct Prismatic {
   static constexpr World world = World::space;
   static constexpr Freedoms free = {false, false, true};
 
-  Vec3 axis = Vec3::UnitX();  ///< (3) unit vector of the slide, world axes at the reference configuration
+  JointAxis axis = {};  ///< (3) unit vector of the slide, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

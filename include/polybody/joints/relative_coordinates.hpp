@@ -2,7 +2,7 @@
 /// \file
 /// Six coordinates of one frame against another, good for any slide and turn: what a bushing measures.
 
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
@@ -20,7 +20,7 @@ struct RelativeCoordinates {
   static constexpr World world = World::both;
   static constexpr Freedoms free = {};
 
-  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the third axis, world axes at the reference configuration
+  TurnAxis axis = {};  ///< (3) unit vector of the third axis, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
@@ -15,7 +15,7 @@ struct RevolutePin {
   static constexpr World world = World::space;
 
   Required<double> distance;  ///< L [m]
-  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector of the pin, world axes at the reference configuration
+  JointAxis axis = {};        ///< (3) unit vector of the pin, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

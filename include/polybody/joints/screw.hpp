@@ -13,8 +13,8 @@ struct Screw {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::space;
 
-  Required<double> pitch;     ///< p, slide for each radian [m/rad], the lead over 2π; negative for a left-handed thread
-  Vec3 axis = Vec3::UnitZ();  ///< (3) unit vector, world axes at the reference configuration
+  Required<double> pitch;  ///< p, slide for each radian [m/rad], the lead over 2π; negative for a left-handed thread
+  JointAxis axis = {};     ///< (3) unit vector, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

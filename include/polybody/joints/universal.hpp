@@ -1,6 +1,6 @@
 #pragma once
+#include <polybody/joints/joint_axis.hpp>
 #include <polybody/joints/joint_motion.hpp>
-#include <polybody/joints/rows.hpp>
 
 namespace polybody {
 
@@ -14,12 +14,13 @@ struct Universal {
   static constexpr Observes needs_of_second = Observes::axis;
   static constexpr World world = World::space;
 
-  Vec3 first = Vec3::UnitX();   ///< (3) unit vector a₁, world axes at the reference configuration
-  Vec3 second = Vec3::UnitY();  ///< (3) unit vector b₃, perpendicular to it
+  JointAxis first = {};   ///< (3) unit vector a₁, world axes at the reference configuration
+  JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to it
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_of(first, second, "Universal");
+    return polybody::rows::triad_of(first.told("Universal: the first axis"), second.told("Universal: the second axis"),
+                                    "Universal");
   }
   /// About a₁, then about b₃.
   JointMotions motions() const {

@@ -9,6 +9,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/system/body_kernels.hpp>
 #include <polybody/system/composition.hpp>
+#include <polybody/system/drive_axes.hpp>
 #include <polybody/system/linear_rows.hpp>
 #include <polybody/system/markers.hpp>
 #include <polybody/system/names.hpp>
@@ -29,6 +30,7 @@ struct ModelParts {
   std::vector<LinearRows> linear_rows = {};
   std::vector<Index> velocity_rows = {};
   Names body_names = {}, joint_names = {}, force_names = {};
+  DriveAxes drive_axes = {};
   Index coordinates = 0, speeds = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
 
   /// \throws InvalidInput when `model` is the serial number of another one.
@@ -55,6 +57,15 @@ Mat3 reference_axes(PooledMarker<B> const& m) {
     return m.marker.point.axes;
   else
     return BodyKernels<B, double>::reference_axes(m.pool, m.marker);
+}
+
+/// Where the speeds of a rigid body begin; −1 of the ground.
+template <class B>
+Index first_speed(PooledMarker<B> const& m) {
+  if constexpr (std::is_same_v<B, Ground>)
+    return -1;
+  else
+    return m.pool.entries[std::size_t(m.marker.body)].v0;
 }
 
 /// The number of the published marker that stands at m with these axes.
@@ -109,7 +120,7 @@ ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, 
   parts.require_own(a.marker.model, name);
   parts.require_own(b.marker.model, name);
   require_apart(a.marker, b.marker, name);
-  Mat3 const triad = checked_triad(joint, name);
+  Mat3 const triad = checked_triad<(A::world == World::plane || B::world == World::plane)>(joint, name);
   Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
   if constexpr (!LinearInCoordinates<P> && B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)
     require_along_tangent(axes_b, triad, name);
@@ -122,6 +133,10 @@ ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, 
                         rows);
     parts.linear_rows.push_back(std::move(rows));
   }
+  if constexpr (AddsRows<P> && A::world != World::plane && B::world != World::plane &&
+                (LeavesOneTurn<G> || DrivesTurn<G>))
+    if constexpr ((HasRigidLayout<A> || std::is_same_v<A, Ground>) && (HasRigidLayout<B> || std::is_same_v<B, Ground>))
+      parts.drive_axes.add(DrivesTurn<G>, {first_speed(a), first_speed(b)}, triad.col(2), name);
   Index const pa = publish_at(parts, a, transposed_product(axes_a, triad));
   Index const pb = publish_at(parts, b, transposed_product(axes_b, triad));
   JointEntry<J> entry{joint, pa, pb, -1, name};

@@ -13,13 +13,20 @@ inline std::string name_or_next(std::string name, char const* kind, std::size_t 
   return name.empty() ? kind + (" " + std::to_string(before + 1)) : std::move(name);
 }
 
-/// The joint's axes as parameters tell, after all of them are checked. \throws InvalidInput naming the joint.
-template <class J>
+/// The joint's axes as parameters tell, after all of them are checked. In the plane an axis that serves both worlds is
+/// its normal. \throws InvalidInput naming the joint.
+template <bool in_plane, class J>
 Mat3 checked_triad(J const& joint, std::string const& name) {
   std::string const quoted = "\"" + name + "\"";
   if constexpr (requires { joint.geometry.check(name); }) joint.geometry.check(quoted);
   if constexpr (AddsForce<typename J::PolicyType>) joint.policy.check(quoted);
   try {
+    if constexpr (in_plane && HasTurnAxis<typename J::Geometry>)
+      if (!joint.geometry.axis.given()) {
+        typename J::Geometry told = joint.geometry;
+        told.axis = Vec3(0.0, 0.0, 1.0);
+        return told.triad();
+      }
     return joint.geometry.triad();
   } catch (InvalidInput const& e) {
     throw InvalidInput(quoted + ": " + e.what());

@@ -126,7 +126,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return map_of(p, alpha + 1);
   }
 
-  /// The marker is the material point; its axes are those of the section on the axis there (`SectionFrame` of r_y and
+  /// The marker is the material point; its axes are those of the section on the axis there (`Elastic::frame` of r_y and
   /// r_z). Off the axis it follows r(x, y, z), also where the section stretches.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
@@ -145,7 +145,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
         }
       }
     }
-    SectionFrame<T> const f(r[1], r[2]);
+    auto const f = frame_of<T>(r[1], r[2]);
     Vec<T, 6> const w = f.components(rate[1], rate[2]);
     out.frame.r = r[0];
     out.frame.v = rate[0];
@@ -153,7 +153,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     out.frame.w = f.world(f.spin(w));
     out.bias.template head<3>().setZero();
     out.bias.template tail<3>() = f.world(f.acceleration(w));
-    Mat<T, 3, 6> const turn = turning(f);
+    Mat<T, 3, 6> const turn = turning<T>(f);
     Eigen::Map<Mat<T, 6, element_columns>> j(out.jacobian);
     j.setZero();
     for (int a = 0; a < ancf::vectors; ++a)
@@ -171,7 +171,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 24, 24>& k) const {
     PointMap const by = map_of(p, 2), bz = map_of(p, 3);
     Element<T> const x = this->of_element(p.element, q);
-    SectionFrame<T> const f(by * x, bz * x);
+    auto const f = frame_of<T>(by * x, bz * x);
     Vec<T, 3> const m = f.local(w.m);
     Mat<T, 6, 6> form = f.second(m), by_vectors = Mat<T, 6, 6>::Zero();
     for (int i = 0; i < 3; ++i) {  // φ·(m × φ̂)
@@ -186,16 +186,20 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
         k.template block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
-  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame of the section (see sections.hpp).
+  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the markers' axes (see sections.hpp).
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
-    Vec3 const stretch = strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
-               bend = strains<std::tuple_element_t<1, ElasticLine::Groups>>(p, q);
-    Vec6 x;
-    for (int i = 0; i < 3; ++i) {
-      x[i] = stretch[i];
-      x[3 + i] = bend[i];
+    if constexpr (std::same_as<Elastic, ElasticLine>) {
+      Vec3 const stretch = strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
+                 bend = strains<std::tuple_element_t<1, ElasticLine::Groups>>(p, q);
+      Vec6 x;
+      for (int i = 0; i < 3; ++i) {
+        x[i] = stretch[i];
+        x[3 + i] = bend[i];
+      }
+      return x;
+    } else {
+      return Elastic::section_strains(constants_, deformation(p, q), p.xi);
     }
-    return x;
   }
   /// Forces of the section without damping: stiffness times strain of `ElasticLine`, integrals of the stress of
   /// `Continuum`.
@@ -293,6 +297,10 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return Group::strains(p.xi, l_, this->of_element(p.element, q)) -
            Group::strains(p.xi, l_, reference_of(p.element).x);
   }
+  template <class T>
+  auto frame_of(Vec<T, 3> const& ry, Vec<T, 3> const& rz) const {
+    return Elastic::template frame<T>(ry, rz, constants_);
+  }
 
   template <KernelScalar T>
   static void times_mass(Inertia const& inertia, Element<T> const& a, Element<T>& out) {
@@ -310,8 +318,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return map;
   }
   /// ω in world axes by the rates of (r_y, r_z), 3×6.
-  template <class T>
-  static Mat<T, 3, 6> turning(SectionFrame<T> const& f) {
+  template <class T, class SectionOf>
+  static Mat<T, 3, 6> turning(SectionOf const& f) {
     Mat<T, 3, 6> local, turn;
     for (int k = 0; k < 3; ++k) f.to_vectors(f.pull(f.axis(k)), k, 0, local);
     for (int j = 0; j < 6; ++j)

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include <polybody/bodies/ancf/ancf_field.hpp>
+#include <polybody/bodies/ancf/mean_section_frame.hpp>
 #include <polybody/bodies/shared/strain_group.hpp>
 
 namespace polybody {
@@ -246,18 +247,39 @@ struct Continuum {
     return s;
   }
 
+  /// The share of torsion that r_y carries, p. Sections that turn by α (r_y) and β (r_z) have 2E₁₂ = −z β′, 2E₁₃ = y α′
+  /// and 2E₂₃ = α − β, hence two torsional stiffnesses, D_y = GA_z y² for α and D_z = GA z² for β, tied by GA. Under a
+  /// torque both turn alike in the bar, and r_y carries p = D_y/(D_y + D_z). A joint or a moment at an end that shares
+  /// its torque otherwise, p̂, is evened out by 2E₂₃ over ℓ² = D_y D_z/((D_y + D_z) GA), and there the marker turns by
+  /// (p̂ − p)² ℓ/(p (1 − p)) T/GJ more.
+  static double share(BarConstants const& c) {
+    double const y = c.EI * (cured ? c.GA_z.value() : 1.0), z = c.EI_y.value() * (cured ? c.GA : 1.0);
+    return y / (y + z);
+  }
+  /// The frame of a section with r_y = b, r_z = c that markers follow: the mean by these shares.
+  template <KernelScalar T>
+  static MeanSectionFrame<T> frame(Vec<T, 3> const& b, Vec<T, 3> const& c, BarConstants const& bar) {
+    return {b, c, share(bar)};
+  }
+
+  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame that markers follow.
+  template <class T = double>  // compiled where it is used
+  static Vec6 section_strains(BarConstants const& c, ancf::Deformation const& field, double xi) {
+    Vec6 const now = stretch_and_bend<T>(c, field.e, field.reference.l, xi),
+               then = stretch_and_bend<T>(c, field.reference.x, field.reference.l, xi);
+    Vec6 x;
+    for (int i = 0; i < 6; ++i) x[i] = now[i] - then[i];
+    return x;
+  }
+
   /// With the traction t = F S e₁ on the section, in the axes of the deformed one,
   ///   N = ∫ Rᵀt dA,  M = ∫ Rᵀ(r − r₀) × Rᵀt dA,
   /// over the points that the energy uses: normal stress at the four of the section, shear stress at those that twist
   /// meets GJ with.
   template <class T = double>  // compiled where it is used
   static Vec6 section_forces(Bar const& bar, BarConstants const& c, ancf::Deformation const& field, double xi) {
-    Vec<T, 3> by, bz;  // r_y, r_z
-    for (int i = 0; i < 3; ++i) {
-      by[i] = (1.0 - xi) * field.e[6 + i] + xi * field.e[18 + i];
-      bz[i] = (1.0 - xi) * field.e[9 + i] + xi * field.e[21 + i];
-    }
-    SectionFrame<T> const frame(by, bz);
+    Vec<T, 3> const by = director<T>(field.e, 2, xi), bz = director<T>(field.e, 3, xi);
+    MeanSectionFrame<T> const frame = Continuum::frame<T>(by, bz, c);
     double const area = c.EA / bar.material->young, lever = Continuum::lever(c);
     ancf::SectionPoints const section{std::sqrt(c.EI / c.EA), std::sqrt(c.EI_y.value() / c.EA)};
     Mat<T, 3, 3> const axis = field.strain(xi, 0.0, 0.0);
@@ -283,6 +305,27 @@ struct Continuum {
       lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
     }
   };
+  /// (Rᵀ r_x, axial(Rᵀ R_x)) on the axis.
+  template <class T>  // compiled where it is used
+  static Vec<T, 6> stretch_and_bend(BarConstants const& c, ancf::Coordinates const& e, double l, double xi) {
+    Mat<double, ancf::vectors, 4> const n = ancf::shape(xi, 0.0, 0.0, l);
+    Vec<T, 3> along = detail::zeros<Vec<T, 3>>(), by, bz;  // r_x; the slopes of r_y, r_z
+    for (int i = 0; i < 3; ++i) {
+      for (int a = 0; a < ancf::vectors; ++a) along[i] += n(a, 1) * e[3 * a + i];
+      by[i] = (e[18 + i] - e[6 + i]) / l;
+      bz[i] = (e[21 + i] - e[9 + i]) / l;
+    }
+    MeanSectionFrame<T> const f = Continuum::frame<T>(director<T>(e, 2, xi), director<T>(e, 3, xi), c);
+    Vec<T, 3> const stretch = f.local(along), bend = f.spin(f.components(by, bz));
+    return {stretch[0], stretch[1], stretch[2], bend[0], bend[1], bend[2]};
+  }
+  /// r_y (v = 2) or r_z (v = 3).
+  template <class T>  // compiled where it is used
+  static Vec<T, 3> director(ancf::Coordinates const& e, int v, double xi) {
+    Vec<T, 3> d;
+    for (int i = 0; i < 3; ++i) d[i] = (1.0 - xi) * e[3 * v + i] + xi * e[12 + 3 * v + i];
+    return d;
+  }
   /// The strains of uniaxial stress.
   static Vec<double, 7> uniaxial(double e, double nu) {
     Vec<double, 7> strain = Vec<double, 7>::Zero();

@@ -194,9 +194,16 @@ struct ElasticLine {
             on_axis<typename Line::Section>(nodes, bar, c, ref, none)};
   }
 
+  /// The frame of a section with r_y = b, r_z = c that markers follow: that of Γ and K, so a joint or a moment does
+  /// work on the strains alone and the section keeps its shape.
+  template <KernelScalar T>
+  static SectionFrame<T> frame(Vec<T, 3> const& b, Vec<T, 3> const& c, BarConstants const&) {
+    return {b, c};
+  }
+
   /// Stiffness times the section's strains (Γ, K), and the pretension.
-  template <class Groups>  // compiled where it is used
-  static Vec6 section_forces(Bar const& bar, Groups const& groups, Vec6 const& strains) {
+  template <class Made>  // compiled where it is used
+  static Vec6 section_forces(Bar const& bar, Made const& groups, Vec6 const& strains) {
     Vec6 n = strains;
     for (int i = 0; i < 3; ++i) {
       n[i] *= std::get<0>(groups).stiffness()[i];

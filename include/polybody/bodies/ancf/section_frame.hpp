@@ -22,14 +22,40 @@
 
 namespace polybody {
 
+/// The axes of a section, and products with them.
 template <KernelScalar T>
-class SectionFrame {
+struct SectionAxes {
+  using V3 = Vec<T, 3>;
+
+  Mat<T, 3, 3> R;  ///< columns t₁, t₂, t₃
+
+  /// Rᵀx.
+  V3 local(V3 const& x) const {
+    V3 y;
+    for (int i = 0; i < 3; ++i) y[i] = R(0, i) * x[0] + R(1, i) * x[1] + R(2, i) * x[2];
+    return y;
+  }
+  /// R x.
+  V3 world(V3 const& x) const {
+    V3 y;
+    for (int i = 0; i < 3; ++i) y[i] = R(i, 0) * x[0] + R(i, 1) * x[1] + R(i, 2) * x[2];
+    return y;
+  }
+  static V3 axis(int k) { return V3(T(k == 0 ? 1.0 : 0.0), T(k == 1 ? 1.0 : 0.0), T(k == 2 ? 1.0 : 0.0)); }
+  static V3 cross(V3 const& a, V3 const& b) {
+    return V3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+  }
+  static T dot(V3 const& a, V3 const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+};
+
+template <KernelScalar T>
+class SectionFrame : public SectionAxes<T> {
  public:
   using V3 = Vec<T, 3>;
   using V6 = Vec<T, 6>;
   using M6 = Mat<T, 6, 6>;
-
-  Mat<T, 3, 3> R;  ///< columns t₁, t₂, t₃
+  using Axes = SectionAxes<T>;
+  using Axes::axis, Axes::cross, Axes::dot, Axes::local, Axes::R, Axes::world;
 
   SectionFrame(V3 const& b, V3 const& c) {
     using std::sqrt;
@@ -48,18 +74,6 @@ class SectionFrame {
     sigma_ = (R(0, 1) * c[0] + R(1, 1) * c[1] + R(2, 1) * c[2]) * ic_;
   }
 
-  /// Rᵀx.
-  V3 local(V3 const& x) const {
-    V3 y;
-    for (int i = 0; i < 3; ++i) y[i] = R(0, i) * x[0] + R(1, i) * x[1] + R(2, i) * x[2];
-    return y;
-  }
-  /// R x.
-  V3 world(V3 const& x) const {
-    V3 y;
-    for (int i = 0; i < 3; ++i) y[i] = R(i, 0) * x[0] + R(i, 1) * x[1] + R(i, 2) * x[2];
-    return y;
-  }
   /// w = (Rᵀdb/β, Rᵀdc/c₃).
   V6 components(V3 const& db, V3 const& dc) const {
     V3 const x = local(db), y = local(dc);
@@ -196,12 +210,6 @@ class SectionFrame {
           out(first_column + 3 * b + j, first_row + 3 * a + i) += x;
         });
   }
-
-  static V3 axis(int k) { return V3(T(k == 0 ? 1.0 : 0.0), T(k == 1 ? 1.0 : 0.0), T(k == 2 ? 1.0 : 0.0)); }
-  static V3 cross(V3 const& a, V3 const& b) {
-    return V3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
-  }
-  static T dot(V3 const& a, V3 const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
  private:
   /// Where forms may differ from zero.

@@ -1,0 +1,56 @@
+#pragma once
+/// \file
+/// The direction of a joint, which has no default: left out, the joint is refused as it is connected.
+
+#include <polybody/joints/rows.hpp>
+
+namespace polybody {
+
+/// A unit vector (3), world axes at the reference configuration. The joint's own axes, in which its rows are written,
+/// do not depend on it.
+class JointAxis {
+ public:
+  JointAxis() = default;                                                      ///< left out
+  JointAxis(Vec3 const& v) : value_(v), given_(true) {}                       // NOLINT: reads as a vector
+  JointAxis(double x, double y, double z) : value_(x, y, z), given_(true) {}  // NOLINT
+  template <class X>
+    requires std::is_class_v<X> && (!std::is_base_of_v<JointAxis, X>) && std::is_convertible_v<X const&, Vec3>
+  JointAxis(X const& x) : value_(x), given_(true) {}  // NOLINT: from an expression that makes a vector
+
+  bool given() const { return given_; }
+  operator Vec3 const&() const { return value_; }  // NOLINT
+  /// \throws InvalidInput where it was left out; `what` names joint and direction.
+  Vec3 const& told(std::string const& what) const {
+    if (!given_)
+      throw InvalidInput(what +
+                         " is not given. It has no default: give it as a unit vector, world axes at the reference "
+                         "configuration, such as {0, 0, 1}.");
+    return value_;
+  }
+
+ private:
+  Vec3 value_ = Vec3(0.0, 0.0, 1.0);
+  bool given_ = false;
+};
+
+/// The axis of a turn that serves the plane, too. There it is the plane's normal, which needs no telling.
+class TurnAxis : public JointAxis {
+ public:
+  using JointAxis::JointAxis;
+};
+
+/// A geometry that turns about one.
+template <class G>
+concept HasTurnAxis = requires(G g) {
+  { g.axis } -> std::same_as<TurnAxis&>;
+};
+
+namespace rows {
+
+template <class = void>  // compiled where it is used
+Mat3 triad_about(JointAxis const& axis, std::string const& what) {
+  return triad_about(axis.told(what), what);
+}
+
+}  // namespace rows
+}  // namespace polybody

@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// Whether drives turn about the axes of their pins.
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <polybody/joints/joint_axis.hpp>
+#include <polybody/joints/policies/policy.hpp>
+
+namespace polybody::detail {
+
+/// A geometry that leaves its bodies one turn, about its own axis.
+template <class G>
+concept LeavesOneTurn = NamesFreedoms<G> && !G::free[3] && !G::free[4] && G::free[5];
+/// A geometry that prescribes a turn.
+template <class G>
+concept DrivesTurn = HasTurnAxis<G> && requires(G g) { g.law; };
+
+/// Pins and drives between rigid bodies. What a pin holds turns about its axis alone, so a drive about another one
+/// contradicts it.
+class DriveAxes {
+ public:
+  /// \throws InvalidInput naming both joints where a drive's axis is not that of a pin between the same bodies.
+  template <class = void>  // compiled where it is used
+  void add(bool drives, std::pair<Index, Index> bodies, Vec3 const& axis, std::string const& name) {
+    if (bodies.first > bodies.second) std::swap(bodies.first, bodies.second);
+    for (Turn const& other : turns_[drives ? 0 : 1]) {
+      if (other.bodies != bodies || parallel(axis, other.axis)) continue;
+      Turn const mine{bodies, axis, name};
+      Turn const &drive = drives ? mine : other, &pin = drives ? other : mine;
+      throw InvalidInput("\"" + drive.name + "\" drives a turn about " + text(drive.axis) + ", but \"" + pin.name +
+                         "\" leaves these bodies a turn about " + text(pin.axis) +
+                         " alone (world axes at the reference configuration). Give the drive the axis of the pin.");
+    }
+    turns_[drives ? 1 : 0].push_back({bodies, axis, name});
+  }
+
+ private:
+  struct Turn {
+    std::pair<Index, Index> bodies;  ///< where their speeds begin; −1 is the ground
+    Vec3 axis;
+    std::string name;
+  };
+  static bool parallel(Vec3 const& a, Vec3 const& b) {
+    double off = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, k = (i + 2) % 3;
+      off += std::abs(a[j] * b[k] - a[k] * b[j]);
+    }
+    return off < 1e-6;
+  }
+  static std::string text(Vec3 const& x) {
+    return "(" + number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + ")";
+  }
+
+  std::array<std::vector<Turn>, 2> turns_;  ///< of pins, of drives
+};
+
+}  // namespace polybody::detail
