@@ -81,8 +81,10 @@ void expect_door(I const& integrator, double unit, double tolerance) {
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -g * unit}};
   Mat3 const inertia = (unit * unit * Vec3(0.3, 0.4, 0.5)).asDiagonal();
   auto const door = model.add(Rigid<>(m, inertia, Placement::at({d, 0, 0})), "door");
-  auto const top = model.connect(Pin{}, model.ground().at({0, 0, h}), door.at(Vec3(-d, 0, h)), "top");
-  auto const bottom = model.connect(Pin{}, model.ground().at({0, 0, -h}), door.at(Vec3(-d, 0, -h)), "bottom");
+  auto const top =
+      model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, h}), door.at(Vec3(-d, 0, h)), "top");
+  auto const bottom = model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, -h}),
+                                    door.at(Vec3(-d, 0, -h)), "bottom");
   State x = model.reference_state();
   model.set_velocity(x, door, Vec3::Zero(), {0, 0, omega});
   // The pins exert the moment −M = −m g d about the tangent: by forces ∓F along the radius, 2 h F, and moments N each,

@@ -598,8 +598,9 @@ struct Capstan {
 };
 
 // CASES C7. Beside the balance of the points as they stand there is their inertia, m v²/ℓ = 5e-5 N, and what points
-// that come and go shake. At 0.05 s none has; the belt has moved by 0.005 rad, and of what this does to the rule its
-// square is left, 2.5e-5.
+// that come and go shake. How long is chance: with the slack force changed ten times by 1e-9, nine tenths of the states
+// are within 1.4e-5 to 1.5e-2. At 0.05 s none has; the belt has moved by 0.005 rad, and of what this does to the rule
+// its square is left, 2.5e-5.
 TEST(Capstan, HoldsAsItsPointsBalanceAndTendsToTheExponential) {
   for (double const wrap : {0.5 * std::numbers::pi, std::numbers::pi}) {
     double const exponential = std::exp(Capstan::effective() * wrap);
@@ -617,7 +618,7 @@ TEST(Capstan, HoldsAsItsPointsBalanceAndTendsToTheExponential) {
       ASSERT_EQ(errors.size(), 1451u);
       std::sort(errors.begin(), errors.end());
       EXPECT_LT(errors[1451 / 2], 1e-5) << wrap << ' ' << links;
-      EXPECT_LT(errors[1451 * 9 / 10], 5e-3) << wrap << ' ' << links;
+      EXPECT_LT(errors[1451 * 9 / 10], 3e-2) << wrap << ' ' << links;
       EXPECT_NEAR(ratios[0] / std::pow(Capstan::rod_factor(wrap / links), links), 1.0, 2.5e-5) << wrap << ' ' << links;
       off.push_back(std::log(ratios[0] / exponential));
       // β (μ + μ³)φ²/12, and a little of the next order for φ = 45°

@@ -50,7 +50,7 @@ struct Branched {
     hang(J<Prismatic>{{.axis = Vec3::UnitX()}}, 0, 1);
     hang(J<Cylindrical>{{.axis = Vec3::UnitZ()}}, 1, 2);
     hang(J<Spherical>{}, 2, 3);
-    hang(J<Universal>{}, 1, 4);
+    hang(J<Universal>{{.first = Vec3::UnitX(), .second = Vec3::UnitY()}}, 1, 4);
     hang(J<Screw>{{.pitch = 0.2, .axis = Vec3::UnitX()}}, 4, 5);
     hang(J<PlaneOnPlane>{{.normal = Vec3::UnitY()}}, 4, 6);
     hang(J<PointOnLine>{{.axis = Vec3::UnitX()}}, 6, 7);

@@ -181,7 +181,7 @@ TEST(System, RefusesWhatItWasMadeWithout) {
   system.evaluate(x.q, x.v, x.t);
   PatternSink sink;
   EXPECT_THROW(system.tangent({.mass = 1.0}, SecondOrder::omitted, x.lambda, sink), InvalidInput);
-  EXPECT_THROW((void)energy(system, x), InvalidInput);
+  EXPECT_THROW((void)powers(system, x), InvalidInput);
 }
 
 /// G by columns and Gᵀ by columns are each other's transpose, of every source of rows: frames, Euler parameters, linear

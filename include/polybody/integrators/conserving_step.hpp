@@ -165,6 +165,7 @@ struct ConservingStep {
       detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     problem.move();
     for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
+    system.push_forces();  // the discrete gradients pass them by
     w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     if (w.solver.lost_rank()) w.factored = false;
     history.push(x, h, w.vd);

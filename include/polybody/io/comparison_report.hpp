@@ -102,7 +102,7 @@ void write_csv(Comparison const& c, std::filesystem::path const& file) {
     heads.push_back(run.name);
     columns.push_back(quantities(run, c.runs.front()));
   }
-  Csv csv(file, std::move(heads));
+  Csv csv(file, std::move(heads), Csv::Keeps::whole_table);
   std::vector<double> row(columns.size());
   for (std::size_t i = 0; i < columns.front().size(); ++i) {
     for (std::size_t j = 0; j < columns.size(); ++j) row[j] = columns[j][i].value;
@@ -185,7 +185,7 @@ std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesy
 /// All points that came to their end, one row each. Throws IoError as `Csv` does.
 template <class = void>
 void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
-  Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"});
+  Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"}, Csv::Keeps::whole_table);
   for (WorkCurve const& curve : w.curves)
     for (WorkPoint const& p : curve.points)
       if (p.failure.empty()) csv.row(curve.name, std::array{p.setting, double(p.steps), p.cpu, p.error});

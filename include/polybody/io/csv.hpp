@@ -26,10 +26,13 @@ namespace polybody {
 /// exception ends the loop that writes it: with the rows so far, if there are any. Move-only.
 class Csv {
  public:
+  /// What an exception leaves: rows of a run are of use without those to come, half a table is not.
+  enum class Keeps { rows, whole_table };
+
   /// `columns`: the heads, with their units ("t [s]"); not empty and all different, else
   /// InvalidInput. Creates the parent folders; throws IoError if the file cannot be made.
-  Csv(std::filesystem::path const& file, std::vector<std::string> columns)
-      : columns_(std::move(columns)), file_((check_heads(file, columns_), file)) {
+  Csv(std::filesystem::path const& file, std::vector<std::string> columns, Keeps keeps = Keeps::rows)
+      : columns_(std::move(columns)), file_((check_heads(file, columns_), file)), keeps_(keeps) {
     for (auto const& head : columns_) (line_ += quoted(head)) += ',';
     line_.back() = '\n';
     file_.write(line_);
@@ -89,7 +92,7 @@ class Csv {
     }
     line_.back() = '\n';
     file_.write(line_);
-    if (rows_++ == 0) file_.keep_on_exception();
+    if (rows_++ == 0 && keeps_ == Keeps::rows) file_.keep_on_exception();
   }
 
   static std::string quoted(std::string const& head) {
@@ -102,6 +105,7 @@ class Csv {
 
   std::vector<std::string> columns_;
   AtomicFile file_;
+  Keeps keeps_;
   std::string line_;
   std::size_t rows_ = 0;
 };

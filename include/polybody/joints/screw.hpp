@@ -1,5 +1,6 @@
 #pragma once
 #include <polybody/joints/angle.hpp>
+#include <polybody/joints/joint_axis.hpp>
 #include <polybody/joints/joint_motion.hpp>
 
 namespace polybody {

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include <polybody/joints/joint_axis.hpp>
 #include <polybody/system/pools.hpp>
 
 namespace polybody::detail {
