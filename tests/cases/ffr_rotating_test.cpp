@@ -95,16 +95,17 @@ TEST(SpinUp, AxialCoordinatesGiveTheSteadyStretch) {
 // centrifugal forces bend the arm away: u grows as exp(√(36 − 3.798²) t).
 TEST(SpinUp, WithoutStiffeningTheDeflectionRunsAway) {
   SpinningArm arm(kane_arm(3, false));
-  double largest = 0.0;
+  double const twice = 2.0 * 0.573835;  // what the arm with stiffening lags at most [m]
+  double largest = 0.0, reached = 0.0;
   try {
     for (State const& now : arm.run(18.0)) {
       largest = std::max(largest, std::abs(arm.tip(now)[1]));
+      reached = now.t;
       if (largest > 10.0) break;
     }
-  } catch (Error const&) {
-    largest = std::max(largest, 10.1);  // Newton gives up on the way
+  } catch (Error const&) {  // on its way to infinity
   }
-  EXPECT_GT(largest, 10.0);
+  EXPECT_GT(largest, twice) << "at " << reached;
 }
 
 // m_rf is what excites the arm: without it the hub's acceleration never reaches the deformation.

@@ -16,7 +16,7 @@ struct MeshDiagnostics {
   std::vector<Vec2> rotation_nodes;        ///< the same material points on the curve the rotations imply [m]
   double largest_gap = 0.0;                ///< between the two, over all nodes [m]
   double position_length = 0.0;            ///< arc length of the position mesh [m]
-  double rotation_length = 0.0;            ///< arc length of the implied curve [m]
+  double rotation_length = 0.0;            ///< arc length of the implied curve [m]: the bar's, as |t₁| = 1
   std::vector<double> position_curvature;  ///< |r′ × r″|/|r′|³ in the middle of each element [1/m], Eq. 2.16
   std::vector<double> rotation_curvature;  ///< θ′ in each element [1/m], Eq. 2.15
 };
@@ -49,6 +49,7 @@ MeshDiagnostics mesh_diagnostics(Beam const& beam, std::span<double const> q) {
   MeshDiagnostics d;
   double const l = beam.element_length();
   d.rotation_nodes = implied_curve(beam, q);
+  d.rotation_length = beam.length();
   for (Index i = 0; i <= beam.elements(); ++i) {
     Vec2 const r(q[std::size_t(3 * i)], q[std::size_t(3 * i + 1)]), &other = d.rotation_nodes[std::size_t(i)];
     d.position_nodes.push_back(r);
@@ -66,10 +67,6 @@ MeshDiagnostics mesh_diagnostics(Beam const& beam, std::span<double const> q) {
     d.position_length += length * l;
     d.position_curvature.push_back(std::abs(slope[0] * second[1] - slope[1] * second[0]) / std::pow(length, 3));
     d.rotation_curvature.push_back(beam.template strains<0>({e, 0.5, 0.0}, q)[2]);
-    for (GaussPoint const& g : gauss<5>) {
-      double const angle = q[std::size_t(3 * e + 2)] * (1.0 - g.xi) + q[std::size_t(3 * e + 5)] * g.xi;
-      d.rotation_length += g.weight * l * std::hypot(std::cos(angle), std::sin(angle));
-    }
   }
   return d;
 }
