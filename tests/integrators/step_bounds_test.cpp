@@ -71,11 +71,12 @@ struct StiffPendulum {
   }
 };
 
+// How an explosion goes depends on the last bits: these two name their solver.
 TEST(StepBounds, EnergyThatNoWorkExplainsEndsTheRun) {
   StiffPendulum wild, p;
-  simulate(wild.model, wild.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01, .limits = off}).run();
+  simulate<BlockSolver>(wild.model, wild.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01, .limits = off}).run();
   EXPECT_GT(energy(wild.model, wild.x).total(), 1e18);  // a fall of 1 m gives 12 J
-  auto run = simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01});
+  auto run = simulate<BlockSolver>(p.model, p.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01});
   std::string const message = message_of_divergence(run, p.x);
   EXPECT_TRUE(has(message, "The step to t = 0.0"));
   EXPECT_TRUE(has(message, "body \"rod\" moves fastest"));
@@ -108,7 +109,6 @@ struct BucklingCoupler {
   }
 };
 
-// How an explosion goes depends on the last bits: the solver is named.
 TEST(StepBounds, AnOpenJointEndsTheRun) {
   BucklingCoupler wild, m;
   System system(wild.model, with<Entries::motion>);
@@ -214,9 +214,11 @@ TEST(StepBounds, LimitsWithoutAMeaningAreRefused) {
   for (StepLimits const& wrong : {StepLimits{.violation = 0.0}, StepLimits{.energy = 0.5},
                                   StepLimits{.violation = std::numeric_limits<double>::quiet_NaN()}}) {
     StiffPendulum p;
-    EXPECT_TRUE(
-        has(refusal([&] { simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01, .limits = wrong}); }),
-            "limits.violation must be positive and limits.energy at least one"));
+    EXPECT_TRUE(has(refusal([&] {
+                      simulate<BlockSolver>(p.model, p.x, GeneralizedAlpha{},
+                                            {.until = 0.2, .step = 0.01, .limits = wrong});
+                    }),
+                    "limits.violation must be positive and limits.energy at least one"));
   }
 }
 
