@@ -238,10 +238,10 @@ struct AlphaMethod {
       if (!detail::closed_to_rounding(w.phi, w.q)) return false;
       w.kept_back = w.back;
       auto const moved = [&] {
-        detail::jiggle(w.dq, w.q, w.ahead);
+        detail::perturb(w.dq, w.q, w.ahead);
         evaluate_at(w.ahead);
-        detail::jiggle(w.phi, w.q, w.phi);
-        detail::jiggle(w.rate, w.v, w.rate);
+        detail::perturb(w.phi, w.q, w.phi);
+        detail::perturb(w.rate, w.v, w.rate);
         method.right_hand_side(h, two_sets, system.velocity_rows(), w);
         bool const finite = std::isfinite(solve().norm);
         w.back -= w.kept_back;

@@ -132,9 +132,9 @@ struct ConservingStep {
     bool is_rounding(double norm) {
       if (!detail::closed_to_rounding(w.phi, w.q)) return false;
       auto const moved = [&] {
-        detail::jiggle(w.q, w.q, w.q);
+        detail::perturb(w.q, w.q, w.q);
         evaluate_here();
-        detail::jiggle(w.phi, w.q, w.phi);
+        detail::perturb(w.phi, w.q, w.phi);
         for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.phi[i] / -s;
         return std::isfinite(solve().norm);
       };

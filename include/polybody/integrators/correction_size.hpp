@@ -23,7 +23,7 @@ inline double rounding_of(VecX const& q, double s) { return rounding_of(q) / s; 
 
 /// out = x, moved by some last places of what it is made of, `q`. The signs follow no pattern that a model could share.
 /// x and out may be the same.
-inline void jiggle(VecX const& x, VecX const& q, VecX& out) {
+inline void perturb(VecX const& x, VecX const& q, VecX& out) {
   double const size = 4.0 * rounding_of(q);
   for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + ((std::uint32_t(i + 1) * 2654435769u >> 31) != 0 ? size : -size);
 }

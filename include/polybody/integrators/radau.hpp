@@ -125,7 +125,7 @@ struct Radau {
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     NewtonReport report;
     for (bool const careful : {false, true}) {  // what stalls is tried again by full Newton
-      foretell(x, h, w);
+      predict(x, h, w);
       if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
       NewtonOptions options = newton;
       options.always_refactor = options.always_refactor || careful;
@@ -159,7 +159,7 @@ struct Radau {
  private:
   /// Stages as they are with the accelerations and speeds at x.
   template <class Solver>
-  static void foretell(State const& x, double h, Workspace<Solver>& w) {
+  static void predict(State const& x, double h, Workspace<Solver>& w) {
     for (std::size_t i = 0; i < 3; ++i) {
       w.vd[i] = x.a;
       w.lambda[i] = x.lambda;
@@ -182,15 +182,15 @@ struct Radau {
       system.plus(x.q, delta, w.q);
       system.evaluate(w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h);
     }
-    bool evaluate(bool jiggled = false) {
+    bool evaluate(bool perturbed = false) {
       w.set_positions(system, h);
       for (std::size_t i = 0; i < 3; ++i) {
-        if (jiggled) detail::jiggle(w.delta[i], w.q, w.next);
-        evaluate_stage(i, jiggled ? w.next : w.delta[i]);
+        if (perturbed) detail::perturb(w.delta[i], w.q, w.next);
+        evaluate_stage(i, perturbed ? w.next : w.delta[i]);
         system.residual(w.vd[i], w.lambda[i], w.r);
         system.acceleration_bias(w.gamma);
         system.rows_times(w.vd[i], w.phi);
-        if (jiggled) detail::jiggle(w.phi, w.vd[i], w.phi);
+        if (perturbed) detail::perturb(w.phi, w.vd[i], w.phi);
         Index const first = Index(i) * (nv + rows);
         for (Index k = 0; k < nv; ++k) w.rhs[first + k] = -w.r[k];
         for (Index k = 0; k < rows; ++k) w.rhs[first + nv + k] = -(w.phi[k] + w.gamma[k]);
