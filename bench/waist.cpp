@@ -42,7 +42,7 @@ struct Fixture {
   VecX q, v, a, lambda, r, phi, rhs, x;
   EigenSparseLu solver;
   BlockSolver block;
-  std::vector<Block> blocks;  // of the matrix
+  Sequence<Block> blocks;  // of the matrix
 
   explicit Fixture(int links)
       : model(make_chain(links)),

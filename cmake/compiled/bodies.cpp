@@ -12,9 +12,9 @@ template struct JointKernels<Joint<Revolute, Constraint>, double>;
 template struct JointKernels<Joint<Spherical, Constraint>, double>;
 template struct JointKernels<Joint<Weld, Constraint>, double>;
 template struct JointKernels<Joint<planar::Revolute, Constraint>, double>;
-template void detail::place_ground(std::vector<detail::GroundMarker> const&, Index, Index, Data<double>&);
-template void detail::place_linear_rows(std::vector<LinearRows> const&, double*, Data<double>&);
-template void detail::measure_linear_rows(std::vector<LinearRows> const&, VecX const&, Data<double> const&, double*);
+template void detail::place_ground(Sequence<detail::GroundMarker> const&, Index, Index, Data<double>&);
+template void detail::place_linear_rows(Sequence<LinearRows> const&, double*, Data<double>&);
+template void detail::measure_linear_rows(Sequence<LinearRows> const&, VecX const&, Data<double> const&, double*);
 template BarConstants constants<void>(Bar const&);
 
 }  // namespace polybody

@@ -33,9 +33,9 @@ extern template struct JointKernels<Joint<Revolute, Constraint>, double>;
 extern template struct JointKernels<Joint<Spherical, Constraint>, double>;
 extern template struct JointKernels<Joint<Weld, Constraint>, double>;
 extern template struct JointKernels<Joint<planar::Revolute, Constraint>, double>;
-extern template void detail::place_ground(std::vector<detail::GroundMarker> const&, Index, Index, Data<double>&);
-extern template void detail::place_linear_rows(std::vector<LinearRows> const&, double*, Data<double>&);
-extern template void detail::measure_linear_rows(std::vector<LinearRows> const&, VecX const&, Data<double> const&,
+extern template void detail::place_ground(Sequence<detail::GroundMarker> const&, Index, Index, Data<double>&);
+extern template void detail::place_linear_rows(Sequence<LinearRows> const&, double*, Data<double>&);
+extern template void detail::measure_linear_rows(Sequence<LinearRows> const&, VecX const&, Data<double> const&,
                                                  double*);
 extern template BarConstants constants<void>(Bar const&);
 

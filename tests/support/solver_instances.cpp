@@ -5,6 +5,7 @@
 #include <polybody/solvers/refined.hpp>
 
 #include <cstdlib>
+#include <span>
 #ifdef POLYBODY_WITH_KLU
 #include <polybody/solvers/klu.hpp>
 #endif
@@ -19,7 +20,7 @@ namespace {
 template <class Solver>
 class Behind final : public SolverInTests {
  public:
-  void analyse(Index size, std::vector<Block> const& blocks) override { solver_.analyse(size, blocks); }
+  void analyse(Index size, std::span<Block const> blocks) override { solver_.analyse(size, blocks); }
   void begin() override { solver_.begin(); }
   void add(Index row, Index col, BlockView const& b) override { solver_.add(row, col, b); }
   Index factor() override { return solver_.factor(); }

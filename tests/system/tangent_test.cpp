@@ -29,7 +29,7 @@ struct Asked {
   std::function<VecX(VecX const& q, VecX const& delta)> plus;
   std::function<VecX(State const&)> residual, violation, violation_rate, acceleration_bias;
   std::function<MatX(State const&, TangentCoefficients, SecondOrder)> tangent;
-  std::function<std::vector<Block>(State const&, TangentCoefficients, SecondOrder)> pattern;
+  std::function<Sequence<Block>(State const&, TangentCoefficients, SecondOrder)> pattern;
   /// Derivative of the residual along q ⊞ ε dq, v + ε dv, by dual numbers.
   std::function<VecX(State const&, VecX const& dq, VecX const& dv)> slope;
 };

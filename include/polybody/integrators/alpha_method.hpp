@@ -18,6 +18,7 @@
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
@@ -168,7 +169,7 @@ struct AlphaMethod {
     return detail::StatesInStep{w.states, w.v, w.vd, gamma * h}.join(size, tolerance, w.y.data());
   }
   /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
-  void right_hand_side(double h, bool two_sets, std::vector<Index> const& velocity_rows, AlphaVectors& w) const {
+  void right_hand_side(double h, bool two_sets, Sequence<Index> const& velocity_rows, AlphaVectors& w) const {
     Index const nv = w.v.size(), rows = w.lambda.size();
     for (Index i = 0; i < nv; ++i) w.rhs[i] = -w.r[i];
     if (two_sets) {

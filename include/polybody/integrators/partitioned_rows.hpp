@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 
 namespace polybody {
@@ -114,9 +115,9 @@ class PartitionedRows {
 
   Index rows_, columns_, width_;
   Index rank_ = none;
-  std::vector<double> a_;  // by rows, right-hand sides last
-  std::vector<Index> dependents_;
-  std::vector<Column> state_;
+  Sequence<double> a_;  // by rows, right-hand sides last
+  Sequence<Index> dependents_;
+  Sequence<Column> state_;
 };
 
 }  // namespace polybody

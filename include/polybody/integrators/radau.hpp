@@ -13,6 +13,7 @@
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/radau_tableau.hpp>
 #include <polybody/integrators/stabilisation.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/auto_lu.hpp>
 
 namespace polybody {
@@ -45,8 +46,7 @@ struct Radau {
     double theta = 1.0;
     double h_factored = 0.0;
     double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
-    std::vector<double>
-        slack;  ///< by rows: −1 on the diagonal of a row that repeats others leaves its multiplier alone
+    Sequence<double> slack;  ///< by rows: −1 on the diagonal of a row that repeats others leaves its multiplier alone
 
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody::detail {
@@ -31,7 +31,7 @@ class BodyEntries {
 
   BodyEntries() = default;
   BodyEntries(BodyEntries const& other) {
-    if (other.array_) array_ = std::make_shared<std::vector<Entry>>(*other.array_);
+    if (other.array_) array_ = std::make_shared<Sequence<Entry>>(*other.array_);
     see();
   }
   BodyEntries(BodyEntries&& other) noexcept : array_(std::move(other.array_)) {
@@ -46,7 +46,7 @@ class BodyEntries {
   ~BodyEntries() = default;
 
   void push_back(Entry entry) {
-    if (!array_) array_ = std::make_shared<std::vector<Entry>>();
+    if (!array_) array_ = std::make_shared<Sequence<Entry>>();
     array_->push_back(std::move(entry));
     see();
   }
@@ -59,7 +59,7 @@ class BodyEntries {
   Entry const* end() const { return first_ + size_; }
 
   /// The array, for a handle; it grows with the model.
-  std::shared_ptr<std::vector<Entry> const> shared() const { return array_; }
+  std::shared_ptr<Sequence<Entry> const> shared() const { return array_; }
 
  private:
   void see() {
@@ -67,8 +67,8 @@ class BodyEntries {
     size_ = array_ ? array_->size() : 0;
   }
 
-  std::shared_ptr<std::vector<Entry>> array_;  ///< none before the first body
-  Entry const* first_ = nullptr;               ///< of the array
+  std::shared_ptr<Sequence<Entry>> array_;  ///< none before the first body
+  Entry const* first_ = nullptr;            ///< of the array
   std::size_t size_ = 0;
 };
 

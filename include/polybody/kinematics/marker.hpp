@@ -7,6 +7,7 @@
 
 #include <polybody/kinematics/body_entries.hpp>
 #include <polybody/kinematics/frame.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
@@ -58,7 +59,7 @@ struct BodyHandle {
   Index index = 0;
   std::string name = {};
   /// The model's bodies of this type, shared with the model and not copied; none for the ground.
-  std::shared_ptr<std::vector<detail::BodyEntry<B>> const> bodies = {};
+  std::shared_ptr<Sequence<detail::BodyEntry<B>> const> bodies = {};
 
   /// The body as the model holds it; the reference is valid until a body of this type is added to the model.
   /// \throws InvalidInput for a handle made by default.

@@ -4,9 +4,9 @@
 
 #include <concepts>
 #include <utility>
-#include <vector>
 
 #include <polybody/math/block_view.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
@@ -118,7 +118,7 @@ class BlockWriter {
 
 /// Records where blocks go, in the order in which they come.
 struct PatternSink {
-  std::vector<Block> blocks;
+  Sequence<Block> blocks;
   void add(Index row, Index col, BlockView const& b) { blocks.push_back({row, col, b.rows, b.cols}); }
 };
 

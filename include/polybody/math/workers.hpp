@@ -9,8 +9,8 @@
 #include <exception>
 #include <system_error>
 #include <thread>
-#include <vector>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody {
@@ -123,11 +123,11 @@ class Workers {
     x.wait(old);
   }
 
-  std::vector<std::exception_ptr> thrown_;  // one for each thread
+  Sequence<std::exception_ptr> thrown_;  // one for each thread
   void (*call_)(void const*, int) = nullptr;
   void const* what_ = nullptr;
   std::atomic<unsigned> round_{0}, running_{0};  // wrap around without harm
-  std::vector<std::thread> others_;              // last: they use the rest
+  Sequence<std::thread> others_;                 // last: they use the rest
 };
 
 /// f over [0, n), by `workers` where there are any.

@@ -73,7 +73,7 @@ template <HasRigidPoints B>
 BodySample motion_of_centre(BodyPlace const& place, State const& x) {
   using U = std::conditional_t<B::world == World::plane, Vec2, Vec3>;
   BodyInState<B> const b = body_in_state<B>(place, x);
-  std::vector<double> jacobian;
+  Sequence<double> jacobian;
   Published<double> const p = publish(b, b.body.at(U(U::Zero())), jacobian);
   Vec6 const rate = p.push(x.a.data() + place.v0) + p.bias;
   return {x.t, p.frame, rate.head<3>(), rate.tail<3>(), {}};

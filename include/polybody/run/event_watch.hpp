@@ -2,6 +2,7 @@
 /// \file
 /// Events in a run: on which side of zero each stands, and where within a step one passes through.
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/run/run_options.hpp>
 
 namespace polybody {
@@ -24,8 +25,8 @@ class EventWatch {
 
   EventWatch() = default;
   /// Events that stand on these sides.
-  explicit EventWatch(std::vector<int> sides) : sides_(std::move(sides)) {}
-  std::vector<int> const& sides() const { return sides_; }
+  explicit EventWatch(Sequence<int> sides) : sides_(std::move(sides)) {}
+  Sequence<int> const& sides() const { return sides_; }
 
   /// Notes on which sides the events stand at x. \throws NonFinite.
   void start(std::vector<Event> const& events, State const& x, Seen const& seen) {
@@ -86,7 +87,7 @@ class EventWatch {
     return (y > 0.0) - (y < 0.0);
   }
 
-  std::vector<int> sides_;  // at the end of the last step: each is met once, however a restart rounds
+  Sequence<int> sides_;  // at the end of the last step: each is met once, however a restart rounds
 };
 
 }  // namespace polybody

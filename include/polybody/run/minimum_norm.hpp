@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/math/sequence.hpp>
 #include <polybody/run/initial_conditions.hpp>
 
 namespace polybody {
@@ -76,7 +77,7 @@ class MinimumNormOf {
 
   detail::RowRelation<> relation_;
   VecX weight_;
-  std::vector<VecX> basis_;
+  Sequence<VecX> basis_;
 };
 
 using MinimumNorm = MinimumNormOf<>;

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/places.hpp>
 
 namespace polybody {
@@ -11,7 +12,7 @@ namespace polybody {
 /// Frame of a material point of a body.
 template <class B>
 Frame<double> frame(BodyInState<B> const& body, typename B::Point const& point) {
-  std::vector<double> jacobian;
+  Sequence<double> jacobian;
   return publish(body, point, jacobian).frame;
 }
 /// Frame of a material point in state x. \throws InvalidInput for a marker of another model.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <polybody/integrators/integrator.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/run/event.hpp>
 
 namespace polybody {
@@ -54,7 +55,7 @@ struct RunReport {
     std::string name;
     double time;
   };
-  std::vector<Met> events = {};
+  Sequence<Met> events = {};
   bool stopped = false;  ///< by an event before `until`
   /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share
   /// the load is not determined.

@@ -3,6 +3,7 @@
 /// A run that can be stored and resumed.
 
 #include <polybody/math/checksum.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/run/run_options.hpp>
 #include <polybody/run/step_plan.hpp>
 #include <polybody/system/system.hpp>
@@ -37,7 +38,7 @@ struct RunSnapshot {
   State state;             ///< as it is stepped, with the integrator's memory: without what policies eliminate
   double step = 0.0;       ///< the next one, of an integrator that controls its step [s]
   StepRow row;             ///< of the last step
-  std::vector<int> sides;  ///< of zero on which the events stand
+  Sequence<int> sides;     ///< of zero on which the events stand
   RunReport report;
 
   /// \throws InvalidInput unless model, integrator and count of events are these.

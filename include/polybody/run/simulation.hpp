@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/run/event_watch.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/run_snapshot.hpp>
@@ -131,9 +132,9 @@ class Simulation {
   double largest_step() const { return options_.largest_step.value_or(std::numeric_limits<double>::infinity()); }
 
   /// Times at which the user, a drive or a load wants a step to end.
-  std::vector<double> corners() const {
-    std::vector<double> all = options_.corners;
-    all.insert(all.end(), system_->layout().corners.begin(), system_->layout().corners.end());
+  Sequence<double> corners() const {
+    Sequence<double> all = system_->layout().corners;
+    all.append(options_.corners.begin(), options_.corners.end());
     return all;
   }
 

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
+
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
@@ -34,10 +35,10 @@ class StepPlan {
 
   StepPlan() = default;
   /// A run from `start` to `until` with steps of about `step` [s]; corners outside of it are left out.
-  StepPlan(double start, double until, double step, std::vector<double> corners)
+  StepPlan(double start, double until, double step, Sequence<double> corners)
       : until_(until), step_(step), corners_(std::move(corners)) {
-    std::erase_if(corners_, [&](double t) { return !(t > start) || !(t <= until); });
-    std::sort(corners_.begin(), corners_.end());
+    erase_if(corners_, [&](double t) { return !(t > start) || !(t <= until); });
+    sort_once(corners_);
   }
 
   /// Passes the corners up to t, and those that differ from it by rounding only (0.3 and 0.1 + 0.2 are one). Returns t,
@@ -70,7 +71,7 @@ class StepPlan {
   }
 
   double until_ = 0.0, step_ = 0.0;
-  std::vector<double> corners_;
+  Sequence<double> corners_;
   std::size_t next_ = 0;
 };
 

@@ -8,6 +8,7 @@
 ///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf).
 /// A root is carried by nothing, with S = 1. Rows that stay are added by their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/system/reduction.hpp>
 
@@ -30,10 +31,10 @@ class ArticulatedBodySolverOf {
     reduction_ = &reduction;
     state_ = &state;
     if (!nodes_.empty()) return;
-    std::vector<TreeBody> const& bodies = reduction.tree().bodies;
+    Sequence<TreeBody> const& bodies = reduction.tree().bodies;
     Index const m = reduction.rows();
     nodes_.resize(bodies.size());
-    rows_.assign(std::size_t(m), std::vector<Vec6>(bodies.size(), Vec6::Zero()));
+    rows_.assign(std::size_t(m), Sequence<Vec6>(bodies.size(), Vec6::Zero()));
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       owner_.resize(std::max(owner_.size(), std::size_t(bodies[i].v0 + speeds_of(bodies[i]))), -1);
       for (Index j = 0; j < speeds_of(bodies[i]); ++j) owner_[std::size_t(bodies[i].v0 + j)] = Index(i);
@@ -63,7 +64,7 @@ class ArticulatedBodySolverOf {
     if (col >= nv) return;  // the mirror of G
     std::size_t const j = std::size_t(owner_[std::size_t(col)]);
     std::size_t const i = row < nv ? std::size_t(owner_[std::size_t(row)]) : 0;
-    std::vector<TreeBody> const& bodies = reduction_->tree().bodies;
+    Sequence<TreeBody> const& bodies = reduction_->tree().bodies;
     Mat6* const to = row >= nv                      ? nullptr
                      : i == j                       ? &nodes_[i].k
                      : bodies[i].parent == Index(j) ? &nodes_[i].c
@@ -178,7 +179,7 @@ class ArticulatedBodySolverOf {
   /// u of all joints for generalised forces r and the nodes' f (used up); the nodes' x.
   template <class Out>
   void run(VecX const& r, Out&& u) {
-    std::vector<TreeBody> const& bodies = reduction_->tree().bodies;
+    Sequence<TreeBody> const& bodies = reduction_->tree().bodies;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       Node& n = nodes_[i];
       Vec6 given = Vec6::Zero();
@@ -215,9 +216,9 @@ class ArticulatedBodySolverOf {
 
   ReductionOf<> const* reduction_ = nullptr;
   TreeState const* state_ = nullptr;
-  std::vector<Node> nodes_;
-  std::vector<Index> owner_, row_of_;    // body of a whole speed; narrow row of a whole one
-  std::vector<std::vector<Vec6>> rows_;  // G by bodies
+  Sequence<Node> nodes_;
+  Sequence<Index> owner_, row_of_;  // body of a whole speed; narrow row of a whole one
+  Sequence<Sequence<Vec6>> rows_;   // G by bodies
   MatX answers_, schur_;
   VecX open_, lambda_, none_;
   DenseLu loops_;

@@ -1,4 +1,7 @@
 #pragma once
+#include <span>
+
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_sparse_lu.hpp>
 
@@ -10,7 +13,7 @@ class SolverBySize {
  public:
   static constexpr Index limit = 64;
 
-  void analyse(Index size, std::vector<Block> const& blocks) {
+  void analyse(Index size, std::span<Block const> blocks) {
     small_ = size <= limit;
     if (small_)
       few_.analyse(size, blocks);

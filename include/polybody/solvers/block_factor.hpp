@@ -10,6 +10,7 @@
 #include <cmath>
 #include <span>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/block_layout.hpp>
 #include <polybody/solvers/block_node.hpp>
 
@@ -37,11 +38,11 @@ class BlockFactor {
   BlockFactor(BlockFactor&&) = default;
   BlockFactor& operator=(BlockFactor&&) = default;
 
-  void analyse(Index size, std::vector<Block> const& blocks) {
+  void analyse(Index size, std::span<Block const> blocks) {
     size_ = size;
-    blocks_ = blocks;
+    blocks_ = Sequence<Block>(blocks.begin(), blocks.end());
     pattern_.analyse(size, blocks);
-    hints_ = {std::vector<char>(pattern_.segments().size(), 0), std::vector<char>(pattern_.segments().size(), 0)};
+    hints_ = {Sequence<char>(pattern_.segments().size(), 0), Sequence<char>(pattern_.segments().size(), 0)};
     reordered_ = false;
     compile();
   }
@@ -102,8 +103,8 @@ class BlockFactor {
   Index fill() const;
   Index nodes() const { return Index(layout_.nodes.size()); }
   /// The unknowns as they are eliminated.
-  std::vector<int> order() const {
-    std::vector<int> all;
+  Sequence<int> order() const {
+    Sequence<int> all;
     for (Index const i : layout_.unknown)
       if (i >= 0) all.push_back(int(i));
     return all;
@@ -181,15 +182,15 @@ class BlockFactor {
   Index failed(Node const& n, int r);
 
   Index size_ = 0;
-  std::vector<Block> blocks_;
+  Sequence<Block> blocks_;
   detail::BlockPattern pattern_;
   detail::BlockLayout layout_;
   detail::BlockLayout::NodeHints hints_;
   bool reordered_ = false, symmetric_ = false;
-  std::size_t next_ = 0;           // block to be added
-  std::vector<BlockPiece> slots_;  // of the pieces of all blocks
-  std::vector<int> swaps_;
-  std::vector<Index> dropped_;
+  std::size_t next_ = 0;        // block to be added
+  Sequence<BlockPiece> slots_;  // of the pieces of all blocks
+  Sequence<int> swaps_;
+  Sequence<Index> dropped_;
   std::size_t dropped_count_ = 0;
   mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // a solve changes the last two only
   detail::AlignedDoubles scales_;
@@ -268,7 +269,8 @@ void BlockFactor<symmetry>::solve(double const* b, double* x) const {
                                 w + layout_.nodes[std::size_t(k->node)].x);
     });
   }
-  for (auto n = layout_.nodes.rbegin(); n != layout_.nodes.rend(); ++n) {
+  for (Node const* n = layout_.nodes.end(); n != layout_.nodes.begin();) {
+    --n;
     detail::NodeStorage const s = storage(*n);
     with_constant(n->size, [&](auto size) {
       detail::pass_up<size>(s, all + n->first_neighbour, n->neighbours, layout_.nodes.data(), w, w + n->x);

@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 #include <cstring>
-#include <vector>
 
 #include <polybody/math/pack.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/math/with_constant.hpp>
 
 namespace polybody::detail {
@@ -36,7 +36,7 @@ class AlignedDoubles {
   struct alignas(32) Four {
     double x[4];
   };
-  std::vector<Four> quads_;
+  Sequence<Four> quads_;
 };
 
 /// Rows of a block: the first one, and from each to the next.

@@ -3,6 +3,9 @@
 /// The symbolic half of a block factorisation: nodes in the order of elimination, where each block of the matrix and of
 /// the fill stands, and which block each elimination changes. Found once; then numbers run through flat lists.
 
+#include <span>
+
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/block_kernels.hpp>
 #include <polybody/solvers/elimination_order.hpp>
 
@@ -34,23 +37,22 @@ class BlockLayout {
   /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others, all
   /// in one node.
   struct NodeHints {
-    std::vector<char> merged, late;
+    Sequence<char> merged, late;
     bool dense = false;
   };
 
-  std::vector<Node> nodes;
-  std::vector<Neighbour> neighbours;
-  std::vector<int> targets;
-  std::vector<Piece> pieces;
-  std::vector<int> first_piece;  ///< of each added block, and one past the last
-  std::vector<Index> unknown;    ///< of each place in padded vectors; −1 for padding
-  std::vector<int> place;        ///< of each unknown in padded vectors
+  Sequence<Node> nodes;
+  Sequence<Neighbour> neighbours;
+  Sequence<int> targets;
+  Sequence<Piece> pieces;
+  Sequence<int> first_piece;  ///< of each added block, and one past the last
+  Sequence<Index> unknown;    ///< of each place in padded vectors; −1 for padding
+  Sequence<int> place;        ///< of each unknown in padded vectors
   std::size_t size_u = 0, size_l = 0, size_f = 0;
   int largest_w = 0;  ///< entries of the largest W, or unknowns of the largest node
 
   /// Without `both_halves` only nodes with pivoting have an Lt.
-  void compile(BlockPattern const& pattern, std::vector<Block> const& blocks, NodeHints const& hints,
-               bool both_halves) {
+  void compile(BlockPattern const& pattern, std::span<Block const> blocks, NodeHints const& hints, bool both_halves) {
     EliminationOrder order;
     order.compute(pattern, blocks, number_nodes(pattern, hints), hints.late);
     place_nodes(pattern, order, hints, both_halves);
@@ -59,9 +61,9 @@ class BlockLayout {
   }
 
  private:
-  static std::vector<int> number_nodes(BlockPattern const& pattern, NodeHints const& hints) {
+  static Sequence<int> number_nodes(BlockPattern const& pattern, NodeHints const& hints) {
     auto const& segments = pattern.segments();
-    std::vector<int> node_of(segments.size(), hints.dense ? 0 : -1);
+    Sequence<int> node_of(segments.size(), hints.dense ? 0 : -1);
     if (hints.dense) return node_of;
     int count = 0;
     for (std::size_t s = 0; s < segments.size(); ++s) {
@@ -93,7 +95,7 @@ class BlockLayout {
     unknown.clear();
     size_u = size_l = size_f = 0;
     largest_w = 0;
-    std::vector<int> size(order.nodes.size(), 0);
+    Sequence<int> size(order.nodes.size(), 0);
     for (std::size_t k = 0; k < order.nodes.size(); ++k)
       for (int const s : order.nodes[k].segments) {
         local_[std::size_t(s)] = size[k];
@@ -150,7 +152,7 @@ class BlockLayout {
     }
   }
 
-  void place_pieces(BlockPattern const& pattern, std::vector<Block> const& blocks) {
+  void place_pieces(BlockPattern const& pattern, std::span<Block const> blocks) {
     auto const column = [&](Node const& n, int k) {
       std::size_t i = std::size_t(n.first_neighbour);
       while (neighbours[i].node != k) ++i;
@@ -180,7 +182,7 @@ class BlockLayout {
     }
   }
 
-  std::vector<int> local_, place_;  // of each segment: first place within its node, its node
+  Sequence<int> local_, place_;  // of each segment: first place within its node, its node
 };
 
 }  // namespace polybody::detail

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
+#include <span>
 #include <utility>
-#include <vector>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 
 namespace polybody::detail {
@@ -20,20 +20,20 @@ class BlockPattern {
     Index first = 0;
     int size = 0;
     bool joint = true;
-    int body = -1;           ///< its body's number (of bodies)
-    std::vector<int> child;  ///< of a joint: segments of the hanging body that it touches
-    std::vector<int> after;  ///< of a joint: segments to be eliminated before
+    int body = -1;        ///< its body's number (of bodies)
+    Sequence<int> child;  ///< of a joint: segments of the hanging body that it touches
+    Sequence<int> after;  ///< of a joint: segments to be eliminated before
     bool closes_loop = false;
   };
 
-  void analyse(Index size, std::vector<Block> const& blocks) {
+  void analyse(Index size, std::span<Block const> blocks) {
     cut(size, blocks);
     for (Block const& b : blocks) mark(b);
     link(blocks);
     match();
   }
 
-  std::vector<Segment> const& segments() const { return segments_; }
+  Sequence<Segment> const& segments() const { return segments_; }
   int of(Index unknown) const { return segment_of_[std::size_t(unknown)]; }
   /// Segments from `begin` up to `end`, without it.
   struct Range {
@@ -45,24 +45,24 @@ class BlockPattern {
   }
   /// The joint on which a body hangs, and others of it alone; −1 and none for a free one.
   int primary(int body) const { return bodies_[std::size_t(body)].primary; }
-  std::vector<int> const& secondary(int body) const { return bodies_[std::size_t(body)].secondary; }
-  std::vector<int> const& segments_of(int body) const { return bodies_[std::size_t(body)].segments; }
+  Sequence<int> const& secondary(int body) const { return bodies_[std::size_t(body)].secondary; }
+  Sequence<int> const& segments_of(int body) const { return bodies_[std::size_t(body)].segments; }
 
  private:
   struct Body {
-    std::vector<int> segments, joints, secondary;
+    Sequence<int> segments, joints, secondary;
     int primary = -1, parent = -1, depth = 0;  // parent −1: the ground, or none
     bool visited = false;
   };
   struct Joint {
     int segment;
-    std::vector<std::pair<int, std::vector<int>>> ends;  // body and the segments touched there
+    Sequence<std::pair<int, Sequence<int>>> ends;  // body and the segments touched there
     bool used = false;
     bool meets_rows = false;  ///< a block couples it with the rows of a joint
   };
 
-  void cut(Index size, std::vector<Block> const& blocks) {
-    std::vector<char> begins(std::size_t(size) + 1, 0);
+  void cut(Index size, std::span<Block const> blocks) {
+    Sequence<char> begins(std::size_t(size) + 1, 0);
     begins[0] = 1;
     for (Block const& b : blocks)
       for (Index const at : {b.row, b.row + b.rows, b.col, b.col + b.cols}) begins[std::size_t(at)] = 1;
@@ -84,8 +84,8 @@ class BlockPattern {
   }
 
   /// Bodies are what the square blocks on the diagonal tie together.
-  void link(std::vector<Block> const& blocks) {
-    std::vector<int> root(segments_.size());
+  void link(std::span<Block const> blocks) {
+    Sequence<int> root(segments_.size());
     std::iota(root.begin(), root.end(), 0);
     auto const find = [&](int s) {
       while (root[std::size_t(s)] != s) s = root[std::size_t(s)] = root[std::size_t(root[std::size_t(s)])];
@@ -99,7 +99,7 @@ class BlockPattern {
     }
     bodies_.clear();
     joints_.clear();
-    std::vector<int> number(segments_.size(), -1), joint_of(segments_.size(), -1);
+    Sequence<int> number(segments_.size(), -1), joint_of(segments_.size(), -1);
     for (std::size_t s = 0; s < segments_.size(); ++s) {
       if (segments_[s].joint) {
         joint_of[s] = int(joints_.size());
@@ -134,7 +134,7 @@ class BlockPattern {
       std::size_t end = 0;
       while (end < joint.ends.size() && joint.ends[end].first != body) ++end;
       if (end == joint.ends.size()) joint.ends.push_back({body, {}});
-      std::vector<int>& touched = joint.ends[end].second;
+      Sequence<int>& touched = joint.ends[end].second;
       if (std::find(touched.begin(), touched.end(), s) == touched.end()) touched.push_back(s);
     }
   }
@@ -145,7 +145,7 @@ class BlockPattern {
   /// Hangs every body on one joint, breadth first from the ground, then from a body of each part that does not touch
   /// it.
   void match() {
-    std::vector<int> queue;
+    Sequence<int> queue;
     auto const hang = [&](Joint& j, std::size_t end, int parent) {
       auto const& [body, touched] = j.ends[end];
       Body& b = bodies_[std::size_t(body)];
@@ -172,9 +172,10 @@ class BlockPattern {
       }
     };
     spread();
-    std::set<std::pair<long, int>> left;  // −joints, body: the one with most joints comes first
+    Sequence<std::pair<long, int>> left;  // −joints, body: the one with most joints comes first
     for (std::size_t b = 0; b < bodies_.size(); ++b)
-      if (!bodies_[b].visited) left.insert({-long(bodies_[b].joints.size()), int(b)});
+      if (!bodies_[b].visited) left.push_back({-long(bodies_[b].joints.size()), int(b)});
+    sort_once(left);
     for (auto const& [joints, root] : left) {
       if (bodies_[std::size_t(root)].visited) continue;
       bodies_[std::size_t(root)].visited = true;
@@ -191,10 +192,10 @@ class BlockPattern {
     if (j.ends.empty() && j.meets_rows) {  // an unknown that rows alone hold, such as a slider's place, waits for all
       for (Joint const& other : joints_)
         if (!other.ends.empty()) s.after.push_back(other.segment);
-      for (Body const& body : bodies_) s.after.insert(s.after.end(), body.segments.begin(), body.segments.end());
+      for (Body const& body : bodies_) s.after.append(body.segments.begin(), body.segments.end());
       return;
     }
-    std::vector<int> loop;
+    Sequence<int> loop;
     if (j.ends.size() == 2) {
       int a = j.ends[0].first, b = j.ends[1].first;
       while (a != b) {
@@ -208,26 +209,25 @@ class BlockPattern {
         for (int u = end.first; u >= 0 && !is_own(j); u = bodies_[std::size_t(u)].parent) loop.push_back(u);
       }
     }
-    std::sort(loop.begin(), loop.end());
-    loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
+    sort_once(loop);
     for (auto const& [body, touched] : j.ends) {
       if (loop.size() == 1 && body != loop[0]) continue;  // beside the joint on which it hangs: a drive, a norm row
-      s.after.insert(s.after.end(), touched.begin(), touched.end());
+      s.after.append(touched.begin(), touched.end());
       if (loop.size() == 1) s.child = touched;
     }
     for (int const u : loop) {
       Body& body = bodies_[std::size_t(u)];
-      if (loop.size() > 1) s.after.insert(s.after.end(), body.segments.begin(), body.segments.end());
+      if (loop.size() > 1) s.after.append(body.segments.begin(), body.segments.end());
       if (body.primary >= 0) s.after.push_back(body.primary);
       if (loop.size() == 1) body.secondary.push_back(j.segment);
     }
     s.closes_loop = true;
   }
 
-  std::vector<Segment> segments_;
-  std::vector<int> segment_of_;
-  std::vector<Body> bodies_;
-  std::vector<Joint> joints_;
+  Sequence<Segment> segments_;
+  Sequence<int> segment_of_;
+  Sequence<Body> bodies_;
+  Sequence<Joint> joints_;
 };
 
 }  // namespace polybody::detail

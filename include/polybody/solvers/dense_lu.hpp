@@ -1,6 +1,8 @@
 #pragma once
 #include <cstring>
+#include <span>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 
 namespace polybody {
@@ -9,7 +11,7 @@ namespace polybody {
 /// others.
 class DenseLu {
  public:
-  void analyse(Index size, std::vector<Block> const&) {
+  void analyse(Index size, std::span<Block const>) {
     a_.setZero(size, size);
     lu_.assign(std::size_t(size * size), 0.0);
     scale_.assign(std::size_t(size), 0.0);
@@ -70,8 +72,8 @@ class DenseLu {
 
  private:
   MatX a_;
-  std::vector<double> lu_, scale_;
-  std::vector<Index> swaps_;
+  Sequence<double> lu_, scale_;
+  Sequence<Index> swaps_;
 };
 
 }  // namespace polybody

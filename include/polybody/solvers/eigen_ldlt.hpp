@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/sparse_sink.hpp>
 
 namespace polybody {
@@ -21,12 +23,12 @@ class EigenLdlt {
   static constexpr double largest_asymmetry = 0.1;  ///< ‖A − Aᵀ‖ beside ‖A‖; above it `factor` throws
   static constexpr int most_refinements = 20;
 
-  void analyse(Index size, std::vector<Block> const& blocks) {
-    std::vector<char> has_diagonal(std::size_t(size), 0);
+  void analyse(Index size, std::span<Block const> blocks) {
+    Sequence<char> has_diagonal(std::size_t(size), 0);
     for (Block const& b : blocks)
       if (b.row == b.col) std::fill_n(has_diagonal.begin() + b.row, std::min(b.rows, b.cols), char(1));
     rows_.clear();
-    std::vector<Block> all = blocks;
+    Sequence<Block> all(blocks.begin(), blocks.end());
     for (Index i = 0; i < size; ++i)
       if (!has_diagonal[std::size_t(i)]) {
         rows_.push_back(i);
@@ -102,7 +104,7 @@ class EigenLdlt {
   }
 
   SparseSink sink_;
-  std::vector<Index> rows_;
+  Sequence<Index> rows_;
   double epsilon_ = 0.0;
   mutable VecX r_, dx_;
   using Ldlt = Eigen::SimplicialLDLT<Matrix, Eigen::Lower>;

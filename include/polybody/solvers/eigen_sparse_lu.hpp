@@ -1,7 +1,9 @@
 #pragma once
 #include <Eigen/SparseLU>
 #include <memory>
+#include <span>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/sparse_sink.hpp>
 
 namespace polybody {
@@ -13,7 +15,7 @@ class EigenSparseLuBy {
  public:
   using Matrix = SparseSink::Matrix;
 
-  void analyse(Index size, std::vector<Block> const& blocks) {
+  void analyse(Index size, std::span<Block const> blocks) {
     sink_.analyse(size, blocks);
     lu_->analyzePattern(sink_.matrix());
   }

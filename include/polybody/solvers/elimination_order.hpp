@@ -5,8 +5,10 @@
 /// loop. Then A ≻ 0 makes every pivot definite and no pivoting between blocks is needed.
 
 #include <iterator>
-#include <set>
+#include <span>
+#include <utility>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/block_pattern.hpp>
 
 namespace polybody::detail {
@@ -15,14 +17,14 @@ namespace polybody::detail {
 class EliminationOrder {
  public:
   struct Node {
-    std::vector<int> segments;
-    std::vector<int> neighbours;  ///< by place in the order, ascending; all later than the node itself
+    Sequence<int> segments;
+    Sequence<int> neighbours;  ///< by place in the order, ascending; all later than the node itself
   };
-  std::vector<Node> nodes;  ///< in the order of elimination
+  Sequence<Node> nodes;  ///< in the order of elimination
 
   /// `node_of` gives each segment's node, numbered from zero without gaps. A joint in `late` waits for all that is not.
-  void compute(BlockPattern const& pattern, std::vector<Block> const& blocks, std::vector<int> const& node_of,
-               std::vector<char> const& late) {
+  void compute(BlockPattern const& pattern, std::span<Block const> blocks, Sequence<int> const& node_of,
+               Sequence<char> const& late) {
     std::size_t const count = node_of.empty() ? 0 : std::size_t(*std::max_element(node_of.begin(), node_of.end())) + 1;
     left_.clear();
     left_.resize(count);
@@ -32,34 +34,31 @@ class EliminationOrder {
     find_waits(pattern, node_of, late);
     for (std::size_t n = 0; n < count; ++n) {
       measure(left_[n]);
-      if (may_go(left_[n])) ready_.insert({left_[n].degree, int(n)});
+      if (may_go(left_[n])) offer(int(n));
     }
     nodes.clear();
     nodes.reserve(count);
     while (nodes.size() < count) eliminate(next());
     for (Node& node : nodes) {
       for (int& k : node.neighbours) k = at(k).place;
-      std::sort(node.neighbours.begin(), node.neighbours.end());
+      sort_once(node.neighbours);
     }
   }
 
  private:
   struct Candidate {
     Node node;                  ///< neighbours by number
-    std::vector<int> releases;  ///< nodes that wait for this one
+    Sequence<int> releases;     ///< nodes that wait for this one
     long size = 0, degree = 0;  ///< unknowns of the node, and of its neighbours
     int waits = 0;              ///< for so many nodes
     int place = -1;             ///< in the order, once eliminated
     bool late = false;
+    bool ready = false;  ///< waits for nothing and is not eliminated
   };
 
   Candidate& at(int n) { return left_[std::size_t(n)]; }
-  static void sort_once(std::vector<int>& v) {
-    std::sort(v.begin(), v.end());
-    v.erase(std::unique(v.begin(), v.end()), v.end());
-  }
 
-  void find_neighbours(BlockPattern const& pattern, std::vector<Block> const& blocks, std::vector<int> const& node_of) {
+  void find_neighbours(BlockPattern const& pattern, std::span<Block const> blocks, Sequence<int> const& node_of) {
     for (std::size_t s = 0; s < node_of.size(); ++s) {
       at(node_of[s]).node.segments.push_back(int(s));
       at(node_of[s]).size += pattern.segments()[s].size;
@@ -76,9 +75,9 @@ class EliminationOrder {
     }
     for (Candidate& k : left_) sort_once(k.node.neighbours);
   }
-  void find_waits(BlockPattern const& pattern, std::vector<int> const& node_of, std::vector<char> const& late) {
+  void find_waits(BlockPattern const& pattern, Sequence<int> const& node_of, Sequence<char> const& late) {
     for (std::size_t n = 0; n < left_.size(); ++n) {
-      std::vector<int> after;
+      Sequence<int> after;
       for (int const s : left_[n].node.segments) {
         if (late[std::size_t(s)]) left_[n].late = true;
         for (int const before : pattern.segments()[std::size_t(s)].after)
@@ -95,15 +94,24 @@ class EliminationOrder {
     n.degree = 0;
     for (int const k : n.node.neighbours) n.degree += at(k).size;
   }
+  void offer(int n) {
+    at(n).ready = true;
+    ready_.push_back({-at(n).degree, -n});
+    std::push_heap(ready_.begin(), ready_.end());
+  }
   bool may_go(Candidate const& n) const { return n.waits <= 0 && (!n.late || remaining_early_ == 0); }
 
   /// The node of least degree among those that wait for nothing. Joints may wait for each other, across loops: then the
   /// first of those that wait for the fewest.
   int next() {
-    if (!ready_.empty()) {
-      int const n = ready_.begin()->second;
-      ready_.erase(ready_.begin());
-      return n;
+    while (!ready_.empty()) {
+      std::pop_heap(ready_.begin(), ready_.end());
+      auto const [degree, node] = ready_.back();
+      ready_.pop_back();
+      Candidate& least = at(-node);
+      if (!least.ready || least.degree != -degree) continue;  // it is eliminated, or its degree has changed
+      least.ready = false;
+      return -node;
     }
     int best = -1;
     for (int n = 0; n < int(left_.size()); ++n)
@@ -116,28 +124,27 @@ class EliminationOrder {
     Candidate& gone = at(n);
     gone.place = int(nodes.size());
     for (int const k : gone.node.neighbours) {
-      std::vector<int>& of_k = at(k).node.neighbours;
-      bool const queued = ready_.erase({at(k).degree, k}) > 0;
+      Sequence<int>& of_k = at(k).node.neighbours;
       merged_.clear();
       std::set_union(of_k.begin(), of_k.end(), gone.node.neighbours.begin(), gone.node.neighbours.end(),
                      std::back_inserter(merged_));
-      std::erase_if(merged_, [&](int m) { return m == k || m == n; });
+      erase_if(merged_, [&](int m) { return m == k || m == n; });
       of_k.swap(merged_);
       measure(at(k));
-      if (queued) ready_.insert({at(k).degree, k});
+      if (at(k).ready) offer(k);
     }
     for (int const k : gone.releases)
-      if (--at(k).waits <= 0 && at(k).place < 0 && may_go(at(k))) ready_.insert({at(k).degree, k});
+      if (--at(k).waits <= 0 && at(k).place < 0 && may_go(at(k))) offer(k);
     if (!gone.late && --remaining_early_ == 0)
       for (int k = 0; k < int(left_.size()); ++k)
-        if (at(k).place < 0 && may_go(at(k))) ready_.insert({at(k).degree, k});
+        if (at(k).place < 0 && may_go(at(k))) offer(k);
     nodes.push_back(std::move(gone.node));
   }
 
-  std::vector<Candidate> left_;
+  Sequence<Candidate> left_;
   std::size_t remaining_early_ = 0;       ///< nodes that are not late
-  std::set<std::pair<long, int>> ready_;  ///< (degree, node)
-  std::vector<int> merged_;
+  Sequence<std::pair<long, int>> ready_;  ///< a heap of (−degree, −node), some with a degree of before
+  Sequence<int> merged_;
 };
 
 }  // namespace polybody::detail

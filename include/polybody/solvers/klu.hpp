@@ -10,8 +10,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/sparse_sink.hpp>
 
 namespace polybody {
@@ -26,10 +29,10 @@ class Klu {
 
   Klu() = default;
   /// With the unknowns in this order (each once) instead of KLU's own (block triangular, AMD).
-  explicit Klu(std::vector<int> order) : order_(std::move(order)) {}
+  explicit Klu(std::vector<int> const& order) : order_(order.begin(), order.end()) {}
 
   /// \throws InvalidInput when an order was given that is not one of `size` unknowns.
-  void analyse(Index size, std::vector<Block> const& blocks) {
+  void analyse(Index size, std::span<Block const> blocks) {
     sink_.analyse(size, blocks);
     klu_ = std::make_unique<Handle>();
     if (size == 0) return;
@@ -87,7 +90,7 @@ class Klu {
     double* values;
   };
   void require_order(Index size) const {
-    std::vector<int> sorted = order_;
+    Sequence<int> sorted = order_;
     std::sort(sorted.begin(), sorted.end());
     bool right = Index(sorted.size()) == size;
     for (std::size_t i = 0; right && i < sorted.size(); ++i) right = sorted[i] == int(i);
@@ -119,7 +122,7 @@ class Klu {
   }
 
   SparseSink sink_;
-  std::vector<int> order_;
+  Sequence<int> order_;
   std::unique_ptr<Handle> klu_;
 };
 

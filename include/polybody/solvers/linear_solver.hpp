@@ -3,15 +3,16 @@
 /// What a linear solver offers: it receives the blocks of the matrix, by `add` or in the slots that it names.
 
 #include <algorithm>
-#include <vector>
+#include <span>
 
 #include <polybody/math/block_sink.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
 /// analyse (once, allocates) → begin → add… → factor → solve…; the blocks come in the analysed order.
 template <class S>
-concept LinearSolver = requires(S s, std::vector<Block> const blocks, Mat3 const block, VecX const b, VecX x) {
+concept LinearSolver = requires(S s, std::span<Block const> blocks, Mat3 const block, VecX const b, VecX x) {
   s.analyse(Index(1), blocks);
   s.begin();
   s.add(Index(0), Index(0), block);

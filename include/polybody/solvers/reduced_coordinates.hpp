@@ -3,6 +3,7 @@
 /// The coordinates of a time step of models whose policies eliminate unknowns: T of joint trees (`JointTree`) and of
 /// linear joints (`LinearElimination`). Bodies, joints and forces do not notice.
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/articulated_body.hpp>
 #include <polybody/system/dense_reduction.hpp>
 #include <polybody/system/mapped_sink.hpp>
@@ -228,17 +229,17 @@ class ReducedCoordinates {
 
   /// Where the whole unknowns stand in the equations: dependents of linear joints are spread, the rows of these left
   /// out.
-  void map_equations(std::vector<LinearRows> const& linear_rows) {
+  void map_equations(Sequence<LinearRows> const& linear_rows) {
     Index const nv = whole_speeds_;
-    std::vector<std::vector<UnknownMap::Target>> targets(std::size_t(nv + whole_rows_));
-    std::vector<bool> dependent(std::size_t(nv), false);
+    Sequence<Sequence<UnknownMap::Target>> targets(std::size_t(nv + whole_rows_));
+    Sequence<bool> dependent(std::size_t(nv), false);
     for (auto const& d : reduction_.linear().dependents()) dependent[std::size_t(d.v)] = true;
     for (Index i = 0; i < nv; ++i)
       if (!dependent[std::size_t(i)]) targets[std::size_t(i)].push_back({equation_speeds_++, 1.0});
     for (auto const& d : reduction_.linear().dependents())
       for (auto const& t : d.terms)
         targets[std::size_t(d.v)].push_back({targets[std::size_t(t.v)][0].unknown, t.factor});
-    std::vector<bool> linear(std::size_t(whole_rows_), false);
+    Sequence<bool> linear(std::size_t(whole_rows_), false);
     for (LinearRows const& rows : linear_rows)
       for (Index i = 0; i < rows.rows(); ++i) linear[std::size_t(rows.row + i)] = true;
     for (Index i = 0; i < whole_rows_; ++i)
@@ -253,7 +254,7 @@ class ReducedCoordinates {
   }
 
   void prepare_dense() {
-    std::vector<Index> row_of(std::size_t(whole_rows_), -1);
+    Sequence<Index> row_of(std::size_t(whole_rows_), -1);
     for (Index i = 0; i < reduction_.rows(); ++i) row_of[std::size_t(reduction_.rows_that_stay()[std::size_t(i)])] = i;
     dense_ = DenseReductionOf<>(whole_speeds_, reduction_.speeds(), reduction_.rows(), std::move(row_of));
   }
@@ -265,7 +266,7 @@ class ReducedCoordinates {
   Index whole_speeds_, whole_rows_;
   Index equation_speeds_ = 0, equation_rows_ = 0;
   UnknownMap map_;
-  std::vector<Index> equation_of_;
+  Sequence<Index> equation_of_;
   MappedBlocks mapped_;
   DenseReductionOf<> dense_;
 };

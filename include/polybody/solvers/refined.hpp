@@ -1,6 +1,7 @@
 #pragma once
 #include <span>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 
 namespace polybody {
@@ -11,8 +12,8 @@ namespace polybody {
 template <LinearSolver Solver>
 class Refined {
  public:
-  void analyse(Index size, std::vector<Block> const& blocks) {
-    blocks_ = blocks;
+  void analyse(Index size, std::span<Block const> blocks) {
+    blocks_ = Sequence<Block>(blocks.begin(), blocks.end());
     first_.assign(1, 0);
     for (Block const& b : blocks) first_.push_back(first_.back() + std::size_t(b.rows * b.cols));
     values_.assign(first_.back(), 0.0);
@@ -58,9 +59,9 @@ class Refined {
 
  private:
   Solver solver_;
-  std::vector<Block> blocks_;
-  std::vector<std::size_t> first_;  // of each block's values, and one past the last
-  std::vector<double> values_;
+  Sequence<Block> blocks_;
+  Sequence<std::size_t> first_;  // of each block's values, and one past the last
+  Sequence<double> values_;
   std::size_t next_ = 0;
   mutable VecX r_, dx_;
 };

@@ -4,7 +4,9 @@
 
 #include <Eigen/SparseCore>
 #include <cstdint>
+#include <span>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 
 namespace polybody {
@@ -15,16 +17,15 @@ class SparseSinkOf {
   using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;
 
   /// Finds each entry's place in the values once, so that `add` never searches.
-  void analyse(Index size, std::vector<Block> const& blocks) {
-    std::vector<std::vector<int>> columns(static_cast<std::size_t>(size));
+  void analyse(Index size, std::span<Block const> blocks) {
+    Sequence<Sequence<int>> columns(static_cast<std::size_t>(size));
     for (Block const& b : blocks)
       for (Index j = 0; j < b.cols; ++j)
         for (Index i = 0; i < b.rows; ++i) columns[std::size_t(b.col + j)].push_back(int(b.row + i));
-    std::vector<Eigen::Triplet<T>> entries;
+    Sequence<Eigen::Triplet<T>> entries;
     for (Index j = 0; j < size; ++j) {
       auto& rows = columns[std::size_t(j)];
-      std::sort(rows.begin(), rows.end());
-      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+      sort_once(rows);
       for (int i : rows) entries.emplace_back(i, int(j), 1.0);
     }
     a_.resize(size, size);
@@ -53,7 +54,7 @@ class SparseSinkOf {
 
  private:
   Matrix a_;
-  std::vector<std::int32_t> slots_;
+  Sequence<std::int32_t> slots_;
   std::size_t cursor_ = 0;
 };
 

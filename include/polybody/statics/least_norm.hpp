@@ -9,6 +9,7 @@
 /// y′ − Z c is one for every c. Multipliers of pinned rows are made zero, as a time step makes those of rows that it
 /// drops, and |x| is made least.
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/statics/null_space.hpp>
 
 namespace polybody {
@@ -70,7 +71,7 @@ class LeastNorm {
   }
 
   /// Unknowns that are pinned; the motion Z of the k-th (size).
-  std::vector<Index> const& pins() const { return pins_; }
+  Sequence<Index> const& pins() const { return pins_; }
   VecX const& motion(std::size_t k) const { return columns_[k].z; }
   /// The place among the pins of the motion that loads excite most, beyond rounding; −1 where they balance.
   Index excited() const { return excited_; }
@@ -140,9 +141,9 @@ class LeastNorm {
   System* system_;
   StaticTangent<Solver>* tangent_;
   Index nv_, excited_ = -1;
-  std::vector<Index> pins_;
-  std::vector<detail::NullColumn> columns_;  ///< Z
-  std::vector<VecX> basis_;
+  Sequence<Index> pins_;
+  Sequence<detail::NullColumn> columns_;  ///< Z
+  Sequence<VecX> basis_;
   VecX b_;
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody::detail {
@@ -15,8 +16,8 @@ template <class = void>  // compiled where it is used
 RigidPart rigid_part(System const& system, BodyPlace const& body, VecX const& z) {
   auto const entry = require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions");
   VecX all = VecX::Zero(system.layout().speeds), rest(body.speeds);
-  std::vector<VecX> columns;
-  std::vector<Vec6> motions;
+  Sequence<VecX> columns;
+  Sequence<Vec6> motions;
   auto const dot = [](VecX const& a, VecX const& b) {
     double sum = 0.0;
     for (Index i = 0; i < a.size(); ++i) sum += a[i] * b[i];

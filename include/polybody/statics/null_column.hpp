@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/math/sequence.hpp>
 #include <polybody/statics/static_tangent.hpp>
 
 namespace polybody::detail {
@@ -13,7 +14,7 @@ struct NullColumn {
 
 /// Adds up A z and |A| |z| of all columns.
 struct NullColumnSink {
-  std::vector<NullColumn>& columns;
+  Sequence<NullColumn>& columns;
 
   void add(Index row, Index col, BlockView const& b) {
     for (NullColumn& c : columns)
@@ -29,7 +30,7 @@ struct NullColumnSink {
 };
 
 template <LinearSolver Solver>
-void multiply(StaticTangent<Solver>& tangent, VecX const& lambda, std::vector<NullColumn>& columns) {
+void multiply(StaticTangent<Solver>& tangent, VecX const& lambda, Sequence<NullColumn>& columns) {
   if (columns.empty()) return;
   for (NullColumn& c : columns) c.product = c.size = VecX::Zero(c.z.size());
   NullColumnSink sink{columns};
@@ -47,7 +48,7 @@ inline void add_scaled(double factor, VecX const& z, VecX& to) {
 }
 /// Makes the last vector normal to those before it, and of unit length, by its first n entries (Gram–Schmidt, twice).
 template <class = void>
-void make_orthonormal(std::vector<VecX>& vectors, Index n) {
+void make_orthonormal(Sequence<VecX>& vectors, Index n) {
   VecX& last = vectors.back();
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t k = 0; k + 1 < vectors.size(); ++k)

@@ -6,6 +6,7 @@
 /// 2013, §8.2]. The matrix with the shift is quasi-definite where K is not negative, and its pivots stand far above
 /// rounding. A vector is accepted where what is left of A z is rounding beside |A| |z|.
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/statics/null_column.hpp>
 
 namespace polybody::detail {
@@ -30,7 +31,7 @@ class NullSpace {
       : tangent_(tangent), nv_(system.speeds()), scale_(VecX::Zero(system.size())), y_(scale_), one_(1) {}
 
   /// The unknowns that, held, leave nothing of the null space, into `pins`. −1, or an unknown without a pivot.
-  Index find(VecX const& lambda, std::vector<Index>& pins) {
+  Index find(VecX const& lambda, Sequence<Index>& pins) {
     RowSizeSink sizes{scale_};
     tangent_.write_scaled(lambda, sizes);
     for (Index i = 0; i < scale_.size(); ++i) scale_[i] = (scale_[i] > 0.0 ? scale_[i] : 1.0) * (i < nv_ ? 1.0 : -1.0);
@@ -63,7 +64,7 @@ class NullSpace {
   }
 
   /// By elimination with complete pivoting; of equal entries the last one, so that the joint connected last is dropped.
-  void choose(std::vector<Index>& pins) {
+  void choose(Sequence<Index>& pins) {
     pins.clear();
     for (std::size_t k = 0; k < vectors_.size(); ++k) {
       std::size_t best = k;
@@ -87,8 +88,8 @@ class NullSpace {
   StaticTangent<Solver>& tangent_;
   Index nv_;
   VecX scale_, y_;
-  std::vector<VecX> vectors_;
-  std::vector<NullColumn> one_;
+  Sequence<VecX> vectors_;
+  Sequence<NullColumn> one_;
 };
 
 }  // namespace polybody::detail

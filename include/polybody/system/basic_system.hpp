@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/assembly.hpp>
 #include <polybody/system/coordinates.hpp>
 
@@ -65,7 +66,7 @@ class BasicSystem {
   Index rows() const { return coordinates_ ? coordinates_.narrow->rows : layout_.rows; }
   Index size() const { return speeds() + rows(); }
   /// Rows without a position: Φ is zero there, Φ̇ and γ are not.
-  std::vector<Index> const& velocity_rows() const {
+  Sequence<Index> const& velocity_rows() const {
     return coordinates_ ? coordinates_.narrow->velocity_rows : layout_.velocity_rows;
   }
 
@@ -168,7 +169,7 @@ class BasicSystem {
   Vector& whole_rows(Vector& narrow) { return coordinates_ ? whole_rows_ : narrow; }
   void take_rows(Vector& narrow) const {
     if (!coordinates_) return;
-    std::vector<Index> const& stay = coordinates_.narrow->rows_that_stay;
+    Sequence<Index> const& stay = coordinates_.narrow->rows_that_stay;
     for (std::size_t i = 0; i < stay.size(); ++i) narrow[Index(i)] = whole_rows_[stay[i]];
   }
   void expand_rows(Vector const& narrow, Vector& whole) const { coordinates_.narrow->expand_rows(narrow, whole); }

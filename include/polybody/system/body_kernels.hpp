@@ -5,6 +5,7 @@
 /// that to another object file (see polybody/compiled.hpp).
 
 #include <polybody/bodies/shared/element_batches.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/entries.hpp>
 #include <polybody/system/layout.hpp>
 #include <polybody/system/pools.hpp>
@@ -16,8 +17,8 @@ namespace detail {
 /// Kept with a model's data for its bodies of one type: a pose for each body whose points share one, and scratch.
 template <class B, StateScalar T>
 struct BodyData {
-  std::vector<typename PoseOf<B, T>::Type> poses;
-  std::vector<KeptScratch<B, T>> scratch;
+  Sequence<typename PoseOf<B, T>::Type> poses;
+  Sequence<KeptScratch<B, T>> scratch;
 };
 
 /// How much of the arena of Jacobians is taken, and the columns of the widest marker.
@@ -53,7 +54,7 @@ struct BodyKernels {
   static void add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row);
   /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
   static Published<double> publish_point(B const& body, typename B::Point const& point, std::span<double const> q,
-                                         std::span<double const> v, std::vector<double>& jacobian);
+                                         std::span<double const> v, Sequence<double>& jacobian);
   /// Axes (3×3) at a marker's point, as placed.
   static Mat3 reference_axes(Pool const& pool, Marker<B> const& marker);
   /// Puts a marker into the pool. Returns the size of its Jacobian.
@@ -129,14 +130,14 @@ void BodyKernels<B, T>::add(Pool& pool, B const& body, std::string const& name, 
 template <class B, StateScalar T>
 Mat3 BodyKernels<B, T>::reference_axes(Pool const& pool, Marker<B> const& marker) {
   B const& body = pool.entries[std::size_t(marker.body)].body;
-  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0), jacobian;
+  Sequence<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0), jacobian;
   body.reference(q);
   return publish_point(body, marker.point, q, v, jacobian).frame.A;
 }
 template <class B, StateScalar T>
 Published<double> BodyKernels<B, T>::publish_point(B const& body, typename B::Point const& point,
                                                    std::span<double const> q, std::span<double const> v,
-                                                   std::vector<double>& jacobian) {
+                                                   Sequence<double>& jacobian) {
   Published<double> out;
   out.columns = point_columns(body, point);
   jacobian.resize(std::size_t(6 * out.columns));

@@ -7,6 +7,7 @@
 
 #include <polybody/forces/gravity.hpp>
 #include <polybody/joints/joint.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/body_kernels.hpp>
 #include <polybody/system/composition.hpp>
 #include <polybody/system/drive_axes.hpp>
@@ -26,9 +27,9 @@ inline std::uint64_t next_serial() {
 struct ModelParts {
   Gravity gravity;
   std::uint64_t serial;
-  std::vector<GroundMarker> ground = {};
-  std::vector<LinearRows> linear_rows = {};
-  std::vector<Index> velocity_rows = {};
+  Sequence<GroundMarker> ground = {};
+  Sequence<LinearRows> linear_rows = {};
+  Sequence<Index> velocity_rows = {};
   Names body_names = {}, joint_names = {}, force_names = {};
   DriveAxes drive_axes = {};
   Index coordinates = 0, speeds = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
@@ -111,8 +112,8 @@ BodyHandle<B> add_body(ModelParts& parts, BodyPool<B>& pool, B const& body, std:
 
 /// \throws InvalidInput naming the joint.
 template <class J, class A, class B>
-ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, J const& joint,
-                           PooledMarker<A> const& a, PooledMarker<B> const& b, std::string name) {
+ElementHandle<J> add_joint(ModelParts& parts, Sequence<JointEntry<J>>& pool, J const& joint, PooledMarker<A> const& a,
+                           PooledMarker<B> const& b, std::string name) {
   using G = typename J::Geometry;
   using P = typename J::PolicyType;
   using Asks = typename J::Measured;
@@ -158,7 +159,7 @@ ElementHandle<J> add_joint(ModelParts& parts, std::vector<JointEntry<J>>& pool, 
 
 /// A force element among the markers. \throws InvalidInput naming it.
 template <class F, class... Bs>
-ElementHandle<F> add_force(ModelParts& parts, std::vector<ForceEntry<F>>& pool, F const& force, std::string name,
+ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                            PooledMarker<Bs> const&... markers) {
   name = parts.force_names.given_or_next(std::move(name), "force", pool.size());
   force.check("\"" + name + "\"");
@@ -173,8 +174,8 @@ ElementHandle<F> add_force(ModelParts& parts, std::vector<ForceEntry<F>>& pool, 
 
 /// A group of forces with its many markers. \throws InvalidInput naming it.
 template <class F, class B>
-ElementHandle<F> add_group(ModelParts& parts, std::vector<ForceEntry<F>>& pool, F const& group,
-                           std::vector<PooledMarker<B>> const& many, std::string name) {
+ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& group,
+                           Sequence<PooledMarker<B>> const& many, std::string name) {
   name = parts.force_names.given_or_next(std::move(name), "group", pool.size());
   group.check("\"" + name + "\"");
   ForceEntry<F> entry{group, {}, name};

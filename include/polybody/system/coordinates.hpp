@@ -4,6 +4,7 @@
 /// v̇ = T u̇ + b. A table of functions, so that programs whose joints eliminate nothing compile none of it.
 
 #include <polybody/math/block_sink.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/entries.hpp>
 #include <polybody/system/state.hpp>
 
@@ -12,17 +13,17 @@ namespace polybody {
 /// What is known of narrow vectors beside the functions.
 struct NarrowLayout {
   Index coordinates = 0, speeds = 0, rows = 0;
-  std::vector<Index> velocity_rows = {};  ///< narrow
-  std::vector<NarrowPlace> places = {};   ///< of the bodies, in the order of the layout
-  std::vector<Index> whole_speed = {};    ///< behind a narrow one; of a joint coordinate, the first of the carried body
-  std::vector<Index> rows_that_stay = {};   ///< by their number in the model
+  Sequence<Index> velocity_rows = {};   ///< narrow
+  Sequence<NarrowPlace> places = {};    ///< of the bodies, in the order of the layout
+  Sequence<Index> whole_speed = {};     ///< behind a narrow one; of a joint coordinate, the first of the carried body
+  Sequence<Index> rows_that_stay = {};  ///< by their number in the model
   std::vector<std::string> redundant = {};  ///< joints whose linear rows repeat others
 
   /// A linear system of equations may have other unknowns than a time step; those that stand for speeds come first.
   Index equations = 0, equation_speeds = 0;
-  std::vector<Index> whole_unknown = {};  ///< behind an equation; empty where they are those of a step
-  bool solves_by_bodies = false;          ///< the tree itself is the solver
-  bool keeps_mass_constant = false;       ///< T is constant
+  Sequence<Index> whole_unknown = {};  ///< behind an equation; empty where they are those of a step
+  bool solves_by_bodies = false;       ///< the tree itself is the solver
+  bool keeps_mass_constant = false;    ///< T is constant
 
   /// Multipliers of all rows from those of a step; zero for rows that are eliminated.
   template <StateScalar T>

@@ -3,10 +3,10 @@
 /// Everything that is computed from a state, as arrays. The model itself stays const.
 
 #include <memory>
-#include <vector>
 
 #include <polybody/kinematics/frame.hpp>
 #include <polybody/math/pack.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/math/workers.hpp>
 #include <polybody/system/row_block.hpp>
 
@@ -21,23 +21,23 @@ struct Build {
 
 template <StateScalar T = double, Build build = Build{}>
 struct Data {
-  std::vector<Published<T>> markers;  ///< waist 1, one for each marker
-  std::vector<T> jacobians;           ///< arena of the dense Jacobians
-  std::vector<RowBlock<T>> rows;      ///< waist 2, one for each joint and each body that owns rows
-  std::vector<Action<T>> actions;     ///< what force elements do, one for each marker of each
-  std::vector<T> states, rates;       ///< first-order ones of force elements, z and ż
-  Index first_state = 0;              ///< among the speeds
+  Sequence<Published<T>> markers;  ///< waist 1, one for each marker
+  Sequence<T> jacobians;           ///< arena of the dense Jacobians
+  Sequence<RowBlock<T>> rows;      ///< waist 2, one for each joint and each body that owns rows
+  Sequence<Action<T>> actions;     ///< what force elements do, one for each marker of each
+  Sequence<T> states, rates;       ///< first-order ones of force elements, z and ż
+  Index first_state = 0;           ///< among the speeds
 
-  std::vector<Wrench<double>> loads;             ///< per marker: what the tangent's second-order terms need
-  std::vector<Mat<double, 6, 6>> own_stiffness;  ///< per marker of the largest force group
-  std::vector<double> scratch;                   ///< for pulled blocks: n×18 and n×n of the widest marker
+  Sequence<Wrench<double>> loads;             ///< per marker: what the tangent's second-order terms need
+  Sequence<Mat<double, 6, 6>> own_stiffness;  ///< per marker of the largest force group
+  Sequence<double> scratch;                   ///< for pulled blocks: n×18 and n×n of the widest marker
 
   bool linear_rows = true;  ///< else rows of linear joints are left out, and markers that these alone read
-  std::vector<char> read;   ///< per marker: by anything but linear joints
+  Sequence<char> read;      ///< per marker: by anything but linear joints
 
-  Workers* workers = nullptr;            ///< threads that share the loops; none by default
-  std::vector<T> element_forces;         ///< with workers: of all elements of a body, before they are added in order
-  std::vector<double> element_tangents;  ///< the same
+  Workers* workers = nullptr;         ///< threads that share the loops; none by default
+  Sequence<T> element_forces;         ///< with workers: of all elements of a body, before they are added in order
+  Sequence<double> element_tangents;  ///< the same
   static constexpr Index least_elements = 32;  ///< that are worth a thread
   static constexpr Index least_markers = 128;
 

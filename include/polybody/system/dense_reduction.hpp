@@ -1,7 +1,7 @@
 #pragma once
-#include <vector>
 
 #include <polybody/math/block_sink.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
@@ -13,7 +13,7 @@ class DenseReductionOf {
  public:
   DenseReductionOf() = default;
   /// \param row_of where each row of the model goes among `rows`; −1 where it is left out
-  DenseReductionOf(Index whole_speeds, Index speeds, Index rows, std::vector<Index> row_of)
+  DenseReductionOf(Index whole_speeds, Index speeds, Index rows, Sequence<Index> row_of)
       : row_of_(std::move(row_of)),
         speeds_(whole_speeds),
         transposed_(MatXOf<T>::Zero(speeds, whole_speeds)),
@@ -55,7 +55,7 @@ class DenseReductionOf {
   }
 
  private:
-  std::vector<Index> row_of_;
+  Sequence<Index> row_of_;
   Index speeds_ = 0;
   MatXOf<T> transposed_, k_, g_;
   VecXOf<T> half_;

@@ -5,10 +5,10 @@
 #include <array>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <polybody/joints/joint_axis.hpp>
 #include <polybody/joints/policies/policy.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody::detail {
 
@@ -56,7 +56,7 @@ class DriveAxes {
     return "(" + number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + ")";
   }
 
-  std::array<std::vector<Turn>, 2> turns_;  ///< of pins, of drives
+  std::array<Sequence<Turn>, 2> turns_;  ///< of pins, of drives
 };
 
 }  // namespace polybody::detail

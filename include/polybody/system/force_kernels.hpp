@@ -4,6 +4,7 @@
 /// model (compare body_kernels.hpp).
 
 #include <polybody/forces/force_states.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/joint_kernels.hpp>
 
 namespace polybody {
@@ -177,7 +178,7 @@ void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt 
 template <class F, StateScalar T>
 struct ForceKernels {
   using Entry = detail::ForceEntry<F>;
-  using Pool = std::vector<Entry>;
+  using Pool = Sequence<Entry>;
 
   /// Places and names.
   static void describe(Pool const& pool, ModelLayout& out);

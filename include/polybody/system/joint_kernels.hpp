@@ -6,6 +6,7 @@
 #include <new>
 
 #include <polybody/joints/joint.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/math/time_laws.hpp>
 #include <polybody/system/body_tangents.hpp>
 #include <polybody/system/linear_rows.hpp>
@@ -34,13 +35,13 @@ namespace detail {
 /// Kept with a model's data for its joints of one type: a gap for each, and what it answers if it is compliant.
 template <class J, StateScalar T>
 struct JointData {
-  std::vector<Gap<J::rows, T>> gaps;
-  std::vector<Vec<T, J::rows>> answers;
+  Sequence<Gap<J::rows, T>> gaps;
+  Sequence<Vec<T, J::rows>> answers;
 };
 
 /// Times at which a drive or a load wants a step to end.
 template <class Law>
-void add_corners(Law const& law, std::vector<double>& all) {
+void add_corners(Law const& law, Sequence<double>& all) {
   if constexpr (HasCorners<Law>)
     for (double const t : law.corners()) all.push_back(t);
 }
@@ -93,12 +94,12 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
 template <class J, StateScalar T>
 struct JointKernels {
   using P = typename J::PolicyType;
-  using Pool = std::vector<detail::JointEntry<J>>;
+  using Pool = Sequence<detail::JointEntry<J>>;
   using Kept = detail::JointData<J, T>;
   static constexpr bool linear = LinearInCoordinates<P>, compliant = !AddsRows<P>;
 
   /// Counts, places and names.
-  static void describe(Pool const& pool, std::vector<LinearRows> const& linear_rows, ModelLayout& out);
+  static void describe(Pool const& pool, Sequence<LinearRows> const& linear_rows, ModelLayout& out);
   /// A gap and a block of rows for each joint; `owner` is the first joint's place. The blocks of linear joints stand
   /// from `first_linear` on, and are told their owners.
   static void place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data);
@@ -124,7 +125,7 @@ struct JointKernels {
 };
 
 template <class J, StateScalar T>
-void JointKernels<J, T>::describe(Pool const& pool, std::vector<LinearRows> const& linear_rows, ModelLayout& out) {
+void JointKernels<J, T>::describe(Pool const& pool, Sequence<LinearRows> const& linear_rows, ModelLayout& out) {
   Index index = 0;
   for (auto const& e : pool) {
     LinearRows const* const rows = e.linear < 0 ? nullptr : &linear_rows[std::size_t(e.linear)];

@@ -27,7 +27,7 @@ class JointTreeOf {
 
  public:
   /// Bodies in an order in which each stands behind its parent.
-  std::vector<TreeBody> bodies;
+  Sequence<TreeBody> bodies;
 
   bool empty() const { return bodies.empty(); }
 
@@ -78,7 +78,7 @@ class JointTreeOf {
 
   /// out = T u, or T u + b with `bias`: whole from narrow, where the parts of roots stand already.
   void expand_rates(TreeState& s, VecX const& u, bool bias, VecX& out) const {
-    std::vector<Vec6>& twist = s.twists;
+    Sequence<Vec6>& twist = s.twists;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
       TreeFrame const& f = s.frames[i];
@@ -246,7 +246,7 @@ class JointTreeOf {
   }
 
   TreeState state() const {
-    return {std::vector<TreeFrame>(bodies.size()), std::vector<Vec6>(bodies.size()), std::vector<Vec6>(bodies.size())};
+    return {Sequence<TreeFrame>(bodies.size()), Sequence<Vec6>(bodies.size()), Sequence<Vec6>(bodies.size())};
   }
 
   /// [v; ω] of a whole vector of speeds or accelerations in world axes.

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody {
@@ -37,10 +37,10 @@ struct JointPlace {
 
 struct ForcePlace {
   std::string name = {};
-  void const* type = nullptr;       ///< tells types of forces apart
-  Index index = 0;                  ///< among the forces of its type
-  void const* force = nullptr;      ///< the force element itself, in the model
-  std::vector<Index> markers = {};  ///< published
+  void const* type = nullptr;    ///< tells types of forces apart
+  Index index = 0;               ///< among the forces of its type
+  void const* force = nullptr;   ///< the force element itself, in the model
+  Sequence<Index> markers = {};  ///< published
   bool is_load = false;
   Index v0 = -1, states = 0;  ///< first-order states of its own, among the speeds
   bool stores = false;        ///< it has a potential
@@ -50,14 +50,14 @@ struct ForcePlace {
 struct ModelLayout {
   std::uint64_t serial = 0;  ///< of the model, as its handles know it
   Index coordinates = 0, speeds = 0, rows = 0;
-  Index states = 0;                       ///< first-order ones: the last of the speeds
-  std::vector<Index> velocity_rows = {};  ///< rows without a position, ascending
-  std::vector<BodyPlace> bodies = {};
-  std::vector<JointPlace> joints = {};
-  std::vector<ForcePlace> forces = {};
-  std::vector<Index> owners = {};    ///< of each published marker: the body, −1 for the ground
-  Vec3 gravity = Vec3::Zero();       ///< (3) world axes [m/s²]
-  std::vector<double> corners = {};  ///< times at which a drive or a load wants a step to end
+  Index states = 0;                    ///< first-order ones: the last of the speeds
+  Sequence<Index> velocity_rows = {};  ///< rows without a position, ascending
+  Sequence<BodyPlace> bodies = {};
+  Sequence<JointPlace> joints = {};
+  Sequence<ForcePlace> forces = {};
+  Sequence<Index> owners = {};    ///< of each published marker: the body, −1 for the ground
+  Vec3 gravity = Vec3::Zero();    ///< (3) world axes [m/s²]
+  Sequence<double> corners = {};  ///< times at which a drive or a load wants a step to end
   bool constant_mass = false;
   bool has_groups = false;  ///< of forces
 

@@ -9,6 +9,7 @@
 #include <map>
 
 #include <polybody/math/errors.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/linear_rows.hpp>
 
 namespace polybody {
@@ -24,21 +25,21 @@ class LinearEliminationOf {
   struct Dependent {
     Index q, v;
     T constant;
-    std::vector<Term> terms;
+    Sequence<Term> terms;
   };
 
   LinearEliminationOf() = default;
   /// \throws InconsistentStart when rows contradict each other; those that repeat others are left out.
-  explicit LinearEliminationOf(std::vector<LinearRows> const& joints) {
+  explicit LinearEliminationOf(Sequence<LinearRows> const& joints) {
     for (LinearRows const& rows : joints)
       for (Index i = 0; i < rows.rows(); ++i) take(rows, i);
     for (std::size_t k = pivots_.size(); k-- > 0;) solve_for(k);
   }
 
   bool empty() const { return dependents_.empty(); }
-  std::vector<Dependent> const& dependents() const { return dependents_; }
+  Sequence<Dependent> const& dependents() const { return dependents_; }
   /// Rows that repeat others.
-  std::vector<Index> const& redundant() const { return redundant_; }
+  Sequence<Index> const& redundant() const { return redundant_; }
 
   /// Dependent coordinates, and speeds or accelerations, from the independent ones.
   void expand_coordinates(VecXOf<T>& q) const {
@@ -80,8 +81,8 @@ class LinearEliminationOf {
     Index v = -1;                ///< its dependent
     std::map<Index, T> entries;  ///< by speeds
     T constant;
-    std::vector<std::pair<std::size_t, T>> multiples = {};  ///< m_kj
-    std::vector<std::pair<std::size_t, T>> above = {};      ///< row'_j,dk of earlier rows
+    Sequence<std::pair<std::size_t, T>> multiples = {};  ///< m_kj
+    Sequence<std::pair<std::size_t, T>> above = {};      ///< row'_j,dk of earlier rows
   };
 
   void take(LinearRows const& joint, Index i) {
@@ -159,9 +160,9 @@ class LinearEliminationOf {
     dependents_.push_back(std::move(d));
   }
 
-  std::vector<Pivot> pivots_;
-  std::vector<Dependent> dependents_;
-  std::vector<Index> redundant_;
+  Sequence<Pivot> pivots_;
+  Sequence<Dependent> dependents_;
+  Sequence<Index> redundant_;
   std::map<Index, Index> coordinate_;  // of a speed
   std::map<Index, std::size_t> pivot_of_, solved_;
 };

@@ -3,9 +3,9 @@
 /// Rows of linear joints, Φ = C_a e_a + C_b e_b − c, with C constant [thesis §3.5.4].
 
 #include <string>
-#include <vector>
 
 #include <polybody/bodies/shared/body.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/composition.hpp>
 
 namespace polybody {
@@ -30,7 +30,7 @@ struct LinearRows {
     Vec3 fixed;  ///< what it is where b is the ground
     Vec3 axis;   ///< (3) of a single row
   };
-  std::vector<Gradient> gradients = {};
+  Sequence<Gradient> gradients = {};
   Index rows() const { return constant.size(); }
 };
 
@@ -68,7 +68,7 @@ template <HasLinearPoints B, class T = double>
 LinearPointOf<T> linear_point(B const& body, typename B::Point const& p) {
   LinearPointOf<T> out;
   out.size = B::world == World::plane ? 2 : 3;
-  std::vector<double> reference(std::size_t(body.coordinates()));
+  Sequence<double> reference(std::size_t(body.coordinates()));
   body.reference(reference);
   auto const position = body.position_map(p);
   out.columns = position.cols();

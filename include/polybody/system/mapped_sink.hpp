@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <list>
-#include <vector>
 
 #include <polybody/math/block_sink.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
@@ -22,7 +22,7 @@ class UnknownMapOf {
 
   /// `targets[i]` of whole unknown i: one with factor one for most, several for a dependent one, none for one that is
   /// left out.
-  explicit UnknownMapOf(std::vector<std::vector<Target>> targets = {})
+  explicit UnknownMapOf(Sequence<Sequence<Target>> targets = {})
       : targets_(std::move(targets)), run_end_(targets_.size()) {
     for (std::size_t i = targets_.size(); i-- > 0;) {
       bool const goes_on = i + 1 < targets_.size() && plain(i) && plain(i + 1) &&
@@ -37,7 +37,7 @@ class UnknownMapOf {
   }
   Index size() const { return Index(targets_.size()); }
   /// The unknowns that whole unknown i goes to, with their factors.
-  std::vector<Target> const& targets(Index i) const { return targets_[std::size_t(i)]; }
+  Sequence<Target> const& targets(Index i) const { return targets_[std::size_t(i)]; }
 
   /// All unknowns that a range touches, in runs.
   struct Range {
@@ -45,17 +45,16 @@ class UnknownMapOf {
       Index first, size, local;
     };
     Index whole_size = 0, size = 0;
-    std::vector<Run> runs;
-    std::vector<std::vector<Target>> targets;  ///< of each whole unknown, by local number
-    std::vector<Index> chosen;  ///< where no whole unknown has more than one target, nor another factor than one: its
-                                ///< local number, or −1
+    Sequence<Run> runs;
+    Sequence<Sequence<Target>> targets;  ///< of each whole unknown, by local number
+    Sequence<Index> chosen;  ///< where no whole unknown has more than one target, nor another factor than one: its
+                             ///< local number, or −1
   };
   Range range(Index first, Index size) const {
-    std::vector<Index> touched;
+    Sequence<Index> touched;
     for (Index i = first; i < first + size; ++i)
       for (Target const& t : targets(i)) touched.push_back(t.unknown);
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    sort_once(touched);
     auto const local = [&](Index unknown) {
       return Index(std::lower_bound(touched.begin(), touched.end(), unknown) - touched.begin());
     };
@@ -81,17 +80,17 @@ class UnknownMapOf {
 
  private:
   bool plain(std::size_t i) const { return targets_[i].size() == 1 && targets_[i][0].factor == 1.0; }
-  std::vector<std::vector<Target>> targets_;
-  std::vector<Index> run_end_;  // behind the last unknown of the run that i is in; i itself when it is not plain
+  Sequence<Sequence<Target>> targets_;
+  Sequence<Index> run_end_;  // behind the last unknown of the run that i is in; i itself when it is not plain
 };
 
 /// What a mapped sink keeps from pass to pass: ranges by their first unknown, and room for blocks, by rows.
 template <class T = double>
 struct MappedBlocksOf {
-  std::vector<std::list<typename UnknownMapOf<T>::Range>> ranges;
-  std::vector<T> half, whole;
+  Sequence<std::list<typename UnknownMapOf<T>::Range>> ranges;
+  Sequence<T> half, whole;
 
-  static T* zeros(std::vector<T>& room, Index size) {
+  static T* zeros(Sequence<T>& room, Index size) {
     if (room.size() < std::size_t(size)) room.resize(std::size_t(size));
     std::fill_n(room.begin(), size, 0.0);
     return room.data();

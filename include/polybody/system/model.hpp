@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/math/type_list.hpp>
 #include <polybody/system/connections.hpp>
 #include <polybody/system/list_refusals.hpp>
@@ -24,8 +25,8 @@ template <Body... Bs, class... Js, AppliedForce... Fs>
 class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
   using BodyPools = std::tuple<detail::BodyPool<Bs>...>;
-  using JointPools = std::tuple<std::vector<detail::JointEntry<Js>>...>;
-  using ForcePools = std::tuple<std::vector<detail::ForceEntry<Fs>>...>;
+  using JointPools = std::tuple<Sequence<detail::JointEntry<Js>>...>;
+  using ForcePools = std::tuple<Sequence<detail::ForceEntry<Fs>>...>;
 
   /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
   static constexpr bool may_have_rows = (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
@@ -74,7 +75,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
         "This joint needs more than the marker tells (a full frame, say, of a body that only "
         "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
         "Revolute about its tangent, with the cable's marker second.");
-    return detail::add_joint(parts_, std::get<std::vector<detail::JointEntry<J>>>(joints_), joint, pooled(a), pooled(b),
+    return detail::add_joint(parts_, std::get<Sequence<detail::JointEntry<J>>>(joints_), joint, pooled(a), pooled(b),
                              std::move(name));
   }
 
@@ -107,7 +108,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
     static_assert(Marker<A>::observes >= F::needs, "This force needs more than the marker tells.");
-    std::vector<detail::PooledMarker<A>> pooled_many;
+    Sequence<detail::PooledMarker<A>> pooled_many;
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
   }
@@ -162,7 +163,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   Index states() const { return parts_.states; }
   Index rows() const { return parts_.rows; }
   /// Those of the rows that hold speeds and no positions, ascending.
-  std::vector<Index> const& velocity_rows() const { return parts_.velocity_rows; }
+  Sequence<Index> const& velocity_rows() const { return parts_.velocity_rows; }
   Index markers() const { return parts_.markers; }
   Index jacobian_size() const { return parts_.jacobian_size; }
   Index body_count() const { return parts_.bodies; }
@@ -171,8 +172,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   BodyPools const& body_pools() const { return bodies_; }
   JointPools const& joint_pools() const { return joints_; }
   ForcePools const& force_pools() const { return forces_; }
-  std::vector<detail::GroundMarker> const& ground_markers() const { return parts_.ground; }
-  std::vector<LinearRows> const& linear_rows() const { return parts_.linear_rows; }
+  Sequence<detail::GroundMarker> const& ground_markers() const { return parts_.ground; }
+  Sequence<LinearRows> const& linear_rows() const { return parts_.linear_rows; }
 
   /// \throws InvalidInput when the handle is of another model, or made by default.
   template <OneOf<Bs...> B>
@@ -183,12 +184,12 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Js...> J>
   auto const& entry(ElementHandle<J> const& handle) const {
     require_own(handle);
-    return std::get<std::vector<detail::JointEntry<J>>>(joints_)[std::size_t(handle.index)];
+    return std::get<Sequence<detail::JointEntry<J>>>(joints_)[std::size_t(handle.index)];
   }
   template <OneOf<Fs...> F>
   auto const& entry(ElementHandle<F> const& handle) const {
     require_own(handle);
-    return std::get<std::vector<detail::ForceEntry<F>>>(forces_)[std::size_t(handle.index)];
+    return std::get<Sequence<detail::ForceEntry<F>>>(forces_)[std::size_t(handle.index)];
   }
   /// Calls f(entry) for every body, in the order of the types.
   template <class F>
@@ -219,8 +220,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (auto const& e : pool) f(e);
   }
   template <class F>
-  std::vector<detail::ForceEntry<F>>& pool_of() {
-    return std::get<std::vector<detail::ForceEntry<F>>>(forces_);
+  Sequence<detail::ForceEntry<F>>& pool_of() {
+    return std::get<Sequence<detail::ForceEntry<F>>>(forces_);
   }
   template <class B>
   detail::PooledMarker<B> pooled(Marker<B> const& m) {

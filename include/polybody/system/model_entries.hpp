@@ -3,6 +3,7 @@
 /// The table of a model's entries, and its layout: the only place where a model's type turns into functions and data.
 /// The loops are those of its types (body_kernels.hpp, joint_kernels.hpp, force_kernels.hpp), one after another.
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/secant_entries.hpp>
 #include <polybody/system/typed_data.hpp>
 
@@ -24,11 +25,11 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     return bodies_of<B>(model_of(m));
   }
   template <class J>
-  static std::vector<JointEntry<J>> const& joints(void const* m) {
+  static Sequence<JointEntry<J>> const& joints(void const* m) {
     return joints_of<J>(model_of(m));
   }
   template <class F>
-  static std::vector<ForceEntry<F>> const& forces(void const* m) {
+  static Sequence<ForceEntry<F>> const& forces(void const* m) {
     return forces_of<F>(model_of(m));
   }
   template <class B>

@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/body_kernels.hpp>
 #include <polybody/system/markers.hpp>
 #include <polybody/system/state.hpp>
@@ -21,7 +22,7 @@ namespace detail {
 /// The place of the T with this index among those of its type. \throws InvalidInput naming `what` where the model that
 /// it belongs to is not that of the places.
 template <class T, class Place>
-Index index_of(std::vector<Place> const& places, bool own, Index index, std::string const& what) {
+Index index_of(Sequence<Place> const& places, bool own, Index index, std::string const& what) {
   if (own)
     for (std::size_t i = 0; i < places.size(); ++i)
       if (places[i].type == &type_tag<T> && places[i].index == index) return Index(i);
@@ -93,7 +94,7 @@ BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& ma
 
 /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
 template <class B>
-Published<double> publish(BodyInState<B> const& b, typename B::Point const& point, std::vector<double>& jacobian) {
+Published<double> publish(BodyInState<B> const& b, typename B::Point const& point, Sequence<double>& jacobian) {
   return BodyKernels<B, double>::publish_point(b.body, point, b.q, b.v, jacobian);
 }
 

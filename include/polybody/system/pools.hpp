@@ -5,13 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include <polybody/bodies/shared/body.hpp>
 #include <polybody/forces/force_group.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/kinematics/marker.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
@@ -44,7 +44,7 @@ struct MarkerEntry {
 template <class B>
 struct BodyPool {
   BodyEntries<B> entries;
-  std::vector<MarkerEntry<B>> markers;
+  Sequence<MarkerEntry<B>> markers;
 };
 
 struct GroundMarker {
@@ -73,7 +73,7 @@ struct ForceEntry {
 template <ForceGroup F>
 struct ForceEntry<F> {
   F force;
-  std::vector<Index> markers;
+  Sequence<Index> markers;
   std::string name;
 };
 

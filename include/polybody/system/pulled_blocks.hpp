@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <polybody/math/block_sink.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/data.hpp>
 
 namespace polybody::detail {
@@ -42,7 +43,7 @@ void pull_dense(Published<double> const& p, double const* w, Index down, Index r
 
 /// Jᵀ w of m wrenches, columns×m, in `scratch`; entry i of wrench k is w[down i + right k].
 template <int m>
-BlockView pulled(Published<double> const& p, double const* w, Index down, Index right, std::vector<double>& scratch) {
+BlockView pulled(Published<double> const& p, double const* w, Index down, Index right, Sequence<double>& scratch) {
   if (p.shape == JacobianShape::rigid) {  // by rows, as sinks store a body before its joint
     pull_rigid<m>(p, w, down, right, scratch.data());
     return {scratch.data(), 6, m, m, 1};
@@ -53,7 +54,7 @@ BlockView pulled(Published<double> const& p, double const* w, Index down, Index 
 
 /// Writes (map J)ᵀ and its mirror for the m rows of a marker's end from `row` on.
 template <int m>
-void add_pulled_rows(Published<double> const& p, double const* map, Index row, std::vector<double>& scratch,
+void add_pulled_rows(Published<double> const& p, double const* map, Index row, Sequence<double>& scratch,
                      BlockSink& sink) {
   if (p.columns == 0) return;
   BlockView const columns = pulled<m>(p, map, m, 1, scratch);
@@ -64,7 +65,7 @@ void add_pulled_rows(Published<double> const& p, double const* map, Index row, s
 /// sink += JaᵀS Jb; entry (i, j) of S stands at s[i + stride j].
 template <class = void>
 void add_pulled_pair(Published<double> const& a, Published<double> const& b, double const* s, Index stride,
-                     std::vector<double>& scratch, BlockSink& sink) {
+                     Sequence<double>& scratch, BlockSink& sink) {
   if (a.columns == 0 || b.columns == 0) return;
   if (a.shape == JacobianShape::rigid && b.shape == JacobianShape::rigid) {
     double half[36], out[36];
@@ -96,7 +97,7 @@ void add_pulled_pair(Published<double> const& a, Published<double> const& b, dou
 /// sink += Jiᵀ S_ij Jj for all pairs of n markers, or for i = j only; S is 6n×6n by columns.
 template <int n>
 void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const& markers, double const* s,
-                      bool couples, std::vector<double>& scratch, BlockSink& sink) {
+                      bool couples, Sequence<double>& scratch, BlockSink& sink) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       if (couples || i == j)
@@ -130,7 +131,7 @@ void pull_rows(Published<double> const& p, double const* map, double* out) {
 /// each pair.
 template <int m, bool diagonal>
 void add_pulled_slope(std::array<Published<double> const*, 2> const& markers, double const* const (&maps)[2],
-                      double const* slope, std::vector<double>& scratch, BlockSink& sink) {
+                      double const* slope, Sequence<double>& scratch, BlockSink& sink) {
   double* place = scratch.data();
   auto const take = [&](Index size) { return std::exchange(place, place + size); };
   double* const rows[2] = {take(m * markers[0]->columns), take(m * markers[1]->columns)};  // (Gi Ji)ᵀ, columns×m

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/entries.hpp>
 #include <polybody/system/joint_tree.hpp>
 #include <polybody/system/linear_elimination.hpp>
@@ -22,10 +23,10 @@ class ReductionOf {
   template <class M>
   explicit ReductionOf(M const& model) : linear_(model.linear_rows()) {
     if constexpr (!std::is_void_v<typename M::Solution>) grow_tree(model);
-    std::vector<Extent> extents;
+    Sequence<Extent> extents;
     model.for_each_body([&](auto const& e) { extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.speeds()}); });
     number_unknowns(extents, model.coordinates(), model.speeds(), model.states());
-    std::vector<bool> gone(std::size_t(model.rows()), false);
+    Sequence<bool> gone(std::size_t(model.rows()), false);
     model.for_each_joint([&](auto const& e) {
       using J = std::decay_t<decltype(e.joint)>;
       if constexpr (Eliminates<typename J::PolicyType>) std::fill_n(gone.begin() + e.row, e.rows, true);
@@ -39,11 +40,11 @@ class ReductionOf {
   JointTreeOf<T> const& tree() const { return tree_; }
   LinearEliminationOf<T> const& linear() const { return linear_; }
   /// In the order in which `for_each_body` goes.
-  std::vector<NarrowPlace> const& places() const { return places_; }
+  Sequence<NarrowPlace> const& places() const { return places_; }
   /// Rows that stay, by their number in the model.
-  std::vector<Index> const& rows_that_stay() const { return rows_; }
+  Sequence<Index> const& rows_that_stay() const { return rows_; }
   /// Those of them that are of velocity level, by their narrow number.
-  std::vector<Index> const& velocity_rows() const { return velocity_rows_; }
+  Sequence<Index> const& velocity_rows() const { return velocity_rows_; }
   /// The speed of the whole model behind a narrow one: of a joint coordinate, the first of the body that it carries.
   Index whole_speed(Index i) const { return whole_speed_[std::size_t(i)]; }
   /// Place in the tree of the body that the joint with this first row carries.
@@ -90,11 +91,11 @@ class ReductionOf {
 
   template <class M>
   void grow_tree(M const& model) {
-    std::vector<TreeBody> bodies;
-    std::vector<Hook> hooks(std::size_t(model.markers()));
+    Sequence<TreeBody> bodies;
+    Sequence<Hook> hooks(std::size_t(model.markers()));
     std::apply([&](auto const&... pool) { (hook(pool, bodies, hooks), ...); }, model.body_pools());
     for (detail::GroundMarker const& g : model.ground_markers()) hooks[std::size_t(g.published)].frame = g.placement;
-    std::vector<Link> links;
+    Sequence<Link> links;
     model.for_each_joint([&](auto const& e) {
       using J = std::decay_t<decltype(e.joint)>;
       if constexpr (MakesJointCoordinates<typename J::PolicyType>)
@@ -108,7 +109,7 @@ class ReductionOf {
   }
 
   template <class B>
-  static void hook(detail::BodyPool<B> const& pool, std::vector<TreeBody>& bodies, std::vector<Hook>& hooks) {
+  static void hook(detail::BodyPool<B> const& pool, Sequence<TreeBody>& bodies, Sequence<Hook>& hooks) {
     if constexpr (HasRigidLayout<B>) {
       Index const first = Index(bodies.size());
       for (auto const& e : pool.entries)
@@ -123,19 +124,19 @@ class ReductionOf {
   }
 
   /// \throws InvalidInput naming the first joint, as they were connected, between bodies that joints before it connect.
-  static void refuse_loops(std::size_t bodies, std::vector<Link> const& links);
+  static void refuse_loops(std::size_t bodies, Sequence<Link> const& links);
 
   /// Breadth first from the ground, then from a body of each part that is left: every joint carries one body. Bodies
   /// without a recursive joint only with `all`, as roots.
-  void hang(std::vector<TreeBody> const& bodies, std::vector<Link> const& links, VecX const& reference, bool all);
+  void hang(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference, bool all);
 
-  void number_unknowns(std::vector<Extent> const& extents, Index coordinates, Index speeds, Index states) {
-    std::vector<bool> dependent_v(std::size_t(speeds), false), dependent_q(std::size_t(coordinates), false);
+  void number_unknowns(Sequence<Extent> const& extents, Index coordinates, Index speeds, Index states) {
+    Sequence<bool> dependent_v(std::size_t(speeds), false), dependent_q(std::size_t(coordinates), false);
     for (auto const& d : linear_.dependents()) dependent_v[std::size_t(d.v)] = dependent_q[std::size_t(d.q)] = true;
-    std::vector<Index> in_tree(std::size_t(speeds) + 1, -1);  // by first speed
+    Sequence<Index> in_tree(std::size_t(speeds) + 1, -1);  // by first speed
     for (std::size_t i = 0; i < tree_.bodies.size(); ++i) in_tree[std::size_t(tree_.bodies[i].v0)] = Index(i);
     places_.resize(extents.size());
-    std::vector<std::size_t> order(extents.size());
+    Sequence<std::size_t> order(extents.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return extents[a].v0 < extents[b].v0; });
     for (std::size_t const i : order) {
@@ -177,7 +178,7 @@ class ReductionOf {
   }
 
   /// \param gone the rows that policies eliminate
-  void number_rows(std::vector<bool> const& gone, std::vector<Index> const& of_velocity) {
+  void number_rows(Sequence<bool> const& gone, Sequence<Index> const& of_velocity) {
     for (Index i = 0; i < Index(gone.size()); ++i)
       if (!gone[std::size_t(i)]) rows_.push_back(i);
     for (Index const i : of_velocity)
@@ -186,23 +187,23 @@ class ReductionOf {
 
   LinearEliminationOf<T> linear_;
   JointTreeOf<T> tree_;
-  std::vector<Index> order_;
+  Sequence<Index> order_;
   Index coordinates_ = 0, speeds_ = 0;
-  std::vector<NarrowPlace> places_;
-  std::vector<std::pair<Index, Index>> same_q_, same_v_;  // narrow, whole
-  std::vector<Index> whole_speed_, rows_, velocity_rows_, carried_by_;
+  Sequence<NarrowPlace> places_;
+  Sequence<std::pair<Index, Index>> same_q_, same_v_;  // narrow, whole
+  Sequence<Index> whole_speed_, rows_, velocity_rows_, carried_by_;
 };
 
 template <class T>
-void ReductionOf<T>::refuse_loops(std::size_t bodies, std::vector<Link> const& links) {
-  std::vector<std::size_t> towards(bodies + 1);  // the ground is last
+void ReductionOf<T>::refuse_loops(std::size_t bodies, Sequence<Link> const& links) {
+  Sequence<std::size_t> towards(bodies + 1);  // the ground is last
   for (std::size_t i = 0; i <= bodies; ++i) towards[i] = i;
   auto const part_of = [&](Index body) {
     std::size_t i = body < 0 ? bodies : std::size_t(body);
     while (towards[i] != i) i = towards[i] = towards[towards[i]];
     return i;
   };
-  std::vector<Link const*> order;
+  Sequence<Link const*> order;
   for (Link const& link : links) order.push_back(&link);
   std::sort(order.begin(), order.end(), [](Link const* a, Link const* b) { return a->row < b->row; });
   for (Link const* const link : order) {
@@ -216,11 +217,11 @@ void ReductionOf<T>::refuse_loops(std::size_t bodies, std::vector<Link> const& l
 }
 
 template <class T>
-void ReductionOf<T>::hang(std::vector<TreeBody> const& bodies, std::vector<Link> const& links, VecX const& reference,
+void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference,
                           bool all) {
   refuse_loops(bodies.size(), links);
-  std::vector<Index> place(bodies.size(), -1);
-  std::vector<bool> used(links.size(), false);
+  Sequence<Index> place(bodies.size(), -1);
+  Sequence<bool> used(links.size(), false);
   auto const carry_from = [&](Index body) {  // −1: the ground
     for (std::size_t k = 0; k < links.size(); ++k) {
       Link const& link = links[k];

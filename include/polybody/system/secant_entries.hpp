@@ -5,6 +5,7 @@
 ///   f·Δq = −ΔV less what is damped,   Ḡ Δq = ΔΦ.
 
 #include <polybody/math/secant.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/force_kernels.hpp>
 #include <polybody/system/model.hpp>
 #include <polybody/system/secant_offer.hpp>
@@ -36,15 +37,15 @@ struct GapSecant {
 
 template <class B>
 struct SecantScratch {
-  std::vector<Secant<B::point_columns>> q, rest, jacobian;
+  Sequence<Secant<B::point_columns>> q, rest, jacobian;
 };
 
 template <class BodyPools, class JointPools>
 struct SecantsBeside;
 template <class... Bs, class... Js>
-struct SecantsBeside<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>> {
+struct SecantsBeside<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEntry<Js>>...>> {
   using Scratch = std::tuple<SecantScratch<Bs>...>;
-  using Gaps = std::tuple<std::vector<GapSecant<Js::rows>>...>;
+  using Gaps = std::tuple<Sequence<GapSecant<Js::rows>>...>;
 };
 
 /// The frame of a marker whose twelve numbers are variables of S, a `Secant`, from `first` on.
@@ -353,11 +354,11 @@ class TypedSecants {
   M const& model_;
   SecantStep step_;
   StepMeans means_;
-  std::vector<MarkerSecant> markers_;
+  Sequence<MarkerSecant> markers_;
   using Beside = SecantsBeside<typename M::BodyPools, typename M::JointPools>;
   typename Beside::Scratch bodies_;
   typename Beside::Gaps gaps_;
-  std::vector<double> slopes_, rows_, scratch_;  ///< arenas of the markers and the gaps; room for one block
+  Sequence<double> slopes_, rows_, scratch_;  ///< arenas of the markers and the gaps; room for one block
   VecX middle_;
 };
 

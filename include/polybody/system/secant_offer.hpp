@@ -4,6 +4,7 @@
 
 #include <polybody/bodies/shared/step_means.hpp>
 #include <polybody/math/secant.hpp>
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/pools.hpp>
 
 namespace polybody {
@@ -34,8 +35,8 @@ constexpr bool gives_secants() {
 template <class BodyPools, class JointPools, class ForcePools>
 struct OfferOfPools;
 template <class... Bs, class... Js, class... Fs>
-struct OfferOfPools<std::tuple<BodyPool<Bs>...>, std::tuple<std::vector<JointEntry<Js>>...>,
-                    std::tuple<std::vector<ForceEntry<Fs>>...>> {
+struct OfferOfPools<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEntry<Js>>...>,
+                    std::tuple<Sequence<ForceEntry<Fs>>...>> {
   static constexpr bool bodies = (OffersStepMeans<Bs> && ...);
   static constexpr bool policies = (OffersMeanMultiplier<typename Js::PolicyType> && ...);
   static constexpr bool positions = ((velocity_rows<typename Js::Geometry>() == 0) && ...);

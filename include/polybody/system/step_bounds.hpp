@@ -4,8 +4,8 @@
 /// stops beside the size of the accelerations, so a motion that explodes converges, too.
 
 #include <limits>
-#include <vector>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -78,10 +78,10 @@ class StepBounds {
   double worked_ = 0.0;    ///< ∫|power| dt [J]
   Energy start_;           ///< E₀
   double began_ = 0.0;     ///< at this time [s]
-  std::vector<Gaps> gaps_;
-  std::vector<std::size_t> actions_;    ///< of forces without a potential
-  std::vector<std::size_t> compliant_;  ///< joints that do not store all that they take
-  std::vector<Drive> drives_;
+  Sequence<Gaps> gaps_;
+  Sequence<std::size_t> actions_;    ///< of forces without a potential
+  Sequence<std::size_t> compliant_;  ///< joints that do not store all that they take
+  Sequence<Drive> drives_;
 };
 
 template <class>

@@ -3,6 +3,7 @@
 /// `System`, waist 3, whole: the class (`basic_system.hpp`), what its functions do (`system_operations.hpp`), and what
 /// one asks of it beside.
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/system_operations.hpp>
 
 namespace polybody {
@@ -53,7 +54,7 @@ void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual
 template <class = void>
 std::string name_of_coordinate(System const& s, Index i) {
   Coordinates const& c = s.step_coordinates();
-  std::vector<BodyPlace> const& bodies = s.layout().bodies;
+  Sequence<BodyPlace> const& bodies = s.layout().bodies;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     Index const first = c ? c.narrow->places[k].q : bodies[k].q0;
     Index const count = c ? c.narrow->places[k].coordinates : bodies[k].coordinates;

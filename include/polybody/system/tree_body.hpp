@@ -3,10 +3,10 @@
 /// The parts of a `JointTree`: its bodies, where they are, and how a frame runs through the motions of a joint.
 
 #include <string>
-#include <vector>
 
 #include <polybody/bodies/shared/body.hpp>
 #include <polybody/joints/joint_motion.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
@@ -43,10 +43,10 @@ using TreeFrame = TreeFrameOf<double>;
 /// Scratch of a tree.
 template <class T>
 struct TreeStateOf {
-  std::vector<TreeFrameOf<T>> frames;
-  std::vector<Vec<T, 6>> twists;
-  std::vector<Vec<T, 6>> held;  ///< as of the last `reduce_forces`: the wrench [f; m] about its centre of mass with
-                                ///< which a body and all that it carries are out of balance, which its joint holds
+  Sequence<TreeFrameOf<T>> frames;
+  Sequence<Vec<T, 6>> twists;
+  Sequence<Vec<T, 6>> held;  ///< as of the last `reduce_forces`: the wrench [f; m] about its centre of mass with
+                             ///< which a body and all that it carries are out of balance, which its joint holds
 };
 using TreeState = TreeStateOf<double>;
 

@@ -2,6 +2,7 @@
 /// \file
 /// What `Data` keeps of a model's own types, and how its arrays are laid out.
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/system/force_kernels.hpp>
 #include <polybody/system/model.hpp>
 
@@ -13,12 +14,12 @@ BodyPool<B> const& bodies_of(M const& model) {
   return std::get<BodyPool<B>>(model.body_pools());
 }
 template <class J, class M>
-std::vector<JointEntry<J>> const& joints_of(M const& model) {
-  return std::get<std::vector<JointEntry<J>>>(model.joint_pools());
+Sequence<JointEntry<J>> const& joints_of(M const& model) {
+  return std::get<Sequence<JointEntry<J>>>(model.joint_pools());
 }
 template <class F, class M>
-std::vector<ForceEntry<F>> const& forces_of(M const& model) {
-  return std::get<std::vector<ForceEntry<F>>>(model.force_pools());
+Sequence<ForceEntry<F>> const& forces_of(M const& model) {
+  return std::get<Sequence<ForceEntry<F>>>(model.force_pools());
 }
 
 /// What a model's data keep for its types of bodies and joints.
@@ -28,14 +29,14 @@ template <class... Bs, class... Js, class... Fs, StateScalar T>
 struct TypedData<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   std::tuple<BodyData<Bs, T>...> bodies;
   std::tuple<JointData<Js, T>...> joints;
-  std::vector<T> own_rows;  ///< arena of rows that bodies own, and of linear rows
+  Sequence<T> own_rows;  ///< arena of rows that bodies own, and of linear rows
 
   static TypedData& of(Data<T> const& data) { return *static_cast<TypedData*>(data.kept.get()); }
 };
 
 /// Room for `markers` markers, and the places of those on the ground.
 template <StateScalar T>
-void place_ground(std::vector<GroundMarker> const& ground, Index markers, Index jacobian_size, Data<T>& data) {
+void place_ground(Sequence<GroundMarker> const& ground, Index markers, Index jacobian_size, Data<T>& data) {
   data.markers.resize(std::size_t(markers));
   data.loads.resize(data.markers.size());
   data.read.assign(data.markers.size(), 0);
@@ -51,7 +52,7 @@ void place_ground(std::vector<GroundMarker> const& ground, Index markers, Index 
 
 /// Numbers of the rows and maps of all linear joints.
 template <class = void>
-Index size_of(std::vector<LinearRows> const& all) {
+Index size_of(Sequence<LinearRows> const& all) {
   Index size = 0;
   for (LinearRows const& rows : all) size += rows.rows() * (1 + rows.a.map.cols() + rows.b.map.cols());
   return size;
@@ -59,7 +60,7 @@ Index size_of(std::vector<LinearRows> const& all) {
 
 /// Blocks of all linear joints, their numbers from `next` on; the owners are found when the joints are gone through.
 template <StateScalar T>
-void place_linear_rows(std::vector<LinearRows> const& all, T* next, Data<T>& data) {
+void place_linear_rows(Sequence<LinearRows> const& all, T* next, Data<T>& data) {
   for (LinearRows const& rows : all) {
     Index const m = rows.rows();
     RowBlock<T> block{
@@ -75,7 +76,7 @@ void place_linear_rows(std::vector<LinearRows> const& all, T* next, Data<T>& dat
 
 /// g = C_a e_a + C_b e_b − c of all linear joints, their numbers from `next` on.
 template <StateScalar T>
-void measure_linear_rows(std::vector<LinearRows> const& all, VecXOf<T> const& q, Data<T> const& data, T* next) {
+void measure_linear_rows(Sequence<LinearRows> const& all, VecXOf<T> const& q, Data<T> const& data, T* next) {
   if (!data.linear_rows) return;
   for (LinearRows const& rows : all) {
     int const m = int(rows.rows());
@@ -145,7 +146,7 @@ ModelLayout counts_of(M const& model) {
           .rows = model.rows(),
           .states = model.states(),
           .velocity_rows = model.velocity_rows(),
-          .owners = std::vector<Index>(std::size_t(model.markers()), -1),
+          .owners = Sequence<Index>(std::size_t(model.markers()), -1),
           .gravity = model.gravity().g,
           .constant_mass = M::constant_mass,
           .has_groups = M::has_groups};

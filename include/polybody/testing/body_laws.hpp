@@ -14,7 +14,7 @@
 ///     struct DumbbellCase {
 ///       static Dumbbell body();               // with damping, if it has any
 ///       static Dumbbell undamped();           // the same without; not needed where there is none
-///       static std::vector<Dumbbell::Point> points();
+///       static Sequence<Dumbbell::Point> points();
 ///       static double mass();                 // [kg]
 ///       static Vec3 centre();                 // of mass, in the reference configuration, world axes [m]
 ///       static constexpr double stiffness = 900.0;  // the largest of its elastic constants; one where it is not said
@@ -28,6 +28,7 @@
 
 #include <random>
 
+#include <polybody/math/sequence.hpp>
 #include <polybody/testing/body_case.hpp>
 #include <polybody/testing/differences.hpp>
 #include <polybody/testing/laws.hpp>
@@ -77,10 +78,10 @@ struct BodyLaws {
   Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }
 
   /// The case's points; of a bar some on the axis, at both ends, and off it.
-  std::vector<typename B::Point> points() const {
+  Sequence<typename B::Point> points() const {
     if constexpr (MadeFromBar<Case>) {
       double const length = Case::bar().length;
-      std::vector<typename B::Point> p = {body.at(0.0), body.at(0.31 * length), body.at(0.5 * length), body.at(length)};
+      Sequence<typename B::Point> p = {body.at(0.0), body.at(0.31 * length), body.at(0.5 * length), body.at(length)};
       if constexpr (rolls) {
         p.push_back(body.at(0.5 * length, 0.07));
         p.push_back(body.at(0.77 * length, -0.04));
@@ -217,7 +218,7 @@ struct BodyLaws {
 
   template <class T>
   struct Seen {
-    std::vector<T> memory;  ///< of the Jacobian; moving it keeps its address
+    Sequence<T> memory;  ///< of the Jacobian; moving it keeps its address
     Published<T> marker;
     Mat<T, 6, Eigen::Dynamic> jacobian;  ///< all columns of the body
     Vec<T, 6> twist() const {

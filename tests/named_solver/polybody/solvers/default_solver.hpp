@@ -16,7 +16,7 @@ namespace polybody {
 /// A linear solver of any type, behind a pointer.
 struct SolverInTests {
   virtual ~SolverInTests() = default;
-  virtual void analyse(Index size, std::vector<Block> const& blocks) = 0;
+  virtual void analyse(Index size, std::span<Block const> blocks) = 0;
   virtual void begin() = 0;
   virtual void add(Index row, Index col, BlockView const& b) = 0;
   virtual Index factor() = 0;
@@ -33,7 +33,7 @@ std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, bool stat
 template <class Default, bool statics>
 class NamedSolver {
  public:
-  void analyse(Index size, std::vector<Block> const& blocks) {
+  void analyse(Index size, std::span<Block const> blocks) {
     other_ = solver_named_by_environment(size, statics);
     other_ ? other_->analyse(size, blocks) : default_.analyse(size, blocks);
   }

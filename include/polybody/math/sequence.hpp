@@ -1,0 +1,162 @@
+#pragma once
+/// \file
+/// A contiguous array of values that costs a compiler little.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace polybody {
+namespace detail {
+
+/// Room for `count` values of `size` bytes each. Throws std::bad_alloc.
+inline void* take_memory(std::size_t count, std::size_t size, std::size_t alignment) {
+  if (count > std::size_t(PTRDIFF_MAX) / size) throw std::bad_alloc();
+  return alignment > __STDCPP_DEFAULT_NEW_ALIGNMENT__ ? ::operator new(count * size, std::align_val_t(alignment))
+                                                      : ::operator new(count * size);
+}
+inline void give_memory(void* memory, std::size_t alignment) noexcept {
+  if (alignment > __STDCPP_DEFAULT_NEW_ALIGNMENT__)
+    ::operator delete(memory, std::align_val_t(alignment));
+  else
+    ::operator delete(memory);
+}
+
+}  // namespace detail
+
+/// Values one after the other in memory, with the members of std::vector and their meaning. A compiler makes some ten
+/// functions for each type of value, where std::vector takes sixty (docs/performance.md): the library's own records
+/// stand in Sequences, numbers and what a user passes in std::vector.
+template <class T>
+class Sequence {
+ public:
+  using value_type = T;
+
+  Sequence() = default;
+  explicit Sequence(std::size_t size) : Sequence() { resize(size); }
+  Sequence(std::size_t size, T const& value) : Sequence() { assign(size, value); }
+  Sequence(std::initializer_list<T> values) : Sequence() { copy(values.begin(), values.size()); }
+  template <class It>
+    requires requires(It i) { *i; }
+  Sequence(It first, It last) : Sequence() {
+    append(first, last);
+  }
+  Sequence(Sequence const& other) : Sequence() { copy(other.data_, other.size_); }
+  Sequence(Sequence&& other) noexcept { swap(other); }
+  Sequence& operator=(Sequence other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Sequence() {
+    clear();
+    detail::give_memory(data_, alignof(T));
+  }
+
+  void swap(Sequence& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+  T* data() { return data_; }
+  T const* data() const { return data_; }
+  T* begin() { return data_; }
+  T const* begin() const { return data_; }
+  T* end() { return data_ + size_; }
+  T const* end() const { return data_ + size_; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  T const& operator[](std::size_t i) const { return data_[i]; }
+  T& front() { return *data_; }
+  T const& front() const { return *data_; }
+  T& back() { return data_[size_ - 1]; }
+  T const& back() const { return data_[size_ - 1]; }
+
+  /// Takes room for `capacity` values in all; the values move there.
+  void reserve(std::size_t capacity) {
+    static_assert(std::is_nothrow_move_constructible_v<T>, "a value in a Sequence must move without throwing");
+    if (capacity <= capacity_) return;
+    T* const fresh = static_cast<T*>(detail::take_memory(capacity, sizeof(T), alignof(T)));
+    for (std::size_t i = 0; i < size_; ++i) {
+      new (fresh + i) T(std::move(data_[i]));
+      data_[i].~T();
+    }
+    detail::give_memory(data_, alignof(T));
+    data_ = fresh;
+    capacity_ = capacity;
+  }
+  void push_back(T value) {
+    if (size_ == capacity_) reserve(2 * size_ + 1);
+    new (data_ + size_) T(std::move(value));
+    ++size_;
+  }
+  template <class... As>
+  T& emplace_back(As&&... as) {
+    push_back(T(std::forward<As>(as)...));
+    return back();
+  }
+  void pop_back() { data_[--size_].~T(); }
+  /// New values are T().
+  void resize(std::size_t size) {
+    truncate(size);
+    reserve(size);
+    for (; size_ < size; ++size_) new (data_ + size_) T();
+  }
+  void resize(std::size_t size, T const& value) {
+    truncate(size);
+    while (size_ < size) push_back(value);
+  }
+  /// Adds copies of the values of a range, which must not be of this Sequence.
+  template <class It>
+  void append(It first, It last) {
+    for (; first != last; ++first) push_back(*first);
+  }
+  void assign(std::size_t size, T const& value) {
+    T const kept = value;  // it may be one of these
+    clear();
+    reserve(size);
+    for (; size_ < size; ++size_) new (data_ + size_) T(kept);
+  }
+  /// Keeps the first `size` values.
+  void truncate(std::size_t size) noexcept {
+    if constexpr (std::is_trivially_destructible_v<T>)
+      size_ = size < size_ ? size : size_;
+    else
+      while (size_ > size) data_[--size_].~T();
+  }
+  void clear() noexcept { truncate(0); }
+
+ private:
+  void copy(T const* from, std::size_t size) {
+    reserve(size);
+    for (; size_ < size; ++size_) new (data_ + size_) T(from[size_]);
+  }
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+/// Removes the values of which `goes` is true.
+template <class T, class F>
+void erase_if(Sequence<T>& values, F const& goes) {
+  std::size_t kept = 0;
+  for (T& value : values)
+    if (!goes(value)) values[kept++] = std::move(value);
+  values.truncate(kept);
+}
+
+/// Sorts values and keeps one of those that are equal. Sorting by a heap compiles in less than half of std::sort's
+/// time.
+template <class T>
+void sort_once(Sequence<T>& values) {
+  std::make_heap(values.begin(), values.end());
+  std::sort_heap(values.begin(), values.end());
+  values.truncate(std::size_t(std::unique(values.begin(), values.end()) - values.begin()));
+}
+
+}  // namespace polybody
