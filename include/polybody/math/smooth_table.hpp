@@ -24,7 +24,7 @@ class SmoothTable {
   };
 
   /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and numbers that are not
-  /// finite.
+  /// finite, of the spline as of the points.
   explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
   SmoothTable(std::vector<Point> const& points, Ends const& ends, std::string const& what = "SmoothTable")
       : knots_(points.size()) {
@@ -40,6 +40,7 @@ class SmoothTable {
       next.integral = integral_to(k, next.time);
       next.rate = k.rate + 0.5 * h * (k.second + next.second);
     }
+    check_knots(what);
     for (Knot const& end : {knots_.front(), knots_.back()})
       if (end.second != 0.0) corners_.push_back(end.time);
     knots_.back().second = 0.0;
@@ -76,6 +77,16 @@ class SmoothTable {
     }
     if (!std::isfinite(ends.first_rate.value_or(0.0)) || !std::isfinite(ends.last_rate.value_or(0.0)))
       throw InvalidInput(what + ": the rates at the ends must be finite.");
+  }
+
+  /// Rates grow as values by times, and times may be as close as the last place of a double.
+  void check_knots(std::string const& what) const {
+    for (std::size_t i = 0; i < knots_.size(); ++i)
+      for (double const x : {knots_[i].rate, knots_[i].second, knots_[i].third, knots_[i].integral})
+        if (!(std::abs(x) <= largest_number))
+          throw InvalidInput(what + ": a rate, acceleration or integral of the spline at point " +
+                             std::to_string(i + 1) + ", t = " + number(knots_[i].time) + " s, is beyond " +
+                             number(largest_number) + ". Give smaller values, or times that are farther apart.");
   }
 
   /// The second derivatives mᵢ that make the rates continuous, s the slopes of the chords:
