@@ -79,14 +79,21 @@ class SmoothTable {
       throw InvalidInput(what + ": the rates at the ends must be finite.");
   }
 
-  /// Rates grow as values by times, and times may be as close as the last place of a double.
+  /// Rates grow as values by times, which may be as close as the last place of a double; no value of a piece exceeds
+  /// |v| + h (|v′| + h (|v″| + h |v‴|)).
   void check_knots(std::string const& what) const {
-    for (std::size_t i = 0; i < knots_.size(); ++i)
-      for (double const x : {knots_[i].rate, knots_[i].second, knots_[i].third, knots_[i].integral})
-        if (!(std::abs(x) <= largest_number))
-          throw InvalidInput(what + ": a rate, acceleration or integral of the spline at point " +
-                             std::to_string(i + 1) + ", t = " + number(knots_[i].time) + " s, is beyond " +
+    for (std::size_t i = 0; i < knots_.size(); ++i) {
+      Knot const& k = knots_[i];
+      std::size_t const piece = std::min(i, knots_.size() - 2);
+      double const h = knots_[piece + 1].time - knots_[piece].time, rate = std::abs(k.rate);
+      double const second = std::abs(k.second), third = std::abs(k.third);
+      double const value = std::abs(k.value) + h * (rate + h * (second + h * third));
+      for (double const x : {rate, second, third, value, h * value, std::abs(k.integral)})
+        if (!(x <= largest_number))
+          throw InvalidInput(what + ": a value, rate, acceleration or integral of the spline at point " +
+                             std::to_string(i + 1) + ", t = " + number(k.time) + " s, is beyond " +
                              number(largest_number) + ". Give smaller values, or times that are farther apart.");
+    }
   }
 
   /// The second derivatives mᵢ that make the rates continuous, s the slopes of the chords:
