@@ -332,6 +332,7 @@ TEST_F(MatrixFiles, BrokenMatricesAreNamedByFileAndLine) {
   EXPECT_TRUE(has(told(7, "7 1 nan"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7 1 1e999"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7 1 1.0 2.0"), where + "7: "));
+  EXPECT_TRUE(has(told(111, "24 24 1.0\n\v\f\n7 1 1.0"), where + "113: '7 1 1.0' is not the end of the file"));
   EXPECT_TRUE(has(told(7, "7 1.5"), where + "7: '7 1.5' is not a row"));  // a number ends at a blank
   EXPECT_TRUE(has(told(7, "7 1-2"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7-1 2"), where + "7: "));

@@ -201,7 +201,7 @@ class NumberLines {
     do {
       if (!raw(line)) return false;
       line.resize(std::min(line.find(comment_), line.size()));
-    } while (line.find_first_not_of(" \t\r") == std::string::npos);
+    } while (line.find_first_not_of(" \t\r\v\f") == std::string::npos);  // the blanks of `>>`
     std::istringstream words(line);
     words.imbue(std::locale::classic());
     std::string rest;
