@@ -39,7 +39,8 @@ void CommandLine::one_of(std::string const& name, std::string* value, std::vecto
   add(*app_, name, value, help)->check(CLI::IsMember(all));
 }
 void CommandLine::flag(std::string const& name, bool* value, std::string const& help) {
-  app_->add_flag(name, *value, help);
+  // A flag has no value: CLI11 reads one of "!--no-…" by stoll, whose std::out_of_range it lets through.
+  app_->add_flag(name, *value, help)->disable_flag_override();
 }
 
 std::optional<int> CommandLine::parse(int argc, char** argv) {
