@@ -1,10 +1,19 @@
 #include "command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 namespace {
+// NaN is neither below nor above a bound, so CLI11's ranges let it pass.
+std::string finite(std::string const& text) {
+  double x = 0.0;
+  bool const number = CLI::detail::lexical_cast(text, x);
+  return number && !std::isfinite(x) ? "'" + text + "' is not a finite number" : "";
+}
+
 CLI::Option* add(CLI::App& app, std::string const& name, CommandLine::Value value, std::string const& help) {
   CLI::Option* const option = std::visit([&](auto* to) { return app.add_option(name, *to, help); }, value);
+  if (std::holds_alternative<double*>(value)) option->check(CLI::Validator(finite, "", "finite"));
   if (auto* const* text = std::get_if<std::string*>(&value); !text || !(*text)->empty()) option->capture_default_str();
   return option;
 }
@@ -30,7 +39,8 @@ void CommandLine::one_of(std::string const& name, std::string* value, std::vecto
   add(*app_, name, value, help)->check(CLI::IsMember(all));
 }
 void CommandLine::flag(std::string const& name, bool* value, std::string const& help) {
-  app_->add_flag(name, *value, help);
+  // A flag has no value: CLI11 reads one of "!--no-…" by stoll, whose std::out_of_range it lets through.
+  app_->add_flag(name, *value, help)->disable_flag_override();
 }
 
 std::optional<int> CommandLine::parse(int argc, char** argv) {

@@ -228,6 +228,15 @@ TEST(MatrixStructure, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(has(told([](Block& b) { b.stiffness.conservativeResize(35, 36); }), "stiffness matrix is 35×36"));
   EXPECT_TRUE(has(told([](Block& b) { b.mass(4, 7) = INFINITY; }),
                   "not finite in row 4 (y of node 1), column 7 (y of node 2)"));
+  EXPECT_TRUE(has(told([](Block& b) { b.nodes[7][1] = 1e200; }), "node 7 is 1e+200, beyond 1e+150"));
+  EXPECT_TRUE(
+      has(told([](Block& b) { b.stiffness *= 1e200; }), ", beyond 1e+150 whose square is not finite, in row 0"));
+  EXPECT_TRUE(has(told([](Block& b) {
+                    b.mass *= 1e140;
+                    b.stiffness.setZero();
+                    for (Vec3& r : b.nodes) r *= 1e100;
+                  }),
+                  "moments of its mass are not finite"));
   EXPECT_TRUE(has(told([](Block& b) { b.stiffness(5, 0) *= 1.001; }),
                   "stiffness matrix is not symmetric: row 5 (z of node 1), column 0 (x of node 0)"));
   EXPECT_TRUE(has(told([](Block& b) { b.mass.triangularView<Eigen::StrictlyUpper>().setZero(); }),
@@ -323,6 +332,11 @@ TEST_F(MatrixFiles, BrokenMatricesAreNamedByFileAndLine) {
   EXPECT_TRUE(has(told(7, "7 1 nan"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7 1 1e999"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7 1 1.0 2.0"), where + "7: "));
+  EXPECT_TRUE(has(told(111, "24 24 1.0\n\v\f\n7 1 1.0"), where + "113: '7 1 1.0' is not the end of the file"));
+  EXPECT_TRUE(has(told(7, "7 1.5"), where + "7: '7 1.5' is not a row"));  // a number ends at a blank
+  EXPECT_TRUE(has(told(7, "7 1-2"), where + "7: "));
+  EXPECT_TRUE(has(told(7, "7-1 2"), where + "7: "));
+  EXPECT_TRUE(has(told(3, "24 24 -1"), where + "3: the number of entries must not be negative, but is -1"));
   EXPECT_TRUE(has(told(7, "25 1 1.0"), where + "7: entry (25, 1) is outside the matrix"));
   EXPECT_TRUE(has(told(7, "0 1 1.0"), where + "7: entry (0, 1) is outside"));
   EXPECT_TRUE(has(told(7, "1 7 1.0"), where + "7: a symmetric matrix is written by its lower triangle"));
@@ -341,6 +355,13 @@ TEST_F(MatrixFiles, TruncatedAndMissingFilesAreNamed) {
   EXPECT_TRUE(has(told_now(), nodes + ", line 2: the file has no nodes"));
   write(nodes, {"0 0 0", "1 0"});
   EXPECT_TRUE(has(told_now(), nodes + ", line 2: '1 0' is not x y z of a node"));
+  write(nodes, {"0 0 0", "1.5.5.5"});
+  EXPECT_TRUE(has(told_now(), nodes + ", line 2: '1.5.5.5' is not x y z of a node"));
+  write(nodes, {"0 0 0", "1 2-3"});
+  EXPECT_TRUE(has(told_now(), nodes + ", line 2: '1 2-3' is not x y z of a node"));
+  std::filesystem::remove(nodes);
+  std::filesystem::create_directories(nodes);
+  EXPECT_TRUE(has(told_now(), nodes + ": it cannot be opened"));
 }
 
 TEST_F(MatrixFiles, NodesOfAnotherModelAreNamed) {

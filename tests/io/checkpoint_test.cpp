@@ -114,6 +114,64 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
   EXPECT_TRUE(has(message_of<IoError>([&] { read_checkpoint(file); }), "cannot be read"));
 }
 
+// The checkpoint of a run in its middle, with an event: each byte set to other values, and the file cut at every
+// length.
+TEST_F(Checkpoints, OfARunNoticeEveryDamage) {
+  Chain<InPlane<Constraint>> const chain(2, bar_link());
+  auto const height = [&](State const& x) {
+    return position(chain.model, x, InPlane<Constraint>::at(chain.links[0], 1.0))[1];
+  };
+  State x = chain.model.reference_state();
+  auto run = simulate(chain.model, x, GeneralizedAlpha{},
+                      {.until = 1.0, .step = 0.004, .events = {{.name = "falls", .value = height}}});
+  for (int k = 0; k < 20; ++k) run.advance();
+  write_checkpoint(file, run.snapshot());
+  std::string const good = text_of(file);
+  auto const noticed = [&] { return !message_of<IoError>([&] { read_checkpoint(file); }).empty(); };
+  std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+  auto const set = [&](std::size_t i, char to) { stream.seekp(std::streamoff(i)).put(to).flush(); };
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    for (int const bits : {0x01, 0x80, 0xff}) {
+      set(i, char(good[i] ^ bits));
+      ASSERT_TRUE(noticed()) << "byte " << i << " of " << good.size() << " differs in the bits " << bits;
+    }
+    set(i, good[i]);
+  }
+  EXPECT_EQ(bits(read_checkpoint(file).state), bits(x));
+  for (std::size_t length = good.size(); length-- > 0;) {
+    fs::resize_file(file, length);
+    ASSERT_TRUE(noticed()) << length << " bytes of " << good.size();
+  }
+}
+
+// Head and checksum are right, what stands between them is not.
+TEST_F(Checkpoints, OfInconsistentContentAreRefused) {
+  write_checkpoint(file, rich());
+  std::string const good = text_of(file);
+  auto const told = [&](auto const& change) {
+    std::string bad = good.substr(0, good.size() - 8);
+    change(bad);
+    std::uint64_t const length = bad.size() - sizeof(detail::CheckpointHead);
+    std::memcpy(bad.data() + 16, &length, sizeof length);
+    std::uint64_t const sum = checksum(bad);
+    put(file, bad.append(reinterpret_cast<char const*>(&sum), sizeof sum));
+    return message_of<IoError>([&] { read_checkpoint(file); });
+  };
+  auto const number = [&](std::size_t at, std::int64_t to) {
+    return told([&](std::string& bad) { std::memcpy(bad.data() + at, &to, sizeof to); });
+  };
+  std::size_t const begin = sizeof(detail::CheckpointHead);
+  std::string const inconsistent = "checkpoint '" + file.string() + "' is inconsistent: ";
+  EXPECT_TRUE(has(number(begin, 4), inconsistent + "it has 3 coordinates in place of the model's 4. Write it anew."));
+  EXPECT_TRUE(has(number(begin + 8, 1), inconsistent + "it has 2 speeds in place of the model's 1."));
+  EXPECT_TRUE(has(number(begin + 16, 0), inconsistent + "it has 1 multipliers in place of the model's 0."));
+  EXPECT_TRUE(has(number(begin + 40, 300), inconsistent + "300 is out of the range of its place."));  // a letter
+  EXPECT_TRUE(has(number(begin + 32, -1), "ends before its content does"));
+  EXPECT_TRUE(has(number(begin + 32, std::int64_t(1) << 60), "ends before its content does"));
+  EXPECT_TRUE(has(told([](std::string& bad) { bad += "12345678"; }), inconsistent + "8 bytes follow its content."));
+  EXPECT_TRUE(has(told([](std::string& bad) { bad.resize(bad.size() - 8); }), "ends before its content does"));
+}
+
 // Chains of four and of three links in the plane: 3 coordinates and 2 rows each.
 TEST_F(Checkpoints, OfAnotherRunAreRefused) {
   Chain<InPlane<Constraint>> const chain(4, bar_link()), shorter(3, bar_link());

@@ -108,6 +108,15 @@ TEST_F(CsvFiles, OddHeadsAreQuotedAndReadBack) {
     EXPECT_EQ(table.column(heads[j]), std::vector<double>{static_cast<double>(j)});
 }
 
+TEST_F(CsvFiles, AHeadThatBeginsLikeAByteOrderMarkIsQuotedAndReadBack) {
+  std::vector<std::string> const heads{"\xEF\xBB\xBF", "x"};
+  {
+    Csv csv(file, heads);
+    csv.row(1, 2);
+  }
+  EXPECT_EQ(read_csv(file).columns, heads);
+}
+
 TEST_F(CsvFiles, CreatesParentFoldersAndReplacesAnOldFile) {
   fs::path const deep = folder / "a" / "b c" / "run.csv";
   for (double const x : {1.0, 2.0}) {

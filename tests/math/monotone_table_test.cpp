@@ -107,4 +107,16 @@ TEST(MonotoneTable, RefusesPointsThatMakeNoFunction) {
   EXPECT_TRUE(has(said({{nan, 0.0}, {1.0, 1.0}}), "point 1 of the table must be finite"));
 }
 
+TEST(MonotoneTable, RefusesPointsWhoseSlopesOverflow) {
+  using Points = std::vector<MonotoneTable::Point>;
+  auto const said = [](Points const& points) { return refusal([&] { MonotoneTable(points, "\"mount\""); }); };
+  EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, 0.0}, {1.0 + 1e-15, 1e200}}),
+                  "\"mount\": a value, slope or area of the table between its points 2 and 3 is beyond 1e+150"));
+  EXPECT_TRUE(has(said({{0.0, 0.0}, {1e-200, 1.0}}), "between its points 1 and 2 is beyond"));
+  EXPECT_TRUE(has(said({{0.0, 1.0}, {1e-158, 1.0}}), "is beyond"));     // 1/h² overflows
+  EXPECT_TRUE(has(said({{1e140, 0.0}, {2e140, 1e140}}), "is beyond"));  // the area from 0
+  EXPECT_TRUE(has(said({{0.0, -1e308}, {1.0, 1e308}}), "is beyond"));
+  EXPECT_TRUE(has(said({{0.0, 1e308}, {1e10, 1e308}}), "is beyond"));
+}
+
 }  // namespace monotone_table_test

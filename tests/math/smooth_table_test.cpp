@@ -99,4 +99,19 @@ TEST(SmoothTable, RefusesPointsThatMakeNoTable) {
                   "\"drive\": the times must increase"));
 }
 
+TEST(SmoothTable, RefusesPointsWhoseSplineOverflows) {
+  using Points = std::vector<SmoothTable::Point>;
+  auto const said = [](Points const& points) { return refusal([&] { SmoothTable(points, {}, "\"drive\""); }); };
+  EXPECT_TRUE(has(said({{0.0, 0.0}, {1e-200, 1.0}}),
+                  "\"drive\": a value, rate, acceleration or integral of the spline at point "
+                  "1, t = 0 s, is beyond 1e+150. Give smaller values"));
+  EXPECT_TRUE(has(said({{0.0, -1e308}, {1.0, 1e308}}), "is beyond"));
+  EXPECT_TRUE(has(said({{0.0, 1e308}, {1e10, 1e308}}), "at point 1, t = 0 s, is beyond"));
+  EXPECT_TRUE(has(said({{-1e308, 0.0}, {1e308, 1.0}}), "is beyond"));
+  EXPECT_TRUE(has(refusal([] {  // only its integral overflows, and only between the points
+                    SmoothTable({{0.0, 0.0}, {1e186, 0.0}}, {.first_rate = 1.0, .last_rate = 1.0}, "\"drive\"");
+                  }),
+                  "at point 1, t = 0 s, is beyond"));
+}
+
 }  // namespace smooth_table_test

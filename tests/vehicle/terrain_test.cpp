@@ -470,5 +470,18 @@ TEST(HeightField, RefusesWhatIsNoGrid) {
   EXPECT_TRUE(has(said([](Grid& g) { g.heights = MatX(); }), "but has 0 by 0"));
 }
 
+TEST(HeightField, RefusesHeightsWhoseSlopesOverflow) {
+  HeightField::Grid const flat{.x0 = 0.0, .y0 = 0.0, .dx = 1.0, .dy = 1.0, .heights = MatX::Zero(3, 4)};
+  auto const said = [&](double dy, double height) {
+    HeightField::Grid bad = flat;
+    bad.dy = dy;
+    bad.heights(1, 2) = height;
+    return refusal([&] { HeightField(bad, "\"hill\""); });
+  };
+  EXPECT_TRUE(has(said(1.0, 1e308), "\"hill\": its slopes or curvatures are beyond 1e+150. Give heights and spacings"));
+  EXPECT_TRUE(has(said(1e-60, 1e100), "are beyond"));
+  EXPECT_TRUE(has(said(1e-200, 0.0), "are beyond"));
+}
+
 }  // namespace terrain_test
 }  // namespace polybody

@@ -81,6 +81,10 @@ struct SnapshotReader {
     std::memcpy(&wide, bytes.data(), sizeof wide);
     bytes.remove_prefix(sizeof wide);
     x = static_cast<T>(wide);
+    if constexpr (!std::is_floating_point_v<T>)
+      if (static_cast<std::int64_t>(x) != wide)
+        throw IoError("checkpoint '" + name + "' is inconsistent: " + std::to_string(wide) +
+                      " is out of the range of its place. Write it anew.");
   }
   template <class List>
   void resize(List& of) {
@@ -90,6 +94,22 @@ struct SnapshotReader {
     of.resize(static_cast<decltype(of.size())>(count));
   }
 };
+
+/// \throws IoError for what the checksum does not see: content by another program, which has more or other sizes.
+template <class = void>
+void require_consistent(RunSnapshot const& s, std::size_t left, std::string const& name) {
+  std::string const inconsistent = "checkpoint '" + name + "' is inconsistent: ", remedy = ". Write it anew.";
+  if (left != 0) throw IoError(inconsistent + std::to_string(left) + " bytes follow its content" + remedy);
+  auto const require = [&](VecX const& x, Index size, std::string const& what) {
+    if (x.size() != size)
+      throw IoError(inconsistent + "it has " + std::to_string(x.size()) + " " + what + " in place of the model's " +
+                    std::to_string(size) + remedy);
+  };
+  require(s.state.q, s.model.coordinates, "coordinates");
+  require(s.state.v, s.model.speeds, "speeds");
+  require(s.state.a, s.model.speeds, "rates of speeds");
+  require(s.state.lambda, s.model.rows, "multipliers");
+}
 
 struct CheckpointHead {
   char kind[8];
@@ -120,8 +140,8 @@ void write_checkpoint(std::filesystem::path const& name, RunSnapshot const& snap
   file.close();
 }
 
-/// \throws IoError for a file that cannot be read, is no checkpoint, is of another version or byte order, is cut off or
-/// damaged.
+/// \throws IoError for a file that cannot be read, is no checkpoint, is of another version or byte order, is cut off,
+/// damaged or inconsistent.
 template <class = void>
 RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::string const name = file.string();
@@ -152,6 +172,7 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   RunSnapshot snapshot;
   detail::SnapshotWalk<detail::SnapshotReader> content{{summed.substr(sizeof head), name}};
   content.walk(snapshot);
+  detail::require_consistent(snapshot, content.archive.bytes.size(), name);
   return snapshot;
 }
 

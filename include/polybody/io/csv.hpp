@@ -96,7 +96,7 @@ class Csv {
   }
 
   static std::string quoted(std::string const& head) {
-    bool const edge = head.front() == ' ' || head.back() == ' ';
+    bool const edge = head.front() == ' ' || head.back() == ' ' || head.starts_with("\xEF\xBB\xBF");
     if (!edge && head.find_first_of(",\"\r\n\t") == head.npos) return head;
     std::string text = "\"";
     for (char const c : head) text.append(c == '"' ? 2u : 1u, c);

@@ -18,7 +18,8 @@ class MonotoneTable {
     double x, y;
   };
 
-  /// \throws InvalidInput naming `what` unless there are two points or more, finite, with x strictly increasing.
+  /// \throws InvalidInput naming `what` unless there are two points or more, finite, with x strictly increasing, and
+  /// slopes and areas between them are finite.
   explicit MonotoneTable(std::vector<Point> const& points, std::string const& what = "MonotoneTable") {
     if (points.size() < 2)
       throw InvalidInput(what + ": a table needs two points at least, but has " + std::to_string(points.size()) + ".");
@@ -38,6 +39,7 @@ class MonotoneTable {
       knots_[i].area = area(knots_[i - 1], knots_[i].x - knots_[i - 1].x, i);
     double const to_zero = integral(0.0);
     for (Knot& k : knots_) k.area -= to_zero;
+    check_pieces(what);
   }
 
   /// The value at x, a double or a dual number.
@@ -85,6 +87,22 @@ class MonotoneTable {
     };
     knots_[0].slope = end(width(0), width(1), secant(0), secant(1));
     knots_[n - 1].slope = end(width(n - 2), width(n - 3), secant(n - 2), secant(n - 3));
+  }
+
+  /// Slopes grow as y by x, and neighbours in x may be as close as the last place of a double; no y of a piece exceeds
+  /// |y| + h (|m| + h (|a| + h |b|)).
+  void check_pieces(std::string const& what) const {
+    for (std::size_t i = 1; i < knots_.size(); ++i) {
+      Knot const &k = knots_[i - 1], &next = knots_[i];
+      Cubic const c = cubic(i);
+      double const h = next.x - k.x, slope = std::max(std::abs(k.slope), std::abs(next.slope));
+      double const y = std::abs(k.y) + h * (slope + h * (std::abs(c.a) + h * std::abs(c.b)));
+      for (double const x : {slope, c.a, c.b, y, h * y, next.area, 1.0 / (h * h)})
+        if (!(std::abs(x) <= largest_number))
+          throw InvalidInput(what + ": a value, slope or area of the table between its points " + std::to_string(i) +
+                             " and " + std::to_string(i + 1) + " is beyond " + number(largest_number) +
+                             ". Give smaller numbers, or abscissae that are farther apart.");
+    }
   }
 
   /// The first knot beyond x, which lies between two.

@@ -24,7 +24,7 @@ class SmoothTable {
   };
 
   /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and numbers that are not
-  /// finite.
+  /// finite, of the spline as of the points.
   explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
   SmoothTable(std::vector<Point> const& points, Ends const& ends, std::string const& what = "SmoothTable")
       : knots_(points.size()) {
@@ -40,6 +40,7 @@ class SmoothTable {
       next.integral = integral_to(k, next.time);
       next.rate = k.rate + 0.5 * h * (k.second + next.second);
     }
+    check_knots(what);
     for (Knot const& end : {knots_.front(), knots_.back()})
       if (end.second != 0.0) corners_.push_back(end.time);
     knots_.back().second = 0.0;
@@ -76,6 +77,23 @@ class SmoothTable {
     }
     if (!std::isfinite(ends.first_rate.value_or(0.0)) || !std::isfinite(ends.last_rate.value_or(0.0)))
       throw InvalidInput(what + ": the rates at the ends must be finite.");
+  }
+
+  /// Rates grow as values by times, which may be as close as the last place of a double; no value of a piece exceeds
+  /// |v| + h (|v′| + h (|v″| + h |v‴|)).
+  void check_knots(std::string const& what) const {
+    for (std::size_t i = 0; i < knots_.size(); ++i) {
+      Knot const& k = knots_[i];
+      std::size_t const piece = std::min(i, knots_.size() - 2);
+      double const h = knots_[piece + 1].time - knots_[piece].time, rate = std::abs(k.rate);
+      double const second = std::abs(k.second), third = std::abs(k.third);
+      double const value = std::abs(k.value) + h * (rate + h * (second + h * third));
+      for (double const x : {rate, second, third, value, h * value, std::abs(k.integral)})
+        if (!(x <= largest_number))
+          throw InvalidInput(what + ": a value, rate, acceleration or integral of the spline at point " +
+                             std::to_string(i + 1) + ", t = " + number(k.time) + " s, is beyond " +
+                             number(largest_number) + ". Give smaller values, or times that are farther apart.");
+    }
   }
 
   /// The second derivatives mᵢ that make the rates continuous, s the slopes of the chords:

@@ -20,7 +20,7 @@ class HeightField {
   };
 
   /// \throws InvalidInput naming `what` unless there are two points or more each way, spacings are positive and all is
-  /// finite.
+  /// finite, slopes and curvatures included.
   explicit HeightField(Grid const& grid, std::string const& what = "HeightField") {
     MatX const& z = grid.heights;
     require_finite(Vec2(grid.x0, grid.y0), what + ": the place x0, y0 of the first point");
@@ -38,6 +38,12 @@ class HeightField {
     x_ = {.start = grid.x0 - grid.dx, .spacing = grid.dx, .cells = z.rows() + 1};
     y_ = {.start = grid.y0 - grid.dy, .spacing = grid.dy, .cells = z.cols() + 1};
     nodes_ = std::make_shared<MatX const>(with_slopes(with_slopes(z, grid.dx).transpose(), grid.dy).transpose());
+    double const finest = std::min<double>(grid.dx, grid.dy);
+    bool computable = largest_number * finest * finest >= 1.0;
+    for (double const x : nodes_->reshaped()) computable = computable && std::abs(x) <= largest_number;
+    if (!computable)
+      throw InvalidInput(what + ": its slopes or curvatures are beyond " + number(largest_number) +
+                         ". Give heights and spacings in metres.");
     highest_ = z.maxCoeff();
     Mat<double, 4, 4> const bx = x_.bezier(), by = y_.bezier();
     for (Index j = 0; j < y_.cells; ++j)

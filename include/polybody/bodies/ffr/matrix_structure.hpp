@@ -9,6 +9,7 @@
 ///
 /// Not in polybody.hpp: few programs need it.
 
+#include <cctype>
 #include <fstream>
 #include <limits>
 #include <locale>
@@ -38,7 +39,7 @@ inline double largest_entry(Structure::Sparse const& m) {
   return largest;
 }
 
-/// \throws InvalidInput unless m is n×n, finite and symmetric, but for 1e-9 of its largest entry.
+/// \throws InvalidInput unless m is n×n, finite (with its norm) and symmetric, but for 1e-9 of its largest entry.
 inline void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
   if (m.rows() != n || m.cols() != n)
     throw InvalidInput("Structure: " + name + " is " + std::to_string(m.rows()) + "×" + std::to_string(m.cols()) +
@@ -50,8 +51,8 @@ inline void require_symmetric(Structure::Sparse const& m, Index n, std::string c
   Structure::Sparse const turned = m.transpose();
   for (Index j = 0; j < n; ++j) {
     for (Structure::Sparse::InnerIterator it(m, j); it; ++it) {
-      if (!std::isfinite(it.value()))
-        throw InvalidInput("Structure: " + name + " is not finite in " + entry_name(it.row(), j) +
+      if (!(std::abs(it.value()) <= largest_number))
+        throw InvalidInput("Structure: " + name + how_not_finite(it.value()) + " in " + entry_name(it.row(), j) +
                            ". Write the matrices anew.");
       double const other = turned.coeff(it.row(), j);
       if (!(std::abs(it.value() - other) <= least))
@@ -121,6 +122,16 @@ inline void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::
   }
 }
 
+/// \throws InvalidInput where products of masses and places overflow, as of nodes in no unit of length.
+inline void require_finite_moments(Structure const& s) {
+  bool finite = s.first.allFinite() && s.second.allFinite();
+  for (auto const& moment : s.moment)
+    for (VecX const& shape : moment) finite = finite && shape.allFinite();
+  if (!finite)
+    throw InvalidInput(
+        "Structure: the moments of its mass are not finite. Give nodes in metres and masses in kilograms.");
+}
+
 }  // namespace detail
 
 /// A structure of solid elements from its mass matrix [kg] and stiffness [N/m] (N×N, N = 3 × nodes; x, y, z of node 0,
@@ -132,8 +143,9 @@ inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse c
                               std::vector<Vec3> const& nodes) {
   if (nodes.empty()) throw InvalidInput("Structure: it has no nodes.");
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (!nodes[i].allFinite())
-      throw InvalidInput("Structure: node " + std::to_string(i) + " is not finite. Give x, y, z in metres.");
+    for (double const x : nodes[i])
+      if (!(std::abs(x) <= largest_number))
+        throw InvalidInput("Structure: node " + std::to_string(i) + how_not_finite(x) + ". Give x, y, z in metres.");
   Structure s;
   s.per_node = 3;
   s.nodes = nodes;
@@ -160,6 +172,7 @@ inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse c
         inertia[p].emplace_back(int(3 * i) + symmetric_row[p], int(3 * j) + symmetric_column[p], value);
     }
   for (std::size_t p = 0; p < 6; ++p) s.inertia[p].setFromTriplets(inertia[p].begin(), inertia[p].end());
+  detail::require_finite_moments(s);
   return s;
 }
 
@@ -170,7 +183,10 @@ class NumberLines {
  public:
   /// \throws IoError for a file that cannot be read.
   NumberLines(std::string const& file, char comment) : file_(file), in_(file), comment_(comment) {
-    if (!in_) throw IoError(file + ": it cannot be opened. Check the path, and that it may be read.");
+    if (in_) in_.peek();  // a folder can be opened, but not read
+    if (!in_.is_open() || in_.bad())
+      throw IoError(file + ": it cannot be opened. Check the path, and that it may be read.");
+    in_.clear();
   }
   /// The next line as it stands; false at the end.
   bool raw(std::string& line) {
@@ -185,11 +201,11 @@ class NumberLines {
     do {
       if (!raw(line)) return false;
       line.resize(std::min(line.find(comment_), line.size()));
-    } while (line.find_first_not_of(" \t\r") == std::string::npos);
+    } while (line.find_first_not_of(" \t\r\v\f") == std::string::npos);  // the blanks of `>>`
     std::istringstream words(line);
     words.imbue(std::locale::classic());
     std::string rest;
-    if (!(words >> ... >> values) || (words >> rest)) fail("'" + line.substr(0, 60) + "' is not " + expected);
+    if (!(read(words, values) && ...) || (words >> rest)) fail("'" + line.substr(0, 60) + "' is not " + expected);
     return true;
   }
   /// \throws IoError with the file and the line.
@@ -198,6 +214,12 @@ class NumberLines {
   }
 
  private:
+  /// A number ends at a blank: "1.5.5" is not 1.5 and 0.5, nor "3-4" 3 and −4.
+  template <class T>
+  static bool read(std::istream& words, T& value) {
+    return words >> value && (words.eof() || std::isspace(words.peek()));
+  }
+
   std::string file_;
   std::ifstream in_;
   char comment_;
@@ -223,6 +245,7 @@ inline Structure::Sparse read_matrix(std::string const& file, Index n, std::stri
   Index rows = 0, columns = 0, count = 0;
   std::string const sizes = "the number of rows, of columns and of entries";
   if (!lines.next(sizes, rows, columns, count)) lines.fail("the file ends before " + sizes);
+  if (count < 0) lines.fail("the number of entries must not be negative, but is " + std::to_string(count));
   if (rows != n || columns != n)
     lines.fail("the matrix is " + std::to_string(rows) + "×" + std::to_string(columns) + ", but the " +
                std::to_string(n / 3) + " nodes of " + nodes_file + " need " + std::to_string(n) + "×" +
