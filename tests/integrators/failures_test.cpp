@@ -9,6 +9,7 @@
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
+#include <polybody/joints/policies/recursive.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"
@@ -94,6 +95,56 @@ TEST(Failures, ForceThatIsNoNumberNamesItsBody) {
   Poisoned().expect_named(CentralDifference<Projection>{});
   Poisoned().expect_named(AdamsBashforthMoulton<CoordinatePartitioning>{});
   Poisoned().expect_named(Rattle{});
+}
+
+/// A force that fails at its call number `at`: it throws, or is no number.
+struct Faulty {
+  int at = -1, calls = 0;
+  bool throws = true;
+};
+inline auto fails_at(Faulty* fault) {
+  return user_force<1>([fault](auto const& frames, double) {
+    using T = std::decay_t<decltype(frames[0].r[0])>;
+    Wrench<T> w;
+    w.f[1] = T(1.0);
+    if (fault->calls++ != fault->at) return std::array{w};
+    if (fault->throws) throw std::runtime_error("it broke");
+    w.f[1] = T(std::numeric_limits<double>::quiet_NaN());
+    return std::array{w};
+  });
+}
+
+// Joints of `Recursive` ask the forces once more after a step, for their reactions. A force that fails there is a
+// failure of the step like any other: the state stays, and the step taken again is the same to the last bit.
+TEST(Failures, ForceThatFailsAfterTheStepLeavesTheState) {
+  using Pin = Joint<planar::Revolute, Recursive>;
+  using Push = decltype(fails_at(nullptr));
+  Faulty fault;
+  Model<Bodies<planar::Rigid>, Joints<Pin>, Forces<Push>> model{Gravity{0, -9.81, 0}};
+  auto const rod = model.add(planar::Rigid(1.0, 0.1), "rod");
+  model.connect(Pin{}, model.ground().at({-0.5, 0, 0}), rod.at(Vec2(-0.5, 0)), "pin");
+  model.apply(fails_at(&fault), rod.at(Vec2(0.5, 0)), "push");
+  auto const calls_of_a_step = [&](int at, bool throws, State const& sound) {
+    State x = model.reference_state();
+    fault = {};
+    auto run = simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 0.01});
+    State const before = x;
+    fault = {at, 0, throws};
+    try {
+      run.advance();
+      EXPECT_EQ(at, -1);
+    } catch (std::exception const&) {
+      expect_same(x, before);
+      EXPECT_EQ(run.report().steps, 0);
+      run.advance();
+    }
+    if (sound.q.size() > 0) expect_same(x, sound);
+    return std::pair(fault.calls, x);
+  };
+  auto const [calls, sound] = calls_of_a_step(-1, true, {});
+  EXPECT_EQ(calls, 6);
+  for (int at = 0; at < calls; ++at)
+    for (bool const throws : {true, false}) calls_of_a_step(at, throws, sound);
 }
 
 TEST(Failures, DoubledJointIsNamed) {

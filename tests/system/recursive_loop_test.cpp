@@ -9,6 +9,7 @@
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -93,6 +94,40 @@ TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
   expect_same(open);
   expect_same(dense);
   expect_same(bodies);
+}
+
+// A joint of both worlds leaves three turns and two slides in space; in the plane one of each. The normal of the plane
+// is any of the joint's axes, this way or that.
+template <class Policy>
+State run_on_lines() {
+  using Foot = Joint<PointInPlane, Policy>;
+  using Pin = Joint<planar::Revolute, Policy>;
+  Model<Bodies<planar::Rigid>, Joints<Foot, Pin>> model{Gravity{2.0, -9.81, 0}};
+  auto const ground = model.ground();
+  Vec3 const normals[] = {{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}, {0.6, 0.8, 0}, {-0.8, 0.6, 0}};
+  for (int i = 0; i < 6; ++i) {
+    auto const foot = model.add(planar::Rigid(1.0, 0.1, Placement::planar(i, 0.0, 0.7 * i)));
+    auto const tip = model.add(planar::Rigid(0.5, 0.1, Placement::planar(i, 1.0, 0.3)));
+    Foot const on_line{{.normal = normals[i]}, {}};
+    if (i % 2 == 0)
+      model.connect(on_line, ground.at({double(i), 0, 0}), foot.at(Vec2(0.2, 0.1)));
+    else
+      model.connect(on_line, foot.at(Vec2(0.2, 0.1)), ground.at({double(i), 0, 0}));
+    model.connect(Pin{}, foot.at(Vec2(-0.1, 0.3)), tip.at(Vec2(0, 0)));
+  }
+  State x = model.reference_state();
+  assemble(model, x);
+  simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.3, .step = 1e-3}).run();
+  return x;
+}
+
+TEST(RecursiveLoop, JointOfBothWorldsKeepsToThePlane) {
+  State const held = run_on_lines<Constraint>();
+  for (State const& x : {run_on_lines<Recursive>(), run_on_lines<Reduced>(), run_on_lines<ByBodies>()}) {
+    EXPECT_LT((held.q - x.q).norm(), 1e-8);
+    EXPECT_LT((held.a - x.a).norm(), 1e-6 * held.a.norm());
+    EXPECT_LT((held.lambda - x.lambda).norm(), 1e-6 * held.lambda.norm());
+  }
 }
 
 TEST(RecursiveLoop, ImplicitStepsHaveTheirOrder) {

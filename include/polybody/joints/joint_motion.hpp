@@ -70,4 +70,20 @@ JointMotions motions_of(G const& geometry) {
   }
 }
 
+/// Those that stay in the plane, of a joint of both worlds: slides across the normal and the turn about it, which is
+/// one of the joint's axes. \param axes (3×3) of the joint
+template <class = void>  // compiled where it is used
+JointMotions in_plane(JointMotions const& motions, Mat3 const& axes) {
+  auto const is_normal = [&](int axis) { return std::abs(axes(2, axis)) > 0.5; };
+  JointMotions out;
+  for (JointMotion const& m : motions)
+    for (int i = 0; i < 3; ++i) {
+      bool const ball = m.kind == JointMotion::Kind::ball;
+      if (!ball && i != m.axis) continue;
+      if (is_normal(i) != (m.kind == JointMotion::Kind::slide))
+        out.add({ball ? JointMotion::Kind::turn : m.kind, i, m.pitch});
+    }
+  return out;
+}
+
 }  // namespace polybody

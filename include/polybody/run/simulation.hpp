@@ -110,8 +110,15 @@ class Simulation {
   /// The state that is stepped: the user's, or the narrow one.
   State& stepped() { return eliminates() ? narrow_ : *x_; }
   State const& stepped() const { return eliminates() ? narrow_ : *x_; }
+  /// The user's state follows the narrow one; it stays as it was where a force fails as reactions are worked out.
   void show() {
-    if (eliminates()) expand(*system_, narrow_, *x_, scratch_);
+    if (!eliminates()) return;
+    expand(*system_, narrow_, seen_, scratch_);
+    if (Index const i = first_not_finite(seen_.lambda); i >= 0)
+      throw NonFinite("The reaction of " + system_->layout().name_of(system_->layout().speeds + i) +
+                      how_not_finite(seen_.lambda[i]) + " at t = " + number(seen_.t) +
+                      " s. Look at the forces on the bodies that it carries.");
+    *x_ = seen_;
   }
 
   /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep
@@ -142,8 +149,7 @@ class Simulation {
   /// ahead as far as the next step goes, not across a corner.
   void restart(bool first = false);
 
-  void account(StepReport const& r, bool shortened) {
-    report_.add(r);
+  void choose_step(StepReport const& r, bool shortened) {
     if constexpr (requires { I::controls_step; })
       h_ = std::min(shortened ? std::max(r.next, h_) : r.next, largest_step());
   }
@@ -157,17 +163,18 @@ class Simulation {
       return seen_;
     };
   }
-  bool meet_events(State const& before, double taken) {
+  bool meet_events(double taken) {
     EventWatch::Step const again = [this](State& x, double h) {
       return integrator_.step(*system_, x, h, workspace_).taken;
     };
     EventWatch::Seen const shown = seen();
-    return watch_.meet(options_.events, {before, taken, shown, again}, stepped(), report_);
+    return watch_.meet(options_.events, {before_, taken, shown, again}, stepped(), report_);
   }
 
   std::unique_ptr<System> system_, whole_;  // workspaces refer to it
   State* x_;
   State narrow_, seen_;  // of models with eliminating policies
+  State before_;         // of a step after which something may fail
   VecX scratch_;
   I integrator_;
   RunOptions options_;
@@ -229,25 +236,27 @@ template <Integrator I, class Solver>
 void Simulation<I, Solver>::advance() {
   auto const [target, h, lands, jumps] = plan_.next(stepped().t, h_);
   bool const crumb = h < 0.01 * h_;  // a tiny step, left over after a corner or an event
-  State before;
-  if (jumps || crumb || options_.minimum_norm || !options_.events.empty()) before = stepped();
-  double const from = stepped().t;
+  if (eliminates() || jumps || crumb || options_.minimum_norm || !options_.events.empty()) before_ = stepped();
+  double const from = stepped().t, h_before = h_;
+  StepRow const row_before = row_;
   StepReport const report = step(h, options_.halvings);
   bool const reached = lands && report.taken == h;
   stepped().t = reached ? target : row_.after(from, report.taken);
-  account(report, reached);
+  choose_step(report, reached);
   try {
-    bool const met = !options_.events.empty() && meet_events(before, report.taken);
+    bool const met = !options_.events.empty() && meet_events(report.taken);
     bool const at_corner = jumps && stepped().t == target;
     if (at_corner) stepped().t = plan_.pass(stepped().t);
     if (met || at_corner || crumb) restart();
     if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
     show();
   } catch (...) {
-    stepped() = before;
-    show();
+    stepped() = before_;
+    row_ = row_before;
+    h_ = h_before;
     throw;
   }
+  report_.add(report);
 }
 
 template <Integrator I, class Solver>

@@ -185,7 +185,7 @@ class JointTreeOf {
             break;
           case JointMotion::Kind::turn:
             *x = body.layout == RigidLayout::plane
-                     ? angle
+                     ? angle * a(2, m.axis)
                      : detail::first_turn<T>(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
             turned = detail::turn_about<T>(m.axis, -*x) * turned;
             break;
@@ -329,7 +329,7 @@ class JointTreeOf {
         if (m.kind == JointMotion::Kind::screw) run.slide(n, m.pitch * x[0], m.pitch * u[0]);
         run.turn(u[0] * n);
         run.A = run.A * detail::turn_about<T>(m.axis, sign * x[0]);
-        f.angle += sign * x[0];
+        f.angle += n[2] * x[0];  // in the plane the axis is the normal, this way or that
         break;
       case JointMotion::Kind::ball: {
         Mat3 const turned = rotation_matrix<T>(Quaternion<T>(x[0], x[1], x[2], x[3]));

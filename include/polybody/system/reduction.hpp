@@ -98,9 +98,12 @@ class ReductionOf {
     Sequence<Link> links;
     model.for_each_joint([&](auto const& e) {
       using J = std::decay_t<decltype(e.joint)>;
-      if constexpr (MakesJointCoordinates<typename J::PolicyType>)
-        links.push_back(
-            {e.name, e.row, hooks[std::size_t(e.a)], hooks[std::size_t(e.b)], motions_of(e.joint.geometry)});
+      if constexpr (MakesJointCoordinates<typename J::PolicyType>) {
+        Hook const &a = hooks[std::size_t(e.a)], &b = hooks[std::size_t(e.b)];
+        bool const plane = bodies[std::size_t(a.body < 0 ? b.body : a.body)].layout == RigidLayout::plane;
+        JointMotions const motions = motions_of(e.joint.geometry);
+        links.push_back({e.name, e.row, a, b, plane ? in_plane(motions, a.frame.axes) : motions});
+      }
     });
     hang(bodies, links, model.reference_state().q, std::is_same_v<typename M::Solution, recursive::ArticulatedBody>);
     carried_by_.assign(std::size_t(model.rows()), -1);

@@ -1,0 +1,10 @@
+#include "random_models/recursive_types.hpp"
+#include "random_models/wide_types.hpp"
+
+namespace polybody::random_models {
+
+WideType trees_by_augmented() {
+  return recursive_type<recursive::Augmented, AllForces>("trees, Augmented", names_of_all_forces);
+}
+
+}  // namespace polybody::random_models

@@ -1,0 +1,11 @@
+#include "random_models/recursive_types.hpp"
+#include "random_models/wide_types.hpp"
+
+namespace polybody::random_models {
+
+WideType trees_by_bodies() {
+  return recursive_type<recursive::ArticulatedBody, ForcesWithoutStates>("trees, ArticulatedBody",
+                                                                         names_without_states);
+}
+
+}  // namespace polybody::random_models
