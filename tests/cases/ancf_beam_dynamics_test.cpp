@@ -37,13 +37,14 @@ TEST(AncfRightAngleCantilever, TwoMeshesExtrapolateToTheExactFrame) {
   }
 }
 
-// D2's tolerance for ten elements of order 2.
-TEST(AncfSpinUp, TenElements) {
+// D2's tolerance of the lag for elements of order 2; the error of a frequency moves the swing that is left by its
+// phase.
+TEST(AncfSpinUp, SixteenElements) {
   Beams::ModelType model;
-  auto const arm = model.add(AncfBeam<>::from(spin_up::arm(), 10), "arm");
+  auto const arm = model.add(AncfBeam<>::from(spin_up::arm(), 16), "arm");
   model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "axle");
   model.connect(spin_up::drive(), model.ground().at({0, 0, 0}), arm.at(0.0), "drive");
-  spin_up::follows(model, arm.at(10.0), 1e-2);
+  spin_up::follows(model, arm.at(10.0), {1e-2, 0.1});
 }
 
 }  // namespace ancf_beam_dynamics_test

@@ -52,28 +52,37 @@ struct SpinningArm {
   }
 };
 
-// With stiffening, three bending modes: within 2 % of the largest deflection, as asked.
+// With stiffening, three bending modes: within 2 % of the largest deflection, as asked, and the swing that is left
+// after 15 s within 5 % of itself. Bending modes do not stretch: what the exact tip has in u₁ by the centrifugal force,
+// ρA ψ˙² L³/3EA [A], is not in the arm's.
 TEST(SpinUp, StiffenedFrameFollowsTheIndependentSolution) {
   SpinningArm arm(kane_arm(3, true));
   struct Row {
     double t, u1, u2;
   };
-  std::vector<Row> const rows{{2.5, -0.00132267702, -0.15128355864},  {5.0, -0.01265463625, -0.46847618344},
-                              {6.5, -0.01860342132, -0.56994836841},  {7.5, -0.01774186447, -0.55908345896},
-                              {10.0, -0.00707233630, -0.36281451565}, {15.0, 5.13989706e-4, 1.30362629e-3}};
+  std::vector<Row> const rows{{2.5, -0.00132267702, -0.15128355864},
+                              {5.0, -0.01265463625, -0.46847618344},
+                              {6.5, -0.01860342132, -0.56994836841},
+                              {7.5, -0.01774186447, -0.55908345896},
+                              {10.0, -0.00707233630, -0.36281451565}};
+  double const swing = 0.00364;  // of the independent solution from 15 s on [m]
   std::size_t next = 0;
   double largest = 0.0;
   for (State const& now : arm.run(18.0)) {
     Vec2 const u = arm.tip(now);
     if (next < rows.size() && std::abs(now.t - rows[next].t) < 1e-9) {
       EXPECT_NEAR(u[1], rows[next].u2, 0.02 * 0.573835) << now.t;
-      EXPECT_NEAR(u[0], rows[next].u1, 0.02 * 0.573835 * 0.1) << now.t;
+      double const speed = arm.law(now.t).rate, stretch = 1.2 * speed * speed * 1000.0 / (3.0 * 2.8e7);
+      EXPECT_NEAR(u[0], rows[next].u1 - stretch, 0.02 * 0.0188) << now.t;  // a share of the largest
       ++next;
+    }
+    if (std::abs(now.t - 15.0) < 1e-9) {
+      EXPECT_NEAR(u[1], 1.30362629e-3, 0.05 * swing);
     }
     if (now.t > 15.0) largest = std::max(largest, std::abs(u[1]));
   }
   EXPECT_EQ(next, rows.size());
-  EXPECT_LT(largest, 0.02 * 0.573835);  // 0.00364 in the independent solution
+  EXPECT_NEAR(largest, swing, 0.05 * swing);
 }
 
 // The steady stretch ω² ρA L³/3EA is a matter of axial coordinates: all of four elements'.
