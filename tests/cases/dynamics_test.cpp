@@ -94,13 +94,15 @@ TEST(SimoVuQuocArm, TorqueDrivenKeepsTheImpulseExactly) {
 
 // D2: Kane, Ryan & Banerjee 1987; the base is clamped to a hub of zero radius.
 template <class B>
-void spins_up(B const& body, spin_up::Share const& share) {
+void spins_up(B const& body, spin_up::Share const& share, char const* formulation) {
   DrivenArm<B, SpinUp> const arm(body, spin_up::drive().geometry.law);
-  spin_up::follows(arm.model, arm.arm.at(10.0), share);
+  spin_up::follows(arm.model, arm.arm.at(10.0), share, formulation);
 }
 
-TEST(SpinUp, CableOfEightElements) { spins_up(Cable::from(spin_up::arm(), 8), {1e-3, 0.02}); }
-TEST(SpinUp, LrvfOfTenElements) { spins_up(Lrvf::from(spin_up::arm(), 10), {1e-2, 0.03}); }
+TEST(SpinUp, CableOfEightElements) {
+  spins_up(Cable::from(spin_up::arm(), 8), {1e-3, 0.02}, "planar AncfCable, 8 elements");
+}
+TEST(SpinUp, LrvfOfTenElements) { spins_up(Lrvf::from(spin_up::arm(), 10), {1e-2, 0.03}, "planar Lrvf, 10 elements"); }
 
 // D3: the flying rod of Simo & Vu-Quoc 1986, free in the plane.
 template <class B>

@@ -82,8 +82,8 @@ inline void held_within(Claim const& claim, double error, double tolerance, Inst
   detail::record(claim, instance, "distance", 0.0, error, tolerance);
   if (!(error <= tolerance))
     ADD_FAILURE_AT(where.file_name(), int(where.line()))
-        << claim.case_id << ", " << claim.what << ", " << claim.formulation << ' ' << instance.at
-        << ": an error of " << error << ", above the tolerance " << tolerance;
+        << claim.case_id << ", " << claim.what << ", " << claim.formulation << ' ' << instance.at << ": an error of "
+        << error << ", above the tolerance " << tolerance;
 }
 
 }  // namespace polybody
