@@ -19,7 +19,9 @@ using Pin = Joint<Revolute, Constraint>;
 /// One type of model for both cases: it is compiled once.
 using Beams = RightAngle<AncfBeam<>, Pin, spin_up::Drive>;
 
-TEST(AncfRightAngleCantilever, TenElementsPerLegStayWithinOnePercent) { follows<Beams>(10, 0.05, 0.01); }
+TEST(AncfRightAngleCantilever, TenElementsPerLegStayWithinOnePercent) {
+  follows<Beams>(10, 0.05, 0.01, "AncfBeam, 10 elements a leg, h = 0.05 s");
+}
 
 // (4 fine − coarse)/3 has no error of second order left; what remains grows with the time. The corner is a weld: of
 // both sections' frames.
@@ -30,20 +32,20 @@ TEST(AncfRightAngleCantilever, TwoMeshesExtrapolateToTheExactFrame) {
     coarse.run_until(row.t).run();
     fine.run_until(row.t).run();
     Vec6 const limit = (4.0 * fine.displacements() - coarse.displacements()) / 3.0;
-    EXPECT_LT(miss(limit, row.u), row.t > 6.5 ? 3e-4 : 5e-5) << row.t;
-    if (row.t >= 2.0) {
-      EXPECT_NEAR((4.0 * fine.total_energy() - coarse.total_energy()) / 3.0, plateau, 1e-6 * plateau) << row.t;
-    }
+    char const* const meshes = "AncfBeam, 12 and 24 elements a leg extrapolated, up to 10 s";
+    held_displacements(limit, row, row.t > 6.5 ? 3e-4 : 5e-5, meshes);
+    if (row.t >= 2.0) held_energy((4.0 * fine.total_energy() - coarse.total_energy()) / 3.0, 1e-6, row.t, meshes);
   }
 }
 
-// D2's tolerance for ten elements of order 2.
-TEST(AncfSpinUp, TenElements) {
+// D2's tolerance of the lag for elements of order 2; the error of a frequency moves the swing that is left by its
+// phase.
+TEST(AncfSpinUp, SixteenElements) {
   Beams::ModelType model;
-  auto const arm = model.add(AncfBeam<>::from(spin_up::arm(), 10), "arm");
+  auto const arm = model.add(AncfBeam<>::from(spin_up::arm(), 16), "arm");
   model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "axle");
   model.connect(spin_up::drive(), model.ground().at({0, 0, 0}), arm.at(0.0), "drive");
-  spin_up::follows(model, arm.at(10.0), 1e-2);
+  spin_up::follows(model, arm.at(10.0), {1e-2, 0.1}, "AncfBeam, 16 elements");
 }
 
 }  // namespace ancf_beam_dynamics_test

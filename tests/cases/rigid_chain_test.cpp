@@ -7,6 +7,7 @@
 #include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"
+#include "support/held.hpp"
 
 using namespace polybody;
 
@@ -17,6 +18,10 @@ using Space = Chain<InSpace<Constraint>>;
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 
+Claim ordinary_solver(char const* what, std::string const& formulation) {
+  return {"R8", what, By::independent, "ordinary solver of order eight", formulation};
+}
+
 /// Angles of both links from the downward vertical at time t.
 struct Angles {
   double t, first, second;
@@ -26,13 +31,16 @@ struct Angles {
 double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
 template <class C, class I>
-void expect_angles(C const& chain, I const& integrator, double step, std::vector<Angles> const& exact,
-                   double tolerance) {
+void expect_angles(C const& chain, I const& integrator, double step, std::vector<Angles> const& exact, double tolerance,
+                   std::string const& formulation) {
   State x = chain.model.reference_state();
   for (Angles const& e : exact) {
     simulate(chain.model, x, integrator, {.until = e.t, .step = step}).run();
-    EXPECT_NEAR(wrapped(chain.angle(x, 0) - e.first), 0.0, tolerance) << e.t;
-    EXPECT_NEAR(wrapped(chain.angle(x, 1) - e.second), 0.0, tolerance) << e.t;
+    Instance const at{equals("t", e.t), 1.0};
+    held_within(ordinary_solver("angles of both links [rad]", formulation),
+                std::abs(wrapped(chain.angle(x, 0) - e.first)), tolerance, at);
+    held_within(ordinary_solver("angles of both links [rad]", formulation),
+                std::abs(wrapped(chain.angle(x, 1) - e.second)), tolerance, at);
   }
 }
 
@@ -51,15 +59,16 @@ Link const chrono_link{.length = 1.0, .mass = 1.0, .inertia = 1.0, .com = 0.5};
 
 TEST(DoublePendulum, OfPointMassesFollowsThePublishedAngles) {
   Plane const chain(2, point_link());
-  expect_angles(chain, precise(), 0.01, point_masses, 1e-6);
+  expect_angles(chain, precise(), 0.01, point_masses, 1e-6, "(a) two point masses, Dormand–Prince");
   State x = chain.model.reference_state();
   simulate(chain.model, x, precise(), {.until = 1.0, .step = 0.01}).run();
-  EXPECT_LT((chain.tip(x) - Vec3(-1.444818849943, -1.321794461381, 0.0)).norm(), 1e-8);
+  held_within(ordinary_solver("place of the second mass at t = 1 s [m]", "(a) two point masses, Dormand–Prince"),
+              (chain.tip(x) - Vec3(-1.444818849943, -1.321794461381, 0.0)).norm(), 1e-8, {.scale = 2.0});
 }
 
 TEST(DoublePendulum, OfBarsFollowsThePublishedAngles) {
-  expect_angles(Plane(2, bar_link()), precise(), 0.01, bars, 1e-7);
-  expect_angles(Space(2, bar_link()), precise(), 0.01, bars, 1e-7);
+  expect_angles(Plane(2, bar_link()), precise(), 0.01, bars, 1e-7, "(b) two bars in the plane, Dormand–Prince");
+  expect_angles(Space(2, bar_link()), precise(), 0.01, bars, 1e-7, "(b) two bars in space, Dormand–Prince");
 }
 
 // Implicit steps converge to the same angles, at second order.
@@ -78,15 +87,17 @@ TEST(DoublePendulum, OfBarsConvergesAtSecondOrderWithGeneralizedAlpha) {
 // The peer's own tolerances: 1e-3 in states, 1e-6 in the rows, at h = 2e-4.
 TEST(DoublePendulum, OfThePeerKeepsItsTolerances) {
   Space const chain(2, chrono_link, 10.0);
-  expect_angles(chain, precise(), 0.01, chrono, 1e-7);
-  expect_angles(chain, GeneralizedAlpha{}, 2e-4, {chrono[0], chrono[1]}, 1e-5);
+  expect_angles(chain, precise(), 0.01, chrono, 1e-7, "(c) the peer's two links in space, Dormand–Prince");
+  expect_angles(chain, GeneralizedAlpha{}, 2e-4, {chrono[0], chrono[1]}, 1e-5,
+                "(c) the peer's two links in space, generalised-α, h = 2e-4 s");
 
   State x = chain.model.reference_state();
   simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 2e-4}).run();
   System system(chain.model);
   EXPECT_LT(violation(system, x).position, 1e-6);
-  EXPECT_NEAR(x.v[5], -1.9495974609, 1e-3);
-  EXPECT_NEAR(x.v[11], -3.9480427098, 1e-3);
+  char const* const peer = "(c) the peer's two links in space, generalised-α, h = 2e-4 s";
+  held(ordinary_solver("rates of both links at t = 1 s [rad/s]", peer), x.v[5], -1.9495974609, 1e-3);
+  held(ordinary_solver("rates of both links at t = 1 s [rad/s]", peer), x.v[11], -3.9480427098, 1e-3);
 }
 
 struct Tip {
@@ -100,28 +111,33 @@ std::vector<Tip> const tips{{3, 0.25, 0.880767899903, -0.295360886340},   {3, 0.
                             {10, 0.75, -0.908445211876, -0.383978760999}, {10, 1.0, -0.894316852361, -0.146565064747}};
 
 template <class C, class I>
-void expect_tips(int links, I const& integrator, double step, double until, double tolerance) {
+void expect_tips(int links, I const& integrator, double step, double until, double tolerance, char const* formulation) {
   C const chain(links, bar_link(1.0 / links, 1.0 / links));
   State x = chain.model.reference_state();
   int compared = 0;
   for (Tip const& e : tips) {
     if (e.links != links || e.t > until) continue;
     simulate(chain.model, x, integrator, {.until = e.t, .step = step}).run();
-    EXPECT_LT((chain.tip(x) - Vec3(e.x, e.y, 0.0)).norm(), tolerance) << links << " links, t = " << e.t;
+    held_within(ordinary_solver("tip of N bars [m]", "(d) N = " + std::to_string(links) + formulation),
+                (chain.tip(x) - Vec3(e.x, e.y, 0.0)).norm(), tolerance, {equals("t", e.t), 0.9});
     ++compared;
   }
   EXPECT_GE(compared, 2);
 }
 
 TEST(LongPendulum, TipIsWhereThePublishedOneIs) {
-  for (int const links : {3, 4, 10}) expect_tips<Plane>(links, precise(), 1e-3, 1.0, 1e-7);
+  for (int const links : {3, 4, 10})
+    expect_tips<Plane>(links, precise(), 1e-3, 1.0, 1e-7, " in the plane, Dormand–Prince");
 }
 
-TEST(LongPendulum, TipIsThereInSpaceToo) { expect_tips<Space>(3, precise(), 1e-3, 1.0, 1e-7); }
+TEST(LongPendulum, TipIsThereInSpaceToo) {
+  expect_tips<Space>(3, precise(), 1e-3, 1.0, 1e-7, " in space, Dormand–Prince");
+}
 
 TEST(LongPendulum, TipIsThereWithImplicitSteps) {
-  for (int const links : {3, 4, 10}) expect_tips<Plane>(links, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5);
-  expect_tips<Space>(10, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5);
+  for (int const links : {3, 4, 10})
+    expect_tips<Plane>(links, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5, " in the plane, generalised-α, h = 2e-4 s");
+  expect_tips<Space>(10, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5, " in space, generalised-α, h = 2e-4 s");
 }
 
 }  // namespace rigid_chain_test

@@ -28,17 +28,16 @@ struct Way {
   double step = 0.0;      ///< [s]
   double pendulum = 0.0;  ///< R1 over 10 s [m]
   double links = 0.0;     ///< R8 over 2 s [rad]
-  double windows = 0.0;   ///< R2 over 4 s [m]
   double top = 0.0;       ///< R6 over 0.2 s [m], with a fifth of the step
   double spin = 0.0;      ///< R7 over 2 s [rad/s]
   double bricard = 0.0;   ///< R4 over 2 s [m]
   double energy = 0.0;    ///< of R4 [J]
 };
 
-Way<HhtAlpha> hht() { return {{}, 2.5e-4, 2e-5, 2e-5, 1e-4, 1e-5, 1e-6, 1e-6, 1e-5}; }
-Way<Radau> radau() { return {{}, 5e-3, 1e-8, 1e-8, 1e-6, 1e-8, 1e-8, 1e-8, 1e-8}; }
+Way<HhtAlpha> hht() { return {{}, 2.5e-4, 2e-5, 2e-5, 1e-5, 1e-6, 1e-6, 1e-5}; }
+Way<Radau> radau() { return {{}, 5e-3, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8}; }
 Way<AdamsBashforthMoulton<Projection>> adams() {
-  return {{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12}, 1e-3, 1e-8, 1e-8, 1e-6, 1e-8, 1e-8, 1e-8, 1e-8};
+  return {{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12}, 1e-3, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8};
 }
 
 struct Place {
@@ -73,12 +72,12 @@ void expect_links(W const& way) {  // R8a, R8b
 }
 
 template <class W>
-void expect_windows(W const& way, int n, double until) {  // R2
+void expect_windows(W const& way, int n, double until, double tolerance) {  // R2, the corner [m]; not under Radau IIA
   Windows bars(n);
   for (Corner const& c : corners) {
     if (c.n != n || c.t > until) continue;
     simulate(bars.model, bars.x, way.integrator, {.until = c.t, .step = way.step}).run();
-    EXPECT_LT((bars.corner() - Vec3(c.x, c.y, 0)).norm(), way.windows) << n << " windows at " << c.t;
+    EXPECT_LT((bars.corner() - Vec3(c.x, c.y, 0)).norm(), tolerance) << n << " windows at " << c.t;
   }
 }
 
@@ -125,11 +124,11 @@ TEST(EveryIntegrator, AdamsSwingsTwoLinks) { expect_links(adams()); }
 TEST(EveryIntegrator, HhtTurnsTheFourBars) {
   Way<HhtAlpha> way = hht();
   way.step = 1e-3;
-  for (int const n : {1, 2, 40}) expect_windows(way, n, 4);
+  for (int const n : {1, 2, 40}) expect_windows(way, n, 4, 1e-4);
 }
 TEST(EveryIntegrator, AdamsTurnsTheFourBars) {
-  expect_windows(adams(), 2, 10);
-  expect_windows(adams(), 40, 4);
+  expect_windows(adams(), 2, 10, 1e-6);
+  expect_windows(adams(), 40, 4, 1e-6);
 }
 
 TEST(EveryIntegrator, HhtFoldsBricard) { expect_bricard(hht()); }

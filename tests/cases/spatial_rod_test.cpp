@@ -7,6 +7,7 @@
 
 #include <numbers>
 
+#include "support/held.hpp"
 #include "support/spatial_cantilever.hpp"
 
 using namespace polybody;
@@ -15,6 +16,10 @@ namespace spatial_rod_test {
 
 using std::numbers::pi;
 using Rod = SpatialCantilever<Lrvf<>>;
+
+Claim exact_rod(char const* case_id, char const* what, std::string const& formulation) {
+  return {case_id, what, By::independent, "shooting on the rod's equations", formulation};
+}
 
 /// u(n) and u(2n), extrapolated.
 template <class F>
@@ -46,14 +51,19 @@ TEST(EndMoments, SpaceFixedMomentsMeetTheExactRod) {
   auto const rotation = [](Index n) { return end_moments(n, LoadAxes::world).rotation; };
   Vec3 const exact(-1.0943798558e-4, -1.8643645616e-4, -1.81174027438e-2);
   Vec3 const turn(0.016323712401, 0.018117169413, -0.000427522396);
-  EXPECT_LT((extrapolated(u, 16) - exact).norm(), 1e-11);
-  EXPECT_LT((extrapolated(rotation, 16) - turn).norm(), 1e-11);
+  char const* const meshes = "Lrvf, 16 and 32 elements extrapolated";
+  held_within(exact_rod("S5", "tip under dead moments [m]", meshes), (extrapolated(u, 16) - exact).norm(), 1e-11,
+              {.scale = exact.norm()});
+  held_within(exact_rod("S5", "rotation vector of the tip under dead moments", meshes),
+              (extrapolated(rotation, 16) - turn).norm(), 1e-11, {.scale = turn.norm()});
   EXPECT_NEAR((u(4) - exact).norm() / (u(8) - exact).norm(), 4.0, 0.01);
 }
 
 TEST(EndMoments, FollowerMomentsGiveAnotherAnswer) {
   auto const u = [](Index n) { return end_moments(n, LoadAxes::marker).u; };
-  EXPECT_LT((extrapolated(u, 16) - Vec3(-1.0949948006e-4, 6.6856646766e-4, -1.81128138084e-2)).norm(), 1e-11);
+  Vec3 const exact(-1.0949948006e-4, 6.6856646766e-4, -1.81128138084e-2);
+  held_within(exact_rod("S5", "tip under following moments [m]", "Lrvf, 16 and 32 elements extrapolated"),
+              (extrapolated(u, 16) - exact).norm(), 1e-11, {.scale = exact.norm()});
 }
 
 // ---- S6: the Princeton beam
@@ -106,10 +116,15 @@ TEST(PrincetonBeam, MeetsTheExactRod) {
   for (Princeton const& row : princeton) {
     Vec3 const exact(row.x, row.y, row.z);
     PrincetonTip const a = princeton_tip(8, row), b = princeton_tip(32, row), c = princeton_tip(64, row);
-    EXPECT_LT((a.u - exact).norm(), 5e-3 * exact.norm()) << row.force << ' ' << row.degrees;
-    EXPECT_LT((b.u - exact).norm(), 5e-3 / 16 * exact.norm()) << row.force << ' ' << row.degrees;
-    EXPECT_LT(((4.0 * c.u - b.u) / 3.0 - exact).norm(), 2e-9) << row.force << ' ' << row.degrees;
-    EXPECT_NEAR((4.0 * c.twist - b.twist) / 3.0, row.twist, 2e-9) << row.force << ' ' << row.degrees;
+    Instance const at{equals("F", row.force) + equals(" N, β", row.degrees), exact.norm()};
+    held_within(exact_rod("S6", "tip of the Princeton beam [m]", "Lrvf, 8 elements"), (a.u - exact).norm(),
+                5e-3 * exact.norm(), at);
+    held_within(exact_rod("S6", "tip of the Princeton beam [m]", "Lrvf, 32 elements"), (b.u - exact).norm(),
+                5e-3 / 16 * exact.norm(), at);
+    held_within(exact_rod("S6", "tip of the Princeton beam [m]", "Lrvf, 32 and 64 elements extrapolated"),
+                ((4.0 * c.u - b.u) / 3.0 - exact).norm(), 2e-9, at);
+    held(exact_rod("S6", "twist of the tip [rad]", "Lrvf, 32 and 64 elements extrapolated"),
+         (4.0 * c.twist - b.twist) / 3.0, row.twist, 2e-9, {at.at, 0.064});
   }
 }
 
@@ -147,9 +162,12 @@ TEST(FortyFiveDegreeBend, MeetsTheExactRod) {
   for (Bend const& b : bends) {
     double const u = (b.tip - start).norm();
     Vec3 const coarse = bend_tip(32, b), fine = bend_tip(64, b);
-    EXPECT_LT((bend_tip(8, b) - b.tip).norm(), 3e-3 * u) << b.force << ' ' << b.GJ;
-    EXPECT_LT((coarse - b.tip).norm(), 2e-4 * u) << b.force << ' ' << b.GJ;
-    EXPECT_LT(((4.0 * fine - coarse) / 3.0 - b.tip).norm(), 1e-6 * u) << b.force << ' ' << b.GJ;
+    char const* const what = "tip of the 45° bend, of its displacement";
+    Instance const at{equals("F", b.force) + equals(", GJ", b.GJ), 1.0};
+    held_within(exact_rod("S7", what, "Lrvf, 8 elements"), (bend_tip(8, b) - b.tip).norm() / u, 3e-3, at);
+    held_within(exact_rod("S7", what, "Lrvf, 32 elements"), (coarse - b.tip).norm() / u, 2e-4, at);
+    held_within(exact_rod("S7", what, "Lrvf, 32 and 64 elements extrapolated"),
+                ((4.0 * fine - coarse) / 3.0 - b.tip).norm() / u, 1e-6, at);
   }
 }
 
@@ -172,10 +190,13 @@ Vec3 twisted_tip(Index n, Vec3 const& force) {
 TEST(PreTwistedCantilever, MeetsTheExactRod) {
   Vec3 const y = extrapolated([](Index n) { return twisted_tip(n, {0, 1, 0}); }, 64);
   Vec3 const z = extrapolated([](Index n) { return twisted_tip(n, {0, 0, 1}); }, 64);
-  EXPECT_NEAR(y[0], -1.58e-6, 5e-9);
-  EXPECT_NEAR(z[0], -3.6e-7, 5e-9);
-  EXPECT_LT((y - Vec3(0, 5.4293204e-3, 1.7187433e-3)).tail<2>().norm(), 1e-10);
-  EXPECT_LT((z - Vec3(0, 1.7187438e-3, 1.7496234e-3)).tail<2>().norm(), 1e-10);
+  char const* const meshes = "Lrvf, 64 and 128 elements extrapolated";
+  held(exact_rod("S8", "u_x under a force along y [in]", meshes), y[0], -1.58e-6, 5e-9);
+  held(exact_rod("S8", "u_x under a force along z [in]", meshes), z[0], -3.6e-7, 5e-9);
+  held_within(exact_rod("S8", "u_y and u_z under a force along y [in]", meshes),
+              (y - Vec3(0, 5.4293204e-3, 1.7187433e-3)).tail<2>().norm(), 1e-10, {.scale = 5.7e-3});
+  held_within(exact_rod("S8", "u_y and u_z under a force along z [in]", meshes),
+              (z - Vec3(0, 1.7187438e-3, 1.7496234e-3)).tail<2>().norm(), 1e-10, {.scale = 2.5e-3});
 }
 
 }  // namespace spatial_rod_test

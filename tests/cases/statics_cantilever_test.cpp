@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "support/cantilever.hpp"
+#include "support/held.hpp"
 
 using namespace polybody;
 
@@ -41,16 +42,26 @@ TEST(GerstmayrIrschik, EveryMeshGivesThePublishedDigits) {
       {64, -0.5085373030408489, -1.207239853404364}};
   for (Mesh const& m : published) {
     Vec3 const u = gerstmayr_irschik(m.n);
-    EXPECT_NEAR(u[0], m.x, 1e-9) << m.n;
-    EXPECT_NEAR(u[1], m.y, 1e-9) << m.n;
+    Claim claim{"S3", "u_x of the tip, mesh by mesh [m]", By::published,
+                "Gerstmayr & Irschik 2008, Exudyn's ANCFcantileverTest.py", "planar AncfCable, 1 to 64 elements"};
+    Instance const at{equals("n", double(m.n))};
+    held(claim, u[0], m.x, 1e-9, at);
+    claim.what = "u_y of the tip, mesh by mesh [m]";
+    held(claim, u[1], m.y, 1e-9, at);
   }
+}
+
+/// A claim about the exact rod, that of the dictionary of CASES.
+Claim exact_rod(char const* case_id, char const* what, char const* formulation) {
+  return {case_id, what, By::independent, "shooting on the rod's equations", formulation};
 }
 
 // Extensible rod [C static_cases.py B].
 TEST(GerstmayrIrschik, MeshesConvergeToTheExactRod) {
   Vec3 const exact(-0.508537304325871, -1.207239854549803, -0.986237330266), coarse = gerstmayr_irschik(64),
                                                                              fine = gerstmayr_irschik(128);
-  EXPECT_LT((fine - exact).cwiseAbs().maxCoeff(), 1e-9);
+  held_within(exact_rod("S3", "u_x, u_y [m] and slope of the tip", "planar AncfCable, 128 elements"),
+              (fine - exact).cwiseAbs().maxCoeff(), 1e-9, {.scale = 0.5});
   EXPECT_GT((coarse - exact).norm() / (fine - exact).norm(), 14.0);  // order 4
 }
 
@@ -66,7 +77,8 @@ TEST(GerstmayrIrschik, LrvfWithoutShearConvergesToTheExactRod) {
   };
   Vec3 const a = tip(32), b = tip(64), c = tip(128), once = (4.0 * b - a) / 3.0, twice = (4.0 * c - b) / 3.0;
   EXPECT_NEAR((a - exact).norm() / (b - exact).norm(), 4.0, 0.01);
-  EXPECT_LT(((16.0 * twice - once) / 15.0 - exact).cwiseAbs().maxCoeff(), 5e-9);
+  held_within(exact_rod("S3", "u_x, u_y [m] and slope of the tip", "planar Lrvf, 32 to 128 elements extrapolated"),
+              ((16.0 * twice - once) / 15.0 - exact).cwiseAbs().maxCoeff(), 5e-9, {.scale = 0.5});
 }
 
 // ---- S4: Nachbagauer, Pechstein, Irschik & Gerstmayr 2011
@@ -93,8 +105,12 @@ TEST(Nachbagauer, SmallLoadGivesThePublishedMeshesUpToTheSquareOfTheRotation) {
       {64, 1.888212299849812e-07, 8.098560770202866e-04},  {256, 1.8884741770364144e-07, 8.099003054122335e-04}};
   for (Mesh const& m : published) {
     Vec3 const u = nachbagauer(m.n, 5e5 * h3).tip_displacement();
-    EXPECT_NEAR(-u[0], m.x, 3.4e-7 * m.x) << m.n;
-    EXPECT_NEAR(u[1], m.y, 3.4e-7 * m.y) << m.n;
+    Claim claim{"S4", "shortening under 62.5 kN, mesh by mesh [m]", By::published,
+                "Nachbagauer et al. 2011 (n = 1, 2, 4), Exudyn's ANCFBeamTest.py", "planar Lrvf, 1 to 256 elements"};
+    Instance const at{equals("n", double(m.n))};
+    held(claim, -u[0], m.x, 3.4e-7 * m.x, at);
+    claim.what = "u_y under 62.5 kN, mesh by mesh [m]";
+    held(claim, u[1], m.y, 3.4e-7 * m.y, at);
   }
 }
 
@@ -104,7 +120,9 @@ TEST(Nachbagauer, SmallLoadFollowsLinearTheory) {
   double const f = 5e5 * h3;
   for (Index const n : {1, 2, 4, 8, 16}) {
     double const linear = f * 8.0 / (3.0 * k.EI) * (1.0 - 0.25 / double(n * n)) + f * 2.0 / k.GA;
-    EXPECT_NEAR(nachbagauer(n, f).tip_displacement()[1], linear, 3.4e-7 * linear) << n;
+    held({"S4", "u_y under 62.5 kN, mesh by mesh [m]", By::closed_form,
+          "linear theory: F L³/3EI (1 − 1/4n²) + F L/GA, up to θ²", "planar Lrvf, 1 to 16 elements"},
+         nachbagauer(n, f).tip_displacement()[1], linear, 3.4e-7 * linear, {equals("n", double(n))});
   }
 }
 
@@ -137,12 +155,14 @@ TEST(Nachbagauer, MeshesConvergeToTheExactRod) {
   Vec3 const large(-0.1509711442396, 0.7105685978542, 0.520173166012);
   Vec3 const a = nachbagauer(128, 5e8 * h3).tip_displacement(), b = nachbagauer(256, 5e8 * h3).tip_displacement();
   EXPECT_NEAR((a - large).norm() / (b - large).norm(), 4.0, 0.01);
-  EXPECT_LT(((4.0 * b - a) / 3.0 - large).cwiseAbs().maxCoeff(), 1e-9);
+  char const* const meshes = "planar Lrvf, 128 and 256 elements extrapolated";
+  held_within(exact_rod("S4", "u_x, u_y [m] and rotation under 62.5 MN", meshes),
+              ((4.0 * b - a) / 3.0 - large).cwiseAbs().maxCoeff(), 1e-9, {.scale = 0.15});
   Vec2 const small(-1.8884916364e-7, 8.0990325398e-4);
   Vec3 const c = nachbagauer(128, 5e5 * h3).tip_displacement(), d = nachbagauer(256, 5e5 * h3).tip_displacement();
   Vec3 const limit = (4.0 * d - c) / 3.0;
-  EXPECT_NEAR(limit[0], small[0], 1e-8 * 1.9e-7);
-  EXPECT_NEAR(limit[1], small[1], 1e-9 * 8.1e-4);
+  held(exact_rod("S4", "u_x under 62.5 kN [m]", meshes), limit[0], small[0], 1e-8 * 1.9e-7);
+  held(exact_rod("S4", "u_y under 62.5 kN [m]", meshes), limit[1], small[1], 1e-9 * 8.1e-4);
 }
 
 // ---- S4b: the same bar at 45° under force and moment
@@ -161,14 +181,18 @@ TEST(InclinedBeam, SixteenElementsGiveExudynsDigits) {
                                           .mass_per_length = 392.5,
                                           .GA = 13.0 / 15.3 * 7.9615e10 * 0.05},
                 .placement = Placement::planar(0, 0, std::numbers::pi / 4)};
-  EXPECT_NEAR(inclined(16, bar)[1], -2.211502835379855, 1e-9);
+  held({"S4b", "u_y of the tip [m]", By::published, "Exudyn's geometricallyExactBeam2Dtest.py",
+        "planar Lrvf, 16 elements"},
+       inclined(16, bar)[1], -2.211502835379855, 1e-9);
 }
 
 TEST(InclinedBeam, MeshesConvergeToTheExactRod) {
   Vec3 const exact(-1.197374069, -2.209408446, -4.306675415);
   Vec3 const a = inclined(64, thick(std::numbers::pi / 4)), b = inclined(128, thick(std::numbers::pi / 4));
-  EXPECT_LT((inclined(16, thick(std::numbers::pi / 4)) - exact).cwiseAbs().maxCoeff(), 0.001 * 2.21);
-  EXPECT_LT(((4.0 * b - a) / 3.0 - exact).cwiseAbs().maxCoeff(), 1e-7);
+  held_within(exact_rod("S4b", "u_x, u_y [m] and rotation of the tip", "planar Lrvf, 16 elements"),
+              (inclined(16, thick(std::numbers::pi / 4)) - exact).cwiseAbs().maxCoeff(), 0.001 * 2.21, {.scale = 2.21});
+  held_within(exact_rod("S4b", "u_x, u_y [m] and rotation of the tip", "planar Lrvf, 64 and 128 elements extrapolated"),
+              ((4.0 * b - a) / 3.0 - exact).cwiseAbs().maxCoeff(), 1e-7, {.scale = 2.21});
 }
 
 }  // namespace statics_cantilever_test

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "support/cantilever.hpp"
+#include "support/held.hpp"
 
 using namespace polybody;
 
@@ -31,6 +32,11 @@ Bar half_circle() {
 
 double moment_of_turn(Bar const& bar, double theta) { return constants(bar).EI * theta / bar.length; }
 
+/// A claim about the arc of curvature M/EI.
+Claim arc(char const* what, std::string const& formulation) {
+  return {"S1", what, By::closed_form, "κ = M/EI without stretch or shear", formulation};
+}
+
 template <class B>
 Cantilever<B> rolled(Bar const& bar, Index n, double theta, int load_steps = 10) {
   return {B::from(bar, n), {.moment = moment_of_turn(bar, theta)}, {.load_steps = load_steps}};
@@ -46,7 +52,9 @@ TEST(RollUp, LrvfNodesLieOnARegularPolygon) {
       double const h = bar.length / double(n), step = theta / double(n);
       Vec3 node = Vec3::Zero();
       for (Index k = 0; k <= n; ++k) {
-        EXPECT_LT((c.at(double(k) * h) - node).norm(), 1e-10 * bar.length) << "node " << k << " of " << n;
+        held_within({"S1", "every node (x, y [m], θ) under a quarter, half and whole turn", By::closed_form,
+                     "regular polygon of chords whose directions step by θ/n", "planar Lrvf, 1 to 16 elements"},
+                    (c.at(double(k) * h) - node).norm(), 1e-10 * bar.length, {equals("n", double(n)), bar.length});
         node += Vec3(h * std::cos((double(k) + 0.5) * step), h * std::sin((double(k) + 0.5) * step), step);
       }
     }
@@ -57,8 +65,10 @@ TEST(RollUp, LrvfFullCircleClosesForAnyNumberOfElementsAboveOne) {
   Bar const bar = half_circle();
   for (Index const n : {2, 3, 4, 10, 16, 40}) {
     Vec3 const tip = rolled<Lrvf>(bar, n, 2 * pi).tip();
-    EXPECT_LT(tip.head<2>().norm(), 1e-10 * bar.length) << n;
-    EXPECT_NEAR(tip[2], 2 * pi, 1e-11) << n;
+    Instance const at{equals("n", double(n)), bar.length};
+    held_within(arc("gap of the closed circle [m]", "planar Lrvf, 2 to 40 elements"), tip.head<2>().norm(),
+                1e-10 * bar.length, at);
+    held(arc("θ of the closed circle [rad]", "planar Lrvf, 2 to 40 elements"), tip[2], 2 * pi, 1e-11, at);
   }
   EXPECT_LT((rolled<Lrvf>(bar, 1, 2 * pi).tip() - Vec3(-bar.length, 0, 2 * pi)).norm(), 1e-10);
 }
@@ -70,12 +80,14 @@ TEST(RollUp, ThesisFigure29StaticValues) {
   Cantilever<Lrvf> const c(Lrvf::from(thesis(), n), {.moment = 3e4}, {});
   for (double const s : {0.5, 4.5, 9.5}) {  // the Gauss points of three elements
     Vec3 const strain = c.bar.body().strains<0>(c.bar.body().at(s), coordinates_of(c.model, c.x, c.bar));
-    EXPECT_LT((strain - Vec3(0, 0, 0.360144058)).norm(), 5e-10) << s;
+    held_within(arc("strain and curvature of the thesis' Fig. 2.9 [1/m]", "planar Lrvf, 10 elements"),
+                (strain - Vec3(0, 0, 0.360144058)).norm(), 5e-10, {equals("s", s), 0.36});
   }
   double const half = 0.5 * c.tip()[2] / double(n), chord = half / std::sin(half);
-  EXPECT_NEAR(c.tip()[2], 3.601440576, 5e-10);
-  EXPECT_NEAR(c.tip()[0], -1.232317522 * chord, 1e-9);
-  EXPECT_NEAR(c.tip()[1], 5.264893204 * chord, 1e-9);
+  char const* const body = "planar Lrvf, 10 elements; (θ/2n)/sin(θ/2n) farther out";
+  held(arc("θ of the tip, thesis' Fig. 2.9 [rad]", body), c.tip()[2], 3.601440576, 5e-10);
+  held(arc("x of the tip, thesis' Fig. 2.9 [m]", body), c.tip()[0], -1.232317522 * chord, 1e-9);
+  held(arc("y of the tip, thesis' Fig. 2.9 [m]", body), c.tip()[1], 5.264893204 * chord, 1e-9);
 }
 
 template <class Strain>
@@ -90,15 +102,18 @@ double cable_error(Index n, double theta) {
 TEST(RollUp, AncfCableClosesTheCircle) {
   double const coarse = cable_error<EngineeringStrain>(8, 2 * pi), middle = cable_error<EngineeringStrain>(16, 2 * pi),
                fine = cable_error<EngineeringStrain>(32, 2 * pi);
-  EXPECT_LT(coarse, 3.8e-3);
-  EXPECT_LT(middle, 1e-3);
-  EXPECT_LT(fine, 1e-4);
+  char const* const gap = "gap of the closed circle [L]";
+  held_within(arc(gap, "planar AncfCable, 8 elements"), coarse, 3.8e-3, {.scale = 1.0});
+  held_within(arc(gap, "planar AncfCable, 16 elements"), middle, 1e-3, {.scale = 1.0});
+  held_within(arc(gap, "planar AncfCable, 32 elements"), fine, 1e-4, {.scale = 1.0});
   EXPECT_GT(std::log2(coarse / middle), 4.0);
   EXPECT_GT(std::log2(middle / fine), 4.0);
 }
 
 TEST(RollUp, AncfCableQuarterAndHalfCircle) {
-  for (double const theta : {pi / 2, pi}) EXPECT_LT(cable_error<EngineeringStrain>(16, theta), 1e-4) << theta;
+  for (double const theta : {pi / 2, pi})
+    held_within(arc("tip under a quarter and half turn [L]", "planar AncfCable, 16 elements"),
+                cable_error<EngineeringStrain>(16, theta), 1e-4, {equals("θ", theta), 1.0});
 }
 
 // GreenStrain's curvature c/|r′|³, c = r′ × r″, couples bending and stretch. Minimising ½ EA ε² + ½ EI θ′²/n² − M θ′
@@ -115,9 +130,11 @@ TEST(RollUp, GreenCableTurnsFartherByTheStretchOfItsCurvature) {
   for (int i = 0; i < 3; ++i)
     error[i] =
         (rolled<planar::AncfCable<GreenStrain>>(bar, 16 << i, 2 * pi).tip().head<2>() - limit).norm() / bar.length;
-  EXPECT_LT(error[0], 1e-3);
-  EXPECT_LT(error[1], 1e-5);
-  EXPECT_LT(error[2], 1e-6);
+  double const tolerance[] = {1e-3, 1e-5, 1e-6};
+  for (int i = 0; i < 3; ++i)
+    held_within({"S1", "tip of the circle [L]", By::closed_form, "arc that turns by 2ε farther, ε = M²/(EI EA)",
+                 "planar AncfCable, Green strain, " + std::to_string(16 << i) + " elements"},
+                error[i], tolerance[i], {.scale = 1.0});
 }
 
 }  // namespace statics_roll_up_test

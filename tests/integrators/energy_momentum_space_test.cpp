@@ -49,17 +49,13 @@ TEST(EnergyMomentumInSpace, KeepsEnergyAndMomentaOfAThrownCableOverTenThousandSt
   Thrown<AncfCable<>> cable(6);
   EXPECT_LT((momentum(cable.model, cable.x).linear - Vec3(50, 0, 0)).norm(), 1e-9);
   Drift const drift = drift_of(cable.model, cable.x, EnergyMomentum{}, 0.01, 10000);
-  EXPECT_LT(drift.energy, 1e-8);
-  EXPECT_LT(drift.linear, 1e-10);
-  EXPECT_LT(drift.angular, 1e-8);
+  held_drift(drift, "D4's loads on an AncfCable, 6 elements, EnergyMomentum, 1e4 steps of 10 ms");
 }
 
 TEST(EnergyMomentumInSpace, KeepsThemWithEngineeringStrainToo) {
   Thrown<AncfCable<EngineeringStrain>> cable(4);
   Drift const drift = drift_of(cable.model, cable.x, EnergyMomentum{}, 0.01, 1000);
-  EXPECT_LT(drift.energy, 1e-8);
-  EXPECT_LT(drift.linear, 1e-10);
-  EXPECT_LT(drift.angular, 1e-8);
+  held_drift(drift, "D4's loads on an AncfCable, engineering strain, 4 elements, EnergyMomentum, 1e3 steps of 10 ms");
 }
 
 }  // namespace energy_momentum_space_test

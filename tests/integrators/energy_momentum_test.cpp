@@ -58,9 +58,8 @@ TEST(EnergyMomentum, KeepsEnergyAndMomentaOfAThrownRodOverTenThousandSteps) {
     EXPECT_LT((momentum(rod.model, rod.x).linear - Vec3(20, 0, 0)).norm(), 1e-10);
     EXPECT_LT((rod.centre() - Vec2(5.5, 4.0)).norm(), 1e-10);
     Drift const drift = drift_of(rod.model, rod.x, EnergyMomentum{}, h, 10000);
-    EXPECT_LT(drift.energy, 1e-8);
-    EXPECT_LT(drift.linear, 1e-10);
-    EXPECT_LT(drift.angular, 1e-8);
+    held_drift(drift, ei == 500.0 ? "D3's rod, EI = 500, AncfCable, 8 elements, EnergyMomentum, 1e4 steps of 10 ms"
+                                  : "D3's rod, EI = 100, AncfCable, 8 elements, EnergyMomentum, 1e4 steps of 2 ms");
     EXPECT_LT((rod.centre() - Vec2(5.5 + 2.0 * 10000 * h, 4.0)).norm(), 1e-8);
   }
 }

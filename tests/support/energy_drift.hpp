@@ -5,6 +5,8 @@
 #include <polybody/integrators/integrator.hpp>
 #include <polybody/run/energy.hpp>
 
+#include "held.hpp"
+
 namespace polybody {
 
 struct Drift {
@@ -39,6 +41,14 @@ Drift drift_of(M const& model, State& x, I const& integrator, double h, int step
     before = now;
   }
   return drift;
+}
+
+/// What a run without loads keeps, relative: energy and angular momentum to 1e-8, linear momentum to 1e-10.
+inline void held_drift(Drift const& drift, char const* formulation) {
+  auto const claim = [&](char const* what) { return Claim{"I3", what, By::closed_form, "invariant", formulation}; };
+  held_within(claim("energy after the loads, drift of itself"), drift.energy, 1e-8, {.scale = 1.0});
+  held_within(claim("linear momentum after the loads, drift of itself"), drift.linear, 1e-10, {.scale = 1.0});
+  held_within(claim("angular momentum after the loads, drift of itself"), drift.angular, 1e-8, {.scale = 1.0});
 }
 
 }  // namespace polybody

@@ -11,6 +11,8 @@
 #include <polybody/joints/weld.hpp>
 #include <polybody/vibration/steady_rotation.hpp>
 
+#include "held.hpp"
+
 namespace polybody {
 
 /// Frequencies of flap and chord together, ascending, for three speeds; inextensible Euler–Bernoulli.
@@ -22,6 +24,13 @@ inline constexpr RotatingCantilever rotating_cantilevers[] = {
     {2.0, {3.621797, 4.137320, 22.526311, 22.614922, 62.241059, 62.273184}},
     {6.0, {4.263225, 7.360373, 26.129042, 26.809082, 66.413436, 66.683914}},
     {12.0, {5.427049, 13.170150, 35.636976, 37.603112, 78.704925, 79.614478}}};
+
+/// The frequency `found` against the table, within a share of it; i counts flap and chord together.
+inline void held_frequency(RotatingCantilever const& row, int i, double found, double share, char const* formulation) {
+  held({"E3", "flap and chord frequencies of a rotating cantilever, ω √(ρA L⁴/EI)", By::independent,
+        "collocation; Wright et al. 1982 at Ω = 12", formulation},
+       found, row.frequency[i], share * row.frequency[i], {equals("Ω", row.omega) + ", mode " + std::to_string(i + 1)});
+}
 
 /// Stretch and shear so stiff that they do not show: what a frequency loses by them is of the order of Ω²/EA and ω
 /// EI/GA.

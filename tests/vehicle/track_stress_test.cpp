@@ -127,7 +127,7 @@ TEST(TrackStress, IsTheSameDecoupledAndCoupledInEveryFormulation) {
 
 // A wheel that rolls over a link bends it, by −3 and 3 MPa here. One cubic element has a linear curvature and shows
 // half of what a force in its middle does; two have a node there and show the moment of the decoupled analysis (bending
-// modes begin at 4.8 kHz). What is left are jumps as the wheel comes and goes, in another step.
+// modes begin at 3.8 kHz). What is left are jumps as the wheel comes and goes, in another step.
 TEST(TrackStress, TwoElementsBendAsTheDecoupledAnalysisSays) {
   double const until = 0.8;
   Ride const rigid = ride<Rigid<>, Constraint>(setting_out(), until, 1e-3);
