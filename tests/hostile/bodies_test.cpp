@@ -33,7 +33,7 @@ Bar const square{.length = 1.0,
                  .material = Material{.density = 1000, .young = 1e8, .poisson = 0.3}};
 
 /// A share that is no divisor of the number of hostile values, so that all of them are met.
-Share const some{.every = 10};
+Share const some{.every = 40};
 
 /// A pendulum of what `made()` makes.
 template <class B, class Made>

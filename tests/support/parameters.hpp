@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <tuple>
 #include <variant>
 #include <vector>
