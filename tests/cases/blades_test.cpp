@@ -26,7 +26,8 @@ TEST(KnifeEdge, GoesAlongACycloidAcrossAnIncline) {
   double const m = 3.0, omega = 2.0, p = g * std::sin(0.4), t = 2.3;
   InPlane model{Gravity{p, 0, 0}};
   auto const sleigh = model.add(planar::Rigid(m, 0.7), "sleigh");
-  auto const blade = model.connect(Blade{}, model.ground().at({0, 0, 0}), sleigh.at({0, 0}), "blade");
+  auto const blade =
+      model.connect(Blade{{.across = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), sleigh.at({0, 0}), "blade");
   State start = model.reference_state();
   model.set_velocity(start, sleigh, Vec3::Zero(), Vec3(0, 0, omega));
   double const s = std::sin(omega * t), c = std::cos(omega * t);
@@ -54,7 +55,7 @@ TEST(KnifeEdge, LetsChaplyginsSleighGoStraight) {
   auto const turn = [&](double time) { return U * std::sqrt(m / J) / std::cosh(k * time + c); };
   InPlane model{};
   auto const sleigh = model.add(planar::Rigid(m, inertia, Placement::planar(a, 0)), "sleigh");
-  model.connect(Blade{}, model.ground().at({0, 0, 0}), sleigh.at({-a, 0}), "blade");
+  model.connect(Blade{{.across = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), sleigh.at({-a, 0}), "blade");
   State start = model.reference_state();
   model.set_velocity(start, sleigh, Vec3(along(0), 0, 0), Vec3(0, 0, turn(0)));
   // θ = √(J/m)/a (atan sinh(kt + c) − atan sinh c)

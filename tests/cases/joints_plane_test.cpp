@@ -129,7 +129,8 @@ TEST(Gear, RollsAPlanetOnAFixedSun) {
   auto const ground = model.ground().at({0, 0, 0});
   model.connect(Pin{}, ground, arm.at({-0.7, 0}), "pin of the arm");
   model.connect(Pin{}, arm.at({0.7, 0}), planet.at({0, 0}), "pin of the planet");
-  model.connect(Ideal<Gear>{{.teeth_a = 30, .teeth_b = 12}, {}}, ground, planet.at({0, 0}), "gear");
+  model.connect(Ideal<Gear>{{.teeth_a = 30, .teeth_b = 12, .centres = Vec3::UnitX()}, {}}, ground, planet.at({0, 0}),
+                "gear");
   model.connect(motor, ground, arm.at({-0.7, 0}), "motor");
   State x = model.reference_state();
   for (double const t : {2.0, 4.5, 9.0}) {

@@ -29,8 +29,8 @@ TEST(RollingDisc, RollsDownAnInclineAtTwoThirdsOfThePull) {
   InSpace model{Gravity{g * s, 0, -g * c}};
   Placement const place = Placement::at({0, 0, radius}, {-0.5 * std::numbers::pi, 0, 0});  // its z along world y
   auto const wheel = model.add(disc(m, radius, place), "wheel");
-  auto const contact =
-      model.connect(Wheel{{.radius = radius}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
+  auto const contact = model.connect(Wheel{{.radius = radius, .axis = Vec3::UnitY(), .normal = Vec3::UnitZ()}, {}},
+                                     model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
   double const a = 2.0 / 3.0 * g * s;
   with_each_integrator([&](auto const& integrator, double h, double precise) {
     State const x = rolled(model, model.reference_state(), integrator, t, h);
@@ -53,7 +53,7 @@ struct Circle {
   Vec3 axis{std::cos(lean), 0, std::sin(lean)}, up{-std::sin(lean), 0, std::cos(lean)};
   InSpace model{Gravity{0, 0, -g}};
   BodyHandle<Rigid<>> wheel = model.add(disc(m, radius, {Vec3(r, 0, radius* std::cos(lean)), axes()}), "wheel");
-  ElementHandle<Wheel> contact = model.connect(Wheel{{.radius = radius, .axis = axis}, {}},
+  ElementHandle<Wheel> contact = model.connect(Wheel{{.radius = radius, .axis = axis, .normal = Vec3::UnitZ()}, {}},
                                                model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
   State start = model.reference_state();
 

@@ -29,8 +29,8 @@ struct WobblingDisc {
   State start;
 
   WobblingDisc() {
-    model.connect(Wheel{{.radius = 0.4, .axis = axis}, {}}, model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()),
-                  "contact");
+    model.connect(Wheel{{.radius = 0.4, .axis = axis, .normal = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
+                  wheel.at(Vec3::Zero()), "contact");
     start = model.reference_state();
     Vec3 const w = -5.0 * axis + Vec3(0.3, 0.4, 1.0), contact(0.4 * std::sin(0.35), 0, 0);
     model.set_velocity(start, wheel, -w.cross(contact), w);

@@ -17,7 +17,7 @@ namespace knife_edge_test {
 struct KnifeEdgeCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
-  static KnifeEdge geometry() { return {}; }
+  static KnifeEdge geometry() { return {.across = Vec3::UnitY()}; }
   static Mate mate(Numbers& number, double) {
     Mate mate{.d = number.vec<3>(2.0), .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 5)};
     mate.freedoms.topLeftCorner<3, 2>() = mate.R.leftCols<2>();
@@ -31,8 +31,9 @@ struct KnifeEdgeCase {
 TEST(KnifeEdge, RowIsTheVelocityAcrossSeenFromTheOtherBody) {
   Frame<double> const table{.w = {0, 0, 2}};
   Frame<double> blade{.r = {3, 0, 0}};
-  blade.A = KnifeEdge{}.triad();
-  auto const gap = KnifeEdge{}.gap<double>(table, blade, 0.0);
+  KnifeEdge const edge{.across = Vec3::UnitY()};
+  blade.A = edge.triad();
+  auto const gap = edge.gap<double>(table, blade, 0.0);
   EXPECT_NEAR((gap.Ga * twist(table) + gap.Gb * twist(blade))[0], -6.0, 1e-14);
   blade.v = {7, 6, 1};  // carried along, and gliding
   EXPECT_NEAR((gap.Ga * twist(table) + gap.Gb * twist(blade))[0], 0.0, 1e-14);

@@ -106,7 +106,7 @@ struct Joined {
 
 TEST(RefusedJoint, LeavesItsAxisOut) {
   Joined<Rigid<>, Revolute, Cylindrical, Prismatic, Screw, PointOnLine, PointInPlane, PlaneOnPlane, ParallelAxes,
-         Universal, RelativeCoordinates, Gear, Motor, Ramming>
+         Universal, RelativeCoordinates, Gear, RackAndPinion, RollingDisc, KnifeEdge, Motor, Ramming>
       space(Rigid<>(1.0, Mat3::Identity()));
   std::string const hint =
       "is not given. It has no default: give it as a unit vector, world axes at the reference "
@@ -116,6 +116,15 @@ TEST(RefusedJoint, LeavesItsAxisOut) {
   EXPECT_EQ(space(Ramming{.law = ramp}, "ram"), "\"ram\": PrescribedSlide: the axis " + hint);
   EXPECT_EQ(space(PointInPlane{}, "foot"), "\"foot\": PointInPlane: the normal " + hint);
   EXPECT_EQ(space(Universal{.first = {1, 0, 0}}, "cross"), "\"cross\": Universal: the second axis " + hint);
+  Gear const gear{.teeth_a = 1, .teeth_b = 1, .axis = {0, 0, 1}};
+  EXPECT_EQ(space(gear, "pair"), "\"pair\": Gear: the line of centres " + hint);
+  EXPECT_EQ(space(RackAndPinion{.radius = 1.0, .axis = {0, 0, 1}}, "rack"),
+            "\"rack\": RackAndPinion: the direction " + hint);
+  EXPECT_EQ(space(RollingDisc{.radius = 1.0, .normal = {0, 0, 1}}, "wheel"),
+            "\"wheel\": RollingDisc: the axis " + hint);
+  EXPECT_EQ(space(RollingDisc{.radius = 1.0, .axis = {0, 1, 0}}, "wheel"),
+            "\"wheel\": RollingDisc: the normal " + hint);
+  EXPECT_EQ(space(KnifeEdge{}, "blade"), "\"blade\": KnifeEdge: the direction across " + hint);
   for (std::string const& said :
        {space(Cylindrical{}, "it"), space(Prismatic{}, "it"), space(Screw{.pitch = 0.1}, "it"),
         space(PointOnLine{}, "it"), space(PlaneOnPlane{}, "it"), space(ParallelAxes{}, "it"),

@@ -35,9 +35,11 @@ struct CoordinatePartitioning {
     PartitionedRows& of_speeds(System const& s) { return s.velocity_rows().empty() ? rows : all_rows; }
   };
 
-  /// \throws InvalidInput unless the tolerance is positive and the largest ratio at least 1.
+  /// \throws InvalidInput unless the tolerance is positive, max_iterations in [1, 10⁶] and the largest ratio at
+  /// least 1.
   void check() const {
     require_positive(tolerance, "CoordinatePartitioning: the tolerance");
+    require_count(max_iterations, "CoordinatePartitioning: max_iterations");
     if (!(largest_ratio >= 1.0))
       throw InvalidInput("CoordinatePartitioning: largest_ratio must be at least 1, but is " + number(largest_ratio) +
                          ".");

@@ -16,7 +16,10 @@ struct EnergyMomentum {
   NewtonOptions newton = {.max_iterations = 50, .refactor_above = 0.16};
 
   /// \throws InvalidInput unless the tolerance is positive.
-  void check() const { require_positive(tolerance, "EnergyMomentum: the tolerance"); }
+  void check() const {
+    require_positive(tolerance, "EnergyMomentum: the tolerance");
+    newton.check(name);
+  }
 
   template <class Solver>
   auto workspace(System& system) const {
@@ -55,6 +58,7 @@ struct EnergyDecaying {
     if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
       throw InvalidInput("EnergyDecaying: rho_inf must lie in [0, 1], but is " + number(rho_inf) + ".");
     require_positive(tolerance, "EnergyDecaying: the tolerance");
+    newton.check(name);
   }
 
   template <class Solver>

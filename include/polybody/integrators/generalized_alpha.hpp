@@ -29,6 +29,7 @@ struct GeneralizedAlpha {
     if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
       throw InvalidInput("GeneralizedAlpha: rho_inf must lie in [0, 1], but is " + number(rho_inf) + ".");
     require_positive(tolerance, "GeneralizedAlpha: the tolerance");
+    newton.check(name);
   }
 
   template <class Solver>

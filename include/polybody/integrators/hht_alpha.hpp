@@ -24,6 +24,7 @@ struct HhtAlpha {
     if (!(alpha >= -1.0 / 3.0 && alpha <= 0.0))
       throw InvalidInput("HhtAlpha: alpha must lie in [-1/3, 0], but is " + number(alpha) + ".");
     require_positive(tolerance, "HhtAlpha: the tolerance");
+    newton.check(name);
   }
 
   template <class Solver>

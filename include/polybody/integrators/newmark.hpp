@@ -26,6 +26,7 @@ struct Newmark {
                          ": below, every motion grows.");
     require_positive(beta, "Newmark: beta (for an explicit method take CentralDifference)");
     require_positive(tolerance, "Newmark: the tolerance");
+    newton.check(name);
   }
 
   template <class Solver>
@@ -64,7 +65,10 @@ struct Trapezoidal {
   bool stabilised = false;          ///< keep the rows of the speeds too
 
   /// \throws InvalidInput unless the tolerance is positive.
-  void check() const { require_positive(tolerance, "Trapezoidal: the tolerance"); }
+  void check() const {
+    require_positive(tolerance, "Trapezoidal: the tolerance");
+    newton.check(name);
+  }
 
   template <class Solver>
   auto workspace(System& system) const {

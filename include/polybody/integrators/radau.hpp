@@ -32,8 +32,12 @@ struct Radau {
   NewtonOptions newton = {.max_iterations = 50};  ///< many: the matrix leaves out how rows turn
   Projection projection = {};
 
-  /// \throws InvalidInput unless the tolerance is positive.
-  void check() const { require_positive(tolerance, "Radau: the tolerance"); }
+  /// \throws InvalidInput unless the tolerance is positive, and as `NewtonOptions` and `Projection`.
+  void check() const {
+    require_positive(tolerance, "Radau: the tolerance");
+    newton.check(name);
+    projection.check();
+  }
 
   template <class Solver>
   struct Workspace {

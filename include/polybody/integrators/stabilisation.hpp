@@ -65,7 +65,10 @@ struct Projection {
   double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
   int max_iterations = 10;
 
-  void check() const { require_positive(tolerance, "Projection: the tolerance"); }
+  void check() const {
+    require_positive(tolerance, "Projection: the tolerance");
+    require_count(max_iterations, "Projection: max_iterations");
+  }
   void start(Scratch&) const {}
   RowFeedback feedback() const { return {}; }
 

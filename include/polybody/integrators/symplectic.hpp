@@ -62,7 +62,10 @@ struct Rattle {
     explicit Workspace(System& s) : detail::ExplicitStep<Solver>(s), change(this->v), phi(this->lambda) {}
   };
 
-  void check() const { require_positive(tolerance, "Rattle: the tolerance"); }
+  void check() const {
+    require_positive(tolerance, "Rattle: the tolerance");
+    require_count(max_iterations, "Rattle: max_iterations");
+  }
   template <class Solver>
   Workspace<Solver> workspace(System& system) const {
     return Workspace<Solver>(system);

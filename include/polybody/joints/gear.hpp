@@ -17,15 +17,15 @@ struct Gear {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
 
-  Required<int> teeth_a;         ///< N_a
-  Required<int> teeth_b;         ///< N_b; of an internal (ring) gear the number is negative
-  TurnAxis axis = {};            ///< (3) unit vector of both wheels' axes, world axes at the reference configuration
-  Vec3 centres = Vec3::UnitX();  ///< (3) unit vector from a's centre to b's there, perpendicular to it
+  Required<int> teeth_a;   ///< N_a
+  Required<int> teeth_b;   ///< N_b; of an internal (ring) gear the number is negative
+  TurnAxis axis = {};      ///< (3) unit vector of both wheels' axes, world axes at the reference configuration
+  JointAxis centres = {};  ///< (3) unit vector from a's centre to b's there, perpendicular to it
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
     require_unit(axis.told("Gear: the axis"), "Gear: the axis");
-    require_unit(centres, "Gear: the line of centres");
+    require_unit(centres.told("Gear: the line of centres"), "Gear: the line of centres");
     return polybody::rows::triad_of(centres, axis, "Gear");
   }
   void check(std::string const& what) const {

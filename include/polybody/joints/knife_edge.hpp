@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
@@ -13,8 +13,7 @@ struct KnifeEdge {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
 
-  Vec3 across =
-      Vec3::UnitY();  ///< (3) unit vector across the blade, world axes at the reference configuration; moves with b
+  JointAxis across = {};  ///< (3) unit vector across the blade, world axes at the reference configuration; moves with b
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {

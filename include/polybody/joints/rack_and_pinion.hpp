@@ -15,15 +15,15 @@ struct RackAndPinion {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
 
-  Required<double> radius;  ///< R [m] of the pitch circle; the rack touches it on the side of axis × direction, or
-                            ///< for R < 0 on the other
-  TurnAxis axis = {};       ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
-  Vec3 direction = Vec3::UnitX();  ///< (3) unit vector along the rack, perpendicular to it
+  Required<double> radius;   ///< R [m] of the pitch circle; the rack touches it on the side of axis × direction, or
+                             ///< for R < 0 on the other
+  TurnAxis axis = {};        ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
+  JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to it
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
     require_unit(axis.told("RackAndPinion: the axis"), "RackAndPinion: the axis");
-    require_unit(direction, "RackAndPinion: the direction");
+    require_unit(direction.told("RackAndPinion: the direction"), "RackAndPinion: the direction");
     return polybody::rows::triad_of(direction, axis, "RackAndPinion");
   }
   void check(std::string const& what) const {

@@ -1,11 +1,10 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
 /// A thin disc b that rolls on a plane of a without slip, 3 rows, the last two of velocity level
-///   g₁ = n·d − R √(1 − (n·b₃)²),   ġ = [n, t₁, t₂]ᵀ u,   u = ṙ_b + ω_b × ρ − ṙ_a − ω_a × p      [Neimark & Fufaev
-///   1972].
+///   g₁ = n·d − R √(1 − (n·b₃)²),  ġ = [n, t₁, t₂]ᵀ u,  u = ṙ_b + ω_b × ρ − ṙ_a − ω_a × p  [Neimark & Fufaev 1972].
 /// d = r_b − r_a; n the plane's normal and t₁, t₂ two directions in the plane, all fixed in a; b₃ the disc's axis. The
 /// rim comes nearest to the plane at the contact point, from the disc's centre ρ = −R e, e = m/|m| with m = n − (n·b₃)
 /// b₃, and from a's point p = d + ρ. u is the velocity of the disc's material there seen from a; as ρ is where n·ρ is
@@ -19,20 +18,20 @@ struct RollingDisc {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::space;
 
-  Required<double> radius;      ///< R [m]
-  Vec3 axis = Vec3::UnitY();    ///< (3) unit vector of the disc's axis, world axes at the reference configuration
-  Vec3 normal = Vec3::UnitZ();  ///< (3) unit vector from the plane towards the disc; a's point lies in the plane
+  Required<double> radius;  ///< R [m]
+  JointAxis axis = {};      ///< (3) unit vector of the disc's axis, world axes at the reference configuration
+  JointAxis normal = {};    ///< (3) unit vector from the plane towards the disc; a's point lies in the plane
 
-  /// First axis n × axis, along the plane, so that n = a₂ |n × axis| + a₃ n·axis.
-  /// \throws InvalidInput unless both are unit vectors that are not parallel.
+  /// First axis n × axis: n = a₂ |n × axis| + a₃ n·axis. \throws InvalidInput unless both are units, not parallel.
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    require_unit(axis, "RollingDisc: the axis");
-    require_unit(normal, "RollingDisc: the normal");
-    Vec3 const first = normal.cross(axis);
+    Vec3 const &own = axis.told("RollingDisc: the axis"), &up = normal.told("RollingDisc: the normal");
+    require_unit(own, "RollingDisc: the axis");
+    require_unit(up, "RollingDisc: the normal");
+    Vec3 const first = up.cross(own);
     if (first.norm() < 1e-6)
       throw InvalidInput("RollingDisc: the disc must not lie flat on the plane at the reference configuration.");
-    return polybody::rows::triad_of(first.normalized(), axis, "RollingDisc");
+    return polybody::rows::triad_of(first.normalized(), own, "RollingDisc");
   }
   void check(std::string const& what) const { require_positive(radius, what + ": the radius"); }
 
@@ -84,7 +83,8 @@ struct RollingDisc {
     T steep;              ///< |m|, the sine of the angle between the disc's axis and the normal
     Contact(RollingDisc const& disc, Frame<T> const& a, Frame<T> const& b) {
       using std::sqrt;
-      double const along = disc.normal.dot(disc.axis), across = disc.normal.cross(disc.axis).norm();
+      Vec3 const &own = disc.axis, &up = disc.normal;
+      double const along = up.dot(own), across = up.cross(own).norm();
       for (int i = 0; i < 3; ++i) n[i] = a.A(i, 1) * across + a.A(i, 2) * along;
       t1 = axis_of(a, 0);
       t2 = n.cross(t1);

@@ -50,6 +50,10 @@ struct Placement {
   template <class = void>  // compiled where it is used
   void check(std::string const& what) const {
     require_finite(origin, what + ": the placement's origin");
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(origin[i]) > largest_number)
+        throw InvalidInput(what + ": the placement's origin has a coordinate of " + number(origin[i]) +
+                           " m, whose square is not finite.");
     require_finite(axes, what + ": the placement's axes");
     double off = 0.0, determinant = 0.0;  // off: |AᵀA − 1|²
     for (int i = 0; i < 3; ++i) {

@@ -183,6 +183,10 @@ struct SpinUp {
 /// Always `value`.
 struct Constant {
   double value = 1.0;
+
+  void check(std::string const& what) const {
+    if (!std::isfinite(value)) throw InvalidInput(what + ": the value must be finite, but is " + number(value) + ".");
+  }
   Motion operator()(double) const { return {value, 0.0, 0.0}; }
   double integral(double t) const { return value * t; }
 };

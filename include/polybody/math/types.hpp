@@ -73,6 +73,12 @@ inline void require_not_negative(double x, std::string_view what) {
     throw InvalidInput(std::string(what) + " must be zero or positive and finite, but is " + number(x) + ".");
 }
 
+/// \throws InvalidInput unless 1 ≤ n ≤ 10⁶: what is repeated is tried once at least, and comes to an end.
+inline void require_count(int n, std::string_view what) {
+  if (n < 1 || n > 1'000'000)
+    throw InvalidInput(std::string(what) + " must lie in [1, 1000000], but is " + std::to_string(n) + ".");
+}
+
 /// \throws InvalidInput unless every entry of `x` is finite.
 template <class Derived>
 void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what) {
@@ -91,6 +97,12 @@ inline Index first_not_finite(VecX const& x) {
   for (Index i = 0; i < x.size(); ++i)
     if (!(std::abs(x[i]) <= largest_number)) return i;
   return -1;
+}
+/// \throws InvalidInput for a number other than zero whose square overflows or vanishes.
+inline void require_size(double x, std::string_view what) {
+  if (x != 0.0 && !(std::abs(x) >= 1.0 / largest_number && std::abs(x) <= largest_number))
+    throw InvalidInput(std::string(what) +
+                       " must be of a size in [1e-150, 1e+150], where squares are numbers, but is " + number(x) + ".");
 }
 /// " is not finite", or by how much x is too large.
 template <class = void>  // compiled where it is used

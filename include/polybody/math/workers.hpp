@@ -37,7 +37,7 @@ class Workers {
   static constexpr int most = 4096;  ///< threads
 
   /// `threads` counts the caller: 1 starts none. \throws InvalidInput for less, and for more than the system starts.
-  explicit Workers(int threads) : thrown_(std::size_t(std::max(threads, 0))) {
+  explicit Workers(int threads) : thrown_(std::size_t(std::clamp(threads, 0, most))) {
     if (threads < 1)
       throw InvalidInput("Workers: at least one thread is needed, but " + std::to_string(threads) + " are asked for.");
     if (threads > most)

@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/run/fitting.hpp>
 #include <polybody/system/model_entries.hpp>
 #include <polybody/system/system.hpp>
 
@@ -15,6 +16,7 @@ Energy energy(System const& system, State const& x) {
 template <class M>
 Energy energy(M const& model, State const& x) {
   System system(model, with<Entries::motion>);
+  require_usable(system, x);
   system.evaluate(x.q, x.v, x.t);
   return energy(system, x);
 }
@@ -58,6 +60,7 @@ Momentum momentum(System& system, State const& x) {
 template <class M>
 Momentum momentum(M const& model, State const& x) {
   System system(model, with<Entries::rigid_speeds>);
+  require_usable(system, x);
   return momentum(system, x);
 }
 

@@ -43,7 +43,7 @@ class EnergyAuditOf {
 
   /// Begins anew at x. \throws InvalidInput when x does not fit the model.
   void start(State const& x) {
-    require_fitting(system_, x);
+    require_usable(system_, x);
     see(x);
     first_ = last_;
     work_ = {};
@@ -57,6 +57,7 @@ class EnergyAuditOf {
     if (!started_) return start(x);
     if (x.q.size() != system_.coordinates() || x.v.size() != system_.speeds() || x.lambda.size() != system_.rows())
       require_fitting(system_, x);  // which words it
+    require_computable(system_, x);
     double const h = x.t - t_;
     if (!(h >= 0.0))
       throw InvalidInput("EnergyAudit: the state at t = " + number(x.t) +

@@ -57,4 +57,14 @@ void require_computable(System const& system, State const& x) {
       how_not_finite(in_v < 0 ? x.q[in_q] : x.v[in_v]) + " in the state. Give a smaller one.");
 }
 
+/// \throws InvalidInput unless something can be computed from x: as the three above, and for multipliers that are not
+/// finite. \param x of the whole model
+template <class = void>
+void require_usable(System const& system, State const& x) {
+  require_fitting(system, x);
+  require_places(system, x);
+  require_computable(system, x);
+  require_finite(x.lambda, "The multipliers of the state");
+}
+
 }  // namespace polybody

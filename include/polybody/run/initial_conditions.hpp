@@ -39,6 +39,8 @@ void require_closable(System& system, ForwardDynamics<Solver>& forward, State co
 /// repeat each other but contradict; x is then untouched.
 template <LinearSolver Solver = DefaultSolver>
 void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
+  require_positive(tolerance, "assemble: the tolerance");
+  require_count(max_iterations, "assemble: max_iterations");
   require_fitting(system, x);
   ForwardDynamics<Solver> forward(system);
   State trial = x;

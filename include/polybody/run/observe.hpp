@@ -3,6 +3,7 @@
 /// Questions about the joints in a single state: gaps, reactions, violations.
 
 #include <polybody/run/census.hpp>
+#include <polybody/run/fitting.hpp>
 #include <polybody/run/points.hpp>
 #include <polybody/system/model_entries.hpp>
 #include <polybody/system/system.hpp>
@@ -51,6 +52,7 @@ template <class M, class J>
   requires(!LinearInCoordinates<typename J::PolicyType>)
 Vec<double, J::rows> gap(M const& model, State const& x, ElementHandle<J> const& joint) {
   System system(model, with<Entries::motion>);
+  require_usable(system, x);
   system.evaluate(x.q, x.v, x.t);
   return gap(system, joint);
 }
@@ -90,6 +92,7 @@ template <class M, class J>
 Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& joint,
                         ReactionAxes axes = ReactionAxes::world) {
   System system(model, with<Entries::motion>);
+  require_usable(system, x);
   system.evaluate(x.q, x.v, x.t);
   return reaction(system, x, joint, axes);
 }

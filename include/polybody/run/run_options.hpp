@@ -28,6 +28,7 @@ struct RunOptions {
   void check(double start) const {
     require_positive(step, "simulate: the step");
     if (largest_step) require_positive(*largest_step, "simulate: the largest step");
+    require_positive(assembly_tolerance, "simulate: assembly_tolerance");
     if (!(until >= start) || !std::isfinite(until))
       throw InvalidInput("simulate: the end " + number(until) + " s lies before the start " + number(start) + " s.");
     if (halvings < 0 || halvings > 30)
@@ -36,6 +37,8 @@ struct RunOptions {
     if (!(limits.violation > 0.0) || !(limits.energy >= 1.0))
       throw InvalidInput("simulate: limits.violation must be positive and limits.energy at least one, but they are " +
                          number(limits.violation) + " and " + number(limits.energy) + ".");
+    for (double const t : corners)
+      if (std::isnan(t)) throw InvalidInput("simulate: a corner must be a time [s], but is nan.");
     for (Event const& event : events) {
       if (!event.value) throw InvalidInput("simulate: the event \"" + event.name + "\" has no value.");
       require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");

@@ -11,6 +11,7 @@
 #include <limits>
 #include <vector>
 
+#include <polybody/run/fitting.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/statics/least_norm.hpp>
 #include <polybody/system/model_entries.hpp>
@@ -24,6 +25,16 @@ struct ArcLengthOptions {
   int points = 200;         ///< at most so many
   double tolerance = 1e-9;  ///< of a correction, relative to 1 + max |q|
   int max_iterations = 12;  ///< in a step
+
+  /// \throws InvalidInput unless counts lie in [1, 10⁶] and the other numbers are positive and finite.
+  void check() const {
+    require_positive(step, "equilibrium_path: the step");
+    require_positive(largest, "equilibrium_path: the largest step");
+    require_positive(smallest, "equilibrium_path: the smallest step");
+    require_count(points, "equilibrium_path: points");
+    require_positive(tolerance, "equilibrium_path: the tolerance");
+    require_count(max_iterations, "equilibrium_path: max_iterations");
+  }
 };
 
 /// A state in equilibrium under `load_factor` times gravity and loads.
@@ -144,8 +155,8 @@ class PathEquations {
 template <LinearSolver Solver = DefaultStaticSolver>
 std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {
-  require_positive(options.step, "equilibrium_path: the step");
-  require_positive(options.smallest, "equilibrium_path: the smallest step");
+  options.check();
+  require_usable(system, start);
   PathPoint now{0.0, start};
   now.x.v.head(now.x.v.size() - system.layout().states).setZero();
   now.x.a.setZero();

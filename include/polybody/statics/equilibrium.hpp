@@ -3,6 +3,7 @@
 /// Static equilibrium: f(q, z) − Gᵀλ = 0, Φ(q) = 0 and h(q, z) = 0 at v = 0, by full Newton with load steps.
 
 #include <polybody/integrators/forward_dynamics.hpp>
+#include <polybody/run/fitting.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/statics/equilibrium_equations.hpp>
 #include <polybody/statics/load_steps.hpp>
@@ -96,6 +97,8 @@ bool follow_least(EquilibriumPath<Solver>& path, State const& start, Equilibrium
 /// untouched.
 template <LinearSolver Solver = DefaultStaticSolver>
 EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
+  options.check();
+  require_usable(system, x);
   State trial = x;
   trial.v.head(trial.v.size() - system.layout().states).setZero();
   trial.a.setZero();

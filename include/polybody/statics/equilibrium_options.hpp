@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <polybody/math/types.hpp>
+
 namespace polybody {
 
 struct EquilibriumOptions {
@@ -12,6 +14,14 @@ struct EquilibriumOptions {
   double smallest_part = 1e-4;  ///< a part that fails is halved down to this; the next one is twice as large again
   double tolerance = 1e-11;     ///< of a correction, relative to 1 + max |q|
   int max_iterations = 50;      ///< in one part
+
+  /// \throws InvalidInput unless counts lie in [1, 10⁶] and the other numbers are positive and finite.
+  void check() const {
+    require_count(load_steps, "equilibrium: load_steps");
+    require_positive(smallest_part, "equilibrium: smallest_part");
+    require_positive(tolerance, "equilibrium: the tolerance");
+    require_count(max_iterations, "equilibrium: max_iterations");
+  }
 };
 
 struct EquilibriumReport {

@@ -16,6 +16,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include <polybody/run/fitting.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 #include <polybody/system/model_entries.hpp>
 #include <polybody/system/system.hpp>
@@ -73,6 +74,12 @@ MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
   return solver.solve(b);
 }
 
+/// \throws InvalidInput unless one mode at least is asked for.
+inline void require_modes(Index count, std::string const& who) {
+  if (count < 1)
+    throw InvalidInput(who + ": the count of modes must be at least 1, but is " + std::to_string(count) + ".");
+}
+
 /// Nᵀ A N.
 template <class = void>
 MatX of_free_motions(MatX const& n, MatX const& a) {
@@ -86,6 +93,7 @@ MatX of_free_motions(MatX const& n, MatX const& a) {
 /// InvalidInput when x moves.
 template <class = void>
 Linearisation linearise(System& system, State const& x) {
+  require_usable(system, x);
   Index const states = system.layout().states;
   VecX const speeds = x.v.head(x.v.size() - states);
   if (speeds.size() && speeds.cwiseAbs().maxCoeff() > 1e-9)
@@ -122,6 +130,7 @@ struct Modes {
 /// symmetric, and models that turn, whose D is gyroscopic, belong to `damped_modes`.
 template <class = void>  // compiled where it is used
 Modes modes(Linearisation const& l, Index count = 10) {
+  detail::require_modes(count, "modes");
   if (l.states > 0)
     throw InvalidInput(
         "modes: the model has first-order states, with which undamped modes do not exist. Take damped_modes.");
@@ -176,6 +185,7 @@ struct DampedModes {
 /// \throws InvalidInput when a free motion has no inertia.
 template <class = void>  // compiled where it is used
 DampedModes damped_modes(Linearisation const& l, Index count = 10) {
+  detail::require_modes(count, "damped_modes");
   MatX m = detail::of_free_motions(l.N, l.M), d = detail::of_free_motions(l.N, l.D);
   MatX const k = detail::of_free_motions(l.N, l.K);
   Index const n = m.rows(), bodies = n - l.states;

@@ -200,6 +200,7 @@ struct TurningEquilibrium {
 /// axis than z.
 template <class = void>
 State rotating_state(System& system, State const& x, SteadyRotation const& rotation) {
+  require_usable(system, x);
   detail::TurningFrame<> const frame(system, x.q, rotation);
   State out = x;
   frame.speeds(x.q, out.v);
@@ -216,6 +217,8 @@ State rotating_state(System& system, State const& x, SteadyRotation const& rotat
 template <class = void>
 EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
+  options.check();
+  require_usable(system, x);
   detail::TurningEquilibrium<> problem{.frame = {system, x.q, rotation}, .trial = x, .tolerance = options.tolerance};
   NewtonOptions const newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
   EquilibriumReport report;
@@ -245,6 +248,7 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
 /// forces or rows do not turn with the model, as gravity across the axis.
 template <class = void>
 Linearisation linearise(System& system, State const& x, SteadyRotation const& rotation) {
+  require_usable(system, x);
   detail::TurningFrame<> frame(system, x.q, rotation);
   frame.require_turning_rows(x);
   Index const nv = system.speeds(), rows = system.rows();

@@ -82,6 +82,7 @@ struct FfrIntegrals {
     require_positive(mass, what + ": the mass");
     require_finite(mass_matrix, what + ": the mass matrix");
     require_finite(stiffness, what + ": the stiffness matrix");
+    require_entries(what);
     MatX l = mass_matrix;  // L D Lᵀ, and D must be positive
     bool positive = (l - l.transpose()).norm() <= 1e-9 * l.norm();
     for (Index k = 0; k < n; ++k) {
@@ -91,6 +92,25 @@ struct FfrIntegrals {
     }
     if (!positive)
       throw InvalidInput(what + ": the mass matrix of its deformation is not symmetric and positive definite.");
+  }
+  /// \throws InvalidInput naming `what` and the integral that has a NaN, or an entry whose square is not finite.
+  void require_entries(std::string const& what) const {
+    auto const require = [&](double const* x, Index count, char const* name) {
+      for (Index i = 0; i < count; ++i)
+        if (!(std::abs(x[i]) <= largest_number))
+          throw InvalidInput(what + ": its integral `" + name + "` has an entry of " + number(x[i]) +
+                             ", whose square is not finite.");
+    };
+    require(first.data(), 3, "first");
+    require(first_by.data(), first_by.size(), "first_by");
+    for (MatX const& x : first_second) require(x.data(), x.size(), "first_second");
+    require(inertia.data(), 9, "inertia");
+    for (VecX const& x : inertia_by) require(x.data(), x.size(), "inertia_by");
+    for (MatX const& x : inertia_second) require(x.data(), x.size(), "inertia_second");
+    require(coupling.data(), coupling.size(), "coupling");
+    for (MatX const& x : coupling_by) require(x.data(), x.size(), "coupling_by");
+    require(damping.data(), damping.size(), "damping");
+    require(initial_force.data(), initial_force.size(), "initial_force");
   }
   bool stiffens() const { return first_second[0].size() > 0; }
 

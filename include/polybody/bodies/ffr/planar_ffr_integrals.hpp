@@ -55,8 +55,9 @@ struct FfrIntegrals {
     x.stiffness = stiffness;
     x.damping = damping;
     x.initial_force = initial_force;
-    x.first_by.resize(3, first_by.cols());
-    x.coupling.resize(3, coupling.size());
+    x.first.head<2>() = first;
+    (x.first_by.setZero(3, first_by.cols())).topRows<2>() = first_by;
+    (x.coupling.setZero(3, coupling.size())).row(2) = coupling.transpose();
     x.inertia_by[2] = inertia_by;
     x.inertia_second[2] = inertia_second;
     x.coupling_by[2] = coupling_by;

@@ -49,6 +49,8 @@ void require_inertia(Mat3 const& inertia, std::string const& what) {
                                 std::abs(inertia(1, 0)), std::abs(inertia(2, 0)), std::abs(inertia(2, 1)),
                                 std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
   if (size == 0.0) return;
+  if (size > largest_number)
+    throw InvalidInput(what + ": the inertia has an entry of " + number(size) + " kg m², whose square is not finite.");
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < i; ++j)
       if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)

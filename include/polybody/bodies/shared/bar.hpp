@@ -61,7 +61,7 @@ struct Damping {
 /// A straight bar: first end at the placement's origin, axis along the placement's x.
 /// Given either by `section` and `material` or by `constants`.
 struct Bar {
-  Required<double> length;  ///< [m]
+  Required<double> length;  ///< [m], of 1e-100 to 1e100: beyond, its cubes are no numbers
   std::variant<std::monostate, Circle, Rectangle> section = {};
   std::optional<Material> material = {};
   std::optional<BarConstants> constants = {};
@@ -120,21 +120,62 @@ BarConstants constants_of_section(Bar const& bar) {
           .rotary_inertia_y = rho * iy};
 }
 
+/// \throws InvalidInput for stiffness and inertia with which no calculation goes on; `of` begins the sentence.
+template <class = void>  // compiled where it is used
+void require_sizes(BarConstants const& c, std::string const& of) {
+  struct {
+    double x;
+    char const* what;
+  } const all[] = {{c.EA, "EA"},
+                   {c.EI, "EI"},
+                   {c.mass_per_length, "mass per length"},
+                   {c.GA, "GA"},
+                   {c.GJ, "GJ"},
+                   {c.rotary_inertia, "rotary inertia"},
+                   {c.EI_y.value_or(0.0), "EI_y"},
+                   {c.GA_z.value_or(0.0), "GA_z"},
+                   {c.rotary_inertia_y.value_or(0.0), "rotary_inertia_y"},
+                   {c.polar_inertia.value_or(0.0), "polar_inertia"}};
+  for (auto const& [x, what] : all) require_size(x, of + what);
+}
+/// \throws InvalidInput where products of the section's and the material's numbers overflow or vanish.
+template <class = void>  // compiled where it is used
+void require_section_sizes(Bar const& bar, BarConstants const& c) {
+  std::string of = "Bar: with a section of ";
+  if (auto const* circle = std::get_if<Circle>(&bar.section)) of += "radius " + number(circle->radius);
+  if (auto const* r = std::get_if<Rectangle>(&bar.section))
+    of += "height " + number(r->height) + " m and width " + number(r->width);
+  of += " m and a material of density " + number(bar.material->density) + " kg/m³ and Young's modulus " +
+        number(bar.material->young) + " N/m², ";
+  require_positive(c.EA, of + "EA");
+  require_positive(c.EI, of + "EI");
+  require_positive(c.mass_per_length, of + "mass per length");
+  require_sizes(c, of);
+}
+
 }  // namespace detail
 
 /// The section's stiffness and inertia. \throws InvalidInput naming the quantity that cannot be meant.
 template <class = void>  // compiled where it is used
 BarConstants constants(Bar const& bar) {
   require_positive(bar.length, "Bar: the length");
+  if (!(bar.length >= 1e-100 && bar.length <= 1e100))
+    throw InvalidInput("Bar: the length must lie in [1e-100, 1e+100] m, but is " + number(bar.length) + " m.");
   bar.placement.check("Bar");
   require_not_negative(bar.damping.axial, "Bar: the axial damping time");
   require_not_negative(bar.damping.shear, "Bar: the shear damping time");
   require_not_negative(bar.damping.bending, "Bar: the bending damping time");
   if (!std::isfinite(bar.pretension)) throw InvalidInput("Bar: the pretension must be finite.");
+  if (std::abs(bar.pretension) > largest_number)
+    throw InvalidInput("Bar: the pretension is " + number(bar.pretension) + " N, whose square is not finite.");
   bool const by_section = !std::holds_alternative<std::monostate>(bar.section);
   if (by_section != bar.material.has_value() || by_section == bar.constants.has_value())
     throw InvalidInput("Bar: give either a section with a material, or constants; not both, not half.");
-  if (by_section) return detail::constants_of_section(bar);
+  if (by_section) {
+    BarConstants const c = detail::constants_of_section(bar);
+    detail::require_section_sizes(bar, c);
+    return c;
+  }
   BarConstants const& c = *bar.constants;
   require_positive(c.EA, "Bar: EA");
   require_positive(c.EI, "Bar: EI");
@@ -146,6 +187,7 @@ BarConstants constants(Bar const& bar) {
   require_not_negative(c.GA_z.value_or(0.0), "Bar: GA_z");
   require_not_negative(c.rotary_inertia_y.value_or(0.0), "Bar: rotary_inertia_y");
   require_not_negative(c.polar_inertia.value_or(0.0), "Bar: polar_inertia");
+  detail::require_sizes(c, "Bar: ");
   return c;
 }
 
