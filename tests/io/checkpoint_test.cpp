@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "support/refusal.hpp"
 #include "support/resumed_run.hpp"
 

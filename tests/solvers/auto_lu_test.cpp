@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 using namespace polybody;
 
 // On both sides of the limit the answer is that of the solver chosen, to the last bit.
@@ -10,7 +12,7 @@ TEST(AutoLu, ChoosesBySize) {
     MatX const a = MatX::Random(size, size) + 10.0 * MatX::Identity(size, size);
     VecX const b = VecX::Random(size);
     auto const answer = [&](auto solver) {
-      solver.analyse(size, {{0, 0, size, size}});
+      solver.analyse(size, std::array{Block{0, 0, size, size}});
       solver.begin();
       solver.add(0, 0, a);
       EXPECT_EQ(solver.factor(), -1);

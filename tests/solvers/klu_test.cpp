@@ -5,6 +5,8 @@
 
 #include <polybody/testing/linear_solver_laws.hpp>
 
+#include <array>
+
 using namespace polybody;
 using namespace polybody::laws;
 
@@ -48,7 +50,7 @@ TEST(Klu, ChoosesPivotsAnewWhenTheyNoLongerServe) {
   first << 1.0, 0.5, 0.5, 1.0;
   second << 1e-14, 1.0, 1.0, 0.0;
   Klu klu;
-  klu.analyse(2, {{0, 0, 2, 2}});
+  klu.analyse(2, std::array{Block{0, 0, 2, 2}});
   for (auto const& m : {first, second}) {
     klu.begin();
     klu.add(0, 0, m);

@@ -13,7 +13,7 @@ using namespace polybody;
 
 namespace mapped_sink_test {
 
-using Targets = std::vector<std::vector<UnknownMap::Target>>;
+using Targets = Sequence<Sequence<UnknownMap::Target>>;
 
 /// Adds blocks in place, and remembers what came.
 struct Plain {

@@ -183,8 +183,8 @@ TEST(M113Vehicle, TrackThatJumpsIsAnEventWithTimeAndLink) {
                        .halvings = 8});
   run.run();
   ASSERT_TRUE(run.report().stopped);
-  EXPECT_TRUE(has(run.report().events.at(0).name, "track leaves its sprocket"));
-  EXPECT_NEAR(run.report().events.at(0).time, x.t, 1e-9);
+  EXPECT_TRUE(has(run.report().events[0].name, "track leaves its sprocket"));
+  EXPECT_NEAR(run.report().events[0].time, x.t, 1e-9);
   std::string const text = track_trouble(vehicle, x);
   EXPECT_TRUE(has(text, "At t = ")) << text;
   EXPECT_TRUE(has(text, "track has")) << text;

@@ -12,7 +12,6 @@
 #include <memory>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/sparse_sink.hpp>
@@ -29,7 +28,7 @@ class Klu {
 
   Klu() = default;
   /// With the unknowns in this order (each once) instead of KLU's own (block triangular, AMD).
-  explicit Klu(std::vector<int> const& order) : order_(order.begin(), order.end()) {}
+  explicit Klu(std::span<int const> order) : order_(order.begin(), order.end()) {}
 
   /// \throws InvalidInput when an order was given that is not one of `size` unknowns.
   void analyse(Index size, std::span<Block const> blocks) {

@@ -14,7 +14,7 @@
 ///     struct DumbbellCase {
 ///       static Dumbbell body();               // with damping, if it has any
 ///       static Dumbbell undamped();           // the same without; not needed where there is none
-///       static Sequence<Dumbbell::Point> points();
+///       static std::vector<Dumbbell::Point> points();
 ///       static double mass();                 // [kg]
 ///       static Vec3 centre();                 // of mass, in the reference configuration, world axes [m]
 ///       static constexpr double stiffness = 900.0;  // the largest of its elastic constants; one where it is not said
@@ -27,6 +27,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <vector>
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/testing/body_case.hpp>
@@ -78,10 +79,10 @@ struct BodyLaws {
   Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }
 
   /// The case's points; of a bar some on the axis, at both ends, and off it.
-  Sequence<typename B::Point> points() const {
+  std::vector<typename B::Point> points() const {
     if constexpr (MadeFromBar<Case>) {
       double const length = Case::bar().length;
-      Sequence<typename B::Point> p = {body.at(0.0), body.at(0.31 * length), body.at(0.5 * length), body.at(length)};
+      std::vector<typename B::Point> p = {body.at(0.0), body.at(0.31 * length), body.at(0.5 * length), body.at(length)};
       if constexpr (rolls) {
         p.push_back(body.at(0.5 * length, 0.07));
         p.push_back(body.at(0.77 * length, -0.04));
