@@ -134,6 +134,15 @@ TEST(Sequence, HoldsWhatCanOnlyMove) {
   EXPECT_EQ(*s.back(), 8);
 }
 
+TEST(Sequence, IsAskedWithinItsEnds) {
+  Sequence<int> const s{4, 5};
+  EXPECT_EQ(s.at(1), 5);
+  EXPECT_THROW(s.at(2), std::out_of_range);
+  EXPECT_TRUE(s == (Sequence<int>{4, 5}));
+  EXPECT_FALSE(s == (Sequence<int>{4, 5, 6}));
+  EXPECT_FALSE(s == (Sequence<int>{4, 6}));
+}
+
 TEST(Sequence, MoreThanThereIsRoomForIsRefused) {
   Sequence<double> s{1.0};
   EXPECT_THROW(s.reserve(std::size_t(-1) / 4), std::bad_alloc);

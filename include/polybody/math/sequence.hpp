@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <new>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -28,8 +29,8 @@ inline void give_memory(void* memory, std::size_t alignment) noexcept {
 
 }  // namespace detail
 
-/// Values one after the other in memory, with the members of std::vector and their meaning. A compiler makes some ten
-/// functions for each type of value, where std::vector takes sixty (docs/performance.md): the library's own records
+/// Values one after the other in memory, with the usual members of std::vector and their meaning. A compiler makes some
+/// ten functions for each type of value, where std::vector takes sixty (docs/performance.md): the library's own records
 /// stand in Sequences, numbers and what a user passes in std::vector.
 template <class T>
 class Sequence {
@@ -72,6 +73,9 @@ class Sequence {
   bool empty() const { return size_ == 0; }
   T& operator[](std::size_t i) { return data_[i]; }
   T const& operator[](std::size_t i) const { return data_[i]; }
+  /// \throws std::out_of_range
+  T& at(std::size_t i) { return data_[within(i)]; }
+  T const& at(std::size_t i) const { return data_[within(i)]; }
   T& front() { return *data_; }
   T const& front() const { return *data_; }
   T& back() { return data_[size_ - 1]; }
@@ -132,6 +136,10 @@ class Sequence {
   void clear() noexcept { truncate(0); }
 
  private:
+  std::size_t within(std::size_t i) const {
+    if (i >= size_) throw std::out_of_range("a Sequence has no value at the place that is asked for");
+    return i;
+  }
   void copy(T const* from, std::size_t size) {
     reserve(size);
     for (; size_ < size; ++size_) new (data_ + size_) T(from[size_]);
@@ -140,6 +148,11 @@ class Sequence {
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
 };
+
+template <class T>
+bool operator==(Sequence<T> const& a, Sequence<T> const& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
 
 /// Removes the values of which `goes` is true.
 template <class T, class F>
