@@ -153,6 +153,14 @@ void require_section_sizes(Bar const& bar, BarConstants const& c) {
   require_sizes(c, of);
 }
 
+/// \throws InvalidInput naming `what` unless it is zero or positive, and its products with stiffness are numbers.
+template <class = void>  // compiled where it is used
+void require_damping_time(double time, std::string const& what) {
+  require_not_negative(time, what);
+  if (time > largest_number)
+    throw InvalidInput(what + " must be at most " + number(largest_number) + " s, but is " + number(time) + " s.");
+}
+
 }  // namespace detail
 
 /// The section's stiffness and inertia. \throws InvalidInput naming the quantity that cannot be meant.
@@ -162,9 +170,9 @@ BarConstants constants(Bar const& bar) {
   if (!(bar.length >= 1e-100 && bar.length <= 1e100))
     throw InvalidInput("Bar: the length must lie in [1e-100, 1e+100] m, but is " + number(bar.length) + " m.");
   bar.placement.check("Bar");
-  require_not_negative(bar.damping.axial, "Bar: the axial damping time");
-  require_not_negative(bar.damping.shear, "Bar: the shear damping time");
-  require_not_negative(bar.damping.bending, "Bar: the bending damping time");
+  detail::require_damping_time(bar.damping.axial, "Bar: the axial damping time");
+  detail::require_damping_time(bar.damping.shear, "Bar: the shear damping time");
+  detail::require_damping_time(bar.damping.bending, "Bar: the bending damping time");
   if (!std::isfinite(bar.pretension)) throw InvalidInput("Bar: the pretension must be finite.");
   if (std::abs(bar.pretension) > largest_number)
     throw InvalidInput("Bar: the pretension is " + number(bar.pretension) + " N, whose square is not finite.");
