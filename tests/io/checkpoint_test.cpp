@@ -105,7 +105,7 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
   std::string other = good;
   std::uint32_t const nine = 9;
   std::memcpy(other.data() + 12, &nine, sizeof nine);
-  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 2"));
+  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 3"));
   other = good;
   std::reverse(other.begin() + 8, other.begin() + 12);
   EXPECT_TRUE(has(told(other), "another byte order"));

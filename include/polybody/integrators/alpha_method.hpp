@@ -132,11 +132,14 @@ struct AlphaMethod {
 
   /// a, v and Δq of a step of h from x where v̇ becomes w.vd.
   void predict(State const& x, double h, AlphaVectors& w) const {
-    for (Index i = 0; i < w.a.size(); ++i) {
-      w.a[i] = (alpha_f * x.a[i] + (1.0 - alpha_f) * w.vd[i] - alpha_m * w.a0[i]) / (1.0 - alpha_m);
-      w.v[i] = w.v0[i] + h * ((1.0 - gamma) * w.a0[i] + gamma * w.a[i]);
-      w.dq[i] = h * w.v0[i] + h * h * ((0.5 - beta) * w.a0[i] + beta * w.a[i]);
-    }
+    double const part = 1.0 / (1.0 - alpha_m);
+    for_packs(w.a.size(), [&](auto at) {
+      auto const v0 = at(w.v0), a0 = at(w.a0),
+                 a = part * (alpha_f * at(x.a) + (1.0 - alpha_f) * at(w.vd) - alpha_m * a0);
+      at.set(w.a, a);
+      at.set(w.v, v0 + h * ((1.0 - gamma) * a0 + gamma * a));
+      at.set(w.dq, h * v0 + h * h * ((0.5 - beta) * a0 + beta * a));
+    });
   }
   /// The same after a correction: a changes by the first part of y, λ by the rest.
   void apply(double part, double h, bool two_sets, AlphaVectors& w) const {
@@ -144,40 +147,37 @@ struct AlphaMethod {
       w.y *= part;
       if (two_sets) w.back *= part;
     }
-    Index const nv = w.v.size();
-    for (Index i = 0; i < nv; ++i) {
-      double const da = w.y[i];
-      w.a[i] += da;
-      w.vd[i] += mass() * da;
-      w.v[i] += h * gamma * da;
-      w.dq[i] += beta * h * h * da;
-    }
+    double const of_vd = mass(), of_v = h * gamma, of_dq = beta * h * h;
+    for_packs(w.v.size(), [&](auto at) {
+      auto const da = at(w.y);
+      at.set(w.a, at(w.a) + da);
+      at.set(w.vd, at(w.vd) + of_vd * da);
+      at.set(w.v, at(w.v) + of_v * da);
+      at.set(w.dq, at(w.dq) + of_dq * da);
+    });
     if (two_sets) w.dq += w.back;
-    for (Index i = 0; i < w.lambda.size(); ++i) w.lambda[i] += w.y[nv + i];
+    double const* const of_lambda = w.y.data() + w.v.size();
+    for_packs(w.lambda.size(), [&](auto at) { at.set(w.lambda, at(w.lambda) + at(of_lambda)); });
   }
   CorrectionSize measure(double h, bool two_sets, AlphaVectors const& w) const {
     Index const bodies = w.v.size() - w.states;
     double const s = beta * h * h, n = std::sqrt(double(std::max<Index>(bodies, 1)));
-    double square = 0.0, moved = 0.0;
-    for (Index i = 0; i < bodies; ++i) {
-      square += w.y[i] * w.y[i];
-      moved += w.vd[i] * w.vd[i];
-    }
-    double const change = std::sqrt(square) + (two_sets ? w.back.norm() / s : 0.0);
+    double const change = std::sqrt(squares(w.y.data(), bodies)) + (two_sets ? std::sqrt(squares(w.back)) / s : 0.0),
+                 moved = std::sqrt(squares(w.vd.data(), bodies));
     CorrectionSize const size{.norm = change / n,
-                              .tolerated = tolerance * (1.0 + std::sqrt(moved) / n) + detail::rounding_of(w.q, s)};
+                              .tolerated = tolerance * (1.0 + moved / n) + detail::rounding_of(w.q, s)};
     return detail::StatesInStep{w.states, w.v, w.vd, gamma * h}.join(size, tolerance, w.y.data());
   }
   /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
   void right_hand_side(double h, bool two_sets, Sequence<Index> const& velocity_rows, AlphaVectors& w) const {
     Index const nv = w.v.size(), rows = w.lambda.size();
-    for (Index i = 0; i < nv; ++i) w.rhs[i] = -w.r[i];
-    if (two_sets) {
-      for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.rate[i] / -(h * gamma);
-    } else {
-      for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.phi[i] / -(beta * h * h);
-      for (Index const i : velocity_rows) w.rhs[nv + i] = w.rate[i] / -(h * gamma);
-    }
+    for_packs(nv, [&](auto at) { at.set(w.rhs, -at(w.r)); });
+    double* const of_rows = w.rhs.data() + nv;
+    VecX const& open = two_sets ? w.rate : w.phi;
+    double const scale = -1.0 / (two_sets ? h * gamma : beta * h * h);
+    for_packs(rows, [&](auto at) { at.set(of_rows, scale * at(open)); });
+    if (!two_sets)
+      for (Index const i : velocity_rows) of_rows[i] = w.rate[i] / -(h * gamma);
   }
 
   /// Tangent and factorisation for steps of h where `system` was evaluated last. −1, or the unknown without a pivot.
@@ -349,9 +349,7 @@ struct AlphaMethod {
         [&](Index first, Index end) { return norm(change, first, end) <= 0.5 * h * norm(w.jerk, first, end); });
   }
   static double norm(VecX const& a, Index first, Index end) {
-    double square = 0.0;
-    for (Index i = first; i < end; ++i) square += a[i] * a[i];
-    return std::sqrt(square);
+    return std::sqrt(squares(a.data() + first, end - first));
   }
   /// Δq and v after e seconds with w.jerk.
   static void follow(State const& x, double e, AlphaVectors& w) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include <polybody/math/vectors.hpp>
 #include <polybody/solvers/newton.hpp>
 
 namespace polybody::detail {
@@ -14,9 +15,7 @@ namespace polybody::detail {
 /// By how much rounding moves the coordinates in the mean: coordinate i by ε |q_i|, what stands for a direction or an
 /// arm by ε. A mean, as corrections are measured by theirs: one angle of many turns does not speak for all.
 inline double rounding_of(VecX const& q) {
-  double square = 0.0;
-  for (Index i = 0; i < q.size(); ++i) square += q[i] * q[i];
-  return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(square / double(std::max<Index>(q.size(), 1))));
+  return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(squares(q) / double(std::max<Index>(q.size(), 1))));
 }
 /// What that leaves of a correction that moves q by s times as much.
 inline double rounding_of(VecX const& q, double s) { return rounding_of(q) / s; }

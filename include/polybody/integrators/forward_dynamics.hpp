@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 
+#include <polybody/math/vectors.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/tangent_solver.hpp>
 #include <polybody/system/step_bounds.hpp>
@@ -104,10 +105,10 @@ class ForwardDynamics {
 
   /// What every step asks before it accepts its end. \throws NonFinite, Diverged.
   void require_end(System& system, StepEnd const& end) {
-    double const squares = end.v.squaredNorm();
-    if (!(squares + end.q.squaredNorm() <= largest_number * largest_number))
+    double const of_speeds = squares(end.v);
+    if (!(of_speeds + squares(end.q) <= largest_number * largest_number))
       detail::require_finite_end(system, end.q, end.v, end.t);  // number by number
-    bounds.require(system, end, squares);
+    bounds.require(system, end, of_speeds);
   }
 
   /// M a + Gᵀλ = f, G a = −γ − what is fed back, at the coordinates, speeds and time `at`. \throws

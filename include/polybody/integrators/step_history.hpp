@@ -1,21 +1,25 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <limits>
 
-#include <polybody/math/errors.hpp>
+#include <polybody/math/vectors.hpp>
 #include <polybody/system/state.hpp>
 
 namespace polybody {
 
-/// The last five steps of a run: what extrapolation and differences in time need. It stands in `State::memory`,
-/// so a copy of a state carries it along:
-///   [the method's own nv entries | v̇₋₁ … v̇₋₅ | λ₋₁ … λ₋₅ | h₋₅ … h₋₁ | length for which the state is shifted].
+/// The last points of a run: what extrapolation and differences in time need. Of v̇ and λ at t₋₁ > t₋₂ > …, the ends
+/// of earlier steps, it keeps scaled divided differences
+///   Dⱼ = f[t₋₁, …, t₋₁₋ⱼ] Πᵢ (t₋₁ − t₋ᵢ), i = 2 … j + 1:
+/// the error with which the j points before t₋₁ predict f(t₋₁). At a further point t₀ they are [Krogh 1974; Hairer,
+/// Nørsett & Wanner 1993, §III.5]
+///   D′₀ = f(t₀),  D′ⱼ₊₁ = D′ⱼ − βⱼ Dⱼ,  β₀ = 1,  βⱼ₊₁ = βⱼ (t₀ − t₋ⱼ₋₁)/(t₋₁ − t₋ⱼ₋₂).
+/// It stands in `State::memory`, so a copy of a state carries it along:
+///   [the method's own nv entries | D₀ … D₄ of v̇ | those of λ | h₋₅ … h₋₁ | length for which the state is shifted].
 class StepHistory {
   static constexpr int kept = 5;
   static Index size(Index nv, Index rows) { return (kept + 1) * nv + kept * rows + kept + 1; }
-  double* a(int back) const { return memory_.data() + back * nv_; }
-  double* lambda(int back) const { return memory_.data() + (kept + 1) * nv_ + (back - 1) * rows_; }
+  double* a() const { return memory_.data() + nv_; }
+  double* lambda() const { return memory_.data() + (kept + 1) * nv_; }
   static void copy(double const* from, Index n, double* to) { std::copy(from, from + n, to); }
   double& length(int back) const { return memory_[memory_.size() - 1 - back]; }
 
@@ -42,80 +46,104 @@ class StepHistory {
 
   /// As if a step h had ended at x and v̇ had changed at the rate `jerk` in it.
   void pretend(State const& x, VecX const& jerk, double h) {
-    for (Index i = 0; i < nv_; ++i) a(1)[i] = x.a[i] - h * jerk[i];
-    copy(x.lambda.data(), rows_, lambda(1));
+    for (Index i = 0; i < nv_; ++i) a()[i] = x.a[i] - h * jerk[i];
+    copy(x.lambda.data(), rows_, lambda());
     length(1) = h;
   }
 
   /// Makes x, from which a step h was taken, the last one; `own` are the method's entries after it.
   void push(State const& x, double h, VecX const& own) {
     copy(own.data(), nv_, memory_.data());
-    for (int back = kept; back > 1; --back) {
-      copy(a(back - 1), nv_, a(back));
-      copy(lambda(back - 1), rows_, lambda(back));
-      length(back) = length(back - 1);
-    }
-    copy(x.a.data(), nv_, a(1));
-    copy(x.lambda.data(), rows_, lambda(1));
+    Past const past(*this);
+    past.push(x.a.data(), nv_, a());
+    past.push(x.lambda.data(), rows_, lambda());
+    for (int back = kept; back > 1; --back) length(back) = length(back - 1);
     length(1) = h;
     memory_[memory_.size() - 1] = h;
   }
 
-  /// v̇ and λ at x.t + h, each by the polynomial through as many of the last points as would have foretold its present
-  /// value best: many where the motion is smooth, few where what Newton left over would be blown up [Lagrange].
+  /// v̇ and λ at x.t + h, each by the polynomial through as many of the last points as would have predicted its present
+  /// value best: many where the motion is smooth, few where what Newton left over would be blown up.
   void extrapolate(State const& x, double h, VecX& vd, VecX& l) const {
-    Times t{};
-    int known = 1;
-    bool const far = h > 2.0 * length(1);  // what was learnt over short steps does not reach that far
-    for (; known <= kept && length(known) > 0.0 && !far; ++known)
-      t[std::size_t(known)] = t[std::size_t(known - 1)] - length(known);
-    extrapolate(t, known, h, x.a, [this](int back) { return a(back); }, vd);
-    extrapolate(t, known, h, x.lambda, [this](int back) { return lambda(back); }, l);
+    Past past(*this);
+    if (h > 2.0 * length(1)) past.known = 1;  // what was learnt over short steps does not reach that far
+    past.extrapolate(h, x.a.data(), a(), vd);
+    past.extrapolate(h, x.lambda.data(), lambda(), l);
   }
 
   /// v̈ at x, of second order where two steps are known. False where none is.
   bool jerk(State const& x, VecX& out) const {
     double const h1 = length(1), h2 = length(2);
     if (h1 == 0.0) return false;
+    double const *last = a(), *change = last + nv_;
     for (Index i = 0; i < nv_; ++i) {
-      double const last = (x.a[i] - a(1)[i]) / h1;
-      out[i] = h2 > 0.0 ? last + h1 / (h1 + h2) * (last - (a(1)[i] - a(2)[i]) / h2) : last;
+      double const rate = (x.a[i] - last[i]) / h1;
+      out[i] = h2 > 0.0 ? rate + h1 / (h1 + h2) * (rate - change[i] / h2) : rate;
     }
     return true;
   }
 
  private:
-  using Times = std::array<double, kept + 1>;  ///< before x
+  /// The points at x and before, as factors.
+  struct Past {
+    int known = 1;                       ///< points, with that at x
+    std::array<double, kept + 1> age{};  ///< t₀ − t₋ⱼ
+    std::array<double, kept> beta{};
 
-  /// Lagrange's weight at time `at` of point i among the points [first, end).
-  static double weight(Times const& t, int i, int first, int end, double at) {
-    double c = 1.0;
-    for (int j = first; j < end; ++j)
-      if (j != i) c *= (at - t[std::size_t(j)]) / (t[std::size_t(i)] - t[std::size_t(j)]);
-    return c;
-  }
-
-  /// From `known` points, `now` the first and `get(i)` the others, into `out`.
-  template <class Get>
-  static void extrapolate(Times const& t, int known, double h, VecX const& now, Get&& get, VecX& out) {
-    int best = 1;
-    double least = std::numeric_limits<double>::infinity();
-    auto const add = [&](double factor, double const* from) {
-      for (Index k = 0; k < out.size(); ++k) out[k] += factor * from[k];
-    };
-    for (int n = 1; n < known; ++n) {
-      out = now;
-      for (int i = 1; i <= n; ++i) add(-weight(t, i, 1, n + 1, 0.0), get(i));
-      double const error = out.squaredNorm();
-      if (error < least) {
-        least = error;
-        best = n;
+    explicit Past(StepHistory const& history) {
+      for (; known <= kept && history.length(known) > 0.0; ++known) {
+        std::size_t const j = std::size_t(known);
+        age[j] = age[j - 1] + history.length(known);
+        beta[j - 1] = j == 1 ? 1.0 : beta[j - 2] * age[j - 1] / (age[j] - age[1]);
       }
     }
-    double const first = weight(t, 0, 0, best, h);
-    for (Index k = 0; k < out.size(); ++k) out[k] = first * now[k];
-    for (int i = 1; i < best; ++i) add(weight(t, i, 0, best, h), get(i));
-  }
+
+    /// The differences `d` at x, where f is `now`.
+    void push(double const* now, Index n, double* d) const {
+      int const last = std::min(known, kept) - 1;
+      for_packs(n, [&](auto at) {
+        auto next = at(now);
+        for (int j = 0; j < last; ++j) {
+          auto const before = at(d + j * n);
+          at.set(d + j * n, next);
+          next -= beta[std::size_t(j)] * before;
+        }
+        at.set(d + last * n, next);
+      });
+    }
+
+    /// How many points would have predicted `now` best.
+    int best_order(double const* now, double const* d, Index n) const {
+      std::array<PackSum, kept> errors;
+      for_packs(n, [&](auto at) {
+        auto error = at(now);
+        for (int j = 0; j + 1 < known; ++j) {
+          error -= beta[std::size_t(j)] * at(d + j * n);
+          errors[std::size_t(j)].add(error * error);
+        }
+      });
+      int best = 1;
+      for (int j = 2; j < known; ++j)
+        if (errors[std::size_t(j - 1)].total() < errors[std::size_t(best - 1)].total()) best = j;
+      return best;
+    }
+
+    /// f(t₀ + h) = Σ γⱼ D′ⱼ, γ₀ = 1, γⱼ₊₁ = γⱼ (h + t₀ − t₋ⱼ)/(t₀ − t₋ⱼ₋₁), by the best number of points.
+    void extrapolate(double h, double const* now, double const* d, VecX& out) const {
+      Index const n = out.size();
+      int const points = best_order(now, d, n);
+      std::array<double, kept> gamma{1.0};
+      for (std::size_t j = 1; j < std::size_t(points); ++j) gamma[j] = gamma[j - 1] * (h + age[j - 1]) / age[j];
+      for_packs(n, [&](auto at) {
+        auto difference = at(now), sum = difference;
+        for (int j = 1; j < points; ++j) {
+          difference -= beta[std::size_t(j - 1)] * at(d + (j - 1) * n);
+          sum += gamma[std::size_t(j)] * difference;
+        }
+        at.set(out, sum);
+      });
+    }
+  };
 };
 
 }  // namespace polybody

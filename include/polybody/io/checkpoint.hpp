@@ -116,7 +116,7 @@ struct CheckpointHead {
   std::uint32_t order, version;
   std::uint64_t length;
 };
-inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 2u, 0u};
+inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 3u, 0u};
 
 }  // namespace detail
 

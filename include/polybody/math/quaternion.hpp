@@ -80,8 +80,8 @@ template <class T>
 Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
   using std::sqrt;
   Quaternion<T> const r = quaternion_product<T>(q, quaternion_exp<T>(delta));
-  T const size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
-  return {r[0] / size, r[1] / size, r[2] / size, r[3] / size};
+  T const scale = 1.0 / sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+  return {r[0] * scale, r[1] * scale, r[2] * scale, r[3] * scale};
 }
 
 /// q ⊟ p = log(p⁻¹ q): the δ with p ⊞ δ = q (up to sign of the quaternion).

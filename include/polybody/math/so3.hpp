@@ -5,6 +5,8 @@
 /// (body axes), A ⊞ δ = A exp(δ̃). [Solà, Deray & Atchuthan 2018, eqs. 132–146; Brüls, Cardona &
 /// Arnold 2012, App. A]
 
+#include <array>
+
 #include <polybody/math/dual.hpp>
 #include <polybody/math/types.hpp>
 
@@ -71,6 +73,15 @@ Mat<T, 3, 3> one_and_skew(Vec<T, 3> const& a, T const& b, T const& c) {
   return m;
 }
 
+namespace detail {
+/// 1/k!, k = 0 … 19.
+inline constexpr auto inverse_factorials = [] {
+  std::array<double, 20> f{1.0};
+  for (std::size_t k = 1; k < f.size(); ++k) f[k] = f[k - 1] / double(k);
+  return f;
+}();
+}  // namespace detail
+
 /// The coefficients of exp and its Jacobian as functions of x = |φ|², by series near zero:
 /// a = sin θ/θ, b = (1 − cos θ)/θ², c = (θ − sin θ)/θ³, θ = √x.
 template <class T>
@@ -78,10 +89,10 @@ struct RotationSeries {
   T a, b, c;
   explicit RotationSeries(T const& x) {
     using std::cos, std::sin, std::sqrt;
-    if (value_of(x) < 0.25) {  // terms fall by x/56 at least: nine of them leave 1e-17
-      a = series(x, 1.0, 2.0);
-      b = series(x, 0.5, 3.0);
-      c = series(x, 1.0 / 6.0, 4.0);
+    if (value_of(x) < 0.25) {
+      a = series(x, 1);
+      b = series(x, 2);
+      c = series(x, 3);
     } else {
       T const angle = sqrt(x);
       T const half = sin(0.5 * angle);
@@ -91,14 +102,10 @@ struct RotationSeries {
     }
   }
 
-  /// Σ (−x)ᵏ first · (n−1)!/(n−1+2k)!, each term from the one before it.
-  static T series(T const& x, double first, double n) {
-    T term(first), sum(first);
-    for (int k = 0; k < 9; ++k) {
-      term = term * (-x) * (1.0 / (n * (n + 1.0)));
-      sum = sum + term;
-      n += 2.0;
-    }
+  /// Σ (−x)ᵏ/(n + 2k)!, by Horner's rule. Eight terms: the next one is below 1e-19.
+  static T series(T const& x, int n) {
+    T sum(detail::inverse_factorials[std::size_t(n + 14)]);
+    for (int k = n + 12; k >= n; k -= 2) sum = detail::inverse_factorials[std::size_t(k)] - x * sum;
     return sum;
   }
 };
@@ -110,8 +117,8 @@ struct RotationSlopes {
   explicit RotationSlopes(T const& x) {
     RotationSeries<T> const s(x);
     bool const small = value_of(x) < 0.25;
-    T const d = small ? s.series(x, 1.0 / 24.0, 5.0) : T((0.5 - s.b) / x);
-    T const e = small ? s.series(x, 1.0 / 120.0, 6.0) : T((1.0 / 6.0 - s.c) / x);
+    T const d = small ? s.series(x, 4) : T((0.5 - s.b) / x);
+    T const e = small ? s.series(x, 5) : T((1.0 / 6.0 - s.c) / x);
     b = d - 0.5 * s.c;
     c = 1.5 * e - 0.5 * d;
   }

@@ -110,7 +110,6 @@ std::string how_not_finite(double x) {
   return std::isfinite(x) ? " is " + number(x) + ", beyond " + number(largest_number) + " whose square is not finite,"
                           : " is not finite";
 }
-inline bool all_finite(VecX const& x) { return first_not_finite(x) < 0; }
 
 /// max |xᵢ|: zero without entries, NaN if one is.
 inline double largest_size(VecX const& x) {

@@ -2,6 +2,7 @@
 /// \file
 /// Consistent starts: assembly of positions, projection of velocities, accelerations and multipliers.
 
+#include <polybody/math/vectors.hpp>
 #include <polybody/run/fitting.hpp>
 #include <polybody/run/repeated_rows.hpp>
 #include <polybody/system/model_entries.hpp>

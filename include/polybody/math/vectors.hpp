@@ -1,0 +1,68 @@
+#pragma once
+/// \file
+/// Loops over the entries of long vectors, a pack at a time. g++ at -O2 takes a plain loop entry by entry.
+
+#include <polybody/math/pack.hpp>
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+/// A place in vectors: `pack_size` entries from `first` on.
+struct PackPlace {
+  Index first;
+  Pack<> operator()(double const* x) const { return Pack<>::load(x + first); }
+  Pack<> operator()(VecX const& x) const { return Pack<>::load(x.data() + first); }
+  void set(double* x, Pack<> const& value) const { value.store(x + first); }
+  void set(VecX& x, Pack<> const& value) const { value.store(x.data() + first); }
+};
+/// One entry.
+struct EntryPlace {
+  Index first;
+  double operator()(double const* x) const { return x[first]; }
+  double operator()(VecX const& x) const { return x.data()[first]; }
+  void set(double* x, double value) const { x[first] = value; }
+  void set(VecX& x, double value) const { x.data()[first] = value; }
+};
+
+/// Calls f(at) over n entries, in packs as far as they reach, then one by one. `at(x)` reads what stands at a place in
+/// x, `at.set(x, value)` writes it.
+template <class F>
+void for_packs(Index n, F&& f) {
+  Index i = 0;
+  for (; i + pack_size <= n; i += pack_size) f(PackPlace{i});
+  for (; i < n; ++i) f(EntryPlace{i});
+}
+
+/// A sum over the places of `for_packs`.
+class PackSum {
+ public:
+  void add(Pack<> const& x) { packs_ += x; }
+  void add(double x) { rest_ += x; }
+  double total() const {
+    double sum = rest_;
+    for (int i = 0; i < pack_size; ++i) sum += packs_[i];
+    return sum;
+  }
+
+ private:
+  Pack<> packs_ = Pack<>();
+  double rest_ = 0.0;
+};
+
+/// Σ xᵢ² of n entries.
+inline double squares(double const* x, Index n) {
+  PackSum sum;
+  for_packs(n, [&](auto at) {
+    auto const entry = at(x);
+    sum.add(entry * entry);
+  });
+  return sum.total();
+}
+inline double squares(VecX const& x) { return squares(x.data(), x.size()); }
+
+/// Whether no entry is NaN, infinite or beyond `largest_number`.
+inline bool all_finite(VecX const& x) {
+  return squares(x) <= largest_number * largest_number || first_not_finite(x) < 0;
+}
+
+}  // namespace polybody
