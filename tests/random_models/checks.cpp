@@ -13,7 +13,8 @@ namespace {
 constexpr double step_of_differences = 4e-6;  // [s]; the fastest modes turn at some 1000 1/s
 
 bool same_bits(VecX const& a, VecX const& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), sizeof(double) * std::size_t(a.size())) == 0;
+  if (a.size() != b.size()) return false;
+  return a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * std::size_t(a.size())) == 0;
 }
 bool same_bits(State const& a, State const& b) {
   return a.t == b.t && same_bits(a.q, b.q) && same_bits(a.v, b.v) && same_bits(a.a, b.a) &&

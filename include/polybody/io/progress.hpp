@@ -64,7 +64,7 @@ class Progress {
   ~Progress() {
     try {
       end_line();
-    } catch (...) {  // a stream set to throw; a lost bar is no reason to end the program
+    } catch (...) {  // NOLINT(bugprone-empty-catch): a stream set to throw; a lost bar is no reason to end the program
     }
   }
 

@@ -74,7 +74,7 @@ struct Gear {
   };
   Ratio ratio() const {
     int const common = std::gcd(int(teeth_a), int(teeth_b));
-    return {double(teeth_a / common), double(teeth_b / common)};
+    return {double(int(teeth_a)) / common, double(int(teeth_b)) / common};
   }
 
   /// The components of the vector from one wheel's centre to the other's in the first two axes of the one.

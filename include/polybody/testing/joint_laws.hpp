@@ -90,7 +90,8 @@ inline std::vector<FramePair> JointLawsOf::closed() {
     p.b.r = p.a.r + p.a.A * mate.d;
     p.b.A = p.a.A * mate.R;
     p.freedoms.resize(6, mate.freedoms.cols());
-    p.freedoms << p.a.A * mate.freedoms.topRows<3>(), p.a.A * mate.freedoms.bottomRows<3>();
+    if (mate.freedoms.cols() > 0)  // a weld leaves none, and an empty matrix has no rows to point at
+      p.freedoms << p.a.A * mate.freedoms.topRows<3>(), p.a.A * mate.freedoms.bottomRows<3>();
   }
   return pairs;
 }
