@@ -30,7 +30,8 @@ Bar const round{.length = 1.0,
                 .material = Material{.density = 1000, .young = 1e8, .poisson = 0.3}};
 Bar const square{.length = 1.0,
                  .section = Rectangle{.height = 0.02, .width = 0.04},
-                 .material = Material{.density = 1000, .young = 1e8, .poisson = 0.3}};
+                 .material = Material{.density = 1000, .young = 1e8, .poisson = 0.3},
+                 .shear_factor = 0.9};
 
 /// A share that is no divisor of the number of hostile values, so that all of them are met.
 Share const some{.every = 40};

@@ -189,7 +189,7 @@ template <>
 inline constexpr auto words_of<Damping> = words("axial damping", "shear damping", "bending damping");
 template <>
 inline constexpr auto words_of<Bar> =
-    words("length", "section", "material", "constants", "placement", "damping", "pretension");
+    words("length", "section", "material", "constants", "placement", "damping", "pretension", "shear factor");
 template <>
 inline constexpr auto words_of<FfrTerms> = words("coupling", "coriolis", "centrifugal");
 template <>

@@ -174,6 +174,10 @@ struct Continuum {
     if (!(bar.material->poisson < 0.5))
       throw InvalidInput(std::string(name) +
                          ": Poisson's ratio must be below 0.5, where the bulk modulus is infinite.");
+    if (!cured && bar.shear_factor)
+      throw InvalidInput(std::string(name) +
+                         ": with Locking::present shear obeys Hooke's law in full, without a shear factor. Leave it "
+                         "out, or take Continuum<Locking::cured>.");
   }
 
   static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {

@@ -67,7 +67,8 @@ struct Bar {
   std::optional<BarConstants> constants = {};
   Placement placement = {};
   Damping damping = {};
-  double pretension = 0.0;  ///< axial force in the reference configuration [N]
+  double pretension = 0.0;                  ///< axial force in the reference configuration [N]
+  std::optional<double> shear_factor = {};  ///< k of the section's shear stiffness k G A; Cowper's if not given
 };
 
 /// A curved reference: the placement of the section at arc length s ∈ [0, length], in the bar's own axes (x along the
@@ -107,6 +108,11 @@ BarConstants constants_of_section(Bar const& bar) {
     double sum = 0.0;
     for (int k = 1; k < 40; k += 2) sum += std::tanh(k * std::numbers::pi * a / (2.0 * b)) / std::pow(k, 5);
     torsion = a * b * b * b * (1.0 / 3.0 - 64.0 / std::pow(std::numbers::pi, 5) * b / a * sum);
+  }
+  if (bar.shear_factor) {
+    shear = *bar.shear_factor;
+    if (!(shear >= 1e-9 && shear <= 1e9))
+      throw InvalidInput("Bar: the shear factor must lie in [1e-09, 1e+09], but is " + number(shear) + ".");
   }
   double const e = m.young, g = e / (2.0 * (1.0 + nu)), rho = m.density;
   return {.EA = e * area,
@@ -179,6 +185,8 @@ BarConstants constants(Bar const& bar) {
   bool const by_section = !std::holds_alternative<std::monostate>(bar.section);
   if (by_section != bar.material.has_value() || by_section == bar.constants.has_value())
     throw InvalidInput("Bar: give either a section with a material, or constants; not both, not half.");
+  if (bar.shear_factor && !by_section)
+    throw InvalidInput("Bar: the shear factor belongs to a section. Constants give the shear stiffness GA itself.");
   if (by_section) {
     BarConstants const c = detail::constants_of_section(bar);
     detail::require_section_sizes(bar, c);

@@ -70,6 +70,7 @@ class ElasticChain : public NodeChain<columns> {
  protected:
   explicit ElasticChain(Index n, std::vector<Groups> groups = {}) : Chain(n), groups_(std::move(groups)) {}
   void add_groups(Groups const& groups) { groups_.push_back(groups); }
+  void set_groups(std::vector<Groups> groups) { groups_ = std::move(groups); }
 
   Groups const& groups_of(Index e) const { return groups_[alike() ? 0 : std::size_t(e)]; }
   /// An element's own part of coordinates or speeds x.

@@ -3,6 +3,7 @@
 /// A flexible bar in the plane as a chain of equal two-node elements. A policy, the Theory, says what is interpolated
 /// and which strains follow; mass, gravity and markers stand here, elastic forces in `ElasticChain`.
 
+#include <algorithm>
 #include <tuple>
 #include <vector>
 
@@ -83,6 +84,17 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return Beam(bar, c, n);
   }
 
+  /// The bar whose natural shape is `curve`: it stands there free of stress, but for the pretension,
+  ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx,  ε⁰ the strains of the nodes on the curve with the elements' own shapes.
+  /// So a circular arc of radius R is straight under the moment EI/R. \throws InvalidInput as `from`, and for a curve
+  /// that leaves the plane or is not given by its arc length: the axis of an element off by a tenth.
+  static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
+    if (!curve) throw InvalidInput(std::string(Theory::name) + ": the natural shape is empty.");
+    Beam beam = from(bar, n);
+    beam.bend_to(bar.placement, curve);
+    return beam;
+  }
+
   double length() const { return length_; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
@@ -104,6 +116,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
 
   void reference(std::span<double> q) const {
+    std::copy(natural_.begin(), natural_.end(), q.begin());
+    if (!natural_.empty()) return;
     for (Index i = 0; i <= elements(); ++i)
       part<node_columns>(q, i * node_columns) = Theory::reference_node(origin_, angle_, double(i) * l_);
   }
@@ -209,21 +223,21 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   /// Strains and forces of the section in the axes of space (see sections.hpp); what the theory does not know is zero.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
-    return in_space([&](auto const& group) { return group.strains(p.xi, l_, this->of_element(p.element, q)); });
+    return in_space(p.element, [&](auto const& group) { return strains_of(group, p, q); });
   }
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
-    return in_space(
-        [&](auto const& group) { return group.stress(group.strains(p.xi, l_, this->of_element(p.element, q))); });
+    return in_space(p.element, [&](auto const& group) { return group.stress(strains_of(group, p, q)); });
   }
-  /// Strains of group G (in the order of the theory) at `p`, and their stress resultants without damping.
+  /// Strains of group G (in the order of the theory) at `p` beyond those of the natural shape, and their stress
+  /// resultants without damping.
   template <int G>
   auto strains(Point const& p, std::span<double const> q) const {
-    return std::get<G>(this->groups_of(0)).strains(p.xi, l_, this->of_element(p.element, q));
+    return strains_of(std::get<G>(this->groups_of(p.element)), p, q);
   }
   /// Section forces of group G without damping [N], [N m].
   template <int G>
   auto resultants(Point const& p, std::span<double const> q) const {
-    return std::get<G>(this->groups_of(0)).stress(strains<G>(p, q));
+    return std::get<G>(this->groups_of(p.element)).stress(strains<G>(p, q));
   }
 
  private:
@@ -246,14 +260,48 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   /// Entries of the groups one after another, where the theory says they belong.
   template <class F>
-  Vec6 in_space(F&& of_group) const {
+  Vec6 in_space(Index element, F&& of_group) const {
     Vec6 out = Vec6::Zero();
     std::size_t k = 0;
-    this->for_each_group(0, [&](auto const& group) {
+    this->for_each_group(element, [&](auto const& group) {
       auto const x = of_group(group);
       for (Index i = 0; i < x.size(); ++i) out[Theory::section_rows[k++]] = x[i];
     });
     return out;
+  }
+
+  template <class Group>
+  auto strains_of(Group const& group, Point const& p, std::span<double const> q) const {
+    auto strain = group.strains(p.xi, l_, this->of_element(p.element, q));
+    if (!natural_.empty()) strain -= group.strains(p.xi, l_, this->of_element(p.element, std::span(natural_)));
+    return strain;
+  }
+
+  void bend_to(Placement const& place, ReferenceCurve const& curve) {
+    natural_.resize(std::size_t(this->coordinates()));
+    double angle = angle_;  // counts full turns
+    for (Index i = 0; i <= elements(); ++i) {
+      Placement const section = curve(double(i) * l_);
+      angle += std::remainder(angle_ + section.planar_angle(Theory::name) - angle, 2.0 * std::numbers::pi);
+      Vec3 const r = place.origin + place.axes * section.origin;
+      part<node_columns>(std::span(natural_), i * node_columns) = Theory::reference_node(r.head<2>(), angle, 0.0);
+    }
+    std::vector<typename Groups::type> groups(std::size_t(elements()), this->groups_of(0));
+    for (Index e = 0; e < elements(); ++e) {
+      Element<double> const rest = this->of_element(e, std::span<double const>(natural_));
+      require_arc_length(e, rest);
+      std::apply([&](auto&... group) { (group.set_free(rest), ...); }, groups[std::size_t(e)]);
+    }
+    this->set_groups(std::move(groups));
+  }
+  void require_arc_length(Index e, Element<double> const& rest) const {
+    for (GaussPoint const& g : gauss<3>) {
+      double const off = std::get<0>(this->groups_of(0)).strains(g.xi, l_, rest)[0];
+      if (!(std::abs(off) < 0.1))
+        throw InvalidInput(std::string(Theory::name) + ": element " + std::to_string(e + 1) +
+                           " of the natural shape is strained by " + number(off) +
+                           ". Give the curve by its arc length, from 0 to the bar's length, or take more elements.");
+    }
   }
 
   BarConstants constants_;
@@ -261,6 +309,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   double l_;
   Vec2 origin_;
   double angle_;
+  std::vector<double> natural_;  ///< coordinates of a natural shape that is curved
   ElementMatrix mass_ = ElementMatrix::Zero();
   Mat<double, element_columns, 2> gravity_ = Mat<double, element_columns, 2>::Zero();
 };

@@ -49,6 +49,14 @@ class StrainPoints {
     }
   }
 
+  /// Coordinates x become free of strain, ε⁰ = ε(x) at each point.
+  template <int n>
+  void set_free(Vec<double, n> const& x) {
+    Mat<double, m, np> b;
+    for (int g = 0; g < Law::points; ++g)
+      Law::template evaluate<double>(P::parameters(maps_[g], Coordinates<double, n>(x)), free_[g], b);
+  }
+
   Strains const& stiffness() const { return stiffness_; }
   /// The stress of strains without damping.
   Strains stress(Strains const& strain) const { return stiffness_.cwiseProduct(strain) + initial_; }

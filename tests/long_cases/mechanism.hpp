@@ -1,0 +1,70 @@
+#pragma once
+/// \file
+/// What the flexible mechanisms of CASES2 have in common: one type of model for each type of beam, so that the cases
+/// share what is compiled.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/joints/cylindrical.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/weld.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/observe.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/statics/equilibrium.hpp>
+#include <polybody/stress/section.hpp>
+
+#include "support/held.hpp"
+
+namespace polybody::long_cases {
+
+/// An angle as any function of time.
+struct Turn {
+  std::function<Motion(double)> law;
+  std::vector<double> ends = {};  ///< of its parts
+  Motion operator()(double t) const { return law(t); }
+  std::vector<double> corners() const { return ends; }
+};
+
+using Hinge = Joint<Revolute, Constraint>;
+using Drive = Joint<PrescribedAngle<Turn>, Constraint>;
+using Ball = Joint<Spherical, Constraint>;
+using Sleeve = Joint<Cylindrical, Constraint>;
+using Fixed = Joint<Weld, Constraint>;
+
+template <class B>
+using BodiesOf = std::conditional_t<std::is_same_v<B, Rigid<>>, Bodies<B>, Bodies<B, Rigid<>>>;
+template <class B>
+using Mechanism = Model<BodiesOf<B>, Joints<Hinge, Drive, Ball, Sleeve, Fixed>>;
+
+/// How a formulation meshes a bar, and what the tables call it.
+template <class B>
+struct Mesh {
+  std::string name;
+  std::function<B(Bar const&, Index)> make;
+};
+
+inline Hinge hinge(Vec3 const& axis) { return {Revolute{.axis = axis}, {}}; }
+inline Drive drive(Vec3 const& axis, Turn const& turn) {
+  return {PrescribedAngle<Turn>{.law = turn, .axis = axis}, {}};
+}
+
+/// Angle of a turn R about the axis c, within a turn of `near`: sin θ c is the axial vector of R, 2 cos θ + 1 its
+/// trace.
+inline double angle_about(Mat3 const& r, Vec3 const& c, double near) {
+  Vec3 const axial(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
+  double const angle = std::atan2(0.5 * c.dot(axial), 0.5 * (r.trace() - 1.0));
+  return near + std::remainder(angle - near, 2.0 * std::numbers::pi);
+}
+
+/// What two meshes tend to whose errors are as `ratio` to one.
+inline double extrapolated(double coarse, double fine, double ratio) { return fine + (fine - coarse) / (ratio - 1.0); }
+
+}  // namespace polybody::long_cases
