@@ -11,7 +11,11 @@ namespace euler_columns_test {
 
 using Rod = Lrvf<>;
 
-TEST(EulerColumns, LrvfBucklesAtEulersLoads) { columns::buckles_at_eulers_loads<Rod>(8); }
-TEST(EulerColumns, LrvfStandsBentBeyond) { columns::stands_bent_beyond<Rod>(16); }
+TEST(EulerColumns, LrvfBucklesAtEulersLoads) {
+  columns::buckles_at_eulers_loads<Rod>(8, "Lrvf, 8 to 32 elements extrapolated");
+}
+TEST(EulerColumns, LrvfStandsBentBeyond) {
+  columns::stands_bent_beyond<Rod>(16, "Lrvf, 16 to 64 elements extrapolated");
+}
 
 }  // namespace euler_columns_test

@@ -10,6 +10,7 @@
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
 #include "support/linkages.hpp"
 #include "support/refusal.hpp"
 #include "support/resumed_run.hpp"
@@ -25,6 +26,7 @@ using Windows = FourBars<InPlane<Constraint>>;
 template <class I>
 struct Way {
   I integrator = {};
+  char const* name = "";
   double step = 0.0;      ///< [s]
   double pendulum = 0.0;  ///< R1 over 10 s [m]
   double links = 0.0;     ///< R8 over 2 s [rad]
@@ -34,10 +36,28 @@ struct Way {
   double energy = 0.0;    ///< of R4 [J]
 };
 
-Way<HhtAlpha> hht() { return {{}, 2.5e-4, 2e-5, 2e-5, 1e-5, 1e-6, 1e-6, 1e-5}; }
-Way<Radau> radau() { return {{}, 5e-3, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8}; }
+Way<HhtAlpha> hht() { return {{}, "HHT-α", 2.5e-4, 2e-5, 2e-5, 1e-5, 1e-6, 1e-6, 1e-5}; }
+Way<Radau> radau() { return {{}, "Radau IIA", 5e-3, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8}; }
 Way<AdamsBashforthMoulton<Projection>> adams() {
-  return {{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12}, 1e-3, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8};
+  return {{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12},
+          "Adams–Bashforth–Moulton",
+          1e-3,
+          1e-8,
+          1e-8,
+          1e-8,
+          1e-8,
+          1e-8,
+          1e-8};
+}
+
+/// "HHT-α, h = 0.00025 s"; Adams' method chooses its own.
+template <class W>
+std::string named(W const& way, double part = 1.0) {
+  std::string const name = way.name;
+  return name[0] == 'A' ? name : name + ", " + equals("h", part * way.step) + " s";
+}
+Claim solver(char const* case_id, char const* what, std::string const& formulation) {
+  return {case_id, what, By::independent, "ordinary solver of order eight", formulation};
 }
 
 struct Place {
@@ -52,23 +72,26 @@ void expect_pendulum(W const& way) {  // R1
        {Place{0.5, -0.3910487915505464, -0.9203699487851922}, Place{2, -0.7935661953433217, -0.6084839304437915},
         Place{10, -0.2750874625761169, -0.9614192050991251}}) {
     simulate(chain.model, x, way.integrator, {.until = p.t, .step = way.step}).run();
-    EXPECT_LT((chain.tip(x) - Vec3(p.x, p.y, 0)).norm(), way.pendulum) << p.t;
+    held_within({"R1", "point mass [m]", By::closed_form, "elliptic functions", "in the plane, " + named(way)},
+                (chain.tip(x) - Vec3(p.x, p.y, 0)).norm(), way.pendulum, {equals("t", p.t), 1.0});
   }
 }
 
 template <class W>
 void expect_links(W const& way) {  // R8a, R8b
   Plane const points(2, point_link()), bars(2, bar_link());
-  auto const expect = [&](Plane const& chain, double t, double first, double second) {
+  auto const expect = [&](char const* which, Plane const& chain, double t, double first, double second) {
     State x = chain.model.reference_state();
     simulate(chain.model, x, way.integrator, {.until = t, .step = way.step}).run();
     double const off = std::max(std::abs(chain.angle(x, 0) - first), std::abs(chain.angle(x, 1) - second));
-    EXPECT_LT(off, way.links) << t;
+    held_within(solver("R8", "angles of both links [rad]", std::string(which) + named(way)), off, way.links,
+                {equals("t", t), 1.0});
   };
-  expect(points, 1, -0.625087699806, -1.034585085680);
-  expect(points, 2, -0.482971534252, -1.324048712302);
-  expect(bars, 1, -1.207716238191, -0.814391023091);
-  expect(bars, 2, -0.082758306821, 0.407362074912);
+  char const *const a = "(a) two point masses, ", *const b = "(b) two bars in the plane, ";
+  expect(a, points, 1, -0.625087699806, -1.034585085680);
+  expect(a, points, 2, -0.482971534252, -1.324048712302);
+  expect(b, bars, 1, -1.207716238191, -0.814391023091);
+  expect(b, bars, 2, -0.082758306821, 0.407362074912);
 }
 
 template <class W>
@@ -77,7 +100,9 @@ void expect_windows(W const& way, int n, double until, double tolerance) {  // R
   for (Corner const& c : corners) {
     if (c.n != n || c.t > until) continue;
     simulate(bars.model, bars.x, way.integrator, {.until = c.t, .step = way.step}).run();
-    EXPECT_LT((bars.corner() - Vec3(c.x, c.y, 0)).norm(), tolerance) << n << " windows at " << c.t;
+    held_within({"R2", "corner [m]", By::closed_form, "θ¨ = A sin θ of the parallelogram, elliptic integrals",
+                 "N = " + std::to_string(n) + ", " + named(way)},
+                (bars.corner() - Vec3(c.x, c.y, 0)).norm(), tolerance, {equals("t", c.t), 1.0});
   }
 }
 
@@ -91,8 +116,13 @@ void expect_bricard(W const& way) {  // R4
     auto run = simulate(b.model, b.x, way.integrator, {.until = t, .step = way.step});
     run.run();
     EXPECT_EQ(run.report().redundant.size(), 1u) << t;
-    EXPECT_LT((b.p3() - p3).norm(), way.bricard) << t;
-    EXPECT_NEAR(energy(b.model, b.x).total(), before, way.energy) << t;
+    std::string const formulation = "rods 0.1 m square, " + named(way);
+    Instance const at{equals("t", t), 1.8};
+    held_within(
+        {"R4", "P₃ of the Bricard mechanism [m]", By::independent, "ordinary solver in the one freedom", formulation},
+        (b.p3() - p3).norm(), way.bricard, at);
+    held({"R4", "energy [J]", By::closed_form, "invariant", formulation}, energy(b.model, b.x).total(), before,
+         way.energy, at);
   }
 }
 
@@ -106,13 +136,15 @@ void expect_tops(W const& way) {  // R6, R7
   State x = heavy.reference_state();
   heavy.set_velocity(x, top, Vec3::Zero(), Vec3(0, 150, -4.61538));
   simulate(heavy, x, way.integrator, {.until = 0.2, .step = 0.2 * way.step}).run();
-  EXPECT_LT((x.q.head<3>() - Vec3(0.6055505614, 0.5989576818, -0.5239830274)).norm(), way.top);
+  held_within(solver("R6", "heavy top: centre of mass at 0.2 s [m]", "Rigid, " + named(way, 0.2)),
+              (x.q.head<3>() - Vec3(0.6055505614, 0.5989576818, -0.5239830274)).norm(), way.top, {.scale = 1.0});
 
   auto const body = free.add(Rigid<>(1.0, Vec3(1, 2, 3).asDiagonal().toDenseMatrix()), "body");
   State y = free.reference_state();
   free.set_velocity(y, body, Vec3::Zero(), Vec3(0.01, 5, 0.01));
   simulate(free, y, way.integrator, {.until = 2.0, .step = way.step}).run();
-  EXPECT_LT((y.v.tail<3>() - Vec3(-1.1612500596, 4.8632908919, 0.6704977507)).norm(), way.spin);
+  held_within(solver("R7", "torque-free body: angular velocity at 2 s [rad/s]", "Rigid, " + named(way)),
+              (y.v.tail<3>() - Vec3(-1.1612500596, 4.8632908919, 0.6704977507)).norm(), way.spin, {.scale = 5.0});
 }
 
 TEST(EveryIntegrator, HhtSwingsThePendulum) { expect_pendulum(hht()); }

@@ -129,6 +129,8 @@ void expect_j1(C const& chain, double tolerance, char const* formulation) {
     EXPECT_LT((local.f - turned.transpose() * force).norm(), 30.0 * tolerance) << s.t;
     EXPECT_NEAR(local.m.norm(), 0.0, 1e-9);  // the pin's plane holds the rod
   }
+  simulate(chain.model, x, precise(), {.until = 2.0, .step = 0.01}).run();
+  held(elliptic("J1", "angle of the rod [rad]", formulation), chain.angle(x), 1.538098984222, tolerance, {"t = 2"});
 }
 
 TEST(RodPendulum, HasThePublishedReactions) { expect_j1(Plane(1, bar_link()), 1e-9, "in the plane, Dormand–Prince"); }

@@ -7,6 +7,7 @@
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
 #include "support/linkages.hpp"
 #include "support/resumed_run.hpp"
 
@@ -18,6 +19,14 @@ using Plane = Chain<InPlane<Recursive>>;
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 
+char const* const by = "joint coordinates, Dormand–Prince";
+Claim elliptic(char const* case_id, char const* what) {
+  return {case_id, what, By::closed_form, "elliptic functions", by};
+}
+Claim solver(char const* case_id, char const* what) {
+  return {case_id, what, By::independent, "ordinary solver of order eight", by};
+}
+
 TEST(JointCoordinates, SwingAPointMass) {  // R1
   Plane const chain(1, point_link(), g, -half_pi);
   State x = chain.model.reference_state();
@@ -25,7 +34,7 @@ TEST(JointCoordinates, SwingAPointMass) {  // R1
                                   std::array{2.0, -0.7935661953433217, -0.6084839304437915},
                                   std::array{10.0, -0.2750874625761169, -0.9614192050991251}}) {
     simulate(chain.model, x, precise(), {.until = t, .step = 0.01}).run();
-    EXPECT_LT((chain.tip(x) - Vec3(px, py, 0)).norm(), 1e-8) << t;
+    held_within(elliptic("R1", "point mass [m]"), (chain.tip(x) - Vec3(px, py, 0)).norm(), 1e-8, {equals("t", t), 1.0});
   }
 }
 
@@ -35,8 +44,10 @@ TEST(JointCoordinates, TellWhatThePinHolds) {  // J1
   for (auto const& [t, angle, rx, ry] : {std::array{0.25, 1.114159968059, -8.7352815388, 6.7438504085},
                                          std::array{1.0, -1.562621718035, 0.1804260137, 2.4539749449}}) {
     simulate(rod.model, x, precise(), {.until = t, .step = 0.01}).run();
-    EXPECT_NEAR(rod.angle(x), angle, 1e-9) << t;
-    EXPECT_LT((reaction(rod.model, x, rod.hinges[0]).f - Vec3(rx, ry, 0)).norm(), 1e-7) << t;
+    held(elliptic("J1", "angle of the rod [rad]"), rod.angle(x), angle, 1e-9, {equals("t", t)});
+    held_within(elliptic("J1", "reaction of the pin [N]"),
+                (reaction(rod.model, x, rod.hinges[0]).f - Vec3(rx, ry, 0)).norm(), 1e-7,
+                {equals("t", t), std::hypot(rx, ry)});
   }
 }
 
@@ -47,8 +58,8 @@ TEST(JointCoordinates, SwingTwoBars) {  // R8b
        {std::array{0.5, 0.448142625932, 1.041962887304}, std::array{1.0, -1.207716238191, -0.814391023091},
         std::array{2.0, -0.082758306821, 0.407362074912}}) {
     simulate(bars.model, x, precise(), {.until = t, .step = 0.01}).run();
-    EXPECT_NEAR(bars.angle(x, 0), first, 1e-7) << t;
-    EXPECT_NEAR(bars.angle(x, 1), second, 1e-7) << t;
+    held(solver("R8", "(b) angle of the first bar [rad]"), bars.angle(x, 0), first, 1e-7, {equals("t", t)});
+    held(solver("R8", "(b) angle of the second bar [rad]"), bars.angle(x, 1), second, 1e-7, {equals("t", t)});
   }
 }
 
@@ -59,7 +70,8 @@ TEST(JointCoordinates, SwingManyBars) {  // R8d
     Plane const chain(int(n), bar_link(1.0 / n, 1.0 / n));
     State x = chain.model.reference_state();
     simulate(chain.model, x, precise(), {.until = 1.0, .step = 1e-3}).run();
-    EXPECT_LT((chain.tip(x) - Vec3(px, py, 0)).norm(), 1e-7) << n;
+    held_within(solver("R8", "(d) tip of N bars at 1 s [m]"), (chain.tip(x) - Vec3(px, py, 0)).norm(), 1e-7,
+                {equals("N", n), 1.0});
   }
 }
 
@@ -68,8 +80,9 @@ TEST(JointCoordinates, TurnFourBars) {
   for (Corner const& e : {corners[0], corners[3]}) {
     FourBars<InPlane<Recursive>, InPlane<Constraint>> bars(e.n);
     simulate(bars.model, bars.x, precise(), {.until = e.t, .step = 1e-3}).run();
-    EXPECT_NEAR(bars.corner()[0], e.x, 1e-6) << e.n;
-    EXPECT_NEAR(bars.corner()[1], e.y, 1e-6) << e.n;
+    held_within({"R2", "corner [m]", By::closed_form, "θ¨ = A sin θ of the parallelogram, elliptic integrals",
+                 "N = " + std::to_string(e.n) + ", " + by},
+                (bars.corner().head<2>() - Vec2(e.x, e.y)).lpNorm<Eigen::Infinity>(), 1e-6, {equals("t", e.t), 1.0});
   }
 }
 
@@ -85,8 +98,11 @@ TEST(JointCoordinates, FoldBricard) {
     auto run = simulate(b.model, b.x, precise(), {.until = t, .step = 1e-3});
     run.run();
     EXPECT_EQ(run.report().redundant.size(), 1u) << t;
-    EXPECT_LT((b.p3() - p3).norm(), 1e-8) << t;
-    EXPECT_NEAR(energy(b.model, b.x).total(), before, 1e-8) << t;
+    std::string const rods = std::string("rods 0.1 m square, ") + by;
+    held_within({"R4", "P₃ of the Bricard mechanism [m]", By::independent, "ordinary solver in the one freedom", rods},
+                (b.p3() - p3).norm(), 1e-8, {equals("t", t), 1.8});
+    held({"R4", "energy [J]", By::closed_form, "invariant", rods}, energy(b.model, b.x).total(), before, 1e-8,
+         {equals("t", t)});
   }
 }
 
@@ -100,7 +116,8 @@ TEST(JointCoordinates, SpinTheHeavyTop) {  // R6
   for (auto const& [t, place] : {std::pair{0.2, Vec3(0.6055505614, 0.5989576818, -0.5239830274)},
                                  std::pair{1.0, Vec3(0.1733439641, 0.6400885921, -0.7484907911)}}) {
     simulate(model, x, precise(), {.until = t, .step = 1e-3}).run();
-    EXPECT_LT((x.q.head<3>() - place).norm(), 1e-7) << t;
+    held_within(solver("R6", "heavy top: centre of mass [m]"), (x.q.head<3>() - place).norm(), 1e-7,
+                {equals("t", t), 1.0});
   }
 }
 

@@ -11,8 +11,8 @@ using namespace polybody;
 namespace rotating_rods_test {
 
 template <class B>
-void converges(Index n, double share, char const* formulation) {
-  for (RotatingCantilever const& row : rotating_cantilevers) {
+void converges(std::vector<RotatingCantilever> const& rows, Index n, double share, char const* formulation) {
+  for (RotatingCantilever const& row : rows) {
     Vec6 const coarse = frequencies_in_rotation(B::from(blade(), n), row.omega);
     Vec6 const fine = frequencies_in_rotation(B::from(blade(), 2 * n), row.omega);
     for (int i = 0; i < 6; ++i) {
@@ -23,10 +23,13 @@ void converges(Index n, double share, char const* formulation) {
 }
 
 TEST(RotatingCantilever, LargeRotationVectorConvergesToTheTable) {
-  converges<Lrvf<>>(12, 5e-4, "Lrvf, 12 and 24 elements extrapolated");
+  converges<Lrvf<>>({std::begin(rotating_cantilevers), std::end(rotating_cantilevers)}, 12, 5e-4,
+                    "Lrvf, 12 and 24 elements extrapolated");
 }
+// Ω = 2, 6 and 12: its frequencies take a second for each speed.
 TEST(RotatingCantilever, FullAncfBeamConvergesToTheTable) {
-  converges<AncfBeam<>>(8, 8e-4, "AncfBeam, 8 and 16 elements extrapolated");
+  converges<AncfBeam<>>({rotating_cantilevers[2], rotating_cantilevers[5], rotating_cantilevers[8]}, 8, 8e-4,
+                        "AncfBeam, 8 and 16 elements extrapolated");
 }
 
 }  // namespace rotating_rods_test

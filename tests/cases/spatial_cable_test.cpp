@@ -16,6 +16,7 @@
 #include <polybody/run/simulate.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
@@ -51,10 +52,15 @@ TEST(SpatialElastica, BendsInAnyPlane) {
   for (double const angle : {0.0, 0.7, 2.5}) {
     Vec3 const across(0.0, std::cos(angle), std::sin(angle));
     Vec3 const one = tip(slender(), 16, across), ten = tip(slender(), 16, 10.0 * across);
-    EXPECT_NEAR(one.dot(across), 0.3017207737998135, 8e-6);
-    EXPECT_NEAR(one[0], -0.05643323628337688, 1e-5);
-    EXPECT_NEAR(ten.dot(across), 0.8106090248802965, 2.5e-4);
-    EXPECT_NEAR(ten[0], -0.5549955977537513, 5e-4);
+    auto const elastica = [](char const* what) {
+      return Claim{"S2", what, By::independent, "elliptic integrals, 40 digits; the decimals of Mattiasson 1981",
+                   "AncfCable in planes at 0, 0.7 and 2.5 rad, 16 elements"};
+    };
+    Instance const at_one{"PL²/EI = 1, " + equals("plane", angle)}, at_ten{"PL²/EI = 10, " + equals("plane", angle)};
+    held(elastica("w/L of the tip"), one.dot(across), 0.3017207737998135, 8e-6, at_one);
+    held(elastica("u/L of the tip"), -one[0], 0.05643323628337688, 1e-5, at_one);
+    held(elastica("w/L of the tip"), ten.dot(across), 0.8106090248802965, 2.5e-4, at_ten);
+    held(elastica("u/L of the tip"), -ten[0], 0.5549955977537513, 5e-4, at_ten);
     EXPECT_LT(one.cross(across)[0] * one.cross(across)[0], 1e-18);  // nothing leaves the plane
   }
 }
@@ -73,8 +79,13 @@ TEST(SpatialGerstmayrIrschik, GivesThePublishedDigits) {
        {Mesh{1, -0.36224472989050654, -0.9941447587249747}, Mesh{2, -0.4889263086109102, -1.1752228652637502},
         Mesh{4, -0.5074287154557922, -1.2055337025602493}}) {
     Vec3 const u = tip(bar, m.n, Vec3(0, -force, 0));
-    EXPECT_NEAR(u[0], m.x, 1e-9) << m.n;
-    EXPECT_NEAR(u[1], m.y, 1e-9) << m.n;
+    auto const printed = [](char const* what) {
+      return Claim{"S3", what, By::published, "Gerstmayr & Irschik 2008, Exudyn's ANCFcantileverTest.py",
+                   "AncfCable, 1, 2 and 4 elements"};
+    };
+    Instance const at{equals("n", double(m.n))};
+    held(printed("u_x of the tip, mesh by mesh [m]"), u[0], m.x, 1e-9, at);
+    held(printed("u_y of the tip, mesh by mesh [m]"), u[1], m.y, 1e-9, at);
     EXPECT_NEAR(u[2], 0.0, 1e-9) << m.n;
   }
 }
@@ -87,8 +98,13 @@ TEST(SpatialRollUp, TakesAMomentAcrossItsTangent) {
   for (double const angle : {0.0, 1.3}) {
     Vec3 const about(0.0, -std::sin(angle), std::cos(angle)), across(0.0, std::cos(angle), std::sin(angle));
     Vec3 const u = tip(slender(), 16, Vec3::Zero(), turn * about);
-    EXPECT_NEAR(u[0] + 1.0, std::sin(turn) / turn, 1e-6);
-    EXPECT_NEAR(u.dot(across), (1.0 - std::cos(turn)) / turn, 1e-6);
+    auto const arc = [](char const* what, char const* source) {
+      return Claim{"S1", what, By::closed_form, source, "AncfCable, 16 elements"};
+    };
+    Instance const at{equals("moment about", angle)};
+    held(arc("x of the tip, turned by 1.2 rad [L]", "sin θ/θ"), u[0] + 1.0, std::sin(turn) / turn, 1e-6, at);
+    held(arc("y of the tip, turned by 1.2 rad [L]", "(1 − cos θ)/θ"), u.dot(across), (1.0 - std::cos(turn)) / turn,
+         1e-6, at);
     // the tangent's own part of a moment has no effect
     Vec3 const tangent = std::cos(turn) * Vec3::UnitX() + std::sin(turn) * across;
     EXPECT_LT((tip(slender(), 16, Vec3::Zero(), turn * about + 0.3 * tangent) - u).norm(), 1e-6);
@@ -106,7 +122,7 @@ TEST(SpatialClamp, RefusesAPinAcrossTheTangent) {
 }
 
 // S11: elastic catenary, 10 m of 10 N/m hung at equal heights 8 m apart; 20 elements, EI = 1e-3 N m². The stiffer cable
-// starts where the softer one hangs.
+// starts where the softer one hangs. EA = 1e9 stands for the inextensible cable: H differs by 5e-6.
 TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
   struct Row {
     double EA, H, sag;
@@ -123,7 +139,8 @@ TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
     return p;
   };
   VecX hanging;
-  for (Row const& row : {Row{1e4, 33.35480862, 2.687462764}, Row{1e6, 33.81541787, 2.654709857}}) {
+  for (Row const& row :
+       {Row{1e4, 33.35480862, 2.687462764}, Row{1e6, 33.81541787, 2.654709857}, Row{1e9, 33.82018790, 2.654375092}}) {
     Bar const bar{.length = 10.0, .constants = BarConstants{.EA = row.EA, .EI = 1e-3, .mass_per_length = 1.0}};
     Hung model{Gravity{0, 0, -10.0}};
     auto const cable = model.add(Cable::from(bar, 20, arc), "cable");
@@ -134,9 +151,15 @@ TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
     equilibrium(model, x, {.max_iterations = 200});
     hanging = x.q;
     Wrench<double> const r = reaction(model, x, left);
-    EXPECT_NEAR(std::abs(r.f[0]), row.H, 1e-3 * row.H) << row.EA;
-    EXPECT_NEAR(std::abs(r.f[2]), 50.0, 1e-6) << row.EA;
-    EXPECT_NEAR(-position(model, x, cable.at(5.0))[2], row.sag, 1e-3 * row.sag) << row.EA;
+    char const* const mesh = "AncfCable, 20 elements";
+    Instance const at{row.EA == 1e9 ? "EA = 1e9, inextensible" : equals("EA", row.EA)};
+    auto const elastic = [&](char const* what) {
+      return Claim{"S11", what, By::independent, "elastic catenary without bending", mesh};
+    };
+    held(elastic("horizontal force of the cable [N]"), std::abs(r.f[0]), row.H, 1e-3 * row.H, at);
+    held({"S11", "vertical force of the cable [N]", By::closed_form, "half of its weight", mesh}, std::abs(r.f[2]),
+         50.0, 1e-6, at);
+    held(elastic("sag of the cable [m]"), -position(model, x, cable.at(5.0))[2], row.sag, 1e-3 * row.sag, at);
   }
 }
 
@@ -151,8 +174,11 @@ Bar pendulum() {
                                     .GJ = 6e-5,
                                     .rotary_inertia = 1.59e-8}};
 }
+Claim spinning(char const* what, char const* formulation) {
+  return {"D6a", what, By::independent, "spectral geometrically exact beam, two meshes", formulation};
+}
 template <class B>
-void spins(Index n) {
+void spins(Index n, char const* formulation) {
   Hung model{Gravity{0, -9.81, 0}};
   auto const rod = model.add(B::from(pendulum(), n), "rod");
   model.connect(Ball{}, model.ground().at({0, 0, 0}), rod.at(0.0), "hinge");
@@ -171,11 +197,14 @@ void spins(Index n) {
   for (Row const& row : rows) {
     simulate(model, x, GeneralizedAlpha{}, {.until = row.t, .step = 1e-3}).run();
     double const tolerance = row.t > 1.0 ? 1e-2 : 2e-3;
-    EXPECT_LT((position(model, x, rod.at(1.0)) - row.tip).norm(), tolerance) << row.t;
-    EXPECT_LT((position(model, x, rod.at(0.5)) - row.mid).norm(), tolerance) << row.t;
+    Instance const at{equals("t", row.t), 1.0};
+    held_within(spinning("tip [m]", formulation), (position(model, x, rod.at(1.0)) - row.tip).norm(), tolerance, at);
+    held_within(spinning("middle [m]", formulation), (position(model, x, rod.at(0.5)) - row.mid).norm(), tolerance, at);
   }
 }
-TEST(SpinningPendulum, CableFollowsTheConvergedMotion) { spins<Cable>(16); }
+TEST(SpinningPendulum, CableFollowsTheConvergedMotion) {
+  spins<Cable>(16, "AncfCable, 16 elements, generalised-α, h = 1e-3 s");
+}
 
 // Many elements, small steps: what Newton's method has to settle is the rounding of stretches, which light nodes turn
 // into accelerations beyond the tolerance. Large steps: corrections contract by turns.
@@ -193,9 +222,12 @@ TEST(SpinningPendulum, CableFollowsTheConvergedMotionWithRadau) {
     State x = model.reference_state();
     model.set_velocity(x, rod, Vec3::Zero(), Vec3(0, 4, 0));
     simulate(model, x, Radau{}, {.until = run.until, .step = run.step}).run();
-    EXPECT_LT((position(model, x, rod.at(1.0)) - run.tip).norm(), 2e-3) << run.n;
+    held_within(spinning("tip [m]", "AncfCable, 32 and 16 elements, Radau IIA, h = 1e-3 and 4e-3 s"),
+                (position(model, x, rod.at(1.0)) - run.tip).norm(), 2e-3, {equals("t", run.until), 1.0});
   }
 }
-TEST(SpinningPendulum, LrvfFollowsTheConvergedMotion) { spins<Lrvf<>>(32); }
+TEST(SpinningPendulum, LrvfFollowsTheConvergedMotion) {
+  spins<Lrvf<>>(32, "Lrvf, 32 elements, generalised-α, h = 1e-3 s");
+}
 
 }  // namespace spatial_cable_test

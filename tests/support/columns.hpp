@@ -8,6 +8,7 @@
 #include <polybody/joints/revolute.hpp>
 
 #include "support/buckling.hpp"
+#include "support/held.hpp"
 
 namespace polybody {
 namespace columns {
@@ -78,21 +79,23 @@ double critical_load(Index n, Ends ends, double near) {
 
 /// P = π²EI/4L², π²EI/L², 20.190728556426629 EI/L², 4π²EI/L².
 template <class B>
-void buckles_at_eulers_loads(Index n) {
+void buckles_at_eulers_loads(Index n, char const* formulation) {
   double const pi2 = std::numbers::pi * std::numbers::pi;
   std::pair<Ends, double> const rows[] = {{Ends::clamped_free, 0.25 * pi2},
                                           {Ends::pinned_pinned, pi2},
                                           {Ends::clamped_pinned, 20.190728556426629},
                                           {Ends::clamped_clamped, 4.0 * pi2}};
+  char const* const names[] = {"clamped–free", "pinned–pinned", "clamped–pinned", "clamped–clamped"};
   for (auto const& [ends, load] : rows)
-    EXPECT_NEAR(limit_of_meshes([&](Index m) { return critical_load<B>(m, ends, load); }, n), load, 1e-4 * load)
-        << int(ends);
+    held({"S9e", "Euler's loads, P L²/EI", By::closed_form, "π²/4, π², tan √P = √P, 4π²", formulation},
+         limit_of_meshes([&, load = load, ends = ends](Index m) { return critical_load<B>(m, ends, load); }, n), load,
+         1e-4 * load, {names[int(ends)]});
 }
 
 /// Beyond: the clamped–free column stands bent, P/P_cr = (2 K(sin ½θ)/π)² for θ = 20°, 40°, 60° at its tip. A force
 /// across it bends it, and is taken away.
 template <class B>
-void stands_bent_beyond(Index n) {
+void stands_bent_beyond(Index n, char const* formulation) {
   double const critical = 0.25 * std::numbers::pi * std::numbers::pi;
   for (auto const& [degrees, part] :
        {std::pair{20.0, 1.01539687}, std::pair{40.0, 1.06366327}, std::pair{60.0, 1.15171962}}) {
@@ -106,7 +109,8 @@ void stands_bent_beyond(Index n) {
           return column.tip_angle();
         },
         n);
-    EXPECT_NEAR(angle * 180.0 / std::numbers::pi, degrees, 1e-3) << degrees;
+    held({"S9e", "slope of the tip of a bent column [°]", By::closed_form, "P/P_cr = (2 K(sin ½θ)/π)²", formulation},
+         angle * 180.0 / std::numbers::pi, degrees, 1e-3, {equals("P/P_cr", part)});
   }
 }
 

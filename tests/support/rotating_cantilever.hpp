@@ -15,14 +15,20 @@
 
 namespace polybody {
 
-/// Frequencies of flap and chord together, ascending, for three speeds; inextensible Euler–Bernoulli.
+/// Frequencies of flap and chord together, ascending, for nine speeds; inextensible Euler–Bernoulli.
 struct RotatingCantilever {
   double omega;
   double frequency[6];
 };
 inline constexpr RotatingCantilever rotating_cantilevers[] = {
+    {0.0, {3.516015, 3.516015, 22.034491, 22.034491, 61.697214, 61.697214}},
+    {1.0, {3.543236, 3.681647, 22.158458, 22.181011, 61.833677, 61.841763}},
     {2.0, {3.621797, 4.137320, 22.526311, 22.614922, 62.241059, 62.273184}},
+    {3.0, {3.743512, 4.797279, 23.126493, 23.320264, 62.913481, 62.984967}},
+    {4.0, {3.897723, 5.585001, 23.941501, 24.273349, 63.841573, 63.966760}},
     {6.0, {4.263225, 7.360373, 26.129042, 26.809082, 66.413436, 66.683914}},
+    {8.0, {4.657150, 9.256837, 28.908873, 29.995382, 69.836241, 70.292962}},
+    {10.0, {5.048975, 11.202328, 32.119686, 33.640366, 73.976464, 74.649295}},
     {12.0, {5.427049, 13.170150, 35.636976, 37.603112, 78.704925, 79.614478}}};
 
 /// The frequency `found` against the table, within a share of it; i counts flap and chord together.
