@@ -32,9 +32,9 @@ struct ConservingStep {
   struct Workspace {
     VecX q, v, vd, lambda, r, phi, rhs, y, kept;
     StepSecants secants;
-    TangentSolver<Solver> solver;
+    TangentSolver<Solver> solver, exact;  ///< `exact` is laid out by the first step that asks for it
     ForwardDynamics<Solver> forward;
-    bool factored = false;
+    bool factored = false, has_exact = false;
     double theta = 1.0;
     double h_factored = 0.0;
 
@@ -71,7 +71,7 @@ struct ConservingStep {
   /// x changes only when Newton's method converged.
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
-    return advance(system, x, h, w, false);
+    return advance(system, x, h, w);
   }
 
  private:
@@ -92,8 +92,11 @@ struct ConservingStep {
     State const& x;
     Workspace<Solver>& w;
     double h, s;
-    Index nv, rows, bad = -1;
+    Index nv, rows;
+    bool exact;
+    Index bad = -1;
 
+    SecantStep secant() const { return {&x.q, &w.q, x.t, h, method.chi, &x.v, &w.vd}; }
     void move() {
       for (Index i = 0; i < w.q.size(); ++i) w.q[i] = x.q[i] + h * x.v[i] + s * w.vd[i];
     }
@@ -102,7 +105,7 @@ struct ConservingStep {
       return evaluate_here();
     }
     bool evaluate_here() {
-      w.secants.evaluate(system, {&x.q, &w.q, x.t, h, method.chi, &x.v, &w.vd});
+      w.secants.evaluate(system, secant());
       w.secants.residual(system, w.vd, w.lambda, w.r);
       w.secants.violation(w.phi);
       for (Index i = 0; i < nv; ++i) w.rhs[i] = -w.r[i];
@@ -110,11 +113,14 @@ struct ConservingStep {
       return all_finite(w.rhs);
     }
     bool refactor() {
-      bad = method.refactor(system, h, w);
+      auto const write = [&](BlockSink& sink) { w.secants.exact_tangent(system, secant(), s, w.lambda, sink); };
+      if (exact && !w.has_exact) w.exact.analyse(system, 1, write);
+      w.has_exact = w.has_exact || exact;
+      bad = exact ? w.exact.factor(write) : method.refactor(system, h, w);
       return bad < 0;
     }
     CorrectionSize solve() {
-      w.solver.solve(w.rhs, w.y);
+      (exact ? w.exact : w.solver).solve(w.rhs, w.y);
       return measure();
     }
     CorrectionSize measure() const {
@@ -142,11 +148,15 @@ struct ConservingStep {
     }
   };
 
+  /// One step from x. What stalls is tried again with more effort: 1, full Newton, from no acceleration at all; 2, from
+  /// the last one, with the exact tangent, as next to a singular position.
   template <class Solver>
-  StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, bool careful) const {
+  StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     StepHistory history(x);
+    bool const careful = effort > 0;
     if (careful) {
-      w.vd.setZero();  // the mean of what a step does not resolve
+      w.vd = x.a;
+      if (effort == 1) w.vd.setZero();  // the mean of what a step does not resolve
       w.lambda = x.lambda;
     } else {
       history.extrapolate(x, h, w.vd, w.lambda);
@@ -155,11 +165,11 @@ struct ConservingStep {
     NewtonOptions options = newton;
     options.always_refactor = options.always_refactor || careful;
     if (careful) options.growths = 10;
-    Problem<Solver> problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows()};
+    Problem<Solver> problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows(), effort == 2};
     NewtonReport const report = polybody::newton(problem, options, w.factored, w.theta);
-    if (report.result != NewtonResult::converged && !careful) {  // full Newton, from no acceleration at all
+    if (report.result != NewtonResult::converged && effort < (system.rows() > 0 ? 2 : 1)) {
       w.factored = false;
-      return advance(system, x, h, w, true);
+      return advance(system, x, h, w, effort + 1);
     }
     if (report.result != NewtonResult::converged)
       detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
@@ -167,7 +177,7 @@ struct ConservingStep {
     for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
     system.push_forces();  // the discrete gradients pass them by
     w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
-    if (w.solver.lost_rank()) w.factored = false;
+    if (w.solver.lost_rank() || effort == 2) w.factored = false;
     history.push(x, h, w.vd);
     x.q.swap(w.q);
     x.v.swap(w.v);

@@ -4,6 +4,7 @@
 /// [M, Gᵀ; G, 0] [thesis Eq. 3.2].
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 
 #include <polybody/math/vectors.hpp>
@@ -17,6 +18,13 @@ namespace polybody {
 struct RowFeedback {
   double rate = 0.0;      ///< [1/s]
   double position = 0.0;  ///< [1/s²]
+};
+
+/// How nearly the rows of a place repeat each other.
+struct RowGain {
+  double moved = 0.0;
+  std::size_t dropped = 0;  ///< rows that do
+  bool far_above(RowGain const& usual) const { return dropped > usual.dropped || moved > 10.0 * usual.moved; }
 };
 
 namespace detail {
@@ -172,6 +180,15 @@ class ForwardDynamics {
     phi_ = phi;
     solve(system, 0.0, -1.0);
     take(0, system.speeds(), out);
+  }
+
+  /// What rows that are open by ±1 move at (q, v, t): as 1/σ next to a singular position, σ the least singular value of
+  /// the rows.
+  RowGain row_gain(System& system, VecX const& q, VecX const& v, double t) {
+    hold(system, q, v, t);
+    for (Index i = 0; i < open_.size(); ++i) open_[i] = (std::uint32_t(i + 1) * 2654435769u >> 31) != 0 ? 1.0 : -1.0;
+    least_change(system, open_, delta_);
+    return {largest_size(delta_), redundant_rows().size()};
   }
 
   /// P b: the part of b that the rows of positions force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t); velocity rows have it

@@ -12,6 +12,7 @@
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/radau_tableau.hpp>
+#include <polybody/integrators/row_slopes.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/auto_lu.hpp>
@@ -43,10 +44,11 @@ struct Radau {
   struct Workspace {
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
     VecX q, r, phi, gamma, next, rhs, y, kept;
-    TangentSolver<AutoLu> solver;
+    TangentSolver<AutoLu> solver, by_stage;  ///< `by_stage` is laid out by the first step that asks for it
+    RowSlopes slopes;
     ForwardDynamics<Solver> forward;
     Projection::Scratch projected;
-    bool factored = false;
+    bool factored = false, has_by_stage = false;
     double theta = 1.0;
     double h_factored = 0.0;
     double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
@@ -75,18 +77,28 @@ struct Radau {
     /// The matrix of Newton's method where `s` was evaluated last: block (i, j) is
     ///   δ_ij [M, Gᵀ; G, slack] + h a_ij D + h² (A²)_ij K.
     void write(System& s, double h, BlockSink& sink) {
+      for (int i = 0; i < 3; ++i) write_stage(s, h, i, sink);
+    }
+    /// Its rows i.
+    void write_stage(System& s, double h, int i, BlockSink& sink) {
       Index const n = equations_of(s), speeds = equation_speeds_of(s);
       using T = detail::RadauTableau;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          detail::StageSink stage{sink, i * n, j * n, speeds};
-          s.tangent({i == j ? 1.0 : 0.0, h * T::a[i][j], h * h * T::squared(i, j)}, SecondOrder::omitted, phi, stage);
-          if (i == j)
-            for (std::size_t k = 0; k < slack.size(); ++k) {
-              Index const at = speeds + Index(k);
-              stage.add(at, at, Eigen::Map<Mat<double, 1, 1> const>(&slack[k]));
-            }
-        }
+      for (int j = 0; j < 3; ++j) {
+        detail::StageSink stage{sink, i * n, j * n, speeds};
+        s.tangent({i == j ? 1.0 : 0.0, h * T::a[i][j], h * h * T::squared(i, j)}, SecondOrder::omitted, phi, stage);
+        if (i == j)
+          for (std::size_t k = 0; k < slack.size(); ++k) {
+            Index const at = speeds + Index(k);
+            stage.add(at, at, Eigen::Map<Mat<double, 1, 1> const>(&slack[k]));
+          }
+      }
+    }
+    /// How the rows i of G v̇ + γ turn as the stages move: h a_ij ∂Φ̈/∂v + h² (A²)_ij ∂Φ̈/∂q.
+    void write_slopes(System& s, double h, int i, BlockSink& sink) {
+      Index const n = equations_of(s);
+      using T = detail::RadauTableau;
+      for (int j = 0; j < 3; ++j)
+        slopes.write(h * T::a[i][j], h * h * T::squared(i, j), i * n + equation_speeds_of(s), j * n, sink);
     }
     /// v_i = v₀ + h Σ a_ij v̇_j.
     void set_speeds(VecX const& v0, double h) {
@@ -128,16 +140,18 @@ struct Radau {
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     NewtonReport report;
-    for (bool const careful : {false, true}) {  // what stalls is tried again by full Newton
+    // what stalls is tried again by full Newton, and then with every stage's own matrix
+    for (int effort = 0, last = system.rows() > 0 ? 2 : 1;; ++effort) {
+      bool const careful = effort > 0;
       predict(x, h, w);
       if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
       NewtonOptions options = newton;
       options.always_refactor = options.always_refactor || careful;
       if (careful) options.growths = 8;
-      Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows()};
+      Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows(), effort == 2};
       report = polybody::newton(problem, options, w.factored, w.theta);
       if (report.result == NewtonResult::converged) break;
-      if (careful || report.result != NewtonResult::diverged)
+      if (effort == last || report.result == NewtonResult::not_finite)
         detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     }
     w.set_positions(system, h);
@@ -180,11 +194,14 @@ struct Radau {
     State const& x;
     Workspace<Solver>& w;
     double h;
-    Index nv, rows, bad = -1;
+    Index nv, rows;
+    bool by_stage;
+    Index bad = -1;
 
+    double time(std::size_t i) const { return x.t + detail::RadauTableau::c[i] * h; }
     void evaluate_stage(std::size_t i, VecX const& delta) {
       system.plus(x.q, delta, w.q);
-      system.evaluate(w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h);
+      system.evaluate(w.q, w.v[i], time(i));
     }
     bool evaluate(bool perturbed = false) {
       w.set_positions(system, h);
@@ -201,14 +218,38 @@ struct Radau {
       }
       return all_finite(w.rhs);
     }
+    /// The matrix with every row where its own stage is. Next to a singular position G differs as much between the
+    /// stages as it does from one that has lost rank.
+    void write_by_stage(BlockSink& sink) {
+      for (int i = 0; i < 3; ++i) {
+        auto const k = std::size_t(i);
+        system.plus(x.q, w.delta[k], w.q);
+        w.slopes.measure(system, w.q, w.v[k], w.vd[k], time(k));
+        evaluate_stage(k, w.delta[k]);
+        w.write_stage(system, h, i, sink);
+        w.write_slopes(system, h, i, sink);
+      }
+    }
+    bool refactor_by_stage() {
+      auto const write = [&](BlockSink& sink) { write_by_stage(sink); };
+      if (!w.has_by_stage) {
+        w.slopes.analyse(system);
+        w.by_stage.analyse(system, 3, write);
+        w.has_by_stage = true;
+      }
+      w.h_factored = 0.0;
+      bad = w.by_stage.factor(write);
+      return bad < 0;
+    }
     bool refactor() {
+      if (by_stage) return refactor_by_stage();
       evaluate_stage(1, w.delta[1]);
       w.h_factored = h;
       bad = w.solver.factor([&](BlockSink& sink) { w.write(system, h, sink); });
       return bad < 0;
     }
     CorrectionSize solve() {
-      w.solver.solve(w.rhs, w.y);
+      (by_stage ? w.by_stage : w.solver).solve(w.rhs, w.y);
       return measure();
     }
     CorrectionSize measure() const {

@@ -63,8 +63,9 @@ struct RunReport {
   /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share
   /// the load is not determined.
   std::vector<std::string> redundant = {};
-  std::vector<std::string> warnings =
-      {};  ///< of the start, in sentences: a step beyond the limit of an explicit integrator
+  /// In sentences: of the start, a step beyond the limit of an explicit integrator; of a step, a singular position at
+  /// which the speeds jumped to another branch of the motion.
+  std::vector<std::string> warnings = {};
 
   void add(StepReport const& step) {
     ++steps;

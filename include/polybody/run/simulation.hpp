@@ -86,7 +86,8 @@ class Simulation {
         integrator_(std::move(integrator)),
         options_(std::move(options)),
         workspace_(integrator_.template workspace<Solver>(*system_)),
-        norm_(whole()) {
+        norm_(whole()),
+        speeds_before_(VecX::Zero(system_->speeds())) {
     integrator_.check();
     options_.check(start);
     if (options_.threads != 1) system_->use_threads(options_.threads);
@@ -130,6 +131,34 @@ class Simulation {
       std::string const warning = warn_of_step<I>(whole(), forward, x, h_);
       if (!warning.empty()) report_.warnings.push_back(warning);
     }
+  }
+
+  /// Whether the rows of x repeat each other far more nearly than those of the start.
+  bool is_singular(State const& x) {
+    try {
+      return workspace_.forward.row_gain(*system_, x.q, x.v, x.t).far_above(usual_gain_);
+    } catch (LinearSolverSingular const&) {  // of a solver that drops no rows
+      return true;
+    }
+  }
+  /// Tells the first step, of those in which the speeds turned by more than a tenth, that ends next to a singular
+  /// position: there the motion may have gone over to another branch.
+  void warn_of_branch() {
+    State const& x = stepped();
+    double change = 0.0, size = 0.0;
+    for (Index i = 0; i < speeds_before_.size(); ++i) {
+      change += (x.v[i] - speeds_before_[i]) * (x.v[i] - speeds_before_[i]);
+      size += speeds_before_[i] * speeds_before_[i];
+    }
+    if (system_->rows() == 0 || !(change > 0.01 * size)) return;
+    char const* const what = "The joints' rows lose rank next to t = ";
+    for (std::string const& warning : report_.warnings)
+      if (warning.starts_with(what)) return;
+    if (!is_singular(x)) return;
+    report_.warnings.push_back(what + number(x.t) +
+                               " s, and the speeds jump in the step that ends there: at this singular position the "
+                               "motion can go over to another branch, and on which one it goes on is up to the step "
+                               "and the integrator. Compare the run with one of another step.");
   }
 
   /// One step of h, or where it stalls two of h/2 from a fresh start, and so on. When it throws, the state is as it
@@ -180,6 +209,8 @@ class Simulation {
   RunOptions options_;
   decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
+  VecX speeds_before_;  // of a step
+  RowGain usual_gain_;  // at the start
   StepPlan plan_;
   StepRow row_;
   EventWatch watch_;
@@ -219,6 +250,7 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
   row_ = from.row;
   watch_ = EventWatch(from.sides);
   report_ = from.report;
+  if (system_->rows() > 0) usual_gain_ = workspace_.forward.row_gain(*system_, stepped().q, stepped().v, stepped().t);
   renew();
   bound();
 }
@@ -239,11 +271,13 @@ void Simulation<I, Solver>::advance() {
   if (eliminates() || jumps || crumb || options_.minimum_norm || !options_.events.empty()) before_ = stepped();
   double const from = stepped().t, h_before = h_;
   StepRow const row_before = row_;
+  speeds_before_ = stepped().v;
   StepReport const report = step(h, options_.halvings);
   bool const reached = lands && report.taken == h;
   stepped().t = reached ? target : row_.after(from, report.taken);
   choose_step(report, reached);
   try {
+    warn_of_branch();
     bool const met = !options_.events.empty() && meet_events(report.taken);
     bool const at_corner = jumps && stepped().t == target;
     if (at_corner) stepped().t = plan_.pass(stepped().t);
@@ -314,6 +348,8 @@ void Simulation<I, Solver>::restart(bool first) {
   if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
   stepped() = std::move(fresh);
   bound();
+  if (first && system_->rows() > 0)
+    usual_gain_ = workspace_.forward.row_gain(*system_, stepped().q, stepped().v, stepped().t);
   report_.redundant = workspace_.forward.redundant(*system_);
   if (eliminates())
     for (std::string const& name : system_->step_coordinates().narrow->redundant)

@@ -113,14 +113,17 @@ class BasicSystem {
           sink);
     });
   }
-  /// cd D + ck K of the compliant joints alone, joint by joint; or of the force elements, with second-order terms.
+  /// cd D + ck K of the compliant joints alone, joint by joint; or of the force elements, with second-order terms, and
+  /// with those of the rows where their multipliers are given.
   template <TakesBlocks S>
-  void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver) {
+  void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver, Vector const* lambda = nullptr) {
     with_sink(receiver, [&](BlockSink& sink) {
       if (part == TangentPart::compliant_joints)
         return require_entry(entries_.compliant_tangents, "tangents")(model_, c, data_, sink);
       clear_loads();
       c.full = true;
+      if (lambda)
+        require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), *lambda, c.stiffness, data_, sink);
       require_entry(entries_.force_tangents, "tangents")(model_, t_, load_factor, c, data_, sink);
       require_entry(entries_.load_stiffness, "second-order terms")(model_, at(), c.stiffness, data_, sink);
     });

@@ -59,7 +59,32 @@ class StepSecants {
     system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink);
   }
 
+  /// [M + s K̄, Ḡᵀ; G(q₁), 0] of `step`, K̄ with ½ ∂(Gᵀλ)/∂q in the middle, as Ḡ is G there for rows that are quadratic
+  /// in q. Where G loses rank within a step, Ḡ and G(q₁) do not even turn alike.
+  void exact_tangent(System& system, SecantStep const& step, double s, VecX const& lambda, BlockSink& sink) {
+    evaluate(system, step);
+    Half forces{sink, system.speeds(), true}, rows{sink, system.speeds(), false};
+    BlockSink to_forces(forces), to_rows(rows);
+    entries_->tangent(self_.get(), s, to_forces);
+    system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink,
+                      &lambda);
+    SecantStep end = step;  // of no length, so that its secants are tangents
+    end.q0 = step.q1;
+    entries_->evaluate(self_.get(), end);
+    entries_->tangent(self_.get(), s, to_rows);
+  }
+
  private:
+  /// Passes on the equations of motion, or G.
+  struct Half {
+    BlockSink& sink;
+    Index speeds;
+    bool forces;
+    void add(Index row, Index col, BlockView const& b) {
+      if (forces ? row < speeds : row >= speeds && col < speeds) sink.add(row, col, b);
+    }
+  };
+
   SecantEntries const* entries_;
   std::shared_ptr<void> self_;
   double h_ = 0.0;

@@ -1,0 +1,82 @@
+// R2: four-bars through their singular position by the methods whose matrix must follow how the rows turn there; the
+// α-methods stand in redundant_joints_test.cpp.
+
+#include <gtest/gtest.h>
+
+#include <polybody/integrators/energy_momentum.hpp>
+#include <polybody/integrators/radau.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/run/energy.hpp>
+#include <polybody/run/simulate.hpp>
+
+#include "support/linkages.hpp"
+#include "support/refusal.hpp"
+
+namespace polybody {
+namespace singular_positions_test {
+
+/// What a run of four-bars ends with.
+struct Turned {
+  double off = 0.0, gained = 0.0;  ///< of the corner [m]; energy [J]
+  std::vector<std::string> warnings;
+};
+template <class I>
+Turned turn(int n, double until, I const& integrator, double step) {
+  FourBars<InPlane<Constraint>> bars(n);
+  double const before = energy(bars.model, bars.x).total();
+  RunReport const report = simulate(bars.model, bars.x, integrator, {.until = until, .step = step}).run();
+  Turned out{0.0, energy(bars.model, bars.x).total() - before, report.warnings};
+  for (Corner const& c : corners)
+    if (c.n == n && c.t == until) out.off = (bars.corner() - Vec3(c.x, c.y, 0)).norm();
+  return out;
+}
+
+// The mean of G over the step and G at its end differ by as much as G does from one that has lost a rank.
+TEST(SingularPosition, IsPassedByStepsThatConserveEnergy) {
+  Turned const r = turn(2, 1, EnergyMomentum{}, 1e-3);
+  EXPECT_LT(r.off, 1e-5);
+  EXPECT_LT(std::abs(r.gained), 1e-7);
+  EXPECT_TRUE(r.warnings.empty());
+}
+TEST(SingularPosition, IsPassedByStepsThatLoseEnergy) {  // of order one
+  Turned const r = turn(2, 1, EnergyDecaying{.rho_inf = 0.95}, 1e-3);
+  EXPECT_LT(r.off, 1e-2);
+  EXPECT_LT(r.gained, 0.0);
+  EXPECT_GT(r.gained, -0.1);
+}
+// G differs as much between the stages.
+TEST(SingularPosition, IsPassedByRadau) {
+  Turned const r = turn(2, 1, Radau{}, 2.5e-4);
+  EXPECT_LT(r.off, 1e-8);
+  EXPECT_LT(std::abs(r.gained), 1e-8);
+  EXPECT_TRUE(r.warnings.empty());
+}
+
+/// Turns the motion round in the step that reaches a time: a jump of the speeds that satisfies the rows and keeps
+/// energy, as a change of branch does.
+struct TurningRound : RungeKutta4<Projection> {
+  double at = 0.0;  ///< [s]
+  template <class W>
+  StepReport step(System& system, State& x, double h, W& w) const {
+    StepReport const report = RungeKutta4<Projection>::step(system, x, h, w);
+    if (x.t >= at && x.t < at + 0.5 * h) x.v = -x.v;
+    return report;
+  }
+};
+
+// One window is flat at 0.7085 s; there the kite, in which B₀(1) stays at (1, 0), is as good a way to go on as the
+// parallelogram. At 0.3 s there is one way only.
+TEST(SingularPosition, IsReportedWhereTheSpeedsJumpThere) {
+  auto const warnings = [](double at) {
+    TurningRound integrator;
+    integrator.at = at;
+    return turn(1, at + 0.005, integrator, 1e-3).warnings;
+  };
+  std::vector<std::string> const flat = warnings(0.709), far = warnings(0.3);
+  ASSERT_EQ(flat.size(), 1u);
+  EXPECT_TRUE(has(flat[0], "The joints' rows lose rank next to t = 0.709 s"));
+  EXPECT_TRUE(far.empty());
+}
+
+}  // namespace singular_positions_test
+}  // namespace polybody
