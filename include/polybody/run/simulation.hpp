@@ -141,16 +141,17 @@ class Simulation {
       return true;
     }
   }
-  /// Tells the first step, of those in which the speeds turned by more than a tenth, that ends next to a singular
-  /// position: there the motion may have gone over to another branch.
-  void warn_of_branch() {
+  /// Tells the first step, of those in which the speeds turned by more than a tenth and a matrix was factored anew,
+  /// that ends next to a singular position: there the motion may have gone over to another branch.
+  void warn_of_branch(StepReport const& taken) {
+    if (taken.factorisations == 0 || system_->rows() == 0) return;
     State const& x = stepped();
-    double change = 0.0, size = 0.0;
-    for (Index i = 0; i < speeds_before_.size(); ++i) {
-      change += (x.v[i] - speeds_before_[i]) * (x.v[i] - speeds_before_[i]);
-      size += speeds_before_[i] * speeds_before_[i];
-    }
-    if (system_->rows() == 0 || !(change > 0.01 * size)) return;
+    PackSum change;
+    for_packs(x.v.size(), [&](auto at) {
+      auto const by = at(x.v) - at(speeds_before_);
+      change.add(by * by);
+    });
+    if (!(change.total() > 0.01 * squares(speeds_before_))) return;
     char const* const what = "The joints' rows lose rank next to t = ";
     for (std::string const& warning : report_.warnings)
       if (warning.starts_with(what)) return;
@@ -277,7 +278,7 @@ void Simulation<I, Solver>::advance() {
   stepped().t = reached ? target : row_.after(from, report.taken);
   choose_step(report, reached);
   try {
-    warn_of_branch();
+    warn_of_branch(report);
     bool const met = !options_.events.empty() && meet_events(report.taken);
     bool const at_corner = jumps && stepped().t == target;
     if (at_corner) stepped().t = plan_.pass(stepped().t);
