@@ -1,5 +1,6 @@
 // Consistent starts, on a rod on a pin and on a four-bar of uniform rods (crank 1, coupler 2, rocker 1.5, base 2).
 #include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/joints/knife_edge.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/initial_conditions.hpp>
@@ -149,6 +150,33 @@ TEST(InitialConditions, WhatCannotCloseIsRefusedAndTheStateStays) {
   std::string const message = inconsistency([&] { assemble(f.model, f.x); });
   EXPECT_TRUE(has(message, "\"")) << message;
   expect_same(f.x, before);
+}
+
+// Two blades at one point, 0.01 rad apart, stop it; one of them carries 1e-5 of the mass. Beside the row that moves the
+// light rod alone, what is left of it with the heavy one is too little for a pivot.
+TEST(InitialConditions, ARowThatIsLeftOutAndStaysOpenIsRefused) {
+  using Blade = Joint<KnifeEdge, Constraint>;
+  for (double const mass : {1.0, 1e-5}) {
+    Model<Bodies<planar::Rigid>, Joints<Pin, Blade>> model;
+    auto const heavy = model.add(planar::Rigid(1.0, 1.0), "heavy"),
+               light = model.add(planar::Rigid(mass, mass), "light");
+    model.connect(Pin{}, heavy.at(Vec2(0, 0)), light.at(Vec2(0, 0)), "pin");
+    model.connect(Blade{KnifeEdge{.across = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), heavy.at(Vec2(0, 0)),
+                  "first");
+    model.connect(Blade{KnifeEdge{.across = {std::sin(0.01), std::cos(0.01), 0}}, {}}, model.ground().at({0, 0, 0}),
+                  light.at(Vec2(0, 0)), "second");
+    State x = model.reference_state();
+    model.set_velocity(x, heavy, Vec3(10, 0, 0), Vec3::Zero());
+    model.set_velocity(x, light, Vec3(10, 0, 0), Vec3::Zero());
+    if (mass == 1.0) {
+      assemble(model, x);
+      EXPECT_LT(x.v.cwiseAbs().maxCoeff(), 1e-9);  // the point stands
+    } else {
+      std::string const message = inconsistency([&] { assemble(model, x); });
+      EXPECT_TRUE(has(message, "The rows of joint \"second\" repeat")) << message;
+      EXPECT_TRUE(has(message, "stay open by 0.09")) << message;
+    }
+  }
 }
 
 TEST(InitialConditions, AStateOfAnotherModelIsRefused) {

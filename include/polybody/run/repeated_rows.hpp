@@ -80,8 +80,23 @@ void require_no_contradiction(System& system, ForwardDynamics<Solver>& forward, 
   }
 }
 
-/// The start of a run: no contradiction in the speeds and accelerations that the rows ask for. \throws
-/// InconsistentStart.
+/// Rows that a factorisation drops are closed by the others, whose speeds are projected; but not where they repeat them
+/// only nearly. \param rate Φ̇ at the projected speeds \throws InconsistentStart naming the joint that stays open.
+template <class Solver>
+void require_closed_when_dropped(System const& system, ForwardDynamics<Solver> const& forward, VecX const& rate,
+                                 double limit) {
+  for (Index const i : forward.redundant_rows())
+    if (i >= system.speeds() && std::abs(rate[i - system.speeds()]) > limit)
+      throw InconsistentStart("The rows of " + system.name_of(i) +
+                              " repeat those of other joints so nearly that they are left out, and they stay open by " +
+                              number(std::abs(rate[i - system.speeds()])) +
+                              " in their speeds at t = " + number(system.at().t) +
+                              " s. Move the joint away from this position, bring the masses of the bodies that it "
+                              "joins closer together, or give it a compliant policy such as Penalty.");
+}
+
+/// The start of a run, its speeds projected: no contradiction in the speeds and accelerations that the rows ask for,
+/// and no row left open. \throws InconsistentStart.
 template <class Solver>
 void require_consistent_rows(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (system.rows() == 0) return;
@@ -90,7 +105,9 @@ void require_consistent_rows(System& system, ForwardDynamics<Solver>& forward, S
   detail::ContradictionLimits const limits;
   VecX b = VecX::Zero(system.rows());
   system.violation_rate(b);
-  require_no_contradiction(system, forward, b, limits.relative * (1.0 + largest_size(x.v)), "speeds");
+  double const limit = limits.relative * (1.0 + largest_size(x.v));
+  require_no_contradiction(system, forward, b, limit, "speeds");
+  require_closed_when_dropped(system, forward, b, limit);
   system.acceleration_bias(b);
   require_no_contradiction(system, forward, b, limits.relative * (1.0 + largest_size(b)), "accelerations");
 }
