@@ -73,9 +73,13 @@ void compare_solvers(std::string const& what, M const& model, State const& x, do
               block.factorisations, lu.microseconds, lu.microseconds / block.microseconds);
 }
 
+template <class B, class P = Constraint>
+chapter2::RobotArm<B, P> arm(Index elements, P const& policy = {}) {
+  return {chapter2::bar(chapter2::medium, 1.2), elements, 15.0, 0.0, policy};
+}
 template <class B, class P>
-void arm(std::string const& what, Index elements, P const& policy) {
-  chapter2::RobotArm<B, P> const robot(chapter2::bar(chapter2::medium, 1.2), elements, 15.0, 0.0, policy);
+void compare_solvers_of_arm(std::string const& what, Index elements, P const& policy) {
+  auto const robot = arm<B>(elements, policy);
   compare_solvers("robot arm, " + what, robot.model, robot.model.reference_state(), 1.0);
 }
 
@@ -114,12 +118,12 @@ struct FourBars {
 void mechanisms() {
   std::printf("\nmicroseconds a step (iterations, factorisations), Eigen SparseLU, ratio\n");
   Penalty const stiff{.stiffness = 1e9, .damping = 1e5};
-  arm<planar::Rigid>("rigid, Constraint", 1, Constraint{});
-  arm<planar::Rigid>("rigid, Penalty", 1, stiff);
-  arm<planar::Lrvf>("10 Lrvf, Constraint", 10, Constraint{});
-  arm<planar::Lrvf>("10 Lrvf, Penalty", 10, stiff);
-  arm<planar::AncfCable<>>("10 AncfCable, Constraint", 10, Constraint{});
-  arm<planar::AncfCable<>>("10 AncfCable, Penalty", 10, stiff);
+  compare_solvers_of_arm<planar::Rigid>("rigid, Constraint", 1, Constraint{});
+  compare_solvers_of_arm<planar::Rigid>("rigid, Penalty", 1, stiff);
+  compare_solvers_of_arm<planar::Lrvf>("10 Lrvf, Constraint", 10, Constraint{});
+  compare_solvers_of_arm<planar::Lrvf>("10 Lrvf, Penalty", 10, stiff);
+  compare_solvers_of_arm<planar::AncfCable<>>("10 AncfCable, Constraint", 10, Constraint{});
+  compare_solvers_of_arm<planar::AncfCable<>>("10 AncfCable, Penalty", 10, stiff);
   for (int const n : {2, 10, 40}) {
     FourBars const bars(n);
     compare_solvers(std::to_string(n) + " four-bars", bars.model, bars.start(),
@@ -182,9 +186,30 @@ BENCHMARK(assemble);
 BENCHMARK(assemble_and_factor);
 BENCHMARK(solve);
 
+/// One run alone by the default solver, of which a profiler sees nothing else: bench_steps --run MODEL SIZE SECONDS.
+int run_alone(std::string const& model, int size, double until) {
+  auto const run = [&](auto const& m, State const& x) {
+    Cost const c = cost<BlockSolver>(m, x, until);
+    std::printf("%.0f steps, %.3f Newton iterations a step\n", until / 1e-3, c.iterations);
+    return 0;
+  };
+  auto const from_reference = [&](auto const& m) { return run(m, m.reference_state()); };
+  if (model == "chain") return from_reference(Chain<Constraint>(size, {}).model);
+  if (model == "penalty-chain") return from_reference(Chain<Penalty>(size, {.stiffness = 1e7, .damping = 1e3}).model);
+  if (model == "lrvf-arm") return from_reference(arm<planar::Lrvf>(size).model);
+  if (model == "cable-arm") return from_reference(arm<planar::AncfCable<>>(size).model);
+  if (model == "four-bars") {
+    FourBars const bars(size);
+    return run(bars.model, bars.start());
+  }
+  std::fprintf(stderr, "bench_steps: %s is none of its models\n", model.c_str());
+  return 2;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 5 && std::string(argv[1]) == "--run") return run_alone(argv[2], std::stoi(argv[3]), std::stod(argv[4]));
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   chains();
