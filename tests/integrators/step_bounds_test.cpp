@@ -114,13 +114,13 @@ TEST(StepBounds, AnOpenJointEndsTheRun) {
   System system(wild.model, with<Entries::motion>);
   double most = 0.0;
   for (State const& now :
-       simulate<BlockSolver>(wild.model, wild.x, GeneralizedAlpha{}, {.until = 2.0, .step = 1e-3, .limits = off}))
+       simulate<BlockSolver>(wild.model, wild.x, GeneralizedAlpha{}, {.until = 2.0, .step = 3e-3, .limits = off}))
     most = std::max(most, violation(system, now).position);
   EXPECT_GT(most, 1.0);  // with pins 1 m apart
-  auto run = simulate<BlockSolver>(m.model, m.x, GeneralizedAlpha{}, {.until = 2.0, .step = 1e-3});
+  auto run = simulate<BlockSolver>(m.model, m.x, GeneralizedAlpha{}, {.until = 2.0, .step = 3e-3});
   std::string const message = message_of_divergence(run, m.x);
   EXPECT_TRUE(has(message, "leaves joint \""));
-  EXPECT_TRUE(has(message, "pin\" open by"));
+  EXPECT_TRUE(has(message, "\" open by"));
   EXPECT_TRUE(has(message, "limits.violation"));
   EXPECT_LT(violation(system, m.x).position, 1e-6);
 }

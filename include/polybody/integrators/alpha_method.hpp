@@ -236,7 +236,7 @@ struct AlphaMethod {
     }
     void apply(double part) { method.apply(part, h, two_sets, w); }
     bool is_rounding(double norm) {
-      if (!detail::closed_to_rounding(w.phi, w.q)) return false;
+      if (!detail::may_be_rounding(w.phi, method.beta * h * h * norm, x.q)) return false;
       w.kept_back = w.back;
       auto const moved = [&] {
         detail::perturb(w.dq, w.q, w.ahead);

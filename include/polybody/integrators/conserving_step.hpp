@@ -136,7 +136,7 @@ struct ConservingStep {
       for (Index i = 0; i < rows; ++i) w.lambda[i] += w.y[nv + i];
     }
     bool is_rounding(double norm) {
-      if (!detail::closed_to_rounding(w.phi, w.q)) return false;
+      if (!detail::may_be_rounding(w.phi, s * norm, x.q)) return false;
       auto const moved = [&] {
         detail::perturb(w.q, w.q, w.q);
         evaluate_here();

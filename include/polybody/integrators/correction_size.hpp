@@ -26,8 +26,14 @@ inline void perturb(VecX const& x, VecX const& q, VecX& out) {
   double const size = 4.0 * rounding_of(q);
   for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + ((std::uint32_t(i + 1) * 2654435769u >> 31) != 0 ? size : -size);
 }
-/// Rows of positions that are open by more than this are open by more than rounding.
-inline bool closed_to_rounding(VecX const& phi, VecX const& q) { return largest_size(phi) <= 1e3 * rounding_of(q); }
+/// Whether rounding may be what is left of a step from q: rows of positions, phi, that are open by no more, and a
+/// correction that moves the coordinates in the mean by `moved`. Next to a singular position rounding ε comes out of
+/// the rows' inverse as √ε and some powers of ten; an iterate that flew away is moved by metres, and whatever it
+/// tolerates has grown with it.
+inline bool may_be_rounding(VecX const& phi, double moved, VecX const& q) {
+  double const rounding = rounding_of(q);
+  return largest_size(phi) <= 1e3 * rounding && moved <= 1e10 * rounding;
+}
 
 /// Whether rounding is what the correction y, of the size `norm`, consists of: it is another one as coordinates and
 /// rows move by some last places. Next to a singular position the rows' rounding comes out of their inverse many times

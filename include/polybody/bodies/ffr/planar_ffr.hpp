@@ -41,6 +41,7 @@ class Ffr : public AddingCoordinates {
     if (c.GJ == 0.0) c.GJ = c.EI;  // resists what the plane leaves out
     bar.section = std::monostate{};
     bar.material.reset();
+    bar.shear_factor.reset();
     bar.constants = c;
     return structure_of(bar, n);
   }
