@@ -4,7 +4,6 @@
 /// accelerations.
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 
 #include <polybody/math/vectors.hpp>
@@ -24,7 +23,7 @@ inline double rounding_of(VecX const& q, double s) { return rounding_of(q) / s; 
 /// x and out may be the same.
 inline void perturb(VecX const& x, VecX const& q, VecX& out) {
   double const size = 4.0 * rounding_of(q);
-  for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + ((std::uint32_t(i + 1) * 2654435769u >> 31) != 0 ? size : -size);
+  for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + scattered_sign(i) * size;
 }
 /// Whether rounding may be what is left of a step from q: rows of positions, phi, that are open by no more, and a
 /// correction that moves the coordinates in the mean by `moved`. Next to a singular position rounding ε comes out of

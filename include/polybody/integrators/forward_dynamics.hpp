@@ -4,7 +4,6 @@
 /// [M, Gᵀ; G, 0] [thesis Eq. 3.2].
 
 #include <algorithm>
-#include <cstdint>
 #include <span>
 
 #include <polybody/math/vectors.hpp>
@@ -186,7 +185,7 @@ class ForwardDynamics {
   /// the rows.
   RowGain row_gain(System& system, VecX const& q, VecX const& v, double t) {
     hold(system, q, v, t);
-    for (Index i = 0; i < open_.size(); ++i) open_[i] = (std::uint32_t(i + 1) * 2654435769u >> 31) != 0 ? 1.0 : -1.0;
+    for (Index i = 0; i < open_.size(); ++i) open_[i] = scattered_sign(i);
     least_change(system, open_, delta_);
     return {largest_size(delta_), redundant_rows().size()};
   }
