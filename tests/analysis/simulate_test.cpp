@@ -117,6 +117,17 @@ TEST(Simulate, RoundingOfTheClockCostsNoStep) {
   EXPECT_EQ(report.steps, 30000);
 }
 
+// Nothing is left to refer to after `auto const& report = simulate(…).run();`.
+TEST(Simulate, TheReportOfASimulationThatEndsWithItsStatementIsACopy) {
+  FreeRod f;
+  RunOptions const options{.until = 0.1, .step = 0.01};
+  static_assert(!std::is_reference_v<decltype(simulate(f.model, f.x, GeneralizedAlpha{}, options).run())>);
+  static_assert(!std::is_reference_v<decltype(simulate(f.model, f.x, GeneralizedAlpha{}, options).report())>);
+  auto run = simulate(f.model, f.x, GeneralizedAlpha{}, options);
+  EXPECT_EQ(&run.run(), &run.report());
+  EXPECT_EQ(run.report().steps, 10);
+}
+
 // t = t₀ + k h: 0.1 s summed 1000 times is 1.4e-12 s off.
 TEST(Simulate, TheClockDoesNotAddUpRounding) {
   FreeRod f;

@@ -146,7 +146,7 @@ double interpolate(std::vector<double> const& times, std::vector<double> const& 
 
 }  // namespace detail
 
-/// The report as a table, one line a quantity and one column a formulation.
+/// The report as a table, one line a quantity and one column a formulation, and the warnings of the runs below it.
 template <class = void>
 std::ostream& operator<<(std::ostream& out, Comparison const& c) {
   if (c.runs.empty()) return out;
@@ -170,6 +170,8 @@ std::ostream& operator<<(std::ostream& out, Comparison const& c) {
     }
   }
   out.copyfmt(state);
+  for (ComparedRun const& run : c.runs)
+    for (std::string const& warning : run.run.warnings) out << '\n' << run.name << ": " << warning;
   return out << '\n';
 }
 

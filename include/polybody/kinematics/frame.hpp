@@ -22,6 +22,12 @@ struct Wrench {
   Vec<T, 3> m = Vec<T, 3>::Zero();  ///< (3) moment about the origin of the frame [N m]
 };
 
+/// A wrench that acts at a place.
+struct PlacedWrench {
+  Vec3 at = Vec3::Zero();  ///< (3) [m]
+  Wrench<double> w;        ///< about that place
+};
+
 /// What a marker can tell: a point, a point and its first axis, or a full frame.
 enum class Observes { point, axis, frame };
 

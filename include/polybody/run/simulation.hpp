@@ -6,6 +6,7 @@
 #include <memory>
 
 #include <polybody/math/sequence.hpp>
+#include <polybody/run/axial_watch.hpp>
 #include <polybody/run/event_watch.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/run_snapshot.hpp>
@@ -39,7 +40,8 @@ class Simulation {
   RunSnapshot snapshot();
 
   State const& state() const { return *x_; }
-  RunReport const& report() const { return report_; }
+  RunReport const& report() const& { return report_; }
+  RunReport report() && { return std::move(report_); }
   /// What is stepped: the model, or what its policies leave of it.
   System& system() { return *system_; }
   /// The whole mechanism.
@@ -74,8 +76,12 @@ class Simulation {
   Iterator begin() { return Iterator(this); }
   Sentinel end() const { return {}; }
 
-  /// Runs to the end. Returns the report.
-  RunReport const& run();
+  /// Runs to the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
+  RunReport const& run() &;
+  RunReport run() && {
+    run();
+    return std::move(report_);
+  }
 
  private:
   struct Prepared {};
@@ -87,6 +93,7 @@ class Simulation {
         options_(std::move(options)),
         workspace_(integrator_.template workspace<Solver>(*system_)),
         norm_(whole()),
+        axial_forces_(whole(), start, options_.until),
         speeds_before_(VecX::Zero(system_->speeds())) {
     integrator_.check();
     options_.check(start);
@@ -210,6 +217,7 @@ class Simulation {
   RunOptions options_;
   decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
+  AxialWatch axial_forces_;
   VecX speeds_before_;  // of a step
   RowGain usual_gain_;  // at the start
   StepPlan plan_;
@@ -285,6 +293,7 @@ void Simulation<I, Solver>::advance() {
     if (met || at_corner || crumb) restart();
     if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
     show();
+    axial_forces_.look(whole(), *x_, done(), report_.warnings);
   } catch (...) {
     stepped() = before_;
     row_ = row_before;
@@ -295,7 +304,7 @@ void Simulation<I, Solver>::advance() {
 }
 
 template <Integrator I, class Solver>
-RunReport const& Simulation<I, Solver>::run() {
+RunReport const& Simulation<I, Solver>::run() & {
   while (!done()) advance();
   return report_;
 }

@@ -159,6 +159,12 @@ void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
   for (Entry const& e : pool.entries)
     out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own,
                           B::world == World::plane, &detail::type_tag<B>, index++, &e.body});
+  if constexpr (LeavesOutAxialForces<B>)
+    for (std::size_t i = out.bodies.size() - pool.entries.size(); i < out.bodies.size(); ++i)
+      out.bodies[i].axial_share = [](void const* body, std::span<double const> q, std::span<double const> v,
+                                     std::span<double const> a, Vec3 const& g, std::span<PlacedWrench const> loads) {
+        return static_cast<B const*>(body)->axial_share(q, v, a, g, loads);
+      };
 }
 
 template <class B, StateScalar T>

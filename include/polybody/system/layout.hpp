@@ -4,6 +4,7 @@
 /// its type.
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include <polybody/math/sequence.hpp>
@@ -12,6 +13,7 @@
 namespace polybody {
 
 struct LinearRows;
+struct PlacedWrench;
 
 struct BodyPlace {
   std::string name = {};
@@ -22,6 +24,9 @@ struct BodyPlace {
   void const* type = nullptr;  ///< tells types of bodies apart
   Index index = 0;             ///< among the bodies of its type
   void const* body = nullptr;  ///< the body itself, in the model
+  /// At its q, v, v̇ under gravity and loads in world axes; none of a body that does not say it (LeavesOutAxialForces).
+  double (*axial_share)(void const* body, std::span<double const> q, std::span<double const> v,
+                        std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
 };
 
 struct JointPlace {

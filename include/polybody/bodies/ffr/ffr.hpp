@@ -294,6 +294,18 @@ class Ffr {
     for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= f[Index(i)] * p.drawn[i];
   }
 
+  /// How near the axial forces that `loads` (world axes) and the motion of the frame cause come to buckling the beams,
+  /// where the body's deflection does not feel them (axial_share.hpp); else zero. \param a v̇ of the body
+  double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
+                     Vec3 const& gravity, std::span<PlacedWrench const> loads) const {
+    if (!points_) return 0.0;
+    Frame<double> frame;
+    frame.r = part<3>(q, 0);
+    frame.A = rotation_matrix<double>(part<4>(q, 3));
+    frame.w = frame.A * part<3>(v, 3);
+    return points_->axial_share(StructureAction::in_frame(frame, part<3>(a, 0) - gravity, part<3>(a, 3), loads));
+  }
+
   /// Axial strain, torsion and curvatures of the beam that a point is on, and its section forces (see sections.hpp); q
   /// are all coordinates of the body. Shear is zero. \throws InvalidInput for a point that is not on a beam.
   Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 7); }

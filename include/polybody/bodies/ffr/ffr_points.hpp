@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <optional>
 
-#include <polybody/bodies/ffr/beam_structure.hpp>
+#include <polybody/bodies/ffr/axial_share.hpp>
 
 namespace polybody {
 
@@ -50,12 +50,22 @@ struct FfrPoint {
 class FfrPoints {
  public:
   FfrPoints(Structure structure, MatX shapes, bool stiffening) : s_(std::move(structure)), shapes_(std::move(shapes)) {
-    if (stiffening) axial_.emplace(s_);
+    if (stiffening) {
+      axial_.emplace(s_);
+    } else if (!s_.beams.empty() && shapes_.cols() > 0) {
+      MatX const image = s_.stiffness * shapes_;
+      unstiffened_.emplace(shapes_.transpose() * image);
+      if (unstiffened_->info() != Eigen::Success) unstiffened_.reset();
+    }
   }
   FfrPoints(FfrPoints const&) = delete;
   FfrPoints& operator=(FfrPoints const&) = delete;
 
   Structure const& structure() const { return s_; }
+  /// As the free function; zero with stiffening, which leaves nothing out, and for what is not made of beams.
+  double axial_share(StructureAction const& action) const {
+    return unstiffened_ ? polybody::axial_share(s_, shapes_, *unstiffened_, action) : 0.0;
+  }
   MatX const& shapes() const { return shapes_; }
 
   /// Length of the first bar [m]. \throws InvalidInput without bars.
@@ -143,6 +153,7 @@ class FfrPoints {
   Structure s_;
   MatX shapes_;
   std::optional<AxialForceStiffness> axial_;
+  std::optional<Eigen::LLT<MatX>> unstiffened_;  ///< of ΦᵀKΦ, without stiffening
 };
 
 }  // namespace polybody

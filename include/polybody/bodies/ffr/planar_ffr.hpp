@@ -303,6 +303,18 @@ class Ffr : public AddingCoordinates {
       k.bottomRightCorner(n, n) -= (i == 0 ? fx : fy) * p.drawn[i];
   }
 
+  /// As in space. \param gravity (3) of which z is left out
+  double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
+                     Vec3 const& gravity, std::span<PlacedWrench const> loads) const {
+    if (!points_) return 0.0;
+    Frame<double> frame;
+    frame.r << q[0], q[1], 0.0;
+    frame.A << std::cos(q[2]), -std::sin(q[2]), 0.0, std::sin(q[2]), std::cos(q[2]), 0.0, 0.0, 0.0, 1.0;
+    frame.w << 0.0, 0.0, v[2];
+    Vec3 const acceleration(a[0] - gravity[0], a[1] - gravity[1], 0.0);
+    return points_->axial_share(StructureAction::in_frame(frame, acceleration, Vec3(0.0, 0.0, a[2]), loads));
+  }
+
   /// As in space.
   Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 3); }
   Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 3); }

@@ -82,6 +82,14 @@ concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B:
   b.own_stiffness(x, Vec<double, B::own_rows>(), stiffness);  // ∂(Gᵀλ)/∂q
 };
 
+/// A body may say how near its beams are to buckling by axial forces that its deflection leaves out, with a sign: at −1
+/// they buckle. A run warns of it.
+template <class B>
+concept LeavesOutAxialForces =
+    requires(B const b, std::span<double const> x, Vec3 g, std::span<PlacedWrench const> loads) {
+      { b.axial_share(x, x, x, g, loads) } -> std::convertible_to<double>;  // at q, v, v̇
+    };
+
 /// Columns that an element of a body, or a marker on it, touches. A body whose markers differ says `columns_of(point)`.
 template <class B>
 Index element_columns(B const& body) {

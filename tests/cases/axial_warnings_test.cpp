@@ -1,0 +1,113 @@
+// Axial forces that a floating frame without geometric stiffening leaves out, beside those that buckle it: Euler's
+// columns and Greenhill's, which falls under its own weight at q L³/EI = 7.8373 (the first zero of J₋₁⸝₃); and what
+// runs say of them.
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/compare/compare.hpp>
+#include <polybody/polybody.hpp>
+
+namespace axial_warnings_test {
+
+using namespace polybody;
+using std::numbers::pi;
+
+constexpr double EI = 2.0, length = 1.5, density = 0.8;  // [N m², m, kg/m]
+
+Bar column() {
+  return {
+      .length = length,
+      .constants = BarConstants{.EA = 1e7, .EI = EI, .mass_per_length = density, .GJ = 1.0, .rotary_inertia = 1e-4}};
+}
+
+/// Of a body at rest at the origin, under loads and gravity.
+double share(Ffr const& body, Vec3 const& gravity, std::vector<PlacedWrench> const& loads) {
+  std::vector<double> q(std::size_t(body.coordinates())), zero(std::size_t(body.speeds()), 0.0);
+  body.reference(q);
+  return body.axial_share(q, zero, zero, gravity, loads);
+}
+std::vector<PlacedWrench> pressed_with(double p) {
+  return {{Vec3(0, 0, 0), {Vec3(p, 0, 0), Vec3(0, 0, 0)}}, {Vec3(length, 0, 0), {Vec3(-p, 0, 0), Vec3(0, 0, 0)}}};
+}
+
+TEST(AxialForces, ShareOfEulersLoads) {
+  Structure const s = structure_of(column(), 8);
+  double const euler = pi * pi * EI / (length * length);
+  Ffr const cantilever = Ffr::from(column(), 8),
+            pinned(s, held_modes(s, 4, ReferenceConditions::simply_supported(0, 8)));
+  for (double const part : {0.1, 0.5, 1.0}) {
+    EXPECT_NEAR(share(cantilever, Vec3::Zero(), pressed_with(0.25 * part * euler)), -part, 2e-3 * part);
+    EXPECT_NEAR(share(pinned, Vec3::Zero(), pressed_with(part * euler)), -part, 2e-3 * part);
+  }
+  EXPECT_NEAR(share(cantilever, Vec3::Zero(), pressed_with(-0.05 * euler)), 0.2, 1e-3);  // pulled
+  EXPECT_EQ(share(Ffr::from(column(), 8, {.stiffening = true}), Vec3::Zero(), pressed_with(euler)), 0.0);
+}
+
+TEST(AxialForces, ShareOfGreenhillsWeight) {
+  double const falls = 7.83734 * EI / (density * length * length * length);
+  EXPECT_NEAR(share(Ffr::from(column(), 12), Vec3(-0.3 * falls, 0, 0), {}), -0.3, 1e-3);
+  EXPECT_NEAR(share(Ffr::from(column(), 12), Vec3(0, -falls, 0), {}), 0.0, 1e-9);  // it lies
+}
+
+// A beam that spins with Ω about its root has N = ½ ρA Ω² (L² − x²): the largest ∫N w′² dx / ∫EI w″² dx is
+// 0.0976244 ρA Ω² L⁴/EI (Ritz's method with x² to x⁸).
+template <class Body>
+double spun(Body const& body, double omega) {
+  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0), a = v;
+  body.reference(q);
+  v[body.speeds() == 3 + body.deformations() ? 2 : 5] = omega;
+  return body.axial_share(q, v, a, Vec3::Zero(), {});
+}
+TEST(AxialForces, ShareOfCentrifugalForces) {
+  double const found = spun(Ffr::from(column(), 12), 2.0);
+  EXPECT_NEAR(found, 0.0976244 * density * 4.0 * std::pow(length, 4) / EI, 1e-3 * found);
+  EXPECT_NEAR(spun(planar::Ffr::from(column(), 12), 2.0), found, 1e-3 * found);
+  Bar turned = column();
+  turned.placement = Placement::at({1.0, 2.0, 3.0}, {0.0, 0.0, 0.7});
+  EXPECT_NEAR(spun(Ffr::from(turned, 12), 2.0), found, 1e-9 * found);
+  EXPECT_NEAR(spun(Ffr::from(column(), 12), 4.0), 4.0 * found, 1e-9 * found);
+}
+
+template <class B, class Clamp = Joint<Weld, Constraint>, class Force = PointForce<>>
+struct Pressed {
+  Model<Bodies<B>, Joints<Clamp>, Forces<Force>> model;
+  State x;
+  Pressed(B body, double p) {
+    auto const b = model.add(std::move(body), "column");
+    model.connect(Clamp{}, model.ground().at({0, 0, 0}), b.at(0.0), "clamp");
+    model.apply(Force{.force = {-p, 0, 0}}, b.at(length));
+    x = model.reference_state();
+  }
+  std::vector<std::string> warnings() {
+    return simulate(model, x, GeneralizedAlpha{.rho_inf = 0.6}, {.until = 0.05, .step = 1e-3}).run().warnings;
+  }
+};
+
+TEST(AxialForces, ARunWarnsOfThem) {
+  double const buckles = 0.25 * pi * pi * EI / (length * length);
+  std::vector<std::string> const said = Pressed<Ffr>(Ffr::from(column(), 4), 0.17 * buckles).warnings();
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("\"column\" are pressed at t = "), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find(" % of the load that buckles them"), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find(".stiffening = true"), std::string::npos) << said[0];
+  EXPECT_TRUE(Pressed<Ffr>(Ffr::from(column(), 4), 0.03 * buckles).warnings().empty());
+  EXPECT_TRUE(Pressed<Ffr>(Ffr::from(column(), 4, {.stiffening = true}), 0.17 * buckles).warnings().empty());
+  using InPlane = Pressed<planar::Ffr, Joint<planar::Weld, Constraint>>;
+  EXPECT_EQ(InPlane(planar::Ffr::from(column(), 4), 0.17 * buckles).warnings().size(), 1u);
+}
+
+// A free end draws back by N L/EA under the tension N of its reference.
+TEST(AxialForces, OfAPretensionShortenTheBody) {
+  Bar bar = column();
+  bar.constants->EA = 500.0;
+  bar.pretension = 3.0;
+  Model<Bodies<Ffr>, Joints<Joint<Weld, Constraint>>> model;
+  auto const body = model.add(Ffr::from(bar, 3));
+  model.connect(Joint<Weld, Constraint>{}, model.ground().at({0, 0, 0}), body.at(0.0));
+  State x = model.reference_state();
+  equilibrium(model, x);
+  EXPECT_NEAR(position(model, x, body.at(length))[0], length * (1.0 - 3.0 / 500.0), 1e-10);
+}
+
+}  // namespace axial_warnings_test
