@@ -10,6 +10,8 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/joints/screw.hpp>
+#include <polybody/joints/weld.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
@@ -109,6 +111,27 @@ TEST(MinimumNorm, OfADoorOnTwoPinsIsSharedInEveryStateOfARun) {
   expect_door(RungeKutta4<Projection>{}, 1.0, 1e-7);
   expect_door(GeneralizedAlpha{}, 1.0, 1e-3);
 }
+// A body on a screw of pitch p and a weld beside it, pushed along their axis with F: the screw's row, a force with a
+// moment of p, takes s, the weld F − s and the moment p s. The weights are 1, 1 + p²/ℓ² and 1/ℓ², ℓ = 1 for joints at
+// one place: the least (F − s)² + (1 + p²) s² + p² s² has s = F/(2 + 2 p²).
+TEST(MinimumNorm, WeighsForcesAndMomentsOfARow) {
+  using Thread = Joint<Screw, Constraint>;
+  using Clamp = Joint<Weld, Constraint>;
+  Model<Bodies<Rigid<>>, Joints<Thread, Clamp>, Forces<PointForce<>>> model;
+  auto const nut = model.add(Rigid<>(1.0, Mat3::Identity()), "nut");
+  double const pitch = 0.7, push = 8.0;
+  auto const thread = model.connect(Thread{{.pitch = pitch, .axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
+                                    nut.at(Vec3(0, 0, 0)));
+  auto const clamp = model.connect(Clamp{}, model.ground().at({0, 0, 0}), nut.at(Vec3(0, 0, 0)));
+  model.apply(PointForce<>{.force = {0, 0, push}}, nut.at(Vec3(0, 0, 0)));
+  State x = model.reference_state();
+  simulate(model, x, GeneralizedAlpha{}, {.until = 0.02, .step = 0.01, .minimum_norm = true}).run();
+  double const s = push / (2.0 + 2.0 * pitch * pitch);
+  EXPECT_NEAR(reaction(model, x, thread).f[2], -s, 1e-11);
+  EXPECT_NEAR(std::abs(reaction(model, x, thread).m[2]), pitch * s, 1e-11);
+  EXPECT_NEAR(reaction(model, x, clamp).f[2], s - push, 1e-11);
+}
+
 // ℓ goes with the model, so millimetres share as metres do.
 TEST(MinimumNorm, OfADoorDoesNotDependOnTheUnits) { expect_door(RungeKutta4<Projection>{}, 1e3, 1e-7); }
 

@@ -90,6 +90,19 @@ TEST(NormalForces, SlopeIsThatOfTheForce) {
   });
 }
 
+// Where the damper comes in with the overlap: that of the force while the bodies approach, without the part by d, which
+// falls, while they part.
+TEST(NormalForces, SlopeWhereTheDamperComesIn) {
+  SpringDamperContact const law{.stiffness = 2000.0, .damping = 30.0, .onset = 0.02};
+  for (double const d : {0.001, 0.01, 0.019, 0.021, 0.3})
+    for (double const rate : {-0.2, 0.0, 0.1, 3.0}) {
+      using D = Dual<2>;
+      D const seeded = law.force<D>(D::variable(d, 0), D::variable(rate, 1));
+      double const by_d = rate < 0.0 ? 2000.0 : seeded.d[0];
+      EXPECT_NEAR(law.slope(d, rate, 0.7, 31.0), 0.7 * by_d + 31.0 * seeded.d[1], 1e-10) << d << ' ' << rate;
+    }
+}
+
 TEST(NormalForces, PotentialIsTheIntegralOfTheForceAtRest) {
   with_each_law([](auto const& law, char const* name) {
     EXPECT_EQ(law.potential(0.0), 0.0) << name;

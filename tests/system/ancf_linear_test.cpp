@@ -172,6 +172,24 @@ TEST(AncfLinear, HoldsInStaticsWhatABalanceSays) {
   EXPECT_NEAR(peak_joint_force(system, x), p, 1e-6 * p);
 }
 
+TEST(AncfLinear, APinHoldsWhatBendsAcrossIt) {
+  // the second beam hangs on a pin about z and is loaded along z at its end: the pin bears −r × P, about y
+  using Clamp = Joint<Weld, AncfLinear>;
+  using Pin = Joint<Revolute, AncfLinear>;
+  Model<Bodies<AncfBeam<Continuum<>>>, Joints<Clamp, Pin>, Forces<PointForce<>>> model;
+  auto const a = model.add(AncfBeam<Continuum<>>::from(bar({}), 2)),
+             b = model.add(AncfBeam<Continuum<>>::from(bar(Placement::at({0.5, 0, 0})), 2));
+  model.connect(Clamp{}, model.ground().at({0, 0, 0}), a.at(0.0));
+  auto const pin = model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, a.at(0.5), b.at(0.0));
+  double const p = 1e-4;
+  model.apply(PointForce<>{.force = {0, 0, p}}, b.at(0.5));
+  State x = model.reference_state();
+  equilibrium(model, x);
+  Wrench<double> const at_pin = reaction(model, x, pin);
+  EXPECT_LT((at_pin.f - Vec3(0, 0, -p)).norm(), 1e-6 * p);
+  EXPECT_LT((at_pin.m - Vec3(0, 0.5 * p, 0)).norm(), 1e-4 * p);
+}
+
 TEST(AncfLinear, RowsThatRepeatOthersAreNamed) {
   Chain<planar::AncfCable<>, planar::Revolute, AncfLinear> chain({}, 2);
   using Pin = Joint<planar::Revolute, AncfLinear>;

@@ -86,7 +86,7 @@ TEST(M113Vehicle, DropsOntoItsSpringsByTheThesisSevenCentimetres) {
 TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
   Car const vehicle = car(still());
   State x = vehicle.model.reference_state();
-  double up = 0.0, samples = 0.0, deepest = 0.0, stray = 0.0;
+  double up = 0.0, samples = 0.0, deepest = 0.0, stray = 0.0, off_path = 0.0;
   run_vehicle(vehicle.model, x, 2.0, 1e-3, [&](State const& now, auto& system) {
     if (now.t > 1.5) {
       for (auto const& side : vehicle.sides)
@@ -99,12 +99,15 @@ TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
       m113::TrackFault const fault = track_fault(vehicle, system, now, s, track_at_rest());
       deepest = std::max(deepest, fault.depth);
       stray = std::max(stray, fault.sideways);
+      off_path = std::max(off_path, fault.off_path);
     }
   });
   EXPECT_NEAR(up / samples, 9.81 * m113::thesis.total(), 0.01 * 9.81 * m113::thesis.total());
   // the heaviest load at rest is that of a wheel, 15.9 t/10 on two rims: 2 mm; three times as much in the first dip
   EXPECT_LT(deepest, 0.0062);
   EXPECT_LT(stray, 1e-6);
+  EXPECT_LT(off_path, 0.1);  // links hang and wheels rise by less than that
+  EXPECT_GT(off_path, 1e-4);
   EXPECT_LT(hull_of(vehicle, x).v.norm(), 0.05);
 }
 

@@ -65,9 +65,8 @@ Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
   Vec<T, 3> const v(q[1] * sign, q[2] * sign, q[3] * sign);
   T const w = q[0] * sign;
   T const x = squared_norm(v);
-  if (value_of(x) < 1e-8) {  // atan(n)/n with n² = x/w²; the next term is 1e-24
-    T const n2 = x / (w * w);
-    T const factor = 2.0 / w * (1.0 - n2 * (1.0 / 3.0 - n2 * 0.2));
+  if (value_of(x) < 1e-8) {  // atan(n)/n with n² = x/w²; the next term is 2e-17
+    T const factor = 2.0 / w * (1.0 - x / (3.0 * w * w));
     return {v[0] * factor, v[1] * factor, v[2] * factor};
   }
   T const n = sqrt(x);
