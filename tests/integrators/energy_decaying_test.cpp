@@ -36,13 +36,14 @@ TEST(EnergyDecaying, LinearModeLosesTheShareOfItsTheory) {
       x.q << 0.3, -0.2, 0.0;
       x.v << 1.0, 0.5, 0.0;
       System system = system_for<EnergyDecaying>(model);
-      auto workspace = integrator.workspace<DefaultSolver>(system);
+      auto const method = method_of(integrator);
+      auto workspace = method.workspace<DefaultSolver>(system);
       double const h = hw / 5.0, theta = 1.0 / (1.0 + rho);
       double const share = (1.0 + std::pow((1.0 - theta) * hw, 2)) / (1.0 + std::pow(theta * hw, 2));
-      integrator.start(system, x, h, workspace);
+      method.start(system, x, h, workspace);
       for (int i = 0; i < 3; ++i) {
         double const before = energy(model, x).total();
-        integrator.step(system, x, h, workspace);
+        method.step(system, x, h, workspace);
         EXPECT_NEAR(energy(model, x).total() / before, share, 1e-8) << rho << ' ' << hw;
       }
     }
@@ -88,10 +89,11 @@ TEST(EnergyDecaying, StiffModesOfACableLoseTheShareOfTheirTheory) {
       State x = model.reference_state();
       x.q[i] += 1e-6;
       System system = system_for<EnergyDecaying>(model);
-      auto workspace = integrator.workspace<DefaultSolver>(system);
-      integrator.start(system, x, 50.0, workspace);
+      auto const method = method_of(integrator);
+      auto workspace = method.workspace<DefaultSolver>(system);
+      method.start(system, x, 50.0, workspace);
       double const before = energy(model, x).total();
-      integrator.step(system, x, 50.0, workspace);
+      method.step(system, x, 50.0, workspace);
       EXPECT_NEAR(energy(model, x).total() / before, rho * rho, 1e-3) << rho << ' ' << i;
     }
 }

@@ -114,12 +114,13 @@ TEST(EnergyMomentumOfJoints, StaysWhereTheTrapezoidalRuleGainsEnergy) {
     State x = start;
     double const e0 = energy(model, x).total();
     System system(model);
-    auto workspace = Trapezoidal{}.workspace<DefaultSolver>(system);
+    auto const method = method_of(Trapezoidal{});
+    auto workspace = method.workspace<DefaultSolver>(system);
     double worst = 0.0;
     try {
-      Trapezoidal{}.start(system, x, h, workspace);
+      method.start(system, x, h, workspace);
       for (int i = 0; i < 1000; ++i) {
-        Trapezoidal{}.step(system, x, h, workspace);
+        method.step(system, x, h, workspace);
         worst = std::max(worst, energy(model, x).total() / e0);
       }
     } catch (NewtonStalled const&) {

@@ -130,11 +130,13 @@ TEST(EnergyMomentum, StalledStepLeavesTheStateAndSaysSo) {
   Thrown rod(100.0, 4);
   System system = system_for<EnergyMomentum>(rod.model);
   EnergyMomentum const integrator, impatient{.newton = {.max_iterations = 2}};
-  auto workspace = integrator.workspace<DefaultSolver>(system);
-  integrator.start(system, rod.x, 0.01, workspace);
-  for (int i = 0; i < 10; ++i) integrator.step(system, rod.x, 0.01, workspace);
+  auto const method = method_of(integrator);
+  auto workspace = method.workspace<DefaultSolver>(system);
+  method.start(system, rod.x, 0.01, workspace);
+  for (int i = 0; i < 10; ++i) method.step(system, rod.x, 0.01, workspace);
   State const before = rod.x;
-  std::string const message = message_of<NewtonStalled>([&] { impatient.step(system, rod.x, 1.0, workspace); });
+  std::string const message =
+      message_of<NewtonStalled>([&] { method_of(impatient).step(system, rod.x, 1.0, workspace); });
   EXPECT_TRUE(has(message, "EnergyMomentum: Newton's method did not converge at t = 1.1"));
   EXPECT_TRUE(has(message, "Take a smaller step"));
   EXPECT_EQ(rod.x.q, before.q);
@@ -142,7 +144,7 @@ TEST(EnergyMomentum, StalledStepLeavesTheStateAndSaysSo) {
   EXPECT_EQ(rod.x.a, before.a);
   EXPECT_EQ(rod.x.memory, before.memory);
   EXPECT_EQ(rod.x.t, before.t);
-  EXPECT_NO_THROW(integrator.step(system, rod.x, 0.01, workspace));
+  EXPECT_NO_THROW(method.step(system, rod.x, 0.01, workspace));
   EXPECT_NEAR(rod.x.t, 0.11, 1e-12);
   EXPECT_TRUE(
       has(refusal([&] { simulate(rod.model, rod.x, EnergyMomentum{.tolerance = 0.0}, {.until = 1.0, .step = 0.1}); }),

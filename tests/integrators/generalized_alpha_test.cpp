@@ -104,8 +104,9 @@ TEST(GeneralizedAlpha, RefusesAStepWithoutAStart) {
   Oscillator o;
   System system(o.model);
   GeneralizedAlpha const integrator;
-  auto workspace = integrator.workspace<DenseLu>(system);
-  EXPECT_TRUE(has(refusal([&] { integrator.step(system, o.x, 0.1, workspace); }), "call start before step"));
+  auto const method = method_of(integrator);
+  auto workspace = method.workspace<DenseLu>(system);
+  EXPECT_TRUE(has(refusal([&] { method.step(system, o.x, 0.1, workspace); }), "call start before step"));
 }
 
 // The memory of the run stands in the state: a copy goes on exactly as the original does.
@@ -113,13 +114,14 @@ TEST(GeneralizedAlpha, CopyOfAStateGoesOnAsTheOriginal) {
   SwingingBar bar;
   System system(bar.model);
   GeneralizedAlpha const integrator{.tolerance = 1e-12, .newton = {.always_refactor = true}};
-  auto workspace = integrator.workspace<DenseLu>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.workspace<DenseLu>(system);
   State x = bar.start;
-  integrator.start(system, x, 0.01, workspace);
-  for (int i = 0; i < 10; ++i) integrator.step(system, x, 0.01, workspace);
+  method.start(system, x, 0.01, workspace);
+  for (int i = 0; i < 10; ++i) method.step(system, x, 0.01, workspace);
   State copy = x;
-  for (int i = 0; i < 10; ++i) integrator.step(system, x, 0.003, workspace);
-  for (int i = 0; i < 10; ++i) integrator.step(system, copy, 0.003, workspace);
+  for (int i = 0; i < 10; ++i) method.step(system, x, 0.003, workspace);
+  for (int i = 0; i < 10; ++i) method.step(system, copy, 0.003, workspace);
   EXPECT_EQ(copy.q, x.q);
   EXPECT_EQ(copy.v, x.v);
   EXPECT_EQ(copy.lambda, x.lambda);

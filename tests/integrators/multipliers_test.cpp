@@ -17,15 +17,15 @@ namespace multipliers_test {
 template <class M, class I>
 struct Stepper {
   System system;
-  I integrator;
-  decltype(integrator.template workspace<DenseLu>(system)) workspace;
+  MethodOf<I> method;
+  decltype(method.template workspace<DenseLu>(system)) workspace;
   State x;
 
   Stepper(M const& model, State const& start, I const& i, double h)
-      : system(model), integrator(i), workspace(integrator.template workspace<DenseLu>(system)), x(start) {
-    integrator.start(system, x, h, workspace);
+      : system(model), method(method_of(i)), workspace(method.template workspace<DenseLu>(system)), x(start) {
+    method.start(system, x, h, workspace);
   }
-  void step(double h) { integrator.step(system, x, h, workspace); }
+  void step(double h) { method.step(system, x, h, workspace); }
 };
 
 /// Largest errors of λ: in the first step, over all steps of h, and after the change to `then`; the largest |λ| and

@@ -202,13 +202,14 @@ long in_steps(I const& integrator) {
   auto const& model = setup.model();
   State x = model.reference_state();
   System system(model, with<entries_of<I>()>);
-  auto workspace = integrator.template workspace<Solver>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.template workspace<Solver>(system);
   double const h = 1e-5;  // stable for the explicit ones
-  integrator.start(system, x, h, workspace);
+  method.start(system, x, h, workspace);
   workspace.forward.bounds.begin(system, {}, x.q, x.v, x.t);
   long const before = taken;
-  for (int i = 0; i < 20; ++i) integrator.step(system, x, h, workspace);
-  for (int i = 0; i < 20; ++i) integrator.step(system, x, 0.25 * h, workspace);
+  for (int i = 0; i < 20; ++i) method.step(system, x, h, workspace);
+  for (int i = 0; i < 20; ++i) method.step(system, x, 0.25 * h, workspace);
   long const count = taken - before;
   EXPECT_GT(x.t, 20 * h);
   EXPECT_TRUE(x.q.allFinite());

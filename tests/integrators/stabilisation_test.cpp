@@ -60,12 +60,13 @@ double worst_of_open_pin(I const& integrator, Expected expected) {
   system.evaluate(x.q, x.v, 0.0);
   system.violation(phi0);
   system.violation_rate(rate0);
-  auto workspace = integrator.template workspace<DenseLu>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.template workspace<DenseLu>(system);
   double const h = 1e-3;
-  integrator.start(system, x, h, workspace);
+  method.start(system, x, h, workspace);
   double worst = 0.0;
   for (int i = 1; i <= 1000; ++i) {
-    integrator.step(system, x, h, workspace);
+    method.step(system, x, h, workspace);
     system.evaluate(x.q, x.v, x.t);
     system.violation(phi);
     worst = std::max(worst, (phi - expected(i * h, phi0, rate0)).norm());
@@ -196,9 +197,10 @@ template <class M>
 long choices(M const& model, State& x, double h, double until) {
   System system(model);
   RungeKutta4<CoordinatePartitioning> const integrator;
-  auto workspace = integrator.template workspace<DenseLu>(system);
-  integrator.start(system, x, h, workspace);
-  for (long i = std::lround(until / h); i > 0; --i) integrator.step(system, x, h, workspace);
+  auto const method = method_of(integrator);
+  auto workspace = method.template workspace<DenseLu>(system);
+  method.start(system, x, h, workspace);
+  for (long i = std::lround(until / h); i > 0; --i) method.step(system, x, h, workspace);
   return workspace.scratch.rows.choices;
 }
 
@@ -238,11 +240,12 @@ TEST(CoordinatePartitioning, StartForgetsTheChoice) {
   SwingingBar bar;
   System system(bar.model);
   RungeKutta4<CoordinatePartitioning> const integrator;
-  auto workspace = integrator.workspace<DenseLu>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.workspace<DenseLu>(system);
   State x = bar.start;
   for (long const expected : {1, 2}) {
-    integrator.start(system, x, 1e-3, workspace);
-    for (int i = 0; i < 10; ++i) integrator.step(system, x, 1e-3, workspace);
+    method.start(system, x, 1e-3, workspace);
+    for (int i = 0; i < 10; ++i) method.step(system, x, 1e-3, workspace);
     EXPECT_EQ(workspace.scratch.rows.choices, expected);
   }
 }
@@ -251,12 +254,12 @@ TEST(CoordinatePartitioning, SaysThatThePositionsCannotBeBroughtBack) {
   SwingingBar bar;
   System system(bar.model);
   RungeKutta4<CoordinatePartitioning> const integrator{.stabilisation = {.max_iterations = 0}};
-  auto workspace = integrator.workspace<DenseLu>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.workspace<DenseLu>(system);
   State x = bar.start;
-  integrator.start(system, x, 0.3, workspace);
+  method.start(system, x, 0.3, workspace);
   State const before = x;
-  EXPECT_TRUE(
-      has(message_of<NewtonStalled>([&] { integrator.step(system, x, 0.3, workspace); }), "Take a smaller step"));
+  EXPECT_TRUE(has(message_of<NewtonStalled>([&] { method.step(system, x, 0.3, workspace); }), "Take a smaller step"));
   EXPECT_EQ(x.q, before.q);
   EXPECT_EQ(x.t, before.t);
 }

@@ -57,10 +57,11 @@ TEST(SymplecticEuler, KeepsTheQuadraticFormOfAnOscillator) {
   double const start = form();
   System system(model);
   SymplecticEuler const integrator;
-  auto workspace = integrator.workspace<DenseLu>(system);
-  integrator.start(system, x, h, workspace);
+  auto const method = method_of(integrator);
+  auto workspace = method.workspace<DenseLu>(system);
+  method.start(system, x, h, workspace);
   for (int i = 0; i < 100000; ++i) {  // 1600 periods
-    integrator.step(system, x, h, workspace);
+    method.step(system, x, h, workspace);
     ASSERT_NEAR(form(), start, 1e-9);
   }
   EXPECT_NEAR(x.t, 2000.0, 1e-6);
@@ -71,15 +72,16 @@ template <class I>
 std::vector<double> energy_errors(I const& integrator, int count) {
   SwingingBar bar;
   System system(bar.model);
-  auto workspace = integrator.template workspace<DenseLu>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.template workspace<DenseLu>(system);
   State x = bar.start;
   double const h = bar.exact.period() / 100.0, start = energy(bar.model, x).total();
-  integrator.start(system, x, h, workspace);
+  method.start(system, x, h, workspace);
   std::vector<double> errors;
   for (int n = 0; n < count; ++n) {
     double worst = 0.0;
     for (int i = 0; i < 10000; ++i) {
-      integrator.step(system, x, h, workspace);
+      method.step(system, x, h, workspace);
       system.evaluate(x.q, x.v, x.t);
       worst = std::max(worst, std::abs(energy(system, x).total() - start));
     }
@@ -102,14 +104,15 @@ TEST(Rattle, IsItsOwnInverse) {
   SwingingBar bar;
   System system(bar.model);
   Rattle const integrator;
-  auto workspace = integrator.workspace<DenseLu>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.workspace<DenseLu>(system);
   State x = bar.start;
   double const h = 0.02;
-  integrator.start(system, x, h, workspace);
+  method.start(system, x, h, workspace);
   State const start = x;
-  for (int i = 0; i < 20; ++i) integrator.step(system, x, h, workspace);
+  for (int i = 0; i < 20; ++i) method.step(system, x, h, workspace);
   EXPECT_GT((x.q - start.q).norm(), 0.1);
-  for (int i = 0; i < 20; ++i) integrator.step(system, x, -h, workspace);
+  for (int i = 0; i < 20; ++i) method.step(system, x, -h, workspace);
   EXPECT_LT((x.q - start.q).norm(), 1e-9);
   EXPECT_LT((x.v - start.v).norm(), 1e-9);
 }
@@ -118,12 +121,12 @@ TEST(Rattle, SaysThatThePositionsCannotBeBroughtToTheJoints) {
   SwingingBar bar;
   System system(bar.model);
   Rattle const integrator{.max_iterations = 1};
-  auto workspace = integrator.workspace<DenseLu>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.workspace<DenseLu>(system);
   State x = bar.start;
-  integrator.start(system, x, 0.3, workspace);
+  method.start(system, x, 0.3, workspace);
   State const before = x;
-  EXPECT_TRUE(
-      has(message_of<NewtonStalled>([&] { integrator.step(system, x, 0.3, workspace); }), "Take a smaller step"));
+  EXPECT_TRUE(has(message_of<NewtonStalled>([&] { method.step(system, x, 0.3, workspace); }), "Take a smaller step"));
   EXPECT_EQ(x.q, before.q);
   State fresh = bar.start;
   EXPECT_TRUE(has(refusal([&] { simulate(bar.model, fresh, Rattle{.tolerance = 0.0}, {.until = 1.0, .step = 0.1}); }),

@@ -19,8 +19,9 @@ struct Drift {
 template <class M, class I>
 Drift drift_of(M const& model, State& x, I const& integrator, double h, int steps) {
   System system = system_for<I, Entries::energy>(model);
-  auto workspace = integrator.template workspace<DefaultSolver>(system);
-  integrator.start(system, x, h, workspace);
+  auto const method = method_of(integrator);
+  auto workspace = method.template workspace<DefaultSolver>(system);
+  method.start(system, x, h, workspace);
   system.evaluate(x.q, x.v, x.t);
   double const start = energy(system, x).total();
   Momentum const p0 = momentum(model, x);
@@ -28,7 +29,7 @@ Drift drift_of(M const& model, State& x, I const& integrator, double h, int step
   VecX open = VecX::Zero(system.rows());
   Drift drift;
   for (int i = 0; i < steps; ++i) {
-    integrator.step(system, x, h, workspace);
+    method.step(system, x, h, workspace);
     system.evaluate(x.q, x.v, x.t);
     double const now = energy(system, x).total();
     Momentum const p = momentum(model, x);

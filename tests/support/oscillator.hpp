@@ -30,11 +30,12 @@ struct Oscillator {
   double scale_of_a_long_step(I const& integrator) {
     double const h = 1e5;
     System system(model);
-    auto workspace = integrator.template workspace<DenseLu>(system);
-    integrator.start(system, x, h, workspace);
-    for (int i = 0; i < 20; ++i) integrator.step(system, x, h, workspace);
+    auto const method = method_of(integrator);
+    auto workspace = method.template workspace<DenseLu>(system);
+    method.start(system, x, h, workspace);
+    for (int i = 0; i < 20; ++i) method.step(system, x, h, workspace);
     double const before = x.v[0];
-    for (int i = 0; i < 10; ++i) integrator.step(system, x, h, workspace);
+    for (int i = 0; i < 10; ++i) method.step(system, x, h, workspace);
     return std::pow(std::abs(x.v[0] / before), 0.1);
   }
 };

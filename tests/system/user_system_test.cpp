@@ -41,10 +41,11 @@ State at(System const& system, VecX const& q) {
 
 template <class I>
 State run(System& system, State x, I const& integrator, double h, double until) {
-  auto w = integrator.template workspace<BlockSolver>(system);
+  auto const method = method_of(integrator);
+  auto w = method.template workspace<BlockSolver>(system);
   integrator.check();
-  integrator.start(system, x, h, w);
-  while (x.t < until - 1e-9) integrator.step(system, x, std::min(h, until - x.t), w);
+  method.start(system, x, h, w);
+  while (x.t < until - 1e-9) method.step(system, x, std::min(h, until - x.t), w);
   return x;
 }
 

@@ -57,10 +57,10 @@ void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earli
   std::sort(names.begin(), names.end());
   bool const named = names.empty() || !names.front().empty();
   if (!named || std::adjacent_find(names.begin(), names.end()) != names.end())
-    throw InvalidInput("compare: the outputs of \"" + run.name + "\" need names, each its own.");
+    throw InvalidInput{"compare: the outputs of \"", run.name, "\" need names, each its own."};
   if (!earlier.empty() && run.output_names != earlier.front().output_names)
-    throw InvalidInput("compare: \"" + run.name + "\" has other outputs than \"" + earlier.front().name +
-                       "\". Let the case name the same ones, in the same order, for every formulation.");
+    throw InvalidInput{"compare: \"", run.name, "\" has other outputs than \"", earlier.front().name,
+                       "\". Let the case name the same ones, in the same order, for every formulation."};
 }
 
 /// The questions that are asked about every state of a run, whatever the case's model.
@@ -125,7 +125,7 @@ void add_run(C const& make_case, F const& formulation, Comparison& c, std::strin
     CaseQuestions questions = questions_of(scenario);
     record_run(run, questions, out);
   } catch (Error const& failed) {
-    failures += " \"" + out.name + "\": " + failed.what();
+    failures += sentence_of({" \"", out.name, "\": ", failed.what()});
     return;
   }
   c.runs.push_back(std::move(out));

@@ -50,8 +50,8 @@ namespace detail {
 template <class S>
 auto const& output_of(S const& scenario, std::size_t output, std::string const& what) {
   if (output >= scenario.outputs.size())
-    throw InvalidInput(what + ": there is no output " + std::to_string(output) + "; the case has " +
-                       std::to_string(scenario.outputs.size()) + ", counted from 0.");
+    throw InvalidInput{
+        what, ": there is no output ", output, "; the case has ", scenario.outputs.size(), ", counted from 0."};
   return scenario.outputs[output];
 }
 
@@ -112,8 +112,7 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
     WorkPoint& point = curve.points.emplace_back(WorkPoint{.setting = setting});
     auto const compare_at = [&](State const& x) {
       double const error = std::abs(y.value(scenario.model, x) - reference.at(x.t));
-      if (!std::isfinite(error))
-        throw NonFinite("The error of " + y.name + " is not finite at t = " + number(x.t) + " s.");
+      if (!std::isfinite(error)) throw NonFinite{"The error of ", y.name, " is not finite at t = ", x.t, " s."};
       point.error = std::max(point.error, error);
     };
     State x = scenario.start, again = x;

@@ -19,11 +19,10 @@ struct AxialSpring {
 
   template <class = void>  // compiled where it is used
   void check(std::string const& name) const {
-    require_not_negative(stiffness, name + ": the spring stiffness");
-    require_not_negative(damping, name + ": the damping");
-    if (!std::isfinite(preload))
-      throw InvalidInput(name + ": the preload must be finite, but is " + number(preload) + ".");
-    require_unit(axis, name + ": the axis");
+    require_not_negative(stiffness, name, ": the spring stiffness");
+    require_not_negative(damping, name, ": the damping");
+    if (!std::isfinite(preload)) throw InvalidInput{name, ": the preload must be finite, but is ", preload, "."};
+    require_unit(axis, name, ": the axis");
   }
 
   /// With d = r_b − r_a and e the axis: s = e·d, ṡ = e·(ḋ − ω_a × d). The pair acts at r_b, so on a it has the moment d

@@ -68,8 +68,8 @@ struct Friction {
   double slip_speed = 0.0;   ///< v_s [m/s], positive where μ is
 
   void check(std::string const& name) const {
-    require_not_negative(coefficient, name + ": the coefficient of friction");
-    if (coefficient > 0.0) require_positive(slip_speed, name + ": the slip speed of the friction");
+    require_not_negative(coefficient, name, ": the coefficient of friction");
+    if (coefficient > 0.0) require_positive(slip_speed, name, ": the slip speed of the friction");
   }
 };
 
@@ -207,7 +207,7 @@ struct SphereOnPlane {
   static constexpr Observes needs_of_second = Observes::frame;
   Required<double> radius;  ///< [m]
 
-  void check(std::string const& name) const { require_not_negative(radius, name + ": the sphere's radius"); }
+  void check(std::string const& name) const { require_not_negative(radius, name, ": the sphere's radius"); }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
     Vec3 const arm = a.r - b.r, n(b.A(0, 2), b.A(1, 2), b.A(2, 2));
@@ -228,8 +228,8 @@ struct SphereOnSphere {
   Required<double> radius_b;  ///< [m]
 
   void check(std::string const& name) const {
-    require_not_negative(radius_a, name + ": the radius of the first sphere");
-    require_not_negative(radius_b, name + ": the radius of the second sphere");
+    require_not_negative(radius_a, name, ": the radius of the first sphere");
+    require_not_negative(radius_b, name, ": the radius of the second sphere");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
@@ -257,8 +257,8 @@ struct SphereOnCylinder {
   Required<double> cylinder;  ///< radius of the cylinder [m]
 
   void check(std::string const& name) const {
-    require_not_negative(radius, name + ": the sphere's radius");
-    require_positive(cylinder, name + ": the cylinder's radius");
+    require_not_negative(radius, name, ": the sphere's radius");
+    require_positive(cylinder, name, ": the cylinder's radius");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {

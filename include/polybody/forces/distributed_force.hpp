@@ -27,9 +27,8 @@ auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const
   double const from = range.from, to = range.to;
   Index const pieces = range.pieces;
   if (!(to > from) || !std::isfinite(from) || !std::isfinite(to))
-    throw InvalidInput("\"" + what + "\": a distributed force needs a range from < to, but has " + number(from) +
-                       " to " + number(to) + ".");
-  if (pieces < 1) throw InvalidInput("\"" + what + "\": a distributed force needs at least one piece.");
+    throw InvalidInput{"\"", what, "\": a distributed force needs a range from < to, but has ", from, " to ", to, "."};
+  if (pieces < 1) throw InvalidInput{"\"", what, "\": a distributed force needs at least one piece."};
   double const l = (to - from) / double(pieces);
   std::vector<decltype(model.apply(per_length, bar.at(from), name))> handles;
   for (Index i = 0; i < pieces; ++i)

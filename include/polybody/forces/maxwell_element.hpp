@@ -15,9 +15,9 @@ struct MaxwellElement {
   Required<double> free_length;  ///< l₀ [m]
 
   void check(std::string const& name) const {
-    require_positive(stiffness, name + ": the spring stiffness");
-    require_positive(damping, name + ": the damping");
-    require_not_negative(free_length, name + ": the free length");
+    require_positive(stiffness, name, ": the spring stiffness");
+    require_positive(damping, name, ": the damping");
+    require_not_negative(free_length, name, ": the free length");
   }
 
   /// f_a = N d/l with d = r_b − r_a, l = |d|; l = 0 has no direction.

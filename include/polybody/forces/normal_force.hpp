@@ -21,8 +21,7 @@ namespace detail {
 /// \throws InvalidInput unless 0 < e ≤ 1.
 inline void require_restitution(double e, char const* of) {
   if (!(e > 0.0 && e <= 1.0))
-    throw InvalidInput(std::string(of) + ": the coefficient of restitution must lie above 0 and not above 1, but is " +
-                       number(e) + ".");
+    throw InvalidInput{of, ": the coefficient of restitution must lie above 0 and not above 1, but is ", e, "."};
 }
 /// The root of `f`, which falls from f(from) > 0, by halving.
 template <class F>
@@ -64,9 +63,9 @@ struct SpringDamperContact {
   }
 
   void check(std::string const& name) const {
-    require_positive(stiffness, name + ": the contact stiffness");
-    require_not_negative(damping, name + ": the contact damping");
-    require_not_negative(onset, name + ": the onset of the contact damping");
+    require_positive(stiffness, name, ": the contact stiffness");
+    require_not_negative(damping, name, ": the contact damping");
+    require_not_negative(onset, name, ": the onset of the contact damping");
   }
   template <StateScalar T>
   T force(T const& d, T const& rate) const {
@@ -95,8 +94,8 @@ struct HertzContact {
   double stiffness() const { return 4.0 / 3.0 * modulus * std::sqrt(radius.value); }  ///< [N/m^(3/2)]
 
   void check(std::string const& name) const {
-    require_positive(modulus, name + ": the contact modulus");
-    require_positive(radius, name + ": the contact radius");
+    require_positive(modulus, name, ": the contact modulus");
+    require_positive(radius, name, ": the contact radius");
   }
   template <StateScalar T>
   T force(T const& d, T const&) const {
@@ -130,10 +129,10 @@ struct HuntCrossleyContact {
   }
 
   void check(std::string const& name) const {
-    require_positive(stiffness, name + ": the contact stiffness");
-    require_not_negative(damping, name + ": the contact damping");
+    require_positive(stiffness, name, ": the contact stiffness");
+    require_not_negative(damping, name, ": the contact damping");
     if (!(exponent >= 1.0) || !std::isfinite(exponent))
-      throw InvalidInput(name + ": the exponent of the overlap must be 1 or more, but is " + number(exponent) + ".");
+      throw InvalidInput{name, ": the exponent of the overlap must be 1 or more, but is ", exponent, "."};
   }
   template <StateScalar T>
   T force(T const& d, T const& rate) const {

@@ -38,7 +38,7 @@ struct PointForce {
   Law law = {};  ///< factor as a function of time
 
   void check(std::string const& name) const {
-    require_finite(force, name + ": the force");
+    require_finite(force, name, ": the force");
     check_law(law, name + ": the law of time");
   }
 
@@ -63,7 +63,7 @@ struct PointMoment {
   Law law = {};  ///< factor as a function of time
 
   void check(std::string const& name) const {
-    require_finite(moment, name + ": the moment");
+    require_finite(moment, name, ": the moment");
     check_law(law, name + ": the law of time");
   }
 

@@ -14,9 +14,9 @@ struct SpringDamper {
   Required<double> free_length;  ///< l₀ [m]
 
   void check(std::string const& name) const {
-    require_not_negative(stiffness, name + ": the spring stiffness");
-    require_not_negative(damping, name + ": the damping");
-    require_not_negative(free_length, name + ": the free length");
+    require_not_negative(stiffness, name, ": the spring stiffness");
+    require_not_negative(damping, name, ": the damping");
+    require_not_negative(free_length, name, ": the free length");
   }
 
   /// With d = r_b − r_a, l = |d|: f_a = N d/l, f_b = −f_a. For l₀ = 0 the spring passes through l = 0

@@ -33,8 +33,7 @@ struct AdamsBashforthMoulton {
     require_positive(absolute_tolerance, "AdamsBashforthMoulton: the absolute tolerance");
     require_positive(smallest_step, "AdamsBashforthMoulton: the smallest step");
     if (max_order < 1 || max_order > order)
-      throw InvalidInput("AdamsBashforthMoulton: max_order must lie in [1, 12], but is " + std::to_string(max_order) +
-                         ".");
+      throw InvalidInput{"AdamsBashforthMoulton: max_order must lie in [1, 12], but is ", max_order, "."};
     stabilisation.check();
   }
 
@@ -122,9 +121,8 @@ struct AdamsBashforthMoulton {
         h *= 0.5;
       }
       if (!(h >= smallest_step))
-        throw StepTooSmall("AdamsBashforthMoulton: the error asks for a step below " + number(smallest_step) +
-                           " s at t = " + number(x.t) +
-                           " s. The model is stiff or jumps here: use an implicit integrator or name the corner.");
+        throw StepTooSmall{"AdamsBashforthMoulton: the error asks for a step below ", smallest_step, " s at t = ", x.t,
+                           " s. The model is stiff or jumps here: use an implicit integrator or name the corner."};
     }
     w.y += w.correction;
     w.split(system);

@@ -41,8 +41,7 @@ struct CoordinatePartitioning {
     require_positive(tolerance, "CoordinatePartitioning: the tolerance");
     require_count(max_iterations, "CoordinatePartitioning: max_iterations");
     if (!(largest_ratio >= 1.0))
-      throw InvalidInput("CoordinatePartitioning: largest_ratio must be at least 1, but is " + number(largest_ratio) +
-                         ".");
+      throw InvalidInput{"CoordinatePartitioning: largest_ratio must be at least 1, but is ", largest_ratio, "."};
   }
   void start(Scratch& s) const {
     s.rows.forget();
@@ -59,8 +58,8 @@ struct CoordinatePartitioning {
       reduce(system, s, s.rows, q, v, t);
       if (s.phi.cwiseAbs().maxCoeff() <= enough) break;
       if (k == max_iterations)
-        throw NewtonStalled("CoordinatePartitioning: the positions cannot be brought back to the joints at t = " +
-                            number(t) + " s. Take a smaller step.");
+        throw NewtonStalled{"CoordinatePartitioning: the positions cannot be brought back to the joints at t = ", t,
+                            " s. Take a smaller step."};
       s.rows.solution(0, s.delta);
       system.plus(q, s.delta, s.next);
       q.swap(s.next);

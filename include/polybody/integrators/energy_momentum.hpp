@@ -21,21 +21,6 @@ struct EnergyMomentum {
     newton.check(name);
   }
 
-  template <class Solver>
-  auto workspace(System& system) const {
-    return method().template workspace<Solver>(system);
-  }
-  template <class W>
-  void start(System& system, State& x, double h, W& w) const {
-    check();
-    method().start(system, x, h, w);
-  }
-  template <class W>
-  StepReport step(System& system, State& x, double h, W& w) const {
-    return method().step(system, x, h, w);
-  }
-
- private:
   ConservingStep method() const { return {name, 0.0, tolerance, newton}; }
 };
 
@@ -56,26 +41,11 @@ struct EnergyDecaying {
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
   void check() const {
     if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
-      throw InvalidInput("EnergyDecaying: rho_inf must lie in [0, 1], but is " + number(rho_inf) + ".");
+      throw InvalidInput{"EnergyDecaying: rho_inf must lie in [0, 1], but is ", rho_inf, "."};
     require_positive(tolerance, "EnergyDecaying: the tolerance");
     newton.check(name);
   }
 
-  template <class Solver>
-  auto workspace(System& system) const {
-    return method().template workspace<Solver>(system);
-  }
-  template <class W>
-  void start(System& system, State& x, double h, W& w) const {
-    check();
-    method().start(system, x, h, w);
-  }
-  template <class W>
-  StepReport step(System& system, State& x, double h, W& w) const {
-    return method().step(system, x, h, w);
-  }
-
- private:
   ConservingStep method() const { return {name, 0.5 * (1.0 - rho_inf) / (1.0 + rho_inf), tolerance, newton}; }
 };
 

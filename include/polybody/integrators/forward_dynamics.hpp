@@ -33,7 +33,7 @@ std::string whose_force(System const& s) {
   for (Action<double> const& action : s.data().actions)
     for (double const w : action.w)
       if (!(std::abs(w) <= largest_number))
-        return ", that of \"" + s.layout().forces[std::size_t(action.source)].name + '"';
+        return sentence_of({", that of \"", s.layout().forces[std::size_t(action.source)].name, "\""});
   return "";
 }
 /// The same as a sentence of its own, for motions that it may have caused.
@@ -46,25 +46,39 @@ std::string and_whose_force(System const& s) {
 template <class = void>
 void require_finite_force(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
-    throw NonFinite("A force on " + s.name_of(i) + how_not_finite(x[i]) + " at t = " + number(s.at().t) + " s" +
-                    whose_force(s) +
-                    ". Look at the forces applied to it, whose markers may coincide, and at the state before.");
+    throw NonFinite{"A force on ",
+                    s.name_of(i),
+                    how_not_finite(x[i]),
+                    " at t = ",
+                    s.at().t,
+                    " s",
+                    whose_force(s),
+                    ". Look at the forces applied to it, whose markers may coincide, and at the state before."};
 }
 /// \throws NonFinite naming joint and time when an entry of x (by rows) is NaN or infinite.
 template <class = void>
 void require_finite_rows(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
-    throw NonFinite("The motion at " + s.name_of(s.speeds() + i) + how_not_finite(x[i]) + " at t = " +
-                    number(s.at().t) + " s. Look at the state before, or take a smaller step." + and_whose_force(s));
+    throw NonFinite{"The motion at ",
+                    s.name_of(s.speeds() + i),
+                    how_not_finite(x[i]),
+                    " at t = ",
+                    s.at().t,
+                    " s. Look at the state before, or take a smaller step.",
+                    and_whose_force(s)};
 }
 /// What a step ends at. \throws NonFinite naming body and time when a coordinate or a speed is NaN or infinite.
 template <class = void>
 void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
   Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
   if (in_v < 0 && in_q < 0) return;
-  throw NonFinite("The motion of " + (in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)) +
-                  how_not_finite(in_v < 0 ? q[in_q] : v[in_v]) + " at t = " + number(t) +
-                  " s. Look at its speed and the forces on it before." + and_whose_force(s));
+  throw NonFinite{"The motion of ",
+                  (in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)),
+                  how_not_finite(in_v < 0 ? q[in_q] : v[in_v]),
+                  " at t = ",
+                  t,
+                  " s. Look at its speed and the forces on it before.",
+                  and_whose_force(s)};
 }
 /// \throws NonFinite when the place of the last evaluation is none: before a matrix is called singular there.
 template <class = void>
@@ -72,30 +86,39 @@ void require_finite_place(System const& s) {
   auto const& [q, v, t] = s.at();
   Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
   if (in_v < 0 && in_q < 0) return;
-  throw NonFinite("The motion of " + (in_v < 0 ? s.layout().name_of_coordinate(in_q) : s.layout().name_of(in_v)) +
-                  how_not_finite(in_v < 0 ? q[in_q] : v[in_v]) + " at t = " + number(t) +
-                  " s. Look at the forces on it, or take a smaller step." + and_whose_force(s));
+  throw NonFinite{"The motion of ",
+                  (in_v < 0 ? s.layout().name_of_coordinate(in_q) : s.layout().name_of(in_v)),
+                  how_not_finite(in_v < 0 ? q[in_q] : v[in_v]),
+                  " at t = ",
+                  t,
+                  " s. Look at the forces on it, or take a smaller step.",
+                  and_whose_force(s)};
 }
 /// The equations at the last evaluation, whose right-hand side is `rhs`, have no finite solution. Where numbers in them
 /// are too large, that is the reason; else the matrix is singular, first noticed at `who`.
 /// \throws NonFinite, LinearSolverSingular.
 template <class = void>
-[[noreturn]] void throw_unsolvable(System const& s, VecX const& rhs, std::string const& who) {
+[[noreturn, gnu::cold]] void throw_unsolvable(System const& s, VecX const& rhs, std::string const& who) {
   double const t = s.at().t;
   require_finite_place(s);
   if (Index const i = first_not_finite(rhs); i >= 0)
-    throw NonFinite("The right-hand side of " + s.name_of(i) + how_not_finite(rhs[i]) + " at t = " + number(t) +
-                    " s. Look at the forces on it and at its speed." + and_whose_force(s));
-  throw LinearSolverSingular(
-      "The equations of motion have no unique acceleration at t = " + number(t) + " s; the pivot is lost at " + who +
-      ". Look for a joint that repeats another, or a body without inertia that is free to move.");
+    throw NonFinite{"The right-hand side of ",
+                    s.name_of(i),
+                    how_not_finite(rhs[i]),
+                    " at t = ",
+                    t,
+                    " s. Look at the forces on it and at its speed.",
+                    and_whose_force(s)};
+  throw LinearSolverSingular{
+      "The equations of motion have no unique acceleration at t = ", t, " s; the pivot is lost at ", who,
+      ". Look for a joint that repeats another, or a body without inertia that is free to move."};
 }
 }  // namespace detail
 
 template <LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:
-  explicit ForwardDynamics(System& system)
+  [[gnu::cold]] explicit ForwardDynamics(System& system)
       : zero_a_(VecX::Zero(system.speeds())),
         zero_lambda_(VecX::Zero(system.rows())),
         r_(VecX::Zero(system.speeds())),

@@ -27,26 +27,11 @@ struct GeneralizedAlpha {
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
   void check() const {
     if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
-      throw InvalidInput("GeneralizedAlpha: rho_inf must lie in [0, 1], but is " + number(rho_inf) + ".");
+      throw InvalidInput{"GeneralizedAlpha: rho_inf must lie in [0, 1], but is ", rho_inf, "."};
     require_positive(tolerance, "GeneralizedAlpha: the tolerance");
     newton.check(name);
   }
 
-  template <class Solver>
-  auto workspace(System& system) const {
-    return method().template workspace<Solver>(system);
-  }
-  template <class W>
-  void start(System& system, State& x, double h, W& w) const {
-    check();
-    method().start(system, x, h, w);
-  }
-  template <class W>
-  StepReport step(System& system, State& x, double h, W& w) const {
-    return method().step(system, x, h, w);
-  }
-
- private:
   AlphaMethod method() const {
     double const alpha_m = (2.0 * rho_inf - 1.0) / (rho_inf + 1.0), alpha_f = rho_inf / (rho_inf + 1.0);
     double const gamma = 0.5 - alpha_m + alpha_f, beta = 0.25 * (gamma + 0.5) * (gamma + 0.5);

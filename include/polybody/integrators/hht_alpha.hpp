@@ -22,26 +22,11 @@ struct HhtAlpha {
   /// \throws InvalidInput unless −1/3 ≤ α ≤ 0 and the tolerance is positive.
   void check() const {
     if (!(alpha >= -1.0 / 3.0 && alpha <= 0.0))
-      throw InvalidInput("HhtAlpha: alpha must lie in [-1/3, 0], but is " + number(alpha) + ".");
+      throw InvalidInput{"HhtAlpha: alpha must lie in [-1/3, 0], but is ", alpha, "."};
     require_positive(tolerance, "HhtAlpha: the tolerance");
     newton.check(name);
   }
 
-  template <class Solver>
-  auto workspace(System& system) const {
-    return method().template workspace<Solver>(system);
-  }
-  template <class W>
-  void start(System& system, State& x, double h, W& w) const {
-    check();
-    method().start(system, x, h, w);
-  }
-  template <class W>
-  StepReport step(System& system, State& x, double h, W& w) const {
-    return method().step(system, x, h, w);
-  }
-
- private:
   AlphaMethod method() const {
     double const alpha_m = 0.0, alpha_f = -alpha, gamma = 0.5 - alpha, beta = 0.25 * (1.0 - alpha) * (1.0 - alpha);
     return {name, alpha_m, alpha_f, gamma, beta, tolerance, newton, start_correction, second_order_terms, stabilised};

@@ -33,27 +33,47 @@ concept NamesStableStep = requires(double omega, double rate) {
   { I::stable_step(omega, rate) } -> std::convertible_to<double>;
 };
 
-/// An integrator is a value with options that steps a `System`, of whatever origin. Its workspace is allocated once:
-///   auto w = integrator.template workspace<Solver>(system);
-///   integrator.start(system, x, h, w);      after a start, a jump or an event
-///   integrator.step(system, x, h, w);       x is untouched when it throws; takes at most h
-/// The workspace has a member `forward`, a `ForwardDynamics<Solver>`. Static members say what it is and what it asks:
+/// A method takes steps of a `System`, of whatever origin. Its workspace is allocated once:
+///   auto w = method.template workspace<Solver>(system);
+///   method.start(system, x, h, w);      after a start, a jump or an event
+///   method.step(system, x, h, w);       x is untouched when it throws; takes at most h
+/// The workspace has a member `forward`, a `ForwardDynamics<Solver>`.
+template <class M, class Solver = DefaultSolver>
+concept StepMethod =
+    requires(M const m, System& system, State& x, double h, decltype(m.template workspace<Solver>(system))& workspace) {
+      m.start(system, x, h, workspace);
+      { m.step(system, x, h, workspace) } -> std::same_as<StepReport>;
+      { workspace.forward } -> std::same_as<ForwardDynamics<Solver>&>;
+    };
+
+/// What takes an integrator's steps: the method that its `method()` makes of its options, or the integrator itself.
+/// \throws InvalidInput for options that its `check` refuses.
+template <class I>
+auto method_of(I const& integrator) {
+  integrator.check();
+  if constexpr (requires { integrator.method(); })
+    return integrator.method();
+  else
+    return integrator;
+}
+template <class I>
+using MethodOf = decltype(method_of(std::declval<I const&>()));
+
+/// An integrator is a value with options, `check()`, and a method: `method()` makes it, or the integrator is one
+/// itself. Static members say what it is and what it asks:
 ///   name, order, accepts_rows
 ///   entries                   the groups of entries that a step calls (`Entries::motion` where it is not there)
 ///   controls_step             it chooses its step                             } true, or not there
 ///   needs_constant_mass       it asks for bodies of constant mass             }
 ///   solves_stages_together    one linear system holds the model several times }
 template <class I, class Solver = DefaultSolver>
-concept Integrator =
-    requires(I const i, System& system, State& x, double h, decltype(i.template workspace<Solver>(system))& workspace) {
-      { I::name } -> std::convertible_to<char const*>;
-      { I::order } -> std::convertible_to<int>;
-      { I::accepts_rows } -> std::convertible_to<bool>;
-      i.check();
-      i.start(system, x, h, workspace);
-      { i.step(system, x, h, workspace) } -> std::same_as<StepReport>;
-      { workspace.forward } -> std::same_as<ForwardDynamics<Solver>&>;
-    };
+concept Integrator = requires(I const i) {
+  { I::name } -> std::convertible_to<char const*>;
+  { I::order } -> std::convertible_to<int>;
+  { I::accepts_rows } -> std::convertible_to<bool>;
+  i.check();
+  requires StepMethod<MethodOf<I>, Solver>;
+};
 
 /// The groups of entries that integrator I asks of a model.
 template <class I>

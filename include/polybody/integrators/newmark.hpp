@@ -22,28 +22,12 @@ struct Newmark {
   /// \throws InvalidInput unless γ ≥ ½, β > 0 and the tolerance is positive.
   void check() const {
     if (!(gamma >= 0.5) || !std::isfinite(gamma))
-      throw InvalidInput("Newmark: gamma must be at least 1/2, but is " + number(gamma) +
-                         ": below, every motion grows.");
+      throw InvalidInput{"Newmark: gamma must be at least 1/2, but is ", gamma, ": below, every motion grows."};
     require_positive(beta, "Newmark: beta (for an explicit method take CentralDifference)");
     require_positive(tolerance, "Newmark: the tolerance");
     newton.check(name);
   }
 
-  template <class Solver>
-  auto workspace(System& system) const {
-    return method().template workspace<Solver>(system);
-  }
-  template <class W>
-  void start(System& system, State& x, double h, W& w) const {
-    check();
-    method().start(system, x, h, w);
-  }
-  template <class W>
-  StepReport step(System& system, State& x, double h, W& w) const {
-    return method().step(system, x, h, w);
-  }
-
- private:
   AlphaMethod method() const {
     double const alpha_m = 0.0, alpha_f = 0.0;
     return {name, alpha_m, alpha_f, gamma, beta, tolerance, newton, gamma == 0.5, second_order_terms, stabilised};
@@ -70,21 +54,6 @@ struct Trapezoidal {
     newton.check(name);
   }
 
-  template <class Solver>
-  auto workspace(System& system) const {
-    return method().template workspace<Solver>(system);
-  }
-  template <class W>
-  void start(System& system, State& x, double h, W& w) const {
-    check();
-    method().start(system, x, h, w);
-  }
-  template <class W>
-  StepReport step(System& system, State& x, double h, W& w) const {
-    return method().step(system, x, h, w);
-  }
-
- private:
   AlphaMethod method() const {
     double const alpha_m = 0.0, alpha_f = 0.0, gamma = 0.5, beta = 0.25;
     return {name, alpha_m, alpha_f, gamma, beta, tolerance, newton, start_correction, second_order_terms, stabilised};

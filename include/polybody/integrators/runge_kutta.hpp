@@ -179,9 +179,8 @@ struct DormandPrince {
       ++report.rejected;
       h *= std::isfinite(error) ? factor : 0.2;
       if (h < smallest_step)
-        throw StepTooSmall("DormandPrince: the error asks for a step below " + number(smallest_step) +
-                           " s at t = " + number(x.t) +
-                           " s. The model is stiff or jumps here: use an implicit integrator or name the corner.");
+        throw StepTooSmall{"DormandPrince: the error asks for a step below ", smallest_step, " s at t = ", x.t,
+                           " s. The model is stiff or jumps here: use an implicit integrator or name the corner."};
     }
   }
 

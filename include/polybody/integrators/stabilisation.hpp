@@ -80,8 +80,8 @@ struct Projection {
     for (int k = 0;; ++k) {
       if (forward.project_positions_once(system, q, v, t) <= enough) break;
       if (k == max_iterations)
-        throw NewtonStalled("Projection: the positions cannot be brought back to the joints at t = " + number(t) +
-                            " s. Take a smaller step.");
+        throw NewtonStalled{"Projection: the positions cannot be brought back to the joints at t = ", t,
+                            " s. Take a smaller step."};
     }
     forward.project_velocities(system, q, v, t);
   }

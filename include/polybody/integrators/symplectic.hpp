@@ -108,8 +108,8 @@ struct Rattle {
       w.dq += w.change;
       system.plus(x.q, w.dq, w.q);
     }
-    throw NewtonStalled("Rattle: the positions cannot be brought to the joints at t = " + number(x.t + h) +
-                        " s. Take a smaller step.");
+    throw NewtonStalled{"Rattle: the positions cannot be brought to the joints at t = ", x.t + h,
+                        " s. Take a smaller step."};
   }
 };
 

@@ -42,7 +42,7 @@ class AtomicFile {
   /// not a regular file.
   explicit AtomicFile(std::filesystem::path const& file) : name_(file.string()) {
     namespace fs = std::filesystem;
-    if (!file.has_filename()) throw IoError("file '" + name_ + "': the name of a file is missing");
+    if (!file.has_filename()) throw IoError{"file '", name_, "': the name of a file is missing"};
     std::error_code reason;
     fs::path const whole = fs::absolute(file, reason);
     if (reason) fail("its folder cannot be found", reason);
@@ -50,7 +50,7 @@ class AtomicFile {
     if (reason) fail("its folder cannot be created", reason);
     target_ = fs::is_symlink(whole, reason) ? fs::weakly_canonical(whole, reason) : whole;
     if (fs::exists(target_, reason) && !fs::is_regular_file(target_, reason))
-      throw IoError("file '" + name_ + "' exists and is not a regular file; choose another name");
+      throw IoError{"file '", name_, "' exists and is not a regular file; choose another name"};
     temporary_ = detail::temporary_beside(target_);
     file_.reset(std::fopen(temporary_.string().c_str(), "wbx"));
     if (!file_) fail("cannot be created", {errno, std::generic_category()});
@@ -84,7 +84,7 @@ class AtomicFile {
   /// Appends `bytes`. Throws IoError if the system refuses them (a full disk, for one) and
   /// InvalidInput if the file is closed.
   void write(std::string_view bytes) {
-    if (!file_) throw InvalidInput("file '" + name_ + "' is already closed; nothing can be added");
+    if (!file_) throw InvalidInput{"file '", name_, "' is already closed; nothing can be added"};
     errno = 0;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) return;
     failed_ = true;
@@ -124,8 +124,8 @@ class AtomicFile {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
   };
 
-  [[noreturn]] void fail(std::string const& what, std::error_code reason) const {
-    throw IoError("file '" + name_ + "' " + what + (reason ? ": " + reason.message() : ""));
+  [[noreturn, gnu::cold]] void fail(std::string const& what, std::error_code reason) const {
+    throw IoError{"file '", name_, "' ", what, (reason ? ": " + reason.message() : "")};
   }
 
   std::string name_;

@@ -13,7 +13,7 @@ namespace detail {
 /// \throws InvalidInput unless there are runs, each with whole histories and the outputs of the first.
 template <class = void>  // compiled where it is used
 void check(Comparison const& c, std::string const& what) {
-  if (c.runs.empty()) throw InvalidInput(what + ": the comparison has no runs. Give `compare` a formulation.");
+  if (c.runs.empty()) throw InvalidInput{what, ": the comparison has no runs. Give `compare` a formulation."};
   for (ComparedRun const& run : c.runs) {
     std::size_t const n = run.times.size(), outputs = run.output_names.size();
     bool whole = n > 0 && run.violations.size() == n && run.energies.size() == n && run.joint_forces.size() == n &&
@@ -21,10 +21,10 @@ void check(Comparison const& c, std::string const& what) {
                  run.output_names == c.runs.front().output_names;
     for (auto const& history : run.outputs) whole = whole && history.size() == n;
     if (!whole)
-      throw InvalidInput(
-          what + ": the run \"" + run.name +
+      throw InvalidInput{
+          what, ": the run \"", run.name,
           "\" lacks times, or its histories and outputs are not as many as its times and the first run's outputs. "
-          "Take it from `compare`.");
+          "Take it from `compare`."};
   }
 }
 
@@ -204,8 +204,13 @@ Figure work_precision_figure(WorkPrecision const& w) {
                 .log_y = true};
   for (WorkCurve const& curve : w.curves) {
     if (curve.output != w.curves.front().output)
-      throw InvalidInput("work_precision_figure: \"" + curve.name + "\" is for the output \"" + curve.output +
-                         "\", not \"" + w.curves.front().output + "\". Draw it in another figure.");
+      throw InvalidInput{"work_precision_figure: \"",
+                         curve.name,
+                         "\" is for the output \"",
+                         curve.output,
+                         "\", not \"",
+                         w.curves.front().output,
+                         "\". Draw it in another figure."};
     Curve drawn{.label = curve.name, .style = "linespoints", .color = int(&curve - w.curves.data())};
     for (WorkPoint const& p : curve.points)
       if (p.failure.empty()) {

@@ -68,12 +68,12 @@ class Csv {
 
  private:
   static void check_heads(std::filesystem::path const& file, std::vector<std::string> const& columns) {
-    if (columns.empty()) throw InvalidInput("file '" + file.string() + "': a table needs at least one column");
+    if (columns.empty()) throw InvalidInput{"file '", file.string(), "': a table needs at least one column"};
     std::set<std::string_view> seen;
     for (auto const& head : columns) {
-      if (head.empty()) throw InvalidInput("file '" + file.string() + "': a column head is empty");
+      if (head.empty()) throw InvalidInput{"file '", file.string(), "': a column head is empty"};
       if (!seen.insert(head).second)
-        throw InvalidInput("file '" + file.string() + "': two columns are called '" + head + "'");
+        throw InvalidInput{"file '", file.string(), "': two columns are called '", head, "'"};
     }
   }
 
@@ -81,12 +81,10 @@ class Csv {
   void write_row(std::span<double const> values, std::size_t texts) {
     auto const where = [&] { return "file '" + file_.name() + "', row " + std::to_string(rows_ + 1); };
     if (values.size() + texts != columns_.size())
-      throw InvalidInput(where() + ": " + std::to_string(values.size() + texts) + " values for " +
-                         std::to_string(columns_.size()) + " columns");
+      throw InvalidInput{where(), ": ", values.size() + texts, " values for ", columns_.size(), " columns"};
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i]))
-        throw InvalidInput(where() + ", column '" + columns_[i + texts] + "': the value is not finite (" +
-                           number(values[i]) + ")");
+        throw InvalidInput{where(), ", column '", columns_[i + texts], "': the value is not finite (", values[i], ")"};
       detail::append_digits(line_, values[i]);
       line_ += ',';
     }

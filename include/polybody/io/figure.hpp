@@ -44,7 +44,7 @@ template <class = void>  // compiled where it is used
 void check(Figure const& figure) {
   std::string where = "figure '" + figure.title + "'";
   auto const need = [&](bool good, std::string_view rule) {
-    if (!good) throw InvalidInput(where + ": " + std::string(rule));
+    if (!good) throw InvalidInput{where, ": ", rule};
   };
   auto const in = [](int value, int low, int high) { return low <= value && value <= high; };
   auto const is_finite = [](double value) { return std::isfinite(value); };

@@ -53,8 +53,8 @@ class FileInPlace {
   void require(bool done) const {
     if (!done) fail("cannot be written", {errno, std::generic_category()});
   }
-  [[noreturn]] void fail(std::string const& what, std::error_code reason) const {
-    throw IoError("file '" + name_ + "' " + what + (reason ? ": " + reason.message() : ""));
+  [[noreturn, gnu::cold]] void fail(std::string const& what, std::error_code reason) const {
+    throw IoError{"file '", name_, "' ", what, (reason ? ": " + reason.message() : "")};
   }
 
   std::string name_;

@@ -112,9 +112,9 @@ Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesys
                    bool draw = true) {
   std::string const name = stem.filename().string();
   if (name.empty() || std::ranges::any_of(name, [](unsigned char c) { return c < ' '; }))
-    throw InvalidInput("figure file '" + stem.string() + "': the name is empty or has a control sign");
+    throw InvalidInput{"figure file '", stem.string(), "': the name is empty or has a control sign"};
   if (figures.empty() || columns < 1)
-    throw InvalidInput("figure file '" + stem.string() + "': one figure and one column at least");
+    throw InvalidInput{"figure file '", stem.string(), "': one figure and one column at least"};
   int width = 0, height = 0;
   for (auto const& figure : figures) {
     detail::check(figure);
@@ -124,7 +124,7 @@ Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesys
   int const count = static_cast<int>(figures.size());
   int const across = std::min(columns, count), down = (count + across - 1) / across;
   if (across > 30000 / width || down > 30000 / height)
-    throw InvalidInput("figure file '" + stem.string() + "': larger than 30000 pixels; use fewer panels");
+    throw InvalidInput{"figure file '", stem.string(), "': larger than 30000 pixels; use fewer panels"};
 
   std::string const size = std::to_string(across * width) + ',' + std::to_string(down * height);
   std::string script = "# gnuplot script; run it from its own folder\n";

@@ -31,8 +31,8 @@ struct Table {
       if (columns[j] == name) ++found, place = j;
     }
     if (found != 1)
-      throw InvalidInput((found ? "more than one column is called '" : "no column is called '") + std::string(name) +
-                         "'; the table has " + (heads.empty() ? "none" : heads));
+      throw InvalidInput{(found ? "more than one column is called '" : "no column is called '"), name,
+                         "'; the table has ", (heads.empty() ? "none" : heads)};
     std::vector<double> values;
     for (auto const& row : rows) values.push_back(row.at(place));
     return values;
@@ -47,8 +47,8 @@ struct CsvReader {
   std::string name;  ///< the file, for messages
   std::size_t line = 1;
 
-  [[noreturn]] void fail(std::size_t at, std::string const& what) const {
-    throw IoError("file '" + name + "', line " + std::to_string(at) + ": " + what);
+  [[noreturn, gnu::cold]] void fail(std::size_t at, std::string const& what) const {
+    throw IoError{"file '", name, "', line ", at, ": ", what};
   }
 
   /// The next record; `at` becomes the line where it begins. Blank lines are passed over, the end
@@ -114,12 +114,12 @@ inline Table read_csv(std::filesystem::path const& file) {
   errno = 0;
   std::optional<std::string> const text = detail::content_of(file);
   if (!text)
-    throw IoError("file '" + name + "' cannot be read" + (errno ? ": " + std::generic_category().message(errno) : ""));
+    throw IoError{"file '", name, "' cannot be read", (errno ? ": " + std::generic_category().message(errno) : "")};
   detail::CsvReader reader{*text, name};
   if (reader.text.starts_with("\xEF\xBB\xBF")) reader.text.remove_prefix(3);
   std::size_t line = 1;
   Table table{reader.record(line), {}};
-  if (table.columns.empty()) throw IoError("file '" + name + "' is empty; a head line is needed");
+  if (table.columns.empty()) throw IoError{"file '", name, "' is empty; a head line is needed"};
   for (auto fields = reader.record(line); !fields.empty(); fields = reader.record(line)) {
     if (fields.size() != table.columns.size())
       reader.fail(line,

@@ -63,7 +63,7 @@ class Visual {
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24) {
     BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, body))];
-    if (pieces < 1) throw InvalidInput("\"" + body.name + "\": a sweep needs at least one piece.");
+    if (pieces < 1) throw InvalidInput{"\"", body.name, "\": a sweep needs at least one piece."};
     std::vector<Vec2> const ring = outline(bar, sides);
     int const n = int(ring.size());
     bool const stressed = HasSections<B> && bar.material;

@@ -122,13 +122,18 @@ class VtkWriterOf {
   /// \throws InvalidInput unless times rise, NonFinite, IoError.
   void write(State const& x) {
     if (!(x.t > last_))
-      throw InvalidInput("VtkWriter: the states of '" + file_.string() + "' must rise in time, but t = " + number(x.t) +
-                         " s follows " + number(last_) + " s.");
+      throw InvalidInput{"VtkWriter: the states of '",
+                         file_.string(),
+                         "' must rise in time, but t = ",
+                         x.t,
+                         " s follows ",
+                         last_,
+                         " s."};
     std::vector<VisualPart> const& parts = visual_->at(x);
     for (VisualPart const& part : parts)
       for (Vec3 const& p : part.surface.points)
         if (!p.allFinite())
-          throw NonFinite("VtkWriter: a point of \"" + part.name + "\" is not finite at t = " + number(x.t) + " s.");
+          throw NonFinite{"VtkWriter: a point of \"", part.name, "\" is not finite at t = ", x.t, " s."};
     std::string index = std::to_string(count_);
     index.insert(0, index.size() < 6 ? 6 - index.size() : 0, '0');
     std::filesystem::path const stem = file_.stem(), grid = stem / (stem.string() + "_" + index + ".vtu");
@@ -144,7 +149,7 @@ class VtkWriterOf {
  private:
   static void check(std::filesystem::path const& file) {
     if (file.extension() != ".pvd")
-      throw InvalidInput("VtkWriter: the name of a collection ends in .pvd, but this is '" + file.string() + "'.");
+      throw InvalidInput{"VtkWriter: the name of a collection ends in .pvd, but this is '", file.string(), "'."};
   }
   /// Writes an entry over the end of the collection, and the end behind it, by one call of the system.
   void add(std::string const& entry) {

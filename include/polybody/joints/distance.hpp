@@ -18,8 +18,8 @@ struct Distance {
   Mat3 triad() const { return Mat3::Identity(); }
   void check(std::string const& what) const {
     if (!(length > 0.0) || !std::isfinite(length))
-      throw InvalidInput(what + ": the length must be positive and finite, but is " + number(length) +
-                         ". Points that coincide are held by a Spherical or, in the plane, a planar::Revolute.");
+      throw InvalidInput{what, ": the length must be positive and finite, but is ", length,
+                         ". Points that coincide are held by a Spherical or, in the plane, a planar::Revolute."};
   }
 
   template <StateScalar T>

@@ -30,11 +30,12 @@ struct Gear {
   }
   void check(std::string const& what) const {
     if (teeth_a == 0 || teeth_b == 0 || (teeth_a < 0 && teeth_b < 0))
-      throw InvalidInput(what +
-                         ": both wheels need teeth, and only one of them can be a ring gear, with a negative number.");
+      throw InvalidInput{what,
+                         ": both wheels need teeth, and only one of them can be a ring gear, with a negative number."};
     if ((teeth_a < 0 || teeth_b < 0) && teeth_a + teeth_b >= 0)
-      throw InvalidInput(what + ": a ring gear must have more teeth than the wheel inside it, but the numbers are " +
-                         std::to_string(teeth_a) + " and " + std::to_string(teeth_b) + ".");
+      throw InvalidInput{what,    ": a ring gear must have more teeth than the wheel inside it, but the numbers are ",
+                         teeth_a, " and ",
+                         teeth_b, "."};
   }
 
   template <StateScalar T>

@@ -22,9 +22,9 @@ class JointAxis {
   /// \throws InvalidInput where it was left out; `what` names joint and direction.
   Vec3 const& told(std::string const& what) const {
     if (!given_)
-      throw InvalidInput(what +
+      throw InvalidInput{what,
                          " is not given. It has no default: give it as a unit vector, world axes at the reference "
-                         "configuration, such as {0, 0, 1}.");
+                         "configuration, such as {0, 0, 1}."};
     return value_;
   }
 

@@ -18,7 +18,7 @@ struct PrescribedDistance {
 
   Mat3 triad() const { return Mat3::Identity(); }
   void check(std::string const& what) const {
-    require_positive(length, what + ": the length");
+    require_positive(length, what, ": the length");
     check_drive(law, what + ": the law of time");
   }
   std::vector<double> corners() const { return corners_of(law); }

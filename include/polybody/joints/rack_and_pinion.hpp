@@ -28,7 +28,7 @@ struct RackAndPinion {
   }
   void check(std::string const& what) const {
     if (!std::isfinite(radius) || radius == 0.0)
-      throw InvalidInput(what + ": the radius must be finite and not zero, but is " + number(radius) + ".");
+      throw InvalidInput{what, ": the radius must be finite and not zero, but is ", radius, "."};
   }
 
   template <StateScalar T>

@@ -23,8 +23,8 @@ struct RevolutePin {
   }
   void check(std::string const& what) const {
     if (!(distance > 0.0) || !std::isfinite(distance))
-      throw InvalidInput(what + ": its points must stand a positive, finite distance apart along the axis, but it is " +
-                         number(distance) + ". Points that coincide are joined by a Revolute.");
+      throw InvalidInput{what, ": its points must stand a positive, finite distance apart along the axis, but it is ",
+                         distance, ". Points that coincide are joined by a Revolute."};
   }
 
   template <StateScalar T>

@@ -33,7 +33,7 @@ struct RollingDisc {
       throw InvalidInput("RollingDisc: the disc must not lie flat on the plane at the reference configuration.");
     return polybody::rows::triad_of(first.normalized(), own, "RollingDisc");
   }
-  void check(std::string const& what) const { require_positive(radius, what + ": the radius"); }
+  void check(std::string const& what) const { require_positive(radius, what, ": the radius"); }
 
   template <StateScalar T>
   Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -203,13 +203,13 @@ Mat3 columns(Vec3 const& x, Vec3 const& y, Vec3 const& z) {
 /// \throws InvalidInput unless they are unit vectors at right angles (to 1e-9).
 template <class = void>  // compiled where it is used
 Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
-  require_unit(first, what + ": the first axis");
-  require_unit(third, what + ": the second axis");
+  require_unit(first, what, ": the first axis");
+  require_unit(third, what, ": the second axis");
   if (std::abs(dot(first, third)) > 1e-9)
-    throw InvalidInput(what +
+    throw InvalidInput{what,
                        ": the two axes must be perpendicular at the reference configuration, but their scalar product "
-                       "is " +
-                       number(dot(first, third)) + ".");
+                       "is ",
+                       dot(first, third), "."};
   return columns(first, cross(third, first), third);
 }
 

@@ -55,12 +55,12 @@ struct Placement {
   /// \throws InvalidInput naming `what` unless finite and orthonormal, right-handed.
   template <class = void>  // compiled where it is used
   void check(std::string const& what) const {
-    require_finite(origin, what + ": the placement's origin");
+    require_finite(origin, what, ": the placement's origin");
     for (int i = 0; i < 3; ++i)
       if (std::abs(origin[i]) > largest_number)
-        throw InvalidInput(what + ": the placement's origin has a coordinate of " + number(origin[i]) +
-                           " m, whose square is not finite.");
-    require_finite(axes, what + ": the placement's axes");
+        throw InvalidInput{what, ": the placement's origin has a coordinate of ", origin[i],
+                           " m, whose square is not finite."};
+    require_finite(axes, what, ": the placement's axes");
     double off = 0.0, determinant = 0.0;  // off: |AᵀA − 1|²
     for (int i = 0; i < 3; ++i) {
       int const j = (i + 1) % 3, k = (i + 2) % 3;
@@ -71,7 +71,7 @@ struct Placement {
       }
     }
     if (std::sqrt(off) > 1e-9 || determinant < 0.0)
-      throw InvalidInput(what + ": the placement's axes must be orthonormal and right-handed.");
+      throw InvalidInput{what, ": the placement's axes must be orthonormal and right-handed."};
   }
 
   /// The angle about world z of a planar placement [rad].
@@ -80,7 +80,7 @@ struct Placement {
   double planar_angle(std::string const& what) const {
     check(what);
     if (std::abs(origin.z()) > 1e-12 || std::abs(axes(2, 2) - 1.0) > 1e-12)
-      throw InvalidInput(what + ": a planar body stands in the plane z = 0 and turns about z only.");
+      throw InvalidInput{what, ": a planar body stands in the plane z = 0 and turns about z only."};
     return std::atan2(axes(1, 0), axes(0, 0));
   }
 };

@@ -99,7 +99,7 @@ struct BodyHandle {
     try {
       return {model, index, point(on)};
     } catch (InvalidInput const& e) {
-      throw InvalidInput("\"" + name + "\": " + e.what());
+      throw InvalidInput{"\"", name, "\": ", e.what()};
     }
   }
 };

@@ -2,9 +2,12 @@
 /// \file
 /// The exceptions of the library. Each message names the object, where known the time, and the remedy.
 
+#include <concepts>
 #include <cstdio>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace polybody {
 
@@ -15,10 +18,52 @@ inline std::string number(double x) {
   return text;
 }
 
-/// Base of every exception that polybody throws.
+/// A part of a message: a text that outlives it, or a number.
+class MessagePart {
+ public:
+  MessagePart(char const* text) : text_(text) {}          // NOLINT(google-explicit-constructor)
+  MessagePart(std::string_view text) : text_(text) {}     // NOLINT(google-explicit-constructor)
+  MessagePart(std::string const& text) : text_(text) {}   // NOLINT(google-explicit-constructor)
+  MessagePart(char const& letter) : text_(&letter, 1) {}  // NOLINT(google-explicit-constructor)
+  template <class Number>
+    requires std::convertible_to<Number const&, double>
+  MessagePart(Number const& x) {  // NOLINT(google-explicit-constructor)
+    if constexpr (std::integral<Number>)
+      kind_ = Kind::count, count_ = static_cast<long long>(x);
+    else
+      kind_ = Kind::real, real_ = x;
+  }
+
+  [[gnu::cold]] void write_to(std::string& message) const {
+    if (kind_ == Kind::text)
+      message += text_;
+    else
+      message += kind_ == Kind::real ? number(real_) : std::to_string(count_);
+  }
+
+ private:
+  enum class Kind { text, real, count };
+  Kind kind_ = Kind::text;
+  union {
+    std::string_view text_;
+    double real_;
+    long long count_;
+  };
+};
+
+/// The parts of a message, one after the other. A chain of `+` compiles to three times as much code.
+[[gnu::cold]] inline std::string sentence_of(std::initializer_list<MessagePart> parts) {
+  std::string all;
+  for (MessagePart const& part : parts) part.write_to(all);
+  return all;
+}
+
+/// Base of every exception that polybody throws. It is made of a text, or of the parts of one:
+/// `throw InvalidInput{"The mass must be positive, but is ", mass, "."}`.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  Error(std::initializer_list<MessagePart> parts) : std::runtime_error(sentence_of(parts)) {}
 };
 
 /// A number, name or combination that cannot be meant: negative mass, zero axis, s outside the body.

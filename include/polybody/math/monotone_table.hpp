@@ -22,16 +22,20 @@ class MonotoneTable {
   /// slopes and areas between them are finite.
   explicit MonotoneTable(std::vector<Point> const& points, std::string const& what = "MonotoneTable") {
     if (points.size() < 2)
-      throw InvalidInput(what + ": a table needs two points at least, but has " + std::to_string(points.size()) + ".");
+      throw InvalidInput{what, ": a table needs two points at least, but has ", points.size(), "."};
     for (std::size_t i = 0; i < points.size(); ++i) {
       Point const& p = points[i];
       if (!std::isfinite(p.x) || !std::isfinite(p.y))
-        throw InvalidInput(what + ": point " + std::to_string(i + 1) + " of the table must be finite, but is (" +
-                           number(p.x) + ", " + number(p.y) + ").");
+        throw InvalidInput{what, ": point ", i + 1, " of the table must be finite, but is (", p.x, ", ", p.y, ")."};
       if (i > 0 && !(p.x > points[i - 1].x))
-        throw InvalidInput(what + ": the abscissae of the table must increase, but point " + std::to_string(i + 1) +
-                           " has " + number(p.x) + " after " + number(points[i - 1].x) +
-                           ". Sort the points and drop repeated ones.");
+        throw InvalidInput{what,
+                           ": the abscissae of the table must increase, but point ",
+                           i + 1,
+                           " has ",
+                           p.x,
+                           " after ",
+                           points[i - 1].x,
+                           ". Sort the points and drop repeated ones."};
       knots_.push_back({p.x, p.y, 0.0, 0.0});
     }
     set_slopes();
@@ -99,9 +103,14 @@ class MonotoneTable {
       double const y = std::abs(k.y) + h * (slope + h * (std::abs(c.a) + h * std::abs(c.b)));
       for (double const x : {slope, c.a, c.b, y, h * y, next.area, 1.0 / (h * h)})
         if (!(std::abs(x) <= largest_number))
-          throw InvalidInput(what + ": a value, slope or area of the table between its points " + std::to_string(i) +
-                             " and " + std::to_string(i + 1) + " is beyond " + number(largest_number) +
-                             ". Give smaller numbers, or abscissae that are farther apart.");
+          throw InvalidInput{what,
+                             ": a value, slope or area of the table between its points ",
+                             i,
+                             " and ",
+                             i + 1,
+                             " is beyond ",
+                             largest_number,
+                             ". Give smaller numbers, or abscissae that are farther apart."};
     }
   }
 

@@ -56,8 +56,10 @@ void check_drive(Law const& law, std::string const& what) {
     double const before = Motion(law(std::nextafter(t, -std::numeric_limits<double>::infinity()))).value;
     double const after = Motion(law(t)).value;
     if (!(std::abs(after - before) <= 1e-9 * (1.0 + std::abs(after))))
-      throw InvalidInput(what + ": its value jumps from " + number(before) + " to " + number(after) +
-                         " at t = " + number(t) + " s, but no body can. Go there in a while, by a Ramp or SmoothRamp.");
+      throw InvalidInput{what,   ": its value jumps from ",
+                         before, " to ",
+                         after,  " at t = ",
+                         t,      " s, but no body can. Go there in a while, by a Ramp or SmoothRamp."};
   }
 }
 
@@ -83,10 +85,9 @@ struct IntegralOf {
 namespace detail {
 
 inline void check_ramp(double target, double duration, double start, std::string const& what) {
-  require_positive(duration, what + ": the duration");
+  require_positive(duration, what, ": the duration");
   if (!std::isfinite(target) || !std::isfinite(start))
-    throw InvalidInput(what + ": target and start must be finite, but are " + number(target) + " and " + number(start) +
-                       ".");
+    throw InvalidInput{what, ": target and start must be finite, but are ", target, " and ", start, "."};
 }
 
 }  // namespace detail
@@ -103,10 +104,9 @@ struct Ramp {
 
   void check(std::string const& what) const {
     detail::check_ramp(target, duration, start, what);
-    require_not_negative(rounding, what + ": the rounding");
+    require_not_negative(rounding, what, ": the rounding");
     if (rounding > duration)
-      throw InvalidInput(what + ": the rounding " + number(rounding) + " s must not exceed the duration " +
-                         number(duration) + " s.");
+      throw InvalidInput{what, ": the rounding ", rounding, " s must not exceed the duration ", duration, " s."};
   }
   Motion operator()(double t) const {
     if (t < start - 0.5 * rounding) return {};
@@ -185,7 +185,7 @@ struct Constant {
   double value = 1.0;
 
   void check(std::string const& what) const {
-    if (!std::isfinite(value)) throw InvalidInput(what + ": the value must be finite, but is " + number(value) + ".");
+    if (!std::isfinite(value)) throw InvalidInput{what, ": the value must be finite, but is ", value, "."};
   }
   Motion operator()(double) const { return {value, 0.0, 0.0}; }
   double integral(double t) const { return value * t; }
@@ -199,8 +199,10 @@ struct Window {
 
   void check(std::string const& what) const {
     if (!(from < to) || !std::isfinite(value))
-      throw InvalidInput(what + ": a window needs from < to and a finite value, but has from = " + number(from) +
-                         ", to = " + number(to) + ", value = " + number(value) + ".");
+      throw InvalidInput{what,  ": a window needs from < to and a finite value, but has from = ",
+                         from,  ", to = ",
+                         to,    ", value = ",
+                         value, "."};
   }
   Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }
   std::vector<double> corners() const { return {from, to}; }

@@ -61,32 +61,29 @@ struct Required {
   constexpr operator T() const { return value; }  // NOLINT(google-explicit-constructor)
 };
 
-/// \throws InvalidInput unless `x` is finite and positive; `what` names the object and the quantity.
-inline void require_positive(double x, std::string_view what) {
-  if (!(x > 0.0) || !std::isfinite(x))
-    throw InvalidInput(std::string(what) + " must be positive and finite, but is " + number(x) + ".");
+/// \throws InvalidInput unless `x` is finite and positive; `what` names the object and the quantity, `part` goes on.
+inline void require_positive(double x, std::string_view what, std::string_view part = {}) {
+  if (!(x > 0.0) || !std::isfinite(x)) throw InvalidInput{what, part, " must be positive and finite, but is ", x, "."};
 }
 
 /// \throws InvalidInput unless `x` is finite and not negative.
-inline void require_not_negative(double x, std::string_view what) {
+inline void require_not_negative(double x, std::string_view what, std::string_view part = {}) {
   if (!(x >= 0.0) || !std::isfinite(x))
-    throw InvalidInput(std::string(what) + " must be zero or positive and finite, but is " + number(x) + ".");
+    throw InvalidInput{what, part, " must be zero or positive and finite, but is ", x, "."};
 }
 
 /// \throws InvalidInput unless 1 ≤ n ≤ 10⁶: what is repeated is tried once at least, and comes to an end.
-inline void require_count(int n, std::string_view what) {
-  if (n < 1 || n > 1'000'000)
-    throw InvalidInput(std::string(what) + " must lie in [1, 1000000], but is " + std::to_string(n) + ".");
+inline void require_count(int n, std::string_view what, std::string_view part = {}) {
+  if (n < 1 || n > 1'000'000) throw InvalidInput{what, part, " must lie in [1, 1000000], but is ", n, "."};
 }
 
 /// \throws InvalidInput unless every entry of `x` is finite.
 template <class Derived>
-void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what) {
+void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what, std::string_view part = {}) {
   typename Derived::PlainObject const& m = x.derived();  // an expression is evaluated; in loops, which compile fast
   for (Index j = 0; j < m.cols(); ++j)
     for (Index i = 0; i < m.rows(); ++i)
-      if (!std::isfinite(m(i, j)))
-        throw InvalidInput(std::string(what) + " must be finite, but has a NaN or an infinity.");
+      if (!std::isfinite(m(i, j))) throw InvalidInput{what, part, " must be finite, but has a NaN or an infinity."};
 }
 
 /// Beyond it squares, and with them energies and norms, are no longer finite.
@@ -99,10 +96,10 @@ inline Index first_not_finite(VecX const& x) {
   return -1;
 }
 /// \throws InvalidInput for a number other than zero whose square overflows or vanishes.
-inline void require_size(double x, std::string_view what) {
+inline void require_size(double x, std::string_view what, std::string_view part = {}) {
   if (x != 0.0 && !(std::abs(x) >= 1.0 / largest_number && std::abs(x) <= largest_number))
-    throw InvalidInput(std::string(what) +
-                       " must be of a size in [1e-150, 1e+150], where squares are numbers, but is " + number(x) + ".");
+    throw InvalidInput{what, part, " must be of a size in [1e-150, 1e+150], where squares are numbers, but is ", x,
+                       "."};
 }
 /// " is not finite", or by how much x is too large.
 template <class = void>  // compiled where it is used
@@ -123,12 +120,11 @@ inline double largest_size(VecX const& x) {
 }
 
 /// \throws InvalidInput unless `axis` has length one (to 1e-9).
-inline void require_unit(Vec3 const& axis, std::string_view what) {
-  require_finite(axis, what);
+inline void require_unit(Vec3 const& axis, std::string_view what, std::string_view part = {}) {
+  require_finite(axis, what, part);
   double const length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
   if (std::abs(length - 1.0) > 1e-9)
-    throw InvalidInput(std::string(what) + " must be a unit vector, but has length " + number(length) +
-                       ". Normalise it.");
+    throw InvalidInput{what, part, " must be a unit vector, but has length ", length, ". Normalise it."};
 }
 
 }  // namespace polybody

@@ -37,20 +37,23 @@ class Workers {
   static constexpr int most = 4096;  ///< threads
 
   /// `threads` counts the caller: 1 starts none. \throws InvalidInput for less, and for more than the system starts.
-  explicit Workers(int threads) : thrown_(std::size_t(std::clamp(threads, 0, most))) {
-    if (threads < 1)
-      throw InvalidInput("Workers: at least one thread is needed, but " + std::to_string(threads) + " are asked for.");
+  [[gnu::cold]] explicit Workers(int threads) : thrown_(std::size_t(std::clamp(threads, 0, most))) {
+    if (threads < 1) throw InvalidInput{"Workers: at least one thread is needed, but ", threads, " are asked for."};
     if (threads > most)
-      throw InvalidInput("Workers: " + std::to_string(threads) + " threads are asked for, more than the " +
-                         std::to_string(most) + " that are served. Ask for no more than there are processors.");
+      throw InvalidInput{"Workers: ", threads, " threads are asked for, more than the ", most,
+                         " that are served. Ask for no more than there are processors."};
     try {
       for (int i = 1; i < threads; ++i) others_.emplace_back([this, i] { serve(i); });
     } catch (std::system_error const& error) {
       std::size_t const started = others_.size() + 1;
       end();
-      throw InvalidInput("Workers: of " + std::to_string(threads) + " threads the system starts " +
-                         std::to_string(started) + " only (" + error.what() +
-                         "). Ask for no more than it has processors.");
+      throw InvalidInput{"Workers: of ",
+                         threads,
+                         " threads the system starts ",
+                         started,
+                         " only (",
+                         error.what(),
+                         "). Ask for no more than it has processors."};
     }
   }
   Workers(Workers const&) = delete;

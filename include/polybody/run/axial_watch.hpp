@@ -28,7 +28,7 @@ class AxialWatch {
 
  private:
   template <class = void>  // compiled where it is used
-  void ask(System& system, State const& x, std::vector<std::string>& warnings) {
+  [[gnu::cold]] void ask(System& system, State const& x, std::vector<std::string>& warnings) {
     next_ = x.t + every_;
     collect(system, x);
     for (std::size_t i = 0; i < loads_.size(); ++i) {
@@ -47,17 +47,18 @@ class AxialWatch {
       if (!(std::abs(share) >= worth_warning && std::abs(share) > largest_)) continue;
       largest_ = std::abs(share);
       std::erase(warnings, said_);
-      said_ = "The beams of \"" + body.name + "\" are " + (share < 0.0 ? "pressed" : "pulled") +
-              " at t = " + number(x.t) + " s with " + number(100.0 * largest_) +
-              " % of the load that buckles them, which its deflection leaves out: it is off by about that part. Make "
-              "the body with .stiffening = true.";
+      said_ = sentence_of(
+          {"The beams of \"", body.name, "\" are ", (share < 0.0 ? "pressed" : "pulled"), " at t = ", x.t, " s with ",
+           100.0 * largest_,
+           " % of the load that buckles them, which its deflection leaves out: it is off by about that part. Make "
+           "the body with .stiffening = true."});
       warnings.push_back(said_);
     }
   }
 
   /// What joints and forces do to each body.
   template <class = void>  // compiled where it is used
-  void collect(System& system, State const& x) {
+  [[gnu::cold]] void collect(System& system, State const& x) {
     loads_.resize(system.layout().bodies.size());
     for (auto& of_body : loads_) of_body.clear();
     system.evaluate(x.q, x.v, x.t);
@@ -72,7 +73,7 @@ class AxialWatch {
     for (Action<double> const& action : system.data().actions) add(system, action.marker, action.w, 1.0);
   }
   /// sign · w = [f; m] about the marker, world axes.
-  void add(System const& system, Index marker, double const* w, double sign) {
+  [[gnu::cold]] void add(System const& system, Index marker, double const* w, double sign) {
     Index const body = system.layout().owners[std::size_t(marker)];
     if (body < 0) return;
     loads_[std::size_t(body)].push_back(

@@ -42,16 +42,16 @@ struct BodyRecord {
 /// intervals longer than `largest` [s]; 0: than 1.5 times the median.
 template <class = void>  // compiled where it is used
 void require_no_gaps(BodyRecord const& record, double largest, std::string const& who) {
-  if (record.samples.size() < 2) throw InvalidInput(who + "its record has fewer than two samples.");
-  require_not_negative(largest, who + "the largest gap");
+  if (record.samples.size() < 2) throw InvalidInput{who, "its record has fewer than two samples."};
+  require_not_negative(largest, who, "the largest gap");
   auto const between = [&](std::size_t k) {
-    return number(record.samples[k].t) + " s and " + number(record.samples[k + 1].t) + " s";
+    return sentence_of({record.samples[k].t, " s and ", record.samples[k + 1].t, " s"});
   };
   std::vector<double> intervals;
   for (std::size_t k = 0; k + 1 < record.samples.size(); ++k) {
     intervals.push_back(record.samples[k + 1].t - record.samples[k].t);
     if (!(intervals[k] > 0.0))
-      throw InvalidInput(who + "the samples at " + between(k) + " do not follow each other in time.");
+      throw InvalidInput{who, "the samples at ", between(k), " do not follow each other in time."};
   }
   std::vector<double> sorted = intervals;
   auto const middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
@@ -59,8 +59,9 @@ void require_no_gaps(BodyRecord const& record, double largest, std::string const
   double const gap = largest > 0.0 ? largest : 1.5 * *middle;
   for (std::size_t k = 0; k < intervals.size(); ++k)
     if (intervals[k] > gap * (1.0 + 1e-9))
-      throw InvalidInput(who + "there is no sample between " + between(k) + ", a gap of more than " + number(gap) +
-                         " s. Record every step, or name a largest_gap to draw a line across it.");
+      throw InvalidInput{who,        "there is no sample between ",
+                         between(k), ", a gap of more than ",
+                         gap,        " s. Record every step, or name a largest_gap to draw a line across it."};
 }
 
 /// A rigid body, in the plane or in space: its points are `at(u)`, u from its centre of mass in its axes.
@@ -102,8 +103,8 @@ class LoadRecorderOf {
                   "Loads are recorded of rigid bodies; a flexible body knows its own stress (stress/section.hpp).");
     Index const body = index_of(system_.layout(), handle);
     if (!records_.empty() && !records_.front().samples.empty())
-      throw InvalidInput("LoadRecorder: \"" + handle.name +
-                         "\" comes after the first sample. Add all bodies before the run.");
+      throw InvalidInput{"LoadRecorder: \"", handle.name,
+                         "\" comes after the first sample. Add all bodies before the run."};
     Index& slot = recorded_[std::size_t(body)];
     if (slot >= 0) return;
     slot = Index(records_.size());
@@ -120,8 +121,8 @@ class LoadRecorderOf {
     require_fitting(system_, x);
     for (BodyRecord const& r : records_)
       if (!r.samples.empty() && !(x.t > r.samples.back().t))
-        throw InvalidInput("LoadRecorder: a state at " + number(x.t) + " s comes after one at " +
-                           number(r.samples.back().t) + " s. Record each state once, in the order of the run.");
+        throw InvalidInput{"LoadRecorder: a state at ", x.t, " s comes after one at ", r.samples.back().t,
+                           " s. Record each state once, in the order of the run."};
     system_.evaluate(x.q, x.v, x.t);
     for (std::size_t i = 0; i < records_.size(); ++i)
       records_[i].samples.push_back(motions_[i].of(system_.layout().bodies[std::size_t(motions_[i].body)], x));
@@ -141,12 +142,12 @@ class LoadRecorderOf {
   BodyRecord const& of(BodyHandle<B> const& handle) const {
     Index const slot = recorded_[std::size_t(index_of(system_.layout(), handle))];
     if (slot < 0)
-      throw InvalidInput("LoadRecorder: body \"" + handle.name +
-                         "\" was not recorded. Add it to the recorder before the run.");
+      throw InvalidInput{"LoadRecorder: body \"", handle.name,
+                         "\" was not recorded. Add it to the recorder before the run."};
     BodyRecord const& r = records_[std::size_t(slot)];
     if (r.samples.empty())
-      throw InvalidInput("LoadRecorder: there is no sample of \"" + handle.name +
-                         "\" yet. Call record for each state of the run.");
+      throw InvalidInput{"LoadRecorder: there is no sample of \"", handle.name,
+                         "\" yet. Call record for each state of the run."};
     return r;
   }
 

@@ -36,7 +36,7 @@ class EventWatch {
 
   /// Ends a step to x at the first event within it, by bisection on its length; the report is told which. Returns
   /// whether there was one.
-  bool meet(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
+  [[gnu::cold]] bool meet(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
     auto const passed = [&](std::size_t i, State const& at) {
       return sides_[i] != 0 && side(events[i], at, step.seen) != sides_[i];
     };
@@ -82,8 +82,7 @@ class EventWatch {
   /// The sign of the event's value.
   static int side(Event const& event, State const& x, Seen const& seen) {
     double const y = event.value(seen(x));
-    if (!std::isfinite(y))
-      throw NonFinite("The event \"" + event.name + "\" is not finite at t = " + number(x.t) + " s.");
+    if (!std::isfinite(y)) throw NonFinite{"The event \"", event.name, "\" is not finite at t = ", x.t, " s."};
     return (y > 0.0) - (y < 0.0);
   }
 

@@ -22,11 +22,11 @@ void require_sizes(State const& x, Index coordinates, Index speeds, Index rows) 
 /// \throws InvalidInput unless x is a state of this model, as it stands after its last body and joint, with finite
 /// coordinates and speeds.
 template <class M>
-void require_fitting(M const& model, State const& x) {
+[[gnu::cold]] void require_fitting(M const& model, State const& x) {
   detail::require_sizes(x, model.coordinates(), model.speeds(), model.rows());
 }
 template <class = void>
-void require_fitting(System const& system, State const& x) {
+[[gnu::cold]] void require_fitting(System const& system, State const& x) {
   ModelLayout const& whole = system.layout();
   detail::require_sizes(x, whole.coordinates, whole.speeds, whole.rows);
 }
@@ -34,27 +34,27 @@ void require_fitting(System const& system, State const& x) {
 /// \throws InvalidInput naming a body whose coordinates are those of no place, as a quaternion whose norm is not one:
 /// ⊞ 0 would change them. \param x of the whole model
 template <class = void>
-void require_places(System const& system, State const& x) {
+[[gnu::cold]] void require_places(System const& system, State const& x) {
   VecX const none = VecX::Zero(x.v.size());
   VecX there = x.q;
   system.plus(x.q, none, there);
   for (Index i = 0; i < there.size(); ++i)
     if (!(std::abs(there[i] - x.q[i]) <= 1e-6 * (1.0 + std::abs(x.q[i]))))
-      throw InvalidInput("The coordinates of " + name_of_coordinate(system, i) +
+      throw InvalidInput{"The coordinates of ", name_of_coordinate(system, i),
                          " are those of no place: a quaternion must have norm one. Take them from reference_state(), "
-                         "and turn a body by unit quaternions.");
+                         "and turn a body by unit quaternions."};
 }
 
 /// \throws InvalidInput naming a body whose coordinates or speeds are so large that squares of them, and with them
 /// energies, are not finite. \param x of the whole model
 template <class = void>
-void require_computable(System const& system, State const& x) {
+[[gnu::cold]] void require_computable(System const& system, State const& x) {
   ModelLayout const& whole = system.layout();
   Index const in_q = first_not_finite(x.q), in_v = first_not_finite(x.v);
   if (in_q < 0 && in_v < 0) return;
-  throw InvalidInput(
-      "A " + (in_v < 0 ? "coordinate of " + whole.name_of_coordinate(in_q) : "speed of " + whole.name_of(in_v)) +
-      how_not_finite(in_v < 0 ? x.q[in_q] : x.v[in_v]) + " in the state. Give a smaller one.");
+  throw InvalidInput{"A ",
+                     (in_v < 0 ? "coordinate of " + whole.name_of_coordinate(in_q) : "speed of " + whole.name_of(in_v)),
+                     how_not_finite(in_v < 0 ? x.q[in_q] : x.v[in_v]), " in the state. Give a smaller one."};
 }
 
 /// \throws InvalidInput unless something can be computed from x: as the three above, and for multipliers that are not

@@ -11,7 +11,7 @@ namespace polybody {
 
 /// \throws InconsistentStart naming the joint that is violated most, when by more than `tolerance`.
 template <class = void>
-void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
+[[gnu::cold]] void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
   system.evaluate(x.q, x.v, x.t);
   VecX phi = VecX::Zero(system.rows());
   system.violation(phi);
@@ -19,15 +19,15 @@ void require_assembled(System& system, State const& x, double tolerance = 1e-8) 
   for (Index i = 1; i < phi.size(); ++i)
     if (std::abs(phi[i]) > std::abs(phi[worst])) worst = i;
   if (phi.size() == 0 || std::abs(phi[worst]) <= tolerance) return;
-  throw InconsistentStart("At the start " + system.name_of(system.speeds() + worst) + " is open by " +
-                          number(std::abs(phi[worst])) +
+  throw InconsistentStart{"At the start ", system.name_of(system.speeds() + worst), " is open by ",
+                          std::abs(phi[worst]),
                           ". Place the bodies so that it closes, or call "
-                          "assemble(model, x).");
+                          "assemble(model, x)."};
 }
 
 /// \throws InconsistentStart naming joints that stay open because their rows repeat each other with other dimensions.
 template <class Solver>
-void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+[[gnu::cold]] void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (!all_finite(x.q)) return;
   forward.hold(system, x.q, x.v, x.t);
   VecX phi = VecX::Zero(system.rows());

@@ -17,7 +17,7 @@ template <class = void>  // compiled where it is used
 RowBlock<double> const& rows_of(System const& system, Index joint) {
   for (RowBlock<double> const& block : system.data().rows)
     if (block.source != RowSource::body && block.owner == joint) return block;
-  throw InvalidInput("\"" + system.layout().joints[std::size_t(joint)].name + "\" has no rows.");
+  throw InvalidInput{"\"", system.layout().joints[std::size_t(joint)].name, "\" has no rows."};
 }
 
 /// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its

@@ -40,7 +40,7 @@ struct RowRelation {
   /// For unknown i of `redundant_rows()` where `forward` was factored last. False where that row repeats the others
   /// only nearly.
   template <class Solver>
-  bool find(System& system, ForwardDynamics<Solver>& forward, Index i) {
+  [[gnu::cold]] bool find(System& system, ForwardDynamics<Solver>& forward, Index i) {
     if (i < system.speeds()) return false;
     c.setZero();
     c[i - system.speeds()] = 1.0;
@@ -62,8 +62,8 @@ struct RowRelation {
 /// `system` as evaluated and `forward` as factored. \param what those are called  \param limit of |c·b|/max |c|
 /// \throws InconsistentStart naming the joints that do not.
 template <class Solver>
-void require_no_contradiction(System& system, ForwardDynamics<Solver>& forward, VecX const& b, double limit,
-                              std::string const& what) {
+[[gnu::cold]] void require_no_contradiction(System& system, ForwardDynamics<Solver>& forward, VecX const& b,
+                                            double limit, std::string const& what) {
   if (forward.redundant_rows().empty()) return;
   detail::RowRelation<> relation(system);
   for (Index const i : forward.redundant_rows()) {
@@ -72,33 +72,41 @@ void require_no_contradiction(System& system, ForwardDynamics<Solver>& forward, 
     for (Index k = 0; k < b.size(); ++k) sum += relation.c[k] * b[k];
     double const left = sum / largest_size(relation.c);
     if (std::abs(left) <= limit) continue;
-    throw InconsistentStart(
-        "The rows of " + detail::names_in(system, relation.c) + " repeat each other but contradict by " +
-        number(std::abs(left)) + " in their " + what + " at t = " + number(system.at().t) +
+    throw InconsistentStart{
+        "The rows of ",
+        detail::names_in(system, relation.c),
+        " repeat each other but contradict by ",
+        std::abs(left),
+        " in their ",
+        what,
+        " at t = ",
+        system.at().t,
         " s. Remove one of these joints, make their dimensions and laws agree, or give one a compliant "
-        "policy such as Penalty.");
+        "policy such as Penalty."};
   }
 }
 
 /// Rows that a factorisation drops are closed by the others, whose speeds are projected; but not where they repeat them
 /// only nearly. \param rate Φ̇ at the projected speeds \throws InconsistentStart naming the joint that stays open.
 template <class Solver>
-void require_closed_when_dropped(System const& system, ForwardDynamics<Solver> const& forward, VecX const& rate,
-                                 double limit) {
+[[gnu::cold]] void require_closed_when_dropped(System const& system, ForwardDynamics<Solver> const& forward,
+                                               VecX const& rate, double limit) {
   for (Index const i : forward.redundant_rows())
     if (i >= system.speeds() && std::abs(rate[i - system.speeds()]) > limit)
-      throw InconsistentStart("The rows of " + system.name_of(i) +
-                              " repeat those of other joints so nearly that they are left out, and they stay open by " +
-                              number(std::abs(rate[i - system.speeds()])) +
-                              " in their speeds at t = " + number(system.at().t) +
+      throw InconsistentStart{"The rows of ",
+                              system.name_of(i),
+                              " repeat those of other joints so nearly that they are left out, and they stay open by ",
+                              std::abs(rate[i - system.speeds()]),
+                              " in their speeds at t = ",
+                              system.at().t,
                               " s. Move the joint away from this position, bring the masses of the bodies that it "
-                              "joins closer together, or give it a compliant policy such as Penalty.");
+                              "joins closer together, or give it a compliant policy such as Penalty."};
 }
 
 /// The start of a run, its speeds projected: no contradiction in the speeds and accelerations that the rows ask for,
 /// and no row left open. \throws InconsistentStart.
 template <class Solver>
-void require_consistent_rows(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+[[gnu::cold]] void require_consistent_rows(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (system.rows() == 0) return;
   forward.hold(system, x.q, x.v, x.t);
   if (forward.redundant_rows().empty()) return;

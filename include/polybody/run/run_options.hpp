@@ -25,22 +25,21 @@ struct RunOptions {
   int threads = 1;  ///< that share the loops of an evaluation; for large models, results stay the same bits
 
   /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
-  void check(double start) const {
+  [[gnu::cold]] void check(double start) const {
     require_positive(step, "simulate: the step");
     if (largest_step) require_positive(*largest_step, "simulate: the largest step");
     require_positive(assembly_tolerance, "simulate: assembly_tolerance");
     if (!(until >= start) || !std::isfinite(until))
-      throw InvalidInput("simulate: the end " + number(until) + " s lies before the start " + number(start) + " s.");
+      throw InvalidInput{"simulate: the end ", until, " s lies before the start ", start, " s."};
     if (halvings < 0 || halvings > 30)
-      throw InvalidInput("simulate: a step can be halved 0 to 30 times, but " + std::to_string(halvings) +
-                         " is asked for.");
+      throw InvalidInput{"simulate: a step can be halved 0 to 30 times, but ", halvings, " is asked for."};
     if (!(limits.violation > 0.0) || !(limits.energy >= 1.0))
-      throw InvalidInput("simulate: limits.violation must be positive and limits.energy at least one, but they are " +
-                         number(limits.violation) + " and " + number(limits.energy) + ".");
+      throw InvalidInput{"simulate: limits.violation must be positive and limits.energy at least one, but they are ",
+                         limits.violation, " and ", limits.energy, "."};
     for (double const t : corners)
       if (std::isnan(t)) throw InvalidInput("simulate: a corner must be a time [s], but is nan.");
     for (Event const& event : events) {
-      if (!event.value) throw InvalidInput("simulate: the event \"" + event.name + "\" has no value.");
+      if (!event.value) throw InvalidInput{"simulate: the event \"", event.name, "\" has no value."};
       require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");
     }
   }

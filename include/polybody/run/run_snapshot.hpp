@@ -45,20 +45,18 @@ struct RunSnapshot {
   template <class = void>
   void require(ModelIdentity const& of, std::string const& by, std::size_t events) const {
     auto const counts = [](ModelIdentity const& m) {
-      return std::to_string(m.coordinates) + " coordinates, " + std::to_string(m.speeds) + " speeds and " +
-             std::to_string(m.rows) + " rows";
+      return sentence_of({m.coordinates, " coordinates, ", m.speeds, " speeds and ", m.rows, " rows"});
     };
     if (model.coordinates != of.coordinates || model.speeds != of.speeds || model.rows != of.rows)
-      throw InvalidInput("resume: the snapshot is of another model. It has " + counts(model) + "; this one has " +
-                         counts(of) + ".");
+      throw InvalidInput{"resume: the snapshot is of another model. It has ", counts(model), "; this one has ",
+                         counts(of), "."};
     if (model != of)
       throw InvalidInput(
           "resume: the snapshot is of another model: its bodies, joints or forces have other names than this one's.");
-    if (integrator != by)
-      throw InvalidInput("resume: the snapshot is of a run by " + integrator + ", not by " + by + ".");
+    if (integrator != by) throw InvalidInput{"resume: the snapshot is of a run by ", integrator, ", not by ", by, "."};
     if (sides.size() != events)
-      throw InvalidInput("resume: the snapshot is of a run with " + std::to_string(sides.size()) +
-                         " events, but the options have " + std::to_string(events) + ".");
+      throw InvalidInput{"resume: the snapshot is of a run with ", sides.size(), " events, but the options have ",
+                         events, "."};
   }
 };
 

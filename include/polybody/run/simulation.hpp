@@ -26,10 +26,11 @@ struct RunSystems {
 template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
  public:
-  Simulation(RunSystems systems, State& x, I integrator, RunOptions options);
+  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);
 
   /// Goes on from a snapshot. \throws InvalidInput for one of another model, integrator or count of events.
-  Simulation(RunSystems systems, State& x, I integrator, RunOptions options, RunSnapshot const& from);
+  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options,
+                           RunSnapshot const& from);
   ~Simulation();
   Simulation(Simulation const&) = delete;
   Simulation& operator=(Simulation const&) = delete;
@@ -37,7 +38,7 @@ class Simulation {
   /// What `resume` needs to go on from here. Factorisations, and whatever else a run keeps from step to step, are not
   /// part of it: this run drops them now, so that it and a resumed run go on with the same bits. To get the bits of an
   /// interrupted run from one that is not interrupted, take snapshots at the same times.
-  RunSnapshot snapshot();
+  [[gnu::cold]] RunSnapshot snapshot();
 
   State const& state() const { return *x_; }
   RunReport const& report() const& { return report_; }
@@ -85,17 +86,17 @@ class Simulation {
 
  private:
   struct Prepared {};
-  Simulation(Prepared, RunSystems systems, State& x, I integrator, RunOptions options, double start)
+  [[gnu::cold]] Simulation(Prepared, RunSystems systems, State& x, I const& integrator, RunOptions options,
+                           double start)
       : system_(std::move(systems.stepped)),
         whole_(std::move(systems.whole)),
         x_(&x),
-        integrator_(std::move(integrator)),
+        method_(method_of(integrator)),
         options_(std::move(options)),
-        workspace_(integrator_.template workspace<Solver>(*system_)),
+        workspace_(method_.template workspace<Solver>(*system_)),
         norm_(whole()),
         axial_forces_(whole(), start, options_.until),
         speeds_before_(VecX::Zero(system_->speeds())) {
-    integrator_.check();
     options_.check(start);
     if (options_.threads != 1) system_->use_threads(options_.threads);
     h_ = std::min<double>(options_.step, largest_step());
@@ -104,12 +105,12 @@ class Simulation {
   bool eliminates() const { return bool(whole_); }
 
   /// A workspace that knows no earlier step, and is ready for the next one.
-  void renew() {
+  [[gnu::cold]] void renew() {
     StepBounds bounds = std::move(workspace_.forward.bounds);
-    workspace_ = integrator_.template workspace<Solver>(*system_);
+    workspace_ = method_.template workspace<Solver>(*system_);
     workspace_.forward.bounds = std::move(bounds);
     State ready = stepped();  // whose memory `start` clears
-    integrator_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, workspace_);
+    method_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, workspace_);
   }
 
   /// The limits of steps hold from this state on.
@@ -123,17 +124,20 @@ class Simulation {
     if (!eliminates()) return;
     expand(*system_, narrow_, seen_, scratch_);
     if (Index const i = first_not_finite(seen_.lambda); i >= 0)
-      throw NonFinite("The reaction of " + system_->layout().name_of(system_->layout().speeds + i) +
-                      how_not_finite(seen_.lambda[i]) + " at t = " + number(seen_.t) +
-                      " s. Look at the forces on the bodies that it carries.");
+      throw NonFinite{"The reaction of ",
+                      system_->layout().name_of(system_->layout().speeds + i),
+                      how_not_finite(seen_.lambda[i]),
+                      " at t = ",
+                      seen_.t,
+                      " s. Look at the forces on the bodies that it carries."};
     *x_ = seen_;
   }
 
   /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep
   /// to the joints.
-  void narrow_start();
+  [[gnu::cold]] void narrow_start();
   /// Adds a warning to the report where the step is too long for compliant joints.
-  void warn(ForwardDynamics<Solver>& forward, State const& x) {
+  [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
     if constexpr (NamesStableStep<I>) {
       std::string const warning = warn_of_step<I>(whole(), forward, x, h_);
       if (!warning.empty()) report_.warnings.push_back(warning);
@@ -141,7 +145,7 @@ class Simulation {
   }
 
   /// Whether the rows of x repeat each other far more nearly than those of the start.
-  bool is_singular(State const& x) {
+  [[gnu::cold]] bool is_singular(State const& x) {
     try {
       return workspace_.forward.row_gain(*system_, x.q, x.v, x.t).far_above(usual_gain_);
     } catch (LinearSolverSingular const&) {  // of a solver that drops no rows
@@ -184,7 +188,7 @@ class Simulation {
 
   /// After a start, corner or event: speeds onto the rows, then consistent accelerations. The integrator may look
   /// ahead as far as the next step goes, not across a corner.
-  void restart(bool first = false);
+  [[gnu::cold]] void restart(bool first = false);
 
   void choose_step(StepReport const& r, bool shortened) {
     if constexpr (requires { I::controls_step; })
@@ -202,7 +206,7 @@ class Simulation {
   }
   bool meet_events(double taken) {
     EventWatch::Step const again = [this](State& x, double h) {
-      return integrator_.step(*system_, x, h, workspace_).taken;
+      return method_.step(*system_, x, h, workspace_).taken;
     };
     EventWatch::Seen const shown = seen();
     return watch_.meet(options_.events, {before_, taken, shown, again}, stepped(), report_);
@@ -213,9 +217,9 @@ class Simulation {
   State narrow_, seen_;  // of models with eliminating policies
   State before_;         // of a step after which something may fail
   VecX scratch_;
-  I integrator_;
+  MethodOf<I> method_;
   RunOptions options_;
-  decltype(std::declval<I const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
+  decltype(std::declval<MethodOf<I> const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
   AxialWatch axial_forces_;
   VecX speeds_before_;  // of a step
@@ -228,8 +232,8 @@ class Simulation {
 };
 
 template <Integrator I, class Solver>
-Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, RunOptions options)
-    : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), x.t) {
+Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options)
+    : Simulation(Prepared{}, std::move(systems), x, integrator, std::move(options), x.t) {
   require_fitting(whole(), x);
   require_places(whole(), x);
   require_computable(whole(), x);
@@ -247,9 +251,9 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, Ru
 }
 
 template <Integrator I, class Solver>
-Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I integrator, RunOptions options,
+Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options,
                                   RunSnapshot const& from)
-    : Simulation(Prepared{}, std::move(systems), x, std::move(integrator), std::move(options), from.state.t) {
+    : Simulation(Prepared{}, std::move(systems), x, integrator, std::move(options), from.state.t) {
   from.require(identity_of(*system_), I::name, options_.events.size());
   if (eliminates()) x = {};
   stepped() = from.state;
@@ -326,14 +330,14 @@ void Simulation<I, Solver>::narrow_start() {
 template <Integrator I, class Solver>
 StepReport Simulation<I, Solver>::step(double h, int halvings) {
   try {
-    return integrator_.step(*system_, stepped(), h, workspace_);
+    return method_.step(*system_, stepped(), h, workspace_);
   } catch (NewtonStalled const&) {
     if (halvings == 0) throw;
   }
   State const before = stepped();
   try {
     workspace_.forward.project_velocities(*system_, stepped().q, stepped().v, stepped().t);
-    integrator_.start(*system_, stepped(), 0.5 * h, workspace_);
+    method_.start(*system_, stepped(), 0.5 * h, workspace_);
     StepReport report = step(0.5 * h, halvings - 1);
     StepReport const second = step(h - report.taken, halvings - 1);
     report.taken += second.taken;
@@ -354,7 +358,7 @@ template <Integrator I, class Solver>
 void Simulation<I, Solver>::restart(bool first) {
   State fresh = stepped();  // which stays as it is when the start fails
   workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
-  integrator_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
+  method_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
   if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
   stepped() = std::move(fresh);
   bound();

@@ -11,7 +11,7 @@ namespace polybody {
 namespace detail {
 /// The event that coordinate i reaches 0 or `length`; it stops the run.
 inline Event reaches_an_end(std::string const& name, Slider slider, Index i, double length) {
-  return {.name = "slider " + std::to_string(slider.index) + " of \"" + name + "\" reaches an end",
+  return {.name = sentence_of({"slider ", slider.index, " of \"", name, "\" reaches an end"}),
           .value = [i, length](State const& x) { return std::min(x.q[i], length - x.q[i]); },
           .stops = true};
 }

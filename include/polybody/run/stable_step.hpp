@@ -123,11 +123,11 @@ std::string warn_of_step(System& system, ForwardDynamics<Solver>& forward, State
     double const limit = I::stable_step(omega, rate);
     if (!(limit < least)) continue;
     least = limit;
-    warning = "The joint \"" + found.joint + "\" is too " + (by_damping ? "strongly damped" : "stiff") + " for " +
-              I::name + ": over the mass that it moves, k h² is " + number(found.omega2 * h * h) + " and c h is " +
-              number(rate * h) + "; stable are " + number(found.omega2 * limit * limit) + " and " +
-              number(rate * limit) + ". Take steps of at most " + number(limit) +
-              " s, a softer joint, or an implicit integrator.";
+    warning =
+        sentence_of({"The joint \"", found.joint, "\" is too ", (by_damping ? "strongly damped" : "stiff"), " for ",
+                     I::name, ": over the mass that it moves, k h² is ", found.omega2 * h * h, " and c h is ", rate * h,
+                     "; stable are ", found.omega2 * limit * limit, " and ", rate * limit, ". Take steps of at most ",
+                     limit, " s, a softer joint, or an implicit integrator."});
   }
   return warning;
 }

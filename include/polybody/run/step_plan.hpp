@@ -35,7 +35,7 @@ class StepPlan {
 
   StepPlan() = default;
   /// A run from `start` to `until` with steps of about `step` [s]; corners outside of it are left out.
-  StepPlan(double start, double until, double step, Sequence<double> corners)
+  [[gnu::cold]] StepPlan(double start, double until, double step, Sequence<double> corners)
       : until_(until), step_(step), corners_(std::move(corners)) {
     erase_if(corners_, [&](double t) { return !(t > start) || !(t <= until); });
     sort_once(corners_);

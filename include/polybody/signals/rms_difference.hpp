@@ -42,8 +42,7 @@ class RmsDifference {
   /// \throws InvalidInput when no sample was compared, or b is zero in all of them.
   double value() const {
     if (samples_ == 0)
-      throw InvalidInput("RmsDifference: there is no sample of both histories from " + number(from_) + " to " +
-                         number(to_) + " s.");
+      throw InvalidInput{"RmsDifference: there is no sample of both histories from ", from_, " to ", to_, " s."};
     if (all_ == 0.0) throw InvalidInput("RmsDifference: the history that differences are measured by is zero.");
     return std::sqrt(off_ / all_);
   }

@@ -25,17 +25,14 @@ template <class = void>
 void require_history(std::span<double const> times, std::span<double const> values, std::size_t least,
                      std::string const& who) {
   if (times.size() != values.size())
-    throw InvalidInput(who + ": " + std::to_string(times.size()) + " times for " + std::to_string(values.size()) +
-                       " values.");
+    throw InvalidInput{who, ": ", times.size(), " times for ", values.size(), " values."};
   if (values.size() < least)
-    throw InvalidInput(who + ": " + std::to_string(values.size()) + " samples are too few; it takes " +
-                       std::to_string(least) + ".");
+    throw InvalidInput{who, ": ", values.size(), " samples are too few; it takes ", least, "."};
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i]) || !std::isfinite(times[i]))
-      throw InvalidInput(who + ": sample " + std::to_string(i) + " at t = " + number(times[i]) + " s is not finite.");
+      throw InvalidInput{who, ": sample ", i, " at t = ", times[i], " s is not finite."};
     if (i > 0 && !(times[i] > times[i - 1]))
-      throw InvalidInput(who + ": times must rise, but " + number(times[i]) + " s follows " + number(times[i - 1]) +
-                         " s.");
+      throw InvalidInput{who, ": times must rise, but ", times[i], " s follows ", times[i - 1], " s."};
   }
 }
 

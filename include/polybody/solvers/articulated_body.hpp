@@ -88,9 +88,9 @@ class ArticulatedBodySolverOf {
   /// neighbours.
   Index factor() {
     if (misplaced_ >= 0)
-      throw InvalidInput("recursive::ArticulatedBody: a force couples body \"" +
-                         reduction_->tree().bodies[std::size_t(misplaced_)].name +
-                         "\" with one that neither carries it nor is carried by it. Take recursive::Augmented.");
+      throw InvalidInput{"recursive::ArticulatedBody: a force couples body \"",
+                         reduction_->tree().bodies[std::size_t(misplaced_)].name,
+                         "\" with one that neither carries it nor is carried by it. Take recursive::Augmented."};
     for (std::size_t i = nodes_.size(); i-- > 0;)
       if (Index const bad = eliminate(i); bad >= 0) return bad;
     Index const m = schur_.rows();

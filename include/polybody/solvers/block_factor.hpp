@@ -38,7 +38,7 @@ class BlockFactor {
   BlockFactor(BlockFactor&&) = default;
   BlockFactor& operator=(BlockFactor&&) = default;
 
-  void analyse(Index size, std::span<Block const> blocks) {
+  [[gnu::cold]] void analyse(Index size, std::span<Block const> blocks) {
     size_ = size;
     blocks_ = Sequence<Block>(blocks.begin(), blocks.end());
     pattern_.analyse(size, blocks);
@@ -116,7 +116,7 @@ class BlockFactor {
   using Node = detail::BlockLayout::Node;
   using Neighbour = detail::BlockLayout::Neighbour;
 
-  void compile() {
+  [[gnu::cold]] void compile() {
     layout_.compile(pattern_, blocks_, hints_, two_sided);
     u_ = detail::AlignedDoubles(layout_.size_u);
     l_ = detail::AlignedDoubles(layout_.size_l);
@@ -212,7 +212,7 @@ bool BlockFactor<symmetry>::is_symmetric() const {
 }
 
 template <Symmetry symmetry>
-Index BlockFactor<symmetry>::failed(Node const& n, int r) {
+[[gnu::cold]] Index BlockFactor<symmetry>::failed(Node const& n, int r) {
   Index const unknown = layout_.unknown[n.x + std::size_t(r)];
   double const pivot = u_.data()[n.u + std::size_t(r * n.stride() + r)];
   if (!std::isfinite(pivot) || hints_.dense) return unknown;

@@ -52,7 +52,8 @@ class BlockLayout {
   int largest_w = 0;  ///< entries of the largest W, or unknowns of the largest node
 
   /// Without `both_halves` only nodes with pivoting have an Lt.
-  void compile(BlockPattern const& pattern, std::span<Block const> blocks, NodeHints const& hints, bool both_halves) {
+  [[gnu::cold]] void compile(BlockPattern const& pattern, std::span<Block const> blocks, NodeHints const& hints,
+                             bool both_halves) {
     EliminationOrder order;
     order.compute(pattern, blocks, number_nodes(pattern, hints), hints.late);
     place_nodes(pattern, order, hints, both_halves);
@@ -85,8 +86,8 @@ class BlockLayout {
     return node_of;
   }
 
-  void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, NodeHints const& hints,
-                   bool both_halves) {
+  [[gnu::cold]] void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, NodeHints const& hints,
+                                 bool both_halves) {
     auto const& segments = pattern.segments();
     local_.assign(segments.size(), 0);
     place_.assign(segments.size(), 0);
@@ -152,7 +153,7 @@ class BlockLayout {
     }
   }
 
-  void place_pieces(BlockPattern const& pattern, std::span<Block const> blocks) {
+  [[gnu::cold]] void place_pieces(BlockPattern const& pattern, std::span<Block const> blocks) {
     auto const column = [&](Node const& n, int k) {
       std::size_t i = std::size_t(n.first_neighbour);
       while (neighbours[i].node != k) ++i;

@@ -26,7 +26,7 @@ class BlockPattern {
     bool closes_loop = false;
   };
 
-  void analyse(Index size, std::span<Block const> blocks) {
+  [[gnu::cold]] void analyse(Index size, std::span<Block const> blocks) {
     cut(size, blocks);
     for (Block const& b : blocks) mark(b);
     link(blocks);
@@ -61,7 +61,7 @@ class BlockPattern {
     bool meets_rows = false;  ///< a block couples it with the rows of a joint
   };
 
-  void cut(Index size, std::span<Block const> blocks) {
+  [[gnu::cold]] void cut(Index size, std::span<Block const> blocks) {
     Sequence<char> begins(std::size_t(size) + 1, 0);
     begins[0] = 1;
     for (Block const& b : blocks)
@@ -84,7 +84,7 @@ class BlockPattern {
   }
 
   /// Bodies are what the square blocks on the diagonal tie together.
-  void link(std::span<Block const> blocks) {
+  [[gnu::cold]] void link(std::span<Block const> blocks) {
     Sequence<int> root(segments_.size());
     std::iota(root.begin(), root.end(), 0);
     auto const find = [&](int s) {
@@ -124,7 +124,7 @@ class BlockPattern {
   }
 
   /// A block in the rows of a joint is one end of it: the columns of one marker.
-  void touch(Joint& joint, Range columns) {
+  [[gnu::cold]] void touch(Joint& joint, Range columns) {
     for (int s = columns.begin; s < columns.end; ++s) {
       int const body = segments_[std::size_t(s)].body;
       if (body < 0) {
@@ -144,7 +144,7 @@ class BlockPattern {
 
   /// Hangs every body on one joint, breadth first from the ground, then from a body of each part that does not touch
   /// it.
-  void match() {
+  [[gnu::cold]] void match() {
     Sequence<int> queue;
     auto const hang = [&](Joint& j, std::size_t end, int parent) {
       auto const& [body, touched] = j.ends[end];
@@ -187,7 +187,7 @@ class BlockPattern {
   }
 
   /// A joint that is not of the tree waits for all of its loop.
-  void close(Joint& j) {
+  [[gnu::cold]] void close(Joint& j) {
     Segment& s = segments_[std::size_t(j.segment)];
     if (j.ends.empty() && j.meets_rows) {  // an unknown that rows alone hold, such as a slider's place, waits for all
       for (Joint const& other : joints_)

@@ -23,8 +23,8 @@ class EliminationOrder {
   Sequence<Node> nodes;  ///< in the order of elimination
 
   /// `node_of` gives each segment's node, numbered from zero without gaps. A joint in `late` waits for all that is not.
-  void compute(BlockPattern const& pattern, std::span<Block const> blocks, Sequence<int> const& node_of,
-               Sequence<char> const& late) {
+  [[gnu::cold]] void compute(BlockPattern const& pattern, std::span<Block const> blocks, Sequence<int> const& node_of,
+                             Sequence<char> const& late) {
     std::size_t const count = node_of.empty() ? 0 : std::size_t(*std::max_element(node_of.begin(), node_of.end())) + 1;
     left_.clear();
     left_.resize(count);
@@ -58,7 +58,8 @@ class EliminationOrder {
 
   Candidate& at(int n) { return left_[std::size_t(n)]; }
 
-  void find_neighbours(BlockPattern const& pattern, std::span<Block const> blocks, Sequence<int> const& node_of) {
+  [[gnu::cold]] void find_neighbours(BlockPattern const& pattern, std::span<Block const> blocks,
+                                     Sequence<int> const& node_of) {
     for (std::size_t s = 0; s < node_of.size(); ++s) {
       at(node_of[s]).node.segments.push_back(int(s));
       at(node_of[s]).size += pattern.segments()[s].size;
@@ -75,7 +76,7 @@ class EliminationOrder {
     }
     for (Candidate& k : left_) sort_once(k.node.neighbours);
   }
-  void find_waits(BlockPattern const& pattern, Sequence<int> const& node_of, Sequence<char> const& late) {
+  [[gnu::cold]] void find_waits(BlockPattern const& pattern, Sequence<int> const& node_of, Sequence<char> const& late) {
     for (std::size_t n = 0; n < left_.size(); ++n) {
       Sequence<int> after;
       for (int const s : left_[n].node.segments) {
@@ -120,7 +121,7 @@ class EliminationOrder {
   }
 
   /// Gives node n the next place. Its neighbours become neighbours of each other, and what waited for it may go.
-  void eliminate(int n) {
+  [[gnu::cold]] void eliminate(int n) {
     Candidate& gone = at(n);
     gone.place = int(nodes.size());
     for (int const k : gone.node.neighbours) {

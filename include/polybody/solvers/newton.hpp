@@ -19,12 +19,11 @@ struct NewtonOptions {
   bool predictive_stop = true;   ///< stop on what θ tells of the next correction, not on the last one itself
 
   /// \throws InvalidInput naming `who` for counts outside [1, 10⁶], or a contraction that is no number ≥ 0.
-  void check(std::string const& who) const {
-    require_count(max_iterations, who + ": newton.max_iterations");
-    require_count(growths, who + ": newton.growths");
+  [[gnu::cold]] void check(std::string const& who) const {
+    require_count(max_iterations, who, ": newton.max_iterations");
+    require_count(growths, who, ": newton.growths");
     if (!(refactor_above >= 0.0))
-      throw InvalidInput(who + ": newton.refactor_above must be zero or positive, but is " + number(refactor_above) +
-                         ".");
+      throw InvalidInput{who, ": newton.refactor_above must be zero or positive, but is ", refactor_above, "."};
   }
 };
 

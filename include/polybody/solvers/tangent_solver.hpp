@@ -15,7 +15,7 @@ template <LinearSolver Solver>
 class TangentSolver {
  public:
   /// Allocates all there is to be. \param copies of the unknowns, side by side, as a method of several stages has them
-  void analyse(System& system, Index copies, BlockWriter const& write) {
+  [[gnu::cold]] void analyse(System& system, Index copies, BlockWriter const& write) {
     copies_ = copies;
     coordinates_ = system.step_coordinates();
     size_ = system.size();

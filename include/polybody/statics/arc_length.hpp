@@ -113,7 +113,7 @@ class PathEquations {
     }
     system_.violation(phi_);
     if (!r_.allFinite() || !phi_.allFinite())
-      throw NonFinite("equilibrium_path: a force is not finite at load factor " + number(at.load_factor) + ".");
+      throw NonFinite{"equilibrium_path: a force is not finite at load factor ", at.load_factor, "."};
     if ((takes_least_ ? least_.factor(at.x.lambda) : stiffness_.factor(at.x.lambda)) >= 0) return false;
     return solve_for(-r_, -phi_, at, a_) && solve_for(r0_ - r1_, VecX::Zero(rows_), at, b_);
   }
@@ -170,9 +170,8 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
     if (iterations < 0) {
       length *= 0.5;
       if (length < options.smallest)
-        throw NewtonStalled("equilibrium_path: Newton's method did not converge beyond load factor " +
-                            number(now.load_factor) +
-                            ". A bifurcation may be near; give the structure an imperfection, or end the path before.");
+        throw NewtonStalled{"equilibrium_path: Newton's method did not converge beyond load factor ", now.load_factor,
+                            ". A bifurcation may be near; give the structure an imperfection, or end the path before."};
       continue;
     }
     equations.turn();

@@ -88,10 +88,14 @@ struct EquilibriumPath {
     if (!takes_least || least.excited() < 0) return;
     std::size_t const k = std::size_t(least.excited());
     Index const i = least.pins()[k];
-    throw LinearSolverSingular("equilibrium: the stiffness is singular" + place() + ", first at " + system.name_of(i) +
-                               ": nothing resists that " + name_of_motion(system, least.motion(k), i) +
+    throw LinearSolverSingular{"equilibrium: the stiffness is singular",
+                               place(),
+                               ", first at ",
+                               system.name_of(i),
+                               ": nothing resists that ",
+                               name_of_motion(system, least.motion(k), i),
                                ", and the loads excite this motion. Hold every body, or pass a limit point another "
-                               "way.");
+                               "way."};
   }
   /// \throws InconsistentStart naming a joint that repeats others but does not close where they do.
   void require_closed() const {
@@ -100,22 +104,21 @@ struct EquilibriumPath {
     system.violation(open);
     for (Index const i : least.pins())
       if (i >= nv && !(std::abs(open[i - nv]) <= limit))
-        throw InconsistentStart("equilibrium: " + system.name_of(i) + " stays open by " +
-                                number(std::abs(open[i - nv])) +
+        throw InconsistentStart{"equilibrium: ", system.name_of(i), " stays open by ", std::abs(open[i - nv]),
                                 ", as its rows repeat those of other joints but contradict them. Remove one of these "
                                 "joints, make their dimensions and laws agree, or give one a compliant policy such as "
-                                "Penalty.");
+                                "Penalty."};
   }
-  std::string place() const { return " at load factor " + number(system.load_factor); }
+  std::string place() const { return sentence_of({" at load factor ", system.load_factor}); }
   /// \throws LinearSolverSingular, NonFinite, NewtonStalled as the result says.
-  [[noreturn]] void refuse(NewtonResult result, Index first_bad, std::string const& at) const {
+  [[noreturn, gnu::cold]] void refuse(NewtonResult result, Index first_bad, std::string const& at) const {
     if (result == NewtonResult::singular)
-      throw LinearSolverSingular("equilibrium: the stiffness is singular" + at + ", first at " +
-                                 system.name_of(std::max<Index>(first_bad, 0)) +
-                                 ". Hold every body, or pass a limit point another way.");
-    if (result == NewtonResult::not_finite) throw NonFinite("equilibrium: a force is not finite" + at + ".");
-    throw NewtonStalled("equilibrium: Newton's method did not converge" + at +
-                        ". Use more load steps, or start nearer to the solution.");
+      throw LinearSolverSingular{"equilibrium: the stiffness is singular", at, ", first at ",
+                                 system.name_of(std::max<Index>(first_bad, 0)),
+                                 ". Hold every body, or pass a limit point another way."};
+    if (result == NewtonResult::not_finite) throw NonFinite{"equilibrium: a force is not finite", at, "."};
+    throw NewtonStalled{"equilibrium: Newton's method did not converge", at,
+                        ". Use more load steps, or start nearer to the solution."};
   }
   /// The names of what `least` found.
   void report_springs(EquilibriumReport& report) const {

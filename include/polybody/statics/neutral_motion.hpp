@@ -75,11 +75,11 @@ std::string text_of(RigidPart const& part, double reach) {
     return x;
   };
   if (part.left > 1e-5 || !(v + w > 0.0)) return "changes its shape";
-  if (w * reach <= 1e-6 * v) return "moves along " + in_brackets(direction(part.velocity));
+  if (w * reach <= 1e-6 * v) return sentence_of({"moves along ", in_brackets(direction(part.velocity))});
   Vec3 const axis = direction(part.turn), lever = part.turn.cross(part.velocity);
   Vec3 point;
   for (int i = 0; i < 3; ++i) point[i] = lever[i] / (w * w);
-  std::string text = "turns about " + in_brackets(axis) + " through " + in_brackets(point);
+  std::string text = sentence_of({"turns about ", in_brackets(axis), " through ", in_brackets(point)});
   double along = 0.0;
   for (int i = 0; i < 3; ++i) along += axis[i] * part.velocity[i];
   if (std::abs(along) > 1e-6 * (v + w * reach)) text += " and moves along it";
@@ -103,8 +103,7 @@ std::string name_of_motion(System const& system, VecX const& z, Index i) {
     else if (moves)
       ++others;
   }
-  if (others > 0)
-    text += ", and " + std::to_string(others) + (others > 1 ? " other bodies" : " other body") + " with it";
+  if (others > 0) text += sentence_of({", and ", others, (others > 1 ? " other bodies" : " other body"), " with it"});
   return text;
 }
 

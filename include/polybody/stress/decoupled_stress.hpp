@@ -155,9 +155,9 @@ class DecoupledStress {
 
   explicit DecoupledStress(StructureLoads loads) : loads_(std::move(loads)) {
     if (!loads_.structure().initial_force.isZero(0.0))
-      throw InvalidInput("Stress of \"" + loads_.name() +
+      throw InvalidInput{"Stress of \"", loads_.name(),
                          "\": a pretension is not recovered. Make the structure without it, and add its "
-                         "stress afterwards.");
+                         "stress afterwards."};
   }
 
   /// K e = loads, the structure held as `frame` says; where that lets it move as a whole, by `statically_determinate`.
@@ -177,10 +177,10 @@ class DecoupledStress {
 
   std::pair<Index, double> locate(double s, Index bar) const {
     Structure const& structure = loads_.structure();
-    std::string const who = "Stress of \"" + loads_.name() + '"';
+    std::string const who = sentence_of({"Stress of \"", loads_.name(), "\""});
     if (bar < 0 || bar >= Index(structure.bar_lengths.size()))
-      throw InvalidInput(who + ": bar " + std::to_string(bar) + " does not exist; the structure is made of " +
-                         std::to_string(structure.bar_lengths.size()) + " bars.");
+      throw InvalidInput{
+          who, ": bar ", bar, " does not exist; the structure is made of ", structure.bar_lengths.size(), " bars."};
     double const inside = require_inside(s, structure.bar_lengths[std::size_t(bar)], who);
     Index found = -1;
     for (std::size_t i = 0; i < structure.beams.size(); ++i) {

@@ -110,7 +110,7 @@ class StructureLoads {
   Structure::Beam const& beam(Load const& load) const { return s_.beams[std::size_t(load.beam)]; }
 
  private:
-  std::string who() const { return "Stress of \"" + name_ + "\": "; }
+  std::string who() const { return sentence_of({"Stress of \"", name_, "\": "}); }
 
   Motion motion(BodySample const& sample, Vec3 const& gravity, Placement const& place) const {
     Mat3 const axes = sample.frame.A * place.axes;
@@ -121,7 +121,7 @@ class StructureLoads {
     x.b = axes.transpose() * (sample.acceleration - gravity) + x.B * (place.axes.transpose() * place.origin);
     x.size = sample.acceleration.norm() + gravity.norm();
     if (!x.b.allFinite() || !x.B.allFinite())
-      throw NonFinite(who() + "the recorded motion at t = " + number(sample.t) + " s is not finite.");
+      throw NonFinite{who(), "the recorded motion at t = ", sample.t, " s is not finite."};
     return x;
   }
 
@@ -170,9 +170,10 @@ class StructureLoads {
       spread += d.squaredNorm() * Mat3::Identity() - d * d.transpose();
     }
     if (!(spread.determinant() > 1e-9 * std::pow(spread.trace() / 3.0, 3)))
-      throw InvalidInput(who() + "nodes without rotations take a load by three or more that are not in line, but " +
-                         std::to_string(nodes.size()) + " lie within the patch of " + number(patch) +
-                         " m about a load. Widen the patch.");
+      throw InvalidInput{
+          who(),        "nodes without rotations take a load by three or more that are not in line, but ",
+          nodes.size(), " lie within the patch of ",
+          patch,        " m about a load. Widen the patch."};
     Vec3 const theta = spread.inverse() * (load.m + (at - middle).cross(load.f));
     for (Index const i : nodes)
       loads_.back().push_back(
@@ -215,10 +216,11 @@ class StructureLoads {
       }
     }
     if (worst > part * most)
-      throw InvalidInput(
-          who() + "the recorded loads do not balance the inertia of the structure: " + number(worst) + " N of " +
-          number(most) + " N are left over at t = " + number(when) +
-          " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`.");
+      throw InvalidInput{
+          who(), "the recorded loads do not balance the inertia of the structure: ",
+          worst, " N of ",
+          most,  " N are left over at t = ",
+          when,  " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`."};
   }
 
   Structure s_;

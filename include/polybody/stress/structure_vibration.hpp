@@ -97,14 +97,14 @@ namespace detail {
 /// \throws InvalidInput for shapes of another size, and such as move what the frame holds.
 inline void require_fitting_shapes(Structure const& s, Vibration const& how, std::string const& who) {
   if (how.shapes.rows() != s.size())
-    throw InvalidInput(who + "the shapes have " + std::to_string(how.shapes.rows()) + " rows, but the structure has " +
-                       std::to_string(s.size()) + " nodal coordinates.");
+    throw InvalidInput{who,      "the shapes have ",   how.shapes.rows(), " rows, but the structure has ",
+                       s.size(), " nodal coordinates."};
   std::vector<char> held(std::size_t(s.size()), 1);
   for (Index const i : how.frame.free_coordinates(s)) held[std::size_t(i)] = 0;
   for (Index i = 0; i < s.size(); ++i)
     if (held[std::size_t(i)] && !how.shapes.row(i).isZero(0.0))
-      throw InvalidInput(who + "the shapes move node " + std::to_string(i / s.per_node) +
-                         ", which the reference conditions hold. Name the conditions that the shapes were made with.");
+      throw InvalidInput{who, "the shapes move node ", i / s.per_node,
+                         ", which the reference conditions hold. Name the conditions that the shapes were made with."};
 }
 
 }  // namespace detail
@@ -114,9 +114,9 @@ inline void require_fitting_shapes(Structure const& s, Vibration const& how, std
 template <LinearSolver Solver = DenseLu, class I>
 VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, Vibration how) {
   Structure const& s = loads.structure();
-  std::string const who = "Stress of \"" + loads.name() + "\": ";
-  require_not_negative(how.stiffness_damping, who + "the damping time");
-  if (how.substeps < 1) throw InvalidInput(who + "each interval needs at least one substep.");
+  std::string const who = sentence_of({"Stress of \"", loads.name(), "\": "});
+  require_not_negative(how.stiffness_damping, who, "the damping time");
+  if (how.substeps < 1) throw InvalidInput{who, "each interval needs at least one substep."};
   if (how.shapes.size() == 0) how.shapes = nodal_coordinates(s, how.frame);
   detail::require_fitting_shapes(s, how, who);
   MatX const& shapes = how.shapes;
@@ -135,9 +135,9 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
     for (std::size_t p = 0; p < 6; ++p) problem.load.products[p] = carried(s.inertia[p]);
   Eigen::LDLT<MatX> const factor(problem.stiffness);
   if (!(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
-    throw InvalidInput(
-        who +
-        "nothing resists some of the shapes. Leave out motions of the whole structure, and shapes that repeat others.");
+    throw InvalidInput{
+        who,
+        "nothing resists some of the shapes. Leave out motions of the whole structure, and shapes that repeat others."};
 
   System system = system_of(problem, loads.name(), true);
   State x{VecX::Zero(n), VecX::Zero(n), VecX::Zero(n), VecX::Zero(0), loads.times().front(), {}};
@@ -148,16 +148,16 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
     v.col(k) = x.v;
     a.col(k) = x.a;
   };
-  integrator.check();
-  auto workspace = integrator.template workspace<Solver>(system);
+  auto const method = method_of(integrator);
+  auto workspace = method.template workspace<Solver>(system);
   double next = (loads.times()[1] - loads.times()[0]) / how.substeps;
-  integrator.start(system, x, next, workspace);
+  method.start(system, x, next, workspace);
   keep(0);
   for (Index k = 1; k < samples; ++k) {
     double const from = x.t, target = loads.times()[std::size_t(k)], piece = (target - from) / how.substeps;
     if constexpr (!requires { I::controls_step; }) next = piece;
     while (target - x.t > 1e-9 * piece) {
-      StepReport const report = integrator.step(system, x, std::min(next, target - x.t), workspace);
+      StepReport const report = method.step(system, x, std::min(next, target - x.t), workspace);
       if constexpr (requires { I::controls_step; }) next = std::min(report.next, target - from);
     }
     x.t = target;

@@ -26,8 +26,8 @@ inline constexpr With<groups> with{};
 template <class F>
 F require_entry(F entry, char const* group) {
   if (!entry)
-    throw InvalidInput(std::string("This system was made without ") + group +
-                       ". Name them where it is made: System(model, with<Entries::...>).");
+    throw InvalidInput{"This system was made without ", group,
+                       ". Name them where it is made: System(model, with<Entries::...>)."};
   return entry;
 }
 
@@ -47,8 +47,8 @@ class BasicSystem {
       : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), EntriesOf<M, T, wanted>::make_data(model),
                     std::move(coordinates)) {}
   /// From entries of any origin.
-  BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
-              Coordinates coordinates);
+  [[gnu::cold]] BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
+                            Coordinates coordinates);
   BasicSystem(BasicSystem&&) noexcept;
   ~BasicSystem();
 

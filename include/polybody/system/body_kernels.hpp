@@ -51,7 +51,7 @@ struct BodyKernels {
   using Vector = VecXOf<T>;
 
   /// Puts a body into the pool whose coordinates, speeds and own rows begin there.
-  static void add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row);
+  [[gnu::cold]] static void add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row);
   /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
   static Published<double> publish_point(B const& body, typename B::Point const& point, std::span<double const> q,
                                          std::span<double const> v, Sequence<double>& jacobian);
@@ -61,13 +61,13 @@ struct BodyKernels {
   static Index add_marker(Pool& pool, Marker<B> const& marker, Mat3 const& axes, Index published);
 
   /// Counts, places and names.
-  static void describe(Pool const& pool, ModelLayout& out);
+  [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
   /// Room for what is kept, and a place for each marker.
-  static void place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data);
+  [[gnu::cold]] static void place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data);
   /// Numbers that the rows of the bodies take in their arena; and a block for each, from `next` on, `owner` being the
   /// first body's place. Returns the end.
   static Index own_size(Pool const& pool);
-  static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
+  [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
   /// The numbers that threads write for the elements of one body: forces, tangents.
   static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
 

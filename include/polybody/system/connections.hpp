@@ -92,7 +92,7 @@ LinearPoint linear_side(PooledMarker<B> const& m, World other, LinearSide& side,
     try {
       return linear_point(e.body, m.marker.point);
     } catch (InvalidInput const& error) {
-      throw InvalidInput("\"" + what + "\": " + error.what() + " Use Constraint here.");
+      throw InvalidInput{"\"", what, "\": ", error.what(), " Use Constraint here."};
     }
   }
 }
@@ -112,8 +112,8 @@ BodyHandle<B> add_body(ModelParts& parts, BodyPool<B>& pool, B const& body, std:
 
 /// \throws InvalidInput naming the joint.
 template <class J, class A, class B>
-ElementHandle<J> add_joint(ModelParts& parts, Sequence<JointEntry<J>>& pool, J const& joint, PooledMarker<A> const& a,
-                           PooledMarker<B> const& b, std::string name) {
+[[gnu::cold]] ElementHandle<J> add_joint(ModelParts& parts, Sequence<JointEntry<J>>& pool, J const& joint,
+                                         PooledMarker<A> const& a, PooledMarker<B> const& b, std::string name) {
   using G = typename J::Geometry;
   using P = typename J::PolicyType;
   using Asks = typename J::Measured;
@@ -162,7 +162,7 @@ template <class F, class... Bs>
 ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                            PooledMarker<Bs> const&... markers) {
   name = parts.force_names.given_or_next(std::move(name), "force", pool.size());
-  force.check("\"" + name + "\"");
+  force.check(sentence_of({"\"", name, "\""}));
   (parts.require_own(markers.marker.model, name), ...);
   (require_told(markers.marker, F::needs, name), ...);
   parts.force_names.require_free(name, "force");
@@ -177,7 +177,7 @@ template <class F, class B>
 ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& group,
                            Sequence<PooledMarker<B>> const& many, std::string name) {
   name = parts.force_names.given_or_next(std::move(name), "group", pool.size());
-  group.check("\"" + name + "\"");
+  group.check(sentence_of({"\"", name, "\""}));
   ForceEntry<F> entry{group, {}, name};
   for (PooledMarker<B> const& m : many) {
     parts.require_own(m.marker.model, name);
@@ -197,7 +197,7 @@ void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, Poole
                   std::string name) {
   parts.require_own(one.marker.model, group.name);
   name = name_or_next(std::move(name), "opponent", group.markers.size() - std::size_t(group.force.many()));
-  law.check("\"" + group.name + "\", \"" + name + "\"");
+  law.check(sentence_of({"\"", group.name, "\", \"", name, "\""}));
   require_told(one.marker, needs_of_second<Law>(), group.name);
   group.markers.push_back(publish_at(parts, one, Mat3::Identity()));
   group.force.pair_with(law, Index(group.markers.size()) - 1, std::move(name));

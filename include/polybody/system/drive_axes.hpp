@@ -25,15 +25,21 @@ class DriveAxes {
  public:
   /// \throws InvalidInput naming both joints where a drive's axis is not that of a pin between the same bodies.
   template <class = void>  // compiled where it is used
-  void add(bool drives, std::pair<Index, Index> bodies, Vec3 const& axis, std::string const& name) {
+  [[gnu::cold]] void add(bool drives, std::pair<Index, Index> bodies, Vec3 const& axis, std::string const& name) {
     if (bodies.first > bodies.second) std::swap(bodies.first, bodies.second);
     for (Turn const& other : turns_[drives ? 0 : 1]) {
       if (other.bodies != bodies || parallel(axis, other.axis)) continue;
       Turn const mine{bodies, axis, name};
       Turn const &drive = drives ? mine : other, &pin = drives ? other : mine;
-      throw InvalidInput("\"" + drive.name + "\" drives a turn about " + text(drive.axis) + ", but \"" + pin.name +
-                         "\" leaves these bodies a turn about " + text(pin.axis) +
-                         " alone (world axes at the reference configuration). Give the drive the axis of the pin.");
+      throw InvalidInput{"\"",
+                         drive.name,
+                         "\" drives a turn about ",
+                         text(drive.axis),
+                         ", but \"",
+                         pin.name,
+                         "\" leaves these bodies a turn about ",
+                         text(pin.axis),
+                         " alone (world axes at the reference configuration). Give the drive the axis of the pin."};
     }
     turns_[drives ? 1 : 0].push_back({bodies, axis, name});
   }
@@ -52,9 +58,7 @@ class DriveAxes {
     }
     return off < 1e-6;
   }
-  static std::string text(Vec3 const& x) {
-    return "(" + number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + ")";
-  }
+  [[gnu::cold]] static std::string text(Vec3 const& x) { return sentence_of({"(", x[0], ", ", x[1], ", ", x[2], ")"}); }
 
   std::array<Sequence<Turn>, 2> turns_;  ///< of pins, of drives
 };

@@ -181,9 +181,9 @@ struct ForceKernels {
   using Pool = Sequence<Entry>;
 
   /// Places and names.
-  static void describe(Pool const& pool, ModelLayout& out);
+  [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
   /// An action for each marker, and room; `owner` is the first force's place.
-  static void place(Pool const& pool, Index owner, Data<T>& data);
+  [[gnu::cold]] static void place(Pool const& pool, Index owner, Data<T>& data);
   /// Wrenches of all, from action `next` on, and the rates of their states; returns the end of the actions.
   static Action<T>* push(Pool const& pool, double t, Data<T>& data, Action<T>* next);
 

@@ -99,10 +99,10 @@ struct JointKernels {
   static constexpr bool linear = LinearInCoordinates<P>, compliant = !AddsRows<P>;
 
   /// Counts, places and names.
-  static void describe(Pool const& pool, Sequence<LinearRows> const& linear_rows, ModelLayout& out);
+  [[gnu::cold]] static void describe(Pool const& pool, Sequence<LinearRows> const& linear_rows, ModelLayout& out);
   /// A gap and a block of rows for each joint; `owner` is the first joint's place. The blocks of linear joints stand
   /// from `first_linear` on, and are told their owners.
-  static void place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data);
+  [[gnu::cold]] static void place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data);
 
   /// Every gap, and what compliant joints answer.
   static void measure(Pool const& pool, Kept& kept, double t, Data<T>& data);

@@ -69,22 +69,22 @@ struct ModelLayout {
   Index body_speeds() const { return speeds - states; }
 
   /// Name of the body that owns coordinate i.
-  std::string name_of_coordinate(Index i) const {
+  [[gnu::cold]] std::string name_of_coordinate(Index i) const {
     for (BodyPlace const& b : bodies)
-      if (i >= b.q0 && i < b.q0 + b.coordinates) return "body \"" + b.name + '"';
+      if (i >= b.q0 && i < b.q0 + b.coordinates) return sentence_of({"body \"", b.name, "\""});
     return "unknown";
   }
   /// Name of the body that owns speed i, or the force whose first-order state it is; or of the joint or body that owns
   /// row i − speeds.
-  std::string name_of(Index i) const {
+  [[gnu::cold]] std::string name_of(Index i) const {
     Index const row = i - speeds;
     for (BodyPlace const& b : bodies)
       if (row < 0 ? i >= b.v0 && i < b.v0 + b.speeds : row >= b.row && row < b.row + b.rows)
-        return "body \"" + b.name + '"';
+        return sentence_of({"body \"", b.name, "\""});
     for (JointPlace const& j : joints)
-      if (row >= 0 && row >= j.row && row < j.row + j.rows) return "joint \"" + j.name + '"';
+      if (row >= 0 && row >= j.row && row < j.row + j.rows) return sentence_of({"joint \"", j.name, "\""});
     for (ForcePlace const& f : forces)
-      if (row < 0 && i >= f.v0 && i < f.v0 + f.states) return "force \"" + f.name + '"';
+      if (row < 0 && i >= f.v0 && i < f.v0 + f.states) return sentence_of({"force \"", f.name, "\""});
     return "unknown";
   }
 };

@@ -104,9 +104,9 @@ class LinearEliminationOf {
       }
     if (largest <= 1e-10 * scale) {
       if (std::abs(p.constant) > 1e-8)
-        throw InconsistentStart("\"" + joint.name + "\": its linear rows contradict those of other joints by " +
-                                number(std::abs(p.constant)) +
-                                ". Place the bodies so that the loop closes, or leave a joint out.");
+        throw InconsistentStart{"\"", joint.name, "\": its linear rows contradict those of other joints by ",
+                                std::abs(p.constant),
+                                ". Place the bodies so that the loop closes, or leave a joint out."};
       redundant_.push_back(p.row);
       return;
     }

@@ -14,7 +14,7 @@ class Names {
  public:
   /// The name as it is given; where it is empty, "kind n" for the first n > `before` of which that is free.
   template <class = void>  // compiled where it is used
-  std::string given_or_next(std::string name, char const* kind, std::size_t before) const {
+  [[gnu::cold]] std::string given_or_next(std::string name, char const* kind, std::size_t before) const {
     for (bool const automatic = name.empty(); name.empty() || (automatic && has(name));)
       name = kind + (" " + std::to_string(++before));
     return name;
@@ -23,12 +23,12 @@ class Names {
   template <class = void>
   void require_free(std::string const& name, char const* what) const {
     if (has(name))
-      throw InvalidInput(std::string("There is a ") + what + " \"" + name +
+      throw InvalidInput{"There is a ", what, " \"", name,
                          "\" already, and messages, records and files tell them apart by their names. Give each its "
-                         "own, or none and it gets one.");
+                         "own, or none and it gets one."};
   }
   template <class = void>
-  void take(std::string const& name) {
+  [[gnu::cold]] void take(std::string const& name) {
     sorted_.insert(std::lower_bound(sorted_.begin(), sorted_.end(), name), name);
   }
 

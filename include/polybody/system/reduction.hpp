@@ -212,9 +212,9 @@ void ReductionOf<T>::refuse_loops(std::size_t bodies, Sequence<Link> const& link
   for (Link const* const link : order) {
     std::size_t const a = part_of(link->a.body), b = part_of(link->b.body);
     if (a == b)
-      throw InvalidInput("\"" + link->name +
+      throw InvalidInput{"\"", link->name,
                          "\" closes a loop of recursive joints. Give one joint of the loop another policy, such as "
-                         "Constraint.");
+                         "Constraint."};
     towards[a] = b;
   }
 }

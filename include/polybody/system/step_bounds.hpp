@@ -32,7 +32,7 @@ class StepBounds {
  public:
   /// Begins anew at q, v, t. Without this call nothing is checked.
   template <class = void>  // compiled where it is used
-  void begin(System& system, StepLimits const& limits, VecX const& q, VecX const& v, double t);
+  [[gnu::cold]] void begin(System& system, StepLimits const& limits, VecX const& q, VecX const& v, double t);
 
   /// \throws Diverged for a step that ends beyond a limit. `system` may have been evaluated near the end only: what
   /// looks wrong there is judged at the end itself. \param squares Σ v²
@@ -54,7 +54,7 @@ class StepBounds {
   template <class = void>
   void judge(System& system, StepEnd const& end, double squares);
   template <class = void>
-  [[noreturn]] void refuse_open(System const& system, double t) const;
+  [[noreturn, gnu::cold]] void refuse_open(System const& system, double t) const;
   template <class = void>
   void judge_energy(System& system, StepEnd const& end) const;
 
@@ -174,10 +174,15 @@ void StepBounds::refuse_open(System const& system, double t) const {
         largest = std::abs(gaps.g[i]);
         row = gaps.first + i;
       }
-  throw Diverged("The step to t = " + number(t) + " s leaves " + system.layout().name_of(system.layout().speeds + row) +
-                 " open by " + number(largest) +
-                 ": the integration diverges. Take a smaller step, or raise the run's limits.violation, by which " +
-                 number(open_) + " is allowed.");
+  throw Diverged{"The step to t = ",
+                 t,
+                 " s leaves ",
+                 system.layout().name_of(system.layout().speeds + row),
+                 " open by ",
+                 largest,
+                 ": the integration diverges. Take a smaller step, or raise the run's limits.violation, by which ",
+                 open_,
+                 " is allowed."};
 }
 
 template <class>
@@ -195,11 +200,16 @@ void StepBounds::judge_energy(System& system, StepEnd const& end) const {
     if (std::abs(end.v[i]) > std::abs(end.v[fastest])) fastest = i;
   // A motion that is slow beside its coordinates is no explosion, but rounding.
   if (std::abs(end.v[fastest]) * end.h < 1e-3 * (1.0 + largest_size(end.q))) return;
-  throw Diverged("The step to t = " + number(end.t) + " s has gained " + number(gained) +
-                 " J since the last start, where gravity, loads, drives and the energy of the start explain " +
-                 number(explained) + " J; " + system.name_of(fastest) +
+  throw Diverged{"The step to t = ",
+                 end.t,
+                 " s has gained ",
+                 gained,
+                 " J since the last start, where gravity, loads, drives and the energy of the start explain ",
+                 explained,
+                 " J; ",
+                 system.name_of(fastest),
                  " moves fastest. The integration diverges: take a smaller step or softer joints, or raise the run's "
-                 "limits.energy.");
+                 "limits.energy."};
 }
 
 }  // namespace polybody

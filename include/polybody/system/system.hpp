@@ -58,7 +58,7 @@ std::string name_of_coordinate(System const& s, Index i) {
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     Index const first = c ? c.narrow->places[k].q : bodies[k].q0;
     Index const count = c ? c.narrow->places[k].coordinates : bodies[k].coordinates;
-    if (i >= first && i < first + count) return "body \"" + bodies[k].name + '"';
+    if (i >= first && i < first + count) return sentence_of({"body \"", bodies[k].name, "\""});
   }
   return "unknown";
 }

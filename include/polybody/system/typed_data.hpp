@@ -98,7 +98,7 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   using M = Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>;
   using Typed = TypedData<M, T>;
 
-  static Data<T> make(M const& model) {
+  [[gnu::cold]] static Data<T> make(M const& model) {
     auto const typed = std::make_shared<Typed>();
     Data<T> data;
     place_ground(model.ground_markers(), model.markers(), model.jacobian_size(), data);
@@ -118,7 +118,7 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
 
  private:
   /// Those of bodies, of linear joints, of joints between frames.
-  static void place_rows(M const& model, Typed& typed, Data<T>& data) {
+  [[gnu::cold]] static void place_rows(M const& model, Typed& typed, Data<T>& data) {
     Index size = size_of(model.linear_rows());
     ((size += BodyKernels<Bs, T>::own_size(bodies_of<Bs>(model))), ...);
     typed.own_rows.assign(std::size_t(size), T(0.0));

@@ -23,18 +23,18 @@ class HeightField {
   /// finite, slopes and curvatures included.
   explicit HeightField(Grid const& grid, std::string const& what = "HeightField") {
     MatX const& z = grid.heights;
-    require_finite(Vec2(grid.x0, grid.y0), what + ": the place x0, y0 of the first point");
-    require_positive(grid.dx, what + ": the spacing dx");
-    require_positive(grid.dy, what + ": the spacing dy");
+    require_finite(Vec2(grid.x0, grid.y0), what, ": the place x0, y0 of the first point");
+    require_positive(grid.dx, what, ": the spacing dx");
+    require_positive(grid.dy, what, ": the spacing dy");
     if (z.rows() < 2 || z.cols() < 2)
-      throw InvalidInput(what + ": a grid needs two points at least along x and along y, but has " +
-                         std::to_string(z.rows()) + " by " + std::to_string(z.cols()) +
-                         ". For what does not change across take RoadProfile.");
+      throw InvalidInput{what,     ": a grid needs two points at least along x and along y, but has ",
+                         z.rows(), " by ",
+                         z.cols(), ". For what does not change across take RoadProfile."};
     for (Index j = 0; j < z.cols(); ++j)
       for (Index i = 0; i < z.rows(); ++i)
         if (!std::isfinite(z(i, j)))
-          throw InvalidInput(what + ": heights(" + std::to_string(i) + ", " + std::to_string(j) +
-                             ") must be finite, but is " + number(z(i, j)) + ". Fill gaps in the data first.");
+          throw InvalidInput{
+              what, ": heights(", i, ", ", j, ") must be finite, but is ", z(i, j), ". Fill gaps in the data first."};
     x_ = {.start = grid.x0 - grid.dx, .spacing = grid.dx, .cells = z.rows() + 1};
     y_ = {.start = grid.y0 - grid.dy, .spacing = grid.dy, .cells = z.cols() + 1};
     nodes_ = std::make_shared<MatX const>(with_slopes(with_slopes(z, grid.dx).transpose(), grid.dy).transpose());
@@ -42,8 +42,8 @@ class HeightField {
     bool computable = largest_number * finest * finest >= 1.0;
     for (double const x : nodes_->reshaped()) computable = computable && std::abs(x) <= largest_number;
     if (!computable)
-      throw InvalidInput(what + ": its slopes or curvatures are beyond " + number(largest_number) +
-                         ". Give heights and spacings in metres.");
+      throw InvalidInput{what, ": its slopes or curvatures are beyond ", largest_number,
+                         ". Give heights and spacings in metres."};
     highest_ = z.maxCoeff();
     Mat<double, 4, 4> const bx = x_.bezier(), by = y_.bezier();
     for (Index j = 0; j < y_.cells; ++j)

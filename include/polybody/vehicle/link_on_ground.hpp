@@ -24,8 +24,8 @@ struct LinkOnGround {
 
   void check(std::string const& name) const {
     terrain.check(name);
-    if (pad.empty()) throw InvalidInput(name + ": a link needs points that touch the ground.");
-    for (Vec3 const& p : pad) require_finite(p, name + ": a point of the pad");
+    if (pad.empty()) throw InvalidInput{name, ": a link needs points that touch the ground."};
+    for (Vec3 const& p : pad) require_finite(p, name, ": a point of the pad");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& ground) const {
     Vec3 const up = detail::column<double>(ground.A, 2);

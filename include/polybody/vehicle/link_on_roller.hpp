@@ -32,17 +32,17 @@ struct LinkOnRoller {
   std::vector<double> rims = {0.0};  ///< where their middle planes are along the axle [m]
 
   void check(std::string const& name) const {
-    require_positive(pitch, name + ": the pitch of the link");
-    require_not_negative(half_thickness, name + ": the link's half thickness");
-    require_positive(half_width, name + ": the link's half width");
-    require_positive(radius, name + ": the radius of the roller");
-    require_not_negative(chamfer, name + ": the chamfer of the link's edges");
+    require_positive(pitch, name, ": the pitch of the link");
+    require_not_negative(half_thickness, name, ": the link's half thickness");
+    require_positive(half_width, name, ": the link's half width");
+    require_positive(radius, name, ": the radius of the roller");
+    require_not_negative(chamfer, name, ": the chamfer of the link's edges");
     if (!(handover > 0.0 && handover < 0.5 * pitch))
-      throw InvalidInput(name + ": the zone of the handover must be positive and below half the pitch, but is " +
-                         number(handover) + " m.");
-    if (rims.empty()) throw InvalidInput(name + ": a roller needs at least one rim.");
+      throw InvalidInput{name, ": the zone of the handover must be positive and below half the pitch, but is ",
+                         handover, " m."};
+    if (rims.empty()) throw InvalidInput{name, ": a roller needs at least one rim."};
     for (double const y : rims)
-      if (!std::isfinite(y)) throw InvalidInput(name + ": the place of a rim must be finite.");
+      if (!std::isfinite(y)) throw InvalidInput{name, ": the place of a rim must be finite."};
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
     double far = 0.0;
@@ -115,9 +115,9 @@ struct HornOnRims {
   Required<double> radius;  ///< of the rims [m]
 
   void check(std::string const& name) const {
-    require_finite(tip, name + ": the tip of the horn");
-    require_not_negative(play, name + ": the play of the horn");
-    require_positive(radius, name + ": the radius of the rims");
+    require_finite(tip, name, ": the tip of the horn");
+    require_not_negative(play, name, ": the play of the horn");
+    require_positive(radius, name, ": the radius of the rims");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
     Vec3 const arm = difference<double>(roller.r, link.r);

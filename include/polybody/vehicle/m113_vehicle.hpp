@@ -68,14 +68,12 @@ struct VehicleOptions {
 template <class = void>  // compiled where it is used
 void check(VehicleOptions const& options) {
   if (options.start.links.size() != std::size_t(links))
-    throw InvalidInput("M113: the start needs the places of " + std::to_string(links) + " links, but has " +
-                       std::to_string(options.start.links.size()) + ".");
+    throw InvalidInput{"M113: the start needs the places of ", links, " links, but has ", options.start.links.size(),
+                       "."};
   if (options.cut < 0 || options.cut >= links)
-    throw InvalidInput("M113: the pin that closes a track is one of 0 … 63, but " + std::to_string(options.cut) +
-                       " is asked for.");
+    throw InvalidInput{"M113: the pin that closes a track is one of 0 … 63, but ", options.cut, " is asked for."};
   if (options.link_elements < 0)
-    throw InvalidInput("M113: a flexible link has one element or more, but " + std::to_string(options.link_elements) +
-                       " are asked for.");
+    throw InvalidInput{"M113: a flexible link has one element or more, but ", options.link_elements, " are asked for."};
 }
 
 /// The bodies that carry one track.

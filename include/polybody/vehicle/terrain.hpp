@@ -54,8 +54,7 @@ struct FlatGround {
   double z = 0.0;  ///< [m]
 
   void check(std::string const& name) const {
-    if (!std::isfinite(z))
-      throw InvalidInput(name + ": the height of the ground must be finite, but is " + number(z) + ".");
+    if (!std::isfinite(z)) throw InvalidInput{name, ": the height of the ground must be finite, but is ", z, "."};
   }
   double highest() const { return z; }
   template <StateScalar T>
@@ -70,8 +69,8 @@ struct Washboard {
   Required<double> wavelength;  ///< l [m]
 
   void check(std::string const& name) const {
-    require_not_negative(amplitude, name + ": the amplitude");
-    require_positive(wavelength, name + ": the wavelength");
+    require_not_negative(amplitude, name, ": the amplitude");
+    require_positive(wavelength, name, ": the wavelength");
   }
   double highest() const { return amplitude; }
   template <StateScalar T>
@@ -101,11 +100,11 @@ class BumpCourse {
     for (std::size_t i = 0; i < bumps_.size(); ++i) {
       Bump const& b = bumps_[i];
       std::string const bump = what + ": bump " + std::to_string(i + 1);
-      require_finite(Vec3(b.x, b.y, b.height), bump + ": its middle and height");
-      require_positive(b.length, bump + ": the length");
+      require_finite(Vec3(b.x, b.y, b.height), bump, ": its middle and height");
+      require_positive(b.length, bump, ": the length");
       if (!(b.width > 0.0))
-        throw InvalidInput(bump + ": the width must be positive, but is " + number(b.width) +
-                           ". Leave it out for a bump right across.");
+        throw InvalidInput{bump, ": the width must be positive, but is ", b.width,
+                           ". Leave it out for a bump right across."};
       double together = 0.0;  // all bumps over any point of this one overlap it
       for (Bump const& other : bumps_)
         if (std::abs(other.x - b.x) < 0.5 * (other.length + b.length) &&

@@ -72,7 +72,7 @@ struct TrackLayout {
 
 namespace detail {
 
-inline std::string track_name(TrackCircle const& c) { return "'" + c.name + "'"; }
+inline std::string track_name(TrackCircle const& c) { return sentence_of({"'", c.name, "'"}); }
 
 /// \throws InvalidInput where two circles overlap, or two wheels have one name. The sprocket counts with its pitch
 /// circle; the tensioner's circle only if `placed`.
@@ -85,13 +85,18 @@ inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
       double const apart = (a.centre - b.centre).norm();
       if (a.name == b.name) {
         if (apart > 0.0 || a.radius != b.radius)
-          throw InvalidInput("Track: two circles are called " + track_name(a) +
-                             ". Give each wheel a name of its own; one that " +
-                             "is listed twice has the same centre and radius both times.");
+          throw InvalidInput{"Track: two circles are called ", track_name(a),
+                             ". Give each wheel a name of its own; one that ",
+                             "is listed twice has the same centre and radius both times."};
       } else if (double const deep = a.radius + b.radius - apart;
                  deep > 0.0 && (placed || (a.name != layout.tensioner.circle && b.name != layout.tensioner.circle))) {
-        throw InvalidInput("Track: " + track_name(a) + " and " + track_name(b) + " overlap by " + number(deep) +
-                           " m. Move them apart or make them smaller.");
+        throw InvalidInput{"Track: ",
+                           track_name(a),
+                           " and ",
+                           track_name(b),
+                           " overlap by ",
+                           deep,
+                           " m. Move them apart or make them smaller."};
       }
     }
 }
@@ -104,7 +109,7 @@ inline void check_track(TrackLayout const& layout) {
   TrackSprocket const& s = layout.sprocket;
   require_finite(s.centre, "Track: the centre of '" + s.name + "'");
   if (s.teeth < 4 || !std::isfinite(s.valley))
-    throw InvalidInput("Track: '" + s.name + "' needs at least four teeth and a finite angle of a valley.");
+    throw InvalidInput{"Track: '", s.name, "' needs at least four teeth and a finite angle of a valley."};
   bool found = false;
   for (TrackCircle const& c : layout.circles) {
     require_positive(c.radius, "Track: the radius of " + track_name(c));
@@ -112,12 +117,11 @@ inline void check_track(TrackLayout const& layout) {
     found = found || c.name == layout.tensioner.circle;
   }
   TrackTensioner const& t = layout.tensioner;
-  if (!found)
-    throw InvalidInput("Track: the tensioner's circle '" + t.circle + "' is none of the circles of the track.");
+  if (!found) throw InvalidInput{"Track: the tensioner's circle '", t.circle, "' is none of the circles of the track."};
   if (!(t.direction.norm() > 0.0) || !t.direction.allFinite() || !(t.least <= t.most) ||
       !std::isfinite(t.most - t.least))
-    throw InvalidInput("Track: the tensioner's circle '" + t.circle +
-                       "' needs a direction and a finite range of travel, least ≤ most.");
+    throw InvalidInput{"Track: the tensioner's circle '", t.circle,
+                       "' needs a direction and a finite range of travel, least ≤ most."};
   check_track_overlaps(layout, false);
 }
 

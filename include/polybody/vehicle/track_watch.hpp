@@ -74,7 +74,7 @@ std::string track_trouble(TrackedVehicle const& vehicle, State const& x) {
     Seating const s = seating(vehicle, x, side);
     if (s.holds()) continue;
     if (!text.empty()) text += ' ';
-    text += "At t = " + number(x.t) + " s the " + (side == Side::left ? "left" : "right") + " track ";
+    text += sentence_of({"At t = ", x.t, " s the ", (side == Side::left ? "left" : "right"), " track "});
     text += s.lost_at >= 0 ? "has jumped a tooth of its sprocket at link " + std::to_string(s.lost_at) + "."
                            : "has left its sprocket: " + std::to_string(s.seated) + " of its pins are between teeth.";
     text += " Tighten the tensioner or accelerate less.";
@@ -119,8 +119,8 @@ TrackFault track_fault(TrackedVehicle const& vehicle, System const& system, Stat
 inline std::string drive_warning(double speed, double step) {
   double const passing = 2.0 * std::numbers::pi / (teeth * std::abs(speed));
   if (step <= passing / 6.0) return {};
-  return "At " + number(speed) + " rad/s a tooth passes in " + number(1e3 * passing) + " ms, which steps of " +
-         number(1e3 * step) + " ms do not resolve. Take steps of " + number(1e3 * passing / 6.0) + " ms or less.";
+  return sentence_of({"At ", speed, " rad/s a tooth passes in ", 1e3 * passing, " ms, which steps of ", 1e3 * step,
+                      " ms do not resolve. Take steps of ", 1e3 * passing / 6.0, " ms or less."});
 }
 
 }  // namespace polybody::m113

@@ -76,8 +76,7 @@ MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
 
 /// \throws InvalidInput unless one mode at least is asked for.
 inline void require_modes(Index count, std::string const& who) {
-  if (count < 1)
-    throw InvalidInput(who + ": the count of modes must be at least 1, but is " + std::to_string(count) + ".");
+  if (count < 1) throw InvalidInput{who, ": the count of modes must be at least 1, but is ", count, "."};
 }
 
 /// Nᵀ A N.

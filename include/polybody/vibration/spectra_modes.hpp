@@ -42,9 +42,13 @@ struct SpectraModes {
         }
       }
     }
-    throw Error("SpectraModes: " + std::to_string(converged) + " of " + std::to_string(count) + " modes converged in " +
-                std::to_string(restarts) +
-                " restarts, which leaves some out. Allow more restarts, a larger tolerance, or use DenseModes.");
+    throw Error{"SpectraModes: ",
+                converged,
+                " of ",
+                count,
+                " modes converged in ",
+                restarts,
+                " restarts, which leaves some out. Allow more restarts, a larger tolerance, or use DenseModes."};
   }
 
  private:

@@ -51,8 +51,8 @@ class TurningFrame {
       throw InvalidInput("SteadyRotation: the model has first-order states, which a steady rotation does not know.");
     for (BodyPlace const& body : system.layout().bodies)
       if (body.planar && !rotation.angular_velocity.head<2>().isZero(0.0))
-        throw InvalidInput("SteadyRotation: body \"" + body.name +
-                           "\" lives in the plane, so the axis must be parallel to z.");
+        throw InvalidInput{"SteadyRotation: body \"", body.name,
+                           "\" lives in the plane, so the axis must be parallel to z."};
     gradient_ = by_speeds(q, [&](VecX const& at, VecX& w) { speeds(at, w); });
     generator_ = gradient_;
     double const s = 1e-3 / std::max(rotation.angular_velocity.norm(), 1e-3);
@@ -105,9 +105,9 @@ class TurningFrame {
     system.violation_rate(rate);
     Index i = 0;
     if (rate.size() && !(rate.cwiseAbs().maxCoeff(&i) <= 1e-8 * w_.cwiseAbs().maxCoeff()))
-      throw InvalidInput("SteadyRotation: " + system.name_of(system.speeds() + i) +
-                         " does not turn with the model (its gap grows at a rate of " + number(rate[i]) +
-                         "). Give it the axis, and a drive the rate, of the rotation.");
+      throw InvalidInput{"SteadyRotation: ", system.name_of(system.speeds() + i),
+                         " does not turn with the model (its gap grows at a rate of ", rate[i],
+                         "). Give it the axis, and a drive the rate, of the rotation."};
   }
 
  private:
@@ -179,18 +179,17 @@ struct TurningEquilibrium {
     double const small = 1e-6 * load + (tolerance + 1e-12) * unit * (1.0 + trial.q.cwiseAbs().maxCoeff());
     Index i = 0;
     if (!(r.cwiseAbs().maxCoeff(&i) <= small))
-      throw LinearSolverSingular("relative_equilibrium: nothing resists a motion of " + frame.system.name_of(i) +
-                                 " that forces excite as the model turns (" + number(r[i]) +
-                                 " is left). Hold every body.");
+      throw LinearSolverSingular{"relative_equilibrium: nothing resists a motion of ", frame.system.name_of(i),
+                                 " that forces excite as the model turns (", r[i], " is left). Hold every body."};
   }
 
   /// \throws NonFinite, NewtonStalled as the result says.
-  [[noreturn]] void refuse(NewtonResult result) const {
-    std::string const at = " at " + number(frame.share) + " of the angular velocity";
-    if (result != NewtonResult::diverged) throw NonFinite("relative_equilibrium: a force is not finite" + at + ".");
-    throw NewtonStalled(
-        "relative_equilibrium: Newton's method did not converge" + at +
-        ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none.");
+  [[noreturn, gnu::cold]] void refuse(NewtonResult result) const {
+    std::string const at = sentence_of({" at ", frame.share, " of the angular velocity"});
+    if (result != NewtonResult::diverged) throw NonFinite{"relative_equilibrium: a force is not finite", at, "."};
+    throw NewtonStalled{
+        "relative_equilibrium: Newton's method did not converge", at,
+        ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none."};
   }
 };
 
@@ -270,13 +269,13 @@ Linearisation linearise(System& system, State const& x, SteadyRotation const& ro
                        1e-13 * l.K.cwiseAbs().maxCoeff() * (1.0 + x.q.cwiseAbs().maxCoeff());
   Index i = 0;
   if (!(r.cwiseAbs().maxCoeff(&i) <= small))
-    throw InvalidInput("linearise: forces on " + system.name_of(i) + " do not balance as the model turns (" +
-                       number(r[i]) + " is left); take the state from relative_equilibrium(model, x, rotation).");
+    throw InvalidInput{"linearise: forces on ", system.name_of(i), " do not balance as the model turns (", r[i],
+                       " is left); take the state from relative_equilibrium(model, x, rotation)."};
   // Kw is the rate at which R changes as the model turns: nothing but forces in the rows
   VecX const turned = l.N * (l.N.transpose() * (l.K * w));
   if (!(turned.cwiseAbs().maxCoeff(&i) <= small * omega))
-    throw InvalidInput("linearise: forces on " + system.name_of(i) +
-                       " do not turn with the model, as gravity or a load across the axis; no state of it is steady.");
+    throw InvalidInput{"linearise: forces on ", system.name_of(i),
+                       " do not turn with the model, as gravity or a load across the axis; no state of it is steady."};
   return l;
 }
 

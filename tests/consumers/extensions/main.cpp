@@ -103,9 +103,10 @@ void mount(Checks& checks) {
 /// A second of a system in steps of a millisecond.
 template <class I>
 State after_a_second(System& system, State x, I const& integrator) {
-  auto workspace = integrator.template workspace<DefaultSolver>(system);
-  integrator.start(system, x, 1e-3, workspace);
-  for (int i = 0; i < 1000; ++i) integrator.step(system, x, 1e-3, workspace);
+  auto const method = method_of(integrator);
+  auto workspace = method.template workspace<DefaultSolver>(system);
+  method.start(system, x, 1e-3, workspace);
+  for (int i = 0; i < 1000; ++i) method.step(system, x, 1e-3, workspace);
   return x;
 }
 

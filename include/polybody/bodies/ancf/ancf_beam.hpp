@@ -55,7 +55,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, bar_.length, Elastic::name) / l_;
     if (!std::isfinite(y) || !std::isfinite(z))
-      throw InvalidInput(std::string(Elastic::name) + ": y and z of a point must be finite.");
+      throw InvalidInput{Elastic::name, ": y and z of a point must be finite."};
     Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e), y, z};
   }
@@ -245,9 +245,9 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   void check_reference(ancf::Reference const& ref, Index e) const {
     std::string const what = std::string(Elastic::name) + ": element " + std::to_string(e);
     double const chord = std::hypot(ref.x[12] - ref.x[0], ref.x[13] - ref.x[1], ref.x[14] - ref.x[2]);
-    if (!(chord > 1e-6 * l_)) throw InvalidInput(what + " begins where it ends. Use more elements, or another curve.");
+    if (!(chord > 1e-6 * l_)) throw InvalidInput{what, " begins where it ends. Use more elements, or another curve."};
     if (chord > (1.0 + 1e-6) * l_)
-      throw InvalidInput(what + " is longer than its part of the bar: the curve's argument must be its arc length.");
+      throw InvalidInput{what, " is longer than its part of the bar: the curve's argument must be its arc length."};
     double height = 0.0, width = 0.0;  // half of each
     if (auto const* r = std::get_if<Rectangle>(&bar_.section)) {
       height = 0.5 * r->height;
@@ -260,9 +260,9 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
                    z = ref.determinant(xi, 0.0, width) - middle;
       double const drop = std::holds_alternative<Circle>(bar_.section) ? std::hypot(y, z) : std::abs(y) + std::abs(z);
       if (!(middle - drop > 0.0))
-        throw InvalidInput(what +
+        throw InvalidInput{what,
                            " is turned inside out in the reference: the curve bends more sharply than the section's "
-                           "size allows, or than one element can follow. Use more elements, or another curve.");
+                           "size allows, or than one element can follow. Use more elements, or another curve."};
     }
   }
 
@@ -341,7 +341,7 @@ AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve
     : Chain(n), bar_(bar), constants_(polybody::constants(bar)) {
   std::string const name = Elastic::name;
   require_elements(n, name);
-  require_positive(constants_.rotary_inertia, name + ": the rotary inertia of the bar, the only mass of r_y,");
+  require_positive(constants_.rotary_inertia, name, ": the rotary inertia of the bar, the only mass of r_y,");
   require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
                    name + ": the rotary inertia of the bar about y, the only mass of r_z,");
   require_polar_inertia_of_points(constants_, name);

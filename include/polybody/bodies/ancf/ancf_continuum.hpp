@@ -168,16 +168,15 @@ struct Continuum {
 
   static void check(Bar const& bar, BarConstants const&) {
     if (!bar.material)
-      throw InvalidInput(std::string(name) +
+      throw InvalidInput{name,
                          ": the continuum needs the bar's section and material. Give them, or take "
-                         "AncfBeam<ElasticLine>, which is content with constants.");
+                         "AncfBeam<ElasticLine>, which is content with constants."};
     if (!(bar.material->poisson < 0.5))
-      throw InvalidInput(std::string(name) +
-                         ": Poisson's ratio must be below 0.5, where the bulk modulus is infinite.");
+      throw InvalidInput{name, ": Poisson's ratio must be below 0.5, where the bulk modulus is infinite."};
     if (!cured && bar.shear_factor)
-      throw InvalidInput(std::string(name) +
+      throw InvalidInput{name,
                          ": with Locking::present shear obeys Hooke's law in full, without a shear factor. Leave it "
-                         "out, or take Continuum<Locking::cured>.");
+                         "out, or take Continuum<Locking::cured>."};
   }
 
   static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {

@@ -50,8 +50,8 @@ class ReferenceConditions {
     auto const mark = [&](Index node, int component) {
       s.require_node(node, "Ffr: a reference condition");
       if (component < 0 || component >= s.per_node)
-        throw InvalidInput("Ffr: a reference condition names component " + std::to_string(component) +
-                           ", but nodes have " + std::to_string(s.per_node) + " (from 0).");
+        throw InvalidInput{"Ffr: a reference condition names component ", component, ", but nodes have ", s.per_node,
+                           " (from 0)."};
       fixed[std::size_t(s.per_node * node + component)] = 1;
     };
     for (Index const node : nodes_)
@@ -93,8 +93,7 @@ namespace detail {
 
 inline void require_count(Index count, Index most) {
   if (count < 1 || count > most)
-    throw InvalidInput("Ffr: " + std::to_string(count) + " modes are asked for, but the model has 1 to " +
-                       std::to_string(most) + " to offer.");
+    throw InvalidInput{"Ffr: ", count, " modes are asked for, but the model has 1 to ", most, " to offer."};
 }
 
 inline void require_mass(Structure::Sparse const& m) {

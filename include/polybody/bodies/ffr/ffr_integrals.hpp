@@ -78,10 +78,10 @@ struct FfrIntegrals {
     for (auto const& x : inertia_second) fits = fits && square(x);
     for (auto const& x : coupling_by) fits = fits && square(x);
     for (auto const& x : first_second) fits = fits && (x.size() == 0 || square(x));
-    if (!fits) throw InvalidInput(what + ": its integrals are not all of one size, that of the mass matrix.");
-    require_positive(mass, what + ": the mass");
-    require_finite(mass_matrix, what + ": the mass matrix");
-    require_finite(stiffness, what + ": the stiffness matrix");
+    if (!fits) throw InvalidInput{what, ": its integrals are not all of one size, that of the mass matrix."};
+    require_positive(mass, what, ": the mass");
+    require_finite(mass_matrix, what, ": the mass matrix");
+    require_finite(stiffness, what, ": the stiffness matrix");
     require_entries(what);
     MatX l = mass_matrix;  // L D Lᵀ, and D must be positive
     bool positive = (l - l.transpose()).norm() <= 1e-9 * l.norm();
@@ -91,15 +91,15 @@ struct FfrIntegrals {
         for (Index i = k + 1; i < n; ++i) l(i, j) -= l(i, k) * l(k, j) / l(k, k);
     }
     if (!positive)
-      throw InvalidInput(what + ": the mass matrix of its deformation is not symmetric and positive definite.");
+      throw InvalidInput{what, ": the mass matrix of its deformation is not symmetric and positive definite."};
   }
   /// \throws InvalidInput naming `what` and the integral that has a NaN, or an entry whose square is not finite.
   void require_entries(std::string const& what) const {
     auto const require = [&](double const* x, Index count, char const* name) {
       for (Index i = 0; i < count; ++i)
         if (!(std::abs(x[i]) <= largest_number))
-          throw InvalidInput(what + ": its integral `" + name + "` has an entry of " + number(x[i]) +
-                             ", whose square is not finite.");
+          throw InvalidInput{
+              what, ": its integral `", name, "` has an entry of ", x[i], ", whose square is not finite."};
     };
     require(first.data(), 3, "first");
     require(first_by.data(), first_by.size(), "first_by");
@@ -165,8 +165,8 @@ struct FfrIntegrals {
 /// \throws InvalidInput for shapes of another size; with stiffening, for a structure without beams.
 inline FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffening = false) {
   if (shapes.rows() != s.size())
-    throw InvalidInput("Ffr: the shapes have " + std::to_string(shapes.rows()) + " rows, but the structure has " +
-                       std::to_string(s.size()) + " nodal coordinates.");
+    throw InvalidInput{"Ffr: the shapes have ", shapes.rows(), " rows, but the structure has ", s.size(),
+                       " nodal coordinates."};
   FfrIntegrals x = FfrIntegrals::zero(shapes.cols());
   auto const carried = [&](Structure::Sparse const& m) { return MatX(shapes.transpose() * (m * shapes)); };
   x.mass = s.mass;

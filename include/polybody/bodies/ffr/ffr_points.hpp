@@ -77,8 +77,7 @@ class FfrPoints {
   FfrPoint at(double s, double y, double z, Index bar) const {
     if (s_.beams.empty()) throw InvalidInput("Ffr: at(s) needs a body made from bars; use node(i).");
     if (bar < 0 || bar >= Index(s_.bar_lengths.size()))
-      throw InvalidInput("Ffr: bar " + std::to_string(bar) + " does not exist; the body is made of " +
-                         std::to_string(s_.bar_lengths.size()) + ".");
+      throw InvalidInput{"Ffr: bar ", bar, " does not exist; the body is made of ", s_.bar_lengths.size(), "."};
     double const inside = require_inside(s, s_.bar_lengths[std::size_t(bar)], "Ffr");
     if (!std::isfinite(y) || !std::isfinite(z)) throw InvalidInput("Ffr: y and z of a point must be finite.");
     Structure::Beam const* beam = nullptr;

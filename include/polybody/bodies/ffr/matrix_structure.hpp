@@ -25,11 +25,9 @@ namespace polybody {
 namespace detail {
 
 /// Row or column i of a matrix with x, y, z of every node.
-inline std::string coordinate_name(Index i) {
-  return std::to_string(i) + " (" + "xyz"[i % 3] + " of node " + std::to_string(i / 3) + ")";
-}
+inline std::string coordinate_name(Index i) { return sentence_of({i, " (", "xyz"[i % 3], " of node ", i / 3, ")"}); }
 inline std::string entry_name(Index i, Index j) {
-  return "row " + coordinate_name(i) + ", column " + coordinate_name(j);
+  return sentence_of({"row ", coordinate_name(i), ", column ", coordinate_name(j)});
 }
 
 inline double largest_entry(Structure::Sparse const& m) {
@@ -42,23 +40,36 @@ inline double largest_entry(Structure::Sparse const& m) {
 /// \throws InvalidInput unless m is n×n, finite (with its norm) and symmetric, but for 1e-9 of its largest entry.
 inline void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
   if (m.rows() != n || m.cols() != n)
-    throw InvalidInput("Structure: " + name + " is " + std::to_string(m.rows()) + "×" + std::to_string(m.cols()) +
-                       ", but " + std::to_string(n / 3) + " nodes with three displacements each need " +
-                       std::to_string(n) + "×" + std::to_string(n) +
+    throw InvalidInput{"Structure: ",
+                       name,
+                       " is ",
+                       m.rows(),
+                       "×",
+                       m.cols(),
+                       ", but ",
+                       n / 3,
+                       " nodes with three displacements each need ",
+                       n,
+                       "×",
+                       n,
                        ". Give every node of the model, without elements that have rotations and without held "
-                       "displacements left out.");
+                       "displacements left out."};
   double const least = 1e-9 * largest_entry(m);
   Structure::Sparse const turned = m.transpose();
   for (Index j = 0; j < n; ++j) {
     for (Structure::Sparse::InnerIterator it(m, j); it; ++it) {
       if (!(std::abs(it.value()) <= largest_number))
-        throw InvalidInput("Structure: " + name + how_not_finite(it.value()) + " in " + entry_name(it.row(), j) +
-                           ". Write the matrices anew.");
+        throw InvalidInput{"Structure: ",
+                           name,
+                           how_not_finite(it.value()),
+                           " in ",
+                           entry_name(it.row(), j),
+                           ". Write the matrices anew."};
       double const other = turned.coeff(it.row(), j);
       if (!(std::abs(it.value() - other) <= least))
-        throw InvalidInput("Structure: " + name + " is not symmetric: " + entry_name(it.row(), j) + " is " +
-                           number(it.value()) + ", its mirror image " + number(other) +
-                           ". Of a matrix kept as one triangle give both.");
+        throw InvalidInput{"Structure: ",           name,   " is not symmetric: ",
+                           entry_name(it.row(), j), " is ", it.value(),
+                           ", its mirror image ",   other,  ". Of a matrix kept as one triangle give both."};
     }
   }
 }
@@ -77,14 +88,15 @@ inline Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
       Index const i = it.row();
       if (i % 3 != j % 3) {
         if (std::abs(it.value()) > least)
-          throw InvalidInput("Structure: the mass matrix couples different directions in " + entry_name(i, j) + remedy);
+          throw InvalidInput{"Structure: the mass matrix couples different directions in ", entry_name(i, j), remedy};
         continue;
       }
       Index const next = j % 3 == 2 ? -2 : 1;
       double const other = mass.coeff(i + next, j + next);
       if (std::abs(it.value() - other) > least)
-        throw InvalidInput("Structure: the mass matrix has " + number(it.value()) + " in " + entry_name(i, j) +
-                           ", but " + number(other) + " in " + entry_name(i + next, j + next) + remedy);
+        throw InvalidInput{
+            "Structure: the mass matrix has ", it.value(), " in ", entry_name(i, j), ", but ", other, " in ",
+            entry_name(i + next, j + next),    remedy};
       entries.emplace_back(int(i / 3), int(j / 3),
                            it.value() / 6.0);  // the mean of the directions and of (i, j), (j, i)
       entries.emplace_back(int(j / 3), int(i / 3), it.value() / 6.0);
@@ -94,9 +106,9 @@ inline Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
   Eigen::SimplicialLDLT<Structure::Sparse> const factor(m);
   for (Index k = 0; k < n; ++k)
     if (!(factor.vectorD()[k] > 1e-13 * largest))
-      throw InvalidInput("Structure: the mass matrix is not positive definite; it fails at node " +
-                         std::to_string(factor.permutationPinv().indices()[k]) +
-                         ". Every node needs mass: leave out nodes of no element.");
+      throw InvalidInput{"Structure: the mass matrix is not positive definite; it fails at node ",
+                         factor.permutationPinv().indices()[k],
+                         ". Every node needs mass: leave out nodes of no element."};
   return m;
 }
 
@@ -115,10 +127,13 @@ inline void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::
     if (force.norm() <= 1e-6 * norm * shape.norm()) continue;
     Index worst = 0;
     force.cwiseAbs().maxCoeff(&worst);
-    throw InvalidInput("Structure: a rigid " + std::string(motion < 3 ? "displacement along " : "rotation about ") +
-                       "xyz"[motion % 3] + " strains the structure, most in row " + coordinate_name(worst) +
+    throw InvalidInput{"Structure: a rigid ",
+                       motion < 3 ? "displacement along " : "rotation about ",
+                       "xyz"[motion % 3],
+                       " strains the structure, most in row ",
+                       coordinate_name(worst),
                        " of the stiffness matrix. Give the nodes in the order of the matrices and in the units of the "
-                       "stiffness, and hold nothing in the finite element model.");
+                       "stiffness, and hold nothing in the finite element model."};
   }
 }
 
@@ -145,7 +160,7 @@ inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse c
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (double const x : nodes[i])
       if (!(std::abs(x) <= largest_number))
-        throw InvalidInput("Structure: node " + std::to_string(i) + how_not_finite(x) + ". Give x, y, z in metres.");
+        throw InvalidInput{"Structure: node ", i, how_not_finite(x), ". Give x, y, z in metres."};
   Structure s;
   s.per_node = 3;
   s.nodes = nodes;
@@ -185,7 +200,7 @@ class NumberLines {
   NumberLines(std::string const& file, char comment) : file_(file), in_(file), comment_(comment) {
     if (in_) in_.peek();  // a folder can be opened, but not read
     if (!in_.is_open() || in_.bad())
-      throw IoError(file + ": it cannot be opened. Check the path, and that it may be read.");
+      throw IoError{file, ": it cannot be opened. Check the path, and that it may be read."};
     in_.clear();
   }
   /// The next line as it stands; false at the end.
@@ -209,8 +224,8 @@ class NumberLines {
     return true;
   }
   /// \throws IoError with the file and the line.
-  [[noreturn]] void fail(std::string const& what) const {
-    throw IoError(file_ + ", line " + std::to_string(line_) + ": " + what + ".");
+  [[noreturn, gnu::cold]] void fail(std::string const& what) const {
+    throw IoError{file_, ", line ", line_, ": ", what, "."};
   }
 
  private:
@@ -300,7 +315,7 @@ inline Structure read_structure(std::string const& mass_file, std::string const&
   try {
     return structure_of(mass, stiffness, nodes);
   } catch (InvalidInput const& error) {
-    throw InvalidInput(mass_file + ", " + stiffness_file + ", " + nodes_file + ": " + error.what());
+    throw InvalidInput{mass_file, ", ", stiffness_file, ", ", nodes_file, ": ", error.what()};
   }
 }
 

@@ -63,7 +63,7 @@ struct FfrIntegrals {
     x.coupling_by[2] = coupling_by;
     for (std::size_t i = 0; i < 2; ++i) x.first_second[i] = first_second[i];
     x.check(what);
-    require_positive(inertia, what + ": the inertia about the frame's origin");
+    require_positive(inertia, what, ": the inertia about the frame's origin");
   }
 
   template <class T>

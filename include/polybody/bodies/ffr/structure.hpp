@@ -71,8 +71,8 @@ struct Structure {
   /// \throws InvalidInput naming `what` unless the node exists.
   void require_node(Index node, std::string const& what) const {
     if (node < 0 || node >= Index(nodes.size()))
-      throw InvalidInput(what + ": node " + std::to_string(node) + " does not exist; the structure has nodes 0 to " +
-                         std::to_string(Index(nodes.size()) - 1) + ".");
+      throw InvalidInput{
+          what, ": node ", node, " does not exist; the structure has nodes 0 to ", Index(nodes.size()) - 1, "."};
   }
 };
 

@@ -36,7 +36,7 @@ using SparseFactor = Eigen::SimplicialLDLT<Structure::Sparse>;
 inline void factor_positive(SparseFactor& factor, Structure::Sparse const& m, std::string const& what) {
   factor.compute(m);
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
-    throw InvalidInput("Ffr: " + what);
+    throw InvalidInput{"Ffr: ", what};
 }
 /// \throws InvalidInput unless the stiffness under reference conditions is positive definite.
 inline void require_held(Structure::Sparse const& k) {

@@ -329,10 +329,14 @@ Lrvf<Interpolation>::Lrvf(Bar const& bar, BarConstants const& c, Index n, Refere
     Vec<double, 3> const from = part<3>(q, 7 * e), to = part<3>(q, 7 * e + 7);
     free.chord = (to - from).norm();
     if (!(free.chord > 1e-6 * l_ && free.chord < (1.0 + 1e-6) * l_))
-      throw InvalidInput("Lrvf: element " + number(double(e)) + " of arc length " + number(l_) + " has a chord of " +
-                         number(free.chord) +
+      throw InvalidInput{"Lrvf: element ",
+                         double(e),
+                         " of arc length ",
+                         l_,
+                         " has a chord of ",
+                         free.chord,
                          ". The reference curve's parameter must be its arc length; use more elements "
-                         "on a closed curve.");
+                         "on a closed curve."};
     MiddleSection<double> at;
     place<double>(e, std::span<double const>(q), at, free.gamma);
     free.turn = at.turn;

@@ -43,29 +43,31 @@ std::array<double, 3> principal_values(Mat3 const& a) {
 /// \throws InvalidInput unless `inertia` can belong to a mass distribution: symmetric, principal moments
 /// not negative and none greater than the sum of the others; that is, ½ tr(J) 1 − J ⪰ 0.
 template <class = void>  // compiled where it is used
-void require_inertia(Mat3 const& inertia, std::string const& what) {
-  require_finite(inertia, what + ": the inertia");
+[[gnu::cold]] void require_inertia(Mat3 const& inertia, std::string const& what) {
+  require_finite(inertia, what, ": the inertia");
   double const size = std::max({std::abs(inertia(0, 0)), std::abs(inertia(1, 1)), std::abs(inertia(2, 2)),
                                 std::abs(inertia(1, 0)), std::abs(inertia(2, 0)), std::abs(inertia(2, 1)),
                                 std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
   if (size == 0.0) return;
   if (size > largest_number)
-    throw InvalidInput(what + ": the inertia has an entry of " + number(size) + " kg m², whose square is not finite.");
+    throw InvalidInput{what, ": the inertia has an entry of ", size, " kg m², whose square is not finite."};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < i; ++j)
       if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)
-        throw InvalidInput(what + ": the inertia tensor must be symmetric.");
+        throw InvalidInput{what, ": the inertia tensor must be symmetric."};
   if (!detail::is_definite(inertia, 1e-9 * size))
-    throw InvalidInput(what + ": a principal moment of inertia is negative (" +
-                       number(detail::principal_values(inertia)[2]) + ").");
+    throw InvalidInput{what, ": a principal moment of inertia is negative (", detail::principal_values(inertia)[2],
+                       ")."};
   Mat3 second;
   double const half_trace = 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2));
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) second(i, j) = i == j ? half_trace - inertia(i, j) : -inertia(i, j);
   if (!detail::is_definite(second, 1e-9 * size)) {
     std::array<double, 3> const i = detail::principal_values(inertia);
-    throw InvalidInput(what + ": the principal moments of inertia " + number(i[0]) + ", " + number(i[1]) + ", " +
-                       number(i[2]) + " violate the triangle inequality; no body has them.");
+    throw InvalidInput{what, ": the principal moments of inertia ",
+                       i[0], ", ",
+                       i[1], ", ",
+                       i[2], " violate the triangle inequality; no body has them."};
   }
 }
 

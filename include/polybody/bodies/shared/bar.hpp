@@ -78,12 +78,12 @@ using ReferenceCurve = std::function<Placement(double)>;
 namespace detail {
 
 template <class = void>  // compiled where it is used
-BarConstants constants_of_section(Bar const& bar) {
+[[gnu::cold]] BarConstants constants_of_section(Bar const& bar) {
   Material const& m = *bar.material;
   require_positive(m.density, "Bar: the material's density");
   require_positive(m.young, "Bar: Young's modulus");
   if (!(m.poisson > -1.0 && m.poisson <= 0.5))
-    throw InvalidInput("Bar: Poisson's ratio must lie in (-1, 0.5], but is " + number(m.poisson) + ".");
+    throw InvalidInput{"Bar: Poisson's ratio must lie in (-1, 0.5], but is ", m.poisson, "."};
   double const nu = m.poisson;
   double area = 0, iz = 0, iy = 0, torsion = 0, shear = 0;
   if (auto const* c = std::get_if<Circle>(&bar.section)) {
@@ -112,7 +112,7 @@ BarConstants constants_of_section(Bar const& bar) {
   if (bar.shear_factor) {
     shear = *bar.shear_factor;
     if (!(shear >= 1e-9 && shear <= 1e9))
-      throw InvalidInput("Bar: the shear factor must lie in [1e-09, 1e+09], but is " + number(shear) + ".");
+      throw InvalidInput{"Bar: the shear factor must lie in [1e-09, 1e+09], but is ", shear, "."};
   }
   double const e = m.young, g = e / (2.0 * (1.0 + nu)), rho = m.density;
   return {.EA = e * area,
@@ -128,7 +128,7 @@ BarConstants constants_of_section(Bar const& bar) {
 
 /// \throws InvalidInput for stiffness and inertia with which no calculation goes on; `of` begins the sentence.
 template <class = void>  // compiled where it is used
-void require_sizes(BarConstants const& c, std::string const& of) {
+[[gnu::cold]] void require_sizes(BarConstants const& c, std::string const& of) {
   struct {
     double x;
     char const* what;
@@ -146,16 +146,16 @@ void require_sizes(BarConstants const& c, std::string const& of) {
 }
 /// \throws InvalidInput where products of the section's and the material's numbers overflow or vanish.
 template <class = void>  // compiled where it is used
-void require_section_sizes(Bar const& bar, BarConstants const& c) {
+[[gnu::cold]] void require_section_sizes(Bar const& bar, BarConstants const& c) {
   std::string of = "Bar: with a section of ";
-  if (auto const* circle = std::get_if<Circle>(&bar.section)) of += "radius " + number(circle->radius);
+  if (auto const* circle = std::get_if<Circle>(&bar.section)) of += sentence_of({"radius ", circle->radius});
   if (auto const* r = std::get_if<Rectangle>(&bar.section))
-    of += "height " + number(r->height) + " m and width " + number(r->width);
-  of += " m and a material of density " + number(bar.material->density) + " kg/m³ and Young's modulus " +
-        number(bar.material->young) + " N/m², ";
-  require_positive(c.EA, of + "EA");
-  require_positive(c.EI, of + "EI");
-  require_positive(c.mass_per_length, of + "mass per length");
+    of += sentence_of({"height ", r->height, " m and width ", r->width});
+  of += sentence_of({" m and a material of density ", bar.material->density, " kg/m³ and Young's modulus ",
+                     bar.material->young, " N/m², "});
+  require_positive(c.EA, of, "EA");
+  require_positive(c.EI, of, "EI");
+  require_positive(c.mass_per_length, of, "mass per length");
   require_sizes(c, of);
 }
 
@@ -163,25 +163,24 @@ void require_section_sizes(Bar const& bar, BarConstants const& c) {
 template <class = void>  // compiled where it is used
 void require_damping_time(double time, std::string const& what) {
   require_not_negative(time, what);
-  if (time > largest_number)
-    throw InvalidInput(what + " must be at most " + number(largest_number) + " s, but is " + number(time) + " s.");
+  if (time > largest_number) throw InvalidInput{what, " must be at most ", largest_number, " s, but is ", time, " s."};
 }
 
 }  // namespace detail
 
 /// The section's stiffness and inertia. \throws InvalidInput naming the quantity that cannot be meant.
 template <class = void>  // compiled where it is used
-BarConstants constants(Bar const& bar) {
+[[gnu::cold]] BarConstants constants(Bar const& bar) {
   require_positive(bar.length, "Bar: the length");
   if (!(bar.length >= 1e-100 && bar.length <= 1e100))
-    throw InvalidInput("Bar: the length must lie in [1e-100, 1e+100] m, but is " + number(bar.length) + " m.");
+    throw InvalidInput{"Bar: the length must lie in [1e-100, 1e+100] m, but is ", bar.length, " m."};
   bar.placement.check("Bar");
   detail::require_damping_time(bar.damping.axial, "Bar: the axial damping time");
   detail::require_damping_time(bar.damping.shear, "Bar: the shear damping time");
   detail::require_damping_time(bar.damping.bending, "Bar: the bending damping time");
   if (!std::isfinite(bar.pretension)) throw InvalidInput("Bar: the pretension must be finite.");
   if (std::abs(bar.pretension) > largest_number)
-    throw InvalidInput("Bar: the pretension is " + number(bar.pretension) + " N, whose square is not finite.");
+    throw InvalidInput{"Bar: the pretension is ", bar.pretension, " N, whose square is not finite."};
   bool const by_section = !std::holds_alternative<std::monostate>(bar.section);
   if (by_section != bar.material.has_value() || by_section == bar.constants.has_value())
     throw InvalidInput("Bar: give either a section with a material, or constants; not both, not half.");
@@ -213,25 +212,26 @@ template <class = void>  // compiled where it is used
 void require_polar_inertia_of_points(BarConstants const& c, std::string const& what) {
   Vec3 const i = rotary_inertias(c);
   if (std::abs(i[0] - (i[1] + i[2])) > 1e-9 * (i[1] + i[2]))
-    throw InvalidInput(what + ": the polar inertia is " + number(i[0]) + " kg m, but that of its material points is " +
-                       "Iρ_y + Iρ_z = " + number(i[1] + i[2]) +
-                       " kg m. Leave it out, or take Lrvf or Rigid, whose sections are rigid.");
+    throw InvalidInput{what,
+                       ": the polar inertia is ",
+                       i[0],
+                       " kg m, but that of its material points is ",
+                       "Iρ_y + Iρ_z = ",
+                       i[1] + i[2],
+                       " kg m. Leave it out, or take Lrvf or Rigid, whose sections are rigid."};
 }
 
 /// \throws InvalidInput naming `what` unless a bar is cut into 1 … 10⁷ elements.
 inline void require_elements(Index n, std::string_view what) {
-  if (n < 1) throw InvalidInput(std::string(what) + ": at least one element is needed.");
-  if (n > 10'000'000)
-    throw InvalidInput(std::string(what) + ": " + std::to_string(n) +
-                       " elements are more than memory holds. Use at most 10000000.");
+  if (n < 1) throw InvalidInput{what, ": at least one element is needed."};
+  if (n > 10'000'000) throw InvalidInput{what, ": ", n, " elements are more than memory holds. Use at most 10000000."};
 }
 
 /// \throws InvalidInput unless 0 ≤ s ≤ length (to 1e-12 of the length); returns s within the bar.
 inline double require_inside(double s, double length, std::string_view what) {
   double const slack = 1e-12 * length;
   if (!(s >= -slack && s <= length + slack))
-    throw InvalidInput(std::string(what) + ": s = " + number(s) +
-                       " lies outside the body, 0 <= s <= " + number(length) + ".");
+    throw InvalidInput{what, ": s = ", s, " lies outside the body, 0 <= s <= ", length, "."};
   return std::min(std::max(s, 0.0), length);
 }
 

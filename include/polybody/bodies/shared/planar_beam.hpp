@@ -89,7 +89,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// So a circular arc of radius R is straight under the moment EI/R. \throws InvalidInput as `from`, and for a curve
   /// that leaves the plane or is not given by its arc length: the axis of an element off by a tenth.
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
-    if (!curve) throw InvalidInput(std::string(Theory::name) + ": the natural shape is empty.");
+    if (!curve) throw InvalidInput{Theory::name, ": the natural shape is empty."};
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);
     return beam;
@@ -102,7 +102,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// The point s from the first end, y off the axis. \throws InvalidInput outside the bar.
   Point at(double s, double y = 0.0) const {
     double const x = require_inside(s, length_, Theory::name) / l_;
-    if (!std::isfinite(y)) throw InvalidInput(std::string(Theory::name) + ": y of a point must be finite.");
+    if (!std::isfinite(y)) throw InvalidInput{Theory::name, ": y of a point must be finite."};
     Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e), y};
   }
@@ -158,8 +158,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// r = S e at `p`, 2×n, constant; e are the coordinates from `first_column(p)`. \throws InvalidInput off the axis,
   /// where r turns with the section.
   PointMap position_map(Point const& p) const {
-    if (p.y != 0.0)
-      throw InvalidInput(std::string(Theory::name) + ": a point off the axis is not linear in the coordinates.");
+    if (p.y != 0.0) throw InvalidInput{Theory::name, ": a point off the axis is not linear in the coordinates."};
     return Theory::position(p.xi, l_);
   }
   /// r′ = S′ e at `p`, 2×n, constant.
@@ -298,9 +297,10 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     for (GaussPoint const& g : gauss<3>) {
       double const off = std::get<0>(this->groups_of(0)).strains(g.xi, l_, rest)[0];
       if (!(std::abs(off) < 0.1))
-        throw InvalidInput(std::string(Theory::name) + ": element " + std::to_string(e + 1) +
-                           " of the natural shape is strained by " + number(off) +
-                           ". Give the curve by its arc length, from 0 to the bar's length, or take more elements.");
+        throw InvalidInput{
+            Theory::name, ": element ",
+            e + 1,        " of the natural shape is strained by ",
+            off,          ". Give the curve by its arc length, from 0 to the bar's length, or take more elements."};
     }
   }
 

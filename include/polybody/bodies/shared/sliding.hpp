@@ -62,8 +62,8 @@ class Sliding : public B {
   /// The coordinate (and the speed) of a slider's place. \throws InvalidInput for a slider that the body has not.
   Index column_of(Slider slider) const {
     if (slider.index < 0 || slider.index >= sliders())
-      throw InvalidInput("Sliding: there is no slider " + std::to_string(slider.index) + "; the body has " +
-                         std::to_string(sliders()) + ", counted from 0.");
+      throw InvalidInput{"Sliding: there is no slider ", slider.index, "; the body has ", sliders(),
+                         ", counted from 0."};
     return B::coordinates() + slider.index;
   }
 
@@ -128,8 +128,8 @@ class Sliding : public B {
   Place place(double s) const {
     double const l = B::element_length();
     if (!(s >= -l && s <= B::length() + l) && std::isfinite(s))
-      throw OffTheEnd("Sliding: a point has gone off the end of its body, to s = " + number(s) + " on a length of " +
-                      number(B::length()) + ". End the run there by the event reaches_an_end, or hold the point.");
+      throw OffTheEnd{"Sliding: a point has gone off the end of its body, to s = ", s, " on a length of ", B::length(),
+                      ". End the run there by the event reaches_an_end, or hold the point."};
     Index const last = B::elements() - 1, e = std::isfinite(s) ? std::clamp(Index(s / l), Index(0), last) : 0;
     return {B::first_column(e), B::axis_shape(s / l - double(e))};
   }

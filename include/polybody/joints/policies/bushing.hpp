@@ -12,13 +12,11 @@ template <class = void>  // compiled where it is used
 void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
   double l[6][6];
   auto const refuse = [&](std::string const& why) {
-    throw InvalidInput(what + " must be finite, symmetric and positive semidefinite (6×6), but " + why + ".");
+    throw InvalidInput{what, " must be finite, symmetric and positive semidefinite (6×6), but ", why, "."};
   };
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
-      auto const entry = [&] {
-        return "its entry (" + std::to_string(i + 1) + ", " + std::to_string(j + 1) + ") is " + number(k(i, j));
-      };
+      auto const entry = [&] { return sentence_of({"its entry (", i + 1, ", ", j + 1, ") is ", k(i, j)}); };
       double const scale = std::sqrt(k(i, i) * k(j, j));
       if (!std::isfinite(k(i, j)) || (i == j && k(i, j) < 0.0)) refuse(entry());
       if (std::abs(k(i, j) - k(j, i)) > 1e-9 * scale) refuse(entry() + " and its mirror is " + number(k(j, i)));

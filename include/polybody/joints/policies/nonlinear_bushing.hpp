@@ -22,8 +22,8 @@ struct LinearLaw {
 
   /// \throws InvalidInput unless k ≥ 0 and c ≥ 0.
   void check(std::string const& what) const {
-    require_not_negative(stiffness, what + ": the stiffness");
-    require_not_negative(damping, what + ": the damping");
+    require_not_negative(stiffness, what, ": the stiffness");
+    require_not_negative(damping, what, ": the damping");
   }
   template <StateScalar T>
   T operator()(T const& x, T const& rate) const {
@@ -38,7 +38,7 @@ struct TabulatedLaw {
   Required<double> damping;  ///< c
 
   /// \throws InvalidInput unless c ≥ 0.
-  void check(std::string const& what) const { require_not_negative(damping, what + ": the damping"); }
+  void check(std::string const& what) const { require_not_negative(damping, what, ": the damping"); }
   template <StateScalar T>
   T operator()(T const& x, T const& rate) const {
     return force(x) + rate * damping.value;

@@ -14,8 +14,8 @@ struct Penalty {
 
   /// \throws InvalidInput unless k > 0 and c ≥ 0; `what` is the joint's name.
   void check(std::string const& what) const {
-    require_positive(stiffness, what + ": the penalty stiffness");
-    require_not_negative(damping, what + ": the penalty damping");
+    require_positive(stiffness, what, ": the penalty stiffness");
+    require_not_negative(damping, what, ": the penalty damping");
   }
 
   template <int m, StateScalar T>
@@ -52,7 +52,7 @@ struct PenaltyPerRow {
   /// \throws InvalidInput unless k > 0 and c ≥ 0 in every row; `what` is the joint's name.
   void check(std::string const& what) const {
     for (int i = 0; i < n; ++i) {
-      std::string const row = " of row " + std::to_string(i + 1);
+      std::string const row = sentence_of({" of row ", i + 1});
       require_positive(stiffness.value[i], what + ": the penalty stiffness" + row);
       require_not_negative(damping.value[i], what + ": the penalty damping" + row);
     }
