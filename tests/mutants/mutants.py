@@ -63,7 +63,7 @@ def build(numbered, clang):
         if made:
             graph = subprocess.run(["ninja", "-C", "build/clang", "-t", "targets", "all"], cwd=copy, capture_output=True)
             programs = re.findall(r"^(tests/test_\w+): CXX_EXECUTABLE_LINKER", graph.stdout.decode(), re.MULTILINE)
-            made = subprocess.run(["ninja", "-C", "build/clang", "-k", "0", *programs], cwd=copy, stdout=out, stderr=out).returncode == 0
+            made = subprocess.run(["ninja", "-C", "build/clang", "-j", str(os.cpu_count()), "-k", "0", *programs], cwd=copy, stdout=out, stderr=out).returncode == 0
     if not made:
         sys.exit(f"The copy with the mutants does not build; {log} says where.")
 

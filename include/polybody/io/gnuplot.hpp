@@ -83,7 +83,7 @@ void run_gnuplot(std::filesystem::path const& program, std::filesystem::path con
   std::error_code reason;
   if (!ran || fs::file_size(drawing.file, reason) == 0 || reason) {
     std::ifstream said(words.file);
-    throw IoError{"gnuplot failed on '", script.string(), "': ", std::istreambuf_iterator<char>(said), {}};
+    throw IoError{"gnuplot failed on '", script.string(), "': ", std::string(std::istreambuf_iterator<char>(said), {})};
   }
   fs::rename(drawing.file, png, reason);
   if (reason) throw IoError{"file '", png.string(), "' cannot be put in place: ", reason.message()};
