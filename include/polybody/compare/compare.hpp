@@ -41,7 +41,7 @@ template <class F>
 std::string name_of(F const& formulation) {
   return formulation.name.empty() ? decltype(formulation.integrator)::name : formulation.name;
 }
-/// The name, told from those of earlier runs.
+/// The name, made different from those of earlier runs.
 template <class = void>
 std::string name_beside(std::vector<ComparedRun> const& earlier, std::string const& own) {
   std::string name = own;

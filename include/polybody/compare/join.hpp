@@ -6,7 +6,7 @@
 
 namespace polybody {
 
-/// The runs of all `parts` in their order, each beside the first of them. Names that stand twice are told apart.
+/// The runs of all `parts` in their order, each beside the first of them. Names that stand twice get a number.
 /// \throws InvalidInput for outputs that are not the same for all.
 template <class = void>  // compiled where it is used
 Comparison join(std::vector<Comparison> const& parts) {

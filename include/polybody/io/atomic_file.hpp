@@ -71,7 +71,7 @@ class AtomicFile {
     return *this;
   }
 
-  /// See the class. A destructor cannot throw: a failure of this last close is told on stderr.
+  /// See the class. A destructor cannot throw: a failure of this last close is printed to stderr.
   ~AtomicFile() {
     if (!file_) return;
     try {

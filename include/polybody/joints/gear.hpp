@@ -24,8 +24,8 @@ struct Gear {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    require_unit(axis.told("Gear: the axis"), "Gear: the axis");
-    require_unit(centres.told("Gear: the line of centres"), "Gear: the line of centres");
+    require_unit(axis.required("Gear: the axis"), "Gear: the axis");
+    require_unit(centres.required("Gear: the line of centres"), "Gear: the line of centres");
     return polybody::rows::triad_of(centres, axis, "Gear");
   }
   void check(std::string const& what) const {

@@ -20,7 +20,7 @@ class JointAxis {
   bool given() const { return given_; }
   operator Vec3 const&() const { return value_; }  // NOLINT
   /// \throws InvalidInput where it was left out; `what` names joint and direction.
-  Vec3 const& told(std::string const& what) const {
+  Vec3 const& required(std::string const& what) const {
     if (!given_)
       throw InvalidInput{what,
                          " is not given. It has no default: give it as a unit vector, world axes at the reference "
@@ -49,7 +49,7 @@ namespace rows {
 
 template <class = void>  // compiled where it is used
 Mat3 triad_about(JointAxis const& axis, std::string const& what) {
-  return triad_about(axis.told(what), what);
+  return triad_about(axis.required(what), what);
 }
 
 }  // namespace rows

@@ -31,8 +31,8 @@ struct PerpendicularAxes {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_of(first.told("PerpendicularAxes: the first axis"),
-                                    second.told("PerpendicularAxes: the second axis"), "PerpendicularAxes");
+    return polybody::rows::triad_of(first.required("PerpendicularAxes: the first axis"),
+                                    second.required("PerpendicularAxes: the second axis"), "PerpendicularAxes");
   }
 
   template <StateScalar T>

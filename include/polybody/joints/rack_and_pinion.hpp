@@ -22,8 +22,8 @@ struct RackAndPinion {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    require_unit(axis.told("RackAndPinion: the axis"), "RackAndPinion: the axis");
-    require_unit(direction.told("RackAndPinion: the direction"), "RackAndPinion: the direction");
+    require_unit(axis.required("RackAndPinion: the axis"), "RackAndPinion: the axis");
+    require_unit(direction.required("RackAndPinion: the direction"), "RackAndPinion: the direction");
     return polybody::rows::triad_of(direction, axis, "RackAndPinion");
   }
   void check(std::string const& what) const {

@@ -25,7 +25,7 @@ struct RollingDisc {
   /// First axis n × axis: n = a₂ |n × axis| + a₃ n·axis. \throws InvalidInput unless both are units, not parallel.
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    Vec3 const &own = axis.told("RollingDisc: the axis"), &up = normal.told("RollingDisc: the normal");
+    Vec3 const &own = axis.required("RollingDisc: the axis"), &up = normal.required("RollingDisc: the normal");
     require_unit(own, "RollingDisc: the axis");
     require_unit(up, "RollingDisc: the normal");
     Vec3 const first = up.cross(own);

@@ -19,8 +19,8 @@ struct Universal {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_of(first.told("Universal: the first axis"), second.told("Universal: the second axis"),
-                                    "Universal");
+    return polybody::rows::triad_of(first.required("Universal: the first axis"),
+                                    second.required("Universal: the second axis"), "Universal");
   }
   /// About a₁, then about b₃.
   JointMotions motions() const {

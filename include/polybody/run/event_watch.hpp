@@ -34,7 +34,7 @@ class EventWatch {
     for (Event const& event : events) sides_.push_back(side(event, x, seen));
   }
 
-  /// Ends a step to x at the first event within it, by bisection on its length; the report is told which. Returns
+  /// Ends a step to x at the first event within it, by bisection on its length; the report names it. Returns
   /// whether there was one.
   [[gnu::cold]] bool meet(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
     auto const passed = [&](std::size_t i, State const& at) {

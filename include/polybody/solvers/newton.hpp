@@ -99,13 +99,13 @@ struct NewtonProgress {
 ///   bool is_rounding(double)  (or not there) whether a correction of this norm is what rounding of the iterate leaves
 /// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
 /// With ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no
-/// correction grew: after one that did, the next looks small beside it wherever it stands. It fails after growing as
-/// often as `growths` says. Full Newton in a stiff direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then
-/// the stretch that it left), so no single rate predicts the next correction: it stops when ‖Δ‖ ≤ 1 itself, and grows
-/// when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves, as what is tolerated shrinks with a wild iterate's accelerations. Where
-/// it would go in circles, as between a contact and none, half of a correction is enough: the part that is taken is
-/// halved, down to 1/64, when ‖Δ‖ shrinks by less than a tenth of that part, and doubled when it shrinks by what the
-/// part explains.
+/// correction grew: the rate θ after a large correction is small for any iterate and says nothing of convergence. It
+/// fails after as many growing corrections as `growths` says. Full Newton in a stiff direction contracts by turns (θ =
+/// 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate predicts the next correction: it
+/// stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves, as what is tolerated shrinks with
+/// a wild iterate's accelerations. Where it would go in circles, as between a contact and none, half of a correction is
+/// enough: the part that is taken is halved, down to 1/64, when ‖Δ‖ shrinks by less than a tenth of that part, and
+/// doubled when it shrinks by what the part explains.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
   NewtonReport report;

@@ -125,8 +125,8 @@ template <class J, class A, class B>
   Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
   if constexpr (!LinearInCoordinates<P> && B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)
     require_along_tangent(axes_b, triad, name);
-  require_told(a.marker, Asks::needs, name);
-  require_told(b.marker, needs_of_second<Asks>(), name);
+  require_observed(a.marker, Asks::needs, name);
+  require_observed(b.marker, needs_of_second<Asks>(), name);
   parts.joint_names.require_free(name, "joint");
   if constexpr (LinearInCoordinates<P>) {  // before a marker is published: it may refuse
     LinearRows rows{.name = name, .row = parts.rows};
@@ -164,7 +164,7 @@ ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   name = parts.force_names.given_or_next(std::move(name), "force", pool.size());
   force.check(sentence_of({"\"", name, "\""}));
   (parts.require_own(markers.marker.model, name), ...);
-  (require_told(markers.marker, F::needs, name), ...);
+  (require_observed(markers.marker, F::needs, name), ...);
   parts.force_names.require_free(name, "force");
   pool.push_back({force, {publish_at(parts, markers, Mat3::Identity())...}, name, parts.states});
   parts.states += states_of<F>();
@@ -181,7 +181,7 @@ ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   ForceEntry<F> entry{group, {}, name};
   for (PooledMarker<B> const& m : many) {
     parts.require_own(m.marker.model, name);
-    require_told(m.marker, F::needs, name);
+    require_observed(m.marker, F::needs, name);
   }
   parts.force_names.require_free(name, "force");
   for (PooledMarker<B> const& m : many) entry.markers.push_back(publish_at(parts, m, Mat3::Identity()));
@@ -198,7 +198,7 @@ void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, Poole
   parts.require_own(one.marker.model, group.name);
   name = name_or_next(std::move(name), "opponent", group.markers.size() - std::size_t(group.force.many()));
   law.check(sentence_of({"\"", group.name, "\", \"", name, "\""}));
-  require_told(one.marker, needs_of_second<Law>(), group.name);
+  require_observed(one.marker, needs_of_second<Law>(), group.name);
   group.markers.push_back(publish_at(parts, one, Mat3::Identity()));
   group.force.pair_with(law, Index(group.markers.size()) - 1, std::move(name));
 }

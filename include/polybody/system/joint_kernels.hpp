@@ -101,7 +101,7 @@ struct JointKernels {
   /// Counts, places and names.
   [[gnu::cold]] static void describe(Pool const& pool, Sequence<LinearRows> const& linear_rows, ModelLayout& out);
   /// A gap and a block of rows for each joint; `owner` is the first joint's place. The blocks of linear joints stand
-  /// from `first_linear` on, and are told their owners.
+  /// from `first_linear` on, and learn their owners.
   [[gnu::cold]] static void place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data);
 
   /// Every gap, and what compliant joints answer.

@@ -24,9 +24,9 @@ Mat3 checked_triad(J const& joint, std::string const& name) {
   try {
     if constexpr (in_plane && HasTurnAxis<typename J::Geometry>)
       if (!joint.geometry.axis.given()) {
-        typename J::Geometry told = joint.geometry;
-        told.axis = Vec3(0.0, 0.0, 1.0);
-        return told.triad();
+        typename J::Geometry about_z = joint.geometry;
+        about_z.axis = Vec3(0.0, 0.0, 1.0);
+        return about_z.triad();
       }
     return joint.geometry.triad();
   } catch (InvalidInput const& e) {
@@ -36,7 +36,7 @@ Mat3 checked_triad(J const& joint, std::string const& name) {
 
 /// \throws InvalidInput where a point of the body tells less than its others do.
 template <class B>
-void require_told(Marker<B> const& m, Observes needs, std::string const& what) {
+void require_observed(Marker<B> const& m, Observes needs, std::string const& what) {
   if constexpr (requires { B::observes_at(m.point); })
     if (B::observes_at(m.point) < needs)
       throw InvalidInput{"\"", what,
