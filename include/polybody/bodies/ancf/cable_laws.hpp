@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Axial strain and bending of a cable in space as strain laws over the cubic Hermite element with coordinates (r, r′)
-/// at both ends.
+/// Axial strain of a cable in plane or space, and bending in space, as strain laws over the cubic Hermite element with
+/// coordinates (r, r′) at both ends.
 
 #include <polybody/bodies/ancf/cable_strains.hpp>
 #include <polybody/bodies/shared/strain_group.hpp>
@@ -9,12 +9,37 @@
 
 namespace polybody {
 
-/// Axial strain in space, p = r′. Five points integrate ε² of the cubic field exactly.
-template <class Strain, int axial_points>
+namespace detail {
+
+/// The rows of p = (r′, r″) over the coordinates behind the first of an element of length l.
+template <class T>
+Mat<T, 2, 3> cable_curvature_map(double xi, double l) {
+  ShapeValues<4> const s = hermite_shape(xi, l);
+  Mat<T, 2, 3> n;
+  for (int j = 0; j < 3; ++j) {
+    n(0, j) = s.ds[j + 1];
+    n(1, j) = s.dds[j + 1];
+  }
+  return n;
+}
+/// 1/nᵏ of 1/n², k = 2 or 3.
+template <int k, class T>
+T inverse_power(T const& inverse2) {
+  using std::sqrt;
+  if constexpr (k == 2)
+    return inverse2;
+  else
+    return inverse2 * sqrt(inverse2);
+}
+
+}  // namespace detail
+
+/// Axial strain, p = r′. Five points integrate ε² of the cubic field exactly.
+template <class Strain, int axial_points, int dimension>
 struct CableAxial {
   static constexpr int points = axial_points;
-  static constexpr int components = 3;
-  static constexpr int parameters = 3;
+  static constexpr int components = dimension;
+  static constexpr int parameters = dimension;
   static constexpr int strains = 1;
   static constexpr int reach = 3;
   static constexpr int difference = 2;
@@ -34,12 +59,12 @@ struct CableAxial {
     return {s.ds[1], s.ds[2], s.ds[3]};
   }
   template <KernelScalar T>
-  static void evaluate(Vec<T, 3> const& p, Vec<T, 1>& strain, Mat<T, 1, 3>& b) {
-    Strain::template axial<T, 3>(p, strain, b);
+  static void evaluate(Vec<T, dimension> const& p, Vec<T, 1>& strain, Mat<T, 1, dimension>& b) {
+    Strain::template axial<T, dimension>(p, strain, b);
   }
   template <KernelScalar T>
-  static void add_hessian(Vec<T, 3> const& p, Vec<T, 1> const& n, Mat<T, 3, 3>& h) {
-    Strain::template add_axial_hessian<T, 3>(p, n[0], h);
+  static void add_hessian(Vec<T, dimension> const& p, Vec<T, 1> const& n, Mat<T, dimension, dimension>& h) {
+    Strain::template add_axial_hessian<T, dimension>(p, n[0], h);
   }
 };
 
@@ -60,19 +85,13 @@ struct CableBending {
   static constexpr int vector(int, int j) { return j + 1; }
   template <class T = double>
   static Mat<T, 2, 3> map(double xi, double l) {
-    ShapeValues<4> const s = hermite_shape(xi, l);
-    Mat<T, 2, 3> n;
-    for (int j = 0; j < 3; ++j) {
-      n(0, j) = s.ds[j + 1];
-      n(1, j) = s.dds[j + 1];
-    }
-    return n;
+    return detail::cable_curvature_map<T>(xi, l);
   }
 
   /// With c = s × u: ∂κ/∂s = −ũ/nᵏ − k κ sᵀ/n², ∂κ/∂u = s̃/nᵏ.
   template <KernelScalar T>
   static void evaluate(Vec<T, 6> const& p, Vec<T, 3>& strain, Mat<T, 3, 6>& b) {
-    T const inverse2 = T(1.0) / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), inverse = power(inverse2);
+    T const inverse2 = T(1.0) / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), inverse = detail::inverse_power<k>(inverse2);
     for (int i = 0; i < 3; ++i) {
       int const j = (i + 1) % 3, l = (i + 2) % 3;
       strain[i] = (p[j] * p[3 + l] - p[l] * p[3 + j]) * inverse;
@@ -90,7 +109,7 @@ struct CableBending {
   template <KernelScalar T>
   static T square(Vec<T, 6> const& p) {
     T const ss = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], uu = p[3] * p[3] + p[4] * p[4] + p[5] * p[5];
-    T const su = p[0] * p[3] + p[1] * p[4] + p[2] * p[5], inverse = power(T(1.0) / ss);
+    T const su = p[0] * p[3] + p[1] * p[4] + p[2] * p[5], inverse = detail::inverse_power<k>(T(1.0) / ss);
     return (ss * uu - su * su) * (inverse * inverse);
   }
 
@@ -98,7 +117,7 @@ struct CableBending {
   ///   ∂²/∂s² = (−k (a sᵀ + s aᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²/∂s∂u = −w̃/nᵏ − k s dᵀ/nᵏ⁺².
   template <KernelScalar T>
   static void add_hessian(Vec<T, 6> const& p, Vec<T, 3> const& w, Mat<T, 6, 6>& h) {
-    T const inverse2 = T(1.0) / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), inverse = power(inverse2);
+    T const inverse2 = T(1.0) / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), inverse = detail::inverse_power<k>(inverse2);
     T const pull = inverse * inverse2 * double(k);
     T a[3], d[3];
     for (int i = 0; i < 3; ++i) {
@@ -152,14 +171,6 @@ struct CableBending {
   }
 
  private:
-  template <class T>
-  static T power(T const& inverse2) {  // 1/nᵏ
-    using std::sqrt;
-    if constexpr (k == 2)
-      return inverse2;
-    else
-      return inverse2 * sqrt(inverse2);
-  }
   /// w, G and their gradients' factors of κ.
   template <class T>
   struct Blend {

@@ -4,7 +4,7 @@
 /// constant mass matrix, no rotation coordinate and no rotary inertia
 /// [Berzeri & Shabana 2000; Gerstmayr & Irschik 2008; thesis Eq. 3.16–3.20].
 
-#include <polybody/bodies/ancf/cable_strains.hpp>
+#include <polybody/bodies/ancf/cable_laws.hpp>
 #include <polybody/bodies/shared/planar_beam.hpp>
 #include <polybody/math/shape_functions.hpp>
 
@@ -75,39 +75,7 @@ struct HermiteCable {
     h = d.transpose() * (of_slope / n4) * d;
   }
 
-  /// Axial strain, p = r′. Five points integrate ε² of the cubic field exactly.
-  struct Axial {
-    static constexpr int points = axial_points;
-    static constexpr int components = 2;
-    static constexpr int parameters = 2;
-    static constexpr int strains = 1;
-    static constexpr int reach = 3;
-    static constexpr int difference = 2;
-
-    template <class T = double>  // compiled where it is used
-    static Vec<T, 1> stiffness(BarConstants const& c) {
-      return Vec<T, 1>(double(c.EA));
-    }
-    template <class T = double>
-    static Vec<T, 1> damping(Damping const& d) {
-      return Vec<T, 1>(d.axial);
-    }
-    static constexpr int vector(int, int j) { return j + 1; }
-    template <class T = double>
-    static Mat<T, 1, 3> map(double xi, double l) {
-      ShapeValues<4> const s = hermite_shape(xi, l);
-      return {s.ds[1], s.ds[2], s.ds[3]};
-    }
-
-    template <KernelScalar T>
-    static void evaluate(Vec<T, 2> const& p, Vec<T, 1>& strain, Mat<T, 1, 2>& b) {
-      Strain::template axial<T, 2>(p, strain, b);
-    }
-    template <KernelScalar T>
-    static void add_hessian(Vec<T, 2> const& p, Vec<T, 1> const& n, Mat<T, 2, 2>& h) {
-      Strain::template add_axial_hessian<T, 2>(p, n[0], h);
-    }
-  };
+  using Axial = CableAxial<Strain, axial_points, 2>;
 
   /// Bending, p = (r′, r″), κ = c/nᵏ with c = r′ × r″, n = |r′|. Three points are the field's choice [Gerstmayr &
   /// Irschik 2008].
@@ -131,18 +99,12 @@ struct HermiteCable {
     static constexpr int vector(int, int j) { return j + 1; }
     template <class T = double>
     static Mat<T, 2, 3> map(double xi, double l) {
-      ShapeValues<4> const s = hermite_shape(xi, l);
-      Mat<T, 2, 3> n;
-      for (int j = 0; j < 3; ++j) {
-        n(0, j) = s.ds[j + 1];
-        n(1, j) = s.dds[j + 1];
-      }
-      return n;
+      return polybody::detail::cable_curvature_map<T>(xi, l);
     }
 
     template <KernelScalar T>
     static void evaluate(Vec<T, 4> const& p, Vec<T, 1>& strain, Mat<T, 1, 4>& b) {
-      T const inverse2 = one_over(p), inverse = power(inverse2);
+      T const inverse2 = one_over(p), inverse = polybody::detail::inverse_power<k>(inverse2);
       T const kappa = (p[0] * p[3] - p[1] * p[2]) * inverse, pull = kappa * inverse2 * double(k);
       strain[0] = kappa;
       b(0, 0) = p[3] * inverse - pull * p[0];
@@ -154,7 +116,8 @@ struct HermiteCable {
     ///   ∂²κ/∂s² = (−k (u sᵀ + s uᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²κ/∂s∂r″ = J/nᵏ − k s wᵀ/nᵏ⁺².
     template <KernelScalar T>
     static void add_hessian(Vec<T, 4> const& p, Vec<T, 1> const& n, Mat<T, 4, 4>& h) {
-      T const inverse2 = one_over(p), each = power(inverse2) * n[0], a = each * inverse2 * double(k);
+      T const inverse2 = one_over(p), each = polybody::detail::inverse_power<k>(inverse2) * n[0],
+              a = each * inverse2 * double(k);
       T const c = p[0] * p[3] - p[1] * p[2], along = c * inverse2 * double(k + 2), x = a * p[0], y = a * p[1];
       h(0, 0) += x * (along * p[0] - p[3] * 2.0) - a * c;
       h(1, 1) += y * (along * p[1] + p[2] * 2.0) - a * c;
@@ -173,14 +136,6 @@ struct HermiteCable {
     template <class T>
     static T one_over(Vec<T, 4> const& p) {  // 1/n²
       return T(1.0) / (p[0] * p[0] + p[1] * p[1]);
-    }
-    template <class T>
-    static T power(T const& inverse2) {  // 1/nᵏ
-      using std::sqrt;
-      if constexpr (k == 2)
-        return inverse2;
-      else
-        return inverse2 * sqrt(inverse2);
     }
   };
   using Groups = std::tuple<Axial, Bending>;
