@@ -38,13 +38,13 @@ concept NamesStableStep = requires(double omega, double rate) {
 ///   method.start(system, x, h, w);      after a start, a jump or an event
 ///   method.step(system, x, h, w);       x is untouched when it throws; takes at most h
 /// The workspace has a member `forward`, a `ForwardDynamics<Solver>`.
-template <class M, class Solver = DefaultSolver>
-concept StepMethod =
-    requires(M const m, System& system, State& x, double h, decltype(m.template workspace<Solver>(system))& workspace) {
-      m.start(system, x, h, workspace);
-      { m.step(system, x, h, workspace) } -> std::same_as<StepReport>;
-      { workspace.forward } -> std::same_as<ForwardDynamics<Solver>&>;
-    };
+template <class Method, class Solver = DefaultSolver>
+concept StepMethod = requires(Method const m, System& system, State& x, double h,
+                              decltype(m.template workspace<Solver>(system))& workspace) {
+  m.start(system, x, h, workspace);
+  { m.step(system, x, h, workspace) } -> std::same_as<StepReport>;
+  { workspace.forward } -> std::same_as<ForwardDynamics<Solver>&>;
+};
 
 /// What takes an integrator's steps: the method that its `method()` makes of its options, or the integrator itself.
 /// \throws InvalidInput for options that its `check` refuses.
