@@ -21,6 +21,8 @@
 #include <polybody/stress/section.hpp>
 #include <polybody/vibration/steady_rotation.hpp>
 
+#include "support/held.hpp"
+
 using namespace polybody;
 
 namespace decoupled_and_coupled_test {
@@ -100,7 +102,9 @@ void is_centrifugal(B const& body, double omega) {
   for (double const x : {0.03125, 0.28125, 0.53125, 0.78125, 0.96875}) {
     double const stress = axial_stress(flexible.model, flexible.x, flexible.arm.at(x), steel()),
                  expected = whole * (1.0 - x * x);
-    EXPECT_NEAR(stress, expected, 0.01 * expected) << x;
+    held({"thesis §4.3", "stress of a rotating rod, coupled [Pa]", By::closed_form, "½ ρω² (L² − x²)",
+          std::is_same_v<B, Ffr> ? "Ffr, 16 elements" : "AncfCable, 16 elements"},
+         stress, expected, 0.01 * expected, {equals("x/L", x)});
   }
 }
 
@@ -109,7 +113,9 @@ TEST(DecoupledAndCoupled, BothGiveTheCentrifugalStress) {
   OnHub<Rigid<>> rigid(Rigid<>::from(steel()), {.speed = omega});
   auto const decoupled = DecoupledStress::quasi_static(structure_of(steel(), 2), steady_record(rigid, omega));
   for (double const x : {0.03125, 0.28125, 0.53125, 0.78125, 0.96875})
-    EXPECT_NEAR(decoupled.axial_stress(steel(), x).back(), whole * (1.0 - x * x), 1e-8 * whole) << x;
+    held({"thesis §4.3", "stress of a rod that turns steadily [Pa]", By::closed_form, "½ ρω² (L² − x²)",
+          "Rigid, quasi-static"},
+         decoupled.axial_stress(steel(), x).back(), whole * (1.0 - x * x), 1e-8 * whole, {equals("x/L", x)});
   is_centrifugal(Ffr::from(steel(), 16), omega);
   is_centrifugal(AncfCable<>::from(steel(), 16), omega);
 }
@@ -143,7 +149,9 @@ TEST(DecoupledAndCoupled, PartByTheArmOfCentrifugalForcesAsTheSpeedSquared) {
   double const small = part(0.2), large = part(0.4);
   EXPECT_NEAR(std::log2(large / small), 2.0, 0.03);
   double const at_low = small / 0.04, at_high = large / 0.16;
-  EXPECT_NEAR(at_low + (at_low - at_high) / 3.0, 11.0 / 120.0, 2e-3 * 11.0 / 120.0);
+  held({"thesis §4.3", "what centrifugal forces take off a root moment, of ρAΩ²L⁴/EI", By::closed_form, "11/120",
+        "Lrvf, 32 elements, against Rigid, quasi-static"},
+       at_low + (at_low - at_high) / 3.0, 11.0 / 120.0, 2e-3 * 11.0 / 120.0);
 }
 
 /// Tip displacement across the arm, in the arm's axes, of a run of three seconds in steps of 5 ms.
@@ -185,11 +193,16 @@ double parting(Turn const& turn, bool follows, double force = 1e-3) {
 TEST(DecoupledAndCoupled, AgreeAtLowSpeedAndPartAsItsSquare) {
   double const slow = parting({.speed = 1e-3}, false), one = parting({.speed = 0.2}, false),
                two = parting({.speed = 0.4}, false);
-  EXPECT_LT(parting({.speed = 0.4}, true), 1e-5);
-  EXPECT_LT(slow, 1e-5);
+  auto const parts = [](char const* motion, double found, double tolerance) {
+    held_within({"thesis §4.3", "tip of a turning arm, decoupled, of the largest", By::itself,
+                 "Ffr, 3 elements, coupled", motion},
+                found, tolerance, {.scale = 1.0});
+  };
+  parts("Rigid, vibrating, loads follow, Ω = 0.4", parting({.speed = 0.4}, true), 1e-5);
+  parts("Rigid, vibrating, Ω = 1e-3", slow, 1e-5);
   EXPECT_NEAR(std::log2(two / one), 2.0, 0.1);
   // up to speed: Ω˙ bends the arm, and that, too, is met; without a force that would turn with the tip
-  EXPECT_LT(parting({.speed = 1.0, .ramp = 2.0}, true, 0.0), 1e-4);
+  parts("Rigid, vibrating, loads follow, up to Ω = 1", parting({.speed = 1.0, .ramp = 2.0}, true, 0.0), 1e-4);
   EXPECT_GT(parting({.speed = 1.0, .ramp = 2.0}, false, 0.0), 0.1);
 }
 
@@ -213,12 +226,12 @@ TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
       .length = 1.0,
       .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
   Structure const structure = structure_of(rod, 16);
-  MatX const held = held_modes(structure, 1), mean = free_interface_modes(structure, 1);
+  MatX const tied = held_modes(structure, 1), mean = free_interface_modes(structure, 1);
   PointForce<> const push{.force = {1e-3, 0, 0}};
   RunOptions const run{.until = 3.0, .step = 5e-3};
 
   Model<Bodies<Ffr>, Joints<>, Forces<PointForce<>>> flexible;
-  auto const body = flexible.add(Ffr(structure, held, {}), "rod");
+  auto const body = flexible.add(Ffr(structure, tied, {}), "rod");
   flexible.apply(push, body.at(0.0), "push");
   State x = flexible.reference_state();
   std::vector<double> times, force;
@@ -244,12 +257,21 @@ TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
     return pi / half_period(stress.times(), n);
   };
   // 16 elements: (πh/2)²/24 = 4e-4 of π/2, four times that of π; steps of ωh = 0.016: 2e-5
-  EXPECT_NEAR(coupled, 0.5 * pi / std::sqrt(1.0 - 8.0 / (pi * pi)), 2e-3 * pi);
-  EXPECT_NEAR(frequency({.shapes = held, .settled = false}), 0.5 * pi, 5e-4 * pi);
-  EXPECT_NEAR(frequency({.frame = ReferenceConditions::none(), .shapes = mean, .settled = false}), pi, 2e-3 * pi);
+  auto const of_rod = [](char const* source, char const* formulation, double value, double exact, double part) {
+    held({"thesis §4.3", "frequency of a free rod pushed at its end [rad/s]", By::closed_form, source, formulation},
+         value, exact, part * std::numbers::pi);
+  };
+  of_rod("π/2/√(1 − 8/π²)", "Ffr tied to the end, 1 mode, coupled", coupled,
+         0.5 * pi / std::sqrt(1.0 - 8.0 / (pi * pi)), 2e-3);
+  of_rod("π/2", "Rigid, vibrating, 1 mode of a frame tied to the end", frequency({.shapes = tied, .settled = false}),
+         0.5 * pi, 5e-4);
+  of_rod("π", "Rigid, vibrating, 1 mode of mean axes",
+         frequency({.frame = ReferenceConditions::none(), .shapes = mean, .settled = false}), pi, 2e-3);
   // Static, the middle bears −F/2, whole at once. Of the mode √2 cos πx, q¨ = √2 F cos πt, the part before it needs ∫
   // √2 cos πx q¨ dx = 2F/π cos πt, of which the mesh gets (πh)²/12 = 3e-3 wrong.
-  EXPECT_NEAR(least, -1e-3 * (0.5 + 2.0 / pi), 3e-6);
+  held({"thesis §4.3", "least force in the middle of a free rod pushed at its end [N]", By::closed_form, "−F (½ + 2/π)",
+        "Rigid, vibrating, 1 mode of mean axes"},
+       least, -1e-3 * (0.5 + 2.0 / pi), 3e-6);
 }
 
 }  // namespace decoupled_and_coupled_test

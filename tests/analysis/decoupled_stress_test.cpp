@@ -21,6 +21,7 @@
 #include <polybody/run/simulate.hpp>
 #include <polybody/signals/filter.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
@@ -76,7 +77,9 @@ TEST(DecoupledStress, OfARotatingRodIsTheCentrifugalOne) {
     auto const stress = DecoupledStress::quasi_static(structure_of(rod(), n), run);
     for (double const part : {0.0, 0.1, 1.0 / 3.0, 0.5, 0.77, 0.99, 1.0}) {
       for (double const s : stress.axial_stress(rod(), part * length, 0.5 * height, 0.5 * width))
-        EXPECT_NEAR(s, whole * (1.0 - part * part), 1e-9 * whole);
+        held(
+            {"thesis §4.3", "stress of a rotating rod [Pa]", By::closed_form, "½ ρω² (L² − x²)", "Rigid, quasi-static"},
+            s, whole * (1.0 - part * part), 1e-9 * whole, {equals("x/L", part), whole});
       for (double const e : stress.axial_strain(part * length))
         EXPECT_NEAR(e, whole / young * (1.0 - part * part), 1e-9 * whole / young);
     }
@@ -112,15 +115,20 @@ void swings(M const& model, BodyHandle<B> const& arm) {
   double least = 10.0, most = 0.0;
   for (double const part : {0.0, 0.2, 1.0 / 3.0, 0.5, 0.9, 1.0}) {
     std::vector<Vec6> const forces = stress.section_forces(part * length);
+    double worst = 0.0;
     for (std::size_t i = 0; i < forces.size(); ++i) {
       Frame<double> const& f = run.samples[i].frame;
       double const phi = std::atan2(f.A(1, 0), f.A(0, 0)) + 0.5 * pi;
       Swing const at(part * length, phi, f.w[2], rotary);
       Vec6 const expected = (Vec6() << at.axial, -at.across, 0.0, 0.0, 0.0, -at.bending).finished();
-      EXPECT_LT((forces[i] - expected).norm(), 1e-8 * weight) << part << ' ' << run.samples[i].t;
+      worst = std::max(worst, (forces[i] - expected).norm() / weight);
       least = std::min(least, at.axial / weight);
       most = std::max(most, at.axial / weight);
     }
+    held_within({"thesis §4.3", "section forces of a swinging rod, of its weight", By::closed_form,
+                 "what the part beyond the section needs",
+                 std::is_same_v<B, Rigid<>> ? "Rigid, quasi-static" : "planar Rigid, quasi-static"},
+                worst, 1e-8, {equals("x/L", part), 1.0});
   }
   EXPECT_GT(most, 2.4);  // at the lowest point the hinge bears (1 + 3/2) m g
   EXPECT_LT(least, 1e-3);
@@ -145,7 +153,9 @@ TEST(DecoupledStress, OfAFallingBodyIsNone) {
   auto const arm = model.add(Rigid<>::from(rod(Placement::at({0, 0, 0}, {0, 0.7, 0}))), "arm");
   BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.until = 0.1, .step = 0.01});
   for (Vec6 const& n : DecoupledStress::quasi_static(structure_of(rod(), 3), run).section_forces(0.4))
-    EXPECT_LT(n.norm(), 1e-12 * mass * g);
+    held_within({"thesis §4.3", "section forces of a rod that falls, of its weight", By::closed_form, "0",
+                 "Rigid, quasi-static"},
+                n.norm() / (mass * g), 1e-12, {.scale = 1.0});
 }
 
 // A cantilever under its weight w per length: Q = w (L − x), M = w (L − x)²/2, the upper side in tension. It stays so
@@ -166,11 +176,22 @@ TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
   for (double const x : {0.0, 0.3, 0.8, 1.4}) {
     double const rest = length - x;
     Vec6 const expected = (Vec6() << 0.0, -w * rest, 0.0, 0.0, 0.0, -0.5 * w * rest * rest).finished();
-    for (Vec6 const& n : still.section_forces(x)) EXPECT_LT((n - expected).norm(), 1e-9 * root);
-    EXPECT_LT(largest(still.section_forces(x), settled.section_forces(x)), 1e-7 * root);
+    Instance const at{equals("x", x), 1.0};
+    for (Vec6 const& n : still.section_forces(x))
+      held_within({"thesis §4.3", "section forces of a cantilever, of ½ w L²", By::closed_form,
+                   "w (L − x), ½ w (L − x)²", "Rigid, quasi-static"},
+                  (n - expected).norm() / root, 1e-9, at);
+    held_within({"thesis §4.3", "section forces of a cantilever, of ½ w L²", By::itself, "quasi-static",
+                 "Rigid, settled vibration"},
+                largest(still.section_forces(x), settled.section_forces(x)) / root, 1e-7, at);
     double const fibre = still.axial_stress(rod(), x, 0.5 * height)[0], modulus = width * height * height / 6.0;
-    EXPECT_NEAR(fibre, 0.5 * w * rest * rest / modulus, 1e-9 * root / modulus);
-    EXPECT_NEAR(still.stress(rod(), x, 0.0, 0.0)[0].shear[0], -1.5 * w * rest / area, 1e-9 * w * length / area);
+    held({"thesis §4.3", "stress in the outermost fibre of a cantilever [Pa]", By::closed_form, "½ w (L − x)²/W",
+          "Rigid, quasi-static"},
+         fibre, 0.5 * w * rest * rest / modulus, 1e-9 * root / modulus, {equals("x", x)});
+    held({"thesis §4.3", "shear stress in the middle of a cantilever [Pa]", By::closed_form, "3/2 w (L − x)/A",
+          "Rigid, quasi-static"},
+         still.stress(rod(), x, 0.0, 0.0)[0].shear[0], -1.5 * w * rest / area, 1e-9 * w * length / area,
+         {equals("x", x)});
   }
   // the body's own damping and that of the option are one
   Bar slow = rod();
@@ -185,9 +206,10 @@ TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
   auto const sudden = DecoupledStress::vibrating(structure, run, Exact{}, {.shapes = shape, .settled = false});
   std::vector<Vec6> const forces = sudden.section_forces(0.0);
   for (std::size_t i = 0; i < forces.size(); ++i)
-    EXPECT_NEAR(forces[i][5] / -root, 1.0 - 8.0 * sigma / std::pow(lambda, 3) * std::cos(omega * run.samples[i].t),
-                0.01)
-        << i;
+    held({"thesis §4.3", "root moment of a cantilever under a sudden load, of ½ w L²", By::closed_form,
+          "1 − 8σ/λ³ cos ωt", "Rigid, vibrating, 1 mode"},
+         forces[i][5] / -root, 1.0 - 8.0 * sigma / std::pow(lambda, 3) * std::cos(omega * run.samples[i].t), 0.01,
+         {equals("t", run.samples[i].t), 1.0});
 }
 
 // The same across the width: the side at −z is in tension, with the modulus of the other axis.
@@ -201,7 +223,10 @@ TEST(DecoupledStress, OfACantileverThatBendsAcross) {
                modulus = height * width * width / 6.0;
   for (double const side : {-1.0, 0.5}) {
     double const fibre = -side * moment / modulus;
-    EXPECT_NEAR(stress.axial_stress(rod(), x, 0.0, 0.5 * side * width)[0], fibre, 1e-9 * moment / modulus);
+    held({"thesis §4.3", "stress of a cantilever that bends across [Pa]", By::closed_form, "½ w (L − x)²/W",
+          "Rigid, quasi-static"},
+         stress.axial_stress(rod(), x, 0.0, 0.5 * side * width)[0], fibre, 1e-9 * moment / modulus,
+         {equals("side", side)});
     EXPECT_NEAR(stress.axial_strain(x, 0.0, 0.5 * side * width)[0], fibre / young, 1e-9 * moment / modulus / young);
     EXPECT_NEAR(fibre_stress(rod(), stress.section_forces(x)[0], 0.0, 0.5 * side * width), fibre,
                 1e-9 * moment / modulus);
@@ -226,7 +251,10 @@ TEST(DecoupledStress, OfAVibratingRodEndsInNothing) {
   auto const stress =
       DecoupledStress::vibrating(structure_of(rod(), 5), run, GeneralizedAlpha{}, {.follows_deformation = true});
   double const root = 0.5 * mass * length * 300.0 * 300.0;
-  for (Vec6 const& n : stress.section_forces(length)) EXPECT_LT(n.norm(), 1e-8 * root);
+  for (Vec6 const& n : stress.section_forces(length))
+    held_within({"thesis §4.3", "section forces at the free end of a rod that spins and shakes, of the root's",
+                 By::closed_form, "0", "Rigid, vibrating, loads follow"},
+                n.norm() / root, 1e-8, {.scale = 1.0});
   EXPECT_NEAR(stress.section_forces(0.0).back()[0], root, 5e-3 * root);
 }
 
@@ -253,6 +281,7 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
   double size = 0.0;
   for (Vec6 const& n : stress.section_forces(0.5)) size = std::max(size, n.norm());
   for (double const s : {0.0, 0.25, 0.6, 0.7, 1.2, 1.5}) {
+    double worst = 0.0;
     std::vector<Vec6> const forces = stress.section_forces(s);
     double const rest = length - s, beyond = c.mass_per_length * rest, along = beyond * rest * rest / 12.0;
     Mat3 const inertia = Vec3((c.rotary_inertia + *c.rotary_inertia_y) * rest, along + *c.rotary_inertia_y * rest,
@@ -278,8 +307,11 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
       }
       Vec6 expected;
       expected << -force, -moment;
-      EXPECT_LT((forces[i] - expected).norm(), 1e-9 * size) << s << ' ' << i;
+      worst = std::max(worst, (forces[i] - expected).norm() / size);
     }
+    held_within({"thesis §4.3", "section forces of a rod on a ball joint, of the largest", By::closed_form,
+                 "what the part beyond the section needs", "Rigid, quasi-static"},
+                worst, 1e-9, {equals("x", s), 1.0});
   }
   // loads that balance leave the stress the same whatever holds the structure
   for (ReferenceConditions const& frame :
@@ -320,7 +352,9 @@ TEST(DecoupledStress, OfABodyOfSeveralBarsIsThatOfEach) {
           beyond * (to_bar * (at.acceleration - run.gravity) + alpha.cross(middle) + omega.cross(omega.cross(middle)));
       Vec6 expected;
       expected << -force, -(inertia * alpha + omega.cross(inertia * omega) + Vec3(0.5 * rest, 0, 0).cross(force));
-      EXPECT_LT((forces[i] - expected).norm(), 1e-9 * mass * g) << s << ' ' << i;
+      held_within({"thesis §4.3", "section forces of an angle of two rods, of the weight of one", By::closed_form,
+                   "what the part beyond the section needs", "Rigid, quasi-static"},
+                  (forces[i] - expected).norm() / (mass * g), 1e-9, {equals("x", s), 1.0});
     }
   }
   std::vector<Vec6> const before = stress.section_forces(length, 0), after = stress.section_forces(0.0, 1);
@@ -371,8 +405,11 @@ TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
       force += f;
       moment += r.cross(f);
     }
-    EXPECT_LT(force.norm(), 1e-9 * 400.0) << t;
-    EXPECT_LT(moment.norm(), 1e-9 * 400.0) << t;
+    Claim const faces{"thesis §4.3",
+                      "what springs give a face of a block of masses, less what its motion needs, of the load",
+                      By::closed_form, "0", "Rigid, quasi-static, masses and springs"};
+    held_within(faces, force.norm() / 400.0, 1e-9, {"force", 1.0});
+    held_within(faces, moment.norm() / 400.0, 1e-9, {"moment", 1.0});
   }
   EXPECT_TRUE(has(refusal([&] { DecoupledStress::quasi_static(block, run); }),
                   "but 0 lie within the patch of 0 m about a load. Widen the patch."));
@@ -424,9 +461,14 @@ TEST(DecoupledStress, VibratesByAnyIntegrator) {
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.2);
     EXPECT_LT(coarse, 0.01);
   }
-  EXPECT_LT(r.error(Radau{}, 2), 1e-5);
-  EXPECT_LT(r.error(DormandPrince<>{}, 1), 1e-6);
-  EXPECT_LT(r.error(AdamsBashforthMoulton<>{}, 1), 1e-5);
+  auto const ramped = [&](auto const& integrator, int substeps, double tolerance) {
+    held_within({"thesis §4.3", "mode of a rod under a force that grows, of the largest", By::closed_form,
+                 "t − sin ωt/ω", std::string("vibrating, ") + std::string(integrator.name)},
+                r.error(integrator, substeps), tolerance, {.scale = 1.0});
+  };
+  ramped(Radau{}, 2, 1e-5);
+  ramped(DormandPrince<>{}, 1, 1e-6);
+  ramped(AdamsBashforthMoulton<>{}, 1, 1e-5);
 }
 
 TEST(DecoupledStress, RefusesInSentences) {

@@ -20,6 +20,7 @@
 #include <polybody/run/simulate.hpp>
 #include <polybody/testing/differences.hpp>
 
+#include "support/held.hpp"
 #include "support/mixed_models.hpp"
 #include "support/refusal.hpp"
 
@@ -29,6 +30,10 @@ using namespace polybody::laws;
 namespace energy_audit_test {
 
 double const gravity = 9.81;
+
+Claim work(char const* what, By by, char const* source, char const* formulation) {
+  return {"energy", what, by, source, formulation};
+}
 
 /// M a − f + Gᵀλ = 0 for any λ: x.a as the equations of motion have it, whether the rows hold or not. M column by
 /// column.
@@ -182,15 +187,19 @@ TEST(EnergyAudit, OfADrivenPendulumFindsTheWorkOfItsDrive) {
   Motion const psi = crane.law(0.6);
   double const raised = crane.weight * (1.0 - std::cos(psi.value)), moving = 0.5 * crane.inertia * psi.rate * psi.rate;
   auto const coarse = crane.run(RungeKutta4<Projection>{}, 5e-3), fine = crane.run(RungeKutta4<Projection>{}, 2.5e-3);
-  EXPECT_NEAR(fine.kinetic(), moving, 1e-9);
-  EXPECT_NEAR(fine.work_of_gravity(), -raised, 1e-9);
-  EXPECT_NEAR(fine.work_of_drives(), raised + moving, 1e-4 * (raised + moving));
+  char const* const by_rk = "planar Rigid, Runge–Kutta 4, h = 2.5e-3 s";
+  held(work("kinetic energy of a driven pendulum [J]", By::closed_form, "½ J ψ̇²", by_rk), fine.kinetic(), moving, 1e-9);
+  held(work("work of gravity on a driven pendulum [J]", By::closed_form, "½ m g l (cos ψ − 1)", by_rk),
+       fine.work_of_gravity(), -raised, 1e-9);
+  held(work("work of the drive of a pendulum [J]", By::closed_form, "½ J ψ̇² + ½ m g l (1 − cos ψ)", by_rk),
+       fine.work_of_drives(), raised + moving, 1e-4 * (raised + moving));
   EXPECT_LT(fine.relative(), 1e-4);
   double const torque = crane.inertia * psi.acceleration + crane.weight * std::sin(psi.value);
   double const jerk = 2.0 * (60.0 - 360.0 * 0.6 + 360.0 * 0.36);
   double const torque_rate = crane.inertia * jerk + crane.weight * std::cos(psi.value) * psi.rate;
-  EXPECT_NEAR(fine.unaccounted(), 2.5e-3 * 2.5e-3 / 12.0 * (torque_rate * psi.rate + torque * psi.acceleration),
-              1e-3 * 6.8e-5);
+  held(work("unaccounted energy of a driven pendulum [J]", By::closed_form, "h²/12 of the slope of the power", by_rk),
+       fine.unaccounted(), 2.5e-3 * 2.5e-3 / 12.0 * (torque_rate * psi.rate + torque * psi.acceleration),
+       1e-3 * 6.8e-5);
   EXPECT_NEAR(coarse.unaccounted() / fine.unaccounted(), 4.0, 0.01);
   EXPECT_EQ(fine.dissipated(), 0.0);
   EXPECT_EQ(fine.stored(), 0.0);
@@ -200,11 +209,13 @@ TEST(EnergyAudit, OfADrivenPendulumFindsTheWorkOfItsDrive) {
 TEST(EnergyAudit, OfAnImplicitRunConvergesLikeTheIntegrator) {
   Crane<Constraint> const crane;
   Motion const psi = crane.law(0.6);
-  double const work = crane.weight * (1.0 - std::cos(psi.value)) + 0.5 * crane.inertia * psi.rate * psi.rate;
+  double const spent = crane.weight * (1.0 - std::cos(psi.value)) + 0.5 * crane.inertia * psi.rate * psi.rate;
   GeneralizedAlpha const alpha{.tolerance =
                                    1e-11};  // what Newton's method leaves counts for nothing beside what the step does
   auto const coarse = crane.run(alpha, 5e-3), fine = crane.run(alpha, 2.5e-3);
-  EXPECT_NEAR(fine.work_of_drives(), work, 1e-3 * work);
+  held({"energy", "work of the drive of a pendulum [J]", By::closed_form, "½ J ψ̇² + ½ m g l (1 − cos ψ)",
+        "planar Rigid, generalised-α, h = 2.5e-3 s"},
+       fine.work_of_drives(), spent, 1e-3 * spent);
   EXPECT_NEAR(coarse.unaccounted() / fine.unaccounted(), 4.0, 0.4);
 }
 
@@ -212,7 +223,8 @@ TEST(EnergyAudit, OfAnImplicitRunConvergesLikeTheIntegrator) {
 TEST(EnergyAudit, OfJointCoordinatesIsThatOfRows) {
   auto const rows = Crane<Constraint>{}.run(RungeKutta4<Projection>{}, 2.5e-3);
   auto const joint_coordinates = Crane<Recursive>{}.run(RungeKutta4<Projection>{}, 2.5e-3);
-  EXPECT_NEAR(joint_coordinates.work_of_drives(), rows.work_of_drives(), 1e-8);
+  held_within(work("work of the drive of a pendulum [J]", By::itself, "Constraint", "joint coordinates, Runge–Kutta 4"),
+              std::abs(joint_coordinates.work_of_drives() - rows.work_of_drives()), 1e-8, {.scale = 1.0});
   EXPECT_NEAR(joint_coordinates.unaccounted(), rows.unaccounted(), 1e-8);
   EXPECT_GT(rows.work_of_drives(), 1.0);
 }
@@ -238,7 +250,7 @@ double left_after(double t) {
 // The same oscillator made of a spring along a slide and of a compliant pin: both lose what the formula says, no more
 // is unaccounted than the trapezoidal rule misses, and that falls with h².
 template <class M>
-void expect_damped(M const& model, State const& from) {
+void expect_damped(char const* formulation, M const& model, State const& from) {
   double const until = 0.35;
   EXPECT_NEAR(energy(model, from).total(), 50.0, 1e-12);
   std::array<double, 2> left{};
@@ -248,8 +260,12 @@ void expect_damped(M const& model, State const& from) {
     State x = from;
     for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = h}))
       audit.record(now);
-    EXPECT_NEAR(-audit.kinetic() - audit.stored(), 50.0 - left_after(until), 1e-5);  // RungeKutta4: (ωh)⁴ of 50 J
-    EXPECT_NEAR(audit.dissipated(), 50.0 - left_after(until), 1e-4 * 50.0);
+    char const* const decay = "damped oscillator";
+    held(work("what a damped oscillator has less [J]", By::closed_form, decay, formulation),
+         -audit.kinetic() - audit.stored(), 50.0 - left_after(until), 1e-5,
+         {equals("h", h)});  // RungeKutta4: (ωh)⁴ of 50 J
+    held(work("what a damped oscillator loses [J]", By::closed_form, decay, formulation), audit.dissipated(),
+         50.0 - left_after(until), 1e-4 * 50.0, {equals("h", h)});
     EXPECT_EQ(audit.work_of_loads(), 0.0);
     EXPECT_LT(audit.relative(), 1e-4);
     unaccounted = audit.unaccounted();
@@ -266,7 +282,7 @@ TEST(EnergyAudit, OfASpringDamperLosesWhatTheFormulaSays) {
   model.connect(Slide{}, home, mass.at(Vec2(0, 0)), "slide");
   model.apply(SpringDamper{.stiffness = 100.0, .damping = 2.0, .free_length = 2.0}, home, mass.at(Vec2(0, 0)),
               "spring");
-  expect_damped(model, model.reference_state());
+  expect_damped("SpringDamper, Runge–Kutta 4", model, model.reference_state());
 }
 
 TEST(EnergyAudit, OfADampedCompliantPinLosesWhatTheFormulaSays) {
@@ -277,7 +293,7 @@ TEST(EnergyAudit, OfADampedCompliantPinLosesWhatTheFormulaSays) {
                 "pin");
   State x = model.reference_state();
   x.q[0] = 1.0;
-  expect_damped(model, x);
+  expect_damped("Penalty, Runge–Kutta 4", model, x);
 }
 
 // A bushing's component whose law has no potential: what it does at rest is the work of a load, what a rate adds is
@@ -297,7 +313,9 @@ TEST(EnergyAudit, OfALawWithoutPotentialCountsAsALoad) {
   for (State const& now : simulate(model, x, RungeKutta4<>{}, {.until = 0.35, .step = 1e-3})) audit.record(now);
   double const at_rest = 50.0 * (1.0 - x.q[0] * x.q[0]);
   EXPECT_NEAR(audit.work_of_loads(), at_rest, 1e-4 * 50.0);
-  EXPECT_NEAR(audit.dissipated(), 50.0 - left_after(0.35), 1e-4 * 50.0);
+  held(work("what a damped oscillator loses [J]", By::closed_form, "damped oscillator",
+            "NonlinearBushing, Runge–Kutta 4"),
+       audit.dissipated(), 50.0 - left_after(0.35), 1e-4 * 50.0);
   EXPECT_EQ(audit.stored(), 0.0);
   EXPECT_LT(audit.relative(), 1e-4);
 }
@@ -311,10 +329,12 @@ TEST(EnergyAudit, OfPointLoadsIsExact) {
   EnergyAudit audit(model);
   State x = model.reference_state();
   for (State const& now : simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 0.05})) audit.record(now);
-  EXPECT_NEAR(audit.work_of_loads(), 9.0 / 4.0 + 0.25 / 0.5, 1e-12);
+  held(work("work of a force and a moment [J]", By::closed_form, "F²t²/2m + M²t²/2J", "planar Rigid, Runge–Kutta 4"),
+       audit.work_of_loads(), 9.0 / 4.0 + 0.25 / 0.5, 1e-12);
   EXPECT_NEAR(audit.kinetic(), audit.work_of_loads(), 1e-12);
   EXPECT_LT(audit.relative(), 1e-13);
-  EXPECT_NEAR(audit.powers().loads, 3.0 * 1.5 + 0.5 * 2.0, 1e-12);
+  held(work("power of a force and a moment [W]", By::closed_form, "F²t/m + M²t/J", "planar Rigid, Runge–Kutta 4"),
+       audit.powers().loads, 3.0 * 1.5 + 0.5 * 2.0, 1e-12);
 }
 
 // m v̇ = −c v leaves e^(−2ct/m) of the kinetic energy. A user's force has no potential: a load, here of negative work.
@@ -331,7 +351,8 @@ TEST(EnergyAudit, OfAUsersForceIsTheWorkOfALoad) {
   State x = model.reference_state();
   x.v[0] = 2.0;
   for (State const& now : simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 0.01})) audit.record(now);
-  EXPECT_NEAR(audit.work_of_loads(), 2.0 * (std::exp(-1.0) - 1.0), 2e-5);  // h²/12 [P′] = 8e-6 · 0.63 · 2
+  held(work("work of a user's drag [J]", By::closed_form, "½ m v₀² (e^(−2ct/m) − 1)", "UserForce, Runge–Kutta 4"),
+       audit.work_of_loads(), 2.0 * (std::exp(-1.0) - 1.0), 2e-5);  // h²/12 [P′] = 8e-6 · 0.63 · 2
   EXPECT_EQ(audit.dissipated(), 0.0);
   EXPECT_LT(audit.relative(), 1e-5);
 }
@@ -382,7 +403,9 @@ TEST(EnergyAudit, OfAnImpactLosesWhatThePublishedReboundLeaves) {
   Balls<Floor> const ball({.geometry = {.radius = 0.1}, .normal = {.stiffness = k, .damping = c}}, 1, 0.0, {0, 0, -v});
   auto const audit = ball.run(0.02, h);
   double const jump = c * v * v * h;
-  EXPECT_NEAR(audit.dissipated(), 0.5 * v * v - 0.5 * back * back + gravity * c * back / k, jump);
+  held({"C2", "energy lost by an impact on a spring and a damper [J]", By::independent, "rebound by an ordinary solver",
+        "Contact, Runge–Kutta 4, h = 2e-6 s"},
+       audit.dissipated(), 0.5 * v * v - 0.5 * back * back + gravity * c * back / k, jump);
   EXPECT_EQ(audit.stored(), 0.0);
   EXPECT_NEAR(audit.unaccounted(), (0.5 - 1.0 / 6.0) * jump, 0.02 * jump);
   EXPECT_LT(audit.relative(), 1e-3);
@@ -395,7 +418,9 @@ TEST(EnergyAudit, OfASlidingMassLosesAllOfItsSpeedToFriction) {
       .geometry = {.radius = 0.0}, .normal = {.stiffness = 1e5}, .friction = {.coefficient = 0.3, .slip_speed = 1e-3}};
   Balls<Floor> const block(law, 1, -0.1 - gravity / 1e5, {3.0, 0, 0});
   auto const audit = block.run(1.5, 1e-4);
-  EXPECT_NEAR(audit.dissipated(), 4.5, 1e-4 * 4.5);
+  held({"C3", "energy that a sliding mass loses to friction [J]", By::closed_form, "½ m v₀²",
+        "Contact, Runge–Kutta 4, h = 1e-4 s"},
+       audit.dissipated(), 4.5, 1e-4 * 4.5);
   EXPECT_NEAR(audit.kinetic(), -4.5, 1e-5);
   EXPECT_LT(audit.relative(), 1e-4);
 }
@@ -434,7 +459,9 @@ TEST(EnergyAudit, OfAGroupOfContactsIsThatOfTheContacts) {
   auto const each = Balls<Floor>(law, 3, 0.2, {2.0, 0, 0}).run(0.5, 2e-4);
   auto const group = Balls<Floor, true>(law, 3, 0.2, {2.0, 0, 0}).run(0.5, 2e-4);
   EXPECT_GT(group.dissipated(), 1.0);
-  EXPECT_NEAR(group.dissipated(), each.dissipated(), 1e-10);
+  held_within(work("energy that three bouncing balls lose [J]", By::itself, "contacts one by one",
+                   "ContactGroup, Runge–Kutta 4"),
+              std::abs(group.dissipated() - each.dissipated()), 1e-10, {.scale = 1.0});
   EXPECT_NEAR(group.stored(), each.stored(), 1e-10);
   EXPECT_NEAR(group.unaccounted(), each.unaccounted(), 1e-10);
   EXPECT_LT(group.relative(), 0.01);
@@ -466,11 +493,17 @@ TEST(EnergyAudit, ShowsWhatTheIntegratorLoses) {
   auto const soft = oscillator(1.0), stiff = oscillator(1e10);
   double const q = -0.887774657662, v = 0.077081882918 / 0.2;
   auto const damping = of_oscillator(soft, 0.0, 0.2, 50);
-  EXPECT_NEAR(damping.unaccounted(), 0.5 - 0.5 * (q * q + v * v), 1e-11);
+  held({"I1", "energy that the method takes off an oscillator in 50 steps [J]", By::independent,
+        "formulas of Arnold & Brüls, programmed apart", "generalised-α, ρ = 0, ωh = 0.2"},
+       damping.unaccounted(), 0.5 - 0.5 * (q * q + v * v), 1e-11);
   EXPECT_EQ(damping.dissipated(), 0.0);
-  EXPECT_NEAR(of_oscillator(soft, 1.0, 0.2, 50).unaccounted(), 0.0, 1e-11);
+  held_within({"I1", "energy that the method takes off an oscillator in 50 steps [J]", By::closed_form, "0",
+               "generalised-α, ρ = 1, ωh = 0.2"},
+              std::abs(of_oscillator(soft, 1.0, 0.2, 50).unaccounted()), 1e-11, {.scale = 0.5});
   auto const quenched = of_oscillator(stiff, 0.0, 0.1, 20);
-  EXPECT_NEAR(quenched.unaccounted(), 0.5e10, 1e-6 * 0.5e10);
+  held({"I1", "energy that the method takes off an oscillator it does not resolve [J]", By::closed_form, "½ k x₀²",
+        "generalised-α, ρ = 0, ωh = 1e4"},
+       quenched.unaccounted(), 0.5e10, 1e-6 * 0.5e10);
   EXPECT_EQ(quenched.dissipated(), 0.0);
 }
 

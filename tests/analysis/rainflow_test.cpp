@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 namespace rainflow_test {
@@ -42,9 +43,13 @@ TEST(Rainflow, CountsTheExampleOfTheStandard) {
   std::vector<StressCycle> const found = rainflow(history);
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_EQ(found[i].range, expected[i].range) << i;
-    EXPECT_EQ(found[i].mean, expected[i].mean) << i;
-    EXPECT_EQ(found[i].count, expected[i].count) << i;
+    auto const claim = [](char const* what) {
+      return Claim{"ASTM E1049-85", what, By::published, "Fig. 6 of the standard", "rainflow"};
+    };
+    Instance const at{equals("cycle", double(i + 1)), 1.0};
+    held(claim("ranges of the cycles"), found[i].range, expected[i].range, 0.0, at);
+    held(claim("means of the cycles"), found[i].mean, expected[i].mean, 0.0, at);
+    held(claim("counts of the cycles"), found[i].count, expected[i].count, 0.0, at);
   }
   EXPECT_EQ(counts(found), (std::map<double, double>{{3, 0.5}, {4, 1.5}, {6, 0.5}, {8, 1.0}, {9, 0.5}}));
   EXPECT_EQ(binned(found, 2.5), (std::vector<double>{0, 2.0, 0.5, 1.5}));  // up to 2.5, 5, 7.5, 10
@@ -102,14 +107,17 @@ TEST(Rainflow, KeepsTheWayTheSpanAndTheSymmetry) {
 // standard's history in units of 10 MPa: D = (0.5·3³ + 1.5·4³ + 0.5·6³ + 8³ + 0.5·9³)/10³ / 2e6 = 1.094e3/1e3/2e6.
 TEST(Damage, IsLinearInCyclesAndAPowerOfTheRange) {
   Basquin const curve{.range = 100e6, .cycles = 2e6, .exponent = 3.0};
-  EXPECT_NEAR(curve.life(50e6), 16e6, 1e-6);
+  held({"closed forms", "cycles that a specimen lasts", By::closed_form, "N₀ (Δσ₀/Δσ)^m", "Basquin"}, curve.life(50e6),
+       16e6, 1e-6);
   EXPECT_NEAR(damage(std::vector<StressCycle>{{100e6, 0.0, 2e6}}, curve), 1.0, 1e-14);
   Points history{-2, 1, -3, 5, -1, 3, -4, 4, -2};
   for (double& x : history) x *= 10e6;
   double const expected = (0.5 * 27 + 1.5 * 64 + 0.5 * 216 + 512 + 0.5 * 729) / 1e3 / 2e6;
-  EXPECT_NEAR(damage(rainflow(history), curve), expected, 1e-13 * expected);
+  held({"closed forms", "damage of the standard's history", By::closed_form, "Σ n (Δσ/Δσ₀)^m/N₀", "Basquin"},
+       damage(rainflow(history), curve), expected, 1e-13 * expected, {"all cycles"});
   Basquin const limited{.range = 100e6, .cycles = 2e6, .exponent = 3.0, .limit = 60e6};
-  EXPECT_NEAR(damage(rainflow(history), limited), (512 + 0.5 * 729) / 1e3 / 2e6, 1e-13 * expected);
+  held({"closed forms", "damage of the standard's history", By::closed_form, "Σ n (Δσ/Δσ₀)^m/N₀", "Basquin"},
+       damage(rainflow(history), limited), (512 + 0.5 * 729) / 1e3 / 2e6, 1e-13 * expected, {"above the limit"});
 }
 
 TEST(Damage, RefusesCurvesThatCannotBeMeant) {

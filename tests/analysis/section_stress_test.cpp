@@ -6,6 +6,7 @@
 
 #include <polybody/math/quadrature.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
@@ -34,7 +35,9 @@ TEST(SectionStress, OfACircleAddsUpToTheForces) {
       double const angle = 2 * pi * k / 16, y = r * g.xi * std::cos(angle), z = r * g.xi * std::sin(angle);
       sum += part(section_stress(round, forces, y, z), y, z) * (g.weight * r * g.xi * r * 2 * pi / 16);
     }
-  EXPECT_LT((sum - forces).norm(), 1e-12 * forces.norm());
+  held_within(
+      {"closed forms", "stress of a section, integrated, less its forces, of these", By::closed_form, "0", "circle"},
+      (sum - forces).norm() / forces.norm(), 1e-12, {.scale = 1.0});
 }
 
 TEST(SectionStress, LeavesTheSurfaceOfACircleFree) {
@@ -59,7 +62,9 @@ TEST(SectionStress, OfARectangleAddsUpToTheForces) {
           double const y = h * ((i % n + a.xi) / n - 0.5), z = w * ((double(i / n) + b.xi) / n - 0.5);
           sum += part(section_stress(flat, forces, y, z), y, z) * (a.weight * b.weight * h * w / (n * n));
         }
-    EXPECT_LT((sum - forces).norm(), 1e-5 * forces.norm()) << h << ' ' << sum.transpose();
+    held_within({"closed forms", "stress of a section, integrated, less its forces, of these", By::closed_form, "0",
+                 "rectangles"},
+                (sum - forces).norm() / forces.norm(), 1e-5, {equals("height", h), 1.0});
   }
 }
 
@@ -72,8 +77,10 @@ TEST(SectionStress, OfTorqueIsTheTables) {
     double const b = 0.01, a = ratio * b, expected = 1.0 / (k * a * b * b);
     Vec2 const lying = section_stress(bar(Rectangle{.height = b, .width = a}), torque, 0.5 * b, 0.0).shear;
     Vec2 const standing = section_stress(bar(Rectangle{.height = a, .width = b}), torque, 0.0, 0.5 * b).shear;
-    EXPECT_NEAR(lying[1], expected, 2.5e-3 * expected) << ratio;
-    EXPECT_NEAR(standing[0], -expected, 2.5e-3 * expected) << ratio;
+    Claim const table{"Timoshenko & Goodier", "factor k of the largest shear of a torque", By::published,
+                      "Timoshenko & Goodier 1970, §109, table 4", "rectangle"};
+    held(table, k * expected / lying[1], k, 2.5e-3 * k, {equals("sides", ratio) + ", lying"});
+    held(table, -k * expected / standing[0], k, 2.5e-3 * k, {equals("sides", ratio) + ", standing"});
     EXPECT_NEAR(lying[0], 0.0, 1e-9 * expected);
     EXPECT_NEAR(standing[1], 0.0, 1e-9 * expected);
     Vec2 const corner = section_stress(bar(Rectangle{.height = b, .width = a}), torque, 0.5 * b, 0.5 * a).shear;

@@ -16,6 +16,7 @@
 #include <polybody/joints/weld.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
@@ -59,12 +60,33 @@ bool stays(I const& integrator, M const& model, State const& start, double h) {
   return true;
 }
 
+/// The step from which on a run warns, near `limit`, by bisection.
+template <class I, class M>
+double warned_from(I const& integrator, M const& model, State const& start, double limit) {
+  double low = 0.9 * limit, high = 1.1 * limit;
+  for (int i = 0; i < 16; ++i) {
+    double const middle = 0.5 * (low + high);
+    (warnings(integrator, model, start, middle).empty() ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+/// Records it; the iteration for the highest frequency ends from below, so the step is never too short.
+template <class I, class M>
+void held_limit(char const* what, char const* source, I const& integrator, M const& model, State const& start,
+                double limit, double part, std::string const& at = {}) {
+  held({"closed forms", what, By::closed_form, source, std::string(I::name)},
+       warned_from(integrator, model, start, limit), limit, part * limit, {at});
+}
+
 /// `limit` is the largest stable step of the closed form: no warning and no growth below, both above.
 template <class I>
 void expect_limit(I const& integrator, double damping, double limit) {
   Pinned const p(damping);
   EXPECT_TRUE(warnings(integrator, p.model, p.x, 0.9999 * limit).empty()) << I::name << damping;
   EXPECT_TRUE(stays(integrator, p.model, p.x, 0.9 * limit)) << I::name << damping;
+  held_limit("largest stable step on a compliant pin [s]",
+             damping == 0.0 ? "limit of the method over ω" : "limit of the method for 2 ζ ω", integrator, p.model, p.x,
+             limit, 1e-3, equals("ζ", damping));
   auto const warned = warnings(integrator, p.model, p.x, 1.02 * limit);
   ASSERT_EQ(warned.size(), 1u) << I::name << damping;
   for (char const* part : {"\"pin\"", I::name, "k h²", "steps of at most"}) EXPECT_TRUE(has(warned[0], part));
@@ -118,6 +140,8 @@ TEST(StableStep, KnowsWhatRowsHold) {
   State const x = model.reference_state();
   EXPECT_TRUE(warnings(CentralDifference<Projection>{}, model, x, 0.9999 * limit).empty());
   EXPECT_EQ(warnings(CentralDifference<Projection>{}, model, x, 1.0001 * limit).size(), 1u);
+  held_limit("largest stable step of a body on a slide [s]", "2/√(k/m)", CentralDifference<Projection>{}, model, x,
+             limit, 1e-4);
 }
 
 // Bushings: the largest of kᵢ/m and of the turns' kᵢ/Iᵢ.
@@ -132,6 +156,8 @@ TEST(StableStep, OfABushingIsThatOfItsStiffestCoordinate) {
     double const limit = 2.0 / std::sqrt(std::max(3e3 / 2.0, turn / 0.1));
     EXPECT_TRUE(warnings(CentralDifference<>{}, model, model.reference_state(), 0.9999 * limit).empty()) << turn;
     EXPECT_EQ(warnings(CentralDifference<>{}, model, model.reference_state(), 1.001 * limit).size(), 1u) << turn;
+    held_limit("largest stable step on a bushing [s]", "2/√max(kᵢ/m, kᵢ/Iᵢ)", CentralDifference<>{}, model,
+               model.reference_state(), limit, 1e-3, equals("k_θ", turn));
   }
 }
 
@@ -151,6 +177,8 @@ TEST(StableStep, OfAChainIsThatOfItsHighestMode) {
   EXPECT_TRUE(warnings(CentralDifference<>{}, model, x, 0.9999 * limit).empty());
   EXPECT_TRUE(stays(CentralDifference<>{}, model, x, 0.9 * limit));
   EXPECT_EQ(warnings(CentralDifference<>{}, model, x, 1.005 * limit).size(), 1u);
+  held_limit("largest stable step of eight bodies on pins [s]", "1/(√(k/m) sin(7π/16))", CentralDifference<>{}, model,
+             x, limit, 5e-3);
   EXPECT_FALSE(stays(CentralDifference<>{}, model, x, 1.005 * limit));
 }
 

@@ -7,6 +7,7 @@
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/energy.hpp>
 
+#include "support/held.hpp"
 #include "support/velocity_row_runs.hpp"
 
 using namespace polybody;
@@ -16,6 +17,13 @@ namespace blades_test {
 constexpr double g = 9.81;
 using Blade = Joint<KnifeEdge, Constraint>;
 using InPlane = Model<Bodies<planar::Rigid>, Joints<Blade>>;
+
+/// A distance from a closed form, by an integrator of with_each_integrator.
+template <class I>
+void within(char const* what, char const* source, I const& integrator, double error, double tolerance, double scale) {
+  held_within({"Neimark & Fufaev", what, By::closed_form, source, named(integrator)}, error, tolerance,
+              {.scale = scale});
+}
 
 // A blade under the centre of mass on an incline, pull p along x, starts at rest along x while it turns at ω. The turn
 // is free, θ = ωt; along the blade u̇ = p cos θ, so u = (p/ω) sin ωt and
@@ -35,10 +43,12 @@ TEST(KnifeEdge, GoesAlongACycloidAcrossAnIncline) {
   Vec3 const speed(p / omega * s * c, p / omega * s * s, omega);
   with_each_integrator([&](auto const& integrator, double h, double precise) {
     State const x = rolled(model, start, integrator, t, h);
-    EXPECT_LT((x.q - place).norm(), 2e-6 * precise) << integrator.name;
-    EXPECT_LT((x.v - speed).norm(), 2e-6 * precise) << integrator.name;
-    EXPECT_LT((reaction(model, x, blade).f - 2.0 * m * p * s * Vec3(-s, c, 0)).norm(), 1e-4 * precise)
-        << integrator.name;
+    within("place and turn of a blade on an incline", "cycloid across it", integrator, (x.q - place).norm(),
+           2e-6 * precise, 1.0);
+    within("speeds of a blade on an incline", "(p/ω) sin ωt along the blade", integrator, (x.v - speed).norm(),
+           2e-6 * precise, 1.0);
+    within("force across a blade on an incline [N]", "2 m p sin ωt", integrator,
+           (reaction(model, x, blade).f - 2.0 * m * p * s * Vec3(-s, c, 0)).norm(), 1e-4 * precise, 2.0 * m * p);
     System system(model);
     system.evaluate(x.q, x.v, x.t);
     EXPECT_NEAR(peak_joint_force(system, x), 2.0 * m * p * std::abs(s), 1e-4 * precise) << integrator.name;
@@ -63,10 +73,16 @@ TEST(KnifeEdge, LetsChaplyginsSleighGoStraight) {
   with_each_integrator([&](auto const& integrator, double h, double precise) {
     State const x = rolled(model, start, integrator, t, h);
     Vec2 const blade = x.v.head<2>() - a * turn(t) * Vec2(-std::sin(angle), std::cos(angle));
-    EXPECT_NEAR(x.q[2], angle, 2e-6 * precise) << integrator.name;
-    EXPECT_NEAR(x.v[2], turn(t), 2e-6 * precise) << integrator.name;
-    EXPECT_LT((blade - along(t) * Vec2(std::cos(angle), std::sin(angle))).norm(), 5e-6 * precise) << integrator.name;
-    EXPECT_NEAR(energy(model, x).total(), 0.5 * m * U * U, 1e-6 * precise) << integrator.name;
+    auto const claim = [&](char const* what, char const* source) {
+      return Claim{"Neimark & Fufaev", what, By::closed_form, source, named(integrator)};
+    };
+    held(claim("turn of Chaplygin's sleigh [rad]", "√(J/m)/a (atan sinh(kt + c) − atan sinh c)"), x.q[2], angle,
+         2e-6 * precise);
+    held(claim("rate of turn of Chaplygin's sleigh [rad/s]", "U √(m/J)/cosh(kt + c)"), x.v[2], turn(t), 2e-6 * precise);
+    within("speed of the blade of Chaplygin's sleigh [m/s]", "U tanh(kt + c)", integrator,
+           (blade - along(t) * Vec2(std::cos(angle), std::sin(angle))).norm(), 5e-6 * precise, U);
+    held(claim("energy of Chaplygin's sleigh [J]", "½ m U²"), energy(model, x).total(), 0.5 * m * U * U,
+         1e-6 * precise);
   });
 }
 

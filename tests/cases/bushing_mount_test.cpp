@@ -16,6 +16,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/held.hpp"
+
 using namespace polybody;
 
 namespace bushing_mount_test {
@@ -62,6 +64,10 @@ struct Mounted {
 Vec3 const k{1000.0, 2000.0, 4000.0}, k_turn{50.0, 70.0, 90.0};
 Bushing const diagonal{.stiffness = Bushing::diagonal(k, k_turn), .damping = none};
 
+Claim mount(char const* what, char const* source) {
+  return {"J3", what, By::closed_form, source, "Rigid on a bushing"};
+}
+
 // CASES J3: u = F/k and θ = M/k_θ along and about each axis; about one axis for a moment of any size.
 TEST(BushingMount, GivesWayAsTheLoadOverTheStiffness) {
   for (int i = 0; i < 3; ++i)
@@ -70,8 +76,11 @@ TEST(BushingMount, GivesWayAsTheLoadOverTheStiffness) {
       m.load(Vec3(10.0, -20.0, 30.0), {0, 0, 0}, Vec3::Unit(i) * size);
       State const x = m.at_rest();
       Frame<> const f = m.moved(x);
-      EXPECT_LT((f.r - Vec3(10.0, -20.0, 30.0).cwiseQuotient(k)).norm(), 1e-12);
-      EXPECT_LT((f.A - exp_so3<double>(Vec3::Unit(i) * size / k_turn[i])).norm(), 1e-12) << i;
+      Instance const at{"axis " + std::to_string(i) + equals(", M", size), 1.0};
+      held_within(mount("place under force and moment [m]", "F/k"),
+                  (f.r - Vec3(10.0, -20.0, 30.0).cwiseQuotient(k)).norm(), 1e-12, {at.at, 0.015});
+      held_within(mount("turn under force and moment", "exp M/k_θ"),
+                  (f.A - exp_so3<double>(Vec3::Unit(i) * size / k_turn[i])).norm(), 1e-12, at);
     }
 }
 
@@ -83,7 +92,9 @@ TEST(BushingMount, SwingsWithItsSixFrequencies) {
   std::sort(expected.begin(), expected.end());
   VecX const found = m.frequencies();
   ASSERT_EQ(found.size(), 6);
-  EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm());
+  for (Index i = 0; i < 6; ++i)
+    held(mount("frequencies [rad/s]", "√(k/m), √(k_θ/I)"), found[i], expected[i], 1e-12 * expected.norm(),
+         {equals("mode", double(i + 1))});
 }
 
 // CASES J3, the lever: θ = F a/k_θ and u = F/k + a θ. In full, with a dead load at the end of a lever that turns:
@@ -96,11 +107,14 @@ TEST(BushingMount, GivesWayUnderALever) {
     double theta = 0.0;
     for (int i = 0; i < 200; ++i) theta = force * a * std::cos(theta) / k_turn[2];  // contracts by F a/k_θ < 1
     Vec3 const tip = position(m.model, m.at_rest(), m.body.at(Vec3(a, 0, 0)));
-    EXPECT_NEAR(tip[1], force / k[1] + a * std::sin(theta), 1e-12);
-    EXPECT_NEAR(tip[0], a * std::cos(theta), 1e-12);
+    held(mount("deflection under a lever [m]", "F/k + a sin θ, k_θ θ = F a cos θ"), tip[1],
+         force / k[1] + a * std::sin(theta), 1e-12, {equals("F", force)});
+    held(mount("reach of a lever [m]", "a cos θ, k_θ θ = F a cos θ"), tip[0], a * std::cos(theta), 1e-12,
+         {equals("F", force)});
     double const linear = force * a / k_turn[2];
     if (force == 1e-3) {
-      EXPECT_NEAR(tip[1], force / k[1] + a * linear, 1e-9 * linear);
+      held(mount("deflection under a lever and a small force [m]", "F/k + a θ, θ = F a/k_θ"), tip[1],
+           force / k[1] + a * linear, 1e-9 * linear);
     }
   }
 }
@@ -118,8 +132,10 @@ TEST(BushingMount, CouplesForceAndTurn) {
     m.load({0, force, 0}, {0, 0, 0});
     Frame<> const f = m.moved(m.at_rest());
     double const theta = force * a / k_turn[2];
-    EXPECT_LT((f.r - Vec3(0, force / k[1] + a * theta, 0)).norm(), 1e-12);
-    EXPECT_LT((f.A - exp_so3<double>(Vec3(0, 0, theta))).norm(), 1e-12);
+    held_within(mount("place under a force that turns, too [m]", "F/k + a θ, θ = F a/k_θ"),
+                (f.r - Vec3(0, force / k[1] + a * theta, 0)).norm(), 1e-12, {equals("F", force), force / k[1]});
+    held_within(mount("turn under a force that turns, too", "exp θ, θ = F a/k_θ"),
+                (f.A - exp_so3<double>(Vec3(0, 0, theta))).norm(), 1e-12, {equals("F", force), 1.0});
   }
 }
 
@@ -127,9 +143,10 @@ TEST(BushingMount, CouplesForceAndTurn) {
 TEST(BushingMount, MayHoldTheFreeDirectionToo) {
   Bushing const spring{.stiffness = Bushing::diagonal({1e8, 1e8, 1e8}, {1e8, 1e8, 12.0}), .damping = none};
   Mounted sprung{Sprung{{.axis = Vec3::UnitX()}, spring}};
-  EXPECT_NEAR(sprung.frequencies()[0], std::sqrt(12.0 / 0.3), 1e-7);
+  held(mount("frequency about a spring [rad/s]", "√(k_θ/I)"), sprung.frequencies()[0], std::sqrt(12.0 / 0.3), 1e-7);
   sprung.load({0, 0, 0}, {0, 0, 0}, {30.0, 0, 0});
-  EXPECT_LT((sprung.moved(sprung.at_rest()).A - exp_so3<double>(Vec3(2.5, 0, 0))).norm(), 1e-9);
+  held_within(mount("turn under force and moment", "exp M/k_θ, M/k_θ = 2.5"),
+              (sprung.moved(sprung.at_rest()).A - exp_so3<double>(Vec3(2.5, 0, 0))).norm(), 1e-9, {.scale = 1.0});
 }
 
 // A nonlinear law: u with f(u) = F, and tables at their points.
@@ -139,7 +156,9 @@ TEST(BushingMount, FollowsItsLaws) {
   LinearLaw const turn{.stiffness = 50.0, .damping = 0.0};
   Mounted m{Joint<Weld, Rubber>{{}, Rubber{Hardening{}, stop, stop, turn, turn, turn}}};
   m.load({50.0 + 125.0, 20.0, -400.0}, {0, 0, 0});  // f(0.05)
-  EXPECT_LT((m.moved(m.at_rest()).r - Vec3(0.05, 0.01, -0.02)).norm(), 1e-12);
+  held_within({"J3", "place under nonlinear laws [m]", By::closed_form, "f(u) = F, and points of tables",
+               "Rigid on a nonlinear bushing"},
+              (m.moved(m.at_rest()).r - Vec3(0.05, 0.01, -0.02)).norm(), 1e-12, {.scale = 0.05});
 }
 
 TEST(BushingMount, AddsNoRows) {

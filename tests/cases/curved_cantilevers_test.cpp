@@ -8,6 +8,7 @@
 
 #include <numbers>
 
+#include "support/held.hpp"
 #include "support/solver_instances.hpp"
 #include "support/spatial_cantilever.hpp"
 
@@ -36,8 +37,12 @@ Vec4 rolled(Index n, double theta, double axis) {
 // half a circle ends at 1/(n sin(π/2n)), above the root; a full one at the root.
 TEST(RollUpInSpace, LrvfBecomesAPolygon) {
   for (double const axis : {0.0, 1.3}) {
-    EXPECT_LT((rolled<Lrvf<>>(10, pi, axis) - Vec4(0, 0.1 / std::sin(0.05 * pi), 0, 0)).norm(), 1e-9);
-    EXPECT_LT(rolled<Lrvf<>>(10, 2 * pi, axis).norm(), 1e-9);
+    Claim const polygon{"S1", "tip of the bar rolled up about any axis, and its turn", By::closed_form,
+                        "regular polygon of chords", "Lrvf, 10 elements"};
+    std::string const about = equals("axis", axis);
+    held_within(polygon, (rolled<Lrvf<>>(10, pi, axis) - Vec4(0, 0.1 / std::sin(0.05 * pi), 0, 0)).norm(), 1e-9,
+                {"half a circle, " + about, 1.0});
+    held_within(polygon, rolled<Lrvf<>>(10, 2 * pi, axis).norm(), 1e-9, {"full circle, " + about, 1.0});
   }
 }
 
@@ -46,7 +51,9 @@ TEST(RollUpInSpace, LrvfBecomesAPolygon) {
 TEST(RollUpInSpace, AncfBeamConvergesToTheCircle) {
   Vec4 const exact(0, 2 / pi, 0, 0), coarse = rolled<AncfBeam<>>(16, pi, 0.7), fine = rolled<AncfBeam<>>(32, pi, 0.7);
   EXPECT_NEAR((coarse - exact).norm() / (fine - exact).norm(), 4.0, 0.2);
-  EXPECT_LT(((4 * fine - coarse) / 3 - exact).norm(), 5e-5);
+  held_within({"S1", "tip of the bar rolled up about any axis, and its turn", By::closed_form,
+               "half a circle, κ = M/EI", "AncfBeam, 16 and 32 elements extrapolated"},
+              ((4 * fine - coarse) / 3 - exact).norm(), 5e-5, {.scale = 1.0});
 }
 
 // ---- S4b: at 45° under force and moment at the tip
@@ -67,11 +74,17 @@ Vec3 inclined(Index n, Mat3& turn) {
 TEST(InclinedBeamInSpace, LrvfConvergesToTheExactRod) {
   Mat3 turn;
   Vec3 const exact(-1.197374069, -2.209408446, 0);
-  EXPECT_LT((inclined(16, turn) - exact).norm(), 2e-3 * exact.norm());
+  auto const claim = [](char const* what, char const* mesh) {
+    return Claim{"S4b", what, By::independent, "shooting on the rod's equations", mesh};
+  };
+  held_within(claim("tip of the inclined beam in space [m]", "Lrvf, 16 elements"), (inclined(16, turn) - exact).norm(),
+              2e-3 * exact.norm(), {.scale = exact.norm()});
   Vec3 const limit = (4 * inclined(128, turn) - inclined(64, turn)) / 3;
-  EXPECT_LT((limit - exact).cwiseAbs().maxCoeff(), 1e-7);
+  held_within(claim("tip of the inclined beam in space [m]", "Lrvf, 64 and 128 elements extrapolated"),
+              (limit - exact).cwiseAbs().maxCoeff(), 1e-7, {.scale = exact.norm()});
   inclined(128, turn);
-  EXPECT_LT((turn - exp_so3<double>(Vec3(0, 0, -4.306675415))).norm(), 1e-3);
+  held_within(claim("turn of the inclined beam's tip", "Lrvf, 128 elements"),
+              (turn - exp_so3<double>(Vec3(0, 0, -4.306675415))).norm(), 1e-3, {.scale = 1.0});
 }
 
 // ---- S8: twisted by 90°
@@ -97,10 +110,16 @@ TEST(AncfPreTwistedCantilever, MeetsTheExactRod) {
     return Vec3((64 * c - 20 * b + a) / 45);
   };
   Vec3 const y = limit({0, 1, 0}), z = limit({0, 0, 1});
-  EXPECT_NEAR(y[0], -1.58e-6, 5e-9);
-  EXPECT_NEAR(z[0], -3.6e-7, 5e-9);
-  EXPECT_LT((y - Vec3(0, 5.4293204e-3, 1.7187433e-3)).tail<2>().norm(), 3e-10);
-  EXPECT_LT((z - Vec3(0, 1.7187438e-3, 1.7496234e-3)).tail<2>().norm(), 3e-10);
+  auto const claim = [](char const* what) {
+    return Claim{"S8", what, By::independent, "shooting on the rod's equations",
+                 "AncfBeam, 16, 32 and 64 elements extrapolated"};
+  };
+  Claim const along = claim("shortening of the pre-twisted beam under a unit force"),
+              across = claim("tip of the pre-twisted beam across, under a unit force");
+  held(along, y[0], -1.58e-6, 5e-9, {"F along y"});
+  held(along, z[0], -3.6e-7, 5e-9, {"F along z"});
+  held_within(across, (y - Vec3(0, 5.4293204e-3, 1.7187433e-3)).tail<2>().norm(), 3e-10, {"F along y", 5.4e-3});
+  held_within(across, (z - Vec3(0, 1.7187438e-3, 1.7496234e-3)).tail<2>().norm(), 3e-10, {"F along z", 1.7e-3});
 }
 
 // ---- S8b: a quarter circle; its inner radius is 4.12 and its depth 0.2, so the axis is at 4.22
@@ -131,19 +150,26 @@ Vec3 arc_tip(Index n, Vec3 const& force) {
 // The axis has no law of a curved beam, which couples N and M: the published 0.08734 and 0.5022 are met to 1.5 % and
 // 0.4 %.
 template <class B>
-void bends() {
+void bends(char const* formulation) {
   BarConstants const c = constants(quarter());
   double const r3 = std::pow(radius, 3);
   double const in_plane = pi * r3 / (4 * c.EI) + pi * radius / 4 * (1 / c.EA + 1 / c.GA);
   double const out_of_plane = pi * r3 / (4 * *c.EI_y) + (0.75 * pi - 2) * r3 / c.GJ + pi * radius / (2 * *c.GA_z);
   auto const limit = [](Vec3 const& force) { return Vec3((4 * arc_tip<B>(64, force) - arc_tip<B>(32, force)) / 3); };
   double const u = limit({1, 0, 0})[0], w = limit({0, 0, 1})[2];
-  EXPECT_NEAR(u, in_plane, 1e-6 * in_plane);
-  EXPECT_NEAR(w, out_of_plane, 1e-6 * out_of_plane);
-  EXPECT_NEAR(u, 0.08734, 0.015 * 0.08734);
-  EXPECT_NEAR(w, 0.5022, 0.004 * 0.5022);
+  auto const tip = [&](By by, char const* source) {
+    return Claim{"S8b", "tip of the quarter circle along its unit force", by, source, formulation};
+  };
+  Claim const castigliano = tip(By::closed_form, "Castigliano, with shear"),
+              published = tip(By::published, "MacNeal & Harder 1985");
+  held(castigliano, u, in_plane, 1e-6 * in_plane, {"in the plane"});
+  held(castigliano, w, out_of_plane, 1e-6 * out_of_plane, {"out of the plane"});
+  held(published, u, 0.08734, 0.015 * 0.08734, {"in the plane"});
+  held(published, w, 0.5022, 0.004 * 0.5022, {"out of the plane"});
 }
-TEST(CurvedCantilever, LrvfBendsAsCastiglianoSays) { bends<Lrvf<>>(); }
-TEST(CurvedCantilever, AncfBeamBendsAsCastiglianoSays) { bends<AncfBeam<>>(); }
+TEST(CurvedCantilever, LrvfBendsAsCastiglianoSays) { bends<Lrvf<>>("Lrvf, 32 and 64 elements extrapolated"); }
+TEST(CurvedCantilever, AncfBeamBendsAsCastiglianoSays) {
+  bends<AncfBeam<>>("AncfBeam, 32 and 64 elements extrapolated");
+}
 
 }  // namespace curved_cantilevers_test

@@ -13,6 +13,8 @@
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
+
 namespace polybody {
 namespace falling_chain_test {
 
@@ -124,12 +126,18 @@ Chain<Constraint> const& ideal() {
 // CASES R8d: ten links, sixteen times the tip of 1 m at 0.25 s. Ideal joints are off by h² alone, the others by F/k
 // too.
 TEST(FallingChain, OfTenLinksHasThePublishedTip) {
-  Vec3 const published = length * Vec3(0.877462524775, -0.306656671158, 0.0);
-  EXPECT_LT((fallen<Constraint>(10).tip() - published).norm(), 2e-5);
-  EXPECT_LT((fallen<Recursive>(10).tip() - published).norm(), 2e-5);
-  EXPECT_LT((fallen<Penalty>(10).tip() - published).norm(), 1e-4);
-  EXPECT_LT((fallen<Bushing>(10).tip() - published).norm(), 1e-4);
-  EXPECT_LT((fallen<AncfLinear>(10).tip() - published).norm(), 5e-4);
+  Vec3 const exact = length * Vec3(0.877462524775, -0.306656671158, 0.0);
+  auto const expect = [&](char const* policy, Vec3 const& tip, double tolerance) {
+    held_within(
+        {"R8", "tip of ten links of 1.6 m after 1 s [m]", By::independent, "ordinary solver in the turns of the links",
+         std::string("10 links, generalised-α, h = 2 ms, ") + policy},
+        (tip - exact).norm(), tolerance, {.scale = (exact - Vec3(length, 0, 0)).norm()});
+  };
+  expect("Constraint", fallen<Constraint>(10).tip(), 2e-5);
+  expect("Recursive", fallen<Recursive>(10).tip(), 2e-5);
+  expect("Penalty", fallen<Penalty>(10).tip(), 1e-4);
+  expect("Bushing", fallen<Bushing>(10).tip(), 1e-4);
+  expect("cables, AncfLinear", fallen<AncfLinear>(10).tip(), 5e-4);
 }
 
 // All within 1 % of the tip's way, and of its 5 m within 0.5 mm.
@@ -137,14 +145,21 @@ TEST(FallingChain, HasOneTipByFivePolicies) {
   Vec3 const tip = ideal().tip();
   double const way = (tip - Vec3(length, 0, 0)).norm();
   // what the pin does falls by a factor from link to link: 64 links away the tip falls freely, −½ g t²
-  EXPECT_NEAR(tip[1], -0.5 * 9.81, 1e-5);
+  held({"thesis §3.5", "fall of the tip after 1 s, whip under way [m]", By::closed_form, "−½ g t²",
+        "64 links, Constraint, generalised-α, h = 2 ms"},
+       tip[1], -0.5 * 9.81, 1e-5);
   Chain<Constraint> fine(64);
   fine.fall(1e-3);
-  EXPECT_LT((fine.tip() - tip).norm(), 5e-6 * way);
-  EXPECT_LT((fallen<Recursive>(64).tip() - tip).norm(), 5e-6 * way);
-  EXPECT_LT((fallen<Penalty>(64).tip() - tip).norm(), 1e-4 * way);
-  EXPECT_LT((fallen<Bushing>(64).tip() - tip).norm(), 1e-4 * way);
-  EXPECT_LT((fallen<AncfLinear>(64).tip() - tip).norm(), 1e-4 * way);
+  auto const expect = [&](char const* policy, Vec3 const& other, double part) {
+    held_within({"thesis §3.5", "tip of 64 links after 1 s [m]", By::itself, "Constraint, h = 2 ms",
+                 std::string("64 links, generalised-α, ") + policy},
+                (other - tip).norm(), part * way, {.scale = way});
+  };
+  expect("Constraint, h = 1 ms", fine.tip(), 5e-6);
+  expect("Recursive, h = 2 ms", fallen<Recursive>(64).tip(), 5e-6);
+  expect("Penalty, h = 2 ms", fallen<Penalty>(64).tip(), 1e-4);
+  expect("Bushing, h = 2 ms", fallen<Bushing>(64).tip(), 1e-4);
+  expect("cables, AncfLinear, h = 2 ms", fallen<AncfLinear>(64).tip(), 1e-4);
 }
 
 /// g = F/k, F the ideal chain's; and so the tip's distance from where it ideally is.
@@ -154,7 +169,10 @@ void expect_one_over_k() {
   for (double const k : {1e6, 1e7, 1e8}) {
     Chain<Policy> const chain = fallen<Policy>(64, k);
     double const opens = chain.opening(), away = (chain.tip() - ideal().tip()).norm();
-    EXPECT_NEAR(k * opens, ideal().force(), 0.01 * ideal().force()) << k;
+    held_within(
+        {"thesis §3.5", "gaps of 64 pins times their stiffness, k √Σ g² [N]", By::itself, "forces of ideal pins, √Σ F²",
+         std::string("64 links, ") + (std::is_same_v<Policy, Penalty> ? "Penalty" : "Bushing")},
+        std::abs(k * opens - ideal().force()), 0.01 * ideal().force(), {equals("k", k), ideal().force()});
     if (opening > 0.0) {
       EXPECT_NEAR(opening / opens, 10.0, 0.05) << k;
       EXPECT_NEAR(off / away, 10.0, 0.15) << k;
@@ -170,33 +188,44 @@ TEST(FallingChain, OpensBushingsAsOneOverTheStiffness) { expect_one_over_k<Bushi
 TEST(FallingChain, OfCablesIsThatOfSpringsAsStiff) {
   Vec3 const spring = fallen<Penalty>(64).tip() - ideal().tip(), cable = fallen<AncfLinear>(64).tip() - ideal().tip();
   EXPECT_GT(spring.norm(), 1e-4);
-  EXPECT_LT((cable - spring).norm(), 0.03 * spring.norm());
+  held_within({"thesis §3.5", "stretch of the chain at its tip [m]", By::itself, "Penalty of k = EA/l",
+               "64 cables, AncfLinear"},
+              (cable - spring).norm(), 0.03 * spring.norm(), {.scale = spring.norm()});
 }
 
 // A step of generalised-α holds the rows of `Constraint`, not their rates; joint coordinates hold both.
 TEST(FallingChain, PinsWithoutSpringsStayClosed) {
   Chain<Recursive> const joints = fallen<Recursive>(64);
-  EXPECT_LT(joints.worst.position, 1e-12);
-  EXPECT_LT(joints.worst.velocity, 1e-12);
-  EXPECT_LT(fallen<AncfLinear>(64).worst.position, 1e-12);
-  EXPECT_LT(ideal().worst.position, 1e-10);
+  auto const expect = [](char const* what, char const* policy, double gap, double tolerance) {
+    held_within({"thesis §3.5", what, By::closed_form, "pins stay closed", std::string("64 links, ") + policy}, gap,
+                tolerance, {.scale = length});
+  };
+  expect("largest gap of a pin in 1 s [m]", "Recursive", joints.worst.position, 1e-12);
+  expect("largest rate of a gap in 1 s [m/s]", "Recursive", joints.worst.velocity, 1e-12);
+  expect("largest gap of a pin in 1 s [m]", "cables, AncfLinear", fallen<AncfLinear>(64).worst.position, 1e-12);
+  expect("largest gap of a pin in 1 s [m]", "Constraint", ideal().worst.position, 1e-10);
 }
 
 // Coordinates, constraints and degrees of freedom as Table 3.4 counts: of a rigid link seven and the norm of its
 // parameters, of a cable twelve. A pin has five rows, between cables four; to penalties and bushings none.
 TEST(FallingChain, IsCountedAsInTheThesis) {
   constexpr Index n = 64;
-  auto const expect = [](Census const& c, Index coordinates, Index constraints, Index freedoms, Index rows) {
-    EXPECT_EQ(c.coordinates, coordinates);
-    EXPECT_EQ(c.constraints, constraints);
-    EXPECT_EQ(c.degrees_of_freedom, freedoms);
+  auto const expect = [](char const* policy, Census const& c, Index coordinates, Index constraints, Index freedoms,
+                         Index rows) {
+    auto const same = [&](char const* what, Index found, Index counted) {
+      held({"thesis, ch. 3", what, By::closed_form, "counted as Table 3.4 does", std::string("64 links, ") + policy},
+           double(found), double(counted), 0.0);
+    };
+    same("coordinates of the chain", c.coordinates, coordinates);
+    same("constraints of the chain", c.constraints, constraints);
+    same("degrees of freedom of the chain", c.degrees_of_freedom, freedoms);
     EXPECT_EQ(c.rows, rows);
   };
-  expect(census(Chain<Constraint>(n).model), 7 * n, n + 5 * n, n, 5 * n);
-  expect(census(Chain<Penalty>(n).model), 7 * n, n, 6 * n, 0);
-  expect(census(Chain<Bushing>(n).model), 7 * n, n, 6 * n, 0);
-  expect(census(Chain<Recursive>(n).model), n, 0, n, 0);
-  expect(census(Chain<AncfLinear>(n).model), 12 * n - 4 * n, 0, 8 * n, 0);
+  expect("Constraint", census(Chain<Constraint>(n).model), 7 * n, n + 5 * n, n, 5 * n);
+  expect("Penalty", census(Chain<Penalty>(n).model), 7 * n, n, 6 * n, 0);
+  expect("Bushing", census(Chain<Bushing>(n).model), 7 * n, n, 6 * n, 0);
+  expect("Recursive", census(Chain<Recursive>(n).model), n, 0, n, 0);
+  expect("cables, AncfLinear", census(Chain<AncfLinear>(n).model), 12 * n - 4 * n, 0, 8 * n, 0);
 }
 
 }  // namespace falling_chain_test

@@ -11,6 +11,8 @@
 #include <polybody/statics/equilibrium.hpp>
 #include <polybody/stress/section.hpp>
 
+#include "support/held.hpp"
+
 namespace ffr_frames_test {
 
 using namespace polybody;
@@ -49,8 +51,10 @@ TEST(FloatingFrame, PreTwistedCantilever) {
                     .placement = Placement::at({length * double(i) / double(n), 0, 0},
                                                {0.5 * pi * (double(i) + 0.5) / double(n), 0, 0})});
   Structure const s = structure_of(bars, std::vector<Index>(std::size_t(n), 1));
-  EXPECT_NEAR(tip_displacement(s, {0, 1, 0})[1], 5.4258784e-3, 1e-3 * 5.4258784e-3);
-  EXPECT_NEAR(tip_displacement(s, {0, 0, 1})[2], 1.7461814e-3, 1e-3 * 1.7461814e-3);
+  Claim const tip{"S8", "tip of the pre-twisted beam along its unit force, without shear", By::independent,
+                  "shooting on the rod's equations", "Ffr of 32 straight bars"};
+  held(tip, tip_displacement(s, {0, 1, 0})[1], 5.4258784e-3, 1e-3 * 5.4258784e-3, {"F along y"});
+  held(tip, tip_displacement(s, {0, 0, 1})[2], 1.7461814e-3, 1e-3 * 1.7461814e-3, {"F along z"});
 }
 
 // S8b: a quarter circle with inner radius 4.12 and depth 0.2, axis at R = 4.22. Castigliano with M = R sin θ, N = sin θ
@@ -75,10 +79,15 @@ TEST(FloatingFrame, CurvedCantilever) {
   double const in_plane = pi * r3 / (4 * c.EI) + pi * radius / (4 * c.EA);
   double const out_of_plane = pi * r3 / (4 * *c.EI_y) + (0.75 * pi - 2) * r3 / c.GJ;
   double const u = tip_displacement(s, {1, 0, 0})[0], w = tip_displacement(s, {0, 0, 1})[2];
-  EXPECT_NEAR(u, in_plane, 2e-3 * in_plane);
-  EXPECT_NEAR(w, out_of_plane, 2e-3 * out_of_plane);
-  EXPECT_NEAR(u, 0.08734, 0.02 * 0.08734);
-  EXPECT_NEAR(w, 0.5022, 0.01 * 0.5022);
+  auto const tip = [&](By by, char const* source) {
+    return Claim{"S8b", "tip of the quarter circle along its unit force", by, source, "Ffr of 24 straight bars"};
+  };
+  Claim const castigliano = tip(By::closed_form, "Castigliano, without shear"),
+              published = tip(By::published, "MacNeal & Harder 1985");
+  held(castigliano, u, in_plane, 2e-3 * in_plane, {"in the plane"});
+  held(castigliano, w, out_of_plane, 2e-3 * out_of_plane, {"out of the plane"});
+  held(published, u, 0.08734, 0.02 * 0.08734, {"in the plane"});
+  held(published, w, 0.5022, 0.01 * 0.5022, {"out of the plane"});
 }
 
 // ---- S7: the 45° bend of Bathe & Bolourchi in sub-structures
@@ -124,8 +133,12 @@ TEST(FloatingFrames, SubStructuresConvergeToTheExactRod) {
       return (bend_tip(pieces, 96 / pieces, c, 600, mean_axes) - exact).norm() / u;
     };
     double const eight = error(8), sixteen = error(16);
-    EXPECT_LT(error(4), 0.03) << mean_axes;
-    EXPECT_LT(eight, mean_axes ? 0.002 : 0.01);
+    char const* const frame_is = mean_axes ? "mean axes" : "tied to the first node";
+    Claim const of_tip{"S7", "tip of the 45° bend, of its displacement", By::independent,
+                       "shooting on the rod's equations",
+                       std::string("Ffr, welded pieces, 96 bars in all, ") + frame_is};
+    held_within(of_tip, error(4), 0.03, {"4 pieces", 1.0});
+    held_within(of_tip, eight, mean_axes ? 0.002 : 0.01, {"8 pieces", 1.0});
     EXPECT_NEAR(eight / sixteen, 4.0, 0.1) << mean_axes;
   }
 }
@@ -143,7 +156,11 @@ TEST(FloatingFrames, FiveSubStructuresMeetThePublishedTolerance) {
   for (auto const& row : rows)
     for (bool const mean_axes : {false, true}) {
       Vec3 const tip = bend_tip(5, 8, c, row.force, mean_axes);
-      EXPECT_LT((tip - row.tip).norm(), 0.05 * (row.tip - Vec3(70.7106781187, 29.2893218813, 0)).norm()) << row.force;
+      double const way = (row.tip - Vec3(70.7106781187, 29.2893218813, 0)).norm();
+      held_within(
+          {"S7", "tip of the 45° bend", By::independent, "shooting on the rod's equations",
+           std::string("Ffr, 5 welded pieces of 8 bars, ") + (mean_axes ? "mean axes" : "tied to the first node")},
+          (tip - row.tip).norm(), 0.05 * way, {equals("P", row.force), way});
     }
 }
 
@@ -174,10 +191,15 @@ TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
     double const p = part * pi * pi / 4, kappa = std::sqrt(p), lateral = 1e-5;
     double const expected = part == 0.0 ? lateral / 3 : lateral * (std::tan(kappa) / kappa - 1.0) / p;
     Pressed const stiff(p, lateral, {.stiffening = true});
-    EXPECT_NEAR(stiff.deflection(), expected, 5e-3 * expected) << part;
+    char const* const column_is = "Ffr with stiffening, 6 elements";
+    held({"S9e", "deflection of the pressed cantilever, of L", By::closed_form, "F (tan κL/κ − L)/P, κ² = P/EI",
+          column_is},
+         stiff.deflection(), expected, 5e-3 * expected, {equals("P/P_cr", part)});
     auto const forces = [&](double s) { return section_forces(stiff.model, stiff.x, stiff.body.at(s)); };
-    EXPECT_NEAR(forces(0.5)[0], -p, 1e-3) << part;
-    EXPECT_NEAR(forces(0.0)[5], lateral * 1.0 + p * expected, 0.02 * (lateral + p * expected)) << part;
+    held({"S9e", "axial force in the pressed cantilever", By::closed_form, "−P", column_is}, forces(0.5)[0], -p, 1e-3,
+         {equals("P/P_cr", part), 1.0});
+    held({"S9e", "moment at the clamp of the pressed cantilever", By::closed_form, "F L + P u", column_is},
+         forces(0.0)[5], lateral * 1.0 + p * expected, 0.02 * (lateral + p * expected), {equals("P/P_cr", part)});
   }
 }
 
@@ -185,7 +207,9 @@ TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
 TEST(FloatingFrame, WithoutStiffeningNoForceBuckles) {
   double const p = 0.17 * 0.25 * std::numbers::pi * std::numbers::pi, kappa = std::sqrt(p);
   double const unpressed = 1e-5 / 3, pressed = 1e-5 * (std::tan(kappa) / kappa - 1.0) / p;
-  EXPECT_NEAR(Pressed(p, 1e-5).deflection(), unpressed, 1e-3 * unpressed);
+  held({"S9e", "deflection of the pressed cantilever, of L, which ignores P", By::closed_form, "F L³/3EI",
+        "Ffr without stiffening, 6 elements"},
+       Pressed(p, 1e-5).deflection(), unpressed, 1e-3 * unpressed);
   EXPECT_NEAR(1.0 - unpressed / pressed, 0.17, 0.005);
 }
 

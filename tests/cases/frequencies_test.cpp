@@ -155,6 +155,14 @@ TEST(Buckling, FrequencyVanishesAtEulersLoad) {
   EXPECT_GT(lowest(0.999 * critical), 0.0);
   EXPECT_LT(lowest(1.001 * critical), 0.0);
   EXPECT_LT(lowest(0.5 * critical), lowest(0.0));
+  double low = 0.99 * critical, high = 1.01 * critical;
+  for (int i = 0; i < 12; ++i) {
+    double const middle = 0.5 * (low + high);
+    (lowest(middle) > 0.0 ? low : high) = middle;
+  }
+  held({"S9e", "load at which the lowest frequency vanishes, P L²/EI", By::closed_form, "π²/4",
+        "planar AncfCable, 8 elements"},
+       0.5 * (low + high), critical, 1e-3 * critical);
 }
 
 }  // namespace frequencies_test

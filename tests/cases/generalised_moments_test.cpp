@@ -14,6 +14,8 @@
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
+
 namespace polybody {
 namespace generalised_moments_test {
 
@@ -130,16 +132,27 @@ TEST(EulerParameterMoments, MakeOneMotionToTheAccuracyOfTheSteps) {
   }
   EXPECT_LT(apart(p, c), of_p + of_c);
   EXPECT_LT(apart(r, c), of_r + of_c);
+  auto const one_motion = [](char const* formulation, double distance) {
+    held_within({"thesis §3.4", "places, turns and their rates of two bodies after 1 s", By::itself,
+                 "Rigid<UnitQuaternion>, Constraint", formulation},
+                distance, 3e-8, {.scale = 1.0});
+  };
+  one_motion("Rigid<EulerParameters>, Constraint, Runge–Kutta 4", apart(p, c));
+  one_motion("joint coordinates, Runge–Kutta 4", apart(r, c));
   EXPECT_GT((c.of(c.b).A - Mat3::Identity()).norm(), 1.0);  // it has tumbled
 }
 
 // A cross bears a moment square to both its arms, a ball none.
 TEST(EulerParameterMoments, JointsHoldTheSameForcesAndMoments) {
   auto const& [p, c, r] = runs();
-  auto const expect = [&c = c](auto const& other) {
-    auto const same = [](Wrench<double> const& one, Wrench<double> const& two) {
-      EXPECT_LT((one.f - two.f).norm(), 1e-6);
-      EXPECT_LT((one.m - two.m).norm(), 1e-6);
+  auto const expect = [&c = c](char const* formulation, auto const& other) {
+    auto const claim = [&](char const* what) {
+      return Claim{"thesis §3.4", what, By::itself, "Rigid<UnitQuaternion>, Constraint", formulation};
+    };
+    auto const same = [&](Wrench<double> const& one, Wrench<double> const& two) {
+      held_within(claim("forces of a cross and a ball after 1 s [N]"), (one.f - two.f).norm(), 1e-6,
+                  {.scale = two.f.norm()});
+      held_within(claim("moments of a cross and a ball after 1 s [N m]"), (one.m - two.m).norm(), 1e-6, {.scale = 1.0});
     };
     Wrench<double> const cardan = reaction(other.model, other.x, other.cardan),
                          ball = reaction(other.model, other.x, other.ball);
@@ -151,9 +164,9 @@ TEST(EulerParameterMoments, JointsHoldTheSameForcesAndMoments) {
     EXPECT_LT(std::abs(cardan.m.dot(other.of(other.a).A.col(1))), 1e-12);  // the arm on a
     EXPECT_LT(ball.m.norm(), 1e-12);
   };
-  expect(p);
-  expect(c);
-  expect(r);
+  expect("Rigid<EulerParameters>, Constraint", p);
+  expect("Rigid<UnitQuaternion>, Constraint", c);
+  expect("joint coordinates", r);
 }
 
 // −Gᵀλ of a joint on a body, against its Cartesian force F and moment M at the point u from the centre of mass: F, and
@@ -170,14 +183,27 @@ TEST(EulerParameterMoments, OfAJointAreTheCartesianOnesByG) {
     VecX const six = c.joint_force(body_c, c.only(joint_c)), seven = p.joint_force(body_p, p.only(joint_p));
     ASSERT_EQ(six.size(), 6);
     ASSERT_EQ(seven.size(), 7);
-    EXPECT_LT((six.head<3>() - force).norm(), 1e-12 * force.norm());
+    auto const within = [](char const* what, char const* source, char const* formulation, double error,
+                           double tolerance, double scale) {
+      held_within({"thesis §3.4", what, By::closed_form, source, formulation}, error, tolerance, {.scale = scale});
+    };
+    char const *const quaternion = "Rigid<UnitQuaternion>", *const parameters = "Rigid<EulerParameters>";
+    within("joint force in the rows of a body [N]", "F", quaternion, (six.head<3>() - force).norm(),
+           1e-12 * force.norm(), force.norm());
     EXPECT_LT((six.tail<3>() - moment).norm(), 1e-12 * moment.norm());
-    EXPECT_LT((seven.head<3>() - force).norm(), 1e-6);  // two runs
+    within("joint moment in the rows of a body [N m]", "Aᵀ (M + u × F)", quaternion, (six.tail<3>() - moment).norm(),
+           1e-11, moment.norm());
+    within("joint force in the rows of a body [N]", "F of another run", parameters, (seven.head<3>() - force).norm(),
+           1e-6, force.norm());
     Vec4 const theta = theta_of(p, body_p), generalised = seven.tail<4>();
-    EXPECT_LT((generalised - g_bar(theta).transpose() * moment).norm(), 1e-6);
-    EXPECT_NEAR(generalised.norm(), 2.0 * moment.norm(), 1e-6);  // Ḡ Ḡᵀ = 4 1
-    EXPECT_LT((0.25 * g_bar(theta) * generalised - moment).norm(), 1e-6);
-    EXPECT_NEAR(generalised.dot(theta), 0.0, 1e-9);  // Ḡ θ = 0
+    double const size = 2.0 * moment.norm();
+    within("generalised joint moment of the parameters [N m]", "Ḡᵀ Aᵀ (M + u × F) [thesis Eq. 3.7]", parameters,
+           (generalised - g_bar(theta).transpose() * moment).norm(), 1e-6, size);
+    within("its size [N m]", "2 ‖M‖, as Ḡ Ḡᵀ = 4 1", parameters, std::abs(generalised.norm() - size), 1e-6, size);
+    within("Cartesian moment of it [N m]", "¼ Ḡ of it", parameters, (0.25 * g_bar(theta) * generalised - moment).norm(),
+           1e-6, size);
+    within("its part along the parameters [N m]", "0, as Ḡ θ = 0", parameters, std::abs(generalised.dot(theta)), 1e-9,
+           size);
   };
   Vec3 const pivot = p.on_a - p.elbow;
   expect(p.cardan, c.cardan, p.a, c.a, pivot, 1.0);
@@ -189,8 +215,11 @@ TEST(EulerParameterMoments, OfAJointAreTheCartesianOnesByG) {
 TEST(EulerParameterMoments, LeaveNothingToTheNormsOfTheParameters) {
   Parameters const& p = runs().parameters;
   for (auto const& body : {p.a, p.b}) {
-    EXPECT_LT(std::abs(p.x.lambda[p.model.entry(body).row]), 1e-11);
-    EXPECT_NEAR(theta_of(p, body).norm(), 1.0, 1e-12);
+    held_within({"thesis §3.4", "multiplier of the norm of the parameters", By::closed_form, "0, as Ḡ θ = 0",
+                 "Rigid<EulerParameters>"},
+                std::abs(p.x.lambda[p.model.entry(body).row]), 1e-11, {.scale = 1.0});
+    held({"thesis §3.4", "norm of the parameters after 1 s", By::closed_form, "1", "Rigid<EulerParameters>"},
+         theta_of(p, body).norm(), 1.0, 1e-12);
   }
 }
 
@@ -201,12 +230,19 @@ TEST(EulerParameterMoments, OfALoadHaveItsPower) {
   VecX const four = p.applied_force(), three = c.applied_force();
   ASSERT_EQ(four.size(), 4);
   ASSERT_EQ(three.size(), 3);
-  EXPECT_LT((four - g_bar(theta_of(p, p.b)).transpose() * applied).norm(), 1e-11);
-  EXPECT_NEAR(four.norm(), 2.0 * applied.norm(), 1e-11);
-  EXPECT_LT((three - applied).norm(), 1e-12);
+  Claim const of_four{"thesis §3.4", "generalised moment of a load [N m]", By::closed_form, "Ḡᵀ M",
+                      "Rigid<EulerParameters>"};
+  held_within(of_four, (four - g_bar(theta_of(p, p.b)).transpose() * applied).norm(), 1e-11, {.scale = four.norm()});
+  held({"thesis §3.4", "size of the generalised moment of a load [N m]", By::closed_form, "2 ‖M‖",
+        "Rigid<EulerParameters>"},
+       four.norm(), 2.0 * applied.norm(), 1e-11);
+  held_within({"thesis §3.4", "generalised moment of a load [N m]", By::closed_form, "M", "Rigid<UnitQuaternion>"},
+              (three - applied).norm(), 1e-12, {.scale = applied.norm()});
   double const power = applied.dot(c.x.v.segment<3>(c.model.entry(c.b).v0 + 3));
   EXPECT_GT(std::abs(power), 1.0);
-  EXPECT_NEAR(four.dot(p.x.v.segment<4>(p.model.entry(p.b).v0 + 3)), power, 1e-6);
+  held_within({"thesis §3.4", "power of a load [W]", By::closed_form, "M · Ω", "Rigid<EulerParameters>"},
+              std::abs(four.dot(p.x.v.segment<4>(p.model.entry(p.b).v0 + 3)) - power), 1e-6,
+              {.scale = std::abs(power)});
 
   System system = stepped_system(r.model);
   State const narrow = reduce(system, r.x);
@@ -220,27 +256,36 @@ TEST(EulerParameterMoments, OfALoadHaveItsPower) {
   Frame<double> const a = r.of(r.a), b = r.of(r.b);
   Vec3 const moment = b.A * applied, weight(0, 0, -9.81), elbow = b.r + b.A * r.on_b;
   Vec3 const about_cross = moment + a.r.cross(2.0 * weight) + b.r.cross(weight);
-  EXPECT_NEAR(five[0], about_cross[0], 1e-11);
-  EXPECT_NEAR(five[1], about_cross.dot(a.A.col(1)), 1e-11);
-  EXPECT_NEAR(five.tail<3>().norm(), (moment + (b.r - elbow).cross(weight)).norm(), 1e-11);
+  Claim const axes{"thesis §3.4", "moments of the loads along the axes of the joints [N m]", By::closed_form,
+                   "M + Σ r × m g about each axis", "joint coordinates"};
+  held_within(axes, std::abs(five[0] - about_cross[0]), 1e-11, {"first arm", about_cross.norm()});
+  held_within(axes, std::abs(five[1] - about_cross.dot(a.A.col(1))), 1e-11, {"second arm", about_cross.norm()});
+  held_within(axes, std::abs(five.tail<3>().norm() - (moment + (b.r - elbow).cross(weight)).norm()), 1e-11,
+              {"ball", about_cross.norm()});
   double const falling = weight.dot(2.0 * a.v + b.v);
-  EXPECT_NEAR(five.dot(narrow.v), power + falling, 1e-6);
+  held_within({"thesis §3.4", "power of a load [W]", By::closed_form, "M · Ω + Σ m g · v", "joint coordinates"},
+              std::abs(five.dot(narrow.v) - power - falling), 1e-6, {.scale = std::abs(power)});
 }
 
 // Table 3.4's way of counting: seven coordinates and one constraint a body; four rows of the cross, three of the ball.
 // A ball's joint coordinates are four parameters with their norm.
 TEST(EulerParameterMoments, AreCountedAsInTheThesis) {
   auto const& [p, c, r] = runs();
-  auto const expect = [](Census const& census, Index coordinates, Index constraints, Index speeds, Index rows) {
-    EXPECT_EQ(census.coordinates, coordinates);
-    EXPECT_EQ(census.constraints, constraints);
+  auto const expect = [](char const* formulation, Census const& census, Index coordinates, Index constraints,
+                         Index speeds, Index rows) {
+    auto const same = [&](char const* what, Index found, Index counted) {
+      held({"thesis §3.4", what, By::closed_form, "counted as Table 3.4 does", formulation}, double(found),
+           double(counted), 0.0);
+    };
+    same("coordinates", census.coordinates, coordinates);
+    same("constraints", census.constraints, constraints);
     EXPECT_EQ(census.speeds, speeds);
     EXPECT_EQ(census.rows, rows);
-    EXPECT_EQ(census.degrees_of_freedom, 5);  // two of the cross, three of the ball
+    same("degrees of freedom", census.degrees_of_freedom, 5);  // two of the cross, three of the ball
   };
-  expect(census(p.model), 2 * 7, 2 + 4 + 3, 2 * 7, 2 + 4 + 3);
-  expect(census(c.model), 2 * 7, 2 + 4 + 3, 2 * 6, 4 + 3);
-  expect(census(r.model), 2 + 4, 1, 5, 0);
+  expect("Rigid<EulerParameters>", census(p.model), 2 * 7, 2 + 4 + 3, 2 * 7, 2 + 4 + 3);
+  expect("Rigid<UnitQuaternion>", census(c.model), 2 * 7, 2 + 4 + 3, 2 * 6, 4 + 3);
+  expect("joint coordinates", census(r.model), 2 + 4, 1, 5, 0);
 }
 
 }  // namespace generalised_moments_test

@@ -12,6 +12,7 @@
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
 #include "support/solver_instances.hpp"
 
 using namespace polybody;
@@ -51,21 +52,24 @@ struct Swinging {
         joint(model.connect(by, model.ground().at(on_ground), bar.at(end), "joint")),
         x(model.reference_state()) {}
 
-  void expect_the_swings(Vec3 const& out) {
+  void expect_the_swings(Vec3 const& out, char const* formulation) {
     for (Swing const& s : swings) {
       simulate(model, x, precise(), {.until = s.t, .step = 0.01}).run();
       Vec3 const at = position(model, x, bar.at(Vec3(0, 0, 0)));
-      EXPECT_LT((at - s.out * out - Vec3(0, 0, s.up)).norm(), 1e-8) << s.t;
+      held_within({"J2", "middle of the bar [m]", By::independent, "ordinary solver of order eight", formulation},
+                  (at - s.out * out - Vec3(0, 0, s.up)).norm(), 1e-8, {equals("t", s.t), 2.0});
     }
     Vec3 const last = position(model, x, bar.at(Vec3(0, 0, 0)));
-    EXPECT_LT((last - adams_out * out - Vec3(0, 0, adams_up)).norm(), adams_tolerance);
+    held_within({"J2", "middle of the bar at 5 s [m]", By::published, "Chrono's data of ADAMS, 6 digits", formulation},
+                (last - adams_out * out - Vec3(0, 0, adams_up)).norm(), adams_tolerance, {.scale = 2.0});
   }
 };
 
 Vec3 const along_x(0.04, 0.1, 0.1), along_z(0.1, 0.1, 0.04);
 
 TEST(AdamsCases, SphericalSwingsInThePlaneOfItsRelease) {
-  Swinging(Ideal<Spherical>{}, along_x, Placement::at({2, 0, 0}), {-2, 0, 0}).expect_the_swings(Vec3::UnitX());
+  Swinging(Ideal<Spherical>{}, along_x, Placement::at({2, 0, 0}), {-2, 0, 0})
+      .expect_the_swings(Vec3::UnitX(), "Spherical, Dormand–Prince");
 }
 
 // The bar lies along its own z, which points along the world's y. It swings about x, the one arm, which stays with the
@@ -77,7 +81,7 @@ TEST(AdamsCases, UniversalSwingsAboutEitherArm) {
                                       {Vec3(0, 0, 1), Vec3(1, 0, 0)},
                                       {Vec3(0, 1, 0), Vec3(1, 0, 0)}})
     Swinging(Ideal<Universal>{{.first = first, .second = second}, {}}, along_z, level, {0, 0, -2})
-        .expect_the_swings(Vec3::UnitY());
+        .expect_the_swings(Vec3::UnitY(), "Universal, Dormand–Prince");
 }
 
 // Thesis Eq. 3.8, its points half a metre apart along the pin, and the spherical form of §3.5.1: one motion, and one
@@ -87,14 +91,18 @@ TEST(RevolutePin, IsTheRevoluteOfTheSphericalForm) {
   Swinging one(Ideal<Revolute>{{.axis = Vec3::UnitY()}, {}}, along_x, level, {-2, 0.3, 0}, {0, 0.3, 0});
   Swinging other(Ideal<RevolutePin>{{.distance = 0.5, .axis = Vec3::UnitY()}, {}}, along_x, level, {-2, 0.3, 0},
                  {0, -0.2, 0});
-  one.expect_the_swings(Vec3::UnitX());
-  other.expect_the_swings(Vec3::UnitX());
-  EXPECT_LT((one.x.q - other.x.q).norm(), 1e-8);
+  one.expect_the_swings(Vec3::UnitX(), "Revolute, Dormand–Prince");
+  other.expect_the_swings(Vec3::UnitX(), "RevolutePin, Dormand–Prince");
+  auto const alike = [](char const* what, double distance, double tolerance, double scale) {
+    held_within({"J2", what, By::itself, "Revolute", "RevolutePin, Dormand–Prince"}, distance, tolerance,
+                {.scale = scale});
+  };
+  alike("place and turn of the bar at 5 s", (one.x.q - other.x.q).norm(), 1e-8, 2.0);
   Wrench<> const by_one = reaction(one.model, one.x, one.joint), by_other = reaction(other.model, other.x, other.joint);
   EXPECT_NEAR(by_one.m.norm(), 0.3 * by_one.f.norm(), 1e-7);  // the pin's point is 0.3 m beside the bar's plane
   EXPECT_GT(by_one.m.norm(), 0.1);
-  EXPECT_LT((by_one.f - by_other.f).norm(), 1e-6);
-  EXPECT_LT((by_one.m - by_other.m).norm(), 1e-6);
+  alike("force of the pin at 5 s [N]", (by_one.f - by_other.f).norm(), 1e-6, by_one.f.norm());
+  alike("moment of the pin at 5 s [N m]", (by_one.m - by_other.m).norm(), 1e-6, by_one.m.norm());
 }
 
 // CASES J4 [A]: two shafts at β = 30°, the first at 1 rad/s: ω₂/ω₁ = cos β/(1 − sin²β cos²φ), φ the angle of the first
@@ -122,12 +130,16 @@ TEST(CardanJoint, HasTheRatioOfSpeeds) {
     double const phi = i * std::numbers::pi / 4.0;
     if (i > 0) simulate(model, x, precise(), {.until = phi, .step = 0.01}).run();
     double const ratio = frame(model, x, second.at(Vec3(0, 0, 0))).w.dot(n);
-    EXPECT_NEAR(ratio, c / (1.0 - s2 * std::cos(phi) * std::cos(phi)), 1e-9) << phi;
+    held({"J4", "ratio of the speeds of two shafts on a cross", By::closed_form, "cos β/(1 − sin²β cos²φ)",
+          "Universal, Dormand–Prince"},
+         ratio, c / (1.0 - s2 * std::cos(phi) * std::cos(phi)), 1e-9, {equals("φ", phi)});
     least = std::min(least, ratio);
     most = std::max(most, ratio);
   }
-  EXPECT_NEAR(least, 0.8660254, 1e-7);
-  EXPECT_NEAR(most, 1.1547005, 1e-7);
+  Claim const extreme{"J4", "least and largest ratio of the speeds", By::closed_form, "cos β, 1/cos β",
+                      "Universal, Dormand–Prince"};
+  held(extreme, least, 0.8660254, 1e-7, {"least"});
+  held(extreme, most, 1.1547005, 1e-7, {"largest"});
 }
 
 }  // namespace joints_adams_test

@@ -14,6 +14,7 @@
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 #include "support/solver_instances.hpp"
 
@@ -35,6 +36,18 @@ constexpr double g = 9.81;
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 void run_to(Plane const& model, State& x, double t) { simulate(model, x, precise(), {.until = t, .step = 0.01}).run(); }
 
+/// A number and a vector in closed form.
+void exact(char const* case_id, char const* what, char const* source, char const* joint, double value, double reference,
+           double tolerance, double t) {
+  held({case_id, what, By::closed_form, source, std::string(joint) + ", Dormand–Prince"}, value, reference, tolerance,
+       {equals("t", t), 1.0});
+}
+void within(char const* case_id, char const* what, char const* source, char const* joint, double error,
+            double tolerance, double t, double scale) {
+  held_within({case_id, what, By::closed_form, source, std::string(joint) + ", Dormand–Prince"}, error, tolerance,
+              {equals("t", t), scale});
+}
+
 TEST(DistanceInThePlane, SwingsAPointWhereThePublishedSolutionIs) {
   struct {
     double t, x, y;
@@ -47,7 +60,8 @@ TEST(DistanceInThePlane, SwingsAPointWhereThePublishedSolutionIs) {
   State x = model.reference_state();
   for (auto const& p : r1) {
     run_to(model, x, p.t);
-    EXPECT_LT((position(model, x, mass.at({0, 0})) - Vec3(p.x, p.y, 0)).norm(), 1e-8) << p.t;
+    within("R1", "place of the point mass on a rod [m]", "elliptic functions", "Distance in the plane",
+           (position(model, x, mass.at({0, 0})) - Vec3(p.x, p.y, 0)).norm(), 1e-8, p.t, 1.0);
   }
 }
 
@@ -78,8 +92,10 @@ TEST(PrescribedDistanceInThePlane, LetsDownAWeight) {
     run_to(model, x, t);
     double const y = std::min(1.0, 0.5 * t), value = 0.8 * y * y * y * (10.0 - 15.0 * y + 6.0 * y * y);
     double const acceleration = 0.8 * 60.0 * y * (1.0 - 3.0 * y + 2.0 * y * y) / 4.0;
-    EXPECT_LT((position(model, x, weight.at({0, 0})) - Vec3(0, -1.0 - value, 0)).norm(), 1e-9) << t;
-    EXPECT_LT((reaction(model, x, ram).f - Vec3(0, m * (g - acceleration), 0)).norm(), 1e-7) << t;
+    within("closed forms", "place of a weight let down on a ram [m]", "polynomial of degree five", "PrescribedDistance",
+           (position(model, x, weight.at({0, 0})) - Vec3(0, -1.0 - value, 0)).norm(), 1e-9, t, 1.0 + value);
+    within("closed forms", "force of a ram that lets down a weight [N]", "m (g − ẍ)", "PrescribedDistance",
+           (reaction(model, x, ram).f - Vec3(0, m * (g - acceleration), 0)).norm(), 1e-7, t, m * g);
   }
 }
 
@@ -108,15 +124,20 @@ TEST(Gear, HandsOnTheSprocketsRunUp) {
     model.connect(Ideal<Gear>{gear, {}}, a.at({0, 0}), b.at({0, 0}), "gear");
     auto const drive = model.connect(motor, model.ground().at({0, 0, 0}), a.at({0, 0}), "motor");
     State x = model.reference_state();
-    for (double const t : {2.0, 4.5, 10.0}) {
+    char const* const law = "polynomial of degree five from 1 s to 8 s";
+    char const* const pair = sign > 0 ? "Gear" : "Gear in a ring";
+    for (double const t : {2.0, 4.5, 10.0, 15.0, 20.0}) {
       run_to(model, x, t);
-      EXPECT_NEAR(x.v[2], speed(t), 1e-8) << t;
-      EXPECT_NEAR(x.v[5], -0.4 * sign * speed(t), 1e-8) << t;
-      EXPECT_NEAR(reaction(model, x, drive).m[2], (of_a + 0.16 * of_b) * growth(t), 1e-8) << t;
+      exact("C8", "speed of the sprocket [rad/s]", law, pair, x.v[2], speed(t), 1e-8, t);
+      exact("C8", "speed of the driven wheel [rad/s]", "ratio of the teeth", pair, x.v[5], -0.4 * sign * speed(t), 1e-8,
+            t);
+      exact("C8", "moment of the motor [N m]", "(J_a + (20/50)² J_b) ω̇", pair, reaction(model, x, drive).m[2],
+            (of_a + 0.16 * of_b) * growth(t), 1e-8, t);
+      if (t < 10.0) continue;
+      double const angle = 87.5 + 25.0 * (t - 8.0);  // half of 25 · 7, and what comes after
+      exact("C8", "angle of the sprocket [rad]", law, pair, x.q[2], angle, 1e-7, t);
+      exact("C8", "angle of the driven wheel [rad]", "ratio of the teeth", pair, x.q[5], -0.4 * sign * angle, 1e-7, t);
     }
-    EXPECT_NEAR(x.v[2], 25.0, 1e-8);
-    EXPECT_NEAR(x.q[2], 137.5, 1e-7);  // half of 25 · 7, and 2 s more
-    EXPECT_NEAR(x.q[5], -55.0 * sign, 1e-7);
   }
 }
 
@@ -135,9 +156,11 @@ TEST(Gear, RollsAPlanetOnAFixedSun) {
   State x = model.reference_state();
   for (double const t : {2.0, 4.5, 9.0}) {
     run_to(model, x, t);
-    EXPECT_NEAR(x.v[5], 3.5 * speed(t), 1e-7) << t;
+    exact("closed forms", "speed of a planet on a fixed sun [rad/s]", "(1 + 30/12) ω of the arm", "Gear", x.v[5],
+          3.5 * speed(t), 1e-7, t);
   }
-  EXPECT_NEAR(x.q[5], 3.5 * 112.5, 1e-6);
+  exact("closed forms", "angle of a planet on a fixed sun [rad]", "1 + 30/12 of the arm's", "Gear", x.q[5], 3.5 * 112.5,
+        1e-6, 9.0);
 }
 
 // A ladder of 2 m from the wall x = 0 to the floor y = 0, held by two points on lines, its foot pushed to x = 1.2: its
@@ -154,11 +177,15 @@ TEST(PointInPlane, HoldsALadderToWallAndFloor) {
   auto const hand = model.connect(Hand{{.law = push, .axis = Vec3::UnitX()}, {}}, ground, foot, "hand");
   State x = model.reference_state();
   run_to(model, x, 2.0);
-  EXPECT_LT((position(model, x, head) - Vec3(0, 1.6, 0)).norm(), 1e-9);
-  EXPECT_LT((position(model, x, foot) - Vec3(1.2, 0, 0)).norm(), 1e-9);
+  within("closed forms", "head of a ladder pushed to the wall [m]", "√(2² − 1.2²)", "PointInPlane",
+         (position(model, x, head) - Vec3(0, 1.6, 0)).norm(), 1e-9, 2.0, 1.6);
+  within("closed forms", "foot of a ladder pushed to the wall [m]", "1.2", "PrescribedSlide",
+         (position(model, x, foot) - Vec3(1.2, 0, 0)).norm(), 1e-9, 2.0, 1.2);
   // at rest: the floor carries m g, the hand holds m g · 0.6/1.6 against the wall
-  EXPECT_LT((reaction(model, x, floor).f - Vec3(0, 4.0 * g, 0)).norm(), 1e-7);
-  EXPECT_LT((reaction(model, x, hand).f + Vec3(4.0 * g * 0.375, 0, 0)).norm(), 1e-7);
+  within("closed forms", "force of the floor on a ladder [N]", "m g", "PointInPlane",
+         (reaction(model, x, floor).f - Vec3(0, 4.0 * g, 0)).norm(), 1e-7, 2.0, 4.0 * g);
+  within("closed forms", "force of the hand on a ladder [N]", "m g · 0.6/1.6", "PrescribedSlide",
+         (reaction(model, x, hand).f + Vec3(4.0 * g * 0.375, 0, 0)).norm(), 1e-7, 2.0, 4.0 * g * 0.375);
 }
 
 }  // namespace joints_plane_test

@@ -5,6 +5,7 @@
 #include <polybody/statics/equilibrium.hpp>
 
 #include "support/bead_on_a_line.hpp"
+#include "support/held.hpp"
 
 using namespace polybody;
 
@@ -26,9 +27,14 @@ TEST(BeadOnATautCable, ComesToTheMiddle) {
   State x = rig.resting(mass * g);
   equilibrium(rig.model, x);
   double const w = mass * g * length / (4.0 * tension) * (1.0 - std::tanh(u) / u);
-  EXPECT_NEAR(place(rig.model, x, rig.line), 0.5 * length, 1e-6);
-  EXPECT_NEAR(-rig.place_of_bead(x)[1] / w, 1.0, 1e-4);
-  EXPECT_LT((reaction(rig.model, x, rig.contact).f - Vec3(0, mass * g, 0)).norm(), 1e-7);
+  auto const claim = [](char const* what, char const* source) {
+    return Claim{"sliders", what, By::closed_form, source, "planar AncfCable, 24 elements"};
+  };
+  held(claim("place of a weight on a taut cable [m]", "the middle"), place(rig.model, x, rig.line), 0.5 * length, 1e-6);
+  held(claim("deflection of a taut cable under a weight [m]", "P L/4T (1 − tanh u/u), u = ½ L √(T/EI)"),
+       -rig.place_of_bead(x)[1], w, 1e-4 * w);
+  held_within(claim("force of a taut cable on its weight [N]", "m g"),
+              (reaction(rig.model, x, rig.contact).f - Vec3(0, mass * g, 0)).norm(), 1e-7, {.scale = mass * g});
 }
 
 // A rope with a heavy bead between pins D apart and H different in height. Its tension is the same on both sides of the
@@ -62,14 +68,23 @@ TEST(BeadOnARope, HangsWhereBothSidesAreEquallySteep) {
   double const s = place(rig.model, x, rig.line);
   Vec3 const bead = rig.place_of_bead(x);
   Wrench<double> const a = reaction(rig.model, x, rig.left), b = reaction(rig.model, x, right);
-  EXPECT_LT((reaction(rig.model, x, rig.contact).f - Vec3(0, W, 0)).norm(), 1e-6);
-  EXPECT_LT((a.f + b.f - Vec3(0, W, 0)).norm(), 1e-6);
-  EXPECT_NEAR(D * b.f[1] - H * b.f[0], W * bead[0], 1e-6);
-  EXPECT_NEAR(a.f[1], 0.5 * W, 2e-3 * W);
-  EXPECT_NEAR(b.f[1], 0.5 * W, 2e-3 * W);
-  EXPECT_LT((bead - Vec3(aside, -depth, 0)).norm(), 0.03);  // of the order of √(EI/T)
-  EXPECT_NEAR(a.f.norm(), t, 0.04 * t);
-  EXPECT_NEAR(s, from_left, 0.03);
+  auto const claim = [](char const* what, char const* source) {
+    return Claim{"sliders", what, By::closed_form, source, "planar AncfCable, 60 elements"};
+  };
+  held_within(claim("force of a rope on its bead [N]", "W"),
+              (reaction(rig.model, x, rig.contact).f - Vec3(0, W, 0)).norm(), 1e-6, {.scale = W});
+  held_within(claim("forces of the pins of a rope with a bead, together [N]", "W"), (a.f + b.f - Vec3(0, W, 0)).norm(),
+              1e-6, {.scale = W});
+  held_within(claim("moment of the right pin's force less the bead's [N m]", "0"),
+              std::abs(D * b.f[1] - H * b.f[0] - W * bead[0]), 1e-6, {.scale = W});
+  Claim const half = claim("forces of the pins of a rope with a bead, upwards [N]", "½ W each");
+  held(half, a.f[1], 0.5 * W, 2e-3 * W, {"left"});
+  held(half, b.f[1], 0.5 * W, 2e-3 * W, {"right"});
+  char const* const steep = "both sides equally steep, without bending";
+  held_within(claim("place of a bead on a rope [m]", steep), (bead - Vec3(aside, -depth, 0)).norm(), 0.03,
+              {.scale = std::hypot(aside, depth)});  // of the order of √(EI/T)
+  held(claim("pull of a rope with a bead [N]", steep), a.f.norm(), t, 0.04 * t);
+  held(claim("place of a bead along its rope [m]", steep), s, from_left, 0.03);
 }
 
 }  // namespace sliding_statics_test

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "support/cantilever.hpp"
+#include "support/held.hpp"
 #include "support/spatial_cantilever.hpp"
 
 using namespace polybody;
@@ -29,7 +30,7 @@ BarConstants thick() {
 /// A bar bent in its own x–y plane, standing anywhere in space, is the planar one: the two share strains, quadrature
 /// and mesh.
 template <class Interpolation>
-void is_planar(BarConstants const& c, double length, double force, LoadAxes axes) {
+void is_planar(char const* case_id, BarConstants const& c, double length, double force, LoadAxes axes) {
   Index const n = 8;
   EquilibriumOptions const steps{.load_steps = 5};
   Bar bar{.length = length, .constants = c};
@@ -40,16 +41,21 @@ void is_planar(BarConstants const& c, double length, double force, LoadAxes axes
   Vec3 const load = axes == LoadAxes::world ? Vec3(place.axes.col(1) * force) : Vec3(0, force, 0);
   Rod<Interpolation> const rod(Lrvf<Interpolation>::from(bar, n), {.force = load, .axes = axes}, steps);
   Vec3 const tip = place.axes.transpose() * (rod.tip() - place.origin);
-  EXPECT_LT((tip - Vec3(plane[0], plane[1], 0)).norm(), 1e-10 * length);
+  std::string const rod_is = std::string("Lrvf, ") + (std::is_same_v<Interpolation, Direct> ? "direct" : "objective");
+  held_within(
+      {case_id, "tip of the rod that stands askew in space [m]", By::itself, "planar Lrvf", rod_is + ", 8 elements"},
+      (tip - Vec3(plane[0], plane[1], 0)).norm(), 1e-10 * length, {.scale = length});
   Mat3 const section = place.axes.transpose() * frame(rod.model, rod.x, rod.end()).A;
-  EXPECT_LT((section - exp_so3<double>(Vec3(0, 0, plane[2]))).norm(), 1e-10);
+  held_within({case_id, "turn of its tip's section", By::itself, "planar Lrvf", rod_is + ", 8 elements"},
+              (section - exp_so3<double>(Vec3(0, 0, plane[2]))).norm(), 1e-10, {.scale = 1.0});
 }
 
 TEST(PlaneInSpace, ElasticaAndThickCantileverAreThoseOfThePlane) {
-  is_planar<Objective>(slender(), 1.0, 10.0, LoadAxes::world);
-  is_planar<Objective>(slender(), 1.0, 10.0, LoadAxes::marker);
-  is_planar<Objective>(thick(), 2.0, 5e8 * 0.125, LoadAxes::world);
-  is_planar<Direct>(slender(), 1.0, 10.0, LoadAxes::world);  // turns about one axis of the placement: exact for it too
+  is_planar<Objective>("S2", slender(), 1.0, 10.0, LoadAxes::world);
+  is_planar<Objective>("S2c", slender(), 1.0, 10.0, LoadAxes::marker);
+  is_planar<Objective>("S4", thick(), 2.0, 5e8 * 0.125, LoadAxes::world);
+  is_planar<Direct>("S2", slender(), 1.0, 10.0,
+                    LoadAxes::world);  // turns about one axis of the placement: exact for it too
 }
 
 // The same bar bent about y by a force along z: what stands for z there stands for y here.
@@ -64,7 +70,9 @@ TEST(PlaneInSpace, BendingAboutYUsesTheConstantsOfY) {
   Vec3 const a = Rod<>(Lrvf<>::from({.length = 2.0, .constants = z}, 8), along_y, {.load_steps = 5}).tip();
   Vec3 const b = Rod<>(Lrvf<>::from({.length = 2.0, .constants = y}, 8), along_z, {.load_steps = 5}).tip();
   EXPECT_GT(a[1], 0.6);
-  EXPECT_LT((Vec3(a[0], 0, a[1]) - b).norm(), 1e-10);
+  held_within({"S4", "tip of the thick cantilever bent about y [m]", By::itself, "bent about z, constants exchanged",
+               "Lrvf, 8 elements"},
+              (Vec3(a[0], 0, a[1]) - b).norm(), 1e-10, {.scale = 0.7});
 }
 
 // ---- S9d: lateral buckling of a strip under a tip force in its stiff plane
@@ -128,9 +136,12 @@ double critical_force(Index n) {
 // times that of k = 1, so 2e-4 N remain. Errors in h² and h⁴ are extrapolated away.
 TEST(LateralBuckling, StripBucklesAtTheExactForce) {
   double const a = critical_force(8), b = critical_force(16), c = critical_force(32);
-  EXPECT_NEAR((a - 8554.9932) / (b - 8554.9932), 4.0, 0.05);
+  double const exact = 8554.9932;
+  EXPECT_NEAR((a - exact) / (b - exact), 4.0, 0.05);
   double const once = (4 * b - a) / 3, twice = (4 * c - b) / 3;
-  EXPECT_NEAR((16 * twice - once) / 15, 8554.9932, 1e-3);
+  held({"S9d", "force at which the bent strip buckles [N]", By::independent, "shooting on the rod's equations",
+        "Lrvf, 8, 16 and 32 elements extrapolated"},
+       (16 * twice - once) / 15, exact, 1e-3);
 }
 
 }  // namespace spatial_rod_plane_test

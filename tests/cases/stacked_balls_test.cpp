@@ -4,6 +4,8 @@
 #include <polybody/polybody.hpp>
 #include <polybody/vibration/modes.hpp>
 
+#include "support/held.hpp"
+
 using namespace polybody;
 
 namespace stacked_balls_test {
@@ -40,19 +42,25 @@ TEST(StackedBalls, OfAGroupRestAndSwingAsThoseOneByOne) {
   auto const group = grouped.model.apply(Group{}, grouped.balls);
   grouped.model.pair_with(group, floor, grouped.model.ground().at({0, 0, 0}));
   grouped.model.pair_with(group, ball, grouped.balls[0]);
-  auto const judge = [](auto& stack) {
+  auto const judge = [](char const* forces, auto& stack) {
+    auto const claim = [&](char const* what, char const* source) {
+      return Claim{"closed forms", what, By::closed_form, source, forces};
+    };
     State x = stack.model.reference_state();
     EXPECT_LE(equilibrium(stack.model, x).iterations, 3);
-    EXPECT_NEAR(position(stack.model, x, stack.balls[0]).z(), radius - 2.0 * mass * g / k, 1e-12);
-    EXPECT_NEAR(position(stack.model, x, stack.balls[1]).z(), 3.0 * radius - 3.0 * mass * g / k, 1e-12);
+    held(claim("height of the lower of two balls [m]", "R − 2 m g/k"), position(stack.model, x, stack.balls[0]).z(),
+         radius - 2.0 * mass * g / k, 1e-12);
+    held(claim("height of the upper of two balls [m]", "3 R − 3 m g/k"), position(stack.model, x, stack.balls[1]).z(),
+         3.0 * radius - 3.0 * mass * g / k, 1e-12);
     Modes const m = modes(linearise(stack.model, x));
     ASSERT_EQ(m.frequency.size(), 2);
     double const unit = std::sqrt(k / mass), golden = 0.5 * (std::sqrt(5.0) - 1.0);
-    EXPECT_NEAR(m.frequency[0] / unit, golden, 1e-9);
-    EXPECT_NEAR(m.frequency[1] / unit, 1.0 / golden, 1e-9);
+    Claim const modes_of = claim("frequencies of two balls on each other, ω √(m/k)", "√((3 ∓ √5)/2)");
+    held(modes_of, m.frequency[0] / unit, golden, 1e-9, {"mode = 1"});
+    held(modes_of, m.frequency[1] / unit, 1.0 / golden, 1e-9, {"mode = 2"});
   };
-  judge(single);
-  judge(grouped);
+  judge("contacts one by one", single);
+  judge("contact group", grouped);
 }
 
 }  // namespace stacked_balls_test

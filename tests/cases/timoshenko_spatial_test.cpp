@@ -14,6 +14,8 @@
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>
 
+#include "support/held.hpp"
+
 using namespace polybody;
 
 namespace timoshenko_spatial_test {
@@ -26,6 +28,17 @@ using Cured = AncfBeam<Continuum<>>;
 using Beams = Model<Bodies<Lrvf<>, Line, Cured>, Joints<Clamp, Ball>>;
 
 enum class Ends { pinned_pinned, clamped_free, free_free };
+char const* name_of(Ends ends) {
+  return ends == Ends::pinned_pinned ? "pinned–pinned" : ends == Ends::clamped_free ? "clamped–free" : "free–free";
+}
+template <class B>
+std::string name_of(Index n) {
+  char const* const body = std::is_same_v<B, Lrvf<>> ? "Lrvf, "
+                           : std::is_same_v<B, Line> ? "AncfBeam, "
+                                                     : "AncfBeam<Continuum>, ";
+  return body + std::to_string(n);
+}
+char const* const timoshenko = "roots of Timoshenko's characteristic equation";
 
 /// Cowper's shear factor for ν = 0.3 is E2's k, and J is Saint-Venant's.
 Bar thick() {
@@ -94,9 +107,15 @@ void bends(Index n) {
     Frequencies const coarse = frequencies<B>(n, row.ends), fine = frequencies<B>(2 * n, row.ends);
     for (std::size_t i = 0; i < 2; ++i) {
       double const exact = row.bending[i], c = coarse.bending[i], f = fine.bending[i];
-      EXPECT_LT(std::abs(c - exact), 0.02 * exact) << int(row.ends) << ' ' << i;
+      auto const claim = [&](std::string const& formulation) {
+        return Claim{"E2", std::string("frequencies of the thick beam in space, ") + name_of(row.ends) + " [rad/s]",
+                     By::independent, timoshenko, formulation};
+      };
+      Instance const mode{equals("mode", double(i + 1))};
+      held(claim(name_of<B>(n) + " elements"), c, exact, 0.02 * exact, mode);
       EXPECT_NEAR((c - exact) / (f - exact), 4.0, 0.1) << int(row.ends) << ' ' << i;
-      EXPECT_NEAR(limit(c, f), exact, 5e-5 * exact) << int(row.ends) << ' ' << i;
+      held(claim(name_of<B>(n) + " and " + std::to_string(2 * n) + " elements extrapolated"), limit(c, f), exact,
+           5e-5 * exact, mode);
     }
   }
 }
@@ -119,7 +138,9 @@ void bends_slender(Index n) {
     for (std::size_t i = 0; i < 3; ++i) {
       double const exact = row.bending[i], c = coarse.bending[i], f = fine.bending[i];
       EXPECT_NEAR((c - exact) / (f - exact), 4.0, 0.1) << int(row.ends) << ' ' << i;
-      EXPECT_NEAR(limit(c, f), exact, 1e-4 * exact) << int(row.ends) << ' ' << i;
+      held({"E2", std::string("frequencies of the slender beam in space, ") + name_of(row.ends) + " [rad/s]",
+            By::independent, timoshenko, name_of<B>(n) + " and " + std::to_string(2 * n) + " elements extrapolated"},
+           limit(c, f), exact, 1e-4 * exact, {equals("mode", double(i + 1))});
     }
   }
 }
@@ -141,7 +162,10 @@ TEST(ThickBeamInSpace, LrvfHasThePublishedFrequenciesOfEveryMesh) {
       double const k = double(i + 1) * std::numbers::pi / 2.0, slope = 1.0 / (1.0 + k * k * c.EI / c.GA);
       double const s = c.EI / c.EA * k * k * slope * slope;
       double const lower = s / (1.0 + s) * (1.0 - std::cos(2.0 * k / double(mesh.n))) / 6.0;
-      EXPECT_NEAR(f.bending[i] / mesh.bending[i], 1.0 - lower, 0.25 * lower) << mesh.n << ' ' << i;
+      held({"E2", "frequencies of the thick beam, pinned–pinned, less what lumped rotary inertia takes [rad/s]",
+            By::published, "Exudyn's ANCFBeam, mesh by mesh", name_of<Lrvf<>>(mesh.n) + " elements"},
+           f.bending[i], mesh.bending[i] * (1.0 - lower), 0.25 * lower * mesh.bending[i],
+           {equals("mode", double(i + 1))});
     }
   }
 }
@@ -151,6 +175,8 @@ double const axial = 280.320625133;  ///< clamped–free
 /// Free–free: E2 rounds J to 0.8436·2I; the square's is 0.1405770150 h⁴ (S7).
 double const torsion = 319.349808602 * std::sqrt(6 * 0.1405770150 / 0.8436);
 
+char const* const rod = "rod of constant section, J of Saint-Venant";
+
 /// Of the free beam, by n and 2n elements.
 template <class B>
 double free_torsion(Index n) {
@@ -159,9 +185,13 @@ double free_torsion(Index n) {
 
 TEST(ThickBeamInSpace, LrvfTwistsAndStretches) {
   Frequencies const c = frequencies<Lrvf<>>(16, Ends::clamped_free), f = frequencies<Lrvf<>>(32, Ends::clamped_free);
-  EXPECT_NEAR(limit(c.single[0], f.single[0]), 0.5 * torsion, 1e-6 * torsion);
-  EXPECT_NEAR(limit(c.single[1], f.single[1]), axial, 1e-6 * axial);
-  EXPECT_NEAR(free_torsion<Lrvf<>>(16), torsion, 1e-6 * torsion);
+  char const* const meshes = "Lrvf, 16 and 32 elements extrapolated";
+  held({"E2", "torsion of the thick beam, clamped–free [rad/s]", By::closed_form, rod, meshes},
+       limit(c.single[0], f.single[0]), 0.5 * torsion, 1e-6 * torsion);
+  held({"E2", "stretch of the thick beam, clamped–free [rad/s]", By::closed_form, rod, meshes},
+       limit(c.single[1], f.single[1]), axial, 1e-6 * axial);
+  held({"E2", "torsion of the thick beam, free–free [rad/s]", By::closed_form, rod, meshes}, free_torsion<Lrvf<>>(16),
+       torsion, 1e-6 * torsion);
 }
 
 /// The frame of a section follows r_y, which carries Iρ, and r_z with its own Iρ hangs on it by the section's shear
@@ -174,9 +204,14 @@ double twisting(double omega0) {
 }
 TEST(ThickBeamInSpace, AncfElasticLineTwistsAndStretches) {
   Frequencies const c = frequencies<Line>(12, Ends::clamped_free), f = frequencies<Line>(24, Ends::clamped_free);
-  EXPECT_NEAR(limit(c.single[0], f.single[0]), twisting(0.5 * torsion), 1e-5 * torsion);
-  EXPECT_NEAR(c.single[1], axial, 1e-8 * axial);
-  EXPECT_NEAR(free_torsion<Line>(12), twisting(torsion), 1e-5 * torsion);
+  char const *const meshes = "AncfBeam, 12 and 24 elements extrapolated", *const hung =
+                                                                              "rod whose r_z hangs on r_y by GA";
+  held({"E2", "torsion of the thick beam, clamped–free [rad/s]", By::closed_form, hung, meshes},
+       limit(c.single[0], f.single[0]), twisting(0.5 * torsion), 1e-5 * torsion);
+  held({"E2", "stretch of the thick beam, clamped–free [rad/s]", By::closed_form, rod, "AncfBeam, 12 elements"},
+       c.single[1], axial, 1e-8 * axial);
+  held({"E2", "torsion of the thick beam, free–free [rad/s]", By::closed_form, hung, meshes}, free_torsion<Line>(12),
+       twisting(torsion), 1e-5 * torsion);
 }
 
 // A solid's sections contract where it stretches: their inertia slows it down, by (1 + ν² r² k²)^(−1/2) if nothing
@@ -190,8 +225,11 @@ TEST(ThickBeamInSpace, AncfContinuumTwistsAndStretches) {
   double const stretch = coarse.single[1];
   EXPECT_GT(stretch, love);
   EXPECT_LT(stretch, axial);
-  EXPECT_NEAR(limit(coarse.single[0], fine.single[0]), 0.5 * torsion, 1e-5 * torsion);
-  EXPECT_NEAR(free_torsion<Cured>(12), torsion, 1e-5 * torsion);
+  char const* const meshes = "AncfBeam<Continuum>, 12 and 24 elements extrapolated";
+  held({"E2", "torsion of the thick beam, clamped–free [rad/s]", By::closed_form, rod, meshes},
+       limit(coarse.single[0], fine.single[0]), 0.5 * torsion, 1e-5 * torsion);
+  held({"E2", "torsion of the thick beam, free–free [rad/s]", By::closed_form, rod, meshes}, free_torsion<Cured>(12),
+       torsion, 1e-5 * torsion);
 }
 
 }  // namespace timoshenko_spatial_test

@@ -4,6 +4,7 @@
 
 #include <polybody/testing/integrator_laws.hpp>
 
+#include "support/held.hpp"
 #include "support/integrator_cases.hpp"
 #include "support/oscillator.hpp"
 #include "support/refusal.hpp"
@@ -50,8 +51,7 @@ void expect_published_periods(I const& integrator) {
   for (auto const& p : trapezoidal_periods) {
     Oscillator o;
     o.run(integrator, p.h, 100);
-    EXPECT_NEAR(o.x.q[0], std::cos(100 * p.h / p.ratio), 1e-11) << p.h;
-    EXPECT_NEAR(o.x.v[0], -std::sin(100 * p.h / p.ratio), 1e-11) << p.h;
+    held_trapezoidal(o, p, std::string(I::name));
   }
 }
 
@@ -73,8 +73,13 @@ TEST(Newmark, OscillatesInClosedFormWithoutDamping) {
     Oscillator o;
     o.run(Newmark{.beta = beta}, h, 40);
     double const phase = 40 * std::acos(1.0 - 0.5 * h * h / (1.0 + beta * h * h));
-    EXPECT_NEAR(o.x.q[0], std::cos(phase), 1e-11) << beta;
-    EXPECT_NEAR(o.x.v[0], -std::sin(phase) * std::sqrt(1.0 + (beta - 0.25) * h * h), 1e-11) << beta;
+    auto const claim = [](char const* what, char const* source) {
+      return Claim{"I1", what, By::closed_form, source, "Newmark, γ = ½, ωh = 0.7"};
+    };
+    held(claim("place of the oscillator after 40 steps", "cos φ = 1 − ½h²/(1 + βh²) a step"), o.x.q[0], std::cos(phase),
+         1e-11, {equals("β", beta), 1.0});
+    held(claim("speed of the oscillator after 40 steps", "−sin φ √(1 + (β − ¼)h²)"), o.x.v[0],
+         -std::sin(phase) * std::sqrt(1.0 + (beta - 0.25) * h * h), 1e-11, {equals("β", beta), 1.0});
   }
 }
 
@@ -93,7 +98,10 @@ TEST(Newmark, LosesEnergyInEveryStepAsDerived) {
       if (!first) {
         double const dq = now.q[0] - before.q[0], da = now.a[0] - before.a[0];
         double const loss = (2.0 * gamma - 1.0) * (dq * dq + kappa * h * h * da * da);
-        EXPECT_NEAR(kept(integrator, h, now), kept(integrator, h, before) - loss, 1e-12) << now.t;
+        held_within({"I3", "loss of energy in every step of an oscillator", By::closed_form, "(2γ − 1)(Δq² + κh² Δa²)",
+                     "Newmark, ωh = 0.3"},
+                    std::abs(kept(integrator, h, now) - kept(integrator, h, before) + loss), 1e-12,
+                    {equals("γ", gamma), 1.0});
       }
       first = false;
       before = now;

@@ -7,6 +7,7 @@
 #include <polybody/forces/user_force.hpp>
 #include <polybody/testing/integrator_laws.hpp>
 
+#include "support/held.hpp"
 #include "support/integrator_cases.hpp"
 #include "support/oscillator.hpp"
 #include "support/refusal.hpp"
@@ -57,8 +58,11 @@ TEST(Radau, GivesItsStabilityFunctionOnAnOscillator) {
     int const n = h < 10.0 ? 20 : 2;
     o.run(Radau{.tolerance = 1e-13}, h, n);
     std::complex<double> const exact = std::pow(growth({0.0, -h}), n);
-    EXPECT_NEAR(o.x.q[0], exact.real(), 1e-12) << h;
-    EXPECT_NEAR(o.x.v[0], exact.imag(), 1e-12) << h;
+    auto const claim = [](char const* what) {
+      return Claim{"I1", what, By::closed_form, "stability function, Padé (2, 3) of exp", "Radau IIA"};
+    };
+    held(claim("place of the oscillator after n steps"), o.x.q[0], exact.real(), 1e-12, {equals("h", h), 1.0});
+    held(claim("speed of the oscillator after n steps"), o.x.v[0], exact.imag(), 1e-12, {equals("h", h), 1.0});
   }
 }
 
@@ -90,11 +94,15 @@ TEST(Radau, FollowsAStiffSpringWithoutResolvingIt) {
   for (double const h : {0.2, 0.1, 0.05}) {
     Led led;
     simulate(led.model, led.x, Radau{}, {.until = 2.0, .step = h}).run();
-    EXPECT_NEAR(led.x.q[0], std::cos(2.0), 10.0 / Led::k) << h;
+    held({"I1", "place of a mass led by a stiff spring at 2 s", By::closed_form, "cos t (Prothero & Robinson)",
+          "Radau IIA"},
+         led.x.q[0], std::cos(2.0), 10.0 / Led::k, {equals("h", h)});
     errors.push_back(std::abs(led.x.v[0] + std::sin(2.0)));
   }
   EXPECT_GT(slopes(errors).back(), 2.8) << testing::PrintToString(errors);
-  EXPECT_LT(errors.back(), 1e-5);
+  held_within({"I1", "speed of a mass led by a stiff spring at 2 s", By::closed_form, "−sin t (Prothero & Robinson)",
+               "Radau IIA, h = 0.05"},
+              errors.back(), 1e-5, {.scale = 1.0});
 }
 
 // CASES R1: the exact motion, its reaction at the pivot and its acceleration.
@@ -103,10 +111,14 @@ TEST(Radau, PendulumAgreesWithTheExactMotion) {
   State x = bar.start;
   simulate(bar.model, x, Radau{.tolerance = 1e-12}, {.until = 2.0, .step = 0.005}).run();
   auto const [angle, rate, acceleration] = bar.exact(bar.phase + 2.0);
-  EXPECT_NEAR(x.q[2] + 0.5 * std::numbers::pi, angle, 1e-10);
-  EXPECT_NEAR(x.v[2], rate, 1e-10);
-  EXPECT_NEAR(x.a[2], acceleration, 1e-9);
-  EXPECT_LT((x.lambda + bar.reaction(2.0)).norm(), 1e-9);
+  auto const claim = [](char const* what) {
+    return Claim{"R1", what, By::closed_form, "elliptic functions", "planar Rigid, Radau IIA, h = 5e-3 s"};
+  };
+  held(claim("angle of the swinging bar at 2 s [rad]"), x.q[2] + 0.5 * std::numbers::pi, angle, 1e-10, {.scale = 1.0});
+  held(claim("rate of the swinging bar at 2 s [rad/s]"), x.v[2], rate, 1e-10, {.scale = 1.0});
+  held(claim("angular acceleration of the swinging bar at 2 s [rad/s²]"), x.a[2], acceleration, 1e-9, {.scale = 1.0});
+  held_within(claim("reaction of the swinging bar at 2 s [N]"), (x.lambda + bar.reaction(2.0)).norm(), 1e-9,
+              {.scale = bar.reaction(2.0).norm()});
 }
 
 TEST(Radau, RefusesWhatItCannotMean) {

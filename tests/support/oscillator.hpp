@@ -6,6 +6,8 @@
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 
+#include "support/held.hpp"
+
 namespace polybody {
 
 /// A unit mass on a slide, held by a spring of 1 N/m without free length: ω = 1, released from x = 1 at rest.
@@ -46,5 +48,15 @@ struct TrapezoidalPeriod {
 };
 inline constexpr TrapezoidalPeriod trapezoidal_periods[] = {
     {0.1, 1.00083277850411}, {0.5, 1.02049703761562}, {1.0, 1.07840521614581}};
+
+/// After 100 steps of h.
+inline void held_trapezoidal(Oscillator const& o, TrapezoidalPeriod const& p, std::string const& integrator) {
+  char const* const source = "T_num/T = (ωh/2)/atan(ωh/2)";
+  Instance const at{equals("h", p.h), 1.0};
+  held({"I1", "place of the oscillator after 100 steps", By::closed_form, source, integrator}, o.x.q[0],
+       std::cos(100 * p.h / p.ratio), 1e-11, at);
+  held({"I1", "speed of the oscillator after 100 steps", By::closed_form, source, integrator}, o.x.v[0],
+       -std::sin(100 * p.h / p.ratio), 1e-11, at);
+}
 
 }  // namespace polybody

@@ -40,6 +40,15 @@ State rolled(M const& model, State x, I const& integrator, double until, double 
   return x;
 }
 
+/// The integrator's name, and whether it holds rows of speeds as well.
+template <class I>
+std::string named(I const& integrator) {
+  std::string name(integrator.name);
+  if constexpr (requires { integrator.stabilised; })
+    if (integrator.stabilised) name += ", stabilised";
+  return name;
+}
+
 /// Calls f(integrator, step, tolerance): of order two with 2 000 steps a second, of order four with 500, of order five
 /// with 100.
 template <class F>

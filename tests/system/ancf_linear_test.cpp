@@ -16,6 +16,7 @@
 #include <polybody/run/simulate.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
@@ -49,14 +50,19 @@ struct Chain {
 };
 
 template <class A, class B>
-void expect_same(A const& held, B const& free, double reaction_tolerance) {
-  EXPECT_LT((held.x.q - free.x.q).norm(), 1e-9);
-  EXPECT_LT((held.x.v - free.x.v).norm(), 1e-6);
+void expect_same(char const* chain, A const& tied, B const& free, double reaction_tolerance) {
+  auto const apart = [&](char const* what, double distance, double tolerance, double scale) {
+    held_within({"thesis §3.5", what, By::itself, "Constraint", std::string("AncfLinear, ") + chain}, distance,
+                tolerance, {.scale = scale});
+  };
+  apart("coordinates of a chain of beams that falls for 0.2 s", (tied.x.q - free.x.q).norm(), 1e-9, 1.0);
+  apart("speeds of a chain of beams that falls for 0.2 s", (tied.x.v - free.x.v).norm(), 1e-6, 1.0);
   double most = 0.0;
-  for (std::size_t i = 0; i < held.pins.size(); ++i) {
-    Vec3 const f = reaction(held.model, held.x, held.pins[i]).f;
+  for (std::size_t i = 0; i < tied.pins.size(); ++i) {
+    Vec3 const f = reaction(tied.model, tied.x, tied.pins[i]).f;
     EXPECT_GT(f.norm(), 0.5);
-    EXPECT_LT((f - reaction(free.model, free.x, free.pins[i]).f).norm(), reaction_tolerance * f.norm());
+    apart("forces of its pins, of their size", (f - reaction(free.model, free.x, free.pins[i]).f).norm() / f.norm(),
+          reaction_tolerance, 1.0);
     most = std::max(most, f.norm());
   }
   System system(free.model);
@@ -69,7 +75,7 @@ TEST(AncfLinear, PinsACableInThePlane) {
   Chain<planar::AncfCable<>, planar::Revolute, AncfLinear> free({}, 3);
   held.fall(0.2);
   free.fall(0.2);
-  expect_same(held, free, 1e-6);
+  expect_same("planar AncfCable, Revolute", held, free, 1e-6);
   EXPECT_EQ(census(free.model).rows, 0);
   EXPECT_EQ(census(free.model).coordinates, 3 * 12 - 3 * 2);
   EXPECT_EQ(census(free.model).degrees_of_freedom, census(held.model).degrees_of_freedom);
@@ -86,9 +92,9 @@ TEST(AncfLinear, PinsACableInSpace) {
   held.fall(0.2);
   free.fall(0.2);
   pinned.fall(0.2);
-  expect_same(held, free, 1e-6);
+  expect_same("AncfCable, Spherical", held, free, 1e-6);
   // the fourth equation of a pin holds the chain in its plane, where it moves anyhow
-  expect_same(held, pinned, 1e-6);
+  expect_same("AncfCable, Revolute", held, pinned, 1e-6);
   EXPECT_EQ(census(pinned.model).coordinates, 3 * 18 - 3 * 4);
 }
 
@@ -100,7 +106,7 @@ TEST(AncfLinear, PinsAFullyParameterisedBeamBySixEquations) {
   held.fall(0.2);
   free.fall(0.2);
   // the elastic line does not stretch the pin's line as it moves in the plane: the sixth equation changes nothing
-  expect_same(held, free, 1e-6);
+  expect_same("AncfBeam, Revolute", held, free, 1e-6);
 }
 
 TEST(AncfLinear, OnlyTheStrainAlongThePinIsContinuous) {
@@ -126,7 +132,9 @@ TEST(AncfLinear, OnlyTheStrainAlongThePinIsContinuous) {
   Mat3 const left = strains(a, 0.5), right = strains(b, 0.0);
   double const size = left.cwiseAbs().maxCoeff();
   EXPECT_GT(size, 1e-5);
-  EXPECT_LT(std::abs(left(2, 2) - right(2, 2)), 1e-14);
+  held_within({"thesis §3.5", "jump of the strain along a pin", By::closed_form, "0, r_z is shared",
+               "AncfBeam<Continuum>, AncfLinear"},
+              std::abs(left(2, 2) - right(2, 2)), 1e-14, {.scale = size});
   for (auto const& [i, j] : {std::pair{0, 0}, {1, 1}, {0, 1}, {0, 2}, {1, 2}}) {
     EXPECT_GT(std::abs(left(i, j) - right(i, j)), 1e-3 * size) << i << j;
   }
@@ -147,7 +155,9 @@ TEST(AncfLinear, WeldedBodiesAreOne) {
   EXPECT_EQ(census(whole).coordinates, census(welded.model).coordinates);
   Vec3 const tip = position(whole, x, beam.at(1.5));
   EXPECT_LT(tip[1], -0.01);
-  EXPECT_LT((tip - position(welded.model, welded.x, welded.links[2].at(0.5))).norm(), 1e-9);
+  held_within({"thesis §3.5", "tip of three beams welded to one [m]", By::itself, "one body of six elements",
+               "planar AncfCable, AncfLinear"},
+              (tip - position(welded.model, welded.x, welded.links[2].at(0.5))).norm(), 1e-9, {.scale = 1.5});
 }
 
 TEST(AncfLinear, HoldsInStaticsWhatABalanceSays) {
@@ -163,10 +173,14 @@ TEST(AncfLinear, HoldsInStaticsWhatABalanceSays) {
   State x = model.reference_state();
   equilibrium(model, x);
   Wrench<double> const at_root = reaction(model, x, root), between = reaction(model, x, joint);
-  EXPECT_LT((at_root.f - Vec3(0, -p, 0)).norm(), 1e-6 * p);
-  EXPECT_LT((at_root.m - Vec3(0, 0, -p)).norm(), 1e-4 * p);  // about the support: −P L, L = 1 m
-  EXPECT_LT((between.f - Vec3(0, -p, 0)).norm(), 1e-6 * p);
-  EXPECT_LT((between.m - Vec3(0, 0, -0.5 * p)).norm(), 1e-4 * p);
+  auto const balance = [&](char const* what, double error, double part) {
+    held_within({"closed forms", what, By::closed_form, "−P, −P (L − x)", "AncfBeam<Continuum>, AncfLinear"}, error,
+                part * p, {.scale = p});
+  };
+  balance("force at the root of a cantilever of two beams [N]", (at_root.f - Vec3(0, -p, 0)).norm(), 1e-6);
+  balance("moment at the root of a cantilever of two beams [N m]", (at_root.m - Vec3(0, 0, -p)).norm(), 1e-4);
+  balance("force between the two beams of a cantilever [N]", (between.f - Vec3(0, -p, 0)).norm(), 1e-6);
+  balance("moment between the two beams of a cantilever [N m]", (between.m - Vec3(0, 0, -0.5 * p)).norm(), 1e-4);
   System system(model);
   system.evaluate(x.q, x.v, x.t);
   EXPECT_NEAR(peak_joint_force(system, x), p, 1e-6 * p);

@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "support/held.hpp"
+
 using namespace polybody;
 
 namespace first_order_states_test {
@@ -90,7 +92,9 @@ template <class I>
 void expect_order(I const& integrator, double h, double largest) {
   double const coarse = error_of(integrator, h), fine = error_of(integrator, 0.5 * h);
   EXPECT_GT(std::log2(coarse / fine), I::order - 0.15) << I::name << ' ' << coarse << ' ' << fine;
-  EXPECT_LT(fine, largest) << I::name;
+  held_within({"closed forms", "place, speed and states of a mass on a servo at 1.5 s", By::closed_form,
+               "exp At of four unknowns", std::string(I::name)},
+              fine, largest, {equals("h", 0.5 * h), 1.0});
 }
 
 TEST(FirstOrderStates, ConvergeAtTheOrderOfEachIntegrator) {
@@ -108,8 +112,13 @@ TEST(FirstOrderStates, ConvergeAtTheOrderOfEachIntegrator) {
 }
 
 TEST(FirstOrderStates, KeepToTheToleranceOfStepControl) {
-  EXPECT_LT(error_of(DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12}, 0.1), 1e-8);
-  EXPECT_LT(error_of(AdamsBashforthMoulton<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12}, 0.1), 1e-8);
+  auto const controlled = [](auto const& integrator) {
+    held_within({"closed forms", "place, speed and states of a mass on a servo at 1.5 s", By::closed_form,
+                 "exp At of four unknowns", std::string(integrator.name)},
+                error_of(integrator, 0.1), 1e-8, {.scale = 1.0});
+  };
+  controlled(DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12});
+  controlled(AdamsBashforthMoulton<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12});
 }
 
 // In units that make them as large as pressures in pascals, states do not spoil the accuracy of the motion.
@@ -189,8 +198,11 @@ TEST(FirstOrderStates, FindTheirEquilibrium) {
   State x = model.reference_state();
   equilibrium(model, x);
   auto const z = model.states(std::as_const(x), servo);
-  EXPECT_NEAR(x.q[0], 0.4, 1e-9);
-  EXPECT_NEAR(8.0 * z[0], mass * 9.81 + 100.0 * 0.4, 1e-6);
+  auto const claim = [](char const* what, char const* source) {
+    return Claim{"closed forms", what, By::closed_form, source, "planar Rigid, Servo"};
+  };
+  held(claim("place at which a servo holds a weight [m]", "its target"), x.q[0], 0.4, 1e-9);
+  held(claim("force of a servo that holds a weight [N]", "m g + c x"), 8.0 * z[0], mass * 9.81 + 100.0 * 0.4, 1e-6);
   EXPECT_NEAR(z[1], z[0], 1e-8);
   EXPECT_EQ(x.v.head(3).norm(), 0.0);
   Servo const without_integral{.target = 0.4, .r = 0.0};  // s may be anything
@@ -231,7 +243,9 @@ TEST(FirstOrderStates, BringOneModeEach) {
   ASSERT_EQ(found.eigenvalue.size(), Index(upper.size()));
   for (Index i = 0; i < found.eigenvalue.size(); ++i) {
     std::complex<double> const s = found.eigenvalue[i];
-    EXPECT_LT(std::abs(s - upper[std::size_t(i)]), 1e-9 * std::abs(s));
+    held_within({"closed forms", "eigenvalues of a mass on a servo, of their size", By::closed_form,
+                 "those of a 4×4 matrix", "Rigid on a slide, damped modes"},
+                std::abs(s - upper[std::size_t(i)]) / std::abs(s), 1e-9, {equals("mode", double(i + 1)), 1.0});
     // (x, i, s) of a mode: s² m x = k i
     EXPECT_LT(std::abs(s * s * mass * found.shape(0, i) - 8.0 * found.shape(6, i)), 1e-8 * std::abs(found.shape(6, i)));
   }
@@ -262,12 +276,17 @@ TEST(FirstOrderStates, RelaxAndCreep) {
     simulate(model, x, Radau{}, {.until = 2.0, .step = 0.02}).run();
     return std::pair(model.states(std::as_const(x), damper)[0], x);
   };
-  double const held = elongation(Joint<Weld, Constraint>{}, {}).first;
-  EXPECT_NEAR(held, 0.6 * (1.0 - std::exp(-50.0 / 20.0 * 2.0)), 1e-9);
+  double const relaxed = elongation(Joint<Weld, Constraint>{}, {}).first;
+  auto const claim = [](char const* what, char const* source) {
+    return Claim{"closed forms", what, By::closed_form, source, "MaxwellElement, Radau IIA"};
+  };
+  held(claim("elongation of the damper of a Maxwell element held at a length [m]", "u (1 − exp(−k t/c))"), relaxed,
+       0.6 * (1.0 - std::exp(-50.0 / 20.0 * 2.0)), 1e-9);
   // c z˙ = N, so that the momentum is m g t less c z at any time
   using Slider = Joint<Prismatic, Constraint>;
   auto const [z, x] = elongation(Slider{Prismatic{.axis = {0, 0, 1}}, {}}, Gravity{0, 0, -9.81});
-  EXPECT_NEAR(20.0 * z - mass * x.v[2], mass * 9.81 * 2.0, 1e-7);
+  held(claim("momentum of a weight that creeps, and c z of its damper [N s]", "m g t"), 20.0 * z - mass * x.v[2],
+       mass * 9.81 * 2.0, 1e-7);
 }
 
 // What the servo does is the work of a load.

@@ -14,6 +14,7 @@
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 using namespace polybody;
@@ -70,30 +71,36 @@ FourBar<Policy> run_four_bar(I integrator, double step) {
 }
 
 TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
-  auto const held = run_four_bar<Constraint>(RungeKutta4<Projection>{}, 1e-3);
+  auto const tied = run_four_bar<Constraint>(RungeKutta4<Projection>{}, 1e-3);
   auto const open = run_four_bar<Recursive>(RungeKutta4<Projection>{}, 1e-3);
   auto const dense = run_four_bar<Reduced>(RungeKutta4<Projection>{}, 1e-3);
   auto const bodies = run_four_bar<ByBodies>(RungeKutta4<Projection>{}, 1e-3);
   EXPECT_EQ(census(open.model).rows, 2);
   EXPECT_EQ(census(open.model).speeds, 4);
   EXPECT_EQ(census(open.model).degrees_of_freedom, 2);
-  Vec3 const force = reaction(held.model, held.x, held.last).f;
+  Vec3 const force = reaction(tied.model, tied.x, tied.last).f;
   EXPECT_GT(force.norm(), 1.0);
-  System held_system(held.model);
-  held_system.evaluate(held.x.q, held.x.v, held.x.t);
-  double const most = peak_joint_force(held_system, held.x);
+  System tied_system(tied.model);
+  tied_system.evaluate(tied.x.q, tied.x.v, tied.x.t);
+  double const most = peak_joint_force(tied_system, tied.x);
   EXPECT_GE(most, force.norm());
-  auto const expect_same = [&](auto const& other) {
-    EXPECT_LT((held.x.q - other.x.q).norm(), 1e-8);
-    EXPECT_LT((held.x.a - other.x.a).norm(), 1e-6 * held.x.a.norm());
-    EXPECT_LT((force - reaction(other.model, other.x, other.last).f).norm(), 1e-6 * force.norm());
+  auto const expect_same = [&](char const* way, auto const& other) {
+    auto const apart = [&](char const* what, double distance, double tolerance, double scale) {
+      held_within({"closed forms", what, By::itself, "Constraint", std::string("joint coordinates, ") + way}, distance,
+                  tolerance, {.scale = scale});
+    };
+    apart("coordinates of a loop closed by another policy", (tied.x.q - other.x.q).norm(), 1e-8, 1.0);
+    apart("accelerations of a loop closed by another policy, of their size",
+          (tied.x.a - other.x.a).norm() / tied.x.a.norm(), 1e-6, 1.0);
+    apart("force of the pin that closes a loop, of its size",
+          (force - reaction(other.model, other.x, other.last).f).norm() / force.norm(), 1e-6, 1.0);
     System system(other.model);
     EXPECT_LT(violation(system, other.x).position, 1e-11);
     EXPECT_NEAR(peak_joint_force(system, other.x), most, 1e-6 * most);
   };
-  expect_same(open);
-  expect_same(dense);
-  expect_same(bodies);
+  expect_same("augmented", open);
+  expect_same("reduced", dense);
+  expect_same("body by body", bodies);
 }
 
 // A joint of both worlds leaves three turns and two slides in space; in the plane one of each. The normal of the plane
@@ -165,9 +172,11 @@ TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {
     simulate(model, x, GeneralizedAlpha{}, {.until = 0.3, .step = 1e-3}).run();
     return position(model, x, beam.at(1.0));
   };
-  Vec3 const held = tip(Constraint{}), free = tip(Recursive{});
-  EXPECT_GT(std::abs(held[1]), 0.1);
-  EXPECT_LT((held - free).norm(), 1e-5);  // both are off by h²
+  Vec3 const tied = tip(Constraint{}), free = tip(Recursive{});
+  EXPECT_GT(std::abs(tied[1]), 0.1);
+  held_within({"closed forms", "tip of a cable on a rigid arm [m]", By::itself, "Constraint",
+               "joint coordinates and Constraint"},
+              (tied - free).norm(), 1e-5, {.scale = 1.0});  // both are off by h²
 }
 
 // CASES S11: ten links of 0.1 m and 1 kg hang over 0.8 m; tan θᵢ = (V − m g (i + ½))/H. They stay so, and what the
@@ -198,10 +207,14 @@ TEST(RecursiveLoop, ChainHangsWithThePublishedForces) {
   State x = model.reference_state();
   VecX const hanging = x.q;
   simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 0.1, .step = 1e-2}).run();
-  EXPECT_LT((x.q - hanging).norm(), 1e-9);
-  EXPECT_LT((reaction(model, x, pins[0]).f - Vec3(-H, V, 0)).norm(), 1e-6);
-  EXPECT_LT((reaction(model, x, pins[5]).f - Vec3(-H, 0, 0)).norm(), 1e-6);
-  EXPECT_LT((reaction(model, x, closing).f - Vec3(-H, -V, 0)).norm(), 1e-6);
+  char const *const links_are = "10 rigid links on joint coordinates, generalised-α, 10 steps",
+                    *by = "balance of each link";
+  held_within({"S11", "places and turns of the hanging links [m, rad]", By::closed_form, by, links_are},
+              (x.q - hanging).norm(), 1e-9, {.scale = hanging.norm()});
+  Claim const force{"S11", "forces in the chain's pins [N]", By::closed_form, by, links_are};
+  held_within(force, (reaction(model, x, pins[0]).f - Vec3(-H, V, 0)).norm(), 1e-6, {"first", V});
+  held_within(force, (reaction(model, x, pins[5]).f - Vec3(-H, 0, 0)).norm(), 1e-6, {"middle", H});
+  held_within(force, (reaction(model, x, closing).f - Vec3(-H, -V, 0)).norm(), 1e-6, {"last", V});
 }
 
 TEST(RecursiveLoop, EventsSeeTheWholeState) {
@@ -216,7 +229,9 @@ TEST(RecursiveLoop, EventsSeeTheWholeState) {
                        .events = {{.name = "below", .value = [](State const& s) { return s.q[0]; }, .stops = true}}});
   run.run();
   // a quarter of the period of amplitude π/2: K(½) √(2L/3g)
-  EXPECT_NEAR(x.t, 1.8540746773013719 * std::sqrt(2.0 / (3.0 * 9.81)), 1e-8);
+  held({"R1", "time from the level to the lowest place [s]", By::closed_form, "K(½) √(2L/3g)",
+        "joint coordinates, Dormand–Prince"},
+       x.t, 1.8540746773013719 * std::sqrt(2.0 / (3.0 * 9.81)), 1e-8);
   EXPECT_NEAR(x.q[0], 0.0, 1e-8);
 }
 

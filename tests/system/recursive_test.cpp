@@ -20,6 +20,8 @@
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/held.hpp"
+
 using namespace polybody;
 
 namespace recursive_test {
@@ -94,18 +96,24 @@ State moved(Branched<Policy> const& tree, I integrator, double until, double ste
 }
 
 TEST(Recursive, MovesEveryJointAsMultipliersDo) {
-  Branched<Constraint> const held;
+  Branched<Constraint> const tied;
   Branched<Recursive> const free;
-  State const x = moved(held, RungeKutta4<Projection>{}, 0.3, 1e-3),
+  State const x = moved(tied, RungeKutta4<Projection>{}, 0.3, 1e-3),
               y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
   // Both are off by h⁴: Richardson's difference to twice the step shows how much.
-  State const coarse = moved(held, RungeKutta4<Projection>{}, 0.3, 2e-3);
+  State const coarse = moved(tied, RungeKutta4<Projection>{}, 0.3, 2e-3);
   double const off = (x.q - coarse.q).norm();
   EXPECT_LT(off, 1e-7);
   EXPECT_LT((x.q - y.q).norm(), 1e-9 + off);
   EXPECT_LT((x.v - y.v).norm(), 1e-8 + 100.0 * off);
-  EXPECT_LT((x.a - y.a).norm(), 1e-6 * x.a.norm());
-  EXPECT_LT((x.lambda - y.lambda).norm(), 1e-6 * x.lambda.norm());
+  auto const apart = [](char const* what, VecX const& one, VecX const& other, double part) {
+    held_within({"closed forms", std::string(what) + " of a tree of eleven joints, of their size", By::itself,
+                 "Constraint", "joint coordinates, Runge–Kutta 4"},
+                (one - other).norm() / one.norm(), part, {.scale = 1.0});
+  };
+  apart("coordinates", x.q, y.q, 1e-8);
+  apart("accelerations", x.a, y.a, 1e-6);
+  apart("multipliers", x.lambda, y.lambda, 1e-6);
 }
 
 TEST(Recursive, JointsHoldToRounding) {
@@ -113,9 +121,13 @@ TEST(Recursive, JointsHoldToRounding) {
   State const y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
   System system(free.model);
   Violation const open = violation(system, y);
-  EXPECT_LT(open.position, 1e-12);
-  EXPECT_LT(open.velocity, 1e-12);
-  EXPECT_LT(open.acceleration, 1e-9);
+  auto const gap = [](char const* what, double value, double tolerance) {
+    held_within({"closed forms", what, By::closed_form, "rows hold", "joint coordinates, Runge–Kutta 4"}, value,
+                tolerance, {.scale = 1.0});
+  };
+  gap("violation of the joints of a tree", open.position, 1e-12);
+  gap("its rate", open.velocity, 1e-12);
+  gap("its second derivative", open.acceleration, 1e-9);
 }
 
 TEST(Recursive, ThreeWaysToSolveAreOne) {
@@ -123,19 +135,29 @@ TEST(Recursive, ThreeWaysToSolveAreOne) {
   State const dense = moved(Branched<Reduced>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
   State const bodies = moved(Branched<ByBodies>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
   for (State const* y : {&dense, &bodies}) {
+    auto const apart = [&](char const* what, double distance, double tolerance) {
+      held_within({"closed forms", std::string(what) + " of a tree of eleven joints, of their size", By::itself,
+                   "joint coordinates, augmented",
+                   y == &dense ? "joint coordinates, reduced" : "joint coordinates, body by body"},
+                  distance, tolerance, {.scale = 1.0});
+    };
     EXPECT_LT((x.q - y->q).norm(), 1e-11);
-    EXPECT_LT((x.a - y->a).norm(), 1e-9 * x.a.norm());
-    EXPECT_LT((x.lambda - y->lambda).norm(), 1e-9 * x.lambda.norm());
+    apart("coordinates", (x.q - y->q).norm() / x.q.norm(), 1e-11);
+    apart("accelerations", (x.a - y->a).norm() / x.a.norm(), 1e-9);
+    apart("multipliers", (x.lambda - y->lambda).norm() / x.lambda.norm(), 1e-9);
   }
 }
 
 TEST(Recursive, CountsJointCoordinates) {
   // 1 + 1 + 2 + 3 + 2 + 1 + 3 + 4 + 5 + 3 + 0 degrees of freedom; four balls have a coordinate more than speeds
   Census const c = census(Branched<Recursive>().model);
-  EXPECT_EQ(c.speeds, 25);
-  EXPECT_EQ(c.coordinates, 28);
+  auto const count = [](char const* what, Index found, Index counted) {
+    held({"closed forms", what, By::closed_form, "counted", "joint coordinates"}, double(found), double(counted), 0.0);
+  };
+  count("speeds of a tree of eleven joints", c.speeds, 25);
+  count("coordinates of a tree of eleven joints", c.coordinates, 28);
   EXPECT_EQ(c.rows, 0);
-  EXPECT_EQ(c.degrees_of_freedom, 25);
+  count("degrees of freedom of a tree of eleven joints", c.degrees_of_freedom, 25);
   EXPECT_EQ(census(Branched<Constraint>().model).degrees_of_freedom, 25);
 }
 
@@ -181,8 +203,10 @@ TEST(Recursive, FreeTreesKeepTheirMomentum) {
   Vec6 const before = momenta();
   double const energy_before = energy(model, x).total();
   simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 1e-3}).run();
-  EXPECT_LT((momenta() - before).norm(), 1e-9);
-  EXPECT_NEAR(energy(model, x).total(), energy_before, 1e-9);
+  Claim const invariant{"I3", "momenta and energy of two free bodies on a ball joint", By::closed_form, "invariant",
+                        "joint coordinates, Runge–Kutta 4"};
+  held_within(invariant, (momenta() - before).norm(), 1e-9, {"momenta", before.norm()});
+  held_within(invariant, std::abs(energy(model, x).total() - energy_before), 1e-9, {"energy", energy_before});
 }
 
 }  // namespace recursive_test

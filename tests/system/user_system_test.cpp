@@ -6,6 +6,8 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "support/held.hpp"
+
 namespace user_system_test {
 namespace {
 
@@ -53,8 +55,12 @@ template <class I>
 void expect_cosine(I const& integrator, double h, double tolerance) {
   System system = system_of(Oscillator{}, "mass", true);
   State const x = run(system, at(system, VecX::Ones(1)), integrator, h, 1.0);
-  EXPECT_NEAR(x.q[0], std::cos(3.0), tolerance) << I::name;
-  EXPECT_NEAR(x.v[0], -3.0 * std::sin(3.0), 3.0 * tolerance) << I::name;
+  auto const claim = [](char const* what, char const* source) {
+    return Claim{"closed forms", what, By::closed_form, source, std::string(I::name)};
+  };
+  held(claim("place of a user's oscillator", "cos ωt"), x.q[0], std::cos(3.0), tolerance);
+  held(claim("speed of a user's oscillator", "−ω sin ωt"), x.v[0], -3.0 * std::sin(3.0), 3.0 * tolerance,
+       {.scale = 3.0});
 }
 
 TEST(UserSystem, OscillatesUnderEveryKindOfIntegrator) {
@@ -75,9 +81,15 @@ TEST(UserSystem, SwingsOnItsRow) {
   State const start = at(system, Vec2(1.0, 0.0));
   auto const check = [&](auto const& integrator, double h, double tolerance) {
     State const x = run(system, start, integrator, h, 1.0);
-    EXPECT_NEAR(x.q.norm(), 1.0, 1e-9);
-    EXPECT_NEAR(0.5 * x.v.squaredNorm() + 9.81 * x.q[1], 0.0, tolerance);
-    EXPECT_NEAR(x.lambda[0], 3.0 * (x.v.squaredNorm() - 9.81 * x.q[1]), 100.0 * tolerance);
+    auto const claim = [&](char const* what, char const* source) {
+      return Claim{"closed forms", what, By::closed_form, source, std::string(integrator.name)};
+    };
+    held(claim("length of a user's pendulum", "1"), x.q.norm(), 1.0, 1e-9);
+    held_within(claim("energy of a user's pendulum, of m", "invariant"),
+                std::abs(0.5 * x.v.squaredNorm() + 9.81 * x.q[1]), tolerance, {.scale = 9.81});
+    held_within(claim("multiplier of a user's pendulum", "m (v² − g y)"),
+                std::abs(x.lambda[0] - 3.0 * (x.v.squaredNorm() - 9.81 * x.q[1])), 100.0 * tolerance,
+                {.scale = 3.0 * 9.81});
   };
   check(GeneralizedAlpha{}, 1e-3, 1e-4);
   check(Radau{}, 0.01, 1e-7);
@@ -136,15 +148,19 @@ void expect_states(I const& integrator, double h, double tolerance) {
   x.v << 1.0, 0.0;
   x = run(spiral, x, integrator, h, 1.0);
   double const shrunk = std::exp(-0.5);
-  EXPECT_NEAR(x.v[0], shrunk * std::cos(3.0), tolerance) << I::name;
-  EXPECT_NEAR(x.v[1], shrunk * std::sin(3.0), tolerance) << I::name;
+  Claim const turned{"closed forms", "two states on a spiral", By::closed_form, "exp(−½ t) (cos 3t, sin 3t)",
+                     std::string(I::name)};
+  held(turned, x.v[0], shrunk * std::cos(3.0), tolerance, {"first", 1.0});
+  held(turned, x.v[1], shrunk * std::sin(3.0), tolerance, {"second", 1.0});
 
   System spring = system_of(LaggingSpring{}, "spring", true);
   State y = at(spring, VecX::Ones(1));
   y.v << 0.0, 0.5;
   y = run(spring, y, integrator, h, 1.0);
   Vec3 const expected = LaggingSpring{}.matrix().exp() * Vec3(1.0, 0.0, 0.5);
-  EXPECT_LT((Vec3(y.q[0], y.v[0], y.v[1]) - expected).norm(), 20.0 * tolerance) << I::name;
+  held_within({"closed forms", "place, speed and force of a spring that lags", By::closed_form,
+               "exp At of three unknowns", std::string(I::name)},
+              (Vec3(y.q[0], y.v[0], y.v[1]) - expected).norm(), 20.0 * tolerance, {.scale = 1.0});
 }
 
 TEST(UserSystem, MayBeOfFirstOrder) {
@@ -168,10 +184,12 @@ TEST(UserSystem, FollowsStiffReactions) {
   double h = 1e-5;
   radau.start(system, x, h, w);
   for (; x.t < 40.0 - 1e-9; h *= 1.05) radau.step(system, x, std::min(h, 40.0 - x.t), w);
-  EXPECT_NEAR(x.v[0], 0.7158, 5e-5);
-  EXPECT_NEAR(x.v[1], 9.185e-6, 1e-9);
-  EXPECT_NEAR(x.v[2], 0.2842, 5e-5);
-  EXPECT_NEAR(x.v.sum(), 1.0, 1e-10);
+  Claim const published{"Robertson", "concentrations of three reactions at t = 40", By::published,
+                        "cvRoberts in the documentation of CVODE", "Radau IIA"};
+  held(published, x.v[0], 0.7158, 5e-5, {"first"});
+  held(published, x.v[1], 9.185e-6, 1e-9, {"second"});
+  held(published, x.v[2], 0.2842, 5e-5, {"third"});
+  held({"Robertson", "sum of the concentrations", By::closed_form, "invariant", "Radau IIA"}, x.v.sum(), 1.0, 1e-10);
 }
 
 TEST(System, RefusesWhatItWasMadeWithout) {

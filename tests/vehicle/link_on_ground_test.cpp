@@ -6,6 +6,7 @@
 #include <polybody/testing/frames.hpp>
 
 #include "support/contact_points.hpp"
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
@@ -37,7 +38,9 @@ TEST(LinkOnGround, StandsOnItsFourCorners) {
   auto const found = contact_points(flat, link, {});
   ASSERT_EQ(found.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(found[i].depth, 0.001, 1e-16);
+    held({"M113.md §5", "depths of the four corners of a pad on flat ground [m]", By::closed_form,
+          "thickness less height", "LinkOnGround"},
+         found[i].depth, 0.001, 1e-16, {equals("corner", double(i + 1))});
     EXPECT_EQ(found[i].normal, Vec3(0, 0, 1));
     EXPECT_EQ(found[i].handover.share, 1.0);
     EXPECT_LT((found[i].place - (link.r + link.A * corners[i])).norm(), 1e-15);
@@ -51,7 +54,9 @@ TEST(LinkOnGround, StandsOnTheCornersThatAreLow) {
   auto const found = contact_points(flat, at({0, 0, low - 0.002}, {0, alpha, 0}), {});
   ASSERT_EQ(found.size(), 2u);
   for (auto const& p : found) {
-    EXPECT_NEAR(p.depth, 0.002, 1e-16);
+    held({"M113.md §5", "depth of a pad that stands on its front corners [m]", By::closed_form,
+          "h cos α + l sin α less height", "LinkOnGround"},
+         p.depth, 0.002, 1e-16);
     EXPECT_GT(p.place[0], 0.0);
   }
 }
@@ -91,7 +96,9 @@ TEST(LinkOnGround, PressesAcrossTheSlope) {
       // Differences across a foot, where the curvature jumps by 2π²H/L² < 2 per metre, err by as much times h/5.
       EXPECT_NEAR(n.dot(Vec3(1, 0, hx)), 0.0, 5e-6);
       EXPECT_NEAR(n.dot(Vec3(0, 1, hy)), 0.0, 5e-6);
-      EXPECT_NEAR(found[i].depth, (z - p[2]) * n[2], 1e-15);
+      held_within(
+          {"M113.md §5", "depths of pads on bumps [m]", By::closed_form, "(h − z) n_z", "LinkOnGround<BumpCourse>"},
+          std::abs(found[i].depth - (z - p[2]) * n[2]), 1e-15, {.scale = 0.03});
       EXPECT_LT((found[i].place - p).norm(), 1e-15);
       ++i;
     }
@@ -190,7 +197,9 @@ TEST(LinkOnGround, HangsThePadOfACableBelowIt) {
         EXPECT_EQ(p.normal, Vec3(0, 0, 1));
         deepest = std::max(deepest, p.depth);
       }
-      EXPECT_NEAR(deepest, d, 1e-14);
+      held_within({"M113.md §5", "depth of the pad of a cable [m]", By::closed_form,
+                   "0.03 z_z + 0.055 abs x_z less height", "LinkOnGround, cable"},
+                  std::abs(deepest - d), 1e-14, {.scale = d});
     }
   }
 }

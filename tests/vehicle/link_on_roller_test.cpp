@@ -6,6 +6,7 @@
 #include <polybody/testing/frames.hpp>
 
 #include "support/contact_points.hpp"
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
@@ -39,7 +40,9 @@ std::pair<Frame<double>, Frame<double>> near_pose(Numbers& number) {
 TEST(LinkOnRoller, PressesOnAFlatLinkUnderItsMiddle) {
   auto const found = contact_points(one_rim, at({0, 0, 0}), at({0.02, 0.05, radius + thick - 0.001}));
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_NEAR(found[0].depth, 0.001, 1e-15);
+  held({"M113.md §5", "depth of a rim in a link that lies flat [m]", By::closed_form, "R + h less the axle's height",
+        "LinkOnRoller"},
+       found[0].depth, 0.001, 1e-15);
   EXPECT_LT((found[0].normal - Vec3(0, 0, -1)).norm(), 1e-15);
   EXPECT_LT((found[0].place - Vec3(0.02, 0.05, thick)).norm(), 1e-15);
   EXPECT_EQ(found[0].handover.share, 1.0);
@@ -55,9 +58,11 @@ TEST(LinkOnRoller, FollowsALinkThatIsTilted) {
     auto const found = contact_points(
         one_rim, link, over(link, s, y, d, Vec3(0, number(3.0), 0)));  // a roller that has turned is the same
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_NEAR(found[0].depth, d, 1e-14);
-    EXPECT_LT((found[0].normal + link.A.col(2)).norm(), 1e-14);
-    EXPECT_LT((found[0].place - (link.r + link.A * Vec3(s, y, thick))).norm(), 1e-14);
+    Claim const tilted{"M113.md §5", "depth, normal and place of a rim on a link that is tilted", By::closed_form,
+                       "those of the link's axes, carried along", "LinkOnRoller"};
+    held_within(tilted, std::abs(found[0].depth - d), 1e-14, {"depth", d});
+    held_within(tilted, (found[0].normal + link.A.col(2)).norm(), 1e-14, {"normal", 1.0});
+    held_within(tilted, (found[0].place - (link.r + link.A * Vec3(s, y, thick))).norm(), 1e-14, {"place", 1.0});
   }
 }
 
@@ -68,7 +73,9 @@ TEST(LinkOnRoller, TouchesWithBothRims) {
   ASSERT_EQ(found.size(), 2u);
   for (std::size_t k : {0u, 1u}) {
     double const y = k == 0 ? -b : b;
-    EXPECT_NEAR(found[k].depth, d - y * std::sin(alpha), 1e-15);
+    held({"M113.md §5", "depths of the rims of a roller that leans [m]", By::closed_form, "d ∓ b sin α",
+          "LinkOnRoller, two rims"},
+         found[k].depth, d - y * std::sin(alpha), 1e-15, {equals("y", y)});
     EXPECT_LT((found[k].place - Vec3(0, y * std::cos(alpha), thick)).norm(), 1e-15);
   }
   auto const beside = contact_points(two_rims, at({0, 0, 0}),
@@ -120,8 +127,11 @@ TEST(LinkOnRoller, HandsOverToTheNextLinkWithoutABump) {
         shares += p.handover.share;
       }
     }
-    EXPECT_NEAR(shares, 1.0, 1e-13) << s;
-    EXPECT_LT((force - first.A.col(2) * (2e6 * d)).norm(), 1e-12 * 2e6 * radius) << s;
+    held({"M113.md §5", "shares of two links in a wheel between them", By::closed_form, "1", "LinkOnRoller"}, shares,
+         1.0, 1e-13, {equals("s", s)});
+    held_within({"M113.md §5", "force on a wheel between two links, of k R", By::closed_form, "k d across the links",
+                 "LinkOnRoller"},
+                (force - first.A.col(2) * (2e6 * d)).norm() / (2e6 * radius), 1e-12, {equals("s", s), 1.0});
     EXPECT_LT(moment.norm(), 1e-12 * 2e6 * radius * radius) << s;
     if (std::abs(s - 0.5 * pitch) < e - 1e-9) EXPECT_EQ(touching, 2u) << s;
     if (std::abs(s - 0.5 * pitch) > e + 1e-9) EXPECT_EQ(touching, 1u) << s;
@@ -167,7 +177,8 @@ TEST(LinkOnRoller, EdgeMeetsTheRimBeyondTheFace) {
     Vec3 const axle(side * (0.5 * pitch + e), 0.03, thick + height), edge(side * 0.5 * pitch, 0.03, thick);
     auto const found = contact_points(one_rim, link, at(axle));
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_NEAR(found[0].depth, 0.002, 1e-13);
+    held({"M113.md §5", "depth of a link's edge in a rim [m]", By::closed_form, "along the radius", "LinkOnRoller"},
+         found[0].depth, 0.002, 1e-13, {equals("side", side)});
     EXPECT_LT((found[0].place - edge).norm(), 1e-15);
     EXPECT_LT((found[0].normal - (edge - axle).normalized()).norm(), 1e-13);
     // 20 mm deep in what would be the rim, but just beyond the face: no deeper than that
@@ -365,7 +376,9 @@ TEST(HornOnRims, IsPushedBackAlongTheAxle) {
     auto const [link, roller] = guided(side * (play + 0.003), 0.04);
     auto const found = contact_points(horn, link, roller);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_NEAR(found[0].depth, 0.003, 1e-14);
+    held(
+        {"M113.md §5", "depth of a horn between rims [m]", By::closed_form, "what it is beyond its play", "HornOnRims"},
+        found[0].depth, 0.003, 1e-14, {equals("side", side)});
     EXPECT_LT((found[0].normal - Vec3(0, -side, 0)).norm(), 1e-14);
     EXPECT_LT((found[0].place - (link.r + link.A * horn.tip)).norm(), 1e-14);
     auto const [free_link, same] = guided(side * (play - 1e-9), 0.04);

@@ -11,6 +11,8 @@
 #include <polybody/math/quaternion.hpp>
 #include <polybody/vehicle/m113.hpp>
 
+#include "support/held.hpp"
+
 namespace polybody {
 namespace m113_test {
 
@@ -38,7 +40,8 @@ void expect_body(std::vector<double> const& row, m113::Solid const& body, Vec3 c
   ASSERT_EQ(row.size(), 11u);
   EXPECT_DOUBLE_EQ(row[0], body.mass);
   EXPECT_EQ(Vec3(row[1], row[2], row[3]), Vec3(body.inertia));
-  EXPECT_LT((Vec3(row[4], row[5], row[6]) - place).norm(), 1e-8);
+  held_within({"M113 data", "places of the bodies [m]", By::independent, "bodies.csv", "vehicle/m113.hpp"},
+              (Vec3(row[4], row[5], row[6]) - place).norm(), 1e-8, {.scale = 1.0});
   EXPECT_LT(
       (Vec4(row[7], row[8], row[9], row[10]) - Vec4(std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0)).norm(),
       1e-8);
@@ -46,7 +49,8 @@ void expect_body(std::vector<double> const& row, m113::Solid const& body, Vec3 c
 
 void expect_point(std::vector<double> const& row, Vec3 const& place, Vec3 const& axis) {
   ASSERT_EQ(row.size(), 6u);
-  EXPECT_LT((Vec3(row[0], row[1], row[2]) - place).norm(), 1e-8);
+  held_within({"M113 data", "places of the joints [m]", By::independent, "joints.csv", "vehicle/m113.hpp"},
+              (Vec3(row[0], row[1], row[2]) - place).norm(), 1e-8, {.scale = 1.0});
   EXPECT_EQ(Vec3(row[3], row[4], row[5]), axis);
 }
 
@@ -101,8 +105,11 @@ TEST(M113, JointsAndSpringsAreWhereTheReferenceHasThem) {
 
 // M113.md section 3 and 10.1: 15 912.1 kg with the tensioners; the real vehicle 11.36 t.
 TEST(M113, WeighsWhatTheReferenceSays) {
-  EXPECT_NEAR(m113::thesis.total(), 15912.1, 0.05);
-  EXPECT_NEAR(m113::public_data.total(), 11.36e3, 5.0);
+  held({"M113 data", "mass of the vehicle of the thesis [kg]", By::independent, "M113.md §3, added up by hand",
+        "vehicle/m113.hpp"},
+       m113::thesis.total(), 15912.1, 0.05);
+  held({"M113 data", "mass of the real vehicle [kg]", By::published, "11.36 t, M113.md §10.1", "vehicle/m113.hpp"},
+       m113::public_data.total(), 11.36e3, 5.0);
 }
 
 // M113.md section 1.1: every row of T3.1 is a homogeneous solid's. About its axis a cylinder has m R²/2, across it
@@ -110,9 +117,14 @@ TEST(M113, WeighsWhatTheReferenceSays) {
 // table's. Table values have three to five digits.
 TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
   double const width = 2.0 * m113::half_width;
+  auto const solid = [](char const* what, char const* source) {
+    return Claim{"M113 data", what, By::closed_form, source, "thesis Table 3.1, 3 to 5 digits"};
+  };
   auto const wheel = [&](m113::Solid const& s, double radius) {
-    EXPECT_NEAR(s.inertia.y, 0.5 * s.mass * radius * radius, 5e-4 * s.inertia.y);
-    EXPECT_NEAR(s.inertia.x, s.mass * (3.0 * radius * radius + width * width) / 12.0, 5e-4 * s.inertia.x);
+    held(solid("moments of inertia of wheels about their axis [kg m²]", "m R²/2"), s.inertia.y,
+         0.5 * s.mass * radius * radius, 5e-4 * s.inertia.y, {equals("R", radius)});
+    held(solid("moments of inertia of wheels across [kg m²]", "m (3 R² + w²)/12"), s.inertia.x,
+         s.mass * (3.0 * radius * radius + width * width) / 12.0, 5e-4 * s.inertia.x, {equals("R", radius)});
     EXPECT_EQ(s.inertia.z, s.inertia.x);
   };
   wheel(m113::thesis.wheel, m113::wheel_radius);
@@ -133,11 +145,17 @@ TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
 // M113.md sections 2, 6 and 8: the sprocket's radii, the speeds of Figures 3.6 and 4.3, a cable 0.0398 m high.
 TEST(M113, FollowsFromPitchAndTeeth) {
   TrackLayout const track = m113::track();
-  EXPECT_NEAR(track.pitch_radius(), 0.246588, 5e-7);
-  EXPECT_NEAR(m113::rolling_radius, 0.242552, 5e-7);
-  EXPECT_NEAR(m113::rolling_radius * m113::chapter_3_speed, 6.064, 5e-4);
-  EXPECT_NEAR(m113::rolling_radius * m113::chapter_4_speeds[0], 7.277, 5e-4);
-  EXPECT_NEAR(m113::rolling_radius * m113::chapter_4_speeds[1], 19.404, 5e-4);
+  auto const derived = [](char const* what, double value, double reference, double tolerance, char const* at = "") {
+    held({"M113 data", what, By::independent, "M113.md §2, §6, §8, worked out by hand", "vehicle/m113.hpp"}, value,
+         reference, tolerance, {at});
+  };
+  derived("pitch radius of the sprocket [m]", track.pitch_radius(), 0.246588, 5e-7);
+  derived("rolling radius of the sprocket [m]", m113::rolling_radius, 0.242552, 5e-7);
+  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::chapter_3_speed, 6.064, 5e-4, "chapter 3");
+  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::chapter_4_speeds[0], 7.277, 5e-4,
+          "chapter 4, slow");
+  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::chapter_4_speeds[1], 19.404, 5e-4,
+          "chapter 4, fast");
   EXPECT_NEAR(m113::cable_height, 0.0398, 5e-5);
   EXPECT_NEAR(m113::density * m113::cable_width * m113::cable_height * m113::pitch, 18.024, 1e-12);
 }
@@ -158,7 +176,10 @@ TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
       EXPECT_EQ(drive(0.9).value, 0.0);
       EXPECT_NEAR(drive(4.5).value, 0.5 * speed, 1e-13);
       EXPECT_EQ(drive(8.1).value, speed);
-      EXPECT_NEAR(drive.integral(10.0) * m113::rolling_radius, distance, 0.05);
+      held(
+          {"M113 data", "distance of the drive in 10 s [m]", By::independent, "M113.md §8, worked out by hand", "Ramp"},
+          drive.integral(10.0) * m113::rolling_radius, distance, 0.05,
+          {equals("speed", speed) + equals(", rounding", rounding)});
     }
   EXPECT_EQ(m113::drive(25.0).corners(), (std::vector{1.0, 8.0}));
 }

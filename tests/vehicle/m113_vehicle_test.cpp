@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 #include "support/vehicle_runs.hpp"
 
@@ -36,14 +37,18 @@ TEST(M113Vehicle, CountsAsTheThesisDoes) {
   m113::VehicleOptions const options{.ground_body = true};
   Vec<double, 5> const ones = Vec<double, 5>::Ones();
   Census const ideal = census(m113::Vehicle<Rigid<EulerParameters>>(Constraint{}, still(), options).model);
-  EXPECT_EQ(ideal.coordinates, 1092);
-  EXPECT_EQ(ideal.constraints, 924);
-  EXPECT_EQ(ideal.degrees_of_freedom, 168);
+  auto const counts = [](char const* pins, Census const& found, Index coordinates, Index constraints, Index freedoms) {
+    auto const same = [&](char const* what, Index value, Index printed) {
+      held({"thesis, ch. 3", what, By::published, "thesis Table 3.4", pins}, double(value), double(printed), 0.0);
+    };
+    same("coordinates of the vehicle", found.coordinates, coordinates);
+    same("constraints of the vehicle", found.constraints, constraints);
+    same("degrees of freedom of the vehicle", found.degrees_of_freedom, freedoms);
+  };
+  counts("Rigid<EulerParameters>, Constraint", ideal, 1092, 924, 168);
   Census const penalty =
       census(m113::Vehicle<Rigid<EulerParameters>, PenaltyPerRow<5>>({1e9 * ones, 1e5 * ones}, still(), options).model);
-  EXPECT_EQ(penalty.coordinates, 1092);
-  EXPECT_EQ(penalty.constraints, 294);
-  EXPECT_EQ(penalty.degrees_of_freedom, 798);
+  counts("Rigid<EulerParameters>, Penalty", penalty, 1092, 294, 798);
   // unit quaternions count the same
   EXPECT_EQ(census(m113::Vehicle<>(Constraint{}, still(), options).model).degrees_of_freedom, 168);
   // loops that close in their plane by two rows have the freedoms that are really there
@@ -77,7 +82,9 @@ TEST(M113Vehicle, AnswersOfItsTracksAreThoseOfItsModel) {
 // Thesis Figure 3.7: 7 cm with suspension. 0.64 cm without; M113.md §9 finds 0.86 to 0.92 cm of these data.
 TEST(M113Vehicle, DropsOntoItsSpringsByTheThesisSevenCentimetres) {
   double const sprung = dip_of({}, 0.3), bare = dip_of({.suspension = false}, 0.15);
-  EXPECT_NEAR(sprung, 0.07, 0.01);
+  held({"thesis, ch. 3", "first dip of the vehicle on its springs [m]", By::published, "thesis Figure 3.7",
+        "Rigid, Constraint"},
+       sprung, 0.07, 0.007);
   EXPECT_GT(bare, 0.004);
   EXPECT_LT(bare, 0.010);
   EXPECT_GT(sprung / bare, 6.0);
@@ -102,7 +109,9 @@ TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
       off_path = std::max(off_path, fault.off_path);
     }
   });
-  EXPECT_NEAR(up / samples, 9.81 * m113::thesis.total(), 0.01 * 9.81 * m113::thesis.total());
+  held({"M113 vehicle", "force of the ground on the vehicle that stands [N]", By::closed_form, "its weight",
+        "Rigid, Constraint"},
+       up / samples, 9.81 * m113::thesis.total(), 0.01 * 9.81 * m113::thesis.total());
   // the heaviest load at rest is that of a wheel, 15.9 t/10 on two rims: 2 mm; three times as much in the first dip
   EXPECT_LT(deepest, 0.0062);
   EXPECT_LT(stray, 1e-6);
@@ -138,7 +147,9 @@ TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted)
   double const way = drive.integral(x.t) * m113::rolling_radius;
   EXPECT_NEAR(hull_of(vehicle, x).r.x() - m113::chassis.x, way, 2.0 * yielded);
   EXPECT_LT(yielded, 0.05);
-  EXPECT_LT(audit.relative(), 0.01);
+  held_within({"M113 vehicle", "unaccounted energy of the vehicle that sets out, of the largest", By::closed_form, "0",
+               "Rigid, Constraint, h = 5e-4 s"},
+              audit.relative(), 0.01, {.scale = 1.0});
   EXPECT_GT(audit.work_of_drives(), 0.5 * m113::thesis.total() * 2.0);  // of some 1.45 m/s
   EXPECT_LT(depth, 0.010);
   EXPECT_LT(off, 1e-3);
@@ -156,8 +167,10 @@ TEST(M113Vehicle, MovesTheSameWhereverItsTracksAreCut) {
     ends.push_back(hull_of(vehicle, x).r);
   }
   // what a spring of 1e9 N/m gives, some 1e-5 m under 10 kN, is all that may differ
-  EXPECT_LT((ends[1] - ends[0]).norm(), 1e-4);
-  EXPECT_LT((ends[2] - ends[0]).norm(), 1e-4);
+  Claim const cut{"M113 vehicle", "place of the hull after 0.7 s [m]", By::itself,
+                  "loop cut at pin 0 by a stiff spring", "Rigid, Constraint"};
+  held_within(cut, (ends[1] - ends[0]).norm(), 1e-4, {"pin 17, stiff spring", 1.0});
+  held_within(cut, (ends[2] - ends[0]).norm(), 1e-4, {"pin 45, in the plane", 1.0});
 }
 
 TEST(M113Vehicle, TurnsToTheSideOfTheSlowerTrack) {

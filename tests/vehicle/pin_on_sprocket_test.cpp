@@ -10,6 +10,7 @@
 #include <polybody/vehicle/m113.hpp>
 
 #include "support/contact_points.hpp"
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
@@ -57,10 +58,14 @@ Touch touch(Vec2 const& pin) {
 Vec2 polar(double r, double angle) { return r * Vec2(std::cos(angle), std::sin(angle)); }
 
 TEST(SprocketProfile, SeatsPinsOnThePitchCircle) {
-  EXPECT_NEAR(profile.pitch_radius(), 0.246588, 5e-7);
-  EXPECT_NEAR(profile.arc_centre(), 0.261588, 5e-7);
-  EXPECT_NEAR(profile.arc_centre() - profile.valley_radius, 0.226588, 5e-7);  // the root
-  EXPECT_NEAR(profile.tip_radius - profile.pitch_radius(), 15.4e-3, 5e-5);    // the addendum
+  auto const radius = [](char const* what, double value, double reference, double tolerance) {
+    held({"M113.md §5", what, By::independent, "M113.md §5.4, worked out by hand", "SprocketProfile"}, value, reference,
+         tolerance);
+  };
+  radius("pitch radius of the sprocket [m]", profile.pitch_radius(), 0.246588, 5e-7);
+  radius("radius on which the valleys are centred [m]", profile.arc_centre(), 0.261588, 5e-7);
+  radius("radius of the root [m]", profile.arc_centre() - profile.valley_radius, 0.226588, 5e-7);
+  radius("addendum [m]", profile.tip_radius - profile.pitch_radius(), 15.4e-3, 5e-5);
   auto const seat = profile.overlap<double>(profile.pitch_radius(), 0.0);
   EXPECT_NEAR(seat.depth, 0.0, 1e-16);
   EXPECT_EQ(seat.radial, 1.0);
@@ -85,7 +90,9 @@ TEST(SprocketProfile, FlankMeetsTheTipAtItsCorner) {
   Vec2 const up = (k - f).normalized();
   EXPECT_NEAR(std::atan2(up[1], up[0]), 30.0 * degree, 1e-4);  // leans 30 deg from the radius of the valley
   double const half = pi / 10.0 - std::atan2(k[1], k[0]);
-  EXPECT_NEAR(2.0 * profile.tip_radius * std::sin(half), 0.086, 5e-4);
+  held({"M113.md §5", "thickness of a tooth's tip [m]", By::independent, "M113.md §5.4, worked out by hand",
+        "SprocketProfile"},
+       2.0 * profile.tip_radius * std::sin(half), 0.086, 5e-4);
   // A pin that leans on the flank's end touches the corner: on the flank's normal, r_p from it.
   Vec2 const n(std::cos(m113::flank), -std::sin(m113::flank));
   EXPECT_NEAR(profile.overlap<double>(k[0] + n[0] * 0.0199, k[1] + n[1] * 0.0199).depth, 1e-4, 1e-15);
@@ -103,9 +110,11 @@ TEST(SprocketProfile, LetsGoOfAPinThatTurnsAboutItsNeighbour) {
     Vec2 const local = polar(pin.norm(), std::abs(from_valley));
     return -profile.overlap<double>(local[0], local[1]).depth;
   };
-  EXPECT_NEAR(clearance(5.0 * degree), 9.7e-3, 5e-5);
-  EXPECT_NEAR(clearance(10.0 * degree), 10.7e-3, 5e-5);
-  EXPECT_NEAR(clearance(20.0 * degree), 17.0e-3, 5e-5);
+  Claim const clear{"M113.md §5", "clearance of a pin that turns about its seated neighbour [m]", By::independent,
+                    "M113.md §5.4, worked out by hand", "SprocketProfile"};
+  held(clear, clearance(5.0 * degree), 9.7e-3, 5e-5, {"5°"});
+  held(clear, clearance(10.0 * degree), 10.7e-3, 5e-5, {"10°"});
+  held(clear, clearance(20.0 * degree), 17.0e-3, 5e-5, {"20°"});
   for (double turn = 0.1; turn < 90.0; turn += 0.1) EXPECT_GT(clearance(turn * degree), 0.0) << turn;
 }
 
@@ -197,8 +206,12 @@ TEST(SprocketProfile, SharesTheLoadAmongItsTeeth) {
     both << slack, tight;
     Vec2 const tension = both.inverse() * -n;  // for N = 1
     double const k = std::tan(c.angle * degree) * std::tan(pi / 10.0);
-    EXPECT_NEAR(tension[0] / tension[1], (1.0 - k) / (1.0 + k), 1e-8);
-    EXPECT_NEAR(tension[0] / tension[1], c.ratio, 5e-3);
+    auto const ratio = [&](By by, char const* source, double reference, double tolerance) {
+      held({"M113.md §5", "tension behind a pin over that before it", by, source, "PinOnSprocket"},
+           tension[0] / tension[1], reference, tolerance, {equals("φ", c.angle) + "°"});
+    };
+    ratio(By::closed_form, "(1 − K)/(1 + K), K = tan φ tan π/N", (1.0 - k) / (1.0 + k), 1e-8);
+    ratio(By::independent, "M113.md §5.4, worked out by hand", c.ratio, 5e-3);
     EXPECT_GT(tension[0], 0.0);
   }
 }

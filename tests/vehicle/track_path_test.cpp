@@ -11,6 +11,7 @@
 #include <polybody/vehicle/m113.hpp>
 #include <polybody/vehicle/track_path.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
@@ -71,7 +72,10 @@ std::string touched(TrackPath const& path) {
 // M113.md section 2.1: 64 links of 0.1524 m close at x = −3.963784 (links.csv's zero-stretch place to twelve digits).
 TEST(TrackPath, OfTheM113ClosesWhereTheReferenceDoes) {
   TrackPath const path = wrap_track(m113::track());
-  EXPECT_NEAR(-3.95 - path.travel, -3.963784320626, 1e-11);
+  auto const claim = [](char const* what) {
+    return Claim{"M113 track", what, By::independent, "links_taut.csv, a program of its own", "wrap_track, 64 links"};
+  };
+  held(claim("place of the idler [m]"), -3.95 - path.travel, -3.963784320626, 1e-11);
   EXPECT_NEAR(path.layout.circles[5].centre[0], m113::idler_reference_x, 1e-11);
   EXPECT_EQ(path.seated, 5);
   EXPECT_EQ(path.first_valley, 0);
@@ -83,9 +87,10 @@ TEST(TrackPath, OfTheM113ClosesWhereTheReferenceDoes) {
   std::vector<double> const x = table.column("x"), z = table.column("z"), angle = table.column("beta_rad");
   std::vector<double> const q0 = table.column("q0"), q2 = table.column("q2");
   for (std::size_t i = 0; i < 64; ++i) {
-    EXPECT_LT((path.pins[i] - pins[i]).norm(), 1e-9) << "pin " << i;
-    EXPECT_LT((path.links[i].centre - Vec2(x[i], z[i])).norm(), 1e-9) << "link " << i;
-    EXPECT_NEAR(path.links[i].angle, angle[i], 1e-8) << "link " << i;
+    std::string const link = equals("link", double(i));
+    held_within(claim("places of the pins [m]"), (path.pins[i] - pins[i]).norm(), 1e-9, {link, 4.0});
+    held_within(claim("middles of the links [m]"), (path.links[i].centre - Vec2(x[i], z[i])).norm(), 1e-9, {link, 4.0});
+    held(claim("angles of the links [rad]"), path.links[i].angle, angle[i], 1e-8, {link, 1.0});
     Placement const place = path.links[i].placement(-m113::track_y);
     EXPECT_LT((place.origin - Vec3(x[i], -1.0795, z[i])).norm(), 1e-9) << "link " << i;
     EXPECT_LT((place.axes - rotation_matrix<double>(Vec4(q0[i], 0.0, q2[i], 0.0))).norm(), 1e-8) << "link " << i;
@@ -108,7 +113,9 @@ TEST(TrackPath, TellsWhatEachLinkAndPinRestsOn) {
 TEST(TrackPath, OfALongerPitchClosesFurtherBack) {
   TrackLayout layout = m113::track();
   layout.pitch = 0.154;
-  EXPECT_NEAR(wrap_track(layout).layout.circles[5].centre[0], -4.0120, 5e-5);
+  held({"M113 track", "place of the idler, p = 0.154 m [m]", By::independent, "a program of its own",
+        "wrap_track, 64 links"},
+       wrap_track(layout).layout.circles[5].centre[0], -4.0120, 5e-5);
 }
 
 // M113.md section 2.1: "unique root". The loop grows all along the idler's travel.
@@ -195,7 +202,9 @@ TEST(TrackPath, OfShortLinksIsAsLongAsAString) {
   for (int const teeth : {40, 400}) {
     TrackLayout const layout = belt(teeth, r1, r2, d, 0.02);
     double const allowed = excess(layout.pitch, r1, pi) + excess(layout.pitch, r2, pi + 2.0 * gamma);
-    EXPECT_NEAR(track_length(layout, 0.0) * layout.pitch, string, allowed);
+    held({"M113 track", "length of an open belt of short links [m]", By::closed_form,
+          "2 √(d² − (r₂ − r₁)²) + π (r₁ + r₂) + 2 (r₂ − r₁) asin((r₂ − r₁)/d)", "track_length"},
+         track_length(layout, 0.0) * layout.pitch, string, allowed, {equals("teeth", teeth)});
     EXPECT_LT(allowed, teeth == 40 ? 4e-2 : 4e-4);
   }
 }
@@ -212,7 +221,9 @@ TEST(TrackPath, OfShortLinksBendsAroundBothFacesAsAStringDoes) {
     TrackLayout layout = belt(teeth, r, r, d, 0.02);
     layout.circles.push_back({"presser", Vec2(-0.5 * d, z), rho - 0.02, TrackSide::outside});
     double const allowed = 2.0 * excess(layout.pitch, r, pi + bend) + excess(layout.pitch, rho, 2.0 * bend);
-    EXPECT_NEAR(track_length(layout, 0.0) * layout.pitch, string, allowed);
+    held({"M113 track", "length of a belt of short links bent to both sides [m]", By::closed_form,
+          "a string of tangents and arcs", "track_length"},
+         track_length(layout, 0.0) * layout.pitch, string, allowed, {equals("teeth", teeth)});
     EXPECT_LT(allowed, teeth == 80 ? 2e-2 : 2e-4);
   }
 }
@@ -253,11 +264,15 @@ TEST(TrackClearances, OfTheReferenceInEquilibriumAreNotNegative) {
   TrackLayout layout = m113::track();
   layout.circles[5].centre[0] = m113::idler_start_x;
   TrackClearances const gaps = clearances(layout, pins_of(reference("links.csv")), 0.0);
-  EXPECT_LT(gaps.stretch, 2e-9);
+  held_within({"M113 track", "stretch of the links in equilibrium [m]", By::independent,
+               "links.csv, a program of its own", "clearances"},
+              gaps.stretch, 2e-9, {.scale = m113::pitch});
   EXPECT_GT(gaps.circles, -2e-9);
   EXPECT_LT(gaps.circles, 2e-9);
   EXPECT_GT(gaps.sprocket, -2e-9);
-  EXPECT_NEAR(gaps.ground, 0.0, 2e-9);
+  held_within({"M113 track", "gap to the ground in equilibrium [m]", By::independent, "links.csv, a program of its own",
+               "clearances"},
+              std::abs(gaps.ground), 2e-9, {.scale = m113::pitch});
 }
 
 // Links 32 to 37 touch the idler; 1 mm further back it reaches 1 mm · sin b into each, most into link 34 (b = 1.2146,

@@ -10,6 +10,7 @@
 #include <polybody/io/table.hpp>
 #include <polybody/vehicle/settled_track.hpp>
 
+#include "support/held.hpp"
 #include "support/refusal.hpp"
 
 namespace polybody {
@@ -120,7 +121,9 @@ TEST(SettledTrack, HasItsIdlerWhereTheReferenceHas) {
     EXPECT_GT(out, 0.0) << row.preload;
     EXPECT_LT(out, given_way(row)) << row.preload;
   }
-  EXPECT_NEAR(settled(m113::preload).idler_x, m113::idler_start_x, 3e-3);
+  held({"M113 track", "place of the idler at rest, contacts of 2e6 N/m [m]", By::independent,
+        "links.csv, a program of its own, rigid contacts", "settled_track"},
+       settled(m113::preload).idler_x, m113::idler_start_x, 3e-3);
 }
 
 TEST(SettledTrack, HasItsPinsWhereTheReferenceHas) {
@@ -130,6 +133,11 @@ TEST(SettledTrack, HasItsPinsWhereTheReferenceHas) {
   EXPECT_LT(out_of_place(table[1]), 15e-3);
   for (std::size_t i = 0; i < 64; ++i)
     EXPECT_LT((pins[i] - Vec2(x[i], z[i])).norm(), out_of_place(table[1])) << "pin " << i;
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < 64; ++i) farthest = std::max(farthest, (pins[i] - Vec2(x[i], z[i])).norm());
+  held_within({"M113 track", "pins at rest, contacts of 2e6 N/m [m]", By::independent,
+               "links.csv, a program of its own, rigid contacts", "settled_track"},
+              farthest, 15e-3, {.scale = m113::pitch});
 }
 
 // M113.md section 2.1: how far the upper run is above the wheels, in millimetres. With less tension it also lies where
