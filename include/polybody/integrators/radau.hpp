@@ -9,6 +9,7 @@
 /// v_i.
 
 #include <array>
+#include <utility>
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/radau_tableau.hpp>
@@ -52,7 +53,9 @@ struct Radau {
     double theta = 1.0;
     double h_factored = 0.0;
     double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
-    Sequence<double> slack;  ///< by rows: −1 on the diagonal of a row that repeats others leaves its multiplier alone
+    Sequence<double> slack;  ///< by stages and rows: −1 on the diagonal of a row that repeats others leaves its
+                             ///< multiplier alone
+    Sequence<double> slack_at_start;  ///< of every step, until its last try
 
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
@@ -65,7 +68,8 @@ struct Radau {
           kept(rhs),
           forward(s),
           projected(s),
-          slack(std::size_t(equations_of(s) - equation_speeds_of(s)), 0.0) {
+          slack(3 * std::size_t(equations_of(s) - equation_speeds_of(s)), 0.0),
+          slack_at_start(slack) {
       v.fill(r);
       vd.fill(r);
       delta.fill(r);
@@ -87,10 +91,9 @@ struct Radau {
         detail::StageSink stage{sink, i * n, j * n, speeds};
         s.tangent({i == j ? 1.0 : 0.0, h * T::a[i][j], h * h * T::squared(i, j)}, SecondOrder::omitted, phi, stage);
         if (i == j)
-          for (std::size_t k = 0; k < slack.size(); ++k) {
-            Index const at = speeds + Index(k);
-            stage.add(at, at, Eigen::Map<Mat<double, 1, 1> const>(&slack[k]));
-          }
+          for (Index k = 0; k < n - speeds; ++k)
+            stage.add(speeds + k, speeds + k,
+                      Eigen::Map<Mat<double, 1, 1> const>(&slack[std::size_t(i * (n - speeds) + k)]));
       }
     }
     /// How the rows i of G v̇ + γ turn as the stages move: h a_ij ∂Φ̈/∂v + h² (A²)_ij ∂Φ̈/∂q.
@@ -99,6 +102,15 @@ struct Radau {
       using T = detail::RadauTableau;
       for (int j = 0; j < 3; ++j)
         slopes.write(h * T::a[i][j], h * h * T::squared(i, j), i * n + equation_speeds_of(s), j * n, sink);
+    }
+    /// Leaves the multipliers of stage i alone whose rows repeat others, or so nearly that `forward` dropped them.
+    /// False where it did so already.
+    bool leave_dropped(System const& s, Index i) {
+      Index const speeds = equation_speeds_of(s), rows = equations_of(s) - speeds;
+      bool more = false;
+      for (Index const k : forward.redundant_rows())
+        more |= std::exchange(slack[std::size_t(i * rows + k - speeds)], -1.0) == 0.0;
+      return more;
     }
     /// v_i = v₀ + h Σ a_ij v̇_j.
     void set_speeds(VecX const& v0, double h) {
@@ -133,14 +145,17 @@ struct Radau {
     check();
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     std::fill(w.slack.begin(), w.slack.end(), 0.0);
-    for (Index const i : w.forward.redundant_rows()) w.slack[std::size_t(i - equation_speeds_of(system))] = -1.0;
+    for (Index i = 0; i < 3; ++i) w.leave_dropped(system, i);
+    w.slack_at_start = w.slack;
     w.factored = false;
   }
 
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     NewtonReport report;
-    // what stalls is tried again by full Newton, and then with every stage's own matrix
+    w.slack = w.slack_at_start;
+    // what stalls is tried again by full Newton, then with every stage's own matrix, and then without the rows that
+    // stages have lost
     for (int effort = 0, last = system.rows() > 0 ? 2 : 1;; ++effort) {
       bool const careful = effort > 0;
       predict(x, h, w);
@@ -148,10 +163,11 @@ struct Radau {
       NewtonOptions options = newton;
       options.always_refactor = options.always_refactor || careful;
       if (careful) options.growths = 8;
-      Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows(), effort == 2};
+      Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows(), effort >= 2};
       report = polybody::newton(problem, options, w.factored, w.theta);
       if (report.result == NewtonResult::converged) break;
-      if (effort == last || report.result == NewtonResult::not_finite)
+      if (report.result == NewtonResult::not_finite ||
+          (effort >= last && !(effort == 2 && loses_rank(system, x, h, w))))
         detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     }
     w.set_positions(system, h);
@@ -184,6 +200,23 @@ struct Radau {
       w.delta[i] = detail::RadauTableau::c[i] * h * x.v;
     }
     w.set_speeds(x.v, h);
+  }
+
+  /// Leaves the multipliers alone of rows that are lost where the stages are expected, so next to a singular position
+  /// that rounding fills them. False where there are none.
+  template <class Solver>
+  static bool loses_rank(System& system, State const& x, double h, Workspace<Solver>& w) {
+    predict(x, h, w);
+    bool more = false;
+    try {
+      for (std::size_t i = 0; i < 3; ++i) {
+        system.plus(x.q, w.delta[i], w.q);
+        w.forward.hold(system, w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h);
+        more |= w.leave_dropped(system, Index(i));
+      }
+    } catch (LinearSolverSingular const&) {  // of a solver that drops no rows
+    }
+    return more;
   }
 
   /// A step as Newton's method sees it.
@@ -258,7 +291,7 @@ struct Radau {
       double change = w.unsettled / (h * h);
       for (Index i = 0; i < 3; ++i) change = std::max(change, w.y.segment(i * (nv + rows), bodies).norm());
       CorrectionSize size{all_finite(w.y) ? change / n : std::numeric_limits<double>::quiet_NaN(),
-                          method.tolerance * (1.0 + w.vd[2].head(bodies).norm() / n) + detail::rounding_of(w.q, h * h)};
+                          method.tolerance * (1.0 + w.vd[2].head(bodies).norm() / n) + detail::rounding_of(w.v[2], h)};
       for (std::size_t i = 0; i < 3; ++i)
         size = detail::StatesInStep{system.layout().states, w.v[i], w.vd[i], h}.join(
             size, method.tolerance, w.y.data() + Index(i) * (nv + rows));
