@@ -12,7 +12,7 @@ namespace polybody {
 
 template <class Strain, int axial_points, int bending_points>
 using CableGroups =
-    std::tuple<StrainGroup<CableAxial<Strain, axial_points, 3>>, StrainGroup<CableBending<Strain, bending_points>>>;
+    std::tuple<StrainGroup<CableAxial<Strain, axial_points>>, StrainGroup<CableBending<Strain, bending_points>>>;
 
 /// `AncfCable<>::from(bar, n)` with Green strain, `AncfCable<EngineeringStrain>` with that; more or fewer Gauss points
 /// for the axial and the bending part, 5 and 3 being the field's choice [Gerstmayr & Irschik 2008].

@@ -35,7 +35,7 @@ T inverse_power(T const& inverse2) {
 }  // namespace detail
 
 /// Axial strain, p = r′. Five points integrate ε² of the cubic field exactly.
-template <class Strain, int axial_points, int dimension>
+template <class Strain, int axial_points, int dimension = 3>
 struct CableAxial {
   static constexpr int points = axial_points;
   static constexpr int components = dimension;
