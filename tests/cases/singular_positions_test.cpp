@@ -38,6 +38,15 @@ TEST(SingularPosition, IsPassedByStepsThatConserveEnergy) {
   EXPECT_LT(std::abs(r.gained), 1e-7);
   EXPECT_TRUE(r.warnings.empty());
 }
+// A step there has an end on the kite's branch as well, to which full Newton may find first.
+TEST(SingularPosition, IsPassedOnTheBranchThatChangesSpeedsLeast) {
+  for (double const step : {1e-3, 5e-4}) {
+    Turned const r = turn(1, 4, EnergyMomentum{}, step);
+    EXPECT_LT(r.off, 2e-5) << step;
+    EXPECT_LT(std::abs(r.gained), 1e-6) << step;
+    EXPECT_TRUE(r.warnings.empty()) << step;
+  }
+}
 TEST(SingularPosition, IsPassedByStepsThatLoseEnergy) {  // of order one
   Turned const r = turn(2, 1, EnergyDecaying{.rho_inf = 0.95}, 1e-3);
   EXPECT_LT(r.off, 1e-2);

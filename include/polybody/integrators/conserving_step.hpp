@@ -31,6 +31,7 @@ struct ConservingStep {
   template <class Solver>
   struct Workspace {
     VecX q, v, vd, lambda, r, phi, rhs, y, kept;
+    VecX other_vd, other_lambda;  ///< where the second try ended, while the third looks for less change
     StepSecants secants;
     TangentSolver<Solver> solver, exact;  ///< `exact` is laid out by the first step that asks for it
     ForwardDynamics<Solver> forward;
@@ -48,6 +49,8 @@ struct ConservingStep {
           rhs(VecX::Zero(s.size())),
           y(rhs),
           kept(rhs),
+          other_vd(v),
+          other_lambda(lambda),
           secants(s),
           forward(s) {}
   };
@@ -148,10 +151,27 @@ struct ConservingStep {
     }
   };
 
-  /// One step from x. What stalls is tried again with more effort: 1, full Newton, from no acceleration at all; 2, from
-  /// the last one, with the exact tangent, as next to a singular position.
+  /// ‖Δv − h v̇₀‖².
+  static double change(State const& x, double h, VecX const& vd) {
+    double sum = 0.0;
+    for (Index i = 0; i < vd.size(); ++i) sum += (vd[i] - x.a[i]) * (vd[i] - x.a[i]);
+    return h * h * sum;
+  }
+  /// Goes back to where the second try ended, if the third failed or changes speeds by more.
   template <class Solver>
-  StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
+  static bool takes_other(State const& x, double h, Workspace<Solver>& w, bool failed) {
+    if (!failed && change(x, h, w.vd) <= change(x, h, w.other_vd)) return false;
+    w.vd.swap(w.other_vd);
+    w.lambda.swap(w.other_lambda);
+    return true;
+  }
+
+  /// One step from x. What stalls is tried again with more effort: 1, full Newton, from no acceleration at all; 2, from
+  /// the last one, with the exact tangent, as next to a singular position. There a step has one end on each branch: of
+  /// the ends that both tries find, the one is taken that changes the speeds least, where the first turns them.
+  template <class Solver>
+  StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0,
+                     bool has_other = false) const {
     StepHistory history(x);
     bool const careful = effort > 0;
     if (careful) {
@@ -166,7 +186,18 @@ struct ConservingStep {
     options.always_refactor = options.always_refactor || careful;
     if (careful) options.growths = 10;
     Problem<Solver> problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows(), effort == 2};
-    NewtonReport const report = polybody::newton(problem, options, w.factored, w.theta);
+    NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
+    if (effort == 1 && system.rows() > 0 && report.result == NewtonResult::converged &&
+        change(x, h, w.vd) > 0.01 * squares(x.v)) {
+      w.other_vd.swap(w.vd);
+      w.other_lambda.swap(w.lambda);
+      w.factored = false;
+      return advance(system, x, h, w, 2, true);
+    }
+    if (has_other && takes_other(x, h, w, report.result != NewtonResult::converged)) {
+      (void)problem.evaluate();
+      report.result = NewtonResult::converged;
+    }
     if (report.result != NewtonResult::converged && effort < (system.rows() > 0 ? 2 : 1)) {
       w.factored = false;
       return advance(system, x, h, w, effort + 1);
