@@ -113,6 +113,15 @@ template <class = void>
       "The equations of motion have no unique acceleration at t = ", t, " s; the pivot is lost at ", who,
       ". Look for a joint that repeats another, or a body without inertia that is free to move."};
 }
+/// No force element, compliant joint or force of a body acts beside weight and inertia.
+template <class = void>
+[[gnu::cold]] bool pushed_by_weight_alone(System const& s) {
+  if (!s.step_coordinates().narrow->moves_by_newton_euler || !s.data().actions.empty()) return false;
+  for (RowBlock<double> const& block : s.data().rows)
+    if (block.source != RowSource::joint) return false;
+  return true;
+}
+
 }  // namespace detail
 
 template <LinearSolver Solver = DefaultSolver>
@@ -128,6 +137,8 @@ class ForwardDynamics {
         x_(VecX::Zero(system.size())),
         delta_(VecX::Zero(system.speeds())),
         next_(VecX::Zero(system.coordinates())) {
+    by_tree_ = system.step_coordinates() && system.step_coordinates().narrow->solves_by_bodies && system.rows() == 0;
+    if (by_tree_) only_weight_ = detail::pushed_by_weight_alone(system);
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
@@ -144,6 +155,7 @@ class ForwardDynamics {
   /// M a + Gᵀλ = f, G a = −γ − what is fed back, at the coordinates, speeds and time `at`. \throws
   /// LinearSolverSingular, NonFinite.
   void accelerations(System& system, At<double> const& at, VecX& a, VecX& lambda, RowFeedback const& feedback = {}) {
+    if (by_tree_ && accelerations_of_tree(system, at, a)) return lambda.resize(0);
     system.evaluate(at.q, at.v, at.t);
     factor(system);
     system.residual(zero_a_, zero_lambda_, r_);
@@ -248,6 +260,20 @@ class ForwardDynamics {
   }
 
  private:
+  /// The same by a tree that is its own solver. False where this has no finite result: the equations of the whole model
+  /// then say why.
+  bool accelerations_of_tree(System& system, At<double> const& at, VecX& a) {
+    Coordinates const& c = system.step_coordinates();
+    VecX const* unbalance = nullptr;
+    if (!only_weight_) {
+      system.evaluate(at.q, at.v, at.t);
+      unbalance = &polybody::unbalance(system);
+    }
+    a.resize(system.speeds());
+    Index const bad = c.entries->accelerations(c.self.get(), at.q, at.v, system.load_factor, unbalance, a);
+    return bad < 0 && first_not_finite(a) < 0;
+  }
+
   void factor(System& system) {
     if (system.rows() == 0 && factored_ && has_constant_mass(system)) return;
     Index const bad = solver_.factor([&](BlockSink& sink) { system.masses(sink); });
@@ -272,6 +298,7 @@ class ForwardDynamics {
 
   TangentSolver<Solver> solver_;
   bool factored_ = false;
+  bool by_tree_ = false, only_weight_ = false;
   VecX zero_a_, zero_lambda_, r_, phi_, open_, rhs_, x_, delta_, next_;
 };
 

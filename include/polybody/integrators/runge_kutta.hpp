@@ -34,6 +34,12 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
     forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda, feedback);
   }
 
+  /// Rates at x into stage 0: x knows its accelerations.
+  void first_stage(System& system, State const& x) {
+    dq.setZero();
+    system.local_rate(dq, x.v, position_rate[0]);
+    acceleration[0] = x.a;
+  }
   /// Rates at x + h Σ row[j] k_j into stage i.
   template <std::size_t n>
   void stage(System& system, State const& x, double h, double c, std::array<double, n> const& row, int i) {
@@ -55,12 +61,19 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
     }
   }
 
-  /// Projects the combined result and makes it the state at t + h.
-  void accept(System& system, State& x, double h, Stabilisation const& stabilisation) {
+  /// Projects the combined result and makes it the state at t + h. \param evaluated the last stage is of the combined
+  /// result. Returns the evaluations that it takes.
+  int accept(System& system, State& x, double h, Stabilisation const& stabilisation, bool evaluated) {
+    bool const again = !evaluated || system.rows() > 0;  // a projection moves the state
     system.plus(x.q, dq, q);
-    stabilisation.apply(system, forward, scratch, q, v, x.t + h);
-    forward.accelerations(system, {q, v, x.t + h}, a, lambda, feedback);
+    if (again) {
+      stabilisation.apply(system, forward, scratch, q, v, x.t + h);
+      forward.accelerations(system, {q, v, x.t + h}, a, lambda, feedback);
+    } else {
+      a = acceleration.back();
+    }
     Next::accept(system, x, h);
+    return again ? 1 : 0;
   }
 };
 
@@ -102,13 +115,13 @@ struct RungeKutta4 {
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     using Row = std::array<double, 4>;
-    w.stage(system, x, h, 0.0, Row{}, 0);
+    w.first_stage(system, x);
     w.stage(system, x, h, 0.5, Row{0.5}, 1);
     w.stage(system, x, h, 0.5, Row{0.0, 0.5}, 2);
     w.stage(system, x, h, 1.0, Row{0.0, 0.0, 1.0}, 3);
     w.combine(x, h, Row{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0}, 4);
-    w.accept(system, x, h, stabilisation);
-    return {.taken = h, .next = h, .factorisations = 5, .evaluations = 5};
+    w.accept(system, x, h, stabilisation, false);
+    return {.taken = h, .next = h, .factorisations = 4, .evaluations = 4};
   }
 };
 
@@ -155,10 +168,10 @@ struct DormandPrince {
                                           Row{35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
     static constexpr Row e{71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
     StepReport report;
+    w.first_stage(system, x);
     for (;;) {
-      for (int i = 0; i < 7; ++i) w.stage(system, x, h, c[std::size_t(i)], a[std::size_t(i)], i);
-      report.evaluations += 7;
-      report.factorisations += 7;
+      for (int i = 1; i < 7; ++i) w.stage(system, x, h, c[std::size_t(i)], a[std::size_t(i)], i);
+      report.evaluations += 6;
       w.error.setZero();
       w.v_error.setZero();
       for (std::size_t j = 0; j < 7; ++j) {
@@ -169,9 +182,8 @@ struct DormandPrince {
       double const factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 5.0);
       if (error <= 1.0) {
         w.combine(x, h, a[6], 6);
-        w.accept(system, x, h, stabilisation);
-        report.evaluations += 1;
-        report.factorisations += 1;
+        report.evaluations += w.accept(system, x, h, stabilisation, true);
+        report.factorisations = report.evaluations;
         report.taken = h;
         report.next = std::max(h * factor, smallest_step);
         return report;

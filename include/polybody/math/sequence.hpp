@@ -48,8 +48,17 @@ class Sequence {
   }
   Sequence(Sequence const& other) : Sequence() { copy(other.data_, other.size_); }
   Sequence(Sequence&& other) noexcept { swap(other); }
-  Sequence& operator=(Sequence other) noexcept {
-    swap(other);
+  /// Keeps its memory where that is large enough.
+  Sequence& operator=(Sequence const& other) {
+    if (this != &other) {
+      clear();
+      copy(other.data_, other.size_);
+    }
+    return *this;
+  }
+  Sequence& operator=(Sequence&& other) noexcept {
+    Sequence taken(std::move(other));
+    swap(taken);
     return *this;
   }
   ~Sequence() {

@@ -3,26 +3,19 @@
 /// A run: a range of states, from step to step, that ends steps at corners, events and stop conditions. What its
 /// functions do stands outside the class so that a program that links `polybody::compiled` does not compile it again.
 
-#include <memory>
-
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/axial_watch.hpp>
 #include <polybody/run/event_watch.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/run_snapshot.hpp>
+#include <polybody/run/run_systems.hpp>
 #include <polybody/run/stable_step.hpp>
 #include <polybody/run/step_plan.hpp>
 
 namespace polybody {
 
-/// What a run steps, and the whole mechanism where policies eliminate unknowns of it.
-struct RunSystems {
-  std::unique_ptr<System> stepped;  // workspaces refer to it
-  std::unique_ptr<System> whole;
-};
-
-/// An input range of states: `for (State const& now : simulate(…))` yields the start and every step's end.
-/// The state given by the caller is moved along. Not copyable; begin() once.
+/// An input range of states: `for (State const& now : simulate(…))` yields the start and every step's end. The state
+/// given by the caller is moved along. begin() once.
 template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
  public:
@@ -35,9 +28,9 @@ class Simulation {
   Simulation(Simulation const&) = delete;
   Simulation& operator=(Simulation const&) = delete;
 
-  /// What `resume` needs to go on from here. Factorisations, and whatever else a run keeps from step to step, are not
-  /// part of it: this run drops them now, so that it and a resumed run go on with the same bits. To get the bits of an
-  /// interrupted run from one that is not interrupted, take snapshots at the same times.
+  /// What `resume` needs to go on from here. This run drops what else it keeps from step to step, such as
+  /// factorisations, so that it and a resumed run go on with the same bits; a run that is not interrupted has them when
+  /// it takes snapshots at the same times.
   [[gnu::cold]] RunSnapshot snapshot();
 
   State const& state() const { return *x_; }
@@ -47,11 +40,11 @@ class Simulation {
   System& system() { return *system_; }
   /// The whole mechanism.
   System& whole() { return whole_ ? *whole_ : *system_; }
-  bool done() const { return report_.stopped || x_->t >= options_.until; }
+  bool done() const { return report_.stopped || stepped().t >= options_.until; }
 
   /// Takes one step: to the next grid point, or to a corner or event before it. When it throws, the state is as
   /// it was before.
-  void advance();
+  void advance() { advance(true); }
 
   struct Sentinel {};
   class Iterator {
@@ -104,6 +97,9 @@ class Simulation {
   /// A narrow state is stepped, of which `show` makes the user's.
   bool eliminates() const { return bool(whole_); }
 
+  /// \param shown the user's state follows
+  void advance(bool shown);
+
   /// A workspace that knows no earlier step, and is ready for the next one.
   [[gnu::cold]] void renew() {
     StepBounds bounds = std::move(workspace_.forward.bounds);
@@ -144,7 +140,7 @@ class Simulation {
     }
   }
 
-  /// Whether the rows of x repeat each other far more nearly than those of the start.
+  /// The rows of x repeat each other far more nearly than those of the start.
   [[gnu::cold]] bool is_singular(State const& x) {
     try {
       return workspace_.forward.row_gain(*system_, x.q, x.v, x.t).far_above(usual_gain_);
@@ -278,7 +274,7 @@ RunSnapshot Simulation<I, Solver>::snapshot() {
 }
 
 template <Integrator I, class Solver>
-void Simulation<I, Solver>::advance() {
+void Simulation<I, Solver>::advance(bool shown) {
   auto const [target, h, lands, jumps] = plan_.next(stepped().t, h_);
   bool const crumb = h < 0.01 * h_;  // a tiny step, left over after a corner or an event
   if (eliminates() || jumps || crumb || options_.minimum_norm || !options_.events.empty()) before_ = stepped();
@@ -296,8 +292,10 @@ void Simulation<I, Solver>::advance() {
     if (at_corner) stepped().t = plan_.pass(stepped().t);
     if (met || at_corner || crumb) restart();
     if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
-    show();
-    axial_forces_.look(whole(), *x_, done(), report_.warnings);
+    if (shown) {
+      show();
+      axial_forces_.look(whole(), *x_, done(), report_.warnings);
+    }
   } catch (...) {
     stepped() = before_;
     row_ = row_before;
@@ -309,7 +307,17 @@ void Simulation<I, Solver>::advance() {
 
 template <Integrator I, class Solver>
 RunReport const& Simulation<I, Solver>::run() & {
-  while (!done()) advance();
+  bool const asked = !eliminates() || axial_forces_.asks();  // else nobody looks at the whole state before the end
+  try {
+    while (!done()) advance(asked);
+  } catch (...) {
+    if (!asked) try {
+        show();
+      } catch (...) {  // what stopped the run is told
+      }
+    throw;
+  }
+  if (!asked) show();
   return report_;
 }
 

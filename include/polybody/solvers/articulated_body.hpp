@@ -26,11 +26,10 @@ class ArticulatedBodySolverOf {
   using TreeState = TreeStateOf<T>;
 
  public:
-  /// Whose tree it is, and where its bodies are; both must outlive the use of the solver. Allocates the first time.
+  /// Whose tree it is, and where its bodies are; both must outlive the use of the solver. Allocates all there is to be.
   void attach(ReductionOf<> const& reduction, TreeState const& state) {
     reduction_ = &reduction;
     state_ = &state;
-    if (!nodes_.empty()) return;
     Sequence<TreeBody> const& bodies = reduction.tree().bodies;
     Index const m = reduction.rows();
     nodes_.resize(bodies.size());
@@ -94,13 +93,14 @@ class ArticulatedBodySolverOf {
     for (std::size_t i = nodes_.size(); i-- > 0;)
       if (Index const bad = eliminate(i); bad >= 0) return bad;
     Index const m = schur_.rows();
+    if (m == 0) return -1;
     for (Index k = 0; k < m; ++k) {
       for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].f = rows_[std::size_t(k)][i];
       run(none_, answers_.col(k));
       for (Index j = 0; j < m; ++j) schur_(j, k) = row_times(j);
     }
     loops_.begin();
-    if (m > 0) loops_.add(0, 0, schur_);
+    loops_.add(0, 0, schur_);
     Index const bad = loops_.factor();
     return bad < 0 ? -1 : reduction_->speeds() + bad;
   }

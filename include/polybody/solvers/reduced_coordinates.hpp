@@ -5,6 +5,7 @@
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/articulated_body.hpp>
+#include <polybody/solvers/tree_dynamics.hpp>
 #include <polybody/system/dense_reduction.hpp>
 #include <polybody/system/mapped_sink.hpp>
 #include <polybody/system/model_entries.hpp>
@@ -38,6 +39,11 @@ class ReducedCoordinates {
         last_r_(v_),
         whole_speeds_(model.speeds()),
         whole_rows_(model.rows()) {
+    if constexpr (solves_by_bodies) {
+      dynamics_ = TreeDynamicsOf<>(reduction_.tree().bodies);
+      weight_ = model.gravity().g;
+      moves_by_newton_euler_ = M::moves_by_newton_euler;
+    }
     if constexpr (solves_densely)
       prepare_dense();
     else if constexpr (!solves_by_bodies)
@@ -161,9 +167,14 @@ class ReducedCoordinates {
     TreeState state;
     ArticulatedBodySolverOf<> solver;
   };
-  static HeldPlace held(void*) {
-    if constexpr (solves_by_bodies) return std::make_shared<Held>();
-    return std::make_shared<TreeState>();
+  static HeldPlace held(void* c) {
+    if constexpr (solves_by_bodies) {
+      auto held = std::make_shared<Held>();
+      held->state = of(c).state_;
+      held->solver.attach(of(c).reduction_, held->state);
+      return held;
+    }
+    return std::make_shared<TreeState>(of(c).state_);
   }
   static void hold(void* c, void* h) {
     if constexpr (solves_by_bodies)
@@ -171,10 +182,19 @@ class ReducedCoordinates {
     else if constexpr (!solves_as_it_is)
       *static_cast<TreeState*>(h) = of(c).state_;
   }
-  static Index factor(void* c, void* h, BlockWriter const& write_whole) {
+  static Index accelerations(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance,
+                             VecX& out) {
+    if constexpr (solves_by_bodies) {
+      Self& s = of(c);
+      Index const body = unbalance ? s.dynamics_.accelerations(q, v, *unbalance, out)
+                                   : s.dynamics_.accelerations_by_weight(q, v, s.weight_ * load_factor, out);
+      return body < 0 ? -1 : s.reduction_.tree().bodies[std::size_t(body)].vn;
+    }
+    return -1;
+  }
+  static Index factor(void*, void* h, BlockWriter const& write_whole) {
     if constexpr (solves_by_bodies) {
       Held& held = *static_cast<Held*>(h);
-      held.solver.attach(of(c).reduction_, held.state);
       held.solver.begin();
       BlockSink sink(held.solver);
       write_whole(sink);
@@ -269,6 +289,9 @@ class ReducedCoordinates {
   Sequence<Index> equation_of_;
   MappedBlocks mapped_;
   DenseReductionOf<> dense_;
+  std::conditional_t<solves_by_bodies, TreeDynamicsOf<>, bool> dynamics_{};
+  Vec3 weight_ = Vec3(0, 0, 0);
+  bool moves_by_newton_euler_ = false;
 };
 
 template <class Solution>
@@ -280,6 +303,7 @@ NarrowLayout ReducedCoordinates<Solution>::narrow_layout(ModelLayout const& whol
                  .places = reduction_.places(),
                  .rows_that_stay = reduction_.rows_that_stay(),
                  .solves_by_bodies = solves_by_bodies,
+                 .moves_by_newton_euler = moves_by_newton_euler_,
                  .keeps_mass_constant = std::is_void_v<Solution>};
   for (Index i = 0; i < n.speeds; ++i) n.whole_speed.push_back(reduction_.whole_speed(i));
   for (Index const row : reduction_.linear().redundant()) {
@@ -313,6 +337,7 @@ constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = {
     .hold = &ReducedCoordinates::hold,
     .to_equations = &ReducedCoordinates::to_equations,
     .from_equations = &ReducedCoordinates::from_equations,
+    .accelerations = &ReducedCoordinates::accelerations,
     .factor = &ReducedCoordinates::factor,
     .solve = &ReducedCoordinates::solve};
 

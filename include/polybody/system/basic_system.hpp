@@ -137,6 +137,9 @@ class BasicSystem {
   /// Name of the body that owns speed i, or of the joint that owns row i − nv.
   std::string name_of(Index i) const;
 
+  template <StateScalar U>
+  friend VecXOf<U> const& unbalance(BasicSystem<U>& system);
+
  private:
   NarrowPlace const* narrow_places() const { return coordinates_ ? coordinates_.narrow->places.data() : nullptr; }
 

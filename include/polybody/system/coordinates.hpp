@@ -23,6 +23,7 @@ struct NarrowLayout {
   Index equations = 0, equation_speeds = 0;
   Sequence<Index> whole_unknown = {};  ///< behind an equation; empty where they are those of a step
   bool solves_by_bodies = false;       ///< the tree itself is the solver
+  bool moves_by_newton_euler = false;  ///< its bodies have no forces of their own
   bool keeps_mass_constant = false;    ///< T is constant
 
   /// Multipliers of all rows from those of a step; zero for rows that are eliminated.
@@ -60,7 +61,9 @@ struct CoordinatesEntries {
   /// A right-hand side of a time step as one of the equations, and a solution of these as one of the step's unknowns.
   void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out);
   void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out);
-  /// For trees that are their own solver.
+  /// For trees that are their own solver: u̇ where no rows stay, under weight alone or with `unbalance` (of the
+  /// whole model); −1, or the speed whose freedom has no inertia.
+  Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance, VecX& out);
   Index (*factor)(void* c, void* held, BlockWriter const& write);
   void (*solve)(void* held, VecX const& rhs, VecX& x);
 };

@@ -115,8 +115,10 @@ class ReductionOf {
   static void hook(detail::BodyPool<B> const& pool, Sequence<TreeBody>& bodies, Sequence<Hook>& hooks) {
     if constexpr (HasRigidLayout<B>) {
       Index const first = Index(bodies.size());
-      for (auto const& e : pool.entries)
+      for (auto const& e : pool.entries) {
         bodies.push_back({.name = e.name, .layout = B::layout, .q0 = e.q0, .v0 = e.v0});
+        read_masses(e.body, bodies.back());
+      }
       for (auto const& m : pool.markers) {
         Hook& h = hooks[std::size_t(m.published)];
         h.body = first + m.body;
@@ -124,6 +126,20 @@ class ReductionOf {
         h.frame.axes = m.axes;
       }
     }
+  }
+
+  /// Mass and inertia from the body's mass matrix, which is constant.
+  template <class B>
+  static void read_masses(B const& body, TreeBody& out) {
+    constexpr int n = B::element_columns;
+    double q[7] = {};
+    body.reference(std::span<double>(q, std::size_t(body.coordinates())));
+    Mat<T, n, n> m;
+    body.mass(0, std::span<double const>(q, std::size_t(body.coordinates())), m);
+    out.mass = m(0, 0);
+    constexpr int turns = n / 2;  // 3 of 6; 1 of 3
+    for (int i = 0; i < turns; ++i)
+      for (int j = 0; j < turns; ++j) out.inertia(3 - turns + i, 3 - turns + j) = m(n - turns + i, n - turns + j);
   }
 
   /// \throws InvalidInput naming the first joint, as they were connected, between bodies that joints before it connect.

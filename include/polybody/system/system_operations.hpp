@@ -166,4 +166,14 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
   if (c.full) entries_.load_stiffness(model_, at(), c.stiffness, data_, sink);
 }
 
+/// M a − f of the whole model at v̇ = 0 where it was evaluated last, without the forces of its rows.
+template <StateScalar T>
+VecXOf<T> const& unbalance(BasicSystem<T>& s) {
+  s.whole_a_.setConstant(s.layout_.speeds, T(0.0));
+  s.whole_lambda_.setConstant(s.layout_.rows, T(0.0));
+  s.whole_r_.resize(s.layout_.speeds);
+  s.whole_residual(s.whole_a_, s.whole_lambda_, s.whole_r_);
+  return s.whole_r_;
+}
+
 }  // namespace polybody

@@ -22,7 +22,9 @@ struct TreeBody {
   JointMotions motions = {};  ///< from frame a to frame b
   bool backwards = false;     ///< frame b is the parent's
   double angle = 0.0;         ///< in the plane: its turn against the parent in the reference
-  Index qn = 0, vn = 0;       ///< in narrow vectors
+  double mass = 0.0;
+  Mat3 inertia = Mat3::Zero();  ///< about the centre of mass, in the body's own axes
+  Index qn = 0, vn = 0;         ///< in narrow vectors
 
   bool carried() const { return row >= 0; }
 };

@@ -166,3 +166,6 @@ class Rigid : public AddingCoordinates {
 };
 
 }  // namespace polybody::planar
+
+template <>
+inline constexpr bool polybody::moves_by_newton_euler<polybody::planar::Rigid> = true;

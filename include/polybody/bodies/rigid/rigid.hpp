@@ -348,4 +348,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
 
+template <>
+inline constexpr bool moves_by_newton_euler<Rigid<UnitQuaternion>> = true;
+
 }  // namespace polybody

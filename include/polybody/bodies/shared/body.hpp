@@ -28,6 +28,11 @@ concept HasRigidLayout = requires {
   { B::layout } -> std::convertible_to<RigidLayout>;
 };
 
+/// Bodies that nothing but weight and their own inertia moves, m r̈ = m g and J Ω˙ + Ω × J Ω = 0, where no joint or
+/// force acts: a type says so of itself, not of those derived from it.
+template <class B>
+inline constexpr bool moves_by_newton_euler = false;
+
 /// A body whose points are linear in its coordinates, r = S e with constant S; and so are so many of the gradients r_α.
 template <class B>
 concept HasLinearPoints = requires(B const b, typename B::Point p) {

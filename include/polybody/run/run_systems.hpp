@@ -1,0 +1,14 @@
+#pragma once
+#include <memory>
+
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+/// What a run steps, and the whole mechanism where policies eliminate unknowns of it.
+struct RunSystems {
+  std::unique_ptr<System> stepped;  // workspaces refer to it
+  std::unique_ptr<System> whole;
+};
+
+}  // namespace polybody

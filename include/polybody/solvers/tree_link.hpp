@@ -1,0 +1,71 @@
+#pragma once
+/// \file
+/// What stays constant of a body of a tree, in the axes of the joint that carries it and about that joint's point.
+
+#include <polybody/solvers/articulated_inertia.hpp>
+#include <polybody/system/tree_body.hpp>
+
+namespace polybody {
+
+/// A root has six freedoms, or three in the plane, from the ground; its reference point is its centre of mass.
+struct TreeLink {
+  Index parent, qn, vn, v0;  ///< as those of TreeBody
+  RigidLayout layout;
+  bool backwards;  ///< the joint's frame b is the parent's
+  bool turned;     ///< the joint's axes are not those of the parent
+  int freedoms;
+  JointMotions motions;
+  double entry[9], arm[3];           ///< the joint's frame on the parent, in the axes of the parent's own joint
+  double mass, first[3], second[6];  ///< moments about the reference point
+  double centre[3];                  ///< of mass, from there
+  double whole_axes[9];              ///< of the body's speeds
+};
+
+/// \param parent null: the ground
+template <class T = double>  // compiled where it is used
+[[gnu::cold]] TreeLink tree_link(TreeBody const& body, TreeBody const* parent) {
+  using M3 = Mat<T, 3, 3>;
+  TreeLink link;
+  link.parent = body.parent;
+  link.qn = body.qn;
+  link.vn = body.vn;
+  link.v0 = body.v0;
+  link.layout = body.layout;
+  link.backwards = body.backwards;
+  link.motions = body.motions;
+  Placement from, to;
+  if (body.carried()) {
+    from = body.from;
+    to = body.to;
+  } else {
+    bool const plane = body.layout == RigidLayout::plane;
+    for (int k = 0; k < (plane ? 2 : 3); ++k) link.motions.add({JointMotion::Kind::slide, k});
+    link.motions.add(plane ? JointMotion{JointMotion::Kind::turn, 2} : JointMotion{JointMotion::Kind::ball, 0});
+  }
+  if (parent) {
+    Placement const before = parent->carried() ? parent->to : Placement{};
+    from.origin = before.axes.transpose() * Vec3(from.origin - before.origin);
+    from.axes = M3(before.axes.transpose() * from.axes);
+  }
+  link.turned = !from.axes.isIdentity(0.0);
+  link.freedoms = link.motions.speeds();
+  Vec3 const c = to.axes.transpose() * Vec3(-to.origin);
+  M3 inertia = to.axes.transpose() * body.inertia;  // about the reference point
+  inertia = M3(inertia * to.axes);
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l) inertia(k, l) += body.mass * ((k == l ? c.squaredNorm() : 0.0) - c[k] * c[l]);
+  link.mass = body.mass;
+  for (int k = 0; k < 3; ++k) {
+    link.arm[k] = from.origin[k];
+    link.centre[k] = c[k];
+    link.first[k] = body.mass * c[k];
+    for (int l = 0; l < 3; ++l) {
+      link.entry[3 * l + k] = from.axes(k, l);
+      link.whole_axes[3 * l + k] = to.axes(l, k);
+      link.second[detail::symmetric_place[k][l]] = inertia(k, l);
+    }
+  }
+  return link;
+}
+
+}  // namespace polybody
