@@ -9,7 +9,7 @@
 
 namespace falling_chain {
 
-constexpr double length = 0.1, mass = 1.0, weight = 9.81;    // [m], [kg], [m/s²]
+constexpr double length = 0.1, mass = 1.0, weight = 9.81;   // [m], [kg], [m/s²]
 constexpr std::array<double, 3> moments{1e-4, 1e-3, 1e-3};  // about the centre of mass [kg m²]
 
 /// Angles and rates of a bent chain in motion, so that no number is zero.

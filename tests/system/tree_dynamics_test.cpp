@@ -173,8 +173,8 @@ void expect_trees_as_multipliers(unsigned first, unsigned last) {
     worst_a = std::max(worst_a, (x.a - a).norm() / (1.0 + a.norm()));  // which a weld to the ground has zero
     if (lambda.size() > 0) worst_lambda = std::max(worst_lambda, (x.lambda - lambda).norm() / (1.0 + lambda.norm()));
   }
-  std::string const of = std::string(sprung ? " with springs" : " under weight") +
-                         (std::is_same_v<Body, Rigid<>> ? "" : " in air");
+  std::string const of =
+      std::string(sprung ? " with springs" : " under weight") + (std::is_same_v<Body, Rigid<>> ? "" : " in air");
   Claim claim{"closed forms", "accelerations of random trees" + of + ", of their size", By::itself, "Constraint",
               "RecursiveBy<ArticulatedBody>"};
   held_within(claim, worst_a, 1e-10, {.scale = 1.0});

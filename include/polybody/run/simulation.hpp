@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A run: a range of states, from step to step, that ends steps at corners, events and stop conditions. What its
-/// functions do stands outside the class so that a program that links `polybody::compiled` does not compile it again.
+/// A run: a range of states that ends steps at corners, events and stop conditions. What its functions do stands
+/// outside the class so that a program that links `polybody::compiled` does not compile it again.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/axial_watch.hpp>
@@ -70,7 +70,7 @@ class Simulation {
   Iterator begin() { return Iterator(this); }
   Sentinel end() const { return {}; }
 
-  /// Runs to the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
+  /// To the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
   RunReport const& run() &;
   RunReport run() && {
     run();
@@ -94,7 +94,7 @@ class Simulation {
     if (options_.threads != 1) system_->use_threads(options_.threads);
     h_ = std::min<double>(options_.step, largest_step());
   }
-  /// A narrow state is stepped, of which `show` makes the user's.
+  /// A narrow state is stepped, of which `show` makes the user's; else that itself.
   bool eliminates() const { return bool(whole_); }
 
   /// \param shown the user's state follows
@@ -112,10 +112,9 @@ class Simulation {
   /// The limits of steps hold from this state on.
   void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, stepped().q, stepped().v, stepped().t); }
 
-  /// The state that is stepped: the user's, or the narrow one.
   State& stepped() { return eliminates() ? narrow_ : *x_; }
   State const& stepped() const { return eliminates() ? narrow_ : *x_; }
-  /// The user's state follows the narrow one; it stays as it was where a force fails as reactions are worked out.
+  /// The user's state follows the narrow one, but where a force fails as reactions are worked out.
   void show() {
     if (!eliminates()) return;
     expand(*system_, narrow_, seen_, scratch_);
@@ -307,14 +306,14 @@ void Simulation<I, Solver>::advance(bool shown) {
 
 template <Integrator I, class Solver>
 RunReport const& Simulation<I, Solver>::run() & {
-  bool const asked = !eliminates() || axial_forces_.asks();  // else nobody looks at the whole state before the end
+  bool const asked = !eliminates() || axial_forces_.asks();  // else nobody looks before the end
   try {
     while (!done()) advance(asked);
   } catch (...) {
-    if (!asked) try {
-        show();
-      } catch (...) {  // what stopped the run is told
-      }
+    try {
+      if (!asked) show();
+    } catch (...) {  // what stopped the run is told
+    }
     throw;
   }
   if (!asked) show();

@@ -42,7 +42,6 @@ class ReducedCoordinates {
     if constexpr (solves_by_bodies) {
       dynamics_ = TreeDynamicsOf<>(reduction_.tree().bodies);
       weight_ = model.gravity().g;
-      moves_by_newton_euler_ = M::moves_by_newton_euler;
     }
     if constexpr (solves_densely)
       prepare_dense();
@@ -291,7 +290,6 @@ class ReducedCoordinates {
   DenseReductionOf<> dense_;
   std::conditional_t<solves_by_bodies, TreeDynamicsOf<>, bool> dynamics_{};
   Vec3 weight_ = Vec3(0, 0, 0);
-  bool moves_by_newton_euler_ = false;
 };
 
 template <class Solution>
@@ -303,8 +301,9 @@ NarrowLayout ReducedCoordinates<Solution>::narrow_layout(ModelLayout const& whol
                  .places = reduction_.places(),
                  .rows_that_stay = reduction_.rows_that_stay(),
                  .solves_by_bodies = solves_by_bodies,
-                 .moves_by_newton_euler = moves_by_newton_euler_,
+                 .moves_by_newton_euler = true,
                  .keeps_mass_constant = std::is_void_v<Solution>};
+  for (TreeBody const& body : reduction_.tree().bodies) n.moves_by_newton_euler &= body.by_newton_euler;
   for (Index i = 0; i < n.speeds; ++i) n.whole_speed.push_back(reduction_.whole_speed(i));
   for (Index const row : reduction_.linear().redundant()) {
     std::string name = whole.name_of(whole.speeds + row);

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Accelerations of a tree of rigid bodies by three walks [Featherstone 1983; 2008, §7.3]: places, spins and biases from
-/// the roots to the tips, articulated inertias back to the roots, accelerations to the tips. A joint is a row of single
-/// freedoms with columns S, so that nothing larger than a number is inverted. With x = [a; α] of a body's reference
-/// point, the point of the joint that carries it, d the arm from its parent's, all in world axes,
+/// Accelerations of a tree of rigid bodies by three walks [Featherstone 1983; 2008, §7.3]: places, spins and biases
+/// from the roots to the tips, articulated inertias back to the roots, accelerations to the tips. A joint is a row of
+/// single freedoms with columns S, so that nothing larger than a number is inverted. With x = [a; α] of a body's
+/// reference point, the point of the joint that carries it, d the arm from its parent's, all in world axes,
 ///   x = X x_p + Σ S u̇ + c,   X x = [a + α × d; α],   [f; m] = I x + p,
 /// p + I c takes the place of p, and each freedom from the last to the first
 ///   D = Sᵀ I S,  w = −Sᵀ p,   I − (I S) D⁻¹ (I S)ᵀ that of I,  p + (I S) D⁻¹ w that of p;
@@ -151,7 +151,8 @@ void TreeDynamicsOf<T>::place_all(VecXOf<T> const& q, VecXOf<T> const& v) {
   for (std::size_t i = 0; i < links_.size(); ++i) {
     Link const& link = links_[i];
     Body& b = bodies_[i];
-    place(link, link.parent < 0 ? ground_ : bodies_[std::size_t(link.parent)], q.data() + link.qn, v.data() + link.vn, b);
+    place(link, link.parent < 0 ? ground_ : bodies_[std::size_t(link.parent)], q.data() + link.qn, v.data() + link.vn,
+          b);
     set_inertia(link, b);
   }
 }

@@ -137,7 +137,7 @@ class BasicSystem {
   /// Name of the body that owns speed i, or of the joint that owns row i − nv.
   std::string name_of(Index i) const;
 
-  template <StateScalar U>
+  template <class U>
   friend VecXOf<U> const& unbalance(BasicSystem<U>& system);
 
  private:

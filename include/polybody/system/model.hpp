@@ -34,7 +34,6 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   static constexpr bool eliminates = (Eliminates<typename Js::PolicyType> || ...);
   using Solution = detail::SolutionOf<typename Js::PolicyType...>;
   static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);
-  static constexpr bool moves_by_newton_euler = (polybody::moves_by_newton_euler<Bs> && ...);
   static constexpr bool constant_mass = (Bs::constant_mass && ...);
   static constexpr bool has_groups = (ForceGroup<Fs> || ...);  ///< of forces
   static constexpr bool has_states = (HasStates<Fs> || ...);   ///< first-order ones, of forces

@@ -117,6 +117,7 @@ class ReductionOf {
       Index const first = Index(bodies.size());
       for (auto const& e : pool.entries) {
         bodies.push_back({.name = e.name, .layout = B::layout, .q0 = e.q0, .v0 = e.v0});
+        bodies.back().by_newton_euler = moves_by_newton_euler<B>;
         read_masses(e.body, bodies.back());
       }
       for (auto const& m : pool.markers) {

@@ -167,7 +167,7 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
 }
 
 /// M a − f of the whole model at v̇ = 0 where it was evaluated last, without the forces of its rows.
-template <StateScalar T>
+template <class T>
 VecXOf<T> const& unbalance(BasicSystem<T>& s) {
   s.whole_a_.setConstant(s.layout_.speeds, T(0.0));
   s.whole_lambda_.setConstant(s.layout_.rows, T(0.0));

@@ -14,14 +14,15 @@ namespace polybody {
 struct TreeBody {
   std::string name;
   RigidLayout layout = RigidLayout::quaternion;
-  Index q0 = 0, v0 = 0;       ///< in whole vectors
-  Index row = -1;             ///< first of the joint's rows; −1: a root, which nothing carries
-  Index parent = -1;          ///< in the tree; −1: the ground
-  Placement from = {};        ///< the joint's frame in the parent's axes
-  Placement to = {};          ///< the joint's frame in the body's own axes
-  JointMotions motions = {};  ///< from frame a to frame b
-  bool backwards = false;     ///< frame b is the parent's
-  double angle = 0.0;         ///< in the plane: its turn against the parent in the reference
+  Index q0 = 0, v0 = 0;          ///< in whole vectors
+  Index row = -1;                ///< first of the joint's rows; −1: a root, which nothing carries
+  Index parent = -1;             ///< in the tree; −1: the ground
+  Placement from = {};           ///< the joint's frame in the parent's axes
+  Placement to = {};             ///< the joint's frame in the body's own axes
+  JointMotions motions = {};     ///< from frame a to frame b
+  bool backwards = false;        ///< frame b is the parent's
+  double angle = 0.0;            ///< in the plane: its turn against the parent in the reference
+  bool by_newton_euler = false;  ///< nothing but weight and its inertia moves it where nothing acts
   double mass = 0.0;
   Mat3 inertia = Mat3::Zero();  ///< about the centre of mass, in the body's own axes
   Index qn = 0, vn = 0;         ///< in narrow vectors
