@@ -211,7 +211,7 @@ class ReducedCoordinates {
     } else {
       Self& s = of(c);
       Index const nv = s.reduction_.speeds();
-      s.narrow_ = rhs.head(nv);
+      std::copy_n(rhs.data(), nv, s.narrow_.data());
       s.a_.setZero();
       s.reduction_.expand_speeds(s.narrow_, s.a_);
       s.reduction_.tree().expand_forces(*static_cast<TreeState*>(h), s.narrow_, s.a_);
@@ -232,7 +232,7 @@ class ReducedCoordinates {
       s.reduction_.reduce_speeds(s.a_, s.narrow_);
       s.reduction_.tree().reduce_rates(*static_cast<TreeState*>(h), s.a_, false, s.narrow_);
       Index const nv = s.reduction_.speeds();
-      out.head(nv) = s.narrow_;
+      std::copy_n(s.narrow_.data(), nv, out.data());
       for (Index i = 0; i < s.reduction_.rows(); ++i) out[nv + i] = solution[s.equation_of_row(i)];
     }
   }

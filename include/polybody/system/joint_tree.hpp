@@ -9,8 +9,7 @@
 
 #include <numbers>
 
-#include <polybody/math/quaternion.hpp>
-#include <polybody/system/tree_body.hpp>
+#include <polybody/system/joint_columns.hpp>
 
 namespace polybody {
 
@@ -42,9 +41,8 @@ class JointTreeOf {
         continue;
       }
       TreeFrame const& p = body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
-      detail::RunnerOf<T> run{p.r, p.v, Vec3::Zero(), p.A, p.w, Vec3::Zero()};
-      run.go(p.A * body.from.origin);
-      run.A = p.A * body.from.axes;
+      detail::RunnerOf<T> run{p.r, p.v, {0, 0, 0}, product<T>(p.A, body.from.axes), p.w, {0, 0, 0}};
+      run.go(product<T, 1>(p.A, body.from.origin));
       f.angle = p.angle + body.angle;
       f.speeds = 0;
       double const* x = qn.data() + body.qn;
@@ -54,24 +52,24 @@ class JointTreeOf {
         u += body.motions.speeds();
         for (int k = body.motions.count; k-- > 0;) {
           JointMotion const& m = body.motions.list[std::size_t(k)];
-          move(m, -1.0, x -= m.coordinates(), u -= m.speeds(), run, f);
+          detail::move<T>(m, -1.0, x -= m.coordinates(), u -= m.speeds(), run, f);
         }
-        reverse_columns(body, f);
+        detail::reverse_columns<T>(body, f);
       } else {
         for (JointMotion const& m : body.motions) {
-          move(m, 1.0, x, u, run, f);
+          detail::move<T>(m, 1.0, x, u, run, f);
           x += m.coordinates();
           u += m.speeds();
         }
       }
-      f.A = run.A * body.to.axes.transpose();
-      run.go(-(f.A * body.to.origin));
+      f.A = product<T>(run.A, transposed<T>(body.to.axes));
+      run.go(scaled<T>(product<T, 1>(f.A, body.to.origin), -1.0));
       f.r = run.r;
       f.v = run.v;
       f.w = run.w;
-      f.bias << run.a, run.alpha;
-      f.arm = f.r - p.r;
-      finish_columns(f);
+      set_pair(run.a, run.alpha, f.bias);
+      f.arm = difference<T>(f.r, p.r);
+      detail::finish_columns<T>(f);
       write(body, f, q, v);
     }
   }
@@ -87,9 +85,9 @@ class JointTreeOf {
         continue;
       }
       Vec6& t = twist[i];
-      t = bias ? f.bias : Vec6(Vec6::Zero());
+      for (int j = 0; j < 6; ++j) t[j] = bias ? f.bias[j] : T(0.0);
       if (body.parent >= 0) add_carried(twist[std::size_t(body.parent)], f.arm, t);
-      for (int k = 0; k < f.speeds; ++k) t += f.s.col(k) * u[body.vn + k];
+      for (int k = 0; k < f.speeds; ++k) add_column(f, k, u[body.vn + k], t);
       put_twist(body, f, t, out);
     }
   }
@@ -102,14 +100,11 @@ class JointTreeOf {
       TreeBody const& body = bodies[i];
       if (!body.carried()) continue;
       TreeFrame const& f = s.frames[i];
-      Vec6 t = s.twists[i];
-      if (bias) t -= f.bias;
-      if (body.parent >= 0) {
-        Vec6 carried = Vec6::Zero();
-        add_carried(s.twists[std::size_t(body.parent)], f.arm, carried);
-        t -= carried;
-      }
-      Vec6 const st = f.s.transpose() * t;
+      auto carried = detail::zeros<Vec6>();
+      if (body.parent >= 0) add_carried(s.twists[std::size_t(body.parent)], f.arm, carried);
+      Vec6 t, st;
+      for (int j = 0; j < 6; ++j) t[j] = s.twists[i][j] - (bias ? f.bias[j] : T(0.0)) - carried[j];
+      for (int k = 0; k < f.speeds; ++k) st[k] = along_column(f, k, t);
       for (int k = 0; k < f.speeds; ++k) {
         double sum = 0.0;
         for (int j = 0; j < f.speeds; ++j) sum += f.inverse(k, j) * st[j];
@@ -130,7 +125,7 @@ class JointTreeOf {
         put_twist(body, f, w, r);
         continue;
       }
-      for (int k = 0; k < f.speeds; ++k) out[body.vn + k] = f.s.col(k).dot(w);
+      for (int k = 0; k < f.speeds; ++k) out[body.vn + k] = along_column(f, k, w);
       if (body.parent >= 0) add_back(w, f.arm, s.held[std::size_t(body.parent)]);
     }
   }
@@ -138,22 +133,21 @@ class JointTreeOf {
   /// A whole r with Tᵀ r = `given` (narrow); parts of roots stand already.
   void expand_forces(TreeState& s, VecX const& given, VecX& r) const {
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      s.held[i] = bodies[i].carried() ? Vec6(Vec6::Zero()) : twist_of(bodies[i], s.frames[i], r);
+      s.held[i] = bodies[i].carried() ? detail::zeros<Vec6>() : twist_of(bodies[i], s.frames[i], r);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
       if (!body.carried()) continue;
       TreeFrame const& f = s.frames[i];
-      Vec6 w = Vec6::Zero();
+      auto w = detail::zeros<Vec6>(), carried = w;
       for (int k = 0; k < f.speeds; ++k) {
         double sum = 0.0;
         for (int j = 0; j < f.speeds; ++j) sum += f.inverse(k, j) * given[body.vn + j];
-        w += f.s.col(k) * sum;
+        add_column(f, k, sum, w);
       }
-      s.held[i] += w;
+      for (int j = 0; j < 6; ++j) s.held[i][j] += w[j];
       if (body.parent < 0) continue;
-      Vec6 carried = Vec6::Zero();
       add_back(w, f.arm, carried);
-      s.held[std::size_t(body.parent)] -= carried;
+      for (int j = 0; j < 6; ++j) s.held[std::size_t(body.parent)][j] -= carried[j];
     }
     for (std::size_t i = 0; i < bodies.size(); ++i) put_twist(bodies[i], s.frames[i], s.held[i], r);
   }
@@ -166,16 +160,16 @@ class JointTreeOf {
       if (!body.carried()) continue;
       TreeFrame const& f = s.frames[i];
       TreeFrame const& p = body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
-      Vec3 ra = p.r + p.A * body.from.origin, rb = f.r + f.A * body.to.origin;
-      Mat3 a = p.A * body.from.axes, b = f.A * body.to.axes;
+      Vec3 ra = point(p, body.from.origin), rb = point(f, body.to.origin);
+      Mat3 a = product<T>(p.A, body.from.axes), b = product<T>(f.A, body.to.axes);
       double angle = f.angle - p.angle - body.angle;
       if (body.backwards) {
         std::swap(ra, rb);
         std::swap(a, b);
         angle = -angle;
       }
-      Vec3 const d = a.transpose() * (rb - ra);
-      Mat3 turned = a.transpose() * b;
+      Vec3 const d = transposed_product<T, 3, 1>(a, difference<T>(rb, ra));
+      Mat3 turned = transposed_product<T>(a, b);
       double* x = qn.data() + body.qn;
       for (int k = 0; k < body.motions.count; ++k) {
         JointMotion const& m = body.motions.list[std::size_t(k)];
@@ -187,7 +181,7 @@ class JointTreeOf {
             *x = body.layout == RigidLayout::plane
                      ? angle * a(2, m.axis)
                      : detail::first_turn<T>(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
-            turned = detail::turn_about<T>(m.axis, -*x) * turned;
+            turned = product<T>(detail::turn_about<T>(m.axis, -*x), turned);
             break;
           case JointMotion::Kind::screw: {  // the slide counts the turns
             double const rest = detail::first_turn<T>(m.axis, turned, false, body.motions, k),
@@ -208,40 +202,38 @@ class JointTreeOf {
   /// out = q ⊞ δ of the joint coordinates.
   void plus(VecX const& q, VecX const& delta, VecX& out) const {
     for_each_motion([&](JointMotion const& m, Index qn, Index vn) {
-      if (m.kind == JointMotion::Kind::ball)
-        out.template segment<4>(qn) = quaternion_plus<T>(q.template segment<4>(qn), delta.template segment<3>(vn));
-      else
+      if (m.kind != JointMotion::Kind::ball) {
         out[qn] = q[qn] + delta[vn];
+        return;
+      }
+      Quaternion<T> const turned =
+          quaternion_plus<T>({q[qn], q[qn + 1], q[qn + 2], q[qn + 3]}, {delta[vn], delta[vn + 1], delta[vn + 2]});
+      for (int i = 0; i < 4; ++i) out[qn + i] = turned[i];
     });
   }
   /// The rate of δ in q ⊞ δ.
   void local_rate(VecX const& delta, VecX const& v, VecX& out) const {
     for_each_motion([&](JointMotion const& m, Index, Index vn) {
-      if (m.kind == JointMotion::Kind::ball)
-        out.template segment<3>(vn) =
-            right_jacobian_inverse<T>(delta.template segment<3>(vn)) * v.template segment<3>(vn);
-      else
+      if (m.kind != JointMotion::Kind::ball) {
         out[vn] = v[vn];
+        return;
+      }
+      Vec3 const rate = product<T, 1>(right_jacobian_inverse<T>({delta[vn], delta[vn + 1], delta[vn + 2]}),
+                                      Vec3(v[vn], v[vn + 1], v[vn + 2]));
+      for (int i = 0; i < 3; ++i) out[vn + i] = rate[i];
     });
   }
 
-  /// q˙ of the joint coordinates.
-  template <class D = Dual<1>>  // compiled where it is used
+  /// q˙ of the joint coordinates; that of a ball is ½ q ∘ (0, Ω).
   void coordinate_rates(VecX const& q, VecX const& v, VecX& rate) const {
     for_each_motion([&](JointMotion const& m, Index qn, Index vn) {
       if (m.kind != JointMotion::Kind::ball) {
         rate[qn] = v[vn];
         return;
       }
-      Quaternion<D> p;
-      Vec<D, 3> turn;
-      for (int i = 0; i < 4; ++i) p[i] = D(q[qn + i]);
-      for (int i = 0; i < 3; ++i) {
-        turn[i] = D(0.0);
-        turn[i].d[0] = v[vn + i];
-      }
-      Quaternion<D> const moved = quaternion_plus<D>(p, turn);
-      for (int i = 0; i < 4; ++i) rate[qn + i] = moved[i].d[0];
+      Quaternion<T> const moved =
+          quaternion_product<T>({q[qn], q[qn + 1], q[qn + 2], q[qn + 3]}, {0.0, v[vn], v[vn + 1], v[vn + 2]});
+      for (int i = 0; i < 4; ++i) rate[qn + i] = 0.5 * moved[i];
     });
   }
 
@@ -251,113 +243,81 @@ class JointTreeOf {
 
   /// [v; ω] of a whole vector of speeds or accelerations in world axes.
   static Vec6 twist_of(TreeBody const& body, TreeFrame const& f, VecX const& x) {
-    Vec6 t = Vec6::Zero();
+    auto t = detail::zeros<Vec6>();
     if (body.layout == RigidLayout::plane) {
       t[0] = x[body.v0];
       t[1] = x[body.v0 + 1];
       t[5] = x[body.v0 + 2];
     } else {
-      t.template head<3>() = x.template segment<3>(body.v0);
-      t.template tail<3>() = f.A * x.template segment<3>(body.v0 + 3);
+      set_pair(triple(x, body.v0), product<T, 1>(f.A, triple(x, body.v0 + 3)), t);
     }
     return t;
   }
   static void put_twist(TreeBody const& body, TreeFrame const& f, Vec6 const& t, VecX& x) {
-    if (body.layout == RigidLayout::plane) {
-      x.template segment<3>(body.v0) << t[0], t[1], t[5];
-    } else {
-      x.template segment<3>(body.v0) = t.template head<3>();
-      x.template segment<3>(body.v0 + 3) = f.A.transpose() * t.template tail<3>();
-    }
+    bool const plane = body.layout == RigidLayout::plane;
+    for (int i = 0; i < 3; ++i) x[body.v0 + i] = t[plane && i == 2 ? 5 : i];
+    if (plane) return;
+    Vec3 const spin = transposed_product<T, 3, 1>(f.A, Vec3(t[3], t[4], t[5]));
+    for (int i = 0; i < 3; ++i) x[body.v0 + 3 + i] = spin[i];
   }
   /// t += the rigid motion of the parent at a body `arm` away.
   static void add_carried(Vec6 const& parent, Vec3 const& arm, Vec6& t) {
-    Vec3 const w = parent.template tail<3>();
-    t.template head<3>() += parent.template head<3>() + w.cross(arm);
-    t.template tail<3>() += w;
+    Vec3 const rate = cross<T>({parent[3], parent[4], parent[5]}, arm);
+    for (int i = 0; i < 6; ++i) t[i] += parent[i];
+    for (int i = 0; i < 3; ++i) t[i] += rate[i];
   }
   /// parent += a wrench of the body, `arm` away.
   static void add_back(Vec6 const& w, Vec3 const& arm, Vec6& parent) {
-    Vec3 const f = w.template head<3>();
-    parent.template head<3>() += f;
-    parent.template tail<3>() += w.template tail<3>() + arm.cross(f);
+    Vec3 const moment = cross<T>(arm, {w[0], w[1], w[2]});
+    for (int i = 0; i < 6; ++i) parent[i] += w[i];
+    for (int i = 0; i < 3; ++i) parent[3 + i] += moment[i];
   }
 
  private:
+  static Vec3 triple(VecX const& x, Index first) { return {x[first], x[first + 1], x[first + 2]}; }
+  static void set_pair(Vec3 const& a, Vec3 const& b, Vec6& out) {
+    for (int i = 0; i < 3; ++i) {
+      out[i] = a[i];
+      out[3 + i] = b[i];
+    }
+  }
+  static Vec3 point(TreeFrame const& f, Vec3 const& u) {
+    Vec3 r = product<T, 1>(f.A, u);
+    for (int i = 0; i < 3; ++i) r[i] += f.r[i];
+    return r;
+  }
+  static void add_column(TreeFrame const& f, int k, double factor, Vec6& t) {
+    for (int i = 0; i < 6; ++i) t[i] += f.s(i, k) * factor;
+  }
+  static double along_column(TreeFrame const& f, int k, Vec6 const& t) {
+    double sum = 0.0;
+    for (int i = 0; i < 6; ++i) sum += f.s(i, k) * t[i];
+    return sum;
+  }
+
   static void read(TreeBody const& body, VecX const& q, VecX const& v, TreeFrame& f) {
     if (body.layout == RigidLayout::plane) {
-      f.r << q[body.q0], q[body.q0 + 1], 0.0;
+      f.r = {q[body.q0], q[body.q0 + 1], 0.0};
       f.angle = q[body.q0 + 2];
       f.A = detail::turn_about<T>(2, f.angle);
     } else {
-      f.r = q.template segment<3>(body.q0);
-      f.A = rotation_matrix<T>(q.template segment<4>(body.q0 + 3));
+      f.r = triple(q, body.q0);
+      f.A = rotation_matrix<T>({q[body.q0 + 3], q[body.q0 + 4], q[body.q0 + 5], q[body.q0 + 6]});
     }
     Vec6 const t = twist_of(body, f, v);
-    f.v = t.template head<3>();
-    f.w = t.template tail<3>();
+    f.v = {t[0], t[1], t[2]};
+    f.w = {t[3], t[4], t[5]};
   }
   static void write(TreeBody const& body, TreeFrame const& f, VecX& q, VecX& v) {
-    if (body.layout == RigidLayout::plane) {
-      q.template segment<3>(body.q0) << f.r[0], f.r[1], f.angle;
-    } else {
-      q.template segment<3>(body.q0) = f.r;
-      q.template segment<4>(body.q0 + 3) = quaternion_of(f.A);
+    bool const plane = body.layout == RigidLayout::plane;
+    for (int i = 0; i < 3; ++i) q[body.q0 + i] = plane && i == 2 ? f.angle : f.r[i];
+    if (!plane) {
+      Quaternion<T> const turned = quaternion_of(f.A);
+      for (int i = 0; i < 4; ++i) q[body.q0 + 3 + i] = turned[i];
     }
     Vec6 t;
-    t << f.v, f.w;
+    set_pair(f.v, f.w, t);
     put_twist(body, f, t, v);
-  }
-
-  /// One motion; its columns as [moment arm's origin; axis] until `finish_columns` knows where the body's centre comes
-  /// to lie.
-  static void move(JointMotion const& m, double sign, double const* x, double const* u, detail::RunnerOf<T>& run,
-                   TreeFrame& f) {
-    Vec3 const n = sign * run.A.col(m.axis);
-    auto const column = [&](Vec3 const& slide, Vec3 const& turn) {
-      f.s.col(f.speeds) << slide + run.r.cross(turn), turn;  // at the world's origin
-      ++f.speeds;
-    };
-    switch (m.kind) {
-      case JointMotion::Kind::slide:
-        column(n, Vec3::Zero());
-        run.slide(n, x[0], u[0]);
-        break;
-      case JointMotion::Kind::turn:
-      case JointMotion::Kind::screw:
-        column(m.pitch * n, n);
-        if (m.kind == JointMotion::Kind::screw) run.slide(n, m.pitch * x[0], m.pitch * u[0]);
-        run.turn(u[0] * n);
-        run.A = run.A * detail::turn_about<T>(m.axis, sign * x[0]);
-        f.angle += n[2] * x[0];  // in the plane the axis is the normal, this way or that
-        break;
-      case JointMotion::Kind::ball: {
-        Mat3 const turned = rotation_matrix<T>(Quaternion<T>(x[0], x[1], x[2], x[3]));
-        Mat3 const b = sign > 0.0 ? Mat3(run.A * turned) : run.A;  // the axes of frame b
-        for (int k = 0; k < 3; ++k) column(Vec3::Zero(), sign * b.col(k));
-        run.turn(sign * (b.col(0) * u[0] + b.col(1) * u[1] + b.col(2) * u[2]));
-        run.A = sign > 0.0 ? b : Mat3(run.A * turned.transpose());
-      }
-    }
-  }
-  /// JointMotions were gone through from the last: columns into the order of the coordinates.
-  static void reverse_columns(TreeBody const& body, TreeFrame& f) {
-    Mat6 const back = f.s;
-    int to = 0, end = f.speeds;
-    for (JointMotion const& m : body.motions) {
-      end -= m.speeds();
-      for (int k = 0; k < m.speeds(); ++k) f.s.col(to++) = back.col(end + k);
-    }
-  }
-  /// From the world's origin to the centre of mass; and (SᵀS)⁻¹.
-  static void finish_columns(TreeFrame& f) {
-    for (int k = 0; k < f.speeds; ++k) {
-      Vec3 const turn = f.s.col(k).template tail<3>();
-      f.s.col(k).template head<3>() += turn.cross(f.r);
-    }
-    for (int i = 0; i < f.speeds; ++i)
-      for (int j = 0; j < f.speeds; ++j) f.inverse(i, j) = f.s.col(i).dot(f.s.col(j));
-    invert_leading(f.inverse, f.speeds);
   }
 
   template <class F>

@@ -6,9 +6,8 @@
 /// same numbers:
 ///   p_k λ'_k = −r_dk − Σ_{j<k} row'_j,dk λ'_j,   λ_j = λ'_j − Σ_{k>j} m_kj λ_k.
 
-#include <map>
-
 #include <polybody/math/errors.hpp>
+#include <polybody/math/index_map.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/linear_rows.hpp>
 
@@ -68,7 +67,7 @@ class LinearEliminationOf {
       Pivot const& p = pivots_[k];
       double sum = -r[p.v];
       for (auto const& [j, entry] : p.above) sum -= entry * lambda[pivots_[j].row];
-      lambda[p.row] = sum / p.entries.at(p.v);
+      lambda[p.row] = sum / *p.entries.find(p.v);
     }
     for (std::size_t k = pivots_.size(); k-- > 0;)
       for (auto const& [j, m] : pivots_[k].multiples) lambda[pivots_[j].row] -= m * lambda[pivots_[k].row];
@@ -77,9 +76,9 @@ class LinearEliminationOf {
  private:
   /// A row after elimination, and how it came about.
   struct Pivot {
-    Index row;                   ///< of the model
-    Index v = -1;                ///< its dependent
-    std::map<Index, T> entries;  ///< by speeds
+    Index row;            ///< of the model
+    Index v = -1;         ///< its dependent
+    IndexMap<T> entries;  ///< by speeds
     T constant;
     Sequence<std::pair<std::size_t, T>> multiples = {};  ///< m_kj
     Sequence<std::pair<std::size_t, T>> above = {};      ///< row'_j,dk of earlier rows
@@ -111,8 +110,7 @@ class LinearEliminationOf {
       return;
     }
     for (std::size_t j = 0; j < pivots_.size(); ++j)
-      if (auto const found = pivots_[j].entries.find(p.v); found != pivots_[j].entries.end())
-        p.above.emplace_back(j, found->second);
+      if (T const* const found = pivots_[j].entries.find(p.v)) p.above.emplace_back(j, *found);
     pivot_of_[p.v] = pivots_.size();
     pivots_.push_back(std::move(p));
   }
@@ -122,10 +120,10 @@ class LinearEliminationOf {
     for (;;) {
       std::size_t first = pivots_.size();
       for (auto const& [v, entry] : p.entries)
-        if (auto const found = pivot_of_.find(v); found != pivot_of_.end()) first = std::min(first, found->second);
+        if (std::size_t const* const found = pivot_of_.find(v)) first = std::min(first, *found);
       if (first == pivots_.size()) return;
       Pivot const& by = pivots_[first];
-      double const m = p.entries.at(by.v) / by.entries.at(by.v);
+      double const m = *p.entries.find(by.v) / *by.entries.find(by.v);
       p.multiples.emplace_back(first, m);
       p.constant -= m * by.constant;
       for (auto const& [v, entry] : by.entries) {
@@ -139,23 +137,23 @@ class LinearEliminationOf {
   /// e_d of pivot k by independent coordinates; later pivots are solved for.
   void solve_for(std::size_t k) {
     Pivot const& p = pivots_[k];
-    double const pivot = p.entries.at(p.v);
-    std::map<Index, T> factors;
+    double const pivot = *p.entries.find(p.v);
+    IndexMap<T> factors;
     double constant = p.constant / pivot;
     for (auto const& [v, entry] : p.entries) {
       if (v == p.v) continue;
-      auto const later = solved_.find(v);
-      if (later == solved_.end()) {
+      std::size_t const* const later = solved_.find(v);
+      if (!later) {
         factors[v] -= entry / pivot;
         continue;
       }
-      Dependent const& d = dependents_[later->second];
+      Dependent const& d = dependents_[*later];
       constant -= entry / pivot * d.constant;
       for (Term const& t : d.terms) factors[t.v] -= entry / pivot * t.factor;
     }
-    Dependent d{coordinate_.at(p.v), p.v, constant, {}};
+    Dependent d{*coordinate_.find(p.v), p.v, constant, {}};
     for (auto const& [v, factor] : factors)
-      if (factor != 0.0) d.terms.push_back({coordinate_.at(v), v, factor});
+      if (factor != 0.0) d.terms.push_back({*coordinate_.find(v), v, factor});
     solved_[p.v] = dependents_.size();
     dependents_.push_back(std::move(d));
   }
@@ -163,8 +161,8 @@ class LinearEliminationOf {
   Sequence<Pivot> pivots_;
   Sequence<Dependent> dependents_;
   Sequence<Index> redundant_;
-  std::map<Index, Index> coordinate_;  // of a speed
-  std::map<Index, std::size_t> pivot_of_, solved_;
+  IndexMap<Index> coordinate_;  // of a speed
+  IndexMap<std::size_t> pivot_of_, solved_;
 };
 
 using LinearElimination = LinearEliminationOf<>;

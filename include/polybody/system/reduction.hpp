@@ -123,7 +123,7 @@ class ReductionOf {
       for (auto const& m : pool.markers) {
         Hook& h = hooks[std::size_t(m.published)];
         h.body = first + m.body;
-        h.frame.origin.head(m.point.u.size()) = m.point.u;
+        for (Index k = 0; k < m.point.u.size(); ++k) h.frame.origin[k] = m.point.u[k];
         h.frame.axes = m.axes;
       }
     }

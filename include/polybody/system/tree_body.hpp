@@ -7,6 +7,7 @@
 #include <polybody/bodies/shared/body.hpp>
 #include <polybody/joints/joint_motion.hpp>
 #include <polybody/math/sequence.hpp>
+#include <polybody/math/vector_algebra.hpp>
 
 namespace polybody {
 
@@ -30,16 +31,26 @@ struct TreeBody {
   bool carried() const { return row >= 0; }
 };
 
+namespace detail {
+/// 1, 3×3.
+template <class T>
+Mat<T, 3, 3> one() {
+  auto m = zeros<Mat<T, 3, 3>>();
+  for (int i = 0; i < 3; ++i) m(i, i) = T(1.0);
+  return m;
+}
+}  // namespace detail
+
 /// Where a body of a tree is and how it may move.
 template <class T>
 struct TreeFrameOf {
-  Vec<T, 3> r = Vec<T, 3>::Zero(), v = r, w = r, arm = r;
-  Mat<T, 3, 3> A = Mat<T, 3, 3>::Identity();
+  Vec<T, 3> r{0, 0, 0}, v{0, 0, 0}, w{0, 0, 0}, arm{0, 0, 0};
+  Mat<T, 3, 3> A = detail::one<T>();
   T angle = 0.0;
   int speeds = 0;
-  Mat<T, 6, 6> s = Mat<T, 6, 6>::Zero();        ///< S = [S_r; S_ω] by columns
-  Mat<T, 6, 6> inverse = Mat<T, 6, 6>::Zero();  ///< (SᵀS)⁻¹
-  Vec<T, 6> bias = Vec<T, 6>::Zero();           ///< [b_r; b_ω]
+  Mat<T, 6, 6> s = detail::zeros<Mat<T, 6, 6>>();        ///< S = [S_r; S_ω] by columns
+  Mat<T, 6, 6> inverse = detail::zeros<Mat<T, 6, 6>>();  ///< (SᵀS)⁻¹
+  Vec<T, 6> bias = detail::zeros<Vec<T, 6>>();           ///< [b_r; b_ω]
 };
 using TreeFrame = TreeFrameOf<double>;
 
@@ -72,7 +83,8 @@ void invert_leading(Mat<T, 6, 6>& a, int n) {
 /// The same of any matrix, by pivoting. −1, or the column that has no pivot beside entries of this size.
 template <class T>
 int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
-  Mat<T, 6, 6> out = Mat<T, 6, 6>::Identity();
+  auto out = detail::zeros<Mat<T, 6, 6>>();
+  for (int k = 0; k < 6; ++k) out(k, k) = 1.0;
   for (int k = 0; k < n; ++k) {
     int best = k;
     for (int r = k + 1; r < n; ++r)
@@ -81,12 +93,13 @@ int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
     T factors[6];
     for (int r = 0; r < n; ++r) factors[r] = a(r == best ? k : r, k);
     T const inverse = 1.0 / a(best, k);
-    for (auto* const m : {&a, &out}) {
-      m->row(k).swap(m->row(best));
-      m->row(k) *= inverse;
-      for (int r = 0; r < n; ++r)
-        if (r != k && factors[r] != 0.0) m->row(r) -= factors[r] * m->row(k);
-    }
+    for (auto* const m : {&a, &out})
+      for (int c = 0; c < n; ++c) {
+        std::swap((*m)(k, c), (*m)(best, c));
+        (*m)(k, c) *= inverse;
+        for (int r = 0; r < n; ++r)
+          if (r != k) (*m)(r, c) -= factors[r] * (*m)(k, c);
+      }
   }
   a = out;
   return -1;
@@ -99,7 +112,7 @@ template <class T>
 Mat<T, 3, 3> turn_about(int k, double angle) {
   int const i = (k + 1) % 3, j = (k + 2) % 3;
   double const c = std::cos(angle), s = std::sin(angle);
-  Mat<T, 3, 3> m = Mat<T, 3, 3>::Identity();
+  Mat<T, 3, 3> m = one<T>();
   m(i, i) = m(j, j) = c;
   m(j, i) = s;
   m(i, j) = -s;
@@ -127,19 +140,27 @@ struct RunnerOf {
 
   /// To a point of the same rigid piece, `along` away.
   void go(Vec3 const& along) {
-    Vec3 const rate = w.cross(along);
-    r += along;
-    v += rate;
-    a += alpha.cross(along) + w.cross(rate);
+    Vec3 const rate = cross<T>(w, along), sideways = cross<T>(alpha, along), inwards = cross<T>(w, rate);
+    for (int i = 0; i < 3; ++i) {
+      r[i] += along[i];
+      v[i] += rate[i];
+      a[i] += sideways[i] + inwards[i];
+    }
   }
   void slide(Vec3 const& n, double s, double rate) {
-    go(s * n);
-    v += rate * n;
-    a += (2.0 * rate) * w.cross(n);
+    go(scaled<T>(n, s));
+    Vec3 const sideways = cross<T>(w, n);
+    for (int i = 0; i < 3; ++i) {
+      v[i] += rate * n[i];
+      a[i] += 2.0 * rate * sideways[i];
+    }
   }
   void turn(Vec3 const& spin) {
-    alpha += w.cross(spin);
-    w += spin;
+    Vec3 const sideways = cross<T>(w, spin);
+    for (int i = 0; i < 3; ++i) {
+      alpha[i] += sideways[i];
+      w[i] += spin[i];
+    }
   }
 };
 

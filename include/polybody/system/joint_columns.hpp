@@ -1,0 +1,75 @@
+#pragma once
+/// \file
+/// The columns of a joint: what each of its speeds moves of the body that it carries.
+
+#include <utility>
+
+#include <polybody/math/quaternion.hpp>
+#include <polybody/system/tree_body.hpp>
+
+namespace polybody::detail {
+
+/// One motion; its columns as [moment arm's origin; axis] until `finish_columns` knows where the body's centre comes
+/// to lie.
+template <class T>
+void move(JointMotion const& m, double sign, double const* x, double const* u, RunnerOf<T>& run,
+                 TreeFrameOf<T>& f) {
+  Vec<T, 3> const none(0, 0, 0), n(sign * run.A(0, m.axis), sign * run.A(1, m.axis), sign * run.A(2, m.axis));
+  auto const column = [&](Vec<T, 3> const& slide, Vec<T, 3> const& turn) {
+    Vec<T, 3> const carried = cross<T>(run.r, turn);  // at the world's origin
+    for (int i = 0; i < 3; ++i) {
+      f.s(i, f.speeds) = slide[i] + carried[i];
+      f.s(3 + i, f.speeds) = turn[i];
+    }
+    ++f.speeds;
+  };
+  switch (m.kind) {
+    case JointMotion::Kind::slide:
+      column(n, none);
+      run.slide(n, x[0], u[0]);
+      break;
+    case JointMotion::Kind::turn:
+    case JointMotion::Kind::screw:
+      column(scaled<T>(n, m.pitch), n);
+      if (m.kind == JointMotion::Kind::screw) run.slide(n, m.pitch * x[0], m.pitch * u[0]);
+      run.turn(scaled<T>(n, u[0]));
+      run.A = product<T>(run.A, turn_about<T>(m.axis, sign * x[0]));
+      f.angle += n[2] * x[0];  // in the plane the axis is the normal, this way or that
+      break;
+    case JointMotion::Kind::ball: {
+      Mat<T, 3, 3> const turned = rotation_matrix<T>(Quaternion<T>(x[0], x[1], x[2], x[3]));
+      Mat<T, 3, 3> const b = sign > 0.0 ? product<T>(run.A, turned) : run.A;  // the axes of frame b
+      for (int k = 0; k < 3; ++k) column(none, {sign * b(0, k), sign * b(1, k), sign * b(2, k)});
+      run.turn(scaled<T>(product<T, 1>(b, Vec<T, 3>(u[0], u[1], u[2])), sign));
+      run.A = sign > 0.0 ? b : product<T>(run.A, transposed<T>(turned));
+    }
+  }
+}
+/// JointMotions were gone through from the last: columns into the order of the coordinates.
+template <class T>
+void reverse_columns(TreeBody const& body, TreeFrameOf<T>& f) {
+  Mat<T, 6, 6> const back = f.s;
+  int to = 0, end = f.speeds;
+  for (JointMotion const& m : body.motions) {
+    end -= m.speeds();
+    for (int k = 0; k < m.speeds(); ++k, ++to)
+      for (int i = 0; i < 6; ++i) f.s(i, to) = back(i, end + k);
+  }
+}
+/// From the world's origin to the centre of mass; and (SᵀS)⁻¹.
+template <class T>
+void finish_columns(TreeFrameOf<T>& f) {
+  for (int k = 0; k < f.speeds; ++k) {
+    Vec<T, 3> const carried = cross<T>({f.s(3, k), f.s(4, k), f.s(5, k)}, f.r);
+    for (int i = 0; i < 3; ++i) f.s(i, k) += carried[i];
+  }
+  for (int i = 0; i < f.speeds; ++i)
+    for (int j = 0; j < f.speeds; ++j) {
+      double sum = 0.0;
+      for (int k = 0; k < 6; ++k) sum += f.s(k, i) * f.s(k, j);
+      f.inverse(i, j) = sum;
+    }
+  invert_leading(f.inverse, f.speeds);
+}
+
+}  // namespace polybody::detail
