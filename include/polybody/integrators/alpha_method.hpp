@@ -344,7 +344,8 @@ struct AlphaMethod {
     };
     VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);
     if (!differences_agree(x.a, quarter, half, full, h, w)) return false;
-    VecX const change = acceleration_after(h) - full;
+    VecX change = acceleration_after(h);
+    for (Index i = 0; i < change.size(); ++i) change[i] -= full[i];
     return w.of_each_part(
         [&](Index first, Index end) { return norm(change, first, end) <= 0.5 * h * norm(w.jerk, first, end); });
   }

@@ -15,7 +15,7 @@ struct Distance {
 
   Required<double> length;  ///< L [m]
 
-  Mat3 triad() const { return Mat3::Identity(); }
+  Mat3 triad() const { return identity(); }
   void check(std::string const& what) const {
     if (!(length > 0.0) || !std::isfinite(length))
       throw InvalidInput{what, ": the length must be positive and finite, but is ", length,

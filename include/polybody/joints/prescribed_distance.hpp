@@ -16,7 +16,7 @@ struct PrescribedDistance {
   Law law;                  ///< stroke x [m], rate and acceleration as functions of time [s]
   Required<double> length;  ///< L, the distance at x = 0 [m]; L + x stays positive
 
-  Mat3 triad() const { return Mat3::Identity(); }
+  Mat3 triad() const { return identity(); }
   void check(std::string const& what) const {
     require_positive(length, what, ": the length");
     check_drive(law, what + ": the law of time");

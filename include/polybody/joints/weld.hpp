@@ -11,7 +11,7 @@ struct Weld {
   static constexpr World world = World::space;
   static constexpr Freedoms free = {};
 
-  Mat3 triad() const { return Mat3::Identity(); }
+  Mat3 triad() const { return identity(); }
 
   template <StateScalar T>
   Gap<6, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {

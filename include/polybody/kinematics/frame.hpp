@@ -9,10 +9,10 @@ namespace polybody {
 /// Place, orientation and motion of a marker, all in world axes.
 template <StateScalar T = double>
 struct Frame {
-  Vec<T, 3> r = Vec<T, 3>::Zero();            ///< (3) origin [m]
-  Mat<T, 3, 3> A = Mat<T, 3, 3>::Identity();  ///< (3×3) columns are the marker's axes
-  Vec<T, 3> v = Vec<T, 3>::Zero();            ///< (3) velocity of the origin [m/s]
-  Vec<T, 3> w = Vec<T, 3>::Zero();            ///< (3) angular velocity [rad/s]
+  Vec<T, 3> r = Vec<T, 3>::Zero();  ///< (3) origin [m]
+  Mat<T, 3, 3> A = identity<T>();   ///< (3×3) columns are the marker's axes
+  Vec<T, 3> v = Vec<T, 3>::Zero();  ///< (3) velocity of the origin [m/s]
+  Vec<T, 3> w = Vec<T, 3>::Zero();  ///< (3) angular velocity [rad/s]
 };
 
 /// Force and moment about the marker's origin, in world axes.
@@ -38,8 +38,8 @@ constexpr bool same_world(World a, World b) { return a == b || a == World::both 
 
 /// Where a body stands at the start, and how it is turned: placement of its own axes in the world.
 struct Placement {
-  Vec3 origin = Vec3::Zero();    ///< (3) [m]
-  Mat3 axes = Mat3::Identity();  ///< (3×3) columns are the body's axes in world axes
+  Vec3 origin = Vec3::Zero();  ///< (3) [m]
+  Mat3 axes = identity();      ///< (3×3) columns are the body's axes in world axes
 
   /// In the plane: origin (x, y) and the angle from world x to body x [rad].
   template <class = void>  // compiled where it is used

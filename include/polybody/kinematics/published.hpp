@@ -21,11 +21,11 @@ template <StateScalar T = double>
 struct Published {
   Frame<T> frame;
   Vec<T, 6> bias = Vec<T, 6>::Zero();
-  Mat<T, 3, 3> body_axes = Mat<T, 3, 3>::Identity();  ///< rigid only: A of the body
-  Vec<T, 3> arm = Vec<T, 3>::Zero();                  ///< rigid only: ρ = A u, world axes [m]
-  T* jacobian = nullptr;                              ///< dense only: 6×columns, column-major, in the arena of the data
-  Index first = 0;                                    ///< first velocity column it touches
-  Index columns = 0;                                  ///< how many
+  Mat<T, 3, 3> body_axes = identity<T>();  ///< rigid only: A of the body
+  Vec<T, 3> arm = Vec<T, 3>::Zero();       ///< rigid only: ρ = A u, world axes [m]
+  T* jacobian = nullptr;                   ///< dense only: 6×columns, column-major, in the arena of the data
+  Index first = 0;                         ///< first velocity column it touches
+  Index columns = 0;                       ///< how many
   JacobianShape shape = JacobianShape::ground;
 
   using DenseMap = Eigen::Map<Mat<T, 6, Eigen::Dynamic> const>;

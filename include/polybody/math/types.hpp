@@ -49,6 +49,14 @@ M zeros() {
 }
 }  // namespace detail
 
+/// 1, 3×3, without an expression type.
+template <class T = double>
+Mat<T, 3, 3> identity() {
+  auto m = detail::zeros<Mat<T, 3, 3>>();
+  for (int i = 0; i < 3; ++i) m(i, i) = T(1.0);
+  return m;
+}
+
 /// A number that decides physics: it has no default, so a forgotten one does not compile.
 template <class T>
 struct Required {

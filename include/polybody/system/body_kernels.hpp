@@ -142,7 +142,7 @@ Published<double> BodyKernels<B, T>::publish_point(B const& body, typename B::Po
   out.columns = point_columns(body, point);
   jacobian.resize(std::size_t(6 * out.columns));
   out.jacobian = jacobian.data();
-  body.template publish<double>(point, Mat3::Identity(), q, v, out);
+  body.template publish<double>(point, identity(), q, v, out);
   return out;
 }
 template <class B, StateScalar T>

@@ -137,7 +137,8 @@ template <class J, class A, class B>
   if constexpr (AddsRows<P> && A::world != World::plane && B::world != World::plane &&
                 (LeavesOneTurn<G> || DrivesTurn<G>))
     if constexpr ((HasRigidLayout<A> || std::is_same_v<A, Ground>) && (HasRigidLayout<B> || std::is_same_v<B, Ground>))
-      parts.drive_axes.add(DrivesTurn<G>, {first_speed(a), first_speed(b)}, triad.col(2), name);
+      parts.drive_axes.add(DrivesTurn<G>, {first_speed(a), first_speed(b)}, Vec3(triad(0, 2), triad(1, 2), triad(2, 2)),
+                           name);
   Index const pa = publish_at(parts, a, transposed_product(axes_a, triad));
   Index const pb = publish_at(parts, b, transposed_product(axes_b, triad));
   JointEntry<J> entry{joint, pa, pb, -1, name};
@@ -166,7 +167,7 @@ ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   (parts.require_own(markers.marker.model, name), ...);
   (require_observed(markers.marker, F::needs, name), ...);
   parts.force_names.require_free(name, "force");
-  pool.push_back({force, {publish_at(parts, markers, Mat3::Identity())...}, name, parts.states});
+  pool.push_back({force, {publish_at(parts, markers, identity())...}, name, parts.states});
   parts.states += states_of<F>();
   parts.force_names.take(name);
   return {parts.serial, Index(pool.size()) - 1, std::move(name)};
@@ -184,7 +185,7 @@ ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
     require_observed(m.marker, F::needs, name);
   }
   parts.force_names.require_free(name, "force");
-  for (PooledMarker<B> const& m : many) entry.markers.push_back(publish_at(parts, m, Mat3::Identity()));
+  for (PooledMarker<B> const& m : many) entry.markers.push_back(publish_at(parts, m, identity()));
   entry.force.set_many(Index(many.size()));
   pool.push_back(std::move(entry));
   parts.force_names.take(name);
@@ -199,7 +200,7 @@ void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, Poole
   name = name_or_next(std::move(name), "opponent", group.markers.size() - std::size_t(group.force.many()));
   law.check(sentence_of({"\"", group.name, "\", \"", name, "\""}));
   require_observed(one.marker, needs_of_second<Law>(), group.name);
-  group.markers.push_back(publish_at(parts, one, Mat3::Identity()));
+  group.markers.push_back(publish_at(parts, one, identity()));
   group.force.pair_with(law, Index(group.markers.size()) - 1, std::move(name));
 }
 

@@ -12,8 +12,7 @@ namespace polybody::detail {
 /// One motion; its columns as [moment arm's origin; axis] until `finish_columns` knows where the body's centre comes
 /// to lie.
 template <class T>
-void move(JointMotion const& m, double sign, double const* x, double const* u, RunnerOf<T>& run,
-                 TreeFrameOf<T>& f) {
+void move(JointMotion const& m, double sign, double const* x, double const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
   Vec<T, 3> const none(0, 0, 0), n(sign * run.A(0, m.axis), sign * run.A(1, m.axis), sign * run.A(2, m.axis));
   auto const column = [&](Vec<T, 3> const& slide, Vec<T, 3> const& turn) {
     Vec<T, 3> const carried = cross<T>(run.r, turn);  // at the world's origin

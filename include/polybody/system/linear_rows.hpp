@@ -47,9 +47,9 @@ struct LinearPointOf {
   Index columns = 0;
   MatX position;  ///< (size × columns)
   std::array<MatX, 3> gradients;
-  int gradient_count = 0;     ///< 3 and no columns for the ground
-  Vec3 at = Vec3::Zero();     ///< r
-  Mat3 J = Mat3::Identity();  ///< [r_x r_y r_z] in the reference, as far as there are gradients
+  int gradient_count = 0;  ///< 3 and no columns for the ground
+  Vec3 at = Vec3::Zero();  ///< r
+  Mat3 J = identity();     ///< [r_x r_y r_z] in the reference, as far as there are gradients
 
   bool complete() const { return gradient_count == 3; }
   /// The map of J J₀⁻¹ w: what has become of the direction w of the reference. A body with r′ alone knows that of r′.

@@ -56,7 +56,7 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     (JointKernels<Js, T>::gamma(joints<Js>(m), at.t, data, out), ...);
   }
   static void element_forces(void const* m, At<T> at, Vector const& a, double load_factor, Data<T>& data, Vector& r) {
-    Unbalance<T> const u{at, a, model_of(m).gravity().g * load_factor};
+    Unbalance<T> const u{at, a, scaled<double>(model_of(m).gravity().g, load_factor)};
     (BodyKernels<Bs, T>::add_forces(bodies<Bs>(m), of_bodies<Bs>(data), u, data, r), ...);
   }
   static void push_forces([[maybe_unused]] void const* m, [[maybe_unused]] double t, Data<T>& data) {

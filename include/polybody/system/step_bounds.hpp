@@ -101,7 +101,7 @@ void StepBounds::begin(System& system, StepLimits const& limits, VecX const& q, 
   energy_ = entries.energy ? limits.energy : never;
   if (entries.energy) start_ = entries.energy(model, system.at(), data);
   began_ = t;
-  judged_ = energy_ < never ? 10.0 * v.squaredNorm() : never;
+  judged_ = energy_ < never ? 10.0 * squares(v) : never;
   worked_ = 0.0;
   gaps_.clear();
   actions_.clear();

@@ -31,21 +31,11 @@ struct TreeBody {
   bool carried() const { return row >= 0; }
 };
 
-namespace detail {
-/// 1, 3×3.
-template <class T>
-Mat<T, 3, 3> one() {
-  auto m = zeros<Mat<T, 3, 3>>();
-  for (int i = 0; i < 3; ++i) m(i, i) = T(1.0);
-  return m;
-}
-}  // namespace detail
-
 /// Where a body of a tree is and how it may move.
 template <class T>
 struct TreeFrameOf {
   Vec<T, 3> r{0, 0, 0}, v{0, 0, 0}, w{0, 0, 0}, arm{0, 0, 0};
-  Mat<T, 3, 3> A = detail::one<T>();
+  Mat<T, 3, 3> A = identity<T>();
   T angle = 0.0;
   int speeds = 0;
   Mat<T, 6, 6> s = detail::zeros<Mat<T, 6, 6>>();        ///< S = [S_r; S_ω] by columns
@@ -112,7 +102,7 @@ template <class T>
 Mat<T, 3, 3> turn_about(int k, double angle) {
   int const i = (k + 1) % 3, j = (k + 2) % 3;
   double const c = std::cos(angle), s = std::sin(angle);
-  Mat<T, 3, 3> m = one<T>();
+  Mat<T, 3, 3> m = identity<T>();
   m(i, i) = m(j, j) = c;
   m(j, i) = s;
   m(i, j) = -s;

@@ -70,7 +70,7 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   { b.strain_energy(e, x) } -> std::convertible_to<double>;
   { b.gravity_energy(e, x, g) } -> std::convertible_to<double>;
   { b.first_column(p) } -> std::convertible_to<Index>;
-  b.template publish<double>(p, Mat3::Identity().eval(), x, x, published);
+  b.template publish<double>(p, identity(), x, x, published);
   b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
 };
 
@@ -156,7 +156,7 @@ template <class B, class T>
 concept SharesPose = requires(B const b, std::span<T const> x, typename B::Point p, typename B::template Pose<T>& pose,
                               Published<T>& out) {
   b.template pose<T>(x, x, pose);
-  b.publish(p, Mat3::Identity().eval(), pose, out);
+  b.publish(p, identity(), pose, out);
 };
 
 namespace detail {
@@ -191,8 +191,8 @@ void load_stiffness_by_duals(B const& body, typename B::Point const& p, std::spa
   published.jacobian = jacobian.data();
   published.columns = n;
   published.shape = JacobianShape::dense;
-  body.template publish<D>(body.local(p), Mat3::Identity().eval(), std::span<D const>(coordinates),
-                           std::span<D const>(at_rest), published);
+  body.template publish<D>(body.local(p), identity(), std::span<D const>(coordinates), std::span<D const>(at_rest),
+                           published);
   Mat<D, 6, 1> wrench;
   for (int i = 0; i < 3; ++i) {
     wrench[i] = D(w.f[i]);

@@ -11,7 +11,7 @@ struct Revolute {
   static constexpr World world = World::plane;
   static constexpr Freedoms free = {false, false, false, false, false, true};
 
-  Mat3 triad() const { return Mat3::Identity(); }
+  Mat3 triad() const { return identity(); }
 
   template <StateScalar T>
   Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
