@@ -8,56 +8,9 @@
 #include <array>
 
 #include <polybody/math/dual.hpp>
-#include <polybody/math/types.hpp>
+#include <polybody/math/vector_algebra.hpp>
 
 namespace polybody {
-
-/// |a|², a·b, a − b and a × b: products and reductions of Eigen would cost more to compile.
-template <class T>
-T squared_norm(Vec<T, 3> const& a) {
-  return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-}
-template <class T>
-T dot(Vec<T, 3> const& a, Vec<T, 3> const& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <class T>
-Vec<T, 3> difference(Vec<T, 3> const& a, Vec<T, 3> const& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-template <class T>
-Vec<T, 3> cross(Vec<T, 3> const& a, Vec<T, 3> const& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// A B and AᵀB, 3×3, likewise.
-template <class T>
-Mat<T, 3, 3> product(Mat<T, 3, 3> const& a, Mat<T, 3, 3> const& b) {
-  Mat<T, 3, 3> m;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) m(i, j) = a(i, 0) * b(0, j) + a(i, 1) * b(1, j) + a(i, 2) * b(2, j);
-  return m;
-}
-template <class T>
-Mat<T, 3, 3> transposed_product(Mat<T, 3, 3> const& a, Mat<T, 3, 3> const& b) {
-  Mat<T, 3, 3> m;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) m(i, j) = a(0, i) * b(0, j) + a(1, i) * b(1, j) + a(2, i) * b(2, j);
-  return m;
-}
-
-/// ã with ã b = a × b, 3×3.
-template <class T>
-Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
-  Mat<T, 3, 3> s;
-  for (int i = 0; i < 3; ++i) {
-    int const j = (i + 1) % 3, k = (i + 2) % 3;
-    s(i, i) = T(0);
-    s(j, i) = a[k];
-    s(i, j) = -a[k];
-  }
-  return s;
-}
 
 /// 1 + b ã + c ã², entry by entry: matrix products of Eigen would cost more to compile.
 template <class T>

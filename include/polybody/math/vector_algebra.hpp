@@ -1,0 +1,89 @@
+#pragma once
+/// \file
+/// Vectors and matrices of three rows, entry by entry: Eigen's expressions of them would cost more to compile.
+
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+/// |a|², a·b, a − b, a s and a × b.
+template <class T>
+T squared_norm(Vec<T, 3> const& a) {
+  return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+}
+template <class T>
+T dot(Vec<T, 3> const& a, Vec<T, 3> const& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class T>
+Vec<T, 3> difference(Vec<T, 3> const& a, Vec<T, 3> const& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <class T>
+Vec<T, 3> scaled(Vec<T, 3> const& a, double s) {
+  return {a[0] * s, a[1] * s, a[2] * s};
+}
+template <class T>
+Vec<T, 3> cross(Vec<T, 3> const& a, Vec<T, 3> const& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// A B, AᵀB and Aᵀ.
+template <class T, int n>
+Mat<T, 3, n> product(Mat<T, 3, 3> const& a, Mat<T, 3, n> const& b) {
+  Mat<T, 3, n> m;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < 3; ++i) m(i, j) = a(i, 0) * b(0, j) + a(i, 1) * b(1, j) + a(i, 2) * b(2, j);
+  return m;
+}
+template <class T, int k, int n>
+Mat<T, k, n> transposed_product(Mat<T, 3, k> const& a, Mat<T, 3, n> const& b) {
+  Mat<T, k, n> m;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < k; ++i) m(i, j) = a(0, i) * b(0, j) + a(1, i) * b(1, j) + a(2, i) * b(2, j);
+  return m;
+}
+template <class T>
+Mat<T, 3, 3> transposed(Mat<T, 3, 3> const& a) {
+  Mat<T, 3, 3> m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = a(j, i);
+  return m;
+}
+
+/// ã with ã b = a × b, 3×3.
+template <class T>
+Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
+  Mat<T, 3, 3> s;
+  for (int i = 0; i < 3; ++i) {
+    int const j = (i + 1) % 3, k = (i + 2) % 3;
+    s(i, i) = T(0);
+    s(j, i) = a[k];
+    s(i, j) = -a[k];
+  }
+  return s;
+}
+
+/// ã B: a × each column.
+template <class T, int n>
+Mat<T, 3, n> skew_product(Vec<T, 3> const& a, Mat<T, 3, n> const& b) {
+  Mat<T, 3, n> m;
+  for (int i = 0; i < 3; ++i) {
+    int const j = (i + 1) % 3, k = (i + 2) % 3;
+    for (int c = 0; c < n; ++c) m(i, c) = a[j] * b(k, c) - a[k] * b(j, c);
+  }
+  return m;
+}
+/// ã b̃ = b aᵀ − (a·b) 1.
+template <class T>
+Mat<T, 3, 3> skew_of_skew(Vec<T, 3> const& a, Vec<T, 3> const& b) {
+  T const along = dot(a, b);
+  Mat<T, 3, 3> m;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) m(i, j) = b[i] * a[j];
+    m(i, i) -= along;
+  }
+  return m;
+}
+
+}  // namespace polybody
