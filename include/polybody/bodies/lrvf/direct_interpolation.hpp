@@ -28,11 +28,12 @@ Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first) {
 
 /// The rotation vectors Ψ of the nodes relative to the bar's placement R₀, interpolated linearly: R(ξ) = R₀ exp(Ψ(ξ)),
 /// K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. For comparison; use `Objective`. Two faults, both measured in the tests:
-/// - It is not objective. While an element turns by φ about one axis and is carried rigidly about another, its curvature
+/// - It is not objective. While an element turns by φ about one axis and is carried rigidly about another, its
+/// curvature
 ///   and energy change by terms of the order of φ² (energy: 1 % of φ² after a carriage of 2 rad).
 /// - Ψ₁ is the vector with |Ψ₁| ≤ π, and Ψ₂ the nearer of Ψ and its complement Ψ (1 − 2π/|Ψ|). As node 1 passes
-///   |Ψ₁| = π both change sheets, and the curvature jumps, by terms of the order of φ³/l, unless the element turns about
-///   Ψ itself.
+///   |Ψ₁| = π both change sheets, and the curvature jumps, by terms of the order of φ³/l, unless the element turns
+///   about Ψ itself.
 class Direct {
  public:
   static constexpr bool objective = false;
@@ -76,9 +77,9 @@ class Direct {
 
   template <StateScalar T>
   struct Section : SectionMotion<T> {
-    double share[2];                     ///< 1 − ξ, ξ
-    Vec<T, 3> psi, node[2];              ///< Ψ, Ψ₁ and Ψ₂
-    Mat<T, 3, 3> jacobian, inverse[2];   ///< Jr(Ψ), Jr⁻¹(Ψ₁) and Jr⁻¹(Ψ₂)
+    double share[2];                    ///< 1 − ξ, ξ
+    Vec<T, 3> psi, node[2];             ///< Ψ, Ψ₁ and Ψ₂
+    Mat<T, 3, 3> jacobian, inverse[2];  ///< Jr(Ψ), Jr⁻¹(Ψ₁) and Jr⁻¹(Ψ₂)
   };
   /// Ω = Jr(Ψ) Ψ˙,  Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ.
   template <StateScalar T>

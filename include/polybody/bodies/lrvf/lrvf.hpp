@@ -218,7 +218,6 @@ class Lrvf {
     if (inside(p)) bias = product(s.R, interpolation_.template bias<T>(s, turning));
     for (int i = 0; i < 3; ++i) arm[i] = s.R(i, 1) * p.y + s.R(i, 2) * p.z;
     Vec<T, 3> const rate = cross(w, arm), tangential = cross(bias, arm), centripetal = cross(w, rate);
-    Mat<T, 3, 6> const slide = skew_product(arm, spin);
     for (int i = 0; i < 3; ++i) {
       out.frame.r[i] = q[7 * e + i] * (1.0 - p.xi) + q[7 * e + 7 + i] * p.xi + arm[i];
       out.frame.v[i] = v[6 * e + i] * (1.0 - p.xi) + v[6 * e + 6 + i] * p.xi + rate[i];
@@ -230,12 +229,17 @@ class Lrvf {
     }
     for (int k = 0; k < 6; ++k) {  // a column of (ṙ₁, ṙ₂), and one of (Ω₁, Ω₂): P × ρ, P
       T *const move = out.jacobian + 6 * (turn_column(k) - 3), *const turn = move + 18;
+      T const x = spin(0, k), y = spin(1, k), z = spin(2, k);
       for (int i = 0; i < 3; ++i) {
         move[i] = T(i != k % 3 ? 0.0 : k < 3 ? 1.0 - p.xi : p.xi);
         move[3 + i] = T(0.0);
-        turn[i] = -slide(i, k);
-        turn[3 + i] = spin(i, k);
       }
+      turn[0] = y * arm[2] - z * arm[1];
+      turn[1] = z * arm[0] - x * arm[2];
+      turn[2] = x * arm[1] - y * arm[0];
+      turn[3] = x;
+      turn[4] = y;
+      turn[5] = z;
     }
     out.shape = JacobianShape::dense;
     out.columns = 12;
@@ -356,18 +360,13 @@ Lrvf<Interpolation>::Lrvf(Bar const& bar, BarConstants const& c, Index n, Refere
     for (int k = 0; k < 3; ++k) q[7 * i + k] = bar.placement.origin[k] + along[k];
     set_entries<4>(q, 7 * i + 3, quaternion_of(product(axes, section.axes)));
   }
+  char const* const advice =
+      ". The reference curve's parameter must be its arc length; use more elements on a closed curve.";
   for (Index e = 0; e < n; ++e) {
     Free& free = free_[std::size_t(e)];
     free.chord = std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e))));
     if (!(free.chord > 1e-6 * l_ && free.chord < (1.0 + 1e-6) * l_))
-      throw InvalidInput{"Lrvf: element ",
-                         double(e),
-                         " of arc length ",
-                         l_,
-                         " has a chord of ",
-                         free.chord,
-                         ". The reference curve's parameter must be its arc length; use more elements "
-                         "on a closed curve."};
+      throw InvalidInput{"Lrvf: element ", double(e), " of arc length ", l_, " has a chord of ", free.chord, advice};
     MiddleSection<double> at;
     place<double>(e, std::span<double const>(q), at, free.gamma);
     free.turn = at.turn;
