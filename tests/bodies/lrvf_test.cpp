@@ -84,10 +84,10 @@ TEST(SpatialLrvf, MiddleSectionLiesOnTheRotationField) {
     Vec3 const phi = angle * Vec3(0.6, -0.48, 0.64);
     Quaternion<double> const b = quaternion_plus<double>(a, phi);
     MiddleSection<double> middle;
-    SectionMotion<double> section;
+    Objective::Section<double> section;
     Objective const field{Placement{}};
     field.middle<double>(a, -b, middle);  // q and −q are one rotation
-    field.section<double>(0.5, a, b, Vec6::Zero(), section);
+    field.section<double>(0.5, a, b, section);
     EXPECT_LT((middle.R - section.R).norm(), 1e-14) << angle;
     EXPECT_LT((middle.R - rotation_matrix<double>(a) * exp_so3<double>(0.5 * phi)).norm(), 1e-14) << angle;
     EXPECT_LT((middle.spin - section.spin).norm(), 1e-14) << angle;

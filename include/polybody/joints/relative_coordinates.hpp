@@ -122,14 +122,6 @@ struct RelativeCoordinates {
   }
 
  private:
-  template <StateScalar T>
-  static Mat<T, 3, 3> transposed(Mat<T, 3, 3> const& m) {
-    Mat<T, 3, 3> out;
-    for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 3; ++i) out(i, j) = m(j, i);
-    return out;
-  }
-
   /// Swing and twist of R = AaᵀAb, and B with [ṡ; ψ̇] = B w:
   ///   tan(|s|/2) = |(n₁, n₂)|/(1 + n₃),  ψ = atan2(R₂₁ − R₁₂, R₁₁ + R₂₂),  B = Jl⁻¹ + (e₃ − Jl⁻¹n) yᵀ,  Jl⁻¹n =
   ///   Jr⁻¹e₃.

@@ -32,8 +32,12 @@ Vec<T, 3> cross(Vec<T, 3> const& a, Vec<T, 3> const& b) {
 template <class T, int n>
 Mat<T, 3, n> product(Mat<T, 3, 3> const& a, Mat<T, 3, n> const& b) {
   Mat<T, 3, n> m;
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < 3; ++i) m(i, j) = a(i, 0) * b(0, j) + a(i, 1) * b(1, j) + a(i, 2) * b(2, j);
+  for (int j = 0; j < n; ++j) {
+    T const x = b(0, j), y = b(1, j), z = b(2, j);
+    m(0, j) = a(0, 0) * x + a(0, 1) * y + a(0, 2) * z;
+    m(1, j) = a(1, 0) * x + a(1, 1) * y + a(1, 2) * z;
+    m(2, j) = a(2, 0) * x + a(2, 1) * y + a(2, 2) * z;
+  }
   return m;
 }
 template <class T, int k, int n>

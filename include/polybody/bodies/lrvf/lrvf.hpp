@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <polybody/bodies/lrvf/direct_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf_section.hpp>
 #include <polybody/bodies/shared/body.hpp>
 
@@ -83,24 +84,25 @@ class Lrvf {
   template <StateScalar T>
   void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
     for (Index i = 0; i <= elements(); ++i) {
-      part<3>(out, 7 * i) = part<3>(q, 7 * i) + part<3>(delta, 6 * i);
-      part<4>(out, 7 * i + 3) = quaternion_plus<T>(part<4>(q, 7 * i + 3), part<3>(delta, 6 * i + 3));
+      for (int k = 0; k < 3; ++k)
+        out[std::size_t(7 * i + k)] = q[std::size_t(7 * i + k)] + delta[std::size_t(6 * i + k)];
+      set_entries<4>(out, 7 * i + 3, quaternion_plus<T>(turned<T>(q, i), entries<3>(delta, 6 * i + 3)));
     }
   }
   /// δ˙ with q ⊞ δ(t) moving with v: Ω = Jr(δ) δ˙ at each node.
   template <StateScalar T>
   void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
     for (Index i = 0; i < speeds(); i += 6) {
-      part<3>(out, i) = part<3>(v, i);
-      part<3>(out, i + 3) = right_jacobian_inverse<T>(part<3>(delta, i + 3)) * part<3>(v, i + 3);
+      set_entries<3>(out, i, entries<3>(v, i));
+      set_entries<3>(out, i + 3, product(right_jacobian_inverse<T>(entries<3>(delta, i + 3)), entries<3>(v, i + 3)));
     }
   }
   template <class T = double>  // compiled where it is used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     for (Index i = 0; i <= elements(); ++i) {
-      Vec<T, 3> const r = part<3>(q, 7 * i);
-      part<3>(v, 6 * i) = v0 + omega.cross(r);
-      part<3>(v, 6 * i + 3) = rotation_matrix<T>(part<4>(q, 7 * i + 3)).transpose() * omega;
+      Vec<T, 3> const turning = cross<T>(omega, entries<3>(q, 7 * i));
+      for (int k = 0; k < 3; ++k) v[6 * i + k] = v0[k] + turning[k];
+      set_entries<3>(v, 6 * i + 3, transposed_product<T>(rotation_matrix<T>(turned<double>(q, i)), omega));
     }
   }
 
@@ -129,17 +131,16 @@ class Lrvf {
   void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
     StrainedSection<T> s;
     strain<T>(e, q, v, s);
-    Vec<T, 3> const pull = s.at.R * s.n * (l_ / s.chord), t = s.n.cross(s.gamma) * l_;
-    Vec<T, 6> const torque = s.at.spin.transpose() * t + s.at.bend.transpose() * s.m;
+    Vec<T, 3> const pull = product(s.at.R, s.n), slide = cross(s.n, s.gamma), t = scaled<T>(slide, l_);
+    Vec<T, 6> const of_t = transposed_product(s.at.spin, t), of_m = transposed_product(s.at.bend, s.m);
+    double const ratio = l_ / s.chord;
     for (int i = 0; i < 2; ++i) {
-      Vec<T, 3> const omega = part<3>(v, 6 * (e + i) + 3);
-      Vec<T, 3> momentum;
-      for (int k = 0; k < 3; ++k) momentum[k] = omega[k] * rotary_[k];
-      if (i == 0)
-        out.template segment<3>(0) = pull;
-      else
-        out.template segment<3>(6) = -pull;
-      out.template segment<3>(6 * i + 3) = momentum.cross(omega) - torque.template segment<3>(3 * i);
+      Vec<T, 3> const omega = entries<3>(v, 6 * (e + i) + 3);
+      Vec<T, 3> const gyro = cross(spun(omega), omega);
+      for (int k = 0; k < 3; ++k) {
+        out[6 * i + k] = pull[k] * (i == 0 ? ratio : -ratio);
+        out[6 * i + 3 + k] = gyro[k] - (of_t[3 * i + k] + of_m[3 * i + k]);
+      }
     }
   }
 
@@ -147,40 +148,40 @@ class Lrvf {
   template <class T>  // compiled where it is used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
-    using V3 = Vec<T, 3>;
     StrainedSection<T> s;
     strain<T>(e, q, v, s);
     MiddleGradient by;
-    V3 const t = l_ * s.n.cross(s.gamma);
+    Vec<T, 3> const t = scaled<T>(cross(s.n, s.gamma), l_);
     interpolation_.gradient(turned<T>(q, e), turned<T>(q, e + 1), t, s.m, s.turning, by);
     section_.tangent(s, by, ck, cd, k);
-    for (int i = 0; i < 2; ++i) {
-      V3 const omega = part<3>(v, 6 * (e + i) + 3);
-      k.template block<3, 3>(6 * i + 3, 6 * i + 3) +=
-          cd * (skew<T>(omega) * rotary_.asDiagonal() - skew<T>(omega.cwiseProduct(rotary_)));
+    for (int i = 0; i < 2; ++i) {  // ∂(Ω × J Ω)/∂Ω = Ω̃ J − (J Ω)~
+      Vec<T, 3> const omega = entries<3>(v, 6 * (e + i) + 3);
+      Mat<T, 3, 3> const of_omega = skew<T>(omega), of_momentum = skew<T>(spun<T>(omega));
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+          k(6 * i + 3 + r, 6 * i + 3 + c) += cd * (of_omega(r, c) * rotary_[c] - of_momentum(r, c));
     }
   }
 
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
-    out.setZero();
+    out = detail::zeros<Element<T>>();
     for (int i = 0; i < 3; ++i) out[i] = out[6 + i] = T(3.0 * sixth_ * g[i]);
   }
 
   template <class T = double>  // compiled where it is used
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
-    Vec<T, 3> const v1 = part<3>(v, 6 * e), w1 = part<3>(v, 6 * e + 3), v2 = part<3>(v, 6 * e + 6),
-                    w2 = part<3>(v, 6 * e + 9);
-    return sixth_ * (v1.squaredNorm() + v1.dot(v2) + v2.squaredNorm()) +
-           0.5 * rotary_.dot(w1.cwiseProduct(w1) + w2.cwiseProduct(w2));
+    Vec<T, 3> const v1 = entries<3>(v, 6 * e), w1 = entries<3>(v, 6 * e + 3), v2 = entries<3>(v, 6 * e + 6),
+                    w2 = entries<3>(v, 6 * e + 9);
+    return sixth_ * (squared_norm(v1) + dot(v1, v2) + squared_norm(v2)) + 0.5 * (dot(spun(w1), w1) + dot(spun(w2), w2));
   }
   double strain_energy(Index e, std::span<double const> q) const {
     return l_ * section_.energy(section_strains({e, 0.5}, q));
   }
   template <class T = double>  // compiled where it is used
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
-    Vec<T, 3> const r1 = part<3>(q, 7 * e), r2 = part<3>(q, 7 * e + 7);
-    return -3.0 * sixth_ * g.dot(r1 + r2);
+    Vec<T, 3> const r1 = entries<3>(q, 7 * e), r2 = entries<3>(q, 7 * e + 7);
+    return -3.0 * sixth_ * (dot<T>(g, r1) + dot<T>(g, r2));
   }
 
   /// (Γ, K) of the element of `p` in the axes of its section [1], [1/m]: see sections.hpp.
@@ -207,51 +208,69 @@ class Lrvf {
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     Index const e = p.element;
+    Section<T> s;
+    section<T>(p, turned<T>(q, e), turned<T>(q, e + 1), s);
     Vec<T, 6> turning;
-    turning << part<3>(v, 6 * e + 3), part<3>(v, 6 * e + 9);
-    SectionMotion<T> s;
-    section<T>(p, turned<T>(q, e), turned<T>(q, e + 1), turning, s);
-    Mat<T, 3, 6> const spin = s.R * s.spin;
-    Vec<T, 3> const arm = s.R.col(1) * T(p.y) + s.R.col(2) * T(p.z), w = spin * turning, bias = s.R * s.bias;
-    Vec<T, 3> const rate = w.cross(arm);
-    out.frame.r = part<3>(q, 7 * e) * T(1.0 - p.xi) + part<3>(q, 7 * e + 7) * T(p.xi) + arm;
-    out.frame.A = s.R * axes.template cast<T>();
-    out.frame.v = part<3>(v, 6 * e) * T(1.0 - p.xi) + part<3>(v, 6 * e + 6) * T(p.xi) + rate;
-    out.frame.w = w;
-    out.bias.template head<3>() = bias.cross(arm) + w.cross(rate);
-    out.bias.template tail<3>() = bias;
-    Eigen::Map<Mat<T, 6, 12>> j(out.jacobian);
-    j.setZero();
+    set_turning<T>(e, v, turning);
+    Mat<T, 3, 6> const spin = product(s.R, s.spin);
+    Vec<T, 3> const w = detail::of_nodes(spin, turning);
+    Vec<T, 3> arm, bias = detail::zeros<Vec<T, 3>>();
+    if (inside(p)) bias = product(s.R, interpolation_.template bias<T>(s, turning));
+    for (int i = 0; i < 3; ++i) arm[i] = s.R(i, 1) * p.y + s.R(i, 2) * p.z;
+    Vec<T, 3> const rate = cross(w, arm), tangential = cross(bias, arm), centripetal = cross(w, rate);
     for (int i = 0; i < 3; ++i) {
-      j(i, i) = T(1.0 - p.xi);
-      j(i, 6 + i) = T(p.xi);
+      out.frame.r[i] = q[7 * e + i] * (1.0 - p.xi) + q[7 * e + 7 + i] * p.xi + arm[i];
+      out.frame.v[i] = v[6 * e + i] * (1.0 - p.xi) + v[6 * e + 6 + i] * p.xi + rate[i];
+      out.frame.w[i] = w[i];
+      out.bias[i] = tangential[i] + centripetal[i];
+      out.bias[3 + i] = bias[i];
+      for (int k = 0; k < 3; ++k)
+        out.frame.A(i, k) = s.R(i, 0) * axes(0, k) + s.R(i, 1) * axes(1, k) + s.R(i, 2) * axes(2, k);
     }
-    for (int k = 0; k < 6; ++k) {
-      Vec<T, 3> const column = spin.col(k);
-      int const c = k < 3 ? 3 + k : 6 + k;
-      j.template block<3, 1>(0, c) = column.cross(arm);
-      j.template block<3, 1>(3, c) = column;
+    for (int k = 0; k < 6; ++k) {  // a column of (ṙ₁, ṙ₂), and one of (Ω₁, Ω₂): P × ρ, P
+      T *const move = out.jacobian + 6 * (turn_column(k) - 3), *const turn = move + 18;
+      T const x = spin(0, k), y = spin(1, k), z = spin(2, k);
+      for (int i = 0; i < 3; ++i) {
+        move[i] = T(i != k % 3 ? 0.0 : k < 3 ? 1.0 - p.xi : p.xi);
+        move[3 + i] = T(0.0);
+      }
+      turn[0] = y * arm[2] - z * arm[1];
+      turn[1] = z * arm[0] - x * arm[2];
+      turn[2] = x * arm[1] - y * arm[0];
+      turn[3] = x;
+      turn[4] = y;
+      turn[5] = z;
     }
     out.shape = JacobianShape::dense;
     out.columns = 12;
   }
 
-  /// Jᵀw = [(1 − ξ) f; P₁ᵀ c; ξ f; P₂ᵀ c], c = ρ × Rᵀf + Rᵀm: by dual numbers in the nodes' rotations alone.
-  template <StateScalar D = Dual<6>>  // compiled where it is used
+  /// Jᵀw = [(1 − ξ) f; P₁ᵀ c; ξ f; P₂ᵀ c], c = ρ̃ F + M, F = Rᵀf, M = Rᵀm;  δF = F̃ P δθ, hence
+  ///   δc = (ρ̃ F̃ + M̃) P δθ,  δ(Pᵀc) = Pᵀ δc + (∂Pᵀ) c.
+  template <class T = double>  // compiled where it is used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Index const e = p.element;
-    SectionMotion<D> s;
-    section<D>(p, detail::turning_quaternion<6>(turned<double>(q, e), 0),
-               detail::turning_quaternion<6>(turned<double>(q, e + 1), 3), Vec<D, 6>::Zero(), s);
-    Vec<D, 3> const f = s.R.transpose() * w.f.template cast<D>(), m = s.R.transpose() * w.m.template cast<D>();
-    Vec<D, 3> const off(0.0, p.y, p.z), c = off.cross(f) + m;
-    Vec<D, 6> const torque = s.spin.transpose() * c;
+    Section<T> s;
+    section<T>(p, turned<T>(q, e), turned<T>(q, e + 1), s);
+    Vec<T, 3> const off(0.0, p.y, p.z), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
+    Vec<T, 3> c = cross(off, f);
+    Mat<T, 3, 3> by_turn = skew_of_skew(off, f);
+    Mat<T, 3, 3> const of_m = skew(m);
+    for (int i = 0; i < 3; ++i) {
+      c[i] += m[i];
+      for (int j = 0; j < 3; ++j) by_turn(i, j) += of_m(i, j);
+    }
+    Mat<T, 6, 6> const turned_load = transposed_product(s.spin, product(by_turn, s.spin));
+    Mat<T, 6, 6> of_spin = detail::zeros<Mat<T, 6, 6>>();
+    if (inside(p)) interpolation_.spin_gradient(s, c, of_spin);
     k.setZero();
     for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) k(i < 3 ? 3 + i : 6 + i, j < 3 ? 3 + j : 6 + j) = torque[i].d[j];
+      for (int j = 0; j < 6; ++j) k(turn_column(i), turn_column(j)) = turned_load(i, j) + of_spin(i, j);
   }
 
  private:
+  template <class T>
+  using Section = typename Interpolation::template Section<T>;
   /// An element in the reference configuration.
   struct Free {
     double chord = 1.0;  ///< c₀ [m]
@@ -262,13 +281,30 @@ class Lrvf {
 
   template <StateScalar T>
   static Quaternion<T> turned(std::span<T const> q, Index node) {
-    return part<4>(q, 7 * node + 3);
+    return entries<4>(q, 7 * node + 3);
+  }
+  /// (Ω₁, Ω₂) of an element, written where it is to stand: a copy would wait for what was just stored.
+  template <StateScalar T>
+  static void set_turning(Index e, std::span<T const> v, Vec<T, 6>& w) {
+    for (int i = 0; i < 6; ++i) w[i] = v[std::size_t(6 * e + turn_column(i))];
+  }
+  /// The column of an element's (Ω₁, Ω₂) among its (ṙ₁, Ω₁, ṙ₂, Ω₂).
+  static constexpr int turn_column(int i) { return i < 3 ? 3 + i : 6 + i; }
+  static bool inside(Point const& p) { return p.xi != 0.0 && p.xi != 1.0; }
+  /// J Ω of a node.
+  template <class T>
+  Vec<T, 3> spun(Vec<T, 3> const& omega) const {
+    return {omega[0] * rotary_[0], omega[1] * rotary_[1], omega[2] * rotary_[2]};
+  }
+  /// (x₂ − x₁)/c₀ of what stands at `first` and at `first + stride`.
+  template <StateScalar T>
+  static Vec<T, 3> slope(std::span<T const> x, Index first, Index stride, double chord) {
+    return scaled<T>(difference<T>(entries<3>(x, first + stride), entries<3>(x, first)), 1.0 / chord);
   }
   template <StateScalar T>
   void place(Index e, std::span<T const> q, MiddleSection<T>& at, Vec<T, 3>& gamma) const {
     interpolation_.template middle<T>(turned<T>(q, e), turned<T>(q, e + 1), at);
-    Vec<T, 3> const slope = (part<3>(q, 7 * e + 7) - part<3>(q, 7 * e)) * T(1.0 / free_[std::size_t(e)].chord);
-    gamma = at.R.transpose() * slope;
+    gamma = transposed_product(at.R, slope<T>(q, 7 * e, 7, free_[std::size_t(e)].chord));
   }
   /// Strains and section forces of an element.
   template <StateScalar T>
@@ -276,22 +312,21 @@ class Lrvf {
     Free const& free = free_[std::size_t(e)];
     s.chord = free.chord;
     place<T>(e, q, s.at, s.gamma);
-    s.n = s.gamma - free.gamma.template cast<T>();
-    s.m = s.at.turn - free.turn.template cast<T>();
-    s.turning << part<3>(v, 6 * e + 3), part<3>(v, 6 * e + 9);
-    if (section_.damped())
-      s.rate = s.at.R.transpose() * (part<3>(v, 6 * e + 6) - part<3>(v, 6 * e)) * T(1.0 / free.chord);
+    for (int i = 0; i < 3; ++i) {
+      s.n[i] = s.gamma[i] - free.gamma[i];
+      s.m[i] = s.at.turn[i] - free.turn[i];
+    }
+    set_turning<T>(e, v, s.turning);
+    if (section_.damped()) s.rate = transposed_product(s.at.R, slope<T>(v, 6 * e, 6, free.chord));
     section_.stress(s);
   }
   /// At a node the node's own section, exactly; else the policy's.
   template <StateScalar T>
-  void section(Point const& p, Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 6> const& w,
-               SectionMotion<T>& out) const {
-    if (p.xi != 0.0 && p.xi != 1.0) return interpolation_.template section<T>(p.xi, a, b, w, out);
-    out.R = rotation_matrix<T>(p.xi == 0.0 ? a : b);
-    out.spin.setZero();
+  void section(Point const& p, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
+    if (inside(p)) return interpolation_.template section<T>(p.xi, a, b, out);
+    set_rotation<T>(p.xi == 0.0 ? a : b, out.R);
+    out.spin = detail::zeros<Mat<T, 3, 6>>();
     for (int i = 0; i < 3; ++i) out.spin(i, p.xi == 0.0 ? i : 3 + i) = T(1.0);
-    out.bias.setZero();
   }
 
   BarConstants constants_;
@@ -321,22 +356,17 @@ Lrvf<Interpolation>::Lrvf(Bar const& bar, BarConstants const& c, Index n, Refere
   for (Index i = 0; i <= n; ++i) {
     Placement const section = curve(double(i) * l_);
     section.check("Lrvf: the reference curve");
-    part<3>(q, 7 * i) = bar.placement.origin + axes * section.origin;
-    part<4>(q, 7 * i + 3) = quaternion_of(axes * section.axes);
+    Vec<double, 3> const along = product(axes, section.origin);
+    for (int k = 0; k < 3; ++k) q[7 * i + k] = bar.placement.origin[k] + along[k];
+    set_entries<4>(q, 7 * i + 3, quaternion_of(product(axes, section.axes)));
   }
+  char const* const advice =
+      ". The reference curve's parameter must be its arc length; use more elements on a closed curve.";
   for (Index e = 0; e < n; ++e) {
     Free& free = free_[std::size_t(e)];
-    Vec<double, 3> const from = part<3>(q, 7 * e), to = part<3>(q, 7 * e + 7);
-    free.chord = (to - from).norm();
+    free.chord = std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e))));
     if (!(free.chord > 1e-6 * l_ && free.chord < (1.0 + 1e-6) * l_))
-      throw InvalidInput{"Lrvf: element ",
-                         double(e),
-                         " of arc length ",
-                         l_,
-                         " has a chord of ",
-                         free.chord,
-                         ". The reference curve's parameter must be its arc length; use more elements "
-                         "on a closed curve."};
+      throw InvalidInput{"Lrvf: element ", double(e), " of arc length ", l_, " has a chord of ", free.chord, advice};
     MiddleSection<double> at;
     place<double>(e, std::span<double const>(q), at, free.gamma);
     free.turn = at.turn;

@@ -24,13 +24,16 @@ class LrvfSection {
   /// For elements of arc length `l`. \throws InvalidInput for a stiffness that is missing.
   template <class T = double>  // compiled where it is used
   LrvfSection(Bar const& bar, BarConstants const& c, double l) : l_(l), pretension_(bar.pretension) {
-    stiffness_ = Vec<T, 6>{{c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI}};
-    char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
-    for (int i = 0; i < 6; ++i)
-      require_positive(stiffness_[i], std::string("Lrvf: the stiffness ") + names[i] + " of the bar");
     double const shear = bar.damping.shear, bending = bar.damping.bending;
-    time_ = Vec<T, 6>{{bar.damping.axial, shear, shear, shear, bending, bending}};
-    for (int i = 0; i < 6; ++i) damped_ = damped_ || time_[i] != 0.0;
+    double const stiffness[] = {c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI};
+    double const time[] = {bar.damping.axial, shear, shear, shear, bending, bending};
+    char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
+    for (int i = 0; i < 6; ++i) {
+      require_positive(stiffness[i], std::string("Lrvf: the stiffness ") + names[i] + " of the bar");
+      stiffness_[i] = stiffness[i];
+      time_[i] = time[i];
+      damped_ = damped_ || time[i] != 0.0;
+    }
   }
 
   bool damped() const { return damped_; }
@@ -39,10 +42,10 @@ class LrvfSection {
   template <StateScalar T>
   void stress(StrainedSection<T>& s) const {
     if (damped_) {
-      Vec<T, 3> const spin = s.at.spin * s.turning, bend = s.at.bend * s.turning;
-      Vec<T, 3> const slide = s.rate + s.gamma.cross(spin);
+      Vec<T, 3> const spin = detail::of_nodes(s.at.spin, s.turning), bend = detail::of_nodes(s.at.bend, s.turning);
+      Vec<T, 3> const slide = cross(s.gamma, spin);
       for (int i = 0; i < 3; ++i) {
-        s.n[i] += slide[i] * time_[i];
+        s.n[i] += (s.rate[i] + slide[i]) * time_[i];
         s.m[i] += bend[i] * time_[3 + i];
       }
     }
@@ -62,8 +65,9 @@ class LrvfSection {
   /// Energy of strains (Γ, K) [J/m].
   template <class T = double>  // compiled where it is used
   double energy(Vec6 const& strains) const {
-    Vec<T, 6> const x = strains;
-    return 0.5 * x.dot(stiffness_.cwiseProduct(x)) + pretension_ * x[0];
+    T sum = 0.0;
+    for (int i = 0; i < 6; ++i) sum += strains[i] * stiffness_[i] * strains[i];
+    return 0.5 * sum + pretension_ * strains[0];
   }
 
   /// The tangent of the elastic and damping force of an element. With x = R_mᵀ (δr₂ − δr₁)/c₀ and θ = δθ₁₂, all in the
@@ -72,46 +76,78 @@ class LrvfSection {
   ///   −δf_r = ∓ l/c₀ R_m (δN + ck Pθ × N),  −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
   template <class T>  // compiled where it is used
   void tangent(StrainedSection<T> const& s, MiddleGradient const& by, double ck, double cd, Mat<T, 12, 12>& k) const {
-    using V3 = Vec<T, 3>;
-    using M3 = Mat<T, 3, 3>;
-    Vec<T, 6> const stiffness = stiffness_, time = time_;
-    V3 const c1 = stiffness.template head<3>(), c2 = stiffness.template tail<3>() / l_;
-    V3 const full1 = c1.cwiseProduct(V3::Constant(ck) + cd * time.template head<3>());
-    V3 const full2 = c2.cwiseProduct(V3::Constant(ck) + cd * time.template tail<3>());
-    M3 const gamma = skew<T>(s.gamma), n = ck * skew<T>(s.n);
-    Mat<T, 3, 6> const slide = gamma * s.at.spin;  // Γ̃ P
-    M3 nx = full1.asDiagonal();
-    Mat<T, 3, 6> nt = full1.asDiagonal() * slide, mt = full2.asDiagonal() * s.at.bend;
-    if (damped_) {  // Γ˙ = u + Γ × Ω, u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:  δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ
-      Mat<T, 3, 6> const &spin_change = by.spin, &bend_change = by.bend;
-      V3 const omega = s.at.spin * s.turning;
-      V3 const d1 = ck * c1.cwiseProduct(time.template head<3>()), d2 = ck * c2.cwiseProduct(time.template tail<3>());
-      M3 const w = skew<T>(omega);
-      nx -= d1.asDiagonal() * w;
-      nt += d1.asDiagonal() * (skew<T>(s.rate) * s.at.spin - w * slide + gamma * spin_change);
-      mt += d2.asDiagonal() * bend_change;
+    Slopes<T> const by_state = slopes(s, by, ck, cd);
+    Mat<T, 3, 3> const& nx = by_state.nx;
+    Mat<T, 3, 6> const &nt = by_state.nt, &mt = by_state.mt;
+    Vec<T, 3> const n = scaled<T>(s.n, ck);
+    Mat<T, 3, 3> const of_n = skew(n), by_x = skew_product(s.gamma, nx);
+    Mat<T, 3, 6> const n_spin = skew_product(n, s.at.spin), n_slide = skew_product(n, skew_product(s.gamma, s.at.spin)),
+                       by_theta = skew_product(s.gamma, nt);
+    Mat<T, 3, 3> through;       // ∂t/∂x, with t = l N × Γ for a fixed Γ
+    Mat<T, 3, 6> shift, moved;  // ∂(R_m N)/∂θ in the section's axes, ∂t/∂θ
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) through(i, j) = l_ * (of_n(i, j) - by_x(i, j));
+      for (int j = 0; j < 6; ++j) {
+        shift(i, j) = nt(i, j) - n_spin(i, j);
+        moved(i, j) = l_ * (n_slide(i, j) - by_theta(i, j));
+      }
     }
-    Mat<T, 6, 6> const& pulled_change = by.pulled;
-    Mat<T, 6, 3> const pulled = s.at.spin.transpose() * (l_ * (n - gamma * nx));
-    Mat<T, 6, 6> const turn =
-        s.at.spin.transpose() * (l_ * (n * slide - gamma * nt)) + s.at.bend.transpose() * mt + ck * pulled_change;
-    M3 const rr = s.at.R * (l_ / (s.chord * s.chord) * nx) * s.at.R.transpose();
-    Mat<T, 3, 6> const rt = s.at.R * (l_ / s.chord * (nt - n * s.at.spin));
-    Mat<T, 6, 3> const tr = pulled * (1.0 / s.chord) * s.at.R.transpose();
+    Mat<T, 3, 3> const back = transposed(s.at.R), rr = transposed_product(back, product(nx, back));
+    Mat<T, 3, 6> const rt = product(s.at.R, shift), tr = product(s.at.R, transposed_product(through, s.at.spin));
+    Mat<T, 6, 6> const of_t = transposed_product(s.at.spin, moved), of_m = transposed_product(s.at.bend, mt);
+    double const by_force = l_ / s.chord, by_length = 1.0 / s.chord;
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) {
         double const si = i == 0 ? -1.0 : 1.0, sj = j == 0 ? -1.0 : 1.0;
         for (int c = 0; c < 3; ++c)
           for (int r = 0; r < 3; ++r) {
-            k(6 * i + r, 6 * j + c) = si * sj * rr(r, c);
-            k(6 * i + r, 6 * j + 3 + c) = si * rt(r, 3 * j + c);
-            k(6 * i + 3 + r, 6 * j + c) = sj * tr(3 * i + r, c);
-            k(6 * i + 3 + r, 6 * j + 3 + c) = turn(3 * i + r, 3 * j + c);
+            int const a = 3 * i + r, b = 3 * j + c;
+            k(6 * i + r, 6 * j + c) = si * sj * by_force * by_length * rr(r, c);
+            k(6 * i + r, 6 * j + 3 + c) = si * by_force * rt(r, b);
+            k(6 * i + 3 + r, 6 * j + c) = sj * by_length * tr(c, a);
+            k(6 * i + 3 + r, 6 * j + 3 + c) = of_t(a, b) + of_m(a, b) + ck * by.pulled(a, b);
           }
       }
   }
 
  private:
+  /// Derivatives of the section forces by x and by θ = δθ₁₂.
+  template <class T>
+  struct Slopes {
+    Mat<T, 3, 3> nx;      ///< ∂N/∂x
+    Mat<T, 3, 6> nt, mt;  ///< ∂N/∂θ, ∂M/∂θ
+  };
+  /// δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙,  likewise δM of Q θ;  with Γ˙ = u + Γ × Ω, u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:
+  ///   δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
+  template <class T>
+  Slopes<T> slopes(StrainedSection<T> const& s, MiddleGradient const& by, double ck, double cd) const {
+    Slopes<T> out;
+    Mat<T, 3, 6> const slide = skew_product(s.gamma, s.at.spin);  // Γ̃ P
+    for (int i = 0; i < 3; ++i) {
+      T const full = stiffness_[i] * (ck + cd * time_[i]),
+              full_bend = stiffness_[3 + i] / l_ * (ck + cd * time_[3 + i]);
+      for (int j = 0; j < 3; ++j) out.nx(i, j) = i == j ? full : T(0.0);
+      for (int j = 0; j < 6; ++j) {
+        out.nt(i, j) = full * slide(i, j);
+        out.mt(i, j) = full_bend * s.at.bend(i, j);
+      }
+    }
+    if (!damped_) return out;
+    Vec<T, 3> const omega = detail::of_nodes(s.at.spin, s.turning);
+    Mat<T, 3, 3> const w = skew(omega);
+    Mat<T, 3, 6> const carried = skew_product(s.rate, s.at.spin), turned = skew_product(omega, slide),
+                       changed = skew_product<T>(s.gamma, by.spin);
+    for (int i = 0; i < 3; ++i) {
+      T const d = ck * stiffness_[i] * time_[i], d_bend = ck * stiffness_[3 + i] / l_ * time_[3 + i];
+      for (int j = 0; j < 3; ++j) out.nx(i, j) -= d * w(i, j);
+      for (int j = 0; j < 6; ++j) {
+        out.nt(i, j) += d * (carried(i, j) - turned(i, j) + changed(i, j));
+        out.mt(i, j) += d_bend * by.bend(i, j);
+      }
+    }
+    return out;
+  }
+
   double l_, pretension_;
   Vec6 stiffness_;  ///< EA, GA, GA_z, GJ, EI_y, EI
   Vec6 time_;       ///< of damping [s]

@@ -16,6 +16,18 @@ auto part(std::span<T> x, Index first) {
   return Map(x.data() + first);
 }
 
+/// The same entries as a vector: `n` numbers are copied without Eigen's expressions, which cost more to compile.
+template <int n, class T>
+Vec<std::remove_const_t<T>, n> entries(std::span<T> x, Index first) {
+  Vec<std::remove_const_t<T>, n> out;
+  for (int i = 0; i < n; ++i) out[i] = x[std::size_t(first + i)];
+  return out;
+}
+template <int n, class T>
+void set_entries(std::span<T> x, Index first, Vec<T, n> const& value) {
+  for (int i = 0; i < n; ++i) x[std::size_t(first + i)] = value[i];
+}
+
 /// How a rigid body whose pose a joint may give writes it: coordinates and speeds.
 enum class RigidLayout : unsigned char {
   quaternion,  ///< (r, unit quaternion) and (ṙ, Ω in body axes)

@@ -1,0 +1,189 @@
+#pragma once
+/// \file
+/// Rotation vectors of the nodes interpolated as they are: a policy of `Lrvf` for comparison.
+
+#include <array>
+#include <numbers>
+
+#include <polybody/bodies/lrvf/rotation_interpolation.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// q ⊞ δ for a small δ, whose three components are the variables number `first` and on.
+template <int n>
+Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first) {
+  Quaternion<Dual<n>> out(q[0], q[1], q[2], q[3]);
+  for (int i = 0; i < 3; ++i) {
+    Quaternion<double> half(0.0, 0.0, 0.0, 0.0);
+    half[i + 1] = 0.5;
+    Quaternion<double> const slope = quaternion_product<double>(q, half);
+    for (int k = 0; k < 4; ++k) out[k].d[first + i] = slope[k];
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// The rotation vectors Ψ of the nodes relative to the bar's placement R₀, interpolated linearly: R(ξ) = R₀ exp(Ψ(ξ)),
+/// K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. For comparison; use `Objective`. Two faults, both measured in the tests:
+/// - It is not objective. While an element turns by φ about one axis and is carried rigidly about another, its
+/// curvature
+///   and energy change by terms of the order of φ² (energy: 1 % of φ² after a carriage of 2 rad).
+/// - Ψ₁ is the vector with |Ψ₁| ≤ π, and Ψ₂ the nearer of Ψ and its complement Ψ (1 − 2π/|Ψ|). As node 1 passes
+///   |Ψ₁| = π both change sheets, and the curvature jumps, by terms of the order of φ³/l, unless the element turns
+///   about Ψ itself.
+class Direct {
+ public:
+  static constexpr bool objective = false;
+  template <class = void>  // compiled where it is used
+  explicit Direct(Placement const& placement) : from_(quaternion_of(placement.axes)), axes_(placement.axes) {}
+
+  template <StateScalar T>
+  void middle(Quaternion<T> const& a, Quaternion<T> const& b, MiddleSection<T>& out) const {
+    Vec<T, 3> const first = vector<T>(a), second = vector<T>(b, first), apart = difference(second, first);
+    Vec<T, 3> const psi = between<T>(first, second, 0.5);
+    Mat<T, 3, 3> const jacobian = right_jacobian<T>(psi), slope = right_jacobian_derivative<T>(psi, apart);
+    Mat<T, 3, 3> bend1, bend2;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        bend1(i, j) = slope(i, j) * 0.5 - jacobian(i, j);
+        bend2(i, j) = slope(i, j) * 0.5 + jacobian(i, j);
+      }
+    Mat<T, 3, 3> const inverse1 = right_jacobian_inverse<T>(first), inverse2 = right_jacobian_inverse<T>(second);
+    out.R = product(axes<T>(), exp_so3<T>(psi));
+    out.turn = product(jacobian, apart);
+    set_halves<T>(product(jacobian, inverse1), product(jacobian, inverse2), {0.5, 0.5}, out.spin);
+    set_halves<T>(product(bend1, inverse1), product(bend2, inverse2), {1.0, 1.0}, out.bend);
+  }
+
+  /// By dual numbers.
+  template <class T, StateScalar D = Dual<6>>  // compiled where it is used
+  void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
+                Vec<T, 6> const& w, MiddleGradient& out) const {
+    MiddleSection<D> at;
+    middle<D>(detail::turning_quaternion<6>(a, 0), detail::turning_quaternion<6>(b, 3), at);
+    out.pulled = detail::zeros<Mat<T, 6, 6>>();
+    out.spin = out.bend = detail::zeros<Mat<T, 3, 6>>();
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 6; ++j)
+        for (int k = 0; k < 6; ++k) {
+          out.pulled(j, k) += t[i] * at.spin(i, j).d[k] + m[i] * at.bend(i, j).d[k];
+          out.spin(i, k) += w[j] * at.spin(i, j).d[k];
+          out.bend(i, k) += w[j] * at.bend(i, j).d[k];
+        }
+  }
+
+  template <StateScalar T>
+  struct Section : SectionMotion<T> {
+    double share[2];                    ///< 1 − ξ, ξ
+    Vec<T, 3> psi, node[2];             ///< Ψ, Ψ₁ and Ψ₂
+    Mat<T, 3, 3> jacobian, inverse[2];  ///< Jr(Ψ), Jr⁻¹(Ψ₁) and Jr⁻¹(Ψ₂)
+  };
+  /// Ω = Jr(Ψ) Ψ˙,  Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ.
+  template <StateScalar T>
+  void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
+    out.share[0] = 1.0 - xi;
+    out.share[1] = xi;
+    out.node[0] = vector<T>(a);
+    out.node[1] = vector<T>(b, out.node[0]);
+    out.psi = between<T>(out.node[0], out.node[1], xi);
+    out.jacobian = right_jacobian<T>(out.psi);
+    out.R = product(axes<T>(), exp_so3<T>(out.psi));
+    for (int i = 0; i < 2; ++i) out.inverse[i] = right_jacobian_inverse<T>(out.node[i]);
+    set_halves<T>(product(out.jacobian, out.inverse[0]), product(out.jacobian, out.inverse[1]), {1.0 - xi, xi},
+                  out.spin);
+  }
+  /// Both equations once more by time.
+  template <StateScalar T>
+  Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
+    Vec<T, 3> rate = detail::zeros<Vec<T, 3>>(), second = rate;
+    for (int i = 0; i < 2; ++i) {
+      Vec<T, 3> const own = product(s.inverse[i], detail::of_node(i, w));
+      Vec<T, 3> const turning = product(s.inverse[i], product(right_jacobian_derivative<T>(s.node[i], own), own));
+      for (int k = 0; k < 3; ++k) {
+        rate[k] += own[k] * s.share[i];
+        second[k] -= turning[k] * s.share[i];
+      }
+    }
+    Vec<T, 3> const own = product(right_jacobian_derivative<T>(s.psi, rate), rate);
+    Vec<T, 3> const carried = product(s.jacobian, second);
+    return {own[0] + carried[0], own[1] + carried[1], own[2] + carried[2]};
+  }
+  /// Pᵢᵀx = sᵢ Jr⁻¹(−Ψᵢ) y,  y = Jr(−Ψ) x,  sᵢ the nodes' shares of Ψ;  with D(φ, x) = ∂(Jr(φ) x)/∂φ:
+  ///   ∂y/∂Ψ = −D(−Ψ, x),  ∂(Jr⁻¹(−Ψᵢ) y) = Jr⁻¹(−Ψᵢ) (∂y + D(−Ψᵢ, Jr⁻¹(−Ψᵢ) y) ∂Ψᵢ).
+  template <class T>  // compiled where it is used
+  void spin_gradient(Section<T> const& s, Vec<T, 3> const& x, Mat<T, 6, 6>& out) const {
+    Vec<T, 3> const y = transposed_product(s.jacobian, x);
+    Mat<T, 3, 3> const by_y = right_jacobian_derivative<T>(scaled<T>(s.psi, -1.0), x);
+    for (int i = 0; i < 2; ++i) {
+      Mat<T, 3, 3> const of_own =
+          right_jacobian_derivative<T>(scaled<T>(s.node[i], -1.0), transposed_product(s.inverse[i], y));
+      for (int j = 0; j < 2; ++j) {
+        Mat<T, 3, 3> slope;
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) slope(r, c) = (i == j ? of_own(r, c) : 0.0) - s.share[j] * by_y(r, c);
+        Mat<T, 3, 3> const part = transposed_product(s.inverse[i], product(slope, s.inverse[j]));
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) out(3 * i + r, 3 * j + c) = s.share[i] * part(r, c);
+      }
+    }
+  }
+
+  template <class T>  // compiled where it is used
+  SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
+    Vec<T, 3> const first = vector<T>(a), second = vector<T>(b, first), psi = between<T>(first, second, xi);
+    Vec<T, 3> const rate = scaled<T>(difference(second, first), 1.0 / l);
+    return {product(axes<T>(), exp_so3<T>(psi)), product(right_jacobian<T>(psi), rate),
+            product(right_jacobian_derivative<T>(psi, rate), rate)};
+  }
+
+ private:
+  /// Ψ of a node's rotation, |Ψ| ≤ π.
+  template <StateScalar T>
+  Vec<T, 3> vector(Quaternion<T> const& q) const {
+    Quaternion<T> const back(from_[0], -from_[1], -from_[2], -from_[3]);
+    return quaternion_log<T>(quaternion_product<T>(back, q));
+  }
+  /// Ψ or its complement, whichever is nearer to `other`: the complement if Ψ·other < |Ψ| (|Ψ| − π).
+  template <StateScalar T>
+  Vec<T, 3> vector(Quaternion<T> const& q, Vec<T, 3> const& other) const {
+    using std::sqrt;
+    Vec<T, 3> const psi = vector<T>(q);
+    T const size2 = squared_norm(psi);
+    double const size = std::sqrt(value_of(size2)), pi = std::numbers::pi;
+    if (!(value_of(dot(psi, other)) < size * (size - pi))) return psi;
+    T const other_way = 1.0 - 2.0 * pi / sqrt(size2);
+    return {psi[0] * other_way, psi[1] * other_way, psi[2] * other_way};
+  }
+  /// Ψ = (1 − ξ) Ψ₁ + ξ Ψ₂.
+  template <class T>
+  static Vec<T, 3> between(Vec<T, 3> const& first, Vec<T, 3> const& second, double xi) {
+    Vec<T, 3> psi;
+    for (int i = 0; i < 3; ++i) psi[i] = first[i] * (1.0 - xi) + second[i] * xi;
+    return psi;
+  }
+  /// [s₁ A₁, s₂ A₂].
+  template <class T>
+  static void set_halves(Mat<T, 3, 3> const& first, Mat<T, 3, 3> const& second, std::array<double, 2> share,
+                         Mat<T, 3, 6>& map) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        map(i, j) = first(i, j) * share[0];
+        map(i, 3 + j) = second(i, j) * share[1];
+      }
+  }
+  template <class T>
+  Mat<T, 3, 3> axes() const {
+    Mat<T, 3, 3> m;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) m(i, j) = T(axes_(i, j));
+    return m;
+  }
+
+  Quaternion<double> from_;
+  Mat3 axes_;
+};
+
+}  // namespace polybody
