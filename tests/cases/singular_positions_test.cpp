@@ -72,6 +72,45 @@ TEST(SingularPosition, MayBeWhereAStepOfRadauEnds) {
   for (int i = 1; i <= 3; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-8);
 }
 
+/// Two windows to 0.7 s, and from there in steps of which the k-th is at the flat position after `share` of it.
+void expect_passes_with_node_at(double share) {
+  for (int const k : {12, 50, 230}) {
+    FourBars<InPlane<Constraint>> bars(2);
+    double const before = energy(bars.model, bars.x).total(), flat = 0.7143555292929605;  // CASES R2
+    simulate(bars.model, bars.x, Radau{}, {.until = 0.7, .step = 1e-3}).run();
+    double const step = (flat - bars.x.t) / (k - 1 + share);
+    simulate(bars.model, bars.x, Radau{}, {.until = flat + 8.0 * step, .step = step}).run();
+    EXPECT_LT(std::abs(energy(bars.model, bars.x).total() - before), 1e-9) << k;  // of 39 J
+    for (int i = 1; i <= 2; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-11) << k;
+  }
+}
+// At an end there three equations of the stages are one; at another node the multipliers of lost rows are free, and
+// full Newton flies away, which is not rounding.
+TEST(SingularPosition, MayBeAnEndOfAStepOfRadau) {
+  for (double const beside : {0.0, 1e-9, -1e-6, 1e-4}) expect_passes_with_node_at(1.0 + beside);
+}
+TEST(SingularPosition, MayBeAnyNodeOfRadau) {
+  for (double const node : {0.155, detail::RadauTableau::c[0], 0.645, detail::RadauTableau::c[1]})
+    expect_passes_with_node_at(node);
+}
+
+// The rows that are lost at the start hold from then on.
+TEST(SingularPosition, MayBeWhereARunOfRadauStarts) {
+  for (int const n : {1, 3}) {
+    FourBars<InPlane<Constraint>> bars(n);
+    auto const lay = [&](int link, double x, double speed, double rate) {
+      bars.x.q.segment<3>(3 * link) = Vec3(x, 0.0, 0.0);
+      bars.x.v.segment<3>(3 * link) = Vec3(0.0, speed, rate);
+    };
+    for (int i = 0; i <= n; ++i) lay(i, i + 0.5, -2.0, -4.0);
+    for (int i = 0; i < n; ++i) lay(n + 1 + i, i + 1.5, -4.0, 0.0);
+    double const before = energy(bars.model, bars.x).total();
+    simulate(bars.model, bars.x, Radau{}, {.until = 0.1, .step = 1e-3}).run();
+    EXPECT_LT(std::abs(energy(bars.model, bars.x).total() - before), 1e-9) << n;
+    for (int i = 1; i <= n; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-12) << n;
+  }
+}
+
 /// Turns the motion round in the step that reaches a time: a jump of the speeds that satisfies the rows and keeps
 /// energy, as a change of branch does.
 struct TurningRound : RungeKutta4<Projection> {
