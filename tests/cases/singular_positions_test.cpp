@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/energy_momentum.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/energy.hpp>
@@ -61,6 +62,15 @@ TEST(SingularPosition, IsPassedByRadau) {
   EXPECT_TRUE(r.warnings.empty());
 }
 
+// Forty windows: a step ends at 3 % of its way from the singular position, where corrections of 3e-4 m/s² are rounding
+// that four last places do not tell.
+TEST(SingularPosition, MayBePassedWithoutTheMultipliersOfStabilisedSteps) {
+  Turned const r = turn(40, 10, GeneralizedAlpha{.rho_inf = 0.95, .stabilised = true}, 2e-3);
+  EXPECT_LT(r.off, 1.5e-4);
+  EXPECT_LT(std::abs(r.gained), 5e-4);  // of 620 J
+  EXPECT_TRUE(r.warnings.empty());
+}
+
 // A step that ends 1.5e-6 rad from the singular position: there the equations of its stages are singular too, as
 // Radau's nodes make ∫ (1 − t)(t − c₁)(t − c₂)(t − 1) dt vanish, and rounding fills what the lost rows ask for.
 TEST(SingularPosition, MayBeWhereAStepOfRadauEnds) {
@@ -80,7 +90,7 @@ void expect_passes_with_node_at(double share) {
     simulate(bars.model, bars.x, Radau{}, {.until = 0.7, .step = 1e-3}).run();
     double const step = (flat - bars.x.t) / (k - 1 + share);
     simulate(bars.model, bars.x, Radau{}, {.until = flat + 8.0 * step, .step = step}).run();
-    EXPECT_LT(std::abs(energy(bars.model, bars.x).total() - before), 1e-9) << k;  // of 39 J
+    EXPECT_LT(std::abs(energy(bars.model, bars.x).total() - before), 1e-9) << k;  // of 36 J
     for (int i = 1; i <= 2; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-11) << k;
   }
 }
