@@ -255,11 +255,17 @@ struct AlphaMethod {
     }
   };
 
+  template <class Solver>
+  static bool loses_rank(System& system, State const& x, double h, Workspace<Solver>& w) {
+    w.dq = h * x.v;
+    system.plus(x.q, w.dq, w.q);
+    return w.forward.loses_rank(system, {x.q, x.v, x.t}, {w.q, x.v, x.t + h});
+  }
+
   /// One step from x; x changes only when Newton converged. What stalls is tried again with more effort: 1, full Newton
-  /// with every term in the tangent, and from the start without extrapolation, and μ acts along Gᵀ of the iterate (as
-  /// G turns by more than it is from one end of the step to the other, next to a singular position, Gᵀ of the start
-  /// does not do); 2, the same with stand-ins for what the forces of groups do, which jump less where friction turns
-  /// round.
+  /// with every term, from the start without extrapolation, and μ acts along Gᵀ of the iterate (next to a singular
+  /// position G turns by more than it is from one end of the step to the other); 2, the same with stand-ins for what
+  /// the forces of groups do, which jump less where friction turns round; last, beside a singular position, without μ.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     StepHistory history(x);
@@ -271,7 +277,7 @@ struct AlphaMethod {
       history.extrapolate(x, h, w.vd, w.lambda);
     }
     predict(x, h, w);
-    bool const two_sets = stabilised && system.rows() > 0;
+    bool const two_sets = stabilised && system.rows() > 0 && effort <= efforts(system);
     if (two_sets) w.forward.hold(system, x.q, x.v, x.t);
     if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
 
@@ -288,7 +294,7 @@ struct AlphaMethod {
         *this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, two_sets && careful, effort != 1};
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
-        effort < efforts(system)) {
+        (effort < efforts(system) || (two_sets && loses_rank(system, x, h, w)))) {
       if (!w.second_order) w.analyse(system, SecondOrder::included);
       w.factored = false;
       return advance(system, x, h, w, effort + 1);

@@ -25,13 +25,13 @@ inline void perturb(VecX const& x, VecX const& q, VecX& out) {
   double const size = 4.0 * rounding_of(q);
   for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + scattered_sign(i) * size;
 }
-/// Whether rounding may be what is left of a step from q: rows of positions, phi, that are open by no more, and a
-/// correction that moves the coordinates in the mean by `moved`. Next to a singular position rounding ε comes out of
-/// the rows' inverse as √ε and some powers of ten; an iterate that flew away is moved by metres, and whatever it
-/// tolerates has grown with it.
+/// Whether a correction that moves the coordinates in the mean by `moved` may be rounding. Next to a singular position
+/// rounding ε comes out of the rows' inverse as √ε and some powers of ten; an iterate that flew away is moved by
+/// metres, and whatever it tolerates has grown with it.
+inline bool may_be_rounding(double moved, VecX const& q) { return moved <= 1e10 * rounding_of(q); }
+/// The same of a step from q whose rows of positions, phi, may be open by no more than rounding.
 inline bool may_be_rounding(VecX const& phi, double moved, VecX const& q) {
-  double const rounding = rounding_of(q);
-  return largest_size(phi) <= 1e3 * rounding && moved <= 1e10 * rounding;
+  return largest_size(phi) <= 1e3 * rounding_of(q) && may_be_rounding(moved, q);
 }
 
 /// Whether rounding is what the correction y, of the size `norm`, consists of: it is another one as coordinates and

@@ -225,6 +225,16 @@ class ForwardDynamics {
     return {largest_size(delta_), redundant_rows().size()};
   }
 
+  /// Whether the rows are much nearer to losing rank at `there` than at `here`.
+  bool loses_rank(System& system, At<double> const& here, At<double> const& there) {
+    try {
+      RowGain const usual = row_gain(system, here.q, here.v, here.t);
+      return row_gain(system, there.q, there.v, there.t).far_above(usual);
+    } catch (LinearSolverSingular const&) {  // of a solver that drops no rows
+      return true;
+    }
+  }
+
   /// P b: the part of b that the rows of positions force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t); velocity rows have it
   /// zero.
   void constrained_part(System& system, VecX const& q, VecX const& v, double t, VecX const& b, VecX& out) {

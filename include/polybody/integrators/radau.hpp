@@ -55,7 +55,6 @@ struct Radau {
     double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
     Sequence<double> slack;  ///< by stages and rows: −1 on the diagonal of a row that repeats others leaves its
                              ///< multiplier alone
-    Sequence<double> slack_at_start;  ///< of every step, until its last try
 
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
@@ -68,8 +67,7 @@ struct Radau {
           kept(rhs),
           forward(s),
           projected(s),
-          slack(3 * std::size_t(equations_of(s) - equation_speeds_of(s)), 0.0),
-          slack_at_start(slack) {
+          slack(3 * std::size_t(equations_of(s) - equation_speeds_of(s)), 0.0) {
       v.fill(r);
       vd.fill(r);
       delta.fill(r);
@@ -103,14 +101,11 @@ struct Radau {
       for (int j = 0; j < 3; ++j)
         slopes.write(h * T::a[i][j], h * h * T::squared(i, j), i * n + equation_speeds_of(s), j * n, sink);
     }
-    /// Leaves the multipliers of stage i alone whose rows repeat others, or so nearly that `forward` dropped them.
-    /// False where it did so already.
-    bool leave_dropped(System const& s, Index i) {
+    /// Leaves the multipliers of these rows alone, which repeat others.
+    void leave(System const& s, Sequence<Index> const& redundant) {
       Index const speeds = equation_speeds_of(s), rows = equations_of(s) - speeds;
-      bool more = false;
-      for (Index const k : forward.redundant_rows())
-        more |= std::exchange(slack[std::size_t(i * rows + k - speeds)], -1.0) == 0.0;
-      return more;
+      for (Index const k : redundant)
+        for (Index i = 0; i < 3; ++i) slack[std::size_t(i * rows + k - speeds)] = -1.0;
     }
     /// v_i = v₀ + h Σ a_ij v̇_j.
     void set_speeds(VecX const& v0, double h) {
@@ -134,6 +129,20 @@ struct Radau {
         }
       }
     }
+    /// The third stage becomes what the polynomials of the stages are at the share s of h.
+    void end_at(VecX const& v0, double s, double h) {
+      v[2] = v0;
+      delta[2].setZero();
+      for (std::size_t j = 0; j < 3; ++j) {
+        auto const [value, integral] = detail::RadauTableau::inside(j, s);
+        v[2] += h * integral * vd[j];
+        delta[2] += h * integral * rate[j];
+      }
+      for (VecX* const of : {vd.data(), lambda.data()}) {
+        of[2] *= detail::RadauTableau::inside(2, s).value;
+        for (std::size_t j = 0; j < 2; ++j) of[2] += detail::RadauTableau::inside(j, s).value * of[j];
+      }
+    }
   };
 
   template <class Solver>
@@ -141,36 +150,46 @@ struct Radau {
     return Workspace<Solver>(system);
   }
   template <class Solver>
-  void start(System& system, State& x, double, Workspace<Solver>& w) const {
+  void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     check();
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     std::fill(w.slack.begin(), w.slack.end(), 0.0);
-    for (Index i = 0; i < 3; ++i) w.leave_dropped(system, i);
-    w.slack_at_start = w.slack;
+    if (!w.forward.redundant_rows().empty()) leave_redundant(system, x, h, w);
     w.factored = false;
   }
 
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     NewtonReport report;
-    w.slack = w.slack_at_start;
-    // what stalls is tried again by full Newton, then with every stage's own matrix, and then without the rows that
-    // stages have lost
-    for (int effort = 0, last = system.rows() > 0 ? 2 : 1;; ++effort) {
+    double reach = h;  // of the stages
+    bool stage_beside = false;
+    // what stalls is tried again by full Newton, then with every stage's own matrix, and with stages of another length
+    for (int effort = 0, last = system.rows() > 0 ? 3 : 1;; ++effort) {
       bool const careful = effort > 0;
-      predict(x, h, w);
+      if (effort == 2) stage_beside = loses_rank(system, x, h, w);
+      if (effort >= 2) reach = (effort == 2) == stage_beside ? 1.25 * h : h;
+      predict(x, reach, w);
       if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
       NewtonOptions options = newton;
       options.always_refactor = options.always_refactor || careful;
       if (careful) options.growths = 8;
-      Problem<Solver> problem{*this, system, x, w, h, system.speeds(), system.rows(), effort >= 2};
+      Problem<Solver> problem{*this, system, x, w, reach, system.speeds(), system.rows(), effort >= 2};
       report = polybody::newton(problem, options, w.factored, w.theta);
       if (report.result == NewtonResult::converged) break;
-      if (report.result == NewtonResult::not_finite ||
-          (effort >= last && !(effort == 2 && loses_rank(system, x, h, w))))
+      if (report.result == NewtonResult::not_finite || effort >= last)
         detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
     }
-    w.set_positions(system, h);
+    finish(system, x, h, reach, w);
+    return {h, h, report.iterations, report.factorisations, 3 * report.iterations, 0, 0, report.theta};
+  }
+
+ private:
+  /// Takes for the end what the stages' polynomials are at x.t + h, where `reach` is their length, and brings it back
+  /// to the rows.
+  template <class Solver>
+  void finish(System& system, State& x, double h, double reach, Workspace<Solver>& w) const {
+    w.set_positions(system, reach);
+    if (reach != h) w.end_at(x.v, h / reach, reach);
     system.plus(x.q, w.delta[2], w.q);
     projection.apply(system, w.forward, w.projected, w.q, w.v[2], x.t + h);
     if (system.rows() > 0) {  // v̇ too, to where the projection moved the rows
@@ -187,10 +206,8 @@ struct Radau {
     x.a.swap(w.vd[2]);
     x.lambda.swap(w.lambda[2]);
     x.t += h;
-    return {h, h, report.iterations, report.factorisations, 3 * report.iterations, 0, 0, report.theta};
   }
 
- private:
   /// Stages as they are with the accelerations and speeds at x.
   template <class Solver>
   static void predict(State const& x, double h, Workspace<Solver>& w) {
@@ -202,21 +219,30 @@ struct Radau {
     w.set_speeds(x.v, h);
   }
 
-  /// Leaves the multipliers alone of rows that are lost where the stages are expected, so next to a singular position
-  /// that rounding fills them. False where there are none.
+  /// Whether the rows are much nearer to losing rank at one of the stages than at x.
   template <class Solver>
   static bool loses_rank(System& system, State const& x, double h, Workspace<Solver>& w) {
     predict(x, h, w);
-    bool more = false;
-    try {
-      for (std::size_t i = 0; i < 3; ++i) {
-        system.plus(x.q, w.delta[i], w.q);
-        w.forward.hold(system, w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h);
-        more |= w.leave_dropped(system, Index(i));
-      }
-    } catch (LinearSolverSingular const&) {  // of a solver that drops no rows
+    for (std::size_t i = 0; i < 3; ++i) {
+      system.plus(x.q, w.delta[i], w.q);
+      if (w.forward.loses_rank(system, {x.q, x.v, x.t}, {w.q, w.v[i], x.t + detail::RadauTableau::c[i] * h}))
+        return true;
     }
-    return more;
+    return false;
+  }
+
+  /// Leaves the multipliers alone of the rows that repeat others at the start. Where fewer do in the middle of the
+  /// first step the start is a singular position, and those in the middle count.
+  template <class Solver>
+  static void leave_redundant(System& system, State const& x, double h, Workspace<Solver>& w) {
+    auto const at_start = w.forward.redundant_rows();
+    Sequence<Index> rows(at_start.begin(), at_start.end());
+    predict(x, h, w);
+    system.plus(x.q, w.delta[1], w.q);
+    w.forward.hold(system, w.q, w.v[1], x.t + detail::RadauTableau::c[1] * h);
+    auto const in_middle = w.forward.redundant_rows();
+    if (in_middle.size() < rows.size()) rows = Sequence<Index>(in_middle.begin(), in_middle.end());
+    w.leave(system, rows);
   }
 
   /// A step as Newton's method sees it.
@@ -307,6 +333,7 @@ struct Radau {
       w.set_speeds(x.v, h);
     }
     bool is_rounding(double norm) {
+      if (!detail::may_be_rounding(h * h * norm, x.q)) return false;
       auto const moved = [&] { return evaluate(true) && std::isfinite(solve().norm); };
       return detail::is_rounding(w.y, norm, w.kept, moved, [&] { return measure().norm; });
     }

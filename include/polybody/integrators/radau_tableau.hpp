@@ -13,6 +13,15 @@ struct RadauTableau {
       {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0}};
   /// (A²)_ij.
   static constexpr double squared(int i, int j) { return a[i][0] * a[0][j] + a[i][1] * a[1][j] + a[i][2] * a[2][j]; }
+
+  /// Lagrange's polynomial of node j at s, and its integral from 0 to s.
+  struct Inside {
+    double value, integral;
+  };
+  static constexpr Inside inside(std::size_t j, double s) {
+    double const k = c[(j + 1) % 3], l = c[(j + 2) % 3], scale = (c[j] - k) * (c[j] - l);
+    return {(s - k) * (s - l) / scale, s * (s * (s / 3.0 - 0.5 * (k + l)) + k * l) / scale};
+  }
 };
 
 /// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G
