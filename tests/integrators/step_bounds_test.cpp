@@ -12,8 +12,10 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/policies/recursive.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/revolute.hpp>
+#include <polybody/joints/weld.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -208,6 +210,75 @@ TEST(StepBounds, APotentialThatDependsOnTimeIsNotJudged) {
   State x = model.reference_state();
   simulate(model, x, RungeKutta4<>{}, {.until = 0.1 * std::numbers::pi, .step = 1e-3}).run();
   EXPECT_NEAR(x.v[0], 4.0, 1e-6);  // x = u (t − sin ωt/ω), ω = 10, half a period on
+}
+
+/// Pushes along x without a potential, or keeps silent about the potential that it has.
+struct Push {
+  static constexpr int markers = 1;
+  static constexpr bool is_load = true;
+  static constexpr Observes needs = Observes::point;
+  double const* force = nullptr;
+
+  void check(std::string const&) const {}
+  template <class T>
+  std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const&, double) const {
+    Wrench<T> w;
+    w.f[0] = T(*force);
+    return {w};
+  }
+};
+struct SecretPush : Push {
+  static constexpr bool is_load = false;
+  double potential(std::array<Frame<double>, 1> const&, double) const { return 0.0; }
+};
+
+// A step that its event refuses did 1e18 J of work, which is no reason to let later ones gain 100 kJ from nowhere.
+TEST(StepBounds, AStepThatFailsExplainsNoEnergy) {
+  double push = 0.0, secret = 0.0;
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<Push, SecretPush>> model;
+  auto const mass = model.add(planar::Rigid(1.0, 1.0), "mass");
+  model.apply(Push{.force = &push}, mass.at(Vec2(0, 0)), "push");
+  model.apply(SecretPush{{.force = &secret}}, mass.at(Vec2(0, 0)), "secret");
+  State x = model.reference_state();
+  x.v[0] = 1.0;
+  Event const refusing{.name = "refusing", .value = [&](State const&) -> double {
+                         if (push != 0.0) throw InvalidInput("no such push");
+                         return 1.0;
+                       }};
+  auto run = simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 1e-3, .events = {refusing}});
+  run.advance();
+  push = 1e12;
+  State const before = x;
+  EXPECT_EQ(message_of<InvalidInput>([&] { run.advance(); }), "no such push");
+  expect_same(x, before);
+  push = 0.0;
+  secret = 1e3;
+  EXPECT_TRUE(has(message_of_divergence(run, x), "body \"mass\" moves fastest"));
+  EXPECT_LT(x.v[0], 50.0);
+}
+
+// A force that is NaN for one step, on a body that cannot move, is seen in its reaction only. What comes after is
+// judged as if it had not been: a spring gives 50 J to a mass at rest.
+TEST(StepBounds, AForceThatIsNaNInAStepThatFailsIsForgotten) {
+  using Held = Joint<Weld, Recursive>;
+  double push = 0.0;
+  Model<Bodies<Rigid<>>, Joints<Held>, Forces<SpringDamper, Push>> model;
+  Mat3 const inertia = Mat3::Identity();
+  auto const held = model.add(Rigid<>(1.0, inertia), "held");
+  auto const mass = model.add(Rigid<>(1.0, inertia, {.origin = {2, 0, 0}}), "mass");
+  model.connect(Held{}, model.ground().at({0, 0, 0}), held.at({0, 0, 0}), "weld");
+  model.apply(SpringDamper{.stiffness = 1e4, .damping = 0.0, .free_length = 1.0}, model.ground().at({0, 0, 0}),
+              mass.at({0, 0, 0}), "spring");
+  model.apply(Push{.force = &push}, held.at({0, 0, 0}), "push");
+  State x = model.reference_state();
+  auto run = simulate(model, x, RungeKutta4<>{}, {.until = 0.015, .step = 1e-3});
+  push = std::numeric_limits<double>::quiet_NaN();
+  State const before = x;
+  EXPECT_TRUE(has(message_of<NonFinite>([&] { run.advance(); }), "The reaction of joint \"weld\" is not finite"));
+  expect_same(x, before);
+  push = 0.0;
+  run.run();
+  EXPECT_NEAR(x.v.minCoeff(), -100.0 * std::sin(1.5), 1e-3);  // ω = 100 1/s
 }
 
 TEST(StepBounds, LimitsWithoutAMeaningAreRefused) {

@@ -84,6 +84,37 @@ TYPED_TEST(BlockSolvers, SolveFlexibleBodies) {
   this->solved(b);
 }
 
+// A body on a weld cannot move beside the body that carries it; a row that holds it against the ground holds them both.
+TYPED_TEST(BlockSolvers, KeepARowOfTheGroundOnABodyThatHangsOnAnother) {
+  Draw& draw = this->draw;
+  Blocks b;
+  for (Index i = 0; i < 5; ++i) b.add(6 * i, 6 * i, draw.definite(6));
+  Index row = 30;
+  for (auto const& [from, to] : {std::pair{0, 1}, {0, 3}, {0, 4}, {1, 2}}) {  // the first has most joints: the root
+    b.join(row, 6 * from, draw.matrix(6, 6));
+    b.join(row, 6 * to, draw.matrix(6, 6));
+    row += 6;
+  }
+  b.join(row, 12, draw.matrix(1, 6));
+  EXPECT_TRUE(this->solved(b, 1e-11).dropped().empty());
+}
+
+// Nor can it move beside the point of a bar that carries it, but the bar's other points do. Both ends of the bar are
+// held.
+TYPED_TEST(BlockSolvers, KeepASecondJointToAnotherPointOfABar) {
+  Draw& draw = this->draw;
+  Blocks b;
+  for (Index const element : {0, 6}) b.add(element, element, draw.definite(12));
+  b.add(18, 18, draw.definite(6));
+  b.join(24, 0, draw.matrix(6, 6));
+  b.join(30, 12, draw.matrix(6, 6));
+  b.join(36, 0, draw.matrix(6, 6));
+  b.join(36, 18, draw.matrix(6, 6));
+  b.join(42, 6, draw.matrix(3, 6));
+  b.join(42, 18, draw.matrix(3, 6));
+  EXPECT_TRUE(this->solved(b, 1e-11).dropped().empty());
+}
+
 // A marker on the node that its element counts second: the first node alone cannot carry the joint.
 TYPED_TEST(BlockSolvers, FindThePivotOfAJointOnTheOtherNode) {
   Draw& draw = this->draw;

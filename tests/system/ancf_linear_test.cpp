@@ -204,6 +204,26 @@ TEST(AncfLinear, APinHoldsWhatBendsAcrossIt) {
   EXPECT_LT((at_pin.m - Vec3(0, 0.5 * p, 0)).norm(), 1e-4 * p);
 }
 
+// A cable that has turned about its pin: what the joint gives it does not depend on which body is named second.
+TEST(AncfLinear, TheGroundTakesWhatACablesPinGives) {
+  using Pin = Joint<Revolute, AncfLinear>;
+  auto const pulled = [](bool ground_first) {
+    Model<Bodies<AncfCable<>>, Joints<Pin>, Forces<PointForce<>>> model{Gravity{0, -9.81, 0}};
+    auto const cable = model.add(AncfCable<>::from(bar({}), 2));
+    Pin const pin{{.axis = Vec3::UnitZ()}, {}};
+    auto const hinge = ground_first ? model.connect(pin, model.ground().at({0, 0, 0}), cable.at(0.0))
+                                    : model.connect(pin, cable.at(0.0), model.ground().at({0, 0, 0}));
+    model.apply(PointForce<>{.force = {0, 0, 0.1}, .axes = LoadAxes::world}, cable.at(0.5));
+    State x = model.reference_state();
+    simulate(model, x, GeneralizedAlpha{}, {.until = 0.2, .step = 1e-3}).run();
+    return reaction(model, x, hinge);
+  };
+  Wrench<double> const to_cable = pulled(true), to_ground = pulled(false);
+  EXPECT_GT(to_cable.m.norm(), 1e-3);
+  EXPECT_LT((to_cable.f + to_ground.f).norm(), 1e-6 * to_cable.f.norm());
+  EXPECT_LT((to_cable.m + to_ground.m).norm(), 1e-6 * to_cable.m.norm());
+}
+
 TEST(AncfLinear, RowsThatRepeatOthersAreNamed) {
   Chain<planar::AncfCable<>, planar::Revolute, AncfLinear> chain({}, 2);
   using Pin = Joint<planar::Revolute, AncfLinear>;

@@ -21,16 +21,18 @@ RowBlock<double> const& rows_of(System const& system, Index joint) {
 }
 
 /// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its
-/// λ_α the moment r_α × λ_α. (What stretches r_α is no wrench.)
+/// λ_α the moment r_α × λ_α. (What stretches r_α is no wrench.) The ground takes what its body gives: r_α is the
+/// body's.
 template <class T>  // compiled where it is used
 Vec<T, 6> linear_wrench(LinearRows const& rows, StateOf<T> const& x) {
   Vec<T, 6> w = Vec<T, 6>::Zero();
   Index const size = rows.positions;
   w.head(size) = x.lambda.segment(rows.row, size);
+  LinearSide const& side = rows.b.map.cols() > 0 ? rows.b : rows.a;
   Index row = size;
   for (LinearRows::Gradient const& g : rows.gradients) {
-    Vec<T, 3> now = g.fixed, force = g.axis * x.lambda[rows.row + row];
-    if (g.map.cols() > 0) now.head(size) = g.map * x.q.segment(rows.b.q0, g.map.cols());
+    Vec<T, 3> now = Vec<T, 3>::Zero(), force = g.axis * x.lambda[rows.row + row];
+    now.head(size) = g.map * x.q.segment(side.q0, g.map.cols());
     if (g.rows > 1) force.head(size) = x.lambda.segment(rows.row + row, size);
     w.template tail<3>() += now.cross(force);
     row += g.rows;

@@ -20,10 +20,10 @@ class BlockPattern {
     Index first = 0;
     int size = 0;
     bool joint = true;
-    int body = -1;        ///< its body's number (of bodies)
-    Sequence<int> child;  ///< of a joint: segments of the hanging body that it touches
-    Sequence<int> after;  ///< of a joint: segments to be eliminated before
-    bool closes_loop = false;
+    int body = -1;             ///< its body's number (of bodies)
+    Sequence<int> child;       ///< of a joint: segments of the hanging body that it touches
+    Sequence<int> after;       ///< of a joint: segments to be eliminated before
+    bool closes_loop = false;  ///< and waits for all that moves it, so that it may be found to repeat others
   };
 
   [[gnu::cold]] void analyse(Index size, std::span<Block const> blocks) {
@@ -196,6 +196,7 @@ class BlockPattern {
       return;
     }
     Sequence<int> loop;
+    int carrier = -1;  // of the loop, which does not wait for it
     if (j.ends.size() == 2) {
       int a = j.ends[0].first, b = j.ends[1].first;
       while (a != b) {
@@ -203,9 +204,10 @@ class BlockPattern {
         loop.push_back(deeper);
         deeper = bodies_[std::size_t(deeper)].parent;
       }
+      carrier = a;
     } else {  // against the ground, or among many bodies: everything on the way there
       for (auto const& end : j.ends) {
-        if (is_own(j)) loop.push_back(end.first);
+        if (is_own(j)) loop.push_back(end.first), carrier = bodies_[std::size_t(end.first)].parent;
         for (int u = end.first; u >= 0 && !is_own(j); u = bodies_[std::size_t(u)].parent) loop.push_back(u);
       }
     }
@@ -221,7 +223,12 @@ class BlockPattern {
       if (body.primary >= 0) s.after.push_back(body.primary);
       if (loop.size() == 1) body.secondary.push_back(j.segment);
     }
-    s.closes_loop = true;
+    s.closes_loop = carrier < 0 || (!is_own(j) && is_rigid(carrier));  // which moves a loop along; a bar may open it
+  }
+  bool is_rigid(int body) const {
+    int unknowns = 0;
+    for (int const s : bodies_[std::size_t(body)].segments) unknowns += segments_[std::size_t(s)].size;
+    return unknowns <= 7;
   }
 
   Sequence<Segment> segments_;

@@ -26,9 +26,8 @@ struct LinearRows {
   /// A gradient that a and b share, or its component along an axis.
   struct Gradient {
     Index rows;
-    MatX map;    ///< of b
-    Vec3 fixed;  ///< what it is where b is the ground
-    Vec3 axis;   ///< (3) of a single row
+    MatX map;   ///< of b; of a where b is the ground
+    Vec3 axis;  ///< (3) of a single row
   };
   Sequence<Gradient> gradients = {};
   Index rows() const { return constant.size(); }
@@ -128,7 +127,7 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
   auto const share = [&](V const& of_a, V const& of_b, bool along_axis_only) {
     Mx ca = a.carried(of_a), cb = b.carried(of_b);
     Vx c = ((a.columns == 0 ? of_a : V(V::Zero())) - (b.columns == 0 ? of_b : V(V::Zero()))).head(size);
-    rows.gradients.push_back({along_axis_only ? 1 : Index(size), cb, of_b, n});
+    rows.gradients.push_back({along_axis_only ? 1 : Index(size), b.columns > 0 ? cb : ca, n});
     if (along_axis_only) {
       Mat<T, 1, Eigen::Dynamic> const axis = n.head(size).transpose();
       ca = (axis * ca).eval();

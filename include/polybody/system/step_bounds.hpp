@@ -3,6 +3,7 @@
 /// What no step of a sound run leaves behind: rows that are open, and energy that no work explains. Newton's method
 /// stops beside the size of the accelerations, so a motion that explodes converges, too.
 
+#include <cmath>
 #include <limits>
 
 #include <polybody/math/sequence.hpp>
@@ -29,6 +30,17 @@ struct StepEnd {
 /// it tells an explosion from a motion. It is looked at whenever the speeds have grown by a factor √10, so a run that
 /// does not grow pays for a sum of squares and for the power of its loads.
 class StepBounds {
+ private:
+  static constexpr double never = std::numeric_limits<double>::infinity();
+  struct Account {
+    double open = never;    ///< the limit for |Φ|
+    double energy = never;  ///< the limit, a factor
+    double judged = never;  ///< Σ v² beyond which the energy is looked at
+    double worked = 0.0;    ///< ∫|power| dt [J]
+    Energy start;           ///< E₀
+    double began = 0.0;     ///< at this time [s]
+  };
+
  public:
   /// Begins anew at q, v, t. Without this call nothing is checked.
   template <class = void>  // compiled where it is used
@@ -38,15 +50,34 @@ class StepBounds {
   /// looks wrong there is judged at the end itself. \param squares Σ v²
   template <class = void>
   void require(System& system, StepEnd const& end, double squares) {
-    if (counts_work_) worked_ += end.h * power(system, end.lambda);
-    if (squares > judged_ || any_open()) judge(system, end, squares);
+    if (counts_work_) {
+      double const work = end.h * power(system, end.lambda);
+      if (std::isfinite(work)) account_.worked += work;  // a force that is NaN is refused where it acts
+    }
+    if (squares > account_.judged || any_open()) judge(system, end, squares);
   }
+
+  /// Puts the account back as it was, unless what is tried is kept.
+  class Trial {
+   public:
+    explicit Trial(StepBounds& bounds) : bounds_(bounds), before_(bounds.account_) {}
+    Trial(Trial const&) = delete;
+    ~Trial() {
+      if (!kept_) bounds_.account_ = before_;
+    }
+    void keep() { kept_ = true; }
+
+   private:
+    StepBounds& bounds_;
+    Account before_;
+    bool kept_ = false;
+  };
 
  private:
   bool any_open() const {
     for (Gaps const& gaps : gaps_)
       for (int i = 0; i < gaps.rows; ++i)
-        if (std::abs(gaps.g[i]) > open_) return true;
+        if (std::abs(gaps.g[i]) > account_.open) return true;
     return false;
   }
   template <class = void>
@@ -69,15 +100,8 @@ class StepBounds {
     Index row;  ///< in a step; −1 for a compliant joint
   };
 
-  static constexpr double never = std::numeric_limits<double>::infinity();
-
   bool counts_work_ = false;
-  double open_ = never;    ///< the limit for |Φ|
-  double energy_ = never;  ///< the limit, a factor
-  double judged_ = never;  ///< Σ v² beyond which the energy is looked at
-  double worked_ = 0.0;    ///< ∫|power| dt [J]
-  Energy start_;           ///< E₀
-  double began_ = 0.0;     ///< at this time [s]
+  Account account_;
   Sequence<Gaps> gaps_;
   Sequence<std::size_t> actions_;    ///< of forces without a potential
   Sequence<std::size_t> compliant_;  ///< joints that do not store all that they take
@@ -96,13 +120,13 @@ void StepBounds::begin(System& system, StepLimits const& limits, VecX const& q, 
       least[i] = k == 0 ? r : std::min(least[i], r);
       most[i] = k == 0 ? r : std::max(most[i], r);
     }
-  open_ = limits.violation * std::max({1.0, most[0] - least[0], most[1] - least[1], most[2] - least[2]});
+  account_.open = limits.violation * std::max({1.0, most[0] - least[0], most[1] - least[1], most[2] - least[2]});
   auto const& [entries, model] = system.entries();
-  energy_ = entries.energy ? limits.energy : never;
-  if (entries.energy) start_ = entries.energy(model, system.at(), data);
-  began_ = t;
-  judged_ = energy_ < never ? 10.0 * squares(v) : never;
-  worked_ = 0.0;
+  account_.energy = entries.energy ? limits.energy : never;
+  if (entries.energy) account_.start = entries.energy(model, system.at(), data);
+  account_.began = t;
+  account_.judged = account_.energy < never ? 10.0 * squares(v) : never;
+  account_.worked = 0.0;
   gaps_.clear();
   actions_.clear();
   drives_.clear();
@@ -125,7 +149,7 @@ void StepBounds::begin(System& system, StepLimits const& limits, VecX const& q, 
     }
     drives_.push_back({i, row});
   }
-  counts_work_ = energy_ < never && !(actions_.empty() && drives_.empty() && compliant_.empty());
+  counts_work_ = account_.energy < never && !(actions_.empty() && drives_.empty() && compliant_.empty());
 }
 
 /// Σ |power|: w · twist of forces, λ · Φ_t of drives, λ · ġ of compliant joints that do not store what they take.
@@ -159,9 +183,9 @@ template <class>
 void StepBounds::judge(System& system, StepEnd const& end, double squares) {
   system.evaluate(end.q, end.v, end.t);
   if (any_open()) refuse_open(system, end.t);
-  if (!(squares > judged_)) return;
+  if (!(squares > account_.judged)) return;
   judge_energy(system, end);
-  judged_ = 10.0 * squares;
+  account_.judged = 10.0 * squares;
 }
 
 template <class>
@@ -181,7 +205,7 @@ void StepBounds::refuse_open(System const& system, double t) const {
                  " open by ",
                  largest,
                  ": the integration diverges. Take a smaller step, or raise the run's limits.violation, by which ",
-                 open_,
+                 account_.open,
                  " is allowed."};
 }
 
@@ -190,11 +214,12 @@ void StepBounds::judge_energy(System& system, StepEnd const& end) const {
   auto const& [entries, model] = system.entries();
   Energy const now = entries.energy(model, system.at(), system.data());
   At<double> const& at = system.at();
-  if (entries.energy(model, {at.q, at.v, began_}, system.data()).forces != now.forces) return;
-  double const gained = now.total() - start_.total();
-  double const explained = start_.kinetic + std::abs(start_.strain) + std::abs(start_.joints) +
-                           std::abs(start_.forces) + std::abs(now.gravity - start_.gravity) + worked_;
-  if (gained <= energy_ * explained) return;
+  if (entries.energy(model, {at.q, at.v, account_.began}, system.data()).forces != now.forces) return;
+  double const gained = now.total() - account_.start.total();
+  double const explained = account_.start.kinetic + std::abs(account_.start.strain) + std::abs(account_.start.joints) +
+                           std::abs(account_.start.forces) + std::abs(now.gravity - account_.start.gravity) +
+                           account_.worked;
+  if (gained <= account_.energy * explained) return;
   Index fastest = 0;
   for (Index i = 1; i < end.v.size(); ++i)
     if (std::abs(end.v[i]) > std::abs(end.v[fastest])) fastest = i;
