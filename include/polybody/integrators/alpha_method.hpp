@@ -257,15 +257,14 @@ struct AlphaMethod {
 
   template <class Solver>
   static bool loses_rank(System& system, State const& x, double h, Workspace<Solver>& w) {
-    w.dq = h * x.v;
+    for (Index i = 0; i < x.v.size(); ++i) w.dq[i] = h * x.v[i];
     system.plus(x.q, w.dq, w.q);
     return w.forward.loses_rank(system, {x.q, x.v, x.t}, {w.q, x.v, x.t + h});
   }
 
-  /// One step from x; x changes only when Newton converged. What stalls is tried again with more effort: 1, full Newton
-  /// with every term, from the start without extrapolation, and μ acts along Gᵀ of the iterate (next to a singular
-  /// position G turns by more than it is from one end of the step to the other); 2, the same with stand-ins for what
-  /// the forces of groups do, which jump less where friction turns round; last, beside a singular position, without μ.
+  /// One step from x, which changes only when Newton converged. What stalls is tried again: 1, by full Newton with
+  /// every term, without extrapolation, μ along Gᵀ of the iterate (beside singular positions G turns far within a
+  /// step); 2, with stand-ins for the forces of groups, which jump with friction; last, where rank is lost, without μ.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     StepHistory history(x);

@@ -38,8 +38,7 @@ class Simulation {
   RunReport report() && { return std::move(report_); }
   /// What is stepped: the model, or what its policies leave of it.
   System& system() { return *system_; }
-  /// The whole mechanism.
-  System& whole() { return whole_ ? *whole_ : *system_; }
+  System& whole() { return whole_ ? *whole_ : *system_; }  ///< the whole mechanism
   bool done() const { return report_.stopped || stepped().t >= options_.until; }
 
   /// Takes one step: to the next grid point, or to a corner or event before it. When it throws, the state is as
@@ -97,8 +96,7 @@ class Simulation {
   /// A narrow state is stepped, of which `show` makes the user's; else that itself.
   bool eliminates() const { return bool(whole_); }
 
-  /// \param shown the user's state follows
-  void advance(bool shown);
+  void advance(bool shown);  ///< shown: the user's state follows
 
   /// A workspace that knows no earlier step, and is ready for the next one.
   [[gnu::cold]] void renew() {
