@@ -104,7 +104,7 @@ void calls() {
 #ifdef POLYBODY_HAS_SIMBODY
     auto const [other, its] = simbody_call(links);
     std::printf("                      %8.2f     %5.2f   %.0e", 1e6 * other, taken / other,
-                std::abs(last - its) / std::abs(its));
+                std::fabs(last - its) / std::fabs(its));
 #endif
     std::printf("\n");
   }
