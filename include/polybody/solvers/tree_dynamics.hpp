@@ -28,20 +28,13 @@ class TreeDynamicsOf {
   /// The constants of the bodies; allocates all there is to be.
   explicit TreeDynamicsOf(Sequence<TreeBody> const& bodies);
 
-  bool empty() const { return links_.empty(); }
-
   /// u̇ of all freedoms at (q, v) under weight alone. −1, or the body whose freedom has no inertia.
   Index accelerations_by_weight(VecXOf<T> const& q, VecXOf<T> const& v, Vec3 const& gravity, VecXOf<T>& out) {
     place_all(q, v);
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      Body& b = bodies_[i];
-      T spin[3] = {T(0.0), T(0.0), T(0.0)};
-      b.inertia.add_by_angular(b.w, b.p);  // p is zero; only its moment is Θω
-      for (int k = 0; k < 3; ++k) {
-        spin[k] = b.p[3 + k];
-        b.p[k] = b.p[3 + k] = T(0.0);
-      }
-      detail::add_cross(b.w, spin, b.p + 3);
+    for (Body& b : bodies_) {
+      T spin[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+      b.inertia.add_by_angular(b.w, spin);
+      detail::add_cross(b.w, spin + 3, b.p + 3);  // ω × Θ ω
       add_centrifugal(b);
     }
     return solve(gravity, out);
