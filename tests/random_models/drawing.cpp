@@ -3,6 +3,7 @@
 #include "random_models/plan.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 
 namespace polybody::random_models {
@@ -100,8 +101,11 @@ class Drawing {
       if (here(p)) out.push_back(p);
     return out;
   }
+  /// The i-th of this model. A stride that shares no factor with the number of pairings takes each i past all of them.
   Pairing next(std::vector<Pairing> const& list, int i) const {
-    return list[(turn_ * most_joints + std::size_t(i)) * 7919 % list.size()];
+    std::size_t stride = most_joints;
+    while (std::gcd(stride, list.size()) > 1) ++stride;
+    return list[(turn_ * stride + std::size_t(i)) * 7919 % list.size()];
   }
 
   BodyKind const& kind_of(int body) const { return kinds_.bodies[std::size_t(plan_.bodies[std::size_t(body)].kind)]; }
