@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <polybody/math/sequence.hpp>
+#include <polybody/math/vectors.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {

@@ -11,7 +11,7 @@
 #include <span>
 
 #include <polybody/kinematics/frame.hpp>
-#include <polybody/vehicle/track_walk.hpp>
+#include <polybody/vehicle/track_clearances.hpp>
 
 namespace polybody {
 
@@ -49,29 +49,6 @@ struct TrackPath {
   }
 };
 
-/// How well a chain of pins fits its layout; a negative gap is a penetration.
-struct TrackClearances {
-  double stretch = 0.0;                                      ///< largest | |rᵢ₊₁ − rᵢ| − p | [m]
-  double circles = std::numeric_limits<double>::infinity();  ///< least gap between a link's faces and a rim [m]
-  int link = 0, circle = 0;                                  ///< where that is
-  double sprocket =
-      std::numeric_limits<double>::infinity();  ///< how far the innermost pin lies outside the pitch circle [m]
-  double ground = std::numeric_limits<double>::infinity();  ///< least height of a link's corner above the ground [m]
-};
-
-namespace detail {
-
-/// The gap between a circle and the faces of the link with pins `front` and `rear`: a rectangle of p × 2h.
-inline double track_gap(Vec2 const& front, Vec2 const& rear, double half_thickness, TrackCircle const& circle) {
-  Vec2 const chord = front - rear, arm = circle.centre - 0.5 * (front + rear);
-  double const pitch = chord.norm();
-  double const along = std::max(0.0, std::abs(chord.dot(arm)) / pitch - 0.5 * pitch);
-  double const across = std::max(0.0, std::abs(track_cross(chord, arm)) / pitch - half_thickness);
-  return std::hypot(along, across) - circle.radius;
-}
-
-}  // namespace detail
-
 /// The frames of a closed chain's links; pin i is in front of link i. A face touches a rim that it is nearer to than
 /// 1e-6 p.
 inline std::vector<TrackLink> track_links(TrackLayout const& layout, std::span<Vec2 const> pins) {
@@ -87,26 +64,7 @@ inline std::vector<TrackLink> track_links(TrackLayout const& layout, std::span<V
   return links;
 }
 
-/// How well a closed chain fits `layout` and stays above the ground z = `ground`.
-inline TrackClearances clearances(TrackLayout const& layout, std::span<Vec2 const> pins,
-                                  double ground = -std::numeric_limits<double>::infinity()) {
-  TrackClearances found;
-  for (std::size_t i = 0; i < pins.size(); ++i) {
-    Vec2 const &front = pins[i], &rear = pins[(i + 1) % pins.size()];
-    double const chord = (front - rear).norm(), corner = layout.half_thickness * std::abs(front[0] - rear[0]) / chord;
-    found.stretch = std::max(found.stretch, std::abs(chord - layout.pitch));
-    found.sprocket = std::min(found.sprocket, (front - layout.sprocket.centre).norm() - layout.pitch_radius());
-    found.ground = std::min(found.ground, std::min(front[1], rear[1]) - corner - ground);
-    for (std::size_t k = 0; k < layout.circles.size(); ++k)
-      if (double const gap = detail::track_gap(front, rear, layout.half_thickness, layout.circles[k]);
-          gap < found.circles) {
-        found.circles = gap;
-        found.link = int(i);
-        found.circle = int(k);
-      }
-  }
-  return found;
-}
+/// How well a track fits its layout.
 inline TrackClearances clearances(TrackPath const& path, double ground = -std::numeric_limits<double>::infinity()) {
   return clearances(path.layout, path.pins, ground);
 }
