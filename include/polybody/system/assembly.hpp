@@ -17,21 +17,27 @@ void for_each_row_block(Data<T> const& data, F&& f) {
     if (block.row >= 0 && !data.leaves_out(block)) f(block);
 }
 
-/// r += mapᵀ λ of an end.
-template <StateScalar T>
-void add_end(RowEnd<T> const& end, int rows, T const* lambda, Data<T> const& data, T* r) {
-  if (end.marker < 0) {
-    for (Index c = 0; c < end.columns; ++c)
-      for (int k = 0; k < rows; ++k) r[end.first + c] += end.map[rows * c + k] * lambda[k];
-    return;
+/// r += mapᵀ λ of both ends of a block; m as a constant, or block.rows where it is zero.
+template <int m, StateScalar T>
+void add_ends(RowBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
+  for (RowEnd<T> const* const end : {&block.a, &block.b}) {
+    if (end->marker < 0) {
+      int const rows = m > 0 ? m : block.rows;
+      for (Index c = 0; c < end->columns; ++c)
+        for (int k = 0; k < rows; ++k) r[end->first + c] += end->map[rows * c + k] * lambda[k];
+    } else if constexpr (m > 0) {
+      Published<T> const& p = data.markers[std::size_t(end->marker)];
+      if (p.shape == JacobianShape::ground) continue;
+      T w[6];
+      wrench_of<m>(end->map, lambda, w);
+      add_pulled(p, w, 1.0, r);
+    }
   }
-  Published<T> const& p = data.markers[std::size_t(end.marker)];
-  if (p.shape == JacobianShape::ground) return;
-  T w[6];
-  with_constant(rows, [&](auto m) {
-    if constexpr (m > 0) wrench_of<m>(end.map, lambda, w);
-  });
-  add_pulled(p, w, 1.0, r);
+}
+/// The same for m = block.rows.
+template <StateScalar T>
+void add_ends(RowBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
+  with_constant(block.rows, [&](auto m) { add_ends<m>(block, lambda, data, r); });
 }
 
 /// out (rows) += map · x of an end, x the twist that its marker has with the speeds v, or these themselves.
@@ -67,8 +73,7 @@ void add_row_forces(Data<T> const& data, VecXOf<T> const& lambda, VecXOf<T>& r) 
   for (RowBlock<T> const& block : data.rows) {
     if (data.leaves_out(block)) continue;
     T const* const l = block.multiplier(lambda);
-    detail::add_end(block.a, block.rows, l, data, r.data());
-    detail::add_end(block.b, block.rows, l, data, r.data());
+    detail::add_ends(block, l, data, r.data());
   }
 }
 
@@ -85,7 +90,10 @@ void add_actions(Data<T> const& data, ModelLayout const& layout, double load_fac
 template <StateScalar T>
 void violation(Data<T> const& data, VecXOf<T>& phi) {
   detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
-    for (int i = 0; i < block.rows; ++i) phi[block.row + i] = block.g[i];
+    T* const out = phi.data() + block.row;
+    with_constant(block.rows, [&](auto m) {
+      for (int i = 0; i < (m > 0 ? int(m) : block.rows); ++i) out[i] = block.g[i];
+    });
   });
 }
 
@@ -127,10 +135,8 @@ void rows_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
 template <StateScalar T>
 void rows_transposed_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
   for (Index i = 0; i < out.size(); ++i) out[i] = T(0.0);
-  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
-    detail::add_end(block.a, block.rows, b.data() + block.row, data, out.data());
-    detail::add_end(block.b, block.rows, b.data() + block.row, data, out.data());
-  });
+  detail::for_each_row_block(
+      data, [&](RowBlock<T> const& block) { detail::add_ends(block, b.data() + block.row, data, out.data()); });
 }
 
 /// Gᵀ and G, which begins at row `first`, block by block into `sink`.
