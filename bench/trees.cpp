@@ -111,10 +111,12 @@ void calls() {
 }
 
 void implicit_steps() {
-  std::printf("\na step of 1 ms by generalised-alpha [us], iterations\n");
+  std::printf("\na step of 1 ms by generalised-alpha [us], iterations   and by full Newton\n");
   for (int const links : {16, 64, 256, 1024, 4096}) {
     auto const [taken, iterations] = step(links, GeneralizedAlpha{});
-    std::printf("  %4d links  %8.1f   %.2f\n", links, 1e6 * taken, iterations);
+    auto const [full, of_full] = step(links, GeneralizedAlpha{.newton = {.always_refactor = true}});
+    std::printf("  %4d links  %8.1f   %.2f                            %8.1f   %.2f\n", links, 1e6 * taken, iterations,
+                1e6 * full, of_full);
   }
 }
 

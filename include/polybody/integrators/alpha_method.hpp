@@ -16,48 +16,12 @@
 /// λ then answers Φ̇ = 0 and μ answers Φ = 0: Newton's method takes the first pair through the tangent, the second
 /// through [M, Gᵀ; G, 0] at q₀, and each sees the other through the next right-hand side.
 
+#include <polybody/integrators/alpha_vectors.hpp>
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
 #include <polybody/math/sequence.hpp>
 
 namespace polybody {
-
-/// What a step of the family computes with, of whatever model.
-struct AlphaVectors {
-  VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
-  VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
-  VecX back, rate;       ///< of a stabilised step: what μ moves, and a vector by rows
-  VecX kept, kept_back;  ///< corrections while others are looked at
-  Index states;          ///< first-order ones, the last of the speeds
-
-  AlphaVectors(Index coordinates, Index speeds, Index rows, Index first_order)
-      : v0(VecX::Zero(speeds)),
-        a0(v0),
-        q(VecX::Zero(coordinates)),
-        v(v0),
-        vd(v0),
-        a(v0),
-        lambda(VecX::Zero(rows)),
-        dq(v0),
-        r(v0),
-        phi(lambda),
-        rhs(VecX::Zero(speeds + rows)),
-        y(rhs),
-        jerk(v0),
-        ahead(v0),
-        back(v0),
-        rate(lambda),
-        kept(rhs),
-        kept_back(v0),
-        states(first_order) {}
-
-  /// f(first, end) holds of the speeds of bodies and of the first-order states.
-  template <class F>
-  bool of_each_part(F&& f) const {
-    Index const bodies = v.size() - states;
-    return f(0, bodies) && (states == 0 || f(bodies, v.size()));
-  }
-};
 
 /// A member of the family: its coefficients, and how Newton's method is to solve its steps.
 struct AlphaMethod {
@@ -106,8 +70,8 @@ struct AlphaMethod {
     w.factored = false;
     if (start_correction && jerk_at_start(system, x, h, w)) StepHistory(x).pretend(x, w.jerk, h);
     // once here, so that a solver that changes its order does not do so within a step
-    system.evaluate(x.q, x.v, x.t);
-    (void)refactor(system, h, x.lambda, w);
+    w.solver.evaluate(system, {x.q, x.v, x.t});
+    (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
   }
 
   template <class Solver>
@@ -180,14 +144,14 @@ struct AlphaMethod {
       for (Index const i : velocity_rows) of_rows[i] = w.rate[i] / -(h * gamma);
   }
 
-  /// Tangent and factorisation for steps of h where `system` was evaluated last. −1, or the unknown without a pivot.
+  /// Tangent and factorisation for steps of h at x, where `system` was evaluated last. −1, or the unknown without a
+  /// pivot.
   template <class Solver>
-  Index refactor(System& system, double h, VecX const& lambda, Workspace<Solver>& w, bool stand_ins = true) const {
+  Index refactor(System& system, double h, StepPlace const& x, Workspace<Solver>& w, bool stand_ins = true) const {
     w.h_factored = h;
     w.age = 0;
     TangentCoefficients const c{mass(), h * gamma, beta * h * h, stand_ins};
-    SecondOrder const second = w.second_order ? SecondOrder::included : SecondOrder::omitted;
-    return w.solver.factor([&](BlockSink& sink) { system.tangent(c, second, lambda, sink); });
+    return w.solver.factor_tangent(system, x, c, w.second_order ? SecondOrder::included : SecondOrder::omitted);
   }
 
   /// A step as Newton's method sees it.
@@ -201,12 +165,13 @@ struct AlphaMethod {
     bool two_sets, holds_anew, stand_ins;
     Index bad = -1;
 
+    StepPlace place() const { return {{w.q, w.v, x.t + h}, w.vd, w.lambda}; }
     bool evaluate() { return evaluate_at(w.dq); }
     bool evaluate_at(VecX const& dq) {
       system.plus(x.q, dq, w.q);
-      system.evaluate(w.q, w.v, x.t + h);
-      system.residual(w.vd, w.lambda, w.r);
-      system.violation(w.phi);
+      w.solver.evaluate(system, {w.q, w.v, x.t + h});
+      w.solver.balance(system, place(), w.r);
+      if (w.phi.size() > 0) system.violation(w.phi);
       if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
       method.right_hand_side(h, two_sets, system.velocity_rows(), w);
       return all_finite(w.rhs);
@@ -216,10 +181,10 @@ struct AlphaMethod {
       if (ahead > 0.0) {
         for (Index i = 0; i < w.v.size(); ++i) w.ahead[i] = w.dq[i] + ahead * w.v[i];
         system.plus(x.q, w.ahead, w.q);
-        system.evaluate(w.q, w.v, x.t + h);
+        w.solver.evaluate(system, {w.q, w.v, x.t + h});
       }
       if (holds_anew) w.forward.hold(system, w.q, w.v, x.t + h);
-      bad = method.refactor(system, h, w.lambda, w, stand_ins);
+      bad = method.refactor(system, h, place(), w, stand_ins);
       return bad < 0;
     }
     CorrectionSize solve() {
@@ -281,6 +246,8 @@ struct AlphaMethod {
     if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
 
     NewtonOptions options = newton;
+    if (w.solver.factors_cheaply() && options.refactor_above == NewtonOptions{}.refactor_above)
+      options.refactor_above = 0.05;
     if (careful) {
       options.always_refactor = true;
       options.growths = 8;  // damped, it recovers

@@ -113,14 +113,6 @@ template <class = void>
       "The equations of motion have no unique acceleration at t = ", t, " s; the pivot is lost at ", who,
       ". Look for a joint that repeats another, or a body without inertia that is free to move."};
 }
-/// No force element, compliant joint or force of a body acts beside weight and inertia.
-template <class = void>
-[[gnu::cold]] bool pushed_by_weight_alone(System const& s) {
-  if (!s.step_coordinates().narrow->moves_by_newton_euler || !s.data().actions.empty()) return false;
-  for (RowBlock<double> const& block : s.data().rows)
-    if (block.source != RowSource::joint) return false;
-  return true;
-}
 
 }  // namespace detail
 
@@ -138,7 +130,7 @@ class ForwardDynamics {
         delta_(VecX::Zero(system.speeds())),
         next_(VecX::Zero(system.coordinates())) {
     by_tree_ = system.step_coordinates() && system.step_coordinates().narrow->solves_by_bodies && system.rows() == 0;
-    if (by_tree_) only_weight_ = detail::pushed_by_weight_alone(system);
+    if (by_tree_) only_weight_ = pushed_by_weight_alone(system);
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 

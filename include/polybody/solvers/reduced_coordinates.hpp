@@ -5,7 +5,9 @@
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/articulated_body.hpp>
+#include <polybody/solvers/held_multipliers.hpp>
 #include <polybody/solvers/tree_dynamics.hpp>
+#include <polybody/solvers/tree_tangent.hpp>
 #include <polybody/system/dense_reduction.hpp>
 #include <polybody/system/mapped_sink.hpp>
 #include <polybody/system/model_entries.hpp>
@@ -81,35 +83,13 @@ class ReducedCoordinates {
       s.a_ = s.last_r_;
       s.reduction_.tree().reduce_forces(s.state_, s.a_, s.narrow_);
       for (RowBlock<double> const& block : data.rows)
-        if (block.source == RowSource::joint && s.reduction_.carried_by(block.row) >= 0)
-          s.recover_multiplier(block, data, lambda);
-    }
-  }
-  /// λ of a joint of the tree: Gᵀλ is what it holds, by the rows' least squares.
-  void recover_multiplier(RowBlock<double> const& block, Data<double> const& data, VecX& lambda) {
-    std::size_t const i = std::size_t(reduction_.carried_by(block.row));
-    RowEnd<double> const& end = reduction_.tree().bodies[i].backwards ? block.a : block.b;
-    int const m = block.rows;
-    Vec6 w = state_.held[i];
-    Vec3 const &at = data.markers[std::size_t(end.marker)].frame.r, &origin = state_.frames[i].r;
-    double const rho[3] = {at[0] - origin[0], at[1] - origin[1], at[2] - origin[2]};
-    for (int k = 0; k < 3; ++k) w[3 + k] -= rho[(k + 1) % 3] * w[(k + 2) % 3] - rho[(k + 2) % 3] * w[(k + 1) % 3];
-    auto gram = zeros<Mat<RealFor<Solution>, 6, 6>>();
-    for (int k = m; k < 6; ++k) gram(k, k) = 1.0;
-    double right[6] = {};
-    for (int k = 0; k < m; ++k) {
-      for (int l = 0; l < 6; ++l) right[k] -= end.map[m * l + k] * w[l];
-      for (int j = 0; j < m; ++j) {
-        double sum = 0.0;
-        for (int l = 0; l < 6; ++l) sum += end.map[m * l + k] * end.map[m * l + j];
-        gram(k, j) = sum;
-      }
-    }
-    invert_leading(gram, m);
-    for (int k = 0; k < m; ++k) {
-      double sum = 0.0;
-      for (int j = 0; j < m; ++j) sum += gram(k, j) * right[j];
-      lambda[block.row + k] = sum;
+        if (block.source == RowSource::joint && s.reduction_.carried_by(block.row) >= 0) {
+          std::size_t const i = std::size_t(s.reduction_.carried_by(block.row));
+          RowEnd<double> const& end = s.reduction_.tree().bodies[i].backwards ? block.a : block.b;
+          Vec3 const& at = data.markers[std::size_t(end.marker)].frame.r;
+          multipliers_that_hold(block.rows, end.map, s.state_.held[i],
+                                difference<RealFor<Solution>>(at, s.state_.frames[i].r), lambda.data() + block.row);
+        }
     }
   }
 
@@ -165,12 +145,15 @@ class ReducedCoordinates {
   struct Held {
     TreeState state;
     ArticulatedBodySolverOf<> solver;
+    TreeTangentOf<> tangent;
+    bool of_balance = false;  ///< the last factors are those of the tangent
   };
   static HeldPlace held(void* c) {
     if constexpr (solves_by_bodies) {
       auto held = std::make_shared<Held>();
       held->state = of(c).state_;
       held->solver.attach(of(c).reduction_, held->state);
+      held->tangent = TreeTangentOf<>(of(c).reduction_.tree().bodies);
       return held;
     }
     return std::make_shared<TreeState>(of(c).state_);
@@ -191,9 +174,21 @@ class ReducedCoordinates {
     }
     return -1;
   }
+  static void balance(void* c, StepPlace const& x, double load_factor, VecX& r) {
+    if constexpr (solves_by_bodies) of(c).dynamics_.balance(x.at.q, x.at.v, x.a, of(c).weight_ * load_factor, r);
+  }
+  static Index factor_balance(void* c, void* h, StepPlace const& x, double load_factor, TangentCoefficients const& k) {
+    if constexpr (solves_by_bodies) {
+      Held& held = *static_cast<Held*>(h);
+      held.of_balance = true;
+      return held.tangent.factor(x.at, x.a, of(c).weight_ * load_factor, k);
+    }
+    return -1;
+  }
   static Index factor(void*, void* h, BlockWriter const& write_whole) {
     if constexpr (solves_by_bodies) {
       Held& held = *static_cast<Held*>(h);
+      held.of_balance = false;
       held.solver.begin();
       BlockSink sink(held.solver);
       write_whole(sink);
@@ -202,7 +197,10 @@ class ReducedCoordinates {
     return -1;
   }
   static void solve(void* h, VecX const& rhs, VecX& x) {
-    if constexpr (solves_by_bodies) static_cast<Held*>(h)->solver.solve(rhs, x);
+    if constexpr (solves_by_bodies) {
+      Held& held = *static_cast<Held*>(h);
+      held.of_balance ? held.tangent.solve(rhs, x) : held.solver.solve(rhs, x);
+    }
   }
 
   static void to_equations(void* c, void* h, VecX const& rhs, VecX& out) {
@@ -337,6 +335,8 @@ constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = {
     .to_equations = &ReducedCoordinates::to_equations,
     .from_equations = &ReducedCoordinates::from_equations,
     .accelerations = &ReducedCoordinates::accelerations,
+    .balance = &ReducedCoordinates::balance,
+    .factor_balance = &ReducedCoordinates::factor_balance,
     .factor = &ReducedCoordinates::factor,
     .solve = &ReducedCoordinates::solve};
 

@@ -8,6 +8,15 @@
 
 namespace polybody {
 
+/// No force element, compliant joint or force of a body acts beside weight and inertia.
+template <class = void>
+[[gnu::cold]] bool pushed_by_weight_alone(System const& s) {
+  if (!s.step_coordinates().narrow->moves_by_newton_euler || !s.data().actions.empty()) return false;
+  for (RowBlock<double> const& block : s.data().rows)
+    if (block.source != RowSource::joint) return false;
+  return true;
+}
+
 /// The linear systems of an integrator: written by the mechanics, factored and solved by a linear solver, in whatever
 /// unknowns the mechanics choose for them. Trees that are their own solver are solved by their own elimination,
 /// whatever the solver.
@@ -21,7 +30,9 @@ class TangentSolver {
     size_ = system.size();
     equations_ = coordinates_ ? coordinates_.narrow->equations : size_;
     if (coordinates_) held_ = coordinates_.entries->held(coordinates_.self.get());
+    walks_ = false;
     if (solves_by_bodies()) {
+      walks_ = system.rows() == 0 && pushed_by_weight_alone(system);
       if (copies > 1)
         throw InvalidInput(
             "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a method "
@@ -40,6 +51,27 @@ class TangentSolver {
       equation_.setZero(equations_);
     }
   }
+
+  /// Evaluates the system, unless the walks of a tree under weight alone need nothing of it.
+  void evaluate(System& system, At<double> const& at) const {
+    if (!walks_) system.evaluate(at.q, at.v, at.t);
+  }
+  /// r = M a − f + Gᵀλ at x, where the system was evaluated last.
+  void balance(System& system, StepPlace const& x, VecX& r) const {
+    if (walks_)
+      coordinates_.entries->balance(coordinates_.self.get(), x, system.load_factor, r);
+    else
+      system.residual(x.a, x.lambda, r);
+  }
+  /// The factors of the tangent of that; the same as `factor` returns.
+  Index factor_tangent(System& system, StepPlace const& x, TangentCoefficients const& k, SecondOrder second) {
+    if (walks_)
+      return coordinates_.entries->factor_balance(coordinates_.self.get(), held_.get(), x, system.load_factor, k);
+    return factor([&](BlockSink& sink) { system.tangent(k, second, x.lambda, sink); });
+  }
+
+  /// A factorisation costs two iterations.
+  bool factors_cheaply() const { return walks_; }
 
   /// Writes and factors where `system` was evaluated last. −1, or the equation without a pivot (`name_of_equation`).
   Index factor(BlockWriter const& write) {
@@ -86,6 +118,7 @@ class TangentSolver {
   Solver solver_;
   Coordinates coordinates_;
   HeldPlace held_;
+  bool walks_ = false;  // balance and tangent by walks over a tree that solves its bodies
   std::size_t fewest_dropped_ = std::numeric_limits<std::size_t>::max();
   Index copies_ = 1, size_ = 0, equations_ = 0;
   VecX rhs_, x_, part_, solution_, equation_;

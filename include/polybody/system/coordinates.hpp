@@ -38,6 +38,12 @@ struct NarrowLayout {
 /// solver.
 using HeldPlace = std::shared_ptr<void>;
 
+/// Where an implicit step stands: (q, v, t), v̇ and λ in its own unknowns.
+struct StepPlace {
+  At<double> at;
+  VecX const &a, &lambda;
+};
+
 struct CoordinatesEntries {
   /// Whole q, v from narrow ones; this place is kept for what follows.
   void (*expand)(void* c, VecX const& q, VecX const& v, VecX& whole_q, VecX& whole_v);
@@ -64,6 +70,10 @@ struct CoordinatesEntries {
   /// For trees that are their own solver: u̇ where no rows stay, under weight alone or with `unbalance` (of the
   /// whole model); −1, or the speed whose freedom has no inertia.
   Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance, VecX& out);
+  /// For them under weight alone: r = Tᵀ(M(T u̇ + b) − f) at a step's place; and the factors of its exact tangent there,
+  /// −1 or the speed without a pivot.
+  void (*balance)(void* c, StepPlace const& x, double load_factor, VecX& r);
+  Index (*factor_balance)(void* c, void* held, StepPlace const& x, double load_factor, TangentCoefficients const& k);
   Index (*factor)(void* c, void* held, BlockWriter const& write);
   void (*solve)(void* held, VecX const& rhs, VecX& x);
 };

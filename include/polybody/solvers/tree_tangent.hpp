@@ -1,0 +1,272 @@
+#pragma once
+/// \file
+/// The tangent of an implicit step of a tree of rigid bodies under weight, eliminated freedom by freedom from the tips
+/// to the roots: the derivative of Tᵀ(M(T u̇ + b) − f) where a change y of the freedoms moves coordinates by ck y,
+/// speeds by cd y and accelerations by cm y. It is exact: inertia, Coriolis and centrifugal terms, and what tension
+/// does as joints turn [derived; the derivatives of inverse dynamics as in Carpentier & Mansard 2018].
+///
+/// Seen from a body, a place has no change: with changes of [v; ω] and its rate as the body sees them, δv and δa, a
+/// freedom with columns J and speed u takes its carrier's v₀, a₀ (weight being an acceleration of the ground) to
+///   δv = δv₀ + s_v y,                      s_v = cd J + ck v₀ ×ₘ J,
+///   δa = δa₀ − (J u) ×ₘ δv + s_a y,        s_a = cm J + cd v ×ₘ J + ck a₀ ×ₘ J,
+/// and the force that a body with all that it carries wants, F, changes by δF = A δa + B δv. A body alone has
+///   A = I,   B = (·) ×* I v + v ×* I.
+/// The freedom's equation is Jᵀ δF = given, and its carrier feels δF + ck y J ×* F, so that with B′ = B − A (J u) ×ₘ
+///   D = Jᵀ h,   h = A s_a + B′ s_v,   r = h + ck J ×* F,
+///   A₀ = A − r D⁻¹ JᵀA,   B₀ = B′ − r D⁻¹ JᵀB′.
+/// A ball's three columns are one such freedom. Where they are fixed on the carrier, v and a stand in place of v₀ and
+/// a₀, v₀ in place of v, (J u) ×ₘ s_v is a part of s_a, and D = Jᵀ r.
+
+#include <polybody/solvers/spatial.hpp>
+#include <polybody/solvers/tree_walk.hpp>
+#include <polybody/system/entries.hpp>
+
+namespace polybody {
+
+/// T is `double`: a template, so that a program without joint coordinates compiles none of it.
+template <class T = double>
+class TreeTangentOf {
+ public:
+  TreeTangentOf() = default;
+  /// Allocates all there is to be.
+  explicit TreeTangentOf(Sequence<TreeBody> const& bodies)
+      : walk_(bodies), nodes_(bodies.size()), columns_(walk_.freedoms.size()) {}
+
+  /// Factors at (q, v, a). −1, or the freedom without a pivot.
+  Index factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity, TangentCoefficients const& c);
+  /// y for given generalised forces.
+  void solve(VecXOf<T> const& given, VecXOf<T>& y);
+
+ private:
+  using Walk = TreeWalkOf<T>;
+  using Freedom = typename Walk::Freedom;
+  struct Column {
+    T sv[6], sa[6], l[12], r[6], rate[6], inverse[3];  ///< Jᵀ[A B′], J u and a row of D⁻¹ among them
+    T w;
+  };
+  struct Node {
+    T v[6], a[6], force[6], c[6];
+    detail::MatrixPair<T> pair;  ///< [A B]
+  };
+
+  void move(std::size_t i, VecXOf<T> const& v, VecXOf<T> const& a, TangentCoefficients const& k);
+  void move_through(std::size_t first, bool before, Node& n, TangentCoefficients const& k);
+  void set_inertia(std::size_t i);
+  bool eliminate(std::size_t first, bool before, double ck, Node& n);
+  bool invert(std::size_t first, int count, T const* d, T const* size);
+  void collect(VecXOf<T> const& given);
+  /// Row k of D⁻¹ w of a freedom, or of those of a ball.
+  T answer(std::size_t first, int k) const {
+    T sum = T(0.0);
+    for (int j = 0; j < walk_.freedoms[first].together; ++j)
+      sum += columns_[first + std::size_t(k)].inverse[j] * columns_[first + std::size_t(j)].w;
+    return sum;
+  }
+
+  Walk walk_;
+  Sequence<Node> nodes_;
+  Sequence<Column> columns_;
+  Node ground_ = {};
+};
+
+template <class T>
+Index TreeTangentOf<T>::factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity,
+                               TangentCoefficients const& c) {
+  walk_.place(at.q, at.v);
+  for (int k = 0; k < 3; ++k) ground_.a[k] = -gravity[k];
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    move(i, at.v, a, c);
+    set_inertia(i);
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    Node& n = nodes_[i];
+    auto const& body = walk_.bodies[i];
+    for (std::size_t k = body.first + std::size_t(body.count); k-- > body.first;)
+      if (walk_.freedoms[k].together > 0 && !eliminate(k, walk_.links[i].backwards, c.stiffness, n))
+        return walk_.freedoms[k].speed;
+    Index const parent = walk_.links[i].parent;
+    if (parent < 0) continue;
+    Node& p = nodes_[std::size_t(parent)];
+    n.pair.add_carried(body.d, p.pair);
+    detail::add_carried_force(n.force, body.d, p.force);
+  }
+  return -1;
+}
+
+/// v and a of body i, and what its freedoms do to their changes.
+template <class T>
+void TreeTangentOf<T>::move(std::size_t i, VecXOf<T> const& v, VecXOf<T> const& a, TangentCoefficients const& k) {
+  Node& n = nodes_[i];
+  auto const& body = walk_.bodies[i];
+  Index const parent = walk_.links[i].parent;
+  Node const& p = parent < 0 ? ground_ : nodes_[std::size_t(parent)];
+  detail::carry_motion(p.v, body.d, n.v);
+  detail::carry_motion(p.a, body.d, n.a);
+  std::size_t const end = body.first + std::size_t(body.count);
+  for (std::size_t first = body.first; first < end; first += walk_.freedoms[first].together) {
+    Column& c = columns_[first];
+    T rate[6] = {}, faster[6] = {};
+    for (std::size_t j = first; j < first + walk_.freedoms[first].together; ++j) {
+      Freedom const& f = walk_.freedoms[j];
+      for (int l = 0; l < 6; ++l) {
+        rate[l] += f.s[l] * v[f.speed];
+        faster[l] += f.s[l] * a[f.speed];
+      }
+    }
+    for (int l = 0; l < 6; ++l) {
+      c.rate[l] = rate[l];
+      c.r[l] = faster[l];  // until it is eliminated
+    }
+    move_through(first, walk_.links[i].backwards, n, k);
+  }
+}
+
+/// Through one freedom, or those of a ball. \param before the columns are fixed on the carrier
+template <class T>
+void TreeTangentOf<T>::move_through(std::size_t first, bool before, Node& n, TangentCoefficients const& k) {
+  Column const& c = columns_[first];
+  T v[6], a[6];
+  for (int l = 0; l < 6; ++l) {
+    v[l] = n.v[l] + c.rate[l];
+    a[l] = n.a[l] + c.r[l];
+  }
+  detail::add_motion_cross(n.v, c.rate, a);
+  T const *const place_v = before ? v : n.v, *const place_a = before ? a : n.a, *const speed_v = before ? n.v : v;
+  for (std::size_t j = first; j < first + walk_.freedoms[first].together; ++j) {
+    T const* const s = walk_.freedoms[j].s;
+    Column& to = columns_[j];
+    T by_v[6] = {}, by_a[6] = {}, by_speed[6] = {};
+    detail::add_motion_cross(place_v, s, by_v);
+    detail::add_motion_cross(place_a, s, by_a);
+    detail::add_motion_cross(speed_v, s, by_speed);
+    for (int l = 0; l < 6; ++l) {
+      to.sv[l] = k.damping * s[l] + k.stiffness * by_v[l];
+      to.sa[l] = k.mass * s[l] + k.damping * by_speed[l] + k.stiffness * by_a[l];
+    }
+    if (before) detail::add_motion_cross(c.rate, to.sv, to.sa);
+  }
+  for (int l = 0; l < 6; ++l) {
+    n.v[l] = v[l];
+    n.a[l] = a[l];
+  }
+}
+
+/// A, B and F of the body alone.
+template <class T>
+void TreeTangentOf<T>::set_inertia(std::size_t i) {
+  Node& n = nodes_[i];
+  auto const& inertia = walk_.bodies[i].inertia;
+  T momentum[6] = {};
+  inertia.add_by_acceleration(n.v, momentum);
+  inertia.add_by_angular(n.v + 3, momentum);
+  for (int l = 0; l < 6; ++l) n.force[l] = T(0.0);
+  inertia.add_by_acceleration(n.a, n.force);
+  inertia.add_by_angular(n.a + 3, n.force);
+  detail::add_force_cross(n.v, momentum, n.force);
+  n.pair.set_rigid(inertia, n.v, momentum);
+}
+
+/// One freedom, or those of a ball, out of A, B and F. False where one has no pivot.
+template <class T>
+bool TreeTangentOf<T>::eliminate(std::size_t first, bool before, double ck, Node& n) {
+  int const count = walk_.freedoms[first].together;
+  n.pair.turn_back(columns_[first].rate);  // [A B′] from here on
+  T d[9], size[3] = {};
+  for (int j = 0; j < count; ++j) {
+    Column& c = columns_[first + std::size_t(j)];
+    T const* const s = walk_.freedoms[first + std::size_t(j)].s;
+    T h[6], bent[6] = {};
+    n.pair.multiply(c.sa, c.sv, h);
+    detail::add_force_cross(s, n.force, bent);
+    for (int l = 0; l < 6; ++l) c.r[l] = h[l] + ck * bent[l];
+    for (int i = 0; i < count; ++i) {
+      T const* const row = walk_.freedoms[first + std::size_t(i)].s;
+      d[count * i + j] = detail::dot(row, before ? c.r : h, 6);
+      for (int l = 0; l < 6; ++l) size[i] += std::abs(row[l] * h[l]);
+    }
+    n.pair.multiply_left(s, c.l);
+  }
+  if (!invert(first, count, d, size)) return false;
+  for (int j = 0; j < count; ++j) {
+    Column const& by = columns_[first + std::size_t(j)];
+    T part[12] = {};
+    for (int k = 0; k < count; ++k)
+      for (int l = 0; l < 12; ++l) part[l] += by.inverse[k] * columns_[first + std::size_t(k)].l[l];
+    n.pair.subtract_product(by.r, part);
+  }
+  return true;
+}
+
+template <class T>
+bool TreeTangentOf<T>::invert(std::size_t first, int count, T const* d, T const* size) {
+  if (count == 1) {
+    columns_[first].inverse[0] = 1.0 / d[0];
+    return std::abs(d[0]) > 1e-14 * size[0];
+  }
+  Mat<T, 6, 6> inverse;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) inverse(i, j) = d[count * i + j];
+  if (invert_with_pivots(inverse, count, std::max(size[0], std::max(size[1], size[2]))) >= 0) return false;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) columns_[first + std::size_t(i)].inverse[j] = inverse(i, j);
+  return true;
+}
+
+/// What the freedoms are given, less what those that they carry ask of them.
+template <class T>
+void TreeTangentOf<T>::collect(VecXOf<T> const& given) {
+  for (Node& n : nodes_)
+    for (T& x : n.c) x = T(0.0);
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    Node& n = nodes_[i];
+    auto const& body = walk_.bodies[i];
+    for (std::size_t first = body.first + std::size_t(body.count); first-- > body.first;) {
+      int const count = walk_.freedoms[first].together;
+      for (int k = 0; k < count; ++k) {
+        Freedom const& f = walk_.freedoms[first + std::size_t(k)];
+        columns_[first + std::size_t(k)].w = given[f.speed] - Walk::along(f, n.c);
+      }
+      for (int k = 0; k < count; ++k) {
+        T const part = answer(first, k);
+        for (int l = 0; l < 6; ++l) n.c[l] += columns_[first + std::size_t(k)].r[l] * part;
+      }
+    }
+    if (Index const parent = walk_.links[i].parent; parent >= 0)
+      detail::add_carried_force(n.c, body.d, nodes_[std::size_t(parent)].c);
+  }
+}
+
+template <class T>
+void TreeTangentOf<T>::solve(VecXOf<T> const& given, VecXOf<T>& y) {
+  collect(given);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    Node& n = nodes_[i];
+    auto const& body = walk_.bodies[i];
+    Index const parent = walk_.links[i].parent;
+    static constexpr T none[6] = {};
+    detail::carry_motion(parent < 0 ? none : nodes_[std::size_t(parent)].v, body.d, n.v);
+    detail::carry_motion(parent < 0 ? none : nodes_[std::size_t(parent)].a, body.d, n.a);
+    std::size_t const end = body.first + std::size_t(body.count);
+    for (std::size_t first = body.first; first < end; first += walk_.freedoms[first].together) {
+      int const count = walk_.freedoms[first].together;
+      for (int k = 0; k < count; ++k) {
+        Column& c = columns_[first + std::size_t(k)];
+        c.w -= detail::dot(c.l, n.a, 6) + detail::dot(c.l + 6, n.v, 6);
+      }
+      for (int k = 0; k < count; ++k) {
+        Column const& c = columns_[first + std::size_t(k)];
+        T const part = answer(first, k);
+        y[walk_.freedoms[first + std::size_t(k)].speed] = part;
+        for (int l = 0; l < 6; ++l) {
+          n.v[l] += c.sv[l] * part;
+          n.a[l] += c.sa[l] * part;
+        }
+      }
+      T turned[6] = {};
+      detail::add_motion_cross(columns_[first].rate, n.v, turned);
+      for (int l = 0; l < 6; ++l) n.a[l] -= turned[l];
+    }
+  }
+}
+
+}  // namespace polybody
