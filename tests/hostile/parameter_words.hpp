@@ -142,7 +142,8 @@ inline constexpr auto words_of<Baumgarte> = words("alpha", "beta");
 template <>
 inline constexpr auto words_of<Projection> = words("tolerance", "max_iterations");
 template <>
-inline constexpr auto words_of<CoordinatePartitioning> = words("tolerance", "max_iterations", "largest_ratio");
+inline constexpr auto words_of<CoordinatePartitioning> =
+    words("tolerance", "max_iterations", "largest_ratio", "dense_up_to");
 template <class S>
 inline constexpr auto words_of<RungeKutta4<S>> = words("stabilisation");
 template <class S>

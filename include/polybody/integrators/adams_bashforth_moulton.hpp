@@ -132,6 +132,7 @@ struct AdamsBashforthMoulton {
     report.factorisations = report.evaluations;
     report.taken = h;
     report.order = k;
+    report.choices = detail::choices_of(w.scratch);
     report.next = std::max(choose(e, h, k, known, rising), smallest_step);
     w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     history.push(h, w.f);

@@ -1,7 +1,9 @@
 #pragma once
 #include <limits>
+#include <utility>
 
 #include <polybody/integrators/partitioned_rows.hpp>
+#include <polybody/integrators/sparse_partition.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 
 namespace polybody {
@@ -12,27 +14,55 @@ namespace polybody {
 /// Independent are the columns of G that full pivoting leaves over. They are chosen anew when a dependent one would
 /// move more than `largest_ratio` times as fast as an independent one, that is when G_d⁻¹ G_i, and with it the
 /// condition of G_d, has grown too large; and when the rank of G changes. Velocity rows make speeds dependent, not
-/// coordinates: with them the two are split apart. Dense: for up to some hundred speeds. Ratios compare metres with
-/// radians.
+/// coordinates: with them the two are split apart. Ratios compare metres with radians.
+/// Up to `dense_up_to` speeds G is eliminated in each evaluation. Beyond, factors of a sparse G_d are kept and both
+/// equations are solved by corrections; where these contract by less than a fourth, G_d is factored and the split
+/// looked at anew.
 struct CoordinatePartitioning {
   static constexpr bool accepts_rows = true;
   double tolerance = 1e-12;  ///< of Φ, beside what rounding of q leaves
   int max_iterations = 10;
   double largest_ratio = 10.0;  ///< of the rate of a dependent coordinate to that of an independent one
+  int dense_up_to = 60;         ///< speeds
 
   struct Scratch {
-    PartitionedRows rows;      ///< of positions; where there are no velocity rows, of speeds too
-    PartitionedRows all_rows;  ///< of speeds where there are
+    PartitionedRows rows{0, 0};      ///< of positions; where there are no velocity rows, of speeds too
+    PartitionedRows all_rows{0, 0};  ///< of speeds where there are
+    SparsePartitionOf<> sparse_rows, sparse_all_rows;
     VecX phi, rate, column, delta, next;
+    bool sparse = false, prepared = false;
     explicit Scratch(System const& s)
-        : rows(s.rows(), s.speeds()),
-          all_rows(s.velocity_rows().empty() ? 0 : s.rows(), s.speeds()),
+        : sparse_rows(s.rows(), s.speeds()),
+          sparse_all_rows(s.rows(), s.speeds()),
           phi(VecX::Zero(s.rows())),
           rate(phi),
           column(phi),
           delta(VecX::Zero(s.speeds())),
-          next(VecX::Zero(s.coordinates())) {}
-    PartitionedRows& of_speeds(System const& s) { return s.velocity_rows().empty() ? rows : all_rows; }
+          next(VecX::Zero(s.coordinates())),
+          splits_speeds_(!s.velocity_rows().empty()) {
+      for (Index const i : s.velocity_rows()) sparse_rows.leave_out(i);
+    }
+    void prepare(int dense_up_to) {
+      if (std::exchange(prepared, true)) return;
+      sparse = delta.size() > dense_up_to;
+      if (sparse) return;
+      rows = PartitionedRows(phi.size(), delta.size());
+      if (splits_speeds_) all_rows = rows;
+    }
+    PartitionedRows& of_speeds() { return splits_speeds_ ? all_rows : rows; }
+    SparsePartitionOf<>& sparse_of_speeds() { return splits_speeds_ ? sparse_all_rows : sparse_rows; }
+    /// By all rows, of positions and speeds.
+    bool is_dependent(Index speed) const {
+      if (sparse) return (splits_speeds_ ? sparse_all_rows : sparse_rows).is_dependent(speed);
+      return (splits_speeds_ ? all_rows : rows).is_dependent(speed);
+    }
+    /// How often a split was chosen or changed.
+    long choices() const {
+      return sparse ? sparse_rows.choices + sparse_all_rows.choices : rows.choices + all_rows.choices;
+    }
+
+   private:
+    bool splits_speeds_;
   };
 
   /// \throws InvalidInput unless the tolerance is positive, max_iterations in [1, 10⁶] and the largest ratio at
@@ -40,20 +70,49 @@ struct CoordinatePartitioning {
   void check() const {
     require_positive(tolerance, "CoordinatePartitioning: the tolerance");
     require_count(max_iterations, "CoordinatePartitioning: max_iterations");
+    if (dense_up_to < 0)
+      throw InvalidInput{"CoordinatePartitioning: dense_up_to must not be negative, but is ", dense_up_to, "."};
     if (!(largest_ratio >= 1.0))
       throw InvalidInput{"CoordinatePartitioning: largest_ratio must be at least 1, but is ", largest_ratio, "."};
   }
   void start(Scratch& s) const {
+    s.prepare(dense_up_to);
     s.rows.forget();
     s.all_rows.forget();
+    s.sparse_rows.forget();
+    s.sparse_all_rows.forget();
   }
   RowFeedback feedback() const { return {}; }
+
+  /// A split for (q, v, t) whatever was chosen before.
+  template <class = void>
+  void choose(System& system, Scratch& s, VecX const& q, VecX const& v, double t) const {
+    s.prepare(dense_up_to);
+    system.evaluate(q, v, t);
+    if (s.sparse) {
+      for (auto* const each : {&s.sparse_rows, &s.sparse_of_speeds()}) {
+        each->forget();
+        write(system, s, *each);
+        each->renew(largest_ratio);
+      }
+      return;
+    }
+    for (auto* const each : {&s.rows, &s.of_speeds()}) {
+      write(system, s, *each);
+      each->choose();
+    }
+  }
 
   /// \throws NewtonStalled when the positions cannot be brought back.
   template <class Solver>
   void apply(System& system, ForwardDynamics<Solver>& forward, Scratch& s, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
+    s.prepare(dense_up_to);
     double const enough = tolerance + 16.0 * std::numeric_limits<double>::epsilon() * q.cwiseAbs().maxCoeff();
+    if (s.sparse) {
+      correct_positions(system, s, q, v, t, enough);
+      return correct_speeds(system, s, q, v, t);
+    }
     for (int k = 0;; ++k) {
       reduce(system, s, s.rows, q, v, t);
       if (s.phi.cwiseAbs().maxCoeff() <= enough) break;
@@ -71,7 +130,12 @@ struct CoordinatePartitioning {
   template <class Solver>
   void velocities(System& system, ForwardDynamics<Solver>&, Scratch& s, VecX const& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
-    PartitionedRows& rows = s.of_speeds(system);
+    s.prepare(dense_up_to);
+    if (s.sparse) {
+      system.evaluate(q, v, t);
+      return correct_speeds(system, s, q, v, t);
+    }
+    PartitionedRows& rows = s.of_speeds();
     reduce(system, s, rows, q, v, t);
     rows.solution(1, s.delta);
     v += s.delta;
@@ -89,8 +153,67 @@ struct CoordinatePartitioning {
     write(system, s, rows);
     rows.choose();
   }
+  /// The positions by Newton's method with kept factors. The system is evaluated at what comes out.
   template <class = void>
-  static void write(System& system, Scratch& s, PartitionedRows& rows) {
+  void correct_positions(System& system, Scratch& s, VecX& q, VecX const& v, double t, double enough) const {
+    Corrections corrections{s.sparse_rows, system, s, largest_ratio};
+    for (int k = 0;; ++k) {
+      system.evaluate(q, v, t);
+      system.violation(s.phi);
+      double const open = largest_size(s.phi);
+      if (open <= enough) return;
+      if (k == 3 * max_iterations)
+        throw NewtonStalled{"CoordinatePartitioning: the positions cannot be brought back to the joints at t = ", t,
+                            " s. Take a smaller step."};
+      corrections.take(s.phi, open);
+      system.plus(q, s.delta, s.next);
+      q.swap(s.next);
+    }
+  }
+  /// The speeds likewise, where the system was evaluated last: to what rounding leaves of G v.
+  template <class = void>
+  void correct_speeds(System& system, Scratch& s, VecX const& q, VecX& v, double t) const {
+    Corrections corrections{s.sparse_of_speeds(), system, s, largest_ratio};
+    double const enough = tolerance + 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + largest_size(v));
+    for (int k = 0;; ++k) {
+      system.violation_rate(s.rate);
+      double const open = largest_size(s.rate);
+      if (open <= enough) return;
+      if (k == 3 * max_iterations)
+        throw NewtonStalled{"CoordinatePartitioning: the speeds cannot be brought back to the joints at t = ", t,
+                            " s: rows that repeat others contradict them, or they lose rank there."};
+      corrections.take(s.rate, open);
+      v += s.delta;
+      system.evaluate(q, v, t);
+    }
+  }
+  /// Solves with kept factors, and renews them where what is open shrinks by less than a fourth: first with the split
+  /// that there is, then with a new one.
+  struct Corrections {
+    SparsePartitionOf<>& partition;
+    System& system;
+    Scratch& s;
+    double limit;
+    double before = std::numeric_limits<double>::infinity();
+    int renewals = 0;
+
+    template <class = void>
+    void take(VecX& open, double size) {
+      bool const slow = size > 0.25 * before;
+      if (slow && renewals > 0) partition.forget();
+      if (slow || !partition.has_factors()) {
+        write(system, s, partition);
+        partition.renew(limit);
+        ++renewals;
+      }
+      before = size;
+      open *= -1.0;
+      partition.solve(open, s.delta);
+    }
+  };
+
+  template <class Rows>
+  static void write(System& system, Scratch& s, Rows& rows) {
     rows.begin();
     if (!system.step_coordinates()) {
       system.masses(rows);
@@ -103,6 +226,10 @@ struct CoordinatePartitioning {
         rows.add(system.speeds(), j, s.column);
       }
     }
+    if constexpr (std::same_as<Rows, PartitionedRows>) take_right_hand_sides(system, s, rows);
+  }
+  template <class = void>
+  static void take_right_hand_sides(System& system, Scratch& s, PartitionedRows& rows) {
     for (Index i = 0; i < system.rows(); ++i) {
       rows.right(0, i) = -s.phi[i];
       rows.right(1, i) = -s.rate[i];
@@ -111,5 +238,23 @@ struct CoordinatePartitioning {
       for (Index const i : system.velocity_rows()) rows.leave_out(i);
   }
 };
+
+/// The independent speeds that a run from x takes first, by the names of their bodies and their numbers there.
+template <class = void>
+std::vector<std::string> independent_speeds(System& system, State x, CoordinatePartitioning const& policy = {}) {
+  CoordinatePartitioning::Scratch scratch(system);
+  policy.start(scratch);
+  policy.choose(system, scratch, x.q, x.v, x.t);
+  std::vector<std::string> names;
+  std::string body;
+  int number = 0;
+  for (Index i = 0; i < system.speeds(); ++i) {
+    std::string const name = system.name_of(i);
+    number = name == body ? number + 1 : 0;
+    body = name;
+    if (!scratch.is_dependent(i)) names.push_back(name + ", speed " + std::to_string(number));
+  }
+  return names;
+}
 
 }  // namespace polybody

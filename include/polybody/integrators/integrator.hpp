@@ -16,6 +16,7 @@ struct StepReport {
   int rejected = 0;          ///< trial steps thrown away by the step control
   int order = 0;             ///< at which the step was taken, of a method that chooses it; else 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method
+  long choices = 0;          ///< of independent coordinates since the start, by coordinate partitioning
 };
 
 /// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +

@@ -121,7 +121,7 @@ struct RungeKutta4 {
     w.stage(system, x, h, 1.0, Row{0.0, 0.0, 1.0}, 3);
     w.combine(x, h, Row{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0}, 4);
     w.accept(system, x, h, stabilisation, false);
-    return {.taken = h, .next = h, .factorisations = 4, .evaluations = 4};
+    return {.taken = h, .next = h, .factorisations = 4, .evaluations = 4, .choices = detail::choices_of(w.scratch)};
   }
 };
 

@@ -12,6 +12,17 @@
 
 namespace polybody {
 
+namespace detail {
+/// How often a policy chose independent coordinates; zero for one that chooses none.
+template <class Scratch>
+long choices_of(Scratch const& scratch) {
+  if constexpr (requires { scratch.choices(); })
+    return scratch.choices();
+  else
+    return 0;
+}
+}  // namespace detail
+
 /// What policies have in common that need no memory and correct nothing.
 struct NoCorrection {
   struct Scratch {

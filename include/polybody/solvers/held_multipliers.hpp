@@ -10,7 +10,8 @@ namespace polybody::detail {
 /// columns, about the marker \param held [f; m] about the body's centre of mass \param arm from there to the marker
 template <class T>
 void multipliers_that_hold(int m, T const* map, Vec<T, 6> held, Vec<T, 3> const& arm, T* lambda) {
-  for (int k = 0; k < 3; ++k) held[3 + k] -= arm[(k + 1) % 3] * held[(k + 2) % 3] - arm[(k + 2) % 3] * held[(k + 1) % 3];
+  for (int k = 0; k < 3; ++k)
+    held[3 + k] -= arm[(k + 1) % 3] * held[(k + 2) % 3] - arm[(k + 2) % 3] * held[(k + 1) % 3];
   auto gram = zeros<Mat<T, 6, 6>>();
   for (int k = m; k < 6; ++k) gram(k, k) = 1.0;
   T right[6] = {};

@@ -116,8 +116,7 @@ void MatrixPair<T>::set_rigid(ArticulatedInertia<T> const& inertia, T const* v, 
     row(3 + i)[9 + j] += momentum[3 + k];
     row(3 + i)[9 + k] -= momentum[3 + j];
     for (int c = 0; c < 3; ++c)
-      row(3 + i)[9 + c] +=
-          w[j] * inertia.second[symmetric_place[k][c]] - w[k] * inertia.second[symmetric_place[j][c]];
+      row(3 + i)[9 + c] += w[j] * inertia.second[symmetric_place[k][c]] - w[k] * inertia.second[symmetric_place[j][c]];
   }
 }
 

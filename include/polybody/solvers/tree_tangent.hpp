@@ -70,8 +70,7 @@ class TreeTangentOf {
 };
 
 template <class T>
-Index TreeTangentOf<T>::factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity,
-                               TangentCoefficients const& c) {
+Index TreeTangentOf<T>::factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity, TangentCoefficients const& c) {
   walk_.place(at.q, at.v);
   for (int k = 0; k < 3; ++k) ground_.a[k] = -gravity[k];
   for (std::size_t i = 0; i < nodes_.size(); ++i) {

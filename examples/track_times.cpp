@@ -1,0 +1,123 @@
+// The thesis' own method on its vehicle: independent coordinates and Adams–Bashforth–Moulton of variable order and step
+// (Chapter 3), the pins of the tracks by five formulations at the same tolerance. Processor time for a second of motion
+// beside that of ideal pins (thesis: penalty 1e9, bushing and ANCF take 6, 3 and 5 times as long), and what limits the
+// steps: the fastest rate in the motion, an eigenvalue by power iteration.
+//   track_times --until 0.2
+//   track_times --names
+#include <ctime>
+#include <iostream>
+#include <polybody/polybody.hpp>
+#include <polybody/vehicle/m113_vehicle.hpp>
+#include <polybody/vehicle/settled_track.hpp>
+
+#include "support/command_line.hpp"
+
+using namespace polybody;
+
+namespace {
+
+struct Options {
+  double until = 0.2, tolerance = 1e-6, limit = 60.0, speed = 20.0;
+  bool names = false;
+};
+
+double processor_time() { return double(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Largest |eigenvalue| of the motion linearised at x [1/s]: growth of a small change of (q, v) under its own rate, by
+/// power iteration with differences of accelerations, over two passes at a time, as pairs of complex ones turn.
+double fastest_rate(System& system, State const& x) {
+  ForwardDynamics<> forward(system);
+  Index const n = system.speeds();
+  VecX place = VecX::Random(n), speed = VecX::Random(n), q = x.q, v = x.v, a = x.a, lambda = x.lambda;
+  forward.accelerations(system, {x.q, x.v, x.t}, a, lambda);
+  VecX const before = a;
+  double grown = 0.0, scale = 1.0;  // of places beside speeds: 1/ω, so that both are of one size
+  for (int k = 0; k < 120; ++k) {
+    double const size = 1e-8 / (scale * place.norm() + speed.norm());
+    system.plus(x.q, size * place, q);
+    forward.accelerations(system, {q, x.v + size * speed, x.t}, a, lambda);
+    VecX const faster = (a - before) / size;
+    double const was = std::hypot(scale * place.norm(), speed.norm());
+    place = speed;
+    speed = faster;
+    double const is = std::hypot(scale * place.norm(), speed.norm());
+    if (k >= 80) grown += std::log(is / was) / 40.0;
+    scale = std::max(scale, is / was);
+    place /= is;
+    speed /= is;
+  }
+  return std::exp(grown);
+}
+
+struct Taken {
+  double per_second = 0.0;
+};
+
+template <class Body, class Policy>
+Taken measure(Options const& o, std::string const& name, Policy const& policy, double of_pins) {
+  m113::VehicleOptions options;
+  options.start = m113::settled_track(options);
+  Ramp const drive{.target = o.speed, .duration = 0.5, .start = 0.1, .rounding = 0.1};
+  m113::Vehicle<Body, Policy> const vehicle(policy, {drive, drive}, options);
+  auto const& model = vehicle.model;
+  State x = model.reference_state();
+  System system(model);
+  AdamsBashforthMoulton<CoordinatePartitioning> const integrator{.relative_tolerance = o.tolerance,
+                                                                 .absolute_tolerance = o.tolerance};
+  auto run = simulate(model, x, integrator, {.until = o.until, .step = 1e-5});
+  Violation worst;
+  double spent = 0.0;
+  long seen = 0;
+  Progress progress(0.0, o.until, name);
+  while (!run.done() && spent < o.limit) {
+    double const start = processor_time();
+    run.advance();
+    spent += processor_time() - start;
+    if (seen++ % 100 != 0) continue;
+    Violation const open = violation(system, x);
+    worst.position = std::max(worst.position, open.position);
+    worst.velocity = std::max(worst.velocity, open.velocity);
+    worst.acceleration = std::max(worst.acceleration, open.acceleration);
+    progress.update(x.t);
+  }
+  progress.finish();
+  RunReport const& report = run.report();
+  System stepped = stepped_system(model);
+  double const rate = fastest_rate(stepped, reduce(stepped, x)), step = x.t / double(report.steps),
+               per_second = spent / x.t;
+  std::vector<std::string> const independent = independent_speeds(stepped, reduce(stepped, x));
+  std::printf(
+      "%-12s %5ld speeds, %4ld rows, %5zu independent; %.3f s in %ld steps of %.3g us and %ld evaluations, %ld steps "
+      "refused\n"
+      "             %.1f s of CPU a second: %.1f of ideal pins; fastest rate %.3g 1/s, times a step %.2f\n"
+      "             open by at most %.0e m, %.0e m/s, %.0e m/s^2; independent coordinates chosen %ld times\n",
+      name.c_str(), long(stepped.speeds()), long(stepped.rows()), independent.size(), x.t, report.steps, 1e6 * step,
+      report.evaluations, report.rejected, per_second, of_pins > 0.0 ? per_second / of_pins : 1.0, rate, rate * step,
+      worst.position, worst.velocity, worst.acceleration, report.last.choices);
+  if (o.names)
+    for (std::string const& each : independent) std::printf("             %s\n", each.c_str());
+  return {per_second};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  CommandLine line{"The vehicle by coordinate partitioning and Adams-Bashforth-Moulton: processor times of its pins."};
+  line.positive("--until", &o.until, "end of the runs [s]");
+  line.positive("--tolerance", &o.tolerance, "relative and absolute, of all runs");
+  line.positive("--limit", &o.limit, "processor time after which a run is cut [s]");
+  line.option("--speed", &o.speed, "of the sprockets from 0.6 s on [rad/s]");
+  line.flag("--names", &o.names, "lists the independent speeds by name");
+  if (auto const code = line.parse(argc, argv)) return *code;
+  try {
+    double const pins = measure<Rigid<>>(o, "ideal", Constraint{}, 0.0).per_second;
+    measure<Rigid<>>(o, "penalty 1e9", m113::penalty_pin(1e9), pins);
+    measure<Rigid<>>(o, "penalty 1e7", m113::penalty_pin(1e7), pins);
+    measure<Rigid<>>(o, "bushing", m113::bushing_pin(m113::pin_stiffness), pins);
+    measure<AncfCable<>>(o, "ANCF", AncfLinear{}, pins);
+  } catch (Error const& e) {
+    std::cerr << e.what() << '\n';
+    return 1;
+  }
+}
