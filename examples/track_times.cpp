@@ -32,8 +32,8 @@ double fastest_rate(System& system, State const& x) {
   forward.accelerations(system, {x.q, x.v, x.t}, a, lambda);
   VecX const before = a;
   double grown = 0.0, scale = 1.0;  // of places beside speeds: 1/ω, so that both are of one size
-  for (int k = 0; k < 120; ++k) {
-    double const size = 1e-8 / (scale * place.norm() + speed.norm());
+  for (int k = 0; k < 400; ++k) {
+    double const size = 1e-4 / (scale * place.norm() + speed.norm());
     system.plus(x.q, size * place, q);
     forward.accelerations(system, {q, x.v + size * speed, x.t}, a, lambda);
     VecX const faster = (a - before) / size;
@@ -41,7 +41,7 @@ double fastest_rate(System& system, State const& x) {
     place = speed;
     speed = faster;
     double const is = std::hypot(scale * place.norm(), speed.norm());
-    if (k >= 80) grown += std::log(is / was) / 40.0;
+    if (k >= 200) grown += std::log(is / was) / 200.0;
     scale = std::max(scale, is / was);
     place /= is;
     speed /= is;
