@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
@@ -146,6 +147,40 @@ TEST(Failures, ForceThatFailsAfterTheStepLeavesTheState) {
   EXPECT_EQ(calls, 5);  // three stages, the end and the reactions
   for (int at = 0; at < calls; ++at)
     for (bool const throws : {true, false}) calls_of_a_step(at, throws, sound);
+}
+
+// The mass of Euler parameters is singular along them, so that the last pivot of a body is rounding: from the first one
+// on that is small enough to be noticed, here as a body tilts by some hundredths, the solver eliminates it with its
+// joint. A step that fails after that is taken again in the order that it began with.
+TEST(Failures, StepTakenAgainHasTheOrderOfEliminationThatItBeganWith) {
+  using Push = decltype(fails_at(nullptr));
+  using Ball = Joint<Spherical, Constraint>;
+  constexpr int steps = 12;
+  for (int k = 0; k < 24; ++k) {
+    double const tilt = 3e-3 + 3e-4 * k;
+    Faulty fault;
+    Model<Bodies<Rigid<EulerParameters>>, Joints<Ball>, Forces<Push>> model{Gravity{0, 0, -9.81}};
+    Mat3 const axes = exp_so3<double>(Vec3(0, tilt, 0)) * exp_so3<double>(Vec3(1, 0, 0));
+    Rigid<EulerParameters> const body(1.0, Vec3(1, 1.2, 1.3).asDiagonal().toDenseMatrix(), {Vec3::Zero(), axes});
+    auto const top = model.add(body, "top");
+    model.connect(Ball{}, model.ground().at(axes.col(2)), top.at(Vec3(0, 0, 1)), "ball");
+    model.apply(fails_at(&fault), top.at(Vec3(0, 0, -1)), "push");
+    State start = model.reference_state();
+    Vec3 const omega(0, 1, 0);
+    model.set_velocity(start, top, -omega.cross(axes.col(2)), omega);
+    auto const end = [&](int failing) {
+      State x = start;
+      auto run = simulate(model, x, RungeKutta4<Projection>{}, {.until = 1.0, .step = 4e-3});
+      for (int i = 0; i < steps; ++i) {
+        fault = {i == failing ? 3 : -1};
+        if (i == failing) EXPECT_THROW(run.advance(), std::runtime_error);
+        run.advance();
+      }
+      return x;
+    };
+    State const sound = end(-1);
+    for (int step = 0; step < steps; ++step) expect_same(end(step), sound);
+  }
 }
 
 TEST(Failures, DoubledJointIsNamed) {

@@ -249,6 +249,39 @@ TYPED_TEST(BlockSolvers, CloseALoopAtTheCostOfABorder) {
   EXPECT_LT(closed.analysed<TypeParam>().flops(), 2.0 * open.analysed<TypeParam>().flops());
 }
 
+// What a matrix has taught the solver can be taken back: then others have the bits that they had before.
+TYPED_TEST(BlockSolvers, GoBackToAnEarlierOrder) {
+  Blocks const sound = chain(5, 6, 5, this->draw);
+  Blocks thin = sound;
+  for (std::size_t i = 0; i < 5; ++i) {
+    thin.all[i].second.row(3).setZero();
+    thin.all[i].second.col(3).setZero();
+  }
+  TypeParam solver = this->solved(sound);
+  VecX const side = VecX::Ones(sound.size);
+  VecX first = side, thinned = side, x = side;
+  solver.solve(side, first);
+  auto const order = solver.order();
+  EXPECT_EQ(solver.reorderings(), 0u);
+
+  write_and_factor(solver, [&](BlockSink& s) { thin.write(s); });
+  solver.solve(side, thinned);
+  EXPECT_GT(solver.reorderings(), 0u);
+  EXPECT_NE(solver.order(), order);
+  solver.keep_reorderings(0);
+  EXPECT_EQ(solver.reorderings(), 0u);
+  solver.solve(side, x);
+  EXPECT_EQ(x, thinned);  // the factor stays until the next one is begun
+  write_and_factor(solver, [&](BlockSink& s) { sound.write(s); });
+  EXPECT_EQ(solver.order(), order);
+  solver.solve(side, x);
+  EXPECT_EQ(x, first);
+  // and it learns it once more
+  write_and_factor(solver, [&](BlockSink& s) { thin.write(s); });
+  solver.solve(side, x);
+  EXPECT_EQ(x, thinned);
+}
+
 TYPED_TEST(BlockSolvers, SayWhichUnknownIsNotFinite) {
   Blocks b = chain(4, 6, 5, this->draw);
   b.all[2].second(1, 1) = std::numeric_limits<double>::quiet_NaN();

@@ -28,6 +28,13 @@ class Behind final : public SolverInTests {
     if constexpr (requires { solver_.reordered(); }) return solver_.reordered();
     return false;
   }
+  std::size_t reorderings() const override {
+    if constexpr (requires { solver_.reorderings(); }) return solver_.reorderings();
+    return 0;
+  }
+  void keep_reorderings(std::size_t count) noexcept override {
+    if constexpr (requires { solver_.keep_reorderings(count); }) solver_.keep_reorderings(count);
+  }
   std::span<Index const> dropped() const override {
     if constexpr (requires { solver_.dropped(); }) return solver_.dropped();
     return {};

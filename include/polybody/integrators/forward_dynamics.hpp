@@ -136,6 +136,28 @@ class ForwardDynamics {
 
   StepBounds bounds;  ///< of the run; without limits until it begins
 
+  /// A step that is tried. Unless it is kept, the account of the bounds and the solver's order of elimination are as
+  /// before it, so that a step taken again has the same bits.
+  class Trial {
+   public:
+    explicit Trial(ForwardDynamics& of) : of_(of), bounds_(of.bounds), reorderings_(of.solver_.reorderings()) {}
+    Trial(Trial const&) = delete;
+    ~Trial() {
+      if (!kept_) of_.solver_.keep_reorderings(reorderings_);
+    }
+    void keep() {
+      bounds_.keep();
+      kept_ = true;
+    }
+
+   private:
+    ForwardDynamics& of_;
+    StepBounds::Trial bounds_;
+    std::size_t reorderings_;
+    bool kept_ = false;
+  };
+  Trial attempt() { return Trial(*this); }
+
   /// What every step asks before it accepts its end. \throws NonFinite, Diverged.
   void require_end(System& system, StepEnd const& end) {
     double const of_speeds = squares(end.v);

@@ -277,7 +277,7 @@ void Simulation<I, Solver>::advance(bool shown) {
   if (eliminates() || jumps || crumb || options_.minimum_norm || !options_.events.empty()) before_ = stepped();
   double const from = stepped().t, h_before = h_;
   StepRow const row_before = row_;
-  StepBounds::Trial trial(workspace_.forward.bounds);
+  auto trial = workspace_.forward.attempt();
   speeds_before_ = stepped().v;
   StepReport const report = step(h, options_.halvings);
   bool const reached = lands && report.taken == h;

@@ -7,7 +7,9 @@
 /// With D = L Δ R (pivots Δ, unit triangles L, R) elimination makes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −= Lt_kᵀ W_l
 /// for all later k, l. In a symmetric matrix Lt = Δ⁻¹ W and only l ≥ k is made.
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include <polybody/math/sequence.hpp>
@@ -44,10 +46,14 @@ class BlockFactor {
     pattern_.analyse(size, blocks);
     hints_ = {Sequence<char>(pattern_.segments().size(), 0), Sequence<char>(pattern_.segments().size(), 0)};
     reordered_ = false;
+    earlier_.clear();
+    kept_ = no_limit;
     compile();
   }
 
   void begin() {
+    if (kept_ < earlier_.size()) [[unlikely]]
+      go_back();
     u_.zero();
     if constexpr (two_sided) l_.zero();
     next_ = 0;
@@ -84,6 +90,10 @@ class BlockFactor {
 
   /// The order was changed since the last failure; write and factor the same matrix again.
   bool reordered() const { return reordered_; }
+  /// How often the order was changed.
+  std::size_t reorderings() const { return std::min(kept_, earlier_.size()); }
+  /// Takes back all changes of the order but the first `count`. The factor stays until the next one is begun.
+  void keep_reorderings(std::size_t count) noexcept { kept_ = std::min(count, kept_); }
   /// Unknowns (rows of joints) that repeat others; their multipliers are zero.
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_count_}; }
   /// Whether the last factorisation did the half of the work.
@@ -180,12 +190,22 @@ class BlockFactor {
   }
 
   Index failed(Node const& n, int r);
+  [[gnu::cold]] void go_back() {
+    hints_ = earlier_[kept_];
+    earlier_.resize(kept_);
+    kept_ = no_limit;
+    compile();
+  }
+
+  static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
   Index size_ = 0;
   Sequence<Block> blocks_;
   detail::BlockPattern pattern_;
   detail::BlockLayout layout_;
   detail::BlockLayout::NodeHints hints_;
+  Sequence<detail::BlockLayout::NodeHints> earlier_;  // before each change of the order
+  std::size_t kept_ = no_limit;                       // changes that the next factorisation keeps
   bool reordered_ = false, symmetric_ = false;
   std::size_t next_ = 0;        // block to be added
   Sequence<BlockPiece> slots_;  // of the pieces of all blocks
@@ -216,6 +236,7 @@ template <Symmetry symmetry>
   Index const unknown = layout_.unknown[n.x + std::size_t(r)];
   double const pivot = u_.data()[n.u + std::size_t(r * n.stride() + r)];
   if (!std::isfinite(pivot) || hints_.dense) return unknown;
+  detail::BlockLayout::NodeHints const before = hints_;
   auto const& segments = pattern_.segments();
   auto const& segment = segments[std::size_t(pattern_.of(unknown))];
   bool changed = false;
@@ -241,6 +262,7 @@ template <Symmetry symmetry>
     if (size_ > dense_limit) return unknown;
     hints_.dense = true;
   }
+  earlier_.push_back(before);
   compile();
   reordered_ = true;
   return unknown;

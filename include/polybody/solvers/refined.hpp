@@ -51,6 +51,16 @@ class Refined {
   {
     return solver_.reordered();
   }
+  std::size_t reorderings() const
+    requires requires(Solver const s) { s.reorderings(); }
+  {
+    return solver_.reorderings();
+  }
+  void keep_reorderings(std::size_t count) noexcept
+    requires requires(Solver s) { s.keep_reorderings(count); }
+  {
+    solver_.keep_reorderings(count);
+  }
   std::span<Index const> dropped() const
     requires requires(Solver const s) { s.dropped(); }
   {

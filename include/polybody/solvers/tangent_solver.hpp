@@ -82,6 +82,18 @@ class TangentSolver {
     return bad;
   }
 
+  /// How often the solver has changed its order of elimination; 0 for solvers that never do.
+  std::size_t reorderings() const {
+    if constexpr (requires { solver_.reorderings(); })
+      return solver_.reorderings();
+    else
+      return 0;
+  }
+  /// Later factorisations are in the order of the first `count` changes.
+  void keep_reorderings(std::size_t count) noexcept {
+    if constexpr (requires { solver_.keep_reorderings(count); }) solver_.keep_reorderings(count);
+  }
+
   /// The last factorisation dropped rows that an earlier one held: it is of a singular position, beside which those
   /// rows hold again, and it would leave them open.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }

@@ -21,6 +21,8 @@ struct SolverInTests {
   virtual void add(Index row, Index col, BlockView const& b) = 0;
   virtual Index factor() = 0;
   virtual bool reordered() const = 0;
+  virtual std::size_t reorderings() const = 0;
+  virtual void keep_reorderings(std::size_t count) noexcept = 0;
   virtual std::span<Index const> dropped() const = 0;
   virtual void solve(VecX const& b, VecX& x) const = 0;
 };
@@ -44,6 +46,15 @@ class NamedSolver {
     if (other_) return other_->reordered();
     if constexpr (requires { default_.reordered(); }) return default_.reordered();
     return false;
+  }
+  std::size_t reorderings() const {
+    if (other_) return other_->reorderings();
+    if constexpr (requires { default_.reorderings(); }) return default_.reorderings();
+    return 0;
+  }
+  void keep_reorderings(std::size_t count) noexcept {
+    if (other_) return other_->keep_reorderings(count);
+    if constexpr (requires { default_.keep_reorderings(count); }) default_.keep_reorderings(count);
   }
   std::span<Index const> dropped() const {
     if (other_) return other_->dropped();
