@@ -50,6 +50,7 @@
 #include <polybody/solvers/block_lu.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
+#include <polybody/solvers/row_dropping.hpp>
 
 namespace polybody {
 
@@ -99,6 +100,7 @@ static_assert(LinearSolver<BlockLdlt>);
 static_assert(LinearSolver<BlockLu> && LinearSolver<BlockSolver>);
 static_assert(LinearSolver<DenseLu>);
 static_assert(LinearSolver<EigenLdlt>);
+static_assert(LinearSolver<RowDropping<DenseLu>> && DropsRows<RowDropping<DenseLu>>);
 
 }  // namespace polybody
 

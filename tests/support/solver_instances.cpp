@@ -3,6 +3,7 @@
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
 #include <polybody/solvers/refined.hpp>
+#include <polybody/solvers/row_dropping.hpp>
 
 #include <cstdlib>
 #include <span>
@@ -45,29 +46,36 @@ class Behind final : public SolverInTests {
   Solver solver_;
 };
 
+/// As a user's solver reaches time steps, or statics.
+template <class Solver>
+std::unique_ptr<SolverInTests> behind(bool statics) {
+  if (statics) return std::make_unique<Behind<Solver>>();
+  return std::make_unique<Behind<SolverOfSteps<Solver>>>();
+}
+
 }  // namespace
 
 std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, bool statics) {
   char const* const given = std::getenv("POLYBODY_SOLVER");
   std::string const name = given ? given : "";
   if (name.empty()) return nullptr;
-  if (name == "EigenSparseLu") return std::make_unique<Behind<EigenSparseLu>>();
+  if (name == "EigenSparseLu") return behind<EigenSparseLu>(statics);
   if (name == "DenseLu") {
     if (size > 400) return nullptr;
-    return std::make_unique<Behind<DenseLu>>();
+    return behind<DenseLu>(statics);
   }
 #ifdef POLYBODY_WITH_KLU
-  if (name == "Klu") return std::make_unique<Behind<Klu>>();
+  if (name == "Klu") return behind<Klu>(statics);
 #endif
   // these need pivots within blocks, or symmetry: statics keeps its default
   bool const for_steps =
       name == "BlockLdlt" || name == "BlockLu" || name == "EigenLdlt" || name == "RefinedBlockSolver";
   if (!for_steps) throw InvalidInput("POLYBODY_SOLVER=" + name + " is not a solver that the tests know.");
   if (statics) return nullptr;
-  if (name == "BlockLdlt") return std::make_unique<Behind<BlockLdlt>>();
-  if (name == "BlockLu") return std::make_unique<Behind<BlockLu>>();
-  if (name == "EigenLdlt") return std::make_unique<Behind<EigenLdlt>>();
-  return std::make_unique<Behind<Refined<BlockSolver>>>();
+  if (name == "BlockLdlt") return behind<BlockLdlt>(false);
+  if (name == "BlockLu") return behind<BlockLu>(false);
+  if (name == "EigenLdlt") return behind<EigenLdlt>(false);
+  return behind<Refined<BlockSolver>>(false);
 }
 
 }  // namespace polybody

@@ -35,7 +35,7 @@ struct AlphaMethod {
 
   template <class Solver>
   struct Workspace : AlphaVectors {
-    TangentSolver<Solver> solver;
+    TangentSolver<SolverOfSteps<Solver>> solver;
     ForwardDynamics<Solver> forward;
     bool factored = false;
     bool second_order = false;

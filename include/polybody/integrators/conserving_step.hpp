@@ -33,7 +33,7 @@ struct ConservingStep {
     VecX q, v, vd, lambda, r, phi, rhs, y, kept;
     VecX other_vd, other_lambda;  ///< where the second try ended, while the third looks for less change
     StepSecants secants;
-    TangentSolver<Solver> solver, exact;  ///< `exact` is laid out by the first step that asks for it
+    TangentSolver<SolverOfSteps<Solver>> solver, exact;  ///< `exact` is laid out by the first step that asks for it
     ForwardDynamics<Solver> forward;
     bool factored = false, has_exact = false;
     double theta = 1.0;

@@ -320,7 +320,7 @@ class ForwardDynamics {
     std::copy_n(x_.data() + first, n, out.data());
   }
 
-  TangentSolver<Solver> solver_;
+  TangentSolver<SolverOfSteps<Solver>> solver_;
   bool factored_ = false;
   bool by_tree_ = false, only_weight_ = false;
   VecX zero_a_, zero_lambda_, r_, phi_, open_, rhs_, x_, delta_, next_;

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <span>
 
@@ -27,6 +29,7 @@ class DenseLu {
   Index factor() {
     Index const n = a_.cols();
     double* const lu = lu_.data();  // by rows
+    least_pivot_ = 1.0;
     for (Index j = 0; j < n; ++j) {
       double largest = 0.0;
       for (Index i = 0; i < n; ++i) {
@@ -39,7 +42,9 @@ class DenseLu {
       Index best = k;
       for (Index i = k + 1; i < n; ++i)
         if (std::abs(lu[i * n + k]) > std::abs(lu[best * n + k])) best = i;
-      if (!(std::abs(lu[best * n + k]) > 1e-14 * scale_[std::size_t(k)])) return k;
+      double const pivot = std::abs(lu[best * n + k]);
+      if (!(pivot > 1e-14 * scale_[std::size_t(k)])) return k;
+      least_pivot_ = std::min(least_pivot_, pivot / scale_[std::size_t(k)]);
       swaps_[std::size_t(k)] = best;
       if (best != k) std::swap_ranges(lu + k * n, lu + (k + 1) * n, lu + best * n);
       double const inverse = 1.0 / lu[k * n + k];
@@ -51,6 +56,9 @@ class DenseLu {
     }
     return -1;
   }
+
+  /// The least pivot of the last factorisation beside the largest entry of its column.
+  double least_pivot() const { return least_pivot_; }
 
   void solve(VecX const& b, VecX& x) const {
     Index const n = a_.cols();
@@ -74,6 +82,7 @@ class DenseLu {
   MatX a_;
   Sequence<double> lu_, scale_;
   Sequence<Index> swaps_;
+  double least_pivot_ = 1.0;
 };
 
 }  // namespace polybody

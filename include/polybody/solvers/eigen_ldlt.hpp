@@ -64,6 +64,15 @@ class EigenLdlt {
     return first_bad(1e-14);
   }
 
+  /// The least pivot of a row without a diagonal block beside g²/a, of the largest entries of G and A: not below
+  /// `shift`, which is the pivot of a row that repeats others.
+  double least_pivot() const {
+    VecX const& d = ldlt_->pivots();
+    double least = epsilon_ / shift;
+    for (Index const i : rows_) least = std::min(least, std::abs(d[ldlt_->permutationP().indices()[i]]));
+    return rows_.empty() ? 1.0 : least * shift / epsilon_;
+  }
+
   /// Both may be the same.
   void solve(VecX const& b, VecX& x) const {
     if (b.size() == 0) return;
@@ -94,7 +103,7 @@ class EigenLdlt {
   }
   /// The unknown whose pivot is not above `threshold` of the largest entry of its column.
   Index first_bad(double threshold) const {
-    VecX const d = ldlt_->vectorD();
+    VecX const& d = ldlt_->pivots();
     for (Index i = 0; i < d.size(); ++i) {
       double largest = 0.0;
       for (Matrix::InnerIterator e(sink_.matrix(), i); e; ++e) largest = std::max(largest, std::abs(e.value()));
@@ -107,7 +116,9 @@ class EigenLdlt {
   Sequence<Index> rows_;
   double epsilon_ = 0.0;
   mutable VecX r_, dx_;
-  using Ldlt = Eigen::SimplicialLDLT<Matrix, Eigen::Lower>;
+  struct Ldlt : Eigen::SimplicialLDLT<Matrix, Eigen::Lower> {
+    VecX const& pivots() const { return this->m_diag; }  // of a factorisation that failed, too
+  };
   std::unique_ptr<Ldlt> ldlt_ = std::make_unique<Ldlt>();  // Eigen's does not move
 };
 

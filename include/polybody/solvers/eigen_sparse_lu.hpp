@@ -38,6 +38,7 @@ class EigenSparseLuBy {
     }
     auto const upper = lu_->matrixU();  // its diagonal stands in the supernodes of L
     Index lost = -1;
+    least_pivot_ = 1.0;
     for (Index i = 0; i < a.cols(); ++i) {
       double largest = 0.0, pivot = 0.0;
       for (typename Matrix::InnerIterator entry(a, i); entry; ++entry)
@@ -47,10 +48,13 @@ class EigenSparseLuBy {
           pivot = entry.value();
           break;
         }
+      if (largest > 0.0) least_pivot_ = std::min(least_pivot_, std::abs(pivot) / largest);
       if (!(std::abs(pivot) > 1e-14 * largest) && (lost < 0 || place[i] < place[lost])) lost = i;
     }
     return lost;
   }
+  /// The least pivot of the last factorisation beside the largest entry of its column.
+  double least_pivot() const { return least_pivot_; }
   void solve(VecX const& b, VecX& x) const {
     if (b.size() > 0) x = lu_->solve(b);
   }
@@ -58,6 +62,7 @@ class EigenSparseLuBy {
 
  private:
   SparseSink sink_;
+  double least_pivot_ = 1.0;
   using Lu = Eigen::SparseLU<Matrix, Ordering>;
   std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();  // Eigen's does not move
 };

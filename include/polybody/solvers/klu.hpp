@@ -23,8 +23,11 @@ namespace polybody {
 /// allocate.
 class Klu {
  public:
-  /// Below these, KLU's reciprocals of the pivot growth and of the condition, pivots are chosen anew, or are refused.
-  static constexpr double least_growth = 1e-8, least_condition = 1e-16;
+  /// Pivots are chosen anew where KLU's reciprocal of their growth falls to this part of what it was when they were
+  /// chosen: they lose two digits more than new ones do.
+  static constexpr double least_growth = 1e-2;
+  /// Pivots are refused where its reciprocal of the condition is below this.
+  static constexpr double least_condition = 1e-16;
 
   Klu() = default;
   /// With the unknowns in this order (each once) instead of KLU's own (block triangular, AMD).
@@ -50,15 +53,22 @@ class Klu {
     auto [n, columns, rows, values] = arrays();
     Handle& k = *klu_;
     if (k.numeric != nullptr && klu_refactor(columns, rows, values, k.symbolic, k.numeric, &k.common) != 0 &&
-        sound(least_growth))
+        sound(least_growth * k.growth))
       return -1;
     k.drop_numeric();
     k.numeric = klu_factor(columns, rows, values, k.symbolic, &k.common);
-    if (k.numeric != nullptr && sound(0.0)) return -1;
+    if (k.numeric != nullptr && sound(0.0)) {
+      (void)klu_rgrowth(columns, rows, values, k.symbolic, k.numeric, &k.common);
+      k.growth = k.common.rgrowth;
+      return -1;
+    }
     Index const bad = k.common.singular_col >= 0 && k.common.singular_col < n ? k.common.singular_col : empty_column();
     k.drop_numeric();
     return bad;
   }
+
+  /// The least pivot of the last factorisation beside the largest one, of rows that are scaled alike.
+  double least_pivot() const { return klu_->numeric == nullptr ? 1.0 : klu_->common.rcond; }
 
   /// Both may be the same.
   void solve(VecX const& b, VecX& x) const {
@@ -73,6 +83,7 @@ class Klu {
     klu_common common;
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
+    double growth = 0.0;  ///< its reciprocal, as the pivots were chosen
 
     Handle() { klu_defaults(&common); }
     Handle(Handle const&) = delete;

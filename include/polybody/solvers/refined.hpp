@@ -46,6 +46,11 @@ class Refined {
     x += dx_;
   }
 
+  double least_pivot() const
+    requires requires(Solver const s) { s.least_pivot(); }
+  {
+    return solver_.least_pivot();
+  }
   bool reordered() const
     requires requires(Solver const s) { s.reordered(); }
   {

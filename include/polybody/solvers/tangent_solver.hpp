@@ -3,7 +3,7 @@
 #include <limits>
 #include <span>
 
-#include <polybody/solvers/linear_solver.hpp>
+#include <polybody/solvers/row_dropping.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
