@@ -65,6 +65,12 @@ TEST_F(Checkpoints, ReadBackAsTheyWere) {
 }
 
 // FNV-1a of "", "a" and "foobar": test vectors of draft-eastlake-fnv.
+// Bytes of texts are numbers from 0 to 255 in the file, whether char has a sign on the machine or not.
+TEST_F(Checkpoints, KeepTextsWithoutSigns) {
+  write_checkpoint(file, rich());
+  EXPECT_NE(text_of(file).find(std::string("\xCF\0\0\0\0\0\0\0\x81\0\0\0\0\0\0\0", 16)), std::string::npos);  // ρ
+}
+
 TEST_F(Checkpoints, AreSummedUpByFnv) {
   EXPECT_EQ(checksum(""), 0xcbf29ce484222325u);
   EXPECT_EQ(checksum("a"), 0xaf63dc4c8601ec8cu);

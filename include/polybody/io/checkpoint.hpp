@@ -64,6 +64,7 @@ struct SnapshotWriter {
     std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t> const wide(static_cast<decltype(wide)>(x));
     bytes.append(reinterpret_cast<char const*>(&wide), sizeof wide);
   }
+  void operator()(char c) { (*this)(static_cast<unsigned char>(c)); }  // which has a sign on some machines only
   template <class List>
   void resize(List const& of) {
     (*this)(of.size());
@@ -85,6 +86,11 @@ struct SnapshotReader {
       if (static_cast<std::int64_t>(x) != wide)
         throw IoError{"checkpoint '", name, "' is inconsistent: ", wide,
                       " is out of the range of its place. Write it anew."};
+  }
+  void operator()(char& c) {
+    unsigned char byte = 0;
+    (*this)(byte);
+    c = static_cast<char>(byte);
   }
   template <class List>
   void resize(List& of) {

@@ -45,7 +45,7 @@ class AxialWatch {
         share = body.axial_share(body.body, part(x.q, body.q0, body.coordinates), part(x.v, body.v0, body.speeds),
                                  part(x.a, body.v0, body.speeds), system.layout().gravity,
                                  {loads_[i].data(), loads_[i].size()});
-      } catch (InvalidInput const&) {  // of beams whose axial forces their welds do not determine
+      } catch (InvalidInput const&) {  // NOLINT(bugprone-empty-catch): the welds do not determine axial forces
       }
       if (!(std::abs(share) >= worth_warning && std::abs(share) > largest_)) continue;
       largest_ = std::abs(share);

@@ -312,7 +312,7 @@ RunReport const& Simulation<I, Solver>::run() & {
   } catch (...) {
     try {
       if (!asked) show();
-    } catch (...) {  // what stopped the run is told
+    } catch (...) {  // NOLINT(bugprone-empty-catch): what stopped the run is told
     }
     throw;
   }
