@@ -104,6 +104,51 @@ TEST(SingularPosition, MayBeAnyNodeOfRadau) {
     expect_passes_with_node_at(node);
 }
 
+/// One window in its flat position. \param crank, coupler rates [rad/s] of the first crank and of the coupler; those of
+/// the parallelogram have no rate of the coupler, those of the kite no rate of the crank
+FourBars<InPlane<Constraint>> flat_window(double crank, double coupler) {
+  FourBars<InPlane<Constraint>> bars(1);
+  auto const lay = [&](int link, double x, double speed, double rate) {
+    bars.x.q.segment<3>(3 * link) = Vec3(x, 0.0, 0.0);
+    bars.x.v.segment<3>(3 * link) = Vec3(0.0, speed, rate);
+  };
+  lay(0, 0.5, 0.5 * crank, crank);
+  lay(1, 1.5, 0.5 * (crank + coupler), crank + coupler);
+  lay(2, 1.5, crank + 0.5 * coupler, coupler);
+  return bars;
+}
+template <class I>
+std::vector<std::string> warnings_of_flat_start(I const& integrator, double crank, double coupler) {
+  auto bars = flat_window(crank, coupler);
+  return simulate(bars.model, bars.x, integrator, {.until = 0.01, .step = 1e-3}).run().warnings;
+}
+
+TEST(SingularPosition, IsReportedWhereARunStartsInItWithoutABranch) {
+  auto const expect = [](auto const& integrator) {
+    std::vector<std::string> const rest = warnings_of_flat_start(integrator, 0.0, 0.0);
+    ASSERT_FALSE(rest.empty());  // the jump to a branch, some steps later, is told as well
+    EXPECT_TRUE(has(rest[0], "The run starts in a singular position at t = 0 s: the rows of joint \""));
+    EXPECT_TRUE(has(rest[0], "Start beside this position, or with speeds of one branch"));
+    EXPECT_TRUE(warnings_of_flat_start(integrator, -4.0, 0.0).empty());
+  };
+  expect(Radau{});
+  expect(GeneralizedAlpha{});
+  expect(RungeKutta4<Projection>{});
+  EXPECT_TRUE(warnings_of_flat_start(Radau{}, 0.0, -4.0).empty());  // the kite
+}
+// ω₀ and ω_c of crank and coupler must have ω₀ ω_c = 0.
+TEST(SingularPosition, RefusesSpeedsOfNoBranch) {
+  std::string const told = message_of<InconsistentStart>([] { warnings_of_flat_start(Radau{}, -4.0, 4.0); });
+  EXPECT_TRUE(has(told, "contradict by"));
+  EXPECT_TRUE(has(told, "in a singular position, start with the speeds of one branch"));
+}
+// In space the pins of the loop repeat three rows in every position.
+TEST(SingularPosition, IsNotTakenForRowsThatAlwaysRepeat) {
+  FourBars<InSpace<Constraint>> bars(1);
+  bars.x.v.setZero();
+  EXPECT_TRUE(simulate(bars.model, bars.x, GeneralizedAlpha{}, {.until = 0.01, .step = 1e-3}).run().warnings.empty());
+}
+
 // The rows that are lost at the start hold from then on.
 TEST(SingularPosition, MayBeWhereARunOfRadauStarts) {
   for (int const n : {1, 3}) {

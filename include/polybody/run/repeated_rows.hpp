@@ -56,7 +56,87 @@ struct RowRelation {
   VecX mu_, w_, a_;
 };
 
+/// How rows that repeat others at (q, t) bend with the motion: c·γ(v) − c·γ(0), a quadratic form of v. Where it
+/// vanishes for all v with G v = 0, they repeat others everywhere; else only here, and the position is singular:
+/// motions branch there, and only speeds with c·γ(v) = c·γ(0) belong to one.
+template <class = void>
+struct RowBending {
+  VecX w;  ///< (nv) speeds without order, with G w = 0
+
+  /// With `forward` as factored last; `system` stands at (q, w, t) afterwards.
+  template <class Solver>
+  RowBending(System& system, ForwardDynamics<Solver>& forward, State const& x)
+      : w(VecX::Zero(system.speeds())),
+        x_(x),
+        rest_(VecX::Zero(system.rows())),
+        gamma_(rest_),
+        other_(rest_),
+        zero_(w),
+        moved_(w) {
+    for (Index i = 0; i < w.size(); ++i) moved_[i] = scattered_sign(i) * (1.0 + 1.0 / double(i + 2));
+    system.rows_times(moved_, gamma_);
+    forward.least_change(system, gamma_, w);
+    for (Index i = 0; i < w.size(); ++i) w[i] += moved_[i];
+    bias(system, zero_, rest_);
+  }
+  /// Whether the row of c repeats others only here.
+  bool is_singular(System& system, VecX const& c) {
+    bias(system, w, gamma_);
+    return differ(c, gamma_, rest_);
+  }
+  /// Whether speeds v of a branch do not tell it from the others: as far as w goes, the form does not change beside v.
+  bool leaves_open(System& system, VecX const& c) {
+    double const size = largest_size(x_.v);
+    if (!(size > 0.0)) return true;
+    double const share = size / std::max(largest_size(w), 1e-300);
+    for (Index i = 0; i < w.size(); ++i) moved_[i] = x_.v[i] + share * w[i];
+    bias(system, moved_, gamma_);
+    for (Index i = 0; i < w.size(); ++i) moved_[i] = x_.v[i] - share * w[i];
+    bias(system, moved_, other_);
+    return !differ(c, gamma_, other_);
+  }
+
+ private:
+  void bias(System& system, VecX const& v, VecX& gamma) {
+    system.evaluate(x_.q, v, x_.t);
+    system.acceleration_bias(gamma);
+  }
+  static bool differ(VecX const& c, VecX const& a, VecX const& b) {
+    double sum = 0.0;
+    for (Index i = 0; i < c.size(); ++i) sum += c[i] * (a[i] - b[i]);
+    double const scale = largest_size(c) * std::max(largest_size(a), largest_size(b));
+    return std::abs(sum) > 1e-6 * scale;
+  }
+
+  State const& x_;
+  VecX rest_, gamma_, other_, zero_, moved_;
+};
+
 }  // namespace detail
+
+/// A sentence where x is a singular position, at which the motion can branch, and its speeds do not say which branch:
+/// at rest, or with speeds that branches share. Empty elsewhere. \param forward as factored at x
+template <class Solver>
+[[gnu::cold]] std::string warn_of_start_between_branches(System& system, ForwardDynamics<Solver>& forward,
+                                                         State const& x) {
+  if (system.rows() == 0) return "";
+  forward.hold(system, x.q, x.v, x.t);
+  if (forward.redundant_rows().empty()) return "";
+  detail::RowRelation<> relation(system);
+  detail::RowBending<> bending(system, forward, x);
+  for (Index const i : forward.redundant_rows()) {
+    if (!relation.find(system, forward, i) || !bending.is_singular(system, relation.c) ||
+        !bending.leaves_open(system, relation.c))
+      continue;
+    return sentence_of({"The run starts in a singular position at t = ", x.t, " s: the rows of ",
+                        detail::names_in(system, relation.c),
+                        " repeat each other there and nowhere beside it, so the motion can go on along several "
+                        "branches, and the speeds of the start belong to none of them alone. On which one it goes on "
+                        "is up to the step and the integrator. Start beside this position, or with speeds of one "
+                        "branch."});
+  }
+  return "";
+}
 
 /// Rows that repeat each other must ask for the same: c·b = 0 for every c with Gᵀc = 0, where b is Φ, Φ̇ or γ of
 /// `system` as evaluated and `forward` as factored. \param what those are called  \param limit of |c·b|/max |c|
@@ -81,8 +161,8 @@ template <class Solver>
         what,
         " at t = ",
         system.at().t,
-        " s. Remove one of these joints, make their dimensions and laws agree, or give one a compliant "
-        "policy such as Penalty."};
+        " s. Remove one of these joints, make their dimensions and laws agree, give one a compliant policy such as "
+        "Penalty, or, in a singular position, start with the speeds of one branch."};
   }
 }
 

@@ -62,10 +62,15 @@ struct RunReport {
   /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share
   /// the load is not determined.
   std::vector<std::string> redundant = {};
-  /// In sentences: of the start, a step beyond the limit of an explicit integrator; of a step, a singular position at
-  /// which the speeds jumped to another branch of the motion.
+  /// In sentences: of the start, a singular position in which its speeds do not tell a branch of the motion, and a step
+  /// beyond the limit of an explicit integrator; of a step, a singular position at which the speeds jumped to another
+  /// branch.
   std::vector<std::string> warnings = {};
 
+  /// Adds a sentence, if it has words.
+  void add_warning(std::string sentence) {
+    if (!sentence.empty()) warnings.push_back(std::move(sentence));
+  }
   void add(StepReport const& step) {
     ++steps;
     iterations += step.iterations;

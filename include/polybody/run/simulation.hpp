@@ -129,12 +129,10 @@ class Simulation {
   /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep
   /// to the joints.
   [[gnu::cold]] void narrow_start();
-  /// Adds a warning to the report where the step is too long for compliant joints.
+  /// Adds warnings to the report: of a start between branches, and where the step is too long for compliant joints.
   [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
-    if constexpr (NamesStableStep<I>) {
-      std::string const warning = warn_of_step<I>(whole(), forward, x, h_);
-      if (!warning.empty()) report_.warnings.push_back(warning);
-    }
+    report_.add_warning(warn_of_start_between_branches(whole(), forward, x));
+    if constexpr (NamesStableStep<I>) report_.add_warning(warn_of_step<I>(whole(), forward, x, h_));
   }
 
   /// The rows of x repeat each other far more nearly than those of the start.

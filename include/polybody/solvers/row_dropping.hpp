@@ -147,7 +147,7 @@ class RowDropping {
 
 /// What time steps make of a solver: one that leaves out rows that repeat others.
 template <LinearSolver Solver>
-using SolverOfSteps = std::conditional_t<DropsRows<Solver>, std::type_identity<Solver>,
-                                         std::type_identity<RowDropping<Solver>>>::type;
+using SolverOfSteps =
+    std::conditional_t<DropsRows<Solver>, std::type_identity<Solver>, std::type_identity<RowDropping<Solver>>>::type;
 
 }  // namespace polybody
