@@ -183,22 +183,30 @@ TEST(Failures, StepTakenAgainHasTheOrderOfEliminationThatItBeganWith) {
   }
 }
 
-TEST(Failures, DoubledJointIsNamed) {
+// A joint that repeats another is left out under solvers that find no pivot for its rows, and the report names it; the
+// motion is that of one pin.
+TEST(Failures, DoubledJointIsLeftOutAndNamed) {
   using Pin = Joint<Revolute, Constraint>;
-  Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
-  auto const rod = model.add(Rigid<>(1.0, Vec3(0.1, 0.2, 0.2).asDiagonal().toDenseMatrix()), "rod");
-  for (char const* name : {"pin", "pin again"})
-    model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
-  State x = model.reference_state();
-  auto const expect_named = [&](auto&& act) {
-    std::string const message = message_of<LinearSolverSingular>(act);
-    EXPECT_TRUE(has(message, "joint \"pin"));
-    EXPECT_TRUE(has(message, "a joint that repeats another"));
+  auto const swing = [](auto solver, std::vector<char const*> const& pins, std::vector<std::string>& redundant) {
+    Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
+    auto const rod = model.add(Rigid<>(1.0, Vec3(0.1, 0.2, 0.2).asDiagonal().toDenseMatrix()), "rod");
+    for (char const* const name : pins)
+      model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
+    State x = model.reference_state();
+    redundant = simulate<decltype(solver)>(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.01}).run().redundant;
+    return x.q;
   };
-  RunOptions const options{.until = 1.0, .step = 0.01};
-  expect_named([&] { simulate<DenseLu>(model, x, GeneralizedAlpha{}, options).run(); });
-  expect_named([&] { simulate<EigenSparseLu>(model, x, GeneralizedAlpha{}, options).run(); });
-  EXPECT_EQ(x.t, 0.0);
+  auto const expect_left_out = [&](auto solver) {
+    std::vector<std::string> one, two;
+    VecX const single = swing(decltype(solver){}, {"pin"}, one),
+               doubled = swing(decltype(solver){}, {"pin", "pin again"}, two);
+    EXPECT_TRUE(one.empty());
+    ASSERT_FALSE(two.empty());
+    EXPECT_TRUE(has(two.front(), "pin")) << two.front();
+    EXPECT_LT((single - doubled).norm(), 1e-8);
+  };
+  expect_left_out(DenseLu{});
+  expect_left_out(EigenSparseLu{});
 }
 
 // A point mass on a ball joint may spin about its own axis without inertia.

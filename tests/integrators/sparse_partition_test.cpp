@@ -86,6 +86,24 @@ TEST(SparsePartition, ExchangesBoundTheRatios) {
   }
 }
 
+// Without rows, and with rows that do not act, nothing is dependent.
+TEST(SparsePartition, TakesNoRowsAndRowsOfZeros) {
+  for (Index const m : {0, 2}) {
+    SparsePartitionOf<> rows(m, 3);
+    EXPECT_FALSE(rows.is_dependent(0));
+    rows.begin();
+    if (m > 0) rows.add(3, 0, MatX(MatX::Zero(m, 3)));
+    rows.renew(10.0);
+    EXPECT_EQ(rows.rank(), 0);
+    VecX b = VecX::Ones(3);
+    rows.solve(VecX::Zero(m), b);
+    EXPECT_EQ(b, VecX::Zero(3));
+  }
+  FourBars<InSpace<Penalty>> bars(1, {.stiffness = 1e6, .damping = 1e2});
+  System system(bars.model);
+  EXPECT_EQ(independent_speeds(system, bars.x, sparse).size(), 18u);
+}
+
 /// Largest violations of four-bars over a run.
 template <class M, class I>
 Violation worst_of(M const& model, State& x, I const& integrator, RunOptions const& options) {

@@ -16,8 +16,8 @@ namespace polybody {
 /// condition of G_d, has grown too large; and when the rank of G changes. Velocity rows make speeds dependent, not
 /// coordinates: with them the two are split apart. Ratios compare metres with radians.
 /// Up to `dense_up_to` speeds G is eliminated in each evaluation. Beyond, factors of a sparse G_d are kept and both
-/// equations are solved by corrections; where these contract by less than a fourth, G_d is factored and the split
-/// looked at anew.
+/// equations are solved by corrections; where one leaves more than a fourth open, G_d is factored and the split looked
+/// at anew.
 struct CoordinatePartitioning {
   static constexpr bool accepts_rows = true;
   double tolerance = 1e-12;  ///< of Φ, beside what rounding of q leaves
@@ -42,9 +42,9 @@ struct CoordinatePartitioning {
           splits_speeds_(!s.velocity_rows().empty()) {
       for (Index const i : s.velocity_rows()) sparse_rows.leave_out(i);
     }
-    void prepare(int dense_up_to) {
+    void prepare(int most_dense) {
       if (std::exchange(prepared, true)) return;
-      sparse = delta.size() > dense_up_to;
+      sparse = delta.size() > most_dense;
       if (sparse) return;
       rows = PartitionedRows(phi.size(), delta.size());
       if (splits_speeds_) all_rows = rows;
@@ -174,11 +174,10 @@ struct CoordinatePartitioning {
   template <class = void>
   void correct_speeds(System& system, Scratch& s, VecX const& q, VecX& v, double t) const {
     Corrections corrections{s.sparse_of_speeds(), system, s, largest_ratio};
-    double const enough = tolerance + 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + largest_size(v));
     for (int k = 0;; ++k) {
       system.violation_rate(s.rate);
-      double const open = largest_size(s.rate);
-      if (open <= enough) return;
+      double const open = largest_size(s.rate), terms = (1.0 + corrections.partition.largest_entry()) * largest_size(v);
+      if (open <= tolerance + 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + terms)) return;
       if (k == 3 * max_iterations)
         throw NewtonStalled{"CoordinatePartitioning: the speeds cannot be brought back to the joints at t = ", t,
                             " s: rows that repeat others contradict them, or they lose rank there."};
@@ -187,7 +186,7 @@ struct CoordinatePartitioning {
       system.evaluate(q, v, t);
     }
   }
-  /// Solves with kept factors, and renews them where what is open shrinks by less than a fourth: first with the split
+  /// Solves with kept factors, and renews them where a correction left more than a fourth open: first with the split
   /// that there is, then with a new one.
   struct Corrections {
     SparsePartitionOf<>& partition;
@@ -241,7 +240,7 @@ struct CoordinatePartitioning {
 
 /// The independent speeds that a run from x takes first, by the names of their bodies and their numbers there.
 template <class = void>
-std::vector<std::string> independent_speeds(System& system, State x, CoordinatePartitioning const& policy = {}) {
+std::vector<std::string> independent_speeds(System& system, State const& x, CoordinatePartitioning const& policy = {}) {
   CoordinatePartitioning::Scratch scratch(system);
   policy.start(scratch);
   policy.choose(system, scratch, x.q, x.v, x.t);

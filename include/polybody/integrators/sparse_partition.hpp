@@ -1,5 +1,5 @@
 #pragma once
-#include <limits>
+#include <memory>
 
 #include <Eigen/SparseLU>
 #include <Eigen/SparseQR>
@@ -28,7 +28,9 @@ class SparsePartitionOf {
   long factorisations = 0;  ///< of G_d
 
   Index rank() const { return Index(dependents_.size()); }
-  bool is_dependent(Index column) const { return place_[std::size_t(column)] >= 0; }
+  bool is_dependent(Index column) const { return chosen_ && place_[std::size_t(column)] >= 0; }
+  /// The largest entry of G at the last renewal; zero before.
+  T largest_entry() const { return largest_entry_; }
   bool has_factors() const { return factored_; }
   /// The next renewal chooses from nothing.
   void forget() { factored_ = chosen_ = false; }
@@ -46,6 +48,7 @@ class SparsePartitionOf {
   /// Factors of G_d for the rows that were written; the split changes where it must. \param limit of |R|
   void renew(T limit) {
     g_.setFromTriplets(entries_.begin(), entries_.end());
+    largest_entry_ = largest(g_);
     if (!(chosen_ && factor())) {
       choose();
       if (!factor()) throw_lost();
@@ -58,14 +61,16 @@ class SparsePartitionOf {
 
   /// b = [b_d, 0] with G_d b_d = given, in the rows that repeat no others.
   void solve(VecXOf<T> const& given, VecXOf<T>& b) {
-    for (std::size_t k = 0; k < kept_rows_.size(); ++k) right_[Index(k)] = given[kept_rows_[k]];
-    solution_ = lu_.solve(right_);
     b.setZero();
+    if (rank() == 0) return;
+    for (std::size_t k = 0; k < kept_rows_.size(); ++k) right_[Index(k)] = given[kept_rows_[k]];
+    solution_ = lu_->solve(right_);
     for (std::size_t k = 0; k < dependents_.size(); ++k) b[dependents_[k]] = solution_[Index(k)];
   }
 
  private:
   using Qr = Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>>;
+  using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
 
   [[noreturn]] static void throw_lost() {
     throw LinearSolverSingular{
@@ -75,6 +80,7 @@ class SparsePartitionOf {
 
   /// Columns of g that are independent, by their numbers.
   static Sequence<Index> independent_columns(Matrix g) {
+    if (largest(g) == 0.0) return {};  // no rows, or none of them acts
     g.makeCompressed();
     Qr qr;
     qr.setPivotThreshold(1e-9 * largest(g));
@@ -125,10 +131,11 @@ class SparsePartitionOf {
   bool factor() {
     ++factorisations;
     take_columns();
-    if (!analysed_) lu_.analyzePattern(gd_);
+    if (rank() == 0) return factored_ = true;
+    if (!analysed_) lu_->analyzePattern(gd_);
     analysed_ = true;
-    lu_.factorize(gd_);
-    return factored_ = lu_.info() == Eigen::Success;
+    lu_->factorize(gd_);
+    return factored_ = lu_->info() == Eigen::Success;
   }
 
   /// Columns change places until no entry of R exceeds the limit. Whether one did.
@@ -137,15 +144,16 @@ class SparsePartitionOf {
     free_.clear();
     for (Index j = 0; j < columns_; ++j)
       if (!is_dependent(j)) free_.push_back(j);
+    if (k == 0 || n == 0) return false;
     r_.resize(k, n);
     for (Index j = 0; j < n; ++j) {
       right_.setZero();
       for (typename Matrix::InnerIterator e(g_, free_[std::size_t(j)]); e; ++e)
         if (Index const row = row_place_[std::size_t(e.row())]; row >= 0) right_[row] = e.value();
-      r_.col(j) = lu_.solve(right_);
+      r_.col(j) = lu_->solve(right_);
     }
     bool changed = false;
-    while (k > 0 && n > 0) {
+    for (;;) {
       Index row = 0, col = 0;
       T const most = r_.cwiseAbs().maxCoeff(&row, &col);
       if (!(most > limit)) break;  // also where it is no number, which the factors will tell
@@ -175,8 +183,9 @@ class SparsePartitionOf {
   Sequence<bool> left_out_;
   std::vector<Eigen::Triplet<T>> entries_, some_;
   Matrix g_, gd_;
-  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu_;
+  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();                    // does not move
   Sequence<Index> dependents_, free_, kept_rows_, place_, row_place_;  ///< places: among dependents, among kept rows
+  T largest_entry_ = 0.0;
   MatXOf<T> r_;
   VecXOf<T> right_, solution_;
   bool chosen_ = false, analysed_ = false, factored_ = false;
