@@ -44,6 +44,25 @@ TEST(SparsePartition, FindsTheRankAndSolves) {
   EXPECT_LT((g * b - r).norm(), 1e-9);
 }
 
+// Columns that differ by little more than what counts as a repetition, and one that stands across them, last or first:
+// it is among the dependent ones, as G_d would hardly have an inverse without it.
+TEST(SparsePartition, TakesNoColumnThatHardlyAddsAnything) {
+  for (Index const across : {0, 5, 11}) {
+    MatX g(2, 12);
+    for (Index j = 0; j < 12; ++j) g.col(j) << 1.0, 1.0 + 3e-9 * double(j);
+    g.col(across) << 1.0, -1.0;
+    VecX const r = Vec2(1, 2);
+    SparsePartitionOf<> rows(2, 12);
+    write(rows, g);
+    rows.renew(1e12);
+    ASSERT_EQ(rows.rank(), 2);
+    EXPECT_TRUE(rows.is_dependent(across));
+    VecX b = VecX::Zero(12);
+    rows.solve(r, b);
+    EXPECT_LT((g * b - r).norm(), 1e-14);
+  }
+}
+
 // One row (1, s): the first column stays the dependent one until the second would move it by more than the limit.
 TEST(SparsePartition, ChangesPlacesWhereADependentSpeedMovesTooMuch) {
   SparsePartitionOf<> rows(1, 2);

@@ -70,6 +70,8 @@ class SparsePartitionOf {
 
  private:
   using Qr = Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>>;
+  /// Shares of the largest entry: a column that adds less repeats others; one that adds more is taken at sight.
+  static constexpr T repeats = 1e-9, adds_enough = 0.1;
   using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
 
   [[noreturn]] static void throw_lost() {
@@ -78,13 +80,24 @@ class SparsePartitionOf {
         "singular position; begin elsewhere, or take an implicit integrator."};
   }
 
-  /// Columns of g that are independent, by their numbers.
+  /// Columns of g that are independent, by their numbers. A factorisation takes a column where it adds more than its
+  /// threshold, in the order that keeps the factors sparse: the highest threshold that still finds all columns there
+  /// are, so that none is taken that hardly adds anything.
   static Sequence<Index> independent_columns(Matrix g) {
-    if (largest(g) == 0.0) return {};  // no rows, or none of them acts
+    T const most = largest(g);
+    if (most == 0.0) return {};  // no rows, or none of them acts
     g.makeCompressed();
     Qr qr;
-    qr.setPivotThreshold(1e-9 * largest(g));
-    qr.compute(g);
+    qr.analyzePattern(g);
+    auto const rank_at = [&](T threshold) {
+      qr.setPivotThreshold(threshold * most);
+      qr.factorize(g);
+      return qr.rank();
+    };
+    if (rank_at(adds_enough) < std::min(g.rows(), g.cols())) {
+      Index const all = rank_at(repeats);
+      for (T threshold = adds_enough; rank_at(std::max(threshold, repeats)) < all;) threshold *= 0.1;
+    }
     Sequence<Index> out;
     for (Index k = 0; k < qr.rank(); ++k) out.push_back(qr.colsPermutation().indices()[k]);
     return out;
