@@ -2,37 +2,33 @@
 //   tracked_vehicle --track penalty --until 3
 //   tracked_vehicle --compare
 //   tracked_vehicle --figure 3.11
+//   tracked_vehicle --integrator adams --until 0.5
 
-#include "tracked_vehicle.hpp"
+#include <map>
+
+#include <polybody/compare/join.hpp>
+
 #include "support/command_line.hpp"
+#include "tracked_vehicle/pins.hpp"
 
 using namespace chapter3;
 
 namespace {
 
-struct Options : Settings {
-  std::string track = "constraint", figure, turn;
-  double penalty = m113::pin_stiffness;
-  bool compare = false, halve = false;
-};
-
-IdealTrack ideal(Options const& o) { return {"constraint", {}, integrator(o)}; }
-PenaltyTrack penalty(Options const& o, double k) {
-  std::string const name = k == m113::pin_stiffness        ? "penalty"
-                           : k == m113::soft_pin_stiffness ? "penalty 1e7"
-                                                           : "penalty " + number(k);
-  return {name, m113::penalty_pin(k), integrator(o)};
-}
-BushingTrack bushing(Options const& o) { return {"bushing", m113::bushing_pin(o.penalty), integrator(o)}; }
-CableTrack cable(Options const& o) { return {"ancf", {}, integrator(o)}; }
-RecursiveTrack recursive(Options const& o) { return {"recursive", {}, integrator(o)}; }
-
-template <class... Fs>
-Runs run(Options const& o, Fs const&... formulations) {
-  warn_of_drive(o);
-  Runs runs;
-  runs.comparison = compare(TrackCase{o, &runs.outcomes}, formulations...);
-  return runs;
+Runs run(Options const& o, std::vector<Pins> const& formulations) {
+  Options stepped = o;
+  if (o.step == 0.0) stepped.step = implicit_step;
+  warn_of_drive(stepped);
+  Runs all;
+  std::vector<Comparison> apart;
+  for (Pins const& pins : formulations) {
+    Runs one = pins.run(o);
+    apart.push_back(std::move(one.comparison));
+    all.outcomes.insert(all.outcomes.end(), one.outcomes.begin(), one.outcomes.end());
+    all.sampling = one.sampling;
+  }
+  all.comparison = join(apart);
+  return all;
 }
 
 // Forces in the watched pin from 1 to 4 s, longitudinal and vertical, up to 30 Hz: how far those of `run` are off those
@@ -40,10 +36,8 @@ Runs run(Options const& o, Fs const&... formulations) {
 double force_difference(Runs const& first, std::size_t k, Runs const& runs, std::size_t run) {
   RmsDifference d(1.0, 4.0);
   for (char const* const output : {"joint force x [N]", "joint force z [N]"}) {
-    LowPass const filter{.cut_off = 30.0, .mirrored = true};
-    std::vector<double> const a = low_pass(first.times(k), first.history(k, output), filter);
-    std::vector<double> const b = low_pass(runs.times(run), runs.history(run, output), filter);
-    d.add({runs.times(run), b}, {first.times(k), a});
+    Filtered const a = filtered(first, k, output, 30.0), b = filtered(runs, run, output, 30.0);
+    d.add({b.times, b.values}, {a.times, a.values});
   }
   return d.value();
 }
@@ -92,16 +86,11 @@ void table_3_4(Options const& o) {
     std::printf("  %-10s %6ld coordinates %5ld degrees of freedom %5ld constraints   (thesis: %s)\n", name,
                 long(c.coordinates), long(c.degrees_of_freedom), long(c.constraints), thesis);
   };
-  std::array<Ramp, 2> const drives{m113::drive(o.speed), m113::drive(o.speed)};
-  m113::VehicleOptions const options{.ground_body = true};
-  BumpCourse const ground = course(false);
   std::cout << "Table 3.4\n";
-  count("pin joint", census(VehicleOf<IdealTrack>({}, drives, options, ground).model), "1092, 168, 924");
-  count("penalty", census(VehicleOf<PenaltyTrack>(m113::penalty_pin(o.penalty), drives, options, ground).model),
-        "1092, 798, 294");
-  count("bushing", census(VehicleOf<BushingTrack>(m113::bushing_pin(o.penalty), drives, options, ground).model),
-        "1092, 798, 294");
-  count("ANCF", census(VehicleOf<CableTrack>({}, drives, options, ground).model), "1227, 1060, 167");
+  count("pin joint", ideal_pins().count(o), "1092, 168, 924");
+  count("penalty", penalty_pins(o.penalty).count(o), "1092, 798, 294");
+  count("bushing", bushing_pins(o.penalty).count(o), "1092, 798, 294");
+  count("ANCF", cable_pins().count(o), "1227, 1060, 167");
   std::cout << "  The thesis' 1227 ANCF coordinates are 29 bodies of 7 and 128 links of 8; the vehicle has 27 bodies "
                "beside the links and the ground,\n"
                "  which makes 28: 1220, 1054, 166. What the 29th is the text does not say.\n";
@@ -125,7 +114,7 @@ void figures(Options const& o) {
   if (wanted(o, "3.7")) {
     Options bare = o;
     bare.suspension = false;
-    Runs const with = run(o, ideal(o)), without = run(bare, ideal(o));
+    Runs const with = run(o, {ideal_pins()}), without = run(bare, {ideal_pins()});
     Figure f{.title = "Figure 3.7: chassis vertical displacement", .x_label = "t [s]", .y_label = "displacement [m]"};
     f.curves.push_back(curve("with suspension", with.times(0), with.history(0, "vertical displacement [m]"), 0));
     f.curves.push_back(curve("without", without.times(0), without.history(0, "vertical displacement [m]"), 1));
@@ -138,7 +127,8 @@ void figures(Options const& o) {
                 1e2 * dip(with), 1e2 * dip(without), dip(with) / dip(without));
   }
   if (wanted(o, "3.8") || wanted(o, "3.9") || wanted(o, "3.10") || o.compare) {
-    Runs const all = run(o, ideal(o), penalty(o, m113::pin_stiffness), bushing(o), cable(o), recursive(o));
+    Runs const all = run(o, {ideal_pins(), penalty_pins(m113::pin_stiffness), bushing_pins(o.penalty), cable_pins(),
+                             joint_coordinates()});
     if (wanted(o, "3.8"))
       over_time(o, all, "forward position [m]", "Figure 3.8: chassis forward position", "position [m]", name("8"));
     if (wanted(o, "3.9"))
@@ -157,7 +147,7 @@ void figures(Options const& o) {
   }
   for (auto const& [k, longitudinal, vertical] : {std::tuple(1e9, "11", "12"), {1e7, "13", "14"}}) {
     if (!wanted(o, std::string("3.") + longitudinal) && !wanted(o, std::string("3.") + vertical)) continue;
-    Runs const r = run(o, ideal(o), penalty(o, k), cable(o));
+    Runs const r = run(o, {ideal_pins(), penalty_pins(k), cable_pins()});
     for (auto const& [number, output, what] :
          {std::tuple(longitudinal, "joint force x [N]", "longitudinal"), {vertical, "joint force z [N]", "vertical"}}) {
       std::string const title = std::string("Figure 3.") + number;
@@ -168,7 +158,7 @@ void figures(Options const& o) {
     }
   }
   if (wanted(o, "3.15")) {
-    Runs const r = run(o, penalty(o, 1e9), penalty(o, 1e7));
+    Runs const r = run(o, {penalty_pins(1e9), penalty_pins(1e7)});
     Figure f{.title = "Figure 3.15: joint constraint violation, penalty method",
              .x_label = "t [s]",
              .y_label = "gap [mm]",
@@ -195,12 +185,15 @@ void show(Options const& o, Runs const& r) {
 
 void single(Options const& o) {
   if (o.halve) {
-    Options half = o;
-    half.step = 0.5 * o.step;
-    Runs const coarse = run(o, ideal(o)), fine = run(half, ideal(half));
+    if (o.integrator == "adams" || o.integrator == "dormand-prince")
+      throw InvalidInput("--halve needs an integrator of fixed steps; this one controls its step. Change --tolerance.");
+    Options half = o, whole = o;
+    if (o.step == 0.0) whole.step = implicit_step;
+    half.step = 0.5 * whole.step;
+    Runs const coarse = run(whole, {ideal_pins()}), fine = run(half, {ideal_pins()});
     auto const x = [](Runs const& r) { return r.history(0, "forward position [m]").back(); };
-    std::printf("steps of %g and %g ms: forward position %.4f and %.4f m, %.3f %% apart", 1e3 * o.step, 1e3 * half.step,
-                x(coarse), x(fine), 1e2 * std::abs(x(fine) / x(coarse) - 1.0));
+    std::printf("steps of %g and %g ms: forward position %.4f and %.4f m, %.3f %% apart", 1e3 * whole.step,
+                1e3 * half.step, x(coarse), x(fine), 1e2 * std::abs(x(fine) / x(coarse) - 1.0));
     if (o.until > 10.0) std::printf("; mean speed %.4f and %.4f m/s", mean_speed(coarse, 0), mean_speed(fine, 0));
     if (o.until >= 4.0)
       std::printf("; forces in pin %d, 30 Hz, 1 to 4 s, %.2f %% (rms)", watched_pin,
@@ -208,11 +201,12 @@ void single(Options const& o) {
     std::printf("\n");
     return;
   }
-  if (o.track == "constraint") show(o, run(o, ideal(o)));
-  if (o.track == "penalty") show(o, run(o, penalty(o, o.penalty)));
-  if (o.track == "bushing") show(o, run(o, bushing(o)));
-  if (o.track == "ancf") show(o, run(o, cable(o)));
-  if (o.track == "recursive") show(o, run(o, recursive(o)));
+  std::map<std::string, Pins> const formulations{{"constraint", ideal_pins()},
+                                                 {"penalty", penalty_pins(o.penalty)},
+                                                 {"bushing", bushing_pins(o.penalty)},
+                                                 {"ancf", cable_pins()},
+                                                 {"recursive", joint_coordinates()}};
+  show(o, run(o, {formulations.at(o.track)}));
 }
 
 }  // namespace
@@ -225,7 +219,13 @@ int main(int argc, char** argv) {
   line.flag("--compare", &o.compare, "all formulations, with a report");
   line.option("--figure", &o.figure, "3.6 to 3.15 of the thesis, table (3.4), or all");
   line.positive("--until", &o.until, "end of the run [s]");
-  line.positive("--step", &o.step, "[s]");
+  line.one_of("--integrator", &o.integrator, {"alpha", "hht", "radau", "adams", "dormand-prince", "rk"},
+              "alpha, hht, radau: implicit; adams, rk: explicit, by coordinate partitioning; dormand-prince: explicit, "
+              "projected");
+  line.positive("--step", &o.step,
+                "[s], the longest of adams and dormand-prince; without it 0.5 ms, by rk what the pins can bear");
+  line.positive("--tolerance", &o.tolerance,
+                "of Newton's corrections (without it 1e-5), by adams and dormand-prince of a step's error (1e-6)");
   line.flag("--halve", &o.halve, "ideal pins at this step and at half of it");
   line.option("--speed", &o.speed, "of the sprockets after 8 s [rad/s]");
   line.one_of("--turn", &o.turn, {"pivot", "curve"},

@@ -23,6 +23,8 @@ struct Settings {
   m113::Solids masses = m113::thesis;
   double until = 10.0;
   double step = 5e-4;
+  double first_step = 0.0;  // of an integrator that controls its step, whose longest is `step`; 0: `step`
+  double sampling = 0.0;    // of the histories [s]; 0: every step
   double speed = m113::chapter_3_speed;
   double left = 1.0, right = 1.0;  // of the speed: unequal ones turn
   bool suspension = true;
@@ -229,6 +231,7 @@ struct TrackScenario {
   RunOptions options;
   std::vector<Output<M>> outputs;
   std::function<void(M const&, State const&)> observer;
+  double sampling;
 };
 
 // The case that `compare` runs: F says what links are and how they hang together.
@@ -271,12 +274,13 @@ struct TrackCase {
     auto observer = [watch, out = outcomes, mine = outcomes->size() - 1](M const&, State const& x) {
       watch->see(x, (*out)[mine]);
     };
-    RunOptions run{.until = s.until, .step = s.step, .halvings = 6};
+    RunOptions run{.until = s.until, .step = s.first_step > 0.0 ? s.first_step : s.step, .halvings = 6};
+    if (s.first_step > 0.0) run.largest_step = s.step;
     if (s.watched)
       for (m113::Side const side : {m113::Side::left, m113::Side::right})
         run.events.push_back(m113::track_lost(*vehicle, side));
-    return TrackScenario<VehicleOf<F>>{vehicle, vehicle->model,     vehicle->model.reference_state(),
-                                       run,     std::move(outputs), observer};
+    return TrackScenario<VehicleOf<F>>{
+        vehicle, vehicle->model, vehicle->model.reference_state(), run, std::move(outputs), observer, s.sampling};
   }
 };
 
@@ -284,6 +288,7 @@ struct TrackCase {
 struct Runs {
   Comparison comparison;
   std::vector<Outcome> outcomes;
+  double sampling = 0.0;  // [s] of the histories; 0: every step
 
   std::vector<double> const& history(std::size_t run, std::string const& name) const {
     auto const& r = comparison.runs[run];
@@ -292,6 +297,22 @@ struct Runs {
   }
   std::vector<double> const& times(std::size_t run) const { return comparison.runs[run].times; }
 };
+
+// A history of a run without frequencies above the cut-off [Hz].
+struct Filtered {
+  std::vector<double> times, values;
+};
+inline Filtered filtered(Runs const& runs, std::size_t run, std::string const& output, double cut_off) {
+  Filtered f{runs.times(run), runs.history(run, output)};
+  if (runs.sampling > 0.0) {  // states come up to a step after their sample
+    f.values = resampled(f.times, f.values, runs.sampling, 2.5 * runs.sampling);
+    double const start = f.times.front();
+    f.times.clear();
+    while (f.times.size() < f.values.size()) f.times.push_back(start + double(f.times.size()) * runs.sampling);
+  }
+  f.values = low_pass(f.times, f.values, {.cut_off = cut_off, .mirrored = true});
+  return f;
+}
 
 // A curve of every `every`-th sample, so that files stay small.
 inline Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int color,
@@ -314,9 +335,9 @@ inline Figure history_figure(Runs const& runs, std::string const& output, std::s
   Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = std::move(label)};
   std::size_t const every = cut_off > 0.0 || output.find("force") == std::string::npos ? 4 : 1;
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
-    std::vector<double> y = runs.history(k, output);
-    if (cut_off > 0.0) y = low_pass(runs.times(k), y, {.cut_off = cut_off, .mirrored = true});
-    f.curves.push_back(curve(runs.comparison.runs[k].name, runs.times(k), y, int(k), scale, every));
+    Filtered const h =
+        cut_off > 0.0 ? filtered(runs, k, output, cut_off) : Filtered{runs.times(k), runs.history(k, output)};
+    f.curves.push_back(curve(runs.comparison.runs[k].name, h.times, h.values, int(k), scale, every));
   }
   return f;
 }
@@ -333,11 +354,5 @@ inline double mean_speed(Runs const& runs, std::size_t run, double from = 9.0) {
   while (first + 1 < t.size() && t[first] < from) ++first;
   return (x.back() - x[first]) / (t.back() - t[first]);
 }
-
-using IdealTrack = Formulation<Rigid<>, Constraint, GeneralizedAlpha>;
-using PenaltyTrack = Formulation<Rigid<>, PenaltyPerRow<5>, GeneralizedAlpha>;
-using BushingTrack = Formulation<Rigid<>, Bushing, GeneralizedAlpha>;
-using CableTrack = Formulation<AncfCable<>, AncfLinear, GeneralizedAlpha>;
-using RecursiveTrack = Formulation<Rigid<>, Recursive, GeneralizedAlpha>;
 
 }  // namespace chapter3

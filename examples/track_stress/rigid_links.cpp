@@ -1,3 +1,5 @@
 #include "stress_case.hpp"
 
-chapter4::Links chapter4::rigid_links() { return links_of<IdealTrack>("rigid"); }
+chapter4::Links chapter4::rigid_links() {
+  return links_of<Formulation<Rigid<>, Constraint, GeneralizedAlpha>>("rigid");
+}

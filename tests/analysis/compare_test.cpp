@@ -21,6 +21,7 @@ using namespace polybody;
 // A rod of 1 m and 1 kg on a pin, released horizontally.
 struct Pendulum {
   std::vector<std::string> outputs = {"tip y [m]"};  ///< all of them the same
+  double sampling = 0.0;
 
   template <class F>
   auto operator()(F const& f) const {
@@ -37,6 +38,7 @@ struct Pendulum {
     for (std::string const& name : outputs)
       scenario.outputs.push_back({name, [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }});
     if (f.name == "of its own mind") scenario.outputs.pop_back();
+    scenario.sampling = sampling;
     return scenario;
   }
 };
@@ -93,6 +95,36 @@ TEST(Compare, RunsOneCaseUnderSeveralFormulations) {
   EXPECT_LT(c.runs[0].violation.position, 1e-12);
   EXPECT_EQ(c.runs[1].violation.position, 0.0);
   EXPECT_LT(c.runs[2].violation.velocity, 1e-10);
+}
+
+TEST(Compare, AsksTheFirstStateAfterEachSample) {
+  using Controlled = Formulation<planar::Rigid, Constraint, DormandPrince<Projection>>;
+  Pendulum const all{}, sampled{.sampling = 0.05}, within{.sampling = 0.0035};
+  DormandPrince<Projection> const short_steps{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-12};
+  for (auto const& [run, whole] : {std::pair(compare(sampled, Controlled{"own steps", {}, short_steps}).runs[0],
+                                             compare(all, Controlled{"own steps", {}, short_steps}).runs[0]),
+                                   {compare(sampled, Ideal{"ideal"}).runs[0], compare(all, Ideal{"ideal"}).runs[0]}}) {
+    EXPECT_EQ(run.run.steps, whole.run.steps) << run.name;  // the steps are not touched
+    ASSERT_EQ(run.times.size(), 11u) << run.name;
+    ASSERT_EQ(run.outputs[0].size(), run.times.size());
+    ASSERT_EQ(run.energies.size(), run.times.size());
+    for (std::size_t k = 0; k < run.times.size(); ++k) {
+      auto const after =
+          std::find_if(whole.times.begin(), whole.times.end(), [&](double t) { return t > 0.05 * double(k) - 1e-12; });
+      ASSERT_NE(after, whole.times.end());
+      EXPECT_EQ(run.times[k], *after) << run.name << ", sample " << k;
+      EXPECT_EQ(run.outputs[0][k], whole.outputs[0][std::size_t(after - whole.times.begin())]);
+    }
+  }
+  // 0, 4, 7, 11, 14 ms …, and the end, which is no multiple
+  ComparedRun const run = compare(within, Ideal{"ideal"}).runs[0];
+  ASSERT_EQ(run.times.size(), 144u);
+  EXPECT_NEAR(run.times[1], 0.004, 1e-12);
+  EXPECT_NEAR(run.times[2], 0.007, 1e-12);
+  EXPECT_NEAR(run.times[3], 0.011, 1e-12);
+  EXPECT_NEAR(run.times.back(), 0.5, 1e-12);
+  EXPECT_TRUE(has(refusal([] { compare(Pendulum{.sampling = -1.0}, Ideal{"ideal"}); }),
+                  "compare: the sampling of \"ideal\" must be zero or positive"));
 }
 
 TEST(Compare, JoinsRunsThatWereMadeApart) {

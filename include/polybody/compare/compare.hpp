@@ -24,7 +24,9 @@ struct Scenario {
   State start;
   RunOptions options;
   std::vector<Output<M>> outputs = {};
-  std::function<void(M const&, State const&)> observer = {};  ///< called at every state, not timed
+  std::function<void(M const&, State const&)> observer = {};  ///< called at every state that is asked, not timed
+  double sampling = 0.0;  ///< [s]: asked is the first state on or after each multiple of it from the start on; 0: every
+                          ///< state of the run. For integrators whose steps are much shorter than what is of interest.
 };
 
 /// A case is called with a formulation and returns a Scenario of whatever model type that leads to.
@@ -32,6 +34,7 @@ template <class C, class F>
 concept CaseFor = requires(C const c, F const f) {
   { c(f).model };
   { c(f).start } -> std::convertible_to<State>;
+  { c(f).sampling } -> std::convertible_to<double>;
 };
 
 namespace detail {
@@ -94,14 +97,20 @@ CaseQuestions questions_of(S& scenario) {
   return questions;
 }
 
-/// Runs to the end and notes every state; only the steps are timed.
+/// Runs to the end and notes the first state, the last one, and those in between that `sampling` asks for; only the
+/// steps are timed.
 template <class Run>
-void record_run(Run& run, CaseQuestions& questions, ComparedRun& out) {
+void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun& out) {
+  double const start = run.state().t, rounding = 1e-9 * sampling;
+  double samples = 0.0;  // multiples of `sampling` that are past
   questions.note(run.state(), out);
   while (!run.done()) {
     std::clock_t const begin = std::clock();
     run.advance();
     out.cpu += double(std::clock() - begin) / CLOCKS_PER_SEC;
+    double const past = run.state().t - start + rounding;
+    if (past < (samples + 1.0) * sampling && !run.done()) continue;
+    if (sampling > 0.0) samples = std::floor(past / sampling);
     questions.note(run.state(), out);
   }
   out.energy_start = out.energies.front().total();
@@ -119,11 +128,12 @@ void add_run(C const& make_case, F const& formulation, Comparison& c, std::strin
   for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
   check_outputs(out, c.runs);
   out.outputs.resize(scenario.outputs.size());
+  require_not_negative(scenario.sampling, "compare: the sampling of ", "\"" + out.name + "\"");
   State x = scenario.start;
   try {
     auto run = simulate(scenario.model, x, formulation.integrator, scenario.options);
     CaseQuestions questions = questions_of(scenario);
-    record_run(run, questions, out);
+    record_run(run, questions, scenario.sampling, out);
   } catch (Error const& failed) {
     failures += sentence_of({" \"", out.name, "\": ", failed.what()});
     return;
