@@ -187,6 +187,8 @@ void single(Options const& o) {
   if (o.halve) {
     if (o.integrator == "adams" || o.integrator == "dormand-prince")
       throw InvalidInput("--halve needs an integrator of fixed steps; this one controls its step. Change --tolerance.");
+    if (o.integrator == "rk" && o.step == 0.0)
+      throw InvalidInput("--halve by rk needs a --step that the pins can bear, such as 1e-4 s.");
     Options half = o, whole = o;
     if (o.step == 0.0) whole.step = implicit_step;
     half.step = 0.5 * whole.step;
