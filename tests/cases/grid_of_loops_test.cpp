@@ -88,19 +88,23 @@ constexpr Row table[] = {
     {1, {0.9472223325, 1.2782864758, 1.5483573160, 1.7496245119, 1.9461470474}, 4.6834999754, -0.3502583167},
     {1.5, {0.4867860766, 0.7340354645, 1.3447591024, 2.0010086459, 2.3895987577}, 3.7041947404, -0.7030433077},
     {2, {0.1413086325, 0.1488976294, 0.2469056776, 0.2061711303, 0.8206689725}, 1.4699072068, -4.6091949283},
-    {3, {-1.4486122086, -1.3597168846, -1.0395979722, -0.9887806776, -1.1433718366}, -4.5779434860, -1.8021999741}};
+    {3, {-1.4486122086, -1.3597168846, -1.0395979722, -0.9887806776, -1.1433718366}, -4.5779434860, -1.8021999741},
+    {4, {-0.2358620285, -0.1353700070, -0.0857881912, -0.3054386409, -1.0707964379}, -1.6326153359, -4.3926277572},
+    {5, {0.8254795280, 1.3328908276, 1.6257903739, 1.0517228918, 2.8233318970}, 3.8863893387, -0.4052007024},
+    {6, {0.0391725577, 0.1571583417, 0.6848947561, 0.4443915031, 0.2764671082}, 1.5311334409, -4.6262927098}};
 
 Claim reduced(char const* what, std::string const& formulation) {
   return {"M6b", what, By::independent, "chain of five angles, DOP853", formulation};
 }
 
+/// \param late tolerance after 4 s: the lowest bars stand nearly upright at 5 s, which multiplies an error by ten
 template <class Tree, class Loop, class I>
-void follows(I const& integrator, double step, double tolerance, double until, std::string const& formulation) {
+void follows(I const& integrator, double step, double early, double late, std::string const& formulation) {
   Grid<Tree, Loop> grid;
   double const before = energy(grid.model, grid.x).total();
   held(reduced("energy at the start [J]", formulation), before, -320.0461532, 1e-7);
   for (Row const& row : table) {
-    if (row.t > until) break;
+    double const tolerance = row.t > 4.0 ? late : early;
     simulate(grid.model, grid.x, integrator, {.until = row.t, .step = step}).run();
     Vec<double, 5> const found = grid.angles();
     double worst = 0.0;
@@ -109,17 +113,19 @@ void follows(I const& integrator, double step, double tolerance, double until, s
     held_within(reduced("lowest corner on the left [m]", formulation), (grid.corner() - Vec3(row.y, row.z, 0)).norm(),
                 3.0 * tolerance, {equals("t", row.t), 5.0});
     held({"M6b", "energy [J]", By::closed_form, "invariant", formulation}, energy(grid.model, grid.x).total(), before,
-         320.0 * tolerance, {.at = equals("t", row.t)});
+         1000.0 * tolerance, {.at = equals("t", row.t)});
   }
 }
 
-// Every row is a line of bars as it passes 90°, first the lowest at 0.76 s. Radau's stages stall there.
+// Every row is a line of bars as it passes 90°, first the lowest at 0.76 s.
 TEST(GridOfLoops, FallsAsFiveAnglesDo) {
-  follows<Constraint, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2.0,
+  follows<Constraint, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2e-3,
                                   "planar::Rigid, Constraint, generalised-α, h = 1 ms");
-  follows<Recursive, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2.0,
+  follows<Recursive, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2e-3,
                                  "planar::Rigid, joint coordinates, loops by Constraint, generalised-α, h = 1 ms");
-  follows<Constraint, Constraint>(Radau{}, 2e-3, 1e-8, 0.75, "planar::Rigid, Constraint, Radau IIA, h = 2 ms");
+}
+TEST(GridOfLoops, FallsAsFiveAnglesDoByRadau) {
+  follows<Constraint, Constraint>(Radau{}, 2e-3, 1e-8, 3e-8, "planar::Rigid, Constraint, Radau IIA, h = 2 ms");
 }
 
 }  // namespace grid_of_loops_test

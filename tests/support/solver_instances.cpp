@@ -48,34 +48,35 @@ class Behind final : public SolverInTests {
 
 /// As a user's solver reaches time steps, or statics.
 template <class Solver>
-std::unique_ptr<SolverInTests> behind(bool statics) {
-  if (statics) return std::make_unique<Behind<Solver>>();
+std::unique_ptr<SolverInTests> behind(SolverFor use) {
+  if (use == SolverFor::statics) return std::make_unique<Behind<Solver>>();
+  if (use == SolverFor::unsymmetric_steps) return std::make_unique<Behind<SolverOfSteps<UnsymmetricSolver<Solver>>>>();
   return std::make_unique<Behind<SolverOfSteps<Solver>>>();
 }
 
 }  // namespace
 
-std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, bool statics) {
+std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, SolverFor use) {
   char const* const given = std::getenv("POLYBODY_SOLVER");
   std::string const name = given ? given : "";
   if (name.empty()) return nullptr;
-  if (name == "EigenSparseLu") return behind<EigenSparseLu>(statics);
+  if (name == "EigenSparseLu") return behind<EigenSparseLu>(use);
   if (name == "DenseLu") {
     if (size > 400) return nullptr;
-    return behind<DenseLu>(statics);
+    return behind<DenseLu>(use);
   }
 #ifdef POLYBODY_WITH_KLU
-  if (name == "Klu") return behind<Klu>(statics);
+  if (name == "Klu") return behind<Klu>(use);
 #endif
   // these need pivots within blocks, or symmetry: statics keeps its default
   bool const for_steps =
       name == "BlockLdlt" || name == "BlockLu" || name == "EigenLdlt" || name == "RefinedBlockSolver";
   if (!for_steps) throw InvalidInput("POLYBODY_SOLVER=" + name + " is not a solver that the tests know.");
-  if (statics) return nullptr;
-  if (name == "BlockLdlt") return behind<BlockLdlt>(false);
-  if (name == "BlockLu") return behind<BlockLu>(false);
-  if (name == "EigenLdlt") return behind<EigenLdlt>(false);
-  return behind<Refined<BlockSolver>>(false);
+  if (use == SolverFor::statics) return nullptr;
+  if (name == "BlockLdlt") return behind<BlockLdlt>(use);
+  if (name == "BlockLu") return behind<BlockLu>(use);
+  if (name == "EigenLdlt") return behind<EigenLdlt>(use);
+  return behind<Refined<BlockSolver>>(use);
 }
 
 }  // namespace polybody

@@ -33,7 +33,8 @@ struct ConservingStep {
     VecX q, v, vd, lambda, r, phi, rhs, y, kept;
     VecX other_vd, other_lambda;  ///< where the second try ended, while the third looks for less change
     StepSecants secants;
-    TangentSolver<SolverOfSteps<Solver>> solver, exact;  ///< `exact` is laid out by the first step that asks for it
+    TangentSolver<SolverOfSteps<Solver>> solver;
+    TangentSolver<SolverOfSteps<UnsymmetricSolver<Solver>>> exact;  ///< laid out by the first step that asks for it
     ForwardDynamics<Solver> forward;
     bool factored = false, has_exact = false;
     double theta = 1.0;
@@ -123,7 +124,7 @@ struct ConservingStep {
       return bad < 0;
     }
     CorrectionSize solve() {
-      (exact ? w.exact : w.solver).solve(w.rhs, w.y);
+      exact ? w.exact.solve(w.rhs, w.y) : w.solver.solve(w.rhs, w.y);
       return measure();
     }
     CorrectionSize measure() const {

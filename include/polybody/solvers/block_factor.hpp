@@ -33,6 +33,8 @@ class BlockFactor {
   static constexpr double body_threshold = 1e-13, row_threshold = 1e-9;
   /// Systems up to this size fall back on one dense block with pivoting.
   static constexpr Index dense_limit = 64;
+  /// The block solver that reads both halves.
+  using Unsymmetric = BlockFactor<symmetry == Symmetry::assumed ? Symmetry::none : symmetry>;
 
   BlockFactor() = default;
   BlockFactor(BlockFactor const&) = delete;  // its slots point into its storage

@@ -10,6 +10,7 @@
 #include <span>
 
 #include <polybody/math/sequence.hpp>
+#include <polybody/solvers/eigen_sparse_lu.hpp>
 #include <polybody/solvers/sparse_sink.hpp>
 
 namespace polybody {
@@ -22,6 +23,7 @@ class EigenLdlt {
   static constexpr double shift = 1e-9;             ///< ε beside g²/a, of the largest entries of G and A
   static constexpr double largest_asymmetry = 0.1;  ///< ‖A − Aᵀ‖ beside ‖A‖; above it `factor` throws
   static constexpr int most_refinements = 20;
+  using Unsymmetric = EigenSparseLu;
 
   void analyse(Index size, std::span<Block const> blocks) {
     Sequence<char> has_diagonal(std::size_t(size), 0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/sequence.hpp>
@@ -19,6 +20,18 @@ concept LinearSolver = requires(S s, std::span<Block const> blocks, Mat3 const b
   { s.factor() } -> std::convertible_to<Index>;  // −1, or the column without a usable pivot
   s.solve(b, x);
 };
+
+namespace detail {
+template <class S>
+struct ReadsBothHalves : std::type_identity<S> {};
+template <class S>
+  requires requires { typename S::Unsymmetric; }
+struct ReadsBothHalves<S> : std::type_identity<typename S::Unsymmetric> {};
+}  // namespace detail
+
+/// What takes the place of S for matrices that are not symmetric: `S::Unsymmetric`, where S reads one half only.
+template <LinearSolver S>
+using UnsymmetricSolver = typename detail::ReadsBothHalves<S>::type;
 
 /// Writes the matrix into the solver and factors it; twice where the solver asks for it in another order.
 /// Returns −1, or the column without a usable pivot.

@@ -27,16 +27,21 @@ struct SolverInTests {
   virtual void solve(VecX const& b, VecX& x) const = 0;
 };
 
-/// The one that the environment names, for a matrix of this size; none when it names none.
+/// What a solver is for: one that needs symmetry, or pivots within blocks, does not serve all.
+enum class SolverFor { steps, unsymmetric_steps, statics };
+
+/// The one that the environment names, for a matrix of this size; none when it names none, or one that does not serve.
 /// \throws InvalidInput for a name that is not known. Defined in support/solver_instances.cpp.
-std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, bool statics);
+std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, SolverFor use);
 
 /// `Default`, unless the environment names another.
-template <class Default, bool statics>
+template <class Default, SolverFor use>
 class NamedSolver {
  public:
+  using Unsymmetric = NamedSolver<Default, use == SolverFor::steps ? SolverFor::unsymmetric_steps : use>;
+
   void analyse(Index size, std::span<Block const> blocks) {
-    other_ = solver_named_by_environment(size, statics);
+    other_ = solver_named_by_environment(size, use);
     other_ ? other_->analyse(size, blocks) : default_.analyse(size, blocks);
   }
   void begin() { other_ ? other_->begin() : default_.begin(); }
@@ -68,7 +73,7 @@ class NamedSolver {
   std::unique_ptr<SolverInTests> other_;
 };
 
-using DefaultSolver = NamedSolver<BlockSolver, false>;
-using DefaultStaticSolver = NamedSolver<AutoLu, true>;
+using DefaultSolver = NamedSolver<BlockSolver, SolverFor::steps>;
+using DefaultStaticSolver = NamedSolver<AutoLu, SolverFor::statics>;
 
 }  // namespace polybody
