@@ -52,7 +52,7 @@ Way<AdamsBashforthMoulton<Projection>> adams() {
 
 /// "HHT-α, h = 0.00025 s"; Adams' method chooses its own.
 template <class W>
-std::string named(W const& way, double part = 1.0) {
+std::string described(W const& way, double part = 1.0) {
   std::string const name = way.name;
   return name[0] == 'A' ? name : name + ", " + equals("h", part * way.step) + " s";
 }
@@ -72,7 +72,7 @@ void expect_pendulum(W const& way) {  // R1
        {Place{0.5, -0.3910487915505464, -0.9203699487851922}, Place{2, -0.7935661953433217, -0.6084839304437915},
         Place{10, -0.2750874625761169, -0.9614192050991251}}) {
     simulate(chain.model, x, way.integrator, {.until = p.t, .step = way.step}).run();
-    held_within({"R1", "point mass [m]", By::closed_form, "elliptic functions", "in the plane, " + named(way)},
+    held_within({"R1", "point mass [m]", By::closed_form, "elliptic functions", "in the plane, " + described(way)},
                 (chain.tip(x) - Vec3(p.x, p.y, 0)).norm(), way.pendulum, {equals("t", p.t), 1.0});
   }
 }
@@ -84,7 +84,7 @@ void expect_links(W const& way) {  // R8a, R8b
     State x = chain.model.reference_state();
     simulate(chain.model, x, way.integrator, {.until = t, .step = way.step}).run();
     double const off = std::max(std::abs(chain.angle(x, 0) - first), std::abs(chain.angle(x, 1) - second));
-    held_within(solver("R8", "angles of both links [rad]", std::string(which) + named(way)), off, way.links,
+    held_within(solver("R8", "angles of both links [rad]", std::string(which) + described(way)), off, way.links,
                 {equals("t", t), 1.0});
   };
   char const *const a = "(a) two point masses, ", *const b = "(b) two bars in the plane, ";
@@ -101,7 +101,7 @@ void expect_windows(W const& way, int n, double until, double tolerance) {  // R
     if (c.n != n || c.t > until) continue;
     simulate(bars.model, bars.x, way.integrator, {.until = c.t, .step = way.step}).run();
     held_within({"R2", "corner [m]", By::closed_form, "θ¨ = A sin θ of the parallelogram, elliptic integrals",
-                 "N = " + std::to_string(n) + ", " + named(way)},
+                 "N = " + std::to_string(n) + ", " + described(way)},
                 (bars.corner() - Vec3(c.x, c.y, 0)).norm(), tolerance, {equals("t", c.t), 1.0});
   }
 }
@@ -116,7 +116,7 @@ void expect_bricard(W const& way) {  // R4
     auto run = simulate(b.model, b.x, way.integrator, {.until = t, .step = way.step});
     run.run();
     EXPECT_EQ(run.report().redundant.size(), 1u) << t;
-    std::string const formulation = "rods 0.1 m square, " + named(way);
+    std::string const formulation = "rods 0.1 m square, " + described(way);
     Instance const at{equals("t", t), 1.8};
     held_within(
         {"R4", "P₃ of the Bricard mechanism [m]", By::independent, "ordinary solver in the one freedom", formulation},
@@ -136,14 +136,14 @@ void expect_tops(W const& way) {  // R6, R7
   State x = heavy.reference_state();
   heavy.set_velocity(x, top, Vec3::Zero(), Vec3(0, 150, -4.61538));
   simulate(heavy, x, way.integrator, {.until = 0.2, .step = 0.2 * way.step}).run();
-  held_within(solver("R6", "heavy top: centre of mass at 0.2 s [m]", "Rigid, " + named(way, 0.2)),
+  held_within(solver("R6", "heavy top: centre of mass at 0.2 s [m]", "Rigid, " + described(way, 0.2)),
               (x.q.head<3>() - Vec3(0.6055505614, 0.5989576818, -0.5239830274)).norm(), way.top, {.scale = 1.0});
 
   auto const body = free.add(Rigid<>(1.0, Vec3(1, 2, 3).asDiagonal().toDenseMatrix()), "body");
   State y = free.reference_state();
   free.set_velocity(y, body, Vec3::Zero(), Vec3(0.01, 5, 0.01));
   simulate(free, y, way.integrator, {.until = 2.0, .step = way.step}).run();
-  held_within(solver("R7", "torque-free body: angular velocity at 2 s [rad/s]", "Rigid, " + named(way)),
+  held_within(solver("R7", "torque-free body: angular velocity at 2 s [rad/s]", "Rigid, " + described(way)),
               (y.v.tail<3>() - Vec3(-1.1612500596, 4.8632908919, 0.6704977507)).norm(), way.spin, {.scale = 5.0});
 }
 
