@@ -44,7 +44,7 @@ struct AlphaMethod {
     int age = 0;  ///< steps that the factorisation has served
 
     explicit Workspace(System& s)
-        : AlphaVectors(s.coordinates(), s.speeds(), s.rows(), s.layout().states), forward(s) {}
+        : AlphaVectors(s.coordinates(), s.speeds(), s.rows(), multipliers_of(s), s.layout().states), forward(s) {}
 
     void analyse(System& s, SecondOrder second) {
       solver.analyse(s, 1, [&](BlockSink& sink) { s.tangent({1.0, 1.0, 1.0}, second, lambda, sink); });
@@ -66,6 +66,7 @@ struct AlphaMethod {
     if (w.second_order && !second_order_terms)
       w.analyse(system, SecondOrder::omitted);  // it was called for by a step before
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
+    append_multipliers(system, x);
     StepHistory::reset(x);
     w.factored = false;
     if (start_correction && jerk_at_start(system, x, h, w)) StepHistory(x).pretend(x, w.jerk, h);
@@ -134,7 +135,7 @@ struct AlphaMethod {
   }
   /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
   void right_hand_side(double h, bool two_sets, Sequence<Index> const& velocity_rows, AlphaVectors& w) const {
-    Index const nv = w.v.size(), rows = w.lambda.size();
+    Index const nv = w.v.size(), rows = w.phi.size();
     for_packs(nv, [&](auto at) { at.set(w.rhs, -at(w.r)); });
     double* const of_rows = w.rhs.data() + nv;
     VecX const& open = two_sets ? w.rate : w.phi;
@@ -185,10 +186,14 @@ struct AlphaMethod {
       }
       if (holds_anew) w.forward.hold(system, w.q, w.v, x.t + h);
       bad = method.refactor(system, h, place(), w, stand_ins);
+      if (ahead > 0.0) {
+        system.plus(x.q, w.dq, w.q);
+        w.solver.return_to({w.q, w.v, x.t + h});
+      }
       return bad < 0;
     }
     CorrectionSize solve() {
-      w.solver.solve(w.rhs, w.y);
+      w.solver.correct(w.rhs, w.y);
       bool const finite = all_finite(w.y);
       if (two_sets && finite) {
         for (Index i = 0; i < system.speeds(); ++i) w.back[i] = method.beta * h * h * w.y[i];
@@ -311,7 +316,7 @@ struct AlphaMethod {
       follow(x, e, w);
       system.plus(x.q, w.dq, w.q);
       VecX a = x.a;
-      w.forward.accelerations(system, {w.q, w.v, x.t + e}, a, w.lambda);
+      w.forward.accelerations(system, {w.q, w.v, x.t + e}, a, w.rate);
       return a;
     };
     VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);

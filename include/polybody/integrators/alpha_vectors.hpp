@@ -6,28 +6,29 @@ namespace polybody {
 /// What a step of the family computes with, of whatever model.
 struct AlphaVectors {
   VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
-  VecX q, v, vd, a, lambda, dq, r, phi, rhs, y, jerk, ahead;
+  VecX q, v, vd, a, dq, r, phi, jerk, ahead;
+  VecX lambda, rhs, y;   ///< of all multipliers that the step keeps; `phi` is of its rows
   VecX back, rate;       ///< of a stabilised step: what μ moves, and a vector by rows
   VecX kept, kept_back;  ///< corrections while others are looked at
   Index states;          ///< first-order ones, the last of the speeds
 
-  AlphaVectors(Index coordinates, Index speeds, Index rows, Index first_order)
+  AlphaVectors(Index coordinates, Index speeds, Index rows, Index multipliers, Index first_order)
       : v0(VecX::Zero(speeds)),
         a0(v0),
         q(VecX::Zero(coordinates)),
         v(v0),
         vd(v0),
         a(v0),
-        lambda(VecX::Zero(rows)),
         dq(v0),
         r(v0),
-        phi(lambda),
-        rhs(VecX::Zero(speeds + rows)),
-        y(rhs),
+        phi(VecX::Zero(rows)),
         jerk(v0),
         ahead(v0),
+        lambda(VecX::Zero(multipliers)),
+        rhs(VecX::Zero(speeds + multipliers)),
+        y(rhs),
         back(v0),
-        rate(lambda),
+        rate(phi),
         kept(rhs),
         kept_back(v0),
         states(first_order) {}

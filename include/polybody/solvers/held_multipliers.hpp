@@ -6,10 +6,11 @@
 
 namespace polybody::detail {
 
-/// λ (m) with Gᵀλ next to what the joint holds, by least squares of the rows. \param map G of the carried body, m×6 by
-/// columns, about the marker \param held [f; m] about the body's centre of mass \param arm from there to the marker
+/// Adds to λ (m) what it lacks for Gᵀλ to be next to what the joint holds, by least squares of the rows. \param map G
+/// of the carried body, m×6 by columns, about the marker \param held [f; m] that is left, about the body's centre of
+/// mass \param arm from there to the marker
 template <class T>
-void multipliers_that_hold(int m, T const* map, Vec<T, 6> held, Vec<T, 3> const& arm, T* lambda) {
+void add_multipliers_that_hold(int m, T const* map, Vec<T, 6> held, Vec<T, 3> const& arm, T* lambda) {
   for (int k = 0; k < 3; ++k)
     held[3 + k] -= arm[(k + 1) % 3] * held[(k + 2) % 3] - arm[(k + 2) % 3] * held[(k + 1) % 3];
   auto gram = zeros<Mat<T, 6, 6>>();
@@ -27,7 +28,7 @@ void multipliers_that_hold(int m, T const* map, Vec<T, 6> held, Vec<T, 3> const&
   for (int k = 0; k < m; ++k) {
     T sum = 0.0;
     for (int j = 0; j < m; ++j) sum += gram(k, j) * right[j];
-    lambda[k] = sum;
+    lambda[k] += sum;
   }
 }
 

@@ -5,11 +5,11 @@
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/articulated_body.hpp>
+#include <polybody/solvers/body_equations.hpp>
 #include <polybody/solvers/held_multipliers.hpp>
 #include <polybody/solvers/tree_dynamics.hpp>
 #include <polybody/solvers/tree_tangent.hpp>
 #include <polybody/system/dense_reduction.hpp>
-#include <polybody/system/mapped_sink.hpp>
 #include <polybody/system/model_entries.hpp>
 #include <polybody/system/reduction.hpp>
 #include <polybody/system/system.hpp>
@@ -48,7 +48,7 @@ class ReducedCoordinates {
     if constexpr (solves_densely)
       prepare_dense();
     else if constexpr (!solves_by_bodies)
-      map_equations(model.linear_rows());
+      equations_ = BodyEquationsOf<>(reduction_, model.linear_rows(), whole_speeds_, whole_rows_);
   }
 
   NarrowLayout narrow_layout(ModelLayout const& whole) const;
@@ -87,8 +87,8 @@ class ReducedCoordinates {
           std::size_t const i = std::size_t(s.reduction_.carried_by(block.row));
           RowEnd<double> const& end = s.reduction_.tree().bodies[i].backwards ? block.a : block.b;
           Vec3 const& at = data.markers[std::size_t(end.marker)].frame.r;
-          multipliers_that_hold(block.rows, end.map, s.state_.held[i],
-                                difference<RealFor<Solution>>(at, s.state_.frames[i].r), lambda.data() + block.row);
+          add_multipliers_that_hold(block.rows, end.map, s.state_.held[i],
+                                    difference<RealFor<Solution>>(at, s.state_.frames[i].r), lambda.data() + block.row);
         }
     }
   }
@@ -135,9 +135,7 @@ class ReducedCoordinates {
     } else if constexpr (solves_by_bodies) {
       write_whole(sink);
     } else {
-      MappedSinkOf<> mapped(s.map_, s.mapped_, sink);
-      BlockSink whole(mapped);
-      write_whole(whole);
+      s.equations_.write(write_whole, sink);
     }
   }
 
@@ -214,24 +212,35 @@ class ReducedCoordinates {
       s.reduction_.expand_speeds(s.narrow_, s.a_);
       s.reduction_.tree().expand_forces(*static_cast<TreeState*>(h), s.narrow_, s.a_);
       out.setZero();
-      for (Index i = 0; i < s.a_.size(); ++i)
-        if (Index const to = s.equation_of(i); to >= 0) out[to] = s.a_[i];
-      for (Index i = 0; i < s.reduction_.rows(); ++i) out[s.equation_of_row(i)] = rhs[nv + i];
+      s.equations_.from_speeds(s.a_, 1.0, out);
+      s.equations_.from_rows(rhs.data() + nv, out);
     }
   }
   static void from_equations(void* c, void* h, VecX const& solution, VecX& out) {
-    if constexpr (solves_as_it_is) {
+    if constexpr (solves_as_it_is)
       out = solution;
-    } else {
+    else
+      of(c).read_equations(*static_cast<TreeState*>(h), solution, out);
+  }
+  void read_equations(TreeState& at, VecX const& solution, VecX& out) {
+    equations_.to_speeds(solution, a_);
+    reduction_.reduce_speeds(a_, narrow_);
+    reduction_.tree().reduce_rates(at, a_, false, narrow_);
+    Index const nv = reduction_.speeds();
+    std::copy_n(narrow_.data(), nv, out.data());
+    equations_.to_rows(solution, out.data() + nv);
+  }
+  static void balance_to_equations(void* c, VecX& out) {
+    if constexpr (!solves_as_it_is) of(c).equations_.from_speeds(of(c).last_r_, -1.0, out);
+  }
+  static void rows_to_equations(void* c, double const* rows, VecX& out) {
+    if constexpr (!solves_as_it_is) of(c).equations_.from_rows(rows, out);
+  }
+  static void correction_from_equations(void* c, VecX const& solution, VecX& out) {
+    if constexpr (!solves_as_it_is) {
       Self& s = of(c);
-      s.a_.setZero();
-      for (Index i = 0; i < s.a_.size(); ++i)
-        if (Index const from = s.equation_of(i); from >= 0) s.a_[i] = solution[from];
-      s.reduction_.reduce_speeds(s.a_, s.narrow_);
-      s.reduction_.tree().reduce_rates(*static_cast<TreeState*>(h), s.a_, false, s.narrow_);
-      Index const nv = s.reduction_.speeds();
-      std::copy_n(s.narrow_.data(), nv, out.data());
-      for (Index i = 0; i < s.reduction_.rows(); ++i) out[nv + i] = solution[s.equation_of_row(i)];
+      s.read_equations(s.state_, solution, out);
+      s.equations_.to_carrying_rows(solution, out.data() + s.reduction_.speeds() + s.reduction_.rows());
     }
   }
 
@@ -242,32 +251,6 @@ class ReducedCoordinates {
     reduction_.linear().expand_coordinates(q_);
     reduction_.linear().expand_rates(v_);
     reduction_.tree().expand_state(q, v, q_, v_, state_);
-  }
-
-  /// Where the whole unknowns stand in the equations: dependents of linear joints are spread, the rows of these left
-  /// out.
-  void map_equations(Sequence<LinearRows> const& linear_rows) {
-    Index const nv = whole_speeds_;
-    Sequence<Sequence<UnknownMap::Target>> targets(std::size_t(nv + whole_rows_));
-    Sequence<bool> dependent(std::size_t(nv), false);
-    for (auto const& d : reduction_.linear().dependents()) dependent[std::size_t(d.v)] = true;
-    for (Index i = 0; i < nv; ++i)
-      if (!dependent[std::size_t(i)]) targets[std::size_t(i)].push_back({equation_speeds_++, 1.0});
-    for (auto const& d : reduction_.linear().dependents())
-      for (auto const& t : d.terms)
-        targets[std::size_t(d.v)].push_back({targets[std::size_t(t.v)][0].unknown, t.factor});
-    Sequence<bool> linear(std::size_t(whole_rows_), false);
-    for (LinearRows const& rows : linear_rows)
-      for (Index i = 0; i < rows.rows(); ++i) linear[std::size_t(rows.row + i)] = true;
-    for (Index i = 0; i < whole_rows_; ++i)
-      if (!linear[std::size_t(i)]) targets[std::size_t(nv + i)].push_back({equation_speeds_ + equation_rows_++, 1.0});
-    map_ = UnknownMap(std::move(targets));
-    for (Index i = 0; i < nv + whole_rows_; ++i) equation_of_.push_back(map_.run(i, 1));
-  }
-  /// Place of a whole unknown, −1 for one that is spread or left out; and of a row that stays.
-  Index equation_of(Index i) const { return equation_of_[std::size_t(i)]; }
-  Index equation_of_row(Index i) const {
-    return equation_of(whole_speeds_ + reduction_.rows_that_stay()[std::size_t(i)]);
   }
 
   void prepare_dense() {
@@ -281,10 +264,7 @@ class ReducedCoordinates {
   VecX q_, v_, a_;               // whole
   VecX narrow_, unit_, last_r_;  // the last one: of the last residual that was reduced, whole
   Index whole_speeds_, whole_rows_;
-  Index equation_speeds_ = 0, equation_rows_ = 0;
-  UnknownMap map_;
-  Sequence<Index> equation_of_;
-  MappedBlocks mapped_;
+  BodyEquationsOf<> equations_;
   DenseReductionOf<> dense_;
   std::conditional_t<solves_by_bodies, TreeDynamicsOf<>, bool> dynamics_{};
   Vec3 weight_ = Vec3(0, 0, 0);
@@ -310,11 +290,10 @@ NarrowLayout ReducedCoordinates<Solution>::narrow_layout(ModelLayout const& whol
   n.equations = n.speeds + n.rows;
   n.equation_speeds = n.speeds;
   if constexpr (!solves_densely && !solves_by_bodies) {
-    n.equations = equation_speeds_ + equation_rows_;
-    n.equation_speeds = equation_speeds_;
-    n.whole_unknown.assign(std::size_t(n.equations), -1);
-    for (Index i = Index(equation_of_.size()); i-- > 0;)
-      if (equation_of(i) >= 0) n.whole_unknown[std::size_t(equation_of(i))] = i;
+    n.equations = equations_.size();
+    n.equation_speeds = equations_.speeds();
+    n.whole_unknown = equations_.whole_unknowns();
+    n.carrying_rows = equations_.carrying_rows();
   }
   return n;
 }
@@ -334,6 +313,9 @@ constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = {
     .hold = &ReducedCoordinates::hold,
     .to_equations = &ReducedCoordinates::to_equations,
     .from_equations = &ReducedCoordinates::from_equations,
+    .balance_to_equations = &ReducedCoordinates::balance_to_equations,
+    .rows_to_equations = &ReducedCoordinates::rows_to_equations,
+    .correction_from_equations = &ReducedCoordinates::correction_from_equations,
     .accelerations = &ReducedCoordinates::accelerations,
     .balance = &ReducedCoordinates::balance,
     .factor_balance = &ReducedCoordinates::factor_balance,

@@ -31,6 +31,12 @@ class TangentSolver {
     equations_ = coordinates_ ? coordinates_.narrow->equations : size_;
     if (coordinates_) held_ = coordinates_.entries->held(coordinates_.self.get());
     walks_ = false;
+    keeps_multipliers_ = copies == 1 && multipliers_of(system) > system.rows();
+    if (keeps_multipliers_) {
+      balance_.setZero(equations_);
+      whole_q_.setZero(system.layout().coordinates);
+      whole_v_.setZero(system.layout().speeds);
+    }
     if (solves_by_bodies()) {
       walks_ = system.rows() == 0 && pushed_by_weight_alone(system);
       if (copies > 1)
@@ -57,11 +63,25 @@ class TangentSolver {
     if (!walks_) system.evaluate(at.q, at.v, at.t);
   }
   /// r = M a − f + Gᵀλ at x, where the system was evaluated last.
-  void balance(System& system, StepPlace const& x, VecX& r) const {
-    if (walks_)
-      coordinates_.entries->balance(coordinates_.self.get(), x, system.load_factor, r);
-    else
-      system.residual(x.a, x.lambda, r);
+  void balance(System& system, StepPlace const& x, VecX& r) {
+    if (walks_) return coordinates_.entries->balance(coordinates_.self.get(), x, system.load_factor, r);
+    system.residual(x.a, x.lambda, r);
+    if (keeps_multipliers_) coordinates_.entries->balance_to_equations(coordinates_.self.get(), balance_);
+  }
+  /// A correction of a step by what was balanced last: (−r, rows) → (accelerations, multipliers), of as many
+  /// multipliers as the system has. Where joints carry bodies the whole model's r is answered by all bodies and then by
+  /// the joints at the iterate: were −Tᵀr answered, a factorisation that is kept would carry forces from body to body
+  /// by the levers of its own time, and an error in that grows from joint to joint.
+  void correct(VecX const& rhs, VecX& y) {
+    if (!keeps_multipliers_) return solve(rhs, y);
+    coordinates_.entries->rows_to_equations(coordinates_.self.get(), rhs.data() + coordinates_.narrow->speeds,
+                                            balance_);
+    solver_.solve(balance_, x_);
+    coordinates_.entries->correction_from_equations(coordinates_.self.get(), x_, y);
+  }
+  /// The tree stands at this place again, after a factorisation at another one.
+  void return_to(At<double> const& at) {
+    if (keeps_multipliers_) coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, whole_q_, whole_v_);
   }
   /// The factors of the tangent of that; the same as `factor` returns.
   Index factor_tangent(System& system, StepPlace const& x, TangentCoefficients const& k, SecondOrder second) {
@@ -130,10 +150,11 @@ class TangentSolver {
   Solver solver_;
   Coordinates coordinates_;
   HeldPlace held_;
-  bool walks_ = false;  // balance and tangent by walks over a tree that solves its bodies
+  bool keeps_multipliers_ = false;  // estimates for the joints that carry bodies
+  bool walks_ = false;              // balance and tangent by walks over a tree that solves its bodies
   std::size_t fewest_dropped_ = std::numeric_limits<std::size_t>::max();
   Index copies_ = 1, size_ = 0, equations_ = 0;
-  VecX rhs_, x_, part_, solution_, equation_;
+  VecX rhs_, x_, part_, solution_, equation_, balance_, whole_q_, whole_v_;
 };
 
 /// Unknowns of the linear equations of a system, of which those that stand for speeds come first.

@@ -17,6 +17,9 @@ struct NarrowLayout {
   Sequence<NarrowPlace> places = {};    ///< of the bodies, in the order of the layout
   Sequence<Index> whole_speed = {};     ///< behind a narrow one; of a joint coordinate, the first of the carried body
   Sequence<Index> rows_that_stay = {};  ///< by their number in the model
+  /// Eliminated rows of joints that carry bodies, where the equations hold them: a step may keep estimates of their
+  /// multipliers behind those of its rows. They move nothing; they bring the residual of the whole model near zero.
+  Sequence<Index> carrying_rows = {};
   std::vector<std::string> redundant = {};  ///< joints whose linear rows repeat others
 
   /// A linear system of equations may have other unknowns than a time step; those that stand for speeds come first.
@@ -26,11 +29,13 @@ struct NarrowLayout {
   bool moves_by_newton_euler = false;  ///< its bodies have no forces of their own
   bool keeps_mass_constant = false;    ///< T is constant
 
-  /// Multipliers of all rows from those of a step; zero for rows that are eliminated.
+  /// Multipliers of all rows from those of a step; zero for eliminated ones of which it has no estimates.
   template <StateScalar T>
   void expand_rows(VecXOf<T> const& of_step, VecXOf<T>& whole) const {
     for (Index i = 0; i < whole.size(); ++i) whole[i] = T(0.0);
     for (std::size_t i = 0; i < rows_that_stay.size(); ++i) whole[rows_that_stay[i]] = of_step[Index(i)];
+    if (of_step.size() == rows) return;
+    for (std::size_t i = 0; i < carrying_rows.size(); ++i) whole[carrying_rows[i]] = of_step[rows + Index(i)];
   }
 };
 
@@ -51,7 +56,8 @@ struct CoordinatesEntries {
   void (*expand_rates)(void* c, VecX const& u, bool bias, VecX& out);
   /// out = Tᵀ r; r is used up, and kept as it was for the multipliers.
   void (*reduce)(void* c, VecX& r, VecX& out);
-  /// Multipliers of eliminated joints from the last r that was reduced, M a − f + Gᵀλ without them.
+  /// Adds to estimates of the multipliers of eliminated joints what they lack in the last r that was reduced, M a − f +
+  /// Gᵀλ with these estimates.
   void (*recover_multipliers)(void* c, Data<double> const& data, VecX& lambda);
   /// q ⊞ δ and its rate for joint coordinates; other bodies see to their own.
   void (*plus)(void* c, VecX const& q, VecX const& delta, VecX& out);
@@ -67,6 +73,12 @@ struct CoordinatesEntries {
   /// A right-hand side of a time step as one of the equations, and a solution of these as one of the step's unknowns.
   void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out);
   void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out);
+  /// Where there are `carrying_rows`: −r of the whole model, as it was reduced last, into the equations; the rows of a
+  /// step into them; a solution as one of the step's unknowns at the place of the last `expand`, and behind these the
+  /// multipliers of the carrying rows.
+  void (*balance_to_equations)(void* c, VecX& out);
+  void (*rows_to_equations)(void* c, double const* rows, VecX& out);
+  void (*correction_from_equations)(void* c, VecX const& solution, VecX& out);
   /// For trees that are their own solver: u̇ where no rows stay, under weight alone or with `unbalance` (of the
   /// whole model); −1, or the speed whose freedom has no inertia.
   Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance, VecX& out);

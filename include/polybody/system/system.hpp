@@ -40,6 +40,26 @@ void expand(System& s, State const& stepped, State& x, VecX& r) {
   x.memory = stepped.memory;
 }
 
+/// Multipliers that a step may keep: of its rows, and estimates for the joints that carry bodies (`NarrowLayout`).
+inline Index multipliers_of(System const& s) {
+  return s.rows() + (s.step_coordinates() ? Index(s.step_coordinates().narrow->carrying_rows.size()) : 0);
+}
+/// Puts estimates for the joints that carry bodies behind the multipliers of a stepped state with accelerations.
+template <class = void>
+[[gnu::cold]] void append_multipliers(System& s, State& stepped) {
+  if (multipliers_of(s) == s.rows()) return;
+  Coordinates const& c = s.step_coordinates();
+  VecX whole = VecX::Zero(s.layout().rows), r(s.speeds());
+  s.evaluate(stepped.q, stepped.v, stepped.t);
+  s.residual(stepped.a, stepped.lambda, r);
+  c.entries->recover_multipliers(c.self.get(), s.data(), whole);
+  VecX all(multipliers_of(s));
+  std::copy_n(stepped.lambda.data(), s.rows(), all.data());
+  Index at = s.rows();
+  for (Index const row : c.narrow->carrying_rows) all[at++] = whole[row];
+  stepped.lambda.swap(all);
+}
+
 /// q˙ when the model moves with speeds v; `room` (2 nq + nv of the whole model) is scratch.
 template <class = void>
 void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& room, VecX& rate) {
