@@ -7,6 +7,7 @@
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
+#include <polybody/joints/policies/recursive.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
 
@@ -171,6 +172,7 @@ TEST(EveryIntegrator, RadauSpinsTops) { expect_tops(radau()); }
 TEST(EveryIntegrator, AdamsSpinsTops) { expect_tops(adams()); }
 
 TEST(AResumedRun, GoesOnWithTheSameBits) { expect_resumes<InPlane<Constraint>>(GeneralizedAlpha{}); }
+TEST(AResumedRun, GoesOnWithTheSameBitsInJointCoordinates) { expect_resumes<InPlane<Recursive>>(GeneralizedAlpha{}); }
 TEST(AResumedRun, GoesOnWithTheSameBitsByHht) { expect_resumes<InPlane<Constraint>>(HhtAlpha{}); }
 TEST(AResumedRun, GoesOnWithTheSameBitsByRadau) { expect_resumes<InPlane<Constraint>>(Radau{}); }
 TEST(AResumedRun, GoesOnWithTheSameBitsByAMultistepMethod) {

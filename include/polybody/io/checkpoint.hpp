@@ -21,7 +21,7 @@ class SnapshotWalk {
 
   template <class S>
   void walk(S& s) {
-    each(s.model.coordinates, s.model.speeds, s.model.rows, s.model.names);
+    each(s.model.coordinates, s.model.speeds, s.model.rows, s.model.carrying_rows, s.model.names);
     text(s.integrator);
     numbers(s.state.q), numbers(s.state.v), numbers(s.state.a), numbers(s.state.lambda), numbers(s.state.memory);
     each(s.state.t, s.step, s.row.start, s.row.length, s.row.count);
@@ -113,7 +113,8 @@ void require_consistent(RunSnapshot const& s, std::size_t left, std::string cons
   require(s.state.q, s.model.coordinates, "coordinates");
   require(s.state.v, s.model.speeds, "speeds");
   require(s.state.a, s.model.speeds, "rates of speeds");
-  require(s.state.lambda, s.model.rows, "multipliers");
+  bool const estimates = s.state.lambda.size() > s.model.rows;
+  require(s.state.lambda, s.model.rows + (estimates ? s.model.carrying_rows : 0), "multipliers");
 }
 
 struct CheckpointHead {
@@ -121,7 +122,7 @@ struct CheckpointHead {
   std::uint32_t order, version;
   std::uint64_t length;
 };
-inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 3u, 0u};
+inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 4u, 0u};
 
 }  // namespace detail
 

@@ -14,6 +14,7 @@ namespace polybody {
 /// forces in their order. Masses, lengths and loads are not compared.
 struct ModelIdentity {
   Index coordinates = 0, speeds = 0, rows = 0;
+  Index carrying_rows = 0;  ///< eliminated, of whose multipliers a step may keep estimates behind those of the rows
   std::uint64_t names = 0;  ///< checksum
 
   bool operator==(ModelIdentity const&) const = default;
@@ -28,7 +29,8 @@ ModelIdentity identity_of(System const& stepped) {
   for (JointPlace const& j : stepped.layout().joints) (names += j.name) += '\n';
   names += '\n';
   for (ForcePlace const& f : stepped.layout().forces) (names += f.name) += '\n';
-  return {stepped.coordinates(), stepped.speeds(), stepped.rows(), checksum(names)};
+  Index const rows = stepped.rows();
+  return {stepped.coordinates(), stepped.speeds(), rows, multipliers_of(stepped) - rows, checksum(names)};
 }
 
 /// All that a run needs to go on, except its model, integrator and options, which must be the same.
