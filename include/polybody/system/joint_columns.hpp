@@ -32,7 +32,7 @@ void move(JointMotion const& m, double sign, double const* x, double const* u, R
       column(scaled<T>(n, m.pitch), n);
       if (m.kind == JointMotion::Kind::screw) run.slide(n, m.pitch * x[0], m.pitch * u[0]);
       run.turn(scaled<T>(n, u[0]));
-      run.A = product<T>(run.A, turn_about<T>(m.axis, sign * x[0]));
+      turn_columns<T>(m.axis, sign * x[0], run.A);
       f.angle += n[2] * x[0];  // in the plane the axis is the normal, this way or that
       break;
     case JointMotion::Kind::ball: {
@@ -61,6 +61,12 @@ void finish_columns(TreeFrameOf<T>& f) {
   for (int k = 0; k < f.speeds; ++k) {
     Vec<T, 3> const carried = cross<T>({f.s(3, k), f.s(4, k), f.s(5, k)}, f.r);
     for (int i = 0; i < 3; ++i) f.s(i, k) += carried[i];
+  }
+  if (f.speeds == 1) {
+    double sum = 0.0;
+    for (int k = 0; k < 6; ++k) sum += f.s(k, 0) * f.s(k, 0);
+    f.inverse(0, 0) = 1.0 / sum;
+    return;
   }
   for (int i = 0; i < f.speeds; ++i)
     for (int j = 0; j < f.speeds; ++j) {

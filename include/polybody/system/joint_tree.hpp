@@ -41,7 +41,8 @@ class JointTreeOf {
         continue;
       }
       TreeFrame const& p = body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
-      detail::RunnerOf<T> run{p.r, p.v, {0, 0, 0}, product<T>(p.A, body.from.axes), p.w, {0, 0, 0}};
+      detail::RunnerOf<T> run{p.r, p.v, {0, 0, 0}, p.A, p.w, {0, 0, 0}};
+      if (body.from_turned) run.A = product<T>(p.A, body.from.axes);
       run.go(product<T, 1>(p.A, body.from.origin));
       f.angle = p.angle + body.angle;
       f.speeds = 0;
@@ -62,7 +63,7 @@ class JointTreeOf {
           u += m.speeds();
         }
       }
-      f.A = product<T>(run.A, transposed<T>(body.to.axes));
+      f.A = body.to_turned ? product<T>(run.A, transposed<T>(body.to.axes)) : run.A;
       run.go(scaled<T>(product<T, 1>(f.A, body.to.origin), -1.0));
       f.r = run.r;
       f.v = run.v;

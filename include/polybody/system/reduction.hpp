@@ -255,6 +255,8 @@ void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const
       next.parent = body < 0 ? -1 : place[std::size_t(body)];
       next.from = from.frame;
       next.to = to.frame;
+      next.from_turned = !from.frame.axes.isIdentity(0.0);
+      next.to_turned = !to.frame.axes.isIdentity(0.0);
       next.motions = link.motions;
       next.backwards = backwards;
       if (next.layout == RigidLayout::plane)

@@ -15,15 +15,16 @@ namespace polybody {
 struct TreeBody {
   std::string name;
   RigidLayout layout = RigidLayout::quaternion;
-  Index q0 = 0, v0 = 0;          ///< in whole vectors
-  Index row = -1;                ///< first of the joint's rows; −1: a root, which nothing carries
-  Index parent = -1;             ///< in the tree; −1: the ground
-  Placement from = {};           ///< the joint's frame in the parent's axes
-  Placement to = {};             ///< the joint's frame in the body's own axes
-  JointMotions motions = {};     ///< from frame a to frame b
-  bool backwards = false;        ///< frame b is the parent's
-  double angle = 0.0;            ///< in the plane: its turn against the parent in the reference
-  bool by_newton_euler = false;  ///< nothing but weight and its inertia moves it where nothing acts
+  Index q0 = 0, v0 = 0;                       ///< in whole vectors
+  Index row = -1;                             ///< first of the joint's rows; −1: a root, which nothing carries
+  Index parent = -1;                          ///< in the tree; −1: the ground
+  Placement from = {};                        ///< the joint's frame in the parent's axes
+  Placement to = {};                          ///< the joint's frame in the body's own axes
+  bool from_turned = true, to_turned = true;  ///< axes of these that are not the body's
+  JointMotions motions = {};                  ///< from frame a to frame b
+  bool backwards = false;                     ///< frame b is the parent's
+  double angle = 0.0;                         ///< in the plane: its turn against the parent in the reference
+  bool by_newton_euler = false;               ///< nothing but weight and its inertia moves it where nothing acts
   double mass = 0.0;
   Mat3 inertia = Mat3::Zero();  ///< about the centre of mass, in the body's own axes
   Index qn = 0, vn = 0;         ///< in narrow vectors
@@ -97,15 +98,22 @@ int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
 
 namespace detail {
 
-/// The turn by an angle about axis k of the frame itself.
+/// A · (the turn by an angle about axis k of the frame itself).
 template <class T>
-Mat<T, 3, 3> turn_about(int k, double angle) {
+void turn_columns(int k, double angle, Mat<T, 3, 3>& a) {
   int const i = (k + 1) % 3, j = (k + 2) % 3;
   double const c = std::cos(angle), s = std::sin(angle);
+  for (int row = 0; row < 3; ++row) {
+    T const x = a(row, i), y = a(row, j);
+    a(row, i) = x * c + y * s;
+    a(row, j) = y * c - x * s;
+  }
+}
+/// That turn itself.
+template <class T>
+Mat<T, 3, 3> turn_about(int k, double angle) {
   Mat<T, 3, 3> m = identity<T>();
-  m(i, i) = m(j, j) = c;
-  m(j, i) = s;
-  m(i, j) = -s;
+  turn_columns<T>(k, angle, m);
   return m;
 }
 
