@@ -112,9 +112,9 @@ Quaternion<double> quaternion_of(Mat3 const& a) {
     q[1 + j] = a(j, i) + a(i, j);
     q[1 + k] = a(k, i) + a(i, k);
   }
-  double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (q[0] < 0.0) size = -size;
-  return {q[0] / size, q[1] / size, q[2] / size, q[3] / size};
+  double inverse = 1.0 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (q[0] < 0.0) inverse = -inverse;
+  return {q[0] * inverse, q[1] * inverse, q[2] * inverse, q[3] * inverse};
 }
 
 /// log of a rotation matrix: rotation vector with |φ| ≤ π [rad].

@@ -41,6 +41,11 @@ class JointTreeOf {
         continue;
       }
       TreeFrame const& p = body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
+      if (body.motions.count == 1 && body.motions.list[0].kind == JointMotion::Kind::turn) {
+        detail::carry_by_turn<T>(body, p, qn[body.qn], vn[body.vn], f);
+        write(body, f, q, v);
+        continue;
+      }
       detail::RunnerOf<T> run{p.r, p.v, {0, 0, 0}, p.A, p.w, {0, 0, 0}};
       if (body.from_turned) run.A = product<T>(p.A, body.from.axes);
       run.go(product<T, 1>(p.A, body.from.origin));
