@@ -538,6 +538,22 @@ TEST(EnergyAudit, OfDampedCablesOnLinearRowsAddsUp) {
   EXPECT_EQ(fine[3], 0.0);
 }
 
+// A bar that is stretched by a tenth at the start, and free of strain later.
+TEST(EnergyAudit, CountsWhatIsStoredFromTheStart) {
+  Model<Bodies<AncfCable<>>, Joints<>> model;
+  model.add(
+      AncfCable<>::from({.length = 1.0, .constants = BarConstants{.EA = 100.0, .EI = 1.0, .mass_per_length = 1.0}}, 2),
+      "bar");
+  State x = model.reference_state(), stretched = x;
+  stretched.q *= 1.1;
+  EnergyAudit audit(model);
+  audit.start(stretched);
+  x.t = 1.0;
+  audit.record(x);
+  double const strain = 0.5 * (1.1 * 1.1 - 1.0);
+  EXPECT_NEAR(audit.stored(), -0.5 * 100.0 * strain * strain, 1e-12);
+}
+
 TEST(EnergyAudit, BeginsAnewAndRefusesTimeThatRunsBackAndStatesOfOtherModels) {
   Crane<Constraint> const crane;
   auto audit = crane.run(RungeKutta4<Projection>{}, 0.01);

@@ -6,6 +6,7 @@
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/statics/equilibrium.hpp>
@@ -89,6 +90,26 @@ TEST(Modes, MotionsWithoutInertiaAreLeftOut) {
   Modes const m = modes(model, x);
   ASSERT_EQ(m.frequency.size(), 2);
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(m.frequency[i], std::sqrt(9.81 * 0.4 / (0.1 + 0.16)), 1e-9);
+}
+
+// A point mass on a bar without inertia that two springs hold at a and b: its turn follows without delay, and
+// ω² = k₁ k₂ (a − b)²/((k₁ a² + k₂ b²) m).
+TEST(Modes, MotionsWithoutInertiaFollowTheOthers) {
+  double const k1 = 300.0, k2 = 500.0, a = 0.3, b = -0.5, mass = 2.0, length = 1.0;
+  Model<Bodies<planar::Rigid>, Joints<Joint<PointInPlane, Constraint>>, Forces<SpringDamper>> model;
+  auto const bar = model.add(planar::Rigid(mass, 0.0), "bar");
+  auto const hold = [&](double k, double at) {
+    model.apply(SpringDamper{.stiffness = k, .free_length = length}, model.ground().at({at, -length, 0}),
+                bar.at(Vec2(at, 0)));
+  };
+  hold(k1, a);
+  hold(k2, b);
+  model.connect(Joint<PointInPlane, Constraint>{{.normal = Vec3::UnitX()}, {}}, model.ground().at({0, 0, 0}),
+                bar.at(Vec2(0, 0)));
+  Modes const m = modes(model, model.reference_state());
+  ASSERT_EQ(m.frequency.size(), 1);
+  double const square = k1 * k2 * (a - b) * (a - b) / ((k1 * a * a + k2 * b * b) * mass);
+  EXPECT_NEAR(m.frequency[0], std::sqrt(square), 1e-9);
 }
 
 TEST(Modes, AskForAStateOfRest) {

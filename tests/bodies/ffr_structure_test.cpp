@@ -169,6 +169,19 @@ TEST(Bases, SimplySupportedFrameHasTheSameFrequencies) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(fa[i] / fb[i], 1.0, 1e-7);
 }
 
+// A section is rigid: what a mode moves at (y, z) is what it moves on the axis, and its turn across the arm.
+TEST(Ffr, PointsOffTheAxisMoveWithTheirSection) {
+  Structure const s = structure_of(unit(), 3);
+  Ffr const body(s, held_modes(s, 6));
+  double const y = 0.03, z = -0.02;
+  FfrPoint const axis = body.at(0.4), off = body.at(0.4, y, z);
+  ASSERT_GT(axis.R.norm(), 1e-3);
+  for (Index k = 0; k < axis.S.cols(); ++k) {
+    Vec3 const turn = axis.R.col(k);
+    EXPECT_LT((Vec3(off.S.col(k) - axis.S.col(k)) - turn.cross(Vec3(0, y, z))).norm(), 1e-12);
+  }
+}
+
 TEST(Ffr, RefusesWhatCannotBeMeant) {
   Structure const s = structure_of(unit(), 4);
   EXPECT_TRUE(has(refusal([&] { held_modes(s, 25); }), "25 modes"));

@@ -172,5 +172,12 @@ TEST(Rigid, RefusesPointsThatAreNone) {
   EXPECT_TRUE(has(refusal([&] { (void)rod.at(Vec3(0, nan_, 0)); }), "the point"));
 }
 
+TEST(Rigid, NamesThePrincipalMomentsOfAnInertiaInTurnedAxes) {
+  Mat3 const turned = Placement::at({0, 0, 0}, {0.4, -0.7, 1.1}).axes;
+  Vec3 const given(5.0, 3.0, 0.5);
+  auto const found = detail::principal_values(turned * given.asDiagonal() * turned.transpose());
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[std::size_t(i)], given[i], 1e-7);
+}
+
 }  // namespace rigid_test
 }  // namespace polybody

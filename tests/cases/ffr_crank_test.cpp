@@ -14,6 +14,7 @@
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"
+#include "support/refusal.hpp"
 
 namespace ffr_crank_test {
 
@@ -196,6 +197,12 @@ TEST(FlexibleSliderCrank, HasTheVelocitiesAccelerationsAndMultipliersOfTheTestSe
   check("λ₁ [N]", -reaction(set.model, set.x, set.guide).f[1], -62.32935833287916, 1e-4);
   check("λ₂ [N]", -reaction(set.model, set.x, set.wrist).f[0], -163.7920993367306, 2e-4);
   check("λ₃ [N m]", -reaction(set.model, set.x, set.drive).m[2], 25.29857947066878, 1e-5);
+}
+
+TEST(FlexibleSliderCrank, AsksForACouplingThatIsSkew) {
+  planar::FfrIntegrals bad = rod_integrals();
+  bad.coupling_by(0, 2) *= -1.0;
+  EXPECT_TRUE(has(refusal([&] { planar::Ffr(bad, {}); }), "must be skew"));
 }
 
 // The force is the slope of the energy, the tangent that of the force.

@@ -132,6 +132,24 @@ TEST(Radau, PendulumAgreesWithTheExactMotionBySmallSteps) {
   EXPECT_NEAR(x.a[2], acceleration, 1e-8);
 }
 
+// Lagrange's polynomials of the nodes: one at their own, zero at the others, and their integrals by Simpson's rule,
+// which is exact.
+TEST(RadauTableau, InterpolatesBetweenItsNodes) {
+  using Tableau = detail::RadauTableau;
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(Tableau::inside(j, Tableau::c[i]).value, i == j ? 1.0 : 0.0, 1e-14);
+      EXPECT_NEAR(Tableau::inside(j, Tableau::c[i]).integral, Tableau::a[i][j], 1e-14);
+    }
+    for (double const s : {0.3, 1.25}) {
+      double const simpson =
+          s / 6.0 *
+          (Tableau::inside(j, 0.0).value + 4.0 * Tableau::inside(j, 0.5 * s).value + Tableau::inside(j, s).value);
+      EXPECT_NEAR(Tableau::inside(j, s).integral, simpson, 1e-14);
+    }
+  }
+}
+
 TEST(Radau, RefusesWhatItCannotMean) {
   Oscillator o;
   EXPECT_TRUE(has(refusal([&] { o.run(Radau{.tolerance = 0.0}, 0.1, 1); }), "Radau: the tolerance must be positive"));

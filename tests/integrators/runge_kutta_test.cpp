@@ -172,6 +172,12 @@ TEST(DormandPrince, TakesAtMostTheStepItIsGiven) {
   EXPECT_EQ(x.t, 1.0);
 }
 
+TEST(ErrorTolerance, IsAbsoluteAndRelativeTogether) {
+  detail::ErrorTolerance const tolerance{1e-3, 1e-2};
+  EXPECT_NEAR(tolerance.of_one(0.0, 0.0), 1e-3, 1e-18);
+  EXPECT_NEAR(tolerance.of_one(-2.0, 1.0), 1e-3 + 2e-2, 1e-17);
+}
+
 TEST(DormandPrince, RefusesTolerancesThatCannotBeMeant) {
   SprungBody body;
   auto const try_with = [&](DormandPrince<> const& integrator) {

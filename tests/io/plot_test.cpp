@@ -266,6 +266,12 @@ TEST_F(Plots, GnuplotFailureNamesTheScriptAndKeepsTheOldPicture) {
   }
 }
 
+TEST(PlotMarks, HaveDigitsEnoughToTellThemApart) {
+  EXPECT_EQ(detail::tick_digits(0.0, 2.0), "6");
+  EXPECT_EQ(detail::tick_digits(1e5, 1e5 + 1.0), "9");  // six before the point, three behind the span's first
+  EXPECT_EQ(detail::tick_digits(1.0, 1.0), "6");
+}
+
 TEST_F(Plots, AnUnwritablePlaceIsAnIoError) {
   std::ofstream(folder / "plain") << 'x';
   EXPECT_THROW(write_figure(waves(), folder / "plain" / "f"), IoError);

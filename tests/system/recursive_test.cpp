@@ -148,6 +148,28 @@ TEST(Recursive, ThreeWaysToSolveAreOne) {
   }
 }
 
+/// Accelerations of a tree under loads on its freedoms.
+template <class Policy>
+VecX answer(Branched<Policy> const& tree) {
+  System system = stepped_system(tree.model);
+  State const x = reduce(system, tree.moving());
+  auto const write = [&](BlockSink& sink) { system.masses(sink); };
+  TangentSolver<BlockSolver> solver;
+  system.evaluate(x.q, x.v, x.t);
+  solver.analyse(system, 1, write);
+  EXPECT_EQ(solver.factor(write), -1);
+  VecX loads(system.size()), out(system.size());
+  for (Index i = 0; i < loads.size(); ++i) loads[i] = std::sin(1.0 + double(i));
+  solver.solve(loads, out);
+  return out;
+}
+TEST(Recursive, AnswersLoadsAlikeWhicheverWayItSolves) {
+  VecX const sparse = answer(Branched<Recursive>()), dense = answer(Branched<Reduced>()),
+             bodies = answer(Branched<ByBodies>());
+  EXPECT_LT((dense - sparse).norm(), 1e-10 * sparse.norm());
+  EXPECT_LT((bodies - sparse).norm(), 1e-10 * sparse.norm());
+}
+
 TEST(Recursive, CountsJointCoordinates) {
   // 1 + 1 + 2 + 3 + 2 + 1 + 3 + 4 + 5 + 3 + 0 degrees of freedom; four balls have a coordinate more than speeds
   Census const c = census(Branched<Recursive>().model);

@@ -9,7 +9,10 @@
 #include <sstream>
 
 #include <polybody/math/quaternion.hpp>
+#include <polybody/vehicle/link_strain.hpp>
 #include <polybody/vehicle/m113.hpp>
+#include <polybody/vehicle/track_contacts.hpp>
+#include <polybody/vehicle/vehicle_visual.hpp>
 
 #include "support/held.hpp"
 
@@ -182,6 +185,30 @@ TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
           {equals("speed", speed) + equals(", rounding", rounding)});
     }
   EXPECT_EQ(m113::drive(25.0).corners(), (std::vector{1.0, 8.0}));
+}
+
+// The horn's box is 75 mm high; what meets a rim is the middle of its upper face, as the links are to either side.
+TEST(M113, HornReachesToTheTopOfItsBox) {
+  Vec3 const tip = m113::LinkContacts<Observes::frame>().on_rims(0.3).geometry.tip;
+  EXPECT_LT((tip - Vec3(0.045, 0.0, 0.0375 + 0.5 * 0.075)).norm(), 1e-15);
+}
+
+// ε = M h/(2 E I) = 6 M/(E b h²).
+TEST(M113, LinkBendsAsARectangleDoes) {
+  double const young = m113::link_bar().material->young, b = m113::cable_width, h = m113::cable_height;
+  EXPECT_NEAR(m113::bending_by_moment() * young * b * h * h, 6.0, 1e-12);
+}
+
+// Every corner of the drawn sprocket lies between root and tip.
+TEST(M113, DrawsItsSprocketBetweenRootAndTip) {
+  SprocketProfile const profile = m113::sprocket_profile();
+  double least = 1.0, most = 0.0;
+  for (Vec3 const& p : m113::detail::toothed_wheel(0.1).points) {
+    least = std::min(least, std::hypot(p[0], p[2]));
+    most = std::max(most, std::hypot(p[0], p[2]));
+  }
+  EXPECT_NEAR(least, profile.arc_centre() - profile.valley_radius, 1e-12);
+  EXPECT_NEAR(most, profile.tip_radius, 1e-12);
 }
 
 }  // namespace m113_test

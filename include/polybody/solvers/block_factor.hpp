@@ -109,8 +109,8 @@ class BlockFactor {
   }
   void solve(double const* b, double* x) const;
 
-  /// Multiplications and additions of a factorisation as last compiled, symmetric or not.
-  double flops(bool symmetric = true) const;
+  /// Multiplications and additions of a symmetric factorisation as last compiled.
+  double flops() const;
   /// Entries of the factor without padding.
   Index fill() const;
   Index nodes() const { return Index(layout_.nodes.size()); }
@@ -305,14 +305,13 @@ void BlockFactor<symmetry>::solve(double const* b, double* x) const {
 }
 
 template <Symmetry symmetry>
-double BlockFactor<symmetry>::flops(bool symmetric) const {
+double BlockFactor<symmetry>::flops() const {
   double count = 0.0;
   for (Node const& n : layout_.nodes) {
     double later = 0.0;
     for (int a = 0; a < n.neighbours; ++a) later += layout_.neighbours[std::size_t(n.first_neighbour + a)].size;
     for (int r = 1; r < n.size; ++r) count += r * (r + 2.0 * later);  // the node's own half and its row
     count += n.size * later * (later + 1.0);
-    if (!symmetric) count += n.size * later * (later - 1.0) + n.size * (n.size - 1.0) * (n.size / 3.0 + later);
   }
   return count;
 }

@@ -3,7 +3,7 @@
 /// Floating frame of reference in the plane [Shabana 2013, ch. 5]: small deformation in a frame that turns by any angle
 /// θ. With c, J, H of the integrals below, C = c_q, e× a quarter turn, in the frame's axes:
 ///   m r̈ + A (θ̈ e × c + C q̈)          = −A (−θ̇² c + 2 θ̇ e × ċ + Ċ q̇),
-///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −(J˙ θ̇ + H˙ q̇),
+///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −J˙ θ̇,        as H˙ q̇ = q̇ᵀ coupling_by q̇ = 0,
 ///   Cᵀ Aᵀr̈ + Hᵀ θ̈ + M q̈ + D q̇ + K q = ½ θ̇² J_q − θ̇ W q̇,   W = ∂Hᵀ/∂q − ∂H/∂q.
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
@@ -147,7 +147,7 @@ class Ffr : public AddingCoordinates {
     T const *const x = q.data() + 3, *const xd = v.data() + 3;
     FfrIntegrals::Moments<T> at;
     i_.template moments<T>(x, at);
-    T rate[2] = {T(0.0), T(0.0)}, j_rate(0.0), h_rate(0.0);
+    T rate[2] = {T(0.0), T(0.0)}, j_rate(0.0);
     for (Index k = 0; k < deformations(); ++k) {
       T const slope = i_.template inertia_slope<T>(x, k);
       j_rate += slope * xd[k];
@@ -156,7 +156,6 @@ class Ffr : public AddingCoordinates {
       for (Index j = 0; j < deformations(); ++j) {
         f -= x[j] * i_.stiffness(j, k) + xd[j] * i_.damping(j, k);
         w += xd[j] * (i_.coupling_by(j, k) - i_.coupling_by(k, j));
-        h_rate += xd[j] * i_.coupling_by(j, k) * xd[k];
       }
       if (terms_.coriolis) f -= omega * w;
       out[3 + k] = f;
@@ -166,7 +165,7 @@ class Ffr : public AddingCoordinates {
     for (std::size_t i = 0; i < 2 && i_.stiffens(); ++i) w[i] -= detail::quadratic<T>(i_.first_second[i], xd, xd);
     out[0] = -(c * w[0] - s * w[1]);
     out[1] = -(s * w[0] + c * w[1]);
-    out[2] = -(j_rate * omega + h_rate);
+    out[2] = -(j_rate * omega);
   }
 
   void tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd, MatX& k) const {
@@ -196,7 +195,7 @@ class Ffr : public AddingCoordinates {
         double const by_rate = -2.0 * cd * drawn, by_place = -2.0 * ck * omega * drawn;
         turned(3 + i, j == 0 ? by_rate : -by_place, j == 0 ? by_place : by_rate);
       }
-      k(2, 3 + i) += omega * (ck * bent + cd * slope) + cd * (left + right);
+      k(2, 3 + i) += omega * (ck * bent + cd * slope);
       k(3 + i, 2) -= cd * omega * (terms_.centrifugal ? slope : i_.inertia_by[i]);
       if (terms_.coriolis) k(3 + i, 2) += cd * (right - left);
     }

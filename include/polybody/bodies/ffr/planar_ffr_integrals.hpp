@@ -63,6 +63,15 @@ struct FfrIntegrals {
     x.coupling_by[2] = coupling_by;
     for (std::size_t i = 0; i < 2; ++i) x.first_second[i] = first_second[i];
     x.check(what);
+    double largest = 0.0, odd = 0.0;
+    for (Index j = 0; j < size(); ++j)
+      for (Index i = 0; i < size(); ++i) {
+        largest = std::max(largest, std::abs(coupling_by(i, j)));
+        odd = std::max(odd, std::abs(coupling_by(i, j) + coupling_by(j, i)));
+      }
+    if (odd > 1e-9 * largest)
+      throw InvalidInput{what, ": coupling_by, ∫ρ (S_xᵀ S_y − S_yᵀ S_x), must be skew; it and its transpose add up to ",
+                         odd, " in an entry."};
     require_positive(inertia, what, ": the inertia about the frame's origin");
   }
 
