@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include <polybody/system/joint_columns.hpp>
+#include <polybody/system/turning_joint.hpp>
 
 namespace polybody {
 
