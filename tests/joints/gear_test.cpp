@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <polybody/testing/joint_laws.hpp>
 
 #include "support/refusal.hpp"
@@ -91,6 +93,7 @@ TEST(Gear, RefusesTeethAndAxesThatCannotBeMeant) {
     EXPECT_TRUE(has(said(a, b), "\"pair\": both wheels need teeth"));
   for (auto const& [a, b] : {std::pair{20, -20}, {20, -10}, {-10, 20}})
     EXPECT_TRUE(has(said(a, b), "\"pair\": a ring gear must have"));
+  EXPECT_TRUE(has(said(20, std::numeric_limits<int>::min()), "at most 1000000 teeth, but the number is -2147483648"));
   EXPECT_NO_THROW((Gear{.teeth_a = -50, .teeth_b = 20}.check("\"pair\"")));
   EXPECT_TRUE(
       has(refusal([] { (void)Gear{.teeth_a = 1, .teeth_b = 1, .axis = {0, 0, 1}, .centres = {0, 0, 1}}.triad(); }),

@@ -17,6 +17,8 @@ struct Gear {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
 
+  static constexpr int most_teeth = 1'000'000;
+
   Required<int> teeth_a;   ///< N_a
   Required<int> teeth_b;   ///< N_b; of an internal (ring) gear the number is negative
   TurnAxis axis = {};      ///< (3) unit vector of both wheels' axes, world axes at the reference configuration
@@ -32,6 +34,9 @@ struct Gear {
     if (teeth_a == 0 || teeth_b == 0 || (teeth_a < 0 && teeth_b < 0))
       throw InvalidInput{what,
                          ": both wheels need teeth, and only one of them can be a ring gear, with a negative number."};
+    for (int const teeth : {int(teeth_a), int(teeth_b)})
+      if (teeth < -most_teeth || teeth > most_teeth)
+        throw InvalidInput{what, ": a wheel has at most ", most_teeth, " teeth, but the number is ", teeth, "."};
     if ((teeth_a < 0 || teeth_b < 0) && teeth_a + teeth_b >= 0)
       throw InvalidInput{what,    ": a ring gear must have more teeth than the wheel inside it, but the numbers are ",
                          teeth_a, " and ",
