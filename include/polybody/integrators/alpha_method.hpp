@@ -263,6 +263,7 @@ struct AlphaMethod {
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
     Problem<Solver> problem{
         *this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, two_sets && careful, effort != 1};
+    if (w.solver.keeps_multipliers()) w.theta = std::max(w.theta, 0.3);
     NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
         (effort < efforts(system) || (two_sets && loses_rank(system, x, h, w)))) {

@@ -79,6 +79,9 @@ class TangentSolver {
     solver_.solve(balance_, x_);
     coordinates_.entries->correction_from_equations(coordinates_.self.get(), x_, y);
   }
+  /// A correction also answers what the estimates lack, of which its own size tells nothing: a rate of contraction that
+  /// was seen in another step does not predict the next correction.
+  bool keeps_multipliers() const { return keeps_multipliers_; }
   /// The tree stands at this place again, after a factorisation at another one.
   void return_to(At<double> const& at) {
     if (keeps_multipliers_) coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, whole_q_, whole_v_);
