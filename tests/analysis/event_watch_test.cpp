@@ -96,5 +96,29 @@ TEST(EventWatch, ShowsEventsWhatTheUserSees) {
   EXPECT_NEAR(x.t, 0.5, 1e-10);
 }
 
+TEST(EventWatch, MakesTheUsersStateOnceForAllEvents) {
+  int made = 0;
+  std::vector<Event> const events{{.name = "a", .value = [](State const& x) { return 1.0 - x.t; }},
+                                  {.name = "b", .value = [](State const& x) { return 2.0 - x.t; }},
+                                  {.name = "c", .value = [](State const& x) { return 3.0 - x.t; }}};
+  EventWatch watch;
+  EventWatch::Seen const counted = [&](State const& x) -> State const& {
+    ++made;
+    return x;
+  };
+  State x{};
+  watch.start(events, x, counted);
+  EXPECT_EQ(made, 1);
+  RunReport report;
+  State const before = x;
+  x.t = 0.5;
+  EventWatch::Step const again = [](State& s, double h) {
+    s.t += h;
+    return h;
+  };
+  EXPECT_FALSE(watch.meet(events, {before, 0.5, counted, again}, x, report));
+  EXPECT_EQ(made, 2);
+}
+
 }  // namespace event_watch_test
 }  // namespace polybody

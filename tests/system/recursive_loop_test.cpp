@@ -279,4 +279,31 @@ TEST(RecursiveLoop, KeepsAFactorisationAsLongAsItsBodiesWouldDo) {
   EXPECT_LT(double(narrow.iterations), 1.1 * double(whole.iterations));
 }
 
+/// The largest part of the forces that the states of a falling chain leave out of balance.
+template <class Policy>
+double out_of_balance() {
+  Chain<InPlane<Policy>> chain(16, bar_link(0.1));
+  State x = chain.model.reference_state();
+  auto run = simulate(chain.model, x, GeneralizedAlpha{.rho_inf = 0.8},
+                      {.until = 0.5, .step = 1e-3, .events = {{.name = "first link below", .value = [](State const& s) {
+                                                                 return s.q[1] + 0.02;
+                                                               }}}});
+  System whole(chain.model);
+  VecX r = VecX::Zero(whole.speeds()), held = r;
+  double worst = 0.0;
+  for (State const& shown : run) {
+    whole.evaluate(shown.q, shown.v, shown.t);
+    whole.residual(shown.a, shown.lambda, r);
+    whole.rows_transposed_times(shown.lambda, held);
+    worst = std::max(worst, r.norm() / held.norm());
+  }
+  return worst;
+}
+// States that are looked at take the multipliers of the step, of which the balance of each body says what they are off.
+TEST(RecursiveLoop, StatesAreInBalanceWithTheMultipliersOfTheStep) {
+  double const narrow = out_of_balance<Recursive>(), whole = out_of_balance<Constraint>();
+  EXPECT_LT(whole, 1e-7);
+  EXPECT_LT(narrow, 10.0 * whole);
+}
+
 }  // namespace recursive_loop_test

@@ -186,7 +186,7 @@ struct AlphaMethod {
       }
       if (holds_anew) w.forward.hold(system, w.q, w.v, x.t + h);
       bad = method.refactor(system, h, place(), w, stand_ins);
-      if (ahead > 0.0) {
+      if (ahead > 0.0 && w.solver.keeps_multipliers()) {
         system.plus(x.q, w.dq, w.q);
         w.solver.return_to({w.q, w.v, x.t + h});
       }

@@ -29,28 +29,23 @@ class EventWatch {
   Sequence<int> const& sides() const { return sides_; }
 
   /// Notes on which sides the events stand at x. \throws NonFinite.
-  void start(std::vector<Event> const& events, State const& x, Seen const& seen) {
-    sides_.clear();
-    for (Event const& event : events) sides_.push_back(side(event, x, seen));
-  }
+  void start(std::vector<Event> const& events, State const& x, Seen const& seen) { look(events, x, seen, sides_); }
 
   /// Ends a step to x at the first event within it, by bisection on its length; the report names it. Returns
-  /// whether there was one.
+  /// whether there was one; without one, the last state that was shown is that of x.
   [[gnu::cold]] bool meet(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
-    auto const passed = [&](std::size_t i, State const& at) {
-      return sides_[i] != 0 && side(events[i], at, step.seen) != sides_[i];
-    };
+    look(events, x, step.seen, now_);
     State first = x;
     bool met = false;
     for (std::size_t i = 0; i < sides_.size(); ++i) {
-      if (!passed(i, x)) continue;
+      if (!passed(i, now_[i])) continue;
       met = true;
       double lo = 0.0, hi = step.length;
       while (hi - lo > events[i].tolerance) {
         double const mid = 0.5 * (lo + hi);
         if (mid <= lo || mid >= hi) break;
         State trial = after(step, mid);
-        if (!passed(i, trial)) {
+        if (!passed(i, side(events[i], step.seen(trial)))) {
           lo = mid;
           continue;
         }
@@ -58,14 +53,16 @@ class EventWatch {
         if (trial.t < first.t) first = std::move(trial);
       }
     }
-    if (met) x = std::move(first);
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
-      if (met && passed(i, x)) {
-        report.events.push_back({events[i].name, x.t});
-        report.stopped = report.stopped || events[i].stops;
-      }
-      sides_[i] = side(events[i], x, step.seen);
+    if (met) {
+      x = std::move(first);
+      look(events, x, step.seen, now_);
     }
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      if (!passed(i, now_[i])) continue;
+      report.events.push_back({events[i].name, x.t});
+      report.stopped = report.stopped || events[i].stops;
+    }
+    sides_.swap(now_);
     return met;
   }
 
@@ -79,14 +76,24 @@ class EventWatch {
     }
     return x;
   }
-  /// The sign of the event's value.
-  static int side(Event const& event, State const& x, Seen const& seen) {
-    double const y = event.value(seen(x));
+  /// An event that stood at zero at the end of the last step passes none.
+  bool passed(std::size_t i, int now) const { return sides_[i] != 0 && now != sides_[i]; }
+  /// On which sides the events stand at x, of which the user's state is made once.
+  static void look(std::vector<Event> const& events, State const& x, Seen const& seen, Sequence<int>& sides) {
+    sides.clear();
+    if (events.empty()) return;
+    State const& shown = seen(x);
+    for (Event const& event : events) sides.push_back(side(event, shown));
+  }
+  /// The sign of the event's value at a state of the user's.
+  static int side(Event const& event, State const& x) {
+    double const y = event.value(x);
     if (!std::isfinite(y)) throw NonFinite{"The event \"", event.name, "\" is not finite at t = ", x.t, " s."};
     return (y > 0.0) - (y < 0.0);
   }
 
   Sequence<int> sides_;  // at the end of the last step: each is met once, however a restart rounds
+  Sequence<int> now_;
 };
 
 }  // namespace polybody

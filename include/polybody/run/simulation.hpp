@@ -112,10 +112,11 @@ class Simulation {
 
   State& stepped() { return eliminates() ? narrow_ : *x_; }
   State const& stepped() const { return eliminates() ? narrow_ : *x_; }
-  /// The user's state follows the narrow one, but where a force fails as reactions are worked out.
-  void show() {
+  /// The user's state follows the narrow one, but where a force fails as reactions are worked out. \param seen events
+  /// have been shown this one
+  void show(bool seen = false) {
     if (!eliminates()) return;
-    expand(*system_, narrow_, seen_, scratch_);
+    if (!seen) expand(*system_, narrow_, seen_, scratch_);
     if (Index const i = first_not_finite(seen_.lambda); i >= 0)
       throw NonFinite{"The reaction of ",
                       system_->layout().name_of(system_->layout().speeds + i),
@@ -190,7 +191,6 @@ class Simulation {
   EventWatch::Seen seen() {
     return [this](State const& x) -> State const& {
       if (!eliminates()) return x;
-      seen_ = *x_;
       expand(*system_, x, seen_, scratch_);
       return seen_;
     };
@@ -286,10 +286,11 @@ void Simulation<I, Solver>::advance(bool shown) {
     bool const met = !options_.events.empty() && meet_events(report.taken);
     bool const at_corner = jumps && stepped().t == target;
     if (at_corner) stepped().t = plan_.pass(stepped().t);
-    if (met || at_corner || crumb) restart();
+    bool const anew = met || at_corner || crumb;
+    if (anew) restart();
     if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
     if (shown) {
-      show();
+      show(!options_.events.empty() && !anew);
       axial_forces_.look(whole(), *x_, done(), report_.warnings);
     }
   } catch (...) {

@@ -82,9 +82,9 @@ class TangentSolver {
   /// A correction also answers what the estimates lack, of which its own size tells nothing: a rate of contraction that
   /// was seen in another step does not predict the next correction.
   bool keeps_multipliers() const { return keeps_multipliers_; }
-  /// The tree stands at this place again, after a factorisation at another one.
+  /// The tree stands at this place again, after a factorisation at another one; for solvers that keep multipliers.
   void return_to(At<double> const& at) {
-    if (keeps_multipliers_) coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, whole_q_, whole_v_);
+    coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, whole_q_, whole_v_);
   }
   /// The factors of the tangent of that; the same as `factor` returns.
   Index factor_tangent(System& system, StepPlace const& x, TangentCoefficients const& k, SecondOrder second) {

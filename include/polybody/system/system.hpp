@@ -18,7 +18,12 @@ State reduce(System const& s, State const& x) {
   if (Coordinates const& c = s.step_coordinates()) c.entries->narrow(c.self.get(), x, out);
   return out;
 }
-/// The whole state of a stepped one, with what eliminated joints hold as multipliers. `r` is scratch.
+/// Multipliers that a step may keep: of its rows, and estimates for the joints that carry bodies (`NarrowLayout`).
+inline Index multipliers_of(System const& s) {
+  return s.rows() + (s.step_coordinates() ? Index(s.step_coordinates().narrow->carrying_rows.size()) : 0);
+}
+/// The whole state of a stepped one, with what eliminated joints hold as multipliers: those of the step where it keeps
+/// all of them, else worked out. `r` is scratch.
 template <class = void>
 void expand(System& s, State const& stepped, State& x, VecX& r) {
   Coordinates const& c = s.step_coordinates();
@@ -26,24 +31,27 @@ void expand(System& s, State const& stepped, State& x, VecX& r) {
     x = stepped;
     return;
   }
-  s.evaluate(stepped.q, stepped.v, stepped.t);
-  x.q = s.at().q;
-  x.v = s.at().v;
-  r.resize(s.speeds());
-  s.residual(stepped.a, stepped.lambda, r);
+  bool const keeps = stepped.lambda.size() == s.layout().rows;
+  x.q.resize(s.layout().coordinates);
+  x.v.resize(s.layout().speeds);
   x.a.resize(x.v.size());
-  c.entries->expand_rates(c.self.get(), stepped.a, true, x.a);
   x.lambda.resize(s.layout().rows);
+  if (keeps) {
+    c.entries->expand(c.self.get(), stepped.q, stepped.v, x.q, x.v);
+  } else {
+    s.evaluate(stepped.q, stepped.v, stepped.t);
+    x.q = s.at().q;
+    x.v = s.at().v;
+    r.resize(s.speeds());
+    s.residual(stepped.a, stepped.lambda, r);
+  }
+  c.entries->expand_rates(c.self.get(), stepped.a, true, x.a);
   c.narrow->expand_rows(stepped.lambda, x.lambda);
-  c.entries->recover_multipliers(c.self.get(), s.data(), x.lambda);
+  if (!keeps) c.entries->recover_multipliers(c.self.get(), s.data(), x.lambda);
   x.t = stepped.t;
   x.memory = stepped.memory;
 }
 
-/// Multipliers that a step may keep: of its rows, and estimates for the joints that carry bodies (`NarrowLayout`).
-inline Index multipliers_of(System const& s) {
-  return s.rows() + (s.step_coordinates() ? Index(s.step_coordinates().narrow->carrying_rows.size()) : 0);
-}
 /// Puts estimates for the joints that carry bodies behind the multipliers of a stepped state with accelerations.
 template <class = void>
 [[gnu::cold]] void append_multipliers(System& s, State& stepped) {
