@@ -218,7 +218,8 @@ std::string composition() {
          "\n✓: for either marker. 2nd: for the second only. n: the body's markers tell too little. w: another world. "
          "The ground serves everywhere. A bushing asks its first marker for a frame.\n\n" +
          policy_body.text("policy, some geometry") +
-         "\nr: joint coordinates are for rigid bodies. l: points are not linear in the coordinates.\n\n" +
+         "\nr: joint coordinates are for bodies with a frame, by elimination body by body for rigid ones. l: points "
+         "are not linear in the coordinates.\n\n" +
          integrator_body.text("integrator") +
          "\ns: no stabilisation, and norms of Euler parameters are rows. m: the mass matrix is not constant. e: "
          "coordinates do not add, or there is no mean force over a step.\n\n" +

@@ -3,12 +3,16 @@
 
 namespace polybody::random_models {
 
-/// Trees of rigid bodies by one way to solve for joint coordinates, with twins by `Constraint`.
-template <class Path, class F>
-WideType recursive_type(char const* name, std::vector<char const*> const& forces) {
+/// Trees of these bodies by one way to solve for joint coordinates, with twins by `Constraint`.
+template <class Path, class F, class Bs>
+WideType recursive_type(char const* name, std::vector<char const*> const& bodies,
+                        std::vector<char const*> const& forces) {
   using J =
       Together<AllWithMotions<RecursiveBy<Path>>, AllWithMotions<Constraint>, JointsBy<Constraint, Distance, Turn>>;
-  return wide_type<Bodies<Rigid<>, polybody::planar::Rigid>, J, F>(name, {"Rigid<>", "planar::Rigid"}, forces);
+  return wide_type<Bs, J, F>(name, bodies, forces);
 }
+
+using Framed = Bodies<Rigid<>, polybody::planar::Rigid, Ffr, polybody::planar::Ffr>;
+inline std::vector<char const*> const names_of_framed{"Rigid<>", "planar::Rigid", "Ffr", "planar::Ffr"};
 
 }  // namespace polybody::random_models

@@ -4,8 +4,8 @@
 namespace polybody::random_models {
 
 WideType trees_by_bodies() {
-  return recursive_type<recursive::ArticulatedBody, ForcesWithoutStates>("trees, ArticulatedBody",
-                                                                         names_without_states);
+  return recursive_type<recursive::ArticulatedBody, ForcesWithoutStates, Bodies<Rigid<>, polybody::planar::Rigid>>(
+      "trees, ArticulatedBody", {"Rigid<>", "planar::Rigid"}, names_without_states);
 }
 
 }  // namespace polybody::random_models

@@ -1,4 +1,4 @@
-// refused: Recursive makes joint coordinates between rigid bodies
+// refused: Recursive makes joint coordinates between the ground, rigid bodies and bodies that float on a frame
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/joints/revolute.hpp>

@@ -188,7 +188,7 @@ class ArticulatedBodySolverOf {
       n.add_answer(1.0, given);  // D⁻¹ (r + Sᵀf)
       if (bodies[i].parent < 0) continue;
       Vec6& f = nodes_[std::size_t(bodies[i].parent)].f;
-      JointTreeOf<T>::add_back(n.f, state_->frames[i].arm, f);
+      add_back<T>(n.f, state_->frames[i].arm, f);
       for (int k = 0; k < n.speeds; ++k) f -= n.u[k] * n.right.col(k);
     }
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -199,7 +199,7 @@ class ArticulatedBodySolverOf {
         Vec6 by_parent = Vec6::Zero();
         for (int k = 0; k < n.speeds; ++k) by_parent[k] = n.left.row(k).dot(p);
         n.add_answer(-1.0, by_parent);
-        JointTreeOf<T>::add_carried(p, state_->frames[i].arm, n.x);
+        add_carried<T>(p, state_->frames[i].arm, n.x);
       }
       for (int k = 0; k < n.speeds; ++k) {
         n.x += n.u[k] * n.s.col(k);

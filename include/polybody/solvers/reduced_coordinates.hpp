@@ -10,6 +10,7 @@
 #include <polybody/solvers/tree_dynamics.hpp>
 #include <polybody/solvers/tree_tangent.hpp>
 #include <polybody/system/dense_reduction.hpp>
+#include <polybody/system/joint_coordinates.hpp>
 #include <polybody/system/model_entries.hpp>
 #include <polybody/system/reduction.hpp>
 #include <polybody/system/system.hpp>
@@ -94,14 +95,14 @@ class ReducedCoordinates {
   }
 
   static void plus(void* c, VecX const& q, VecX const& delta, VecX& out) {
-    of(c).reduction_.tree().plus(q, delta, out);
+    polybody::plus(of(c).reduction_.tree(), q, delta, out);
   }
   static void local_rate(void* c, VecX const& delta, VecX const& v, VecX& out) {
-    of(c).reduction_.tree().local_rate(delta, v, out);
+    polybody::local_rate(of(c).reduction_.tree(), delta, v, out);
   }
 
   static void coordinate_rates(void* c, VecX const& q, VecX const& v, VecX& rate) {
-    of(c).reduction_.tree().coordinate_rates(q, v, rate);
+    polybody::coordinate_rates(of(c).reduction_.tree(), q, v, rate);
   }
 
   static void narrow(void* c, State const& x, State& out) {
@@ -112,7 +113,7 @@ class ReducedCoordinates {
     r.reduce_speeds(x.v, out.v);
     r.reduce_speeds(x.a, out.a);
     r.reduce_rows(x.lambda, out.lambda);
-    r.tree().read_coordinates(x.q, x.v, s.state_, out.q);
+    read_coordinates(r.tree(), x.q, x.v, s.state_, out.q);
     s.place(out.q, out.v);
     r.tree().reduce_rates(s.state_, x.v, false, out.v);
     s.place(out.q, out.v);

@@ -29,11 +29,17 @@ template <class P, class G>
 concept Holds = MeasuresGeometry<P, G> && AnswersGeometry<P, G> && HasGapToAnswer<P, G> && HasJointCoordinates<P, G> &&
                 HasLinearRows<P, G>;
 
-/// If P eliminates coordinates, it can do so with those of body B: joints of `Recursive` carry rigid bodies, those of
-/// `AncfLinear` join points that are linear in the coordinates. The ground has no coordinates.
+/// If P makes joint coordinates, a joint can carry body B: a rigid one, or one that deforms in a frame, which
+/// `recursive::ArticulatedBody` does not solve for.
 template <class P, class B>
-concept MayBeEliminated = std::is_same_v<B, Ground> || ((!MakesJointCoordinates<P> || HasRigidLayout<B>) &&
-                                                        (!LinearInCoordinates<P> || HasLinearPoints<B>));
+concept MayBeCarried = !MakesJointCoordinates<P> || HasRigidLayout<B> ||
+                       (FloatsOnFrame<B> && !std::is_same_v<P, RecursiveBy<recursive::ArticulatedBody>>);
+
+/// If P eliminates coordinates, it can do so with those of body B: joints of `Recursive` carry bodies with a frame,
+/// those of `AncfLinear` join points that are linear in the coordinates. The ground has no coordinates.
+template <class P, class B>
+concept MayBeEliminated =
+    std::is_same_v<B, Ground> || (MayBeCarried<P, B> && (!LinearInCoordinates<P> || HasLinearPoints<B>));
 
 /// A marker of body B tells as much as joint J asks of its first marker. Linear rows are read off the body itself.
 template <class J, class B>

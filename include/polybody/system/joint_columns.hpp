@@ -55,13 +55,36 @@ void reverse_columns(TreeBody const& body, TreeFrameOf<T>& f) {
       for (int i = 0; i < 6; ++i) f.s(i, to) = back(i, end + k);
   }
 }
-/// From the world's origin to the centre of mass; and (SᵀS)⁻¹.
+/// The motions of a joint one after another, from frame a to frame b or back. \param x, u coordinates and speeds
+template <class T>
+void move_by_joint(TreeBody const& body, T const* x, T const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
+  f.speeds = 0;
+  if (!body.backwards) {
+    for (JointMotion const& m : body.motions) {
+      move<T>(m, 1.0, x, u, run, f);
+      x += m.coordinates();
+      u += m.speeds();
+    }
+    return;
+  }
+  x += body.motions.coordinates();
+  u += body.motions.speeds();
+  for (int k = body.motions.count; k-- > 0;) {
+    JointMotion const& m = body.motions.list[std::size_t(k)];
+    move<T>(m, -1.0, x -= m.coordinates(), u -= m.speeds(), run, f);
+  }
+  reverse_columns<T>(body, f);
+}
+/// A column from the world's origin to r.
+template <class T>
+void move_column(Vec<T, 3> const& r, T* column) {
+  Vec<T, 3> const carried = cross<T>({column[3], column[4], column[5]}, r);
+  for (int i = 0; i < 3; ++i) column[i] += carried[i];
+}
+/// From the world's origin to that of the body; and (SᵀS)⁻¹.
 template <class T>
 void finish_columns(TreeFrameOf<T>& f) {
-  for (int k = 0; k < f.speeds; ++k) {
-    Vec<T, 3> const carried = cross<T>({f.s(3, k), f.s(4, k), f.s(5, k)}, f.r);
-    for (int i = 0; i < 3; ++i) f.s(i, k) += carried[i];
-  }
+  for (int k = 0; k < f.speeds; ++k) move_column<T>(f.r, f.column(k));
   for (int i = 0; i < f.speeds; ++i)
     for (int j = 0; j < f.speeds; ++j) {
       double sum = 0.0;

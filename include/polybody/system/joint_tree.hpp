@@ -1,15 +1,17 @@
 #pragma once
 /// \file
-/// Rigid bodies that carry one another through joint coordinates [thesis Eq. 3.4–3.5; Shabana 2020, §3]: a body's pose
-/// is its parent's followed by the joint's motions, and with D the arm from the parent's centre of mass to its own,
+/// Bodies that carry one another through joint coordinates [thesis Eq. 3.4–3.5; Shabana 2020, §3]: a body's pose is its
+/// parent's followed by the joint's motions, and with D the arm from the parent's origin to its own,
 ///   ω = ω_p + S_ω u,   ṙ = ṙ_p + ω_p × D + S_r u,
 ///   ω˙ = ω˙_p + S_ω u̇ + b_ω,   r̈ = r̈_p + ω˙_p × D + S_r u̇ + b_r,
-/// all in world axes; b is what is left for u̇ = 0 and a parent without accelerations. Whole vectors hold every body,
-/// narrow ones the joints. Everything is one walk from the roots to the tips or back.
+/// all in world axes; b is what is left for u̇ = 0 and a parent without accelerations. The origin of a rigid body is its
+/// centre of mass. A body that floats on a frame is carried by this frame; its deformation q stays as it is, and an end
+/// of a joint on it moves with q: then S_D q̇ comes in beside S u (`FloatingEnd`). Whole vectors hold every body, narrow
+/// ones the joints and deformations. Everything is one walk from the roots to the tips or back.
 
-#include <numbers>
-
+#include <polybody/system/floating_end.hpp>
 #include <polybody/system/joint_columns.hpp>
+#include <polybody/system/tree_twists.hpp>
 #include <polybody/system/turning_joint.hpp>
 
 namespace polybody {
@@ -19,8 +21,6 @@ template <class T = double>
 class JointTreeOf {
   using Vec3 = Vec<T, 3>;
   using Vec6 = Vec<T, 6>;
-  using Mat3 = Mat<T, 3, 3>;
-  using Mat6 = Mat<T, 6, 6>;
   using VecX = VecXOf<T>;
   using TreeFrame = TreeFrameOf<T>;
   using TreeState = TreeStateOf<T>;
@@ -28,6 +28,7 @@ class JointTreeOf {
  public:
   /// Bodies in an order in which each stands behind its parent.
   Sequence<TreeBody> bodies;
+  Sequence<FloatingEnd> ends;  ///< of joints on bodies that deform
 
   bool empty() const { return bodies.empty(); }
 
@@ -38,46 +39,16 @@ class JointTreeOf {
       TreeBody const& body = bodies[i];
       TreeFrame& f = s.frames[i];
       if (!body.carried()) {
-        read(body, q, v, f);
+        detail::read_frame<T>(body, q, v, f);
         continue;
       }
-      TreeFrame const& p = body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
-      if (body.motions.count == 1 && body.motions.list[0].kind == JointMotion::Kind::turn) {
+      TreeFrame const& p = parent_of(body, s);
+      if (body.from_end < 0 && body.to_end < 0 && body.motions.count == 1 &&
+          body.motions.list[0].kind == JointMotion::Kind::turn)
         detail::carry_by_turn<T>(body, p, qn[body.qn], vn[body.vn], f);
-        write(body, f, q, v);
-        continue;
-      }
-      detail::RunnerOf<T> run{p.r, p.v, {0, 0, 0}, p.A, p.w, {0, 0, 0}};
-      if (body.from_turned) run.A = product<T>(p.A, body.from.axes);
-      run.go(product<T, 1>(p.A, body.from.origin));
-      f.angle = p.angle + body.angle;
-      f.speeds = 0;
-      double const* x = qn.data() + body.qn;
-      double const* u = vn.data() + body.vn;
-      if (body.backwards) {
-        x += body.motions.coordinates();
-        u += body.motions.speeds();
-        for (int k = body.motions.count; k-- > 0;) {
-          JointMotion const& m = body.motions.list[std::size_t(k)];
-          detail::move<T>(m, -1.0, x -= m.coordinates(), u -= m.speeds(), run, f);
-        }
-        detail::reverse_columns<T>(body, f);
-      } else {
-        for (JointMotion const& m : body.motions) {
-          detail::move<T>(m, 1.0, x, u, run, f);
-          x += m.coordinates();
-          u += m.speeds();
-        }
-      }
-      f.A = body.to_turned ? product<T>(run.A, transposed<T>(body.to.axes)) : run.A;
-      run.go(scaled<T>(product<T, 1>(f.A, body.to.origin), -1.0));
-      f.r = run.r;
-      f.v = run.v;
-      f.w = run.w;
-      set_pair(run.a, run.alpha, f.bias);
-      f.arm = difference<T>(f.r, p.r);
-      detail::finish_columns<T>(f);
-      write(body, f, q, v);
+      else
+        carry(body, {qn, vn}, {q, v}, f, s);
+      detail::write_frame<T>(body, f, q, v);
     }
   }
 
@@ -88,30 +59,35 @@ class JointTreeOf {
       TreeBody const& body = bodies[i];
       TreeFrame const& f = s.frames[i];
       if (!body.carried()) {
-        twist[i] = twist_of(body, f, out);
+        twist[i] = detail::twist_of<T>(body, f, out);
         continue;
       }
       Vec6& t = twist[i];
       for (int j = 0; j < 6; ++j) t[j] = bias ? f.bias[j] : T(0.0);
-      if (body.parent >= 0) add_carried(twist[std::size_t(body.parent)], f.arm, t);
-      for (int k = 0; k < f.speeds; ++k) add_column(f, k, u[body.vn + k], t);
-      put_twist(body, f, t, out);
+      if (body.parent >= 0) add_carried<T>(twist[std::size_t(body.parent)], f.arm, t);
+      for (int k = 0; k < f.speeds; ++k) detail::add_column<T>(f.column(k), u[body.vn + k], t);
+      for_each_rate(
+          body, [&](std::size_t column, Index rate) { detail::add_column<T>(s.columns[column].data(), out[rate], t); });
+      detail::put_twist<T>(body, f, t, out);
     }
   }
 
   /// The u with T u next to x (whole): exact where x keeps to the joints. Parts of roots are left to the caller. With
   /// `bias`, of x − b.
   void reduce_rates(TreeState& s, VecX const& x, bool bias, VecX& u) const {
-    for (std::size_t i = 0; i < bodies.size(); ++i) s.twists[i] = twist_of(bodies[i], s.frames[i], x);
+    for (std::size_t i = 0; i < bodies.size(); ++i) s.twists[i] = detail::twist_of<T>(bodies[i], s.frames[i], x);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
       if (!body.carried()) continue;
       TreeFrame const& f = s.frames[i];
       auto carried = detail::zeros<Vec6>();
-      if (body.parent >= 0) add_carried(s.twists[std::size_t(body.parent)], f.arm, carried);
+      if (body.parent >= 0) add_carried<T>(s.twists[std::size_t(body.parent)], f.arm, carried);
       Vec6 t, st;
+      for_each_rate(body, [&](std::size_t column, Index rate) {
+        detail::add_column<T>(s.columns[column].data(), x[rate], carried);
+      });
       for (int j = 0; j < 6; ++j) t[j] = s.twists[i][j] - (bias ? f.bias[j] : T(0.0)) - carried[j];
-      for (int k = 0; k < f.speeds; ++k) st[k] = along_column(f, k, t);
+      for (int k = 0; k < f.speeds; ++k) st[k] = detail::along_column<T>(f.column(k), t);
       for (int k = 0; k < f.speeds; ++k) {
         double sum = 0.0;
         for (int j = 0; j < f.speeds; ++j) sum += f.inverse(k, j) * st[j];
@@ -120,27 +96,30 @@ class JointTreeOf {
     }
   }
 
-  /// out = Tᵀ r: narrow from whole. Parts of roots: in r, where the caller reads them. Generalised forces and wrenches
-  /// change in the same way as speeds and twists, for A is orthogonal.
+  /// out = Tᵀ r: narrow from whole. Parts of roots and of deformations: in r, where the caller reads them. Generalised
+  /// forces and wrenches change in the same way as speeds and twists, for A is orthogonal.
   void reduce_forces(TreeState& s, VecX& r, VecX& out) const {
-    for (std::size_t i = 0; i < bodies.size(); ++i) s.held[i] = twist_of(bodies[i], s.frames[i], r);
+    for (std::size_t i = 0; i < bodies.size(); ++i) s.held[i] = detail::twist_of<T>(bodies[i], s.frames[i], r);
     for (std::size_t i = bodies.size(); i-- > 0;) {
       TreeBody const& body = bodies[i];
       TreeFrame const& f = s.frames[i];
       Vec6 const& w = s.held[i];
       if (!body.carried()) {
-        put_twist(body, f, w, r);
+        detail::put_twist<T>(body, f, w, r);
         continue;
       }
-      for (int k = 0; k < f.speeds; ++k) out[body.vn + k] = along_column(f, k, w);
-      if (body.parent >= 0) add_back(w, f.arm, s.held[std::size_t(body.parent)]);
+      for (int k = 0; k < f.speeds; ++k) out[body.vn + k] = detail::along_column<T>(f.column(k), w);
+      for_each_rate(body, [&](std::size_t column, Index rate) {
+        r[rate] += detail::along_column<T>(s.columns[column].data(), w);
+      });
+      if (body.parent >= 0) add_back<T>(w, f.arm, s.held[std::size_t(body.parent)]);
     }
   }
 
-  /// A whole r with Tᵀ r = `given` (narrow); parts of roots stand already.
+  /// A whole r with Tᵀ r = `given` (narrow); parts of roots and of deformations stand already.
   void expand_forces(TreeState& s, VecX const& given, VecX& r) const {
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      s.held[i] = bodies[i].carried() ? detail::zeros<Vec6>() : twist_of(bodies[i], s.frames[i], r);
+      s.held[i] = bodies[i].carried() ? detail::zeros<Vec6>() : detail::twist_of<T>(bodies[i], s.frames[i], r);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
       if (!body.carried()) continue;
@@ -149,194 +128,71 @@ class JointTreeOf {
       for (int k = 0; k < f.speeds; ++k) {
         double sum = 0.0;
         for (int j = 0; j < f.speeds; ++j) sum += f.inverse(k, j) * given[body.vn + j];
-        add_column(f, k, sum, w);
+        detail::add_column<T>(f.column(k), sum, w);
       }
+      for_each_rate(body, [&](std::size_t column, Index rate) {
+        r[rate] -= detail::along_column<T>(s.columns[column].data(), w);
+      });
       for (int j = 0; j < 6; ++j) s.held[i][j] += w[j];
       if (body.parent < 0) continue;
-      add_back(w, f.arm, carried);
+      add_back<T>(w, f.arm, carried);
       for (int j = 0; j < 6; ++j) s.held[std::size_t(body.parent)][j] -= carried[j];
     }
-    for (std::size_t i = 0; i < bodies.size(); ++i) put_twist(bodies[i], s.frames[i], s.held[i], r);
+    for (std::size_t i = 0; i < bodies.size(); ++i) detail::put_twist<T>(bodies[i], s.frames[i], s.held[i], r);
   }
 
-  /// Joint coordinates from whole ones.
-  void read_coordinates(VecX const& q, VecX const& v, TreeState& s, VecX& qn) const {
-    for (std::size_t i = 0; i < bodies.size(); ++i) read(bodies[i], q, v, s.frames[i]);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      TreeBody const& body = bodies[i];
-      if (!body.carried()) continue;
-      TreeFrame const& f = s.frames[i];
-      TreeFrame const& p = body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
-      Vec3 ra = point(p, body.from.origin), rb = point(f, body.to.origin);
-      Mat3 a = product<T>(p.A, body.from.axes), b = product<T>(f.A, body.to.axes);
-      double angle = f.angle - p.angle - body.angle;
-      if (body.backwards) {
-        std::swap(ra, rb);
-        std::swap(a, b);
-        angle = -angle;
-      }
-      Vec3 const d = transposed_product<T, 3, 1>(a, difference<T>(rb, ra));
-      Mat3 turned = transposed_product<T>(a, b);
-      double* x = qn.data() + body.qn;
-      for (int k = 0; k < body.motions.count; ++k) {
-        JointMotion const& m = body.motions.list[std::size_t(k)];
-        switch (m.kind) {
-          case JointMotion::Kind::slide:
-            *x = d[m.axis];
-            break;
-          case JointMotion::Kind::turn:
-            *x = body.layout == RigidLayout::plane
-                     ? angle * a(2, m.axis)
-                     : detail::first_turn<T>(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
-            turned = product<T>(detail::turn_about<T>(m.axis, -*x), turned);
-            break;
-          case JointMotion::Kind::screw: {  // the slide counts the turns
-            double const rest = detail::first_turn<T>(m.axis, turned, false, body.motions, k),
-                         full = 2.0 * std::numbers::pi;
-            *x = rest + full * std::round((d[m.axis] / m.pitch - rest) / full);
-            break;
-          }
-          case JointMotion::Kind::ball: {
-            Quaternion<T> const p4 = quaternion_of(turned);
-            for (int j = 0; j < 4; ++j) x[j] = p4[j];
-          }
-        }
-        x += m.coordinates();
-      }
-    }
+  TreeFrame const& parent_of(TreeBody const& body, TreeState const& s) const {
+    return body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
   }
-
-  /// out = q ⊞ δ of the joint coordinates.
-  void plus(VecX const& q, VecX const& delta, VecX& out) const {
-    for_each_motion([&](JointMotion const& m, Index qn, Index vn) {
-      if (m.kind != JointMotion::Kind::ball) {
-        out[qn] = q[qn] + delta[vn];
-        return;
-      }
-      Quaternion<T> const turned =
-          quaternion_plus<T>({q[qn], q[qn + 1], q[qn + 2], q[qn + 3]}, {delta[vn], delta[vn + 1], delta[vn + 2]});
-      for (int i = 0; i < 4; ++i) out[qn + i] = turned[i];
-    });
-  }
-  /// The rate of δ in q ⊞ δ.
-  void local_rate(VecX const& delta, VecX const& v, VecX& out) const {
-    for_each_motion([&](JointMotion const& m, Index, Index vn) {
-      if (m.kind != JointMotion::Kind::ball) {
-        out[vn] = v[vn];
-        return;
-      }
-      Vec3 const rate = product<T, 1>(right_jacobian_inverse<T>({delta[vn], delta[vn + 1], delta[vn + 2]}),
-                                      Vec3(v[vn], v[vn + 1], v[vn + 2]));
-      for (int i = 0; i < 3; ++i) out[vn + i] = rate[i];
-    });
-  }
-
-  /// q˙ of the joint coordinates; that of a ball is ½ q ∘ (0, Ω).
-  void coordinate_rates(VecX const& q, VecX const& v, VecX& rate) const {
-    for_each_motion([&](JointMotion const& m, Index qn, Index vn) {
-      if (m.kind != JointMotion::Kind::ball) {
-        rate[qn] = v[vn];
-        return;
-      }
-      Quaternion<T> const moved =
-          quaternion_product<T>({q[qn], q[qn + 1], q[qn + 2], q[qn + 3]}, {0.0, v[vn], v[vn + 1], v[vn + 2]});
-      for (int i = 0; i < 4; ++i) rate[qn + i] = 0.5 * moved[i];
-    });
-  }
-
   TreeState state() const {
-    return {Sequence<TreeFrame>(bodies.size()), Sequence<Vec6>(bodies.size()), Sequence<Vec6>(bodies.size())};
+    TreeState s;
+    s.frames.resize(bodies.size());
+    s.twists.resize(bodies.size());
+    s.held.resize(bodies.size());
+    for (FloatingEnd const& end : ends) end.make_room(s.columns, s.q, s.v, s.jacobian);
+    return s;
   }
 
-  /// [v; ω] of a whole vector of speeds or accelerations in world axes.
-  static Vec6 twist_of(TreeBody const& body, TreeFrame const& f, VecX const& x) {
-    auto t = detail::zeros<Vec6>();
-    if (body.layout == RigidLayout::plane) {
-      t[0] = x[body.v0];
-      t[1] = x[body.v0 + 1];
-      t[5] = x[body.v0 + 2];
-    } else {
-      set_pair(triple(x, body.v0), product<T, 1>(f.A, triple(x, body.v0 + 3)), t);
+  /// f(column in the state, rate in whole speeds) for the deformations that move a carried body.
+  template <class F>
+  void for_each_rate(TreeBody const& body, F&& f) const {
+    for (Index const e : {body.from_end, body.to_end}) {
+      if (e < 0) continue;
+      FloatingEnd const& end = ends[std::size_t(e)];
+      for (Index k = 0; k < end.deformations; ++k) f(std::size_t(end.first_column + k), end.first_rate() + k);
     }
-    return t;
-  }
-  static void put_twist(TreeBody const& body, TreeFrame const& f, Vec6 const& t, VecX& x) {
-    bool const plane = body.layout == RigidLayout::plane;
-    for (int i = 0; i < 3; ++i) x[body.v0 + i] = t[plane && i == 2 ? 5 : i];
-    if (plane) return;
-    Vec3 const spin = transposed_product<T, 3, 1>(f.A, Vec3(t[3], t[4], t[5]));
-    for (int i = 0; i < 3; ++i) x[body.v0 + 3 + i] = spin[i];
-  }
-  /// t += the rigid motion of the parent at a body `arm` away.
-  static void add_carried(Vec6 const& parent, Vec3 const& arm, Vec6& t) {
-    Vec3 const rate = cross<T>({parent[3], parent[4], parent[5]}, arm);
-    for (int i = 0; i < 6; ++i) t[i] += parent[i];
-    for (int i = 0; i < 3; ++i) t[i] += rate[i];
-  }
-  /// parent += a wrench of the body, `arm` away.
-  static void add_back(Vec6 const& w, Vec3 const& arm, Vec6& parent) {
-    Vec3 const moment = cross<T>(arm, {w[0], w[1], w[2]});
-    for (int i = 0; i < 6; ++i) parent[i] += w[i];
-    for (int i = 0; i < 3; ++i) parent[3 + i] += moment[i];
   }
 
  private:
-  static Vec3 triple(VecX const& x, Index first) { return {x[first], x[first + 1], x[first + 2]}; }
-  static void set_pair(Vec3 const& a, Vec3 const& b, Vec6& out) {
-    for (int i = 0; i < 3; ++i) {
-      out[i] = a[i];
-      out[3 + i] = b[i];
-    }
-  }
-  static Vec3 point(TreeFrame const& f, Vec3 const& u) {
-    Vec3 r = product<T, 1>(f.A, u);
-    for (int i = 0; i < 3; ++i) r[i] += f.r[i];
-    return r;
-  }
-  static void add_column(TreeFrame const& f, int k, double factor, Vec6& t) {
-    for (int i = 0; i < 6; ++i) t[i] += f.s(i, k) * factor;
-  }
-  static double along_column(TreeFrame const& f, int k, Vec6 const& t) {
-    double sum = 0.0;
-    for (int i = 0; i < 6; ++i) sum += f.s(i, k) * t[i];
-    return sum;
-  }
-
-  static void read(TreeBody const& body, VecX const& q, VecX const& v, TreeFrame& f) {
-    if (body.layout == RigidLayout::plane) {
-      f.r = {q[body.q0], q[body.q0 + 1], 0.0};
-      f.angle = q[body.q0 + 2];
-      f.A = detail::turn_about<T>(2, f.angle);
+  struct Vectors {
+    VecX const &q, &v;
+  };
+  /// The frame that one motion after the other leads to, from an end on the parent to one on the body.
+  void carry(TreeBody const& body, Vectors const& narrow, Vectors const& whole, TreeFrame& f, TreeState& s) const {
+    TreeFrame const& p = parent_of(body, s);
+    detail::RunnerOf<T> run{p.r, p.v, {0, 0, 0}, p.A, p.w, {0, 0, 0}};
+    f.angle = p.angle + body.angle;
+    if (body.from_end >= 0) {
+      detail::leave_body<T>(ends[std::size_t(body.from_end)], whole.q, whole.v, run, f.angle, s);
     } else {
-      f.r = triple(q, body.q0);
-      f.A = rotation_matrix<T>({q[body.q0 + 3], q[body.q0 + 4], q[body.q0 + 5], q[body.q0 + 6]});
+      if (body.from_turned) run.A = product<T>(p.A, body.from.axes);
+      run.go(product<T, 1>(p.A, body.from.origin));
     }
-    Vec6 const t = twist_of(body, f, v);
-    f.v = {t[0], t[1], t[2]};
-    f.w = {t[3], t[4], t[5]};
-  }
-  static void write(TreeBody const& body, TreeFrame const& f, VecX& q, VecX& v) {
-    bool const plane = body.layout == RigidLayout::plane;
-    for (int i = 0; i < 3; ++i) q[body.q0 + i] = plane && i == 2 ? f.angle : f.r[i];
-    if (!plane) {
-      Quaternion<T> const turned = quaternion_of(f.A);
-      for (int i = 0; i < 4; ++i) q[body.q0 + 3 + i] = turned[i];
+    detail::move_by_joint<T>(body, narrow.q.data() + body.qn, narrow.v.data() + body.vn, run, f);
+    if (body.to_end >= 0) {
+      detail::arrive_on_body<T>(ends[std::size_t(body.to_end)], whole.q, whole.v, run, f.angle, s);
+      f.A = run.A;
+    } else {
+      f.A = body.to_turned ? product<T>(run.A, transposed<T>(body.to.axes)) : run.A;
+      run.go(scaled<T>(product<T, 1>(f.A, body.to.origin), -1.0));
     }
-    Vec6 t;
-    set_pair(f.v, f.w, t);
-    put_twist(body, f, t, v);
-  }
-
-  template <class F>
-  void for_each_motion(F&& f) const {
-    for (TreeBody const& body : bodies) {
-      Index q = body.qn, v = body.vn;
-      for (JointMotion const& m : body.motions) {
-        f(m, q, v);
-        q += m.coordinates();
-        v += m.speeds();
-      }
-    }
+    f.r = run.r;
+    f.v = run.v;
+    f.w = run.w;
+    detail::set_pair<T>(run.a, run.alpha, f.bias);
+    f.arm = difference<T>(f.r, p.r);
+    detail::finish_columns<T>(f);
+    for_each_rate(body, [&](std::size_t column, Index) { detail::move_column<T>(f.r, s.columns[column].data()); });
   }
 
   TreeFrame ground_ = {};

@@ -61,9 +61,11 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     static_assert(HasJointCoordinates<P, G>,
                   "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
                   "Universal; a Distance or a Gear has none. Use Constraint for it.");
-    static_assert(!MakesJointCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
-                  "Recursive makes joint coordinates between rigid bodies and the ground: Rigid<> in space, "
-                  "planar::Rigid in the plane. Use another policy for joints of other bodies.");
+    static_assert(
+        !MakesJointCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
+        "Recursive makes joint coordinates between the ground, rigid bodies and bodies that float on a frame: "
+        "Rigid<>, Ffr, planar::Rigid, planar::Ffr; RecursiveBy<ArticulatedBody> between rigid ones only. Use "
+        "another policy for joints of other bodies.");
     static_assert(
         !LinearInCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
         "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "

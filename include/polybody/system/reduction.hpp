@@ -2,8 +2,8 @@
 /// \file
 /// Which unknowns of a model a time step has once policies have eliminated others: narrow vectors hold them, whole ones
 /// everything.
-///   q, v: coordinates of bodies that no joint carries, without those that depend on others; joint coordinates of
-///   carried bodies; first-order states. rows: those of joints and bodies that stay.
+///   q, v: coordinates of bodies that no joint carries, without those that depend on others; joint coordinates and
+///   deformations of carried bodies; first-order states. rows: those of joints and bodies that stay.
 
 #include <algorithm>
 
@@ -76,6 +76,7 @@ class ReductionOf {
   struct Hook {
     Index body = -1;  ///< −1: the ground
     Placement frame;
+    FloatingEnd end = {};  ///< instead of the frame, on a body that deforms
   };
   struct Link {
     std::string name;
@@ -126,7 +127,34 @@ class ReductionOf {
         for (Index k = 0; k < m.point.u.size(); ++k) h.frame.origin[k] = m.point.u[k];
         h.frame.axes = m.axes;
       }
+    } else if constexpr (FloatsOnFrame<B>) {
+      Index const first = Index(bodies.size());
+      for (auto const& e : pool.entries)
+        bodies.push_back(
+            {.name = e.name, .layout = B::frame_layout, .q0 = e.q0, .v0 = e.v0, .deformations = e.body.deformations()});
+      for (auto const& m : pool.markers) {
+        Hook& h = hooks[std::size_t(m.published)];
+        auto const& e = pool.entries[std::size_t(m.body)];
+        h.body = first + m.body;
+        h.frame.axes = m.axes;
+        h.end = {&publish_end<B>, &e.body, &m.point, m.axes, B::frame_layout, e.q0, e.v0, e.body.deformations()};
+      }
     }
+  }
+  template <class B>
+  static void publish_end(FloatingEnd const& end, double const* q, double const* v, Published<double>& out) {
+    B const& body = *static_cast<B const*>(end.body);
+    body.template publish<double>(*static_cast<typename B::Point const*>(end.point), end.axes,
+                                  std::span<double const>(q, std::size_t(body.coordinates())),
+                                  std::span<double const>(v, std::size_t(body.speeds())), out);
+  }
+  /// Its number in the tree; −1 for a frame on a rigid body or the ground.
+  Index add_end(Hook const& hook) {
+    if (!hook.end.publish) return -1;
+    FloatingEnd end = hook.end;
+    end.first_column = tree_.ends.empty() ? 0 : tree_.ends.back().first_column + tree_.ends.back().deformations;
+    tree_.ends.push_back(end);
+    return Index(tree_.ends.size()) - 1;
   }
 
   /// Mass and inertia from the body's mass matrix, which is constant.
@@ -176,6 +204,11 @@ class ReductionOf {
         coordinates_ += body->motions.coordinates();
         speeds_ += body->motions.speeds();
         whole_speed_.resize(std::size_t(speeds_), x.v0);
+        for (Index k = body->deformations; k > 0; --k) {
+          same_q_.emplace_back(coordinates_++, x.q0 + x.nq - k);
+          same_v_.emplace_back(speeds_++, x.v0 + x.nv - k);
+          whole_speed_.push_back(x.v0 + x.nv - k);
+        }
       } else {
         for (Index j = x.q0; j < x.q0 + x.nq; ++j)
           if (!dependent_q[std::size_t(j)]) same_q_.emplace_back(coordinates_++, j);
@@ -257,6 +290,8 @@ void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const
       next.to = to.frame;
       next.from_turned = !from.frame.axes.isIdentity(0.0);
       next.to_turned = !to.frame.axes.isIdentity(0.0);
+      next.from_end = add_end(from);
+      next.to_end = add_end(to);
       next.motions = link.motions;
       next.backwards = backwards;
       if (next.layout == RigidLayout::plane)

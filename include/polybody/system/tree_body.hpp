@@ -22,6 +22,8 @@ struct TreeBody {
   Placement to = {};                          ///< the joint's frame in the body's own axes
   bool from_turned = true, to_turned = true;  ///< axes of these that are not the body's
   JointMotions motions = {};                  ///< from frame a to frame b
+  Index from_end = -1, to_end = -1;           ///< in the tree's floating ends, for frames on bodies that deform
+  Index deformations = 0;                     ///< coordinates of the body behind those of its frame
   bool backwards = false;                     ///< frame b is the parent's
   double angle = 0.0;                         ///< in the plane: its turn against the parent in the reference
   bool by_newton_euler = false;               ///< nothing but weight and its inertia moves it where nothing acts
@@ -42,6 +44,9 @@ struct TreeFrameOf {
   Mat<T, 6, 6> s = detail::zeros<Mat<T, 6, 6>>();        ///< S = [S_r; S_ω] by columns
   Mat<T, 6, 6> inverse = detail::zeros<Mat<T, 6, 6>>();  ///< (SᵀS)⁻¹
   Vec<T, 6> bias = detail::zeros<Vec<T, 6>>();           ///< [b_r; b_ω]
+
+  T* column(int k) { return s.data() + 6 * k; }
+  T const* column(int k) const { return s.data() + 6 * k; }
 };
 using TreeFrame = TreeFrameOf<double>;
 
@@ -50,8 +55,10 @@ template <class T>
 struct TreeStateOf {
   Sequence<TreeFrameOf<T>> frames;
   Sequence<Vec<T, 6>> twists;
-  Sequence<Vec<T, 6>> held;  ///< as of the last `reduce_forces`: the wrench [f; m] about its centre of mass with
-                             ///< which a body and all that it carries are out of balance, which its joint holds
+  Sequence<Vec<T, 6>> held;     ///< as of the last `reduce_forces`: the wrench [f; m] about its frame's origin with
+                                ///< which a body and all that it carries are out of balance, which its joint holds
+  Sequence<Vec<T, 6>> columns;  ///< of the floating ends: what each deformation moves of the carried body
+  Sequence<T> q, v, jacobian;   ///< scratch of the floating ends
 };
 using TreeState = TreeStateOf<double>;
 

@@ -28,7 +28,8 @@ class Ffr {
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = false;
-  static constexpr int element_columns = Eigen::Dynamic;  ///< one element: the whole body
+  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< `Recursive` joints carry the frame
+  static constexpr int element_columns = Eigen::Dynamic;                ///< one element: the whole body
   static constexpr int point_columns = Eigen::Dynamic;
 
   using Point = FfrPoint;

@@ -22,6 +22,7 @@ class Ffr : public AddingCoordinates {
   static constexpr World world = World::plane;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = false;
+  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< `Recursive` joints carry the frame
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
 

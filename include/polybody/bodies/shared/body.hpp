@@ -40,6 +40,14 @@ concept HasRigidLayout = requires {
   { B::layout } -> std::convertible_to<RigidLayout>;
 };
 
+/// A body that deforms in a frame whose pose a joint may give: first the coordinates and speeds of the frame, which
+/// `frame_layout` names, then those of the deformation, which add. All its markers are of run-time width.
+template <class B>
+concept FloatsOnFrame = requires(B const b) {
+  { B::frame_layout } -> std::convertible_to<RigidLayout>;
+  { b.deformations() } -> std::convertible_to<Index>;
+};
+
 /// Bodies that nothing but weight and their own inertia moves, m r̈ = m g and J Ω˙ + Ω × J Ω = 0, where no joint or
 /// force acts: a type says so of itself, not of those derived from it.
 template <class B>

@@ -1,0 +1,152 @@
+#pragma once
+/// \file
+/// The coordinates of a `JointTree` as such: what they are in a whole state, how they add, and how they change. A
+/// carried body has those of its joint's motions, and behind these its deformation.
+
+#include <polybody/system/joint_tree.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// f(motion, coordinate, speed), in narrow vectors.
+template <class T, class F>
+void for_each_motion(JointTreeOf<T> const& tree, F&& f) {
+  for (TreeBody const& body : tree.bodies) {
+    Index q = body.qn, v = body.vn;
+    for (JointMotion const& m : body.motions) {
+      f(m, q, v);
+      q += m.coordinates();
+      v += m.speeds();
+    }
+  }
+}
+/// f(coordinate, speed) for the deformations of carried bodies, in narrow vectors.
+template <class T, class F>
+void for_each_deformation(JointTreeOf<T> const& tree, F&& f) {
+  for (TreeBody const& body : tree.bodies)
+    for (Index k = 0; k < body.deformations && body.carried(); ++k)
+      f(body.qn + body.motions.coordinates() + k, body.vn + body.motions.speeds() + k);
+}
+
+/// Where frames a and b of a joint stand; in the plane, the angle between them as well.
+template <class T>
+struct JointFrames {
+  Vec<T, 3> ra, rb;
+  Mat<T, 3, 3> a, b;
+  T angle;
+};
+template <class T>
+JointFrames<T> joint_frames(JointTreeOf<T> const& tree, TreeBody const& body, VecXOf<T> const& q, VecXOf<T> const& v,
+                            TreeStateOf<T>& s, std::size_t i) {
+  TreeFrameOf<T> const &f = s.frames[i], &p = tree.parent_of(body, s);
+  auto const point = [](TreeFrameOf<T> const& at, Vec<T, 3> const& u) {
+    Vec<T, 3> r = product<T, 1>(at.A, u);
+    for (int k = 0; k < 3; ++k) r[k] += at.r[k];
+    return r;
+  };
+  JointFrames<T> j{point(p, body.from.origin), point(f, body.to.origin), product<T>(p.A, body.from.axes),
+                   product<T>(f.A, body.to.axes), f.angle - p.angle - body.angle};
+  auto const bent = [&](Index e, Vec<T, 3>& r, Mat<T, 3, 3>& axes) {
+    FloatingEnd const& end = tree.ends[std::size_t(e)];
+    Published<T> const m = place_end<T>(end, q.data() + end.q0, v.data() + end.v0, s);
+    r = m.frame.r;
+    axes = m.frame.A;
+    return end.layout == RigidLayout::plane ? bent_by<T>(end, axes, q[end.q0 + 2]) : T(0.0);
+  };
+  if (body.from_end >= 0) j.angle -= bent(body.from_end, j.ra, j.a);
+  if (body.to_end >= 0) j.angle += bent(body.to_end, j.rb, j.b);
+  if (body.backwards) {
+    std::swap(j.ra, j.rb);
+    std::swap(j.a, j.b);
+    j.angle = -j.angle;
+  }
+  return j;
+}
+
+}  // namespace detail
+
+/// Joint coordinates from whole ones.
+template <class T>
+void read_coordinates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& v, TreeStateOf<T>& s,
+                      VecXOf<T>& qn) {
+  for (std::size_t i = 0; i < tree.bodies.size(); ++i) detail::read_frame<T>(tree.bodies[i], q, v, s.frames[i]);
+  for (std::size_t i = 0; i < tree.bodies.size(); ++i) {
+    TreeBody const& body = tree.bodies[i];
+    if (!body.carried()) continue;
+    detail::JointFrames<T> const j = detail::joint_frames<T>(tree, body, q, v, s, i);
+    Vec<T, 3> const d = transposed_product<T, 3, 1>(j.a, difference<T>(j.rb, j.ra));
+    Mat<T, 3, 3> turned = transposed_product<T>(j.a, j.b);
+    T* x = qn.data() + body.qn;
+    for (int k = 0; k < body.motions.count; ++k) {
+      JointMotion const& m = body.motions.list[std::size_t(k)];
+      switch (m.kind) {
+        case JointMotion::Kind::slide:
+          *x = d[m.axis];
+          break;
+        case JointMotion::Kind::turn:
+          *x = body.layout == RigidLayout::plane
+                   ? j.angle * j.a(2, m.axis)
+                   : detail::first_turn<T>(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
+          turned = product<T>(detail::turn_about<T>(m.axis, -*x), turned);
+          break;
+        case JointMotion::Kind::screw: {  // the slide counts the turns
+          double const rest = detail::first_turn<T>(m.axis, turned, false, body.motions, k),
+                       full = 2.0 * std::numbers::pi;
+          *x = rest + full * std::round((d[m.axis] / m.pitch - rest) / full);
+          break;
+        }
+        case JointMotion::Kind::ball: {
+          Quaternion<T> const p4 = quaternion_of(turned);
+          for (int l = 0; l < 4; ++l) x[l] = p4[l];
+        }
+      }
+      x += m.coordinates();
+    }
+  }
+}
+
+/// out = q ⊞ δ of the joint coordinates.
+template <class T>
+void plus(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& delta, VecXOf<T>& out) {
+  detail::for_each_deformation(tree, [&](Index qn, Index vn) { out[qn] = q[qn] + delta[vn]; });
+  detail::for_each_motion(tree, [&](JointMotion const& m, Index qn, Index vn) {
+    if (m.kind != JointMotion::Kind::ball) {
+      out[qn] = q[qn] + delta[vn];
+      return;
+    }
+    Quaternion<T> const turned =
+        quaternion_plus<T>({q[qn], q[qn + 1], q[qn + 2], q[qn + 3]}, {delta[vn], delta[vn + 1], delta[vn + 2]});
+    for (int i = 0; i < 4; ++i) out[qn + i] = turned[i];
+  });
+}
+/// The rate of δ in q ⊞ δ.
+template <class T>
+void local_rate(JointTreeOf<T> const& tree, VecXOf<T> const& delta, VecXOf<T> const& v, VecXOf<T>& out) {
+  detail::for_each_deformation(tree, [&](Index, Index vn) { out[vn] = v[vn]; });
+  detail::for_each_motion(tree, [&](JointMotion const& m, Index, Index vn) {
+    if (m.kind != JointMotion::Kind::ball) {
+      out[vn] = v[vn];
+      return;
+    }
+    Vec<T, 3> const rate = product<T, 1>(right_jacobian_inverse<T>({delta[vn], delta[vn + 1], delta[vn + 2]}),
+                                         Vec<T, 3>(v[vn], v[vn + 1], v[vn + 2]));
+    for (int i = 0; i < 3; ++i) out[vn + i] = rate[i];
+  });
+}
+
+/// q˙ of the joint coordinates; that of a ball is ½ q ∘ (0, Ω).
+template <class T>
+void coordinate_rates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T>& rate) {
+  detail::for_each_deformation(tree, [&](Index qn, Index vn) { rate[qn] = v[vn]; });
+  detail::for_each_motion(tree, [&](JointMotion const& m, Index qn, Index vn) {
+    if (m.kind != JointMotion::Kind::ball) {
+      rate[qn] = v[vn];
+      return;
+    }
+    Quaternion<T> const moved =
+        quaternion_product<T>({q[qn], q[qn + 1], q[qn + 2], q[qn + 3]}, {0.0, v[vn], v[vn + 1], v[vn + 2]});
+    for (int i = 0; i < 4; ++i) rate[qn + i] = 0.5 * moved[i];
+  });
+}
+
+}  // namespace polybody

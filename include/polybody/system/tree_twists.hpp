@@ -1,0 +1,103 @@
+#pragma once
+/// \file
+/// Between the whole vectors of a model and the poses and twists of a tree's bodies.
+
+#include <polybody/math/quaternion.hpp>
+#include <polybody/system/tree_body.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// Three entries of a whole vector.
+template <class T>
+Vec<T, 3> triple(VecXOf<T> const& x, Index first) {
+  return {x[first], x[first + 1], x[first + 2]};
+}
+template <class T>
+void set_pair(Vec<T, 3> const& a, Vec<T, 3> const& b, Vec<T, 6>& out) {
+  for (int i = 0; i < 6; ++i) out[i] = i < 3 ? a[i] : b[i - 3];
+}
+
+/// [v; ω] of a whole vector of speeds or accelerations, in world axes.
+template <class T>
+Vec<T, 6> twist_of(TreeBody const& body, TreeFrameOf<T> const& f, VecXOf<T> const& x) {
+  auto t = zeros<Vec<T, 6>>();
+  if (body.layout == RigidLayout::plane) {
+    t[0] = x[body.v0];
+    t[1] = x[body.v0 + 1];
+    t[5] = x[body.v0 + 2];
+  } else {
+    set_pair<T>(triple<T>(x, body.v0), product<T, 1>(f.A, triple<T>(x, body.v0 + 3)), t);
+  }
+  return t;
+}
+template <class T>
+void put_twist(TreeBody const& body, TreeFrameOf<T> const& f, Vec<T, 6> const& t, VecXOf<T>& x) {
+  bool const plane = body.layout == RigidLayout::plane;
+  for (int i = 0; i < 3; ++i) x[body.v0 + i] = t[plane && i == 2 ? 5 : i];
+  if (plane) return;
+  Vec<T, 3> const spin = transposed_product<T, 3, 1>(f.A, Vec<T, 3>(t[3], t[4], t[5]));
+  for (int i = 0; i < 3; ++i) x[body.v0 + 3 + i] = spin[i];
+}
+
+}  // namespace detail
+
+/// t += the rigid motion of the parent at a body `arm` away.
+template <class T>
+void add_carried(Vec<T, 6> const& parent, Vec<T, 3> const& arm, Vec<T, 6>& t) {
+  Vec<T, 3> const rate = cross<T>({parent[3], parent[4], parent[5]}, arm);
+  for (int i = 0; i < 6; ++i) t[i] += parent[i];
+  for (int i = 0; i < 3; ++i) t[i] += rate[i];
+}
+/// parent += a wrench of the body, `arm` away.
+template <class T>
+void add_back(Vec<T, 6> const& w, Vec<T, 3> const& arm, Vec<T, 6>& parent) {
+  Vec<T, 3> const moment = cross<T>(arm, {w[0], w[1], w[2]});
+  for (int i = 0; i < 6; ++i) parent[i] += w[i];
+  for (int i = 0; i < 3; ++i) parent[3 + i] += moment[i];
+}
+
+namespace detail {
+
+/// t += column · factor, and column · t; by the place of the column's first entry.
+template <class T>
+void add_column(T const* column, T factor, Vec<T, 6>& t) {
+  for (int i = 0; i < 6; ++i) t[i] += column[i] * factor;
+}
+template <class T>
+T along_column(T const* column, Vec<T, 6> const& t) {
+  T sum = 0.0;
+  for (int i = 0; i < 6; ++i) sum += column[i] * t[i];
+  return sum;
+}
+
+/// The frame of a body from whole vectors; and back.
+template <class T>
+void read_frame(TreeBody const& body, VecXOf<T> const& q, VecXOf<T> const& v, TreeFrameOf<T>& f) {
+  if (body.layout == RigidLayout::plane) {
+    f.r = {q[body.q0], q[body.q0 + 1], 0.0};
+    f.angle = q[body.q0 + 2];
+    f.A = turn_about<T>(2, f.angle);
+  } else {
+    f.r = triple<T>(q, body.q0);
+    f.A = rotation_matrix<T>({q[body.q0 + 3], q[body.q0 + 4], q[body.q0 + 5], q[body.q0 + 6]});
+  }
+  Vec<T, 6> const t = twist_of<T>(body, f, v);
+  f.v = {t[0], t[1], t[2]};
+  f.w = {t[3], t[4], t[5]};
+}
+template <class T>
+void write_frame(TreeBody const& body, TreeFrameOf<T> const& f, VecXOf<T>& q, VecXOf<T>& v) {
+  bool const plane = body.layout == RigidLayout::plane;
+  for (int i = 0; i < 3; ++i) q[body.q0 + i] = plane && i == 2 ? f.angle : f.r[i];
+  if (!plane) {
+    Quaternion<T> const turned = quaternion_of(f.A);
+    for (int i = 0; i < 4; ++i) q[body.q0 + 3 + i] = turned[i];
+  }
+  Vec<T, 6> t;
+  set_pair<T>(f.v, f.w, t);
+  put_twist<T>(body, f, t, v);
+}
+
+}  // namespace detail
+}  // namespace polybody
