@@ -43,8 +43,7 @@ class JointTreeOf {
         continue;
       }
       TreeFrame const& p = parent_of(body, s);
-      if (body.from_end < 0 && body.to_end < 0 && body.motions.count == 1 &&
-          body.motions.list[0].kind == JointMotion::Kind::turn)
+      if (body.turn.only)
         detail::carry_by_turn<T>(body, p, qn[body.qn], vn[body.vn], f);
       else
         carry(body, {qn, vn}, {q, v}, f, s);
@@ -186,6 +185,7 @@ class JointTreeOf {
       f.A = body.to_turned ? product<T>(run.A, transposed<T>(body.to.axes)) : run.A;
       run.go(scaled<T>(product<T, 1>(f.A, body.to.origin), -1.0));
     }
+    if (body.layout != RigidLayout::plane) f.rotation = quaternion_of(f.A);
     f.r = run.r;
     f.v = run.v;
     f.w = run.w;

@@ -296,6 +296,8 @@ void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const
       next.backwards = backwards;
       if (next.layout == RigidLayout::plane)
         next.angle = reference[next.q0 + 2] - (body < 0 ? 0.0 : reference[bodies[std::size_t(body)].q0 + 2]);
+      if (next.from_end < 0 && next.to_end < 0)
+        prepare_turn(next, reference.data(), body < 0 ? -1 : bodies[std::size_t(body)].q0);
       place[std::size_t(to.body)] = Index(tree_.bodies.size());
       order_.push_back(to.body);
       tree_.bodies.push_back(std::move(next));

@@ -11,6 +11,14 @@
 
 namespace polybody {
 
+/// A joint of one turn x in constants: in the parent's axes n, and in space the quaternion from the parent's axes to
+/// the body's, still cos(x/2) + turning sin(x/2).
+struct JointTurn {
+  bool only = false;  ///< the joint is of this kind
+  Vec<double, 3> axis{0, 0, 0};
+  Vec<double, 4> still{1, 0, 0, 0}, turning{0, 0, 0, 0};
+};
+
 /// A body of a tree: how its pose is written, and the joint that carries it.
 struct TreeBody {
   std::string name;
@@ -24,6 +32,7 @@ struct TreeBody {
   JointMotions motions = {};                  ///< from frame a to frame b
   Index from_end = -1, to_end = -1;           ///< in the tree's floating ends, for frames on bodies that deform
   Index deformations = 0;                     ///< coordinates of the body behind those of its frame
+  JointTurn turn = {};                        ///< of a joint of one turn between rigid bodies
   bool backwards = false;                     ///< frame b is the parent's
   double angle = 0.0;                         ///< in the plane: its turn against the parent in the reference
   bool by_newton_euler = false;               ///< nothing but weight and its inertia moves it where nothing acts
@@ -39,6 +48,7 @@ template <class T>
 struct TreeFrameOf {
   Vec<T, 3> r{0, 0, 0}, v{0, 0, 0}, w{0, 0, 0}, arm{0, 0, 0};
   Mat<T, 3, 3> A = identity<T>();
+  Vec<T, 4> rotation{1, 0, 0, 0};  ///< unit quaternion of A; in space only
   T angle = 0.0;
   int speeds = 0;
   Mat<T, 6, 6> s = detail::zeros<Mat<T, 6, 6>>();        ///< S = [S_r; S_ω] by columns

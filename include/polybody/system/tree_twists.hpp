@@ -80,7 +80,8 @@ void read_frame(TreeBody const& body, VecXOf<T> const& q, VecXOf<T> const& v, Tr
     f.A = turn_about<T>(2, f.angle);
   } else {
     f.r = triple<T>(q, body.q0);
-    f.A = rotation_matrix<T>({q[body.q0 + 3], q[body.q0 + 4], q[body.q0 + 5], q[body.q0 + 6]});
+    f.rotation = {q[body.q0 + 3], q[body.q0 + 4], q[body.q0 + 5], q[body.q0 + 6]};
+    f.A = rotation_matrix<T>(f.rotation);
   }
   Vec<T, 6> const t = twist_of<T>(body, f, v);
   f.v = {t[0], t[1], t[2]};
@@ -90,10 +91,7 @@ template <class T>
 void write_frame(TreeBody const& body, TreeFrameOf<T> const& f, VecXOf<T>& q, VecXOf<T>& v) {
   bool const plane = body.layout == RigidLayout::plane;
   for (int i = 0; i < 3; ++i) q[body.q0 + i] = plane && i == 2 ? f.angle : f.r[i];
-  if (!plane) {
-    Quaternion<T> const turned = quaternion_of(f.A);
-    for (int i = 0; i < 4; ++i) q[body.q0 + 3 + i] = turned[i];
-  }
+  for (int i = 0; i < 4 && !plane; ++i) q[body.q0 + 3 + i] = f.rotation[i];
   Vec<T, 6> t;
   set_pair<T>(f.v, f.w, t);
   put_twist<T>(body, f, t, v);

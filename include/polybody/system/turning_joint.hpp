@@ -1,25 +1,62 @@
 #pragma once
 /// \file
-/// A body on a pin: the common case of `JointTree`.
+/// A rigid body on a pin: the common case of `JointTree`, without a walk through motions.
 
+#include <polybody/math/quaternion.hpp>
 #include <polybody/system/tree_body.hpp>
 
-namespace polybody::detail {
+namespace polybody {
 
-/// A body on a joint of one turn, whole: the common case without a walk through motions. \param x, u the angle and its
-/// rate, against the motion where frame b is the parent's
+/// Fills `body.turn` where the joint leaves one turn and nothing else. The quaternions of body and parent keep the
+/// signs that they have in `reference`, a whole configuration. \param parent first coordinate of the parent; −1: the
+/// ground
+template <class = void>
+[[gnu::cold]] void prepare_turn(TreeBody& body, double const* reference, Index parent) {
+  if (body.motions.count != 1 || body.motions.list[0].kind != JointMotion::Kind::turn) return;
+  int const k = body.motions.list[0].axis;
+  double const sign = body.backwards ? -1.0 : 1.0;
+  JointTurn& turn = body.turn;
+  turn.only = true;
+  for (int i = 0; i < 3; ++i) turn.axis[i] = sign * body.from.axes(i, k);
+  if (body.layout == RigidLayout::plane) return;
+  Quaternion<double> const from = quaternion_of(body.from.axes), back = conjugate(quaternion_of(body.to.axes));
+  Quaternion<double> half(0.0, 0.0, 0.0, 0.0);
+  half[1 + k] = sign;
+  turn.still = quaternion_product(from, back);
+  turn.turning = quaternion_product(quaternion_product(from, half), back);
+  auto const at = [&](Index q) {
+    return Quaternion<double>(reference[q], reference[q + 1], reference[q + 2], reference[q + 3]);
+  };
+  Quaternion<double> const stands = at(body.q0 + 3),
+                           led = quaternion_product(parent < 0 ? Quaternion<double>(1, 0, 0, 0) : at(parent + 3),
+                                                    turn.still);
+  double along = 0.0;
+  for (int i = 0; i < 4; ++i) along += stands[i] * led[i];
+  for (int i = 0; i < 4 && along < 0.0; ++i) {
+    turn.still[i] = -turn.still[i];
+    turn.turning[i] = -turn.turning[i];
+  }
+}
+
+namespace detail {
+
+/// A body on a joint of one turn. \param x, u the angle and its rate
 template <class T>
 void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, double x, double u, TreeFrameOf<T>& f) {
-  int const axis = body.motions.list[0].axis;
-  double const sign = body.backwards ? -1.0 : 1.0;
-  RunnerOf<T> run{p.r, p.v, {0, 0, 0}, p.A, p.w, {0, 0, 0}};
+  RunnerOf<T> run{p.r, p.v, {0, 0, 0}, {}, p.w, {0, 0, 0}};
   run.go(product<T, 1>(p.A, body.from.origin));
-  if (body.from_turned) run.A = product<T>(p.A, body.from.axes);
-  Vec<T, 3> const n(sign * run.A(0, axis), sign * run.A(1, axis), sign * run.A(2, axis));
+  Vec<T, 3> const n = product<T, 1>(p.A, body.turn.axis);
   run.turn(scaled<T>(n, u));
-  turn_columns<T>(axis, sign * x, run.A);
-  f.A = body.to_turned ? product<T>(run.A, transposed<T>(body.to.axes)) : run.A;
-  f.angle = p.angle + body.angle + n[2] * x;
+  if (body.layout == RigidLayout::plane) {
+    f.angle = p.angle + body.angle + n[2] * x;
+    f.A = turn_about<T>(2, f.angle);
+  } else {
+    double const c = std::cos(0.5 * x), s = std::sin(0.5 * x);
+    Quaternion<T> by;
+    for (int i = 0; i < 4; ++i) by[i] = body.turn.still[i] * c + body.turn.turning[i] * s;
+    f.rotation = quaternion_product<T>(p.rotation, by);
+    set_rotation<T>(f.rotation, f.A);
+  }
   Vec<T, 3> const to_centre = scaled<T>(product<T, 1>(f.A, body.to.origin), -1.0);
   run.go(to_centre);
   f.r = run.r;
@@ -39,4 +76,6 @@ void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, double x, doub
   f.inverse(0, 0) = 1.0 / size;
 }
 
-}  // namespace polybody::detail
+}  // namespace detail
+
+}  // namespace polybody
