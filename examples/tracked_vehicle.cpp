@@ -22,6 +22,11 @@ Runs run(Options const& o, std::vector<Pins> const& formulations) {
   Runs all;
   std::vector<Comparison> apart;
   for (Pins const& pins : formulations) {
+    if (o.left != o.right && !pins.cannot_turn.empty()) {
+      if (formulations.size() == 1) throw InvalidInput(pins.cannot_turn);
+      std::cout << pins.cannot_turn << '\n';
+      continue;
+    }
     Runs one = pins.run(o);
     apart.push_back(std::move(one.comparison));
     all.outcomes.insert(all.outcomes.end(), one.outcomes.begin(), one.outcomes.end());
@@ -40,6 +45,35 @@ double force_difference(Runs const& first, std::size_t k, Runs const& runs, std:
     d.add({b.times, b.values}, {a.times, a.values});
   }
   return d.value();
+}
+
+// The path of the watched link in the chassis against that of the first run: how far it is off at most, in the upper
+// strand, which hangs between sprocket and idler, and elsewhere [m].
+struct PathDistance {
+  double taut = 0.0, slack = 0.0;
+};
+PathDistance path_distance(Runs const& runs, std::size_t run) {
+  auto const path = [&](std::size_t k, std::size_t every) {
+    auto const &x = runs.history(k, "link x in chassis [m]"), &z = runs.history(k, "link z in chassis [m]");
+    std::vector<Vec2> points;
+    for (std::size_t i = 0; i < x.size(); i += every) points.emplace_back(x[i], z[i]);
+    return points;
+  };
+  std::vector<Vec2> const first = path(0, 1), other = path(run, 8);
+  PathDistance worst;
+  for (Vec2 const& p : other) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < first.size(); ++i) {
+      Vec2 const along = first[i + 1] - first[i], to = p - first[i];
+      double const share = std::clamp(to.dot(along) / std::max(along.squaredNorm(), 1e-20), 0.0, 1.0);
+      nearest = std::min(nearest, (to - share * along).squaredNorm());
+    }
+    double const x = p[0] + m113::chassis.x, z = p[1] + m113::chassis.z;
+    bool const hangs = z > m113::sprocket_z && x < 0.0 && x > m113::idler_start_x;
+    double& most = hangs ? worst.slack : worst.taut;
+    most = std::max(most, std::sqrt(nearest));
+  }
+  return worst;
 }
 
 void report(Options const& o, Runs const& runs) {
@@ -69,6 +103,12 @@ void report(Options const& o, Runs const& runs) {
     if (k > 0 && r.times.back() >= 4.0 && runs.comparison.runs[0].times.back() >= 4.0)
       std::printf("               forces in pin %d, 30 Hz, 1 to 4 s: %.2f %% (rms) off those of %s\n", watched_pin,
                   1e2 * force_difference(runs, 0, runs, k), runs.comparison.runs.front().name.c_str());
+    if (k > 0) {
+      PathDistance const off = path_distance(runs, k);
+      std::printf(
+          "               path of a link in the chassis up to %.1f mm off that of %s, %.1f mm in the upper strand\n",
+          1e3 * off.taut, runs.comparison.runs.front().name.c_str(), 1e3 * off.slack);
+    }
     if (out.relative >= 0.0)
       std::printf(
           "               work of the drives %.1f kJ + gravity %.1f kJ = kinetic %.1f + stored %.1f + dissipated %.1f "

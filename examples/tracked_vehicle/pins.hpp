@@ -21,6 +21,7 @@ inline constexpr double implicit_step = 5e-4;  // [s]
 struct Pins {
   std::function<Runs(Options const&)> run;
   std::function<Census(Options const&)> count;
+  std::string cannot_turn = {};  // why --turn is refused
 };
 Pins ideal_pins();
 Pins penalty_pins(double stiffness);
