@@ -192,7 +192,8 @@ template <>
 inline constexpr auto words_of<Bar> =
     words("length", "section", "material", "constants", "placement", "damping", "pretension", "shear factor");
 template <>
-inline constexpr auto words_of<FfrTerms> = words("coupling", "coriolis", "centrifugal");
+inline constexpr auto words_of<FfrTerms> =
+    words("coupling", "onto frame", "deformed inertia", "frame velocities", "coriolis", "centrifugal", "spin");
 template <>
 inline constexpr auto words_of<FfrOptions> = words("placement", "terms", "stiffening", "damping");
 template <>

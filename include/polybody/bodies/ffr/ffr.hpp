@@ -110,7 +110,7 @@ class Ffr {
     Index const n = deformations();
     Mat3 const a = rotation_matrix<double>(part<4>(q, 3));
     Moments<double> x;
-    i_.moments<double>(q.data() + 7, x);
+    moments<double>(q.data() + 7, x);
     m.setZero(6 + n, 6 + n);
     m.topLeftCorner<3, 3>().diagonal().setConstant(i_.mass);
     m.block<3, 3>(0, 3) = -a * skew<double>(x.c);
@@ -121,10 +121,11 @@ class Ffr {
     for (Index k = 0; k < n; ++k) {
       Vec3 h, c;
       i_.columns<double>(q.data() + 7, k, c, h);
+      m.block<1, 3>(6 + k, 0) = (a * c).transpose();
+      m.block<1, 3>(6 + k, 3) = h.transpose();
+      if (!terms_.onto_frame) continue;
       m.block<3, 1>(0, 6 + k) = a * c;
       m.block<3, 1>(3, 6 + k) = h;
-      m.block<1, 3>(6 + k, 0) = m.block<3, 1>(0, 6 + k).transpose();
-      m.block<1, 3>(6 + k, 3) = h.transpose();
     }
   }
   template <StateScalar T>
@@ -133,7 +134,7 @@ class Ffr {
     Vec<T, 3> const ar = part<3>(a, 0), alpha = part<3>(a, 3), along = A.transpose() * ar;
     T const *const x = q.data() + 7, *const xdd = a.data() + 6;
     Moments<T> at;
-    i_.template moments<T>(x, at);
+    moments<T>(x, at);
     Vec<T, 3> push = alpha.cross(at.c);
     Vec<T, 3> turn = at.c.cross(along) + at.J * alpha;
     for (Index k = 0; k < deformations(); ++k) {
@@ -143,6 +144,7 @@ class Ffr {
         i_.template columns<T>(x, k, c, h);
         for (int i = 0; i < 3; ++i) {
           sum += along[i] * c[i] + alpha[i] * h[i];
+          if (!terms_.onto_frame) continue;
           push[i] += c[i] * xdd[k];
           turn[i] += h[i] * xdd[k];
         }
@@ -158,12 +160,15 @@ class Ffr {
     Vec<T, 3> const omega = part<3>(v, 3);
     T const *const x = q.data() + 7, *const xd = v.data() + 6;
     Index const n = deformations();
+    bool const pushes = terms_.pushes_frame();
     Vec<T, 3> cd = Vec<T, 3>::Zero(), h = cd, cdd = cd, hd = cd;  // ċ, H q̇, Ċ q̇, H˙ q̇
     for (Index k = 0; k < n; ++k) {
-      Vec<T, 3> hk, ck;
-      i_.template columns<T>(x, k, ck, hk);
-      cd += ck * xd[k];
-      h += hk * xd[k];
+      if (pushes) {
+        Vec<T, 3> hk, ck;
+        i_.template columns<T>(x, k, ck, hk);
+        cd += ck * xd[k];
+        h += hk * xd[k];
+      }
       T f = -detail::column_times(i_.stiffness, k, x) - detail::column_times(i_.damping, k, xd) - i_.initial_force[k];
       for (std::size_t i = 0; i < 3 && terms_.coriolis; ++i)
         f -= omega[Index(i)] * detail::column_times(gyroscopic_[i], k, xd);
@@ -177,19 +182,19 @@ class Ffr {
       for (Index k = 0; k < n; ++k) {
         T const slope = i_.template inertia_slope<T>(x, p, k);
         double const by = i_.inertia_by[p][k];
-        j += (slope + by) * 0.5 * x[k];
-        jd += slope * xd[k];
-        out[6 + k] += product * (terms_.centrifugal ? slope : T(by));
+        if (terms_.deformed_inertia) j += (slope + by) * 0.5 * x[k];
+        if (terms_.changes_inertia()) jd += slope * xd[k];
+        out[6 + k] += product * terms_.centrifugal_slope(slope, by);
       }
       inertia(a, b) = inertia(b, a) = j;
       rate(a, b) = rate(b, a) = jd;
     }
-    for (std::size_t i = 0; i < 3 && stiffens(); ++i) {
+    for (std::size_t i = 0; i < 3 && stiffens() && pushes; ++i) {
       cdd[Index(i)] = -detail::quadratic<T>(i_.first_second[i], xd, xd);
       hd[Index(i)] = detail::quadratic<T>(i_.coupling_by[i], xd, xd);
     }
     Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
-    Vec<T, 3> const c = i_.template first_moment<T>(x);
+    Vec<T, 3> const c = first_moment<T>(x);
     out.template head<3>() = -(A * (omega.cross(omega.cross(c)) + omega.cross(cd) * T(2.0) + cdd));
     out.template segment<3>(3) = -(rate * omega + omega.cross(inertia * omega + h) + hd);
   }
@@ -204,7 +209,7 @@ class Ffr {
     Vec<T, 3> const pull = A.transpose() * g.template cast<T>();
     T const* const x = q.data() + 7;
     out.template head<3>() = (g * i_.mass).template cast<T>();
-    out.template segment<3>(3) = i_.template first_moment<T>(x).cross(pull);
+    out.template segment<3>(3) = first_moment<T>(x).cross(pull);
     for (Index k = 0; k < deformations(); ++k) {
       Vec<T, 3> c, h;
       i_.template columns<T>(x, k, c, h);
@@ -315,6 +320,18 @@ class Ffr {
  private:
   template <class T>
   using Moments = FfrIntegrals::Moments<T>;
+
+  /// c and J as the terms say.
+  template <class T>
+  Vec<T, 3> first_moment(T const* x) const {
+    return terms_.deformed_inertia ? i_.template first_moment<T>(x) : Vec<T, 3>(i_.first.template cast<T>());
+  }
+  template <class T>
+  void moments(T const* x, Moments<T>& out) const {
+    if (terms_.deformed_inertia) return i_.template moments<T>(x, out);
+    out.c = i_.first.template cast<T>();
+    out.J = i_.inertia.template cast<T>();
+  }
 
   FfrPoints const& made() const {
     if (!points_) throw InvalidInput("Ffr: this body is made of integrals only; describe the point by a Point.");

@@ -8,12 +8,31 @@
 
 namespace polybody {
 
-/// Parts of the coupling between frame and deformation; leave one out to see what it does.
+/// The simplifications of thesis §4.3.2 and §4.3.4 one by one: each switch that is false leaves out all of its terms.
+/// With c, J, H and C as in ffr.hpp. Without `onto_frame` alone the mass matrix is not symmetric: take a linear solver
+/// that reads both halves (`BlockSolver` does, `BlockLdlt` and `EigenLdlt` do not).
 struct FfrTerms {
-  bool coupling = true;  ///< m_rf: the mass between frame and deformation
-  bool coriolis = true;  ///< S̃₁: Coriolis forces on the deformation
-  bool centrifugal =
-      true;  ///< S̃₂: centrifugal forces that grow with the deformation; and its stiffening, where asked for
+  bool coupling = true;  ///< m_rf: C, H in both rows of the mass matrix; and ċ, Ċ q̇, H q̇, H˙ q̇ as of the frame's rows
+  bool onto_frame =
+      true;  ///< the same in the rows of the frame alone: false lets the frame move the deformation one way
+  bool deformed_inertia = true;  ///< c and J, J˙ of the deformed body, not those of q = 0, in inertia and weight
+  bool frame_velocities = true;  ///< of the frame's quadratic-velocity forces 2 Ω × ċ, Ċ q̇, J˙ Ω, Ω × H q̇, H˙ q̇; the
+                                 ///< rest are those of a rigid body
+  bool coriolis = true;          ///< 2 S̃₁ q̇: Coriolis forces on the deformation
+  bool centrifugal = true;       ///< S̃₂ q: centrifugal forces that grow with the deformation; and its stiffening, where
+                                 ///< asked for
+  bool spin = true;              ///< Ĩ_o ω̄: centrifugal forces on the body as it is without deformation
+
+  /// What the deformation's mass does to the frame.
+  bool pulls_frame() const { return coupling && onto_frame; }
+  /// What its speed does to the frame.
+  bool pushes_frame() const { return pulls_frame() && frame_velocities; }
+  bool changes_inertia() const { return deformed_inertia && frame_velocities; }
+  /// What is left of ½ (J_p)_q: `slope` as it is, `by` at q = 0.
+  template <class T>
+  T centrifugal_slope(T const& slope, double by) const {
+    return (centrifugal ? slope - by : T(0.0)) + (spin ? by : 0.0);
+  }
 };
 
 /// How a body is placed and what it accounts for.

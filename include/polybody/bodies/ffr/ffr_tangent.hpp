@@ -26,6 +26,9 @@ class FfrTangent {
         x_(q.data() + 7, i_.size()),
         xd_(v.data() + 6, i_.size()) {
     i_.moments<double>(x_.data(), at_);
+    if (terms.deformed_inertia) return;
+    at_.c = i_.first;
+    at_.J = i_.inertia;
   }
 
   void write(double ck, double cd, MatX& k) {
@@ -36,7 +39,7 @@ class FfrTangent {
     add_inertia(ck, cd, k);
     add_coupling(ck, cd, k);
     Vec3 w = omega_.cross(omega_.cross(at_.c)) + 2.0 * omega_.cross(c_rate_);
-    if (i_.stiffens()) add_foreshortening(ck, cd, w, k);
+    if (i_.stiffens() && terms_.pushes_frame()) add_foreshortening(ck, cd, w, k);
     k.block<3, 3>(0, 3) =
         A_ * (-ck * skew<double>(w) - cd * (skew<double>(omega_.cross(at_.c).eval()) + spin_ * skew<double>(at_.c) +
                                             2.0 * skew<double>(c_rate_)));
@@ -49,10 +52,12 @@ class FfrTangent {
     for (Index i = 0; i < i_.size(); ++i) {
       Vec3 c, h;
       i_.columns<double>(x_.data(), i, c, h);
+      if (terms_.deformed_inertia) k.block<3, 1>(0, 6 + i) += A_ * (ck * spin_ * (spin_ * c));
+      if (!terms_.pushes_frame()) continue;
       c_rate_ += c * xd_[i];
       h_ += h * xd_[i];
-      k.block<3, 1>(0, 6 + i) = A_ * (ck * spin_ * (spin_ * c) + 2.0 * cd * spin_ * c);
-      k.block<3, 1>(3, 6 + i) = cd * spin_ * h;
+      k.block<3, 1>(0, 6 + i) += A_ * (2.0 * cd * spin_ * c);
+      k.block<3, 1>(3, 6 + i) += cd * spin_ * h;
     }
   }
   /// The terms of J, entry p by entry: slope (n) = ∂J_p/∂q, bent (n) = ∂(J˙_p)/∂q.
@@ -63,13 +68,15 @@ class FfrTangent {
       for (Index i = 0; i < i_.size(); ++i) {
         double const slope = i_.inertia_slope<double>(x_.data(), p, i);
         double const bent = 2.0 * i_.inertia_second[p].col(i).dot(xd_);
-        double const used = terms_.centrifugal ? slope : i_.inertia_by[p][i];
-        j_rate_(a, b) += slope * xd_[i];
-        if (off) j_rate_(b, a) += slope * xd_[i];
+        double const used = terms_.centrifugal_slope(slope, i_.inertia_by[p][i]);
+        double const moving = terms_.changes_inertia() ? 1.0 : 0.0;
+        j_rate_(a, b) += moving * slope * xd_[i];
+        if (off) j_rate_(b, a) += moving * slope * xd_[i];
         Vec3 by = Vec3::Zero();  // ∂(J Ω)/∂q_i of this entry, per slope
         by[a] += omega_[b];
         if (off) by[b] += omega_[a];
-        k.block<3, 1>(3, 6 + i) += ck * (bent * by + slope * spin_ * by) + cd * slope * by;
+        k.block<3, 1>(3, 6 + i) += moving * (ck * bent + cd * slope) * by;
+        if (terms_.deformed_inertia) k.block<3, 1>(3, 6 + i) += ck * slope * spin_ * by;
         k(6 + i, 3 + a) -= cd * used * omega_[b];
         if (off) k(6 + i, 3 + b) -= cd * used * omega_[a];
       }
@@ -84,8 +91,10 @@ class FfrTangent {
       MatX const& m = i_.coupling_by[std::size_t(i)];
       for (Index j = 0; j < i_.size(); ++j) {
         double const left = m.row(j).dot(xd_), right = m.col(j).dot(xd_);  // (m q̇)_j, (mᵀ q̇)_j
-        k.block<3, 1>(3, 6 + j) += ck * left * spin_.col(i);
-        k(3 + i, 6 + j) += cd * (i_.stiffens() ? left + right : 0.0);
+        if (terms_.pushes_frame()) {
+          k.block<3, 1>(3, 6 + j) += ck * left * spin_.col(i);
+          k(3 + i, 6 + j) += cd * (i_.stiffens() ? left + right : 0.0);
+        }
         if (terms_.coriolis) k(6 + j, 3 + i) += cd * (right - left);
       }
       if (terms_.coriolis) k.bottomRightCorner(i_.size(), i_.size()) += (cd * omega_[i]) * (m.transpose() - m);

@@ -97,7 +97,7 @@ class Ffr : public AddingCoordinates {
     Index const n = deformations();
     double const c = std::cos(q[2]), s = std::sin(q[2]);
     FfrIntegrals::Moments<double> at;
-    i_.moments<double>(q.data() + 3, at);
+    moments<double>(q.data() + 3, at);
     m.setZero(3 + n, 3 + n);
     m(0, 0) = m(1, 1) = i_.mass;
     m(2, 2) = at.J;
@@ -106,9 +106,10 @@ class Ffr : public AddingCoordinates {
     m.bottomRightCorner(n, n) = i_.mass_matrix;
     for (Index k = 0; k < n && terms_.coupling; ++k) {
       double const x = i_.first_slope<double>(q.data() + 3, 0, k), y = i_.first_slope<double>(q.data() + 3, 1, k);
-      m(0, 3 + k) = m(3 + k, 0) = c * x - s * y;
-      m(1, 3 + k) = m(3 + k, 1) = s * x + c * y;
-      m(2, 3 + k) = m(3 + k, 2) = i_.coupling_at<double>(q.data() + 3, k);
+      m(3 + k, 0) = c * x - s * y;
+      m(3 + k, 1) = s * x + c * y;
+      m(3 + k, 2) = i_.coupling_at<double>(q.data() + 3, k);
+      for (Index i = 0; i < 3 && terms_.onto_frame; ++i) m(i, 3 + k) = m(3 + k, i);
     }
   }
   template <StateScalar T>
@@ -118,7 +119,7 @@ class Ffr : public AddingCoordinates {
     T const along[2] = {c * a[0] + s * a[1], c * a[1] - s * a[0]};
     T const *const x = q.data() + 3, *const xdd = a.data() + 3;
     FfrIntegrals::Moments<T> at;
-    i_.template moments<T>(x, at);
+    moments<T>(x, at);
     T push[2] = {-(a[2] * at.c[1]), a[2] * at.c[0]};
     T turn = at.c[0] * along[1] - at.c[1] * along[0] + at.J * a[2];
     for (Index k = 0; k < deformations(); ++k) {
@@ -128,11 +129,11 @@ class Ffr : public AddingCoordinates {
         for (int i = 0; i < 2; ++i) {
           T const ck = i_.template first_slope<T>(x, i, k);
           sum += along[i] * ck;
-          push[i] += ck * xdd[k];
+          if (terms_.onto_frame) push[i] += ck * xdd[k];
         }
         T const h = i_.template coupling_at<T>(x, k);
         sum += a[2] * h;
-        turn += h * xdd[k];
+        if (terms_.onto_frame) turn += h * xdd[k];
       }
       out[3 + k] = sum;
     }
@@ -147,12 +148,13 @@ class Ffr : public AddingCoordinates {
     T const c = cos(q[2]), s = sin(q[2]), omega = v[2];
     T const *const x = q.data() + 3, *const xd = v.data() + 3;
     FfrIntegrals::Moments<T> at;
-    i_.template moments<T>(x, at);
+    moments<T>(x, at);
+    bool const pushes = terms_.pushes_frame();
     T rate[2] = {T(0.0), T(0.0)}, j_rate(0.0);
     for (Index k = 0; k < deformations(); ++k) {
       T const slope = i_.template inertia_slope<T>(x, k);
-      j_rate += slope * xd[k];
-      T f = omega * omega * 0.5 * (terms_.centrifugal ? slope : T(i_.inertia_by[k])) - i_.initial_force[k];
+      if (terms_.changes_inertia()) j_rate += slope * xd[k];
+      T f = omega * omega * 0.5 * terms_.centrifugal_slope(slope, i_.inertia_by[k]) - i_.initial_force[k];
       T w(0.0);
       for (Index j = 0; j < deformations(); ++j) {
         f -= x[j] * i_.stiffness(j, k) + xd[j] * i_.damping(j, k);
@@ -160,10 +162,11 @@ class Ffr : public AddingCoordinates {
       }
       if (terms_.coriolis) f -= omega * w;
       out[3 + k] = f;
-      for (int i = 0; i < 2; ++i) rate[i] += i_.template first_slope<T>(x, i, k) * xd[k];
+      for (int i = 0; i < 2 && pushes; ++i) rate[i] += i_.template first_slope<T>(x, i, k) * xd[k];
     }
     T w[2] = {-(omega * omega * at.c[0]) - omega * rate[1] * 2.0, -(omega * omega * at.c[1]) + omega * rate[0] * 2.0};
-    for (std::size_t i = 0; i < 2 && i_.stiffens(); ++i) w[i] -= detail::quadratic<T>(i_.first_second[i], xd, xd);
+    for (std::size_t i = 0; i < 2 && i_.stiffens() && pushes; ++i)
+      w[i] -= detail::quadratic<T>(i_.first_second[i], xd, xd);
     out[0] = -(c * w[0] - s * w[1]);
     out[1] = -(s * w[0] + c * w[1]);
     out[2] = -(j_rate * omega);
@@ -174,7 +177,9 @@ class Ffr : public AddingCoordinates {
     double const c = std::cos(q[2]), s = std::sin(q[2]), omega = v[2];
     Eigen::Map<VecX const> const x(q.data() + 3, n), xd(v.data() + 3, n);
     FfrIntegrals::Moments<double> at;
-    i_.moments<double>(x.data(), at);
+    moments<double>(x.data(), at);
+    double const pushes = terms_.pushes_frame() ? 1.0 : 0.0, deformed = terms_.deformed_inertia ? 1.0 : 0.0,
+                 moving = terms_.changes_inertia() ? 1.0 : 0.0;
     k.setZero(3 + n, 3 + n);
     auto const turned = [&](Index column, double wx, double wy) {  // A w into the rows of r
       k(0, column) += c * wx - s * wy;
@@ -185,19 +190,19 @@ class Ffr : public AddingCoordinates {
       double const cx = i_.first_slope<double>(x.data(), 0, i), cy = i_.first_slope<double>(x.data(), 1, i);
       double const slope = i_.inertia_slope<double>(x.data(), i), bent = 2.0 * i_.inertia_second.col(i).dot(xd);
       double const left = i_.coupling_by.row(i).dot(xd), right = i_.coupling_by.col(i).dot(xd);
-      rate[0] += cx * xd[i];
-      rate[1] += cy * xd[i];
-      j_rate += slope * xd[i];
-      double const two = 2.0 * cd * omega, square = ck * omega * omega;
+      rate[0] += pushes * cx * xd[i];
+      rate[1] += pushes * cy * xd[i];
+      j_rate += moving * slope * xd[i];
+      double const two = pushes * 2.0 * cd * omega, square = deformed * ck * omega * omega;
       turned(3 + i, -square * cx - two * cy, -square * cy + two * cx);
-      for (std::size_t j = 0; j < 2 && i_.stiffens(); ++j) {
+      for (std::size_t j = 0; j < 2 && i_.stiffens() && terms_.pushes_frame(); ++j) {
         double const drawn = i_.first_second[j].col(i).dot(xd);
         drawn_rate[j] += drawn * xd[i];
         double const by_rate = -2.0 * cd * drawn, by_place = -2.0 * ck * omega * drawn;
         turned(3 + i, j == 0 ? by_rate : -by_place, j == 0 ? by_place : by_rate);
       }
-      k(2, 3 + i) += omega * (ck * bent + cd * slope);
-      k(3 + i, 2) -= cd * omega * (terms_.centrifugal ? slope : i_.inertia_by[i]);
+      k(2, 3 + i) += moving * omega * (ck * bent + cd * slope);
+      k(3 + i, 2) -= cd * omega * terms_.centrifugal_slope(slope, i_.inertia_by[i]);
       if (terms_.coriolis) k(3 + i, 2) += cd * (right - left);
     }
     auto kq = k.bottomRightCorner(n, n);
@@ -216,7 +221,7 @@ class Ffr : public AddingCoordinates {
     T const c = cos(q[2]), s = sin(q[2]);
     T const pull[2] = {c * g[0] + s * g[1], c * g[1] - s * g[0]};
     FfrIntegrals::Moments<T> at;
-    i_.template moments<T>(q.data() + 3, at);
+    moments<T>(q.data() + 3, at);
     out[0] = T(g[0] * i_.mass);
     out[1] = T(g[1] * i_.mass);
     out[2] = at.c[0] * pull[1] - at.c[1] * pull[0];
@@ -320,6 +325,14 @@ class Ffr : public AddingCoordinates {
   Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 3); }
 
  private:
+  /// c and J as the terms say.
+  template <class T>
+  void moments(T const* x, FfrIntegrals::Moments<T>& out) const {
+    if (terms_.deformed_inertia) return i_.template moments<T>(x, out);
+    for (int i = 0; i < 2; ++i) out.c[i] = T(i_.first[i]);
+    out.J = T(i_.inertia);
+  }
+
   FfrPoints const& made() const {
     if (!points_)
       throw InvalidInput("planar::Ffr: this body is made of integrals only; describe the point by a Point.");
