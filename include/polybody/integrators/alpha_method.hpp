@@ -175,7 +175,7 @@ struct AlphaMethod {
       if (w.phi.size() > 0) system.violation(w.phi);
       if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
       method.right_hand_side(h, two_sets, system.velocity_rows(), w);
-      return all_finite(w.rhs);
+      return all_finite(w.rhs) && w.solver.is_finite();
     }
     bool refactor() {
       double const ahead = std::min(look_ahead * w.age, 4.0) * h;
@@ -270,6 +270,10 @@ struct AlphaMethod {
       if (!w.second_order) w.analyse(system, SecondOrder::included);
       w.factored = false;
       return advance(system, x, h, w, effort + 1);
+    }
+    if (report.result != NewtonResult::converged && w.solver.keeps_multipliers()) {  // rhs, which names the largest
+      system.residual(w.vd, w.lambda, w.r);
+      right_hand_side(h, two_sets, system.velocity_rows(), w);
     }
     if (report.result != NewtonResult::converged)
       detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});

@@ -231,8 +231,8 @@ class ReducedCoordinates {
     std::copy_n(narrow_.data(), nv, out.data());
     equations_.to_rows(solution, out.data() + nv);
   }
-  static void balance_to_equations(void* c, VecX& out) {
-    if constexpr (!solves_as_it_is) of(c).equations_.from_speeds(of(c).last_r_, -1.0, out);
+  static void balance_to_equations(void* c, VecX const& r, VecX& out) {
+    if constexpr (!solves_as_it_is) of(c).equations_.from_speeds(r, -1.0, out);
   }
   static void rows_to_equations(void* c, double const* rows, VecX& out) {
     if constexpr (!solves_as_it_is) of(c).equations_.from_rows(rows, out);

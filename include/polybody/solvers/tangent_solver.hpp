@@ -62,12 +62,17 @@ class TangentSolver {
   void evaluate(System& system, At<double> const& at) const {
     if (!walks_) system.evaluate(at.q, at.v, at.t);
   }
-  /// r = M a − f + Gᵀλ at x, where the system was evaluated last.
+  /// r = M a − f + Gᵀλ at x, where the system was evaluated last. Where multipliers are kept the whole model's is
+  /// balanced and r is left zero; `residual` has it then.
   void balance(System& system, StepPlace const& x, VecX& r) {
     if (walks_) return coordinates_.entries->balance(coordinates_.self.get(), x, system.load_factor, r);
-    system.residual(x.a, x.lambda, r);
-    if (keeps_multipliers_) coordinates_.entries->balance_to_equations(coordinates_.self.get(), balance_);
+    if (!keeps_multipliers_) return system.residual(x.a, x.lambda, r);
+    coordinates_.entries->balance_to_equations(coordinates_.self.get(), balance_of_bodies(system, x.a, x.lambda),
+                                               balance_);
+    r.setZero();
   }
+  /// What was balanced last is finite, as far as r does not tell.
+  bool is_finite() const { return !keeps_multipliers_ || all_finite(balance_); }
   /// A correction of a step by what was balanced last: (−r, rows) → (accelerations, multipliers), of as many
   /// multipliers as the system has. Where joints carry bodies the whole model's r is answered by all bodies and then by
   /// the joints at the iterate: were −Tᵀr answered, a factorisation that is kept would carry forces from body to body

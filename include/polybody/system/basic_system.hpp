@@ -139,6 +139,8 @@ class BasicSystem {
 
   template <class U>
   friend VecXOf<U> const& unbalance(BasicSystem<U>& system);
+  template <class U>
+  friend VecXOf<U> const& balance_of_bodies(BasicSystem<U>& system, VecXOf<U> const& a, VecXOf<U> const& lambda);
 
  private:
   NarrowPlace const* narrow_places() const { return coordinates_ ? coordinates_.narrow->places.data() : nullptr; }

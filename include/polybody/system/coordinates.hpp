@@ -73,10 +73,10 @@ struct CoordinatesEntries {
   /// A right-hand side of a time step as one of the equations, and a solution of these as one of the step's unknowns.
   void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out);
   void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out);
-  /// Where there are `carrying_rows`: −r of the whole model, as it was reduced last, into the equations; the rows of a
-  /// step into them; a solution as one of the step's unknowns at the place of the last `expand`, and behind these the
-  /// multipliers of the carrying rows.
-  void (*balance_to_equations)(void* c, VecX& out);
+  /// Where there are `carrying_rows`: −r of the whole model into the equations; the rows of a step into them; a
+  /// solution as one of the step's unknowns at the place of the last `expand`, and behind these the multipliers of the
+  /// carrying rows.
+  void (*balance_to_equations)(void* c, VecX const& r, VecX& out);
   void (*rows_to_equations)(void* c, double const* rows, VecX& out);
   void (*correction_from_equations)(void* c, VecX const& solution, VecX& out);
   /// For trees that are their own solver: u̇ where no rows stay, under weight alone or with `unbalance` (of the

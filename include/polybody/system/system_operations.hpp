@@ -54,13 +54,21 @@ void BasicSystem<T>::use_threads(int threads) {
   entries_.share_loops(model_, data_, *workers_);
 }
 
+/// M a − f + Gᵀλ of the whole model where it was evaluated last, by the accelerations and multipliers of a step in
+/// joint coordinates.
+template <class T>
+VecXOf<T> const& balance_of_bodies(BasicSystem<T>& s, VecXOf<T> const& a, VecXOf<T> const& lambda) {
+  s.coordinates_.entries->expand_rates(s.coordinates_.self.get(), a, true, s.whole_a_);
+  s.expand_rows(lambda, s.whole_lambda_);
+  s.whole_residual(s.whole_a_, s.whole_lambda_, s.whole_r_);
+  return s.whole_r_;
+}
+
 template <StateScalar T>
 void BasicSystem<T>::residual(Vector const& a, Vector const& lambda, Vector& r) {
   if (!coordinates_) return whole_residual(a, lambda, r);
   if constexpr (std::same_as<T, double>) {
-    coordinates_.entries->expand_rates(coordinates_.self.get(), a, true, whole_a_);
-    expand_rows(lambda, whole_lambda_);
-    whole_residual(whole_a_, whole_lambda_, whole_r_);
+    balance_of_bodies(*this, a, lambda);
     coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, r);
   }
 }

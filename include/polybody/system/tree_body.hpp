@@ -154,7 +154,7 @@ struct RunnerOf {
   Vec3 w, alpha;
 
   /// To a point of the same rigid piece, `along` away.
-  void go(Vec3 const& along) {
+  [[gnu::always_inline]] void go(Vec3 const& along) {
     Vec3 const rate = cross<T>(w, along), sideways = cross<T>(alpha, along), inwards = cross<T>(w, rate);
     for (int i = 0; i < 3; ++i) {
       r[i] += along[i];
@@ -170,7 +170,7 @@ struct RunnerOf {
       a[i] += 2.0 * rate * sideways[i];
     }
   }
-  void turn(Vec3 const& spin) {
+  [[gnu::always_inline]] void turn(Vec3 const& spin) {
     Vec3 const sideways = cross<T>(w, spin);
     for (int i = 0; i < 3; ++i) {
       alpha[i] += sideways[i];

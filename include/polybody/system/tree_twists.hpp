@@ -20,24 +20,30 @@ void set_pair(Vec<T, 3> const& a, Vec<T, 3> const& b, Vec<T, 6>& out) {
 
 /// [v; ω] of a whole vector of speeds or accelerations, in world axes.
 template <class T>
-Vec<T, 6> twist_of(TreeBody const& body, TreeFrameOf<T> const& f, VecXOf<T> const& x) {
-  auto t = zeros<Vec<T, 6>>();
-  if (body.layout == RigidLayout::plane) {
-    t[0] = x[body.v0];
-    t[1] = x[body.v0 + 1];
-    t[5] = x[body.v0 + 2];
-  } else {
-    set_pair<T>(triple<T>(x, body.v0), product<T, 1>(f.A, triple<T>(x, body.v0 + 3)), t);
+[[gnu::always_inline]] inline Vec<T, 6> twist_of(TreeBody const& body, TreeFrameOf<T> const& f, VecXOf<T> const& x) {
+  T const* const u = x.data() + body.v0;
+  if (body.layout == RigidLayout::plane) return {u[0], u[1], 0.0, 0.0, 0.0, u[2]};
+  Vec<T, 6> t;
+  for (int i = 0; i < 3; ++i) {
+    t[i] = u[i];
+    t[3 + i] = f.A(i, 0) * u[3] + f.A(i, 1) * u[4] + f.A(i, 2) * u[5];
   }
   return t;
 }
 template <class T>
-void put_twist(TreeBody const& body, TreeFrameOf<T> const& f, Vec<T, 6> const& t, VecXOf<T>& x) {
-  bool const plane = body.layout == RigidLayout::plane;
-  for (int i = 0; i < 3; ++i) x[body.v0 + i] = t[plane && i == 2 ? 5 : i];
-  if (plane) return;
-  Vec<T, 3> const spin = transposed_product<T, 3, 1>(f.A, Vec<T, 3>(t[3], t[4], t[5]));
-  for (int i = 0; i < 3; ++i) x[body.v0 + 3 + i] = spin[i];
+[[gnu::always_inline]] inline void put_twist(TreeBody const& body, TreeFrameOf<T> const& f, Vec<T, 6> const& t,
+                                             VecXOf<T>& x) {
+  T* const u = x.data() + body.v0;
+  if (body.layout == RigidLayout::plane) {
+    u[0] = t[0];
+    u[1] = t[1];
+    u[2] = t[5];
+    return;
+  }
+  for (int i = 0; i < 3; ++i) {
+    u[i] = t[i];
+    u[3 + i] = f.A(0, i) * t[3] + f.A(1, i) * t[4] + f.A(2, i) * t[5];
+  }
 }
 
 }  // namespace detail
@@ -92,9 +98,7 @@ void write_frame(TreeBody const& body, TreeFrameOf<T> const& f, VecXOf<T>& q, Ve
   bool const plane = body.layout == RigidLayout::plane;
   for (int i = 0; i < 3; ++i) q[body.q0 + i] = plane && i == 2 ? f.angle : f.r[i];
   for (int i = 0; i < 4 && !plane; ++i) q[body.q0 + 3 + i] = f.rotation[i];
-  Vec<T, 6> t;
-  set_pair<T>(f.v, f.w, t);
-  put_twist<T>(body, f, t, v);
+  put_twist<T>(body, f, {f.v[0], f.v[1], f.v[2], f.w[0], f.w[1], f.w[2]}, v);
 }
 
 }  // namespace detail
