@@ -3,6 +3,7 @@
 #include <limits>
 #include <span>
 
+#include <polybody/math/vectors.hpp>
 #include <polybody/solvers/row_dropping.hpp>
 #include <polybody/system/system.hpp>
 
