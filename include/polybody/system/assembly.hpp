@@ -49,7 +49,7 @@ void add_rate(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> con
     read_twist(data.markers[std::size_t(end.marker)].frame, twist);
     x = twist;
   }
-  with_constant(rows, [&](auto m) { add_mapped<m>(end.map, end.columns, x, rows, out); });
+  add_mapped<0>(end.map, end.columns, x, rows, out);
 }
 /// The same for rates b that the state does not have.
 template <StateScalar T>
@@ -62,7 +62,7 @@ void add_product(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> 
     twist = p.push(b.data() + p.first);
     x = twist.data();
   }
-  with_constant(rows, [&](auto m) { add_mapped<m>(end.map, end.columns, x, rows, out); });
+  add_mapped<0>(end.map, end.columns, x, rows, out);
 }
 
 }  // namespace detail
@@ -90,10 +90,7 @@ void add_actions(Data<T> const& data, ModelLayout const& layout, double load_fac
 template <StateScalar T>
 void violation(Data<T> const& data, VecXOf<T>& phi) {
   detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
-    T* const out = phi.data() + block.row;
-    with_constant(block.rows, [&](auto m) {
-      for (int i = 0; i < (m > 0 ? int(m) : block.rows); ++i) out[i] = block.g[i];
-    });
+    for (int i = 0; i < block.rows; ++i) phi[block.row + i] = block.g[i];
   });
 }
 
@@ -114,10 +111,8 @@ void add_biases(Data<T> const& data, VecXOf<T>& gamma) {
   detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
     for (RowEnd<T> const* const end : {&block.a, &block.b})
       if (end->marker >= 0)
-        with_constant(block.rows, [&](auto m) {
-          detail::add_mapped<m>(end->map, 6, data.markers[std::size_t(end->marker)].bias.data(), block.rows,
-                                gamma.data() + block.row);
-        });
+        detail::add_mapped<0>(end->map, 6, data.markers[std::size_t(end->marker)].bias.data(), block.rows,
+                              gamma.data() + block.row);
   });
 }
 
