@@ -1,7 +1,9 @@
 // Stress of a track's link (Chapter 4, Figures 4.3 to 4.12): after a run of rigid links, decoupled, beside runs of
 // flexible links.
 //   track_stress --links ffr --speed 80
+//   track_stress --links ffr --pins recursive --turn curve
 //   track_stress --compare
+//   track_stress --compare matrix
 //   track_stress --figure 4.8
 
 #include <polybody/compare/join.hpp>
@@ -17,13 +19,43 @@ using namespace chapter4;
 
 namespace {
 
+std::vector<std::vector<Combination>> all_combinations() {
+  return {rigid_links(), cable_links(), modal_links(), rotation_links(), beam_links(), continuum_links()};
+}
+
+// Each formulation of the links on the pins that it usually has.
+std::vector<Combination> usual_combinations() {
+  std::vector<Combination> usual;
+  for (auto const& of_links : all_combinations())
+    for (Combination const& c : of_links)
+      if (c.usual) usual.push_back(c);
+  return usual;
+}
+
+// Of `of_links`, on the pins that are asked for, or usual.
+Combination on_pins(std::vector<Combination> const& of_links, std::string const& pins = "") {
+  auto const found = std::find_if(of_links.begin(), of_links.end(),
+                                  [&](Combination const& c) { return pins.empty() ? c.usual : c.pins == pins; });
+  if (!found->refusal.empty())
+    throw InvalidInput{"A link \"", found->links, "\" cannot be on pins \"", found->pins, "\": ", found->refusal, "."};
+  return *found;
+}
+Combination asked(Options const& o) {
+  auto const place = std::find(all_links.begin(), all_links.end(), o.links) - all_links.begin();
+  return on_pins(all_combinations()[std::size_t(place)], o.pins);
+}
+
 // The runs of several formulations side by side.
-StressRuns run(Options const& o, std::vector<Links> const& formulations) {
+StressRuns run(Options const& o, std::vector<Combination> const& combinations) {
   warn_of_drive(o);
   StressRuns all;
   std::vector<Comparison> apart;
-  for (Links const& links : formulations) {
-    StressRuns one = links.run(o);
+  for (Combination const& c : combinations) {
+    if (c.links == "ancf" && !o.turn.empty())
+      throw InvalidInput(
+          "Tracks of ANCF cables cannot turn: their pins share a slope across the track that is fixed in the world. "
+          "Take --links rigid, ffr, lrvf, beam or continuum.");
+    StressRuns one = c.run(o);
     for (ComparedRun const& r : one.comparison.runs)
       for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
     apart.push_back(std::move(one.comparison));
@@ -44,7 +76,7 @@ class Cache {
     Options o = options_;
     o.speed = speed;
     o.until = until;
-    return runs_.emplace(key, run(o, {rigid_links(), cable_links()})).first->second;
+    return runs_.emplace(key, run(o, {on_pins(rigid_links()), on_pins(cable_links())})).first->second;
   }
 
  private:
@@ -139,7 +171,9 @@ std::string label_of(StressRuns const& runs, std::size_t k) {
                                                          {"lrvf", "LRVF"},
                                                          {"beam", "ANCF beams"},
                                                          {"continuum", "ANCF continuum"}};
-  return runs.links[k]->recover ? "rigid, decoupled" : labels.at(runs.name(k));
+  if (runs.links[k]->recover) return "rigid, decoupled";
+  auto const found = labels.find(runs.name(k));
+  return found != labels.end() ? found->second : runs.name(k);
 }
 
 Figure bending_figure(Options const& o, StressRuns const& runs) {
@@ -277,18 +311,86 @@ void show(Options const& o, StressRuns const& r) {
        "strain_filtered");
 }
 
-void single(Options const& o, Links const& links) {
-  if (o.restart) return links.restart(o);
-  StressRuns const runs = run(o, {links});
+void single(Options const& o) {
+  Combination const c = asked(o);
+  if (o.restart) return c.restart(o);
+  StressRuns const runs = run(o, {c});
   if (!o.halve) return show(o, runs);
   Options half = o;
   half.step = 0.5 * o.step;
-  compare_steps(o, runs, run(half, {links}));
+  compare_steps(o, runs, run(half, {c}));
+}
+
+// What is read off the run of one combination; strain, force and gap from the plateau on.
+struct Cell {
+  double forward = 0.0;  // position at the end [m]
+  double strain = 0.0;   // of the watched link, low pass, in the mean
+  double force = 0.0;    // largest in its front pin [N]
+  double gap = 0.0;      // largest of all pins [m]
+  double energy = 0.0;   // share that is not accounted for
+};
+
+Cell cell_of(Options const& o, Combination const& c) {
+  StressRuns const r = run(o, {c});
+  auto const& one = r.comparison.runs[0];
+  double const from = plateau(r.times(0));
+  std::vector<double> const strain = r.filtered(0, o.cut_off);
+  Cell const cell{.forward = r.history(0, "forward position [m]").back(),
+                  .strain = range_of(r.times(0), strain, from).mean,
+                  .force = range_of(r.times(0), r.history(0, "joint force [N]"), from).most,
+                  .gap = range_of(r.times(0), r.history(0, "largest joint gap [m]"), from).most,
+                  .energy = r.outcomes[0].relative};
+  std::printf("%-10s %-10s %8.1f %6.2f %6.3f %11.4f %9.3f %9.2f %9.2e %9.3f\n", c.links.c_str(), c.pins.c_str(),
+              one.cpu, double(one.run.iterations) / double(one.run.steps),
+              double(one.run.factorisations) / double(one.run.steps), cell.forward, 1e5 * cell.strain,
+              1e-3 * cell.force, cell.gap, 1e2 * cell.energy);
+  if (!r.outcomes[0].trouble.empty()) std::printf("           %s\n", r.outcomes[0].trouble.c_str());
+  std::fflush(stdout);
+  return cell;
+}
+
+// How far apart the cells are.
+double spread(std::vector<Cell> const& cells, double Cell::* of) {
+  auto const [least, most] =
+      std::minmax_element(cells.begin(), cells.end(), [&](Cell const& a, Cell const& b) { return a.*of < b.*of; });
+  return (*most).*of - (*least).*of;
+}
+
+// Every link on every pin.
+void matrix(Options o) {
+  o.audit = true;
+  o.start = std::make_shared<m113::TrackStart const>(start_of_all(o));
+  std::printf(
+      "%g rad/s, %g s, steps of %g ms, rho %g; pins of %g N/m where they yield; from half of the run on, or the "
+      "plateau: strain of left link %d (low pass %g Hz), largest force in its front pin, largest gap of a pin\n",
+      o.speed, o.until, 1e3 * o.step, o.rho, m113::pin_stiffness, watched_link, o.cut_off);
+  std::printf("%-10s %-10s %8s %6s %6s %11s %9s %9s %9s %9s\n", "links", "pins", "CPU [s]", "iter.", "fact.",
+              "forward [m]", "strain e-5", "force [kN]", "gap [m]", "energy [%]");
+  std::vector<Cell> cells;
+  int refused = 0;
+  for (auto const& of_links : all_combinations())
+    for (Combination const& c : of_links) {
+      if (c.refusal.empty() && (o.turn.empty() || c.links != "ancf")) {
+        cells.push_back(cell_of(o, c));
+        continue;
+      }
+      ++refused;
+      std::printf("%-10s %-10s cannot be: %s\n", c.links.c_str(), c.pins.c_str(),
+                  c.refusal.empty() ? "its pins share a slope that is fixed in the world" : c.refusal.c_str());
+    }
+  double mean = 0.0;
+  for (Cell const& c : cells) mean += c.strain / double(cells.size());
+  std::printf(
+      "%zu run, %d cannot be. Forward positions within %.2f mm, strains within %.2f %% of one another; at most "
+      "%.3f %% of the energy is not accounted for.\n",
+      cells.size(), refused, 1e3 * spread(cells, &Cell::forward), 1e2 * spread(cells, &Cell::strain) / mean,
+      1e2 * std::max_element(cells.begin(), cells.end(), [](Cell const& a, Cell const& b) {
+              return a.energy < b.energy;
+            })->energy);
 }
 
 void all_formulations(Options const& o) {
-  StressRuns const r =
-      run(o, {rigid_links(), cable_links(), modal_links(), rotation_links(), beam_links(), continuum_links()});
+  StressRuns const r = run(o, usual_combinations());
   write_report(r.comparison, o.out / "comparison", !o.no_plot);
   report(o, r);
   if (o.fatigue) fatigue(o, r);
@@ -311,10 +413,15 @@ int main(int argc, char** argv) {
   o.out = "out/track_stress";
   CommandLine line{
       "Stress of a track's link after a run of rigid links (decoupled) and in runs of flexible ones (Chapter 4)."};
-  line.one_of("--links", &o.links, {"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"},
-              "body formulation of the links");
+  line.one_of("--links", &o.links, all_links, "body formulation of the links");
+  line.one_of("--pins", &o.pins, all_pins,
+              "joint policy of the pins; without it linear for ancf, beam and continuum, else constraint");
   line.not_negative("--elements", &o.elements, "of a flexible link; 0: one, and two of a floating frame");
-  line.flag("--compare", &o.compare, "all formulations side by side");
+  line.one_of("--compare", &o.compare, {"links", "matrix"},
+              "all links side by side, each on its usual pins, or on every pin", "links");
+  line.one_of("--turn", &o.turn, {"pivot", "curve"},
+              "pivot: the right track backwards; curve: the right one at 0.8 of the speed");
+  line.flag("--bumps", &o.bumps, "a course with three bumps");
   line.option("--figure", &o.figure, "4.3 to 4.12 of the thesis, or all");
   line.option("--speed", &o.speed, "of the sprockets after 8 s [rad/s]");
   line.positive("--until", &o.until, "end of the run [s]");
@@ -332,24 +439,18 @@ int main(int argc, char** argv) {
   line.option("--out", &o.out, "folder of the results");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");
   if (auto const code = line.parse(argc, argv)) return *code;
+  if (o.turn == "pivot") o.right = -1.0;
+  if (o.turn == "curve") o.right = 0.8;
   try {
     fs::create_directories(o.out);
     if (!o.figure.empty())
       figures(o);
-    else if (o.compare)
+    else if (o.compare == "matrix")
+      matrix(o);
+    else if (o.compare == "links")
       all_formulations(o);
-    else if (o.links == "rigid")
-      single(o, rigid_links());
-    else if (o.links == "ancf")
-      single(o, cable_links());
-    else if (o.links == "ffr")
-      single(o, modal_links());
-    else if (o.links == "lrvf")
-      single(o, rotation_links());
-    else if (o.links == "beam")
-      single(o, beam_links());
     else
-      single(o, continuum_links());
+      single(o);
   } catch (Error const& e) {
     std::cerr << e.what() << '\n';
     return 1;

@@ -32,8 +32,9 @@ struct Settings {
   double rho = 0.8;
   bool bumps = false;
   int cut = 0;
-  int elements = 0;      // of a flexible link; 0: as few as its formulation does with
-  double animate = 0.0;  // seconds between states, 0 for none
+  int elements = 0;                                    // of a flexible link; 0: as few as its formulation does with
+  std::shared_ptr<m113::TrackStart const> start = {};  // of the links; without it each run settles its own tracks
+  double animate = 0.0;                                // seconds between states, 0 for none
   bool audit = false;
   bool watched = true;  // a track that leaves its sprocket ends the run
   fs::path out = "out/tracked_vehicle";
@@ -58,6 +59,17 @@ inline void warn_of_drive(Settings const& o) {
 
 template <class F>
 using VehicleOf = m113::Vehicle<typename F::BodyType, typename F::PolicyType, BumpCourse>;
+
+inline m113::VehicleOptions vehicle_options(Settings const& s) {
+  return {
+      .masses = s.masses, .suspension = s.suspension, .preload = s.preload, .cut = s.cut, .link_elements = s.elements};
+}
+
+// Where links lie whose tracks have come to rest; the same for all formulations.
+template <class = void>  // compiled where it is used
+m113::TrackStart settled(Settings const& s) {
+  return m113::settled_track(vehicle_options(s), course(s.bumps));
+}
 
 // What is built and set going: the vehicle, and where its links lay at the start.
 template <class F>
@@ -247,12 +259,8 @@ struct TrackCase {
   template <class F>
   Built<F> build(F const& f) const {
     Settings const& s = settings;
-    m113::VehicleOptions options{.masses = s.masses,
-                                 .suspension = s.suspension,
-                                 .preload = s.preload,
-                                 .cut = s.cut,
-                                 .link_elements = s.elements};
-    options.start = m113::settled_track(options, course(s.bumps));
+    m113::VehicleOptions options = vehicle_options(s);
+    options.start = s.start ? *s.start : settled(s);
     std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
     return {options.start, std::make_shared<VehicleOf<F> const>(f.policy, drives, options, course(s.bumps))};
   }

@@ -35,8 +35,9 @@ void CommandLine::between(std::string const& name, Value value, double least, do
   add(*app_, name, value, help)->check(CLI::Range(least, most));
 }
 void CommandLine::one_of(std::string const& name, std::string* value, std::vector<std::string> const& all,
-                         std::string const& help) {
-  add(*app_, name, value, help)->check(CLI::IsMember(all));
+                         std::string const& help, std::string const& alone) {
+  CLI::Option* const option = add(*app_, name, value, help)->check(CLI::IsMember(all));
+  if (!alone.empty()) option->expected(0, 1)->default_str(alone);
 }
 void CommandLine::flag(std::string const& name, bool* value, std::string const& help) {
   // A flag has no value: CLI11 reads one of "!--no-…" by stoll, whose std::out_of_range it lets through.

@@ -26,8 +26,9 @@ class CommandLine {
   void positive(std::string const& name, Value value, std::string const& help);
   void not_negative(std::string const& name, Value value, std::string const& help);
   void between(std::string const& name, Value value, double least, double most, std::string const& help);
-  void one_of(std::string const& name, std::string* value, std::vector<std::string> const& all,
-              std::string const& help);
+  // `alone`, where it is not empty, is the value of an option that stands without one.
+  void one_of(std::string const& name, std::string* value, std::vector<std::string> const& all, std::string const& help,
+              std::string const& alone = "");
   // "!--no-…" sets it to false.
   void flag(std::string const& name, bool* value, std::string const& help);
 

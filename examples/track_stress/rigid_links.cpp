@@ -1,5 +1,5 @@
 #include "stress_case.hpp"
 
-chapter4::Links chapter4::rigid_links() {
-  return links_of<Formulation<Rigid<>, Constraint, GeneralizedAlpha>>("rigid");
-}
+std::vector<chapter4::Combination> chapter4::rigid_links() { return links_of<Rigid<>, Constraint>("rigid"); }
+
+polybody::m113::TrackStart chapter4::start_of_all(Options const& o) { return settled(o); }

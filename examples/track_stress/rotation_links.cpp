@@ -1,5 +1,3 @@
 #include "stress_case.hpp"
 
-chapter4::Links chapter4::rotation_links() {
-  return links_of<Formulation<Lrvf<>, Constraint, GeneralizedAlpha>>("lrvf");
-}
+std::vector<chapter4::Combination> chapter4::rotation_links() { return links_of<Lrvf<>, Constraint>("lrvf"); }

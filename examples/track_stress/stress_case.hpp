@@ -106,11 +106,42 @@ void restart(Options const& o, F const& f) {
   if (!same) throw Error("The run that was taken up again ended in another state.");
 }
 
-template <class F>
-Links links_of(std::string const& name) {
-  auto const formulation = [name](Options const& o) { return F{name, {}, integrator(o)}; };
-  return {[=](Options const& o) { return run(o, formulation(o)); },
-          [=](Options const& o) { restart(o, formulation(o)); }};
+// Why links of Body cannot hang together by pins of Policy; empty where they can. Model::connect states the same.
+template <class Body, class Policy>
+constexpr char const* refusal() {
+  using Pin = Joint<Revolute, Policy>;
+  if constexpr (LinearInCoordinates<Policy> && !HasLinearPoints<Body>)
+    return "the frames of its ends are not linear in its coordinates";
+  else if constexpr (!MayBeCarried<Policy, Body>)
+    return "it has no frame that a joint could carry";
+  else if constexpr (!TellsEnoughFirst<Pin, Body> || !TellsEnoughSecond<Pin, Body>)
+    return "its ends have an axis and no frame, so that nothing tells where a pin points";
+  else
+    return "";
+}
+
+template <class Body, class Policy>
+Combination combination(std::string const& links, std::string const& pins, bool usual, Policy const& policy) {
+  Combination c{links, pins, usual, refusal<Body, Policy>()};
+  if constexpr (*refusal<Body, Policy>() == '\0') {
+    auto const formulation = [=, name = usual ? links : links + ", " + pins](Options const& o) {
+      return Formulation<Body, Policy, GeneralizedAlpha>{name, policy, integrator(o)};
+    };
+    c.run = [=](Options const& o) { return run(o, formulation(o)); };
+    c.restart = [=](Options const& o) { restart(o, formulation(o)); };
+  }
+  return c;
+}
+
+// Links of Body under each policy of the pins, in the order of all_pins.
+template <class Body, Policy Usual>
+std::vector<Combination> links_of(std::string const& name) {
+  auto const by = [&](std::size_t pins, auto const& policy) {
+    bool const usual = std::is_same_v<std::remove_cvref_t<decltype(policy)>, Usual>;
+    return combination<Body>(name, all_pins[pins], usual, policy);
+  };
+  return {by(0, Constraint{}), by(1, m113::penalty_pin(m113::pin_stiffness)),
+          by(2, m113::bushing_pin(m113::pin_stiffness)), by(3, AncfLinear{}), by(4, Recursive{})};
 }
 
 }  // namespace chapter4

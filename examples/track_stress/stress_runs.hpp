@@ -12,9 +12,9 @@ using namespace chapter3;
 inline constexpr int watched_link = watched_pin;
 
 struct Options : Settings {
-  std::string links = "ancf", figure, recovery = "static";
+  std::string links = "ancf", pins, compare, figure, turn, recovery = "static";
   double cut_off = 15.0;
-  bool compare = false, halve = false, restart = false, fatigue = false;
+  bool halve = false, restart = false, fatigue = false;
 };
 
 // What a run knows of its watched link. Of rigid links the strain is worked out after the run.
@@ -42,17 +42,27 @@ struct StressRuns : Runs {
   }
 };
 
-// A formulation of the links.
-struct Links {
-  std::function<StressRuns(Options const&)> run;
+// Links of one body formulation on pins of one policy.
+struct Combination {
+  std::string links, pins;
+  bool usual = false;        // the pins that links have where none are asked for
+  std::string refusal = {};  // why it cannot be; else empty
+  std::function<StressRuns(Options const&)> run = {};
   // Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
-  std::function<void(Options const&)> restart;
+  std::function<void(Options const&)> restart = {};
 };
-Links rigid_links();
-Links cable_links();
-Links modal_links();
-Links rotation_links();
-Links beam_links();
-Links continuum_links();
+inline std::vector<std::string> const all_links{"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"};
+inline std::vector<std::string> const all_pins{"constraint", "penalty", "bushing", "linear", "recursive"};
+
+// Where the links of all runs lie at the start.
+m113::TrackStart start_of_all(Options const& o);
+
+// Of each formulation of the links, in the order of all_pins.
+std::vector<Combination> rigid_links();
+std::vector<Combination> cable_links();
+std::vector<Combination> modal_links();
+std::vector<Combination> rotation_links();
+std::vector<Combination> beam_links();
+std::vector<Combination> continuum_links();
 
 }  // namespace chapter4
