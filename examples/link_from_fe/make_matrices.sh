@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
 # Makes link.inp, link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt, which are kept beside this script, anew.
+#   make_matrices.sh [FOLDER]   those of the mesh of FOLDER/make_mesh.py, kept in FOLDER
 # Needs CalculiX (Debian: calculix-ccx; 2.20 made those that are kept) and python3.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
+folder=$(cd "${1:-$here}" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp "$here"/*.inp "$here"/*.py "$work"
+cp "$here"/{hexahedra,to_matrix_market}.py "$here"/frequencies.inp "$here"/matrices.inp "$work"
+cp "$folder"/make_mesh.py "$work"
 cd "$work"
-python3 make_mesh.py > /dev/null
+python3 make_mesh.py
 ccx -i frequencies > /dev/null
 ccx -i matrices > /dev/null
-python3 to_matrix_market.py "$here"
-cp link.inp "$here"
+python3 to_matrix_market.py "$folder"
+cp link.inp "$folder"

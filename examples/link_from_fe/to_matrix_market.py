@@ -7,23 +7,17 @@ link.nodes.txt and link.reference.txt. Displacements are ordered by node, x y z 
 import sys
 from pathlib import Path
 
+from hexahedra import Mesh
+
 out = Path(sys.argv[1])
 
-nodes = {}
-section = ""
-for line in open("link.inp"):
-    if line.startswith("*"):
-        section = line if not line.startswith("**") else section
-    elif section.startswith("*NODE"):
-        number, *xyz = line.split(",")
-        nodes[int(number)] = [float(c) for c in xyz]
-place = {number: i for i, number in enumerate(sorted(nodes))}
+nodes = Mesh.read("link.inp").nodes
 
 # Line k of the .dof file: the node and direction of row k, as node.direction.
 row = []
 for line in open("matrices.dof"):
     node, direction = line.strip().split(".")
-    row.append(3 * place[int(node)] + int(direction))
+    row.append(3 * (int(node) - 1) + int(direction))
 assert sorted(row) == list(range(1, 3 * len(nodes) + 1)), "every node needs its three displacements"
 
 
@@ -48,8 +42,8 @@ convert("matrices.mas", "link.mass.mtx", "kg")
 
 with open(out / "link.nodes.txt", "w") as file:
     print("# x y z [m] of each node of link.inp", file=file)
-    for number in sorted(nodes):
-        print(*(f"{c:.9g}" for c in nodes[number]), file=file)
+    for node in nodes:
+        print(*(f"{c:.9g}" for c in node), file=file)
 
 # CalculiX's own results: angular frequencies (third column), and at the end of the file mass and moments of inertia.
 rows = [line.split() for line in open("frequencies.dat")]
