@@ -9,6 +9,7 @@
 #include <polybody/bodies/ffr/matrix_structure.hpp>
 
 #include "support/held.hpp"
+#include "support/number_rows.hpp"
 
 namespace polybody {
 namespace link_from_fe_test {
@@ -22,16 +23,7 @@ Structure const& link() {
   return s;
 }
 /// Mass, three moments of inertia; then frequencies.
-std::vector<double> reference() {
-  std::ifstream in(file("reference.txt"));
-  std::vector<double> numbers;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with('#')) continue;
-    std::istringstream words(line);
-    for (double x; words >> x;) numbers.push_back(x);
-  }
-  return numbers;
-}
+std::vector<double> reference() { return numbers_of(file("reference.txt")); }
 
 /// ∫1, ∫x², ∫y² about the middle of a hole whose edge is eight parabolas through the circle, as the elements have it:
 /// by Green's theorem ½∮(x dy − y dx), ⅓∮x³ dy, −⅓∮y³ dx; four Gauss points are exact.

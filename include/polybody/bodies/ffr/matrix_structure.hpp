@@ -9,15 +9,12 @@
 ///
 /// Not in polybody.hpp: few programs need it.
 
-#include <cctype>
-#include <fstream>
 #include <limits>
-#include <locale>
-#include <sstream>
-#include <unordered_set>
 
 #include <Eigen/SparseCholesky>
 
+#include <polybody/bodies/ffr/matrix_file.hpp>
+#include <polybody/bodies/ffr/number_lines.hpp>
 #include <polybody/bodies/ffr/structure.hpp>
 
 namespace polybody {
@@ -193,102 +190,6 @@ inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse c
 
 namespace detail {
 
-/// Lines of numbers in a text file. What follows the comment character, and empty lines, are passed over.
-class NumberLines {
- public:
-  /// \throws IoError for a file that cannot be read.
-  NumberLines(std::string const& file, char comment) : file_(file), in_(file), comment_(comment) {
-    if (in_) in_.peek();  // a folder can be opened, but not read
-    if (!in_.is_open() || in_.bad())
-      throw IoError{file, ": it cannot be opened. Check the path, and that it may be read."};
-    in_.clear();
-  }
-  /// The next line as it stands; false at the end.
-  bool raw(std::string& line) {
-    ++line_;
-    return bool(std::getline(in_, line));
-  }
-  /// The next line with numbers into `values`, all of it. False at the end of the file. \throws IoError for another
-  /// line.
-  template <class... T>
-  bool next(std::string const& expected, T&... values) {
-    std::string line;
-    do {
-      if (!raw(line)) return false;
-      line.resize(std::min(line.find(comment_), line.size()));
-    } while (line.find_first_not_of(" \t\r\v\f") == std::string::npos);  // the blanks of `>>`
-    std::istringstream words(line);
-    words.imbue(std::locale::classic());
-    std::string rest;
-    if (!(read(words, values) && ...) || (words >> rest)) fail("'" + line.substr(0, 60) + "' is not " + expected);
-    return true;
-  }
-  /// \throws IoError with the file and the line.
-  [[noreturn, gnu::cold]] void fail(std::string const& what) const {
-    throw IoError{file_, ", line ", line_, ": ", what, "."};
-  }
-
- private:
-  /// A number ends at a blank: "1.5.5" is not 1.5 and 0.5, nor "3-4" 3 and −4.
-  template <class T>
-  static bool read(std::istream& words, T& value) {
-    return words >> value && (words.eof() || std::isspace(words.peek()));
-  }
-
-  std::string file_;
-  std::ifstream in_;
-  char comment_;
-  Index line_ = 0;
-};
-
-/// A sparse n×n matrix of a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer, general
-/// or symmetric (its lower triangle). Eigen's unsupported loader leaves symmetric matrices halved and believes any
-/// index, so this does not use it. \throws IoError for anything else, with the line.
-inline Structure::Sparse read_matrix(std::string const& file, Index n, std::string const& nodes_file) {
-  NumberLines lines(file, '%');
-  std::string banner;
-  lines.raw(banner);
-  for (char& c : banner) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  std::istringstream words(banner);
-  std::string mark, object, format, field, kind;
-  words >> mark >> object >> format >> field >> kind;
-  if (mark != "%%matrixmarket" || object != "matrix" || format != "coordinate" ||
-      (field != "real" && field != "integer") || (kind != "general" && kind != "symmetric"))
-    lines.fail(
-        "this is not '%%MatrixMarket matrix coordinate real general' or '… symmetric'; write the matrix as one of "
-        "them");
-  Index rows = 0, columns = 0, count = 0;
-  std::string const sizes = "the number of rows, of columns and of entries";
-  if (!lines.next(sizes, rows, columns, count)) lines.fail("the file ends before " + sizes);
-  if (count < 0) lines.fail("the number of entries must not be negative, but is " + std::to_string(count));
-  if (rows != n || columns != n)
-    lines.fail("the matrix is " + std::to_string(rows) + "×" + std::to_string(columns) + ", but the " +
-               std::to_string(n / 3) + " nodes of " + nodes_file + " need " + std::to_string(n) + "×" +
-               std::to_string(n) + ", three displacements each");
-  std::vector<Eigen::Triplet<double>> entries;
-  std::unordered_set<Index> seen;
-  for (Index e = 0; e < count; ++e) {
-    Index i = 0, j = 0;
-    double value = 0.0;
-    if (!lines.next("a row, a column and a finite number", i, j, value))
-      lines.fail("the file ends after " + std::to_string(e) + " of " + std::to_string(count) +
-                 " entries; it is truncated");
-    if (i < 1 || i > n || j < 1 || j > n)
-      lines.fail("entry (" + std::to_string(i) + ", " + std::to_string(j) +
-                 ") is outside the matrix, whose rows and columns are 1 to " + std::to_string(n));
-    if (kind == "symmetric" && i < j)
-      lines.fail("a symmetric matrix is written by its lower triangle, but this entry is above the diagonal");
-    if (!seen.insert(n * i + j).second)
-      lines.fail("entry (" + std::to_string(i) + ", " + std::to_string(j) + ") stands here a second time");
-    entries.emplace_back(int(i - 1), int(j - 1), value);
-    if (kind == "symmetric" && i != j) entries.emplace_back(int(j - 1), int(i - 1), value);
-  }
-  lines.next("the end of the file after " + std::to_string(count) + " entries");
-  Structure::Sparse m(n, n);
-  m.setFromTriplets(entries.begin(), entries.end());
-  return m;
-}
-
 /// One `x y z` [m] a line. \throws IoError for other lines, or none.
 inline std::vector<Vec3> read_nodes(std::string const& file) {
   NumberLines lines(file, '#');
@@ -310,8 +211,10 @@ inline Structure read_structure(std::string const& mass_file, std::string const&
                                 std::string const& nodes_file) {
   std::vector<Vec3> const nodes = detail::read_nodes(nodes_file);
   Index const n = 3 * Index(nodes.size());
-  Structure::Sparse const mass = detail::read_matrix(mass_file, n, nodes_file),
-                          stiffness = detail::read_matrix(stiffness_file, n, nodes_file);
+  std::string const need =
+      sentence_of({nodes.size(), " nodes of ", nodes_file, " need ", n, "×", n, ", three displacements each"});
+  Structure::Sparse const mass = read_matrix(mass_file, n, n, need),
+                          stiffness = read_matrix(stiffness_file, n, n, need);
   try {
     return structure_of(mass, stiffness, nodes);
   } catch (InvalidInput const& error) {

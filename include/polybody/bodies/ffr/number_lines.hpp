@@ -1,0 +1,79 @@
+#pragma once
+/// \file
+/// Lines of numbers in a text file of a finite element program. An error names the file and the line.
+///
+/// Not in polybody.hpp: few programs need it.
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <istream>
+#include <locale>
+#include <sstream>
+#include <string>
+
+#include <polybody/math/errors.hpp>
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+/// Reads them one by one. What follows the comment character, and empty lines, are passed over.
+class NumberLines {
+ public:
+  /// The rest of a line without the blanks at its ends: a name after numbers.
+  struct Rest {
+    std::string text;
+  };
+
+  /// \throws IoError for a file that cannot be read.
+  NumberLines(std::string const& file, char comment) : file_(file), in_(file), comment_(comment) {
+    if (in_) in_.peek();  // a folder can be opened, but not read
+    if (!in_.is_open() || in_.bad())
+      throw IoError{file, ": it cannot be opened. Check the path, and that it may be read."};
+    in_.clear();
+  }
+  /// The next line as it stands; false at the end.
+  bool raw(std::string& line) {
+    ++line_;
+    return bool(std::getline(in_, line));
+  }
+  /// The next line with numbers into `values`, all of it. False at the end of the file. \throws IoError for another
+  /// line.
+  template <class... T>
+  bool next(std::string const& expected, T&... values) {
+    std::string line;
+    do {
+      if (!raw(line)) return false;
+      line.resize(std::min(line.find(comment_), line.size()));
+    } while (line.find_first_not_of(" \t\r\v\f") == std::string::npos);  // the blanks of `>>`
+    std::istringstream words(line);
+    words.imbue(std::locale::classic());
+    std::string rest;
+    if (!(read(words, values) && ...) || (words >> rest)) fail("'" + line.substr(0, 60) + "' is not " + expected);
+    return true;
+  }
+  /// \throws IoError with the file and the line.
+  [[noreturn, gnu::cold]] void fail(std::string const& what) const {
+    throw IoError{file_, ", line ", line_, ": ", what, "."};
+  }
+
+ private:
+  /// A number ends at a blank: "1.5.5" is not 1.5 and 0.5, nor "3-4" 3 and −4.
+  template <class T>
+  static bool read(std::istream& words, T& value) {
+    return words >> value && (words.eof() || std::isspace(words.peek()));
+  }
+
+  static bool read(std::istream& words, Rest& rest) {
+    std::getline(words >> std::ws, rest.text);
+    rest.text.resize(rest.text.find_last_not_of(" \t\r\v\f") + 1);  // npos + 1 is 0
+    return !rest.text.empty();
+  }
+
+  std::string file_;
+  std::ifstream in_;
+  char comment_;
+  Index line_ = 0;
+};
+
+}  // namespace polybody

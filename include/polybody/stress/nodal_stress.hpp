@@ -1,0 +1,154 @@
+#pragma once
+/// \file
+/// Stress at named nodes of a solid structure (bodies/ffr/matrix_structure.hpp), linear in its nodal displacements:
+///   σ = D B(ξ_node) u,   xx, yy, zz, xy, yz, zx in the structure's axes [Pa],
+/// averaged over the elements that share the node. The finite element program, or a script beside it, writes the
+/// matrix; `examples/track_stress/fe_link/stress_operator.py` does. B gives no stress to a small rigid motion, so it
+/// does not matter which frame the displacements are relative to.
+///
+///     auto const stress = NodalStress::read("link.stress.mtx", "link.stress_nodes.txt", structure.size());
+///     stress.von_mises("middle, wheel side", decoupled.displacements());  // stress/decoupled_stress.hpp
+///     stress.modal(shapes).of("middle, wheel side", q);                   // coordinates of a floating frame
+/// Displacements are (N×samples), modal coordinates q (n×samples).
+///
+/// Not in polybody.hpp: few programs need it.
+
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include <polybody/bodies/ffr/matrix_file.hpp>
+#include <polybody/stress/von_mises.hpp>
+
+namespace polybody {
+
+/// The matrix, and the names of its nodes.
+class NodalStress {
+ public:
+  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  /// A node of the structure, and what it is called.
+  struct Spot {
+    Index node = 0;
+    std::string name;
+  };
+
+  /// `matrix` has six rows for each spot, in their order, and a column for each coordinate (6k×N) [Pa/m].
+  /// \throws InvalidInput for another number of rows, an entry that is not finite, no spots, or two of one name.
+  NodalStress(Matrix const& matrix, std::vector<Spot> spots) : matrix_(matrix), spots_(std::move(spots)) {
+    Index const k = Index(spots_.size());
+    if (k == 0) throw InvalidInput("NodalStress: it has no nodes. Name one at least.");
+    if (matrix_.rows() != 6 * k)
+      throw InvalidInput{"NodalStress: its matrix has ", matrix_.rows(), " rows, but ", k, " nodes need ", 6 * k,
+                         ", six stresses each."};
+    for (Index row = 0; row < matrix_.rows(); ++row)
+      for (Matrix::InnerIterator it(matrix_, row); it; ++it)
+        if (!std::isfinite(it.value()))
+          throw InvalidInput{"NodalStress: row ",
+                             row,
+                             ", column ",
+                             it.col(),
+                             " of its matrix is ",
+                             it.value(),
+                             ". Give finite numbers, in Pa/m."};
+    for (auto spot = spots_.begin(); spot != spots_.end(); ++spot)
+      if (spot != find(spot->name))
+        throw InvalidInput{"NodalStress: two nodes are called \"", spot->name, "\". Give each a name of its own."};
+  }
+
+  /// From a Matrix Market file (6k×`coordinates`) and a text file with a line `node name` for each of the k nodes, the
+  /// node counted from 0; # begins a comment. A structure has three coordinates a node: `Structure::size()`.
+  /// \throws IoError naming file and line for what cannot be read, is truncated or does not fit; InvalidInput for
+  /// coordinates that are not three a node.
+  static NodalStress read(std::string const& matrix_file, std::string const& names_file, Index coordinates) {
+    if (coordinates < 3 || coordinates % 3 != 0 || coordinates > std::numeric_limits<int>::max())
+      throw InvalidInput{"NodalStress: ", coordinates,
+                         " coordinates are not three displacements of each node. Give Structure::size() of a structure "
+                         "from matrices."};
+    std::vector<Spot> spots = read_spots(names_file, coordinates / 3);
+    Index const rows = 6 * Index(spots.size());
+    return {read_matrix(matrix_file, rows, coordinates,
+                        sentence_of({spots.size(), " nodes of ", names_file, " need ", rows, "×", coordinates,
+                                     ", six stresses each of all displacements"})),
+            std::move(spots)};
+  }
+
+  std::vector<Spot> const& spots() const { return spots_; }
+  /// (6k×N) [Pa/m].
+  Matrix const& matrix() const { return matrix_; }
+  Index coordinates() const { return matrix_.cols(); }
+
+  /// Stress of every node (6k×samples) [Pa] under these displacements (N×samples) [m]. \throws InvalidInput for another
+  /// number of rows.
+  MatX of(MatX const& displacements) const {
+    require_rows(displacements, "displacements");
+    return matrix_ * displacements;
+  }
+  /// History of one node's stress. \throws InvalidInput as above, and for a name that does not exist.
+  std::vector<Vec6> of(std::string_view name, MatX const& displacements) const {
+    Index const first = row_of(name);
+    require_rows(displacements, "displacements");
+    Mat<double, 6, Eigen::Dynamic> const history = matrix_.middleRows(first, 6) * displacements;
+    std::vector<Vec6> out(std::size_t(history.cols()));
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = history.col(Index(i));
+    return out;
+  }
+  /// History of its von Mises stress [Pa]. \throws InvalidInput as above.
+  std::vector<double> von_mises(std::string_view name, MatX const& displacements) const {
+    std::vector<double> out;
+    for (Vec6 const& s : of(name, displacements)) out.push_back(polybody::von_mises(s));
+    return out;
+  }
+
+  /// The same nodes by modal coordinates q (n×samples), where the displacements are `shapes` (N×n) times q: its matrix
+  /// is (6k×n), and a stress six scalar products of n numbers. \throws InvalidInput for shapes with another number of
+  /// rows.
+  NodalStress modal(MatX const& shapes) const {
+    require_rows(shapes, "shapes");
+    MatX const reduced = matrix_ * shapes;
+    return {reduced.sparseView(), spots_};
+  }
+
+ private:
+  static std::vector<Spot> read_spots(std::string const& file, Index nodes) {
+    NumberLines lines(file, '#');
+    std::vector<Spot> spots;
+    Index node = 0;
+    NumberLines::Rest name;
+    while (lines.next("the number of a node and its name", node, name)) {
+      if (node < 0 || node >= nodes)
+        lines.fail(sentence_of({"node ", node, " does not exist; the structure has nodes 0 to ", nodes - 1}));
+      for (Spot const& other : spots)
+        if (other.name == name.text)
+          lines.fail("a node before is called '" + name.text + "', too; give each a name of its own");
+      spots.push_back({node, name.text});
+    }
+    if (spots.empty()) lines.fail("the file names no nodes; give the number of one and its name in each line");
+    return spots;
+  }
+
+  std::vector<Spot>::const_iterator find(std::string_view name) const {
+    return std::find_if(spots_.begin(), spots_.end(), [&](Spot const& spot) { return spot.name == name; });
+  }
+  Index row_of(std::string_view name) const {
+    auto const spot = find(name);
+    if (spot != spots_.end()) return 6 * Index(spot - spots_.begin());
+    std::string known;
+    for (Spot const& s : spots_) known += (known.empty() ? "\"" : ", \"") + s.name + '"';
+    throw InvalidInput{"NodalStress: no node is called \"", std::string(name), "\". There are ", known, "."};
+  }
+  void require_rows(MatX const& x, char const* what) const {
+    if (x.rows() != matrix_.cols())
+      throw InvalidInput{"NodalStress: the ",
+                         what,
+                         " have ",
+                         x.rows(),
+                         " rows, but its matrix has ",
+                         matrix_.cols(),
+                         " columns. Give a row for each coordinate of the structure."};
+  }
+
+  Matrix matrix_;  ///< (6k×N)
+  std::vector<Spot> spots_;
+};
+
+}  // namespace polybody
