@@ -4,12 +4,14 @@
 //   track_stress --links ffr --pins recursive --turn curve
 //   track_stress --compare
 //   track_stress --compare matrix
+//   track_stress --compare surface
 //   track_stress --figure 4.8
 
 #include <polybody/compare/join.hpp>
 #include <polybody/signals/rainflow.hpp>
 #include <polybody/vehicle/link_strain.hpp>
 
+#include <cctype>
 #include <map>
 
 #include "support/command_line.hpp"
@@ -19,18 +21,9 @@ using namespace chapter4;
 
 namespace {
 
-std::vector<std::vector<Combination>> all_combinations() {
-  return {rigid_links(), cable_links(), modal_links(), rotation_links(), beam_links(), continuum_links()};
-}
-
-// Each formulation of the links on the pins that it usually has.
-std::vector<Combination> usual_combinations() {
-  std::vector<Combination> usual;
-  for (auto const& of_links : all_combinations())
-    for (Combination const& c : of_links)
-      if (c.usual) usual.push_back(c);
-  return usual;
-}
+// In the order of all_links.
+constexpr std::vector<Combination> (*combinations_of[])() = {
+    rigid_links, cable_links, modal_links, finite_element_links, rotation_links, beam_links, continuum_links};
 
 // Of `of_links`, on the pins that are asked for, or usual.
 Combination on_pins(std::vector<Combination> const& of_links, std::string const& pins = "") {
@@ -42,7 +35,19 @@ Combination on_pins(std::vector<Combination> const& of_links, std::string const&
 }
 Combination asked(Options const& o) {
   auto const place = std::find(all_links.begin(), all_links.end(), o.links) - all_links.begin();
-  return on_pins(all_combinations()[std::size_t(place)], o.pins);
+  return on_pins(combinations_of[place](), o.pins);
+}
+
+// Why it cannot be driven with these options; else empty.
+std::string refusal(Options const& o, Combination const& c) {
+  if (!c.refusal.empty() || c.turns || o.turn.empty()) return c.refusal;
+  return "its pins share a slope across the track that is fixed in the world";
+}
+void require_driveable(Options const& o, Combination const& c) {
+  if (!refusal(o, c).empty())
+    throw InvalidInput(
+        "Tracks of ANCF cables cannot turn: their pins share a slope across the track that is fixed in the world. "
+        "Take --links rigid, ffr, fe, lrvf, beam or continuum.");
 }
 
 // The runs of several formulations side by side.
@@ -51,10 +56,7 @@ StressRuns run(Options const& o, std::vector<Combination> const& combinations) {
   StressRuns all;
   std::vector<Comparison> apart;
   for (Combination const& c : combinations) {
-    if (c.links == "ancf" && !o.turn.empty())
-      throw InvalidInput(
-          "Tracks of ANCF cables cannot turn: their pins share a slope across the track that is fixed in the world. "
-          "Take --links rigid, ffr, lrvf, beam or continuum.");
+    require_driveable(o, c);
     StressRuns one = c.run(o);
     for (ComparedRun const& r : one.comparison.runs)
       for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
@@ -166,11 +168,9 @@ void report(Options const& o, StressRuns const& runs) {
 
 // What a legend calls the run.
 std::string label_of(StressRuns const& runs, std::size_t k) {
-  static std::map<std::string, std::string> const labels{{"ancf", "ANCF cables"},
-                                                         {"ffr", "FFR, modes"},
-                                                         {"lrvf", "LRVF"},
-                                                         {"beam", "ANCF beams"},
-                                                         {"continuum", "ANCF continuum"}};
+  static std::map<std::string, std::string> const labels{{"ancf", "ANCF cables"},   {"ffr", "FFR, modes"},
+                                                         {"fe", "finite elements"}, {"lrvf", "LRVF"},
+                                                         {"beam", "ANCF beams"},    {"continuum", "ANCF continuum"}};
   if (runs.links[k]->recover) return "rigid, decoupled";
   auto const found = labels.find(runs.name(k));
   return found != labels.end() ? found->second : runs.name(k);
@@ -313,6 +313,7 @@ void show(Options const& o, StressRuns const& r) {
 
 void single(Options const& o) {
   Combination const c = asked(o);
+  require_driveable(o, c);
   if (o.restart) return c.restart(o);
   StressRuns const runs = run(o, {c});
   if (!o.halve) return show(o, runs);
@@ -328,7 +329,18 @@ struct Cell {
   double force = 0.0;    // largest in its front pin [N]
   double gap = 0.0;      // largest of all pins [m]
   double energy = 0.0;   // share that is not accounted for
+  double turning = 0.0;  // mean yaw rate [rad/s]
 };
+
+// The mean from a time on.
+double yaw_rate(StressRuns const& r, double from) {
+  auto const &t = r.times(0), &yaw = r.history(0, "yaw [rad]");
+  std::size_t const first = std::size_t(std::lower_bound(t.begin(), t.end(), from) - t.begin());
+  double turned = 0.0;  // the angle jumps by a turn at ±π
+  for (std::size_t i = first + 1; i < yaw.size(); ++i)
+    turned += std::remainder(yaw[i] - yaw[i - 1], 2.0 * std::numbers::pi);
+  return turned / (t.back() - t[first]);
+}
 
 Cell cell_of(Options const& o, Combination const& c) {
   StressRuns const r = run(o, {c});
@@ -339,11 +351,14 @@ Cell cell_of(Options const& o, Combination const& c) {
                   .strain = range_of(r.times(0), strain, from).mean,
                   .force = range_of(r.times(0), r.history(0, "joint force [N]"), from).most,
                   .gap = range_of(r.times(0), r.history(0, "largest joint gap [m]"), from).most,
-                  .energy = r.outcomes[0].relative};
-  std::printf("%-10s %-10s %8.1f %6.2f %6.3f %11.4f %9.3f %9.2f %9.2e %9.3f\n", c.links.c_str(), c.pins.c_str(),
-              one.cpu, double(one.run.iterations) / double(one.run.steps),
+                  .energy = r.outcomes[0].relative,
+                  .turning = yaw_rate(r, from)};
+  std::printf("%-10s %-10s %6td %5td %8.1f %6.2f %6.3f %11.4f %9.3f %9.2f %9.2e %9.3f", c.links.c_str(), c.pins.c_str(),
+              one.census.speeds, one.census.rows, one.cpu, double(one.run.iterations) / double(one.run.steps),
               double(one.run.factorisations) / double(one.run.steps), cell.forward, 1e5 * cell.strain,
               1e-3 * cell.force, cell.gap, 1e2 * cell.energy);
+  if (!o.turn.empty()) std::printf(" %13.5f", cell.turning);
+  std::printf("\n");
   if (!r.outcomes[0].trouble.empty()) std::printf("           %s\n", r.outcomes[0].trouble.c_str());
   std::fflush(stdout);
   return cell;
@@ -356,41 +371,133 @@ double spread(std::vector<Cell> const& cells, double Cell::* of) {
   return (*most).*of - (*least).*of;
 }
 
+void show_spreads(Options const& o, std::vector<Cell> const& cells) {
+  double mean = 0.0, energy = 0.0;
+  for (Cell const& c : cells) {
+    mean += c.strain / double(cells.size());
+    energy = std::max(energy, c.energy);
+  }
+  std::printf(
+      " Forward positions within %.2f mm, strains within %.2f %% of one another; at most %.3f %% of the energy is not "
+      "accounted for.\n",
+      1e3 * spread(cells, &Cell::forward), 1e2 * spread(cells, &Cell::strain) / mean, 1e2 * energy);
+  if (!o.turn.empty())
+    std::printf("Yaw rates within %.2f %% of that of %s links.\n",
+                1e2 * spread(cells, &Cell::turning) / std::abs(cells.front().turning), all_links.front().c_str());
+}
+
 // Every link on every pin.
 void matrix(Options o) {
   o.audit = true;
-  o.start = std::make_shared<m113::TrackStart const>(start_of_all(o));
   std::printf(
       "%g rad/s, %g s, steps of %g ms, rho %g; pins of %g N/m where they yield; from half of the run on, or the "
       "plateau: strain of left link %d (low pass %g Hz), largest force in its front pin, largest gap of a pin\n",
       o.speed, o.until, 1e3 * o.step, o.rho, m113::pin_stiffness, watched_link, o.cut_off);
-  std::printf("%-10s %-10s %8s %6s %6s %11s %9s %9s %9s %9s\n", "links", "pins", "CPU [s]", "iter.", "fact.",
-              "forward [m]", "strain e-5", "force [kN]", "gap [m]", "energy [%]");
+  std::printf("%-10s %-10s %6s %5s %8s %6s %6s %11s %9s %9s %9s %9s%s\n", "links", "pins", "speeds", "rows", "CPU [s]",
+              "iter.", "fact.", "forward [m]", "strain e-5", "force [kN]", "gap [m]", "energy [%]",
+              o.turn.empty() ? "" : "    yaw [rad/s]");
   std::vector<Cell> cells;
   int refused = 0;
-  for (auto const& of_links : all_combinations())
-    for (Combination const& c : of_links) {
-      if (c.refusal.empty() && (o.turn.empty() || c.links != "ancf")) {
+  for (auto const of_links : combinations_of)
+    for (Combination const& c : of_links()) {
+      std::string const why = refusal(o, c);
+      if (why.empty()) {
         cells.push_back(cell_of(o, c));
         continue;
       }
       ++refused;
-      std::printf("%-10s %-10s cannot be: %s\n", c.links.c_str(), c.pins.c_str(),
-                  c.refusal.empty() ? "its pins share a slope that is fixed in the world" : c.refusal.c_str());
+      std::printf("%-10s %-10s cannot be: %s\n", c.links.c_str(), c.pins.c_str(), why.c_str());
     }
-  double mean = 0.0;
-  for (Cell const& c : cells) mean += c.strain / double(cells.size());
-  std::printf(
-      "%zu run, %d cannot be. Forward positions within %.2f mm, strains within %.2f %% of one another; at most "
-      "%.3f %% of the energy is not accounted for.\n",
-      cells.size(), refused, 1e3 * spread(cells, &Cell::forward), 1e2 * spread(cells, &Cell::strain) / mean,
-      1e2 * std::max_element(cells.begin(), cells.end(), [](Cell const& a, Cell const& b) {
-              return a.energy < b.energy;
-            })->energy);
+  std::printf("%zu run, %d cannot be.", cells.size(), refused);
+  show_spreads(o, cells);
 }
 
+// The simplifications of the floating frame one by one: what each does to the watched link, beside the whole equations.
+void compare_terms(Options o) {
+  o.audit = true;
+  std::vector<std::pair<char const*, FfrTerms>> const variants{
+      {"all terms", {}},
+      {"no m_rf", {.coupling = false}},
+      {"no m_rf in the rows of the frame", {.onto_frame = false}},
+      {"J and c of the link without deformation", {.deformed_inertia = false}},
+      {"no velocity forces of the deformation on the frame", {.frame_velocities = false}},
+      {"no Coriolis forces, 2 S1 q'", {.coriolis = false}},
+      {"no centrifugal forces by the deformation, S2 q", {.centrifugal = false}},
+      {"no centrifugal forces on the link as it is, I0 w", {.spin = false}},
+      {"none of these",
+       {.coupling = false,
+        .onto_frame = false,
+        .deformed_inertia = false,
+        .frame_velocities = false,
+        .coriolis = false,
+        .centrifugal = false,
+        .spin = false}}};
+  std::printf("%g rad/s, %g s, steps of %g ms, rho %g; left link %d, from half of the run on, or the plateau\n",
+              o.speed, o.until, 1e3 * o.step, o.rho, watched_link);
+  std::printf("%-52s %10s %9s %9s %9s %10s\n", "floating frames with", "strain e-5", "off [%]", "raw [%]", "bend. [%]",
+              "energy [%]");
+  Combination const c = on_pins(modal_links(), o.pins);
+  StressRuns whole;
+  for (auto const& [name, terms] : variants) {
+    o.terms = terms;
+    StressRuns const r = run(o, {c});
+    if (whole.links.empty()) whole = r;
+    double const from = plateau(r.times(0));
+    auto const unfiltered = [&](Told of) {
+      RmsDifference d(from, o.until);
+      d.add({r.times(0), (r.*of)(0)}, {whole.times(0), (whole.*of)(0)});
+      return d.value();
+    };
+    std::printf("%-52s %10.4f %9.4f %9.4f %9.4f %10.4f\n", name,
+                1e5 * range_of(r.times(0), r.filtered(0, o.cut_off), from).mean, 1e2 * off(o, r, 0, whole, 0, from),
+                1e2 * unfiltered(&StressRuns::raw), 1e2 * unfiltered(&StressRuns::bending),
+                1e2 * r.outcomes[0].relative);
+    std::fflush(stdout);
+  }
+}
+
+// Stress at named nodes of a finite element link: after a run of rigid links, and in one of such links.
+void surface_stress(Options o) {
+  o.surface = true;
+  o.contacts = m113::ContactsAct::at_their_places;
+  StressRuns const r = run(o, {on_pins(rigid_links()), on_pins(finite_element_links(), o.pins)});
+  report(o, r);
+  double const from = plateau(r.times(0));
+  std::printf(
+      "von Mises stress [MPa] from %.1f s on, unfiltered: in the mean and at most, decoupled and coupled; their "
+      "difference as the root mean square, from 1 s on and from then on, and of what passes %g Hz\n",
+      from, o.cut_off);
+  for (auto const& [name, decoupled] : r.links[0]->surface) {
+    auto const& coupled = r.links[1]->surface.at(name);
+    Range const a = range_of(r.times(0), decoupled, from), b = range_of(r.times(1), coupled, from);
+    auto const apart = [&](double since) {
+      RmsDifference d(since, o.until);
+      d.add({r.times(0), decoupled}, {r.times(1), coupled});
+      return 1e2 * d.value();
+    };
+    RmsDifference slow(from, o.until);
+    slow.add({r.filtered_times(0), r.filtered(0, decoupled, o.cut_off)},
+             {r.filtered_times(1), r.filtered(1, coupled, o.cut_off)});
+    std::printf("%-28s %7.3f %7.3f %8.3f %8.3f %8.2f %% %8.2f %% %8.2f %%\n", name.c_str(), 1e-6 * a.mean,
+                1e-6 * b.mean, 1e-6 * a.most, 1e-6 * b.most, apart(std::min(1.0, 0.25 * o.until)), apart(from),
+                1e2 * slow.value());
+    Figure f{.title = "Von Mises stress, " + name + ", " + number(o.speed) + " rad/s",
+             .x_label = "t [s]",
+             .y_label = "stress [MPa]",
+             .x_range = {{0.95 * o.until, o.until}}};
+    f.curves = {curve("rigid, decoupled", r.times(0), decoupled, 0, 1e-6, 1),
+                curve("finite element link", r.times(1), coupled, 1, 1e-6, 1)};
+    std::string file = "von_mises_" + name;
+    for (char& letter : file)
+      if (!std::isalnum(static_cast<unsigned char>(letter))) letter = '_';
+    draw(o, f, file);
+  }
+}
+
+// Each formulation of the links on the pins that it usually has.
 void all_formulations(Options const& o) {
-  StressRuns const r = run(o, usual_combinations());
+  StressRuns const r = run(o, {on_pins(rigid_links()), on_pins(cable_links()), on_pins(modal_links()),
+                               on_pins(rotation_links()), on_pins(beam_links()), on_pins(continuum_links())});
   write_report(r.comparison, o.out / "comparison", !o.no_plot);
   report(o, r);
   if (o.fatigue) fatigue(o, r);
@@ -411,14 +518,22 @@ int main(int argc, char** argv) {
   o.rho = 0.5;
   o.speed = m113::chapter_4_speeds[0];
   o.out = "out/track_stress";
+  o.files = POLYBODY_TRACK_LINK_FILES;
+  std::string contacts = "middle";
   CommandLine line{
       "Stress of a track's link after a run of rigid links (decoupled) and in runs of flexible ones (Chapter 4)."};
   line.one_of("--links", &o.links, all_links, "body formulation of the links");
   line.one_of("--pins", &o.pins, all_pins,
               "joint policy of the pins; without it linear for ancf, beam and continuum, else constraint");
-  line.not_negative("--elements", &o.elements, "of a flexible link; 0: one, and two of a floating frame");
-  line.one_of("--compare", &o.compare, {"links", "matrix"},
-              "all links side by side, each on its usual pins, or on every pin", "links");
+  line.not_negative("--elements", &o.elements, "of a flexible link but fe; 0: one, and two of a floating frame");
+  line.one_of(
+      "--compare", &o.compare, {"links", "matrix", "terms", "surface"},
+      "links: all but fe side by side, each on its usual pins; matrix: every link on every pin; terms: ffr without "
+      "parts of its equations; surface: stress in nodes of fe, after a run of rigid links and in its own",
+      "links");
+  line.one_of("--contacts", &contacts, {"middle", "places"},
+              "where on a link contacts act: all in its middle, or at their places");
+  line.option("--link-files", &o.files, "folder of the finite element link's files");
   line.one_of("--turn", &o.turn, {"pivot", "curve"},
               "pivot: the right track backwards; curve: the right one at 0.8 of the speed");
   line.flag("--bumps", &o.bumps, "a course with three bumps");
@@ -439,14 +554,20 @@ int main(int argc, char** argv) {
   line.option("--out", &o.out, "folder of the results");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");
   if (auto const code = line.parse(argc, argv)) return *code;
+  if (contacts == "places") o.contacts = m113::ContactsAct::at_their_places;
   if (o.turn == "pivot") o.right = -1.0;
   if (o.turn == "curve") o.right = 0.8;
   try {
     fs::create_directories(o.out);
+    if (!o.compare.empty()) o.start = std::make_shared<m113::TrackStart const>(start_of_all(o));
     if (!o.figure.empty())
       figures(o);
     else if (o.compare == "matrix")
       matrix(o);
+    else if (o.compare == "terms")
+      compare_terms(o);
+    else if (o.compare == "surface")
+      surface_stress(o);
     else if (o.compare == "links")
       all_formulations(o);
     else

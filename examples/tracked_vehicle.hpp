@@ -32,7 +32,8 @@ struct Settings {
   double rho = 0.8;
   bool bumps = false;
   int cut = 0;
-  int elements = 0;                                    // of a flexible link; 0: as few as its formulation does with
+  int elements = 0;  // of a flexible link; 0: as few as its formulation does with
+  m113::ContactsAct contacts = m113::ContactsAct::in_the_middle;
   std::shared_ptr<m113::TrackStart const> start = {};  // of the links; without it each run settles its own tracks
   double animate = 0.0;                                // seconds between states, 0 for none
   bool audit = false;
@@ -61,8 +62,25 @@ template <class F>
 using VehicleOf = m113::Vehicle<typename F::BodyType, typename F::PolicyType, BumpCourse>;
 
 inline m113::VehicleOptions vehicle_options(Settings const& s) {
-  return {
-      .masses = s.masses, .suspension = s.suspension, .preload = s.preload, .cut = s.cut, .link_elements = s.elements};
+  return {.masses = s.masses,
+          .suspension = s.suspension,
+          .preload = s.preload,
+          .cut = s.cut,
+          .link_elements = s.elements,
+          .contacts = s.contacts};
+}
+
+// A formulation that says how its links are made, where that is not told by their type.
+template <class Body, class Policy>
+struct LinkFormulation : Formulation<Body, Policy, GeneralizedAlpha> {
+  m113::LinkOf<Body> links = {};
+};
+template <class F>
+m113::LinkOf<typename F::BodyType> links_made(F const& f) {
+  if constexpr (requires { f.links; })
+    return f.links;
+  else
+    return {};
 }
 
 // Where links lie whose tracks have come to rest; the same for all formulations.
@@ -262,7 +280,8 @@ struct TrackCase {
     m113::VehicleOptions options = vehicle_options(s);
     options.start = s.start ? *s.start : settled(s);
     std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
-    return {options.start, std::make_shared<VehicleOf<F> const>(f.policy, drives, options, course(s.bumps))};
+    return {options.start,
+            std::make_shared<VehicleOf<F> const>(f.policy, drives, options, course(s.bumps), links_made(f))};
   }
 
   template <class F>

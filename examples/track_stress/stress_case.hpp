@@ -6,6 +6,7 @@
 #include <polybody/vehicle/link_strain.hpp>
 
 #include "stress_runs.hpp"
+#include "surface.hpp"
 
 namespace chapter4 {
 
@@ -20,6 +21,21 @@ DecoupledStress recovered(Options const& o, BodyRecord const& record) {
   if (o.recovery == "static") return DecoupledStress::quasi_static(m113::link_structure(), record);
   return DecoupledStress::vibrating(m113::link_structure(), record, integrator(o),
                                     {.frame = ReferenceConditions::simply_supported(0, 2)});
+}
+
+// The watched link's strain and bending at one moment of a run of flexible links.
+template <class V>
+void watch(V const& vehicle, State const& x, LinkHistory& h) {
+  auto const& link = vehicle.side(m113::Side::left).links[watched_link];
+  h.strain.push_back(m113::link_strain(vehicle.model, x, link));
+  Vec3 const lateral = vehicle.hull(x).A.col(1);
+  h.bending.push_back(m113::link_bending(vehicle.model, x, link, lateral));
+}
+// The same of a finite element link.
+template <class V>
+void watch_elements(Options const& o, V const& vehicle, State const& x, LinkHistory& h) {
+  auto const& link = vehicle.side(m113::Side::left).links[watched_link];
+  add_surface(h, o, x.q.segment(vehicle.model.entry(link).q0 + 7, link.body().deformations()));
 }
 
 struct StressCase {
@@ -50,14 +66,22 @@ struct StressCase {
           DecoupledStress const stress = recovered(o, recorder->of(link));
           h.strain = m113::link_strain(stress);
           h.bending = m113::link_bending(stress);
+          if (o.surface) add_surface(h, o, recorder->of(link));
         });
+      };
+    } else if constexpr (requires { f.links.model; }) {
+      bool const of_elements = bool(f.links.model);
+      scenario.observer = [=, o = options, before = scenario.observer](M const& model, State const& x) {
+        before(model, x);
+        if (of_elements)
+          watch_elements(o, *vehicle, x, *history);
+        else
+          watch(*vehicle, x, *history);
       };
     } else {
       scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
         before(model, x);
-        history->strain.push_back(m113::link_strain(vehicle->model, x, link));
-        Vec3 const lateral = vehicle->hull(x).A.col(1);
-        history->bending.push_back(m113::link_bending(vehicle->model, x, link, lateral));
+        watch(*vehicle, x, *history);
       };
     }
     return scenario;
@@ -120,12 +144,17 @@ constexpr char const* refusal() {
     return "";
 }
 
+// How links of Body are made under these options.
+template <class Body>
+using LinksMade = std::function<m113::LinkOf<Body>(Options const&)>;
+
 template <class Body, class Policy>
-Combination combination(std::string const& links, std::string const& pins, bool usual, Policy const& policy) {
-  Combination c{links, pins, usual, refusal<Body, Policy>()};
+Combination combination(std::string const& links, std::string const& pins, bool usual, Policy const& policy,
+                        LinksMade<Body> const& made) {
+  Combination c{links, pins, usual, refusal<Body, Policy>(), Body::observes != Observes::axis};
   if constexpr (*refusal<Body, Policy>() == '\0') {
     auto const formulation = [=, name = usual ? links : links + ", " + pins](Options const& o) {
-      return Formulation<Body, Policy, GeneralizedAlpha>{name, policy, integrator(o)};
+      return LinkFormulation<Body, Policy>{{name, policy, integrator(o)}, made(o)};
     };
     c.run = [=](Options const& o) { return run(o, formulation(o)); };
     c.restart = [=](Options const& o) { restart(o, formulation(o)); };
@@ -135,10 +164,11 @@ Combination combination(std::string const& links, std::string const& pins, bool 
 
 // Links of Body under each policy of the pins, in the order of all_pins.
 template <class Body, Policy Usual>
-std::vector<Combination> links_of(std::string const& name) {
+std::vector<Combination> links_of(
+    std::string const& name, LinksMade<Body> const& made = [](Options const&) { return m113::LinkOf<Body>{}; }) {
   auto const by = [&](std::size_t pins, auto const& policy) {
     bool const usual = std::is_same_v<std::remove_cvref_t<decltype(policy)>, Usual>;
-    return combination<Body>(name, all_pins[pins], usual, policy);
+    return combination<Body>(name, all_pins[pins], usual, policy, made);
   };
   return {by(0, Constraint{}), by(1, m113::penalty_pin(m113::pin_stiffness)),
           by(2, m113::bushing_pin(m113::pin_stiffness)), by(3, AncfLinear{}), by(4, Recursive{})};

@@ -1,7 +1,10 @@
 #pragma once
 // What the program asks of a formulation of the links. Each formulation is compiled in a file of its own.
 #include <functional>
+#include <map>
 #include <memory>
+
+#include <polybody/bodies/ffr/ffr_options.hpp>
 
 #include "../tracked_vehicle.hpp"
 
@@ -13,15 +16,19 @@ inline constexpr int watched_link = watched_pin;
 
 struct Options : Settings {
   std::string links = "ancf", pins, compare, figure, turn, recovery = "static";
+  std::string files;     // of a finite element link
+  bool surface = false;  // stress in named nodes of its surface, also after a run of rigid links
+  FfrTerms terms = {};   // of floating frames
   double cut_off = 15.0;
   bool halve = false, restart = false, fatigue = false;
 };
 
 // What a run knows of its watched link. Of rigid links the strain is worked out after the run.
 struct LinkHistory {
-  std::vector<double> strain;              // of the link, change of length over length
-  std::vector<double> bending;             // in the middle: what it adds in the fibre towards the wheels
-  double recording = 0.0, recovery = 0.0;  // CPU times [s]
+  std::vector<double> strain;   // of the link, change of length over length
+  std::vector<double> bending;  // in the middle: what it adds in the fibre towards the wheels
+  std::map<std::string, std::vector<double>> surface = {};  // von Mises stress in named nodes [Pa]
+  double recording = 0.0, recovery = 0.0;                   // CPU times [s]
   std::function<void(LinkHistory&)> recover;
 };
 
@@ -47,11 +54,12 @@ struct Combination {
   std::string links, pins;
   bool usual = false;        // the pins that links have where none are asked for
   std::string refusal = {};  // why it cannot be; else empty
+  bool turns = true;         // else its pins are fixed to the world's axes
   std::function<StressRuns(Options const&)> run = {};
   // Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
   std::function<void(Options const&)> restart = {};
 };
-inline std::vector<std::string> const all_links{"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"};
+inline std::vector<std::string> const all_links{"rigid", "ancf", "ffr", "fe", "lrvf", "beam", "continuum"};
 inline std::vector<std::string> const all_pins{"constraint", "penalty", "bushing", "linear", "recursive"};
 
 // Where the links of all runs lie at the start.
@@ -61,6 +69,7 @@ m113::TrackStart start_of_all(Options const& o);
 std::vector<Combination> rigid_links();
 std::vector<Combination> cable_links();
 std::vector<Combination> modal_links();
+std::vector<Combination> finite_element_links();
 std::vector<Combination> rotation_links();
 std::vector<Combination> beam_links();
 std::vector<Combination> continuum_links();

@@ -8,6 +8,7 @@
 
 #include <polybody/math/vectors.hpp>
 #include <polybody/solvers/default_solver.hpp>
+#include <polybody/solvers/kept_parts.hpp>
 #include <polybody/solvers/tangent_solver.hpp>
 #include <polybody/system/step_bounds.hpp>
 
@@ -114,6 +115,20 @@ template <class = void>
       ". Look for a joint that repeats another, or a body without inertia that is free to move."};
 }
 
+/// By the unknowns of the linear equations: those that are speeds of bodies whose mass matrix is constant.
+template <class = void>
+Sequence<bool> constant_unknowns(System const& s) {
+  Sequence<bool> out(std::size_t(equations_of(s)), false);
+  Coordinates const& c = s.step_coordinates();
+  if (c && c.narrow->whole_unknown.empty()) return out;
+  for (Index i = 0; i < equation_speeds_of(s); ++i) {
+    Index const whole = c ? c.narrow->whole_unknown[std::size_t(i)] : i;
+    for (BodyPlace const& b : s.layout().bodies)
+      if (whole >= b.v0 && whole < b.v0 + b.speeds) out[std::size_t(i)] = b.constant_mass;
+  }
+  return out;
+}
+
 }  // namespace detail
 
 template <LinearSolver Solver = DefaultSolver>
@@ -131,6 +146,8 @@ class ForwardDynamics {
         next_(VecX::Zero(system.coordinates())) {
     by_tree_ = system.step_coordinates() && system.step_coordinates().narrow->solves_by_bodies && system.rows() == 0;
     if (by_tree_) only_weight_ = pushed_by_weight_alone(system);
+    if (system.rows() > 0 || !has_constant_mass(system))
+      solver_.linear_solver().keep(detail::constant_unknowns(system));
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
@@ -320,7 +337,7 @@ class ForwardDynamics {
     std::copy_n(x_.data() + first, n, out.data());
   }
 
-  TangentSolver<SolverOfSteps<Solver>> solver_;
+  TangentSolver<KeptParts<SolverOfSteps<Solver>>> solver_;
   bool factored_ = false;
   bool by_tree_ = false, only_weight_ = false;
   VecX zero_a_, zero_lambda_, r_, phi_, open_, rhs_, x_, delta_, next_;

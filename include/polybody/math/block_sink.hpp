@@ -58,6 +58,13 @@ concept TakesBlocks = requires(S target, BlockView const& b) { target.add(Index(
 template <class S>
 concept SkipsZeros = requires(S target) { target.skip(Index(0), Index(0), Index(0), Index(0)); };
 
+/// A receiver that has the numbers of some diagonal blocks already: of those of unknowns that it does not want, `skip`
+/// will do.
+template <class S>
+concept ChoosesBlocks = requires(S target) {
+  { target.wants(Index(0), Index(0)) } -> std::convertible_to<bool>;
+};
+
 /// A receiver that has laid its storage out: block k goes straight to its slots.
 template <class S>
 concept OffersSlots = requires(S const target) {
@@ -71,6 +78,8 @@ class BlockSink {
     requires(!std::same_as<std::remove_cvref_t<S>, BlockSink>)
   explicit BlockSink(S& target) : target_(&target) {
     if constexpr (OffersSlots<S>) slots_ = target.slots();
+    if constexpr (ChoosesBlocks<S>)
+      wants_ = [](void* of, Index first, Index size) -> bool { return static_cast<S*>(of)->wants(first, size); };
     add_ = [](void* to, Index row, Index col, BlockView const& b) { static_cast<S*>(to)->add(row, col, b); };
     skip_ = [](void* to, Index row, Index col, Index rows, Index cols) {
       if constexpr (SkipsZeros<S>) {
@@ -87,6 +96,8 @@ class BlockSink {
     int const end = *++slots_.first;
     for (int k = slots_.first[-1]; k < end; ++k) slots_.pieces[k].add(b);
   }
+  /// Whether the numbers of the diagonal block of these unknowns are of use.
+  bool wants(Index first, Index size) const { return !wants_ || wants_(target_, first, size); }
   /// A block of zeros: it has its place in the matrix but does not act.
   void skip(Index row, Index col, Index rows, Index cols) {
     if (slots_.first)
@@ -99,6 +110,7 @@ class BlockSink {
   void* target_;
   void (*add_)(void*, Index, Index, BlockView const&);
   void (*skip_)(void*, Index, Index, Index, Index);
+  bool (*wants_)(void*, Index, Index) = nullptr;
   BlockSlots slots_;
 };
 

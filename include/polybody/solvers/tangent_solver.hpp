@@ -111,6 +111,9 @@ class TangentSolver {
     return bad;
   }
 
+  /// What `analyse` lays out.
+  Solver& linear_solver() { return solver_; }
+
   /// How often the solver has changed its order of elimination; 0 for solvers that never do.
   std::size_t reorderings() const {
     if constexpr (requires { solver_.reorderings(); })

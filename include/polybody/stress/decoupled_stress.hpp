@@ -11,6 +11,7 @@
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
 
+#include <polybody/bodies/ffr/static_supports.hpp>
 #include <polybody/stress/section_stress.hpp>
 #include <polybody/stress/structure_vibration.hpp>
 
@@ -32,29 +33,6 @@ inline std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure
     for (double* const part : {&p.m, &p.my, &p.mz}) *part *= xi;
   }
   return points;
-}
-
-/// `frame`, and what keeps a structure from moving as a whole without forcing it: the first node; where nodes have no
-/// rotations, of the node b farthest from it two displacements across b − a, and of the node farthest from their line
-/// that across the plane.
-inline ReferenceConditions statically_determinate(Structure const& s, ReferenceConditions frame) {
-  for (int c = 0; c < s.per_node; ++c) frame.fix(0, c);
-  if (s.per_node == 6) return frame;
-  auto const farthest = [&](auto const& measure) {
-    Index best = 0;
-    for (Index i = 1; i < Index(s.nodes.size()); ++i)
-      if (measure(i).squaredNorm() > measure(best).squaredNorm()) best = i;
-    return best;
-  };
-  auto const from_first = [&](Index i) { return Vec3(s.nodes[std::size_t(i)] - s.nodes.front()); };
-  Index const b = farthest(from_first);
-  Vec3 const line = from_first(b);
-  auto const off_line = [&](Index i) { return Vec3(line.cross(from_first(i))); };
-  Index const c = farthest(off_line);
-  int along = 0, across = 0;
-  line.cwiseAbs().maxCoeff(&along);
-  off_line(c).cwiseAbs().maxCoeff(&across);
-  return frame.fix(b, (along + 1) % 3).fix(b, (along + 2) % 3).fix(c, across);
 }
 
 }  // namespace detail
@@ -169,7 +147,7 @@ class DecoupledStress {
     if (!loose) factor.compute(submatrix(s.stiffness, free, free));
     if (loose || factor.info() != Eigen::Success ||
         !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff())) {
-      free = detail::statically_determinate(s, frame).free_coordinates(s);
+      free = statically_determinate(s, frame).free_coordinates(s);
       factor_positive(factor, submatrix(s.stiffness, free, free),
                       "the structure moves without deformation, though it is held.");
     }

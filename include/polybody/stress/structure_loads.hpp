@@ -11,10 +11,19 @@
 ///
 /// Not in polybody.hpp: Eigen's sparse module would cost every program seconds to compile.
 
+#include <algorithm>
+
 #include <polybody/bodies/ffr/beam_structure.hpp>
+#include <polybody/bodies/ffr/node_patch.hpp>
 #include <polybody/run/body_record.hpp>
 
 namespace polybody {
+
+/// Nodes that share what acts at a place.
+struct LoadPatch {
+  Vec3 at;  ///< (3) in the structure's axes [m]
+  NodePatch nodes;
+};
 
 /// How a recorded motion becomes loads on a structure.
 struct StructureLoadOptions {
@@ -24,6 +33,7 @@ struct StructureLoadOptions {
   double largest_gap = 0.0;  ///< between samples, over which a line is drawn [s]; 0: 1.5 times the median interval
   double unbalance = 1e-3;   ///< what may be left of forces and moments, as a part of their size
   double patch = 0.0;  ///< nodes within this distance of a load share it [m]; asked for where nodes have no rotations
+  std::vector<LoadPatch> patches = {};  ///< of the places that have their own nodes, where nodes have no rotations
 };
 
 class StructureLoads {
@@ -45,7 +55,9 @@ class StructureLoads {
   /// \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the structure's inertia, and
   /// patches of nodes that cannot take them.
   StructureLoads(Structure structure, BodyRecord const& record, StructureLoadOptions const& options)
-      : s_(std::move(structure)), name_(record.name) {
+      : s_(std::move(structure)),
+        name_(record.name),
+        patch_of_(sentence_of({"Stress of \"", name_, "\", nodes within ", options.patch, " m of a load"})) {
     require_positive(s_.mass, who() + "the structure's mass");
     require_positive(options.unbalance, who() + "the unbalance");
     require_not_negative(options.patch, who() + "the patch");
@@ -61,7 +73,7 @@ class StructureLoads {
         Load load{.f = place.axes.transpose() * l.f, .m = place.axes.transpose() * l.m};
         Vec3 const at = place.axes.transpose() * (l.at - place.origin);
         if (s_.per_node == 3)
-          share(load, at, options.patch);
+          share(load, at, options);
         else
           take(load, at);
       }
@@ -152,32 +164,16 @@ class StructureLoads {
     loads_.back().push_back(load);
   }
 
-  /// Shares a load among the n nodes of a patch with the middle c, as f/n + θ × (r − c): the least nodal forces with
-  /// this resultant.
-  void share(Load const& load, Vec3 const& at, double patch) {
-    std::vector<Index> nodes;
-    Vec3 middle = Vec3::Zero();
-    for (std::size_t i = 0; i < s_.nodes.size(); ++i)
-      if ((s_.nodes[i] - at).norm() <= patch) {
-        nodes.push_back(Index(i));
-        middle += s_.nodes[i];
-      }
-    double const count = double(nodes.size());
-    middle /= std::max(count, 1.0);
-    Mat3 spread = Mat3::Zero();  // Σ d² 1 − d dᵀ
-    for (Index const i : nodes) {
-      Vec3 const d = s_.nodes[std::size_t(i)] - middle;
-      spread += d.squaredNorm() * Mat3::Identity() - d * d.transpose();
-    }
-    if (!(spread.determinant() > 1e-9 * std::pow(spread.trace() / 3.0, 3)))
-      throw InvalidInput{
-          who(),        "nodes without rotations take a load by three or more that are not in line, but ",
-          nodes.size(), " lie within the patch of ",
-          patch,        " m about a load. Widen the patch."};
-    Vec3 const theta = spread.inverse() * (load.m + (at - middle).cross(load.f));
-    for (Index const i : nodes)
-      loads_.back().push_back(
-          {.node = i, .f = load.f / count + theta.cross(s_.nodes[std::size_t(i)] - middle), .m = Vec3::Zero()});
+  /// Shares a load among the nodes of a patch.
+  void share(Load const& load, Vec3 const& at, StructureLoadOptions const& options) {
+    auto const own = std::find_if(options.patches.begin(), options.patches.end(),
+                                  [&](LoadPatch const& p) { return (p.at - at).norm() <= same_place; });
+    if (own != options.patches.end()) return spread(load, at, own->nodes);
+    spread(load, at, NodePatch(s_, nodes_within(s_, at, options.patch), patch_of_));
+  }
+  void spread(Load const& load, Vec3 const& at, NodePatch const& patch) {
+    for (std::size_t k = 0; k < patch.nodes().size(); ++k)
+      loads_.back().push_back({.node = patch.nodes()[k], .f = patch.force(k, at, load.f, load.m), .m = Vec3::Zero()});
   }
 
   double size() const {
@@ -223,8 +219,10 @@ class StructureLoads {
           when,  " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`."};
   }
 
+  static constexpr double same_place = 1e-6;  ///< of a load and its patch [m]
+
   Structure s_;
-  std::string name_;
+  std::string name_, patch_of_;
   std::vector<double> times_;
   std::vector<Motion> motions_;
   std::vector<std::vector<Load>> loads_;

@@ -42,7 +42,14 @@ void BodyKernels<B, T>::masses(Pool const& pool, Kept& kept, At<double> at, Bloc
     Entry const& e = pool.entries[b];
     auto&& scratch = kept.scratch[b].tangent_scratch(e.body);
     bool const alike = detail::are_alike(e.body);
+    Index const columns = n == Eigen::Dynamic ? e.body.speeds() : Index(n);
+    bool const known = B::constant_mass && !sink.wants(e.v0 + e.body.first_column(0), columns);
     for (Index i = 0; i < e.body.elements(); ++i) {
+      if (known) {
+        Index const first = e.v0 + e.body.first_column(i);
+        sink.skip(first, first, columns, columns);
+        continue;
+      }
       if (i == 0 || !alike) e.body.mass(i, coordinates(e, at.q), scratch.m);
       Index const first = e.v0 + e.body.first_column(i);
       sink.add(first, first, scratch.m);

@@ -21,6 +21,7 @@ struct BodyPlace {
   Index v0 = 0, speeds = 0;
   Index row = -1, rows = 0;  ///< rows of its own
   bool planar = false;
+  bool constant_mass = false;
   void const* type = nullptr;  ///< tells types of bodies apart
   Index index = 0;             ///< among the bodies of its type
   void const* body = nullptr;  ///< the body itself, in the model

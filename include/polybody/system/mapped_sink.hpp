@@ -127,6 +127,11 @@ class MappedSinkOf {
       for (auto const& c : cols.runs)
         sink_.add(r.first, c.first, BlockView(whole + r.local * cols.size + c.local, r.size, c.size, cols.size, 1));
   }
+  bool wants(Index first, Index size) {
+    if (Index const to = map_.run(first, size); to >= 0) return sink_.wants(to, size);
+    auto const& runs = range(first, size).runs;
+    return runs.empty() || sink_.wants(runs[0].first, runs[0].size);
+  }
   /// A block of zeros.
   void skip(Index row, Index col, Index height, Index width) {
     Index const to_row = map_.run(row, height), to_col = map_.run(col, width);

@@ -50,6 +50,13 @@ enum class Closure {
   in_plane       ///< two rows hold its points together across the pin's axis: the loop needs no more
 };
 
+/// Where on a link that what it touches acts, as a wrench.
+enum class ContactsAct {
+  in_the_middle,   ///< all about the link's middle
+  at_their_places  ///< wheels about the middle of a third of the link, teeth about the front pin, the ground about the
+                   ///< pairs of corners of the pad, rims about the middle
+};
+
 /// Options of the vehicle besides the formulation of its tracks. The defaults are those of m113.hpp.
 struct VehicleOptions {
   Solids masses = thesis;
@@ -60,6 +67,7 @@ struct VehicleOptions {
   TrackStart start = {};
   int link_elements = 0;  ///< of each flexible link; 0: one, and two of a floating frame
   bool friction = true;
+  ContactsAct contacts = ContactsAct::in_the_middle;
   bool held = false;         ///< the chassis is welded to the ground and the arms to the chassis
   bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
 };
@@ -102,12 +110,11 @@ struct LinkParts {
   std::vector<BodyHandle<Link>> links = {};
   std::vector<Marker<Link>> front = {}, middle = {}, rear = {};  ///< of each link: front pin, middle, rear pin
 
-  void add(BodyHandle<Link> const& link, Track& track) {
-    using L = LinkOf<Link>;
+  void add(LinkOf<Link> const& of, BodyHandle<Link> const& link, Track& track) {
     links.push_back(link);
-    front.push_back(L::front(link));
-    middle.push_back(L::middle(link));
-    rear.push_back(L::rear(link));
+    front.push_back(of.front(link));
+    middle.push_back(of.middle(link));
+    rear.push_back(of.rear(link));
     track.front.push_back(frame_in(link, front.back()));
     track.middle.push_back(frame_in(link, middle.back()));
     track.rear.push_back(frame_in(link, rear.back()));
@@ -144,7 +151,7 @@ class Vehicle : public TrackedVehicle {
   struct SideParts : Carriers<Base>, LinkParts<Link> {
     std::vector<ElementHandle<Pin>> pins = {};
     std::vector<ElementHandle<Driven>> drive = {};       ///< one
-    std::vector<ElementHandle<Contacts>> contacts = {};  ///< one
+    std::vector<ElementHandle<Contacts>> contacts = {};  ///< one; four where contacts act at their places
   };
 
   ModelType model{Gravity{0, 0, -9.81}};
@@ -155,7 +162,8 @@ class Vehicle : public TrackedVehicle {
 
   /// \throws InvalidInput.
   Vehicle(PinPolicy const& pin, std::array<Drive, 2> const& drives, VehicleOptions const& options = {},
-          Ground const& ground = {}) {
+          Ground const& ground = {}, LinkOf<Link> const& of_links = {})
+      : of_links_(of_links) {
     check(options);
     if (options.ground_body) {
       auto const body = model.add(solid({1.0, {1, 1, 1}}, Vec3(0, 0, 0)), "ground body");
@@ -219,8 +227,8 @@ class Vehicle : public TrackedVehicle {
                  SideParts& parts) {
     for (int i = 0; i < links; ++i) {
       Placement const place = options.start.links[std::size_t(i)].placement(sign(s) * track_y);
-      Link const link = LinkOf<Link>::make(options.masses.link, place, options.link_elements);
-      parts.add(model.add(link, name + "link " + std::to_string(i)), tracks[s == Side::left ? 0 : 1]);
+      Link const link = of_links_.make(options.masses.link, place, options.link_elements);
+      parts.add(of_links_, model.add(link, name + "link " + std::to_string(i)), tracks[s == Side::left ? 0 : 1]);
     }
     parts.pins.resize(std::size_t(links));
     for (int k = 1; k <= links; ++k) {
@@ -238,24 +246,55 @@ class Vehicle : public TrackedVehicle {
     }
   }
 
+  /// Contacts of `markers`, so many of each link.
+  ElementHandle<Contacts> add_group(Side s, std::vector<Marker<Link>> const& markers, std::string const& name) {
+    auto const group = model.apply(Contacts{}, markers, name);
+    sides[s == Side::left ? 0 : 1].contacts.push_back(group);
+    auto& visit_all = tracks[s == Side::left ? 0 : 1].contacts;
+    Index const of_each = Index(markers.size()) / links;
+    visit_all = [group, of_each, others = visit_all](System const& system, TouchingPointVisit const& visit) {
+      if (others) others(system, visit);
+      for_each_contact(system, group, [&](TouchingPoint const& p) {
+        TouchingPoint of_link = p;
+        of_link.body /= of_each;
+        visit(of_link);
+      });
+    };
+    return group;
+  }
+  /// The places on each link that are so far ahead of its middle.
+  std::vector<Marker<Link>> under(SideParts const& parts, std::vector<double> const& ahead, Face face) const {
+    std::vector<Marker<Link>> found;
+    for (auto const& link : parts.links)
+      for (double const x : ahead) found.push_back(of_links_.under(link, x, face));
+    return found;
+  }
+
   void add_contacts(Side s, std::string const& name, VehicleOptions const& options, Ground const& ground) {
     SideParts& parts = sides[s == Side::left ? 0 : 1];
     OfLinks const of_links{options.friction};
-    auto const group = model.apply(Contacts{}, parts.middle, name + "track");
-    parts.contacts.push_back(group);
-    tracks[s == Side::left ? 0 : 1].contacts = [group](System const& system, TouchingPointVisit const& visit) {
-      for_each_contact(system, group, visit);
-    };
+    bool const in_the_middle = options.contacts == ContactsAct::in_the_middle;
+    double const face = in_the_middle ? pitch : pitch / 3.0;
+    auto const rims = add_group(s, parts.middle, name + "track");
+    auto const rollers =
+        in_the_middle ? rims : add_group(s, under(parts, {-face, 0.0, face}, Face::wheels), name + "inner faces");
     auto const roller = [&](Handle const& body, double radius) {
       auto const axle = body.at(Vec3(0, 0, 0));
-      model.pair_with(group, of_links.on_roller(radius), axle, body.name);
-      model.pair_with(group, of_links.on_rims(radius), axle, body.name + " (horn)");
+      model.pair_with(rollers, of_links.on_roller(radius, face), axle, body.name);
+      model.pair_with(rims, of_links.on_rims(radius), axle, body.name + " (horn)");
     };
     for (Handle const& wheel : parts.wheels) roller(wheel, wheel_radius);
     roller(parts.idler[0], idler_radius);
-    model.pair_with(group, of_links.on_teeth(), parts.sprocket[0].at(Vec3(0, 0, 0)), parts.sprocket[0].name);
-    model.pair_with(group, of_links.on_terrain(ground), model.ground().at({0, 0, 0}), "ground");
+    auto const sprocket = parts.sprocket[0].at(Vec3(0, 0, 0));
+    auto const pins = in_the_middle ? rims : add_group(s, parts.front, name + "pins on teeth");
+    model.pair_with(pins, of_links.on_teeth(in_the_middle ? 0.5 * pitch : 0.0), sprocket, parts.sprocket[0].name);
+    double const x = pad[0].x;
+    auto const pads = in_the_middle ? rims : add_group(s, under(parts, {-x, x}, Face::ground), name + "pads");
+    model.pair_with(pads, of_links.on_terrain(ground, in_the_middle ? of_links.corners() : of_links.corners(x)),
+                    model.ground().at({0, 0, 0}), "ground");
   }
+
+  LinkOf<Link> of_links_;
 };
 
 }  // namespace polybody::m113

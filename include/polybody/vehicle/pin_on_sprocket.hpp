@@ -3,6 +3,7 @@
 /// A track's pins between the teeth of its sprocket. Not in polybody.hpp: of use to vehicles only.
 
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include <polybody/forces/contact.hpp>
@@ -80,8 +81,8 @@ struct SprocketProfile {
   }
 };
 
-/// The front pin of a link in the teeth. Marker a is the link's centre, marker b the sprocket's centre with its axle
-/// along y.
+/// The front pin of a link in the teeth. Marker a is on the link's middle line, x to the front pin; marker b is the
+/// sprocket's centre with its axle along y.
 template <Observes observed = Observes::frame>
 struct PinOnSprocket {
   static constexpr Observes needs = observed;
@@ -90,17 +91,20 @@ struct PinOnSprocket {
   SprocketProfile profile;
   Required<double> valley;            ///< angle of any one valley in the sprocket's axes, from z towards x [rad]
   std::vector<double> rings = {0.0};  ///< where the rings of teeth are along the axle [m]
+  std::optional<double> ahead = {};   ///< from marker a to the pin [m]; none: a is the link's centre, half a pitch
 
+  double to_pin() const { return ahead ? *ahead : 0.5 * profile.pitch; }
   void check(std::string const& name) const {
     profile.check(name);
     if (!std::isfinite(valley)) throw InvalidInput{name, ": the angle of a valley must be finite."};
+    if (!std::isfinite(to_pin())) throw InvalidInput{name, ": the way from the marker to the pin must be finite."};
     if (rings.empty()) throw InvalidInput{name, ": a sprocket needs at least one ring of teeth."};
     for (double const y : rings)
       if (!std::isfinite(y)) throw InvalidInput{name, ": the place of a ring must be finite."};
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& sprocket) const {
     Vec3 const x = detail::column<double>(link.A, 0), axle = detail::column<double>(sprocket.A, 1);
-    Vec3 const arm = difference<double>(detail::shifted<double>(link.r, x, 0.5 * profile.pitch), sprocket.r);
+    Vec3 const arm = difference<double>(detail::shifted<double>(link.r, x, to_pin()), sprocket.r);
     double const across = arm.dot(axle);
     double far = 0.0;
     for (double const ring : rings) far = std::max(far, std::abs(ring));
@@ -115,7 +119,7 @@ struct PinOnSprocket {
     Vec<T, 3> const lateral = detail::column<T>(link_axes<observed, T>(link, detail::column<T>(sprocket.A, 1)), 1);
     Vec<T, 3> const along = detail::column<T>(link.A, 0), axis_x = detail::column<T>(sprocket.A, 0),
                     axis_z = detail::column<T>(sprocket.A, 2);
-    Vec<T, 3> const pin = difference<T>(detail::shifted<T>(link.r, along, T(0.5 * profile.pitch)), sprocket.r);
+    Vec<T, 3> const pin = difference<T>(detail::shifted<T>(link.r, along, T(to_pin())), sprocket.r);
     for (double const ring : rings) {
       Vec<T, 3> const arm = detail::shifted<T>(pin, lateral, T(ring));
       T const x = arm.dot(axis_x), z = arm.dot(axis_z);
@@ -124,10 +128,10 @@ struct PinOnSprocket {
                    middle = valley + step * std::round((angle - valley) / step);
       double const s = std::sin(middle), c = std::cos(middle);
       T const out = x * s + z * c, side = x * c - z * s;  // along the middle of the valley, and across from z towards x
-      bool const ahead = value_of(side) >= 0.0;
-      auto const o = profile.template overlap<T>(out, ahead ? side : T(-side));
+      bool const forward = value_of(side) >= 0.0;
+      auto const o = profile.template overlap<T>(out, forward ? side : T(-side));
       if (!(value_of(o.depth) > 0.0)) continue;  // nor where a cable lies along the axle
-      T const across = ahead ? o.tangential : T(-o.tangential);
+      T const across = forward ? o.tangential : T(-o.tangential);
       T const by_x = o.radial * s + across * c, by_z = o.radial * c - across * s;
       Vec<T, 3> const n = detail::shifted<T>(detail::scaled<T>(axis_x, by_x), axis_z, by_z);
       Vec<T, 3> const middle_of_pin = detail::sum<T>(sprocket.r, arm);

@@ -2,6 +2,9 @@
 /// \file
 /// What the links of the vehicle of m113.hpp touch. Not in polybody.hpp: of use to vehicles only.
 
+#include <algorithm>
+#include <optional>
+
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/vehicle/link_on_ground.hpp>
 #include <polybody/vehicle/link_on_roller.hpp>
@@ -32,11 +35,13 @@ struct LinkContacts {
 
   bool friction = true;
 
-  OnRoller on_roller(double radius) const {
-    return law(LinkOnRoller<observed>{.pitch = pitch,
+  /// \param length of the face along the link [m]
+  OnRoller on_roller(double radius, double length = pitch) const {
+    return law(LinkOnRoller<observed>{.pitch = length,
                                       .half_thickness = half_thickness,
                                       .half_width = half_width,
                                       .radius = radius,
+                                      .handover = std::min(0.03, 0.49 * length),
                                       .rims = in_plane ? std::vector{0.0} : std::vector{-rim_y, rim_y}},
                on_wheel);
   }
@@ -44,18 +49,27 @@ struct LinkContacts {
     Vec3 const tip(horn.x, horn.y, horn.z + 0.5 * horn_size.z);
     return law(HornOnRims<observed>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel);
   }
-  OnSprocket on_teeth() const {
+  /// \param ahead from the marker to the front pin [m]
+  OnSprocket on_teeth(double ahead = 0.5 * pitch) const {
     return law(PinOnSprocket<observed>{.profile = sprocket_profile(),
                                        .valley = first_valley,
-                                       .rings = in_plane ? std::vector{0.0} : std::vector{-tooth_y, tooth_y}},
+                                       .rings = in_plane ? std::vector{0.0} : std::vector{-tooth_y, tooth_y},
+                                       .ahead = ahead},
                on_sprocket);
   }
+  /// \param corners of the pad, from the marker
   template <Terrain Ground>
-  OnGround<Ground> on_terrain(Ground const& ground) const {
-    std::vector<Vec3> corners;
-    for (Triple const& p : pad)
-      if (!in_plane || p.y > 0.0) corners.push_back(Vec3(p.x, in_plane ? 0.0 : p.y, p.z));
+  OnGround<Ground> on_terrain(Ground const& ground, std::vector<Vec3> const& corners) const {
     return law(LinkOnGround<Ground, observed>{.terrain = ground, .pad = corners}, on_ground);
+  }
+  /// Corners of the pad seen from a marker on the middle line, `x` ahead of the link's centre: all, or those at `x`
+  /// alone.
+  static std::vector<Vec3> corners(std::optional<double> x = {}) {
+    std::vector<Vec3> found;
+    for (Triple const& p : pad)
+      if ((!in_plane || p.y > 0.0) && (!x || p.x == *x))
+        found.push_back(Vec3(p.x - (x ? *x : 0.0), in_plane ? 0.0 : p.y, p.z));
+    return found;
   }
 
  private:

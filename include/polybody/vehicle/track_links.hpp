@@ -14,11 +14,8 @@
 
 namespace polybody::m113 {
 
-/// How a link is made as a body of type B, and which points of it are its pins and its middle. `at` is the placement of
-/// the link's centre, x to the front pin, z to the wheels; `elements` how many it has if it is flexible, 0 for as few
-/// as its formulation does with.
-template <class B>
-struct LinkOf;
+/// The sides of a link that touch something: the inner one the wheels, the outer one the ground.
+enum class Face { wheels, ground };
 
 namespace detail {
 inline Mat3 principal(Triple const& moments) { return Vec3(moments).asDiagonal(); }
@@ -43,6 +40,25 @@ inline Solids with_steel_links(Solids masses = thesis) {
   return masses;
 }
 
+/// How a link is made as a body of type B, and which points of it are its pins, its middle, and the places on its
+/// middle line where what touches a face acts. `at` is the placement of the link's centre, x to the front pin, z to the
+/// wheels; `elements` how many it has if it is flexible, 0 for as few as its formulation does with.
+///
+/// Beams lie from the rear pin to the front pin, one element unless more are asked for. The mass of a `Solid` is in the
+/// section.
+template <Body B>
+struct LinkOf {
+  static_assert(!requires { B::frame_layout; }, "Links with a floating frame are in vehicle/modal_links.hpp.");
+
+  static B make(Solid const&, Placement const& at, int elements) {
+    return B::from(link_bar(at), std::max(elements, 1));
+  }
+  static auto front(BodyHandle<B> const& link) { return link.at(link.body().length()); }
+  static auto rear(BodyHandle<B> const& link) { return link.at(0.0); }
+  static auto middle(BodyHandle<B> const& link) { return link.at(0.5 * link.body().length()); }
+  static auto under(BodyHandle<B> const& link, double x, Face) { return link.at(0.5 * pitch + x); }
+};
+
 template <class RotationCoordinates>
 struct LinkOf<Rigid<RotationCoordinates>> {
   using Body = Rigid<RotationCoordinates>;
@@ -52,28 +68,7 @@ struct LinkOf<Rigid<RotationCoordinates>> {
   static auto front(BodyHandle<Body> const& link) { return link.at(Vec3(0.5 * pitch, 0, 0)); }
   static auto rear(BodyHandle<Body> const& link) { return link.at(Vec3(-0.5 * pitch, 0, 0)); }
   static auto middle(BodyHandle<Body> const& link) { return link.at(Vec3(0, 0, 0)); }
+  static auto under(BodyHandle<Body> const& link, double x, Face) { return link.at(Vec3(x, 0, 0)); }
 };
-
-namespace detail {
-/// From the rear pin to the front pin, one element unless more are asked for. The mass of a `Solid` is in the section.
-template <class B>
-struct BeamLink {
-  using Body = B;
-  static Body make(Solid const&, Placement const& at, int elements) {
-    return Body::from(link_bar(at), std::max(elements, 1));
-  }
-  static auto front(BodyHandle<Body> const& link) { return link.at(link.body().length()); }
-  static auto rear(BodyHandle<Body> const& link) { return link.at(0.0); }
-  static auto middle(BodyHandle<Body> const& link) { return link.at(0.5 * link.body().length()); }
-};
-}  // namespace detail
-
-template <class Strain, int axial_points, int bending_points>
-struct LinkOf<AncfCable<Strain, axial_points, bending_points>>
-    : detail::BeamLink<AncfCable<Strain, axial_points, bending_points>> {};
-template <class Elastic>
-struct LinkOf<AncfBeam<Elastic>> : detail::BeamLink<AncfBeam<Elastic>> {};
-template <class Interpolation>
-struct LinkOf<Lrvf<Interpolation>> : detail::BeamLink<Lrvf<Interpolation>> {};
 
 }  // namespace polybody::m113

@@ -60,11 +60,20 @@ void attach_sprocket(Visual& visual, BodyHandle<Base> const& sprocket) {
   visual.attach(sprocket.at(Vec3(0, 0, 0)), cylinder(0.12, 2.0 * tooth_y, Vec3::UnitY()), sprocket.name + " hub");
 }
 
+/// A floating frame of a finite element model.
 template <class Link>
-void attach_link(Visual& visual, BodyHandle<Link> const& link) {
+bool without_bars(Link const& link) {
+  if constexpr (requires { link.structure().beams; }) return link.structure().beams.empty();
+  return false;
+}
+
+template <class Link>
+void attach_link(Visual& visual, BodyHandle<Link> const& link, Marker<Link> const& middle) {
   if constexpr (requires { link.at(Vec3(horn)); }) {
-    visual.attach(LinkOf<Link>::middle(link), box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}), link.name);
+    visual.attach(middle, box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}), link.name);
     visual.attach(link.at(Vec3(horn)), box(horn_size), link.name + " horn");
+  } else if (without_bars(link.body())) {
+    visual.attach(middle, box({pitch, cable_width, cable_height}), link.name);
   } else {
     visual.sweep(link, link_bar(), 4);
     if constexpr (Link::observes == Observes::frame)
@@ -83,7 +92,7 @@ Visual vehicle_visual(V const& vehicle) {
     detail::attach_drum(visual, side.idler[0], idler_radius);
     for (auto const& arm : side.arms) visual.attach(arm.at(Vec3(0, 0, 0)), box({arm_length, 0.08, 0.08}), arm.name);
     detail::attach_sprocket(visual, side.sprocket[0]);
-    for (auto const& link : side.links) detail::attach_link(visual, link);
+    for (std::size_t i = 0; i < side.links.size(); ++i) detail::attach_link(visual, side.links[i], side.middle[i]);
   }
   return visual;
 }

@@ -2,8 +2,10 @@
 /// \file
 /// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4]: with M = L Lᵀ constant and p = Lᵀ e the mass matrix
 /// of any body whose coordinates e add becomes the identity, T = ½ ṗᵀ ṗ. Forces are Q_p = L⁻¹ Q_e; the motion stays the
-/// same. L is banded like M, so a force costs a few operations a coordinate more; tangent and markers fill up, for L⁻¹
-/// is full: meant for explicit steppers without constraints, and for comparison.
+/// same. Points that are linear in e are so in p: `AncfLinear` joins such bodies. What it eliminates couples them, so
+/// that the mass matrix of the mechanism is TᵀT: explicit steps factor it once (solvers/kept_parts.hpp). L is banded
+/// like M, so a force costs a few operations a coordinate more; tangent and markers fill up, for L⁻¹ is full: meant for
+/// explicit steppers without constraints, and for comparison.
 ///
 /// Not in polybody.hpp: few programs need it.
 
@@ -24,6 +26,13 @@ class CholeskyCoordinates : public AddingCoordinates {
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
   using Point = typename B::Point;
+  /// Position gradients that are linear in the coordinates.
+  static constexpr int gradients = [] {
+    if constexpr (HasLinearPoints<B>)
+      return B::gradients;
+    else
+      return 0;
+  }();
 
   template <class... Args>
   static CholeskyCoordinates from(Args const&... args) {
@@ -48,6 +57,18 @@ class CholeskyCoordinates : public AddingCoordinates {
     VecX e = Eigen::Map<VecX const>(p.data(), n_);
     back<double>(e);
     return e;
+  }
+
+  /// r = S L⁻ᵀ p, and its gradients, by all columns.
+  MatX position_map(Point const& p) const
+    requires HasLinearPoints<B>
+  {
+    return by_own(body_.position_map(p), p);
+  }
+  MatX gradient_map(Point const& p, int alpha) const
+    requires HasLinearPoints<B>
+  {
+    return by_own(body_.gradient_map(p, alpha), p);
   }
 
   /// As the body itself tells them (see sections.hpp).
@@ -203,6 +224,13 @@ class CholeskyCoordinates : public AddingCoordinates {
       for (Index i = j + 1; i < std::min(n_, j + band_ + 1); ++i) sum -= x[i] * l(i, j);
       x[j] = sum * (1.0 / l(j, j));
     }
+  }
+  /// m L⁻ᵀ, m of the columns of `p`.
+  MatX by_own(auto const& m, Point const& p) const {
+    MatX out = MatX::Zero(m.rows(), n_);
+    out.middleCols(body_.first_column(p), m.cols()) = m;
+    for (Index i = 0; i < out.rows(); ++i) forth<double>(out.row(i));
+    return out;
   }
   /// L⁻¹ k L⁻ᵀ.
   void both_sides(MatX& k) const {

@@ -69,6 +69,9 @@ class Ffr {
   Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const { return made().at(s, y, z, bar); }
   /// A node of the structure. \throws InvalidInput for one that does not exist.
   Point node(Index i) const { return made().node(i); }
+  /// The point `at` of the undeformed body [m], which moves with a patch of the structure's nodes as a whole.
+  /// \throws InvalidInput with geometric stiffening.
+  Point patch(NodePatch const& nodes, Vec3 const& at) const { return made().patch(nodes, at); }
   /// The structure that the body is made of. \throws InvalidInput for a body made of the user's own integrals.
   Structure const& structure() const { return made().structure(); }
   /// A point as the user describes it. \throws InvalidInput for matrices that are not 3×n.

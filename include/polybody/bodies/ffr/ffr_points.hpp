@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <polybody/bodies/ffr/axial_share.hpp>
+#include <polybody/bodies/ffr/node_patch.hpp>
 
 namespace polybody {
 
@@ -119,6 +120,19 @@ class FfrPoints {
         return load;
       });
     }
+    return p;
+  }
+
+  /// The point `at` of the undeformed structure, fixed to the mean motion of a patch of its nodes. \throws InvalidInput
+  /// with geometric stiffening.
+  FfrPoint patch(NodePatch const& nodes, Vec3 const& at) const {
+    if (axial_)
+      throw InvalidInput("Ffr: with geometric stiffening points are sections or nodes, not patches of nodes.");
+    NodePatch::Motion const motion = nodes.motion(at, shapes_);
+    FfrPoint p;
+    p.u = at;
+    p.S = motion.displacement;
+    p.R = motion.rotation;
     return p;
   }
 

@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// A basis of static shapes for the loads that a body will bear, and of free modes, in mean axes [MacNeal 1971; Rubin
+/// 1975; Craig & Kurdila 2006, §17.3]. A load f on the free structure is balanced by the inertia of the acceleration
+/// that it causes,
+///   f_b = f − M R (RᵀM R)⁻¹ Rᵀ f,   K x = f_b,   Rᵀ M x = 0,   R the rigid motions,
+/// so that stress and stiffness under such loads are those of the whole model, whatever the number of modes. For nodes
+/// without rotations, where boundary nodes cannot hold the frame (`craig_bampton`), and for loads on patches of nodes.
+///
+/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+
+#include <polybody/bodies/ffr/static_supports.hpp>
+
+namespace polybody {
+
+/// Displacements of the structure that moves as a whole (N×6): along x, y, z, and turned about them through the centre
+/// of mass.
+inline MatX rigid_motions(Structure const& s) {
+  MatX out = MatX::Zero(s.size(), 6);
+  Vec3 const centre = s.first / s.mass;
+  for (Index i = 0; i < Index(s.nodes.size()); ++i) {
+    out.block<3, 3>(s.per_node * i, 0).setIdentity();
+    out.block<3, 3>(s.per_node * i, 3) = -skew<double>(Vec3(s.nodes[std::size_t(i)] - centre));
+    if (s.per_node == 6) out.block<3, 3>(6 * i + 3, 3).setIdentity();
+  }
+  return out;
+}
+
+namespace detail {
+
+/// Shapes with unit modal mass that span the columns of `shapes`, by ascending frequency; what repeats other columns is
+/// left out.
+inline MatX orthogonal_basis(Structure const& s, MatX shapes) {
+  MatX k = shapes.transpose() * (s.stiffness * shapes);
+  for (Index j = 0; j < shapes.cols(); ++j)
+    if (double const size = k(j, j); size > 0.0) shapes.col(j) /= std::sqrt(size);
+  k = shapes.transpose() * (s.stiffness * shapes);
+  Eigen::SelfAdjointEigenSolver<MatX> const strains(k);
+  Index repeated = 0;
+  while (repeated < k.rows() && strains.eigenvalues()[repeated] <= 1e-9 * strains.eigenvalues().tail<1>()[0])
+    ++repeated;
+  shapes = (shapes * strains.eigenvectors().rightCols(k.rows() - repeated)).eval();
+  MatX const reduced_k = shapes.transpose() * (s.stiffness * shapes),
+             reduced_m = shapes.transpose() * (s.mass_matrix() * shapes);
+  Eigen::GeneralizedSelfAdjointEigenSolver<MatX> const reduced(reduced_k, reduced_m);
+  return shapes * reduced.eigenvectors();
+}
+
+}  // namespace detail
+
+/// The static shapes of the nodal loads (N×m), each with the inertia that balances it, and the `count` lowest modes of
+/// the free structure: orthogonal, with unit modal mass, in mean axes. Shapes that repeat others are left out.
+/// \throws InvalidInput for loads that do not fit the structure or are not finite, a count beyond what there is, and a
+/// structure that moves without deformation in more ways than as a whole.
+template <class Eigensolver = DenseModes>
+MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigensolver const& solve = {}) {
+  if (loads.rows() != s.size() || !loads.allFinite())
+    throw InvalidInput{"Ffr: attachment modes need finite nodal loads of ", s.size(), " rows, but are given ",
+                       loads.rows(), "."};
+  if (count < 0 || loads.cols() + count == 0)
+    throw InvalidInput("Ffr: attachment modes need a load or a mode at least.");
+  MatX const rigid = rigid_motions(s), heavy = s.mass_matrix() * rigid;
+  Eigen::LDLT<MatX> const mass(rigid.transpose() * heavy);
+  std::vector<Index> const free = statically_determinate(s).free_coordinates(s);
+  SparseFactor factor;
+  factor_positive(factor, submatrix(s.stiffness, free, free), "the structure moves without deformation, though held.");
+  MatX const balanced = loads - heavy * mass.solve(rigid.transpose() * loads);
+  MatX held(Index(free.size()), loads.cols());
+  for (std::size_t i = 0; i < free.size(); ++i) held.row(Index(i)) = balanced.row(free[i]);
+  MatX shapes(s.size(), loads.cols() + count);
+  shapes.leftCols(loads.cols()) = scatter_rows(factor.solve(held), free, s.size());
+  if (count > 0) shapes.rightCols(count) = free_interface_modes(s, count, ReferenceConditions::none(), solve);
+  shapes -= rigid * mass.solve(heavy.transpose() * shapes);
+  return detail::orthogonal_basis(s, std::move(shapes));
+}
+
+}  // namespace polybody

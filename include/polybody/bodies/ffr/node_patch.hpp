@@ -1,0 +1,103 @@
+#pragma once
+/// \file
+/// Nodes of a structure that move and bear together, as the seat of a pin or the place under a wheel: a distributing
+/// coupling. With weights w_i, Σ w_i = 1, a wrench (f, m) about the nodes' middle c = Σ w_i r_i is shared as
+///   f_i = w_i (f + θ × d_i),   θ = (Σ w (d² 1 − d dᵀ))⁻¹ m,   d_i = r_i − c:
+/// of all nodal forces with this resultant those of the least Σ f_i²/w_i. The motion of the patch is what they work on:
+///   u = Σ w_i u_i,   ϑ = (Σ w (d² 1 − d dᵀ))⁻¹ Σ w_i d_i × u_i.
+///
+/// Not in polybody.hpp: it comes with bodies/ffr/ffr.hpp.
+
+#include <polybody/bodies/ffr/structure.hpp>
+
+namespace polybody {
+
+/// Nodes within this distance of a place [m].
+inline std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double distance) {
+  std::vector<Index> nodes;
+  for (std::size_t i = 0; i < s.nodes.size(); ++i)
+    if ((s.nodes[i] - at).norm() <= distance) nodes.push_back(Index(i));
+  return nodes;
+}
+
+class NodePatch {
+ public:
+  /// Displacement (3×n) and small rotation (3×n) of a point.
+  struct Motion {
+    Mat<double, 3, Eigen::Dynamic> displacement, rotation;
+  };
+
+  /// \param weights of the nodes, as the area that each stands for; none: all alike.
+  /// \throws InvalidInput, which begins with `who`, for nodes that do not exist, fewer than three or all in line, and
+  /// weights that are not positive or not as many.
+  NodePatch(Structure const& s, std::vector<Index> nodes, std::string const& who, std::vector<double> weights = {})
+      : per_node_(s.per_node), nodes_(std::move(nodes)), weights_(std::move(weights)) {
+    for (Index const i : nodes_) s.require_node(i, who);
+    normalise(who);
+    for (std::size_t k = 0; k < nodes_.size(); ++k) middle_ += weights_[k] * s.nodes[std::size_t(nodes_[k])];
+    Mat3 spread = Mat3::Zero();
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      Vec3 const d = s.nodes[std::size_t(nodes_[k])] - middle_;
+      arms_.push_back(d);
+      spread += weights_[k] * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+    }
+    if (!(spread.determinant() > 1e-9 * std::pow(spread.trace() / 3.0, 3)))
+      throw InvalidInput{who, ": a patch has three nodes or more that are not in line, but this one has ",
+                         nodes_.size(), ". Widen the patch."};
+    by_moment_ = spread.inverse();
+  }
+
+  std::vector<Index> const& nodes() const { return nodes_; }
+  Vec3 const& middle() const { return middle_; }
+
+  /// The force on node k of the patch [N] by a wrench about the point `at`.
+  Vec3 force(std::size_t k, Vec3 const& at, Vec3 const& f, Vec3 const& m) const {
+    Vec3 const theta = by_moment_ * (m + (at - middle_).cross(f));
+    return weights_[k] * (f + theta.cross(arms_[k]));
+  }
+  /// Nodal forces (N×6) of the unit forces and moments about `at`, for a structure of N coordinates.
+  MatX loads(Vec3 const& at, Index size) const {
+    MatX out = MatX::Zero(size, 6);
+    for (int c = 0; c < 6; ++c) {
+      Vec3 const f = c < 3 ? Vec3(Vec3::Unit(c)) : Vec3(Vec3::Zero()),
+                 m = c < 3 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(c - 3));
+      for (std::size_t k = 0; k < nodes_.size(); ++k) out.block<3, 1>(per_node_ * nodes_[k], c) = force(k, at, f, m);
+    }
+    return out;
+  }
+  /// The motion of the point `at`, fixed to the patch, by the shapes (N×n) of the structure.
+  Motion motion(Vec3 const& at, MatX const& shapes) const {
+    Mat<double, 3, Eigen::Dynamic> mean(3, shapes.cols()), turn(3, shapes.cols());
+    mean.setZero();
+    turn.setZero();
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      auto const u = shapes.middleRows<3>(per_node_ * nodes_[k]);
+      mean += weights_[k] * u;
+      turn += weights_[k] * skew<double>(arms_[k]) * u;
+    }
+    turn = (by_moment_ * turn).eval();
+    return {mean - skew<double>(Vec3(at - middle_)) * turn, turn};
+  }
+
+ private:
+  void normalise(std::string const& who) {
+    if (weights_.empty()) weights_.assign(nodes_.size(), 1.0);
+    if (weights_.size() != nodes_.size())
+      throw InvalidInput{who, ": a patch of ", nodes_.size(), " nodes has ", weights_.size(), " weights."};
+    double sum = 0.0;
+    for (double const w : weights_) {
+      require_positive(w, who, ": the weight of a node");
+      sum += w;
+    }
+    for (double& w : weights_) w /= sum;
+  }
+
+  Index per_node_;
+  std::vector<Index> nodes_;
+  std::vector<double> weights_;  ///< their sum is 1
+  std::vector<Vec3> arms_;
+  Vec3 middle_ = Vec3::Zero();
+  Mat3 by_moment_;
+};
+
+}  // namespace polybody

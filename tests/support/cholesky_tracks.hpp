@@ -1,0 +1,65 @@
+#pragma once
+/// \file
+/// Tracks of ANCF cables, their dependents eliminated by linear joints, in ordinary and in Cholesky coordinates [thesis
+/// §4.4].
+
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/ancf/cholesky_coordinates.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/vehicle/m113_vehicle.hpp>
+
+namespace polybody::cholesky_tracks {
+
+using Cholesky = CholeskyCoordinates<AncfCable<>>;
+
+template <class Link>
+using Tracks = m113::Vehicle<Link, AncfLinear>;
+
+/// That set out within this time [s].
+template <class Link>
+Tracks<Link> vehicle(double until) {
+  Ramp const drive{.target = 2.0, .duration = until};
+  return Tracks<Link>(AncfLinear{}, {drive, drive}, {.masses = m113::with_steel_links()});
+}
+
+template <class V>
+std::vector<Vec3> middles(V const& vehicle, State const& x) {
+  std::vector<Vec3> places;
+  for (m113::Track const& track : vehicle.tracks)
+    for (FrameIn const& middle : track.middle) places.push_back(middle(x).r);
+  return places;
+}
+
+/// Where the middles of all links are after `until` [s], by explicit steps of 1 µs.
+template <class Link>
+std::vector<Vec3> driven(double until) {
+  auto const tracks = vehicle<Link>(until);
+  State x = tracks.model.reference_state();
+  simulate(tracks.model, x, RungeKutta4<Projection>{}, {.until = until, .step = 1e-6}).run();
+  System system(tracks.model);
+  system.evaluate(x.q, x.v, x.t);
+  double pressed = 0.0;
+  for (m113::Track const& track : tracks.tracks)
+    track.contacts(system, [&](TouchingPoint const& p) { pressed += p.force.norm(); });
+  EXPECT_GT(pressed, 1e4);  // wheels and ground bear on them
+  return middles(tracks, x);
+}
+
+/// The same motion in both, within `tolerance` [m].
+inline void expect_the_same_motion(double until, double tolerance) {
+  auto const at_start = vehicle<AncfCable<>>(until);
+  std::vector<Vec3> const start = middles(at_start, at_start.model.reference_state()), own = driven<AncfCable<>>(until),
+                          cholesky = driven<Cholesky>(until);
+  double apart = 0.0, moved = 0.0;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    apart = std::max(apart, (own[i] - cholesky[i]).norm());
+    moved = std::max(moved, (own[i] - start[i]).norm());
+  }
+  EXPECT_GT(moved, 1e-4);
+  EXPECT_LT(apart, tolerance);
+  std::printf("%g s: links have moved by up to %.2e m and are within %.1e m\n", until, moved, apart);
+}
+
+}  // namespace polybody::cholesky_tracks
