@@ -78,12 +78,12 @@ TEST(SpatialLrvf, CurvatureIsTheTurnFromNodeToNode) {
 }
 
 // R = R₁ exp(ξ φ) of `section` (markers) against the algebraic middle section (strains): two formulas for one field.
-TEST(SpatialLrvf, MiddleSectionLiesOnTheRotationField) {
+TEST(SpatialLrvf, StrainSectionLiesOnTheRotationField) {
   Quaternion<double> const a = quaternion_exp<double>(Vec3(0.4, -2.0, 1.1));
   for (double const angle : {1e-9, 0.3, 1.3, 3.1}) {
     Vec3 const phi = angle * Vec3(0.6, -0.48, 0.64);
     Quaternion<double> const b = quaternion_plus<double>(a, phi);
-    MiddleSection<double> middle;
+    StrainSection<double> middle;
     Objective::Section<double> section;
     Objective const field{Placement{}};
     field.middle<double>(a, -b, middle);  // q and −q are one rotation

@@ -7,6 +7,7 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
+#include <polybody/bodies/lrvf/strain_quadrature.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
@@ -58,7 +59,9 @@ static_assert(Body<AncfBeam<>> && Body<AncfBeam<Continuum<>>>);
 static_assert(Body<AncfCable<>>);
 static_assert(Body<Ffr>);
 static_assert(Body<Lrvf<Objective>> && Body<Lrvf<Direct>>);
+static_assert(Body<Lrvf<Objective, Full>> && Body<Lrvf<Direct, Selective>>);
 static_assert(RotationInterpolation<Objective> && RotationInterpolation<Direct>);
+static_assert(StrainQuadrature<Reduced> && StrainQuadrature<Full> && StrainQuadrature<Selective>);
 static_assert(Body<Rigid<>>);
 static_assert(Body<Rigid<EulerParameters>> && OwnsRows<Rigid<EulerParameters>> && !OwnsRows<Rigid<>>);
 static_assert(ForceElement<AxialSpring> && HasPotential<AxialSpring>);

@@ -66,8 +66,9 @@ std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, V
 
 /// The same for the rotation field of a beam at the coordinates q, from its first node: `samples` points in each
 /// element.
-template <RotationInterpolation Interpolation>
-std::vector<Vec3> implied_curve(Lrvf<Interpolation> const& beam, std::span<double const> q, int samples = 1) {
+template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
+std::vector<Vec3> implied_curve(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q,
+                                int samples = 1) {
   auto const rotation = [&](double s) { return beam.rotation_field(beam.at(s), q).R; };
   return implied_curve(rotation, beam.length(), beam.elements() * samples, part<3>(q, 0));
 }

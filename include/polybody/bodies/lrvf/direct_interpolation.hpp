@@ -5,26 +5,9 @@
 #include <array>
 #include <numbers>
 
-#include <polybody/bodies/lrvf/rotation_interpolation.hpp>
+#include <polybody/bodies/lrvf/strain_gradient.hpp>
 
 namespace polybody {
-
-namespace detail {
-
-/// q ⊞ δ for a small δ, whose three components are the variables number `first` and on.
-template <int n>
-Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first) {
-  Quaternion<Dual<n>> out(q[0], q[1], q[2], q[3]);
-  for (int i = 0; i < 3; ++i) {
-    Quaternion<double> half(0.0, 0.0, 0.0, 0.0);
-    half[i + 1] = 0.5;
-    Quaternion<double> const slope = quaternion_product<double>(q, half);
-    for (int k = 0; k < 4; ++k) out[k].d[first + i] = slope[k];
-  }
-  return out;
-}
-
-}  // namespace detail
 
 /// The rotation vectors Ψ of the nodes relative to the bar's placement R₀, interpolated linearly: R(ξ) = R₀ exp(Ψ(ξ)),
 /// K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. For comparison; use `Objective`. Two faults, both measured in the tests:
@@ -41,38 +24,33 @@ class Direct {
   explicit Direct(Placement const& placement) : from_(quaternion_of(placement.axes)), axes_(placement.axes) {}
 
   template <StateScalar T>
-  void middle(Quaternion<T> const& a, Quaternion<T> const& b, MiddleSection<T>& out) const {
+  void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
+    at<T>(0.5, a, b, out);
+  }
+  /// δ(l K) = Jr(Ψ) (δΨ₂ − δΨ₁) + D(Ψ, Ψ₂ − Ψ₁) ((1 − ξ) δΨ₁ + ξ δΨ₂),  D(φ, x) = ∂(Jr(φ) x)/∂φ,  δΨᵢ = Jr⁻¹(Ψᵢ) δθᵢ.
+  template <StateScalar T>
+  void at(double xi, Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     Vec<T, 3> const first = vector<T>(a), second = vector<T>(b, first), apart = difference(second, first);
-    Vec<T, 3> const psi = between<T>(first, second, 0.5);
+    Vec<T, 3> const psi = between<T>(first, second, xi);
     Mat<T, 3, 3> const jacobian = right_jacobian<T>(psi), slope = right_jacobian_derivative<T>(psi, apart);
     Mat<T, 3, 3> bend1, bend2;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
-        bend1(i, j) = slope(i, j) * 0.5 - jacobian(i, j);
-        bend2(i, j) = slope(i, j) * 0.5 + jacobian(i, j);
+        bend1(i, j) = slope(i, j) * (1.0 - xi) - jacobian(i, j);
+        bend2(i, j) = slope(i, j) * xi + jacobian(i, j);
       }
     Mat<T, 3, 3> const inverse1 = right_jacobian_inverse<T>(first), inverse2 = right_jacobian_inverse<T>(second);
     out.R = product(axes<T>(), exp_so3<T>(psi));
     out.turn = product(jacobian, apart);
-    set_halves<T>(product(jacobian, inverse1), product(jacobian, inverse2), {0.5, 0.5}, out.spin);
+    set_halves<T>(product(jacobian, inverse1), product(jacobian, inverse2), {1.0 - xi, xi}, out.spin);
     set_halves<T>(product(bend1, inverse1), product(bend2, inverse2), {1.0, 1.0}, out.bend);
   }
 
   /// By dual numbers.
-  template <class T, StateScalar D = Dual<6>>  // compiled where it is used
+  template <class T>  // compiled where it is used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
-                Vec<T, 6> const& w, MiddleGradient& out) const {
-    MiddleSection<D> at;
-    middle<D>(detail::turning_quaternion<6>(a, 0), detail::turning_quaternion<6>(b, 3), at);
-    out.pulled = detail::zeros<Mat<T, 6, 6>>();
-    out.spin = out.bend = detail::zeros<Mat<T, 3, 6>>();
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 6; ++j)
-        for (int k = 0; k < 6; ++k) {
-          out.pulled(j, k) += t[i] * at.spin(i, j).d[k] + m[i] * at.bend(i, j).d[k];
-          out.spin(i, k) += w[j] * at.spin(i, j).d[k];
-          out.bend(i, k) += w[j] * at.bend(i, j).d[k];
-        }
+                Vec<T, 6> const& w, StrainGradient& out) const {
+    detail::strain_gradient(*this, 0.5, {a, b}, {t, m, w}, out);
   }
 
   template <StateScalar T>

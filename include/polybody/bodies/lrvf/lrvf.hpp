@@ -2,17 +2,16 @@
 /// \file
 /// Large rotation vector formulation in space, the geometrically exact beam [Reissner 1981; Simo & Vu-Quoc 1986; thesis
 /// §2.3–2.5]: a chain of equal two-node elements. Positions are interpolated linearly, rotations by a policy
-/// (rotation_interpolation.hpp); strains are taken in the middle of the element (one-point quadrature: no shear
-/// locking):
-///   Γ = R_mᵀ r′ − Γ₀,  K = axial(R_mᵀ R_m′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
+/// (rotation_interpolation.hpp); strains are taken where another one says (strain_quadrature.hpp), by default in the
+/// middle of the element, R = R_m: one-point quadrature, no shear locking:
+///   Γ = Rᵀ r′ − Γ₀,  K = axial(Rᵀ R′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
 /// in the axes of the section, x along the beam; Γ₀, K₀ are those of the reference configuration.
 
 #include <algorithm>
 #include <vector>
 
 #include <polybody/bodies/lrvf/direct_interpolation.hpp>
-#include <polybody/bodies/lrvf/lrvf_section.hpp>
-#include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/lrvf/elastic_elements.hpp>
 
 namespace polybody {
 
@@ -24,9 +23,9 @@ namespace polybody {
 /// rotations then follow the positions without delay; implicit methods and statics take that, explicit ones do not.
 ///
 /// A curved reference is cut into n pieces of arc length l whose nodes lie on the curve. With the chord c₀ of an
-/// element in the reference, r′ = (r₂ − r₁)/c₀ and K = (R_mᵀ R_m′) over l: a uniform stretch and a uniform bend of a
+/// element in the reference, r′ = (r₂ − r₁)/c₀ and K = axial(Rᵀ R′) over l: a uniform stretch and a uniform bend of a
 /// circular arc are then measured exactly; integrals run over l.
-template <RotationInterpolation Interpolation = Objective>
+template <RotationInterpolation Interpolation = Objective, StrainQuadrature Quadrature = Reduced>
 class Lrvf {
  public:
   static constexpr World world = World::space;
@@ -75,7 +74,7 @@ class Lrvf {
 
   Index coordinates() const { return Index(reference_.size()); }
   Index speeds() const { return 6 * (elements() + 1); }
-  Index elements() const { return Index(free_.size()); }
+  Index elements() const { return elastic_.size(); }
   Index first_column(Index e) const { return 6 * e; }
   Index first_column(Point const& p) const { return first_column(p.element); }
 
@@ -125,35 +124,21 @@ class Lrvf {
     }
   }
 
-  /// From l (N·δΓ + M·δK), δΓ = R_mᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, δθ = P δθ₁₂, δK = Q δθ₁₂/l  (Γ with Γ₀):
-  /// f_r = ± l/c₀ R_m N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ; and −Ω × J Ω at the nodes.
+  /// Elastic and damping force (elastic_elements.hpp), and −Ω × J Ω at the nodes.
   template <StateScalar T>
   void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
-    StrainedSection<T> s;
-    strain<T>(e, q, v, s);
-    Vec<T, 3> const pull = product(s.at.R, s.n), slide = cross(s.n, s.gamma), t = scaled<T>(slide, l_);
-    Vec<T, 6> const of_t = transposed_product(s.at.spin, t), of_m = transposed_product(s.at.bend, s.m);
-    double const ratio = l_ / s.chord;
-    for (int i = 0; i < 2; ++i) {
+    auto const gyro = [&](int i) {
       Vec<T, 3> const omega = entries<3>(v, 6 * (e + i) + 3);
-      Vec<T, 3> const gyro = cross(spun(omega), omega);
-      for (int k = 0; k < 3; ++k) {
-        out[6 * i + k] = pull[k] * (i == 0 ? ratio : -ratio);
-        out[6 * i + 3 + k] = gyro[k] - (of_t[3 * i + k] + of_m[3 * i + k]);
-      }
-    }
+      return cross(spun(omega), omega);
+    };
+    elastic_.template force<T>(e, q, v, gyro, out);
   }
 
   /// ck (−∂f/∂δ) + cd (−∂f/∂v), δ of q ⊞ δ: not symmetric in general, as δθ does not commute.
   template <class T>  // compiled where it is used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
-    StrainedSection<T> s;
-    strain<T>(e, q, v, s);
-    MiddleGradient by;
-    Vec<T, 3> const t = scaled<T>(cross(s.n, s.gamma), l_);
-    interpolation_.gradient(turned<T>(q, e), turned<T>(q, e + 1), t, s.m, s.turning, by);
-    section_.tangent(s, by, ck, cd, k);
+    elastic_.template tangent<T>(e, q, v, ck, cd, k);
     for (int i = 0; i < 2; ++i) {  // ∂(Ω × J Ω)/∂Ω = Ω̃ J − (J Ω)~
       Vec<T, 3> const omega = entries<3>(v, 6 * (e + i) + 3);
       Mat<T, 3, 3> const of_omega = skew<T>(omega), of_momentum = skew<T>(spun<T>(omega));
@@ -175,26 +160,15 @@ class Lrvf {
                     w2 = entries<3>(v, 6 * e + 9);
     return sixth_ * (squared_norm(v1) + dot(v1, v2) + squared_norm(v2)) + 0.5 * (dot(spun(w1), w1) + dot(spun(w2), w2));
   }
-  double strain_energy(Index e, std::span<double const> q) const {
-    return l_ * section_.energy(section_strains({e, 0.5}, q));
-  }
+  double strain_energy(Index e, std::span<double const> q) const { return elastic_.energy(e, q); }
   template <class T = double>  // compiled where it is used
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     Vec<T, 3> const r1 = entries<3>(q, 7 * e), r2 = entries<3>(q, 7 * e + 7);
     return -3.0 * sixth_ * (dot<T>(g, r1) + dot<T>(g, r2));
   }
 
-  /// (Γ, K) of the element of `p` in the axes of its section [1], [1/m]: see sections.hpp.
-  Vec6 section_strains(Point const& p, std::span<double const> q) const {
-    MiddleSection<double> at;
-    Vec3 gamma;
-    place<double>(p.element, q, at, gamma);
-    Free const& free = free_[std::size_t(p.element)];
-    Vec6 x;
-    for (int i = 0; i < 3; ++i) x[i] = gamma[i] - free.gamma[i];
-    for (int i = 0; i < 3; ++i) x[3 + i] = (at.turn[i] - free.turn[i]) / l_;
-    return x;
-  }
+  /// (Γ, K) of the element of `p`, in its middle, in the axes of that section [1], [1/m]: see sections.hpp.
+  Vec6 section_strains(Point const& p, std::span<double const> q) const { return elastic_.strains(p.element, q); }
   /// (N, M) of the element of `p`, without damping [N], [N m].
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     return section_.forces(section_strains(p, q));
@@ -211,7 +185,7 @@ class Lrvf {
     Section<T> s;
     section<T>(p, turned<T>(q, e), turned<T>(q, e + 1), s);
     Vec<T, 6> turning;
-    set_turning<T>(e, v, turning);
+    detail::set_turning<T>(e, v, turning);
     Mat<T, 3, 6> const spin = product(s.R, s.spin);
     Vec<T, 3> const w = detail::of_nodes(spin, turning);
     Vec<T, 3> arm, bias = detail::zeros<Vec<T, 3>>();
@@ -228,7 +202,7 @@ class Lrvf {
         out.frame.A(i, k) = s.R(i, 0) * axes(0, k) + s.R(i, 1) * axes(1, k) + s.R(i, 2) * axes(2, k);
     }
     for (int k = 0; k < 6; ++k) {  // a column of (ṙ₁, ṙ₂), and one of (Ω₁, Ω₂): P × ρ, P
-      T *const move = out.jacobian + 6 * (turn_column(k) - 3), *const turn = move + 18;
+      T *const move = out.jacobian + 6 * (detail::turn_column(k) - 3), *const turn = move + 18;
       T const x = spin(0, k), y = spin(1, k), z = spin(2, k);
       for (int i = 0; i < 3; ++i) {
         move[i] = T(i != k % 3 ? 0.0 : k < 3 ? 1.0 - p.xi : p.xi);
@@ -265,60 +239,23 @@ class Lrvf {
     if (inside(p)) interpolation_.spin_gradient(s, c, of_spin);
     k.setZero();
     for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) k(turn_column(i), turn_column(j)) = turned_load(i, j) + of_spin(i, j);
+      for (int j = 0; j < 6; ++j) k(detail::turn_column(i), detail::turn_column(j)) = turned_load(i, j) + of_spin(i, j);
   }
 
  private:
   template <class T>
   using Section = typename Interpolation::template Section<T>;
-  /// An element in the reference configuration.
-  struct Free {
-    double chord = 1.0;  ///< c₀ [m]
-    Vec3 gamma, turn;    ///< Γ₀, l K₀
-  };
-
   Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve);
 
   template <StateScalar T>
   static Quaternion<T> turned(std::span<T const> q, Index node) {
-    return entries<4>(q, 7 * node + 3);
+    return detail::turned<T>(q, node);
   }
-  /// (Ω₁, Ω₂) of an element, written where it is to stand: a copy would wait for what was just stored.
-  template <StateScalar T>
-  static void set_turning(Index e, std::span<T const> v, Vec<T, 6>& w) {
-    for (int i = 0; i < 6; ++i) w[i] = v[std::size_t(6 * e + turn_column(i))];
-  }
-  /// The column of an element's (Ω₁, Ω₂) among its (ṙ₁, Ω₁, ṙ₂, Ω₂).
-  static constexpr int turn_column(int i) { return i < 3 ? 3 + i : 6 + i; }
   static bool inside(Point const& p) { return p.xi != 0.0 && p.xi != 1.0; }
   /// J Ω of a node.
   template <class T>
   Vec<T, 3> spun(Vec<T, 3> const& omega) const {
     return {omega[0] * rotary_[0], omega[1] * rotary_[1], omega[2] * rotary_[2]};
-  }
-  /// (x₂ − x₁)/c₀ of what stands at `first` and at `first + stride`.
-  template <StateScalar T>
-  static Vec<T, 3> slope(std::span<T const> x, Index first, Index stride, double chord) {
-    return scaled<T>(difference<T>(entries<3>(x, first + stride), entries<3>(x, first)), 1.0 / chord);
-  }
-  template <StateScalar T>
-  void place(Index e, std::span<T const> q, MiddleSection<T>& at, Vec<T, 3>& gamma) const {
-    interpolation_.template middle<T>(turned<T>(q, e), turned<T>(q, e + 1), at);
-    gamma = transposed_product(at.R, slope<T>(q, 7 * e, 7, free_[std::size_t(e)].chord));
-  }
-  /// Strains and section forces of an element.
-  template <StateScalar T>
-  void strain(Index e, std::span<T const> q, std::span<T const> v, StrainedSection<T>& s) const {
-    Free const& free = free_[std::size_t(e)];
-    s.chord = free.chord;
-    place<T>(e, q, s.at, s.gamma);
-    for (int i = 0; i < 3; ++i) {
-      s.n[i] = s.gamma[i] - free.gamma[i];
-      s.m[i] = s.at.turn[i] - free.turn[i];
-    }
-    set_turning<T>(e, v, s.turning);
-    if (section_.damped()) s.rate = transposed_product(s.at.R, slope<T>(v, 6 * e, 6, free.chord));
-    section_.stress(s);
   }
   /// At a node the node's own section, exactly; else the policy's.
   template <StateScalar T>
@@ -333,20 +270,20 @@ class Lrvf {
   double length_, l_;
   Interpolation interpolation_;
   LrvfSection section_;
+  ElasticElements<Interpolation, Quadrature> elastic_;
   double sixth_ = 0.0;  ///< Aρ l/6 [kg]
   Vec3 rotary_;         ///< J of a node's half element [kg m²]
-  std::vector<Free> free_;
   std::vector<double> reference_;
 };
 
-template <RotationInterpolation Interpolation>
-Lrvf<Interpolation>::Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
+template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
+Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
     : constants_(c),
       length_(bar.length),
       l_(bar.length / double(n)),
       interpolation_(bar.placement),
       section_(bar, c, l_),
-      free_(std::size_t(n)),
+      elastic_(section_, bar.placement, l_, n),
       reference_(std::size_t(7 * (n + 1))) {
   sixth_ = c.mass_per_length * l_ / 6.0;
   Vec3 const inertias = rotary_inertias(c);
@@ -363,13 +300,10 @@ Lrvf<Interpolation>::Lrvf(Bar const& bar, BarConstants const& c, Index n, Refere
   char const* const advice =
       ". The reference curve's parameter must be its arc length; use more elements on a closed curve.";
   for (Index e = 0; e < n; ++e) {
-    Free& free = free_[std::size_t(e)];
-    free.chord = std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e))));
-    if (!(free.chord > 1e-6 * l_ && free.chord < (1.0 + 1e-6) * l_))
-      throw InvalidInput{"Lrvf: element ", double(e), " of arc length ", l_, " has a chord of ", free.chord, advice};
-    MiddleSection<double> at;
-    place<double>(e, std::span<double const>(q), at, free.gamma);
-    free.turn = at.turn;
+    double const chord = std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e))));
+    if (!(chord > 1e-6 * l_ && chord < (1.0 + 1e-6) * l_))
+      throw InvalidInput{"Lrvf: element ", double(e), " of arc length ", l_, " has a chord of ", chord, advice};
+    elastic_.set_free(e, std::span<double const>(q), chord);
   }
 }
 

@@ -1,17 +1,18 @@
 #pragma once
 /// \file
-/// The linear elastic section of a large rotation vector beam: forces and tangent of an element from the strains in its
-/// middle.
+/// The linear elastic section of a large rotation vector beam: forces and tangent of an element from the strains in one
+/// of its sections.
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
+#include <polybody/bodies/lrvf/strain_quadrature.hpp>
 #include <polybody/bodies/shared/bar.hpp>
 
 namespace polybody {
 
-/// An element in a state, by its middle section.
+/// An element in a state, by one of its sections.
 template <StateScalar T>
 struct StrainedSection {
-  MiddleSection<T> at;
+  StrainSection<T> at;
   double chord = 1.0;  ///< c₀, distance of the nodes in the reference [m]
   Vec<T, 3> gamma;     ///< R_mᵀ r′
   Vec<T, 3> rate;      ///< R_mᵀ ṙ′, for damping
@@ -34,6 +35,14 @@ class LrvfSection {
       time_[i] = time[i];
       damped_ = damped_ || time[i] != 0.0;
     }
+  }
+
+  /// The same with the share of each strain that a section of a quadrature stands for.
+  LrvfSection weighted(StrainPoint const& p) const {
+    LrvfSection out = *this;
+    for (int i = 0; i < 6; ++i) out.stiffness_[i] *= i == 0 ? p.axial : i < 3 ? p.shear : p.curvature;
+    out.pretension_ *= p.axial;
+    return out;
   }
 
   bool damped() const { return damped_; }
@@ -71,11 +80,11 @@ class LrvfSection {
   }
 
   /// The tangent of the elastic and damping force of an element. With x = R_mᵀ (δr₂ − δr₁)/c₀ and θ = δθ₁₂, all in the
-  /// axes of the middle section:
+  /// axes of the section:
   ///   δΓ = x + Γ̃ P θ,  δN = C (ck + cd τ) δΓ + ck C τ δΓ˙,  δt = l (N × δΓ − Γ × δN),
   ///   −δf_r = ∓ l/c₀ R_m (δN + ck Pθ × N),  −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
   template <class T>  // compiled where it is used
-  void tangent(StrainedSection<T> const& s, MiddleGradient const& by, double ck, double cd, Mat<T, 12, 12>& k) const {
+  void tangent(StrainedSection<T> const& s, StrainGradient const& by, double ck, double cd, Mat<T, 12, 12>& k) const {
     Slopes<T> const by_state = slopes(s, by, ck, cd);
     Mat<T, 3, 3> const& nx = by_state.nx;
     Mat<T, 3, 6> const &nt = by_state.nt, &mt = by_state.mt;
@@ -120,7 +129,7 @@ class LrvfSection {
   /// δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙,  likewise δM of Q θ;  with Γ˙ = u + Γ × Ω, u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:
   ///   δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
   template <class T>
-  Slopes<T> slopes(StrainedSection<T> const& s, MiddleGradient const& by, double ck, double cd) const {
+  Slopes<T> slopes(StrainedSection<T> const& s, StrainGradient const& by, double ck, double cd) const {
     Slopes<T> out;
     Mat<T, 3, 6> const slide = skew_product(s.gamma, s.at.spin);  // Γ̃ P
     for (int i = 0; i < 3; ++i) {

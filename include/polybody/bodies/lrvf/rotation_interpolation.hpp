@@ -1,24 +1,24 @@
 #pragma once
 /// \file
 /// How the rotation of a section goes from one node of a beam element to the other: what `Lrvf` asks of a policy, and
-/// its default; the other one is in direct_interpolation.hpp. Rotations of the nodes are unit quaternions; δθ₁, δθ₂ and
+/// its default; direct_interpolation.hpp holds another one. Rotations of the nodes are unit quaternions; δθ₁, δθ₂ and
 /// all angular velocities are in the axes of the section that turns.
 
 #include <polybody/kinematics/frame.hpp>
 
 namespace polybody {
 
-/// The section in the middle of an element, and how it follows the nodes.
+/// A section in which strains are taken, and how it follows the nodes.
 template <StateScalar T>
-struct MiddleSection {
+struct StrainSection {
   Mat<T, 3, 3> R;     ///< its axes in world axes
   Vec<T, 3> turn;     ///< l K, the material curvature times the element's length [rad]
   Mat<T, 3, 6> spin;  ///< P: δθ = P (δθ₁, δθ₂)
   Mat<T, 3, 6> bend;  ///< Q: δ(l K) = Q (δθ₁, δθ₂)
 };
 
-/// Derivatives of a middle section's maps by (δθ₁, δθ₂), for fixed t, m, w.
-struct MiddleGradient {
+/// Derivatives of such a section's maps by (δθ₁, δθ₂), for fixed t, m, w.
+struct StrainGradient {
   Mat<double, 6, 6> pulled;  ///< of Pᵀ t + Qᵀ m
   Mat<double, 3, 6> spin;    ///< of P w
   Mat<double, 3, 6> bend;    ///< of Q w
@@ -71,11 +71,12 @@ Vec<T, 3> of_node(int node, Vec<T, 6> const& x) {
 template <class I>
 concept RotationInterpolation =
     std::constructible_from<I, Placement> &&
-    requires(I const i, Quaternion<double> const a, Vec6 const w, Vec3 const x, MiddleSection<double> middle,
-             MiddleGradient gradient, typename I::template Section<double> section, Mat<double, 6, 6> pulled) {
+    requires(I const i, Quaternion<double> const a, Vec6 const w, Vec3 const x, StrainSection<double> strained,
+             StrainGradient gradient, typename I::template Section<double> section, Mat<double, 6, 6> pulled) {
       requires std::derived_from<typename I::template Section<double>, SectionMotion<double>>;
-      i.template middle<double>(a, a, middle);
-      i.gradient(a, a, x, x, w, gradient);
+      i.template middle<double>(a, a, strained);   // ξ = ½
+      i.gradient(a, a, x, x, w, gradient);         // of the same
+      i.template at<double>(0.2, a, a, strained);  // any ξ: for quadratures with more points
       i.template section<double>(0.5, a, a, section);
       { i.template bias<double>(section, w) } -> std::same_as<Vec3>;  // Ω˙ for Ω₁˙ = Ω₂˙ = 0 [rad/s²]
       i.spin_gradient(section, x, pulled);                            // of Pᵀ x, for a fixed x
@@ -104,7 +105,7 @@ class Objective {
   };
 
   template <StateScalar T>
-  void middle(Quaternion<T> const& a, Quaternion<T> const& b, MiddleSection<T>& out) const {
+  void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     Vec<T, 3> const c = quarter<T>(a, b);
     T const z = squared_norm(c);
     ArctanSeries<T> const s(z);
@@ -127,7 +128,7 @@ class Objective {
 
   template <class T>  // compiled where it is used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
-                Vec<T, 6> const& w, MiddleGradient& out) const {
+                Vec<T, 6> const& w, StrainGradient& out) const {
     Vec<T, 3> const c = quarter<T>(a, b), w1 = detail::of_node(0, w), w2 = detail::of_node(1, w);
     T const z = squared_norm(c);
     ArctanSeries<T> const s(z);
@@ -211,6 +212,21 @@ class Objective {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) first(i, j) -= turning(i, j) * xi;
     detail::set_rows(product(first, by_nodes), product(transposed_product(inverse, of_second), by_nodes), out);
+  }
+
+  /// l K = φ in every section, δφ = Jr⁻¹(φ) δθ₂ − Jr⁻¹(−φ) δθ₁.
+  template <StateScalar T>
+  void at(double xi, Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
+    Section<T> s;
+    section<T>(xi, a, b, s);
+    out.R = s.R;
+    out.turn = s.phi;
+    out.spin = s.spin;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        out.bend(i, j) = -s.inverse(j, i);
+        out.bend(i, 3 + j) = s.inverse(i, j);
+      }
   }
 
   template <class T>  // compiled where it is used

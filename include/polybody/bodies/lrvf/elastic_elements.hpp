@@ -1,0 +1,197 @@
+#pragma once
+/// \file
+/// What the strains of the spatial `Lrvf` do to the nodes: forces, tangents and energy of its elements, from the
+/// sections of a quadrature. Nothing here knows inertia.
+
+#include <array>
+#include <concepts>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <polybody/bodies/lrvf/lrvf_section.hpp>
+#include <polybody/bodies/lrvf/strain_gradient.hpp>
+#include <polybody/bodies/shared/body.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// The rotation of a node.
+template <StateScalar T>
+Quaternion<T> turned(std::span<T const> q, Index node) {
+  return entries<4>(q, 7 * node + 3);
+}
+/// The column of an element's (Ω₁, Ω₂) among its (ṙ₁, Ω₁, ṙ₂, Ω₂).
+constexpr int turn_column(int i) { return i < 3 ? 3 + i : 6 + i; }
+/// (Ω₁, Ω₂) of an element, written where it is to stand: a copy would wait for what was just stored.
+template <StateScalar T>
+void set_turning(Index e, std::span<T const> v, Vec<T, 6>& w) {
+  for (int i = 0; i < 6; ++i) w[i] = v[std::size_t(6 * e + turn_column(i))];
+}
+/// (x₂ − x₁)/c₀ of what stands at `first` and at `first + stride`.
+template <StateScalar T>
+Vec<T, 3> slope(std::span<T const> x, Index first, Index stride, double chord) {
+  return scaled<T>(difference<T>(entries<3>(x, first + stride), entries<3>(x, first)), 1.0 / chord);
+}
+
+/// Γ₀ and l K₀ in a section of an element in the reference configuration.
+struct FreeStrain {
+  Vec3 gamma, turn;
+};
+
+}  // namespace detail
+
+/// Elements whose sections stay rotations between the nodes. With one point all is compiled for the middle.
+template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
+class ElasticElements {
+ public:
+  ElasticElements(LrvfSection const& section, Placement const& placement, double l, Index elements)
+      : interpolation_(placement),
+        sections_(std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points)),
+        l_(l),
+        free_(std::size_t(elements)) {}
+
+  Index size() const { return Index(free_.size()); }
+
+  /// Element e is free of stress in q, where its nodes are c₀ apart.
+  void set_free(Index e, std::span<double const> q, double chord) {
+    Free& free = free_[std::size_t(e)];
+    free.chord = chord;
+    for_points<0, stored>([&]<int i>() {
+      StrainSection<double> at;
+      place<i, double>(e, q, at, free.at[i].gamma);
+      free.at[i].turn = at.turn;
+    });
+  }
+
+  /// From l Σ w (N·δΓ + M·δK), δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, δθ = P δθ₁₂, δK = Q δθ₁₂/l  (Γ with Γ₀):
+  /// f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ, summed over the points; and moment(i) on node i, which
+  /// is inertia's: it is added where nothing has been stored yet.
+  template <StateScalar T, std::invocable<int> Moment>
+  void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
+    point_force<0, T>(e, q, v, moment, out);
+    for_points<1, count>([&]<int i>() {
+      Vec<T, 12> more;
+      point_force<i, T>(e, q, v, [](int) { return detail::zeros<Vec<T, 3>>(); }, more);
+      for (int k = 0; k < 12; ++k) out[k] += more[k];
+    });
+  }
+
+  /// ck (−∂f/∂δ) + cd (−∂f/∂v), δ of q ⊞ δ: not symmetric in general, as δθ does not commute.
+  template <class T>  // compiled where it is used
+  void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+               Mat<T, 12, 12>& k) const {
+    point_tangent<0, T>(e, q, v, ck, cd, k);
+    for_points<1, count>([&]<int i>() {
+      Mat<T, 12, 12> more;
+      point_tangent<i, T>(e, q, v, ck, cd, more);
+      for (int c = 0; c < 12; ++c)
+        for (int r = 0; r < 12; ++r) k(r, c) += more(r, c);
+    });
+  }
+
+  /// [J].
+  double energy(Index e, std::span<double const> q) const {
+    double sum = sections_[0].energy(strains_in<0>(e, q));
+    for_points<1, count>([&]<int i>() { sum += sections_[i].energy(strains_in<i>(e, q)); });
+    return l_ * sum;
+  }
+  /// (Γ, K) in the middle, in the axes of the section there [1], [1/m]. There the shear is free of what bending adds.
+  Vec6 strains(Index e, std::span<double const> q) const { return strains_in<middle>(e, q); }
+
+ private:
+  static constexpr int count = int(Quadrature::points.size());
+  /// The point in the middle; where the quadrature has none, one after all others.
+  static constexpr int middle = [] {
+    for (int i = 0; i < count; ++i)
+      if (Quadrature::points[i].xi == 0.5) return i;
+    return count;
+  }();
+  static constexpr int stored = middle == count ? count + 1 : count;
+  /// An element in the reference configuration.
+  struct Free {
+    double chord = 1.0;  ///< c₀ [m]
+    std::array<detail::FreeStrain, stored> at;
+  };
+
+  /// f.operator()<i>() for i = first … last − 1.
+  template <int first, int last, class F>
+  static void for_points(F&& f) {
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+      (f.template operator()<first + i>(), ...);
+    }(std::make_integer_sequence<int, last - first>{});
+  }
+
+  template <int i, StateScalar T>
+  void place(Index e, std::span<T const> q, StrainSection<T>& at, Vec<T, 3>& gamma) const {
+    Quaternion<T> const a = detail::turned<T>(q, e), b = detail::turned<T>(q, e + 1);
+    if constexpr (i == middle)
+      interpolation_.template middle<T>(a, b, at);
+    else
+      interpolation_.template at<T>(Quadrature::points[i].xi, a, b, at);
+    gamma = transposed_product(at.R, detail::slope<T>(q, 7 * e, 7, free_[std::size_t(e)].chord));
+  }
+  /// Strains and section forces in point i of an element.
+  template <int i, StateScalar T>
+  void strain(Index e, std::span<T const> q, std::span<T const> v, StrainedSection<T>& s) const {
+    Free const& free = free_[std::size_t(e)];
+    s.chord = free.chord;
+    place<i, T>(e, q, s.at, s.gamma);
+    for (int k = 0; k < 3; ++k) {
+      s.n[k] = s.gamma[k] - free.at[i].gamma[k];
+      s.m[k] = s.at.turn[k] - free.at[i].turn[k];
+    }
+    detail::set_turning<T>(e, v, s.turning);
+    if (sections_[i].damped()) s.rate = transposed_product(s.at.R, detail::slope<T>(v, 6 * e, 6, free.chord));
+    sections_[i].stress(s);
+  }
+  template <int i, StateScalar T, std::invocable<int> Moment>
+  void point_force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
+    StrainedSection<T> s;
+    strain<i, T>(e, q, v, s);
+    Vec<T, 3> const pull = product(s.at.R, s.n), slide = cross(s.n, s.gamma), t = scaled<T>(slide, l_);
+    Vec<T, 6> const of_t = transposed_product(s.at.spin, t), of_m = transposed_product(s.at.bend, s.m);
+    double const ratio = l_ / s.chord;
+    for (int node = 0; node < 2; ++node) {
+      Vec<T, 3> const other = moment(node);
+      for (int k = 0; k < 3; ++k) {
+        out[6 * node + k] = pull[k] * (node == 0 ? ratio : -ratio);
+        out[6 * node + 3 + k] = other[k] - (of_t[3 * node + k] + of_m[3 * node + k]);
+      }
+    }
+  }
+  template <int i, class T>
+  void point_tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
+                     Mat<T, 12, 12>& k) const {
+    StrainedSection<T> s;
+    strain<i, T>(e, q, v, s);
+    StrainGradient by;
+    Vec<T, 3> const t = scaled<T>(cross(s.n, s.gamma), l_);
+    Quaternion<T> const a = detail::turned<T>(q, e), b = detail::turned<T>(q, e + 1);
+    if constexpr (i == middle)
+      interpolation_.gradient(a, b, t, s.m, s.turning, by);
+    else
+      detail::strain_gradient(interpolation_, Quadrature::points[i].xi, {a, b}, {t, s.m, s.turning}, by);
+    sections_[i].tangent(s, by, ck, cd, k);
+  }
+  template <int i>
+  Vec6 strains_in(Index e, std::span<double const> q) const {
+    StrainSection<double> at;
+    Vec3 gamma;
+    place<i, double>(e, q, at, gamma);
+    detail::FreeStrain const& free = free_[std::size_t(e)].at[i];
+    Vec6 x;
+    for (int k = 0; k < 3; ++k) x[k] = gamma[k] - free.gamma[k];
+    for (int k = 0; k < 3; ++k) x[3 + k] = (at.turn[k] - free.turn[k]) / l_;
+    return x;
+  }
+
+  Interpolation interpolation_;
+  std::array<LrvfSection, count> sections_;
+  double l_;
+  std::vector<Free> free_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,30 @@
+// The laws of all bodies and of flexible ones for the quadratures of the spatial Lrvf that are not its default.
+
+#include <polybody/bodies/lrvf/lrvf.hpp>
+
+#include <polybody/testing/flexible_body_laws.hpp>
+
+#include "support/spatial_lrvf.hpp"
+
+namespace polybody {
+using namespace laws;
+namespace lrvf_quadrature_laws_test {
+
+template <class Interpolation, class Quadrature>
+struct Spinning {
+  static Bar bar() { return spatial_lrvf_bar(); }
+  static Lrvf<Interpolation, Quadrature> body(Bar const& bar) { return Lrvf<Interpolation, Quadrature>::from(bar, 3); }
+};
+template <class Interpolation, class Quadrature>
+struct Elastic : Spinning<Interpolation, Quadrature> {
+  static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
+};
+bool const full = obeys<Spinning<Objective, Full>, BodyLaws>("FullLrvf");
+bool const full_elastic = obeys<Elastic<Objective, Full>, FlexibleBodyLaws>("FullLrvf");
+bool const selective = obeys<Spinning<Objective, Selective>, BodyLaws>("SelectiveLrvf");
+bool const selective_elastic = obeys<Elastic<Objective, Selective>, FlexibleBodyLaws>("SelectiveLrvf");
+bool const direct = obeys<Spinning<Direct, Selective>, BodyLaws>("SelectiveDirectLrvf");
+bool const direct_elastic = obeys<Elastic<Direct, Selective>, FlexibleBodyLaws>("SelectiveDirectLrvf");
+
+}  // namespace lrvf_quadrature_laws_test
+}  // namespace polybody
