@@ -10,6 +10,7 @@
 
 #include <array>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/lrvf/director_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
@@ -81,6 +82,9 @@ TEST(Heap, PlanarRigidTakesNone) { expect_no_heap(planar::Rigid::from(bar)); }
 TEST(Heap, SpatialLrvfTakesNone) {
   expect_no_heap(Lrvf<Objective>::from(bar, 3));
   expect_no_heap(Lrvf<Direct>::from(bar, 3));
+  expect_no_heap(Lrvf<Polar>::from(bar, 3));
+  expect_no_heap(Lrvf<Directors>::from(bar, 3));
+  expect_no_heap(Lrvf<Objective, Selective>::from(bar, 3));
 }
 TEST(Heap, LrvfTakesNone) { expect_no_heap(planar::Lrvf::from(bar, 3)); }
 TEST(Heap, GreenCableTakesNone) { expect_no_heap(planar::AncfCable<>::from(bar, 3)); }

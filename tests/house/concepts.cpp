@@ -4,8 +4,10 @@
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/bodies/lrvf/director_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/lrvf/polar_interpolation.hpp>
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 #include <polybody/bodies/lrvf/strain_quadrature.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
@@ -61,6 +63,8 @@ static_assert(Body<Ffr>);
 static_assert(Body<Lrvf<Objective>> && Body<Lrvf<Direct>>);
 static_assert(Body<Lrvf<Objective, Full>> && Body<Lrvf<Direct, Selective>>);
 static_assert(RotationInterpolation<Objective> && RotationInterpolation<Direct>);
+static_assert(Body<Lrvf<Polar>> && Body<Lrvf<Directors>>);
+static_assert(RotationInterpolation<Polar> && RotationInterpolation<Directors>);
 static_assert(StrainQuadrature<Reduced> && StrainQuadrature<Full> && StrainQuadrature<Selective>);
 static_assert(Body<Rigid<>>);
 static_assert(Body<Rigid<EulerParameters>> && OwnsRows<Rigid<EulerParameters>> && !OwnsRows<Rigid<>>);

@@ -59,7 +59,7 @@ struct Full {
 ///   shortens.
 /// - The difference, 2 sin ψ sin(φ/√12), is strained by the shear ψ: EA φ²/12 stands beside GA. On a curved reference
 ///   that is so in linear theory, too, with its angle φ₀ an element.
-/// `Objective` has one K in the whole element: there this is `Reduced` at four times the cost.
+/// `Objective` has one K in the whole element: there this is `Reduced`, at five to ten times the cost.
 struct Selective {
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.0, 0.0, 0.5}, {0.5, 1.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.0, 0.0, 0.5}}};

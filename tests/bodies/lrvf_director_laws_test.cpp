@@ -1,0 +1,29 @@
+// The laws of all bodies and of flexible ones for the spatial Lrvf with directors interpolated as they are.
+
+#include <polybody/bodies/lrvf/director_interpolation.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+
+#include <polybody/testing/flexible_body_laws.hpp>
+
+#include "support/spatial_lrvf.hpp"
+
+namespace polybody {
+using namespace laws;
+namespace lrvf_director_laws_test {
+
+template <class Quadrature>
+struct Spinning {
+  static Bar bar() { return spatial_lrvf_bar(); }
+  static Lrvf<Directors, Quadrature> body(Bar const& bar) { return Lrvf<Directors, Quadrature>::from(bar, 3); }
+};
+template <class Quadrature>
+struct Elastic : Spinning<Quadrature> {
+  static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
+};
+bool const reduced = obeys<Spinning<Reduced>, BodyLaws>("DirectorsLrvf");
+bool const reduced_elastic = obeys<Elastic<Reduced>, FlexibleBodyLaws>("DirectorsLrvf");
+bool const selective = obeys<Spinning<Selective>, BodyLaws>("SelectiveDirectorsLrvf");
+bool const selective_elastic = obeys<Elastic<Selective>, FlexibleBodyLaws>("SelectiveDirectorsLrvf");
+
+}  // namespace lrvf_director_laws_test
+}  // namespace polybody

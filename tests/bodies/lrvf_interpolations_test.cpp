@@ -1,0 +1,205 @@
+// The interpolations of rotations side by side, as Romero [2004] compares them: objectivity, paths, fields.
+
+#include <polybody/bodies/lrvf/director_interpolation.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+
+#include <Eigen/SVD>
+#include <numbers>
+
+#include "support/spatial_lrvf.hpp"
+
+namespace polybody {
+namespace lrvf_interpolations_test {
+
+using Quaternions = std::array<Quaternion<double>, 2>;
+double const pi = std::numbers::pi;
+
+Quaternion<double> quaternion(Vec3 const& turn) { return quaternion_of(exp_so3<double>(turn)); }
+
+/// An element whose nodes turn by φ against each other, about an axis across the one that both have turned about.
+Quaternions turned_apart(double phi, double carriage = 1.1) {
+  Quaternion<double> const first = quaternion(Vec3(carriage, 0.2, 0.0)),
+                           half = quaternion(Vec3(0.0, 0.6 * phi, 0.8 * phi));
+  return {first, quaternion_product<double>(first, half)};
+}
+template <class I>
+SectionTurn field(double xi, Quaternions const& nodes) {
+  return I(Placement{}).turn(xi, 1.0, nodes[0], nodes[1]);
+}
+/// Angle between two rotations, for small ones.
+double angle(Mat3 const& a, Mat3 const& b) { return (a - b).norm() / std::sqrt(2.0); }
+
+// sin((1 − ξ) φ/2) a + sin(ξ φ/2) b over sin(φ/2) [Shoemake 1985]: the great circle from quaternion to quaternion turns
+// at constant speed about one axis, as `Objective` does.
+TEST(LrvfInterpolations, SphericalLinearInterpolationIsObjective) {
+  for (double const phi : {0.01, 0.5, 2.0, 3.0}) {
+    Quaternions const nodes = turned_apart(phi);
+    double const half = 0.5 * phi;
+    for (double const xi : {0.1, 0.5, 0.83}) {
+      Quaternion<double> q;
+      for (int i = 0; i < 4; ++i)
+        q[i] = (std::sin((1.0 - xi) * half) * nodes[0][i] + std::sin(xi * half) * nodes[1][i]) / std::sin(half);
+      EXPECT_LT(angle(rotation_matrix<double>(q), field<Objective>(xi, nodes).R), 5e-15) << phi << ' ' << xi;
+    }
+  }
+}
+
+// The mean of the directors, made orthonormal by the polar decomposition, Λ (ΛᵀΛ)^(−½), is the rotation of `Polar`.
+TEST(LrvfInterpolations, PolarIsTheNearestRotationToTheDirectors) {
+  for (double const phi : {0.01, 0.5, 2.0, 3.0})
+    for (double const xi : {0.2, 0.5, 0.9}) {
+      Quaternions const nodes = turned_apart(phi);
+      Mat3 const mean = (1.0 - xi) * rotation_matrix<double>(nodes[0]) + xi * rotation_matrix<double>(nodes[1]);
+      Eigen::JacobiSVD<Mat3> const svd(mean, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      Mat3 const nearest = svd.matrixU() * svd.matrixV().transpose();
+      EXPECT_LT(angle(nearest, field<Polar>(xi, nodes).R), 1e-13) << phi << ' ' << xi;
+    }
+}
+
+// α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6: the third cumulant of a choice of 0 or 1 with chance ξ, log(1 − ξ + ξ e^{iφ}). Of
+// rotation vectors the difference is of the second order, once the nodes are carried away from the placement.
+TEST(LrvfInterpolations, FieldsDifferByTheThirdOrTheSecondOrder) {
+  double const xi = 0.25;
+  auto const off = [&](auto const* policy, double phi) {
+    using I = std::remove_cvref_t<decltype(*policy)>;
+    Quaternions const nodes = turned_apart(phi);
+    return angle(field<I>(xi, nodes).R, field<Objective>(xi, nodes).R);
+  };
+  Polar const* const polar = nullptr;
+  Direct const* const direct = nullptr;
+  double const phi = 0.1;
+  EXPECT_NEAR(off(polar, phi) / (phi * phi * phi), xi * (1.0 - xi) * (1.0 - 2.0 * xi) / 6.0, 1e-4);
+  EXPECT_NEAR(off(polar, 2.0 * phi) / off(polar, phi), 8.0, 0.1);
+  EXPECT_NEAR(off(direct, 2.0 * phi) / off(direct, phi), 4.0, 0.2);
+  EXPECT_GT(off(direct, phi), 1e-4);
+  Quaternions const nodes = turned_apart(2.0);
+  EXPECT_LT(angle(field<Polar>(0.5, nodes).R, field<Objective>(0.5, nodes).R), 1e-15);
+}
+
+// K is how the field turns, and K′ how K changes, by differences along the element.
+TEST(LrvfInterpolations, CurvatureOfPolarIsTheDerivativeOfItsField) {
+  Quaternions const nodes = turned_apart(1.5);
+  double const xi = 0.3, h = 1e-5;
+  SectionTurn const before = field<Polar>(xi - h, nodes), at = field<Polar>(xi, nodes),
+                    after = field<Polar>(xi + h, nodes);
+  EXPECT_LT((at.R * skew<double>(at.K) - (after.R - before.R) / (2.0 * h)).norm(), 1e-8);
+  EXPECT_LT((at.dK - (after.K - before.K) / (2.0 * h)).norm(), 1e-8);
+  EXPECT_GT(at.dK.norm(), 0.1);
+}
+
+double const l = 1.3, EI = 40.0;
+template <class I>
+Lrvf<I> element() {
+  Bar bar = spatial_lrvf_bar();
+  bar.placement = {};
+  bar.damping = {};
+  return Lrvf<I>::from(bar, 1);
+}
+/// Nodes l apart, bent by φ about z to either side of the middle.
+VecX bent(double phi) {
+  return nodes_of(1, [&](double i) { return Placement::at(Vec3((i - 0.5) * l, 0, 0), Vec3(0, 0, (i - 0.5) * phi)); });
+}
+template <class I>
+Vec6 strains(VecX const& q) {
+  Lrvf<I> const beam = element<I>();
+  return beam.section_strains(beam.at(0.5), numbers(q));
+}
+
+TEST(LrvfInterpolations, CurvatureInTheMiddleIsAsDerived) {
+  for (double const phi : {0.1, 1.0, 2.5}) {
+    EXPECT_NEAR(strains<Objective>(bent(phi))[5], phi / l, 1e-14);
+    EXPECT_NEAR(strains<Polar>(bent(phi))[5], 2.0 * std::tan(0.5 * phi) / l, 1e-13);
+    EXPECT_NEAR(strains<Directors>(bent(phi))[5], std::sin(phi) / l, 1e-14);
+    EXPECT_NEAR(strains<Polar>(bent(phi))[0], 0.0, 1e-14);
+    EXPECT_NEAR(strains<Directors>(bent(phi))[0], std::cos(0.5 * phi) - 1.0, 1e-14);  // a director of that length
+  }
+}
+
+// What is left of the energy of bending at half a turn, with the nodes far enough apart that Γ₁ = 0 there: none.
+TEST(LrvfInterpolations, DirectorsSnapThroughBeyondAQuarterOfATurn) {
+  auto const energy = [](double phi) { return strain_energy_of(element<Directors>(), bent(phi)); };
+  auto const of_bending = [&](double phi) {
+    double const stretch = std::cos(0.5 * phi) - 1.0;
+    return energy(phi) - 0.5 * 900.0 * stretch * stretch * l;
+  };
+  EXPECT_NEAR(of_bending(0.5 * pi), 0.5 * EI / l, 1e-11);
+  EXPECT_NEAR(of_bending(pi), 0.0, 1e-11);
+}
+
+template <class I>
+double change(VecX const& q, Placement const& motion) {
+  return (strains<I>(carried(motion, q)) - strains<I>(q)).norm();
+}
+TEST(LrvfInterpolations, ARigidMotionStrainsNoneButRotationVectors) {
+  VecX const q = bent(1.0);
+  for (double const turn : {0.5, 2.0, 3.1}) {
+    Placement const motion = Placement::at(Vec3(1, -2, 3), Vec3(turn, 0.1, 0.0));
+    EXPECT_LT(change<Objective>(q, motion), 1e-14);
+    EXPECT_LT(change<Polar>(q, motion), 1e-14);
+    EXPECT_LT(change<Directors>(q, motion), 1e-14);
+    EXPECT_GT(change<Direct>(q, motion), 1e-3) << turn;
+  }
+}
+
+/// Increments of both nodes since the last state, interpolated in the middle [Simo & Vu-Quoc 1986; Cardona & Géradin
+/// 1988]: δ = ½ (δ₁ + δ₂), R⁺ = R exp(δ), l K⁺ = exp(−δ) l K + Jr(δ) (δ₂ − δ₁). It carries R and K along: no policy of
+/// `Lrvf`, whose sections follow from the nodes.
+struct Incremental {
+  Quaternions nodes;
+  Quaternion<double> middle;
+  Vec3 turn;  ///< l K
+
+  void go_to(Quaternions const& next) {
+    Vec3 const first = quaternion_minus<double>(next[0], nodes[0]),
+               second = quaternion_minus<double>(next[1], nodes[1]);
+    Vec3 const mean = 0.5 * (first + second);
+    turn = exp_so3<double>(Vec3(-mean)) * turn + right_jacobian<double>(mean) * (second - first);
+    middle = quaternion_plus<double>(middle, mean);
+    nodes = next;
+  }
+};
+Incremental straight() {
+  Quaternion<double> const one = quaternion(Vec3::Zero());
+  return {{one, one}, one, Vec3::Zero()};
+}
+/// Node 2 goes out by y, comes round to z and back, in n steps; node 1 rests.
+Vec3 after_a_round(int n) {
+  Incremental element = straight();
+  for (int i = 1; i <= n; ++i) {
+    double const t = 2.0 * pi * i / n;
+    element.go_to({quaternion(Vec3::Zero()), quaternion(Vec3(0.0, std::sin(t), 1.0 - std::cos(t)))});
+  }
+  return element.turn;
+}
+
+// Every policy's strains are functions of the coordinates: after a closed path they are those before. Increments leave
+// a curvature, and finer steps do not take it away: ½ (δθ₁ + δθ₂) is no spin that a field of the nodes has.
+TEST(LrvfInterpolations, IncrementsLeaveACurvatureAfterAClosedPath) {
+  double const coarse = after_a_round(200).norm(), fine = after_a_round(400).norm();
+  EXPECT_GT(fine, 0.01);
+  EXPECT_NEAR(coarse / fine, 1.0, 0.01);
+  Quaternion<double> const one = quaternion(Vec3::Zero());
+  Quaternion<double> node = one;
+  for (int i = 1; i <= 200; ++i) {  // the same path by q ⊞ δ
+    double const t = 2.0 * pi * i / 200;
+    Quaternion<double> const next = quaternion(Vec3(0.0, std::sin(t), 1.0 - std::cos(t)));
+    node = quaternion_plus<double>(node, quaternion_minus<double>(next, node));
+  }
+  EXPECT_LT(field<Objective>(0.5, {one, node}).K.norm(), 1e-13);
+  EXPECT_LT(field<Polar>(0.5, {one, node}).K.norm(), 1e-13);
+  EXPECT_LT(field<Direct>(0.5, {one, node}).K.norm(), 1e-13);
+}
+
+// And a rigid turn of a bent element changes its curvature, as with `Direct`.
+TEST(LrvfInterpolations, IncrementsAreNotObjective) {
+  Incremental element = straight();
+  Quaternions const nodes = {quaternion(Vec3(0, 0, -0.5)), quaternion(Vec3(0, 0, 0.5))};
+  element.go_to(nodes);
+  EXPECT_NEAR((element.turn - Vec3(0, 0, 1)).norm(), 0.0, 1e-15);
+  Quaternion<double> const carriage = quaternion(Vec3(1.0, 0.0, 0.0));
+  element.go_to({quaternion_product<double>(carriage, nodes[0]), quaternion_product<double>(carriage, nodes[1])});
+  EXPECT_GT((element.turn - Vec3(0, 0, 1)).norm(), 0.01);
+}
+
+}  // namespace lrvf_interpolations_test
+}  // namespace polybody
