@@ -108,4 +108,14 @@ struct SimoVuQuoc {
 /// Planar geometrically exact beam with linear elements: `Lrvf::from(bar, n)`.
 using Lrvf = Beam<SimoVuQuoc>;
 
+/// The same with all strains in both Gauss points, for comparison: it locks, bending is stiffer by 1 + GA l²/(12 EI)
+/// [Hughes, Taylor & Kanoknukulchai 1977].
+struct SimoVuQuocInFull : SimoVuQuoc {
+  struct Section : SimoVuQuoc::Section {
+    static constexpr int points = 2;
+  };
+  using Groups = std::tuple<Section>;
+};
+using FullLrvf = Beam<SimoVuQuocInFull>;
+
 }  // namespace polybody::planar
