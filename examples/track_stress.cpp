@@ -108,8 +108,9 @@ Range range_of(std::vector<double> const& times, std::vector<double> const& x, d
 // Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
 using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;
 double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from,
-           Told of = &StressRuns::raw) {
-  std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of)(k), o.cut_off);
+           Told of = &StressRuns::raw, Told of_b = nullptr) {
+  if (!of_b) of_b = of;
+  std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of_b)(k), o.cut_off);
   RmsDifference d(from, o.until);
   d.add({as.filtered_times(i), a}, {bs.filtered_times(k), b});
   return d.value();
@@ -154,10 +155,14 @@ void report(Options const& o, StressRuns const& runs) {
     std::printf("           CPU %.1f s, %.2f of %s", r.cpu, r.cpu / runs.comparison.runs.front().cpu,
                 runs.name(0).c_str());
     if (runs.links[k]->recover)
-      std::printf("; record %.2f s, recovery %.2f s", runs.links[k]->recording, runs.links[k]->recovery);
+      std::printf("; record %.2f s, recovery %.2f s, vibrations %.2f s", runs.links[k]->recording,
+                  runs.links[k]->recovery, runs.links[k]->vibration);
     std::printf("; %.2f iterations, %.2f factorisations a step; %ld of %ld steps halved\n",
                 double(r.run.iterations) / double(r.run.steps), double(r.run.factorisations) / double(r.run.steps),
                 r.run.rejected, r.run.steps);
+    if (runs.links[k]->recover)
+      std::printf("           strain by vibrations, low pass: %.2f %% off that without (rms from %.1f s on)\n",
+                  1e2 * off(o, runs, k, runs, k, from, &StressRuns::vibrating, &StressRuns::raw), from);
     Outcome const& out = runs.outcomes[k];
     if (out.relative >= 0.0)
       std::printf("           energy: drives %.1f kJ, gravity %.1f kJ; %.3f %% not accounted for\n", 1e-3 * out.drives,
@@ -189,11 +194,18 @@ Figure bending_figure(Options const& o, StressRuns const& runs) {
 
 Figure strain_figure(Options const& o, StressRuns const& runs, std::string title, bool filter, double from, double to) {
   Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = "axial strain [10⁻⁵]", .x_range = {{from, to}}};
-  for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
+  std::size_t const count = runs.comparison.runs.size();
+  for (std::size_t k = 0; k < count; ++k) {
     f.curves.push_back(curve(label_of(runs, k), runs.times(k), filter ? runs.filtered(k, o.cut_off) : runs.raw(k),
                              int(k), 1e5, filter ? 4 : 1));
     f.curves.back().width = k == 0 ? 3.0 : 1.2;
   }
+  for (std::size_t k = 0; k < count; ++k)
+    if (std::vector<double> const& x = runs.vibrating(k); !x.empty()) {
+      f.curves.push_back(curve("rigid, vibrating", runs.times(k), filter ? runs.filtered(k, x, o.cut_off) : x,
+                               int(count), 1e5, filter ? 4 : 1));
+      f.curves.back().width = 1.2;
+    }
   return f;
 }
 
@@ -262,26 +274,40 @@ void figures(Options const& o) {
   }
 }
 
+// What cycles of axial stress, unfiltered, amount to.
+struct Ranges {
+  double count = 0.0, largest = 0.0, equivalent = 0.0;  // ranges [Pa]
+};
+constexpr double wohler_exponent = 3.0;  // of details of welds
+Ranges ranges_of(std::vector<StressCycle> const& cycles) {
+  Ranges r;
+  double sum = 0.0;
+  for (StressCycle const& c : cycles) {
+    r.count += c.count;
+    r.largest = std::max(r.largest, c.range);
+    sum += c.count * std::pow(c.range, wohler_exponent);
+  }
+  if (r.count > 0.0) r.equivalent = std::pow(sum / r.count, 1.0 / wohler_exponent);
+  return r;
+}
+std::vector<StressCycle> cycles_of(std::vector<double> stress) {
+  for (double& s : stress) s *= m113::youngs_modulus;
+  return rainflow(stress);
+}
+
 // Cycles of axial stress, unfiltered, by rainflow; with S³ as damage (m = 3, as details of welds have it) they do as
 // much as all of them would with one equivalent range.
 void fatigue(Options const& o, StressRuns const& runs) {
-  Basquin const detail{.range = 80e6, .cycles = 2e6, .exponent = 3.0};
   Figure f{.title = "Ranges of axial stress, " + number(o.speed) + " rad/s",
            .x_label = "range [MPa]",
            .y_label = "cycles in " + number(o.until) + " s",
            .log_y = true};
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
-    std::vector<double> stress = runs.raw(k);
-    for (double& s : stress) s *= m113::youngs_modulus;
-    auto const cycles = rainflow(stress);
+    auto const cycles = cycles_of(runs.raw(k));
     if (cycles.empty()) continue;
-    double count = 0.0, largest = 0.0;
-    for (StressCycle const& c : cycles) {
-      count += c.count;
-      largest = std::max(largest, c.range);
-    }
+    Ranges const r = ranges_of(cycles);
     std::printf("%-10s %.0f cycles, the largest range %.2f MPa, the equivalent range %.3f MPa\n", runs.name(k).c_str(),
-                count, 1e-6 * largest, 1e-6 * detail.range * std::cbrt(damage(cycles, detail) * detail.cycles / count));
+                r.count, 1e-6 * r.largest, 1e-6 * r.equivalent);
     double const width = 0.25e6;
     std::vector<double> bins = binned(cycles, width);
     bins.push_back(bins.back());
@@ -456,6 +482,83 @@ void compare_terms(Options o) {
   }
 }
 
+// What the thesis does not give, in its plausible range.
+std::vector<std::pair<std::string, Options>> plausible(Options const& o) {
+  std::vector<std::pair<std::string, Options>> all{{"as given", o}};
+  auto const with = [&](std::string const& name, auto const& change) {
+    all.emplace_back(name, o);
+    change(all.back().second);
+  };
+  with("preload 10 kN", [](Options& s) { s.preload = 1e4; });
+  with("preload 40 kN", [](Options& s) { s.preload = 4e4; });
+  with("ramp of 3.5 s", [](Options& s) { s.ramp = 3.5; });
+  with("rho 0", [](Options& s) { s.rho = 0.0; });
+  with("rho 0.8, 0.5 ms", [](Options& s) {
+    s.rho = 0.8;
+    s.step = 0.5e-3;
+  });
+  with("0.5 ms", [](Options& s) { s.step = 0.5e-3; });
+  with("contacts at their places", [](Options& s) { s.contacts = m113::ContactsAct::at_their_places; });
+  return all;
+}
+
+// The least and the most of several histories.
+struct Band {
+  std::vector<double> times, least, most;
+
+  void add(std::span<double const> t, std::vector<double> const& x) {
+    if (times.empty()) {
+      times.assign(t.begin(), t.end());
+      least = most = x;
+      return;
+    }
+    std::vector<double> const its_times(t.begin(), t.end());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      double const there = detail::interpolate(its_times, x, times[i]);
+      least[i] = std::min(least[i], there);
+      most[i] = std::max(most[i], there);
+    }
+  }
+  void draw(Figure& f, std::string const& label, int color) const {
+    f.curves.push_back(curve(label, times, least, color, 1e5));
+    f.curves.push_back(curve("", times, most, color, 1e5));
+  }
+};
+
+// Decoupled and coupled strain under each of these settings: bands, and whether any of them parts the two.
+void ensemble(Options const& o) {
+  std::printf(
+      "%g rad/s, %g s; from 8.5 s on, or half of the run: strain, low pass %g Hz, in the mean [1e-5]: decoupled, "
+      "by vibrations, coupled (ANCF cables); their ratio; rms differences; ranges of stress, unfiltered [MPa]\n",
+      o.speed, o.until, o.cut_off);
+  std::printf("%-26s %9s %9s %9s %8s %9s %9s %18s %18s\n", "", "decoupled", "vibrating", "coupled", "ratio", "off [%]",
+              "vib. [%]", "largest", "equivalent");
+  Band decoupled, coupled;
+  for (auto const& [name, setting] : plausible(o)) {
+    StressRuns const r = run(setting, {on_pins(rigid_links()), on_pins(cable_links())});
+    double const from = plateau(r.times(0));
+    std::vector<double> const rigid = r.filtered(0, o.cut_off), flexible = r.filtered(1, o.cut_off);
+    double const a = range_of(r.times(0), rigid, from).mean, b = range_of(r.times(1), flexible, from).mean;
+    double const by_vibrations = range_of(r.times(0), r.filtered(0, r.vibrating(0), o.cut_off), from).mean;
+    Ranges const of_a = ranges_of(cycles_of(r.raw(0))), of_b = ranges_of(cycles_of(r.raw(1)));
+    std::printf("%-26s %9.3f %9.3f %9.3f %8.3f %9.2f %9.2f %8.2f, %8.2f %8.3f, %8.3f\n", name.c_str(), 1e5 * a,
+                1e5 * by_vibrations, 1e5 * b, a / b, 1e2 * off(setting, r, 0, r, 1, std::min(1.0, 0.25 * o.until)),
+                1e2 * off(setting, r, 0, r, 0, from, &StressRuns::vibrating, &StressRuns::raw), 1e-6 * of_a.largest,
+                1e-6 * of_b.largest, 1e-6 * of_a.equivalent, 1e-6 * of_b.equivalent);
+    std::fflush(stdout);
+    decoupled.add(r.filtered_times(0), rigid);
+    coupled.add(r.filtered_times(1), flexible);
+  }
+  Figure f{.title = "Axial strain of a link, " + number(o.speed) + " rad/s, " + number(o.cut_off) +
+                    " Hz low pass: the range over settings",
+           .x_label = "t [s]",
+           .y_label = "axial strain [10⁻⁵]",
+           .x_range = {{0.0, o.until}}};
+  decoupled.draw(f, "rigid, decoupled", 0);
+  coupled.draw(f, "ANCF cables", 1);
+  draw(o, f, "ensemble");
+}
+
 // Stress at named nodes of a finite element link: after a run of rigid links, and in one of such links.
 void surface_stress(Options o) {
   o.surface = true;
@@ -559,7 +662,8 @@ int main(int argc, char** argv) {
   if (o.turn == "curve") o.right = 0.8;
   try {
     fs::create_directories(o.out);
-    if (!o.compare.empty()) o.start = std::make_shared<m113::TrackStart const>(start_of_all(o));
+    if (!o.compare.empty() && o.compare != "ensemble")
+      o.start = std::make_shared<m113::TrackStart const>(start_of_all(o));
     if (!o.figure.empty())
       figures(o);
     else if (o.compare == "matrix")
@@ -568,6 +672,8 @@ int main(int argc, char** argv) {
       compare_terms(o);
     else if (o.compare == "surface")
       surface_stress(o);
+    else if (o.compare == "ensemble")
+      ensemble(o);
     else if (o.compare == "links")
       all_formulations(o);
     else

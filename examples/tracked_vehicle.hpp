@@ -27,6 +27,7 @@ struct Settings {
   double sampling = 0.0;    // of the histories [s]; 0: every step
   double speed = m113::chapter_3_speed;
   double left = 1.0, right = 1.0;  // of the speed: unequal ones turn
+  double ramp = 7.0;               // duration of the drives' ramp [s]
   bool suspension = true;
   double preload = m113::preload;
   double rho = 0.8;
@@ -279,7 +280,8 @@ struct TrackCase {
     Settings const& s = settings;
     m113::VehicleOptions options = vehicle_options(s);
     options.start = s.start ? *s.start : settled(s);
-    std::array<Ramp, 2> const drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
+    std::array<Ramp, 2> drives{m113::drive(s.left * s.speed, 0.1), m113::drive(s.right * s.speed, 0.1)};
+    for (Ramp& drive : drives) drive.duration = s.ramp;
     return {options.start,
             std::make_shared<VehicleOf<F> const>(f.policy, drives, options, course(s.bumps), links_made(f))};
   }

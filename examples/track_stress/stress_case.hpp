@@ -16,11 +16,16 @@ double cpu_of(auto&& work) {
   return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
+// The strain of a link by its vibrations under what was recorded, stepped as the run was.
 template <class = void>  // compiled where it is used
-DecoupledStress recovered(Options const& o, BodyRecord const& record) {
-  if (o.recovery == "static") return DecoupledStress::quasi_static(m113::link_structure(), record);
+DecoupledStress vibrating(Options const& o, BodyRecord const& record) {
   return DecoupledStress::vibrating(m113::link_structure(), record, integrator(o),
                                     {.frame = ReferenceConditions::simply_supported(0, 2)});
+}
+template <class = void>
+DecoupledStress recovered(Options const& o, BodyRecord const& record) {
+  if (o.recovery == "vibrating") return vibrating(o, record);
+  return DecoupledStress::quasi_static(m113::link_structure(), record);
 }
 
 // The watched link's strain and bending at one moment of a run of flexible links.
@@ -68,6 +73,7 @@ struct StressCase {
           h.bending = m113::link_bending(stress);
           if (o.surface) add_surface(h, o, recorder->of(link));
         });
+        h.vibration = cpu_of([&] { h.vibrating = m113::link_strain(vibrating(o, recorder->of(link))); });
       };
     } else if constexpr (requires { f.links.model; }) {
       bool const of_elements = bool(f.links.model);

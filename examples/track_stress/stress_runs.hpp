@@ -28,7 +28,8 @@ struct LinkHistory {
   std::vector<double> strain;   // of the link, change of length over length
   std::vector<double> bending;  // in the middle: what it adds in the fibre towards the wheels
   std::map<std::string, std::vector<double>> surface = {};  // von Mises stress in named nodes [Pa]
-  double recording = 0.0, recovery = 0.0;                   // CPU times [s]
+  std::vector<double> vibrating;  // strain of a rigid link by the thesis' linear equations of its vibrations
+  double recording = 0.0, recovery = 0.0, vibration = 0.0;  // CPU times [s]
   std::function<void(LinkHistory&)> recover;
 };
 
@@ -38,6 +39,7 @@ struct StressRuns : Runs {
   std::string const& name(std::size_t k) const { return comparison.runs[k].name; }
   std::vector<double> const& raw(std::size_t k) const { return links[k]->strain; }
   std::vector<double> const& bending(std::size_t k) const { return links[k]->bending; }
+  std::vector<double> const& vibrating(std::size_t k) const { return links[k]->vibrating; }
   std::vector<double> filtered(std::size_t k, double cut_off) const { return filtered(k, raw(k), cut_off); }
   // Without the last sample where an event ended the run between two steps.
   std::vector<double> filtered(std::size_t k, std::vector<double> const& y, double cut_off) const {

@@ -72,7 +72,7 @@ template <>
 inline constexpr auto words_of<SprocketProfile> =
     words("teeth|tips", "pitch|tips|valleys", "pins|tips", "valleys", "arc of a valley|valleys", "tip");
 template <Observes observed>
-inline constexpr auto words_of<PinOnSprocket<observed>> = words("profile", "valley", "ring");
+inline constexpr auto words_of<PinOnSprocket<observed>> = words("profile", "valley", "ring", "way from the marker");
 
 // joints
 template <>

@@ -40,6 +40,8 @@ class KeptParts {
     rest_.analyse(size - kept_size_, of_rest);
     kept_rhs_.setZero(kept_size_);
     rest_rhs_.setZero(size - kept_size_);
+    kept_x_ = kept_rhs_;
+    rest_x_ = rest_rhs_;
   }
   void begin() {
     next_ = 0;
@@ -84,13 +86,14 @@ class KeptParts {
       for (Index const i : rest_.dropped()) dropped_.push_back(unknown(i, false));
     return bad < 0 ? bad : unknown(bad, false);
   }
+  /// Both may be the same, where they may be so for `Solver`, or parts are kept.
   void solve(VecX const& b, VecX& x) {
     if (kept_size_ == 0) return rest_.solve(b, x);
     for (std::size_t i = 0; i < place_.size(); ++i) (kept_[i] ? kept_rhs_ : rest_rhs_)[place_[i]] = b[Index(i)];
-    kept_solver_.solve(kept_rhs_, kept_rhs_);
-    rest_.solve(rest_rhs_, rest_rhs_);
+    kept_solver_.solve(kept_rhs_, kept_x_);
+    rest_.solve(rest_rhs_, rest_x_);
     x.resize(Index(place_.size()));
-    for (std::size_t i = 0; i < place_.size(); ++i) x[Index(i)] = (kept_[i] ? kept_rhs_ : rest_rhs_)[place_[i]];
+    for (std::size_t i = 0; i < place_.size(); ++i) x[Index(i)] = (kept_[i] ? kept_x_ : rest_x_)[place_[i]];
   }
 
   /// Unknowns in parts that are factored once.
@@ -145,7 +148,7 @@ class KeptParts {
   bool kept_factored_ = false;
   std::size_t next_ = 0;
   BlockSink to_rest_{rest_}, to_kept_{kept_solver_};
-  VecX kept_rhs_, rest_rhs_;
+  VecX kept_rhs_, rest_rhs_, kept_x_, rest_x_;
 };
 
 }  // namespace polybody
