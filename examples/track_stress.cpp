@@ -630,9 +630,10 @@ int main(int argc, char** argv) {
               "joint policy of the pins; without it linear for ancf, beam and continuum, else constraint");
   line.not_negative("--elements", &o.elements, "of a flexible link but fe; 0: one, and two of a floating frame");
   line.one_of(
-      "--compare", &o.compare, {"links", "matrix", "terms", "surface"},
+      "--compare", &o.compare, {"links", "matrix", "terms", "surface", "ensemble"},
       "links: all but fe side by side, each on its usual pins; matrix: every link on every pin; terms: ffr without "
-      "parts of its equations; surface: stress in nodes of fe, after a run of rigid links and in its own",
+      "parts of its equations; surface: stress in nodes of fe, after a run of rigid links and in its own; "
+      "ensemble: rigid and ancf under settings that the thesis does not give",
       "links");
   line.one_of("--contacts", &contacts, {"middle", "places"},
               "where on a link contacts act: all in its middle, or at their places");
