@@ -179,7 +179,8 @@ class RoadProfile {
     auto const of = [&](std::array<double, 4> const& s) {
       return s[0] * a.z + s[1] * a.slope + s[2] * b.z + s[3] * b.slope;
     };
-    return detail::follow({.z = of(h.s), .x = of(h.ds), .xx = of(h.dds)}, x, y);
+    double const z = std::clamp(of(h.s), std::min(a.z, b.z), std::max(a.z, b.z));  // rounding leaves these bounds
+    return detail::follow({.z = z, .x = of(h.ds), .xx = of(h.dds)}, x, y);
   }
 
  private:
