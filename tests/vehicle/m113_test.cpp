@@ -9,8 +9,10 @@
 #include <sstream>
 
 #include <polybody/math/quaternion.hpp>
+#include <polybody/run/energy.hpp>
 #include <polybody/vehicle/link_strain.hpp>
 #include <polybody/vehicle/m113.hpp>
+#include <polybody/vehicle/modal_links.hpp>
 #include <polybody/vehicle/track_contacts.hpp>
 #include <polybody/vehicle/vehicle_visual.hpp>
 
@@ -55,6 +57,17 @@ void expect_point(std::vector<double> const& row, Vec3 const& place, Vec3 const&
   held_within({"M113 data", "places of the joints [m]", By::independent, "joints.csv", "vehicle/m113.hpp"},
               (Vec3(row[0], row[1], row[2]) - place).norm(), 1e-8, {.scale = 1.0});
   EXPECT_EQ(Vec3(row[3], row[4], row[5]), axis);
+}
+
+/// The kinetic energy of a link that moves along at 2 m/s is 2 m.
+template <class B>
+void expect_mass(m113::LinkOf<B> const& links, double mass) {
+  Model<Bodies<B>, Joints<>> model;
+  auto const link = model.add(links.make({}, {}, 0), "link");
+  State x = model.reference_state();
+  std::span<double const> const q(x.q.data(), std::size_t(x.q.size()));
+  link.body().rigid_velocity(q, Vec3(2.0, 0.0, 0.0), Vec3::Zero(), std::span(x.v.data(), std::size_t(x.v.size())));
+  EXPECT_NEAR(energy(model, x).kinetic, 2.0 * mass, 1e-12 * mass);
 }
 
 TEST(M113, BodiesAreThoseOfTheReference) {
@@ -197,6 +210,22 @@ TEST(M113, HornReachesToTheTopOfItsBox) {
 TEST(M113, LinkBendsAsARectangleDoes) {
   double const young = m113::link_bar().material->young, b = m113::cable_width, h = m113::cable_height;
   EXPECT_NEAR(m113::bending_by_moment() * young * b * h * h, 6.0, 1e-12);
+}
+
+// A link of another height: its mass is ρ b h p, its stretch by a force N/(E b h), its bending strain by a moment
+// 6 M/(E b h²). As a body it has that mass, m v²/2 when it is pushed along.
+TEST(M113, LinksMayHaveAnotherSection) {
+  double const young = m113::youngs_modulus, b = m113::cable_width, p = m113::pitch;
+  for (double const h : {m113::cable_height / 3.0, 1.7 * m113::cable_height}) {
+    double const mass = m113::density * b * h * p;
+    EXPECT_NEAR(m113::with_steel_links({}, h).link.mass, mass, 1e-13 * mass);
+    EXPECT_NEAR(m113::running_strain(0.0, 1e3, h) * young * b * h, 1e3, 1e-10);
+    EXPECT_NEAR(m113::running_strain(3.0, 0.0, h, mass) * young, m113::density * 9.0, 1e-9);
+    EXPECT_NEAR(m113::bending_by_moment(h) * young * b * h * h, 6.0, 1e-12);
+    expect_mass(m113::LinkOf<AncfCable<>>{.height = h}, mass);
+    expect_mass(m113::LinkOf<Lrvf<>>{.height = h}, mass);
+    expect_mass(m113::LinkOf<Ffr>{.height = h}, mass);
+  }
 }
 
 // Every corner of the drawn sprocket lies between root and tip.

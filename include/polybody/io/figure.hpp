@@ -19,7 +19,7 @@ namespace polybody {
 struct Curve {
   std::vector<double> x{}, y{};  ///< (n) points, n >= 1
   std::string label{};           ///< in the legend; empty: not in the legend
-  std::string style = "lines";   ///< lines, points, linespoints, dashed or steps
+  std::string style = "lines";   ///< lines, points, linespoints, dashed, steps, or filled: the translucent area inside
   int color = -1;                ///< same number, same colour (8, then again); -1: its place
   double width = 1.5;            ///< line width [pt]
 };
@@ -37,7 +37,8 @@ struct Figure {
 
 namespace detail {
 
-inline constexpr std::array<std::string_view, 5> curve_styles{"lines", "points", "linespoints", "dashed", "steps"};
+inline constexpr std::array<std::string_view, 6> curve_styles{"lines",  "points", "linespoints",
+                                                              "dashed", "steps",  "filled"};
 
 /// Throws InvalidInput with the figure's title and the curve's label unless all can be drawn.
 template <class = void>  // compiled where it is used
@@ -70,7 +71,7 @@ void check(Figure const& figure) {
     need(std::ranges::all_of(x, is_finite), "a number in x is not finite");
     need(std::ranges::all_of(y, is_finite), "a number in y is not finite");
     need(std::ranges::count(curve_styles, style) == 1,
-         "style '" + style + "' is none of lines, points, linespoints, dashed, steps");
+         "style '" + style + "' is none of lines, points, linespoints, dashed, steps, filled");
     need(color >= -1, "color must be 0, 1, 2 ... or -1 for one by its place");
     need(is_finite(width) && width > 0, "width must be positive");
     for (std::size_t i = 0; i < x.size() && !visible; ++i)

@@ -27,8 +27,10 @@ enum class Drawn { png, script_only };
 namespace detail {
 
 /// What gnuplot calls each of `curve_styles`.
-inline constexpr std::array<std::string_view, 5> gnuplot_styles{"lines", "points", "linespoints",
-                                                                "lines dashtype (12,6)", "steps"};
+inline constexpr std::array<std::string_view, 6> gnuplot_styles{
+    "lines",       "points",
+    "linespoints", "lines dashtype (12,6)",
+    "steps",       "filledcurves closed fillstyle transparent solid 0.3"};
 
 /// Colours that colour-blind readers can tell apart [Okabe & Ito 2008], strongest first.
 inline constexpr std::array<std::string_view, 8> palette{"#0072B2", "#D55E00", "#009E73", "#E69F00",

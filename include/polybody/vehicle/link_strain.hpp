@@ -38,34 +38,38 @@ inline std::vector<double> link_strain(DecoupledStress const& stress) {
   return out;
 }
 
-/// Axial strain in the fibre towards the wheels by a unit moment M_y about the pins' direction [1/(N m)].
-inline double bending_by_moment() { return 0.5 * cable_height / *constants(link_bar()).EI_y; }
+/// Axial strain in the fibre towards the wheels by a unit moment M_y about the pins' direction [1/(N m)]; `height` of
+/// the section, here and below [m].
+inline double bending_by_moment(double height = cable_height) {
+  return 0.5 * height / *constants(link_bar({}, height)).EI_y;
+}
 
 /// Axial strain by bending in the fibre towards the wheels, just ahead of the middle, where contacts push. One cubic
 /// element shows half of the effect of a force there, one linear element none; two elements have a node there and show
 /// it in full. A cable needs `lateral`, the vehicle's y axis, to know the side of the wheels (link_axes.hpp).
 template <class M, class B>
-double link_bending(M const& model, State const& x, BodyHandle<B> const& link, Vec3 const& lateral) {
+double link_bending(M const& model, State const& x, BodyHandle<B> const& link, Vec3 const& lateral,
+                    double height = cable_height) {
   auto const middle = link.at(0.5 * pitch);
   Frame<double> const section = frame(model, x, middle);
   Vec3 const moment = section.A * section_forces(model, x, middle).template tail<3>();
-  return bending_by_moment() * moment.dot(link_axes<B::observes>(section, lateral).col(1));
+  return bending_by_moment(height) * moment.dot(link_axes<B::observes>(section, lateral).col(1));
 }
 
 /// Bending strain of a rigid link at each time of its record.
-inline std::vector<double> link_bending(DecoupledStress const& stress) {
+inline std::vector<double> link_bending(DecoupledStress const& stress, double height = cable_height) {
   std::vector<double> out;
-  for (Vec6 const& n : stress.section_forces(0.5 * pitch)) out.push_back(bending_by_moment() * n[4]);
+  for (Vec6 const& n : stress.section_forces(0.5 * pitch)) out.push_back(bending_by_moment(height) * n[4]);
   return out;
 }
 
 /// The same link as a structure, two elements with a node in the middle.
-inline Structure link_structure() { return structure_of(link_bar(), 2); }
+inline Structure link_structure(Bar const& bar = link_bar()) { return structure_of(bar, 2); }
 
-/// (T₀ + m v²/p)/EA: the strain in a chain of links of mass m and pitch p that runs at speed v [m/s] and is pulled by
-/// T₀ [N].
-inline double running_strain(double speed, double pull) {
-  return (pull + thesis.link.mass * speed * speed / pitch) / constants(link_bar()).EA;
+/// (T₀ + m v²/p)/EA: the strain in a chain of links of mass m [kg] and pitch p that runs at speed v [m/s] and is pulled
+/// by T₀ [N].
+inline double running_strain(double speed, double pull, double height = cable_height, double mass = thesis.link.mass) {
+  return (pull + mass * speed * speed / pitch) / constants(link_bar({}, height)).EA;
 }
 
 }  // namespace polybody::m113

@@ -97,10 +97,11 @@ struct LinkOf<Ffr> {
 
   std::shared_ptr<FiniteElementLink const> model = {};
   FfrTerms terms = {};
+  double height = cable_height;  ///< of the section of beam elements; a model has its own [m]
 
   Ffr make(Solid const&, Placement const& at, int elements) const {
     if (model) return Ffr(model->structure, model->shapes, {.placement = at, .terms = terms});
-    Bar const bar = link_bar(at);
+    Bar const bar = link_bar(at, height);
     int const n = std::max(elements, 2);
     Structure structure = structure_of(bar, n);
     MatX shapes = craig_bampton(structure, {0, n}, modes_between);

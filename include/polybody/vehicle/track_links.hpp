@@ -22,20 +22,22 @@ inline Mat3 principal(Triple const& moments) { return Vec3(moments).asDiagonal()
 }  // namespace detail
 
 /// A link of steel with the section of §3.6: [m113::cable_width × cable_height], x from the rear pin to the front pin.
-/// `placement` is that of its centre.
-inline Bar link_bar(Placement placement = {}) {
+/// `placement` is that of its centre. The thesis does not give the section: that height has the mass of a rigid link,
+/// and `height` is another [m].
+inline Bar link_bar(Placement placement = {}, double height = cable_height) {
   placement.origin -= placement.axes.col(0) * (0.5 * pitch);
   return {
       .length = pitch,
-      .section = Rectangle{.height = cable_width, .width = cable_height},
+      .section = Rectangle{.height = cable_width, .width = height},
       .material =
           Material{.density = density, .young = youngs_modulus, .poisson = 0.5 * youngs_modulus / shear_modulus - 1.0},
       .placement = placement};
 }
 
-/// `masses` with links of the inertia of that bar, as flexible links have it; T3.1 has that of a box 1.7 times as high.
-inline Solids with_steel_links(Solids masses = thesis) {
-  double const w = cable_width, h = cable_height, m = density * w * h * pitch, twelfth = m / 12.0;
+/// `masses` with links of the mass and inertia of that bar, as flexible links have them; T3.1 has the inertia of a box
+/// 1.7 times as high.
+inline Solids with_steel_links(Solids masses = thesis, double h = cable_height) {
+  double const w = cable_width, m = density * w * h * pitch, twelfth = m / 12.0;
   masses.link = {m, {twelfth * (w * w + h * h), twelfth * (pitch * pitch + h * h), twelfth * (pitch * pitch + w * w)}};
   return masses;
 }
@@ -45,13 +47,15 @@ inline Solids with_steel_links(Solids masses = thesis) {
 /// wheels; `elements` how many it has if it is flexible, 0 for as few as its formulation does with.
 ///
 /// Beams lie from the rear pin to the front pin, one element unless more are asked for. The mass of a `Solid` is in the
-/// section.
+/// section, whose height may be another than a link's.
 template <Body B>
 struct LinkOf {
   static_assert(!requires { B::frame_layout; }, "Links with a floating frame are in vehicle/modal_links.hpp.");
 
-  static B make(Solid const&, Placement const& at, int elements) {
-    return B::from(link_bar(at), std::max(elements, 1));
+  double height = cable_height;  ///< of the section [m]
+
+  B make(Solid const&, Placement const& at, int elements) const {
+    return B::from(link_bar(at, height), std::max(elements, 1));
   }
   static auto front(BodyHandle<B> const& link) { return link.at(link.body().length()); }
   static auto rear(BodyHandle<B> const& link) { return link.at(0.0); }
