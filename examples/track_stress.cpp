@@ -7,120 +7,92 @@
 //   track_stress --compare surface
 //   track_stress --figure 4.8
 
-#include <polybody/compare/join.hpp>
-#include <polybody/signals/rainflow.hpp>
 #include <polybody/vehicle/link_strain.hpp>
 
 #include <cctype>
 #include <map>
 
 #include "support/command_line.hpp"
-#include "track_stress/stress_runs.hpp"
+#include "track_stress/ensemble.hpp"
+#include "track_stress/formulations.hpp"
+#include "track_stress/measures.hpp"
 
 using namespace chapter4;
 
 namespace {
 
-// In the order of all_links.
-constexpr std::vector<Combination> (*combinations_of[])() = {
-    rigid_links, cable_links, modal_links, finite_element_links, rotation_links, beam_links, continuum_links};
-
-// Of `of_links`, on the pins that are asked for, or usual.
-Combination on_pins(std::vector<Combination> const& of_links, std::string const& pins = "") {
-  auto const found = std::find_if(of_links.begin(), of_links.end(),
-                                  [&](Combination const& c) { return pins.empty() ? c.usual : c.pins == pins; });
-  if (!found->refusal.empty())
-    throw InvalidInput{"A link \"", found->links, "\" cannot be on pins \"", found->pins, "\": ", found->refusal, "."};
-  return *found;
-}
-Combination asked(Options const& o) {
-  auto const place = std::find(all_links.begin(), all_links.end(), o.links) - all_links.begin();
-  return on_pins(combinations_of[place](), o.pins);
-}
-
-// Why it cannot be driven with these options; else empty.
-std::string refusal(Options const& o, Combination const& c) {
-  if (!c.refusal.empty() || c.turns || o.turn.empty()) return c.refusal;
-  return "its pins share a slope across the track that is fixed in the world";
-}
-void require_driveable(Options const& o, Combination const& c) {
-  if (!refusal(o, c).empty())
-    throw InvalidInput(
-        "Tracks of ANCF cables cannot turn: their pins share a slope across the track that is fixed in the world. "
-        "Take --links rigid, ffr, fe, lrvf, beam or continuum.");
-}
-
-// The runs of several formulations side by side.
-StressRuns run(Options const& o, std::vector<Combination> const& combinations) {
-  warn_of_drive(o);
-  StressRuns all;
-  std::vector<Comparison> apart;
-  for (Combination const& c : combinations) {
-    require_driveable(o, c);
-    StressRuns one = c.run(o);
-    for (ComparedRun const& r : one.comparison.runs)
-      for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
-    apart.push_back(std::move(one.comparison));
-    all.outcomes.insert(all.outcomes.end(), one.outcomes.begin(), one.outcomes.end());
-    all.links.insert(all.links.end(), one.links.begin(), one.links.end());
-  }
-  all.comparison = join(apart);
-  return all;
-}
-
 // Runs that several figures share are made once.
 class Cache {
  public:
   explicit Cache(Options const& o) : options_(o) {}
-  StressRuns const& at(double speed, double until) {
+  bool has(double speed) const {
+    return std::ranges::any_of(runs_, [&](auto const& made) { return made.first.first == speed; });
+  }
+  // Under the settings asked for; with bands also under those that the thesis does not give.
+  std::vector<SettingRuns> const& at(double speed, double until) {
     auto const key = std::pair(speed, until);
     if (auto const found = runs_.find(key); found != runs_.end()) return found->second;
     Options o = options_;
     o.speed = speed;
     o.until = until;
-    return runs_.emplace(key, run(o, {on_pins(rigid_links()), on_pins(cable_links())})).first->second;
+    if (o.bands) return runs_.emplace(key, runs_of_settings(o)).first->second;
+    SettingRuns as_given{"as given", o, run(o, {on_pins(rigid_links()), on_pins(cable_links())})};
+    return runs_.emplace(key, std::vector{std::move(as_given)}).first->second;
   }
 
  private:
   Options const& options_;
-  std::map<std::pair<double, double>, StressRuns> runs_;
+  std::map<std::pair<double, double>, std::vector<SettingRuns>> runs_;
 };
-
-// Numbers from `from` on: of the plateau, or of all that there is.
-struct Range {
-  double mean = 0.0, least = 0.0, most = 0.0;
-};
-double plateau(std::vector<double> const& times) { return times.back() > 8.6 ? 8.5 : 0.5 * times.back(); }
-Range range_of(std::vector<double> const& times, std::vector<double> const& x, double from) {
-  Range r{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  double count = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (times[i] < from) continue;
-    r.mean += x[i];
-    r.least = std::min(r.least, x[i]);
-    r.most = std::max(r.most, x[i]);
-    ++count;
-  }
-  r.mean /= count;
-  return r;
-}
-
-// Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
-using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;
-double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from,
-           Told of = &StressRuns::raw, Told of_b = nullptr) {
-  if (!of_b) of_b = of;
-  std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of_b)(k), o.cut_off);
-  RmsDifference d(from, o.until);
-  d.add({as.filtered_times(i), a}, {bs.filtered_times(k), b});
-  return d.value();
-}
 
 // The pull of the tensioner in either run of the track, as if both left the idler level: its spring, without its
 // damper.
 double mean_pull(Options const& o, StressRuns const& runs, std::size_t k, double from) {
   double const travel = range_of(runs.times(k), runs.history(k, "idler travel [m]"), from).mean;
   return 0.5 * (o.preload + m113::tensioner.stiffness * travel);
+}
+
+// Decoupled and coupled strain, low pass, from 8.5 s on, and how far they are apart at most.
+void print_strains(Options const& o, StressRuns const& r, double speed) {
+  auto const &times = r.times(0), &other_times = r.times(1);
+  double const from = plateau(times);
+  std::vector<double> const rigid = r.filtered(0, o.cut_off), flexible = r.filtered(1, o.cut_off);
+  double apart = 0.0;
+  for (std::size_t i = 0; i < std::min(rigid.size(), flexible.size()); ++i)
+    if (times[i] >= from) apart = std::max(apart, std::abs(rigid[i] - flexible[i]));
+  Range const a = range_of(times, rigid, from), b = range_of(other_times, flexible, from);
+  std::printf(
+      "%g rad/s, from %.1f to %.1f s, low pass %g Hz: rigid %.3fe-5, %.3f MPa; ancf %.3fe-5, %.3f MPa; at most %.3f "
+      "MPa "
+      "apart; (T0 + m v^2/p)/EA %.3fe-5\n",
+      speed, from, times.back(), o.cut_off, 1e5 * a.mean, 1e-6 * m113::youngs_modulus * a.mean, 1e5 * b.mean,
+      1e-6 * m113::youngs_modulus * b.mean, 1e-6 * m113::youngs_modulus * apart,
+      1e5 * m113::running_strain(mean_speed(r, 0, from), mean_pull(o, r, 0, from)));
+}
+
+// Behind the curves of rigid links and cables the range over settings, where there are several.
+void add_bands(Figure& f, std::vector<SettingRuns> const& settings, double scale, std::size_t every,
+               std::function<Filtered(SettingRuns const&, std::size_t)> const& history) {
+  if (settings.size() < 2) return;
+  std::vector<Curve> behind;
+  for (std::size_t k = 0; k < 2; ++k)
+    behind.push_back(
+        Band(settings, [&](SettingRuns const& s) {
+          return history(s, k);
+        }).curve(k == 0 ? "rigid, range over settings" : "ANCF, range over settings", int(k), scale, every));
+  f.curves.insert(f.curves.begin(), behind.begin(), behind.end());
+}
+
+void report_bending(StressRuns const& runs, std::size_t k) {
+  double const young = 1e-6 * m113::youngs_modulus, from = plateau(runs.times(k)), end = runs.times(k).back();
+  Range const bending = range_of(runs.times(k), runs.bending(k), from);
+  std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa, rms from 1 s on %.2f MPa",
+              young * bending.least, young * bending.most, young * rms(runs.times(k), runs.bending(k), 1.0));
+  if (k > 0 && runs.links[0]->recover && end > 3.0)
+    std::printf("; off %s by %.1f %% to 3 s, %.1f %% after", runs.name(0).c_str(),
+                1e2 * off_unfiltered(runs, k, 0, &StressRuns::bending, 1.0, 3.0),
+                1e2 * off_unfiltered(runs, k, 0, &StressRuns::bending, 3.0, end));
+  std::printf("\n");
 }
 
 void report(Options const& o, StressRuns const& runs) {
@@ -139,15 +111,16 @@ void report(Options const& o, StressRuns const& runs) {
         "%-10s from %.1f s on: speed %.4f m/s; strain %.3fe-5 (%.3f to %.3f), %.3f MPa; unfiltered %.2f to %.2fe-5\n",
         r.name.c_str(), from, speed, 1e5 * e.mean, 1e5 * e.least, 1e5 * e.most, 1e-6 * m113::youngs_modulus * e.mean,
         1e5 * raw.least, 1e5 * raw.most);
+    double const mass = runs.links[k]->recover ? o.masses.link.mass : flexible_mass(o);
     std::printf("           (T0 + m v^2/p)/EA with T0 = %.2f kN of the tensioner: %.3fe-5\n", 1e-3 * pull,
-                1e5 * m113::running_strain(speed, pull));
-    Range const bending = range_of(runs.times(k), runs.bending(k), from);
-    std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa",
-                1e-6 * m113::youngs_modulus * bending.least, 1e-6 * m113::youngs_modulus * bending.most);
-    if (k > 0 && runs.links[0]->recover)
-      std::printf("; %.1f %% off %s (rms, low pass)", 1e2 * off(o, runs, k, runs, 0, from, &StressRuns::bending),
-                  runs.name(0).c_str());
-    std::printf("\n");
+                1e5 * m113::running_strain(speed, pull, section_height(o), mass));
+    Range const force = range_of(runs.times(k), runs.history(k, "joint force x [N]"), 0.0);
+    std::printf(
+        "           at the end %.4f m ahead; at most %.3f m/s; longitudinal force in the front pin %.1f to %.1f kN\n",
+        runs.history(k, "forward position [m]").back(),
+        range_of(runs.times(k), runs.history(k, "forward velocity [m/s]"), 0.0).most, 1e-3 * force.least,
+        1e-3 * force.most);
+    report_bending(runs, k);
     for (double const since : {1.0, from})
       if (k != beside && since < runs.times(k).back())
         std::printf("           off %s: %.2f %% (rms from %.1f s on)\n", runs.name(beside).c_str(),
@@ -217,7 +190,7 @@ void figures(Options const& o) {
   bool const longer = wanted(o, "4.11") || wanted(o, "4.12");
   auto const [slow, fast] = m113::chapter_4_speeds;
   std::string const filter = ", " + number(o.cut_off) + " Hz low pass";
-  auto const runs_at = [&](double speed) -> StressRuns const& {
+  auto const runs_at = [&](double speed) -> std::vector<SettingRuns> const& {
     return cache.at(speed, speed == slow && longer ? twice : until);
   };
   auto const name_of = [](std::string number) {
@@ -226,18 +199,29 @@ void figures(Options const& o) {
   };
   auto const history = [&](std::string const& number, double speed, std::string const& output, std::string const& what,
                            std::string const& label, double scale = 1.0) {
+    std::vector<SettingRuns> const& settings = runs_at(speed);
     Figure f =
-        history_figure(runs_at(speed), output,
+        history_figure(settings.front().runs, output,
                        "Figure " + number + ": " + what + ", " + polybody::number(speed) + " rad/s", label, 0.0, scale);
     for (std::size_t k = 0; k < f.curves.size(); ++k) f.curves[k].label = k == 0 ? "rigid links" : "ANCF links";
+    add_bands(f, settings, scale, 1, [&](SettingRuns const& s, std::size_t k) {
+      return Filtered{s.runs.times(k), s.runs.history(k, output)};
+    });
     f.x_range = {{0.0, until}};
     draw(o, f, name_of(number));
   };
   auto const strain = [&](std::string const& number, double speed, bool filtered, double from, double to) {
-    return strain_figure(o, runs_at(speed),
-                         "Figure " + number + ": axial strain of a link, " + polybody::number(speed) + " rad/s" +
-                             (filtered ? filter : ""),
-                         filtered, from, to);
+    std::vector<SettingRuns> const& settings = runs_at(speed);
+    Figure f = strain_figure(o, settings.front().runs,
+                             "Figure " + number + ": axial strain of a link, " + polybody::number(speed) + " rad/s" +
+                                 (filtered ? filter : ""),
+                             filtered, from, to);
+    add_bands(f, settings, 1e5, filtered ? 4 : 1, [&](SettingRuns const& s, std::size_t k) {
+      if (!filtered) return Filtered{s.runs.times(k), s.runs.raw(k)};
+      auto const times = s.runs.filtered_times(k);
+      return Filtered{{times.begin(), times.end()}, s.runs.filtered(k, o.cut_off)};
+    });
+    return f;
   };
   for (auto const& [speed, letter] : {std::pair(slow, "a"), {fast, "b"}}) {
     if (wanted(o, "4.3")) {
@@ -272,27 +256,8 @@ void figures(Options const& o) {
       for (double& y : c.y) y *= 1e-11 * m113::youngs_modulus;
     draw(o, f, name_of("4.12"));
   }
-}
-
-// What cycles of axial stress, unfiltered, amount to.
-struct Ranges {
-  double count = 0.0, largest = 0.0, equivalent = 0.0;  // ranges [Pa]
-};
-constexpr double wohler_exponent = 3.0;  // of details of welds
-Ranges ranges_of(std::vector<StressCycle> const& cycles) {
-  Ranges r;
-  double sum = 0.0;
-  for (StressCycle const& c : cycles) {
-    r.count += c.count;
-    r.largest = std::max(r.largest, c.range);
-    sum += c.count * std::pow(c.range, wohler_exponent);
-  }
-  if (r.count > 0.0) r.equivalent = std::pow(sum / r.count, 1.0 / wohler_exponent);
-  return r;
-}
-std::vector<StressCycle> cycles_of(std::vector<double> stress) {
-  for (double& s : stress) s *= m113::youngs_modulus;
-  return rainflow(stress);
+  for (double const speed : {slow, fast})
+    if (cache.has(speed)) print_strains(o, runs_at(speed).front().runs, speed);
 }
 
 // Cycles of axial stress, unfiltered, by rainflow; with S³ as damage (m = 3, as details of welds have it) they do as
@@ -338,7 +303,7 @@ void show(Options const& o, StressRuns const& r) {
 }
 
 void single(Options const& o) {
-  Combination const c = asked(o);
+  Combination const c = combination_asked(o);
   require_driveable(o, c);
   if (o.restart) return c.restart(o);
   StressRuns const runs = run(o, {c});
@@ -482,83 +447,6 @@ void compare_terms(Options o) {
   }
 }
 
-// What the thesis does not give, in its plausible range.
-std::vector<std::pair<std::string, Options>> plausible(Options const& o) {
-  std::vector<std::pair<std::string, Options>> all{{"as given", o}};
-  auto const with = [&](std::string const& name, auto const& change) {
-    all.emplace_back(name, o);
-    change(all.back().second);
-  };
-  with("preload 10 kN", [](Options& s) { s.preload = 1e4; });
-  with("preload 40 kN", [](Options& s) { s.preload = 4e4; });
-  with("ramp of 3.5 s", [](Options& s) { s.ramp = 3.5; });
-  with("rho 0", [](Options& s) { s.rho = 0.0; });
-  with("rho 0.8, 0.5 ms", [](Options& s) {
-    s.rho = 0.8;
-    s.step = 0.5e-3;
-  });
-  with("0.5 ms", [](Options& s) { s.step = 0.5e-3; });
-  with("contacts at their places", [](Options& s) { s.contacts = m113::ContactsAct::at_their_places; });
-  return all;
-}
-
-// The least and the most of several histories.
-struct Band {
-  std::vector<double> times, least, most;
-
-  void add(std::span<double const> t, std::vector<double> const& x) {
-    if (times.empty()) {
-      times.assign(t.begin(), t.end());
-      least = most = x;
-      return;
-    }
-    std::vector<double> const its_times(t.begin(), t.end());
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      double const there = detail::interpolate(its_times, x, times[i]);
-      least[i] = std::min(least[i], there);
-      most[i] = std::max(most[i], there);
-    }
-  }
-  void draw(Figure& f, std::string const& label, int color) const {
-    f.curves.push_back(curve(label, times, least, color, 1e5));
-    f.curves.push_back(curve("", times, most, color, 1e5));
-  }
-};
-
-// Decoupled and coupled strain under each of these settings: bands, and whether any of them parts the two.
-void ensemble(Options const& o) {
-  std::printf(
-      "%g rad/s, %g s; from 8.5 s on, or half of the run: strain, low pass %g Hz, in the mean [1e-5]: decoupled, "
-      "by vibrations, coupled (ANCF cables); their ratio; rms differences; ranges of stress, unfiltered [MPa]\n",
-      o.speed, o.until, o.cut_off);
-  std::printf("%-26s %9s %9s %9s %8s %9s %9s %18s %18s\n", "", "decoupled", "vibrating", "coupled", "ratio", "off [%]",
-              "vib. [%]", "largest", "equivalent");
-  Band decoupled, coupled;
-  for (auto const& [name, setting] : plausible(o)) {
-    StressRuns const r = run(setting, {on_pins(rigid_links()), on_pins(cable_links())});
-    double const from = plateau(r.times(0));
-    std::vector<double> const rigid = r.filtered(0, o.cut_off), flexible = r.filtered(1, o.cut_off);
-    double const a = range_of(r.times(0), rigid, from).mean, b = range_of(r.times(1), flexible, from).mean;
-    double const by_vibrations = range_of(r.times(0), r.filtered(0, r.vibrating(0), o.cut_off), from).mean;
-    Ranges const of_a = ranges_of(cycles_of(r.raw(0))), of_b = ranges_of(cycles_of(r.raw(1)));
-    std::printf("%-26s %9.3f %9.3f %9.3f %8.3f %9.2f %9.2f %8.2f, %8.2f %8.3f, %8.3f\n", name.c_str(), 1e5 * a,
-                1e5 * by_vibrations, 1e5 * b, a / b, 1e2 * off(setting, r, 0, r, 1, std::min(1.0, 0.25 * o.until)),
-                1e2 * off(setting, r, 0, r, 0, from, &StressRuns::vibrating, &StressRuns::raw), 1e-6 * of_a.largest,
-                1e-6 * of_b.largest, 1e-6 * of_a.equivalent, 1e-6 * of_b.equivalent);
-    std::fflush(stdout);
-    decoupled.add(r.filtered_times(0), rigid);
-    coupled.add(r.filtered_times(1), flexible);
-  }
-  Figure f{.title = "Axial strain of a link, " + number(o.speed) + " rad/s, " + number(o.cut_off) +
-                    " Hz low pass: the range over settings",
-           .x_label = "t [s]",
-           .y_label = "axial strain [10⁻⁵]",
-           .x_range = {{0.0, o.until}}};
-  decoupled.draw(f, "rigid, decoupled", 0);
-  coupled.draw(f, "ANCF cables", 1);
-  draw(o, f, "ensemble");
-}
-
 // Stress at named nodes of a finite element link: after a run of rigid links, and in one of such links.
 void surface_stress(Options o) {
   o.surface = true;
@@ -597,10 +485,8 @@ void surface_stress(Options o) {
   }
 }
 
-// Each formulation of the links on the pins that it usually has.
-void all_formulations(Options const& o) {
-  StressRuns const r = run(o, {on_pins(rigid_links()), on_pins(cable_links()), on_pins(modal_links()),
-                               on_pins(rotation_links()), on_pins(beam_links()), on_pins(continuum_links())});
+void side_by_side(Options const& o, std::vector<Combination> const& combinations) {
+  StressRuns const r = run(o, combinations);
   write_report(r.comparison, o.out / "comparison", !o.no_plot);
   report(o, r);
   if (o.fatigue) fatigue(o, r);
@@ -629,12 +515,12 @@ int main(int argc, char** argv) {
   line.one_of("--pins", &o.pins, all_pins,
               "joint policy of the pins; without it linear for ancf, beam and continuum, else constraint");
   line.not_negative("--elements", &o.elements, "of a flexible link but fe; 0: one, and two of a floating frame");
-  line.one_of(
-      "--compare", &o.compare, {"links", "matrix", "terms", "surface", "ensemble"},
-      "links: all but fe side by side, each on its usual pins; matrix: every link on every pin; terms: ffr without "
-      "parts of its equations; surface: stress in nodes of fe, after a run of rigid links and in its own; "
-      "ensemble: rigid and ancf under settings that the thesis does not give",
-      "links");
+  line.one_of("--compare", &o.compare, {"links", "pair", "matrix", "terms", "surface", "ensemble"},
+              "links: all but fe side by side, each on its usual pins; pair: rigid and ancf; matrix: every link on "
+              "every pin; terms: ffr without "
+              "parts of its equations; surface: stress in nodes of fe, after a run of rigid links and in its own; "
+              "ensemble: rigid and ancf under settings that the thesis does not give",
+              "links");
   line.one_of("--contacts", &contacts, {"middle", "places"},
               "where on a link contacts act: all in its middle, or at their places");
   line.option("--link-files", &o.files, "folder of the finite element link's files");
@@ -649,6 +535,8 @@ int main(int argc, char** argv) {
   line.positive("--cut-off", &o.cut_off, "of the low pass [Hz]");
   line.one_of("--recovery", &o.recovery, {"static", "vibrating"}, "of stress after a rigid run");
   line.option("--preload", &o.preload, "of the tensioners [N]");
+  line.positive("--section", &o.section, "height of a flexible link's section, of that which has a rigid link's mass");
+  line.flag("--bands", &o.bands, "figures with the range over settings that the thesis does not give: 12 runs for one");
   line.flag("--halve", &o.halve, "at this step and at half of it");
   line.flag("--restart", &o.restart,
             "whether a run that is taken up from a checkpoint in its middle ends in the same bits");
@@ -675,8 +563,11 @@ int main(int argc, char** argv) {
       surface_stress(o);
     else if (o.compare == "ensemble")
       ensemble(o);
+    else if (o.compare == "pair")
+      side_by_side(o, {on_pins(rigid_links()), on_pins(cable_links())});
     else if (o.compare == "links")
-      all_formulations(o);
+      side_by_side(o, {on_pins(rigid_links()), on_pins(cable_links()), on_pins(modal_links()),
+                       on_pins(rotation_links()), on_pins(beam_links()), on_pins(continuum_links())});
     else
       single(o);
   } catch (Error const& e) {

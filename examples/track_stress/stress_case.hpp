@@ -16,25 +16,38 @@ double cpu_of(auto&& work) {
   return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// The strain of a link by its vibrations under what was recorded, stepped as the run was.
+// The recorded link as a structure: with its mass, also where its section is another.
 template <class = void>  // compiled where it is used
+Structure structure_of_link(Options const& o) {
+  Bar bar = m113::link_bar({}, section_height(o));
+  double const heavier = o.section == 1.0 ? 1.0 : o.masses.link.mass / flexible_mass(o);
+  bar.material->density = heavier * bar.material->density;
+  return m113::link_structure(bar);
+}
+// A link of another height has another moment of inertia about its pins, by up to a sixth.
+inline StructureLoadOptions loads(Options const& o) {
+  return o.section == 1.0 ? StructureLoadOptions{} : StructureLoadOptions{.unbalance = 0.2};
+}
+
+// The strain of a link by its vibrations under what was recorded, stepped as the run was.
+template <class = void>
 DecoupledStress vibrating(Options const& o, BodyRecord const& record) {
-  return DecoupledStress::vibrating(m113::link_structure(), record, integrator(o),
-                                    {.frame = ReferenceConditions::simply_supported(0, 2)});
+  return DecoupledStress::vibrating(structure_of_link(o), record, integrator(o),
+                                    {.frame = ReferenceConditions::simply_supported(0, 2)}, loads(o));
 }
 template <class = void>
 DecoupledStress recovered(Options const& o, BodyRecord const& record) {
   if (o.recovery == "vibrating") return vibrating(o, record);
-  return DecoupledStress::quasi_static(m113::link_structure(), record);
+  return DecoupledStress::quasi_static(structure_of_link(o), record, loads(o));
 }
 
 // The watched link's strain and bending at one moment of a run of flexible links.
 template <class V>
-void watch(V const& vehicle, State const& x, LinkHistory& h) {
+void watch(Options const& o, V const& vehicle, State const& x, LinkHistory& h) {
   auto const& link = vehicle.side(m113::Side::left).links[watched_link];
   h.strain.push_back(m113::link_strain(vehicle.model, x, link));
   Vec3 const lateral = vehicle.hull(x).A.col(1);
-  h.bending.push_back(m113::link_bending(vehicle.model, x, link, lateral));
+  h.bending.push_back(m113::link_bending(vehicle.model, x, link, lateral, section_height(o)));
 }
 // The same of a finite element link.
 template <class V>
@@ -70,7 +83,7 @@ struct StressCase {
         h.recovery = cpu_of([&] {
           DecoupledStress const stress = recovered(o, recorder->of(link));
           h.strain = m113::link_strain(stress);
-          h.bending = m113::link_bending(stress);
+          h.bending = m113::link_bending(stress, section_height(o));
           if (o.surface) add_surface(h, o, recorder->of(link));
         });
         h.vibration = cpu_of([&] { h.vibrating = m113::link_strain(vibrating(o, recorder->of(link))); });
@@ -82,12 +95,12 @@ struct StressCase {
         if (of_elements)
           watch_elements(o, *vehicle, x, *history);
         else
-          watch(*vehicle, x, *history);
+          watch(o, *vehicle, x, *history);
       };
     } else {
-      scenario.observer = [=, before = scenario.observer](M const& model, State const& x) {
+      scenario.observer = [=, o = options, before = scenario.observer](M const& model, State const& x) {
         before(model, x);
-        watch(*vehicle, x, *history);
+        watch(o, *vehicle, x, *history);
       };
     }
     return scenario;
@@ -168,10 +181,16 @@ Combination combination(std::string const& links, std::string const& pins, bool 
   return c;
 }
 
+template <class Body>
+m113::LinkOf<Body> with_section(Options const& o) {
+  m113::LinkOf<Body> links;
+  if constexpr (requires { links.height; }) links.height = section_height(o);
+  return links;
+}
+
 // Links of Body under each policy of the pins, in the order of all_pins.
 template <class Body, Policy Usual>
-std::vector<Combination> links_of(
-    std::string const& name, LinksMade<Body> const& made = [](Options const&) { return m113::LinkOf<Body>{}; }) {
+std::vector<Combination> links_of(std::string const& name, LinksMade<Body> const& made = with_section<Body>) {
   auto const by = [&](std::size_t pins, auto const& policy) {
     bool const usual = std::is_same_v<std::remove_cvref_t<decltype(policy)>, Usual>;
     return combination<Body>(name, all_pins[pins], usual, policy, made);

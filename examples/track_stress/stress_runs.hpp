@@ -19,9 +19,15 @@ struct Options : Settings {
   std::string files;     // of a finite element link
   bool surface = false;  // stress in named nodes of its surface, also after a run of rigid links
   FfrTerms terms = {};   // of floating frames
+  double section = 1.0;  // height of a flexible link's section and of a structure's, of that which has a link's mass
   double cut_off = 15.0;
+  bool bands = false;  // figures with the range over settings that the thesis does not give
   bool halve = false, restart = false, fatigue = false;
 };
+
+inline double section_height(Options const& o) { return o.section * m113::cable_height; }
+// The mass of a flexible link.
+inline double flexible_mass(Options const& o) { return m113::with_steel_links({}, section_height(o)).link.mass; }
 
 // What a run knows of its watched link. Of rigid links the strain is worked out after the run.
 struct LinkHistory {
@@ -66,6 +72,9 @@ inline std::vector<std::string> const all_pins{"constraint", "penalty", "bushing
 
 // Where the links of all runs lie at the start.
 m113::TrackStart start_of_all(Options const& o);
+
+// Ideal pins, by an Adams method in independent coordinates; states every `step`.
+StressRuns rigid_links_by_adams(Options o);
 
 // Of each formulation of the links, in the order of all_pins.
 std::vector<Combination> rigid_links();

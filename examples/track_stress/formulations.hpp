@@ -1,0 +1,56 @@
+#pragma once
+// Every link on every pin, as the program is asked for them, and runs of several side by side.
+#include <polybody/compare/join.hpp>
+
+#include "stress_runs.hpp"
+
+namespace chapter4 {
+
+// In the order of all_links.
+inline constexpr std::vector<Combination> (*combinations_of[])() = {
+    rigid_links, cable_links, modal_links, finite_element_links, rotation_links, beam_links, continuum_links};
+
+// Of `of_links`, on the pins that are asked for, or usual.
+inline Combination on_pins(std::vector<Combination> const& of_links, std::string const& pins = "") {
+  auto const found = std::find_if(of_links.begin(), of_links.end(),
+                                  [&](Combination const& c) { return pins.empty() ? c.usual : c.pins == pins; });
+  if (!found->refusal.empty())
+    throw InvalidInput{"A link \"", found->links, "\" cannot be on pins \"", found->pins, "\": ", found->refusal, "."};
+  return *found;
+}
+inline Combination combination_asked(Options const& o) {
+  auto const place = std::find(all_links.begin(), all_links.end(), o.links) - all_links.begin();
+  return on_pins(combinations_of[place](), o.pins);
+}
+
+// Why it cannot be driven with these options; else empty.
+inline std::string refusal(Options const& o, Combination const& c) {
+  if (!c.refusal.empty() || c.turns || o.turn.empty()) return c.refusal;
+  return "its pins share a slope across the track that is fixed in the world";
+}
+inline void require_driveable(Options const& o, Combination const& c) {
+  if (!refusal(o, c).empty())
+    throw InvalidInput(
+        "Tracks of ANCF cables cannot turn: their pins share a slope across the track that is fixed in the world. "
+        "Take --links rigid, ffr, fe, lrvf, beam or continuum.");
+}
+
+// The runs of several formulations side by side.
+inline StressRuns run(Options const& o, std::vector<Combination> const& combinations) {
+  warn_of_drive(o);
+  StressRuns all;
+  std::vector<Comparison> apart;
+  for (Combination const& c : combinations) {
+    require_driveable(o, c);
+    StressRuns one = c.run(o);
+    for (ComparedRun const& r : one.comparison.runs)
+      for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
+    apart.push_back(std::move(one.comparison));
+    all.outcomes.insert(all.outcomes.end(), one.outcomes.begin(), one.outcomes.end());
+    all.links.insert(all.links.end(), one.links.begin(), one.links.end());
+  }
+  all.comparison = join(apart);
+  return all;
+}
+
+}  // namespace chapter4

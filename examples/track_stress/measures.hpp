@@ -1,0 +1,74 @@
+#pragma once
+// Numbers of runs: means and ranges, differences, cycles of stress.
+#include <polybody/signals/rainflow.hpp>
+
+#include "stress_runs.hpp"
+
+namespace chapter4 {
+
+// Numbers from `from` on: of the plateau, or of all that there is.
+struct Range {
+  double mean = 0.0, least = 0.0, most = 0.0;
+};
+inline double plateau(std::vector<double> const& times) { return times.back() > 8.6 ? 8.5 : 0.5 * times.back(); }
+inline Range range_of(std::vector<double> const& times, std::vector<double> const& x, double from) {
+  Range r{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  double count = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (times[i] < from) continue;
+    r.mean += x[i];
+    r.least = std::min(r.least, x[i]);
+    r.most = std::max(r.most, x[i]);
+    ++count;
+  }
+  r.mean /= count;
+  return r;
+}
+
+// Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
+using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;
+inline double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from,
+           Told of = &StressRuns::raw, Told of_b = nullptr) {
+  if (!of_b) of_b = of;
+  std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of_b)(k), o.cut_off);
+  RmsDifference d(from, o.until);
+  d.add({as.filtered_times(i), a}, {bs.filtered_times(k), b});
+  return d.value();
+}
+
+// The same of unfiltered histories of one comparison, in a stretch of time.
+inline double off_unfiltered(StressRuns const& runs, std::size_t i, std::size_t k, Told of, double from, double to) {
+  RmsDifference d(from, to);
+  d.add({runs.times(i), (runs.*of)(i)}, {runs.times(k), (runs.*of)(k)});
+  return d.value();
+}
+
+inline double rms(std::vector<double> const& times, std::vector<double> const& x, double from) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (times[i] >= from) sum += x[i] * x[i], ++count;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+// What cycles of axial stress, unfiltered, amount to.
+struct Ranges {
+  double count = 0.0, largest = 0.0, equivalent = 0.0;  // ranges [Pa]
+};
+inline constexpr double wohler_exponent = 3.0;  // of details of welds
+inline Ranges ranges_of(std::vector<StressCycle> const& cycles) {
+  Ranges r;
+  double sum = 0.0;
+  for (StressCycle const& c : cycles) {
+    r.count += c.count;
+    r.largest = std::max(r.largest, c.range);
+    sum += c.count * std::pow(c.range, wohler_exponent);
+  }
+  if (r.count > 0.0) r.equivalent = std::pow(sum / r.count, 1.0 / wohler_exponent);
+  return r;
+}
+inline std::vector<StressCycle> cycles_of(std::vector<double> stress) {
+  for (double& s : stress) s *= m113::youngs_modulus;
+  return rainflow(stress);
+}
+
+}  // namespace chapter4

@@ -1,0 +1,31 @@
+#include "stress_case.hpp"
+
+namespace chapter4 {
+
+namespace {
+
+// Makes the histories equally spaced: states of a run that controls its step come up to a step after their sample.
+void take_equal_steps(StressRuns& runs, double step) {
+  ComparedRun& r = runs.comparison.runs[0];
+  auto const spaced = [&](std::vector<double>& x) { x = resampled(r.times, x, step, 2.5 * step); };
+  for (std::vector<double>& output : r.outputs) spaced(output);
+  LinkHistory& link = *runs.links[0];
+  for (std::vector<double>* const x : {&link.strain, &link.bending, &link.vibrating}) spaced(*x);
+  double const start = r.times.front();
+  r.times.resize(link.strain.size());
+  for (std::size_t i = 0; i < r.times.size(); ++i) r.times[i] = start + double(i) * step;
+}
+
+}  // namespace
+
+StressRuns rigid_links_by_adams(Options o) {
+  using Adams = AdamsBashforthMoulton<CoordinatePartitioning>;
+  o.sampling = o.step;
+  o.first_step = std::min(1e-5, o.step);
+  StressRuns runs = run(o, Formulation<Rigid<>, Constraint, Adams>{
+                               "rigid, Adams", {}, {.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6}});
+  take_equal_steps(runs, o.step);
+  return runs;
+}
+
+}  // namespace chapter4

@@ -1,0 +1,3 @@
+"""The long runs of Chapter 2."""
+
+CASES = {}

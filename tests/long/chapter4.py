@@ -1,0 +1,171 @@
+"""The long runs of docs/track_stress.md."""
+
+import re
+
+from reading import by_pattern, columns, markdown
+
+PAGE = "docs/track_stress.md"
+PINS = ["constraint", "penalty", "bushing", "linear", "recursive"]
+REASONS = {
+    "the frames of its ends are not linear in its coordinates": "not linear",
+    "it has no frame that a joint could carry": "no frame to carry",
+    "its ends have an axis and no frame, so that nothing tells where a pin points": "no frame at its ends",
+    "its pins share a slope across the track that is fixed in the world": "fixed in the world",
+}
+
+
+def matrix(text):
+    """Numbers by (links, pins), and a table with a row for each kind of link."""
+    numbers, cells, links = {}, {}, []
+    for line in text.splitlines():
+        words = line.split()
+        if len(words) < 3 or words[1] not in PINS:
+            continue
+        if words[0] not in links:
+            links.append(words[0])
+        if words[2] == "cannot":
+            cells[words[0], words[1]] = REASONS[line.split("cannot be: ")[1]]
+            continue
+        speeds, rows, _, _, _, forward, strain, force, gap, energy, *turning = map(float, words[2:])
+        numbers[f"{words[0]} {words[1]}"] = {"speeds": speeds, "rows": rows, "forward": forward, "strain": strain,
+                                             "force": force, "gap": gap, "energy": energy, **({"turning": turning[0]} if turning else {})}
+        cells[words[0], words[1]] = f"{turning[0]:.5f}" if turning else f"{forward:.4f} m, {strain:.3f}"
+    summary = re.search(r"(\d+) run, (\d+) cannot be.*within ([\d.]+) mm, strains within ([\d.]+) %.*at most ([\d.]+) %", text)
+    numbers["all"] = dict(zip(["run", "refused", "apart", "strains apart", "energy"], map(float, summary.groups())))
+    if turned := re.search(r"Yaw rates within ([\d.]+) %", text):
+        numbers["all"]["yaw rates apart"] = float(turned[1])
+    table = markdown(["links"] + [f"`{p}`" for p in PINS], [[f"`{k}`"] + [cells[k, p] for p in PINS] for k in links])
+    return numbers, table
+
+
+REPORT = {
+    "plateau from": r"from ([\d.]+) s on: speed",
+    "speed": r"speed ([\d.]+) m/s",
+    "strain": r"strain ([\d.]+)e-5",
+    "raw least": r"unfiltered (-?[\d.]+) to",
+    "raw most": r"unfiltered -?[\d.]+ to (-?[\d.]+)e-5",
+    "filtered most": r"strain [\d.]+e-5 \(-?[\d.]+ to (-?[\d.]+)\)",
+    "T0": r"with T0 = ([\d.]+) kN",
+    "running strain": r"tensioner: ([\d.]+)e-5",
+    "forward": r"at the end ([\d.]+) m ahead",
+    "fastest": r"at most ([\d.]+) m/s",
+    "force least": r"front pin (-?[\d.]+) to",
+    "force most": r"front pin -?[\d.]+ to (-?[\d.]+) kN",
+    "bending least": r"middle, unfiltered: (-?[\d.]+) to",
+    "bending most": r"middle, unfiltered: -?[\d.]+ to (-?[\d.]+) MPa",
+    "bending rms": r"rms from 1 s on (-?[\d.]+) MPa",
+    "bending off to 3 s": r"off rigid by ([\d.]+) % to 3 s",
+    "bending off after": r"([\d.]+) % after",
+    "off from 1 s": r"off ancf: ([\d.]+) % \(rms from 1\.0 s on\)",
+    "halved": r"; (\d+) of \d+ steps halved",
+    "vibrations off": r"by vibrations, low pass: ([\d.]+) %",
+    "energy": r"([\d.]+) % not accounted for",
+}
+FATIGUE = {
+    "cycles": r"^\w+ +(\d+) cycles",
+    "largest range": r"largest range ([\d.]+) MPa",
+    "equivalent range": r"equivalent range ([\d.]+) MPa",
+}
+
+
+def report(text):
+    """Numbers of each formulation of the links; `all` has the least and the most of each over them, and how far apart."""
+    numbers = {}
+    blocks = re.split(r"^(?=\w+ +from [\d.]+ s on: speed)", text, flags=re.MULTILINE)[1:]
+    for block in blocks:
+        found = {name: re.search(pattern, block) for name, pattern in REPORT.items()}
+        numbers[block.split()[0]] = {name: float(m[1]) for name, m in found.items() if m}
+    for line in re.findall(r"^\w+ +\d+ cycles.*", text, flags=re.MULTILINE):
+        numbers[line.split()[0]].update({name: float(re.search(pattern, line)[1]) for name, pattern in FATIGUE.items()})
+    links = list(numbers.values())
+    names = set.intersection(*(set(of) for of in links))
+    least = {name: min(of[name] for of in links) for name in names}
+    most = {name: max(of[name] for of in links) for name in names}
+    apart = {name: most[name] - least[name] for name in names}
+    spread = {name: 100.0 * (most[name] / least[name] - 1.0) for name in names if least[name] > 0.0}
+    return {**numbers, "least": least, "most": most, "apart": apart, "spread": spread}, ""
+
+
+def rows_of(lines):
+    """A table of {head: (columns of each kind of links)} in the order of LINKS."""
+
+    def read(text):
+        numbers, _ = report(text)
+        return numbers, markdown(["", *LINKS], [[head] + [cell(numbers[k]) for k in LINKS] for head, cell in lines.items()])
+
+    return read
+
+
+LINKS = ["rigid", "ancf", "ffr", "lrvf", "beam", "continuum"]
+links = rows_of({
+    "strain, mean [10⁻⁵]": lambda of: f"{of['strain']:.3f}",
+    "(T₀ + m v²/p)/EA [10⁻⁵]": lambda of: f"{of['running strain']:.3f}",
+    "off the ANCF cables, rms from 1 s on [%]": lambda of: f"{of['off from 1 s']:.1f}" if "off from 1 s" in of else "–",
+    "energy not accounted for [%]": lambda of: f"{of['energy']:.3f}",
+    "steps halved, of 10⁴": lambda of: f"{of['halved']:.0f}",
+    "cycles of stress": lambda of: f"{of['cycles']:.0f}",
+    "largest range, equivalent range [MPa]": lambda of: f"{of['largest range']:.2f}, {of['equivalent range']:.3f}",
+})
+halve = by_pattern({("both", "apart"): r"filtered strain ([\d.]+) % apart"})
+twenty = by_pattern({
+    ("rigid", "strain"): r"rigid ([\d.]+)e-5", ("ancf", "strain"): r"ancf ([\d.]+)e-5",
+    ("rigid", "stress"): r"rigid [\d.]+e-5, ([\d.]+) MPa", ("ancf", "stress"): r"ancf [\d.]+e-5, ([\d.]+) MPa",
+    ("both", "apart"): r"at most ([\d.]+) MPa apart", ("both", "running strain"): r"/EA ([\d.]+)e-5"})
+
+
+
+def with_rows(read, rows):
+    """What `read` reads, and rows that are made of it: {row: {column: function of all rows}}."""
+
+    def more(text):
+        numbers, table = read(text)
+        made = {row: {column: of(numbers) for column, of in columns_of.items()} for row, columns_of in rows.items()}
+        return {**numbers, **made}, table
+
+    return more
+
+
+def peaks(numbers):
+    return [100.0 * (of["most decoupled"] / of["most coupled"] - 1.0) for of in numbers.values()]
+
+
+def worst_term(column, left_out=()):
+    return lambda numbers: max(of[column] for name, of in numbers.items() if name not in left_out)
+
+
+surface = columns(28, ["mean decoupled", "mean coupled", "most decoupled", "most coupled", "apart from 1 s", "apart", "apart, low pass"],
+                  ["node", "mean, decoupled", "coupled", "at most, decoupled", "coupled", "difference, rms from 1 s on [%]", "below 15 Hz [%]"],
+                  {"mean decoupled": 3, "mean coupled": 3, "most decoupled": 3, "most coupled": 3, "apart from 1 s": 1, "apart, low pass": 1})
+terms = columns(52, ["strain", "low pass", "raw", "bending", "energy"],
+                ["floating frames with", "strain [10⁻⁵]", "off, low pass [%]", "off, unfiltered [%]", "bending off [%]", "energy unaccounted for [%]"],
+                {"strain": 4, "low pass": 2, "raw": 2, "bending": 2, "energy": 4})
+ensemble = columns(26, ["decoupled", "vibrating", "coupled", "ratio", "off", "vibrating off", "largest decoupled", "largest coupled",
+                        "equivalent decoupled", "equivalent coupled"],
+                   ["setting", "decoupled", "by vibrations", "coupled", "ratio", "off, rms [%]", "largest range [MPa]: decoupled", "coupled",
+                    "equivalent: decoupled", "coupled"],
+                   {"decoupled": 3, "vibrating": 3, "coupled": 3, "ratio": 3, "off": 1, "largest decoupled": 2, "largest coupled": 2,
+                    "equivalent decoupled": 3, "equivalent coupled": 3})
+
+SURFACE = {"all": {
+    "means apart": lambda numbers: max(100.0 * abs(of["mean decoupled"] / of["mean coupled"] - 1.0) for of in numbers.values()),
+    "peaks higher": lambda numbers: max(peaks(numbers)),
+    "peaks lower": lambda numbers: -min(peaks(numbers))}}
+BENT = ("no m_rf", "none of these")
+TERMS = {"others": {"raw": worst_term("raw", BENT), "bending": worst_term("bending", BENT)}, "each": {"low pass": worst_term("low pass")}}
+
+CASES = {
+    "matrix": (PAGE, "track_stress --compare matrix --until 3 --no-plot", matrix),
+    "matrix_turn": (PAGE, "track_stress --compare matrix --turn curve --until 3 --no-plot", matrix),
+    "surface_30": (PAGE, "track_stress --compare surface --until 10 --no-plot", with_rows(surface, SURFACE)),
+    "surface_80": (PAGE, "track_stress --compare surface --until 10 --speed 80 --no-plot", with_rows(surface, SURFACE)),
+    "terms": (PAGE, "track_stress --compare terms --until 4 --speed 80 --no-plot", with_rows(terms, TERMS)),
+    "links_30": (PAGE, "track_stress --compare --audit --fatigue --no-plot", links),
+    "links_80": (PAGE, "track_stress --compare --audit --fatigue --speed 80 --no-plot", links),
+    "twenty": (PAGE, "track_stress --figure 4.11 --no-plot", twenty),
+    "halved_ancf": (PAGE, "track_stress --links ancf --halve --no-plot", halve),
+    "halved_rigid": (PAGE, "track_stress --links rigid --halve --until 4 --no-plot", halve),
+    "bending_30": (PAGE, "track_stress --compare pair --elements 2 --no-plot", report),
+    "bending_80": (PAGE, "track_stress --compare pair --elements 2 --speed 80 --no-plot", report),
+    "ensemble_30": (PAGE, "track_stress --compare ensemble --no-plot", ensemble),
+    "ensemble_80": (PAGE, "track_stress --compare ensemble --speed 80 --no-plot", ensemble),
+}
