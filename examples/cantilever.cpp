@@ -3,6 +3,7 @@
 //   cantilever --case all --out out/cantilever
 #include <numbers>
 
+#include "chapter2_meshes.hpp"
 #include "chapter2_plots.hpp"
 #include "support/command_line.hpp"
 
@@ -22,6 +23,60 @@ struct Options {
   fs::path out = "out/cantilever";
   bool no_plot = false;
 };
+
+using Lrvf = Cantilever<planar::Lrvf>;
+
+// Where the tip is on each of the two meshes.
+void tell_tips(Lrvf const& beam, State const& now) {
+  auto const q = coordinates_of(beam.model, now, beam.beam);
+  MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), q);
+  Vec2 const p = d.position_nodes.back(), r = d.rotation_nodes.back();
+  char row[32];
+  std::snprintf(row, sizeof row, "t = %g s", now.t);
+  say(row, "tip x of the position mesh", p[0], "m");
+  say(row, "tip y of the position mesh", p[1], "m");
+  say(row, "tip x of the rotation mesh", r[0], "m");
+  say(row, "tip y of the rotation mesh", r[1], "m");
+  say(row, "tips apart", (p - r).norm(), "m");
+  meshes_head();
+  meshes_row("tip-moment", now.t, meshes_apart(beam.beam.body(), q));
+}
+
+// Figure 2.10: curvature of both meshes along the beam.
+void curvatures(Options const& o, Lrvf const& beam, State const& x) {
+  MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
+  Curve rotation{.label = "rotation mesh: constant in each element", .color = 1},
+      position{.label = "position mesh: zero", .color = 0},
+      still{.x = {0.0, length},
+            .y = {o.moment / low.EI, o.moment / low.EI},
+            .label = "M/EI at rest",
+            .style = "dashed",
+            .color = 2};
+  double const l = length / double(o.elements);
+  double jump = 0.0, largest = 0.0, straight = 0.0;
+  for (std::size_t e = 0; e < d.rotation_curvature.size(); ++e) {
+    for (double end : {0.0, 1.0}) {
+      rotation.x.push_back((double(e) + end) * l);
+      rotation.y.push_back(d.rotation_curvature[e]);
+      position.x.push_back((double(e) + end) * l);
+      position.y.push_back(d.position_curvature[e]);
+    }
+    if (e > 0) jump = std::max(jump, std::abs(d.rotation_curvature[e] - d.rotation_curvature[e - 1]));
+    largest = std::max(largest, std::abs(d.rotation_curvature[e]));
+    straight = std::max(straight, d.position_curvature[e]);
+  }
+  write_table(o.out / "figure_2_10_curvature.csv", {"s [m]", "rotation mesh [1/m]", "position mesh [1/m]"},
+              {rotation.x, rotation.y, position.y});
+  draw({.title = "Figure 2.10: curvature of the two meshes at t = " + std::to_string(int(o.until)) + " s",
+        .x_label = "s [m]",
+        .y_label = "curvature [1/m]",
+        .curves = {position, rotation, still},
+        .y_range = std::array{std::min(-0.1 * largest, 1.1 * *std::ranges::min_element(rotation.y)), 1.1 * largest}},
+       o.out / "figure_2_10_curvature", !o.no_plot);
+  say("curvature", "largest jump", jump, "1/m");
+  say("curvature", "largest on the rotation mesh", largest, "1/m");
+  say("curvature", "largest on the position mesh", straight, "1/m");
+}
 
 // Figures 2.9 and 2.10: a constant moment on a beam at rest, which therefore swings about the static shape.
 template <class B>
@@ -44,12 +99,7 @@ void tip_moment(Options const& o) {
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
     if (next < wanted.size() && now.t >= wanted[next] - 1e-9) {
       add_snapshot(shapes, beam.model, now, beam.beam, length);
-      if constexpr (std::is_same_v<B, planar::Lrvf>) {
-        MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, now, beam.beam));
-        std::printf("  t = %4.1f s: tip (%.3f, %.3f) on the position mesh, (%.3f, %.3f) on the rotation mesh\n", now.t,
-                    d.position_nodes.back()[0], d.position_nodes.back()[1], d.rotation_nodes.back()[0],
-                    d.rotation_nodes.back()[1]);
-      }
+      if constexpr (std::is_same_v<B, planar::Lrvf>) tell_tips(beam, now);
       ++next;
     }
     progress.update(now.t);
@@ -60,31 +110,7 @@ void tip_moment(Options const& o) {
               {"t [s]", "tip x [m]", "tip y [m]", "kinetic energy [J]", "strain energy [J]"}, columns);
   fit(shapes);
   draw(shapes, o.out / ("figure_2_9_tip_moment" + suffix), !o.no_plot);
-  if constexpr (std::is_same_v<B, planar::Lrvf>) {
-    MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
-    Curve rotation{.label = "rotation mesh: constant in each element", .color = 1},
-        position{.label = "position mesh: zero", .color = 0},
-        still{.x = {0.0, length},
-              .y = {o.moment / low.EI, o.moment / low.EI},
-              .label = "M/EI at rest",
-              .style = "dashed",
-              .color = 2};
-    double const l = length / double(o.elements);
-    for (std::size_t e = 0; e < d.rotation_curvature.size(); ++e)
-      for (double end : {0.0, 1.0}) {
-        rotation.x.push_back((double(e) + end) * l);
-        rotation.y.push_back(d.rotation_curvature[e]);
-        position.x.push_back((double(e) + end) * l);
-        position.y.push_back(d.position_curvature[e]);
-      }
-    write_table(o.out / "figure_2_10_curvature.csv", {"s [m]", "rotation mesh [1/m]", "position mesh [1/m]"},
-                {rotation.x, rotation.y, position.y});
-    draw({.title = "Figure 2.10: curvature of the two meshes at t = " + std::to_string(int(o.until)) + " s",
-          .x_label = "s [m]",
-          .y_label = "curvature [1/m]",
-          .curves = {position, rotation, still}},
-         o.out / "figure_2_10_curvature", !o.no_plot);
-  }
+  if constexpr (std::is_same_v<B, planar::Lrvf>) curvatures(o, beam, x);
 }
 
 // M = 2 pi EI/L closes the beam to a circle, exactly [Bernoulli-Euler]. Statics, one formulation.
@@ -100,8 +126,9 @@ double roll_up(Options const& o, Figure& shapes, std::string const& name, Index 
   c.style = color == 0 ? "lines" : "dashed";
   shapes.curves.push_back(c);
   double const open = position(beam.model, x, beam.beam.at(length)).norm();
-  std::printf("  %-28s %3ld elements: tip %.2e m from the root, %d Newton iterations\n", name.c_str(), long(elements),
-              open, report.iterations);
+  say("roll-up of " + name, "elements", double(elements));
+  say("roll-up of " + name, "open", open, "m");
+  say("roll-up of " + name, "Newton iterations", double(report.iterations));
   return open;
 }
 
@@ -111,8 +138,8 @@ void roll_up_all(Options const& o) {
                 .y_label = "y [m]",
                 .equal_axes = true};
   roll_up<planar::Lrvf>(o, shapes, "LRVF", o.elements, 0);
-  roll_up<planar::AncfCable<EngineeringStrain>>(o, shapes, "ANCF, engineering strain", 16, 1);
-  roll_up<planar::AncfCable<GreenStrain>>(o, shapes, "ANCF, Green strain", 16, 2);
+  roll_up<planar::AncfCable<EngineeringStrain>>(o, shapes, "ANCF with engineering strain", 16, 1);
+  roll_up<planar::AncfCable<GreenStrain>>(o, shapes, "ANCF with Green strain", 16, 2);
   fit(shapes);
   draw(shapes, o.out / "roll_up", !o.no_plot);
 }

@@ -1,6 +1,8 @@
 // The flexible robot arm of Chapter 2 (Figures 2.4 to 2.8) under several formulations, side by side.
 //   robot_arm --case all --out out/robot_arm
 
+#include "chapter2_energy.hpp"
+#include "chapter2_meshes.hpp"
 #include "chapter2_plots.hpp"
 #include "support/command_line.hpp"
 
@@ -17,6 +19,8 @@ struct Options {
   double density = 7850.0;
   double slow_ramp = 10.0;
   double until = 0.0;
+  double window = 20.0;
+  double stiffer = 1.0;
   fs::path out = "out/robot_arm";
   bool no_plot = false;
 };
@@ -30,12 +34,17 @@ struct Case {
 };
 
 std::vector<Case> cases(Options const& o) {
-  return {
-      {"high", "Figure 2.5: high stiffness", "figure_2_5_high", high, o.slow_ramp},
-      {"medium", "Figure 2.6: medium stiffness", "figure_2_6_medium", medium, o.slow_ramp},
-      {"fast-medium", "Figure 2.7: fast, stiffness of Figure 2.6 (by the text)", "figure_2_7_fast_medium", medium, 4.5},
-      {"fast-low", "Figure 2.7: fast, low stiffness (by the caption)", "figure_2_7_fast_low", low, 4.5},
-      {"axial", "Figure 2.8: low stiffness, 100 kN along the tip", "figure_2_8_axial", low, 4.5, 100e3}};
+  auto const scaled = [&](Stiffness s) {
+    s.EA *= o.stiffer;
+    s.GA *= o.stiffer;
+    return s;
+  };
+  return {{"high", "Figure 2.5: high stiffness", "figure_2_5_high", scaled(high), o.slow_ramp},
+          {"medium", "Figure 2.6: medium stiffness", "figure_2_6_medium", scaled(medium), o.slow_ramp},
+          {"fast-medium", "Figure 2.7: fast, stiffness of Figure 2.6 (by the text)", "figure_2_7_fast_medium",
+           scaled(medium), 4.5},
+          {"fast-low", "Figure 2.7: fast, low stiffness (by the caption)", "figure_2_7_fast_low", scaled(low), 4.5},
+          {"axial", "Figure 2.8: low stiffness, 100 kN along the tip", "figure_2_8_axial", scaled(low), 4.5, 100e3}};
 }
 
 void figure_2_4(Options const& o) {
@@ -54,6 +63,38 @@ void figure_2_4(Options const& o) {
   draw(f, o.out / "figure_2_4_angle", !o.no_plot);
 }
 
+// What the two meshes of the Lrvf do during a run.
+struct MeshWatch {
+  Case const& of;
+  double widest = 0.0, longest = 0.0, implied = 0.0;  // [m]
+
+  template <class M>
+  void see(RobotArm<planar::Lrvf> const& arm, M const& now, std::vector<double>& row) {
+    MeshDiagnostics const d = mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm));
+    row.insert(row.end(), {d.largest_gap, d.position_length, d.rotation_length});
+    widest = std::max(widest, d.largest_gap);
+    longest = std::max(longest, d.position_length);
+    implied = d.rotation_length;
+  }
+  void snapshot(RobotArm<planar::Lrvf> const& arm, State const& now) const {
+    meshes_row(of.name, now.t, meshes_apart(arm.arm.body(), coordinates_of(arm.model, now, arm.arm)));
+  }
+  void tell() const {
+    say(of.name, "largest gap", widest, "m");
+    say(of.name, "gap in lengths", 100.0 * widest / length, "%");
+    say(of.name, "longest position mesh", longest, "m");
+    say(of.name, "rotation mesh", implied, "m");
+    if (of.axial_force != 0.0) say(of.name, "static position mesh", static_length(), "m");
+  }
+  // The same force on the arm at rest.
+  double static_length() const {
+    RobotArm<planar::Lrvf> arm(bar(of.stiffness, 1.0), 10, of.ramp, of.axial_force);
+    State x = arm.model.reference_state();
+    equilibrium(arm.model, x, {});
+    return mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, x, arm.arm)).position_length;
+  }
+};
+
 template <class B>
 void run_case(Options const& o, Case const& c) {
   RobotArm<B> arm(bar(c.stiffness, o.density), o.elements, c.ramp, c.axial_force);
@@ -62,27 +103,23 @@ void run_case(Options const& o, Case const& c) {
   Figure snapshots{
       .title = c.title + ", one shape a second", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
   std::vector<std::string> heads{"t [s]", "tip x [m]", "tip y [m]", "kinetic energy [J]", "strain energy [J]"};
-  std::vector<std::vector<double>> columns(5);
   bool constexpr two_meshes = std::is_same_v<B, planar::Lrvf>;
-  if constexpr (two_meshes) {
+  if (two_meshes)
     heads.insert(heads.end(), {"node gap [m]", "length of the position mesh [m]", "length of the rotation mesh [m]"});
-    columns.resize(8);
-  }
-  double widest = 0.0, longest = 0.0, next_snapshot = 0.0;
+  std::vector<std::vector<double>> columns(heads.size());
+  MeshWatch watch{.of = c};
+  double next_snapshot = 0.0;
+  if (two_meshes) meshes_head();
   Progress progress(0.0, until, c.name);
   for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = until, .step = o.step})) {
     Vec3 const tip = position(arm.model, now, arm.arm.at(length));
     Energy const e = energy(arm.model, now);
     std::vector<double> row{now.t, tip[0], tip[1], e.kinetic, e.strain};
-    if constexpr (two_meshes) {
-      MeshDiagnostics const d = mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm));
-      row.insert(row.end(), {d.largest_gap, d.position_length, d.rotation_length});
-      widest = std::max(widest, d.largest_gap);
-      longest = std::max(longest, d.position_length);
-    }
+    if constexpr (two_meshes) watch.see(arm, now, row);
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
     if (now.t >= next_snapshot - 1e-9) {
       add_snapshot(snapshots, arm.model, now, arm.arm, length);
+      if constexpr (two_meshes) watch.snapshot(arm, now);
       next_snapshot += 1.0;
     }
     progress.update(now.t);
@@ -92,10 +129,7 @@ void run_case(Options const& o, Case const& c) {
   write_table(o.out / (stem + ".csv"), heads, columns);
   fit(snapshots);
   draw(snapshots, o.out / stem, !o.no_plot);
-  if constexpr (two_meshes)
-    std::printf(
-        "  %-12s largest gap between the meshes' nodes %.4f m; longest position mesh %.3f m, rotation mesh %.3f m\n",
-        c.name.c_str(), widest, longest, columns[7].back());
+  if constexpr (two_meshes) watch.tell();
 }
 
 // The same arm under other bodies, joints and integrators.
@@ -117,7 +151,7 @@ struct ArmCase {
     outputs.push_back({"lag of the tip [m]", [tip, this](M const& m, State const& x) {
                          double const psi = Ramp{.target = angle, .duration = ramp}(x.t).value;
                          Vec3 const r = position(m, x, tip);
-                         return std::cos(psi) * r[1] - std::sin(psi) * r[0];
+                         return std::sin(psi) * r[0] - std::cos(psi) * r[1];
                        }});
     return Scenario<M>{std::move(arm.model),
                        start,
@@ -139,6 +173,38 @@ void comparison(Options const& o) {
   report(c, o.out / "comparison", !o.no_plot);
 }
 
+// One formulation by one integrator, once the drive stands still.
+template <class B, class I>
+void drift(Options const& o, Figure& figure, std::string const& name, I const& integrator, double step) {
+  EnergyDrift const d =
+      energy_drift<B>({.density = o.density, .window = o.window, .step = step}, o.elements, integrator);
+  std::printf("  energy %-14s %-16s %8.3f %12.1f %12.2e %12.2e\n", name.c_str(), I::name, 1e3 * step, d.start,
+              d.largest, d.end);
+  if (std::is_same_v<I, GeneralizedAlpha> && step < o.step) return;
+  Curve c{.label = name + ", " + I::name, .color = int(figure.curves.size())};
+  if constexpr (std::is_same_v<I, EnergyMomentum>) c.style = "dashed";
+  c.x = d.t;
+  for (double off : d.off) c.y.push_back(1e6 * off);
+  figure.curves.push_back(c);
+}
+
+void energies(Options const& o) {
+  std::printf("\nThe arm of medium stiffness, total energy from the end of the ramp (4.5 s) for %g s:\n\n", o.window);
+  std::printf("  %-21s %-16s %8s %12s %12s %12s\n", "energy", "integrator", "h [ms]", "E0 [J]", "largest",
+              "at the end");
+  Figure figure{.title = "Energy of the arm after its drive has stopped, off its amount then",
+                .x_label = "t [s]",
+                .y_label = "E/E0 - 1 [1e-6]"};
+  auto const all = [&]<class B>(std::type_identity<B>, char const* name) {
+    for (double part : {1.0, 0.5, 0.25}) drift<B>(o, figure, name, GeneralizedAlpha{.rho_inf = 0.8}, part * o.step);
+    drift<B>(o, figure, name, EnergyMomentum{}, o.step);
+  };
+  all(std::type_identity<planar::Lrvf>{}, "LRVF");
+  all(std::type_identity<planar::AncfCable<GreenStrain>>{}, "ANCF Green");
+  all(std::type_identity<planar::AncfCable<EngineeringStrain>>{}, "ANCF engin.");
+  draw(figure, o.out / "energy_drift", !o.no_plot);
+}
+
 template <class B>
 void run_cases(Options const& o) {
   for (Case const& c : cases(o))
@@ -151,7 +217,8 @@ int main(int argc, char** argv) {
   Options o;
   CommandLine line{
       "The flexible robot arm of Chapter 2: Figures 2.4 to 2.8, and the same arm under several formulations"};
-  line.one_of("--case", &o.which, {"all", "angle", "high", "medium", "fast-medium", "fast-low", "axial", "compare"},
+  line.one_of("--case", &o.which,
+              {"all", "angle", "high", "medium", "fast-medium", "fast-low", "axial", "compare", "energy"},
               "what to run");
   line.one_of("--body", &o.body, {"lrvf", "ancf", "ancf-engineering", "rigid"},
               "formulation of the snapshots; only lrvf has two meshes");
@@ -160,6 +227,9 @@ int main(int argc, char** argv) {
   line.not_negative("--until", &o.until, "end of the run [s]; 0: the end of the ramp");
   line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
   line.positive("--slow-ramp", &o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]");
+  line.positive("--stiffer", &o.stiffer,
+                "factor on EA and GA of the snapshots; a large one is the constraint against stretch and shear");
+  line.positive("--window", &o.window, "seconds of the case 'energy' after the ramp [s]");
   line.option("--out", &o.out, "folder for CSV files and pictures");
   line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
@@ -170,6 +240,7 @@ int main(int argc, char** argv) {
     if (o.body == "ancf-engineering") run_cases<planar::AncfCable<EngineeringStrain>>(o);
     if (o.body == "rigid") run_cases<planar::Rigid>(o);
     if (o.which == "all" || o.which == "compare") comparison(o);
+    if (o.which == "all" || o.which == "energy") energies(o);
   } catch (Error const& e) {
     std::cerr << "robot_arm: " << e.what() << '\n';
     return 1;

@@ -1,3 +1,100 @@
-"""The long runs of Chapter 2."""
+"""Cases of docs/chapter2.md: {name: (page, command, read)}, read(text) -> ({row: {column: number}}, table or "")."""
 
-CASES = {}
+import re
+
+PAGE = "docs/chapter2.md"
+MESHES = ["gap", "strain", "interpolation", "rms", "rms left", "element", "bow", "turn"]
+NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
+
+
+def markdown(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def said(text):
+    """Lines '  ROW, COLUMN: VALUE UNIT'."""
+    numbers = {}
+    for row, column, value in re.findall(rf"^  ([^,:\n]+), ([^,:\n]+): ({NUMBER})(?: \S+)?$", text, re.MULTILINE):
+        numbers.setdefault(row, {})[column] = float(value)
+    return numbers
+
+
+def snapshots(text):
+    """Lines '  meshes NAME t ...' as rows 'NAME t', and the row of each name whose gap is largest as 'NAME widest'."""
+    numbers = {}
+    for name, rest in re.findall(r"^  meshes (\S+) +([-\d. ]+)$", text, re.MULTILINE):
+        t, *values = rest.split()
+        row = dict(zip(MESHES, map(float, values)), t=float(t))
+        if row["rms"] > 0:
+            row["percent left"] = 100 * row["rms left"] / row["rms"]
+            row["percent interpolation"] = 100 * row["interpolation"] / row["gap"]
+        numbers[f"{name} {t}"] = row
+        if row["gap"] >= numbers.get(f"{name} widest", {"gap": 0})["gap"]:
+            numbers[f"{name} widest"] = row
+    return numbers
+
+
+def comparison(text):
+    """The table of compare(): a row for each formulation."""
+    numbers, names = {}, []
+    for line in text.splitlines():
+        words = re.split(r" {2,}", line)
+        if line.startswith(" " * 20) and len(words) > 2:
+            names = words[1:]
+        elif names and len(words) == len(names) + 1 and not words[0].startswith("CPU"):
+            for name, value in zip(names, words[1:]):
+                numbers.setdefault(name, {})[words[0]] = float(value)
+    for row in numbers.values():
+        if "end: lag of the tip [m]" in row:
+            row["ahead at the end"] = -row["end: lag of the tip [m]"]
+            row["lag in mm"] = 1e3 * row["most off the first: lag of the tip [m]"]
+    return numbers
+
+
+def meshes(figures):
+    """All numbers, and a table of the snapshots with the largest gap; of these, the extremes of what is left as 'all'."""
+
+    def read(text):
+        numbers = {**said(text), **comparison(text)}
+        seen = snapshots(text)
+        rows = []
+        for name, figure in figures.items():
+            at = seen[f"{name} widest"]
+            rows.append([figure, f"{at['t']:.0f}"] + [f"{at[c]:.4f}" for c in ("gap", "strain", "interpolation", "rms", "rms left", "bow")]
+                        + [f"{at['turn']:.4f}"])
+        widest = [seen[f"{name} widest"] for name in figures]
+        numbers["all"] = {f"{kind} {share}": choose(w[share] for w in widest) for share in ("percent left", "percent interpolation")
+                          for kind, choose in (("least", min), ("most", max))}
+        head = ["figure", "t [s]", "largest gap of a node [m]", "of it strains", "interpolation", "rms gap", "left by the best rigid displacement",
+                "height of the arcs", "its turn [rad]"]
+        return {**numbers, **seen}, markdown(head, rows)
+
+    return read
+
+
+def plain(text):
+    return {**said(text), **snapshots(text)}, ""
+
+
+def energies(text):
+    """Lines '  energy NAME INTEGRATOR h E0 largest end'; what Newton's method leaves is no number to repeat."""
+    numbers, rows = {}, []
+    for name, method, *values in re.findall(rf"^  energy (.+?) +(\w+) +({NUMBER}) +({NUMBER}) +({NUMBER}) +({NUMBER})$", text, re.MULTILINE):
+        step, start, largest, end = map(float, values)
+        numbers[f"{name} {method} {step:g}"] = {"start": start, "largest": largest, "end": end}
+        small = largest < 1e-10
+        rows.append([name, f"`{method}`", f"{step:g}", f"{start / 1e3:.1f}", "< 1e-10" if small else f"{largest:.1e}", "< 1e-10" if small else f"{end:.1e}"])
+    return numbers, markdown(["arm", "integrator", "h [ms]", "E₀ [kJ]", "largest \\|E/E₀ − 1\\|", "E/E₀ − 1 at the end"], rows)
+
+
+CASES = {
+    "arm": (PAGE, "robot_arm --no-plot",
+            meshes({"high": "2.5, high", "medium": "2.6, medium", "fast-medium": "2.7, medium", "fast-low": "2.7, low", "axial": "2.8, 100 kN"})),
+    "arm_energy": (PAGE, "robot_arm --case energy --no-plot", energies),
+    "arm_unstrained_10": (PAGE, "robot_arm --case fast-low --stiffer 1e4 --elements 10 --no-plot", plain),
+    "arm_unstrained_20": (PAGE, "robot_arm --case fast-low --stiffer 1e4 --elements 20 --no-plot", plain),
+    "arm_unstrained_40": (PAGE, "robot_arm --case fast-low --stiffer 1e4 --elements 40 --no-plot", plain),
+    "cantilever": (PAGE, "cantilever --no-plot", meshes({"tip-moment": "2.9, 30 kN m"})),
+    "cantilever_fine": (PAGE, "cantilever --case moment --step 1e-3 --until 2 --no-plot", plain),
+}
