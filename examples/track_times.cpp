@@ -11,6 +11,7 @@
 #include <polybody/vehicle/settled_track.hpp>
 
 #include "support/command_line.hpp"
+#include "support/lines.hpp"
 
 using namespace polybody;
 
@@ -49,12 +50,35 @@ double fastest_rate(System& system, State const& x) {
   return std::exp(grown);
 }
 
+// What a run took, and what limits its steps.
 struct Taken {
-  double per_second = 0.0;
+  System const& system;
+  RunReport const& report;
+  double simulated, spent, rate;  // [s], of the processor [s], the fastest rate [1/s]
+  Violation worst;
+
+  double per_second() const { return spent / simulated; }
 };
+void write(Lines& lines, std::string const& name, Taken const& t, double of_pins) {
+  double const step = t.simulated / double(t.report.steps);
+  lines("steps, " + name, {{"speeds", double(t.system.speeds()), 0},
+                           {"rows", double(t.system.rows()), 0},
+                           {"simulated", t.simulated, 3, "s"},
+                           {"steps", double(t.report.steps), 0},
+                           {"refused", double(t.report.rejected), 0},
+                           {"evaluations", double(t.report.evaluations), 0},
+                           {"mean step", 1e6 * step, 2, "us"}});
+  lines("time, " + name, {{"CPU for a second", t.per_second(), 1, "s"},
+                          {"of ideal pins", of_pins > 0.0 ? t.per_second() / of_pins : 1.0, 1}});
+  lines("limits, " + name, {{"fastest rate", t.rate, -2, "1/s"}, {"rate times step", t.rate * step, 2}});
+  lines("joints, " + name, {{"open", t.worst.position, -1, "m"},
+                            {"velocity", t.worst.velocity, -1, "m/s"},
+                            {"acceleration", t.worst.acceleration, -1, "m/s^2"},
+                            {"independent coordinates chosen", double(t.report.last.choices), 0, "times"}});
+}
 
 template <class Body, class Policy>
-Taken measure(Options const& o, std::string const& name, Policy const& policy, double of_pins) {
+double measure(Options const& o, std::string const& name, Policy const& policy, double of_pins) {
   m113::VehicleOptions options;
   options.start = m113::settled_track(options);
   Ramp const drive{.target = o.speed, .duration = 0.5, .start = 0.1, .rounding = 0.1};
@@ -81,24 +105,16 @@ Taken measure(Options const& o, std::string const& name, Policy const& policy, d
     progress.update(x.t);
   }
   progress.finish();
-  RunReport const& report = run.report();
   System stepped = stepped_system(model);
-  double const rate = fastest_rate(stepped, reduce(stepped, x)), step = x.t / double(report.steps),
-               per_second = spent / x.t;
-  std::printf(
-      "%-12s %5ld speeds, %4ld rows; %.3f s in %ld steps of %.3g us and %ld evaluations, %ld steps "
-      "refused\n"
-      "             %.1f s of CPU a second: %.1f of ideal pins; fastest rate %.3g 1/s, times a step %.2f\n"
-      "             open by at most %.0e m, %.0e m/s, %.0e m/s^2; independent coordinates chosen %ld times\n",
-      name.c_str(), long(stepped.speeds()), long(stepped.rows()), x.t, report.steps, 1e6 * step, report.evaluations,
-      report.rejected, per_second, of_pins > 0.0 ? per_second / of_pins : 1.0, rate, rate * step, worst.position,
-      worst.velocity, worst.acceleration, report.last.choices);
+  Taken const taken{stepped, run.report(), x.t, spent, fastest_rate(stepped, reduce(stepped, x)), worst};
+  Lines lines;
+  write(lines, name, taken, of_pins);
   if (o.names && of_pins == 0.0) {
     std::vector<std::string> const independent = independent_speeds(stepped, reduce(stepped, model.reference_state()));
-    std::printf("             %zu independent speeds\n", independent.size());
-    for (std::string const& each : independent) std::printf("             %s\n", each.c_str());
+    lines("partition, " + name, {{"independent speeds", double(independent.size()), 0}});
+    for (std::string const& each : independent) std::cout << "    " << each << '\n';
   }
-  return {per_second};
+  return taken.per_second();
 }
 
 }  // namespace
@@ -113,7 +129,7 @@ int main(int argc, char** argv) {
   line.flag("--names", &o.names, "lists the independent speeds of ideal pins by name");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {
-    double const pins = measure<Rigid<>>(o, "ideal", Constraint{}, 0.0).per_second;
+    double const pins = measure<Rigid<>>(o, "ideal", Constraint{}, 0.0);
     measure<Rigid<>>(o, "penalty 1e9", m113::penalty_pin(1e9), pins);
     measure<Rigid<>>(o, "penalty 1e7", m113::penalty_pin(1e7), pins);
     measure<Rigid<>>(o, "bushing", m113::bushing_pin(m113::pin_stiffness), pins);

@@ -5,128 +5,75 @@
 //   tracked_vehicle --integrator adams --until 0.5
 
 #include <map>
+#include <tuple>
 
 #include <polybody/compare/join.hpp>
 
 #include "support/command_line.hpp"
+#include "tracked_vehicle/measures.hpp"
 #include "tracked_vehicle/pins.hpp"
 
 using namespace chapter3;
 
 namespace {
 
-Runs run(Options const& o, std::vector<Pins> const& formulations) {
-  Options stepped = o;
-  if (o.step == 0.0) stepped.step = implicit_step;
-  warn_of_drive(stepped);
-  Runs all;
-  std::vector<Comparison> apart;
-  for (Pins const& pins : formulations) {
-    if (o.left != o.right && !pins.cannot_turn.empty()) {
-      if (formulations.size() == 1) throw InvalidInput(pins.cannot_turn);
-      std::cout << pins.cannot_turn << '\n';
-      continue;
+void warn_of_fast_drive(Options o) {
+  if (o.step == 0.0) o.step = implicit_step;
+  warn_of_drive(o);
+}
+
+// Runs of one program call; figures that ask for the same share it.
+class RunsMade {
+ public:
+  // Side by side, in this order.
+  Runs operator()(Options const& o, std::vector<Pins> const& formulations) {
+    Runs all;
+    std::vector<Comparison> apart;
+    for (Pins const& pins : formulations) {
+      if (o.left != o.right && !pins.cannot_turn.empty()) {
+        if (formulations.size() == 1) throw InvalidInput(pins.cannot_turn);
+        std::cout << pins.cannot_turn << '\n';
+        continue;
+      }
+      Runs const& one = made(o, pins);
+      apart.push_back(one.comparison);
+      all.outcomes.insert(all.outcomes.end(), one.outcomes.begin(), one.outcomes.end());
+      all.sampling = one.sampling;
     }
-    Runs one = pins.run(o);
-    apart.push_back(std::move(one.comparison));
-    all.outcomes.insert(all.outcomes.end(), one.outcomes.begin(), one.outcomes.end());
-    all.sampling = one.sampling;
+    all.comparison = join(apart);
+    return all;
   }
-  all.comparison = join(apart);
-  return all;
-}
 
-// Forces in the watched pin from 1 to 4 s, longitudinal and vertical, up to 30 Hz: how far those of `run` are off those
-// of `first`, as root mean squares.
-double force_difference(Runs const& first, std::size_t k, Runs const& runs, std::size_t run) {
-  RmsDifference d(1.0, 4.0);
-  for (char const* const output : {"joint force x [N]", "joint force z [N]"}) {
-    Filtered const a = filtered(first, k, output, 30.0), b = filtered(runs, run, output, 30.0);
-    d.add({b.times, b.values}, {a.times, a.values});
+ private:
+  // What differs between the runs of one call: pins, suspension and step.
+  using Key = std::tuple<std::string, bool, double>;
+  Runs const& made(Options const& o, Pins const& pins) {
+    Key const key{pins.name, o.suspension, o.step};
+    auto const found = made_.find(key);
+    return found != made_.end() ? found->second : made_.emplace(key, pins.run(o)).first->second;
   }
-  return d.value();
-}
 
-// The path of the watched link in the chassis against that of the first run: how far it is off at most, in the upper
-// strand, which hangs between sprocket and idler, and elsewhere [m].
-struct PathDistance {
-  double taut = 0.0, slack = 0.0;
+  std::map<Key, Runs> made_;
 };
-PathDistance path_distance(Runs const& runs, std::size_t run) {
-  auto const path = [&](std::size_t k, std::size_t every) {
-    auto const &x = runs.history(k, "link x in chassis [m]"), &z = runs.history(k, "link z in chassis [m]");
-    std::vector<Vec2> points;
-    for (std::size_t i = 0; i < x.size(); i += every) points.emplace_back(x[i], z[i]);
-    return points;
-  };
-  std::vector<Vec2> const first = path(0, 1), other = path(run, 8);
-  PathDistance worst;
-  for (Vec2 const& p : other) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i + 1 < first.size(); ++i) {
-      Vec2 const along = first[i + 1] - first[i], to = p - first[i];
-      double const share = std::clamp(to.dot(along) / std::max(along.squaredNorm(), 1e-20), 0.0, 1.0);
-      nearest = std::min(nearest, (to - share * along).squaredNorm());
-    }
-    double const x = p[0] + m113::chassis.x, z = p[1] + m113::chassis.z;
-    bool const hangs = z > m113::sprocket_z && x < 0.0 && x > m113::idler_start_x;
-    double& most = hangs ? worst.slack : worst.taut;
-    most = std::max(most, std::sqrt(nearest));
-  }
-  return worst;
-}
 
-void report(Options const& o, Runs const& runs) {
+void report(Options const& o, Runs const& runs, Lines& lines) {
   write_report(runs.comparison, o.out / "comparison", !o.no_plot);
   std::cout << runs.comparison << '\n';
-  double const first = runs.comparison.runs.front().cpu;
-  for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
-    auto const& r = runs.comparison.runs[k];
-    Outcome const& out = runs.outcomes[k];
-    auto const most = [&](std::string const& name) {
-      double value = 0.0;
-      for (double const x : runs.history(k, name)) value = std::max(value, std::abs(x));
-      return value;
-    };
-    std::printf("%-14s %.2f s of CPU for %.2f s: %.2f of real time, %.2f of %s\n", r.name.c_str(), r.cpu,
-                r.times.back(), r.cpu / r.times.back(), r.cpu / first, runs.comparison.runs.front().name.c_str());
-    std::printf(
-        "               deepest contact %.2f mm (%s, t = %.3f s); pins up to %.1f mm off the path of the start, links "
-        "%.2f mm off their plane\n",
-        1e3 * out.depth, out.deepest.c_str(), out.deepest_time, 1e3 * most("off the path [m]"),
-        1e3 * most("off the middle plane [m]"));
-    std::printf("               joints open by up to %.4f mm; first dip %.2f cm\n", 1e3 * most("largest joint gap [m]"),
-                1e2 * most("vertical displacement [m]"));
-    if (r.times.back() > 10.0)
-      std::printf("               mean speed from 9 s on %.4f m/s; rolling without slip it is %.4f m/s\n",
-                  mean_speed(runs, k), o.speed * m113::rolling_radius);
-    if (k > 0 && r.times.back() >= 4.0 && runs.comparison.runs[0].times.back() >= 4.0)
-      std::printf("               forces in pin %d, 30 Hz, 1 to 4 s: %.2f %% (rms) off those of %s\n", watched_pin,
-                  1e2 * force_difference(runs, 0, runs, k), runs.comparison.runs.front().name.c_str());
-    if (k > 0) {
-      PathDistance const off = path_distance(runs, k);
-      std::printf(
-          "               path of a link in the chassis up to %.1f mm off that of %s, %.1f mm in the upper strand\n",
-          1e3 * off.taut, runs.comparison.runs.front().name.c_str(), 1e3 * off.slack);
-    }
-    if (out.relative >= 0.0)
-      std::printf(
-          "               work of the drives %.1f kJ + gravity %.1f kJ = kinetic %.1f + stored %.1f + dissipated %.1f "
-          "kJ, %.2f kJ (%.2f %%) left\n",
-          1e-3 * out.drives, 1e-3 * out.gravity, 1e-3 * out.kinetic, 1e-3 * out.stored, 1e-3 * out.dissipated,
-          1e-3 * out.unaccounted, 1e2 * out.relative);
-    if (!out.trouble.empty()) std::printf("               %s\n", out.trouble.c_str());
-  }
+  for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) run_lines(lines, o, runs, k);
 }
 
 // Coordinates and constraints as the thesis counts them: the ground is a body, too, with four Euler parameters and a
 // weld.
 void table_3_4(Options const& o) {
-  auto const count = [](char const* name, Census const& c, char const* thesis) {
-    std::printf("  %-10s %6ld coordinates %5ld degrees of freedom %5ld constraints   (thesis: %s)\n", name,
-                long(c.coordinates), long(c.degrees_of_freedom), long(c.constraints), thesis);
-  };
   std::cout << "Table 3.4\n";
+  Lines lines;
+  auto const count = [&](char const* name, Census const& c, char const* thesis) {
+    lines(std::string("Table 3.4, ") + name,
+          {{"coordinates", double(c.coordinates), 0},
+           {"degrees of freedom", double(c.degrees_of_freedom), 0},
+           {"constraints", double(c.constraints), 0}},
+          std::string("thesis: ") + thesis);
+  };
   count("pin joint", ideal_pins().count(o), "1092, 168, 924");
   count("penalty", penalty_pins(o.penalty).count(o), "1092, 798, 294");
   count("bushing", bushing_pins(o.penalty).count(o), "1092, 798, 294");
@@ -136,69 +83,107 @@ void table_3_4(Options const& o) {
                "  which makes 28: 1220, 1054, 166. What the 29th is the text does not say.\n";
 }
 
-bool wanted(Options const& o, std::string const& figure) { return o.figure == "all" || o.figure == figure; }
+// Curves that agree are seen one inside the other: the first is the widest.
+Figure nested(Figure f) {
+  double width = 1.0;
+  for (auto curve = f.curves.rbegin(); curve != f.curves.rend(); ++curve, width += 1.5) curve->width = width;
+  return f;
+}
 
-void figures(Options const& o) {
-  auto const name = [](std::string const& number) { return "figure_3_" + number; };
-  if (wanted(o, "3.6")) {
+// The figures of the chapter that are asked for, and their numbers.
+class Figures {
+ public:
+  explicit Figures(Options const& o) : o_(o) {}
+
+  void draw_all() {
+    if (wanted("3.6")) drive();
+    if (wanted("3.7")) drop();
+    if (wanted("3.8") || wanted("3.9") || wanted("3.10") || !o_.compare.empty()) formulations();
+    if (wanted("3.11") || wanted("3.12")) forces(m113::pin_stiffness, "11", "12");
+    if (wanted("3.13") || wanted("3.14")) forces(m113::soft_pin_stiffness, "13", "14");
+    if (wanted("3.15")) gaps();
+  }
+
+ private:
+  bool wanted(std::string const& figure) const { return o_.figure == "all" || o_.figure == figure; }
+  static std::string name(std::string const& number) { return "figure_3_" + number; }
+
+  void drive() const {
     Figure f{
         .title = "Figure 3.6: sprocket angular velocity", .x_label = "t [s]", .y_label = "angular velocity [rad/s]"};
     Curve c;
     for (int i = 0; i <= 1000; ++i) {
       c.x.push_back(0.01 * i);
-      c.y.push_back(m113::drive(o.speed, 0.1)(0.01 * i).value);
+      c.y.push_back(m113::drive(o_.speed, 0.1)(0.01 * i).value);
     }
     f.curves.push_back(c);
-    draw(o, f, name("6"));
+    draw(o_, f, name("6"));
   }
-  if (wanted(o, "3.7")) {
-    Options bare = o;
+
+  void drop() {
+    Options bare = o_;
     bare.suspension = false;
-    Runs const with = run(o, {ideal_pins()}), without = run(bare, {ideal_pins()});
+    Runs const with = runs_(o_, {ideal_pins()}), without = runs_(bare, {ideal_pins()});
     Figure f{.title = "Figure 3.7: chassis vertical displacement", .x_label = "t [s]", .y_label = "displacement [m]"};
     f.curves.push_back(curve("with suspension", with.times(0), with.history(0, "vertical displacement [m]"), 0));
-    f.curves.push_back(curve("without", without.times(0), without.history(0, "vertical displacement [m]"), 1));
-    draw(o, f, name("7"));
-    auto const dip = [](Runs const& r) {
-      auto const& z = r.history(0, "vertical displacement [m]");
-      return -*std::min_element(z.begin(), z.end());
-    };
-    std::printf("  first dip %.2f cm with suspension, %.2f cm without: ratio %.1f (thesis: 7 cm, 0.64 cm)\n",
-                1e2 * dip(with), 1e2 * dip(without), dip(with) / dip(without));
+    f.curves.push_back(
+        curve("without suspension", without.times(0), without.history(0, "vertical displacement [m]"), 1));
+    draw(o_, f, name("7"));
+    drop_line(lines_, name_of(with, 0), with, 0);
+    drop_line(lines_, "no suspension", without, 0);
+    lines_("drops", {{"ratio", first_second(with, 0).least / first_second(without, 0).least, 1}});
   }
-  if (wanted(o, "3.8") || wanted(o, "3.9") || wanted(o, "3.10") || o.compare) {
-    Runs const all = run(o, {ideal_pins(), penalty_pins(m113::pin_stiffness), bushing_pins(o.penalty), cable_pins(),
-                             joint_coordinates()});
-    if (wanted(o, "3.8"))
-      over_time(o, all, "forward position [m]", "Figure 3.8: chassis forward position", "position [m]", name("8"));
-    if (wanted(o, "3.9"))
-      over_time(o, all, "forward velocity [m/s]", "Figure 3.9: chassis forward velocity", "velocity [m/s]", name("9"));
-    if (wanted(o, "3.10")) {
-      Figure f{.title = "Figure 3.10: path of a link in the chassis",
-               .x_label = "x [m]",
-               .y_label = "z [m]",
-               .equal_axes = true};
-      for (std::size_t k = 0; k < all.comparison.runs.size(); ++k)
-        f.curves.push_back(curve(all.comparison.runs[k].name, all.history(k, "link x in chassis [m]"),
-                                 all.history(k, "link z in chassis [m]"), int(k)));
-      draw(o, f, name("10"));
-    }
-    if (o.compare || o.figure == "all") report(o, all);
+
+  // Positions, speeds and paths of all formulations.
+  void formulations() {
+    Runs const all = runs_(o_, {ideal_pins(), penalty_pins(m113::pin_stiffness), bushing_pins(o_.penalty), cable_pins(),
+                                joint_coordinates()});
+    std::size_t const count = all.comparison.runs.size();
+    if (wanted("3.8"))
+      over_time(all, "forward position [m]", "Figure 3.8: chassis forward position", "position [m]", "8");
+    if (wanted("3.9"))
+      over_time(all, "forward velocity [m/s]", "Figure 3.9: chassis forward velocity", "velocity [m/s]", "9");
+    if (wanted("3.8") || wanted("3.9"))
+      for (std::size_t k = 0; k < count; ++k) motion_line(lines_, o_, all, k);
+    if (wanted("3.10")) paths(all);
+    if (!o_.compare.empty() || o_.figure == "all") report(o_, all, lines_);
   }
-  for (auto const& [k, longitudinal, vertical] : {std::tuple(1e9, "11", "12"), {1e7, "13", "14"}}) {
-    if (!wanted(o, std::string("3.") + longitudinal) && !wanted(o, std::string("3.") + vertical)) continue;
-    Runs const r = run(o, {ideal_pins(), penalty_pins(k), cable_pins()});
+
+  void over_time(Runs const& r, std::string const& output, std::string const& title, std::string const& label,
+                 std::string const& number, double cut_off = 0.0) const {
+    double const scale = output.find("force") == std::string::npos ? 1.0 : 1e-3;
+    draw(o_, nested(history_figure(r, output, title, label, cut_off, scale)), name(number));
+  }
+
+  void paths(Runs const& all) {
+    Figure f{.title = "Figure 3.10: path of a link in the chassis",
+             .x_label = "x [m]",
+             .y_label = "z [m]",
+             .equal_axes = true,
+             .height_px = 400};
+    for (std::size_t k = 0; k < all.comparison.runs.size(); ++k)
+      f.curves.push_back(curve(name_of(all, k), all.history(k, "link x in chassis [m]"),
+                               all.history(k, "link z in chassis [m]"), int(k)));
+    draw(o_, nested(f), name("10"));
+    for (std::size_t k = 1; k < all.comparison.runs.size(); ++k) path_line(lines_, all, k);
+  }
+
+  // In the watched pin, as they are (a) and filtered (b), with penalties of this stiffness.
+  void forces(double stiffness, std::string const& longitudinal, std::string const& vertical) {
+    Runs const r = runs_(o_, {ideal_pins(), penalty_pins(stiffness), cable_pins()});
     for (auto const& [number, output, what] :
          {std::tuple(longitudinal, "joint force x [N]", "longitudinal"), {vertical, "joint force z [N]", "vertical"}}) {
-      std::string const title = std::string("Figure 3.") + number;
-      over_time(o, r, output, title + "a: joint " + what + " force", "force [kN]", name(std::string(number) + "a"), 0.0,
-                1e-3);
-      over_time(o, r, output, title + "b: joint " + what + " force, 30 Hz low pass", "force [kN]",
-                name(std::string(number) + "b"), 30.0, 1e-3);
+      if (!wanted("3." + number)) continue;
+      std::string const title = "Figure 3." + number;
+      over_time(r, output, title + "a: joint " + what + " force", "force [kN]", number + "a");
+      over_time(r, output, title + "b: joint " + what + " force, 30 Hz low pass", "force [kN]", number + "b",
+                force_cut_off);
     }
+    for (std::size_t k = 0; k < r.comparison.runs.size(); ++k) force_line(lines_, r, k);
   }
-  if (wanted(o, "3.15")) {
-    Runs const r = run(o, {penalty_pins(1e9), penalty_pins(1e7)});
+
+  void gaps() {
+    Runs const r = runs_(o_, {penalty_pins(m113::pin_stiffness), penalty_pins(m113::soft_pin_stiffness)});
     Figure f{.title = "Figure 3.15: joint constraint violation, penalty method",
              .x_label = "t [s]",
              .y_label = "gap [mm]",
@@ -208,13 +193,19 @@ void figures(Options const& o) {
       std::vector<double> gap = r.history(k, "joint gap [m]");
       for (double& g : gap) g = std::max(g, 1e-7);
       f.curves.push_back(curve(k == 0 ? "k = 1e9 N/m" : "k = 1e7 N/m", r.times(k), gap, int(k), 1e3));
+      gap_line(lines_, r, k);
     }
-    draw(o, f, name("15"));
+    draw(o_, f, name("15"));
   }
-}
+
+  Options const& o_;
+  RunsMade runs_;
+  Lines lines_;
+};
 
 void show(Options const& o, Runs const& r) {
-  report(o, r);
+  Lines lines;
+  report(o, r, lines);
   over_time(o, r, "vertical displacement [m]", "Chassis vertical displacement", "displacement [m]", "height");
   over_time(o, r, "forward velocity [m/s]", "Chassis forward velocity", "velocity [m/s]", "velocity");
   over_time(o, r, "joint force [N]", "Force in a pin, 30 Hz low pass", "force [kN]", "pin_force", 30.0, 1e-3);
@@ -223,32 +214,35 @@ void show(Options const& o, Runs const& r) {
   draw(o, f, "path");
 }
 
+void halve(Options const& o) {
+  if (o.integrator == "adams" || o.integrator == "dormand-prince")
+    throw InvalidInput("--halve needs an integrator of fixed steps; this one controls its step. Change --tolerance.");
+  if (o.integrator == "rk" && o.step == 0.0)
+    throw InvalidInput("--halve by rk needs a --step that the pins can bear, such as 1e-4 s.");
+  Options half = o, whole = o;
+  if (o.step == 0.0) whole.step = implicit_step;
+  half.step = 0.5 * whole.step;
+  RunsMade runs;
+  Runs const coarse = runs(whole, {ideal_pins()}), fine = runs(half, {ideal_pins()});
+  auto const x = [](Runs const& r) { return r.history(0, "forward position [m]").back(); };
+  std::vector<Value> numbers{{"step", 1e3 * whole.step, 3, "ms"},
+                             {"half", 1e3 * half.step, 3, "ms"},
+                             {"forward", x(coarse), 4, "m"},
+                             {"apart", 1e3 * std::abs(x(fine) - x(coarse)), 3, "mm"}};
+  if (o.until > 10.0)
+    numbers.push_back({"speed apart", 1e3 * (std::abs(mean_speed(fine, 0) - mean_speed(coarse, 0))), 2, "mm/s"});
+  if (o.until >= 4.0) numbers.push_back({"30 Hz forces apart", 1e2 * force_difference(coarse, 0, fine, 0), 2, "%"});
+  Lines{}("halved", numbers);
+}
+
 void single(Options const& o) {
-  if (o.halve) {
-    if (o.integrator == "adams" || o.integrator == "dormand-prince")
-      throw InvalidInput("--halve needs an integrator of fixed steps; this one controls its step. Change --tolerance.");
-    if (o.integrator == "rk" && o.step == 0.0)
-      throw InvalidInput("--halve by rk needs a --step that the pins can bear, such as 1e-4 s.");
-    Options half = o, whole = o;
-    if (o.step == 0.0) whole.step = implicit_step;
-    half.step = 0.5 * whole.step;
-    Runs const coarse = run(whole, {ideal_pins()}), fine = run(half, {ideal_pins()});
-    auto const x = [](Runs const& r) { return r.history(0, "forward position [m]").back(); };
-    std::printf("steps of %g and %g ms: forward position %.4f and %.4f m, %.3f %% apart", 1e3 * whole.step,
-                1e3 * half.step, x(coarse), x(fine), 1e2 * std::abs(x(fine) / x(coarse) - 1.0));
-    if (o.until > 10.0) std::printf("; mean speed %.4f and %.4f m/s", mean_speed(coarse, 0), mean_speed(fine, 0));
-    if (o.until >= 4.0)
-      std::printf("; forces in pin %d, 30 Hz, 1 to 4 s, %.2f %% (rms)", watched_pin,
-                  1e2 * force_difference(coarse, 0, fine, 0));
-    std::printf("\n");
-    return;
-  }
+  if (o.halve) return halve(o);
   std::map<std::string, Pins> const formulations{{"constraint", ideal_pins()},
                                                  {"penalty", penalty_pins(o.penalty)},
                                                  {"bushing", bushing_pins(o.penalty)},
                                                  {"ancf", cable_pins()},
                                                  {"recursive", joint_coordinates()}};
-  show(o, run(o, {formulations.at(o.track)}));
+  show(o, RunsMade{}(o, {formulations.at(o.track)}));
 }
 
 }  // namespace
@@ -258,8 +252,12 @@ int main(int argc, char** argv) {
   CommandLine line{"The tracked vehicle of Chapter 3 with its tracks under five joint formulations."};
   line.one_of("--track", &o.track, {"constraint", "penalty", "bushing", "ancf", "recursive"},
               "formulation of the pins");
-  line.flag("--compare", &o.compare, "all formulations, with a report");
-  line.option("--figure", &o.figure, "3.6 to 3.15 of the thesis, table (3.4), or all");
+  line.one_of("--compare", &o.compare, {"pins", "matrix"},
+              "pins: all formulations, with a report; matrix: says which program drives every link on every pin",
+              "pins");
+  line.one_of("--figure", &o.figure,
+              {"3.6", "3.7", "3.8", "3.9", "3.10", "3.11", "3.12", "3.13", "3.14", "3.15", "table", "all"},
+              "of the thesis, with its numbers, Table 3.4, or all");
   line.positive("--until", &o.until, "end of the run [s]");
   line.one_of("--integrator", &o.integrator, {"alpha", "hht", "radau", "adams", "dormand-prince", "rk"},
               "alpha, hht, radau: implicit; adams, rk: explicit, by coordinate partitioning; dormand-prince: explicit, "
@@ -286,10 +284,16 @@ int main(int argc, char** argv) {
   if (o.turn == "pivot") o.right = -1.0;
   if (o.turn == "curve") o.right = 0.8;
   try {
+    if (o.compare == "matrix")
+      throw InvalidInput(
+          "The links of this program are rigid, or cables on pins of their own. Every link on every pin, on the same "
+          "vehicle, is driven by track_stress --compare matrix; give it --speed 25 --rho 0.8 --step 5e-4 for the "
+          "settings of Chapter 3.");
     fs::create_directories(o.out);
+    warn_of_fast_drive(o);
     if (o.figure == "table" || o.figure == "all") table_3_4(o);
-    if (!o.figure.empty() || o.compare)
-      figures(o);
+    if (!o.figure.empty() || !o.compare.empty())
+      Figures(o).draw_all();
     else
       single(o);
   } catch (Error const& e) {

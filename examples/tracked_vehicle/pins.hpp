@@ -9,16 +9,17 @@ namespace chapter3 {
 struct Options : Settings {
   Options() { step = 0.0; }  // the integrator's own
 
-  std::string track = "constraint", figure, turn, integrator = "alpha";
+  std::string track = "constraint", compare, figure, turn, integrator = "alpha";
   double penalty = m113::pin_stiffness;
   double tolerance = 0.0;  // of Newton's corrections, or of the error of a step; 0: the integrator's own
-  bool compare = false, halve = false;
+  bool halve = false;
 };
 
 inline constexpr double implicit_step = 5e-4;  // [s]
 
 // A formulation of the pins: its run, and what the thesis counts of it, where the ground is a body, too.
 struct Pins {
+  std::string name;
   std::function<Runs(Options const&)> run;
   std::function<Census(Options const&)> count;
   std::string cannot_turn = {};  // why --turn is refused

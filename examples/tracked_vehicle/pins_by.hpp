@@ -38,7 +38,7 @@ Runs run_pins(Options const& o, std::string const& name, Policy const& policy, d
 
 template <class Body, class Policy>
 Pins pins_by(std::string const& name, Policy const& policy, double bearable) {
-  return {[=](Options const& o) { return run_pins<Body>(o, name, policy, bearable); },
+  return {name, [=](Options const& o) { return run_pins<Body>(o, name, policy, bearable); },
           [=](Options const& o) {
             Ramp const drive = m113::drive(o.speed);
             return census(

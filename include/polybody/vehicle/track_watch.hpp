@@ -7,6 +7,7 @@
 #include <string>
 
 #include <polybody/run/run_options.hpp>
+#include <polybody/vehicle/distance_to_path.hpp>
 #include <polybody/vehicle/m113_vehicle.hpp>
 
 namespace polybody::m113 {
@@ -98,18 +99,13 @@ TrackFault track_fault(TrackedVehicle const& vehicle, System const& system, Stat
   std::vector<Vec2> path;
   for (TrackLink const& link : start.links)
     path.push_back(link.centre + 0.5 * pitch * Vec2(std::cos(link.angle), -std::sin(link.angle)));
+  path.push_back(path.front());
   for (std::size_t k = 0; k < track.front.size(); ++k) {
     Vec3 const middle = hull.A.transpose() * (track.middle[k](x).r - hull.r);
     Vec3 const pin = hull.A.transpose() * (track.front[k](x).r - hull.r);
     worst.sideways = std::max(worst.sideways, std::abs(middle.y() - sign(side) * track_y));
     Vec2 const p(pin.x() + m113::chassis.x, pin.z() + m113::chassis.z);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < path.size(); ++i) {
-      Vec2 const a = path[i], run = path[(i + 1) % path.size()] - a;
-      double const share = std::clamp((p - a).dot(run) / run.squaredNorm(), 0.0, 1.0);
-      nearest = std::min(nearest, (p - a - share * run).norm());
-    }
-    worst.off_path = std::max(worst.off_path, nearest);
+    worst.off_path = std::max(worst.off_path, distance_to_path(p, path));
   }
   return worst;
 }

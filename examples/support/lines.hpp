@@ -1,0 +1,33 @@
+#pragma once
+// Numbers in lines that are easy to read and to take apart: "  what: quantity number unit, quantity number unit".
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <set>
+#include <string>
+#include <vector>
+
+struct Value {
+  std::string quantity;
+  double number;
+  int digits;  // after the point; of a number with an exponent, less than zero
+  std::string unit = "";
+};
+
+// Writes each line once, by what it is about: figures and reports share some.
+class Lines {
+ public:
+  void operator()(std::string const& what, std::vector<Value> const& values, std::string const& remark = "") {
+    if (!written_.insert(what).second) return;
+    std::string line = "  " + what + ":";
+    for (Value const& v : values) {
+      char text[64];
+      std::snprintf(text, sizeof text, v.digits < 0 ? " %.*e" : " %.*f", std::abs(v.digits), v.number);
+      line += (line.back() == ':' ? " " : ", ") + v.quantity + text + (v.unit.empty() ? "" : " " + v.unit);
+    }
+    std::cout << line << (remark.empty() ? "" : "; " + remark) << std::endl;
+  }
+
+ private:
+  std::set<std::string> written_;
+};
