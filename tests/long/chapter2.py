@@ -2,14 +2,11 @@
 
 import re
 
+from reading import markdown
+
 PAGE = "docs/chapter2.md"
 MESHES = ["gap", "strain", "interpolation", "rms", "rms left", "element", "bow", "turn"]
 NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
-
-
-def markdown(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
 def said(text):
