@@ -1,4 +1,4 @@
-// The planar Lrvf with all strains in both Gauss points: its laws, and by how much it locks.
+// The quadratures of the planar Lrvf: their laws, what locks and by how much, and what does not.
 
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 
@@ -10,16 +10,26 @@ namespace polybody {
 using namespace laws;
 namespace planar_lrvf_quadrature_test {
 
-struct FullCase {
+/// ε in both Gauss points, γ in the middle: what `Selective` does not do. Its strains make three groups.
+struct AxialInBoth {
+  static constexpr std::array<StrainPoint, 3> points = {
+      {{gauss<2>[0].xi, 0.5, 0.0, 0.5}, {0.5, 0.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.5, 0.0, 0.5}}};
+};
+static_assert(std::same_as<planar::Lrvf, planar::LrvfBy<Reduced>>);
+
+template <class Quadrature>
+struct Case {
   static Bar bar() {
     return {.length = 1.3,
             .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300, .rotary_inertia = 0.05},
             .placement = Placement::planar(0.4, -0.3, 0.7),
             .damping = {.axial = 0.01, .shear = 0.02, .bending = 0.03}};
   }
-  static planar::FullLrvf body(Bar const& bar) { return planar::FullLrvf::from(bar, 3); }
+  static planar::LrvfBy<Quadrature> body(Bar const& bar) { return planar::LrvfBy<Quadrature>::from(bar, 3); }
 };
-bool const planar_full_lrvf_obeys = obeys<FullCase, BodyLaws, FlexibleBodyLaws>("PlanarFullLrvf");
+bool const full_obeys = obeys<Case<Full>, BodyLaws, FlexibleBodyLaws>("PlanarFullLrvf");
+bool const selective_obeys = obeys<Case<Selective>, BodyLaws, FlexibleBodyLaws>("PlanarSelectiveLrvf");
+bool const axial_obeys = obeys<Case<AxialInBoth>, BodyLaws, FlexibleBodyLaws>("PlanarAxialInBothLrvf");
 
 double const length = 1.0, EI = 20.0, GA = 4e6;
 
@@ -48,7 +58,56 @@ TEST(PlanarLrvfQuadrature, FullLocksByTheKnownFactor) {
                  locking = 1.0 + GA * l * l / (12.0 * EI);
     EXPECT_NEAR(flexibility<planar::FullLrvf>(n) / (bending / locking + length / GA), 1.0, 1e-8) << n;
     EXPECT_NEAR(flexibility<planar::Lrvf>(n) / (bending + length / GA), 1.0, 1e-8) << n;
+    EXPECT_NEAR(flexibility<planar::SelectiveLrvf>(n) / (bending + length / GA), 1.0, 1e-8) << n;
   }
+}
+
+/// Energy of a beam in a state q.
+template <class B>
+double energy_of(B const& beam, VecX const& q) {
+  double sum = 0.0;
+  for (Index e = 0; e < beam.elements(); ++e) sum += beam.strain_energy(e, view(q));
+  return sum;
+}
+/// Some state far from the reference.
+VecX bent() {
+  return VecX::NullaryExpr(12, [](Index i) { return 0.5 * double(i / 3) + 0.4 * std::sin(1.0 + 3.0 * double(i)); });
+}
+
+// θ is linear, so that κ is the same in the whole element and asks for one point: energy, tangent, section forces.
+TEST(PlanarLrvfQuadrature, SelectiveIsReduced) {
+  auto const one = Case<Reduced>::body(Case<Reduced>::bar());
+  auto const selective = Case<Selective>::body(Case<Reduced>::bar());
+  VecX const q = bent(), v = VecX::Constant(12, 0.3);
+  double const energy = energy_of(one, q);
+  EXPECT_NEAR(energy_of(selective, q), energy, 1e-14 * energy);
+  for (Index e = 0; e < 3; ++e) {
+    Mat<double, 6, 6> a, b;
+    one.tangent(e, view(q), view(v), 1.0, 0.3, a);
+    selective.tangent(e, view(q), view(v), 1.0, 0.3, b);
+    EXPECT_LT((a - b).norm(), 1e-13 * a.norm());
+  }
+  auto const at = one.at(0.6);
+  EXPECT_LT((one.section_forces(at, view(q)) - selective.section_forces({at.element, at.xi, at.y}, view(q))).norm(),
+            1e-13 * energy);
+  EXPECT_GT(std::abs(energy_of(Case<AxialInBoth>::body(Case<Reduced>::bar()), q) - energy), 1e-3 * energy);
+}
+
+// Why ε is taken in the middle, as derived in lrvf_quadrature_test.cpp: an element bent by φ sees in two points
+// ε = c/l cos(φ/√12) − 1 of its chord c, so that it stores the bending alone at c = l/cos(φ/√12), and not at c = l.
+TEST(PlanarLrvfQuadrature, AxialStrainInBothPointsStretchesTheChordOfABentElement) {
+  double const phi = 0.3, bending = 0.5 * EI * phi * phi / length;
+  Bar const bar{.length = length, .constants = BarConstants{.EA = 1e7, .EI = EI, .mass_per_length = 1.0, .GA = GA}};
+  auto const state = [&](double chord) {
+    VecX q(6);
+    q << 0.0, 0.0, -0.5 * phi, chord, 0.0, 0.5 * phi;
+    return q;
+  };
+  auto const both = planar::LrvfBy<AxialInBoth>::from(bar, 1);
+  auto const middle = planar::SelectiveLrvf::from(bar, 1);
+  EXPECT_NEAR(energy_of(both, state(1.0 / std::cos(phi / std::sqrt(12.0)))), bending, 1e-9 * bending);
+  EXPECT_GT(energy_of(both, state(1.0)), 10.0 * bending);
+  EXPECT_NEAR(energy_of(middle, state(1.0)), bending, 1e-9 * bending);
 }
 
 }  // namespace planar_lrvf_quadrature_test

@@ -22,6 +22,8 @@ using Green = planar::HermiteCable<planar::GreenStrain>;
 using Engineering = planar::HermiteCable<planar::EngineeringStrain>;
 using Groups = testing::Types<Group<Green::Axial, 8>, Group<Green::Bending, 8>, Group<Engineering::Axial, 8>,
                               Group<Engineering::Bending, 8>, Group<planar::SimoVuQuoc::Section, 6>,
+                              Group<planar::SectionIn<Full, 0, 3>, 6>, Group<planar::SectionIn<Selective, 0, 2>, 6>,
+                              Group<planar::SectionIn<Selective, 2, 1>, 6>, Group<planar::SectionIn<Full, 1, 1>, 6>,
                               Group<CableAxial<GreenStrain, 5>, 12>, Group<CableAxial<EngineeringStrain, 5>, 12>,
                               Group<CableBending<GreenStrain, 3>, 12>, Group<CableBending<EngineeringStrain, 3>, 12>>;
 

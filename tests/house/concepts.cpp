@@ -62,6 +62,7 @@ static_assert(Body<AncfCable<>>);
 static_assert(Body<Ffr>);
 static_assert(Body<Lrvf<Objective>> && Body<Lrvf<Direct>>);
 static_assert(Body<Lrvf<Objective, Full>> && Body<Lrvf<Direct, Selective>>);
+static_assert(Body<planar::FullLrvf> && Body<planar::SelectiveLrvf>);
 static_assert(RotationInterpolation<Objective> && RotationInterpolation<Direct>);
 static_assert(Body<Lrvf<Polar>> && Body<Lrvf<Directors>>);
 static_assert(RotationInterpolation<Polar> && RotationInterpolation<Directors>);

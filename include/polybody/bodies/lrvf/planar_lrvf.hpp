@@ -1,10 +1,11 @@
 #pragma once
 /// \file
 /// Large rotation vector formulation in the plane: position and rotation fields interpolated linearly and
-/// independently, one-point (selective) quadrature of the strains
+/// independently, one-point quadrature of the strains (strain_quadrature.hpp has others)
 ///   ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ)
 /// [Simo & Vu-Quoc 1986; thesis Eq. 2.7–2.10]. Node coordinates (x, y, θ).
 
+#include <polybody/bodies/lrvf/strain_quadrature.hpp>
 #include <polybody/bodies/shared/planar_beam.hpp>
 #include <polybody/math/shape_functions.hpp>
 
@@ -105,17 +106,61 @@ struct SimoVuQuoc {
   using Groups = std::tuple<Section>;
 };
 
-/// Planar geometrically exact beam with linear elements: `Lrvf::from(bar, n)`.
-using Lrvf = Beam<SimoVuQuoc>;
+/// The strains (ε, γ, κ) of a section from `first` on, `count` of them, in the points of Q where they count.
+template <StrainQuadrature Q, int first, int count>
+struct SectionIn : SimoVuQuoc::Section {
+  using All = SimoVuQuoc::Section;
+  static constexpr int strains = count;
+  static constexpr auto rule = detail::rule_of<Q, detail::strain_weights[std::size_t(first)]>();
+  static constexpr int points = int(rule.size());
 
-/// The same with all strains in both Gauss points, for comparison: it locks, bending is stiffer by 1 + GA l²/(12 EI)
-/// [Hughes, Taylor & Kanoknukulchai 1977].
-struct SimoVuQuocInFull : SimoVuQuoc {
-  struct Section : SimoVuQuoc::Section {
-    static constexpr int points = 2;
-  };
-  using Groups = std::tuple<Section>;
+  static Vec<double, count> stiffness(BarConstants const& c) { return All::stiffness(c).segment<count>(first); }
+  static Vec<double, count> damping(Damping const& d) { return All::damping(d).segment<count>(first); }
+  template <KernelScalar T>
+  static void evaluate(Vec<T, 4> const& p, Vec<T, count>& strain, Mat<T, count, 4>& b) {
+    Vec<T, 3> all;
+    Mat<T, 3, 4> slope;
+    All::evaluate<T>(p, all, slope);
+    for (int i = 0; i < count; ++i) {
+      strain[i] = all[first + i];
+      for (int k = 0; k < 4; ++k) b(i, k) = slope(first + i, k);
+    }
+  }
+  template <KernelScalar T>
+  static void add_hessian(Vec<T, 4> const& p, Vec<T, count> const& n, Mat<T, 4, 4>& h) {
+    Vec<T, 3> all;
+    for (int i = 0; i < 3; ++i) all[i] = T(0.0);
+    for (int i = 0; i < count; ++i) all[first + i] = n[i];
+    All::add_hessian<T>(p, all, h);
+  }
 };
-using FullLrvf = Beam<SimoVuQuocInFull>;
+
+/// The Theory of `LrvfBy`: strains whose points are the same make one group.
+template <StrainQuadrature Q>
+struct SimoVuQuocBy : SimoVuQuoc {
+  static constexpr bool together = detail::alike<Q>(&StrainPoint::axial, &StrainPoint::shear);
+  static constexpr bool all = together && detail::alike<Q>(&StrainPoint::shear, &StrainPoint::curvature);
+  using Three = std::tuple<SectionIn<Q, 0, 1>, SectionIn<Q, 1, 1>, SectionIn<Q, 2, 1>>;
+  using Two = std::tuple<SectionIn<Q, 0, 2>, SectionIn<Q, 2, 1>>;
+  using Groups = std::conditional_t<all, std::tuple<SectionIn<Q, 0, 3>>, std::conditional_t<together, Two, Three>>;
+};
+template <>
+struct SimoVuQuocBy<Reduced> : SimoVuQuoc {};
+
+/// Planar geometrically exact beam with linear elements whose strains are taken where Q says: `LrvfBy<Q>::from(bar,
+/// n)`.
+template <StrainQuadrature Q>
+using LrvfBy = Beam<SimoVuQuocBy<Q>>;
+
+/// All strains in the middle: nothing locks.
+using Lrvf = LrvfBy<Reduced>;
+
+/// All strains in both Gauss points, for comparison: it locks, bending is stiffer by 1 + GA l²/(12 EI)
+/// [Hughes, Taylor & Kanoknukulchai 1977].
+using FullLrvf = LrvfBy<Full>;
+
+/// ε and γ in the middle, κ in both Gauss points. As θ is linear and κ the same in the whole element, this is `Lrvf` to
+/// rounding, at more cost: what the literature calls selective or reduced is one beam here.
+using SelectiveLrvf = LrvfBy<Selective>;
 
 }  // namespace polybody::planar

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Where along an element the spatial `Lrvf` takes its strains: a policy. With linear shapes the choice decides whether
-/// a slender element bends or locks [Hughes, Taylor & Kanoknukulchai 1977; Simo & Vu-Quoc 1986].
+/// Where along an element `Lrvf` and `planar::Lrvf` take their strains: a policy. With linear shapes the choice decides
+/// whether a slender element bends or locks [Hughes, Taylor & Kanoknukulchai 1977; Simo & Vu-Quoc 1986].
 
 #include <array>
 #include <cstddef>
@@ -34,6 +34,33 @@ constexpr bool is_rule(std::array<StrainPoint, n> const& points) {
   return one(axial) && one(shear) && one(curvature);
 }
 
+/// What a section counts in the energy of ε or Γ₁, of γ or Γ₂, Γ₃, and of κ or K.
+inline constexpr std::array<double StrainPoint::*, 3> strain_weights = {&StrainPoint::axial, &StrainPoint::shear,
+                                                                        &StrainPoint::curvature};
+
+/// The points in which one of them counts.
+template <class Q, double StrainPoint::* weight>
+constexpr auto rule_of() {
+  constexpr auto counts = [] {
+    std::size_t n = 0;
+    for (StrainPoint const& p : Q::points) n += p.*weight != 0.0 ? 1 : 0;
+    return n;
+  };
+  std::array<GaussPoint, counts()> rule{};
+  std::size_t n = 0;
+  for (StrainPoint const& p : Q::points)
+    if (p.*weight != 0.0) rule[n++] = {p.xi, p.*weight};
+  return rule;
+}
+
+/// Both kinds of strain have the same points and weights.
+template <class Q>
+constexpr bool alike(double StrainPoint::* a, double StrainPoint::* b) {
+  for (StrainPoint const& p : Q::points)
+    if (p.*a != p.*b) return false;
+  return true;
+}
+
 }  // namespace detail
 
 template <class Q>
@@ -59,7 +86,8 @@ struct Full {
 ///   shortens.
 /// - The difference, 2 sin ψ sin(φ/√12), is strained by the shear ψ: EA φ²/12 stands beside GA. On a curved reference
 ///   that is so in linear theory, too, with its angle φ₀ an element.
-/// `Objective` has one K in the whole element: there this is `Reduced`, at five to ten times the cost.
+/// `Objective` has one K in the whole element, and the plane one κ: there this is `Reduced`, in space at five to ten
+/// times the cost.
 struct Selective {
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.0, 0.0, 0.5}, {0.5, 1.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.0, 0.0, 0.5}}};

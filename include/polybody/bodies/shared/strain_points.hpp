@@ -25,13 +25,13 @@ class StrainPoints {
   using Strains = Vec<double, m>;
 
   StrainPoints() = default;
-  /// At the Gauss points of elements of length l [m]; `initial` is the stress in the reference configuration.
+  /// At the points of elements of length l [m], Gauss' unless the law has a `rule`; `initial` is the stress in the
+  /// reference configuration.
   StrainPoints(BarConstants const& c, Damping const& d, double l, Strains const& initial = Strains::Zero())
     requires StrainLaw<Law>
       : StrainPoints(Law::stiffness(c), Law::damping(d)) {
     initial_ = initial;
-    for (int g = 0; g < Law::points; ++g)
-      set_point(g, gauss<Law::points>[g].weight * l, Law::map(gauss<Law::points>[g].xi, l));
+    for (int g = 0; g < Law::points; ++g) set_point(g, point(g).weight * l, Law::map(point(g).xi, l));
   }
   /// With C and τ [s]; `set_point` gives each of the points.
   StrainPoints(Strains const& stiffness, Strains const& time) : stiffness_(stiffness), time_(time) {
@@ -164,6 +164,14 @@ class StrainPoints {
       }
       P::add_mapped(maps_[g], h, k);
     }
+  }
+
+ private:
+  static constexpr GaussPoint point(int g) {
+    if constexpr (requires { Law::rule; })
+      return Law::rule[std::size_t(g)];
+    else
+      return gauss<Law::points>[g];
   }
 
  protected:
