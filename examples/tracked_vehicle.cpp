@@ -86,7 +86,7 @@ void table_3_4(Options const& o) {
 // Curves that agree are seen one inside the other: the first is the widest.
 Figure nested(Figure f) {
   double width = 1.0;
-  for (auto curve = f.curves.rbegin(); curve != f.curves.rend(); ++curve, width += 1.5) curve->width = width;
+  for (auto curve = f.curves.rbegin(); curve != f.curves.rend(); ++curve, width += 1.0) curve->width = width;
   return f;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // Numbers in lines that are easy to read and to take apart: "  what: quantity number unit, quantity number unit".
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -22,7 +23,8 @@ class Lines {
     std::string line = "  " + what + ":";
     for (Value const& v : values) {
       char text[64];
-      std::snprintf(text, sizeof text, v.digits < 0 ? " %.*e" : " %.*f", std::abs(v.digits), v.number);
+      bool const nothing = v.digits >= 0 && std::abs(v.number) < 0.5 * std::pow(10.0, -v.digits);  // not "-0.0"
+      std::snprintf(text, sizeof text, v.digits < 0 ? " %.*e" : " %.*f", std::abs(v.digits), nothing ? 0.0 : v.number);
       line += (line.back() == ':' ? " " : ", ") + v.quantity + text + (v.unit.empty() ? "" : " " + v.unit);
     }
     std::cout << line << (remark.empty() ? "" : "; " + remark) << std::endl;
