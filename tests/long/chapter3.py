@@ -1,3 +1,40 @@
-"""The long runs of Chapter 3."""
+"""Cases of Chapter 3: the runs whose numbers docs/tracked_vehicle.md quotes, marked CASE/ROW/COLUMN in its text.
 
-CASES = {}
+A row is what a line of the program is about, a column a quantity of it: "  path, penalty: taut 1.6 mm, slack 2.8 mm".
+Processor times are printed, too, and not quoted with a mark.
+"""
+
+import re
+
+PAGE = "docs/tracked_vehicle.md"
+VEHICLE = "tracked_vehicle --no-plot "
+QUANTITY = re.compile(r"(\S.*) (-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?: \S+)?")
+
+
+def lines(text):
+    """Numbers by what a line is about and by quantity; there is no table."""
+    numbers = {}
+    for line in text.splitlines():
+        row, colon, rest = line.partition(": ")
+        found = [QUANTITY.fullmatch(part) for part in rest.partition(";")[0].split(", ")]
+        if colon and re.match(r"  \S", row) and all(found):
+            numbers[row.strip()] = {quantity: float(number) for quantity, number in (f.groups() for f in found)}
+    return numbers, ""
+
+
+CASES = {
+    "table_3_4": (PAGE, VEHICLE + "--figure table", lines),
+    "figures_3": (PAGE, VEHICLE + "--figure all --audit", lines),
+    "plateau_25": (PAGE, VEHICLE + "--until 20", lines),
+    "plateau_30": (PAGE, VEHICLE + "--until 20 --speed 30", lines),
+    "plateau_80": (PAGE, VEHICLE + "--until 20 --speed 80", lines),
+    "halved": (PAGE, VEHICLE + "--halve --until 4", lines),
+    "curve": (PAGE, VEHICLE + "--turn curve --until 20", lines),
+    "pivot": (PAGE, VEHICLE + "--turn pivot --speed 10 --until 20", lines),
+    "bumps": (PAGE, VEHICLE + "--bumps", lines),
+    **{
+        f"by_{integrator}": (PAGE, VEHICLE + f"--integrator {integrator} --until 0.1", lines)
+        for integrator in ["alpha", "hht", "radau", "adams", "dormand-prince", "rk"]
+    },
+    "adams_pins": (PAGE, "track_times --until 0.2 --names", lines),
+}
