@@ -2,7 +2,7 @@
 
 import re
 
-NUMBER = r"[−-]?\d+(?:\.\d+)?"
+NUMBER = r"[−-]?\d+(?:\.\d+)?(?:e[−-]?\d+)?"
 MARK = re.compile(rf"({NUMBER})<!--(<= |>= )?([^/>]+)/([^/>]+)/([^/>]+)-->")
 # Places of numbers that need no source: code, tables of cases, marked numbers; names of code, links, names of figures,
 # years of sources, powers of ten beside a number.
@@ -17,8 +17,14 @@ def value(written):
     return float(written.replace("−", "-"))
 
 
-def decimals(written):
-    return len(written.partition(".")[2])
+def as_written(found, written):
+    """`found` to the digits of `written`."""
+    mantissa, power, _ = written.partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    if not power:
+        return f"{found:.{decimals}f}".replace("-", "−")
+    digits, _, exponent = f"{found:.{decimals}e}".partition("e")
+    return f"{digits}e{int(exponent)}"
 
 
 def marked_numbers(text, case, numbers):
@@ -38,8 +44,8 @@ def marked_numbers(text, case, numbers):
             if found > value(written) if bound == "<= " else found < value(written):
                 faults.append((f"{name} is a bound, but the command prints {found:g}.", False))
             return match[0]
-        rounded = f"{found:.{decimals(written)}f}".replace("-", "−")
-        if abs(found - value(written)) <= 0.5001 * 10.0 ** -decimals(written):
+        rounded = as_written(found, written)
+        if value(rounded) == value(written):
             return match[0]
         faults.append((f"{name}: the command prints {found:g}.", True))
         return rounded + match[0][len(written):]

@@ -5,7 +5,7 @@ import unittest
 from prose import marked_numbers, numbers_without_source
 from reading import by_pattern, columns
 
-NUMBERS = {"ancf": {"strain": 0.2984, "forward": -40.086, "apart": 1.6}}
+NUMBERS = {"ancf": {"strain": 0.2984, "forward": -40.086, "apart": 1.6, "rate": 18340.0}}
 
 
 def faults(text, case="links"):
@@ -14,13 +14,17 @@ def faults(text, case="links"):
 
 class Marked(unittest.TestCase):
     def test_right_ones_pass(self):
-        for text in ("0.298<!--links/ancf/strain-->·10⁻⁵", "0.3<!--links/ancf/strain-->", "−40.1<!--links/ancf/forward--> m"):
+        for text in ("0.298<!--links/ancf/strain-->·10⁻⁵", "0.3<!--links/ancf/strain-->", "−40.1<!--links/ancf/forward--> m",
+                     "1.83e4<!--links/ancf/rate--> 1/s", "18340<!--links/ancf/rate-->"):
             self.assertEqual(marked_numbers(text, "links", NUMBERS), (text, []))
 
     def test_wrong_ones_are_mended_to_their_digits(self):
         text, found = marked_numbers("at 0.31<!--links/ancf/strain-->, 40<!--links/ancf/forward--> m", "links", NUMBERS)
         self.assertEqual(text, "at 0.30<!--links/ancf/strain-->, −40<!--links/ancf/forward--> m")
         self.assertEqual([mended for _, mended in found], [True, True])
+
+    def test_powers_of_ten_are_mended(self):
+        self.assertEqual(marked_numbers("2.91e5<!--links/ancf/rate-->", "links", NUMBERS)[0], "1.83e4<!--links/ancf/rate-->")
 
     def test_bounds_are_kept(self):
         self.assertEqual(faults("2<!--<= links/ancf/apart--> and 1<!-->= links/ancf/apart-->"), [])
