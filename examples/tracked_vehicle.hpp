@@ -325,6 +325,10 @@ struct Runs {
     return r.outputs[std::size_t(at - r.output_names.begin())];
   }
   std::vector<double> const& times(std::size_t run) const { return comparison.runs[run].times; }
+  // Without the last one where an event ended the run between two steps.
+  std::span<double const> filtered_times(std::size_t run) const {
+    return std::span(times(run)).first(times(run).size() - (comparison.runs[run].run.stopped ? 1 : 0));
+  }
 };
 
 // A history of a run without frequencies above the cut-off [Hz].
@@ -332,7 +336,9 @@ struct Filtered {
   std::vector<double> times, values;
 };
 inline Filtered filtered(Runs const& runs, std::size_t run, std::string const& output, double cut_off) {
-  Filtered f{runs.times(run), runs.history(run, output)};
+  auto const times = runs.filtered_times(run);
+  auto const values = std::span(runs.history(run, output)).first(times.size());
+  Filtered f{{times.begin(), times.end()}, {values.begin(), values.end()}};
   if (runs.sampling > 0.0) {  // states come up to a step after their sample
     f.values = resampled(f.times, f.values, runs.sampling, 2.5 * runs.sampling);
     double const start = f.times.front();

@@ -29,8 +29,9 @@ std::vector<std::pair<std::string, Options>> plausible(Options const& o) {
     s.section = 0.5;
     s.masses = m113::with_steel_links(s.masses, section_height(s));
   });
-  for (auto const& [name, section] :
-       {std::pair("cables of 1.7 link masses", 1.7), {"cables of half the mass", 0.5}, {"cables of a third", 1.0 / 3.0}})
+  for (auto const& [name, section] : {std::pair("cables of 1.7 link masses", 1.7),
+                                      {"cables of half the mass", 0.5},
+                                      {"cables of a third", 1.0 / 3.0}})
     with(name, [&](Options& s) { s.section = section; });
   return all;
 }
@@ -124,8 +125,8 @@ void ensemble(Options const& o) {
            .x_range = {{0.0, o.until}}};
   char const* const names[] = {"rigid, decoupled", "ANCF cables"};
   for (std::size_t k = 0; k < 2; ++k)
-    f.curves.push_back(Band(settings, [&](SettingRuns const& s) { return strain(s, k, o.cut_off); })
-                           .curve(names[k], int(k), 1e5));
+    f.curves.push_back(
+        Band(settings, [&](SettingRuns const& s) { return strain(s, k, o.cut_off); }).curve(names[k], int(k), 1e5));
   draw(o, f, "ensemble");
 }
 

@@ -27,8 +27,8 @@ inline Range range_of(std::vector<double> const& times, std::vector<double> cons
 
 // Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
 using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;
-inline double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k, double from,
-           Told of = &StressRuns::raw, Told of_b = nullptr) {
+inline double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k,
+                  double from, Told of = &StressRuns::raw, Told of_b = nullptr) {
   if (!of_b) of_b = of;
   std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of_b)(k), o.cut_off);
   RmsDifference d(from, o.until);

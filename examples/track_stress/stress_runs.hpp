@@ -47,13 +47,9 @@ struct StressRuns : Runs {
   std::vector<double> const& bending(std::size_t k) const { return links[k]->bending; }
   std::vector<double> const& vibrating(std::size_t k) const { return links[k]->vibrating; }
   std::vector<double> filtered(std::size_t k, double cut_off) const { return filtered(k, raw(k), cut_off); }
-  // Without the last sample where an event ended the run between two steps.
   std::vector<double> filtered(std::size_t k, std::vector<double> const& y, double cut_off) const {
     return low_pass(filtered_times(k), std::span(y).first(filtered_times(k).size()),
                     {.cut_off = cut_off, .mirrored = true});
-  }
-  std::span<double const> filtered_times(std::size_t k) const {
-    return std::span(times(k)).first(times(k).size() - (comparison.runs[k].run.stopped ? 1 : 0));
   }
 };
 
