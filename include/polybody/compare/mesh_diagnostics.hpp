@@ -1,29 +1,65 @@
 #pragma once
 /// \file
-/// The two curves of a large-rotation-vector beam. Its position field gives one; its rotation field implies
-/// another, r(s) = r(0) + ∫ t₁(θ) ds [thesis Eq. 2.2, 2.17]. Their nodes, lengths and curvatures side by side.
+/// The two curves of a large-rotation-vector beam, in the plane and in space. Its position field gives one; its
+/// rotation field implies another, r(s) = r(0) + ∫ t₁ ds [thesis Eq. 2.2, 2.17]. Their nodes, lengths and curvatures
+/// side by side.
 
 #include <concepts>
 #include <span>
 #include <vector>
 
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/compare/implied_curve.hpp>
 
 namespace polybody {
 
-struct MeshDiagnostics {
-  std::vector<Vec2> position_nodes;        ///< nodes of the position mesh [m]
-  std::vector<Vec2> rotation_nodes;        ///< the same material points on the curve the rotations imply [m]
+/// Both curves in the plane (dim = 2) or in space (dim = 3), in world axes.
+template <int dim>
+struct TwoMeshes {
+  using Point = Mat<double, dim, 1>;
+  std::vector<Point> position_nodes;       ///< nodes of the position mesh [m]
+  std::vector<Point> rotation_nodes;       ///< the same material points on the curve the rotations imply [m]
   double largest_gap = 0.0;                ///< between the two, over all nodes [m]
   double position_length = 0.0;            ///< arc length of the position mesh [m]
   double rotation_length = 0.0;            ///< arc length of the implied curve [m]: the bar's, as |t₁| = 1
   std::vector<double> position_curvature;  ///< |r′ × r″|/|r′|³ in the middle of each element [1/m], Eq. 2.16
-  std::vector<double> rotation_curvature;  ///< θ′ in each element [1/m], Eq. 2.15
+  /// Curvature of the implied curve in the middle of each element [1/m]: θ′ with its sign in the plane, Eq. 2.15; |t₁′|
+  /// in space, Eq. 2.4.
+  std::vector<double> rotation_curvature;
 };
+using MeshDiagnostics = TwoMeshes<2>;
+using SpatialMeshDiagnostics = TwoMeshes<3>;
+
+namespace detail {
+
+/// Adds the nodes of the next material point, and the element of length l before it: gap, length, curvature.
+template <int dim>
+void add_nodes(TwoMeshes<dim>& d, double l, typename TwoMeshes<dim>::Point const& position,
+               typename TwoMeshes<dim>::Point const& rotation) {
+  double gap = 0.0;
+  for (int k = 0; k < dim; ++k) gap = std::hypot(gap, position[k] - rotation[k]);
+  d.largest_gap = std::max(d.largest_gap, gap);
+  d.rotation_nodes.push_back(rotation);
+  d.position_nodes.push_back(position);
+  if (d.position_nodes.size() < 2) return;
+  ShapeValues<2> const n = linear_shape(0.5, l);
+  auto const& last = d.position_nodes[d.position_nodes.size() - 2];
+  double first = 0.0, second = 0.0, mixed = 0.0;  // r′·r′, r″·r″, r′·r″
+  for (int k = 0; k < dim; ++k) {
+    double const slope = n.ds[0] * last[k] + n.ds[1] * position[k], bend = n.dds[0] * last[k] + n.dds[1] * position[k];
+    first += slope * slope;
+    second += bend * bend;
+    mixed += slope * bend;
+  }
+  d.position_length += std::sqrt(first) * l;
+  d.position_curvature.push_back(std::sqrt(std::max(0.0, first * second - mixed * mixed)) / std::pow(first, 1.5));
+}
+
+}  // namespace detail
 
 /// Points of the curve that the rotation field implies: `samples` in each element and the first node.
-template <std::same_as<planar::Lrvf> Beam>
-std::vector<Vec2> implied_curve(Beam const& beam, std::span<double const> q, int samples = 1) {
+template <std::derived_from<planar::SimoVuQuoc> Theory>
+std::vector<Vec2> implied_curve(planar::Beam<Theory> const& beam, std::span<double const> q, int samples = 1) {
   std::vector<double> const rest(q.size(), 0.0);
   auto const at = [&](Index e, double xi) {
     return beam.template centre_line<double>({e, xi, 0.0}, q, std::span<double const>(rest));
@@ -43,30 +79,31 @@ std::vector<Vec2> implied_curve(Beam const& beam, std::span<double const> q, int
   return curve;
 }
 
-/// Both meshes of a beam at the coordinates q (see `coordinates_of`).
-template <std::same_as<planar::Lrvf> Beam>
-MeshDiagnostics mesh_diagnostics(Beam const& beam, std::span<double const> q) {
+/// Both meshes of a planar beam at the coordinates q (see `coordinates_of`), whatever its quadrature.
+template <std::derived_from<planar::SimoVuQuoc> Theory>
+MeshDiagnostics mesh_diagnostics(planar::Beam<Theory> const& beam, std::span<double const> q) {
   MeshDiagnostics d;
   double const l = beam.element_length();
-  d.rotation_nodes = implied_curve(beam, q);
   d.rotation_length = beam.length();
-  for (Index i = 0; i <= beam.elements(); ++i) {
-    Vec2 const r(q[std::size_t(3 * i)], q[std::size_t(3 * i + 1)]), &other = d.rotation_nodes[std::size_t(i)];
-    d.position_nodes.push_back(r);
-    d.largest_gap = std::max(d.largest_gap, std::hypot(r[0] - other[0], r[1] - other[1]));
+  std::vector<Vec2> const implied = implied_curve(beam, q);
+  for (std::size_t i = 0; i < implied.size(); ++i) {
+    detail::add_nodes<2>(d, l, Vec2(q[3 * i], q[3 * i + 1]), implied[i]);
+    if (i > 0) d.rotation_curvature.push_back((q[3 * i + 2] - q[3 * i - 1]) / l);
   }
-  ShapeValues<2> const n = linear_shape(0.5, l);
-  for (Index e = 0; e < beam.elements(); ++e) {
-    Vec2 const a = d.position_nodes[std::size_t(e)], b = d.position_nodes[std::size_t(e) + 1];
-    Vec2 slope, second;
-    for (int k = 0; k < 2; ++k) {
-      slope[k] = n.ds[0] * a[k] + n.ds[1] * b[k];
-      second[k] = n.dds[0] * a[k] + n.dds[1] * b[k];
-    }
-    double const length = std::hypot(slope[0], slope[1]);
-    d.position_length += length * l;
-    d.position_curvature.push_back(std::abs(slope[0] * second[1] - slope[1] * second[0]) / std::pow(length, 3));
-    d.rotation_curvature.push_back(beam.template strains<0>({e, 0.5, 0.0}, q)[2]);
+  return d;
+}
+
+/// Both meshes of a beam in space at the coordinates q: the rotation field is that of its interpolation. On a curved
+/// reference the position mesh is the polygon through the nodes, and the implied curve has the reference's own
+/// curvature, too.
+template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
+SpatialMeshDiagnostics mesh_diagnostics(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q) {
+  SpatialMeshDiagnostics d;
+  d.rotation_length = beam.length();
+  std::vector<Vec3> const implied = implied_curve(beam, q);
+  for (std::size_t i = 0; i < implied.size(); ++i) {
+    detail::add_nodes<3>(d, beam.element_length(), Vec3(part<3>(q, 7 * Index(i))), implied[i]);
+    if (i > 0) d.rotation_curvature.push_back(implied_curvature(beam.rotation_field({Index(i) - 1, 0.5, 0.0, 0.0}, q)));
   }
   return d;
 }
