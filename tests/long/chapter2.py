@@ -64,7 +64,7 @@ def meshes(figures):
         numbers["all"] = {f"{kind} {share}": choose(w[share] for w in widest) for share in ("percent left", "percent interpolation")
                           for kind, choose in (("least", min), ("most", max))}
         head = ["figure", "t [s]", "largest gap of a node [m]", "of it strains", "interpolation", "rms gap", "left by the best rigid displacement",
-                "height of the arcs", "its turn [rad]"]
+                "height of the arcs", "turn of that displacement [rad]"]
         return {**numbers, **seen}, markdown(head, rows)
 
     return read
