@@ -188,6 +188,12 @@ void drift(Options const& o, Figure& figure, std::string const& name, I const& i
   figure.curves.push_back(c);
 }
 
+template <class B>
+void drifts(Options const& o, Figure& figure, char const* name) {
+  for (double part : {1.0, 0.5, 0.25}) drift<B>(o, figure, name, GeneralizedAlpha{.rho_inf = 0.8}, part * o.step);
+  drift<B>(o, figure, name, EnergyMomentum{}, o.step);
+}
+
 void energies(Options const& o) {
   std::printf("\nThe arm of medium stiffness, total energy from the end of the ramp (4.5 s) for %g s:\n\n", o.window);
   std::printf("  %-21s %-16s %8s %12s %12s %12s\n", "energy", "integrator", "h [ms]", "E0 [J]", "largest",
@@ -195,13 +201,9 @@ void energies(Options const& o) {
   Figure figure{.title = "Energy of the arm after its drive has stopped, off its amount then",
                 .x_label = "t [s]",
                 .y_label = "E/E0 - 1 [1e-6]"};
-  auto const all = [&]<class B>(std::type_identity<B>, char const* name) {
-    for (double part : {1.0, 0.5, 0.25}) drift<B>(o, figure, name, GeneralizedAlpha{.rho_inf = 0.8}, part * o.step);
-    drift<B>(o, figure, name, EnergyMomentum{}, o.step);
-  };
-  all(std::type_identity<planar::Lrvf>{}, "LRVF");
-  all(std::type_identity<planar::AncfCable<GreenStrain>>{}, "ANCF Green");
-  all(std::type_identity<planar::AncfCable<EngineeringStrain>>{}, "ANCF engin.");
+  drifts<planar::Lrvf>(o, figure, "LRVF");
+  drifts<planar::AncfCable<GreenStrain>>(o, figure, "ANCF Green");
+  drifts<planar::AncfCable<EngineeringStrain>>(o, figure, "ANCF engin.");
   draw(figure, o.out / "energy_drift", !o.no_plot);
 }
 

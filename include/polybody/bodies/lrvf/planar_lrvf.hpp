@@ -108,12 +108,18 @@ struct SimoVuQuoc {
 
 /// The strains (ε, γ, κ) of a section from `first` on, `count` of them, in the points of Q where they count.
 template <StrainQuadrature Q, int first, int count>
-struct SectionIn : SimoVuQuoc::Section {
+struct SectionIn {
   using All = SimoVuQuoc::Section;
+  static constexpr int components = All::components, parameters = All::parameters, reach = All::reach;
   static constexpr int strains = count;
   static constexpr auto rule = detail::rule_of<Q, detail::strain_weights[std::size_t(first)]>();
   static constexpr int points = int(rule.size());
 
+  static constexpr int vector(int k, int j) { return All::vector(k, j); }
+  template <class T = double>  // compiled where it is used
+  static Mat<T, 4, 2> map(double xi, double l) {
+    return All::map<T>(xi, l);
+  }
   static Vec<double, count> stiffness(BarConstants const& c) { return All::stiffness(c).segment<count>(first); }
   static Vec<double, count> damping(Damping const& d) { return All::damping(d).segment<count>(first); }
   template <KernelScalar T>
