@@ -63,8 +63,7 @@ void print_strains(Options const& o, StressRuns const& r, double speed) {
   Range const a = range_of(times, rigid, from), b = range_of(other_times, flexible, from);
   std::printf(
       "%g rad/s, from %.1f to %.1f s, low pass %g Hz: rigid %.3fe-5, %.3f MPa; ancf %.3fe-5, %.3f MPa; at most %.3f "
-      "MPa "
-      "apart; (T0 + m v^2/p)/EA %.3fe-5\n",
+      "MPa apart; (T0 + m v^2/p)/EA %.3fe-5\n",
       speed, from, times.back(), o.cut_off, 1e5 * a.mean, 1e-6 * m113::youngs_modulus * a.mean, 1e5 * b.mean,
       1e-6 * m113::youngs_modulus * b.mean, 1e-6 * m113::youngs_modulus * apart,
       1e5 * m113::running_strain(mean_speed(r, 0, from), mean_pull(o, r, 0, from)));
@@ -217,9 +216,7 @@ void figures(Options const& o) {
                                  (filtered ? filter : ""),
                              filtered, from, to);
     add_bands(f, settings, 1e5, filtered ? 4 : 1, [&](SettingRuns const& s, std::size_t k) {
-      if (!filtered) return Filtered{s.runs.times(k), s.runs.raw(k)};
-      auto const times = s.runs.filtered_times(k);
-      return Filtered{{times.begin(), times.end()}, s.runs.filtered(k, o.cut_off)};
+      return filtered ? filtered_strain(s.runs, k, o.cut_off) : Filtered{s.runs.times(k), s.runs.raw(k)};
     });
     return f;
   };

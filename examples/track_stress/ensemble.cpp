@@ -36,11 +36,6 @@ std::vector<std::pair<std::string, Options>> plausible(Options const& o) {
   return all;
 }
 
-Filtered strain(SettingRuns const& s, std::size_t k, double cut_off) {
-  auto const times = s.runs.filtered_times(k);
-  return {{times.begin(), times.end()}, s.runs.filtered(k, cut_off)};
-}
-
 void print(SettingRuns const& setting) {
   Options const& o = setting.options;
   StressRuns const& r = setting.runs;
@@ -67,6 +62,11 @@ void print_heads(Options const& o) {
 }
 
 }  // namespace
+
+Filtered filtered_strain(StressRuns const& runs, std::size_t k, double cut_off) {
+  auto const times = runs.filtered_times(k);
+  return {{times.begin(), times.end()}, runs.filtered(k, cut_off)};
+}
 
 std::vector<SettingRuns> runs_of_settings(Options const& o) {
   print_heads(o);
@@ -125,8 +125,9 @@ void ensemble(Options const& o) {
            .x_range = {{0.0, o.until}}};
   char const* const names[] = {"rigid, decoupled", "ANCF cables"};
   for (std::size_t k = 0; k < 2; ++k)
-    f.curves.push_back(
-        Band(settings, [&](SettingRuns const& s) { return strain(s, k, o.cut_off); }).curve(names[k], int(k), 1e5));
+    f.curves.push_back(Band(settings, [&](SettingRuns const& s) {
+                         return filtered_strain(s.runs, k, o.cut_off);
+                       }).curve(names[k], int(k), 1e5));
   draw(o, f, "ensemble");
 }
 

@@ -14,6 +14,8 @@ struct SettingRuns {
 // The first is as the options give it.
 std::vector<SettingRuns> runs_of_settings(Options const& o);
 
+Filtered filtered_strain(StressRuns const& runs, std::size_t k, double cut_off);
+
 // The least and the most of a history over several settings, at equal steps.
 class Band {
  public:
