@@ -5,6 +5,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/lrvf/director_interpolation.hpp>
+#include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>
@@ -66,6 +67,7 @@ static_assert(Body<planar::FullLrvf> && Body<planar::SelectiveLrvf>);
 static_assert(RotationInterpolation<Objective> && RotationInterpolation<Direct>);
 static_assert(Body<Lrvf<Polar>> && Body<Lrvf<Directors>>);
 static_assert(RotationInterpolation<Polar> && RotationInterpolation<Directors>);
+static_assert(Body<Lrvf<Incremental>> && CarriesSections<Incremental> && !FollowsNodes<Incremental>);
 static_assert(StrainQuadrature<Reduced> && StrainQuadrature<Full> && StrainQuadrature<Selective>);
 static_assert(Body<Rigid<>>);
 static_assert(Body<Rigid<EulerParameters>> && OwnsRows<Rigid<EulerParameters>> && !OwnsRows<Rigid<>>);

@@ -66,7 +66,7 @@ std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, V
 
 /// The same for the rotation field of a beam at the coordinates q, from its first node: `samples` points in each
 /// element.
-template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
+template <FollowsNodes Interpolation, StrainQuadrature Quadrature>
 std::vector<Vec3> implied_curve(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q,
                                 int samples = 1) {
   auto const rotation = [&](double s) { return beam.rotation_field(beam.at(s), q).R; };

@@ -96,7 +96,7 @@ MeshDiagnostics mesh_diagnostics(planar::Beam<Theory> const& beam, std::span<dou
 /// Both meshes of a beam in space at the coordinates q: the rotation field is that of its interpolation. On a curved
 /// reference the position mesh is the polygon through the nodes, and the implied curve has the reference's own
 /// curvature, too.
-template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
+template <FollowsNodes Interpolation, StrainQuadrature Quadrature>
 SpatialMeshDiagnostics mesh_diagnostics(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q) {
   SpatialMeshDiagnostics d;
   d.rotation_length = beam.length();

@@ -23,6 +23,19 @@ template <StateScalar T>
 Quaternion<T> turned(std::span<T const> q, Index node) {
   return entries<4>(q, 7 * node + 3);
 }
+/// Where the carried section of element e stands in q: behind the nodes.
+constexpr Index carried_at(Index elements, Index e) { return 7 * (elements + 1 + e); }
+template <StateScalar T>
+CarriedSection<T> carried_section(std::span<T const> q, Index elements, Index e) {
+  Index const first = carried_at(elements, e);
+  return {entries<4>(q, first), entries<3>(q, first + 4)};
+}
+template <StateScalar T>
+void set_carried_section(std::span<T> q, Index elements, Index e, CarriedSection<T> const& section) {
+  Index const first = carried_at(elements, e);
+  set_entries<4>(q, first, section.axes);
+  set_entries<3>(q, first + 4, section.turn);
+}
 /// The column of an element's (Ω₁, Ω₂) among its (ṙ₁, Ω₁, ṙ₂, Ω₂).
 constexpr int turn_column(int i) { return i < 3 ? 3 + i : 6 + i; }
 /// (Ω₁, Ω₂) of an element, written where it is to stand: a copy would wait for what was just stored.
@@ -110,6 +123,9 @@ class ElasticElements {
     return count;
   }();
   static constexpr int stored = middle == count ? count + 1 : count;
+  static_assert(!CarriesSections<Interpolation> || (count == 1 && middle == 0),
+                "This interpolation carries one section along, in the middle of each element: strains are known there "
+                "only. Take Reduced.");
   /// An element in the reference configuration.
   struct Free {
     double chord = 1.0;  ///< c₀ [m]
@@ -127,7 +143,9 @@ class ElasticElements {
   template <int i, StateScalar T>
   void place(Index e, std::span<T const> q, StrainSection<T>& at, Vec<T, 3>& gamma) const {
     Quaternion<T> const a = detail::turned<T>(q, e), b = detail::turned<T>(q, e + 1);
-    if constexpr (i == middle)
+    if constexpr (CarriesSections<Interpolation>)
+      interpolation_.template middle<T>(detail::carried_section<T>(q, size(), e), at);
+    else if constexpr (i == middle)
       interpolation_.template middle<T>(a, b, at);
     else
       interpolation_.template at<T>(Quadrature::points[i].xi, a, b, at);
@@ -170,7 +188,9 @@ class ElasticElements {
     StrainGradient by;
     Vec<T, 3> const t = scaled<T>(cross(s.n, s.gamma), l_);
     Quaternion<T> const a = detail::turned<T>(q, e), b = detail::turned<T>(q, e + 1);
-    if constexpr (i == middle)
+    if constexpr (CarriesSections<Interpolation>)
+      interpolation_.gradient(detail::carried_section<double>(q, size(), e), s.m, s.turning, by);
+    else if constexpr (i == middle)
       interpolation_.gradient(a, b, t, s.m, s.turning, by);
     else
       detail::strain_gradient(interpolation_, Quadrature::points[i].xi, {a, b}, {t, s.m, s.turning}, by);

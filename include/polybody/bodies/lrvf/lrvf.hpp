@@ -16,7 +16,8 @@
 namespace polybody {
 
 /// Coordinates of a node: position r (3) in world axes and a unit quaternion (4) of the section; speeds: ṙ (3) and Ω
-/// (3), the angular velocity in the section's axes. q ⊞ δ acts on each node as in `Rigid`: no angle is singular.
+/// (3), the angular velocity in the section's axes. q ⊞ δ acts on each node as in `Rigid`: no angle is singular. Behind
+/// the nodes stand the sections that a policy carries along (`CarriesSections`), one for each element.
 ///
 /// Mass: translation consistent with the linear shapes, Aρ l/6 [2 1; 1 2]; rotary inertia lumped at the nodes,
 /// J = ½ l diag(Iρ_y + Iρ_z, Iρ_y, Iρ_z), so that M is constant. Without any rotary inertia M is singular: the
@@ -69,7 +70,9 @@ class Lrvf {
     if (!std::isfinite(y) || !std::isfinite(z)) throw InvalidInput("Lrvf: y and z of a point must be finite.");
     Index const e = std::min(Index(x + 1e-12), elements() - 1);
     double const xi = x - double(e);
-    return {e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // a node is met exactly
+    Point const p{e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // a node is met exactly
+    if constexpr (CarriesSections<Interpolation>) interpolation_.require_known(p.xi, s);
+    return p;
   }
 
   Index coordinates() const { return Index(reference_.size()); }
@@ -87,6 +90,12 @@ class Lrvf {
         out[std::size_t(7 * i + k)] = q[std::size_t(7 * i + k)] + delta[std::size_t(6 * i + k)];
       set_entries<4>(out, 7 * i + 3, quaternion_plus<T>(turned<T>(q, i), entries<3>(delta, 6 * i + 3)));
     }
+    if constexpr (CarriesSections<Interpolation>)
+      for (Index e = 0; e < elements(); ++e)
+        detail::set_carried_section<T>(
+            out, elements(), e,
+            interpolation_.template plus<T>(detail::carried_section<T>(q, elements(), e), entries<3>(delta, 6 * e + 3),
+                                            entries<3>(delta, 6 * e + 9)));
   }
   /// δ˙ with q ⊞ δ(t) moving with v: Ω = Jr(δ) δ˙ at each node.
   template <StateScalar T>
@@ -174,7 +183,9 @@ class Lrvf {
     return section_.forces(section_strains(p, q));
   }
   /// The rotation field at `p`, with its curvature (reference included).
-  SectionTurn rotation_field(Point const& p, std::span<double const> q) const {
+  SectionTurn rotation_field(Point const& p, std::span<double const> q) const
+    requires FollowsNodes<Interpolation>
+  {
     return interpolation_.turn(p.xi, l_, turned<double>(q, p.element), turned<double>(q, p.element + 1));
   }
 
@@ -183,7 +194,7 @@ class Lrvf {
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     Index const e = p.element;
     Section<T> s;
-    section<T>(p, turned<T>(q, e), turned<T>(q, e + 1), s);
+    section<T>(p, q, s);
     Vec<T, 6> turning;
     detail::set_turning<T>(e, v, turning);
     Mat<T, 3, 6> const spin = product(s.R, s.spin);
@@ -223,9 +234,8 @@ class Lrvf {
   ///   δc = (ρ̃ F̃ + M̃) P δθ,  δ(Pᵀc) = Pᵀ δc + (∂Pᵀ) c.
   template <class T = double>  // compiled where it is used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
-    Index const e = p.element;
     Section<T> s;
-    section<T>(p, turned<T>(q, e), turned<T>(q, e + 1), s);
+    section<T>(p, q, s);
     Vec<T, 3> const off(0.0, p.y, p.z), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
     Vec<T, 3> c = cross(off, f);
     Mat<T, 3, 3> by_turn = skew_of_skew(off, f);
@@ -259,8 +269,14 @@ class Lrvf {
   }
   /// At a node the node's own section, exactly; else the policy's.
   template <StateScalar T>
-  void section(Point const& p, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
-    if (inside(p)) return interpolation_.template section<T>(p.xi, a, b, out);
+  void section(Point const& p, std::span<T const> q, Section<T>& out) const {
+    Quaternion<T> const a = turned<T>(q, p.element), b = turned<T>(q, p.element + 1);
+    if constexpr (CarriesSections<Interpolation>) {
+      if (inside(p))
+        return interpolation_.template section<T>(detail::carried_section<T>(q, elements(), p.element), out);
+    } else if (inside(p)) {
+      return interpolation_.template section<T>(p.xi, a, b, out);
+    }
     set_rotation<T>(p.xi == 0.0 ? a : b, out.R);
     out.spin = detail::zeros<Mat<T, 3, 6>>();
     for (int i = 0; i < 3; ++i) out.spin(i, p.xi == 0.0 ? i : 3 + i) = T(1.0);
@@ -284,7 +300,7 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Ind
       interpolation_(bar.placement),
       section_(bar, c, l_),
       elastic_(section_, bar.placement, l_, n),
-      reference_(std::size_t(7 * (n + 1))) {
+      reference_(std::size_t(CarriesSections<Interpolation> ? detail::carried_at(n, n) : 7 * (n + 1))) {
   sixth_ = c.mass_per_length * l_ / 6.0;
   Vec3 const inertias = rotary_inertias(c);
   for (int i = 0; i < 3; ++i) rotary_[i] = 0.5 * l_ * inertias[i];
@@ -297,6 +313,10 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Ind
     for (int k = 0; k < 3; ++k) q[7 * i + k] = bar.placement.origin[k] + along[k];
     set_entries<4>(q, 7 * i + 3, quaternion_of(product(axes, section.axes)));
   }
+  if constexpr (CarriesSections<Interpolation>)
+    for (Index e = 0; e < n; ++e)
+      detail::set_carried_section<double>(
+          q, n, e, interpolation_.between(detail::turned<double>(q, e), detail::turned<double>(q, e + 1)));
   char const* const advice =
       ". The reference curve's parameter must be its arc length; use more elements on a closed curve.";
   for (Index e = 0; e < n; ++e) {

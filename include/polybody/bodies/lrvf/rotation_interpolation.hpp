@@ -68,19 +68,47 @@ Vec<T, 3> of_node(int node, Vec<T, 6> const& x) {
 
 }  // namespace detail
 
+/// The section in the middle of an element where it does not follow from the nodes.
+template <StateScalar T>
+struct CarriedSection {
+  Quaternion<T> axes;  ///< in world axes
+  Vec<T, 3> turn;      ///< l K [rad]
+};
+
+/// The nodes give every section of their element.
 template <class I>
-concept RotationInterpolation =
-    std::constructible_from<I, Placement> &&
+concept FollowsNodes =
     requires(I const i, Quaternion<double> const a, Vec6 const w, Vec3 const x, StrainSection<double> strained,
-             StrainGradient gradient, typename I::template Section<double> section, Mat<double, 6, 6> pulled) {
-      requires std::derived_from<typename I::template Section<double>, SectionMotion<double>>;
+             StrainGradient gradient, typename I::template Section<double> section) {
       i.template middle<double>(a, a, strained);   // ξ = ½
       i.gradient(a, a, x, x, w, gradient);         // of the same
       i.template at<double>(0.2, a, a, strained);  // any ξ: for quadratures with more points
       i.template section<double>(0.5, a, a, section);
+      { i.turn(0.5, 1.0, a, a) } -> std::same_as<SectionTurn>;
+    };
+
+/// The section in the middle depends on the way that the nodes went: the coordinates carry it along, element by
+/// element. No other one is known.
+template <class I>
+concept CarriesSections =
+    requires(I const i, CarriedSection<double> const s, Quaternion<double> const a, Vec6 const w, Vec3 const x,
+             StrainSection<double> strained, StrainGradient gradient, typename I::template Section<double> section) {
+      { i.between(a, a) } -> std::same_as<CarriedSection<double>>;                   // in the reference
+      { i.template plus<double>(s, x, x) } -> std::same_as<CarriedSection<double>>;  // by δ₁, δ₂ of q ⊞ δ
+      i.template middle<double>(s, strained);
+      i.gradient(s, x, w, gradient);  // of the same, for fixed m and w: P does not change
+      i.template section<double>(s, section);
+      i.require_known(0.5, 0.65);  // a marker may stand at ξ, which is s along the bar
+    };
+
+template <class I>
+concept RotationInterpolation =
+    (FollowsNodes<I> || CarriesSections<I>) && std::constructible_from<I, Placement> &&
+    requires(I const i, Vec6 const w, Vec3 const x, typename I::template Section<double> section,
+             Mat<double, 6, 6> pulled) {
+      requires std::derived_from<typename I::template Section<double>, SectionMotion<double>>;
       { i.template bias<double>(section, w) } -> std::same_as<Vec3>;  // Ω˙ for Ω₁˙ = Ω₂˙ = 0 [rad/s²]
       i.spin_gradient(section, x, pulled);                            // of Pᵀ x, for a fixed x
-      { i.turn(0.5, 1.0, a, a) } -> std::same_as<SectionTurn>;
       { I::objective } -> std::convertible_to<bool>;  // rigid motions of both nodes carry the whole element
     };
 

@@ -1,0 +1,7 @@
+// refused: carries one section along, in the middle
+// Between the nodes and the middle no rotation is known, and no strain.
+#include <polybody/bodies/lrvf/incremental_interpolation.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+
+polybody::Lrvf<polybody::Incremental, polybody::Full> const beam =
+    polybody::Lrvf<polybody::Incremental, polybody::Full>::from({.length = 1.0}, 2);
