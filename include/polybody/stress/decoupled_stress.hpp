@@ -20,7 +20,8 @@ namespace polybody {
 namespace detail {
 
 /// The `mass_points` of a beam's part up to ξ.
-inline std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam const& beam, double xi) {
+template <class = void>  // compiled where it is used
+std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam const& beam, double xi) {
   std::array<MassPoint, 4> points = mass_points(s, beam);
   for (std::size_t i = 0; i < 4; ++i) {
     MassPoint& p = points[i];
@@ -44,6 +45,7 @@ class DecoupledStress {
   /// K e = Q of each sample: right where loads change slowly compared with the structure's vibrations. Loads that
   /// balance, as recorded ones do, cause the same stress whatever `frame` holds; displacements are relative to it.
   /// \throws InvalidInput as `StructureLoads`, and for a frame that holds something, but not enough.
+  template <class = void>
   static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
                                       StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
@@ -62,6 +64,7 @@ class DecoupledStress {
   /// (N, Q_y, Q_z, M_x, M_y, M_z) of the section at s of a bar (see sections.hpp), damping included [N], [N m]. Where a
   /// load acts right at the section, those just beyond it; at the last end, just before. \throws InvalidInput outside
   /// the bar, and for a structure without bars.
+  template <class = void>
   std::vector<Vec6> section_forces(double s, Index bar = 0) const {
     auto const [index, xi] = locate(s, bar);
     Structure const& structure = loads_.structure();
@@ -100,6 +103,7 @@ class DecoupledStress {
 
   /// Axial strain of the fibre (y, z) of that section, N/EA − y M_z/EI + z M_y/EI_y: with damping, that which these
   /// forces would cause at rest. \throws InvalidInput as `section_forces`.
+  template <class = void>
   std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
     std::vector<double> out;
@@ -109,6 +113,7 @@ class DecoupledStress {
   }
   /// Axial stress of that fibre [N/m²], `of` being the bar. \throws InvalidInput as above, and for a bar given by
   /// constants.
+  template <class = void>
   std::vector<double> axial_stress(Bar const& of, double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     std::vector<double> out;
     for (Vec6 const& n : section_forces(s, bar)) out.push_back(fibre_stress(of, n, y, z));
@@ -116,6 +121,7 @@ class DecoupledStress {
   }
   /// Axial and shear stress at a point of that section, which tell principal stresses and von Mises'. \throws
   /// InvalidInput as `section_stress`.
+  template <class = void>
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
     std::vector<SectionStress> out;
     for (Vec6 const& n : section_forces(s, bar)) out.push_back(section_stress(of, n, y, z));
@@ -131,6 +137,7 @@ class DecoupledStress {
     Vec<double, 12> e, deformed, rate, acceleration;
   };
 
+  template <class = void>
   explicit DecoupledStress(StructureLoads loads) : loads_(std::move(loads)) {
     if (!loads_.structure().initial_force.isZero(0.0))
       throw InvalidInput{"Stress of \"", loads_.name(),
@@ -139,6 +146,7 @@ class DecoupledStress {
   }
 
   /// K e = loads, the structure held as `frame` says; where that lets it move as a whole, by `statically_determinate`.
+  template <class = void>
   void settle(ReferenceConditions const& frame, MatX const& loads) {
     Structure const& s = loads_.structure();
     std::vector<Index> free = frame.free_coordinates(s);
@@ -156,6 +164,7 @@ class DecoupledStress {
     e_ = scatter_rows(factor.solve(rhs), free, s.size());
   }
 
+  template <class = void>
   std::pair<Index, double> locate(double s, Index bar) const {
     Structure const& structure = loads_.structure();
     std::string const who = sentence_of({"Stress of \"", loads_.name(), "\""});
@@ -173,6 +182,7 @@ class DecoupledStress {
     return {found, xi > 1.0 - same ? 1.0 : xi};
   }
 
+  template <class = void>
   Local local(Structure::Beam const& beam, std::size_t sample) const {
     auto const of = [&](MatX const& m) {
       Vec<double, 12> x = Vec<double, 12>::Zero();
@@ -183,6 +193,7 @@ class DecoupledStress {
   }
 
   /// Acceleration less gravity at a point of the axis, and its slopes along y and z of the section.
+  template <class = void>
   std::array<Vec3, 3> acceleration(Local const& x, MassPoint const& g, Structure::Beam const& beam) const {
     Mat3 const& B = x.motion.B;
     std::array<Vec3, 3> a{x.motion.b + B * g.at, B * beam.axes.col(1), B * beam.axes.col(2)};
@@ -198,9 +209,9 @@ class DecoupledStress {
   MatX e_;  ///< (N×samples)
 };
 
-inline DecoupledStress DecoupledStress::quasi_static(Structure structure, BodyRecord const& record,
-                                                     StructureLoadOptions const& options,
-                                                     ReferenceConditions const& frame) {
+template <class>
+DecoupledStress DecoupledStress::quasi_static(Structure structure, BodyRecord const& record,
+                                              StructureLoadOptions const& options, ReferenceConditions const& frame) {
   DecoupledStress out(StructureLoads(std::move(structure), record, options));
   Structure const& s = out.loads_.structure();
   std::vector<Index> const free = frame.free_coordinates(s);

@@ -34,6 +34,7 @@ class NodalStress {
 
   /// `matrix` has six rows for each spot, in their order, and a column for each coordinate (6k×N) [Pa/m].
   /// \throws InvalidInput for another number of rows, an entry that is not finite, no spots, or two of one name.
+  template <class = void>  // compiled where it is used
   NodalStress(Matrix const& matrix, std::vector<Spot> spots) : matrix_(matrix), spots_(std::move(spots)) {
     Index const k = Index(spots_.size());
     if (k == 0) throw InvalidInput("NodalStress: it has no nodes. Name one at least.");
@@ -59,6 +60,7 @@ class NodalStress {
   /// node counted from 0; # begins a comment. A structure has three coordinates a node: `Structure::size()`.
   /// \throws IoError naming file and line for what cannot be read, is truncated or does not fit; InvalidInput for
   /// coordinates that are not three a node.
+  template <class = void>
   static NodalStress read(std::string const& matrix_file, std::string const& names_file, Index coordinates) {
     if (coordinates < 3 || coordinates % 3 != 0 || coordinates > std::numeric_limits<int>::max())
       throw InvalidInput{"NodalStress: ", coordinates,
@@ -79,11 +81,13 @@ class NodalStress {
 
   /// Stress of every node (6k×samples) [Pa] under these displacements (N×samples) [m]. \throws InvalidInput for another
   /// number of rows.
+  template <class = void>
   MatX of(MatX const& displacements) const {
     require_rows(displacements, "displacements");
     return matrix_ * displacements;
   }
   /// History of one node's stress. \throws InvalidInput as above, and for a name that does not exist.
+  template <class = void>
   std::vector<Vec6> of(std::string_view name, MatX const& displacements) const {
     Index const first = row_of(name);
     require_rows(displacements, "displacements");
@@ -93,6 +97,7 @@ class NodalStress {
     return out;
   }
   /// History of its von Mises stress [Pa]. \throws InvalidInput as above.
+  template <class = void>
   std::vector<double> von_mises(std::string_view name, MatX const& displacements) const {
     std::vector<double> out;
     for (Vec6 const& s : of(name, displacements)) out.push_back(polybody::von_mises(s));
@@ -102,6 +107,7 @@ class NodalStress {
   /// The same nodes by modal coordinates q (n×samples), where the displacements are `shapes` (N×n) times q: its matrix
   /// is (6k×n), and a stress six scalar products of n numbers. \throws InvalidInput for shapes with another number of
   /// rows.
+  template <class = void>
   NodalStress modal(MatX const& shapes) const {
     require_rows(shapes, "shapes");
     MatX const reduced = matrix_ * shapes;
@@ -109,6 +115,7 @@ class NodalStress {
   }
 
  private:
+  template <class = void>
   static std::vector<Spot> read_spots(std::string const& file, Index nodes) {
     NumberLines lines(file, '#');
     std::vector<Spot> spots;
@@ -126,9 +133,11 @@ class NodalStress {
     return spots;
   }
 
+  template <class = void>
   std::vector<Spot>::const_iterator find(std::string_view name) const {
     return std::find_if(spots_.begin(), spots_.end(), [&](Spot const& spot) { return spot.name == name; });
   }
+  template <class = void>
   Index row_of(std::string_view name) const {
     auto const spot = find(name);
     if (spot != spots_.end()) return 6 * Index(spot - spots_.begin());
@@ -136,6 +145,7 @@ class NodalStress {
     for (Spot const& s : spots_) known += (known.empty() ? "\"" : ", \"") + s.name + '"';
     throw InvalidInput{"NodalStress: no node is called \"", std::string(name), "\". There are ", known, "."};
   }
+  template <class = void>
   void require_rows(MatX const& x, char const* what) const {
     if (x.rows() != matrix_.cols())
       throw InvalidInput{"NodalStress: the ",

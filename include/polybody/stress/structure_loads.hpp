@@ -54,6 +54,7 @@ class StructureLoads {
 
   /// \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the structure's inertia, and
   /// patches of nodes that cannot take them.
+  template <class = void>  // compiled where it is used
   StructureLoads(Structure structure, BodyRecord const& record, StructureLoadOptions const& options)
       : s_(std::move(structure)),
         name_(record.name),
@@ -88,6 +89,7 @@ class StructureLoads {
   std::vector<Load> const& loads(std::size_t k) const { return loads_[k]; }
 
   /// Nodal forces of sample k (N).
+  template <class = void>
   VecX nodal(std::size_t k) const {
     Motion const& at = motions_[k];
     VecX q = VecX::Zero(s_.size());
@@ -106,6 +108,7 @@ class StructureLoads {
   }
 
   /// Nodal forces of all samples (N×samples).
+  template <class = void>
   MatX nodal() const {
     MatX q(s_.size(), Index(times_.size()));
     for (std::size_t k = 0; k < times_.size(); ++k) q.col(Index(k)) = nodal(k);
@@ -113,6 +116,7 @@ class StructureLoads {
   }
 
   /// The part of a load's nodal forces on its beam (12).
+  template <class = void>
   Vec<double, 12> on_beam(Load const& load) const {
     BeamShapes const shapes(load.xi, beam(load).length);
     Mat3 const& axes = beam(load).axes;
@@ -124,6 +128,7 @@ class StructureLoads {
  private:
   std::string who() const { return sentence_of({"Stress of \"", name_, "\": "}); }
 
+  template <class = void>
   Motion motion(BodySample const& sample, Vec3 const& gravity, Placement const& place) const {
     Mat3 const axes = sample.frame.A * place.axes;
     Motion x;
@@ -138,6 +143,7 @@ class StructureLoads {
   }
 
   /// Puts a load on the nearest section of a beam, which is rigid, or on the nearest node.
+  template <class = void>
   void take(Load load, Vec3 const& at) {
     Vec3 held = Vec3::Zero();
     double least = std::numeric_limits<double>::infinity();
@@ -165,17 +171,20 @@ class StructureLoads {
   }
 
   /// Shares a load among the nodes of a patch.
+  template <class = void>
   void share(Load const& load, Vec3 const& at, StructureLoadOptions const& options) {
     auto const own = std::find_if(options.patches.begin(), options.patches.end(),
                                   [&](LoadPatch const& p) { return (p.at - at).norm() <= same_place; });
     if (own != options.patches.end()) return spread(load, at, own->nodes);
     spread(load, at, NodePatch(s_, nodes_within(s_, at, options.patch), patch_of_));
   }
+  template <class = void>
   void spread(Load const& load, Vec3 const& at, NodePatch const& patch) {
     for (std::size_t k = 0; k < patch.nodes().size(); ++k)
       loads_.back().push_back({.node = patch.nodes()[k], .f = patch.force(k, at, load.f, load.m), .m = Vec3::Zero()});
   }
 
+  template <class = void>
   double size() const {
     double most = 0.0;
     for (Vec3 const& r : s_.nodes) most = std::max(most, (r - s_.nodes.front()).norm());
@@ -184,6 +193,7 @@ class StructureLoads {
 
   /// Checks Σ f − ∫ρ a = 0 and Σ (m + u × f) − ∫ρ u × a = 0 about the centre of mass, relative to the largest sum of
   /// sizes of the record.
+  template <class = void>
   void require_balance(double part) const {
     double const length = size();
     Vec3 const centre = s_.first / s_.mass;

@@ -51,6 +51,7 @@ struct LoadLines {
   MatX loads;                    ///< (n×samples)
   std::array<MatX, 6> products;  ///< Φᵀ ∫ρ S_kᵀ S_l Φ; or empty
 
+  template <class = void>  // compiled where it is used
   std::pair<Index, double> between(double t) const {
     std::vector<double> const& times = of->times();
     Index const after =
@@ -58,10 +59,12 @@ struct LoadLines {
     double const t0 = times[std::size_t(after) - 1], t1 = times[std::size_t(after)];
     return {after, std::clamp((t - t0) / (t1 - t0), 0.0, 1.0)};
   }
+  template <class = void>
   void operator()(double t, VecX& f) const {
     auto const [after, share] = between(t);
     f = (1.0 - share) * loads.col(after - 1) + share * loads.col(after);
   }
+  template <class = void>
   void add_matrices(double t, MatX& damping, MatX& stiffness) const {
     if (products[0].size() == 0) return;
     auto const [after, share] = between(t);
@@ -95,7 +98,8 @@ struct VibrationHistory {
 namespace detail {
 
 /// \throws InvalidInput for shapes of another size, and such as move what the frame holds.
-inline void require_fitting_shapes(Structure const& s, Vibration const& how, std::string const& who) {
+template <class = void>
+void require_fitting_shapes(Structure const& s, Vibration const& how, std::string const& who) {
   if (how.shapes.rows() != s.size())
     throw InvalidInput{who,      "the shapes have ",   how.shapes.rows(), " rows, but the structure has ",
                        s.size(), " nodal coordinates."};

@@ -15,7 +15,8 @@ namespace polybody {
 
 /// Displacements of the structure that moves as a whole (N×6): along x, y, z, and turned about them through the centre
 /// of mass.
-inline MatX rigid_motions(Structure const& s) {
+template <class = void>  // compiled where it is used
+MatX rigid_motions(Structure const& s) {
   MatX out = MatX::Zero(s.size(), 6);
   Vec3 const centre = s.first / s.mass;
   for (Index i = 0; i < Index(s.nodes.size()); ++i) {
@@ -30,7 +31,8 @@ namespace detail {
 
 /// Shapes with unit modal mass that span the columns of `shapes`, by ascending frequency; what repeats other columns is
 /// left out.
-inline MatX orthogonal_basis(Structure const& s, MatX shapes) {
+template <class = void>
+MatX orthogonal_basis(Structure const& s, MatX shapes) {
   MatX k = shapes.transpose() * (s.stiffness * shapes);
   for (Index j = 0; j < shapes.cols(); ++j)
     if (double const size = k(j, j); size > 0.0) shapes.col(j) /= std::sqrt(size);

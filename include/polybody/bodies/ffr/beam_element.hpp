@@ -19,6 +19,7 @@ struct BeamShapes {
   Mat<double, 4, 12> strain =
       Mat<double, 4, 12>::Zero();  ///< rows: axial strain, torsion, curvature about y, about z [1/m]
 
+  template <class = void>  // compiled where it is used
   BeamShapes(double xi, double l) {
     double const x = xi, h[4] = {1 - 3 * x * x + 2 * x * x * x, (x - 2 * x * x + x * x * x) * l,
                                  3 * x * x - 2 * x * x * x, (x * x * x - x * x) * l};
@@ -66,7 +67,8 @@ Mat<double, rows, 12> by_body_axes(Mat<double, rows, 12> const& m, Mat3 const& a
   return out;
 }
 /// m from the element's axes to the body's in its columns and rows: C m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
-inline Mat<double, 3, 12> in_body_axes(Mat<double, 3, 12> const& m, Mat3 const& axes) {
+template <class = void>
+Mat<double, 3, 12> in_body_axes(Mat<double, 3, 12> const& m, Mat3 const& axes) {
   Mat<double, 3, 12> const t = by_body_axes<3>(m, axes);
   Mat<double, 3, 12> out;
   for (int j = 0; j < 12; ++j)
@@ -74,15 +76,16 @@ inline Mat<double, 3, 12> in_body_axes(Mat<double, 3, 12> const& m, Mat3 const& 
   return out;
 }
 /// Adds the matrix of one beam to the entries of the structure's.
-inline void add_entries(Structure::Beam const& beam, BeamMatrix const& m,
-                        std::vector<Eigen::Triplet<double>>& entries) {
+template <class = void>
+void add_entries(Structure::Beam const& beam, BeamMatrix const& m, std::vector<Eigen::Triplet<double>>& entries) {
   auto const dof = [&](int i) { return int(6 * (i < 6 ? beam.a : beam.b) + i % 6); };
   for (int i = 0; i < 12; ++i)
     for (int j = 0; j < 12; ++j)
       if (m(i, j) != 0.0) entries.emplace_back(dof(i), dof(j), m(i, j));
 }
 /// Adds nodal values of one beam to those of the structure (N).
-inline void add_entries(Structure::Beam const& beam, Vec<double, 12> const& x, VecX& sum) {
+template <class = void>
+void add_entries(Structure::Beam const& beam, Vec<double, 12> const& x, VecX& sum) {
   for (int i = 0; i < 12; ++i) sum[6 * (i < 6 ? beam.a : beam.b) + i % 6] += x[i];
 }
 
@@ -93,7 +96,8 @@ struct MassPoint {
   double m, my, mz;
 };
 /// The four Gauss points of a beam, which are exact for products of cubics.
-inline std::array<MassPoint, 4> mass_points(Structure const& s, Structure::Beam const& beam) {
+template <class = void>
+std::array<MassPoint, 4> mass_points(Structure const& s, Structure::Beam const& beam) {
   std::array<MassPoint, 4> points;
   double const about_z = beam.constants.rotary_inertia, about_y = beam.constants.rotary_inertia_y.value_or(about_z);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -121,7 +125,8 @@ void add_product(double w, A const& a, int row_a, B const& b, int row_b, BeamMat
 }  // namespace detail
 
 /// ∫ Bᵀ diag(c) B: with two Gauss points the closed form of Eq. A.5 [Przemieniecki 1968, Eq. 5.116 without shear].
-inline BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
+template <class = void>
+BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
   BeamMatrix k = BeamMatrix::Zero();
   for (auto const& g : gauss<2>) {
     Mat<double, 4, 12> const b = by_body_axes<4>(BeamShapes(g.xi, beam.length).strain, beam.axes);
@@ -130,10 +135,14 @@ inline BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
   return k;
 }
 /// (EA, GJ, EI_y, EI_z) of a section: its stiffness against axial strain, torsion and bending about y and z.
-inline Vec4 section_stiffness(BarConstants const& c) { return {c.EA, c.GJ, c.EI_y.value_or(c.EI), c.EI}; }
+template <class = void>
+Vec4 section_stiffness(BarConstants const& c) {
+  return {c.EA, c.GJ, c.EI_y.value_or(c.EI), c.EI};
+}
 
 /// ∫ N (v′ᵀv′ + w′ᵀw′) dx: what an axial force N(ξ) = n₀ + n₁ ξ + n₂ ξ² [N] adds to the stiffness.
-inline BeamMatrix axial_force_stiffness(Structure::Beam const& beam, double n0, double n1 = 0.0, double n2 = 0.0) {
+template <class = void>
+BeamMatrix axial_force_stiffness(Structure::Beam const& beam, double n0, double n1 = 0.0, double n2 = 0.0) {
   BeamMatrix k = BeamMatrix::Zero();
   for (auto const& g : gauss<4>) {
     Mat<double, 3, 12> const slopes = by_body_axes<3>(BeamShapes(g.xi, beam.length).rotation, beam.axes);

@@ -12,7 +12,8 @@ namespace polybody {
 
 /// Axes of the intermediate element frame of a beam along `direction`: Eq. A.2, which keeps z normal to the body's y
 /// axis, and Eq. A.3 where the beam points along it. \throws InvalidInput for a zero direction.
-inline Mat3 intermediate_axes(Vec3 const& direction) {
+template <class = void>  // compiled where it is used
+Mat3 intermediate_axes(Vec3 const& direction) {
   double const length = direction.norm();
   if (!(length > 0.0)) throw InvalidInput("Structure: a beam needs two different nodes.");
   Vec3 const c = direction / length;
@@ -28,7 +29,8 @@ inline Mat3 intermediate_axes(Vec3 const& direction) {
 namespace detail {
 
 /// The part of ∫ρ u₀ₖ S_l (k = −1: of ∫ρ S_l) that stems from one beam.
-inline Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& beam, int k, int l) {
+template <class = void>
+Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& beam, int k, int l) {
   Vec<double, 12> sum = Vec<double, 12>::Zero();
   for (MassPoint const& p : mass_points(s, beam))
     for (int j = 0; j < 12; ++j) {
@@ -39,8 +41,9 @@ inline Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& 
 }
 
 /// Inertia of a beam: the integrals of structure.hpp.
-inline void add_inertia(Structure& s, Structure::Beam const& beam,
-                        std::array<std::vector<Eigen::Triplet<double>>, 6>& entries) {
+template <class = void>
+void add_inertia(Structure& s, Structure::Beam const& beam,
+                 std::array<std::vector<Eigen::Triplet<double>>, 6>& entries) {
   std::array<BeamMatrix, 6> inertia;
   for (BeamMatrix& m : inertia) m.setZero();
   for (MassPoint const& g : mass_points(s, beam)) {
@@ -74,7 +77,8 @@ inline constexpr double same_node = 1e-9;
 /// Bars, each cut into as many elements as `elements` says, welded wherever their ends meet; placements are in the
 /// body's axes. Their damping is Kelvin–Voigt's; a pretension keeps its first-order force and its stiffness.
 /// \throws InvalidInput for no bar, fewer than one element, or a bar without torsional stiffness GJ.
-inline Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
+template <class = void>
+Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
   if (bars.empty() || bars.size() != elements.size())
     throw InvalidInput("Structure: give at least one bar, and a number of elements for each.");
   Structure s;
@@ -130,7 +134,8 @@ inline Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> c
 }
 
 /// One bar in n equal elements, in its own axes: nodes 0 … n, and the body placed where the bar is.
-inline Structure structure_of(Bar bar, Index n) {
+template <class = void>
+Structure structure_of(Bar bar, Index n) {
   bar.placement = {};
   return structure_of(std::vector{bar}, {n});
 }
@@ -141,6 +146,7 @@ inline Structure structure_of(Bar bar, Index n) {
 class AxialForceStiffness {
  public:
   /// Holds all six coordinates of `node`. \throws InvalidInput for a structure that is not made of beams, or in parts.
+  template <class = void>
   explicit AxialForceStiffness(Structure const& s, Index node = 0) : structure_(&s) {
     if (s.beams.empty())
       throw InvalidInput(

@@ -37,6 +37,7 @@ class Ffr {
 
   /// The bar in n elements, frame tied to its first end, all nodal coordinates: 6 n. \throws InvalidInput as
   /// `structure_of`.
+  template <class = void>  // compiled where it is used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.placement = bar.placement;
     Structure const s = structure_of(bar, n);
@@ -44,11 +45,13 @@ class Ffr {
   }
   /// A structure with a basis of ffr_basis.hpp (N×n). \throws InvalidInput for a basis that does not fit or is
   /// dependent.
+  template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(integrals_of(structure, shapes, options.stiffening), options) {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), stiffens());
   }
   /// With the user's own integrals. \throws InvalidInput when they do not fit each other.
+  template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options)
       : i_(std::move(integrals)), placement_(options.placement), terms_(options.terms) {
     i_.check("Ffr");
@@ -66,12 +69,21 @@ class Ffr {
 
   /// The section at distance s from the first end of bar `bar`, (y, z) off its axis. \throws InvalidInput outside, and
   /// for a body that is not made of bars.
-  Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const { return made().at(s, y, z, bar); }
+  template <class = void>
+  Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
+    return made().at(s, y, z, bar);
+  }
   /// A node of the structure. \throws InvalidInput for one that does not exist.
-  Point node(Index i) const { return made().node(i); }
+  template <class = void>
+  Point node(Index i) const {
+    return made().node(i);
+  }
   /// The point `at` of the undeformed body [m], which moves with a patch of the structure's nodes as a whole.
   /// \throws InvalidInput with geometric stiffening.
-  Point patch(NodePatch const& nodes, Vec3 const& at) const { return made().patch(nodes, at); }
+  template <class = void>
+  Point patch(NodePatch const& nodes, Vec3 const& at) const {
+    return made().patch(nodes, at);
+  }
   /// The structure that the body is made of. \throws InvalidInput for a body made of the user's own integrals.
   Structure const& structure() const { return made().structure(); }
   /// A point as the user describes it. \throws InvalidInput for matrices that are not 3×n.
@@ -87,6 +99,7 @@ class Ffr {
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }
 
+  template <class = void>
   void reference(std::span<double> q) const {
     std::fill(q.begin(), q.end(), 0.0);
     part<3>(q, 0) = placement_.origin;
@@ -103,12 +116,14 @@ class Ffr {
     std::copy(v.begin(), v.end(), out.begin());
     part<3>(out, 3) = right_jacobian_inverse<T>(part<3>(delta, 3)) * part<3>(v, 3);
   }
+  template <class = void>
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     std::fill(v.begin(), v.end(), 0.0);
     part<3>(v, 0) = v0 + omega.cross(part<3>(q, 0).eval());
     part<3>(v, 3) = rotation_matrix<double>(part<4>(q, 3)).transpose() * omega;
   }
 
+  template <class = void>
   void mass(Index, std::span<double const> q, MatX& m) const {
     Index const n = deformations();
     Mat3 const a = rotation_matrix<double>(part<4>(q, 3));
@@ -202,6 +217,7 @@ class Ffr {
     out.template segment<3>(3) = -(rate * omega + omega.cross(inertia * omega + h) + hd);
   }
 
+  template <class = void>
   void tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd, MatX& k) const {
     FfrTangent(i_, terms_, q, v).write(ck, cd, k);
   }
@@ -220,17 +236,20 @@ class Ffr {
     }
   }
 
+  template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
     static thread_local VecX mv;  // an energy is asked for within steps, too
     mv.resize(speeds());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));
   }
+  template <class = void>
   double strain_energy(Index, std::span<double const> q) const {
     double const* const x = q.data() + 7;
     return 0.5 * detail::quadratic<double>(i_.stiffness, x, x) +
            i_.initial_force.dot(Eigen::Map<VecX const>(x, deformations()));
   }
+  template <class = void>
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
     return -g.dot(i_.mass * part<3>(q, 0) +
                   rotation_matrix<double>(part<4>(q, 3)) * i_.first_moment<double>(q.data() + 7));
@@ -283,6 +302,7 @@ class Ffr {
   }
 
   /// Jᵀw = [f; u × F + N; Sᵀ F + Rᵀ Jr(θ) N] with F = Aᵀf, N = Aᵀm, by q ⊞ δ.
+  template <class = void>
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     Index const n = deformations();
     Mat3 const A = rotation_matrix<double>(part<4>(q, 3));
@@ -305,6 +325,7 @@ class Ffr {
 
   /// How near the axial forces that `loads` (world axes) and the motion of the frame cause come to buckling the beams,
   /// where the body's deflection does not feel them (axial_share.hpp); else zero. \param a v̇ of the body
+  template <class = void>
   double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
                      Vec3 const& gravity, std::span<PlacedWrench const> loads) const {
     if (!points_) return 0.0;
@@ -317,8 +338,14 @@ class Ffr {
 
   /// Axial strain, torsion and curvatures of the beam that a point is on, and its section forces (see sections.hpp); q
   /// are all coordinates of the body. Shear is zero. \throws InvalidInput for a point that is not on a beam.
-  Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 7); }
-  Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 7); }
+  template <class = void>
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    return p.section_strains(q.data() + 7);
+  }
+  template <class = void>
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    return p.section_forces(q.data() + 7);
+  }
 
  private:
   template <class T>

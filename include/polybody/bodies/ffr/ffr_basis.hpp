@@ -45,6 +45,7 @@ class ReferenceConditions {
   }
 
   /// The nodal coordinates that remain, in order. \throws InvalidInput for a node or component that does not exist.
+  template <class = void>
   std::vector<Index> free_coordinates(Structure const& s) const {
     std::vector<char> fixed(std::size_t(s.size()), 0);
     auto const mark = [&](Index node, int component) {
@@ -91,12 +92,14 @@ struct DenseModes {
 
 namespace detail {
 
-inline void require_count(Index count, Index most) {
+template <class = void>
+void require_count(Index count, Index most) {
   if (count < 1 || count > most)
     throw InvalidInput{"Ffr: ", count, " modes are asked for, but the model has 1 to ", most, " to offer."};
 }
 
-inline void require_mass(Structure::Sparse const& m) {
+template <class = void>
+void require_mass(Structure::Sparse const& m) {
   SparseFactor factor;
   factor_positive(factor, m, "the structure's mass matrix is not positive definite.");
 }
@@ -105,7 +108,8 @@ inline void require_mass(Structure::Sparse const& m) {
 
 /// Every nodal coordinate that the reference conditions leave. \throws InvalidInput when the structure can still move
 /// as a whole.
-inline MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = ReferenceConditions::clamped()) {
+template <class = void>
+MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = ReferenceConditions::clamped()) {
   std::vector<Index> const free = frame.free_coordinates(s);
   require_held(submatrix(s.stiffness, free, free));
   return scatter_rows(MatX::Identity(Index(free.size()), Index(free.size())), free, s.size());

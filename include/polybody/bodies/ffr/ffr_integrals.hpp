@@ -55,6 +55,7 @@ struct FfrIntegrals {
   Index size() const { return mass_matrix.rows(); }
 
   /// All zero, for n deformation coordinates.
+  template <class = void>  // compiled where it is used
   static FfrIntegrals zero(Index n) {
     FfrIntegrals x;
     x.first_by.setZero(3, n);
@@ -69,6 +70,7 @@ struct FfrIntegrals {
 
   /// \throws InvalidInput naming `what` for sizes that differ, a mass that is not positive, or a mass matrix that is
   /// not symmetric and positive definite.
+  template <class = void>
   void check(std::string const& what) const {
     Index const n = size();
     auto const square = [&](MatX const& m) { return m.rows() == n && m.cols() == n; };
@@ -94,6 +96,7 @@ struct FfrIntegrals {
       throw InvalidInput{what, ": the mass matrix of its deformation is not symmetric and positive definite."};
   }
   /// \throws InvalidInput naming `what` and the integral that has a NaN, or an entry whose square is not finite.
+  template <class = void>
   void require_entries(std::string const& what) const {
     auto const require = [&](double const* x, Index count, char const* name) {
       for (Index i = 0; i < count; ++i)
@@ -112,7 +115,10 @@ struct FfrIntegrals {
     require(damping.data(), damping.size(), "damping");
     require(initial_force.data(), initial_force.size(), "initial_force");
   }
-  bool stiffens() const { return first_second[0].size() > 0; }
+  template <class = void>
+  bool stiffens() const {
+    return first_second[0].size() > 0;
+  }
 
   template <class T>
   struct Moments {
@@ -163,7 +169,8 @@ struct FfrIntegrals {
 /// The integrals of `s` with e = `shapes` q (N×n); `stiffening` adds, to second order in q, what bending draws the
 /// points along the beams (foreshortening), which centrifugal and other axial forces work on.
 /// \throws InvalidInput for shapes of another size; with stiffening, for a structure without beams.
-inline FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffening = false) {
+template <class = void>
+FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffening = false) {
   if (shapes.rows() != s.size())
     throw InvalidInput{"Ffr: the shapes have ", shapes.rows(), " rows, but the structure has ", s.size(),
                        " nodal coordinates."};

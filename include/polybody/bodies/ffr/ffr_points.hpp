@@ -33,6 +33,7 @@ struct FfrPoint {
   }
   /// Strains and forces of the beam's section by the deformation q (see sections.hpp). \throws InvalidInput for a point
   /// that is not of a beam.
+  template <class = void>  // compiled where it is used
   Vec6 section_strains(double const* q) const {
     if (strain.cols() != S.cols()) throw InvalidInput("Ffr: strains are known in points of beams only.");
     Vec6 sum = Vec6::Zero();
@@ -40,6 +41,7 @@ struct FfrPoint {
       for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
     return sum;
   }
+  template <class = void>
   Vec6 section_forces(double const* q) const {
     Vec6 n = section_strains(q);
     for (int i = 0; i < 4; ++i) n[i == 0 ? 0 : i + 2] *= stiffness[i];
@@ -50,12 +52,14 @@ struct FfrPoint {
 /// Makes the points of a structure with e = Φ q.
 class FfrPoints {
  public:
+  template <class = void>
   FfrPoints(Structure structure, MatX shapes, bool stiffening) : s_(std::move(structure)), shapes_(std::move(shapes)) {
+    auto const make = [](auto& part, auto const& from) { part.emplace(from); };  // compiled where it is used
     if (stiffening) {
-      axial_.emplace(s_);
+      make(axial_, s_);
     } else if (!s_.beams.empty() && shapes_.cols() > 0) {
-      MatX const image = s_.stiffness * shapes_;
-      unstiffened_.emplace(shapes_.transpose() * image);
+      MatX const image = s_.stiffness * shapes_, carried = shapes_.transpose() * image;
+      make(unstiffened_, carried);
       if (unstiffened_->info() != Eigen::Success) unstiffened_.reset();
     }
   }
@@ -64,6 +68,7 @@ class FfrPoints {
 
   Structure const& structure() const { return s_; }
   /// As the free function; zero with stiffening, which leaves nothing out, and for what is not made of beams.
+  template <class = void>
   double axial_share(StructureAction const& action) const {
     return unstiffened_ ? polybody::axial_share(s_, shapes_, *unstiffened_, action) : 0.0;
   }
@@ -75,6 +80,7 @@ class FfrPoints {
     return s_.bar_lengths.front();
   }
   /// The point at distance s from the first end of a bar, (y, z) off its axis. \throws InvalidInput outside the bar.
+  template <class = void>
   FfrPoint at(double s, double y, double z, Index bar) const {
     if (s_.beams.empty()) throw InvalidInput("Ffr: at(s) needs a body made from bars; use node(i).");
     if (bar < 0 || bar >= Index(s_.bar_lengths.size()))
@@ -105,6 +111,7 @@ class FfrPoints {
   }
 
   /// A node. \throws InvalidInput for one that does not exist.
+  template <class = void>
   FfrPoint node(Index i) const {
     s_.require_node(i, "Ffr");
     FfrPoint p;
@@ -125,6 +132,7 @@ class FfrPoints {
 
   /// The point `at` of the undeformed structure, fixed to the mean motion of a patch of its nodes. \throws InvalidInput
   /// with geometric stiffening.
+  template <class = void>
   FfrPoint patch(NodePatch const& nodes, Vec3 const& at) const {
     if (axial_)
       throw InvalidInput("Ffr: with geometric stiffening points are sections or nodes, not patches of nodes.");

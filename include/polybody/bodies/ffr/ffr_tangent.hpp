@@ -17,6 +17,7 @@ namespace polybody {
 ///   by the frame's rotation −A w̃,  by Ω  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),  by q  A (Ω̃² C + 2 Ω̃ ċ_q).
 class FfrTangent {
  public:
+  template <class = void>  // compiled where it is used
   FfrTangent(FfrIntegrals const& integrals, FfrTerms const& terms, std::span<double const> q, std::span<double const> v)
       : i_(integrals),
         terms_(terms),
@@ -31,6 +32,7 @@ class FfrTangent {
     at_.J = i_.inertia;
   }
 
+  template <class = void>
   void write(double ck, double cd, MatX& k) {
     Index const n = i_.size();
     k.setZero(6 + n, 6 + n);
@@ -48,6 +50,7 @@ class FfrTangent {
 
  private:
   /// The terms of C and H without their derivatives.
+  template <class = void>
   void add_columns(double ck, double cd, MatX& k) {
     for (Index i = 0; i < i_.size(); ++i) {
       Vec3 c, h;
@@ -61,6 +64,7 @@ class FfrTangent {
     }
   }
   /// The terms of J, entry p by entry: slope (n) = ∂J_p/∂q, bent (n) = ∂(J˙_p)/∂q.
+  template <class = void>
   void add_inertia(double ck, double cd, MatX& k) {
     for (std::size_t p = 0; p < 6; ++p) {
       int const a = symmetric_row[p], b = symmetric_column[p];
@@ -86,6 +90,7 @@ class FfrTangent {
     }
   }
   /// The derivatives of H by q.
+  template <class = void>
   void add_coupling(double ck, double cd, MatX& k) const {
     for (Index i = 0; i < 3; ++i) {
       MatX const& m = i_.coupling_by[std::size_t(i)];
@@ -101,6 +106,7 @@ class FfrTangent {
     }
   }
   /// The derivatives of C by q, and Ċ q̇ into w.
+  template <class = void>
   void add_foreshortening(double ck, double cd, Vec3& w, MatX& k) const {
     for (Index i = 0; i < 3; ++i) {
       Vec3 const by = A_ * (2.0 * ck * spin_.col(i) + 2.0 * cd * Vec3::Unit(i));

@@ -17,7 +17,8 @@ namespace polybody {
 /// general or symmetric (its lower triangle). Eigen's unsupported loader leaves symmetric matrices halved and believes
 /// any index, so this does not use it. `need` says why the size must be that: "the matrix is 2×2, but the …".
 /// \throws IoError for anything else, with the line.
-inline Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index n, std::string const& need) {
+template <class = void>  // compiled where it is used
+Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index n, std::string const& need) {
   NumberLines lines(file, '%');
   std::string banner;
   lines.raw(banner);

@@ -22,12 +22,17 @@ namespace polybody {
 namespace detail {
 
 /// Row or column i of a matrix with x, y, z of every node.
-inline std::string coordinate_name(Index i) { return sentence_of({i, " (", "xyz"[i % 3], " of node ", i / 3, ")"}); }
-inline std::string entry_name(Index i, Index j) {
+template <class = void>  // compiled where it is used
+std::string coordinate_name(Index i) {
+  return sentence_of({i, " (", "xyz"[i % 3], " of node ", i / 3, ")"});
+}
+template <class = void>
+std::string entry_name(Index i, Index j) {
   return sentence_of({"row ", coordinate_name(i), ", column ", coordinate_name(j)});
 }
 
-inline double largest_entry(Structure::Sparse const& m) {
+template <class = void>
+double largest_entry(Structure::Sparse const& m) {
   double largest = 0.0;
   for (Index j = 0; j < m.outerSize(); ++j)
     for (Structure::Sparse::InnerIterator it(m, j); it; ++it) largest = std::max(largest, std::abs(it.value()));
@@ -35,7 +40,8 @@ inline double largest_entry(Structure::Sparse const& m) {
 }
 
 /// \throws InvalidInput unless m is n×n, finite (with its norm) and symmetric, but for 1e-9 of its largest entry.
-inline void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
+template <class = void>
+void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
   if (m.rows() != n || m.cols() != n)
     throw InvalidInput{"Structure: ",
                        name,
@@ -73,7 +79,8 @@ inline void require_symmetric(Structure::Sparse const& m, Index n, std::string c
 
 /// m (n×n) of M = m ⊗ 1₃. \throws InvalidInput for another M, but for 1e-9 of its largest entry, and for an m that is
 /// not positive definite.
-inline Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
+template <class = void>
+Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
   std::string const remedy =
       ". Only solid elements with a consistent mass matrix of three displacements per node have one; order "
       "the displacements x, y, z of node 0, x, y, z of node 1, and so on.";
@@ -110,7 +117,8 @@ inline Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
 }
 
 /// \throws InvalidInput when a motion of the whole structure strains it: ‖K φ‖ > 1e-6 ‖K‖ ‖φ‖.
-inline void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<Vec3> const& nodes) {
+template <class = void>
+void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<Vec3> const& nodes) {
   Vec3 middle = Vec3::Zero();
   for (Vec3 const& r : nodes) middle += r / double(nodes.size());
   double const norm = stiffness.norm();
@@ -135,7 +143,8 @@ inline void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::
 }
 
 /// \throws InvalidInput where products of masses and places overflow, as of nodes in no unit of length.
-inline void require_finite_moments(Structure const& s) {
+template <class = void>
+void require_finite_moments(Structure const& s) {
   bool finite = s.first.allFinite() && s.second.allFinite();
   for (auto const& moment : s.moment)
     for (VecX const& shape : moment) finite = finite && shape.allFinite();
@@ -151,8 +160,9 @@ inline void require_finite_moments(Structure const& s) {
 /// integrals.
 /// \throws InvalidInput for sizes that do not fit; matrices that are not symmetric or not finite; a mass matrix that is
 /// not m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, as it does to nodes in the wrong order.
-inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
-                              std::vector<Vec3> const& nodes) {
+template <class = void>
+Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
+                       std::vector<Vec3> const& nodes) {
   if (nodes.empty()) throw InvalidInput("Structure: it has no nodes.");
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (double const x : nodes[i])
@@ -191,7 +201,8 @@ inline Structure structure_of(Structure::Sparse const& mass, Structure::Sparse c
 namespace detail {
 
 /// One `x y z` [m] a line. \throws IoError for other lines, or none.
-inline std::vector<Vec3> read_nodes(std::string const& file) {
+template <class = void>
+std::vector<Vec3> read_nodes(std::string const& file) {
   NumberLines lines(file, '#');
   std::vector<Vec3> nodes;
   Vec3 r;
@@ -207,8 +218,9 @@ inline std::vector<Vec3> read_nodes(std::string const& file) {
 /// The same from files: mass and stiffness in Matrix Market's coordinate format, and the nodes, one `x y z` [m] a line,
 /// in which # begins a comment. \throws IoError naming file and line for a file that cannot be read, is truncated or
 /// does not fit the nodes; InvalidInput naming the files as `structure_of`.
-inline Structure read_structure(std::string const& mass_file, std::string const& stiffness_file,
-                                std::string const& nodes_file) {
+template <class = void>
+Structure read_structure(std::string const& mass_file, std::string const& stiffness_file,
+                         std::string const& nodes_file) {
   std::vector<Vec3> const nodes = detail::read_nodes(nodes_file);
   Index const n = 3 * Index(nodes.size());
   std::string const need =

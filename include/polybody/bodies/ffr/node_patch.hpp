@@ -13,7 +13,8 @@
 namespace polybody {
 
 /// Nodes within this distance of a place [m].
-inline std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double distance) {
+template <class = void>  // compiled where it is used
+std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double distance) {
   std::vector<Index> nodes;
   for (std::size_t i = 0; i < s.nodes.size(); ++i)
     if ((s.nodes[i] - at).norm() <= distance) nodes.push_back(Index(i));
@@ -30,6 +31,7 @@ class NodePatch {
   /// \param weights of the nodes, as the area that each stands for; none: all alike.
   /// \throws InvalidInput, which begins with `who`, for nodes that do not exist, fewer than three or all in line, and
   /// weights that are not positive or not as many.
+  template <class = void>
   NodePatch(Structure const& s, std::vector<Index> nodes, std::string const& who, std::vector<double> weights = {})
       : per_node_(s.per_node), nodes_(std::move(nodes)), weights_(std::move(weights)) {
     for (Index const i : nodes_) s.require_node(i, who);
@@ -51,11 +53,13 @@ class NodePatch {
   Vec3 const& middle() const { return middle_; }
 
   /// The force on node k of the patch [N] by a wrench about the point `at`.
+  template <class = void>
   Vec3 force(std::size_t k, Vec3 const& at, Vec3 const& f, Vec3 const& m) const {
     Vec3 const theta = by_moment_ * (m + (at - middle_).cross(f));
     return weights_[k] * (f + theta.cross(arms_[k]));
   }
   /// Nodal forces (N×6) of the unit forces and moments about `at`, for a structure of N coordinates.
+  template <class = void>
   MatX loads(Vec3 const& at, Index size) const {
     MatX out = MatX::Zero(size, 6);
     for (int c = 0; c < 6; ++c) {
@@ -66,6 +70,7 @@ class NodePatch {
     return out;
   }
   /// The motion of the point `at`, fixed to the patch, by the shapes (N×n) of the structure.
+  template <class = void>
   Motion motion(Vec3 const& at, MatX const& shapes) const {
     Mat<double, 3, Eigen::Dynamic> mean(3, shapes.cols()), turn(3, shapes.cols());
     mean.setZero();
@@ -80,6 +85,7 @@ class NodePatch {
   }
 
  private:
+  template <class = void>
   void normalise(std::string const& who) {
     if (weights_.empty()) weights_.assign(nodes_.size(), 1.0);
     if (weights_.size() != nodes_.size())

@@ -31,12 +31,14 @@ class Ffr : public AddingCoordinates {
 
   /// The bar in n elements, frame tied to its first end, all nodal coordinates in the plane: 3 n. The bar needs no GJ
   /// here.
+  template <class = void>  // compiled where it is used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.placement = bar.placement;
     Structure const s = structure_in_plane(bar, n);
     return Ffr(s, nodal_coordinates(s, ReferenceConditions::clamped().in_plane()), options);
   }
   /// The structure of a bar for use in the plane only. \throws InvalidInput as `structure_of`.
+  template <class = void>
   static Structure structure_in_plane(Bar bar, Index n) {
     BarConstants c = constants(bar);
     if (c.GJ == 0.0) c.GJ = c.EI;  // resists what the plane leaves out
@@ -48,6 +50,7 @@ class Ffr : public AddingCoordinates {
   }
   /// A structure in the plane of x and y with a basis made `in_plane`. \throws InvalidInput for a basis that leaves the
   /// plane.
+  template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(FfrIntegrals::of(integrals_of(structure, shapes, options.stiffening)), options) {
     for (Index i = 0; i < shapes.rows(); ++i)
@@ -56,6 +59,7 @@ class Ffr : public AddingCoordinates {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
   /// With the user's own integrals. \throws InvalidInput when they do not fit each other.
+  template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : i_(std::move(integrals)), terms_(options.terms) {
     i_.check("planar::Ffr");
     require_not_negative(options.stiffness_damping, "planar::Ffr: the damping time");
@@ -69,8 +73,14 @@ class Ffr : public AddingCoordinates {
   /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
-  Point at(double s, double y = 0.0, Index bar = 0) const { return made().at(s, y, 0.0, bar); }
-  Point node(Index i) const { return made().node(i); }
+  template <class = void>
+  Point at(double s, double y = 0.0, Index bar = 0) const {
+    return made().at(s, y, 0.0, bar);
+  }
+  template <class = void>
+  Point node(Index i) const {
+    return made().node(i);
+  }
   /// A point as the user describes it. \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
@@ -84,15 +94,18 @@ class Ffr : public AddingCoordinates {
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }
 
+  template <class = void>
   void reference(std::span<double> q) const {
     std::fill(q.begin(), q.end(), 0.0);
     part<3>(q, 0) << origin_, angle_;
   }
+  template <class = void>
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     std::fill(v.begin(), v.end(), 0.0);
     part<3>(v, 0) << v0[0] - omega[2] * q[1], v0[1] + omega[2] * q[0], omega[2];
   }
 
+  template <class = void>
   void mass(Index, std::span<double const> q, MatX& m) const {
     Index const n = deformations();
     double const c = std::cos(q[2]), s = std::sin(q[2]);
@@ -172,6 +185,7 @@ class Ffr : public AddingCoordinates {
     out[2] = -(j_rate * omega);
   }
 
+  template <class = void>
   void tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd, MatX& k) const {
     Index const n = deformations();
     double const c = std::cos(q[2]), s = std::sin(q[2]), omega = v[2];
@@ -230,17 +244,20 @@ class Ffr : public AddingCoordinates {
                    i_.template first_slope<T>(q.data() + 3, 1, k) * pull[1];
   }
 
+  template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
     static thread_local VecX mv;  // an energy is asked for within steps, too
     mv.resize(speeds());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));
   }
+  template <class = void>
   double strain_energy(Index, std::span<double const> q) const {
     double const* const x = q.data() + 3;
     return 0.5 * detail::quadratic<double>(i_.stiffness, x, x) +
            i_.initial_force.dot(Eigen::Map<VecX const>(x, deformations()));
   }
+  template <class = void>
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
     FfrIntegrals::Moments<double> at;
     i_.moments<double>(q.data() + 3, at);
@@ -291,6 +308,7 @@ class Ffr : public AddingCoordinates {
   }
 
   /// Jᵀw with F = Aᵀf: [f; u × F + m; Sᵀ F + R_zᵀ m].
+  template <class = void>
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     Index const n = deformations();
     double const c = std::cos(q[2]), s = std::sin(q[2]), fx = c * w.f[0] + s * w.f[1], fy = c * w.f[1] - s * w.f[0];
@@ -309,6 +327,7 @@ class Ffr : public AddingCoordinates {
   }
 
   /// As in space. \param gravity (3) of which z is left out
+  template <class = void>
   double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
                      Vec3 const& gravity, std::span<PlacedWrench const> loads) const {
     if (!points_) return 0.0;
@@ -321,8 +340,14 @@ class Ffr : public AddingCoordinates {
   }
 
   /// As in space.
-  Vec6 section_strains(Point const& p, std::span<double const> q) const { return p.section_strains(q.data() + 3); }
-  Vec6 section_forces(Point const& p, std::span<double const> q) const { return p.section_forces(q.data() + 3); }
+  template <class = void>
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    return p.section_strains(q.data() + 3);
+  }
+  template <class = void>
+  Vec6 section_forces(Point const& p, std::span<double const> q) const {
+    return p.section_forces(q.data() + 3);
+  }
 
  private:
   /// c and J as the terms say.

@@ -28,8 +28,12 @@ struct FfrIntegrals {
   Index size() const { return mass_matrix.rows(); }
   bool stiffens() const { return first_second[0].size() > 0; }
 
-  static FfrIntegrals zero(Index n) { return of(polybody::FfrIntegrals::zero(n)); }
+  template <class = void>  // compiled where it is used
+  static FfrIntegrals zero(Index n) {
+    return of(polybody::FfrIntegrals::zero(n));
+  }
   /// What remains of a body in space whose deformation stays in the plane of x and y.
+  template <class = void>
   static FfrIntegrals of(polybody::FfrIntegrals const& s) {
     FfrIntegrals x{.mass = s.mass,
                    .first = s.first.head<2>(),
@@ -48,6 +52,7 @@ struct FfrIntegrals {
     return x;
   }
   /// The same numbers in the form of space. \throws InvalidInput as `polybody::FfrIntegrals::check`.
+  template <class = void>
   void check(std::string const& what) const {
     polybody::FfrIntegrals x = polybody::FfrIntegrals::zero(size());
     x.mass = mass;

@@ -11,7 +11,8 @@ namespace polybody {
 /// `frame`, and what keeps a structure from moving as a whole without forcing it: the first node; where nodes have no
 /// rotations, of the node b farthest from it two displacements across b − a, and of the node farthest from their line
 /// that across the plane.
-inline ReferenceConditions statically_determinate(Structure const& s, ReferenceConditions frame = {}) {
+template <class = void>  // compiled where it is used
+ReferenceConditions statically_determinate(Structure const& s, ReferenceConditions frame = {}) {
   for (int c = 0; c < s.per_node; ++c) frame.fix(0, c);
   if (s.per_node == 6) return frame;
   auto const farthest = [&](auto const& measure) {

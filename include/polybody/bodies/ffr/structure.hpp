@@ -55,9 +55,13 @@ struct Structure {
 
   Index size() const { return per_node * Index(nodes.size()); }
   /// M = Σ ∫ρ S_kᵀ S_k.
-  Sparse mass_matrix() const { return inertia[0] + inertia[1] + inertia[2]; }
+  template <class = void>  // compiled where it is used
+  Sparse mass_matrix() const {
+    return inertia[0] + inertia[1] + inertia[2];
+  }
 
   /// Room for everything, all zero. Needs `nodes` and `per_node`.
+  template <class = void>
   void clear() {
     Index const n = size();
     stiffness = damping = Sparse(n, n);
@@ -69,6 +73,7 @@ struct Structure {
     }
   }
   /// \throws InvalidInput naming `what` unless the node exists.
+  template <class = void>
   void require_node(Index node, std::string const& what) const {
     if (node < 0 || node >= Index(nodes.size()))
       throw InvalidInput{

@@ -9,8 +9,9 @@
 namespace polybody {
 
 /// These rows and columns of a sparse matrix.
-inline Structure::Sparse submatrix(Structure::Sparse const& m, std::vector<Index> const& rows,
-                                   std::vector<Index> const& columns) {
+template <class = void>  // compiled where it is used
+Structure::Sparse submatrix(Structure::Sparse const& m, std::vector<Index> const& rows,
+                            std::vector<Index> const& columns) {
   std::vector<int> row(std::size_t(m.rows()), -1);
   for (std::size_t i = 0; i < rows.size(); ++i) row[std::size_t(rows[i])] = int(i);
   std::vector<Eigen::Triplet<double>> entries;
@@ -23,7 +24,8 @@ inline Structure::Sparse submatrix(Structure::Sparse const& m, std::vector<Index
 }
 
 /// A matrix of `size` rows that has the given ones at `free`, and zeros elsewhere.
-inline MatX scatter_rows(MatX const& shapes, std::vector<Index> const& free, Index size) {
+template <class = void>
+MatX scatter_rows(MatX const& shapes, std::vector<Index> const& free, Index size) {
   MatX out = MatX::Zero(size, shapes.cols());
   for (std::size_t i = 0; i < free.size(); ++i) out.row(free[i]) = shapes.row(Index(i));
   return out;
@@ -33,13 +35,15 @@ inline MatX scatter_rows(MatX const& shapes, std::vector<Index> const& free, Ind
 using SparseFactor = Eigen::SimplicialLDLT<Structure::Sparse>;
 
 /// \throws InvalidInput with `what` unless m is positive definite.
-inline void factor_positive(SparseFactor& factor, Structure::Sparse const& m, std::string const& what) {
+template <class = void>
+void factor_positive(SparseFactor& factor, Structure::Sparse const& m, std::string const& what) {
   factor.compute(m);
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
     throw InvalidInput{"Ffr: ", what};
 }
 /// \throws InvalidInput unless the stiffness under reference conditions is positive definite.
-inline void require_held(Structure::Sparse const& k) {
+template <class = void>
+void require_held(Structure::Sparse const& k) {
   SparseFactor factor;
   factor_positive(
       factor, k,
