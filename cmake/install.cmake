@@ -18,11 +18,12 @@ write_basic_package_version_file(
   polybodyConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 configure_file(cmake/polybodyPrecompile.cmake polybodyPrecompile.cmake COPYONLY)
 configure_file(cmake/polybodyCompiled.cmake polybodyCompiled.cmake COPYONLY)
-file(GLOB compiled_sources RELATIVE ${PROJECT_SOURCE_DIR}/cmake CONFIGURE_DEPENDS cmake/compiled/*.cpp)
+file(GLOB compiled_sources RELATIVE ${PROJECT_SOURCE_DIR}/cmake CONFIGURE_DEPENDS cmake/compiled/*.cpp
+     cmake/compiled_vehicle/*.cpp)
 foreach(source IN LISTS compiled_sources)
   configure_file(cmake/${source} ${source} COPYONLY)
 endforeach()
-install(DIRECTORY cmake/compiled DESTINATION ${package_dir})
+install(DIRECTORY cmake/compiled cmake/compiled_vehicle DESTINATION ${package_dir})
 install(FILES ${PROJECT_BINARY_DIR}/polybodyConfig.cmake ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake
               cmake/polybodyPrecompile.cmake cmake/polybodyCompiled.cmake DESTINATION ${package_dir})
 

@@ -87,7 +87,7 @@ void report_bending(StressRuns const& runs, std::size_t k) {
   Range const bending = range_of(runs.times(k), runs.bending(k), from);
   std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa, rms from 1 s on %.2f MPa",
               young * bending.least, young * bending.most, young * rms(runs.times(k), runs.bending(k), 1.0));
-  if (k > 0 && runs.links[0]->recover && end > 3.0)
+  if (k > 0 && runs.links[0]->decoupled && end > 3.0)
     std::printf("; off %s by %.1f %% to 3 s, %.1f %% after", runs.name(0).c_str(),
                 1e2 * off_unfiltered(runs, k, 0, &StressRuns::bending, 1.0, 3.0),
                 1e2 * off_unfiltered(runs, k, 0, &StressRuns::bending, 3.0, end));
@@ -110,7 +110,7 @@ void report(Options const& o, StressRuns const& runs) {
         "%-10s from %.1f s on: speed %.4f m/s; strain %.3fe-5 (%.3f to %.3f), %.3f MPa; unfiltered %.2f to %.2fe-5\n",
         r.name.c_str(), from, speed, 1e5 * e.mean, 1e5 * e.least, 1e5 * e.most, 1e-6 * m113::youngs_modulus * e.mean,
         1e5 * raw.least, 1e5 * raw.most);
-    double const mass = runs.links[k]->recover ? o.masses.link.mass : flexible_mass(o);
+    double const mass = runs.links[k]->decoupled ? o.masses.link.mass : flexible_mass(o);
     std::printf("           (T0 + m v^2/p)/EA with T0 = %.2f kN of the tensioner: %.3fe-5\n", 1e-3 * pull,
                 1e5 * m113::running_strain(speed, pull, section_height(o), mass));
     Range const force = range_of(runs.times(k), runs.history(k, "joint force x [N]"), 0.0);
@@ -126,13 +126,13 @@ void report(Options const& o, StressRuns const& runs) {
                     1e2 * off(o, runs, k, runs, beside, since), since);
     std::printf("           CPU %.1f s, %.2f of %s", r.cpu, r.cpu / runs.comparison.runs.front().cpu,
                 runs.name(0).c_str());
-    if (runs.links[k]->recover)
+    if (runs.links[k]->decoupled)
       std::printf("; record %.2f s, recovery %.2f s, vibrations %.2f s", runs.links[k]->recording,
                   runs.links[k]->recovery, runs.links[k]->vibration);
     std::printf("; %.2f iterations, %.2f factorisations a step; %ld of %ld steps halved\n",
                 double(r.run.iterations) / double(r.run.steps), double(r.run.factorisations) / double(r.run.steps),
                 r.run.rejected, r.run.steps);
-    if (runs.links[k]->recover)
+    if (runs.links[k]->decoupled)
       std::printf("           strain by vibrations, low pass: %.2f %% off that without (rms from %.1f s on)\n",
                   1e2 * off(o, runs, k, runs, k, from, &StressRuns::vibrating, &StressRuns::raw), from);
     Outcome const& out = runs.outcomes[k];
@@ -148,7 +148,7 @@ std::string label_of(StressRuns const& runs, std::size_t k) {
   static std::map<std::string, std::string> const labels{{"ancf", "ANCF cables"},   {"ffr", "FFR, modes"},
                                                          {"fe", "finite elements"}, {"lrvf", "LRVF"},
                                                          {"beam", "ANCF beams"},    {"continuum", "ANCF continuum"}};
-  if (runs.links[k]->recover) return "rigid, decoupled";
+  if (runs.links[k]->decoupled) return "rigid, decoupled";
   auto const found = labels.find(runs.name(k));
   return found != labels.end() ? found->second : runs.name(k);
 }
@@ -302,7 +302,7 @@ void show(Options const& o, StressRuns const& r) {
 void single(Options const& o) {
   Combination const c = combination_asked(o);
   require_driveable(o, c);
-  if (o.restart) return c.restart(o);
+  if (o.restart) return restart(o, c);
   StressRuns const runs = run(o, {c});
   if (!o.halve) return show(o, runs);
   Options half = o;
@@ -548,8 +548,7 @@ int main(int argc, char** argv) {
   if (o.turn == "curve") o.right = 0.8;
   try {
     fs::create_directories(o.out);
-    if (!o.compare.empty() && o.compare != "ensemble")
-      o.start = std::make_shared<m113::TrackStart const>(start_of_all(o));
+    if (!o.compare.empty() && o.compare != "ensemble") o.start = std::make_shared<m113::TrackStart const>(settled(o));
     if (!o.figure.empty())
       figures(o);
     else if (o.compare == "matrix")

@@ -5,6 +5,9 @@ namespace polybody {
 
 template class BasicSystem<double>;
 template class ReductionOf<double>;
+template class JointTreeOf<double>;
+template class LinearEliminationOf<double>;
+template class detail::BodyEquationsOf<void>;
 template class detail::ReducedCoordinates<void>;
 template class detail::ReducedCoordinates<recursive::Augmented>;
 template class detail::ReducedCoordinates<recursive::Reduced>;

@@ -1,4 +1,4 @@
-#include "stress_case.hpp"
+#include "links_of.hpp"
 
 std::vector<chapter4::Combination> chapter4::continuum_links() {
   return links_of<AncfBeam<Continuum<>>, AncfLinear>("continuum");

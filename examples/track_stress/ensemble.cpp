@@ -1,5 +1,7 @@
 #include "ensemble.hpp"
 
+#include <polybody/signals/filter.hpp>
+
 #include "formulations.hpp"
 #include "measures.hpp"
 

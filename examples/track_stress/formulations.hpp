@@ -42,7 +42,7 @@ inline StressRuns run(Options const& o, std::vector<Combination> const& combinat
   std::vector<Comparison> apart;
   for (Combination const& c : combinations) {
     require_driveable(o, c);
-    StressRuns one = c.run(o);
+    StressRuns one = run_of(o, c);
     for (ComparedRun const& r : one.comparison.runs)
       for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
     apart.push_back(std::move(one.comparison));

@@ -1,6 +1,7 @@
 #pragma once
 // Numbers of runs: means and ranges, differences, cycles of stress.
 #include <polybody/signals/rainflow.hpp>
+#include <polybody/signals/rms_difference.hpp>
 
 #include "stress_runs.hpp"
 

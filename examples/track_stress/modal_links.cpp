@@ -1,6 +1,6 @@
 #include <polybody/vehicle/modal_links.hpp>
 
-#include "stress_case.hpp"
+#include "links_of.hpp"
 
 std::vector<chapter4::Combination> chapter4::modal_links() {
   return links_of<Ffr, Constraint>(

@@ -1,5 +1,3 @@
-#include "stress_case.hpp"
+#include "links_of.hpp"
 
 std::vector<chapter4::Combination> chapter4::rigid_links() { return links_of<Rigid<>, Constraint>("rigid"); }
-
-polybody::m113::TrackStart chapter4::start_of_all(Options const& o) { return settled(o); }

@@ -1,3 +1,6 @@
+#include <polybody/signals/filter.hpp>
+
+#include "../any_vehicle.hpp"
 #include "stress_case.hpp"
 
 namespace chapter4 {
@@ -22,8 +25,12 @@ StressRuns rigid_links_by_adams(Options o) {
   using Adams = AdamsBashforthMoulton<CoordinatePartitioning>;
   o.sampling = o.step;
   o.first_step = std::min(1e-5, o.step);
-  StressRuns runs = run(o, Formulation<Rigid<>, Constraint, Adams>{
-                               "rigid, Adams", {}, {.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6}});
+  auto const make = [](Options const&, VehicleParts const& parts) {
+    auto const vehicle = made_vehicle<Rigid<>>(Constraint{}, parts);
+    return StressVehicle{any_vehicle(vehicle, stepped_by<Adams>),
+                         {.rigid = vehicle->side(m113::Side::left).links[watched_link]}};
+  };
+  StressRuns runs = run_by(o, "rigid, Adams", make, Adams{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6});
   take_equal_steps(runs, o.step);
   return runs;
 }

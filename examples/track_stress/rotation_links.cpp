@@ -1,3 +1,3 @@
-#include "stress_case.hpp"
+#include "links_of.hpp"
 
 std::vector<chapter4::Combination> chapter4::rotation_links() { return links_of<Lrvf<>, Constraint>("lrvf"); }

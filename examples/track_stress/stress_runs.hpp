@@ -5,6 +5,8 @@
 #include <memory>
 
 #include <polybody/bodies/ffr/ffr_options.hpp>
+#include <polybody/run/body_record.hpp>
+#include <polybody/vehicle/track_links.hpp>
 
 #include "../tracked_vehicle.hpp"
 
@@ -35,8 +37,8 @@ struct LinkHistory {
   std::vector<double> bending;  // in the middle: what it adds in the fibre towards the wheels
   std::map<std::string, std::vector<double>> surface = {};  // von Mises stress in named nodes [Pa]
   std::vector<double> vibrating;  // strain of a rigid link by the thesis' linear equations of its vibrations
+  bool decoupled = false;         // worked out after the run of a rigid link
   double recording = 0.0, recovery = 0.0, vibration = 0.0;  // CPU times [s]
-  std::function<void(LinkHistory&)> recover;
 };
 
 struct StressRuns : Runs {
@@ -48,9 +50,18 @@ struct StressRuns : Runs {
   std::vector<double> const& vibrating(std::size_t k) const { return links[k]->vibrating; }
   std::vector<double> filtered(std::size_t k, double cut_off) const { return filtered(k, raw(k), cut_off); }
   std::vector<double> filtered(std::size_t k, std::vector<double> const& y, double cut_off) const {
-    return low_pass(filtered_times(k), std::span(y).first(filtered_times(k).size()),
-                    {.cut_off = cut_off, .mirrored = true});
+    return filtered_values(*this, k, y, cut_off);
   }
+};
+
+// What is asked of the watched link.
+struct WatchedLink {
+  std::optional<BodyHandle<Rigid<>>> rigid = {};             // recorded, and its strain is worked out after the run
+  std::function<void(State const&, LinkHistory&)> see = {};  // adds what a flexible one tells in a state
+};
+struct StressVehicle {
+  AnyVehicle vehicle;
+  WatchedLink link;
 };
 
 // Links of one body formulation on pins of one policy.
@@ -59,15 +70,17 @@ struct Combination {
   bool usual = false;        // the pins that links have where none are asked for
   std::string refusal = {};  // why it cannot be; else empty
   bool turns = true;         // else its pins are fixed to the world's axes
-  std::function<StressRuns(Options const&)> run = {};
-  // Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
-  std::function<void(Options const&)> restart = {};
+  std::function<StressVehicle(Options const&, VehicleParts const&)> make = {};
+
+  std::string name() const { return usual ? links : links + ", " + pins; }
 };
 inline std::vector<std::string> const all_links{"rigid", "ancf", "ffr", "fe", "lrvf", "beam", "continuum"};
 inline std::vector<std::string> const all_pins{"constraint", "penalty", "bushing", "linear", "recursive"};
 
-// Where the links of all runs lie at the start.
-m113::TrackStart start_of_all(Options const& o);
+// The run of one formulation.
+StressRuns run_of(Options const& o, Combination const& c);
+// Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
+void restart(Options const& o, Combination const& c);
 
 // Ideal pins, by an Adams method in independent coordinates; states every `step`.
 StressRuns rigid_links_by_adams(Options o);

@@ -2,6 +2,7 @@
 // Numbers of the vehicle's runs, in lines.
 #include <limits>
 
+#include <polybody/signals/rms_difference.hpp>
 #include <polybody/vehicle/distance_to_path.hpp>
 
 #include "../support/lines.hpp"

@@ -17,12 +17,17 @@ struct Options : Settings {
 
 inline constexpr double implicit_step = 5e-4;  // [s]
 
-// A formulation of the pins: its run, and what the thesis counts of it, where the ground is a body, too.
+// A formulation of the pins.
 struct Pins {
   std::string name;
-  std::function<Runs(Options const&)> run;
-  std::function<Census(Options const&)> count;
+  MakeVehicle make;
+  double bearable;  // longest step of explicit methods: RungeKutta4's end at 2.8 over the fastest rate, which
+                    // `track_times` prints [s]
   std::string cannot_turn = {};  // why --turn is refused
+
+  Runs run(Options const& o) const;
+  // What the thesis counts of it, where the ground is a body, too.
+  Census count(Options const& o) const;
 };
 Pins ideal_pins();
 Pins penalty_pins(double stiffness);

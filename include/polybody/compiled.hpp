@@ -11,6 +11,9 @@ namespace polybody {
 
 extern template class BasicSystem<double>;
 extern template class ReductionOf<double>;
+extern template class JointTreeOf<double>;
+extern template class LinearEliminationOf<double>;
+extern template class detail::BodyEquationsOf<void>;
 extern template class detail::ReducedCoordinates<void>;
 extern template class detail::ReducedCoordinates<recursive::Augmented>;
 extern template class detail::ReducedCoordinates<recursive::Reduced>;
@@ -23,6 +26,7 @@ extern template struct BodyKernels<planar::Rigid, double>;
 extern template struct BodyKernels<planar::AncfCable<>, double>;
 extern template struct BodyKernels<planar::Lrvf, double>;
 extern template struct BodyKernels<AncfBeam<>, double>;
+extern template AncfBeam<>::AncfBeam(Bar const&, Index, ReferenceCurve const&, bool);
 extern template struct BodyKernels<AncfCable<>, double>;
 extern template AncfCable<>::AncfCable(Bar const&, BarConstants const&, Index, ReferenceCurve const&);
 extern template struct BodyKernels<AncfBeam<Continuum<>>, double>;
@@ -30,9 +34,51 @@ extern template AncfBeam<Continuum<>>::AncfBeam(Bar const&, Index, ReferenceCurv
 extern template struct BodyKernels<Lrvf<>, double>;
 extern template Lrvf<>::Lrvf(Bar const&, BarConstants const&, Index, ReferenceCurve const&);
 extern template struct JointKernels<Joint<Revolute, Constraint>, double>;
+extern template struct JointKernels<Joint<Revolute, Bushing>, double>;
+extern template struct JointKernels<Joint<Revolute, AncfLinear>, double>;
+extern template struct JointKernels<Joint<Revolute, Recursive>, double>;
 extern template struct JointKernels<Joint<Spherical, Constraint>, double>;
+extern template struct JointKernels<Joint<Spherical, Penalty>, double>;
+extern template struct JointKernels<Joint<Prismatic, Constraint>, double>;
+extern template struct JointKernels<Joint<PointOnLine, Constraint>, double>;
+extern template struct JointKernels<Joint<PrescribedRate<Ramp>, Constraint>, double>;
 extern template struct JointKernels<Joint<Weld, Constraint>, double>;
 extern template struct JointKernels<Joint<planar::Revolute, Constraint>, double>;
+extern template struct ForceKernels<SpringDamper, double>;
+extern template struct ForceKernels<AxialSpring, double>;
+extern template Frame<double> frame(BodyInState<Rigid<>> const&, Rigid<>::Point const&);
+extern template FrameIn frame_in(BodyHandle<Rigid<>> const&, Marker<Rigid<>> const&);
+extern template void Visual::attach(Marker<Rigid<>> const&, Surface const&, std::string);
+extern template Frame<double> frame(BodyInState<AncfBeam<>> const&, AncfBeam<>::Point const&);
+extern template FrameIn frame_in(BodyHandle<AncfBeam<>> const&, Marker<AncfBeam<>> const&);
+extern template void Visual::attach(Marker<AncfBeam<>> const&, Surface const&, std::string);
+extern template void Visual::sweep(BodyHandle<AncfBeam<>> const&, Bar const&, int, int);
+extern template Frame<double> frame(BodyInState<AncfCable<>> const&, AncfCable<>::Point const&);
+extern template FrameIn frame_in(BodyHandle<AncfCable<>> const&, Marker<AncfCable<>> const&);
+extern template void Visual::attach(Marker<AncfCable<>> const&, Surface const&, std::string);
+extern template void Visual::sweep(BodyHandle<AncfCable<>> const&, Bar const&, int, int);
+extern template Frame<double> frame(BodyInState<AncfBeam<Continuum<>>> const&, AncfBeam<Continuum<>>::Point const&);
+extern template FrameIn frame_in(BodyHandle<AncfBeam<Continuum<>>> const&, Marker<AncfBeam<Continuum<>>> const&);
+extern template void Visual::attach(Marker<AncfBeam<Continuum<>>> const&, Surface const&, std::string);
+extern template void Visual::sweep(BodyHandle<AncfBeam<Continuum<>>> const&, Bar const&, int, int);
+extern template Frame<double> frame(BodyInState<Lrvf<>> const&, Lrvf<>::Point const&);
+extern template FrameIn frame_in(BodyHandle<Lrvf<>> const&, Marker<Lrvf<>> const&);
+extern template void Visual::attach(Marker<Lrvf<>> const&, Surface const&, std::string);
+extern template void Visual::sweep(BodyHandle<Lrvf<>> const&, Bar const&, int, int);
+extern template detail::LinearPointOf<double> detail::linear_point<AncfBeam<>, double>(AncfBeam<> const&,
+                                                                                       AncfBeam<>::Point const&);
+extern template detail::LinearPointOf<double> detail::linear_point<AncfCable<>, double>(AncfCable<> const&,
+                                                                                        AncfCable<>::Point const&);
+extern template detail::LinearPointOf<double> detail::linear_point<AncfBeam<Continuum<>>, double>(
+    AncfBeam<Continuum<>> const&, AncfBeam<Continuum<>>::Point const&);
+extern template void detail::fill_linear_rows<Revolute, double>(detail::LinearPointOf<double> const&,
+                                                                detail::LinearPointOf<double> const&, Vec3 const&,
+                                                                LinearRows&);
+extern template void Visual::carry<void>(Surface const&, std::string, FrameIn);
+extern template std::vector<Vec2> outline<void>(Bar const&, int);
+extern template Surface swept<void>(int, int);
+extern template Surface cylinder<double>(double, double, Vec3 const&, int);
+extern template Surface box<void>(Vec3 const&);
 extern template void detail::place_ground(Sequence<detail::GroundMarker> const&, Index, Index, Data<double>&);
 extern template void detail::place_linear_rows(Sequence<LinearRows> const&, double*, Data<double>&);
 extern template void detail::measure_linear_rows(Sequence<LinearRows> const&, VecX const&, Data<double> const&,

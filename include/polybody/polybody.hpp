@@ -80,6 +80,7 @@
 #include <polybody/math/monotone_table.hpp>
 #include <polybody/math/smooth_table.hpp>
 #include <polybody/math/time_laws.hpp>
+#include <polybody/run/any_model.hpp>
 #include <polybody/run/census.hpp>
 #include <polybody/run/contacts.hpp>
 #include <polybody/run/energy.hpp>
@@ -100,3 +101,4 @@
 #include <polybody/statics/equilibrium.hpp>
 #include <polybody/statics/preloads.hpp>
 #include <polybody/stress/section.hpp>
+#include <polybody/system/subassembly.hpp>

@@ -10,7 +10,7 @@
 
 #include <polybody/math/quaternion.hpp>
 #include <polybody/run/energy.hpp>
-#include <polybody/vehicle/link_strain.hpp>
+#include <polybody/vehicle/decoupled_link_strain.hpp>
 #include <polybody/vehicle/m113.hpp>
 #include <polybody/vehicle/modal_links.hpp>
 #include <polybody/vehicle/track_contacts.hpp>

@@ -7,7 +7,7 @@
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/signals/filter.hpp>
 #include <polybody/signals/rms_difference.hpp>
-#include <polybody/vehicle/link_strain.hpp>
+#include <polybody/vehicle/decoupled_link_strain.hpp>
 #include <polybody/vehicle/modal_links.hpp>
 
 #include "support/held.hpp"
@@ -60,8 +60,8 @@ Ride ride(Ramp const& drive, double until, double step, bool held = false, int e
     if constexpr (HasRigidPoints<Link>) {
       recorder->record(x);
     } else {
-      r.strain.push_back(m113::link_strain(vehicle.model, x, link));
-      r.bending.push_back(m113::link_bending(vehicle.model, x, link, hull_of(vehicle, x).A.col(1)));
+      r.strain.push_back(m113::link_strain(link, x));
+      r.bending.push_back(m113::link_bending(link, x, hull_of(vehicle, x).A.col(1)));
     }
     double const travel = (hull_of(vehicle, x).A.transpose() *
                            (position(vehicle.model, x, side.idler[0].at(Vec3(0, 0, 0))) - hull_of(vehicle, x).r))

@@ -91,7 +91,7 @@ struct CaseQuestions {
 template <class S>
 CaseQuestions questions_of(S& scenario) {
   auto const& model = scenario.model;
-  CaseQuestions questions{System(model, with<Entries::motion>)};
+  CaseQuestions questions{question_system(model)};
   for (auto& o : scenario.outputs) questions.outputs.push_back([&](State const& x) { return o.value(model, x); });
   if (scenario.observer) questions.observer = [&](State const& x) { scenario.observer(model, x); };
   return questions;

@@ -38,9 +38,7 @@ class ContactGroup {
     std::get<std::vector<Opponent<Law>>>(few_).push_back({law, marker, std::move(name)});
   }
 
-  void check(std::string const& name) const {
-    for_each_opponent([&](auto const& few) { few.law.check(name); });
-  }
+  void check(std::string const& name) const;
 
   template <class F>
   void for_each_opponent(F&& f) const {
@@ -67,5 +65,11 @@ class ContactGroup {
   std::tuple<std::vector<Opponent<Laws>>...> few_;
   Index many_ = 0;
 };
+
+template <ForceElement... Laws>
+  requires((Laws::markers == 2) && ...)
+void ContactGroup<Laws...>::check(std::string const& name) const {
+  for_each_opponent([&](auto const& few) { few.law.check(name); });
+}
 
 }  // namespace polybody

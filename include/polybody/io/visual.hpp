@@ -45,51 +45,13 @@ class Visual {
 
   /// The shape's axes are the marker's. \throws InvalidInput for a marker of another model.
   template <class B>
-  void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape") {
-    BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, marker, name))];
-    carry(shape, std::move(name),
-          [place, point = marker.point](State const& x) { return frame(body_in_state<B>(place, x), point); });
-  }
-  template <class = void>
-  void attach(Marker<Ground> const& marker, Surface const& shape, std::string name = "shape") {
-    require_own(layout_, marker.model, name);
-    Frame<double> const f{.r = marker.point.origin, .A = marker.point.axes};
-    carry(shape, std::move(name), [f](State const&) { return f; });
-  }
+  void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape");
 
   /// The bar that the body was made from, in so many pieces along its length. Points of a section lie where the body's
   /// own points do; sections of cables and of the plane are carried by the frame on the axis.
   /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
   template <class B>
-  void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24) {
-    BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, body))];
-    if (pieces < 1) throw InvalidInput{"\"", body.name, "\": a sweep needs at least one piece."};
-    std::vector<Vec2> const ring = outline(bar, sides);
-    int const n = int(ring.size());
-    bool const stressed = HasSections<B> && bar.material;
-    std::size_t const points = std::size_t((pieces + 1) * n);
-    parts_.push_back(
-        {body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
-    moves_.push_back([place, body, bar, pieces, ring](State const& x, VisualPart& part) {
-      BodyInState<B> const b = body_in_state<B>(place, x);
-      std::size_t i = 0;
-      for (int k = 0; k <= pieces; ++k) {
-        double const s = bar.length * double(k) / double(pieces);
-        Marker<B> const axis = body.at(s);
-        Frame<double> const f = frame(b, axis.point);
-        Vec6 forces = Vec6::Zero();
-        if constexpr (HasSections<B>)
-          if (!part.axial_stress.empty()) forces = b.body.section_forces(axis.point, b.q);
-        for (Vec2 const& p : ring) {
-          if (!part.axial_stress.empty()) part.axial_stress[i] = fibre_stress(bar, forces, p[0], p[1]);
-          if constexpr (B::world == World::space && requires { body.at(s, p[0], p[1]); })
-            detail::place_point(frame(b, body.at(s, p[0], p[1]).point), Vec3::Zero(), part, i++);
-          else
-            detail::place_point(f, Vec3(0, p[0], p[1]), part, i++);
-        }
-      }
-    });
-  }
+  void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24);
 
   /// The state in which the model is undeformed as placed.
   State const& reference() const { return reference_; }
@@ -102,19 +64,67 @@ class Visual {
 
  private:
   /// One more part, whose points stand in the axes of a frame.
-  template <class F>
-  void carry(Surface const& shape, std::string name, F&& frame_in) {
-    parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
-    moves_.push_back([frame_in = std::forward<F>(frame_in), points = shape.points](State const& x, VisualPart& part) {
-      Frame<double> const f = frame_in(x);
-      for (std::size_t i = 0; i < points.size(); ++i) detail::place_point(f, points[i], part, i);
-    });
-  }
+  template <class = void>
+  void carry(Surface const& shape, std::string name, FrameIn frame_in);
 
   ModelLayout layout_;
   State reference_;
   std::vector<VisualPart> parts_;
   std::vector<std::function<void(State const&, VisualPart&)>> moves_;
 };
+
+// Outside the class, so that a program that links `polybody::compiled` does not compile them again.
+template <class B>
+void Visual::attach(Marker<B> const& marker, Surface const& shape, std::string name) {
+  if constexpr (std::is_same_v<B, Ground>) {
+    require_own(layout_, marker.model, name);
+    Frame<double> const f{.r = marker.point.origin, .A = marker.point.axes};
+    carry(shape, std::move(name), [f](State const&) { return f; });
+  } else {
+    BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, marker, name))];
+    carry(shape, std::move(name),
+          [place, point = marker.point](State const& x) { return frame(body_in_state<B>(place, x), point); });
+  }
+}
+
+template <class B>
+void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides) {
+  BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, body))];
+  if (pieces < 1) throw InvalidInput{"\"", body.name, "\": a sweep needs at least one piece."};
+  std::vector<Vec2> const ring = outline(bar, sides);
+  int const n = int(ring.size());
+  bool const stressed = HasSections<B> && bar.material;
+  std::size_t const points = std::size_t((pieces + 1) * n);
+  parts_.push_back(
+      {body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
+  moves_.push_back([place, body, bar, pieces, ring](State const& x, VisualPart& part) {
+    BodyInState<B> const b = body_in_state<B>(place, x);
+    std::size_t i = 0;
+    for (int k = 0; k <= pieces; ++k) {
+      double const s = bar.length * double(k) / double(pieces);
+      Marker<B> const axis = body.at(s);
+      Frame<double> const f = frame(b, axis.point);
+      Vec6 forces = Vec6::Zero();
+      if constexpr (HasSections<B>)
+        if (!part.axial_stress.empty()) forces = b.body.section_forces(axis.point, b.q);
+      for (Vec2 const& p : ring) {
+        if (!part.axial_stress.empty()) part.axial_stress[i] = fibre_stress(bar, forces, p[0], p[1]);
+        if constexpr (B::world == World::space && requires { body.at(s, p[0], p[1]); })
+          detail::place_point(frame(b, body.at(s, p[0], p[1]).point), Vec3::Zero(), part, i++);
+        else
+          detail::place_point(f, Vec3(0, p[0], p[1]), part, i++);
+      }
+    }
+  });
+}
+
+template <class>
+void Visual::carry(Surface const& shape, std::string name, FrameIn frame_in) {
+  parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
+  moves_.push_back([frame_in = std::move(frame_in), points = shape.points](State const& x, VisualPart& part) {
+    Frame<double> const f = frame_in(x);
+    for (std::size_t i = 0; i < points.size(); ++i) detail::place_point(f, points[i], part, i);
+  });
+}
 
 }  // namespace polybody

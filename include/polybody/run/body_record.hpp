@@ -93,8 +93,9 @@ class LoadRecorderOf {
  public:
   /// The model must outlive the recorder and must not change after.
   template <class M>
-  explicit LoadRecorderOf(M const& model)
-      : system_(model, with<Entries::motion>), recorded_(system_.layout().bodies.size(), -1) {}
+  explicit LoadRecorderOf(M const& model) : LoadRecorderOf(System(model, with<Entries::motion>)) {}
+  /// \param system of the whole mechanism
+  explicit LoadRecorderOf(System system) : system_(std::move(system)), recorded_(system_.layout().bodies.size(), -1) {}
 
   /// From now on this body is recorded. \throws InvalidInput after the first sample, and for a body of another model.
   template <class B>

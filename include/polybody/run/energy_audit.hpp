@@ -38,8 +38,9 @@ template <class = void>  // compiled where it is used
 class EnergyAuditOf {
  public:
   template <class M>
-  explicit EnergyAuditOf(M const& model)
-      : system_(model, with<Entries::energy>), backwards_(VecX::Zero(model.speeds())) {}
+  explicit EnergyAuditOf(M const& model) : EnergyAuditOf(System(model, with<Entries::energy>)) {}
+  /// \param system of the whole mechanism, made with `Entries::energy`
+  explicit EnergyAuditOf(System system) : system_(std::move(system)), backwards_(VecX::Zero(system_.speeds())) {}
 
   /// Begins anew at x. \throws InvalidInput when x does not fit the model.
   void start(State const& x) {

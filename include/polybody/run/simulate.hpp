@@ -17,6 +17,12 @@ template <class I, class M>
     return {std::make_unique<System>(system_for<I, warned>(model)), nullptr};
 }
 
+/// The whole mechanism of `model`, for questions about its states. The model must outlive it.
+template <class M>
+[[gnu::cold]] System question_system(M const& model) {
+  return System(model, with<Entries::motion>);
+}
+
 /// Runs `model` from x: a range of states. x is moved along and holds the last state afterwards.
 /// \throws InconsistentStart, InvalidInput at once; NewtonStalled, NonFinite, … from the step that fails.
 template <LinearSolver Solver = DefaultSolver, class M, class I>

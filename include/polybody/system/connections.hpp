@@ -204,4 +204,31 @@ void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, Poole
   group.force.pair_with(law, Index(group.markers.size()) - 1, std::move(name));
 }
 
+/// Refuses, when it is compiled, a joint that cannot join markers of A and B.
+template <class J, class A, class B>
+constexpr void require_pairing() {
+  using G = typename J::Geometry;
+  using P = typename J::PolicyType;
+  static_assert(MeetInOneWorld<G, A, B>,
+                "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
+                "belongs to both.");
+  static_assert(HasJointCoordinates<P, G>,
+                "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
+                "Universal; a Distance or a Gear has none. Use Constraint for it.");
+  static_assert(!MakesJointCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
+                "Recursive makes joint coordinates between the ground, rigid bodies and bodies that float on a frame: "
+                "Rigid<>, Ffr, planar::Rigid, planar::Ffr; RecursiveBy<ArticulatedBody> between rigid ones only. Use "
+                "another policy for joints of other bodies.");
+  static_assert(!LinearInCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
+                "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
+                "are, Rigid, Ffr and Lrvf in space are not. Use Constraint there.");
+  static_assert(HasLinearRows<P, G>,
+                "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
+  static_assert(
+      TellsEnoughFirst<J, A> && TellsEnoughSecond<J, B>,
+      "This joint needs more than the marker tells (a full frame, say, of a body that only "
+      "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
+      "Revolute about its tangent, with the cable's marker second.");
+}
+
 }  // namespace polybody::detail

@@ -53,30 +53,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// or the ground joined to itself, or parameters that cannot be meant.
   template <OneOf<Js...> J, class A, class B>
   ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
-    using G = typename J::Geometry;
-    using P = typename J::PolicyType;
-    static_assert(MeetInOneWorld<G, A, B>,
-                  "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
-                  "belongs to both.");
-    static_assert(HasJointCoordinates<P, G>,
-                  "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
-                  "Universal; a Distance or a Gear has none. Use Constraint for it.");
-    static_assert(
-        !MakesJointCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
-        "Recursive makes joint coordinates between the ground, rigid bodies and bodies that float on a frame: "
-        "Rigid<>, Ffr, planar::Rigid, planar::Ffr; RecursiveBy<ArticulatedBody> between rigid ones only. Use "
-        "another policy for joints of other bodies.");
-    static_assert(
-        !LinearInCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
-        "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
-        "are, Rigid, Ffr and Lrvf in space are not. Use Constraint there.");
-    static_assert(HasLinearRows<P, G>,
-                  "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
-    static_assert(
-        TellsEnoughFirst<J, A> && TellsEnoughSecond<J, B>,
-        "This joint needs more than the marker tells (a full frame, say, of a body that only "
-        "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
-        "Revolute about its tangent, with the cable's marker second.");
+    detail::require_pairing<J, A, B>();
     return detail::add_joint(parts_, std::get<Sequence<detail::JointEntry<J>>>(joints_), joint, pooled(a), pooled(b),
                              std::move(name));
   }
@@ -217,6 +194,9 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   }
 
  private:
+  template <class, class, class>
+  friend class Subassembly;
+
   template <class Pool, class F>
   static void for_each_in(Pool const& pool, F& f) {
     for (auto const& e : pool) f(e);

@@ -20,10 +20,12 @@ struct FiniteElementLink {
   MatX shapes;  ///< (N×n)
 
   /// The end face at the front pin (sign 1) or the rear pin (−1).
+  template <class = void>  // compiled where it is used
   NodePatch pin(double sign) const {
     return patch([&](Vec3 const& r) { return sign * r.x() > 0.5 * pitch - same_place; });
   }
   /// The part of a side that is not farther than a sixth of the pitch ahead of x or behind.
+  template <class = void>
   NodePatch part(double x, Face face) const {
     double const side = face == Face::wheels ? 1.0 : -1.0;
     return patch([&](Vec3 const& r) {
@@ -31,11 +33,13 @@ struct FiniteElementLink {
     });
   }
   /// The nodes at x.
+  template <class = void>
   NodePatch section(double x) const {
     return patch([&](Vec3 const& r) { return std::abs(r.x() - x) < same_place; });
   }
   /// The nodes that bear what acts on a rigid link in its place, as they do on this one
   /// (`ContactsAct::at_their_places`).
+  template <class = void>
   std::vector<LoadPatch> patches() const {
     std::vector<LoadPatch> found;
     for (double const sign : {-1.0, 1.0}) found.push_back({0.5 * sign * pitch * Vec3::UnitX(), pin(sign)});
@@ -73,7 +77,8 @@ struct FiniteElementLink {
 /// With the static shapes of what pins, wheels and ground do to a link, and its three lowest free modes: forces and
 /// moments but that about y at either pin, forces along z on each third of the inner face and at both ends of the pad.
 /// \throws InvalidInput for nodes that leave a face without a patch, and as `attachment_modes`.
-inline std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure) {
+template <class = void>
+std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure) {
   FiniteElementLink link{std::move(structure), {}};
   std::vector<LoadPatch> const patches = link.patches();
   Index const size = link.structure.size();
@@ -99,27 +104,45 @@ struct LinkOf<Ffr> {
   FfrTerms terms = {};
   double height = cable_height;  ///< of the section of beam elements; a model has its own [m]
 
-  Ffr make(Solid const&, Placement const& at, int elements) const {
-    if (model) return Ffr(model->structure, model->shapes, {.placement = at, .terms = terms});
-    Bar const bar = link_bar(at, height);
-    int const n = std::max(elements, 2);
-    Structure structure = structure_of(bar, n);
-    MatX shapes = craig_bampton(structure, {0, n}, modes_between);
-    return Ffr(std::move(structure), std::move(shapes), {.placement = bar.placement, .terms = terms});
+  template <class = void>
+  Ffr make(Solid const&, Placement const& at, int elements) const;
+  template <class = void>
+  Marker<Ffr> front(BodyHandle<Ffr> const& link) const {
+    return pin(link, 1.0);
   }
-  Marker<Ffr> front(BodyHandle<Ffr> const& link) const { return pin(link, 1.0); }
-  Marker<Ffr> rear(BodyHandle<Ffr> const& link) const { return pin(link, -1.0); }
-  Marker<Ffr> middle(BodyHandle<Ffr> const& link) const { return under(link, 0.0, Face::wheels); }
-  Marker<Ffr> under(BodyHandle<Ffr> const& link, double x, Face face) const {
-    if (!model) return link.at(0.5 * pitch + x);
-    return link.at(link.body().patch(model->part(x, face), Vec3(x, 0, 0)));
+  template <class = void>
+  Marker<Ffr> rear(BodyHandle<Ffr> const& link) const {
+    return pin(link, -1.0);
   }
-
- private:
-  Marker<Ffr> pin(BodyHandle<Ffr> const& link, double sign) const {
-    if (!model) return link.at(sign > 0.0 ? link.body().length() : 0.0);
-    return link.at(link.body().patch(model->pin(sign), Vec3(0.5 * sign * pitch, 0, 0)));
+  template <class = void>
+  Marker<Ffr> middle(BodyHandle<Ffr> const& link) const {
+    return under(link, 0.0, Face::wheels);
   }
+  template <class = void>
+  Marker<Ffr> under(BodyHandle<Ffr> const& link, double x, Face face) const;
+  /// At the front (sign 1) or the rear (−1).
+  template <class = void>
+  Marker<Ffr> pin(BodyHandle<Ffr> const& link, double sign) const;
 };
+
+template <class>
+Ffr LinkOf<Ffr>::make(Solid const&, Placement const& at, int elements) const {
+  if (model) return Ffr(model->structure, model->shapes, {.placement = at, .terms = terms});
+  Bar const bar = link_bar(at, height);
+  int const n = std::max(elements, 2);
+  Structure structure = structure_of(bar, n);
+  MatX shapes = craig_bampton(structure, {0, n}, modes_between);
+  return Ffr(std::move(structure), std::move(shapes), {.placement = bar.placement, .terms = terms});
+}
+template <class>
+Marker<Ffr> LinkOf<Ffr>::under(BodyHandle<Ffr> const& link, double x, Face face) const {
+  if (!model) return link.at(0.5 * pitch + x);
+  return link.at(link.body().patch(model->part(x, face), Vec3(x, 0, 0)));
+}
+template <class>
+Marker<Ffr> LinkOf<Ffr>::pin(BodyHandle<Ffr> const& link, double sign) const {
+  if (!model) return link.at(sign > 0.0 ? link.body().length() : 0.0);
+  return link.at(link.body().patch(model->pin(sign), Vec3(0.5 * sign * pitch, 0, 0)));
+}
 
 }  // namespace polybody::m113

@@ -82,4 +82,10 @@ struct LinkContacts {
   }
 };
 
+/// All that links touch that observe so much, on a ground.
+template <Observes observed, Terrain Ground>
+using TrackContacts = ContactGroup<typename LinkContacts<observed>::OnRoller, typename LinkContacts<observed>::OnRims,
+                                   typename LinkContacts<observed>::OnSprocket,
+                                   typename LinkContacts<observed>::template OnGround<Ground>>;
+
 }  // namespace polybody::m113

@@ -8,7 +8,8 @@
 
 #include <polybody/run/run_options.hpp>
 #include <polybody/vehicle/distance_to_path.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
+#include <polybody/vehicle/tracked_vehicle.hpp>
+#include <polybody/vehicle/vehicle_options.hpp>
 
 namespace polybody::m113 {
 

@@ -9,7 +9,8 @@ namespace polybody::m113 {
 
 namespace detail {
 /// The sprocket's rim, tooth by tooth, as two rings along y.
-inline Surface toothed_wheel(double width) {
+template <class = void>  // compiled where it is used
+Surface toothed_wheel(double width) {
   SprocketProfile const profile = sprocket_profile();
   Vec2 const corner = profile.corner();
   std::vector<Vec2> outline;  // (z, x), from z towards x
@@ -60,6 +61,15 @@ void attach_sprocket(Visual& visual, BodyHandle<Base> const& sprocket) {
   visual.attach(sprocket.at(Vec3(0, 0, 0)), cylinder(0.12, 2.0 * tooth_y, Vec3::UnitY()), sprocket.name + " hub");
 }
 
+/// What carries one track.
+template <class Base>
+void attach_carriers(Visual& visual, Carriers<Base> const& side) {
+  for (auto const& wheel : side.wheels) attach_drum(visual, wheel, wheel_radius);
+  attach_drum(visual, side.idler[0], idler_radius);
+  for (auto const& arm : side.arms) visual.attach(arm.at(Vec3(0, 0, 0)), box({arm_length, 0.08, 0.08}), arm.name);
+  attach_sprocket(visual, side.sprocket[0]);
+}
+
 /// A floating frame of a finite element model.
 template <class Link>
 bool without_bars(Link const& link) {
@@ -80,6 +90,10 @@ void attach_link(Visual& visual, BodyHandle<Link> const& link, Marker<Link> cons
       visual.attach(link.at(0.5 * pitch + horn.x, 0.0, horn.z), box(horn_size), link.name + " horn");
   }
 }
+template <class Link>
+void attach_links(Visual& visual, LinkParts<Link> const& side) {
+  for (std::size_t i = 0; i < side.links.size(); ++i) attach_link(visual, side.links[i], side.middle[i]);
+}
 }  // namespace detail
 
 /// Hull, wheels with their rims, arms, sprockets with their teeth, and shoes with their horns; cables are swept.
@@ -88,11 +102,8 @@ Visual vehicle_visual(V const& vehicle) {
   Visual visual(vehicle.model);
   detail::attach_hull(visual, vehicle.chassis[0]);
   for (auto const& side : vehicle.sides) {
-    for (auto const& wheel : side.wheels) detail::attach_drum(visual, wheel, wheel_radius);
-    detail::attach_drum(visual, side.idler[0], idler_radius);
-    for (auto const& arm : side.arms) visual.attach(arm.at(Vec3(0, 0, 0)), box({arm_length, 0.08, 0.08}), arm.name);
-    detail::attach_sprocket(visual, side.sprocket[0]);
-    for (std::size_t i = 0; i < side.links.size(); ++i) detail::attach_link(visual, side.links[i], side.middle[i]);
+    detail::attach_carriers<typename V::Base>(visual, side);
+    detail::attach_links<typename V::LinkType>(visual, side);
   }
   return visual;
 }

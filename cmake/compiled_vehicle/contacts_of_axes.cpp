@@ -1,0 +1,47 @@
+// A part of polybody::compiled_vehicle: contacts of links that publish an axis (see polybody/compiled_vehicle.hpp).
+#include <polybody/compiled_vehicle.hpp>
+
+namespace polybody {
+
+template struct ForceKernels<m113::TrackContacts<Observes::axis, FlatGround>, double>;
+template void m113::TrackContacts<Observes::axis, FlatGround>::check(std::string const&) const;
+template void for_each_contact(System const&, ElementHandle<m113::TrackContacts<Observes::axis, FlatGround>> const&,
+                               TouchingPointVisit const&);
+template void detail::add_opponent(detail::ModelParts&,
+                                   detail::ForceEntry<m113::TrackContacts<Observes::axis, FlatGround>>&,
+                                   m113::LinkContacts<Observes::axis>::OnRoller const&,
+                                   detail::PooledMarker<Rigid<>> const&, std::string);
+template void detail::add_opponent(detail::ModelParts&,
+                                   detail::ForceEntry<m113::TrackContacts<Observes::axis, FlatGround>>&,
+                                   m113::LinkContacts<Observes::axis>::OnRims const&,
+                                   detail::PooledMarker<Rigid<>> const&, std::string);
+template void detail::add_opponent(detail::ModelParts&,
+                                   detail::ForceEntry<m113::TrackContacts<Observes::axis, FlatGround>>&,
+                                   m113::LinkContacts<Observes::axis>::OnSprocket const&,
+                                   detail::PooledMarker<Rigid<>> const&, std::string);
+template void detail::add_opponent(detail::ModelParts&,
+                                   detail::ForceEntry<m113::TrackContacts<Observes::axis, FlatGround>>&,
+                                   m113::LinkContacts<Observes::axis>::OnGround<FlatGround> const&,
+                                   detail::PooledMarker<Ground> const&, std::string);
+template struct ForceKernels<m113::TrackContacts<Observes::axis, BumpCourse>, double>;
+template void m113::TrackContacts<Observes::axis, BumpCourse>::check(std::string const&) const;
+template void for_each_contact(System const&, ElementHandle<m113::TrackContacts<Observes::axis, BumpCourse>> const&,
+                               TouchingPointVisit const&);
+template void detail::add_opponent(detail::ModelParts&,
+                                   detail::ForceEntry<m113::TrackContacts<Observes::axis, BumpCourse>>&,
+                                   m113::LinkContacts<Observes::axis>::OnRoller const&,
+                                   detail::PooledMarker<Rigid<>> const&, std::string);
+template void detail::add_opponent(detail::ModelParts&,
+                                   detail::ForceEntry<m113::TrackContacts<Observes::axis, BumpCourse>>&,
+                                   m113::LinkContacts<Observes::axis>::OnRims const&,
+                                   detail::PooledMarker<Rigid<>> const&, std::string);
+template void detail::add_opponent(detail::ModelParts&,
+                                   detail::ForceEntry<m113::TrackContacts<Observes::axis, BumpCourse>>&,
+                                   m113::LinkContacts<Observes::axis>::OnSprocket const&,
+                                   detail::PooledMarker<Rigid<>> const&, std::string);
+template void detail::add_opponent(detail::ModelParts&,
+                                   detail::ForceEntry<m113::TrackContacts<Observes::axis, BumpCourse>>&,
+                                   m113::LinkContacts<Observes::axis>::OnGround<BumpCourse> const&,
+                                   detail::PooledMarker<Ground> const&, std::string);
+
+}  // namespace polybody

@@ -1,0 +1,15 @@
+// A part of polybody::compiled_vehicle: links with a floating frame (see polybody/compiled_vehicle.hpp).
+#include <polybody/compiled_vehicle.hpp>
+
+namespace polybody {
+
+template struct BodyKernels<Ffr, double>;
+template Frame<double> frame(BodyInState<Ffr> const&, FfrPoint const&);
+template FrameIn frame_in(BodyHandle<Ffr> const&, Marker<Ffr> const&);
+template void Visual::attach(Marker<Ffr> const&, Surface const&, std::string);
+template void Visual::sweep(BodyHandle<Ffr> const&, Bar const&, int, int);
+template Ffr m113::LinkOf<Ffr>::make<void>(m113::Solid const&, Placement const&, int) const;
+template Marker<Ffr> m113::LinkOf<Ffr>::pin<void>(BodyHandle<Ffr> const&, double) const;
+template Marker<Ffr> m113::LinkOf<Ffr>::under<void>(BodyHandle<Ffr> const&, double, m113::Face) const;
+
+}  // namespace polybody

@@ -1,0 +1,80 @@
+#pragma once
+// Links of one body formulation on the pins of each policy: what a file of links compiles.
+#include <polybody/vehicle/link_strain.hpp>
+
+#include "../any_vehicle.hpp"
+#include "stress_runs.hpp"
+#include "surface.hpp"
+
+namespace chapter4 {
+
+// What the watched link of a vehicle tells: of a flexible one strain and bending, of a finite element link stress.
+template <class V, class Links>
+WatchedLink watched(Options const& o, std::shared_ptr<V const> const& vehicle, Links const& links) {
+  auto const link = vehicle->side(m113::Side::left).links[watched_link];
+  if constexpr (HasRigidPoints<typename V::LinkType>) {
+    return {.rigid = link};
+  } else {
+    if constexpr (requires { links.model; })
+      if (links.model)
+        return {.see = [o, vehicle, link](State const& x, LinkHistory& h) {
+          add_surface(h, o, x.q.segment(vehicle->model.entry(link).q0 + 7, link.body().deformations()));
+        }};
+    return {.see = [height = section_height(o), vehicle, link](State const& x, LinkHistory& h) {
+      h.strain.push_back(m113::link_strain(link, x));
+      Vec3 const lateral = vehicle->hull(x).A.col(1);
+      h.bending.push_back(m113::link_bending(link, x, lateral, height));
+    }};
+  }
+}
+
+// Why links of Body cannot hang together by pins of Policy; empty where they can. Model::connect states the same.
+template <class Body, class Policy>
+constexpr char const* refusal() {
+  using Pin = Joint<Revolute, Policy>;
+  if constexpr (LinearInCoordinates<Policy> && !HasLinearPoints<Body>)
+    return "the frames of its ends are not linear in its coordinates";
+  else if constexpr (!MayBeCarried<Policy, Body>)
+    return "it has no frame that a joint could carry";
+  else if constexpr (!TellsEnoughFirst<Pin, Body> || !TellsEnoughSecond<Pin, Body>)
+    return "its ends have an axis and no frame, so that nothing tells where a pin points";
+  else
+    return "";
+}
+
+// How links of Body are made under these options.
+template <class Body>
+using LinksMade = std::function<m113::LinkOf<Body>(Options const&)>;
+
+template <class Body, class Policy>
+Combination combination(std::string const& links, std::string const& pins, bool usual, Policy const& policy,
+                        LinksMade<Body> const& made) {
+  Combination c{links, pins, usual, refusal<Body, Policy>(), Body::observes != Observes::axis};
+  if constexpr (*refusal<Body, Policy>() == '\0')
+    c.make = [=](Options const& o, VehicleParts const& parts) {
+      m113::LinkOf<Body> const of_links = made(o);
+      auto const vehicle = made_vehicle<Body>(policy, parts, of_links);
+      return StressVehicle{any_vehicle(vehicle, stepped_by<GeneralizedAlpha>), watched(o, vehicle, of_links)};
+    };
+  return c;
+}
+
+template <class Body>
+m113::LinkOf<Body> with_section(Options const& o) {
+  m113::LinkOf<Body> links;
+  if constexpr (requires { links.height; }) links.height = section_height(o);
+  return links;
+}
+
+// Links of Body under each policy of the pins, in the order of all_pins.
+template <class Body, Policy Usual>
+std::vector<Combination> links_of(std::string const& name, LinksMade<Body> const& made = with_section<Body>) {
+  auto const by = [&](std::size_t pins, auto const& policy) {
+    bool const usual = std::is_same_v<std::remove_cvref_t<decltype(policy)>, Usual>;
+    return combination<Body>(name, all_pins[pins], usual, policy, made);
+  };
+  return {by(0, Constraint{}), by(1, m113::penalty_pin(m113::pin_stiffness)),
+          by(2, m113::bushing_pin(m113::pin_stiffness)), by(3, AncfLinear{}), by(4, Recursive{})};
+}
+
+}  // namespace chapter4

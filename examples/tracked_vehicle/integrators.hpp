@@ -1,0 +1,16 @@
+#pragma once
+// The integrators of --integrator.
+#include <polybody/polybody.hpp>
+#include <polybody/run/any_model.hpp>
+
+namespace chapter3 {
+
+using Adams = polybody::AdamsBashforthMoulton<polybody::CoordinatePartitioning>;
+using DormandPrince = polybody::DormandPrince<polybody::Projection>;
+using RungeKutta = polybody::RungeKutta4<polybody::CoordinatePartitioning>;
+
+inline constexpr polybody::SteppedBy<polybody::GeneralizedAlpha, polybody::HhtAlpha, polybody::Radau, Adams,
+                                     DormandPrince, RungeKutta>
+    by_each;
+
+}  // namespace chapter3

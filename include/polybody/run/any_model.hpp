@@ -1,0 +1,78 @@
+#pragma once
+/// \file
+/// A model whose type is forgotten.
+
+#include <polybody/run/census.hpp>
+#include <polybody/run/simulate.hpp>
+
+namespace polybody {
+
+/// Names integrators in a constructor: `AnyModel(model, stepped_by<GeneralizedAlpha>)`.
+template <class... Is>
+struct SteppedBy {};
+template <class... Is>
+inline constexpr SteppedBy<Is...> stepped_by{};
+
+namespace detail {
+template <class I>
+inline constexpr char integrator_tag = 0;
+}  // namespace detail
+
+/// What runs, comparisons and records ask of a model, whatever its type. Programs that drive many formulations compile
+/// what they do with them once:
+///   AnyModel const model(std::make_shared<MyModel const>(my_model), stepped_by<GeneralizedAlpha, Radau>);
+///   State x = model.reference_state();
+///   simulate(model, x, Radau{}, {.until = 1.0, .step = 1e-3}).run();
+/// It keeps the model. Handles of the model's bodies and joints find their places in `question_system(model).layout()`.
+class AnyModel {
+ public:
+  template <class M, class... Is>
+  AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
+      : reference_(model->reference_state()), system_(&questions<M>), census_(polybody::census(*model)) {
+    (runs_.push_back({&detail::integrator_tag<Is>, &systems<Is, M>}), ...);
+    model_ = std::move(model);
+  }
+
+  State const& reference_state() const { return reference_; }
+  Census const& counts() const { return census_; }
+  /// The whole mechanism, with what is asked of its motion and its energies.
+  System system() const { return system_(model_.get()); }
+
+  /// \throws InvalidInput where the model was made without integrator I.
+  template <class I>
+  [[gnu::cold]] RunSystems systems_of() const {
+    for (Run const& run : runs_)
+      if (run.integrator == &detail::integrator_tag<I>) return run.make(model_.get());
+    throw InvalidInput{"AnyModel was made without ", I::name,
+                       ". Name it where it is made: AnyModel(model, stepped_by<...>)."};
+  }
+
+ private:
+  struct Run {
+    void const* integrator;
+    RunSystems (*make)(void const*);
+  };
+  template <class M>
+  [[gnu::cold]] static System questions(void const* model) {
+    return System(*static_cast<M const*>(model), with<Entries::energy>);
+  }
+  template <class I, class M>
+  [[gnu::cold]] static RunSystems systems(void const* model) {
+    return run_systems<I>(*static_cast<M const*>(model));
+  }
+
+  std::shared_ptr<void const> model_;
+  State reference_;
+  System (*system_)(void const*);
+  Census census_;
+  Sequence<Run> runs_ = {};
+};
+
+template <class I>
+RunSystems run_systems(AnyModel const& model) {
+  return model.systems_of<I>();
+}
+inline System question_system(AnyModel const& model) { return model.system(); }
+inline Census census(AnyModel const& model) { return model.counts(); }
+
+}  // namespace polybody

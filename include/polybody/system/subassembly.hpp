@@ -1,0 +1,92 @@
+#pragma once
+/// \file
+/// A model seen by some of its types.
+
+#include <polybody/system/model.hpp>
+
+namespace polybody {
+
+/// Adds to a model what needs these types only, so that what builds a hull or a suspension is compiled once, for all
+/// models that have them among their types:
+///   Subassembly<Bodies<Rigid<>>, Joints<Joint<Revolute>>, Forces<SpringDamper>> hull(model);
+///   auto const wheel = hull.add(body, "wheel");
+///   hull.connect(Joint<Revolute>{}, arm.at({0, 0, 0}), wheel.at({0, 0, 0}), "axle");
+/// Handles are those of the model, which must outlive it.
+template <class BodyList, class JointList = Joints<>, class ForceList = Forces<>>
+class Subassembly;
+template <Body... Bs, class... Js, AppliedForce... Fs>
+class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
+ public:
+  template <class AllBodies, class AllJoints, class AllForces>
+  explicit Subassembly(Model<AllBodies, AllJoints, AllForces>& model)
+      : parts_(model.parts_),
+        bodies_(&std::get<detail::BodyPool<Bs>>(model.bodies_)...),
+        joints_(&std::get<Sequence<detail::JointEntry<Js>>>(model.joints_)...),
+        forces_(&std::get<Sequence<detail::ForceEntry<Fs>>>(model.forces_)...) {}
+
+  /// As `Model::add`.
+  template <OneOf<Bs...> B>
+  BodyHandle<B> add(B const& body, std::string name = "") {
+    return detail::add_body(parts_, pool_of<B>(), body, std::move(name));
+  }
+
+  BodyHandle<Ground> ground() const { return {parts_.serial, 0, "ground"}; }
+
+  /// As `Model::connect`.
+  template <OneOf<Js...> J, class A, class B>
+  ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
+    detail::require_pairing<J, A, B>();
+    return detail::add_joint(parts_, *std::get<Sequence<detail::JointEntry<J>>*>(joints_), joint, pooled(a), pooled(b),
+                             std::move(name));
+  }
+
+  /// As `Model::apply`, between two markers.
+  template <OneOf<Fs...> F, class A, class B>
+    requires(F::markers == 2)
+  ElementHandle<F> apply(F const& force, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
+    static_assert(tell_enough<F, Marker<A>, Marker<B>>(), "This force needs more than the marker tells.");
+    return detail::add_force(parts_, forces_of<F>(), force, std::move(name), pooled(a), pooled(b));
+  }
+  /// As `Model::apply`, of a group to its many markers.
+  template <OneOf<Fs...> F, class A>
+    requires ForceGroup<F>
+  ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
+    static_assert(Marker<A>::observes >= F::needs, "This force needs more than the marker tells.");
+    Sequence<detail::PooledMarker<A>> pooled_many;
+    for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
+    return detail::add_group(parts_, forces_of<F>(), group, pooled_many, std::move(name));
+  }
+  /// As `Model::pair_with`.
+  template <OneOf<Fs...> F, class Law, class A>
+    requires ForceGroup<F>
+  void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
+    static_assert(Marker<A>::observes >= needs_of_second<Law>(), "This force needs more than the marker tells.");
+    detail::require_filled(group.model);
+    parts_.require_own(group.model, group.name);
+    detail::add_opponent(parts_, forces_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
+  }
+
+ private:
+  template <class B>
+  detail::BodyPool<B>& pool_of() {
+    return *std::get<detail::BodyPool<B>*>(bodies_);
+  }
+  template <class F>
+  Sequence<detail::ForceEntry<F>>& forces_of() {
+    return *std::get<Sequence<detail::ForceEntry<F>>*>(forces_);
+  }
+  template <class B>
+  detail::PooledMarker<B> pooled(Marker<B> const& m) {
+    if constexpr (std::is_same_v<B, Ground>)
+      return {m};
+    else
+      return {m, pool_of<B>()};
+  }
+
+  detail::ModelParts& parts_;
+  std::tuple<detail::BodyPool<Bs>*...> bodies_;
+  std::tuple<Sequence<detail::JointEntry<Js>>*...> joints_;
+  std::tuple<Sequence<detail::ForceEntry<Fs>>*...> forces_;
+};
+
+}  // namespace polybody

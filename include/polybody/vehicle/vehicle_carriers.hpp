@@ -1,0 +1,33 @@
+#pragma once
+/// \file
+/// The bodies of a vehicle that carry one of its tracks. Not in polybody.hpp: of use to vehicles only.
+
+#include <vector>
+
+#include <polybody/run/points.hpp>
+#include <polybody/vehicle/hull.hpp>
+#include <polybody/vehicle/tracked_vehicle.hpp>
+
+namespace polybody::m113 {
+
+/// The bodies that carry one track.
+template <class Base>
+struct Carriers {
+  std::vector<BodyHandle<Base>> wheels = {}, arms = {}, sprocket = {}, idler = {},
+                                tensioner = {};  ///< the last three: one each
+
+  /// \param bodies the chassis and those of `hull`
+  void set(HullSide const& hull, std::vector<BodyHandle<Base>> const& bodies, Track& track) {
+    sprocket = {bodies[hull.sprocket]};
+    tensioner = {bodies[hull.tensioner]};
+    idler = {bodies[hull.idler]};
+    for (int i = 0; i < m113::wheels; ++i) {
+      wheels.push_back(bodies[hull.wheel(i)]);
+      arms.push_back(bodies[hull.arm(i)]);
+    }
+    track.sprocket = frame_in(sprocket[0], sprocket[0].at(Vec3(0, 0, 0)));
+    track.tensioner = frame_in(tensioner[0], tensioner[0].at(Vec3(0, 0, 0)));
+  }
+};
+
+}  // namespace polybody::m113
