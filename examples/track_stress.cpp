@@ -48,7 +48,7 @@ class Cache {
 // The pull of the tensioner in either run of the track, as if both left the idler level: its spring, without its
 // damper.
 double mean_pull(Options const& o, StressRuns const& runs, std::size_t k, double from) {
-  double const travel = range_of(runs.times(k), runs.history(k, "idler travel [m]"), from).mean;
+  double const travel = span_of(runs.times(k), runs.history(k, "idler travel [m]"), from).mean;
   return 0.5 * (o.preload + m113::tensioner.stiffness * travel);
 }
 
@@ -60,7 +60,7 @@ void print_strains(Options const& o, StressRuns const& r, double speed) {
   double apart = 0.0;
   for (std::size_t i = 0; i < std::min(rigid.size(), flexible.size()); ++i)
     if (times[i] >= from) apart = std::max(apart, std::abs(rigid[i] - flexible[i]));
-  Range const a = range_of(times, rigid, from), b = range_of(other_times, flexible, from);
+  Span const a = span_of(times, rigid, from), b = span_of(other_times, flexible, from);
   std::printf(
       "%g rad/s, from %.1f to %.1f s, low pass %g Hz: rigid %.3fe-5, %.3f MPa; ancf %.3fe-5, %.3f MPa; at most %.3f "
       "MPa apart; (T0 + m v^2/p)/EA %.3fe-5\n",
@@ -84,7 +84,7 @@ void add_bands(Figure& f, std::vector<SettingRuns> const& settings, double scale
 
 void report_bending(StressRuns const& runs, std::size_t k) {
   double const young = 1e-6 * m113::youngs_modulus, from = plateau(runs.times(k)), end = runs.times(k).back();
-  Range const bending = range_of(runs.times(k), runs.bending(k), from);
+  Span const bending = span_of(runs.times(k), runs.bending(k), from);
   std::printf("           stress by bending in the middle, unfiltered: %.2f to %.2f MPa, rms from 1 s on %.2f MPa",
               young * bending.least, young * bending.most, young * rms(runs.times(k), runs.bending(k), 1.0));
   if (k > 0 && runs.links[0]->decoupled && end > 3.0)
@@ -105,7 +105,7 @@ void report(Options const& o, StressRuns const& runs) {
     auto const& r = runs.comparison.runs[k];
     double const from = plateau(runs.times(k)), speed = mean_speed(runs, k, from), pull = mean_pull(o, runs, k, from);
     std::vector<double> const strain = runs.filtered(k, o.cut_off);
-    Range const e = range_of(runs.times(k), strain, from), raw = range_of(runs.times(k), runs.raw(k), from);
+    Span const e = span_of(runs.times(k), strain, from), raw = span_of(runs.times(k), runs.raw(k), from);
     std::printf(
         "%-10s from %.1f s on: speed %.4f m/s; strain %.3fe-5 (%.3f to %.3f), %.3f MPa; unfiltered %.2f to %.2fe-5\n",
         r.name.c_str(), from, speed, 1e5 * e.mean, 1e5 * e.least, 1e5 * e.most, 1e-6 * m113::youngs_modulus * e.mean,
@@ -113,11 +113,11 @@ void report(Options const& o, StressRuns const& runs) {
     double const mass = runs.links[k]->decoupled ? o.masses.link.mass : flexible_mass(o);
     std::printf("           (T0 + m v^2/p)/EA with T0 = %.2f kN of the tensioner: %.3fe-5\n", 1e-3 * pull,
                 1e5 * m113::running_strain(speed, pull, section_height(o), mass));
-    Range const force = range_of(runs.times(k), runs.history(k, "joint force x [N]"), 0.0);
+    Span const force = span_of(runs.times(k), runs.history(k, "joint force x [N]"), 0.0);
     std::printf(
         "           at the end %.4f m ahead; at most %.3f m/s; longitudinal force in the front pin %.1f to %.1f kN\n",
         runs.history(k, "forward position [m]").back(),
-        range_of(runs.times(k), runs.history(k, "forward velocity [m/s]"), 0.0).most, 1e-3 * force.least,
+        span_of(runs.times(k), runs.history(k, "forward velocity [m/s]"), 0.0).most, 1e-3 * force.least,
         1e-3 * force.most);
     report_bending(runs, k);
     for (double const since : {1.0, from})
@@ -320,27 +320,17 @@ struct Cell {
   double turning = 0.0;  // mean yaw rate [rad/s]
 };
 
-// The mean from a time on.
-double yaw_rate(StressRuns const& r, double from) {
-  auto const &t = r.times(0), &yaw = r.history(0, "yaw [rad]");
-  std::size_t const first = std::size_t(std::lower_bound(t.begin(), t.end(), from) - t.begin());
-  double turned = 0.0;  // the angle jumps by a turn at ±π
-  for (std::size_t i = first + 1; i < yaw.size(); ++i)
-    turned += std::remainder(yaw[i] - yaw[i - 1], 2.0 * std::numbers::pi);
-  return turned / (t.back() - t[first]);
-}
-
 Cell cell_of(Options const& o, Combination const& c) {
   StressRuns const r = run(o, {c});
   auto const& one = r.comparison.runs[0];
   double const from = plateau(r.times(0));
   std::vector<double> const strain = r.filtered(0, o.cut_off);
   Cell const cell{.forward = r.history(0, "forward position [m]").back(),
-                  .strain = range_of(r.times(0), strain, from).mean,
-                  .force = range_of(r.times(0), r.history(0, "joint force [N]"), from).most,
-                  .gap = range_of(r.times(0), r.history(0, "largest joint gap [m]"), from).most,
+                  .strain = span_of(r.times(0), strain, from).mean,
+                  .force = span_of(r.times(0), r.history(0, "joint force [N]"), from).most,
+                  .gap = span_of(r.times(0), r.history(0, "largest joint gap [m]"), from).most,
                   .energy = r.outcomes[0].relative,
-                  .turning = yaw_rate(r, from)};
+                  .turning = yaw_rate(r, 0, from)};
   std::printf("%-10s %-10s %6td %5td %8.1f %6.2f %6.3f %11.4f %9.3f %9.2f %9.2e %9.3f", c.links.c_str(), c.pins.c_str(),
               one.census.speeds, one.census.rows, one.cpu, double(one.run.iterations) / double(one.run.steps),
               double(one.run.factorisations) / double(one.run.steps), cell.forward, 1e5 * cell.strain,
@@ -437,7 +427,7 @@ void compare_terms(Options o) {
       return d.value();
     };
     std::printf("%-52s %10.4f %9.4f %9.4f %9.4f %10.4f\n", name,
-                1e5 * range_of(r.times(0), r.filtered(0, o.cut_off), from).mean, 1e2 * off(o, r, 0, whole, 0, from),
+                1e5 * span_of(r.times(0), r.filtered(0, o.cut_off), from).mean, 1e2 * off(o, r, 0, whole, 0, from),
                 1e2 * unfiltered(&StressRuns::raw), 1e2 * unfiltered(&StressRuns::bending),
                 1e2 * r.outcomes[0].relative);
     std::fflush(stdout);
@@ -457,7 +447,7 @@ void surface_stress(Options o) {
       from, o.cut_off);
   for (auto const& [name, decoupled] : r.links[0]->surface) {
     auto const& coupled = r.links[1]->surface.at(name);
-    Range const a = range_of(r.times(0), decoupled, from), b = range_of(r.times(1), coupled, from);
+    Span const a = span_of(r.times(0), decoupled, from), b = span_of(r.times(1), coupled, from);
     auto const apart = [&](double since) {
       RmsDifference d(since, o.until);
       d.add({r.times(0), decoupled}, {r.times(1), coupled});

@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 
 namespace chapter3 {
@@ -124,6 +125,15 @@ Filtered filtered(Runs const& runs, std::size_t run, std::string const& output, 
 // The same at the times of the run, of numbers that are not among its outputs.
 std::vector<double> filtered_values(Runs const& runs, std::size_t run, std::vector<double> const& values,
                                     double cut_off);
+
+// What a history spans from one time to another.
+struct Span {
+  double mean = 0.0, least = std::numeric_limits<double>::infinity(), most = -least, at_least = 0.0, at_most = 0.0;
+};
+Span span_of(std::vector<double> const& times, std::vector<double> const& x, double from = 0.0,
+             double to = std::numeric_limits<double>::infinity());
+// Mean yaw rate from a time on [rad/s].
+double yaw_rate(Runs const& runs, std::size_t run, double from);
 
 // A curve of every `every`-th sample, so that files stay small.
 Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int color,

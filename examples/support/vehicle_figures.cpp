@@ -1,4 +1,4 @@
-// Histories of runs of the tracked vehicle, filtered and drawn.
+// Histories of runs of the tracked vehicle, measured, filtered and drawn.
 #include <polybody/signals/filter.hpp>
 
 #include "../tracked_vehicle.hpp"
@@ -33,6 +33,29 @@ Filtered filtered(Runs const& runs, std::size_t run, std::string const& output, 
   }
   f.values = low_pass(f.times, f.values, {.cut_off = cut_off, .mirrored = true});
   return f;
+}
+
+Span span_of(std::vector<double> const& times, std::vector<double> const& x, double from, double to) {
+  Span s;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < std::min(times.size(), x.size()); ++i) {
+    if (times[i] < from || times[i] > to) continue;
+    s.mean += x[i];
+    ++count;
+    if (x[i] < s.least) s.least = x[i], s.at_least = times[i];
+    if (x[i] > s.most) s.most = x[i], s.at_most = times[i];
+  }
+  s.mean /= double(std::max<std::size_t>(count, 1));
+  return s;
+}
+
+double yaw_rate(Runs const& runs, std::size_t run, double from) {
+  auto const &t = runs.times(run), &yaw = runs.history(run, "yaw [rad]");
+  std::size_t const first = std::min(std::size_t(std::lower_bound(t.begin(), t.end(), from) - t.begin()), t.size() - 2);
+  double turned = 0.0;  // the angle jumps by a turn at ±π
+  for (std::size_t i = first + 1; i < t.size(); ++i)
+    turned += std::remainder(yaw[i] - yaw[i - 1], 2.0 * std::numbers::pi);
+  return turned / (t.back() - t[first]);
 }
 
 // A curve of every `every`-th sample, so that files stay small.

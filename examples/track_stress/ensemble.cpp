@@ -43,7 +43,7 @@ void print(SettingRuns const& setting) {
   StressRuns const& r = setting.runs;
   double const from = plateau(r.times(0));
   auto const mean = [&](std::size_t k, std::vector<double> const& x) {
-    return 1e5 * range_of(r.times(k), r.filtered(k, x, o.cut_off), from).mean;
+    return 1e5 * span_of(r.times(k), r.filtered(k, x, o.cut_off), from).mean;
   };
   double const a = mean(0, r.raw(0)), b = mean(1, r.raw(1));
   Ranges const of_a = ranges_of(cycles_of(r.raw(0))), of_b = ranges_of(cycles_of(r.raw(1)));

@@ -7,24 +7,8 @@
 
 namespace chapter4 {
 
-// Numbers from `from` on: of the plateau, or of all that there is.
-struct Range {
-  double mean = 0.0, least = 0.0, most = 0.0;
-};
+// Where numbers of the plateau begin, or of half of a shorter run.
 inline double plateau(std::vector<double> const& times) { return times.back() > 8.6 ? 8.5 : 0.5 * times.back(); }
-inline Range range_of(std::vector<double> const& times, std::vector<double> const& x, double from) {
-  Range r{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  double count = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (times[i] < from) continue;
-    r.mean += x[i];
-    r.least = std::min(r.least, x[i]);
-    r.most = std::max(r.most, x[i]);
-    ++count;
-  }
-  r.mean /= count;
-  return r;
-}
 
 // Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
 using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;

@@ -1,7 +1,5 @@
 #pragma once
 // Numbers of the vehicle's runs, in lines.
-#include <limits>
-
 #include <polybody/signals/rms_difference.hpp>
 #include <polybody/vehicle/distance_to_path.hpp>
 
@@ -10,24 +8,6 @@
 
 namespace chapter3 {
 
-// What a history spans from one time to another.
-struct Span {
-  double mean = 0.0, least = std::numeric_limits<double>::infinity(), most = -least, at_least = 0.0, at_most = 0.0;
-};
-inline Span span_of(std::vector<double> const& times, std::vector<double> const& x, double from = 0.0,
-                    double to = std::numeric_limits<double>::infinity()) {
-  Span s;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < std::min(times.size(), x.size()); ++i) {
-    if (times[i] < from || times[i] > to) continue;
-    s.mean += x[i];
-    ++count;
-    if (x[i] < s.least) s.least = x[i], s.at_least = times[i];
-    if (x[i] > s.most) s.most = x[i], s.at_most = times[i];
-  }
-  s.mean /= double(std::max<std::size_t>(count, 1));
-  return s;
-}
 inline Span span_of(Runs const& runs, std::size_t k, std::string const& output, double from = 0.0) {
   return span_of(runs.times(k), runs.history(k, output), from);
 }
@@ -85,16 +65,14 @@ struct Turning {
   double rate = 0.0, radius = 0.0, rolling_rate = 0.0, rolling_radius = 0.0;  // [rad/s], [m]
 };
 inline Turning turning(Settings const& o, Runs const& runs, std::size_t k, double from) {
-  auto const &t = runs.times(k), &yaw = runs.history(k, "yaw [rad]"), &x = runs.history(k, "forward position [m]"),
+  auto const &t = runs.times(k), &x = runs.history(k, "forward position [m]"),
              &y = runs.history(k, "sideways position [m]");
   std::size_t const first = std::min(std::size_t(std::lower_bound(t.begin(), t.end(), from) - t.begin()), t.size() - 2);
-  double turned = 0.0, way = 0.0;  // the angle jumps by a turn at ±π
-  for (std::size_t i = first + 1; i < t.size(); ++i) {
-    turned += std::remainder(yaw[i] - yaw[i - 1], 2.0 * std::numbers::pi);
-    way += std::hypot(x[i] - x[i - 1], y[i] - y[i - 1]);
-  }
+  double const rate = yaw_rate(runs, k, from);
+  double way = 0.0;
+  for (std::size_t i = first + 1; i < t.size(); ++i) way += std::hypot(x[i] - x[i - 1], y[i] - y[i - 1]);
   double const apart = o.left - o.right, duration = t.back() - t[first];
-  return {std::abs(turned) / duration, std::abs(way / turned),
+  return {std::abs(rate), std::abs(way / (rate * duration)),
           std::abs(o.speed * apart) * m113::rolling_radius / (2.0 * m113::track_y),
           std::abs((o.left + o.right) / apart) * m113::track_y};
 }

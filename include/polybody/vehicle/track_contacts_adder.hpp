@@ -3,6 +3,7 @@
 /// What the links of a track touch, as a part of any model that has their types. Not in polybody.hpp: of use to
 /// vehicles only.
 
+#include <utility>
 #include <vector>
 
 #include <polybody/math/type_list.hpp>
@@ -47,7 +48,7 @@ class TrackContactsAdder {
     auto const pads = in_the_middle ? rims : add_group(under(of_side, {-x, x}, Face::ground), name + "pads", track);
     part_.pair_with(pads, of_links.on_terrain(ground, in_the_middle ? of_links.corners() : of_links.corners(x)),
                     part_.ground().at({0, 0, 0}), "ground");
-    return std::move(groups_);
+    return std::exchange(groups_, {});
   }
 
  private:

@@ -3,7 +3,6 @@
 /// The hull of the vehicle of m113_vehicle.hpp and what carries its tracks, as a part of any model that has their
 /// types. Not in polybody.hpp: of use to vehicles only.
 
-#include <array>
 #include <vector>
 
 #include <polybody/forces/axial_spring.hpp>
@@ -16,7 +15,6 @@
 #include <polybody/system/subassembly.hpp>
 #include <polybody/vehicle/hull.hpp>
 #include <polybody/vehicle/track_links.hpp>
-#include <polybody/vehicle/tracked_vehicle.hpp>
 #include <polybody/vehicle/vehicle_options.hpp>
 
 namespace polybody::m113 {

@@ -243,7 +243,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
 
   /// \throws InvalidInput for a reference that is no beam.
   void check_reference(ancf::Reference const& ref, Index e) const {
-    std::string const what = std::string(Elastic::name) + ": element " + std::to_string(e);
+    std::string const what = sentence_of({Elastic::name, ": element ", e});
     double const chord = std::hypot(ref.x[12] - ref.x[0], ref.x[13] - ref.x[1], ref.x[14] - ref.x[2]);
     if (!(chord > 1e-6 * l_)) throw InvalidInput{what, " begins where it ends. Use more elements, or another curve."};
     if (chord > (1.0 + 1e-6) * l_)
