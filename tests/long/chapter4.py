@@ -114,6 +114,11 @@ twenty = by_pattern({
 
 
 
+def numbers_of(read):
+    """What `read` reads, without its table."""
+    return lambda text: (read(text)[0], "")
+
+
 def with_rows(read, rows):
     """What `read` reads, and rows that are made of it: {row: {column: function of all rows}}."""
 
@@ -161,6 +166,8 @@ TERMS = {"others": {"raw": worst_term("raw", BENT), "bending": worst_term("bendi
 CASES = {
     "matrix": (PAGE, "track_stress --compare matrix --until 3 --no-plot", matrix),
     "matrix_turn": (PAGE, "track_stress --compare matrix --turn curve --until 3 --no-plot", matrix),
+    "matrix_pivot": (PAGE, "track_stress --compare matrix --turn pivot --speed 10 --until 3 --no-plot", numbers_of(matrix)),
+    "links_bumps": (PAGE, "track_stress --compare links --bumps --audit --until 7 --no-plot", report),
     "surface_30": (PAGE, "track_stress --compare surface --until 10 --no-plot", with_rows(surface, SURFACE)),
     "surface_80": (PAGE, "track_stress --compare surface --until 10 --speed 80 --no-plot", with_rows(surface, SURFACE)),
     "terms": (PAGE, "track_stress --compare terms --until 4 --speed 80 --no-plot", with_rows(terms, TERMS)),
