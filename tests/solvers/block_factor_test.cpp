@@ -320,4 +320,37 @@ TEST(BlockLu, SolvesUnsymmetricTangents) {
   }
 }
 
+/// Elements of twelve unknowns in a row: of each link four are those at its end, which the next one shares, out of
+/// order among its own eight.
+Blocks cables(Index links, Draw& draw) {
+  Blocks b;
+  for (Index i = 0; i < links; ++i) {
+    MatX const k = draw.definite(12);
+    auto const add = [&](Index row, Index rows, Index from_row, Index col, Index cols, Index from_col) {
+      b.add(row, col, k.block(from_row, from_col, rows, cols));
+    };
+    bool const last = i + 1 == links;
+    std::vector<std::array<Index, 3>> parts{{8 * i, 8, 0}};  // first, size, place in k
+    if (!last) parts.push_back({8 * (i + 1), 3, 8});
+    if (!last) parts.push_back({8 * (i + 1) + 4, 1, 11});
+    for (auto const& r : parts)
+      for (auto const& c : parts) add(r[0], r[1], r[2], c[0], c[1], c[2]);
+  }
+  return b;
+}
+
+// Unknowns of a body that touch the same others go at once: two nodes a link, not five.
+TYPED_TEST(BlockSolvers, JoinsWhatTouchesTheSame) {
+  Blocks const b = cables(9, this->draw);
+  TypeParam const solver = this->solved(b);
+  EXPECT_LE(solver.nodes(), 18);
+}
+
+// A body of 24 unknowns goes in four nodes of six, which kernels with constants take.
+TYPED_TEST(BlockSolvers, DividesLargeBodies) {
+  Blocks const b = chain(5, 24, 5, this->draw);
+  TypeParam const solver = this->solved(b);
+  EXPECT_EQ(solver.nodes(), 5 * 4 + 5);
+}
+
 }  // namespace block_factor_test

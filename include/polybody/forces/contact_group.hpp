@@ -51,9 +51,15 @@ class ContactGroup {
   }
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
-    for_each_candidate([&](Index i, Index j, auto const& law) {
-      if (law.may_touch(frame(i), frame(j))) visit(i, j, law);
-    });
+    for_each_pair(frame, visit, 0, many_);
+  }
+  /// The same for the markers [begin, end) of the many.
+  template <class FrameOf, class Visit>
+  void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
+    for (Index i = begin; i < end; ++i)
+      for_each_opponent([&](auto const& few) {
+        if (few.law.may_touch(frame(i), frame(few.marker))) visit(i, few.marker, few.law);
+      });
   }
 
  private:

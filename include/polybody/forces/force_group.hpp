@@ -38,6 +38,14 @@ concept ForceGroup = requires(F const group, std::string const name) {
   group.check(name);
 };
 
+/// A group that goes through its pairs by parts, which threads share: i is one of its first `many()` markers, j
+/// another.
+template <class F>
+concept PairsByParts = ForceGroup<F> && requires(F const group) {
+  { group.many() } -> std::convertible_to<Index>;
+  group.for_each_pair(detail::AnyFrame{}, detail::AnyVisit{}, Index(0), Index(0));  // of i in [begin, end)
+};
+
 /// A force that a model may hold.
 template <class F>
 concept AppliedForce = ForceElement<F> || ForceGroup<F>;

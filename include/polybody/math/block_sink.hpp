@@ -2,7 +2,9 @@
 /// \file
 /// Where the blocks of a matrix go: one type, whatever receives them, so that who writes a matrix is compiled once.
 
+#include <atomic>
 #include <concepts>
+#include <cstdint>
 #include <utility>
 
 #include <polybody/math/block_view.hpp>
@@ -48,6 +50,13 @@ struct BlockPiece {
 struct BlockSlots {
   BlockPiece const* pieces = nullptr;
   int const* first = nullptr;
+  std::uint64_t layout = 0;  ///< of the storage: another number for every other one
+
+  /// A number that no layout has had.
+  static std::uint64_t new_layout() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+  }
 };
 
 /// A receiver of blocks that is called for each of them: `add(row, col, block)`, always in the same order.
@@ -96,6 +105,8 @@ class BlockSink {
     int const end = *++slots_.first;
     for (int k = slots_.first[-1]; k < end; ++k) slots_.pieces[k].add(b);
   }
+  /// Where the blocks to come go; none where the receiver is called for each.
+  BlockSlots const& slots() const { return slots_; }
   /// Whether the numbers of the diagonal block of these unknowns are of use.
   bool wants(Index first, Index size) const { return !wants_ || wants_(target_, first, size); }
   /// A block of zeros: it has its place in the matrix but does not act.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <concepts>
 #include <exception>
 #include <system_error>
@@ -119,10 +120,14 @@ class Workers {
       if (running_.fetch_sub(1) == 1) running_.notify_one();
     }
   }
-  /// Looks for a few microseconds, as loops follow one another closely, before it sleeps.
+  /// Looks for a tenth of a millisecond before it sleeps: the loops of a step follow one another within that, and to be
+  /// woken takes half of it.
   static void wait_for_change(std::atomic<unsigned> const& x, unsigned old) {
-    for (int i = 0; i < 4000; ++i)
-      if (x.load() != old) return;
+    auto const end = std::chrono::steady_clock::now() + std::chrono::microseconds(100);
+    do
+      for (int i = 0; i < 100; ++i)
+        if (x.load() != old) return;
+    while (std::chrono::steady_clock::now() < end);
     x.wait(old);
   }
 

@@ -69,7 +69,7 @@ class BlockFactor {
   /// A block of zeros.
   void skip(Index, Index, Index, Index) { ++next_; }
   /// Where blocks go; as long as the solver is not analysed again and does not change its order (`reordered`).
-  BlockSlots slots() const { return {slots_.data(), layout_.first_piece.data()}; }
+  BlockSlots slots() const { return {slots_.data(), layout_.first_piece.data(), number_}; }
 
   /// −1, or the unknown without a usable pivot. Rows of a loop that repeat others are dropped: see `dropped`.
   /// After a failure `reordered` may ask for the same matrix once more.
@@ -130,6 +130,7 @@ class BlockFactor {
 
   [[gnu::cold]] void compile() {
     layout_.compile(pattern_, blocks_, hints_, two_sided);
+    number_ = BlockSlots::new_layout();
     u_ = detail::AlignedDoubles(layout_.size_u);
     l_ = detail::AlignedDoubles(layout_.size_l);
     f_ = detail::AlignedDoubles(layout_.size_f);
@@ -210,6 +211,7 @@ class BlockFactor {
   std::size_t kept_ = no_limit;                       // changes that the next factorisation keeps
   bool reordered_ = false, symmetric_ = false;
   std::size_t next_ = 0;        // block to be added
+  std::uint64_t number_ = 0;    // of the layout
   Sequence<BlockPiece> slots_;  // of the pieces of all blocks
   Sequence<int> swaps_;
   Sequence<Index> dropped_;

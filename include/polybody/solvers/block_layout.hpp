@@ -55,14 +55,15 @@ class BlockLayout {
   [[gnu::cold]] void compile(BlockPattern const& pattern, std::span<Block const> blocks, NodeHints const& hints,
                              bool both_halves) {
     EliminationOrder order;
-    order.compute(pattern, blocks, number_nodes(pattern, hints), hints.late);
+    order.compute(pattern, blocks, number_nodes(pattern, blocks, hints), hints.late);
     place_nodes(pattern, order, hints, both_halves);
     find_targets();
     place_pieces(pattern, blocks);
   }
 
  private:
-  static Sequence<int> number_nodes(BlockPattern const& pattern, NodeHints const& hints) {
+  static Sequence<int> number_nodes(BlockPattern const& pattern, std::span<Block const> blocks,
+                                    NodeHints const& hints) {
     auto const& segments = pattern.segments();
     Sequence<int> node_of(segments.size(), hints.dense ? 0 : -1);
     if (hints.dense) return node_of;
@@ -81,9 +82,38 @@ class BlockLayout {
       for (int const t : pattern.secondary(body)) take(t);
       ++count;
     }
+    join_alike(pattern, blocks, node_of, count);
     for (int& n : node_of)
       if (n < 0) n = count++;
     return node_of;
+  }
+
+  /// Segments of a body that touch the same others are eliminated at once, as many unknowns as kernels take that know
+  /// their number: one after another they would make no more fill, and pass over the same neighbours each.
+  [[gnu::cold]] static void join_alike(BlockPattern const& pattern, std::span<Block const> blocks,
+                                       Sequence<int>& node_of, int& count) {
+    auto const& segments = pattern.segments();
+    Sequence<Sequence<int>> touched(segments.size());
+    for (Block const& b : blocks) {
+      BlockPattern::Range const rows = pattern.covered(b.row, b.rows), columns = pattern.covered(b.col, b.cols);
+      for (int r = rows.begin; r < rows.end; ++r)
+        for (int c = columns.begin; c < columns.end; ++c) {
+          touched[std::size_t(r)].push_back(c);
+          touched[std::size_t(c)].push_back(r);
+        }
+    }
+    for (Sequence<int>& of : touched) sort_once(of);
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+      if (node_of[s] >= 0 || segments[s].joint) continue;
+      Index size = segments[s].size;
+      for (int const t : pattern.segments_of(segments[s].body)) {
+        if (t <= int(s) || node_of[std::size_t(t)] >= 0 || touched[std::size_t(t)] != touched[s]) continue;
+        size += segments[std::size_t(t)].size;
+        if (size > BlockPattern::largest_segment) break;
+        node_of[s] = node_of[std::size_t(t)] = count;
+      }
+      if (node_of[s] >= 0) ++count;
+    }
   }
 
   [[gnu::cold]] void place_nodes(BlockPattern const& pattern, EliminationOrder const& order, NodeHints const& hints,
@@ -109,13 +139,14 @@ class BlockLayout {
       n.size = size[k];
       n.pad = padded(n.size);
       n.joint = n.droppable = true;
+      n.pivoted = hints.dense;
       for (int const s : from.segments) {
         auto const& segment = segments[std::size_t(s)];
         n.joint = n.joint && segment.joint;
         n.droppable = n.droppable && segment.joint && (segment.closes_loop || hints.late[std::size_t(s)]);
+        n.pivoted = n.pivoted || (hints.merged[std::size_t(s)] && from.segments.size() > 1);
         for (int i = 0; i < segment.size; ++i) unknown.push_back(segment.first + i);
       }
-      n.pivoted = hints.dense || from.segments.size() > 1;
       n.u = size_u;
       n.l = size_l;
       n.f = size_f;

@@ -16,6 +16,8 @@ namespace polybody::detail {
 /// a joint when nothing stands on its diagonal.
 class BlockPattern {
  public:
+  static constexpr Index largest_segment = 6;
+
   struct Segment {
     Index first = 0;
     int size = 0;
@@ -66,12 +68,27 @@ class BlockPattern {
     begins[0] = 1;
     for (Block const& b : blocks)
       for (Index const at : {b.row, b.row + b.rows, b.col, b.col + b.cols}) begins[std::size_t(at)] = 1;
+    divide(blocks, begins);
     segments_.clear();
     segment_of_.assign(std::size_t(size), 0);
     for (Index i = 0; i < size; ++i) {
       if (begins[std::size_t(i)]) segments_.emplace_back().first = i;
       ++segments_.back().size;
       segment_of_[std::size_t(i)] = int(segments_.size()) - 1;
+    }
+  }
+
+  /// Cuts bodies that are larger than kernels with constants take into as few equal parts as they do take.
+  [[gnu::cold]] static void divide(std::span<Block const> blocks, Sequence<char>& begins) {
+    Index const size = Index(begins.size()) - 1;
+    Sequence<char> diagonal(begins.size(), 0);
+    for (Block const& b : blocks)
+      for (Index i = std::max(b.row, b.col); i < std::min(b.row + b.rows, b.col + b.cols); ++i)
+        diagonal[std::size_t(i)] = 1;
+    for (Index first = 0, end = 0; first < size; first = end) {
+      for (end = first + 1; end < size && !begins[std::size_t(end)];) ++end;
+      Index const parts = diagonal[std::size_t(first)] ? (end - first + largest_segment - 1) / largest_segment : 1;
+      for (Index k = 1; k < parts; ++k) begins[std::size_t(first + k * (end - first) / parts)] = 1;
     }
   }
 

@@ -3,6 +3,8 @@
 /// The sparse equations that are solved in place of those in joint coordinates: of all bodies, with the rows of the
 /// joints that carry them. Dependents of linear joints are spread, the rows of these are left out.
 
+#include <array>
+
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/mapped_sink.hpp>
 #include <polybody/system/reduction.hpp>
@@ -53,9 +55,21 @@ class BodyEquationsOf {
   }
 
   void write(BlockWriter const& write_whole, BlockSink& sink) {
-    MappedSinkOf<> mapped(map_, mapped_, sink);
+    std::uint64_t const layout = sink.slots().layout;
+    for (MappedSlotsOf<>& slots : slots_)
+      if (layout != 0 && slots.leads_to(layout)) {
+        slots.begin();
+        BlockSink whole(slots);
+        return write_whole(whole);
+      }
+    MappedSlotsOf<>* const slots = layout != 0 ? &slots_[next_slots_] : nullptr;
+    if (slots) slots->record(sink.slots());
+    MappedSinkOf<> mapped(map_, mapped_, sink, slots);
     BlockSink whole(mapped);
     write_whole(whole);
+    if (!mapped.recorded()) return;
+    slots->complete();
+    next_slots_ = (next_slots_ + 1) % slots_.size();
   }
 
   /// out = factor · a vector by whole speeds; rows are left as they are.
@@ -89,6 +103,8 @@ class BodyEquationsOf {
   Sequence<Index> of_, rows_that_stay_,
       carrying_rows_;  // of_: place of a whole unknown, −1 where it is spread or left out
   MappedBlocks mapped_;
+  std::array<MappedSlotsOf<>, 4> slots_;  // of the solvers that were written to last
+  std::size_t next_slots_ = 0;
 };
 
 }  // namespace polybody::detail

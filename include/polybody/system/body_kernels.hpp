@@ -8,7 +8,7 @@
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/entries.hpp>
 #include <polybody/system/layout.hpp>
-#include <polybody/system/pools.hpp>
+#include <polybody/system/pool_batches.hpp>
 
 namespace polybody {
 
@@ -19,6 +19,8 @@ template <class B, StateScalar T>
 struct BodyData {
   Sequence<typename PoseOf<B, T>::Type> poses;
   Sequence<KeptScratch<B, T>> scratch;
+  PoolBatches batches;   ///< of numbers, where bodies compare their elements
+  bool divides = false;  ///< threads share the elements of some body
 };
 
 /// How much of the arena of Jacobians is taken, and the columns of the widest marker.
@@ -104,6 +106,20 @@ struct BodyKernels {
 
  private:
   static constexpr int n = B::element_columns;
+  /// That are worth a thread.
+  static constexpr Index least_bodies = n == Eigen::Dynamic ? 8 : HasRigidLayout<B> ? 1024 : 32;
+  /// Threads share its bodies, of one element each.
+  static bool shares_bodies(Pool const& pool) { return detail::has_single_elements(pool, 2 * least_bodies); }
+  static constexpr bool in_batches = ComparesElements<B> && std::same_as<T, double>;
+  /// M a − f of the elements of one body.
+  static void add_forces_of(Entry const& e, detail::KeptScratch<B, T>& kept, detail::Unbalance<T> const& u,
+                            Data<T>& data, Vector& r);
+  static void tangents_of(Entry const& e, detail::KeptScratch<B, T>& kept, At<double> at, TangentCoefficients const& c,
+                          Data<double>& data, BlockSink& sink);
+  /// x, M a − f of an element without weight, to the body's rows.
+  template <class Scratch>
+  static void add_force(Entry const& e, Index i, detail::Unbalance<T> const& u, T const* x, Scratch& scratch,
+                        Vector& r);
   static std::span<T const> coordinates(Entry const& e, Vector const& q) {
     return {q.data() + e.q0, std::size_t(e.body.coordinates())};
   }
@@ -172,6 +188,8 @@ void BodyKernels<B, T>::place_markers(Pool const& pool, Kept& kept, detail::Mark
   kept.poses.resize(pool.entries.size());
   kept.scratch.reserve(pool.entries.size());
   for (Entry const& e : pool.entries) kept.scratch.emplace_back(e.body);
+  if constexpr (in_batches) kept.batches = detail::batches_of(pool);
+  for (Entry const& e : pool.entries) kept.divides = kept.divides || e.body.elements() >= 2 * data.least_elements;
   for (auto const& m : pool.markers) {
     Entry const& e = pool.entries[std::size_t(m.body)];
     Published<T>& p = data.markers[std::size_t(m.published)];
@@ -214,6 +232,8 @@ void BodyKernels<B, T>::count_shared(Pool const& pool, std::size_t& forces, std:
     forces = std::max(forces, columns * elements);
     tangents = std::max(tangents, columns * columns * elements);
   }
+  if constexpr (n != Eigen::Dynamic && !in_batches)
+    if (shares_bodies(pool)) tangents = std::max(tangents, std::size_t(n * n) * pool.entries.size());
 }
 
 template <class B, StateScalar T>
@@ -289,36 +309,70 @@ NarrowPlace const* BodyKernels<B, T>::local_rate(Pool const& pool, NarrowPlace c
 }
 
 template <class B, StateScalar T>
+template <class Scratch>
+void BodyKernels<B, T>::add_force(Entry const& e, Index i, detail::Unbalance<T> const& u, T const* x, Scratch& scratch,
+                                  Vector& r) {
+  T* const rows = r.data() + e.v0 + e.body.first_column(i);
+  int size = n;
+  if constexpr (n == Eigen::Dynamic) size = int(scratch.weight.size());
+  for (int k = 0; k < size; ++k) rows[k] += x[k];
+  if (u.g[0] == 0.0 && u.g[1] == 0.0 && u.g[2] == 0.0) return;
+  e.body.template gravity<T>(i, coordinates(e, u.at.q), u.g, scratch.weight);
+  for (int k = 0; k < size; ++k) rows[k] -= scratch.weight[k];
+}
+
+template <class B, StateScalar T>
+void BodyKernels<B, T>::add_forces_of(Entry const& e, detail::KeptScratch<B, T>& kept, detail::Unbalance<T> const& u,
+                                      Data<T>& data, Vector& r) {
+  auto&& scratch = kept.force_scratch(e.body);
+  BodyMotion<T> const motion{coordinates(e, u.at.q), speeds(e, u.at.v), speeds(e, u.a)};
+  Index const elements = e.body.elements();
+  if constexpr (n != Eigen::Dynamic)
+    if (data.workers && elements >= 2 * data.least_elements) {
+      T* const slots = data.element_forces.data();
+      data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
+        for_each_unbalance<B, T>(e.body, {begin, end}, motion,
+                                 [&](Index i, Vec<T, n> const& x) { std::copy_n(x.data(), n, slots + n * i); });
+      });
+      for (Index i = 0; i < elements; ++i) add_force(e, i, u, slots + n * i, scratch, r);
+      return;
+    }
+  for_each_unbalance<B, T>(e.body, {0, elements}, motion, scratch,
+                           [&](Index i, auto const& x) { add_force(e, i, u, x.data(), scratch, r); });
+}
+
+template <class B, StateScalar T>
 void BodyKernels<B, T>::add_forces(Pool const& pool, Kept& kept, detail::Unbalance<T> const& u, Data<T>& data,
                                    Vector& r) {
-  bool const falls = u.g[0] != 0.0 || u.g[1] != 0.0 || u.g[2] != 0.0;
-  for (std::size_t b = 0; b < pool.entries.size(); ++b) {
-    Entry const& e = pool.entries[b];
-    auto&& scratch = kept.scratch[b].force_scratch(e.body);
-    BodyMotion<T> const motion{coordinates(e, u.at.q), speeds(e, u.at.v), speeds(e, u.a)};
-    auto const add = [&](Index i, T const* x) {
-      T* const rows = r.data() + e.v0 + e.body.first_column(i);
-      int size = n;
-      if constexpr (n == Eigen::Dynamic) size = int(scratch.weight.size());
-      for (int k = 0; k < size; ++k) rows[k] += x[k];
-      if (falls) {
-        e.body.template gravity<T>(i, motion.q, u.g, scratch.weight);
-        for (int k = 0; k < size; ++k) rows[k] -= scratch.weight[k];
-      }
-    };
-    Index const elements = e.body.elements();
-    if constexpr (n != Eigen::Dynamic)
-      if (data.workers && elements >= 2 * data.least_elements) {
-        T* const slots = data.element_forces.data();
-        data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-          for_each_unbalance<B, T>(e.body, {begin, end}, motion,
-                                   [&](Index i, Vec<T, n> const& x) { std::copy_n(x.data(), n, slots + n * i); });
-        });
-        for (Index i = 0; i < elements; ++i) add(i, slots + n * i);
-        continue;
-      }
-    for_each_unbalance<B, T>(e.body, {0, elements}, motion, scratch,
-                             [&](Index i, Vec<T, n> const& x) { add(i, x.data()); });
+  // bodies write to rows of their own, so threads may take some each; those that share their elements do that
+  Workers* const workers = kept.divides ? nullptr : data.workers;
+  if constexpr (in_batches) {
+    share(kept.batches.alone ? workers : nullptr, Index(kept.batches.packs.size()), data.least_packs,
+          [&](Index begin, Index end) {
+            std::array<Vec<double, n>, std::size_t(pack_size)> each;
+            for (Index k = begin; k < end; ++k) {
+              auto const& pack = kept.batches.packs[std::size_t(k)];
+              ForceScratch<B, T> scratch(pool.entries[std::size_t(pack[0].entry)].body);
+              detail::unbalance_of_pack(pool.entries[std::size_t(pack[0].entry)].body,
+                                        detail::motion_of(pool, pack, u.at.q.data(), u.at.v.data(), u.a.data()), each);
+              for (std::size_t l = 0; l < pack.size(); ++l)
+                add_force(pool.entries[std::size_t(pack[l].entry)], pack[l].element, u, each[l].data(), scratch, r);
+            }
+          });
+    for (auto const& [entry, element] : kept.batches.singles) {
+      Entry const& e = pool.entries[std::size_t(entry)];
+      ForceScratch<B, T> scratch(e.body);
+      detail::unbalance_of_one<B, T>(e.body, element, {coordinates(e, u.at.q), speeds(e, u.at.v), speeds(e, u.a)},
+                                     scratch);
+      add_force(e, element, u, scratch.x.data(), scratch, r);
+    }
+    for (Index const b : kept.batches.bodies)
+      add_forces_of(pool.entries[std::size_t(b)], kept.scratch[std::size_t(b)], u, data, r);
+  } else {
+    share(workers, Index(pool.entries.size()), least_bodies, [&](Index begin, Index end) {
+      for (std::size_t b = std::size_t(begin); b < std::size_t(end); ++b)
+        add_forces_of(pool.entries[b], kept.scratch[b], u, data, r);
+    });
   }
 }
 

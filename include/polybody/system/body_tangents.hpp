@@ -58,33 +58,85 @@ void BodyKernels<B, T>::masses(Pool const& pool, Kept& kept, At<double> at, Bloc
 }
 
 template <class B, StateScalar T>
+void BodyKernels<B, T>::tangents_of(Entry const& e, detail::KeptScratch<B, T>& kept, At<double> at,
+                                    TangentCoefficients const& c, Data<double>& data, BlockSink& sink) {
+  ElementCoefficients const coefficients{c.mass, c.damping, c.stiffness};
+  auto&& scratch = kept.tangent_scratch(e.body);
+  BodyMotion<> const motion{coordinates(e, at.q), speeds(e, at.v)};
+  Index const elements = e.body.elements();
+  auto const add = [&](Index i, BlockView const& k) {
+    Index const first = e.v0 + e.body.first_column(i);
+    sink.add(first, first, k);
+  };
+  if constexpr (n != Eigen::Dynamic)
+    if (data.workers && elements >= 2 * data.least_elements) {
+      double* const slots = data.element_tangents.data();
+      data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
+        for_each_element_tangent<B>(
+            e.body, {begin, end}, motion, coefficients,
+            [&](Index i, Mat<double, n, n> const& k) { std::copy_n(k.data(), n * n, slots + n * n * i); });
+      });
+      for (Index i = 0; i < elements; ++i) add(i, BlockView(slots + n * n * i, n, n, 1, n));
+      return;
+    }
+  for_each_element_tangent<B>(e.body, {0, elements}, motion, coefficients, scratch,
+                              [&](Index i, Mat<double, n, n> const& k) { add(i, k); });
+}
+
+template <class B, StateScalar T>
 void BodyKernels<B, T>::tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c,
                                  Data<double>& data, BlockSink& sink) {
-  ElementCoefficients const coefficients{c.mass, c.damping, c.stiffness};
-  for (std::size_t b = 0; b < pool.entries.size(); ++b) {
-    Entry const& e = pool.entries[b];
-    auto&& scratch = kept.scratch[b].tangent_scratch(e.body);
-    BodyMotion<> const motion{coordinates(e, at.q), speeds(e, at.v)};
-    Index const elements = e.body.elements();
-    if constexpr (n != Eigen::Dynamic)
-      if (data.workers && elements >= 2 * data.least_elements) {
-        double* const slots = data.element_tangents.data();
-        data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-          for_each_element_tangent<B>(
-              e.body, {begin, end}, motion, coefficients,
-              [&](Index i, Mat<double, n, n> const& k) { std::copy_n(k.data(), n * n, slots + n * n * i); });
-        });
-        for (Index i = 0; i < elements; ++i) {
-          Index const first = e.v0 + e.body.first_column(i);
-          sink.add(first, first, BlockView(slots + n * n * i, n, n, 1, n));
-        }
-        continue;
+  if constexpr (in_batches) {
+    std::array<Mat<double, n, n>, std::size_t(pack_size)> each;
+    for (auto const& pack : kept.batches.packs) {
+      std::size_t const first = std::size_t(pack[0].entry);
+      B const& body = pool.entries[first].body;
+      Mat<double, n, n> m;
+      body.mass(pack[0].element, coordinates(pool.entries[first], at.q), m);
+      for (Index i = 0; i < m.size(); ++i) m.data()[i] *= c.mass;
+      detail::tangent_of_pack(body, detail::motion_of(pool, pack, at.q.data(), at.v.data(), at.v.data()),
+                              {c.mass, c.damping, c.stiffness}, m, each);
+      for (std::size_t l = 0; l < pack.size(); ++l) {
+        Entry const& e = pool.entries[std::size_t(pack[l].entry)];
+        Index const column = e.v0 + e.body.first_column(pack[l].element);
+        sink.add(column, column, each[l]);
       }
-    for_each_element_tangent<B>(e.body, {0, elements}, motion, coefficients, scratch,
-                                [&](Index i, Mat<double, n, n> const& k) {
-                                  Index const first = e.v0 + e.body.first_column(i);
-                                  sink.add(first, first, k);
-                                });
+    }
+    for (auto const& [entry, element] : kept.batches.singles) {
+      Entry const& e = pool.entries[std::size_t(entry)];
+      for_each_element_tangent<B>(e.body, {element, element + 1}, {coordinates(e, at.q), speeds(e, at.v)},
+                                  {c.mass, c.damping, c.stiffness}, [&](Index i, Mat<double, n, n> const& k) {
+                                    Index const first = e.v0 + e.body.first_column(i);
+                                    sink.add(first, first, k);
+                                  });
+    }
+    for (Index const b : kept.batches.bodies)
+      tangents_of(pool.entries[std::size_t(b)], kept.scratch[std::size_t(b)], at, c, data, sink);
+  } else if (data.workers && shares_bodies(pool)) {
+    double* const slots = data.element_tangents.data();
+    share(data.workers, Index(pool.entries.size()), least_bodies, [&](Index begin, Index end) {
+      for (std::size_t b = std::size_t(begin); b < std::size_t(end); ++b) {
+        Entry const& e = pool.entries[b];
+        auto&& scratch = kept.scratch[b].tangent_scratch(e.body);
+        for_each_element_tangent<B>(e.body, {0, 1}, {coordinates(e, at.q), speeds(e, at.v)},
+                                    {c.mass, c.damping, c.stiffness}, scratch,
+                                    [&]([[maybe_unused]] Index i, [[maybe_unused]] auto const& k) {
+                                      if constexpr (n != Eigen::Dynamic)
+                                        std::copy_n(k.data(), n * n, slots + n * n * b);
+                                    });
+      }
+    });
+    for (std::size_t b = 0; b < pool.entries.size(); ++b) {
+      Entry const& e = pool.entries[b];
+      Index const first = e.v0 + e.body.first_column(0);
+      if constexpr (n == Eigen::Dynamic)
+        sink.add(first, first, kept.scratch[b].tangent_scratch(e.body).k);  // where it was left
+      else
+        sink.add(first, first, BlockView(slots + n * n * b, n, n, 1, n));
+    }
+  } else {
+    for (std::size_t b = 0; b < pool.entries.size(); ++b)
+      tangents_of(pool.entries[b], kept.scratch[b], at, c, data, sink);
   }
 }
 

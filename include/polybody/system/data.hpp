@@ -38,7 +38,14 @@ struct Data {
   Workers* workers = nullptr;         ///< threads that share the loops; none by default
   Sequence<T> element_forces;         ///< with workers: of all elements of a body, before they are added in order
   Sequence<double> element_tangents;  ///< the same
+  /// With workers: what the parts of a force group do to the few, before it is added in order.
+  struct alignas(64) Opposite {
+    Sequence<Action<T>> actions;
+  };
+  Sequence<Opposite> opposite;
   static constexpr Index least_elements = 32;  ///< that are worth a thread
+  static constexpr Index least_pairs = 32;     ///< markers of the many of a group
+  static constexpr Index least_packs = 16;
   static constexpr Index least_markers = 128;
 
   std::shared_ptr<void> kept;  ///< what depends on the types of bodies and joints: poses, gaps, scratch

@@ -195,6 +195,9 @@ struct ForceKernels {
   static void add_powers(Pool const& pool, double t, double load_factor, Data<double> const& data, Powers& p);
 
  private:
+  /// Wrenches of a group by the threads' parts: each marker of the many is in one of them, and what the few get is put
+  /// aside and added in the order in which one thread would have.
+  static void push_by_parts(Entry const& e, double t, Data<T>& data, Action<T>* actions);
   /// What each marker of a group feels of its own motion alone, block by block, zero where nothing acts; with stand-ins
   /// by a law's `own_stiffness` where it has one.
   static void group_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data, BlockSink& sink);
@@ -239,6 +242,11 @@ Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, A
     next += e.markers.size();
     for (Action<T>* p = actions; p != next; ++p)
       for (T& w : p->w) w = T(0.0);
+    if constexpr (PairsByParts<F>)
+      if (data.workers && e.force.many() >= 2 * data.least_pairs) {
+        push_by_parts(e, t, data, actions);
+        continue;
+      }
     detail::for_each_action(e, data, [&](auto const& law, auto const& markers, auto const& at) {
       std::array<Action<T>*, std::tuple_size_v<std::decay_t<decltype(at)>>> to;
       for (std::size_t k = 0; k < to.size(); ++k) to[k] = actions + markers[k];
@@ -250,6 +258,33 @@ Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, A
     }
   }
   return next;
+}
+
+template <class F, StateScalar T>
+void ForceKernels<F, T>::push_by_parts(Entry const& e, double t, Data<T>& data, Action<T>* actions) {
+  if constexpr (PairsByParts<F>) {
+    Index const many = e.force.many(), parts = data.workers->size();
+    auto const frame = [&](Index k) -> Frame<T> const& {
+      return data.markers[std::size_t(e.markers[std::size_t(k)])].frame;
+    };
+    data.workers->over(4 * parts, 4, [&](Index begin, Index end) {
+      for (Index p = begin / 4; p < end / 4; ++p) {
+        Sequence<Action<T>>& aside = data.opposite[std::size_t(p)].actions;
+        aside.clear();
+        e.force.for_each_pair(
+            frame,
+            [&](Index i, Index j, auto const& law) {
+              aside.push_back({.marker = j});
+              detail::add_wrenches(law, std::array{e.markers[std::size_t(i)], e.markers[std::size_t(j)]}, t, data,
+                                   std::array{actions + i, &aside.back()});
+            },
+            many * p / parts, many * (p + 1) / parts);
+      }
+    });
+    for (auto const& part : data.opposite)
+      for (Action<T> const& aside : part.actions)
+        for (int k = 0; k < 6; ++k) actions[aside.marker].w[k] += aside.w[k];
+  }
 }
 
 template <class F, StateScalar T>

@@ -8,6 +8,7 @@
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/sequence.hpp>
+#include <polybody/system/mapped_slots.hpp>
 
 namespace polybody {
 
@@ -44,11 +45,15 @@ class UnknownMapOf {
     struct Run {
       Index first, size, local;
     };
+    /// Neighbours that become neighbours, with factor one: `size` from the local number `source` on.
+    struct Part {
+      Index first, size, source;
+    };
     Index whole_size = 0, size = 0;
     Sequence<Run> runs;
     Sequence<Sequence<Target>> targets;  ///< of each whole unknown, by local number
-    Sequence<Index> chosen;  ///< where no whole unknown has more than one target, nor another factor than one: its
-                             ///< local number, or −1
+    Sequence<Part> parts;  ///< all of it, where no whole unknown has more than one target nor another factor than one
+    bool copied = false;   ///< it is so
   };
   Range range(Index first, Index size) const {
     Sequence<Index> touched;
@@ -66,15 +71,22 @@ class UnknownMapOf {
       else
         out.runs.push_back({unknown, 1, number});
     }
-    bool chooses = true;
+    out.copied = true;
     for (Index i = first; i < first + size; ++i) {
       out.targets.emplace_back();
       for (Target const& t : targets(i)) out.targets.back().push_back({local(t.unknown), t.factor});
-      chooses = chooses && (targets(i).empty() || plain(std::size_t(i)));
+      out.copied = out.copied && (targets(i).empty() || plain(std::size_t(i)));
     }
     out.whole_size = size;
-    for (std::size_t i = 0; i < out.targets.size() && chooses; ++i)
-      out.chosen.push_back(out.targets[i].empty() ? Index(-1) : out.targets[i][0].unknown);
+    for (Index i = 0; i < size && out.copied; ++i) {
+      if (targets(first + i).empty()) continue;
+      Index const to = targets(first + i)[0].unknown;
+      if (!out.parts.empty() && out.parts.back().source + out.parts.back().size == i &&
+          out.parts.back().first + out.parts.back().size == to)
+        ++out.parts.back().size;
+      else
+        out.parts.push_back({to, 1, i});
+    }
     return out;
   }
 
@@ -105,11 +117,15 @@ class MappedSinkOf {
   using Target = typename Map::Target;
 
  public:
-  MappedSinkOf(Map const& map, Kept& kept, BlockSink& sink) : map_(map), kept_(kept), sink_(sink) {
+  /// \param slots are told of the way of all blocks, where the sink has slots
+  MappedSinkOf(Map const& map, Kept& kept, BlockSink& sink, MappedSlotsOf<T>* slots = nullptr)
+      : map_(map), kept_(kept), sink_(sink), slots_(slots) {
     kept_.ranges.resize(std::size_t(map.size()));
   }
 
   void add(Index row, Index col, BlockView const& b) {
+    if (slots_) [[unlikely]]
+      record(row, col, b.rows, b.cols);
     Index const to_row = map_.run(row, b.rows), to_col = map_.run(col, b.cols);
     if (to_row >= 0 && to_col >= 0) {
       sink_.add(to_row, to_col, b);
@@ -118,15 +134,21 @@ class MappedSinkOf {
     Range const& rows = range(row, b.rows);
     Range const& cols = range(col, b.cols);
     if (rows.size == 0 || cols.size == 0) return;
+    if (rows.copied && cols.copied) {
+      for (auto const& r : rows.parts)
+        for (auto const& c : cols.parts)
+          sink_.add(r.first, c.first,
+                    {b.data + r.source * b.row_step + c.source * b.col_step, r.size, c.size, b.row_step, b.col_step});
+      return;
+    }
     double* const whole = Kept::zeros(kept_.whole, rows.size * cols.size);
-    if (!rows.chosen.empty() && !cols.chosen.empty())
-      choose(b, rows, cols, whole);
-    else
-      multiply(b, rows, cols, whole);
+    multiply(b, rows, cols, whole);
     for (auto const& r : rows.runs)
       for (auto const& c : cols.runs)
         sink_.add(r.first, c.first, BlockView(whole + r.local * cols.size + c.local, r.size, c.size, cols.size, 1));
   }
+  /// All blocks went as they are, and the slots know how.
+  bool recorded() const { return slots_ && copies_; }
   bool wants(Index first, Index size) {
     if (Index const to = map_.run(first, size); to >= 0) return sink_.wants(to, size);
     auto const& runs = range(first, size).runs;
@@ -134,22 +156,36 @@ class MappedSinkOf {
   }
   /// A block of zeros.
   void skip(Index row, Index col, Index height, Index width) {
+    if (slots_) [[unlikely]]
+      record(row, col, height, width);
     Index const to_row = map_.run(row, height), to_col = map_.run(col, width);
     if (to_row >= 0 && to_col >= 0) return sink_.skip(to_row, to_col, height, width);
-    for (auto const& r : range(row, height).runs)
-      for (auto const& c : range(col, width).runs) sink_.skip(r.first, c.first, r.size, c.size);
+    Range const &rows = range(row, height), &cols = range(col, width);
+    if (rows.copied && cols.copied)
+      skip_all(rows.parts, cols.parts);
+    else
+      skip_all(rows.runs, cols.runs);
   }
 
  private:
-  /// P has one 1 in each row, or none.
-  static void choose(BlockView const& b, Range const& rows, Range const& cols, double* whole) {
-    for (Index i = 0; i < b.rows; ++i) {
-      Index const to = rows.chosen[std::size_t(i)];
-      if (to < 0) continue;
-      double* const out = whole + to * cols.size;
-      for (Index j = 0; j < b.cols; ++j)
-        if (Index const c = cols.chosen[std::size_t(j)]; c >= 0) out[c] += b(i, j);
+  [[gnu::cold]] void record(Index row, Index col, Index height, Index width) {
+    if (!copies_) return;
+    slots_->begin_block();
+    if (map_.run(row, height) >= 0 && map_.run(col, width) >= 0) {
+      slots_->take(0, 0);
+    } else {
+      Range const &rows = range(row, height), &cols = range(col, width);
+      copies_ = (rows.copied && cols.copied) || rows.size == 0 || cols.size == 0;
+      if (!copies_) return;
+      for (auto const& r : rows.parts)
+        for (auto const& c : cols.parts) slots_->take(r.source, c.source);
     }
+    slots_->end_block(height, width);
+  }
+  template <class Ranges>
+  void skip_all(Ranges const& rows, Ranges const& cols) {
+    for (auto const& r : rows)
+      for (auto const& c : cols) sink_.skip(r.first, c.first, r.size, c.size);
   }
   void multiply(BlockView const& b, Range const& rows, Range const& cols, double* whole) {
     double* const half = Kept::zeros(kept_.half, rows.size * b.cols);
@@ -172,6 +208,8 @@ class MappedSinkOf {
   Map const& map_;
   Kept& kept_;
   BlockSink& sink_;
+  MappedSlotsOf<T>* slots_;
+  bool copies_ = true;
 };
 
 using UnknownMap = UnknownMapOf<>;

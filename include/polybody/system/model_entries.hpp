@@ -75,6 +75,8 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     (BodyKernels<Bs, T>::count_shared(bodies<Bs>(m), of_forces, of_tangents), ...);
     data.element_forces.resize(of_forces);
     data.element_tangents.resize(of_tangents);
+    data.opposite.resize(std::size_t(threads.size()));
+    for (auto& part : data.opposite) part.actions.reserve(data.markers.size());
   }
 
   static void masses(void const* m, At<double> at, Data<double>& data, BlockSink& sink) {

@@ -50,9 +50,10 @@ struct LinkOnRoller {
     double const reach = radius + half_thickness + half_width + pitch + far;
     Vec3 const arm = difference<double>(roller.r, link.r), x = detail::column<double>(link.A, 0);
     if (arm.squaredNorm() > reach * reach) return false;
-    double const askew = std::abs(detail::column<double>(roller.A, 1).dot(x));
+    Vec3 const axle = detail::column<double>(roller.A, 1);
+    double const askew = std::abs(axle.dot(x));
     double const margin = std::max(handover, double(radius)) + askew * far;
-    return std::abs(arm.dot(x)) < 0.5 * pitch + margin;
+    return std::abs(arm.dot(x)) < 0.5 * pitch + margin && reaches(link, arm, axle, far);
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
@@ -79,6 +80,19 @@ struct LinkOnRoller {
   }
 
  private:
+  /// The axle, at `arm` from the link, is not higher above the face than the rims reach; nor is one of these, `far`
+  /// along it. A cable's z lies along x × axle (`link_axes`).
+  bool reaches(Frame<double> const& link, Vec3 const& arm, Vec3 const& axle, double far) const {
+    double const height = (radius + half_thickness) * (1.0 + 1e-9);
+    if constexpr (observed == Observes::frame) {
+      Vec3 const z = detail::column<double>(link.A, 2);
+      return arm.dot(z) < height + far * std::abs(axle.dot(z));
+    } else {
+      Vec3 const z = cross<double>(detail::column<double>(link.A, 0), axle);
+      double const above = arm.dot(z);
+      return above < 0.0 || above * above < height * height * z.squaredNorm();
+    }
+  }
   /// Where the axle stands over an edge of the face.
   template <StateScalar T>
   struct OverEdge {
@@ -120,9 +134,16 @@ struct HornOnRims {
     require_positive(radius, name, ": the radius of the rims");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
-    Vec3 const arm = difference<double>(roller.r, link.r);
-    double const across = arm.dot(detail::column<double>(roller.A, 1)), reach = radius + tip.norm();
-    return arm.squaredNorm() - across * across < reach * reach;
+    Vec3 const arm = difference<double>(roller.r, link.r), axle = detail::column<double>(roller.A, 1);
+    double const across = arm.dot(axle), reach = radius + tip.norm();
+    if (!(arm.squaredNorm() - across * across < reach * reach)) return false;
+    double aside = tip[0] * axle.dot(detail::column<double>(link.A, 0)) - across;  // of the tip, along the axle
+    double room = play * (1.0 - 1e-9);
+    if constexpr (observed == Observes::frame)
+      for (int i = 1; i < 3; ++i) aside += tip[i] * axle.dot(detail::column<double>(link.A, i));
+    else
+      room -= std::abs(tip[1]);  // a cable's z is across the axle
+    return std::abs(aside) > room;
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {

@@ -90,6 +90,10 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
 
   void mass(Index e, std::span<double const>, ElementMatrix& m) const { m = inertia_of(e).mass; }
 
+  bool same_elements(AncfBeam const& other) const {
+    return this->same_strains(other) && inertia_.size() == 1 && other.inertia_.size() == 1 &&
+           inertia_[0].mass == other.inertia_[0].mass;
+  }
   /// M a of an element's own accelerations, for elements that are alike.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {

@@ -89,6 +89,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
         for (int k = 0; k < 3; ++k) m(3 * i + k, 3 * j + k) = mass_(i, j);
   }
 
+  bool same_elements(AncfCable const& other) const { return this->same_strains(other) && mass_ == other.mass_; }
   /// M a of an element's own accelerations.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {

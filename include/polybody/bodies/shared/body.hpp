@@ -128,14 +128,22 @@ Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) 
     return B::point_columns == Eigen::Dynamic ? body.speeds() : Index(B::point_columns);
 }
 
+/// Coordinates, speeds and accelerations of a body.
+template <StateScalar T = double>
+struct BodyMotion {
+  std::span<T const> q, v, a = {};
+};
+
 /// What the loops over a body's elements need besides it: on the stack where sizes are known at compile time, else kept
 /// with the body's data, so that no step allocates.
 template <class B, class T>
 struct ForceScratch {
   Vec<T, B::element_columns> x, force, weight;
+  VecXOf<T> room;  ///< for a body that balances at once
   explicit ForceScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
       for (auto* const v : {&x, &force, &weight}) v->resize(body.speeds());
+    if constexpr (requires { body.room(); }) room.resize(body.room());
   }
 };
 template <class B>

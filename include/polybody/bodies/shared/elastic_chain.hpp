@@ -22,6 +22,8 @@ class ElasticChain : public NodeChain<columns> {
 
   /// All elements have the same reference.
   bool alike() const { return groups_.size() == 1; }
+  /// Elements feel strains as those of `other` do.
+  bool same_strains(ElasticChain const& other) const { return alike() && groups_ == other.groups_; }
 
   /// Elastic and damping force from an element's own coordinates and speeds, for elements that are alike.
   template <KernelScalar T>

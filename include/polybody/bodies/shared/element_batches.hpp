@@ -23,15 +23,16 @@ concept AlikeElements = requires(B const b, Vec<Pack<>, B::element_columns> x, V
   b.template element_tangent<Pack<>>(x, x, 1.0, 1.0, k);
 };
 
+/// Bodies that tell whether their elements are those of another one, so that elements of several bodies go in one pack.
+template <class B>
+concept ComparesElements = AlikeElements<B> && requires(B const b) {
+  { b.same_elements(b) } -> std::convertible_to<bool>;
+};
+
 /// Elements [begin, end) of a body. `begin` is a multiple of `pack_size`, and `end` too unless it is the number of
 /// elements.
 struct ElementRange {
   Index begin, end;
-};
-/// Coordinates, speeds and accelerations of a body.
-template <StateScalar T = double>
-struct BodyMotion {
-  std::span<T const> q, v, a = {};
 };
 /// Coefficients of cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
 struct ElementCoefficients {
@@ -40,14 +41,28 @@ struct ElementCoefficients {
 
 namespace detail {
 
-/// The coordinates of `pack_size` neighbours; `x` points to the first one's.
-template <int n, int stride>
-Vec<Pack<>, n> side_by_side(double const* x) {
+/// Where the numbers of `pack_size` elements begin.
+using PackFrom = std::array<double const*, std::size_t(pack_size)>;
+/// The same of neighbours, from the first one's on.
+template <int stride>
+PackFrom neighbours(double const* x) {
+  PackFrom from;
+  for (int l = 0; l < pack_size; ++l) from[std::size_t(l)] = x + l * stride;
+  return from;
+}
+/// What the elements of a pack set out from.
+struct PackMotion {
+  PackFrom q, v, a;
+};
+
+/// The coordinates of `pack_size` elements.
+template <int n>
+Vec<Pack<>, n> side_by_side(PackFrom const& x) {
   static_assert(n % pack_size == 0);
   Vec<Pack<>, n> packed;
   std::array<Pack<>, pack_size> part;
   for (int k = 0; k < n; k += pack_size) {
-    for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = Pack<>::load(x + l * stride + k);
+    for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = Pack<>::load(x[std::size_t(l)] + k);
     transpose(part);
     for (int l = 0; l < pack_size; ++l) packed[k + l] = part[std::size_t(l)];
   }
@@ -88,16 +103,14 @@ Index packed_until(B const& body, ElementRange range) {
   }
 }
 
-/// M a − force of the `pack_size` elements from `first` on.
+/// M a − force of `pack_size` elements like those of `body`.
 template <class B>
-void unbalance_of_pack(B const& body, Index first, BodyMotion<> const& x,
+void unbalance_of_pack(B const& body, PackMotion const& x,
                        std::array<Vec<double, B::element_columns>, pack_size>& each) {
-  constexpr int n = B::element_columns, stride = B::element_stride;
-  Index const column = body.first_column(first);
+  constexpr int n = B::element_columns;
   Vec<Pack<>, n> inertia, elastic;
-  body.template element_inertia<Pack<>>(side_by_side<n, stride>(x.a.data() + column), inertia);
-  body.template element_force<Pack<>>(side_by_side<n, stride>(x.q.data() + column),
-                                      side_by_side<n, stride>(x.v.data() + column), elastic);
+  body.template element_inertia<Pack<>>(side_by_side<n>(x.a), inertia);
+  body.template element_force<Pack<>>(side_by_side<n>(x.q), side_by_side<n>(x.v), elastic);
   for (int k = 0; k < n; ++k) inertia[k] -= elastic[k];
   Vec<double, n> const zero = Vec<double, n>::Zero();
   take_apart(inertia, zero, each);
@@ -106,22 +119,33 @@ void unbalance_of_pack(B const& body, Index first, BodyMotion<> const& x,
 /// The same of one element, into scratch.x.
 template <class B, StateScalar T>
 void unbalance_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScratch<B, T>& scratch) {
-  body.template inertia<T>(e, x.q, x.a, scratch.x);
+  if constexpr (requires { body.template unbalance<T>(x, scratch.room, scratch.force, scratch.x); })
+    return body.template unbalance<T>(x, scratch.room, scratch.force, scratch.x);
+  else
+    body.template inertia<T>(e, x.q, x.a, scratch.x);
   body.template force<T>(e, x.q, x.v, scratch.force);
   for (int k = 0; k < int(scratch.x.size()); ++k) scratch.x[k] -= scratch.force[k];
 }
 
-/// `inertia` + cd D + ck K of the `pack_size` elements from `first` on.
+/// `inertia` + cd D + ck K of `pack_size` elements like those of `body`.
 template <class B>
-void tangent_of_pack(B const& body, Index first, BodyMotion<> const& x, ElementCoefficients c,
+void tangent_of_pack(B const& body, PackMotion const& x, ElementCoefficients c,
                      Mat<double, B::element_columns, B::element_columns> const& inertia,
                      std::array<Mat<double, B::element_columns, B::element_columns>, pack_size>& each) {
-  constexpr int n = B::element_columns, stride = B::element_stride;
-  Index const column = body.first_column(first);
+  constexpr int n = B::element_columns;
   Mat<Pack<>, n, n> packs;
-  body.template element_tangent<Pack<>>(side_by_side<n, stride>(x.q.data() + column),
-                                        side_by_side<n, stride>(x.v.data() + column), c.stiffness, c.damping, packs);
+  body.template element_tangent<Pack<>>(side_by_side<n>(x.q), side_by_side<n>(x.v), c.stiffness, c.damping, packs);
   take_apart(packs, inertia, each);
+}
+
+/// The same of neighbours in a body, from element `first` on.
+template <class B>
+PackMotion motion_of_neighbours(B const& body, Index first, BodyMotion<> const& x) {
+  constexpr int stride = B::element_stride;
+  Index const column = body.first_column(first);
+  double const* const a = x.a.empty() ? nullptr : x.a.data() + column;
+  return {neighbours<stride>(x.q.data() + column), neighbours<stride>(x.v.data() + column),
+          a ? neighbours<stride>(a) : PackFrom{}};
 }
 
 }  // namespace detail
@@ -134,7 +158,7 @@ void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& 
     Index const packed = detail::packed_until(body, range);
     std::array<Vec<double, B::element_columns>, pack_size> each;
     for (; e < packed; e += pack_size) {
-      detail::unbalance_of_pack(body, e, x, each);
+      detail::unbalance_of_pack(body, detail::motion_of_neighbours(body, e, x), each);
       for (int l = 0; l < pack_size; ++l) f(e + l, each[std::size_t(l)]);
     }
   }
@@ -171,7 +195,7 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
     std::array<Mat<double, n, n>, pack_size> each;
     if (e < packed) inertia(e);
     for (; e < packed; e += pack_size) {
-      detail::tangent_of_pack(body, e, x, c, m, each);
+      detail::tangent_of_pack(body, detail::motion_of_neighbours(body, e, x), c, m, each);
       for (int l = 0; l < pack_size; ++l) f(e + l, each[std::size_t(l)]);
     }
   }

@@ -129,6 +129,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   void mass(Index, std::span<double const>, ElementMatrix& m) const { m = mass_; }
 
+  bool same_elements(Beam const& other) const { return this->same_strains(other) && mass_ == other.mass_; }
   /// M a of an element's own accelerations.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {

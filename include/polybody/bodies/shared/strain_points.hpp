@@ -73,6 +73,7 @@ class StrainPoints {
   }
 
   bool damped() const { return damped_; }
+  bool operator==(StrainPoints const&) const = default;
 
   /// The energy stored [J].
   template <int n>
