@@ -149,7 +149,7 @@ struct InPlane : Mixed<Policy, planar::Rigid, planar::Ffr, planar::Revolute, pla
 /// Accelerations and multipliers of trees that move and are deformed; each state keeps to the joints, and is found
 /// again from its joint coordinates.
 template <template <class> class Tree, class Policy>
-void expect_as_multipliers(char const* world, char const* way) {
+void expect_as_multipliers(char const* world, char const* way, double bound) {
   double worst_a = 0.0, worst_lambda = 0.0, worst_state = 0.0;
   for (unsigned seed = 1; seed < 120; ++seed) {
     Tree<Policy> const free(seed);
@@ -177,19 +177,21 @@ void expect_as_multipliers(char const* world, char const* way) {
   Claim claim{"closed forms",
               std::string("accelerations of random trees with floating bodies, ") + world + ", of their size",
               By::itself, "Constraint", way};
-  held_within(claim, worst_a, 1e-9, {.scale = 1.0});
+  held_within(claim, worst_a, bound, {.scale = 1.0});
   claim.what = std::string("multipliers of random trees with floating bodies, ") + world + ", of their size";
-  held_within(claim, worst_lambda, 1e-9, {.scale = 1.0});
+  held_within(claim, worst_lambda, bound, {.scale = 1.0});
   EXPECT_LT(worst_state, 1e-9);
 }
 
+// Deformed at random, the bodies accelerate by 1e7 m/s². Reduced carries the forces of all bodies to the roots before
+// they cancel: another order of the sums moves its error a hundredfold, up to 1.5e-9.
 TEST(RecursiveFfr, TreesInSpaceAccelerateAsMultipliersSay) {
-  expect_as_multipliers<InSpace, Recursive>("in space", "Recursive");
-  expect_as_multipliers<InSpace, Reduced>("in space", "RecursiveBy<Reduced>");
+  expect_as_multipliers<InSpace, Recursive>("in space", "Recursive", 1e-9);
+  expect_as_multipliers<InSpace, Reduced>("in space", "RecursiveBy<Reduced>", 1e-8);
 }
 TEST(RecursiveFfr, TreesInThePlaneAccelerateAsMultipliersSay) {
-  expect_as_multipliers<InPlane, Recursive>("in the plane", "Recursive");
-  expect_as_multipliers<InPlane, Reduced>("in the plane", "RecursiveBy<Reduced>");
+  expect_as_multipliers<InPlane, Recursive>("in the plane", "Recursive", 1e-9);
+  expect_as_multipliers<InPlane, Reduced>("in the plane", "RecursiveBy<Reduced>", 1e-9);
 }
 
 /// Three bars in a row that fall from the level, each on the flexible end of the one before.

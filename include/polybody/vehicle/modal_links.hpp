@@ -123,16 +123,33 @@ struct LinkOf<Ffr> {
   /// At the front (sign 1) or the rear (−1).
   template <class = void>
   Marker<Ffr> pin(BodyHandle<Ffr> const& link, double sign) const;
+
+  /// The link that was made last. Others like it share its constants, as their shapes cost an eigenproblem.
+  struct Made {
+    std::shared_ptr<FiniteElementLink const> model;
+    FfrTerms terms;
+    double height;
+    int elements;
+    Ffr link;
+  };
+  mutable std::shared_ptr<Made const> made = {};
 };
 
 template <class>
 Ffr LinkOf<Ffr>::make(Solid const&, Placement const& at, int elements) const {
-  if (model) return Ffr(model->structure, model->shapes, {.placement = at, .terms = terms});
-  Bar const bar = link_bar(at, height);
-  int const n = std::max(elements, 2);
-  Structure structure = structure_of(bar, n);
-  MatX shapes = craig_bampton(structure, {0, n}, modes_between);
-  return Ffr(std::move(structure), std::move(shapes), {.placement = bar.placement, .terms = terms});
+  bool const alike =
+      made && made->model == model && made->terms == terms && made->height == height && made->elements == elements;
+  if (!alike) {
+    auto const first = [&] {
+      if (model) return Ffr(model->structure, model->shapes, {.terms = terms});
+      int const n = std::max(elements, 2);
+      Structure structure = structure_of(link_bar({}, height), n);
+      MatX shapes = craig_bampton(structure, {0, n}, modes_between);
+      return Ffr(std::move(structure), std::move(shapes), {.terms = terms});
+    };
+    made = std::make_shared<Made const>(Made{model, terms, height, elements, first()});
+  }
+  return made->link.placed(model ? at : link_bar(at, height).placement);
 }
 template <class>
 Marker<Ffr> LinkOf<Ffr>::under(BodyHandle<Ffr> const& link, double x, Face face) const {

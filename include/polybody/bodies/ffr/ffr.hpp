@@ -12,6 +12,7 @@
 
 #include <memory>
 
+#include <polybody/bodies/ffr/ffr_balance.hpp>
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 #include <polybody/bodies/ffr/ffr_options.hpp>
@@ -52,18 +53,25 @@ class Ffr {
   }
   /// With the user's own integrals. \throws InvalidInput when they do not fit each other.
   template <class = void>
-  Ffr(FfrIntegrals integrals, Options const& options)
-      : i_(std::move(integrals)), placement_(options.placement), terms_(options.terms) {
-    i_.check("Ffr");
+  Ffr(FfrIntegrals integrals, Options const& options) : placement_(options.placement), terms_(options.terms) {
+    integrals.check("Ffr");
     placement_.check("Ffr");
     require_not_negative(options.stiffness_damping, "Ffr: the damping time");
-    i_.damping += options.stiffness_damping * i_.stiffness;
-    for (std::size_t i = 0; i < 3; ++i) gyroscopic_[i] = i_.coupling_by[i] - i_.coupling_by[i].transpose();
+    integrals.damping += options.stiffness_damping * integrals.stiffness;
+    FfrStack stack = FfrStack::of(integrals);
+    made_of_ = std::make_shared<Constants const>(std::move(integrals), std::move(stack));
+  }
+  /// The same body elsewhere; both share their constants. \throws InvalidInput for axes that are no rotation.
+  Ffr placed(Placement const& placement) const {
+    placement.check("Ffr");
+    Ffr other = *this;
+    other.placement_ = placement;
+    return other;
   }
 
-  FfrIntegrals const& integrals() const { return i_; }
-  bool stiffens() const { return i_.stiffens(); }
-  Index deformations() const { return i_.size(); }
+  FfrIntegrals const& integrals() const { return made_of_->integrals; }
+  bool stiffens() const { return integrals().stiffens(); }
+  Index deformations() const { return integrals().size(); }
   /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
@@ -130,15 +138,15 @@ class Ffr {
     Moments<double> x;
     moments<double>(q.data() + 7, x);
     m.setZero(6 + n, 6 + n);
-    m.topLeftCorner<3, 3>().diagonal().setConstant(i_.mass);
+    m.topLeftCorner<3, 3>().diagonal().setConstant(integrals().mass);
     m.block<3, 3>(0, 3) = -a * skew<double>(x.c);
     m.block<3, 3>(3, 0) = m.block<3, 3>(0, 3).transpose();
     m.block<3, 3>(3, 3) = x.J;
-    m.bottomRightCorner(n, n) = i_.mass_matrix;
+    m.bottomRightCorner(n, n) = integrals().mass_matrix;
     if (!terms_.coupling) return;
     for (Index k = 0; k < n; ++k) {
       Vec3 h, c;
-      i_.columns<double>(q.data() + 7, k, c, h);
+      integrals().columns<double>(q.data() + 7, k, c, h);
       m.block<1, 3>(6 + k, 0) = (a * c).transpose();
       m.block<1, 3>(6 + k, 3) = h.transpose();
       if (!terms_.onto_frame) continue;
@@ -148,78 +156,36 @@ class Ffr {
   }
   template <StateScalar T>
   void inertia(Index, std::span<T const> q, std::span<T const> a, VecXOf<T>& out) const {
-    Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
-    Vec<T, 3> const ar = part<3>(a, 0), alpha = part<3>(a, 3), along = A.transpose() * ar;
-    T const *const x = q.data() + 7, *const xdd = a.data() + 6;
-    Moments<T> at;
-    moments<T>(x, at);
-    Vec<T, 3> push = alpha.cross(at.c);
-    Vec<T, 3> turn = at.c.cross(along) + at.J * alpha;
-    for (Index k = 0; k < deformations(); ++k) {
-      T sum = detail::column_times(i_.mass_matrix, k, xdd);
-      if (terms_.coupling) {
-        Vec<T, 3> h, c;
-        i_.template columns<T>(x, k, c, h);
-        for (int i = 0; i < 3; ++i) {
-          sum += along[i] * c[i] + alpha[i] * h[i];
-          if (!terms_.onto_frame) continue;
-          push[i] += c[i] * xdd[k];
-          turn[i] += h[i] * xdd[k];
-        }
-      }
-      out[6 + k] = sum;
-    }
-    out.template head<3>() = ar * T(i_.mass) + A * push;
-    out.template segment<3>(3) = turn;
+    FfrProducts<T> products = own_products<T>();
+    products.at(q.data() + 7);
+    products.at_rates(a.data() + 6);
+    FfrBalance<T>{integrals(), terms_, products}.inertia(q, a, out);
   }
-
   template <StateScalar T>
   void force(Index, std::span<T const> q, std::span<T const> v, VecXOf<T>& out) const {
-    Vec<T, 3> const omega = part<3>(v, 3);
-    T const *const x = q.data() + 7, *const xd = v.data() + 6;
-    Index const n = deformations();
-    bool const pushes = terms_.pushes_frame();
-    Vec<T, 3> cd = Vec<T, 3>::Zero(), h = cd, cdd = cd, hd = cd;  // ċ, H q̇, Ċ q̇, H˙ q̇
-    for (Index k = 0; k < n; ++k) {
-      if (pushes) {
-        Vec<T, 3> hk, ck;
-        i_.template columns<T>(x, k, ck, hk);
-        cd += ck * xd[k];
-        h += hk * xd[k];
-      }
-      T f = -detail::column_times(i_.stiffness, k, x) - detail::column_times(i_.damping, k, xd) - i_.initial_force[k];
-      for (std::size_t i = 0; i < 3 && terms_.coriolis; ++i)
-        f -= omega[Index(i)] * detail::column_times(gyroscopic_[i], k, xd);
-      out[6 + k] = f;
-    }
-    Mat<T, 3, 3> inertia, rate;  // J, J˙, entry by entry, and ½ (Ωᵀ J Ω)_q
-    for (std::size_t p = 0; p < 6; ++p) {
-      int const a = symmetric_row[p], b = symmetric_column[p];
-      T const product = omega[a] * omega[b] * (a == b ? 0.5 : 1.0);
-      T j(i_.inertia(a, b)), jd(0.0);
-      for (Index k = 0; k < n; ++k) {
-        T const slope = i_.template inertia_slope<T>(x, p, k);
-        double const by = i_.inertia_by[p][k];
-        if (terms_.deformed_inertia) j += (slope + by) * 0.5 * x[k];
-        if (terms_.changes_inertia()) jd += slope * xd[k];
-        out[6 + k] += product * terms_.centrifugal_slope(slope, by);
-      }
-      inertia(a, b) = inertia(b, a) = j;
-      rate(a, b) = rate(b, a) = jd;
-    }
-    for (std::size_t i = 0; i < 3 && stiffens() && pushes; ++i) {
-      cdd[Index(i)] = -detail::quadratic<T>(i_.first_second[i], xd, xd);
-      hd[Index(i)] = detail::quadratic<T>(i_.coupling_by[i], xd, xd);
-    }
-    Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
-    Vec<T, 3> const c = first_moment<T>(x);
-    out.template head<3>() = -(A * (omega.cross(omega.cross(c)) + omega.cross(cd) * T(2.0) + cdd));
-    out.template segment<3>(3) = -(rate * omega + omega.cross(inertia * omega + h) + hd);
+    FfrProducts<T> products = own_products<T>();
+    products.at(q.data() + 7);
+    products.at_speeds(v.data() + 6);
+    FfrBalance<T>{integrals(), terms_, products}.force(q, v, out);
+  }
+  /// Numbers that `unbalance` needs room for.
+  Index room() const { return FfrProducts<double>::room(deformations()); }
+  /// M a − force, which share J, H and their slopes. `room` has `room()` numbers, `forces` as many as there are speeds.
+  template <StateScalar T>
+  void unbalance(BodyMotion<T> const& x, VecXOf<T>& room, VecXOf<T>& forces, VecXOf<T>& out) const {
+    FfrProducts<T> products(made_of_->integrals, made_of_->stack, room.data());
+    products.at(x.q.data() + 7);
+    products.at_speeds(x.v.data() + 6);
+    products.at_rates(x.a.data() + 6);
+    FfrBalance<T> const balance{integrals(), terms_, products};
+    balance.inertia(x.q, x.a, out);
+    balance.force(x.q, x.v, forces);
+    for (Index k = 0; k < out.size(); ++k) out[k] -= forces[k];
   }
 
   template <class = void>
   void tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd, MatX& k) const {
-    FfrTangent(i_, terms_, q, v).write(ck, cd, k);
+    FfrTangent(integrals(), terms_, q, v).write(ck, cd, k);
   }
 
   template <StateScalar T>
@@ -227,13 +193,9 @@ class Ffr {
     Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
     Vec<T, 3> const pull = A.transpose() * g.template cast<T>();
     T const* const x = q.data() + 7;
-    out.template head<3>() = (g * i_.mass).template cast<T>();
+    out.template head<3>() = (g * integrals().mass).template cast<T>();
     out.template segment<3>(3) = first_moment<T>(x).cross(pull);
-    for (Index k = 0; k < deformations(); ++k) {
-      Vec<T, 3> c, h;
-      i_.template columns<T>(x, k, c, h);
-      out[6 + k] = c.dot(pull);
-    }
+    for (Index k = 0; k < deformations(); ++k) out[6 + k] = integrals().template first_slope<T>(x, k).dot(pull);
   }
 
   template <class = void>
@@ -246,13 +208,13 @@ class Ffr {
   template <class = void>
   double strain_energy(Index, std::span<double const> q) const {
     double const* const x = q.data() + 7;
-    return 0.5 * detail::quadratic<double>(i_.stiffness, x, x) +
-           i_.initial_force.dot(Eigen::Map<VecX const>(x, deformations()));
+    return 0.5 * detail::quadratic<double>(integrals().stiffness, x, x) +
+           integrals().initial_force.dot(Eigen::Map<VecX const>(x, deformations()));
   }
   template <class = void>
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
-    return -g.dot(i_.mass * part<3>(q, 0) +
-                  rotation_matrix<double>(part<4>(q, 3)) * i_.first_moment<double>(q.data() + 7));
+    return -g.dot(integrals().mass * part<3>(q, 0) +
+                  rotation_matrix<double>(part<4>(q, 3)) * integrals().first_moment<double>(q.data() + 7));
   }
 
   /// r = r₀ + A u;  ω = A (Ω + Jl(θ) θ˙);  bias = A [Ω × (Ω × u) + 2 Ω × u˙ + u¨; Ω × Jl θ˙ + Jl˙ θ˙].
@@ -354,23 +316,34 @@ class Ffr {
   /// c and J as the terms say.
   template <class T>
   Vec<T, 3> first_moment(T const* x) const {
-    return terms_.deformed_inertia ? i_.template first_moment<T>(x) : Vec<T, 3>(i_.first.template cast<T>());
+    return terms_.first_moment<T>(integrals(), x);
   }
   template <class T>
   void moments(T const* x, Moments<T>& out) const {
-    if (terms_.deformed_inertia) return i_.template moments<T>(x, out);
-    out.c = i_.first.template cast<T>();
-    out.J = i_.inertia.template cast<T>();
+    if (terms_.deformed_inertia) return integrals().template moments<T>(x, out);
+    out.c = integrals().first.template cast<T>();
+    out.J = integrals().inertia.template cast<T>();
   }
 
+  /// In room of this thread.
+  template <class T>
+  FfrProducts<T> own_products() const {
+    static thread_local VecXOf<T> numbers;
+    if (numbers.size() < room()) numbers.resize(room());
+    return {made_of_->integrals, made_of_->stack, numbers.data()};
+  }
   FfrPoints const& made() const {
     if (!points_) throw InvalidInput("Ffr: this body is made of integrals only; describe the point by a Point.");
     return *points_;
   }
 
-  FfrIntegrals i_;
+  struct Constants {
+    FfrIntegrals integrals;
+    FfrStack stack;
+  };
+
+  std::shared_ptr<Constants const> made_of_;
   Placement placement_;
-  std::array<MatX, 3> gyroscopic_;  ///< W_iᵀ
   FfrTerms terms_;
   std::shared_ptr<FfrPoints const> points_;
 };

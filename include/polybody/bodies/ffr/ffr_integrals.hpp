@@ -31,6 +31,17 @@ T quadratic(MatX const& m, T const* x, T const* y) {
   return sum;
 }
 
+/// out (rows of m) = m x, column by column: long runs in memory, whatever the type of the numbers.
+template <class T>
+void times(MatX const& m, T const* x, T* out) {
+  Index const rows = m.rows();
+  for (Index i = 0; i < rows; ++i) out[i] = T(0.0);
+  for (Index k = 0; k < m.cols(); ++k) {
+    double const* const column = m.col(k).data();
+    for (Index i = 0; i < rows; ++i) out[i] += x[k] * column[i];
+  }
+}
+
 }  // namespace detail
 
 /// In the axes of the floating frame, of the body's points u = u₀ + S q:
@@ -150,14 +161,22 @@ struct FfrIntegrals {
     }
     return c;
   }
-  /// Column k of C(q) = c_q and of H(q).
+  /// Column k of C(q) = c_q.
   template <class T>
-  void columns(T const* x, Index k, Vec<T, 3>& c, Vec<T, 3>& h) const {
+  Vec<T, 3> first_slope(T const* x, Index k) const {
+    Vec<T, 3> c;
     for (std::size_t i = 0; i < 3; ++i) {
       c[Index(i)] = T(first_by(Index(i), k));
       if (stiffens()) c[Index(i)] -= detail::column_times(first_second[i], k, x);
-      h[Index(i)] = detail::column_times(coupling_by[i], k, x) + coupling(Index(i), k);
     }
+    return c;
+  }
+  /// Column k of C(q) and of H(q).
+  template <class T>
+  void columns(T const* x, Index k, Vec<T, 3>& c, Vec<T, 3>& h) const {
+    c = first_slope(x, k);
+    for (std::size_t i = 0; i < 3; ++i)
+      h[Index(i)] = detail::column_times(coupling_by[i], k, x) + coupling(Index(i), k);
   }
   /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`.
   template <class T>

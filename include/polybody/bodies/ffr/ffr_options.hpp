@@ -23,6 +23,13 @@ struct FfrTerms {
                                  ///< asked for
   bool spin = true;              ///< Ĩ_o ω̄: centrifugal forces on the body as it is without deformation
 
+  bool operator==(FfrTerms const&) const = default;
+  /// c of the body deformed by x, or at q = 0.
+  template <class T, class Integrals>
+  Vec<T, 3> first_moment(Integrals const& of, T const* x) const {
+    return deformed_inertia ? of.template first_moment<T>(x) : Vec<T, 3>(of.first.template cast<T>());
+  }
+
   /// What the deformation's mass does to the frame.
   bool pulls_frame() const { return coupling && onto_frame; }
   /// What its speed does to the frame.

@@ -1,0 +1,64 @@
+#pragma once
+/// \file
+/// What the equations of a floating frame multiply coordinates, speeds and their rates by: stacked, so that each is
+/// gone through once.
+///
+/// Not in polybody.hpp: it comes with bodies/ffr/ffr.hpp.
+
+#include <polybody/bodies/ffr/ffr_integrals.hpp>
+
+namespace polybody {
+
+/// The matrices of `FfrIntegrals`, transposed, one below the other; n deformation coordinates.
+struct FfrStack {
+  MatX of_coordinates;  ///< (10n×n) 2 inertia_second_p, coupling_by_i, stiffness
+  MatX of_speeds;       ///< (4n×n) W_i, damping
+  MatX of_rates;        ///< (n×n) the mass matrix
+
+  template <class = void>  // compiled where it is used
+  static FfrStack of(FfrIntegrals const& i) {
+    Index const n = i.size();
+    FfrStack out{MatX(10 * n, n), MatX(4 * n, n), i.mass_matrix.transpose()};
+    for (Index p = 0; p < 6; ++p)
+      out.of_coordinates.middleRows(p * n, n) = 2.0 * i.inertia_second[std::size_t(p)].transpose();
+    for (Index k = 0; k < 3; ++k) {
+      MatX const& by = i.coupling_by[std::size_t(k)];
+      out.of_coordinates.middleRows((6 + k) * n, n) = by.transpose();
+      out.of_speeds.middleRows(k * n, n) = by.transpose() - by;
+    }
+    out.of_coordinates.bottomRows(n) = i.stiffness.transpose();
+    out.of_speeds.bottomRows(n) = i.damping.transpose();
+    return out;
+  }
+};
+
+/// Products at one state, in room for 15 n numbers.
+template <class T>
+class FfrProducts {
+ public:
+  static Index room(Index n) { return 15 * n; }
+  FfrProducts(FfrIntegrals const& integrals, FfrStack const& stack, T* room)
+      : i_(integrals), stack_(stack), n_(integrals.size()), x_(room), xd_(room + 10 * n_), xdd_(room + 14 * n_) {}
+
+  void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }
+  void at_speeds(T const* speeds) { detail::times(stack_.of_speeds, speeds, xd_); }
+  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }
+
+  /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`.
+  T inertia_slope(std::size_t p, Index k) const { return x_[Index(p) * n_ + k] + i_.inertia_by[p][k]; }
+  /// H_i's entry k.
+  T coupling(Index i, Index k) const { return x_[(6 + i) * n_ + k] + i_.coupling(i, k); }
+  T stiffness(Index k) const { return x_[9 * n_ + k]; }
+  /// (W_i q̇)_k, with the sign of the force.
+  T gyroscopic(Index i, Index k) const { return xd_[i * n_ + k]; }
+  T damping(Index k) const { return xd_[3 * n_ + k]; }
+  T mass(Index k) const { return xdd_[k]; }
+
+ private:
+  FfrIntegrals const& i_;
+  FfrStack const& stack_;
+  Index n_;
+  T *x_, *xd_, *xdd_;
+};
+
+}  // namespace polybody
