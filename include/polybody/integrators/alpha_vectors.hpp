@@ -7,10 +7,10 @@ namespace polybody {
 struct AlphaVectors {
   VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
   VecX q, v, vd, a, dq, r, phi, jerk, ahead;
-  VecX lambda, rhs, y;   ///< of all multipliers that the step keeps; `phi` is of its rows
-  VecX back, rate;       ///< of a stabilised step: what μ moves, and a vector by rows
-  VecX kept, kept_back;  ///< corrections while others are looked at
-  Index states;          ///< first-order ones, the last of the speeds
+  VecX lambda, rhs, y;    ///< of all multipliers that the step keeps; `phi` is of its rows
+  VecX back, rate, open;  ///< of a stabilised step: what μ moves, a vector by rows, and rows before μ answers them
+  VecX kept, kept_back;   ///< corrections while others are looked at
+  Index states;           ///< first-order ones, the last of the speeds
 
   AlphaVectors(Index coordinates, Index speeds, Index rows, Index multipliers, Index first_order)
       : v0(VecX::Zero(speeds)),
@@ -29,6 +29,7 @@ struct AlphaVectors {
         y(rhs),
         back(v0),
         rate(phi),
+        open(phi),
         kept(rhs),
         kept_back(v0),
         states(first_order) {}

@@ -36,8 +36,8 @@ struct ConservingStep {
     TangentSolver<SolverOfSteps<Solver>> solver;
     TangentSolver<SolverOfSteps<UnsymmetricSolver<Solver>>> exact;  ///< laid out by the first step that asks for it
     ForwardDynamics<Solver> forward;
-    bool factored = false, has_exact = false;
-    double theta = 1.0;
+    KeptFactor kept_factor;
+    bool has_exact = false;
     double h_factored = 0.0;
 
     explicit Workspace(System& s)
@@ -68,7 +68,7 @@ struct ConservingStep {
     StepHistory::reset(x);
     w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi, &x.v, &x.a});
     w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
-    w.factored = false;
+    w.kept_factor.usable = false;
     (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
   }
 
@@ -182,26 +182,26 @@ struct ConservingStep {
     } else {
       history.extrapolate(x, h, w.vd, w.lambda);
     }
-    if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+    if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
     NewtonOptions options = newton;
     options.always_refactor = options.always_refactor || careful;
     if (careful) options.growths = 10;
     Problem<Solver> problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows(), effort == 2};
-    NewtonReport report = polybody::newton(problem, options, w.factored, w.theta);
+    NewtonReport report = polybody::newton(problem, options, w.kept_factor);
     if (effort == 1 && system.rows() > 0 && report.result == NewtonResult::converged &&
         change(x, h, w.vd) > 0.01 * squares(x.v)) {
       w.other_vd.swap(w.vd);
       w.other_lambda.swap(w.lambda);
-      w.factored = false;
-      return advance(system, x, h, w, 2, true);
+      w.kept_factor.usable = false;
+      return detail::with_attempt(report, advance(system, x, h, w, 2, true));
     }
     if (has_other && takes_other(x, h, w, report.result != NewtonResult::converged)) {
       (void)problem.evaluate();
       report.result = NewtonResult::converged;
     }
     if (report.result != NewtonResult::converged && effort < (system.rows() > 0 ? 2 : 1)) {
-      w.factored = false;
-      return advance(system, x, h, w, effort + 1);
+      w.kept_factor.usable = false;
+      return detail::with_attempt(report, advance(system, x, h, w, effort + 1));
     }
     if (report.result != NewtonResult::converged)
       detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
@@ -209,14 +209,14 @@ struct ConservingStep {
     for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
     system.push_forces();  // the discrete gradients pass them by
     w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
-    if (w.solver.lost_rank() || effort == 2) w.factored = false;
+    if (w.solver.lost_rank() || effort == 2) w.kept_factor.usable = false;
     history.push(x, h, w.vd);
     x.q.swap(w.q);
     x.v.swap(w.v);
     x.a.swap(w.vd);
     x.lambda.swap(w.lambda);
     x.t += h;
-    return {h, h, report.iterations, report.factorisations, report.iterations, 0, 0, report.theta};
+    return detail::report_of(h, report);
   }
 };
 

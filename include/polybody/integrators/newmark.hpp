@@ -15,7 +15,7 @@ struct Newmark {
   double gamma = 0.5;
   double beta = 0.25;
   double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {.refactor_above = 0.16};
+  NewtonOptions newton = {};
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too
 
@@ -43,7 +43,7 @@ struct Trapezoidal {
   static constexpr Entries entries = Entries::implicit_step;
 
   double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {.refactor_above = 0.16};
+  NewtonOptions newton = {};
   bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too

@@ -10,6 +10,24 @@ struct StepEquations {
   VecX const &rhs, &solution;
 };
 
+/// The report of a step with what an attempt at it cost. \param each evaluations an iteration
+template <class = void>
+StepReport with_attempt(NewtonReport const& attempt, StepReport step, int each = 1) {
+  step.iterations += attempt.iterations;
+  step.factorisations += attempt.factorisations;
+  step.evaluations += each * attempt.iterations;
+  return step;
+}
+/// The report of a step of h by the attempt that ended it. \param before what others cost
+template <class = void>
+StepReport report_of(double h, NewtonReport const& last, int each = 1, StepReport const& before = {}) {
+  StepReport step = with_attempt(last, before, each);
+  step.taken = step.next = h;
+  step.contraction = last.theta;
+  step.left = last.left;
+  return step;
+}
+
 /// Throws what says why Newton's method failed in the step of `integrator` to time t, and who is to blame. Where there
 /// is a pivot for each equation, and yet no finite solution, that is the body whose motion is wild.
 /// \throws LinearSolverSingular, NonFinite, NewtonStalled.

@@ -49,8 +49,8 @@ struct Radau {
     RowSlopes slopes;
     ForwardDynamics<Solver> forward;
     Projection::Scratch projected;
-    bool factored = false, has_by_stage = false;
-    double theta = 1.0;
+    KeptFactor kept_factor;
+    bool has_by_stage = false;
     double h_factored = 0.0;
     double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
     Sequence<double> slack;  ///< by stages and rows: −1 on the diagonal of a row that repeats others leaves its
@@ -155,12 +155,13 @@ struct Radau {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     std::fill(w.slack.begin(), w.slack.end(), 0.0);
     if (!w.forward.redundant_rows().empty()) leave_redundant(system, x, h, w);
-    w.factored = false;
+    w.kept_factor.usable = false;
   }
 
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     NewtonReport report;
+    StepReport tried;
     double reach = h;  // of the stages
     bool stage_beside = false;
     // what stalls is tried again by full Newton, then with every stage's own matrix, and with stages of another length
@@ -169,18 +170,19 @@ struct Radau {
       if (effort == 2) stage_beside = loses_rank(system, x, h, w);
       if (effort >= 2) reach = (effort == 2) == stage_beside ? 1.25 * h : h;
       predict(x, reach, w);
-      if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.factored = false;
+      if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
       NewtonOptions options = newton;
       options.always_refactor = options.always_refactor || careful;
       if (careful) options.growths = 8;
       Problem<Solver> problem{*this, system, x, w, reach, system.speeds(), system.rows(), effort >= 2};
-      report = polybody::newton(problem, options, w.factored, w.theta);
+      report = polybody::newton(problem, options, w.kept_factor);
       if (report.result == NewtonResult::converged) break;
       if (report.result == NewtonResult::not_finite || effort >= last)
         detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
+      tried = detail::with_attempt(report, tried, 3);
     }
     finish(system, x, h, reach, w);
-    return {h, h, report.iterations, report.factorisations, 3 * report.iterations, 0, 0, report.theta};
+    return detail::report_of(h, report, 3, tried);
   }
 
  private:

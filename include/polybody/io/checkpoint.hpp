@@ -27,10 +27,10 @@ class SnapshotWalk {
     each(s.state.t, s.step, s.row.start, s.row.length, s.row.count);
     list(s.sides, [&](auto& side) { archive(side); });
     each(s.report.steps, s.report.iterations, s.report.factorisations, s.report.evaluations, s.report.rejected,
-         s.report.stopped);
+         s.report.cut_short, s.report.left, s.report.stopped);
     auto& last = s.report.last;
     each(last.taken, last.next, last.iterations, last.factorisations, last.evaluations, last.rejected);
-    each(last.order, last.contraction);
+    each(last.order, last.contraction, last.left);
     list(s.report.events, [&](auto& met) { text(met.name), archive(met.time); });
     list(s.report.redundant, [&](auto& name) { text(name); });
     list(s.report.warnings, [&](auto& sentence) { text(sentence); });
@@ -122,7 +122,7 @@ struct CheckpointHead {
   std::uint32_t order, version;
   std::uint64_t length;
 };
-inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 4u, 0u};
+inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 5u, 0u};
 
 }  // namespace detail
 

@@ -52,6 +52,8 @@ struct RunReport {
   long factorisations = 0;
   long evaluations = 0;
   long rejected = 0;
+  long cut_short = 0;  ///< steps that ended at Newton's budget
+  double left = 0.0;   ///< the largest correction that one of them ended with, beside what is tolerated
   StepReport last = {};
   struct Met {
     std::string name;
@@ -77,6 +79,8 @@ struct RunReport {
     factorisations += step.factorisations;
     evaluations += step.evaluations;
     rejected += step.rejected;
+    if (step.left > 0.0) ++cut_short;
+    left = std::max(left, step.left);
     last = step;
   }
 };

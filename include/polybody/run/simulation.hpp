@@ -353,6 +353,7 @@ StepReport Simulation<I, Solver>::step(double h, int halvings) {
     report.evaluations += second.evaluations;
     report.rejected += second.rejected + 1;
     report.contraction = second.contraction;
+    report.left = std::max(report.left, second.left);
     return report;
   } catch (...) {
     stepped() = before;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <type_traits>
 
 #include <polybody/math/types.hpp>
 
@@ -13,17 +15,30 @@ namespace polybody {
 /// When to stop, refactor and give up.
 struct NewtonOptions {
   int max_iterations = 20;
-  double refactor_above = 0.3;   ///< contraction θ above which the factorisation is renewed
+  /// What a factorisation costs, in iterations: it is renewed where that saves more of them over as many solves as the
+  /// last one served.
+  double factorisation_cost = 3.0;
   bool always_refactor = false;  ///< full Newton
   int growths = 2;               ///< of the corrections, after which it gives up
-  bool predictive_stop = true;   ///< stop on what θ tells of the next correction, not on the last one itself
+  /// What a solve should cost, in iterations, where a factorisation costs as many as above. At this bound it ends with
+  /// the first iterate that is near, and reports what it left, as a loop in real time asks for. 0: no bound.
+  double budget = 0.0;
+  bool predictive_stop = true;  ///< stop on what θ tells of the next correction, not on the last one itself
 
-  /// \throws InvalidInput naming `who` for counts outside [1, 10⁶], or a contraction that is no number ≥ 0.
+  /// \throws InvalidInput naming `who` for counts outside [1, 10⁶], a cost that is no number ≥ 0, or a budget below a
+  /// factorisation and an iteration.
   [[gnu::cold]] void check(std::string const& who) const {
     require_count(max_iterations, who, ": newton.max_iterations");
     require_count(growths, who, ": newton.growths");
-    if (!(refactor_above >= 0.0))
-      throw InvalidInput{who, ": newton.refactor_above must be zero or positive, but is ", refactor_above, "."};
+    if (!(factorisation_cost >= 0.0))
+      throw InvalidInput{who, ": newton.factorisation_cost must be zero or positive, but is ", factorisation_cost, "."};
+    if (budget != 0.0 && !(budget >= factorisation_cost + 1.0))
+      throw InvalidInput{who,
+                         ": newton.budget must be zero, for none, or pay a factorisation and an iteration, ",
+                         factorisation_cost + 1.0,
+                         ", but is ",
+                         budget,
+                         "."};
   }
 };
 
@@ -36,6 +51,16 @@ struct NewtonReport {
   int iterations = 0;
   int factorisations = 0;
   double theta = 0.0;  ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖
+  double left = 0.0;   ///< where it ended for its budget, the last correction beside what is tolerated; else 0
+};
+
+/// What Newton's method keeps from solve to solve of problems that follow each other.
+struct KeptFactor {
+  bool usable = false;  ///< a factorisation is at hand
+  double theta = 1.0;   ///< its contraction rate
+  double fresh = 0.05;  ///< the rate that is expected of a new one, as others had
+  int served = 0;       ///< solves that it has ended
+  bool stale = false;  ///< the last solve found at once that one had to be made, as where contacts change in every step
 };
 
 /// The norm of a correction, and how much of it is tolerated, which may depend on the iterate.
@@ -45,15 +70,22 @@ struct CorrectionSize {
 
 namespace detail {
 
+/// Iterations that are still to come after a correction that is `rated` times what is tolerated, at the rate θ.
+inline double iterations_to_come(double rated, double theta) {
+  if (!(theta < 1.0)) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, std::log(rated * theta / (1.0 - theta)) / -std::log(theta));
+}
+
 /// How the corrections of Newton's method shrink, and the part of them that is taken.
 struct NewtonProgress {
   double before = 0.0, earlier = 0.0;  ///< norms of the last correction and of the one before it
+  double largest = 0.0;                ///< of all
   double rated = 0.0;                  ///< the last one beside what was tolerated
   double part = 1.0;
   int grown = 0;
 
-  /// Rates the next correction by the last one. False where corrections grew too often.
-  bool rate(CorrectionSize const& size, NewtonOptions const& options, bool& factored, double& theta) {
+  /// Rates the next correction by the last one. False where it grew.
+  bool rate(CorrectionSize const& size, NewtonOptions const& options, double& theta) {
     double const norm = size.norm, beside_tolerated = norm / size.tolerated;
     theta = beside_tolerated / rated;
     if (options.always_refactor) {
@@ -63,12 +95,14 @@ struct NewtonProgress {
         part = std::min(1.0, 2.0 * part);
     }
     bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
-    if (grows && beside_tolerated > 1.0) {
-      factored = false;
-      return ++grown < options.growths;
-    }
-    if (theta > options.refactor_above) factored = false;
-    return true;
+    return !(grows && beside_tolerated > 1.0);
+  }
+  /// Whether a new factorisation saves more iterations than it costs, over as many solves as the last one served.
+  static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, KeptFactor const& kept) {
+    if (kept.theta <= 1.5 * kept.fresh) return false;  // no better than what is at hand
+    double const by = size.norm / size.tolerated;
+    double const saved = iterations_to_come(by, kept.theta) - iterations_to_come(by, kept.fresh);
+    return saved * std::max(kept.served, 1) > options.factorisation_cost;
   }
 
   /// Whether corrections stay where they are, so that it may be rounding that they consist of.
@@ -81,6 +115,7 @@ struct NewtonProgress {
   bool ends(CorrectionSize const& size, NewtonOptions const& options, bool renewed, double theta) {
     earlier = before;
     before = size.norm;
+    largest = std::max(largest, size.norm);
     rated = size.norm / size.tolerated;
     if (options.always_refactor || !options.predictive_stop) return rated <= 1.0;
     double const contraction = std::min(theta, 0.99);
@@ -89,69 +124,162 @@ struct NewtonProgress {
   }
 };
 
-}  // namespace detail
-
-/// Solves by corrections Δ. The problem offers
-///   bool evaluate()           the right-hand side at the iterate; false when it is not finite
-///   bool refactor()           the tangent there; false when it is singular
-///   CorrectionSize solve()    the next correction; or double, its norm where 1 is tolerated
-///   void apply()              adds it; or void apply(double part), which full Newton damps
-///   bool is_rounding(double)  (or not there) whether a correction of this norm is what rounding of the iterate leaves
-/// `factored` says whether an earlier factorisation may be used, `theta` its contraction rate; both are kept.
-/// With ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no
-/// correction grew: the rate θ after a large correction is small for any iterate and says nothing of convergence. It
-/// fails after as many growing corrections as `growths` says. Full Newton in a stiff direction contracts by turns (θ =
-/// 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate predicts the next correction: it
-/// stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves, as what is tolerated shrinks with
-/// a wild iterate's accelerations. Where it would go in circles, as between a contact and none, half of a correction is
-/// enough: the part that is taken is halved, down to 1/64, when ‖Δ‖ shrinks by less than a tenth of that part, and
-/// doubled when it shrinks by what the part explains.
+/// A solve: what it has at hand, and where it stands.
 template <class Problem>
-NewtonReport newton(Problem&& problem, NewtonOptions const& options, bool& factored, double& theta) {
-  NewtonReport report;
-  detail::NewtonProgress progress;
-  auto const fail = [&](NewtonResult result) {
-    report.result = result;
-    factored = false;
-    return report;
-  };
-  theta = std::pow(std::max(theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
-  for (int k = 0; k < options.max_iterations; ++k) {
+struct NewtonSolve {
+  Problem& problem;
+  NewtonOptions const& options;
+  KeptFactor& kept;
+  bool begins_anew;  ///< as the last solve found its factorisation of no use
+  NewtonReport report = {};
+  NewtonProgress progress = {};
+  bool fresh = false, renewed = false;  ///< a factorisation was made at the last iterate, at this one
+  bool rounding = false;                ///< the correction is what rounding leaves
+  bool restarted = false;               ///< the iterate is the first one again
+
+  /// What has been spent and `more` stay within the budget.
+  bool affords(double more) const {
+    return options.budget == 0.0 ||
+           report.iterations + options.factorisation_cost * report.factorisations + more <= options.budget;
+  }
+  /// \return whether the tangent has a factorisation
+  bool renew() {
+    if (!problem.refactor()) return false;
+    ++report.factorisations;
+    kept.served = 0;
+    return kept.usable = renewed = true;
+  }
+  /// Goes back to the first iterate where an earlier solve's factorisation led far from it.
+  bool restart() {
+    if constexpr (requires { problem.restart(); }) {
+      restarted = report.factorisations == 0 && problem.is_far(progress.largest);
+      if (!restarted) return false;
+      problem.restart();
+      progress = {};
+      kept.usable = false;
+    }
+    return restarted;
+  }
+  /// What is left moves the iterate little beside what it moves by itself.
+  bool is_near(double norm) const {
+    if constexpr (requires { problem.is_far(norm); })
+      return !problem.is_far(100.0 * norm);
+    else
+      return norm <= 0.01 * progress.largest;
+  }
+  static bool is_finite(CorrectionSize const& size) { return std::isfinite(size.norm / size.tolerated); }
+
+  /// Rates the next correction, renews the factorisation where it asks for that, and solves again. False where it
+  /// diverges.
+  bool rate(int k, CorrectionSize& size) {
+    double const rate_before = kept.theta;
+    bool shrinks = progress.rate(size, options, kept.theta);
+    report.theta = kept.theta;
+    if (fresh && !renewed) kept.fresh = std::clamp(std::sqrt(kept.fresh * kept.theta), 0.01, 0.5);
+    if constexpr (requires { problem.is_rounding(size.norm); })
+      if (size.norm > size.tolerated && progress.stalls(size, shrinks)) {
+        rounding = problem.is_rounding(size.norm);
+        if (rounding) {
+          kept.theta = rate_before;
+          return true;
+        }
+        if (!problem.evaluate()) return false;  // it was asked of places beside the iterate
+      }
+    bool const asks =
+        !renewed && (!shrinks || progress.renewal_pays(size, options, kept)) && affords(options.factorisation_cost);
+    if (k == 1 && !options.always_refactor)
+      kept.stale = begins_anew ? asks || kept.theta > 2.0 * kept.fresh : asks && !fresh && kept.theta > 0.5;
+    if (asks && restart()) return true;
+    if (asks) {
+      if (!renew()) return false;
+      kept.theta = 1.0;  // of the new one nothing is known
+      size = CorrectionSize{problem.solve()};
+      if (!is_finite(size)) return false;
+      bool const first = report.factorisations == 1;  // what an earlier solve's one made tells nothing of this one's
+      shrinks = first || size.norm < progress.before || size.norm <= size.tolerated;
+    }
+    return shrinks || ++progress.grown < options.growths;
+  }
+
+  /// One iteration. What it ends with, if it does.
+  std::optional<NewtonResult> iterate(int k) {
     if (!problem.evaluate()) {
-      report.result = k == 0 ? NewtonResult::not_finite : NewtonResult::diverged;
-      factored = factored && k == 0;
-      return report;
+      kept.usable = kept.usable && k == 0;
+      return k == 0 ? NewtonResult::not_finite : NewtonResult::diverged;
     }
-    bool renewed = false;
-    if (!factored || options.always_refactor) {
-      if (!problem.refactor()) return fail(k == 0 ? NewtonResult::singular : NewtonResult::diverged);
-      ++report.factorisations;
-      factored = renewed = true;
-      if (k == 0) theta = 1.0;
+    fresh = renewed;
+    renewed = restarted = false;
+    auto const fail = [&](NewtonResult result) {
+      kept.usable = false;
+      return result;
+    };
+    if (!kept.usable || options.always_refactor) {
+      if (!renew()) return fail(k == 0 ? NewtonResult::singular : NewtonResult::diverged);
+      if (progress.before == 0.0) kept.theta = 1.0;
     }
-    CorrectionSize const size{problem.solve()};
+    CorrectionSize size{problem.solve()};
     ++report.iterations;
-    if (!std::isfinite(size.norm / size.tolerated))
+    if (!is_finite(size))
       return fail(k > 0 ? NewtonResult::diverged : renewed ? NewtonResult::singular : NewtonResult::not_finite);
     if (k > 0 && progress.before > 0.0) {
-      double const rate_before = theta;
-      bool const factored_before = factored, shrinks = progress.rate(size, options, factored, theta);
-      report.theta = theta;
-      if constexpr (requires { problem.is_rounding(size.norm); })
-        if (size.norm > size.tolerated && progress.stalls(size, shrinks) && problem.is_rounding(size.norm)) {
-          theta = rate_before;
-          factored = factored_before;
-          return report;
-        }
-      if (!shrinks) return fail(NewtonResult::diverged);
+      if (!rate(k, size)) return fail(NewtonResult::diverged);
+      if (rounding) return NewtonResult::converged;
+      if (restarted) return {};
     }
     if constexpr (requires { problem.apply(progress.part); })
       problem.apply(progress.part);
     else
       problem.apply();
-    if (progress.ends(size, options, renewed, theta)) return report;
+    if (!progress.ends(size, options, renewed, kept.theta)) {
+      if (affords(1.0) || !is_near(size.norm)) return {};
+      report.left = size.norm / size.tolerated;
+    }
+    ++kept.served;
+    return NewtonResult::converged;
   }
-  return fail(NewtonResult::diverged);
+};
+
+}  // namespace detail
+
+/// Solves by corrections Δ. The problem offers
+///   bool evaluate()           the right-hand side at the iterate; false when it is not finite
+///   bool refactor()           the tangent there; false when it is singular
+///   CorrectionSize solve()    the next correction; or double, its norm where 1 is tolerated. It may be asked twice of
+///                             one right-hand side, by an old and by a new factorisation
+///   void apply()              adds it; or void apply(double part), which full Newton damps
+///   bool is_rounding(double)  (or not there) whether a correction of this norm is what rounding of the iterate leaves
+///   bool is_far(double), void restart()  (or not there) whether a correction of this norm leads further away than the
+///                             solution may be; brings back the first iterate
+/// `kept` says whether an earlier factorisation may be used, and what is known of it.
+/// A correction that tells that the factorisation should be renewed is not taken: the new one is made where it was
+/// found, and answers the same right-hand side. It should be where corrections grow, and where it saves more iterations
+/// than it costs (`NewtonOptions`). Where corrections of an earlier solve's factorisation led far away, the solve
+/// begins again with a new one: from there it may find another solution, as rods that turn over have. Where the first
+/// correction shows that, the next solves begin with a new one, until their second corrections are small again. With
+/// ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no correction
+/// grew: the rate θ after a large correction is small for any iterate and says nothing of convergence. It fails after
+/// as many growing corrections of new factorisations as `growths` says. Full Newton in a stiff direction contracts by
+/// turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate predicts the next
+/// correction: it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves, as what is
+/// tolerated shrinks with a wild iterate's accelerations. Where it would go in circles, as between a contact and none,
+/// half of a correction is enough: the part that is taken is halved, down to 1/64, when ‖Δ‖ shrinks by less than a
+/// tenth of that part, and doubled when it shrinks by what the part explains. What is
+/// near, at the end of the budget: its last correction moves it by less than a hundredth of what would be far, or of
+/// the largest one where the problem does not tell. What is not goes on, as iterates at impacts may be anywhere.
+template <class Problem>
+NewtonReport newton(Problem&& problem, NewtonOptions const& options, KeptFactor& kept) {
+  detail::NewtonSolve<std::remove_reference_t<Problem>> solve{problem, options, kept, kept.stale};
+  if (kept.stale) kept.usable = false;
+  kept.theta = std::pow(std::max(kept.theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
+  kept.fresh += 0.1 * (KeptFactor{}.fresh - kept.fresh);
+  for (int k = 0; k < options.max_iterations; ++k)
+    if (auto const result = solve.iterate(k)) {
+      solve.report.result = *result;
+      return solve.report;
+    }
+  kept.usable = false;
+  solve.report.result = NewtonResult::diverged;
+  return solve.report;
 }
 
 }  // namespace polybody

@@ -99,9 +99,6 @@ class TangentSolver {
     return factor([&](BlockSink& sink) { system.tangent(k, second, x.lambda, sink); });
   }
 
-  /// A factorisation costs two iterations.
-  bool factors_cheaply() const { return walks_; }
-
   /// Writes and factors where `system` was evaluated last. −1, or the equation without a pivot (`name_of_equation`).
   Index factor(BlockWriter const& write) {
     if (coordinates_) coordinates_.entries->hold(coordinates_.self.get(), held_.get());

@@ -28,10 +28,8 @@ bool multipliers_at_rest(System& system, State& x) {
 /// Newton's method at the present share; what it cost goes into the report.
 template <class Solver>
 NewtonResult correct(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
-  bool factored = false;
-  double theta = 1.0;
-  NewtonReport const n =
-      newton(path, {.max_iterations = options.max_iterations, .always_refactor = true}, factored, theta);
+  KeptFactor kept;
+  NewtonReport const n = newton(path, {.max_iterations = options.max_iterations, .always_refactor = true}, kept);
   report.iterations += n.iterations;
   return n.result;
 }

@@ -224,9 +224,8 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
   for (LoadSteps steps(options); !steps.done();) {
     State const before = problem.trial;
     problem.frame.share = steps.next();
-    bool factored = false;
-    double theta = 1.0;
-    NewtonReport const n = newton(problem, newton_options, factored, theta);
+    KeptFactor kept;
+    NewtonReport const n = newton(problem, newton_options, kept);
     report.iterations += n.iterations;
     if (n.result == NewtonResult::converged) {
       steps.reach_next();
