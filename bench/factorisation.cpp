@@ -16,6 +16,7 @@
 #include <string>
 
 #include "support/blocks.hpp"
+#include "timing.hpp"
 
 #ifdef POLYBODY_HAS_KLU
 #include <polybody/solvers/klu.hpp>
@@ -24,6 +25,8 @@
 namespace {
 
 using namespace polybody;
+using timing::eigen_rate;
+using timing::fastest;
 using Matrix6 = Mat<double, 6, 6>;
 
 struct Draw {
@@ -91,42 +94,6 @@ Blocks chain(int links) {
     if (i > 0) b.join(6 * links + 5 * i, 6 * (i - 1), draw.matrix(5, 6));
   }
   return b;
-}
-
-double microseconds(std::function<void()> const& act) {
-  auto const start = std::chrono::steady_clock::now();
-  act();
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// The fastest of `repeats` interleaved timings (what else runs on the machine only ever adds), each after one that is
-/// not counted: a solver finds its data in the cache, as it does within a run.
-std::vector<double> fastest(std::vector<std::pair<std::function<void()>, std::function<void()>>> const& acts,
-                            int repeats) {
-  std::vector<double> times(acts.size(), 1e30);
-  for (int r = 0; r < repeats; ++r)
-    for (std::size_t i = 0; i < acts.size(); ++i) {
-      acts[i].first();
-      acts[i].second();
-      acts[i].first();
-      times[i] = std::min(times[i], microseconds(acts[i].second));
-    }
-  return times;
-}
-
-/// Flops per µs of c −= aᵀ b with Eigen's 6×6 matrices that stay in the cache.
-double eigen_rate() {
-  std::vector<Matrix6> a(16, Matrix6::Random()), c(16, Matrix6::Zero());
-  constexpr int rounds = 200;
-  double const time = fastest({{[] {},
-                                [&] {
-                                  for (int r = 0; r < rounds; ++r)
-                                    for (std::size_t i = 0; i < 16; ++i)
-                                      c[i].noalias() -= a[(i + 3) % 16].transpose() * a[(i + 7) % 16];
-                                  benchmark::DoNotOptimize(c.data());
-                                }}},
-                              51)[0];
-  return 2.0 * 216.0 * 16.0 * rounds / time;
 }
 
 void compare() {

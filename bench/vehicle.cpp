@@ -1,0 +1,127 @@
+// What a step of the tracked vehicle costs with every link on every pin that can be driven (Chapters 3 and 4), and what
+// that goes into: CPU of a second of driving, mean, 99.9 % and largest step, Newton's counts, and the time of each part
+// of a step beside the flop limit of its factorisation.   bench_vehicle [--links X] [--pins Y] [--until S] [--speed W]
+#include <ctime>
+
+#include <cstdio>
+#include <cstring>
+
+#include <polybody/solvers/tangent_solver.hpp>
+
+#include "../examples/track_stress/formulations.hpp"
+#include "timing.hpp"
+
+namespace {
+
+using namespace chapter4;
+
+double cpu() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+/// Microseconds of what every iteration and every factorisation of a step consists of.
+struct Parts {
+  double evaluation, residual, solution, writing, factorisation, limit;
+};
+
+/// At a state of a run, where all is in the cache as within a step.
+Parts parts_of(AnyModel const& model, State const& whole, GeneralizedAlpha const& integrator, double h) {
+  RunSystems const systems = model.systems_of<GeneralizedAlpha>();
+  System& system = *systems.stepped;
+  State x = reduce(system, whole);
+  append_multipliers(system, x);
+  AlphaMethod const m = integrator.method();
+  TangentCoefficients const c{(1.0 - m.alpha_m) / (1.0 - m.alpha_f), m.gamma * h, m.beta * h * h};
+  StepPlace const place{{x.q, x.v, x.t}, x.a, x.lambda};
+  auto const write = [&](BlockSink& sink) { system.tangent(c, SecondOrder::omitted, x.lambda, sink); };
+  TangentSolver<SolverOfSteps<BlockSolver>> solver;
+  solver.analyse(system, 1, write);
+  VecX r(system.speeds()), rhs = VecX::Ones(system.speeds() + multipliers_of(system)), y = rhs;
+  solver.evaluate(system, place.at);
+  solver.balance(system, place, r);
+  if (solver.factor_tangent(system, place, c, SecondOrder::omitted) >= 0) std::printf("no pivot\n");
+  auto const nothing = [] {};
+  std::vector<double> const us =
+      timing::fastest({{nothing, [&] { solver.evaluate(system, place.at); }},
+                       {nothing, [&] { solver.balance(system, place, r); }},
+                       {nothing, [&] { solver.correct(rhs, y); }},
+                       {nothing, [&] { (void)solver.factor_tangent(system, place, c, SecondOrder::omitted); }},
+                       {[&] {
+                          solver.linear_solver().begin();
+                          BlockSink sink(solver.linear_solver());
+                          write(sink);
+                        },
+                        [&] { (void)solver.linear_solver().factor(); }}},
+                      101);
+  double const numeric = us[4];
+  return {us[0], us[1], us[2], us[3] - numeric, numeric, solver.linear_solver().flops() / timing::eigen_rate()};
+}
+
+void measure(Options const& o, Combination const& combination) {
+  Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
+  AnyModel const& model = built.vehicle.model;
+  State x = model.reference_state();
+  GeneralizedAlpha const by = integrator(o);
+  Simulation<GeneralizedAlpha> run = simulate(model, x, by, {.until = o.until, .step = o.step, .halvings = 6});
+  std::vector<double> times;
+  double last = cpu();
+  for (State const& state : run) {
+    double const now = cpu();
+    if (state.t > 0.0) times.push_back(1e6 * (now - last));
+    last = cpu();
+  }
+  double sum = 0.0;
+  for (double const t : times) sum += t;
+  std::sort(times.begin(), times.end());
+  double const steps = double(run.report().steps), iterations = double(run.report().iterations) / steps,
+               factorisations = double(run.report().factorisations) / steps;
+  Parts const p = parts_of(model, x, by, o.step);
+  std::printf(
+      "| `%s` | `%s` | %.2f | %.0f, %.0f, %.0f | %.2f, %.2f | %.0f, %.0f, %.0f | %.0f, %.0f (%.0f) | %.0f |\n",
+      combination.links.c_str(), combination.pins.c_str(), 1e-6 * sum / o.until, sum / steps,
+      times[times.size() - 1 - times.size() / 1000], times.back(), iterations, factorisations, p.evaluation, p.residual,
+      p.solution, p.writing, p.factorisation, p.limit,
+      100.0 * (iterations * (p.evaluation + p.residual + p.solution) + factorisations * (p.writing + p.factorisation)) *
+          steps / sum);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  Options o;
+  o.step = 1e-3;
+  o.rho = 0.5;
+  o.speed = 30.0;
+  o.until = 4.0;
+  o.links.clear();
+  o.masses = m113::with_steel_links(o.masses);
+  o.files = (fs::path(__FILE__).parent_path().parent_path() / "examples/track_stress/fe_link").string();
+  for (int i = 1; i + 1 < argc; i += 2) {
+    std::string const name = argv[i], value = argv[i + 1];
+    if (name == "--links")
+      o.links = value;
+    else if (name == "--pins")
+      o.pins = value;
+    else if (name == "--until")
+      o.until = std::stod(value);
+    else if (name == "--speed")
+      o.speed = std::stod(value);
+    else
+      return std::printf("%s is no option.\n", name.c_str()), 1;
+  }
+  std::printf(
+      "%g s from a standstill to %g rad/s, steps of 1 ms; microseconds\n\n"
+      "| links | pins | CPU a second [s] | step: mean, 99.9 %%, largest | iterations, factorisations | evaluation, "
+      "residual, solution | writing, factorisation (flop limit) | share of the step [%%] |\n"
+      "|---|---|---|---|---|---|---|---|\n",
+      o.until, o.speed);
+  for (std::size_t k = 0; k < all_links.size(); ++k) {
+    if (!o.links.empty() && o.links != all_links[k]) continue;
+    for (Combination const& c : combinations_of[k]())
+      if (c.refusal.empty() && (o.pins.empty() || o.pins == c.pins)) measure(o, c);
+  }
+}
