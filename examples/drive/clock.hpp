@@ -13,7 +13,7 @@ class WallClock {
  public:
   WallClock(bool waits, double patience) : waits_(waits), patience_(patience) {}
 
-  // A step is computed between these. Returns what it took [s].
+  // A step is computed between these.
   void begin_step() { step_began_ = now(); }
   void end_step() { steps_.push_back(now() - step_began_); }
 
