@@ -1,13 +1,17 @@
 // One step of h = 1 ms: chains of rigid links (0.1 m, 1 kg, I = (1e-4, 1e-3, 1e-3) kg m²) released horizontally, 1 s,
-// with ideal and compliant pins; the robot arm of Chapter 2; N four-bars (IFToMM A02). Each by the default solver and
-// by Eigen's sparse LU; and the share of each part of a step.
+// with ideal and compliant pins; the robot arm of Chapter 2; N four-bars (IFToMM A02); a very flexible cable pendulum.
+// Each by the default solver and by Eigen's sparse LU; the share of each part of a step; and what variants of a chain
+// would gain by stepping together.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
 #include <cstdio>
 #include <polybody/polybody.hpp>
+#include <random>
 
 #include "../examples/chapter2.hpp"
+#include "lockstep.hpp"
+#include "timing.hpp"
 
 namespace {
 
@@ -18,18 +22,38 @@ struct Chain {
   using Pin = Joint<Revolute, Policy>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
 
-  Chain(int links, Policy const& policy) {
-    Mat3 const inertia = Vec3(1e-4, 1e-3, 1e-3).asDiagonal();
+  /// \param factor of the mass of link i
+  template <class F>
+  Chain(int links, Policy const& policy, F const& factor) {
     Pin const pin{Revolute{.axis = Vec3::UnitY()}, policy};
     std::optional<BodyHandle<Rigid<>>> before;
     for (int i = 0; i < links; ++i) {
-      auto const link = model.add(Rigid<>(1.0, inertia, Placement::at({0.1 * i + 0.05, 0, 0})));
+      double const mass = factor(i);
+      Mat3 const inertia = Vec3(1e-4 * mass, 1e-3 * mass, 1e-3 * mass).asDiagonal();
+      auto const link = model.add(Rigid<>(mass, inertia, Placement::at({0.1 * i + 0.05, 0, 0})));
       if (before)
         model.connect(pin, before->at(Vec3(0.05, 0, 0)), link.at(Vec3(-0.05, 0, 0)));
       else
         model.connect(pin, model.ground().at({0, 0, 0}), link.at(Vec3(-0.05, 0, 0)));
       before = link;
     }
+  }
+  Chain(int links, Policy const& policy) : Chain(links, policy, [](int) { return 1.0; }) {}
+};
+
+/// A pendulum of a very flexible cable that turns about the vertical [CASES D6a].
+struct CablePendulum {
+  using Ball = Joint<Spherical, Constraint>;
+  Model<Bodies<AncfCable<>>, Joints<Ball>> model{Gravity{0, -9.81, 0}};
+  State start;
+
+  explicit CablePendulum(Index elements) {
+    Bar const bar{.length = 1.0,
+                  .constants = BarConstants{.EA = 40.0, .EI = 7.957747154594767e-5, .mass_per_length = 8e-3}};
+    auto const cable = model.add(AncfCable<>::from(bar, elements));
+    model.connect(Ball{}, model.ground().at({0, 0, 0}), cable.at(0.0));
+    start = model.reference_state();
+    model.set_velocity(start, cable, Vec3::Zero(), Vec3(0, 4, 0));
   }
 };
 
@@ -124,6 +148,10 @@ void mechanisms() {
   compare_solvers_of_arm<planar::Lrvf>("10 Lrvf, Penalty", 10, stiff);
   compare_solvers_of_arm<planar::AncfCable<>>("10 AncfCable, Constraint", 10, Constraint{});
   compare_solvers_of_arm<planar::AncfCable<>>("10 AncfCable, Penalty", 10, stiff);
+  for (Index const n : {16, 64}) {
+    CablePendulum const pendulum(n);
+    compare_solvers("cable pendulum, " + std::to_string(n) + " elements", pendulum.model, pendulum.start, 1.0);
+  }
   for (int const n : {2, 10, 40}) {
     FourBars const bars(n);
     compare_solvers(std::to_string(n) + " four-bars", bars.model, bars.start(),
@@ -186,6 +214,36 @@ BENCHMARK(assemble);
 BENCHMARK(assemble_and_factor);
 BENCHMARK(solve);
 
+/// Eight chains of 64 whose links differ in mass, at random.
+void variants() {
+  Parts& p = parts();
+  auto const nothing = [] {};
+  std::vector<double> const us = timing::fastest({{nothing, [&] { p.system.evaluate(p.x.q, p.x.v, 0.0); }},
+                                                  {nothing, [&] { p.system.residual(p.x.a, p.x.lambda, p.r); }},
+                                                  {nothing, [&] { p.solver.solve(p.rhs, p.y); }},
+                                                  {nothing,
+                                                   [&] {
+                                                     p.assemble();
+                                                     benchmark::DoNotOptimize(p.solver.factor());
+                                                   }}},
+                                                 101);
+  lockstep::print_head();
+  for (double const by : {1e-4, 1e-2, 1e-1}) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> within(-by, by);
+    std::vector<lockstep::Counts> runs;
+    for (int k = 0; k < 8; ++k) {
+      Chain<Constraint> const chain(64, {}, [&](int) { return 1.0 + within(random); });
+      State x = chain.model.reference_state();
+      auto run = simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3});
+      runs.push_back(lockstep::counts_of(run));
+    }
+    char name[40];
+    std::snprintf(name, sizeof name, "masses of links, ±%g %%", 100.0 * by);
+    lockstep::print(name, runs, us[0] + us[1] + us[2], us[3]);
+  }
+}
+
 /// One run alone by the default solver, of which a profiler sees nothing else: bench_steps --run MODEL SIZE SECONDS.
 int run_alone(std::string const& model, int size, double until) {
   auto const run = [&](auto const& m, State const& x) {
@@ -198,6 +256,10 @@ int run_alone(std::string const& model, int size, double until) {
   if (model == "penalty-chain") return from_reference(Chain<Penalty>(size, {.stiffness = 1e7, .damping = 1e3}).model);
   if (model == "lrvf-arm") return from_reference(arm<planar::Lrvf>(size).model);
   if (model == "cable-arm") return from_reference(arm<planar::AncfCable<>>(size).model);
+  if (model == "cable-pendulum") {
+    CablePendulum const pendulum(size);
+    return run(pendulum.model, pendulum.start);
+  }
   if (model == "four-bars") {
     FourBars const bars(size);
     return run(bars.model, bars.start());
@@ -214,4 +276,5 @@ int main(int argc, char** argv) {
   benchmark::RunSpecifiedBenchmarks();
   chains();
   mechanisms();
+  variants();
 }

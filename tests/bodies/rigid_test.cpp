@@ -92,6 +92,23 @@ TEST(Rigid, GyroscopicForceIsEulers) {
   EXPECT_NEAR(f[5], (0.3 - 0.5) * 1.0 * 2.0, 1e-15);
 }
 
+// What the body adds to its rows at once is what its parts say.
+TEST(Rigid, AddsInertiaLessForceAndWeight) {
+  Mat3 inertia;
+  inertia << 2.0, 0.3, -0.2, 0.3, 2.5, 0.4, -0.2, 0.4, 3.0;
+  Rigid<> const body(1.7, inertia);
+  std::array<double, 7> const q{0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0};
+  std::array<double, 6> const v{1.0, -2.0, 3.0, 0.7, -1.1, 0.4}, a{0.3, 0.6, -0.9, 2.0, -3.0, 5.0};
+  Vec3 const g(0.5, -1.5, -9.81);
+  Vec<double, 6> of_inertia, force, weight, rows = Vec<double, 6>::Constant(0.25);
+  body.inertia<double>(0, q, a, of_inertia);
+  body.force<double>(0, q, v, force);
+  body.gravity<double>(0, q, g, weight);
+  Vec<double, 6> const expected = rows + of_inertia - force - weight;
+  body.add_unbalance<double>({q, v, a}, g, rows.data());
+  EXPECT_LT((rows - expected).norm(), 1e-14 * expected.norm());
+}
+
 // A full tensor: mass matrix, work-free gyroscopic force, tangent against differences.
 TEST(Rigid, FullInertiaTensorIsKept) {
   Rigid<> const body(2.0, tilted);

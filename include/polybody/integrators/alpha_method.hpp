@@ -101,12 +101,15 @@ struct AlphaMethod {
   /// a, v and Δq of a step of h from x where v̇ becomes w.vd.
   void predict(State const& x, double h, AlphaVectors& w) const {
     double const part = 1.0 / (1.0 - alpha_m);
-    for_packs(w.a.size(), [&](auto at) {
-      auto const v0 = at(w.v0), a0 = at(w.a0),
-                 a = part * (alpha_f * at(x.a) + (1.0 - alpha_f) * at(w.vd) - alpha_m * a0);
-      at.set(w.a, a);
-      at.set(w.v, v0 + h * ((1.0 - gamma) * a0 + gamma * a));
-      at.set(w.dq, h * v0 + h * h * ((0.5 - beta) * a0 + beta * a));
+    double const *const of_v0 = w.v0.data(), *const of_a0 = w.a0.data(), *const from = x.a.data(),
+                        *const to = w.vd.data();
+    double *const a = w.a.data(), *const v = w.v.data(), *const dq = w.dq.data();
+    for_packs(w.a.size(), [=, m = *this](auto at) {
+      auto const v0 = at(of_v0), a0 = at(of_a0),
+                 now = part * (m.alpha_f * at(from) + (1.0 - m.alpha_f) * at(to) - m.alpha_m * a0);
+      at.set(a, now);
+      at.set(v, v0 + h * ((1.0 - m.gamma) * a0 + m.gamma * now));
+      at.set(dq, h * v0 + h * h * ((0.5 - m.beta) * a0 + m.beta * now));
     });
   }
   /// The same after a correction: a changes by the first part of y, λ by the rest.
@@ -116,16 +119,19 @@ struct AlphaMethod {
       if (two_sets) w.back *= part;
     }
     double const of_vd = mass(), of_v = h * gamma, of_dq = beta * h * h;
-    for_packs(w.v.size(), [&](auto at) {
-      auto const da = at(w.y);
-      at.set(w.a, at(w.a) + da);
-      at.set(w.vd, at(w.vd) + of_vd * da);
-      at.set(w.v, at(w.v) + of_v * da);
-      at.set(w.dq, at(w.dq) + of_dq * da);
+    double const* const y = w.y.data();
+    double *const a = w.a.data(), *const vd = w.vd.data(), *const v = w.v.data(), *const dq = w.dq.data();
+    for_packs(w.v.size(), [=](auto at) {
+      auto const da = at(y);
+      at.set(a, at(a) + da);
+      at.set(vd, at(vd) + of_vd * da);
+      at.set(v, at(v) + of_v * da);
+      at.set(dq, at(dq) + of_dq * da);
     });
     if (two_sets) w.dq += w.back;
-    double const* const of_lambda = w.y.data() + w.v.size();
-    for_packs(w.lambda.size(), [&](auto at) { at.set(w.lambda, at(w.lambda) + at(of_lambda)); });
+    double const* const of_lambda = y + w.v.size();
+    double* const lambda = w.lambda.data();
+    for_packs(w.lambda.size(), [=](auto at) { at.set(lambda, at(lambda) + at(of_lambda)); });
   }
   CorrectionSize measure(double h, bool two_sets, AlphaVectors const& w) const {
     Index const bodies = w.v.size() - w.states;
@@ -139,11 +145,11 @@ struct AlphaMethod {
   /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
   void right_hand_side(double h, bool two_sets, Sequence<Index> const& velocity_rows, AlphaVectors& w) const {
     Index const nv = w.v.size(), rows = w.phi.size();
-    for_packs(nv, [&](auto at) { at.set(w.rhs, -at(w.r)); });
-    double* const of_rows = w.rhs.data() + nv;
-    VecX const& open = two_sets ? w.rate : w.phi;
+    double const *const r = w.r.data(), *const open = (two_sets ? w.rate : w.phi).data();
+    double *const rhs = w.rhs.data(), *const of_rows = rhs + nv;
+    for_packs(nv, [=](auto at) { at.set(rhs, -at(r)); });
     double const scale = -1.0 / (two_sets ? h * gamma : beta * h * h);
-    for_packs(rows, [&](auto at) { at.set(of_rows, scale * at(open)); });
+    for_packs(rows, [=](auto at) { at.set(of_rows, scale * at(open)); });
     if (!two_sets)
       for (Index const i : velocity_rows) of_rows[i] = w.rate[i] / -(h * gamma);
   }

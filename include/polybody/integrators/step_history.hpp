@@ -100,13 +100,12 @@ class StepHistory {
 
     /// The differences `d` at x, where f is `now`.
     void push(double const* now, Index n, double* d) const {
-      int const last = std::min(known, kept) - 1;
-      for_packs(n, [&](auto at) {
+      for_packs(n, [=, last = std::min(known, kept) - 1, b = beta](auto at) {
         auto next = at(now);
         for (int j = 0; j < last; ++j) {
           auto const before = at(d + j * n);
           at.set(d + j * n, next);
-          next -= beta[std::size_t(j)] * before;
+          next -= b[std::size_t(j)] * before;
         }
         at.set(d + last * n, next);
       });
@@ -134,13 +133,14 @@ class StepHistory {
       int const points = best_order(now, d, n);
       std::array<double, kept> gamma{1.0};
       for (std::size_t j = 1; j < std::size_t(points); ++j) gamma[j] = gamma[j - 1] * (h + age[j - 1]) / age[j];
-      for_packs(n, [&](auto at) {
+      double* const to = out.data();
+      for_packs(n, [=, b = beta](auto at) {
         auto difference = at(now), sum = difference;
         for (int j = 1; j < points; ++j) {
-          difference -= beta[std::size_t(j - 1)] * at(d + (j - 1) * n);
+          difference -= b[std::size_t(j - 1)] * at(d + (j - 1) * n);
           sum += gamma[std::size_t(j)] * difference;
         }
-        at.set(out, sum);
+        at.set(to, sum);
       });
     }
   };

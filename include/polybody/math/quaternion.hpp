@@ -79,7 +79,9 @@ template <class T>
 Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
   using std::sqrt;
   Quaternion<T> const r = quaternion_product<T>(q, quaternion_exp<T>(delta));
-  T const scale = 1.0 / sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+  T const square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3], off = square - 1.0;
+  bool const near = value_of(off) * value_of(off) < 1e-16;  // the next term of the series, 3/8 off², is below rounding
+  T const scale = near ? T(1.0 - 0.5 * off) : T(1.0 / sqrt(square));
   return {r[0] * scale, r[1] * scale, r[2] * scale, r[3] * scale};
 }
 

@@ -55,10 +55,15 @@ struct RotationSeries {
     }
   }
 
-  /// Σ (−x)ᵏ/(n + 2k)!, by Horner's rule. Eight terms: the next one is below 1e-19.
-  static T series(T const& x, int n) {
-    T sum(detail::inverse_factorials[std::size_t(n + 14)]);
-    for (int k = n + 12; k >= n; k -= 2) sum = detail::inverse_factorials[std::size_t(k)] - x * sum;
+  /// Σ (−x)ᵏ/(n + 2k)!, by Horner's rule. Five terms are enough of what a step turns, eight up to x = 1/4: the next one
+  /// is below 1e-19.
+  static T series(T const& x, int n) { return value_of(x) < 1e-3 ? series_of<5>(x, n) : series_of<8>(x, n); }
+
+ private:
+  template <int terms>
+  static T series_of(T const& x, int n) {
+    T sum(detail::inverse_factorials[std::size_t(n + 2 * terms - 2)]);
+    for (int k = n + 2 * terms - 4; k >= n; k -= 2) sum = detail::inverse_factorials[std::size_t(k)] - x * sum;
     return sum;
   }
 };

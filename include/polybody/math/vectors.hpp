@@ -27,9 +27,9 @@ struct EntryPlace {
 };
 
 /// Calls f(at) over n entries, in packs as far as they reach, then one by one. `at(x)` reads what stands at a place in
-/// x, `at.set(x, value)` writes it.
+/// x, `at.set(x, value)` writes it. What f captures by value stays in the registers.
 template <class F>
-void for_packs(Index n, F&& f) {
+[[gnu::always_inline]] inline void for_packs(Index n, F f) {
   Index i = 0;
   for (; i + pack_size <= n; i += pack_size) f(PackPlace{i});
   for (; i < n; ++i) f(EntryPlace{i});

@@ -5,7 +5,9 @@
 ///
 /// A node's rows stand as U = [D | W], D its own block, W its row of later ones, and its columns as Lt, transposed.
 /// With D = L Δ R (pivots Δ, unit triangles L, R) elimination makes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −= Lt_kᵀ W_l
-/// for all later k, l. In a symmetric matrix Lt = Δ⁻¹ W and only l ≥ k is made.
+/// for all later k, l. In a symmetric matrix Lt = Δ⁻¹ W and only l ≥ k is made. For the solutions small nodes then keep
+/// multipliers, D⁻¹ W and D⁻ᵀ Lt of the original blocks, so that no triangle stands between a node and the next. Where
+/// D is nearly singular the sums of such products would cancel, and a node keeps what its elimination made.
 
 #include <algorithm>
 #include <cmath>
@@ -87,6 +89,10 @@ class BlockFactor {
       });
       if (bad >= 0) return failed(node, bad);
     }
+    for (Node const& node : layout_.nodes)
+      with_constant(direct_[number(node)], [&](auto n) {
+        if constexpr (n > 0) detail::finish_node<n>(storage(node), keeps_columns(node));
+      });
     return -1;
   }
 
@@ -137,6 +143,7 @@ class BlockFactor {
     scaled_ = detail::AlignedDoubles(std::size_t(layout_.largest_w));
     inverse_ = scales_ = work_ = detail::AlignedDoubles(layout_.unknown.size());
     swaps_.assign(layout_.unknown.size(), 0);
+    direct_.assign(layout_.nodes.size(), 0);
     dropped_.assign(std::size_t(size_), 0);
     dropped_count_ = 0;
     slots_.clear();
@@ -152,8 +159,55 @@ class BlockFactor {
   bool keeps_columns(Node const& n) const { return n.pivoted || !symmetric_; }
   detail::NodeStorage storage(Node const& n) const {
     double* const l = keeps_columns(n) ? l_.data() + n.l : scaled_.data();
-    return {n.size, n.pad, n.width, u_.data() + n.u, l, f_.data() + n.f, inverse_.data() + n.x};
+    return {
+        n.size, n.pad, n.width, u_.data() + n.u, l, f_.data() + n.f, inverse_.data() + n.x, direct_.data() + number(n)};
   }
+  std::size_t number(Node const& n) const { return std::size_t(&n - layout_.nodes.data()); }
+
+  /// What a solution passes over.
+  struct Solution {
+    double *u, *l, *f, *inverse, *w, *scaled;
+    char* direct;
+    Node const* nodes;
+    Neighbour const* neighbours;
+    int const* swaps;
+    bool symmetric;
+
+    detail::NodeStorage storage(Node const& n) const {
+      return {n.size, n.pad, n.width, u + n.u, l + n.l, f + n.f, inverse + n.x, direct + (&n - nodes)};
+    }
+    detail::LaterNodes<Neighbour, Node> later(Node const& n) const {
+      return {neighbours + n.first_neighbour, n.neighbours, nodes, w};
+    }
+    template <int N>
+    void descend(Node const& n) const {
+      detail::NodeStorage const s = storage(n);
+      double* const y = w + n.x;
+      bool const kept = n.pivoted || !symmetric;
+      double const* const c = kept ? s.l : s.u + s.pad;
+      int const stride = kept ? s.width : s.stride();
+      if constexpr (N == 0) return descend_by_triangles(n, c, stride);
+      detail::pass_down<N>(c, stride, s.size, y, later(n));
+      detail::solve_lower<N>(s, y);
+    }
+    template <int N>
+    void ascend(Node const& n) const {
+      if constexpr (N > 0)
+        detail::pass_up<N>(storage(n), later(n), w + n.x);
+      else
+        detail::pull_and_solve(storage(n), later(n), w + n.x);
+    }
+    void descend_by_triangles(Node const& n, double const* c, int stride) const {
+      detail::NodeStorage const s = storage(n);
+      double* const y = w + n.x;
+      if (n.pivoted)
+        for (int r = 0; r < n.size; ++r) std::swap(y[r], y[swaps[n.x + std::size_t(r)]]);
+      detail::solve_lower<0>(s, y);
+      if (c == s.l) return detail::pass_down<0>(c, stride, s.size, y, later(n));
+      for (int r = 0; r < n.size; ++r) scaled[r] = s.inverse[r] * y[r];
+      detail::pass_down<0>(c, stride, s.size, scaled, later(n));
+    }
+  };
 
   template <int N>
   int eliminate(Node const& n, bool symmetric) {
@@ -214,6 +268,7 @@ class BlockFactor {
   std::uint64_t number_ = 0;    // of the layout
   Sequence<BlockPiece> slots_;  // of the pieces of all blocks
   Sequence<int> swaps_;
+  mutable Sequence<char> direct_;  // of each node: its size, or 0 where it has no multipliers
   Sequence<Index> dropped_;
   std::size_t dropped_count_ = 0;
   mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // a solve changes the last two only
@@ -275,35 +330,26 @@ template <Symmetry symmetry>
 template <Symmetry symmetry>
 void BlockFactor<symmetry>::solve(double const* b, double* x) const {
   double* const w = work_.data();
-  for (Index i = 0; i < size_; ++i) w[layout_.place[std::size_t(i)]] = b[i];
-  Neighbour const* const all = layout_.neighbours.data();
-  for (Node const& n : layout_.nodes) {
-    double* const y = w + n.x;
-    if (n.pivoted)
-      for (int r = 0; r < n.size; ++r) std::swap(y[r], y[swaps_[n.x + std::size_t(r)]]);
-    detail::NodeStorage const s = storage(n);
-    with_constant(n.size, [&](auto size) {
-      detail::solve_lower<size>(s, y);
-      bool const kept = keeps_columns(n);
-      double const *const lt = kept ? s.l : s.u + s.pad, *z = y;
-      if (!kept) {
-        for (int r = 0; r < n.size; ++r) scaled_.data()[r] = s.inverse[r] * y[r];
-        z = scaled_.data();
-      }
-      for (Neighbour const* k = all + n.first_neighbour; k != all + n.first_neighbour + n.neighbours; ++k)
-        detail::pass_down<size>(lt + k->column, kept ? s.width : s.stride(), s.size, z, detail::padded(k->size),
-                                w + layout_.nodes[std::size_t(k->node)].x);
-    });
-  }
+  int const* const place = layout_.place.data();
+  for (Index i = 0; i < size_; ++i) w[place[i]] = b[i];
+  Solution const solution{u_.data(),
+                          l_.data(),
+                          f_.data(),
+                          inverse_.data(),
+                          w,
+                          scaled_.data(),
+                          direct_.data(),
+                          layout_.nodes.data(),
+                          layout_.neighbours.data(),
+                          swaps_.data(),
+                          symmetric_};
+  char const* direct = direct_.data();
+  for (Node const& n : layout_.nodes) with_constant(*direct++, [&](auto size) { solution.template descend<size>(n); });
   for (Node const* n = layout_.nodes.end(); n != layout_.nodes.begin();) {
     --n;
-    detail::NodeStorage const s = storage(*n);
-    with_constant(n->size, [&](auto size) {
-      detail::pass_up<size>(s, all + n->first_neighbour, n->neighbours, layout_.nodes.data(), w, w + n->x);
-      detail::solve_upper<size>(s, w + n->x);
-    });
+    with_constant(*--direct, [&](auto size) { solution.template ascend<size>(*n); });
   }
-  for (Index i = 0; i < size_; ++i) x[i] = w[layout_.place[std::size_t(i)]];
+  for (Index i = 0; i < size_; ++i) x[i] = w[place[i]];
 }
 
 template <Symmetry symmetry>
@@ -312,8 +358,8 @@ double BlockFactor<symmetry>::flops() const {
   for (Node const& n : layout_.nodes) {
     double later = 0.0;
     for (int a = 0; a < n.neighbours; ++a) later += layout_.neighbours[std::size_t(n.first_neighbour + a)].size;
-    for (int r = 1; r < n.size; ++r) count += r * (r + 2.0 * later);  // the node's own half and its row
-    count += n.size * later * (later + 1.0);
+    for (int r = 1; r < n.size; ++r) count += r * (r + 4.0 * later);  // the node's own half, and its row twice
+    count += n.size * later * (later + 2.0);
   }
   return count;
 }

@@ -124,6 +124,29 @@ inline double sum_of(Lane const& x) {
   return total;
 }
 
+/// Numbers side by side, without a way through memory.
+template <class L>
+L lane_of(double const* x) {
+  if constexpr (sizeof(L) == 16)
+    return L{x[0], x[1]};
+  else
+    return L{x[0], x[1], x[2], x[3]};
+}
+
+/// The sums of as many lanes as they have entries, side by side.
+template <class L>
+L sums_of(L const* x) {
+  if constexpr (sizeof(L) == 16) {
+    return __builtin_shufflevector(x[0], x[1], 0, 2) + __builtin_shufflevector(x[0], x[1], 1, 3);
+  } else {
+    auto const pairs = [](L const& a, L const& b) {
+      return __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    };
+    L const ab = pairs(x[0], x[1]), cd = pairs(x[2], x[3]);
+    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+  }
+}
+
 /// How far apart the halves of a matrix are, in the Frobenius norm.
 struct Difference {
   Lane lane_sum = {}, lane_apart = {};

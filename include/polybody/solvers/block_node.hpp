@@ -15,8 +15,12 @@ struct NodeStorage {
   double *u, *l;         ///< rows [D | W] (size × stride); Lt (size × width), or room for Δ⁻¹ W
   double* f;             ///< factors of L, by rows (size × size)
   double* inverse;       ///< of the pivots
+  char* direct;          ///< its size, or 0 where it keeps no multipliers: large, pivoted or nearly singular
   int stride() const { return pad + width; }
 };
+
+/// A pivot below this part of what it was made of makes a node weak: D⁻¹ is large beside what it answers.
+inline constexpr double weak_threshold = 1e-5;
 
 /// D = L Δ R in the registers. `reject(r, pivot)` is asked about pivots not above threshold · (scale[r] + |D_rr|): true
 /// ends it (r is returned), false drops the row. −1 when all is done.
@@ -25,10 +29,11 @@ int factor_block(NodeStorage const& n, double threshold, double const* scale, Re
   constexpr int count = padded(N) / lane_size;
   int const stride = n.stride();
   Lane d[N][count];
-  double least[N];
+  double of[N];
+  bool weak = false;
 #pragma GCC unroll 8
   for (int r = 0; r < N; ++r) {
-    least[r] = threshold * (scale[r] + std::abs(n.u[r * stride + r]));
+    of[r] = scale[r] + std::abs(n.u[r * stride + r]);
 #pragma GCC unroll 8
     for (int k = 0; k < count; ++k) d[r][k] = lanes(n.u + r * stride)[k];
   }
@@ -36,12 +41,15 @@ int factor_block(NodeStorage const& n, double threshold, double const* scale, Re
   for (int r = 0; r < N; ++r) {
     double const pivot = d[r][r / lane_size][r % lane_size];
     double inverse = 1.0 / pivot;
-    if (!(std::abs(pivot) > least[r])) [[unlikely]] {
-      if (reject(r, pivot)) {
-        n.u[r * stride + r] = pivot;
-        return r;
+    if (!(std::abs(pivot) > weak_threshold * of[r])) [[unlikely]] {
+      weak = true;
+      if (!(std::abs(pivot) > threshold * of[r])) {
+        if (reject(r, pivot)) {
+          n.u[r * stride + r] = pivot;
+          return r;
+        }
+        inverse = 0.0;
       }
-      inverse = 0.0;
     }
     n.inverse[r] = inverse;
 #pragma GCC unroll 8
@@ -54,6 +62,7 @@ int factor_block(NodeStorage const& n, double threshold, double const* scale, Re
 #pragma GCC unroll 8
     for (int k = 0; k < count; ++k) lanes(n.u + r * stride)[k] = d[r][k];
   }
+  *n.direct = weak ? 0 : N;
   return -1;
 }
 
@@ -119,6 +128,7 @@ int eliminate_node(NodeStorage const& n, bool symmetric, double threshold, doubl
     if (int const bad = factor_block<N>(n, threshold, scale, reject); bad >= 0) return bad;
     symmetric ? finish_panels<N, true>(n) : finish_panels<N, false>(n);
   } else {
+    *n.direct = 0;
     int const stride = n.stride();
     for (int r = 0; r < n.size; ++r) scale[r] += std::abs(n.u[r * stride + r]);
     for (int r = 0; r < n.size; ++r) {
@@ -145,6 +155,7 @@ int eliminate_node(NodeStorage const& n, bool symmetric, double threshold, doubl
 
 /// With partial pivoting among the node's rows; a pivot must be above `threshold` of its column.
 inline int eliminate_pivoted(NodeStorage const& n, bool symmetric, double threshold, double const* scale, int* swaps) {
+  *n.direct = 0;
   int const stride = n.stride();
   double largest = 0.0;
   for (int i = 0; i < n.size; ++i) {
@@ -178,6 +189,49 @@ inline int eliminate_pivoted(NodeStorage const& n, bool symmetric, double thresh
   return -1;
 }
 
+/// An upper triangle, t_rp = t[r · row + p · column].
+struct Triangle {
+  double const* t;
+  int row, column;
+  double operator()(int r, int p) const { return t[r * row + p * column]; }
+};
+
+/// `count` lanes of columns: x_r ← x_r − Σ t_rp x_p over p > r, from the last row up, times the pivots' inverses if
+/// there are any.
+template <int N, int count>
+inline void substitute_back(double* x, int stride, Triangle t, double const* inverse) {
+  Lane y[N][count];
+#pragma GCC unroll 8
+  for (int r = N - 1; r >= 0; --r) {
+#pragma GCC unroll 8
+    for (int k = 0; k < count; ++k) y[r][k] = lanes(x + r * stride)[k];
+#pragma GCC unroll 8
+    for (int p = N - 1; p > r; --p)
+#pragma GCC unroll 8
+      for (int k = 0; k < count; ++k) y[r][k] -= t(r, p) * y[p][k];
+#pragma GCC unroll 8
+    for (int k = 0; k < count; ++k) {
+      if (inverse) y[r][k] *= inverse[r];
+      lanes(x + r * stride)[k] = y[r][k];
+    }
+  }
+}
+template <int N>
+void substitute_back(double* x, int width, int stride, Triangle t, double const* inverse) {
+  constexpr int wide = 2 * lane_size;
+  int column = 0;
+  for (; column + wide <= width; column += wide) substitute_back<N, 2>(x + column, stride, t, inverse);
+  if (column < width) substitute_back<N, 1>(x + column, stride, t, inverse);
+}
+
+/// Multipliers of a node whose part of later blocks has been subtracted: W ← R⁻¹ Δ⁻¹ W and, where the columns are kept,
+/// Lt ← L⁻ᵀ Lt, which is D⁻¹ and D⁻ᵀ times what they were before its elimination.
+template <int N>
+void finish_node(NodeStorage const& n, bool columns) {
+  substitute_back<N>(n.u + n.pad, n.width, n.stride(), {n.u, n.stride(), 1}, n.inverse);
+  if (columns) substitute_back<N>(n.l, n.width, n.width, {n.f, 1, n.size}, nullptr);
+}
+
 /// y ← L⁻¹ y.
 template <int N>
 inline void solve_lower(NodeStorage const& n, double* y) {
@@ -190,49 +244,92 @@ inline void solve_lower(NodeStorage const& n, double* y) {
   }
 }
 
-/// y ← R⁻¹ Δ⁻¹ y, with Δ R = D's upper half.
+/// z = R⁻¹ Δ⁻¹ y, with Δ R = D's upper half; both may be the same.
 template <int N>
-inline void solve_upper(NodeStorage const& n, double* y) {
+inline void solve_upper(NodeStorage const& n, double const* y, double* z) {
 #pragma GCC unroll 8
   for (int r = (N > 0 ? N : n.size) - 1; r >= 0; --r) {
-    double sum = y[r];
+    double sum = y[r] * n.inverse[r];
 #pragma GCC unroll 8
-    for (int p = (N > 0 ? N : n.size) - 1; p > r; --p) sum -= n.u[r * n.stride() + p] * y[p];
-    y[r] = sum * n.inverse[r];
+    for (int p = (N > 0 ? N : n.size) - 1; p > r; --p) sum -= n.inverse[r] * n.u[r * n.stride() + p] * z[p];
+    z[r] = sum;
   }
 }
 
-/// x −= Ltᵀ y, x a neighbour's `pad` entries; `lt` points to its columns.
-template <int N>
-inline void pass_down(double const* lt, int stride, int size, double const* y, int pad, double* x) {
-  for (int k = 0; k < pad / lane_size; ++k) {
-    Lane sum = lanes(x)[k];
-#pragma GCC unroll 8
-    for (int r = 0; r < (N > 0 ? N : size); ++r) sum -= y[r] * lanes(lt + r * stride)[k];
-    lanes(x)[k] = sum;
-  }
-}
+/// The later nodes that share blocks with one, and the numbers of all nodes in `w`.
+template <class Neighbour, class Node>
+struct LaterNodes {
+  Neighbour const* first;
+  int count;
+  Node const* nodes;
+  double* w;
+  Neighbour const* begin() const { return first; }
+  Neighbour const* end() const { return first + count; }
+  double* of(Neighbour const& k) const { return w + nodes[k.node].x; }
+};
 
-/// y −= W x over all `count` neighbours; their x stand in w.
-template <int N, class Neighbour, class Node>
-inline void pass_up(NodeStorage const& n, Neighbour const* neighbours, int count, Node const* nodes, double const* w,
-                    double* y) {
+/// x −= Cᵀ y for all later nodes' x; c are the multipliers C, `size` rows. Two sums each, as a sum waits for its last
+/// product.
+template <int N, class Later>
+inline void pass_down(double const* c, int stride, int size, double const* y, Later later) {
   constexpr int at_once = N > 0 ? N : 4;
-  int const size = N > 0 ? N : n.size;
-  for (int first = 0; first < size; first += at_once) {
-    int const rows = N > 0 ? N : std::min(at_once, size - first);
-    Lane sums[at_once] = {};
-    for (Neighbour const* of = neighbours; of != neighbours + count; ++of) {
-      double const* const x = w + nodes[of->node].x;
-      double const* const from = n.u + first * n.stride() + n.pad + of->column;
-      for (int k = 0; k < padded(of->size) / lane_size; ++k) {
-        Lane const f = lanes(x)[k];
+  int const all = N > 0 ? N : size;
+  for (int first = 0; first < all; first += at_once) {
+    int const rows = N > 0 ? N : std::min(at_once, all - first);
+    double part[at_once];
 #pragma GCC unroll 8
-        for (int r = 0; r < rows; ++r) sums[r] += f * lanes(from + r * n.stride())[k];
+    for (int r = 0; r < rows; ++r) part[r] = y[first + r];
+    for (auto const& k : later) {
+      double* const x = later.of(k);
+      double const* const from = c + first * stride + k.column;
+      for (int i = 0; i < padded(k.size) / lane_size; ++i) {
+        Lane even = lanes(x)[i], odd = {};
+#pragma GCC unroll 8
+        for (int r = 0; r < rows; r += 2) {
+          even -= part[r] * lanes(from + r * stride)[i];
+          if (r + 1 < rows) odd += part[r + 1] * lanes(from + (r + 1) * stride)[i];
+        }
+        lanes(x)[i] = even - odd;
       }
     }
-    for (int r = 0; r < rows; ++r) y[first + r] -= sum_of(sums[r]);
   }
+}
+
+/// sums = W x of `rows` rows (N where it is not zero) from `first` on, over all later nodes.
+template <int N, class Later>
+inline void pull_up(NodeStorage const& n, int first, int rows, Later later, Lane* sums) {
+  for (auto const& k : later) {
+    double const *const x = later.of(k), *const from = n.u + first * n.stride() + n.pad + k.column;
+    for (int i = 0; i < padded(k.size) / lane_size; ++i) {
+      Lane const f = lanes(x)[i];
+#pragma GCC unroll 8
+      for (int r = 0; r < (N > 0 ? N : rows); ++r) sums[r] += f * lanes(from + r * n.stride())[i];
+    }
+  }
+}
+
+/// y ← R⁻¹ Δ⁻¹ y − W x, W the multipliers. What is stored a number at a time is not loaded as lanes soon after, which
+/// would wait for all stores: so y is put together in the registers.
+template <int N, class Later>
+inline void pass_up(NodeStorage const& n, Later later, double* y) {
+  constexpr int count = padded(N) / lane_size;
+  double z[padded(N)] = {};
+  solve_upper<N>(n, y, z);
+  Lane sums[padded(N)] = {};
+  pull_up<N>(n, 0, N, later, sums);
+#pragma GCC unroll 8
+  for (int k = 0; k < count; ++k) lanes(y)[k] = lane_of<Lane>(z + k * lane_size) - sums_of(sums + k * lane_size);
+}
+
+/// The same of a node that has no multipliers, of any size: y ← R⁻¹ Δ⁻¹ (y − W x).
+template <class Later>
+void pull_and_solve(NodeStorage const& n, Later later, double* y) {
+  for (int first = 0; first < n.size; first += lane_size) {
+    Lane sums[lane_size] = {};
+    pull_up<0>(n, first, std::min(lane_size, n.size - first), later, sums);
+    lanes(y + first)[0] -= sums_of(sums);
+  }
+  solve_upper<0>(n, y, y);
 }
 
 }  // namespace polybody::detail

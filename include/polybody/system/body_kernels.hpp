@@ -324,8 +324,9 @@ void BodyKernels<B, T>::add_force(Entry const& e, Index i, detail::Unbalance<T> 
 template <class B, StateScalar T>
 void BodyKernels<B, T>::add_forces_of(Entry const& e, detail::KeptScratch<B, T>& kept, detail::Unbalance<T> const& u,
                                       Data<T>& data, Vector& r) {
-  auto&& scratch = kept.force_scratch(e.body);
   BodyMotion<T> const motion{coordinates(e, u.at.q), speeds(e, u.at.v), speeds(e, u.a)};
+  if constexpr (AddsUnbalance<B, T>) return e.body.add_unbalance(motion, u.g, r.data() + e.v0);
+  auto&& scratch = kept.force_scratch(e.body);
   Index const elements = e.body.elements();
   if constexpr (n != Eigen::Dynamic)
     if (data.workers && elements >= 2 * data.least_elements) {

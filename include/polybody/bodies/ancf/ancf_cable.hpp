@@ -157,25 +157,33 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
       }
     }
     T const inverse = T(1.0) / detail::dot(slope, slope);
-    Vec<T, 3> const w = slope.cross(rate) * inverse;
-    out.frame.r = r;
-    out.frame.v = v_r;
-    out.frame.w = w;
-    out.frame.A = smallest_turn<T>(slope, axes_[std::size_t(p.element)]) * axes.template cast<T>();
+    Mat<T, 3, 3> const turned = smallest_turn<T>(slope, axes_[std::size_t(p.element)]);
     T const fade = detail::dot(slope, rate) * inverse * (-2.0);  // ω˙ = r′ × r̈′/n² − 2 (r′·ṙ′) ω/n²
+    T along[3];
     for (int k = 0; k < 3; ++k) {
+      int const j = (k + 1) % 3, l = (k + 2) % 3;
+      T const w = (slope[j] * rate[l] - slope[l] * rate[j]) * inverse;
+      out.frame.r[k] = r[k];
+      out.frame.v[k] = v_r[k];
+      out.frame.w[k] = w;
       out.bias[k] = T(0.0);
-      out.bias[3 + k] = w[k] * fade;
+      out.bias[3 + k] = w * fade;
+      for (int i = 0; i < 3; ++i)
+        out.frame.A(i, k) = turned(i, 0) * axes(0, k) + turned(i, 1) * axes(1, k) + turned(i, 2) * axes(2, k);
+      along[k] = slope[k] * inverse;
     }
-    for (int i = 0; i < 4; ++i)
-      for (int k = 0; k < 3; ++k) {
-        T* const column = out.jacobian + 6 * (3 * i + k);
-        int const j = (k + 1) % 3, l = (k + 2) % 3;
-        for (int row = 0; row < 6; ++row) column[row] = T(0.0);
-        column[k] = T(s.s[i]);
-        column[3 + j] = slope[l] * inverse * s.ds[i];  // r′ × e_k = (…, r′_l at j, −r′_j at l)
-        column[3 + l] = -(slope[j] * inverse * s.ds[i]);
-      }
+    for (int i = 0; i < 4; ++i) {  // a node's columns: s e_k above r′ × e_k s′/n²
+      T *const x = out.jacobian + 18 * i, *const y = x + 6, *const z = y + 6;
+      T const none(0.0), here(s.s[i]), a = along[0] * s.ds[i], b = along[1] * s.ds[i], c = along[2] * s.ds[i];
+      x[0] = y[1] = z[2] = here;
+      x[1] = x[2] = x[3] = y[0] = y[2] = y[4] = z[0] = z[1] = z[5] = none;
+      x[4] = c;
+      x[5] = -b;
+      y[3] = -c;
+      y[5] = a;
+      z[3] = b;
+      z[4] = -a;
+    }
     out.shape = JacobianShape::dense;
     out.columns = 12;
   }

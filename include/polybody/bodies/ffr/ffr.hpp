@@ -159,14 +159,14 @@ class Ffr {
     FfrProducts<T> products = own_products<T>();
     products.at(q.data() + 7);
     products.at_rates(a.data() + 6);
-    FfrBalance<T>{integrals(), terms_, products}.inertia(q, a, out);
+    FfrBalance<T>(integrals(), terms_, products, q).inertia(a, out);
   }
   template <StateScalar T>
   void force(Index, std::span<T const> q, std::span<T const> v, VecXOf<T>& out) const {
     FfrProducts<T> products = own_products<T>();
     products.at(q.data() + 7);
     products.at_speeds(v.data() + 6);
-    FfrBalance<T>{integrals(), terms_, products}.force(q, v, out);
+    FfrBalance<T>(integrals(), terms_, products, q).force(v, out);
   }
   /// Numbers that `unbalance` needs room for.
   Index room() const { return FfrProducts<double>::room(deformations()); }
@@ -177,9 +177,9 @@ class Ffr {
     products.at(x.q.data() + 7);
     products.at_speeds(x.v.data() + 6);
     products.at_rates(x.a.data() + 6);
-    FfrBalance<T> const balance{integrals(), terms_, products};
-    balance.inertia(x.q, x.a, out);
-    balance.force(x.q, x.v, forces);
+    FfrBalance<T> const balance(integrals(), terms_, products, x.q);
+    balance.inertia(x.a, out);
+    balance.force(x.v, forces);
     for (Index k = 0; k < out.size(); ++k) out[k] -= forces[k];
   }
 
@@ -224,15 +224,21 @@ class Ffr {
     Vec<T, 3> const omega = part<3>(v, 3);
     T const *const x = q.data() + 7, *const xd = v.data() + 6;
     Index const n = deformations();
-    Vec<T, 3> u = p.u.template cast<T>(), theta = Vec<T, 3>::Zero(), ud = theta, udd = theta, thetad = theta;
-    for (Index k = 0; k < n; ++k)
+    T moved[3] = {T(p.u[0]), T(p.u[1]), T(p.u[2])}, rate[3] = {}, turned[3] = {}, turning[3] = {};
+    for (Index k = 0; k < n; ++k) {
+      T s[3];  // S − qᵀ drawn; u = u₀ + ½ (S + s) q
+      p.slopes(x, k, s);
+      T const half = 0.5 * x[k];
       for (int i = 0; i < 3; ++i) {
-        T const s = p.slope(x, i, k);  // S − qᵀ drawn; u = u₀ + ½ (S + slope) q
-        u[i] += (s + p.S(i, k)) * 0.5 * x[k];
-        ud[i] += s * xd[k];
-        theta[i] += x[k] * p.R(i, k);
-        thetad[i] += xd[k] * p.R(i, k);
+        moved[i] += (s[i] + p.S(i, k)) * half;
+        rate[i] += s[i] * xd[k];
+        turned[i] += x[k] * p.R(i, k);
+        turning[i] += xd[k] * p.R(i, k);
       }
+    }
+    auto const vector = [](T const* a) { return Vec<T, 3>(a[0], a[1], a[2]); };
+    Vec<T, 3> const u = vector(moved), ud = vector(rate), theta = vector(turned), thetad = vector(turning);
+    Vec<T, 3> udd = Vec<T, 3>::Zero();
     for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i)
       udd[Index(i)] = -detail::quadratic<T>(p.drawn[i], xd, xd);
     Mat<T, 3, 3> const turn = exp_so3<T>(theta), jl = left_jacobian<T>(theta);
@@ -244,20 +250,30 @@ class Ffr {
     out.frame.w = A * (omega + spin);
     out.bias.template head<3>() = A * (omega.cross(omega.cross(u)) + omega.cross(ud) * T(2.0) + udd);
     out.bias.template tail<3>() = A * (omega.cross(spin) - right_jacobian_derivative<T>(back, thetad) * thetad);
-    Eigen::Map<Mat<T, 6, Eigen::Dynamic>> j(out.jacobian, 6, 6 + n);
-    j.setZero();
-    for (int i = 0; i < 3; ++i) j(i, i) = T(1.0);
-    j.template block<3, 3>(0, 3) = -A * skew<T>(u);
-    j.template block<3, 3>(3, 3) = A;
     Mat<T, 3, 3> const ajl = A * jl;
-    for (Index k = 0; k < n; ++k) {
-      Vec<T, 3> s, r;
+    T* column = out.jacobian;
+    auto const put = [&](Vec<T, 3> const& above, Vec<T, 3> const& below) {
       for (int i = 0; i < 3; ++i) {
-        s[i] = p.slope(x, i, k);
-        r[i] = T(p.R(i, k));
+        column[i] = above[i];
+        column[3 + i] = below[i];
       }
-      j.template block<3, 1>(0, 6 + k) = A * s;
-      j.template block<3, 1>(3, 6 + k) = ajl * r;
+      column += 6;
+    };
+    Vec<T, 3> const none = Vec<T, 3>::Zero();
+    for (int i = 0; i < 3; ++i) put(Vec<T, 3>::Unit(i), none);
+    for (int i = 0; i < 3; ++i) {  // −A ũ
+      int const j = (i + 1) % 3, k = (i + 2) % 3;
+      put(A.col(k) * u[j] - A.col(j) * u[k], A.col(i));
+    }
+    for (Index k = 0; k < n; ++k) {
+      T s[3];
+      p.slopes(x, k, s);
+      double const* const r = &p.R(0, k);
+      for (int i = 0; i < 3; ++i) {
+        column[i] = A(i, 0) * s[0] + A(i, 1) * s[1] + A(i, 2) * s[2];
+        column[3 + i] = ajl(i, 0) * r[0] + ajl(i, 1) * r[1] + ajl(i, 2) * r[2];
+      }
+      column += 6;
     }
     out.shape = JacobianShape::dense;
     out.columns = 6 + n;

@@ -31,6 +31,13 @@ struct FfrPoint {
     for (Index j = 0; j < m.rows(); ++j) s -= q[j] * m(j, k);
     return s;
   }
+  /// Column k of S − qᵀ drawn.
+  template <class T>
+  void slopes(T const* q, Index k, T* out) const {
+    for (int i = 0; i < 3; ++i) out[i] = T(S(i, k));
+    if (drawn[0].size() == 0) return;
+    for (int i = 0; i < 3; ++i) out[i] = slope(q, i, k);
+  }
   /// Strains and forces of the beam's section by the deformation q (see sections.hpp). \throws InvalidInput for a point
   /// that is not of a beam.
   template <class = void>  // compiled where it is used

@@ -152,8 +152,8 @@ class RigidShape {
     return {inertia_(0, j), inertia_(1, j), inertia_(2, j)};
   }
   /// a × b into three entries of `out`; Eigen's goes through memory, and waits for it.
-  template <class A, class Out>
-  static void set_cross(A const& a, A const& b, Out& out, int first) {
+  template <class A, class B, class Out>
+  static void set_cross(A const& a, B const& b, Out& out, int first) {
     out[first] = a[1] * b[2] - a[2] * b[1];
     out[first + 1] = a[2] * b[0] - a[0] * b[2];
     out[first + 2] = a[0] * b[1] - a[1] * b[0];
@@ -248,6 +248,20 @@ class Rigid<UnitQuaternion> : public RigidShape {
     set_cross(spin, omega, out, 3);
   }
 
+  /// [m (v̇ − g); J Ω˙ + Ω × J Ω].
+  template <StateScalar T>
+  void add_unbalance(BodyMotion<T> const& x, Vec3 const& g, T* rows) const {
+    Vec<T, 3> const omega(x.v[3], x.v[4], x.v[5]), spin = inertia_times<T>(omega),
+                                                   moment = inertia_times<T>({x.a[3], x.a[4], x.a[5]});
+    T const out[6] = {rows[0] + (x.a[0] - g[0]) * mass_,
+                      rows[1] + (x.a[1] - g[1]) * mass_,
+                      rows[2] + (x.a[2] - g[2]) * mass_,
+                      rows[3] + (moment[0] + (omega[1] * spin[2] - omega[2] * spin[1])),
+                      rows[4] + (moment[1] + (omega[2] * spin[0] - omega[0] * spin[2])),
+                      rows[5] + (moment[2] + (omega[0] * spin[1] - omega[1] * spin[0]))};
+    for (int i = 0; i < 6; ++i) rows[i] = out[i];
+  }
+
   /// −∂f/∂Ω = Ω̃ J − (J Ω)~.
   template <class T>  // compiled where it is used
   void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
@@ -301,7 +315,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
-    Vec<T, 3> arm, rate;
+    T arm[3], rate[3];
     for (int i = 0; i < 3; ++i) {
       T const x = at.A(i, 0), y = at.A(i, 1), z = at.A(i, 2);
       arm[i] = x * T(p.u[0]) + y * T(p.u[1]) + z * T(p.u[2]);
@@ -313,10 +327,10 @@ class Rigid<UnitQuaternion> : public RigidShape {
       out.frame.r[i] = at.r[i] + arm[i];
       out.frame.v[i] = at.v[i] + rate[i];
       out.bias[3 + i] = T(0.0);
+      out.arm[i] = arm[i];  // as a whole it would be read as it is written, which waits
     }
     out.frame.w = at.w;
     out.body_axes = at.A;
-    out.arm = arm;
     out.shape = JacobianShape::rigid;
     out.columns = 6;
   }

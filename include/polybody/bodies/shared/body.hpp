@@ -134,6 +134,12 @@ struct BodyMotion {
   std::span<T const> q, v, a = {};
 };
 
+/// A body of one element that adds M v̇ − f, less its weight under g, to its `speeds` rows itself: where that is little,
+/// to write its parts and read them again takes longer than they do.
+template <class B, class T>
+concept AddsUnbalance =
+    requires(B const b, BodyMotion<T> const& x, Vec3 const& g, T* rows) { b.add_unbalance(x, g, rows); };
+
 /// What the loops over a body's elements need besides it: on the stack where sizes are known at compile time, else kept
 /// with the body's data, so that no step allocates.
 template <class B, class T>
