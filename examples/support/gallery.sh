@@ -1,0 +1,84 @@
+# What examples/run builds and shows, and the page of its pictures. Sourced.
+
+stages=(pendulum robot_arm cantilever tracked_vehicle link_from_fe track_stress)
+
+# What each takes from nothing to its last picture, after those before it, on two cores [s]: for what is left only.
+declare -A seconds=([pendulum]=20 [robot_arm]=160 [cantilever]=45 [tracked_vehicle]=240 [link_from_fe]=45 [track_stress]=220)
+
+declare -A shows=(
+  [pendulum]="A rod on a pin, in 22 lines: time, energy drift [J] and gap of the pin [m] after two seconds."
+  [robot_arm]="The flexible robot arm of Chapter 2: shapes, deflections, and energies under several formulations."
+  [cantilever]="The clamped beam of Chapter 2 under a moment at its tip, up to a full circle."
+  [tracked_vehicle]="The tracked vehicle of Chapter 3, its pins under five joint formulations."
+  [link_from_fe]="A link of 8300 nodes from a finite element program, reduced and on its pins."
+  [track_stress]="Stresses of the vehicle's links, Chapter 4: decoupled, and by flexible links of several formulations."
+)
+
+# command_of NAME OUT: the program and its options.
+command_of() {
+  case $1 in
+    robot_arm | cantilever) echo "$1 --case all --out $2/$1" ;;
+    tracked_vehicle | track_stress) echo "$1 --figure all --out $2/$1" ;;
+    *) echo "$1" ;;
+  esac
+}
+
+pictures_of() { find "$1" -type f \( -name '*.png' -o -name '*.svg' \) 2> /dev/null | sort; }
+
+# left DONE ALL ELAPSED: of ALL expected seconds DONE were done in ELAPSED.
+left() {
+  local expected=$(($2 - $1))
+  (($1 == 0)) || expected=$((expected * $3 / $1))
+  if ((expected < 90)); then
+    echo "about $expected s left"
+  else
+    echo "about $(((expected + 30) / 60)) min left"
+  fi
+}
+
+escaped() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g; s/"/\&quot;/g' <<< "$1"; }
+
+# caption_of PICTURE: the title that the script beside it sets, or its name.
+caption_of() {
+  local script=${1%.*}.gp title=
+  [ ! -r "$script" ] || title=$(sed -n "s/^set title '\(.*\)' noenhanced\$/\1/p" "$script" | head -n 1 | sed "s/''/'/g")
+  echo "${title:-$(basename "${1%.*}" | tr _ ' ')}"
+}
+
+# write_index OUT: OUT/index.html of all pictures below it. Written beside and moved, so it is never half there.
+write_index() {
+  local out=$1 page=$1/index.html.part name picture path
+  mkdir -p "$out"
+  {
+    cat << 'HEAD'
+<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>polybody: examples</title>
+<style>
+  body { font: 16px/1.5 sans-serif; margin: 2em auto; max-width: 80em; padding: 0 1em; color: #222; }
+  code { background: #f2f2f2; padding: .2em .4em; }
+  .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(24em, 1fr)); gap: 1.5em; }
+  figure { margin: 0; } img { width: 100%; border: 1px solid #ddd; } figcaption { font-size: 90%; }
+  figcaption small { color: #666; display: block; }
+</style>
+<h1>polybody: examples</h1>
+HEAD
+    for name in "${stages[@]}"; do
+      [ -d "$out/$name" ] || continue
+      echo "<h2>$name</h2>"
+      echo "<p>$(escaped "${shows[$name]}")</p>"
+      echo "<p><code>build/examples/examples/$(escaped "$(command_of "$name" "$out")")</code></p>"
+      echo '<div class="figures">'
+      while IFS= read -r picture; do
+        path=$(escaped "${picture#"$out"/}")
+        echo "<figure><a href=\"$path\"><img loading=\"lazy\" src=\"$path\" alt=\"\"></a>"
+        echo "<figcaption>$(escaped "$(caption_of "$picture")") <small>$path</small></figcaption></figure>"
+      done < <(pictures_of "$out/$name")
+      echo '</div>'
+    done
+    echo '</html>'
+  } > "$page"
+  mv "$page" "$out/index.html"
+}
