@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/ffr/ffr.hpp>
@@ -552,6 +554,11 @@ TEST(EnergyAudit, CountsWhatIsStoredFromTheStart) {
   audit.record(x);
   double const strain = 0.5 * (1.1 * 1.1 - 1.0);
   EXPECT_NEAR(audit.stored(), -0.5 * 100.0 * strain * strain, 1e-12);
+  std::ostringstream text;
+  text << audit;
+  EXPECT_TRUE(has(text.str(), "work of drives 0, loads 0, gravity 0 J\nkinetic energy 0, stored -0.551"));
+  EXPECT_TRUE(has(text.str(), "dissipated 0 J\nunaccounted 0.551"));
+  EXPECT_TRUE(has(text.str(), " of the turnover\n"));
 }
 
 TEST(EnergyAudit, BeginsAnewAndRefusesTimeThatRunsBackAndStatesOfOtherModels) {

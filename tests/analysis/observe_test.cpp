@@ -47,6 +47,23 @@ TEST(Momentum, IsThatOfTheHandCalculation) {
   EXPECT_LT((p.angular - Vec3(0, 0, -5.5)).norm(), 1e-13);
 }
 
+// A pin 0.25 m from where it should be, whose bar turns and moves: ‖Φ‖, ‖Φ̇‖ and ‖Φ̈‖ by the largest entry.
+TEST(Violation, IsThatOfTheHandCalculation) {
+  Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Constraint>>> model;
+  auto const bar = model.add(planar::Rigid(1.0, 1.0), "bar");
+  model.connect(Joint<planar::Revolute, Constraint>{}, model.ground().at({-1, 0, 0}), bar.at(Vec2(-1, 0)), "pin");
+  State x = model.reference_state();
+  x.q[1] = 0.25;
+  x.v << 0.5, 0.0, 3.0;  // of its end: (0.5, −3)
+  x.a << 1.0, 2.0, 0.0;  // and (1 + 9, 2)
+  Violation const v = violation(model, x);
+  EXPECT_NEAR(v.position, 0.25, 1e-15);
+  EXPECT_NEAR(v.velocity, 3.0, 1e-14);
+  EXPECT_NEAR(v.acceleration, 10.0, 1e-14);
+  State const other = Rod().x;
+  EXPECT_TRUE(has(refusal([&] { (void)violation(model, other); }), "does not fit"));
+}
+
 // Without damping, drives and dead loads the power of the residual forces is the rate of the potential:
 // d(potential)/dt = v·(M a − r)|… = −v·f, differenced along q ⊞ v t.
 TEST(Energy, PotentialFallsByThePowerOfTheForces) {

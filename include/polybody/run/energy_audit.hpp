@@ -4,6 +4,8 @@
 ///   work of the drives + of the loads + of gravity = Δ kinetic + Δ stored + dissipated + unaccounted.
 /// For exact motions nothing is unaccounted.
 
+#include <ostream>
+
 #include <polybody/run/energy.hpp>
 #include <polybody/run/fitting.hpp>
 
@@ -112,5 +114,14 @@ class EnergyAuditOf {
 };
 
 using EnergyAudit = EnergyAuditOf<>;
+
+/// The account in three lines [J].
+template <class = void>
+std::ostream& operator<<(std::ostream& out, EnergyAudit const& a) {
+  return out << sentence_of({"work of drives ", a.work_of_drives(), ", loads ", a.work_of_loads(), ", gravity ",
+                             a.work_of_gravity(), " J\n", "kinetic energy ", a.kinetic(), ", stored ", a.stored(),
+                             ", dissipated ", a.dissipated(), " J\n", "unaccounted ", a.unaccounted(), " J, ",
+                             a.relative(), " of the turnover\n"});
+}
 
 }  // namespace polybody

@@ -135,5 +135,13 @@ Violation violation(System& system, State const& x) {
   second += of_accelerations;
   return {largest_size(phi), largest_size(rate), largest_size(second)};
 }
+/// \throws InvalidInput for a state of another model.
+template <class M>
+  requires(!std::same_as<M, System>)
+Violation violation(M const& model, State const& x) {
+  System system(model, with<Entries::motion>);
+  require_usable(system, x);
+  return violation(system, x);
+}
 
 }  // namespace polybody
