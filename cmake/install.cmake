@@ -1,14 +1,15 @@
 # Install rules and the two exports (install tree, build tree). Nothing in polybody depends on the
-# machine's architecture, so everything but the headers goes to share/.
+# machine's architecture, so everything but the headers goes to share/. Components, for cmake --install --component:
+# headers (all that a program needs), compiled (the sources of polybody::compiled), testing (polybody::testing).
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/polybody)
 
-install(TARGETS polybody EXPORT polybodyTargets FILE_SET HEADERS FILE_SET optional)
-install(EXPORT polybodyTargets NAMESPACE polybody:: DESTINATION ${package_dir})
-install(TARGETS polybody_testing EXPORT polybodyTestingTargets FILE_SET HEADERS)
-install(EXPORT polybodyTestingTargets NAMESPACE polybody:: DESTINATION ${package_dir})
+install(TARGETS polybody EXPORT polybodyTargets FILE_SET HEADERS COMPONENT headers FILE_SET optional COMPONENT headers)
+install(EXPORT polybodyTargets NAMESPACE polybody:: DESTINATION ${package_dir} COMPONENT headers)
+install(TARGETS polybody_testing EXPORT polybodyTestingTargets FILE_SET HEADERS COMPONENT testing)
+install(EXPORT polybodyTestingTargets NAMESPACE polybody:: DESTINATION ${package_dir} COMPONENT testing)
 
 # polybodyConfig.cmake, good for both trees: it loads polybodyTargets.cmake, polybodyPrecompile.cmake and
 # polybodyCompiled.cmake beside it.
@@ -23,9 +24,10 @@ file(GLOB compiled_sources RELATIVE ${PROJECT_SOURCE_DIR}/cmake CONFIGURE_DEPEND
 foreach(source IN LISTS compiled_sources)
   configure_file(cmake/${source} ${source} COPYONLY)
 endforeach()
-install(DIRECTORY cmake/compiled cmake/compiled_vehicle DESTINATION ${package_dir})
+install(DIRECTORY cmake/compiled cmake/compiled_vehicle DESTINATION ${package_dir} COMPONENT compiled)
+install(FILES cmake/polybodyCompiled.cmake DESTINATION ${package_dir} COMPONENT compiled)
 install(FILES ${PROJECT_BINARY_DIR}/polybodyConfig.cmake ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake
-              cmake/polybodyPrecompile.cmake cmake/polybodyCompiled.cmake DESTINATION ${package_dir})
+              cmake/polybodyPrecompile.cmake DESTINATION ${package_dir} COMPONENT headers)
 
 # The build tree: -Dpolybody_DIR=<build directory>.
 export(EXPORT polybodyTargets NAMESPACE polybody:: FILE polybodyTargets.cmake)
@@ -36,6 +38,9 @@ set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 file(RELATIVE_PATH pc_to_prefix ${CMAKE_INSTALL_FULL_DATADIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 configure_file(cmake/polybody.pc.in polybody.pc @ONLY)
 configure_file(cmake/polybody-testing.pc.in polybody-testing.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/polybody.pc ${PROJECT_BINARY_DIR}/polybody-testing.pc DESTINATION ${pkgconfig_dir})
+install(FILES ${PROJECT_BINARY_DIR}/polybody.pc DESTINATION ${pkgconfig_dir} COMPONENT headers)
+install(FILES ${PROJECT_BINARY_DIR}/polybody-testing.pc DESTINATION ${pkgconfig_dir} COMPONENT testing)
 
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT headers)
+
+include(cmake/packages/cpack.cmake)

@@ -102,3 +102,4 @@
 #include <polybody/statics/preloads.hpp>
 #include <polybody/stress/section.hpp>
 #include <polybody/system/subassembly.hpp>
+#include <polybody/version.hpp>

@@ -30,6 +30,24 @@ elseif(WAY STREQUAL "install_tree")
 elseif(WAY STREQUAL "build_tree")
   build_and_run(find_package -Dpolybody_DIR=${BUILD} -DEXPECT=${BUILD} -DVERSION=${VERSION})
 
+elseif(WAY STREQUAL "components")
+  # The headers alone serve a program; what is not there is named, and how to get it.
+  set(root ${dir}_root)
+  file(REMOVE_RECURSE ${root})
+  run(${CMAKE_COMMAND} --install ${BUILD} --component headers --prefix ${root})
+  build_and_run(find_package -DCMAKE_PREFIX_PATH=${root} -DEXPECT=${root} -DVERSION=${VERSION})
+  foreach(component IN ITEMS compiled testing)
+    set(command ${CMAKE_COMMAND} -S ${here}/find_package -B ${dir}_refused --fresh -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+                -DCMAKE_PREFIX_PATH=${root} -DEXPECT=${root} -DVERSION=${VERSION} -DCOMPONENT=${component})
+    execute_process(COMMAND ${command} RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE said)
+    string(REGEX REPLACE "[ \n]+" " " said "${said}")
+    if(NOT failed OR NOT said MATCHES "component ${component} is not installed")
+      message(FATAL_ERROR "A component that is not installed, ${component}, is not refused in a sentence:\n${said}")
+    endif()
+    run(${CMAKE_COMMAND} --install ${BUILD} --component ${component} --prefix ${root})
+    run(${command})
+  endforeach()
+
 elseif(WAY STREQUAL "add_subdirectory")
   build_and_run(add_subdirectory -DPOLYBODY=${SOURCE})
 
@@ -107,6 +125,46 @@ elseif(WAY STREQUAL "pkg_config")
   if(NOT without_gtest)
     run(${PKG_CONFIG} --exists --print-errors "polybody-testing = ${VERSION}")
   endif()
+
+elseif(WAY STREQUAL "deb")
+  # The package, unpacked: what it says of itself, and a program against it.
+  file(REMOVE_RECURSE ${dir}_made ${dir}_root)
+  run(${CMAKE_COMMAND} -S ${SOURCE} -B ${dir}_made -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} -DPOLYBODY_BUILD_TESTS=OFF
+      -DPOLYBODY_BUILD_EXAMPLES=OFF -DPOLYBODY_BUILD_BENCH=OFF)
+  run(${CPACK} -G DEB --config ${dir}_made/CPackConfig.cmake -B ${dir}_made/package)
+  set(package ${dir}_made/package/libpolybody-dev_${VERSION}_all.deb)
+  execute_process(COMMAND ${DPKG_DEB} -f ${package} Depends OUTPUT_VARIABLE depends COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT depends MATCHES "libeigen3-dev \\(>= 3.4\\)")
+    message(FATAL_ERROR "${package} depends on ${depends}")
+  endif()
+  run(${DPKG_DEB} -x ${package} ${dir}_root)
+  build_and_run(find_package -DCMAKE_PREFIX_PATH=${dir}_root/usr -DEXPECT=${dir}_root/usr -DVERSION=${VERSION})
+
+elseif(WAY STREQUAL "single_header")
+  # One file beside two others that include it, and nothing else.
+  file(REMOVE_RECURSE ${dir})
+  file(MAKE_DIRECTORY ${dir}/polybody)
+  run(${PYTHON} ${SOURCE}/cmake/packages/single_header.py -o ${dir}/polybody/polybody.hpp)
+  file(WRITE ${dir}/other.cpp "#include <polybody/polybody.hpp>\nchar const* version() { return polybody::library_version; }\n")
+  set(includes -I${dir})
+  foreach(folder IN LISTS EIGEN)
+    list(APPEND includes -isystem ${folder})
+  endforeach()
+  separate_arguments(FLAGS UNIX_COMMAND "${FLAGS}")
+  run(${COMPILER} -std=c++20 ${FLAGS} -Wall -Wextra ${includes} ${SOURCE}/examples/ex01_pendulum.cpp ${dir}/other.cpp -pthread -o
+      ${dir}/pendulum)
+  run(${dir}/pendulum)
+  execute_process(
+    COMMAND ${PYTHON} ${SOURCE}/cmake/packages/single_header.py --also no/such.hpp -o ${dir}/none.hpp
+    RESULT_VARIABLE failed
+    ERROR_VARIABLE said)
+  if(NOT failed OR NOT said MATCHES "there is no header polybody/no/such.hpp" OR EXISTS ${dir}/none.hpp)
+    message(FATAL_ERROR "A header that is not there is not refused in a sentence: ${said}")
+  endif()
+
+elseif(WAY STREQUAL "recipes")
+  # As far as they can be read without their managers: recipes.py stands in for them.
+  run(${PYTHON} -B ${here}/recipes.py ${SOURCE} ${VERSION})
 
 else()
   message(FATAL_ERROR "no way named '${WAY}'")
