@@ -1,0 +1,95 @@
+"""The programs of the pages in docs/guide, and what they print.
+
+  programs.py names PAGE...            their names, one a line: of blocks behind <!-- program: NAME -->
+  programs.py write PAGE NAME FILE     one of them
+  programs.py check PAGE NAME PROGRAM  runs it and compares what it prints with the block behind <!-- output: NAME -->:
+                                       words as they stand, numbers to a thousandth, sizes of errors (1e-9) to a factor of 100
+  programs.py self                     what `check` finds and what it lets pass
+  programs.py errors PAGE HEADER       the page's table has each exception that the header declares, and no other
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+BLOCK = re.compile(r"<!-- (program|output): (\w+) -->\n```(?:cpp|text)\n(.*?)```", re.S)
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def blocks(page):
+    text = Path(page).read_text(encoding="utf-8")
+    found = {"program": {}, "output": {}}
+    for kind, name, content in BLOCK.findall(text):
+        if name in found[kind]:
+            sys.exit(f"{page}: two blocks are the {kind} of {name}.")
+        found[kind][name] = content
+    if set(found["program"]) != set(found["output"]):
+        sys.exit(f"{page}: programs and outputs differ: {sorted(set(found['program']) ^ set(found['output']))}.")
+    fences = len(re.findall(r"^```cpp$", text, re.M))
+    if fences != len(found["program"]):
+        sys.exit(f"{page}: {fences} blocks of C++, but {len(found['program'])} are named programs.")
+    return found
+
+
+def same_number(shown, printed):
+    a, b = float(shown), float(printed)
+    if "e" in shown or "e" in printed:  # an error: of the same size
+        return a == b or (a * b > 0.0 and 1e-2 < a / b < 1e2) or max(abs(a), abs(b)) < 1e-9
+    last = 10.0 ** -len(shown.split(".")[1]) if "." in shown else 1.0
+    return abs(a - b) <= max(1e-3 * abs(a), 1.01 * last if "." in shown else 0.0)
+
+
+def difference(shown, printed):
+    """The first line that differs, or nothing."""
+    a, b = shown.rstrip("\n").split("\n"), printed.rstrip("\n").split("\n")
+    for k in range(max(len(a), len(b))):
+        x, y = (lines[k] if k < len(lines) else "(nothing)" for lines in (a, b))
+        numbers_x, numbers_y = NUMBER.findall(x), NUMBER.findall(y)
+        words = [re.sub(r"\s+", " ", NUMBER.sub("#", line)).strip() for line in (x, y)]
+        if words[0] != words[1] or len(numbers_x) != len(numbers_y) or not all(map(same_number, numbers_x, numbers_y)):
+            return f"line {k + 1}: the page has\n  {x}\nthe program prints\n  {y}"
+    return None
+
+
+def check_self():
+    passes = [("a 1.25 m\n", "a 1.25 m"), ("x  2.00", "x 2.01"), ("off 3e-07 J", "off 8e-06 J"), ("0e+00", "2e-16"), ("5 rows", "5 rows")]
+    fails = [("a 1.25 m", "a 1.25 s"), ("2.00", "2.05"), ("off 3e-07 J", "off 8e-05 J"), ("5 rows", "6 rows"), ("a", "a\nb"), ("1 2", "1"),
+             ("-1e-3", "1e-3")]
+    for shown, printed in passes:
+        if difference(shown, printed):
+            sys.exit(f"found: {shown!r}, {printed!r}")
+    for shown, printed in fails:
+        if not difference(shown, printed):
+            sys.exit(f"not found: {shown!r}, {printed!r}")
+
+
+def main(command, *arguments):
+    if command == "names":
+        for page in arguments:
+            for name in blocks(page)["program"]:
+                print(f"{Path(page).stem}:{name}")
+    elif command == "write":
+        page, name, file = arguments
+        Path(file).write_text(blocks(page)["program"][name], encoding="utf-8")
+    elif command == "check":
+        page, name, program = arguments
+        ran = subprocess.run([program], capture_output=True, text=True)
+        if ran.returncode != 0:
+            sys.exit(f"{name} ends with {ran.returncode}: {ran.stderr}")
+        wrong = difference(blocks(page)["output"][name], ran.stdout)
+        if wrong:
+            sys.exit(f"{page}, {name}, {wrong}\nwhole output:\n{ran.stdout}")
+    elif command == "self":
+        check_self()
+    elif command == "errors":
+        page, header = arguments
+        declared = set(re.findall(r"^class (\w+) : public Error", Path(header).read_text(encoding="utf-8"), re.M))
+        shown = set(re.findall(r"^\| `(\w+)` \|", Path(page).read_text(encoding="utf-8"), re.M))
+        if declared != shown:
+            sys.exit(f"{page}: exceptions that are shown and declared differ: {sorted(declared ^ shown)}.")
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
