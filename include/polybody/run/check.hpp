@@ -104,16 +104,6 @@ class StiffestMotion {
   VecX motion_;
 };
 
-template <class = void>
-std::string most_violated(System& system) {
-  VecX phi = VecX::Zero(system.rows());
-  system.violation(phi);
-  Index most = -1;
-  for (Index i = 0; i < phi.size(); ++i)
-    if (std::abs(phi[i]) > (most < 0 ? 0.0 : std::abs(phi[most]))) most = i;
-  return most < 0 ? "" : system.name_of(system.speeds() + most);
-}
-
 template <NamesStableStep... Is>
 void name_stable_steps(double omega, std::vector<ModelCheck::StableStep>& out) {
   (out.push_back({Is::name, Is::stable_step(omega, 0.0)}), ...);
@@ -127,7 +117,11 @@ template <class = void>
 ModelCheck check(System& system, State const& x) {
   require_fitting(system, x);
   ModelCheck out{.violation = violation(system, x), .redundancy = redundancy(system, x)};
-  if (system.rows() > 0) out.most_violated = detail::most_violated(system);
+  if (out.violation.position > 0.0) {
+    VecX phi = VecX::Zero(system.rows());
+    system.violation(phi);
+    out.most_violated = system.name_of(system.speeds() + detail::most_open(phi));
+  }
   ModelLayout const& layout = system.layout();
   detail::JointGraph const graph(layout);
   for (std::size_t k = graph.joined(); k < graph.order().size(); ++k)

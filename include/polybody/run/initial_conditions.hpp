@@ -9,15 +9,24 @@
 
 namespace polybody {
 
+namespace detail {
+/// The row that is open most, by its place; 0 where there is none.
+template <class = void>
+Index most_open(VecX const& phi) {
+  Index worst = 0;
+  for (Index i = 1; i < phi.size(); ++i)
+    if (std::abs(phi[i]) > std::abs(phi[worst])) worst = i;
+  return worst;
+}
+}  // namespace detail
+
 /// \throws InconsistentStart naming the joint that is violated most, when by more than `tolerance`.
 template <class = void>
 [[gnu::cold]] void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
   system.evaluate(x.q, x.v, x.t);
   VecX phi = VecX::Zero(system.rows());
   system.violation(phi);
-  Index worst = 0;
-  for (Index i = 1; i < phi.size(); ++i)
-    if (std::abs(phi[i]) > std::abs(phi[worst])) worst = i;
+  Index const worst = detail::most_open(phi);
   if (phi.size() == 0 || std::abs(phi[worst]) <= tolerance) return;
   throw InconsistentStart{"At the start ", system.name_of(system.speeds() + worst), " is open by ",
                           std::abs(phi[worst]),

@@ -253,13 +253,12 @@ class Rigid<UnitQuaternion> : public RigidShape {
   void add_unbalance(BodyMotion<T> const& x, Vec3 const& g, T* rows) const {
     Vec<T, 3> const omega(x.v[3], x.v[4], x.v[5]), spin = inertia_times<T>(omega),
                                                    moment = inertia_times<T>({x.a[3], x.a[4], x.a[5]});
-    T const out[6] = {rows[0] + (x.a[0] - g[0]) * mass_,
-                      rows[1] + (x.a[1] - g[1]) * mass_,
-                      rows[2] + (x.a[2] - g[2]) * mass_,
-                      rows[3] + (moment[0] + (omega[1] * spin[2] - omega[2] * spin[1])),
-                      rows[4] + (moment[1] + (omega[2] * spin[0] - omega[0] * spin[2])),
-                      rows[5] + (moment[2] + (omega[0] * spin[1] - omega[1] * spin[0]))};
-    for (int i = 0; i < 6; ++i) rows[i] = out[i];
+    T turning[3];
+    set_cross(omega, spin, turning, 0);
+    for (int i = 0; i < 3; ++i) {
+      rows[i] += (x.a[std::size_t(i)] - g[i]) * mass_;
+      rows[3 + i] += moment[i] + turning[i];
+    }
   }
 
   /// −∂f/∂Ω = Ω̃ J − (J Ω)~.
