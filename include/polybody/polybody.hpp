@@ -48,6 +48,7 @@
 #include <polybody/io/csv.hpp>
 #include <polybody/io/plot.hpp>
 #include <polybody/io/progress.hpp>
+#include <polybody/io/run_table.hpp>
 #include <polybody/io/surface.hpp>
 #include <polybody/io/visual.hpp>
 #include <polybody/joints/cylindrical.hpp>

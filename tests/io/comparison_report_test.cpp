@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -151,10 +153,10 @@ TEST_F(ComparisonReport, WritesAllOfIt) {
   Comparison const c = oscillators();
   auto const files = write_report(c, folder / "deep");
   bool const pictures = find_gnuplot().has_value();
-  EXPECT_EQ(files.size(), 3u + 4u * (pictures ? 3u : 2u));
+  EXPECT_EQ(files.size(), 3u + 5u * (pictures ? 3u : 2u));
   for (fs::path const& file : files) {
     std::string const text = text_of(file);
-    EXPECT_GT(text.size(), 100u) << file;
+    EXPECT_GT(text.size(), 50u) << file;
     if (file.extension() == ".png") {
       EXPECT_TRUE(text.starts_with("\x89PNG\r\n\x1a\n") && text.ends_with("IEND\xAE\x42\x60\x82")) << file;
     }
@@ -162,7 +164,7 @@ TEST_F(ComparisonReport, WritesAllOfIt) {
   // and leaves no crumbs
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "deep"), fs::directory_iterator()),
             std::ptrdiff_t(files.size()));
-  EXPECT_EQ(write_report(c, folder / "drafts", false).size(), 3u + 4u * 2u);
+  EXPECT_EQ(write_report(c, folder / "drafts", false).size(), 3u + 5u * 2u);
 }
 
 TEST_F(ComparisonReport, FiguresShowEveryRunThatHasSomethingToShow) {
@@ -178,12 +180,88 @@ TEST_F(ComparisonReport, FiguresShowEveryRunThatHasSomethingToShow) {
   EXPECT_TRUE(has(outputs, "'x [m]'") && has(outputs, "'v [m/s]'"));
   EXPECT_TRUE(has(energies, "Total energy, change since the start | stiff/ρ\n0 0\n"));
   for (ComparedRun& run : c.runs) run.violations.assign(run.times.size(), Violation{});
-  EXPECT_EQ(write_figures(c, folder / "free", false).size(), 3u * 2u);
+  EXPECT_EQ(write_figures(c, folder / "free", false).size(), 4u * 2u);
   EXPECT_FALSE(fs::exists(folder / "free" / "violations.gp"));
 }
 
+/// Blocks of a data file by their remarks, as times and values.
+std::map<std::string, std::vector<std::array<double, 2>>> blocks_of(fs::path const& file) {
+  std::map<std::string, std::vector<std::array<double, 2>>> blocks;
+  std::istringstream lines(text_of(file));
+  std::string remark;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("# "))
+      remark = line.substr(2);
+    else if (double x = 0.0, y = 0.0; std::istringstream(line) >> x >> y)
+      blocks[remark].push_back({x, y});
+  }
+  return blocks;
+}
+
+TEST_F(ComparisonReport, DifferencesFromTheFirstRunStandBesideTheCurves) {
+  Comparison const c = oscillators();
+  write_figures(c, folder, false);
+  auto const blocks = blocks_of(folder / "outputs.dat");
+  EXPECT_EQ(blocks.size(), 6u);
+  // x is off by 1e-3 t, but for what cubics through steps of 0.1 s are off cos t: 0.1⁴ 9/384
+  auto const& off = blocks.at("x [m], off \"ideal, \"1\"\" | stiff/ρ");
+  ASSERT_EQ(off.size(), 41u);
+  for (auto const& [t, difference] : off) EXPECT_NEAR(difference, 1e-3 * t, 3e-6) << t;
+  EXPECT_FALSE(blocks.contains("x [m], off \"ideal, \"1\"\" | ideal, \"1\""));
+}
+
+TEST_F(ComparisonReport, OutputsThatDifferMostComeFirstSixPanelsAPage) {
+  Comparison c = oscillators();
+  // beside their spans of about 2 the outputs differ by 0, 0.005, 0.5; a constant by anything counts most, by nothing
+  // least
+  for (std::size_t i = 0; i < c.runs.size(); ++i) {
+    ComparedRun& run = c.runs[i];
+    run.output_names = {"same [m]", "near [m]", "far [m]", "flat [m]", "still [m]"};
+    std::vector<double> const wave = run.outputs[0], zero(wave.size(), 0.0);
+    run.outputs = {wave, wave, wave, zero, zero};
+    run.difference = {0.0, 0.01 * double(i), 1.0 * double(i), 1e-9 * double(i), 0.0};
+  }
+  auto const files = write_figures(c, folder, false);
+  auto const is_there = [&](char const* name) { return std::ranges::find(files, folder / name) != files.end(); };
+  EXPECT_TRUE(is_there("outputs.gp") && is_there("outputs_2.dat") && is_there("cost.gp"));
+  EXPECT_FALSE(is_there("outputs_3.gp"));
+  std::string const first = text_of(folder / "outputs.gp"), second = text_of(folder / "outputs_2.gp");
+  EXPECT_TRUE(has(first, "multiplot layout 3,2") && has(second, "multiplot layout 2,2"));
+  EXPECT_LT(first.find("'flat [m]'"), first.find("'far [m]'"));
+  EXPECT_LT(first.find("'far [m]'"), first.find("'near [m]'"));
+  EXPECT_LT(second.find("'same [m]'"), second.find("'still [m]'"));
+  EXPECT_NE(second.find("'still [m]'"), std::string::npos);
+}
+
+TEST_F(ComparisonReport, CostShowsDifferenceOverTimeOfComputing) {
+  Comparison c = oscillators();
+  write_figures(c, folder, false);
+  auto const blocks = blocks_of(folder / "cost.dat");
+  ASSERT_EQ(blocks.size(), 1u);
+  auto const& point = blocks.begin()->second;
+  ASSERT_EQ(point.size(), 1u);
+  EXPECT_EQ(point[0][0], 0.25);                // s
+  EXPECT_NEAR(point[0][1], 0.01 / 2.0, 1e-5);  // cos t spans 2 but for its steps
+  c.runs[1].difference = {0.0, 0.0};
+  write_figures(c, folder / "same", false);
+  EXPECT_FALSE(fs::exists(folder / "same" / "cost.gp"));
+  c.runs.pop_back();
+  write_figures(c, folder / "one", false);
+  EXPECT_FALSE(fs::exists(folder / "one" / "cost.gp"));
+  EXPECT_EQ(blocks_of(folder / "one" / "outputs.dat").size(), 2u);
+}
+
+TEST_F(ComparisonReport, WorkAndPrecisionAsFiles) {
+  auto const files = write_report(work(), folder, false);
+  EXPECT_EQ(files, (std::vector<fs::path>{folder / "work_precision.csv", folder / "work_precision.dat",
+                                          folder / "work_precision.gp"}));
+  EXPECT_TRUE(has(text_of(folder / "work_precision.gp"), "set logscale x"));
+  EXPECT_TRUE(has(refusal([&] { write_report(WorkPrecision{}, folder / "none"); }), "there are no curves"));
+  EXPECT_FALSE(fs::exists(folder / "none"));
+}
+
 TEST_F(ComparisonReport, RefusesWhatIsNoComparison) {
-  EXPECT_TRUE(has(refusal([&] { write_report({}, folder); }), "write_report: the comparison has no runs"));
+  EXPECT_TRUE(has(refusal([&] { write_report(Comparison{}, folder); }), "write_report: the comparison has no runs"));
   EXPECT_TRUE(has(refusal([&] { write_csv(Comparison{}, folder / "table.csv"); }), "no runs"));
   EXPECT_TRUE(has(refusal([&] { write_histories({}, folder); }), "no runs"));
   EXPECT_TRUE(has(refusal([&] { write_figures({}, folder); }), "no runs"));

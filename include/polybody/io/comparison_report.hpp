@@ -78,15 +78,93 @@ void add_violations(Comparison const& c, std::string const& title, std::string c
   figures.push_back(std::move(figure));
 }
 
-/// Draws panels, if there are any, and adds the files to `written`.
+/// The first run's output i at time t [s].
 template <class = void>
-void draw_panels(std::vector<Figure> const& figures, std::filesystem::path const& stem, bool draw,
+double first_output(Comparison const& c, std::size_t i, double t) {
+  return interpolate(c.runs.front().times, c.runs.front().outputs[i], t);
+}
+
+/// The largest difference of output i in a run from the first run's, as a part of what the first one's spans, or of its
+/// amount where that is constant; infinite where that is zero.
+template <class = void>
+double relative_difference(Comparison const& c, ComparedRun const& run, std::size_t i) {
+  auto const [low, high] = std::ranges::minmax(c.runs.front().outputs[i]);
+  double const most = run.difference[i], span = high > low ? high - low : std::abs(high);
+  return most == 0.0 ? 0.0 : span > 0.0 ? most / span : std::numeric_limits<double>::infinity();
+}
+
+/// Numbers of the outputs, those that differ most from the first run's before the others.
+template <class = void>
+std::vector<std::size_t> outputs_by_difference(Comparison const& c) {
+  std::vector<double> most(c.runs.front().outputs.size(), 0.0);
+  std::vector<std::size_t> order(most.size());
+  for (std::size_t i = 0; i < most.size(); ++i) {
+    order[i] = i;
+    for (ComparedRun const& run : c.runs) most[i] = std::max(most[i], relative_difference(c, run, i));
+  }
+  std::ranges::stable_sort(order, [&](std::size_t i, std::size_t j) { return most[i] > most[j]; });
+  return order;
+}
+
+/// Each output over time and, where runs are compared, beside it what the others are off the first: curves that agree
+/// hide one another.
+template <class = void>
+std::vector<Figure> output_figures(Comparison const& c) {
+  std::vector<Figure> figures;
+  for (std::size_t const i : outputs_by_difference(c)) {
+    std::string const& name = c.runs.front().output_names[i];
+    figures.push_back(over_time(c, name, name, [i](auto const& run, std::size_t k) { return run.outputs[i][k]; }));
+    if (c.runs.size() == 1) continue;
+    Figure& off = figures.emplace_back(over_time(
+        c, name + ", off \"" + c.runs.front().name + "\"", "difference of " + name,
+        [&](auto const& run, std::size_t k) { return run.outputs[i][k] - first_output(c, i, run.times[k]); }));
+    off.curves.erase(off.curves.begin());
+    for (Curve& curve : off.curves) curve.style = "lines";
+  }
+  return figures;
+}
+
+/// How far each run is off the first, over its time of computing; no figure where none is off.
+template <class = void>
+std::vector<Figure> cost_figure(Comparison const& c) {
+  ComparedRun const& first = c.runs.front();
+  Figure figure{.title = "Largest difference from \"" + first.name + "\" (" + number(first.cpu) + " s)",
+                .x_label = "CPU time [s]",
+                .y_label = "difference / span of the output",
+                .log_x = true,
+                .log_y = true,
+                .width_px = 900,
+                .height_px = 560};
+  for (std::size_t k = 1; k < c.runs.size(); ++k) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < first.outputs.size(); ++i)
+      if (double const off = relative_difference(c, c.runs[k], i); std::isfinite(off)) most = std::max(most, off);
+    if (most > 0.0 && c.runs[k].cpu > 0.0)
+      figure.curves.push_back({.x = {c.runs[k].cpu},
+                               .y = {most},
+                               .label = c.runs[k].name,
+                               .style = "points",
+                               .color = int(k),
+                               .width = 3.0});
+  }
+  return figure.curves.empty() ? std::vector<Figure>{} : std::vector<Figure>{std::move(figure)};
+}
+
+/// Draws panels, six on a page (stem, stem_2, …) in so many columns, and adds the files to `written`.
+template <class = void>
+void draw_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem, bool draw,
                  std::vector<std::filesystem::path>& written) {
-  if (figures.empty()) return;
-  bool const drawn = write_panels(figures, figures.size() < 4 ? 1 : 2, stem, draw) == Drawn::png;
-  written.push_back(with_ending(stem, ".dat"));
-  written.push_back(with_ending(stem, ".gp"));
-  if (drawn) written.push_back(with_ending(stem, ".png"));
+  constexpr std::size_t on_a_page = 6;
+  for (std::size_t first = 0; first < figures.size(); first += on_a_page) {
+    auto const begin = figures.begin() + std::ptrdiff_t(first);
+    std::vector<Figure> const page(begin, begin + std::ptrdiff_t(std::min(on_a_page, figures.size() - first)));
+    std::filesystem::path place = stem;
+    if (first > 0) place += '_' + std::to_string(first / on_a_page + 1);
+    bool const drawn = write_panels(page, columns, place, draw) == Drawn::png;
+    written.push_back(with_ending(place, ".dat"));
+    written.push_back(with_ending(place, ".gp"));
+    if (drawn) written.push_back(with_ending(place, ".png"));
+  }
 }
 
 }  // namespace detail
@@ -135,28 +213,27 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
   return written;
 }
 
-/// Draws all runs over time: `outputs`, `violations` (of positions, speeds and accelerations), `joint_force` (of the
-/// joint that holds most) and `energies`, each as .dat, .gp and, where gnuplot is there and `draw` is set, .png.
-/// Without outputs, or without violations, there is no such figure. Returns the files. Throws as `write_csv`, and
-/// IoError where gnuplot fails.
+/// Draws all runs over time: `outputs` (with what the others are off the first beside each, those that differ most
+/// first, six panels a page: `outputs`, `outputs_2`, …), `violations` (of positions, speeds and accelerations),
+/// `joint_force` (of the joint that holds most) and `energies`; and `cost`, how far each run is off the first over its
+/// time of computing. Each comes as .dat, .gp and, where gnuplot is there and `draw` is set, .png. There is no figure
+/// without anything to show. Returns the files. Throws as `write_csv`, and IoError where gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder,
                                                  bool draw = true) {
   detail::check(c, "write_figures");
   using Run = ComparedRun const&;
   std::vector<std::filesystem::path> written;
-  std::vector<Figure> outputs, violations;
-  for (std::size_t i = 0; i < c.runs.front().outputs.size(); ++i) {
-    std::string const& name = c.runs.front().output_names[i];
-    outputs.push_back(detail::over_time(c, name, name, [i](Run run, std::size_t k) { return run.outputs[i][k]; }));
-  }
-  detail::draw_panels(outputs, folder / "outputs", draw, written);
+  std::vector<Figure> violations;
+  detail::draw_panels(detail::output_figures(c), c.runs.front().outputs.size() > 1 || c.runs.size() > 1 ? 2 : 1,
+                      folder / "outputs", draw, written);
+  detail::draw_panels(detail::cost_figure(c), 1, folder / "cost", draw, written);
   detail::add_violations(c, "Violation of positions", "[m, rad, 1]", &Violation::position, violations);
   detail::add_violations(c, "Violation of speeds", "[m/s, rad/s, 1/s]", &Violation::velocity, violations);
   detail::add_violations(c, "Violation of accelerations", "[m/s², rad/s², 1/s²]", &Violation::acceleration, violations);
-  detail::draw_panels(violations, folder / "violations", draw, written);
+  detail::draw_panels(violations, 1, folder / "violations", draw, written);
   auto const force = [](Run run, std::size_t k) { return run.joint_forces[k]; };
-  detail::draw_panels({detail::over_time(c, "Force of the joint that holds most", "force [N]", force)},
+  detail::draw_panels({detail::over_time(c, "Force of the joint that holds most", "force [N]", force)}, 1,
                       folder / "joint_force", draw, written);
   detail::draw_panels({detail::over_time(c, "Kinetic energy", "energy [J]",
                                          [](Run run, std::size_t k) { return run.energies[k].kinetic; }),
@@ -166,7 +243,7 @@ std::vector<std::filesystem::path> write_figures(Comparison const& c, std::files
                                          [](Run run, std::size_t k) {
                                            return run.energies[k].total() - run.energies.front().total();
                                          })},
-                      folder / "energies", draw, written);
+                      1, folder / "energies", draw, written);
   return written;
 }
 
@@ -220,6 +297,20 @@ Figure work_precision_figure(WorkPrecision const& w) {
     if (!drawn.x.empty()) figure.curves.push_back(std::move(drawn));
   }
   return figure;
+}
+
+/// The points and their figure in `folder`: work_precision.csv, .dat, .gp and, where gnuplot is there and `draw` is
+/// set, .png. Returns the files. Throws InvalidInput where there is nothing to draw, IoError as `Csv` and where gnuplot
+/// fails.
+template <class = void>
+std::vector<std::filesystem::path> write_report(WorkPrecision const& w, std::filesystem::path const& folder,
+                                                bool draw = true) {
+  Figure const figure = work_precision_figure(w);
+  std::filesystem::path const stem = folder / "work_precision";
+  std::vector<std::filesystem::path> written{detail::with_ending(stem, ".csv")};
+  write_csv(w, written.front());
+  detail::draw_panels({figure}, 1, stem, draw, written);
+  return written;
 }
 
 }  // namespace polybody

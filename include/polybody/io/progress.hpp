@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <memory>
 #include <ostream>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #if __has_include(<unistd.h>)
@@ -18,6 +20,7 @@
 #endif
 
 #include <polybody/math/errors.hpp>
+#include <polybody/run/run_options.hpp>
 
 namespace polybody {
 
@@ -144,5 +147,25 @@ class Progress {
   double began_ = 0.0, last_drawn_ = 0.0, done_ = 0.0;
   bool drawn_ = false;
 };
+
+/// For `RunOptions::progress`: a bar over the time of the run, from its first step on, that is complete where the run
+/// ends:
+///
+///     simulate(model, x, integrator, {.until = 10.0, .step = 1e-3, .progress = progress_bar("pendulum")}).run();
+///
+/// `make` makes the bar; it belongs to one run.
+template <class Make>
+  requires std::is_invocable_r_v<std::unique_ptr<Progress>, Make const&, RunProgress const&>
+std::function<void(RunProgress const&)> progress_bar(Make make) {
+  return [make = std::move(make), bar = std::shared_ptr<Progress>()](RunProgress const& run) mutable {
+    if (!bar) bar = make(run);
+    run.done ? bar->finish() : bar->update(run.now);
+  };
+}
+inline std::function<void(RunProgress const&)> progress_bar(std::string label = "") {
+  return progress_bar([label = std::move(label)](RunProgress const& run) {
+    return std::make_unique<Progress>(run.start, run.until, label);
+  });
+}
 
 }  // namespace polybody

@@ -2,6 +2,7 @@
 /// \file
 /// What a run is asked for, and what it reports.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,12 @@
 #include <polybody/run/event.hpp>
 
 namespace polybody {
+
+/// How far a run has come [s].
+struct RunProgress {
+  double start, until, now;
+  bool done;  ///< at `until`, or stopped by an event
+};
 
 struct RunOptions {
   Required<double> until;                   ///< [s]
@@ -23,6 +30,7 @@ struct RunOptions {
   bool minimum_norm = false;         ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
   StepLimits limits = {};            ///< of a step's end: open joints, and energy that no work explains
   int threads = 1;  ///< that share the loops of an evaluation; for large models, results stay the same bits
+  std::function<void(RunProgress const&)> progress = {};  ///< told after each step; `progress_bar` of io makes one
 
   /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
   [[gnu::cold]] void check(double start) const {

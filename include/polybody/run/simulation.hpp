@@ -88,7 +88,8 @@ class Simulation {
         workspace_(method_.template workspace<Solver>(*system_)),
         norm_(whole()),
         axial_forces_(whole(), start, options_.until),
-        speeds_before_(VecX::Zero(system_->speeds())) {
+        speeds_before_(VecX::Zero(system_->speeds())),
+        start_(start) {
     options_.check(start);
     if (options_.threads != 1) system_->use_threads(options_.threads);
     h_ = std::min<double>(options_.step, largest_step());
@@ -205,20 +206,18 @@ class Simulation {
 
   std::unique_ptr<System> system_, whole_;  // workspaces refer to it
   State* x_;
-  State narrow_, seen_;  // of models with eliminating policies
-  State before_;         // of a step after which something may fail
-  VecX scratch_;
+  State narrow_, seen_, before_;  // two of models with eliminating policies; of a step after which something may fail
   MethodOf<I> method_;
   RunOptions options_;
   decltype(std::declval<MethodOf<I> const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
   AxialWatch axial_forces_;
-  VecX speeds_before_;  // of a step
-  RowGain usual_gain_;  // at the start
+  VecX speeds_before_, scratch_;  // the first of a step
+  RowGain usual_gain_;            // at the start
   StepPlan plan_;
   StepRow row_;
   EventWatch watch_;
-  double h_ = 0.0;
+  double h_ = 0.0, start_;  // [s]
   RunReport report_;
 };
 
@@ -301,6 +300,7 @@ void Simulation<I, Solver>::advance(bool shown) {
   }
   trial.keep();
   report_.add(report);
+  if (options_.progress) options_.progress({start_, options_.until, stepped().t, done()});
 }
 
 template <Integrator I, class Solver>

@@ -1,0 +1,119 @@
+#pragma once
+/// \file
+/// What a run says of its states, as a table, a file and a picture:
+///
+///     Table const table = tabulate(simulate(model, x, integrator, {.until = 2.0, .step = 1e-3}),
+///                                  {{"tip height [m]", [&](State const& now) { return tip(now).z(); }}});
+///     plot(table, "out/pendulum");   // out/pendulum.csv, .dat, .gp, .png
+
+#include <functional>
+
+#include <polybody/io/csv.hpp>
+#include <polybody/io/plot.hpp>
+#include <polybody/system/state.hpp>
+
+namespace polybody {
+
+/// A number of interest of a state.
+struct TableColumn {
+  std::string name;  ///< with its unit: "tip height [m]"
+  std::function<double(State const&)> value;
+};
+
+namespace detail {
+
+/// \throws InvalidInput unless columns have names, all different, and values, and none is called as the time.
+template <class = void>  // compiled where it is used
+void check(std::vector<TableColumn> const& columns) {
+  std::vector<std::string> names{"t [s]"};
+  for (TableColumn const& c : columns) {
+    if (c.name.empty() || !c.value) throw InvalidInput{"tabulate: column ", names.size(), " lacks a name or a value."};
+    names.push_back(c.name);
+  }
+  std::ranges::sort(names);
+  if (auto const twice = std::ranges::adjacent_find(names); twice != names.end())
+    throw InvalidInput{"tabulate: two columns are called \"", *twice, "\". The first one is \"t [s]\"."};
+}
+
+/// The unit at the end of a column's head: "m/s" of "speed [m/s]", empty where there is none.
+template <class = void>
+std::string unit_of(std::string const& head) {
+  std::size_t const begin = head.rfind('[');
+  bool const has_unit = begin != head.npos && head.ends_with(']');
+  return has_unit ? head.substr(begin + 1, head.size() - begin - 2) : "";
+}
+
+/// One figure over the first column for each unit, in the order in which they first come; a column without a unit has
+/// its own.
+template <class = void>
+std::vector<Figure> figures_of(Table const& table) {
+  std::vector<Figure> figures;
+  std::vector<std::string> units;
+  std::vector<double> const x = table.column(table.columns.front());
+  for (std::size_t j = 1; j < table.columns.size(); ++j) {
+    std::string const &head = table.columns[j], unit = unit_of(head);
+    auto const found = unit.empty() ? units.end() : std::ranges::find(units, unit);
+    std::size_t const place = std::size_t(found - units.begin());
+    if (found == units.end()) {
+      units.push_back(unit);
+      figures.push_back({.x_label = table.columns.front(), .y_label = head, .width_px = 900, .height_px = 560});
+    }
+    figures[place].curves.push_back({.x = x, .y = table.column(head), .label = head});
+  }
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    figures[i].legend = figures[i].curves.size() > 1;
+    if (figures[i].legend) figures[i].y_label = '[' + units[i] + ']';
+  }
+  return figures;
+}
+
+}  // namespace detail
+
+/// Takes a run to its end: a row for the first state, for the first one on or after each multiple of `sampling` [s]
+/// from there on, and for the last; for every state where that is zero. The first column is "t [s]".
+/// \throws InvalidInput for columns without a name or value or that are called alike and a negative sampling, NonFinite
+/// for a value that is not finite, and what the run throws.
+template <class Run>
+Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampling = 0.0) {
+  detail::check(columns);
+  require_not_negative(sampling, "tabulate: the sampling of ", "the table");
+  Table table{{"t [s]"}, {}};
+  for (TableColumn const& c : columns) table.columns.push_back(c.name);
+  double const start = run.state().t, rounding = 1e-9 * sampling;
+  double samples = 0.0;  // multiples of `sampling` that are past
+  for (State const& x : run) {
+    double const past = x.t - start + rounding;
+    if (!table.rows.empty() && past < (samples + 1.0) * sampling && !run.done()) continue;
+    if (sampling > 0.0) samples = std::floor(past / sampling);
+    auto& row = table.rows.emplace_back(1, x.t);
+    for (TableColumn const& c : columns) {
+      row.push_back(c.value(x));
+      if (!std::isfinite(row.back()))
+        throw NonFinite{"tabulate: \"", c.name, "\"", how_not_finite(row.back()), " at t = ", x.t, " s."};
+    }
+  }
+  return table;
+}
+
+/// Writes a table; `read_csv` reads it back to the same doubles. Throws InvalidInput and IoError as `Csv`.
+template <class = void>
+void write_csv(Table const& table, std::filesystem::path const& file) {
+  Csv csv(file, table.columns, Csv::Keeps::whole_table);
+  for (auto const& row : table.rows) csv.row(row);
+  csv.close();
+}
+
+/// Writes stem.csv and draws all columns over the first one as stem.dat, stem.gp and, if `draw` and gnuplot is on PATH,
+/// stem.png: columns of one unit ("… [m]") share a panel. Throws InvalidInput for a table without rows or with less
+/// than two columns, and as `write_csv` and `write_panels`.
+template <class = void>
+Drawn plot(Table const& table, std::filesystem::path const& stem, bool draw = true) {
+  if (table.rows.empty() || table.columns.size() < 2)
+    throw InvalidInput{"plot: the table for '", stem.string(), "' has ", table.rows.size(), " rows of ",
+                       table.columns.size(), " columns. Give it two columns and a row at least."};
+  std::vector<Figure> const figures = detail::figures_of(table);
+  write_csv(table, detail::with_ending(stem, ".csv"));
+  return write_panels(figures, figures.size() < 4 ? 1 : 2, stem, draw);
+}
+
+}  // namespace polybody
