@@ -25,7 +25,9 @@ using Pin = Joint<planar::Revolute, Constraint>;
 struct RunTable : testing::Test {
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
   BodyHandle<planar::Rigid> rod = model.add(
-      planar::Rigid::from({.length = 1.0, .section = Circle{.radius = 0.01}, .material = Material{.density = 7800.0, .young = 2e11}}), "rod");
+      planar::Rigid::from(
+          {.length = 1.0, .section = Circle{.radius = 0.01}, .material = Material{.density = 7800.0, .young = 2e11}}),
+      "rod");
   State x;
   fs::path const folder = fs::path(testing::TempDir()) / ("polybody table " + std::to_string(std::random_device{}()));
 
@@ -78,7 +80,8 @@ TEST_F(RunTable, RefusesColumnsThatCannotBeTold) {
   EXPECT_TRUE(has(said({{"x [m]", zero}}, -1.0), "sampling"));
   EXPECT_EQ(x.t, 0.0);
   try {
-    tabulate(run({.until = 0.1, .step = 1e-2}), {{"root [1]", [](State const& now) { return std::sqrt(0.055 - now.t); }}});
+    tabulate(run({.until = 0.1, .step = 1e-2}),
+             {{"root [1]", [](State const& now) { return std::sqrt(0.055 - now.t); }}});
     ADD_FAILURE();
   } catch (NonFinite const& failed) {
     EXPECT_STREQ(failed.what(), "tabulate: \"root [1]\" is not finite at t = 0.06 s.");
@@ -120,22 +123,31 @@ TEST_F(RunTable, PlotIsOneCall) {
 
 TEST_F(RunTable, ARunTellsItsProgress) {
   std::vector<double> times;
-  run({.until = 0.05, .step = 1e-2, .progress = [&](RunProgress const& p) {
-         EXPECT_EQ(p.start, 0.0);
-         EXPECT_EQ(p.until, 0.05);
-         EXPECT_EQ(p.done, p.now == 0.05);
-         times.push_back(p.now);
-       }}).run();
+  run({.until = 0.05,
+       .step = 1e-2,
+       .progress =
+           [&](RunProgress const& p) {
+             EXPECT_EQ(p.start, 0.0);
+             EXPECT_EQ(p.until, 0.05);
+             EXPECT_EQ(p.done, p.now == 0.05);
+             times.push_back(p.now);
+           }})
+      .run();
   ASSERT_EQ(times.size(), 5u);
   EXPECT_EQ(times.back(), x.t);
   // from where it begins, to where an event stops it
   bool done = false;
   Event const stop{.name = "low", .value = [](State const& now) { return now.t - 0.071; }, .stops = true};
-  run({.until = 1.0, .step = 1e-2, .events = {stop}, .progress = [&](RunProgress const& p) {
-         EXPECT_EQ(p.start, 0.05);
-         EXPECT_FALSE(done);
-         done = p.done;
-       }}).run();
+  run({.until = 1.0,
+       .step = 1e-2,
+       .events = {stop},
+       .progress =
+           [&](RunProgress const& p) {
+             EXPECT_EQ(p.start, 0.05);
+             EXPECT_FALSE(done);
+             done = p.done;
+           }})
+      .run();
   EXPECT_TRUE(done);
   EXPECT_NEAR(x.t, 0.071, 1e-6);
 }

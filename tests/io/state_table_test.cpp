@@ -37,7 +37,8 @@ struct StateTable : testing::Test {
     Pin const pin{Revolute{.axis = {0, 1, 0}}};
     model.connect(pin, model.ground().at({0, 0, 0}), upper.at(0.0), "shoulder");
     model.connect(pin, upper.at(1.0), lower.at(0.0), "elbow");
-    model.apply(MaxwellElement{.stiffness = 100.0, .damping = 10.0, .free_length = 1.0}, model.ground().at({0, 0, 1}), lower.at(0.5), "valve");
+    model.apply(MaxwellElement{.stiffness = 100.0, .damping = 10.0, .free_length = 1.0}, model.ground().at({0, 0, 1}),
+                lower.at(0.5), "valve");
   }
 };
 

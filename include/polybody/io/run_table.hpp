@@ -109,8 +109,13 @@ void write_csv(Table const& table, std::filesystem::path const& file) {
 template <class = void>
 Drawn plot(Table const& table, std::filesystem::path const& stem, bool draw = true) {
   if (table.rows.empty() || table.columns.size() < 2)
-    throw InvalidInput{"plot: the table for '", stem.string(), "' has ", table.rows.size(), " rows of ",
-                       table.columns.size(), " columns. Give it two columns and a row at least."};
+    throw InvalidInput{"plot: the table for '",
+                       stem.string(),
+                       "' has ",
+                       table.rows.size(),
+                       " rows of ",
+                       table.columns.size(),
+                       " columns. Give it two columns and a row at least."};
   std::vector<Figure> const figures = detail::figures_of(table);
   write_csv(table, detail::with_ending(stem, ".csv"));
   return write_panels(figures, figures.size() < 4 ? 1 : 2, stem, draw);

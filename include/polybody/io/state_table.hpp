@@ -47,7 +47,8 @@ Table state_table(ModelLayout const& layout, std::vector<State> const& states) {
   for (State const& x : states) {
     require_sizes(x, layout.coordinates, layout.speeds, layout.rows);
     auto& row = table.rows.emplace_back(1, x.t);
-    for (VecX const* const part : {&x.q, &x.v, &x.lambda}) row.insert(row.end(), part->data(), part->data() + part->size());
+    for (VecX const* const part : {&x.q, &x.v, &x.lambda})
+      row.insert(row.end(), part->data(), part->data() + part->size());
   }
   return table;
 }
@@ -87,7 +88,8 @@ State state_from(ModelLayout const& layout, Table const& table, std::size_t row)
 
 }  // namespace detail
 
-/// The heads of a state's columns: "t [s]", then for each body its coordinates ("rod q[0]", …), for each body its speeds
+/// The heads of a state's columns: "t [s]", then for each body its coordinates ("rod q[0]", …), for each body its
+/// speeds
 /// ("rod v[0]", …), first-order states of forces ("valve z[0]", …), multipliers of the rows ("pin lambda[0]", …). Their
 /// order within a body, and their units, are those that the body's header names.
 template <class M>
@@ -102,8 +104,8 @@ Table state_table(M const& model, std::vector<State> const& states) {
 }
 
 /// The state in a row of a table with these columns, in any order, among others. Multipliers may be left out, and are
-/// zero then; accelerations are zero, and `simulate` finds both. \throws InvalidInput naming a column that is missing or
-/// there twice, and for a row that is not there.
+/// zero then; accelerations are zero, and `simulate` finds both. \throws InvalidInput naming a column that is missing
+/// or there twice, and for a row that is not there.
 template <class M>
 State state_from(M const& model, Table const& table, std::size_t row) {
   return detail::state_from(layout_of(model), table, row);

@@ -110,7 +110,7 @@ struct BodyKernels {
   static constexpr Index least_bodies = n == Eigen::Dynamic ? 8 : HasRigidLayout<B> ? 1024 : 32;
   /// Threads share its bodies, of one element each.
   static bool shares_bodies(Pool const& pool) { return detail::has_single_elements(pool, 2 * least_bodies); }
-  static constexpr bool in_batches = ComparesElements<B> && std::same_as<T, double>;
+  static constexpr bool in_batches = ComparesElements<B> && !ChangesWithTime<B> && std::same_as<T, double>;
   /// M a − f of the elements of one body.
   static void add_forces_of(Entry const& e, detail::KeptScratch<B, T>& kept, detail::Unbalance<T> const& u,
                             Data<T>& data, Vector& r);
@@ -317,7 +317,7 @@ void BodyKernels<B, T>::add_force(Entry const& e, Index i, detail::Unbalance<T> 
   if constexpr (n == Eigen::Dynamic) size = int(scratch.weight.size());
   for (int k = 0; k < size; ++k) rows[k] += x[k];
   if (u.g[0] == 0.0 && u.g[1] == 0.0 && u.g[2] == 0.0) return;
-  e.body.template gravity<T>(i, coordinates(e, u.at.q), u.g, scratch.weight);
+  at_time(e.body, u.at.t).template gravity<T>(i, coordinates(e, u.at.q), u.g, scratch.weight);
   for (int k = 0; k < size; ++k) rows[k] -= scratch.weight[k];
 }
 
@@ -325,20 +325,20 @@ template <class B, StateScalar T>
 void BodyKernels<B, T>::add_forces_of(Entry const& e, detail::KeptScratch<B, T>& kept, detail::Unbalance<T> const& u,
                                       Data<T>& data, Vector& r) {
   BodyMotion<T> const motion{coordinates(e, u.at.q), speeds(e, u.at.v), speeds(e, u.a)};
-  if constexpr (AddsUnbalance<B, T>) return e.body.add_unbalance(motion, u.g, r.data() + e.v0);
-  auto&& scratch = kept.force_scratch(e.body);
-  Index const elements = e.body.elements();
+  auto const& body = at_time(e.body, u.at.t);
+  if constexpr (AddsUnbalance<B, T>) return body.add_unbalance(motion, u.g, r.data() + e.v0);
+  auto&& scratch = kept.force_scratch(body);
   if constexpr (n != Eigen::Dynamic)
-    if (data.workers && elements >= 2 * data.least_elements) {
+    if (Index const elements = body.elements(); data.workers && elements >= 2 * data.least_elements) {
       T* const slots = data.element_forces.data();
       data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-        for_each_unbalance<B, T>(e.body, {begin, end}, motion,
+        for_each_unbalance<B, T>(body, {begin, end}, motion,
                                  [&](Index i, Vec<T, n> const& x) { std::copy_n(x.data(), n, slots + n * i); });
       });
       for (Index i = 0; i < elements; ++i) add_force(e, i, u, slots + n * i, scratch, r);
       return;
     }
-  for_each_unbalance<B, T>(e.body, {0, elements}, motion, scratch,
+  for_each_unbalance<B, T>(body, {0, body.elements()}, motion, scratch,
                            [&](Index i, auto const& x) { add_force(e, i, u, x.data(), scratch, r); });
 }
 

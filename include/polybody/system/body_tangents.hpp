@@ -40,18 +40,19 @@ template <class B, StateScalar T>
 void BodyKernels<B, T>::masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink) {
   for (std::size_t b = 0; b < pool.entries.size(); ++b) {
     Entry const& e = pool.entries[b];
-    auto&& scratch = kept.scratch[b].tangent_scratch(e.body);
-    bool const alike = detail::are_alike(e.body);
-    Index const columns = n == Eigen::Dynamic ? e.body.speeds() : Index(n);
-    bool const known = B::constant_mass && !sink.wants(e.v0 + e.body.first_column(0), columns);
-    for (Index i = 0; i < e.body.elements(); ++i) {
+    auto const& body = at_time(e.body, at.t);
+    auto&& scratch = kept.scratch[b].tangent_scratch(body);
+    bool const alike = detail::are_alike(body);
+    Index const columns = n == Eigen::Dynamic ? body.speeds() : Index(n);
+    bool const known = B::constant_mass && !sink.wants(e.v0 + body.first_column(0), columns);
+    for (Index i = 0; i < body.elements(); ++i) {
       if (known) {
-        Index const first = e.v0 + e.body.first_column(i);
+        Index const first = e.v0 + body.first_column(i);
         sink.skip(first, first, columns, columns);
         continue;
       }
-      if (i == 0 || !alike) e.body.mass(i, coordinates(e, at.q), scratch.m);
-      Index const first = e.v0 + e.body.first_column(i);
+      if (i == 0 || !alike) body.mass(i, coordinates(e, at.q), scratch.m);
+      Index const first = e.v0 + body.first_column(i);
       sink.add(first, first, scratch.m);
     }
   }
@@ -61,25 +62,26 @@ template <class B, StateScalar T>
 void BodyKernels<B, T>::tangents_of(Entry const& e, detail::KeptScratch<B, T>& kept, At<double> at,
                                     TangentCoefficients const& c, Data<double>& data, BlockSink& sink) {
   ElementCoefficients const coefficients{c.mass, c.damping, c.stiffness};
-  auto&& scratch = kept.tangent_scratch(e.body);
+  auto const& body = at_time(e.body, at.t);
+  auto&& scratch = kept.tangent_scratch(body);
   BodyMotion<> const motion{coordinates(e, at.q), speeds(e, at.v)};
-  Index const elements = e.body.elements();
+  Index const elements = body.elements();
   auto const add = [&](Index i, BlockView const& k) {
-    Index const first = e.v0 + e.body.first_column(i);
+    Index const first = e.v0 + body.first_column(i);
     sink.add(first, first, k);
   };
   if constexpr (n != Eigen::Dynamic)
     if (data.workers && elements >= 2 * data.least_elements) {
       double* const slots = data.element_tangents.data();
       data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-        for_each_element_tangent<B>(
-            e.body, {begin, end}, motion, coefficients,
-            [&](Index i, Mat<double, n, n> const& k) { std::copy_n(k.data(), n * n, slots + n * n * i); });
+        for_each_element_tangent<B>(body, {begin, end}, motion, coefficients, [&](Index i, Mat<double, n, n> const& k) {
+          std::copy_n(k.data(), n * n, slots + n * n * i);
+        });
       });
       for (Index i = 0; i < elements; ++i) add(i, BlockView(slots + n * n * i, n, n, 1, n));
       return;
     }
-  for_each_element_tangent<B>(e.body, {0, elements}, motion, coefficients, scratch,
+  for_each_element_tangent<B>(body, {0, elements}, motion, coefficients, scratch,
                               [&](Index i, Mat<double, n, n> const& k) { add(i, k); });
 }
 
@@ -117,8 +119,9 @@ void BodyKernels<B, T>::tangents(Pool const& pool, Kept& kept, At<double> at, Ta
     share(data.workers, Index(pool.entries.size()), least_bodies, [&](Index begin, Index end) {
       for (std::size_t b = std::size_t(begin); b < std::size_t(end); ++b) {
         Entry const& e = pool.entries[b];
-        auto&& scratch = kept.scratch[b].tangent_scratch(e.body);
-        for_each_element_tangent<B>(e.body, {0, 1}, {coordinates(e, at.q), speeds(e, at.v)},
+        auto const& body = at_time(e.body, at.t);
+        auto&& scratch = kept.scratch[b].tangent_scratch(body);
+        for_each_element_tangent<B>(body, {0, 1}, {coordinates(e, at.q), speeds(e, at.v)},
                                     {c.mass, c.damping, c.stiffness}, scratch,
                                     [&]([[maybe_unused]] Index i, [[maybe_unused]] auto const& k) {
                                       if constexpr (n != Eigen::Dynamic)
@@ -186,10 +189,11 @@ template <class B, StateScalar T>
 void BodyKernels<B, T>::add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum) {
   for (Entry const& e : pool.entries) {
     auto const q = coordinates(e, at.q), v = speeds(e, at.v);
-    for (Index i = 0; i < e.body.elements(); ++i) {
-      sum.kinetic += e.body.kinetic_energy(i, q, v);
-      sum.strain += e.body.strain_energy(i, q);
-      sum.gravity += e.body.gravity_energy(i, q, g);
+    auto const& body = at_time(e.body, at.t);
+    for (Index i = 0; i < body.elements(); ++i) {
+      sum.kinetic += body.kinetic_energy(i, q, v);
+      sum.strain += body.strain_energy(i, q);
+      sum.gravity += body.gravity_energy(i, q, g);
     }
   }
 }

@@ -3,6 +3,7 @@
 /// Elements of several bodies side by side: a track of many links of one element each fills packs as one long body
 /// does.
 
+#include <polybody/bodies/shared/changes_with_time.hpp>
 #include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/pools.hpp>
