@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   bool of_variants = false;
   o.links.clear();
   o.masses = m113::with_steel_links(o.masses);
-  o.files = (fs::path(__FILE__).parent_path().parent_path() / "examples/track_stress/fe_link").string();
+  o.files = POLYBODY_TRACK_LINK_FILES;
   for (int i = 1; i + 1 < argc; i += 2) {
     std::string const name = argv[i], value = argv[i + 1];
     if (name == "--links")
