@@ -118,8 +118,7 @@ TEST(Changing, RefusesALawThatMovesTheBodyOrLosesItsMass) {
   Model<Bodies<Plane>, Joints<>> model{Gravity{0, -9.81, 0}};
   model.add(leaking(), "tank");
   State x = model.reference_state();
-  std::string const said =
-      refusal([&] { simulate(model, x, RungeKutta4<>{}, {.until = 3.0, .step = 1e-2}).run(); });
+  std::string const said = refusal([&] { simulate(model, x, RungeKutta4<>{}, {.until = 3.0, .step = 1e-2}).run(); });
   EXPECT_TRUE(has(said, "planar::Rigid: the mass")) << said;
   EXPECT_NEAR(x.t, 2.5, 0.011);
   EXPECT_TRUE(x.q.allFinite() && x.v.allFinite());

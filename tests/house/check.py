@@ -38,6 +38,7 @@ FLOORS = {
     "stress": 9,
     "compare": 9,
     "io": 10,
+    "gradients": 10,
     "vehicle": 11,
     "testing": 12,
     "": 13,  # polybody.hpp itself

@@ -27,6 +27,8 @@ class StepHistory {
   VecX& memory_;
 
  public:
+  static constexpr int lengths = kept + 1;  ///< entries at the end of the memory that are lengths of steps
+
   /// The history of a state after `reset`. \throws InvalidInput for a state without one.
   explicit StepHistory(State& x) : nv_(x.a.size()), rows_(x.lambda.size()), memory_(x.memory) {
     if (memory_.size() != size(nv_, rows_))

@@ -223,7 +223,10 @@ void ForceKernels<F, T>::place(Pool const& pool, Index owner, Data<T>& data) {
   for (Entry const& e : pool) {
     for (Index const k : e.markers) {
       data.read[std::size_t(k)] = 1;
-      data.actions.push_back({.source = owner, .marker = k});
+      Action<T> action;
+      action.source = owner;
+      action.marker = k;
+      data.actions.push_back(action);
     }
     if constexpr (HasStates<F>) {
       for (Index const k : e.markers)
