@@ -40,6 +40,7 @@ FLOORS = {
     "io": 10,
     "gradients": 10,
     "vehicle": 11,
+    "study": 11,
     "testing": 12,
     "": 13,  # polybody.hpp itself
 }

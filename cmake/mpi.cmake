@@ -1,0 +1,10 @@
+# MPI, optional: target polybody_mpi where it is found (Debian: libopenmpi-dev openmpi-bin). A user's program takes
+# find_package(MPI REQUIRED COMPONENTS CXX) and MPI::MPI_CXX.
+set(MPI_CXX_SKIP_MPICXX ON) # the C++ bindings of old
+find_package(MPI QUIET COMPONENTS CXX)
+if(MPI_CXX_FOUND AND MPIEXEC_EXECUTABLE)
+  add_library(polybody_mpi INTERFACE)
+  target_link_libraries(polybody_mpi INTERFACE MPI::MPI_CXX)
+else()
+  message(STATUS "MPI is not here: studies run over threads only, and their tests over ranks are left out")
+endif()

@@ -1,0 +1,85 @@
+#pragma once
+/// \file
+/// Points on grids and from lists.
+///
+/// Not in polybody.hpp: of use to studies only.
+
+#include <polybody/study/points.hpp>
+#include <polybody/study/portable.hpp>
+
+namespace polybody {
+
+/// `count` values from `first` to `last` at equal distances; those between have twelve digits. \throws InvalidInput for
+/// less than two, and ends that are not finite.
+template <class = void>  // compiled where it is used
+std::vector<double> linear(double first, double last, std::size_t count) {
+  if (count < 2 || !std::isfinite(first) || !std::isfinite(last))
+    throw InvalidInput{
+        "study: linear(", first, ", ", last, ", ", count, ") needs finite ends and two values at least."};
+  std::vector<double> values(count, first);
+  for (std::size_t k = 1; k + 1 < count; ++k)
+    values[k] = detail::of_twelve_digits(std::fma(double(k) / double(count - 1), last - first, first));
+  values.back() = last;
+  return values;
+}
+
+/// The same at equal ratios. \throws InvalidInput for ends that are not positive.
+template <class = void>
+std::vector<double> logarithmic(double first, double last, std::size_t count) {
+  if (!(first > 0.0 && last > 0.0))
+    throw InvalidInput{"study: logarithmic(", first, ", ", last, ", ", count, ") needs positive ends."};
+  std::vector<double> values = linear(first, last, count);  // refuses what it must; the ends stay
+  double const from = detail::portable_log(first), to = detail::portable_log(last);
+  for (std::size_t k = 1; k + 1 < count; ++k)
+    values[k] =
+        detail::of_twelve_digits(detail::portable_exp(std::fma(double(k) / double(count - 1), to - from, from)));
+  return values;
+}
+
+/// Points of one parameter: axis("step", "s", {1e-3, 1e-4}).
+template <class = void>
+Points axis(std::string name, std::string unit, std::vector<double> values) {
+  return {{{.name = std::move(name), .unit = std::move(unit)}}, std::move(values), "grid"};
+}
+
+/// Points of one choice, by words: formulations("integrator", {"Radau", "HHT"}). See `Point::with`.
+template <class = void>
+Points formulations(std::string name, std::vector<std::string> choices) {
+  std::vector<double> values(choices.size());
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = double(k);
+  return {{{.name = std::move(name), .choices = std::move(choices)}}, std::move(values), "grid"};
+}
+
+/// Points one by one, a value for each column.
+template <class = void>
+Points list(std::vector<Column> columns, std::vector<std::vector<double>> const& rows) {
+  std::vector<double> values;
+  for (std::vector<double> const& row : rows) {
+    if (row.size() != columns.size())
+      throw InvalidInput{"study: a point of the list has ", row.size(), " values for ", columns.size(), " columns."};
+    values.insert(values.end(), row.begin(), row.end());
+  }
+  return {std::move(columns), std::move(values), "list"};
+}
+
+/// Every point of the first with every one of the second, the second varying faster.
+template <class = void>
+Points grid(Points const& first, Points const& second) {
+  std::vector<Column> columns = first.columns();
+  columns.insert(columns.end(), second.columns().begin(), second.columns().end());
+  std::vector<double> values;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t j = 0; j < second.size(); ++j) {
+      for (std::size_t k = 0; k < first.columns().size(); ++k) values.push_back(first.at(i, k));
+      for (std::size_t k = 0; k < second.columns().size(); ++k) values.push_back(second.at(j, k));
+    }
+  std::string const one = first.origin(), other = second.origin();
+  return {std::move(columns), std::move(values), one == other ? one : one + " x " + other};
+}
+/// Axes, formulations, lists and samples alike: grid(axis(…), formulations(…), latin_hypercube(…)).
+template <class... Others>
+Points grid(Points const& first, Points const& second, Others const&... others) {
+  return grid(grid(first, second), others...);
+}
+
+}  // namespace polybody

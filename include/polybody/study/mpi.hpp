@@ -1,0 +1,128 @@
+#pragma once
+/// \file
+/// Studies over the ranks of MPI: the program that runs over threads, started by `mpirun -np 4 program`. Rank 0 gives
+/// points to whoever is free, works on points itself, and records; the file is as that of threads, and either goes on
+/// with what the other has begun. Where a rank dies mpirun ends them all, and the next run goes on.
+///
+/// Not in polybody.hpp: it needs MPI (study/mpi_ranks.hpp says how to link it).
+
+#include <polybody/study/mpi_ranks.hpp>
+#include <polybody/study/study.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// What is told to all ranks at the end: a line for each point that is finished.
+template <class = void>  // compiled where it is used
+std::string text_of(StudyResults const& results) {
+  std::string text = std::to_string(results.taken_over) + (results.torn ? " 1\n" : " 0\n");
+  for (std::size_t i = 0; i < results.outcomes.size(); ++i)
+    if (results.outcomes[i]) text += record_text(i, *results.outcomes[i]) + '\n';
+  return text;
+}
+
+template <class = void>
+StudyResults results_in(std::string_view text, Study const& study) {
+  std::vector<std::optional<Outcome>> outcomes(study.points().size());
+  std::string const head(text.substr(0, text.find('\n')));
+  text.remove_prefix(head.size() + 1);
+  for (std::size_t end; (end = text.find('\n')) != text.npos; text.remove_prefix(end + 1))
+    if (auto one = outcome_in(text.substr(0, end), outcomes.size(), study.outputs().size()))
+      outcomes[one->first] = std::move(one->second);
+  return study.results(std::move(outcomes), std::stoul(head), head.ends_with('1'));
+}
+
+/// Rank 0 gives out points until every other rank has been told that there are no more.
+template <class = void>
+void give_points(MpiRanks const& ranks, Study const& study, StudyQueue& queue) {
+  for (int working = ranks.size() - 1; working > 0;) {
+    RankMessage const message = receive();
+    if (message.tag == RankTag::stops)
+      queue.stop(std::make_exception_ptr(Error{"study: rank ", message.from, ": ", message.text}));
+    else if (auto outcome = outcome_in(message.text, study.points().size(), study.outputs().size()))
+      queue.finish(outcome->first, std::move(outcome->second));
+    auto const next = queue.next();
+    send(message.from, next ? RankTag::point : RankTag::no_more, next ? std::to_string(*next) : "");
+    if (!next) --working;
+  }
+}
+
+/// The other ranks. What f throws beyond errors of the library ends the study.
+template <class F>
+StudyResults work_for_first(Study const& study, F const& f) {
+  std::exception_ptr own;
+  send(0, RankTag::asks, "");
+  RankMessage message = receive();
+  for (; message.tag == RankTag::point || message.tag == RankTag::no_more; message = receive()) {
+    if (message.tag == RankTag::no_more) continue;
+    std::size_t const i = std::stoul(message.text);
+    try {
+      send(0, RankTag::asks, record_text(i, outcome_of(f, study.points()[i], study.outputs())));
+    } catch (std::exception const& error) {
+      own = std::current_exception();
+      send(0, RankTag::stops, error.what());
+    } catch (...) {
+      own = std::current_exception();
+      send(0, RankTag::stops, "an exception that is not of the standard library");
+    }
+  }
+  if (own) std::rethrow_exception(own);
+  if (message.tag == RankTag::refused) throw IoError{message.text};
+  return results_in(message.text, study);
+}
+
+/// Rank 0: the file, the points for the others, and points of its own in a second thread, as MPI is of this one alone.
+template <class F>
+StudyResults run_first(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options) {
+  StudyRecord record(study.kind());
+  StudyQueue queue(record, options, study.label());
+  std::thread own(
+      [&] { queue.work([&](std::size_t i) { return outcome_of(f, study.points()[i], study.outputs()); }); });
+  give_points(ranks, study, queue);
+  own.join();
+  queue.rethrow();
+  return study.results(queue.take(), study.points().size() - queue.left(), record.torn());
+}
+
+/// Whether all ranks have the same study: a number of rank 0's is compared by all.
+template <class = void>
+void require_same_study(Study const& study) {
+  std::string all;
+  for (std::string const& line : study.kind().head) all += line + '\n';
+  unsigned long long const own = checksum(all + study.kind().file);
+  unsigned long long least = 0, most = 0;
+  MPI_Allreduce(&own, &least, 1, MPI_UNSIGNED_LONG_LONG, MPI_MIN, MPI_COMM_WORLD);
+  MPI_Allreduce(&own, &most, 1, MPI_UNSIGNED_LONG_LONG, MPI_MAX, MPI_COMM_WORLD);
+  if (least != most)
+    throw InvalidInput{"study '", study.kind().file,
+                       "': the ranks have different studies. Give all the same program and options."};
+}
+
+}  // namespace detail
+
+/// As `study.run(f, options)`, over all ranks, which must all call it. All get the results, or an error: rank 0 and a
+/// rank whose f threw get the exception itself, the others an IoError with its sentence. One rank alone runs over
+/// threads.
+template <class F>
+StudyResults run_over_ranks(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options = {}) {
+  if (ranks.size() == 1) return study.run(f, options);
+  detail::require_same_study(study);
+  if (!ranks.first()) return detail::work_for_first(study, f);
+  auto const tell = [&](detail::RankTag tag, std::string const& text) {
+    for (int to = 1; to < ranks.size(); ++to) detail::send(to, tag, text);
+  };
+  try {
+    StudyResults results = detail::run_first(ranks, study, f, options);
+    tell(detail::RankTag::found, detail::text_of(results));
+    return results;
+  } catch (std::exception const& error) {
+    tell(detail::RankTag::refused, error.what());
+    throw;
+  } catch (...) {
+    tell(detail::RankTag::refused, "an exception that is not of the standard library");
+    throw;
+  }
+}
+
+}  // namespace polybody

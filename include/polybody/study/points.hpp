@@ -1,0 +1,153 @@
+#pragma once
+/// \file
+/// The points of a study: a table of parameters with names and units, one row for each point.
+///
+/// Not in polybody.hpp: of use to studies only.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <polybody/math/errors.hpp>
+
+namespace polybody {
+
+/// What a study's function asks of a point that the study does not have, or gives too few or too many outputs. This is
+/// an error of the program, so it ends the study and is not recorded as a failure of the point.
+class StudyMisuse : public InvalidInput {
+ public:
+  using InvalidInput::InvalidInput;
+};
+
+/// One parameter.
+struct Column {
+  std::string name{};
+  std::string unit{};                  ///< empty: none
+  std::vector<std::string> choices{};  ///< what the values 0, 1, … mean; empty: they are numbers in `unit`
+
+  std::string head() const { return unit.empty() ? name : name + " [" + unit + ']'; }  ///< "step [s]"
+};
+
+class Point;
+
+/// A table of parameters. `grid.hpp` and `sampling.hpp` make them; the order of points is that of the study's table.
+class Points {
+ public:
+  /// \param values (points × columns), row by row \param origin how they were made, in words
+  /// \throws InvalidInput for no point, no column, names that are empty, alike or not printable, values that are not
+  /// finite and choices that there are not.
+  Points(std::vector<Column> columns, std::vector<double> values, std::string origin)
+      : columns_(std::move(columns)), values_(std::move(values)), origin_(std::move(origin)) {
+    if (columns_.empty()) throw InvalidInput{"study: its points need one column at least."};
+    for (std::size_t j = 0; j < columns_.size(); ++j) check(j);
+    if (values_.empty() || values_.size() % columns_.size() != 0)
+      throw InvalidInput{"study: ", values_.size(), " values do not fill the rows of ", columns_.size(),
+                         " columns. Give a value for each column of each point, and one point at least."};
+    for (std::size_t k = 0; k < values_.size(); ++k) check_value(columns_[k % columns_.size()], values_[k]);
+  }
+
+  std::size_t size() const { return values_.size() / columns_.size(); }
+  std::vector<Column> const& columns() const { return columns_; }
+  std::vector<double> const& values() const { return values_; }  ///< (points × columns), row by row
+  std::string const& origin() const { return origin_; }
+  double at(std::size_t point, std::size_t column) const { return values_.at(point * columns_.size() + column); }
+  Point operator[](std::size_t point) const;
+
+ private:
+  void check(std::size_t j) const {
+    Column const& column = columns_[j];
+    auto const printable = [](std::string const& text) {
+      return !text.empty() && std::ranges::none_of(text, [](unsigned char c) { return c < ' ' || c == 127; });
+    };
+    bool good = printable(column.name) && (column.unit.empty() || printable(column.unit));
+    for (std::string const& choice : column.choices) good = good && printable(choice);
+    if (!good)
+      throw InvalidInput{"study: column '", column.name,
+                         "' has a name, unit or choice that is empty or not printable. Give it words on one line."};
+    for (std::size_t k = 0; k < j; ++k)
+      if (columns_[k].name == column.name)
+        throw InvalidInput{"study: two columns are called '", column.name, "'. Give each a name of its own."};
+  }
+  static void check_value(Column const& column, double value) {
+    if (!std::isfinite(value))
+      throw InvalidInput{"study: a value of column '", column.name, "' is not finite (", value, ")."};
+    if (!column.choices.empty() &&
+        !(value >= 0.0 && value < double(column.choices.size()) && value == std::floor(value)))
+      throw InvalidInput{"study: ",
+                         value,
+                         " is none of the ",
+                         column.choices.size(),
+                         " choices of column '",
+                         column.name,
+                         "', which are counted from 0."};
+  }
+
+  std::vector<Column> columns_;
+  std::vector<double> values_;
+  std::string origin_;
+};
+
+/// One row, by the names of its columns. The points must outlive it.
+class Point {
+ public:
+  Point(Points const& points, std::size_t index) : points_(&points), index_(index) {}
+
+  std::size_t index() const { return index_; }  ///< from 0, in the order of the table
+
+  /// The value in the unit of its column. \throws StudyMisuse where there is no such column.
+  double operator[](std::string_view column) const { return points_->at(index_, place(column)); }
+
+  /// Which of the column's choices it has, from 0. \throws StudyMisuse where there is no such column, or none of
+  /// choices.
+  std::size_t choice(std::string_view column) const {
+    std::size_t const j = place(column);
+    if (points_->columns()[j].choices.empty())
+      throw StudyMisuse{"study: column '", column, "' holds numbers, not choices. Ask for point[\"", column, "\"]."};
+    return static_cast<std::size_t>(points_->at(index_, j));
+  }
+  /// The same as the word that `formulations` has for it.
+  std::string const& chosen(std::string_view column) const {
+    return points_->columns()[place(column)].choices[choice(column)];
+  }
+
+  /// Calls f with that of `all` which the point has chosen, as in
+  /// `point.with("integrator", run, GeneralizedAlpha{}, Radau{})`. \throws StudyMisuse unless there is one of `all` for
+  /// each choice.
+  template <class F, class First, class... Others>
+  auto with(std::string_view column, F const& f, First const& first, Others const&... others) const {
+    std::size_t const k = choice(column), count = points_->columns()[place(column)].choices.size();
+    if (count != 1 + sizeof...(others))
+      throw StudyMisuse{"study: column '",     column, "' has ", count, " choices, but the point's function knows ",
+                        1 + sizeof...(others), "."};
+    return call_nth(k, f, first, others...);
+  }
+
+ private:
+  std::size_t place(std::string_view name) const {
+    std::vector<Column> const& columns = points_->columns();
+    std::string all;
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      if (columns[j].name == name) return j;
+      all += (j ? ", '" : "'") + columns[j].name + '\'';
+    }
+    throw StudyMisuse{"study: there is no column '", name, "'; its points have ", all, "."};
+  }
+  template <class F, class First, class... Others>
+  static auto call_nth(std::size_t k, F const& f, First const& first, Others const&... others) {
+    if constexpr (sizeof...(others) == 0)
+      return f(first);
+    else
+      return k == 0 ? f(first) : call_nth(k - 1, f, others...);
+  }
+
+  Points const* points_;
+  std::size_t index_;
+};
+
+inline Point Points::operator[](std::size_t point) const { return {*this, point}; }
+
+}  // namespace polybody

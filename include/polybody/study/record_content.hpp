@@ -1,0 +1,88 @@
+#pragma once
+/// \file
+/// Reading a study's record: what is whole, what a killed run left torn, and what must be refused.
+///
+/// Not in polybody.hpp: it comes with study/study.hpp.
+
+#include <polybody/study/record_lines.hpp>
+
+namespace polybody::detail {
+
+/// Which study a record must be of.
+struct RecordKind {
+  std::string file;               ///< for messages
+  std::vector<std::string> head;  ///< `record_head`
+  std::size_t points = 0, outputs = 0;
+};
+
+/// What stands in a record.
+struct RecordContent {
+  std::vector<std::optional<Outcome>> outcomes{};  ///< of all points
+  std::size_t whole = 0;                           ///< bytes up to the end of the last whole line; 0: no head yet
+  bool torn = false;                               ///< bytes of a line without end follow
+  RecordChain chain{};                             ///< goes on after the last whole line
+};
+
+[[noreturn, gnu::cold]] inline void refuse_record(RecordKind const& kind, std::size_t line, std::string const& why) {
+  throw IoError{"file '", kind.file, "', line ", line, ": ", why};
+}
+
+/// The head as it stands in the file.
+template <class = void>
+std::string head_text(RecordKind const& kind, RecordChain& chain) {
+  std::string text;
+  for (std::string const& line : kind.head) text += chain.line(line);
+  return text;
+}
+
+template <class = void>
+void require_head_line(RecordKind const& kind, std::size_t line, std::string const& text) {
+  std::string const& ours = kind.head[line - 1];
+  if (text == ours) return;
+  if (line == 1) refuse_record(kind, line, "it is '" + text + "', but this program reads '" + ours + "'");
+  refuse_record(kind, line,
+                "the record is of another study: it has '" + text + "', this study '" + ours +
+                    "'. Give this study another file, or remove the old one");
+}
+
+/// A point that failed may be there again, when a later run has tried it once more.
+template <class = void>
+void take_outcome(RecordKind const& kind, std::size_t line, std::string const& text, RecordContent& content) {
+  auto found = outcome_in(text, kind.points, kind.outputs);
+  if (!found) refuse_record(kind, line, "'" + text + "' is no outcome of this study");
+  std::optional<Outcome>& place = content.outcomes[found->first];
+  if (place && !place->failed()) refuse_record(kind, line, "point " + std::to_string(found->first) + " is there twice");
+  place = std::move(found->second);
+}
+
+/// Reads the bytes of a record. The end of a file may be a part of a line, which a killed run leaves; the head may be a
+/// part of ours. \throws IoError with file and line for all else: damage, another study, a file that is no record.
+template <class = void>
+RecordContent record_content(RecordKind const& kind, std::string_view bytes) {
+  RecordContent content{.outcomes = std::vector<std::optional<Outcome>>(kind.points)};
+  RecordChain at_start;
+  std::string const head = head_text(kind, at_start);
+  if (bytes.size() < head.size() && std::string_view(head).starts_with(bytes)) {
+    content.torn = !bytes.empty();
+    return content;
+  }
+  std::size_t line = 0;
+  for (std::size_t end; (end = bytes.find('\n', content.whole)) != bytes.npos; content.whole = end + 1) {
+    ++line;
+    auto const text = content.chain.text(bytes.substr(content.whole, end - content.whole));
+    if (!text && line == 1) refuse_record(kind, line, "this is no record of a study, or its first line is damaged");
+    if (!text)
+      refuse_record(kind, line,
+                    "the line is damaged, or a line before it is missing: its checksum is not the one that it should "
+                    "have. Remove the file to begin anew, or put back a copy that is whole");
+    if (line <= kind.head.size())
+      require_head_line(kind, line, *text);
+    else
+      take_outcome(kind, line, *text, content);
+  }
+  if (line < kind.head.size()) refuse_record(kind, line + 1, "this is no record of this study: its head ends here");
+  content.torn = content.whole < bytes.size();
+  return content;
+}
+
+}  // namespace polybody::detail

@@ -1,0 +1,111 @@
+#pragma once
+/// \file
+/// What a study found as tables, curves and statistics.
+///
+/// Not in polybody.hpp: of use to studies only.
+
+#include <map>
+
+#include <polybody/io/atomic_file.hpp>
+#include <polybody/io/digits.hpp>
+#include <polybody/io/figure.hpp>
+#include <polybody/study/outcome.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// A field of comma-separated values (RFC 4180).
+template <class = void>  // compiled where it is used
+std::string csv_field(std::string const& text) {
+  if (text.find_first_of(",\"") == text.npos && !text.starts_with(' ') && !text.ends_with(' ')) return text;
+  std::string quoted = "\"";
+  for (char const c : text) quoted.append(c == '"' ? 2u : 1u, c);
+  return quoted + '"';
+}
+
+/// The value of column j of a point as it stands in a table: the word of a choice, or digits that read back exactly.
+template <class = void>
+std::string column_text(Points const& points, std::size_t i, std::size_t j) {
+  std::vector<std::string> const& choices = points.columns()[j].choices;
+  return choices.empty() ? all_digits(points.at(i, j)) : choices[std::size_t(points.at(i, j))];
+}
+
+template <class = void>
+std::string table_text(StudyResults const& found, bool with_measured) {
+  bool const failures = found.failed() > 0;
+  std::string text = "point";
+  for (Column const& column : found.points.columns()) text += ',' + csv_field(column.head());
+  for (StudyOutput const& output : found.outputs)
+    if (with_measured || !output.measured) text += ',' + csv_field(output.head);
+  text += failures ? ",failure\n" : "\n";
+  for (std::size_t i = 0; i < found.outcomes.size(); ++i) {
+    if (!found.outcomes[i]) continue;
+    Outcome const& outcome = *found.outcomes[i];
+    text += std::to_string(i);
+    for (std::size_t j = 0; j < found.points.columns().size(); ++j)
+      text += ',' + csv_field(column_text(found.points, i, j));
+    for (std::size_t j = 0; j < found.outputs.size(); ++j)
+      if (with_measured || !found.outputs[j].measured)
+        text += ',' + (outcome.failed() ? "" : all_digits(outcome.values[j]));
+    if (failures) text += ',' + csv_field(outcome.failure);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace detail
+
+/// Writes the points that are finished, in their order whatever the order in which they were, with units in the heads.
+/// Numbers read back to the same double; a failed point has no numbers and its sentence under "failure". Measured
+/// outputs are left out, so that the same study gives the same bytes; where there are any, NAME_measured.csv has all.
+/// \throws IoError, as AtomicFile.
+template <class = void>
+void write_table(StudyResults const& found, std::filesystem::path const& file) {
+  AtomicFile table(file);
+  table.write(detail::table_text(found, false));
+  table.close();
+  if (std::ranges::none_of(found.outputs, [](StudyOutput const& o) { return o.measured; })) return;
+  std::filesystem::path beside = file;
+  beside.replace_filename(file.stem().string() + "_measured" + file.extension().string());
+  AtomicFile all(beside);
+  all.write(detail::table_text(found, true));
+  all.close();
+}
+
+/// Curves of y over x, parameters or outputs both, for a Figure: one for each combination of values of the parameters
+/// `by`, with its points in their order. Failed points are left out. \throws InvalidInput for a column that there is
+/// not.
+template <class = void>
+std::vector<Curve> curves_of(StudyResults const& found, std::string_view x, std::string_view y,
+                             std::vector<std::string> const& by = {}) {
+  std::vector<double> const of_x = found.column(x), of_y = found.column(y);
+  std::vector<std::string> labels(of_x.size());
+  for (std::string const& name : by) {
+    found.column(name);  // refuses what there is not
+    std::size_t const j =
+        std::size_t(std::ranges::find(found.points.columns(), name, &Column::name) - found.points.columns().begin());
+    if (j == found.points.columns().size())
+      throw InvalidInput{"study: curves are told apart by the names of parameters, and '", name, "' is none."};
+    Column const& column = found.points.columns()[j];
+    std::string const unit = column.unit.empty() ? "" : ' ' + column.unit;
+    for (std::size_t i = 0, k = 0; i < found.outcomes.size(); ++i)
+      if (found.outcomes[i] && !found.outcomes[i]->failed()) {
+        std::string const value = column.choices.empty() ? column.name + ' ' + number(found.points.at(i, j)) + unit
+                                                         : detail::column_text(found.points, i, j);
+        labels[k] += (labels[k].empty() ? "" : ", ") + value;
+        ++k;
+      }
+  }
+  std::vector<Curve> curves;
+  std::map<std::string, std::size_t> places;
+  for (std::size_t k = 0; k < of_x.size(); ++k) {
+    auto const [place, fresh] = places.try_emplace(labels[k], curves.size());
+    if (fresh) curves.push_back({.label = labels[k], .style = "linespoints"});
+    curves[place->second].x.push_back(of_x[k]);
+    curves[place->second].y.push_back(of_y[k]);
+  }
+  return curves;
+}
+
+}  // namespace polybody

@@ -1,0 +1,120 @@
+#pragma once
+/// \file
+/// Points by Monte-Carlo and Latin hypercube sampling. A seed gives the same bits on every machine: the generator is
+/// std::mt19937_64, whose numbers the standard fixes, and no distribution of the standard library is used.
+///
+/// Not in polybody.hpp: of use to studies only.
+
+#include <cstdint>
+#include <functional>
+#include <random>
+
+#include <polybody/study/grid.hpp>
+
+namespace polybody {
+
+/// A parameter that is not known but by its distribution.
+struct RandomAxis {
+  Column column;
+  std::function<double(double)> quantile;  ///< the value that is not exceeded with probability u, 0 < u < 1
+};
+
+/// Equally probable between two ends. \throws InvalidInput unless low < high, both finite.
+template <class = void>  // compiled where it is used
+RandomAxis uniform(std::string name, std::string unit, double low, double high) {
+  if (!(low < high && std::isfinite(high - low)))
+    throw InvalidInput{"study: '", name, "' is to lie between ", low, " and ", high, ". Give the lower end first."};
+  return {{.name = std::move(name), .unit = std::move(unit)}, [=](double u) { return std::fma(u, high - low, low); }};
+}
+
+/// Its logarithm is equally probable between those of two positive ends. \throws InvalidInput unless 0 < low < high.
+template <class = void>
+RandomAxis log_uniform(std::string name, std::string unit, double low, double high) {
+  if (!(low > 0.0 && low < high && std::isfinite(high)))
+    throw InvalidInput{"study: '",
+                       name,
+                       "' is to lie between ",
+                       low,
+                       " and ",
+                       high,
+                       " on a logarithmic scale. Give two positive ends, the lower first."};
+  double const from = detail::portable_log(low), to = detail::portable_log(high);
+  return {{.name = std::move(name), .unit = std::move(unit)},
+          [=](double u) { return std::clamp(detail::portable_exp(std::fma(u, to - from, from)), low, high); }};
+}
+
+/// Normal, without bounds. \throws InvalidInput unless the standard deviation is positive.
+template <class = void>
+RandomAxis normal(std::string name, std::string unit, double mean, double deviation) {
+  if (!(deviation > 0.0 && std::isfinite(deviation) && std::isfinite(mean)))
+    throw InvalidInput{"study: '",
+                       name,
+                       "' has the mean ",
+                       mean,
+                       " and the standard deviation ",
+                       deviation,
+                       ", which must be finite and positive."};
+  return {{.name = std::move(name), .unit = std::move(unit)},
+          [=](double u) { return std::fma(detail::normal_quantile(u), deviation, mean); }};
+}
+
+namespace detail {
+
+/// 2⁵² numbers at equal distances in (0, 1).
+template <class = void>
+double unit_sample(std::mt19937_64& generator) {
+  return (double(generator() >> 12) + 0.5) * 0x1p-52;
+}
+
+/// One of 0 … n − 1, each with the same probability: draws that would favour some are repeated.
+template <class = void>
+std::size_t sample_below(std::mt19937_64& generator, std::uint64_t n) {
+  std::uint64_t const usable = UINT64_MAX - (UINT64_MAX % n + 1) % n;
+  std::uint64_t draw = generator();
+  while (draw > usable) draw = generator();
+  return static_cast<std::size_t>(draw % n);
+}
+
+/// Samples u (points × axes) as points.
+template <class = void>
+Points sampled(std::vector<double> u, std::vector<RandomAxis> const& axes, std::string origin) {
+  std::vector<Column> columns;
+  for (RandomAxis const& axis : axes) columns.push_back(axis.column);
+  for (std::size_t k = 0; k < u.size(); ++k) u[k] = axes[k % axes.size()].quantile(u[k]);
+  return {std::move(columns), std::move(u), std::move(origin)};
+}
+
+}  // namespace detail
+
+/// `count` independent points. The first points of a larger sample with the same seed and axes are those of a smaller.
+/// \throws InvalidInput for no point or no axis.
+template <class = void>
+Points monte_carlo(std::size_t count, std::uint64_t seed, std::vector<RandomAxis> const& axes) {
+  std::mt19937_64 generator(seed);
+  std::vector<double> u(count * axes.size());
+  for (double& x : u) x = detail::unit_sample(generator);
+  return detail::sampled(std::move(u), axes, "Monte Carlo, seed " + std::to_string(seed));
+}
+
+/// `count` points, of which each axis has one in each of `count` strata of equal probability, at a random place in it;
+/// strata of different axes are paired at random.  [McKay, Beckman & Conover 1979] \throws InvalidInput for no point,
+/// no axis, and more than 2²⁰ points.
+template <class = void>
+Points latin_hypercube(std::size_t count, std::uint64_t seed, std::vector<RandomAxis> const& axes) {
+  if (count > 1u << 20)
+    throw InvalidInput{"study: a Latin hypercube has 1048576 points at most, but ", count, " are asked for."};
+  std::mt19937_64 generator(seed);
+  std::vector<double> u(count * axes.size());
+  std::vector<std::size_t> strata(count);
+  for (std::size_t j = 0; j < axes.size(); ++j) {
+    for (std::size_t i = 0; i < count; ++i) strata[i] = i;
+    for (std::size_t i = count; i > 1; --i) std::swap(strata[i - 1], strata[detail::sample_below(generator, i)]);
+    for (std::size_t i = 0; i < count; ++i) {
+      double const within = (double(generator() >> 34) + 0.5) * 0x1p-30;  // exact beside twenty bits of a stratum
+      u[i * axes.size() + j] = (double(strata[i]) + within) / double(count);
+    }
+  }
+  return detail::sampled(std::move(u), axes, "Latin hypercube, seed " + std::to_string(seed));
+}
+
+}  // namespace polybody

@@ -1,0 +1,78 @@
+#pragma once
+/// \file
+/// Statistics of an ensemble: what a sampled study says of an output.
+///
+/// Not in polybody.hpp: of use to studies only.
+
+#include <numeric>
+
+#include <polybody/study/outcome.hpp>
+
+namespace polybody {
+
+/// One output over the points that have it.
+struct Statistics {
+  std::size_t count = 0;
+  double mean = 0.0, deviation = 0.0;  ///< deviation: √(Σ(x − mean)²/(n − 1))
+  std::vector<double> sorted{};        ///< (n) values, rising
+
+  /// The value at a share p of the sorted values, 0 … 1, linear between two: 0 the least, 0.5 the median.
+  double quantile(double p) const {
+    if (!(p >= 0.0 && p <= 1.0)) throw InvalidInput{"study: a quantile is at a share of 0 … 1, not at ", p, "."};
+    double const place = p * double(count - 1);
+    std::size_t const k = std::min(std::size_t(place), count - 1), next = std::min(k + 1, count - 1);
+    return sorted[k] + (place - double(k)) * (sorted[next] - sorted[k]);
+  }
+};
+
+/// \throws InvalidInput for a column that there is not, or has less than two values.
+template <class = void>  // compiled where it is used
+Statistics statistics(StudyResults const& found, std::string_view column) {
+  Statistics s{.sorted = found.column(column)};
+  s.count = s.sorted.size();
+  if (s.count < 2)
+    throw InvalidInput{"study: statistics of '", column, "' need two finished points at least, but there are ", s.count,
+                       "."};
+  for (double const x : s.sorted) s.mean += x / double(s.count);
+  double squares = 0.0;
+  for (double const x : s.sorted) squares += (x - s.mean) * (x - s.mean);
+  s.deviation = std::sqrt(squares / double(s.count - 1));
+  std::ranges::sort(s.sorted);
+  return s;
+}
+
+namespace detail {
+
+/// Ranks 1 … n of values; those that are equal share the mean of theirs.
+template <class = void>
+std::vector<double> ranks_of(std::vector<double> const& x) {
+  std::vector<std::size_t> order(x.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
+  std::vector<double> ranks(x.size());
+  for (std::size_t i = 0, j = 0; i < order.size(); i = j) {
+    while (j < order.size() && x[order[j]] == x[order[i]]) ++j;
+    for (std::size_t k = i; k < j; ++k) ranks[order[k]] = 0.5 * double(i + 1 + j);
+  }
+  return ranks;
+}
+
+}  // namespace detail
+
+/// Spearman's rank correlation of two columns, −1 … 1: how far one rises or falls with the other, whatever the curve.
+/// 0 where one of them is constant. \throws InvalidInput as `statistics`.
+template <class = void>
+double rank_correlation(StudyResults const& found, std::string_view one, std::string_view other) {
+  std::vector<double> const a = detail::ranks_of(found.column(one)), b = detail::ranks_of(found.column(other));
+  if (a.size() < 2) throw InvalidInput{"study: a correlation needs two finished points at least."};
+  double const mean = 0.5 * double(a.size() + 1);
+  double ab = 0.0, aa = 0.0, bb = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    ab += (a[k] - mean) * (b[k] - mean);
+    aa += (a[k] - mean) * (a[k] - mean);
+    bb += (b[k] - mean) * (b[k] - mean);
+  }
+  return aa * bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+}  // namespace polybody
