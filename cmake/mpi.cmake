@@ -3,8 +3,10 @@
 set(MPI_CXX_SKIP_MPICXX ON) # the C++ bindings of old
 find_package(MPI QUIET COMPONENTS CXX)
 if(MPI_CXX_FOUND AND MPIEXEC_EXECUTABLE)
+  # Its definitions are set for single sources, ${MPI_CXX_COMPILE_DEFINITIONS}: they share precompiled headers with others.
   add_library(polybody_mpi INTERFACE)
-  target_link_libraries(polybody_mpi INTERFACE MPI::MPI_CXX)
+  target_include_directories(polybody_mpi SYSTEM INTERFACE ${MPI_CXX_INCLUDE_DIRS})
+  target_link_libraries(polybody_mpi INTERFACE ${MPI_CXX_LIBRARIES})
 else()
   message(STATUS "MPI is not here: studies run over threads only, and their tests over ranks are left out")
 endif()

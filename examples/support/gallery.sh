@@ -1,17 +1,19 @@
 # What examples/run builds and shows, and the page of its pictures. Sourced.
 
-stages=(pendulum robot_arm cantilever tracked_vehicle link_from_fe track_stress)
+stages=(pendulum robot_arm cantilever chain_study tracked_vehicle link_from_fe track_stress vehicle_study)
 
 # What each takes from nothing to its last picture, after those before it, on two cores [s]: for what is left only.
-declare -A seconds=([pendulum]=20 [robot_arm]=160 [cantilever]=45 [tracked_vehicle]=240 [link_from_fe]=45 [track_stress]=220)
+declare -A seconds=([pendulum]=20 [robot_arm]=160 [cantilever]=45 [chain_study]=40 [tracked_vehicle]=240 [link_from_fe]=45 [track_stress]=220 [vehicle_study]=80)
 
 declare -A shows=(
   [pendulum]="A rod on a pin, in 22 lines: time, energy drift [J] and gap of the pin [m] after two seconds."
   [robot_arm]="The flexible robot arm of Chapter 2: shapes, deflections, and energies under several formulations."
   [cantilever]="The clamped beam of Chapter 2 under a moment at its tip, up to a full circle."
+  [chain_study]="A study of 100 runs: stiffness of penalty pins, step and integrator, and what accuracy costs."
   [tracked_vehicle]="The tracked vehicle of Chapter 3, its pins under five joint formulations."
   [link_from_fe]="A link of 8300 nodes from a finite element program, reduced and on its pins."
   [track_stress]="Stresses of the vehicle's links, Chapter 4: decoupled, and by flexible links of several formulations."
+  [vehicle_study]="A study of 24 vehicles whose preload and friction are drawn at random: forces in a pin, and the way."
 )
 
 # command_of NAME OUT: the program and its options.
@@ -19,6 +21,7 @@ command_of() {
   case $1 in
     robot_arm | cantilever) echo "$1 --case all --out $2/$1" ;;
     tracked_vehicle | track_stress) echo "$1 --figure all --out $2/$1" ;;
+    chain_study | vehicle_study) echo "$1 --threads $(nproc) --out $2/$1" ;;
     *) echo "$1" ;;
   esac
 }

@@ -13,6 +13,7 @@
 #include <polybody/study/sampling.hpp>
 #include <polybody/study/statistics.hpp>
 #include <polybody/study/study.hpp>
+#include <polybody/study/thread_time.hpp>
 
 #include "support/refusal.hpp"
 
@@ -331,16 +332,37 @@ TEST_F(StudyFiles, CurvesAreToldApartByParameters) {
   StudyResults const found = study.run(values_at, with_threads(2));
   std::vector<Curve> const curves = curves_of(found, "step", "sum [m]", {"integrator", "stiffness"});
   ASSERT_EQ(curves.size(), 6u);
-  EXPECT_EQ(curves[0].label, "Radau, stiffness 1000000 N/m");
-  EXPECT_EQ(curves[1].label, "a, b, stiffness 1000000 N/m");
+  EXPECT_EQ(curves[0].label, "Radau, stiffness 1e+06 N/m");
+  EXPECT_EQ(curves[1].label, "a, b, stiffness 1e+06 N/m");
   EXPECT_EQ(curves[1].x, (std::vector{1e-2, 1e-3}));
   EXPECT_EQ(curves[2].x, std::vector{1e-3});  // the other point failed
   EXPECT_EQ(curves[2].y, std::vector{found.outcomes[5]->values[0]});
+  StudyResults const soft = where(found, [](Point const& p) { return p["stiffness"] == 1e6; });
+  EXPECT_EQ(soft.finished(), 4u);
+  EXPECT_EQ(curves_of(soft, "step", "sum [m]", {"integrator"}).size(), 2u);
   std::vector<Curve> const all = curves_of(found, "stiffness [N/m]", "sum [m]");
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].x.size(), 10u);
   EXPECT_TRUE(has(refusal([&] { curves_of(found, "x", "sum [m]"); }), "no column 'x'; there are 'stiffness [N/m]'"));
   EXPECT_TRUE(has(refusal([&] { curves_of(found, "step", "sum [m]", {"sum [m]"}); }), "names of parameters"));
+}
+
+// A second thread that works does not count, nor does a wait.
+TEST(StudyTime, IsThatOfTheThread) {
+  std::atomic<bool> done = false;
+  std::thread other([&] {
+    while (!done) continue;
+  });
+  double const begin = thread_seconds();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  double const waited = thread_seconds() - begin;
+  done = true;
+  other.join();
+  EXPECT_LT(waited, 0.025);
+  double x = 1.0;
+  while (thread_seconds() - begin < 0.002) x = std::cos(x);
+  EXPECT_GT(thread_seconds() - begin, 0.0);
+  EXPECT_NE(x, 1.0);
 }
 
 TEST_F(StudyFiles, StatisticsAreThoseOfTheFinishedPoints) {

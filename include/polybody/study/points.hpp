@@ -43,11 +43,11 @@ class Points {
   Points(std::vector<Column> columns, std::vector<double> values, std::string origin)
       : columns_(std::move(columns)), values_(std::move(values)), origin_(std::move(origin)) {
     if (columns_.empty()) throw InvalidInput{"study: its points need one column at least."};
-    for (std::size_t j = 0; j < columns_.size(); ++j) check(j);
+    for (std::size_t j = 0; j < columns_.size(); ++j) require_good(j);
     if (values_.empty() || values_.size() % columns_.size() != 0)
       throw InvalidInput{"study: ", values_.size(), " values do not fill the rows of ", columns_.size(),
                          " columns. Give a value for each column of each point, and one point at least."};
-    for (std::size_t k = 0; k < values_.size(); ++k) check_value(columns_[k % columns_.size()], values_[k]);
+    for (std::size_t k = 0; k < values_.size(); ++k) require_good_value(columns_[k % columns_.size()], values_[k]);
   }
 
   std::size_t size() const { return values_.size() / columns_.size(); }
@@ -58,7 +58,7 @@ class Points {
   Point operator[](std::size_t point) const;
 
  private:
-  void check(std::size_t j) const {
+  void require_good(std::size_t j) const {
     Column const& column = columns_[j];
     auto const printable = [](std::string const& text) {
       return !text.empty() && std::ranges::none_of(text, [](unsigned char c) { return c < ' ' || c == 127; });
@@ -72,7 +72,7 @@ class Points {
       if (columns_[k].name == column.name)
         throw InvalidInput{"study: two columns are called '", column.name, "'. Give each a name of its own."};
   }
-  static void check_value(Column const& column, double value) {
+  static void require_good_value(Column const& column, double value) {
     if (!std::isfinite(value))
       throw InvalidInput{"study: a value of column '", column.name, "' is not finite (", value, ")."};
     if (!column.choices.empty() &&

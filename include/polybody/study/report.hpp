@@ -73,6 +73,14 @@ void write_table(StudyResults const& found, std::filesystem::path const& file) {
   all.close();
 }
 
+/// Those points alone of which `keeps(point)` is true, as if the others were not finished: one panel of a figure.
+template <class Keeps>
+StudyResults where(StudyResults found, Keeps const& keeps) {
+  for (std::size_t i = 0; i < found.outcomes.size(); ++i)
+    if (!keeps(found.points[i])) found.outcomes[i].reset();
+  return found;
+}
+
 /// Curves of y over x, parameters or outputs both, for a Figure: one for each combination of values of the parameters
 /// `by`, with its points in their order. Failed points are left out. \throws InvalidInput for a column that there is
 /// not.
@@ -91,9 +99,8 @@ std::vector<Curve> curves_of(StudyResults const& found, std::string_view x, std:
     std::string const unit = column.unit.empty() ? "" : ' ' + column.unit;
     for (std::size_t i = 0, k = 0; i < found.outcomes.size(); ++i)
       if (found.outcomes[i] && !found.outcomes[i]->failed()) {
-        std::string const value = column.choices.empty() ? column.name + ' ' + number(found.points.at(i, j)) + unit
-                                                         : detail::column_text(found.points, i, j);
-        labels[k] += (labels[k].empty() ? "" : ", ") + value;
+        std::string const value = detail::column_text(found.points, i, j);
+        labels[k] += (labels[k].empty() ? "" : ", ") + (column.choices.empty() ? name + ' ' + value + unit : value);
         ++k;
       }
   }

@@ -33,7 +33,7 @@ struct LinkContacts {
   using OnGround = Contact<LinkOnGround<Ground, observed>>;
   static constexpr bool in_plane = observed != Observes::frame;
 
-  bool friction = true;
+  double friction = 1.0;  ///< times the coefficients of m113.hpp; 0: none
 
   /// \param length of the face along the link [m]
   OnRoller on_roller(double radius, double length = pitch) const {
@@ -78,7 +78,7 @@ struct LinkContacts {
     double const share = in_plane ? 2.0 : 1.0;
     return {geometry,
             {.stiffness = share * c.stiffness, .damping = share * c.damping, .onset = onset},
-            {.coefficient = friction ? c.friction : 0.0, .slip_speed = slip_speed}};
+            {.coefficient = friction * c.friction, .slip_speed = slip_speed}};
   }
 };
 

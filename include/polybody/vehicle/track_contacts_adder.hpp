@@ -28,7 +28,7 @@ class TrackContactsAdder {
   [[gnu::cold]] std::vector<ElementHandle<Contacts>> add(std::string const& name, Carriers<Base> const& carriers,
                                                          LinkParts<Link> const& of_side, Ground const& ground,
                                                          Track& track) {
-    OfLinks const of_links{options_.friction};
+    OfLinks const of_links{options_.friction ? options_.friction_factor : 0.0};
     bool const in_the_middle = options_.contacts == ContactsAct::in_the_middle;
     double const face = in_the_middle ? pitch : pitch / 3.0;
     auto const rims = add_group(of_side.middle, name + "track", track);

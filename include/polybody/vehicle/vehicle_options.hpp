@@ -57,6 +57,7 @@ struct VehicleOptions {
   TrackStart start = {};
   int link_elements = 0;  ///< of each flexible link; 0: one, and two of a floating frame
   bool friction = true;
+  double friction_factor = 1.0;  ///< of all coefficients of m113.hpp
   ContactsAct contacts = ContactsAct::in_the_middle;
   bool held = false;         ///< the chassis is welded to the ground and the arms to the chassis
   bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
@@ -72,6 +73,7 @@ void check(VehicleOptions const& options) {
     throw InvalidInput{"M113: the pin that closes a track is one of 0 … 63, but ", options.cut, " is asked for."};
   if (options.link_elements < 0)
     throw InvalidInput{"M113: a flexible link has one element or more, but ", options.link_elements, " are asked for."};
+  require_not_negative(options.friction_factor, "M113: the factor of the coefficients of friction");
 }
 
 }  // namespace polybody::m113
