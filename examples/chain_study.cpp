@@ -1,6 +1,6 @@
-// A chain of rods on penalty pins, let go from the side: stiffness of the pins, step and integrator, each with each. How
-// far the end of the chain then is from that of a chain on ideal pins at a fine step, and what it costs: a work-precision
-// map. It stops anywhere and goes on there, over threads or over the ranks of MPI:
+// A chain of rods on penalty pins, let go from the side: stiffness of the pins, step and integrator, each with each.
+// How far the end of the chain then is from that of a chain on ideal pins at a fine step, and what it costs: a
+// work-precision map. It stops anywhere and goes on there, over threads or over the ranks of MPI:
 //   chain_study --threads 2 --out out/chain_study
 //   mpirun -np 2 chain_study --out out/chain_study
 #include <iostream>
@@ -34,12 +34,13 @@ End swing(Options const& o, Policy const& policy, Integrator const& integrator, 
   using Pin = Joint<planar::Revolute, Policy>;
   double const length = 0.5, mass = 0.8;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
-  auto before = model.add(planar::Rigid{mass, mass * length * length / 12.0, Placement::planar(0.5 * length, 0.0)}, "rod 1");
+  auto before =
+      model.add(planar::Rigid{mass, mass * length * length / 12.0, Placement::planar(0.5 * length, 0.0)}, "rod 1");
   model.connect(Pin{{}, policy}, model.ground().at({0, 0, 0}), before.at(Vec2(-0.5 * length, 0.0)), "pin 1");
   for (int i = 1; i < o.links; ++i) {
-    auto const rod = model.add(
-        planar::Rigid{mass, mass * length * length / 12.0, Placement::planar((i + 0.5) * length, 0.0)},
-        "rod " + std::to_string(i + 1));
+    auto const rod =
+        model.add(planar::Rigid{mass, mass * length * length / 12.0, Placement::planar((i + 0.5) * length, 0.0)},
+                  "rod " + std::to_string(i + 1));
     model.connect(Pin{{}, policy}, before.at(Vec2(0.5 * length, 0.0)), rod.at(Vec2(-0.5 * length, 0.0)),
                   "pin " + std::to_string(i + 1));
     before = rod;
@@ -85,18 +86,18 @@ void draw(Options const& o, StudyResults const& found, char const* x, std::strin
 
 void run(Options const& o, Ranks const& ranks) {
   std::size_t const n = std::size_t(o.levels);
-  Study const study({o.out / "chain.study", std::to_string(o.links) + " rods, " + number(o.until) + " s"},
-                    grid(formulations("integrator", {"GeneralizedAlpha", "EnergyMomentum", "Radau", "RungeKutta4"}),
-                         axis("stiffness", "N/m", logarithmic(1e5, 1e9, n)), axis("step", "s", logarithmic(1e-2, 1e-4, n))),
-                    outputs("error [m]", measured("cpu [s]")));
+  Study const study(
+      {o.out / "chain.study", std::to_string(o.links) + " rods, " + number(o.until) + " s"},
+      grid(formulations("integrator", {"GeneralizedAlpha", "EnergyMomentum", "Radau", "RungeKutta4"}),
+           axis("stiffness", "N/m", logarithmic(1e5, 1e9, n)), axis("step", "s", logarithmic(1e-2, 1e-4, n))),
+      outputs("error [m]", measured("cpu [s]")));
   Vec3 const exact = swing(o, Constraint{}, Radau{}, 1e-3).place;
-  StudyResults const found = run_over_ranks(
-      ranks, study, [&](Point const& p) { return error_and_cost(o, exact, p); },
-      {.threads = o.threads, .retry_failed = o.retry});
+  StudyResults const found = run_over_ranks(ranks, study, [&](Point const& p) { return error_and_cost(o, exact, p); },
+                                            {.threads = o.threads, .retry_failed = o.retry});
   if (!ranks.first()) return;
   write_table(found, o.out / "chain.csv");
-  std::cout << found.points.size() << " points, " << found.taken_over << " of them from an earlier run, " << found.failed()
-            << " failed\n";
+  std::cout << found.points.size() << " points, " << found.taken_over << " of them from an earlier run, "
+            << found.failed() << " failed\n";
   std::vector<double> const errors = found.column("error [m]");
   if (errors.empty()) return;
   draw(o, found, "cpu [s]", "work_precision");

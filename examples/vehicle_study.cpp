@@ -1,6 +1,6 @@
-// The tracked vehicle with what nobody knows of it: the preload of its tensioners and the friction of all that its tracks
-// touch. A Latin hypercube of both, and what it says of the forces in a pin and of the way that the vehicle makes. The study
-// stops anywhere and goes on there, over threads or over the ranks of MPI:
+// The tracked vehicle with what nobody knows of it: the preload of its tensioners and the friction of all that its
+// tracks touch. A Latin hypercube of both, and what it says of the forces in a pin and of the way that the vehicle
+// makes. The study stops anywhere and goes on there, over threads or over the ranks of MPI:
 //   vehicle_study --threads 2 --out out/vehicle_study
 //   mpirun -np 2 vehicle_study --out out/vehicle_study
 #include <iostream>
@@ -58,9 +58,11 @@ void report(Options const& o, StudyResults const& found) {
   std::vector<Figure> panels;
   for (StudyOutput const& output : found.outputs) {
     Statistics const s = statistics(found, output.head);
-    std::printf("%-26s %8.4g in the mean, %8.3g deviation, %8.4g to %8.4g; rank correlation with preload %5.2f, friction %5.2f\n",
-                output.head.c_str(), s.mean, s.deviation, s.sorted.front(), s.sorted.back(),
-                rank_correlation(found, "preload", output.head), rank_correlation(found, "friction factor", output.head));
+    std::printf(
+        "%-26s %8.4g in the mean, %8.3g deviation, %8.4g to %8.4g; rank correlation with preload %5.2f, friction "
+        "%5.2f\n",
+        output.head.c_str(), s.mean, s.deviation, s.sorted.front(), s.sorted.back(),
+        rank_correlation(found, "preload", output.head), rank_correlation(found, "friction factor", output.head));
     for (Column const& parameter : found.points.columns()) {
       Figure panel{.x_label = parameter.head(), .y_label = output.head};
       panel.title = output.head + " over " + parameter.name;
@@ -73,14 +75,13 @@ void report(Options const& o, StudyResults const& found) {
 }
 
 void run(Options const& o, Ranks const& ranks) {
-  Study const study(
-      {o.out / "vehicle.study", "M113, sprockets to " + number(o.speed) + " rad/s, " + number(o.until) +
-                                    " s in steps of " + number(o.step) + " s"},
-      latin_hypercube(std::size_t(o.samples), std::uint64_t(o.seed),
-                      {uniform("preload", "kN", 10.0, 40.0), uniform("friction factor", "", 0.5, 1.5)}),
-      outputs("largest pin force [kN]", "mean pin force [kN]", "way [m]"));
-  StudyResults const found = run_over_ranks(
-      ranks, study, [&](Point const& p) { return drive(o, p); }, {.threads = o.threads, .retry_failed = o.retry});
+  Study const study({o.out / "vehicle.study", "M113, sprockets to " + number(o.speed) + " rad/s, " + number(o.until) +
+                                                  " s in steps of " + number(o.step) + " s"},
+                    latin_hypercube(std::size_t(o.samples), std::uint64_t(o.seed),
+                                    {uniform("preload", "kN", 10.0, 40.0), uniform("friction factor", "", 0.5, 1.5)}),
+                    outputs("largest pin force [kN]", "mean pin force [kN]", "way [m]"));
+  StudyResults const found = run_over_ranks(ranks, study, [&](Point const& p) { return drive(o, p); },
+                                            {.threads = o.threads, .retry_failed = o.retry});
   if (ranks.first()) report(o, found);
 }
 

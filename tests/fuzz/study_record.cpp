@@ -1,6 +1,6 @@
 // Records of studies. What is accepted has an outcome of the study's own outputs, or a sentence, at each point that is
-// there; written again line by line it is read as the same, and what is torn is at the end. The input is given as it is,
-// as lines after the head, and as texts of lines whose checksums are right.
+// there; written again line by line it is read as the same, and what is torn is at the end. The input is given as it
+// is, as lines after the head, and as texts of lines whose checksums are right.
 #include <polybody/study/record_content.hpp>
 
 #include "fuzz/target.hpp"
@@ -9,7 +9,10 @@ namespace polybody::fuzz {
 
 detail::RecordKind const& kind() {
   static detail::RecordKind const one{
-      "fuzz.study", {"polybody study 1", "about: ", "column: x", "points: 5, list, checksum 0", "output: y", "output: z"}, 5, 2};
+      "fuzz.study",
+      {"polybody study 1", "about: ", "column: x", "points: 5, list, checksum 0", "output: y", "output: z"},
+      5,
+      2};
   return one;
 }
 
@@ -30,7 +33,8 @@ void check(std::string_view bytes) {
   require(content->torn == (content->whole < bytes.size()), "what is torn is at the end");
   for (auto const& outcome : content->outcomes) {
     if (!outcome) continue;
-    require(outcome->failed() ? outcome->values.empty() : outcome->values.size() == 2, "an outcome has all numbers or none");
+    require(outcome->failed() ? outcome->values.empty() : outcome->values.size() == 2,
+            "an outcome has all numbers or none");
     for (double const x : outcome->values) require(std::isfinite(x), "numbers are finite");
   }
   std::string const written = lines_of(*content);

@@ -16,6 +16,7 @@ HEAD = 8  # lines of the record before the first point
 # Open MPI without a network, as root in a container, and with more ranks than cores.
 ENVIRONMENT = dict(
     os.environ,
+    ASAN_OPTIONS="detect_leaks=0",  # MPI keeps what it took to the end
     OMPI_ALLOW_RUN_AS_ROOT="1",
     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
     OMPI_MCA_btl="self,vader",
@@ -66,7 +67,7 @@ def kill_in_mid_run(runs, folder, ranks, victim):
     before = recorded(folder)
     goal = max(before, 0) + 6
     first = len(calls(folder))
-    running = subprocess.Popen(runs.command(folder, ranks, "--pause", "50"), env=ENVIRONMENT, stdout=subprocess.DEVNULL,
+    running = subprocess.Popen(runs.command(folder, ranks, "--pause", "150"), env=ENVIRONMENT, stdout=subprocess.DEVNULL,
                                stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 60
     pids = set()
@@ -93,9 +94,9 @@ def check_tables(runs, root, one):
 def check_sharing(runs, root):
     folder = root / "sharing"
     folder.mkdir()
-    runs.table(folder, 3, "--pause", "5")
+    runs.table(folder, 3, "--pause", "20")
     shares = [sum(rank == r for _, rank, _ in calls(folder)) for r in range(3)]
-    require(min(shares) >= 10, f"points of the ranks: {shares}")
+    require(min(shares) >= 5, f"points of the ranks: {shares}")
 
 
 def check_kills(runs, root, one):
