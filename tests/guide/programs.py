@@ -1,33 +1,44 @@
 """The programs of the pages in docs/guide, and what they print.
 
-  programs.py names PAGE...            their names, one a line: of blocks behind <!-- program: NAME -->
+  programs.py names PAGE...            their names, one a line: of blocks behind <!-- program: NAME -->, which those behind
+                                       <!-- more: NAME --> continue; a block has at most 60 lines
   programs.py write PAGE NAME FILE     one of them
   programs.py check PAGE NAME PROGRAM  runs it and compares what it prints with the block behind <!-- output: NAME -->:
                                        words as they stand, numbers to a thousandth, sizes of errors (1e-9) to a factor of 100
   programs.py self                     what `check` finds and what it lets pass
-  programs.py errors PAGE HEADER       the page's table has each exception that the header declares, and no other
+  programs.py errors PAGE INCLUDE      the page's table has each exception that a header under INCLUDE declares, and no other,
+                                       each with its cause and remedy
 """
 import re
 import subprocess
 import sys
 from pathlib import Path
 
-BLOCK = re.compile(r"<!-- (program|output): (\w+) -->\n```(?:cpp|text)\n(.*?)```", re.S)
+MAX_LINES = 60
+BLOCK = re.compile(r"<!-- (program|more|output): (\w+) -->\n```(?:cpp|text)\n(.*?)```", re.S)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 def blocks(page):
     text = Path(page).read_text(encoding="utf-8")
-    found = {"program": {}, "output": {}}
+    found, continued = {"program": {}, "output": {}}, 0
     for kind, name, content in BLOCK.findall(text):
+        if kind != "output" and content.count("\n") > MAX_LINES:
+            sys.exit(f"{page}: a block of {name} has {content.count(chr(10))} lines, above {MAX_LINES}.")
+        if kind == "more":
+            if name not in found["program"]:
+                sys.exit(f"{page}: nothing comes before what continues {name}.")
+            found["program"][name] += "\n" + content
+            continued += 1
+            continue
         if name in found[kind]:
             sys.exit(f"{page}: two blocks are the {kind} of {name}.")
         found[kind][name] = content
     if set(found["program"]) != set(found["output"]):
         sys.exit(f"{page}: programs and outputs differ: {sorted(set(found['program']) ^ set(found['output']))}.")
     fences = len(re.findall(r"^```cpp$", text, re.M))
-    if fences != len(found["program"]):
-        sys.exit(f"{page}: {fences} blocks of C++, but {len(found['program'])} are named programs.")
+    if fences != len(found["program"]) + continued:
+        sys.exit(f"{page}: {fences} blocks of C++, but {len(found['program']) + continued} are programs or continue one.")
     return found
 
 
@@ -63,6 +74,24 @@ def check_self():
             sys.exit(f"not found: {shown!r}, {printed!r}")
 
 
+def check_errors(page, include):
+    """Classes that derive from Error, at once or in steps, beside the rows of the page's table."""
+    bases = {}
+    for header in Path(include).rglob("*.hpp"):
+        bases.update(re.findall(r"^(?:class|struct) (\w+)(?: final)? : (?:public )?(\w+) \{", header.read_text(encoding="utf-8"), re.M))
+    declared, more = {"Error"}, True
+    while more:
+        more = {name for name, base in bases.items() if base in declared} - declared
+        declared |= more
+    rows = re.findall(r"^\| `(\w+)` \| (.*?) \| (.*?) \|$", Path(page).read_text(encoding="utf-8"), re.M)
+    differ = declared - {"Error"} ^ {name for name, _, _ in rows}
+    if differ:
+        sys.exit(f"{page}: exceptions that are shown and declared differ: {sorted(differ)}.")
+    for name, cause, remedy in rows:
+        if not cause.strip() or not remedy.strip():
+            sys.exit(f"{page}: {name} has no cause or no remedy.")
+
+
 def main(command, *arguments):
     if command == "names":
         for page in arguments:
@@ -82,11 +111,8 @@ def main(command, *arguments):
     elif command == "self":
         check_self()
     elif command == "errors":
-        page, header = arguments
-        declared = set(re.findall(r"^class (\w+) : public Error", Path(header).read_text(encoding="utf-8"), re.M))
-        shown = set(re.findall(r"^\| `(\w+)` \|", Path(page).read_text(encoding="utf-8"), re.M))
-        if declared != shown:
-            sys.exit(f"{page}: exceptions that are shown and declared differ: {sorted(declared ^ shown)}.")
+        page, include = arguments
+        check_errors(page, include)
     else:
         sys.exit(__doc__)
 
