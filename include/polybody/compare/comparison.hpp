@@ -18,10 +18,10 @@ struct ComparedRun {
   std::string name;
   Census census;
   RunReport run;
-  double cpu = 0.0;           ///< of the steps alone [s]
-  Violation violation;        ///< largest over the run
-  double energy_start = 0.0;  ///< total energy [J]
-  double energy_end = 0.0;
+  double cpu = 0.0;                   ///< of the steps alone [s]
+  Violation violation;                ///< largest over the run
+  double energy_start = 0.0;          ///< total energy [J]
+  double energy_end = 0.0;            ///< at the end [J]
   double peak_joint_force = 0.0;      ///< [N]
   std::vector<double> times;          ///< (n) the start and every step's end [s]
   std::vector<Violation> violations;  ///< (n)
@@ -32,6 +32,7 @@ struct ComparedRun {
   std::vector<double> difference;            ///< largest |output − first formulation's| over the run
 };
 
+/// The runs of one case under several formulations, side by side.
 struct Comparison {
   std::vector<ComparedRun> runs;
 };

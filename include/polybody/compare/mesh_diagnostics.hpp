@@ -27,8 +27,8 @@ struct TwoMeshes {
   /// in space, Eq. 2.4.
   std::vector<double> rotation_curvature;
 };
-using MeshDiagnostics = TwoMeshes<2>;
-using SpatialMeshDiagnostics = TwoMeshes<3>;
+using MeshDiagnostics = TwoMeshes<2>;         ///< in the plane
+using SpatialMeshDiagnostics = TwoMeshes<3>;  ///< in space
 
 namespace detail {
 

@@ -64,7 +64,7 @@ concept ContactGeometry =
 /// Coulomb's friction, regularised: −μ N v/√(v² + v_s²) at the sliding velocity v. In place of sticking, bodies creep
 /// at less than v_s.
 struct Friction {
-  double coefficient = 0.0;  ///< μ
+  double coefficient = 0.0;  ///< μ, a ratio of forces
   double slip_speed = 0.0;   ///< v_s [m/s], positive where μ is
 
   void check(std::string const& name) const {

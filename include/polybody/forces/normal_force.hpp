@@ -113,7 +113,7 @@ struct HertzContact {
 /// N = max(0, K dⁿ (1 + D ḋ)) [Hunt & Crossley 1975]: the force begins and ends at zero, and faster impacts lose more.
 struct HuntCrossleyContact {
   Required<double> stiffness;  ///< K [N/mⁿ]
-  double exponent = 1.5;       ///< n
+  double exponent = 1.5;       ///< n, a ratio
   Required<double> damping;    ///< D [s/m]
 
   /// The damping with which a body that comes at `speed` v leaves at e v. From m v dv/dd = −K dⁿ(1 + D v), whatever m,

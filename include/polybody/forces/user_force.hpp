@@ -23,6 +23,7 @@ struct UserForce {
   }
 };
 
+/// A force of N markers from a lambda.
 template <int N, class Law>
 UserForce<N, Law> user_force(Law law) {
   return {std::move(law)};
@@ -54,6 +55,7 @@ struct UserForceWithStates {
   }
 };
 
+/// A force of N markers with S first-order states from two lambdas.
 template <int N, int S, class Law, class Rates>
 UserForceWithStates<N, S, Law, Rates> user_force(Law law, Rates rates) {
   return {std::move(law), std::move(rates)};

@@ -21,9 +21,9 @@ struct AdamsBashforthMoulton {
   static constexpr bool controls_step = true;
   static constexpr Entries entries = Entries::coordinate_rates;
 
-  double relative_tolerance = 1e-8;
-  double absolute_tolerance = 1e-10;
-  double smallest_step = 1e-12;  ///< that may be chosen [s]
+  double relative_tolerance = 1e-8;   ///< relative to the size of what is integrated
+  double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
+  double smallest_step = 1e-12;       ///< that may be chosen [s]
   int max_order = order;
   Stabilisation stabilisation = {};
 
@@ -37,6 +37,7 @@ struct AdamsBashforthMoulton {
     stabilisation.check();
   }
 
+  /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace {
     VecX y, f, correction;  ///< of (q, v)

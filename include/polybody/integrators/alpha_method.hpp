@@ -34,6 +34,7 @@ struct AlphaMethod {
   bool second_order_terms;
   bool stabilised;
 
+  /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace : AlphaVectors {
     StepTangent<SolverOfSteps<Solver>> tangent;

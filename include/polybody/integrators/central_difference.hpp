@@ -12,11 +12,12 @@ struct CentralDifference {
   static constexpr char const* name = "CentralDifference";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
-  static constexpr double stable_to = 2.0;  ///< ωh
+  static constexpr double stable_to = 2.0;  ///< ωh, a ratio
   static double stable_step(double omega, double rate) { return stable_step_of_verlet(omega, rate); }
 
   Stabilisation stabilisation = {};
 
+  /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace : detail::ExplicitStep<Solver> {
     typename Stabilisation::Scratch scratch;

@@ -28,6 +28,7 @@ struct ConservingStep {
   double tolerance;
   NewtonOptions newton;
 
+  /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace {
     VecX q, v, vd, lambda, r, phi, rhs, y, kept;

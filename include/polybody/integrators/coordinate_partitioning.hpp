@@ -25,6 +25,7 @@ struct CoordinatePartitioning {
   double largest_ratio = 10.0;  ///< of the rate of a dependent coordinate to that of an independent one
   int dense_up_to = 60;         ///< speeds
 
+  /// What is kept from step to step: the choice of coordinates and its factorisation.
   struct Scratch {
     PartitionedRows rows{0, 0};      ///< of positions; where there are no velocity rows, of speeds too
     PartitionedRows all_rows{0, 0};  ///< of speeds where there are

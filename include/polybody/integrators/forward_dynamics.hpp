@@ -131,6 +131,7 @@ Sequence<bool> constant_unknowns(System const& s) {
 
 }  // namespace detail
 
+/// Accelerations, multipliers and projections by one factorisation of [M, Gᵀ; G, 0].
 template <LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:

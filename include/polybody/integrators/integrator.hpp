@@ -58,6 +58,7 @@ auto method_of(I const& integrator) {
   else
     return integrator;
 }
+/// The type of what takes the steps of integrator I.
 template <class I>
 using MethodOf = decltype(method_of(std::declval<I const&>()));
 

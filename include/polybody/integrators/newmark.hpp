@@ -12,8 +12,8 @@ struct Newmark {
   static constexpr bool accepts_rows = true;
   static constexpr Entries entries = Entries::implicit_step;
 
-  double gamma = 0.5;
-  double beta = 0.25;
+  double gamma = 0.5;       ///< γ, a share
+  double beta = 0.25;       ///< β, a share
   double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start

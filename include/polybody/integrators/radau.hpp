@@ -41,6 +41,7 @@ struct Radau {
     projection.check();
   }
 
+  /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace {
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages

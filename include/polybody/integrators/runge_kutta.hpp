@@ -85,7 +85,7 @@ struct RungeKutta4 {
   static constexpr char const* name = "RungeKutta4";
   static constexpr int order = 4;
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
-  static constexpr double stable_to = 2.8284271247461901;  ///< ωh
+  static constexpr double stable_to = 2.8284271247461901;  ///< ωh, a ratio
   /// Where |1 + z + z²/2 + z³/6 + z⁴/24| = 1 along z = hs, s the faster of the roots −d/2 ± √(d²/4 − ω²)
   /// [Hairer & Wanner 1996, §IV.2].
   static double stable_step(double omega, double rate) {
@@ -133,9 +133,9 @@ struct DormandPrince {
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
   static constexpr bool controls_step = true;
 
-  double relative_tolerance = 1e-8;
-  double absolute_tolerance = 1e-10;
-  double smallest_step = 1e-12;  ///< that may be chosen [s]
+  double relative_tolerance = 1e-8;   ///< relative to the size of what is integrated
+  double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
+  double smallest_step = 1e-12;       ///< that may be chosen [s]
   Stabilisation stabilisation = {};
 
   void check() const {

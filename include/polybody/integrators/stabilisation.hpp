@@ -25,6 +25,7 @@ long choices_of(Scratch const& scratch) {
 
 /// What policies have in common that need no memory and correct nothing.
 struct NoCorrection {
+  /// Nothing is kept.
   struct Scratch {
     explicit Scratch(System const&) {}
   };

@@ -14,7 +14,7 @@ struct SymplecticEuler {
   static constexpr int order = 1;
   static constexpr bool accepts_rows = false;
   static constexpr bool needs_constant_mass = true;
-  static constexpr double stable_to = 2.0;  ///< ωh
+  static constexpr double stable_to = 2.0;  ///< ωh, a ratio
   /// Where ω²h² + 2dh = 4 a multiplier passes −1.
   static double stable_step(double omega, double rate) {
     return 4.0 / (rate + std::sqrt(rate * rate + 4.0 * omega * omega));
@@ -56,6 +56,7 @@ struct Rattle {
   double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
   int max_iterations = 50;   ///< each gains a factor of about 1/(hω)
 
+  /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace : detail::ExplicitStep<Solver> {
     VecX change, phi;

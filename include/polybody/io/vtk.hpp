@@ -168,6 +168,6 @@ class VtkWriterOf {
   double last_ = -std::numeric_limits<double>::infinity();
 };
 
-using VtkWriter = VtkWriterOf<>;
+using VtkWriter = VtkWriterOf<>;  ///< writes ParaView animations
 
 }  // namespace polybody

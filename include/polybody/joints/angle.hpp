@@ -69,6 +69,7 @@ Gap<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
   return xy;
 }
 
+/// γ of the turn θ of b against a about a₃; xy is `turned(a, b)`.
 template <StateScalar T>
 T turn_gamma(Gap<2, T> const& xy, Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> const axis = axis_of(b, 0);
@@ -76,6 +77,7 @@ T turn_gamma(Gap<2, T> const& xy, Frame<T> const& a, Frame<T> const& b) {
       xy, {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)}, a, b);
 }
 
+/// Adds λ ∂²θ of the turn θ to the wrench gradient k.
 template <class = void>  // compiled where it is used
 void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
   Vec2 const each = angle_gradient(turned(a, b), lambda, k);
@@ -95,11 +97,13 @@ void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> co
   }
 }
 
+/// γ of `slide_and_turn`.
 template <StateScalar T>
 T slide_and_turn_gamma(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b) {
   return no_slide_gamma<T>(u, a, b) - p * turn_gamma<T>(turned(a, b), a, b);
 }
 
+/// Adds the wrench gradient of `slide_and_turn` under λ to k.
 template <class = void>  // compiled where it is used
 void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b, double lambda,
                              WrenchGradient& k) {

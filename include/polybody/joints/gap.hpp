@@ -47,6 +47,7 @@ struct Relative {
   Vec<T, 3> w;     ///< (3) ω_b − ω_a in a's axes [rad/s]
 };
 
+/// Pose and twist of b seen from a.
 template <StateScalar T>
 Relative<T> relative(Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> const d = b.r - a.r;

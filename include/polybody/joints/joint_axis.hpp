@@ -47,6 +47,8 @@ concept HasTurnAxis = requires(G g) {
 
 namespace rows {
 
+/// Axes whose third one is `axis`. \throws InvalidInput for an axis that is left out or not of length one, by the name
+/// `what`.
 template <class = void>  // compiled where it is used
 Mat3 triad_about(JointAxis const& axis, std::string const& what) {
   return triad_about(axis.required(what), what);

@@ -52,6 +52,7 @@ concept HasMotions = requires(G const g) {
   { g.motions() } -> std::same_as<JointMotions>;
 } || (NamesFreedoms<G> && detail::free_turns(G::free) != 2);
 
+/// The motion that a geometry leaves, in joint coordinates.
 template <HasMotions G>
 JointMotions motions_of(G const& geometry) {
   if constexpr (requires { geometry.motions(); }) {

@@ -65,6 +65,7 @@ void parallel(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
   for (int i = 0; i < 3; ++i) perpendicular(axis_of(a, i), axis_of(b, (i + 1) % 3), gap, row + i);
 }
 
+/// γ of `parallel`.
 template <StateScalar T>
 Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> gamma;
@@ -78,6 +79,7 @@ void same_direction(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int ro
   for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 2), gap, row + i);
 }
 
+/// γ of `same_direction`.
 template <StateScalar T>
 Vec<T, 2> same_direction_gamma(Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> const axis = axis_of(b, 2);
@@ -90,6 +92,7 @@ void on_axis(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
   for (int i = 0; i < 2; ++i) no_slide(axis_of(a, i), a, b, gap, row + i);
 }
 
+/// γ of the two rows that keep a point on the axis a₃.
 template <StateScalar T>
 Vec<T, 2> on_axis_gamma(Frame<T> const& a, Frame<T> const& b) {
   return {no_slide_gamma(axis_of(a, 0), a, b), no_slide_gamma(axis_of(a, 1), a, b)};

@@ -34,6 +34,7 @@ enum class Observes { point, axis, frame };
 /// Which world a body lives in; a joint of one never meets a marker of the other, except the ground.
 enum class World { plane, space, both };
 
+/// Whether what knows a and what knows b can be joined: plane with plane, space with space, both with either.
 constexpr bool same_world(World a, World b) { return a == b || a == World::both || b == World::both; }
 
 /// Where a body stands at the start, and how it is turned: placement of its own axes in the world.

@@ -99,6 +99,7 @@ struct Dual {
 
 /// The value of a scalar without its derivatives: the branch that a formula takes.
 inline double value_of(double x) { return x; }
+/// The value without its derivatives.
 template <int N>
 double value_of(Dual<N> const& x) {
   return x.v;

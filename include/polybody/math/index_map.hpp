@@ -13,6 +13,7 @@ namespace polybody {
 template <class V>
 class IndexMap {
  public:
+  /// An index and where it leads.
   struct Entry {
     Index index;
     V value;

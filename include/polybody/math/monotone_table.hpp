@@ -14,6 +14,7 @@ namespace polybody {
 /// 1980]; linear beyond the first and the last point. Points on a line give the line.
 class MonotoneTable {
  public:
+  /// A point of the table.
   struct Point {
     double x, y;
   };

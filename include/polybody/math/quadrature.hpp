@@ -9,8 +9,8 @@ namespace polybody {
 
 /// A point ξ ∈ [0, 1] and its weight; the weights add up to one.
 struct GaussPoint {
-  double xi;
-  double weight;
+  double xi;      ///< ξ in (−1, 1) or (0, 1)
+  double weight;  ///< weight of the point
 };
 
 namespace detail {

@@ -11,12 +11,14 @@ namespace polybody {
 template <class T>
 using Quaternion = Vec<T, 4>;
 
+/// p q: first the turn q, then p.
 template <class T>
 Quaternion<T> quaternion_product(Quaternion<T> const& p, Quaternion<T> const& q) {
   return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
           p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1], p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
 }
 
+/// The inverse of a unit quaternion.
 template <class T>
 Quaternion<T> conjugate(Quaternion<T> const& q) {
   return {q[0], -q[1], -q[2], -q[3]};

@@ -158,6 +158,7 @@ class Sequence {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
+/// Whether both have the same entries.
 template <class T>
 bool operator==(Sequence<T> const& a, Sequence<T> const& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end());

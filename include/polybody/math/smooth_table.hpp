@@ -14,13 +14,15 @@ namespace polybody {
 /// at the rate it has there.
 class SmoothTable {
  public:
+  /// A point of the table.
   struct Point {
-    double time;  ///< [s]
-    double value;
+    double time;   ///< [s]
+    double value;  ///< [m] or [rad]
   };
+  /// Rates at both ends of the table.
   struct Ends {
-    std::optional<double> first_rate = {};
-    std::optional<double> last_rate = {};
+    std::optional<double> first_rate = {};  ///< [value/s]
+    std::optional<double> last_rate = {};   ///< [value/s]
   };
 
   /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and numbers that are not

@@ -15,9 +15,9 @@ namespace polybody {
 
 /// A prescribed value with its first and second derivative in time.
 struct Motion {
-  double value = 0.0;
-  double rate = 0.0;
-  double acceleration = 0.0;
+  double value = 0.0;         ///< [m] or [rad]
+  double rate = 0.0;          ///< [m/s] or [rad/s]
+  double acceleration = 0.0;  ///< [m/s²] or [rad/s²]
 };
 
 /// A function of time t [s] that yields a Motion; a lambda will do.
@@ -97,10 +97,10 @@ inline void check_ramp(double target, double duration, double start, std::string
 /// parabola instead, from w/2 before to w/2 after it: value = slope s²/(2w), s = t − corner + w/2. Then only
 /// the acceleration jumps; after both corners value and integral are those without rounding.
 struct Ramp {
-  Required<double> target;
-  Required<double> duration;
-  double start = 0.0;
-  double rounding = 0.0;  ///< w [s], at most `duration`
+  Required<double> target;    ///< [m] or [rad]
+  Required<double> duration;  ///< [s]
+  double start = 0.0;         ///< [s]
+  double rounding = 0.0;      ///< w [s], at most `duration`
 
   void check(std::string const& what) const {
     detail::check_ramp(target, duration, start, what);
@@ -145,9 +145,9 @@ struct Ramp {
 /// From 0 to `target` in `duration` without jumps up to the acceleration:
 /// value = target (10 x³ − 15 x⁴ + 6 x⁵), x = (t − start)/duration.
 struct SmoothRamp {
-  Required<double> target;
-  Required<double> duration;
-  double start = 0.0;
+  Required<double> target;    ///< [m] or [rad]
+  Required<double> duration;  ///< [s]
+  double start = 0.0;         ///< [s]
 
   void check(std::string const& what) const { detail::check_ramp(target, duration, start, what); }
   Motion operator()(double t) const {
@@ -193,8 +193,8 @@ struct Constant {
 
 /// `value` for from ≤ t < to, else 0: a load that is switched on and off.
 struct Window {
-  double from = 0.0;
-  double to = std::numeric_limits<double>::infinity();
+  double from = 0.0;                                    ///< [s]
+  double to = std::numeric_limits<double>::infinity();  ///< [s]
   double value = 1.0;
 
   void check(std::string const& what) const {

@@ -7,6 +7,7 @@
 
 namespace polybody {
 
+/// A list of types.
 template <class... Ts>
 struct TypeList {
   static constexpr std::size_t size = sizeof...(Ts);
@@ -33,7 +34,7 @@ struct Gathered<List, TypeList<Kept...>, T, Rest...>
                Rest...> {};
 }  // namespace detail
 
-/// List<Ts…> with each type once: `EachOnce<Bodies, Rigid<>, Link>` where a link may be a `Rigid<>` too.
+/// `List<Ts…>` with each type once: `EachOnce<Bodies, Rigid<>, Link>` where a link may be a `Rigid<>` too.
 template <template <class...> class List, class... Ts>
 using EachOnce = typename detail::Gathered<List, TypeList<>, Ts...>::Type;
 

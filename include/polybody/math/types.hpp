@@ -14,23 +14,27 @@
 
 namespace polybody {
 
-using Index = Eigen::Index;
+using Index = Eigen::Index;  ///< counts and places
 
+/// Column of n scalars.
 template <class T, int n>
 using Vec = Eigen::Matrix<T, n, 1>;
+/// Matrix of m rows and n columns.
 template <class T, int m, int n>
 using Mat = Eigen::Matrix<T, m, n>;
 
-using Vec2 = Vec<double, 2>;
-using Vec3 = Vec<double, 3>;
-using Vec4 = Vec<double, 4>;
-using Vec6 = Vec<double, 6>;
-using Mat3 = Mat<double, 3, 3>;
-using VecX = Eigen::VectorXd;
-using MatX = Eigen::MatrixXd;
+using Vec2 = Vec<double, 2>;     ///< column of two doubles
+using Vec3 = Vec<double, 3>;     ///< column of three doubles
+using Vec4 = Vec<double, 4>;     ///< column of four doubles
+using Vec6 = Vec<double, 6>;     ///< column of six doubles
+using Mat3 = Mat<double, 3, 3>;  ///< 3×3 matrix of doubles
+using VecX = Eigen::VectorXd;    ///< column of doubles of run-time length
+using MatX = Eigen::MatrixXd;    ///< matrix of doubles of run-time size
 
+/// Column of scalars T of run-time length.
 template <class T>
 using VecXOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+/// Matrix of scalars T of run-time size.
 template <class T>
 using MatXOf = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 

@@ -11,18 +11,22 @@ template <class T>
 T squared_norm(Vec<T, 3> const& a) {
   return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
 }
+/// a·b.
 template <class T>
 T dot(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+/// a − b.
 template <class T>
 Vec<T, 3> difference(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+/// s a.
 template <class T>
 Vec<T, 3> scaled(Vec<T, 3> const& a, double s) {
   return {a[0] * s, a[1] * s, a[2] * s};
 }
+/// a × b.
 template <class T>
 Vec<T, 3> cross(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -40,6 +44,7 @@ Mat<T, 3, n> product(Mat<T, 3, 3> const& a, Mat<T, 3, n> const& b) {
   }
   return m;
 }
+/// aᵀ b.
 template <class T, int k, int n>
 Mat<T, k, n> transposed_product(Mat<T, 3, k> const& a, Mat<T, 3, n> const& b) {
   Mat<T, k, n> m;
@@ -47,6 +52,7 @@ Mat<T, k, n> transposed_product(Mat<T, 3, k> const& a, Mat<T, 3, n> const& b) {
     for (int i = 0; i < k; ++i) m(i, j) = a(0, i) * b(0, j) + a(1, i) * b(1, j) + a(2, i) * b(2, j);
   return m;
 }
+/// aᵀ.
 template <class T>
 Mat<T, 3, 3> transposed(Mat<T, 3, 3> const& a) {
   Mat<T, 3, 3> m;

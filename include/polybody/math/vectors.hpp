@@ -60,6 +60,7 @@ inline double squares(double const* x, Index n) {
   });
   return sum.total();
 }
+/// Σ xᵢ².
 inline double squares(VecX const& x) { return squares(x.data(), x.size()); }
 
 /// 1 or −1 for entry i, by a pattern that no model shares.

@@ -33,6 +33,7 @@ class LoopBody {
   void (*call_)(void const*, Index, Index);
 };
 
+/// Threads that share the loops of an evaluation; results do not depend on how many there are.
 class Workers {
  public:
   static constexpr int most = 4096;  ///< threads

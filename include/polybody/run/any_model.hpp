@@ -10,6 +10,7 @@ namespace polybody {
 /// Names integrators in a constructor: `AnyModel(model, stepped_by<GeneralizedAlpha>)`.
 template <class... Is>
 struct SteppedBy {};
+/// The integrators Is, as an argument.
 template <class... Is>
 inline constexpr SteppedBy<Is...> stepped_by{};
 
@@ -68,11 +69,14 @@ class AnyModel {
   Sequence<Run> runs_ = {};
 };
 
+/// The systems in which integrator I steps the model. \throws InvalidInput for an integrator that it was not made with.
 template <class I>
 RunSystems run_systems(AnyModel const& model) {
   return model.systems_of<I>();
 }
+/// A system that answers questions about a state.
 inline System question_system(AnyModel const& model) { return model.system(); }
+/// Coordinates, rows and degrees of freedom as counted when the model was made.
 inline Census census(AnyModel const& model) { return model.counts(); }
 
 }  // namespace polybody

@@ -182,6 +182,6 @@ class LoadRecorderOf {
   std::vector<BodyRecord> records_;
 };
 
-using LoadRecorder = LoadRecorderOf<>;
+using LoadRecorder = LoadRecorderOf<>;  ///< records what acts on bodies, and how they move
 
 }  // namespace polybody

@@ -20,6 +20,7 @@ inline Census census(ModelLayout const& whole, Coordinates const& c) {
   Index const constraints = rows + coordinates - (speeds - whole.states);
   return {coordinates, constraints, speeds, rows, coordinates - constraints};
 }
+/// Coordinates, rows and degrees of freedom of a model, counted as the thesis does (Table 3.4).
 template <class M>
 Census census(M const& model) {
   return census(layout_of(model), coordinates_of(model));

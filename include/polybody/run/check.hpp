@@ -17,6 +17,7 @@
 
 namespace polybody {
 
+/// What a model is like at a state.
 struct ModelCheck {
   Violation violation;
   std::string most_violated = {};  ///< joint "a" or body "b", by position; empty where no row is off
@@ -26,6 +27,7 @@ struct ModelCheck {
   std::string stiffest_at = {};  ///< the body with the most kinetic energy in it
   std::string unsolved = {};     ///< why no accelerations follow from the forces, where that is so
 
+  /// An explicit integrator and the largest step that is stable with it.
   struct StableStep {
     std::string integrator;
     double step;  ///< the largest that is stable without damping [s]
@@ -140,6 +142,7 @@ ModelCheck check(System& system, State const& x) {
   }
   return out;
 }
+/// The same of a model.
 template <class M>
 ModelCheck check(M const& model, State const& x) {
   System system(model);

@@ -19,7 +19,7 @@ struct TouchingPoint {
   Vec3 force;                  ///< (3) on the body [N]
 };
 
-using TouchingPointVisit = std::function<void(TouchingPoint const&)>;
+using TouchingPointVisit = std::function<void(TouchingPoint const&)>;  ///< what is called for each point in contact
 
 namespace detail {
 /// The points of one pair that press.

@@ -13,6 +13,7 @@ Energy energy(System const& system, State const& x) {
                                                                   system.data());
 }
 
+/// Energies of state x of a model. \throws InvalidInput for a state of another model.
 template <class M>
 Energy energy(M const& model, State const& x) {
   System system(model, with<Entries::motion>);
@@ -24,8 +25,8 @@ Energy energy(M const& model, State const& x) {
 /// Linear momentum [kg m/s] and angular momentum about the world's origin [kg m²/s], world axes:
 /// the generalised momentum M v paired with the rigid motions.
 struct Momentum {
-  Vec3 linear = Vec3::Zero();
-  Vec3 angular = Vec3::Zero();
+  Vec3 linear = Vec3::Zero();   ///< (3) [kg m/s]
+  Vec3 angular = Vec3::Zero();  ///< (3) about the world's origin [kg m²/s]
 };
 
 namespace detail {
@@ -57,6 +58,7 @@ Momentum momentum(System& system, State const& x) {
   }
   return p;
 }
+/// Momenta of state x of a model. \throws InvalidInput for a state of another model.
 template <class M>
 Momentum momentum(M const& model, State const& x) {
   System system(model, with<Entries::rigid_speeds>);

@@ -20,6 +20,7 @@ Powers powers(System const& system, State const& x, VecX& backwards) {
   return require_entry(system.entries().first.powers, "energies")(system.entries().second, {x.q, x.v, x.t}, backwards,
                                                                   x.lambda, system.load_factor, system.data());
 }
+/// The same with scratch of its own.
 template <class = void>
 Powers powers(System const& system, State const& x) {
   VecX backwards;
@@ -113,7 +114,7 @@ class EnergyAuditOf {
   bool started_ = false;
 };
 
-using EnergyAudit = EnergyAuditOf<>;
+using EnergyAudit = EnergyAuditOf<>;  ///< where the energy of a run comes from and goes to
 
 /// The account in three lines [J].
 template <class = void>

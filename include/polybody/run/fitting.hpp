@@ -25,6 +25,7 @@ template <class M>
 [[gnu::cold]] void require_fitting(M const& model, State const& x) {
   detail::require_sizes(x, model.coordinates(), model.speeds(), model.rows());
 }
+/// The same for a system.
 template <class = void>
 [[gnu::cold]] void require_fitting(System const& system, State const& x) {
   ModelLayout const& whole = system.layout();

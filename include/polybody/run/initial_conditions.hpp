@@ -69,6 +69,7 @@ void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterat
   x = std::move(trial);
 }
 
+/// The same of a model.
 template <class M>
 void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   System system(model, with<Entries::motion>);

@@ -80,7 +80,7 @@ class MinimumNormOf {
   Sequence<VecX> basis_;
 };
 
-using MinimumNorm = MinimumNormOf<>;
+using MinimumNorm = MinimumNormOf<>;  ///< multipliers of least norm
 
 /// The multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state
 /// of another model.
@@ -92,6 +92,7 @@ VecX minimum_norm_multipliers(System& system, State const& x) {
   MinimumNormOf<>(system).apply(system, forward, shared);
   return shared.lambda;
 }
+/// The same of a model.
 template <LinearSolver Solver = DefaultSolver, class M>
 VecX minimum_norm_multipliers(M const& model, State const& x) {
   System system(model, with<Entries::motion>);

@@ -117,11 +117,12 @@ double peak_joint_force(System const& system, State const& x) {
 
 /// Largest |Φ|, |Φ̇| and |Φ̈| of a state.
 struct Violation {
-  double position = 0.0;
-  double velocity = 0.0;
-  double acceleration = 0.0;
+  double position = 0.0;      ///< [m], [rad]
+  double velocity = 0.0;      ///< [m/s], [rad/s]
+  double acceleration = 0.0;  ///< [m/s²], [rad/s²]
 };
 
+/// The violation of state x; `system` is evaluated there.
 template <class = void>
 Violation violation(System& system, State const& x) {
   system.evaluate(x.q, x.v, x.t);

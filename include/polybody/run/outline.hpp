@@ -151,6 +151,7 @@ std::string outline(ModelLayout const& layout) {
   for (ForcePlace const& f : layout.forces) text += detail::force_in_words(layout, f) + "\n";
   return text;
 }
+/// The outline of a model in words: bodies, what they hang on, forces.
 template <class M>
 std::string outline(M const& model) {
   return outline(layout_of(model));

@@ -20,6 +20,7 @@ template <class M, class B>
 Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
   return frame(body_in_state(model, x, marker, "frame"), marker.point);
 }
+/// Frame of a marker on the ground.
 template <class M>
 Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) {
   model.require_own(marker.model, "frame");
@@ -46,6 +47,7 @@ template <class M, class B>
 std::span<double const> coordinates_of(M const& model, State const& x, BodyHandle<B> const& handle) {
   return body_in_state(model, x, handle).q;
 }
+/// Speeds of one body in state x.
 template <class M, class B>
 std::span<double const> speeds_of(M const& model, State const& x, BodyHandle<B> const& handle) {
   return body_in_state(model, x, handle).v;

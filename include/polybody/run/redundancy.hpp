@@ -10,6 +10,7 @@ namespace polybody {
 
 /// Rank and contradictions of a model's rows at a state.
 struct Redundancy {
+  /// A joint and how many of its rows repeat those of others.
   struct Share {
     std::string name;  ///< joint "a"
     Index rows;        ///< of it that repeat others
@@ -149,6 +150,7 @@ Redundancy redundancy(System& system, State const& x) {
   return out;
 }
 
+/// The same of a model.
 template <class M>
 Redundancy redundancy(M const& model, State const& x) {
   System system(model, with<Entries::motion>);

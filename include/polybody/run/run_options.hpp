@@ -19,13 +19,14 @@ struct RunProgress {
   bool done;  ///< at `until`, or stopped by an event
 };
 
+/// What a run is asked for.
 struct RunOptions {
   Required<double> until;                   ///< [s]
   Required<double> step;                    ///< [s]; the first one for an integrator that controls its step
   std::optional<double> largest_step = {};  ///< [s], for an integrator that controls its step
-  std::vector<double> corners = {};         ///< times at which a step must end, beside those of the drives and loads
+  std::vector<double> corners = {};  ///< times at which a step must end, beside those of the drives and loads [s]
   std::vector<Event> events = {};
-  double assembly_tolerance = 1e-8;  ///< of the start
+  double assembly_tolerance = 1e-8;  ///< |Φ| of the start [m], [rad]
   int halvings = 0;                  ///< how often a step whose Newton iteration stalls may be halved, as at impacts
   bool minimum_norm = false;         ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
   StepLimits limits = {};            ///< of a step's end: open joints, and energy that no work explains
@@ -61,11 +62,12 @@ struct RunReport {
   long evaluations = 0;
   long rejected = 0;
   long cut_short = 0;  ///< steps that ended at Newton's budget
-  double left = 0.0;   ///< the largest correction that one of them ended with, beside what is tolerated
+  double left = 0.0;   ///< the largest correction that one of them ended with, relative to what is tolerated
   StepReport last = {};
+  /// An event that the run met, and when.
   struct Met {
     std::string name;
-    double time;
+    double time;  ///< [s]
   };
   Sequence<Met> events = {};
   bool stopped = false;  ///< by an event before `until`

@@ -41,11 +41,11 @@ class Simulation {
   System& whole() { return whole_ ? *whole_ : *system_; }  ///< the whole mechanism
   bool done() const { return report_.stopped || stepped().t >= options_.until; }
 
-  /// Takes one step: to the next grid point, or to a corner or event before it. When it throws, the state is as
-  /// it was before.
+  /// Takes a step to the next grid point, or to a corner or event before it. When it throws, the state stays as it was.
   void advance() { advance(true); }
 
   struct Sentinel {};
+  /// Runs through the states of a simulation, one a step: `for (State const& now : simulate(…))`.
   class Iterator {
    public:
     using value_type = State;

@@ -157,7 +157,7 @@ struct HannWindow {
 /// Amplitudes by frequency: x(t) = Σ_k a_k cos(2π f_k t + φ_k), a₀ = |mean|.
 struct Spectrum {
   std::vector<double> frequencies;  ///< [Hz]
-  std::vector<double> amplitudes;   ///< in the unit of the samples
+  std::vector<double> amplitudes;   ///< (n) [unit of the samples]
 };
 
 /// Amplitudes of equally spaced samples, less their mean, under a window: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i

@@ -35,9 +35,9 @@ std::vector<double> turning_points(std::span<double const> history) {
 
 /// A closed cycle, or half of one.
 struct StressCycle {
-  double range;  ///< from valley to peak, twice the amplitude
-  double mean;
-  double count;  ///< 1 or ½
+  double range;  ///< from valley to peak, twice the amplitude [N/m²]
+  double mean;   ///< [N/m²]
+  double count;  ///< a count: 1 or ½
 };
 
 /// The cycles of a history, in the order in which they close: with X the last range and Y the one before it, as soon as
@@ -90,7 +90,7 @@ std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
 struct Basquin {
   Required<double> range;     ///< S₀, from valley to peak [N/m²]
   Required<double> cycles;    ///< N₀
-  Required<double> exponent;  ///< m
+  Required<double> exponent;  ///< m, a ratio
   double limit = 0.0;         ///< ranges up to this do no damage [N/m²]
 
   /// N, infinite up to the limit.

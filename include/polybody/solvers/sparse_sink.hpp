@@ -11,6 +11,7 @@
 
 namespace polybody {
 
+/// A sink that collects blocks as triplets of a sparse matrix.
 template <class T = double>  // compiled where it is used
 class SparseSinkOf {
  public:
@@ -58,6 +59,6 @@ class SparseSinkOf {
   std::size_t cursor_ = 0;
 };
 
-using SparseSink = SparseSinkOf<>;
+using SparseSink = SparseSinkOf<>;  ///< in doubles
 
 }  // namespace polybody

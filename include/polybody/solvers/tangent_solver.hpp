@@ -170,6 +170,7 @@ class TangentSolver {
 inline Index equations_of(System const& s) {
   return s.step_coordinates() ? s.step_coordinates().narrow->equations : s.size();
 }
+/// Those of them that stand for speeds.
 inline Index equation_speeds_of(System const& s) {
   return s.step_coordinates() ? s.step_coordinates().narrow->equation_speeds : s.speeds();
 }

@@ -18,10 +18,11 @@
 
 namespace polybody {
 
+/// How a path of equilibria is followed, and where it ends.
 struct ArcLengthOptions {
   double step = 0.05;       ///< first length: the load factor it covers at the start
-  double largest = 0.05;    ///< no step is longer
-  double smallest = 1e-6;   ///< nor shorter
+  double largest = 0.05;    ///< no step is longer: a load factor
+  double smallest = 1e-6;   ///< nor shorter: a load factor
   int points = 200;         ///< at most so many
   double tolerance = 1e-9;  ///< of a correction, relative to 1 + max |q|
   int max_iterations = 12;  ///< in a step
@@ -39,7 +40,7 @@ struct ArcLengthOptions {
 
 /// A state in equilibrium under `load_factor` times gravity and loads.
 struct PathPoint {
-  double load_factor = 0.0;
+  double load_factor = 0.0;  ///< the factor of all loads
   State x;
 };
 
@@ -183,6 +184,7 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
   return path;
 }
 
+/// The same of a model.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {

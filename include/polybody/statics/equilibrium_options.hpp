@@ -9,11 +9,13 @@
 
 namespace polybody {
 
+/// How an equilibrium is sought.
 struct EquilibriumOptions {
-  int load_steps = 1;           ///< loads and gravity grow in so many equal parts
-  double smallest_part = 1e-4;  ///< a part that fails is halved down to this; the next one is twice as large again
-  double tolerance = 1e-11;     ///< of a correction, relative to 1 + max |q|
-  int max_iterations = 50;      ///< in one part
+  int load_steps = 1;  ///< loads and gravity grow in so many equal parts
+  double smallest_part =
+      1e-4;  ///< a part of the load that fails is halved down to this; the next one is twice as large again
+  double tolerance = 1e-11;  ///< of a correction, relative to 1 + max |q|
+  int max_iterations = 50;   ///< in one part
 
   /// \throws InvalidInput unless counts lie in [1, 10⁶] and the other numbers are positive and finite.
   void check() const {
@@ -24,6 +26,7 @@ struct EquilibriumOptions {
   }
 };
 
+/// What the search for an equilibrium took.
 struct EquilibriumReport {
   int parts = 0;
   int iterations = 0;

@@ -29,6 +29,8 @@ double largest_load(System const& system, VecX const& lambda) {
 }
 }  // namespace detail
 
+/// Static solutions where a freedom is neutral: springs that the matrix needs, and the solution of least norm among all
+/// that differ by neutral motions.
 template <LinearSolver Solver>
 class LeastNorm {
  public:

@@ -15,6 +15,7 @@
 
 namespace polybody {
 
+/// The static equations' matrix at a state, scaled, written, factored and solved with.
 template <LinearSolver Solver>
 class StaticTangent {
  public:

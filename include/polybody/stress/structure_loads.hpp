@@ -36,6 +36,7 @@ struct StructureLoadOptions {
   std::vector<LoadPatch> patches = {};  ///< of the places that have their own nodes, where nodes have no rotations
 };
 
+/// The loads of a recorded motion on a structure: what acts at markers, and inertia.
 class StructureLoads {
  public:
   /// Motion in the structure's axes, of its origin.
@@ -48,8 +49,8 @@ class StructureLoads {
   /// A wrench in the structure's axes about the place on a beam, or the node, that takes it.
   struct Load {
     Index beam = -1, node = -1;
-    double xi = 0.0;  ///< along the beam
-    Vec3 f = Vec3::Zero(), m = Vec3::Zero();
+    double xi = 0.0;                          ///< ξ along the beam, 0 … 1
+    Vec3 f = Vec3::Zero(), m = Vec3::Zero();  ///< (3) force [N] and moment [N m]
   };
 
   /// \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the structure's inertia, and

@@ -19,6 +19,7 @@ namespace polybody {
 /// Names groups of entries in a constructor: `System(model, with<Entries::tangent>)`.
 template <Entries groups>
 struct With {};
+/// The groups, as an argument.
 template <Entries groups>
 inline constexpr With<groups> with{};
 

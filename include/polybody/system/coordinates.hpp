@@ -49,6 +49,7 @@ struct StepPlace {
   VecX const &a, &lambda;
 };
 
+/// The functions that coordinates of a step's own offer; `c` is the elimination that made them.
 struct CoordinatesEntries {
   /// Whole q, v from narrow ones; this place is kept for what follows.
   void (*expand)(void* c, VecX const& q, VecX const& v, VecX& whole_q, VecX& whole_v);

@@ -19,6 +19,7 @@ struct Build {
   int alignment = EIGEN_MAX_ALIGN_BYTES;
 };
 
+/// Scratch of an evaluation: markers, Jacobians, row blocks, actions. It is laid out once for a model.
 template <StateScalar T = double, Build build = Build{}>
 struct Data {
   Sequence<Published<T>> markers;  ///< waist 1, one for each marker

@@ -61,6 +61,6 @@ class DenseReductionOf {
   VecXOf<T> half_;
 };
 
-using DenseReduction = DenseReductionOf<>;
+using DenseReduction = DenseReductionOf<>;  ///< in doubles
 
 }  // namespace polybody

@@ -12,9 +12,9 @@ namespace polybody {
 
 /// Coefficients of the tangent cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
 struct TangentCoefficients {
-  double mass = 0.0;
-  double damping = 0.0;
-  double stiffness = 0.0;
+  double mass = 0.0;        ///< factor of M
+  double damping = 0.0;     ///< factor of −∂f/∂v
+  double stiffness = 0.0;   ///< factor of −∂f/∂q
   bool stand_ins = true;    ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
   bool full = false;        ///< with second-order terms; a system sets it
   double states = damping;  ///< of −∂f/∂z and −∂h/∂z, z first-order states; a step takes them with its speeds
@@ -36,7 +36,9 @@ enum class Entries : unsigned {
   implicit_step = 3,     ///< tangent and second_order
   questions = 15,        ///< what a system is made with where nothing else is named
 };
+/// Both groups.
 constexpr Entries operator|(Entries a, Entries b) { return Entries(unsigned(a) | unsigned(b)); }
+/// Whether all of `some` are among `all`.
 constexpr bool contains(Entries all, Entries some) { return (unsigned(all) & unsigned(some)) == unsigned(some); }
 
 /// Energies of a state [J].

@@ -198,6 +198,6 @@ class JointTreeOf {
   TreeFrame ground_ = {};
 };
 
-using JointTree = JointTreeOf<>;
+using JointTree = JointTreeOf<>;  ///< the tree of joint coordinates
 
 }  // namespace polybody

@@ -15,6 +15,7 @@ namespace polybody {
 struct LinearRows;
 struct PlacedWrench;
 
+/// Where a body stands among all coordinates, speeds and rows.
 struct BodyPlace {
   std::string name = {};
   Index q0 = 0, coordinates = 0;
@@ -30,6 +31,7 @@ struct BodyPlace {
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
 };
 
+/// Where a joint stands: its markers, and its rows among all.
 struct JointPlace {
   std::string name = {};
   Index a = -1, b = -1;           ///< published markers
@@ -41,6 +43,7 @@ struct JointPlace {
   bool stores = true;             ///< of a compliant joint: all rows have a potential
 };
 
+/// Where a force element stands: its markers, and its first-order states.
 struct ForcePlace {
   std::string name = {};
   void const* type = nullptr;    ///< tells types of forces apart

@@ -13,6 +13,7 @@
 
 namespace polybody {
 
+/// Dependent coordinates as linear functions of independent ones, q_d = c + Σ f q_i, from the rows of linear joints.
 template <class T = double>  // compiled where it is used
 class LinearEliminationOf {
  public:
@@ -21,6 +22,7 @@ class LinearEliminationOf {
     Index q, v;
     T factor;
   };
+  /// A dependent coordinate: its constant and its terms.
   struct Dependent {
     Index q, v;
     T constant;
@@ -165,6 +167,6 @@ class LinearEliminationOf {
   IndexMap<std::size_t> pivot_of_, solved_;
 };
 
-using LinearElimination = LinearEliminationOf<>;
+using LinearElimination = LinearEliminationOf<>;  ///< in doubles
 
 }  // namespace polybody

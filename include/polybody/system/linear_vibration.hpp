@@ -15,6 +15,7 @@ concept LoadHistory = requires(L const load, double t, VecX f) { load(t, f); };
 template <class L>
 concept ChangesMatrices = requires(L const load, double t, MatX d, MatX k) { load.add_matrices(t, d, k); };
 
+/// M q̈ + D q̇ + K q = f(t) as equations of `UserMechanics`.
 template <LoadHistory Load>
 struct LinearVibration {
   MatX mass_matrix, damping, stiffness;  ///< (n×n)

@@ -16,6 +16,7 @@ namespace polybody {
 template <class T = double>  // compiled where it is used
 class UnknownMapOf {
  public:
+  /// An unknown and its factor.
   struct Target {
     Index unknown;
     T factor;
@@ -42,6 +43,7 @@ class UnknownMapOf {
 
   /// All unknowns that a range touches, in runs.
   struct Range {
+    /// Consecutive unknowns that a range touches, from the local number `local` on.
     struct Run {
       Index first, size, local;
     };
@@ -109,6 +111,7 @@ struct MappedBlocksOf {
   }
 };
 
+/// A sink that writes blocks of a whole system into the matrix of a step's own unknowns.
 template <class T = double>
 class MappedSinkOf {
   using Map = UnknownMapOf<T>;
@@ -212,8 +215,8 @@ class MappedSinkOf {
   bool copies_ = true;
 };
 
-using UnknownMap = UnknownMapOf<>;
-using MappedBlocks = MappedBlocksOf<>;
-using MappedSink = MappedSinkOf<>;
+using UnknownMap = UnknownMapOf<>;      ///< in doubles
+using MappedBlocks = MappedBlocksOf<>;  ///< in doubles
+using MappedSink = MappedSinkOf<>;      ///< in doubles
 
 }  // namespace polybody

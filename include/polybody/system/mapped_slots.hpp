@@ -89,6 +89,6 @@ class MappedSlotsOf {
   std::size_t first_ = 0, next_ = 0;
 };
 
-using MappedSlots = MappedSlotsOf<>;
+using MappedSlots = MappedSlotsOf<>;  ///< in doubles
 
 }  // namespace polybody

@@ -15,6 +15,7 @@
 
 namespace polybody {
 
+/// Which coordinates leave the equations of a step: those of recursive joints, by a tree, and those of linear joints.
 template <class T = double>  // compiled where it is used
 class ReductionOf {
  public:
@@ -322,6 +323,6 @@ void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const
     if (place[i] < 0) tree_.bodies.push_back(bodies[i]);
 }
 
-using Reduction = ReductionOf<>;
+using Reduction = ReductionOf<>;  ///< in doubles
 
 }  // namespace polybody

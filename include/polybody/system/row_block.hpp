@@ -17,6 +17,7 @@ struct RowEnd {
   T const* map = nullptr;  ///< (rows × columns) by columns
 };
 
+/// Who brings rows.
 enum class RowSource : unsigned char {
   body,      ///< rows that a body owns, such as the norm of Euler parameters
   linear,    ///< rows of a joint that are linear in coordinates

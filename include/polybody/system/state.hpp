@@ -16,6 +16,6 @@ struct StateOf {
   VecXOf<T> memory;  ///< what the integrator carries from step to step beside the above
 };
 
-using State = StateOf<double>;
+using State = StateOf<double>;  ///< in doubles
 
 }  // namespace polybody

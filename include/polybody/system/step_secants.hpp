@@ -26,6 +26,7 @@ struct SecantEntries {
   void (*tangent)(void* self, double scale, BlockSink& sink);
 };
 
+/// Mean forces, rows and tangents over a step, for methods that conserve energy.
 class StepSecants {
  public:
   /// \throws InvalidInput for a system that was made without `Entries::secants`.

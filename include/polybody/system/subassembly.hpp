@@ -14,6 +14,7 @@ namespace polybody {
 /// Handles are those of the model, which must outlive it.
 template <class BodyList, class JointList = Joints<>, class ForceList = Forces<>>
 class Subassembly;
+/// Bodies, joints and forces that are made once and added to several models.
 template <Body... Bs, class... Js, AppliedForce... Fs>
 class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:

@@ -8,6 +8,7 @@
 
 namespace polybody {
 
+/// The equations of a model or of a user, as integrators, solvers and analyses see them: `BasicSystem` in doubles.
 using System = BasicSystem<double>;
 
 /// The state of a time step next to a whole one: exact where this one keeps to the eliminated joints. The integrator

@@ -58,7 +58,7 @@ struct TreeFrameOf {
   T* column(int k) { return s.data() + 6 * k; }
   T const* column(int k) const { return s.data() + 6 * k; }
 };
-using TreeFrame = TreeFrameOf<double>;
+using TreeFrame = TreeFrameOf<double>;  ///< in doubles
 
 /// Scratch of a tree.
 template <class T>
@@ -70,7 +70,7 @@ struct TreeStateOf {
   Sequence<Vec<T, 6>> columns;  ///< of the floating ends: what each deformation moves of the carried body
   Sequence<T> q, v, jacobian;   ///< scratch of the floating ends
 };
-using TreeState = TreeStateOf<double>;
+using TreeState = TreeStateOf<double>;  ///< in doubles
 
 /// a → a⁻¹ for the leading n×n of a positive definite matrix, by Gauss–Jordan elimination.
 template <class T>

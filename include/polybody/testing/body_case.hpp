@@ -14,10 +14,12 @@
 
 namespace polybody::laws {
 
+/// The entries of a vector, to be read.
 template <class V>
 auto view(V const& x) {
   return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
 }
+/// The entries of a vector, to be written.
 template <class V>
 auto mutable_view(V& x) {
   return std::span<typename V::Scalar>(x.data(), std::size_t(x.size()));
@@ -65,6 +67,7 @@ struct BodyOf {
       return 1.0;
   }
 };
+/// What a case says of a body that is made from a Bar.
 template <MadeFromBar Case>
 struct BodyOf<Case> {
   static auto body() { return Case::body(Case::bar()); }

@@ -36,6 +36,7 @@
 
 namespace polybody::laws {
 
+/// The laws of bodies, for one case.
 template <class Case>
 struct BodyLaws {
   using Made = BodyOf<Case>;
@@ -217,6 +218,7 @@ struct BodyLaws {
 
   // --- a marker -------------------------------------------------------------------------------------------
 
+  /// A published marker, with its Jacobian over all columns of the body.
   template <class T>
   struct Seen {
     Sequence<T> memory;  ///< of the Jacobian; moving it keeps its address

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The laws of contact geometries, alone and with a normal force and friction. A case says where bodies touch:
+/// Laws of contact geometries, alone and with normal force and friction. Not in polybody.hpp: needs GoogleTest. A case:
 ///     struct SphereOnPlaneCase {
 ///       static SphereOnPlane geometry();
 ///       static constexpr double radius;                                      // of the shape about marker a
@@ -8,7 +8,6 @@
 ///       static Mat3 turning(Frame<double> const& a, Frame<double> const& b); // ∂n/∂r_a [1/m]
 ///     };
 ///     bool const sphere_obeys = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");
-/// Not in polybody.hpp: needs GoogleTest.
 
 #include <gtest/gtest.h>
 
@@ -20,6 +19,7 @@
 
 namespace polybody::laws {
 
+/// The laws of contact geometries, for one case.
 template <class Case>
 struct ContactLaws {
   static constexpr char const* suite = "ContactLaws";

@@ -14,6 +14,7 @@
 
 namespace polybody::laws {
 
+/// The laws of bodies that deform, for one case.
 template <class Case>
 struct FlexibleBodyLaws : BodyLaws<Case> {
   typename BodyLaws<Case>::B const undamped = BodyOf<Case>::undamped();

@@ -15,6 +15,7 @@
 
 namespace polybody::laws {
 
+/// The laws of force elements, for one case.
 template <class Case>
 struct ForceLaws {
   using F = decltype(Case::force());

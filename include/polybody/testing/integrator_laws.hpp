@@ -31,6 +31,7 @@ inline std::vector<double> slopes(std::vector<double> const& errors) {
   return slope;
 }
 
+/// The laws of integrators, for one case.
 template <class Case>
 struct IntegratorLaws {
   using Integrator = typename decltype(Case::integrators())::value_type;
@@ -38,6 +39,7 @@ struct IntegratorLaws {
 
   typename Case::Model setup;
 
+  /// Where a run ends, and how much energy it lost or gained on the way.
   struct Outcome {
     State x;
     double energy_error = 0.0;  ///< largest |E − E(0)| on the way

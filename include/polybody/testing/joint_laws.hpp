@@ -63,6 +63,7 @@ struct JointLawsOf {
   void rows_and_freedoms_make_up_all_motions();
 };
 
+/// The laws of joint geometries, for one case.
 template <class Case>
 struct JointLaws : JointLawsOf {
   JointLaws() : JointLawsOf(any_geometry<Case>()) {}

@@ -46,6 +46,7 @@ struct AnyGeometry {
   std::function<Mate(Numbers&, double)> mate;
 };
 
+/// The geometry of a case, asked through functions.
 template <class Case>
 AnyGeometry any_geometry() {
   using G = decltype(Case::geometry());

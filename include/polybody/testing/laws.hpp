@@ -31,6 +31,7 @@
 
 namespace polybody::laws {
 
+/// A law: its name, and the member of its suite that tests it.
 template <class Laws>
 struct Law {
   char const* name;
@@ -47,12 +48,14 @@ class LawTest : public ::testing::Test {
   std::function<void()> law_;
 };
 
+/// Registers one law as a test of GoogleTest.
 inline void register_law(std::string const& suite, char const* law, char const* file, int line,
                          std::function<void()> holds) {
   ::testing::RegisterTest(suite.c_str(), law, nullptr, nullptr, file, line,
                           [holds = std::move(holds)]() -> LawTest* { return new LawTest(holds); });
 }
 
+/// Registers every law of a suite.
 template <class Laws>
 void register_laws(std::string const& suite, char const* file, int line) {
   for (Law<Laws> const& law : Laws::laws)

@@ -53,12 +53,14 @@ struct Plain {
   }
 };
 
+/// The blocks as a dense matrix (n×n).
 inline MatX plain(Blocks const& blocks, unsigned seed) {
   Plain sink{MatX::Zero(blocks.size(), blocks.size())};
   blocks.write(sink, seed);
   return sink.a;
 }
 
+/// The laws of linear solvers, for one solver.
 template <class Solver>
 struct LinearSolvers {
   static Solver analysed(Blocks const& blocks) {

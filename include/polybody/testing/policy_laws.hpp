@@ -18,6 +18,7 @@
 
 namespace polybody::laws {
 
+/// The laws of policies that answer rows, for one case.
 template <class Case>
 struct PolicyLaws {
   using P = decltype(Case::policy());

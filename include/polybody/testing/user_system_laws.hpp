@@ -17,6 +17,7 @@
 
 namespace polybody::laws {
 
+/// The laws of a user's equations, for one case.
 template <class Case>
 struct UserSystemLaws {
   using E = decltype(Case::equations());

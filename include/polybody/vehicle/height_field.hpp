@@ -13,6 +13,7 @@ namespace polybody {
 /// zero, evenly over one spacing, and farther out it is zero. It keeps four numbers for each height; copies share them.
 class HeightField {
  public:
+  /// Heights at the corners of equal rectangles.
   struct Grid {
     Required<double> x0, y0;  ///< the place of heights(0, 0) [m]
     Required<double> dx, dy;  ///< spacings [m]

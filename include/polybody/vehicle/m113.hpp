@@ -28,7 +28,9 @@ struct Triple {
   operator Vec3() const { return {x, y, z}; }  // NOLINT(google-explicit-constructor): reads as a vector
 };
 
+/// A side of the vehicle, seen forward.
 enum class Side { left, right };
+/// +1 on the left, −1 on the right: of y.
 constexpr double sign(Side side) { return side == Side::left ? 1.0 : -1.0; }
 
 // ----------------------------------------------------------------------------------------------------------------
@@ -39,6 +41,7 @@ struct Solid {
   double mass;
   Triple inertia;
 };
+/// Mass and inertia of every part.
 struct Solids {
   Solid chassis, sprocket, idler, wheel, arm, link, tensioner;
 
@@ -114,6 +117,7 @@ inline constexpr double arm_inboard = 0.12;                            ///< of t
 
 inline constexpr double shock_on_arm = 0.147;  ///< from the pivot  [A, such that the first dip is 7 cm]
 
+/// The sprocket's centre [m].
 constexpr Triple sprocket(Side side) { return {0.0, sign(side) * track_y, sprocket_z}; }
 /// The idler's centre and the tensioner's, with the idler at `x`.
 constexpr Triple idler(Side side, double x = idler_start_x) { return {x, sign(side) * track_y, idler_z}; }
@@ -124,7 +128,9 @@ constexpr Triple arm_point(int i, Side side, double from_pivot) {
   double const share = 1.0 - from_pivot / arm_length;
   return {wheel(i, side).x + share * arm_reach, sign(side) * (track_y - arm_inboard), wheel_z + share * arm_rise};
 }
+/// Where the arm of wheel i hangs on the chassis [m].
 constexpr Triple arm_pivot(int i, Side side) { return arm_point(i, side, 0.0); }
+/// The middle of the arm of wheel i, its centre of mass [m].
 constexpr Triple arm(int i, Side side) { return arm_point(i, side, 0.5 * arm_length); }
 
 /// The track of either side in its plane, for `wrap_track`. The idler is at −3.95 m [C] and may move 0.1 m to the rear.
@@ -175,13 +181,13 @@ inline constexpr double pin_arm = half_width;        ///< [m]  [A]
 struct ContactNumbers {
   double stiffness;  ///< [N/m]
   double damping;    ///< [N s/m]
-  double friction;
+  double friction;   ///< μ, a ratio of forces
 };
-inline constexpr ContactNumbers on_sprocket{2.0e6, 5.0e3, 0.15};
-inline constexpr ContactNumbers on_wheel{2.0e6, 5.0e3, 0.10};  ///< and on the idler, for which T3.2 has no row  [A]
-inline constexpr ContactNumbers on_ground{2.0e6, 5.0e3, 0.30};
-inline constexpr double slip_speed = 0.05;  ///< at which friction is 1/√2 of sliding [m/s]  [A]
-inline constexpr double onset = 1.0e-4;     ///< depth at which the damper is there in full [m]  [A]
+inline constexpr ContactNumbers on_sprocket{2.0e6, 5.0e3, 0.15};  ///< a link's pin in a valley of the sprocket
+inline constexpr ContactNumbers on_wheel{2.0e6, 5.0e3, 0.10};     ///< and on the idler, for which T3.2 has no row  [A]
+inline constexpr ContactNumbers on_ground{2.0e6, 5.0e3, 0.30};    ///< a corner of a link's pad on the ground
+inline constexpr double slip_speed = 0.05;                        ///< at which friction is 1/√2 of sliding [m/s]  [A]
+inline constexpr double onset = 1.0e-4;  ///< depth at which the damper is there in full [m]  [A]
 
 /// Corners of the pad that stand on the ground, in a link's axes  [x: C, half the pad's length; y, z: D]
 inline constexpr std::array<Triple, 4> pad{{{0.055, 0.1905, -half_thickness},
@@ -199,8 +205,8 @@ inline constexpr double tip_radius = 0.262;                       ///< [D]
 inline constexpr double tooth_y = 0.1125;  ///< planes of the two rings of teeth, ±, from the middle  [C]
 
 /// The horn that guides a link between the rims: a box in a link's axes  [C].
-inline constexpr Triple horn{0.045, 0.0, 0.0375};  ///< its centre
-inline constexpr Triple horn_size{0.0284, 0.0114, 0.075};
+inline constexpr Triple horn{0.045, 0.0, 0.0375};          ///< its centre
+inline constexpr Triple horn_size{0.0284, 0.0114, 0.075};  ///< its half edges [m]
 inline constexpr double horn_play = 0.0198;  ///< to either side before it meets a rim: 0.051/2 − 0.0114/2  [C, D]
 
 // -----------------------------------------------------------------------------------------------------------------

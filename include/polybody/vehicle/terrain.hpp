@@ -149,6 +149,7 @@ class BumpCourse {
 /// beyond them. Copies share the points.
 class RoadProfile {
  public:
+  /// A point of the profile.
   struct Point {
     double x, z;  ///< [m]
   };

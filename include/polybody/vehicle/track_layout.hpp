@@ -38,7 +38,7 @@ struct TrackSprocket {
 /// How the track is tightened.
 struct TrackTensioner {
   std::string circle;      ///< the name of the circle that moves
-  Vec2 direction;          ///< (2) where to; of any length
+  Vec2 direction;          ///< (2) where to, a unit vector or longer
   Required<double> least;  ///< its travel from the place in the list [m]
   Required<double> most;   ///< [m]
 };

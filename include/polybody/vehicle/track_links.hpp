@@ -63,6 +63,7 @@ struct LinkOf {
   static auto under(BodyHandle<B> const& link, double x, Face) { return link.at(0.5 * pitch + x); }
 };
 
+/// A rigid link: mass and inertia of the thesis, markers at its pins.
 template <class RotationCoordinates>
 struct LinkOf<Rigid<RotationCoordinates>> {
   using Body = Rigid<RotationCoordinates>;

@@ -88,8 +88,7 @@ MatX of_free_motions(MatX const& n, MatX const& a) {
 }  // namespace detail
 
 /// About state x, which rests; its multipliers count (a hanging pendulum swings by them). A model that turns steadily
-/// is linearised with its `SteadyRotation`; about any other motion the matrices would change with time. \throws
-/// InvalidInput when x moves.
+/// is linearised with its `SteadyRotation`; in any other motion matrices change. \throws InvalidInput when x moves.
 template <class = void>
 Linearisation linearise(System& system, State const& x) {
   require_usable(system, x);
@@ -112,6 +111,7 @@ Linearisation linearise(System& system, State const& x) {
   return l;
 }
 
+/// The same of a model.
 template <class M>
 Linearisation linearise(M const& model, State const& x) {
   System system(model, with<Entries::implicit_step>);

@@ -291,12 +291,14 @@ State rotating_state(M const& model, State const& x, SteadyRotation const& rotat
   System system = detail::turning_system(model);
   return rotating_state(system, x, rotation);
 }
+/// The same of a model.
 template <class M>
 EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
   System system = detail::turning_system(model);
   return relative_equilibrium(system, x, rotation, options);
 }
+/// The same of a model.
 template <class M>
 Linearisation linearise(M const& model, State const& x, SteadyRotation const& rotation) {
   System system = detail::turning_system(model);

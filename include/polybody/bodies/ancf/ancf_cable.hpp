@@ -10,6 +10,7 @@
 
 namespace polybody {
 
+/// The strain groups of a cable: stretch and bending, at so many points each.
 template <class Strain, int axial_points, int bending_points>
 using CableGroups =
     std::tuple<StrainGroup<CableAxial<Strain, axial_points>>, StrainGroup<CableBending<Strain, bending_points>>>;

@@ -119,12 +119,14 @@ namespace ancf {
 /// The strain groups of a `Continuum`, by name: a `Continuum` alone compiles none of them.
 template <Locking>
 struct ContinuumGroups;
+/// All strains at the points of the volume.
 template <>
 struct ContinuumGroups<Locking::present> {
   using Number = double;
   using Volume = StrainGroup<GreenStrains<12>>;
   using type = std::tuple<Volume>;
 };
+/// Axial strain along the axis, mean shear, and the strains within a section.
 template <>
 struct ContinuumGroups<Locking::cured> {
   using Number = double;

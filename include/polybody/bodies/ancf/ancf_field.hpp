@@ -14,8 +14,8 @@
 namespace polybody::ancf {
 
 inline constexpr int vectors = 8;  ///< nodal vectors of an element, numbered v; component i is coordinate 3 v + i
-inline constexpr int columns = 3 * vectors;
-using Coordinates = Vec<double, columns>;
+inline constexpr int columns = 3 * vectors;  ///< coordinates of an element
+using Coordinates = Vec<double, columns>;    ///< coordinates of an element (24)
 
 /// N_v and its derivatives by x, y, z at (ξ, y, z), as columns.
 template <class = void>  // compiled where it is used

@@ -19,6 +19,7 @@
 
 namespace polybody {
 
+/// Axes that divide the directions of two gradients by a share p, with their rates and variations.
 template <KernelScalar T>
 class MeanSectionFrame : public SectionAxes<T> {
  public:

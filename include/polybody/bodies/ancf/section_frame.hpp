@@ -48,6 +48,8 @@ struct SectionAxes {
   static T dot(V3 const& a, V3 const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 };
 
+/// Axes of a section from two of its gradients, with their rates and variations: the first along b, the second in the
+/// plane of b and c.
 template <KernelScalar T>
 class SectionFrame : public SectionAxes<T> {
  public:

@@ -12,6 +12,7 @@
 
 namespace polybody {
 
+/// Inertia and forces of a floating frame's body in one state.
 template <class T>
 class FfrBalance {
  public:

@@ -131,6 +131,8 @@ struct FfrIntegrals {
     return first_second[0].size() > 0;
   }
 
+  /// First and second moment of the deformed body about its frame's origin, per volume of the integrals [kg m], [kg
+  /// m²].
   template <class T>
   struct Moments {
     Vec<T, 3> c;

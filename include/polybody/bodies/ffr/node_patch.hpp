@@ -21,6 +21,7 @@ std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double dista
   return nodes;
 }
 
+/// A point that moves with the mean of several nodes, as a rigid body that fits them best.
 class NodePatch {
  public:
   /// Displacement (3×n) and small rotation (3×n) of a point.

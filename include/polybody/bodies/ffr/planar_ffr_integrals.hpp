@@ -80,6 +80,7 @@ struct FfrIntegrals {
     require_positive(inertia, what, ": the inertia about the frame's origin");
   }
 
+  /// First moment of the deformed body about its frame's origin [kg m], and its moment of inertia [kg m²].
   template <class T>
   struct Moments {
     T c[2], J;

@@ -20,7 +20,7 @@ namespace polybody {
 /// Which of the components x, y, z the six different entries of a symmetric 3×3 belong to, in the order kept everywhere
 /// here.
 inline constexpr int symmetric_row[6] = {0, 1, 2, 0, 0, 1};
-inline constexpr int symmetric_column[6] = {0, 1, 2, 1, 2, 2};
+inline constexpr int symmetric_column[6] = {0, 1, 2, 1, 2, 2};  ///< the second component of each entry
 /// The place of (k, l) in that order.
 inline constexpr int symmetric_place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 

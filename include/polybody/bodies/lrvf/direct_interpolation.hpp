@@ -53,6 +53,7 @@ class Direct {
     detail::strain_gradient(*this, 0.5, {a, b}, {t, m, w}, out);
   }
 
+  /// A section in a state, with what its strains are differentiated by.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
     double share[2];                    ///< 1 − ξ, ξ

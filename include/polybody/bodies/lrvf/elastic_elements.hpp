@@ -132,7 +132,7 @@ class ElasticElements {
     std::array<detail::FreeStrain, stored> at;
   };
 
-  /// f.operator()<i>() for i = first … last − 1.
+  /// `f.operator()<i>()` for i = first … last − 1.
   template <int first, int last, class F>
   static void for_points(F&& f) {
     [&]<int... i>(std::integer_sequence<int, i...>) {

@@ -20,6 +20,7 @@ struct StrainedSection {
   Vec<T, 3> n, m;      ///< Γ and l K less those of the reference; after `stress` the section forces N, M
 };
 
+/// Stiffness and damping of a section: section forces and tangent from the strains of an element.
 class LrvfSection {
  public:
   /// For elements of arc length `l`. \throws InvalidInput for a stiffness that is missing.

@@ -52,6 +52,7 @@ class Polar {
   static constexpr bool objective = true;
   explicit Polar(Placement const&) {}
 
+  /// A section in a state, with what its strains are differentiated by.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
     double xi;

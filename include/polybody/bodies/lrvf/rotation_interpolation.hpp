@@ -125,6 +125,7 @@ class Objective {
   static constexpr bool objective = true;
   explicit Objective(Placement const&) {}
 
+  /// A section in a state, with what its strains are differentiated by.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
     double xi;

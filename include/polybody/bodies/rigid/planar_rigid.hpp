@@ -7,6 +7,7 @@
 
 namespace polybody::planar {
 
+/// A rigid body in the plane: x, y of the centre of mass and the angle θ, three coordinates and speeds [m], [rad].
 class Rigid : public AddingCoordinates {
  public:
   static constexpr World world = World::plane;
@@ -18,9 +19,10 @@ class Rigid : public AddingCoordinates {
 
   /// A material point, in body axes from the centre of mass [m].
   struct Point {
-    Vec2 u = Vec2::Zero();
+    Vec2 u = Vec2::Zero();  ///< (2) [m]
   };
 
+  /// Mass, inertia and place.
   struct Parameters {
     Required<double> mass;     ///< [kg]
     Required<double> inertia;  ///< about the centre of mass, axis z [kg m²]; zero for a point mass

@@ -172,6 +172,7 @@ struct UnitQuaternion {};
 template <class Rotation = UnitQuaternion>
 class Rigid;
 
+/// A rigid body with a unit quaternion and angular velocity in body axes [rad/s]: six speeds, no row.
 template <>
 class Rigid<UnitQuaternion> : public RigidShape {
  public:
@@ -361,6 +362,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
 
+/// It moves by Newton's and Euler's equations about its centre of mass.
 template <>
 inline constexpr bool moves_by_newton_euler<Rigid<UnitQuaternion>> = true;
 

@@ -16,6 +16,7 @@ namespace polybody {
 /// How `Rigid` writes its rotation: four Euler parameters whose rates are speeds.
 struct EulerParameters {};
 
+/// A rigid body whose four Euler parameters are coordinates and speeds, with the row of their norm.
 template <>
 class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
  public:

@@ -23,6 +23,7 @@ Vec<std::remove_const_t<T>, n> entries(std::span<T> x, Index first) {
   for (int i = 0; i < n; ++i) out[i] = x[std::size_t(first + i)];
   return out;
 }
+/// Writes `value` (n) into x from entry `first` on.
 template <int n, class T>
 void set_entries(std::span<T> x, Index first, Vec<T, n> const& value) {
   for (int i = 0; i < n; ++i) x[std::size_t(first + i)] = value[i];
@@ -120,6 +121,7 @@ template <class B>
 Index element_columns(B const& body) {
   return B::element_columns == Eigen::Dynamic ? body.speeds() : Index(B::element_columns);
 }
+/// Columns that a marker at p touches.
 template <class B>
 Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) {
   if constexpr (requires { body.columns_of(p); })
@@ -152,6 +154,7 @@ struct ForceScratch {
     if constexpr (requires { body.room(); }) room.resize(body.room());
   }
 };
+/// Room for an element's tangent and mass.
 template <class B>
 struct TangentScratch {
   Mat<double, B::element_columns, B::element_columns> k, m;

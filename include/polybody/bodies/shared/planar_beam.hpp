@@ -51,6 +51,7 @@ struct SectionAngle {
   T bias;         ///< θ̈ for ë = 0 [rad/s²]
 };
 
+/// A beam in the plane: what all theories share, made of their strains (`Theory::Groups`).
 template <class Theory>
 class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf<typename Theory::Groups>::type> {
   using Groups = detail::GroupsOf<typename Theory::Groups>;

@@ -17,6 +17,7 @@
 
 namespace polybody {
 
+/// The linear map from an element's coordinates to the parameters of its strains, N, and products with it.
 template <class Law>
 class StrainMap {
  public:
@@ -139,6 +140,7 @@ class StrainMap {
   struct Pair {
     int s, j, t, l;
   };
+  /// All pairs of factors in the order of the blocks.
   struct Pairs {
     std::array<Pair, std::size_t(count* count)> pairs{};
     std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};

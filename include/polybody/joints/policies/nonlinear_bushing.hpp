@@ -17,8 +17,8 @@ concept ForceLaw = requires(L const law, Dual<1> const x) {
 
 /// k x + c ẋ.
 struct LinearLaw {
-  Required<double> stiffness;  ///< k
-  Required<double> damping;    ///< c
+  Required<double> stiffness;  ///< k [N/m], [N m/rad]
+  Required<double> damping;    ///< c [N s/m], [N m s/rad]
 
   /// \throws InvalidInput unless k ≥ 0 and c ≥ 0.
   void check(std::string const& what) const {

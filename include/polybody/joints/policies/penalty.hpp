@@ -9,8 +9,8 @@ struct Penalty {
   static constexpr char const* name = "Penalty";
   static constexpr bool linear = true;  ///< in g and ġ
 
-  Required<double> stiffness;  ///< k
-  Required<double> damping;    ///< c
+  Required<double> stiffness;  ///< k [N/m], [N m/rad]
+  Required<double> damping;    ///< c [N s/m], [N m s/rad]
 
   /// \throws InvalidInput unless k > 0 and c ≥ 0; `what` is the joint's name.
   void check(std::string const& what) const {

@@ -29,6 +29,7 @@ struct RecursiveBy {
   using Solution = Path;
 };
 
+/// Joint coordinates whose equations are solved in the sparse augmented form, the default.
 using Recursive = RecursiveBy<recursive::Augmented>;
 
 /// A policy that makes joint coordinates.

@@ -1,0 +1,28 @@
+"""The gallery as a page: reads what docs/site/build says of the examples and their pictures, one a line between tabs.
+
+  stage    NAME   WHAT IT SHOWS   COMMAND
+  picture  FILE   CAPTION
+"""
+import html
+import sys
+
+print("# Gallery {#site_gallery}\n")
+print("`examples/run` builds the examples, runs one after the other and draws these pictures; `examples/run NAME` one of them.\n")
+stages = []
+for line in sys.stdin.read().splitlines():
+    kind, *fields = line.split("\t")
+    if kind == "stage":
+        stages.append((*fields, []))
+    else:
+        stages[-1][-1].append(fields)
+for name, shows, command, pictures in stages:
+    print(f"## {name.replace('_', ' ').capitalize()}\n\n{shows}\n")
+    print(f"```sh\nexamples/run {name}   # builds it, and runs: {command}\n```\n")
+    if pictures:
+        print("\\htmlonly\n<div class=\"gallery\">")
+        for file, caption in pictures:
+            path = html.escape(file.removeprefix("out/"))
+            print(f"<figure><a href=\"{path}\"><img loading=\"lazy\" src=\"{path}\" alt=\"\"/></a><figcaption>{html.escape(caption)}</figcaption></figure>")
+        print("</div>\n\\endhtmlonly\n")
+if not any(pictures for *_, pictures in stages):
+    print("This site was built where no example had run yet: run `examples/run`, then `docs/site/build` again.")

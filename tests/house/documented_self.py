@@ -1,0 +1,55 @@
+"""What documented.py and docs/site/prepare.py find, and what they let pass."""
+import html
+import sys
+import tempfile
+from pathlib import Path
+
+import documented
+
+import prepare  # documented.py put docs/site on the path
+
+XML = """<doxygen><compounddef><briefdescription>{about}</briefdescription><detaileddescription/>
+<memberdef kind="variable" prot="public"><type>{kind}</type><name>x</name><briefdescription>{text}</briefdescription><detaileddescription/>
+<location file="include/polybody/a.hpp"/></memberdef></compounddef></doxygen>"""
+
+
+def require(holds, what):
+    if not holds:
+        sys.exit(f"documented_self: {what}")
+
+
+def faults(folder, warnings="", allowed="", **member):
+    (folder / "xml").mkdir(exist_ok=True)
+    (folder / "warnings").write_text(warnings)
+    (folder / "xml/structA.xml").write_text(XML.format(**{"about": "A thing.", "kind": "double", "text": "length [m]", **{k: html.escape(v) for k, v in member.items()}}))
+    documented.ALLOWED = folder / "allowed"
+    documented.ALLOWED.write_text(allowed)
+    return documented.check(folder, False)[0]
+
+
+with tempfile.TemporaryDirectory() as name:
+    place = Path(name)
+    require(not faults(place), "a number with its unit is found")
+    require(not faults(place, kind="int", text=""), "a count is found")
+    require(not faults(place, text="relative to the length"), "a number that says why it has no unit is found")
+    require(not faults(place, text="", about="Lengths [m]."), "the unit of a type's comment does not count")
+    for kind in ("double", "Required< double >", "static constexpr double", "std::optional< Vec3 >", "std::vector< Vec2 >"):
+        require(faults(place, text="length", kind=kind), f"a {kind} without a unit passes")
+    require(not faults(place, text="length", allowed="units polybody/a.hpp 1\n"), "what is allowed is found")
+    require(faults(place, allowed="units polybody/a.hpp 1\n"), "an allowance that is not needed stays")
+    member = "include/polybody/a.hpp:3: warning: Member x (variable) of struct polybody::A is not documented.\n"
+    require(faults(place, member), "a member without a comment passes")
+    require(not faults(place, member, "members polybody/a.hpp 1\n"), "a member that is allowed is found")
+    for what in ("Compound polybody::A", "Member f(int x) (function) of namespace polybody"):
+        require(faults(place, f"include/polybody/a.hpp:3: warning: {what} is not documented.\n", "members polybody/a.hpp 1\n"),
+                f"{what} passes")
+
+split = prepare.each_with_its_comment
+require(split("  Vec<T, 3> a{}, b = f(1, 2);  ///< (3) [m]") == "  Vec<T, 3> a{}; /**< (3) [m] */ Vec<T, 3> b = f(1, 2); /**< (3) [m] */", "a list is not taken apart")
+require(split("  double a = f(1, 2);  ///< [m]") is None, "one name is taken apart")
+page = prepare.page(prepare.ROOT / "docs/guide/speed.md", "# Speed\n\n[a](../joints.md#policies) `[b](c.md)` [d](../../README.md)\n\n```cpp\n# x\n```\n")
+require(page.startswith("# Speed {#guide_speed}\n\n\\ref page_joints_policies \"a\" `[b](c.md)` d\n"), "links of a page stay as they are")
+require("\n# x\n" in page, "a line of code is taken for a heading")
+text = prepare.header("include/polybody/math/a.hpp", "namespace polybody {\n\nextern template struct A<int>;\nint f();\n}  // namespace polybody\n")
+require("@addtogroup floor_math" in text and "extern" not in text and text.count("\n") == 5, "a header is not prepared")
+print("documented_self: as it should be")
