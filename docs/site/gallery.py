@@ -21,7 +21,7 @@ for name, shows, command, pictures in stages:
     if pictures:
         print("\\htmlonly\n<div class=\"gallery\">")
         for file, caption in pictures:
-            path = html.escape(file.removeprefix("out/"))
+            path = html.escape(file)
             print(f"<figure><a href=\"{path}\"><img loading=\"lazy\" src=\"{path}\" alt=\"\"/></a><figcaption>{html.escape(caption)}</figcaption></figure>")
         print("</div>\n\\endhtmlonly\n")
 if not any(pictures for *_, pictures in stages):

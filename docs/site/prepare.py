@@ -4,6 +4,7 @@ Each FILE, relative to the project, is written to TO under the same name.
 
 Headers
   - belong to the group of their floor (`reference.dox`);
+  - have equations, which are indented in comments, on lines of their own;
   - are read without explicit instantiations, which declare nothing, and without Eigen's traits;
   - have a comment behind `double a, b;  ///< ...` for each of the names, not for the last one only;
   - have at members that a concept asks for what docs/extending.md says of them there, where they say nothing themselves.
@@ -69,6 +70,22 @@ def floor_of(name):
     return f"floor_{parts[2]}" if len(parts) > 3 else "floor_all"
 
 
+EQUATION = re.compile(r"^(\s*///) {2,3}(?![ -]|\d\.)(.*)$")
+
+
+def on_lines_of_their_own(lines):
+    """Indented lines of a comment are equations: they keep their lines."""
+    after = False
+    for line in lines:
+        if found := EQUATION.match(line):
+            yield f"{found[1]} <br/>&emsp;{found[2]}"
+            after = True
+        else:
+            plain = re.match(r"^(\s*///) ([^ \\].*)$", line) if after else None
+            yield f"{plain[1]} <br/>{plain[2]}" if plain else line
+            after = False
+
+
 def header(name, text):
     text = re.sub(r"^(?:extern )?template (?!<)[^;]*;", lambda m: "\n" * m[0].count("\n"), text, flags=re.M)
     text = re.sub(r"^template <[^\n]*>\nstruct Eigen::.*?^\};$", lambda m: "\n" * m[0].count("\n"), text, flags=re.M | re.S)
@@ -85,7 +102,7 @@ def header(name, text):
                 while place > 0 and re.match(r"\s*(template|requires)\b", lines[place - 1]) and not lines[place - 1].rstrip().endswith(";"):
                     place -= 1
                 lines[place] = re.sub(r"^(\s*)", lambda m: f"{m[1]}/** {text_of_it} */ ", lines[place], count=1)
-    text = "\n".join(lines)
+    text = "\n".join(on_lines_of_their_own(lines))
     floor = floor_of(name)
     text = re.sub(r"^(namespace polybody[\w:]* \{)\n", rf"\1 /** @addtogroup {floor}\n@{{ */", text, flags=re.M)
     return re.sub(r"^(\}  // namespace polybody)", r"/** @} */ \1", text, flags=re.M)
@@ -137,13 +154,18 @@ def page(path, text):
 LINK = re.compile(r"\[([^\]]*)\]\(([^)\s#:]*)(?:#([^)\s]*))?\)")
 
 
+def title(path):
+    return path.read_text(encoding="utf-8").split("\n", 1)[0].removeprefix("# ") if path.exists() else path.stem
+
+
 def link(path, found):
     target = (path.parent / found[2]).resolve() if found[2] else path
     if target.suffix != ".md" or not target.is_relative_to(ROOT / "docs"):
         return found[1]  # a file that is no page of the site
+    text = title(target) if found[1] == target.name else found[1]
     name = label(target) + (f"_{anchor(found[3])}" if found[3] else "")
     kind = "\\subpage" if path.parent == SITE and not found[3] and label(target) != "site_index" else "\\ref"
-    return f'{kind} {name} "{found[1]}"'
+    return f'{kind} {name} "{text}"'
 
 
 if __name__ == "__main__":
