@@ -77,6 +77,8 @@ def on_lines_of_their_own(lines):
     """Indented lines of a comment are equations: they keep their lines."""
     after = False
     for line in lines:
+        if "///" in line:  # no end of a sentence
+            line = re.sub(r"\b(Eqs?|Figs?|et al|vol|cf)\. ", r"\1.&nbsp;", line)
         if found := EQUATION.match(line):
             yield f"{found[1]} <br/>&emsp;{found[2]}"
             after = True
