@@ -71,14 +71,17 @@ void print(char const* name, int links) {
     }
   }
   double const each = (derived[1] - derived[0]) / double(counts[1] - counts[0]);
-  std::printf("| %s | %d | %.2f | %.2f | %.2f | %.1e |\n", name, links, 1e3 * run, (derived[0] - each) / run, each / run, left);
+  std::printf("| %s | %d | %.2f | %.2f | %.2f | %.1e |\n", name, links, 1e3 * run, (derived[0] - each) / run,
+              each / run, left);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  std::printf("0.2 s in steps of 1 ms, tolerance 1e-12\n\n| links | | run [ms] | derivatives: runs | and a parameter | left |\n|---|---|---|---|---|---|\n");
+  std::printf(
+      "0.2 s in steps of 1 ms, tolerance 1e-12\n\n| links | | run [ms] | derivatives: runs | and a parameter | left "
+      "|\n|---|---|---|---|---|---|\n");
   print<Rigid<>>("rigid", 16);
   print<Rigid<>>("rigid", 64);
   print<AncfCable<>>("cables", 16);

@@ -35,22 +35,25 @@ B body_of(Bar const& bar) {
 template <class Policy>
 Policy policy_of(double stiffness) {
   if constexpr (std::is_same_v<Policy, Bushing>)
-    return Bushing{.stiffness = Bushing::Matrix(stiffness * Bushing::Matrix::Identity()), .damping = Bushing::Matrix(1e-3 * stiffness * Bushing::Matrix::Identity())};
+    return Bushing{.stiffness = Bushing::Matrix(stiffness * Bushing::Matrix::Identity()),
+                   .damping = Bushing::Matrix(1e-3 * stiffness * Bushing::Matrix::Identity())};
   else if constexpr (std::is_same_v<Policy, Penalty>)
     return Penalty{.stiffness = stiffness, .damping = 1e-3 * stiffness};
   else
     return Policy{};
 }
 
-/// Two links of soft rods, the second across the first, that fall about pins which are not parallel. Parameters: Young's
-/// modulus, density, stiffness of the pins, length of the second link, speed of the start.
+/// Two links of soft rods, the second across the first, that fall about pins which are not parallel. Parameters:
+/// Young's modulus, density, stiffness of the pins, length of the second link, speed of the start.
 template <class B, class Policy>
 auto const links = [](P p) {
   constexpr bool knows_frames = B::observes == Observes::frame;
   using Pin = Joint<std::conditional_t<knows_frames, Revolute, Spherical>, Policy>;
   using M = Model<Bodies<B>, Joints<Pin>>;
   M model{Gravity{0, 0, -9.81}};
-  Bar bar{.length = 0.5, .section = Rectangle{.height = 0.02, .width = 0.03}, .material = Material{.density = p[1], .young = p[0], .poisson = 0.3}};
+  Bar bar{.length = 0.5,
+          .section = Rectangle{.height = 0.02, .width = 0.03},
+          .material = Material{.density = p[1], .young = p[0], .poisson = 0.3}};
   auto const first = model.add(body_of<B>(bar), "first");
   bar.placement = Placement::at({0.5, 0, 0});
   bar.length = p[3];
@@ -86,7 +89,11 @@ void expect_slopes_of_runs(Make const& make, std::vector<Parameter> const& param
         << parameters[std::size_t(j)].name << ": " << s.slopes.back().col(j).transpose() << " for "
         << expected.col(j).transpose();
 }
-std::vector<Parameter> const all{{"young [Pa]", 2e8}, {"density [kg/m³]", 2000.0}, {"stiffness of pins [N/m]", 1e6}, {"length [m]", 0.4}, {"spin [rad/s]", 2.0}};
+std::vector<Parameter> const all{{"young [Pa]", 2e8},
+                                 {"density [kg/m³]", 2000.0},
+                                 {"stiffness of pins [N/m]", 1e6},
+                                 {"length [m]", 0.4},
+                                 {"spin [rad/s]", 2.0}};
 
 TEST(SensitivitiesByPairs, RigidOnConstraintByGeneralizedAlpha) {
   expect_slopes_of_runs(links<Rigid<>, Constraint>, all, GeneralizedAlpha{});
@@ -94,12 +101,8 @@ TEST(SensitivitiesByPairs, RigidOnConstraintByGeneralizedAlpha) {
 TEST(SensitivitiesByPairs, RigidOnBushingByTrapezoidal) {
   expect_slopes_of_runs(links<Rigid<>, Bushing>, all, Trapezoidal{});
 }
-TEST(SensitivitiesByPairs, CableOnPenaltyByHht) {
-  expect_slopes_of_runs(links<AncfCable<>, Penalty>, all, HhtAlpha{});
-}
-TEST(SensitivitiesByPairs, LrvfOnBushingByNewmark) {
-  expect_slopes_of_runs(links<Lrvf<>, Bushing>, all, Newmark{});
-}
+TEST(SensitivitiesByPairs, CableOnPenaltyByHht) { expect_slopes_of_runs(links<AncfCable<>, Penalty>, all, HhtAlpha{}); }
+TEST(SensitivitiesByPairs, LrvfOnBushingByNewmark) { expect_slopes_of_runs(links<Lrvf<>, Bushing>, all, Newmark{}); }
 TEST(SensitivitiesByPairs, FloatingFrameOnConstraintByHht) {
   expect_slopes_of_runs(links<Ffr, Constraint>, all, HhtAlpha{});
 }

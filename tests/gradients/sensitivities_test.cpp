@@ -24,7 +24,10 @@ using P = std::span<double const>;
 auto const pendulum = [](P p) {
   using M = Model<Bodies<planar::Rigid>, Joints<Pin>>;
   M model{Gravity{0, -p[2], 0}};
-  auto const rod = model.add(planar::Rigid::from({.length = p[0], .section = Circle{.radius = 0.01}, .material = Material{.density = p[1], .young = 2e11}}), "rod");
+  auto const rod = model.add(
+      planar::Rigid::from(
+          {.length = p[0], .section = Circle{.radius = 0.01}, .material = Material{.density = p[1], .young = 2e11}}),
+      "rod");
   auto const pin = model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State const start = model.reference_state();
   double const l = p[0];
@@ -74,10 +77,15 @@ double place(double k, double c, double t) {
 
 TEST(Sensitivities, OfAnOscillatorApproachTheClosedFormAtSecondOrder) {
   double const k = 50.0, c = 3.0, e = 1e-3;
-  double const by_k = (8.0 * (place(k + e, c, 1.0) - place(k - e, c, 1.0)) - place(k + 2 * e, c, 1.0) + place(k - 2 * e, c, 1.0)) / (12.0 * e),
-               by_c = (8.0 * (place(k, c + e, 1.0) - place(k, c - e, 1.0)) - place(k, c + 2 * e, 1.0) + place(k, c - 2 * e, 1.0)) / (12.0 * e);
+  double const by_k = (8.0 * (place(k + e, c, 1.0) - place(k - e, c, 1.0)) - place(k + 2 * e, c, 1.0) +
+                       place(k - 2 * e, c, 1.0)) /
+                      (12.0 * e),
+               by_c = (8.0 * (place(k, c + e, 1.0) - place(k, c - e, 1.0)) - place(k, c + 2 * e, 1.0) +
+                       place(k, c - 2 * e, 1.0)) /
+                      (12.0 * e);
   auto const error = [&](double h) {
-    MatX const s = sensitivities(oscillator(1.0, h), {{"k [N/m]", k}, {"c [N s/m]", c}}, GeneralizedAlpha{}).slopes.back();
+    MatX const s =
+        sensitivities(oscillator(1.0, h), {{"k [N/m]", k}, {"c [N s/m]", c}}, GeneralizedAlpha{}).slopes.back();
     return std::array{std::abs(s(0, 0) - by_k), std::abs(s(0, 1) - by_c)};
   };
   auto const coarse = error(2e-2), fine = error(1e-2);
@@ -115,7 +123,8 @@ TEST(Sensitivities, BeginAtTheStart) {
 TEST(Sensitivities, SayWhatNothingDependsOn) {
   auto const make = [](P p) { return pendulum(std::array{1.2, 7800.0, p[0]}); };
   auto const with_spare = [&](P p) { return make(p.first(1)); };
-  Sensitivities const s = sensitivities(with_spare, {{"gravity [m/s²]", 9.81}, {"colour [1]", 3.0}}, GeneralizedAlpha{});
+  Sensitivities const s =
+      sensitivities(with_spare, {{"gravity [m/s²]", 9.81}, {"colour [1]", 3.0}}, GeneralizedAlpha{});
   ASSERT_EQ(s.run.warnings.size(), 1u);
   EXPECT_EQ(s.run.warnings[0], "Nothing in the run depends on the parameter \"colour [1]\".");
 }
@@ -138,11 +147,15 @@ TEST(Sensitivities, RefuseWhatTheyDoNotDifferentiate) {
   auto const grows = [](P p) {
     using M = Model<Bodies<planar::AncfCable<>>, Joints<>>;
     M model{Gravity{0, -9.81, 0}};
-    model.add(planar::AncfCable<>::from({.length = 1.0, .constants = BarConstants{.EA = 1e3, .EI = 1.0, .mass_per_length = 1.0}}, p[0] > 3.0 ? 4 : 3), "cable");
+    model.add(planar::AncfCable<>::from(
+                  {.length = 1.0, .constants = BarConstants{.EA = 1e3, .EI = 1.0, .mass_per_length = 1.0}},
+                  p[0] > 3.0 ? 4 : 3),
+              "cable");
     State const start = model.reference_state();
     return Scenario<M>{std::move(model), start, {.until = 0.1, .step = 1e-2}};
   };
-  EXPECT_TRUE(has(said(grows, {{"elements [1]", 3.0}}), "another \"elements [1]\" the factory makes a model of other sizes"));
+  EXPECT_TRUE(
+      has(said(grows, {{"elements [1]", 3.0}}), "another \"elements [1]\" the factory makes a model of other sizes"));
 }
 
 }  // namespace sensitivities_test

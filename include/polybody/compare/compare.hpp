@@ -13,17 +13,17 @@ namespace polybody {
 /// A number of interest that every formulation of a case can answer.
 template <class M>
 struct Output {
-  std::string name;  ///< with its unit
-  std::function<double(M const&, State const&)> value;
+  std::string name;                                     ///< with its unit
+  std::function<double(M const&, State const&)> value;  ///< in a state
 };
 
 /// What a case makes of a formulation: the model, its start, the run and the outputs.
 template <class M>
 struct Scenario {
-  M model;
-  State start;
-  RunOptions options;
-  std::vector<Output<M>> outputs = {};
+  M model;                                                    ///< of one formulation
+  State start;                                                ///< where the run begins
+  RunOptions options;                                         ///< of the run
+  std::vector<Output<M>> outputs = {};                        ///< what is compared
   std::function<void(M const&, State const&)> observer = {};  ///< called at every state that is asked, not timed
   double sampling = 0.0;  ///< [s]: asked is the first state on or after each multiple of it from the start on; 0: every
                           ///< state of the run. For integrators whose steps are much shorter than what is of interest.

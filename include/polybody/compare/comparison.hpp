@@ -15,26 +15,26 @@ namespace polybody {
 
 /// One column of the report.
 struct ComparedRun {
-  std::string name;
-  Census census;
-  RunReport run;
-  double cpu = 0.0;                   ///< of the steps alone [s]
-  Violation violation;                ///< largest over the run
-  double energy_start = 0.0;          ///< total energy [J]
-  double energy_end = 0.0;            ///< at the end [J]
-  double peak_joint_force = 0.0;      ///< [N]
-  std::vector<double> times;          ///< (n) the start and every step's end [s]
-  std::vector<Violation> violations;  ///< (n)
-  std::vector<Energy> energies;       ///< (n)
-  std::vector<double> joint_forces;   ///< (n) of the joint that holds most [N]
-  std::vector<std::string> output_names;
+  std::string name;                          ///< of the formulation
+  Census census;                             ///< of its model
+  RunReport run;                             ///< what the run cost
+  double cpu = 0.0;                          ///< of the steps alone [s]
+  Violation violation;                       ///< largest over the run
+  double energy_start = 0.0;                 ///< total energy [J]
+  double energy_end = 0.0;                   ///< at the end [J]
+  double peak_joint_force = 0.0;             ///< [N]
+  std::vector<double> times;                 ///< (n) the start and every step's end [s]
+  std::vector<Violation> violations;         ///< (n)
+  std::vector<Energy> energies;              ///< (n)
+  std::vector<double> joint_forces;          ///< (n) of the joint that holds most [N]
+  std::vector<std::string> output_names;     ///< in the order of `outputs`
   std::vector<std::vector<double>> outputs;  ///< one history (n) for each output
   std::vector<double> difference;            ///< largest |output − first formulation's| over the run
 };
 
 /// The runs of one case under several formulations, side by side.
 struct Comparison {
-  std::vector<ComparedRun> runs;
+  std::vector<ComparedRun> runs;  ///< in the order of the formulations
 };
 
 /// Runs of a comparison failed; the message names each with its reason.
@@ -47,14 +47,14 @@ class ComparisonFailed : public Error {
 
 /// A number and what it is called, with its unit.
 struct Quantity {
-  std::string name;
-  double value;
+  std::string name;  ///< with its unit
+  double value;      ///< in that unit
 };
 
 /// A quantity at the times of a run.
 struct History {
-  std::string name;
-  std::vector<double> values;
+  std::string name;            ///< with its unit
+  std::vector<double> values;  ///< in that unit
 };
 
 /// The column of the report for one run, beside the `first` one.

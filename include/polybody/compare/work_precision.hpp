@@ -8,8 +8,8 @@ namespace polybody {
 
 /// One run of a curve.
 struct WorkPoint {
-  double setting = 0.0;  ///< the step [s], or the relative tolerance of an integrator that controls its step
-  long steps = 0;
+  double setting = 0.0;      ///< the step [s], or the relative tolerance of an integrator that controls its step
+  long steps = 0;            ///< of the run
   double cpu = 0.0;          ///< of the steps alone [s]
   double error = 0.0;        ///< in the unit of the output, see `work_precision`
   std::string failure = {};  ///< why there is no result; then only the setting has a meaning
@@ -17,14 +17,14 @@ struct WorkPoint {
 
 /// All runs of one formulation.
 struct WorkCurve {
-  std::string name;
-  std::string output;  ///< of which the error is
-  std::vector<WorkPoint> points = {};
+  std::string name;                    ///< of the formulation
+  std::string output;                  ///< of which the error is
+  std::vector<WorkPoint> points = {};  ///< one a step length
 };
 
 /// Curves of several formulations for one output.
 struct WorkPrecision {
-  std::vector<WorkCurve> curves;
+  std::vector<WorkCurve> curves;  ///< one a formulation
 };
 
 /// An output in a recorded run, y(t) by cubics through its times.
@@ -36,7 +36,7 @@ struct RecordedOutput {
 /// What an output should be: a function of time or a `reference_run`, or a number for the end of the run.
 struct OutputReference {
   std::function<double(double)> at;  ///< y_ref(t)
-  bool only_at_end = false;
+  bool only_at_end = false;          ///< compared at the end of the run, not over all of it
 
   OutputReference(double end) : at([end](double) { return end; }), only_at_end(true) {}
   template <class F>

@@ -88,9 +88,9 @@ struct Contact {
       return G::needs;
   }();
 
-  G geometry;
-  N normal;
-  Friction friction = {};
+  G geometry;              ///< where the bodies touch
+  N normal;                ///< the law of the normal force
+  Friction friction = {};  ///< regularised Coulomb friction
 
   void check(std::string const& name) const {
     geometry.check(name);

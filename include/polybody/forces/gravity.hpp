@@ -10,7 +10,7 @@ struct Gravity {
   Gravity() = default;
   /// \throws InvalidInput when a component is not finite.
   Gravity(double x, double y, double z) : Gravity(Vec3(x, y, z)) {}
-  explicit Gravity(Vec3 const& field) : g(field) { require_finite(g, "Gravity"); }
+  explicit Gravity(Vec3 const& field) : g(field) { require_finite(g, "Gravity"); }  ///< g (3), world axes [m/s²]
 };
 
 }  // namespace polybody

@@ -33,9 +33,9 @@ struct PointForce {
   static constexpr bool is_load = true;
   static constexpr Observes needs = Observes::point;
 
-  Vec3 force = Vec3::Zero();  ///< (3) [N]
-  LoadAxes axes = LoadAxes::world;
-  Law law = {};  ///< factor as a function of time
+  Vec3 force = Vec3::Zero();        ///< (3) [N]
+  LoadAxes axes = LoadAxes::world;  ///< in which the force is given
+  Law law = {};                     ///< factor as a function of time
 
   void check(std::string const& name) const {
     require_finite(force, name, ": the force");
@@ -58,9 +58,9 @@ struct PointMoment {
   static constexpr bool is_load = true;
   static constexpr Observes needs = Observes::axis;
 
-  Vec3 moment = Vec3::Zero();  ///< (3) [N m]
-  LoadAxes axes = LoadAxes::world;
-  Law law = {};  ///< factor as a function of time
+  Vec3 moment = Vec3::Zero();       ///< (3) [N m]
+  LoadAxes axes = LoadAxes::world;  ///< in which the moment is given
+  Law law = {};                     ///< factor as a function of time
 
   void check(std::string const& name) const {
     require_finite(moment, name, ": the moment");

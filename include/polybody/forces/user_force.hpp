@@ -13,7 +13,7 @@ struct UserForce {
   static constexpr bool is_load = true;
   static constexpr Observes needs = Observes::point;
 
-  Law law;
+  Law law;  ///< the lambda
 
   void check(std::string const&) const {}
 
@@ -40,8 +40,8 @@ struct UserForceWithStates {
   static constexpr bool is_load = true;
   static constexpr Observes needs = Observes::point;
 
-  Law law;
-  Rates rates_law;
+  Law law;          ///< the lambda of the wrenches
+  Rates rates_law;  ///< the lambda of the rates
 
   void check(std::string const&) const {}
 

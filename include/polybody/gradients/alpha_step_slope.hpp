@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The tangent-linear of a converged step of the generalised-α family (integrators/alpha_method.hpp), exactly: with what
-/// Newton's matrix leaves out.
+/// The tangent-linear of a converged step of the generalised-α family (integrators/alpha_method.hpp), exactly: with
+/// what Newton's matrix leaves out.
 ///
 /// With y = (δa₁, δλ₁) and the changes of q₀, v₀, v̇₀, a₀ and of the equations by a parameter, those of q₁, v₁, v̇₁
 /// follow from the formulas of the step, and
@@ -41,9 +41,8 @@ class AlphaStepSlope {
   [[gnu::cold]] AlphaStepSlope(M const& model, System& system, AlphaMethod const& method)
       : system_(&system), dual_(model, with<Entries::motion>), method_(method) {
     VecX const any = VecX::Zero(system.rows());
-    solver_.analyse(system, 1, [&](BlockSink& sink) {
-      system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, sink);
-    });
+    solver_.analyse(system, 1,
+                    [&](BlockSink& sink) { system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, sink); });
     r_ = Dots::Constant(system.speeds(), D(0.0));
     phi_ = rate_ = Dots::Constant(system.rows(), D(0.0));
   }

@@ -50,7 +50,8 @@ class DirectDifferentiation {
  public:
   [[gnu::cold]] DirectDifferentiation(Make const& make, std::vector<Parameter> const& parameters,
                                       AlphaMethod const& method)
-      : parameters_(parameters), whole_(make(values(parameters)), method),
+      : parameters_(parameters),
+        whole_(make(values(parameters)), method),
         slope_(whole_.scenario.model, whole_.system, method) {
     require_plain(whole_.scenario);
     for (std::size_t j = 0; j < parameters.size(); ++j)
@@ -214,9 +215,12 @@ Sensitivities sensitivities(Make const& make, std::vector<Parameter> const& para
   static_assert(!M::eliminates,
                 "Steps in joint coordinates, and with dependent coordinates eliminated, are not differentiated. Give "
                 "the joints Constraint, Penalty or Bushing.");
-  static_assert(requires { { integrator.method() } -> std::convertible_to<AlphaMethod>; },
-                "Runs are differentiated under the generalised-α family: GeneralizedAlpha, HhtAlpha, Newmark, "
-                "Trapezoidal.");
+  static_assert(
+      requires {
+        { integrator.method() } -> std::convertible_to<AlphaMethod>;
+      },
+      "Runs are differentiated under the generalised-α family: GeneralizedAlpha, HhtAlpha, Newmark, "
+      "Trapezoidal.");
   integrator.check();
   check(parameters);
   AlphaMethod method = integrator.method();

@@ -33,8 +33,13 @@ struct Variant {
     for (Index i = 0; i < out.size(); ++i) {
       out[i] = scenario.outputs[std::size_t(i)].value(scenario.model, x);
       if (!std::isfinite(out[i]))
-        throw NonFinite{"sensitivities: \"", scenario.outputs[std::size_t(i)].name, "\"", how_not_finite(out[i]),
-                        " at t = ", x.t, " s."};
+        throw NonFinite{"sensitivities: \"",
+                        scenario.outputs[std::size_t(i)].name,
+                        "\"",
+                        how_not_finite(out[i]),
+                        " at t = ",
+                        x.t,
+                        " s."};
     }
     return out;
   }

@@ -27,10 +27,10 @@ struct Curve {
 /// One pair of axes. All text is printed as it stands (UTF-8; '\n' begins a new line).
 struct Figure {
   std::string title{}, x_label{}, y_label{};
-  std::vector<Curve> curves{};
-  bool equal_axes = false;            ///< one unit of x is as long as one unit of y
-  bool log_x = false, log_y = false;  ///< points that are not positive are then left out
-  bool legend = true;
+  std::vector<Curve> curves{};                                ///< drawn in this order
+  bool equal_axes = false;                                    ///< one unit of x is as long as one unit of y
+  bool log_x = false, log_y = false;                          ///< points that are not positive are then left out
+  bool legend = true;                                         ///< a list of the curves' labels
   std::optional<std::array<double, 2>> x_range{}, y_range{};  ///< from, to; else all points
   int width_px = 1000, height_px = 700;
 };

@@ -16,10 +16,10 @@ namespace polybody {
 /// One thing to be seen: its surface in world axes, and in each of its points the axial stress [N/m²] where its body
 /// knows it, else none, and the velocity [m/s].
 struct VisualPart {
-  std::string name;
-  Surface surface;
-  std::vector<double> axial_stress;
-  std::vector<Vec3> velocities = {};
+  std::string name;                   ///< of the body
+  Surface surface;                    ///< as it stands in the state
+  std::vector<double> axial_stress;   ///< of each point, where it is known [N/m²]
+  std::vector<Vec3> velocities = {};  ///< of each point, world axes [m/s]
 };
 
 namespace detail {

@@ -46,8 +46,8 @@ struct Joint {
       !Policy<P> || HasGapToAnswer<P, G>,
       "This geometry holds speeds, not positions (it rolls, or glides on a blade): there is no gap that a force could "
       "answer. Use Constraint.");
-  G geometry = {};
-  P policy = {};
+  G geometry = {};  ///< which motions are stopped
+  P policy = {};    ///< how they are stopped
 
   /// The measure whose gap the policy answers: the geometry itself for most policies.
   decltype(auto) measure() const {

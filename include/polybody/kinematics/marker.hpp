@@ -27,9 +27,9 @@ struct Marker {
   static constexpr World world = B::world;
   static constexpr Observes observes = B::observes;
 
-  std::uint64_t model = 0;
-  Index body = 0;
-  typename B::Point point = {};
+  std::uint64_t model = 0;       ///< the serial of the model that made it
+  Index body = 0;                ///< among the bodies of its type
+  typename B::Point point = {};  ///< on the body
 };
 
 /// The world as a body without coordinates. Its points are placements.
@@ -55,9 +55,9 @@ struct Ground {
 /// used until a handle is assigned to it.
 template <class B>
 struct BodyHandle {
-  std::uint64_t model = 0;
-  Index index = 0;
-  std::string name = {};
+  std::uint64_t model = 0;  ///< the serial of the model that made it
+  Index index = 0;          ///< among the parts of its type
+  std::string name = {};    ///< the user's own
   /// The model's bodies of this type, shared with the model and not copied; none for the ground.
   std::shared_ptr<Sequence<detail::BodyEntry<B>> const> bodies = {};
 

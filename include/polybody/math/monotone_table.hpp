@@ -54,7 +54,7 @@ class MonotoneTable {
     Local const f = local(at);
     return f.value + (x - at) * f.slope;
   }
-  double slope(double x) const { return local(x).slope; }
+  double slope(double x) const { return local(x).slope; }  ///< dy/dx at x
   /// ∫ of the function from 0 to x.
   double integral(double x) const {
     if (x <= knots_.front().x) return line_area(knots_.front(), x);

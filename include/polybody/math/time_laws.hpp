@@ -72,14 +72,14 @@ concept HasIntegral = TimeLaw<L> && requires(L const law, double t) {
 /// ∫ value dt from t = 0: a place where the law is a speed, an angle where it is an angular velocity.
 template <HasIntegral Law>
 struct IntegralOf {
-  Law law;
+  Law law;  ///< whose integral it is
 
   void check(std::string const& what) const { check_law(law, what); }
   Motion operator()(double t) const {
     Motion const speed = law(t);
     return {law.integral(t) - law.integral(0.0), speed.value, speed.rate};
   }
-  std::vector<double> corners() const { return corners_of(law); }
+  std::vector<double> corners() const { return corners_of(law); }  ///< those of the law [s]
 };
 
 namespace detail {
@@ -182,20 +182,20 @@ struct SpinUp {
 
 /// Always `value`.
 struct Constant {
-  double value = 1.0;
+  double value = 1.0;  ///< at all times; a factor of what it scales
 
   void check(std::string const& what) const {
     if (!std::isfinite(value)) throw InvalidInput{what, ": the value must be finite, but is ", value, "."};
   }
-  Motion operator()(double) const { return {value, 0.0, 0.0}; }
-  double integral(double t) const { return value * t; }
+  Motion operator()(double) const { return {value, 0.0, 0.0}; }  ///< rate and acceleration are zero
+  double integral(double t) const { return value * t; }          ///< from zero to t
 };
 
 /// `value` for from ≤ t < to, else 0: a load that is switched on and off.
 struct Window {
   double from = 0.0;                                    ///< [s]
   double to = std::numeric_limits<double>::infinity();  ///< [s]
-  double value = 1.0;
+  double value = 1.0;                                   ///< between the two; a factor of what it scales
 
   void check(std::string const& what) const {
     if (!(from < to) || !std::isfinite(value))
@@ -205,7 +205,7 @@ struct Window {
                          value, "."};
   }
   Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }
-  std::vector<double> corners() const { return {from, to}; }
+  std::vector<double> corners() const { return {from, to}; }  ///< both ends [s]
 };
 
 }  // namespace polybody

@@ -64,7 +64,7 @@ Mat<T, 3, 3> identity() {
 /// A number that decides physics: it has no default, so a forgotten one does not compile.
 template <class T>
 struct Required {
-  T value;
+  T value;                               ///< what was given
   constexpr Required(T v) : value(v) {}  // NOLINT(google-explicit-constructor): reads as a T
   /// From an expression that makes a T.
   template <class X>

@@ -34,8 +34,8 @@ class AnyModel {
     model_ = std::move(model);
   }
 
-  State const& reference_state() const { return reference_; }
-  Census const& counts() const { return census_; }
+  State const& reference_state() const { return reference_; }  ///< the bodies as placed, at rest
+  Census const& counts() const { return census_; }             ///< as counted when it was made
   /// The whole mechanism, with what is asked of its motion and its energies.
   System system() const { return system_(model_.get()); }
 

@@ -33,9 +33,9 @@ struct BodySample {
 
 /// The samples of one body, in order.
 struct BodyRecord {
-  std::string name;
-  Vec3 gravity = Vec3::Zero();  ///< (3) that the body feels, world axes [m/s²]
-  std::vector<BodySample> samples;
+  std::string name;                 ///< the body's
+  Vec3 gravity = Vec3::Zero();      ///< (3) that the body feels, world axes [m/s²]
+  std::vector<BodySample> samples;  ///< in the order of time
 };
 
 /// \throws InvalidInput, which begins with `who`, for fewer than two samples, samples that do not rise in time and

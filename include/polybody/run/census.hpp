@@ -6,8 +6,8 @@ namespace polybody {
 /// Counts of a model as thesis Table 3.4 makes them: a unit quaternion counts four coordinates and one
 /// constraint. What policies eliminate is not counted.
 struct Census {
-  Index coordinates = 0;
-  Index constraints = 0;
+  Index coordinates = 0;         ///< of bodies and the ground
+  Index constraints = 0;         ///< rows of joints and of bodies
   Index speeds = 0;              ///< unknown rates of the integrator
   Index rows = 0;                ///< multipliers of the integrator
   Index degrees_of_freedom = 0;  ///< coordinates − constraints

@@ -8,10 +8,10 @@ namespace polybody {
 
 /// Something that happens when `value` passes through zero (in either direction). The step ends there.
 struct Event {
-  std::string name;
-  std::function<double(State const&)> value;
-  bool stops = false;        ///< ends the run
-  double tolerance = 1e-10;  ///< in time [s]
+  std::string name;                           ///< in reports
+  std::function<double(State const&)> value;  ///< whose sign changes at the event
+  bool stops = false;                         ///< ends the run
+  double tolerance = 1e-10;                   ///< in time [s]
 };
 
 }  // namespace polybody

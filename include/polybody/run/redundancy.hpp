@@ -15,7 +15,7 @@ struct Redundancy {
     std::string name;  ///< joint "a"
     Index rows;        ///< of it that repeat others
   };
-  Index rows = 0;
+  Index rows = 0;                ///< of G
   Index rank = 0;                ///< of G
   Index degrees_of_freedom = 0;  ///< speeds of bodies − rank, at this state
   /// Joints with rows that repeat those of joints connected before them (or, in part, their own).

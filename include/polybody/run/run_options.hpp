@@ -25,7 +25,7 @@ struct RunOptions {
   Required<double> step;                    ///< [s]; the first one for an integrator that controls its step
   std::optional<double> largest_step = {};  ///< [s], for an integrator that controls its step
   std::vector<double> corners = {};  ///< times at which a step must end, beside those of the drives and loads [s]
-  std::vector<Event> events = {};
+  std::vector<Event> events = {};    ///< looked for in each step
   double assembly_tolerance = 1e-8;  ///< |Φ| of the start [m], [rad]
   int halvings = 0;                  ///< how often a step whose Newton iteration stalls may be halved, as at impacts
   bool minimum_norm = false;         ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
@@ -56,21 +56,21 @@ struct RunOptions {
 
 /// The cost of a run so far, and the events that it met.
 struct RunReport {
-  long steps = 0;
-  long iterations = 0;
-  long factorisations = 0;
-  long evaluations = 0;
-  long rejected = 0;
-  long cut_short = 0;  ///< steps that ended at Newton's budget
-  double left = 0.0;   ///< the largest correction that one of them ended with, relative to what is tolerated
-  StepReport last = {};
+  long steps = 0;           ///< taken
+  long iterations = 0;      ///< of Newton's method
+  long factorisations = 0;  ///< of tangents and masses
+  long evaluations = 0;     ///< of the forces
+  long rejected = 0;        ///< trial steps
+  long cut_short = 0;       ///< steps that ended at Newton's budget
+  double left = 0.0;        ///< the largest correction that one of them ended with, relative to what is tolerated
+  StepReport last = {};     ///< the last step's
   /// An event that the run met, and when.
   struct Met {
-    std::string name;
-    double time;  ///< [s]
+    std::string name;  ///< the event's
+    double time;       ///< [s]
   };
-  Sequence<Met> events = {};
-  bool stopped = false;  ///< by an event before `until`
+  Sequence<Met> events = {};  ///< in the order of time
+  bool stopped = false;       ///< by an event before `until`
   /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share
   /// the load is not determined.
   std::vector<std::string> redundant = {};

@@ -33,13 +33,13 @@ class Simulation {
   /// it takes snapshots at the same times.
   [[gnu::cold]] RunSnapshot snapshot();
 
-  State const& state() const { return *x_; }
-  RunReport const& report() const& { return report_; }
+  State const& state() const { return *x_; }            ///< as the last step left it
+  RunReport const& report() const& { return report_; }  ///< so far
   RunReport report() && { return std::move(report_); }
   /// What is stepped: the model, or what its policies leave of it.
   System& system() { return *system_; }
-  System& whole() { return whole_ ? *whole_ : *system_; }  ///< the whole mechanism
-  bool done() const { return report_.stopped || stepped().t >= options_.until; }
+  System& whole() { return whole_ ? *whole_ : *system_; }                         ///< the whole mechanism
+  bool done() const { return report_.stopped || stepped().t >= options_.until; }  ///< the end, or a stop by an event
 
   /// Takes a step to the next grid point, or to a corner or event before it. When it throws, the state stays as it was.
   void advance() { advance(true); }
@@ -66,8 +66,8 @@ class Simulation {
     Simulation* run_;
     bool finished_ = false;
   };
-  Iterator begin() { return Iterator(this); }
-  Sentinel end() const { return {}; }
+  Iterator begin() { return Iterator(this); }  ///< takes steps as it goes on
+  Sentinel end() const { return {}; }          ///< where the run is done
 
   /// To the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
   RunReport const& run() &;

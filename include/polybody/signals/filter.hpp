@@ -146,7 +146,7 @@ concept RecordWindow = requires(double x) {
 };
 /// Weight one: exact for what is periodic in the record.
 struct EqualWeights {
-  static double weight(double) { return 1.0; }
+  static double weight(double) { return 1.0; }  ///< one at all places
 };
 /// sin²πx: what is not periodic leaks little beyond neighbouring frequencies; an amplitude between two frequencies is
 /// up to 15 % too low [Harris 1978].

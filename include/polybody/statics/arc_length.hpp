@@ -41,7 +41,7 @@ struct ArcLengthOptions {
 /// A state in equilibrium under `load_factor` times gravity and loads.
 struct PathPoint {
   double load_factor = 0.0;  ///< the factor of all loads
-  State x;
+  State x;                   ///< in equilibrium under that factor
 };
 
 namespace detail {

@@ -28,8 +28,8 @@ struct EquilibriumOptions {
 
 /// What the search for an equilibrium took.
 struct EquilibriumReport {
-  int parts = 0;
-  int iterations = 0;
+  int parts = 0;       ///< in which the loads were applied
+  int iterations = 0;  ///< of Newton's method
   /// Motions about the equilibrium that nothing resists and no load excites: body "payload" turns about (0, 0, 1)
   /// through (0, 0, -2). The search has moved along them as little as it could.
   std::vector<std::string> neutral = {};

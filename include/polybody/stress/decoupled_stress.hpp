@@ -55,8 +55,8 @@ class DecoupledStress {
   static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
                                    Vibration const& how, StructureLoadOptions const& options = {});
 
-  std::vector<double> const& times() const { return loads_.times(); }
-  StructureLoads const& loads() const { return loads_; }
+  std::vector<double> const& times() const { return loads_.times(); }  ///< of the samples [s]
+  StructureLoads const& loads() const { return loads_; }               ///< on the structure
   /// Nodal displacements (N×samples), in the structure's axes [m], [rad]; with damping, those that the forces cause at
   /// rest.
   MatX const& displacements() const { return e_; }

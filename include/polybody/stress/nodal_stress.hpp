@@ -28,8 +28,8 @@ class NodalStress {
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   /// A node of the structure, and what it is called.
   struct Spot {
-    Index node = 0;
-    std::string name;
+    Index node = 0;    ///< of the finite element model
+    std::string name;  ///< of the spot
   };
 
   /// `matrix` has six rows for each spot, in their order, and a column for each coordinate (6k×N) [Pa/m].
@@ -74,10 +74,10 @@ class NodalStress {
             std::move(spots)};
   }
 
-  std::vector<Spot> const& spots() const { return spots_; }
+  std::vector<Spot> const& spots() const { return spots_; }  ///< in the order of the rows
   /// (6k×N) [Pa/m].
   Matrix const& matrix() const { return matrix_; }
-  Index coordinates() const { return matrix_.cols(); }
+  Index coordinates() const { return matrix_.cols(); }  ///< of the structure
 
   /// Stress of every node (6k×samples) [Pa] under these displacements (N×samples) [m]. \throws InvalidInput for another
   /// number of rows.

@@ -56,7 +56,7 @@ struct FlatGround {
   void check(std::string const& name) const {
     if (!std::isfinite(z)) throw InvalidInput{name, ": the height of the ground must be finite, but is ", z, "."};
   }
-  double highest() const { return z; }
+  double highest() const { return z; }  ///< [m]
   template <StateScalar T>
   Height<T> height(T const&, T const&) const {
     return {T(z), T(0.0), T(0.0)};
@@ -72,7 +72,7 @@ struct Washboard {
     require_not_negative(amplitude, name, ": the amplitude");
     require_positive(wavelength, name, ": the wavelength");
   }
-  double highest() const { return amplitude; }
+  double highest() const { return amplitude; }  ///< [m]
   template <StateScalar T>
   Height<T> height(T const& x, T const&) const {
     using std::cos, std::sin;
@@ -114,8 +114,8 @@ class BumpCourse {
     }
   }
 
-  void check(std::string const&) const {}  ///< the constructor did
-  double highest() const { return highest_; }
+  void check(std::string const&) const {}      ///< the constructor did
+  double highest() const { return highest_; }  ///< [m]
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     detail::Relief h;
@@ -166,8 +166,8 @@ class RoadProfile {
     knots_ = std::make_shared<std::vector<Knot> const>(std::move(knots));
   }
 
-  void check(std::string const&) const {}  ///< the constructor did
-  double highest() const { return highest_; }
+  void check(std::string const&) const {}      ///< the constructor did
+  double highest() const { return highest_; }  ///< [m]
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     double const at = value_of(x);

@@ -49,16 +49,16 @@ enum class ContactsAct {
 
 /// Options of the vehicle besides the formulation of its tracks. The defaults are those of m113.hpp.
 struct VehicleOptions {
-  Solids masses = thesis;
-  bool suspension = true;          ///< else the arms are welded to the chassis, without springs
-  double preload = m113::preload;  ///< of the tensioners [N]
-  int cut = 0;                     ///< the pin of each track that closes the loop where pins are rows
-  Closure closure = Closure::stiff_spring;
-  TrackStart start = {};
-  int link_elements = 0;  ///< of each flexible link; 0: one, and two of a floating frame
-  bool friction = true;
-  double friction_factor = 1.0;  ///< of all coefficients of m113.hpp
-  ContactsAct contacts = ContactsAct::in_the_middle;
+  Solids masses = thesis;                   ///< of all bodies
+  bool suspension = true;                   ///< else the arms are welded to the chassis, without springs
+  double preload = m113::preload;           ///< of the tensioners [N]
+  int cut = 0;                              ///< the pin of each track that closes the loop where pins are rows
+  Closure closure = Closure::stiff_spring;  ///< of tracks of ideal pins
+  TrackStart start = {};                    ///< of links and idler
+  int link_elements = 0;                    ///< of each flexible link; 0: one, and two of a floating frame
+  bool friction = true;                     ///< of all contacts
+  double friction_factor = 1.0;             ///< of all coefficients of m113.hpp
+  ContactsAct contacts = ContactsAct::in_the_middle;  ///< on a link
   bool held = false;         ///< the chassis is welded to the ground and the arms to the chassis
   bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
 };

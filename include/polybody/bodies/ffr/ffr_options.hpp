@@ -34,7 +34,7 @@ struct FfrTerms {
   bool pulls_frame() const { return coupling && onto_frame; }
   /// What its speed does to the frame.
   bool pushes_frame() const { return pulls_frame() && frame_velocities; }
-  bool changes_inertia() const { return deformed_inertia && frame_velocities; }
+  bool changes_inertia() const { return deformed_inertia && frame_velocities; }  ///< the mass depends on q
   /// What is left of ½ (J_p)_q: `slope` as it is, `by` at q = 0.
   template <class T>
   T centrifugal_slope(T const& slope, double by) const {
@@ -44,8 +44,8 @@ struct FfrTerms {
 
 /// How a body is placed and what it accounts for.
 struct FfrOptions {
-  Placement placement = {};  ///< of the frame at the start
-  FfrTerms terms = {};
+  Placement placement = {};        ///< of the frame at the start
+  FfrTerms terms = {};             ///< which terms of the inertia count
   bool stiffening = false;         ///< geometric stiffening (beams only)
   double stiffness_damping = 0.0;  ///< adds this time [s] × K to the damping
 };

@@ -79,7 +79,7 @@ class RigidShape {
 
   /// A material point, in body axes from the centre of mass [m].
   struct Point {
-    Vec3 u = Vec3::Zero();
+    Vec3 u = Vec3::Zero();  ///< (3) [m]
   };
 
   /// Mass properties without a bar.

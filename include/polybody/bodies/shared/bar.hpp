@@ -62,11 +62,11 @@ struct Damping {
 /// Given either by `section` and `material` or by `constants`.
 struct Bar {
   Required<double> length;  ///< [m], of 1e-100 to 1e100: beyond, its cubes are no numbers
-  std::variant<std::monostate, Circle, Rectangle> section = {};
-  std::optional<Material> material = {};
+  std::variant<std::monostate, Circle, Rectangle> section = {};  ///< none: the bar is given by `constants`
+  std::optional<Material> material = {};                         ///< of the section
   std::optional<BarConstants> constants = {};
-  Placement placement = {};
-  Damping damping = {};
+  Placement placement = {};                 ///< of its first end, along x
+  Damping damping = {};                     ///< of the material
   double pretension = 0.0;                  ///< axial force in the reference configuration [N]
   std::optional<double> shear_factor = {};  ///< k of the section's shear stiffness k G A; Cowper's if not given
 };
