@@ -12,8 +12,8 @@ namespace polybody {
 template <Body B, int count>
   requires(count > 0)
 struct Meshed {
-  using BodyType = B;
-  static constexpr int elements = count;
+  using BodyType = B;                     ///< without its mesh
+  static constexpr int elements = count;  ///< the second argument of `from`
 };
 
 namespace detail {

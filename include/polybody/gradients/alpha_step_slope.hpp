@@ -19,17 +19,21 @@ namespace polybody {
 /// What a parameter does to the equations of a step at its end while unknowns stay: ∂r/∂p (nv) and ∂Φ/∂p, of velocity
 /// rows ∂Φ̇/∂p (rows).
 struct EquationSlope {
-  VecX balance, rows;
-  double scale = 1.0;  ///< of the parameter: over it a and λ may change by their own size
+  VecX balance;        ///< (nv) ∂r/∂p
+  VecX rows;           ///< (rows) ∂Φ/∂p
+  double scale = 1.0;  ///< of the parameter, in its own unit: over it a and λ may change by their own size
 };
 
 /// The ends of a step of h: its state before and after, and the method's own accelerations there.
 struct StepEnds {
-  State const &before, &after;
-  VecX const &own_before, &own_after;
-  double h;
+  State const& before;     ///< at its start
+  State const& after;      ///< at its end
+  VecX const& own_before;  ///< (nv) a₀
+  VecX const& own_after;   ///< (nv) a₁
+  double h;                ///< [s]
 };
 
+/// Slopes of converged steps of a method, one step after the other.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepSlope {
   using D = Dual<1>;

@@ -17,9 +17,10 @@ namespace polybody {
 /// A number that a user's factory makes a model of: a length, a stiffness, a mass, an initial speed.
 struct Parameter {
   std::string name;    ///< with its unit
-  double value = 0.0;  ///< at which derivatives are taken
-  double scale = 0.0;  ///< over which the model changes as a whole; zero: as much as `value`
+  double value = 0.0;  ///< at which derivatives are taken, in the unit that its name tells
+  double scale = 0.0;  ///< over which the model changes as a whole, in that unit; zero: as much as `value`
 
+  /// The scale, or where there is none the amount of the value.
   double size() const { return scale > 0.0 ? scale : std::abs(value); }
   /// The distance of the differences by which the equations, never the run, are differentiated.
   double distance() const { return 1e-3 * size(); }
@@ -44,7 +45,9 @@ void check(std::vector<Parameter> const& parameters) {
 /// f′(0) = [8 (f(e) − f(−e)) − (f(2e) − f(−2e))]/12e, of vectors, error e⁴ f⁽⁵⁾/30 [Abramowitz & Stegun 1964,
 /// 25.3.21]: Σ weights f(places e)/e. In this order what does not change adds up to zero exactly.
 struct FourPoints {
+  /// Places of the points, in distances e.
   static constexpr std::array<double, 4> places{-1.0, 1.0, -2.0, 2.0};
+  /// Weights of the values there, over e.
   static constexpr std::array<double, 4> weights{-8.0 / 12.0, 8.0 / 12.0, 1.0 / 12.0, -1.0 / 12.0};
 };
 

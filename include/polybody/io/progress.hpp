@@ -162,6 +162,7 @@ std::function<void(RunProgress const&)> progress_bar(Make make) {
     run.done ? bar->finish() : bar->update(run.now);
   };
 }
+/// The same on stderr, where that is a terminal.
 inline std::function<void(RunProgress const&)> progress_bar(std::string label = "") {
   return progress_bar([label = std::move(label)](RunProgress const& run) {
     return std::make_unique<Progress>(run.start, run.until, label);

@@ -16,8 +16,8 @@ namespace polybody {
 
 /// A number of interest of a state.
 struct TableColumn {
-  std::string name;  ///< with its unit: "tip height [m]"
-  std::function<double(State const&)> value;
+  std::string name;                           ///< with its unit: "tip height [m]"
+  std::function<double(State const&)> value;  ///< in that unit
 };
 
 namespace detail {

@@ -15,8 +15,10 @@ namespace polybody {
 
 /// How far a run has come [s].
 struct RunProgress {
-  double start, until, now;
-  bool done;  ///< at `until`, or stopped by an event
+  double start;  ///< [s]
+  double until;  ///< [s]
+  double now;    ///< [s]
+  bool done;     ///< at `until`, or stopped by an event
 };
 
 /// What a run is asked for.

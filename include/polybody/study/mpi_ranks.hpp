@@ -40,8 +40,8 @@ class MpiRanks {
     if (own_) MPI_Finalize();
   }
 
-  int rank() const { return rank_; }
-  int size() const { return size_; }
+  int rank() const { return rank_; }         ///< of this process, from 0
+  int size() const { return size_; }         ///< how many there are
   bool first() const { return rank_ == 0; }  ///< the one that records, and writes what all have found
 
   /// Ends the ranks, for an error that one alone has met outside of `run_over_ranks`: the others wait for it.

@@ -15,8 +15,11 @@ struct StudyOutput {
   std::string head;       ///< with its unit: "error [m]"
   bool measured = false;  ///< such as a time: another run finds another number
 
-  StudyOutput(char const* name) : head(name) {}             // NOLINT(google-explicit-constructor)
+  /// A head is an output.
+  StudyOutput(char const* name) : head(name) {}  // NOLINT(google-explicit-constructor)
+  /// The same.
   StudyOutput(std::string name) : head(std::move(name)) {}  // NOLINT(google-explicit-constructor)
+  /// An output that may be measured.
   StudyOutput(std::string name, bool is_measured) : head(std::move(name)), measured(is_measured) {}
 };
 
@@ -32,26 +35,29 @@ std::vector<StudyOutput> outputs(Heads&&... heads) {
 
 /// What a point gave: a number for each output, or why there is none.
 struct Outcome {
-  std::vector<double> values{};
-  std::string failure{};  ///< one line; empty: none
+  std::vector<double> values{};  ///< of the outputs, each in the unit of its head; none where it failed
+  std::string failure{};         ///< one line; empty: none
 
-  bool failed() const { return !failure.empty(); }
+  bool failed() const { return !failure.empty(); }  ///< there are no values
 };
 
 /// All that a study found so far.
 struct StudyResults {
-  Points points;
-  std::vector<StudyOutput> outputs;
+  Points points;                                   ///< of the study
+  std::vector<StudyOutput> outputs;                ///< of the study
   std::vector<std::optional<Outcome>> outcomes{};  ///< in the order of the points; nothing where it is not finished
   std::size_t taken_over = 0;                      ///< points that an earlier run had finished
   bool torn = false;                               ///< an earlier run was killed while it wrote
 
+  /// Points that have an outcome, be it a failure.
   std::size_t finished() const {
     return std::size_t(std::ranges::count_if(outcomes, [](auto const& o) { return o.has_value(); }));
   }
+  /// Points whose outcome is a failure.
   std::size_t failed() const {
     return std::size_t(std::ranges::count_if(outcomes, [](auto const& o) { return o && o->failed(); }));
   }
+  /// Every point has an outcome.
   bool complete() const { return finished() == points.size(); }
 
   /// The values of a parameter (by its name or its head) or an output at the points that have outputs, in their order.

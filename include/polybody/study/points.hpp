@@ -25,7 +25,7 @@ class StudyMisuse : public InvalidInput {
 
 /// One parameter.
 struct Column {
-  std::string name{};
+  std::string name{};                  ///< by which a point is asked for its value
   std::string unit{};                  ///< empty: none
   std::vector<std::string> choices{};  ///< what the values 0, 1, … mean; empty: they are numbers in `unit`
 
@@ -50,11 +50,13 @@ class Points {
     for (std::size_t k = 0; k < values_.size(); ++k) require_good_value(columns_[k % columns_.size()], values_[k]);
   }
 
-  std::size_t size() const { return values_.size() / columns_.size(); }
-  std::vector<Column> const& columns() const { return columns_; }
-  std::vector<double> const& values() const { return values_; }  ///< (points × columns), row by row
-  std::string const& origin() const { return origin_; }
+  std::size_t size() const { return values_.size() / columns_.size(); }  ///< how many points
+  std::vector<Column> const& columns() const { return columns_; }        ///< parameters, in their order
+  std::vector<double> const& values() const { return values_; }          ///< (points × columns), row by row
+  std::string const& origin() const { return origin_; }                  ///< how they were made, in words
+  /// A value in the unit of its column. \throws std::out_of_range.
   double at(std::size_t point, std::size_t column) const { return values_.at(point * columns_.size() + column); }
+  /// One point, by the names of its columns; this must outlive it.
   Point operator[](std::size_t point) const;
 
  private:
@@ -94,6 +96,7 @@ class Points {
 /// One row, by the names of its columns. The points must outlive it.
 class Point {
  public:
+  /// Row `index` of `points`, from 0.
   Point(Points const& points, std::size_t index) : points_(&points), index_(index) {}
 
   std::size_t index() const { return index_; }  ///< from 0, in the order of the table

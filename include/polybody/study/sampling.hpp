@@ -15,7 +15,7 @@ namespace polybody {
 
 /// A parameter that is not known but by its distribution.
 struct RandomAxis {
-  Column column;
+  Column column;                           ///< its name and unit
   std::function<double(double)> quantile;  ///< the value that is not exceeded with probability u, 0 < u < 1
 };
 

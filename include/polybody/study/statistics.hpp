@@ -12,9 +12,10 @@ namespace polybody {
 
 /// One output over the points that have it.
 struct Statistics {
-  std::size_t count = 0;
-  double mean = 0.0, deviation = 0.0;  ///< deviation: √(Σ(x − mean)²/(n − 1))
-  std::vector<double> sorted{};        ///< (n) values, rising
+  std::size_t count = 0;         ///< n
+  double mean = 0.0;             ///< in the unit of the output
+  double deviation = 0.0;        ///< √(Σ(x − mean)²/(n − 1)), in that unit
+  std::vector<double> sorted{};  ///< (n) values, rising, in that unit
 
   /// The value at a share p of the sorted values, 0 … 1, linear between two: 0 the least, 0.5 the median.
   double quantile(double p) const {

@@ -15,7 +15,7 @@ namespace polybody {
 
 /// Where a study is recorded, and what its function computes.
 struct StudyFile {
-  std::filesystem::path file;
+  std::filesystem::path file;  ///< made with its folder, or gone on with
   /// In words, with all that the outputs depend on and that is no column: "chain of 8 links, 0.5 s". A record with
   /// other words is of another study.
   std::string about = "";
@@ -110,15 +110,18 @@ class Study {
     return so_far;
   }
 
-  Points const& points() const { return points_; }
-  std::vector<StudyOutput> const& outputs() const { return outputs_; }
+  Points const& points() const { return points_; }                      ///< at which it runs
+  std::vector<StudyOutput> const& outputs() const { return outputs_; }  ///< what it finds at each
 
   /// \name For those who run studies in other ways (study/mpi.hpp)
   ///@{
+  /// Which study the record must be of.
   detail::RecordKind kind() const {
     return {file_.file.string(), detail::record_head(file_.about, points_, outputs_), points_.size(), outputs_.size()};
   }
+  /// What the bar of progress calls it.
   std::string label() const { return file_.file.stem().string(); }
+  /// Outcomes with the study that they are of.
   StudyResults results(std::vector<std::optional<Outcome>> outcomes, std::size_t taken_over, bool torn) const {
     return {points_, outputs_, std::move(outcomes), taken_over, torn};
   }

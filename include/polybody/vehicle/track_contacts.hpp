@@ -33,7 +33,7 @@ struct LinkContacts {
   using OnGround = Contact<LinkOnGround<Ground, observed>>;
   static constexpr bool in_plane = observed != Observes::frame;
 
-  double friction = 1.0;  ///< times the coefficients of m113.hpp; 0: none
+  double friction = 1.0;  ///< times the coefficients of m113.hpp [1]; 0: none
 
   /// \param length of the face along the link [m]
   OnRoller on_roller(double radius, double length = pitch) const {

@@ -57,7 +57,7 @@ struct VehicleOptions {
   TrackStart start = {};                    ///< of links and idler
   int link_elements = 0;                    ///< of each flexible link; 0: one, and two of a floating frame
   bool friction = true;                     ///< of all contacts
-  double friction_factor = 1.0;             ///< of all coefficients of m113.hpp
+  double friction_factor = 1.0;             ///< of all coefficients of m113.hpp [1]
   ContactsAct contacts = ContactsAct::in_the_middle;  ///< on a link
   bool held = false;         ///< the chassis is welded to the ground and the arms to the chassis
   bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
