@@ -29,6 +29,13 @@ need_packages() {
     apt-get install -y -qq --no-install-recommends "${missing[@]}" < /dev/null
 }
 
+# need_browser
+# What plays films in the tests: npm, which brings node, and chromium. Without them these tests are skipped.
+need_browser() {
+  command -v npm > /dev/null || need_packages npm || true
+  command -v chromium > /dev/null || need_packages chromium || true
+}
+
 # Path of any clang++ from 16 on; nothing where there is none.
 find_clang() {
   local version

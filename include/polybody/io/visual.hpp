@@ -14,12 +14,16 @@
 namespace polybody {
 
 /// One thing to be seen: its surface in world axes, and in each of its points the axial stress [N/m²] where its body
-/// knows it, else none, and the velocity [m/s].
+/// knows it, else none, and the velocity [m/s]. A frame goes with it: the one that carries its shape, or the one at the
+/// middle of a bar.
 struct VisualPart {
   std::string name;                   ///< of the body
   Surface surface;                    ///< as it stands in the state
   std::vector<double> axial_stress;   ///< of each point, where it is known [N/m²]
   std::vector<Vec3> velocities = {};  ///< of each point, world axes [m/s]
+  Vec3 place = Vec3::Zero();          ///< (3) origin of the frame, world axes [m]
+  Mat3 axes = Mat3::Identity();       ///< (3×3) from axes of the frame to world axes
+  std::vector<Vec3> carried = {};  ///< where a frame carries the part: its points in axes of the frame [m]; else none
 };
 
 namespace detail {
@@ -99,6 +103,9 @@ void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int si
       {body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
   moves_.push_back([place, body, bar, pieces, ring](State const& x, VisualPart& part) {
     BodyInState<B> const b = body_in_state<B>(place, x);
+    Frame<double> const middle = frame(b, body.at(0.5 * bar.length).point);
+    part.place = middle.r;
+    part.axes = middle.A;
     std::size_t i = 0;
     for (int k = 0; k <= pieces; ++k) {
       double const s = bar.length * double(k) / double(pieces);
@@ -121,9 +128,12 @@ void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int si
 template <class>
 void Visual::carry(Surface const& shape, std::string name, FrameIn frame_in) {
   parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
-  moves_.push_back([frame_in = std::move(frame_in), points = shape.points](State const& x, VisualPart& part) {
+  parts_.back().carried = shape.points;
+  moves_.push_back([frame_in = std::move(frame_in)](State const& x, VisualPart& part) {
     Frame<double> const f = frame_in(x);
-    for (std::size_t i = 0; i < points.size(); ++i) detail::place_point(f, points[i], part, i);
+    part.place = f.r;
+    part.axes = f.A;
+    for (std::size_t i = 0; i < part.carried.size(); ++i) detail::place_point(f, part.carried[i], part, i);
   });
 }
 

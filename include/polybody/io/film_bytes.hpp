@@ -1,0 +1,116 @@
+#pragma once
+/// \file
+/// What the data of a film are made of: numbers as bytes, bytes as letters, texts between quotes.
+/// Not in polybody.hpp: it comes with io/film.hpp.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <polybody/math/types.hpp>
+
+namespace polybody::detail {
+
+/// Adds a number with its lowest byte first, whatever the machine does.
+template <class T>
+void append_bytes(std::string& bytes, T number) {
+  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t,
+                                  std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint16_t>>;
+  Bits const bits = std::bit_cast<Bits>(number);
+  for (unsigned i = 0; i < sizeof(T); ++i) bytes += char((bits >> (8 * i)) & 0xff);
+}
+
+/// The letter that names a type of numbers in the film's table of contents.
+template <class T>
+constexpr char const* type_letters() {
+  return std::is_same_v<T, double>         ? "f8"
+         : std::is_same_v<T, float>        ? "f4"
+         : std::is_same_v<T, std::int16_t> ? "i2"
+         : sizeof(T) == 2                  ? "u2"
+                                           : "u4";
+}
+
+/// Arrays one behind the other, each from a multiple of eight bytes on.
+class FilmArrays {
+ public:
+  /// \return where the array is, as it stands in the table of contents: ["type", first byte, numbers]
+  template <class T>
+  std::string add(std::vector<T> const& values) {
+    std::string const place = std::string("[\"") + type_letters<T>() + "\"," + std::to_string(bytes_.size()) + ',' +
+                              std::to_string(values.size()) + ']';
+    for (T const value : values) append_bytes(bytes_, value);
+    bytes_.resize((bytes_.size() + 7) / 8 * 8);
+    return place;
+  }
+
+  std::string const& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+/// Base 64 [RFC 4648, §4].
+template <class = void>
+std::string base64(std::string_view bytes) {
+  static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::size_t const count = std::min<std::size_t>(3, bytes.size() - i);
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? letters[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+/// A text between quotes, as JSON wants it [RFC 8259, §7].
+template <class = void>
+std::string json_text(std::string_view text) {
+  std::string out = "\"";
+  for (char const c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < ' ')
+      out += std::string("\\u00") + "0123456789abcdef"[c / 16] + "0123456789abcdef"[c % 16];
+    else
+      out += c;
+  }
+  return out + '"';
+}
+
+/// Numbers as integers of 16 bits: value ≈ integer·step, |error| ≤ step/2.
+struct Quantised {
+  std::vector<std::int16_t> integers;
+  double step = 0.0;
+};
+template <class = void>
+Quantised quantised(std::vector<float> const& values) {
+  float most = 0.0f;
+  for (float const x : values) most = std::max(most, std::abs(x));
+  Quantised out{.integers = {}, .step = double(most) / 32767.0};
+  out.integers.reserve(values.size());
+  for (float const x : values)
+    out.integers.push_back(std::int16_t(most > 0.0f ? std::lround(double(x) / out.step) : 0));
+  return out;
+}
+
+/// A rotation as its unit quaternion (w, x, y, z) in integers of 16 bits; it is off by less than 1e-4 rad.
+template <class = void>
+std::array<std::int16_t, 4> quantised_rotation(Mat3 const& axes) {
+  Eigen::Quaterniond const q = Eigen::Quaterniond(axes).normalized();
+  auto const integer = [](double x) { return std::int16_t(std::lround(32767.0 * x)); };
+  return {integer(q.w()), integer(q.x()), integer(q.y()), integer(q.z())};
+}
+
+/// The rotation that the viewer makes of these integers.
+template <class = void>
+Mat3 rotation_of(std::array<std::int16_t, 4> const& q) {
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+}
+
+}  // namespace polybody::detail

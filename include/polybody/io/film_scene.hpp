@@ -1,0 +1,247 @@
+#pragma once
+/// \file
+/// One scene of a film: what a run looks like frame by frame, with arrows and histories.
+/// Not in polybody.hpp: it comes with io/film.hpp.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+
+#include <polybody/io/film_bytes.hpp>
+#include <polybody/io/visual.hpp>
+
+namespace polybody {
+
+/// A number in each point of a part, shown by colours with a bar.
+struct FilmScalar {
+  std::string label, unit;
+  /// One for each point of the part, in the unit; NaN where there is none; empty where the part has none.
+  std::function<std::vector<double>(VisualPart const&)> values;
+};
+
+/// The axial stress where bodies know it [MPa].
+template <class = void>
+FilmScalar axial_stress_colours() {
+  return {"axial stress", "MPa", [](VisualPart const& part) {
+            std::vector<double> values = part.axial_stress;
+            for (double& s : values) s *= 1e-6;
+            return values;
+          }};
+}
+
+/// How fast points are [m/s].
+template <class = void>
+FilmScalar speed_colours() {
+  return {"speed", "m/s", [](VisualPart const& part) {
+            std::vector<double> values;
+            for (Vec3 const& v : part.velocities) values.push_back(v.norm());
+            return values;
+          }};
+}
+
+namespace detail {
+
+/// What a part does: places and rotations of its frame, and what its points deviate from where they were in the first
+/// frame, in axes of the frame.
+struct FilmPart {
+  std::string name;
+  std::size_t shape = 0;  ///< among the scene's
+  bool rigid = false;
+  std::vector<Vec3> points = {};            ///< in axes of its frame, float32 [m]
+  std::vector<float> places = {};           ///< 3 a frame [m]
+  std::vector<std::int16_t> turns = {};     ///< 4 a frame
+  std::vector<float> deviations = {};       ///< 3 a point and frame [m]
+  std::vector<std::vector<float>> scalars;  ///< of each of the scene's: 1 a point and frame, or none
+};
+
+/// Points in axes of a frame, and the polygons through them.
+struct FilmShape {
+  std::vector<float> points;
+  std::vector<int> corners, ends;
+  bool operator==(FilmShape const&) const = default;
+};
+
+struct FilmArrowSet {
+  std::string label, unit;
+  std::vector<std::uint32_t> counts = {};  ///< of each frame
+  std::vector<float> places = {}, vectors = {};
+};
+
+struct FilmHistory {
+  std::string label, unit;
+  std::vector<double> times = {};
+  std::vector<float> values = {};
+};
+
+}  // namespace detail
+
+/// Names a set of arrows of a scene.
+struct FilmArrows {
+  std::size_t place;
+};
+
+/// Made by `Film::scene`. What is to be coloured and which arrows there are is said before the first frame:
+///   scene.colour(axial_stress_colours());
+///   FilmArrows const contacts = scene.arrows("contact forces", "N");
+///   for (State const& now : simulate(…)) {
+///     scene.plot("pin force", "N", now.t, force);
+///     if (!scene.due(now.t)) continue;
+///     scene.record(now.t, visual.at(now));
+///     scene.arrow(contacts, place, force);
+///   }
+class FilmScene {
+ public:
+  FilmScene(std::string name, double frames_per_second) : name_(std::move(name)), interval_(1.0 / frames_per_second) {}
+
+  /// \throws InvalidInput after the first frame, or for a scalar that the scene has.
+  void colour(FilmScalar scalar) {
+    require_start(scalar.label);
+    for (FilmScalar const& other : scalars_)
+      if (other.label == scalar.label)
+        throw InvalidInput{told(), "the colours \"", scalar.label, "\" are there twice."};
+    scalars_.push_back(std::move(scalar));
+  }
+
+  /// Arrows whose vectors have one unit, and one scale in the picture. \throws InvalidInput after the first frame.
+  FilmArrows arrows(std::string label, std::string unit) {
+    require_start(label);
+    arrows_.push_back({std::move(label), std::move(unit)});
+    return {arrows_.size() - 1};
+  }
+
+  /// Whether a frame is due at time t [s], by the film's frames per second.
+  bool due(double t) const { return times_.empty() || t >= next_ - 1e-9; }
+
+  /// One frame. \throws InvalidInput unless times rise and the parts are those of the first frame; NonFinite.
+  void record(double t, std::vector<VisualPart> const& parts) {
+    if (!std::isfinite(t)) throw NonFinite{told(), "the time of a frame is not finite."};
+    if (!times_.empty() && !(t > times_.back()))
+      throw InvalidInput{told(), "frames must rise in time, but t = ", t, " s follows ", times_.back(), " s."};
+    if (parts.empty()) throw InvalidInput{told(), "there is nothing to be seen; attach shapes to the visual."};
+    check_parts(t, parts);
+    if (times_.empty())
+      for (VisualPart const& part : parts) add_part(part);
+    for (std::size_t i = 0; i < parts.size(); ++i) add_frame(t, parts[i], parts_[i]);
+    for (detail::FilmArrowSet& set : arrows_) set.counts.push_back(0);
+    if (times_.empty()) next_ = t;
+    times_.push_back(t);
+    next_ = next_ + interval_ > t ? next_ + interval_ : t + interval_;
+  }
+
+  /// An arrow in the last frame. \param place where it begins, world axes [m] \param vector in the unit of the set
+  /// \throws InvalidInput before the first frame or for arrows of another scene; NonFinite.
+  void arrow(FilmArrows set, Vec3 const& place, Vec3 const& vector) {
+    if (set.place >= arrows_.size() || times_.empty())
+      throw InvalidInput{told(), "an arrow belongs to a set of this scene and to a frame; record one first."};
+    detail::FilmArrowSet& arrows = arrows_[set.place];
+    if (!place.allFinite() || !vector.allFinite())
+      throw NonFinite{told(), "an arrow of \"", arrows.label, "\" is not finite at t = ", times_.back(), " s."};
+    ++arrows.counts.back();
+    for (int i = 0; i < 3; ++i) arrows.places.push_back(float(place[i])), arrows.vectors.push_back(float(vector[i]));
+  }
+
+  /// A point of the history `label`, at any time. Scenes whose histories have one label share a plot.
+  /// \throws InvalidInput unless its times rise; NonFinite.
+  void plot(std::string const& label, std::string const& unit, double t, double value) {
+    if (!std::isfinite(t) || !std::isfinite(value))
+      throw NonFinite{told(), "a point of the history \"", label, "\" is not finite at t = ", t, " s."};
+    auto found = std::find_if(histories_.begin(), histories_.end(), [&](auto const& h) { return h.label == label; });
+    if (found == histories_.end()) found = histories_.insert(found, {label, unit});
+    if (!found->times.empty() && !(t > found->times.back()))
+      throw InvalidInput{told(),        "the history \"",    label, "\" must rise in time, but t = ", t,
+                         " s follows ", found->times.back(), " s."};
+    found->times.push_back(t);
+    found->values.push_back(float(value));
+  }
+
+  std::string const& name() const { return name_; }
+  std::vector<double> const& times() const { return times_; }  ///< of the frames [s]
+
+  // What a film writes.
+  std::vector<FilmScalar> const& scalars() const { return scalars_; }
+  std::vector<detail::FilmShape> const& shapes() const { return shapes_; }
+  std::vector<detail::FilmPart> const& parts() const { return parts_; }
+  std::vector<detail::FilmArrowSet> const& arrow_sets() const { return arrows_; }
+  std::vector<detail::FilmHistory> const& histories() const { return histories_; }
+
+ private:
+  std::string told() const { return "Film, scene \"" + name_ + "\": "; }
+
+  void require_start(std::string const& what) const {
+    if (!times_.empty()) throw InvalidInput{told(), "\"", what, "\" comes after the first frame; name it before."};
+  }
+
+  void check_parts(double t, std::vector<VisualPart> const& parts) const {
+    bool same = times_.empty() || parts.size() == parts_.size();
+    for (std::size_t i = 0; same && i < parts.size(); ++i) {
+      VisualPart const& part = parts[i];
+      for (Vec3 const& p : part.surface.points)
+        if (!p.allFinite()) throw NonFinite{told(), "a point of \"", part.name, "\" is not finite at t = ", t, " s."};
+      if (!part.place.allFinite() || !part.axes.allFinite())
+        throw NonFinite{told(), "the frame of \"", part.name, "\" is not finite at t = ", t, " s."};
+      same = times_.empty() || (part.name == parts_[i].name && part.surface.points.size() == parts_[i].points.size());
+    }
+    if (!same) throw InvalidInput{told(), "the parts at t = ", t, " s are not those of the first frame."};
+  }
+
+  void add_part(VisualPart const& part) {
+    bool const rigid = !part.carried.empty();
+    detail::FilmShape shape{.points = {}, .corners = part.surface.corners, .ends = part.surface.ends};
+    Mat3 const axes = detail::rotation_of(detail::quantised_rotation(part.axes));
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < part.surface.points.size(); ++i) {
+      Vec3 const p = rigid ? part.carried[i] : Vec3(axes.transpose() * (part.surface.points[i] - part.place));
+      for (int k = 0; k < 3; ++k) shape.points.push_back(float(p[k]));
+      points.emplace_back(p.cast<float>().cast<double>());
+    }
+    std::size_t k = 0;
+    while (k < shapes_.size() && !(shapes_[k] == shape)) ++k;
+    if (k == shapes_.size()) shapes_.push_back(std::move(shape));
+    parts_.push_back({.name = part.name,
+                      .shape = k,
+                      .rigid = rigid,
+                      .points = std::move(points),
+                      .scalars = std::vector<std::vector<float>>(scalars_.size())});
+  }
+
+  void add_frame(double t, VisualPart const& part, detail::FilmPart& out) const {
+    auto const turn = detail::quantised_rotation(part.axes);
+    Mat3 const axes = detail::rotation_of(turn);
+    out.turns.insert(out.turns.end(), turn.begin(), turn.end());
+    Vec3 const place = part.place.cast<float>().cast<double>();
+    for (int k = 0; k < 3; ++k) out.places.push_back(float(place[k]));
+    if (!out.rigid)
+      for (std::size_t i = 0; i < out.points.size(); ++i) {
+        Vec3 const off = axes.transpose() * (part.surface.points[i] - place) - out.points[i];
+        for (int k = 0; k < 3; ++k) out.deviations.push_back(float(off[k]));
+      }
+    for (std::size_t s = 0; s < scalars_.size(); ++s) {
+      std::vector<double> const values = scalars_[s].values(part);
+      std::size_t const before = out.scalars[s].size(), wanted = times_.size() * out.points.size();
+      bool const fits = values.empty() ? before == 0 : before == wanted && values.size() == out.points.size();
+      if (!fits)
+        throw InvalidInput{told(),
+                           "the colours \"",
+                           scalars_[s].label,
+                           "\" of \"",
+                           part.name,
+                           "\" are not one for each "
+                           "point at t = ",
+                           t,
+                           " s."};
+      for (double const x : values) out.scalars[s].push_back(float(x));
+    }
+  }
+
+  std::string name_;
+  double interval_, next_ = -std::numeric_limits<double>::infinity();
+  std::vector<double> times_;
+  std::vector<FilmScalar> scalars_;
+  std::vector<detail::FilmShape> shapes_;
+  std::vector<detail::FilmPart> parts_;
+  std::vector<detail::FilmArrowSet> arrows_;
+  std::vector<detail::FilmHistory> histories_;
+};
+
+}  // namespace polybody
