@@ -1,8 +1,10 @@
 // The clamped beam of Chapter 2 under a moment at its tip (Figures 2.9 and 2.10), and the same beam rolled into a full
 // circle under several formulations.
 //   cantilever --case all --out out/cantilever
+//   cantilever --case compare --viewer build/release/polybody_viewer.html --film beam.html
 #include <numbers>
 
+#include "chapter2_film.hpp"
 #include "chapter2_meshes.hpp"
 #include "chapter2_plots.hpp"
 #include "support/command_line.hpp"
@@ -21,6 +23,7 @@ struct Options {
   double until = 20.0;
   double moment = 30e3;
   fs::path out = "out/cantilever";
+  fs::path viewer, film;
   bool no_plot = false;
 };
 
@@ -147,6 +150,7 @@ void roll_up_all(Options const& o) {
 // The swinging beam under several formulations.
 struct BeamCase {
   Options const& o;
+  std::shared_ptr<Film> film = nullptr;
 
   template <class F>
   auto operator()(F const& f) const {
@@ -155,23 +159,30 @@ struct BeamCase {
     Beam beam(bar(low, o.density), o.elements, o.moment);
     State const start = beam.model.reference_state();
     auto const tip = beam.beam.at(length);
-    static_cast<void>(f);
+    std::function<void(M const&, State const&)> observer;
+    if (film) observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), beam.beam, visible_bar(low, o.density));
     return Scenario<M>{std::move(beam.model),
                        start,
                        {.until = std::min(o.until, 4.0), .step = o.step},
                        {{"tip x [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[0]; }},
-                        {"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }}}};
+                        {"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }}},
+                       observer};
   }
 };
 
 void comparison(Options const& o) {
   GeneralizedAlpha const implicit{.rho_inf = 0.8};
+  std::shared_ptr<Film> film;
+  if (!o.film.empty())
+    film = std::make_shared<Film>(
+        film_options(o.viewer, "The clamped beam, " + number(1e-3 * o.moment) + " kN m at its tip"));
   Comparison const c = compare(
-      BeamCase{o}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
+      BeamCase{o, film}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
       Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralizedAlpha>{"ANCF Green", {}, implicit},
       Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralizedAlpha>{"ANCF engin.", {}, implicit});
   std::cout << "\nThe clamped beam under the tip moment, three formulations:\n\n";
   report(c, o.out / "comparison", !o.no_plot);
+  if (film) film->write(o.film);
 }
 
 }  // namespace
@@ -189,8 +200,11 @@ int main(int argc, char** argv) {
   line.option("--moment", &o.moment, "moment at the tip [N m]");
   line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
   line.option("--out", &o.out, "folder for CSV files and pictures");
+  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
+  line.option("--film", &o.film, "film of the case 'compare'; with a viewer, film.html in the folder --out");
   line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
+  if (!o.viewer.empty() && o.film.empty()) o.film = o.out / "film.html";
   try {
     bool const all = o.which == "all";
     if (all || o.which == "moment") {

@@ -1,7 +1,9 @@
 // The flexible robot arm of Chapter 2 (Figures 2.4 to 2.8) under several formulations, side by side.
 //   robot_arm --case all --out out/robot_arm
+//   robot_arm --case compare --viewer build/release/polybody_viewer.html --film arm.html
 
 #include "chapter2_energy.hpp"
+#include "chapter2_film.hpp"
 #include "chapter2_meshes.hpp"
 #include "chapter2_plots.hpp"
 #include "support/command_line.hpp"
@@ -22,6 +24,7 @@ struct Options {
   double window = 20.0;
   double stiffer = 1.0;
   fs::path out = "out/robot_arm";
+  fs::path viewer, film;
   bool no_plot = false;
 };
 
@@ -137,6 +140,7 @@ struct ArmCase {
   Options const& o;
   Stiffness stiffness;
   double ramp;
+  std::shared_ptr<Film> film = nullptr;
 
   template <class F>
   auto operator()(F const& f) const {
@@ -153,24 +157,35 @@ struct ArmCase {
                          Vec3 const r = position(m, x, tip);
                          return std::sin(psi) * r[0] - std::cos(psi) * r[1];
                        }});
+    std::function<void(M const&, State const&)> observer;
+    if (film)
+      observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), arm.arm, visible_bar(stiffness, o.density));
     return Scenario<M>{std::move(arm.model),
                        start,
                        {.until = o.until > 0.0 ? o.until : 1.5 * ramp, .step = o.step},
-                       std::move(outputs)};
+                       std::move(outputs),
+                       observer};
   }
 };
+
+std::shared_ptr<Film> film_of(Options const& o) {
+  if (o.film.empty()) return nullptr;
+  return std::make_shared<Film>(film_options(o.viewer, "The robot arm of medium stiffness, 1.5 rad in 4.5 s"));
+}
 
 void comparison(Options const& o) {
   GeneralizedAlpha const implicit{.rho_inf = 0.8};
   Penalty const stiff{.stiffness = 1e9, .damping = 1e5};
+  std::shared_ptr<Film> const film = film_of(o);
   Comparison const c = compare(
-      ArmCase{o, medium, 4.5}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
+      ArmCase{o, medium, 4.5, film}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
       Formulation<planar::Lrvf, Penalty, GeneralizedAlpha>{"LRVF, penalty", stiff, implicit},
       Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralizedAlpha>{"ANCF Green", {}, implicit},
       Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralizedAlpha>{"ANCF engin.", {}, implicit},
       Formulation<planar::Rigid, Constraint, GeneralizedAlpha>{"rigid", {}, implicit});
   std::cout << "\nThe arm of medium stiffness, 1.5 rad in 4.5 s, under five formulations:\n\n";
   report(c, o.out / "comparison", !o.no_plot);
+  if (film) film->write(o.film);
 }
 
 // One formulation by one integrator, once the drive stands still.
@@ -233,8 +248,11 @@ int main(int argc, char** argv) {
                 "factor on EA and GA of the snapshots; a large one is the constraint against stretch and shear");
   line.positive("--window", &o.window, "seconds of the case 'energy' after the ramp [s]");
   line.option("--out", &o.out, "folder for CSV files and pictures");
+  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
+  line.option("--film", &o.film, "film of the case 'compare'; with a viewer, film.html in the folder --out");
   line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
+  if (!o.viewer.empty() && o.film.empty()) o.film = o.out / "film.html";
   try {
     if (o.which == "all" || o.which == "angle") figure_2_4(o);
     if (o.body == "lrvf") run_cases<planar::Lrvf>(o);

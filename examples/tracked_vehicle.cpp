@@ -3,6 +3,7 @@
 //   tracked_vehicle --compare
 //   tracked_vehicle --figure 3.11
 //   tracked_vehicle --integrator adams --until 0.5
+//   tracked_vehicle --figure 3.11 --viewer build/release/polybody_viewer.html
 
 #include <map>
 #include <tuple>
@@ -10,6 +11,7 @@
 #include <polybody/compare/join.hpp>
 
 #include "support/command_line.hpp"
+#include "support/vehicle_film.hpp"
 #include "tracked_vehicle/measures.hpp"
 #include "tracked_vehicle/pins.hpp"
 
@@ -50,7 +52,16 @@ class RunsMade {
   Runs const& made(Options const& o, Pins const& pins) {
     Key const key{pins.name, o.suspension, o.step};
     auto const found = made_.find(key);
-    return found != made_.end() ? found->second : made_.emplace(key, pins.run(o)).first->second;
+    if (found != made_.end()) return found->second;
+    Options mine = o;
+    if (!filmed(o, pins)) mine.film = nullptr;
+    return made_.emplace(key, pins.run(mine)).first->second;
+  }
+
+  // Of several formulations a film shows rigid links and flexible ones.
+  static bool filmed(Options const& o, Pins const& pins) {
+    bool const alone = o.figure.empty() && o.compare.empty();
+    return o.suspension && (alone || pins.name == ideal_pins().name || pins.name == cable_pins().name);
   }
 
   std::map<Key, Runs> made_;
@@ -277,6 +288,9 @@ int main(int argc, char** argv) {
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
   line.flag("--bumps", &o.bumps, "a course with three bumps");
   line.option("--animate", &o.animate, "writes a ParaView animation with a state every so many seconds");
+  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
+  line.option("--film", &o.film_file,
+              "film of the run, or of rigid links beside cables; with a viewer, film.html in the folder --out");
   line.flag("--audit", &o.audit, "works out where the energy went");
   line.option("--out", &o.out, "folder of the results");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");
@@ -289,6 +303,8 @@ int main(int argc, char** argv) {
           "The links of this program are rigid, or cables on pins of their own. Every link on every pin, on the same "
           "vehicle, is driven by track_stress --compare matrix; give it --speed 25 --rho 0.8 --step 5e-4 for the "
           "settings of Chapter 3.");
+    if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
+    if (!o.film_file.empty()) o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 3");
     fs::create_directories(o.out);
     warn_of_fast_drive(o);
     if (o.figure == "table" || o.figure == "all") table_3_4(o);
@@ -296,6 +312,7 @@ int main(int argc, char** argv) {
       Figures(o).draw_all();
     else
       single(o);
+    if (o.film && o.film->scenes() > 0) o.film->write(o.film_file);
   } catch (Error const& e) {
     std::cerr << e.what() << '\n';
     return 1;

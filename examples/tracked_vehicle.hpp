@@ -15,6 +15,10 @@
 #include <limits>
 #include <memory>
 
+namespace polybody {
+class Film;
+}
+
 namespace chapter3 {
 
 using namespace polybody;
@@ -40,6 +44,7 @@ struct Settings {
   m113::ContactsAct contacts = m113::ContactsAct::in_the_middle;
   std::shared_ptr<m113::TrackStart const> start = {};  // of the links; without it each run settles its own tracks
   double animate = 0.0;                                // seconds between states, 0 for none
+  std::shared_ptr<Film> film = nullptr;                // each run is a scene
   bool audit = false;
   bool watched = true;  // a track that leaves its sprocket ends the run
   fs::path out = "out/tracked_vehicle";

@@ -5,6 +5,8 @@
 #include <polybody/vehicle/settled_track.hpp>
 #include <polybody/vehicle/track_watch.hpp>
 
+#include "vehicle_film.hpp"
+
 namespace chapter3 {
 
 namespace {
@@ -26,6 +28,12 @@ class Probe {
   double forward = 0, sideways = 0, height = 0, pitch = 0, yaw = 0, speed = 0, sprocket = 0, idler = 0;
   double link_x = 0, link_z = 0, force_x = 0, force_z = 0, force = 0, gap = 0, largest_gap = 0, depth = 0, off_path = 0,
          off_plane = 0;
+
+  // As it was evaluated for the last number that was asked.
+  System const& system_at(State const& x) {
+    if (x.t != t_) look(x);
+    return system_;
+  }
 
   std::string deepest;  // where the deepest contact of the run was
   double deepest_depth = 0.0, deepest_time = 0.0, torque = 0;
@@ -128,6 +136,10 @@ class Watch {
     writer_ = std::make_unique<VtkWriter>(file, *visual_);
   }
 
+  void film(Film& film, std::string const& name, AnyVehicle const& vehicle) {
+    scene_ = std::make_unique<VehicleScene>(film, name, vehicle);
+  }
+
   void see(State const& x, Outcome& o) {
     o.deepest = probe_->deepest;
     o.depth = probe_->deepest_depth;
@@ -147,6 +159,13 @@ class Watch {
       writer_->write(x);
       next_picture_ += every_;
     }
+    if (scene_) {
+      System const& system = probe_->system_at(x);
+      scene_->see(x, system);
+      scene_->plot(x.t, {{"forward velocity [m/s]", probe_->speed},
+                         {"vertical displacement [m]", probe_->height},
+                         {"force of a pin [kN]", 1e-3 * probe_->force}});
+    }
     progress_.update(x.t);
     if (x.t >= until_) progress_.finish();
   }
@@ -159,6 +178,7 @@ class Watch {
   std::unique_ptr<EnergyAudit> audit_;
   std::unique_ptr<Visual> visual_;
   std::unique_ptr<VtkWriter> writer_;
+  std::unique_ptr<VehicleScene> scene_;
 };
 
 }  // namespace
@@ -210,6 +230,7 @@ Scenario<AnyModel> TrackCase::scenario(std::string const& name, Built const& bui
   auto const watch = std::make_shared<Watch>(s, name, vehicle.tracks, probe);
   if (s.audit) watch->audit(EnergyAudit(vehicle.model.system()));
   if (s.animate > 0.0) watch->animate(vehicle.visual(), s.out / (name + ".pvd"));
+  if (s.film) watch->film(*s.film, name, vehicle);
   auto observer = [watch, out = outcomes, mine = outcomes->size() - 1](AnyModel const&, State const& x) {
     watch->see(x, (*out)[mine]);
   };

@@ -11,6 +11,7 @@ struct Options : Settings {
 
   std::string track = "constraint", compare, figure, turn, integrator = "alpha";
   double penalty = m113::pin_stiffness;
+  fs::path viewer, film_file;
   double tolerance = 0.0;  // of Newton's corrections, or of the error of a step; 0: the integrator's own
   bool halve = false;
 };

@@ -21,7 +21,8 @@ export class Arrows {
     this.set = set;
     let most = 1;
     for (let i = 0; i + 1 < set.firsts.length; ++i) most = Math.max(most, set.firsts[i + 1] - set.firsts[i]);
-    const material = new THREE.MeshPhongMaterial({color: colour, specular: '#111111'});
+    // over all else, for most begin inside of bodies
+    const material = new THREE.MeshPhongMaterial({color: colour, specular: '#111111', depthTest: false, transparent: true});
     const shaft = new THREE.CylinderGeometry(0.5 * width, 0.5 * width, 1, 10).rotateX(Math.PI / 2).translate(0, 0, 0.5);
     const head = new THREE.ConeGeometry(1.4 * width, 4 * width, 14).rotateX(Math.PI / 2).translate(0, 0, -2 * width);
     this.headLength = 4 * width;
@@ -29,6 +30,7 @@ export class Arrows {
     this.heads = new THREE.InstancedMesh(head, material, most);
     for (const mesh of [this.shafts, this.heads]) {
       mesh.frustumCulled = false;
+      mesh.renderOrder = 1;
       mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
       root.add(mesh);
     }

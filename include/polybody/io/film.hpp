@@ -83,6 +83,8 @@ class Film {
     return scenes_.emplace_back(std::move(name), options_.frames_per_second);
   }
 
+  std::size_t scenes() const { return scenes_.size(); }  ///< so far
+
   /// The file appears when it is complete. \return its size [bytes] \throws InvalidInput without a scene or for one
   /// without frames, or where `follow` is no part of a scene; IoError.
   std::size_t write(std::filesystem::path const& file) const {

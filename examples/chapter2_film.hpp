@@ -1,0 +1,55 @@
+#pragma once
+// The bars of Chapter 2 as a film: each formulation a scene, with the axial stress of a section of 1 m x 1 m, the
+// reaction at the support, and the tip's place as histories.
+#include <polybody/io/film.hpp>
+#include <polybody/io/film_forces.hpp>
+
+#include "chapter2.hpp"
+
+namespace chapter2 {
+
+inline FilmOptions film_options(std::filesystem::path const& viewer, std::string const& title) {
+  return {.viewer = viewer,
+          .title = title,
+          .look_from = Vec3(0.25, -0.2, 1.0),
+          .up = Vec3::UnitY(),
+          .floor = FilmFloor::behind};
+}
+
+// The bar with the section and the material that its constants come from.
+inline Bar visible_bar(Stiffness const& s, double density) {
+  return {.length = length,
+          .section = Rectangle{.height = 1.0, .width = 1.0},
+          .material = Material{.density = density, .young = s.EA, .poisson = 0.0}};
+}
+
+// What looks at the states of a run for one scene; the model is that of each call.
+template <class M, class B>
+class BarFilm {
+ public:
+  BarFilm(FilmScene& scene, BodyHandle<B> const& body, Bar const& bar) : scene_(&scene), body_(body), bar_(bar) {
+    scene.colour(axial_stress_colours());
+    reactions_ = scene.arrows("force of the support", "kN");
+  }
+
+  void operator()(M const& model, State const& x) {
+    Vec3 const tip = position(model, x, body_.at(length));
+    scene_->plot("tip x", "m", x.t, tip[0]);
+    scene_->plot("tip y", "m", x.t, tip[1]);
+    if (!scene_->due(x.t)) return;
+    Visual visual(model);
+    visual.sweep(body_, bar_, 40);
+    scene_->record(x.t, visual.at(x));
+    System system(model, with<Entries::motion>);
+    system.evaluate(x.q, x.v, x.t);
+    add_reactions(*scene_, reactions_, system, x, 1e3);
+  }
+
+ private:
+  FilmScene* scene_;
+  BodyHandle<B> body_;
+  Bar bar_;
+  FilmArrows reactions_{};
+};
+
+}  // namespace chapter2

@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// Forces of joints and contacts as arrows of a film. Not in polybody.hpp: it goes with io/film.hpp.
+
+#include <polybody/io/film_scene.hpp>
+#include <polybody/run/contacts.hpp>
+#include <polybody/run/observe.hpp>
+
+namespace polybody {
+
+/// The force of each joint on its second body, where that has it, in the last frame of a scene. `system` must have been
+/// evaluated at x. \param unit of the arrows [N], 1000 for kN \throws InvalidInput, NonFinite as `FilmScene::arrow`.
+template <class = void>
+void add_reactions(FilmScene& scene, FilmArrows arrows, System const& system, State const& x, double unit = 1.0) {
+  for (RowBlock<double> const& block : system.data().rows) {
+    if (block.source == RowSource::body) continue;
+    Index const marker = system.layout().joints[std::size_t(block.owner)].b;
+    Vec3 const force = reaction_of(system, x, block.owner).f;
+    scene.arrow(arrows, system.data().markers[std::size_t(marker)].frame.r, force / unit);
+  }
+}
+
+/// A visitor for `for_each_contact`: the force of each point that presses, on the body of the many.
+/// \param unit of the arrows [N], 1000 for kN
+template <class = void>
+TouchingPointVisit add_contacts(FilmScene& scene, FilmArrows arrows, double unit = 1.0) {
+  return [&scene, arrows, unit](TouchingPoint const& p) { scene.arrow(arrows, p.place, p.force / unit); };
+}
+
+}  // namespace polybody
