@@ -16,15 +16,19 @@ declare -A shows=(
   [vehicle_study]="A study of 24 vehicles whose preload and friction are drawn at random: forces in a pin, and the way."
 )
 
-# command_of NAME OUT: the program and its options.
+# command_of NAME OUT [VIEWER]: the program and its options. With the page that plays films, some write one.
 command_of() {
+  local film=${3:+ --viewer $3}
   case $1 in
-    robot_arm | cantilever) echo "$1 --case all --out $2/$1" ;;
-    tracked_vehicle | track_stress) echo "$1 --figure all --out $2/$1" ;;
+    robot_arm | cantilever) echo "$1 --case all --out $2/$1$film" ;;
+    tracked_vehicle) echo "$1 --figure all --out $2/$1$film" ;;
+    track_stress) echo "$1 --figure all --out $2/$1" ;;
     chain_study | vehicle_study) echo "$1 --threads $(nproc) --out $2/$1" ;;
     *) echo "$1" ;;
   esac
 }
+
+films_of() { find "$1" -type f -name 'film*.html' 2> /dev/null | sort; }
 
 pictures_of() { find "$1" -type f \( -name '*.png' -o -name '*.svg' \) 2> /dev/null | sort; }
 
@@ -48,7 +52,10 @@ caption_of() {
   echo "${title:-$(basename "${1%.*}" | tr _ ' ')}"
 }
 
-# write_index OUT: OUT/index.html of all pictures below it. Written beside and moved, so it is never half there.
+# title_of FILM: the title of its page, as it stands there.
+title_of() { grep -m 1 -ao '<title>[^<]*' "$1" | sed 's/^<title>//; s/ · film$//'; }
+
+# write_index OUT: OUT/index.html of all pictures and films below it. Written beside and moved, so it is never half there.
 write_index() {
   local out=$1 page=$1/index.html.part name picture path
   mkdir -p "$out"
@@ -64,7 +71,7 @@ write_index() {
   code { background: #f2f2f2; padding: .2em .4em; }
   .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(24em, 1fr)); gap: 1.5em; }
   figure { margin: 0; } img { width: 100%; border: 1px solid #ddd; } figcaption { font-size: 90%; }
-  figcaption small { color: #666; display: block; }
+  figcaption small { color: #666; display: block; } .film a { font-weight: 600; } .film small { color: #666; }
 </style>
 <h1>polybody: examples</h1>
 HEAD
@@ -73,6 +80,10 @@ HEAD
       echo "<h2>$name</h2>"
       echo "<p>$(escaped "${shows[$name]}")</p>"
       echo "<p><code>build/examples/examples/$(escaped "$(command_of "$name" "$out")")</code></p>"
+      while IFS= read -r picture; do
+        path=$(escaped "${picture#"$out"/}")
+        echo "<p class=\"film\"><a href=\"$path\">&#9654; $(title_of "$picture")</a> <small>$path</small></p>"
+      done < <(films_of "$out/$name")
       echo '<div class="figures">'
       while IFS= read -r picture; do
         path=$(escaped "${picture#"$out"/}")

@@ -11,7 +11,7 @@ VehicleScene::VehicleScene(Film& film, std::string const& name, AnyVehicle const
     : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(name)) {
   scene_.colour(axial_stress_colours());
   contacts_ = scene_.arrows("contact forces on links", "kN");
-  pins_ = scene_.arrows("forces of joints", "kN");
+  pins_ = scene_.arrows("forces of joints", "kN", false);
 }
 
 void VehicleScene::plot(double t, std::vector<std::pair<char const*, double>> const& numbers) {

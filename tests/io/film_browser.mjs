@@ -7,8 +7,8 @@
 //               at all times that both have, within 1e-4 of the size of what is seen;
 //   --rate      while it plays, it draws so many pictures a second or more;
 //   --damage    the page says what is wrong in a sentence where the file is cut off or changed.
-// --pictures keeps pictures of the page. Ends with 77 where there is no chromium.
-import {mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+// --pictures keeps pictures of the page. Ends with 77 where there is no film or no chromium.
+import {existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {basename, dirname, join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
@@ -24,7 +24,10 @@ for (let i = 2; i < process.argv.length; ++i) {
   else options.film = resolve(word);
 }
 const program = findChromium();
-if (!program) process.exit(77);
+if (!program || !existsSync(options.film)) {
+  console.log(program ? `There is no film ${options.film}.` : 'There is no chromium.');
+  process.exit(77);
+}
 
 const width = 800, height = 600;
 const twoPictures = 'new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))';
@@ -97,12 +100,16 @@ async function play(page) {
     const name = basename(options.film, '.html');
     writeFileSync(join(options.pictures, `${name}_small.png`), middle);
     await page.resize(1280, 800);
+    await page.open('about:blank');
+    await page.open(`${pathToFileURL(options.film).href}#smooth`);
     for (const [k, share] of [0.02, 0.35, 0.7, 1].entries()) {
       await page.ask(`polybodyFilm.show(${range[0] + share * (range[1] - range[0])})`);
       await page.ask('new Promise((done) => setTimeout(done, 300))');
       writeFileSync(join(options.pictures, `${name}_${k}.png`), await page.picture());
     }
     await page.resize(width, height);
+    await page.open('about:blank');
+    await page.open(pathToFileURL(options.film).href);
   }
 }
 

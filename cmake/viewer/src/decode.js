@@ -56,7 +56,7 @@ function partsOf(bytes) {
   return {table: bytes.subarray(headBytes, headBytes + tableBytes), arrays: bytes.slice(headBytes + tableBytes).buffer};
 }
 
-const types = {f4: Float32Array, f8: Float64Array, i2: Int16Array, u2: Uint16Array, u4: Uint32Array};
+const types = {i1: Int8Array, f4: Float32Array, f8: Float64Array, i2: Int16Array, u2: Uint16Array, u4: Uint32Array};
 
 /** Reads the members of a table of contents and refuses those that do not fit. */
 class Reader {
@@ -125,7 +125,7 @@ function readPart(r, p, scene) {
     rigid,
     places: r.array(p.places, ['f4'], 3 * frames),
     turns: r.array(p.turns, ['i2'], 4 * frames),
-    deviations: rigid ? null : r.array(p.deviations, ['i2'], 3 * points * frames),
+    deviations: rigid ? null : r.array(p.deviations, ['i1', 'i2'], 3 * points * frames),
     step: rigid ? 0 : r.number(p.step),
     scalars: p.scalars.map((s) => s === null ? null : r.array(s, ['u2'], points * frames)),
   };
@@ -138,6 +138,7 @@ function readArrows(r, a, frames) {
   return {
     label: r.text(a.label),
     unit: r.text(a.unit),
+    shown: a.shown !== false,
     firsts,
     places: r.array(a.places, ['f4'], 3 * all),
     vectors: r.array(a.vectors, ['i2'], 3 * all),

@@ -176,7 +176,7 @@ class Player {
       const cell = cells.find((c) => c.scene === k);
       element.hidden = !cell;
       if (cell)
-        for (const side of ['left', 'top', 'width', 'height']) element.style[side] = `${cell[side]}px`;
+        for (const side of ['left', 'top']) element.style[side] = `${cell[side]}px`;
     });
     if (this.fitted !== `${width} ${height} ${this.theatre.only}`) this.theatre.reset();
     this.fitted = `${width} ${height} ${this.theatre.only}`;

@@ -10,7 +10,8 @@ import {Stage} from './stage.js';
 
 const background = '#f6f7f9', sheetColour = '#eef0f3', lineColour = '#d3d8de';
 
-/** Edges are smoothed but where a processor draws in place of graphics hardware: there it costs a third of the pictures. */
+/** Edges are smoothed and shadows fall but where a processor draws in place of graphics hardware: there they cost half of the
+ *  pictures. An address that ends in #smooth has them there, too. */
 function smooths() {
   if (location.hash === '#smooth') return true;
   const gl = document.createElement('canvas').getContext('webgl2'), info = gl?.getExtension('WEBGL_debug_renderer_info');
@@ -23,7 +24,8 @@ export class Theatre {
   constructor(canvas, film) {
     this.film = film;
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: smooths(), powerPreference: 'high-performance'});
+    this.smooth = smooths();
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: this.smooth, powerPreference: 'high-performance'});
     this.renderer.setScissorTest(true);
     this.renderer.setClearColor(background);
     this.camera = new THREE.PerspectiveCamera(28, 1, 0.1, 1000);
@@ -76,19 +78,20 @@ export class Theatre {
     const grid = new THREE.LineSegments(lines, new THREE.LineBasicMaterial({color: lineColour}));
     grid.renderOrder = -1;
     stage.root.add(paper, grid);
-    if (ground) stage.castShadows(this.up, height, sun.position.clone().normalize());
+    if (ground && this.smooth) stage.castShadows(this.up, height, sun.position.clone().normalize());
   }
 
   addArrows() {
     const labels = [...new Set(this.film.scenes.flatMap((scene) => scene.arrows.map((set) => set.label)))];
+    const shown = new Map(this.film.scenes.flatMap((scene) => scene.arrows.map((set) => [set.label, set.shown])));
     this.arrowSets = labels.map((label, k) => {
       const most = longest(this.film.scenes, label), unit = this.film.scenes.flatMap((s) => s.arrows).find((s) => s.label === label).unit;
-      return {label, unit, most, colour: palette[[1, 2, 4, 3, 0][k % 5]], scale: most > 0 ? 0.22 * this.size / most : 0, visible: true};
+      return {label, unit, most, colour: palette[[1, 2, 4, 3, 0][k % 5]], scale: most > 0 ? 0.18 * this.size / most : 0, visible: shown.get(label)};
     });
     for (const stage of this.stages)
       stage.arrows = stage.scene.arrows.map((set) => {
         const kind = this.arrowSets.find((s) => s.label === set.label);
-        return {kind, drawn: new Arrows(set, kind.colour, 0.004 * this.size, stage.root)};
+        return {kind, drawn: new Arrows(set, kind.colour, 0.003 * this.size, stage.root)};
       });
   }
 
@@ -159,8 +162,13 @@ export class Theatre {
     }
     if (!this.dirty && !this.always) return false;
     this.dirty = false;
-    const gap = this.stages.length > 1 && this.only < 0 ? 1 : 0;
-    this.renderer.setScissor(0, 0, this.width, this.height);
+    const gap = this.stages.length > 1 && this.only < 0 ? 0.5 : 0;
+    if (gap > 0) { // what shows between the scenes
+      this.renderer.setScissor(0, 0, this.width, this.height);
+      this.renderer.setClearColor(lineColour);
+      this.renderer.clear();
+      this.renderer.setClearColor(background);
+    }
     for (const cell of this.cells(this.width, this.height)) {
       const stage = this.stages[cell.scene], frame = frameAt(stage.scene.times, t);
       stage.setFrame(frame);

@@ -64,7 +64,8 @@ std::string html_text(std::string const& text) {
 ///   for (State const& now : simulate(…))
 ///     if (scene.due(now.t)) scene.record(now.t, visual.at(now));
 ///   film.write("out/arm.html");
-/// Parts that a frame carries cost 20 bytes a frame; parts that deform 6 more for each point, and 2 for each colour.
+/// Parts that a frame carries cost 20 bytes a frame; parts that deform 3 or 6 more for each point, and 2 for each
+/// colour.
 class Film {
  public:
   /// \throws InvalidInput for options that cannot be meant; IoError where the viewer is not there: before the run.

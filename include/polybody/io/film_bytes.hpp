@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <unordered_map>
 #include <vector>
 
 #include <polybody/math/types.hpp>
@@ -19,8 +20,9 @@ namespace polybody::detail {
 /// Adds a number with its lowest byte first, whatever the machine does.
 template <class T>
 void append_bytes(std::string& bytes, T number) {
-  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t,
-                                  std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint16_t>>;
+  using Small = std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>;
+  using Bits =
+      std::conditional_t<sizeof(T) == 8, std::uint64_t, std::conditional_t<sizeof(T) == 4, std::uint32_t, Small>>;
   Bits const bits = std::bit_cast<Bits>(number);
   for (unsigned i = 0; i < sizeof(T); ++i) bytes += char((bits >> (8 * i)) & 0xff);
 }
@@ -31,27 +33,35 @@ constexpr char const* type_letters() {
   return std::is_same_v<T, double>         ? "f8"
          : std::is_same_v<T, float>        ? "f4"
          : std::is_same_v<T, std::int16_t> ? "i2"
+         : std::is_same_v<T, std::int8_t>  ? "i1"
          : sizeof(T) == 2                  ? "u2"
                                            : "u4";
 }
 
-/// Arrays one behind the other, each from a multiple of eight bytes on.
+/// Arrays one behind the other, each from a multiple of eight bytes on. Arrays with the same bytes are there once:
+/// parts of one body turn alike.
 class FilmArrays {
  public:
   /// \return where the array is, as it stands in the table of contents: ["type", first byte, numbers]
   template <class T>
   std::string add(std::vector<T> const& values) {
-    std::string const place = std::string("[\"") + type_letters<T>() + "\"," + std::to_string(bytes_.size()) + ',' +
-                              std::to_string(values.size()) + ']';
-    for (T const value : values) append_bytes(bytes_, value);
-    bytes_.resize((bytes_.size() + 7) / 8 * 8);
-    return place;
+    std::string own;
+    own.reserve(values.size() * sizeof(T));
+    for (T const value : values) append_bytes(own, value);
+    auto const [found, added] = first_byte_.try_emplace(std::move(own), bytes_.size());
+    if (added) {
+      bytes_ += found->first;
+      bytes_.resize((bytes_.size() + 7) / 8 * 8);
+    }
+    return std::string("[\"") + type_letters<T>() + "\"," + std::to_string(found->second) + ',' +
+           std::to_string(values.size()) + ']';
   }
 
   std::string const& bytes() const { return bytes_; }
 
  private:
   std::string bytes_;
+  std::unordered_map<std::string, std::size_t> first_byte_;
 };
 
 /// Base 64 [RFC 4648, §4].
@@ -83,19 +93,19 @@ std::string json_text(std::string_view text) {
   return out + '"';
 }
 
-/// Numbers as integers of 16 bits: value ≈ integer·step, |error| ≤ step/2.
+/// Numbers as integers of up to `most`, 127 or 32767: value ≈ integer·step, |error| ≤ step/2.
 struct Quantised {
-  std::vector<std::int16_t> integers;
+  std::vector<std::int16_t> integers = {};
   double step = 0.0;
 };
 template <class = void>
-Quantised quantised(std::vector<float> const& values) {
-  float most = 0.0f;
-  for (float const x : values) most = std::max(most, std::abs(x));
-  Quantised out{.integers = {}, .step = double(most) / 32767.0};
+Quantised quantised(std::vector<float> const& values, double most = 32767.0) {
+  float largest = 0.0f;
+  for (float const x : values) largest = std::max(largest, std::abs(x));
+  Quantised out{.step = double(largest) / most};
   out.integers.reserve(values.size());
   for (float const x : values)
-    out.integers.push_back(std::int16_t(most > 0.0f ? std::lround(double(x) / out.step) : 0));
+    out.integers.push_back(std::int16_t(largest > 0.0f ? std::lround(double(x) / out.step) : 0));
   return out;
 }
 

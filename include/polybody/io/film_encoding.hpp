@@ -13,7 +13,8 @@
 /// and f8 are IEEE floats of 4 and 8 bytes, i2 signed, u2 and u4 unsigned integers.
 ///
 /// A point of a part stands at place + A (point + step·deviation): places and turns (quaternions, scaled to length one)
-/// are of each frame, deviations only of parts that deform. A scalar is low + (high − low)·u/65534; 65535 says none.
+/// are of each frame, deviations only of parts that deform, in one byte where that leaves 1e-4 of the part's size or
+/// less. A scalar is low + (high − low)·u/65534; 65535 says none.
 
 #include <deque>
 
@@ -92,8 +93,12 @@ class SceneContents {
     std::string text = "{\"name\":" + json_text(p.name) + ",\"shape\":" + std::to_string(p.shape) +
                        ",\"places\":" + arrays_.add(p.places) + ",\"turns\":" + arrays_.add(p.turns);
     if (!p.rigid) {
-      Quantised const q = quantised(p.deviations);
-      text += ",\"deviations\":" + arrays_.add(q.integers) + ",\"step\":" + all_digits(q.step);
+      Quantised q = quantised(p.deviations, 127.0);
+      bool const fine = 0.5 * q.step <= 1e-4 * size_of(p);
+      if (!fine) q = quantised(p.deviations);
+      text += ",\"deviations\":" + (fine ? arrays_.add(std::vector<std::int8_t>(q.integers.begin(), q.integers.end()))
+                                         : arrays_.add(q.integers));
+      text += ",\"step\":" + all_digits(q.step);
     }
     text += ",\"scalars\":[";
     for (std::size_t k = 0; k < ranges_.size(); ++k)
@@ -101,9 +106,20 @@ class SceneContents {
     return text + "]}";
   }
 
+  /// Diagonal of the box around a part [m].
+  static double size_of(FilmPart const& p) {
+    Vec3 low = p.points.front(), high = low;
+    for (Vec3 const& x : p.points) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    return (high - low).norm();
+  }
+
   std::string arrows(FilmArrowSet const& a) {
     Quantised const q = quantised(a.vectors);
-    return named(a.label, a.unit) + ",\"counts\":" + arrays_.add(a.counts) + ",\"places\":" + arrays_.add(a.places) +
+    return named(a.label, a.unit) + ",\"shown\":" + (a.shown ? "true" : "false") +
+           ",\"counts\":" + arrays_.add(a.counts) + ",\"places\":" + arrays_.add(a.places) +
            ",\"vectors\":" + arrays_.add(q.integers) + ",\"step\":" + all_digits(q.step) + '}';
   }
 

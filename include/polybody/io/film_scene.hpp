@@ -64,6 +64,7 @@ struct FilmShape {
 
 struct FilmArrowSet {
   std::string label, unit;
+  bool shown = true;
   std::vector<std::uint32_t> counts = {};  ///< of each frame
   std::vector<float> places = {}, vectors = {};
 };
@@ -103,10 +104,11 @@ class FilmScene {
     scalars_.push_back(std::move(scalar));
   }
 
-  /// Arrows whose vectors have one unit, and one scale in the picture. \throws InvalidInput after the first frame.
-  FilmArrows arrows(std::string label, std::string unit) {
+  /// Arrows whose vectors have one unit, and one scale in the picture. \param shown or hidden until they are asked for
+  /// \throws InvalidInput after the first frame.
+  FilmArrows arrows(std::string label, std::string unit, bool shown = true) {
     require_start(label);
-    arrows_.push_back({std::move(label), std::move(unit)});
+    arrows_.push_back({std::move(label), std::move(unit), shown});
     return {arrows_.size() - 1};
   }
 

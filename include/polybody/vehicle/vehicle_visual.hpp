@@ -40,7 +40,7 @@ Surface toothed_wheel(double width) {
 template <class Base>
 void attach_hull(Visual& visual, BodyHandle<Base> const& chassis) {
   visual.attach(chassis.at(Vec3(0.1, 0, 0.35)), box({4.6, 1.5, 0.9}), "hull");
-  visual.attach(chassis.at(Vec3(0.1, 0, 0.55)), box({4.6, 2.54, 0.5}), "sponsons");
+  visual.attach(chassis.at(Vec3(0.1, 0, 0.545)), box({4.6, 2.54, 0.49}), "sponsons");  // not in one plane with the hull
 }
 
 /// A wheel or the idler.
