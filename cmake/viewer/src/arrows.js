@@ -1,6 +1,8 @@
 // Forces and other vectors of a scene as arrows: one mesh, whose vertices are written for each frame.
 import * as THREE from 'three';
 
+import {litMaterial} from './materials.js';
+
 const sides = 6, verticesOf = 4 * sides + 1;
 
 /** The longest vector of a label in all scenes. */
@@ -17,7 +19,7 @@ export function longest(scenes, label) {
 
 export class Arrows {
   /** \param width of a shaft [m] */
-  constructor(set, colour, width, root) {
+  constructor(set, colour, width, {root, sky, sun}) {
     this.set = set;
     this.width = width;
     let most = 1;
@@ -37,7 +39,7 @@ export class Arrows {
     }
     geometry.setIndex(index);
     // over all else, for most begin inside of bodies
-    const material = new THREE.MeshLambertMaterial({color: colour, depthTest: false, depthWrite: false});
+    const material = litMaterial(colour, sky, sun, {depthTest: false, depthWrite: false});
     this.mesh = new THREE.Mesh(geometry, material);
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = 1;

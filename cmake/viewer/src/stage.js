@@ -4,6 +4,7 @@ import * as THREE from 'three';
 
 import {colourIndex} from './colours.js';
 import {pointsOf} from './decode.js';
+import {flatMaterial, litMaterial} from './materials.js';
 import {meshOf, writeVertices} from './surfaces.js';
 
 const paints = ['#7d93a8', '#c8b48c', '#5f7f78', '#b58a73', '#8f89b0', '#a9b0b6', '#9fae7e', '#6a86b0'];
@@ -16,7 +17,10 @@ const kindOf = (name) => name.replace(/\b(left|right)\b/g, '').replace(/[0-9]+/g
 const linear = (r, g, b) => new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace);
 
 export class Stage {
-  constructor(scene, film) {
+  /** \param sky, sun directions to where light comes from */
+  constructor(scene, film, sky, sun) {
+    this.sky = sky;
+    this.sun = sun;
     this.scene = scene;
     this.film = film;
     this.root = new THREE.Group(); // moved against the part that the camera follows
@@ -71,7 +75,7 @@ export class Stage {
       geometry.setAttribute(name, attribute);
     }
     geometry.setIndex(new THREE.BufferAttribute(index, 1));
-    this.mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({vertexColors: true}));
+    this.mesh = new THREE.Mesh(geometry, litMaterial(null, this.sky, this.sun));
     this.mesh.frustumCulled = false;
     this.root.add(this.mesh);
     for (const w of this.drawn) this.paint(w, this.colours[w.index]);
@@ -90,8 +94,8 @@ export class Stage {
           -d.y * n.x, 1 - d.y * n.y, -d.y * n.z, d.y * height,
           -d.z * n.x, -d.z * n.y, 1 - d.z * n.z, d.z * height,
           0, 0, 0, 1);
-    const shadow = new THREE.Mesh(this.mesh.geometry, new THREE.MeshBasicMaterial(
-        {color: shadowColour, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1}));
+    const shadow = new THREE.Mesh(this.mesh.geometry, flatMaterial(
+        shadowColour, {side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1}));
     shadow.frustumCulled = shadow.matrixAutoUpdate = false;
     shadow.matrix.copy(m);
     this.root.add(shadow);

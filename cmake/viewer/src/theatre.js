@@ -6,6 +6,7 @@ import {Arrows, longest} from './arrows.js';
 import {marks, palette} from './colours.js';
 import {frameAt} from './decode.js';
 import {cornersOf, gridOf, lookAtAll} from './extent.js';
+import {flatMaterial} from './materials.js';
 import {Stage} from './stage.js';
 
 const background = '#f6f7f9', sheetColour = '#eef0f3', lineColour = '#d3d8de';
@@ -34,7 +35,9 @@ export class Theatre {
     this.camera.up.copy(this.up);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => (this.dirty = true));
-    this.stages = film.scenes.map((scene) => new Stage(scene, film));
+    const side = this.up.clone().cross(this.from).normalize();
+    this.sun = this.up.clone().multiplyScalar(1.6).addScaledVector(this.from, 0.9).addScaledVector(side, -0.8).normalize();
+    this.stages = film.scenes.map((scene) => new Stage(scene, film, this.up, this.sun));
     this.following = Boolean(film.follow);
     this.only = -1; // the one scene that is shown, or all
     this.dirty = true;
@@ -61,24 +64,19 @@ export class Theatre {
   }
 
   furnish(stage) {
-    const light = new THREE.HemisphereLight('#ffffff', '#b9b4ac', 1.9), sun = new THREE.DirectionalLight('#fffaf0', 2.0);
-    light.position.copy(this.up);
-    const side = this.up.clone().cross(this.from).normalize();
-    sun.position.copy(this.up).multiplyScalar(1.6).addScaledVector(this.from, 0.9).addScaledVector(side, -0.8);
-    stage.world.add(light, sun);
     if (this.film.floor === 'none') return;
     const ground = this.film.floor === 'ground', normal = ground ? this.up : this.from;
     let height = Infinity;
     for (const c of stage.corners) height = Math.min(height, c.dot(normal));
     height -= (ground ? 1e-4 : 0.02) * this.size;
     const {lines, sheet} = gridOf(stage.corners, normal, height, this.spacing, (ground ? 0.35 : 0.1) * this.size);
-    const paper = new THREE.Mesh(sheet, new THREE.MeshBasicMaterial(
-        {color: sheetColour, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2}));
+    const paper = new THREE.Mesh(sheet, flatMaterial(
+        sheetColour, {side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2}));
     paper.renderOrder = -2;
-    const grid = new THREE.LineSegments(lines, new THREE.LineBasicMaterial({color: lineColour}));
+    const grid = new THREE.LineSegments(lines, flatMaterial(lineColour));
     grid.renderOrder = -1;
     stage.root.add(paper, grid);
-    if (ground && this.smooth) stage.castShadows(this.up, height, sun.position.clone().normalize());
+    if (ground && this.smooth) stage.castShadows(this.up, height, this.sun);
   }
 
   addArrows() {
@@ -91,7 +89,7 @@ export class Theatre {
     for (const stage of this.stages)
       stage.arrows = stage.scene.arrows.map((set) => {
         const kind = this.arrowSets.find((s) => s.label === set.label);
-        return {kind, drawn: new Arrows(set, kind.colour, 0.003 * this.size, stage.root)};
+        return {kind, drawn: new Arrows(set, kind.colour, 0.003 * this.size, stage)};
       });
   }
 
