@@ -134,10 +134,10 @@ export class Theatre {
     const rows = Math.ceil(n / columns);
     return shown.map((scene, k) => ({
       scene,
-      left: (k % columns) * width / columns,
-      top: Math.floor(k / columns) * height / rows,
-      width: width / columns,
-      height: height / rows,
+      left: (k % columns) * Math.floor(width / columns),
+      top: Math.floor(k / columns) * Math.floor(height / rows),
+      width: Math.floor(width / columns),
+      height: Math.floor(height / rows),
     }));
   }
 
@@ -152,6 +152,12 @@ export class Theatre {
     this.dirty = true;
   }
 
+  fill(colour, left, bottom, width, height) {
+    this.renderer.setScissor(left, bottom, width, height);
+    this.renderer.setClearColor(colour);
+    this.renderer.clear();
+  }
+
   /** Draws the time t [s], unless nothing has changed. Returns whether it drew. */
   draw(t) {
     for (const stage of this.stages) {
@@ -160,13 +166,7 @@ export class Theatre {
     }
     if (!this.dirty && !this.always) return false;
     this.dirty = false;
-    const gap = this.stages.length > 1 && this.only < 0 ? 0.5 : 0;
-    if (gap > 0) { // what shows between the scenes
-      this.renderer.setScissor(0, 0, this.width, this.height);
-      this.renderer.setClearColor(lineColour);
-      this.renderer.clear();
-      this.renderer.setClearColor(background);
-    }
+    this.fill(background, 0, 0, this.width, this.height); // where no scene is
     for (const cell of this.cells(this.width, this.height)) {
       const stage = this.stages[cell.scene], frame = frameAt(stage.scene.times, t);
       stage.setFrame(frame);
@@ -177,8 +177,12 @@ export class Theatre {
         if (kind.visible) drawn.setFrame(frame, kind.scale * this.arrowFactor);
       }
       const bottom = this.height - cell.top - cell.height;
+      const line = {left: cell.left > 0 ? 1 : 0, top: cell.top > 0 ? 1 : 0}; // between the scenes
+      if (line.left) this.fill(lineColour, cell.left, bottom, 1, cell.height);
+      if (line.top) this.fill(lineColour, cell.left, bottom + cell.height - 1, cell.width, 1);
+      this.renderer.setClearColor(background);
       this.renderer.setViewport(cell.left, bottom, cell.width, cell.height);
-      this.renderer.setScissor(cell.left + gap, bottom + gap, cell.width - 2 * gap, cell.height - 2 * gap);
+      this.renderer.setScissor(cell.left + line.left, bottom, cell.width - line.left, cell.height - line.top);
       this.renderer.render(stage.world, this.camera);
     }
     ++this.drawn;
