@@ -14,12 +14,13 @@ namespace polybody {
 /// What lies under a scene.
 enum class FilmFloor { ground, behind, none };
 
+/// What a film is called, where its viewer is, and how it is looked at.
 struct FilmOptions {
   /// The page that plays: `polybody_viewer.html`, which CMake's target `viewer` makes in the build folder and
   /// installs in share/polybody/viewer.
   std::filesystem::path viewer;
-  std::string title = "polybody";
-  double frames_per_second = 30.0;     ///< of simulated time
+  std::string title = "polybody";      ///< of the page
+  double frames_per_second = 30.0;     ///< of simulated time [1/s]
   Vec3 look_from = Vec3(-2, -3, 1.5);  ///< (3) direction from what is seen to the eye, world axes
   Vec3 up = Vec3::UnitZ();             ///< (3) direction that is up in the picture, world axes
   std::string follow = {};             ///< name of the part that the camera goes with; empty: none

@@ -15,7 +15,8 @@ namespace polybody {
 
 /// A number in each point of a part, shown by colours with a bar.
 struct FilmScalar {
-  std::string label, unit;
+  std::string label;  ///< of the bar
+  std::string unit;   ///< of the values
   /// One for each point of the part, in the unit; NaN where there is none; empty where the part has none.
   std::function<std::vector<double>(VisualPart const&)> values;
 };
@@ -79,7 +80,7 @@ struct FilmHistory {
 
 /// Names a set of arrows of a scene.
 struct FilmArrows {
-  std::size_t place;
+  std::size_t place;  ///< among the scene's sets
 };
 
 /// Made by `Film::scene`. What is to be coloured and which arrows there are is said before the first frame:
@@ -93,6 +94,7 @@ struct FilmArrows {
 ///   }
 class FilmScene {
  public:
+  /// Empty; see `Film::scene`.
   FilmScene(std::string name, double frames_per_second) : name_(std::move(name)), interval_(1.0 / frames_per_second) {}
 
   /// \throws InvalidInput after the first frame, or for a scalar that the scene has.
@@ -157,15 +159,19 @@ class FilmScene {
     found->values.push_back(float(value));
   }
 
-  std::string const& name() const { return name_; }
+  std::string const& name() const { return name_; }            ///< as `Film::scene` was told
   std::vector<double> const& times() const { return times_; }  ///< of the frames [s]
 
-  // What a film writes.
-  std::vector<FilmScalar> const& scalars() const { return scalars_; }
-  std::vector<detail::FilmShape> const& shapes() const { return shapes_; }
-  std::vector<detail::FilmPart> const& parts() const { return parts_; }
-  std::vector<detail::FilmArrowSet> const& arrow_sets() const { return arrows_; }
-  std::vector<detail::FilmHistory> const& histories() const { return histories_; }
+  /// \name What a film writes
+  ///@{
+  std::vector<FilmScalar> const& scalars() const { return scalars_; }              ///< that parts are coloured by
+  std::vector<detail::FilmShape> const& shapes() const { return shapes_; }         ///< each once
+  std::vector<detail::FilmPart> const& parts() const { return parts_; }            ///< of the first frame
+  std::vector<detail::FilmArrowSet> const& arrow_sets() const { return arrows_; }  ///< in the order of `arrows`
+  std::vector<detail::FilmHistory> const& histories() const {
+    return histories_;
+  }  ///< in the order of their first points
+     ///@}
 
  private:
   std::string told() const { return "Film, scene \"" + name_ + "\": "; }
