@@ -12,6 +12,9 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
+#include <array>
+#include <span>
+
 #include <polybody/integrators/alpha_method.hpp>
 
 namespace polybody {
@@ -33,13 +36,19 @@ struct StepEnds {
   double h;                ///< [s]
 };
 
+/// A direction along which a step is differentiated.
+struct StepDirection {
+  EquationSlope by;  ///< what the parameter does to the equations at the end of the step
+  State* dx;         ///< the derivative of the state before the step; it becomes that of the state after it
+};
+
 /// Slopes of converged steps of a method, one step after the other.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepSlope {
-  using D = Dual<1>;
-  using Dots = VecXOf<D>;
-
  public:
+  /// Directions that go through the equations together, a part of a dual number each.
+  static constexpr int lanes = 4;
+
   /// The model must outlive it.
   template <class M>
   [[gnu::cold]] AlphaStepSlope(M const& model, System& system, AlphaMethod const& method)
@@ -47,8 +56,12 @@ class AlphaStepSlope {
     VecX const any = VecX::Zero(system.rows());
     solver_.analyse(system, 1,
                     [&](BlockSink& sink) { system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, sink); });
-    r_ = Dots::Constant(system.speeds(), D(0.0));
-    phi_ = rate_ = Dots::Constant(system.rows(), D(0.0));
+    Index const nq = system.coordinates(), nv = system.speeds(), rows = system.rows();
+    from_ = q_ = Dots::Constant(nq, D(0.0));
+    delta_ = v_ = a_ = r_ = Dots::Constant(nv, D(0.0));
+    lambda_ = phi_ = rate_ = Dots::Constant(rows, D(0.0));
+    rhs_ = correction_ = VecX::Zero(nv + rows);
+    for (VecX& y : y_) y = rhs_;
   }
 
   /// From now on slopes are those of this step. \throws LinearSolverSingular at a singular position.
@@ -67,96 +80,113 @@ class AlphaStepSlope {
     }
   }
 
-  /// dx, the derivative of the state before the step, becomes that of the state after it. \param own that of the
-  /// method's accelerations, likewise. Returns what the last correction changed, beside all, or beside a and λ over the
-  /// parameter's scale where that is more.
-  double advance(StepEnds const& step, EquationSlope const& by, State& dx, VecX& own) {
-    Index const nv = dx.v.size(), rows = dx.lambda.size();
-    VecX y = VecX::Zero(nv + rows), rhs = y, correction = y;
-    State after = dx;
+  /// Takes up to `lanes` directions over the step. Returns what the last corrections changed at most, beside all, or
+  /// beside a and λ over a parameter's scale where that is more.
+  double advance(StepEnds const& step, std::span<StepDirection const> directions) {
+    Index const nv = a_.size(), rows = lambda_.size();
+    for (std::size_t l = 0; l < directions.size(); ++l) {  // as they were: near what they become
+      State const& dx = *directions[l].dx;
+      y_[l].head(nv) = dx.memory.head(nv);
+      y_[l].tail(rows) = dx.lambda;
+    }
     double left = std::numeric_limits<double>::infinity();
     for (int k = 0; k < most_corrections; ++k) {
-      after = end_of(step, dx, own, y);
-      differentiate(step, after, by, rhs);
-      solver_.solve(rhs, correction);
-      y += correction;
-      double const now = std::max(part(correction.head(nv), y.head(nv), step.after.a, by.scale),
-                                  part(correction.tail(rows), y.tail(rows), step.after.lambda, by.scale));
+      find_end(step, directions);
+      evaluate(step);
+      double now = 0.0;
+      for (std::size_t l = 0; l < directions.size(); ++l) {
+        EquationSlope const& by = directions[l].by;
+        VecX& y = y_[l];
+        right_hand_side(step, by, Index(l));
+        solver_.solve(rhs_, correction_);
+        y += correction_;
+        now = std::max({now, part(correction_.head(nv), y.head(nv), step.after.a, by.scale),
+                        part(correction_.tail(rows), y.tail(rows), step.after.lambda, by.scale)});
+      }
       bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
       left = now;
       if (done) break;
     }
-    after = end_of(step, dx, own, y);
-    own = y.head(nv);
-    after.memory = dx.memory;
-    StepHistory(after).push(dx, step.h, own);
-    dx = std::move(after);
+    find_end(step, directions);
+    for (std::size_t l = 0; l < directions.size(); ++l) take_end(step, *directions[l].dx, Index(l));
     return left;
   }
 
  private:
+  using D = Dual<lanes>;
+  using Dots = VecXOf<D>;
   static constexpr int most_corrections = 30;
 
-  static double part(VecX const& correction, VecX const& y, VecX const& now, double scale) {
+  template <class A, class B>
+  static double part(A const& correction, B const& y, VecX const& now, double scale) {
     double const all = std::max(y.norm(), now.norm() / scale);
     return all > 0.0 ? correction.norm() / all : correction.norm();
   }
 
-  /// δq₁, δv₁, δv̇₁ and δλ₁.
-  State end_of(StepEnds const& step, State const& dx, VecX const& own, VecX const& y) {
-    Index const nv = dx.v.size();
+  /// q₁, v₁, v̇₁ and λ₁ with their changes by the y of each direction.
+  void find_end(StepEnds const& step, std::span<StepDirection const> directions) {
+    State const &before = step.before, &after = step.after;
     AlphaMethod const& m = method_;
-    double const h = step.h, h2 = h * h;
-    State out = dx;
-    out.lambda = y.tail(y.size() - nv);
-    delta_.resize(nv);
+    Index const nv = a_.size();
+    double const h = step.h, h2 = h * h, of_a0 = h2 * (0.5 - m.beta), of_a1 = h2 * m.beta;
+    for (Index i = 0; i < from_.size(); ++i) from_[i] = D(before.q[i]);
     for (Index i = 0; i < nv; ++i) {
-      double const a0 = own[i], a1 = y[i];
-      out.a[i] = ((1.0 - m.alpha_m) * a1 + m.alpha_m * a0 - m.alpha_f * dx.a[i]) / (1.0 - m.alpha_f);
-      out.v[i] = dx.v[i] + h * ((1.0 - m.gamma) * a0 + m.gamma * a1);
-      delta_[i] = D(h * step.before.v[i] + h2 * ((0.5 - m.beta) * step.own_before[i] + m.beta * step.own_after[i]));
-      delta_[i].d[0] = h * dx.v[i] + h2 * ((0.5 - m.beta) * a0 + m.beta * a1);
+      a_[i] = D(after.a[i]);
+      v_[i] = D(after.v[i]);
+      delta_[i] = D(h * before.v[i] + of_a0 * step.own_before[i] + of_a1 * step.own_after[i]);
     }
-    set(from_, step.before.q, dx.q);
-    to_.resize(from_.size());
-    dual_.plus(from_, delta_, to_);
-    for (Index i = 0; i < to_.size(); ++i) out.q[i] = to_[i].d[0];
-    return out;
+    for (Index i = 0; i < lambda_.size(); ++i) lambda_[i] = D(after.lambda[i]);
+    for (std::size_t l = 0; l < directions.size(); ++l) {
+      State const& dx = *directions[l].dx;
+      VecX const& y = y_[l];
+      Index const k = Index(l);
+      for (Index i = 0; i < from_.size(); ++i) from_[i].d[k] = dx.q[i];
+      for (Index i = 0; i < nv; ++i) {
+        double const a0 = dx.memory[i], a1 = y[i];
+        a_[i].d[k] = ((1.0 - m.alpha_m) * a1 + m.alpha_m * a0 - m.alpha_f * dx.a[i]) / (1.0 - m.alpha_f);
+        v_[i].d[k] = dx.v[i] + h * ((1.0 - m.gamma) * a0 + m.gamma * a1);
+        delta_[i].d[k] = h * dx.v[i] + of_a0 * a0 + of_a1 * a1;
+      }
+      for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d[k] = y[nv + i];
+    }
+    dual_.plus(from_, delta_, q_);
   }
 
-  /// −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² at the end of the step, with what the parameter does.
-  void differentiate(StepEnds const& step, State const& dx, EquationSlope const& by, VecX& rhs) {
-    State const& x = step.after;
-    set(q_, x.q, dx.q);
-    set(v_, x.v, dx.v);
-    set(a_, x.a, dx.a);
-    set(lambda_, x.lambda, dx.lambda);
-    dual_.evaluate(q_, v_, x.t);
+  /// M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ there.
+  void evaluate(StepEnds const& step) {
+    dual_.evaluate(q_, v_, step.after.t);
     dual_.residual(a_, lambda_, r_);
-    Index const nv = r_.size();
-    for (Index i = 0; i < nv; ++i) rhs[i] = -(r_[i].d[0] + by.balance[i]);
-    if (phi_.size() == 0) return;
-    dual_.violation(phi_);
-    double const of_position = -1.0 / (method_.beta * step.h * step.h), of_speed = -1.0 / (method_.gamma * step.h);
-    for (Index i = 0; i < phi_.size(); ++i) rhs[nv + i] = of_position * (phi_[i].d[0] + by.rows[i]);
-    if (dual_.velocity_rows().empty()) return;
-    dual_.violation_rate(rate_);
-    for (Index const i : dual_.velocity_rows()) rhs[nv + i] = of_speed * (rate_[i].d[0] + by.rows[i]);
+    if (phi_.size() > 0) dual_.violation(phi_);
+    if (!dual_.velocity_rows().empty()) dual_.violation_rate(rate_);
   }
-
-  static void set(Dots& out, VecX const& value, VecX const& dot) {
-    out.resize(value.size());
-    for (Index i = 0; i < value.size(); ++i) {
-      out[i] = D(value[i]);
-      out[i].d[0] = dot[i];
+  /// −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (−δΦ̇/γh) of direction l, with what the parameter does.
+  void right_hand_side(StepEnds const& step, EquationSlope const& by, Index l) {
+    double const of_position = -1.0 / (method_.beta * step.h * step.h), of_speed = -1.0 / (method_.gamma * step.h);
+    Index const nv = r_.size();
+    for (Index i = 0; i < nv; ++i) rhs_[i] = -(r_[i].d[l] + by.balance[i]);
+    for (Index i = 0; i < phi_.size(); ++i) rhs_[nv + i] = of_position * (phi_[i].d[l] + by.rows[i]);
+    for (Index const i : dual_.velocity_rows()) rhs_[nv + i] = of_speed * (rate_[i].d[l] + by.rows[i]);
+  }
+  /// dx becomes the derivative of the state after the step.
+  void take_end(StepEnds const& step, State& dx, Index l) {
+    Index const nv = a_.size();
+    own_ = y_[std::size_t(l)].head(nv);
+    StepHistory(dx).push(dx, step.h, own_);
+    for (Index i = 0; i < q_.size(); ++i) dx.q[i] = q_[i].d[l];
+    for (Index i = 0; i < nv; ++i) {
+      dx.v[i] = v_[i].d[l];
+      dx.a[i] = a_[i].d[l];
     }
+    for (Index i = 0; i < lambda_.size(); ++i) dx.lambda[i] = lambda_[i].d[l];
   }
 
   System* system_;
   BasicSystem<D> dual_;
   TangentSolver<SolverOfSteps<Solver>> solver_;
   AlphaMethod method_;
-  Dots from_, delta_, to_, q_, v_, a_, lambda_, r_, phi_, rate_;
+  Dots from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
+  std::array<VecX, std::size_t(lanes)> y_;  // changes of a₁ and λ₁, of each direction
+  VecX rhs_, correction_, own_;
 };
 
 }  // namespace polybody

@@ -159,9 +159,12 @@ class DirectDifferentiation {
     VecX const own_before = before.memory.head(nv), own_after = x_.memory.head(nv);
     StepEnds const step{before, x_, own_before, own_after, h};
     slope_.set(step);
+    std::vector<StepDirection> directions;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
-      VecX own = dx_[j].memory.head(nv);
-      out_.left = std::max(out_.left, slope_.advance(step, equation_slope(j), dx_[j], own));
+      directions.push_back({equation_slope(j), &dx_[j]});
+      if (directions.size() < std::size_t(AlphaStepSlope<>::lanes) && j + 1 < parameters_.size()) continue;
+      out_.left = std::max(out_.left, slope_.advance(step, directions));
+      directions.clear();
     }
   }
   EquationSlope equation_slope(std::size_t j) {
@@ -178,11 +181,12 @@ class DirectDifferentiation {
   /// Values and slopes of the outputs at x.
   void note() {
     MatX slopes = MatX::Zero(Index(out_.outputs.size()), Index(parameters_.size()));
+    State shown = x_;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
         double const e = parameters_[j].distance();
-        State const x = beside(x_, dx_[j], FourPoints::places[k] * e);
-        slopes.col(Index(j)) += FourPoints::weights[k] / e * beside_[4 * j + k]->outputs(x);
+        add_motion(shown, dx_[j], FourPoints::places[k] * e, x_);
+        slopes.col(Index(j)) += FourPoints::weights[k] / e * beside_[4 * j + k]->outputs(shown);
       }
       bool const moves = dx_[j].q.squaredNorm() + dx_[j].v.squaredNorm() + dx_[j].a.squaredNorm() > 0.0;
       if (moves || !slopes.col(Index(j)).isZero(0.0)) touched_[j] = 1;

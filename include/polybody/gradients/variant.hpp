@@ -65,6 +65,14 @@ void add(State& sum, State const& x, double by) {
   sum.lambda += by * x.lambda;
   sum.memory += by * x.memory;
 }
+/// shown = x + e dx but for what an integrator remembers.
+template <class = void>
+void add_motion(State& shown, State const& dx, double e, State const& x) {
+  shown.q = x.q + e * dx.q;
+  shown.v = x.v + e * dx.v;
+  shown.a = x.a + e * dx.a;
+  shown.lambda = x.lambda + e * dx.lambda;
+}
 template <class = void>
 State zeros_like(State const& x) {
   State out = x;
