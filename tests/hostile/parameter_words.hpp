@@ -161,8 +161,9 @@ inline constexpr auto words_of<StepLimits> = words("violation", "energy");
 template <>
 inline constexpr auto words_of<Event> = words("name", "value", "stops", "tolerance");
 template <>
-inline constexpr auto words_of<RunOptions> = words("end", "step", "largest step", "corner", "event",
-                                                   "assembly_tolerance", "halve", "minimum_norm", "limits", "thread");
+inline constexpr auto words_of<RunOptions> =
+    words("end", "step", "largest step", "corner", "event", "assembly_tolerance", "halve", "minimum_norm", "limits",
+          "thread", "progress");
 template <>
 inline constexpr auto words_of<EquilibriumOptions> =
     words("load_steps", "smallest_part", "tolerance", "max_iterations");
