@@ -12,7 +12,7 @@ namespace polybody {
 /// on a, and the opposite on b.
 template <StateScalar T>
 struct Handover {
-  T share = T(1.0);
+  T share = T(1.0);  ///< part of the force and of the potential that this face bears, in [0, 1]
   Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m], place moving with a
   Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) [m]
 };
@@ -20,10 +20,10 @@ struct Handover {
 /// A point where body a and body b overlap.
 template <StateScalar T>
 struct ContactPoint {
-  Vec<T, 3> place;   ///< (3) where the force acts, world axes [m]
-  Vec<T, 3> normal;  ///< (3) unit vector from b to a
-  T depth;           ///< d > 0 [m]
-  Handover<T> handover = {};
+  Vec<T, 3> place;            ///< (3) where the force acts, world axes [m]
+  Vec<T, 3> normal;           ///< (3) unit vector from b to a
+  T depth;                    ///< d > 0 [m]
+  Handover<T> handover = {};  ///< the face's part of the force; 1 where no other face is near
 };
 
 namespace detail {
@@ -77,7 +77,7 @@ struct Friction {
 /// it were fixed to it.
 template <ContactGeometry G, NormalForce N = SpringDamperContact>
 struct Contact {
-  using Geometry = G;
+  using Geometry = G;  ///< type of the geometry
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
   static constexpr Observes needs = G::needs;

@@ -23,15 +23,16 @@ class ContactGroup {
   /// One of the few.
   template <class Law>
   struct Opponent {
-    Law law;
-    Index marker;  ///< among the group's
-    std::string name;
+    Law law;           ///< how the two touch
+    Index marker;      ///< among the group's
+    std::string name;  ///< name of the opponent in messages and results
   };
 
   /// The first `count` markers are the many; the model sets this.
   void set_many(Index count) { many_ = count; }
-  Index many() const { return many_; }
+  Index many() const { return many_; }  ///< how many markers are the many; they come first in the group
 
+  /// Adds an opponent: under `law` each of the many may touch the group's marker number `marker`.
   template <class Law>
     requires(std::is_same_v<Law, Laws> || ...)
   void pair_with(Law const& law, Index marker, std::string name) {
@@ -40,15 +41,18 @@ class ContactGroup {
 
   void check(std::string const& name) const;
 
+  /// Calls f(opponent) for each `Opponent`: by the type of its law, then in the order in which they were added.
   template <class F>
   void for_each_opponent(F&& f) const {
     std::apply([&](auto const&... few) { (each_of(few, f), ...); }, few_);
   }
 
+  /// Calls visit(i, marker, law) for each pair of one of the many, i, and an opponent, near or far.
   template <class Visit>
   void for_each_candidate(Visit&& visit) const {
     for (Index i = 0; i < many_; ++i) for_each_opponent([&](auto const& few) { visit(i, few.marker, few.law); });
   }
+  /// Calls visit(i, marker, law) for the pairs whose law says that they may touch; frame(k) is the frame of marker k.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
     for_each_pair(frame, visit, 0, many_);

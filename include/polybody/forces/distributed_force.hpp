@@ -13,7 +13,7 @@ namespace polybody {
 /// A part of a bar, measured from its first end, cut into equal pieces.
 struct BarRange {
   Required<double> from, to;  ///< [m]
-  Required<Index> pieces;
+  Required<Index> pieces;     ///< how many equal pieces, 1 or more; each bears two point forces
 };
 
 /// Spreads `per_length` [N/m], dead or following the section, over a range of a bar, as two point forces on each piece.

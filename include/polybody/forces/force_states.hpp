@@ -13,8 +13,8 @@ struct AtStates {
   static constexpr bool is_load = F::is_load;
   static constexpr Observes needs = F::needs;
 
-  F const& force;
-  std::array<T, F::states> const& z;
+  F const& force;                     ///< the element, which must outlive this
+  std::array<T, F::states> const& z;  ///< its states, which must outlive this
 
   void check(std::string const&) const {}
   template <StateScalar U>
@@ -25,7 +25,7 @@ struct AtStates {
 
 /// What derivatives with respect to poses, twists and states are multiplied by.
 struct SlopeFactors {
-  double pose, twist, states;
+  double pose, twist, states;  ///< factors of the derivatives by poses, twists and states; zero leaves them out
 };
 
 /// Gradients of wrenches and rates, in this order, with respect to the frames and the states, (6N + S)×(6N + S).

@@ -6,7 +6,7 @@ namespace polybody {
 /// A spring and a damper one behind the other along the line between two markers: tension N = k (l − l₀ − z), with
 /// z˙ = N/c the elongation of the damper. Held at a length, the tension relaxes as e^{−kt/c} [Maxwell 1867].
 struct MaxwellElement {
-  static constexpr int markers = 2, states = 1;
+  static constexpr int markers = 2, states = 1;  ///< two ends; one state, the elongation z of the damper [m]
   static constexpr bool is_load = false;
   static constexpr Observes needs = Observes::point;
 

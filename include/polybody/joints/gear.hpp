@@ -17,7 +17,7 @@ struct Gear {
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
 
-  static constexpr int most_teeth = 1'000'000;
+  static constexpr int most_teeth = 1'000'000;  ///< largest number of teeth, without its sign
 
   Required<int> teeth_a;   ///< N_a
   Required<int> teeth_b;   ///< N_b; of an internal (ring) gear the number is negative
@@ -76,7 +76,7 @@ struct Gear {
  private:
   /// The teeth in lowest terms.
   struct Ratio {
-    double a, b;
+    double a, b;  ///< N_a and N_b without their common factor
   };
   Ratio ratio() const {
     int const common = std::gcd(int(teeth_a), int(teeth_b));

@@ -36,8 +36,9 @@ template <class G, class P>
 struct Joint {
   static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::asked);
   static_assert(Policy<P> || detail::PolicyRefusal<P>::asked);
-  using Geometry = G;
-  using PolicyType = P;
+  using Geometry = G;    ///< which motions are stopped
+  using PolicyType = P;  ///< how they are stopped
+  /// What the policy answers: G, or what P measures in its place.
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
   static constexpr int rows = Measured::rows;
   static_assert(!Policy<P> || !MeasuresGeometry<P, G> || AnswersGeometry<P, G>,

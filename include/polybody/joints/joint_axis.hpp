@@ -10,14 +10,18 @@ namespace polybody {
 /// do not depend on it.
 class JointAxis {
  public:
-  JointAxis() = default;                                                      ///< left out
-  JointAxis(Vec3 const& v) : value_(v), given_(true) {}                       // NOLINT: reads as a vector
+  JointAxis() = default;  ///< left out
+  /// From a vector (3). Its length is checked where the joint is connected, not here.
+  JointAxis(Vec3 const& v) : value_(v), given_(true) {}  // NOLINT: reads as a vector
+  /// From three components.
   JointAxis(double x, double y, double z) : value_(x, y, z), given_(true) {}  // NOLINT
+  /// From an expression that makes a vector (3).
   template <class X>
     requires std::is_class_v<X> && (!std::is_base_of_v<JointAxis, X>) && std::is_convertible_v<X const&, Vec3>
   JointAxis(X const& x) : value_(x), given_(true) {}  // NOLINT: from an expression that makes a vector
 
-  bool given() const { return given_; }
+  bool given() const { return given_; }  ///< whether it was given
+  /// The direction, not checked; (0, 0, 1) where it was left out.
   operator Vec3 const&() const { return value_; }  // NOLINT
   /// \throws InvalidInput where it was left out; `what` names joint and direction.
   Vec3 const& required(std::string const& what) const {
@@ -36,7 +40,7 @@ class JointAxis {
 /// The axis of a turn that serves the plane, too. There it is the plane's normal, which needs no telling.
 class TurnAxis : public JointAxis {
  public:
-  using JointAxis::JointAxis;
+  using JointAxis::JointAxis;  ///< as those of `JointAxis`
 };
 
 /// A geometry that turns about one.

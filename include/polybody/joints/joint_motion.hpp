@@ -11,15 +11,16 @@ namespace polybody {
 
 /// One elementary motion, along or about an axis of the frame as the earlier ones have left it.
 struct JointMotion {
+  /// What moves along or about the axis, and by which coordinates.
   enum class Kind : unsigned char {
     slide,  ///< along the axis, one coordinate [m]
     turn,   ///< about the axis, one coordinate [rad]
     screw,  ///< about and along the axis, one coordinate [rad]
     ball    ///< about all axes, a unit quaternion; speeds in the axes of frame b [rad/s]
   };
-  Kind kind = Kind::slide;
-  int axis = 2;        ///< 0, 1 or 2
-  double pitch = 0.0;  ///< of a screw: slide for each radian [m/rad]
+  Kind kind = Kind::slide;  ///< what it is
+  int axis = 2;             ///< 0, 1 or 2
+  double pitch = 0.0;       ///< of a screw: slide for each radian [m/rad]
 
   int coordinates() const { return kind == Kind::ball ? 4 : 1; }
   int speeds() const { return kind == Kind::ball ? 3 : 1; }
@@ -27,12 +28,14 @@ struct JointMotion {
 
 /// The motions of a joint, from a to b.
 struct JointMotions {
+  /// In the order in which they lead from a to b; only the first `count` are meant.
   std::array<JointMotion, 4> list = {};
-  int count = 0;
+  int count = 0;  ///< how many motions, 0 to 4
 
+  /// Appends a motion, the fourth at most.
   constexpr void add(JointMotion const& m) { list[std::size_t(count++)] = m; }
-  auto begin() const { return list.begin(); }
-  auto end() const { return list.begin() + count; }
+  auto begin() const { return list.begin(); }        ///< first motion
+  auto end() const { return list.begin() + count; }  ///< behind the last one
   int coordinates() const {
     int n = 0;
     for (JointMotion const& m : *this) n += m.coordinates();

@@ -159,6 +159,7 @@ struct HeldCoordinates {
   static constexpr int rows = 6;
   static constexpr Observes needs = Observes::frame;
   static constexpr Observes needs_of_second = polybody::needs_of_second<G>();
+  /// G leaves all three turns free: turns are not measured.
   static constexpr bool may_turn = G::free[3] && G::free[4] && G::free[5];
 
   template <StateScalar T>

@@ -14,17 +14,19 @@ namespace polybody {
 
 /// Place of a block in the matrix.
 struct Block {
-  Index row, col, rows, cols;
+  Index row, col, rows, cols;  ///< first row and column of the block in the matrix, and its size
 };
 
 /// A part of a block and its place in a solver's storage: entry (i, j) is added to to[i stride + j]; transposed, to
 /// to[j stride + i].
 struct BlockPiece {
-  double* to;
+  double* to;                ///< the entry of the storage that receives the part's first entry
   int row, col, rows, cols;  ///< the part, within the block
+  /// Entries of the storage from one row of the part to the next; from one column to the next if transposed.
   int stride;
-  bool transposed;
+  bool transposed;  ///< the storage has the part's columns as rows
 
+  /// Adds the numbers of this part of block b to the storage.
   void add(BlockView const& b) const {
     double const* const from = b.data + row * b.row_step + col * b.col_step;
     if (transposed)
@@ -48,7 +50,8 @@ struct BlockPiece {
 
 /// The pieces of all blocks in the order in which they come: those of block k are [first[k], first[k + 1]).
 struct BlockSlots {
-  BlockPiece const* pieces = nullptr;
+  BlockPiece const* pieces = nullptr;  ///< all pieces, block after block
+  /// (blocks + 1) number of the first piece of each block; null where a receiver is called for each block.
   int const* first = nullptr;
   std::uint64_t layout = 0;  ///< of the storage: another number for every other one
 
@@ -83,6 +86,7 @@ concept OffersSlots = requires(S const target) {
 /// Passes blocks on to a receiver: into its slots, or by a call for each. The receiver must outlive the sink.
 class BlockSink {
  public:
+  /// Passes blocks on to `target`: into its slots where it offers any, else by a call of its `add` for each.
   template <TakesBlocks S>
     requires(!std::same_as<std::remove_cvref_t<S>, BlockSink>)
   explicit BlockSink(S& target) : target_(&target) {
@@ -100,6 +104,7 @@ class BlockSink {
     };
   }
 
+  /// Adds block b, whose first entry stands at (row, col) of the matrix.
   void add(Index row, Index col, BlockView const& b) {
     if (!slots_.first) return add_(target_, row, col, b);
     int const end = *++slots_.first;
@@ -128,11 +133,12 @@ class BlockSink {
 /// Whoever writes the blocks of a matrix into a sink: a callable of any type, which must outlive this.
 class BlockWriter {
  public:
+  /// Stands for f, which is called as f(sink).
   template <class F>
     requires(!std::same_as<std::remove_cvref_t<F>, BlockWriter> && std::invocable<F const&, BlockSink&>)
   BlockWriter(F const& f)  // NOLINT(google-explicit-constructor): stands for the callable
       : what_(&f), call_([](void const* what, BlockSink& sink) { (*static_cast<F const*>(what))(sink); }) {}
-  void operator()(BlockSink& sink) const { call_(what_, sink); }
+  void operator()(BlockSink& sink) const { call_(what_, sink); }  ///< writes all blocks into `sink`
 
  private:
   void const* what_;
@@ -141,7 +147,8 @@ class BlockWriter {
 
 /// Records where blocks go, in the order in which they come.
 struct PatternSink {
-  Sequence<Block> blocks;
+  Sequence<Block> blocks;  ///< place and size of each block
+  /// Records a block; its numbers are not looked at.
   void add(Index row, Index col, BlockView const& b) { blocks.push_back({row, col, b.rows, b.cols}); }
 };
 

@@ -13,14 +13,15 @@ namespace polybody {
 template <int N>
 struct Dual {
   static_assert(N > 0, "A dual number needs at least one partial derivative.");
-  using Partials = Eigen::Array<double, N, 1>;
+  using Partials = Eigen::Array<double, N, 1>;  ///< (N) column of partial derivatives
 
-  double v = 0.0;
-  Partials d = Partials::Zero();
+  double v = 0.0;                 ///< value, in the unit of the quantity that it stands for
+  Partials d = Partials::Zero();  ///< (N) partial derivatives by the independent variables
 
   Dual() = default;
+  /// A constant: all of its derivatives are zero.
   Dual(double value) : v(value) {}  // NOLINT(google-explicit-constructor): a constant is a dual
-  Dual(double value, Partials const& partials) : v(value), d(partials) {}
+  Dual(double value, Partials const& partials) : v(value), d(partials) {}  ///< a value and its derivatives
 
   /// The independent variable number `i`.
   static Dual variable(double value, int i) {
@@ -29,21 +30,25 @@ struct Dual {
     return x;
   }
 
+  /// d(a + b) = da + db.
   Dual& operator+=(Dual const& b) {
     v += b.v;
     d += b.d;
     return *this;
   }
+  /// d(a − b) = da − db.
   Dual& operator-=(Dual const& b) {
     v -= b.v;
     d -= b.d;
     return *this;
   }
+  /// d(a b) = b da + a db.
   Dual& operator*=(Dual const& b) {
     d = d * b.v + b.d * v;
     v *= b.v;
     return *this;
   }
+  /// d(a/b) = (da − (a/b) db)/b; b = 0 gives infinities or NaN, no exception.
   Dual& operator/=(Dual const& b) {
     double const inverse = 1.0 / b.v;
     v *= inverse;

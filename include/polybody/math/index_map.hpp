@@ -15,8 +15,8 @@ class IndexMap {
  public:
   /// An index and where it leads.
   struct Entry {
-    Index index;
-    V value;
+    Index index;  ///< key of the entry
+    V value;      ///< what stands under the index
   };
 
   /// That of an index; a new one is V().
@@ -33,14 +33,16 @@ class IndexMap {
     std::size_t const k = place(index);
     return k < entries_.size() && entries_[k].index == index ? &entries_[k].value : nullptr;
   }
+  /// Removes the entry of an index, if there is one.
   void erase(Index index) {
     std::size_t const k = place(index);
     if (k == entries_.size() || entries_[k].index != index) return;
     for (std::size_t i = k; i + 1 < entries_.size(); ++i) std::swap(entries_[i], entries_[i + 1]);
     entries_.pop_back();
   }
+  /// First entry; entries come in ascending order of their indices.
   Entry const* begin() const { return entries_.begin(); }
-  Entry const* end() const { return entries_.end(); }
+  Entry const* end() const { return entries_.end(); }  ///< end of the entries
 
  private:
   /// The first entry that is not before an index.

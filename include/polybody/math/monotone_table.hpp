@@ -16,7 +16,7 @@ class MonotoneTable {
  public:
   /// A point of the table.
   struct Point {
-    double x, y;
+    double x, y;  ///< abscissa [x] and ordinate [y], in units of the caller's choice
   };
 
   /// \throws InvalidInput naming `what` unless there are two points or more, finite, with x strictly increasing, and
@@ -65,10 +65,10 @@ class MonotoneTable {
 
  private:
   struct Knot {
-    double x, y, slope, area;  ///< area from 0 to x
+    double x, y, slope, area;  ///< a point in units [x], [y], the slope there [y/x], and the area from 0 to x [x y]
   };
   struct Local {
-    double value, slope;
+    double value, slope;  ///< [y] and [y/x]
   };
 
   /// Slopes at the points. Inside, the weighted harmonic mean of the secants δ to both sides, or zero where they differ
@@ -122,7 +122,7 @@ class MonotoneTable {
   }
   /// y + m u + a u² + b u³ between knots i − 1 and i, u = x − x_{i−1}:  a = (3δ − 2m − m₁)/h,  b = (m + m₁ − 2δ)/h².
   struct Cubic {
-    double a, b;
+    double a, b;  ///< [y/x²] and [y/x³]
   };
   Cubic cubic(std::size_t i) const {
     Knot const &k = knots_[i - 1], &next = knots_[i];

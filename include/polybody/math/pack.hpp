@@ -35,17 +35,20 @@ inline constexpr int pack_size = Eigen::internal::packet_traits<double>::size >=
 template <int N = pack_size>
 class Pack {
  public:
-  static constexpr int size = N;
-  using Lanes = typename detail::LanesOf<N>::Type;
+  static constexpr int size = N;                    ///< how many numbers it holds
+  using Lanes = typename detail::LanesOf<N>::Type;  ///< the compiler's vector of N doubles
   using Native =
       typename Eigen::internal::find_best_packet<double, N>::type;  ///< Eigen's name for `Lanes` where it has one
 
-  Pack() = default;                          ///< `Pack<>()` is zero, `Pack<> x;` is not made yet, as for double
+  Pack() = default;  ///< `Pack<>()` is zero, `Pack<> x;` is not made yet, as for double
+  /// The same number N times.
   Pack(double same) : x_(same - Lanes{}) {}  // NOLINT(google-explicit-constructor): a constant is a pack
 
-  double operator[](int i) const { return x_[i]; }
-  void set(int i, double x) { x_[i] = x; }
+  double operator[](int i) const { return x_[i]; }  ///< number i, 0 ≤ i < N
+  void set(int i, double x) { x_[i] = x; }          ///< makes x the number i
 
+  ///@{
+  /// Number by number.
   Pack& operator+=(Pack const& b) {
     x_ += b.x_;
     return *this;
@@ -62,6 +65,7 @@ class Pack {
     x_ /= b.x_;
     return *this;
   }
+  ///@}
   friend Pack operator+(Pack a, Pack const& b) { return a += b; }
   friend Pack operator-(Pack a, Pack const& b) { return a -= b; }
   friend Pack operator*(Pack a, Pack const& b) { return a *= b; }
@@ -75,6 +79,7 @@ class Pack {
     std::memcpy(&r.x_, from, sizeof(Lanes));
     return r;
   }
+  /// Writes the N numbers one after another, aligned or not.
   void store(double* to) const { std::memcpy(to, &x_, sizeof(Lanes)); }
 
   /// `N` packs as the rows of a matrix become its columns.

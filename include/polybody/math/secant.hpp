@@ -16,13 +16,15 @@ namespace polybody {
 template <int N>
 struct Secant {
   static_assert(N > 0, "A secant needs at least one variable.");
-  using Slope = Eigen::Array<double, N, 1>;
+  using Slope = Eigen::Array<double, N, 1>;  ///< (N) column of slopes
 
-  double a = 0.0, b = 0.0;
-  Slope d = Slope::Zero();
+  double a = 0.0, b = 0.0;  ///< values at both ends of the step, in the unit of the quantity
+  Slope d = Slope::Zero();  ///< (N) slopes by the variables over the step
 
   Secant() = default;
+  /// A constant: the same value at both ends, all slopes zero.
   Secant(double value) : a(value), b(value) {}  // NOLINT(google-explicit-constructor): a constant is a secant
+  /// Values at both ends, and the slopes.
   Secant(double from, double to, Slope const& slope) : a(from), b(to), d(slope) {}
 
   /// The variable number `i`, which goes from `from` to `to`.
@@ -32,27 +34,31 @@ struct Secant {
     return x;
   }
 
-  double mean() const { return 0.5 * (a + b); }
-  double change() const { return b - a; }
+  double mean() const { return 0.5 * (a + b); }  ///< ½ (a + b)
+  double change() const { return b - a; }        ///< b − a
 
+  /// s(f + g) = s(f) + s(g).
   Secant& operator+=(Secant const& y) {
     a += y.a;
     b += y.b;
     d += y.d;
     return *this;
   }
+  /// s(f − g) = s(f) − s(g).
   Secant& operator-=(Secant const& y) {
     a -= y.a;
     b -= y.b;
     d -= y.d;
     return *this;
   }
+  /// s(f g) = ḡ s(f) + f̄ s(g).
   Secant& operator*=(Secant const& y) {
     d = d * y.mean() + y.d * mean();
     a *= y.a;
     b *= y.b;
     return *this;
   }
+  /// s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁); g must not be zero at an end.
   Secant& operator/=(Secant const& y) {
     d = (d * y.mean() - y.d * mean()) / (y.a * y.b);
     a /= y.a;

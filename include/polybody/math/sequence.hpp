@@ -35,19 +35,21 @@ inline void give_memory(void* memory, std::size_t alignment) noexcept {
 template <class T>
 class Sequence {
  public:
-  using value_type = T;
+  using value_type = T;  ///< the type of its values, as std::vector names it
 
   Sequence() = default;
-  explicit Sequence(std::size_t size) : Sequence() { resize(size); }
-  Sequence(std::size_t size, T const& value) : Sequence() { assign(size, value); }
+  explicit Sequence(std::size_t size) : Sequence() { resize(size); }                ///< `size` values T()
+  Sequence(std::size_t size, T const& value) : Sequence() { assign(size, value); }  ///< `size` copies of `value`
+  /// Copies of `values`.
   Sequence(std::initializer_list<T> values) : Sequence() { copy(values.begin(), values.size()); }
+  /// Copies of the values of the range [first, last).
   template <class It>
     requires requires(It i) { *i; }
   Sequence(It first, It last) : Sequence() {
     append(first, last);
   }
-  Sequence(Sequence const& other) : Sequence() { copy(other.data_, other.size_); }
-  Sequence(Sequence&& other) noexcept { swap(other); }
+  Sequence(Sequence const& other) : Sequence() { copy(other.data_, other.size_); }  ///< copies all values
+  Sequence(Sequence&& other) noexcept { swap(other); }  ///< takes the memory of `other`, which is empty then
   /// Keeps its memory where that is large enough.
   Sequence& operator=(Sequence const& other) {
     if (this != &other) {
@@ -56,6 +58,7 @@ class Sequence {
     }
     return *this;
   }
+  /// Takes the memory of `other`, which is empty then.
   Sequence& operator=(Sequence&& other) noexcept {
     Sequence taken(std::move(other));
     swap(taken);
@@ -66,29 +69,30 @@ class Sequence {
     detail::give_memory(data_, alignof(T));
   }
 
+  /// Exchanges the memory of both; no value is moved.
   void swap(Sequence& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
     std::swap(capacity_, other.capacity_);
   }
 
-  T* data() { return data_; }
-  T const* data() const { return data_; }
-  T* begin() { return data_; }
-  T const* begin() const { return data_; }
-  T* end() { return data_ + size_; }
-  T const* end() const { return data_ + size_; }
-  std::size_t size() const { return size_; }
-  bool empty() const { return size_ == 0; }
-  T& operator[](std::size_t i) { return data_[i]; }
-  T const& operator[](std::size_t i) const { return data_[i]; }
+  T* data() { return data_; }                     ///< the values in memory; null as long as there was no room for any
+  T const* data() const { return data_; }         ///< the same, to be read
+  T* begin() { return data_; }                    ///< the first value
+  T const* begin() const { return data_; }        ///< the first value, to be read
+  T* end() { return data_ + size_; }              ///< behind the last value
+  T const* end() const { return data_ + size_; }  ///< behind the last value
+  std::size_t size() const { return size_; }      ///< how many values there are
+  bool empty() const { return size_ == 0; }       ///< whether there are none
+  T& operator[](std::size_t i) { return data_[i]; }  ///< value i; a place that does not exist is not noticed
+  T const& operator[](std::size_t i) const { return data_[i]; }  ///< value i, to be read
   /// \throws std::out_of_range
   T& at(std::size_t i) { return data_[within(i)]; }
-  T const& at(std::size_t i) const { return data_[within(i)]; }
-  T& front() { return *data_; }
-  T const& front() const { return *data_; }
-  T& back() { return data_[size_ - 1]; }
-  T const& back() const { return data_[size_ - 1]; }
+  T const& at(std::size_t i) const { return data_[within(i)]; }  ///< the same, to be read
+  T& front() { return *data_; }                                  ///< the first value, of one or more
+  T const& front() const { return *data_; }                      ///< the first value, to be read
+  T& back() { return data_[size_ - 1]; }                         ///< the last value, of one or more
+  T const& back() const { return data_[size_ - 1]; }             ///< the last value, to be read
 
   /// Takes room for `capacity` values in all; the values move there.
   void reserve(std::size_t capacity) {
@@ -103,23 +107,26 @@ class Sequence {
     data_ = fresh;
     capacity_ = capacity;
   }
+  /// Appends a value. All values move to a larger memory where the room is full.
   void push_back(T value) {
     if (size_ == capacity_) reserve(2 * size_ + 1);
     new (data_ + size_) T(std::move(value));
     ++size_;
   }
+  /// Appends T(as…) and returns it.
   template <class... As>
   T& emplace_back(As&&... as) {
     push_back(T(std::forward<As>(as)...));
     return back();
   }
-  void pop_back() { data_[--size_].~T(); }
+  void pop_back() { data_[--size_].~T(); }  ///< removes the last value, of one or more
   /// New values are T().
   void resize(std::size_t size) {
     truncate(size);
     reserve(size);
     for (; size_ < size; ++size_) new (data_ + size_) T();
   }
+  /// New values are copies of `value`.
   void resize(std::size_t size, T const& value) {
     truncate(size);
     while (size_ < size) push_back(value);
@@ -129,6 +136,7 @@ class Sequence {
   void append(It first, It last) {
     for (; first != last; ++first) push_back(*first);
   }
+  /// Replaces all values by `size` copies of `value`, which may be one of them.
   void assign(std::size_t size, T const& value) {
     T const kept = value;  // it may be one of these
     clear();
@@ -142,7 +150,7 @@ class Sequence {
     else
       while (size_ > size) data_[--size_].~T();
   }
-  void clear() noexcept { truncate(0); }
+  void clear() noexcept { truncate(0); }  ///< removes all values and keeps the memory
 
  private:
   std::size_t within(std::size_t i) const {

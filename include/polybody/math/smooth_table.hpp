@@ -28,6 +28,7 @@ class SmoothTable {
   /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and numbers that are not
   /// finite, of the spline as of the points.
   explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
+  /// Rates at the ends may be given. \throws InvalidInput as above, and for rates that are not finite.
   SmoothTable(std::vector<Point> const& points, Ends const& ends, std::string const& what = "SmoothTable")
       : knots_(points.size()) {
     check_points(points, ends, what);
@@ -48,6 +49,7 @@ class SmoothTable {
     knots_.back().second = 0.0;
   }
 
+  /// Value, rate and acceleration at t [s].
   Motion operator()(double t) const {
     Knot const k = piece(t);
     double const x = t - k.time;
@@ -60,7 +62,7 @@ class SmoothTable {
   std::vector<double> corners() const { return corners_; }
 
  private:
-  /// A point with the derivatives of the piece that begins there.
+  /// A point with the derivatives of the piece that begins there: [m], [m/s], [m/s²], [m/s³], or [rad] for [m].
   struct Knot {
     double time = 0.0, value = 0.0, rate = 0.0, second = 0.0, third = 0.0;
     double integral = 0.0;  ///< from the first point to this one

@@ -39,7 +39,8 @@ inline constexpr auto inverse_factorials = [] {
 /// a = sin θ/θ, b = (1 − cos θ)/θ², c = (θ − sin θ)/θ³, θ = √x.
 template <class T>
 struct RotationSeries {
-  T a, b, c;
+  T a, b, c;  ///< as above, without unit; φ in [rad]
+  /// At x = |φ|² [rad²].
   explicit RotationSeries(T const& x) {
     using std::cos, std::sin, std::sqrt;
     if (value_of(x) < 0.25) {
@@ -71,7 +72,8 @@ struct RotationSeries {
 /// Slopes by x of b and c: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x, e = (1/6 − c)/x.
 template <class T>
 struct RotationSlopes {
-  T b, c;
+  T b, c;  ///< db/dx and dc/dx [1/rad²]
+  /// At x = |φ|² [rad²].
   explicit RotationSlopes(T const& x) {
     RotationSeries<T> const s(x);
     bool const small = value_of(x) < 0.25;
@@ -86,7 +88,8 @@ struct RotationSlopes {
 /// For t = tan(θ/4): a rotation by θ about n, written as c = t n, has the rotation vector 4 a c.
 template <class T>
 struct ArctanSeries {
-  T a, m, da, dm;
+  T a, m, da, dm;  ///< as above, without unit
+  /// At z = t².
   explicit ArctanSeries(T const& z) {
     using std::atan, std::sqrt;
     if (value_of(z) < 0.1) {  // m = Σ (−z)ᵏ/(2k + 3); sixteen terms leave 1e-17

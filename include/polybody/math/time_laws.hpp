@@ -75,6 +75,7 @@ struct IntegralOf {
   Law law;  ///< whose integral it is
 
   void check(std::string const& what) const { check_law(law, what); }
+  /// The value is the integral, the rate and the acceleration are value and rate of the law.
   Motion operator()(double t) const {
     Motion const speed = law(t);
     return {law.integral(t) - law.integral(0.0), speed.value, speed.rate};
@@ -108,6 +109,7 @@ struct Ramp {
     if (rounding > duration)
       throw InvalidInput{what, ": the rounding ", rounding, " s must not exceed the duration ", duration, " s."};
   }
+  /// Value, rate and acceleration at t [s].
   Motion operator()(double t) const {
     if (t < start - 0.5 * rounding) return {};
     if (t >= start + duration + 0.5 * rounding) return {target, 0.0, 0.0};
@@ -115,6 +117,7 @@ struct Ramp {
     return {target * (begin.value - end.value) / duration, target * (begin.rate - end.rate) / duration,
             target * (begin.acceleration - end.acceleration) / duration};
   }
+  /// ∫ value dt from −∞ to t: [m s] or [rad s].
   double integral(double t) const {
     double const x = t - start, y = x - duration;
     if (y >= 0.5 * rounding) return target * 0.5 * (x + y);
@@ -150,6 +153,7 @@ struct SmoothRamp {
   double start = 0.0;         ///< [s]
 
   void check(std::string const& what) const { detail::check_ramp(target, duration, start, what); }
+  /// Value, rate and acceleration at t [s].
   Motion operator()(double t) const {
     if (t < start) return {};
     if (t >= start + duration) return {target, 0.0, 0.0};
@@ -157,6 +161,7 @@ struct SmoothRamp {
     return {target * x2 * x * (10.0 - 15.0 * x + 6.0 * x2), target * 30.0 * x2 * (1.0 - 2.0 * x + x2) / d,
             target * 60.0 * x * (1.0 - 3.0 * x + 2.0 * x2) / (d * d)};
   }
+  /// ∫ value dt from −∞ to t: [m s] or [rad s].
   double integral(double t) const {
     double const d = duration, x = std::clamp((t - start) / d, 0.0, 1.0), x2 = x * x;
     return target * (d * x2 * x2 * (2.5 - 3.0 * x + x2) + std::max(0.0, t - start - d));
@@ -170,6 +175,7 @@ struct SpinUp {
   Required<double> duration;  ///< T [s]
 
   void check(std::string const& what) const { detail::check_ramp(speed, duration, 0.0, what); }
+  /// Angle ψ [rad], its rate and its acceleration at t [s].
   Motion operator()(double t) const {
     if (t <= 0.0) return {};
     double const period = duration;
@@ -204,6 +210,7 @@ struct Window {
                          to,    ", value = ",
                          value, "."};
   }
+  /// `value` within, else zero; rate zero.
   Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }
   std::vector<double> corners() const { return {from, to}; }  ///< both ends [s]
 };

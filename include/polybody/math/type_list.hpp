@@ -10,7 +10,7 @@ namespace polybody {
 /// A list of types.
 template <class... Ts>
 struct TypeList {
-  static constexpr std::size_t size = sizeof...(Ts);
+  static constexpr std::size_t size = sizeof...(Ts);  ///< how many types it lists
 };
 
 /// How often T stands among Ts.

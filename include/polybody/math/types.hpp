@@ -64,12 +64,14 @@ Mat<T, 3, 3> identity() {
 /// A number that decides physics: it has no default, so a forgotten one does not compile.
 template <class T>
 struct Required {
-  T value;                               ///< what was given
+  T value;  ///< what was given
+  /// From a T: `.mass = 2.0` sets a `Required<double>`.
   constexpr Required(T v) : value(v) {}  // NOLINT(google-explicit-constructor): reads as a T
   /// From an expression that makes a T.
   template <class X>
     requires std::is_class_v<X> && (!std::is_same_v<X, Required>) && std::is_convertible_v<X const&, T>
-  constexpr Required(X const& x) : value(x) {}    // NOLINT(google-explicit-constructor)
+  constexpr Required(X const& x) : value(x) {}  // NOLINT(google-explicit-constructor)
+  /// Reads as the T that was given.
   constexpr operator T() const { return value; }  // NOLINT(google-explicit-constructor)
 };
 

@@ -11,19 +11,19 @@ namespace polybody {
 
 /// A place in vectors: `pack_size` entries from `first` on.
 struct PackPlace {
-  Index first;
-  Pack<> operator()(double const* x) const { return Pack<>::load(x + first); }
-  Pack<> operator()(VecX const& x) const { return Pack<>::load(x.data() + first); }
-  void set(double* x, Pack<> const& value) const { value.store(x + first); }
-  void set(VecX& x, Pack<> const& value) const { value.store(x.data() + first); }
+  Index first;  ///< number of the first of these entries
+  Pack<> operator()(double const* x) const { return Pack<>::load(x + first); }       ///< reads them from x
+  Pack<> operator()(VecX const& x) const { return Pack<>::load(x.data() + first); }  ///< reads them from x
+  void set(double* x, Pack<> const& value) const { value.store(x + first); }         ///< writes them to x
+  void set(VecX& x, Pack<> const& value) const { value.store(x.data() + first); }    ///< writes them to x
 };
 /// One entry.
 struct EntryPlace {
-  Index first;
-  double operator()(double const* x) const { return x[first]; }
-  double operator()(VecX const& x) const { return x.data()[first]; }
-  void set(double* x, double value) const { x[first] = value; }
-  void set(VecX& x, double value) const { x.data()[first] = value; }
+  Index first;                                                        ///< number of the entry
+  double operator()(double const* x) const { return x[first]; }       ///< reads it from x
+  double operator()(VecX const& x) const { return x.data()[first]; }  ///< reads it from x
+  void set(double* x, double value) const { x[first] = value; }       ///< writes it to x
+  void set(VecX& x, double value) const { x.data()[first] = value; }  ///< writes it to x
 };
 
 /// Calls f(at) over n entries, in packs as far as they reach, then one by one. `at(x)` reads what stands at a place in
@@ -38,8 +38,9 @@ template <class F>
 /// A sum over the places of `for_packs`.
 class PackSum {
  public:
-  void add(Pack<> const& x) { packs_ += x; }
-  void add(double x) { rest_ += x; }
+  void add(Pack<> const& x) { packs_ += x; }  ///< adds a pack, kept as a pack until `total`
+  void add(double x) { rest_ += x; }          ///< adds one number
+  /// The sum of all that was added.
   double total() const {
     double sum = rest_;
     for (int i = 0; i < pack_size; ++i) sum += packs_[i];

@@ -26,6 +26,7 @@ class LoopBody {
       : body_(&f), call_([](void const* body, Index begin, Index end) {
           (*static_cast<std::remove_reference_t<F> const*>(body))(begin, end);
         }) {}
+  /// Runs the body for the indices [begin, end).
   void operator()(Index begin, Index end) const { call_(body_, begin, end); }
 
  private:
@@ -62,7 +63,7 @@ class Workers {
   Workers& operator=(Workers const&) = delete;
   ~Workers() { end(); }
 
-  int size() const { return int(thrown_.size()); }
+  int size() const { return int(thrown_.size()); }  ///< how many threads share a loop, the caller included
 
   /// Calls f(begin, end) for parts of [0, n) and returns when all are done. Parts begin at multiples of four and have
   /// no fewer than `least` entries, so a short loop stays with the caller. An exception of the first part that throws
@@ -90,6 +91,7 @@ class Workers {
         std::rethrow_exception(first);
       }
   }
+  /// The same for any f that can be called as f(begin, end).
   template <class F>
   void over(Index n, Index least, F const& f) {
     over(n, least, LoopBody(f));

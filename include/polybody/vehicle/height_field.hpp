@@ -52,8 +52,8 @@ class HeightField {
         highest_ = std::max(highest_, (bx * nodes_->block<4, 4>(2 * i, 2 * j) * by.transpose()).eval().maxCoeff());
   }
 
-  void check(std::string const&) const {}  ///< the constructor did
-  double highest() const { return highest_; }
+  void check(std::string const&) const {}      ///< the constructor did
+  double highest() const { return highest_; }  ///< bound that no height exceeds, in and beyond the grid [m]
   /// h = s(x)ᵀ N s(y), s the Hermite polynomials and N the values and slopes of the cell's corners; of their
   /// derivatives h(k, l) = ∂ᵏ⁺ˡh/∂xᵏ∂yˡ.
   template <StateScalar T>
@@ -71,7 +71,7 @@ class HeightField {
   };
   /// The cells along x or y; the first and the last lie beyond the border.
   struct Axis {
-    double start = 0.0, spacing = 1.0;
+    double start = 0.0, spacing = 1.0;  ///< where the first cell begins, and the length of a cell [m]
     Index cells = 0;
 
     Piece piece(double x) const {

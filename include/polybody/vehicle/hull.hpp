@@ -13,30 +13,32 @@ namespace polybody::m113 {
 
 /// A rigid body of one side, its axes turned about y.
 struct HullBody {
-  std::string name;
-  Solid solid;
+  std::string name;            ///< unique in the vehicle, such as "left wheel 1"
+  Solid solid;                 ///< mass and moments of inertia
   Vec3 centre = Vec3::Zero();  ///< (3) world axes [m]
   double about_y = 0.0;        ///< [rad]
 };
 
 /// A joint or a spring between two bodies.
 struct HullJoint {
+  /// `axle`: revolute about y; `mount`: weld; `guide`: prismatic along x; `drive`: speed about y; the others: springs.
   enum class Kind { axle, mount, guide, drive, tensioner, shock };
-  Kind kind;
+  Kind kind;                                      ///< which joint or spring it is
   std::size_t a, b;                               ///< places among the bodies, from 1; 0 is the chassis
   Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  ///< (3) in the axes of the body, from its centre [m]
-  std::string name;
+  std::string name;                               ///< unique in the vehicle, such as "left drive"
 };
 
 /// One side: sprocket, tensioner, idler, then wheel and arm by turns.
 struct HullSide {
-  static constexpr std::size_t sprocket = 1, tensioner = 2, idler = 3;
+  static constexpr std::size_t sprocket = 1, tensioner = 2, idler = 3;  ///< places among a side's bodies from 1
+  /// Place of road wheel i, 0 in front … 4.
   static constexpr std::size_t wheel(int i) { return 4 + 2 * std::size_t(i); }
-  static constexpr std::size_t arm(int i) { return wheel(i) + 1; }
+  static constexpr std::size_t arm(int i) { return wheel(i) + 1; }  ///< place of the arm that carries wheel i
 
-  std::string name;  ///< with which all names of this side begin
-  std::vector<HullBody> bodies;
-  std::vector<HullJoint> joints;
+  std::string name;               ///< with which all names of this side begin
+  std::vector<HullBody> bodies;   ///< bodies[k − 1] has the place k
+  std::vector<HullJoint> joints;  ///< joints and springs of this side
 };
 
 namespace detail {

@@ -18,7 +18,7 @@ struct LinkOnGround {
   static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
-  G terrain = {};
+  G terrain = {};  ///< height over x and y of marker b
   /// n × (3) in the link's axes [m]. A cable has no roll: there y is ignored and z points away from the ground.
   std::vector<Vec3> pad = {};
 

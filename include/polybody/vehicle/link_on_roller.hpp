@@ -97,7 +97,7 @@ struct LinkOnRoller {
   template <StateScalar T>
   struct OverEdge {
     T across;          ///< along the edge, from the middle of the link [m]
-    double side;       ///< 1: the front edge, −1: the other
+    double side;       ///< sign of x, a factor: 1 at the front edge, −1 at the rear edge
     T beyond, height;  ///< outwards from the edge, and above the face [m]
   };
   template <StateScalar T, class Visit>

@@ -24,7 +24,8 @@ namespace polybody::m113 {
 
 /// Three numbers along x, y, z that are known at compile time, as Eigen's are not.
 struct Triple {
-  double x, y, z;
+  double x, y, z;  ///< along x, y and z, in the unit of what they say
+  /// As a column (3).
   operator Vec3() const { return {x, y, z}; }  // NOLINT(google-explicit-constructor): reads as a vector
 };
 
@@ -38,12 +39,12 @@ constexpr double sign(Side side) { return side == Side::left ? 1.0 : -1.0; }
 
 /// Mass [kg] and principal moments of inertia about the body's x, y, z [kg m²].
 struct Solid {
-  double mass;
-  Triple inertia;
+  double mass;     ///< [kg]
+  Triple inertia;  ///< about the body's x, y, z [kg m²]
 };
 /// Mass and inertia of every part.
 struct Solids {
-  Solid chassis, sprocket, idler, wheel, arm, link, tensioner;
+  Solid chassis, sprocket, idler, wheel, arm, link, tensioner;  ///< each is one such body
 
   /// Mass of the whole vehicle [kg].
   constexpr double total() const {

@@ -17,35 +17,39 @@ namespace polybody::m113 {
 template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = FlatGround, TimeLaw Drive = Ramp>
 class Vehicle : public TrackedVehicle {
  public:
-  using LinkType = Link;
-  static constexpr Observes observed = Link::observes;
+  using LinkType = Link;                                ///< the body of a link
+  static constexpr Observes observed = Link::observes;  ///< what markers on a link know
+  /// All 64 pins of a track are alike.
   static constexpr bool closes_alike = AddsForce<PinPolicy> || LinearInCoordinates<PinPolicy>;
   using Base =
       std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;  ///< of all that is no link
-  using Hull = HullTypes<Base, Drive>;
-  using Driven = typename Hull::Driven;
-  using Pin = Joint<Revolute, PinPolicy>;
+  using Hull = HullTypes<Base, Drive>;     ///< types of what carries the tracks
+  using Driven = typename Hull::Driven;    ///< the sprocket's prescribed speed
+  using Pin = Joint<Revolute, PinPolicy>;  ///< between two links
+  /// Pin that closes a loop under `Closure::stiff_spring`.
   using SpringPin = std::conditional_t<closes_alike, Pin, Joint<Spherical, Penalty>>;
+  /// Pin that closes a loop under `Closure::in_plane`.
   using PlanePin = std::conditional_t<closes_alike, Pin, Joint<PointOnLine, Constraint>>;
-  using Contacts = TrackContacts<observed, Ground>;
+  using Contacts = TrackContacts<observed, Ground>;  ///< what the links of a track touch
+  /// The model, with the bodies, joints and forces of the vehicle and no others.
   using ModelType = Model<EachOnce<Bodies, Base, Link>,
                           EachOnce<Joints, typename Hull::Hinge, typename Hull::Slide, typename Hull::Fixed, Driven,
                                    Pin, SpringPin, PlanePin>,
                           Forces<SpringDamper, AxialSpring, Contacts>>;
-  using Handle = BodyHandle<Base>;
+  using Handle = BodyHandle<Base>;  ///< a body that is no link
 
   /// One side. Pin i is in front of link i; `pins[i]` is at pin i but for the one where the loop is cut.
   struct SideParts : Carriers<Base>, LinkParts<Link> {
-    std::vector<ElementHandle<Pin>> pins = {};
+    std::vector<ElementHandle<Pin>> pins = {};           ///< (64) handles of the pins
     std::vector<ElementHandle<Driven>> drive = {};       ///< one
     std::vector<ElementHandle<Contacts>> contacts = {};  ///< one; four where contacts act at their places
   };
 
-  ModelType model{Gravity{0, 0, -9.81}};
-  std::vector<Handle> chassis;  ///< one
-  std::array<SideParts, 2> sides;
+  ModelType model{Gravity{0, 0, -9.81}};  ///< all of the vehicle; weight along −z, 9.81 m/s²
+  std::vector<Handle> chassis;            ///< one
+  std::array<SideParts, 2> sides;         ///< left, right
 
-  SideParts const& side(Side s) const { return sides[s == Side::left ? 0 : 1]; }
+  SideParts const& side(Side s) const { return sides[s == Side::left ? 0 : 1]; }  ///< the parts of a side
 
   /// \throws InvalidInput.
   [[gnu::cold]] Vehicle(PinPolicy const& pin, std::array<Drive, 2> const& drives, VehicleOptions const& options = {},

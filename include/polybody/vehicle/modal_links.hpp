@@ -16,8 +16,8 @@ namespace polybody::m113 {
 
 /// A finite element model of a link about its centre, with the size of `link_bar`, and the basis in which it deforms.
 struct FiniteElementLink {
-  Structure structure;
-  MatX shapes;  ///< (N×n)
+  Structure structure;  ///< nodes and elements, in axes of the link from its centre
+  MatX shapes;          ///< (N×n)
 
   /// The end face at the front pin (sign 1) or the rear pin (−1).
   template <class = void>  // compiled where it is used
@@ -98,26 +98,31 @@ std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure
 /// faces, and what touches it acts on parts of its inner and outer face.
 template <>
 struct LinkOf<Ffr> {
-  static constexpr Index modes_between = 3;
+  static constexpr Index modes_between = 3;  ///< how many modes between fixed pins, those of the lowest frequencies
 
-  std::shared_ptr<FiniteElementLink const> model = {};
-  FfrTerms terms = {};
-  double height = cable_height;  ///< of the section of beam elements; a model has its own [m]
+  std::shared_ptr<FiniteElementLink const> model = {};  ///< null: the link is made of beam elements
+  FfrTerms terms = {};                                  ///< which terms of the floating frame's equations are kept
+  double height = cable_height;                         ///< of the section of beam elements; a model has its own [m]
 
+  /// A link with its centre at `at`, of two beam `elements` or more; its mass follows from section and density.
   template <class = void>
   Ffr make(Solid const&, Placement const& at, int elements) const;
+  /// The front pin.
   template <class = void>
   Marker<Ffr> front(BodyHandle<Ffr> const& link) const {
     return pin(link, 1.0);
   }
+  /// The rear pin.
   template <class = void>
   Marker<Ffr> rear(BodyHandle<Ffr> const& link) const {
     return pin(link, -1.0);
   }
+  /// The middle of the inner face, of a link of beam elements the middle of its line.
   template <class = void>
   Marker<Ffr> middle(BodyHandle<Ffr> const& link) const {
     return under(link, 0.0, Face::wheels);
   }
+  /// Where what touches `face` acts, `x` [m] ahead of the link's centre.
   template <class = void>
   Marker<Ffr> under(BodyHandle<Ffr> const& link, double x, Face face) const;
   /// At the front (sign 1) or the rear (−1).
@@ -126,13 +131,13 @@ struct LinkOf<Ffr> {
 
   /// The link that was made last. Others like it share its constants, as their shapes cost an eigenproblem.
   struct Made {
-    std::shared_ptr<FiniteElementLink const> model;
-    FfrTerms terms;
-    double height;
-    int elements;
-    Ffr link;
+    std::shared_ptr<FiniteElementLink const> model;  ///< its finite element model, or null
+    FfrTerms terms;                                  ///< which terms of the equations it keeps
+    double height;                                   ///< as it was [m]
+    int elements;                                    ///< as were asked for
+    Ffr link;                                        ///< placed anywhere
   };
-  mutable std::shared_ptr<Made const> made = {};
+  mutable std::shared_ptr<Made const> made = {};  ///< null before the first link
 };
 
 template <class>

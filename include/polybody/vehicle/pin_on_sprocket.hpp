@@ -22,8 +22,8 @@ struct SprocketProfile {
   Required<double> flank;          ///< φ [rad]
   Required<double> tip_radius;     ///< R_t [m]
 
-  double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / teeth); }
-  double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }
+  double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / teeth); }  ///< R_p [m]
+  double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }         ///< r_c, from the axle [m]
   /// Distance from the axle of a pin that just touches a tip; a pin further away touches nothing [m].
   double outer_radius() const { return tip_radius + pin_radius; }
   /// (2) Point where flank and tip circle meet, radial and tangential, seen from the middle of the valley [m].
@@ -59,8 +59,9 @@ struct SprocketProfile {
   /// continuous.
   template <StateScalar T>
   struct Overlap {
-    T depth, radial, tangential;
+    T depth, radial, tangential;  ///< d [m]; unit vector along the middle of the valley and across
   };
+  /// The overlap of a pin at X = x and Y = y [m]; its depth is negative where they are apart.
   template <StateScalar T>
   Overlap<T> overlap(T const& x, T const& y) const {
     using std::sqrt;
@@ -88,12 +89,12 @@ struct PinOnSprocket {
   static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
-  SprocketProfile profile;
+  SprocketProfile profile;            ///< the teeth and the pins between them
   Required<double> valley;            ///< angle of any one valley in the sprocket's axes, from z towards x [rad]
   std::vector<double> rings = {0.0};  ///< where the rings of teeth are along the axle [m]
   std::optional<double> ahead = {};   ///< from marker a to the pin [m]; none: a is the link's centre, half a pitch
 
-  double to_pin() const { return ahead ? *ahead : 0.5 * profile.pitch; }
+  double to_pin() const { return ahead ? *ahead : 0.5 * profile.pitch; }  ///< from marker a to the pin along x [m]
   void check(std::string const& name) const {
     profile.check(name);
     if (!std::isfinite(valley)) throw InvalidInput{name, ": the angle of a valley must be finite."};

@@ -57,6 +57,7 @@ struct FlatGround {
     if (!std::isfinite(z)) throw InvalidInput{name, ": the height of the ground must be finite, but is ", z, "."};
   }
   double highest() const { return z; }  ///< [m]
+  /// h = z, without slopes.
   template <StateScalar T>
   Height<T> height(T const&, T const&) const {
     return {T(z), T(0.0), T(0.0)};
@@ -73,6 +74,7 @@ struct Washboard {
     require_positive(wavelength, name, ": the wavelength");
   }
   double highest() const { return amplitude; }  ///< [m]
+  /// h = a sin(2πx/l) and its slope along x.
   template <StateScalar T>
   Height<T> height(T const& x, T const&) const {
     using std::cos, std::sin;
@@ -116,6 +118,7 @@ class BumpCourse {
 
   void check(std::string const&) const {}      ///< the constructor did
   double highest() const { return highest_; }  ///< [m]
+  /// The sum of all bumps over the place, and its slopes.
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     detail::Relief h;
@@ -168,6 +171,7 @@ class RoadProfile {
 
   void check(std::string const&) const {}      ///< the constructor did
   double highest() const { return highest_; }  ///< [m]
+  /// The cubic between two points of the profile, and its slope along x; constant beyond both ends.
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     double const at = value_of(x);
@@ -186,7 +190,7 @@ class RoadProfile {
 
  private:
   struct Knot {
-    double x, z, slope;
+    double x, z, slope;  ///< a point [m] and the slope there
   };
   std::shared_ptr<std::vector<Knot> const> knots_;
   double highest_ = -std::numeric_limits<double>::infinity();

@@ -26,11 +26,13 @@ inline SprocketProfile sprocket_profile() {
 /// The contacts of links whose middle observes so much: a cable's lie in its middle plane, one for each two.
 template <Observes observed>
 struct LinkContacts {
-  using OnRoller = Contact<LinkOnRoller<observed>>;
-  using OnRims = Contact<HornOnRims<observed>>;
-  using OnSprocket = Contact<PinOnSprocket<observed>>;
+  using OnRoller = Contact<LinkOnRoller<observed>>;     ///< inner face on the rims of a wheel
+  using OnRims = Contact<HornOnRims<observed>>;         ///< horn between the rims of a wheel
+  using OnSprocket = Contact<PinOnSprocket<observed>>;  ///< front pin between the teeth
+  /// Pad on the ground.
   template <Terrain Ground>
   using OnGround = Contact<LinkOnGround<Ground, observed>>;
+  /// Links are cables, which know no roll: contacts lie in the track's middle plane.
   static constexpr bool in_plane = observed != Observes::frame;
 
   double friction = 1.0;  ///< times the coefficients of m113.hpp [1]; 0: none
@@ -45,6 +47,7 @@ struct LinkContacts {
                                       .rims = in_plane ? std::vector{0.0} : std::vector{-rim_y, rim_y}},
                on_wheel);
   }
+  /// The horn between rims of this radius [m].
   OnRims on_rims(double radius) const {
     Vec3 const tip(horn.x, horn.y, horn.z + 0.5 * horn_size.z);
     return law(HornOnRims<observed>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel);

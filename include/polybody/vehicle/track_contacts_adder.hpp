@@ -17,10 +17,12 @@ namespace polybody::m113 {
 template <class Link, class Base, Terrain Ground>
 class TrackContactsAdder {
  public:
-  using OfLinks = LinkContacts<Link::observes>;
-  using Contacts = TrackContacts<Link::observes, Ground>;
+  using OfLinks = LinkContacts<Link::observes>;            ///< contacts of such links
+  using Contacts = TrackContacts<Link::observes, Ground>;  ///< the group that takes them
+  /// What a model must have to take the contacts.
   using Part = Subassembly<EachOnce<Bodies, Base, Link>, Joints<>, Forces<Contacts>>;
 
+  /// `of_links` and `options` must outlive this.
   TrackContactsAdder(Part part, LinkOf<Link> const& of_links, VehicleOptions const& options)
       : part_(part), of_links_(of_links), options_(options) {}
 

@@ -21,18 +21,18 @@ enum class TrackSide { inside, outside };
 
 /// A wheel, idler or roller: a circle in the plane of the track.
 struct TrackCircle {
-  std::string name;
-  Vec2 centre;              ///< (2) [m]
-  Required<double> radius;  ///< R, of the rim [m]
-  TrackSide side = TrackSide::inside;
+  std::string name;                    ///< by which the tensioner and messages name it
+  Vec2 centre;                         ///< (2) [m]
+  Required<double> radius;             ///< R, of the rim [m]
+  TrackSide side = TrackSide::inside;  ///< which faces of the track touch it
 };
 
 /// The driven wheel; a pin sits in each valley that the track covers.
 struct TrackSprocket {
-  std::string name = "sprocket";
-  Vec2 centre;              ///< (2) [m]
-  Required<int> teeth;      ///< N
-  Required<double> valley;  ///< angle of any one valley, from z towards x [rad]
+  std::string name = "sprocket";  ///< by which messages name it
+  Vec2 centre;                    ///< (2) [m]
+  Required<int> teeth;            ///< N
+  Required<double> valley;        ///< angle of any one valley, from z towards x [rad]
 };
 
 /// How the track is tightened.
@@ -45,14 +45,14 @@ struct TrackTensioner {
 
 /// All that decides how a track lies.
 struct TrackLayout {
-  Required<int> links;
+  Required<int> links;              ///< how many links close the loop
   Required<double> pitch;           ///< p [m]
   Required<double> half_thickness;  ///< h, from the line through a link's pins to either face [m]
-  TrackSprocket sprocket;
+  TrackSprocket sprocket;           ///< the driven wheel, which pulls the track
   /// In the order in which the track meets them after the sprocket. A wheel that the track may touch twice, such as one
   /// that carries the upper run too, is listed twice; one that it does not reach does no harm.
   std::vector<TrackCircle> circles = {};
-  TrackTensioner tensioner;
+  TrackTensioner tensioner;  ///< which circle moves, and how far
 
   /// The radius of the pitch polygon's corners [m].
   double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / sprocket.teeth); }

@@ -54,25 +54,30 @@ struct LinkOf {
 
   double height = cable_height;  ///< of the section [m]
 
+  /// A link with its centre at `at`; its mass follows from section and density, not from the `Solid`.
   B make(Solid const&, Placement const& at, int elements) const {
     return B::from(link_bar(at, height), std::max(elements, 1));
   }
-  static auto front(BodyHandle<B> const& link) { return link.at(link.body().length()); }
-  static auto rear(BodyHandle<B> const& link) { return link.at(0.0); }
+  static auto front(BodyHandle<B> const& link) { return link.at(link.body().length()); }  ///< the front pin
+  static auto rear(BodyHandle<B> const& link) { return link.at(0.0); }                    ///< the rear pin
+  /// Midway between the pins.
   static auto middle(BodyHandle<B> const& link) { return link.at(0.5 * link.body().length()); }
+  /// Where what touches a face acts, `x` [m] ahead of the link's centre.
   static auto under(BodyHandle<B> const& link, double x, Face) { return link.at(0.5 * pitch + x); }
 };
 
 /// A rigid link: mass and inertia of the thesis, markers at its pins.
 template <class RotationCoordinates>
 struct LinkOf<Rigid<RotationCoordinates>> {
-  using Body = Rigid<RotationCoordinates>;
+  using Body = Rigid<RotationCoordinates>;  ///< what a link is made as
+  /// A link with its centre of mass at `at`; a rigid one has no elements.
   static Body make(Solid const& solid, Placement const& at, int) {
     return Body(solid.mass, detail::principal(solid.inertia), at);
   }
-  static auto front(BodyHandle<Body> const& link) { return link.at(Vec3(0.5 * pitch, 0, 0)); }
-  static auto rear(BodyHandle<Body> const& link) { return link.at(Vec3(-0.5 * pitch, 0, 0)); }
-  static auto middle(BodyHandle<Body> const& link) { return link.at(Vec3(0, 0, 0)); }
+  static auto front(BodyHandle<Body> const& link) { return link.at(Vec3(0.5 * pitch, 0, 0)); }  ///< the front pin
+  static auto rear(BodyHandle<Body> const& link) { return link.at(Vec3(-0.5 * pitch, 0, 0)); }  ///< the rear pin
+  static auto middle(BodyHandle<Body> const& link) { return link.at(Vec3(0, 0, 0)); }           ///< the centre of mass
+  /// Where what touches a face acts, `x` [m] ahead of the link's centre.
   static auto under(BodyHandle<Body> const& link, double x, Face) { return link.at(Vec3(x, 0, 0)); }
 };
 

@@ -17,7 +17,7 @@ namespace polybody {
 
 /// A link's frame: x from its rear pin to its front pin, z to the inner face.
 struct TrackLink {
-  static constexpr int none = -1;
+  static constexpr int none = -1;  ///< in place of a circle: it touches none
 
   Vec2 centre;         ///< (2) midway between the pins [m]
   double angle;        ///< b, about y [rad], −π ≤ b ≤ π
@@ -40,8 +40,9 @@ struct TrackPath {
   /// the track the tension F / (−pull · d).
   Vec2 pull = Vec2::Zero();
 
-  /// What pin i sits on: `sprocket`, the circle that the links on both of its sides touch, or `TrackLink::none`.
+  /// In place of a circle: the pin sits on the sprocket.
   static constexpr int sprocket = -2;
+  /// What pin i sits on: `sprocket`, the circle that the links on both of its sides touch, or `TrackLink::none`.
   int pin_on(int i) const {
     if (i < seated) return sprocket;
     int const ahead = links[i].touches, behind = links[i - 1].touches;

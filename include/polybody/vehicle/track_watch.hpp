@@ -17,6 +17,7 @@ namespace polybody::m113 {
 struct Seating {
   int seated = 0;    ///< pins between the teeth
   int lost_at = -1;  ///< the first link whose front pin does not follow the one before by one valley; −1 if all do
+  /// Two pins or more between the teeth, and none has jumped.
   bool holds() const { return seated >= 2 && lost_at < 0; }
 };
 

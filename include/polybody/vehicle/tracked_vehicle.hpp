@@ -23,10 +23,10 @@ struct Track {
 
 /// The questions keep the bodies that they ask: they serve a copy of the vehicle, too.
 struct TrackedVehicle {
-  FrameIn hull;  ///< of the chassis, at its centre of mass
-  std::array<Track, 2> tracks;
+  FrameIn hull;                 ///< of the chassis, at its centre of mass
+  std::array<Track, 2> tracks;  ///< left, right
 
-  Track const& track(Side s) const { return tracks[s == Side::left ? 0 : 1]; }
+  Track const& track(Side s) const { return tracks[s == Side::left ? 0 : 1]; }  ///< the track of a side
 };
 
 }  // namespace polybody::m113

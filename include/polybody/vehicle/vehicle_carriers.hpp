@@ -13,8 +13,8 @@ namespace polybody::m113 {
 /// The bodies that carry one track.
 template <class Base>
 struct Carriers {
-  std::vector<BodyHandle<Base>> wheels = {}, arms = {}, sprocket = {}, idler = {},
-                                tensioner = {};  ///< the last three: one each
+  /// Five road wheels and arms, from the front; one sprocket, idler and tensioner.
+  std::vector<BodyHandle<Base>> wheels = {}, arms = {}, sprocket = {}, idler = {}, tensioner = {};
 
   /// \param bodies the chassis and those of `hull`
   void set(HullSide const& hull, std::vector<BodyHandle<Base>> const& bodies, Track& track) {

@@ -22,10 +22,11 @@ namespace polybody::m113 {
 /// Bodies of type Base, joints that are rows, springs, and drives by `Drive`.
 template <class Base, TimeLaw Drive>
 struct HullTypes {
-  using Hinge = Joint<Revolute, Constraint>;
-  using Slide = Joint<Prismatic, Constraint>;
-  using Fixed = Joint<Weld, Constraint>;
-  using Driven = Joint<PrescribedRate<Drive>, Constraint>;
+  using Hinge = Joint<Revolute, Constraint>;                ///< axles, and pivots of sprung arms
+  using Slide = Joint<Prismatic, Constraint>;               ///< guide of a tensioner on the chassis
+  using Fixed = Joint<Weld, Constraint>;                    ///< arms without springs, a chassis that is held
+  using Driven = Joint<PrescribedRate<Drive>, Constraint>;  ///< speed of a sprocket relative to the chassis
+  /// What a model must have to take the hull.
   using Part = Subassembly<Bodies<Base>, Joints<Hinge, Slide, Fixed, Driven>, Forces<SpringDamper, AxialSpring>>;
 };
 

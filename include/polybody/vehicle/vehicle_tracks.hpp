@@ -15,9 +15,10 @@ namespace polybody::m113 {
 /// The links of one track.
 template <class Link>
 struct LinkParts {
-  std::vector<BodyHandle<Link>> links = {};
+  std::vector<BodyHandle<Link>> links = {};  ///< in the order of the track; pin i is in front of link i
   std::vector<Marker<Link>> front = {}, middle = {}, rear = {};  ///< of each link: front pin, middle, rear pin
 
+  /// Appends a link with its pins and middle, also to `track`.
   void add(LinkOf<Link> const& of, BodyHandle<Link> const& link, Track& track) {
     links.push_back(link);
     front.push_back(of.front(link));

@@ -16,7 +16,8 @@ namespace polybody {
 ///   Weld:  r and all gradients that both have equal, as they stand to one another in the reference.
 struct AncfLinear {
   static constexpr char const* name = "AncfLinear";
-  static constexpr bool adds_rows = true;
+  static constexpr bool adds_rows = true;  ///< the joint has rows, whose multipliers are its reactions
+  /// The rows leave the equations together with the coordinates that depend on others.
   static constexpr bool eliminates = true;
   static constexpr bool linear = true;
 };

@@ -43,9 +43,10 @@ void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
 struct Bushing {
   static constexpr char const* name = "Bushing";
   static constexpr bool linear = true;  ///< in g and ġ
+  /// What is measured in place of G's rows: the six `RelativeCoordinates`, zero where G leaves them free.
   template <JointGeometry G>
   using Measured = HeldCoordinates<G>;
-  using Matrix = Mat<double, 6, 6>;
+  using Matrix = Mat<double, 6, 6>;  ///< (6×6) in the joint's axes, slides before turns
 
   Required<Matrix> stiffness;  ///< (6×6) K, blocks [N/m], [N/rad]; [N], [N m/rad]
   Required<Matrix> damping;    ///< (6×6) C, the same times seconds

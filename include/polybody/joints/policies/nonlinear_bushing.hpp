@@ -25,6 +25,7 @@ struct LinearLaw {
     require_not_negative(stiffness, what, ": the stiffness");
     require_not_negative(damping, what, ": the damping");
   }
+  /// The force k x + c ẋ [N], or the moment [N m].
   template <StateScalar T>
   T operator()(T const& x, T const& rate) const {
     return x * stiffness.value + rate * damping.value;
@@ -35,10 +36,11 @@ struct LinearLaw {
 /// f(x) + c ẋ, f from a table.
 struct TabulatedLaw {
   MonotoneTable force;       ///< f [N] or [N m] over [m] or [rad]
-  Required<double> damping;  ///< c
+  Required<double> damping;  ///< c [N s/m], [N m s/rad]
 
   /// \throws InvalidInput unless c ≥ 0.
   void check(std::string const& what) const { require_not_negative(damping, what, ": the damping"); }
+  /// The force f(x) + c ẋ [N], or the moment [N m].
   template <StateScalar T>
   T operator()(T const& x, T const& rate) const {
     return force(x) + rate * damping.value;
@@ -55,11 +57,13 @@ template <ForceLaw... Laws>
   requires(sizeof...(Laws) == 6)
 struct NonlinearBushing {
   static constexpr char const* name = "NonlinearBushing";
+  /// What is measured in place of G's rows: the six `RelativeCoordinates`, zero where G leaves them free.
   template <JointGeometry G>
   using Measured = HeldCoordinates<G>;
 
-  std::tuple<Laws...> laws;
+  std::tuple<Laws...> laws;  ///< (6) slides along the joint's axes, then turns
 
+  /// From six laws: slides along the joint's axes, then turns.
   NonlinearBushing(Laws const&... six) : laws(six...) {}
 
   /// Checks the laws that have a check; `what` is the joint's name.

@@ -24,9 +24,9 @@ struct ArticulatedBody {};
 template <class Path>
 struct RecursiveBy {
   static constexpr char const* name = "Recursive";
-  static constexpr bool adds_rows = true;
-  static constexpr bool eliminates = true;
-  using Solution = Path;
+  static constexpr bool adds_rows = true;   ///< the joint has rows, whose multipliers are its reactions
+  static constexpr bool eliminates = true;  ///< the rows leave the equations: joint coordinates take their place
+  using Solution = Path;  ///< a type of namespace `recursive`: how the equations of joint coordinates are solved
 };
 
 /// Joint coordinates whose equations are solved in the sparse augmented form, the default.
