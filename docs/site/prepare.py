@@ -6,7 +6,7 @@ Headers
   - belong to the group of their floor (`reference.dox`);
   - have equations, which are indented in comments, on lines of their own;
   - are read without explicit instantiations, which declare nothing, and without Eigen's traits;
-  - have a comment behind `double a, b;  ///< ...` for each of the names, not for the last one only;
+  - have the comment of `double a, b;  ///< ...`, or of one line above it, at each of the names;
   - have at members that a concept asks for what docs/extending.md says of them there, where they say nothing themselves.
 Pages
   - and their headings have labels, and links to pages and headings are references, which Doxygen checks;
@@ -37,7 +37,7 @@ def depth_split(text, separator=","):
     return [*parts, text[begin:]]
 
 
-SEVERAL = re.compile(r"^(\s*)((?:static constexpr |static |inline |constexpr |mutable )*[A-Za-z_][^()=;]*?[\w>&*])\s+(\w+\b[^;]*);(?:\s*///<\s?(.*))?$")
+SEVERAL = re.compile(r"^(\s*)((?:static constexpr |static |inline |constexpr |mutable )*[A-Za-z_](?:[^()=;]*?[\w>&*])?)\s+(\w+\b[^;]*);(?:\s*///<\s?(.*))?$")
 
 
 def each_with_its_comment(line, comment=None):
@@ -96,6 +96,9 @@ def header(name, text):
     for i, line in enumerate(lines):
         if "///<" in line and "," in line:
             lines[i] = each_with_its_comment(line) or line
+        elif "," in line and i > 0 and (above := re.match(r"\s*/// (\w.*)$", lines[i - 1])) and "///" not in lines[i - 2]:
+            if each := each_with_its_comment(line, above[1]):
+                lines[i - 1 : i + 1] = "", each
         for member in waiting.get(i + 1, ()):
             is_function = bool(re.search(rf"\b{re.escape(member)}\(", lines[i]))
             text_of_it = ASKED.get((member, is_function))
@@ -122,7 +125,7 @@ def undocumented():
 
 
 ASKED = asked_by_concepts()
-OF_CONCEPTS = ("bodies", "joints", "forces", "integrators")  # the folders of types that are bodies, joints, ...
+OF_CONCEPTS = ("bodies", "joints", "forces", "integrators", "math", "vehicle")  # the folders of types that are bodies, joints, ...
 WAITING = undocumented()
 
 

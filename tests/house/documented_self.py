@@ -46,10 +46,13 @@ with tempfile.TemporaryDirectory() as name:
 
 split = prepare.each_with_its_comment
 require(split("  Vec<T, 3> a{}, b = f(1, 2);  ///< (3) [m]") == "  Vec<T, 3> a{}; /**< (3) [m] */ Vec<T, 3> b = f(1, 2); /**< (3) [m] */", "a list is not taken apart")
+require(split("  T a, b;  ///< [m]") == "  T a; /**< [m] */ T b; /**< [m] */", "a type of one letter is not taken apart")
 require(split("  double a = f(1, 2);  ///< [m]") is None, "one name is taken apart")
 page = prepare.page(prepare.ROOT / "docs/guide/speed.md", "# Speed\n\n[a](../joints.md#policies) `[b](c.md)` [d](../../README.md)\n\n```cpp\n# x\n```\n")
 require(page.startswith("# Speed {#guide_speed}\n\n\\ref page_joints_policies \"a\" `[b](c.md)` d\n"), "links of a page stay as they are")
 require("\n# x\n" in page, "a line of code is taken for a heading")
 text = prepare.header("include/polybody/math/a.hpp", "namespace polybody {\n\nextern template struct A<int>;\nint f();\n}  // namespace polybody\n")
 require("@addtogroup floor_math" in text and "extern" not in text and text.count("\n") == 5, "a header is not prepared")
+above = prepare.header("include/polybody/math/a.hpp", "struct A {\n  /// Sides [m].\n  double a, b;\n};\n").split("\n")
+require(above[1] == "" and above[2].count("/**< Sides [m]. */") == 2, "a comment above a list is not given to each name")
 print("documented_self: as it should be")
