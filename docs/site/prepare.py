@@ -125,7 +125,7 @@ def undocumented():
 
 
 ASKED = asked_by_concepts()
-OF_CONCEPTS = ("bodies", "joints", "forces", "integrators", "math", "vehicle")  # the folders of types that are bodies, joints, ...
+OF_CONCEPTS = ("bodies", "joints", "forces", "integrators", "math", "vehicle", "testing")  # the folders of types that are bodies, joints, ...
 WAITING = undocumented()
 
 

@@ -51,15 +51,18 @@ concept MadeFromBar = requires { Case::body(Case::bar()); };
 /// What a case says of its body, with or without a Bar.
 template <class Case>
 struct BodyOf {
-  static auto body() { return Case::body(); }
+  static auto body() { return Case::body(); }  ///< as the case makes it, damping included
+  /// The body without damping: the case's own, or the same where the case names no other.
   static auto undamped() {
     if constexpr (requires { Case::undamped(); })
       return Case::undamped();
     else
       return Case::body();
   }
-  static double mass() { return Case::mass(); }
+  static double mass() { return Case::mass(); }  ///< as the case says [kg]
+  /// (3) centre of mass in the reference configuration, world axes [m].
   static Vec3 centre() { return Case::centre(); }
+  /// The largest elastic constant, by which errors of forces are measured; 1 where the case does not say.
   static double stiffness() {
     if constexpr (requires { Case::stiffness; })
       return Case::stiffness;
@@ -70,17 +73,20 @@ struct BodyOf {
 /// What a case says of a body that is made from a Bar.
 template <MadeFromBar Case>
 struct BodyOf<Case> {
-  static auto body() { return Case::body(Case::bar()); }
+  static auto body() { return Case::body(Case::bar()); }  ///< from the case's bar, damping included
+  /// From the case's bar without its damping.
   static auto undamped() {
     Bar bar = Case::bar();
     bar.damping = {};
     return Case::body(bar);
   }
-  static double mass() { return constants(Case::bar()).mass_per_length * Case::bar().length; }
+  static double mass() { return constants(Case::bar()).mass_per_length * Case::bar().length; }  ///< of the bar [kg]
+  /// (3) The bar's middle in the reference configuration, world axes [m].
   static Vec3 centre() {
     Bar const bar = Case::bar();
     return bar.placement.origin + bar.placement.axes.col(0) * (0.5 * bar.length);
   }
+  /// EA + EI of the bar, by which errors of forces are measured.
   static double stiffness() {
     BarConstants const c = constants(Case::bar());
     return c.EA + c.EI;

@@ -39,10 +39,10 @@ namespace polybody::laws {
 /// The laws of bodies, for one case.
 template <class Case>
 struct BodyLaws {
-  using Made = BodyOf<Case>;
-  using B = decltype(Made::body());
-  using D = Dual<1>;
-  static constexpr bool planar = B::world == World::plane;
+  using Made = BodyOf<Case>;                                        ///< how the case makes its body
+  using B = decltype(Made::body());                                 ///< the body's type
+  using D = Dual<1>;                                                ///< number with the derivative along one direction
+  static constexpr bool planar = B::world == World::plane;          ///< the body moves in a plane
   static constexpr bool rolls = B::observes == Observes::frame;     ///< else a marker knows no axes across its first
   static constexpr bool directed = B::observes != Observes::point;  ///< else it knows no axis at all
   /// Whether a rigid motion of all its coordinates carries the whole body; a body that says nothing owes it.
@@ -52,21 +52,24 @@ struct BodyLaws {
     else
       return true;
   }();
+  /// Speeds of an element, `Eigen::Dynamic` for one element of run-time size.
   static constexpr int n = B::element_columns;
 
-  B const body = Made::body();
-  Index const nq = body.coordinates(), nv = body.speeds();
-  std::mt19937 generator{20240607};
+  B const body = Made::body();                              ///< damping included
+  Index const nq = body.coordinates(), nv = body.speeds();  ///< how many coordinates q and speeds v
+  std::mt19937 generator{20240607};                         ///< the same numbers in every run
 
   // --- random but fixed -----------------------------------------------------------------------------------
 
-  double number(double size) { return size * (double(generator()) / 2147483648.0 - 1.0); }
+  double number(double size) { return size * (double(generator()) / 2147483648.0 - 1.0); }  ///< in [−size, size]
+  /// (size) in [−scale, scale].
   VecX vector(Index size, double scale) {
     return VecX::NullaryExpr(size, [&](Index) { return number(scale); });
   }
-  Vec3 vector3() { return vector(3, 1.0); }
+  Vec3 vector3() { return vector(3, 1.0); }  ///< (3) in [−1, 1]
   /// A velocity and an angular velocity that the body's world knows.
   Vec3 velocity() { return planar ? Vec3(number(1), number(1), 0.0) : vector3(); }
+  /// (3) An angular velocity that the body's world knows [rad/s].
   Vec3 spin() { return planar ? Vec3(0.0, 0.0, number(1)) : vector3(); }
   /// A configuration far from the undeformed one; a body in space also turns by about a radian.
   /// A case may say `deformation`: the part of it that a formulation for small deformation bears.
@@ -75,9 +78,9 @@ struct BodyLaws {
     if constexpr (requires { Case::deformation; }) delta.tail(nv - (planar ? 3 : 6)) *= Case::deformation;
     return moved<double>(reference(), delta);
   }
-  VecX speeds() { return vector(nv, 1.5); }
-  Mat3 turned() { return exp_so3<double>(vector3()); }
-  Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }
+  VecX speeds() { return vector(nv, 1.5); }                               ///< (nv) far from rest
+  Mat3 turned() { return exp_so3<double>(vector3()); }                    ///< (3×3) a rotation
+  Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }  ///< a force [N] and a moment [N m]
 
   /// The case's points; of a bar some on the axis, at both ends, and off it.
   std::vector<typename B::Point> points() const {
@@ -106,11 +109,13 @@ struct BodyLaws {
 
   // --- the body as a whole --------------------------------------------------------------------------------
 
+  /// (nq) q of the undeformed body as placed.
   VecX reference() const {
     VecX q(nq);
     body.reference(mutable_view(q));
     return q;
   }
+  /// (nq) q ⊞ δ.
   template <class T>
   VecXOf<T> moved(VecX const& q, VecXOf<T> const& delta) const {
     VecXOf<T> const from = q.cast<T>();
@@ -118,11 +123,13 @@ struct BodyLaws {
     body.template plus<T>(view(from), view(delta), mutable_view(to));
     return to;
   }
+  /// (nv) δ˙ while q ⊞ δ moves with v.
   VecX rates(VecX const& delta, VecX const& v) const {
     VecX rate(nv);
     body.template local_rate<double>(view(delta), view(v), mutable_view(rate));
     return rate;
   }
+  /// (nv) v of a rigid motion: v0 of the body-fixed point at the world's origin, omega in world axes.
   VecX rigid_velocity(VecX const& q, Vec3 const& v0, Vec3 const& omega) const {
     VecX v(nv);
     body.rigid_velocity(view(q), v0, omega, mutable_view(v));
@@ -135,10 +142,12 @@ struct BodyLaws {
     for (Index i = 0; i < x.size(); ++i) out[i].d[0] = direction[i];
     return out;
   }
+  /// (nq) q ⊞ ε d, d the direction.
   VecXOf<D> carried(VecX const& q, VecX const& direction) const {
     return moved<D>(q, along(VecX::Zero(nv), direction));
   }
 
+  /// (nv) Sum of the columns that element(e, x) writes into x.
   template <class T, class Element>
   VecXOf<T> assembled(Element&& element) const {
     VecXOf<T> sum = VecXOf<T>::Zero(nv);
@@ -149,6 +158,7 @@ struct BodyLaws {
     }
     return sum;
   }
+  /// (nv×nv) Sum of the matrices that element(e, m) writes into m.
   template <class Element>
   MatX assembled_matrix(Element&& element) const {
     MatX sum = MatX::Zero(nv, nv);
@@ -160,6 +170,7 @@ struct BodyLaws {
     }
     return sum;
   }
+  /// Sum of the numbers element(e).
   template <class Element>
   double summed(Element&& element) const {
     double sum = 0.0;
@@ -167,22 +178,27 @@ struct BodyLaws {
     return sum;
   }
 
+  /// (nv×nv) M.
   MatX mass(VecX const& q) const {
     return assembled_matrix([&](Index e, auto& m) { body.mass(e, view(q), m); });
   }
+  /// (nv) M a.
   template <class T>
   VecXOf<T> inertia(VecXOf<T> const& q, VecXOf<T> const& a) const {
     return assembled<T>([&](Index e, auto& x) { body.template inertia<T>(e, view(q), view(a), x); });
   }
+  /// (nv) f of a body b.
   template <class T>
   VecXOf<T> force_of(B const& b, VecXOf<T> const& q, VecXOf<T> const& v) const {
     return assembled<T>([&](Index e, auto& x) { b.template force<T>(e, view(q), view(v), x); });
   }
+  /// (nv) f of the case's body.
   template <class T>
   VecXOf<T> force(VecXOf<T> const& q, VecXOf<T> const& v) const {
     return force_of<T>(body, q, v);
   }
-  VecX force_at_rest(VecX const& q) const { return force<double>(q, VecX::Zero(nv)); }
+  VecX force_at_rest(VecX const& q) const { return force<double>(q, VecX::Zero(nv)); }  ///< (nv) f(q, 0)
+  /// (nv×nv) −(ck ∂f/∂q + cd ∂f/∂v).
   MatX tangent(VecX const& q, VecX const& v, double ck, double cd) const {
     return assembled_matrix([&](Index e, auto& k) { body.tangent(e, view(q), view(v), ck, cd, k); });
   }
@@ -194,15 +210,19 @@ struct BodyLaws {
     body.template own_map<double>(view(q), g);
     return g;
   }
+  /// (nv) Weight in the field g [m/s²].
   VecX gravity(VecX const& q, Vec3 const& g) const {
     return assembled<double>([&](Index e, auto& x) { body.template gravity<double>(e, view(q), g, x); });
   }
+  /// T [J].
   double kinetic_energy(VecX const& q, VecX const& v) const {
     return summed([&](Index e) { return body.kinetic_energy(e, view(q), view(v)); });
   }
+  /// U of the deformation [J].
   double strain_energy(VecX const& q) const {
     return summed([&](Index e) { return body.strain_energy(e, view(q)); });
   }
+  /// U of the weight in the field g [J].
   double gravity_energy(VecX const& q, Vec3 const& g) const {
     return summed([&](Index e) { return body.gravity_energy(e, view(q), g); });
   }
@@ -221,15 +241,17 @@ struct BodyLaws {
   /// A published marker, with its Jacobian over all columns of the body.
   template <class T>
   struct Seen {
-    Sequence<T> memory;  ///< of the Jacobian; moving it keeps its address
-    Published<T> marker;
+    Sequence<T> memory;                  ///< of the Jacobian; moving it keeps its address
+    Published<T> marker;                 ///< as the body publishes it
     Mat<T, 6, Eigen::Dynamic> jacobian;  ///< all columns of the body
+    /// [ṙ; ω] of the marker, world axes.
     Vec<T, 6> twist() const {
       Vec<T, 6> t;
       t << marker.frame.v, marker.frame.w;
       return t;
     }
   };
+  /// The marker at point p; `axes` are its axes in the body's, where it knows any.
   template <class T>
   Seen<T> see(typename B::Point const& p, Mat3 const& axes, VecXOf<T> const& q, VecXOf<T> const& v) const {
     Seen<T> s;
@@ -294,6 +316,7 @@ struct BodyLaws {
   void points_outside_the_bar_are_refused();
 
   static constexpr char const* suite = "BodyLaws";
+  /// All laws; the last two are of bars.
   static constexpr Law<BodyLaws> all[] = {
       {"MassIsSymmetricAndPositive", &BodyLaws::mass_is_symmetric_and_positive},
       {"KineticEnergyIsHalfVMV", &BodyLaws::kinetic_energy_is_half_v_m_v},

@@ -23,10 +23,10 @@ namespace polybody::laws {
 template <class Case>
 struct ContactLaws {
   static constexpr char const* suite = "ContactLaws";
-  using G = decltype(Case::geometry());
-  using Elastic = Contact<G, HertzContact>;
-  G const geometry = Case::geometry();
-  Numbers number;
+  using G = decltype(Case::geometry());      ///< the geometry's type
+  using Elastic = Contact<G, HertzContact>;  ///< Hertz' law on it
+  G const geometry = Case::geometry();       ///< the case's
+  Numbers number;                            ///< the same numbers in every run
 
   /// Bodies that overlap by `depth`, turned anyhow, moving at about a metre a second.
   Touching overlapping(double depth) {
@@ -38,7 +38,7 @@ struct ContactLaws {
     Touching f = overlapping(depth);
     for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
     return f;
-  }
+  }  ///< as `overlapping`, without twists
   /// The velocity of a relative to b at the point.
   static Vec3 relative(ContactPoint<double> const& p, Touching const& f) {
     return f[0].v + f[0].w.cross(p.place - f[0].r) - f[1].v - f[1].w.cross(p.place - f[1].r);
@@ -47,8 +47,8 @@ struct ContactLaws {
   static Law with(Law law, double coefficient = 0.4) {
     law.friction = {.coefficient = coefficient, .slip_speed = 0.3};
     return law;
-  }
-  Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }
+  }  ///< `law` with a coefficient of friction and v_s = 0.3 m/s
+  Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }  ///< smooth
   /// Calls visit(contact) for each normal force, without friction; none lets go of bodies that part as these do.
   template <class Visit>
   void with_each_contact(Visit&& visit) const {
@@ -61,7 +61,7 @@ struct ContactLaws {
     std::array<Mat<double, 6, 6>, 2> k{Mat<double, 6, 6>::Zero(), Mat<double, 6, 6>::Zero()};
     law.own_stiffness(f, ck, cd, k[0], k[1]);
     return k;
-  }
+  }  ///< (6×6) `own_stiffness` of a and of b
   /// What `own_stiffness` stands for.
   template <class Law>
   static std::array<Mat<double, 6, 6>, 2> exact(Law const& law, Touching const& f, double ck, double cd) {
@@ -70,7 +70,7 @@ struct ContactLaws {
   }
   static double smallest_eigenvalue(Mat<double, 6, 6> const& m) {
     return Eigen::SelfAdjointEigenSolver<Mat<double, 6, 6>>(m).eigenvalues()[0];
-  }
+  }  ///< of a symmetric matrix
 
   // --- the geometry -------------------------------------------------------------------------------------------
 
@@ -86,7 +86,7 @@ struct ContactLaws {
       EXPECT_LE(arm.dot(p.normal), Case::radius + 1e-14);
       EXPECT_GE(arm.dot(p.normal), Case::radius - depth - 1e-14);
     }
-  }
+  }  ///< d is as the case placed a, |n| = 1, and the point is where both shapes are
 
   void normal_is_the_slope_of_the_depth() {
     for (int k = 0; k < 4; ++k) {
@@ -114,7 +114,7 @@ struct ContactLaws {
           slope_at_zero([&](double t) { return point_of(geometry, later(f[0], t), later(f[1], t)).depth; }, 1e-4);
       EXPECT_NEAR(rate, -p.normal.dot(relative(p, f)), 1e-9);
     }
-  }
+  }  ///< ∂d/∂r_a = −n, and d has the slope of n for every other motion of a and b
 
   void normal_turns_as_the_shapes_are_curved() {
     for (int k = 0; k < 4; ++k) {
@@ -127,7 +127,7 @@ struct ContactLaws {
       for (int i = 0; i < 3; ++i) turning.row(i) = p.normal[i].d.matrix().transpose();
       EXPECT_LT((turning - Case::turning(f[0], f[1])).norm(), 1e-13);
     }
-  }
+  }  ///< ∂n/∂r_a is as the case says
 
   void may_touch_is_false_only_where_nothing_touches() {
     int touching = 0, apart = 0;
@@ -147,7 +147,7 @@ struct ContactLaws {
       EXPECT_TRUE(geometry.may_touch(near[0], near[1]));
       EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // or it would be of no use
     }
-  }
+  }  ///< what touches may touch, and the test is false for most of the rest
 
   // --- the contact --------------------------------------------------------------------------------------------
 
@@ -161,7 +161,7 @@ struct ContactLaws {
       Vec3 const moment = w[0].m + f[0].r.cross(w[0].f) + w[1].m + f[1].r.cross(w[1].f);  // about the world's origin
       EXPECT_LT(moment.norm(), 1e-13 * size);
     });
-  }
+  }  ///< f_a + f_b = 0, and the moments about the world's origin balance
 
   void presses_by_the_law_at_the_depth_and_its_rate() {
     with_each_contact([&](auto const& contact) {
@@ -173,7 +173,7 @@ struct ContactLaws {
       EXPECT_LT((w[0].m - (p.place - f[0].r).cross(w[0].f)).norm(), 1e-13 * n);
       EXPECT_EQ(contact.potential(f, 0.0), contact.normal.potential(p.depth));
     });
-  }
+  }  ///< f_a = N(d, ḋ) n at the point of contact, and U is that of the normal force at d
 
   void rigid_motion_of_both_turns_the_wrench() {
     with_each_contact([&](auto const& contact) {
@@ -194,7 +194,7 @@ struct ContactLaws {
         EXPECT_LT((after[k].m - turn * before[k].m).norm(), 1e-12 * size);
       }
     });
-  }
+  }  ///< frames and twists turned and shifted together turn the wrenches
 
   void friction_opposes_sliding_and_takes_power() {
     for (double const mu : {0.1, 0.4, 1.3}) {
@@ -217,7 +217,7 @@ struct ContactLaws {
       EXPECT_LT(taken, 0.0);
       EXPECT_NEAR(taken, tangential.dot(slip), 1e-9 * std::abs(power));
     }
-  }
+  }  ///< F_t = −μ N v/√(v² + v_s²), v across n; all of its power is lost
 
   void damping_takes_power() {
     Contact<G> const damped{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}};
@@ -230,7 +230,7 @@ struct ContactLaws {
       for (std::size_t i = 0; i < 2; ++i) power += w[i].f.dot(f[i].v) + w[i].m.dot(f[i].w);
       EXPECT_NEAR(power, -7.0 * rate * rate, 1e-11);
     }
-  }
+  }  ///< the damper takes c ḋ²
 
   void force_is_the_slope_of_the_potential() {
     Touching const f = overlapping(0.1);
@@ -247,7 +247,7 @@ struct ContactLaws {
           1e-3);
       EXPECT_NEAR(w[j], -slope, 1e-7 * w.norm());  // (h/d)⁴/30 = 3e-10 of a force that grows with d^(3/2)
     }
-  }
+  }  ///< w = −∂U/∂pose without friction and damping
 
   void gradient_is_the_derivative_of_the_wrenches() {
     with_each_contact([&](auto const& contact) {
@@ -258,7 +258,7 @@ struct ContactLaws {
         EXPECT_LT(gradient_mismatch(law, f, 0.0, 0.7, 31.0), 1e-8);
       }
     });
-  }
+  }  ///< `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, by differences
 
   void does_nothing_apart() {
     with_each_contact([&](auto const& contact) {
@@ -271,9 +271,9 @@ struct ContactLaws {
         EXPECT_EQ(wrench_gradient(rough, f, 0.0, 1.0, 1.0).norm(), 0.0);
       }
     });
-  }
+  }  ///< no wrench, potential or stiffness of shapes that do not overlap
 
-  // bodies that part faster than the damper lets them: k d + c ḋ < 0
+  /// No force between bodies that part faster than the damper lets them, k d + c ḋ < 0.
   void lets_go_of_what_parts_too_fast() {
     Contact<G> const damped = with(Contact<G>{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}});
     Touching f = at_rest(0.01);
@@ -294,9 +294,9 @@ struct ContactLaws {
         EXPECT_GT(k.norm(), 1.0);
       }
     });
-  }
+  }  ///< k = kᵀ, and no eigenvalue is below zero
 
-  // What is left out of the force on a by its own shift: N ∂n/∂r, which takes stiffness away where shapes are round.
+  /// What is left out of the force on a by its own shift: N ∂n/∂r, which takes stiffness away where shapes are round.
   void own_stiffness_leaves_out_only_how_the_normal_turns() {
     with_each_contact([&](auto const& contact) {
       Touching const f = at_rest(0.1);
@@ -307,7 +307,7 @@ struct ContactLaws {
     });
   }
 
-  // Without friction, moving: exact in the twists and along the normal, which does not turn when a moves along it.
+  /// Without friction, moving: exact in the twists and along the normal, which does not turn when a moves along it.
   void own_stiffness_has_the_slopes_of_the_normal_force() {
     with_each_contact([&](auto const& contact) {
       Touching const f = overlapping(0.1);
@@ -322,7 +322,7 @@ struct ContactLaws {
     });
   }
 
-  // At rest the wrenches depend on the twists as the stand-in says, friction or not: at v = 0 the chord is the slope.
+  /// At rest the wrenches depend on the twists as the stand-in says, friction or not: at v = 0 the chord is the slope.
   void own_stiffness_is_exact_in_the_twists_of_bodies_at_rest() {
     with_each_contact([&](auto const& contact) {
       for (auto const& law : {contact, with(contact)}) {
@@ -333,8 +333,8 @@ struct ContactLaws {
     });
   }
 
-  // Sliding, the chord is more than the slope along the slip and the same across: own − exact = Jᵀ (μN/s)(u uᵀ/s²) J,
-  // s² = u² + v_s².
+  /// Sliding, the chord is more than the slope along the slip and the same across: own − exact = Jᵀ (μN/s)(u uᵀ/s²) J,
+  /// s² = u² + v_s².
   void own_stiffness_of_friction_is_an_upper_bound() {
     for (double const mu : {0.1, 0.4, 1.3}) {
       Touching const f = overlapping(0.1);

@@ -17,11 +17,11 @@ namespace polybody::laws {
 /// The laws of bodies that deform, for one case.
 template <class Case>
 struct FlexibleBodyLaws : BodyLaws<Case> {
-  typename BodyLaws<Case>::B const undamped = BodyOf<Case>::undamped();
-  /// Elastic force and that of damping, without what inertia adds at speeds.
+  typename BodyLaws<Case>::B const undamped = BodyOf<Case>::undamped();  ///< the same body without damping
   VecX damping_force(VecX const& q, VecX const& v) {
     return this->template force<double>(q, v) - this->template force_of<double>(undamped, q, v);
-  }
+  }  ///< (nv) what damping adds to f
+  /// (nv) Elastic force and that of damping, without what inertia adds at speeds.
   VecX internal_force(VecX const& q, VecX const& v) { return this->force_at_rest(q) + damping_force(q, v); }
 
   /// The case's configuration has U > 0, f ≠ 0 and a damping force, so that the other laws compare numbers, not zeros.

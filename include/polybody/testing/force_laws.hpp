@@ -18,16 +18,17 @@ namespace polybody::laws {
 /// The laws of force elements, for one case.
 template <class Case>
 struct ForceLaws {
-  using F = decltype(Case::force());
+  using F = decltype(Case::force());  ///< the element's type
   static constexpr int markers = F::markers;
-  using Frames = std::array<Frame<double>, std::size_t(markers)>;
-  static constexpr bool internal = markers > 1 && !F::is_load;  ///< acts between its markers, on nothing else
+  using Frames = std::array<Frame<double>, std::size_t(markers)>;  ///< one for each marker
+  static constexpr bool internal = markers > 1 && !F::is_load;     ///< acts between its markers, on nothing else
 
-  F const force = Case::force();
-  double const t = 1.3;
-  Numbers number;
+  F const force = Case::force();                                            ///< the case's element
+  double const t = 1.3;                                                     ///< at which it is asked [s]
+  Numbers number;                                                           ///< the same numbers in every run
   std::array<double, std::size_t(states_of<F>())> const z = some_states();  ///< of an element with states
 
+  /// Frames of the markers with twists: the case's, or any where it names none.
   Frames frames() {
     if constexpr (requires { Case::frames(number); }) {
       return Case::frames(number);
@@ -37,6 +38,7 @@ struct ForceLaws {
       return all;
     }
   }
+  /// (states) numbers in [−1, 1].
   std::array<double, std::size_t(states_of<F>())> some_states() {
     std::array<double, std::size_t(states_of<F>())> some{};
     for (double& x : some) x = number();
@@ -49,6 +51,7 @@ struct ForceLaws {
     else
       return force;
   }
+  /// [f; m] of each marker, then the rates of the states, in one column.
   VecX stacked(Frames const& f) const {
     if constexpr (HasStates<F>)
       return stacked_answer(force, f, z, t);
@@ -58,6 +61,7 @@ struct ForceLaws {
   std::array<Wrench<double>, std::size_t(markers)> wrenches(Frames const& f) const {
     return law().template wrenches<double>(f, t);
   }
+  /// What marker number `marker` must know.
   static Observes needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
 
   /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, with states `gradient_with_states`, by differences: what is

@@ -34,16 +34,17 @@ inline std::vector<double> slopes(std::vector<double> const& errors) {
 /// The laws of integrators, for one case.
 template <class Case>
 struct IntegratorLaws {
-  using Integrator = typename decltype(Case::integrators())::value_type;
-  static constexpr double slack = 0.1;  ///< of a measured order
+  using Integrator = typename decltype(Case::integrators())::value_type;  ///< the type of those of the case
+  static constexpr double slack = 0.1;  ///< by how much a measured order may fall short, a part of one order
 
-  typename Case::Model setup;
+  typename Case::Model setup;  ///< the case's model and its start
 
   /// Where a run ends, and how much energy it lost or gained on the way.
   struct Outcome {
-    State x;
-    double energy_error = 0.0;  ///< largest |E − E(0)| on the way
+    State x;                    ///< state at the end
+    double energy_error = 0.0;  ///< largest |E − E(0)| on the way [J]
   };
+  /// A run of `steps` equal steps from the case's start to its end.
   Outcome run(Integrator const& integrator, int steps) const {
     Outcome out{setup.start};
     double const start = energy(setup.model, setup.start).total();

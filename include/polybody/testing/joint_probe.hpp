@@ -14,18 +14,18 @@ namespace polybody::laws {
 
 /// A place of b against a where the joint is closed, and the motions of b against a that keep it closed.
 struct Mate {
-  Vec3 d = Vec3::Zero();      ///< (3) r_b − r_a in a's axes
-  Mat3 R = Mat3::Identity();  ///< (3×3) AaᵀAb
+  Vec3 d = Vec3::Zero();      ///< (3) r_b − r_a in a's axes [m]
+  Mat3 R = Mat3::Identity();  ///< (3×3) AaᵀAb, cosines of the angles between axes
   MatX freedoms;              ///< (6×dof) [velocity; angular velocity] of b in a's axes
 };
 
 /// Two frames, their twists with them.
 struct FramePair {
-  Frame<double> a, b;
+  Frame<double> a, b;                ///< the frames of the joint's markers
   MatX freedoms = MatX::Zero(6, 0);  ///< (6×dof) of b, world axes
 
-  VecX twists() const;
-  FramePair moved_by(VecX const& motion) const;
+  VecX twists() const;                           ///< (12) [ṙ; ω] of a, then of b, world axes
+  FramePair moved_by(VecX const& motion) const;  ///< after a motion (12): [δr; φ] of a, then of b, world axes
 };
 
 /// A gap with G = [Ga Gb] and its derivatives.
@@ -38,12 +38,16 @@ struct SeenGap {
 
 /// A geometry of any type.
 struct AnyGeometry {
+  /// How many; how many of the first are in world axes, of the last speeds.
   Index rows = 0, world_rows = 0, velocity_rows = 0;
-  bool planar = false;
+  bool planar = false;  ///< its frames stay in the plane z = 0
+  ///@{
+  /// The gap at a time [s]; `gap_with_slopes` has the derivatives, too.
   std::function<SeenGap(FramePair const&, double)> gap, gap_with_slopes;
-  std::function<VecX(FramePair const&, double)> gamma;
-  std::function<MatX(FramePair const&, double, VecX const&)> gradient;
-  std::function<Mate(Numbers&, double)> mate;
+  ///@}
+  std::function<VecX(FramePair const&, double)> gamma;                  ///< (m) γ at a time [s]
+  std::function<MatX(FramePair const&, double, VecX const&)> gradient;  ///< (12×12) ∂(Gᵀλ)/∂(motions)
+  std::function<Mate(Numbers&, double)> mate;                           ///< how b may stand against a at a time [s]
 };
 
 /// The geometry of a case, asked through functions.

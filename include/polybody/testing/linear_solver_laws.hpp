@@ -18,9 +18,10 @@ namespace polybody::laws {
 /// Bodies of six columns in a row, joints of five rows between neighbours: [M, Gᵀ; G, 0], with blocks that
 /// overlap (a second spring on body 0) and come in a fixed order.
 struct Blocks {
-  Index bodies;
-  Index size() const { return 11 * bodies; }
+  Index bodies;                               ///< how many
+  Index size() const { return 11 * bodies; }  ///< rows of the matrix
 
+  /// Adds all blocks to `sink`; `seed` decides their numbers, not their places.
   template <class Sink>
   void write(Sink& sink, unsigned seed) const {
     std::srand(seed);
@@ -46,7 +47,8 @@ struct Blocks {
 
 /// Adds blocks in place: what a sink must amount to.
 struct Plain {
-  MatX a;
+  MatX a;  ///< the sum of all blocks
+  /// Adds b with its first entry at (row, col).
   void add(Index row, Index col, BlockView const& b) {
     for (Index i = 0; i < b.rows; ++i)
       for (Index j = 0; j < b.cols; ++j) a(row + i, col + j) += b(i, j);
@@ -63,6 +65,7 @@ inline MatX plain(Blocks const& blocks, unsigned seed) {
 /// The laws of linear solvers, for one solver.
 template <class Solver>
 struct LinearSolvers {
+  /// A solver that has seen the pattern of the blocks.
   static Solver analysed(Blocks const& blocks) {
     PatternSink pattern;
     blocks.write(pattern, 1);

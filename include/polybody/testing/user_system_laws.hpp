@@ -20,47 +20,54 @@ namespace polybody::laws {
 /// The laws of a user's equations, for one case.
 template <class Case>
 struct UserSystemLaws {
-  using E = decltype(Case::equations());
+  using E = decltype(Case::equations());  ///< the equations' type
   static_assert(UserMechanics<E>);
-  static constexpr double wild = 1e9;  ///< stands in every argument before it is written
+  static constexpr double wild = 1e9;  ///< stands in every argument before it is written, whatever the unit
 
-  E const equations = Case::equations();
-  Index const n = equations.speeds();
-  double const t = 1.3;
-  Numbers number;
+  E const equations = Case::equations();  ///< the case's
+  Index const n = equations.speeds();     ///< how many speeds
+  double const t = 1.3;                   ///< at which they are asked [s]
+  Numbers number;                         ///< the same numbers in every run
 
+  /// (n) q: as the case says, else numbers in [−1, 1].
   VecX coordinates() {
     if constexpr (requires { Case::coordinates(number); })
       return Case::coordinates(number);
     else
       return number.vector(n);
   }
+  /// (n×n) M, written over a matrix full of `before`.
   MatX mass(VecX const& q, double before = wild) const {
     MatX m = MatX::Constant(n, n, before);
     equations.mass(q, m);
     return m;
   }
+  /// (n) f.
   VecX force(VecX const& q, VecX const& v) const {
     VecX f = VecX::Constant(n, wild);
     equations.force(q, v, t, f);
     return f;
   }
+  /// How many rows the equations have, 0 where they offer none.
   Index rows() const {
     if constexpr (OffersRows<E>)
       return equations.rows();
     else
       return 0;
   }
+  /// Φ(q, at), a number for each row.
   VecX violation(VecX const& q, double at) const {
     VecX phi = VecX::Constant(rows(), wild);
     if constexpr (OffersRows<E>) equations.violation(q, at, phi);
     return phi;
   }
+  /// ∂Φ/∂q, a row for each row and n columns.
   MatX jacobian(VecX const& q, double at) const {
     MatX g = MatX::Constant(rows(), n, wild);
     if constexpr (OffersRows<E>) equations.jacobian(q, at, g);
     return g;
   }
+  /// ∂Φ/∂t, a number for each row.
   VecX rate(VecX const& q, double at) const {
     VecX phi_t = VecX::Constant(rows(), wild);
     if constexpr (OffersRows<E>) equations.rate(q, at, phi_t);

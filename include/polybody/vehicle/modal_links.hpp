@@ -104,7 +104,7 @@ struct LinkOf<Ffr> {
   FfrTerms terms = {};                                  ///< which terms of the floating frame's equations are kept
   double height = cable_height;                         ///< of the section of beam elements; a model has its own [m]
 
-  /// A link with its centre at `at`, of two beam `elements` or more; its mass follows from section and density.
+  /// A link with its centre at `at`: of the model, or of two beam `elements` or more. The `Solid` has no effect.
   template <class = void>
   Ffr make(Solid const&, Placement const& at, int elements) const;
   /// The front pin.

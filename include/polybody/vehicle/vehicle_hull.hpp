@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// The hull of the vehicle of m113_vehicle.hpp and what carries its tracks, as a part of any model that has their
-/// types. Not in polybody.hpp: of use to vehicles only.
+/// The hull of m113_vehicle.hpp as a part of any model with its types. Not in polybody.hpp: of use to vehicles only.
 
 #include <vector>
 
