@@ -51,7 +51,7 @@ concept MadeFromBar = requires { Case::body(Case::bar()); };
 /// What a case says of its body, with or without a Bar.
 template <class Case>
 struct BodyOf {
-  static auto body() { return Case::body(); }  ///< as the case makes it, damping included
+  static auto body() { return Case::body(); }  ///< the case's body, damping included
   /// The body without damping: the case's own, or the same where the case names no other.
   static auto undamped() {
     if constexpr (requires { Case::undamped(); })
@@ -59,7 +59,7 @@ struct BodyOf {
     else
       return Case::body();
   }
-  static double mass() { return Case::mass(); }  ///< as the case says [kg]
+  static double mass() { return Case::mass(); }  ///< mass that the case says [kg]
   /// (3) centre of mass in the reference configuration, world axes [m].
   static Vec3 centre() { return Case::centre(); }
   /// The largest elastic constant, by which errors of forces are measured; 1 where the case does not say.
@@ -73,14 +73,15 @@ struct BodyOf {
 /// What a case says of a body that is made from a Bar.
 template <MadeFromBar Case>
 struct BodyOf<Case> {
-  static auto body() { return Case::body(Case::bar()); }  ///< from the case's bar, damping included
-  /// From the case's bar without its damping.
+  static auto body() { return Case::body(Case::bar()); }  ///< the body made from the case's bar, damping included
+  /// The body made from the case's bar without its damping.
   static auto undamped() {
     Bar bar = Case::bar();
     bar.damping = {};
     return Case::body(bar);
   }
-  static double mass() { return constants(Case::bar()).mass_per_length * Case::bar().length; }  ///< of the bar [kg]
+  /// Mass of the bar [kg].
+  static double mass() { return constants(Case::bar()).mass_per_length * Case::bar().length; }
   /// (3) The bar's middle in the reference configuration, world axes [m].
   static Vec3 centre() {
     Bar const bar = Case::bar();

@@ -55,21 +55,22 @@ struct BodyLaws {
   /// Speeds of an element, `Eigen::Dynamic` for one element of run-time size.
   static constexpr int n = B::element_columns;
 
-  B const body = Made::body();                              ///< damping included
-  Index const nq = body.coordinates(), nv = body.speeds();  ///< how many coordinates q and speeds v
-  std::mt19937 generator{20240607};                         ///< the same numbers in every run
+  B const body = Made::body();                              ///< the body under test, with its damping
+  Index const nq = body.coordinates(), nv = body.speeds();  ///< how many coordinates q and speeds v it has
+  std::mt19937 generator{20240607};                         ///< source of the random numbers; its seed is fixed
 
   // --- random but fixed -----------------------------------------------------------------------------------
 
-  double number(double size) { return size * (double(generator()) / 2147483648.0 - 1.0); }  ///< in [−size, size]
-  /// (size) in [−scale, scale].
+  /// Random number in [−size, size].
+  double number(double size) { return size * (double(generator()) / 2147483648.0 - 1.0); }
+  /// Random column (size) with entries in [−scale, scale].
   VecX vector(Index size, double scale) {
     return VecX::NullaryExpr(size, [&](Index) { return number(scale); });
   }
-  Vec3 vector3() { return vector(3, 1.0); }  ///< (3) in [−1, 1]
+  Vec3 vector3() { return vector(3, 1.0); }  ///< random column (3) in [−1, 1]
   /// A velocity and an angular velocity that the body's world knows.
   Vec3 velocity() { return planar ? Vec3(number(1), number(1), 0.0) : vector3(); }
-  /// (3) An angular velocity that the body's world knows [rad/s].
+  /// Random angular velocity (3) that the body's world knows [rad/s].
   Vec3 spin() { return planar ? Vec3(0.0, 0.0, number(1)) : vector3(); }
   /// A configuration far from the undeformed one; a body in space also turns by about a radian.
   /// A case may say `deformation`: the part of it that a formulation for small deformation bears.
@@ -78,9 +79,9 @@ struct BodyLaws {
     if constexpr (requires { Case::deformation; }) delta.tail(nv - (planar ? 3 : 6)) *= Case::deformation;
     return moved<double>(reference(), delta);
   }
-  VecX speeds() { return vector(nv, 1.5); }                               ///< (nv) far from rest
-  Mat3 turned() { return exp_so3<double>(vector3()); }                    ///< (3×3) a rotation
-  Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }  ///< a force [N] and a moment [N m]
+  VecX speeds() { return vector(nv, 1.5); }                               ///< random speeds (nv) in [−1.5, 1.5]
+  Mat3 turned() { return exp_so3<double>(vector3()); }                    ///< random rotation (3×3)
+  Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }  ///< random force [N] and moment [N m]
 
   /// The case's points; of a bar some on the axis, at both ends, and off it.
   std::vector<typename B::Point> points() const {
@@ -109,13 +110,13 @@ struct BodyLaws {
 
   // --- the body as a whole --------------------------------------------------------------------------------
 
-  /// (nq) q of the undeformed body as placed.
+  /// Coordinates q (nq) of the undeformed body as placed.
   VecX reference() const {
     VecX q(nq);
     body.reference(mutable_view(q));
     return q;
   }
-  /// (nq) q ⊞ δ.
+  /// q ⊞ δ (nq), in double or in dual numbers.
   template <class T>
   VecXOf<T> moved(VecX const& q, VecXOf<T> const& delta) const {
     VecXOf<T> const from = q.cast<T>();
@@ -123,13 +124,13 @@ struct BodyLaws {
     body.template plus<T>(view(from), view(delta), mutable_view(to));
     return to;
   }
-  /// (nv) δ˙ while q ⊞ δ moves with v.
+  /// The rate δ˙ (nv) with which q ⊞ δ moves at the speeds v.
   VecX rates(VecX const& delta, VecX const& v) const {
     VecX rate(nv);
     body.template local_rate<double>(view(delta), view(v), mutable_view(rate));
     return rate;
   }
-  /// (nv) v of a rigid motion: v0 of the body-fixed point at the world's origin, omega in world axes.
+  /// Speeds (nv) of a rigid motion: v0 of the body-fixed point at the world's origin, omega in world axes.
   VecX rigid_velocity(VecX const& q, Vec3 const& v0, Vec3 const& omega) const {
     VecX v(nv);
     body.rigid_velocity(view(q), v0, omega, mutable_view(v));
@@ -142,12 +143,12 @@ struct BodyLaws {
     for (Index i = 0; i < x.size(); ++i) out[i].d[0] = direction[i];
     return out;
   }
-  /// (nq) q ⊞ ε d, d the direction.
+  /// q ⊞ ε d (nq) in dual numbers, d the direction.
   VecXOf<D> carried(VecX const& q, VecX const& direction) const {
     return moved<D>(q, along(VecX::Zero(nv), direction));
   }
 
-  /// (nv) Sum of the columns that element(e, x) writes into x.
+  /// Sum over the elements (nv): element(e, x) writes the column of element e into x.
   template <class T, class Element>
   VecXOf<T> assembled(Element&& element) const {
     VecXOf<T> sum = VecXOf<T>::Zero(nv);
@@ -158,7 +159,7 @@ struct BodyLaws {
     }
     return sum;
   }
-  /// (nv×nv) Sum of the matrices that element(e, m) writes into m.
+  /// Sum over the elements (nv×nv): element(e, m) writes the matrix of element e into m.
   template <class Element>
   MatX assembled_matrix(Element&& element) const {
     MatX sum = MatX::Zero(nv, nv);
@@ -170,7 +171,7 @@ struct BodyLaws {
     }
     return sum;
   }
-  /// Sum of the numbers element(e).
+  /// Sum over the elements of the number element(e).
   template <class Element>
   double summed(Element&& element) const {
     double sum = 0.0;
@@ -178,27 +179,27 @@ struct BodyLaws {
     return sum;
   }
 
-  /// (nv×nv) M.
+  /// Mass matrix M (nv×nv).
   MatX mass(VecX const& q) const {
     return assembled_matrix([&](Index e, auto& m) { body.mass(e, view(q), m); });
   }
-  /// (nv) M a.
+  /// M a (nv), from the body's `inertia`.
   template <class T>
   VecXOf<T> inertia(VecXOf<T> const& q, VecXOf<T> const& a) const {
     return assembled<T>([&](Index e, auto& x) { body.template inertia<T>(e, view(q), view(a), x); });
   }
-  /// (nv) f of a body b.
+  /// Elastic, damping and quadratic-velocity force f (nv) of a body b.
   template <class T>
   VecXOf<T> force_of(B const& b, VecXOf<T> const& q, VecXOf<T> const& v) const {
     return assembled<T>([&](Index e, auto& x) { b.template force<T>(e, view(q), view(v), x); });
   }
-  /// (nv) f of the case's body.
+  /// The force f (nv) of the body under test.
   template <class T>
   VecXOf<T> force(VecXOf<T> const& q, VecXOf<T> const& v) const {
     return force_of<T>(body, q, v);
   }
-  VecX force_at_rest(VecX const& q) const { return force<double>(q, VecX::Zero(nv)); }  ///< (nv) f(q, 0)
-  /// (nv×nv) −(ck ∂f/∂q + cd ∂f/∂v).
+  VecX force_at_rest(VecX const& q) const { return force<double>(q, VecX::Zero(nv)); }  ///< f (nv) at v = 0
+  /// The body's `tangent`, −(ck ∂f/∂q + cd ∂f/∂v) (nv×nv).
   MatX tangent(VecX const& q, VecX const& v, double ck, double cd) const {
     return assembled_matrix([&](Index e, auto& k) { body.tangent(e, view(q), view(v), ck, cd, k); });
   }
@@ -210,19 +211,19 @@ struct BodyLaws {
     body.template own_map<double>(view(q), g);
     return g;
   }
-  /// (nv) Weight in the field g [m/s²].
+  /// Force of the weight (nv) in the field g [m/s²].
   VecX gravity(VecX const& q, Vec3 const& g) const {
     return assembled<double>([&](Index e, auto& x) { body.template gravity<double>(e, view(q), g, x); });
   }
-  /// T [J].
+  /// Kinetic energy T [J].
   double kinetic_energy(VecX const& q, VecX const& v) const {
     return summed([&](Index e) { return body.kinetic_energy(e, view(q), view(v)); });
   }
-  /// U of the deformation [J].
+  /// Elastic energy U [J].
   double strain_energy(VecX const& q) const {
     return summed([&](Index e) { return body.strain_energy(e, view(q)); });
   }
-  /// U of the weight in the field g [J].
+  /// Energy of the weight in the field g [J].
   double gravity_energy(VecX const& q, Vec3 const& g) const {
     return summed([&](Index e) { return body.gravity_energy(e, view(q), g); });
   }
@@ -242,16 +243,17 @@ struct BodyLaws {
   template <class T>
   struct Seen {
     Sequence<T> memory;                  ///< of the Jacobian; moving it keeps its address
-    Published<T> marker;                 ///< as the body publishes it
+    Published<T> marker;                 ///< what `publish` wrote
     Mat<T, 6, Eigen::Dynamic> jacobian;  ///< all columns of the body
-    /// [ṙ; ω] of the marker, world axes.
+    /// Velocity [m/s] and angular velocity [rad/s] of the marker, world axes: [ṙ; ω].
     Vec<T, 6> twist() const {
       Vec<T, 6> t;
       t << marker.frame.v, marker.frame.w;
       return t;
     }
   };
-  /// The marker at point p; `axes` are its axes in the body's, where it knows any.
+  /// The marker at point p in the state q, v. Its axes in the body's are `axes` if a marker of the body knows all
+  /// three.
   template <class T>
   Seen<T> see(typename B::Point const& p, Mat3 const& axes, VecXOf<T> const& q, VecXOf<T> const& v) const {
     Seen<T> s;
@@ -316,7 +318,7 @@ struct BodyLaws {
   void points_outside_the_bar_are_refused();
 
   static constexpr char const* suite = "BodyLaws";
-  /// All laws; the last two are of bars.
+  /// All laws, the two of bodies made from a bar last.
   static constexpr Law<BodyLaws> all[] = {
       {"MassIsSymmetricAndPositive", &BodyLaws::mass_is_symmetric_and_positive},
       {"KineticEnergyIsHalfVMV", &BodyLaws::kinetic_energy_is_half_v_m_v},

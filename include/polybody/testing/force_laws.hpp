@@ -18,17 +18,17 @@ namespace polybody::laws {
 /// The laws of force elements, for one case.
 template <class Case>
 struct ForceLaws {
-  using F = decltype(Case::force());  ///< the element's type
+  using F = decltype(Case::force());  ///< type of the element
   static constexpr int markers = F::markers;
-  using Frames = std::array<Frame<double>, std::size_t(markers)>;  ///< one for each marker
+  using Frames = std::array<Frame<double>, std::size_t(markers)>;  ///< a frame for each marker
   static constexpr bool internal = markers > 1 && !F::is_load;     ///< acts between its markers, on nothing else
 
-  F const force = Case::force();                                            ///< the case's element
-  double const t = 1.3;                                                     ///< at which it is asked [s]
-  Numbers number;                                                           ///< the same numbers in every run
+  F const force = Case::force();                                            ///< the element under test
+  double const t = 1.3;                                                     ///< time at which it is asked [s]
+  Numbers number;                                                           ///< random numbers with a fixed seed
   std::array<double, std::size_t(states_of<F>())> const z = some_states();  ///< of an element with states
 
-  /// Frames of the markers with twists: the case's, or any where it names none.
+  /// Frames of the markers: those of the case, random ones where it names none.
   Frames frames() {
     if constexpr (requires { Case::frames(number); }) {
       return Case::frames(number);
@@ -38,7 +38,7 @@ struct ForceLaws {
       return all;
     }
   }
-  /// (states) numbers in [−1, 1].
+  /// Random states in [−1, 1], a number for each.
   std::array<double, std::size_t(states_of<F>())> some_states() {
     std::array<double, std::size_t(states_of<F>())> some{};
     for (double& x : some) x = number();

@@ -13,16 +13,16 @@ namespace polybody::laws {
 /// Numbers in [−size, size].
 class Numbers {
  public:
-  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< the same seed gives the same numbers
+  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< equal seeds give equal numbers
 
   /// The next number in [−size, size].
   double operator()(double size = 1.0) { return size * (double(generator_()) / 2147483648.0 - 1.0); }
-  /// (n) the next n numbers in [−size, size].
+  /// Column (n) of the next n numbers, in [−size, size].
   template <int n>
   Vec<double, n> vec(double size = 1.0) {
     return Vec<double, n>::NullaryExpr([&](Index) { return (*this)(size); });
   }
-  /// (n) the next n numbers in [−size, size].
+  /// Column (n) of the next n numbers, in [−size, size].
   VecX vector(Index n, double size = 1.0) {
     return VecX::NullaryExpr(n, [&](Index) { return (*this)(size); });
   }

@@ -34,14 +34,14 @@ inline std::vector<double> slopes(std::vector<double> const& errors) {
 /// The laws of integrators, for one case.
 template <class Case>
 struct IntegratorLaws {
-  using Integrator = typename decltype(Case::integrators())::value_type;  ///< the type of those of the case
+  using Integrator = typename decltype(Case::integrators())::value_type;  ///< type of the case's integrators
   static constexpr double slack = 0.1;  ///< by how much a measured order may fall short, a part of one order
 
-  typename Case::Model setup;  ///< the case's model and its start
+  typename Case::Model setup;  ///< model and start of the case
 
   /// Where a run ends, and how much energy it lost or gained on the way.
   struct Outcome {
-    State x;                    ///< state at the end
+    State x;                    ///< state at the end of the run
     double energy_error = 0.0;  ///< largest |E − E(0)| on the way [J]
   };
   /// A run of `steps` equal steps from the case's start to its end.

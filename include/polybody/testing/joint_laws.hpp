@@ -24,22 +24,22 @@ namespace polybody::laws {
 /// The laws themselves, of a geometry of any type. V = [ṙ; ω] of both frames, G = [Ga Gb].
 struct JointLawsOf {
   static constexpr double tolerance = 1e-12;                         ///< largest error of numbers about one
-  AnyGeometry const geometry;                                        ///< the case's
-  bool const planar = geometry.planar;                               ///< its frames stay in the plane z = 0
+  AnyGeometry const geometry;                                        ///< the geometry under test
+  bool const planar = geometry.planar;                               ///< whether all frames stay in the plane z = 0
   Index const m = geometry.rows, held = m - geometry.velocity_rows;  ///< rows, and those of them that hold positions
-  double const t = 1.3;                                              ///< at which it is asked [s]
-  Numbers number;                                                    ///< the same numbers in every run
+  double const t = 1.3;                                              ///< time at which it is asked [s]
+  Numbers number;                                                    ///< random numbers with a fixed seed
 
-  explicit JointLawsOf(AnyGeometry g) : geometry(std::move(g)) {}  ///< the laws of g
+  explicit JointLawsOf(AnyGeometry g) : geometry(std::move(g)) {}  ///< laws of the geometry g
 
   /// Frames that fit, and frames where b was then moved away.
   std::vector<FramePair> closed();
-  std::vector<FramePair> open();  ///< closed, b then moved by up to 0.4
-  std::vector<FramePair> all();   ///< closed and open
+  std::vector<FramePair> open();  ///< closed frames, b then moved at random
+  std::vector<FramePair> all();   ///< the closed and the open frames
   /// The motions of two frames that their world knows, as a 0/1 matrix (12×n).
   MatX known() const;
-  VecX multipliers();                                           ///< (m) λ in [−3, 3]
-  VecX wrenches(FramePair const& p, VecX const& lambda) const;  ///< (12) Gᵀλ: [f; m] on a, then on b
+  VecX multipliers();                                           ///< random λ (m) in [−3, 3]
+  VecX wrenches(FramePair const& p, VecX const& lambda) const;  ///< Gᵀλ (12): [f; m] on a, then on b
 
   /// g = 0 where the case says that b fits to a; g ≠ 0 where b was moved away.
   void closed_frames_have_no_gap();

@@ -40,12 +40,12 @@ struct SeenGap {
 struct AnyGeometry {
   /// How many; how many of the first are in world axes, of the last speeds.
   Index rows = 0, world_rows = 0, velocity_rows = 0;
-  bool planar = false;  ///< its frames stay in the plane z = 0
+  bool planar = false;  ///< whether the frames stay in the plane z = 0
   ///@{
   /// The gap at a time [s]; `gap_with_slopes` has the derivatives, too.
   std::function<SeenGap(FramePair const&, double)> gap, gap_with_slopes;
   ///@}
-  std::function<VecX(FramePair const&, double)> gamma;                  ///< (m) γ at a time [s]
+  std::function<VecX(FramePair const&, double)> gamma;                  ///< γ (m) at a time [s]
   std::function<MatX(FramePair const&, double, VecX const&)> gradient;  ///< (12×12) ∂(Gᵀλ)/∂(motions)
   std::function<Mate(Numbers&, double)> mate;                           ///< how b may stand against a at a time [s]
 };

@@ -34,14 +34,14 @@ namespace polybody::laws {
 /// A law: its name, and the member of its suite that tests it.
 template <class Laws>
 struct Law {
-  char const* name;       ///< such as "MassIsSymmetric"
-  void (Laws::*holds)();  ///< runs the law's checks
+  char const* name;       ///< name of the test, such as "MassIsSymmetric"
+  void (Laws::*holds)();  ///< the member function that tests the law
 };
 
 /// A test of one law: made anew, so that laws do not see one another.
 class LawTest : public ::testing::Test {
  public:
-  explicit LawTest(std::function<void()> law) : law_(std::move(law)) {}  ///< runs `law` as its body
+  explicit LawTest(std::function<void()> law) : law_(std::move(law)) {}  ///< a test that calls `law`
 
  private:
   void TestBody() override { law_(); }

@@ -18,8 +18,8 @@ namespace polybody::laws {
 /// Bodies of six columns in a row, joints of five rows between neighbours: [M, Gᵀ; G, 0], with blocks that
 /// overlap (a second spring on body 0) and come in a fixed order.
 struct Blocks {
-  Index bodies;                               ///< how many
-  Index size() const { return 11 * bodies; }  ///< rows of the matrix
+  Index bodies;                               ///< how many bodies, and joints
+  Index size() const { return 11 * bodies; }  ///< rows of the matrix: 6 of a body, 5 of a joint
 
   /// Adds all blocks to `sink`; `seed` decides their numbers, not their places.
   template <class Sink>
@@ -47,7 +47,7 @@ struct Blocks {
 
 /// Adds blocks in place: what a sink must amount to.
 struct Plain {
-  MatX a;  ///< the sum of all blocks
+  MatX a;  ///< (n×n) sum of the blocks so far
   /// Adds b with its first entry at (row, col).
   void add(Index row, Index col, BlockView const& b) {
     for (Index i = 0; i < b.rows; ++i)

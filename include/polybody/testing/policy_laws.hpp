@@ -21,23 +21,23 @@ namespace polybody::laws {
 /// The laws of policies that answer rows, for one case.
 template <class Case>
 struct PolicyLaws {
-  using P = decltype(Case::policy());   ///< the policy's type
+  using P = decltype(Case::policy());   ///< type of the policy
   static constexpr int m = Case::rows;  ///< how many rows it answers
   static_assert(AnswersRows<P, m> && Policy<P>);
   using Row = Vec<double, m>;  ///< a number for each row
 
-  P const policy = Case::policy();  ///< the case's
-  Numbers number;                   ///< the same numbers in every run
+  P const policy = Case::policy();  ///< the policy under test
+  Numbers number;                   ///< random numbers with a fixed seed
 
-  /// About which gaps are tried [m], [rad]: as the case says, else one.
+  /// Size of the gaps that are tried [m], [rad]: as the case says, else one.
   static double size() {
     if constexpr (requires { Case::gap; })
       return Case::gap;
     else
       return 1.0;
   }
-  Row gap() { return number.template vec<m>(size()); }  ///< g in [−size, size]
-  Row rate() { return number.template vec<m>(); }       ///< ġ in [−1, 1]
+  Row gap() { return number.template vec<m>(size()); }  ///< random gap g in [−size, size]
+  Row rate() { return number.template vec<m>(); }       ///< random rate ġ in [−1, 1]
   Row multiplier(Row const& g, Row const& g_rate) const { return policy.template multiplier<m, double>(g, g_rate); }
 
   /// `slope`(ck, cd) = ck ∂λ/∂g + cd ∂λ/∂ġ, by dual numbers.

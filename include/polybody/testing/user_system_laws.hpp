@@ -20,54 +20,54 @@ namespace polybody::laws {
 /// The laws of a user's equations, for one case.
 template <class Case>
 struct UserSystemLaws {
-  using E = decltype(Case::equations());  ///< the equations' type
+  using E = decltype(Case::equations());  ///< type of the equations
   static_assert(UserMechanics<E>);
   static constexpr double wild = 1e9;  ///< stands in every argument before it is written, whatever the unit
 
-  E const equations = Case::equations();  ///< the case's
-  Index const n = equations.speeds();     ///< how many speeds
-  double const t = 1.3;                   ///< at which they are asked [s]
-  Numbers number;                         ///< the same numbers in every run
+  E const equations = Case::equations();  ///< the equations under test
+  Index const n = equations.speeds();     ///< how many speeds they have
+  double const t = 1.3;                   ///< time at which they are asked [s]
+  Numbers number;                         ///< random numbers with a fixed seed
 
-  /// (n) q: as the case says, else numbers in [−1, 1].
+  /// Coordinates q (n): those of the case, random ones in [−1, 1] where it names none.
   VecX coordinates() {
     if constexpr (requires { Case::coordinates(number); })
       return Case::coordinates(number);
     else
       return number.vector(n);
   }
-  /// (n×n) M, written over a matrix full of `before`.
+  /// Mass matrix M (n×n). It is written over a matrix whose entries are all `before`.
   MatX mass(VecX const& q, double before = wild) const {
     MatX m = MatX::Constant(n, n, before);
     equations.mass(q, m);
     return m;
   }
-  /// (n) f.
+  /// Force f (n) at the time t.
   VecX force(VecX const& q, VecX const& v) const {
     VecX f = VecX::Constant(n, wild);
     equations.force(q, v, t, f);
     return f;
   }
-  /// How many rows the equations have, 0 where they offer none.
+  /// How many rows the equations have; zero where they offer none.
   Index rows() const {
     if constexpr (OffersRows<E>)
       return equations.rows();
     else
       return 0;
   }
-  /// Φ(q, at), a number for each row.
+  /// Violation Φ of the rows (rows) at a time [s].
   VecX violation(VecX const& q, double at) const {
     VecX phi = VecX::Constant(rows(), wild);
     if constexpr (OffersRows<E>) equations.violation(q, at, phi);
     return phi;
   }
-  /// ∂Φ/∂q, a row for each row and n columns.
+  /// Jacobian ∂Φ/∂q (rows×n) at a time [s].
   MatX jacobian(VecX const& q, double at) const {
     MatX g = MatX::Constant(rows(), n, wild);
     if constexpr (OffersRows<E>) equations.jacobian(q, at, g);
     return g;
   }
-  /// ∂Φ/∂t, a number for each row.
+  /// Partial derivative ∂Φ/∂t (rows) at a time [s].
   VecX rate(VecX const& q, double at) const {
     VecX phi_t = VecX::Constant(rows(), wild);
     if constexpr (OffersRows<E>) equations.rate(q, at, phi_t);
