@@ -30,7 +30,7 @@ class ContactGroup {
 
   /// The first `count` markers are the many; the model sets this.
   void set_many(Index count) { many_ = count; }
-  Index many() const { return many_; }  ///< how many markers are the many; they come first in the group
+  Index many() const { return many_; }  ///< how many markers are the many: the first ones of the group
 
   /// Adds an opponent: under `law` each of the many may touch the group's marker number `marker`.
   template <class Law>

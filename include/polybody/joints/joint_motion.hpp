@@ -18,7 +18,7 @@ struct JointMotion {
     screw,  ///< about and along the axis, one coordinate [rad]
     ball    ///< about all axes, a unit quaternion; speeds in the axes of frame b [rad/s]
   };
-  Kind kind = Kind::slide;  ///< what it is
+  Kind kind = Kind::slide;  ///< slide, turn, screw or ball
   int axis = 2;             ///< 0, 1 or 2
   double pitch = 0.0;       ///< of a screw: slide for each radian [m/rad]
 

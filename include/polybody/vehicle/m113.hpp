@@ -24,8 +24,8 @@ namespace polybody::m113 {
 
 /// Three numbers along x, y, z that are known at compile time, as Eigen's are not.
 struct Triple {
-  double x, y, z;  ///< along x, y and z, in the unit of what they say
-  /// As a column (3).
+  double x, y, z;  ///< components, in the unit of the quantity
+  /// The components as a column (3).
   operator Vec3() const { return {x, y, z}; }  // NOLINT(google-explicit-constructor): reads as a vector
 };
 
@@ -44,7 +44,7 @@ struct Solid {
 };
 /// Mass and inertia of every part.
 struct Solids {
-  Solid chassis, sprocket, idler, wheel, arm, link, tensioner;  ///< each is one such body
+  Solid chassis, sprocket, idler, wheel, arm, link, tensioner;  ///< mass and inertia of one such body each
 
   /// Mass of the whole vehicle [kg].
   constexpr double total() const {

@@ -24,8 +24,8 @@ class Vehicle : public TrackedVehicle {
   using Base =
       std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;  ///< of all that is no link
   using Hull = HullTypes<Base, Drive>;     ///< types of what carries the tracks
-  using Driven = typename Hull::Driven;    ///< the sprocket's prescribed speed
-  using Pin = Joint<Revolute, PinPolicy>;  ///< between two links
+  using Driven = typename Hull::Driven;    ///< drive of a sprocket: its speed is prescribed
+  using Pin = Joint<Revolute, PinPolicy>;  ///< pin between two links
   /// Pin that closes a loop under `Closure::stiff_spring`.
   using SpringPin = std::conditional_t<closes_alike, Pin, Joint<Spherical, Penalty>>;
   /// Pin that closes a loop under `Closure::in_plane`.

@@ -133,11 +133,11 @@ struct LinkOf<Ffr> {
   struct Made {
     std::shared_ptr<FiniteElementLink const> model;  ///< its finite element model, or null
     FfrTerms terms;                                  ///< which terms of the equations it keeps
-    double height;                                   ///< as it was [m]
-    int elements;                                    ///< as were asked for
-    Ffr link;                                        ///< placed anywhere
+    double height;                                   ///< height of its section [m]
+    int elements;                                    ///< how many elements were asked for
+    Ffr link;                                        ///< the link, wherever it was placed
   };
-  mutable std::shared_ptr<Made const> made = {};  ///< null before the first link
+  mutable std::shared_ptr<Made const> made = {};  ///< null as long as no link was made
 };
 
 template <class>
