@@ -37,7 +37,7 @@ def depth_split(text, separator=","):
     return [*parts, text[begin:]]
 
 
-SEVERAL = re.compile(r"^(\s*)((?:static constexpr |static |inline |constexpr |mutable )*[A-Za-z_](?:[^()=;]*?[\w>&*])?)\s+(\w+\b[^;]*);(?:\s*///<\s?(.*))?$")
+SEVERAL = re.compile(r"^(\s*)((?:static constexpr |static |inline |constexpr |mutable )*[A-Za-z_](?:[^()=;]*?[\w>&*])?)\s+([&*]?\w+\b[^;]*);(?:\s*///<\s?(.*))?$")
 
 
 def each_with_its_comment(line, comment=None):
@@ -46,8 +46,8 @@ def each_with_its_comment(line, comment=None):
     found = SEVERAL.match(line)
     if not found or len(parts) < 2 or found[2].split()[0] in ("return", "using", "friend", "typedef", "throw", "case"):
         return None
-    first = re.match(r"^(\s*)(.*[\s>&*])(\w+\s*(?:=.*|\{.*|\[.*)?)$", parts[0])
-    if not first or not all(re.match(r"^\s*\w+\s*($|=|\{|\[)", p) for p in parts[1:]):
+    first = re.match(r"^(\s*)(.*?[\w>&*])(?<!const)\s+((?:const )?[&*]?\w+\s*(?:=.*|\{.*|\[.*)?)$", parts[0])
+    if not first or not all(re.match(r"^\s*[&*]?\w+\s*($|=|\{|\[)", p) for p in parts[1:]):
         return None
     text = comment or found[4]
     said = f" /**< {text.replace('*/', '* /')} */" if text else ""

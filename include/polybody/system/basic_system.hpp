@@ -39,7 +39,7 @@ enum class TangentPart { compliant_joints, force_elements };
 template <StateScalar T>
 class BasicSystem {
  public:
-  using Vector = VecXOf<T>;
+  using Vector = VecXOf<T>;  ///< of the system's scalar: coordinates, speeds or rows
 
   /// The whole mechanism. The model must outlive the system and must not change after.
   template <class M, Entries wanted = Entries::questions>
@@ -50,30 +50,35 @@ class BasicSystem {
   /// From entries of any origin.
   [[gnu::cold]] BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
                             Coordinates coordinates);
-  BasicSystem(BasicSystem&&) noexcept;
+  BasicSystem(BasicSystem&&) noexcept;  ///< what refers to the one that is moved, such as a workspace, does not follow
   ~BasicSystem();
 
   /// Places and names in the whole model.
   ModelLayout const& layout() const { return layout_; }
+  /// Functions between the unknowns of a time step and those of the whole model; false where no policy eliminates any.
   Coordinates const& step_coordinates() const { return coordinates_; }
+  /// Scratch of the last evaluation: markers, row blocks, wrenches of force elements.
   Data<T> const& data() const { return data_; }
   /// The model's entries, and what they take for the model.
   std::pair<ModelEntries<T> const&, void const*> entries() const { return {entries_, model_}; }
   /// Whole coordinates and speeds, and time, of the last evaluation.
   At<T> at() const { return {q_, v_, t_}; }
 
+  /// nq of a time step.
   Index coordinates() const { return coordinates_ ? coordinates_.narrow->coordinates : layout_.coordinates; }
+  /// nv of a time step: speeds, and first-order states behind them.
   Index speeds() const { return coordinates_ ? coordinates_.narrow->speeds : layout_.speeds; }
-  Index rows() const { return coordinates_ ? coordinates_.narrow->rows : layout_.rows; }
-  Index size() const { return speeds() + rows(); }
+  Index rows() const { return coordinates_ ? coordinates_.narrow->rows : layout_.rows; }  ///< rows Φ of a time step
+  Index size() const { return speeds() + rows(); }  ///< nv + rows: unknowns of its linear system
   /// Rows without a position: Φ is zero there, Φ̇ and γ are not.
   Sequence<Index> const& velocity_rows() const {
     return coordinates_ ? coordinates_.narrow->velocity_rows : layout_.velocity_rows;
   }
 
-  /// Scales gravity and loads; one except inside `equilibrium`.
+  /// A factor of gravity and loads; one except inside `equilibrium`.
   double load_factor = 1.0;
 
+  /// Sets the state, q (nq), v (nv) and t [s], of everything that is asked after: computes all markers and gaps there.
   void evaluate(Vector const& q, Vector const& v, double t);
 
   /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results

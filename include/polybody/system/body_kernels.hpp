@@ -47,10 +47,10 @@ struct StiffnessAt {
 /// The loops over the bodies of type B, for scalar T. Those of energies, masses and tangents are for numbers.
 template <class B, StateScalar T>
 struct BodyKernels {
-  using Pool = detail::BodyPool<B>;
-  using Entry = detail::BodyEntry<B>;
-  using Kept = detail::BodyData<B, T>;
-  using Vector = VecXOf<T>;
+  using Pool = detail::BodyPool<B>;     ///< bodies of this type, in a model
+  using Entry = detail::BodyEntry<B>;   ///< one of them, with its places
+  using Kept = detail::BodyData<B, T>;  ///< scratch
+  using Vector = VecXOf<T>;             ///< numbers, or dual ones
 
   /// Puts a body into the pool whose coordinates, speeds and own rows begin there.
   [[gnu::cold]] static void add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row);
@@ -69,7 +69,7 @@ struct BodyKernels {
   /// Numbers that the rows of the bodies take in their arena; and a block for each, from `next` on, `owner` being the
   /// first body's place. Returns the end.
   static Index own_size(Pool const& pool);
-  [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
+  [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);  ///< their blocks
   /// The numbers that threads write for the elements of one body: forces, tangents.
   static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
 
@@ -77,12 +77,12 @@ struct BodyKernels {
   static void publish(Pool const& pool, Kept& kept, At<T> at, Data<T>& data);
   /// Gap and map of the bodies' own rows, from `next` on; returns the end. And their γ.
   static T* measure_own_rows(Pool const& pool, At<T> at, T* next);
-  static void own_gamma(Pool const& pool, At<T> at, Vector& out);
+  static void own_gamma(Pool const& pool, At<T> at, Vector& out);  ///< γ (rows), as `out[row]`
   /// q ⊞ δ and the rate of δ; with `places`, in narrow vectors. Return the place after the last body's.
   static NarrowPlace const* plus(Pool const& pool, NarrowPlace const* places, Vector const& q, Vector const& delta,
                                  Vector& out);
   static NarrowPlace const* local_rate(Pool const& pool, NarrowPlace const* places, Vector const& delta,
-                                       Vector const& v, Vector& out);
+                                       Vector const& v, Vector& out);  ///< δ˙
   /// r += M a − f.
   static void add_forces(Pool const& pool, Kept& kept, detail::Unbalance<T> const& u, Data<T>& data, Vector& r);
 
@@ -90,16 +90,16 @@ struct BodyKernels {
   /// `room` (2 nq + nv).
   static NarrowPlace const* coordinate_rates(Pool const& pool, NarrowPlace const* places, VecX const& q, VecX const& v,
                                              VecXOf<Dual<1>>& room, VecX& rate);
-  static void rigid_speeds(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);
-  static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);
+  static void rigid_speeds(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);  ///< v
+  static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);  ///< M, element by element
   static void tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c, Data<double>& data,
-                       BlockSink& sink);
+                       BlockSink& sink);  ///< cm M + cd D + ck K
   /// ck ∂(Gᵀλ)/∂q of the bodies' own rows.
   static void own_stiffness(Pool const& pool, VecX const& lambda, detail::StiffnessAt const& x, BlockSink& sink);
   /// ck ∂(Jᵀw)/∂q for the wrenches w in data.loads, marker by marker.
   static void load_stiffness(Pool const& pool, Kept& kept, detail::StiffnessAt const& x, Data<double>& data,
                              BlockSink& sink);
-  static void add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum);
+  static void add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum);  ///< [J]
   /// What damping takes from the bodies: of their forces f(q, v), elastic ones do not know v and those of inertia are
   /// even in it, while damping is odd; so −½ v·(f(q, v) − f(q, −v)). `backwards` is −v.
   static double dissipated(Pool const& pool, Kept& kept, At<double> at, VecX const& backwards);

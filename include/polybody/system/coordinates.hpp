@@ -12,9 +12,9 @@ namespace polybody {
 
 /// What is known of narrow vectors beside the functions.
 struct NarrowLayout {
-  Index coordinates = 0, speeds = 0, rows = 0;
-  Sequence<Index> velocity_rows = {};   ///< narrow
-  Sequence<NarrowPlace> places = {};    ///< of the bodies, in the order of the layout
+  Index coordinates = 0, speeds = 0, rows = 0;  ///< counts in narrow vectors; states are speeds
+  Sequence<Index> velocity_rows = {};           ///< narrow
+  Sequence<NarrowPlace> places = {};            ///< of the bodies, in the order of the layout
   Sequence<Index> whole_speed = {};     ///< behind a narrow one; of a joint coordinate, the first of the carried body
   Sequence<Index> rows_that_stay = {};  ///< by their number in the model
   /// Eliminated rows of joints that carry bodies, where the equations hold them: a step may keep estimates of their
@@ -23,11 +23,11 @@ struct NarrowLayout {
   std::vector<std::string> redundant = {};  ///< joints whose linear rows repeat others
 
   /// A linear system of equations may have other unknowns than a time step; those that stand for speeds come first.
-  Index equations = 0, equation_speeds = 0;
-  Sequence<Index> whole_unknown = {};  ///< behind an equation; empty where they are those of a step
-  bool solves_by_bodies = false;       ///< the tree itself is the solver
-  bool moves_by_newton_euler = false;  ///< its bodies have no forces of their own
-  bool keeps_mass_constant = false;    ///< T is constant
+  Index equations = 0, equation_speeds = 0;  ///< unknowns of the equations; of these, speeds
+  Sequence<Index> whole_unknown = {};        ///< behind an equation; empty where they are those of a step
+  bool solves_by_bodies = false;             ///< the tree itself is the solver
+  bool moves_by_newton_euler = false;        ///< its bodies have no forces of their own
+  bool keeps_mass_constant = false;          ///< T is constant
 
   /// Multipliers of all rows from those of a step; zero for eliminated ones of which it has no estimates.
   template <StateScalar T>
@@ -45,8 +45,8 @@ using HeldPlace = std::shared_ptr<void>;
 
 /// Where an implicit step stands: (q, v, t), v̇ and λ in its own unknowns.
 struct StepPlace {
-  At<double> at;
-  VecX const &a, &lambda;
+  At<double> at;           ///< q, v and t, narrow
+  VecX const &a, &lambda;  ///< v̇ (nv) and λ (rows), narrow
 };
 
 /// The functions that coordinates of a step's own offer; `c` is the elimination that made them.
@@ -62,23 +62,29 @@ struct CoordinatesEntries {
   void (*recover_multipliers)(void* c, Data<double> const& data, VecX& lambda);
   /// q ⊞ δ and its rate for joint coordinates; other bodies see to their own.
   void (*plus)(void* c, VecX const& q, VecX const& delta, VecX& out);
+  /// δ˙ while q ⊞ δ moves with the narrow speeds v, for joint coordinates.
   void (*local_rate)(void* c, VecX const& delta, VecX const& v, VecX& out);
+  /// q˙ of joint coordinates.
   void (*coordinate_rates)(void* c, VecX const& q, VecX const& v, VecX& rate);
   /// The narrow state next to a whole one: exact where this one keeps to the eliminated joints.
   void (*narrow)(void* c, State const& x, State& out);
 
   /// The whole tangent that `write` gives, in the unknowns of the equations.
   void (*write)(void* c, BlockWriter const& write, BlockSink& sink);
+  /// Makes a place to keep; later `hold` copies into `held` the state of the last `expand`.
   HeldPlace (*held)(void* c);
-  void (*hold)(void* c, void* held);
+  void (*hold)(void* c, void* held);  ///< see `held`
   /// A right-hand side of a time step as one of the equations, and a solution of these as one of the step's unknowns.
   void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out);
+  /// Unknowns of the step from a solution of the equations, at the place that is held.
   void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out);
   /// Where there are `carrying_rows`: −r of the whole model into the equations; the rows of a step into them; a
   /// solution as one of the step's unknowns at the place of the last `expand`, and behind these the multipliers of the
   /// carrying rows.
   void (*balance_to_equations)(void* c, VecX const& r, VecX& out);
+  /// Adds the rows of a step to a right-hand side of the equations.
   void (*rows_to_equations)(void* c, double const* rows, VecX& out);
+  /// A correction of a step, and behind it the multipliers of the carrying rows, from a solution of the equations.
   void (*correction_from_equations)(void* c, VecX const& solution, VecX& out);
   /// For trees that are their own solver: u̇ where no rows stay, under weight alone or with `unbalance` (of the
   /// whole model); −1, or the speed whose freedom has no inertia.
@@ -86,17 +92,20 @@ struct CoordinatesEntries {
   /// For them under weight alone: r = Tᵀ(M(T u̇ + b) − f) at a step's place; and the factors of its exact tangent there,
   /// −1 or the speed without a pivot.
   void (*balance)(void* c, StepPlace const& x, double load_factor, VecX& r);
+  /// The factors of this balance's tangent; `k` has its coefficients.
   Index (*factor_balance)(void* c, void* held, StepPlace const& x, double load_factor, TangentCoefficients const& k);
+  /// Factors the whole tangent that `write` gives: −1, or the speed without a pivot.
   Index (*factor)(void* c, void* held, BlockWriter const& write);
+  /// Solves with the last factors, of `factor` or `factor_balance`; in the unknowns of a step.
   void (*solve)(void* held, VecX const& rhs, VecX& x);
 };
 
 /// Coordinates with their functions; none where a policy eliminates nothing.
 struct Coordinates {
-  std::shared_ptr<void> self;
-  CoordinatesEntries const* entries = nullptr;
-  std::shared_ptr<NarrowLayout const> narrow;
-  explicit operator bool() const { return entries != nullptr; }
+  std::shared_ptr<void> self;                                    ///< the elimination, which `entries` take as `c`
+  CoordinatesEntries const* entries = nullptr;                   ///< null: nothing is eliminated
+  std::shared_ptr<NarrowLayout const> narrow;                    ///< what is known of the narrow vectors
+  explicit operator bool() const { return entries != nullptr; }  ///< whether a policy eliminates anything
 };
 
 }  // namespace polybody

@@ -15,8 +15,8 @@ namespace polybody {
 /// How code is compiled where it decides what data look like: numbers in a pack, and the alignment of fixed-size
 /// matrices [bytes]. It is a part of the type, so that objects compiled for different machines do not link.
 struct Build {
-  int pack = pack_size;
-  int alignment = EIGEN_MAX_ALIGN_BYTES;
+  int pack = pack_size;                   ///< numbers in a pack
+  int alignment = EIGEN_MAX_ALIGN_BYTES;  ///< of fixed-size matrices [bytes]
 };
 
 /// Scratch of an evaluation: markers, Jacobians, row blocks, actions. It is laid out once for a model.
@@ -41,22 +41,23 @@ struct Data {
   Sequence<double> element_tangents;  ///< the same
   /// With workers: what the parts of a force group do to the few, before it is added in order.
   struct alignas(64) Opposite {
-    Sequence<Action<T>> actions;
+    Sequence<Action<T>> actions;  ///< what one part does
   };
-  Sequence<Opposite> opposite;
+  Sequence<Opposite> opposite;                 ///< one for each thread
   static constexpr Index least_elements = 32;  ///< that are worth a thread
   static constexpr Index least_pairs = 32;     ///< markers of the many of a group
-  static constexpr Index least_packs = 16;
-  static constexpr Index least_markers = 128;
+  static constexpr Index least_packs = 16;     ///< packs of alike elements that are worth a thread
+  static constexpr Index least_markers = 128;  ///< published markers that are worth a thread
 
   std::shared_ptr<void> kept;  ///< what depends on the types of bodies and joints: poses, gaps, scratch
 
   Data() = default;
   Data(Data const&) = delete;  // markers and rows point into the arenas
   Data& operator=(Data const&) = delete;
-  Data(Data&&) = default;  // moving a vector keeps its buffer
-  Data& operator=(Data&&) = default;
+  Data(Data&&) = default;             ///< takes the buffers over: pointers into them stay valid
+  Data& operator=(Data&&) = default;  ///< likewise
 
+  /// Whether this evaluation leaves a block out: one of a linear joint, while `linear_rows` is false.
   bool leaves_out(RowBlock<T> const& block) const { return block.source == RowSource::linear && !linear_rows; }
 };
 

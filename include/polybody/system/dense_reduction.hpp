@@ -25,10 +25,12 @@ class DenseReductionOf {
   void set_column(Index j, VecX const& column) {
     for (Index i = 0; i < column.size(); ++i) transposed_(j, i) = column[i];
   }
+  /// All entries are zero; T stays.
   void begin() {
     k_.setZero();
     g_.setZero();
   }
+  /// Adds the block b of the whole matrix, whose first entry is at (row, col); that of Gᵀ is taken from G.
   void add(Index row, Index col, BlockView const& b) {
     if (col >= speeds_) return;  // the mirror of G
     for (Index i = 0; i < b.rows; ++i) {

@@ -17,7 +17,7 @@ struct TangentCoefficients {
   double stiffness = 0.0;   ///< factor of −∂f/∂q
   bool stand_ins = true;    ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
   bool full = false;        ///< with second-order terms; a system sets it
-  double states = damping;  ///< of −∂f/∂z and −∂h/∂z, z first-order states; a step takes them with its speeds
+  double states = damping;  ///< factor of −∂f/∂z and −∂h/∂z, z first-order states; a step takes them with its speeds
 };
 
 /// Terms ∂(Gᵀλ)/∂q and ∂(Jᵀw)/∂q: a time step may leave them out while Newton contracts; statics may not.
@@ -43,12 +43,14 @@ constexpr bool contains(Entries all, Entries some) { return (unsigned(all) & uns
 
 /// Energies of a state [J].
 struct Energy {
-  double kinetic = 0.0;
+  double kinetic = 0.0;  ///< of all bodies, ½ v·M v
   double strain = 0.0;   ///< of flexible bodies
   double gravity = 0.0;  ///< zero at the world's origin
   double joints = 0.0;   ///< stored in compliant joints
   double forces = 0.0;   ///< stored in force elements that have a potential
+  /// V: all that is stored.
   double potential() const { return strain + gravity + joints + forces; }
+  /// T + V.
   double total() const { return kinetic + potential(); }
 };
 
@@ -61,21 +63,22 @@ struct Powers {
 
 /// Where one body stands in narrow vectors, those of a time step that policies have taken unknowns from.
 struct NarrowPlace {
+  /// What narrow vectors hold of a body.
   enum class Kind : unsigned char {
     as_it_is,  ///< all its coordinates
     reduced,   ///< some of them; they add
     carried    ///< those of its joint
   };
-  Kind kind = Kind::as_it_is;
-  Index q = 0, v = 0, coordinates = 0, speeds = 0;
+  Kind kind = Kind::as_it_is;                       ///< what they hold
+  Index q = 0, v = 0, coordinates = 0, speeds = 0;  ///< its first coordinate and speed; how many of both it has
 };
 
 /// A state as entries are handed it: q (nq), v (nv), t.
 template <StateScalar T>
 struct At {
-  VecXOf<T> const& q;
-  VecXOf<T> const& v;
-  double t;
+  VecXOf<T> const& q;  ///< (nq) coordinates
+  VecXOf<T> const& v;  ///< (nv) speeds, and first-order states behind them
+  double t;            ///< time [s]
 };
 
 /// The mean forces of a step, by secants (system/secant_entries.hpp).
@@ -84,10 +87,11 @@ struct SecantEntries;
 /// The functions; `m` is the model. Those of a group that was not asked for are null.
 template <StateScalar T>
 struct ModelEntries {
-  using Vector = VecXOf<T>;
+  using Vector = VecXOf<T>;  ///< of coordinates, speeds or rows
 
   /// Markers; then the gaps of all row blocks and what compliant joints answer.
   void (*publish)(void const* m, At<T> at, Data<T>& data) = nullptr;
+  /// Gaps and their rates of all joints and own rows; the markers must have been published.
   void (*measure_gaps)(void const* m, At<T> at, Data<T>& data) = nullptr;
   /// γ of all rows without G's markers' biases, into out.
   void (*measure_gamma)(void const* m, At<T> at, Data<T> const& data, Vector& out) = nullptr;
@@ -98,6 +102,7 @@ struct ModelEntries {
   void (*push_forces)(void const* m, double t, Data<T>& data) = nullptr;
   /// q ⊞ δ and the rate of δ; with `places`, in narrow vectors.
   void (*plus)(void const* m, NarrowPlace const* places, Vector const& q, Vector const& delta, Vector& out) = nullptr;
+  /// δ˙ while q ⊞ δ moves with v.
   void (*local_rate)(void const* m, NarrowPlace const* places, Vector const& delta, Vector const& v,
                      Vector& out) = nullptr;
   /// From now on the threads share the loops; what is computed stays the same to the last bit.
@@ -109,27 +114,32 @@ struct ModelEntries {
   /// wrenches are added to data.loads.
   void (*element_tangents)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
                            BlockSink& sink) = nullptr;
+  /// The part of compliant joints, ck Gᵀ(∂λ/∂g)G and cd Gᵀ(∂λ/∂ġ)G.
   void (*compliant_tangents)(void const* m, TangentCoefficients const& c, Data<T>& data, BlockSink& sink) = nullptr;
+  /// The part of force elements at t [s], loads times `load_factor`.
   void (*force_tangents)(void const* m, double t, double load_factor, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 
   /// ck ∂(Gᵀλ)/∂q of joints and of bodies' own rows; ck ∂(Jᵀw)/∂q of data.loads.
   void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, double ck, Data<T>& data,
                           BlockSink& sink) = nullptr;
+  /// ck ∂(Jᵀw)/∂q for the wrenches in data.loads.
   void (*load_stiffness)(void const* m, At<T> at, double ck, Data<T>& data, BlockSink& sink) = nullptr;
 
   /// q˙; `room` (2 nq + nv) is scratch.
   void (*coordinate_rates)(void const* m, NarrowPlace const* places, Vector const& q, Vector const& v,
                            VecXOf<Dual<1>>& room, Vector& rate) = nullptr;
 
+  /// Energies of the evaluated state [J].
   Energy (*energy)(void const* m, At<T> at, Data<T> const& data) = nullptr;
   /// `backwards` is −v.
   Powers (*powers)(void const* m, At<T> at, VecX const& backwards, VecX const& lambda, double load_factor,
                    Data<T> const& data) = nullptr;
 
+  /// v of a rigid motion: `v0` [m/s] of the body-fixed point at the world's origin, `omega` [rad/s], world axes.
   void (*rigid_speeds)(void const* m, Vector const& q, Vec3 const& v0, Vec3 const& omega, Vector& v) = nullptr;
 
-  SecantEntries const* secants = nullptr;
+  SecantEntries const* secants = nullptr;  ///< mean forces of a step; null where they were not asked for
 };
 
 /// The table for a model of type M; specialised where model types are known (system/model_entries.hpp).

@@ -13,17 +13,20 @@ namespace polybody {
 
 /// A marker of a floating body, without the body's type.
 struct FloatingEnd {
+  /// Publishes the marker of `end` on a body with coordinates q and speeds v of its own, both from its first on.
   using Publish = void (*)(FloatingEnd const& end, double const* q, double const* v, Published<double>& out);
 
-  Publish publish = nullptr;  ///< the marker where the body has these coordinates and speeds
-  void const *body = nullptr, *point = nullptr;
-  Mat3 axes = Mat3::Identity();  ///< of the joint in the section's
-  RigidLayout layout = RigidLayout::quaternion;
-  Index q0 = 0, v0 = 0;    ///< of the body in whole vectors
-  Index deformations = 0;  ///< behind its frame
-  Index first_column = 0;  ///< in the state of the tree
+  Publish publish = nullptr;                     ///< the marker where the body has these coordinates and speeds
+  void const *body = nullptr, *point = nullptr;  ///< the body and the point on it, whose types `publish` knows
+  Mat3 axes = Mat3::Identity();                  ///< relative to the section's: the joint's axes
+  RigidLayout layout = RigidLayout::quaternion;  ///< how the coordinates of the floating frame are written
+  Index q0 = 0, v0 = 0;                          ///< of the body in whole vectors
+  Index deformations = 0;                        ///< behind its frame
+  Index first_column = 0;                        ///< in the state of the tree
 
+  /// How many coordinates the body's floating frame has: (x, y, angle), or position and quaternion.
   Index frame_coordinates() const { return layout == RigidLayout::plane ? 3 : 7; }
+  /// How many speeds it has: they come before those of the deformation.
   Index frame_speeds() const { return layout == RigidLayout::plane ? 3 : 6; }
   /// Lengthens what a tree's state holds for its ends.
   template <class Columns, class Numbers>

@@ -177,8 +177,8 @@ void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt 
 /// The loops over the force elements of type F, for scalar T; those of energies and tangents are for numbers.
 template <class F, StateScalar T>
 struct ForceKernels {
-  using Entry = detail::ForceEntry<F>;
-  using Pool = Sequence<Entry>;
+  using Entry = detail::ForceEntry<F>;  ///< a force element with its markers
+  using Pool = Sequence<Entry>;         ///< those of this type in a model
 
   /// Places and names.
   [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
@@ -189,9 +189,12 @@ struct ForceKernels {
 
   /// The identity, for the rates of their states, which begin at speed `first`.
   static void masses(Pool const& pool, Index first, BlockSink& sink);
+  /// ck K + cd D at t [s], blocks between all speeds that the markers of an element read; loads times `load_factor`.
   static void tangents(Pool const& pool, double t, double load_factor, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);
+  /// Stored energy of those that have a potential [J].
   static double energy(Pool const& pool, double t, Data<double> const& data);
+  /// Adds the powers of loads and of forces without a potential [W].
   static void add_powers(Pool const& pool, double t, double load_factor, Data<double> const& data, Powers& p);
 
  private:

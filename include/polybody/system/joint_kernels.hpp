@@ -93,10 +93,10 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
 /// have no gap: their rows are the model's (linear_rows.hpp).
 template <class J, StateScalar T>
 struct JointKernels {
-  using P = typename J::PolicyType;
-  using Pool = Sequence<detail::JointEntry<J>>;
-  using Kept = detail::JointData<J, T>;
-  static constexpr bool linear = LinearInCoordinates<P>, compliant = !AddsRows<P>;
+  using P = typename J::PolicyType;              ///< who answers or solves for the rows
+  using Pool = Sequence<detail::JointEntry<J>>;  ///< joints of this type, in a model
+  using Kept = detail::JointData<J, T>;          ///< scratch: gaps, and what compliant joints answer
+  static constexpr bool linear = LinearInCoordinates<P>, compliant = !AddsRows<P>;  ///< linear in q; answered by forces
 
   /// Counts, places and names.
   [[gnu::cold]] static void describe(Pool const& pool, Sequence<LinearRows> const& linear_rows, ModelLayout& out);

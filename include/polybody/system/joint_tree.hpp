@@ -30,6 +30,7 @@ class JointTreeOf {
   Sequence<TreeBody> bodies;
   Sequence<FloatingEnd> ends;  ///< of joints on bodies that deform
 
+  /// Whether no body is carried: there is no tree.
   bool empty() const { return bodies.empty(); }
 
   /// Poses and speeds of the carried bodies from the joints' coordinates and speeds; those of roots are read. `q`, `v`
@@ -140,9 +141,11 @@ class JointTreeOf {
     for (std::size_t i = 0; i < bodies.size(); ++i) detail::put_twist<T>(bodies[i], s.frames[i], s.held[i], r);
   }
 
+  /// Frame of the body that carries this one, or of the ground.
   TreeFrame const& parent_of(TreeBody const& body, TreeState const& s) const {
     return body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
   }
+  /// Scratch for this tree, as large as it will ever be.
   TreeState state() const {
     TreeState s;
     s.frames.resize(bodies.size());

@@ -17,15 +17,15 @@ struct PlacedWrench;
 
 /// Where a body stands among all coordinates, speeds and rows.
 struct BodyPlace {
-  std::string name = {};
-  Index q0 = 0, coordinates = 0;
-  Index v0 = 0, speeds = 0;
-  Index row = -1, rows = 0;  ///< rows of its own
-  bool planar = false;
-  bool constant_mass = false;
-  void const* type = nullptr;  ///< tells types of bodies apart
-  Index index = 0;             ///< among the bodies of its type
-  void const* body = nullptr;  ///< the body itself, in the model
+  std::string name = {};          ///< its name in messages
+  Index q0 = 0, coordinates = 0;  ///< its first coordinate, and how many it has
+  Index v0 = 0, speeds = 0;       ///< its first speed, and how many it has
+  Index row = -1, rows = 0;       ///< rows of its own
+  bool planar = false;            ///< it moves in the plane
+  bool constant_mass = false;     ///< M does not depend on q
+  void const* type = nullptr;     ///< tells types of bodies apart
+  Index index = 0;                ///< among the bodies of its type
+  void const* body = nullptr;     ///< the body itself, in the model
   /// At its q, v, v̇ under gravity and loads in world axes; none of a body that does not say it (LeavesOutAxialForces).
   double (*axial_share)(void const* body, std::span<double const> q, std::span<double const> v,
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
@@ -33,7 +33,7 @@ struct BodyPlace {
 
 /// Where a joint stands: its markers, and its rows among all.
 struct JointPlace {
-  std::string name = {};
+  std::string name = {};          ///< its name in messages
   Index a = -1, b = -1;           ///< published markers
   Index row = -1, rows = 0;       ///< none of a compliant joint
   bool eliminated = false;        ///< from a time step
@@ -45,31 +45,32 @@ struct JointPlace {
 
 /// Where a force element stands: its markers, and its first-order states.
 struct ForcePlace {
-  std::string name = {};
+  std::string name = {};         ///< its name in messages
   void const* type = nullptr;    ///< tells types of forces apart
   Index index = 0;               ///< among the forces of its type
   void const* force = nullptr;   ///< the force element itself, in the model
   Sequence<Index> markers = {};  ///< published
-  bool is_load = false;
-  Index v0 = -1, states = 0;  ///< first-order states of its own, among the speeds
-  bool stores = false;        ///< it has a potential
+  bool is_load = false;          ///< scaled by the load factor of `equilibrium`
+  Index v0 = -1, states = 0;     ///< first-order states of its own, among the speeds
+  bool stores = false;           ///< it has a potential
 };
 
 /// Counts, places and names of a model; bodies, joints and forces in the order of their types.
 struct ModelLayout {
-  std::uint64_t serial = 0;  ///< of the model, as its handles know it
-  Index coordinates = 0, speeds = 0, rows = 0;
-  Index states = 0;                    ///< first-order ones: the last of the speeds
-  Sequence<Index> velocity_rows = {};  ///< rows without a position, ascending
-  Sequence<BodyPlace> bodies = {};
-  Sequence<JointPlace> joints = {};
-  Sequence<ForcePlace> forces = {};
-  Sequence<Index> owners = {};    ///< of each published marker: the body, −1 for the ground
-  Vec3 gravity = Vec3::Zero();    ///< (3) world axes [m/s²]
-  Sequence<double> corners = {};  ///< times at which a drive or a load wants a step to end
-  bool constant_mass = false;
-  bool has_groups = false;  ///< of forces
+  std::uint64_t serial = 0;                     ///< of the model, as its handles know it
+  Index coordinates = 0, speeds = 0, rows = 0;  ///< nq; nv, with first-order states behind; rows
+  Index states = 0;                             ///< first-order ones: the last of the speeds
+  Sequence<Index> velocity_rows = {};           ///< rows without a position, ascending
+  Sequence<BodyPlace> bodies = {};              ///< by types, in the order in which they were added
+  Sequence<JointPlace> joints = {};             ///< likewise
+  Sequence<ForcePlace> forces = {};             ///< likewise
+  Sequence<Index> owners = {};                  ///< of each published marker: the body, −1 for the ground
+  Vec3 gravity = Vec3::Zero();                  ///< (3) world axes [m/s²]
+  Sequence<double> corners = {};                ///< times at which a drive or a load wants a step to end
+  bool constant_mass = false;                   ///< that of no body depends on q
+  bool has_groups = false;                      ///< of forces
 
+  /// Speeds of the bodies alone; first-order states stand behind them.
   Index body_speeds() const { return speeds - states; }
 
   /// Name of the body that owns coordinate i.

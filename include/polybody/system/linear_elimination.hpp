@@ -19,14 +19,14 @@ class LinearEliminationOf {
  public:
   /// An independent coordinate and its factor.
   struct Term {
-    Index q, v;
-    T factor;
+    Index q, v;  ///< its places among coordinates and speeds
+    T factor;    ///< f, of the independent one
   };
   /// A dependent coordinate: its constant and its terms.
   struct Dependent {
-    Index q, v;
-    T constant;
-    Sequence<Term> terms;
+    Index q, v;            ///< its places among coordinates and speeds
+    T constant;            ///< c, in the unit of the coordinate
+    Sequence<Term> terms;  ///< Σ f q_i
   };
 
   LinearEliminationOf() = default;
@@ -37,7 +37,9 @@ class LinearEliminationOf {
     for (std::size_t k = pivots_.size(); k-- > 0;) solve_for(k);
   }
 
+  /// Whether no coordinate depends on others.
   bool empty() const { return dependents_.empty(); }
+  /// The dependent coordinates, each with its terms.
   Sequence<Dependent> const& dependents() const { return dependents_; }
   /// Rows that repeat others.
   Sequence<Index> const& redundant() const { return redundant_; }
@@ -50,6 +52,7 @@ class LinearEliminationOf {
       q[d.q] = sum;
     }
   }
+  /// The same for speeds or accelerations: v_d = Σ f v_i.
   void expand_rates(VecXOf<T>& v) const {
     for (Dependent const& d : dependents_) {
       double sum = 0.0;

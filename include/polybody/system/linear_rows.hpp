@@ -18,18 +18,19 @@ struct LinearSide {
 
 /// The rows of one joint: first those of the position, then those of gradients.
 struct LinearRows {
-  std::string name;
-  Index row = 0;
-  LinearSide a = {}, b = {};
-  VecX constant = {};   ///< (rows) c
-  Index positions = 0;  ///< rows of the position
+  std::string name;           ///< the joint's name in messages
+  Index row = 0;              ///< the first of its rows in the model
+  LinearSide a = {}, b = {};  ///< the two markers' bodies
+  VecX constant = {};         ///< (rows) c
+  Index positions = 0;        ///< rows of the position
   /// A gradient that a and b share, or its component along an axis.
   struct Gradient {
-    Index rows;
-    MatX map;   ///< of b; of a where b is the ground
-    Vec3 axis;  ///< (3) of a single row
+    Index rows;  ///< how many
+    MatX map;    ///< of b; of a where b is the ground
+    Vec3 axis;   ///< (3) unit vector: of a single row, in world axes
   };
-  Sequence<Gradient> gradients = {};
+  Sequence<Gradient> gradients = {};  ///< in the order of their rows
+  /// How many rows the joint has.
   Index rows() const { return constant.size(); }
 };
 

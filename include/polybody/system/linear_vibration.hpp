@@ -19,17 +19,21 @@ concept ChangesMatrices = requires(L const load, double t, MatX d, MatX k) { loa
 template <LoadHistory Load>
 struct LinearVibration {
   MatX mass_matrix, damping, stiffness;  ///< (n×n)
-  Load load;
-  mutable MatX d = {}, k = {};  ///< scratch: both at one time
+  Load load;                             ///< f(t)
+  mutable MatX d = {}, k = {};           ///< scratch: both at one time
 
+  /// n.
   Index speeds() const { return mass_matrix.rows(); }
+  /// M (n×n).
   void mass(VecX const&, MatX& m) const { m = mass_matrix; }
+  /// f(t) − D q̇ − K q at t [s], into `f` (n).
   void force(VecX const& q, VecX const& v, double t, VecX& f) const {
     load(t, f);
     update(t);
     f.noalias() -= d * v;
     f.noalias() -= k * q;
   }
+  /// ck K + cd D at t [s], into `out` (n×n).
   void tangent(VecX const&, VecX const&, double t, double ck, double cd, MatX& out) const {
     update(t);
     out = ck * k + cd * d;

@@ -18,8 +18,8 @@ class UnknownMapOf {
  public:
   /// An unknown and its factor.
   struct Target {
-    Index unknown;
-    T factor;
+    Index unknown;  ///< in the system that is left
+    T factor;       ///< P of the two, a factor
   };
 
   /// `targets[i]` of whole unknown i: one with factor one for most, several for a dependent one, none for one that is
@@ -37,6 +37,7 @@ class UnknownMapOf {
   Index run(Index first, Index size) const {
     return run_end_[std::size_t(first)] >= first + size ? targets_[std::size_t(first)][0].unknown : -1;
   }
+  /// How many whole unknowns there are.
   Index size() const { return Index(targets_.size()); }
   /// The unknowns that whole unknown i goes to, with their factors.
   Sequence<Target> const& targets(Index i) const { return targets_[std::size_t(i)]; }
@@ -45,18 +46,19 @@ class UnknownMapOf {
   struct Range {
     /// Consecutive unknowns that a range touches, from the local number `local` on.
     struct Run {
-      Index first, size, local;
+      Index first, size, local;  ///< first unknown, how many, first local number
     };
     /// Neighbours that become neighbours, with factor one: `size` from the local number `source` on.
     struct Part {
-      Index first, size, source;
+      Index first, size, source;  ///< first unknown, how many, first neighbour of the range
     };
-    Index whole_size = 0, size = 0;
-    Sequence<Run> runs;
+    Index whole_size = 0, size = 0;      ///< whole unknowns of the range; unknowns that it touches
+    Sequence<Run> runs;                  ///< these unknowns, ascending
     Sequence<Sequence<Target>> targets;  ///< of each whole unknown, by local number
     Sequence<Part> parts;  ///< all of it, where no whole unknown has more than one target nor another factor than one
     bool copied = false;   ///< it is so
   };
+  /// What whole unknowns from `first` on touch; `size` is how many. Searches and allocates.
   Range range(Index first, Index size) const {
     Sequence<Index> touched;
     for (Index i = first; i < first + size; ++i)
@@ -101,9 +103,10 @@ class UnknownMapOf {
 /// What a mapped sink keeps from pass to pass: ranges by their first unknown, and room for blocks, by rows.
 template <class T = double>
 struct MappedBlocksOf {
-  Sequence<std::list<typename UnknownMapOf<T>::Range>> ranges;
-  Sequence<T> half, whole;
+  Sequence<std::list<typename UnknownMapOf<T>::Range>> ranges;  ///< found so far, by their first whole unknown
+  Sequence<T> half, whole;                                      ///< a block times P; Pᵀ times that
 
+  /// The first `size` entries of `room`, as zeros; the room grows where it must.
   static T* zeros(Sequence<T>& room, Index size) {
     if (room.size() < std::size_t(size)) room.resize(std::size_t(size));
     std::fill_n(room.begin(), size, 0.0);
@@ -126,6 +129,7 @@ class MappedSinkOf {
     kept_.ranges.resize(std::size_t(map.size()));
   }
 
+  /// Adds Pᵀ b P, b being a block of the whole system whose first entry is at (row, col).
   void add(Index row, Index col, BlockView const& b) {
     if (slots_) [[unlikely]]
       record(row, col, b.rows, b.cols);
@@ -152,6 +156,7 @@ class MappedSinkOf {
   }
   /// All blocks went as they are, and the slots know how.
   bool recorded() const { return slots_ && copies_; }
+  /// Whether the sink wants the diagonal block of the unknowns that these whole ones go to.
   bool wants(Index first, Index size) {
     if (Index const to = map_.run(first, size); to >= 0) return sink_.wants(to, size);
     auto const& runs = range(first, size).runs;

@@ -16,8 +16,8 @@ class MappedSlotsOf {
   MappedSlotsOf() = default;
   MappedSlotsOf(MappedSlotsOf const&) = delete;  // its targets point to its own
   MappedSlotsOf& operator=(MappedSlotsOf const&) = delete;
-  MappedSlotsOf(MappedSlotsOf&&) = default;
-  MappedSlotsOf& operator=(MappedSlotsOf&&) = default;
+  MappedSlotsOf(MappedSlotsOf&&) = default;             ///< the targets stay where they are
+  MappedSlotsOf& operator=(MappedSlotsOf&&) = default;  ///< likewise
 
   /// It has been told of all blocks that go into this layout.
   bool leads_to(std::uint64_t layout) const { return complete_ && layout_ == layout; }
@@ -31,6 +31,7 @@ class MappedSlotsOf {
     targets_.clear();
     blocks_.clear();
   }
+  /// The first pass comes to the next whole block; its parts follow by `take`.
   void begin_block() { first_ = pieces_.size(); }
   /// The next block of the receiver takes the part of the whole one from (row, col) on.
   void take(Index row, Index col) {
@@ -41,6 +42,7 @@ class MappedSlotsOf {
       pieces_.back().col += int(col);
     }
   }
+  /// That was all of this block of rows×cols entries. What is cut into many small pieces is scattered entry by entry.
   void end_block(Index rows, Index cols) {
     std::size_t const count = pieces_.size() - first_;
     bool const scatters = count > 4 && std::size_t(rows * cols) < 8 * count;
@@ -58,9 +60,12 @@ class MappedSlotsOf {
     pieces_.resize(first_);
     blocks_.back().end = first_;
   }
+  /// The first pass has ended: all blocks are known.
   void complete() { complete_ = true; }
 
+  /// The blocks come anew, from the first on.
   void begin() { next_ = 0; }
+  /// Adds the next block to the receiver's storage; places were found in the first pass.
   void add(Index, Index, BlockView const& b) {
     Block const& block = blocks_[next_++];
     for (std::size_t k = block.first; k < block.end; ++k) pieces_[k].add(b);
@@ -72,6 +77,7 @@ class MappedSlotsOf {
       to += b.cols;
     }
   }
+  /// The next block is zero.
   void skip(Index, Index, Index, Index) { ++next_; }
 
  private:

@@ -24,20 +24,21 @@ template <Body... Bs, class... Js, AppliedForce... Fs>
   requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...>
 class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
-  using BodyPools = std::tuple<detail::BodyPool<Bs>...>;
-  using JointPools = std::tuple<Sequence<detail::JointEntry<Js>>...>;
-  using ForcePools = std::tuple<Sequence<detail::ForceEntry<Fs>>...>;
+  using BodyPools = std::tuple<detail::BodyPool<Bs>...>;               ///< one for each type of body
+  using JointPools = std::tuple<Sequence<detail::JointEntry<Js>>...>;  ///< one for each type of joint
+  using ForcePools = std::tuple<Sequence<detail::ForceEntry<Fs>>...>;  ///< one for each type of force element
 
   /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
   static constexpr bool may_have_rows = (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
   /// Some joint type eliminates coordinates from a time step; and how.
   static constexpr bool eliminates = (Eliminates<typename Js::PolicyType> || ...);
-  using Solution = detail::SolutionOf<typename Js::PolicyType...>;
-  static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);
-  static constexpr bool constant_mass = (Bs::constant_mass && ...);
-  static constexpr bool has_groups = (ForceGroup<Fs> || ...);  ///< of forces
-  static constexpr bool has_states = (HasStates<Fs> || ...);   ///< first-order ones, of forces
+  using Solution = detail::SolutionOf<typename Js::PolicyType...>;   ///< void, or how joint coordinates are solved for
+  static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);     ///< bodies of all types are rigid
+  static constexpr bool constant_mass = (Bs::constant_mass && ...);  ///< M of no body type depends on q
+  static constexpr bool has_groups = (ForceGroup<Fs> || ...);        ///< of forces
+  static constexpr bool has_states = (HasStates<Fs> || ...);         ///< first-order ones, of forces
 
+  /// A model without parts. Gravity in world axes [m/s²]; none by default.
   explicit Model(Gravity const& gravity = {}) : parts_{gravity, detail::next_serial()} {}
 
   /// Adds a body; the name appears in every message about it, and no other body has it. Without a name it gets one.
@@ -46,6 +47,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return detail::add_body(parts_, std::get<detail::BodyPool<B>>(bodies_), body, std::move(name));
   }
 
+  /// What does not move: `model.ground().at(r)` is a marker at r, world axes [m].
   BodyHandle<Ground> ground() const { return {parts_.serial, 0, "ground"}; }
 
   /// Joins marker a to marker b. The joint's axes are those of its geometry in world axes at the reference
@@ -64,6 +66,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   ElementHandle<F> apply(F const& force, Marker<A> const& a, std::string name = "") {
     return apply(force, std::tuple(a), std::move(name));
   }
+  /// Between two markers: the first one is that of the force's first wrench.
   template <OneOf<Fs...> F, class A, class B>
     requires(F::markers == 2)
   ElementHandle<F> apply(F const& force, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
@@ -120,6 +123,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   std::span<double, F::states> states(State& x, ElementHandle<F> const& force) const {
     return std::span<double, F::states>(x.v.data() + parts_.speeds + entry(force).state, F::states);
   }
+  /// The same of a state that is not written.
   template <OneOf<Fs...> F>
     requires HasStates<F>
   std::span<double const, F::states> states(State const& x, ElementHandle<F> const& force) const {
@@ -135,23 +139,25 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                           detail::body_part_of(x.v, e.v0, e.body.speeds()));
   }
 
-  Gravity const& gravity() const { return parts_.gravity; }
-  Index coordinates() const { return parts_.coordinates; }
+  Gravity const& gravity() const { return parts_.gravity; }  ///< [m/s²], world axes
+  Index coordinates() const { return parts_.coordinates; }   ///< nq of all bodies
   /// Speeds of the bodies, and first-order states of forces behind them.
   Index speeds() const { return parts_.speeds + parts_.states; }
-  Index states() const { return parts_.states; }
-  Index rows() const { return parts_.rows; }
+  Index states() const { return parts_.states; }  ///< first-order ones, of forces
+  Index rows() const { return parts_.rows; }      ///< rows of joints and of bodies that own some
   /// Those of the rows that hold speeds and no positions, ascending.
   Sequence<Index> const& velocity_rows() const { return parts_.velocity_rows; }
-  Index markers() const { return parts_.markers; }
-  Index jacobian_size() const { return parts_.jacobian_size; }
-  Index body_count() const { return parts_.bodies; }
-  std::uint64_t serial() const { return parts_.serial; }
+  Index markers() const { return parts_.markers; }              ///< published ones
+  Index jacobian_size() const { return parts_.jacobian_size; }  ///< numbers in their dense Jacobians
+  Index body_count() const { return parts_.bodies; }            ///< without the ground
+  std::uint64_t serial() const { return parts_.serial; }        ///< by which handles know their model
 
+  /// Bodies, joints and forces as they are stored, by types.
   BodyPools const& body_pools() const { return bodies_; }
-  JointPools const& joint_pools() const { return joints_; }
-  ForcePools const& force_pools() const { return forces_; }
-  Sequence<detail::GroundMarker> const& ground_markers() const { return parts_.ground; }
+  JointPools const& joint_pools() const { return joints_; }                               ///< see `body_pools`
+  ForcePools const& force_pools() const { return forces_; }                               ///< see `body_pools`
+  Sequence<detail::GroundMarker> const& ground_markers() const { return parts_.ground; }  ///< markers on the ground
+  /// Rows of joints that are linear in coordinates.
   Sequence<LinearRows> const& linear_rows() const { return parts_.linear_rows; }
 
   /// \throws InvalidInput when the handle is of another model, or made by default.
@@ -160,11 +166,13 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     require_own(handle);
     return std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(handle.index)];
   }
+  /// A joint as it is stored. \throws InvalidInput as above.
   template <OneOf<Js...> J>
   auto const& entry(ElementHandle<J> const& handle) const {
     require_own(handle);
     return std::get<Sequence<detail::JointEntry<J>>>(joints_)[std::size_t(handle.index)];
   }
+  /// A force element as it is stored. \throws InvalidInput as above.
   template <OneOf<Fs...> F>
   auto const& entry(ElementHandle<F> const& handle) const {
     require_own(handle);
@@ -175,10 +183,12 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   void for_each_body(F&& f) const {
     std::apply([&](auto const&... pool) { (for_each_in(pool.entries, f), ...); }, bodies_);
   }
+  /// Calls f(entry) for every joint, in the order of the types.
   template <class F>
   void for_each_joint(F&& f) const {
     std::apply([&](auto const&... pool) { (for_each_in(pool, f), ...); }, joints_);
   }
+  /// Calls f(entry) for every force element, in the order of the types.
   template <class F>
   void for_each_force(F&& f) const {
     std::apply([&](auto const&... pool) { (for_each_in(pool, f), ...); }, forces_);

@@ -136,9 +136,10 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
 /// The entries of model type M for the groups `wanted`.
 template <class... Bs, class... Js, class... Fs, StateScalar T, Entries wanted>
 struct EntriesOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> {
-  using M = Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>;
-  using Loops = detail::ModelLoops<M, T>;
+  using M = Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>;  ///< the model's type
+  using Loops = detail::ModelLoops<M, T>;                        ///< the functions of its table
 
+  /// The table at compile time: functions of groups that are not wanted stay null.
   static constexpr ModelEntries<T> make() {
     ModelEntries<T> out{.publish = &Loops::publish,
                         .measure_gaps = &Loops::measure_gaps,
@@ -151,7 +152,8 @@ struct EntriesOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> 
     if constexpr (std::same_as<T, double>) add_for_numbers(out);
     return out;
   }
-  static constexpr ModelEntries<T> table = make();
+  static constexpr ModelEntries<T> table = make();  ///< the table
+  /// Scratch for a model, laid out once.
   static Data<T> make_data(M const& model) { return detail::DataMaker<M, T>::make(model); }
 
  private:

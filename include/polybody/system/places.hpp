@@ -57,8 +57,8 @@ Index index_of_force(ModelLayout const& layout, ElementHandle<F> const& handle) 
 /// A body with its own coordinates and speeds in a state; it refers to both.
 template <class B>
 struct BodyInState {
-  B const& body;
-  std::span<double const> q, v;
+  B const& body;                 ///< in the model
+  std::span<double const> q, v;  ///< its own coordinates and speeds, in the state
 };
 
 namespace detail {

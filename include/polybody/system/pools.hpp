@@ -26,9 +26,9 @@ struct Forces {};
 /// Handle of a joint or a force element in a model. One made by default names nothing and is refused.
 template <class Element>
 struct ElementHandle {
-  std::uint64_t model = 0;
-  Index index = 0;
-  std::string name = {};
+  std::uint64_t model = 0;  ///< the model's serial number; 0: none
+  Index index = 0;          ///< among the joints or forces of its type
+  std::string name = {};    ///< its name in messages
 };
 
 namespace detail {

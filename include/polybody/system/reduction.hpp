@@ -35,11 +35,11 @@ class ReductionOf {
     number_rows(gone, model.velocity_rows());
   }
 
-  Index coordinates() const { return coordinates_; }
-  Index speeds() const { return speeds_; }
-  Index rows() const { return Index(rows_.size()); }
-  JointTreeOf<T> const& tree() const { return tree_; }
-  LinearEliminationOf<T> const& linear() const { return linear_; }
+  Index coordinates() const { return coordinates_; }                ///< nq of narrow vectors
+  Index speeds() const { return speeds_; }                          ///< nv of narrow vectors
+  Index rows() const { return Index(rows_.size()); }                ///< rows that stay
+  JointTreeOf<T> const& tree() const { return tree_; }              ///< bodies that recursive joints carry
+  LinearEliminationOf<T> const& linear() const { return linear_; }  ///< coordinates that linear joints eliminate
   /// In the order in which `for_each_body` goes.
   Sequence<NarrowPlace> const& places() const { return places_; }
   /// Rows that stay, by their number in the model.
@@ -55,19 +55,24 @@ class ReductionOf {
   void expand_coordinates(VecX const& narrow, VecX& whole) const {
     for (auto const& [n, w] : same_q_) whole[w] = narrow[n];
   }
+  /// Coordinates that are the same in both, whole to narrow.
   void reduce_coordinates(VecX const& whole, VecX& narrow) const {
     for (auto const& [n, w] : same_q_) narrow[n] = whole[w];
   }
+  /// Speeds that are the same in both, narrow to whole.
   void expand_speeds(VecX const& narrow, VecX& whole) const {
     for (auto const& [n, w] : same_v_) whole[w] = narrow[n];
   }
+  /// Speeds that are the same in both, whole to narrow.
   void reduce_speeds(VecX const& whole, VecX& narrow) const {
     for (auto const& [n, w] : same_v_) narrow[n] = whole[w];
   }
+  /// Whole multipliers from narrow ones: zero in rows that a policy eliminates.
   void expand_rows(VecX const& narrow, VecX& whole) const {
     whole.setZero();
     for (std::size_t i = 0; i < rows_.size(); ++i) whole[rows_[i]] = narrow[Index(i)];
   }
+  /// The rows that stay, out of whole ones.
   void reduce_rows(VecX const& whole, VecX& narrow) const {
     for (std::size_t i = 0; i < rows_.size(); ++i) narrow[Index(i)] = whole[rows_[i]];
   }

@@ -28,15 +28,15 @@ enum class RowSource : unsigned char {
 /// Up to six rows of one source: ġ = a.map · (twist or speeds of a) + b.map · (…) + rate. A linear joint may have more.
 template <StateScalar T = double>
 struct RowBlock {
-  RowSource source = RowSource::joint;
-  Index row = -1;     ///< first row of the model; −1 for a compliant joint
-  int rows = 0;       ///< m
-  int positions = 0;  ///< of a linear joint: its first rows, which are those of the position
-  Index owner = 0;    ///< the body or the joint, by its place in the model's layout
-  RowEnd<T> a = {}, b = {};
-  T const* g = nullptr;       ///< (m) violation
-  T const* rate = nullptr;    ///< (m) Φ_t; null where rows do not know time
-  T const* answer = nullptr;  ///< (m) λ(g, ġ) of a compliant joint
+  RowSource source = RowSource::joint;  ///< who brings them
+  Index row = -1;                       ///< first row of the model; −1 for a compliant joint
+  int rows = 0;                         ///< m
+  int positions = 0;                    ///< of a linear joint: its first rows, which are those of the position
+  Index owner = 0;                      ///< the body or the joint, by its place in the model's layout
+  RowEnd<T> a = {}, b = {};             ///< its two ends
+  T const* g = nullptr;                 ///< (m) violation
+  T const* rate = nullptr;              ///< (m) Φ_t; null where rows do not know time
+  T const* answer = nullptr;            ///< (m) λ(g, ġ) of a compliant joint
 
   /// λ (m): the multipliers of the rows, or what the joint's policy answers.
   T const* multiplier(VecXOf<T> const& lambda) const { return row >= 0 ? lambda.data() + row : answer; }

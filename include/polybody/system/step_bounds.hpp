@@ -14,14 +14,14 @@ namespace polybody {
 
 /// How far a step may go; an infinite limit switches its check off.
 struct StepLimits {
-  double violation = 0.1;  ///< |Φ| of a row, beside the extent of the markers and beside one
-  double energy = 100.0;   ///< gained, beside what explains it
+  double violation = 0.1;  ///< |Φ| of a row, relative to the extent of the markers and to one
+  double energy = 100.0;   ///< gained, relative to what explains it
 };
 
 /// The end of a step of length h, before it is accepted.
 struct StepEnd {
-  VecX const &q, &v, &lambda;
-  double t, h;
+  VecX const &q, &v, &lambda;  ///< q (nq), v (nv), λ (rows) there
+  double t, h;                 ///< its time [s], its length [s]
 };
 
 /// The limits of a run, with the account of what may have changed its energy E = T + V since the last start:
@@ -34,9 +34,9 @@ class StepBounds {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
   struct Account {
-    double open = never;    ///< the limit for |Φ|
+    double open = never;    ///< the limit for |Φ|, in the unit of the row: [m], or a cosine
     double energy = never;  ///< the limit, a factor
-    double judged = never;  ///< Σ v² beyond which the energy is looked at
+    double judged = never;  ///< Σ v² beyond which the energy is looked at: a factor of that of the start
     double worked = 0.0;    ///< ∫|power| dt [J]
     Energy start;           ///< E₀
     double began = 0.0;     ///< at this time [s]
@@ -61,12 +61,13 @@ class StepBounds {
   /// Puts the account back as it was, unless what is tried is kept.
   class Trial {
    public:
+    /// Remembers the account as it is.
     explicit Trial(StepBounds& bounds) : bounds_(bounds), before_(bounds.account_) {}
     Trial(Trial const&) = delete;
     ~Trial() {
       if (!kept_) bounds_.account_ = before_;
     }
-    void keep() { kept_ = true; }
+    void keep() { kept_ = true; }  ///< what is tried counts
 
    private:
     StepBounds& bounds_;

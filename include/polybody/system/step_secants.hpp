@@ -10,20 +10,22 @@ namespace polybody {
 
 /// A step of length h from q0 at t to q1; `decay` as in `StepMeans`.
 struct SecantStep {
-  VecX const* q0 = nullptr;
-  VecX const* q1 = nullptr;
-  double t = 0.0, h = 0.0, decay = 0.0;
-  VecX const* v0 = nullptr;  ///< the first-order states behind the speeds at t
-  VecX const* a = nullptr;   ///< and their rates over the step
+  VecX const* q0 = nullptr;              ///< (nq) coordinates at its begin
+  VecX const* q1 = nullptr;              ///< (nq) coordinates at its end
+  double t = 0.0, h = 0.0, decay = 0.0;  ///< t [s], h [s], and the factor of lost strain energy
+  VecX const* v0 = nullptr;              ///< the first-order states behind the speeds at t
+  VecX const* a = nullptr;               ///< and their rates over the step
 };
 
 /// A model's entries for such steps; `self` is what `make` made.
 struct SecantEntries {
+  /// Room for a model's secants.
   std::shared_ptr<void> (*make)(void const* m, Data<double> const& data);
-  void (*evaluate)(void* self, SecantStep const& step);
+  void (*evaluate)(void* self, SecantStep const& step);  ///< takes the step
+  /// r = M a − f + Ḡᵀλ over the step.
   void (*residual)(void* self, Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r);
-  void (*violation)(void* self, VecX& phi);
-  void (*tangent)(void* self, double scale, BlockSink& sink);
+  void (*violation)(void* self, VecX& phi);                    ///< Φ(q₁)
+  void (*tangent)(void* self, double scale, BlockSink& sink);  ///< [M + scale K̄, Ḡᵀ; Ḡ, 0]
 };
 
 /// Mean forces, rows and tangents over a step, for methods that conserve energy.

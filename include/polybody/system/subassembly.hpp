@@ -18,6 +18,7 @@ class Subassembly;
 template <Body... Bs, class... Js, AppliedForce... Fs>
 class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
+  /// Adds to `model`, which must have all types of the subassembly.
   template <class AllBodies, class AllJoints, class AllForces>
   explicit Subassembly(Model<AllBodies, AllJoints, AllForces>& model)
       : parts_(model.parts_),
@@ -31,7 +32,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return detail::add_body(parts_, pool_of<B>(), body, std::move(name));
   }
 
-  BodyHandle<Ground> ground() const { return {parts_.serial, 0, "ground"}; }
+  BodyHandle<Ground> ground() const { return {parts_.serial, 0, "ground"}; }  ///< the model's
 
   /// As `Model::connect`.
   template <OneOf<Js...> J, class A, class B>

@@ -14,61 +14,62 @@ namespace polybody {
 /// A joint of one turn x in constants: in the parent's axes n, and in space the quaternion from the parent's axes to
 /// the body's, still cos(x/2) + turning sin(x/2).
 struct JointTurn {
-  bool only = false;  ///< the joint is of this kind
-  Vec<double, 3> axis{0, 0, 0};
-  Vec<double, 4> still{1, 0, 0, 0}, turning{0, 0, 0, 0};
+  bool only = false;                                      ///< the joint is of this kind
+  Vec<double, 3> axis{0, 0, 0};                           ///< n, unit vector in the parent's axes
+  Vec<double, 4> still{1, 0, 0, 0}, turning{0, 0, 0, 0};  ///< quaternions of the turn, (w, x, y, z)
 };
 
 /// A body of a tree: how its pose is written, and the joint that carries it.
 struct TreeBody {
-  std::string name;
-  RigidLayout layout = RigidLayout::quaternion;
-  Index q0 = 0, v0 = 0;                       ///< in whole vectors
-  Index row = -1;                             ///< first of the joint's rows; −1: a root, which nothing carries
-  Index parent = -1;                          ///< in the tree; −1: the ground
-  Placement from = {};                        ///< the joint's frame in the parent's axes
-  Placement to = {};                          ///< the joint's frame in the body's own axes
-  bool from_turned = true, to_turned = true;  ///< axes of these that are not the body's
-  JointMotions motions = {};                  ///< from frame a to frame b
-  Index from_end = -1, to_end = -1;           ///< in the tree's floating ends, for frames on bodies that deform
-  Index deformations = 0;                     ///< coordinates of the body behind those of its frame
-  JointTurn turn = {};                        ///< of a joint of one turn between rigid bodies
-  bool backwards = false;                     ///< frame b is the parent's
-  double angle = 0.0;                         ///< in the plane: its turn against the parent in the reference
-  bool by_newton_euler = false;               ///< nothing but weight and its inertia moves it where nothing acts
-  double mass = 0.0;
-  Mat3 inertia = Mat3::Zero();  ///< about the centre of mass, in the body's own axes
-  Index qn = 0, vn = 0;         ///< in narrow vectors
+  std::string name;                              ///< its name in messages
+  RigidLayout layout = RigidLayout::quaternion;  ///< how its coordinates are written
+  Index q0 = 0, v0 = 0;                          ///< in whole vectors
+  Index row = -1;                                ///< first of the joint's rows; −1: a root, which nothing carries
+  Index parent = -1;                             ///< in the tree; −1: the ground
+  Placement from = {};                           ///< the joint's frame in the parent's axes
+  Placement to = {};                             ///< the joint's frame in the body's own axes
+  bool from_turned = true, to_turned = true;     ///< axes of these that are not the body's
+  JointMotions motions = {};                     ///< from frame a to frame b
+  Index from_end = -1, to_end = -1;              ///< in the tree's floating ends, for frames on bodies that deform
+  Index deformations = 0;                        ///< coordinates of the body behind those of its frame
+  JointTurn turn = {};                           ///< of a joint of one turn between rigid bodies
+  bool backwards = false;                        ///< frame b is the parent's
+  double angle = 0.0;            ///< in the plane: its turn relative to the parent in the reference [rad]
+  bool by_newton_euler = false;  ///< nothing but weight and its inertia moves it where nothing acts
+  double mass = 0.0;             ///< [kg]
+  Mat3 inertia = Mat3::Zero();   ///< about the centre of mass, in the body's own axes
+  Index qn = 0, vn = 0;          ///< in narrow vectors
 
+  /// Whether a joint carries it; else it is a root.
   bool carried() const { return row >= 0; }
 };
 
 /// Where a body of a tree is and how it may move.
 template <class T>
 struct TreeFrameOf {
-  Vec<T, 3> r{0, 0, 0}, v{0, 0, 0}, w{0, 0, 0}, arm{0, 0, 0};
-  Mat<T, 3, 3> A = identity<T>();
-  Vec<T, 4> rotation{1, 0, 0, 0};  ///< unit quaternion of A; in space only
-  T angle = 0.0;
-  int speeds = 0;
-  Mat<T, 6, 6> s = detail::zeros<Mat<T, 6, 6>>();        ///< S = [S_r; S_ω] by columns
-  Mat<T, 6, 6> inverse = detail::zeros<Mat<T, 6, 6>>();  ///< (SᵀS)⁻¹
-  Vec<T, 6> bias = detail::zeros<Vec<T, 6>>();           ///< [b_r; b_ω]
+  Vec<T, 3> r{0, 0, 0}, v{0, 0, 0}, w{0, 0, 0}, arm{0, 0, 0};  ///< origin [m], ṙ [m/s], ω [rad/s], D [m]; world axes
+  Mat<T, 3, 3> A = identity<T>();                              ///< its axes (3×3) in world axes
+  Vec<T, 4> rotation{1, 0, 0, 0};                              ///< unit quaternion of A; in space only
+  T angle = 0.0;                                               ///< of the plane: the turn of A [rad]
+  int speeds = 0;                                              ///< how many its joint has: columns of S
+  Mat<T, 6, 6> s = detail::zeros<Mat<T, 6, 6>>();              ///< S = [S_r; S_ω] by columns
+  Mat<T, 6, 6> inverse = detail::zeros<Mat<T, 6, 6>>();        ///< (SᵀS)⁻¹
+  Vec<T, 6> bias = detail::zeros<Vec<T, 6>>();                 ///< [b_r; b_ω]
 
-  T* column(int k) { return s.data() + 6 * k; }
-  T const* column(int k) const { return s.data() + 6 * k; }
+  T* column(int k) { return s.data() + 6 * k; }              ///< column k of S
+  T const* column(int k) const { return s.data() + 6 * k; }  ///< column k of S
 };
 using TreeFrame = TreeFrameOf<double>;  ///< in doubles
 
 /// Scratch of a tree.
 template <class T>
 struct TreeStateOf {
-  Sequence<TreeFrameOf<T>> frames;
-  Sequence<Vec<T, 6>> twists;
-  Sequence<Vec<T, 6>> held;     ///< as of the last `reduce_forces`: the wrench [f; m] about its frame's origin with
-                                ///< which a body and all that it carries are out of balance, which its joint holds
-  Sequence<Vec<T, 6>> columns;  ///< of the floating ends: what each deformation moves of the carried body
-  Sequence<T> q, v, jacobian;   ///< scratch of the floating ends
+  Sequence<TreeFrameOf<T>> frames;  ///< of each body
+  Sequence<Vec<T, 6>> twists;       ///< scratch: a twist, wrench or rate of each body
+  Sequence<Vec<T, 6>> held;         ///< as of the last `reduce_forces`: the wrench [f; m] about its frame's origin with
+                                    ///< which a body and all that it carries are out of balance, which its joint holds
+  Sequence<Vec<T, 6>> columns;      ///< of the floating ends: what each deformation moves of the carried body
+  Sequence<T> q, v, jacobian;       ///< scratch of the floating ends
 };
 using TreeState = TreeStateOf<double>;  ///< in doubles
 
