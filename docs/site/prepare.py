@@ -46,7 +46,7 @@ def each_with_its_comment(line, comment=None):
     found = SEVERAL.match(line)
     if not found or len(parts) < 2 or found[2].split()[0] in ("return", "using", "friend", "typedef", "throw", "case"):
         return None
-    first = re.match(r"^(\s*)(.*?[\w>&*])(?<!const)\s+((?:const )?[&*]?\w+\s*(?:=.*|\{.*|\[.*)?)$", parts[0])
+    first = re.match(r"^(\s*)(.*?[\w>&*])\s+([&*]?\w+\s*(?:=.*|\{.*|\[.*)?)$", parts[0])
     if not first or not all(re.match(r"^\s*[&*]?\w+\s*($|=|\{|\[)", p) for p in parts[1:]):
         return None
     text = comment or found[4]
@@ -55,13 +55,15 @@ def each_with_its_comment(line, comment=None):
 
 
 def asked_by_concepts():
-    """What docs/extending.md says of each member in its tables: {(name, whether it is a function): text}."""
-    said = {}
-    for cell, text in MEMBER_ROW.findall((ROOT / "docs/extending.md").read_text(encoding="utf-8")):
-        names = [re.sub(r"[<(].*", "", part) for part in re.findall(r"`([^`]+)`", cell)]
-        for name in names:
-            if re.fullmatch(r"\w+", name) and text.strip():
-                said.setdefault((name, "(" in cell), text.strip())
+    """What docs/extending.md says of each member in its tables: {(name, whether it is a function): text}, apart for solvers."""
+    said = {"": {}, "solvers": {}}
+    for section in re.split(r"^## ", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), flags=re.M):
+        own = said["solvers" if section.startswith("A linear solver") else ""]
+        for cell, text in MEMBER_ROW.findall(section):
+            names = [re.sub(r"[<(].*", "", part) for part in re.findall(r"`([^`]+)`", cell)]
+            for name in names:
+                if re.fullmatch(r"\w+", name) and text.strip():
+                    own.setdefault((name, "(" in cell), text.strip())
     return said
 
 
@@ -93,6 +95,8 @@ def header(name, text):
     text = re.sub(r"^template <[^\n]*>\nstruct Eigen::.*?^\};$", lambda m: "\n" * m[0].count("\n"), text, flags=re.M | re.S)
     lines = text.split("\n")
     waiting = WAITING.get(name, {})
+    folder = name.split("/")[2]
+    asked = ASKED["solvers" if folder == "solvers" else ""]
     for i, line in enumerate(lines):
         if "///<" in line and "," in line:
             lines[i] = each_with_its_comment(line) or line
@@ -101,8 +105,8 @@ def header(name, text):
                 lines[i - 1 : i + 1] = "", each
         for member in waiting.get(i + 1, ()):
             is_function = bool(re.search(rf"\b{re.escape(member)}\(", lines[i]))
-            text_of_it = ASKED.get((member, is_function))
-            if text_of_it and name.split("/")[2] in OF_CONCEPTS and (is_function or "static constexpr" in lines[i]):
+            text_of_it = asked.get((member, is_function))
+            if text_of_it and folder in OF_CONCEPTS and (is_function or "static constexpr" in lines[i]):
                 place = i
                 while place > 0 and re.match(r"\s*(template|requires)\b", lines[place - 1]) and not lines[place - 1].rstrip().endswith(";"):
                     place -= 1
@@ -125,7 +129,7 @@ def undocumented():
 
 
 ASKED = asked_by_concepts()
-OF_CONCEPTS = ("bodies", "joints", "forces", "integrators", "math", "vehicle", "testing")  # the folders of types that are bodies, joints, ...
+OF_CONCEPTS = ("bodies", "joints", "forces", "integrators", "math", "solvers", "vehicle", "testing")  # the folders of types that are bodies, joints, ...
 WAITING = undocumented()
 
 

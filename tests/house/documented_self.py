@@ -48,6 +48,8 @@ split = prepare.each_with_its_comment
 require(split("  Vec<T, 3> a{}, b = f(1, 2);  ///< (3) [m]") == "  Vec<T, 3> a{}; /**< (3) [m] */ Vec<T, 3> b = f(1, 2); /**< (3) [m] */", "a list is not taken apart")
 require(split("  T a, b;  ///< [m]") == "  T a; /**< [m] */ T b; /**< [m] */", "a type of one letter is not taken apart")
 require(split("  double a = f(1, 2);  ///< [m]") is None, "one name is taken apart")
+require(split("  VecX const &q, &v;  ///< x, y [m]") == "  VecX const &q; /**< x, y [m] */ VecX const &v; /**< x, y [m] */", "references lose their comment or their type")
+require(split("  T s[6], w;  ///< x, y [m]") == "  T s[6]; /**< x, y [m] */ T w; /**< x, y [m] */", "members of a type of one letter lose their comment")
 page = prepare.page(prepare.ROOT / "docs/guide/speed.md", "# Speed\n\n[a](../joints.md#policies) `[b](c.md)` [d](../../README.md)\n\n```cpp\n# x\n```\n")
 require(page.startswith("# Speed {#guide_speed}\n\n\\ref page_joints_policies \"a\" `[b](c.md)` d\n"), "links of a page stay as they are")
 require("\n# x\n" in page, "a line of code is taken for a heading")

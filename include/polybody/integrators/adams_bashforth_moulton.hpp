@@ -24,8 +24,8 @@ struct AdamsBashforthMoulton {
   double relative_tolerance = 1e-8;   ///< relative to the size of what is integrated
   double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
   double smallest_step = 1e-12;       ///< that may be chosen [s]
-  int max_order = order;
-  Stabilisation stabilisation = {};
+  int max_order = order;              ///< the highest that may be chosen, in [1, 12]
+  Stabilisation stabilisation = {};   ///< how a step keeps to the rows
 
   /// \throws InvalidInput for tolerances and steps that are not positive, or a highest order outside [1, 12].
   void check() const {
@@ -40,13 +40,14 @@ struct AdamsBashforthMoulton {
   /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace {
-    VecX y, f, correction;  ///< of (q, v)
-    VecX raw, q, v, a, lambda, zero;
-    VecXOf<Dual<1>> dual;  ///< room for the rates of coordinates
-    VecX q_rate;
-    ForwardDynamics<Solver> forward;
-    typename Stabilisation::Scratch scratch;
+    VecX y, f, correction;                    ///< of (q, v)
+    VecX raw, q, v, a, lambda, zero;          ///< scratch: q of y before ⊞ 0; q, v, v̇ and λ of the step; zero (nv)
+    VecXOf<Dual<1>> dual;                     ///< room for the rates of coordinates
+    VecX q_rate;                              ///< q˙ (nq)
+    ForwardDynamics<Solver> forward;          ///< accelerations, by the mass matrix
+    typename Stabilisation::Scratch scratch;  ///< memory of the stabilisation
 
+    /// Allocates all of it.
     explicit Workspace(System& s)
         : y(VecX::Zero(s.coordinates() + s.speeds())),
           f(y),
@@ -150,7 +151,7 @@ struct AdamsBashforthMoulton {
  private:
   /// Errors over the tolerance at orders k − 2, k − 1, k and k + 1; infinite where the past does not reach that far.
   struct Errors {
-    double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;
+    double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;  ///< relative to the tolerance
     /// The lower orders do as well [Shampine & Gordon 1975].
     bool prefer_lower(int k) const {
       return k > 2 ? std::max(two_below, below) <= here : k == 2 && below <= 0.5 * here;
@@ -160,7 +161,7 @@ struct AdamsBashforthMoulton {
   /// A step of length h at order k, with the weights of its differences and the ages of the `known` points before it.
   struct Trial {
     std::array<double, order + 2> const &c, &age;
-    double h;
+    double h;  ///< [s]
     int k, known;
     Index states;  ///< first-order ones, the last of y
   };

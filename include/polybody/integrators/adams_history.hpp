@@ -27,9 +27,13 @@ class AdamsHistory {
       throw InvalidInput("This state has no memory of a run: call start before step.");
   }
 
+  /// D_j (n entries), j ≤ 12.
   double* difference(int j) const { return memory_.data() + j * n_; }
+  /// How many points are known, the present one among them: 1 to 13, as a number of the memory.
   double& known() const { return memory_[memory_.size() - 3]; }
+  /// The order k of the next step.
   double& order() const { return memory_[memory_.size() - 2]; }
+  /// One while the order still rises from the start, else zero.
   double& rising() const { return memory_[memory_.size() - 1]; }
 
   /// t₀ − t₋ⱼ for j < `known`, 0 beyond.

@@ -26,25 +26,27 @@ namespace polybody {
 
 /// A member of the family: its coefficients, and how Newton's method is to solve its steps.
 struct AlphaMethod {
-  char const* name;
-  double alpha_m, alpha_f, gamma, beta;
-  double tolerance;
-  NewtonOptions newton;
-  bool start_correction;
-  bool second_order_terms;
-  bool stabilised;
+  char const* name;                      ///< the integrator's name in messages
+  double alpha_m, alpha_f, gamma, beta;  ///< the four coefficients, shares of a step
+  double tolerance;                      ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton;                  ///< how Newton's method solves a step
+  bool start_correction;    ///< multipliers of second order from the first step on, and across changes of h
+  bool second_order_terms;  ///< ∂(Gᵀλ)/∂q is in the tangent from the start
+  bool stabilised;          ///< the rows of the speeds are kept, too, by μ
 
   /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace : AlphaVectors {
-    StepTangent<SolverOfSteps<Solver>> tangent;
-    ForwardDynamics<Solver> forward;
-    KeptFactor kept_factor;
-    double h_factored = 0.0;
+    StepTangent<SolverOfSteps<Solver>> tangent;  ///< the tangent of a step and its solver
+    ForwardDynamics<Solver> forward;             ///< [M, Gᵀ; G, 0]: accelerations of the start, μ
+    KeptFactor kept_factor;                      ///< whether the tangent's factors still serve
+    double h_factored = 0.0;                     ///< length of step for which the tangent was factored [s]
 
+    /// Allocates all but the solver of second-order terms.
     explicit Workspace(System& s)
         : AlphaVectors(s.coordinates(), s.speeds(), s.rows(), multipliers_of(s), s.layout().states), forward(s) {}
 
+    /// The solver of the tangent as it is now, with second-order terms or without.
     TangentSolver<SolverOfSteps<Solver>>& solver() { return tangent.solver(); }
   };
 
@@ -171,7 +173,7 @@ struct AlphaMethod {
     System& system;
     State& x;
     Workspace<Solver>& w;
-    double h, look_ahead;
+    double h, look_ahead;  ///< h [s]; the share of its expected life by which a factorisation is made ahead
     bool two_sets, holds_anew, stand_ins;
     Index bad = -1;
 

@@ -5,13 +5,14 @@ namespace polybody {
 
 /// What a step of the family computes with, of whatever model.
 struct AlphaVectors {
-  VecX v0, a0;  ///< speeds and algorithmic acceleration from which the step sets out
-  VecX q, v, vd, a, dq, r, phi, jerk, ahead;
-  VecX lambda, rhs, y;    ///< of all multipliers that the step keeps; `phi` is of its rows
+  VecX v0, a0;                                ///< speeds and algorithmic acceleration from which the step sets out
+  VecX q, v, vd, a, dq, r, phi, jerk, ahead;  ///< q, v, v̇, a, Δq, r, Φ; q⃛; a Δq elsewhere
+  VecX lambda, rhs, y;                        ///< of all multipliers that the step keeps; `phi` is of its rows
   VecX back, rate, open;  ///< of a stabilised step: what μ moves, a vector by rows, and rows before μ answers them
   VecX kept, kept_back;   ///< corrections while others are looked at
   Index states;           ///< first-order ones, the last of the speeds
 
+  /// Zeros, as many as a system has coordinates, speeds, rows, multipliers that a step keeps, and first-order states.
   AlphaVectors(Index coordinates, Index speeds, Index rows, Index multipliers, Index first_order)
       : v0(VecX::Zero(speeds)),
         a0(v0),

@@ -15,13 +15,13 @@ struct CentralDifference {
   static constexpr double stable_to = 2.0;  ///< ωh, a ratio
   static double stable_step(double omega, double rate) { return stable_step_of_verlet(omega, rate); }
 
-  Stabilisation stabilisation = {};
+  Stabilisation stabilisation = {};  ///< how a step keeps to the rows
 
   /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace : detail::ExplicitStep<Solver> {
-    typename Stabilisation::Scratch scratch;
-    explicit Workspace(System& s) : detail::ExplicitStep<Solver>(s), scratch(s) {}
+    typename Stabilisation::Scratch scratch;                                        ///< memory of the stabilisation
+    explicit Workspace(System& s) : detail::ExplicitStep<Solver>(s), scratch(s) {}  ///< allocates all of it
   };
 
   void check() const { stabilisation.check(); }

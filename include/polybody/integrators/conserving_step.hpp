@@ -23,24 +23,25 @@ namespace polybody {
 /// A member of the family. `State::a` and `State::lambda` after a step belong to the middle of it; with χ = 0, λ
 /// alternates by O(h) about the reaction, and the mean of two steps is right to O(h²).
 struct ConservingStep {
-  char const* name;
-  double chi;
-  double tolerance;
-  NewtonOptions newton;
+  char const* name;      ///< the integrator's name in messages
+  double chi;            ///< χ, a share of the step: 0 keeps energy, ½ loses most
+  double tolerance;      ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton;  ///< how Newton's method solves a step
 
   /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace {
-    VecX q, v, vd, lambda, r, phi, rhs, y, kept;
-    VecX other_vd, other_lambda;  ///< where the second try ended, while the third looks for less change
-    StepSecants secants;
-    TangentSolver<SolverOfSteps<Solver>> solver;
+    VecX q, v, vd, lambda, r, phi, rhs, y, kept;  ///< q, v, v̇, λ, r, Φ; −(r, Φ); a correction; another one
+    VecX other_vd, other_lambda;                  ///< where the second try ended, while the third looks for less change
+    StepSecants secants;                          ///< mean forces and rows of the step
+    TangentSolver<SolverOfSteps<Solver>> solver;  ///< of their tangent
     TangentSolver<SolverOfSteps<UnsymmetricSolver<Solver>>> exact;  ///< laid out by the first step that asks for it
-    ForwardDynamics<Solver> forward;
-    KeptFactor kept_factor;
-    bool has_exact = false;
-    double h_factored = 0.0;
+    ForwardDynamics<Solver> forward;                                ///< [M, Gᵀ; G, 0]: accelerations of the start
+    KeptFactor kept_factor;                                         ///< whether the tangent's factors still serve
+    bool has_exact = false;                                         ///< `exact` has been laid out
+    double h_factored = 0.0;  ///< length of step for which the tangent was factored [s]
 
+    /// Allocates all but `exact`.
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           v(VecX::Zero(s.speeds())),
@@ -96,7 +97,7 @@ struct ConservingStep {
     System& system;
     State const& x;
     Workspace<Solver>& w;
-    double h, s;
+    double h, s;  ///< h [s]; s of the tangent M + s K̄ [s²]
     Index nv, rows;
     bool exact;
     Index bad = -1;

@@ -20,8 +20,8 @@ namespace polybody {
 /// at anew.
 struct CoordinatePartitioning {
   static constexpr bool accepts_rows = true;
-  double tolerance = 1e-12;  ///< of Φ, beside what rounding of q leaves
-  int max_iterations = 10;
+  double tolerance = 1e-12;     ///< of Φ, beside what rounding of q leaves
+  int max_iterations = 10;      ///< of Newton's method for the positions, before it throws
   double largest_ratio = 10.0;  ///< of the rate of a dependent coordinate to that of an independent one
   int dense_up_to = 60;         ///< speeds
 
@@ -29,9 +29,10 @@ struct CoordinatePartitioning {
   struct Scratch {
     PartitionedRows rows{0, 0};      ///< of positions; where there are no velocity rows, of speeds too
     PartitionedRows all_rows{0, 0};  ///< of speeds where there are
-    SparsePartitionOf<> sparse_rows, sparse_all_rows;
-    VecX phi, rate, column, delta, next;
-    bool sparse = false, prepared = false;
+    SparsePartitionOf<> sparse_rows, sparse_all_rows;  ///< the same splits where G is sparse
+    VecX phi, rate, column, delta, next;               ///< Φ, Φ̇, G's column, Δq or Δv, q ⊞ Δq
+    bool sparse = false, prepared = false;             ///< G is sparse; the choice between the two was made
+    /// Allocates what both ways need.
     explicit Scratch(System const& s)
         : sparse_rows(s.rows(), s.speeds()),
           sparse_all_rows(s.rows(), s.speeds()),
@@ -43,6 +44,7 @@ struct CoordinatePartitioning {
           splits_speeds_(!s.velocity_rows().empty()) {
       for (Index const i : s.velocity_rows()) sparse_rows.leave_out(i);
     }
+    /// Chooses dense or sparse by the number of speeds, once, and allocates what that needs.
     void prepare(int most_dense) {
       if (std::exchange(prepared, true)) return;
       sparse = delta.size() > most_dense;
@@ -50,7 +52,8 @@ struct CoordinatePartitioning {
       rows = PartitionedRows(phi.size(), delta.size());
       if (splits_speeds_) all_rows = rows;
     }
-    PartitionedRows& of_speeds() { return splits_speeds_ ? all_rows : rows; }
+    PartitionedRows& of_speeds() { return splits_speeds_ ? all_rows : rows; }  ///< the split of speeds, dense
+    /// The split of speeds, sparse.
     SparsePartitionOf<>& sparse_of_speeds() { return splits_speeds_ ? sparse_all_rows : sparse_rows; }
     /// By all rows, of positions and speeds.
     bool is_dependent(Index speed) const {
@@ -193,8 +196,8 @@ struct CoordinatePartitioning {
     SparsePartitionOf<>& partition;
     System& system;
     Scratch& s;
-    double limit;
-    double before = std::numeric_limits<double>::infinity();
+    double limit;                                             ///< of |R|, a ratio
+    double before = std::numeric_limits<double>::infinity();  ///< what the last one found open, in the unit of the rows
     int renewals = 0;
 
     template <class = void>

@@ -12,8 +12,8 @@ struct EnergyMomentum {
   static constexpr bool accepts_rows = true;
   static constexpr Entries entries = Entries::implicit_step | Entries::secants;
 
-  double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {.max_iterations = 50};
+  double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {.max_iterations = 50};  ///< how Newton's method solves a step
 
   /// \throws InvalidInput unless the tolerance is positive.
   void check() const {
@@ -34,9 +34,9 @@ struct EnergyDecaying {
   static constexpr bool accepts_rows = true;
   static constexpr Entries entries = Entries::implicit_step | Entries::secants;
 
-  double rho_inf = 0.9;      ///< of a mode of strain as ωh → ∞, in [0, 1]; 1 keeps energy
-  double tolerance = 1e-10;  ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {.max_iterations = 50};
+  double rho_inf = 0.9;                           ///< of a mode of strain as ωh → ∞, in [0, 1]; 1 keeps energy
+  double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {.max_iterations = 50};  ///< how Newton's method solves a step
 
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
   void check() const {

@@ -22,8 +22,9 @@ struct RowFeedback {
 
 /// How nearly the rows of a place repeat each other.
 struct RowGain {
-  double moved = 0.0;
+  double moved = 0.0;       ///< largest change of a speed by which rows open by ±1 are closed, relative to that 1
   std::size_t dropped = 0;  ///< rows that do
+  /// Whether it is a singular position beside a usual one: rows repeat others there, or moves are ten times as large.
   bool far_above(RowGain const& usual) const { return dropped > usual.dropped || moved > 10.0 * usual.moved; }
 };
 
@@ -135,6 +136,7 @@ Sequence<bool> constant_unknowns(System const& s) {
 template <LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:
+  /// Allocates all there is to be for the system, which must outlive it.
   [[gnu::cold]] explicit ForwardDynamics(System& system)
       : zero_a_(VecX::Zero(system.speeds())),
         zero_lambda_(VecX::Zero(system.rows())),
@@ -158,11 +160,13 @@ class ForwardDynamics {
   /// before it, so that a step taken again has the same bits.
   class Trial {
    public:
+    /// Remembers the account and the order of elimination as they are.
     explicit Trial(ForwardDynamics& of) : of_(of), bounds_(of.bounds), reorderings_(of.solver_.reorderings()) {}
     Trial(Trial const&) = delete;
     ~Trial() {
       if (!kept_) of_.solver_.keep_reorderings(reorderings_);
     }
+    /// What is tried counts: nothing is put back.
     void keep() {
       bounds_.keep();
       kept_ = true;
@@ -174,7 +178,7 @@ class ForwardDynamics {
     std::size_t reorderings_;
     bool kept_ = false;
   };
-  Trial attempt() { return Trial(*this); }
+  Trial attempt() { return Trial(*this); }  ///< begins to try a step
 
   /// What every step asks before it accepts its end. \throws NonFinite, Diverged.
   void require_end(System& system, StepEnd const& end) {

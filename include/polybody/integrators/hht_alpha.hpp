@@ -12,10 +12,10 @@ struct HhtAlpha {
   static constexpr bool accepts_rows = true;
   static constexpr Entries entries = Entries::implicit_step;
 
-  double alpha = -0.1;      ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
-  double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};
-  bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
+  double alpha = -0.1;           ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
+  double tolerance = 1e-8;       ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {};     ///< how Newton's method solves a step
+  bool start_correction = true;  ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too
 

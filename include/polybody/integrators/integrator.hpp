@@ -15,9 +15,9 @@ struct StepReport {
   int evaluations = 0;       ///< of the forces
   int rejected = 0;          ///< trial steps thrown away by the step control
   int order = 0;             ///< at which the step was taken, of a method that chooses it; else 0
-  double contraction = 0.0;  ///< last contraction rate of Newton's method
+  double contraction = 0.0;  ///< last contraction rate of Newton's method, a ratio
   long choices = 0;          ///< of independent coordinates since the start, by coordinate partitioning
-  double left = 0.0;         ///< correction that it ended with beside the tolerated one, at Newton's budget; else 0
+  double left = 0.0;  ///< correction that it ended with relative to the tolerated one, at Newton's budget; else 0
 };
 
 /// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +

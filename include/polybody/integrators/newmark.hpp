@@ -12,10 +12,10 @@ struct Newmark {
   static constexpr bool accepts_rows = true;
   static constexpr Entries entries = Entries::implicit_step;
 
-  double gamma = 0.5;       ///< γ, a share
-  double beta = 0.25;       ///< β, a share
-  double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};
+  double gamma = 0.5;               ///< γ, a share
+  double beta = 0.25;               ///< β, a share
+  double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {};        ///< how Newton's method solves a step
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too
 
@@ -42,8 +42,8 @@ struct Trapezoidal {
   static constexpr bool accepts_rows = true;
   static constexpr Entries entries = Entries::implicit_step;
 
-  double tolerance = 1e-8;  ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};
+  double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {};        ///< how Newton's method solves a step
   bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too

@@ -14,6 +14,7 @@ class PartitionedRows {
  public:
   static constexpr int sides = 2;  ///< right-hand sides that are carried along
 
+  /// Room for m rows and n columns; allocates.
   PartitionedRows(Index rows, Index columns)
       : rows_(rows),
         columns_(columns),
@@ -24,12 +25,14 @@ class PartitionedRows {
 
   long choices = 0;  ///< how often a split was chosen
 
-  Index rank() const { return rank_; }
+  Index rank() const { return rank_; }  ///< k, the dependent columns; −1 before a split is chosen
+  /// Whether a column is a dependent one, as the split stands.
   bool is_dependent(Index column) const { return state_[std::size_t(column)] != Column::independent; }
   /// The next `reduce` chooses anew.
   void forget() { rank_ = none; }
 
-  void begin() { std::fill(a_.begin(), a_.end(), 0.0); }
+  void begin() { std::fill(a_.begin(), a_.end(), 0.0); }  ///< all entries of G and r become zero
+  /// Adds a block of a tangent [M, Gᵀ; G, 0] whose first entry is at (row, col); only G is taken.
   void add(Index row, Index col, BlockView const& b) {
     if (row < columns_ || col >= columns_) return;
     for (Index i = 0; i < b.rows; ++i)

@@ -32,7 +32,7 @@ struct Radau {
 
   double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< many: the matrix leaves out how rows turn
-  Projection projection = {};
+  Projection projection = {};                     ///< takes away what rows drift
 
   /// \throws InvalidInput unless the tolerance is positive, and as `NewtonOptions` and `Projection`.
   void check() const {
@@ -45,18 +45,19 @@ struct Radau {
   template <class Solver>
   struct Workspace {
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
-    VecX q, r, phi, gamma, next, rhs, y, kept;
-    TangentSolver<AutoLu> solver, by_stage;  ///< `by_stage` is laid out by the first step that asks for it
-    RowSlopes slopes;
-    ForwardDynamics<Solver> forward;
-    Projection::Scratch projected;
-    KeptFactor kept_factor;
-    bool has_by_stage = false;
-    double h_factored = 0.0;
-    double unsettled = 0.0;  ///< what the last pass over the δ_i still changed
+    VecX q, r, phi, gamma, next, rhs, y, kept;  ///< q, r, G v̇, γ, δ; −(r, Φ̈) of all stages; a correction; another one
+    TangentSolver<AutoLu> solver, by_stage;     ///< `by_stage` is laid out by the first step that asks for it
+    RowSlopes slopes;                           ///< ∂/∂q and ∂/∂v of the rows as accelerations
+    ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations of the start, projections
+    Projection::Scratch projected;              ///< memory of `projection`: none
+    KeptFactor kept_factor;                     ///< whether the matrix' factors still serve
+    bool has_by_stage = false;                  ///< `by_stage` has been laid out
+    double h_factored = 0.0;                    ///< length of step for which the matrix was factored [s]; 0: of none
+    double unsettled = 0.0;                     ///< what the last pass over the δ_i still changed, in the unit of δ
     Sequence<double> slack;  ///< by stages and rows: −1 on the diagonal of a row that repeats others leaves its
                              ///< multiplier alone
 
+    /// Allocates all but `by_stage`.
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           r(VecX::Zero(s.speeds())),
@@ -255,7 +256,7 @@ struct Radau {
     System& system;
     State const& x;
     Workspace<Solver>& w;
-    double h;
+    double h;  ///< [s]
     Index nv, rows;
     bool by_stage;
     Index bad = -1;

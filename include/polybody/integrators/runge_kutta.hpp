@@ -101,7 +101,7 @@ struct RungeKutta4 {
     return lo / std::abs(s);
   }
 
-  Stabilisation stabilisation = {};
+  Stabilisation stabilisation = {};  ///< how a step keeps to the rows
 
   void check() const { stabilisation.check(); }
   template <class Solver>
@@ -136,7 +136,7 @@ struct DormandPrince {
   double relative_tolerance = 1e-8;   ///< relative to the size of what is integrated
   double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
   double smallest_step = 1e-12;       ///< that may be chosen [s]
-  Stabilisation stabilisation = {};
+  Stabilisation stabilisation = {};   ///< how a step keeps to the rows
 
   void check() const {
     require_positive(relative_tolerance, "DormandPrince: the relative tolerance");

@@ -19,23 +19,26 @@ namespace polybody {
 template <class T = double>
 class SparsePartitionOf {
  public:
-  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;
+  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;  ///< G and its parts
 
+  /// For m rows and n columns.
   SparsePartitionOf(Index rows, Index columns)
       : rows_(rows), columns_(columns), left_out_(std::size_t(rows), false), g_(rows, columns) {}
 
   long choices = 0;         ///< how often the split changed
   long factorisations = 0;  ///< of G_d
 
-  Index rank() const { return Index(dependents_.size()); }
+  Index rank() const { return Index(dependents_.size()); }  ///< k, the dependent columns
+  /// Whether a column is a dependent one, as the split stands; none is before the first split.
   bool is_dependent(Index column) const { return chosen_ && place_[std::size_t(column)] >= 0; }
   /// The largest entry of G at the last renewal; zero before.
   T largest_entry() const { return largest_entry_; }
-  bool has_factors() const { return factored_; }
+  bool has_factors() const { return factored_; }  ///< G_d has been factored since the last `forget`
   /// The next renewal chooses from nothing.
   void forget() { factored_ = chosen_ = false; }
 
-  void begin() { entries_.clear(); }
+  void begin() { entries_.clear(); }  ///< the rows are written anew
+  /// Adds a block of a tangent [M, Gᵀ; G, 0] whose first entry is at (row, col); only G is taken.
   void add(Index row, Index col, BlockView const& b) {
     if (row < columns_ || col >= columns_) return;
     for (Index i = 0; i < b.rows; ++i)

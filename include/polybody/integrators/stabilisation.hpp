@@ -27,7 +27,7 @@ long choices_of(Scratch const& scratch) {
 struct NoCorrection {
   /// Nothing is kept.
   struct Scratch {
-    explicit Scratch(System const&) {}
+    explicit Scratch(System const&) {}  ///< needs no room
   };
   void check() const {}
   void start(Scratch&) const {}
@@ -53,9 +53,9 @@ struct NoStabilisation : NoCorrection {
 /// damped, not removed, and the step must resolve 1/α.
 struct Baumgarte {
   static constexpr bool accepts_rows = true;
-  using Scratch = NoCorrection::Scratch;
-  Required<double> alpha;  ///< [1/s]
-  Required<double> beta;   ///< [1/s]
+  using Scratch = NoCorrection::Scratch;  ///< nothing is kept
+  Required<double> alpha;                 ///< [1/s]
+  Required<double> beta;                  ///< [1/s]
 
   void check() const {
     require_positive(alpha, "Baumgarte: alpha");
@@ -73,9 +73,9 @@ struct Baumgarte {
 /// by the smallest change in the norm of M [Lubich 1991; Eich-Soellner & Führer 1998, §5.3].
 struct Projection {
   static constexpr bool accepts_rows = true;
-  using Scratch = NoCorrection::Scratch;
-  double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
-  int max_iterations = 10;
+  using Scratch = NoCorrection::Scratch;  ///< nothing is kept
+  double tolerance = 1e-12;               ///< of Φ, relative to 1 + max |q|
+  int max_iterations = 10;                ///< of Gauss–Newton for the positions, before it throws
 
   void check() const {
     require_positive(tolerance, "Projection: the tolerance");

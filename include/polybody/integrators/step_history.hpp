@@ -44,6 +44,7 @@ class StepHistory {
 
   /// The method's own entries into `out` (nv).
   void own(VecX& out) const { copy(memory_.data(), nv_, out.data()); }
+  /// Length of step for which the method's own entries stand off those of the solution [s]; 0 after a start.
   double shifted() const { return memory_[memory_.size() - 1]; }
 
   /// As if a step h had ended at x and v̇ had changed at the rate `jerk` in it.

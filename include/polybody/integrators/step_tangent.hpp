@@ -24,7 +24,9 @@ class StepTangent {
     stay_ = shortest_stay;
   }
 
+  /// The solver of the tangent as it is now.
   TangentSolver<Solver>& solver() { return included_ ? second_ : first_; }
+  /// Whether the tangent has second-order terms now.
   SecondOrder terms() const { return included_ || begins_with_ ? SecondOrder::included : SecondOrder::omitted; }
 
   /// A step calls for second-order terms; \param lambda of any values.

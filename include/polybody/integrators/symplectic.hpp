@@ -59,7 +59,8 @@ struct Rattle {
   /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace : detail::ExplicitStep<Solver> {
-    VecX change, phi;
+    VecX change, phi;  ///< a correction of dq (nv); Φ (rows)
+    /// Allocates all of it.
     explicit Workspace(System& s) : detail::ExplicitStep<Solver>(s), change(this->v), phi(this->lambda) {}
   };
 

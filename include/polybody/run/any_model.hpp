@@ -27,6 +27,7 @@ inline constexpr char integrator_tag = 0;
 /// It keeps the model. Handles of the model's bodies and joints find their places in `question_system(model).layout()`.
 class AnyModel {
  public:
+  /// Compiles what is asked of M, and its steps by each of the integrators Is; keeps the model.
   template <class M, class... Is>
   AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
       : reference_(model->reference_state()), system_(&questions<M>), census_(polybody::census(*model)) {

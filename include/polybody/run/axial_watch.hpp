@@ -17,6 +17,7 @@ class AxialWatch {
  public:
   static constexpr double worth_warning = 0.05;  ///< share of the load that buckles
 
+  /// For a run from `start` to `until` [s].
   AxialWatch(System const& system, double start, double until) : every_(0.02 * (until - start)), next_(start + every_) {
     for (BodyPlace const& body : system.layout().bodies) asks_ = asks_ || body.axial_share;
   }

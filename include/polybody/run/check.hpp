@@ -19,9 +19,9 @@ namespace polybody {
 
 /// What a model is like at a state.
 struct ModelCheck {
-  Violation violation;
-  std::string most_violated = {};  ///< joint "a" or body "b", by position; empty where no row is off
-  Redundancy redundancy;
+  Violation violation;                       ///< how far its rows are off
+  std::string most_violated = {};            ///< joint "a" or body "b", by position; empty where no row is off
+  Redundancy redundancy;                     ///< rows that repeat others or contradict them
   std::vector<std::string> not_joined = {};  ///< bodies that no joint joins to the ground, in steps or at once
   double stiffest = 0.0;  ///< largest angular frequency of undamped small motions [rad/s], 0 where nothing is elastic
   std::string stiffest_at = {};  ///< the body with the most kinetic energy in it
@@ -29,8 +29,8 @@ struct ModelCheck {
 
   /// An explicit integrator and the largest step that is stable with it.
   struct StableStep {
-    std::string integrator;
-    double step;  ///< the largest that is stable without damping [s]
+    std::string integrator;  ///< its name
+    double step;             ///< the largest that is stable without damping [s]
   };
   std::vector<StableStep> stable_steps = {};  ///< of explicit integrators, where anything is elastic
 };

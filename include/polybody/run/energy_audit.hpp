@@ -40,6 +40,7 @@ Powers powers(System const& system, State const& x) {
 template <class = void>  // compiled where it is used
 class EnergyAuditOf {
  public:
+  /// An account of this model's runs, which begins with the first state.
   template <class M>
   explicit EnergyAuditOf(M const& model) : EnergyAuditOf(System(model, with<Entries::energy>)) {}
   /// \param system of the whole mechanism, made with `Entries::energy`
@@ -78,13 +79,13 @@ class EnergyAuditOf {
 
   /// Since the start [J].
   double work_of_drives() const { return work_.drives; }
-  double work_of_loads() const { return work_.loads; }
-  double work_of_gravity() const { return first_.gravity - last_.gravity; }
-  double kinetic() const { return last_.kinetic - first_.kinetic; }  ///< gained
-  double stored() const {                                            ///< in bodies, compliant joints and forces
+  double work_of_loads() const { return work_.loads; }  ///< with that of forces without a potential
+  double work_of_gravity() const { return first_.gravity - last_.gravity; }  ///< what its potential lost
+  double kinetic() const { return last_.kinetic - first_.kinetic; }          ///< gained
+  double stored() const {                                                    ///< in bodies, compliant joints and forces
     return (last_.strain - first_.strain) + (last_.joints - first_.joints) + (last_.forces - first_.forces);
   }
-  double dissipated() const { return work_.dissipated; }
+  double dissipated() const { return work_.dissipated; }  ///< in dampers and contacts, positive when lost
 
   /// What does not add up [J]: positive where the integrator loses energy.
   double unaccounted() const {
@@ -96,7 +97,7 @@ class EnergyAuditOf {
 
   /// In the last state.
   Powers const& powers() const { return powers_; }
-  Energy const& energy() const { return last_; }
+  Energy const& energy() const { return last_; }  ///< [J]
 
  private:
   void see(State const& x) {

@@ -17,15 +17,16 @@ class EventWatch {
   using Step = std::function<double(State&, double)>;
   /// A step that a run has taken.
   struct Taken {
-    State const& before;
-    double length;  ///< [s]
-    Seen const& seen;
-    Step const& again;  ///< takes another one from a state
+    State const& before;  ///< where it began
+    double length;        ///< [s]
+    Seen const& seen;     ///< makes the user's state
+    Step const& again;    ///< takes another one from a state
   };
 
   EventWatch() = default;
   /// Events that stand on these sides.
   explicit EventWatch(Sequence<int> sides) : sides_(std::move(sides)) {}
+  /// On which side of zero each event stands: −1, 0 or 1.
   Sequence<int> const& sides() const { return sides_; }
 
   /// Notes on which sides the events stand at x. \throws NonFinite.

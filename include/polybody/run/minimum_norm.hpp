@@ -13,6 +13,7 @@ namespace polybody {
 template <class = void>  // compiled where it is used
 class MinimumNormOf {
  public:
+  /// Allocates all there is to be for this system.
   explicit MinimumNormOf(System const& s) : relation_(s), weight_(VecX::Ones(s.rows())) {}
 
   /// Replaces x.lambda; one factorisation, and a solution for each row that repeats others.

@@ -22,7 +22,8 @@ struct Redundancy {
   std::vector<Share> repeated = {};
   /// Groups of joints (joint "a", joint "b", …) whose rows repeat each other but contradict: no small move closes them,
   /// no speeds and no accelerations satisfy them.
-  std::vector<std::string> in_positions = {}, in_speeds = {}, in_accelerations = {};
+  std::vector<std::string> in_positions = {}, in_speeds = {}, in_accelerations = {};  ///< one text for each group
+  /// Whether no rows contradict each other.
   bool consistent() const { return in_positions.empty() && in_speeds.empty() && in_accelerations.empty(); }
 };
 

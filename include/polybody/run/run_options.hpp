@@ -85,6 +85,7 @@ struct RunReport {
   void add_warning(std::string sentence) {
     if (!sentence.empty()) warnings.push_back(std::move(sentence));
   }
+  /// Counts the cost of a step.
   void add(StepReport const& step) {
     ++steps;
     iterations += step.iterations;

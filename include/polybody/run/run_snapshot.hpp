@@ -13,11 +13,11 @@ namespace polybody {
 /// What identifies the model of a snapshot: the numbers of its unknowns in a step, and the names of bodies, joints and
 /// forces in their order. Masses, lengths and loads are not compared.
 struct ModelIdentity {
-  Index coordinates = 0, speeds = 0, rows = 0;
+  Index coordinates = 0, speeds = 0, rows = 0;  ///< of a step, after elimination
   Index carrying_rows = 0;  ///< eliminated, of whose multipliers a step may keep estimates behind those of the rows
   std::uint64_t names = 0;  ///< checksum
 
-  bool operator==(ModelIdentity const&) const = default;
+  bool operator==(ModelIdentity const&) const = default;  ///< whether counts and names are equal
 };
 
 /// \param stepped the system that a run steps: of the model, or of the unknowns that its policies leave
@@ -35,13 +35,13 @@ ModelIdentity identity_of(System const& stepped) {
 
 /// All that a run needs to go on, except its model, integrator and options, which must be the same.
 struct RunSnapshot {
-  ModelIdentity model;
+  ModelIdentity model;     ///< whose run it is
   std::string integrator;  ///< its name
   State state;             ///< as it is stepped, with the integrator's memory: without what policies eliminate
   double step = 0.0;       ///< the next one, of an integrator that controls its step [s]
   StepRow row;             ///< of the last step
   Sequence<int> sides;     ///< of zero on which the events stand
-  RunReport report;
+  RunReport report;        ///< of the run so far
 
   /// \throws InvalidInput unless model, integrator and count of events are these.
   template <class = void>

@@ -19,7 +19,7 @@ namespace polybody {
 template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
  public:
-  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);
+  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);  ///< begins at x
 
   /// Goes on from a snapshot. \throws InvalidInput for one of another model, integrator or count of events.
   [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options,
@@ -35,7 +35,7 @@ class Simulation {
 
   State const& state() const { return *x_; }            ///< as the last step left it
   RunReport const& report() const& { return report_; }  ///< so far
-  RunReport report() && { return std::move(report_); }
+  RunReport report() && { return std::move(report_); }  ///< the report so far, moved out
   /// What is stepped: the model, or what its policies leave of it.
   System& system() { return *system_; }
   System& whole() { return whole_ ? *whole_ : *system_; }                         ///< the whole mechanism
@@ -48,19 +48,19 @@ class Simulation {
   /// Runs through the states of a simulation, one a step: `for (State const& now : simulate(…))`.
   class Iterator {
    public:
-    using value_type = State;
-    using difference_type = std::ptrdiff_t;
-    explicit Iterator(Simulation* run) : run_(run) {}
-    State const& operator*() const { return run_->state(); }
-    Iterator& operator++() {
+    using value_type = State;                                 ///< for std::input_iterator
+    using difference_type = std::ptrdiff_t;                   ///< for std::input_iterator
+    explicit Iterator(Simulation* run) : run_(run) {}         ///< of this run
+    State const& operator*() const { return run_->state(); }  ///< as the last step left it
+    /** Takes a step, or ends where the run is done. */ Iterator& operator++() {
       if (run_->done())
         finished_ = true;
       else
         run_->advance();
       return *this;
     }
-    void operator++(int) { ++*this; }
-    bool operator==(Sentinel) const { return finished_; }
+    void operator++(int) { ++*this; }                      ///< a step further
+    bool operator==(Sentinel) const { return finished_; }  ///< the run is done
 
    private:
     Simulation* run_;
@@ -71,7 +71,7 @@ class Simulation {
 
   /// To the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
   RunReport const& run() &;
-  RunReport run() && {
+  /** To the end. */ RunReport run() && {
     run();
     return std::move(report_);
   }

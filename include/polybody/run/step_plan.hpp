@@ -13,9 +13,9 @@ namespace polybody {
 /// Steps of one length in a row: they end at t₀ + k h, so that rounding does not add up.
 struct StepRow {
   double start = 0.0, length = 0.0;  ///< t₀ and h [s]
-  double count = 0.0;                ///< k
+  double count = 0.0;                ///< k, a count of the steps
 
-  double end() const { return start + count * length; }
+  double end() const { return start + count * length; }  ///< of the last step [s]
   /// The end of a step from t that took `taken` seconds. One of another length, or from elsewhere, begins a row.
   double after(double t, double taken) {
     if (t != end() || taken != length) *this = {t, taken, 0.0};
@@ -29,8 +29,8 @@ class StepPlan {
  public:
   /// The next step: where it may at most go, its length, whether it goes there, and whether a corner is there.
   struct Next {
-    double target, h;
-    bool lands, jumps;
+    double target, h;   ///< both in [s]
+    bool lands, jumps;  ///< at `target`; a corner is there
   };
 
   StepPlan() = default;

@@ -121,7 +121,7 @@ class ArticulatedBodySolverOf {
   struct Node {
     Mat6 k = Mat6::Zero(), b = k, c = k;           ///< K̂, B, C
     Mat6 s = k, inverse = k, left = k, right = k;  ///< S, D⁻¹, L by rows, R by columns
-    Vec6 f = Vec6::Zero(), x = f, u = f;
+    Vec6 f = Vec6::Zero(), x = f, u = f;  ///< force on the body; [v; ω] and u: speeds, in the unit of the solution
     int speeds = 0;
 
     /// u += part · D⁻¹ given.

@@ -11,7 +11,7 @@ namespace polybody {
 template <class Small, class Large>
 class SolverBySize {
  public:
-  static constexpr Index limit = 64;
+  static constexpr Index limit = 64;  ///< unknowns that `Small` solves for at most
 
   void analyse(Index size, std::span<Block const> blocks) {
     small_ = size <= limit;

@@ -32,7 +32,7 @@ template <Symmetry symmetry>
 class BlockFactor {
  public:
   /// Below this part of what it was made of, a pivot counts as lost: of a body, and of the rows of a joint.
-  static constexpr double body_threshold = 1e-13, row_threshold = 1e-9;
+  static constexpr double body_threshold = 1e-13, row_threshold = 1e-9;  ///< shares of what a pivot was made of
   /// Systems up to this size fall back on one dense block with pivoting.
   static constexpr Index dense_limit = 64;
   /// The block solver that reads both halves.
@@ -41,8 +41,8 @@ class BlockFactor {
   BlockFactor() = default;
   BlockFactor(BlockFactor const&) = delete;  // its slots point into its storage
   BlockFactor& operator=(BlockFactor const&) = delete;
-  BlockFactor(BlockFactor&&) = default;
-  BlockFactor& operator=(BlockFactor&&) = default;
+  BlockFactor(BlockFactor&&) = default;             ///< its slots stay where they are
+  BlockFactor& operator=(BlockFactor&&) = default;  ///< its slots stay where they are
 
   [[gnu::cold]] void analyse(Index size, std::span<Block const> blocks) {
     size_ = size;
@@ -113,13 +113,13 @@ class BlockFactor {
   void solve(MatX const& b, MatX& x) const {
     for (Index j = 0; j < b.cols(); ++j) solve(b.col(j).data(), x.col(j).data());
   }
-  void solve(double const* b, double* x) const;
+  void solve(double const* b, double* x) const;  ///< b and x of the system's size; may be the same
 
   /// Multiplications and additions of a symmetric factorisation as last compiled.
   double flops() const;
   /// Entries of the factor without padding.
   Index fill() const;
-  Index nodes() const { return Index(layout_.nodes.size()); }
+  Index nodes() const { return Index(layout_.nodes.size()); }  ///< how many blocks are eliminated
   /// The unknowns as they are eliminated.
   Sequence<int> order() const {
     Sequence<int> all;

@@ -22,8 +22,8 @@ class EigenLdlt {
  public:
   static constexpr double shift = 1e-9;             ///< ε beside g²/a, of the largest entries of G and A
   static constexpr double largest_asymmetry = 0.1;  ///< ‖A − Aᵀ‖ beside ‖A‖; above it `factor` throws
-  static constexpr int most_refinements = 20;
-  using Unsymmetric = EigenSparseLu;
+  static constexpr int most_refinements = 20;       ///< steps of refinement at most, in a solution
+  using Unsymmetric = EigenSparseLu;                ///< takes its place where the tangent is not symmetric
 
   void analyse(Index size, std::span<Block const> blocks) {
     Sequence<char> has_diagonal(std::size_t(size), 0);

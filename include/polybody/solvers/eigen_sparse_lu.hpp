@@ -13,7 +13,7 @@ namespace polybody {
 template <class Ordering>
 class EigenSparseLuBy {
  public:
-  using Matrix = SparseSink::Matrix;
+  using Matrix = SparseSink::Matrix;  ///< a sparse matrix by columns
 
   void analyse(Index size, std::span<Block const> blocks) {
     sink_.analyse(size, blocks);

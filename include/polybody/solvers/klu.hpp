@@ -83,7 +83,7 @@ class Klu {
     klu_common common;
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
-    double growth = 0.0;  ///< its reciprocal, as the pivots were chosen
+    double growth = 0.0;  ///< its reciprocal, as the pivots were chosen, a ratio
 
     Handle() { klu_defaults(&common); }
     Handle(Handle const&) = delete;

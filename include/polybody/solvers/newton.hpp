@@ -14,7 +14,7 @@ namespace polybody {
 
 /// When to stop, refactor and give up.
 struct NewtonOptions {
-  int max_iterations = 20;
+  int max_iterations = 20;  ///< at which it gives up, in [1, 10⁶]
   /// What a factorisation costs, in iterations: it is renewed where that saves more of them over as many solves as the
   /// last one served.
   double factorisation_cost = 3.0;
@@ -47,25 +47,25 @@ enum class NewtonResult { converged, diverged, singular, not_finite };
 
 /// What a solve cost and how well it contracted.
 struct NewtonReport {
-  NewtonResult result = NewtonResult::converged;
-  int iterations = 0;
-  int factorisations = 0;
-  double theta = 0.0;  ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖
-  double left = 0.0;   ///< where it ended for its budget, the last correction beside what is tolerated; else 0
+  NewtonResult result = NewtonResult::converged;  ///< how it ended
+  int iterations = 0;                             ///< evaluations of the right-hand side that were solved for
+  int factorisations = 0;                         ///< tangents that were factored
+  double theta = 0.0;                             ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖, a ratio
+  double left = 0.0;  ///< where it ended for its budget, the last correction relative to what is tolerated; else 0
 };
 
 /// What Newton's method keeps from solve to solve of problems that follow each other.
 struct KeptFactor {
   bool usable = false;  ///< a factorisation is at hand
-  double theta = 1.0;   ///< its contraction rate
-  double fresh = 0.05;  ///< the rate that is expected of a new one, as others had
+  double theta = 1.0;   ///< its contraction rate, a ratio
+  double fresh = 0.05;  ///< the ratio that is expected of a new one, as others had
   int served = 0;       ///< solves that it has ended
   bool stale = false;  ///< the last solve found at once that one had to be made, as where contacts change in every step
 };
 
 /// The norm of a correction, and how much of it is tolerated, which may depend on the iterate.
 struct CorrectionSize {
-  double norm, tolerated = 1.0;
+  double norm, tolerated = 1.0;  ///< ‖Δ‖ and what of it is tolerated, both in the unit of the problem
 };
 
 namespace detail {

@@ -15,7 +15,7 @@ namespace polybody {
 template <class T = double>  // compiled where it is used
 class SparseSinkOf {
  public:
-  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;
+  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;  ///< a sparse matrix by columns
 
   /// Finds each entry's place in the values once, so that `add` never searches.
   void analyse(Index size, std::span<Block const> blocks) {

@@ -9,16 +9,16 @@ namespace polybody {
 
 /// A root has six freedoms, or three in the plane, from the ground; its reference point is its centre of mass.
 struct TreeLink {
-  Index parent, qn, vn, v0;  ///< as those of TreeBody
-  RigidLayout layout;
-  bool backwards;  ///< the joint's frame b is the parent's
-  bool turned;     ///< the joint's axes are not those of the parent
-  int freedoms;
-  JointMotions motions;
+  Index parent, qn, vn, v0;          ///< as those of TreeBody
+  RigidLayout layout;                ///< how the body's coordinates are written
+  bool backwards;                    ///< the joint's frame b is the parent's
+  bool turned;                       ///< the joint's axes are not those of the parent
+  int freedoms;                      ///< speeds of the joint; of a root, of the body
+  JointMotions motions;              ///< of the joint, from frame a to frame b
   double entry[9], arm[3];           ///< the joint's frame on the parent, in the axes of the parent's own joint
-  double mass, first[3], second[6];  ///< moments about the reference point
-  double centre[3];                  ///< of mass, from there
-  double whole_axes[9];              ///< of the body's speeds
+  double mass, first[3], second[6];  ///< [kg], [kg m], [kg m²]; moments about the reference point
+  double centre[3];                  ///< the centre of mass, from the reference point [m]
+  double whole_axes[9];              ///< axes of the body's speeds (3×3 by columns)
 };
 
 /// \param parent null: the ground

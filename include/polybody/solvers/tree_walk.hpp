@@ -17,32 +17,32 @@ namespace polybody {
 /// T is the scalar of the state: dual numbers give the derivatives of the same walks.
 template <StateScalar T = double>
 struct TreeWalkOf {
-  enum class Kind : unsigned char { turn, slide, general };
+  /** What a freedom moves: a turn, a slide, or anything. */ enum class Kind : unsigned char { turn, slide, general };
   /// One speed: the columns S of [v; ω] that it moves; and I S, D⁻¹ and a force, which belong to who eliminates it.
   struct Freedom {
-    T s[6], u[6], inverse, w;
-    Kind kind;
-    unsigned char together;  ///< freedoms from here on that turn about axes of one frame: 3 of a ball, else 1
-    Index speed;
+    T s[6], u[6], inverse, w;  ///< S, I S, D⁻¹, and the force along S
+    Kind kind;                 ///< how S is filled
+    unsigned char together;    ///< freedoms from here on that turn about axes of one frame: 3 of a ball, else 1
+    Index speed;               ///< its place in narrow speeds
   };
   /// A body's joint axes (3×3 by columns), d, ω, the acceleration c = [a; α] for u̇ = 0 and a parent at rest, and the
   /// force p and the acceleration x of who walks on.
   struct Body {
-    T axes[9], d[3], w[3], c[6], p[6], x[6];
-    detail::ArticulatedInertia<T> inertia;
-    std::size_t first;  ///< of its freedoms
-    int count;
+    T axes[9], d[3], w[3], c[6], p[6], x[6];  ///< in world axes, named above
+    detail::ArticulatedInertia<T> inertia;    ///< articulated, about the reference point
+    std::size_t first;                        ///< of its freedoms
+    int count;                                ///< how many freedoms it has
   };
 
-  Sequence<TreeLink> links;
-  Sequence<Body> bodies;
-  Sequence<Freedom> freedoms;
-  Body ground = {};
+  Sequence<TreeLink> links;    ///< constants, one for each body
+  Sequence<Body> bodies;       ///< where they are, parents before children
+  Sequence<Freedom> freedoms;  ///< of all bodies, body by body
+  Body ground = {};            ///< at rest; what roots are carried by
 
   TreeWalkOf() = default;
   /// The constants of the bodies; allocates all there is to be.
   explicit TreeWalkOf(Sequence<TreeBody> const& tree);
-
+  /// What carries body i: its parent, or the ground.
   Body& carrier(std::size_t i) { return links[i].parent < 0 ? ground : bodies[std::size_t(links[i].parent)]; }
   /// Places all bodies; p and x are left.
   void place(VecXOf<T> const& q, VecXOf<T> const& v) {
@@ -68,7 +68,7 @@ struct TreeWalkOf {
     detail::add_cross(b.w, mc, rate);
     detail::add_cross(b.w, rate, b.p);
   }
-  static T along(Freedom const& f, T const* x) {
+  /** Sᵀx, x (6). */ static T along(Freedom const& f, T const* x) {
     switch (f.kind) {
       case Kind::turn:
         return detail::dot(f.s + 3, x + 3, 3);
