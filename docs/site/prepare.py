@@ -54,17 +54,26 @@ def each_with_its_comment(line, comment=None):
     return first[1] + " ".join(f"{first[2].rstrip()} {name.strip()};{said}" for name in (first[3], *parts[1:]))
 
 
+SECTIONS = {"A body": "bodies", "A joint geometry": "joints", "A policy": "joints", "A force element": "forces", "An integrator": "integrators", "A linear solver": "solvers", "Their laws": "testing"}
+
+
 def asked_by_concepts():
-    """What docs/extending.md says of each member in its tables: {(name, whether it is a function): text}, apart for solvers."""
-    said = {"": {}, "solvers": {}}
+    """What docs/extending.md says of each member in its tables: {folder: {(name, whether it is a function): text}}."""
+    said = {folder: {} for folder in (*SECTIONS.values(), "math", "vehicle")}  # where types of these kinds are, too
     for section in re.split(r"^## ", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), flags=re.M):
-        own = said["solvers" if section.startswith("A linear solver") else ""]
-        for cell, text in MEMBER_ROW.findall(section):
+        folder = SECTIONS.get(re.match(r"[\w ]*", section)[0].strip())
+        for cell, text in MEMBER_ROW.findall(section) if folder else ():
             names = [re.sub(r"[<(].*", "", part) for part in re.findall(r"`([^`]+)`", cell)]
             for name in names:
                 if re.fullmatch(r"\w+", name) and text.strip():
-                    own.setdefault((name, "(" in cell), text.strip())
+                    said[folder].setdefault((name, "(" in cell), text.strip())
     return said
+
+
+def asked_of(folder, member, is_function):
+    """The words of the folder's own table, or of another one; those of solvers are of no other folder."""
+    tables = [ASKED[folder], *(table for other, table in ASKED.items() if "solvers" not in (folder, other))]
+    return next((table[member, is_function] for table in tables if (member, is_function) in table), None)
 
 
 def floor_of(name):
@@ -96,7 +105,6 @@ def header(name, text):
     lines = text.split("\n")
     waiting = WAITING.get(name, {})
     folder = name.split("/")[2]
-    asked = ASKED["solvers" if folder == "solvers" else ""]
     for i, line in enumerate(lines):
         if "///<" in line and "," in line:
             lines[i] = each_with_its_comment(line) or line
@@ -105,8 +113,8 @@ def header(name, text):
                 lines[i - 1 : i + 1] = "", each
         for member in waiting.get(i + 1, ()):
             is_function = bool(re.search(rf"\b{re.escape(member)}\(", lines[i]))
-            text_of_it = asked.get((member, is_function))
-            if text_of_it and folder in OF_CONCEPTS and (is_function or "static constexpr" in lines[i]):
+            text_of_it = asked_of(folder, member, is_function) if folder in ASKED else None
+            if text_of_it and (is_function or "static constexpr" in lines[i]):
                 place = i
                 while place > 0 and re.match(r"\s*(template|requires)\b", lines[place - 1]) and not lines[place - 1].rstrip().endswith(";"):
                     place -= 1
@@ -129,7 +137,6 @@ def undocumented():
 
 
 ASKED = asked_by_concepts()
-OF_CONCEPTS = ("bodies", "joints", "forces", "integrators", "math", "solvers", "vehicle", "testing")  # the folders of types that are bodies, joints, ...
 WAITING = undocumented()
 
 

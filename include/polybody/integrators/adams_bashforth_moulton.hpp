@@ -41,7 +41,7 @@ struct AdamsBashforthMoulton {
   template <class Solver>
   struct Workspace {
     VecX y, f, correction;                    ///< of (q, v)
-    VecX raw, q, v, a, lambda, zero;          ///< scratch: q of y before ⊞ 0; q, v, v̇ and λ of the step; zero (nv)
+    VecX raw, q, v, a, lambda, zero;          ///< in order: q of y before ⊞ 0; q, v, v̇, λ of the step; zeros (nv)
     VecXOf<Dual<1>> dual;                     ///< room for the rates of coordinates
     VecX q_rate;                              ///< q˙ (nq)
     ForwardDynamics<Solver> forward;          ///< accelerations, by the mass matrix

@@ -29,7 +29,7 @@ struct AlphaMethod {
   char const* name;                      ///< the integrator's name in messages
   double alpha_m, alpha_f, gamma, beta;  ///< the four coefficients, shares of a step
   double tolerance;                      ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton;                  ///< how Newton's method solves a step
+  NewtonOptions newton;                  ///< when Newton's method stops, refactors and gives up
   bool start_correction;    ///< multipliers of second order from the first step on, and across changes of h
   bool second_order_terms;  ///< ∂(Gᵀλ)/∂q is in the tangent from the start
   bool stabilised;          ///< the rows of the speeds are kept, too, by μ

@@ -6,7 +6,7 @@ namespace polybody {
 /// What a step of the family computes with, of whatever model.
 struct AlphaVectors {
   VecX v0, a0;                                ///< speeds and algorithmic acceleration from which the step sets out
-  VecX q, v, vd, a, dq, r, phi, jerk, ahead;  ///< q, v, v̇, a, Δq, r, Φ; q⃛; a Δq elsewhere
+  VecX q, v, vd, a, dq, r, phi, jerk, ahead;  ///< in order: q, v, v̇, a, Δq, r, Φ, q⃛, a Δq elsewhere
   VecX lambda, rhs, y;                        ///< of all multipliers that the step keeps; `phi` is of its rows
   VecX back, rate, open;  ///< of a stabilised step: what μ moves, a vector by rows, and rows before μ answers them
   VecX kept, kept_back;   ///< corrections while others are looked at

@@ -26,15 +26,15 @@ struct ConservingStep {
   char const* name;      ///< the integrator's name in messages
   double chi;            ///< χ, a share of the step: 0 keeps energy, ½ loses most
   double tolerance;      ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton;  ///< how Newton's method solves a step
+  NewtonOptions newton;  ///< when Newton's method stops, refactors and gives up
 
   /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace {
-    VecX q, v, vd, lambda, r, phi, rhs, y, kept;  ///< q, v, v̇, λ, r, Φ; −(r, Φ); a correction; another one
+    VecX q, v, vd, lambda, r, phi, rhs, y, kept;  ///< in order: q, v, v̇, λ, r, Φ, −(r, Φ), two corrections
     VecX other_vd, other_lambda;                  ///< where the second try ended, while the third looks for less change
     StepSecants secants;                          ///< mean forces and rows of the step
-    TangentSolver<SolverOfSteps<Solver>> solver;  ///< of their tangent
+    TangentSolver<SolverOfSteps<Solver>> solver;  ///< solver of the tangent of `secants`
     TangentSolver<SolverOfSteps<UnsymmetricSolver<Solver>>> exact;  ///< laid out by the first step that asks for it
     ForwardDynamics<Solver> forward;                                ///< [M, Gᵀ; G, 0]: accelerations of the start
     KeptFactor kept_factor;                                         ///< whether the tangent's factors still serve

@@ -30,7 +30,7 @@ struct CoordinatePartitioning {
     PartitionedRows rows{0, 0};      ///< of positions; where there are no velocity rows, of speeds too
     PartitionedRows all_rows{0, 0};  ///< of speeds where there are
     SparsePartitionOf<> sparse_rows, sparse_all_rows;  ///< the same splits where G is sparse
-    VecX phi, rate, column, delta, next;               ///< Φ, Φ̇, G's column, Δq or Δv, q ⊞ Δq
+    VecX phi, rate, column, delta, next;               ///< in order: Φ, Φ̇, a column of G, Δq or Δv, q ⊞ Δq
     bool sparse = false, prepared = false;             ///< G is sparse; the choice between the two was made
     /// Allocates what both ways need.
     explicit Scratch(System const& s)

@@ -13,7 +13,7 @@ struct EnergyMomentum {
   static constexpr Entries entries = Entries::implicit_step | Entries::secants;
 
   double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {.max_iterations = 50};  ///< how Newton's method solves a step
+  NewtonOptions newton = {.max_iterations = 50};  ///< when Newton's method stops, refactors and gives up
 
   /// \throws InvalidInput unless the tolerance is positive.
   void check() const {
@@ -36,7 +36,7 @@ struct EnergyDecaying {
 
   double rho_inf = 0.9;                           ///< of a mode of strain as ωh → ∞, in [0, 1]; 1 keeps energy
   double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {.max_iterations = 50};  ///< how Newton's method solves a step
+  NewtonOptions newton = {.max_iterations = 50};  ///< when Newton's method stops, refactors and gives up
 
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
   void check() const {

@@ -18,7 +18,7 @@ struct GeneralizedAlpha {
   /// motion is still far below the error of a step of ωh = 0.1, and a step takes two iterations less. Near singular
   /// configurations, which amplify that error, leave it at 1e-8.
   double tolerance = 1e-8;
-  NewtonOptions newton = {};        ///< how Newton's method solves a step
+  NewtonOptions newton = {};        ///< when Newton's method stops, refactors and gives up
   bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised =

@@ -14,7 +14,7 @@ struct HhtAlpha {
 
   double alpha = -0.1;           ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
   double tolerance = 1e-8;       ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};     ///< how Newton's method solves a step
+  NewtonOptions newton = {};     ///< when Newton's method stops, refactors and gives up
   bool start_correction = true;  ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too

@@ -15,7 +15,7 @@ struct Newmark {
   double gamma = 0.5;               ///< γ, a share
   double beta = 0.25;               ///< β, a share
   double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};        ///< how Newton's method solves a step
+  NewtonOptions newton = {};        ///< when Newton's method stops, refactors and gives up
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too
 
@@ -43,7 +43,7 @@ struct Trapezoidal {
   static constexpr Entries entries = Entries::implicit_step;
 
   double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};        ///< how Newton's method solves a step
+  NewtonOptions newton = {};        ///< when Newton's method stops, refactors and gives up
   bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
   bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
   bool stabilised = false;          ///< keep the rows of the speeds too

@@ -45,7 +45,7 @@ struct Radau {
   template <class Solver>
   struct Workspace {
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
-    VecX q, r, phi, gamma, next, rhs, y, kept;  ///< q, r, G v̇, γ, δ; −(r, Φ̈) of all stages; a correction; another one
+    VecX q, r, phi, gamma, next, rhs, y, kept;  ///< in order: q, r, G v̇, γ, δ, −(r, Φ̈) of all stages, two corrections
     TangentSolver<AutoLu> solver, by_stage;     ///< `by_stage` is laid out by the first step that asks for it
     RowSlopes slopes;                           ///< ∂/∂q and ∂/∂v of the rows as accelerations
     ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations of the start, projections

@@ -29,7 +29,7 @@ struct ModelCheck {
 
   /// An explicit integrator and the largest step that is stable with it.
   struct StableStep {
-    std::string integrator;  ///< its name
+    std::string integrator;  ///< the integrator's name
     double step;             ///< the largest that is stable without damping [s]
   };
   std::vector<StableStep> stable_steps = {};  ///< of explicit integrators, where anything is elastic

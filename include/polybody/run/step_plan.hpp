@@ -15,7 +15,7 @@ struct StepRow {
   double start = 0.0, length = 0.0;  ///< t₀ and h [s]
   double count = 0.0;                ///< k, a count of the steps
 
-  double end() const { return start + count * length; }  ///< of the last step [s]
+  double end() const { return start + count * length; }  ///< time at which the last step ended [s]
   /// The end of a step from t that took `taken` seconds. One of another length, or from elsewhere, begins a row.
   double after(double t, double taken) {
     if (t != end() || taken != length) *this = {t, taken, 0.0};
@@ -29,8 +29,8 @@ class StepPlan {
  public:
   /// The next step: where it may at most go, its length, whether it goes there, and whether a corner is there.
   struct Next {
-    double target, h;   ///< both in [s]
-    bool lands, jumps;  ///< at `target`; a corner is there
+    double target, h;   ///< time at which it may at most end [s]; its length [s]
+    bool lands, jumps;  ///< it ends at `target`; a corner is there
   };
 
   StepPlan() = default;

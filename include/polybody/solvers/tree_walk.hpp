@@ -20,15 +20,15 @@ struct TreeWalkOf {
   /** What a freedom moves: a turn, a slide, or anything. */ enum class Kind : unsigned char { turn, slide, general };
   /// One speed: the columns S of [v; ω] that it moves; and I S, D⁻¹ and a force, which belong to who eliminates it.
   struct Freedom {
-    T s[6], u[6], inverse, w;  ///< S, I S, D⁻¹, and the force along S
-    Kind kind;                 ///< how S is filled
+    T s[6], u[6], inverse, w;  ///< in order: S, I S, D⁻¹, the force along S
+    Kind kind;                 ///< what it moves; the rest of S is zero
     unsigned char together;    ///< freedoms from here on that turn about axes of one frame: 3 of a ball, else 1
     Index speed;               ///< its place in narrow speeds
   };
   /// A body's joint axes (3×3 by columns), d, ω, the acceleration c = [a; α] for u̇ = 0 and a parent at rest, and the
   /// force p and the acceleration x of who walks on.
   struct Body {
-    T axes[9], d[3], w[3], c[6], p[6], x[6];  ///< in world axes, named above
+    T axes[9], d[3], w[3], c[6], p[6], x[6];  ///< named above, in world axes
     detail::ArticulatedInertia<T> inertia;    ///< articulated, about the reference point
     std::size_t first;                        ///< of its freedoms
     int count;                                ///< how many freedoms it has

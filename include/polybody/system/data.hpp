@@ -55,7 +55,7 @@ struct Data {
   Data(Data const&) = delete;  // markers and rows point into the arenas
   Data& operator=(Data const&) = delete;
   Data(Data&&) = default;             ///< takes the buffers over: pointers into them stay valid
-  Data& operator=(Data&&) = default;  ///< likewise
+  Data& operator=(Data&&) = default;  ///< takes the buffers over, as above
 
   /// Whether this evaluation leaves a block out: one of a linear joint, while `linear_rows` is false.
   bool leaves_out(RowBlock<T> const& block) const { return block.source == RowSource::linear && !linear_rows; }

@@ -62,8 +62,8 @@ struct ModelLayout {
   Index states = 0;                             ///< first-order ones: the last of the speeds
   Sequence<Index> velocity_rows = {};           ///< rows without a position, ascending
   Sequence<BodyPlace> bodies = {};              ///< by types, in the order in which they were added
-  Sequence<JointPlace> joints = {};             ///< likewise
-  Sequence<ForcePlace> forces = {};             ///< likewise
+  Sequence<JointPlace> joints = {};             ///< by types, in the order in which they were added
+  Sequence<ForcePlace> forces = {};             ///< by types, in the order in which they were added
   Sequence<Index> owners = {};                  ///< of each published marker: the body, −1 for the ground
   Vec3 gravity = Vec3::Zero();                  ///< (3) world axes [m/s²]
   Sequence<double> corners = {};                ///< times at which a drive or a load wants a step to end

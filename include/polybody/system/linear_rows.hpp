@@ -25,7 +25,7 @@ struct LinearRows {
   Index positions = 0;        ///< rows of the position
   /// A gradient that a and b share, or its component along an axis.
   struct Gradient {
-    Index rows;  ///< how many
+    Index rows;  ///< how many rows it has
     MatX map;    ///< of b; of a where b is the ground
     Vec3 axis;   ///< (3) unit vector: of a single row, in world axes
   };

@@ -22,7 +22,7 @@ struct LinearVibration {
   Load load;                             ///< f(t)
   mutable MatX d = {}, k = {};           ///< scratch: both at one time
 
-  /// n.
+  /// How many coordinates the problem has: n.
   Index speeds() const { return mass_matrix.rows(); }
   /// M (n×n).
   void mass(VecX const&, MatX& m) const { m = mass_matrix; }

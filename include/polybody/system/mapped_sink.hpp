@@ -19,7 +19,7 @@ class UnknownMapOf {
   /// An unknown and its factor.
   struct Target {
     Index unknown;  ///< in the system that is left
-    T factor;       ///< P of the two, a factor
+    T factor;       ///< its entry of P, a factor
   };
 
   /// `targets[i]` of whole unknown i: one with factor one for most, several for a dependent one, none for one that is
@@ -46,13 +46,13 @@ class UnknownMapOf {
   struct Range {
     /// Consecutive unknowns that a range touches, from the local number `local` on.
     struct Run {
-      Index first, size, local;  ///< first unknown, how many, first local number
+      Index first, size, local;  ///< in order: first unknown, how many, first local number
     };
     /// Neighbours that become neighbours, with factor one: `size` from the local number `source` on.
     struct Part {
-      Index first, size, source;  ///< first unknown, how many, first neighbour of the range
+      Index first, size, source;  ///< in order: first unknown, how many, first neighbour of the range
     };
-    Index whole_size = 0, size = 0;      ///< whole unknowns of the range; unknowns that it touches
+    Index whole_size = 0, size = 0;      ///< how many whole unknowns it has; how many unknowns it touches
     Sequence<Run> runs;                  ///< these unknowns, ascending
     Sequence<Sequence<Target>> targets;  ///< of each whole unknown, by local number
     Sequence<Part> parts;  ///< all of it, where no whole unknown has more than one target nor another factor than one

@@ -17,7 +17,7 @@ class MappedSlotsOf {
   MappedSlotsOf(MappedSlotsOf const&) = delete;  // its targets point to its own
   MappedSlotsOf& operator=(MappedSlotsOf const&) = delete;
   MappedSlotsOf(MappedSlotsOf&&) = default;             ///< the targets stay where they are
-  MappedSlotsOf& operator=(MappedSlotsOf&&) = default;  ///< likewise
+  MappedSlotsOf& operator=(MappedSlotsOf&&) = default;  ///< the targets stay where they are
 
   /// It has been told of all blocks that go into this layout.
   bool leads_to(std::uint64_t layout) const { return complete_ && layout_ == layout; }

@@ -24,9 +24,9 @@ template <Body... Bs, class... Js, AppliedForce... Fs>
   requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...>
 class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
-  using BodyPools = std::tuple<detail::BodyPool<Bs>...>;               ///< one for each type of body
-  using JointPools = std::tuple<Sequence<detail::JointEntry<Js>>...>;  ///< one for each type of joint
-  using ForcePools = std::tuple<Sequence<detail::ForceEntry<Fs>>...>;  ///< one for each type of force element
+  using BodyPools = std::tuple<detail::BodyPool<Bs>...>;               ///< a pool for each type of body
+  using JointPools = std::tuple<Sequence<detail::JointEntry<Js>>...>;  ///< a pool for each type of joint
+  using ForcePools = std::tuple<Sequence<detail::ForceEntry<Fs>>...>;  ///< a pool for each type of force element
 
   /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
   static constexpr bool may_have_rows = (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
@@ -36,7 +36,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);     ///< bodies of all types are rigid
   static constexpr bool constant_mass = (Bs::constant_mass && ...);  ///< M of no body type depends on q
   static constexpr bool has_groups = (ForceGroup<Fs> || ...);        ///< of forces
-  static constexpr bool has_states = (HasStates<Fs> || ...);         ///< first-order ones, of forces
+  static constexpr bool has_states = (HasStates<Fs> || ...);         ///< first-order states of forces
 
   /// A model without parts. Gravity in world axes [m/s²]; none by default.
   explicit Model(Gravity const& gravity = {}) : parts_{gravity, detail::next_serial()} {}
@@ -140,17 +140,17 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   }
 
   Gravity const& gravity() const { return parts_.gravity; }  ///< [m/s²], world axes
-  Index coordinates() const { return parts_.coordinates; }   ///< nq of all bodies
+  Index coordinates() const { return parts_.coordinates; }   ///< nq: coordinates of all bodies
   /// Speeds of the bodies, and first-order states of forces behind them.
   Index speeds() const { return parts_.speeds + parts_.states; }
-  Index states() const { return parts_.states; }  ///< first-order ones, of forces
-  Index rows() const { return parts_.rows; }      ///< rows of joints and of bodies that own some
+  Index states() const { return parts_.states; }  ///< first-order states of forces
+  Index rows() const { return parts_.rows; }      ///< how many rows joints and bodies bring
   /// Those of the rows that hold speeds and no positions, ascending.
   Sequence<Index> const& velocity_rows() const { return parts_.velocity_rows; }
-  Index markers() const { return parts_.markers; }              ///< published ones
+  Index markers() const { return parts_.markers; }              ///< how many markers there are
   Index jacobian_size() const { return parts_.jacobian_size; }  ///< numbers in their dense Jacobians
-  Index body_count() const { return parts_.bodies; }            ///< without the ground
-  std::uint64_t serial() const { return parts_.serial; }        ///< by which handles know their model
+  Index body_count() const { return parts_.bodies; }            ///< how many bodies, the ground not counted
+  std::uint64_t serial() const { return parts_.serial; }        ///< number that the handles of the model carry
 
   /// Bodies, joints and forces as they are stored, by types.
   BodyPools const& body_pools() const { return bodies_; }

@@ -152,7 +152,7 @@ struct EntriesOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> 
     if constexpr (std::same_as<T, double>) add_for_numbers(out);
     return out;
   }
-  static constexpr ModelEntries<T> table = make();  ///< the table
+  static constexpr ModelEntries<T> table = make();  ///< what `System` takes for the model
   /// Scratch for a model, laid out once.
   static Data<T> make_data(M const& model) { return detail::DataMaker<M, T>::make(model); }
 

@@ -67,7 +67,7 @@ class StepBounds {
     ~Trial() {
       if (!kept_) bounds_.account_ = before_;
     }
-    void keep() { kept_ = true; }  ///< what is tried counts
+    void keep() { kept_ = true; }  ///< the account of what was tried stays
 
    private:
     StepBounds& bounds_;

@@ -21,7 +21,7 @@ struct SecantStep {
 struct SecantEntries {
   /// Room for a model's secants.
   std::shared_ptr<void> (*make)(void const* m, Data<double> const& data);
-  void (*evaluate)(void* self, SecantStep const& step);  ///< takes the step
+  void (*evaluate)(void* self, SecantStep const& step);  ///< sets the step at which the others are asked
   /// r = M a − f + Ḡᵀλ over the step.
   void (*residual)(void* self, Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r);
   void (*violation)(void* self, VecX& phi);                    ///< Φ(q₁)

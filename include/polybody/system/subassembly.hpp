@@ -32,7 +32,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return detail::add_body(parts_, pool_of<B>(), body, std::move(name));
   }
 
-  BodyHandle<Ground> ground() const { return {parts_.serial, 0, "ground"}; }  ///< the model's
+  BodyHandle<Ground> ground() const { return {parts_.serial, 0, "ground"}; }  ///< the ground of the model
 
   /// As `Model::connect`.
   template <OneOf<Js...> J, class A, class B>
