@@ -55,7 +55,8 @@ class BasicSystem {
 
   /// Places and names in the whole model.
   ModelLayout const& layout() const { return layout_; }
-  /// Functions between the unknowns of a time step and those of the whole model; false where no policy eliminates any.
+  /// Functions between the unknowns of a time step and those of the whole model; they convert to false where there are
+  /// none.
   Coordinates const& step_coordinates() const { return coordinates_; }
   /// Scratch of the last evaluation: markers, row blocks, wrenches of force elements.
   Data<T> const& data() const { return data_; }
@@ -78,7 +79,7 @@ class BasicSystem {
   /// A factor of gravity and loads; one except inside `equilibrium`.
   double load_factor = 1.0;
 
-  /// Sets the state, q (nq), v (nv) and t [s], of everything that is asked after: computes all markers and gaps there.
+  /// Sets the state: coordinates q (nq), speeds v (nv), time t [s]. Computes all markers and gaps there.
   void evaluate(Vector const& q, Vector const& v, double t);
 
   /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results

@@ -71,7 +71,7 @@ struct CoordinatesEntries {
 
   /// The whole tangent that `write` gives, in the unknowns of the equations.
   void (*write)(void* c, BlockWriter const& write, BlockSink& sink);
-  /// Makes a place to keep; later `hold` copies into `held` the state of the last `expand`.
+  /// Makes a place to keep; `hold` copies the state of the last `expand` into it.
   HeldPlace (*held)(void* c);
   void (*hold)(void* c, void* held);  ///< see `held`
   /// A right-hand side of a time step as one of the equations, and a solution of these as one of the step's unknowns.

@@ -114,7 +114,7 @@ struct ModelEntries {
   /// wrenches are added to data.loads.
   void (*element_tangents)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
                            BlockSink& sink) = nullptr;
-  /// The part of compliant joints, ck Gᵀ(∂λ/∂g)G and cd Gᵀ(∂λ/∂ġ)G.
+  /// The part of compliant joints, Gᵀ(ck ∂λ/∂g + cd ∂λ/∂ġ)G.
   void (*compliant_tangents)(void const* m, TangentCoefficients const& c, Data<T>& data, BlockSink& sink) = nullptr;
   /// The part of force elements at t [s], loads times `load_factor`.
   void (*force_tangents)(void const* m, double t, double load_factor, TangentCoefficients const& c, Data<T>& data,

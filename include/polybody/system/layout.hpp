@@ -67,7 +67,7 @@ struct ModelLayout {
   Sequence<Index> owners = {};                  ///< of each published marker: the body, −1 for the ground
   Vec3 gravity = Vec3::Zero();                  ///< (3) world axes [m/s²]
   Sequence<double> corners = {};                ///< times at which a drive or a load wants a step to end
-  bool constant_mass = false;                   ///< that of no body depends on q
+  bool constant_mass = false;                   ///< M of no body depends on q
   bool has_groups = false;                      ///< of forces
 
   /// Speeds of the bodies alone; first-order states stand behind them.
