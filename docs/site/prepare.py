@@ -114,7 +114,7 @@ def header(name, text):
         for member in waiting.get(i + 1, ()):
             is_function = bool(re.search(rf"\b{re.escape(member)}\(", lines[i]))
             text_of_it = asked_of(folder, member, is_function) if folder in ASKED else None
-            if text_of_it and (is_function or "static constexpr" in lines[i]):
+            if text_of_it and (is_function or re.search(r"static constexpr|^\s*using \w+ =", lines[i])):
                 place = i
                 while place > 0 and re.match(r"\s*(template|requires)\b", lines[place - 1]) and not lines[place - 1].rstrip().endswith(";"):
                     place -= 1

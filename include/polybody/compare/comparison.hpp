@@ -29,7 +29,7 @@ struct ComparedRun {
   std::vector<double> joint_forces;          ///< (n) of the joint that holds most [N]
   std::vector<std::string> output_names;     ///< in the order of `outputs`
   std::vector<std::vector<double>> outputs;  ///< one history (n) for each output
-  std::vector<double> difference;            ///< largest |output − first formulation's| over the run
+  std::vector<double> difference;  ///< largest |output − first formulation's| over the run [unit of the output]
 };
 
 /// The runs of one case under several formulations, side by side.
@@ -40,6 +40,7 @@ struct Comparison {
 /// Runs of a comparison failed; the message names each with its reason.
 class ComparisonFailed : public Error {
  public:
+  /// `others` are the runs that came to their end.
   ComparisonFailed(std::string const& message, Comparison others) : Error(message), finished(std::move(others)) {}
 
   Comparison finished;  ///< the runs that came to their end

@@ -35,13 +35,13 @@ struct MeshOf<Meshed<B, count>> : Meshed<B, count> {};
 template <class B, Policy P, class I>
   requires Body<typename detail::MeshOf<B>::BodyType>
 struct Formulation {
-  using BodyType = typename detail::MeshOf<B>::BodyType;
-  using PolicyType = P;
-  using IntegratorType = I;
+  using BodyType = typename detail::MeshOf<B>::BodyType;  ///< the body without its mesh
+  using PolicyType = P;                                   ///< how joints are enforced
+  using IntegratorType = I;                               ///< how time is integrated
 
-  std::string name;
-  P policy = {};
-  I integrator = {};
+  std::string name;   ///< in the report
+  P policy = {};      ///< for the joints of the case
+  I integrator = {};  ///< with its options
 
   /// The body made `from` what it is given, such as a bar, and then the number of elements of a `Meshed` one.
   template <class Shape, class... Others>

@@ -23,7 +23,7 @@ inline double implied_torsion(SectionTurn const& s) {
 
 /// An angle along a bar: its value [rad] and its first two derivatives by arc length.
 struct AngleAlong {
-  double value = 0.0, slope = 0.0, second = 0.0;
+  double value = 0.0, slope = 0.0, second = 0.0;  ///< [rad], [rad/m], [rad/m²]
 };
 
 /// The rotation field of Eq. 2.1 at one section: ψ about Z, then θ about −Y, then φ about −X:

@@ -16,7 +16,7 @@ namespace polybody {
 /// Both curves in the plane (dim = 2) or in space (dim = 3), in world axes.
 template <int dim>
 struct TwoMeshes {
-  using Point = Mat<double, dim, 1>;
+  using Point = Mat<double, dim, 1>;       ///< in world axes [m]
   std::vector<Point> position_nodes;       ///< nodes of the position mesh [m]
   std::vector<Point> rotation_nodes;       ///< the same material points on the curve the rotations imply [m]
   double largest_gap = 0.0;                ///< between the two, over all nodes [m]

@@ -29,7 +29,8 @@ struct WorkPrecision {
 
 /// An output in a recorded run, y(t) by cubics through its times.
 struct RecordedOutput {
-  std::vector<double> times, values;
+  std::vector<double> times, values;  ///< (n) t [s] and y [unit of the output]
+  /// y at t [s].
   double operator()(double t) const { return detail::interpolate(times, values, t); }
 };
 
@@ -38,7 +39,9 @@ struct OutputReference {
   std::function<double(double)> at;  ///< y_ref(t)
   bool only_at_end = false;          ///< compared at the end of the run, not over all of it
 
+  /// The value at the end of the run.
   OutputReference(double end) : at([end](double) { return end; }), only_at_end(true) {}
+  /// The value at every time of the run.
   template <class F>
     requires std::is_invocable_r_v<double, F const&, double>
   OutputReference(F const& y) : at(y) {}

@@ -17,7 +17,7 @@ namespace polybody {
 
 /// One curve of a figure.
 struct Curve {
-  std::vector<double> x{}, y{};  ///< (n) points, n >= 1
+  std::vector<double> x{}, y{};  ///< (n) points, n >= 1 [units of the axes]
   std::string label{};           ///< in the legend; empty: not in the legend
   std::string style = "lines";   ///< lines, points, linespoints, dashed, steps, or filled: the translucent area inside
   int color = -1;                ///< same number, same colour (8, then again); -1: its place
@@ -26,13 +26,13 @@ struct Curve {
 
 /// One pair of axes. All text is printed as it stands (UTF-8; '\n' begins a new line).
 struct Figure {
-  std::string title{}, x_label{}, y_label{};
+  std::string title{}, x_label{}, y_label{};                  ///< above the axes and beside them; empty: none
   std::vector<Curve> curves{};                                ///< drawn in this order
   bool equal_axes = false;                                    ///< one unit of x is as long as one unit of y
   bool log_x = false, log_y = false;                          ///< points that are not positive are then left out
   bool legend = true;                                         ///< a list of the curves' labels
   std::optional<std::array<double, 2>> x_range{}, y_range{};  ///< from, to; else all points
-  int width_px = 1000, height_px = 700;
+  int width_px = 1000, height_px = 700;                       ///< size of the picture [pixels]
 };
 
 namespace detail {

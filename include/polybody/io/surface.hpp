@@ -14,9 +14,10 @@ namespace polybody {
 /// seen from outside.
 struct Surface {
   std::vector<Vec3> points;  ///< [m]
-  std::vector<int> corners;
-  std::vector<int> ends;
+  std::vector<int> corners;  ///< places in `points`
+  std::vector<int> ends;     ///< one past each polygon's last corner
 
+  /// One more polygon, whose corners are these places in `points`.
   void add_polygon(std::vector<int> const& of_points) {
     corners.insert(corners.end(), of_points.begin(), of_points.end());
     ends.push_back(int(corners.size()));

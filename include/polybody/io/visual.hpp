@@ -44,6 +44,7 @@ void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, st
 /// The model must outlive it and must not change after.
 class Visual {
  public:
+  /// No shapes yet. The model must be complete.
   template <class M>
   explicit Visual(M const& model) : layout_(layout_of(model)), reference_(model.reference_state()) {}
 

@@ -23,9 +23,9 @@ inline void require_filled(std::uint64_t model) {
 /// A material point of a body of type B in the model with this serial number.
 template <class B>
 struct Marker {
-  using BodyType = B;
-  static constexpr World world = B::world;
-  static constexpr Observes observes = B::observes;
+  using BodyType = B;                                ///< the body that it is on
+  static constexpr World world = B::world;           ///< plane or space
+  static constexpr Observes observes = B::observes;  ///< whether it knows a point, an axis, a frame
 
   std::uint64_t model = 0;       ///< the serial of the model that made it
   Index body = 0;                ///< among the bodies of its type
@@ -34,9 +34,9 @@ struct Marker {
 
 /// The world as a body without coordinates. Its points are placements.
 struct Ground {
-  static constexpr World world = World::both;
-  static constexpr Observes observes = Observes::frame;
-  using Point = Placement;
+  static constexpr World world = World::both;            ///< joints connect it to bodies of the plane and of space
+  static constexpr Observes observes = Observes::frame;  ///< its markers know a frame
+  using Point = Placement;                               ///< place and axes of a marker
 
   /// The marker at `origin` [m], axes parallel to the world's.
   template <class = void>  // compiled where it is used
@@ -44,6 +44,7 @@ struct Ground {
     require_finite(origin, "Ground: the point");
     return Placement::at(origin);
   }
+  /// The marker there, with these axes. \throws InvalidInput for axes that are no rotation.
   template <class = void>  // compiled where it is used
   Point at(Placement const& placement) const {
     placement.check("Ground");
@@ -86,6 +87,7 @@ struct BodyHandle {
   {
     return named([&](B const& on) { return on.at(point); });
   }
+  /// The same in the plane.
   Marker<B> at(Vec2 const& point) const
     requires(B::world == World::plane) && requires(B const b, Vec2 p) { b.at(p); }
   {

@@ -19,17 +19,17 @@ enum class JacobianShape : unsigned char {
 /// A marker's frame, Jacobian and bias. twist [ṙ; ω] = J v, twist˙ = J v̇ + bias.
 template <StateScalar T = double>
 struct Published {
-  Frame<T> frame;
-  Vec<T, 6> bias = Vec<T, 6>::Zero();
-  Mat<T, 3, 3> body_axes = identity<T>();  ///< rigid only: A of the body
-  Vec<T, 3> arm = Vec<T, 3>::Zero();       ///< rigid only: ρ = A u, world axes [m]
-  T* jacobian = nullptr;                   ///< dense only: 6×columns, column-major, in the arena of the data
-  Index first = 0;                         ///< first velocity column it touches
-  Index columns = 0;                       ///< how many
-  JacobianShape shape = JacobianShape::ground;
+  Frame<T> frame;                               ///< place, axes and velocities
+  Vec<T, 6> bias = Vec<T, 6>::Zero();           ///< twist˙ for v̇ = 0, world axes [m/s²], [rad/s²]
+  Mat<T, 3, 3> body_axes = identity<T>();       ///< rigid only: A of the body
+  Vec<T, 3> arm = Vec<T, 3>::Zero();            ///< rigid only: ρ = A u, world axes [m]
+  T* jacobian = nullptr;                        ///< dense only: 6×columns, column-major, in the arena of the data
+  Index first = 0;                              ///< first velocity column it touches
+  Index columns = 0;                            ///< how many
+  JacobianShape shape = JacobianShape::ground;  ///< says where J stands
 
-  using DenseMap = Eigen::Map<Mat<T, 6, Eigen::Dynamic> const>;
-  DenseMap dense() const { return DenseMap(jacobian, 6, columns); }
+  using DenseMap = Eigen::Map<Mat<T, 6, Eigen::Dynamic> const>;      ///< 6×columns
+  DenseMap dense() const { return DenseMap(jacobian, 6, columns); }  ///< J of the dense shape
 
   /// out (columns×k) = (rows · J)ᵀ for `rows` given as 6×k columns [force part; moment part]:
   /// the generalised forces of k wrenches.

@@ -92,7 +92,7 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
 struct LowPass {
   Required<double> cut_off;  ///< f_c [Hz]
   double roll_off = 0.0;     ///< w [Hz]
-  bool mirrored = false;
+  bool mirrored = false;     ///< takes record and mirror image as the period
 
   /// H at f [Hz].
   double share(double f) const {
@@ -151,6 +151,7 @@ struct EqualWeights {
 /// sin²πx: what is not periodic leaks little beyond neighbouring frequencies; an amplitude between two frequencies is
 /// up to 15 % too low [Harris 1978].
 struct HannWindow {
+  /// Weight at the place x of the record.
   static double weight(double x) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * x)); }
 };
 

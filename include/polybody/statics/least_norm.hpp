@@ -34,11 +34,12 @@ double largest_load(System const& system, VecX const& lambda) {
 template <LinearSolver Solver>
 class LeastNorm {
  public:
-  /// Growth of a solution from which on a freedom may be neutral.
+  /// Growth factor of a solution from which on a freedom may be neutral.
   static constexpr double suspicious = 1e8;
-  /// The force on a spring that balanced loads leave beside the largest of them.
+  /// The force on a spring that balanced loads leave, as a share of the largest of them.
   static constexpr double balanced = 1e-9;
 
+  /// Both must outlive this.
   LeastNorm(System& system, StaticTangent<Solver>& tangent)
       : system_(&system), tangent_(&tangent), nv_(system.speeds()), b_(VecX::Zero(system.size())) {}
 
@@ -74,7 +75,7 @@ class LeastNorm {
 
   /// Unknowns that are pinned; the motion Z of the k-th (size).
   Sequence<Index> const& pins() const { return pins_; }
-  VecX const& motion(std::size_t k) const { return columns_[k].z; }
+  VecX const& motion(std::size_t k) const { return columns_[k].z; }  ///< Z of pin k (size)
   /// The place among the pins of the motion that loads excite most, beyond rounding; −1 where they balance.
   Index excited() const { return excited_; }
   /// λ with the same forces and zero at pinned rows.

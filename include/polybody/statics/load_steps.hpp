@@ -8,12 +8,14 @@ namespace polybody {
 /// The way s = 0 … 1 in equal parts: a part that fails is halved, and the next one is twice as large again.
 class LoadSteps {
  public:
+  /// s = 0, with the number of parts and the smallest one that the options name.
   explicit LoadSteps(EquilibriumOptions const& options)
       : whole_(1.0 / std::max(options.load_steps, 1)), smallest_(options.smallest_part), part_(whole_) {}
 
-  bool done() const { return done_ >= 1.0; }
+  bool done() const { return done_ >= 1.0; }  ///< whether s = 1
   /// Where the next part ends.
   double next() const { return done_ + part_ > 1.0 - 1e-12 ? 1.0 : done_ + part_; }
+  /// Moves to `next()`, after a part that converged.
   void reach_next() {
     done_ = next();
     part_ = std::min(2.0 * part_, whole_);

@@ -6,7 +6,7 @@ namespace polybody {
 
 /// What a compliant joint bears before anything moves.
 struct Preload {
-  std::string joint;
+  std::string joint;      ///< its name in the model
   Wrench<double> wrench;  ///< on the second body about the joint point there, world axes
 };
 

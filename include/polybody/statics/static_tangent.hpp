@@ -36,6 +36,7 @@ class StaticTangent {
     springs_ = springs;
     if (first) analyse(lambda);
   }
+  /// Back to A itself; analyses anew.
   void remove_springs(VecX const& lambda) {
     springs_.resize(0);
     analyse(lambda);
@@ -68,7 +69,7 @@ class StaticTangent {
   void write_scaled(VecX const& lambda, S& sink) {
     write(lambda, factored_, sink);
   }
-  double unit() const { return factored_; }
+  double unit() const { return factored_; }  ///< u of the last factorisation
 
   /// max |A⁻¹ b| for a b without order: as large as the inverse of the smallest singular value, but for a b that
   /// happens to be normal to its vector.
@@ -99,7 +100,7 @@ class StaticTangent {
   struct Passing {
     BlockSink& solver;
     Index speeds;
-    double largest = 0.0;
+    double largest = 0.0;  ///< |K_ij| so far, relative to u
 
     void add(Index row, Index col, BlockView const& b) {
       solver.add(row, col, b);

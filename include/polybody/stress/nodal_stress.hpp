@@ -25,7 +25,7 @@ namespace polybody {
 /// The matrix, and the names of its nodes.
 class NodalStress {
  public:
-  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;  ///< stresses by nodal coordinates
   /// A node of the structure, and what it is called.
   struct Spot {
     Index node = 0;    ///< of the finite element model

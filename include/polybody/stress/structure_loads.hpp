@@ -21,8 +21,8 @@ namespace polybody {
 
 /// Nodes that share what acts at a place.
 struct LoadPatch {
-  Vec3 at;  ///< (3) in the structure's axes [m]
-  NodePatch nodes;
+  Vec3 at;          ///< (3) in the structure's axes [m]
+  NodePatch nodes;  ///< that share a load
 };
 
 /// How a recorded motion becomes loads on a structure.
@@ -48,7 +48,7 @@ class StructureLoads {
   };
   /// A wrench in the structure's axes about the place on a beam, or the node, that takes it.
   struct Load {
-    Index beam = -1, node = -1;
+    Index beam = -1, node = -1;               ///< where the load stands; −1: not there
     double xi = 0.0;                          ///< ξ along the beam, 0 … 1
     Vec3 f = Vec3::Zero(), m = Vec3::Zero();  ///< (3) force [N] and moment [N m]
   };
@@ -83,11 +83,11 @@ class StructureLoads {
     require_balance(options.unbalance);
   }
 
-  std::string const& name() const { return name_; }
-  Structure const& structure() const { return s_; }
-  std::vector<double> const& times() const { return times_; }
-  Motion const& motion(std::size_t k) const { return motions_[k]; }
-  std::vector<Load> const& loads(std::size_t k) const { return loads_[k]; }
+  std::string const& name() const { return name_; }                  ///< name of the body
+  Structure const& structure() const { return s_; }                  ///< the finite element model that is loaded
+  std::vector<double> const& times() const { return times_; }        ///< of the samples [s]
+  Motion const& motion(std::size_t k) const { return motions_[k]; }  ///< of sample k
+  std::vector<Load> const& loads(std::size_t k) const { return loads_[k]; }  ///< of sample k
 
   /// Nodal forces of sample k (N).
   template <class = void>
@@ -124,6 +124,7 @@ class StructureLoads {
     return in_body_axes(shapes.axis, axes).transpose() * load.f +
            in_body_axes(shapes.rotation, axes).transpose() * load.m;
   }
+  /// The beam that takes a load; for loads that a node takes there is none.
   Structure::Beam const& beam(Load const& load) const { return s_.beams[std::size_t(load.beam)]; }
 
  private:

@@ -19,7 +19,7 @@ namespace polybody {
 /// to: tie it where joints guide the body, and let it follow the mean motion (`free_interface_modes`, with
 /// `ReferenceConditions::none()`) of a body that is free.
 struct Vibration {
-  ReferenceConditions frame = ReferenceConditions::clamped();
+  ReferenceConditions frame = ReferenceConditions::clamped();  ///< what the frame is tied to
   MatX shapes = {};  ///< Φ (N×n), made with `frame`; empty: all nodal coordinates
   /// Includes the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4, and m_fr(q) of Ω˙. The
   /// thesis leaves them out. The stiffness that axial forces add is left out in either case.

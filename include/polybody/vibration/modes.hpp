@@ -170,7 +170,7 @@ struct DampedModes {
   Eigen::MatrixXcd shape;       ///< (nv×k) of first-order states, what they are and not their integral
   /// Frequency |s| [rad/s] and damping ratio −Re s/|s| of mode i.
   double frequency(Index i) const { return std::abs(eigenvalue[i]); }
-  double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }
+  double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }  ///< −Re s/|s|
 };
 
 /// The `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0, dense. With δ = N z, the unit of time 1/τ and y = (z, ż/τ)

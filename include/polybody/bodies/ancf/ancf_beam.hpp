@@ -27,14 +27,14 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   template <class T>
   using Element = Vec<T, element_columns>;
   using ElementMatrix = typename Chain::ElementMatrix;
-  using PointMap = Mat<double, 3, element_columns>;
-  static constexpr int gradients = 3;  ///< that are linear in the coordinates
+  using PointMap = Mat<double, 3, element_columns>;  ///< S of r = S e, 3×24
+  static constexpr int gradients = 3;                ///< that are linear in the coordinates
 
   /// A material point: element, place ξ ∈ [0, 1] on it, and distances y, z off the axis in the reference [m].
   struct Point {
-    Index element = 0;
-    double xi = 0.0;
-    double y = 0.0, z = 0.0;
+    Index element = 0;        ///< counted from 0, from the bar's first end
+    double xi = 0.0;          ///< ξ ∈ [0, 1], from its first node to its second
+    double y = 0.0, z = 0.0;  ///< in the axes of the reference section [m]
   };
 
   /// The straight bar in n equal elements. Its rotary inertia must be positive about both axes: without it r_y or r_z

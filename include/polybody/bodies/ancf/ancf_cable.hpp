@@ -38,13 +38,13 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = typename Chain::ElementMatrix;
-  using PointMap = Mat<RealFor<Strain>, 3, 12>;
-  static constexpr int gradients = 1;  ///< that are linear in the coordinates
+  using PointMap = Mat<RealFor<Strain>, 3, 12>;  ///< S of r = S e, 3×12
+  static constexpr int gradients = 1;            ///< that are linear in the coordinates
 
   /// A material point of the axis: element, and place ξ ∈ [0, 1] on it.
   struct Point {
-    Index element = 0;
-    double xi = 0.0;
+    Index element = 0;  ///< counted from 0, from the bar's first end
+    double xi = 0.0;    ///< ξ ∈ [0, 1], from its first node to its second
   };
 
   /// The bar in n equal elements. \throws InvalidInput for n < 1.

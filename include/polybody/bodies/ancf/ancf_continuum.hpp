@@ -122,18 +122,18 @@ struct ContinuumGroups;
 /// All strains at the points of the volume.
 template <>
 struct ContinuumGroups<Locking::present> {
-  using Number = double;
-  using Volume = StrainGroup<GreenStrains<12>>;
-  using type = std::tuple<Volume>;
+  using Number = double;                         ///< scalar of stiffness and of damping times
+  using Volume = StrainGroup<GreenStrains<12>>;  ///< all strains in 12 points
+  using type = std::tuple<Volume>;               ///< the groups of an element
 };
 /// Axial strain along the axis, mean shear, and the strains within a section.
 template <>
 struct ContinuumGroups<Locking::cured> {
-  using Number = double;
-  using Along = StrainGroup<AlongStrain>;
-  using Shear = StrainGroup<ShearStrains>;
-  using Across = StrainGroup<GreenStrains<2>>;
-  using type = std::tuple<Along, Shear, Across>;
+  using Number = double;                          ///< scalar of stiffness and of damping times
+  using Along = StrainGroup<AlongStrain>;         ///< E₁₁ in 12 points
+  using Shear = StrainGroup<ShearStrains>;        ///< 2E₁₂, 2E₁₃ in 12 points nearer the axis, or farther from it
+  using Across = StrainGroup<GreenStrains<2>>;    ///< the rest of Hooke's law, on the axis at both nodes
+  using type = std::tuple<Along, Shear, Across>;  ///< the groups of an element
 };
 
 }  // namespace ancf
@@ -163,10 +163,10 @@ struct Stress {
 template <Locking locking = Locking::cured>
 struct Continuum {
   static constexpr char const* name = "AncfBeam<Continuum>";
-  static constexpr bool cured = locking == Locking::cured;
+  static constexpr bool cured = locking == Locking::cured;  ///< whether D is split so that bending does not lock
 
-  using Parts = ancf::ContinuumGroups<locking>;
-  using Groups = typename Parts::type;
+  using Parts = ancf::ContinuumGroups<locking>;  ///< the strain groups by name
+  using Groups = typename Parts::type;           ///< the strain groups of an element
 
   static void check(Bar const& bar, BarConstants const&) {
     if (!bar.material)
@@ -181,6 +181,7 @@ struct Continuum {
                          "out, or take Continuum<Locking::cured>."};
   }
 
+  /// The strain groups of an element with the reference `ref`.
   static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
     Moduli const m(bar);
     double const area = c.EA / m.young, y = std::sqrt(c.EI / c.EA), z = std::sqrt(c.EI_y.value() / c.EA);
@@ -304,7 +305,7 @@ struct Continuum {
 
  private:
   struct Moduli {
-    double young, poisson, lambda, mu;
+    double young, poisson, lambda, mu;  ///< E [N/m²], ν, and Lamé's λ and μ [N/m²]
     explicit Moduli(Bar const& bar) : young(bar.material->young), poisson(bar.material->poisson) {
       mu = young / (2.0 * (1.0 + poisson));
       lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);

@@ -176,7 +176,8 @@ struct ElasticLine {
       }
     }
   };
-  using Groups = std::tuple<StrainGroup<Stretch>, StrainGroup<Bend>, StrainGroup<Section>>;
+  using Groups =
+      std::tuple<StrainGroup<Stretch>, StrainGroup<Bend>, StrainGroup<Section>>;  ///< the strain groups of an element
 
   static void check(Bar const&, BarConstants const& c) {
     require_positive(c.GA, "AncfBeam<ElasticLine>: the shear stiffness GA of the bar");
@@ -185,6 +186,7 @@ struct ElasticLine {
     require_positive(c.EI_y.value_or(c.EI), "AncfBeam<ElasticLine>: the bending stiffness EI_y of the bar");
   }
 
+  /// The strain groups of an element with the reference `ref`.
   template <class Line = ElasticLine>  // compiled where it is used
   static typename Line::Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
     Vec3 const pretension(-bar.pretension / c.EA, 0.0, 0.0), none(0.0, 0.0, 0.0);

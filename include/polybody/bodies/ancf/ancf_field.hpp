@@ -56,8 +56,8 @@ class Reference {
   /// reference volume dV/(dx dy dz) by that on the axis. (Between nodes the interpolated section is smaller by the
   /// chord than the bar's.)
   struct Gradients {
-    Mat<double, vectors, 3> g;
-    double volume;
+    Mat<double, vectors, 3> g;  ///< (8×3) a row for each nodal vector
+    double volume;              ///< relative to that on the axis
   };
   /// ∂N/∂X = [N_x N_y N_z] J₀⁻¹,  J₀ = Rᵀ [r_x r_y r_z] of the reference, R its section frame.
   template <class T = double>  // compiled where it is used
@@ -82,8 +82,8 @@ class Reference {
 
 /// An element deformed to the coordinates e.
 struct Deformation {
-  Reference const& reference;
-  Coordinates e;
+  Reference const& reference;  ///< must outlive this
+  Coordinates e;               ///< (24) of both nodes
 
   /// F: from the axes of the reference section to world axes.
   template <class T = double>  // compiled where it is used
@@ -102,7 +102,8 @@ struct Deformation {
 /// A bar's section as four points, each with a quarter of its area, that give its area and both its second moments:
 /// y = ±√(I_z/A), z = ±√(I_y/A). For a rectangle they are the Gauss points (2 × 2).
 struct SectionPoints {
-  double y, z;
+  double y, z;  ///< √(I_z/A) and √(I_y/A) [m]
+  /// Calls f(y, z) at each of the four points [m].
   template <class F>
   void for_each(F&& f) const {
     for (double const a : {-y, y})

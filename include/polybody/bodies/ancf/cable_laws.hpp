@@ -78,7 +78,7 @@ struct CableBending {
   static constexpr int strains = 3;
   static constexpr int reach = 3;
   static constexpr int difference = 2;
-  static constexpr int k = Strain::curvature_power;
+  static constexpr int k = Strain::curvature_power;  ///< the power of |r′| in κ
 
   static Vec3 stiffness(BarConstants const& c) { return {c.EI, c.EI, c.EI}; }
   static Vec3 damping(Damping const& d) { return {d.bending, d.bending, d.bending}; }

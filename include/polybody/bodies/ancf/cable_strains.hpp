@@ -19,8 +19,9 @@ T dot(Vec<T, d> const& a, Vec<T, d> const& b) {
 
 /// Green strain ε = ½ (r′·r′ − 1) and the exact geometric curvature κ = |r′ × r″|/|r′|³ (the thesis' choice).
 struct GreenStrain {
-  static constexpr int curvature_power = 3;
+  static constexpr int curvature_power = 3;  ///< k, the power of |r′| in the bending measure
 
+  /// ε and b = ∂ε/∂p at the slope p.
   template <KernelScalar T, int d>
   static void axial(Vec<T, d> const& p, Vec<T, 1>& strain, Mat<T, 1, d>& b) {
     strain[0] = detail::dot(p, p) * 0.5 - 0.5;
@@ -36,8 +37,9 @@ struct GreenStrain {
 /// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|²: linear in the resultants of the
 /// exact rod [Gerstmayr & Irschik 2008].
 struct EngineeringStrain {
-  static constexpr int curvature_power = 2;
+  static constexpr int curvature_power = 2;  ///< k, the power of |r′| in the bending measure
 
+  /// ε and b = ∂ε/∂p at the slope p.
   template <KernelScalar T, int d>
   static void axial(Vec<T, d> const& p, Vec<T, 1>& strain, Mat<T, 1, d>& b) {
     using std::sqrt;

@@ -25,7 +25,7 @@ class CholeskyCoordinates : public AddingCoordinates {
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
-  using Point = typename B::Point;
+  using Point = typename B::Point;  ///< as of the body itself
   /// Position gradients that are linear in the coordinates.
   static constexpr int gradients = [] {
     if constexpr (HasLinearPoints<B>)
@@ -34,6 +34,7 @@ class CholeskyCoordinates : public AddingCoordinates {
       return 0;
   }();
 
+  /// The body from the arguments of its own `from`. \throws InvalidInput as the constructor.
   template <class... Args>
   static CholeskyCoordinates from(Args const&... args) {
     return CholeskyCoordinates(B::from(args...));
@@ -45,7 +46,7 @@ class CholeskyCoordinates : public AddingCoordinates {
     factor();
   }
 
-  B const& base() const { return body_; }
+  B const& base() const { return body_; }  ///< the body in its own coordinates e
   double length() const { return body_.length(); }
   template <class... Args>
     requires requires(B const b, Args... args) { b.at(args...); }
@@ -65,6 +66,7 @@ class CholeskyCoordinates : public AddingCoordinates {
   {
     return by_own(body_.position_map(p), p);
   }
+  /// ∂r/∂α for α = 0, 1, 2 by all columns (3×n).
   MatX gradient_map(Point const& p, int alpha) const
     requires HasLinearPoints<B>
   {

@@ -23,10 +23,10 @@ namespace polybody {
 template <KernelScalar T>
 class MeanSectionFrame : public SectionAxes<T> {
  public:
-  using V3 = Vec<T, 3>;
-  using V6 = Vec<T, 6>;
-  using M6 = Mat<T, 6, 6>;
-  using Axes = SectionAxes<T>;
+  using V3 = Vec<T, 3>;         ///< three components
+  using V6 = Vec<T, 6>;         ///< the components w = (X, Y) of a change
+  using M6 = Mat<T, 6, 6>;      ///< a form in two changes
+  using Axes = SectionAxes<T>;  ///< holds R
   using Axes::axis, Axes::cross, Axes::dot, Axes::local, Axes::R, Axes::world;
 
   /// `share` is p in [0, 1].

@@ -16,12 +16,13 @@ using polybody::EngineeringStrain, polybody::GreenStrain;
 template <class Strain, int axial_points = 5, int bending_points = 3>
 struct HermiteCable {
   static constexpr char const* name = "planar::AncfCable";
-  static constexpr int node_columns = 4;
+  static constexpr int node_columns = 4;  ///< (x, y, x′, y′)
   static constexpr bool packs_pay = true;
-  static constexpr std::array<int, 2> section_rows = {0, 5};
-  static constexpr int gradients = 1;  ///< that are linear in the coordinates
+  static constexpr std::array<int, 2> section_rows = {0, 5};  ///< of axial strain and curvature
+  static constexpr int gradients = 1;                         ///< that are linear in the coordinates
 
   static void check(BarConstants const&) {}
+  /// The node at s [m] along a straight axis from `origin` [m], turned from world x by `angle` [rad].
   static Vec4 reference_node(Vec2 const& origin, double angle, double s) {
     double const c = std::cos(angle), d = std::sin(angle);
     return {origin[0] + s * c, origin[1] + s * d, c, d};
@@ -29,20 +30,24 @@ struct HermiteCable {
   static Vec4 rigid_velocity(Vec4 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], -omega * node[3], omega * node[2]};
   }
+  /// The map (2×8) with one factor for each nodal vector.
   template <class T = double>  // compiled where it is used
   static Mat<T, 2, 8> spread(std::array<double, 4> const& s) {
     Mat<T, 2, 8> n = Mat<T, 2, 8>::Zero();
     for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = T(s[i]);
     return n;
   }
+  /// S (2×8) of r = S e at ξ of an element of length l [m].
   template <class T = double>
   static Mat<T, 2, 8> position(double xi, double l) {
     return spread<T>(hermite_shape(xi, l).s);
   }
+  /// S′ (2×8) of r′ = S′ e.
   template <class T = double>
   static Mat<T, 2, 8> gradient(double xi, double l) {
     return spread<T>(hermite_shape(xi, l).ds);
   }
+  /// The factors of the nodal vectors in r at ξ, and their derivatives by arc length.
   static ShapeValues<4> axis_shape(double xi, double l) { return hermite_shape(xi, l); }
   /// A cable has no rotary inertia.
   template <class T = double>
@@ -75,7 +80,7 @@ struct HermiteCable {
     h = d.transpose() * (of_slope / n4) * d;
   }
 
-  using Axial = CableAxial<Strain, axial_points, 2>;
+  using Axial = CableAxial<Strain, axial_points, 2>;  ///< the law of axial strain
 
   /// Bending, p = (r′, r″), κ = c/nᵏ with c = r′ × r″, n = |r′|. Three points are the field's choice [Gerstmayr &
   /// Irschik 2008].
@@ -86,7 +91,7 @@ struct HermiteCable {
     static constexpr int strains = 1;
     static constexpr int reach = 3;
     static constexpr int difference = 2;
-    static constexpr int k = Strain::curvature_power;
+    static constexpr int k = Strain::curvature_power;  ///< the power of |r′| in κ
 
     template <class T = double>
     static Vec<T, 1> stiffness(BarConstants const& c) {
@@ -138,7 +143,7 @@ struct HermiteCable {
       return T(1.0) / (p[0] * p[0] + p[1] * p[1]);
     }
   };
-  using Groups = std::tuple<Axial, Bending>;
+  using Groups = std::tuple<Axial, Bending>;  ///< the strain laws of the cable
 };
 
 /// Planar ANCF cable: `AncfCable<>::from(bar, n)`, `AncfCable<EngineeringStrain>::from(bar, n)`.

@@ -25,7 +25,7 @@ namespace polybody {
 /// The axes of a section, and products with them.
 template <KernelScalar T>
 struct SectionAxes {
-  using V3 = Vec<T, 3>;
+  using V3 = Vec<T, 3>;  ///< three components
 
   Mat<T, 3, 3> R;  ///< columns t₁, t₂, t₃
 
@@ -41,10 +41,13 @@ struct SectionAxes {
     for (int i = 0; i < 3; ++i) y[i] = R(i, 0) * x[0] + R(i, 1) * x[1] + R(i, 2) * x[2];
     return y;
   }
+  /// The unit vector e_k, k = 0, 1, 2.
   static V3 axis(int k) { return V3(T(k == 0 ? 1.0 : 0.0), T(k == 1 ? 1.0 : 0.0), T(k == 2 ? 1.0 : 0.0)); }
+  /// a × b.
   static V3 cross(V3 const& a, V3 const& b) {
     return V3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
   }
+  /// a · b.
   static T dot(V3 const& a, V3 const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 };
 
@@ -53,12 +56,13 @@ struct SectionAxes {
 template <KernelScalar T>
 class SectionFrame : public SectionAxes<T> {
  public:
-  using V3 = Vec<T, 3>;
-  using V6 = Vec<T, 6>;
-  using M6 = Mat<T, 6, 6>;
-  using Axes = SectionAxes<T>;
+  using V3 = Vec<T, 3>;         ///< three components
+  using V6 = Vec<T, 6>;         ///< the components w = (X, Y) of a change
+  using M6 = Mat<T, 6, 6>;      ///< a form in two changes
+  using Axes = SectionAxes<T>;  ///< holds R
   using Axes::axis, Axes::cross, Axes::dot, Axes::local, Axes::R, Axes::world;
 
+  /// The frame of b and c, which must not be parallel.
   SectionFrame(V3 const& b, V3 const& c) {
     using std::sqrt;
     V3 const n = cross(b, c);

@@ -13,12 +13,13 @@ namespace polybody {
 /// Shape functions of Eq. A.1, in the element's axes with nodal coordinates (u, v, w, θx, θy, θz) at either end: the
 /// displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, the section's rotation `rotation` e.
 struct BeamShapes {
-  Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();
-  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();
-  Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();
+  Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();  ///< displacement of the axis
+  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< slopes by y, by z
+  Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();                                 ///< (θx, −w′, v′)
   Mat<double, 4, 12> strain =
       Mat<double, 4, 12>::Zero();  ///< rows: axial strain, torsion, curvature about y, about z [1/m]
 
+  /// At ξ of an element of length l [m].
   template <class = void>  // compiled where it is used
   BeamShapes(double xi, double l) {
     double const x = xi, h[4] = {1 - 3 * x * x + 2 * x * x * x, (x - 2 * x * x + x * x * x) * l,
@@ -91,9 +92,9 @@ void add_entries(Structure::Beam const& beam, Vec<double, 12> const& x, VecX& su
 
 /// A point of a beam at a Gauss point, in the body's axes, with its part of ∫ρ, ∫ρy², ∫ρz².
 struct MassPoint {
-  Vec3 at;
-  Mat<double, 3, 12> axis, y, z;
-  double m, my, mz;
+  Vec3 at;                        ///< place of the axis, from the origin of the body's axes [m]
+  Mat<double, 3, 12> axis, y, z;  ///< (3×12) displacement of the axis and its slopes by y and z
+  double m, my, mz;               ///< parts of ∫ρ [kg], ∫ρy² and ∫ρz² [kg m²]
 };
 /// The four Gauss points of a beam, which are exact for products of cubics.
 template <class = void>

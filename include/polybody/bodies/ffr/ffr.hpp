@@ -33,8 +33,8 @@ class Ffr {
   static constexpr int element_columns = Eigen::Dynamic;                ///< one element: the whole body
   static constexpr int point_columns = Eigen::Dynamic;
 
-  using Point = FfrPoint;
-  using Options = FfrOptions;
+  using Point = FfrPoint;      ///< a material point in the frame's axes
+  using Options = FfrOptions;  ///< place, terms of the inertia, stiffening and damping
 
   /// The bar in n elements, frame tied to its first end, all nodal coordinates: 6 n. \throws InvalidInput as
   /// `structure_of`.
@@ -69,9 +69,9 @@ class Ffr {
     return other;
   }
 
-  FfrIntegrals const& integrals() const { return made_of_->integrals; }
-  bool stiffens() const { return integrals().stiffens(); }
-  Index deformations() const { return integrals().size(); }
+  FfrIntegrals const& integrals() const { return made_of_->integrals; }  ///< inertia and stiffness by the deformation
+  bool stiffens() const { return integrals().stiffens(); }               ///< whether with geometric stiffening
+  Index deformations() const { return integrals().size(); }              ///< n, coordinates of the deformation
   /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 

@@ -31,7 +31,7 @@ class ReferenceConditions {
     for (int const c : {1, 2}) r.fix(b, c);
     return r;
   }
-  static ReferenceConditions none() { return {}; }
+  static ReferenceConditions none() { return {}; }  ///< holds nothing: for a free structure
 
   /// One more: component 0–2 a displacement, 3–5 a rotation.
   ReferenceConditions& fix(Index node, int component) {
@@ -66,6 +66,7 @@ class ReferenceConditions {
       if (!fixed[std::size_t(i)]) free.push_back(i);
     return free;
   }
+  /// Rigid motions of the structure if it were free: 3 `in_plane`, else 6.
   int rigid_motions() const { return in_plane_ ? 3 : 6; }
 
  private:
@@ -77,12 +78,13 @@ class ReferenceConditions {
 /// The lowest solutions of K x = ω² M x: ω² ascending, x by columns with xᵀMx = 1.
 struct LowestModes {
   VecX squared_frequencies;  ///< [rad²/s²]
-  MatX shapes;
+  MatX shapes;               ///< (N×count)
 };
 
 /// All modes by Eigen's dense solver, of which the lowest are kept: for up to some thousand coordinates.
 /// vibration/spectra_modes.hpp has one for larger structures.
 struct DenseModes {
+  /// The `count` lowest solutions.
   template <class = void>  // compiled where it is used
   LowestModes operator()(Structure::Sparse const& k, Structure::Sparse const& m, Index count) const {
     Eigen::GeneralizedSelfAdjointEigenSolver<MatX> const solver{MatX(k), MatX(m)};

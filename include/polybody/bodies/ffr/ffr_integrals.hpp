@@ -63,7 +63,7 @@ struct FfrIntegrals {
   MatX mass_matrix, stiffness, damping;     ///< (n×n)
   VecX initial_force;                       ///< (n)
 
-  Index size() const { return mass_matrix.rows(); }
+  Index size() const { return mass_matrix.rows(); }  ///< n, coordinates of the deformation
 
   /// All zero, for n deformation coordinates.
   template <class = void>  // compiled where it is used
@@ -126,6 +126,7 @@ struct FfrIntegrals {
     require(damping.data(), damping.size(), "damping");
     require(initial_force.data(), initial_force.size(), "initial_force");
   }
+  /// Whether it has the terms of geometric stiffening.
   template <class = void>
   bool stiffens() const {
     return first_second[0].size() > 0;
@@ -135,8 +136,8 @@ struct FfrIntegrals {
   /// m²].
   template <class T>
   struct Moments {
-    Vec<T, 3> c;
-    Mat<T, 3, 3> J;
+    Vec<T, 3> c;     ///< ∫ρ u
+    Mat<T, 3, 3> J;  ///< the inertia tensor
   };
 
   /// c(q) and J(q).

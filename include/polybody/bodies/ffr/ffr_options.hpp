@@ -23,7 +23,7 @@ struct FfrTerms {
                                  ///< asked for
   bool spin = true;              ///< Ĩ_o ω̄: centrifugal forces on the body as it is without deformation
 
-  bool operator==(FfrTerms const&) const = default;
+  bool operator==(FfrTerms const&) const = default;  ///< whether all switches agree
   /// c of the body deformed by x, or at q = 0.
   template <class T, class Integrals>
   Vec<T, 3> first_moment(Integrals const& of, T const* x) const {

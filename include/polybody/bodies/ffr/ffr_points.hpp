@@ -15,8 +15,8 @@ namespace polybody {
 /// Place u₀ in the frame [m], displacement S q and small rotation R q (3×n); for a point of a beam also its section's
 /// strains and stiffness.
 struct FfrPoint {
-  Vec3 u = Vec3::Zero();
-  Mat<double, 3, Eigen::Dynamic> S, R;
+  Vec3 u = Vec3::Zero();                ///< u₀ (3), in the frame's axes [m]
+  Mat<double, 3, Eigen::Dynamic> S, R;  ///< displacement [m] and small rotation [rad] by unit q
   std::array<MatX, 3> drawn;  ///< with geometric stiffening: the displacement is S q − ½ [qᵀ drawn_k q]_k (n×n)
   Mat<double, 4, Eigen::Dynamic>
       strain;                     ///< (4×n) of the axis: axial strain, torsion, curvature about y, z [1/m]; or empty
@@ -59,6 +59,7 @@ struct FfrPoint {
 /// Makes the points of a structure with e = Φ q.
 class FfrPoints {
  public:
+  /// `shapes` are Φ (N×n).
   template <class = void>
   FfrPoints(Structure structure, MatX shapes, bool stiffening) : s_(std::move(structure)), shapes_(std::move(shapes)) {
     auto const make = [](auto& part, auto const& from) { part.emplace(from); };  // compiled where it is used
@@ -73,13 +74,13 @@ class FfrPoints {
   FfrPoints(FfrPoints const&) = delete;
   FfrPoints& operator=(FfrPoints const&) = delete;
 
-  Structure const& structure() const { return s_; }
+  Structure const& structure() const { return s_; }  ///< the finite element model
   /// As the free function; zero with stiffening, which leaves nothing out, and for what is not made of beams.
   template <class = void>
   double axial_share(StructureAction const& action) const {
     return unstiffened_ ? polybody::axial_share(s_, shapes_, *unstiffened_, action) : 0.0;
   }
-  MatX const& shapes() const { return shapes_; }
+  MatX const& shapes() const { return shapes_; }  ///< Φ (N×n)
 
   /// Length of the first bar [m]. \throws InvalidInput without bars.
   double length() const {

@@ -15,6 +15,7 @@ struct FfrStack {
   MatX of_speeds;       ///< (4n×n) W_i, damping
   MatX of_rates;        ///< (n×n) the mass matrix
 
+  /// Stacks the matrices of a body.
   template <class = void>  // compiled where it is used
   static FfrStack of(FfrIntegrals const& i) {
     Index const n = i.size();
@@ -36,23 +37,24 @@ struct FfrStack {
 template <class T>
 class FfrProducts {
  public:
-  static Index room(Index n) { return 15 * n; }
+  static Index room(Index n) { return 15 * n; }  ///< numbers of scratch for n coordinates
+  /// `room` has room(n) numbers. All three arguments must outlive this.
   FfrProducts(FfrIntegrals const& integrals, FfrStack const& stack, T* room)
       : i_(integrals), stack_(stack), n_(integrals.size()), x_(room), xd_(room + 10 * n_), xdd_(room + 14 * n_) {}
 
-  void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }
-  void at_speeds(T const* speeds) { detail::times(stack_.of_speeds, speeds, xd_); }
-  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }
+  void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }  ///< takes q (n)
+  void at_speeds(T const* speeds) { detail::times(stack_.of_speeds, speeds, xd_); }         ///< takes q̇ (n)
+  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }            ///< takes q̈ (n)
 
   /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`.
   T inertia_slope(std::size_t p, Index k) const { return x_[Index(p) * n_ + k] + i_.inertia_by[p][k]; }
   /// H_i's entry k.
   T coupling(Index i, Index k) const { return x_[(6 + i) * n_ + k] + i_.coupling(i, k); }
-  T stiffness(Index k) const { return x_[9 * n_ + k]; }
+  T stiffness(Index k) const { return x_[9 * n_ + k]; }  ///< (K q)_k
   /// (W_i q̇)_k, with the sign of the force.
   T gyroscopic(Index i, Index k) const { return xd_[i * n_ + k]; }
-  T damping(Index k) const { return xd_[3 * n_ + k]; }
-  T mass(Index k) const { return xdd_[k]; }
+  T damping(Index k) const { return xd_[3 * n_ + k]; }  ///< (D q̇)_k
+  T mass(Index k) const { return xdd_[k]; }             ///< (M q̈)_k
 
  private:
   FfrIntegrals const& i_;

@@ -17,6 +17,7 @@ namespace polybody {
 ///   by the frame's rotation −A w̃,  by Ω  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),  by q  A (Ω̃² C + 2 Ω̃ ċ_q).
 class FfrTangent {
  public:
+  /// At coordinates q and speeds v of the whole body. All arguments must outlive this.
   template <class = void>  // compiled where it is used
   FfrTangent(FfrIntegrals const& integrals, FfrTerms const& terms, std::span<double const> q, std::span<double const> v)
       : i_(integrals),
@@ -32,6 +33,7 @@ class FfrTangent {
     at_.J = i_.inertia;
   }
 
+  /// Writes the tangent to k, which becomes (6 + n)×(6 + n). Call it once: sums are kept.
   template <class = void>
   void write(double ck, double cd, MatX& k) {
     Index const n = i_.size();

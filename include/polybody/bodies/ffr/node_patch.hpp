@@ -26,7 +26,7 @@ class NodePatch {
  public:
   /// Displacement (3×n) and small rotation (3×n) of a point.
   struct Motion {
-    Mat<double, 3, Eigen::Dynamic> displacement, rotation;
+    Mat<double, 3, Eigen::Dynamic> displacement, rotation;  ///< in the structure's axes
   };
 
   /// \param weights of the nodes, as the area that each stands for; none: all alike.
@@ -50,8 +50,8 @@ class NodePatch {
     by_moment_ = spread.inverse();
   }
 
-  std::vector<Index> const& nodes() const { return nodes_; }
-  Vec3 const& middle() const { return middle_; }
+  std::vector<Index> const& nodes() const { return nodes_; }  ///< which nodes of the structure
+  Vec3 const& middle() const { return middle_; }              ///< c = Σ w_i r_i, in the structure's axes [m]
 
   /// The force on node k of the patch [N] by a wrench about the point `at`.
   template <class = void>

@@ -22,7 +22,7 @@ class NumberLines {
  public:
   /// The rest of a line without the blanks at its ends: a name after numbers.
   struct Rest {
-    std::string text;
+    std::string text;  ///< without those blanks; may be empty
   };
 
   /// \throws IoError for a file that cannot be read.

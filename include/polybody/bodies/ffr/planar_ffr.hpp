@@ -26,8 +26,8 @@ class Ffr : public AddingCoordinates {
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
 
-  using Point = FfrPoint;
-  using Options = FfrOptions;
+  using Point = FfrPoint;      ///< a material point in the frame's axes
+  using Options = FfrOptions;  ///< place, terms of the inertia, stiffening and damping
 
   /// The bar in n elements, frame tied to its first end, all nodal coordinates in the plane: 3 n. The bar needs no GJ
   /// here.
@@ -68,8 +68,8 @@ class Ffr : public AddingCoordinates {
     angle_ = options.placement.planar_angle("planar::Ffr");
   }
 
-  FfrIntegrals const& integrals() const { return i_; }
-  Index deformations() const { return i_.size(); }
+  FfrIntegrals const& integrals() const { return i_; }  ///< inertia and stiffness by the deformation
+  Index deformations() const { return i_.size(); }      ///< n, coordinates of the deformation
   /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
@@ -77,6 +77,7 @@ class Ffr : public AddingCoordinates {
   Point at(double s, double y = 0.0, Index bar = 0) const {
     return made().at(s, y, 0.0, bar);
   }
+  /// The point at node i. \throws InvalidInput for a node that does not exist.
   template <class = void>
   Point node(Index i) const {
     return made().node(i);

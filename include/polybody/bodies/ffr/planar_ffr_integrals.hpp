@@ -25,9 +25,10 @@ struct FfrIntegrals {
   MatX mass_matrix, stiffness, damping;     ///< (n×n)
   VecX initial_force;                       ///< (n)
 
-  Index size() const { return mass_matrix.rows(); }
-  bool stiffens() const { return first_second[0].size() > 0; }
+  Index size() const { return mass_matrix.rows(); }             ///< n, coordinates of the deformation
+  bool stiffens() const { return first_second[0].size() > 0; }  ///< whether with geometric stiffening
 
+  /// All zero, for n deformation coordinates.
   template <class = void>  // compiled where it is used
   static FfrIntegrals zero(Index n) {
     return of(polybody::FfrIntegrals::zero(n));
@@ -83,8 +84,9 @@ struct FfrIntegrals {
   /// First moment of the deformed body about its frame's origin [kg m], and its moment of inertia [kg m²].
   template <class T>
   struct Moments {
-    T c[2], J;
+    T c[2], J;  ///< c (2) and J
   };
+  /// c(q) and J(q).
   template <class T>
   void moments(T const* x, Moments<T>& out) const {
     out.J = T(inertia);
@@ -103,12 +105,14 @@ struct FfrIntegrals {
     for (Index j = 0; j < m.rows(); ++j) sum -= x[j] * m(j, k);
     return sum;
   }
+  /// Entry k of H.
   template <class T>
   T coupling_at(T const* x, Index k) const {
     T sum(coupling[k]);
     for (Index j = 0; j < size(); ++j) sum += x[j] * coupling_by(j, k);
     return sum;
   }
+  /// Entry k of J_q = ∂J/∂q.
   template <class T>
   T inertia_slope(T const* x, Index k) const {
     T sum(0.0);

@@ -26,20 +26,20 @@ inline constexpr int symmetric_place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
 /// Nodal displacements (3) or displacements and small rotations (6) of every node, in the body's axes.
 struct Structure {
-  using Sparse = Eigen::SparseMatrix<double>;
+  using Sparse = Eigen::SparseMatrix<double>;  ///< by nodal coordinates
 
   /// A straight Euler–Bernoulli beam between two nodes: kept for strains and stresses, material points between nodes,
   /// and the stiffness that an axial force adds.
   struct Beam {
     Index a = 0, b = 0;      ///< nodes
-    Mat3 axes;               ///< (3×3) columns: along the beam, and y, z of the section
+    Mat3 axes;               ///< (3×3) columns: unit vectors along the beam, and along y, z of the section
     double length = 0.0;     ///< [m]
     BarConstants constants;  ///< of the section
     Index bar = 0;           ///< which bar it belongs to
     double start = 0.0;      ///< distance of node a from that bar's first end [m]
   };
 
-  int per_node = 6;
+  int per_node = 6;                 ///< coordinates of a node: 3 or 6
   std::vector<Vec3> nodes;          ///< [m]
   Sparse stiffness;                 ///< K (N×N)
   Sparse damping;                   ///< (N×N)
@@ -53,7 +53,7 @@ struct Structure {
   std::vector<Beam> beams;                    ///< empty for a structure from matrices
   std::vector<double> bar_lengths;            ///< of each bar [m]
 
-  Index size() const { return per_node * Index(nodes.size()); }
+  Index size() const { return per_node * Index(nodes.size()); }  ///< N, nodal coordinates
   /// M = Σ ∫ρ S_kᵀ S_k.
   template <class = void>  // compiled where it is used
   Sparse mass_matrix() const {

@@ -20,9 +20,11 @@ namespace polybody {
 class Direct {
  public:
   static constexpr bool objective = false;
+  /// Ψ is relative to the axes of `placement`.
   template <class = void>  // compiled where it is used
   explicit Direct(Placement const& placement) : from_(quaternion_of(placement.axes)), axes_(placement.axes) {}
 
+  /// The section in the middle, ξ = ½.
   template <StateScalar T>
   void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     at<T>(0.5, a, b, out);
@@ -110,6 +112,7 @@ class Direct {
     }
   }
 
+  /// R, K and K′ at ξ of an element of length l [m].
   template <class T>  // compiled where it is used
   SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
     Vec<T, 3> const first = vector<T>(a), second = vector<T>(b, first), psi = between<T>(first, second, xi);

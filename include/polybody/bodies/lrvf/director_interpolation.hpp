@@ -36,13 +36,15 @@ struct DirectorSection {
 template <StrainQuadrature Quadrature>
 class ElasticElements<Directors, Quadrature> {
  public:
+  /// For a number of elements, each of arc length l [m].
   ElasticElements(LrvfSection const& section, Placement const&, double l, Index elements)
       : sections_(std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points)),
         l_(l),
         free_(std::size_t(elements)) {}
 
-  Index size() const { return Index(free_.size()); }
+  Index size() const { return Index(free_.size()); }  ///< how many elements
 
+  /// Element e is free of stress in q, where its nodes are `chord` apart [m].
   void set_free(Index e, std::span<double const> q, double chord) {
     Free& free = free_[std::size_t(e)];
     free.chord = chord;
@@ -83,11 +85,13 @@ class ElasticElements<Directors, Quadrature> {
       for (int r = 0; r < 12; ++r) k(r, c) = -f[r].d[c];
   }
 
+  /// Strain energy of element e [J].
   double energy(Index e, std::span<double const> q) const {
     double sum = 0.0;
     for (int i = 0; i < count; ++i) sum += sections_[std::size_t(i)].energy(strains(i, e, q));
     return l_ * sum;
   }
+  /// (Γ, K) in the middle of element e [1], [1/m].
   Vec6 strains(Index e, std::span<double const> q) const { return strains(count, e, q); }
 
  private:

@@ -60,13 +60,14 @@ struct FreeStrain {
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
 class ElasticElements {
  public:
+  /// For a number of elements, each of arc length l [m], of a bar with this placement.
   ElasticElements(LrvfSection const& section, Placement const& placement, double l, Index elements)
       : interpolation_(placement),
         sections_(std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points)),
         l_(l),
         free_(std::size_t(elements)) {}
 
-  Index size() const { return Index(free_.size()); }
+  Index size() const { return Index(free_.size()); }  ///< how many elements
 
   /// Element e is free of stress in q, where its nodes are c₀ apart.
   void set_free(Index e, std::span<double const> q, double chord) {

@@ -30,16 +30,18 @@ namespace polybody {
 class Incremental {
  public:
   static constexpr bool objective = false;
-  explicit Incremental(Placement const&) {}
+  explicit Incremental(Placement const&) {}  ///< the placement has no influence
 
   template <StateScalar T>
   struct Section : SectionMotion<T> {};
 
+  /// The middle in the reference, on the shortest way from node to node: l K = log(R₁ᵀR₂).
   template <class T>  // compiled where it is used
   static CarriedSection<T> between(Quaternion<T> const& a, Quaternion<T> const& b) {
     Vec<T, 3> const phi = quaternion_minus<T>(b, a);
     return {quaternion_plus<T>(a, scaled<T>(phi, 0.5)), phi};
   }
+  /// The middle after increments δ₁ and δ₂ of the nodes [rad].
   template <StateScalar T>
   static CarriedSection<T> plus(CarriedSection<T> const& s, Vec<T, 3> const& first, Vec<T, 3> const& second) {
     Vec<T, 3> const mean(0.5 * (first[0] + second[0]), 0.5 * (first[1] + second[1]), 0.5 * (first[2] + second[2]));
@@ -85,10 +87,12 @@ class Incremental {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) out.spin(i, j) = out.spin(i, 3 + j) = T(i == j ? 0.5 : 0.0);
   }
+  /// Ω˙ for Ω₁˙ = Ω₂˙ = 0, which is zero.
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const&, Vec<T, 6> const&) const {
     return detail::zeros<Vec<T, 3>>();
   }
+  /// The derivative of Pᵀx, which is zero, for P is constant.
   template <class T>  // compiled where it is used
   void spin_gradient(Section<T> const&, Vec<T, 3> const&, Mat<T, 6, 6>& out) const {
     out = detail::zeros<Mat<T, 6, 6>>();

@@ -43,9 +43,9 @@ class Lrvf {
 
   /// A material point: element, place ξ ∈ [0, 1] on it, and (y, z) off the axis [m].
   struct Point {
-    Index element = 0;
-    double xi = 0.0;
-    double y = 0.0, z = 0.0;
+    Index element = 0;        ///< counted from 0, from the bar's first end
+    double xi = 0.0;          ///< ξ ∈ [0, 1], from its first node to its second
+    double y = 0.0, z = 0.0;  ///< in the section's axes [m]
   };
 
   /// The straight bar in n equal elements. \throws InvalidInput for n < 1 or a stiffness that is missing (GA, GJ, ...).

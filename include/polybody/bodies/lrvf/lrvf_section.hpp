@@ -12,12 +12,12 @@ namespace polybody {
 /// An element in a state, by one of its sections.
 template <StateScalar T>
 struct StrainedSection {
-  StrainSection<T> at;
-  double chord = 1.0;  ///< c₀, distance of the nodes in the reference [m]
-  Vec<T, 3> gamma;     ///< R_mᵀ r′
-  Vec<T, 3> rate;      ///< R_mᵀ ṙ′, for damping
-  Vec<T, 6> turning;   ///< (Ω₁, Ω₂), for damping
-  Vec<T, 3> n, m;      ///< Γ and l K less those of the reference; after `stress` the section forces N, M
+  StrainSection<T> at;  ///< the section, and how it follows the nodes
+  double chord = 1.0;   ///< c₀, distance of the nodes in the reference [m]
+  Vec<T, 3> gamma;      ///< R_mᵀ r′
+  Vec<T, 3> rate;       ///< R_mᵀ ṙ′, for damping
+  Vec<T, 6> turning;    ///< (Ω₁, Ω₂), for damping
+  Vec<T, 3> n, m;       ///< Γ and l K less those of the reference; after `stress` the section forces N, M
 };
 
 /// Stiffness and damping of a section: section forces and tangent from the strains of an element.
@@ -46,7 +46,7 @@ class LrvfSection {
     return out;
   }
 
-  bool damped() const { return damped_; }
+  bool damped() const { return damped_; }  ///< whether a damping time is not zero
 
   /// Stress = C (strain + τ strain˙), in place of the strains in s.n and s.m.
   template <StateScalar T>

@@ -14,20 +14,22 @@ namespace polybody::planar {
 /// The Theory of `Lrvf`.
 struct SimoVuQuoc {
   static constexpr char const* name = "planar::Lrvf";
-  static constexpr int node_columns = 3;
-  static constexpr bool packs_pay = false;  ///< most of its time goes into one sine and one cosine
-  static constexpr std::array<int, 3> section_rows = {0, 1, 5};
-  static constexpr int gradients = 0;  ///< that are linear in the coordinates
+  static constexpr int node_columns = 3;                         ///< (x, y, θ)
+  static constexpr bool packs_pay = false;                       ///< most of its time goes into one sine and one cosine
+  static constexpr std::array<int, 3> section_rows = {0, 1, 5};  ///< of ε, γ and κ
+  static constexpr int gradients = 0;                            ///< that are linear in the coordinates
 
   static void check(BarConstants const& c) {
     require_positive(c.GA, "planar::Lrvf: the shear stiffness GA of the bar");
   }
+  /// The node at s [m] along a straight axis from `origin` [m], turned from world x by `angle` [rad].
   static Vec3 reference_node(Vec2 const& origin, double angle, double s) {
     return {origin[0] + s * std::cos(angle), origin[1] + s * std::sin(angle), angle};
   }
   static Vec3 rigid_velocity(Vec3 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], omega};
   }
+  /// S (2×6) of r = S e at ξ.
   template <class T = double>  // compiled where it is used
   static Mat<T, 2, 6> position(double xi, double) {
     Mat<T, 2, 6> n = Mat<T, 2, 6>::Zero();
@@ -103,14 +105,14 @@ struct SimoVuQuoc {
       h(2, 2) -= (c * p[0] + s * p[1]) * n[0] + (c * p[1] - s * p[0]) * n[1];
     }
   };
-  using Groups = std::tuple<Section>;
+  using Groups = std::tuple<Section>;  ///< the strain laws of the beam
 };
 
 /// The strains (ε, γ, κ) of a section from `first` on, `count` of them, in the points of Q where they count.
 template <StrainQuadrature Q, int first, int count>
 struct SectionIn {
-  using All = SimoVuQuoc::Section;
-  static constexpr int components = All::components, parameters = All::parameters, reach = All::reach;
+  using All = SimoVuQuoc::Section;  ///< three strains
+  static constexpr int components = All::components, parameters = All::parameters, reach = All::reach;  ///< as All
   static constexpr int strains = count;
   static constexpr auto rule = detail::rule_of<Q, detail::strain_weights[std::size_t(first)]>();
   static constexpr int points = int(rule.size());
@@ -144,11 +146,14 @@ struct SectionIn {
 /// The Theory of `LrvfBy`: strains whose points are the same make one group.
 template <StrainQuadrature Q>
 struct SimoVuQuocBy : SimoVuQuoc {
-  static constexpr bool together = detail::alike<Q>(&StrainPoint::axial, &StrainPoint::shear);
-  static constexpr bool all = together && detail::alike<Q>(&StrainPoint::shear, &StrainPoint::curvature);
-  using Three = std::tuple<SectionIn<Q, 0, 1>, SectionIn<Q, 1, 1>, SectionIn<Q, 2, 1>>;
-  using Two = std::tuple<SectionIn<Q, 0, 2>, SectionIn<Q, 2, 1>>;
-  using Groups = std::conditional_t<all, std::tuple<SectionIn<Q, 0, 3>>, std::conditional_t<together, Two, Three>>;
+  static constexpr bool together =
+      detail::alike<Q>(&StrainPoint::axial, &StrainPoint::shear);  ///< ε and γ have the same points
+  static constexpr bool all =
+      together && detail::alike<Q>(&StrainPoint::shear, &StrainPoint::curvature);  ///< ε, γ and κ have the same points
+  using Three = std::tuple<SectionIn<Q, 0, 1>, SectionIn<Q, 1, 1>, SectionIn<Q, 2, 1>>;  ///< a law for each strain
+  using Two = std::tuple<SectionIn<Q, 0, 2>, SectionIn<Q, 2, 1>>;  ///< a law for ε and γ, another one for κ
+  using Groups = std::conditional_t<all, std::tuple<SectionIn<Q, 0, 3>>,
+                                    std::conditional_t<together, Two, Three>>;  ///< as few laws as the points allow
 };
 template <>
 struct SimoVuQuocBy<Reduced> : SimoVuQuoc {};

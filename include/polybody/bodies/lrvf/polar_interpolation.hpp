@@ -50,22 +50,24 @@ struct RelativeTurn {
 class Polar {
  public:
   static constexpr bool objective = true;
-  explicit Polar(Placement const&) {}
+  explicit Polar(Placement const&) {}  ///< the placement has no influence
 
   /// A section in a state, with what its strains are differentiated by.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
-    double xi;
-    Quaternion<T> p;  ///< of the nodes, relative
-    Vec<T, 3> g;      ///< tan(α/2) n
-    T rho;
+    double xi;            ///< ξ ∈ [0, 1]
+    Quaternion<T> p;      ///< of the nodes, relative
+    Vec<T, 3> g;          ///< tan(α/2) n
+    T rho;                ///< ρ = |1 − ξ + ξ e^{iφ}|
     Mat<T, 3, 3> turned;  ///< exp(α n)
   };
 
+  /// The section in the middle, ξ = ½.
   template <StateScalar T>
   void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     at<T>(0.5, a, b, out);
   }
+  /// By dual numbers.
   template <class T>  // compiled where it is used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
@@ -86,6 +88,7 @@ class Polar {
     }
   }
 
+  /// R(ξ), and its P, between nodes with the rotations a and b.
   template <StateScalar T>
   void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
     place<T>(xi, a, detail::RelativeTurn<T>(a, b), out);

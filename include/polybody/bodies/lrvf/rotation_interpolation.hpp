@@ -123,16 +123,17 @@ concept RotationInterpolation =
 class Objective {
  public:
   static constexpr bool objective = true;
-  explicit Objective(Placement const&) {}
+  explicit Objective(Placement const&) {}  ///< the placement has no influence
 
   /// A section in a state, with what its strains are differentiated by.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
-    double xi;
+    double xi;                               ///< ξ ∈ [0, 1]
     Vec<T, 3> phi, part;                     ///< φ, ξφ
     Mat<T, 3, 3> turned, jacobian, inverse;  ///< exp(ξφ), Jr(ξφ), Jr⁻¹(φ)
   };
 
+  /// The middle between nodes with the rotations a and b, in closed form.
   template <StateScalar T>
   void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     Vec<T, 3> const c = quarter<T>(a, b);
@@ -155,6 +156,7 @@ class Objective {
     }
   }
 
+  /// Derivatives of the middle's P and Q, in closed form.
   template <class T>  // compiled where it is used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
@@ -258,6 +260,7 @@ class Objective {
       }
   }
 
+  /// R, K = φ/l and K′ = 0 at ξ of an element of length l [m].
   template <class T>  // compiled where it is used
   SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
     Vec<T, 3> const phi = quaternion_minus<T>(b, a);

@@ -68,6 +68,7 @@ concept StrainQuadrature = requires { requires detail::is_rule(Q::points); };
 
 /// All strains in the middle: nothing locks.
 struct Reduced {
+  /// ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 1> points = {{{0.5, 1.0, 1.0, 1.0}}};
 };
 
@@ -75,6 +76,7 @@ struct Reduced {
 /// the points lean by ±φ/√12 against the straight chord, which counts as shear. Bending is then stiffer by the factor
 /// 1 + GA l²/(12 EI).
 struct Full {
+  /// ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 2> points = {
       {{gauss<2>[0].xi, 0.5, 0.5, 0.5}, {gauss<2>[1].xi, 0.5, 0.5, 0.5}}};
 };
@@ -89,6 +91,7 @@ struct Full {
 /// `Objective` has one K in the whole element, and the plane one κ: there this is `Reduced`, in space at five to ten
 /// times the cost.
 struct Selective {
+  /// ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.0, 0.0, 0.5}, {0.5, 1.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.0, 0.0, 0.5}}};
 };

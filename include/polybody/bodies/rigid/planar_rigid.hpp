@@ -15,7 +15,7 @@ class Rigid : public AddingCoordinates {
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = 3;
   static constexpr int point_columns = 3;
-  static constexpr RigidLayout layout = RigidLayout::plane;
+  static constexpr RigidLayout layout = RigidLayout::plane;  ///< (x, y, θ), which `Recursive` joints may give
 
   /// A material point, in body axes from the centre of mass [m].
   struct Point {
@@ -39,6 +39,7 @@ class Rigid : public AddingCoordinates {
     require_positive(mass_, "planar::Rigid: the mass");
     require_not_negative(inertia_, "planar::Rigid: the inertia");
   }
+  /// The same of mass [kg] and inertia about the centre of mass [kg m²]. \throws InvalidInput likewise.
   template <class = void>  // compiled where it is used
   Rigid(double mass, double inertia, Placement const& placement = {})
       : Rigid(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}

@@ -96,12 +96,13 @@ class RigidShape {
     require_inertia(inertia_, "Rigid");
     placement_.check("Rigid");
   }
+  /// The same; the inertia is about the centre of mass, in body axes [kg m²].
   template <class = void>  // compiled where it is used
   RigidShape(double mass, Mat3 const& inertia, Placement const& placement = {})
       : RigidShape(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
 
-  double mass() const { return mass_; }
-  Mat3 const& inertia() const { return inertia_; }
+  double mass() const { return mass_; }             ///< [kg]
+  Mat3 const& inertia() const { return inertia_; }  ///< J (3×3) about the centre of mass, body axes [kg m²]
 
   /// The point s from the first end of the bar, (y, z) off its axis. \throws InvalidInput outside the bar.
   template <class = void>  // compiled where it is used
@@ -127,6 +128,7 @@ class RigidShape {
   explicit RigidShape(Bar const& bar) : RigidShape(parameters(bar)) {
     length_ = bar.length;
   }
+  /// Mass properties of the bar.
   template <class T = double>  // compiled where it is used
   static Parameters parameters(Bar const& bar) {
     BarConstants const c = constants(bar);
@@ -141,12 +143,14 @@ class RigidShape {
     return {.mass = m, .inertia = inertia, .placement = place};
   }
 
+  /// J x, in body axes.
   template <StateScalar T>
   Vec<T, 3> inertia_times(Vec<T, 3> const& x) const {
     Vec<T, 3> y;
     for (int i = 0; i < 3; ++i) y[i] = x[0] * inertia_(i, 0) + x[1] * inertia_(i, 1) + x[2] * inertia_(i, 2);
     return y;
   }
+  /// Column j of J.
   template <class T>
   Vec<T, 3> axis_of_inertia(int j) const {
     return {inertia_(0, j), inertia_(1, j), inertia_(2, j)};
@@ -159,10 +163,10 @@ class RigidShape {
     out[first + 2] = a[0] * b[1] - a[1] * b[0];
   }
 
-  double mass_;
-  Mat3 inertia_;
-  Placement placement_;
-  double length_ = 0.0;
+  double mass_;          ///< [kg]
+  Mat3 inertia_;         ///< J about the centre of mass, body axes [kg m²]
+  Placement placement_;  ///< of the centre of mass
+  double length_ = 0.0;  ///< of the bar; 0 where there is none [m]
 };
 
 /// How `Rigid` writes its rotation: unit quaternion with body-frame angular velocity as speeds.
@@ -179,7 +183,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = 6;
   static constexpr int point_columns = 6;
-  static constexpr RigidLayout layout = RigidLayout::quaternion;
+  static constexpr RigidLayout layout =
+      RigidLayout::quaternion;  ///< (r, quaternion), which `Recursive` joints may give
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
@@ -299,7 +304,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   template <StateScalar T>
   struct Pose {
     Vec<T, 3> r, v, w;  ///< of the centre of mass, world axes
-    Mat<T, 3, 3> A;
+    Mat<T, 3, 3> A;     ///< from body to world axes
   };
 
   template <StateScalar T>

@@ -23,7 +23,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   static constexpr bool constant_mass = false;
   static constexpr int element_columns = 7;
   static constexpr int point_columns = 7;
-  static constexpr int own_rows = 1;
+  static constexpr int own_rows = 1;  ///< the norm, |θ| = 1
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
@@ -33,7 +33,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     return Rigid(bar);
   }
 
-  Point const& local(Point const& p) const { return p; }
+  Point const& local(Point const& p) const { return p; }  ///< p itself: every point touches all columns
   Index coordinates() const { return 7; }
   Index speeds() const { return 7; }
 
@@ -132,14 +132,17 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   void own_gap(std::span<T const> q, Vec<T, 1>& phi) const {
     phi[0] = (q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]) * 0.5 - 0.5;
   }
+  /// G (1×7).
   template <StateScalar T>
   void own_map(std::span<T const> q, Mat<T, 1, 7>& g) const {
     for (int i = 0; i < 7; ++i) g(0, i) = i < 3 ? T(0.0) : q[i];
   }
+  /// γ, with Φ̈ = G v̇ + γ.
   template <StateScalar T>
   void own_gamma(std::span<T const>, std::span<T const> v, Vec<T, 1>& gamma) const {
     gamma[0] = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];
   }
+  /// ∂(Gᵀλ)/∂q (7×7).
   template <class T>  // compiled where it is used
   void own_stiffness(std::span<double const>, Vec<T, 1> const& lambda, Mat<T, 7, 7>& k) const {
     k.setZero();

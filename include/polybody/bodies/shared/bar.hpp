@@ -64,11 +64,11 @@ struct Bar {
   Required<double> length;  ///< [m], of 1e-100 to 1e100: beyond, its cubes are no numbers
   std::variant<std::monostate, Circle, Rectangle> section = {};  ///< none: the bar is given by `constants`
   std::optional<Material> material = {};                         ///< of the section
-  std::optional<BarConstants> constants = {};
-  Placement placement = {};                 ///< of its first end, along x
-  Damping damping = {};                     ///< of the material
-  double pretension = 0.0;                  ///< axial force in the reference configuration [N]
-  std::optional<double> shear_factor = {};  ///< k of the section's shear stiffness k G A; Cowper's if not given
+  std::optional<BarConstants> constants = {};                    ///< instead of a section
+  Placement placement = {};                                      ///< of its first end, along x
+  Damping damping = {};                                          ///< of the material
+  double pretension = 0.0;                                       ///< axial force in the reference configuration [N]
+  std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; Cowper's if not given
 };
 
 /// A curved reference: the placement of the section at arc length s ∈ [0, length], in the bar's own axes (x along the

@@ -133,7 +133,7 @@ Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) 
 /// Coordinates, speeds and accelerations of a body.
 template <StateScalar T = double>
 struct BodyMotion {
-  std::span<T const> q, v, a = {};
+  std::span<T const> q, v, a = {};  ///< q, v and v̇ of the whole body
 };
 
 /// A body of one element that adds M v̇ − f, less its weight under g, to its `speeds` rows itself: where that is little,
@@ -146,8 +146,9 @@ concept AddsUnbalance =
 /// with the body's data, so that no step allocates.
 template <class B, class T>
 struct ForceScratch {
-  Vec<T, B::element_columns> x, force, weight;
-  VecXOf<T> room;  ///< for a body that balances at once
+  Vec<T, B::element_columns> x, force, weight;  ///< for an element: M a − f, force and weight
+  VecXOf<T> room;                               ///< for a body that balances at once
+  /// Takes the sizes that are known at run time only from the body.
   explicit ForceScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
       for (auto* const v : {&x, &force, &weight}) v->resize(body.speeds());
@@ -157,7 +158,8 @@ struct ForceScratch {
 /// Room for an element's tangent and mass.
 template <class B>
 struct TangentScratch {
-  Mat<double, B::element_columns, B::element_columns> k, m;
+  Mat<double, B::element_columns, B::element_columns> k, m;  ///< tangent and mass
+  /// Takes the sizes that are known at run time only from the body.
   explicit TangentScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
       for (auto* const matrix : {&k, &m}) matrix->resize(body.speeds(), body.speeds());

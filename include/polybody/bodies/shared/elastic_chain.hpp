@@ -14,7 +14,7 @@ namespace polybody {
 template <int columns, class Groups>
 class ElasticChain : public NodeChain<columns> {
  public:
-  using Chain = NodeChain<columns>;
+  using Chain = NodeChain<columns>;  ///< the nodes and their columns
   using Chain::element_columns, Chain::first_column;
   template <class T>
   using Element = Vec<T, element_columns>;
@@ -70,20 +70,23 @@ class ElasticChain : public NodeChain<columns> {
   }
 
  protected:
+  /// n elements; groups may follow.
   explicit ElasticChain(Index n, std::vector<Groups> groups = {}) : Chain(n), groups_(std::move(groups)) {}
-  void add_groups(Groups const& groups) { groups_.push_back(groups); }
-  void set_groups(std::vector<Groups> groups) { groups_ = std::move(groups); }
+  void add_groups(Groups const& groups) { groups_.push_back(groups); }          ///< of one more element
+  void set_groups(std::vector<Groups> groups) { groups_ = std::move(groups); }  ///< one, or one for each element
 
-  Groups const& groups_of(Index e) const { return groups_[alike() ? 0 : std::size_t(e)]; }
+  Groups const& groups_of(Index e) const { return groups_[alike() ? 0 : std::size_t(e)]; }  ///< of element e
   /// An element's own part of coordinates or speeds x.
   template <class T>
   Element<T> of_element(Index e, std::span<T const> x) const {
     return part<element_columns>(x, first_column(e));
   }
+  /// The same for spans of `double`.
   Element<double> of_element(Index e, std::span<double const> x) const {
     return part<element_columns>(x, first_column(e));
   }
 
+  /// Calls f(group) for the groups of element e.
   template <class F>
   void for_each_group(Index e, F&& f) const {
     std::apply([&](auto const&... group) { (f(group), ...); }, groups_of(e));

@@ -32,11 +32,11 @@ concept ComparesElements = AlikeElements<B> && requires(B const b) {
 /// Elements [begin, end) of a body. `begin` is a multiple of `pack_size`, and `end` too unless it is the number of
 /// elements.
 struct ElementRange {
-  Index begin, end;
+  Index begin, end;  ///< the first element, and one past the last
 };
 /// Coefficients of cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
 struct ElementCoefficients {
-  double mass, damping, stiffness;
+  double mass, damping, stiffness;  ///< cm, cd and ck, factors of M, D and K
 };
 
 namespace detail {

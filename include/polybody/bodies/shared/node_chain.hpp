@@ -22,7 +22,7 @@ struct AddingCoordinates {
 template <int columns>
 class NodeChain : public AddingCoordinates {
  public:
-  static constexpr int node_columns = columns;
+  static constexpr int node_columns = columns;  ///< coordinates of a node
   static constexpr int element_columns = 2 * columns;
   static constexpr int point_columns = element_columns;
   static constexpr int element_stride = columns;
@@ -46,8 +46,8 @@ class NodeChain : public AddingCoordinates {
   }
 
  protected:
-  explicit NodeChain(Index n) : n_(n) {}
-  Index n_;
+  explicit NodeChain(Index n) : n_(n) {}  ///< n elements
+  Index n_;                               ///< how many elements
 };
 
 }  // namespace polybody

@@ -60,20 +60,20 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   static constexpr World world = World::plane;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = true;
-  using Chain = ElasticChain<Theory::node_columns, typename Groups::type>;
+  using Chain = ElasticChain<Theory::node_columns, typename Groups::type>;  ///< nodes and strain groups
   using Chain::coordinates, Chain::element_columns, Chain::elements, Chain::first_column, Chain::node_columns;
   static constexpr bool packs_pay = Theory::packs_pay;
   template <class T>
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
-  using PointMap = Mat<double, 2, element_columns>;
+  using PointMap = Mat<double, 2, element_columns>;    ///< S of r = S e, 2×n
   static constexpr int gradients = Theory::gradients;  ///< of the position, that are linear in the coordinates
 
   /// A material point: element, place ξ ∈ [0, 1] on it, and distance y off the axis [m].
   struct Point {
-    Index element = 0;
-    double xi = 0.0;
-    double y = 0.0;
+    Index element = 0;  ///< counted from 0, from the bar's first end
+    double xi = 0.0;    ///< ξ ∈ [0, 1], from its first node to its second
+    double y = 0.0;     ///< along the section's normal [m]
   };
 
   /// The bar in n equal elements. \throws InvalidInput for n < 1, a placement that leaves the plane, or a

@@ -22,7 +22,7 @@ concept SmoothAxis = std::derived_from<B, AddingCoordinates> && requires(B const
 
 /// Which of the sliding points of a body.
 struct Slider {
-  Index index = 0;
+  Index index = 0;  ///< counted from 0
 };
 
 /// A cable or beam with sliding points: `Sliding(AncfCable<>::from(bar, n), {s₁, …})`, s [m] along the axis at the
@@ -49,8 +49,8 @@ class Sliding : public B {
 
   /// A material point, or a slider.
   struct Point {
-    typename B::Point material = {};
-    Index slider = -1;  ///< its column; −1 for a material point
+    typename B::Point material = {};  ///< of the body itself; without meaning for a slider
+    Index slider = -1;                ///< its column; −1 for a material point
   };
 
   /// \throws InvalidInput for places outside the body.
@@ -58,7 +58,7 @@ class Sliding : public B {
     for (double& s : places_) s = require_inside(s, B::length(), "Sliding: the place");
   }
 
-  Index sliders() const { return Index(places_.size()); }
+  Index sliders() const { return Index(places_.size()); }  ///< how many sliding points
   /// The coordinate (and the speed) of a slider's place. \throws InvalidInput for a slider that the body has not.
   Index column_of(Slider slider) const {
     if (slider.index < 0 || slider.index >= sliders())
@@ -73,6 +73,7 @@ class Sliding : public B {
     return {B::at(args...), -1};
   }
   Point at(Slider slider) const { return {{}, column_of(slider)}; }
+  /// As the body's points, but a slider has no axes.
   static Observes observes_at(Point const& p) { return p.slider < 0 ? observes : Observes::point; }
 
   Index coordinates() const { return B::coordinates() + sliders(); }

@@ -6,7 +6,7 @@ namespace polybody {
 /// How strains are taken over a step that conserves energy: ε̄ + decay Δε, and ε̇ = rate Δε.
 struct StepMeans {
   double rate = 0.0;   ///< 1/h [1/s]
-  double decay = 0.0;  ///< 0 conserves energy; above it C Δε·Δε is lost so many times
+  double decay = 0.0;  ///< factor of C Δε·Δε, the energy that is lost; 0 conserves energy
 };
 
 /// A body of constant mass whose coordinates form a vector space, and which gives its elastic and damping force over a

@@ -26,9 +26,9 @@ class StrainGroup : public StrainPoints<Law> {
 
  public:
   using Points::np, Points::m, Points::Points;
-  using typename Points::P;
+  using typename Points::P;  ///< the map from e to p
   template <class T, int n>
-  using Coordinates = typename P::template Coordinates<T, n>;
+  using Coordinates = typename P::template Coordinates<T, n>;  ///< ê of an element
 
   /// f += the group's force at coordinates x, rates xd.
   template <KernelScalar T, int n>
@@ -63,8 +63,8 @@ class StrainGroup : public StrainPoints<Law> {
   /// are read.
   template <KernelScalar T>
   struct Prepared {
-    using Each = std::array<Mat<T, np, np>, std::size_t(Law::points)>;
-    std::conditional_t<quadratic, Mat<T, P::d * P::reach, P::d * P::reach>, Each> h;
+    using Each = std::array<Mat<T, np, np>, std::size_t(Law::points)>;                ///< h of each point
+    std::conditional_t<quadratic, Mat<T, P::d * P::reach, P::d * P::reach>, Each> h;  ///< h, or K̂
     Prepared() {}  // NOLINT(modernize-use-equals-default): a tuple of defaulted ones would fill them with zeros
   };
 
@@ -124,6 +124,7 @@ class StrainGroup : public StrainPoints<Law> {
         }
     }
   }
+  /// `block` += the group's share of K̂_vw.
   template <KernelScalar T>
   void add_block(int v, int w, Prepared<T> const& k, typename P::template Block<T>& block) const
     requires quadratic

@@ -17,15 +17,16 @@
 
 namespace polybody {
 
-/// The linear map from an element's coordinates to the parameters of its strains, N, and products with it.
+/// The linear map from an element's coordinates to the parameters of its strains, N, and products with it. A shape has
+/// d entries, p has np; each of the shapes reads `reach` nodal vectors at most.
 template <class Law>
 class StrainMap {
  public:
-  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;
+  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< see above
 
   using Factors = Mat<double, shapes, reach>;  ///< N
   template <class T>
-  using Block = Mat<T, d, d>;
+  using Block = Mat<T, d, d>;  ///< for two nodal vectors
 
   /// The vector that is read against the first one; 0: there is none.
   static constexpr int difference = [] {
@@ -34,6 +35,7 @@ class StrainMap {
     else
       return 0;
   }();
+  /// Whether ê_v is the difference e_v − e_0.
   static constexpr bool is_difference(int v) { return difference > 0 && v == difference; }
 
   /// f(i, j) for the entries of a block.
@@ -48,11 +50,13 @@ class StrainMap {
   /// ê.
   template <class T, int n>
   struct Coordinates {
-    Vec<T, n> const& e;
-    Vec<T, d> step;  ///< the difference
+    Vec<T, n> const& e;  ///< must outlive this
+    Vec<T, d> step;      ///< the difference
+    /// Takes the difference of x.
     explicit Coordinates(Vec<T, n> const& x) : e(x) {
       for (int i = 0; i < d; ++i) step[i] = difference > 0 ? x[d * difference + i] - x[i] : x[i];
     }
+    /// Entry i of ê_v.
     T const& operator()(int v, int i) const { return is_difference(v) ? step[i] : e[d * v + i]; }
   };
 
@@ -124,12 +128,14 @@ class StrainMap {
       }
   }
 
+  /// One more than the last nodal vector that is read.
   static constexpr int vectors = [] {
     int most = 0;
     for (int s = 0; s < shapes; ++s)
       for (int j = 0; j < reach; ++j) most = std::max(most, Law::vector(s, j));
     return most + 1;
   }();
+  /// Number of factors in N.
   static constexpr int count = [] {
     int sum = 0;
     for (int s = 0; s < shapes; ++s)
@@ -138,13 +144,14 @@ class StrainMap {
   }();
   /// All pairs of factors, those of block (v, w) from `first[v][w]` to `last[v][w]`.
   struct Pair {
-    int s, j, t, l;
+    int s, j, t, l;  ///< of N_sj N_tl
   };
   /// All pairs of factors in the order of the blocks.
   struct Pairs {
-    std::array<Pair, std::size_t(count* count)> pairs{};
-    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};
+    std::array<Pair, std::size_t(count* count)> pairs{};                                      ///< all of them
+    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};  ///< of a block in `pairs`
   };
+  /// Made at compile time.
   static constexpr Pairs table = [] {
     Pairs out;
     int next = 0;
@@ -160,6 +167,7 @@ class StrainMap {
       }
     return out;
   }();
+  /// Whether a shape reads e_v.
   static constexpr bool reads(int v) { return v < vectors && table.first[v][v] < table.last[v][v]; }
 };
 

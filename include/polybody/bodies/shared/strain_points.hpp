@@ -16,13 +16,13 @@ namespace polybody {
 template <StrainFunctions Law>
 class StrainPoints {
  public:
-  static constexpr int np = Law::parameters, m = Law::strains;
+  static constexpr int np = Law::parameters, m = Law::strains;  ///< number of parameters and of strains
 
-  using P = StrainMap<Law>;
-  using Map = typename P::Factors;
+  using P = StrainMap<Law>;         ///< from e to p
+  using Map = typename P::Factors;  ///< N at a point
   template <class T, int n>
-  using Coordinates = typename P::template Coordinates<T, n>;
-  using Strains = Vec<double, m>;
+  using Coordinates = typename P::template Coordinates<T, n>;  ///< ê of an element
+  using Strains = Vec<double, m>;                              ///< a number for each strain
 
   StrainPoints() = default;
   /// At the points of elements of length l [m], Gauss' unless the law has a `rule`; `initial` is the stress in the
@@ -57,7 +57,7 @@ class StrainPoints {
       Law::template evaluate<double>(P::parameters(maps_[g], Coordinates<double, n>(x)), free_[g], b);
   }
 
-  Strains const& stiffness() const { return stiffness_; }
+  Strains const& stiffness() const { return stiffness_; }  ///< C, of each strain [N] or [N m²]
   /// The stress of strains without damping.
   Strains stress(Strains const& strain) const { return stiffness_.cwiseProduct(strain) + initial_; }
 
@@ -72,8 +72,8 @@ class StrainPoints {
     return strain;
   }
 
-  bool damped() const { return damped_; }
-  bool operator==(StrainPoints const&) const = default;
+  bool damped() const { return damped_; }                ///< whether a τ is not zero
+  bool operator==(StrainPoints const&) const = default;  ///< whether all numbers are the same
 
   /// The energy stored [J].
   template <int n>
@@ -176,13 +176,13 @@ class StrainPoints {
   }
 
  protected:
-  static constexpr bool quadratic = QuadraticStrains<Law>;
+  static constexpr bool quadratic = QuadraticStrains<Law>;  ///< whether tangents take the way of `QuadraticStrains`
 
-  Strains stiffness_ = Strains::Zero();
-  Strains time_ = Strains::Zero();
-  Strains initial_ = Strains::Zero();
-  bool damped_ = false;
-  std::array<Map, std::size_t(Law::points)> maps_;
+  Strains stiffness_ = Strains::Zero();             ///< C
+  Strains time_ = Strains::Zero();                  ///< τ [s]
+  Strains initial_ = Strains::Zero();               ///< n⁰
+  bool damped_ = false;                             ///< whether a τ is not zero
+  std::array<Map, std::size_t(Law::points)> maps_;  ///< N
   /// Products of two factors, for each pair.
   std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
   std::array<double, Law::points> weights_;  ///< [m]
