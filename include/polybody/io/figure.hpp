@@ -26,7 +26,7 @@ struct Curve {
 
 /// One pair of axes. All text is printed as it stands (UTF-8; '\n' begins a new line).
 struct Figure {
-  std::string title{}, x_label{}, y_label{};                  ///< above the axes and beside them; empty: none
+  std::string title{}, x_label{}, y_label{};                  ///< above, below and left of the axes; empty: none
   std::vector<Curve> curves{};                                ///< drawn in this order
   bool equal_axes = false;                                    ///< one unit of x is as long as one unit of y
   bool log_x = false, log_y = false;                          ///< points that are not positive are then left out

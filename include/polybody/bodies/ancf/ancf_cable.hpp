@@ -34,7 +34,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   static constexpr Observes observes = Observes::axis;
   static constexpr bool constant_mass = true;
   static constexpr bool packs_pay = true;
-  static constexpr char const* name = "AncfCable";
+  static constexpr char const* name = "AncfCable";  ///< begins its messages
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = typename Chain::ElementMatrix;

@@ -162,12 +162,13 @@ struct Stress {
 /// `Damping::bending` has no meaning of its own here.
 template <Locking locking = Locking::cured>
 struct Continuum {
-  static constexpr char const* name = "AncfBeam<Continuum>";
-  static constexpr bool cured = locking == Locking::cured;  ///< whether D is split so that bending does not lock
+  static constexpr char const* name = "AncfBeam<Continuum>";  ///< begins its messages
+  static constexpr bool cured = locking == Locking::cured;    ///< whether D is split so that bending does not lock
 
   using Parts = ancf::ContinuumGroups<locking>;  ///< the strain groups by name
   using Groups = typename Parts::type;           ///< the strain groups of an element
 
+  /// \throws InvalidInput without section and material, for ν ≥ 0.5, and for a shear factor under `Locking::present`.
   static void check(Bar const& bar, BarConstants const&) {
     if (!bar.material)
       throw InvalidInput{name,

@@ -25,7 +25,7 @@ namespace polybody {
 /// Kelvin–Voigt times: axial for Γ₁ and the sections' stretches, shear for Γ₂, Γ₃, twist and the sections' shear,
 /// bending.
 struct ElasticLine {
-  static constexpr char const* name = "AncfBeam<ElasticLine>";
+  static constexpr char const* name = "AncfBeam<ElasticLine>";  ///< begins its messages
 
   /// Γ; p = (r₀′, r_y, r_z).
   struct Stretch {
@@ -179,6 +179,7 @@ struct ElasticLine {
   using Groups =
       std::tuple<StrainGroup<Stretch>, StrainGroup<Bend>, StrainGroup<Section>>;  ///< the strain groups of an element
 
+  /// \throws InvalidInput unless GA, GA_z, GJ and EI_y are positive.
   static void check(Bar const&, BarConstants const& c) {
     require_positive(c.GA, "AncfBeam<ElasticLine>: the shear stiffness GA of the bar");
     require_positive(c.GA_z.value_or(c.GA), "AncfBeam<ElasticLine>: the shear stiffness GA_z of the bar");

@@ -66,7 +66,7 @@ class CholeskyCoordinates : public AddingCoordinates {
   {
     return by_own(body_.position_map(p), p);
   }
-  /// ∂r/∂α for α = 0, 1, 2 by all columns (3×n).
+  /// Gradient α of the body by all columns of p; α = 0, 1, 2 for x, y, z, as far as the body has them.
   MatX gradient_map(Point const& p, int alpha) const
     requires HasLinearPoints<B>
   {

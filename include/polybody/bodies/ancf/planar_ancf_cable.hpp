@@ -15,18 +15,19 @@ using polybody::EngineeringStrain, polybody::GreenStrain;
 /// The Theory of `AncfCable`, with so many Gauss points for axial strain and bending.
 template <class Strain, int axial_points = 5, int bending_points = 3>
 struct HermiteCable {
-  static constexpr char const* name = "planar::AncfCable";
-  static constexpr int node_columns = 4;  ///< (x, y, x′, y′)
+  static constexpr char const* name = "planar::AncfCable";  ///< begins its messages
+  static constexpr int node_columns = 4;                    ///< (x, y, x′, y′)
   static constexpr bool packs_pay = true;
   static constexpr std::array<int, 2> section_rows = {0, 5};  ///< of axial strain and curvature
   static constexpr int gradients = 1;                         ///< that are linear in the coordinates
 
-  static void check(BarConstants const&) {}
+  static void check(BarConstants const&) {}  ///< every bar will do
   /// The node at s [m] along a straight axis from `origin` [m], turned from world x by `angle` [rad].
   static Vec4 reference_node(Vec2 const& origin, double angle, double s) {
     double const c = std::cos(angle), d = std::sin(angle);
     return {origin[0] + s * c, origin[1] + s * d, c, d};
   }
+  /// The node's speeds in a rigid motion: v0 of the body-fixed point at the world's origin [m/s], omega [rad/s].
   static Vec4 rigid_velocity(Vec4 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], -omega * node[3], omega * node[2]};
   }

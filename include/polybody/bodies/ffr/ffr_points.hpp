@@ -48,6 +48,7 @@ struct FfrPoint {
       for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
     return sum;
   }
+  /// (N, M) by the deformation q [N], [N m], without shear and damping.
   template <class = void>
   Vec6 section_forces(double const* q) const {
     Vec6 n = section_strains(q);

@@ -51,6 +51,7 @@ class ElasticElements<Directors, Quadrature> {
     for (int i = 0; i <= count; ++i) free.at[i] = measured(i, e, q, chord);
   }
 
+  /// f of element e, with moment(i) on node i.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
     out = detail::zeros<Vec<T, 12>>();

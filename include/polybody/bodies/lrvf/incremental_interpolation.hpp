@@ -1,9 +1,7 @@
 #pragma once
 /// \file
 /// Increments of the nodes' rotations interpolated: a policy of `Lrvf` for comparison [Simo & Vu-Quoc 1986; Cardona &
-/// Géradin 1988; Jelenić & Crisfield 1999].
-///
-/// Not in polybody.hpp: `Objective` is what to use.
+/// Géradin 1988; Jelenić & Crisfield 1999]. Not in polybody.hpp: `Objective` is what to use.
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 
@@ -17,8 +15,8 @@ namespace polybody {
 /// By δ, at δ = 0:
 ///   δθ = ½ (δθ₁ + δθ₂),  δ(l K) = δθ₂ − δθ₁ + l K × δθ.
 /// In the reference both are those of `Objective`. Forces are the gradient of the energy along the spins of the nodes:
-/// whatever the path, they do the work that the energy loses. But that energy is no function of the nodes. Three
-/// faults, all measured in the tests:
+/// whatever the path, they do the work that it loses. But it is no function of the nodes. Three faults, measured in the
+/// tests:
 /// - Strains depend on the path, and finer steps do not help: after a closed path of the nodes the element is bent, and
 ///   without stress it rests off its reference, by terms of the order of l².
 /// - They depend on the steps: an integrator interpolates the increment of a whole step, `equilibrium` each of Newton's
@@ -41,7 +39,6 @@ class Incremental {
     Vec<T, 3> const phi = quaternion_minus<T>(b, a);
     return {quaternion_plus<T>(a, scaled<T>(phi, 0.5)), phi};
   }
-  /// The middle after increments δ₁ and δ₂ of the nodes [rad].
   template <StateScalar T>
   static CarriedSection<T> plus(CarriedSection<T> const& s, Vec<T, 3> const& first, Vec<T, 3> const& second) {
     Vec<T, 3> const mean(0.5 * (first[0] + second[0]), 0.5 * (first[1] + second[1]), 0.5 * (first[2] + second[2]));

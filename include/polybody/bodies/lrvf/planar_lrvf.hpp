@@ -13,12 +13,13 @@ namespace polybody::planar {
 
 /// The Theory of `Lrvf`.
 struct SimoVuQuoc {
-  static constexpr char const* name = "planar::Lrvf";
+  static constexpr char const* name = "planar::Lrvf";            ///< begins its messages
   static constexpr int node_columns = 3;                         ///< (x, y, θ)
   static constexpr bool packs_pay = false;                       ///< most of its time goes into one sine and one cosine
   static constexpr std::array<int, 3> section_rows = {0, 1, 5};  ///< of ε, γ and κ
   static constexpr int gradients = 0;                            ///< that are linear in the coordinates
 
+  /// \throws InvalidInput unless GA is positive.
   static void check(BarConstants const& c) {
     require_positive(c.GA, "planar::Lrvf: the shear stiffness GA of the bar");
   }
@@ -26,6 +27,7 @@ struct SimoVuQuoc {
   static Vec3 reference_node(Vec2 const& origin, double angle, double s) {
     return {origin[0] + s * std::cos(angle), origin[1] + s * std::sin(angle), angle};
   }
+  /// The node's speeds in a rigid motion: v0 of the body-fixed point at the world's origin [m/s], omega [rad/s].
   static Vec3 rigid_velocity(Vec3 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], omega};
   }

@@ -64,7 +64,7 @@ struct Bar {
   Required<double> length;  ///< [m], of 1e-100 to 1e100: beyond, its cubes are no numbers
   std::variant<std::monostate, Circle, Rectangle> section = {};  ///< none: the bar is given by `constants`
   std::optional<Material> material = {};                         ///< of the section
-  std::optional<BarConstants> constants = {};                    ///< instead of a section
+  std::optional<BarConstants> constants = {};                    ///< instead of section and material
   Placement placement = {};                                      ///< of its first end, along x
   Damping damping = {};                                          ///< of the material
   double pretension = 0.0;                                       ///< axial force in the reference configuration [N]

@@ -72,6 +72,7 @@ class Sliding : public B {
   Point at(Args const&... args) const {
     return {B::at(args...), -1};
   }
+  /// The slider as a marker, a point without axes. \throws InvalidInput for a slider that the body has not.
   Point at(Slider slider) const { return {{}, column_of(slider)}; }
   /// As the body's points, but a slider has no axes.
   static Observes observes_at(Point const& p) { return p.slider < 0 ? observes : Observes::point; }
