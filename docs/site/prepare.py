@@ -37,7 +37,7 @@ def depth_split(text, separator=","):
     return [*parts, text[begin:]]
 
 
-SEVERAL = re.compile(r"^(\s*)((?:static constexpr |static |inline |constexpr |mutable )*[A-Za-z_](?:[^()=;]*?[\w>&*])?)\s+([&*]?\w+\b[^;]*);(?:\s*///<\s?(.*))?$")
+SEVERAL = re.compile(r"^(\s*)((?:static constexpr |static |inline |constexpr |mutable )*[A-Za-z_](?:(?:[^()=;]|size_t\(\w+\))*?[\w>&*])?)\s+([&*]?\w+\b[^;]*);(?:\s*///<\s?(.*))?$")
 
 
 def each_with_its_comment(line, comment=None):

@@ -15,8 +15,7 @@ namespace polybody {
 /// By δ, at δ = 0:
 ///   δθ = ½ (δθ₁ + δθ₂),  δ(l K) = δθ₂ − δθ₁ + l K × δθ.
 /// In the reference both are those of `Objective`. Forces are the gradient of the energy along the spins of the nodes:
-/// whatever the path, they do the work that it loses. But it is no function of the nodes. Three faults, measured in the
-/// tests:
+/// whatever the path, they do the work that the energy loses. It is no function of the nodes. Three measured faults:
 /// - Strains depend on the path, and finer steps do not help: after a closed path of the nodes the element is bent, and
 ///   without stress it rests off its reference, by terms of the order of l².
 /// - They depend on the steps: an integrator interpolates the increment of a whole step, `equilibrium` each of Newton's
