@@ -91,7 +91,7 @@ class Film {
   /// without frames, or where `follow` is no part of a scene; IoError.
   std::size_t write(std::filesystem::path const& file) const {
     if (scenes_.empty()) throw InvalidInput{"Film '", options_.title, "' has no scene."};
-    for (FilmScene const& scene : scenes_) check(scene);
+    for (FilmScene const& scene : scenes_) require_complete(scene);
     std::size_t const slot = page_.find(detail::film_slot);
     std::string text = page_.substr(0, slot);
     std::size_t const title = text.find("<title>");
@@ -107,7 +107,7 @@ class Film {
   }
 
  private:
-  void check(FilmScene const& scene) const {
+  void require_complete(FilmScene const& scene) const {
     if (scene.times().empty()) throw InvalidInput{"Film: the scene \"", scene.name(), "\" has no frame."};
     bool found = options_.follow.empty();
     for (detail::FilmPart const& part : scene.parts()) found = found || part.name == options_.follow;
