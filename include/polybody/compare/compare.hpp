@@ -6,6 +6,7 @@
 
 #include <polybody/compare/comparison.hpp>
 #include <polybody/compare/formulation.hpp>
+#include <polybody/run/sampling.hpp>
 #include <polybody/run/simulate.hpp>
 
 namespace polybody {
@@ -101,17 +102,13 @@ CaseQuestions questions_of(S& scenario) {
 /// steps are timed.
 template <class Run>
 void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun& out) {
-  double const start = run.state().t, rounding = 1e-9 * sampling;
-  double samples = 0.0;  // multiples of `sampling` that are past
+  RunSampling asked(run.state().t, sampling);
   questions.note(run.state(), out);
   while (!run.done()) {
     std::clock_t const begin = std::clock();
     run.advance();
     out.cpu += double(std::clock() - begin) / CLOCKS_PER_SEC;
-    double const past = run.state().t - start + rounding;
-    if (past < (samples + 1.0) * sampling && !run.done()) continue;
-    if (sampling > 0.0) samples = std::floor(past / sampling);
-    questions.note(run.state(), out);
+    if (asked.takes(run.state().t) || run.done()) questions.note(run.state(), out);
   }
   out.energy_start = out.energies.front().total();
   out.energy_end = out.energies.back().total();

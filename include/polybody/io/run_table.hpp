@@ -10,6 +10,7 @@
 
 #include <polybody/io/csv.hpp>
 #include <polybody/io/plot.hpp>
+#include <polybody/run/sampling.hpp>
 #include <polybody/system/state.hpp>
 
 namespace polybody {
@@ -79,12 +80,9 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
   require_not_negative(sampling, "tabulate: the sampling of ", "the table");
   Table table{{"t [s]"}, {}};
   for (TableColumn const& c : columns) table.columns.push_back(c.name);
-  double const start = run.state().t, rounding = 1e-9 * sampling;
-  double samples = 0.0;  // multiples of `sampling` that are past
+  RunSampling asked(run.state().t, sampling);
   for (State const& x : run) {
-    double const past = x.t - start + rounding;
-    if (!table.rows.empty() && past < (samples + 1.0) * sampling && !run.done()) continue;
-    if (sampling > 0.0) samples = std::floor(past / sampling);
+    if (!asked.takes(x.t) && !table.rows.empty() && !run.done()) continue;
     auto& row = table.rows.emplace_back(1, x.t);
     for (TableColumn const& c : columns) {
       row.push_back(c.value(x));
