@@ -23,7 +23,7 @@ struct Parameter {
   /// The scale, or where there is none the amount of the value.
   double size() const { return scale > 0.0 ? scale : std::abs(value); }
   /// The distance of the differences by which the equations, never the run, are differentiated.
-  double distance() const { return 1e-3 * size(); }
+  double distance() const { return 4e-4 * size(); }
 };
 
 /// \throws InvalidInput unless parameters have names, all different, finite values and a scale where they are zero.

@@ -132,11 +132,7 @@ class DirectDifferentiation {
   void begin(double h) {
     whole_.start(x_, h);
     for (std::size_t j = 0; j < parameters_.size(); ++j)
-      dx_.push_back(slope(j, [&](V& v, double) {
-        State x = v.scenario.start;
-        v.start(x, h);
-        return x;
-      }));
+      dx_.push_back(slope(j, [&](V& v, double) { return v.started(h); }));
     touched_.assign(parameters_.size(), 0);
     for (Parameter const& p : parameters_) out_.parameters.push_back(p.name);
     for (auto const& o : whole_.scenario.outputs) out_.outputs.push_back(o.name);
@@ -144,18 +140,16 @@ class DirectDifferentiation {
 
   void advance(double h) {
     Index const nv = x_.v.size();
-    State const before = x_;
-    double const shifted = StepHistory(x_).shifted();
-    out_.run.add(method().step(whole_.system, x_, h, whole_.work));
-    if (method().start_correction && std::abs(h - shifted) > 1e-9 * h) {  // a step that changes where it sets out
+    State const unset = x_;
+    if (whole_.set_out(x_, h))  // from other speeds than those of x
       for (std::size_t j = 0; j < parameters_.size(); ++j)
         dx_[j] = slope(j, [&](V& v, double e) {
-          State x = beside(before, dx_[j], e);
-          (void)v.method.step(v.system, x, h, v.work);
+          State x = out_.run.steps == 0 ? v.started(h) : beside(unset, dx_[j], e);
+          (void)v.set_out(x, h);
           return x;
         });
-      return;
-    }
+    State const before = x_;
+    out_.run.add(whole_.step(x_, h));
     VecX const own_before = before.memory.head(nv), own_after = x_.memory.head(nv);
     StepEnds const step{before, x_, own_before, own_after, h};
     slope_.set(step);

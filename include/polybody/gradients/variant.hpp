@@ -28,6 +28,30 @@ struct Variant {
     work.forward.project_velocities(system, x.q, x.v, x.t);
     method.start(system, x, h, work);
   }
+  /// The state in which the run begins, for steps of h.
+  State started(double h) {
+    State x = scenario.start;
+    start(x, h);
+    return x;
+  }
+  /// Puts the speeds and own accelerations from which a step of h sets out into x, so that the step is a plain one.
+  /// Returns whether they are others than before.
+  bool set_out(State& x, double h) {
+    bool const corrected = method.set_out(system, x, h, work);
+    if (corrected) {
+      x.v = work.v0;
+      x.memory.head(x.v.size()) = work.a0;
+      x.memory.tail(1)[0] = h;
+    }
+    return corrected;
+  }
+  /// A step of h that depends on x alone: with factors of its own, in the first order of elimination.
+  StepReport step(State& x, double h) {
+    work.kept_factor = {};
+    work.tangent.forget();
+    work.solver().keep_reorderings(0);
+    return method.step(system, x, h, work);
+  }
   VecX outputs(State const& x) const {
     VecX out(Index(scenario.outputs.size()));
     for (Index i = 0; i < out.size(); ++i) {

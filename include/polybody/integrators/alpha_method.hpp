@@ -73,16 +73,25 @@ struct AlphaMethod {
 
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
+    (void)set_out(system, x, h, w);
+    return advance(system, x, h, w);
+  }
+
+  /// The speeds w.v0 and the method's own accelerations w.a0 from which a step of h sets out: those of x, corrected
+  /// where they stand off the solution for steps of another length. Returns whether they were corrected.
+  template <class Solver>
+  bool set_out(System& system, State& x, double h, Workspace<Solver>& w) const {
     StepHistory const history(x);
     w.v0 = x.v;
     history.own(w.a0);
     double const shifted = history.shifted();  // the length for which v and a stand off; 0 after a start
-    if (start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
+    bool const corrects =
+        start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
         (shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else the step does not resolve it
           return h * norm(w.jerk, first, end) <= 0.5 * norm(x.a, first, end);
-        })))
-      correct(system, x, shifted, h, w);
-    return advance(system, x, h, w);
+        }));
+    if (corrects) correct(system, x, shifted, h, w);
+    return corrects;
   }
 
  private:

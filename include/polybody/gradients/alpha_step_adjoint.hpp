@@ -1,0 +1,193 @@
+#pragma once
+/// \file
+/// The adjoint of a converged step of the generalised-α family (gradients/alpha_step_slope.hpp has its tangent-linear):
+/// from what a result J of a run changes by with the state after a step to what it changes by with the state before.
+///
+/// With y = (a₁, λ₁), q₁ = q₀ ⊞ δ(y), v₁(y), v̇₁(y) by the formulas of the step, and its equations R(y; x₀, p) = 0,
+///   ȳ = ∂J/∂y by x̄₁ and these formulas,   (∂R/∂y)ᵀ μ = ȳ,
+///   x̄₀ = (∂x₁/∂x₀)ᵀ x̄₁ − (∂R/∂x₀)ᵀ μ,   dJ/dp −= μᵀ ∂R/∂p  [Cao, Li, Petzold & Serban 2003, discrete].
+/// Products with transposed derivatives come from one recording of the residual, so no term is missing; μ is solved by
+/// factors of the transposed tangent at the end of the step, and corrected until nothing changes.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/alpha_step_slope.hpp>
+#include <polybody/math/recorded.hpp>
+
+namespace polybody {
+
+/// What a result J of a run changes by with a state: its derivatives by the numbers of the state as they stand.
+struct Costate {
+  VecX q;       ///< (nq) ∂J/∂q
+  VecX v;       ///< (nv) ∂J/∂v
+  VecX a;       ///< (nv) ∂J/∂v̇
+  VecX lambda;  ///< (rows) ∂J/∂λ
+  VecX own;     ///< (nv) ∂J/∂a, the method's own accelerations
+
+  /// Of a result that no state changes. \param x a state, of which the sizes are taken
+  [[gnu::cold]] explicit Costate(State const& x)
+      : q(VecX::Zero(x.q.size())), v(VecX::Zero(x.v.size())), a(v), lambda(VecX::Zero(x.lambda.size())), own(v) {}
+};
+
+/// μ: what J changes by with what is added to the equations of a step, its sign changed.
+struct StepMultipliers {
+  VecX balance;  ///< (nv) of M v̇ − f + Gᵀλ
+  VecX rows;     ///< (rows) of Φ, of velocity rows of Φ̇
+};
+
+/// Passes blocks on with rows and columns exchanged.
+template <TakesBlocks S>
+class TransposedSink {
+ public:
+  explicit TransposedSink(S& target) : target_(target) {}  ///< to `target`
+  /// Block b at (row, col) of the matrix, (col, row) of the transposed one.
+  void add(Index row, Index col, BlockView const& b) { target_.add(col, row, b.transposed()); }
+
+ private:
+  S& target_;
+};
+
+/// Adjoints of converged steps of a method, one step after the other, from the last one to the first.
+template <LinearSolver Solver = DefaultSolver>
+class AlphaStepAdjoint {
+ public:
+  /// The model must outlive it.
+  template <class M>
+  [[gnu::cold]] AlphaStepAdjoint(M const& model, System& system, AlphaMethod const& method)
+      : system_(&system), recorded_(model, with<Entries::motion>), method_(method) {
+    Index const nq = system.coordinates(), nv = system.speeds(), rows = system.rows();
+    PatternSink pattern;
+    TransposedSink<PatternSink> transposed(pattern);
+    VecX const any = VecX::Zero(rows);
+    system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, transposed);
+    solver_.analyse(nv + rows, pattern.blocks);
+    from_ = q_ = Numbers::Constant(nq, Recorded(0.0));
+    delta_ = v_ = a_ = r_ = Numbers::Constant(nv, Recorded(0.0));
+    lambda_ = phi_ = rate_ = Numbers::Constant(rows, Recorded(0.0));
+    mu_ = y_ = rhs_ = correction_ = VecX::Zero(nv + rows);
+    of_q_ = VecX::Zero(nq);
+    of_delta_ = of_v_ = of_a_ = VecX::Zero(nv);
+    of_lambda_ = VecX::Zero(rows);
+  }
+
+  /// Takes the costate of the state after the step to that of the state before it. Returns what the last correction of
+  /// μ changed, relative to it. \param mu becomes that of the step. \throws LinearSolverSingular at a singular position.
+  double retreat(StepEnds const& step, Costate& x, StepMultipliers& mu) {
+    record(step);
+    factor(step);
+    Index const nv = a_.size(), rows = lambda_.size();
+    double const h = step.h, of_a1 = mass(), of_v1 = method_.gamma * h, of_d1 = method_.beta * h * h;
+    pull_position(x.q);
+    VecX const q_before = of_q_, delta_by_q = of_delta_;
+    y_.head(nv) = x.own + of_a1 * x.a + of_v1 * x.v + of_d1 * delta_by_q;
+    y_.tail(rows) = x.lambda;
+    double left = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < most_corrections; ++k) {
+      pull_equations(step);
+      rhs_.head(nv) = y_.head(nv) - (of_a1 * of_a_ + of_v1 * of_v_ + of_d1 * of_delta_);
+      rhs_.tail(rows) = y_.tail(rows) - of_lambda_;
+      solver_.solve(rhs_, correction_);
+      double const all = mu_.norm(), changed = correction_.norm();
+      double const now = all > 0.0 ? changed / all : changed > 0.0 ? 1.0 : 0.0;
+      bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
+      left = now;
+      if (done) break;
+      mu_ += correction_;
+    }
+    VecX const v1 = x.v - of_v_, a1 = x.a - of_a_, delta = delta_by_q - of_delta_;
+    x.q = q_before - of_q_;
+    x.v = v1 + h * delta;
+    x.own = h * (1.0 - method_.gamma) * v1 + h * h * (0.5 - method_.beta) * delta +
+            method_.alpha_m / (1.0 - method_.alpha_f) * a1;
+    x.a = -method_.alpha_f / (1.0 - method_.alpha_f) * a1;
+    x.lambda.setZero();
+    mu.balance = mu_.head(nv);
+    mu.rows = mu_.tail(rows) * of_positions(h);
+    for (Index const i : recorded_.velocity_rows()) mu.rows[i] = mu_[nv + i] * of_speeds(h);
+    return left;
+  }
+
+ private:
+  using Numbers = VecXOf<Recorded>;
+  static constexpr int most_corrections = 30;
+
+  double mass() const { return (1.0 - method_.alpha_m) / (1.0 - method_.alpha_f); }
+  /// What Φ and Φ̇ are multiplied by in R.
+  double of_positions(double h) const { return 1.0 / (method_.beta * h * h); }
+  double of_speeds(double h) const { return 1.0 / (method_.gamma * h); }
+
+  static void set(Numbers& to, VecX const& from) {
+    for (Index i = 0; i < to.size(); ++i) to[i] = Recorded::variable(from[i]);
+  }
+  void take(Numbers const& from, VecX& slopes) {
+    for (Index i = 0; i < from.size(); ++i) slopes[i] = recording_.slope(from[i].number);
+  }
+
+  /// q₁ = q₀ ⊞ δ, then M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ at the end of the step.
+  void record(StepEnds const& step) {
+    State const &before = step.before, &after = step.after;
+    Recording::On const on(recording_);
+    double const h = step.h, of_a0 = h * h * (0.5 - method_.beta), of_a1 = h * h * method_.beta;
+    set(from_, before.q);
+    for (Index i = 0; i < delta_.size(); ++i)
+      delta_[i] = Recorded::variable(h * before.v[i] + of_a0 * step.own_before[i] + of_a1 * step.own_after[i]);
+    recorded_.plus(from_, delta_, q_);
+    moved_ = recording_.size();
+    set(v_, after.v);
+    set(a_, after.a);
+    set(lambda_, after.lambda);
+    recorded_.evaluate(q_, v_, after.t);
+    recorded_.residual(a_, lambda_, r_);
+    if (phi_.size() > 0) recorded_.violation(phi_);
+    if (!recorded_.velocity_rows().empty()) recorded_.violation_rate(rate_);
+  }
+
+  void factor(StepEnds const& step) {
+    double const h = step.h;
+    State const& x = step.after;
+    system_->evaluate(x.q, x.v, x.t);
+    Index const bad = write_and_factor(solver_, [&](BlockSink& sink) {
+      TransposedSink<BlockSink> transposed(sink);
+      system_->tangent({mass(), method_.gamma * h, method_.beta * h * h}, SecondOrder::included, x.lambda, transposed);
+    });
+    if (bad >= 0)
+      throw LinearSolverSingular{"The adjoint of the step that ends at t = ", x.t, " s has no pivot at ",
+                                 name_of_equation(*system_, bad), "."};
+  }
+
+  /// (∂q₁/∂q₀)ᵀ q̄ and (∂q₁/∂δ)ᵀ q̄.
+  void pull_position(VecX const& q) {
+    recording_.clear_slopes(moved_);
+    for (Index i = 0; i < q.size(); ++i) recording_.slope(q_[i].number) += q[i];
+    recording_.sweep(moved_);
+    take(from_, of_q_);
+    take(delta_, of_delta_);
+  }
+  /// Products of the transposed derivatives of R with μ.
+  void pull_equations(StepEnds const& step) {
+    Index const nv = r_.size();
+    recording_.clear_slopes(recording_.size());
+    for (Index i = 0; i < nv; ++i) recording_.slope(r_[i].number) += mu_[i];
+    double const of_phi = of_positions(step.h), of_rate = of_speeds(step.h);
+    for (Index i = 0; i < phi_.size(); ++i) recording_.slope(phi_[i].number) += of_phi * mu_[nv + i];
+    for (Index const i : recorded_.velocity_rows()) recording_.slope(rate_[i].number) += of_rate * mu_[nv + i];
+    recording_.sweep(recording_.size());
+    take(from_, of_q_);
+    take(delta_, of_delta_);
+    take(v_, of_v_);
+    take(a_, of_a_);
+    take(lambda_, of_lambda_);
+  }
+
+  System* system_;
+  BasicSystem<Recorded> recorded_;
+  SolverOfSteps<Solver> solver_;
+  AlphaMethod method_;
+  Recording recording_;
+  std::size_t moved_ = 0;  // operations until q₁ is there
+  Numbers from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
+  VecX mu_, y_, rhs_, correction_;  // mu_: of the step behind, which the next one begins with
+  VecX of_q_, of_delta_, of_v_, of_a_, of_lambda_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,233 @@
+#pragma once
+/// \file
+/// The derivatives of one result of a run, J = Φ(x_N) + ∫ g(x) dt, with respect to any number of parameters of its
+/// model, by the discrete adjoint:
+///
+///     auto const make = [](std::span<double const> p) { … return rated(Scenario<M>{model, start, options}, end); };
+///     Gradient const g = gradient(make, {{"length [m]", 1.0}}, GeneralizedAlpha{});
+///     g.slopes[0];   // dJ/dp of the first parameter
+///
+/// The run is taken once forwards, then backwards from its end (`AlphaStepAdjoint`); states on the way are kept in
+/// snapshots or computed again (`reverse_steps`). Parameters are numbers of a factory, and equations at given unknowns
+/// are differenced by them, as in `sensitivities`; a step costs the same for one parameter and for many but for these
+/// differences. Every step begins with a factorisation of its own, so that it has the same bits whenever it is taken.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <memory>
+#include <span>
+
+#include <polybody/gradients/objective.hpp>
+#include <polybody/gradients/requirements.hpp>
+#include <polybody/gradients/reversal.hpp>
+#include <polybody/gradients/variant.hpp>
+
+namespace polybody {
+
+/// How the states of a run are kept for the way back.
+struct GradientOptions {
+  std::size_t snapshots = 0;  ///< states that are kept at a time at most; zero: as many as fit into `memory`
+  double memory = 1e9;        ///< for snapshots where their count is not given [bytes]
+
+  /// \throws InvalidInput unless the memory is a positive number.
+  void check() const {
+    if (!(memory > 0.0)) throw InvalidInput("gradient: the memory for snapshots must be a positive number of bytes.");
+  }
+};
+
+/// A result of a run and its derivatives.
+struct Gradient {
+  std::vector<std::string> parameters;  ///< names, with units
+  double value = 0.0;                   ///< J, in the objective's unit
+  VecX slopes;                          ///< (parameters) dJ/dp, J's unit over the parameter's
+  double left = 0.0;                    ///< the largest relative change by a last correction of a step's multipliers
+  ReversalReport reversal;              ///< steps, those taken again, snapshots
+  double snapshot_size = 0.0;           ///< memory of one snapshot [bytes]
+  RunReport run;                        ///< of the steps as they were taken first
+};
+
+/// A user's factory: a scenario with its objective for the values of the parameters, in their order.
+template <class F>
+concept MakesRatedScenarios = requires(F const make, std::span<double const> p) {
+  { make(p).model };
+  { make(p).start } -> std::convertible_to<State>;
+  { make(p).end };
+  { make(p).integrand };
+};
+
+namespace detail {
+
+/// A run forwards and back.
+template <class Make, class I>
+class AdjointRun {
+  using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
+  using V = Variant<S, I>;
+
+ public:
+  [[gnu::cold]] AdjointRun(Make const& make, std::vector<Parameter> const& parameters, AlphaMethod const& method)
+      : parameters_(parameters),
+        whole_(make(values_of(parameters)), method),
+        adjoint_(whole_.scenario.model, whole_.system, method) {
+    require_plain(whole_.scenario.options, "gradient");
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      out_.parameters.push_back(parameters[j].name);
+      for (double const place : FourPoints::places) {
+        std::vector<double> p = values_of(parameters);
+        p[j] += place * parameters[j].distance();
+        beside_.push_back(std::make_unique<V>(make(p), method));
+        require_alike(whole_, *beside_.back(), parameters[j], "gradient");
+      }
+    }
+    out_.slopes = VecX::Zero(Index(parameters.size()));
+  }
+
+  Gradient run(GradientOptions const& options) {
+    State x = whole_.scenario.start;
+    whole_.scenario.options.check(x.t);
+    require_assembled(whole_.system, x, whole_.scenario.options.assembly_tolerance);
+    plan(x.t);
+    whole_.start(x, steps_.front().h);
+    out_.value += weight(0) * term(whole_.scenario.integrand, whole_.scenario.model, x);
+    (void)whole_.set_out(x, steps_.front().h);
+    Costate bar(x);
+    bool at_end = false;
+    out_.snapshot_size = 8.0 * double(x.q.size() + x.v.size() + x.a.size() + x.lambda.size() + x.memory.size());
+    out_.reversal = reverse_steps(
+        x, steps_.size(), snapshots(options), [&](std::size_t k, State& y) { take(k, y); },
+        [&](std::size_t k, State const& before, State const& after) {
+          if (!at_end) begin_at_end(after, bar);
+          at_end = true;
+          go_back(k, before, after, bar);
+        });
+    add_start(x, bar);
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      if (out_.slopes[Index(j)] == 0.0)
+        out_.run.add_warning("Nothing of the objective depends on the parameter \"" + parameters_[j].name + "\".");
+    return std::move(out_);
+  }
+
+ private:
+  struct Step {
+    double h, end;  ///< length, and time at which it ends [s]
+  };
+
+  /// All steps from t on.
+  void plan(double t) {
+    RunOptions const& options = whole_.scenario.options;
+    StepPlan const plan(t, options.until, options.step, whole_.system.layout().corners);
+    StepRow row;
+    while (t < options.until) {
+      auto const next = plan.next(t, options.step);
+      if (next.jumps)
+        throw InvalidInput{"gradient: a drive or load has a corner at t = ", next.target,
+                           " s, where a run begins anew. Give smooth laws, or end the run before."};
+      double const h = next.h, end = next.lands ? next.target : row.after(t, h);
+      if (method().start_correction && !steps_.empty() && std::abs(h - steps_.back().h) > 1e-9 * h)
+        throw InvalidInput{"gradient: the step to t = ", end, " s has another length than the others. Give the options "
+                           "a step that divides the time of the run, or set start_correction to false."};
+      steps_.push_back({h, end});
+      t = end;
+    }
+    if (steps_.empty()) throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
+  }
+  std::size_t snapshots(GradientOptions const& options) const {
+    if (options.snapshots > 0) return options.snapshots;
+    if (options.memory < out_.snapshot_size)
+      throw InvalidInput{"gradient: one snapshot of a state takes ", out_.snapshot_size, " bytes, but the memory is ",
+                         options.memory, " bytes. Give more of it."};
+    return std::size_t(std::min(options.memory / out_.snapshot_size, 1e15));
+  }
+  /// The part of the run's time for which a state stands in an integral.
+  double weight(std::size_t state) const {
+    double const before = state > 0 ? steps_[state - 1].h : 0.0;
+    return 0.5 * (before + (state < steps_.size() ? steps_[state].h : 0.0));
+  }
+
+  void take(std::size_t k, State& x) {
+    StepReport const report = whole_.step(x, steps_[k].h);
+    x.t = steps_[k].end;
+    if (k == furthest_) {
+      out_.run.add(report);
+      ++furthest_;
+    }
+  }
+
+  void begin_at_end(State const& last, Costate& bar) {
+    out_.value += term(whole_.scenario.end, whole_.scenario.model, last);
+    add_slopes(whole_.scenario.end, whole_.scenario.model, last, 1.0, recording_, bar);
+    add_to_slopes([&](V& v) { return term(v.scenario.end, v.scenario.model, last); });
+    add_integrand(steps_.size(), last, bar);
+  }
+  void go_back(std::size_t k, State const& before, State const& after, Costate& bar) {
+    Index const nv = before.v.size();
+    VecX const own_before = before.memory.head(nv), own_after = after.memory.head(nv);
+    out_.left = std::max(out_.left, adjoint_.retreat({before, after, own_before, own_after, steps_[k].h}, bar, mu_));
+    add_to_slopes([&](V& v) {
+      EquationSlope const of = v.equations(after);
+      return -(mu_.balance.dot(of.balance) + mu_.rows.dot(of.rows));
+    });
+    if (k > 0) add_integrand(k, before, bar);
+  }
+  /// The integrand of state number k.
+  void add_integrand(std::size_t k, State const& x, Costate& bar) {
+    if constexpr (std::same_as<decltype(whole_.scenario.integrand), NoTerm>) return;
+    double const w = weight(k);
+    out_.value += w * term(whole_.scenario.integrand, whole_.scenario.model, x);
+    add_slopes(whole_.scenario.integrand, whole_.scenario.model, x, w, recording_, bar);
+    add_to_slopes([&](V& v) { return w * term(v.scenario.integrand, v.scenario.model, x); });
+  }
+  /// What parameters do by the start of the run. \param x from where the first step sets out
+  void add_start(State const& x, Costate const& bar) {
+    Index const nv = x.v.size();
+    add_to_slopes([&](V& v) {
+      State y = v.started(steps_.front().h);
+      double const integrand = weight(0) * term(v.scenario.integrand, v.scenario.model, y);
+      if (v.set_out(y, steps_.front().h); y.memory.tail(1) != x.memory.tail(1))
+        throw InvalidInput(
+            "gradient: the start of a run with another value of a parameter is corrected otherwise. Set "
+            "start_correction to false.");
+      return integrand + bar.q.dot(y.q - x.q) + bar.v.dot(y.v - x.v) + bar.a.dot(y.a - x.a) +
+             bar.lambda.dot(y.lambda - x.lambda) + bar.own.dot(y.memory.head(nv) - x.memory.head(nv));
+    });
+  }
+  /// Adds the derivative of f(variant) to each parameter's slope.
+  template <class F>
+  void add_to_slopes(F&& f) {
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      double slope = 0.0;
+      for (std::size_t k = 0; k < FourPoints::places.size(); ++k)
+        slope += FourPoints::weights[k] / parameters_[j].distance() * f(*beside_[4 * j + k]);
+      out_.slopes[Index(j)] += slope;
+    }
+  }
+  AlphaMethod const& method() const { return whole_.method; }
+
+  std::vector<Parameter> parameters_;
+  V whole_;
+  AlphaStepAdjoint<> adjoint_;
+  std::vector<std::unique_ptr<V>> beside_;  // four for each parameter
+  std::vector<Step> steps_;
+  std::size_t furthest_ = 0;  // steps that have been taken once
+  StepMultipliers mu_;
+  Recording recording_;  // of the objective
+  Gradient out_;
+};
+
+}  // namespace detail
+
+/// Runs the scenario that `make` gives for the parameters' values and differentiates its objective with respect to
+/// each. Newton's corrections go on to 1e-12 or to what rounding leaves. \param integrator one of the generalised-α
+/// family, without `stabilised`. \throws InvalidInput for parameters or options that cannot be meant, a factory whose
+/// models differ in size, a scenario with events or corners, steps of different lengths; LinearSolverSingular at a
+/// singular position; NonFinite; and as `simulate`.
+template <MakesRatedScenarios Make, class I>
+Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                  GradientOptions const& options = {}) {
+  using M = decltype(make(std::span<double const>()).model);
+  detail::require_differentiable<M, I>();
+  options.check();
+  AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "gradient");
+  return detail::AdjointRun<Make, I>(make, parameters, method).run(options);
+}
+
+}  // namespace polybody

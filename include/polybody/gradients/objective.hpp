@@ -1,0 +1,99 @@
+#pragma once
+/// \file
+/// What a run is rated by: J = Φ(x_N) + ∫ g(x) dt, the integral by the trapezoidal rule over the steps.
+///
+///     return rated(Scenario<M>{model, start, options}, [tip](auto const& m, auto const& x) { … });
+///
+/// A function that takes a state of any scalar (`auto const& x`) is differentiated by recording it; one that takes
+/// a `State const&` by differences in each of its numbers, four evaluations each.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/compare/compare.hpp>
+#include <polybody/gradients/alpha_step_adjoint.hpp>
+#include <polybody/gradients/parameter.hpp>
+#include <polybody/gradients/points.hpp>
+
+namespace polybody {
+
+/// No such part of an objective.
+struct NoTerm {};
+
+/// A scenario with what its run is rated by.
+template <class M, class End, class Integrand = NoTerm>
+struct RatedScenario : Scenario<M> {
+  End end;                      ///< Φ(model, x) of the state at the end, or NoTerm
+  Integrand integrand = {};     ///< g(model, x), or NoTerm
+};
+
+/// J = Φ(x_N), or with an integrand g, Φ(x_N) + ∫ g(x) dt. \param end Φ(model, state); \param integrand g(model, state)
+template <class M, class End, class Integrand = NoTerm>
+RatedScenario<M, End, Integrand> rated(Scenario<M> scenario, End end, Integrand integrand = {}) {
+  return {std::move(scenario), std::move(end), std::move(integrand)};
+}
+
+namespace detail {
+
+/// f of a state, zero where there is no such term. \throws NonFinite.
+template <class F, class M>
+double term(F const& f, M const& model, State const& x) {
+  if constexpr (std::same_as<F, NoTerm>) {
+    return 0.0;
+  } else {
+    double const value = value_of(f(model, x));
+    if (!std::isfinite(value))
+      throw NonFinite{"gradient: the objective", how_not_finite(value), " at t = ", x.t, " s."};
+    return value;
+  }
+}
+
+/// Adds `weight` times the derivatives of f by the numbers of x to a costate.
+template <class F, class M>
+void add_slopes(F const& f, M const& model, State const& x, double weight, Recording& recording, Costate& bar) {
+  if constexpr (std::same_as<F, NoTerm>) {
+    return;
+  } else if constexpr (std::invocable<F const&, M const&, StateOf<Recorded> const&>) {
+    Recording::On const on(recording);
+    StateOf<Recorded> at;
+    at.t = x.t;
+    auto const each = [&](auto&& call) {
+      call(at.q, x.q, bar.q);
+      call(at.v, x.v, bar.v);
+      call(at.a, x.a, bar.a);
+      call(at.lambda, x.lambda, bar.lambda);
+    };
+    each([](VecXOf<Recorded>& to, VecX const& from, VecX&) {
+      to.resize(from.size());
+      for (Index i = 0; i < from.size(); ++i) to[i] = Recorded::variable(from[i]);
+    });
+    Recorded const value = f(model, std::as_const(at));
+    recording.clear_slopes(recording.size());
+    recording.slope(value.number) += weight;
+    recording.sweep(recording.size());
+    each([&](VecXOf<Recorded> const& from, VecX const&, VecX& to) {
+      for (Index i = 0; i < to.size(); ++i) to[i] += recording.slope(from[i].number);
+    });
+  } else {
+    State near = x;
+    auto const each = [&](VecX& numbers, VecX const& at, VecX& to) {
+      double const size = at.size() > 0 && at.cwiseAbs().maxCoeff() > 0.0 ? at.cwiseAbs().maxCoeff() : 1.0;
+      double const e = 1e-3 * size;
+      for (Index i = 0; i < at.size(); ++i) {
+        double slope = 0.0;
+        for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
+          numbers[i] = at[i] + FourPoints::places[k] * e;
+          slope += FourPoints::weights[k] / e * term(f, model, near);
+        }
+        numbers[i] = at[i];
+        to[i] += weight * slope;
+      }
+    };
+    each(near.q, x.q, bar.q);
+    each(near.v, x.v, bar.v);
+    each(near.a, x.a, bar.a);
+    each(near.lambda, x.lambda, bar.lambda);
+  }
+}
+
+}  // namespace detail
+}  // namespace polybody

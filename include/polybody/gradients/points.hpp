@@ -1,0 +1,34 @@
+#pragma once
+/// \file
+/// Questions about points of bodies in states of any scalar, for objectives that are differentiated by recording them:
+/// the same calls as for a State (run/points.hpp).
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/run/points.hpp>
+
+namespace polybody {
+
+/// Frame of a material point in state x. \throws InvalidInput for a marker of another model.
+template <class M, class T, class B>
+  requires(!std::same_as<T, double>)
+Frame<T> frame(M const& model, StateOf<T> const& x, Marker<B> const& marker) {
+  model.require_own(marker.model, "frame");
+  auto const& entry = std::get<detail::BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)];
+  Published<T> out;
+  out.columns = point_columns(entry.body, marker.point);
+  std::vector<T> jacobian(std::size_t(6 * out.columns));
+  out.jacobian = jacobian.data();
+  entry.body.template publish<T>(
+      marker.point, identity(), std::span<T const>(x.q.data() + entry.q0, std::size_t(entry.body.coordinates())),
+      std::span<T const>(x.v.data() + entry.v0, std::size_t(entry.body.speeds())), out);
+  return out.frame;
+}
+/// Position of a material point in state x [m]. \throws InvalidInput for a marker of another model.
+template <class M, class T, class B>
+  requires(!std::same_as<T, double>)
+Vec<T, 3> position(M const& model, StateOf<T> const& x, Marker<B> const& marker) {
+  return frame(model, x, marker).r;
+}
+
+}  // namespace polybody
