@@ -1,0 +1,197 @@
+#include <polybody/gradients/gradient.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/contact.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/gradients/sensitivities.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/rolling_disc.hpp>
+#include <polybody/run/observe.hpp>
+
+#include "support/differences_of_runs.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace gradient_test {
+
+using P = std::span<double const>;
+
+/// A mass of 2 kg on a spring k and a damper c along x, drawn out by 1 m. J = x(T) + ∫ x dt.
+auto oscillator(double until, double step) {
+  return [until, step](P p) {
+    using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>;
+    M model;
+    auto const mass = model.add(planar::Rigid(2.0, 1.0, Placement::at({3.0, 0, 0})), "mass");
+    model.apply(SpringDamper{.stiffness = p[0], .damping = p[1], .free_length = 2.0}, model.ground().at({0, 0, 0}),
+                mass.at(Vec2(0, 0)), "spring");
+    auto const place = [](auto const&, auto const& x) { return x.q[0]; };
+    State const start = model.reference_state();
+    return rated(Scenario<M>{std::move(model), start, {.until = until, .step = step}}, place, place);
+  };
+}
+std::vector<Parameter> const of_oscillator{{"k [N/m]", 50.0}, {"c [N s/m]", 3.0}};
+
+/// Of x = 2 + e^(−δt) (cos ωt + δ/ω sin ωt) the value x(t) + ∫₀ᵗ x dt, where ∫ e^(−δt)(cos + δ/ω sin) dt = [e^(−δt)
+/// (−2δ cos ωt + (ω² − δ²)/ω sin ωt) + 2δ]/(δ² + ω²).
+double closed_form(double k, double c, double t) {
+  double const m = 2.0, delta = 0.5 * c / m, w2 = k / m - delta * delta, w = std::sqrt(w2);
+  double const e = std::exp(-delta * t), cosine = std::cos(w * t), sine = std::sin(w * t);
+  return 2.0 + e * (cosine + delta / w * sine) + 2.0 * t +
+         (e * (-2.0 * delta * cosine + (w2 - delta * delta) / w * sine) + 2.0 * delta) / (delta * delta + w2);
+}
+
+TEST(Gradient, OfAnOscillatorApproachesTheClosedFormAtSecondOrder) {
+  double const k = 50.0, c = 3.0, e = 1e-3;
+  auto const slope = [&](double ek, double ec) {
+    auto const at = [&](double s) { return closed_form(k + s * ek, c + s * ec, 1.0); };
+    return (8.0 * (at(1) - at(-1)) - at(2) + at(-2)) / (12.0 * e);
+  };
+  std::array const expected{closed_form(k, c, 1.0), slope(e, 0.0), slope(0.0, e)};
+  auto const error = [&](double h) {
+    Gradient const g = gradient(oscillator(1.0, h), of_oscillator, GeneralizedAlpha{});
+    return std::array{std::abs(g.value - expected[0]), std::abs(g.slopes[0] - expected[1]),
+                      std::abs(g.slopes[1] - expected[2])};
+  };
+  auto const coarse = error(1e-2), fine = error(5e-3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT(fine[i], 0.01 * std::abs(expected[i])) << i;
+    EXPECT_NEAR(coarse[i] / fine[i], 4.0, 0.4) << i;
+  }
+}
+
+TEST(Gradient, HasTheSameBitsWithFewSnapshots) {
+  auto const make = oscillator(1.0, 1e-2);
+  Gradient const all = gradient(make, of_oscillator, GeneralizedAlpha{});
+  EXPECT_EQ(all.reversal.steps, 100u);
+  EXPECT_EQ(all.reversal.taken, 100u);
+  EXPECT_EQ(all.run.steps, 100);
+  for (std::size_t const snapshots : {1u, 2u, 7u, 50u}) {
+    Gradient const few = gradient(make, of_oscillator, GeneralizedAlpha{}, {.snapshots = snapshots});
+    EXPECT_EQ(few.value, all.value) << snapshots;
+    EXPECT_EQ(few.slopes, all.slopes) << snapshots;
+    EXPECT_EQ(few.reversal.snapshots, snapshots);
+    EXPECT_GT(few.reversal.taken, 100u);
+    EXPECT_EQ(few.run.steps, 100);
+  }
+  Gradient const within = gradient(make, of_oscillator, GeneralizedAlpha{}, {.memory = 7.9 * all.snapshot_size});
+  EXPECT_EQ(within.reversal.snapshots, 7u);
+  EXPECT_EQ(within.slopes, all.slopes);
+}
+
+TEST(Gradient, TakesAFunctionOfStatesInDoublesByDifferences) {
+  auto const recorded = oscillator(0.3, 1e-2);
+  auto const by_differences = [&](P p) {
+    auto scenario = recorded(p);
+    using M = std::remove_cvref_t<decltype(scenario.model)>;
+    auto const place = [](M const&, State const& x) { return x.q[0]; };
+    return rated(Scenario<M>(std::move(scenario)), place, place);
+  };
+  Gradient const a = gradient(recorded, of_oscillator, GeneralizedAlpha{}),
+                 b = gradient(by_differences, of_oscillator, GeneralizedAlpha{});
+  EXPECT_EQ(a.value, b.value);
+  EXPECT_LT((a.slopes - b.slopes).norm(), 1e-11 * a.slopes.norm());
+}
+
+/// A ball that falls on a plane, slides and begins to roll: radius, modulus, friction, height, speed of the start.
+auto const ball = [](P p) {
+  using Law = Contact<SphereOnPlane, HertzContact>;
+  using M = Model<Bodies<Rigid<>>, Joints<>, Forces<Law>>;
+  M model{Gravity{0, 0, -9.81}};
+  double const radius = p[0], mass = 1000.0 * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+  Mat3 const inertia = 0.4 * mass * radius * radius * Mat3::Identity();
+  auto const body = model.add(Rigid<>(mass, inertia, Placement::at({0, 0, radius + p[3]})), "ball");
+  model.apply(Law{.geometry = {.radius = radius},
+                  .normal = {.modulus = p[1], .radius = radius},
+                  .friction = {.coefficient = p[2], .slip_speed = 0.05}},
+              body.at(Vec3::Zero()), model.ground().at({0, 0, 0}), "floor");
+  State start = model.reference_state();
+  model.set_velocity(start, body, {p[4], 0, 0}, Vec3::Zero());
+  auto const rated_by = [](auto const&, auto const& x) { return x.q[0] + 2.0 * x.q[2] + 0.1 * x.v[4]; };
+  std::vector<Output<M>> outputs{{"where and how fast [1]", rated_by}};
+  return rated(Scenario<M>{std::move(model), start, {.until = 0.12, .step = 5e-4}, std::move(outputs)}, rated_by);
+};
+std::vector<Parameter> const of_ball{
+    {"radius [m]", 0.1}, {"modulus [Pa]", 1e6}, {"friction [1]", 0.3}, {"height [m]", 0.02}, {"speed [m/s]", 1.0}};
+
+TEST(Gradient, GoesThroughAContactWithFriction) {
+  GeneralizedAlpha const integrator{.start_correction = false};
+  Gradient const g = gradient(ball, of_ball, integrator);
+  VecX const direct = sensitivities(ball, of_ball, integrator).slopes.back().row(0).transpose();
+  VecX const expected = by_differences(ball, of_ball, integrator).row(0).transpose();
+  for (Index j = 0; j < direct.size(); ++j) {
+    double const size = of_ball[std::size_t(j)].size();
+    EXPECT_NEAR(size * g.slopes[j], size * direct[j], 1e-11 * (1.0 + std::abs(size * direct[j]))) << j;
+    // the force begins as d^(3/2), with no second derivative
+    EXPECT_NEAR(size * g.slopes[j], size * expected[j], 1e-5 * (1.0 + std::abs(size * expected[j]))) << j;
+    EXPECT_GT(std::abs(size * g.slopes[j]), 1e-5) << j;
+  }
+}
+
+/// A disc that rolls and wobbles: mass, an inertia, the spin of the start. Its rows are of both levels.
+auto const disc = [](P p) {
+  using Wheel = Joint<RollingDisc, Constraint>;
+  using M = Model<Bodies<Rigid<>>, Joints<Wheel>>;
+  Vec3 const axis{std::cos(0.35), 0, std::sin(0.35)};
+  M model{Gravity{0, 0, -9.81}};
+  auto const wheel = model.add(Rigid<>(p[0], Vec3(p[1], 0.08, 0.08).asDiagonal().toDenseMatrix(),
+                                       Placement::at({0, 0, 0.4 * std::cos(0.35)}, {0, -0.35, 0})),
+                               "wheel");
+  model.connect(Wheel{{.radius = 0.4, .axis = axis, .normal = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
+                wheel.at(Vec3::Zero()), "contact");
+  State start = model.reference_state();
+  Vec3 const w = -p[2] * axis + Vec3(0.3, 0.4, 1.0), contact(0.4 * std::sin(0.35), 0, 0);
+  model.set_velocity(start, wheel, -w.cross(contact), w);
+  auto const rated_by = [](auto const&, auto const& x) { return x.q[0] + 2.0 * x.q[1] + x.q[2]; };
+  std::vector<Output<M>> outputs{{"where [m]", rated_by}};
+  return rated(Scenario<M>{std::move(model), start, {.until = 0.2, .step = 4e-3}, std::move(outputs)}, rated_by);
+};
+
+TEST(Gradient, GoesThroughRowsOfSpeeds) {
+  std::vector<Parameter> const parameters{{"mass [kg]", 2.0}, {"inertia [kg m²]", 0.15}, {"spin [rad/s]", 5.0}};
+  GeneralizedAlpha const integrator{.rho_inf = 0.8};
+  Gradient const g = gradient(disc, parameters, integrator);
+  VecX const direct = sensitivities(disc, parameters, integrator).slopes.back().row(0).transpose();
+  VecX const expected = by_differences(disc, parameters, integrator).row(0).transpose();
+  EXPECT_LT((g.slopes - direct).norm(), 1e-11 * (1.0 + direct.norm()));
+  EXPECT_LT((g.slopes - expected).norm(), 1e-8 * (1.0 + expected.norm()));
+}
+
+TEST(Gradient, SaysWhatNothingDependsOn) {
+  auto const make = [](P p) { return oscillator(0.1, 1e-2)(std::array{p[0], 3.0}); };
+  Gradient const g = gradient(make, {{"k [N/m]", 50.0}, {"colour [1]", 3.0}}, GeneralizedAlpha{});
+  ASSERT_EQ(g.run.warnings.size(), 1u);
+  EXPECT_EQ(g.run.warnings[0], "Nothing of the objective depends on the parameter \"colour [1]\".");
+  EXPECT_EQ(g.slopes[1], 0.0);
+}
+
+TEST(Gradient, RefusesWhatItDoesNotDifferentiate) {
+  auto const make = oscillator(0.1, 1e-2);
+  auto const said = [](auto const& of, GradientOptions const& options = {}, GeneralizedAlpha const& i = {}) {
+    return refusal([&] { gradient(of, of_oscillator, i, options); });
+  };
+  EXPECT_TRUE(has(said(make, {.memory = 0.0}), "memory for snapshots must be a positive number"));
+  EXPECT_TRUE(has(said(make, {.memory = 10.0}), "one snapshot of a state takes"));
+  EXPECT_TRUE(has(said(make, {}, {.stabilised = true}), "gradient: a stabilised step"));
+  EXPECT_TRUE(has(said(oscillator(0.105, 1e-2)), "the step to t = 0.105 s has another length"));
+  EXPECT_TRUE(has(said(oscillator(0.0, 1e-2)), "has no step"));
+  auto const stopped = [&](P p) {
+    auto scenario = make(p);
+    scenario.options.events = {{.name = "low", .value = [](State const& x) { return x.q[0] - 1.0; }}};
+    return scenario;
+  };
+  EXPECT_TRUE(has(said(stopped), "gradient: a run with events"));
+  auto const wild = [&](P p) {
+    auto scenario = make(p);
+    using M = std::remove_cvref_t<decltype(scenario.model)>;
+    return rated(Scenario<M>(std::move(scenario)), [](M const&, State const& x) { return std::log(-x.q[0]); });
+  };
+  EXPECT_TRUE(has(message_of<NonFinite>([&] { gradient(wild, of_oscillator, GeneralizedAlpha{}); }), "the objective"));
+}
+
+}  // namespace gradient_test
