@@ -3,6 +3,9 @@
 # What most of a header's time goes into is the same for all: Eigen, then what waist 3 includes. So a header is compiled
 # after the highest of these precompiled ones that it reaches by its own includes. That hides nothing: what it adds is
 # there in any case, and a header on the way that does not reach so high is compiled without it.
+#
+# POLYBODY_HEADERS_ALONE=K/N takes every N-th header, the K-th first, and those that the last 30 commits changed.
+set(POLYBODY_HEADERS_ALONE all CACHE STRING "Headers that are compiled alone: all, or K/N for every N-th")
 set(headers_alone_before polybody/math/types.hpp polybody/system/system.hpp) # the higher, the later
 
 # Which of `headers` (as they are included) reach `goal` by their includes.
@@ -37,9 +40,39 @@ foreach(file IN LISTS polybody_headers polybody_testing_headers)
   list(APPEND headers ${header})
 endforeach()
 
+# Those of `headers` whose turn it is.
+function(headers_in_turn headers out)
+  if(NOT POLYBODY_HEADERS_ALONE MATCHES "^([0-9]+)/([1-9][0-9]*)$")
+    set(${out} "${headers}" PARENT_SCOPE)
+    return()
+  endif()
+  set(first ${CMAKE_MATCH_1})
+  set(every ${CMAKE_MATCH_2})
+  execute_process(
+    COMMAND git diff --name-only --relative=include HEAD~30 -- include
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    OUTPUT_VARIABLE changed
+    ERROR_QUIET)
+  string(REPLACE "\n" ";" changed "${changed}")
+  set(place 0)
+  set(chosen "")
+  foreach(header IN LISTS headers)
+    math(EXPR turn "(${place} + ${every} - ${first} % ${every}) % ${every}")
+    math(EXPR place "${place} + 1")
+    if(turn EQUAL 0 OR header IN_LIST changed)
+      list(APPEND chosen ${header})
+    endif()
+  endforeach()
+  set(${out} "${chosen}" PARENT_SCOPE)
+endfunction()
+
 add_custom_target(headers_alone)
 # Compiles `alone`, after `before` where it is not empty.
 function(compile_alone target before alone)
+  headers_in_turn("${alone}" alone)
+  if(NOT alone)
+    return()
+  endif()
   set(sources "")
   foreach(header IN LISTS alone)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/headers_alone/${header}.cpp)
