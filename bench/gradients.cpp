@@ -83,16 +83,15 @@ void print(char const* name, int links) {
   VecX by_direct, by_adjoint;
   for (int k = 0; k < 2; ++k) {
     auto const parameters = of(counts[k]);
-    direct[k] = least([&] {
-      by_direct = sensitivities(make, parameters, integrator).slopes.back().row(0).transpose();
-    });
+    direct[k] =
+        least([&] { by_direct = sensitivities(make, parameters, integrator).slopes.back().row(0).transpose(); });
     adjoint[k] = least([&] { by_adjoint = gradient(make, parameters, integrator).slopes; });
   }
   Gradient few;
   double const with_few = least([&] { few = gradient(make, of(1), integrator, {.snapshots = 50}); });
   auto const each = [&](double const* t) { return (t[1] - t[0]) / double(counts[1] - counts[0]); };
-  std::printf("| %s | %d | %.0f | %.2f | %.2f | %.2f | %.2f | %.2f, %zu steps, %.1f MB | %.0e |\n", name, links, 1e3 * run,
-              (direct[0] - each(direct)) / run, each(direct) / run, (adjoint[0] - each(adjoint)) / run,
+  std::printf("| %s | %d | %.0f | %.2f | %.2f | %.2f | %.2f | %.2f, %zu steps, %.1f MB | %.0e |\n", name, links,
+              1e3 * run, (direct[0] - each(direct)) / run, each(direct) / run, (adjoint[0] - each(adjoint)) / run,
               each(adjoint) / run, (with_few - each(adjoint)) / run, few.reversal.taken,
               1e-6 * few.snapshot_size * double(few.reversal.snapshots),
               (by_direct - by_adjoint).norm() / by_direct.norm());

@@ -4,11 +4,11 @@
 #include <span>
 
 #include <polybody/compare/compare.hpp>
+#include <polybody/gradients/parameter.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/gradients/parameter.hpp>
 
 namespace polybody {
 

@@ -24,7 +24,7 @@ struct Costate {
   VecX lambda;  ///< (rows) ∂J/∂λ
   VecX own;     ///< (nv) ∂J/∂a, the method's own accelerations
 
-  /// Of a result that no state changes. \param x a state, of which the sizes are taken
+  /// Zeros: no state changes the result. \param x a state, of which the sizes are taken
   [[gnu::cold]] explicit Costate(State const& x)
       : q(VecX::Zero(x.q.size())), v(VecX::Zero(x.v.size())), a(v), lambda(VecX::Zero(x.lambda.size())), own(v) {}
 };
@@ -71,7 +71,8 @@ class AlphaStepAdjoint {
   }
 
   /// Takes the costate of the state after the step to that of the state before it. Returns what the last correction of
-  /// μ changed, relative to it. \param mu becomes that of the step. \throws LinearSolverSingular at a singular position.
+  /// μ changed, relative to it. \param mu becomes that of the step. \throws LinearSolverSingular at a singular
+  /// position.
   double retreat(StepEnds const& step, Costate& x, StepMultipliers& mu) {
     record(step);
     factor(step);

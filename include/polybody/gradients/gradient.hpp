@@ -28,11 +28,6 @@ namespace polybody {
 struct GradientOptions {
   std::size_t snapshots = 0;  ///< states that are kept at a time at most; zero: as many as fit into `memory`
   double memory = 1e9;        ///< for snapshots where their count is not given [bytes]
-
-  /// \throws InvalidInput unless the memory is a positive number.
-  void check() const {
-    if (!(memory > 0.0)) throw InvalidInput("gradient: the memory for snapshots must be a positive number of bytes.");
-  }
 };
 
 /// A result of a run and its derivatives.
@@ -123,7 +118,8 @@ class AdjointRun {
                            " s, where a run begins anew. Give smooth laws, or end the run before."};
       double const h = next.h, end = next.lands ? next.target : row.after(t, h);
       if (method().start_correction && !steps_.empty() && std::abs(h - steps_.back().h) > 1e-9 * h)
-        throw InvalidInput{"gradient: the step to t = ", end, " s has another length than the others. Give the options "
+        throw InvalidInput{"gradient: the step to t = ", end,
+                           " s has another length than the others. Give the options "
                            "a step that divides the time of the run, or set start_correction to false."};
       steps_.push_back({h, end});
       t = end;
@@ -132,8 +128,8 @@ class AdjointRun {
   }
   std::size_t snapshots(GradientOptions const& options) const {
     if (options.snapshots > 0) return options.snapshots;
-    if (options.memory < out_.snapshot_size)
-      throw InvalidInput{"gradient: one snapshot of a state takes ", out_.snapshot_size, " bytes, but the memory is ",
+    if (!(options.memory >= out_.snapshot_size))
+      throw InvalidInput{"gradient: a snapshot of a state takes ", out_.snapshot_size, " bytes, but the memory is ",
                          options.memory, " bytes. Give more of it."};
     return std::size_t(std::min(options.memory / out_.snapshot_size, 1e15));
   }
@@ -225,7 +221,6 @@ Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I 
                   GradientOptions const& options = {}) {
   using M = decltype(make(std::span<double const>()).model);
   detail::require_differentiable<M, I>();
-  options.check();
   AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "gradient");
   return detail::AdjointRun<Make, I>(make, parameters, method).run(options);
 }

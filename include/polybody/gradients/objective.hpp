@@ -22,8 +22,8 @@ struct NoTerm {};
 /// A scenario with what its run is rated by.
 template <class M, class End, class Integrand = NoTerm>
 struct RatedScenario : Scenario<M> {
-  End end;                      ///< Φ(model, x) of the state at the end, or NoTerm
-  Integrand integrand = {};     ///< g(model, x), or NoTerm
+  End end;                   ///< Φ(model, x) of the state at the end, or NoTerm
+  Integrand integrand = {};  ///< g(model, x), or NoTerm
 };
 
 /// J = Φ(x_N), or with an integrand g, Φ(x_N) + ∫ g(x) dt. \param end Φ(model, state); \param integrand g(model, state)

@@ -19,9 +19,9 @@ Frame<T> frame(M const& model, StateOf<T> const& x, Marker<B> const& marker) {
   out.columns = point_columns(entry.body, marker.point);
   std::vector<T> jacobian(std::size_t(6 * out.columns));
   out.jacobian = jacobian.data();
-  entry.body.template publish<T>(
-      marker.point, identity(), std::span<T const>(x.q.data() + entry.q0, std::size_t(entry.body.coordinates())),
-      std::span<T const>(x.v.data() + entry.v0, std::size_t(entry.body.speeds())), out);
+  entry.body.template publish<T>(marker.point, identity(),
+                                 std::span<T const>(x.q.data() + entry.q0, std::size_t(entry.body.coordinates())),
+                                 std::span<T const>(x.v.data() + entry.v0, std::size_t(entry.body.speeds())), out);
   return out.frame;
 }
 /// Position of a material point in state x [m]. \throws InvalidInput for a marker of another model.

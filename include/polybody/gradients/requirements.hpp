@@ -37,9 +37,9 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
     return std::array{v.system.coordinates(), v.system.speeds(), v.system.rows(), Index(v.scenario.outputs.size())};
   };
   if (sizes(other) != sizes(model))
-    throw InvalidInput{who,    ": with another \"",
-                       p.name, "\" the factory makes a model of other sizes. Let parameters change numbers, not what is "
-                               "there."};
+    throw InvalidInput{who, ": with another \"", p.name,
+                       "\" the factory makes a model of other sizes. Let parameters change numbers, not what is "
+                       "there."};
 }
 
 /// Runs of this model by this integrator are differentiated.
@@ -51,8 +51,7 @@ constexpr void require_differentiable() {
   static_assert(
       requires(I const& integrator) {
         { integrator.method() } -> std::convertible_to<AlphaMethod>;
-      },
-      "Runs are differentiated under the generalised-α family: GeneralizedAlpha, HhtAlpha, Newmark, Trapezoidal.");
+      }, "Runs are differentiated under the generalised-α family: GeneralizedAlpha, HhtAlpha, Newmark, Trapezoidal.");
 }
 
 /// The method by which a run is differentiated: its corrections go on to 1e-12. \throws InvalidInput, beginning with

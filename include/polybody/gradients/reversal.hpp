@@ -24,8 +24,7 @@ struct ReversalReport {
 /// C(s + r, s) steps, or the largest number where that is more.
 inline std::size_t steps_within(std::size_t snapshots, std::size_t times) {
   double count = 1.0;
-  for (std::size_t k = 1; k <= std::min(snapshots, times); ++k)
-    count *= double(snapshots + times - k + 1) / double(k);
+  for (std::size_t k = 1; k <= std::min(snapshots, times); ++k) count *= double(snapshots + times - k + 1) / double(k);
   return count < 1e15 ? std::size_t(count + 0.5) : std::numeric_limits<std::size_t>::max();
 }
 

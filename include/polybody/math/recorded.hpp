@@ -5,6 +5,8 @@
 /// backwards [Griewank & Walther 2008, §3.2]: all derivatives of one result by one sweep.
 ///
 /// Constants are recorded nowhere: sums with them and products with one or zero add nothing.
+///
+/// Not in polybody.hpp: only derivatives of whole runs record (gradients/gradient.hpp).
 
 #include <Eigen/Core>
 #include <cmath>
