@@ -35,9 +35,9 @@ struct Chain {
       bar.placement = Placement::at({0.1 * i, 0, 0});
       bar.material->density = 7800.0 * (std::size_t(i) < p.size() ? p[std::size_t(i)] : 1.0);
       if constexpr (requires { B::from(bar, 1); })
-        bodies.push_back(model.add(B::from(bar, 1)));
+        bodies.push_back(model.add(B::from(bar, 1), "link " + std::to_string(i)));
       else
-        bodies.push_back(model.add(B::from(bar)));
+        bodies.push_back(model.add(B::from(bar), "link " + std::to_string(i)));
       if (i == 0)
         model.connect(Pin{}, model.ground().at({0, 0, 0}), bodies[0].at(0.0));
       else
@@ -70,7 +70,8 @@ void print(char const* name, int links) {
   GeneralizedAlpha const integrator{.tolerance = 1e-12};
   auto const of = [](int count) {
     std::vector<Parameter> parameters;
-    for (int i = 0; i < count; ++i) parameters.push_back({"mass of link " + std::to_string(i) + " [1]", 1.0});
+    for (int i = 0; i < count; ++i)
+      parameters.push_back({"mass of link " + std::to_string(i) + " [1]", 1.0, 0.0, {"link " + std::to_string(i)}});
     return parameters;
   };
   auto const scenario = make({});
@@ -78,7 +79,7 @@ void print(char const* name, int links) {
     State x = scenario.start;
     simulate(scenario.model, x, integrator, scenario.options).run();
   });
-  int const counts[2] = {1, 9};
+  int const counts[2] = {1, std::min(links, 33)};
   double direct[2], adjoint[2];
   VecX by_direct, by_adjoint;
   for (int k = 0; k < 2; ++k) {

@@ -10,6 +10,7 @@
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/rolling_disc.hpp>
 #include <polybody/run/observe.hpp>
 
@@ -160,6 +161,80 @@ TEST(Gradient, GoesThroughRowsOfSpeeds) {
   VecX const expected = by_differences(disc, parameters, integrator).row(0).transpose();
   EXPECT_LT((g.slopes - direct).norm(), 1e-11 * (1.0 + direct.norm()));
   EXPECT_LT((g.slopes - expected).norm(), 1e-8 * (1.0 + expected.norm()));
+}
+
+/// A chain of five rods on springy pins: their lengths, densities and the stiffness of each pin.
+auto const chain = [](P p) {
+  using Rod = planar::Rigid;
+  using Pin = Joint<planar::Revolute, Penalty>;
+  using M = Model<Bodies<Rod>, Joints<Pin>>;
+  M model{Gravity{0, -9.81, 0}};
+  BodyHandle<Rod> last;
+  double x = 0.0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    std::string const number = std::to_string(i);
+    auto const rod = model.add(Rod::from({.length = p[3 * i],
+                                          .section = Circle{.radius = 0.01},
+                                          .material = Material{.density = p[3 * i + 1], .young = 2e11},
+                                          .placement = Placement::at({x, 0, 0})}),
+                               "rod " + number);
+    Pin const pin{planar::Revolute{}, Penalty{.stiffness = p[3 * i + 2], .damping = 10.0}};
+    if (i == 0)
+      model.connect(pin, model.ground().at({0, 0, 0}), rod.at(0.0), "pin " + number);
+    else
+      model.connect(pin, last.at(p[3 * (i - 1)]), rod.at(0.0), "pin " + number);
+    last = rod;
+    x += p[3 * i];
+  }
+  auto const height = [tip = last.at(p[12])](auto const& m, auto const& y) { return position(m, y, tip)[1]; };
+  State const start = model.reference_state();
+  return rated(Scenario<M>{std::move(model), start, {.until = 0.1, .step = 2e-3}}, height);
+};
+std::vector<Parameter> of_chain(bool with_touches) {
+  std::vector<Parameter> all;
+  for (int i = 0; i < 5; ++i) {
+    std::string const n = std::to_string(i), next = std::to_string(i + 1);
+    std::vector<std::string> at_rod{"rod " + n, "pin " + n};
+    if (i < 4) at_rod.push_back("pin " + next);
+    all.push_back({"length " + n + " [m]", 0.2, 0.0, at_rod});
+    all.push_back({"density " + n + " [kg/m³]", 7800.0, 0.0, {"rod " + n}});
+    all.push_back({"stiffness " + n + " [N/m]", 1e5, 0.0, {"pin " + n}});
+  }
+  if (!with_touches)
+    for (Parameter& p : all) p.touches.clear();
+  return all;
+}
+
+TEST(Gradient, IsTheSameWhereParametersSayWhatTheyTouch) {
+  Gradient const a = gradient(chain, of_chain(true), GeneralizedAlpha{}),
+                 b = gradient(chain, of_chain(false), GeneralizedAlpha{});
+  for (Index j = 0; j < 15; ++j) {
+    double const size = of_chain(true)[std::size_t(j)].size();
+    EXPECT_NEAR(size * a.slopes[j], size * b.slopes[j], 1e-12) << j;
+    EXPECT_GT(std::abs(size * a.slopes[j]), 1e-8) << j;
+  }
+}
+
+TEST(Gradient, ParametersThatTouchNothingInCommonShareTheirModels) {
+  using V = detail::Variant<decltype(chain({})), GeneralizedAlpha>;
+  auto const groups = [](std::vector<Parameter> const& parameters) {
+    V const model(chain(detail::values_of(parameters)), GeneralizedAlpha{}.method());
+    return detail::EquationSlopes<V>(chain, parameters, model).groups();
+  };
+  EXPECT_EQ(groups(of_chain(false)), 15u);
+  // a length touches both neighbours, which takes three groups; densities and stiffnesses of others fill up two more
+  EXPECT_LE(groups(of_chain(true)), 6u);
+  EXPECT_GE(groups(of_chain(true)), 5u);
+}
+
+TEST(Gradient, RefusesParametersThatTouchMoreThanTheySay) {
+  auto const said = [](std::vector<std::string> touches) {
+    auto parameters = of_chain(true);
+    parameters[3].touches = std::move(touches);  // a length
+    return refusal([&] { gradient(chain, parameters, GeneralizedAlpha{}); });
+  };
+  EXPECT_TRUE(has(said({"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));
+  EXPECT_TRUE(has(said({"pin 1"}), "\"length 1 [m]\" changes the equations of body \"rod 2\""));
 }
 
 TEST(Gradient, SaysWhatNothingDependsOn) {

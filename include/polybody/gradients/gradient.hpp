@@ -10,13 +10,15 @@
 /// The run is taken once forwards, then backwards from its end (`AlphaStepAdjoint`); states on the way are kept in
 /// snapshots or computed again (`reverse_steps`). Parameters are numbers of a factory, and equations at given unknowns
 /// are differenced by them, as in `sensitivities`; a step costs the same for one parameter and for many but for these
-/// differences. Every step begins with a factorisation of its own, so that it has the same bits whenever it is taken.
+/// differences, which parameters share that touch nothing in common (`Parameter::touches`). Every step begins with a
+/// factorisation of its own, so that it has the same bits whenever it is taken.
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <memory>
 #include <span>
 
+#include <polybody/gradients/equation_slopes.hpp>
 #include <polybody/gradients/objective.hpp>
 #include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/reversal.hpp>
@@ -60,19 +62,12 @@ class AdjointRun {
 
  public:
   [[gnu::cold]] AdjointRun(Make const& make, std::vector<Parameter> const& parameters, AlphaMethod const& method)
-      : parameters_(parameters),
+      : make_(make),
+        parameters_(parameters),
         whole_(make(values_of(parameters)), method),
         adjoint_(whole_.scenario.model, whole_.system, method) {
     require_plain(whole_.scenario.options, "gradient");
-    for (std::size_t j = 0; j < parameters.size(); ++j) {
-      out_.parameters.push_back(parameters[j].name);
-      for (double const place : FourPoints::places) {
-        std::vector<double> p = values_of(parameters);
-        p[j] += place * parameters[j].distance();
-        beside_.push_back(std::make_unique<V>(make(p), method));
-        require_alike(whole_, *beside_.back(), parameters[j], "gradient");
-      }
-    }
+    for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
     out_.slopes = VecX::Zero(Index(parameters.size()));
   }
 
@@ -84,6 +79,8 @@ class AdjointRun {
     whole_.start(x, steps_.front().h);
     out_.value += weight(0) * term(whole_.scenario.integrand, whole_.scenario.model, x);
     (void)whole_.set_out(x, steps_.front().h);
+    EquationSlopes<V> equations(make_, parameters_, whole_);
+    prepare(x, equations);
     Costate bar(x);
     bool at_end = false;
     out_.snapshot_size = 8.0 * double(x.q.size() + x.v.size() + x.a.size() + x.lambda.size() + x.memory.size());
@@ -92,9 +89,9 @@ class AdjointRun {
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
-          go_back(k, before, after, bar);
+          go_back(k, before, after, equations, bar);
         });
-    add_start(x, bar);
+    add_start(bar);
     for (std::size_t j = 0; j < parameters_.size(); ++j)
       if (out_.slopes[Index(j)] == 0.0)
         out_.run.add_warning("Nothing of the objective depends on the parameter \"" + parameters_[j].name + "\".");
@@ -151,17 +148,18 @@ class AdjointRun {
   void begin_at_end(State const& last, Costate& bar) {
     out_.value += term(whole_.scenario.end, whole_.scenario.model, last);
     add_slopes(whole_.scenario.end, whole_.scenario.model, last, 1.0, recording_, bar);
-    add_to_slopes([&](V& v) { return term(v.scenario.end, v.scenario.model, last); });
+    add_to_slopes([&](S const& s) { return term(s.end, s.model, last); });
     add_integrand(steps_.size(), last, bar);
   }
-  void go_back(std::size_t k, State const& before, State const& after, Costate& bar) {
+  void go_back(std::size_t k, State const& before, State const& after, EquationSlopes<V>& equations, Costate& bar) {
     Index const nv = before.v.size();
     VecX const own_before = before.memory.head(nv), own_after = after.memory.head(nv);
     out_.left = std::max(out_.left, adjoint_.retreat({before, after, own_before, own_after, steps_[k].h}, bar, mu_));
-    add_to_slopes([&](V& v) {
-      EquationSlope const of = v.equations(after);
-      return -(mu_.balance.dot(of.balance) + mu_.rows.dot(of.rows));
-    });
+    equations.evaluate(after);
+    mu_of_all_.resize(mu_.balance.size() + mu_.rows.size());
+    mu_of_all_.head(mu_.balance.size()) = mu_.balance;
+    mu_of_all_.tail(mu_.rows.size()) = mu_.rows;
+    for (std::size_t j = 0; j < parameters_.size(); ++j) out_.slopes[Index(j)] -= equations.dot(j, mu_of_all_);
     if (k > 0) add_integrand(k, before, bar);
   }
   /// The integrand of state number k.
@@ -170,23 +168,42 @@ class AdjointRun {
     double const w = weight(k);
     out_.value += w * term(whole_.scenario.integrand, whole_.scenario.model, x);
     add_slopes(whole_.scenario.integrand, whole_.scenario.model, x, w, recording_, bar);
-    add_to_slopes([&](V& v) { return w * term(v.scenario.integrand, v.scenario.model, x); });
+    add_to_slopes([&](S const& s) { return w * term(s.integrand, s.model, x); });
   }
-  /// What parameters do by the start of the run. \param x from where the first step sets out
-  void add_start(State const& x, Costate const& bar) {
-    Index const nv = x.v.size();
-    add_to_slopes([&](V& v) {
-      State y = v.started(steps_.front().h);
-      double const integrand = weight(0) * term(v.scenario.integrand, v.scenario.model, y);
-      if (v.set_out(y, steps_.front().h); y.memory.tail(1) != x.memory.tail(1))
-        throw InvalidInput(
-            "gradient: the start of a run with another value of a parameter is corrected otherwise. Set "
-            "start_correction to false.");
-      return integrand + bar.q.dot(y.q - x.q) + bar.v.dot(y.v - x.v) + bar.a.dot(y.a - x.a) +
-             bar.lambda.dot(y.lambda - x.lambda) + bar.own.dot(y.memory.head(nv) - x.memory.head(nv));
-    });
+  /// What each parameter does to the start of the run, and its scenarios. \param x from where the first step sets out
+  void prepare(State const& x, EquationSlopes<V> const& equations) {
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      Parameter const& p = parameters_[j];
+      State dx = zeros_like(x);
+      double of_integrand = 0.0;
+      for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
+        std::vector<double> values = values_of(parameters_);
+        values[j] += FourPoints::places[k] * p.distance();
+        V v(make_(values), method());
+        require_alike(whole_, v, p, "gradient");
+        if (k == 0) equations.require_touched(j, p, whole_, v, x);
+        double const by = FourPoints::weights[k] / p.distance();
+        State y = v.started(steps_.front().h);
+        of_integrand += by * term(v.scenario.integrand, v.scenario.model, y);
+        if (v.set_out(y, steps_.front().h); y.memory.tail(StepHistory::lengths) != x.memory.tail(StepHistory::lengths))
+          throw InvalidInput{"gradient: the start of a run with another \"", p.name,
+                             "\" is corrected otherwise. Set start_correction to false."};
+        add(dx, y, by);
+        beside_.push_back(std::make_unique<S>(std::move(v.scenario)));
+      }
+      out_.slopes[Index(j)] += weight(0) * of_integrand;
+      starts_.push_back(std::move(dx));
+    }
   }
-  /// Adds the derivative of f(variant) to each parameter's slope.
+  /// What parameters do by the start of the run.
+  void add_start(Costate const& bar) {
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      State const& dx = starts_[j];
+      out_.slopes[Index(j)] += bar.q.dot(dx.q) + bar.v.dot(dx.v) + bar.a.dot(dx.a) + bar.lambda.dot(dx.lambda) +
+                               bar.own.dot(dx.memory.head(dx.v.size()));
+    }
+  }
+  /// Adds the derivative of f(scenario) to each parameter's slope.
   template <class F>
   void add_to_slopes(F&& f) {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
@@ -198,13 +215,16 @@ class AdjointRun {
   }
   AlphaMethod const& method() const { return whole_.method; }
 
+  Make const& make_;
   std::vector<Parameter> parameters_;
   V whole_;
   AlphaStepAdjoint<> adjoint_;
-  std::vector<std::unique_ptr<V>> beside_;  // four for each parameter
+  std::vector<std::unique_ptr<S>> beside_;  // four for each parameter
+  std::vector<State> starts_;               // derivatives of where the first step sets out, by each parameter
   std::vector<Step> steps_;
   std::size_t furthest_ = 0;  // steps that have been taken once
   StepMultipliers mu_;
+  VecX mu_of_all_;       // both parts
   Recording recording_;  // of the objective
   Gradient out_;
 };

@@ -19,6 +19,10 @@ struct Parameter {
   std::string name;    ///< with its unit
   double value = 0.0;  ///< at which derivatives are taken, in the unit that its name tells
   double scale = 0.0;  ///< over which the model changes as a whole, in that unit; zero: as much as `value`
+  /// Names of the bodies, joints and forces whose equations it changes; where none are named, all of them may change. A
+  /// length changes those of its body and of the joints at its end. Parameters that touch nothing in common are
+  /// differenced together, in four evaluations of the equations for all of them.
+  std::vector<std::string> touches = {};
 
   /// The scale, or where there is none the amount of the value.
   double size() const { return scale > 0.0 ? scale : std::abs(value); }

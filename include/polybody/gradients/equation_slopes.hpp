@@ -1,0 +1,149 @@
+#pragma once
+/// \file
+/// What parameters do to the equations of a step while unknowns stay, ∂r/∂p and ∂Φ/∂p, by differences of models made
+/// for values beside theirs. Parameters that touch no equation in common share these models, as columns of a sparse
+/// Jacobian share one difference [Curtis, Powell & Reid 1974].
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <memory>
+#include <numeric>
+
+#include <polybody/gradients/parameter.hpp>
+#include <polybody/gradients/requirements.hpp>
+#include <polybody/gradients/variant.hpp>
+
+namespace polybody::detail {
+
+/// The equations that a parameter touches, ascending: by speeds, then by rows. \throws InvalidInput for a name that the
+/// model does not have.
+template <class = void>
+std::vector<Index> touched_equations(ModelLayout const& layout, Parameter const& p) {
+  std::vector<char> touched(std::size_t(layout.speeds + layout.rows), p.touches.empty());
+  auto const touch = [&](Index first, Index count) {
+    for (Index i = first; i < first + count; ++i) touched[std::size_t(i)] = 1;
+  };
+  auto const touch_owner = [&](Index marker) {
+    if (Index const body = marker < 0 ? -1 : layout.owners[std::size_t(marker)]; body >= 0)
+      touch(layout.bodies[std::size_t(body)].v0, layout.bodies[std::size_t(body)].speeds);
+  };
+  for (std::string const& name : p.touches) {
+    bool found = false;
+    for (BodyPlace const& b : layout.bodies)
+      if (b.name == name) {
+        touch(b.v0, b.speeds);
+        if (b.rows > 0) touch(layout.speeds + b.row, b.rows);
+        found = true;
+      }
+    for (JointPlace const& j : layout.joints)
+      if (j.name == name) {
+        if (j.rows > 0) touch(layout.speeds + j.row, j.rows);
+        touch_owner(j.a);
+        touch_owner(j.b);
+        found = true;
+      }
+    for (ForcePlace const& f : layout.forces)
+      if (f.name == name) {
+        if (f.states > 0) touch(f.v0, f.states);
+        for (Index const marker : f.markers) touch_owner(marker);
+        found = true;
+      }
+    if (!found)
+      throw InvalidInput{"The parameter \"", p.name, "\" touches \"", name,
+                         "\", but the model has no body, joint or force of that name."};
+  }
+  std::vector<Index> equations;
+  for (std::size_t i = 0; i < touched.size(); ++i)
+    if (touched[i]) equations.push_back(Index(i));
+  return equations;
+}
+
+/// Differences of the equations by all parameters. \tparam V a Variant
+template <class V>
+class EquationSlopes {
+ public:
+  /// A group for each set of parameters that touch nothing in common. \param make makes a scenario for values of the
+  /// parameters
+  template <class Make>
+  [[gnu::cold]] EquationSlopes(Make const& make, std::vector<Parameter> const& parameters, V const& model)
+      : places_(parameters.size()) {
+    std::vector<std::vector<char>> taken;
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      Place& place = places_[j];
+      place.distance = parameters[j].distance();
+      place.equations = touched_equations(model.system.layout(), parameters[j]);
+      auto const is_free = [&](std::vector<char> const& in) {
+        return std::all_of(place.equations.begin(), place.equations.end(),
+                           [&](Index i) { return !in[std::size_t(i)]; });
+      };
+      place.group = std::size_t(std::find_if(taken.begin(), taken.end(), is_free) - taken.begin());
+      if (place.group == taken.size()) taken.emplace_back(std::size_t(model.system.size()), 0);
+      for (Index const i : place.equations) taken[place.group][std::size_t(i)] = 1;
+    }
+    groups_.resize(taken.size());
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
+        std::vector<double> p = values_of(parameters);
+        for (std::size_t j = 0; j < p.size(); ++j)
+          if (places_[j].group == g) p[j] += FourPoints::places[k] * parameters[j].distance();
+        groups_[g].models[k] = std::make_unique<V>(make(p), model.method);
+      }
+  }
+
+  /// How many groups there are: each takes four evaluations.
+  std::size_t groups() const { return groups_.size(); }
+
+  /// Differences at x, of which everything else is asked.
+  void evaluate(State const& x) {
+    for (Group& group : groups_)
+      for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
+        EquationSlope const of = group.models[k]->equations(x);
+        if (k == 0) group.difference.setZero(of.balance.size() + of.rows.size());
+        group.difference.head(of.balance.size()) += FourPoints::weights[k] * of.balance;
+        group.difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
+      }
+  }
+  /// μᵀ ∂r/∂p of parameter j. \param mu by speeds, then by rows
+  double dot(std::size_t j, VecX const& mu) const {
+    double sum = 0.0;
+    VecX const& difference = groups_[places_[j].group].difference;
+    for (Index const i : places_[j].equations) sum += mu[i] * difference[i];
+    return sum / places_[j].distance;
+  }
+
+  /// \throws InvalidInput where parameter j changes an equation at x that it does not touch. \param other the model with
+  /// another value of it
+  void require_touched(std::size_t j, Parameter const& p, V& model, V& other, State const& x) const {
+    if (p.touches.empty()) return;
+    EquationSlope const here = model.equations(x), there = other.equations(x);
+    Index const speeds = here.balance.size(), all = speeds + here.rows.size();
+    std::size_t next = 0;
+    std::vector<Index> const& touched = places_[j].equations;
+    for (Index i = 0; i < all; ++i) {
+      if (next < touched.size() && touched[next] == i) {
+        ++next;
+        continue;
+      }
+      bool const same = i < speeds ? here.balance[i] == there.balance[i]
+                                   : here.rows[i - speeds] == there.rows[i - speeds];
+      if (!same)
+        throw InvalidInput{"The parameter \"", p.name, "\" changes the equations of ", model.system.name_of(i),
+                           ", which it does not name. Add to `touches` what acts there, or leave it empty."};
+    }
+  }
+
+ private:
+  struct Place {
+    std::size_t group = 0;
+    double distance = 1.0;
+    std::vector<Index> equations;  // by speeds, then by rows
+  };
+  struct Group {
+    std::array<std::unique_ptr<V>, 4> models;
+    VecX difference;  // Σ of the four, weighted; over a distance it is a derivative
+  };
+  std::vector<Place> places_;
+  std::vector<Group> groups_;
+};
+
+}  // namespace polybody::detail
