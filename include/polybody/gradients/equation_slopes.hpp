@@ -111,25 +111,30 @@ class EquationSlopes {
     return sum / places_[j].distance;
   }
 
-  /// \throws InvalidInput where parameter j changes an equation at x that it does not touch. \param other the model with
-  /// another value of it
+  /// \throws InvalidInput where parameter j changes an equation at x that it does not touch, by more than rounding.
+  /// \param other the model with another value of it
   void require_touched(std::size_t j, Parameter const& p, V& model, V& other, State const& x) const {
     if (p.touches.empty()) return;
+    State still = x;
+    still.a.setZero();
+    still.lambda.setZero();
+    double const force = model.equations(still).balance.template lpNorm<Eigen::Infinity>();
     EquationSlope const here = model.equations(x), there = other.equations(x);
-    Index const speeds = here.balance.size(), all = speeds + here.rows.size();
-    std::size_t next = 0;
-    std::vector<Index> const& touched = places_[j].equations;
-    for (Index i = 0; i < all; ++i) {
-      if (next < touched.size() && touched[next] == i) {
-        ++next;
-        continue;
-      }
-      bool const same = i < speeds ? here.balance[i] == there.balance[i]
-                                   : here.rows[i - speeds] == there.rows[i - speeds];
-      if (!same)
+    Index const speeds = here.balance.size();
+    auto const change = [&](Index i) {
+      return i < speeds ? std::abs(there.balance[i] - here.balance[i])
+                        : std::abs(there.rows[i - speeds] - here.rows[i - speeds]);
+    };
+    double most[2] = {1e-11 * force, 1e-13};  // of balance and rows: what they touch, or rounding
+    std::vector<char> touched(std::size_t(model.system.size()), 0);
+    for (Index const i : places_[j].equations) {
+      touched[std::size_t(i)] = 1;
+      most[i < speeds ? 0 : 1] = std::max(most[i < speeds ? 0 : 1], 1e-7 * change(i));
+    }
+    for (Index i = 0; i < model.system.size(); ++i)
+      if (!touched[std::size_t(i)] && change(i) > most[i < speeds ? 0 : 1])
         throw InvalidInput{"The parameter \"", p.name, "\" changes the equations of ", model.system.name_of(i),
                            ", which it does not name. Add to `touches` what acts there, or leave it empty."};
-    }
   }
 
  private:
