@@ -205,7 +205,7 @@ class DirectDifferentiation {
 
 /// Runs the scenario that `make` gives for the parameters' values and differentiates its outputs with respect to each.
 /// Newton's corrections go on to 1e-12 or to what rounding leaves. \param integrator one of the generalised-α family,
-/// without `stabilised`. 	hrows InvalidInput for parameters that cannot be meant, a factory whose models differ in
+/// without `stabilised`. \throws InvalidInput for parameters that cannot be meant, a factory whose models differ in
 /// size, a scenario with events or corners; LinearSolverSingular at a singular position; and as `simulate`.
 template <MakesScenarios Make, class I>
 Sensitivities sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
