@@ -152,7 +152,7 @@ struct AdamsBashforthMoulton {
   /// Errors over the tolerance at orders k − 2, k − 1, k and k + 1; infinite where the past does not reach that far.
   struct Errors {
     double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;  ///< relative to the tolerance
-    /// The lower orders do as well [Shampine & Gordon 1975].
+    /// Beside order k the lower orders do as well [Shampine & Gordon 1975].
     bool prefer_lower(int k) const {
       return k > 2 ? std::max(two_below, below) <= here : k == 2 && below <= 0.5 * here;
     }

@@ -14,14 +14,14 @@ class AdamsHistory {
  public:
   static constexpr int highest = 12;  ///< order
 
-  /// Only f at the present point, order 1.
+  /// `memory` holds f at the present point only, order 1.
   static void reset(VecX& memory, VecX const& f) {
     memory.setZero((highest + 1) * f.size() + highest + 3);
     memory.head(f.size()) = f;
     memory.tail<3>().setOnes();
   }
 
-  /// The history in a state's memory after `reset`. \throws InvalidInput for a memory without one.
+  /// The history of n numbers in a state's `memory` after `reset`. \throws InvalidInput for a memory without one.
   AdamsHistory(VecX& memory, Index n) : memory_(memory), n_(n) {
     if (memory.size() != (highest + 1) * n + highest + 3)
       throw InvalidInput("This state has no memory of a run: call start before step.");
@@ -61,8 +61,8 @@ class AdamsHistory {
     known() = std::min(points, highest) + 1;
   }
 
-  /// c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ, j up to 13: by the rule of Gauss that is exact for degree 13. All terms are
-  /// positive.
+  /// c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ, t₀ − t₋ᵢ as `age` [s], j up to 13: by the rule of Gauss that is exact for
+  /// degree 13. All terms are positive.
   static std::array<double, highest + 2> weights(double h, std::array<double, highest + 2> const& age) {
     std::array<double, highest + 2> c{};
     for (GaussPoint const& p : gauss<7>) {

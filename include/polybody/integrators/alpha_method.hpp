@@ -227,7 +227,7 @@ struct AlphaMethod {
       return finite ? method.measure(h, two_sets, w) : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
     }
     void apply(double part) { method.apply(part, h, two_sets, w); }
-    /// The bodies move further by it than by their speeds.
+    /// By a correction of this `norm` (root mean square of accelerations) the bodies move further than by their speeds.
     bool is_far(double norm) const {
       Index const bodies = x.v.size() - w.states;
       return method.beta * h * norm * std::sqrt(double(bodies)) > std::sqrt(squares(x.v.data(), bodies));

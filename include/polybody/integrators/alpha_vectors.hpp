@@ -12,7 +12,7 @@ struct AlphaVectors {
   VecX kept, kept_back;   ///< corrections while others are looked at
   Index states;           ///< first-order ones, the last of the speeds
 
-  /// Zeros, as many as a system has coordinates, speeds, rows, multipliers that a step keeps, and first-order states.
+  /// Zeros, as many as a system has coordinates, speeds, rows, multipliers that a step keeps, and `first_order` states.
   AlphaVectors(Index coordinates, Index speeds, Index rows, Index multipliers, Index first_order)
       : v0(VecX::Zero(speeds)),
         a0(v0),

@@ -44,7 +44,8 @@ struct CoordinatePartitioning {
           splits_speeds_(!s.velocity_rows().empty()) {
       for (Index const i : s.velocity_rows()) sparse_rows.leave_out(i);
     }
-    /// Chooses dense or sparse by the number of speeds, once, and allocates what that needs.
+    /// Chooses dense or sparse by the number of speeds, at most `most_dense` for dense, once, and allocates what that
+    /// needs.
     void prepare(int most_dense) {
       if (std::exchange(prepared, true)) return;
       sparse = delta.size() > most_dense;
@@ -55,7 +56,7 @@ struct CoordinatePartitioning {
     PartitionedRows& of_speeds() { return splits_speeds_ ? all_rows : rows; }  ///< the split of speeds, dense
     /// The split of speeds, sparse.
     SparsePartitionOf<>& sparse_of_speeds() { return splits_speeds_ ? sparse_all_rows : sparse_rows; }
-    /// By all rows, of positions and speeds.
+    /// Whether `speed` depends by all rows, of positions and speeds.
     bool is_dependent(Index speed) const {
       if (sparse) return (splits_speeds_ ? sparse_all_rows : sparse_rows).is_dependent(speed);
       return (splits_speeds_ ? all_rows : rows).is_dependent(speed);

@@ -67,7 +67,7 @@ class PartitionedRows {
     for (rank_ = 0; rank_ < rows_ && eliminate(rank_, Column::independent, enough);) ++rank_;
   }
 
-  /// b, with b_i = 0.
+  /// b for right-hand side number `side`, with b_i = 0.
   void solution(int side, VecX& b) {
     b.setZero();
     for (Index k = 0; k < rank_; ++k) b[dependents_[std::size_t(k)]] = right(side, k);

@@ -131,7 +131,7 @@ struct Radau {
         }
       }
     }
-    /// The third stage becomes what the polynomials of the stages are at the share s of h.
+    /// The third stage becomes what the polynomials of the stages, from v0 on, are at the share s of h.
     void end_at(VecX const& v0, double s, double h) {
       v[2] = v0;
       delta[2].setZero();

@@ -34,7 +34,7 @@ class RowSlopes {
     gamma_ = there_ = here_;
   }
 
-  /// At q, v, v̇ and t; `system` stands elsewhere afterwards.
+  /// At q, v, v̇ = `vd` and t; `system` stands elsewhere afterwards.
   template <class = void>  // compiled where it is used
   void measure(System& system, VecX const& q, VecX const& v, VecX const& vd, double t) {
     if (colours_ == 0) return;
@@ -54,7 +54,7 @@ class RowSlopes {
     }
   }
 
-  /// cv ∂Φ̈/∂v + cq ∂Φ̈/∂q into `sink`, whose first row and column are given.
+  /// cv ∂Φ̈/∂v + cq ∂Φ̈/∂q into `sink`, whose first row and column are row0 and col0.
   template <class = void>  // compiled where it is used
   void write(double cv, double cq, Index row0, Index col0, BlockSink& sink) {
     for (auto const& [b, first] : blocks_) {

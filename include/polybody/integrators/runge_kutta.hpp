@@ -86,8 +86,8 @@ struct RungeKutta4 {
   static constexpr int order = 4;
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
   static constexpr double stable_to = 2.8284271247461901;  ///< ωh, a ratio
-  /// Where |1 + z + z²/2 + z³/6 + z⁴/24| = 1 along z = hs, s the faster of the roots −d/2 ± √(d²/4 − ω²)
-  /// [Hairer & Wanner 1996, §IV.2].
+  /// Where |1 + z + z²/2 + z³/6 + z⁴/24| = 1 along z = hs, s the faster of the roots −d/2 ± √(d²/4 − ω²), d = `rate`
+  /// [1/s], ω [rad/s] [Hairer & Wanner 1996, §IV.2].
   static double stable_step(double omega, double rate) {
     double const under = omega * omega - 0.25 * rate * rate;
     std::complex<double> const s =

@@ -65,8 +65,9 @@ class StepHistory {
     memory_[memory_.size() - 1] = h;
   }
 
-  /// v̇ and λ at x.t + h, each by the polynomial through as many of the last points as would have predicted its present
-  /// value best: many where the motion is smooth, few where what Newton left over would be blown up.
+  /// v̇ and λ at x.t + h, to `vd` and l, each by the polynomial through as many of the last points as would have
+  /// predicted its present value best: many where the motion is smooth, few where what Newton left over would be blown
+  /// up.
   void extrapolate(State const& x, double h, VecX& vd, VecX& l) const {
     Past past(*this);
     if (h > 2.0 * length(1)) past.known = 1;  // what was learnt over short steps does not reach that far
@@ -101,7 +102,7 @@ class StepHistory {
       }
     }
 
-    /// The differences `d` at x, where f is `now`.
+    /// The differences `d` (n each) at x, where f (n) is `now`.
     void push(double const* now, Index n, double* d) const {
       for_packs(n, [=, last = std::min(known, kept) - 1, b = beta](auto at) {
         auto next = at(now);
@@ -114,7 +115,7 @@ class StepHistory {
       });
     }
 
-    /// How many points would have predicted `now` best.
+    /// How many points, whose differences are d (n each), would have predicted `now` (n) best.
     int best_order(double const* now, double const* d, Index n) const {
       std::array<PackSum, kept> errors;
       for_packs(n, [&](auto at) {
@@ -130,7 +131,8 @@ class StepHistory {
       return best;
     }
 
-    /// f(t₀ + h) = Σ γⱼ D′ⱼ, γ₀ = 1, γⱼ₊₁ = γⱼ (h + t₀ − t₋ⱼ)/(t₀ − t₋ⱼ₋₁), by the best number of points.
+    /// f(t₀ + h) = Σ γⱼ D′ⱼ, γ₀ = 1, γⱼ₊₁ = γⱼ (h + t₀ − t₋ⱼ)/(t₀ − t₋ⱼ₋₁), by the best number of points; f is `now`, D
+    /// are at d.
     void extrapolate(double h, double const* now, double const* d, VecX& out) const {
       Index const n = out.size();
       int const points = best_order(now, d, n);

@@ -15,7 +15,7 @@ struct SymplecticEuler {
   static constexpr bool accepts_rows = false;
   static constexpr bool needs_constant_mass = true;
   static constexpr double stable_to = 2.0;  ///< ωh, a ratio
-  /// Where ω²h² + 2dh = 4 a multiplier passes −1.
+  /// Where ω²h² + 2dh = 4, d = `rate` [1/s], ω = `omega` [rad/s], a multiplier passes −1.
   static double stable_step(double omega, double rate) {
     return 4.0 / (rate + std::sqrt(rate * rate + 4.0 * omega * omega));
   }

@@ -47,7 +47,7 @@ struct Placement {
   static Placement planar(double x, double y, double angle = 0.0) {
     return {Vec3(x, y, 0.0), exp_so3<double>(Vec3(0.0, 0.0, angle))};
   }
-  /// Origin and rotation vector [rad].
+  /// At `origin` (3), world axes [m], turned by the vector `rotation` (3) [rad].
   template <class = void>  // compiled where it is used
   static Placement at(Vec3 const& origin, Vec3 const& rotation = Vec3::Zero()) {
     return {origin, exp_so3<double>(rotation)};

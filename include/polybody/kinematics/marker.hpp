@@ -74,7 +74,7 @@ struct BodyHandle {
     }
   }
 
-  /// A marker at a material point; arguments as the body's own `at`. \throws InvalidInput with its name, or for a
+  /// A marker at a material point; `args` as for the body's own `at`. \throws InvalidInput with its name, or for a
   /// handle made by default.
   template <class... Args>
     requires requires(B const b, Args... args) { b.at(args...); }
@@ -87,7 +87,7 @@ struct BodyHandle {
   {
     return named([&](B const& on) { return on.at(point); });
   }
-  /// The same in the plane.
+  /// The same in the plane; `point` (2) as for the body's own `at` [m].
   Marker<B> at(Vec2 const& point) const
     requires(B::world == World::plane) && requires(B const b, Vec2 p) { b.at(p); }
   {

@@ -52,7 +52,8 @@ struct Published {
     }
   }
 
-  /// `pull` for the rigid shape: [f; Aᵀ(m + ρ × f)], component by component for all wrenches, as vector units like it.
+  /// `pull` for the rigid shape, w (6×k) to out (6×k): [f; Aᵀ(m + ρ × f)], component by component for all wrenches, as
+  /// vector units like it.
   template <class In, class Out>
   void pull_rigid(In const& w, Out& out) const {
     constexpr int fixed = In::ColsAtCompileTime;

@@ -112,9 +112,9 @@ class BlockSink {
   }
   /// Where the blocks to come go; none where the receiver is called for each.
   BlockSlots const& slots() const { return slots_; }
-  /// Whether the numbers of the diagonal block of these unknowns are of use.
+  /// Whether the numbers of the diagonal block of the unknowns [first, first + size) are of use.
   bool wants(Index first, Index size) const { return !wants_ || wants_(target_, first, size); }
-  /// A block of zeros: it has its place in the matrix but does not act.
+  /// A block of rows × cols zeros: it has its place in the matrix but does not act.
   void skip(Index row, Index col, Index rows, Index cols) {
     if (slots_.first)
       ++slots_.first;

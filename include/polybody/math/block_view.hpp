@@ -9,7 +9,7 @@ struct BlockView {
   double const* data;                    ///< first entry of the block
   Index rows, cols, row_step, col_step;  ///< how many; how many doubles from one to the next in memory
 
-  /// A matrix, or a part or map of one, with direct access to its memory; it must outlive the view.
+  /// The matrix `m`, or a part or map of one, with direct access to its memory; it must outlive the view.
   template <class D>
     requires(bool(D::Flags& Eigen::DirectAccessBit))
   BlockView(Eigen::MatrixBase<D> const& m)  // NOLINT(google-explicit-constructor): a view of a matrix

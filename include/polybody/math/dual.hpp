@@ -19,11 +19,11 @@ struct Dual {
   Partials d = Partials::Zero();  ///< (N) partial derivatives by the independent variables
 
   Dual() = default;
-  /// A constant: all of its derivatives are zero.
+  /// The constant `value`: all of its derivatives are zero.
   Dual(double value) : v(value) {}  // NOLINT(google-explicit-constructor): a constant is a dual
   Dual(double value, Partials const& partials) : v(value), d(partials) {}  ///< a value and its derivatives
 
-  /// The independent variable number `i`.
+  /// The independent variable number `i`, at `value`.
   static Dual variable(double value, int i) {
     Dual x(value);
     x.d[i] = 1.0;
@@ -102,7 +102,7 @@ struct Dual {
   friend bool isfinite(Dual const& a) { return std::isfinite(a.v) && a.d.allFinite(); }
 };
 
-/// The value of a scalar without its derivatives: the branch that a formula takes.
+/// The value of the scalar `x` without its derivatives: the branch that a formula takes.
 inline double value_of(double x) { return x; }
 /// The value without its derivatives.
 template <int N>
@@ -110,7 +110,7 @@ double value_of(Dual<N> const& x) {
   return x.v;
 }
 
-/// The values of a matrix of duals.
+/// The values of the matrix `m` of duals.
 template <class Derived>
 auto values_of(Eigen::MatrixBase<Derived> const& m) {
   return m.unaryExpr([](typename Derived::Scalar const& x) { return value_of(x); }).eval();

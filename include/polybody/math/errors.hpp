@@ -28,7 +28,7 @@ class MessagePart {
   MessagePart(std::string const& text) : text_(text) {}   // NOLINT(google-explicit-constructor)
   MessagePart(char const& letter) : text_(&letter, 1) {}  // NOLINT(google-explicit-constructor)
   ///@}
-  /// A number: an integer as it is, any other one with up to nine digits.
+  /// The number `x`: an integer as it is, any other one with up to nine digits.
   template <class Number>
     requires std::convertible_to<Number const&, double>
   MessagePart(Number const& x) {  // NOLINT(google-explicit-constructor)

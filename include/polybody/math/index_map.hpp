@@ -28,7 +28,7 @@ class IndexMap {
     }
     return entries_[k].value;
   }
-  /// Null where there is none.
+  /// What stands at `index`; null where there is none.
   V const* find(Index index) const {
     std::size_t const k = place(index);
     return k < entries_.size() && entries_[k].index == index ? &entries_[k].value : nullptr;

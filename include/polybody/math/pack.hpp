@@ -73,13 +73,13 @@ class Pack {
   friend Pack operator-(Pack const& a) { return Pack(-a.x_); }
   friend Pack operator+(Pack const& a) { return a; }
 
-  /// `N` numbers one after another in memory, aligned or not.
+  /// `N` numbers one after another in memory, aligned or not, the first at `from`.
   static Pack load(double const* from) {
     Pack r;
     std::memcpy(&r.x_, from, sizeof(Lanes));
     return r;
   }
-  /// Writes the N numbers one after another, aligned or not.
+  /// Writes the N numbers one after another, aligned or not, the first to `to`.
   void store(double* to) const { std::memcpy(to, &x_, sizeof(Lanes)); }
 
   /// `N` packs as the rows of a matrix become its columns.

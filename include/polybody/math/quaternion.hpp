@@ -24,7 +24,7 @@ Quaternion<T> conjugate(Quaternion<T> const& q) {
   return {q[0], -q[1], -q[2], -q[3]};
 }
 
-/// Rotation matrix A(q), 3×3, of a unit quaternion, written where it is to stand.
+/// Rotation matrix A(q), 3×3, of a unit quaternion, written to `a` where it is to stand.
 template <class T>
 void set_rotation(Quaternion<T> const& q, Mat<T, 3, 3>& a) {
   T const ww = q[0] * q[0], xx = q[1] * q[1], yy = q[2] * q[2], zz = q[3] * q[3];
@@ -93,7 +93,7 @@ Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
   return quaternion_log<T>(quaternion_product<T>(conjugate<T>(p), q));
 }
 
-/// The unit quaternion of a rotation matrix (w ≥ 0).
+/// The unit quaternion of the rotation matrix `a` (w ≥ 0).
 template <class = void>  // compiled where it is used
 Quaternion<double> quaternion_of(Mat3 const& a) {
   // by the largest of 4w², 4x², 4y², 4z², whose square root loses no digits [Shepperd 1978]
@@ -121,7 +121,7 @@ Quaternion<double> quaternion_of(Mat3 const& a) {
   return {q[0] * inverse, q[1] * inverse, q[2] * inverse, q[3] * inverse};
 }
 
-/// log of a rotation matrix: rotation vector with |φ| ≤ π [rad].
+/// log of the rotation matrix `a`: rotation vector with |φ| ≤ π [rad].
 template <class = void>  // compiled where it is used
 Vec3 log_so3(Mat3 const& a) {
   return quaternion_log<double>(quaternion_of(a));

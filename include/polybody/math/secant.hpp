@@ -24,7 +24,7 @@ struct Secant {
   Secant() = default;
   /// A constant: the same value at both ends, all slopes zero.
   Secant(double value) : a(value), b(value) {}  // NOLINT(google-explicit-constructor): a constant is a secant
-  /// Values at both ends, and the slopes.
+  /// Values at both ends, `from` and `to`, and the slopes.
   Secant(double from, double to, Slope const& slope) : a(from), b(to), d(slope) {}
 
   /// The variable number `i`, which goes from `from` to `to`.

@@ -86,9 +86,9 @@ class Sequence {
   bool empty() const { return size_ == 0; }       ///< whether there are none
   T& operator[](std::size_t i) { return data_[i]; }  ///< value i; a place that does not exist is not noticed
   T const& operator[](std::size_t i) const { return data_[i]; }  ///< value i, to be read
-  /// \throws std::out_of_range
+  /// Value number `i`. \throws std::out_of_range
   T& at(std::size_t i) { return data_[within(i)]; }
-  T const& at(std::size_t i) const { return data_[within(i)]; }  ///< the same, to be read
+  T const& at(std::size_t i) const { return data_[within(i)]; }  ///< value number `i`, to be read
   T& front() { return *data_; }                                  ///< the first value, of one or more
   T const& front() const { return *data_; }                      ///< the first value, to be read
   T& back() { return data_[size_ - 1]; }                         ///< the last value, of one or more
@@ -120,18 +120,18 @@ class Sequence {
     return back();
   }
   void pop_back() { data_[--size_].~T(); }  ///< removes the last value, of one or more
-  /// New values are T().
+  /// As many values as `size`; new ones are T().
   void resize(std::size_t size) {
     truncate(size);
     reserve(size);
     for (; size_ < size; ++size_) new (data_ + size_) T();
   }
-  /// New values are copies of `value`.
+  /// As many values as `size`; new ones are copies of `value`.
   void resize(std::size_t size, T const& value) {
     truncate(size);
     while (size_ < size) push_back(value);
   }
-  /// Adds copies of the values of a range, which must not be of this Sequence.
+  /// Adds copies of the values in [first, last), which must not be of this Sequence.
   template <class It>
   void append(It first, It last) {
     for (; first != last; ++first) push_back(*first);

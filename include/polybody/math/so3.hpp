@@ -12,7 +12,7 @@
 
 namespace polybody {
 
-/// 1 + b ã + c ã², entry by entry: matrix products of Eigen would cost more to compile.
+/// 1 + b ã + c ã², a (3), entry by entry: matrix products of Eigen would cost more to compile.
 template <class T>
 Mat<T, 3, 3> one_and_skew(Vec<T, 3> const& a, T const& b, T const& c) {
   Mat<T, 3, 3> m;

@@ -65,9 +65,9 @@ Mat<T, 3, 3> identity() {
 template <class T>
 struct Required {
   T value;  ///< what was given
-  /// From a T: `.mass = 2.0` sets a `Required<double>`.
+  /// From the T `v`: `.mass = 2.0` sets a `Required<double>`.
   constexpr Required(T v) : value(v) {}  // NOLINT(google-explicit-constructor): reads as a T
-  /// From an expression that makes a T.
+  /// From an expression `x` that makes a T.
   template <class X>
     requires std::is_class_v<X> && (!std::is_same_v<X, Required>) && std::is_convertible_v<X const&, T>
   constexpr Required(X const& x) : value(x) {}  // NOLINT(google-explicit-constructor)
@@ -109,7 +109,7 @@ inline Index first_not_finite(VecX const& x) {
     if (!(std::abs(x[i]) <= largest_number)) return i;
   return -1;
 }
-/// \throws InvalidInput for a number other than zero whose square overflows or vanishes.
+/// \throws InvalidInput for an `x` other than zero whose square overflows or vanishes.
 inline void require_size(double x, std::string_view what, std::string_view part = {}) {
   if (x != 0.0 && !(std::abs(x) >= 1.0 / largest_number && std::abs(x) <= largest_number))
     throw InvalidInput{what, part, " must be of a size in [1e-150, 1e+150], where squares are numbers, but is ", x,

@@ -32,7 +32,7 @@ Vec<T, 3> cross(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// A B, AᵀB and Aᵀ.
+/// a b, aᵀb and aᵀ of matrices a (3×3) and b (3×n).
 template <class T, int n>
 Mat<T, 3, n> product(Mat<T, 3, 3> const& a, Mat<T, 3, n> const& b) {
   Mat<T, 3, n> m;
@@ -44,7 +44,7 @@ Mat<T, 3, n> product(Mat<T, 3, 3> const& a, Mat<T, 3, n> const& b) {
   }
   return m;
 }
-/// aᵀ b.
+/// aᵀ b, of a (3×k) and b (3×n).
 template <class T, int k, int n>
 Mat<T, k, n> transposed_product(Mat<T, 3, k> const& a, Mat<T, 3, n> const& b) {
   Mat<T, k, n> m;
@@ -74,7 +74,7 @@ Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
   return s;
 }
 
-/// ã B: a × each column.
+/// ã b: a (3) × each column of b (3×n).
 template <class T, int n>
 Mat<T, 3, n> skew_product(Vec<T, 3> const& a, Mat<T, 3, n> const& b) {
   Mat<T, 3, n> m;

@@ -22,8 +22,8 @@ struct EntryPlace {
   Index first;                                                        ///< number of the entry
   double operator()(double const* x) const { return x[first]; }       ///< reads it from x
   double operator()(VecX const& x) const { return x.data()[first]; }  ///< reads it from x
-  void set(double* x, double value) const { x[first] = value; }       ///< writes it to x
-  void set(VecX& x, double value) const { x.data()[first] = value; }  ///< writes it to x
+  void set(double* x, double value) const { x[first] = value; }       ///< writes `value` to x
+  void set(VecX& x, double value) const { x.data()[first] = value; }  ///< writes `value` to x
 };
 
 /// Calls f(at) over n entries, in packs as far as they reach, then one by one. `at(x)` reads what stands at a place in
@@ -39,7 +39,7 @@ template <class F>
 class PackSum {
  public:
   void add(Pack<> const& x) { packs_ += x; }  ///< adds a pack, kept as a pack until `total`
-  void add(double x) { rest_ += x; }          ///< adds one number
+  void add(double x) { rest_ += x; }          ///< adds the number `x`
   /// The sum of all that was added.
   double total() const {
     double sum = rest_;
@@ -52,7 +52,7 @@ class PackSum {
   double rest_ = 0.0;
 };
 
-/// Σ xᵢ² of n entries.
+/// Σ xᵢ² of the n entries at `x`.
 inline double squares(double const* x, Index n) {
   PackSum sum;
   for_packs(n, [&](auto at) {
@@ -67,7 +67,7 @@ inline double squares(VecX const& x) { return squares(x.data(), x.size()); }
 /// 1 or −1 for entry i, by a pattern that no model shares.
 inline double scattered_sign(Index i) { return (std::uint32_t(i + 1) * 2654435769u >> 31) != 0 ? 1.0 : -1.0; }
 
-/// Whether no entry is NaN, infinite or beyond `largest_number`.
+/// Whether no entry of `x` is NaN, infinite or beyond `largest_number`.
 inline bool all_finite(VecX const& x) {
   return squares(x) <= largest_number * largest_number || first_not_finite(x) < 0;
 }

@@ -6,7 +6,7 @@
 
 namespace polybody {
 
-/// Calls f with N = 1 … 6 as a constant, or 0 for any other number.
+/// Calls f with n as a constant, N = 1 … 6, or with 0 for any other number.
 template <class F>
 auto with_constant(int n, F&& f) {
   switch (n) {

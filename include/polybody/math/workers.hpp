@@ -91,7 +91,7 @@ class Workers {
         std::rethrow_exception(first);
       }
   }
-  /// The same for any f that can be called as f(begin, end).
+  /// The same over [0, n), at `least` so many a worker, for any f that can be called as f(begin, end).
   template <class F>
   void over(Index n, Index least, F const& f) {
     over(n, least, LoopBody(f));
@@ -141,7 +141,7 @@ class Workers {
   Sequence<std::thread> others_;                 // last: they use the rest
 };
 
-/// f over [0, n), by `workers` where there are any.
+/// f over [0, n), at `least` so many a worker, by `workers` where there are any.
 template <class F>
 void share(Workers* workers, Index n, Index least, F const& f) {
   LoopBody const body(f);

@@ -109,7 +109,7 @@ class BlockFactor {
 
   /// x = A⁻¹ b; both may be the same.
   void solve(VecX const& b, VecX& x) const { solve(b.data(), x.data()); }
-  /// Column by column.
+  /// x = A⁻¹ b, column by column.
   void solve(MatX const& b, MatX& x) const {
     for (Index j = 0; j < b.cols(); ++j) solve(b.col(j).data(), x.col(j).data());
   }

@@ -75,7 +75,7 @@ class EigenLdlt {
     return rows_.empty() ? 1.0 : least * shift / epsilon_;
   }
 
-  /// Both may be the same.
+  /// x = A⁻¹ b; both may be the same.
   void solve(VecX const& b, VecX& x) const {
     if (b.size() == 0) return;
     VecX const rhs = b;

@@ -64,7 +64,7 @@ class KeptParts {
     (kept ? to_kept_ : to_rest_).add(place_[std::size_t(row)], place_[std::size_t(col)], b);
   }
 
-  /// Not of what has been factored once and for all.
+  /// False for unknowns from `first` on that have been factored once and for all.
   bool wants(Index first, Index) const { return kept_size_ == 0 || !kept_factored_ || !kept_[std::size_t(first)]; }
   void skip(Index row, Index col, Index rows, Index cols) {
     if (kept_size_ == 0) {
@@ -86,7 +86,7 @@ class KeptParts {
       for (Index const i : rest_.dropped()) dropped_.push_back(unknown(i, false));
     return bad < 0 ? bad : unknown(bad, false);
   }
-  /// Both may be the same, where they may be so for `Solver`, or parts are kept.
+  /// x = A⁻¹ b; both may be the same, where they may be so for `Solver`, or parts are kept.
   void solve(VecX const& b, VecX& x) {
     if (kept_size_ == 0) return rest_.solve(b, x);
     for (std::size_t i = 0; i < place_.size(); ++i) (kept_[i] ? kept_rhs_ : rest_rhs_)[place_[i]] = b[Index(i)];

@@ -70,7 +70,7 @@ class Klu {
   /// The least pivot of the last factorisation beside the largest one, of rows that are scaled alike.
   double least_pivot() const { return klu_->numeric == nullptr ? 1.0 : klu_->common.rcond; }
 
-  /// Both may be the same.
+  /// x = A⁻¹ b; both may be the same.
   void solve(VecX const& b, VecX& x) const {
     if (b.size() == 0) return;
     x = b;

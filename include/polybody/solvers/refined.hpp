@@ -33,7 +33,7 @@ class Refined {
   /// −1, or the column without a usable pivot.
   Index factor() { return solver_.factor(); }
 
-  /// Both may be the same.
+  /// x = A⁻¹ b; both may be the same.
   void solve(VecX const& b, VecX& x) const {
     r_ = b;
     solver_.solve(b, x);

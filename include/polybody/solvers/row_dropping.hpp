@@ -61,7 +61,7 @@ class RowDropping {
     return by_judge_ ? -1 : bad;
   }
 
-  /// Both may be the same.
+  /// x = A⁻¹ b; both may be the same.
   void solve(VecX const& b, VecX& x) const {
     if (by_judge_) return judge_.solve(b, x);
     if (dropped_.empty()) return solver_.solve(b, x);

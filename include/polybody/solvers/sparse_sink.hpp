@@ -17,7 +17,7 @@ class SparseSinkOf {
  public:
   using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;  ///< a sparse matrix by columns
 
-  /// Finds each entry's place in the values once, so that `add` never searches.
+  /// Finds each entry's place in the values of a matrix of `size` unknowns once, so that `add` never searches.
   void analyse(Index size, std::span<Block const> blocks) {
     Sequence<Sequence<int>> columns(static_cast<std::size_t>(size));
     for (Block const& b : blocks)

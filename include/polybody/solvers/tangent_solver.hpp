@@ -74,7 +74,7 @@ class TangentSolver {
   }
   /// What was balanced last is finite, as far as r does not tell.
   bool is_finite() const { return !keeps_multipliers_ || all_finite(balance_); }
-  /// A correction of a step by what was balanced last: (−r, rows) → (accelerations, multipliers), of as many
+  /// A correction y of a step by what was balanced last: (−r, rows) = `rhs` → (accelerations, multipliers), of as many
   /// multipliers as the system has. Where joints carry bodies the whole model's r is answered by all bodies and then by
   /// the joints at the iterate: were −Tᵀr answered, a factorisation that is kept would carry forces from body to body
   /// by the levers of its own time, and an error in that grows from joint to joint.
@@ -127,7 +127,7 @@ class TangentSolver {
   /// rows hold again, and it would leave them open.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 
-  /// x by the unknowns of the time step.
+  /// x for the right-hand side `rhs`, both by the unknowns of the time step.
   void solve(VecX const& rhs, VecX& x) {
     if (!coordinates_) return solver_.solve(rhs, x);
     if (solves_by_bodies()) return coordinates_.entries->solve(held_.get(), rhs, x);
@@ -174,7 +174,7 @@ inline Index equations_of(System const& s) {
 inline Index equation_speeds_of(System const& s) {
   return s.step_coordinates() ? s.step_coordinates().narrow->equation_speeds : s.speeds();
 }
-/// Name of the body or joint behind an unknown of the equations.
+/// Name of the body or joint behind unknown i of the equations.
 template <class = void>
 std::string name_of_equation(System const& s, Index i) {
   if (!s.step_coordinates() || s.step_coordinates().narrow->whole_unknown.empty()) return s.name_of(i);

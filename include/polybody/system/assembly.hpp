@@ -94,7 +94,7 @@ void violation(Data<T> const& data, VecXOf<T>& phi) {
   });
 }
 
-/// Φ̇ = G v + Φ_t (rows).
+/// `rate` = Φ̇ = G v + Φ_t (rows).
 template <StateScalar T>
 void violation_rate(Data<T> const& data, VecXOf<T> const& v, VecXOf<T>& rate) {
   detail::for_each_row_block(data, [&](RowBlock<T> const& block) {

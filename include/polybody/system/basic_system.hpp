@@ -23,7 +23,7 @@ struct With {};
 template <Entries groups>
 inline constexpr With<groups> with{};
 
-/// \throws InvalidInput where an entry was not asked for.
+/// \throws InvalidInput where an entry was not asked for; `group` names what is missing.
 template <class F>
 F require_entry(F entry, char const* group) {
   if (!entry)
@@ -47,7 +47,7 @@ class BasicSystem {
   explicit BasicSystem(M const& model, With<wanted> = {}, Coordinates coordinates = {})
       : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), EntriesOf<M, T, wanted>::make_data(model),
                     std::move(coordinates)) {}
-  /// From entries of any origin.
+  /// From entries of any origin, which are called with `model`.
   [[gnu::cold]] BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
                             Coordinates coordinates);
   BasicSystem(BasicSystem&&) noexcept;  ///< what refers to the one that is moved, such as a workspace, does not follow
@@ -92,7 +92,7 @@ class BasicSystem {
   void push_forces() { entries_.push_forces(model_, t_, data_); }
   /// Φ (rows); zero for velocity rows.
   void violation(Vector& phi);
-  /// Φ̇ = G v + Φ_t (rows).
+  /// `rate` = Φ̇ = G v + Φ_t (rows).
   void violation_rate(Vector& rate);
   /// γ (rows): Φ̈ = G v̇ + γ.
   void acceleration_bias(Vector& gamma);

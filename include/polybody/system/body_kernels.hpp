@@ -52,24 +52,23 @@ struct BodyKernels {
   using Kept = detail::BodyData<B, T>;  ///< scratch
   using Vector = VecXOf<T>;             ///< numbers, or dual ones
 
-  /// Puts a body into the pool whose coordinates, speeds and own rows begin there.
+  /// Puts a body into the pool whose coordinates, speeds and own rows begin at q0, v0 and `row`.
   [[gnu::cold]] static void add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row);
   /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
   static Published<double> publish_point(B const& body, typename B::Point const& point, std::span<double const> q,
                                          std::span<double const> v, Sequence<double>& jacobian);
   /// Axes (3×3) at a marker's point, as placed.
   static Mat3 reference_axes(Pool const& pool, Marker<B> const& marker);
-  /// Puts a marker into the pool. Returns the size of its Jacobian.
+  /// Puts a marker into the pool, number `published` of all. Returns the size of its Jacobian.
   static Index add_marker(Pool& pool, Marker<B> const& marker, Mat3 const& axes, Index published);
 
   /// Counts, places and names.
   [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
-  /// Room for what is kept, and a place for each marker.
+  /// Room in `arena` for what is kept, and a place for each marker.
   [[gnu::cold]] static void place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data);
-  /// Numbers that the rows of the bodies take in their arena; and a block for each, from `next` on, `owner` being the
-  /// first body's place. Returns the end.
-  static Index own_size(Pool const& pool);
-  [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);  ///< their blocks
+  static Index own_size(Pool const& pool);  ///< numbers that the rows of the bodies take in their arena
+  /// A block for the rows of each body, from `next` on, `owner` being the first body's place. Returns the end.
+  [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
   /// The numbers that threads write for the elements of one body: forces, tangents.
   static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
 
@@ -82,21 +81,22 @@ struct BodyKernels {
   static NarrowPlace const* plus(Pool const& pool, NarrowPlace const* places, Vector const& q, Vector const& delta,
                                  Vector& out);
   static NarrowPlace const* local_rate(Pool const& pool, NarrowPlace const* places, Vector const& delta,
-                                       Vector const& v, Vector& out);  ///< δ˙
-  /// r += M a − f.
+                                       Vector const& v, Vector& out);  ///< δ˙ of `delta`
+  /// r += M a − f, at what u names.
   static void add_forces(Pool const& pool, Kept& kept, detail::Unbalance<T> const& u, Data<T>& data, Vector& r);
 
-  /// q˙ = d/dε (q ⊞ ε v) at ε = 0: v itself where a body has as many coordinates as speeds, else by dual numbers in
-  /// `room` (2 nq + nv).
+  /// `rate` = q˙ = d/dε (q ⊞ ε v) at ε = 0: v itself where a body has as many coordinates as speeds, else by dual
+  /// numbers in `room` (2 nq + nv).
   static NarrowPlace const* coordinate_rates(Pool const& pool, NarrowPlace const* places, VecX const& q, VecX const& v,
                                              VecXOf<Dual<1>>& room, VecX& rate);
-  static void rigid_speeds(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);  ///< v
+  /// v of a rigid motion, v0 (3) at the world's origin [m/s] and `omega` (3) [rad/s], world axes.
+  static void rigid_speeds(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);
   static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);  ///< M, element by element
   static void tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);  ///< cm M + cd D + ck K
-  /// ck ∂(Gᵀλ)/∂q of the bodies' own rows.
+  /// ck ∂(Gᵀλ)/∂q of the bodies' own rows, at what x names.
   static void own_stiffness(Pool const& pool, VecX const& lambda, detail::StiffnessAt const& x, BlockSink& sink);
-  /// ck ∂(Jᵀw)/∂q for the wrenches w in data.loads, marker by marker.
+  /// ck ∂(Jᵀw)/∂q at x for the wrenches w in data.loads, marker by marker.
   static void load_stiffness(Pool const& pool, Kept& kept, detail::StiffnessAt const& x, Data<double>& data,
                              BlockSink& sink);
   static void add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum);  ///< [J]

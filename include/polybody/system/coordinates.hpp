@@ -29,7 +29,7 @@ struct NarrowLayout {
   bool moves_by_newton_euler = false;        ///< its bodies have no forces of their own
   bool keeps_mass_constant = false;          ///< T is constant
 
-  /// Multipliers of all rows from those of a step; zero for eliminated ones of which it has no estimates.
+  /// The `whole` multipliers of all rows from those `of_step`; zero for eliminated ones of which it has no estimates.
   template <StateScalar T>
   void expand_rows(VecXOf<T> const& of_step, VecXOf<T>& whole) const {
     for (Index i = 0; i < whole.size(); ++i) whole[i] = T(0.0);

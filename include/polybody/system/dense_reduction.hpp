@@ -12,7 +12,8 @@ template <class T = double>
 class DenseReductionOf {
  public:
   DenseReductionOf() = default;
-  /// \param row_of where each row of the model goes among `rows`; −1 where it is left out
+  /// For `whole_speeds` of a model and `speeds` of a step. \param row_of where each row of the model goes among `rows`;
+  /// −1 where it is left out
   DenseReductionOf(Index whole_speeds, Index speeds, Index rows, Sequence<Index> row_of)
       : row_of_(std::move(row_of)),
         speeds_(whole_speeds),
@@ -21,7 +22,7 @@ class DenseReductionOf {
         g_(MatXOf<T>::Zero(rows, speeds)),
         half_(VecXOf<T>::Zero(speeds)) {}
 
-  /// Column j of T.
+  /// Column j of T is `column` (speeds of the whole model).
   void set_column(Index j, VecX const& column) {
     for (Index i = 0; i < column.size(); ++i) transposed_(j, i) = column[i];
   }

@@ -28,7 +28,7 @@ struct FloatingEnd {
   Index frame_coordinates() const { return layout == RigidLayout::plane ? 3 : 7; }
   /// How many speeds it has: they come before those of the deformation.
   Index frame_speeds() const { return layout == RigidLayout::plane ? 3 : 6; }
-  /// Lengthens what a tree's state holds for its ends.
+  /// Lengthens what a tree's state holds for its ends: `columns`, q and v of a body, `jacobian`.
   template <class Columns, class Numbers>
   void make_room(Columns& columns, Numbers& q, Numbers& v, Numbers& jacobian) const {
     std::size_t const speeds = std::size_t(frame_speeds() + deformations);

@@ -194,7 +194,7 @@ struct ForceKernels {
                        BlockSink& sink);
   /// Stored energy of those that have a potential [J].
   static double energy(Pool const& pool, double t, Data<double> const& data);
-  /// Adds the powers of loads and of forces without a potential [W].
+  /// Adds the powers of loads, times `load_factor`, and of forces without a potential [W].
   static void add_powers(Pool const& pool, double t, double load_factor, Data<double> const& data, Powers& p);
 
  private:

@@ -65,7 +65,7 @@ JointFrames<T> joint_frames(JointTreeOf<T> const& tree, TreeBody const& body, Ve
 
 }  // namespace detail
 
-/// Joint coordinates from whole ones.
+/// Joint coordinates qn from whole ones.
 template <class T>
 void read_coordinates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& v, TreeStateOf<T>& s,
                       VecXOf<T>& qn) {
@@ -134,7 +134,7 @@ void local_rate(JointTreeOf<T> const& tree, VecXOf<T> const& delta, VecXOf<T> co
   });
 }
 
-/// q˙ of the joint coordinates; that of a ball is ½ q ∘ (0, Ω).
+/// `rate` = q˙ of the joint coordinates; that of a ball is ½ q ∘ (0, Ω).
 template <class T>
 void coordinate_rates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T>& rate) {
   detail::for_each_deformation(tree, [&](Index qn, Index vn) { rate[qn] = v[vn]; });

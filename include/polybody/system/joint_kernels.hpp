@@ -112,7 +112,7 @@ struct JointKernels {
   /// K and D of compliant joints, by the slope of what they answer.
   static void slopes(Pool const& pool, Kept const& kept, TangentCoefficients const& c, Data<double>& data,
                      BlockSink& sink);
-  /// ck ∂(Gᵀλ)/∂q; adds Gᵀλ to the loads.
+  /// ck ∂(Gᵀλ)/∂q, at what x names; adds Gᵀλ to the loads.
   static void stiffness(Pool const& pool, Kept const& kept, VecX const& lambda, detail::StiffnessAt const& x,
                         Data<double>& data, BlockSink& sink);
   /// What compliant joints store.

@@ -33,8 +33,8 @@ class JointTreeOf {
   /// Whether no body is carried: there is no tree.
   bool empty() const { return bodies.empty(); }
 
-  /// Poses and speeds of the carried bodies from the joints' coordinates and speeds; those of roots are read. `q`, `v`
-  /// are whole.
+  /// Poses and speeds of the carried bodies from the joints' coordinates qn and speeds vn; those of roots are read.
+  /// `q`, `v` are whole.
   void expand_state(VecX const& qn, VecX const& vn, VecX& q, VecX& v, TreeState& s) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];

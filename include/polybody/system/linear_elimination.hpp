@@ -60,7 +60,7 @@ class LinearEliminationOf {
       v[d.v] = sum;
     }
   }
-  /// Forces of dependent coordinates go to those on which they depend.
+  /// Forces of dependent coordinates, in r (speeds), go to those on which they depend.
   void reduce_forces(VecXOf<T>& r) const {
     for (Dependent const& d : dependents_)
       for (Term const& t : d.terms) r[t.v] += t.factor * r[d.v];

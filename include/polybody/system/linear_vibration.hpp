@@ -24,7 +24,7 @@ struct LinearVibration {
 
   /// How many coordinates the problem has: n.
   Index speeds() const { return mass_matrix.rows(); }
-  /// M (n×n).
+  /// M (n×n), to m.
   void mass(VecX const&, MatX& m) const { m = mass_matrix; }
   /// f(t) − D q̇ − K q at t [s], into `f` (n).
   void force(VecX const& q, VecX const& v, double t, VecX& f) const {

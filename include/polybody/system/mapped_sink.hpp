@@ -156,13 +156,13 @@ class MappedSinkOf {
   }
   /// All blocks went as they are, and the slots know how.
   bool recorded() const { return slots_ && copies_; }
-  /// Whether the sink wants the diagonal block of the unknowns that these whole ones go to.
+  /// Whether the sink wants the diagonal block of the unknowns that these whole ones, [first, first + size), go to.
   bool wants(Index first, Index size) {
     if (Index const to = map_.run(first, size); to >= 0) return sink_.wants(to, size);
     auto const& runs = range(first, size).runs;
     return runs.empty() || sink_.wants(runs[0].first, runs[0].size);
   }
-  /// A block of zeros.
+  /// A block of height × width zeros.
   void skip(Index row, Index col, Index height, Index width) {
     if (slots_) [[unlikely]]
       record(row, col, height, width);

@@ -94,7 +94,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
   }
-  /// One of the few that act on all of the many, by one of the group's laws. \throws InvalidInput as `connect`.
+  /// One of the few that act on all of the many, by `law`, one of the group's. \throws InvalidInput as `connect`.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {

@@ -46,7 +46,8 @@ class ReductionOf {
   Sequence<Index> const& rows_that_stay() const { return rows_; }
   /// Those of them that are of velocity level, by their narrow number.
   Sequence<Index> const& velocity_rows() const { return velocity_rows_; }
-  /// The speed of the whole model behind a narrow one: of a joint coordinate, the first of the body that it carries.
+  /// The speed of the whole model behind the narrow one i: of a joint coordinate, the first of the body that it
+  /// carries.
   Index whole_speed(Index i) const { return whole_speed_[std::size_t(i)]; }
   /// Place in the tree of the body that the joint with this first row carries.
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
@@ -67,12 +68,12 @@ class ReductionOf {
   void reduce_speeds(VecX const& whole, VecX& narrow) const {
     for (auto const& [n, w] : same_v_) narrow[n] = whole[w];
   }
-  /// Whole multipliers from narrow ones: zero in rows that a policy eliminates.
+  /// `whole` multipliers from narrow ones: zero in rows that a policy eliminates.
   void expand_rows(VecX const& narrow, VecX& whole) const {
     whole.setZero();
     for (std::size_t i = 0; i < rows_.size(); ++i) whole[rows_[i]] = narrow[Index(i)];
   }
-  /// The rows that stay, out of whole ones.
+  /// The rows that stay, `narrow`, out of whole ones.
   void reduce_rows(VecX const& whole, VecX& narrow) const {
     for (std::size_t i = 0; i < rows_.size(); ++i) narrow[Index(i)] = whole[rows_[i]];
   }

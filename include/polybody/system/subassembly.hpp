@@ -58,7 +58,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, forces_of<F>(), group, pooled_many, std::move(name));
   }
-  /// As `Model::pair_with`.
+  /// As `Model::pair_with`, by `law`.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {

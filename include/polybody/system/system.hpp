@@ -69,7 +69,7 @@ template <class = void>
   stepped.lambda.swap(all);
 }
 
-/// q˙ when the model moves with speeds v; `room` (2 nq + nv of the whole model) is scratch.
+/// `rate` = q˙ when the model moves with speeds v; `room` (2 nq + nv of the whole model) is scratch.
 template <class = void>
 void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& room, VecX& rate) {
   Coordinates const& c = s.step_coordinates();

@@ -89,7 +89,7 @@ void invert_leading(Mat<T, 6, 6>& a, int n) {
   }
 }
 
-/// The same of any matrix, by pivoting. −1, or the column that has no pivot beside entries of this size.
+/// The same of any matrix a, by pivoting. −1, or the column of the n that has no pivot beside entries of this size.
 template <class T>
 int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
   auto out = detail::zeros<Mat<T, 6, 6>>();

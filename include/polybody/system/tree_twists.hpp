@@ -55,7 +55,7 @@ void add_carried(Vec<T, 6> const& parent, Vec<T, 3> const& arm, Vec<T, 6>& t) {
   for (int i = 0; i < 6; ++i) t[i] += parent[i];
   for (int i = 0; i < 3; ++i) t[i] += rate[i];
 }
-/// parent += a wrench of the body, `arm` away.
+/// parent += the wrench w (6) of the body, [f; m], `arm` (3) away.
 template <class T>
 void add_back(Vec<T, 6> const& w, Vec<T, 3> const& arm, Vec<T, 6>& parent) {
   Vec<T, 3> const moment = cross<T>(arm, {w[0], w[1], w[2]});

@@ -196,8 +196,8 @@ struct UserEntries {
 
 }  // namespace detail
 
-/// The system of these equations, which it keeps. `name` is what messages call it. The second-order terms of its rows,
-/// which some implicit steps ask for when they stall, are left out.
+/// The system of these equations, which it keeps. `name` is what messages call it, `constant_mass` says that M does not
+/// depend on q. The second-order terms of its rows, which some implicit steps ask for when they stall, are left out.
 template <UserEquations E>
 System system_of(E mechanics, std::string name = "system", bool constant_mass = false) {
   auto self = std::make_shared<detail::UserEntries<E>>(std::move(mechanics));

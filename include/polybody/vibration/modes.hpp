@@ -158,7 +158,7 @@ Modes modes(Linearisation const& l, Index count = 10) {
   out.shape = l.N * basis * solved.eigenvectors().leftCols(kept);
   return out;
 }
-/// The same about x, a state of rest in equilibrium. \throws InvalidInput when x moves.
+/// The same, the `count` lowest, about x, a state of rest in equilibrium. \throws InvalidInput when x moves.
 template <class S>
 Modes modes(S const& model, State const& x, Index count = 10) {
   return modes(linearise(model, x), count);
@@ -170,7 +170,7 @@ struct DampedModes {
   Eigen::MatrixXcd shape;       ///< (nv×k) of first-order states, what they are and not their integral
   /// Frequency |s| [rad/s] and damping ratio −Re s/|s| of mode i.
   double frequency(Index i) const { return std::abs(eigenvalue[i]); }
-  double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }  ///< −Re s/|s|
+  double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }  ///< −Re s/|s| of i
 };
 
 /// The `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0, dense. With δ = N z, the unit of time 1/τ and y = (z, ż/τ)
@@ -231,7 +231,7 @@ DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   }
   return out;
 }
-/// The same about x. \throws InvalidInput also when x moves.
+/// The same, the `count` lowest, about x. \throws InvalidInput also when x moves.
 template <class S>
 DampedModes damped_modes(S const& model, State const& x, Index count = 10) {
   return damped_modes(linearise(model, x), count);

@@ -18,8 +18,8 @@ struct SpectraModes {
   Index restarts = 1000;     ///< at most, for each number of vectors
   double tolerance = 1e-12;  ///< of ω², relative
 
-  /// K and M (n×n) symmetric, K positive definite. The same numbers in every run. Half of all modes or more are left to
-  /// DenseModes.
+  /// The `count` lowest modes of K and M (n×n) symmetric, K positive definite. The same numbers in every run. Half of
+  /// all modes or more are left to DenseModes.
   /// \throws InvalidInput for a K that is not positive definite; Error when the iteration does not converge.
   template <class = void>  // compiled where it is used
   LowestModes operator()(Structure::Sparse const& k, Structure::Sparse const& m, Index count) const {
