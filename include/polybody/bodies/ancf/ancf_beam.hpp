@@ -42,9 +42,9 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   static AncfBeam from(Bar const& bar, Index n) {
     return AncfBeam(bar, n, [](double s) { return Placement{Vec3(s, 0, 0)}; }, true);
   }
-  /// The bar with a curved or twisted reference, free of stress but for the pretension. Nodes get place and axes of
-  /// `curve`, which between them is interpolated by the element's own field. \throws InvalidInput also where the
-  /// section would be turned inside out, or `curve` does not run at unit speed.
+  /// The bar with a curved or twisted reference, n elements, free of stress but for the pretension. Nodes get place and
+  /// axes of `curve`, which between them is interpolated by the element's own field. \throws InvalidInput also where
+  /// the section would be turned inside out, or `curve` does not run at unit speed.
   static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
 
   double length() const { return bar_.length; }

@@ -51,7 +51,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   static AncfCable from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement::at({s, 0, 0}); });
   }
-  /// The same laid along a curve, nodes at equal arc lengths. Its natural shape stays straight: it stands bent.
+  /// The same of n elements laid along a curve, nodes at equal arc lengths. Its natural shape stays straight: it stands
+  /// bent.
   /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes
   /// off by a tenth.
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {

@@ -23,7 +23,7 @@ struct OfGradient {
   static constexpr int reach = vectors - 1;
   static constexpr int difference = vectors / 2;
   static constexpr int vector(int, int j) { return j + 1; }
-  /// P for the columns `which` of F.
+  /// P for the columns `which` of F, from the gradients g of the shapes.
   static Mat<double, used, vectors - 1> map(Mat<double, vectors, 3> const& g, std::array<int, used> const& which) {
     Mat<double, used, vectors - 1> n;
     for (int v = 1; v < vectors; ++v)
@@ -237,7 +237,7 @@ struct Continuum {
       return 1.0;
   }
 
-  /// Stress at a point with strain E and, where the section meets the axis, `axis`; without damping.
+  /// Stress at a point with strain E, `e`, and `at_axis` where the section meets the axis; without damping.
   template <class T = double>  // compiled where it is used
   static Mat3 second_piola(Bar const& bar, BarConstants const& c, Mat3 const& e, Mat3 const& at_axis) {
     Moduli const m(bar);

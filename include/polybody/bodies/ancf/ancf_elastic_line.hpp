@@ -204,7 +204,7 @@ struct ElasticLine {
     return {b, c};
   }
 
-  /// Stiffness times the section's strains (Γ, K), and the pretension.
+  /// Stiffness, from `groups`, times the section's strains (Γ, K), and the pretension.
   template <class Made>  // compiled where it is used
   static Vec6 section_forces(Bar const& bar, Made const& groups, Vec6 const& strains) {
     Vec6 n = strains;

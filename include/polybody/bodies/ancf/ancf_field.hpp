@@ -59,7 +59,7 @@ class Reference {
     Mat<double, vectors, 3> g;  ///< (8×3) a row for each nodal vector
     double volume;              ///< relative to that on the axis
   };
-  /// ∂N/∂X = [N_x N_y N_z] J₀⁻¹,  J₀ = Rᵀ [r_x r_y r_z] of the reference, R its section frame.
+  /// ∂N/∂X = [N_x N_y N_z] J₀⁻¹ at (ξ, y, z) [m],  J₀ = Rᵀ [r_x r_y r_z] of the reference, R its section frame.
   template <class T = double>  // compiled where it is used
   Gradients gradients(double xi, double y, double z) const {
     Mat<T, vectors, 4> const n = shape(xi, y, z, l);
@@ -85,13 +85,13 @@ struct Deformation {
   Reference const& reference;  ///< must outlive this
   Coordinates e;               ///< (24) of both nodes
 
-  /// F: from the axes of the reference section to world axes.
+  /// F at (ξ, y, z) [m]: from the axes of the reference section to world axes.
   template <class T = double>  // compiled where it is used
   Mat3 gradient(double xi, double y, double z) const {
     Vec<T, columns> const x = e;
     return x.reshaped(3, vectors) * reference.gradients(xi, y, z).g;
   }
-  /// Green–Lagrange strain E, in the axes of the reference section.
+  /// Green–Lagrange strain E at (ξ, y, z) [m], in the axes of the reference section.
   template <class T = double>  // compiled where it is used
   Mat3 strain(double xi, double y, double z) const {
     Mat<T, 3, 3> const f = gradient(xi, y, z);

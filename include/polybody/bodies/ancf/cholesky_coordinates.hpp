@@ -34,7 +34,7 @@ class CholeskyCoordinates : public AddingCoordinates {
       return 0;
   }();
 
-  /// The body from the arguments of its own `from`. \throws InvalidInput as the constructor.
+  /// The body from the arguments `args` of its own `from`. \throws InvalidInput as the constructor.
   template <class... Args>
   static CholeskyCoordinates from(Args const&... args) {
     return CholeskyCoordinates(B::from(args...));

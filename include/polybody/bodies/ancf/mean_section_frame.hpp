@@ -29,7 +29,7 @@ class MeanSectionFrame : public SectionAxes<T> {
   using Axes = SectionAxes<T>;  ///< holds R
   using Axes::axis, Axes::cross, Axes::dot, Axes::local, Axes::R, Axes::world;
 
-  /// `share` is p in [0, 1].
+  /// From the gradients b = r_y and c = r_z (3); `share` is p in [0, 1].
   MeanSectionFrame(V3 const& b, V3 const& c, double share) : p_(share) {
     using std::sqrt;
     V3 const n = cross(b, c);
@@ -51,7 +51,7 @@ class MeanSectionFrame : public SectionAxes<T> {
     c_ = V3(T(0.0), dot(c, t2), dot(c, t3));
   }
 
-  /// w = (Rᵀdb, Rᵀdc).
+  /// w = (Rᵀdb, Rᵀdc), for changes db of b and dc of c.
   V6 components(V3 const& db, V3 const& dc) const {
     V3 const x = local(db), y = local(dc);
     return {x[0], x[1], x[2], y[0], y[1], y[2]};
@@ -61,12 +61,12 @@ class MeanSectionFrame : public SectionAxes<T> {
     return {(w[2] * p_ - w[4] * (1.0 - p_)) * im_, (b_[1] * w[3] - c_[1] * w[0]) * in_,
             (b_[2] * w[3] - c_[2] * w[0]) * in_};
   }
-  /// Sᵀm.
+  /// Sᵀm, m (3) in the section's axes.
   V6 pull(V3 const& m) const {
     return {-(c_[1] * m[1] + c_[2] * m[2]) * in_, T(0.0), m[0] * p_ * im_, (b_[1] * m[1] + b_[2] * m[2]) * in_,
             -(m[0] * (1.0 - p_)) * im_,           T(0.0)};
   }
-  /// δ̂φ of a constant d of components w while the frame moves by ŵ.
+  /// δ̂φ of a constant d of components w while the frame moves `by` ŵ.
   V3 change(V6 const& w, V6 const& by) const {
     V3 const phi = spin(w), turn = spin(by), x = cross(head(w), turn), y = cross(tail(w), turn),
              b = cross(b_, turn) + head(by), c = cross(c_, turn) + tail(by), bx = cross(phi, b), cy = cross(phi, c);

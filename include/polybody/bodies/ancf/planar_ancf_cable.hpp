@@ -31,7 +31,7 @@ struct HermiteCable {
   static Vec4 rigid_velocity(Vec4 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], -omega * node[3], omega * node[2]};
   }
-  /// The map (2×8) with one factor for each nodal vector.
+  /// The map (2×8) with one factor of s for each nodal vector.
   template <class T = double>  // compiled where it is used
   static Mat<T, 2, 8> spread(std::array<double, 4> const& s) {
     Mat<T, 2, 8> n = Mat<T, 2, 8>::Zero();
@@ -56,7 +56,8 @@ struct HermiteCable {
     return Vec<T, 8>::Zero();
   }
 
-  /// Angle of r′; θ̇ = r′ × ṙ′/|r′|², whose derivative without r̈′ is −2 (r′·ṙ′) θ̇/|r′|².
+  /// Angle of r′ at the coordinates e (8) with rates `ed`; θ̇ = r′ × ṙ′/|r′|², whose derivative without r̈′ is −2
+  /// (r′·ṙ′) θ̇/|r′|².
   template <StateScalar T>
   static SectionAngle<T, 8> rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed) {
     using std::atan2;
@@ -70,7 +71,7 @@ struct HermiteCable {
     return out;
   }
 
-  /// ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).
+  /// h = ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).
   template <class T>
   static void rotation_hessian(double xi, double l, Vec<T, 8> const& e, Mat<T, 8, 8>& h) {
     Mat<T, 2, 8> const d = gradient<T>(xi, l);

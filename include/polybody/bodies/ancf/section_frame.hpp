@@ -29,7 +29,7 @@ struct SectionAxes {
 
   Mat<T, 3, 3> R;  ///< columns t₁, t₂, t₃
 
-  /// Rᵀx.
+  /// Rᵀ x, x (3).
   V3 local(V3 const& x) const {
     V3 y;
     for (int i = 0; i < 3; ++i) y[i] = R(0, i) * x[0] + R(1, i) * x[1] + R(2, i) * x[2];
@@ -80,7 +80,7 @@ class SectionFrame : public SectionAxes<T> {
     sigma_ = (R(0, 1) * c[0] + R(1, 1) * c[1] + R(2, 1) * c[2]) * ic_;
   }
 
-  /// w = (Rᵀdb/β, Rᵀdc/c₃).
+  /// w = (Rᵀdb/β, Rᵀdc/c₃), for changes db of b and dc of c.
   V6 components(V3 const& db, V3 const& dc) const {
     V3 const x = local(db), y = local(dc);
     V6 w;
@@ -92,7 +92,7 @@ class SectionFrame : public SectionAxes<T> {
   }
   /// φ = S w; of rates: the angular velocity, of derivatives along the axis: twist and curvatures. In the frame's axes.
   V3 spin(V6 const& w) const { return V3(w[2], w[3] - sigma_ * w[0], -w[0]); }
-  /// Sᵀm.
+  /// Sᵀ m, m (3) in the section's axes.
   V6 pull(V3 const& m) const {
     V6 s;
     for (int i = 0; i < 6; ++i) s[i] = T(0.0);
@@ -144,7 +144,8 @@ class SectionFrame : public SectionAxes<T> {
     }
     return k;
   }
-  /// Second derivatives of n·K by (X, Y) twice, `twice`, and by (X′, Y′) (rows) and (X, Y) (columns), `mixed` = M(n).
+  /// Second derivatives of n·K at w by (X, Y) twice, `twice`, and by (X′, Y′) (rows) and (X, Y) (columns), `mixed` =
+  /// M(n).
   void curvature_hessian(V6 const& w, V3 const& n, M6& twice, M6& mixed) const {
     M6 const l = pairing(w, -1.0);  // δ̂w′ = l ŵ
     V6 const s = pull(n), g = sigma_gradient();
@@ -189,7 +190,7 @@ class SectionFrame : public SectionAxes<T> {
         add_world<everywhere>(
             h, a, b, [&](int i, int j, T const& x) { out(first_row + 3 * a + i, first_column + 3 * b + j) += x; });
   }
-  /// The same of a symmetric form, of which the lower half is read, in a block on the diagonal.
+  /// The same of a symmetric form h, of which the lower half is read, in a block on the diagonal from `first` on.
   template <int n>
   void add_symmetric(M6 const& h, int first, Mat<T, n, n>& out) const {
     M6 whole = h;
@@ -204,7 +205,7 @@ class SectionFrame : public SectionAxes<T> {
       out(first + j, first + 3 + i) += x;
     });
   }
-  /// The same of M(m) in a block off the diagonal and its mirror image.
+  /// The same of h = M(m) in a block off the diagonal, at (first_row, first_column), and its mirror image.
   template <int n>
   void add_second(M6 const& h, int first_row, int first_column, Mat<T, n, n>& out) const {
 #pragma GCC unroll 2

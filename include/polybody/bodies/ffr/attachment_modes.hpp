@@ -50,8 +50,9 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 
 }  // namespace detail
 
-/// The static shapes of the nodal loads (N×m), each with the inertia that balances it, and the `count` lowest modes of
-/// the free structure: orthogonal, with unit modal mass, in mean axes. Shapes that repeat others are left out.
+/// The static shapes of the nodal loads (N×m), each with the inertia that balances it, and the `count` lowest modes, by
+/// `solve`, of the free structure: orthogonal, with unit modal mass, in mean axes. Shapes that repeat others are left
+/// out.
 /// \throws InvalidInput for loads that do not fit the structure or are not finite, a count beyond what there is, and a
 /// structure that moves without deformation in more ways than as a whole.
 template <class Eigensolver = DenseModes>

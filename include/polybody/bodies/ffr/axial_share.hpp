@@ -20,7 +20,8 @@ struct StructureAction {
   Mat3 B = Mat3::Zero();                 ///< (3×3) Ω˙~ + Ω~ Ω~ [1/s²]
   std::vector<PlacedWrench> loads = {};  ///< about points of the structure
 
-  /// The same in the axes of a frame that turns with Ω and Ω˙ (its own axes); r̈, g and `loads` are in world axes.
+  /// The same in the axes of a frame that turns with Ω and Ω˙ = `alpha` (its own axes); r̈ − g = `acceleration` [m/s²]
+  /// and `loads` are in world axes.
   template <class = void>  // compiled where it is used
   static StructureAction in_frame(Frame<double> const& frame, Vec3 const& acceleration, Vec3 const& alpha,
                                   std::span<PlacedWrench const> loads) {

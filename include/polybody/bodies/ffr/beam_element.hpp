@@ -84,7 +84,7 @@ void add_entries(Structure::Beam const& beam, BeamMatrix const& m, std::vector<E
     for (int j = 0; j < 12; ++j)
       if (m(i, j) != 0.0) entries.emplace_back(dof(i), dof(j), m(i, j));
 }
-/// Adds nodal values of one beam to those of the structure (N).
+/// Adds nodal values x of one beam to those of the structure, `sum` (N).
 template <class = void>
 void add_entries(Structure::Beam const& beam, Vec<double, 12> const& x, VecX& sum) {
   for (int i = 0; i < 12; ++i) sum[6 * (i < 6 ? beam.a : beam.b) + i % 6] += x[i];

@@ -161,7 +161,8 @@ class AxialForceStiffness {
       throw InvalidInput("Structure: its beams are not all joined, or their stiffness is not positive.");
   }
 
-  /// `spread(beam)`: the nodal forces (12, body axes) equivalent to what acts within the beam.
+  /// Stiffness by one load: `load` (N) at the nodes, and `spread(beam)`, the nodal forces (12, body axes) equivalent to
+  /// what acts within the beam.
   template <class Spread>
   Structure::Sparse operator()(VecX const& load, Spread&& spread) const {
     Structure const& s = *structure_;

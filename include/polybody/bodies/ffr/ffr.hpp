@@ -44,8 +44,8 @@ class Ffr {
     Structure const s = structure_of(bar, n);
     return Ffr(s, nodal_coordinates(s), options);
   }
-  /// A structure with a basis of ffr_basis.hpp (N×n). \throws InvalidInput for a basis that does not fit or is
-  /// dependent.
+  /// A structure with `shapes`, a basis of ffr_basis.hpp (N×n). \throws InvalidInput for a basis that does not fit or
+  /// is dependent.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(integrals_of(structure, shapes, options.stiffening), options) {
@@ -81,7 +81,7 @@ class Ffr {
   Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     return made().at(s, y, z, bar);
   }
-  /// A node of the structure. \throws InvalidInput for one that does not exist.
+  /// Node i of the structure. \throws InvalidInput for one that does not exist.
   template <class = void>
   Point node(Index i) const {
     return made().node(i);

@@ -33,7 +33,7 @@ class ReferenceConditions {
   }
   static ReferenceConditions none() { return {}; }  ///< holds nothing: for a free structure
 
-  /// One more: component 0–2 a displacement, 3–5 a rotation.
+  /// One more, of `node`: component 0–2 a displacement, 3–5 a rotation.
   ReferenceConditions& fix(Index node, int component) {
     single_.emplace_back(node, component);
     return *this;
@@ -117,8 +117,8 @@ MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = Re
   return scatter_rows(MatX::Identity(Index(free.size()), Index(free.size())), free, s.size());
 }
 
-/// The `count` lowest modes of the structure held by the reference conditions. \throws InvalidInput as above, and for a
-/// count beyond what there is.
+/// The `count` lowest modes, by `solve`, of the structure held by the reference conditions. \throws InvalidInput as
+/// above, and for a count beyond what there is.
 template <class Eigensolver = DenseModes>
 MatX held_modes(Structure const& s, Index count, ReferenceConditions const& frame = ReferenceConditions::clamped(),
                 Eigensolver const& solve = {}) {
@@ -130,9 +130,9 @@ MatX held_modes(Structure const& s, Index count, ReferenceConditions const& fram
   return scatter_rows(solve(k, m, count).shapes, free, s.size());
 }
 
-/// The `count` lowest modes of the free structure that deform it. The frame follows the mean motion: momentum and
-/// moment of momentum of the deformation vanish in it to first order (Tisserand's or Buckens' mean axes). \throws
-/// InvalidInput as above.
+/// The `count` lowest modes, by `solve`, of the free structure that deform it. The frame follows the mean motion:
+/// momentum and moment of momentum of the deformation vanish in it to first order (Tisserand's or Buckens' mean axes).
+/// \throws InvalidInput as above.
 template <class Eigensolver = DenseModes>
 MatX free_interface_modes(Structure const& s, Index count,
                           ReferenceConditions const& frame = ReferenceConditions::none(),
@@ -149,11 +149,10 @@ MatX free_interface_modes(Structure const& s, Index count,
 }
 
 /// Craig & Bampton [1968]: the static shapes of unit displacements of the boundary nodes, and the `count` lowest modes
-/// with these nodes held. The frame is tied to the first boundary node, whose shapes are left out, or follows the mean
-/// motion
-/// (`mean_axes`): then the basis is turned into free modes of the reduced model, less the rigid ones.
-/// \throws InvalidInput for boundary nodes that do not exist or repeat, a count beyond what there is, or a frame tied
-/// to a node without rotations.
+/// with these nodes held, by `solve`; all of them, or those `in_plane`. The frame is tied to the first boundary node,
+/// whose shapes are left out, or follows the mean motion (`mean_axes`): then the basis is turned into free modes of the
+/// reduced model, less the rigid ones. \throws InvalidInput for boundary nodes that do not exist or repeat, a count
+/// beyond what there is, or a frame tied to a node without rotations.
 template <class Eigensolver = DenseModes>
 MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index count, bool mean_axes = false,
                    bool in_plane = false, Eigensolver const& solve = {}) {

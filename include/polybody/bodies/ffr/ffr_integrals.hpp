@@ -140,7 +140,7 @@ struct FfrIntegrals {
     Mat<T, 3, 3> J;  ///< the inertia tensor
   };
 
-  /// c(q) and J(q).
+  /// c(q) and J(q), x being q (n) here and below.
   template <class T>
   void moments(T const* x, Moments<T>& out) const {
     Vec<T, 6> j;
@@ -153,7 +153,7 @@ struct FfrIntegrals {
       for (int k = 0; k < 3; ++k) out.J(i, k) = j[symmetric_place[i][k]];
     out.c = first_moment<T>(x);
   }
-  /// c(q).
+  /// c(q) at q = x.
   template <class T>
   Vec<T, 3> first_moment(T const* x) const {
     Vec<T, 3> c;
@@ -164,7 +164,7 @@ struct FfrIntegrals {
     }
     return c;
   }
-  /// Column k of C(q) = c_q.
+  /// Column k of C(q) = c_q at q = x.
   template <class T>
   Vec<T, 3> first_slope(T const* x, Index k) const {
     Vec<T, 3> c;
@@ -174,14 +174,14 @@ struct FfrIntegrals {
     }
     return c;
   }
-  /// Column k of C(q) and of H(q).
+  /// Column k of C(q), to c, and of H(q), to h, at q = x.
   template <class T>
   void columns(T const* x, Index k, Vec<T, 3>& c, Vec<T, 3>& h) const {
     c = first_slope(x, k);
     for (std::size_t i = 0; i < 3; ++i)
       h[Index(i)] = detail::column_times(coupling_by[i], k, x) + coupling(Index(i), k);
   }
-  /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`.
+  /// ∂J_p/∂q_k at q = x, p an entry in the order of `symmetric_row`, k a coordinate.
   template <class T>
   T inertia_slope(T const* x, std::size_t p, Index k) const {
     return detail::column_times(inertia_second[p], k, x) * 2.0 + inertia_by[p][k];

@@ -24,7 +24,7 @@ struct FfrTerms {
   bool spin = true;              ///< Ĩ_o ω̄: centrifugal forces on the body as it is without deformation
 
   bool operator==(FfrTerms const&) const = default;  ///< whether all switches agree
-  /// c of the body deformed by x, or at q = 0.
+  /// c of the body deformed by x, or at q = 0, from the integrals `of` it.
   template <class T, class Integrals>
   Vec<T, 3> first_moment(Integrals const& of, T const* x) const {
     return deformed_inertia ? of.template first_moment<T>(x) : Vec<T, 3>(of.first.template cast<T>());

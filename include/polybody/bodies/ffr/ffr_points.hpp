@@ -31,7 +31,7 @@ struct FfrPoint {
     for (Index j = 0; j < m.rows(); ++j) s -= q[j] * m(j, k);
     return s;
   }
-  /// Column k of S − qᵀ drawn.
+  /// Column k of S − qᵀ drawn, to `out` (3).
   template <class T>
   void slopes(T const* q, Index k, T* out) const {
     for (int i = 0; i < 3; ++i) out[i] = T(S(i, k));
@@ -60,7 +60,7 @@ struct FfrPoint {
 /// Makes the points of a structure with e = Φ q.
 class FfrPoints {
  public:
-  /// `shapes` are Φ (N×n).
+  /// `shapes` are Φ (N×n); `stiffening`: whether beams get shorter as they bend.
   template <class = void>
   FfrPoints(Structure structure, MatX shapes, bool stiffening) : s_(std::move(structure)), shapes_(std::move(shapes)) {
     auto const make = [](auto& part, auto const& from) { part.emplace(from); };  // compiled where it is used
@@ -119,7 +119,7 @@ class FfrPoints {
     return p;
   }
 
-  /// A node. \throws InvalidInput for one that does not exist.
+  /// Node i. \throws InvalidInput for one that does not exist.
   template <class = void>
   FfrPoint node(Index i) const {
     s_.require_node(i, "Ffr");

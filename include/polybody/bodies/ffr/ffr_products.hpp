@@ -42,19 +42,19 @@ class FfrProducts {
   FfrProducts(FfrIntegrals const& integrals, FfrStack const& stack, T* room)
       : i_(integrals), stack_(stack), n_(integrals.size()), x_(room), xd_(room + 10 * n_), xdd_(room + 14 * n_) {}
 
-  void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }  ///< takes q (n)
-  void at_speeds(T const* speeds) { detail::times(stack_.of_speeds, speeds, xd_); }         ///< takes q̇ (n)
-  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }            ///< takes q̈ (n)
+  void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }  ///< q = `coordinates` (n)
+  void at_speeds(T const* speeds) { detail::times(stack_.of_speeds, speeds, xd_); }         ///< q̇ = `speeds` (n)
+  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }            ///< q̈ = `rates` (n)
 
-  /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`.
+  /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`, k a coordinate here and below.
   T inertia_slope(std::size_t p, Index k) const { return x_[Index(p) * n_ + k] + i_.inertia_by[p][k]; }
-  /// H_i's entry k.
+  /// Entry k of H_i, i an axis.
   T coupling(Index i, Index k) const { return x_[(6 + i) * n_ + k] + i_.coupling(i, k); }
-  T stiffness(Index k) const { return x_[9 * n_ + k]; }  ///< (K q)_k
-  /// (W_i q̇)_k, with the sign of the force.
+  T stiffness(Index k) const { return x_[9 * n_ + k]; }  ///< entry k of K q
+  /// Entry k of W_i q̇, i an axis, with the sign of the force.
   T gyroscopic(Index i, Index k) const { return xd_[i * n_ + k]; }
-  T damping(Index k) const { return xd_[3 * n_ + k]; }  ///< (D q̇)_k
-  T mass(Index k) const { return xdd_[k]; }             ///< (M q̈)_k
+  T damping(Index k) const { return xd_[3 * n_ + k]; }  ///< entry k of D q̇
+  T mass(Index k) const { return xdd_[k]; }             ///< entry k of M q̈
 
  private:
   FfrIntegrals const& i_;

@@ -13,9 +13,9 @@
 
 namespace polybody {
 
-/// A sparse matrix of this size of a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer,
-/// general or symmetric (its lower triangle). Eigen's unsupported loader leaves symmetric matrices halved and believes
-/// any index, so this does not use it. `need` says why the size must be that: "the matrix is 2×2, but the …".
+/// A sparse matrix of this size, m×n, of a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or
+/// integer, general or symmetric (its lower triangle). Eigen's unsupported loader leaves symmetric matrices halved and
+/// believes any index, so this does not use it. `need` says why the size must be that: "the matrix is 2×2, but the …".
 /// \throws IoError for anything else, with the line.
 template <class = void>  // compiled where it is used
 Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index n, std::string const& need) {

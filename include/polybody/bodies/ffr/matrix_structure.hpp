@@ -215,9 +215,9 @@ std::vector<Vec3> read_nodes(std::string const& file) {
 
 }  // namespace detail
 
-/// The same from files: mass and stiffness in Matrix Market's coordinate format, and the nodes, one `x y z` [m] a line,
-/// in which # begins a comment. \throws IoError naming file and line for a file that cannot be read, is truncated or
-/// does not fit the nodes; InvalidInput naming the files as `structure_of`.
+/// The same from files: `mass_file`, `stiffness_file` in Matrix Market's coordinate format, and `nodes_file`, a line
+/// `x y z` [m] for each, in which # begins a comment. \throws IoError naming file and line for a file that cannot be
+/// read, is truncated or does not fit the nodes; InvalidInput naming the files as `structure_of`.
 template <class = void>
 Structure read_structure(std::string const& mass_file, std::string const& stiffness_file,
                          std::string const& nodes_file) {

@@ -12,7 +12,7 @@
 
 namespace polybody {
 
-/// Nodes within this distance of a place [m].
+/// Nodes within this `distance` [m] of the place `at` (3) [m].
 template <class = void>  // compiled where it is used
 std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double distance) {
   std::vector<Index> nodes;
@@ -53,13 +53,13 @@ class NodePatch {
   std::vector<Index> const& nodes() const { return nodes_; }  ///< which nodes of the structure
   Vec3 const& middle() const { return middle_; }              ///< c = Σ w_i r_i, in the structure's axes [m]
 
-  /// The force on node k of the patch [N] by a wrench about the point `at`.
+  /// The force on node k of the patch [N] by a wrench, f (3) [N] and m (3) [N m], about the point `at`.
   template <class = void>
   Vec3 force(std::size_t k, Vec3 const& at, Vec3 const& f, Vec3 const& m) const {
     Vec3 const theta = by_moment_ * (m + (at - middle_).cross(f));
     return weights_[k] * (f + theta.cross(arms_[k]));
   }
-  /// Nodal forces (N×6) of the unit forces and moments about `at`, for a structure of N coordinates.
+  /// Nodal forces (N×6) of the unit forces and moments about `at`, for a structure of N = `size` coordinates.
   template <class = void>
   MatX loads(Vec3 const& at, Index size) const {
     MatX out = MatX::Zero(size, 6);

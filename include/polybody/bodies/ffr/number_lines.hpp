@@ -25,7 +25,7 @@ class NumberLines {
     std::string text;  ///< without those blanks; may be empty
   };
 
-  /// \throws IoError for a file that cannot be read.
+  /// Lines of a file in which `comment` begins a comment. \throws IoError for a file that cannot be read.
   NumberLines(std::string const& file, char comment) : file_(file), in_(file), comment_(comment) {
     if (in_) in_.peek();  // a folder can be opened, but not read
     if (!in_.is_open() || in_.bad())
@@ -37,8 +37,8 @@ class NumberLines {
     ++line_;
     return bool(std::getline(in_, line));
   }
-  /// The next line with numbers into `values`, all of it. False at the end of the file. \throws IoError for another
-  /// line.
+  /// The next line with numbers into `values`, all of it, `expected` in words. False at the end of the file. \throws
+  /// IoError for another line.
   template <class... T>
   bool next(std::string const& expected, T&... values) {
     std::string line;

@@ -37,7 +37,7 @@ class Ffr : public AddingCoordinates {
     Structure const s = structure_in_plane(bar, n);
     return Ffr(s, nodal_coordinates(s, ReferenceConditions::clamped().in_plane()), options);
   }
-  /// The structure of a bar for use in the plane only. \throws InvalidInput as `structure_of`.
+  /// The structure of a bar for use in the plane only, n elements. \throws InvalidInput as `structure_of`.
   template <class = void>
   static Structure structure_in_plane(Bar bar, Index n) {
     BarConstants c = constants(bar);
@@ -48,8 +48,8 @@ class Ffr : public AddingCoordinates {
     bar.constants = c;
     return structure_of(bar, n);
   }
-  /// A structure in the plane of x and y with a basis made `in_plane`. \throws InvalidInput for a basis that leaves the
-  /// plane.
+  /// A structure in the plane of x and y with a basis `shapes` made `in_plane`. \throws InvalidInput for a basis that
+  /// leaves the plane.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(FfrIntegrals::of(integrals_of(structure, shapes, options.stiffening)), options) {
@@ -73,6 +73,7 @@ class Ffr : public AddingCoordinates {
   /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
+  /// The point at arc length s of bar number `bar`, y off its axis [m].
   template <class = void>
   Point at(double s, double y = 0.0, Index bar = 0) const {
     return made().at(s, y, 0.0, bar);

@@ -86,7 +86,7 @@ struct FfrIntegrals {
   struct Moments {
     T c[2], J;  ///< c (2) and J
   };
-  /// c(q) and J(q).
+  /// c(q) and J(q), x being q (n) here and below.
   template <class T>
   void moments(T const* x, Moments<T>& out) const {
     out.J = T(inertia);
@@ -97,7 +97,7 @@ struct FfrIntegrals {
       if (stiffens()) out.c[i] -= detail::quadratic<T>(first_second[std::size_t(i)], x, x) * 0.5;
     }
   }
-  /// Entry (i, k) of C, entry k of H, and of J_q.
+  /// Entry (i, k) of C at q = x.
   template <class T>
   T first_slope(T const* x, int i, Index k) const {
     T sum(first_by(i, k));
@@ -105,14 +105,14 @@ struct FfrIntegrals {
     for (Index j = 0; j < m.rows(); ++j) sum -= x[j] * m(j, k);
     return sum;
   }
-  /// Entry k of H.
+  /// Entry k of H at q = x.
   template <class T>
   T coupling_at(T const* x, Index k) const {
     T sum(coupling[k]);
     for (Index j = 0; j < size(); ++j) sum += x[j] * coupling_by(j, k);
     return sum;
   }
-  /// Entry k of J_q = ∂J/∂q.
+  /// Entry k of J_q = ∂J/∂q at q = x.
   template <class T>
   T inertia_slope(T const* x, Index k) const {
     T sum(0.0);

@@ -23,7 +23,7 @@ Structure::Sparse submatrix(Structure::Sparse const& m, std::vector<Index> const
   return out;
 }
 
-/// A matrix of `size` rows that has the given ones at `free`, and zeros elsewhere.
+/// A matrix of `size` rows that has those of `shapes` at `free`, and zeros elsewhere.
 template <class = void>
 MatX scatter_rows(MatX const& shapes, std::vector<Index> const& free, Index size) {
   MatX out = MatX::Zero(size, shapes.cols());

@@ -48,7 +48,7 @@ class Direct {
     set_halves<T>(product(bend1, inverse1), product(bend2, inverse2), {1.0, 1.0}, out.bend);
   }
 
-  /// By dual numbers.
+  /// By dual numbers, for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂).
   template <class T>  // compiled where it is used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
@@ -76,7 +76,7 @@ class Direct {
     set_halves<T>(product(out.jacobian, out.inverse[0]), product(out.jacobian, out.inverse[1]), {1.0 - xi, xi},
                   out.spin);
   }
-  /// Both equations once more by time.
+  /// Both equations once more by time, w = (Ω₁, Ω₂).
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
     Vec<T, 3> rate = detail::zeros<Vec<T, 3>>(), second = rate;

@@ -69,7 +69,7 @@ class ElasticElements {
 
   Index size() const { return Index(free_.size()); }  ///< how many elements
 
-  /// Element e is free of stress in q, where its nodes are c₀ apart.
+  /// Element e is free of stress in q, where its nodes are c₀ = `chord` apart [m].
   void set_free(Index e, std::span<double const> q, double chord) {
     Free& free = free_[std::size_t(e)];
     free.chord = chord;

@@ -38,6 +38,7 @@ class Incremental {
     Vec<T, 3> const phi = quaternion_minus<T>(b, a);
     return {quaternion_plus<T>(a, scaled<T>(phi, 0.5)), phi};
   }
+  /// The section carried along by increments of its nodes, `first` and `second` (3), in their axes [rad].
   template <StateScalar T>
   static CarriedSection<T> plus(CarriedSection<T> const& s, Vec<T, 3> const& first, Vec<T, 3> const& second) {
     Vec<T, 3> const mean(0.5 * (first[0] + second[0]), 0.5 * (first[1] + second[1]), 0.5 * (first[2] + second[2]));
@@ -93,8 +94,7 @@ class Incremental {
   void spin_gradient(Section<T> const&, Vec<T, 3> const&, Mat<T, 6, 6>& out) const {
     out = detail::zeros<Mat<T, 6, 6>>();
   }
-
-  /// \throws InvalidInput unless ξ is a node or the middle: no other rotation is carried along.
+  /// \throws InvalidInput unless ξ, at s [m], is a node or the middle: no other rotation is carried along.
   static void require_known(double xi, double s) {
     if (xi != 0.0 && xi != 1.0 && !(xi > 0.5 - 1e-12 && xi < 0.5 + 1e-12))
       throw InvalidInput{"Lrvf<Incremental>: at s = ", s,

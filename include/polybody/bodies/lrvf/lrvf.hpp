@@ -52,8 +52,8 @@ class Lrvf {
   static Lrvf from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement{.origin = Vec3(s, 0, 0)}; });
   }
-  /// The bar bent and twisted without stress to `curve`, whose parameter is its arc length. \throws InvalidInput as
-  /// above, and for a curve on which nodes coincide or lie farther apart than the arc between them.
+  /// The bar of n elements bent and twisted without stress to `curve`, whose parameter is its arc length. \throws
+  /// InvalidInput as above, and for a curve on which nodes coincide or lie farther apart than the arc between them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
     if (!curve) throw InvalidInput("Lrvf: the reference curve is empty.");

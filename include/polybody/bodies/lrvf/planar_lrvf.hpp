@@ -50,14 +50,14 @@ struct SimoVuQuoc {
     return row;
   }
 
-  /// θ(ξ); the field is linear, so that there is no bias.
+  /// θ(ξ) at the coordinates e (6); the field is linear, so that there is no bias.
   template <StateScalar T>
   static SectionAngle<T, 6> rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&) {
     Vec<T, 6> const row = rotary<T>(xi, l);
     return {row.dot(e), row, T(0.0)};
   }
 
-  /// ∂²θ/∂e²: none.
+  /// h = ∂²θ/∂e²: none.
   template <class T>  // compiled where it is used
   static void rotation_hessian(double, double, Vec<T, 6> const&, Mat<T, 6, 6>& h) {
     h.setZero();
@@ -74,6 +74,7 @@ struct SimoVuQuoc {
     static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.bending}; }
 
     static constexpr int reach = 2;
+    /// The nodal vector, one coordinate, that shape k reads as its j-th.
     static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
     template <class T = double>  // compiled where it is used
     static Mat<T, 4, 2> map(double xi, double l) {
@@ -119,6 +120,7 @@ struct SectionIn {
   static constexpr auto rule = detail::rule_of<Q, detail::strain_weights[std::size_t(first)]>();
   static constexpr int points = int(rule.size());
 
+  /// The nodal vector, one coordinate, that shape k reads as its j-th.
   static constexpr int vector(int k, int j) { return All::vector(k, j); }
   template <class T = double>  // compiled where it is used
   static Mat<T, 4, 2> map(double xi, double l) {

@@ -67,7 +67,7 @@ class Polar {
   void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     at<T>(0.5, a, b, out);
   }
-  /// By dual numbers.
+  /// By dual numbers, for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂).
   template <class T>  // compiled where it is used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
@@ -93,7 +93,8 @@ class Polar {
   void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
     place<T>(xi, a, detail::RelativeTurn<T>(a, b), out);
   }
-  /// Ω = exp(−α n) Ω₁ + ω, ω = h (ġ − g × ġ), h = 2/(1 + g²), once more by time; g D = ξ u gives g¨ from p¨.
+  /// Ω = exp(−α n) Ω₁ + ω, ω = h (ġ − g × ġ), h = 2/(1 + g²), once more by time, w = (Ω₁, Ω₂); g D = ξ u gives g¨ from
+  /// p¨.
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
     double const xi = s.xi, eta = 2.0 * xi * (1.0 - xi);
@@ -117,7 +118,7 @@ class Polar {
     for (int i = 0; i < 3; ++i) out[i] = relative[i] + h * twice[i] + h1 * once[i];
     return out;
   }
-  /// By dual numbers; P depends on the relative turn alone.
+  /// The derivative of Pᵀx by dual numbers; P depends on the relative turn alone.
   template <class T, StateScalar D = Dual<6>>  // compiled where it is used
   void spin_gradient(Section<T> const& s, Vec<T, 3> const& x, Mat<T, 6, 6>& out) const {
     Section<D> moved;

@@ -156,7 +156,7 @@ class Objective {
     }
   }
 
-  /// Derivatives of the middle's P and Q, in closed form.
+  /// Derivatives of the middle's P and Q for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂), in closed form.
   template <class T>  // compiled where it is used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
@@ -204,7 +204,7 @@ class Objective {
         out.spin(i, 3 + j) = second(i, j) * xi;
       }
   }
-  /// Both equations once more by time.
+  /// Both equations once more by time, w = (Ω₁, Ω₂).
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
     Vec<T, 3> const w1 = detail::of_node(0, w), w2 = detail::of_node(1, w);

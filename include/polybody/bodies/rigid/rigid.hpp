@@ -220,7 +220,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
       out[std::size_t(3 + i)] = jacobian(i, 0) * v[3] + jacobian(i, 1) * v[4] + jacobian(i, 2) * v[5];
   }
 
-  /// Speeds of a rigid motion: velocity of the world's origin point `v0` and angular velocity (world axes).
+  /// Speeds of a rigid motion: velocity of the world's origin point `v0` [m/s] and angular velocity `omega` [rad/s]
+  /// (world axes).
   template <class T = double>  // compiled where it is used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     Vec<T, 3> const r = part<3>(q, 0);
@@ -254,7 +255,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     set_cross(spin, omega, out, 3);
   }
 
-  /// [m (v̇ − g); J Ω˙ + Ω × J Ω].
+  /// `rows` (6) += [m (v̇ − g); J Ω˙ + Ω × J Ω].
   template <StateScalar T>
   void add_unbalance(BodyMotion<T> const& x, Vec3 const& g, T* rows) const {
     Vec<T, 3> const omega(x.v[3], x.v[4], x.v[5]), spin = inertia_times<T>(omega),
@@ -317,7 +318,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
   }
 
-  /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
+  /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0]; the body is where the pose `at` says.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
     T arm[3], rate[3];

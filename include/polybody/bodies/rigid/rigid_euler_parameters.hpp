@@ -42,7 +42,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     part<3>(q, 0) = placement_.origin;
     part<4>(q, 3) = quaternion_of(placement_.axes);
   }
-  /// θ̇ = ¼ |θ|² Ḡᵀ Ω.
+  /// ṙ = v0 + Ω × r, θ̇ = ¼ |θ|² Ḡᵀ Ω.
   template <class T = double>  // compiled where it is used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     Vec<T, 3> const r = part<3>(q, 0);
@@ -132,7 +132,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   void own_gap(std::span<T const> q, Vec<T, 1>& phi) const {
     phi[0] = (q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]) * 0.5 - 0.5;
   }
-  /// G (1×7).
+  /// G (1×7), to g.
   template <StateScalar T>
   void own_map(std::span<T const> q, Mat<T, 1, 7>& g) const {
     for (int i = 0; i < 7; ++i) g(0, i) = i < 3 ? T(0.0) : q[i];
@@ -149,7 +149,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     for (int i = 3; i < 7; ++i) k(i, i) = lambda[0];
   }
 
-  /// As `Rigid<>` with Ω = Ḡ θ̇; Ω̇ = Ḡ θ̈ + Ḡ˙ θ̇, where Ḡ˙ θ̇ = −2 (θ·θ̇)/|θ|² Ω.
+  /// As `Rigid<>`, with the marker's axes in the body's, `marker`; Ω = Ḡ θ̇; Ω̇ = Ḡ θ̈ + Ḡ˙ θ̇, where Ḡ˙ θ̇ = −2
+  /// (θ·θ̇)/|θ|² Ω.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& marker, std::span<T const> q, std::span<T const> v,
                Published<T>& out) const {

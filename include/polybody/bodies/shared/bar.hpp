@@ -221,7 +221,7 @@ void require_polar_inertia_of_points(BarConstants const& c, std::string const& w
                        " kg m. Leave it out, or take Lrvf or Rigid, whose sections are rigid."};
 }
 
-/// \throws InvalidInput naming `what` unless a bar is cut into 1 … 10⁷ elements.
+/// \throws InvalidInput naming `what` unless a bar is cut into n = 1 … 10⁷ elements.
 inline void require_elements(Index n, std::string_view what) {
   if (n < 1) throw InvalidInput{what, ": at least one element is needed."};
   if (n > 10'000'000) throw InvalidInput{what, ": ", n, " elements are more than memory holds. Use at most 10000000."};

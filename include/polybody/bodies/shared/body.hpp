@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// `n` entries of a body's coordinates or speeds from `first`, as a vector expression.
+/// `n` entries of a body's coordinates or speeds `x` from `first`, as a vector expression.
 template <int n, class T>
 auto part(std::span<T> x, Index first) {
   using Scalar = std::remove_const_t<T>;
@@ -16,7 +16,8 @@ auto part(std::span<T> x, Index first) {
   return Map(x.data() + first);
 }
 
-/// The same entries as a vector: `n` numbers are copied without Eigen's expressions, which cost more to compile.
+/// The same entries of `x` from `first` as a vector: `n` numbers are copied without Eigen's expressions, which cost
+/// more to compile.
 template <int n, class T>
 Vec<std::remove_const_t<T>, n> entries(std::span<T> x, Index first) {
   Vec<std::remove_const_t<T>, n> out;
@@ -121,7 +122,7 @@ template <class B>
 Index element_columns(B const& body) {
   return B::element_columns == Eigen::Dynamic ? body.speeds() : Index(B::element_columns);
 }
-/// Columns that a marker at p touches.
+/// Columns that a marker at p of `body` touches.
 template <class B>
 Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) {
   if constexpr (requires { body.columns_of(p); })

@@ -53,7 +53,7 @@ class ElasticChain : public NodeChain<columns> {
     out.setZero();
     for_each_group(e, [&](auto const& group) { group.add_mean_force(x0, x1, means, out); });
   }
-  /// ck (−∂f/∂q1) of `mean_force`, nearly; not symmetric.
+  /// ck (−∂f/∂q1) of `mean_force` from q0 to q1, nearly; not symmetric.
   void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
                     ElementMatrix& k) const {
     Element<double> const x0 = of_element(e, q0), x1 = of_element(e, q1);

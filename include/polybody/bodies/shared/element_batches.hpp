@@ -168,7 +168,7 @@ void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& 
   }
 }
 
-/// The same with scratch of its own.
+/// The same with scratch of its own; f as there.
 template <Body B, StateScalar T, class F>
 void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& x, F&& f) {
   ForceScratch<B, T> scratch(body);
@@ -210,7 +210,7 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
   }
 }
 
-/// The same with scratch of its own.
+/// The same with scratch of its own; f as there.
 template <Body B, class F>
 void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> const& x, ElementCoefficients c, F&& f) {
   TangentScratch<B> scratch(body);

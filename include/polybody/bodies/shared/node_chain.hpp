@@ -31,13 +31,13 @@ class NodeChain : public AddingCoordinates {
   Index speeds() const { return coordinates(); }
   Index elements() const { return n_; }
   Index first_column(Index e) const { return e * columns; }
-  /// First column of the element that a point is on.
+  /// First column of the element that the point p is on.
   template <class P>
     requires requires(P p) { p.element; }
   Index first_column(P const& p) const {
     return first_column(p.element);
   }
-  /// The point in a chain of its own element alone.
+  /// The point p in a chain of its own element alone.
   template <class P>
     requires requires(P p) { p.element; }
   P local(P p) const {

@@ -85,7 +85,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return Beam(bar, c, n);
   }
 
-  /// The bar whose natural shape is `curve`: it stands there free of stress, but for the pretension,
+  /// The bar of n elements whose natural shape is `curve`: it stands there free of stress, but for the pretension,
   ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx,  ε⁰ the strains of the nodes on the curve with the elements' own shapes.
   /// So a circular arc of radius R is straight under the moment EI/R. \throws InvalidInput as `from`, and for a curve
   /// that leaves the plane or is not given by its arc length: the axis of an element off by a tenth.

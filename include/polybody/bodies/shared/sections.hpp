@@ -21,7 +21,7 @@ concept HasSections = requires(B const b, typename B::Point p, std::span<double 
   { b.section_forces(p, q) } -> std::convertible_to<Vec6>;
 };
 
-/// (y, z) of a point off the axis [m]; zero where its type has none.
+/// (y, z) of the point p off the axis [m]; zero where its type has none.
 template <class P>
 Vec2 off_axis(P const& p) {
   Vec2 x = Vec2::Zero();
@@ -30,13 +30,13 @@ Vec2 off_axis(P const& p) {
   return x;
 }
 
-/// Strain of the fibre (y, z) of a section that stays plane: ε − y κ_z + z κ_y.
+/// Strain of the fibre (y, z) [m] of a section that stays plane, `strains` (Γ, K): ε − y κ_z + z κ_y.
 inline double fibre_strain(Vec6 const& strains, double y, double z) {
   return strains[0] - y * strains[5] + z * strains[4];
 }
 
-/// Axial stress of that fibre, N/A − y M_z/I_z + z M_y/I_y [N/m²]. \throws InvalidInput for a bar without section and
-/// material.
+/// Axial stress of that fibre under `forces` (N, M), N/A − y M_z/I_z + z M_y/I_y [N/m²]. \throws InvalidInput for a bar
+/// without section and material.
 template <class = void>
 double fibre_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   if (!bar.material)

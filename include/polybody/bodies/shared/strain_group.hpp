@@ -124,7 +124,7 @@ class StrainGroup : public StrainPoints<Law> {
         }
     }
   }
-  /// `block` += the group's share of K̂_vw.
+  /// `block` += the group's share of K̂_vw, for nodal vectors v and w.
   template <KernelScalar T>
   void add_block(int v, int w, Prepared<T> const& k, typename P::template Block<T>& block) const
     requires quadratic
@@ -173,7 +173,7 @@ class StrainGroup : public StrainPoints<Law> {
       Law::template add_hessian<T>(at.p, stress, h);
     }
   }
-  /// `block` += the group's share of K̂_vw.
+  /// `block` += the group's share of K̂_vw, for nodal vectors v and w.
   template <KernelScalar T>
   void add_block(int v, int w, Prepared<T> const& hs, typename P::template Block<T>& block) const
     requires(!quadratic)

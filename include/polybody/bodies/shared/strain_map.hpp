@@ -35,7 +35,7 @@ class StrainMap {
     else
       return 0;
   }();
-  /// Whether ê_v is the difference e_v − e_0.
+  /// Whether ê_v, of nodal vector v, is the difference e_v − e_0.
   static constexpr bool is_difference(int v) { return difference > 0 && v == difference; }
 
   /// f(i, j) for the entries of a block.
@@ -56,7 +56,7 @@ class StrainMap {
     explicit Coordinates(Vec<T, n> const& x) : e(x) {
       for (int i = 0; i < d; ++i) step[i] = difference > 0 ? x[d * difference + i] - x[i] : x[i];
     }
-    /// Entry i of ê_v.
+    /// Entry i of ê_v, of nodal vector v.
     T const& operator()(int v, int i) const { return is_difference(v) ? step[i] : e[d * v + i]; }
   };
 
@@ -74,7 +74,7 @@ class StrainMap {
     }
     return p;
   }
-  /// f −= Pᵀ s.
+  /// f −= Pᵀ s; what the difference gets goes to `step`.
   template <class T, int n>
   static void subtract_pulled(Factors const& factors, Vec<T, np> const& s, Vec<T, n>& f, Vec<T, d>& step) {
 #pragma GCC unroll 8
@@ -85,7 +85,7 @@ class StrainMap {
         if (v >= 0) (is_difference(v) ? step[k % d] : f[d * v + k % d]) -= s[k] * factors(k / d, j);
       }
   }
-  /// f += what the difference got.
+  /// f += what the difference got, `step`.
   template <class T, int n>
   static void spread(Vec<T, d> const& step, Vec<T, n>& f) {
     if constexpr (difference > 0)
@@ -115,7 +115,7 @@ class StrainMap {
       }
   }
 
-  /// Row `row` of B P by the vectors that all shapes read.
+  /// Row `row` of B P, B being b, by the vectors that all shapes read.
   template <class T, int m>
   static void pull_row(Factors const& factors, Mat<T, m, np> const& b, int row, Vec<T, d * reach>& out) {
     for (int j = 0; j < reach; ++j)
@@ -167,7 +167,7 @@ class StrainMap {
       }
     return out;
   }();
-  /// Whether a shape reads e_v.
+  /// Whether a shape reads nodal vector v.
   static constexpr bool reads(int v) { return v < vectors && table.first[v][v] < table.last[v][v]; }
 };
 

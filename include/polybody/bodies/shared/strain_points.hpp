@@ -38,7 +38,7 @@ class StrainPoints {
     damped_ = !time_.isZero(0.0);
     free_.fill(Strains::Zero());
   }
-  /// Weight [m], factors of P, and strains free of stress of point g.
+  /// The `weight` [m], factors of P, and strains free of stress of point g.
   void set_point(int g, double weight, Map const& map, Strains const& free = Strains::Zero()) {
     weights_[g] = weight;
     maps_[g] = map;
@@ -75,7 +75,7 @@ class StrainPoints {
   bool damped() const { return damped_; }                ///< whether a τ is not zero
   bool operator==(StrainPoints const&) const = default;  ///< whether all numbers are the same
 
-  /// The energy stored [J].
+  /// The energy stored at the element's coordinates x [J].
   template <int n>
   double energy(Vec<double, n> const& x) const {
     double u = 0.0;
@@ -132,8 +132,8 @@ class StrainPoints {
     P::spread(step, f);
   }
 
-  /// k += ck (−∂f/∂x1) of `add_mean_force`, not symmetric, with the strains' gradients B̄ and H̄ of the middle for the
-  /// secants:
+  /// k += ck (−∂f/∂x1) of `add_mean_force` from x0 to x1, not symmetric, with the strains' gradients B̄ and H̄ of the
+  /// middle for the secants:
   ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
   template <int n>
   void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, double ck,
