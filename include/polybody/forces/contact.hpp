@@ -112,7 +112,7 @@ struct Contact {
     geometry.template for_each_point<T>(f[0], f[1], detail::PointVisitor<T>(at_point));
   }
 
-  /// The force on a at a point.
+  /// The force on a at a point [N] where a moves with v (3) against b [m/s] and the normal force is n [N].
   template <StateScalar T>
   Vec<T, 3> force_at(ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) const {
     using std::sqrt;
@@ -149,10 +149,10 @@ struct Contact {
     return w;
   }
 
-  /// Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J at each point, J = [1, −ρ×], ρ from the marker to the point, N′ the normal force's
-  /// slope. F′ is the chord of the friction, μ N/√(v² + v_s²), which is never less than its slope: so Newton's method
-  /// approaches v = 0 from one side and does not jump across. The turning of n, the change of F_t with N, and handovers
-  /// are left out.
+  /// Into `of_a`, `of_b`: Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J at each point, J = [1, −ρ×], ρ from the marker to the point, N′
+  /// the normal force's slope. F′ is the chord of the friction, μ N/√(v² + v_s²), which is never less than its slope:
+  /// so Newton's method approaches v = 0 from one side and does not jump across. The turning of n, the change of F_t
+  /// with N, and handovers are left out.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
                      Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {

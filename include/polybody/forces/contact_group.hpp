@@ -57,7 +57,7 @@ class ContactGroup {
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
     for_each_pair(frame, visit, 0, many_);
   }
-  /// The same for the markers [begin, end) of the many.
+  /// The same for the markers [begin, end) of the many; frame(i) is that of marker i, visit(i, j, law) takes a pair.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
     for (Index i = begin; i < end; ++i)

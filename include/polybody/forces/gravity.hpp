@@ -8,9 +8,9 @@ struct Gravity {
   Vec3 g = Vec3::Zero();  ///< (3) world axes [m/s²]
 
   Gravity() = default;
-  /// \throws InvalidInput when a component is not finite.
+  /// From components along world axes [m/s²]: x, y, z. \throws InvalidInput when a component is not finite.
   Gravity(double x, double y, double z) : Gravity(Vec3(x, y, z)) {}
-  explicit Gravity(Vec3 const& field) : g(field) { require_finite(g, "Gravity"); }  ///< g (3), world axes [m/s²]
+  explicit Gravity(Vec3 const& field) : g(field) { require_finite(g, "Gravity"); }  ///< `field` (3), world axes [m/s²]
 };
 
 }  // namespace polybody

@@ -42,9 +42,9 @@ struct SpringDamperContact {
   double damping = 0.0;        ///< c [N s/m]
   double onset = 0.0;          ///< [m]
 
-  /// The damper with which a body of `mass` [kg] that comes at v leaves at e v. With ζ = c/(2√(km)) = cos θ it leaves,
-  /// where N = 0, after 2θ of its damped oscillation, so that e = exp(−2θ cot θ); for ζ = cosh η > 1, e = exp(−2η coth
-  /// η). [derived; Schwager & Pöschel 2007 have the same in other words]
+  /// The damper with which a body of `mass` [kg] on a spring of `stiffness` [N/m] that comes at v leaves at e v. With ζ
+  /// = c/(2√(km)) = cos θ it leaves, where N = 0, after 2θ of its damped oscillation, so that e = exp(−2θ cot θ); for ζ
+  /// = cosh η > 1, e = exp(−2η coth η). [derived; Schwager & Pöschel 2007 have the same in other words]
   static SpringDamperContact with_restitution(double stiffness, double mass, double e) {
     require_positive(stiffness, "SpringDamperContact: the stiffness");
     require_positive(mass, "SpringDamperContact: the mass");
@@ -67,19 +67,21 @@ struct SpringDamperContact {
     require_not_negative(damping, name, ": the contact damping");
     require_not_negative(onset, name, ": the onset of the contact damping");
   }
+  /// The force N ≥ 0 [N] at depth d [m] that grows at `rate` [m/s].
   template <StateScalar T>
   T force(T const& d, T const& rate) const {
     T const c = value_of(d) < onset ? T(d * (damping / onset)) : T(damping);
     T const n = d * stiffness.value + c * rate;
     return value_of(n) > 0.0 ? n : T(0.0);
   }
-  /// Where the damper comes in as the body leaves, that falls with d; the slope leaves it out.
+  /// ck ∂N/∂d + cd ∂N/∂rate. Where the damper comes in as the body leaves, that falls with d; the slope leaves it out.
   double slope(double d, double rate, double ck, double cd) const {
     bool const begins = d < onset;
     double const c = begins ? damping * d / onset : damping;
     if (stiffness * d + c * rate <= 0.0) return 0.0;
     return ck * (stiffness + (begins && rate > 0.0 ? damping * rate / onset : 0.0)) + cd * c;
   }
+  /// The energy stored at depth d [m], without damping [J].
   template <StateScalar T>
   T potential(T const& d) const {
     return d * d * (0.5 * stiffness);
@@ -97,12 +99,15 @@ struct HertzContact {
     require_positive(modulus, name, ": the contact modulus");
     require_positive(radius, name, ": the contact radius");
   }
+  /// The force N ≥ 0 [N] at depth d [m].
   template <StateScalar T>
   T force(T const& d, T const&) const {
     using std::sqrt;
     return d * sqrt(d) * stiffness();
   }
+  /// ck ∂N/∂d at depth d [m].
   double slope(double d, double, double ck, double) const { return ck * 1.5 * stiffness() * std::sqrt(d); }
+  /// The energy stored at depth d [m] [J].
   template <StateScalar T>
   T potential(T const& d) const {
     using std::sqrt;
@@ -116,8 +121,8 @@ struct HuntCrossleyContact {
   double exponent = 1.5;       ///< n, a ratio
   Required<double> damping;    ///< D [s/m]
 
-  /// The damping with which a body that comes at `speed` v leaves at e v. From m v dv/dd = −K dⁿ(1 + D v), whatever m,
-  /// K and n,
+  /// The damping with which a body that comes at `speed` v [m/s] leaves at e v, with K = `stiffness`
+  /// [N/mⁿ] and n = `exponent` as given. From m v dv/dd = −K dⁿ(1 + D v), whatever m, K and n,
   ///   D v − ln(1 + D v) = −e D v − ln(1 − e D v).
   static HuntCrossleyContact with_restitution(double stiffness, double exponent, double e, double speed) {
     detail::require_restitution(e, "HuntCrossleyContact");
@@ -134,16 +139,19 @@ struct HuntCrossleyContact {
     if (!(exponent >= 1.0) || !std::isfinite(exponent))
       throw InvalidInput{name, ": the exponent of the overlap must be 1 or more, but is ", exponent, "."};
   }
+  /// The force N ≥ 0 [N] at depth d [m] that grows at `rate` [m/s].
   template <StateScalar T>
   T force(T const& d, T const& rate) const {
     using std::pow;
     T const factor = rate * damping.value + 1.0;
     return value_of(factor) > 0.0 ? T(pow(d, exponent) * factor * stiffness.value) : T(0.0);
   }
+  /// ck ∂N/∂d + cd ∂N/∂rate.
   double slope(double d, double rate, double ck, double cd) const {
     double const factor = 1.0 + damping * rate, power = stiffness * std::pow(d, exponent - 1.0);
     return factor > 0.0 ? power * (ck * exponent * factor + cd * damping * d) : 0.0;
   }
+  /// The energy stored at depth d [m], without damping [J].
   template <StateScalar T>
   T potential(T const& d) const {
     using std::pow;

@@ -23,7 +23,7 @@ struct UserForce {
   }
 };
 
-/// A force of N markers from a lambda.
+/// A force of N markers from a lambda `law`: law(frames, t) gives their wrenches.
 template <int N, class Law>
 UserForce<N, Law> user_force(Law law) {
   return {std::move(law)};
@@ -55,7 +55,8 @@ struct UserForceWithStates {
   }
 };
 
-/// A force of N markers with S first-order states from two lambdas.
+/// A force of N markers with S first-order states from two lambdas: law(frames, z, t) gives wrenches, rates(frames, z,
+/// t) ż.
 template <int N, int S, class Law, class Rates>
 UserForceWithStates<N, S, Law, Rates> user_force(Law law, Rates rates) {
   return {std::move(law), std::move(rates)};

@@ -84,8 +84,8 @@ void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda
   for (int i = 0; i < 2; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, 0), each[i], k);
 }
 
-/// Writes g = u·d − p θ, u fixed in a, θ the turn of b about a₃: one slide and one turn coupled, p [m/rad]. Full turns
-/// are counted by the slide, g = −p wrap(θ − u·d/p), so |g| ≤ π |p|.
+/// Writes to `row` g = u·d − p θ, u (3) fixed in a, θ the turn of b about a₃: one slide and one turn coupled, p
+/// [m/rad]. Full turns are counted by the slide, g = −p wrap(θ − u·d/p), so |g| ≤ π |p|.
 template <int m, StateScalar T>
 void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
   no_slide<m, T>(u, a, b, gap, row);
@@ -97,13 +97,13 @@ void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> co
   }
 }
 
-/// γ of `slide_and_turn`.
+/// γ of `slide_and_turn` along u (3) with p [m/rad].
 template <StateScalar T>
 T slide_and_turn_gamma(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b) {
   return no_slide_gamma<T>(u, a, b) - p * turn_gamma<T>(turned(a, b), a, b);
 }
 
-/// Adds the wrench gradient of `slide_and_turn` under λ to k.
+/// Adds the wrench gradient of `slide_and_turn` along u (3) with p [m/rad] under λ to k.
 template <class = void>  // compiled where it is used
 void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b, double lambda,
                              WrenchGradient& k) {

@@ -11,11 +11,11 @@ namespace polybody {
 class JointAxis {
  public:
   JointAxis() = default;  ///< left out
-  /// From a vector (3). Its length is checked where the joint is connected, not here.
+  /// From the vector v (3). Its length is checked where the joint is connected, not here.
   JointAxis(Vec3 const& v) : value_(v), given_(true) {}  // NOLINT: reads as a vector
-  /// From three components.
+  /// From three components: x, y, z.
   JointAxis(double x, double y, double z) : value_(x, y, z), given_(true) {}  // NOLINT
-  /// From an expression that makes a vector (3).
+  /// From an expression `x` that makes a vector (3).
   template <class X>
     requires std::is_class_v<X> && (!std::is_base_of_v<JointAxis, X>) && std::is_convertible_v<X const&, Vec3>
   JointAxis(X const& x) : value_(x), given_(true) {}  // NOLINT: from an expression that makes a vector
@@ -40,7 +40,7 @@ class JointAxis {
 /// The axis of a turn that serves the plane, too. There it is the plane's normal, which needs no telling.
 class TurnAxis : public JointAxis {
  public:
-  using JointAxis::JointAxis;  ///< as those of `JointAxis`
+  using JointAxis::JointAxis;  ///< from a vector v, from x, y, z, as `JointAxis`
 };
 
 /// A geometry that turns about one.

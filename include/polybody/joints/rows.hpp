@@ -22,7 +22,7 @@ void coincident(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row = 
   }
 }
 
-/// Writes g = u·w: ġ = (u × w)·(ω_a − ω_b).
+/// Writes g = u·w to `row`: ġ = (u × w)·(ω_a − ω_b).
 template <int m, StateScalar T>
 void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, Gap<m, T>& gap, int row) {
   Vec<T, 3> const c = cross(u, w);
@@ -40,7 +40,7 @@ inline T perpendicular_gamma(Vec<T, 3> const& u, Vec<T, 3> const& w, Frame<T> co
   return 2.0 * dot(ud, wd) + dot(udd, w) + dot(u, wdd);
 }
 
-/// Writes g = u·d: ġ = u·(v_b − v_a) + (u × d)·ω_a.
+/// Writes g = u·d to `row`: ġ = u·(v_b − v_a) + (u × d)·ω_a.
 template <int m, StateScalar T>
 void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
   Vec<T, 3> const d = difference(b.r, a.r), c = cross(u, d);
@@ -59,7 +59,7 @@ inline T no_slide_gamma(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b
   return 2.0 * dot(ud, rate) + dot(udd, d);
 }
 
-/// Writes the three rows a₁·b₂, a₂·b₃, a₃·b₁ that hold the axes of b parallel to those of a.
+/// Writes the three rows from `row` on, a₁·b₂, a₂·b₃, a₃·b₁, that hold the axes of b parallel to those of a.
 template <int m, StateScalar T>
 void parallel(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
   for (int i = 0; i < 3; ++i) perpendicular(axis_of(a, i), axis_of(b, (i + 1) % 3), gap, row + i);
@@ -73,7 +73,7 @@ Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
   return gamma;
 }
 
-/// Writes a₁·b₃ and a₂·b₃, which hold the third axes parallel.
+/// Writes a₁·b₃ and a₂·b₃ from `row` on, which hold the third axes parallel.
 template <int m, StateScalar T>
 void same_direction(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
   for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 2), gap, row + i);
@@ -86,7 +86,7 @@ Vec<T, 2> same_direction_gamma(Frame<T> const& a, Frame<T> const& b) {
   return {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)};
 }
 
-/// Writes a₁·d and a₂·d, which hold the point of b on the third axis of a.
+/// Writes a₁·d and a₂·d from `row` on, which hold the point of b on the third axis of a.
 template <int m, StateScalar T>
 void on_axis(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
   for (int i = 0; i < 2; ++i) no_slide(axis_of(a, i), a, b, gap, row + i);
@@ -98,8 +98,8 @@ Vec<T, 2> on_axis_gamma(Frame<T> const& a, Frame<T> const& b) {
   return {no_slide_gamma(axis_of(a, 0), a, b), no_slide_gamma(axis_of(a, 1), a, b)};
 }
 
-/// Writes g = |d| − length: ġ = e·(v_b − v_a), e = d/|d|. Points that coincide have no direction; x stands in for it,
-/// so that `assemble` can part them.
+/// Writes g = |d| − length to `row`: ġ = e·(v_b − v_a), e = d/|d|. Points that coincide have no direction; x stands in
+/// for it, so that `assemble` can part them.
 template <int m, StateScalar T>
 void distance(Frame<T> const& a, Frame<T> const& b, double length, Gap<m, T>& gap, int row = 0) {
   using std::sqrt;
@@ -190,7 +190,7 @@ void distance_gradient(Frame<double> const& a, Frame<double> const& b, double la
     }
 }
 
-/// The matrix with these columns.
+/// The matrix with the columns x, y, z (3).
 template <class = void>  // compiled where it is used
 Mat3 columns(Vec3 const& x, Vec3 const& y, Vec3 const& z) {
   Mat3 m;

@@ -69,6 +69,7 @@ struct Bushing {
     detail::require_semidefinite(damping.value, what + ": the bushing's damping");
   }
 
+  /// λ = K x + C ẋ (6) [N], [N m] at displacements x (6) [m], [rad] and their `rate` ẋ.
   template <int m, StateScalar T>
     requires(m == 6)
   Vec<T, m> multiplier(Vec<T, m> const& x, Vec<T, m> const& rate) const {

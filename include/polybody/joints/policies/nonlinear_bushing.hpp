@@ -25,11 +25,12 @@ struct LinearLaw {
     require_not_negative(stiffness, what, ": the stiffness");
     require_not_negative(damping, what, ": the damping");
   }
-  /// The force k x + c ẋ [N], or the moment [N m].
+  /// The force k x + c ẋ [N], or the moment [N m], at x [m] or [rad] and its `rate` ẋ.
   template <StateScalar T>
   T operator()(T const& x, T const& rate) const {
     return x * stiffness.value + rate * damping.value;
   }
+  /// The energy stored at x [m] or [rad] [J].
   double potential(double x) const { return 0.5 * stiffness * x * x; }
 };
 
@@ -40,11 +41,12 @@ struct TabulatedLaw {
 
   /// \throws InvalidInput unless c ≥ 0.
   void check(std::string const& what) const { require_not_negative(damping, what, ": the damping"); }
-  /// The force f(x) + c ẋ [N], or the moment [N m].
+  /// The force f(x) + c ẋ [N], or the moment [N m], at x [m] or [rad] and its `rate` ẋ.
   template <StateScalar T>
   T operator()(T const& x, T const& rate) const {
     return force(x) + rate * damping.value;
   }
+  /// The energy stored at x [m] or [rad] [J].
   double potential(double x) const { return force.integral(x); }
 };
 
@@ -74,6 +76,7 @@ struct NonlinearBushing {
     });
   }
 
+  /// The forces and moments f (6) [N], [N m] at displacements x (6) [m], [rad] and their `rate` ẋ.
   template <int m, StateScalar T>
     requires(m == 6)
   Vec<T, m> multiplier(Vec<T, m> const& x, Vec<T, m> const& rate) const {
@@ -81,7 +84,7 @@ struct NonlinearBushing {
     for_each([&](int i, auto const& law) { lambda[i] = law(x[i], rate[i]); });
     return lambda;
   }
-  /// ck ∂f/∂x + cd ∂f/∂ẋ (6×6): the derivative along (ck, cd).
+  /// ck ∂f/∂x + cd ∂f/∂ẋ (6×6), ẋ being `rate`: the derivative along (ck, cd).
   template <int m, class D = Dual<1>>
     requires(m == 6)
   Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const& x,
@@ -93,7 +96,7 @@ struct NonlinearBushing {
     });
     return slope;
   }
-  /// The energy of the laws that have a potential [J].
+  /// The energy at x (6) of the laws that have a potential [J].
   template <int m>
     requires(m == 6)
   double potential(Vec<double, m> const& x) const {

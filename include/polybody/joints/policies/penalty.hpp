@@ -31,7 +31,7 @@ struct Penalty {
     for (int i = 0; i < m; ++i) slope.diagonal()[i] = ck * stiffness + cd * damping;
     return slope;
   }
-  /// The energy that the spring stores [J].
+  /// The energy that the spring stores at the gaps g [J].
   template <int m>
   double potential(Vec<double, m> const& g) const {
     double sum = 0.0;
@@ -73,7 +73,7 @@ struct PenaltyPerRow {
     for (int i = 0; i < m; ++i) slope.diagonal()[i] = ck * stiffness.value[i] + cd * damping.value[i];
     return slope;
   }
-  /// The energy that the springs store [J].
+  /// The energy that the springs store at the gaps g [J].
   template <int m>
     requires(m == n)
   double potential(Vec<double, m> const& g) const {
