@@ -154,7 +154,8 @@ void compare_with_first(Comparison& c) {
 
 }  // namespace detail
 
-/// Runs the case under each formulation (given as values: a policy without default numbers needs its own).
+/// Runs the case under each of `formulations` (values: a policy without default numbers needs its own);
+/// make_case(formulation) gives it.
 /// \throws InvalidInput for outputs that are not the same for all, and what the case throws; ComparisonFailed, after
 /// the other runs and with their results, where `simulate` or an output throws an `Error`.
 template <class C, class... Fs>
@@ -168,7 +169,7 @@ Comparison compare(C const& make_case, Fs const&... formulations) {
   return c;
 }
 
-/// The same for formulations whose numbers all have defaults: compare<F1, F2, …>(case).
+/// The same for formulations whose numbers all have defaults: compare<F1, F2, …>(make_case).
 template <class... Fs, class C>
   requires(sizeof...(Fs) > 0 && (CaseFor<C, Fs> && ...))
 Comparison compare(C const& make_case) {

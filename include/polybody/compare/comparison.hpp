@@ -40,7 +40,7 @@ struct Comparison {
 /// Runs of a comparison failed; the message names each with its reason.
 class ComparisonFailed : public Error {
  public:
-  /// `others` are the runs that came to their end.
+  /// `others` are the runs that came to their end; `message` says what stopped the rest.
   ComparisonFailed(std::string const& message, Comparison others) : Error(message), finished(std::move(others)) {}
 
   Comparison finished;  ///< the runs that came to their end

@@ -43,7 +43,8 @@ struct Formulation {
   P policy = {};      ///< for the joints of the case
   I integrator = {};  ///< with its options
 
-  /// The body made `from` what it is given, such as a bar, and then the number of elements of a `Meshed` one.
+  /// The body made `from` what it is given, `shape`, such as a bar, and then the number of elements of a `Meshed` one,
+  /// and `others`.
   template <class Shape, class... Others>
   static BodyType body(Shape const& shape, Others&&... others) {
     if constexpr (requires { detail::MeshOf<B>::elements; })

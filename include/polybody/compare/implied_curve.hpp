@@ -44,8 +44,9 @@ SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAl
   return s;
 }
 
-/// Points of the implied curve of a field s ↦ R(s), at s = 0, length/pieces, ...: five Gauss points in each piece. The
-/// field may have corners between pieces. \throws InvalidInput for a length that is not positive, or pieces < 1.
+/// Points of the implied curve of a field `rotation`, s ↦ R(s), from `start` [m], at s = 0, length/pieces, ...: five
+/// Gauss points in each piece. The field may have corners between pieces. \throws InvalidInput for a length that is not
+/// positive, or pieces < 1.
 template <class Field>
   requires std::is_invocable_r_v<Mat3, Field&, double>
 std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, Vec3 const& start = Vec3::Zero()) {

@@ -41,7 +41,7 @@ struct OutputReference {
 
   /// The value at the end of the run.
   OutputReference(double end) : at([end](double) { return end; }), only_at_end(true) {}
-  /// The value at every time of the run.
+  /// The value y(t) at every time of the run.
   template <class F>
     requires std::is_invocable_r_v<double, F const&, double>
   OutputReference(F const& y) : at(y) {}
@@ -72,9 +72,9 @@ void set_accuracy(I& integrator, RunOptions& options, double setting) {
 
 }  // namespace detail
 
-/// Records output number `output` of the case in a run at the given step or tolerance, as a reference for other
-/// integrators. Between its times it is as good as h⁴ d⁴y/dt⁴/43: give a short step. An integrator that controls its
-/// step takes at least 4000.
+/// Records output number `output` of the case that make_case(formulation) gives in a run at the `setting`, a step [s]
+/// or a tolerance, as a reference for other integrators. Between its times it is as good as h⁴ d⁴y/dt⁴/43: give a short
+/// step. An integrator that controls its step takes at least 4000.
 template <class C, class F>
   requires CaseFor<C, F>
 RecordedOutput reference_run(C const& make_case, F const& formulation, double setting, std::size_t output = 0) {
@@ -95,8 +95,8 @@ RecordedOutput reference_run(C const& make_case, F const& formulation, double se
   return out;
 }
 
-/// Runs the case once for each setting: the step, or the relative tolerance of an integrator that controls its step.
-/// The error of output y is, with the states of the run at t_k and its end T,
+/// Runs the case that make_case(formulation) gives once for each setting: the step, or the relative tolerance of an
+/// integrator that controls its step. The error of output y is, with the states of the run at t_k and its end T,
 ///   max_k |y(t_k) − y_ref(t_k)|  for a function of time or a `reference_run`,   |y(T) − y_ref|  for a number.
 /// A step that fails, such as one that is too long, ends that run only; `failure` holds the message.
 /// \throws InvalidInput for settings that are not positive, or where there are none, and an output that the case does

@@ -126,7 +126,7 @@ inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', '
 
 }  // namespace detail
 
-/// Writes a snapshot to a file, which replaces an older one when it is complete:
+/// Writes a snapshot to the file `name`, which replaces an older one when it is complete:
 ///   if (run.report().steps % 1000 == 0) write_checkpoint("out/run.checkpoint", run.snapshot());
 /// and later, in another process,
 ///   auto run = resume(model, x, GeneralizedAlpha{}, options, read_checkpoint("out/run.checkpoint"));

@@ -169,7 +169,7 @@ void draw_panels(std::vector<Figure> const& figures, int columns, std::filesyste
 
 }  // namespace detail
 
-/// The table that `<<` prints, in full precision: one row a quantity, one column a run.
+/// To `file`, the table that `<<` prints, in full precision: one row a quantity, one column a run.
 /// Throws InvalidInput for a comparison without runs and for numbers that are not finite, IoError as `Csv` does.
 template <class = void>
 void write_csv(Comparison const& c, std::filesystem::path const& file) {
@@ -189,8 +189,8 @@ void write_csv(Comparison const& c, std::filesystem::path const& file) {
   csv.close();
 }
 
-/// The histories of each run in a file of its own, history_<number>_<name>.csv: the column "t [s]", then those of
-/// `histories`. Returns the files in the order of the runs. Throws as `write_csv`.
+/// The histories of each run in a file of its own in `folder`, history_<number>_<name>.csv: the column "t [s]", then
+/// those of `histories`. Returns the files in the order of the runs. Throws as `write_csv`.
 template <class = void>
 std::vector<std::filesystem::path> write_histories(Comparison const& c, std::filesystem::path const& folder) {
   detail::check(c, "write_histories");
@@ -213,11 +213,11 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
   return written;
 }
 
-/// Draws all runs over time: `outputs` (with what the others are off the first beside each, those that differ most
-/// first, six panels a page: `outputs`, `outputs_2`, …), `violations` (of positions, speeds and accelerations),
-/// `joint_force` (of the joint that holds most) and `energies`; and `cost`, how far each run is off the first over its
-/// time of computing. Each comes as .dat, .gp and, where gnuplot is there and `draw` is set, .png. There is no figure
-/// without anything to show. Returns the files. Throws as `write_csv`, and IoError where gnuplot fails.
+/// Draws all runs over time, in `folder`: `outputs` (with what the others are off the first beside each, those that
+/// differ most first, six panels a page: `outputs`, `outputs_2`, …), `violations` (of positions, speeds and
+/// accelerations), `joint_force` (of the joint that holds most) and `energies`; and `cost`, how far each run is off the
+/// first over its time of computing. Each comes as .dat, .gp and, where gnuplot is there and `draw` is set, .png. There
+/// is no figure without anything to show. Returns the files. Throws as `write_csv`, and IoError where gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder,
                                                  bool draw = true) {
@@ -247,7 +247,7 @@ std::vector<std::filesystem::path> write_figures(Comparison const& c, std::files
   return written;
 }
 
-/// All of the above in `folder`: table.csv, histories and figures. Returns the files.
+/// All of the above in `folder`: table.csv, histories and figures, as .png too if `draw`. Returns the files.
 template <class = void>
 std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesystem::path const& folder,
                                                 bool draw = true) {
@@ -259,7 +259,7 @@ std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesy
   return written;
 }
 
-/// All points that came to their end, one row each. Throws IoError as `Csv` does.
+/// All points that came to their end to `file`, one row each. Throws IoError as `Csv` does.
 template <class = void>
 void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
   Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"}, Csv::Keeps::whole_table);

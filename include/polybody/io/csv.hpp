@@ -38,24 +38,24 @@ class Csv {
     file_.write(line_);
   }
 
-  /// Adds one row, a number for each column. Throws InvalidInput, and writes nothing, if the count
-  /// differs or a number is not finite; IoError if the system refuses the bytes.
+  /// Adds one row, `values`, a number for each column. Throws InvalidInput, and writes nothing, if the count differs or
+  /// a number is not finite; IoError if the system refuses the bytes.
   void row(std::span<double const> values) {
     line_.clear();
     write_row(values, 0);
   }
 
-  /// The same with a text in the first column: `row("mass [kg]", numbers)`. `read_csv` reads numbers
-  /// only and refuses such a table.
+  /// The same with a text before the `values`, in the first column: `row("mass [kg]", numbers)`. `read_csv` reads
+  /// numbers only and refuses such a table.
   void row(std::string_view text, std::span<double const> values) {
     line_ = (text.empty() ? "" : quoted(std::string(text))) + ',';
     write_row(values, 1);
   }
 
-  /// The same for `row({t, x, y})`.
+  /// The same for `values` in braces, `row({t, x, y})`.
   void row(std::initializer_list<double> values) { row(std::span<double const>(values.begin(), values.size())); }
 
-  /// The same for `row(t, x, y)`.
+  /// The same for `values` one by one, `row(t, x, y)`.
   template <std::convertible_to<double>... Numbers>
   void row(Numbers const&... values) {
     row({static_cast<double>(values)...});

@@ -29,7 +29,7 @@ class FileInPlace {
     if (!file_) fail("cannot be created", {errno, std::generic_category()});
   }
 
-  /// \throws IoError, as the others.
+  /// Writes `bytes`. \throws IoError, as the others.
   void write(std::string_view bytes) {
     errno = 0;
     require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());

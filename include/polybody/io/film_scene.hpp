@@ -94,7 +94,7 @@ struct FilmArrows {
 ///   }
 class FilmScene {
  public:
-  /// Empty; see `Film::scene`.
+  /// Empty, with so many `frames_per_second` [1/s]; see `Film::scene`.
   FilmScene(std::string name, double frames_per_second) : name_(std::move(name)), interval_(1.0 / frames_per_second) {}
 
   /// \throws InvalidInput after the first frame, or for a scalar that the scene has.
@@ -106,7 +106,8 @@ class FilmScene {
     scalars_.push_back(std::move(scalar));
   }
 
-  /// Arrows whose vectors have one unit, and one scale in the picture. \param shown or hidden until they are asked for
+  /// Arrows under this `label` whose vectors have one unit, and one scale in the picture. \param shown or hidden until
+  /// they are asked for
   /// \throws InvalidInput after the first frame.
   FilmArrows arrows(std::string label, std::string unit, bool shown = true) {
     require_start(label);
@@ -145,7 +146,8 @@ class FilmScene {
     for (int i = 0; i < 3; ++i) arrows.places.push_back(float(place[i])), arrows.vectors.push_back(float(vector[i]));
   }
 
-  /// A point of the history `label`, at any time. Scenes whose histories have one label share a plot.
+  /// A point of the history `label`, `value` in `unit`, at any time. Scenes whose histories have one label share a
+  /// plot.
   /// \throws InvalidInput unless its times rise; NonFinite.
   void plot(std::string const& label, std::string const& unit, double t, double value) {
     if (!std::isfinite(t) || !std::isfinite(value))

@@ -153,7 +153,7 @@ Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesys
   return Drawn::png;
 }
 
-/// One figure; see `write_panels`.
+/// One figure, to `stem`.dat, .gp and, if `draw`, .png; see `write_panels`.
 template <class = void>
 Drawn write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
   return write_panels({figure}, 1, stem, draw);

@@ -42,12 +42,12 @@ class Progress {
  public:
   using Clock = std::function<double()>;  ///< Seconds from any origin, never falling.
 
-  /// From `start` to `end` (either may be the greater), in the unit of `update`, the simulated time
+  /// Under this `label`, from `start` to `end` (either may be the greater), in the unit of `update`, the simulated time
   /// for one. Throws InvalidInput if either is not finite.
   Progress(double start, double end, std::string label = "")
       : Progress(start, end, std::move(label), std::cerr, stderr_is_terminal(), steady_seconds) {}
 
-  /// The same on any stream, with any clock; draws only if `terminal`.
+  /// The same from `start` to `end`, under its `label`, on any stream, with any clock; draws only if `terminal`.
   Progress(double start, double end, std::string label, std::ostream& out, bool terminal, Clock clock = steady_seconds)
       : start_(start),
         end_(end),
@@ -162,7 +162,7 @@ std::function<void(RunProgress const&)> progress_bar(Make make) {
     run.done ? bar->finish() : bar->update(run.now);
   };
 }
-/// The same on stderr, where that is a terminal.
+/// The same under its `label` on stderr, where that is a terminal.
 inline std::function<void(RunProgress const&)> progress_bar(std::string label = "") {
   return progress_bar([label = std::move(label)](RunProgress const& run) {
     return std::make_unique<Progress>(run.start, run.until, label);

@@ -93,7 +93,7 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
   return table;
 }
 
-/// Writes a table; `read_csv` reads it back to the same doubles. Throws InvalidInput and IoError as `Csv`.
+/// Writes a table to `file`; `read_csv` reads it back to the same doubles. Throws InvalidInput and IoError as `Csv`.
 template <class = void>
 void write_csv(Table const& table, std::filesystem::path const& file) {
   Csv csv(file, table.columns, Csv::Keeps::whole_table);

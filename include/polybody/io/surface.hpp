@@ -17,7 +17,7 @@ struct Surface {
   std::vector<int> corners;  ///< places in `points`
   std::vector<int> ends;     ///< one past each polygon's last corner
 
-  /// One more polygon, whose corners are these places in `points`.
+  /// One more polygon, whose corners are the places `of_points` in `points`.
   void add_polygon(std::vector<int> const& of_points) {
     corners.insert(corners.end(), of_points.begin(), of_points.end());
     ends.push_back(int(corners.size()));
@@ -57,8 +57,8 @@ std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
   return points;
 }
 
-/// The surface through rings of points, each with as many as the first and counter-clockwise about the direction of the
-/// sweep, closed by the first and the last ring. Point i of ring k is i + k·(points of a ring).
+/// The surface through rings of points, each with as many, `points_of_ring`, as the first and counter-clockwise about
+/// the direction of the sweep, closed by the first and the last ring. Point i of ring k is i + k·(points of a ring).
 template <class = void>
 Surface swept(int rings, int points_of_ring) {
   Surface s;
@@ -78,7 +78,8 @@ Surface swept(int rings, int points_of_ring) {
   return s;
 }
 
-/// A box with its middle at the origin. \throws InvalidInput unless the sizes are positive.
+/// A box of this `size` (3) along the axes [m] with its middle at the origin. \throws InvalidInput unless the sizes are
+/// positive.
 template <class = void>
 Surface box(Vec3 const& size) {
   for (int i = 0; i < 3; ++i) require_positive(size[i], "box: the size");
@@ -90,8 +91,8 @@ Surface box(Vec3 const& size) {
   return s;
 }
 
-/// A prism with so many sides in place of the cylinder, of its volume; middle at the origin. \throws InvalidInput
-/// unless the sizes are positive, `axis` is a unit vector and there are three sides.
+/// A prism with so many sides in place of the cylinder of `radius` and `length` [m], of its volume; middle at the
+/// origin. \throws InvalidInput unless the sizes are positive, `axis` is a unit vector and there are three sides.
 template <class T = double>  // compiled where it is used
 Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(), int sides = 24) {
   require_positive(radius, "cylinder: the radius");

@@ -52,8 +52,9 @@ class Visual {
   template <class B>
   void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape");
 
-  /// The bar that the body was made from, in so many pieces along its length. Points of a section lie where the body's
-  /// own points do; sections of cables and of the plane are carried by the frame on the axis.
+  /// The bar that the body was made from, in so many pieces along its length, round sections with so many `sides`.
+  /// Points of a section lie where the body's own points do; sections of cables and of the plane are carried by the
+  /// frame on the axis.
   /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24);

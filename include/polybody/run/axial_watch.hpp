@@ -25,7 +25,8 @@ class AxialWatch {
   /// Some body of the model says what its axial forces are.
   bool asks() const { return asks_; }
 
-  /// A state at the end of a step, with accelerations and multipliers. \param last of the run
+  /// A state at the end of a step, with accelerations and multipliers; a finding is added to `warnings`. \param last of
+  /// the run
   void look(System& system, State const& x, bool last, std::vector<std::string>& warnings) {
     if (asks_ && (last || x.t >= next_)) ask(system, x, warnings);
   }

@@ -44,9 +44,9 @@ template <class Solver>
   require_no_contradiction(system, forward, phi, detail::ContradictionLimits{}.position, "positions");
 }
 
-/// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton), then
-/// projects the speeds. \throws InconsistentStart naming the joint that cannot be closed, or the joints whose rows
-/// repeat each other but contradict; x is then untouched.
+/// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton) to
+/// `tolerance`, in at most `max_iterations`, then projects the speeds. \throws InconsistentStart naming the joint that
+/// cannot be closed, or the joints whose rows repeat each other but contradict; x is then untouched.
 template <LinearSolver Solver = DefaultSolver>
 void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   require_positive(tolerance, "assemble: the tolerance");
@@ -69,7 +69,7 @@ void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterat
   x = std::move(trial);
 }
 
-/// The same of a model.
+/// The same of a model, to `tolerance` in at most `max_iterations`.
 template <class M>
 void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   System system(model, with<Entries::motion>);

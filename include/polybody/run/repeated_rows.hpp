@@ -166,8 +166,9 @@ template <class Solver>
   }
 }
 
-/// Rows that a factorisation drops are closed by the others, whose speeds are projected; but not where they repeat them
-/// only nearly. \param rate Φ̇ at the projected speeds \throws InconsistentStart naming the joint that stays open.
+/// Rows that a factorisation drops are closed by the others, whose speeds are projected, to `limit`; but not where they
+/// repeat them only nearly. \param rate Φ̇ at the projected speeds \throws InconsistentStart naming the joint that
+/// stays open.
 template <class Solver>
 [[gnu::cold]] void require_closed_when_dropped(System const& system, ForwardDynamics<Solver> const& forward,
                                                VecX const& rate, double limit) {

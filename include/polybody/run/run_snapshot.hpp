@@ -43,7 +43,7 @@ struct RunSnapshot {
   Sequence<int> sides;     ///< of zero on which the events stand
   RunReport report;        ///< of the run so far
 
-  /// \throws InvalidInput unless model, integrator and count of events are these.
+  /// \throws InvalidInput unless model, integrator (`by` its name) and count of events are these.
   template <class = void>
   void require(ModelIdentity const& of, std::string const& by, std::size_t events) const {
     auto const counts = [](ModelIdentity const& m) {

@@ -23,7 +23,7 @@ template <class M>
   return System(model, with<Entries::motion>);
 }
 
-/// Runs `model` from x: a range of states. x is moved along and holds the last state afterwards.
+/// Runs `model` from x by `integrator`: a range of states. x is moved along and holds the last state afterwards.
 /// \throws InconsistentStart, InvalidInput at once; NewtonStalled, NonFinite, … from the step that fails.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<I, Solver> simulate(M const& model, State& x, I const& integrator, RunOptions options) {

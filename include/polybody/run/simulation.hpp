@@ -19,7 +19,7 @@ namespace polybody {
 template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
  public:
-  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);  ///< begins at x
+  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);  ///< by integrator
 
   /// Goes on from a snapshot. \throws InvalidInput for one of another model, integrator or count of events.
   [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options,

@@ -50,7 +50,7 @@ HalfSpectrum fourier_terms(std::vector<double> const& values) {
 
 }  // namespace detail
 
-/// The samples at t₀, t₀ + step, …, linear between the given ones. Frequencies above half of the new sampling rate
+/// The samples at t₀, t₀ + step, …, linear between the given `values`. Frequencies above half of the new sampling rate
 /// alias: take a smaller step for such a history.
 /// \param step [s]  \param largest_gap between given samples, over which a line is drawn [s]; 0: 1.5 steps
 /// \throws InvalidInput for fewer than two samples, NaNs, times that do not rise, a larger gap.
@@ -101,8 +101,8 @@ struct LowPass {
   }
 };
 
-/// The history without frequencies above the cut-off. The computing time grows with the largest prime factor of the
-/// number of samples: choose a round number for long records. \param times equally spaced [s]
+/// The history `values` without frequencies above the cut-off. The computing time grows with the largest prime factor
+/// of the number of samples: choose a round number for long records. \param times equally spaced [s]
 /// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above Nyquist's
 /// frequency and for one whose period is longer than the record.
 template <class = void>
@@ -161,8 +161,8 @@ struct Spectrum {
   std::vector<double> amplitudes;   ///< (n) [unit of the samples]
 };
 
-/// Amplitudes of equally spaced samples, less their mean, under a window: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i
-/// (Nyquist's without the 2). \throws InvalidInput as `low_pass`.
+/// Amplitudes of equally spaced samples, `values` at `times` [s], less their mean, under a window: a_k = 2|Σ_i w_i x_i
+/// e^{−2πi k i/n}|/Σ_i w_i (Nyquist's without the 2). \throws InvalidInput as `low_pass`.
 template <RecordWindow W = HannWindow>
 Spectrum amplitude_spectrum(std::span<double const> times, std::span<double const> values, W const& = {}) {
   detail::require_history(times, values, 4, "amplitude_spectrum");

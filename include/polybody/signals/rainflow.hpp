@@ -93,7 +93,7 @@ struct Basquin {
   Required<double> exponent;  ///< m, a ratio
   double limit = 0.0;         ///< ranges up to this do no damage [N/m²]
 
-  /// N, infinite up to the limit.
+  /// N of the range `of_range`, infinite up to the limit.
   double life(double of_range) const {
     return of_range > limit ? cycles * std::pow(range / of_range, exponent) : std::numeric_limits<double>::infinity();
   }

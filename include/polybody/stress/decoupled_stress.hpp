@@ -101,8 +101,8 @@ class DecoupledStress {
     return out;
   }
 
-  /// Axial strain of the fibre (y, z) of that section, N/EA − y M_z/EI + z M_y/EI_y: with damping, that which these
-  /// forces would cause at rest. \throws InvalidInput as `section_forces`.
+  /// Axial strain of the fibre (y, z) [m] of that section, at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z
+  /// M_y/EI_y: with damping, that which these forces would cause at rest. \throws InvalidInput as `section_forces`.
   template <class = void>
   std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
@@ -111,16 +111,16 @@ class DecoupledStress {
       out.push_back(n[0] / c.EA - y * n[5] / c.EI + z * n[4] / c.EI_y.value_or(c.EI));
     return out;
   }
-  /// Axial stress of that fibre [N/m²], `of` being the bar. \throws InvalidInput as above, and for a bar given by
-  /// constants.
+  /// Axial stress of that fibre [N/m²], at s, y, z [m], `of` being the bar. \throws InvalidInput as above, and for a
+  /// bar given by constants.
   template <class = void>
   std::vector<double> axial_stress(Bar const& of, double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     std::vector<double> out;
     for (Vec6 const& n : section_forces(s, bar)) out.push_back(fibre_stress(of, n, y, z));
     return out;
   }
-  /// Axial and shear stress at a point of that section, which tell principal stresses and von Mises'. \throws
-  /// InvalidInput as `section_stress`.
+  /// Axial and shear stress at a point (y, z) [m] of that section, at s [m] of number `bar`, which tell principal
+  /// stresses and von Mises'. \throws InvalidInput as `section_stress`.
   template <class = void>
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
     std::vector<SectionStress> out;

@@ -56,8 +56,9 @@ class NodalStress {
         throw InvalidInput{"NodalStress: two nodes are called \"", spot->name, "\". Give each a name of its own."};
   }
 
-  /// From a Matrix Market file (6k×`coordinates`) and a text file with a line `node name` for each of the k nodes, the
-  /// node counted from 0; # begins a comment. A structure has three coordinates a node: `Structure::size()`.
+  /// From `matrix_file`, in Matrix Market's format (6k×`coordinates`), and `names_file`, a text with a line `node name`
+  /// for each of the k nodes, the node counted from 0; # begins a comment. A structure has three coordinates a node:
+  /// `Structure::size()`.
   /// \throws IoError naming file and line for what cannot be read, is truncated or does not fit; InvalidInput for
   /// coordinates that are not three a node.
   template <class = void>
@@ -86,7 +87,8 @@ class NodalStress {
     require_rows(displacements, "displacements");
     return matrix_ * displacements;
   }
-  /// History of one node's stress. \throws InvalidInput as above, and for a name that does not exist.
+  /// History of one node's stress under these `displacements` (N×samples) [m]. \throws InvalidInput as above, and for a
+  /// name that does not exist.
   template <class = void>
   std::vector<Vec6> of(std::string_view name, MatX const& displacements) const {
     Index const first = row_of(name);
@@ -96,7 +98,7 @@ class NodalStress {
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = history.col(Index(i));
     return out;
   }
-  /// History of its von Mises stress [Pa]. \throws InvalidInput as above.
+  /// History of its von Mises stress [Pa] under these `displacements`. \throws InvalidInput as above.
   template <class = void>
   std::vector<double> von_mises(std::string_view name, MatX const& displacements) const {
     std::vector<double> out;

@@ -62,7 +62,8 @@ inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y
 
 }  // namespace detail
 
-/// \throws InvalidInput for a bar without section and material, and for a point outside the section.
+/// Stress at (y, z) [m] under `forces` (N, M) [N], [N m]. \throws InvalidInput for a bar without section and material,
+/// and for a point outside the section.
 template <class = void>
 SectionStress section_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   SectionStress out;

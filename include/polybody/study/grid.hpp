@@ -23,7 +23,7 @@ std::vector<double> linear(double first, double last, std::size_t count) {
   return values;
 }
 
-/// The same at equal ratios. \throws InvalidInput for ends that are not positive.
+/// `count` values from `first` to `last` at equal ratios. \throws InvalidInput for ends that are not positive.
 template <class = void>
 std::vector<double> logarithmic(double first, double last, std::size_t count) {
   if (!(first > 0.0 && last > 0.0))
@@ -36,13 +36,13 @@ std::vector<double> logarithmic(double first, double last, std::size_t count) {
   return values;
 }
 
-/// Points of one parameter: axis("step", "s", {1e-3, 1e-4}).
+/// Points of one parameter, its `values`: axis("step", "s", {1e-3, 1e-4}).
 template <class = void>
 Points axis(std::string name, std::string unit, std::vector<double> values) {
   return {{{.name = std::move(name), .unit = std::move(unit)}}, std::move(values), "grid"};
 }
 
-/// Points of one choice, by words: formulations("integrator", {"Radau", "HHT"}). See `Point::with`.
+/// Points of one choice, by words, its `choices`: formulations("integrator", {"Radau", "HHT"}). See `Point::with`.
 template <class = void>
 Points formulations(std::string name, std::vector<std::string> choices) {
   std::vector<double> values(choices.size());
@@ -50,7 +50,7 @@ Points formulations(std::string name, std::vector<std::string> choices) {
   return {{{.name = std::move(name), .choices = std::move(choices)}}, std::move(values), "grid"};
 }
 
-/// Points one by one, a value for each column.
+/// Points one by one, `rows` with a value for each column.
 template <class = void>
 Points list(std::vector<Column> columns, std::vector<std::vector<double>> const& rows) {
   std::vector<double> values;
@@ -76,7 +76,7 @@ Points grid(Points const& first, Points const& second) {
   std::string const one = first.origin(), other = second.origin();
   return {std::move(columns), std::move(values), one == other ? one : one + " x " + other};
 }
-/// Axes, formulations, lists and samples alike: grid(axis(…), formulations(…), latin_hypercube(…)).
+/// Axes, formulations, lists and samples alike, and `others`: grid(axis(…), formulations(…), latin_hypercube(…)).
 template <class... Others>
 Points grid(Points const& first, Points const& second, Others const&... others) {
   return grid(grid(first, second), others...);

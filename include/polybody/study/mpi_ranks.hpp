@@ -22,7 +22,7 @@ namespace polybody {
 /// without mpirun has one rank.
 class MpiRanks {
  public:
-  /// \throws Error where MPI does not start.
+  /// Takes those of `main`, argc and argv. \throws Error where MPI does not start.
   MpiRanks(int& argc, char**& argv) {
     int ready = 0, threads = 0;
     MPI_Initialized(&ready);
@@ -44,7 +44,8 @@ class MpiRanks {
   int size() const { return size_; }         ///< how many there are
   bool first() const { return rank_ == 0; }  ///< the one that records, and writes what all have found
 
-  /// Ends the ranks, for an error that one alone has met outside of `run_over_ranks`: the others wait for it.
+  /// Ends the ranks with `code`, for an error that one alone has met outside of `run_over_ranks`: the others wait for
+  /// it.
   [[noreturn]] void abort(int code = 1) const {
     MPI_Abort(MPI_COMM_WORLD, code);
     std::abort();

@@ -19,15 +19,15 @@ struct StudyOutput {
   StudyOutput(char const* name) : head(name) {}  // NOLINT(google-explicit-constructor)
   /// The same.
   StudyOutput(std::string name) : head(std::move(name)) {}  // NOLINT(google-explicit-constructor)
-  /// An output that may be measured.
+  /// An output that may be measured: `is_measured`.
   StudyOutput(std::string name, bool is_measured) : head(std::move(name)), measured(is_measured) {}
 };
 
-/// A number that another run of the same point would not find again, as a time. It is recorded and drawn like the
-/// others; the table that is the same bit for bit leaves it out.
+/// A number under `head` that another run of the same point would not find again, as a time. It is recorded and drawn
+/// like the others; the table that is the same bit for bit leaves it out.
 inline StudyOutput measured(std::string head) { return {std::move(head), true}; }
 
-/// outputs("error [m]", measured("cpu [s]"))
+/// An output for each of `heads`: outputs("error [m]", measured("cpu [s]"))
 template <class... Heads>
 std::vector<StudyOutput> outputs(Heads&&... heads) {
   return {StudyOutput(std::forward<Heads>(heads))...};

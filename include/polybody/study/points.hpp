@@ -54,7 +54,7 @@ class Points {
   std::vector<Column> const& columns() const { return columns_; }        ///< parameters, in their order
   std::vector<double> const& values() const { return values_; }          ///< (points × columns), row by row
   std::string const& origin() const { return origin_; }                  ///< how they were made, in words
-  /// A value in the unit of its column. \throws std::out_of_range.
+  /// The value of a `point` in the unit of its column. \throws std::out_of_range.
   double at(std::size_t point, std::size_t column) const { return values_.at(point * columns_.size() + column); }
   /// One point, by the names of its columns; this must outlive it.
   Point operator[](std::size_t point) const;
@@ -112,12 +112,12 @@ class Point {
       throw StudyMisuse{"study: column '", column, "' holds numbers, not choices. Ask for point[\"", column, "\"]."};
     return static_cast<std::size_t>(points_->at(index_, j));
   }
-  /// The same as the word that `formulations` has for it.
+  /// The same as the word that `formulations` has for it in `column`.
   std::string const& chosen(std::string_view column) const {
     return points_->columns()[place(column)].choices[choice(column)];
   }
 
-  /// Calls f with that of `all` which the point has chosen, as in
+  /// Calls f with that of `first` and `others` which the point has chosen in `column`, as in
   /// `point.with("integrator", run, GeneralizedAlpha{}, Radau{})`. \throws StudyMisuse unless there is one of `all` for
   /// each choice.
   template <class F, class First, class... Others>

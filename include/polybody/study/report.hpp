@@ -56,9 +56,10 @@ std::string table_text(StudyResults const& found, bool with_measured) {
 
 }  // namespace detail
 
-/// Writes the points that are finished, in their order whatever the order in which they were, with units in the heads.
-/// Numbers read back to the same double; a failed point has no numbers and its sentence under "failure". Measured
-/// outputs are left out, so that the same study gives the same bytes; where there are any, NAME_measured.csv has all.
+/// Writes to `file` the points that are finished, in their order whatever the order in which they were, with units in
+/// the heads. Numbers read back to the same double; a failed point has no numbers and its sentence under "failure".
+/// Measured outputs are left out, so that the same study gives the same bytes; where there are any, NAME_measured.csv
+/// has all.
 /// \throws IoError, as AtomicFile.
 template <class = void>
 void write_table(StudyResults const& found, std::filesystem::path const& file) {

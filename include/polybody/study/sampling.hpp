@@ -43,7 +43,7 @@ RandomAxis log_uniform(std::string name, std::string unit, double low, double hi
           [=](double u) { return std::clamp(detail::portable_exp(std::fma(u, to - from, from)), low, high); }};
 }
 
-/// Normal, without bounds. \throws InvalidInput unless the standard deviation is positive.
+/// Normal about `mean`, without bounds. \throws InvalidInput unless the standard deviation is positive.
 template <class = void>
 RandomAxis normal(std::string name, std::string unit, double mean, double deviation) {
   if (!(deviation > 0.0 && std::isfinite(deviation) && std::isfinite(mean)))
@@ -96,9 +96,9 @@ Points monte_carlo(std::size_t count, std::uint64_t seed, std::vector<RandomAxis
   return detail::sampled(std::move(u), axes, "Monte Carlo, seed " + std::to_string(seed));
 }
 
-/// `count` points, of which each axis has one in each of `count` strata of equal probability, at a random place in it;
-/// strata of different axes are paired at random.  [McKay, Beckman & Conover 1979] \throws InvalidInput for no point,
-/// no axis, and more than 2²⁰ points.
+/// `count` points by the random numbers of `seed`, of which each axis has one in each of `count` strata of equal
+/// probability, at a random place in it; strata of different axes are paired at random.  [McKay, Beckman & Conover
+/// 1979] \throws InvalidInput for no point, no axis, and more than 2²⁰ points.
 template <class = void>
 Points latin_hypercube(std::size_t count, std::uint64_t seed, std::vector<RandomAxis> const& axes) {
   if (count > 1u << 20)

@@ -121,7 +121,7 @@ class Study {
   }
   /// What the bar of progress calls it.
   std::string label() const { return file_.file.stem().string(); }
-  /// Outcomes with the study that they are of.
+  /// Outcomes with the study that they are of; `taken_over`, `torn` as in StudyResults.
   StudyResults results(std::vector<std::optional<Outcome>> outcomes, std::size_t taken_over, bool torn) const {
     return {points_, outputs_, std::move(outcomes), taken_over, torn};
   }

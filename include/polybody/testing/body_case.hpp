@@ -14,12 +14,12 @@
 
 namespace polybody::laws {
 
-/// The entries of a vector, to be read.
+/// The entries of the vector x, to be read.
 template <class V>
 auto view(V const& x) {
   return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
 }
-/// The entries of a vector, to be written.
+/// The entries of the vector x, to be written.
 template <class V>
 auto mutable_view(V& x) {
   return std::span<typename V::Scalar>(x.data(), std::size_t(x.size()));
@@ -33,7 +33,7 @@ inline MatX epsilon_of(MatXOf<Dual<1>> const& m) {
 /// |a − b| against |b|, or against one where b is smaller.
 inline double mismatch(MatX const& a, MatX const& b) { return (a - b).norm() / std::max(1.0, b.norm()); }
 
-/// The smallest pivot of L D Lᵀ without exchanges: positive exactly for a positive definite matrix.
+/// The smallest pivot of L D Lᵀ = m without exchanges: positive exactly for a positive definite matrix.
 inline double smallest_pivot(MatX m) {
   double smallest = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < m.rows(); ++k) {

@@ -101,7 +101,8 @@ struct BodyLaws {
   }
   /// The axes that a marker knows.
   static MatX known(Mat3 const& axes) { return axes.leftCols(rolls ? 3 : directed ? 1 : 0); }
-  /// The part of an angular velocity (or its error) that a marker knows: none along its axis where it has one only.
+  /// The part of an angular velocity w (3) (or its error) that a marker knows: none along its axis where it has one
+  /// only.
   static Vec3 known_turn(Vec3 const& w, Mat3 const& axes) {
     if (!directed) return Vec3::Zero();
     Vec3 const along = axes.col(0);
@@ -137,7 +138,7 @@ struct BodyLaws {
     return v;
   }
 
-  /// x + ε d, and q ⊞ ε d.
+  /// x + ε d, and q ⊞ ε d, d being `direction`.
   static VecXOf<D> along(VecX const& x, VecX const& direction) {
     VecXOf<D> out = x.cast<D>();
     for (Index i = 0; i < x.size(); ++i) out[i].d[0] = direction[i];

@@ -38,7 +38,7 @@ struct ContactLaws {
     Touching f = overlapping(depth);
     for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
     return f;
-  }  ///< overlapping bodies whose velocities are zero
+  }  ///< bodies that overlap by `depth`, whose velocities are zero
   /// The velocity of a relative to b at the point.
   static Vec3 relative(ContactPoint<double> const& p, Touching const& f) {
     return f[0].v + f[0].w.cross(p.place - f[0].r) - f[1].v - f[1].w.cross(p.place - f[1].r);
@@ -47,7 +47,7 @@ struct ContactLaws {
   static Law with(Law law, double coefficient = 0.4) {
     law.friction = {.coefficient = coefficient, .slip_speed = 0.3};
     return law;
-  }  ///< `law` with friction, v_s = 0.3 m/s
+  }  ///< `law` with friction of this coefficient, v_s = 0.3 m/s
   Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }  ///< smooth
   /// Calls visit(contact) for each normal force, without friction; none lets go of bodies that part as these do.
   template <class Visit>
@@ -61,8 +61,8 @@ struct ContactLaws {
     std::array<Mat<double, 6, 6>, 2> k{Mat<double, 6, 6>::Zero(), Mat<double, 6, 6>::Zero()};
     law.own_stiffness(f, ck, cd, k[0], k[1]);
     return k;
-  }  ///< (6×6) `own_stiffness` of body a and of body b
-  /// What `own_stiffness` stands for.
+  }  ///< (6×6) `own_stiffness` of `law`, of body a and of body b
+  /// What `own_stiffness` of `law` stands for.
   template <class Law>
   static std::array<Mat<double, 6, 6>, 2> exact(Law const& law, Touching const& f, double ck, double cd) {
     Mat<double, 12, 12> const k = -wrench_gradient(law, f, 0.0, ck, cd);
@@ -70,7 +70,7 @@ struct ContactLaws {
   }
   static double smallest_eigenvalue(Mat<double, 6, 6> const& m) {
     return Eigen::SelfAdjointEigenSolver<Mat<double, 6, 6>>(m).eigenvalues()[0];
-  }  ///< smallest eigenvalue of a symmetric matrix (6×6)
+  }  ///< smallest eigenvalue of a symmetric matrix m (6×6)
 
   // --- the geometry -------------------------------------------------------------------------------------------
 

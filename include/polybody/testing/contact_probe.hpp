@@ -12,7 +12,7 @@ namespace polybody::laws {
 
 using Touching = std::array<Frame<double>, 2>;  ///< the frames of two shapes that overlap
 
-/// The one point where the shapes overlap; a test failure where there is none or more.
+/// The one point where the shapes of `geometry` overlap; a test failure where there is none or more.
 template <StateScalar T, class G>
 ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b) {
   ContactPoint<T> found;
@@ -24,7 +24,7 @@ ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b
   EXPECT_EQ(count, 1);
   return found;
 }
-/// Whether the shapes overlap anywhere.
+/// Whether the shapes of `geometry` overlap anywhere.
 template <class G>
 bool touch(G const& geometry, Touching const& f) {
   int count = 0;

@@ -13,7 +13,7 @@ namespace polybody::laws {
 /// Numbers in [−size, size].
 class Numbers {
  public:
-  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< equal seeds give equal numbers
+  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< equal numbers from an equal `seed`
 
   /// The next number in [−size, size].
   double operator()(double size = 1.0) { return size * (double(generator_()) / 2147483648.0 - 1.0); }
@@ -26,13 +26,13 @@ class Numbers {
   VecX vector(Index n, double size = 1.0) {
     return VecX::NullaryExpr(n, [&](Index) { return (*this)(size); });
   }
-  /// [δr; δφ] or [ṙ; ω]; in the plane only (x, y) and about z.
+  /// [δr; δφ] or [ṙ; ω] in [−size, size]; if `planar`, only (x, y) and about z.
   Vec6 motion(bool planar, double size = 1.0) {
     Vec6 x = vec<6>(size);
     if (planar) x[2] = x[3] = x[4] = 0.0;
     return x;
   }
-  /// Anywhere, turned anyhow, moving.
+  /// Anywhere, turned anyhow, moving; if `planar`, in the plane.
   Frame<double> frame(bool planar = false) {
     Vec6 const place = motion(planar, 2.0), twist = motion(planar);
     return {.r = place.head<3>(), .A = exp_so3<double>(place.tail<3>()), .v = twist.head<3>(), .w = twist.tail<3>()};
@@ -60,7 +60,8 @@ Frame<T> later(Frame<double> const& f, T const& time) {
   return moved<T>(f, twist.cast<T>() * time);
 }
 
-/// The frame carried along by a rigid motion of the world: turned by `turn` about the origin, then shifted.
+/// The frame carried along by a rigid motion of the world: turned by `turn` about the origin, then moved by `shift` (3)
+/// [m].
 inline Frame<double> carried(Frame<double> const& f, Mat3 const& turn, Vec3 const& shift) {
   return {.r = turn * f.r + shift, .A = turn * f.A, .v = turn * f.v, .w = turn * f.w};
 }

@@ -123,7 +123,7 @@ inline VecX JointLawsOf::wrenches(FramePair const& p, VecX const& lambda) const 
   return geometry.gap(p, t).G.transpose() * lambda;
 }
 
-/// The moment of both wrenches about a point.
+/// The moment of both wrenches, w (12), about a point.
 inline Vec3 moment_about(FramePair const& p, VecX const& w, Vec3 const& about) {
   Vec3 const fa = w.segment<3>(0), fb = w.segment<3>(6);
   return w.segment<3>(3) + (p.a.r - about).cross(fa) + w.segment<3>(9) + (p.b.r - about).cross(fb);

@@ -48,14 +48,15 @@ class LawTest : public ::testing::Test {
   std::function<void()> law_;
 };
 
-/// Registers one law as a test of GoogleTest.
+/// Registers one law, of `suite`, as a test of GoogleTest: holds() checks it; `file` and `line` are where it is asked
+/// for.
 inline void register_law(std::string const& suite, char const* law, char const* file, int line,
                          std::function<void()> holds) {
   ::testing::RegisterTest(suite.c_str(), law, nullptr, nullptr, file, line,
                           [holds = std::move(holds)]() -> LawTest* { return new LawTest(holds); });
 }
 
-/// Registers every law of a suite.
+/// Registers every law of a suite, asked for at `line` of `file`.
 template <class Laws>
 void register_laws(std::string const& suite, char const* file, int line) {
   for (Law<Laws> const& law : Laws::laws)
@@ -65,8 +66,8 @@ void register_laws(std::string const& suite, char const* file, int line) {
     });
 }
 
-/// Registers the laws of each suite for a case, as tests named `name/Suite.Law`. For the initialiser of a variable, so
-/// that it runs before `main`.
+/// Registers the laws of each suite for a case, as tests named `name/Suite.Law`, asked for at `line` of `file`. For the
+/// initialiser of a variable, so that it runs before `main`.
 template <class Case, template <class> class... Suites>
 bool obeys(std::string const& name, char const* file = __builtin_FILE(), int line = __builtin_LINE()) {
   (register_laws<Suites<Case>>(name + "/" + Suites<Case>::suite, file, line), ...);

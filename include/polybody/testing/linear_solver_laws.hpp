@@ -55,7 +55,7 @@ struct Plain {
   }
 };
 
-/// The blocks as a dense matrix (n×n).
+/// The blocks, with the numbers of `seed`, as a dense matrix (n×n).
 inline MatX plain(Blocks const& blocks, unsigned seed) {
   Plain sink{MatX::Zero(blocks.size(), blocks.size())};
   blocks.write(sink, seed);

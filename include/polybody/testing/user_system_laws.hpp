@@ -55,19 +55,19 @@ struct UserSystemLaws {
     else
       return 0;
   }
-  /// Violation Φ of the rows (rows) at a time [s].
+  /// Violation Φ of the rows (rows) at time `at` [s].
   VecX violation(VecX const& q, double at) const {
     VecX phi = VecX::Constant(rows(), wild);
     if constexpr (OffersRows<E>) equations.violation(q, at, phi);
     return phi;
   }
-  /// Jacobian ∂Φ/∂q (rows×n) at a time [s].
+  /// Jacobian ∂Φ/∂q (rows×n) at time `at` [s].
   MatX jacobian(VecX const& q, double at) const {
     MatX g = MatX::Constant(rows(), n, wild);
     if constexpr (OffersRows<E>) equations.jacobian(q, at, g);
     return g;
   }
-  /// Partial derivative ∂Φ/∂t (rows) at a time [s].
+  /// Partial derivative ∂Φ/∂t (rows) at time `at` [s].
   VecX rate(VecX const& q, double at) const {
     VecX phi_t = VecX::Constant(rows(), wild);
     if constexpr (OffersRows<E>) equations.rate(q, at, phi_t);

@@ -19,7 +19,7 @@ std::vector<double> link_strain(DecoupledStress const& stress) {
   return out;
 }
 
-/// Bending strain of a rigid link at each time of its record.
+/// Bending strain of a rigid link at each time of its record, in a section of this `height` [m].
 template <class = void>
 std::vector<double> link_bending(DecoupledStress const& stress, double height = cable_height) {
   std::vector<double> out;

@@ -38,9 +38,10 @@ double bending_by_moment(double height = cable_height) {
   return 0.5 * height / *constants(link_bar({}, height)).EI_y;
 }
 
-/// Axial strain by bending in the fibre towards the wheels, just ahead of the middle, where contacts push. One cubic
-/// element shows half of the effect of a force there, one linear element none; two elements have a node there and show
-/// it in full. A cable needs `lateral`, the vehicle's y axis, to know the side of the wheels (link_axes.hpp).
+/// Axial strain by bending in the fibre towards the wheels, of a section of this `height` [m], just ahead of the
+/// middle, where contacts push. One cubic element shows half of the effect of a force there, one linear element none;
+/// two elements have a node there and show it in full. A cable needs `lateral`, the vehicle's y axis, to know the side
+/// of the wheels (link_axes.hpp).
 template <class B>
 double link_bending(BodyHandle<B> const& link, State const& x, Vec3 const& lateral, double height = cable_height) {
   BodyInState<B> const b = body_in_state(link, x);
@@ -50,8 +51,8 @@ double link_bending(BodyHandle<B> const& link, State const& x, Vec3 const& later
   return bending_by_moment(height) * moment.dot(link_axes<B::observes>(section, lateral).col(1));
 }
 
-/// (T₀ + m v²/p)/EA: the strain in a chain of links of mass m [kg] and pitch p that runs at speed v [m/s] and is pulled
-/// by T₀ [N].
+/// (T₀ + m v²/p)/EA: the strain in a chain of links of mass m [kg], pitch p and `height` [m] that runs at speed v [m/s]
+/// and is pulled by T₀ = `pull` [N].
 inline double running_strain(double speed, double pull, double height = cable_height, double mass = thesis.link.mass) {
   return (pull + mass * speed * speed / pitch) / constants(link_bar({}, height)).EA;
 }

@@ -118,7 +118,7 @@ class BumpCourse {
 
   void check(std::string const&) const {}      ///< the constructor did
   double highest() const { return highest_; }  ///< [m]
-  /// The sum of all bumps over the place, and its slopes.
+  /// The sum of all bumps over the place (x, y) [m], and its slopes.
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     detail::Relief h;
@@ -171,7 +171,7 @@ class RoadProfile {
 
   void check(std::string const&) const {}      ///< the constructor did
   double highest() const { return highest_; }  ///< [m]
-  /// The cubic between two points of the profile, and its slope along x; constant beyond both ends.
+  /// At (x, y) [m], the cubic between two points of the profile, and its slope along x; constant beyond both ends.
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     double const at = value_of(x);

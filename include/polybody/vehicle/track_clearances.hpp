@@ -34,7 +34,7 @@ inline double track_gap(Vec2 const& front, Vec2 const& rear, double half_thickne
 
 }  // namespace detail
 
-/// How well a closed chain fits `layout` and stays above the ground z = `ground`.
+/// How well a closed chain of `pins` (x, z) [m] fits `layout` and stays above the ground z = `ground`.
 inline TrackClearances clearances(TrackLayout const& layout, std::span<Vec2 const> pins,
                                   double ground = -std::numeric_limits<double>::infinity()) {
   TrackClearances found;

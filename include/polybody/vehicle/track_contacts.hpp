@@ -37,7 +37,7 @@ struct LinkContacts {
 
   double friction = 1.0;  ///< times the coefficients of m113.hpp [1]; 0: none
 
-  /// \param length of the face along the link [m]
+  /// A link on rollers of this `radius` [m]. \param length of the face along the link [m]
   OnRoller on_roller(double radius, double length = pitch) const {
     return law(LinkOnRoller<observed>{.pitch = length,
                                       .half_thickness = half_thickness,

@@ -34,8 +34,8 @@ inline Bar link_bar(Placement placement = {}, double height = cable_height) {
       .placement = placement};
 }
 
-/// `masses` with links of the mass and inertia of that bar, as flexible links have them; T3.1 has the inertia of a box
-/// 1.7 times as high.
+/// `masses` with links of the mass and inertia of that bar, of height h [m], as flexible links have them; T3.1 has the
+/// inertia of a box 1.7 times as high.
 inline Solids with_steel_links(Solids masses = thesis, double h = cable_height) {
   double const w = cable_width, m = density * w * h * pitch, twelfth = m / 12.0;
   masses.link = {m, {twelfth * (w * w + h * h), twelfth * (pitch * pitch + h * h), twelfth * (pitch * pitch + w * w)}};
@@ -54,7 +54,7 @@ struct LinkOf {
 
   double height = cable_height;  ///< of the section [m]
 
-  /// A link with its centre at `at`; its mass follows from section and density, not from the `Solid`.
+  /// A link of `elements` with its centre at `at`; its mass follows from section and density, not from the `Solid`.
   B make(Solid const&, Placement const& at, int elements) const {
     return B::from(link_bar(at, height), std::max(elements, 1));
   }

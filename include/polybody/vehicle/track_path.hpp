@@ -50,8 +50,8 @@ struct TrackPath {
   }
 };
 
-/// The frames of a closed chain's links; pin i is in front of link i. A face touches a rim that it is nearer to than
-/// 1e-6 p.
+/// The frames of a closed chain's links, of its `pins` (x, z) [m]; pin i is in front of link i. A face touches a rim
+/// that it is nearer to than 1e-6 p.
 inline std::vector<TrackLink> track_links(TrackLayout const& layout, std::span<Vec2 const> pins) {
   std::vector<TrackLink> links;
   for (std::size_t i = 0; i < pins.size(); ++i) {
@@ -65,7 +65,7 @@ inline std::vector<TrackLink> track_links(TrackLayout const& layout, std::span<V
   return links;
 }
 
-/// How well a track fits its layout.
+/// How well a track fits its layout, above the ground z = `ground` [m].
 inline TrackClearances clearances(TrackPath const& path, double ground = -std::numeric_limits<double>::infinity()) {
   return clearances(path.layout, path.pins, ground);
 }

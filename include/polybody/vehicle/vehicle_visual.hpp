@@ -96,7 +96,8 @@ void attach_links(Visual& visual, LinkParts<Link> const& side) {
 }
 }  // namespace detail
 
-/// Hull, wheels with their rims, arms, sprockets with their teeth, and shoes with their horns; cables are swept.
+/// The pictures of a `vehicle`: hull, wheels with their rims, arms, sprockets with their teeth, and shoes with their
+/// horns; cables are swept.
 template <class V>
 Visual vehicle_visual(V const& vehicle) {
   Visual visual(vehicle.model);
