@@ -2,6 +2,8 @@
 
 types, names   each type, function, alias, constant and concept of a public namespace has a comment
 members        so has each public member; those that a concept asks for have it in docs/extending.md
+parameters     a parameter of a public function is named in the function's comment: as a word, in `backticks`, by \\param or as the Greek letter that it spells, q₀ for q0;
+               but for one whose type says what it is, a class, enumeration or concept of the library, and for the letters in the table of docs/extending.md, with the types that stand there
 units          a public member that is a number (double, Vec2, Vec3, Vec6, Mat3, a list of them; not scratch of run-time size) has its unit in brackets, [m/s], in its own comment or its
                type's, or a word that says why there is none: relative, unit vector, factor, ratio, share, part, count, ν, ξ, …
 
@@ -16,8 +18,17 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 ALLOWED = Path(__file__).with_name("documented_allowed.txt")
+LETTERS = ROOT / "docs/extending.md"
 sys.path.insert(0, str(ROOT / "docs/site"))
 import undocumented  # noqa: E402
+
+# A parameter of these types may be anything; of other types of the library, its type says what it is.
+PLAIN = set("Index Vec Vec2 Vec3 Vec4 Vec6 VecX VecXOf Vector V3 V6 Row Mat Mat3 Mat6 MatX MatXOf M6 Scalar StateScalar Number Numbers".split())
+GREEK = dict(zip("alpha beta gamma delta epsilon zeta eta theta lambda mu nu xi rho sigma tau phi psi omega".split(), "α β γ δΔ ε ζ η θ λ μ ν ξ ρ σ τ φΦ ψ ωΩ".split()))
+WORDS_OF_TEXT = set("a as at by from in of on to".split())  # as names they stand in code or in a formula
+INDICES = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹ᵀ⁺⁻ᵢⱼₖ]")  # powers, transposes, entries
+LETTER_ROW = re.compile(r"^\| ((?:`\w+`(?:, )?)+) \| [^|]* \| ([^|]*) \|", re.M)
 
 NUMBER = re.compile(r"(?:Required<|std::optional<|std::vector<)?(?:double|Vec[236]|Mat3)>?")
 UNIT = re.compile(r"\[[^\]]+\]")
@@ -47,6 +58,61 @@ def numbers_without_unit(folder):
                 yield member.find("location").get("file").split("include/")[-1], name
 
 
+def letters():
+    """The names of docs/extending.md that mean the same everywhere: {name: words of its types}."""
+    section = re.search(r"^## Letters\n(.*?)^## ", LETTERS.read_text(encoding="utf-8"), re.M | re.S)[1]
+    found = {}
+    for cell, types in LETTER_ROW.findall(section):
+        for name in re.findall(r"\w+", cell):
+            found.setdefault(name, set()).update(re.findall(r"\w+", " ".join(re.findall(r"`([^`]+)`", types))))
+    return found
+
+
+def is_named(name, function):
+    """Whether the comment of a function names a parameter."""
+    after = r"(?![\w\u0300-\u036f˙¨])"  # q̇ is not q
+    word = rf"(?<![\w.]){re.escape(name)}{after}"
+    code = " ".join("".join(e.itertext()) for e in function.iter() if e.tag in ("computeroutput", "parametername"))
+    if re.search(word, code):
+        return True
+    text = RAISED.sub(" ", said_of(function)).translate(INDICES)
+    if name in WORDS_OF_TEXT:
+        word += r"(?=\s*(?:[^\w\s`\"'(]|\(\d|$))"
+    return bool(re.search(word, text)) or any(re.search(rf"(?<!\w){letter}{after}", text) for letter in GREEK.get(name, ""))
+
+
+def words_of(element):
+    return re.findall(r"\w+", " ".join("".join(part.itertext()) for part in (element.find("type"), element.find("declname")) if part is not None))
+
+
+def unnamed_parameters(folder):
+    """(header, line, function, parameter) of each, and the letters that no function has."""
+    wholes = [xml.parse(file).getroot().find("compounddef") for file in sorted(folder.glob("*.xml")) if file.name != "index.xml"]
+    wholes = [whole for whole in wholes if whole is not None]
+    members = {m.get("id"): m for whole in wholes for m in whole.iter("memberdef")}.values()
+    types = {re.sub(r"<.*", "", whole.findtext("compoundname")).strip().split("::")[-1] for whole in wholes if whole.get("kind") in ("class", "struct", "concept")}
+    types |= {m.findtext("name") for m in members if m.get("kind") in ("enum", "typedef")}
+    types -= PLAIN
+    same_everywhere, unused, found = letters(), set(letters()), []
+    for function in members:
+        if function.get("kind") != "function" or function.get("prot") != "public" or "detail::" in (function.findtext("qualifiedname") or ""):
+            continue
+        says_what = dict.fromkeys(types, True)
+        for parameter in function.findall("templateparamlist/param"):
+            *kind, name = words_of(parameter)
+            says_what[name] = bool(types & set(kind))
+        for parameter in function.findall("param"):
+            name, words = parameter.findtext("declname"), set(re.findall(r"\w+", "".join(parameter.find("type").itertext())))
+            if not name or any(says_what.get(word) for word in words):
+                continue
+            if words & same_everywhere.get(name, set()):
+                unused.discard(name)
+            elif said_of(function).strip() and not is_named(name, function):  # without any comment it is among the members
+                place = function.find("location")
+                found.append((place.get("file").split("include/")[-1], place.get("line"), function.findtext("name"), name))
+    return found, unused
+
+
 def check(site, shrink):
     faults, found, named = [], Counter(), {}
     for path, line, name, kind in undocumented.rows(site / "warnings"):
@@ -59,6 +125,9 @@ def check(site, shrink):
     for path, name in numbers_without_unit(site / "xml"):
         found[f"units {path}"] += 1
         named.setdefault(f"units {path}", []).append(name)
+    unnamed, unused = unnamed_parameters(site / "xml")
+    faults += [f"{path}:{line}: {function} does not name its parameter {name}." for path, line, function, name in unnamed]
+    faults += [f"{LETTERS.name}: no function has the letter {name} with these types." for name in sorted(unused)]
     allowed = {}
     for row in ALLOWED.read_text(encoding="utf-8").splitlines() if ALLOWED.exists() else ():
         key, count = row.rsplit(" ", 1)

@@ -8,9 +8,12 @@ import documented
 
 import prepare  # documented.py put docs/site on the path
 
-XML = """<doxygen><compounddef><briefdescription>{about}</briefdescription><detaileddescription/>
+XML = """<doxygen><compounddef kind="struct"><compoundname>polybody::A</compoundname><briefdescription>{about}</briefdescription><detaileddescription/>
 <memberdef kind="variable" prot="public"><type>{kind}</type><name>x</name><briefdescription>{text}</briefdescription><detaileddescription/>
 <location file="include/polybody/a.hpp"/></memberdef></compounddef></doxygen>"""
+FUNCTION = """<memberdef kind="function" id="f" prot="{prot}"><templateparamlist>{template}</templateparamlist><qualifiedname>{scope}f</qualifiedname><name>f</name>
+<param><type>{kind}</type><declname>{name}</declname></param><briefdescription>{text}</briefdescription><detaileddescription/><location file="a.hpp" line="3"/></memberdef>"""
+TABLE = "## Letters\n\n| `t` | time | a number, `double` | [s] |\n\n## A body\n"
 
 
 def require(holds, what):
@@ -18,13 +21,20 @@ def require(holds, what):
         sys.exit(f"documented_self: {what}")
 
 
-def faults(folder, warnings="", allowed="", **member):
+def faults(folder, warnings="", allowed="", function="", table="## Letters\n\n## A body\n", **member):
     (folder / "xml").mkdir(exist_ok=True)
     (folder / "warnings").write_text(warnings)
-    (folder / "xml/structA.xml").write_text(XML.format(**{"about": "A thing.", "kind": "double", "text": "length [m]", **{k: html.escape(v) for k, v in member.items()}}))
+    (folder / "xml/structA.xml").write_text(XML.format(**{"about": "A thing.", "kind": "double", "text": "length [m]", **{k: html.escape(v) for k, v in member.items()}}).replace("</compounddef>", f"{function}</compounddef>"))
+    documented.LETTERS = folder / "letters.md"
+    documented.LETTERS.write_text(table)
     documented.ALLOWED = folder / "allowed"
     documented.ALLOWED.write_text(allowed)
     return documented.check(folder, False)[0]
+
+
+def unnamed(folder, name, text, kind="double", template="", table="## Letters\n\n## A body\n", scope="polybody::", prot="public"):
+    """What is found of a function with one parameter and this comment."""
+    return faults(folder, function=FUNCTION.format(name=name, text=text, kind=html.escape(kind), template=template, scope=scope, prot=prot), table=table)
 
 
 with tempfile.TemporaryDirectory() as name:
@@ -43,6 +53,21 @@ with tempfile.TemporaryDirectory() as name:
     for what in ("Compound polybody::A", "Member f(int x) (function) of namespace polybody"):
         require(faults(place, f"include/polybody/a.hpp:3: warning: {what} is not documented.\n", "members polybody/a.hpp 1\n"),
                 f"{what} passes")
+
+    for given, text in (("length", "A bar of this length [m]."), ("x", "From <computeroutput>x</computeroutput>."), ("x", "|x²| and xᵢ."), ("omega", "At ω [rad/s]."), ("q0", "From q₀ on."),
+                        ("a", "a × b."), ("a", "Of a (3)."), ("at", "About <computeroutput>at</computeroutput>."), ("x", "")):
+        require(not unnamed(place, given, text), f"{given} in '{text}' is not found")
+    for given, text in (("length", "The lengths [m]."), ("q", "q̇ of it."), ("v", "v˙ of it."), ("a", "A bar of a model."), ("at", "At rest, at a point."), ("x", "max of e_x, f.x, ẍ."), ("omega", "Ω̇")):
+        require(unnamed(place, given, text), f"{given} passes by '{text}'")
+    for kind, template in (("A const &", ""), ("B", "<param><type>A B</type></param>"), ("std::vector< A >", "")):
+        require(not unnamed(place, "x", "Does it.", kind, template), f"a {kind} must be named")
+    for kind, template in (("std::vector< double >", ""), ("B", "<param><type>class B</type></param>"), ("T", "<param><type>StateScalar T</type></param>")):
+        require(unnamed(place, "x", "Does it.", kind, template), f"a {kind} need not be named")
+    require(not unnamed(place, "t", "Does it.", table=TABLE), "a letter must be named")
+    require(unnamed(place, "t", "Does it.", "VecX", table=TABLE), "a letter of another type passes")
+    require(faults(place, table=TABLE), "a letter that no function has stays")
+    require(not unnamed(place, "x", "Does it.", scope="polybody::detail::"), "what is in detail is asked")
+    require(not unnamed(place, "x", "Does it.", prot="private"), "what is private is asked")
 
 split = prepare.each_with_its_comment
 require(split("  Vec<T, 3> a{}, b = f(1, 2);  ///< (3) [m]") == "  Vec<T, 3> a{}; /**< (3) [m] */ Vec<T, 3> b = f(1, 2); /**< (3) [m] */", "a list is not taken apart")
