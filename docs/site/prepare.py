@@ -19,69 +19,89 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SITE = ROOT / "docs" / "site"
-MEMBER_ROW = re.compile(r"^\| (`[^|]*`[^|]*) \| ([^|]*) \|$", re.M)
 
 
-# --- headers ----------------------------------------------------------------------------------
-def depth_split(text, separator=","):
-    """Parts of `text` between separators that stand in no bracket."""
-    parts, depth, begin = [], 0, 0
+# --- headers: one comment behind several names ------------------------------------------------
+DECLARED = re.compile(r"^(\s*)([A-Za-z_](?:(?:[^()=;]|size_t\(\w+\))*?[\w>&*])?)\s+([&*]?\w+\s*(?:[={\[].*)?)$")  # indent, type, first name
+NAME = re.compile(r"^\s*[&*]?\w+\s*(?:$|[={\[])")
+NO_TYPES = ("return", "using", "friend", "typedef", "throw", "case")
+
+
+def split_at_commas(text):
+    """Parts of `text` between commas that stand in no bracket."""
+    parts, depth = [""], 0
     for i, c in enumerate(text):
-        if c in "([{<":
-            depth += 1
-        elif c in ")]}" or (c == ">" and text[i - 1] not in "-="):
-            depth -= 1
-        elif c == separator and depth == 0:
-            parts.append(text[begin:i])
-            begin = i + 1
-    return [*parts, text[begin:]]
-
-
-SEVERAL = re.compile(r"^(\s*)((?:static constexpr |static |inline |constexpr |mutable )*[A-Za-z_](?:(?:[^()=;]|size_t\(\w+\))*?[\w>&*])?)\s+([&*]?\w+\b[^;]*);(?:\s*///<\s?(.*))?$")
+        depth += (c in "([{<") - (c in ")]}" or (c == ">" and text[i - 1] not in "-="))
+        if c == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += c
+    return parts
 
 
 def each_with_its_comment(line, comment=None):
-    """`double a, b = 1.0;  ///< text` as a declaration for each name, each with the text."""
-    parts = depth_split(line.split("///<")[0].rstrip().removesuffix(";"))
-    found = SEVERAL.match(line)
-    if not found or len(parts) < 2 or found[2].split()[0] in ("return", "using", "friend", "typedef", "throw", "case"):
+    """`double a, b = 1.0;  ///< text` as a declaration for each name, each with the text; None where the line is no such."""
+    code, _, own = line.partition("///<")
+    first, *others = split_at_commas(code.rstrip().removesuffix(";"))
+    found = DECLARED.match(first)
+    if not (code.rstrip().endswith(";") and others and found and all(map(NAME.match, others))) or found[2].split()[0] in NO_TYPES:
         return None
-    first = re.match(r"^(\s*)(.*?[\w>&*])\s+([&*]?\w+\s*(?:=.*|\{.*|\[.*)?)$", parts[0])
-    if not first or not all(re.match(r"^\s*[&*]?\w+\s*($|=|\{|\[)", p) for p in parts[1:]):
-        return None
-    text = comment or found[4]
+    text = (comment or own).strip()
     said = f" /**< {text.replace('*/', '* /')} */" if text else ""
-    return first[1] + " ".join(f"{first[2].rstrip()} {name.strip()};{said}" for name in (first[3], *parts[1:]))
+    return found[1] + " ".join(f"{found[2]} {name.strip()};{said}" for name in (found[3], *others))
 
 
+# --- headers: what a concept asks for ---------------------------------------------------------
 SECTIONS = {"A body": "bodies", "A joint geometry": "joints", "A policy": "joints", "A force element": "forces", "An integrator": "integrators", "A linear solver": "solvers", "Their laws": "testing"}
+MEMBER_ROW = re.compile(r"^\| (`[^|]*`[^|]*) \| ([^|]*) \|$", re.M)
 
 
 def asked_by_concepts():
     """What docs/extending.md says of each member in its tables: {folder: {(name, whether it is a function): text}}."""
     said = {folder: {} for folder in (*SECTIONS.values(), "math", "vehicle")}  # where types of these kinds are, too
     for section in re.split(r"^## ", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), flags=re.M):
-        folder = SECTIONS.get(re.match(r"[\w ]*", section)[0].strip())
-        for cell, text in MEMBER_ROW.findall(section) if folder else ():
-            names = [re.sub(r"[<(].*", "", part) for part in re.findall(r"`([^`]+)`", cell)]
-            for name in names:
-                if re.fullmatch(r"\w+", name) and text.strip():
-                    said[folder].setdefault((name, "(" in cell), text.strip())
+        if folder := SECTIONS.get(re.match(r"[\w ]*", section)[0].strip()):
+            for cell, text in MEMBER_ROW.findall(section):
+                for name in (re.sub(r"[<(].*", "", part) for part in re.findall(r"`([^`]+)`", cell)):
+                    if re.fullmatch(r"\w+", name) and text.strip():
+                        said[folder].setdefault((name, "(" in cell), text.strip())
     return said
+
+
+def undocumented():
+    """What a first run found without a comment: {file: {line: names}}."""
+    found = {}
+    file = ROOT / "build/site/parts/undocumented.txt"
+    for row in file.read_text(encoding="utf-8").splitlines() if file.exists() else ():
+        path, line, name, _ = row.split("\t")
+        found.setdefault(path, {}).setdefault(int(line), []).append(name)
+    return found
+
+
+ASKED = asked_by_concepts()
+WAITING = undocumented()
 
 
 def asked_of(folder, member, is_function):
     """The words of the folder's own table, or of another one; those of solvers are of no other folder."""
-    tables = [ASKED[folder], *(table for other, table in ASKED.items() if "solvers" not in (folder, other))]
+    tables = [ASKED[folder], *(table for other, table in ASKED.items() if "solvers" not in (folder, other))] if folder in ASKED else []
     return next((table[member, is_function] for table in tables if (member, is_function) in table), None)
 
 
-def floor_of(name):
-    parts = name.split("/")  # include/polybody/FLOOR/...
-    return f"floor_{parts[2]}" if len(parts) > 3 else "floor_all"
+def say_what_is_asked(lines, i, folder, member):
+    """Puts the words for a member that line i declares before it, and before its `template` and `requires`."""
+    is_function = bool(re.search(rf"\b{re.escape(member)}\(", lines[i]))
+    text = asked_of(folder, member, is_function)
+    if not text or not (is_function or re.search(r"static constexpr|^\s*using \w+ =", lines[i])):
+        return
+    while i > 0 and re.match(r"\s*(template|requires)\b", lines[i - 1]) and not lines[i - 1].rstrip().endswith(";"):
+        i -= 1
+    lines[i] = re.sub(r"^(\s*)", lambda m: f"{m[1]}/** {text} */ ", lines[i], count=1)
 
 
+# --- headers: the rest ------------------------------------------------------------------------
 EQUATION = re.compile(r"^(\s*///) {2,3}(?![ -]|\d\.)(.*)$")
+LEFT_OUT = (re.compile(r"^(?:extern )?template (?!<)[^;]*;", re.M), re.compile(r"^template <[^\n]*>\nstruct Eigen::.*?^\};$", re.M | re.S))
 
 
 def on_lines_of_their_own(lines):
@@ -90,54 +110,29 @@ def on_lines_of_their_own(lines):
     for line in lines:
         if "///" in line:  # no end of a sentence
             line = re.sub(r"\b(Eqs?|Figs?|et al|vol|cf)\. ", r"\1.&nbsp;", line)
-        if found := EQUATION.match(line):
-            yield f"{found[1]} <br/>&emsp;{found[2]}"
-            after = True
-        else:
-            plain = re.match(r"^(\s*///) ([^ \\].*)$", line) if after else None
-            yield f"{plain[1]} <br/>{plain[2]}" if plain else line
-            after = False
+        equation = EQUATION.match(line)
+        plain = re.match(r"^(\s*///) ([^ \\].*)$", line) if after and not equation else None
+        yield f"{equation[1]} <br/>&emsp;{equation[2]}" if equation else f"{plain[1]} <br/>{plain[2]}" if plain else line
+        after = bool(equation)
 
 
 def header(name, text):
-    text = re.sub(r"^(?:extern )?template (?!<)[^;]*;", lambda m: "\n" * m[0].count("\n"), text, flags=re.M)
-    text = re.sub(r"^template <[^\n]*>\nstruct Eigen::.*?^\};$", lambda m: "\n" * m[0].count("\n"), text, flags=re.M | re.S)
+    for pattern in LEFT_OUT:
+        text = pattern.sub(lambda m: "\n" * m[0].count("\n"), text)
     lines = text.split("\n")
-    waiting = WAITING.get(name, {})
-    folder = name.split("/")[2]
+    _, _, folder, *within = name.split("/")  # include/polybody/FLOOR/...
     for i, line in enumerate(lines):
         if "///<" in line and "," in line:
             lines[i] = each_with_its_comment(line) or line
         elif "," in line and i > 0 and (above := re.match(r"\s*/// (\w.*)$", lines[i - 1])) and "///" not in lines[i - 2]:
             if each := each_with_its_comment(line, above[1]):
                 lines[i - 1 : i + 1] = "", each
-        for member in waiting.get(i + 1, ()):
-            is_function = bool(re.search(rf"\b{re.escape(member)}\(", lines[i]))
-            text_of_it = asked_of(folder, member, is_function) if folder in ASKED else None
-            if text_of_it and (is_function or re.search(r"static constexpr|^\s*using \w+ =", lines[i])):
-                place = i
-                while place > 0 and re.match(r"\s*(template|requires)\b", lines[place - 1]) and not lines[place - 1].rstrip().endswith(";"):
-                    place -= 1
-                lines[place] = re.sub(r"^(\s*)", lambda m: f"{m[1]}/** {text_of_it} */ ", lines[place], count=1)
+        for member in WAITING.get(name, {}).get(i + 1, ()):
+            say_what_is_asked(lines, i, folder, member)
+    group = f"floor_{folder}" if within else "floor_all"
     text = "\n".join(on_lines_of_their_own(lines))
-    floor = floor_of(name)
-    text = re.sub(r"^(namespace polybody[\w:]* \{)\n", rf"\1 /** @addtogroup {floor}\n@{{ */", text, flags=re.M)
+    text = re.sub(r"^(namespace polybody[\w:]* \{)\n", rf"\1 /** @addtogroup {group}\n@{{ */", text, flags=re.M)
     return re.sub(r"^(\}  // namespace polybody)", r"/** @} */ \1", text, flags=re.M)
-
-
-def undocumented():
-    """What a first run found without a comment: {file: {line: names}}."""
-    found = {}
-    file = ROOT / "build/site/parts/undocumented.txt"
-    if file.exists():
-        for row in file.read_text(encoding="utf-8").splitlines():
-            path, line, name, _ = row.split("\t")
-            found.setdefault(path, {}).setdefault(int(line), []).append(name)
-    return found
-
-
-ASKED = asked_by_concepts()
-WAITING = undocumented()
 
 
 # --- pages ------------------------------------------------------------------------------------
