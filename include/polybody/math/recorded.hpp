@@ -79,8 +79,8 @@ class Recording {
 
  private:
   struct Operation {
-    double by_a = 0.0, by_b = 0.0;
-    Number a = 0, b = 0;
+    double by_a = 0.0, by_b = 0.0;  ///< derivatives by both arguments: factors of the slope
+    Number a = 0, b = 0;            ///< the arguments
   };
   [[gnu::cold]] void grow() {
     if (this == &none_)
@@ -105,16 +105,17 @@ struct Recorded {
   Recording::Number number = 0;  ///< zero: a constant
 
   Recorded() = default;
+  /// A constant of this value.
   Recorded(double value) : v(value) {}  // NOLINT(google-explicit-constructor): a constant is a recorded number
   Recorded(double value, Recording::Number of) : v(value), number(of) {}  ///< a value with the number `of`
 
   /// An independent variable of this value.
   static Recorded variable(double value) { return {value, Recording::current().variable()}; }
-  /// f(a) of this value and with the derivative f′(a).
+  /// f(a) of this value and with the derivative `by_a` = f′(a).
   static Recorded of(double value, Recorded const& a, double by_a) {
     return {value, a.number == 0 || by_a == 0.0 ? 0 : Recording::current().record(a.number, by_a, 0, 0.0)};
   }
-  /// f(a, b) of this value and with its partial derivatives.
+  /// f(a, b) of this value and with its partial derivatives `by_a` and `by_b`.
   static Recorded of(double value, Recorded const& a, double by_a, Recorded const& b, double by_b) {
     if (b.number == 0) return of(value, a, by_a);
     if (a.number == 0) return of(value, b, by_b);
