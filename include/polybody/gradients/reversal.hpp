@@ -21,7 +21,7 @@ struct ReversalReport {
   std::size_t snapshots = 0;  ///< the largest count of states that were kept at a time
 };
 
-/// C(s + r, s) steps, or the largest number where that is more.
+/// C(s + r, s) steps, s = `snapshots` and r = `times`, or the largest number where that is more.
 inline std::size_t steps_within(std::size_t snapshots, std::size_t times) {
   double count = 1.0;
   for (std::size_t k = 1; k <= std::min(snapshots, times); ++k) count *= double(snapshots + times - k + 1) / double(k);
