@@ -8,6 +8,7 @@
 
 #include <polybody/integrators/error_tolerance.hpp>
 #include <polybody/integrators/explicit_step.hpp>
+#include <polybody/integrators/runge_kutta_tableau.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 
 namespace polybody {
@@ -86,6 +87,7 @@ struct RungeKutta4 {
   static constexpr int order = 4;
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
   static constexpr double stable_to = 2.8284271247461901;  ///< ωh, a ratio
+  using Tableau = detail::ClassicalTableau;                ///< its coefficients
   /// Where |1 + z + z²/2 + z³/6 + z⁴/24| = 1 along z = hs, s the faster of the roots −d/2 ± √(d²/4 − ω²), d = `rate`
   /// [1/s], ω [rad/s] [Hairer & Wanner 1996, §IV.2].
   static double stable_step(double omega, double rate) {
@@ -114,12 +116,9 @@ struct RungeKutta4 {
   }
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
-    using Row = std::array<double, 4>;
     w.first_stage(system, x);
-    w.stage(system, x, h, 0.5, Row{0.5}, 1);
-    w.stage(system, x, h, 0.5, Row{0.0, 0.5}, 2);
-    w.stage(system, x, h, 1.0, Row{0.0, 0.0, 1.0}, 3);
-    w.combine(x, h, Row{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0}, 4);
+    for (std::size_t i = 1; i < 4; ++i) w.stage(system, x, h, Tableau::c[i], Tableau::a[i], int(i));
+    w.combine(x, h, Tableau::b, 4);
     w.accept(system, x, h, stabilisation, false);
     return {.taken = h, .next = h, .factorisations = 4, .evaluations = 4, .choices = detail::choices_of(w.scratch)};
   }
@@ -132,6 +131,7 @@ struct DormandPrince {
   static constexpr int order = 5;
   static constexpr bool accepts_rows = Stabilisation::accepts_rows;
   static constexpr bool controls_step = true;
+  using Tableau = detail::DormandPrinceTableau;  ///< its coefficients
 
   double relative_tolerance = 1e-8;   ///< relative to the size of what is integrated
   double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
@@ -157,31 +157,21 @@ struct DormandPrince {
   /// Takes at most h, less where the error asks for it. \throws StepTooSmall.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
-    using Row = std::array<double, 7>;
-    static constexpr Row c{0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
-    static constexpr std::array<Row, 7> a{Row{},
-                                          Row{1.0 / 5},
-                                          Row{3.0 / 40, 9.0 / 40},
-                                          Row{44.0 / 45, -56.0 / 15, 32.0 / 9},
-                                          Row{19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
-                                          Row{9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
-                                          Row{35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-    static constexpr Row e{71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
     StepReport report;
     w.first_stage(system, x);
     for (;;) {
-      for (int i = 1; i < 7; ++i) w.stage(system, x, h, c[std::size_t(i)], a[std::size_t(i)], i);
+      for (int i = 1; i < 7; ++i) w.stage(system, x, h, Tableau::c[std::size_t(i)], Tableau::a[std::size_t(i)], i);
       report.evaluations += 6;
       w.error.setZero();
       w.v_error.setZero();
       for (std::size_t j = 0; j < 7; ++j) {
-        w.error += (h * e[j]) * w.position_rate[j];
-        w.v_error += (h * e[j]) * w.acceleration[j];
+        w.error += (h * Tableau::error[j]) * w.position_rate[j];
+        w.v_error += (h * Tableau::error[j]) * w.acceleration[j];
       }
       double const error = std::sqrt(mean_square(x, system.speeds() - system.layout().states, w));
       double const factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 5.0);
       if (error <= 1.0) {
-        w.combine(x, h, a[6], 6);
+        w.combine(x, h, Tableau::b, Tableau::stages);
         report.evaluations += w.accept(system, x, h, stabilisation, true);
         report.factorisations = report.evaluations;
         report.taken = h;
