@@ -1,0 +1,136 @@
+#pragma once
+/// \file
+/// Places of a step where linear equations are solved (gradients/equation_place.hpp), and the derivatives of their
+/// solutions: of K x = b, K = [M, Gᵀ; G, 0],
+///   K δx = δb − δK x,
+/// whose right side is one pass of dual numbers through the equations at x that stays. A step is written once, for
+/// doubles, whose places are solved and factored, and for duals, which meet the same places in the same order.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <polybody/gradients/equation_place.hpp>
+#include <polybody/integrators/forward_dynamics.hpp>
+
+namespace polybody {
+
+/// The places of a step, with factors of their matrices.
+template <LinearSolver Solver = DefaultSolver>
+class SolvedPlaces {
+ public:
+  /// Directions that go through the equations together, a part of a dual number each.
+  static constexpr int lanes = 4;
+  using D = Dual<lanes>;         ///< a value with its derivatives
+  using Dots = VecXOf<Dual<4>>;  ///< a vector of them
+
+  /// The model must outlive it.
+  template <class M>
+  [[gnu::cold]] SolvedPlaces(M const& model, System& system) : system_(&system), dual_(model, with<Entries::motion>) {
+    static_assert(!M::eliminates,
+                  "Steps in joint coordinates, and with dependent coordinates eliminated, are not differentiated. Give "
+                  "the joints Constraint, Penalty or Bushing.");
+    rhs_ = solution_ = VecX::Zero(system.size());
+  }
+
+  /// The system in the scalar T.
+  template <StateScalar T>
+  BasicSystem<T>& system() {
+    if constexpr (std::same_as<T, double>)
+      return *system_;
+    else
+      return dual_;
+  }
+
+  /// What follows is solved at new places.
+  void forget() { used_ = passed_ = 0; }
+  /// What follows goes through the same places from the first one on.
+  void again() { passed_ = 0; }
+
+  /// Solves at another place, into its a and λ. \throws LinearSolverSingular, NonFinite.
+  void solve(EquationPlace<>& x) {
+    if (used_ == held_.size()) {
+      held_.push_back(std::make_unique<Held>());
+      held_.back()->factors.analyse(*system_, 1, [&](BlockSink& sink) { system_->masses(sink); });
+    }
+    Held& here = *held_[used_++];
+    Index const nv = system_->speeds(), rows = system_->rows();
+    x.a.setZero(nv);
+    x.lambda.setZero(rows);
+    equations_.evaluate(*system_, x);
+    Index const bad = here.factors.factor([&](BlockSink& sink) { system_->masses(sink); });
+    for (Index i = 0; i < nv; ++i) rhs_[i] = -equations_.balance[i];
+    for (Index i = 0; i < rows; ++i) rhs_[nv + i] = -equations_.rows[i];
+    if (bad >= 0) detail::throw_unsolvable(*system_, rhs_, name_of_equation(*system_, bad));
+    here.factors.solve(rhs_, solution_);
+    if (Index const i = first_not_finite(solution_); i >= 0)
+      detail::throw_unsolvable(*system_, rhs_, system_->name_of(i));
+    x.a = solution_.head(nv);
+    x.lambda = solution_.tail(rows);
+    here.place = x;
+  }
+  /// |rows| at a = 0 where it solved last, at most.
+  double largest_row() const { return largest_size(equations_.rows); }
+  /// Equations that repeat others where it solved last.
+  std::span<Index const> dropped() const { return held_[used_ - 1]->factors.dropped(); }
+
+  /// Into a and λ of x, whose q, v and `also` come with derivatives, the solution of the next place with its own.
+  template <TellsEquationSlopes F>
+  void solve(EquationPlace<D>& x, std::size_t directions, F&& slope) {
+    Held& here = *held_[passed_++];
+    Index const nv = here.place.a.size(), rows = here.place.lambda.size();
+    x.a = here.place.a.template cast<D>();
+    x.lambda = here.place.lambda.template cast<D>();
+    dual_equations_.evaluate(dual_, x);
+    for (std::size_t l = 0; l < directions; ++l) {
+      EquationSlope const by = slope(here.place, l);
+      Index const k = Index(l);
+      for (Index i = 0; i < nv; ++i) rhs_[i] = -(dual_equations_.balance[i].d[k] + by.balance[i]);
+      for (Index i = 0; i < rows; ++i) rhs_[nv + i] = -(dual_equations_.rows[i].d[k] + by.rows[i]);
+      here.factors.solve(rhs_, solution_);
+      for (Index i = 0; i < nv; ++i) x.a[i].d[k] = solution_[i];
+      for (Index i = 0; i < rows; ++i) x.lambda[i].d[k] = solution_[nv + i];
+    }
+  }
+
+ private:
+  struct Held {
+    EquationPlace<> place;
+    TangentSolver<SolverOfSteps<Solver>> factors;
+  };
+
+  System* system_;
+  BasicSystem<D> dual_;
+  PlaceEquations<double> equations_;
+  PlaceEquations<D> dual_equations_;
+  std::vector<std::unique_ptr<Held>> held_;  // by places of a step; they stay for later steps
+  std::size_t used_ = 0, passed_ = 0;
+  VecX rhs_, solution_;
+};
+
+namespace detail {
+
+/// `to` becomes one part of a state, with its derivatives along all directions.
+template <int N>
+void lift(VecX const& part, std::span<State* const> dx, VecX State::* of, VecXOf<Dual<N>>& to) {
+  to.resize(part.size());
+  for (Index i = 0; i < part.size(); ++i) {
+    to[i] = Dual<N>(part[i]);
+    for (std::size_t l = 0; l < dx.size(); ++l) to[i].d[Index(l)] = (dx[l]->*of)[i];
+  }
+}
+/// The derivatives in `from` become those of one part of a state.
+template <int N>
+void take_slopes(VecXOf<Dual<N>> const& from, std::span<State* const> dx, VecX State::* of) {
+  for (std::size_t l = 0; l < dx.size(); ++l) {
+    VecX& to = dx[l]->*of;
+    to.resize(from.size());
+    for (Index i = 0; i < from.size(); ++i) to[i] = from[i].d[Index(l)];
+  }
+}
+
+}  // namespace detail
+
+}  // namespace polybody

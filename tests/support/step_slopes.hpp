@@ -1,0 +1,287 @@
+#pragma once
+// Slopes of steps of several stages beside differences of the same steps.
+
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/gradients/parameter.hpp>
+#include <polybody/gradients/solved_places.hpp>
+#include <polybody/integrators/system_for.hpp>
+#include <polybody/joints/policies/bushing.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/spherical.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace polybody {
+
+/// A model for some values of its parameters, with the state in which it is let go.
+template <class M>
+struct ModelAndStart {
+  M model;
+  State start;
+};
+
+/// Two links, the second across the first, on pins which are not parallel. They turn, and each speed is moved by a part
+/// of its own, so that soft links swing at once. Parameters: Young's modulus, density, stiffness of the pins, length of
+/// the second link, speed and angle of the start.
+template <class B, class Policy>
+struct TwoLinks {
+  static constexpr bool knows_frames = B::observes == Observes::frame;
+  using Pin = Joint<std::conditional_t<knows_frames, Revolute, Spherical>, Policy>;
+  using M = Model<Bodies<B>, Joints<Pin>>;
+
+  ModelAndStart<M> operator()(std::span<double const> p) const {
+    M model{Gravity{0, 0, -9.81}};
+    Bar bar{.length = 0.5,
+            .section = Rectangle{.height = 0.02, .width = 0.03},
+            .material = Material{.density = p[1], .young = p[0], .poisson = 0.3}};
+    auto const first = model.add(body_of(bar), "first");
+    bar.placement = Placement::at({0.5, 0, 0});
+    bar.length = p[3];
+    auto const second = model.add(body_of(bar), "second");
+    model.connect(pin({0, 1, 0}, p[2]), model.ground().at({0, 0, 0}), first.at(0.0), "shoulder");
+    model.connect(pin({0, 0.8, 0.6}, p[2]), first.at(0.5), second.at(0.0), "elbow");
+    State start = model.reference_state();
+    System const system(model, with<Entries::rigid_speeds>);
+    VecX turn = start.v, next = start.q;
+    system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, 1, 0}, turn);
+    system.plus(start.q, p[5] * turn, next);
+    start.q = next;
+    for (Index i = 0; i < turn.size(); ++i) start.v[i] = p[4] * turn[i] + 0.3 * std::sin(1.0 + 3.0 * double(i));
+    return {std::move(model), start};
+  }
+
+ private:
+  static B body_of(Bar const& bar) {
+    if constexpr (requires { B::from(bar, 1); })
+      return B::from(bar, 1);
+    else
+      return B::from(bar);
+  }
+  static Policy policy_of([[maybe_unused]] double stiffness) {
+    if constexpr (std::is_same_v<Policy, Bushing>) {
+      Bushing::Matrix const one = Bushing::Matrix::Identity();
+      return Bushing{.stiffness = Bushing::Matrix(stiffness * one), .damping = Bushing::Matrix(1e-5 * stiffness * one)};
+    } else if constexpr (std::is_same_v<Policy, Penalty>) {
+      return Penalty{.stiffness = stiffness, .damping = 1e-4 * stiffness};
+    } else {
+      return Policy{};
+    }
+  }
+  static Pin pin([[maybe_unused]] Vec3 const& axis, double stiffness) {
+    Policy const policy = policy_of(stiffness);
+    if constexpr (knows_frames)
+      return Pin{Revolute{.axis = axis}, policy};
+    else
+      return Pin{Spherical{}, policy};
+  }
+};
+
+/// A bar that a drive turns on two hinges of one axis, five rows too many, and a rod that hangs on its end. Parameters:
+/// density, length of the rod, amplitude and frequency of the drive.
+struct DrivenDoor {
+  struct Wave {
+    double amplitude, frequency;  // [rad], [rad/s]
+    Motion operator()(double t) const {
+      double const s = amplitude * std::sin(frequency * t), c = amplitude * std::cos(frequency * t);
+      return {s, frequency * c, -frequency * frequency * s};
+    }
+  };
+  using Hinge = Joint<Revolute, Constraint>;
+  using Drive = Joint<PrescribedAngle<Wave>, Constraint>;
+  using M = Model<Bodies<Rigid<>>, Joints<Hinge, Drive, Joint<Spherical, Constraint>>>;
+
+  ModelAndStart<M> operator()(std::span<double const> p) const {
+    M model{Gravity{0, 0, -9.81}};
+    Bar bar{.length = 0.5,
+            .section = Rectangle{.height = 0.02, .width = 0.03},
+            .material = Material{.density = p[0], .young = 2e11, .poisson = 0.3}};
+    auto const door = model.add(Rigid<>::from(bar), "door");
+    bar.placement = Placement::at({0.5, 0, 0});
+    bar.length = p[1];
+    auto const rod = model.add(Rigid<>::from(bar), "rod");
+    Hinge const hinge{Revolute{.axis = {0, 0, 1}}, Constraint{}};
+    model.connect(hinge, model.ground().at({0, 0, 0.1}), door.at(0.0, 0.0, 0.1), "upper");
+    model.connect(hinge, model.ground().at({0, 0, -0.1}), door.at(0.0, 0.0, -0.1), "lower");
+    model.connect(Drive{PrescribedAngle<Wave>{.law = {p[2], p[3]}, .axis = {0, 0, 1}}, Constraint{}},
+                  model.ground().at({0, 0, 0}), door.at(0.0), "drive");
+    model.connect(Joint<Spherical, Constraint>{}, door.at(0.5), rod.at(0.0), "ball");
+    State const start = model.reference_state();
+    return {std::move(model), start};
+  }
+};
+/// The parameters of `DrivenDoor`.
+inline std::vector<Parameter> const parameters_of_door{
+    {"density [kg/m³]", 2000.0, 600.0}, {"length [m]", 0.4, 0.1}, {"amplitude [rad]", 0.5}, {"frequency [rad/s]", 6.0}};
+
+/// A mass on a spring and a damper along x, drawn out by 1 m from 2 m: its stiffness and damping are the parameters.
+struct DampedMass {
+  using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>;
+  static constexpr double mass = 2.0;
+  ModelAndStart<M> operator()(std::span<double const> p) const {
+    M model;
+    auto const body = model.add(planar::Rigid(mass, 1.0, Placement::at({3.0, 0, 0})), "mass");
+    model.apply(SpringDamper{.stiffness = p[0], .damping = p[1], .free_length = 2.0}, model.ground().at({0, 0, 0}),
+                body.at(Vec2(0, 0)), "spring");
+    State const start = model.reference_state();
+    return {std::move(model), start};
+  }
+  /// x(t) = 2 + e^(−δt) (cos ωt + δ/ω sin ωt).
+  static double place(double k, double c, double t) {
+    double const delta = 0.5 * c / mass, w = std::sqrt(k / mass - delta * delta);
+    return 2.0 + std::exp(-delta * t) * (std::cos(w * t) + delta / w * std::sin(w * t));
+  }
+  /// ∂x/∂k and ∂x/∂c, by differences of fourth order of the closed form.
+  static std::array<double, 2> slopes(double k, double c, double t) {
+    std::array<double, 2> out{};
+    double const e = 1e-3;
+    for (std::size_t i = 0; i < 4; ++i) {
+      double const d = FourPoints::places[i] * e, by = FourPoints::weights[i] / e;
+      out[0] += by * place(k + d, c, t);
+      out[1] += by * place(k, c + d, t);
+    }
+    return out;
+  }
+};
+
+/// Steps of `integrator` by a model for some values of the parameters. It stays where it is.
+template <class Made, class I>
+struct Steps {
+  Made made;
+  System system;
+  I method;
+  decltype(std::declval<I const&>().template workspace<DefaultSolver>(std::declval<System&>())) work;
+  State x;
+  PlaceEquations<> equations;
+
+  Steps(Made m, I const& integrator, double h)
+      : made(std::move(m)),
+        system(system_for<I, Entries::implicit_step>(made.model)),
+        method(integrator),
+        work(method.template workspace<DefaultSolver>(system)),
+        x(made.start) {
+    work.forward.project_velocities(system, x.q, x.v, x.t);
+    method.start(system, x, h, work);
+  }
+  /// \returns whether it took the whole h
+  bool step(double h) { return method.step(system, x, h, work).taken == h; }
+};
+
+/// A run of steps of one length, with its derivatives by slopes of its steps and by differences of the run.
+struct DerivedSteps {
+  State end;
+  std::vector<State> slopes, differences;  // by parameters
+  double left = 0.0;                       // by the last corrections of the steps
+};
+
+template <class Slope, class Make, class I>
+DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parameters, I const& integrator, double h,
+                          int count) {
+  using S = Steps<decltype(make(std::span<double const>())), I>;
+  std::vector<double> values;
+  for (Parameter const& p : parameters) values.push_back(p.value);
+  S whole(make(values), integrator, h);
+  std::vector<std::unique_ptr<S>> beside;  // four for each parameter
+  for (std::size_t j = 0; j < parameters.size(); ++j)
+    for (double const place : FourPoints::places) {
+      std::vector<double> p = values;
+      p[j] += place * parameters[j].distance();
+      beside.push_back(std::make_unique<S>(make(p), integrator, h));
+    }
+  auto const difference = [&](std::size_t j, auto&& part_of) {
+    VecX sum = VecX::Zero(part_of(*beside[4 * j]).size());
+    for (std::size_t k = 0; k < 4; ++k)
+      sum += FourPoints::weights[k] / parameters[j].distance() * part_of(*beside[4 * j + k]);
+    return sum;
+  };
+  auto const differences = [&] {
+    std::vector<State> out(parameters.size());
+    for (std::size_t j = 0; j < out.size(); ++j)
+      for (VecX State::* const part : {&State::q, &State::v, &State::a, &State::lambda})
+        out[j].*part = difference(j, [&](S& s) -> VecX const& { return s.x.*part; });
+    return out;
+  };
+
+  DerivedSteps out;
+  out.slopes = differences();
+  Slope slope(whole.made.model, whole.system, whole.method);
+  for (int n = 0; n < count; ++n) {
+    State const before = whole.x;
+    EXPECT_TRUE(whole.step(h));
+    StepTaken const step{before, whole.x, h};
+    slope.set(step);
+    for (std::size_t first = 0; first < parameters.size(); first += Slope::lanes) {
+      std::vector<State*> directions;
+      for (std::size_t j = first; j < std::min(first + Slope::lanes, parameters.size()); ++j)
+        directions.push_back(&out.slopes[j]);
+      out.left = std::max(out.left, slope.advance(step, directions, [&](EquationPlace<> const& x, std::size_t l) {
+        std::size_t const j = first + l;
+        for (std::size_t k = 0; k < 4; ++k) beside[4 * j + k]->equations.evaluate(beside[4 * j + k]->system, x);
+        return EquationSlope{difference(j, [](S& s) -> VecX const& { return s.equations.balance; }),
+                             difference(j, [](S& s) -> VecX const& { return s.equations.rows; }), parameters[j].size()};
+      }));
+    }
+    for (auto& s : beside) EXPECT_TRUE(s->step(h));
+  }
+  out.end = whole.x;
+  out.differences = differences();
+  return out;
+}
+
+/// Slopes and differences agree within 1e-8 of themselves, and as far as differences know them. \param rounding of the
+/// speeds, accelerations and multipliers of a state, sums of large forces, over a thousandth: differences divide by a
+/// thousandth of the size of the parameter. Coordinates have 5e-12.
+inline void expect_slopes_of_steps(DerivedSteps const& run, std::vector<Parameter> const& parameters, double rounding) {
+  EXPECT_LT(run.left, 1e-9);
+  for (std::size_t j = 0; j < parameters.size(); ++j)
+    for (auto const& [name, part, of_state] : {std::tuple{"q", &State::q, 5e-12},
+                                               {"v", &State::v, rounding},
+                                               {"a", &State::a, rounding},
+                                               {"λ", &State::lambda, rounding}}) {
+      VecX const &slope = run.slopes[j].*part, &expected = run.differences[j].*part;
+      double const off = (slope - expected).norm(), size = expected.norm(),
+                   state = (run.end.*part).norm() / parameters[j].size();
+      EXPECT_LE(off, 1e-8 * size + of_state * state) << parameters[j].name << ", " << name;
+    }
+}
+
+/// The error of (k ∂x/∂k, c ∂x/∂c) at t = 1 s by steps of one length.
+template <class Slope, class I>
+double error_of_slopes(I const& integrator, int steps) {
+  double const k = 50.0, c = 3.0;
+  std::vector<Parameter> const parameters{{"k [N/m]", k}, {"c [N s/m]", c}};
+  DerivedSteps const run = derive_steps<Slope>(DampedMass{}, parameters, integrator, 1.0 / steps, steps);
+  auto const expected = DampedMass::slopes(k, c, 1.0);
+  return std::hypot(k * (run.slopes[0].q[0] - expected[0]), c * (run.slopes[1].q[0] - expected[1]));
+}
+/// Half the step leaves 2^−order of the error.
+template <class Slope, class I>
+void expect_order_of_slopes(I const& integrator, int steps) {
+  double const coarse = error_of_slopes<Slope>(integrator, steps), fine = error_of_slopes<Slope>(integrator, 2 * steps);
+  EXPECT_NEAR(std::log2(coarse / fine), I::order, 0.2) << coarse << ", " << fine;
+}
+
+/// The parameters of `TwoLinks`, for pins of that stiffness [N/m] and links of that modulus [Pa]. A length and what
+/// changes frequencies have a scale on which differences of fourth order still know the phases.
+inline std::vector<Parameter> parameters_of_links(double young, double stiffness) {
+  return {{"young [Pa]", young, 0.3 * young},
+          {"density [kg/m³]", 2000.0, 600.0},
+          {"stiffness of pins [N/m]", stiffness, 0.3 * stiffness},
+          {"length [m]", 0.4, 0.1},
+          {"spin [rad/s]", 2.0, 20.0},
+          {"turn [rad]", 0.1, 0.4}};
+}
+
+}  // namespace polybody
