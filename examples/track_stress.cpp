@@ -6,6 +6,7 @@
 //   track_stress --compare matrix
 //   track_stress --compare surface
 //   track_stress --figure 4.8
+//   track_stress --compare pair --viewer build/release/polybody_viewer.html
 
 #include <polybody/vehicle/link_strain.hpp>
 
@@ -13,6 +14,7 @@
 #include <map>
 
 #include "support/command_line.hpp"
+#include "support/vehicle_film.hpp"
 #include "track_stress/ensemble.hpp"
 #include "track_stress/formulations.hpp"
 #include "track_stress/measures.hpp"
@@ -35,6 +37,7 @@ class Cache {
     Options o = options_;
     o.speed = speed;
     o.until = until;
+    if (!runs_.empty()) o.film = nullptr;
     if (o.bands) return runs_.emplace(key, runs_of_settings(o)).first->second;
     SettingRuns as_given{"as given", o, run(o, {on_pins(rigid_links()), on_pins(cable_links())})};
     return runs_.emplace(key, std::vector{std::move(as_given)}).first->second;
@@ -145,12 +148,7 @@ void report(Options const& o, StressRuns const& runs) {
 
 // What a legend calls the run.
 std::string label_of(StressRuns const& runs, std::size_t k) {
-  static std::map<std::string, std::string> const labels{{"ancf", "ANCF cables"},   {"ffr", "FFR, modes"},
-                                                         {"fe", "finite elements"}, {"lrvf", "LRVF"},
-                                                         {"beam", "ANCF beams"},    {"continuum", "ANCF continuum"}};
-  if (runs.links[k]->decoupled) return "rigid, decoupled";
-  auto const found = labels.find(runs.name(k));
-  return found != labels.end() ? found->second : runs.name(k);
+  return runs.links[k]->decoupled ? "rigid, decoupled" : links_in_words(runs.name(k));
 }
 
 Figure bending_figure(Options const& o, StressRuns const& runs) {
@@ -485,6 +483,18 @@ void side_by_side(Options const& o, std::vector<Combination> const& combinations
        "strain_filtered");
 }
 
+// A film shows one run, or rigid links beside cables.
+void open_film(Options& o) {
+  if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
+  if (o.film_file.empty()) return;
+  if (o.compare == "matrix" || o.compare == "terms" || o.compare == "surface" || o.halve || o.restart)
+    throw InvalidInput(
+        "A film shows one run, or rigid links beside cables: --film and --viewer go with --links, --figure, --compare "
+        "links, --compare pair and --compare ensemble.");
+  o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 4: stress of its links");
+  if (!o.figure.empty()) o.film_until = std::min(o.until, 10.0);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -530,6 +540,10 @@ int main(int argc, char** argv) {
   line.flag("--fatigue", &o.fatigue, "counts cycles of stress by rainflow");
   line.flag("--audit", &o.audit, "works out where the energy went");
   line.flag("!--unwatched", &o.watched, "a track that leaves its sprocket does not end the run");
+  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
+  line.option("--film", &o.film_file,
+              "film of the run, or of rigid links, decoupled, beside the flexible ones of the first comparison; with a "
+              "viewer, film.html in the folder --out");
   line.option("--out", &o.out, "folder of the results");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");
   if (auto const code = line.parse(argc, argv)) return *code;
@@ -537,6 +551,7 @@ int main(int argc, char** argv) {
   if (o.turn == "pivot") o.right = -1.0;
   if (o.turn == "curve") o.right = 0.8;
   try {
+    open_film(o);
     fs::create_directories(o.out);
     if (!o.compare.empty() && o.compare != "ensemble") o.start = std::make_shared<m113::TrackStart const>(settled(o));
     if (!o.figure.empty())
@@ -556,6 +571,8 @@ int main(int argc, char** argv) {
                        on_pins(rotation_links()), on_pins(beam_links()), on_pins(continuum_links())});
     else
       single(o);
+    if (o.film && o.film->scenes() > 0)
+      std::printf("  %s, %.1f MB\n", o.film_file.c_str(), 1e-6 * double(o.film->write(o.film_file)));
   } catch (Error const& e) {
     std::cerr << e.what() << '\n';
     return 1;

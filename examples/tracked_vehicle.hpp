@@ -45,6 +45,7 @@ struct Settings {
   std::shared_ptr<m113::TrackStart const> start = {};  // of the links; without it each run settles its own tracks
   double animate = 0.0;                                // seconds between states, 0 for none
   std::shared_ptr<Film> film = nullptr;                // each run is a scene
+  double film_until = std::numeric_limits<double>::infinity();  // [s]
   bool audit = false;
   bool watched = true;  // a track that leaves its sprocket ends the run
   fs::path out = "out/tracked_vehicle";
@@ -67,6 +68,8 @@ struct AnyVehicle {
   std::string pin, drive;          // names of the watched pin and of the drive beside it
   std::function<Visual()> visual;  // what it looks like
 };
+class VehicleScene;
+
 // What a vehicle is made with besides the formulation of its tracks.
 struct VehicleParts {
   BumpCourse ground;
@@ -102,6 +105,7 @@ struct Driven {
 struct TrackCase {
   Settings const& settings;
   std::vector<Outcome>* outcomes;
+  std::shared_ptr<VehicleScene> scene = nullptr;  // of the film, if not one under the run's name
 
   Scenario<AnyModel> scenario(std::string const& name, Built const& built) const;
   template <class I>

@@ -21,8 +21,7 @@ command_of() {
   local film=${3:+ --viewer $3}
   case $1 in
     robot_arm | cantilever) echo "$1 --case all --out $2/$1$film" ;;
-    tracked_vehicle) echo "$1 --figure all --out $2/$1$film" ;;
-    track_stress) echo "$1 --figure all --out $2/$1" ;;
+    tracked_vehicle | track_stress) echo "$1 --figure all --out $2/$1$film" ;;
     chain_study | vehicle_study) echo "$1 --threads $(nproc) --out $2/$1" ;;
     *) echo "$1" ;;
   esac

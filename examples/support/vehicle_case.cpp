@@ -136,9 +136,7 @@ class Watch {
     writer_ = std::make_unique<VtkWriter>(file, *visual_);
   }
 
-  void film(Film& film, std::string const& name, AnyVehicle const& vehicle) {
-    scene_ = std::make_unique<VehicleScene>(film, name, vehicle);
-  }
+  void film(std::shared_ptr<VehicleScene> scene) { scene_ = std::move(scene); }
 
   void see(State const& x, Outcome& o) {
     o.deepest = probe_->deepest;
@@ -178,7 +176,7 @@ class Watch {
   std::unique_ptr<EnergyAudit> audit_;
   std::unique_ptr<Visual> visual_;
   std::unique_ptr<VtkWriter> writer_;
-  std::unique_ptr<VehicleScene> scene_;
+  std::shared_ptr<VehicleScene> scene_;
 };
 
 }  // namespace
@@ -230,7 +228,10 @@ Scenario<AnyModel> TrackCase::scenario(std::string const& name, Built const& bui
   auto const watch = std::make_shared<Watch>(s, name, vehicle.tracks, probe);
   if (s.audit) watch->audit(EnergyAudit(vehicle.model.system()));
   if (s.animate > 0.0) watch->animate(vehicle.visual(), s.out / (name + ".pvd"));
-  if (s.film) watch->film(*s.film, name, vehicle);
+  if (scene)
+    watch->film(scene);
+  else if (s.film)
+    watch->film(std::make_shared<VehicleScene>(*s.film, name, vehicle, s.film_until));
   auto observer = [watch, out = outcomes, mine = outcomes->size() - 1](AnyModel const&, State const& x) {
     watch->see(x, (*out)[mine]);
   };

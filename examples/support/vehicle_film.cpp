@@ -2,34 +2,78 @@
 
 namespace chapter3 {
 
+namespace {
+constexpr double frames_per_second = 30.0;  // of simulated time
+constexpr double same_time = 1e-9;          // [s]
+
+// \param output "label [unit]"
+void add_point(FilmScene& scene, std::string const& output, double t, double number) {
+  std::size_t const unit = output.find(" [");
+  scene.plot(output.substr(0, unit), output.substr(unit + 2, output.size() - unit - 3), t, number);
+}
+}  // namespace
+
 std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& title) {
-  return std::make_shared<Film>(FilmOptions{
-      .viewer = viewer, .title = title, .look_from = Vec3(1.0, -2.2, 0.75), .up = Vec3::UnitZ(), .follow = "hull"});
+  return std::make_shared<Film>(FilmOptions{.viewer = viewer,
+                                            .title = title,
+                                            .frames_per_second = frames_per_second,
+                                            .look_from = Vec3(1.0, -2.2, 0.75),
+                                            .up = Vec3::UnitZ(),
+                                            .follow = "hull"});
 }
 
-VehicleScene::VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle)
-    : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(name)) {
+VehicleScene::VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double until, bool joints)
+    : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(name)), until_(until) {
   scene_.colour(axial_stress_colours());
   contacts_ = scene_.arrows("contact forces on links", "kN");
-  pins_ = scene_.arrows("forces of joints", "kN", false);
+  if (joints) joints_ = scene_.arrows("forces of joints", "kN", false);
 }
 
 void VehicleScene::plot(double t, std::vector<std::pair<char const*, double>> const& numbers) {
-  if (t < next_ - 1e-9) return;
-  next_ = std::max(next_ + 0.005, t);
-  for (auto const& [output, number] : numbers) {  // "label [unit]"
-    std::string const text = output;
-    std::size_t const unit = text.find(" [");
-    scene_.plot(text.substr(0, unit), text.substr(unit + 2, text.size() - unit - 3), t, number);
-  }
+  if (!plotted(t, next_)) return;
+  for (auto const& [output, number] : numbers) add_point(scene_, output, t, number);
+}
+
+void VehicleScene::plot(std::string const& output, std::vector<double> const& times,
+                        std::vector<double> const& values) {
+  double next = 0.0;
+  for (std::size_t i = 0; i < std::min(times.size(), values.size()); ++i)
+    if (plotted(times[i], next)) add_point(scene_, output, times[i], values[i]);
+}
+
+bool VehicleScene::plotted(double t, double& next) const {
+  if (t < next - same_time || t > until_ + same_time) return false;
+  next = std::max(next + 0.005, t);
+  return true;
 }
 
 void VehicleScene::see(State const& x, System const& system) {
-  if (!scene_.due(x.t)) return;
-  scene_.record(x.t, visual_.at(x));
+  if (x.t > until_ + same_time) return;
+  if (!also_) {
+    if (scene_.due(x.t)) frame(x, system, visual_.at(x));
+  } else if (x.t >= next_kept_ - same_time) {
+    double const interval = 1.0 / frames_per_second;
+    next_kept_ = next_kept_ + interval > x.t ? next_kept_ + interval : x.t + interval;
+    kept_.push_back(x);
+    also_(x);
+  }
+}
+
+void VehicleScene::show_kept(System system, std::function<void(std::size_t k, std::vector<VisualPart>&)> const& dress) {
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    State const& x = kept_[k];
+    system.evaluate(x.q, x.v, x.t);
+    std::vector<VisualPart> parts = visual_.at(x);
+    dress(k, parts);
+    frame(x, system, parts);
+  }
+}
+
+void VehicleScene::frame(State const& x, System const& system, std::vector<VisualPart> const& parts) {
+  scene_.record(x.t, parts);
   for (m113::Side const side : {m113::Side::left, m113::Side::right})
     tracks_->track(side).contacts(system, add_contacts(scene_, contacts_, 1e3));
-  add_reactions(scene_, pins_, system, x, 1e3);
+  if (joints_) add_reactions(scene_, *joints_, system, x, 1e3);
 }
 
 }  // namespace chapter3

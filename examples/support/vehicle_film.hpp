@@ -13,19 +13,35 @@ std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& ti
 // One run.
 class VehicleScene {
  public:
-  VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle);
+  // \param until what is later is left out [s]
+  // \param joints whether with the forces of joints, a sixth of the file
+  VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double until, bool joints = true);
 
   // A point of a history, unless there was one within 5 ms.
   void plot(double t, std::vector<std::pair<char const*, double>> const& numbers);
+  // A whole history "label [unit]", likewise.
+  void plot(std::string const& output, std::vector<double> const& times, std::vector<double> const& values);
   // A frame, where one is due. `system` must have been evaluated at x.
   void see(State const& x, System const& system);
 
+  // Frames come after the run, by `show_kept`: states are kept where a frame is due, and `also` is told them.
+  void keep(std::function<void(State const&)> also) { also_ = std::move(also); }
+  // Frame k of the states that were kept, once `dress` has changed what there is to be seen in it.
+  void show_kept(System system, std::function<void(std::size_t k, std::vector<VisualPart>&)> const& dress);
+
  private:
+  void frame(State const& x, System const& system, std::vector<VisualPart> const& parts);
+  // Whether a history whose next point comes at `next` has one at t; then the next one comes later.
+  bool plotted(double t, double& next) const;
+
   Visual visual_;
   std::shared_ptr<m113::TrackedVehicle const> tracks_;
   FilmScene& scene_;
-  FilmArrows contacts_{}, pins_{};
-  double next_ = 0.0;
+  FilmArrows contacts_{};
+  std::optional<FilmArrows> joints_;
+  double next_ = 0.0, next_kept_ = 0.0, until_;
+  std::function<void(State const&)> also_;
+  std::vector<State> kept_;
 };
 
 }  // namespace chapter3

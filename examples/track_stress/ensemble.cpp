@@ -15,6 +15,7 @@ std::vector<std::pair<std::string, Options>> plausible(Options const& o) {
   std::vector<std::pair<std::string, Options>> all{{"as given", o}};
   auto const with = [&](std::string const& name, auto const& change) {
     all.emplace_back(name, o);
+    all.back().second.film = nullptr;
     change(all.back().second);
   };
   with("preload 10 kN", [](Options& s) { s.preload = 1e4; });

@@ -35,14 +35,16 @@ inline void require_driveable(Options const& o, Combination const& c) {
         "Take --links rigid, ffr, fe, lrvf, beam or continuum.");
 }
 
-// The runs of several formulations side by side.
+// The runs of several formulations side by side; a film shows rigid links and cables.
 inline StressRuns run(Options const& o, std::vector<Combination> const& combinations) {
   warn_of_drive(o);
   StressRuns all;
   std::vector<Comparison> apart;
   for (Combination const& c : combinations) {
     require_driveable(o, c);
-    StressRuns one = run_of(o, c);
+    Options mine = o;
+    if (combinations.size() > 1 && c.links != all_links[0] && c.links != all_links[1]) mine.film = nullptr;
+    StressRuns one = run_of(mine, c);
     for (ComparedRun const& r : one.comparison.runs)
       for (auto const& met : r.run.events) std::cerr << r.name << ": at " << met.time << " s " << met.name << ".\n";
     apart.push_back(std::move(one.comparison));

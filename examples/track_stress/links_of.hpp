@@ -13,7 +13,10 @@ template <class V, class Links>
 WatchedLink watched(Options const& o, std::shared_ptr<V const> const& vehicle, Links const& links) {
   auto const link = vehicle->side(m113::Side::left).links[watched_link];
   if constexpr (HasRigidPoints<typename V::LinkType>) {
-    return {.rigid = link};
+    WatchedLink of{.rigid = link};
+    for (auto const& side : vehicle->sides)
+      of.rigid_links.insert(of.rigid_links.end(), side.links.begin(), side.links.end());
+    return of;
   } else {
     if constexpr (requires { links.model; })
       if (links.model)

@@ -23,6 +23,7 @@ void take_equal_steps(StressRuns& runs, double step) {
 
 StressRuns rigid_links_by_adams(Options o) {
   using Adams = AdamsBashforthMoulton<CoordinatePartitioning>;
+  o.film = nullptr;
   o.sampling = o.step;
   o.first_step = std::min(1e-5, o.step);
   auto const make = [](Options const&, VehicleParts const& parts) {

@@ -3,8 +3,8 @@
 #include <ctime>
 
 #include <polybody/io/checkpoint.hpp>
-#include <polybody/vehicle/decoupled_link_strain.hpp>
 
+#include "decoupled_link.hpp"
 #include "surface.hpp"
 
 namespace chapter4 {
@@ -17,18 +17,6 @@ double cpu_of(auto&& work) {
   return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// The recorded link as a structure: with its mass, also where its section is another.
-Structure structure_of_link(Options const& o) {
-  Bar bar = m113::link_bar({}, section_height(o));
-  double const heavier = o.section == 1.0 ? 1.0 : o.masses.link.mass / flexible_mass(o);
-  bar.material->density = heavier * bar.material->density;
-  return m113::link_structure(bar);
-}
-// A link of another height has another moment of inertia about its pins, by up to a sixth.
-inline StructureLoadOptions loads(Options const& o) {
-  return o.section == 1.0 ? StructureLoadOptions{} : StructureLoadOptions{.unbalance = 0.2};
-}
-
 // The strain of a link by its vibrations under what was recorded, stepped as the run was.
 DecoupledStress vibrating(Options const& o, BodyRecord const& record) {
   return DecoupledStress::vibrating(structure_of_link(o), record, integrator(o),
@@ -36,7 +24,7 @@ DecoupledStress vibrating(Options const& o, BodyRecord const& record) {
 }
 DecoupledStress recovered(Options const& o, BodyRecord const& record) {
   if (o.recovery == "vibrating") return vibrating(o, record);
-  return DecoupledStress::quasi_static(structure_of_link(o), record, loads(o));
+  return quasi_static(o, record);
 }
 
 // Runs to the end and puts the first state from `at` [s] on away in a file; returns its time.

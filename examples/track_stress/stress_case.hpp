@@ -1,6 +1,6 @@
 #pragma once
 // The case of Chapter 4 for `compare`: the tracked vehicle, whose watched link tells its strain.
-#include "stress_runs.hpp"
+#include "stress_film.hpp"
 
 namespace chapter4 {
 
@@ -21,9 +21,10 @@ struct StressCase {
   std::vector<Outcome>* outcomes;
   std::shared_ptr<LinkHistory> history;
   Recording* recording;
+  std::shared_ptr<VehicleScene> scene;
 
   Scenario<AnyModel> operator()(Driven<I> const& driven) const {
-    auto scenario = TrackCase{options, outcomes}.scenario(driven.name, driven.built);
+    auto scenario = TrackCase{options, outcomes, scene}.scenario(driven.name, driven.built);
     *recording = watch(scenario, link, history);
     return scenario;
   }
@@ -40,9 +41,11 @@ StressRuns run_by(Options const& o, std::string const& name, Make const& make, I
   StressRuns runs;
   auto const history = runs.links.emplace_back(std::make_shared<LinkHistory>());
   Recording recording;
-  runs.comparison =
-      compare(StressCase<I>{o, link, &runs.outcomes, history, &recording}, Driven<I>{name, built, integrator});
+  StressScene film(o, name, built.vehicle, link);
+  runs.comparison = compare(StressCase<I>{o, link, &runs.outcomes, history, &recording, film.scene()},
+                            Driven<I>{name, built, integrator});
   if (recording.recorder) recover(o, recording, *history);
+  film.finish(o, runs.times(0), *history);
   return runs;
 }
 

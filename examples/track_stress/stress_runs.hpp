@@ -17,6 +17,7 @@ using namespace chapter3;
 inline constexpr int watched_link = watched_pin;
 
 struct Options : Settings {
+  fs::path viewer, film_file;
   std::string links = "ancf", pins, compare, figure, turn, recovery = "static";
   std::string files;     // of a finite element link
   bool surface = false;  // stress in named nodes of its surface, also after a run of rigid links
@@ -57,6 +58,7 @@ struct StressRuns : Runs {
 // What is asked of the watched link.
 struct WatchedLink {
   std::optional<BodyHandle<Rigid<>>> rigid = {};             // recorded, and its strain is worked out after the run
+  std::vector<BodyHandle<Rigid<>>> rigid_links = {};         // of both tracks: so is their stress for a film
   std::function<void(State const&, LinkHistory&)> see = {};  // adds what a flexible one tells in a state
 };
 struct StressVehicle {
@@ -76,6 +78,9 @@ struct Combination {
 };
 inline std::vector<std::string> const all_links{"rigid", "ancf", "ffr", "fe", "lrvf", "beam", "continuum"};
 inline std::vector<std::string> const all_pins{"constraint", "penalty", "bushing", "linear", "recursive"};
+
+// What a legend calls links that deform in the run.
+std::string links_in_words(std::string const& links);
 
 // The run of one formulation.
 StressRuns run_of(Options const& o, Combination const& c);
