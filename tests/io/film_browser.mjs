@@ -113,6 +113,25 @@ async function play(page) {
   }
 }
 
+/** Numbers that plots read out stand beside their titles, or below them where they are narrow. */
+async function readOuts(page) {
+  const range = await page.ask('polybodyFilm.range');
+  const unnamed = await page.ask(`[...document.querySelectorAll('.plot canvas')].filter((canvas) => !canvas.ariaLabel).length`);
+  check(unnamed === 0, 'each plot says its title to a reader of the page');
+  for (const across of [1280, width]) {
+    await page.resize(across, height);
+    await page.ask(`polybodyFilm.show(${range[0] + 0.35 * (range[1] - range[0])})`);
+    await page.ask(twoPictures);
+    const hidden = await page.ask(`[...document.querySelectorAll('.plot')].map((plot) => {
+      const canvas = plot.querySelector('canvas'), g = document.createElement('canvas').getContext('2d');
+      g.font = '12px system-ui, sans-serif';
+      const title = canvas.getBoundingClientRect(), numbers = plot.querySelector('figcaption').getBoundingClientRect();
+      return numbers.top >= title.top + 18 || numbers.left > title.left + 62 + g.measureText(canvas.ariaLabel).width ? '' : String(canvas.ariaLabel);
+    }).filter((name) => name)`);
+    check(hidden.length === 0, `no read-out stands on the title of its plot, ${across} pixels across ${JSON.stringify(hidden)}`);
+  }
+}
+
 async function pressKeys(page) {
   const film = (what) => page.ask(`polybodyFilm.${what}`);
   const [begin, end] = await film('range'), scenes = await film('scenes');
@@ -206,6 +225,7 @@ try {
     for (const scene of await page.ask('polybodyFilm.scenes'))
       console.log(`scene "${scene.name}": ${scene.times.length} frames, ${scene.parts.length} parts, arrows ${JSON.stringify(scene.arrows)}, plots ${JSON.stringify(scene.plots)}`);
     await play(page);
+    await readOuts(page);
     await pressKeys(page);
     for (const [scene, collection] of options.places.entries()) await comparePlaces(page, scene, resolve(collection));
     if (options.rate) await measureRate(page, Number(options.rate));

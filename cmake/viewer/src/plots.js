@@ -28,6 +28,7 @@ export class Plot {
     this.element = document.createElement('figure');
     this.element.className = 'plot';
     this.canvas = document.createElement('canvas');
+    this.canvas.ariaLabel = `${label} [${this.unit}]`;
     this.cursor = document.createElement('div');
     this.cursor.className = 'cursor';
     const numbers = document.createElement('figcaption');
@@ -79,7 +80,7 @@ export class Plot {
     g.font = '12px system-ui, sans-serif';
     g.fillStyle = '#222';
     g.textAlign = 'left';
-    g.fillText(`${this.label} [${this.unit}]`, left, 15);
+    g.fillText(this.canvas.ariaLabel, left, 15);
     g.lineWidth = 1;
     g.strokeStyle = '#e1e4e8';
     g.fillStyle = '#555';
