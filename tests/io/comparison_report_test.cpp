@@ -212,11 +212,11 @@ TEST_F(ComparisonReport, DifferencesFromTheFirstRunStandBesideTheCurves) {
 
 TEST_F(ComparisonReport, OutputsThatDifferMostComeFirstSixPanelsAPage) {
   Comparison c = oscillators();
-  // beside their spans of about 2 the outputs differ by 0, 0.005, 0.5; a constant by anything counts most, by nothing
-  // least
+  // beside their spans of about 2 the outputs differ by 0, 0.005, 0.5; a constant by anything counts most where no
+  // other output has its unit, by nothing least
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
     ComparedRun& run = c.runs[i];
-    run.output_names = {"same [m]", "near [m]", "far [m]", "flat [m]", "still [m]"};
+    run.output_names = {"same [m]", "near [m]", "far [m]", "flat [rad]", "still [m]"};
     std::vector<double> const wave = run.outputs[0], zero(wave.size(), 0.0);
     run.outputs = {wave, wave, wave, zero, zero};
     run.difference = {0.0, 0.01 * double(i), 1.0 * double(i), 1e-9 * double(i), 0.0};
@@ -227,21 +227,80 @@ TEST_F(ComparisonReport, OutputsThatDifferMostComeFirstSixPanelsAPage) {
   EXPECT_FALSE(is_there("outputs_3.gp"));
   std::string const first = text_of(folder / "outputs.gp"), second = text_of(folder / "outputs_2.gp");
   EXPECT_TRUE(has(first, "multiplot layout 3,2") && has(second, "multiplot layout 2,2"));
-  EXPECT_LT(first.find("'flat [m]'"), first.find("'far [m]'"));
+  EXPECT_LT(first.find("'flat [rad]'"), first.find("'far [m]'"));
   EXPECT_LT(first.find("'far [m]'"), first.find("'near [m]'"));
   EXPECT_LT(second.find("'same [m]'"), second.find("'still [m]'"));
   EXPECT_NE(second.find("'still [m]'"), std::string::npos);
+}
+
+// What rounding opens in the first run does not count by its own span where other outputs have its unit.
+TEST_F(ComparisonReport, DifferencesCountByLengthsThatMatter) {
+  Comparison c = oscillators();
+  for (std::size_t i = 0; i < c.runs.size(); ++i) {
+    ComparedRun& run = c.runs[i];
+    run.output_names = {"gap [m]", "way [m]", "turn [rad]"};
+    std::vector<double> const wave = run.outputs[0];
+    std::vector<double> gap = wave;
+    for (double& g : gap) g *= i == 0 ? 1e-12 : 1e-5;
+    run.outputs = {gap, wave, gap};
+    run.difference = {1e-5 * double(i), 0.02 * double(i), 1e-5 * double(i)};
+  }
+  EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 0), 1e-5 / (1e-2 * 2.0), 1e-6);  // of a hundredth of the way
+  EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 1), 0.02 / 2.0, 1e-4);
+  EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 2), 1e-5 / 2e-12, 1e-2 * 1e-5 / 2e-12);  // by its own span
+  EXPECT_EQ(detail::outputs_by_difference(c), (std::vector<std::size_t>{2, 1, 0}));
+}
+
+TEST_F(ComparisonReport, LargeDifferencesDoNotHideSmallOnes) {
+  Comparison c = oscillators();
+  for (double const size : {1e-3, -5e-3, 2e-5}) {
+    ComparedRun& run = c.runs.emplace_back(c.runs[0]);
+    run.name = "off by " + number(size);
+    for (double& x : run.outputs[0]) x += size;
+  }
+  c.runs.erase(c.runs.begin() + 1);
+  auto const labels = [](Figure const& figure) {
+    std::vector<std::string> all;
+    for (Curve const& curve : figure.curves) all.push_back(curve.label);
+    return all;
+  };
+  Figure const far = detail::difference_figure(c, 0);
+  EXPECT_EQ(labels(far), (std::vector<std::string>{"off by -0.005", "off by 0.001", "off by 2e-05"}));
+  EXPECT_EQ(far.curves[0].color, 2);  // that of the run in every figure
+  EXPECT_TRUE(far.log_y);             // 250 times
+  EXPECT_EQ(far.y_label, "amount of the difference [m]");
+  EXPECT_NEAR(far.curves[0].y[7], 5e-3, 1e-12);
+  EXPECT_NEAR(far.curves[2].y[7], 2e-5, 1e-12);
+  c.runs.pop_back();
+  Figure const near = detail::difference_figure(c, 0);
+  EXPECT_FALSE(near.log_y);
+  EXPECT_EQ(near.y_label, "difference [m]");
+  EXPECT_NEAR(near.curves[0].y[7], -5e-3, 1e-12);
 }
 
 TEST_F(ComparisonReport, CostShowsDifferenceOverTimeOfComputing) {
   Comparison c = oscillators();
   write_figures(c, folder, false);
   auto const blocks = blocks_of(folder / "cost.dat");
-  ASSERT_EQ(blocks.size(), 1u);
-  auto const& point = blocks.begin()->second;
+  ASSERT_EQ(blocks.size(), 2u);
+  std::string const title = "Largest difference from \"ideal, \"1\"\", and time of computing | ";
+  auto const& point = blocks.at(title + "stiff/ρ");
   ASSERT_EQ(point.size(), 1u);
   EXPECT_EQ(point[0][0], 0.25);                // s
   EXPECT_NEAR(point[0][1], 0.01 / 2.0, 1e-5);  // cos t spans 2 but for its steps
+  // the first run is a line across the points, at its own time
+  auto const& first = blocks.at(title + "ideal, \"1\"");
+  ASSERT_EQ(first.size(), 2u);
+  EXPECT_EQ(first[0][0], 0.125);
+  EXPECT_EQ(first[1][0], 0.125);
+  EXPECT_LT(first[0][1], point[0][1]);
+  EXPECT_GT(first[1][1], point[0][1]);
+  // times of one magnitude begin at zero, others are on a logarithmic axis
+  EXPECT_TRUE(has(text_of(folder / "cost.gp"), "set xrange [0:0.275"));
+  EXPECT_FALSE(has(text_of(folder / "cost.gp"), "set logscale x"));
+  c.runs[1].cpu = 2.5;
+  write_figures(c, folder / "dear", false);
+  EXPECT_TRUE(has(text_of(folder / "dear" / "cost.gp"), "set logscale x"));
   c.runs[1].difference = {0.0, 0.0};
   write_figures(c, folder / "same", false);
   EXPECT_FALSE(fs::exists(folder / "same" / "cost.gp"));

@@ -3,6 +3,7 @@
 /// A comparison, and what accuracy costs, as files: tables, histories and figures.
 
 #include <polybody/compare/work_precision.hpp>
+#include <polybody/io/comparison_figures.hpp>
 #include <polybody/io/csv.hpp>
 #include <polybody/io/plot.hpp>
 
@@ -41,113 +42,6 @@ std::string file_word(std::string const& name) {
   }
   if (word.ends_with('_')) word.pop_back();
   return word;
-}
-
-/// One curve for each run over the run's times: the first broad, the others dashed upon it.
-template <class = void>
-Figure over_time(Comparison const& c, std::string const& title, std::string const& y_label,
-                 std::function<double(ComparedRun const&, std::size_t)> const& value) {
-  Figure figure{.title = title, .x_label = "t [s]", .y_label = y_label, .width_px = 900, .height_px = 560};
-  for (std::size_t i = 0; i < c.runs.size(); ++i) {
-    ComparedRun const& run = c.runs[i];
-    Curve curve{.x = run.times, .label = run.name, .color = int(i)};
-    curve.style = i == 0 ? "lines" : "dashed";
-    curve.width = i == 0 ? 3.0 : 1.5;
-    for (std::size_t k = 0; k < run.times.size(); ++k) curve.y.push_back(value(run, k));
-    figure.curves.push_back(std::move(curve));
-  }
-  return figure;
-}
-
-/// Violations over time, on a logarithmic axis, of the runs that have any; no figure where none has. What is below
-/// rounding is drawn at 1e-16, or at a millionth of the largest where that is less; zeros are left out.
-template <class = void>
-void add_violations(Comparison const& c, std::string const& title, std::string const& units, double Violation::* level,
-                    std::vector<Figure>& figures) {
-  Figure figure = over_time(c, title, "largest violation " + units,
-                            [level](ComparedRun const& run, std::size_t k) { return run.violations[k].*level; });
-  figure.log_y = true;
-  auto const largest = [](Curve const& curve) { return *std::max_element(curve.y.begin(), curve.y.end()); };
-  std::erase_if(figure.curves, [&](Curve const& curve) { return !(largest(curve) > 0.0); });
-  if (figure.curves.empty()) return;
-  double all = 0.0;
-  for (Curve const& curve : figure.curves) all = std::max(all, largest(curve));
-  for (Curve& curve : figure.curves)
-    for (double& y : curve.y)
-      if (y > 0.0) y = std::max(y, std::min(1e-16, 1e-6 * all));
-  figures.push_back(std::move(figure));
-}
-
-/// The first run's output i at time t [s].
-template <class = void>
-double first_output(Comparison const& c, std::size_t i, double t) {
-  return interpolate(c.runs.front().times, c.runs.front().outputs[i], t);
-}
-
-/// The largest difference of output i in a run from the first run's, as a part of what the first one's spans, or of its
-/// amount where that is constant; infinite where that is zero.
-template <class = void>
-double relative_difference(Comparison const& c, ComparedRun const& run, std::size_t i) {
-  auto const [low, high] = std::ranges::minmax(c.runs.front().outputs[i]);
-  double const most = run.difference[i], span = high > low ? high - low : std::abs(high);
-  return most == 0.0 ? 0.0 : span > 0.0 ? most / span : std::numeric_limits<double>::infinity();
-}
-
-/// Numbers of the outputs, those that differ most from the first run's before the others.
-template <class = void>
-std::vector<std::size_t> outputs_by_difference(Comparison const& c) {
-  std::vector<double> most(c.runs.front().outputs.size(), 0.0);
-  std::vector<std::size_t> order(most.size());
-  for (std::size_t i = 0; i < most.size(); ++i) {
-    order[i] = i;
-    for (ComparedRun const& run : c.runs) most[i] = std::max(most[i], relative_difference(c, run, i));
-  }
-  std::ranges::stable_sort(order, [&](std::size_t i, std::size_t j) { return most[i] > most[j]; });
-  return order;
-}
-
-/// Each output over time and, where runs are compared, beside it what the others are off the first: curves that agree
-/// hide one another.
-template <class = void>
-std::vector<Figure> output_figures(Comparison const& c) {
-  std::vector<Figure> figures;
-  for (std::size_t const i : outputs_by_difference(c)) {
-    std::string const& name = c.runs.front().output_names[i];
-    figures.push_back(over_time(c, name, name, [i](auto const& run, std::size_t k) { return run.outputs[i][k]; }));
-    if (c.runs.size() == 1) continue;
-    Figure& off = figures.emplace_back(over_time(
-        c, name + ", off \"" + c.runs.front().name + "\"", "difference of " + name,
-        [&](auto const& run, std::size_t k) { return run.outputs[i][k] - first_output(c, i, run.times[k]); }));
-    off.curves.erase(off.curves.begin());
-    for (Curve& curve : off.curves) curve.style = "lines";
-  }
-  return figures;
-}
-
-/// How far each run is off the first, over its time of computing; no figure where none is off.
-template <class = void>
-std::vector<Figure> cost_figure(Comparison const& c) {
-  ComparedRun const& first = c.runs.front();
-  Figure figure{.title = "Largest difference from \"" + first.name + "\" (" + number(first.cpu) + " s)",
-                .x_label = "CPU time [s]",
-                .y_label = "difference / span of the output",
-                .log_x = true,
-                .log_y = true,
-                .width_px = 900,
-                .height_px = 560};
-  for (std::size_t k = 1; k < c.runs.size(); ++k) {
-    double most = 0.0;
-    for (std::size_t i = 0; i < first.outputs.size(); ++i)
-      if (double const off = relative_difference(c, c.runs[k], i); std::isfinite(off)) most = std::max(most, off);
-    if (most > 0.0 && c.runs[k].cpu > 0.0)
-      figure.curves.push_back({.x = {c.runs[k].cpu},
-                               .y = {most},
-                               .label = c.runs[k].name,
-                               .style = "points",
-                               .color = int(k),
-                               .width = 3.0});
-  }
-  return figure.curves.empty() ? std::vector<Figure>{} : std::vector<Figure>{std::move(figure)};
 }
 
 /// Draws panels, six on a page (stem, stem_2, …) in so many columns, and adds the files to `written`.
@@ -213,11 +107,12 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
   return written;
 }
 
-/// Draws all runs over time, in `folder`: `outputs` (with what the others are off the first beside each, those that
-/// differ most first, six panels a page: `outputs`, `outputs_2`, …), `violations` (of positions, speeds and
-/// accelerations), `joint_force` (of the joint that holds most) and `energies`; and `cost`, how far each run is off the
-/// first over its time of computing. Each comes as .dat, .gp and, where gnuplot is there and `draw` is set, .png. There
-/// is no figure without anything to show. Returns the files. Throws as `write_csv`, and IoError where gnuplot fails.
+/// Draws all runs over time, in `folder`: `outputs` (with what the others are off the first beside each, those that differ most
+/// as a part of their spans first, six panels a page: `outputs`, `outputs_2`, …), `violations` (of positions, speeds
+/// and accelerations), `joint_force` (of the joint that holds most) and `energies`; and `cost`, how far each run is off
+/// the first over its time of computing. Each comes as .dat, .gp and, where gnuplot is there and `draw` is set, .png.
+/// There is no figure without anything to show. Returns the files. Throws as `write_csv`, and IoError where gnuplot
+/// fails.
 template <class = void>
 std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder,
                                                  bool draw = true) {

@@ -36,6 +36,9 @@ inline constexpr std::array<std::string_view, 6> gnuplot_styles{
 inline constexpr std::array<std::string_view, 8> palette{"#0072B2", "#D55E00", "#009E73", "#E69F00",
                                                          "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
 
+/// Marks of gnuplot that readers tell apart without the colours: filled ones first, as thick lines fill the others.
+inline constexpr std::array<int, 8> point_types{5, 7, 9, 13, 11, 15, 4, 6};
+
 /// A block of two columns for each curve; two blank lines part the blocks.
 template <class = void>  // compiled where it is used
 std::string data_text(std::vector<Figure> const& figures) {
@@ -92,7 +95,7 @@ std::string script_text(Figure const& figure, std::string const& data, std::size
     text += (i ? ", \\\n     " : "") + gnuplot_text(data) + " index " + std::to_string(block + i) + " using 1:2 with " +
             std::string(gnuplot_styles[style]);
     text += " linewidth " + all_digits(curve.width) + " linecolor rgb '" + std::string(palette[color]) + "'";
-    if (curve.style.ends_with("points")) text += " pointtype " + std::to_string(4 + color);
+    if (curve.style.ends_with("points")) text += " pointtype " + std::to_string(point_types[color]) + " pointsize 1.5";
     text += curve.label.empty() ? " notitle" : " title " + gnuplot_text(curve.label);
   }
   return text + '\n';

@@ -1,0 +1,212 @@
+#pragma once
+/// \file
+/// The figures of a comparison's report: outputs and what they differ by, violations, and what computing costs.
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include <polybody/compare/comparison.hpp>
+#include <polybody/io/figure.hpp>
+
+namespace polybody::detail {
+
+/// One curve for each run over the run's times: the first broad, the others dashed upon it.
+template <class = void>
+Figure over_time(Comparison const& c, std::string const& title, std::string const& y_label,
+                 std::function<double(ComparedRun const&, std::size_t)> const& value) {
+  Figure figure{.title = title, .x_label = "t [s]", .y_label = y_label, .width_px = 900, .height_px = 560};
+  for (std::size_t i = 0; i < c.runs.size(); ++i) {
+    ComparedRun const& run = c.runs[i];
+    Curve curve{.x = run.times, .label = run.name, .color = int(i)};
+    curve.style = i == 0 ? "lines" : "dashed";
+    curve.width = i == 0 ? 3.0 : 1.5;
+    for (std::size_t k = 0; k < run.times.size(); ++k) curve.y.push_back(value(run, k));
+    figure.curves.push_back(std::move(curve));
+  }
+  return figure;
+}
+
+/// Violations over time, on a logarithmic axis, of the runs that have any; no figure where none has. What is below
+/// rounding is drawn at 1e-16, or at a millionth of the largest where that is less; zeros are left out.
+template <class = void>
+void add_violations(Comparison const& c, std::string const& title, std::string const& units, double Violation::* level,
+                    std::vector<Figure>& figures) {
+  Figure figure = over_time(c, title, "largest violation " + units,
+                            [level](ComparedRun const& run, std::size_t k) { return run.violations[k].*level; });
+  figure.log_y = true;
+  auto const largest = [](Curve const& curve) { return *std::max_element(curve.y.begin(), curve.y.end()); };
+  std::erase_if(figure.curves, [&](Curve const& curve) { return !(largest(curve) > 0.0); });
+  if (figure.curves.empty()) return;
+  double all = 0.0;
+  for (Curve const& curve : figure.curves) all = std::max(all, largest(curve));
+  for (Curve& curve : figure.curves)
+    for (double& y : curve.y)
+      if (y > 0.0) y = std::max(y, std::min(1e-16, 1e-6 * all));
+  figures.push_back(std::move(figure));
+}
+
+/// The first run's output i at time t [s].
+template <class = void>
+double first_output(Comparison const& c, std::size_t i, double t) {
+  return interpolate(c.runs.front().times, c.runs.front().outputs[i], t);
+}
+
+/// "[m]" of "tip x [m]"; empty where there is none.
+template <class = void>
+std::string_view unit_in(std::string_view name) {
+  std::size_t const unit = name.rfind(" [");
+  return unit == name.npos || !name.ends_with(']') ? std::string_view() : name.substr(unit + 1);
+}
+
+/// What the first run's output i spans, or its amount where it is constant.
+template <class = void>
+double own_span(Comparison const& c, std::size_t i) {
+  auto const [low, high] = std::ranges::minmax(c.runs.front().outputs[i]);
+  return high > low ? high - low : std::abs(high);
+}
+
+/// What differences of output i are measured by: its own span, or a hundredth of the largest span of an output in its
+/// unit where that is more. A gap that only rounding opens in the first run then counts by lengths that matter.
+template <class = void>
+double measure_of(Comparison const& c, std::size_t i) {
+  std::vector<std::string> const& names = c.runs.front().output_names;
+  double span = own_span(c, i);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (!unit_in(names[i]).empty() && unit_in(names[k]) == unit_in(names[i]))
+      span = std::max(span, 1e-2 * own_span(c, k));
+  return span;
+}
+
+/// The largest difference of output i in a run from the first run's, as a part of `measure_of` it; infinite where that
+/// is zero.
+template <class = void>
+double relative_difference(Comparison const& c, ComparedRun const& run, std::size_t i) {
+  double const most = run.difference[i], span = measure_of(c, i);
+  return most == 0.0 ? 0.0 : span > 0.0 ? most / span : std::numeric_limits<double>::infinity();
+}
+
+/// Numbers of the outputs, those that differ most from the first run's before the others.
+template <class = void>
+std::vector<std::size_t> outputs_by_difference(Comparison const& c) {
+  std::vector<double> most(c.runs.front().outputs.size(), 0.0);
+  std::vector<std::size_t> order(most.size());
+  for (std::size_t i = 0; i < most.size(); ++i) {
+    order[i] = i;
+    for (ComparedRun const& run : c.runs) most[i] = std::max(most[i], relative_difference(c, run, i));
+  }
+  std::ranges::stable_sort(order, [&](std::size_t i, std::size_t j) { return most[i] > most[j]; });
+  return order;
+}
+
+/// The largest amount of a curve.
+template <class = void>
+double largest_amount(Curve const& curve) {
+  double most = 0.0;
+  for (double const y : curve.y) most = std::max(most, std::abs(y));
+  return most;
+}
+
+/// Mean square of a curve's values.
+template <class = void>
+double mean_square(Curve const& curve) {
+  double sum = 0.0;
+  for (double const y : curve.y) sum += y * y;
+  return sum / double(curve.y.size());
+}
+
+/// Amounts on a logarithmic axis, without the curves that are zero. What is less than a thousandth of the flattest
+/// curve's largest amount is drawn there.
+template <class = void>
+void show_amounts(Figure& figure, double least) {
+  figure.log_y = true;
+  figure.y_label = "amount of the " + figure.y_label;
+  std::erase_if(figure.curves, [](Curve const& curve) { return !(largest_amount(curve) > 0.0); });
+  for (Curve& curve : figure.curves)
+    for (double& y : curve.y) y = std::max(std::abs(y), 1e-3 * least);
+}
+
+/// What output i of the others is off the first run's, the largest differences (in the mean square) below the small
+/// ones, which they would hide; as amounts on a logarithmic axis where one run is off a hundred times as far as
+/// another.
+template <class = void>
+Figure difference_figure(Comparison const& c, std::size_t i) {
+  std::string const &name = c.runs.front().output_names[i], unit(unit_in(name));
+  Figure off =
+      over_time(c, name + ", off \"" + c.runs.front().name + "\"", (unit.empty() ? "difference" : "difference " + unit),
+                [&](auto const& run, std::size_t k) { return run.outputs[i][k] - first_output(c, i, run.times[k]); });
+  off.curves.erase(off.curves.begin());
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (Curve& curve : off.curves) {
+    curve.style = "lines";
+    double const amount = largest_amount(curve);
+    most = std::max(most, amount);
+    if (amount > 0.0) least = std::min(least, amount);
+  }
+  std::ranges::stable_sort(off.curves, [](Curve const& a, Curve const& b) { return mean_square(a) > mean_square(b); });
+  if (most > 100.0 * least) show_amounts(off, least);
+  return off;
+}
+
+/// Each output over time and, where runs are compared, beside it what the others are off the first: curves that agree
+/// hide one another.
+template <class = void>
+std::vector<Figure> output_figures(Comparison const& c) {
+  std::vector<Figure> figures;
+  for (std::size_t const i : outputs_by_difference(c)) {
+    std::string const& name = c.runs.front().output_names[i];
+    figures.push_back(over_time(c, name, name, [i](auto const& run, std::size_t k) { return run.outputs[i][k]; }));
+    if (c.runs.size() > 1) figures.push_back(difference_figure(c, i));
+  }
+  return figures;
+}
+
+/// A line across at the first run's time of computing, behind the points of the others; times on a logarithmic axis
+/// where they are of several magnitudes.
+template <class = void>
+void add_first_cost(ComparedRun const& first, Figure& figure) {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0, soonest = first.cpu, latest = first.cpu;
+  for (Curve const& curve : figure.curves) {
+    low = std::min(low, curve.y[0]);
+    high = std::max(high, curve.y[0]);
+    soonest = std::min(soonest, curve.x[0]);
+    latest = std::max(latest, curve.x[0]);
+  }
+  figure.log_x = soonest > 0.0 && latest > 10.0 * soonest;
+  if (!figure.log_x) figure.x_range = {{0.0, 1.1 * latest}};
+  if (first.cpu > 0.0)
+    figure.curves.insert(figure.curves.begin(), {.x = {first.cpu, first.cpu},
+                                                 .y = {0.5 * low, 2.0 * high},
+                                                 .label = first.name,
+                                                 .style = "dashed",
+                                                 .color = 0});
+}
+
+/// How far each run is off the first, over its time of computing; no figure where none is off.
+template <class = void>
+std::vector<Figure> cost_figure(Comparison const& c) {
+  ComparedRun const& first = c.runs.front();
+  Figure figure{.title = "Largest difference from \"" + first.name + "\", and time of computing",
+                .x_label = "CPU time [s]",
+                .y_label = "difference / span of the output",
+                .log_y = true,
+                .width_px = 900,
+                .height_px = 560};
+  for (std::size_t k = 1; k < c.runs.size(); ++k) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < first.outputs.size(); ++i)
+      if (double const off = relative_difference(c, c.runs[k], i); std::isfinite(off)) most = std::max(most, off);
+    if (most > 0.0 && c.runs[k].cpu > 0.0)
+      figure.curves.push_back({.x = {c.runs[k].cpu},
+                               .y = {most},
+                               .label = c.runs[k].name,
+                               .style = "points",
+                               .color = int(k),
+                               .width = 3.0});
+  }
+  if (figure.curves.empty()) return {};
+  add_first_cost(first, figure);
+  return {std::move(figure)};
+}
+
+}  // namespace polybody::detail
