@@ -4,8 +4,19 @@
 
 #include <random>
 
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/cholesky_coordinates.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/bodies/lrvf/incremental_interpolation.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
+#include <polybody/bodies/shared/sliding.hpp>
 #include <polybody/forces/maxwell_element.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/io/run_table.hpp>
@@ -50,14 +61,15 @@ TEST_F(StateTable, ColumnsAreNamedByTheirOwners) {
   EXPECT_EQ(table.columns, heads);
   auto const value = [&](char const* head) { return table.column(head).at(0); };
   EXPECT_EQ(value("t [s]"), 0.0);
-  EXPECT_NEAR(value("upper q[0]"), 0.5, 1e-15);  // the centre's place
-  EXPECT_NEAR(value("lower q[0]"), 1.5, 1e-15);
-  EXPECT_EQ(value("lower q[3]"), 1.0);
+  EXPECT_NEAR(value("upper q[0] [m]"), 0.5, 1e-15);  // the centre's place
+  EXPECT_NEAR(value("lower q[0] [m]"), 1.5, 1e-15);
+  EXPECT_EQ(value("lower q[3] [1]"), 1.0);
   EXPECT_EQ(value("valve z[0]"), 0.0);
   EXPECT_EQ(value("elbow lambda[4]"), 0.0);
   EXPECT_EQ(value("lower lambda[0]"), 0.0);  // of its norm
-  EXPECT_EQ(std::ranges::count(heads, "lower v[6]"), 1);
-  EXPECT_EQ(std::ranges::count(heads, "upper v[6]"), 0);
+  EXPECT_EQ(std::ranges::count(heads, "lower v[6] [1/s]"), 1);
+  EXPECT_EQ(std::ranges::count(heads, "upper v[5] [rad/s]"), 1);
+  EXPECT_EQ(std::ranges::count_if(heads, [](std::string const& head) { return head.starts_with("upper v[6]"); }), 0);
 }
 
 TEST_F(StateTable, StatesComeBackTheSame) {
@@ -95,13 +107,142 @@ TEST_F(StateTable, ColumnsMayComeInAnyOrderAndMultipliersMayLack) {
   EXPECT_EQ(back.lambda, VecX(VecX::Zero(model.rows())));
 }
 
+/// A table as other programs wrote it before heads had units.
+Table without_units(Table table) {
+  for (std::string& head : table.columns)
+    if (std::size_t const unit = head.find("] ["); unit != head.npos) head.resize(unit + 1);
+  return table;
+}
+
+TEST_F(StateTable, HeadsMayLackTheirUnits) {
+  State x = model.reference_state();
+  simulate(model, x, GeneralizedAlpha{}, {.until = 0.05, .step = 1e-2}).run();
+  Table const table = state_table(model, {x});
+  Table const bare = without_units(table);
+  ASSERT_EQ(std::ranges::count(bare.columns, "lower v[6]"), 1);
+  ASSERT_EQ(std::ranges::count(bare.columns, "lower v[6] [1/s]"), 0);
+  Table some = table;  // some with, some without
+  for (std::size_t j = 0; j < some.columns.size(); j += 2) some.columns[j] = bare.columns[j];
+  for (Table const* const read : {&bare, &std::as_const(some)}) {
+    State const back = state_from(model, *read, 0);
+    EXPECT_EQ(back.t, x.t);
+    EXPECT_EQ(back.q, x.q);
+    EXPECT_EQ(back.v, x.v);
+    EXPECT_EQ(back.lambda, x.lambda);
+  }
+}
+
+TEST_F(StateTable, RefusesAnotherUnitAndOneNumberTwice) {
+  Table const table = state_table(model, {model.reference_state()});
+  Table other = table;
+  *std::ranges::find(other.columns, "upper q[0] [m]") = "upper q[0] [mm]";
+  EXPECT_TRUE(has(refusal([&] { state_from(model, other, 0); }),
+                  "\"upper q[0] [mm]\" has another unit than [m]. Convert its numbers and call it \"upper q[0] [m]\""));
+  Table twice = table;
+  twice.columns.push_back("upper q[0]");
+  twice.rows[0].push_back(0.0);
+  EXPECT_TRUE(
+      has(refusal([&] { state_from(model, twice, 0); }), "\"upper q[0]\" and \"upper q[0] [m]\" are of one number"));
+}
+
+/// Of every body, coordinates and speeds [m], [m/s], and no others, grow with the lengths of the body and of its
+/// motion.
+template <class Made>
+void expect_units(Made const& made, std::string const& coordinates, std::string const& speeds) {
+  auto const of_size = [&](double size) {
+    Mat3 const axes = Eigen::AngleAxisd(0.7, Vec3::UnitZ()).toRotationMatrix();
+    Bar const bar{.length = 1.7 * size,
+                  .section = Rectangle{.height = 0.1 * size, .width = 0.1 * size},
+                  .material = Material{.density = 7800.0, .young = 2e11, .poisson = 0.3},
+                  .placement = {.origin = Vec3(0.3, -0.4, 0.0) * size, .axes = axes}};
+    return made(bar);
+  };
+  using B = decltype(of_size(1.0));
+  struct Moving {
+    Model<Bodies<B>, Joints<>, Forces<>> model;
+    std::vector<double> q, v;
+    explicit Moving(B const& body, double size) {
+      model.add(body, "arm");
+      State const x = model.reference_state();
+      q.assign(x.q.begin(), x.q.end());
+      v.resize(std::size_t(body.speeds()));
+      body.rigid_velocity(q, Vec3(0.9, 0.8, 0.0) * size, Vec3(0.0, 0.0, 1.1), v);
+    }
+  };
+  double const times = 1000.0;
+  Moving const one(of_size(1.0), 1.0), large(of_size(times), times);
+  std::vector<std::string> const heads = state_columns(one.model);
+  std::string found[2];
+  auto const see = [&](char const* what, std::size_t first, std::vector<double> const& x,
+                       std::vector<double> const& y) {
+    std::string& units = found[what[0] == 'v'];
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      std::string const& head = heads[first + i];
+      std::string const name = std::string("arm ") + what + '[' + std::to_string(i) + "] [";
+      ASSERT_TRUE(head.starts_with(name)) << head;
+      std::string const unit = head.substr(name.size(), head.size() - name.size() - 1);
+      double const grows = unit[0] == 'm' ? times : 1.0;
+      EXPECT_NEAR(y[i], grows * x[i], 1e-11 * (1.0 + std::abs(y[i]))) << head;
+      units += (i ? " " : "") + unit;
+    }
+  };
+  see("q", 1, one.q, large.q);
+  see("v", 1 + one.q.size(), one.v, large.v);
+  EXPECT_EQ(found[0], coordinates);
+  EXPECT_EQ(found[1], speeds);
+}
+
+TEST(UnitsOfStates, OfRigidBodies) {
+  expect_units([](Bar const& bar) { return Rigid<>::from(bar); }, "m m m 1 1 1 1", "m/s m/s m/s rad/s rad/s rad/s");
+  expect_units([](Bar const& bar) { return Rigid<EulerParameters>::from(bar); }, "m m m 1 1 1 1",
+               "m/s m/s m/s 1/s 1/s 1/s 1/s");
+  expect_units([](Bar const& bar) { return planar::Rigid::from(bar); }, "m m rad", "m/s m/s rad/s");
+}
+
+TEST(UnitsOfStates, OfCablesAndBeamsByGradients) {
+  expect_units([](Bar const& bar) { return AncfCable<>::from(bar, 1); }, "m m m 1 1 1 m m m 1 1 1",
+               "m/s m/s m/s 1/s 1/s 1/s m/s m/s m/s 1/s 1/s 1/s");
+  std::string const node = "m m m 1 1 1 1 1 1 1 1 1", rate = "m/s m/s m/s 1/s 1/s 1/s 1/s 1/s 1/s 1/s 1/s 1/s";
+  expect_units([](Bar const& bar) { return AncfBeam<>::from(bar, 1); }, node + ' ' + node, rate + ' ' + rate);
+  expect_units([](Bar const& bar) { return planar::AncfCable<>::from(bar, 1); }, "m m 1 1 m m 1 1",
+               "m/s m/s 1/s 1/s m/s m/s 1/s 1/s");
+  expect_units([](Bar const& bar) { return Sliding(planar::AncfCable<>::from(bar, 1), {0.0}); }, "m m 1 1 m m 1 1 m",
+               "m/s m/s 1/s 1/s m/s m/s 1/s 1/s m/s");
+}
+
+TEST(UnitsOfStates, OfBeamsByRotationsAndOfFloatingFrames) {
+  std::string const node = "m m m 1 1 1 1", rate = "m/s m/s m/s rad/s rad/s rad/s";
+  expect_units([](Bar const& bar) { return Lrvf<>::from(bar, 1); }, node + ' ' + node, rate + ' ' + rate);
+  expect_units([](Bar const& bar) { return Lrvf<Incremental>::from(bar, 1); },
+               node + ' ' + node + " 1 1 1 1 rad rad rad", rate + ' ' + rate);
+  expect_units([](Bar const& bar) { return planar::Lrvf::from(bar, 1); }, "m m rad m m rad",
+               "m/s m/s rad/s m/s m/s rad/s");
+  expect_units([](Bar const& bar) { return Ffr::from(bar, 1); }, node + " 1 1 1 1 1 1",
+               rate + " 1/s 1/s 1/s 1/s 1/s 1/s");
+  expect_units([](Bar const& bar) { return planar::Ffr::from(bar, 1); }, "m m rad 1 1 1", "m/s m/s rad/s 1/s 1/s 1/s");
+}
+
+/// A body that names no units.
+TEST(UnitsOfStates, AreLeftOutWhereABodyNamesNone) {
+  Bar const bar{.length = 1.0,
+                .section = Rectangle{.height = 0.1, .width = 0.1},
+                .material = Material{.density = 7800.0, .young = 2e11, .poisson = 0.3}};
+  Model<Bodies<CholeskyCoordinates<AncfCable<>>>, Joints<>, Forces<>> model;  // coordinates [kg^½ m] and [kg^½]
+  model.add(CholeskyCoordinates<AncfCable<>>::from(bar, Index(1)), "arm");
+  auto const heads = state_columns(model);
+  EXPECT_EQ(heads[1], "arm q[0]");
+  EXPECT_EQ(heads[13], "arm v[0]");
+  State const x = model.reference_state();
+  EXPECT_EQ(state_from(model, state_table(model, {x}), 0).q, x.q);
+}
+
 TEST_F(StateTable, RefusesWhatIsNoStateOfTheModel) {
   Table table = state_table(model, {model.reference_state()});
   EXPECT_TRUE(has(refusal([&] { state_from(model, table, 1); }), "row 1 is asked of a table of 1"));
   Table twice = table;
   twice.columns.back() = "t [s]";
   EXPECT_TRUE(has(refusal([&] { state_from(model, twice, 0); }), "two columns are called \"t [s]\""));
-  for (char const* needed : {"t [s]", "upper q[6]", "lower v[6]", "valve z[0]"}) {
+  for (char const* needed : {"t [s]", "upper q[6] [1]", "lower v[6] [1/s]", "valve z[0]"}) {
     Table lacking = table;
     *std::ranges::find(lacking.columns, needed) = "something";
     EXPECT_TRUE(has(refusal([&] { state_from(model, lacking, 0); }), std::string("no column \"") + needed + '"'));

@@ -5,6 +5,7 @@
 ///
 /// Not in polybody.hpp: few programs exchange states with others.
 
+#include <optional>
 #include <unordered_map>
 
 #include <polybody/io/table.hpp>
@@ -15,20 +16,30 @@ namespace polybody {
 
 namespace detail {
 
+/// A number of a state as a table calls it.
+struct StateHead {
+  std::string name = "t [s]";
+  std::string unit = {};  ///< empty where none is known
+
+  /// What is written.
+  std::string text() const { return unit.empty() ? name : name + " [" + unit + ']'; }
+};
+
 /// The heads of a state's columns, in the order of t, q, v, λ.
 struct StateHeads {
-  std::vector<std::string> all;
+  std::vector<StateHead> all;
   std::size_t required;  ///< those before it make a state; multipliers are zero where they are not there
 
   template <class = void>  // compiled where it is used
   explicit StateHeads(ModelLayout const& layout)
-      : all(std::size_t(1 + layout.coordinates + layout.speeds + layout.rows), "t [s]"),
+      : all(std::size_t(1 + layout.coordinates + layout.speeds + layout.rows)),
         required(std::size_t(1 + layout.coordinates + layout.speeds)) {
     Index const q = 1, v = q + layout.coordinates, lambda = v + layout.speeds;
     for (BodyPlace const& b : layout.bodies) {
       name(b.name, "q", q + b.q0, b.coordinates);
       name(b.name, "v", v + b.v0, b.speeds);
       name(b.name, "lambda", lambda + b.row, b.rows);
+      if (b.units.of_coordinate) name_units(b, q + b.q0, v + b.v0);
     }
     for (ForcePlace const& f : layout.forces) name(f.name, "z", v + f.v0, f.states);
     for (JointPlace const& j : layout.joints) name(j.name, "lambda", lambda + j.row, j.rows);
@@ -37,13 +48,70 @@ struct StateHeads {
  private:
   /// "rod q[0]", "rod q[1]", … for `count` numbers of one owner.
   void name(std::string const& owner, char const* what, Index first, Index count) {
-    for (Index i = 0; i < count; ++i) all[std::size_t(first + i)] = owner + ' ' + what + '[' + std::to_string(i) + ']';
+    for (Index i = 0; i < count; ++i)
+      all[std::size_t(first + i)].name = owner + ' ' + what + '[' + std::to_string(i) + ']';
+  }
+  /// Those of the body's coordinates, from place q on, and of its speeds, from place v on.
+  template <class = void>
+  void name_units(BodyPlace const& b, Index q, Index v) {
+    for (Index i = 0; i < b.coordinates; ++i) all[std::size_t(q + i)].unit = b.units.of_coordinate(b.body, i);
+    for (Index i = 0; i < b.speeds; ++i)
+      all[std::size_t(v + i)].unit =
+          b.units.of_speed ? b.units.of_speed(b.body, i) : std::string(b.units.of_coordinate(b.body, i)) + "/s";
   }
 };
 
+/// The columns of a table by their heads.
+class StateColumns {
+ public:
+  template <class = void>
+  explicit StateColumns(Table const& table) {
+    for (std::size_t j = 0; j < table.columns.size(); ++j)
+      if (!places_.emplace(table.columns[j], j).second)
+        throw InvalidInput{"state_from: two columns are called \"", table.columns[j], "\"."};
+  }
+
+  /// The column of a number, with its unit or bare; none where there is none. \throws InvalidInput where both are
+  /// there, or another unit.
+  template <class = void>
+  std::optional<std::size_t> find(StateHead const& head) const {
+    auto const whole = places_.find(head.text()), bare = places_.find(head.name);
+    if (whole == places_.end() && bare == places_.end()) refuse_other_unit(head);
+    if (!head.unit.empty() && whole != places_.end() && bare != places_.end())
+      throw InvalidInput{"state_from: the columns \"", head.name, "\" and \"", head.text(),
+                         "\" are of one number. Take one of them out of the table."};
+    if (whole != places_.end()) return whole->second;
+    return bare != places_.end() ? std::optional(bare->second) : std::nullopt;
+  }
+
+ private:
+  template <class = void>
+  void refuse_other_unit(StateHead const& head) const {
+    if (head.unit.empty()) return;
+    for (auto const& [column, place] : places_)
+      if (column.starts_with(head.name + " [") && column.ends_with(']'))
+        throw InvalidInput{"state_from: the column \"",
+                           column,
+                           "\" has another unit than [",
+                           head.unit,
+                           "]. Convert its numbers and call it \"",
+                           head.text(),
+                           "\"."};
+  }
+
+  std::unordered_map<std::string, std::size_t> places_;
+};
+
+template <class = void>
+std::vector<std::string> state_columns(ModelLayout const& layout) {
+  std::vector<std::string> texts;
+  for (StateHead const& head : StateHeads(layout).all) texts.push_back(head.text());
+  return texts;
+}
+
 template <class = void>
 Table state_table(ModelLayout const& layout, std::vector<State> const& states) {
-  Table table{StateHeads(layout).all, {}};
+  Table table{state_columns(layout), {}};
   for (State const& x : states) {
     require_sizes(x, layout.coordinates, layout.speeds, layout.rows);
     auto& row = table.rows.emplace_back(1, x.t);
@@ -57,18 +125,15 @@ template <class = void>
 State state_from(ModelLayout const& layout, Table const& table, std::size_t row) {
   if (row >= table.rows.size())
     throw InvalidInput{"state_from: row ", row, " is asked of a table of ", table.rows.size(), ", counted from 0."};
-  std::unordered_map<std::string, std::size_t> places;
-  for (std::size_t j = 0; j < table.columns.size(); ++j)
-    if (!places.emplace(table.columns[j], j).second)
-      throw InvalidInput{"state_from: two columns are called \"", table.columns[j], "\"."};
+  StateColumns const columns(table);
   StateHeads const heads(layout);
   std::vector<double> numbers;
   for (std::size_t i = 0; i < heads.all.size(); ++i) {
-    auto const found = places.find(heads.all[i]);
-    if (found == places.end() && i < heads.required)
-      throw InvalidInput{"state_from: the table has no column \"", heads.all[i],
+    std::optional<std::size_t> const found = columns.find(heads.all[i]);
+    if (!found && i < heads.required)
+      throw InvalidInput{"state_from: the table has no column \"", heads.all[i].text(),
                          "\". A state needs the time and every coordinate and speed of its model; see state_columns."};
-    numbers.push_back(found == places.end() ? 0.0 : table.rows[row].at(found->second));
+    numbers.push_back(found ? table.rows[row].at(*found) : 0.0);
   }
   auto next = numbers.begin() + 1;
   auto const take = [&](Index count) {
@@ -88,13 +153,13 @@ State state_from(ModelLayout const& layout, Table const& table, std::size_t row)
 
 }  // namespace detail
 
-/// The heads of a state's columns: "t [s]", then for each body its coordinates ("rod q[0]", …), for each body its
-/// speeds
-/// ("rod v[0]", …), first-order states of forces ("valve z[0]", …), multipliers of the rows ("pin lambda[0]", …). Their
-/// order within a body, and their units, are those that the body's header names.
+/// The heads of a state's columns: "t [s]", then for each body its coordinates ("rod q[0] [m]", …), for each body its
+/// speeds ("rod v[0] [m/s]", …), first-order states of forces ("valve z[0]", …), multipliers of the rows
+/// ("pin lambda[0]", …). Their order within a body is that which the body's header names. Units are those that a body
+/// names (NamesUnits); states and multipliers have none in their heads.
 template <class M>
 std::vector<std::string> state_columns(M const& model) {
-  return detail::StateHeads(layout_of(model)).all;
+  return detail::state_columns(layout_of(model));
 }
 
 /// States of a model, one row each. \throws InvalidInput for a state that does not fit the model.
@@ -103,9 +168,9 @@ Table state_table(M const& model, std::vector<State> const& states) {
   return detail::state_table(layout_of(model), states);
 }
 
-/// The state in a row of a table with these columns, in any order, among others. Multipliers may be left out, and are
-/// zero then; accelerations are zero, and `simulate` finds both. \throws InvalidInput naming a column that is missing
-/// or there twice, and for a row that is not there.
+/// The state in a row of a table with these columns, in any order, among others, their units or not. Multipliers may be
+/// left out, and are zero then; accelerations are zero, and `simulate` finds both. \throws InvalidInput naming a column
+/// that is missing, there twice or in another unit, and for a row that is not there.
 template <class M>
 State state_from(M const& model, Table const& table, std::size_t row) {
   return detail::state_from(layout_of(model), table, row);

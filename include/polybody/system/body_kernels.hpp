@@ -166,7 +166,6 @@ Index BodyKernels<B, T>::add_marker(Pool& pool, Marker<B> const& marker, Mat3 co
   pool.markers.push_back({marker.body, marker.point, axes, published});
   return 6 * point_columns(pool.entries[std::size_t(marker.body)].body, marker.point);
 }
-
 template <class B, StateScalar T>
 void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
   Index own = 0, index = 0;
@@ -174,7 +173,8 @@ void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
   for (auto const& m : pool.markers) out.owners[std::size_t(m.published)] = Index(out.bodies.size()) + m.body;
   for (Entry const& e : pool.entries)
     out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own,
-                          B::world == World::plane, B::constant_mass, &detail::type_tag<B>, index++, &e.body});
+                          B::world == World::plane, B::constant_mass, &detail::type_tag<B>, index++, &e.body, nullptr,
+                          units_of<B>()});
   if constexpr (LeavesOutAxialForces<B>)
     for (std::size_t i = out.bodies.size() - pool.entries.size(); i < out.bodies.size(); ++i)
       out.bodies[i].axial_share = [](void const* body, std::span<double const> q, std::span<double const> v,

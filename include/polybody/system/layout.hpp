@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include <polybody/bodies/shared/coordinate_units.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/types.hpp>
 
@@ -29,6 +30,7 @@ struct BodyPlace {
   /// At its q, v, v̇ under gravity and loads in world axes; none of a body that does not say it (LeavesOutAxialForces).
   double (*axial_share)(void const* body, std::span<double const> q, std::span<double const> v,
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
+  CoordinateUnits units = {};  ///< of its coordinates and speeds
 };
 
 /// Where a joint stands: its markers, and its rows among all.

@@ -47,6 +47,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   /// the section would be turned inside out, or `curve` does not run at unit speed.
   static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
 
+  char const* coordinate_unit(Index i) const { return i % node_columns < 3 ? "m" : "1"; }
   double length() const { return bar_.length; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }

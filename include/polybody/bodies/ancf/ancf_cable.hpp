@@ -60,6 +60,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
     return AncfCable(bar, polybody::constants(bar), n, curve);
   }
 
+  char const* coordinate_unit(Index i) const { return i % Chain::node_columns < 3 ? "m" : "1"; }
   double length() const { return length_; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }

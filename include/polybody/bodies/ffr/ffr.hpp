@@ -23,7 +23,8 @@
 namespace polybody {
 
 /// Coordinates: r (3) of the frame's origin in world axes, its unit quaternion (4), q (n); speeds: ṙ (3), Ω (3) in the
-/// frame's axes, q̇ (n). A marker turns with the small rotation of the section or node it sits on, θ = R q, as exp(θ̃).
+/// frame's axes, q̇ (n). q are multiples of shapes, whose entries are displacements [m] and rotations [rad]. A marker
+/// turns with the small rotation of the section or node it sits on, θ = R q, as exp(θ̃).
 class Ffr {
  public:
   static constexpr World world = World::space;
@@ -103,6 +104,8 @@ class Ffr {
 
   Index coordinates() const { return 7 + deformations(); }
   Index speeds() const { return 6 + deformations(); }
+  char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
+  char const* speed_unit(Index i) const { return i < 3 ? "m/s" : i < 6 ? "rad/s" : "1/s"; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }

@@ -92,6 +92,7 @@ class Ffr : public AddingCoordinates {
 
   Index coordinates() const { return 3 + deformations(); }
   Index speeds() const { return 3 + deformations(); }
+  char const* coordinate_unit(Index i) const { return i < 2 ? "m" : i == 2 ? "rad" : "1"; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }

@@ -77,6 +77,11 @@ class Lrvf {
 
   Index coordinates() const { return Index(reference_.size()); }
   Index speeds() const { return 6 * (elements() + 1); }
+  char const* coordinate_unit(Index i) const {
+    if (i < detail::carried_at(elements(), 0)) return i % 7 < 3 ? "m" : "1";
+    return i % 7 < 4 ? "1" : "rad";  // of the section carried in an element
+  }
+  char const* speed_unit(Index i) const { return i % 6 < 3 ? "m/s" : "rad/s"; }
   Index elements() const { return elastic_.size(); }
   Index first_column(Index e) const { return 6 * e; }
   Index first_column(Point const& p) const { return first_column(p.element); }

@@ -71,6 +71,7 @@ class Rigid : public AddingCoordinates {
 
   Index coordinates() const { return 3; }
   Index speeds() const { return 3; }
+  char const* coordinate_unit(Index i) const { return i < 2 ? "m" : "rad"; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }

@@ -196,6 +196,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   Index coordinates() const { return 7; }
   Index speeds() const { return 6; }
+  char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
+  char const* speed_unit(Index i) const { return i < 3 ? "m/s" : "rad/s"; }
 
   template <class = void>  // compiled where it is used
   void reference(std::span<double> q) const {

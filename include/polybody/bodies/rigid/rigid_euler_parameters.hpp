@@ -36,6 +36,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   Point const& local(Point const& p) const { return p; }  ///< p itself: every point touches all columns
   Index coordinates() const { return 7; }
   Index speeds() const { return 7; }
+  char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
 
   template <class = void>  // compiled where it is used
   void reference(std::span<double> q) const {

@@ -96,6 +96,9 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return beam;
   }
 
+  char const* coordinate_unit(Index i) const {
+    return i % node_columns < 2 ? "m" : Theory::gradients > 0 ? "1" : "rad";
+  }
   double length() const { return length_; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/shared/coordinate_units.hpp>
 #include <polybody/bodies/shared/node_chain.hpp>
 #include <polybody/math/shape_functions.hpp>
 
@@ -79,6 +80,11 @@ class Sliding : public B {
 
   Index coordinates() const { return B::coordinates() + sliders(); }
   Index speeds() const { return coordinates(); }
+  char const* coordinate_unit(Index i) const
+    requires NamesUnits<B>
+  {
+    return i < B::coordinates() ? B::coordinate_unit(i) : "m";
+  }
   using B::first_column;
   Index first_column(Point const& p) const { return p.slider < 0 ? B::first_column(p.material) : 0; }
   Index columns_of(Point const& p) const { return p.slider < 0 ? Index(B::point_columns) : speeds(); }
