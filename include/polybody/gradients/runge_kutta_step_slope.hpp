@@ -29,7 +29,7 @@ class RungeKuttaStepSlope {
   /// Directions that go through the equations together.
   static constexpr int lanes = SolvedPlaces<Solver>::lanes;
 
-  /// The model must outlive it.
+  /// Slopes of steps by `method`. The model must outlive it.
   template <class M>
   [[gnu::cold]] RungeKuttaStepSlope(M const& model, System& system, Method const& method)
       : places_(model, system), feedback_(method.stabilisation.feedback()), projection_(projection_of(method)) {}

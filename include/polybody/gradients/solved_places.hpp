@@ -76,7 +76,8 @@ class SolvedPlaces {
   /// Equations that repeat others where it solved last.
   std::span<Index const> dropped() const { return held_[used_ - 1]->factors.dropped(); }
 
-  /// Into a and λ of x, whose q, v and `also` come with derivatives, the solution of the next place with its own.
+  /// Into a and λ of x, whose q, v and `also` come with derivatives along `directions` of them, the solution of the
+  /// next place with its own.
   template <TellsEquationSlopes F>
   void solve(EquationPlace<D>& x, std::size_t directions, F&& slope) {
     Held& here = *held_[passed_++];

@@ -107,12 +107,12 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
   return written;
 }
 
-/// Draws all runs over time, in `folder`: `outputs` (with what the others are off the first beside each, those that differ most
-/// as a part of their spans first, six panels a page: `outputs`, `outputs_2`, …), `violations` (of positions, speeds
-/// and accelerations), `joint_force` (of the joint that holds most) and `energies`; and `cost`, how far each run is off
-/// the first over its time of computing. Each comes as .dat, .gp and, where gnuplot is there and `draw` is set, .png.
-/// There is no figure without anything to show. Returns the files. Throws as `write_csv`, and IoError where gnuplot
-/// fails.
+/// Draws all runs over time, in `folder`: `outputs` (with what the others are off the first beside each, those that
+/// differ most as a part of their spans first, six panels a page: `outputs`, `outputs_2`, …), `violations` (of
+/// positions, speeds and accelerations), `joint_force` (of the joint that holds most) and `energies`; and `cost`, how
+/// far each run is off the first over its time of computing. Each comes as .dat, .gp and, where gnuplot is there and
+/// `draw` is set, .png. There is no figure without anything to show. Returns the files. Throws as `write_csv`, and
+/// IoError where gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder,
                                                  bool draw = true) {
