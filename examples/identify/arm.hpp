@@ -1,0 +1,163 @@
+#pragma once
+// A flexible arm on a rubber mount that lets it slide and turn, let go under its weight: the mount's stiffness and
+// damping from where its tip has been, under any formulation of the arm.
+
+#include <ctime>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/gradients/sensitivities.hpp>
+#include <polybody/polybody.hpp>
+#include <random>
+
+#include "../support/least_squares.hpp"
+
+namespace identify {
+
+using namespace polybody;
+
+// What is sought: of the mount along x and y, and about z.
+inline std::array<char const*, 4> constexpr names{"k [N/m]", "c [N s/m]", "k_t [N m/rad]", "c_t [N m s/rad]"};
+using Numbers = std::array<double, 4>;
+
+// A strip of steel, horizontal at the start.
+inline Bar strip() {
+  return {.length = 1.0,
+          .section = Rectangle{.height = 0.005, .width = 0.03},
+          .material = Material{.density = 7850.0, .young = 2.1e11, .poisson = 0.3},
+          .damping = {.axial = 1e-4, .shear = 1e-4, .bending = 1e-3}};
+}
+
+struct Experiment {
+  double until = 1.5, step = 2e-3;  // of the runs that are fitted [s]
+  double sampling = 1e-2;           // of the record, a multiple of the step [s]
+};
+
+// The arm as a B of so many elements, made for numbers of the mount.
+template <class B>
+struct Arm {
+  Experiment experiment;
+  Index elements = 1;
+
+  auto operator()(std::span<double const> p) const {
+    using Mount = Joint<planar::Weld, Bushing>;
+    using M = Model<Bodies<B>, Joints<Mount>>;
+    M model{Gravity{0, -9.81, 0}};
+    Bar const bar = strip();
+    BodyHandle<B> arm;
+    if constexpr (requires { B::from(bar, elements); })
+      arm = model.add(B::from(bar, elements), "arm");
+    else
+      arm = model.add(B::from(bar), "arm");
+    Vec3 const slides(p[0], p[0], 0.0), slows(p[1], p[1], 0.0), turns(0.0, 0.0, p[2]), brakes(0.0, 0.0, p[3]);
+    model.connect(Mount{{}, {Bushing::diagonal(slides, turns), Bushing::diagonal(slows, brakes)}},
+                  model.ground().at({0, 0, 0}), arm.at(0.0), "mount");
+    State const start = model.reference_state();
+    auto const tip = [arm, l = double(bar.length)](int axis) {
+      return [arm, l, axis](M const& m, State const& x) { return position(m, x, arm.at(l))[axis]; };
+    };
+    std::vector<Output<M>> outputs{{"tip x [m]", tip(0)}, {"tip y [m]", tip(1)}};
+    return Scenario<M>{
+        std::move(model), start, {.until = experiment.until, .step = experiment.step}, std::move(outputs)};
+  }
+};
+
+// x and y of the tip at the multiples of the sampling [m], one pair after the other.
+template <class Make, class I>
+VecX tip_of(Make const& make, std::span<double const> p, I const& integrator) {
+  auto scenario = make(p);
+  State x = scenario.start;
+  std::vector<double> tip;
+  auto const every = std::size_t(std::lround(make.experiment.sampling / scenario.options.step));
+  std::size_t step = 0;
+  for (State const& now : simulate(scenario.model, x, integrator, scenario.options)) {
+    if (step > 0 && step % every == 0)
+      for (auto const& o : scenario.outputs) tip.push_back(o.value(scenario.model, now));
+    ++step;
+  }
+  return Eigen::Map<VecX const>(tip.data(), Index(tip.size()));
+}
+
+// A smooth motion's error by steps is some 1e-5 of it; Newton's own is far below, so that differences of runs show it.
+inline GeneralizedAlpha const method{.rho_inf = 0.9, .tolerance = 1e-12, .start_correction = false};
+
+// The derivatives of `tip_of`, rows as there.
+template <class Make>
+MatX slopes_of_tip(Make const& make, std::span<double const> p) {
+  std::vector<Parameter> parameters;
+  for (std::size_t j = 0; j < names.size(); ++j) parameters.push_back({names[j], p[j]});
+  Sensitivities const s = sensitivities(make, parameters, method);
+  auto const every = std::size_t(std::lround(make.experiment.sampling / make.experiment.step));
+  MatX out(Index(2 * ((s.times.size() - 1) / every)), Index(names.size()));
+  for (std::size_t k = every, row = 0; k < s.times.size(); k += every, row += 2)
+    out.middleRows<2>(Index(row)) = s.slopes[k];
+  return out;
+}
+
+// A formulation of the arm, its types forgotten.
+struct Candidate {
+  std::string name{};
+  std::function<VecX(std::span<double const>)> tip;
+  std::function<MatX(std::span<double const>)> slopes;
+};
+template <class B>
+Candidate candidate(std::string name, Experiment const& experiment, Index elements = 1) {
+  Arm<B> const arm{experiment, elements};
+  return {std::move(name), [arm](std::span<double const> p) { return tip_of(arm, p, method); },
+          [arm](std::span<double const> p) { return slopes_of_tip(arm, p); }};
+}
+
+// What an experiment would have recorded, without its noise: a formulation that is fitted nowhere (engineering strain,
+// 16 elements), by an integrator of order five.
+inline VecX exact_record(Experiment experiment, Numbers const& truth) {
+  experiment.step = 1e-3;
+  return tip_of(Arm<planar::AncfCable<EngineeringStrain>>{experiment, 16}, truth, Radau{});
+}
+// Gaussian noise of this deviation, the same on every machine: by Box's and Muller's formula from the generator's bits.
+inline VecX with_noise(VecX record, double deviation, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  auto const uniform = [&] { return (double(generator() >> 11) + 0.5) * 0x1p-53; };
+  for (Index i = 0; i < record.size(); ++i) {
+    double const radius = std::sqrt(-2.0 * std::log(uniform())), angle = 2.0 * std::numbers::pi * uniform();
+    record[i] += deviation * radius * std::cos(angle);
+  }
+  return record;
+}
+
+struct Estimate {
+  std::string name{};
+  Numbers value{};                                           // of the mount
+  Mat<double, 4, 4> covariance = Mat<double, 4, 4>::Zero();  // of the values
+  double deviation = 0.0;                                    // of the record from the fit [m]
+  std::vector<double> sums{};                                // ½ Σ r² after each iteration [m²]
+  int runs = 0, gradients = 0;
+  double seconds = 0.0;  // of the processor
+  bool converged = false;
+
+  // Half the length of the interval that has the value with a probability of 95 %.
+  double interval(std::size_t i) const { return 1.96 * std::sqrt(covariance(Index(i), Index(i))); }
+};
+
+// Fits x = 1 + 2 ln(p/start): numbers p stay positive, and x are alike in size.
+inline Estimate estimate(Candidate const& c, VecX const& record, Numbers const& start) {
+  auto const numbers = [&](VecX const& x) {
+    Numbers p{};
+    for (std::size_t j = 0; j < p.size(); ++j) p[j] = start[j] * std::exp(0.5 * (x[Index(j)] - 1.0));
+    return p;
+  };
+  auto const factors = [&](VecX const& x) {
+    Numbers const p = numbers(x);
+    return VecX(0.5 * Eigen::Map<Vec4 const>(p.data()));
+  };
+  LeastSquares const problem{[&](VecX const& x) { return VecX(c.tip(numbers(x)) - record); },
+                             [&](VecX const& x) { return MatX(c.slopes(numbers(x)) * factors(x).asDiagonal()); }};
+  std::clock_t const begin = std::clock();
+  LeastSquaresFit const fit = least_squares(problem, VecX::Ones(Index(start.size())));
+  Estimate e{.name = c.name, .value = numbers(fit.at), .deviation = fit.deviation(), .sums = fit.sums};
+  e.covariance = factors(fit.at).asDiagonal() * fit.covariance() * factors(fit.at).asDiagonal();
+  e.runs = fit.runs;
+  e.gradients = fit.slope_runs;
+  e.seconds = double(std::clock() - begin) / CLOCKS_PER_SEC;
+  e.converged = fit.converged;
+  return e;
+}
+
+}  // namespace identify
