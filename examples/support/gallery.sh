@@ -1,9 +1,9 @@
 # What examples/run builds and shows, and the page of its pictures. Sourced.
 
-stages=(pendulum robot_arm cantilever chain_study tracked_vehicle link_from_fe track_stress vehicle_study)
+stages=(pendulum robot_arm cantilever chain_study tracked_vehicle link_from_fe track_stress vehicle_study identify lighter_link)
 
 # What each takes from nothing to its last picture, after those before it, on two cores [s]: for what is left only.
-declare -A seconds=([pendulum]=20 [robot_arm]=160 [cantilever]=45 [chain_study]=40 [tracked_vehicle]=240 [link_from_fe]=45 [track_stress]=220 [vehicle_study]=80)
+declare -A seconds=([pendulum]=20 [robot_arm]=160 [cantilever]=45 [chain_study]=40 [tracked_vehicle]=240 [link_from_fe]=45 [track_stress]=220 [vehicle_study]=80 [identify]=60 [lighter_link]=60)
 
 declare -A shows=(
   [pendulum]="A rod on a pin, in 22 lines: time, energy drift [J] and gap of the pin [m] after two seconds."
@@ -13,6 +13,8 @@ declare -A shows=(
   [tracked_vehicle]="The tracked vehicle of Chapter 3, its pins under five joint formulations."
   [link_from_fe]="A link of 8300 nodes from a finite element program, reduced and on its pins."
   [track_stress]="Stresses of the vehicle's links, Chapter 4: decoupled, and by flexible links of several formulations."
+  [identify]="Stiffness and damping of a mount from a noisy record of the arm on it, by gradients, under four formulations."
+  [lighter_link]="The lightest driven link whose stress stays bounded, by gradients, under four formulations."
   [vehicle_study]="A study of 24 vehicles whose preload and friction are drawn at random: forces in a pin, and the way."
 )
 
@@ -22,6 +24,7 @@ command_of() {
   case $1 in
     robot_arm | cantilever) echo "$1 --case all --out $2/$1$film" ;;
     tracked_vehicle | track_stress) echo "$1 --figure all --out $2/$1$film" ;;
+    identify | lighter_link) echo \"$1 --out $2/$1\" ;;
     chain_study | vehicle_study) echo "$1 --threads $(nproc) --out $2/$1" ;;
     *) echo "$1" ;;
   esac

@@ -1,0 +1,11 @@
+# NLopt, optional: target polybody_nlopt where it is found (Debian: libnlopt-dev).
+find_path(POLYBODY_NLOPT_INCLUDE nlopt.h)
+find_library(POLYBODY_NLOPT_LIBRARY nlopt)
+mark_as_advanced(POLYBODY_NLOPT_INCLUDE POLYBODY_NLOPT_LIBRARY)
+if(POLYBODY_NLOPT_INCLUDE AND POLYBODY_NLOPT_LIBRARY)
+  add_library(polybody_nlopt INTERFACE)
+  target_include_directories(polybody_nlopt SYSTEM INTERFACE ${POLYBODY_NLOPT_INCLUDE})
+  target_link_libraries(polybody_nlopt INTERFACE ${POLYBODY_NLOPT_LIBRARY})
+else()
+  message(STATUS "NLopt is not here (Debian: libnlopt-dev): the example lighter_link and its tests are left out")
+endif()

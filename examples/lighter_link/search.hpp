@@ -1,0 +1,71 @@
+#pragma once
+// The lightest link whose stress stays below what is allowed.
+
+#include "../support/optimiser.hpp"
+#include "link.hpp"
+
+namespace lighter_link {
+
+struct Bounds {
+  double start = 0.03, least = 0.008, most = 0.06;  // of the heights [m]
+};
+
+struct Lightest {
+  std::string name{};
+  std::vector<double> heights{};         // [m]
+  double mass = 0.0;                     // of the link [kg]
+  double aggregate = 0.0, stress = 0.0;  // over what is allowed; of all places and times, and the largest
+  std::vector<double> masses{}, aggregates{}, stresses{};  // of the designs that were tried
+  double seconds = 0.0;                                    // of the processor
+  std::string why{};                                       // the search ended
+  bool converged = false;
+};
+
+// One run with derivatives for each design that is tried: the method asks for mass and stress one after the other. Its
+// numbers are the logarithms of the heights, and it bounds that of the stress: as M h/2I falls with h², they depend on
+// each other almost by a straight line, which is what the method takes them for.
+inline Lightest lightest(Candidate const& c, Task const& task, Bounds const& bounds) {
+  Lightest out{.name = c.name};
+  auto const heights = [&](std::span<double const> x) {
+    std::vector<double> h(x.begin(), x.end());
+    for (double& one : h) one = bounds.start * std::exp(one);
+    return h;
+  };
+  std::vector<double> const zeros(task.sections, 0.0);
+  double const mass = task.mass(heights(zeros));
+  std::vector<double> asked;
+  Loaded here;
+  Design design{.start = zeros,
+                .least = std::vector<double>(task.sections, std::log(bounds.least / bounds.start)),
+                .most = std::vector<double>(task.sections, std::log(bounds.most / bounds.start))};
+  design.objective = [&](std::span<double const> x) {
+    ValueAndSlopes share{task.mass(heights(x)) / mass, {}};
+    for (double const one : x) share.slopes.push_back(std::exp(one) / double(x.size()));
+    return share;
+  };
+  design.constraint = [&](std::span<double const> x) {
+    std::vector<double> const h = heights(x);
+    if (h != asked) {
+      here = c.loaded(h);
+      asked = h;
+      out.masses.push_back(task.mass(h));
+      out.aggregates.push_back(here.aggregate);
+      out.stresses.push_back(here.most);
+    }
+    ValueAndSlopes bound{std::log(here.aggregate), {}};
+    for (std::size_t i = 0; i < h.size(); ++i) bound.slopes.push_back(here.slopes[Index(i)] * h[i] / here.aggregate);
+    return bound;
+  };
+  std::clock_t const begin = std::clock();
+  BestDesign const best = best_design(design);
+  out.seconds = double(std::clock() - begin) / CLOCKS_PER_SEC;
+  out.heights = heights(best.x);
+  out.mass = task.mass(out.heights);
+  out.aggregate = here.aggregate;
+  out.stress = here.most;
+  out.why = best.why;
+  out.converged = best.converged;
+  return out;
+}
+
+}  // namespace lighter_link

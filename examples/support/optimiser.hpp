@@ -1,0 +1,97 @@
+#pragma once
+// The least of a function under one bound on another, by NLopt's SLSQP [Kraft 1994], which takes exact gradients.
+
+#include <nlopt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+struct ValueAndSlopes {
+  double value = 0.0;
+  std::vector<double> slopes{};
+};
+
+// x that makes `objective` least where `constraint` ≤ 0 and least ≤ x ≤ most. All should be of the size of one.
+struct Design {
+  std::function<ValueAndSlopes(std::span<double const>)> objective{}, constraint{};
+  std::vector<double> start{}, least{}, most{};
+  double tolerance = 1e-5;  // of x, relatively; a tenth of the constraint's
+  int most_runs = 60;       // evaluations of the objective each time that the method is begun anew
+};
+
+struct BestDesign {
+  std::vector<double> x{};
+  double objective = 0.0, constraint = 0.0;
+  std::string why{};  // the method stopped
+  bool converged = false;
+};
+
+// NLopt is written in C: what a function throws is kept beside, and thrown again when the method has returned.
+struct DesignCall {
+  std::function<ValueAndSlopes(std::span<double const>)> const& f;
+  nlopt_opt method;
+  std::exception_ptr& thrown;
+
+  static double call(unsigned n, double const* x, double* slopes, void* data) {
+    auto const& self = *static_cast<DesignCall const*>(data);
+    try {
+      ValueAndSlopes const here = self.f(std::span(x, n));
+      if (slopes) std::copy(here.slopes.begin(), here.slopes.end(), slopes);
+      return here.value;
+    } catch (...) {
+      self.thrown = std::current_exception();
+      nlopt_force_stop(self.method);
+      return 0.0;
+    }
+  }
+};
+
+inline char const* reason(nlopt_result result) {
+  switch (result) {
+    case NLOPT_XTOL_REACHED:
+      return "the design no longer changes";
+    case NLOPT_FTOL_REACHED:
+      return "the objective no longer changes";
+    case NLOPT_MAXEVAL_REACHED:
+      return "the number of runs is used up";
+    case NLOPT_ROUNDOFF_LIMITED:
+      return "rounding allows no more";
+    case NLOPT_SUCCESS:
+      return "the conditions of the least value hold";
+    default:
+      return "the method failed";
+  }
+}
+
+inline BestDesign best_design(Design const& design) {
+  std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> const method(
+      nlopt_create(NLOPT_LD_SLSQP, unsigned(design.start.size())), nlopt_destroy);
+  std::exception_ptr thrown;
+  DesignCall objective{design.objective, method.get(), thrown}, constraint{design.constraint, method.get(), thrown};
+  nlopt_set_min_objective(method.get(), DesignCall::call, &objective);
+  nlopt_add_inequality_constraint(method.get(), DesignCall::call, &constraint, 10.0 * design.tolerance);
+  nlopt_set_lower_bounds(method.get(), design.least.data());
+  nlopt_set_upper_bounds(method.get(), design.most.data());
+  nlopt_set_xtol_rel(method.get(), design.tolerance);
+  nlopt_set_maxeval(method.get(), design.most_runs);
+  BestDesign best{.x = design.start};
+  nlopt_result result = NLOPT_FAILURE;
+  double before = design.objective(best.x).value;
+  for (int begun = 0; begun < 8; ++begun) {  // anew it knows no curvature that could mislead it to an early end
+    result = nlopt_optimize(method.get(), best.x.data(), &best.objective);
+    if (thrown) std::rethrow_exception(thrown);
+    best.constraint = design.constraint(best.x).value;
+    bool const moves = std::abs(best.objective - before) > 10.0 * design.tolerance * std::abs(before);
+    if (result < 0 || (begun > 0 && !moves)) break;
+    before = best.objective;
+  }
+  best.why = reason(result);
+  best.converged = result > 0 && result != NLOPT_MAXEVAL_REACHED && best.x != design.start;
+  return best;
+}
