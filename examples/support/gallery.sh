@@ -1,6 +1,8 @@
 # What examples/run builds and shows, and the page of its pictures. Sourced.
 
-stages=(pendulum robot_arm cantilever chain_study tracked_vehicle link_from_fe track_stress vehicle_study identify lighter_link)
+# What is built where nothing is named: the thesis. Then studies and designs.
+chapters=(pendulum robot_arm cantilever tracked_vehicle link_from_fe track_stress)
+stages=("${chapters[@]}" chain_study vehicle_study identify lighter_link)
 
 # What each takes from nothing to its last picture, after those before it, on two cores [s]: for what is left only.
 declare -A seconds=([pendulum]=20 [robot_arm]=160 [cantilever]=45 [chain_study]=40 [tracked_vehicle]=240 [link_from_fe]=45 [track_stress]=220 [vehicle_study]=80 [identify]=60 [lighter_link]=60)
@@ -24,7 +26,7 @@ command_of() {
   case $1 in
     robot_arm | cantilever) echo "$1 --case all --out $2/$1$film" ;;
     tracked_vehicle | track_stress) echo "$1 --figure all --out $2/$1$film" ;;
-    identify | lighter_link) echo \"$1 --out $2/$1\" ;;
+    identify | lighter_link) echo "$1 --out $2/$1" ;;
     chain_study | vehicle_study) echo "$1 --threads $(nproc) --out $2/$1" ;;
     *) echo "$1" ;;
   esac
