@@ -29,7 +29,7 @@ struct EquationSlope {
 
 /// The ends of a step of h: its state before and after, and the method's own accelerations there.
 struct StepEnds {
-  State const& before;     ///< at its start
+  State const& before;     ///< at its start, with the speeds that the step set out with
   State const& after;      ///< at its end
   VecX const& own_before;  ///< (nv) a₀
   VecX const& own_after;   ///< (nv) a₁
@@ -40,6 +40,7 @@ struct StepEnds {
 struct StepDirection {
   EquationSlope by;  ///< what the parameter does to the equations at the end of the step
   State* dx;         ///< the derivative of the state before the step; it becomes that of the state after it
+  double dh = 0.0;   ///< that of the length of the step [s]; what the time of its end does to the equations is in `by`
 };
 
 /// Slopes of converged steps of a method, one step after the other.
@@ -140,12 +141,17 @@ class AlphaStepSlope {
       State const& dx = *directions[l].dx;
       VecX const& y = y_[l];
       Index const k = Index(l);
+      double const dh = directions[l].dh;
       for (Index i = 0; i < from_.size(); ++i) from_[i].d[k] = dx.q[i];
       for (Index i = 0; i < nv; ++i) {
         double const a0 = dx.memory[i], a1 = y[i];
         a_[i].d[k] = ((1.0 - m.alpha_m) * a1 + m.alpha_m * a0 - m.alpha_f * dx.a[i]) / (1.0 - m.alpha_f);
         v_[i].d[k] = dx.v[i] + h * ((1.0 - m.gamma) * a0 + m.gamma * a1);
         delta_[i].d[k] = h * dx.v[i] + of_a0 * a0 + of_a1 * a1;
+        if (dh == 0.0) continue;
+        double const own0 = step.own_before[i], own1 = step.own_after[i];
+        v_[i].d[k] += dh * ((1.0 - m.gamma) * own0 + m.gamma * own1);
+        delta_[i].d[k] += dh * (before.v[i] + h * ((1.0 - 2.0 * m.beta) * own0 + 2.0 * m.beta * own1));
       }
       for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d[k] = y[nv + i];
     }

@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// A model for one choice of its parameters, with what its steps and questions need; and sums of states.
+/// A model for one choice of its parameters, with what its steps and questions need.
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_step_slope.hpp>
+#include <polybody/gradients/run_tangent.hpp>
 
 namespace polybody::detail {
 
@@ -23,10 +24,22 @@ struct Variant {
         method(m),
         work(method.workspace<DefaultSolver>(system)) {}
 
-  /// Consistent accelerations and multipliers, as a run begins.
-  void start(State& x, double h) {
+  /// Consistent accelerations and multipliers, as a run begins. \param corrected as in `AlphaMethod::start`
+  void start(State& x, double h, std::optional<bool> corrected = {}) {
     work.forward.project_velocities(system, x.q, x.v, x.t);
-    method.start(system, x, h, work);
+    method.start(system, x, h, work, corrected);
+  }
+  /// Times at which a step must end, in no order: those of drives and loads, then those of the options [s].
+  std::vector<double> corners() const {
+    Sequence<double> const& own = system.layout().corners;
+    std::vector<double> all(own.begin(), own.end());
+    all.insert(all.end(), scenario.options.corners.begin(), scenario.options.corners.end());
+    return all;
+  }
+  /// The length of steps that is asked for [s].
+  double length() const {
+    RunOptions const& o = scenario.options;
+    return o.largest_step ? std::min<double>(o.step, *o.largest_step) : double(o.step);
   }
   /// The state in which the run begins, for steps of h.
   State started(double h) {
@@ -68,9 +81,11 @@ struct Variant {
     return out;
   }
   /// r and Φ (of velocity rows Φ̇) at x.
-  EquationSlope equations(State const& x) {
+  EquationSlope equations(State const& x) { return equations(x, x.t); }
+  /// The same at another time t [s].
+  EquationSlope equations(State const& x, double t) {
     EquationSlope out{VecX::Zero(system.speeds()), VecX::Zero(system.rows())};
-    system.evaluate(x.q, x.v, x.t);
+    system.evaluate(x.q, x.v, t);
     system.residual(x.a, x.lambda, out.balance);
     system.violation(out.rows);
     if (system.velocity_rows().empty()) return out;
@@ -80,37 +95,5 @@ struct Variant {
     return out;
   }
 };
-
-template <class = void>
-void add(State& sum, State const& x, double by) {
-  sum.q += by * x.q;
-  sum.v += by * x.v;
-  sum.a += by * x.a;
-  sum.lambda += by * x.lambda;
-  sum.memory += by * x.memory;
-}
-/// shown = x + e dx but for what an integrator remembers.
-template <class = void>
-void add_motion(State& shown, State const& dx, double e, State const& x) {
-  shown.q = x.q + e * dx.q;
-  shown.v = x.v + e * dx.v;
-  shown.a = x.a + e * dx.a;
-  shown.lambda = x.lambda + e * dx.lambda;
-}
-template <class = void>
-State zeros_like(State const& x) {
-  State out = x;
-  for (VecX* const part : {&out.q, &out.v, &out.a, &out.lambda, &out.memory}) part->setZero();
-  return out;
-}
-
-/// x + e dx, with the lengths of steps that x remembers.
-template <class = void>
-State beside(State const& x, State const& dx, double e) {
-  State out = x;
-  add(out, dx, e);
-  out.memory.tail(StepHistory::lengths) = x.memory.tail(StepHistory::lengths);
-  return out;
-}
 
 }  // namespace polybody::detail

@@ -16,6 +16,8 @@
 /// λ then answers Φ̇ = 0 and μ answers Φ = 0: Newton's method takes the first pair through the tangent, the second
 /// through [M, Gᵀ; G, 0] at q₀, and each sees the other through the next right-hand side.
 
+#include <optional>
+
 #include <polybody/integrators/alpha_vectors.hpp>
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
@@ -57,15 +59,16 @@ struct AlphaMethod {
     return w;
   }
 
-  /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
+  /// Consistent v̇ and λ at x, which forgets earlier steps. \param corrected whether by `start_correction`; else h tells
   template <class Solver>
-  void start(System& system, State& x, double h, Workspace<Solver>& w) const {
+  void start(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     w.tangent.forget();
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     append_multipliers(system, x);
     StepHistory::reset(x);
     w.kept_factor.usable = false;
-    if (start_correction && jerk_at_start(system, x, h, w)) StepHistory(x).pretend(x, w.jerk, h);
+    if (start_correction && corrected != false && corrected.value_or(jerk_at_start(system, x, h, w)))
+      StepHistory(x).pretend(x, w.jerk, h);
     // once here, so that a solver that changes its order does not do so within a step
     w.solver().evaluate(system, {x.q, x.v, x.t});
     (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
@@ -77,17 +80,17 @@ struct AlphaMethod {
     return advance(system, x, h, w);
   }
 
-  /// The speeds w.v0 and the method's own accelerations w.a0 from which a step of h sets out: those of x, corrected
-  /// where they stand off the solution for steps of another length. Returns whether they were corrected.
+  /// v₀ and a₀ of a step of h [s] from x, into w: the state's own, corrected where those were made for steps of another
+  /// length. Returns whether they are. \param corrected as in `start`
   template <class Solver>
-  bool set_out(System& system, State& x, double h, Workspace<Solver>& w) const {
+  bool set_out(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     StepHistory const history(x);
     w.v0 = x.v;
     history.own(w.a0);
     double const shifted = history.shifted();  // the length for which v and a stand off; 0 after a start
     bool const corrects =
         start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
-        (shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else the step does not resolve it
+        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else it is not resolved
           return h * norm(w.jerk, first, end) <= 0.5 * norm(x.a, first, end);
         }));
     if (corrects) correct(system, x, shifted, h, w);

@@ -38,6 +38,7 @@ class EventWatch {
     look(events, x, step.seen, now_);
     State first = x;
     bool met = false;
+    met_.assign(sides_.size(), 0);
     for (std::size_t i = 0; i < sides_.size(); ++i) {
       if (!passed(i, now_[i])) continue;
       met = true;
@@ -60,11 +61,35 @@ class EventWatch {
     }
     for (std::size_t i = 0; i < sides_.size(); ++i) {
       if (!passed(i, now_[i])) continue;
+      met_[i] = 1;
       report.events.push_back({events[i].name, x.t});
       report.stopped = report.stopped || events[i].stops;
     }
     sides_.swap(now_);
     return met;
+  }
+
+  /// Whether event i was met in the step that was looked at last.
+  bool met(std::size_t i) const { return i < met_.size() && met_[i] != 0; }
+  /// Whether one of the `events` that was met changes the state.
+  bool acts(std::vector<Event> const& events) const {
+    for (std::size_t i = 0; i < events.size(); ++i)
+      if (met(i) && events[i].then) return true;
+    return false;
+  }
+  /// Those of the `events` that were met change x, a user's state, one after the other; then all stand where they are
+  /// in it, those that changed it at zero. \throws InvalidInput where one leaves coordinates or speeds that are not
+  /// finite.
+  [[gnu::cold]] void act(std::vector<Event> const& events, State& x) {
+    double const t = x.t;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      if (!met(i) || !events[i].then) continue;
+      events[i].then(x);
+      x.t = t;
+      require_finite(x.q, "The coordinates after the event \"" + events[i].name + "\"");
+      require_finite(x.v, "The speeds after the event \"" + events[i].name + "\"");
+    }
+    for (std::size_t i = 0; i < events.size(); ++i) sides_[i] = met(i) && events[i].then ? 0 : side(events[i], x);
   }
 
  private:
@@ -94,7 +119,7 @@ class EventWatch {
   }
 
   Sequence<int> sides_;  // at the end of the last step: each is met once, however a restart rounds
-  Sequence<int> now_;
+  Sequence<int> now_, met_;
 };
 
 }  // namespace polybody

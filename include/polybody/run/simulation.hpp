@@ -5,7 +5,7 @@
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/axial_watch.hpp>
-#include <polybody/run/event_watch.hpp>
+#include <polybody/run/event_action.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/run_snapshot.hpp>
 #include <polybody/run/run_systems.hpp>
@@ -96,7 +96,6 @@ class Simulation {
   }
   /// A narrow state is stepped, of which `show` makes the user's; else that itself.
   bool eliminates() const { return bool(whole_); }
-
   void advance(bool shown);  ///< shown: the user's state follows
 
   /// A workspace that knows no earlier step, and is ready for the next one.
@@ -128,8 +127,7 @@ class Simulation {
     *x_ = seen_;
   }
 
-  /// The narrow start, with the questions that only the whole model answers: joint speeds are read off speeds that keep
-  /// to the joints.
+  /// The narrow start, of speeds that keep to the joints, with the questions that only the whole model answers.
   [[gnu::cold]] void narrow_start();
   /// Adds warnings to the report: of a start between branches, and where the step is too long for compliant joints.
   [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
@@ -200,8 +198,10 @@ class Simulation {
     EventWatch::Step const again = [this](State& x, double h) {
       return method_.step(*system_, x, h, workspace_).taken;
     };
-    EventWatch::Seen const shown = seen();
-    return watch_.meet(options_.events, {before_, taken, shown, again}, stepped(), report_);
+    bool const met = watch_.meet(options_.events, {before_, taken, seen(), again}, stepped(), report_);
+    if (met && watch_.acts(options_.events))
+      stepped() = after_action<Solver>(watch_, options_.events, seen()(stepped()), {system_.get(), whole_.get()});
+    return met;
   }
 
   std::unique_ptr<System> system_, whole_;  // workspaces refer to it

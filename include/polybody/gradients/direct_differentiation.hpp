@@ -1,0 +1,308 @@
+#pragma once
+/// \file
+/// A run that takes its derivatives along, step by step.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/variants_beside.hpp>
+
+namespace polybody {
+
+/// Outputs of a run and their derivatives.
+struct Sensitivities {
+  std::vector<std::string> parameters, outputs;  ///< names, with units
+  std::vector<double> times;                     ///< (n) the start and every step's end [s]
+  std::vector<VecX> values;                      ///< (n) of the outputs
+  std::vector<MatX> slopes;                      ///< (n) outputs × parameters: of `values`, at times that move
+  std::vector<VecX> time_slopes;  ///< (n) of `times` by the parameters, with their units: not zero from an event on, or
+                                  ///< a corner that moves; the last one is that of an event which stops the run
+  double left = 0.0;              ///< the largest relative change by a last correction of a step
+  RunReport run;                  ///< of the steps themselves
+};
+
+namespace detail {
+
+/// A run and its derivatives, step by step, as `Simulation` takes the steps.
+template <class Make, class I>
+class DirectDifferentiation {
+  using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
+  using Variants = VariantsBeside<S, I>;
+  using V = Variant<S, I>;
+
+ public:
+  [[gnu::cold]] DirectDifferentiation(Make const& make, std::vector<Parameter> const& parameters,
+                                      AlphaMethod const& method)
+      : parameters_(parameters),
+        whole_(make(values(parameters)), method),
+        slope_(whole_.scenario.model, whole_.system, method),
+        beside_(make, parameters, method) {
+    require_plain(whole_.scenario);
+  }
+
+  Sensitivities run() {
+    x_ = whole_.scenario.start;
+    options().check(x_.t);
+    require_assembled(whole_.system, x_, options().assembly_tolerance);
+    h_ = whole_.length();
+    std::vector<double> const corners = whole_.corners();
+    plan_ = StepPlan(x_.t, options().until, options().step, Sequence<double>(corners.begin(), corners.end()));
+    x_.t = plan_.pass(x_.t);
+    begin();
+    note();
+    while (!done()) {
+      step();
+      note();
+    }
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      if (!touched_[j])
+        out_.run.add_warning("Nothing in the run depends on the parameter \"" + parameters_[j].name + "\".");
+    return std::move(out_);
+  }
+
+ private:
+  /// A direction along which a step is differentiated: a parameter, what it does, and the slope of the step's length.
+  struct Lane {
+    std::size_t j;
+    RunTangent* tangent;
+    double dh;
+  };
+
+  static std::vector<double> values(std::vector<Parameter> const& parameters) {
+    std::vector<double> p;
+    for (Parameter const& one : parameters) p.push_back(one.value);
+    return p;
+  }
+  static void require_plain(S const& scenario) {
+    RunOptions const& o = scenario.options;
+    if (o.halvings > 0 || o.minimum_norm)
+      throw InvalidInput(
+          "sensitivities: a run with halved steps or multipliers of least norm is not differentiated. Leave them out "
+          "of the options.");
+  }
+  RunOptions const& options() const { return whole_.scenario.options; }
+  bool done() const { return out_.run.stopped || x_.t >= options().until; }
+
+  void begin() {
+    touched_.assign(parameters_.size(), 0);
+    for (Parameter const& p : parameters_) out_.parameters.push_back(p.name);
+    for (auto const& o : whole_.scenario.outputs) out_.outputs.push_back(o.name);
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      tangents_.push_back({zeros_like(x_), beside_.of_number(j, [](V const& v) { return v.scenario.start.t; }), {}});
+      step_slope_.push_back(beside_.of_number(j, [](V const& v) { return v.length(); }));
+      until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.until); }));
+    }
+    if (!options().events.empty()) watch_.start(options().events, x_, seen());
+    start([&](std::size_t j, double h, double dh, auto const& f) { return beside_.of_start(j, h, dh, f); }, {});
+  }
+  /// Makes x_ a start, after some events act on it, with all tangents. \param differenced (parameter, length of the
+  /// next step, its slope, map) gives the derivative of the map
+  template <class Differenced>
+  void start(Differenced const& differenced, std::vector<std::size_t> const& acting) {
+    StepPlan::Next const next = done() ? StepPlan::Next{x_.t, h_, false, false} : plan_.next(x_.t, h_);
+    State fresh = x_;
+    if (!acting.empty()) watch_.act(options().events, fresh);
+    whole_.start(fresh, next.h);
+    bool const corrected = fresh.memory[fresh.memory.size() - 2] > 0.0;
+    auto const map = [&](V& v, State& y, double h) {
+      double const t = y.t;
+      for (std::size_t const i : acting) v.scenario.options.events[i].then(y);
+      y.t = t;
+      v.start(y, h, corrected);
+    };
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      RunTangent& tangent = tangents_[j];
+      tangent.dx = differenced(j, next.h, length_slope(j, next, tangent), map);
+      tangent.lengths = tangent.dx.memory.tail(StepHistory::lengths);
+      tangent.dx.memory.tail(StepHistory::lengths) = fresh.memory.tail(StepHistory::lengths);
+    }
+    x_ = std::move(fresh);
+  }
+  /// The slope of the length of the next step.
+  double length_slope(std::size_t j, StepPlan::Next const& next, RunTangent const& from) const {
+    if (!next.lands) return step_slope_[j];
+    return (next.jumps ? beside_.times(j).slope(next.target) : until_slope_[j]) - from.dt;
+  }
+
+  /// A step to the next place of the plan, or to an event before it.
+  void step() {
+    State const before = x_;
+    StepPlan::Next const next = plan_.next(x_.t, h_);
+    bool const crumb = next.h < 0.01 * h_;
+    StepReport const report = whole_.step(x_, next.h);
+    x_.t = next.lands ? next.target : row_.after(before.t, next.h);
+    State const far = x_;
+    bool const met = !options().events.empty() && meet(before, next.h);
+    double const end = x_.t, h = met ? StepHistory(x_).shifted() : next.h;
+    x_.t = before.t + h;  // just before a corner
+    std::vector<Lane> lanes;
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      lanes.push_back({j, &tangents_[j], met ? 0.0 : length_slope(j, next, tangents_[j])});
+    RunTangent by_length{zeros_like(before), 0.0, VecX::Zero(StepHistory::lengths)};
+    if (met) {
+      if (next.lands && end == next.target) refuse_event_at_corner();
+      by_length.dx.memory.tail(StepHistory::lengths) = before.memory.tail(StepHistory::lengths);
+      lanes.push_back({Variants::along_motion, &by_length, 1.0});
+    }
+    differentiate(before, h, lanes);
+    if (met) move_to_event(by_length, before, far);
+    x_.t = end;
+    bool const at_corner = next.jumps && end == next.target;
+    if (at_corner) x_.t = plan_.pass(end);
+    if (at_corner) require_one_end();
+    if (met || at_corner || crumb) restart(met);
+    out_.run.add(report);
+  }
+  void restart(bool met) {
+    State const x = x_;
+    std::vector<std::size_t> acting;
+    for (std::size_t i = 0; met && i < options().events.size(); ++i)
+      if (watch_.met(i) && options().events[i].then) acting.push_back(i);
+    start([&](std::size_t j, double h, double dh,
+              auto const& f) { return beside_.of_map(j, x, tangents_[j], {h, dh}, f); },
+          acting);
+  }
+  /// A corner at the end of the run ends it for nearby parameters too.
+  void require_one_end() const {
+    if (x_.t < options().until) return;
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      if (std::abs(tangents_[j].dt - until_slope_[j]) * parameters_[j].size() > 1e-9 * h_)
+        throw InvalidInput{"sensitivities: a corner at the end of the run, t = ", x_.t, " s, moves with \"",
+                           parameters_[j].name,
+                           "\", and the end does not: there is no derivative there. End the run a step before or "
+                           "after."};
+  }
+  [[noreturn, gnu::cold]] void refuse_event_at_corner() const {
+    throw InvalidInput{"sensitivities: at t = ", x_.t,
+                       " s there is an event, and a corner or the end of the run: there is no derivative there. Move "
+                       "one of them by a step."};
+  }
+
+  static EventWatch::Seen seen() {
+    return [](State const& x) -> State const& { return x; };
+  }
+  bool meet(State const& before, double h) {
+    EventWatch::Step const again = [this](State& x, double part) { return whole_.step(x, part).taken; };
+    return watch_.meet(options().events, {before, h, seen(), again}, x_, out_.run);
+  }
+  /// Adds to the derivatives at the end of a step of fixed length what the event's time does: the value stays zero.
+  void move_to_event(RunTangent const& by_length, State const& before, State const& far) {
+    std::vector<double> dh(parameters_.size());
+    std::string const* first = nullptr;
+    for (std::size_t i = 0; i < options().events.size(); ++i) {
+      if (!watch_.met(i)) continue;
+      Event const& event = options().events[i];
+      auto const value = [i](V& v, State const& x) {
+        return VecX::Constant(1, v.scenario.options.events[i].value(x)).eval();
+      };
+      double const rate = beside_.of_values(Variants::along_motion, x_, by_length, h_, value)[0],
+                   most = std::max(std::abs(event.value(before)), std::abs(event.value(far)));
+      if (!(std::abs(rate) * (far.t - before.t) > 1e-6 * most)) refuse_touch(event);
+      for (std::size_t j = 0; j < parameters_.size(); ++j) {
+        double const own = -beside_.of_values(j, x_, tangents_[j], h_, value)[0] / rate;
+        if (first && std::abs(own - dh[j]) > 1e-6 * (std::abs(own) + h_ / parameters_[j].size()))
+          throw InvalidInput{"sensitivities: the events \"",
+                             *first,
+                             "\" and \"",
+                             event.name,
+                             "\" are met at once at t = ",
+                             x_.t,
+                             " s and part with \"",
+                             parameters_[j].name,
+                             "\": there is no derivative there. Look for one of them."};
+        if (!first) dh[j] = own;
+      }
+      first = &event.name;
+    }
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      add(tangents_[j].dx, by_length.dx, dh[j]);
+      tangents_[j].dt += dh[j];
+    }
+  }
+  [[noreturn, gnu::cold]] void refuse_touch(Event const& event) const {
+    throw InvalidInput{"sensitivities: the event \"", event.name, "\" only touches zero at t = ", x_.t,
+                       " s, so its time has no derivative. Look for a value that passes through zero at a rate."};
+  }
+
+  /// The tangents before a step of h that led from `before` to x_ become those at its end.
+  void differentiate(State const& before, double h, std::vector<Lane> const& lanes) {
+    Index const nv = x_.v.size();
+    State from = before;
+    V& spare = beside_.itself();
+    bool const corrects = spare.method.set_out(spare.system, from, h, spare.work);
+    from.v = spare.work.v0;
+    VecX const own_before = spare.work.a0, own_after = x_.memory.head(nv);
+    for (Lane const& lane : lanes) set_out(before, h, lane, corrects);
+    StepEnds const step{from, x_, own_before, own_after, h};
+    slope_.set(step);
+    std::optional<EquationSlope> by_time;
+    std::vector<StepDirection> directions;
+    for (Lane const& lane : lanes) {
+      lane.tangent->dt += lane.dh;
+      directions.push_back(
+          {beside_.of_equations(lane.j, x_, h, lane.tangent->dt, by_time), &lane.tangent->dx, lane.dh});
+      if (directions.size() < std::size_t(AlphaStepSlope<>::lanes) && &lane != &lanes.back()) continue;
+      out_.left = std::max(out_.left, slope_.advance(step, directions));
+      directions.clear();
+    }
+    for (Lane const& lane : lanes) push_length(*lane.tangent, lane.dh);
+  }
+  /// The tangent of the speeds, and of the method's own accelerations, that a step from x sets out with.
+  void set_out(State const& x, double h, Lane const& lane, bool corrects) {
+    RunTangent& tangent = *lane.tangent;
+    double const shifted = x.memory[x.memory.size() - 1];
+    if (!corrects && (shifted == 0.0 || lane.dh == tangent.lengths[StepHistory::lengths - 1])) return;
+    Index const nv = x.v.size();
+    std::optional<bool> decided;
+    if (std::abs(h - shifted) > 1e-9 * h) decided = corrects;
+    State const change = beside_.of_map(lane.j, x, tangent, {h, lane.dh}, [&](V& v, State& y, double length) {
+      (void)v.method.set_out(v.system, y, length, v.work, decided);
+      y.v = v.work.v0 - y.v;
+      y.memory.head(nv) = v.work.a0 - y.memory.head(nv);
+    });
+    tangent.dx.v += change.v;
+    tangent.dx.memory.head(nv) += change.memory.head(nv);
+  }
+  /// As `StepHistory::push` does with a length.
+  static void push_length(RunTangent& tangent, double dh) {
+    constexpr Index last = StepHistory::lengths - 1;
+    for (Index i = 0; i + 1 < last; ++i) tangent.lengths[i] = tangent.lengths[i + 1];
+    tangent.lengths[last - 1] = tangent.lengths[last] = dh;
+  }
+
+  /// Values and slopes of the outputs at x.
+  void note() {
+    MatX slopes = MatX::Zero(Index(out_.outputs.size()), Index(parameters_.size()));
+    VecX of_time(Index(parameters_.size()));
+    auto const outputs = [](V& v, State const& x) { return v.outputs(x); };
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      RunTangent const& tangent = tangents_[j];
+      State const& dx = tangent.dx;
+      of_time[Index(j)] = tangent.dt;
+      slopes.col(Index(j)) = beside_.of_values(j, x_, tangent, h_, outputs);
+      bool const moves =
+          dx.q.squaredNorm() + dx.v.squaredNorm() + dx.a.squaredNorm() > 0.0 || std::abs(tangent.dt) > 0.0;
+      if (moves || !slopes.col(Index(j)).isZero(0.0)) touched_[j] = 1;
+    }
+    out_.times.push_back(x_.t);
+    out_.values.push_back(whole_.outputs(x_));
+    out_.slopes.push_back(std::move(slopes));
+    out_.time_slopes.push_back(std::move(of_time));
+  }
+
+  std::vector<Parameter> parameters_;
+  V whole_;
+  AlphaStepSlope<> slope_;
+  Variants beside_;
+  State x_;
+  std::vector<RunTangent> tangents_;  // of each parameter
+  std::vector<double> step_slope_, until_slope_;
+  StepPlan plan_;
+  StepRow row_;
+  EventWatch watch_;
+  double h_ = 0.0;
+  std::vector<char> touched_;
+  Sensitivities out_;
+};
+
+}  // namespace detail
+}  // namespace polybody

@@ -1,0 +1,93 @@
+#pragma once
+/// \file
+/// A scenario and those beside it, four for each parameter.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <memory>
+#include <span>
+
+#include <polybody/gradients/times_beside.hpp>
+#include <polybody/gradients/variant.hpp>
+
+namespace polybody::detail {
+
+/// Scenarios for the values of the parameters, and at the four points beside each of them.
+template <class S, class I>
+class Neighbours {
+ public:
+  using V = Variant<S, I>;
+
+  template <class Make>
+  [[gnu::cold]] Neighbours(Make const& make, std::vector<Parameter> const& parameters, AlphaMethod const& method)
+      : parameters_(parameters), itself_(make(values()), method) {
+    for (std::size_t j = 0; j < parameters.size(); ++j)
+      for (double const place : FourPoints::places) {
+        std::vector<double> p = values();
+        p[j] += place * parameters[j].distance();
+        beside_.push_back(std::make_unique<V>(make(p), method));
+        require_alike(parameters[j], *beside_.back());
+      }
+    find_times();
+  }
+
+  V& itself() { return itself_; }                                               ///< for the values of the parameters
+  TimesBeside const& times(std::size_t j) const { return times_[j]; }           ///< of runs with another parameter j
+  V& beside(std::size_t j, std::size_t k) { return *beside_[points * j + k]; }  ///< at point k beside parameter j
+  Parameter const& parameter(std::size_t j) const { return parameters_[j]; }    ///< number j
+
+  /// A step of h from t, in variant k, which sets out at `from`: it ends where the other does.
+  double length(std::size_t j, std::size_t k, double t, double h, double from) const {
+    double const end = times_[j](k, t + h);
+    if (from == t && end == t + h) return h;
+    double length = end - from;
+    while (from + length > end) length = std::nextafter(length, 0.0);
+    return length;
+  }
+
+ private:
+  static constexpr std::size_t points = FourPoints::places.size();
+
+  std::vector<double> values() const {
+    std::vector<double> p;
+    for (Parameter const& one : parameters_) p.push_back(one.value);
+    return p;
+  }
+  void require_alike(Parameter const& p, V const& other) const {
+    auto const sizes = [](V const& v) {
+      return std::array{v.system.coordinates(),
+                        v.system.speeds(),
+                        v.system.rows(),
+                        Index(v.scenario.outputs.size()),
+                        Index(v.scenario.options.events.size()),
+                        Index(v.corners().size())};
+    };
+    if (sizes(other) != sizes(itself_))
+      throw InvalidInput{"sensitivities: with another \"", p.name,
+                         "\" the factory makes a model of other sizes. Let parameters change numbers, not what is "
+                         "there."};
+  }
+  [[gnu::cold]] void find_times() {
+    std::vector<double> const here = itself_.corners();
+    double const start = itself_.scenario.start.t;
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      std::vector<TimesBeside::Moving> times;
+      auto const add_time = [&](double t, auto const& of) {
+        if (!std::isfinite(t)) return;
+        TimesBeside::Moving m{t, {}};
+        for (std::size_t k = 0; k < points; ++k) m.there[k] = of(*beside_[points * j + k]);
+        times.push_back(m);
+      };
+      add_time(start, [](V const& v) { return v.scenario.start.t; });
+      for (std::size_t i = 0; i < here.size(); ++i) add_time(here[i], [i](V const& v) { return v.corners()[i]; });
+      times_.emplace_back(std::move(times), parameters_[j], 1e-9 * itself_.length());
+    }
+  }
+
+  std::vector<Parameter> parameters_;
+  V itself_;
+  std::vector<std::unique_ptr<V>> beside_;  // four for each parameter
+  std::vector<TimesBeside> times_;
+};
+
+}  // namespace polybody::detail

@@ -1,0 +1,157 @@
+// What an event changes in a state: impacts as jumps of the speeds.
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/run/simulate.hpp>
+
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace event_action_test {
+
+constexpr double g = 9.81;
+
+/// A ball, 1 m above the floor, that keeps 0.8 of its speed at each impact.
+struct Ball {
+  Model<Bodies<planar::Rigid>, Joints<>> model{Gravity{0, -g, 0}};
+  State x;
+  Event const floor{.name = "floor",
+                    .value = [](State const& now) { return now.q[1]; },
+                    .tolerance = 1e-15,
+                    .then = [](State& now) { now.v[1] *= -0.8; }};
+  Event const apex{.name = "apex", .value = [](State const& now) { return now.v[1]; }, .tolerance = 1e-15};
+
+  Ball() {
+    model.add(planar::Rigid(2.0, 1.0, Placement::at({0, 1.0, 0})), "ball");
+    x = model.reference_state();
+  }
+};
+
+TEST(EventAction, AnImpactIsMetOnceAndTurnsTheSpeedRound) {
+  Ball ball;
+  auto run =
+      simulate(ball.model, ball.x, GeneralizedAlpha{}, {.until = 1.7, .step = 1e-2, .events = {ball.floor, ball.apex}});
+  run.run();
+  double const t1 = std::sqrt(2.0 / g), v1 = std::sqrt(2.0 * g);
+  // a jump of the speed through zero is no apex
+  auto const& met = run.report().events;
+  ASSERT_EQ(met.size(), 4u);
+  EXPECT_EQ(met[0].name, "floor");
+  EXPECT_NEAR(met[0].time, t1, 1e-13);
+  EXPECT_EQ(met[1].name, "apex");
+  EXPECT_NEAR(met[1].time, 1.8 * t1, 1e-13);
+  EXPECT_EQ(met[2].name, "floor");
+  EXPECT_NEAR(met[2].time, 2.6 * t1, 1e-13);
+  EXPECT_EQ(met[3].name, "apex");
+  EXPECT_NEAR(met[3].time, 3.24 * t1, 1e-13);
+  EXPECT_NEAR(ball.x.v[1], 0.64 * v1 - g * (1.7 - 2.6 * t1), 1e-12);
+  EXPECT_NEAR(ball.x.a[1], -g, 1e-12);
+}
+
+TEST(EventAction, ASnapshotKeepsThatAnEventHasActed) {
+  Ball ball;
+  RunOptions options{.until = 0.46, .step = 1e-2, .events = {ball.floor}};
+  auto first = simulate(ball.model, ball.x, GeneralizedAlpha{}, options);
+  while (first.report().events.empty()) first.advance();
+  RunSnapshot const kept = first.snapshot();
+  State x = ball.model.reference_state();
+  options.until = 0.6;
+  auto second = resume(ball.model, x, GeneralizedAlpha{}, options, kept);
+  second.run();
+  EXPECT_EQ(second.report().events.size(), 1u);
+  double const t1 = std::sqrt(2.0 / g);
+  EXPECT_NEAR(x.v[1], 0.8 * std::sqrt(2.0 * g) - g * (0.6 - t1), 1e-12);
+}
+
+/// Two rods on pins that fall from the side; the first one hits a stop where it hangs.
+template <class Policy>
+struct Stopped {
+  using Pin = Joint<planar::Revolute, Policy>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -g, 0}};
+  State x;
+
+  Stopped() {
+    Bar bar{.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}};
+    auto const a = model.add(planar::Rigid::from(bar), "a");
+    bar.placement = Placement::at({1.0, 0, 0});
+    auto const b = model.add(planar::Rigid::from(bar), "b");
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), a.at(0.0), "pin");
+    model.connect(Pin{}, a.at(1.0), b.at(0.0), "hinge");
+    x = model.reference_state();
+  }
+  /// A blow on the first rod alone: the speeds are projected afterwards, over the masses.
+  RunReport run(double restitution, double until) {
+    Event const stop{.name = "stop",
+                     .value = [](State const& now) { return now.q[2] + 0.5 * std::numbers::pi; },
+                     .tolerance = 1e-14,
+                     .then = [restitution](State& now) { now.v[2] *= -restitution; }};
+    auto run = simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = 1e-3, .events = {stop}});
+    return run.run();
+  }
+};
+
+TEST(EventAction, SpeedsAreProjectedOntoTheJointsOverTheMasses) {
+  Stopped<Constraint> s;
+  State before;
+  Event const stop{.name = "stop",
+                   .value = [](State const& now) { return now.q[2] + 0.5 * std::numbers::pi; },
+                   .tolerance = 1e-14,
+                   .then =
+                       [&](State& now) {
+                         before = now;
+                         now.v[2] = -now.v[2];
+                       }};
+  auto run = simulate(s.model, s.x, GeneralizedAlpha{}, {.until = 2.0, .step = 1e-3, .events = {stop}});
+  while (run.report().events.empty()) run.advance();
+  // M (v⁺ − v) + Gᵀμ = 0 with G v⁺ = 0, v the changed speeds: the change is across what the joints leave free
+  VecX changed = before.v;
+  changed[2] = -changed[2];
+  System system(s.model, with<Entries::motion>);
+  system.evaluate(s.x.q, s.x.v, s.x.t);
+  VecX rate(system.rows());
+  system.violation_rate(rate);
+  EXPECT_LT(rate.norm(), 1e-12 * changed.norm());
+  // a rod of length l: mass m, inertia m l²/12
+  double const inertia = 1.0 / 12.0;
+  Vec<double, 6> const masses(Vec<double, 6>{{1.0, 1.0, inertia, 1.0, 1.0, inertia}});
+  auto const work_on = [&](double spin_a, double spin_b) {  // of the change, along a motion of both angles
+    double const a = s.x.q[2], b = s.x.q[5];
+    Vec<double, 6> w;
+    w << -0.5 * std::sin(a) * spin_a, 0.5 * std::cos(a) * spin_a, spin_a,
+        -std::sin(a) * spin_a - 0.5 * std::sin(b) * spin_b, std::cos(a) * spin_a + 0.5 * std::cos(b) * spin_b, spin_b;
+    return w.dot(masses.cwiseProduct(Vec<double, 6>(s.x.v - changed)));
+  };
+  EXPECT_NEAR(work_on(1.0, 0.0), 0.0, 1e-10);
+  EXPECT_NEAR(work_on(0.0, 1.0), 0.0, 1e-10);
+  EXPECT_GT((s.x.v - changed).norm(), 0.1);
+}
+
+TEST(EventAction, IsTheSameInJointCoordinates) {
+  Stopped<Constraint> rows;
+  Stopped<Recursive> tree;
+  RunReport const a = rows.run(0.5, 1.2), b = tree.run(0.5, 1.2);
+  ASSERT_GE(a.events.size(), 1u);
+  ASSERT_EQ(a.events.size(), b.events.size());
+  EXPECT_NEAR(a.events[0].time, b.events[0].time, 1e-9);
+  EXPECT_LT((rows.x.q - tree.x.q).norm(), 1e-7);
+  EXPECT_LT((rows.x.v - tree.x.v).norm(), 1e-6);
+}
+
+TEST(EventAction, MustLeaveFiniteNumbers) {
+  Ball ball;
+  Event bad = ball.floor;
+  bad.then = [](State& now) { now.v[1] = std::nan(""); };
+  State const start = ball.x;
+  auto run = simulate(ball.model, ball.x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2, .events = {bad}});
+  EXPECT_TRUE(has(refusal([&] { run.run(); }), "The speeds after the event \"floor\" must be finite"));
+  EXPECT_TRUE(all_finite(ball.x.v));  // as it was before the step
+  EXPECT_GT(ball.x.q[1], 0.0);
+}
+
+}  // namespace event_action_test
