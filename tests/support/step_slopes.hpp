@@ -186,6 +186,9 @@ struct DerivedSteps {
   double left = 0.0;                       // by the last corrections of the steps
 };
 
+/// The distance of the differences.
+inline double thousandth_of(Parameter const& p) { return 1e-3 * p.size(); }
+
 template <class Slope, class Make, class I>
 DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parameters, I const& integrator, double h,
                           int count) {
@@ -197,13 +200,13 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
   for (std::size_t j = 0; j < parameters.size(); ++j)
     for (double const place : FourPoints::places) {
       std::vector<double> p = values;
-      p[j] += place * parameters[j].distance();
+      p[j] += place * thousandth_of(parameters[j]);
       beside.push_back(std::make_unique<S>(make(p), integrator, h));
     }
   auto const difference = [&](std::size_t j, auto&& part_of) {
     VecX sum = VecX::Zero(part_of(*beside[4 * j]).size());
     for (std::size_t k = 0; k < 4; ++k)
-      sum += FourPoints::weights[k] / parameters[j].distance() * part_of(*beside[4 * j + k]);
+      sum += FourPoints::weights[k] / thousandth_of(parameters[j]) * part_of(*beside[4 * j + k]);
     return sum;
   };
   auto const differences = [&] {

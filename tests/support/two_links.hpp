@@ -32,7 +32,7 @@ Policy policy_of(double stiffness) {
 
 /// A run of two links, and the end of the second one.
 template <class M, class B>
-struct TwoLinks : Scenario<M> {
+struct RunOfTwoLinks : Scenario<M> {
   Marker<B> tip;
 };
 
@@ -68,7 +68,8 @@ auto const two_links = [](std::span<double const> p) {
       {"tip x [m]", [second, end](M const& m, State const& x) { return position(m, x, second.at(end))[0]; }},
       {"tip y [m]", [second, end](M const& m, State const& x) { return position(m, x, second.at(end))[1]; }},
       {"tip z [m]", [second, end](M const& m, State const& x) { return position(m, x, second.at(end))[2]; }}};
-  return TwoLinks<M, B>{{std::move(model), start, {.until = 0.06, .step = 2e-3}, std::move(outputs)}, second.at(end)};
+  return RunOfTwoLinks<M, B>{{std::move(model), start, {.until = 0.06, .step = 2e-3}, std::move(outputs)},
+                             second.at(end)};
 };
 /// What `two_links` is made of.
 inline std::vector<Parameter> const parameters_of_two_links{{"young [Pa]", 2e8},

@@ -33,7 +33,7 @@ class DirectDifferentiation {
   [[gnu::cold]] DirectDifferentiation(Make const& make, std::vector<Parameter> const& parameters,
                                       AlphaMethod const& method)
       : parameters_(parameters),
-        whole_(make(values(parameters)), method),
+        whole_(make(values_of(parameters)), method),
         slope_(whole_.scenario.model, whole_.system, method),
         beside_(make, parameters, method) {
     require_plain(whole_.scenario);
@@ -67,11 +67,6 @@ class DirectDifferentiation {
     double dh;
   };
 
-  static std::vector<double> values(std::vector<Parameter> const& parameters) {
-    std::vector<double> p;
-    for (Parameter const& one : parameters) p.push_back(one.value);
-    return p;
-  }
   static void require_plain(S const& scenario) {
     RunOptions const& o = scenario.options;
     if (o.halvings > 0 || o.minimum_norm)

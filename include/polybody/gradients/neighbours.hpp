@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/times_beside.hpp>
 #include <polybody/gradients/variant.hpp>
 
@@ -20,13 +21,13 @@ class Neighbours {
 
   template <class Make>
   [[gnu::cold]] Neighbours(Make const& make, std::vector<Parameter> const& parameters, AlphaMethod const& method)
-      : parameters_(parameters), itself_(make(values()), method) {
+      : parameters_(parameters), itself_(make(values_of(parameters)), method) {
     for (std::size_t j = 0; j < parameters.size(); ++j)
       for (double const place : FourPoints::places) {
-        std::vector<double> p = values();
+        std::vector<double> p = values_of(parameters);
         p[j] += place * parameters[j].distance();
         beside_.push_back(std::make_unique<V>(make(p), method));
-        require_alike(parameters[j], *beside_.back());
+        require_alike(itself_, *beside_.back(), parameters[j], "sensitivities");
       }
     find_times();
   }
@@ -48,25 +49,6 @@ class Neighbours {
  private:
   static constexpr std::size_t points = FourPoints::places.size();
 
-  std::vector<double> values() const {
-    std::vector<double> p;
-    for (Parameter const& one : parameters_) p.push_back(one.value);
-    return p;
-  }
-  void require_alike(Parameter const& p, V const& other) const {
-    auto const sizes = [](V const& v) {
-      return std::array{v.system.coordinates(),
-                        v.system.speeds(),
-                        v.system.rows(),
-                        Index(v.scenario.outputs.size()),
-                        Index(v.scenario.options.events.size()),
-                        Index(v.corners().size())};
-    };
-    if (sizes(other) != sizes(itself_))
-      throw InvalidInput{"sensitivities: with another \"", p.name,
-                         "\" the factory makes a model of other sizes. Let parameters change numbers, not what is "
-                         "there."};
-  }
   [[gnu::cold]] void find_times() {
     std::vector<double> const here = itself_.corners();
     double const start = itself_.scenario.start.t;

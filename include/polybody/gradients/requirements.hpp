@@ -30,11 +30,17 @@ void require_plain(RunOptions const& o, char const* who) {
                        "Leave them out of the options."};
 }
 
-/// \throws InvalidInput, beginning with `who`, unless the model of another value of p has as many unknowns and outputs.
+/// \throws InvalidInput, beginning with `who`, unless the model of another value of p has as many unknowns, outputs,
+/// events and corners.
 template <class V>
 void require_alike(V const& model, V const& other, Parameter const& p, char const* who) {
   auto const sizes = [](V const& v) {
-    return std::array{v.system.coordinates(), v.system.speeds(), v.system.rows(), Index(v.scenario.outputs.size())};
+    return std::array{v.system.coordinates(),
+                      v.system.speeds(),
+                      v.system.rows(),
+                      Index(v.scenario.outputs.size()),
+                      Index(v.scenario.options.events.size()),
+                      Index(v.corners().size())};
   };
   if (sizes(other) != sizes(model))
     throw InvalidInput{who, ": with another \"", p.name,

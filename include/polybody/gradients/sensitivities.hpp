@@ -35,22 +35,8 @@ concept MakesScenarios = requires(F const make, std::span<double const> p) {
 template <MakesScenarios Make, class I>
 Sensitivities sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
   using M = decltype(make(std::span<double const>()).model);
-  static_assert(!M::eliminates,
-                "Steps in joint coordinates, and with dependent coordinates eliminated, are not differentiated. Give "
-                "the joints Constraint, Penalty or Bushing.");
-  static_assert(
-      requires {
-        { integrator.method() } -> std::convertible_to<AlphaMethod>;
-      },
-      "Runs are differentiated under the generalised-α family: GeneralizedAlpha, HhtAlpha, Newmark, "
-      "Trapezoidal.");
-  integrator.check();
-  check(parameters);
-  AlphaMethod method = integrator.method();
-  if (method.stabilised)
-    throw InvalidInput("sensitivities: a stabilised step is not differentiated. Set `stabilised` to false.");
-  method.tolerance = std::min(method.tolerance, 1e-12);
-  method.newton.budget = 0.0;
+  detail::require_differentiable<M, I>();
+  AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "sensitivities");
   return detail::DirectDifferentiation<Make, I>(make, parameters, method).run();
 }
 
