@@ -165,7 +165,7 @@ std::vector<Figure> output_figures(Comparison const& c) {
 /// where they are of several magnitudes.
 template <class = void>
 void add_first_cost(ComparedRun const& first, Figure& figure) {
-  double low = std::numeric_limits<double>::infinity(), high = 0.0, soonest = first.cpu, latest = first.cpu;
+  double low = std::numeric_limits<double>::infinity(), high = 0.0, soonest = first.cpu, latest = soonest;
   for (Curve const& curve : figure.curves) {
     low = std::min(low, curve.y[0]);
     high = std::max(high, curve.y[0]);
