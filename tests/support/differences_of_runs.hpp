@@ -13,7 +13,7 @@ namespace polybody {
 template <class Make, class I>
 VecX end_of(Make const& make, std::span<double const> p, I integrator) {
   auto scenario = make(p);
-  integrator.tolerance = 1e-13;
+  if constexpr (requires { integrator.newton; }) integrator.tolerance = 1e-13;
   State x = scenario.start;
   simulate(scenario.model, x, integrator, scenario.options).run();
   VecX out(Index(scenario.outputs.size()));

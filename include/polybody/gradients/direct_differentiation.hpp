@@ -4,21 +4,10 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
+#include <polybody/gradients/sensitivities_report.hpp>
 #include <polybody/gradients/variants_beside.hpp>
 
 namespace polybody {
-
-/// Outputs of a run and their derivatives.
-struct Sensitivities {
-  std::vector<std::string> parameters, outputs;  ///< names, with units
-  std::vector<double> times;                     ///< (n) the start and every step's end [s]
-  std::vector<VecX> values;                      ///< (n) of the outputs
-  std::vector<MatX> slopes;                      ///< (n) outputs × parameters: of `values`, at times that move
-  std::vector<VecX> time_slopes;  ///< (n) of `times` by the parameters, with their units: not zero from an event on, or
-                                  ///< a corner that moves; the last one is that of an event which stops the run
-  double left = 0.0;              ///< the largest relative change by a last correction of a step
-  RunReport run;                  ///< of the steps themselves
-};
 
 namespace detail {
 
@@ -53,9 +42,7 @@ class DirectDifferentiation {
       step();
       note();
     }
-    for (std::size_t j = 0; j < parameters_.size(); ++j)
-      if (!touched_[j])
-        out_.run.add_warning("Nothing in the run depends on the parameter \"" + parameters_[j].name + "\".");
+    warn_of_untouched(parameters_, touched_, out_.run);
     return std::move(out_);
   }
 

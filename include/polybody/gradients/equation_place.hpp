@@ -85,6 +85,17 @@ concept TellsEquationSlopes = requires(F f, EquationPlace<> const& x, std::size_
   { f(x, l) } -> std::convertible_to<EquationSlope>;
 };
 
+/// The slopes of the steps of integrator I, `Type`, where it solves equations at places; specialised on the header of
+/// these slopes.
+template <class I>
+struct SlopesOfStages;
+
+namespace detail {
+/// The header of the slopes of integrator I is there.
+template <class I>
+concept HasSlopesOfStages = requires { typename SlopesOfStages<I>::Type; };
+}  // namespace detail
+
 /// A step that was taken.
 struct StepTaken {
   State const& before;  ///< at its start

@@ -240,7 +240,9 @@ template <MakesRatedScenarios Make, class I>
 Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                   GradientOptions const& options = {}) {
   using M = decltype(make(std::span<double const>()).model);
-  detail::require_differentiable<M, I>();
+  detail::require_whole_steps<M>();
+  static_assert(detail::OfAlphaFamily<I>,
+                "The adjoint is of the generalised-α family: GeneralizedAlpha, HhtAlpha, Newmark, Trapezoidal.");
   AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "gradient");
   return detail::AdjointRun<Make, I>(make, parameters, method).run(options);
 }

@@ -269,4 +269,10 @@ class RadauStepSlope {
   VecX rhs_, correction_;
 };
 
+/// Slopes of runs by Radau.
+template <>
+struct SlopesOfStages<Radau> {
+  using Type = RadauStepSlope<>;  ///< of its steps
+};
+
 }  // namespace polybody

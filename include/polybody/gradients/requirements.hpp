@@ -48,21 +48,35 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                        "there."};
 }
 
-/// Runs of this model by this integrator are differentiated.
-template <class M, class I>
-constexpr void require_differentiable() {
+/// The outputs of a scenario at x. \throws NonFinite.
+template <class S>
+VecX values_of_outputs(S const& scenario, State const& x) {
+  VecX out(Index(scenario.outputs.size()));
+  for (Index i = 0; i < out.size(); ++i) {
+    auto const& output = scenario.outputs[std::size_t(i)];
+    out[i] = output.value(scenario.model, x);
+    if (!std::isfinite(out[i]))
+      throw NonFinite{"sensitivities: \"", output.name, "\"", how_not_finite(out[i]), " at t = ", x.t, " s."};
+  }
+  return out;
+}
+
+/// I is of the generalised-α family.
+template <class I>
+concept OfAlphaFamily = requires(I const integrator) {
+  { integrator.method() } -> std::convertible_to<AlphaMethod>;
+};
+/// Steps of model M are differentiated.
+template <class M>
+constexpr void require_whole_steps() {
   static_assert(!M::eliminates,
                 "Steps in joint coordinates, and with dependent coordinates eliminated, are not differentiated. Give "
                 "the joints Constraint, Penalty or Bushing.");
-  static_assert(
-      requires(I const& integrator) {
-        { integrator.method() } -> std::convertible_to<AlphaMethod>;
-      }, "Runs are differentiated under the generalised-α family: GeneralizedAlpha, HhtAlpha, Newmark, Trapezoidal.");
 }
 
 /// The method by which a run is differentiated: its corrections go on to 1e-12. \throws InvalidInput, beginning with
 /// `who`, for parameters and integrators that cannot be meant.
-template <class I>
+template <OfAlphaFamily I>
 AlphaMethod method_of_slopes(std::vector<Parameter> const& parameters, I const& integrator, char const* who) {
   integrator.check();
   check(parameters);

@@ -145,4 +145,15 @@ class RungeKuttaStepSlope {
   Walk<D> duals_;
 };
 
+/// Slopes of runs by RungeKutta4.
+template <class Stabilisation>
+struct SlopesOfStages<RungeKutta4<Stabilisation>> {
+  using Type = RungeKuttaStepSlope<RungeKutta4<Stabilisation>>;  ///< of its steps
+};
+/// Slopes of runs by DormandPrince.
+template <class Stabilisation>
+struct SlopesOfStages<DormandPrince<Stabilisation>> {
+  using Type = RungeKuttaStepSlope<DormandPrince<Stabilisation>>;  ///< of its steps
+};
+
 }  // namespace polybody

@@ -16,6 +16,7 @@
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <polybody/gradients/direct_differentiation.hpp>
+#include <polybody/gradients/stages_differentiation.hpp>
 
 namespace polybody {
 
@@ -29,15 +30,32 @@ concept MakesScenarios = requires(F const make, std::span<double const> p) {
 
 /// Runs the scenario that `make` gives for the parameters' values and differentiates its outputs with respect to each.
 /// Newton's corrections go on to 1e-12 or to what rounding leaves. \param integrator one of the generalised-α family,
-/// without `stabilised`. \throws InvalidInput for parameters that cannot be meant, a factory whose models differ in
-/// size, an event that only touches zero, events or corners that come at once and part with a parameter;
-/// LinearSolverSingular at a singular position; and as `simulate`.
+/// without `stabilised`; with their headers (runge_kutta_step_slope.hpp, radau_step_slope.hpp) RungeKutta4,
+/// DormandPrince, whose choice of steps stays as it is, and Radau, under which there are no events and corners. \throws
+/// InvalidInput for parameters that cannot be meant, a factory whose models differ in size, an event that only touches
+/// zero, events or corners that come at once and part with a parameter; LinearSolverSingular at a singular position;
+/// and as `simulate`.
 template <MakesScenarios Make, class I>
 Sensitivities sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
   using M = decltype(make(std::span<double const>()).model);
-  detail::require_differentiable<M, I>();
-  AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "sensitivities");
-  return detail::DirectDifferentiation<Make, I>(make, parameters, method).run();
+  detail::require_whole_steps<M>();
+  if constexpr (detail::OfAlphaFamily<I>) {
+    AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "sensitivities");
+    return detail::DirectDifferentiation<Make, I>(make, parameters, method).run();
+  } else {
+    static_assert(detail::HasSlopesOfStages<I>,
+                  "Runs are differentiated under the generalised-α family (GeneralizedAlpha, HhtAlpha, Newmark, "
+                  "Trapezoidal); with <polybody/gradients/runge_kutta_step_slope.hpp> under RungeKutta4 and "
+                  "DormandPrince, with <polybody/gradients/radau_step_slope.hpp> under Radau.");
+    integrator.check();
+    check(parameters);
+    MethodOf<I> method = method_of(integrator);
+    if constexpr (requires { method.newton.budget; }) {
+      method.tolerance = std::min(method.tolerance, 1e-12);
+      method.newton.budget = 0.0;
+    }
+    return detail::StagesDifferentiation<Make, I>(make, parameters, method).run();
+  }
 }
 
 }  // namespace polybody

@@ -6,6 +6,7 @@
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_step_slope.hpp>
+#include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/run_tangent.hpp>
 
 namespace polybody::detail {
@@ -65,21 +66,7 @@ struct Variant {
     work.solver().keep_reorderings(0);
     return method.step(system, x, h, work);
   }
-  VecX outputs(State const& x) const {
-    VecX out(Index(scenario.outputs.size()));
-    for (Index i = 0; i < out.size(); ++i) {
-      out[i] = scenario.outputs[std::size_t(i)].value(scenario.model, x);
-      if (!std::isfinite(out[i]))
-        throw NonFinite{"sensitivities: \"",
-                        scenario.outputs[std::size_t(i)].name,
-                        "\"",
-                        how_not_finite(out[i]),
-                        " at t = ",
-                        x.t,
-                        " s."};
-    }
-    return out;
-  }
+  VecX outputs(State const& x) const { return values_of_outputs(scenario, x); }
   /// r and Φ (of velocity rows Φ̇) at x.
   EquationSlope equations(State const& x) { return equations(x, x.t); }
   /// The same at another time t [s].

@@ -1,0 +1,118 @@
+// Derivatives of runs by methods of several stages beside differences of the same runs.
+#include <polybody/gradients/radau_step_slope.hpp>
+#include <polybody/gradients/runge_kutta_step_slope.hpp>
+#include <polybody/gradients/sensitivities.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/integrators/radau.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/math/time_laws.hpp>
+
+#include "support/differences_of_runs.hpp"
+#include "support/refusal.hpp"
+#include "support/two_links.hpp"
+
+using namespace polybody;
+
+namespace sensitivities_stages_test {
+
+/// The outputs at the end of a run of these steps.
+template <class Make, class I>
+VecX end_of_steps(Make const& make, std::span<double const> p, I const& integrator, std::vector<double> const& times) {
+  auto scenario = make(p);
+  System system = system_for<I>(scenario.model);
+  auto const method = method_of(integrator);
+  auto work = method.template workspace<DefaultSolver>(system);
+  State x = scenario.start;
+  work.forward.project_velocities(system, x.q, x.v, x.t);
+  method.start(system, x, times[1] - times[0], work);
+  for (std::size_t n = 1; n < times.size(); ++n) {
+    double const h = times[n] - times[n - 1];
+    EXPECT_EQ(method.step(system, x, h, work).taken, h);
+    x.t = times[n];
+  }
+  return detail::values_of_outputs(scenario, x);
+}
+/// By differences of runs of fourth order whose steps have the same lengths.
+template <class Make, class I>
+MatX by_frozen_differences(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                           std::vector<double> const& times) {
+  MatX out;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    VecX sum;
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::vector<double> p = detail::values_of(parameters);
+      double const e = 1e-3 * parameters[j].size();
+      p[j] += FourPoints::places[k] * e;
+      VecX const of = FourPoints::weights[k] / e * end_of_steps(make, p, integrator, times);
+      sum = k == 0 ? of : VecX(sum + of);
+    }
+    out.conservativeResize(sum.size(), Index(j + 1));
+    out.col(Index(j)) = sum;
+  }
+  return out;
+}
+
+void expect_near(MatX const& slopes, MatX const& expected, std::vector<Parameter> const& parameters) {
+  for (Index j = 0; j < expected.cols(); ++j)
+    EXPECT_LT((slopes.col(j) - expected.col(j)).norm(),
+              1e-7 * (expected.col(j).norm() + 1e-4 / parameters[std::size_t(j)].size()))
+        << parameters[std::size_t(j)].name << ": " << slopes.col(j).transpose() << " for "
+        << expected.col(j).transpose();
+}
+
+TEST(SensitivitiesOfStages, RigidOnConstraintByRungeKuttaWithProjection) {
+  auto const& parameters = parameters_of_two_links;
+  RungeKutta4<Projection> const integrator;
+  Sensitivities const s = sensitivities(two_links<Rigid<>, Constraint>, parameters, integrator);
+  ASSERT_EQ(s.times.size(), 31u);
+  expect_near(s.slopes.back(), by_differences(two_links<Rigid<>, Constraint>, parameters, integrator), parameters);
+  // rods that do not bend know nothing of Young's modulus, ideal pins nothing of a stiffness
+  EXPECT_EQ(s.run.warnings.size(), 2u);
+}
+TEST(SensitivitiesOfStages, LrvfOnBushingByRadau) {
+  auto const& parameters = parameters_of_two_links;
+  Sensitivities const s = sensitivities(two_links<Lrvf<>, Bushing>, parameters, Radau{});
+  EXPECT_LT(s.left, 1e-9);
+  expect_near(s.slopes.back(), by_differences(two_links<Lrvf<>, Bushing>, parameters, Radau{}), parameters);
+}
+TEST(SensitivitiesOfStages, CableOnPenaltyByDormandPrinceWithItsChoiceOfStepsFrozen) {
+  auto const& parameters = parameters_of_two_links;
+  DormandPrince<Projection> integrator{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-8};
+  auto const make = two_links<AncfCable<>, Penalty>;
+  Sensitivities const s = sensitivities(make, parameters, integrator);
+  double const first = s.times[1] - s.times[0], last = s.times.back() - s.times[s.times.size() - 2];
+  EXPECT_GT(std::abs(first - last), 1e-3 * first);  // it chose
+  integrator.relative_tolerance = integrator.absolute_tolerance = 1e6;
+  expect_near(s.slopes.back(), by_frozen_differences(make, parameters, integrator, s.times), parameters);
+}
+
+/// A mass that a force pulls which ends at once.
+auto const pulled = [](std::span<double const> p) {
+  using Pull = PointForce<Window>;
+  using M = Model<Bodies<Rigid<>>, Joints<>, Forces<Pull>>;
+  M model;
+  auto const mass = model.add(Rigid<>(p[0], Mat3::Identity()), "mass");
+  model.apply(Pull{{1, 0, 0}, {}, Window{.from = 0.0, .to = 0.05, .value = 1.0}}, mass.at(Vec3::Zero()), "pull");
+  State const start = model.reference_state();
+  std::vector<Output<M>> outputs{{"x [m]", [](M const&, State const& x) { return x.q[0]; }}};
+  return Scenario<M>{std::move(model), start, {.until = 0.1, .step = 1e-2}, std::move(outputs)};
+};
+
+TEST(SensitivitiesOfStages, RefuseCornersAndEvents) {
+  std::vector<Parameter> const parameters{{"mass [kg]", 2.0}};
+  EXPECT_TRUE(has(refusal([&] { sensitivities(pulled, parameters, RungeKutta4<>{}); }), "has a corner at t = 0.05 s"));
+  auto const stopped = [](std::span<double const> p) {
+    auto scenario = pulled(p);
+    scenario.options.events = {{.name = "far", .value = [](State const& x) { return x.q[0] - 1.0; }}};
+    return scenario;
+  };
+  EXPECT_TRUE(has(refusal([&] { sensitivities(stopped, parameters, Radau{}); }), "sensitivities: a run with events"));
+}
+
+}  // namespace sensitivities_stages_test
