@@ -27,6 +27,12 @@ struct Costate {
   /// Zeros: no state changes the result. \param x a state, of which the sizes are taken
   [[gnu::cold]] explicit Costate(State const& x)
       : q(VecX::Zero(x.q.size())), v(VecX::Zero(x.v.size())), a(v), lambda(VecX::Zero(x.lambda.size())), own(v) {}
+
+  /// What J changes by where the state changes by dx.
+  double dot(State const& dx) const {
+    double const sum = q.dot(dx.q) + v.dot(dx.v) + a.dot(dx.a) + lambda.dot(dx.lambda);
+    return dx.memory.size() >= own.size() ? sum + own.dot(dx.memory.head(own.size())) : sum;
+  }
 };
 
 /// μ: what J changes by with what is added to the equations of a step, its sign changed.

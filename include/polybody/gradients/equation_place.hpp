@@ -90,7 +90,14 @@ concept TellsEquationSlopes = requires(F f, EquationPlace<> const& x, std::size_
 template <class I>
 struct SlopesOfStages;
 
+/// The adjoints of the steps of integrator I, `Type`, likewise.
+template <class I>
+struct AdjointsOfStages;
+
 namespace detail {
+/// The header of the adjoints of integrator I is there.
+template <class I>
+concept HasAdjointsOfStages = requires { typename AdjointsOfStages<I>::Type; };
 /// The header of the slopes of integrator I is there.
 template <class I>
 concept HasSlopesOfStages = requires { typename SlopesOfStages<I>::Type; };

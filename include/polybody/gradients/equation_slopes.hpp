@@ -93,8 +93,9 @@ class EquationSlopes {
   /// How many groups there are: each takes four evaluations.
   std::size_t groups() const { return groups_.size(); }
 
-  /// Differences at x, of which everything else is asked.
-  void evaluate(State const& x) {
+  /// Differences at x, a state or what else the equations are asked at, of which everything else is asked.
+  template <class Place>
+  void evaluate(Place const& x) {
     for (Group& group : groups_)
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
         EquationSlope const of = group.models[k]->equations(x);
@@ -109,6 +110,10 @@ class EquationSlopes {
     VecX const& difference = groups_[places_[j].group].difference;
     for (Index const i : places_[j].equations) sum += mu[i] * difference[i];
     return sum / places_[j].distance;
+  }
+  /// Takes μᵀ ∂r/∂p of each parameter from its slope.
+  void take_from(VecX& slopes, VecX const& mu) const {
+    for (std::size_t j = 0; j < places_.size(); ++j) slopes[Index(j)] -= dot(j, mu);
   }
 
   /// \throws InvalidInput where parameter j changes an equation at x that it does not touch, by more than rounding.

@@ -18,11 +18,10 @@
 #include <memory>
 #include <span>
 
-#include <polybody/gradients/equation_slopes.hpp>
 #include <polybody/gradients/objective.hpp>
 #include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/reversal.hpp>
-#include <polybody/gradients/variant.hpp>
+#include <polybody/gradients/ways_back.hpp>
 
 namespace polybody {
 
@@ -54,18 +53,16 @@ concept MakesRatedScenarios = requires(F const make, std::span<double const> p) 
 
 namespace detail {
 
-/// A run forwards and back.
-template <class Make, class I>
+/// A run forwards and back. \tparam Way how it goes back
+template <class Make, class I, template <class, class> class Way>
 class AdjointRun {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
-  using V = Variant<S, I>;
+  using W = Way<S, I>;
+  using V = typename W::V;
 
  public:
-  [[gnu::cold]] AdjointRun(Make const& make, std::vector<Parameter> const& parameters, AlphaMethod const& method)
-      : make_(make),
-        parameters_(parameters),
-        whole_(make(values_of(parameters)), method),
-        adjoint_(whole_.scenario.model, whole_.system, method) {
+  [[gnu::cold]] AdjointRun(Make const& make, std::vector<Parameter> const& parameters, MethodOf<I> const& method)
+      : make_(make), parameters_(parameters), whole_(make(values_of(parameters)), method), way_(whole_) {
     require_plain(whole_.scenario.options, "gradient");
     for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
     out_.slopes = VecX::Zero(Index(parameters.size()));
@@ -75,10 +72,10 @@ class AdjointRun {
     State x = whole_.scenario.start;
     whole_.scenario.options.check(x.t);
     require_assembled(whole_.system, x, whole_.scenario.options.assembly_tolerance);
-    plan(x.t);
-    whole_.start(x, steps_.front().h);
+    x = whole_.started(begin_plan(x.t));
+    plan(x);
     out_.value += weight(0) * term(whole_.scenario.integrand, whole_.scenario.model, x);
-    (void)whole_.set_out(x, steps_.front().h);
+    x = W::set_out(whole_, std::move(x), steps_.front().h);
     EquationSlopes<V> equations(make_, parameters_, whole_);
     prepare(x, equations);
     Costate bar(x);
@@ -89,39 +86,56 @@ class AdjointRun {
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
-          go_back(k, before, after, equations, bar);
+          out_.left = std::max(out_.left, way_.retreat({before, after, steps_[k].taken}, bar, equations, out_.slopes));
+          if (k > 0) add_integrand(k, before, bar);
         });
-    add_start(bar);
-    for (std::size_t j = 0; j < parameters_.size(); ++j)
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      out_.slopes[Index(j)] += bar.dot(starts_[j]);
       if (out_.slopes[Index(j)] == 0.0)
         out_.run.add_warning("Nothing of the objective depends on the parameter \"" + parameters_[j].name + "\".");
+    }
     return std::move(out_);
   }
 
  private:
   struct Step {
-    double h, end;  ///< length, and time at which it ends [s]
+    double h, taken, end;  ///< length that was asked for and that was taken, and time at which it ends [s]
   };
+  static constexpr bool chooses = requires { I::controls_step; };
 
-  /// All steps from t on.
-  void plan(double t) {
+  /// The length of the first step.
+  double begin_plan(double t) {
     RunOptions const& options = whole_.scenario.options;
-    StepPlan const plan(t, options.until, options.step, whole_.system.layout().corners);
+    if (!(t < options.until)) throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
+    plan_ = StepPlan(t, options.until, options.step, whole_.system.layout().corners);
+    largest_ = options.largest_step.value_or(std::numeric_limits<double>::infinity());
+    return plan_.next(t, std::min<double>(options.step, largest_)).h;
+  }
+  /// All steps from x on; where the integrator chooses them, by taking them.
+  void plan(State x) {
+    RunOptions const& options = whole_.scenario.options;
+    double h = std::min<double>(options.step, largest_);
     StepRow row;
-    while (t < options.until) {
-      auto const next = plan.next(t, options.step);
+    while (x.t < options.until) {
+      StepPlan::Next const next = plan_.next(x.t, h);
       if (next.jumps)
         throw InvalidInput{"gradient: a drive or load has a corner at t = ", next.target,
                            " s, where a run begins anew. Give smooth laws, or end the run before."};
-      double const h = next.h, end = next.lands ? next.target : row.after(t, h);
-      if (method().start_correction && !steps_.empty() && std::abs(h - steps_.back().h) > 1e-9 * h)
-        throw InvalidInput{"gradient: the step to t = ", end,
-                           " s has another length than the others. Give the options "
-                           "a step that divides the time of the run, or set start_correction to false."};
-      steps_.push_back({h, end});
-      t = end;
+      Step step{next.h, next.h, 0.0};
+      double const from = x.t;
+      if constexpr (chooses) {
+        StepReport const report = W::step(whole_, x, next.h);
+        step.taken = report.taken;
+        bool const reached = next.lands && report.taken == next.h;
+        h = std::min(reached ? std::max(report.next, h) : report.next, largest_);
+      }
+      x.t = step.end = next.lands && step.taken == next.h ? next.target : row.after(from, step.taken);
+      if (W::asks_for_equal_steps(whole_) && !steps_.empty() && std::abs(step.h - steps_.back().h) > 1e-9 * step.h)
+        throw InvalidInput{"gradient: the step to t = ", step.end,
+                           " s has another length than the others. Give the options a step that divides the time of "
+                           "the run, or set start_correction to false."};
+      steps_.push_back(step);
     }
-    if (steps_.empty()) throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
   }
   std::size_t snapshots(GradientOptions const& options) const {
     if (options.snapshots > 0) return options.snapshots;
@@ -132,12 +146,12 @@ class AdjointRun {
   }
   /// The part of the run's time for which a state stands in an integral.
   double weight(std::size_t state) const {
-    double const before = state > 0 ? steps_[state - 1].h : 0.0;
-    return 0.5 * (before + (state < steps_.size() ? steps_[state].h : 0.0));
+    double const before = state > 0 ? steps_[state - 1].taken : 0.0;
+    return 0.5 * (before + (state < steps_.size() ? steps_[state].taken : 0.0));
   }
 
   void take(std::size_t k, State& x) {
-    StepReport const report = whole_.step(x, steps_[k].h);
+    StepReport const report = W::step(whole_, x, steps_[k].h);
     x.t = steps_[k].end;
     if (k == furthest_) {
       out_.run.add(report);
@@ -151,17 +165,6 @@ class AdjointRun {
     add_to_slopes([&](S const& s) { return term(s.end, s.model, last); });
     add_integrand(steps_.size(), last, bar);
   }
-  void go_back(std::size_t k, State const& before, State const& after, EquationSlopes<V>& equations, Costate& bar) {
-    Index const nv = before.v.size();
-    VecX const own_before = before.memory.head(nv), own_after = after.memory.head(nv);
-    out_.left = std::max(out_.left, adjoint_.retreat({before, after, own_before, own_after, steps_[k].h}, bar, mu_));
-    equations.evaluate(after);
-    mu_of_all_.resize(mu_.balance.size() + mu_.rows.size());
-    mu_of_all_.head(mu_.balance.size()) = mu_.balance;
-    mu_of_all_.tail(mu_.rows.size()) = mu_.rows;
-    for (std::size_t j = 0; j < parameters_.size(); ++j) out_.slopes[Index(j)] -= equations.dot(j, mu_of_all_);
-    if (k > 0) add_integrand(k, before, bar);
-  }
   /// The integrand of state number k.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
     if constexpr (std::same_as<decltype(whole_.scenario.integrand), NoTerm>) return;
@@ -172,6 +175,7 @@ class AdjointRun {
   }
   /// What each parameter does to the start of the run, and its scenarios. \param x from where the first step sets out
   void prepare(State const& x, EquationSlopes<V> const& equations) {
+    double const h = steps_.front().h;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       Parameter const& p = parameters_[j];
       State dx = zeros_like(x);
@@ -179,13 +183,14 @@ class AdjointRun {
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
         std::vector<double> values = values_of(parameters_);
         values[j] += FourPoints::places[k] * p.distance();
-        V v(make_(values), method());
+        V v(make_(values), whole_.method);
         require_alike(whole_, v, p, "gradient");
         if (k == 0) equations.require_touched(j, p, whole_, v, x);
         double const by = FourPoints::weights[k] / p.distance();
-        State y = v.started(steps_.front().h);
+        State y = v.started(h);
         of_integrand += by * term(v.scenario.integrand, v.scenario.model, y);
-        if (v.set_out(y, steps_.front().h); y.memory.tail(StepHistory::lengths) != x.memory.tail(StepHistory::lengths))
+        y = W::set_out(v, std::move(y), h);
+        if (!W::begin_alike(x, y))
           throw InvalidInput{"gradient: the start of a run with another \"", p.name,
                              "\" is corrected otherwise. Set start_correction to false."};
         add(dx, y, by);
@@ -193,14 +198,6 @@ class AdjointRun {
       }
       out_.slopes[Index(j)] += weight(0) * of_integrand;
       starts_.push_back(std::move(dx));
-    }
-  }
-  /// What parameters do by the start of the run.
-  void add_start(Costate const& bar) {
-    for (std::size_t j = 0; j < parameters_.size(); ++j) {
-      State const& dx = starts_[j];
-      out_.slopes[Index(j)] += bar.q.dot(dx.q) + bar.v.dot(dx.v) + bar.a.dot(dx.a) + bar.lambda.dot(dx.lambda) +
-                               bar.own.dot(dx.memory.head(dx.v.size()));
     }
   }
   /// Adds the derivative of f(scenario) to each parameter's slope.
@@ -213,19 +210,18 @@ class AdjointRun {
       out_.slopes[Index(j)] += slope;
     }
   }
-  AlphaMethod const& method() const { return whole_.method; }
 
   Make const& make_;
   std::vector<Parameter> parameters_;
   V whole_;
-  AlphaStepAdjoint<> adjoint_;
+  W way_;
   std::vector<std::unique_ptr<S>> beside_;  // four for each parameter
   std::vector<State> starts_;               // derivatives of where the first step sets out, by each parameter
+  StepPlan plan_;
+  double largest_ = 0.0;
   std::vector<Step> steps_;
   std::size_t furthest_ = 0;  // steps that have been taken once
-  StepMultipliers mu_;
-  VecX mu_of_all_;       // both parts
-  Recording recording_;  // of the objective
+  Recording recording_;       // of the objective
   Gradient out_;
 };
 
@@ -233,7 +229,8 @@ class AdjointRun {
 
 /// Runs the scenario that `make` gives for the parameters' values and differentiates its objective with respect to
 /// each. Newton's corrections go on to 1e-12 or to what rounding leaves. \param integrator one of the generalised-α
-/// family, without `stabilised`. \throws InvalidInput for parameters or options that cannot be meant, a factory whose
+/// family, without `stabilised`; with runge_kutta_step_adjoint.hpp RungeKutta4, or DormandPrince, whose choice of steps
+/// stays as it is. \throws InvalidInput for parameters or options that cannot be meant, a factory whose
 /// models differ in size, a scenario with events or corners, steps of different lengths; LinearSolverSingular at a
 /// singular position; NonFinite; and as `simulate`.
 template <MakesRatedScenarios Make, class I>
@@ -241,10 +238,16 @@ Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I 
                   GradientOptions const& options = {}) {
   using M = decltype(make(std::span<double const>()).model);
   detail::require_whole_steps<M>();
-  static_assert(detail::OfAlphaFamily<I>,
-                "The adjoint is of the generalised-α family: GeneralizedAlpha, HhtAlpha, Newmark, Trapezoidal.");
-  AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "gradient");
-  return detail::AdjointRun<Make, I>(make, parameters, method).run(options);
+  if constexpr (detail::OfAlphaFamily<I>) {
+    AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "gradient");
+    return detail::AdjointRun<Make, I, detail::AlphaWayBack>(make, parameters, method).run(options);
+  } else {
+    static_assert(detail::HasAdjointsOfStages<I>,
+                  "The adjoint is of the generalised-α family (GeneralizedAlpha, HhtAlpha, Newmark, Trapezoidal); with "
+                  "<polybody/gradients/runge_kutta_step_adjoint.hpp> of RungeKutta4 and DormandPrince.");
+    check(parameters);
+    return detail::AdjointRun<Make, I, detail::StagesWayBack>(make, parameters, method_of(integrator)).run(options);
+  }
 }
 
 }  // namespace polybody

@@ -17,45 +17,37 @@
 
 namespace polybody {
 
-/// The places of a step, with factors of their matrices.
+/// The places of a step in doubles, with factors of their matrices.
 template <LinearSolver Solver = DefaultSolver>
-class SolvedPlaces {
+class FoundPlaces {
  public:
-  /// Directions that go through the equations together, a part of a dual number each.
-  static constexpr int lanes = 4;
-  using D = Dual<lanes>;         ///< a value with its derivatives
-  using Dots = VecXOf<Dual<4>>;  ///< a vector of them
+  /// A place with its solution and the factors of K there.
+  struct Found {
+    EquationPlace<> place;                         ///< with its solution
+    TangentSolver<SolverOfSteps<Solver>> factors;  ///< of K, which is symmetric
+  };
 
-  /// The model must outlive it.
-  template <class M>
-  [[gnu::cold]] SolvedPlaces(M const& model, System& system) : system_(&system), dual_(model, with<Entries::motion>) {
-    static_assert(!M::eliminates,
-                  "Steps in joint coordinates, and with dependent coordinates eliminated, are not differentiated. Give "
-                  "the joints Constraint, Penalty or Bushing.");
+  /// Of steps of `system`, which must outlive it.
+  [[gnu::cold]] explicit FoundPlaces(System& system) : system_(&system) {
     rhs_ = solution_ = VecX::Zero(system.size());
   }
 
-  /// The system in the scalar T.
-  template <StateScalar T>
-  BasicSystem<T>& system() {
-    if constexpr (std::same_as<T, double>)
-      return *system_;
-    else
-      return dual_;
-  }
-
+  /// What the places are of.
+  System& system() { return *system_; }
   /// What follows is solved at new places.
-  void forget() { used_ = passed_ = 0; }
-  /// What follows goes through the same places from the first one on.
-  void again() { passed_ = 0; }
+  void forget() { used_ = 0; }
+  /// How many places there are.
+  std::size_t size() const { return used_; }
+  /// Place number i.
+  Found& operator[](std::size_t i) { return *found_[i]; }
 
   /// Solves at another place, into its a and λ. \throws LinearSolverSingular, NonFinite.
   void solve(EquationPlace<>& x) {
-    if (used_ == held_.size()) {
-      held_.push_back(std::make_unique<Held>());
-      held_.back()->factors.analyse(*system_, 1, [&](BlockSink& sink) { system_->masses(sink); });
+    if (used_ == found_.size()) {
+      found_.push_back(std::make_unique<Found>());
+      found_.back()->factors.analyse(*system_, 1, [&](BlockSink& sink) { system_->masses(sink); });
     }
-    Held& here = *held_[used_++];
+    Found& here = *found_[used_++];
     Index const nv = system_->speeds(), rows = system_->rows();
     x.a.setZero(nv);
     x.lambda.setZero(rows);
@@ -74,13 +66,63 @@ class SolvedPlaces {
   /// |rows| at a = 0 where it solved last, at most.
   double largest_row() const { return largest_size(equations_.rows); }
   /// Equations that repeat others where it solved last.
-  std::span<Index const> dropped() const { return held_[used_ - 1]->factors.dropped(); }
+  std::span<Index const> dropped() const { return found_[used_ - 1]->factors.dropped(); }
+
+ private:
+  System* system_;
+  PlaceEquations<double> equations_;
+  std::vector<std::unique_ptr<Found>> found_;  // they stay for later steps
+  std::size_t used_ = 0;
+  VecX rhs_, solution_;
+};
+
+/// The places of a step with derivatives of their solutions.
+template <LinearSolver Solver = DefaultSolver>
+class SolvedPlaces {
+ public:
+  /// Directions that go through the equations together, a part of a dual number each.
+  static constexpr int lanes = 4;
+  using D = Dual<lanes>;         ///< a value with its derivatives
+  using Dots = VecXOf<Dual<4>>;  ///< a vector of them
+
+  /// The model must outlive it.
+  template <class M>
+  [[gnu::cold]] SolvedPlaces(M const& model, System& system) : found_(system), dual_(model, with<Entries::motion>) {
+    static_assert(!M::eliminates,
+                  "Steps in joint coordinates, and with dependent coordinates eliminated, are not differentiated. Give "
+                  "the joints Constraint, Penalty or Bushing.");
+    rhs_ = solution_ = VecX::Zero(system.size());
+  }
+
+  /// The system in the scalar T.
+  template <StateScalar T>
+  BasicSystem<T>& system() {
+    if constexpr (std::same_as<T, double>)
+      return found_.system();
+    else
+      return dual_;
+  }
+
+  /// What follows is solved at new places.
+  void forget() {
+    found_.forget();
+    passed_ = 0;
+  }
+  /// What follows goes through the same places from the first one on.
+  void again() { passed_ = 0; }
+
+  /// Solves at another place, into its a and λ. \throws LinearSolverSingular, NonFinite.
+  void solve(EquationPlace<>& x) { found_.solve(x); }
+  /// |rows| at a = 0 where it solved last, at most.
+  double largest_row() const { return found_.largest_row(); }
+  /// Equations that repeat others where it solved last.
+  std::span<Index const> dropped() const { return found_.dropped(); }
 
   /// Into a and λ of x, whose q, v and `also` come with derivatives along `directions` of them, the solution of the
   /// next place with its own.
   template <TellsEquationSlopes F>
   void solve(EquationPlace<D>& x, std::size_t directions, F&& slope) {
-    Held& here = *held_[passed_++];
+    auto& here = found_[passed_++];
     Index const nv = here.place.a.size(), rows = here.place.lambda.size();
     x.a = here.place.a.template cast<D>();
     x.lambda = here.place.lambda.template cast<D>();
@@ -97,17 +139,10 @@ class SolvedPlaces {
   }
 
  private:
-  struct Held {
-    EquationPlace<> place;
-    TangentSolver<SolverOfSteps<Solver>> factors;
-  };
-
-  System* system_;
+  FoundPlaces<Solver> found_;
   BasicSystem<D> dual_;
-  PlaceEquations<double> equations_;
   PlaceEquations<D> dual_equations_;
-  std::vector<std::unique_ptr<Held>> held_;  // by places of a step; they stay for later steps
-  std::size_t used_ = 0, passed_ = 0;
+  std::size_t passed_ = 0;
   VecX rhs_, solution_;
 };
 

@@ -7,44 +7,11 @@
 #include <memory>
 #include <span>
 
-#include <polybody/compare/compare.hpp>
-#include <polybody/gradients/equation_place.hpp>
-#include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/run_tangent.hpp>
 #include <polybody/gradients/sensitivities_report.hpp>
+#include <polybody/gradients/stages_variant.hpp>
 
 namespace polybody::detail {
-
-/// A scenario for one choice of the parameters, with what its start and questions need. It stays where it is.
-template <class S, class I>
-struct StagesVariant {
-  S scenario;
-  System system;
-  MethodOf<I> method;
-  decltype(std::declval<MethodOf<I> const&>().template workspace<DefaultSolver>(std::declval<System&>())) work;
-  PlaceEquations<> equations;
-
-  StagesVariant(S made, MethodOf<I> const& m)
-      : scenario(std::move(made)),
-        system(system_for<I, Entries::implicit_step>(scenario.model)),
-        method(m),
-        work(method.template workspace<DefaultSolver>(system)) {}
-
-  /// Times at which a step must end: those of drives and loads, then those of the options [s].
-  std::vector<double> corners() const {
-    Sequence<double> const& own = system.layout().corners;
-    std::vector<double> all(own.begin(), own.end());
-    all.insert(all.end(), scenario.options.corners.begin(), scenario.options.corners.end());
-    return all;
-  }
-  /// The state in which the run begins, for steps of h.
-  State started(double h) {
-    State x = scenario.start;
-    work.forward.project_velocities(system, x.q, x.v, x.t);
-    method.start(system, x, h, work);
-    return x;
-  }
-};
 
 /// A run and its derivatives. Steps have the lengths that the method chooses for the values of the parameters, which
 /// stay as they are.
@@ -134,9 +101,9 @@ class StagesDifferentiation {
       auto const slope = [&](EquationPlace<> const& x, std::size_t l) {
         std::size_t const j = first + l;
         for (std::size_t k = 0; k < FourPoints::places.size(); ++k)
-          beside_[4 * j + k]->equations.evaluate(beside_[4 * j + k]->system, x);
-        return EquationSlope{slope_of(j, [](V const& v) -> VecX const& { return v.equations.balance; }),
-                             slope_of(j, [](V const& v) -> VecX const& { return v.equations.rows; }),
+          beside_[4 * j + k]->at_place.evaluate(beside_[4 * j + k]->system, x);
+        return EquationSlope{slope_of(j, [](V const& v) -> VecX const& { return v.at_place.balance; }),
+                             slope_of(j, [](V const& v) -> VecX const& { return v.at_place.rows; }),
                              parameters_[j].size()};
       };
       out_.left = std::max(out_.left, slopes_.advance(step, directions, slope));

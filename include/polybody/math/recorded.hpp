@@ -49,9 +49,11 @@ class Recording {
   /// ∂J/∂x of the operation with this number, to be added to before a sweep and read after it.
   double& slope(Number x) { return slopes_[std::size_t(x)]; }
   /// Takes the first `count` operations backwards.
-  void sweep(std::size_t count) {
+  void sweep(std::size_t count) { sweep(count, 1); }
+  /// Takes operations backwards from the one before `end` to `begin`, one at least.
+  void sweep(std::size_t end, std::size_t begin) {
     double* const slopes = slopes_.data();
-    for (std::size_t i = count; i-- > 1;) {
+    for (std::size_t i = end; i-- > begin;) {
       double const s = slopes[i];
       if (s == 0.0) continue;
       Operation const& o = operations_[i];

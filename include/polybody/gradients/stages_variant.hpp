@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// A model for one choice of its parameters, with what its start and questions need under methods of several stages.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/compare/compare.hpp>
+#include <polybody/gradients/equation_place.hpp>
+#include <polybody/gradients/requirements.hpp>
+
+namespace polybody::detail {
+
+/// A scenario for one choice of the parameters, with what its start and questions need. It stays where it is.
+template <class S, class I>
+struct StagesVariant {
+  S scenario;
+  System system;
+  MethodOf<I> method;
+  decltype(std::declval<MethodOf<I> const&>().template workspace<DefaultSolver>(std::declval<System&>())) work;
+  PlaceEquations<> at_place;
+
+  StagesVariant(S made, MethodOf<I> const& m)
+      : scenario(std::move(made)),
+        system(system_for<I, Entries::implicit_step>(scenario.model)),
+        method(m),
+        work(method.template workspace<DefaultSolver>(system)) {}
+
+  /// Times at which a step must end: those of drives and loads, then those of the options [s].
+  std::vector<double> corners() const {
+    Sequence<double> const& own = system.layout().corners;
+    std::vector<double> all(own.begin(), own.end());
+    all.insert(all.end(), scenario.options.corners.begin(), scenario.options.corners.end());
+    return all;
+  }
+  /// The left sides of the equations at a place.
+  EquationSlope equations(EquationPlace<> const& x) {
+    at_place.evaluate(system, x);
+    return {at_place.balance, at_place.rows};
+  }
+  /// The same of accelerations in a state.
+  EquationSlope equations(State const& x) {
+    return equations(EquationPlace<>{.q = x.q, .v = x.v, .t = x.t, .terms = {}, .also = {}, .a = x.a, .lambda = x.lambda});
+  }
+  /// The state in which the run begins, for steps of h.
+  State started(double h) {
+    State x = scenario.start;
+    work.forward.project_velocities(system, x.q, x.v, x.t);
+    method.start(system, x, h, work);
+    return x;
+  }
+};
+
+}  // namespace polybody::detail
