@@ -1,10 +1,11 @@
-// Adjoints of runs by Runge–Kutta methods beside their direct differentiation.
+// Adjoints of runs by Runge–Kutta methods and Radau beside their direct differentiation.
+#include <polybody/gradients/radau_step_adjoint.hpp>
+#include <polybody/gradients/radau_step_slope.hpp>
 #include <polybody/gradients/runge_kutta_step_adjoint.hpp>
 #include <polybody/gradients/runge_kutta_step_slope.hpp>
 
 #include <gtest/gtest.h>
 
-#include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -23,20 +24,30 @@ TEST(GradientOfStages, RigidOnConstraintByRungeKuttaWithBaumgarte) {
   expect_direct_slopes(rated_links<Rigid<>, Constraint>(1.0),
                        RungeKutta4<Baumgarte>{.stabilisation = {.alpha = 20.0, .beta = 20.0}}, 1e-11);
 }
-TEST(GradientOfStages, CableOnPenaltyByDormandPrinceWithItsChoiceOfStepsFrozen) {
-  expect_direct_slopes(rated_links<AncfCable<>, Penalty>(1.0),
-                       DormandPrince<Projection>{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-8}, 1e-10);
+TEST(GradientOfStages, RigidOnConstraintByDormandPrinceWithItsChoiceOfStepsFrozen) {
+  expect_direct_slopes(rated_links<Rigid<>, Constraint>(1.0),
+                       DormandPrince<Projection>{.relative_tolerance = 1e-8, .absolute_tolerance = 1e-10}, 1e-11);
+}
+
+TEST(GradientOfStages, RigidOnConstraintByRadau) {
+  expect_direct_slopes(rated_links<Rigid<>, Constraint>(0.0), Radau{}, 1e-11);
+  expect_direct_slopes(rated_links<Rigid<>, Constraint>(1.0), Radau{}, 1e-10);
+}
+TEST(GradientOfStages, LrvfOnBushingByRadau) {
+  expect_direct_slopes(rated_links<Lrvf<>, Bushing>(0.0), Radau{}, 1e-11);
 }
 
 TEST(GradientOfStages, HasTheSameBitsWithFewSnapshots) {
   auto const make = rated_links<Rigid<>, Constraint>(1.0);
   DormandPrince<Projection> const exact{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-14};
+  Gradient const by_radau = gradient(make, parameters_of_two_links, Radau{});
   for (std::size_t const snapshots : {2u, 5u}) {
     Gradient const all = gradient(make, parameters_of_two_links, exact),
                    few = gradient(make, parameters_of_two_links, exact, {.snapshots = snapshots});
     EXPECT_EQ(few.value, all.value);
     EXPECT_EQ(few.slopes, all.slopes);
     EXPECT_GT(few.reversal.taken, all.reversal.taken);
+    EXPECT_EQ(gradient(make, parameters_of_two_links, Radau{}, {.snapshots = snapshots}).slopes, by_radau.slopes);
   }
 }
 

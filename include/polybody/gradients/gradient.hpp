@@ -230,9 +230,9 @@ class AdjointRun {
 /// Runs the scenario that `make` gives for the parameters' values and differentiates its objective with respect to
 /// each. Newton's corrections go on to 1e-12 or to what rounding leaves. \param integrator one of the generalised-α
 /// family, without `stabilised`; with runge_kutta_step_adjoint.hpp RungeKutta4, or DormandPrince, whose choice of steps
-/// stays as it is. \throws InvalidInput for parameters or options that cannot be meant, a factory whose
-/// models differ in size, a scenario with events or corners, steps of different lengths; LinearSolverSingular at a
-/// singular position; NonFinite; and as `simulate`.
+/// stays as it is; with radau_step_adjoint.hpp Radau. \throws InvalidInput for parameters or options that cannot be
+/// meant, a factory whose models differ in size, a scenario with events or corners, steps of different lengths;
+/// LinearSolverSingular at a singular position; NonFinite; and as `simulate`.
 template <MakesRatedScenarios Make, class I>
 Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                   GradientOptions const& options = {}) {
@@ -244,9 +244,10 @@ Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I 
   } else {
     static_assert(detail::HasAdjointsOfStages<I>,
                   "The adjoint is of the generalised-α family (GeneralizedAlpha, HhtAlpha, Newmark, Trapezoidal); with "
-                  "<polybody/gradients/runge_kutta_step_adjoint.hpp> of RungeKutta4 and DormandPrince.");
-    check(parameters);
-    return detail::AdjointRun<Make, I, detail::StagesWayBack>(make, parameters, method_of(integrator)).run(options);
+                  "<polybody/gradients/runge_kutta_step_adjoint.hpp> of RungeKutta4 and DormandPrince, with "
+                  "<polybody/gradients/radau_step_adjoint.hpp> of Radau.");
+    MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
+    return detail::AdjointRun<Make, I, detail::StagesWayBack>(make, parameters, method).run(options);
   }
 }
 

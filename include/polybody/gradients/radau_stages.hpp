@@ -13,7 +13,7 @@ namespace polybody::detail {
 template <StateScalar T>
 struct LargestParts {
   double value = 0.0;
-  void add(double x) { value = std::max(value, std::abs(x)); }
+  void add(T const& x) { value = std::max(value, std::abs(value_of(x))); }
   bool within(double share, LargestParts const& of) const { return value <= share * of.value; }
 };
 template <int N>

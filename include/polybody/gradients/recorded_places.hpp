@@ -44,6 +44,8 @@ class RecordedPlaces {
   void solve(EquationPlace<>& x) { found_.solve(x); }
   /// |rows| at a = 0 where it solved last, at most.
   double largest_row() const { return found_.largest_row(); }
+  /// Equations that repeat others where it solved last.
+  std::span<Index const> dropped() const { return found_.dropped(); }
 
   /// Into a and λ of x, as variables, the solution of the next place; its equations are recorded.
   void solve(EquationPlace<Recorded>& x) {
@@ -60,10 +62,10 @@ class RecordedPlaces {
     passed_.push_back(std::move(here));
   }
 
-  /// Takes the recording backwards to its beginning, from slopes that the results of the step have. \param told f(place,
-  /// μ) for each place, from the last one on; μ (nv + rows) by speeds, then by rows
+  /// Takes the recording backwards to operation `begin`, before the first place, from slopes that the results of the
+  /// step have. \param told f(place, μ) for each place, from the last one on; μ (nv + rows) by speeds, then by rows
   template <class F>
-  void sweep(F&& told) {
+  void sweep(F&& told, std::size_t begin = 1) {
     std::size_t end = recording_.size();
     for (std::size_t k = passed_.size(); k-- > 0;) {
       Passed const& here = passed_[k];
@@ -79,12 +81,12 @@ class RecordedPlaces {
       told(std::as_const(found.place), std::as_const(mu_));
       end = here.begin;
     }
-    recording_.sweep(end, 1);
+    recording_.sweep(end, begin);
   }
 
  private:
   struct Passed {
-    std::size_t begin = 0, end = 0;                              // operations of its variables and equations
+    std::size_t begin = 0, end = 0;  // operations of its variables and equations
     std::vector<Recording::Number> a = {}, lambda = {}, balance = {}, rows = {};
   };
   static void set(VecX const& from, VecXOf<Recorded>& to) {

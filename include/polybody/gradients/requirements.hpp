@@ -88,4 +88,16 @@ AlphaMethod method_of_slopes(std::vector<Parameter> const& parameters, I const& 
   return method;
 }
 
+/// The same of a method of several stages. \throws InvalidInput for parameters and integrators that cannot be meant.
+template <class I>
+MethodOf<I> method_of_stages(std::vector<Parameter> const& parameters, I const& integrator) {
+  check(parameters);
+  MethodOf<I> method = method_of(integrator);
+  if constexpr (requires { method.newton.budget; }) {
+    method.tolerance = std::min(method.tolerance, 1e-12);
+    method.newton.budget = 0.0;
+  }
+  return method;
+}
+
 }  // namespace polybody::detail

@@ -16,12 +16,12 @@ namespace polybody {
 /// A step's numbers in the scalar T.
 template <class Method, StateScalar T>
 struct RungeKuttaNumbers {
-  VecXOf<T> q0;                                                ///< (nq) at the start
-  VecXOf<T> v0;                                                ///< (nv) at the start
-  VecXOf<T> delta;                                             ///< (nv) δ of a stage
-  std::array<VecXOf<T>, Method::Tableau::stages> rate;         ///< (nv) δ˙ of the stages
-  std::array<VecXOf<T>, Method::Tableau::stages> acceleration; ///< (nv) v̇ of the stages
-  EquationPlace<T> at;                                         ///< the stage, and at last the end
+  VecXOf<T> q0;                                                 ///< (nq) at the start
+  VecXOf<T> v0;                                                 ///< (nv) at the start
+  VecXOf<T> delta;                                              ///< (nv) δ of a stage
+  std::array<VecXOf<T>, Method::Tableau::stages> rate;          ///< (nv) δ˙ of the stages
+  std::array<VecXOf<T>, Method::Tableau::stages> acceleration;  ///< (nv) v̇ of the stages
+  EquationPlace<T> at;                                          ///< the stage, and at last the end
 };
 
 /// Steps of a method in any scalar.

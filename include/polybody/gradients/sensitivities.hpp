@@ -47,13 +47,7 @@ Sensitivities sensitivities(Make const& make, std::vector<Parameter> const& para
                   "Runs are differentiated under the generalised-α family (GeneralizedAlpha, HhtAlpha, Newmark, "
                   "Trapezoidal); with <polybody/gradients/runge_kutta_step_slope.hpp> under RungeKutta4 and "
                   "DormandPrince, with <polybody/gradients/radau_step_slope.hpp> under Radau.");
-    integrator.check();
-    check(parameters);
-    MethodOf<I> method = method_of(integrator);
-    if constexpr (requires { method.newton.budget; }) {
-      method.tolerance = std::min(method.tolerance, 1e-12);
-      method.newton.budget = 0.0;
-    }
+    MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
     return detail::StagesDifferentiation<Make, I>(make, parameters, method).run();
   }
 }

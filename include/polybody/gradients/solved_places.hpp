@@ -27,7 +27,7 @@ class FoundPlaces {
     TangentSolver<SolverOfSteps<Solver>> factors;  ///< of K, which is symmetric
   };
 
-  /// Of steps of `system`, which must outlive it.
+  /// Places of steps of `system`, which must outlive it.
   [[gnu::cold]] explicit FoundPlaces(System& system) : system_(&system) {
     rhs_ = solution_ = VecX::Zero(system.size());
   }

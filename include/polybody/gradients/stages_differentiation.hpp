@@ -55,7 +55,7 @@ class StagesDifferentiation {
                            " s, and runs of this integrator are not differentiated beyond one. Give smooth laws, end "
                            "the run before, or take GeneralizedAlpha."};
       State const before = x_;
-      StepReport const report = whole_.method.step(whole_.system, x_, next.h, whole_.work);
+      StepReport const report = whole_.step(x_, next.h);
       bool const reached = next.lands && report.taken == next.h;
       x_.t = reached ? next.target : row.after(before.t, report.taken);
       if constexpr (requires { I::controls_step; })

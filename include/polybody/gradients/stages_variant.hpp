@@ -39,7 +39,8 @@ struct StagesVariant {
   }
   /// The same of accelerations in a state.
   EquationSlope equations(State const& x) {
-    return equations(EquationPlace<>{.q = x.q, .v = x.v, .t = x.t, .terms = {}, .also = {}, .a = x.a, .lambda = x.lambda});
+    return equations(
+        EquationPlace<>{.q = x.q, .v = x.v, .t = x.t, .terms = {}, .also = {}, .a = x.a, .lambda = x.lambda});
   }
   /// The state in which the run begins, for steps of h.
   State started(double h) {
@@ -47,6 +48,11 @@ struct StagesVariant {
     work.forward.project_velocities(system, x.q, x.v, x.t);
     method.start(system, x, h, work);
     return x;
+  }
+  /// A step of at most h that depends on x alone: with factors of its own.
+  StepReport step(State& x, double h) {
+    if constexpr (requires { work.kept_factor; }) work.kept_factor = {};
+    return method.step(system, x, h, work);
   }
 };
 

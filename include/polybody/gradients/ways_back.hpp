@@ -62,7 +62,7 @@ class StagesWayBack {
   static State set_out(V&, State started, double) { return started; }
   static bool begin_alike(State const&, State const&) { return true; }
   static bool asks_for_equal_steps(V const&) { return false; }
-  static StepReport step(V& v, State& x, double h) { return v.method.step(v.system, x, h, v.work); }
+  static StepReport step(V& v, State& x, double h) { return v.step(x, h); }
 
   double retreat(StepTaken const& step, Costate& bar, EquationSlopes<V>& equations, VecX& slopes) {
     return adjoint_.retreat(step, bar, [&](EquationPlace<> const& place, VecX const& mu) {

@@ -1,0 +1,178 @@
+#pragma once
+/// \file
+/// The stages of a step of Radau found once more, since no state holds them, with the matrix of all of them; for the
+/// step's derivatives.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/projection_slope.hpp>
+#include <polybody/gradients/radau_stages.hpp>
+
+namespace polybody::detail {
+
+/// The stages of one step after the other. \tparam Places SolvedPlaces or RecordedPlaces: the equations, and what
+/// solves them at the places that follow the stages
+template <class Places>
+class RadauStageSolution {
+  using T3 = RadauTableau;
+  static constexpr int most_corrections = 60;
+
+ public:
+  /// Stages of steps by `method` at `places`, which must outlive it.
+  [[gnu::cold]] RadauStageSolution(Places& places, Radau const& method)
+      : places_(&places), projection_(method.projection) {
+    System& system = places.template system<double>();
+    slack_.assign(3 * std::size_t(system.rows()), 0.0);
+    rhs_ = correction_ = VecX::Zero(3 * system.size());
+    slopes_.analyse(system);
+    numbers_.resize(system);
+    solver_.analyse(system, 3, [&](BlockSink& sink) { write(0.0, 1.0, sink); });
+  }
+
+  /// Finds the stages of a step and the places after them. \throws NewtonStalled where its stages are not found again,
+  /// LinearSolverSingular at a singular position, NonFinite.
+  void find(StepTaken const& step) {
+    predict(step);
+    solve_stages(step);
+    places_->forget();
+    finish(numbers_, step, [&](EquationPlace<>& at) {
+      places_->solve(at);
+      return places_->largest_row();
+    });
+  }
+
+  RadauStages<double> const& numbers() const { return numbers_; }                       ///< what was found
+  std::array<EquationPlace<>, 3> const& stage_places() const { return stage_places_; }  ///< where the stages are
+  /// By stages and rows: −1 on the diagonal of a row that repeats others, whose multiplier is left alone.
+  Sequence<double> const& slack() const { return slack_; }
+  TangentSolver<AutoLu>& solver() { return solver_; }  ///< the factors of the matrix of all stages
+
+  /// The equations of all stages. \param keep takes them, for the unknowns from `first` on
+  template <StateScalar T, class Keep>
+  void evaluate(RadauStages<T>& w, PlaceEquations<T>& equations, StepTaken const& step, Keep&& keep) {
+    BasicSystem<T>& s = places_->template system<T>();
+    w.find(s, step.h);
+    for (std::size_t i = 0; i < 3; ++i) {
+      w.put(s, i, step);
+      equations.evaluate(s, w.at);
+      keep(Index(i) * s.size());
+    }
+  }
+
+  /// The end from the third stage: q and v in w.at, back on the rows, and v̇, by the rows where they moved to, in
+  /// w.next.
+  template <StateScalar T, class Solve>
+  void finish(RadauStages<T>& w, StepTaken const& step, Solve&& solve) {
+    BasicSystem<T>& s = places_->template system<T>();
+    s.plus(w.q0, w.delta[2], w.at.q);
+    w.at.v = w.v[2];
+    w.at.t = step.before.t + step.h;
+    w.next = w.vd[2];
+    if (s.rows() == 0) return;
+    projection_.apply(s, w.at, step.h, solve);
+    w.at.terms = {.force = 0.0};
+    w.at.also = w.vd[2];
+    solve(w.at);
+    w.next += w.at.a;
+  }
+
+  /// The matrix of all stages: block (i, j) is
+  ///   δ_ij [M, Gᵀ; G, slack] + h a_ij [D; ∂Φ̈/∂v] + h² (A²)_ij [K; ∂Φ̈/∂q] at stage i.
+  void write(double t, double h, BlockSink& sink) {
+    System& s = places_->template system<double>();
+    RadauStages<double>& w = numbers_;
+    Index const n = s.size(), speeds = s.speeds(), rows = s.rows();
+    for (int i = 0; i < 3; ++i) {
+      std::size_t const stage = std::size_t(i);
+      double const at = t + T3::c[i] * h;
+      s.plus(w.q0, w.delta[stage], w.at.q);
+      slopes_.measure(s, w.at.q, w.v[stage], w.vd[stage], at);
+      s.evaluate(w.at.q, w.v[stage], at);
+      for (int j = 0; j < 3; ++j) {
+        StageSink part{sink, i * n, j * n, speeds};
+        s.tangent({i == j ? 1.0 : 0.0, h * T3::a[i][j], h * h * T3::squared(i, j)}, SecondOrder::included,
+                  w.lambda[stage], part);
+        for (Index k = 0; k < rows && i == j; ++k)
+          part.add(speeds + k, speeds + k,
+                   Eigen::Map<Mat<double, 1, 1> const>(&slack_[stage * std::size_t(rows) + std::size_t(k)]));
+      }
+      for (int j = 0; j < 3; ++j)
+        slopes_.write(h * T3::a[i][j], h * h * T3::squared(i, j), i * n + speeds, j * n, sink);
+    }
+  }
+
+ private:
+  /// Stages between the accelerations before and after. Rows that repeat others at the middle stage have multipliers
+  /// that stay as they were.
+  void predict(StepTaken const& step) {
+    System& s = places_->template system<double>();
+    RadauStages<double>& w = numbers_;
+    w.q0 = step.before.q;
+    w.v0 = step.before.v;
+    for (std::size_t i = 0; i < 3; ++i) {
+      w.vd[i] = step.before.a + T3::c[i] * (step.after.a - step.before.a);
+      w.lambda[i] = step.before.lambda + T3::c[i] * (step.after.lambda - step.before.lambda);
+      w.delta[i] = T3::c[i] * step.h * w.v0;
+    }
+    if (s.rows() == 0) return;
+    w.find(s, step.h);
+    w.put(s, 1, step);
+    places_->forget();
+    places_->solve(w.at);
+    std::fill(slack_.begin(), slack_.end(), 0.0);
+    for (Index const k : places_->dropped())
+      for (std::size_t i = 0; i < 3 && k >= s.speeds(); ++i) {
+        slack_[i * std::size_t(s.rows()) + std::size_t(k - s.speeds())] = -1.0;
+        w.lambda[i][k - s.speeds()] = step.before.lambda[k - s.speeds()];
+      }
+  }
+
+  /// Newton's method with the matrix of every iterate, until rounding is left. The last factors stay.
+  void solve_stages(StepTaken const& step) {
+    System& s = places_->template system<double>();
+    RadauStages<double>& w = numbers_;
+    Index const nv = s.speeds(), rows = s.rows();
+    double left = std::numeric_limits<double>::infinity();
+    for (int k = 0;; ++k) {
+      evaluate(w, equations_, step, [&](Index first) {
+        rhs_.segment(first, nv) = -equations_.balance;
+        rhs_.segment(first + nv, rows) = -equations_.rows;
+      });
+      Index const bad = solver_.factor([&](BlockSink& sink) { write(step.before.t, step.h, sink); });
+      if (bad >= 0)
+        throw LinearSolverSingular{"The derivative of the step that ends at t = ", step.before.t + step.h,
+                                   " s has no pivot at ", name_of_equation(s, bad % s.size()), "."};
+      solver_.solve(rhs_, correction_);
+      double change = 0.0, all = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        Index const first = Index(i) * s.size();
+        change = std::max(change, correction_.segment(first, nv).norm());
+        w.vd[i] += correction_.segment(first, nv);
+        w.lambda[i] += correction_.segment(first + nv, rows);
+        all = std::max(all, w.vd[i].norm());
+      }
+      if (change <= 1e-15 * all || (k > 1 && change <= 1e-6 * (1.0 + all) && change >= 0.9 * left)) break;
+      if (!std::isfinite(change) || k == most_corrections)
+        throw NewtonStalled{"The stages of the step that ends at t = ", step.before.t + step.h,
+                            " s are not found again for its derivative. Take a smaller step."};
+      left = change;
+    }
+    w.find(s, step.h);
+    for (std::size_t i = 0; i < 3; ++i) {
+      w.put(s, i, step);
+      stage_places_[i] = w.at;
+    }
+  }
+
+  Places* places_;
+  ProjectionSlope projection_;
+  TangentSolver<AutoLu> solver_;
+  RowSlopes slopes_;
+  PlaceEquations<double> equations_;
+  RadauStages<double> numbers_;
+  std::array<EquationPlace<>, 3> stage_places_;
+  Sequence<double> slack_;
+  VecX rhs_, correction_;
+};
+
+}  // namespace polybody::detail

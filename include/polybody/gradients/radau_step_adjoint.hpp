@@ -1,0 +1,168 @@
+#pragma once
+/// \file
+/// The adjoint of a step of Radau (gradients/radau_step_slope.hpp has its tangent-linear): with y = (v̇_i, λ_i) of the
+/// three stages and R(y; x₀) their equations, (∂R/∂y)ᵀ μ = ȳ. The stages and what follows them are recorded once. The
+/// projection and the last change of v̇ go back place by place (gradients/recorded_places.hpp); μ is solved by factors
+/// of the transposed matrix of all stages, and corrected by sweeps over their recording until nothing changes.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/alpha_step_adjoint.hpp>
+#include <polybody/gradients/radau_stage_solution.hpp>
+#include <polybody/gradients/recorded_places.hpp>
+
+namespace polybody {
+
+/// Adjoints of steps of Radau, from the last one to the first; of stages as in `RadauStepSlope`.
+template <LinearSolver Solver = DefaultSolver>
+class RadauStepAdjoint {
+ public:
+  /// The model must outlive it. \param system with `Entries::implicit_step`; \param method whose steps they are
+  template <class M>
+  [[gnu::cold]] RadauStepAdjoint(M const& model, System& system, Radau const& method)
+      : places_(model, system), stages_(places_, method) {
+    recorded_.resize(places_.template system<Recorded>());
+    PatternSink pattern;
+    write_transposed(pattern, 0.0, 1.0);
+    solver_.analyse(3 * system.size(), pattern.blocks);
+    mu_ = y_ = product_ = rhs_ = correction_ = VecX::Zero(3 * system.size());
+  }
+  RadauStepAdjoint(RadauStepAdjoint const&) = delete;  // its parts refer to each other
+
+  /// Takes the costate of the state after the step to that of the state before it. Returns what the last correction of
+  /// μ changed, relative to it. \param told f(place, μ) for each place where the step solves equations: what the result
+  /// changes by with them, its sign changed. \throws NewtonStalled where its stages are not found again,
+  /// LinearSolverSingular at a singular position, NonFinite.
+  template <class F>
+  double retreat(StepTaken const& step, Costate& x, F&& told) {
+    stages_.find(step);
+    factor(step);
+    Recording& recording = places_.recording();
+    Recording::On const on(recording);
+    std::size_t const stages_end = record(step);
+    recording.clear_slopes(recording.size());
+    add(x.q, recorded_.at.q);
+    add(x.v, recorded_.at.v);
+    add(x.a, recorded_.next);
+    add(x.lambda, recorded_.lambda[2]);
+    places_.sweep(told, stages_end);
+    recording.sweep(stages_end, 1);
+    take_stages(y_);
+    take(recorded_.q0, x.q);
+    take(recorded_.v0, x.v);
+    double left = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < most_corrections; ++k) {
+      pull(stages_end);
+      rhs_ = y_ - product_;
+      solver_.solve(rhs_, correction_);
+      double const all = mu_.norm(), changed = correction_.norm();
+      double const now = all > 0.0 ? changed / all : changed > 0.0 ? 1.0 : 0.0;
+      bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
+      left = now;
+      if (done) break;
+      mu_ += correction_;
+    }
+    for (Index i = 0; i < x.q.size(); ++i) x.q[i] -= recording.slope(recorded_.q0[i].number);
+    for (Index i = 0; i < x.v.size(); ++i) x.v[i] -= recording.slope(recorded_.v0[i].number);
+    x.a.setZero();
+    x.lambda.setZero();
+    Index const n = size();
+    for (std::size_t i = 0; i < 3; ++i) {
+      VecX const mu = mu_.segment(Index(i) * n, n);
+      told(stages_.stage_places()[i], mu);
+    }
+    return left;
+  }
+
+ private:
+  using Numbers = VecXOf<Recorded>;
+  static constexpr int most_corrections = 60;
+
+  Index size() { return places_.template system<double>().size(); }
+
+  template <TakesBlocks Sink>
+  void write_transposed(Sink& sink, double t, double h) {
+    TransposedSink<Sink> transposed(sink);
+    BlockSink through(transposed);
+    stages_.write(t, h, through);
+  }
+  void factor(StepTaken const& step) {
+    Index const bad =
+        write_and_factor(solver_, [&](BlockSink& sink) { write_transposed(sink, step.before.t, step.h); });
+    if (bad >= 0)
+      throw LinearSolverSingular{"The adjoint of the step that ends at t = ", step.before.t + step.h,
+                                 " s has no pivot at ",
+                                 name_of_equation(places_.template system<double>(), bad % size()), "."};
+  }
+
+  /// The start and the stages as variables, their equations, then the places after them. Returns how many operations
+  /// the stages take.
+  std::size_t record(StepTaken const& step) {
+    detail::RadauStages<double> const& found = stages_.numbers();
+    set(step.before.q, recorded_.q0);
+    set(step.before.v, recorded_.v0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      set(found.vd[i], recorded_.vd[i]);
+      set(found.lambda[i], recorded_.lambda[i]);
+      recorded_.delta[i].setConstant(Recorded(0.0));  // so that passes over it are as many as its derivatives need
+    }
+    numbers_.clear();
+    stages_.evaluate(recorded_, equations_, step, [&](Index) {
+      for (Index i = 0; i < equations_.balance.size(); ++i) numbers_.push_back(equations_.balance[i].number);
+      for (Index i = 0; i < equations_.rows.size(); ++i) numbers_.push_back(equations_.rows[i].number);
+    });
+    std::size_t const end = places_.recording().size();
+    places_.again();
+    stages_.finish(recorded_, step, [&](EquationPlace<Recorded>& at) {
+      places_.solve(at);
+      return 0.0;
+    });
+    return end;
+  }
+
+  /// Products of the transposed derivatives of R with μ; those by y into `product_`.
+  void pull(std::size_t stages_end) {
+    Recording& recording = places_.recording();
+    recording.clear_slopes(stages_end);
+    for (std::size_t i = 0; i < numbers_.size(); ++i) recording.slope(numbers_[i]) += mu_[Index(i)];
+    recording.sweep(stages_end, 1);
+    take_stages(product_);
+    Index const n = size(), nv = recorded_.v0.size(), rows = n - nv;
+    for (Index i = 0; i < 3; ++i)
+      for (Index k = 0; k < rows; ++k)
+        product_[i * n + nv + k] += stages_.slack()[std::size_t(i * rows + k)] * mu_[i * n + nv + k];
+  }
+  /// Slopes of v̇_i and λ_i.
+  void take_stages(VecX& out) {
+    Index at = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (Numbers const* const of : {&recorded_.vd[i], &recorded_.lambda[i]})
+        for (Index k = 0; k < of->size(); ++k) out[at++] = places_.recording().slope((*of)[k].number);
+  }
+  static void set(VecX const& from, Numbers& to) {
+    to.resize(from.size());
+    for (Index i = 0; i < from.size(); ++i) to[i] = Recorded::variable(from[i]);
+  }
+  void add(VecX const& slopes, Numbers const& to) {
+    for (Index i = 0; i < slopes.size(); ++i) places_.recording().slope(to[i].number) += slopes[i];
+  }
+  void take(Numbers const& from, VecX& slopes) {
+    for (Index i = 0; i < from.size(); ++i) slopes[i] = places_.recording().slope(from[i].number);
+  }
+
+  RecordedPlaces<Solver> places_;
+  detail::RadauStageSolution<RecordedPlaces<Solver>> stages_;
+  PlaceEquations<Recorded> equations_;
+  detail::RadauStages<Recorded> recorded_;
+  AutoLu solver_;                           // of the transposed matrix
+  std::vector<Recording::Number> numbers_;  // of the equations of all stages
+  VecX mu_, y_, product_, rhs_, correction_;
+};
+
+/// Adjoints of runs by Radau.
+template <>
+struct AdjointsOfStages<Radau> {
+  using Type = RadauStepAdjoint<>;  ///< of its steps
+};
+
+}  // namespace polybody
