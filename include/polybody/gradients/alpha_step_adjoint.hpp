@@ -11,8 +11,8 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
+#include <polybody/gradients/adjoint_kernels.hpp>
 #include <polybody/gradients/alpha_step_slope.hpp>
-#include <polybody/math/recorded.hpp>
 
 namespace polybody {
 
@@ -70,7 +70,7 @@ class AlphaStepAdjoint {
     from_ = q_ = Numbers::Constant(nq, Recorded(0.0));
     delta_ = v_ = a_ = r_ = Numbers::Constant(nv, Recorded(0.0));
     lambda_ = phi_ = rate_ = Numbers::Constant(rows, Recorded(0.0));
-    mu_ = y_ = rhs_ = correction_ = VecX::Zero(nv + rows);
+    mu_ = y_ = product_ = VecX::Zero(nv + rows);
     of_q_ = VecX::Zero(nq);
     of_delta_ = of_v_ = of_a_ = VecX::Zero(nv);
     of_lambda_ = VecX::Zero(rows);
@@ -88,19 +88,15 @@ class AlphaStepAdjoint {
     VecX const q_before = of_q_, delta_by_q = of_delta_;
     y_.head(nv) = x.own + of_a1 * x.a + of_v1 * x.v + of_d1 * delta_by_q;
     y_.tail(rows) = x.lambda;
-    double left = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < most_corrections; ++k) {
-      pull_equations(step);
-      rhs_.head(nv) = y_.head(nv) - (of_a1 * of_a_ + of_v1 * of_v_ + of_d1 * of_delta_);
-      rhs_.tail(rows) = y_.tail(rows) - of_lambda_;
-      solver_.solve(rhs_, correction_);
-      double const all = mu_.norm(), changed = correction_.norm();
-      double const now = all > 0.0 ? changed / all : changed > 0.0 ? 1.0 : 0.0;
-      bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
-      left = now;
-      if (done) break;
-      mu_ += correction_;
-    }
+    double const left = detail::solve_by_products(
+        y_, mu_,
+        [&]() -> VecX const& {
+          pull_equations(step);
+          product_.head(nv) = of_a1 * of_a_ + of_v1 * of_v_ + of_d1 * of_delta_;
+          product_.tail(rows) = of_lambda_;
+          return product_;
+        },
+        [&](VecX const& rhs, VecX& correction) { solver_.solve(rhs, correction); }, most_corrections);
     VecX const v1 = x.v - of_v_, a1 = x.a - of_a_, delta = delta_by_q - of_delta_;
     x.q = q_before - of_q_;
     x.v = v1 + h * delta;
@@ -123,26 +119,21 @@ class AlphaStepAdjoint {
   double of_positions(double h) const { return 1.0 / (method_.beta * h * h); }
   double of_speeds(double h) const { return 1.0 / (method_.gamma * h); }
 
-  static void set(Numbers& to, VecX const& from) {
-    for (Index i = 0; i < to.size(); ++i) to[i] = Recorded::variable(from[i]);
-  }
-  void take(Numbers const& from, VecX& slopes) {
-    for (Index i = 0; i < from.size(); ++i) slopes[i] = recording_.slope(from[i].number);
-  }
+  void take(Numbers const& from, VecX& slopes) { detail::take_slopes(recording_, from, slopes); }
 
   /// q₁ = q₀ ⊞ δ, then M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ at the end of the step.
   void record(StepEnds const& step) {
     State const &before = step.before, &after = step.after;
     Recording::On const on(recording_);
     double const h = step.h, of_a0 = h * h * (0.5 - method_.beta), of_a1 = h * h * method_.beta;
-    set(from_, before.q);
+    detail::set_variables(before.q, from_);
     for (Index i = 0; i < delta_.size(); ++i)
       delta_[i] = Recorded::variable(h * before.v[i] + of_a0 * step.own_before[i] + of_a1 * step.own_after[i]);
     recorded_.plus(from_, delta_, q_);
     moved_ = recording_.size();
-    set(v_, after.v);
-    set(a_, after.a);
-    set(lambda_, after.lambda);
+    detail::set_variables(after.v, v_);
+    detail::set_variables(after.a, a_);
+    detail::set_variables(after.lambda, lambda_);
     recorded_.evaluate(q_, v_, after.t);
     recorded_.residual(a_, lambda_, r_);
     if (phi_.size() > 0) recorded_.violation(phi_);
@@ -165,7 +156,7 @@ class AlphaStepAdjoint {
   /// (∂q₁/∂q₀)ᵀ q̄ and (∂q₁/∂δ)ᵀ q̄.
   void pull_position(VecX const& q) {
     recording_.clear_slopes(moved_);
-    for (Index i = 0; i < q.size(); ++i) recording_.slope(q_[i].number) += q[i];
+    detail::add_to_slopes(recording_, q_, q);
     recording_.sweep(moved_);
     take(from_, of_q_);
     take(delta_, of_delta_);
@@ -193,7 +184,7 @@ class AlphaStepAdjoint {
   Recording recording_;
   std::size_t moved_ = 0;  // operations until q₁ is there
   Numbers from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
-  VecX mu_, y_, rhs_, correction_;  // mu_: of the step behind, which the next one begins with
+  VecX mu_, y_, product_;  // mu_: of the step behind, which the next one begins with
   VecX of_q_, of_delta_, of_v_, of_a_, of_lambda_;
 };
 

@@ -25,7 +25,7 @@ class RadauStepAdjoint {
     PatternSink pattern;
     write_transposed(pattern, 0.0, 1.0);
     solver_.analyse(3 * system.size(), pattern.blocks);
-    mu_ = y_ = product_ = rhs_ = correction_ = VecX::Zero(3 * system.size());
+    mu_ = y_ = product_ = VecX::Zero(3 * system.size());
   }
   RadauStepAdjoint(RadauStepAdjoint const&) = delete;  // its parts refer to each other
 
@@ -41,27 +41,22 @@ class RadauStepAdjoint {
     Recording::On const on(recording);
     std::size_t const stages_end = record(step);
     recording.clear_slopes(recording.size());
-    add(x.q, recorded_.at.q);
-    add(x.v, recorded_.at.v);
-    add(x.a, recorded_.next);
-    add(x.lambda, recorded_.lambda[2]);
+    detail::add_to_slopes(recording, recorded_.at.q, x.q);
+    detail::add_to_slopes(recording, recorded_.at.v, x.v);
+    detail::add_to_slopes(recording, recorded_.next, x.a);
+    detail::add_to_slopes(recording, recorded_.lambda[2], x.lambda);
     places_.sweep(told, stages_end);
     recording.sweep(stages_end, 1);
     take_stages(y_);
-    take(recorded_.q0, x.q);
-    take(recorded_.v0, x.v);
-    double left = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < most_corrections; ++k) {
-      pull(stages_end);
-      rhs_ = y_ - product_;
-      solver_.solve(rhs_, correction_);
-      double const all = mu_.norm(), changed = correction_.norm();
-      double const now = all > 0.0 ? changed / all : changed > 0.0 ? 1.0 : 0.0;
-      bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
-      left = now;
-      if (done) break;
-      mu_ += correction_;
-    }
+    detail::take_slopes(recording, recorded_.q0, x.q);
+    detail::take_slopes(recording, recorded_.v0, x.v);
+    double const left = detail::solve_by_products(
+        y_, mu_,
+        [&]() -> VecX const& {
+          pull(stages_end);
+          return product_;
+        },
+        [&](VecX const& rhs, VecX& correction) { solver_.solve(rhs, correction); }, most_corrections);
     for (Index i = 0; i < x.q.size(); ++i) x.q[i] -= recording.slope(recorded_.q0[i].number);
     for (Index i = 0; i < x.v.size(); ++i) x.v[i] -= recording.slope(recorded_.v0[i].number);
     x.a.setZero();
@@ -99,11 +94,11 @@ class RadauStepAdjoint {
   /// the stages take.
   std::size_t record(StepTaken const& step) {
     detail::RadauStages<double> const& found = stages_.numbers();
-    set(step.before.q, recorded_.q0);
-    set(step.before.v, recorded_.v0);
+    detail::set_variables(step.before.q, recorded_.q0);
+    detail::set_variables(step.before.v, recorded_.v0);
     for (std::size_t i = 0; i < 3; ++i) {
-      set(found.vd[i], recorded_.vd[i]);
-      set(found.lambda[i], recorded_.lambda[i]);
+      detail::set_variables(found.vd[i], recorded_.vd[i]);
+      detail::set_variables(found.lambda[i], recorded_.lambda[i]);
       recorded_.delta[i].setConstant(Recorded(0.0));  // so that passes over it are as many as its derivatives need
     }
     numbers_.clear();
@@ -139,24 +134,13 @@ class RadauStepAdjoint {
       for (Numbers const* const of : {&recorded_.vd[i], &recorded_.lambda[i]})
         for (Index k = 0; k < of->size(); ++k) out[at++] = places_.recording().slope((*of)[k].number);
   }
-  static void set(VecX const& from, Numbers& to) {
-    to.resize(from.size());
-    for (Index i = 0; i < from.size(); ++i) to[i] = Recorded::variable(from[i]);
-  }
-  void add(VecX const& slopes, Numbers const& to) {
-    for (Index i = 0; i < slopes.size(); ++i) places_.recording().slope(to[i].number) += slopes[i];
-  }
-  void take(Numbers const& from, VecX& slopes) {
-    for (Index i = 0; i < from.size(); ++i) slopes[i] = places_.recording().slope(from[i].number);
-  }
-
   RecordedPlaces<Solver> places_;
   detail::RadauStageSolution<RecordedPlaces<Solver>> stages_;
   PlaceEquations<Recorded> equations_;
   detail::RadauStages<Recorded> recorded_;
   AutoLu solver_;                           // of the transposed matrix
   std::vector<Recording::Number> numbers_;  // of the equations of all stages
-  VecX mu_, y_, product_, rhs_, correction_;
+  VecX mu_, y_, product_;
 };
 
 /// Adjoints of runs by Radau.

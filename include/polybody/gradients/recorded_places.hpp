@@ -8,8 +8,8 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
+#include <polybody/gradients/adjoint_kernels.hpp>
 #include <polybody/gradients/solved_places.hpp>
-#include <polybody/math/recorded.hpp>
 
 namespace polybody {
 
@@ -51,8 +51,8 @@ class RecordedPlaces {
   void solve(EquationPlace<Recorded>& x) {
     auto const& place = found_[passed_.size()].place;
     Passed here{.begin = recording_.size()};
-    set(place.a, x.a);
-    set(place.lambda, x.lambda);
+    detail::set_variables(place.a, x.a);
+    detail::set_variables(place.lambda, x.lambda);
     equations_.evaluate(recorded_, x);
     here.end = recording_.size();
     numbers_of(x.a, here.a);
@@ -89,10 +89,6 @@ class RecordedPlaces {
     std::size_t begin = 0, end = 0;  // operations of its variables and equations
     std::vector<Recording::Number> a = {}, lambda = {}, balance = {}, rows = {};
   };
-  static void set(VecX const& from, VecXOf<Recorded>& to) {
-    to.resize(from.size());
-    for (Index i = 0; i < from.size(); ++i) to[i] = Recorded::variable(from[i]);
-  }
   static void numbers_of(VecXOf<Recorded> const& from, std::vector<Recording::Number>& to) {
     for (Index i = 0; i < from.size(); ++i) to.push_back(from[i].number);
   }

@@ -37,41 +37,28 @@ class RungeKuttaStepAdjoint {
     });
     Recording& recording = places_.recording();
     Recording::On const on(recording);
-    set(before.q, recorded_.q0);
-    set(before.v, recorded_.v0);
-    set(before.a, recorded_.acceleration[0]);
+    detail::set_variables(before.q, recorded_.q0);
+    detail::set_variables(before.v, recorded_.v0);
+    detail::set_variables(before.a, recorded_.acceleration[0]);
     places_.again();
     walk_(places_.template system<Recorded>(), recorded_, step, [&](EquationPlace<Recorded>& at) {
       places_.solve(at);
       return 0.0;
     });
     recording.clear_slopes(recording.size());
-    add(x.q, recorded_.at.q);
-    add(x.v, recorded_.at.v);
-    add(x.a, recorded_.at.a);
-    add(x.lambda, recorded_.at.lambda);
+    detail::add_to_slopes(recording, recorded_.at.q, x.q);
+    detail::add_to_slopes(recording, recorded_.at.v, x.v);
+    detail::add_to_slopes(recording, recorded_.at.a, x.a);
+    detail::add_to_slopes(recording, recorded_.at.lambda, x.lambda);
     places_.sweep(told);
-    take(recorded_.q0, x.q);
-    take(recorded_.v0, x.v);
-    take(recorded_.acceleration[0], x.a);
+    detail::take_slopes(recording, recorded_.q0, x.q);
+    detail::take_slopes(recording, recorded_.v0, x.v);
+    detail::take_slopes(recording, recorded_.acceleration[0], x.a);
     x.lambda.setZero();
     return 0.0;
   }
 
  private:
-  using Numbers = VecXOf<Recorded>;
-
-  static void set(VecX const& from, Numbers& to) {
-    to.resize(from.size());
-    for (Index i = 0; i < from.size(); ++i) to[i] = Recorded::variable(from[i]);
-  }
-  void add(VecX const& slopes, Numbers const& to) {
-    for (Index i = 0; i < slopes.size(); ++i) places_.recording().slope(to[i].number) += slopes[i];
-  }
-  void take(Numbers const& from, VecX& slopes) {
-    for (Index i = 0; i < from.size(); ++i) slopes[i] = places_.recording().slope(from[i].number);
-  }
-
   RecordedPlaces<Solver> places_;
   RungeKuttaWalk<Method> walk_;
   RungeKuttaNumbers<Method, double> numbers_;
