@@ -35,12 +35,6 @@ struct Costate {
   }
 };
 
-/// μ: what J changes by with what is added to the equations of a step, its sign changed.
-struct StepMultipliers {
-  VecX balance;  ///< (nv) of M v̇ − f + Gᵀλ
-  VecX rows;     ///< (rows) of Φ, of velocity rows of Φ̇
-};
-
 /// Passes blocks on with rows and columns exchanged.
 template <TakesBlocks S>
 class TransposedSink {
@@ -77,9 +71,10 @@ class AlphaStepAdjoint {
   }
 
   /// Takes the costate of the state after the step to that of the state before it. Returns what the last correction of
-  /// μ changed, relative to it. \param mu becomes that of the step. \throws LinearSolverSingular at a singular
+  /// μ changed, relative to it. \param mu (nv + rows) what J changes by with what is
+  /// added to M v̇ − f + Gᵀλ, and to Φ, of velocity rows Φ̇, its sign changed. \throws LinearSolverSingular at a singular
   /// position.
-  double retreat(StepEnds const& step, Costate& x, StepMultipliers& mu) {
+  double retreat(StepEnds const& step, Costate& x, VecX& mu) {
     record(step);
     factor(step);
     Index const nv = a_.size(), rows = lambda_.size();
@@ -104,9 +99,9 @@ class AlphaStepAdjoint {
             method_.alpha_m / (1.0 - method_.alpha_f) * a1;
     x.a = -method_.alpha_f / (1.0 - method_.alpha_f) * a1;
     x.lambda.setZero();
-    mu.balance = mu_.head(nv);
-    mu.rows = mu_.tail(rows) * of_positions(h);
-    for (Index const i : recorded_.velocity_rows()) mu.rows[i] = mu_[nv + i] * of_speeds(h);
+    mu = mu_;
+    mu.tail(rows) *= of_positions(h);
+    for (Index const i : recorded_.velocity_rows()) mu[nv + i] = mu_[nv + i] * of_speeds(h);
     return left;
   }
 

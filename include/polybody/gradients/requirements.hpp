@@ -48,6 +48,15 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                        "there."};
 }
 
+/// Times at which a step of a run must end, in no order: those of drives and loads, then those of the options [s].
+template <class = void>
+std::vector<double> corners_of(System const& system, RunOptions const& options) {
+  Sequence<double> const& own = system.layout().corners;
+  std::vector<double> all(own.begin(), own.end());
+  all.insert(all.end(), options.corners.begin(), options.corners.end());
+  return all;
+}
+
 /// The outputs of a scenario at x. \throws NonFinite.
 template <class S>
 VecX values_of_outputs(S const& scenario, State const& x) {

@@ -26,12 +26,7 @@ struct StagesVariant {
         work(method.template workspace<DefaultSolver>(system)) {}
 
   /// Times at which a step must end: those of drives and loads, then those of the options [s].
-  std::vector<double> corners() const {
-    Sequence<double> const& own = system.layout().corners;
-    std::vector<double> all(own.begin(), own.end());
-    all.insert(all.end(), scenario.options.corners.begin(), scenario.options.corners.end());
-    return all;
-  }
+  std::vector<double> corners() const { return corners_of(system, scenario.options); }
   /// The left sides of the equations at a place.
   EquationSlope equations(EquationPlace<> const& x) {
     at_place.evaluate(system, x);

@@ -31,12 +31,7 @@ struct Variant {
     method.start(system, x, h, work, corrected);
   }
   /// Times at which a step must end, in no order: those of drives and loads, then those of the options [s].
-  std::vector<double> corners() const {
-    Sequence<double> const& own = system.layout().corners;
-    std::vector<double> all(own.begin(), own.end());
-    all.insert(all.end(), scenario.options.corners.begin(), scenario.options.corners.end());
-    return all;
-  }
+  std::vector<double> corners() const { return corners_of(system, scenario.options); }
   /// The length of steps that is asked for [s].
   double length() const {
     RunOptions const& o = scenario.options;

@@ -38,17 +38,13 @@ class AlphaWayBack {
     VecX const own_before = step.before.memory.head(nv), own_after = step.after.memory.head(nv);
     double const left = adjoint_.retreat({step.before, step.after, own_before, own_after, step.h}, bar, mu_);
     equations.evaluate(step.after);
-    all_.resize(mu_.balance.size() + mu_.rows.size());
-    all_.head(mu_.balance.size()) = mu_.balance;
-    all_.tail(mu_.rows.size()) = mu_.rows;
-    equations.take_from(slopes, all_);
+    equations.take_from(slopes, mu_);
     return left;
   }
 
  private:
   AlphaStepAdjoint<> adjoint_;
-  StepMultipliers mu_;
-  VecX all_;  // both parts
+  VecX mu_;
 };
 
 /// Under methods of several stages.
