@@ -61,6 +61,22 @@ TEST(EigenLdlt, SolvesSymmetricTangentsWithRows) {
 
 TEST(EigenLdlt, RefinesSlightAsymmetryAway) { EXPECT_LT(error({.bodies = 8, .skew = 0.3}), 1e-9); }
 
+// Refinement by the factors of one half alone diverges: I − A B⁻¹ has an eigenvalue of −3.6.
+TEST(EigenLdlt, IteratesAsymmetryOfALightPartAway) {
+  Mat<double, 2, 2> const light{{1.0, -0.8}, {0.8, 1.0}}, heavy{{100.0, 1.0}, {1.0, 100.0}};
+  std::vector<Block> const blocks{{0, 0, 2, 2}, {2, 2, 2, 2}};
+  EigenLdlt solver;
+  solver.analyse(4, blocks);
+  solver.begin();
+  solver.add(0, 0, light);
+  solver.add(2, 2, heavy);
+  EXPECT_EQ(solver.factor(), -1);
+  VecX const expected = (VecX(4) << 1.0, 2.0, 3.0, 4.0).finished();
+  VecX x = solver.matrix() * expected;
+  solver.solve(x, x);
+  EXPECT_LT((x - expected).norm(), 1e-13);
+}
+
 TEST(EigenLdlt, RefusesWhatIsFarFromSymmetric) {
   Chain const chain{.bodies = 3, .skew = 30.0};
   EigenLdlt solver = analysed(chain);

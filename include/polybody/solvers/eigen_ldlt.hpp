@@ -2,6 +2,7 @@
 /// \file
 /// Not in polybody.hpp: Eigen's sparse Cholesky costs every translation unit; include it where it is used.
 
+#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
@@ -17,12 +18,15 @@ namespace polybody {
 
 /// Eigen's sparse LDLᵀ (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0: rows without a diagonal block get
 /// −ε, which makes the matrix quasi-definite, so that it has a factorisation in any order [Vanderbei 1995]; refinement
-/// against the matrix itself removes ε again. Slight asymmetry (gyroscopic terms) is refined away as well.
+/// against the matrix itself removes ε again. Slight asymmetry (gyroscopic terms, damping of bodies that turn) is
+/// refined away as well; where refinement does not contract, by BiCGSTAB with the factors as its preconditioner [van
+/// der Vorst 1992].
 class EigenLdlt {
  public:
   static constexpr double shift = 1e-9;             ///< ε beside g²/a, of the largest entries of G and A
   static constexpr double largest_asymmetry = 0.1;  ///< ‖A − Aᵀ‖ beside ‖A‖; above it `factor` throws
   static constexpr int most_refinements = 20;       ///< steps of refinement at most, in a solution
+  static constexpr int most_iterations = 60;        ///< of BiCGSTAB between two of these steps
   using Unsymmetric = EigenSparseLu;                ///< takes its place where the tangent is not symmetric
 
   void analyse(Index size, std::span<Block const> blocks) {
@@ -80,21 +84,41 @@ class EigenLdlt {
     if (b.size() == 0) return;
     VecX const rhs = b;
     x = ldlt_->solve(rhs);
-    double before = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < most_refinements; ++k) {
-      r_ = rhs - sink_.matrix() * x;
-      for (Index const i : rows_) r_[i] -= epsilon_ * x[i];  // the matrix without ε
-      double const left = r_.norm();
-      if (!(left < 0.5 * before) || left <= 1e-15 * rhs.norm()) return;
-      before = left;
-      dx_ = ldlt_->solve(r_);
-      x += dx_;
-    }
+    if (refine(rhs, x, [&] { dx_ = ldlt_->solve(r_); }) <= 1e-12 * rhs.norm()) return;
+    Eigen::BiCGSTAB<Matrix, Factors> method;
+    method.preconditioner().ldlt = ldlt_.get();
+    method.setTolerance(1e-8);
+    method.setMaxIterations(most_iterations);
+    method.compute(sink_.matrix());
+    refine(rhs, x, [&] { dx_ = method.solve(r_); });
   }
   SparseSink::Matrix const& matrix() const { return sink_.matrix(); }
 
  private:
   using Matrix = SparseSink::Matrix;
+
+  /// Adds corrections dx_ for what x leaves, r_, as long as each halves it. Returns the norm of what is left.
+  template <class Correct>
+  double refine(VecX const& rhs, VecX& x, Correct&& correct) const {
+    double left = leave(rhs, x);
+    for (int k = 0; k < most_refinements && left > 1e-15 * rhs.norm(); ++k) {
+      double const before = left;
+      correct();
+      x += dx_;
+      left = leave(rhs, x);
+      if (left < 0.5 * before) continue;
+      if (left < before) return left;
+      x -= dx_;
+      return leave(rhs, x);
+    }
+    return left;
+  }
+  /// r_ = rhs − A x by the matrix without ε. Returns its norm.
+  double leave(VecX const& rhs, VecX const& x) const {
+    r_ = rhs - sink_.matrix() * x;
+    for (Index const i : rows_) r_[i] -= epsilon_ * x[i];
+    return r_.norm();
+  }
 
   static void require_symmetric(Matrix const& a) {
     Matrix const t = a.transpose();
@@ -120,6 +144,14 @@ class EigenLdlt {
   mutable VecX r_, dx_;
   struct Ldlt : Eigen::SimplicialLDLT<Matrix, Eigen::Lower> {
     VecX const& pivots() const { return this->m_diag; }  // of a factorisation that failed, too
+  };
+  /// The factors as Eigen's iterative solvers take a preconditioner.
+  struct Factors {
+    Ldlt const* ldlt = nullptr;
+
+    Factors& compute(Matrix const&) { return *this; }
+    VecX solve(VecX const& b) const { return ldlt->solve(b); }
+    Eigen::ComputationInfo info() const { return Eigen::Success; }
   };
   std::unique_ptr<Ldlt> ldlt_ = std::make_unique<Ldlt>();  // Eigen's does not move
 };
