@@ -153,19 +153,6 @@ struct Loaded {
   VecX slopes{};                       // of the aggregate, by the heights [1/m]
 };
 
-// What f gives of the link. At its tolerance Newton's method may stall in rounding: then again by shorter steps.
-template <class B, class F>
-auto with_retries(Link<B> link, F&& f) {
-  for (int again = 0; again < 4; ++again) {
-    try {
-      return f(link);
-    } catch (Error const&) {
-      link.task.step *= 0.9;
-    }
-  }
-  return f(link);
-}
-
 // A formulation of the link, its types forgotten.
 struct Candidate {
   std::string name;
@@ -175,14 +162,11 @@ struct Candidate {
 template <class B>
 Candidate candidate(std::string name, Task const& task, Aggregate const& aggregate, Index elements = 1) {
   Link<B> const all{task, elements};
-  auto const stresses = [all](std::span<double const> h) {
-    return with_retries(all, [&](Link<B> const& link) { return stresses_of(link, h); });
-  };
+  auto const stresses = [all](std::span<double const> h) { return stresses_of(all, h); };
   auto const loaded = [all, aggregate](std::span<double const> h) {
     std::vector<Parameter> parameters;
     for (double const x : h) parameters.push_back({"height " + std::to_string(parameters.size() + 1) + " [m]", x});
-    Sensitivities const s =
-        with_retries(all, [&](Link<B> const& link) { return sensitivities(link, parameters, method); });
+    Sensitivities const s = sensitivities(all, parameters, method);
     Loaded out;
     std::tie(out.aggregate, out.slopes) = aggregate.slopes(s);
     for (VecX const& v : s.values) out.most = std::max(out.most, v.maxCoeff());
