@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include <polybody/gradients/gmres.hpp>
 #include <polybody/math/recorded.hpp>
 #include <polybody/math/types.hpp>
 
@@ -28,24 +29,39 @@ void take_slopes(Recording& recording, VecXOf<Recorded> const& numbers, VecX& sl
   for (Index i = 0; i < numbers.size(); ++i) slopes[i] = recording.slope(numbers[i].number);
 }
 
-/// Aᵀ μ = y by factors of a matrix near Aᵀ, corrected until nothing changes; the last product is of the last μ. Returns
-/// the last correction relative to μ. \param mu where to begin; \param product gives Aᵀ μ of the present μ; \param
-/// solve solve(rhs, correction) by the factors; \param most corrections
-template <class Product, class Solve>
-double solve_by_products(VecX const& y, VecX& mu, Product&& product, Solve&& solve, int most) {
-  VecX rhs(y.size()), correction(y.size());
-  double left = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < most; ++k) {
-    rhs = y - product();
-    solve(rhs, correction);
-    double const all = mu.norm(), changed = correction.norm();
-    double const now = all > 0.0 ? changed / all : changed > 0.0 ? 1.0 : 0.0;
-    bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
-    left = now;
-    if (done) break;
-    mu += correction;
+/// Aᵀ μ = y by factors of a matrix near Aᵀ, from zero on: what is near the solution would cost a product more. Where
+/// the first correction of what they give is not rounding, by GMRES. The last product is of the last μ.
+class TransposedSolution {
+ public:
+  /// Returns the last correction relative to μ. \param product gives Aᵀ x of a given x; \param solve solve(rhs, x) by
+  /// the factors; \param most products between two corrections
+  template <class Product, class Solve>
+  double solve(VecX const& y, VecX& mu, Product&& product, Solve&& solve, Index most) {
+    mu.resize(y.size());
+    correction_.resize(y.size());
+    solve(y, mu);
+    double left = std::numeric_limits<double>::infinity();
+    for (int cycle = 0;; ++cycle) {
+      rhs_ = y - product(mu);
+      solve(rhs_, correction_);
+      double const all = mu.norm(), before = left;
+      left = all > 0.0 ? correction_.norm() / all : 0.0;
+      if (left <= rounding || !(left < 0.1 * before) || cycle == cycles) return left;
+      gmres_.begin(correction_, 0.01 * rounding * all, most);
+      while (!gmres_.is_done()) {
+        solve(product(gmres_.next()), correction_);
+        gmres_.take(correction_);
+      }
+      gmres_.add_to(mu);
+    }
   }
-  return left;
-}
+
+ private:
+  static constexpr int cycles = 5;
+  static constexpr double rounding = 1e-12;
+
+  Gmres gmres_;
+  VecX rhs_, correction_;
+};
 
 }  // namespace polybody::detail

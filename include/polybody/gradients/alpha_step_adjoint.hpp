@@ -83,15 +83,15 @@ class AlphaStepAdjoint {
     VecX const q_before = of_q_, delta_by_q = of_delta_;
     y_.head(nv) = x.own + of_a1 * x.a + of_v1 * x.v + of_d1 * delta_by_q;
     y_.tail(rows) = x.lambda;
-    double const left = detail::solve_by_products(
+    double const left = solution_.solve(
         y_, mu_,
-        [&]() -> VecX const& {
-          pull_equations(step);
+        [&](VecX const& of) -> VecX const& {
+          pull_equations(step, of);
           product_.head(nv) = of_a1 * of_a_ + of_v1 * of_v_ + of_d1 * of_delta_;
           product_.tail(rows) = of_lambda_;
           return product_;
         },
-        [&](VecX const& rhs, VecX& correction) { solver_.solve(rhs, correction); }, most_corrections);
+        [&](VecX const& rhs, VecX& correction) { solver_.solve(rhs, correction); }, most_products);
     VecX const v1 = x.v - of_v_, a1 = x.a - of_a_, delta = delta_by_q - of_delta_;
     x.q = q_before - of_q_;
     x.v = v1 + h * delta;
@@ -107,7 +107,7 @@ class AlphaStepAdjoint {
 
  private:
   using Numbers = VecXOf<Recorded>;
-  static constexpr int most_corrections = 30;
+  static constexpr Index most_products = 60;
 
   double mass() const { return (1.0 - method_.alpha_m) / (1.0 - method_.alpha_f); }
   /// What Φ and Φ̇ are multiplied by in R.
@@ -157,13 +157,13 @@ class AlphaStepAdjoint {
     take(delta_, of_delta_);
   }
   /// Products of the transposed derivatives of R with μ.
-  void pull_equations(StepEnds const& step) {
+  void pull_equations(StepEnds const& step, VecX const& mu) {
     Index const nv = r_.size();
     recording_.clear_slopes(recording_.size());
-    for (Index i = 0; i < nv; ++i) recording_.slope(r_[i].number) += mu_[i];
+    for (Index i = 0; i < nv; ++i) recording_.slope(r_[i].number) += mu[i];
     double const of_phi = of_positions(step.h), of_rate = of_speeds(step.h);
-    for (Index i = 0; i < phi_.size(); ++i) recording_.slope(phi_[i].number) += of_phi * mu_[nv + i];
-    for (Index const i : recorded_.velocity_rows()) recording_.slope(rate_[i].number) += of_rate * mu_[nv + i];
+    for (Index i = 0; i < phi_.size(); ++i) recording_.slope(phi_[i].number) += of_phi * mu[nv + i];
+    for (Index const i : recorded_.velocity_rows()) recording_.slope(rate_[i].number) += of_rate * mu[nv + i];
     recording_.sweep(recording_.size());
     take(from_, of_q_);
     take(delta_, of_delta_);
@@ -179,7 +179,8 @@ class AlphaStepAdjoint {
   Recording recording_;
   std::size_t moved_ = 0;  // operations until q₁ is there
   Numbers from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
-  VecX mu_, y_, product_;  // mu_: of the step behind, which the next one begins with
+  detail::TransposedSolution solution_;
+  VecX mu_, y_, product_;
   VecX of_q_, of_delta_, of_v_, of_a_, of_lambda_;
 };
 

@@ -50,13 +50,13 @@ class RadauStepAdjoint {
     take_stages(y_);
     detail::take_slopes(recording, recorded_.q0, x.q);
     detail::take_slopes(recording, recorded_.v0, x.v);
-    double const left = detail::solve_by_products(
+    double const left = solution_.solve(
         y_, mu_,
-        [&]() -> VecX const& {
-          pull(stages_end);
+        [&](VecX const& of) -> VecX const& {
+          pull(stages_end, of);
           return product_;
         },
-        [&](VecX const& rhs, VecX& correction) { solver_.solve(rhs, correction); }, most_corrections);
+        [&](VecX const& rhs, VecX& correction) { solver_.solve(rhs, correction); }, most_products);
     for (Index i = 0; i < x.q.size(); ++i) x.q[i] -= recording.slope(recorded_.q0[i].number);
     for (Index i = 0; i < x.v.size(); ++i) x.v[i] -= recording.slope(recorded_.v0[i].number);
     x.a.setZero();
@@ -71,7 +71,7 @@ class RadauStepAdjoint {
 
  private:
   using Numbers = VecXOf<Recorded>;
-  static constexpr int most_corrections = 60;
+  static constexpr Index most_products = 60;
 
   Index size() { return places_.template system<double>().size(); }
 
@@ -116,16 +116,16 @@ class RadauStepAdjoint {
   }
 
   /// Products of the transposed derivatives of R with μ; those by y into `product_`.
-  void pull(std::size_t stages_end) {
+  void pull(std::size_t stages_end, VecX const& mu) {
     Recording& recording = places_.recording();
     recording.clear_slopes(stages_end);
-    for (std::size_t i = 0; i < numbers_.size(); ++i) recording.slope(numbers_[i]) += mu_[Index(i)];
+    for (std::size_t i = 0; i < numbers_.size(); ++i) recording.slope(numbers_[i]) += mu[Index(i)];
     recording.sweep(stages_end, 1);
     take_stages(product_);
     Index const n = size(), nv = recorded_.v0.size(), rows = n - nv;
     for (Index i = 0; i < 3; ++i)
       for (Index k = 0; k < rows; ++k)
-        product_[i * n + nv + k] += stages_.slack()[std::size_t(i * rows + k)] * mu_[i * n + nv + k];
+        product_[i * n + nv + k] += stages_.slack()[std::size_t(i * rows + k)] * mu[i * n + nv + k];
   }
   /// Slopes of v̇_i and λ_i.
   void take_stages(VecX& out) {
@@ -140,6 +140,7 @@ class RadauStepAdjoint {
   detail::RadauStages<Recorded> recorded_;
   AutoLu solver_;                           // of the transposed matrix
   std::vector<Recording::Number> numbers_;  // of the equations of all stages
+  detail::TransposedSolution solution_;
   VecX mu_, y_, product_;
 };
 

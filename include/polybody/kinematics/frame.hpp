@@ -15,6 +15,12 @@ struct Frame {
   Vec<T, 3> w = Vec<T, 3>::Zero();  ///< (3) angular velocity [rad/s]
 };
 
+/// The frame `x` without its derivatives.
+template <StateScalar T>
+Frame<double> values_of(Frame<T> const& x) {
+  return {values_of(x.r), values_of(x.A), values_of(x.v), values_of(x.w)};
+}
+
 /// Force and moment about the marker's origin, in world axes.
 template <StateScalar T = double>
 struct Wrench {

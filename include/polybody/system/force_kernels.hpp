@@ -3,9 +3,12 @@
 /// What a model does with all its force elements of one type: loops that know the type of the force and not that of the
 /// model (compare body_kernels.hpp).
 
+#include <concepts>
+
 #include <polybody/forces/force_states.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/joint_kernels.hpp>
+#include <polybody/system/pair_frames.hpp>
 
 namespace polybody {
 
@@ -31,9 +34,7 @@ std::array<T, F::states> states_in(ForceEntry<F> const& e, Data<T> const& data) 
 template <class F, StateScalar T, class Visit>
 void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit) {
   if constexpr (ForceGroup<F>) {
-    auto const frame = [&](Index k) -> Frame<T> const& {
-      return data.markers[std::size_t(e.markers[std::size_t(k)])].frame;
-    };
+    PairFrames<F, T> const frame(e, data);
     e.force.for_each_pair(frame, [&](Index i, Index j, auto const& law) {
       visit(law, std::array{i, j}, std::array{e.markers[std::size_t(i)], e.markers[std::size_t(j)]});
     });
@@ -248,7 +249,7 @@ Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, A
     next += e.markers.size();
     for (Action<T>* p = actions; p != next; ++p)
       for (T& w : p->w) w = T(0.0);
-    if constexpr (PairsByParts<F>)
+    if constexpr (PairsByParts<F> && std::same_as<T, double>)
       if (data.workers && e.force.many() >= 2 * data.least_pairs) {
         push_by_parts(e, t, data, actions);
         continue;
@@ -268,11 +269,9 @@ Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, A
 
 template <class F, StateScalar T>
 void ForceKernels<F, T>::push_by_parts(Entry const& e, double t, Data<T>& data, Action<T>* actions) {
-  if constexpr (PairsByParts<F>) {
+  if constexpr (PairsByParts<F> && std::same_as<T, double>) {
     Index const many = e.force.many(), parts = data.workers->size();
-    auto const frame = [&](Index k) -> Frame<T> const& {
-      return data.markers[std::size_t(e.markers[std::size_t(k)])].frame;
-    };
+    detail::PairFrames<F, T> const frame(e, data);
     data.workers->over(4 * parts, 4, [&](Index begin, Index end) {
       for (Index p = begin / 4; p < end / 4; ++p) {
         Sequence<Action<T>>& aside = data.opposite[std::size_t(p)].actions;
