@@ -1,5 +1,5 @@
-// What derivatives of a whole run cost beside the run itself under the same options: chains of links, each of whose
-// masses and lengths may be a parameter.   bench_gradients
+// What derivatives of a whole run cost beside the run itself under the same options: chains of links, whose densities
+// are parameters, and the tracked vehicle with springs on its links.   bench_gradients
 #include <cstdio>
 #include <ctime>
 
@@ -8,6 +8,7 @@
 #include <polybody/gradients/gradient.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/vehicle/m113_vehicle.hpp>
 
 namespace {
 
@@ -52,6 +53,31 @@ struct Chain {
   }
 };
 
+/// The vehicle as it drops onto its tracks, with springs from 100 of its links to the ground; their stiffnesses are
+/// parameters.
+struct Vehicle {
+  using Car = m113::Vehicle<>;
+  double until;
+  m113::VehicleOptions options = {};
+
+  auto operator()(std::span<double const> p) const {
+    Car car(Constraint{}, {m113::drive(25.0), m113::drive(25.0)}, options);
+    for (std::size_t i = 0; i < 100; ++i) {
+      Vec2 const& at = options.start.links[i / 2].centre;
+      Vec3 const above(at[0], i % 2 == 0 ? 1.0 : -1.0, at[1] + 1.0);
+      car.model.apply(SpringDamper{.stiffness = 1e3 * (i < p.size() ? p[i] : 1.0), .damping = 10.0, .free_length = 1.0},
+                      car.model.ground().at(above), car.sides[i % 2].front[i / 2], "spring " + std::to_string(i));
+    }
+    State const start = car.model.reference_state();
+    auto const height = [hull = car.chassis[0]](auto const& m, auto const& x) {
+      return position(m, x, hull.at(Vec3(0, 0, 0)))[2];
+    };
+    std::vector<Output<Car::ModelType>> outputs{{"z [m]", height}};
+    return rated(Scenario<Car::ModelType>{std::move(car.model), start, {.until = until, .step = 1e-3}, outputs},
+                 height);
+  }
+};
+
 /// Seconds that f takes, the least of three.
 template <class F>
 double least(F&& f) {
@@ -64,22 +90,18 @@ double least(F&& f) {
   return best;
 }
 
-template <class B>
-void print(char const* name, int links) {
-  Chain<B> const make{links, 2.0};
-  GeneralizedAlpha const integrator{.tolerance = 1e-12};
-  auto const of = [](int count) {
-    std::vector<Parameter> parameters;
-    for (int i = 0; i < count; ++i)
-      parameters.push_back({"mass of link " + std::to_string(i) + " [1]", 1.0, 0.0, {"link " + std::to_string(i)}});
-    return parameters;
+/// A row of the table: derivatives of the run that `make` gives, by one parameter and by `most`.
+template <class Make, class I>
+void print(char const* name, int links, Make const& make, std::vector<Parameter> const& all, I const& integrator) {
+  auto const of = [&](std::size_t count) {
+    return std::vector<Parameter>(all.begin(), all.begin() + std::ptrdiff_t(count));
   };
-  auto const scenario = make({});
+  auto const scenario = make(std::span<double const>());
   double const run = least([&] {
     State x = scenario.start;
     simulate(scenario.model, x, integrator, scenario.options).run();
   });
-  int const counts[2] = {1, std::min(links, 33)};
+  std::size_t const counts[2] = {1, all.size()};
   double direct[2], adjoint[2];
   VecX by_direct, by_adjoint;
   for (int k = 0; k < 2; ++k) {
@@ -91,11 +113,24 @@ void print(char const* name, int links) {
   Gradient few;
   double const with_few = least([&] { few = gradient(make, of(1), integrator, {.snapshots = 50}); });
   auto const each = [&](double const* t) { return (t[1] - t[0]) / double(counts[1] - counts[0]); };
-  std::printf("| %s | %d | %.0f | %.2f | %.2f | %.2f | %.2f | %.2f, %zu steps, %.1f MB | %.0e |\n", name, links,
-              1e3 * run, (direct[0] - each(direct)) / run, each(direct) / run, (adjoint[0] - each(adjoint)) / run,
-              each(adjoint) / run, (with_few - each(adjoint)) / run, few.reversal.taken,
-              1e-6 * few.snapshot_size * double(few.reversal.snapshots),
+  std::printf("| %s | %d | %zu | %.0f | %.2f | %.2f | %.2f | %.3f | %.2f, %zu steps, %.1f MB | %.0e |\n", name, links,
+              all.size(), 1e3 * run, (direct[0] - each(direct)) / run, each(direct) / run,
+              (adjoint[0] - each(adjoint)) / run, each(adjoint) / run, (with_few - each(adjoint)) / run,
+              few.reversal.taken, 1e-6 * few.snapshot_size * double(few.reversal.snapshots),
               (by_direct - by_adjoint).norm() / by_direct.norm());
+  std::fflush(stdout);
+}
+
+std::vector<Parameter> parameters(int count, std::string const& what, std::string const& touched) {
+  std::vector<Parameter> all;
+  for (int i = 0; i < count; ++i)
+    all.push_back({what + " " + std::to_string(i) + " [1]", 1.0, 0.0, {touched + " " + std::to_string(i)}});
+  return all;
+}
+template <class B>
+void print_chain(char const* name, int links) {
+  print(name, links, Chain<B>{links, 2.0}, parameters(std::min(links, 33), "mass of link", "link"),
+        GeneralizedAlpha{.tolerance = 1e-12});
 }
 
 }  // namespace
@@ -103,10 +138,13 @@ void print(char const* name, int links) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   std::printf(
-      "2 s in 2000 steps, tolerance 1e-12; cost in runs\n\n| links | | run [ms] | direct | and a parameter | adjoint | "
-      "and a parameter | adjoint with 50 snapshots | apart |\n|---|---|---|---|---|---|---|---|---|\n");
-  print<Rigid<>>("rigid", 16);
-  print<Rigid<>>("rigid", 64);
-  print<AncfCable<>>("cables", 16);
-  print<AncfCable<>>("cables", 64);
+      "chains: 2 s in 2000 steps, vehicle: 0.2 s in 200; tolerance 1e-12; cost in runs\n\n| | links | parameters | run "
+      "[ms] | direct | and a parameter | adjoint | and a parameter | adjoint with 50 snapshots | apart "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n");
+  print_chain<Rigid<>>("rigid", 16);
+  print_chain<Rigid<>>("rigid", 64);
+  print_chain<AncfCable<>>("`AncfCable`", 16);
+  print_chain<AncfCable<>>("`AncfCable`", 64);
+  print("vehicle", 128, Vehicle{0.2}, parameters(100, "stiffness of spring", "spring"),
+        GeneralizedAlpha{.rho_inf = 0.5, .tolerance = 1e-12, .start_correction = false});
 }
