@@ -5,7 +5,7 @@ chapters=(pendulum robot_arm cantilever tracked_vehicle link_from_fe track_stres
 stages=("${chapters[@]}" chain_study vehicle_study identify lighter_link)
 
 # What each takes from nothing to its last picture, after those before it, on two cores [s]: for what is left only.
-declare -A seconds=([pendulum]=20 [robot_arm]=160 [cantilever]=45 [chain_study]=40 [tracked_vehicle]=240 [link_from_fe]=45 [track_stress]=220 [vehicle_study]=80 [identify]=60 [lighter_link]=60)
+declare -A seconds=([pendulum]=15 [robot_arm]=90 [cantilever]=25 [chain_study]=30 [tracked_vehicle]=150 [link_from_fe]=25 [track_stress]=120 [vehicle_study]=50 [identify]=45 [lighter_link]=40)
 
 declare -A shows=(
   [pendulum]="A rod on a pin, in 22 lines: time, energy drift [J] and gap of the pin [m] after two seconds."
