@@ -54,7 +54,7 @@ class AlphaStepAdjoint {
   /// The model must outlive it.
   template <class M>
   [[gnu::cold]] AlphaStepAdjoint(M const& model, System& system, AlphaMethod const& method)
-      : system_(&system), recorded_(model, with<Entries::motion>), method_(method) {
+      : system_(&system), recorded_(stepped_system<Recorded>(model, with<Entries::motion>)), method_(method) {
     Index const nq = system.coordinates(), nv = system.speeds(), rows = system.rows();
     PatternSink pattern;
     TransposedSink<PatternSink> transposed(pattern);

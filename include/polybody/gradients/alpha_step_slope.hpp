@@ -16,6 +16,7 @@
 #include <span>
 
 #include <polybody/integrators/alpha_method.hpp>
+#include <polybody/solvers/reduced_coordinates.hpp>
 
 namespace polybody {
 
@@ -53,7 +54,7 @@ class AlphaStepSlope {
   /// The model must outlive it.
   template <class M>
   [[gnu::cold]] AlphaStepSlope(M const& model, System& system, AlphaMethod const& method)
-      : system_(&system), dual_(model, with<Entries::motion>), method_(method) {
+      : system_(&system), dual_(stepped_system<D>(model, with<Entries::motion>)), method_(method) {
     VecX const any = VecX::Zero(system.rows());
     solver_.analyse(system, 1,
                     [&](BlockSink& sink) { system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, sink); });

@@ -29,9 +29,9 @@ class DirectDifferentiation {
   }
 
   Sensitivities run() {
-    x_ = whole_.scenario.start;
-    options().check(x_.t);
-    require_assembled(whole_.system, x_, options().assembly_tolerance);
+    options().check(whole_.scenario.start.t);
+    require_assembled_start(whole_);
+    x_ = whole_.first();
     h_ = whole_.length();
     std::vector<double> const corners = whole_.corners();
     plan_ = StepPlan(x_.t, options().until, options().step, Sequence<double>(corners.begin(), corners.end()));
@@ -82,13 +82,15 @@ class DirectDifferentiation {
   void start(Differenced const& differenced, std::vector<std::size_t> const& acting) {
     StepPlan::Next const next = done() ? StepPlan::Next{x_.t, h_, false, false} : plan_.next(x_.t, h_);
     State fresh = x_;
-    if (!acting.empty()) watch_.act(options().events, fresh);
+    if (!acting.empty()) {
+      fresh = whole_.shown(x_);
+      watch_.act(options().events, fresh);
+      fresh = stepped_state(whole_, std::move(fresh));
+    }
     whole_.start(fresh, next.h);
     bool const corrected = fresh.memory[fresh.memory.size() - 2] > 0.0;
     auto const map = [&](V& v, State& y, double h) {
-      double const t = y.t;
-      for (std::size_t const i : acting) v.scenario.options.events[i].then(y);
-      y.t = t;
+      if (!acting.empty()) y = after(v, acting, y);
       v.start(y, h, corrected);
     };
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
@@ -98,6 +100,13 @@ class DirectDifferentiation {
       tangent.dx.memory.tail(StepHistory::lengths) = fresh.memory.tail(StepHistory::lengths);
     }
     x_ = std::move(fresh);
+  }
+  /// What acting events make of a state of a variant.
+  static State after(V& v, std::vector<std::size_t> const& acting, State const& x) {
+    State y = v.shown(x);
+    for (std::size_t const i : acting) v.scenario.options.events[i].then(y);
+    y.t = x.t;
+    return stepped_state(v, std::move(y));
   }
   /// The slope of the length of the next step.
   double length_slope(std::size_t j, StepPlan::Next const& next, RunTangent const& from) const {
@@ -159,8 +168,8 @@ class DirectDifferentiation {
                        "one of them by a step."};
   }
 
-  static EventWatch::Seen seen() {
-    return [](State const& x) -> State const& { return x; };
+  EventWatch::Seen seen() {
+    return [this](State const& x) -> State const& { return whole_.shown(x); };
   }
   bool meet(State const& before, double h) {
     EventWatch::Step const again = [this](State& x, double part) { return whole_.step(x, part).taken; };
@@ -174,10 +183,11 @@ class DirectDifferentiation {
       if (!watch_.met(i)) continue;
       Event const& event = options().events[i];
       auto const value = [i](V& v, State const& x) {
-        return VecX::Constant(1, v.scenario.options.events[i].value(x)).eval();
+        return VecX::Constant(1, v.scenario.options.events[i].value(v.shown(x))).eval();
       };
       double const rate = beside_.of_values(Variants::along_motion, x_, by_length, h_, value)[0],
-                   most = std::max(std::abs(event.value(before)), std::abs(event.value(far)));
+                   most =
+                       std::max(std::abs(event.value(whole_.shown(before))), std::abs(event.value(whole_.shown(far))));
       if (!(std::abs(rate) * (far.t - before.t) > 1e-6 * most)) refuse_touch(event);
       for (std::size_t j = 0; j < parameters_.size(); ++j) {
         double const own = -beside_.of_values(j, x_, tangents_[j], h_, value)[0] / rate;

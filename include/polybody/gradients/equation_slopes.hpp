@@ -15,10 +15,10 @@
 
 namespace polybody::detail {
 
-/// The equations that a parameter touches, ascending: by speeds, then by rows. \throws InvalidInput for a name that the
-/// model does not have.
+/// What of the whole model's equations a parameter touches, by speeds, then by rows. \throws InvalidInput for a name
+/// that the model does not have.
 template <class = void>
-std::vector<Index> touched_equations(ModelLayout const& layout, Parameter const& p) {
+std::vector<char> touched_in_whole(ModelLayout const& layout, Parameter const& p) {
   std::vector<char> touched(std::size_t(layout.speeds + layout.rows), p.touches.empty());
   auto const touch = [&](Index first, Index count) {
     for (Index i = first; i < first + count; ++i) touched[std::size_t(i)] = 1;
@@ -52,6 +52,39 @@ std::vector<Index> touched_equations(ModelLayout const& layout, Parameter const&
       throw InvalidInput{"The parameter \"", p.name, "\" touches \"", name,
                          "\", but the model has no body, joint or force of that name."};
   }
+  return touched;
+}
+/// What of a step's equations is touched where so much of the whole model's is. Forces on coordinates that depend on
+/// others go to these; a joint that is touched itself may change how, and with that all equations.
+template <class = void>
+std::vector<char> touched_in_step(System const& system, std::vector<char> const& whole) {
+  Coordinates const& c = system.step_coordinates();
+  if (!c) return whole;
+  Index const speeds = system.layout().speeds;
+  std::vector<char> touched(std::size_t(system.size()), 0), stays(whole.size(), 0);
+  for (std::size_t i = 0; i < c.narrow->rows_that_stay.size(); ++i) {
+    std::size_t const row = std::size_t(speeds + c.narrow->rows_that_stay[i]);
+    stays[row] = 1;
+    touched[std::size_t(system.speeds()) + i] = whole[row];
+  }
+  VecX force(speeds), narrow(system.speeds());
+  for (Index i = 0; i < Index(whole.size()); ++i) {
+    if (!whole[std::size_t(i)]) continue;
+    if (i >= speeds && !stays[std::size_t(i)]) return std::vector<char>(touched.size(), 1);
+    if (i >= speeds) continue;
+    force.setZero();
+    force[i] = 1.0;
+    c.entries->reduce(c.self.get(), force, narrow);
+    for (Index k = 0; k < narrow.size(); ++k)
+      if (narrow[k] != 0.0) touched[std::size_t(k)] = 1;
+  }
+  return touched;
+}
+/// The equations of a step that a parameter touches, ascending: by speeds, then by rows. \throws InvalidInput for a
+/// name that the model does not have.
+template <class = void>
+std::vector<Index> touched_equations(System const& system, Parameter const& p) {
+  std::vector<char> const touched = touched_in_step(system, touched_in_whole(system.layout(), p));
   std::vector<Index> equations;
   for (std::size_t i = 0; i < touched.size(); ++i)
     if (touched[i]) equations.push_back(Index(i));
@@ -71,7 +104,7 @@ class EquationSlopes {
     for (std::size_t j = 0; j < parameters.size(); ++j) {
       Place& place = places_[j];
       place.distance = parameters[j].distance();
-      place.equations = touched_equations(model.system.layout(), parameters[j]);
+      place.equations = touched_equations(model.system, parameters[j]);
       auto const is_free = [&](std::vector<char> const& in) {
         return std::all_of(place.equations.begin(), place.equations.end(),
                            [&](Index i) { return !in[std::size_t(i)]; });

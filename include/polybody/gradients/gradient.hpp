@@ -59,22 +59,33 @@ class AdjointRun {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
   using W = Way<S, I>;
   using V = typename W::V;
+  using M = typename V::Model;
+  /// A scenario beside the one that is run, and what it shows of states.
+  struct Beside {
+    S scenario;
+    ShownStates<M> shown;
+    explicit Beside(S of) : scenario(std::move(of)), shown(scenario.model) {}
+  };
 
  public:
   [[gnu::cold]] AdjointRun(Make const& make, std::vector<Parameter> const& parameters, MethodOf<I> const& method)
-      : make_(make), parameters_(parameters), whole_(make(values_of(parameters)), method), way_(whole_) {
+      : make_(make),
+        parameters_(parameters),
+        whole_(make(values_of(parameters)), method),
+        way_(whole_),
+        slopes_(whole_.scenario.model) {
     require_plain(whole_.scenario.options, "gradient");
     for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
     out_.slopes = VecX::Zero(Index(parameters.size()));
   }
 
   Gradient run(GradientOptions const& options) {
-    State x = whole_.scenario.start;
-    whole_.scenario.options.check(x.t);
-    require_assembled(whole_.system, x, whole_.scenario.options.assembly_tolerance);
-    x = whole_.started(begin_plan(x.t));
+    double const from = whole_.scenario.start.t;
+    whole_.scenario.options.check(from);
+    require_assembled_start(whole_);
+    State x = whole_.started(begin_plan(from));
     plan(x);
-    out_.value += weight(0) * term(whole_.scenario.integrand, whole_.scenario.model, x);
+    out_.value += weight(0) * term(whole_.scenario.integrand, whole_.scenario.model, whole_.shown(x));
     x = W::set_out(whole_, std::move(x), steps_.front().h);
     EquationSlopes<V> equations(make_, parameters_, whole_);
     prepare(x, equations);
@@ -160,18 +171,18 @@ class AdjointRun {
   }
 
   void begin_at_end(State const& last, Costate& bar) {
-    out_.value += term(whole_.scenario.end, whole_.scenario.model, last);
-    add_slopes(whole_.scenario.end, whole_.scenario.model, last, 1.0, recording_, bar);
-    add_to_slopes([&](S const& s) { return term(s.end, s.model, last); });
+    out_.value += term(whole_.scenario.end, whole_.scenario.model, whole_.shown(last));
+    slopes_.add(whole_.scenario.end, whole_.scenario.model, last, 1.0, bar);
+    add_to_slopes([&](Beside& b) { return term(b.scenario.end, b.scenario.model, b.shown(last)); });
     add_integrand(steps_.size(), last, bar);
   }
   /// The integrand of state number k.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
     if constexpr (std::same_as<decltype(whole_.scenario.integrand), NoTerm>) return;
     double const w = weight(k);
-    out_.value += w * term(whole_.scenario.integrand, whole_.scenario.model, x);
-    add_slopes(whole_.scenario.integrand, whole_.scenario.model, x, w, recording_, bar);
-    add_to_slopes([&](S const& s) { return w * term(s.integrand, s.model, x); });
+    out_.value += w * term(whole_.scenario.integrand, whole_.scenario.model, whole_.shown(x));
+    slopes_.add(whole_.scenario.integrand, whole_.scenario.model, x, w, bar);
+    add_to_slopes([&](Beside& b) { return w * term(b.scenario.integrand, b.scenario.model, b.shown(x)); });
   }
   /// What each parameter does to the start of the run, and its scenarios. \param x from where the first step sets out
   void prepare(State const& x, EquationSlopes<V> const& equations) {
@@ -188,19 +199,19 @@ class AdjointRun {
         if (k == 0) equations.require_touched(j, p, whole_, v, x);
         double const by = FourPoints::weights[k] / p.distance();
         State y = v.started(h);
-        of_integrand += by * term(v.scenario.integrand, v.scenario.model, y);
+        of_integrand += by * term(v.scenario.integrand, v.scenario.model, v.shown(y));
         y = W::set_out(v, std::move(y), h);
         if (!W::begin_alike(x, y))
           throw InvalidInput{"gradient: the start of a run with another \"", p.name,
                              "\" is corrected otherwise. Set start_correction to false."};
         add(dx, y, by);
-        beside_.push_back(std::make_unique<S>(std::move(v.scenario)));
+        beside_.push_back(std::make_unique<Beside>(std::move(v.scenario)));
       }
       out_.slopes[Index(j)] += weight(0) * of_integrand;
       starts_.push_back(std::move(dx));
     }
   }
-  /// Adds the derivative of f(scenario) to each parameter's slope.
+  /// Adds the derivative of f(what is beside) to each parameter's slope.
   template <class F>
   void add_to_slopes(F&& f) {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
@@ -215,13 +226,13 @@ class AdjointRun {
   std::vector<Parameter> parameters_;
   V whole_;
   W way_;
-  std::vector<std::unique_ptr<S>> beside_;  // four for each parameter
-  std::vector<State> starts_;               // derivatives of where the first step sets out, by each parameter
+  std::vector<std::unique_ptr<Beside>> beside_;  // four for each parameter
+  std::vector<State> starts_;                    // derivatives of where the first step sets out, by each parameter
   StepPlan plan_;
   double largest_ = 0.0;
   std::vector<Step> steps_;
   std::size_t furthest_ = 0;  // steps that have been taken once
-  Recording recording_;       // of the objective
+  ObjectiveSlopes<M> slopes_;
   Gradient out_;
 };
 

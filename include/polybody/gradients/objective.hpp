@@ -13,6 +13,7 @@
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/parameter.hpp>
 #include <polybody/gradients/points.hpp>
+#include <polybody/gradients/shown_states.hpp>
 
 namespace polybody {
 
@@ -94,6 +95,57 @@ void add_slopes(F const& f, M const& model, State const& x, double weight, Recor
     each(near.lambda, x.lambda, bar.lambda);
   }
 }
+
+/// Derivatives of objectives by the numbers of states that are stepped. \tparam M a model
+template <class M>
+class ObjectiveSlopes {
+ public:
+  [[gnu::cold]] explicit ObjectiveSlopes(M const& model) : shown_(model), recorded_(model) {}
+
+  /// Adds `weight` times the derivatives of f(model, what is shown of x) by the numbers of x to a costate.
+  template <class F>
+  void add(F const& f, M const& model, State const& x, double weight, Costate& bar) {
+    if constexpr (std::same_as<F, NoTerm>) return;
+    if constexpr (M::eliminates) {
+      State const& shown = shown_(x);
+      Costate of_shown(shown);
+      add_slopes(f, model, shown, weight, recording_, of_shown);
+      pull(x, of_shown, bar);
+    } else {
+      add_slopes(f, model, x, weight, recording_, bar);
+    }
+  }
+
+ private:
+  /// Adds to `bar` what J changes by with a stepped x, by what it changes by with what is shown of it.
+  void pull(State const& x, Costate const& of_shown, Costate& bar) {
+    Recording::On const on(recording_);
+    StateOf<Recorded> from;
+    from.t = x.t;
+    set_variables(x.q, from.q);
+    set_variables(x.v, from.v);
+    set_variables(x.a, from.a);
+    set_variables(x.lambda, from.lambda);
+    StateOf<Recorded> const& to = recorded_(from);
+    recording_.clear_slopes(recording_.size());
+    add_to_slopes(recording_, to.q, of_shown.q);
+    add_to_slopes(recording_, to.v, of_shown.v);
+    add_to_slopes(recording_, to.a, of_shown.a);
+    add_to_slopes(recording_, to.lambda, of_shown.lambda);
+    recording_.sweep(recording_.size());
+    add_slopes_of(from.q, bar.q);
+    add_slopes_of(from.v, bar.v);
+    add_slopes_of(from.a, bar.a);
+    add_slopes_of(from.lambda, bar.lambda);
+  }
+  void add_slopes_of(VecXOf<Recorded> const& from, VecX& to) {
+    for (Index i = 0; i < from.size(); ++i) to[i] += recording_.slope(from[i].number);
+  }
+
+  ShownStates<M> shown_;
+  ShownStates<M, Recorded> recorded_;
+  Recording recording_;
+};
 
 }  // namespace detail
 }  // namespace polybody

@@ -20,7 +20,7 @@ class RecordedPlaces {
   /// The model must outlive it.
   template <class M>
   [[gnu::cold]] RecordedPlaces(M const& model, System& system)
-      : found_(system), recorded_(model, with<Entries::motion>) {
+      : found_(system), recorded_(stepped_system<Recorded>(model, with<Entries::motion>)) {
     rhs_ = mu_ = VecX::Zero(system.size());
   }
 

@@ -46,6 +46,11 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
     throw InvalidInput{who, ": with another \"", p.name,
                        "\" the factory makes a model of other sizes. Let parameters change numbers, not what is "
                        "there."};
+  Coordinates const &here = model.system.step_coordinates(), &there = other.system.step_coordinates();
+  if (here && there.narrow->whole_speed != here.narrow->whole_speed)
+    throw InvalidInput{who, ": with another \"", p.name,
+                       "\" other coordinates are eliminated by AncfLinear, so that steps have other unknowns. Place "
+                       "its markers off the middle between nodes, or give these joints Constraint."};
 }
 
 /// Times at which a step of a run must end, in no order: those of drives and loads, then those of the options [s].
@@ -78,9 +83,9 @@ concept OfAlphaFamily = requires(I const integrator) {
 /// Steps of model M are differentiated.
 template <class M>
 constexpr void require_whole_steps() {
-  static_assert(!M::eliminates,
-                "Steps in joint coordinates, and with dependent coordinates eliminated, are not differentiated. Give "
-                "the joints Constraint, Penalty or Bushing.");
+  static_assert(std::is_void_v<typename M::Solution>,
+                "Steps in joint coordinates are not differentiated. Give the joints Constraint, Penalty, Bushing or, "
+                "between ANCF bodies, AncfLinear.");
 }
 
 /// The method by which a run is differentiated: its corrections go on to 1e-12. \throws InvalidInput, beginning with

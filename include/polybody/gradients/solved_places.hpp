@@ -87,10 +87,8 @@ class SolvedPlaces {
 
   /// The model must outlive it.
   template <class M>
-  [[gnu::cold]] SolvedPlaces(M const& model, System& system) : found_(system), dual_(model, with<Entries::motion>) {
-    static_assert(!M::eliminates,
-                  "Steps in joint coordinates, and with dependent coordinates eliminated, are not differentiated. Give "
-                  "the joints Constraint, Penalty or Bushing.");
+  [[gnu::cold]] SolvedPlaces(M const& model, System& system)
+      : found_(system), dual_(stepped_system<D>(model, with<Entries::motion>)) {
     rhs_ = solution_ = VecX::Zero(system.size());
   }
 

@@ -41,7 +41,7 @@ class StagesDifferentiation {
     RunOptions const& options = whole_.scenario.options;
     x_ = whole_.scenario.start;
     options.check(x_.t);
-    require_assembled(whole_.system, x_, options.assembly_tolerance);
+    require_assembled_start(whole_);
     double const largest = options.largest_step.value_or(std::numeric_limits<double>::infinity());
     double h = std::min<double>(options.step, largest);
     StepPlan const plan(x_.t, options.until, options.step, whole_.system.layout().corners);
@@ -117,15 +117,15 @@ class StagesDifferentiation {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       State const& dx = dx_[j];
       std::size_t k = 0;
-      slopes.col(Index(j)) = slope_of(j, [&](V const& v) {
+      slopes.col(Index(j)) = slope_of(j, [&](V& v) {
         add_motion(shown, dx, FourPoints::places[k++] * parameters_[j].distance(), x_);
-        return values_of_outputs(v.scenario, shown);
+        return v.outputs(shown);
       });
       bool const moves = dx.q.squaredNorm() + dx.v.squaredNorm() + dx.a.squaredNorm() > 0.0;
       if (moves || !slopes.col(Index(j)).isZero(0.0)) touched_[j] = 1;
     }
     out_.times.push_back(x_.t);
-    out_.values.push_back(values_of_outputs(whole_.scenario, x_));
+    out_.values.push_back(whole_.outputs(x_));
     out_.slopes.push_back(std::move(slopes));
     out_.time_slopes.push_back(VecX::Zero(Index(parameters_.size())));
   }

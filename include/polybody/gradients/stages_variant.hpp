@@ -7,14 +7,18 @@
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/equation_place.hpp>
 #include <polybody/gradients/requirements.hpp>
+#include <polybody/gradients/shown_states.hpp>
 
 namespace polybody::detail {
 
 /// A scenario for one choice of the parameters, with what its start and questions need. It stays where it is.
 template <class S, class I>
 struct StagesVariant {
+  using Model = decltype(S::model);
+
   S scenario;
   System system;
+  ShownStates<Model> shown;
   MethodOf<I> method;
   decltype(std::declval<MethodOf<I> const&>().template workspace<DefaultSolver>(std::declval<System&>())) work;
   PlaceEquations<> at_place;
@@ -22,11 +26,13 @@ struct StagesVariant {
   StagesVariant(S made, MethodOf<I> const& m)
       : scenario(std::move(made)),
         system(system_for<I, Entries::implicit_step>(scenario.model)),
+        shown(scenario.model),
         method(m),
         work(method.template workspace<DefaultSolver>(system)) {}
 
   /// Times at which a step must end: those of drives and loads, then those of the options [s].
   std::vector<double> corners() const { return corners_of(system, scenario.options); }
+  VecX outputs(State const& x) { return values_of_outputs(scenario, shown(x)); }
   /// The left sides of the equations at a place.
   EquationSlope equations(EquationPlace<> const& x) {
     at_place.evaluate(system, x);
@@ -39,7 +45,7 @@ struct StagesVariant {
   }
   /// The state in which the run begins, for steps of h.
   State started(double h) {
-    State x = scenario.start;
+    State x = stepped_state(*this, scenario.start);
     work.forward.project_velocities(system, x.q, x.v, x.t);
     method.start(system, x, h, work);
     return x;

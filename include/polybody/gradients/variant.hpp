@@ -8,20 +8,25 @@
 #include <polybody/gradients/alpha_step_slope.hpp>
 #include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/run_tangent.hpp>
+#include <polybody/gradients/shown_states.hpp>
 
 namespace polybody::detail {
 
 /// A scenario for one choice of the parameters, with what its steps and questions need. It stays where it is.
 template <class S, class I>
 struct Variant {
+  using Model = decltype(S::model);
+
   S scenario;
   System system;
+  ShownStates<Model> shown;
   AlphaMethod method;
   AlphaMethod::Workspace<DefaultSolver> work;
 
   Variant(S made, AlphaMethod const& m)
       : scenario(std::move(made)),
         system(system_for<I>(scenario.model)),
+        shown(scenario.model),
         method(m),
         work(method.workspace<DefaultSolver>(system)) {}
 
@@ -37,9 +42,11 @@ struct Variant {
     RunOptions const& o = scenario.options;
     return o.largest_step ? std::min<double>(o.step, *o.largest_step) : double(o.step);
   }
+  /// The first state that is stepped, before it is started.
+  State first() const { return stepped_state(*this, scenario.start); }
   /// The state in which the run begins, for steps of h.
   State started(double h) {
-    State x = scenario.start;
+    State x = first();
     start(x, h);
     return x;
   }
@@ -61,7 +68,7 @@ struct Variant {
     work.solver().keep_reorderings(0);
     return method.step(system, x, h, work);
   }
-  VecX outputs(State const& x) const { return values_of_outputs(scenario, x); }
+  VecX outputs(State const& x) { return values_of_outputs(scenario, shown(x)); }
   /// r and Φ (of velocity rows Φ̇) at x.
   EquationSlope equations(State const& x) { return equations(x, x.t); }
   /// The same at another time t [s].

@@ -40,10 +40,10 @@ class VariantsBeside {
   /// That of what f(variant, state, length) makes of each variant's own start, where the next step is h long.
   template <class F>
   State of_start(std::size_t j, double h, double dh, F const& f) {
-    State const& x = n_.itself().scenario.start;
+    State const x = n_.itself().first();
     State sum;
     for (std::size_t k = 0; k < points; ++k) {
-      State y = n_.beside(j, k).scenario.start;
+      State y = n_.beside(j, k).first();
       double const length = n_.length(j, k, x.t, h, y.t);
       take(sum, f, {n_.beside(j, k), std::move(y), length}, weight(j, k));
     }

@@ -6,13 +6,11 @@
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/articulated_body.hpp>
 #include <polybody/solvers/body_equations.hpp>
-#include <polybody/solvers/held_multipliers.hpp>
+#include <polybody/solvers/coordinate_maps.hpp>
 #include <polybody/solvers/tree_dynamics.hpp>
 #include <polybody/solvers/tree_tangent.hpp>
 #include <polybody/system/dense_reduction.hpp>
-#include <polybody/system/joint_coordinates.hpp>
 #include <polybody/system/model_entries.hpp>
-#include <polybody/system/reduction.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -20,7 +18,9 @@ namespace detail {
 
 /// `Solution` says how the equations of joint coordinates are solved; void where there are linear joints only.
 template <class Solution>
-class ReducedCoordinates {
+class ReducedCoordinates : public CoordinateMaps<Solution> {
+  using Maps = CoordinateMaps<Solution>;
+
  public:
   /// The dense system TᵀKT is solved, else the sparse one of all bodies with the tree's rows.
   static constexpr bool solves_densely = std::is_same_v<Solution, recursive::Reduced>;
@@ -32,16 +32,7 @@ class ReducedCoordinates {
   /// \throws InvalidInput, InconsistentStart as `Reduction`.
   template <class M>
   explicit ReducedCoordinates(M const& model)
-      : reduction_(model),
-        state_(reduction_.tree().state()),
-        q_(model.reference_state().q),
-        v_(VecX::Zero(model.speeds())),
-        a_(v_),
-        narrow_(VecX::Zero(reduction_.speeds())),
-        unit_(narrow_),
-        last_r_(v_),
-        whole_speeds_(model.speeds()),
-        whole_rows_(model.rows()) {
+      : Maps(model), unit_(VecX::Zero(reduction_.speeds())), whole_speeds_(model.speeds()), whole_rows_(model.rows()) {
     if constexpr (solves_by_bodies) {
       dynamics_ = TreeDynamicsOf<>(reduction_.tree().bodies);
       weight_ = model.gravity().g;
@@ -60,45 +51,25 @@ class ReducedCoordinates {
   using Self = ReducedCoordinates;
   static Self& of(void* c) { return *static_cast<Self*>(c); }
 
-  static void expand(void* c, VecX const& q, VecX const& v, VecX& whole_q, VecX& whole_v) {
-    of(c).place(q, v);
-    whole_q = of(c).q_;
-    whole_v = of(c).v_;
-  }
-  static void expand_rates(void* c, VecX const& u, bool bias, VecX& out) {
-    of(c).reduction_.expand_speeds(u, out);
-    of(c).reduction_.linear().expand_rates(out);
-    of(c).reduction_.tree().expand_rates(of(c).state_, u, bias, out);
-  }
-  static void reduce(void* c, VecX& r, VecX& out) {
-    of(c).last_r_ = r;
-    of(c).reduction_.linear().reduce_forces(r);
-    of(c).reduction_.tree().reduce_forces(of(c).state_, r, out);
-    of(c).reduction_.reduce_speeds(r, out);
-  }
-
-  static void recover_multipliers(void* c, Data<double> const& data, VecX& lambda) {
-    Self& s = of(c);
-    s.reduction_.linear().multipliers(s.last_r_, lambda);
-    if constexpr (!std::is_void_v<Solution>) {
-      s.a_ = s.last_r_;
-      s.reduction_.tree().reduce_forces(s.state_, s.a_, s.narrow_);
-      for (RowBlock<double> const& block : data.rows)
-        if (block.source == RowSource::joint && s.reduction_.carried_by(block.row) >= 0) {
-          std::size_t const i = std::size_t(s.reduction_.carried_by(block.row));
-          RowEnd<double> const& end = s.reduction_.tree().bodies[i].backwards ? block.a : block.b;
-          Vec3 const& at = data.markers[std::size_t(end.marker)].frame.r;
-          add_multipliers_that_hold(block.rows, end.map, s.state_.held[i],
-                                    difference<RealFor<Solution>>(at, s.state_.frames[i].r), lambda.data() + block.row);
-        }
-    }
-  }
-
-  static void plus(void* c, VecX const& q, VecX const& delta, VecX& out) {
-    polybody::plus(of(c).reduction_.tree(), q, delta, out);
-  }
-  static void local_rate(void* c, VecX const& delta, VecX const& v, VecX& out) {
-    polybody::local_rate(of(c).reduction_.tree(), delta, v, out);
+  static constexpr CoordinatesEntries make_table() {
+    CoordinatesEntries out;
+    Maps::template enter<Self>(out);
+    out.coordinate_rates = &coordinate_rates;
+    out.narrow = &narrow;
+    out.write = &write;
+    out.held = &held;
+    out.hold = &hold;
+    out.to_equations = &to_equations;
+    out.from_equations = &from_equations;
+    out.balance_to_equations = &balance_to_equations;
+    out.rows_to_equations = &rows_to_equations;
+    out.correction_from_equations = &correction_from_equations;
+    out.accelerations = &accelerations;
+    out.balance = &balance;
+    out.factor_balance = &factor_balance;
+    out.factor = &factor;
+    out.solve = &solve;
+    return out;
   }
 
   static void coordinate_rates(void* c, VecX const& q, VecX const& v, VecX& rate) {
@@ -125,7 +96,7 @@ class ReducedCoordinates {
     if constexpr (solves_densely) {
       for (Index j = 0; j < s.unit_.size(); ++j) {
         s.unit_[j] = 1.0;
-        expand_rates(c, s.unit_, false, s.a_);
+        s.expand_rates(s.unit_, false, s.a_);
         s.dense_.set_column(j, s.a_);
         s.unit_[j] = 0.0;
       }
@@ -245,25 +216,18 @@ class ReducedCoordinates {
     }
   }
 
-  /// q_, v_ and the tree from narrow coordinates and speeds.
-  void place(VecX const& q, VecX const& v) {
-    reduction_.expand_coordinates(q, q_);
-    reduction_.expand_speeds(v, v_);
-    reduction_.linear().expand_coordinates(q_);
-    reduction_.linear().expand_rates(v_);
-    reduction_.tree().expand_state(q, v, q_, v_, state_);
-  }
-
   void prepare_dense() {
     Sequence<Index> row_of(std::size_t(whole_rows_), -1);
     for (Index i = 0; i < reduction_.rows(); ++i) row_of[std::size_t(reduction_.rows_that_stay()[std::size_t(i)])] = i;
     dense_ = DenseReductionOf<>(whole_speeds_, reduction_.speeds(), reduction_.rows(), std::move(row_of));
   }
 
-  ReductionOf<> reduction_;
-  TreeState state_;
-  VecX q_, v_, a_;               // whole
-  VecX narrow_, unit_, last_r_;  // the last one: of the last residual that was reduced, whole
+  using Maps::a_;
+  using Maps::narrow_;
+  using Maps::reduction_;
+  using Maps::state_;
+
+  VecX unit_;
   Index whole_speeds_, whole_rows_;
   BodyEquationsOf<> equations_;
   DenseReductionOf<> dense_;
@@ -273,17 +237,10 @@ class ReducedCoordinates {
 
 template <class Solution>
 NarrowLayout ReducedCoordinates<Solution>::narrow_layout(ModelLayout const& whole) const {
-  NarrowLayout n{.coordinates = reduction_.coordinates(),
-                 .speeds = reduction_.speeds(),
-                 .rows = reduction_.rows(),
-                 .velocity_rows = reduction_.velocity_rows(),
-                 .places = reduction_.places(),
-                 .rows_that_stay = reduction_.rows_that_stay(),
-                 .solves_by_bodies = solves_by_bodies,
-                 .moves_by_newton_euler = true,
-                 .keeps_mass_constant = std::is_void_v<Solution>};
+  NarrowLayout n = Maps::narrow_layout();
+  n.solves_by_bodies = solves_by_bodies;
+  n.moves_by_newton_euler = true;
   for (TreeBody const& body : reduction_.tree().bodies) n.moves_by_newton_euler &= body.by_newton_euler;
-  for (Index i = 0; i < n.speeds; ++i) n.whole_speed.push_back(reduction_.whole_speed(i));
   for (Index const row : reduction_.linear().redundant()) {
     std::string name = whole.name_of(whole.speeds + row);
     if (n.redundant.empty() || n.redundant.back() != name) n.redundant.push_back(std::move(name));
@@ -300,28 +257,7 @@ NarrowLayout ReducedCoordinates<Solution>::narrow_layout(ModelLayout const& whol
 }
 
 template <class Solution>
-constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = {
-    .expand = &ReducedCoordinates::expand,
-    .expand_rates = &ReducedCoordinates::expand_rates,
-    .reduce = &ReducedCoordinates::reduce,
-    .recover_multipliers = &ReducedCoordinates::recover_multipliers,
-    .plus = &ReducedCoordinates::plus,
-    .local_rate = &ReducedCoordinates::local_rate,
-    .coordinate_rates = &ReducedCoordinates::coordinate_rates,
-    .narrow = &ReducedCoordinates::narrow,
-    .write = &ReducedCoordinates::write,
-    .held = &ReducedCoordinates::held,
-    .hold = &ReducedCoordinates::hold,
-    .to_equations = &ReducedCoordinates::to_equations,
-    .from_equations = &ReducedCoordinates::from_equations,
-    .balance_to_equations = &ReducedCoordinates::balance_to_equations,
-    .rows_to_equations = &ReducedCoordinates::rows_to_equations,
-    .correction_from_equations = &ReducedCoordinates::correction_from_equations,
-    .accelerations = &ReducedCoordinates::accelerations,
-    .balance = &ReducedCoordinates::balance,
-    .factor_balance = &ReducedCoordinates::factor_balance,
-    .factor = &ReducedCoordinates::factor,
-    .solve = &ReducedCoordinates::solve};
+constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = ReducedCoordinates::make_table();
 
 }  // namespace detail
 
@@ -330,30 +266,37 @@ template <class M>
 concept SolvesItsBodies =
     !std::is_same_v<typename M::Solution, recursive::ArticulatedBody> || (M::all_rigid && !M::has_states);
 
-/// The coordinates of a time step of `model`; none where its joints eliminate nothing.
+/// The coordinates of a time step of `model` in the scalar T; none where its joints eliminate nothing.
 /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
 /// other.
-template <class M>
-Coordinates coordinates_of(M const& model) {
+template <StateScalar T = double, class M>
+CoordinatesOf<T> coordinates_of(M const& model) {
   if constexpr (M::eliminates) {
     using Solution = typename M::Solution;
     static_assert(
         SolvesItsBodies<M>,
         "recursive::ArticulatedBody is for models of rigid bodies whose forces have no first-order states. Take "
         "recursive::Augmented.");
-    using Reduced = detail::ReducedCoordinates<Solution>;
-    auto self = std::make_shared<Reduced>(model);
-    auto narrow = std::make_shared<NarrowLayout>(self->narrow_layout(layout_of(model)));
-    return {std::move(self), &Reduced::table, std::move(narrow)};
+    if constexpr (std::same_as<T, double>) {
+      using Reduced = detail::ReducedCoordinates<Solution>;
+      auto self = std::make_shared<Reduced>(model);
+      auto narrow = std::make_shared<NarrowLayout>(self->narrow_layout(layout_of(model)));
+      return {std::move(self), &Reduced::table, std::move(narrow)};
+    } else {
+      using Maps = detail::CoordinateMaps<Solution, T>;
+      auto self = std::make_shared<Maps>(model);
+      auto narrow = std::make_shared<NarrowLayout>(self->narrow_layout());
+      return {std::move(self), &detail::map_entries<Maps, T>, std::move(narrow)};
+    }
   } else {
     return {};
   }
 }
 
-/// What a time step is about: the mechanism without what its policies eliminate.
-template <class M, Entries wanted = Entries::implicit_step>
-System stepped_system(M const& model, With<wanted> = {}) {
-  return System(model, with<wanted>, coordinates_of(model));
+/// What a time step is about: the mechanism without what its policies eliminate, in the scalar T.
+template <StateScalar T = double, class M, Entries wanted = Entries::implicit_step>
+BasicSystem<T> stepped_system(M const& model, With<wanted> = {}) {
+  return BasicSystem<T>(model, with<wanted>, coordinates_of<T>(model));
 }
 
 }  // namespace polybody

@@ -44,12 +44,12 @@ class BasicSystem {
   /// The whole mechanism. The model must outlive the system and must not change after.
   template <class M, Entries wanted = Entries::questions>
     requires requires { sizeof(EntriesOf<M, T, wanted>); }
-  explicit BasicSystem(M const& model, With<wanted> = {}, Coordinates coordinates = {})
+  explicit BasicSystem(M const& model, With<wanted> = {}, CoordinatesOf<T> coordinates = {})
       : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), EntriesOf<M, T, wanted>::make_data(model),
                     std::move(coordinates)) {}
   /// From entries of any origin, which are called with `model`.
   [[gnu::cold]] BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
-                            Coordinates coordinates);
+                            CoordinatesOf<T> coordinates);
   BasicSystem(BasicSystem&&) noexcept;  ///< what refers to the one that is moved, such as a workspace, does not follow
   ~BasicSystem();
 
@@ -57,7 +57,7 @@ class BasicSystem {
   ModelLayout const& layout() const { return layout_; }
   /// Functions between the unknowns of a time step and those of the whole model; they convert to false where there are
   /// none.
-  Coordinates const& step_coordinates() const { return coordinates_; }
+  CoordinatesOf<T> const& step_coordinates() const { return coordinates_; }
   /// Scratch of the last evaluation: markers, row blocks, wrenches of force elements.
   Data<T> const& data() const { return data_; }
   /// The model's entries, and what they take for the model.
@@ -172,8 +172,7 @@ class BasicSystem {
   void write_tangent(TangentCoefficients c, SecondOrder second, Vector const& given, BlockSink& sink);
   Vector const& whole_multipliers(Vector const& lambda) {
     expand_rows(lambda, whole_lambda_);
-    if constexpr (std::same_as<T, double>)
-      coordinates_.entries->recover_multipliers(coordinates_.self.get(), data_, whole_lambda_);
+    coordinates_.entries->recover_multipliers(coordinates_.self.get(), data_, whole_lambda_);
     return whole_lambda_;
   }
   void clear_loads() {
@@ -192,7 +191,7 @@ class BasicSystem {
   void const* model_;
   ModelEntries<T> entries_;
   ModelLayout layout_;
-  Coordinates coordinates_;
+  CoordinatesOf<T> coordinates_;
   std::unique_ptr<Workers> workers_;
   Data<T> data_;
   Vector q_, v_;  // whole

@@ -49,63 +49,78 @@ struct StepPlace {
   VecX const &a, &lambda;  ///< v̇ (nv) and λ (rows), narrow
 };
 
-/// The functions that coordinates of a step's own offer; `c` is the elimination that made them.
-struct CoordinatesEntries {
+/// The functions between narrow and whole vectors of the scalar T; `c` is the elimination that made them.
+template <StateScalar T>
+struct CoordinateMapEntries {
+  using Vector = VecXOf<T>;  ///< of coordinates, speeds or rows
+
   /// Whole q, v from narrow ones; this place is kept for what follows.
-  void (*expand)(void* c, VecX const& q, VecX const& v, VecX& whole_q, VecX& whole_v);
+  void (*expand)(void* c, Vector const& q, Vector const& v, Vector& whole_q, Vector& whole_v) = nullptr;
   /// T u, or T u + b.
-  void (*expand_rates)(void* c, VecX const& u, bool bias, VecX& out);
+  void (*expand_rates)(void* c, Vector const& u, bool bias, Vector& out) = nullptr;
   /// out = Tᵀ r; r is used up, and kept as it was for the multipliers.
-  void (*reduce)(void* c, VecX& r, VecX& out);
+  void (*reduce)(void* c, Vector& r, Vector& out) = nullptr;
   /// Adds to estimates of the multipliers of eliminated joints what they lack in the last r that was reduced, M a − f +
   /// Gᵀλ with these estimates.
-  void (*recover_multipliers)(void* c, Data<double> const& data, VecX& lambda);
+  void (*recover_multipliers)(void* c, Data<T> const& data, Vector& lambda) = nullptr;
   /// q ⊞ δ and its rate for joint coordinates; other bodies see to their own.
-  void (*plus)(void* c, VecX const& q, VecX const& delta, VecX& out);
+  void (*plus)(void* c, Vector const& q, Vector const& delta, Vector& out) = nullptr;
   /// δ˙ while q ⊞ δ moves with the narrow speeds v, for joint coordinates.
-  void (*local_rate)(void* c, VecX const& delta, VecX const& v, VecX& out);
+  void (*local_rate)(void* c, Vector const& delta, Vector const& v, Vector& out) = nullptr;
+};
+
+/// The functions that coordinates of a step's own offer in doubles.
+struct CoordinatesEntries : CoordinateMapEntries<double> {
   /// q˙ of joint coordinates.
-  void (*coordinate_rates)(void* c, VecX const& q, VecX const& v, VecX& rate);
+  void (*coordinate_rates)(void* c, VecX const& q, VecX const& v, VecX& rate) = nullptr;
   /// The narrow state next to a whole one: exact where this one keeps to the eliminated joints.
-  void (*narrow)(void* c, State const& x, State& out);
+  void (*narrow)(void* c, State const& x, State& out) = nullptr;
 
   /// The whole tangent that `write` gives, in the unknowns of the equations.
-  void (*write)(void* c, BlockWriter const& write, BlockSink& sink);
+  void (*write)(void* c, BlockWriter const& write, BlockSink& sink) = nullptr;
   /// Makes a place to keep; `hold` copies the state of the last `expand` into it.
-  HeldPlace (*held)(void* c);
-  void (*hold)(void* c, void* held);  ///< see `held`
+  HeldPlace (*held)(void* c) = nullptr;
+  void (*hold)(void* c, void* held) = nullptr;  ///< see `held`
   /// A right-hand side of a time step as one of the equations, and a solution of these as one of the step's unknowns.
-  void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out);
+  void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out) = nullptr;
   /// Unknowns of the step from a solution of the equations, at the place that is held.
-  void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out);
+  void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out) = nullptr;
   /// Where there are `carrying_rows`: −r of the whole model into the equations; the rows of a step into them; a
   /// solution as one of the step's unknowns at the place of the last `expand`, and behind these the multipliers of the
   /// carrying rows.
-  void (*balance_to_equations)(void* c, VecX const& r, VecX& out);
+  void (*balance_to_equations)(void* c, VecX const& r, VecX& out) = nullptr;
   /// Adds the rows of a step to a right-hand side of the equations.
-  void (*rows_to_equations)(void* c, double const* rows, VecX& out);
+  void (*rows_to_equations)(void* c, double const* rows, VecX& out) = nullptr;
   /// A correction of a step, and behind it the multipliers of the carrying rows, from a solution of the equations.
-  void (*correction_from_equations)(void* c, VecX const& solution, VecX& out);
+  void (*correction_from_equations)(void* c, VecX const& solution, VecX& out) = nullptr;
   /// For trees that are their own solver: u̇ where no rows stay, under weight alone or with `unbalance` (of the
   /// whole model); −1, or the speed whose freedom has no inertia.
-  Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance, VecX& out);
+  Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance,
+                         VecX& out) = nullptr;
   /// For them under weight alone: r = Tᵀ(M(T u̇ + b) − f) at a step's place; and the factors of its exact tangent there,
   /// −1 or the speed without a pivot.
-  void (*balance)(void* c, StepPlace const& x, double load_factor, VecX& r);
+  void (*balance)(void* c, StepPlace const& x, double load_factor, VecX& r) = nullptr;
   /// The factors of this balance's tangent; `k` has its coefficients.
-  Index (*factor_balance)(void* c, void* held, StepPlace const& x, double load_factor, TangentCoefficients const& k);
+  Index (*factor_balance)(void* c, void* held, StepPlace const& x, double load_factor,
+                          TangentCoefficients const& k) = nullptr;
   /// Factors the whole tangent that `write` gives: −1, or the speed without a pivot.
-  Index (*factor)(void* c, void* held, BlockWriter const& write);
+  Index (*factor)(void* c, void* held, BlockWriter const& write) = nullptr;
   /// Solves with the last factors, of `factor` or `factor_balance`; in the unknowns of a step.
-  void (*solve)(void* held, VecX const& rhs, VecX& x);
+  void (*solve)(void* held, VecX const& rhs, VecX& x) = nullptr;
 };
 
-/// Coordinates with their functions; none where a policy eliminates nothing.
-struct Coordinates {
+/// Coordinates of the scalar T with their functions; none where a policy eliminates nothing.
+template <StateScalar T>
+struct CoordinatesOf {
+  /// The functions: of doubles more than the maps.
+  using Table = std::conditional_t<std::same_as<T, double>, CoordinatesEntries, CoordinateMapEntries<T>>;
+
   std::shared_ptr<void> self;                                    ///< the elimination, which `entries` take as `c`
-  CoordinatesEntries const* entries = nullptr;                   ///< null: nothing is eliminated
+  Table const* entries = nullptr;                                ///< null: nothing is eliminated
   std::shared_ptr<NarrowLayout const> narrow;                    ///< what is known of the narrow vectors
   explicit operator bool() const { return entries != nullptr; }  ///< whether a policy eliminates anything
 };
+
+using Coordinates = CoordinatesOf<double>;  ///< in doubles
 
 }  // namespace polybody

@@ -14,18 +14,19 @@
 namespace polybody {
 
 /// Dependent coordinates as linear functions of independent ones, q_d = c + Σ f q_i, from the rows of linear joints.
-template <class T = double>  // compiled where it is used
+/// \tparam T scalar of the vectors; factors are doubles
+template <class T = double>
 class LinearEliminationOf {
  public:
   /// An independent coordinate and its factor.
   struct Term {
-    Index q, v;  ///< its places among coordinates and speeds
-    T factor;    ///< f, of the independent one
+    Index q, v;     ///< its places among coordinates and speeds
+    double factor;  ///< f, of the independent one
   };
   /// A dependent coordinate: its constant and its terms.
   struct Dependent {
     Index q, v;            ///< its places among coordinates and speeds
-    T constant;            ///< c, in the unit of the coordinate
+    double constant;       ///< c, in the unit of the coordinate
     Sequence<Term> terms;  ///< Σ f q_i
   };
 
@@ -47,7 +48,7 @@ class LinearEliminationOf {
   /// Dependent coordinates, and speeds or accelerations, from the independent ones.
   void expand_coordinates(VecXOf<T>& q) const {
     for (Dependent const& d : dependents_) {
-      double sum = d.constant;
+      T sum(d.constant);
       for (Term const& t : d.terms) sum += t.factor * q[t.q];
       q[d.q] = sum;
     }
@@ -55,7 +56,7 @@ class LinearEliminationOf {
   /// The same for speeds or accelerations: v_d = Σ f v_i.
   void expand_rates(VecXOf<T>& v) const {
     for (Dependent const& d : dependents_) {
-      double sum = 0.0;
+      T sum(0.0);
       for (Term const& t : d.terms) sum += t.factor * v[t.v];
       v[d.v] = sum;
     }
@@ -67,10 +68,10 @@ class LinearEliminationOf {
   }
   /// λ of the rows, for r = M a − f + … without them. Zero for rows that repeat others.
   void multipliers(VecXOf<T> const& r, VecXOf<T>& lambda) const {
-    for (Index const i : redundant_) lambda[i] = 0.0;
+    for (Index const i : redundant_) lambda[i] = T(0.0);
     for (std::size_t k = 0; k < pivots_.size(); ++k) {
       Pivot const& p = pivots_[k];
-      double sum = -r[p.v];
+      T sum = -r[p.v];
       for (auto const& [j, entry] : p.above) sum -= entry * lambda[pivots_[j].row];
       lambda[p.row] = sum / *p.entries.find(p.v);
     }
@@ -81,12 +82,12 @@ class LinearEliminationOf {
  private:
   /// A row after elimination, and how it came about.
   struct Pivot {
-    Index row;            ///< of the model
-    Index v = -1;         ///< its dependent
-    IndexMap<T> entries;  ///< by speeds
-    T constant;
-    Sequence<std::pair<std::size_t, T>> multiples = {};  ///< m_kj
-    Sequence<std::pair<std::size_t, T>> above = {};      ///< row'_j,dk of earlier rows
+    Index row;                 ///< of the model
+    Index v = -1;              ///< its dependent
+    IndexMap<double> entries;  ///< by speeds
+    double constant;
+    Sequence<std::pair<std::size_t, double>> multiples = {};  ///< m_kj
+    Sequence<std::pair<std::size_t, double>> above = {};      ///< row'_j,dk of earlier rows
   };
 
   void take(LinearRows const& joint, Index i) {
@@ -115,7 +116,7 @@ class LinearEliminationOf {
       return;
     }
     for (std::size_t j = 0; j < pivots_.size(); ++j)
-      if (T const* const found = pivots_[j].entries.find(p.v)) p.above.emplace_back(j, *found);
+      if (double const* const found = pivots_[j].entries.find(p.v)) p.above.emplace_back(j, *found);
     pivot_of_[p.v] = pivots_.size();
     pivots_.push_back(std::move(p));
   }
@@ -143,7 +144,7 @@ class LinearEliminationOf {
   void solve_for(std::size_t k) {
     Pivot const& p = pivots_[k];
     double const pivot = *p.entries.find(p.v);
-    IndexMap<T> factors;
+    IndexMap<double> factors;
     double constant = p.constant / pivot;
     for (auto const& [v, entry] : p.entries) {
       if (v == p.v) continue;

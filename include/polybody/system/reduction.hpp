@@ -16,7 +16,8 @@
 namespace polybody {
 
 /// Which coordinates leave the equations of a step: those of recursive joints, by a tree, and those of linear joints.
-template <class T = double>  // compiled where it is used
+/// \tparam T scalar of the vectors
+template <class T = double>
 class ReductionOf {
  public:
   /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
@@ -53,7 +54,7 @@ class ReductionOf {
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
   /// What is the same in both, narrow to whole and back.
-  void expand_coordinates(VecX const& narrow, VecX& whole) const {
+  void expand_coordinates(VecXOf<T> const& narrow, VecXOf<T>& whole) const {
     for (auto const& [n, w] : same_q_) whole[w] = narrow[n];
   }
   /// Coordinates that are the same in both, whole to narrow.
@@ -61,11 +62,11 @@ class ReductionOf {
     for (auto const& [n, w] : same_q_) narrow[n] = whole[w];
   }
   /// Speeds that are the same in both, narrow to whole.
-  void expand_speeds(VecX const& narrow, VecX& whole) const {
+  void expand_speeds(VecXOf<T> const& narrow, VecXOf<T>& whole) const {
     for (auto const& [n, w] : same_v_) whole[w] = narrow[n];
   }
   /// Speeds that are the same in both, whole to narrow.
-  void reduce_speeds(VecX const& whole, VecX& narrow) const {
+  void reduce_speeds(VecXOf<T> const& whole, VecXOf<T>& narrow) const {
     for (auto const& [n, w] : same_v_) narrow[n] = whole[w];
   }
   /// `whole` multipliers from narrow ones: zero in rows that a policy eliminates.
@@ -170,7 +171,7 @@ class ReductionOf {
     constexpr int n = B::element_columns;
     double q[7] = {};
     body.reference(std::span<double>(q, std::size_t(body.coordinates())));
-    Mat<T, n, n> m;
+    Mat<double, n, n> m;
     body.mass(0, std::span<double const>(q, std::size_t(body.coordinates())), m);
     out.mass = m(0, 0);
     constexpr int turns = n / 2;  // 3 of 6; 1 of 3

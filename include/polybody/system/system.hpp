@@ -25,9 +25,9 @@ inline Index multipliers_of(System const& s) {
 }
 /// The whole state of a stepped one, with what eliminated joints hold as multipliers: those of the step where it keeps
 /// all of them, else worked out. `r` is scratch.
-template <class = void>
-void expand(System& s, State const& stepped, State& x, VecX& r) {
-  Coordinates const& c = s.step_coordinates();
+template <StateScalar T>
+void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<T>& r) {
+  CoordinatesOf<T> const& c = s.step_coordinates();
   if (!c) {
     x = stepped;
     return;

@@ -9,7 +9,7 @@ namespace polybody {
 
 template <StateScalar T>
 BasicSystem<T>::BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
-                            Coordinates coordinates)
+                            CoordinatesOf<T> coordinates)
     : model_(model),
       entries_(entries),
       layout_(std::move(layout)),
@@ -38,7 +38,7 @@ void BasicSystem<T>::evaluate(Vector const& q, Vector const& v, double t) {
   t_ = t;
   data_.linear_rows = !coordinates_;
   if (coordinates_) {
-    if constexpr (std::same_as<T, double>) coordinates_.entries->expand(coordinates_.self.get(), q, v, q_, v_);
+    coordinates_.entries->expand(coordinates_.self.get(), q, v, q_, v_);
   } else {
     q_ = q;
     v_ = v;
@@ -67,10 +67,8 @@ VecXOf<T> const& balance_of_bodies(BasicSystem<T>& s, VecXOf<T> const& a, VecXOf
 template <StateScalar T>
 void BasicSystem<T>::residual(Vector const& a, Vector const& lambda, Vector& r) {
   if (!coordinates_) return whole_residual(a, lambda, r);
-  if constexpr (std::same_as<T, double>) {
-    balance_of_bodies(*this, a, lambda);
-    coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, r);
-  }
+  balance_of_bodies(*this, a, lambda);
+  coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, r);
 }
 
 template <StateScalar T>
@@ -93,49 +91,44 @@ void BasicSystem<T>::acceleration_bias(Vector& gamma) {
       for (int i = 0; i < block.rows; ++i) whole[block.row + i] = T(0.0);
   entries_.measure_gamma(model_, at(), data_, whole);
   add_biases(data_, whole);
-  if constexpr (std::same_as<T, double>)
-    if (coordinates_) {  // γ + G b
-      coordinates_.entries->expand_rates(coordinates_.self.get(), still_, true, whole_a_);
-      whole_lambda_ = whole;
-      polybody::rows_times(data_, whole_a_, whole);
-      whole += whole_lambda_;
-    }
+  if (coordinates_) {  // γ + G b
+    coordinates_.entries->expand_rates(coordinates_.self.get(), still_, true, whole_a_);
+    whole_lambda_ = whole;
+    polybody::rows_times(data_, whole_a_, whole);
+    for (Index i = 0; i < whole.size(); ++i) whole[i] += whole_lambda_[i];
+  }
   take_rows(gamma);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::rows_times(Vector const& b, Vector& out) {
-  if constexpr (std::same_as<T, double>)
-    if (coordinates_) {
-      coordinates_.entries->expand_rates(coordinates_.self.get(), b, false, whole_a_);
-      polybody::rows_times(data_, whole_a_, whole_rows_);
-      return take_rows(out);
-    }
+  if (coordinates_) {
+    coordinates_.entries->expand_rates(coordinates_.self.get(), b, false, whole_a_);
+    polybody::rows_times(data_, whole_a_, whole_rows_);
+    return take_rows(out);
+  }
   polybody::rows_times(data_, b, out);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::rows_transposed_times(Vector const& b, Vector& out) {
-  if constexpr (std::same_as<T, double>)
-    if (coordinates_) {
-      expand_rows(b, whole_lambda_);
-      polybody::rows_transposed_times(data_, whole_lambda_, whole_r_);
-      return coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, out);
-    }
+  if (coordinates_) {
+    expand_rows(b, whole_lambda_);
+    polybody::rows_transposed_times(data_, whole_lambda_, whole_r_);
+    return coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, out);
+  }
   polybody::rows_transposed_times(data_, b, out);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::plus(Vector const& q, Vector const& delta, Vector& out) const {
-  if constexpr (std::same_as<T, double>)
-    if (coordinates_) coordinates_.entries->plus(coordinates_.self.get(), q, delta, out);
+  if (coordinates_) coordinates_.entries->plus(coordinates_.self.get(), q, delta, out);
   entries_.plus(model_, narrow_places(), q, delta, out);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::local_rate(Vector const& delta, Vector const& v, Vector& out) const {
-  if constexpr (std::same_as<T, double>)
-    if (coordinates_) coordinates_.entries->local_rate(coordinates_.self.get(), delta, v, out);
+  if (coordinates_) coordinates_.entries->local_rate(coordinates_.self.get(), delta, v, out);
   entries_.local_rate(model_, narrow_places(), delta, v, out);
 }
 

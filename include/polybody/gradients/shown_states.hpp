@@ -1,0 +1,66 @@
+#pragma once
+/// \file
+/// A run steps narrow states where policies eliminate unknowns, and its user sees whole ones: between the two, in
+/// doubles and recorded numbers.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/integrators/forward_dynamics.hpp>
+#include <polybody/run/initial_conditions.hpp>
+#include <polybody/solvers/reduced_coordinates.hpp>
+
+namespace polybody::detail {
+
+/// Whole states of stepped ones, with the multipliers of eliminated joints. \tparam M a model; where its joints
+/// eliminate nothing, both are the same
+template <class M, StateScalar T = double>
+class ShownStates {
+ public:
+  explicit ShownStates(M const&) {}
+  StateOf<T> const& operator()(StateOf<T> const& x) const { return x; }
+};
+template <class M, StateScalar T>
+  requires M::eliminates
+class ShownStates<M, T> {
+ public:
+  [[gnu::cold]] explicit ShownStates(M const& model) : system_(stepped_system<T>(model, with<Entries::motion>)) {}
+  /// It stays until the next one is shown.
+  StateOf<T> const& operator()(StateOf<T> const& x) {
+    expand(system_, x, shown_, scratch_);
+    return shown_;
+  }
+
+ private:
+  BasicSystem<T> system_;
+  StateOf<T> shown_;
+  VecXOf<T> scratch_;
+};
+
+/// The state that a variant steps, next to a whole one, whose speeds are brought onto the joints before these are left
+/// out.
+template <class V>
+[[gnu::cold]] State stepped_state(V const& v, State x) {
+  if constexpr (V::Model::eliminates) {
+    System whole(v.scenario.model, with<Entries::motion>);
+    ForwardDynamics<> forward(whole);
+    forward.project_velocities(whole, x.q, x.v, x.t);
+    return reduce(v.system, x);
+  } else {
+    return x;
+  }
+}
+
+/// \throws InconsistentStart where a joint is open at the start of a variant's scenario, eliminated or not.
+template <class V>
+[[gnu::cold]] void require_assembled_start(V& v) {
+  State const& x = v.scenario.start;
+  double const tolerance = v.scenario.options.assembly_tolerance;
+  if constexpr (V::Model::eliminates) {
+    System whole(v.scenario.model, with<Entries::motion>);
+    require_assembled(whole, x, tolerance);
+  } else {
+    require_assembled(v.system, x, tolerance);
+  }
+}
+
+}  // namespace polybody::detail

@@ -1,0 +1,143 @@
+// Derivatives of runs whose joints eliminate coordinates.
+#include <polybody/gradients/gradient.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/gradients/sensitivities.hpp>
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/hht_alpha.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+
+#include "support/differences_of_runs.hpp"
+#include "support/hung_cables.hpp"
+#include "support/rated_links.hpp"
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace eliminated_test {
+
+/// Both slopes, times the size of each parameter, of outputs that are of the size of one.
+void expect_same_slopes(MatX const& slopes, MatX const& expected, double within) {
+  ASSERT_EQ(slopes.rows(), expected.rows());
+  for (Index j = 0; j < slopes.cols(); ++j) {
+    double const size = parameters_of_hung_cables[std::size_t(j)].size();
+    for (Index i = 0; i < slopes.rows(); ++i)
+      EXPECT_NEAR(size * slopes(i, j), size * expected(i, j), within * (1.0 + std::abs(size * expected(i, j))))
+          << i << ' ' << parameters_of_hung_cables[std::size_t(j)].name;
+  }
+}
+
+template <bool held>
+void expect_slopes_of_whole_runs() {
+  GeneralizedAlpha const integrator{.rho_inf = 0.7};
+  auto const make = hung_cables<AncfLinear, held>();
+  Sensitivities const s = sensitivities(make, parameters_of_hung_cables, integrator);
+  EXPECT_LT(s.left, 1e-10);
+  expect_same_slopes(s.slopes.back(), by_differences(make, parameters_of_hung_cables, integrator), 1e-8);
+  for (Index j = 0; j < s.slopes.back().cols(); ++j)  // none of them is a zero that equals anything
+    EXPECT_GT(parameters_of_hung_cables[std::size_t(j)].size() * s.slopes.back().col(j).norm(), 1e-4);
+}
+TEST(Eliminated, SlopesAreThoseOfWholeRuns) {
+  expect_slopes_of_whole_runs<false>();
+  expect_slopes_of_whole_runs<true>();
+}
+
+/// Joints that are linear in coordinates move by the same steps, whether rows hold them or they are eliminated.
+template <bool held>
+void expect_slopes_on_rows() {
+  std::vector<Parameter> const& parameters = parameters_of_hung_cables;
+  Sensitivities const free = sensitivities(hung_cables<AncfLinear, held>(), parameters, HhtAlpha{}),
+                      on_rows = sensitivities(hung_cables<Constraint, held>(), parameters, HhtAlpha{});
+  for (std::size_t const k : {std::size_t(0), free.times.size() / 2, free.times.size() - 1}) {
+    expect_same_slopes(free.slopes[k].topRows(4), on_rows.slopes[k].topRows(4), 1e-9);
+    // the rounding of rows over βh² is in the reaction
+    expect_same_slopes(free.slopes[k].bottomRows(1), on_rows.slopes[k].bottomRows(1), 1e-7);
+  }
+}
+TEST(Eliminated, SlopesAreThoseOfTheSameJointsOnRows) {
+  expect_slopes_on_rows<false>();
+  expect_slopes_on_rows<true>();
+}
+
+TEST(Eliminated, SlopesOfOneResultComeBackwardsToo) {
+  GeneralizedAlpha const integrator{.rho_inf = 0.7};
+  expect_adjoint_of_hung_cables(hung_cables<AncfLinear, false>(), integrator, 1e-11);
+  expect_adjoint_of_hung_cables(hung_cables<AncfLinear, true>(), integrator, 1e-11);
+  expect_direct_slopes(rated_links<AncfBeam<ElasticLine>, AncfLinear>(0.0), HhtAlpha{}, 1e-11);
+}
+
+TEST(Eliminated, BodiesThatParametersTouchAreFoundAmongWhatIsLeft) {
+  auto const make = [](std::span<double const> p) {
+    return hung_cables<AncfLinear, true>()(std::array{p[0], 1000.0, p[1], p[2], 2.0});
+  };
+  auto const parameters = [](bool with_touches) {
+    std::vector<Parameter> all{{"young [Pa]", 1e7, 0.0, {"first", "second"}},
+                               {"place [m]", 0.31, 0.0, {"pin", "rod", "second"}},
+                               {"gravity [m/s²]", 9.81, 0.0, {"first", "second"}}};
+    if (!with_touches)
+      for (Parameter& p : all) p.touches.clear();
+    return all;
+  };
+  Gradient const with_touches = gradient(make, parameters(true), GeneralizedAlpha{}),
+                 without = gradient(make, parameters(false), GeneralizedAlpha{});
+  for (Index j = 0; j < 3; ++j) {
+    double const size = parameters(true)[std::size_t(j)].size();
+    EXPECT_NEAR(size * with_touches.slopes[j], size * without.slopes[j], 1e-12) << j;
+    EXPECT_GT(std::abs(size * without.slopes[j]), 1e-5) << j;
+  }
+  auto const said = [&](std::vector<std::string> touches) {
+    auto few = parameters(true);
+    few[2].touches = std::move(touches);
+    return refusal([&] { gradient(make, few, GeneralizedAlpha{}); });
+  };
+  EXPECT_TRUE(has(said({"first"}), "\"gravity [m/s²]\" changes the equations of body \"second\""));
+  EXPECT_TRUE(has(said({"third"}), "touches \"third\", but the model has no body, joint or force of that name"));
+}
+
+TEST(Eliminated, EventsSeeAndChangeWholeStates) {
+  auto const make = [](std::span<double const> p) {
+    auto scenario = hung_cables<AncfLinear, false>()(std::array{1e7, p[0], p[1], p[2], 2.0});
+    Index const z = scenario.start.q.size() - 4;  // of the tip, before its slope
+    Event const floor{.name = "floor",
+                      .value = [z, height = p[3]](State const& x) { return x.q[z] - height; },
+                      .tolerance = 1e-15,
+                      .then = [](State& x) { x.v *= -0.5; }};
+    scenario.options.events = {floor};
+    return scenario;
+  };
+  std::vector<Parameter> const parameters{
+      {"density [kg/m³]", 1000.0}, {"place [m]", 0.31}, {"gravity [m/s²]", 9.81}, {"floor [m]", -0.1}};
+  GeneralizedAlpha const integrator{.rho_inf = 0.7};
+  Sensitivities const s = sensitivities(make, parameters, integrator);
+  ASSERT_EQ(s.run.events.size(), 1u);
+  MatX const expected = by_differences(make, parameters, integrator);
+  for (Index j = 0; j < expected.cols(); ++j) {
+    double const size = parameters[std::size_t(j)].size();
+    EXPECT_LT(size * (s.slopes.back().col(j) - expected.col(j)).norm(), 1e-7) << parameters[std::size_t(j)].name;
+    EXPECT_GT(size * expected.col(j).norm(), 1e-3) << parameters[std::size_t(j)].name;
+  }
+}
+
+TEST(Eliminated, OtherUnknownsUnderAParameterAreRefused) {
+  // midway between two nodes both have the same part in a row, and a little off the nearer one is eliminated
+  auto const make = [](std::span<double const> p) {
+    using Pin = Joint<Spherical, AncfLinear>;
+    using M = Model<Bodies<AncfCable<>>, Joints<Pin>>;
+    M model{Gravity{0, 0, -9.81}};
+    auto const cable = model.add(AncfCable<>::from(
+        {.length = 0.5, .section = Circle{.radius = 0.01}, .material = Material{.density = 1000.0, .young = 1e7}}, 1));
+    model.connect(Pin{}, model.ground().at({p[0], 0, 0}), cable.at(p[0]), "pin");
+    State const start = model.reference_state();
+    std::vector<Output<M>> outputs{{"x [m]", [](M const&, State const& x) { return x.q[0]; }}};
+    return Scenario<M>{std::move(model), start, {.until = 0.01, .step = 1e-3}, std::move(outputs)};
+  };
+  auto const said = [&](double place) {
+    return refusal([&] { sensitivities(make, {{"place [m]", place}}, GeneralizedAlpha{}); });
+  };
+  EXPECT_TRUE(has(said(0.25), "with another \"place [m]\" other coordinates are eliminated"));
+  EXPECT_EQ(sensitivities(make, {{"place [m]", 0.2}}, GeneralizedAlpha{}).times.size(), 11u);
+}
+
+}  // namespace eliminated_test

@@ -1,0 +1,85 @@
+#pragma once
+// Two cables, the second hung on a place of the first that is no node: a factory of runs that are differentiated.
+
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/gradients/gradient.hpp>
+#include <polybody/gradients/sensitivities.hpp>
+#include <polybody/joints/distance.hpp>
+#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/spherical.hpp>
+#include <polybody/run/observe.hpp>
+
+namespace polybody {
+
+/// Two cables that fall about pins of a policy, and a rod from the ground to the end of the second one where it is
+/// `held`: a joint whose row stays. Parameters: Young's modulus, density, the place of the pin on the first cable,
+/// gravity, spin of the start. The run is rated by its end, and by the way of the tip to there. Steps are of h [s].
+template <class Policy, bool held>
+auto hung_cables(double h = 2e-3) {
+  return [h](std::span<double const> p) {
+    using Cable = AncfCable<>;
+    using Pin = Joint<Spherical, Policy>;
+    using Rod = Joint<Distance, Constraint>;
+    using M = Model<Bodies<Cable>, std::conditional_t<held, Joints<Pin, Rod>, Joints<Pin>>>;
+    M model{Gravity{0, 1.0, -p[3]}};
+    Bar bar{.length = 0.5,
+            .section = Rectangle{.height = 0.02, .width = 0.03},
+            .material = Material{.density = p[1], .young = p[0], .poisson = 0.3}};
+    auto const first = model.add(Cable::from(bar, 2), "first");
+    bar.placement = Placement::at({p[2], 0, 0});
+    auto const second = model.add(Cable::from(bar, 2), "second");
+    model.connect(Pin{}, model.ground().at({0, 0, 0}), first.at(0.0), "support");
+    auto const pin = model.connect(Pin{}, first.at(p[2]), second.at(0.0), "pin");
+    auto const tip = second.at(0.5);
+    if constexpr (held) model.connect(Rod{{.length = 0.7}, {}}, model.ground().at({p[2] + 0.5, 0.7, 0}), tip, "rod");
+    State start = model.reference_state();
+    System const system(model, with<Entries::rigid_speeds>);
+    system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
+    auto const end = [tip](auto const& m, auto const& x) {
+      auto const r = position(m, x, tip);
+      auto sum = r[0] + 2.0 * r[1] - 0.5 * r[2];
+      for (Index i = 0; i < x.v.size(); ++i) sum += 0.002 * double(i + 1) * x.v[i];
+      return sum;
+    };
+    auto const way = [tip, mass = 1e-3 * p[1]](auto const& m, auto const& x) {
+      auto const r = position(m, x, tip);
+      return mass * (r[0] * r[0] + r[2]);
+    };
+    std::vector<Output<M>> outputs{
+        {"end [1]", end},
+        {"way [1]", way},
+        {"elbow z [m]",
+         [first, place = p[2]](M const& m, State const& x) { return position(m, x, first.at(place))[2]; }},
+        {"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }},
+        {"reaction [10 N]", [pin](M const& m, State const& x) { return 0.1 * reaction(m, x, pin).f[2]; }}};
+    return rated(Scenario<M>{std::move(model), start, {.until = 0.1, .step = h}, std::move(outputs)}, end, way);
+  };
+}
+/// What `hung_cables` are made of.
+inline std::vector<Parameter> const parameters_of_hung_cables{{"young [Pa]", 1e7},
+                                                              {"density [kg/m³]", 1000.0},
+                                                              {"place [m]", 0.31},
+                                                              {"gravity [m/s²]", 9.81},
+                                                              {"spin [rad/s]", 2.0}};
+
+/// The slopes of the rating backwards beside those of its parts forwards.
+template <class Make, class I>
+void expect_adjoint_of_hung_cables(Make const& make, I const& integrator, double within) {
+  std::vector<Parameter> const& parameters = parameters_of_hung_cables;
+  Sensitivities const direct = sensitivities(make, parameters, integrator);
+  Gradient const g = gradient(make, parameters, integrator);
+  VecX expected = direct.slopes.back().row(0).transpose();
+  for (std::size_t k = 1; k < direct.times.size(); ++k)
+    expected += 0.5 * (direct.times[k] - direct.times[k - 1]) *
+                (direct.slopes[k].row(1) + direct.slopes[k - 1].row(1)).transpose();
+  for (Index j = 0; j < expected.size(); ++j) {
+    double const size = parameters[std::size_t(j)].size();
+    EXPECT_NEAR(size * g.slopes[j], size * expected[j], within * (1.0 + std::abs(size * expected[j])))
+        << parameters[std::size_t(j)].name;
+  }
+}
+
+}  // namespace polybody
