@@ -9,51 +9,32 @@
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 
-#include "support/differences_of_runs.hpp"
 #include "support/hung_cables.hpp"
 #include "support/rated_links.hpp"
 #include "support/refusal.hpp"
+#include "support/slopes_of_runs.hpp"
 
 using namespace polybody;
 
 namespace eliminated_test {
 
-/// Both slopes, times the size of each parameter, of outputs that are of the size of one.
-void expect_same_slopes(MatX const& slopes, MatX const& expected, double within) {
-  ASSERT_EQ(slopes.rows(), expected.rows());
-  for (Index j = 0; j < slopes.cols(); ++j) {
-    double const size = parameters_of_hung_cables[std::size_t(j)].size();
-    for (Index i = 0; i < slopes.rows(); ++i)
-      EXPECT_NEAR(size * slopes(i, j), size * expected(i, j), within * (1.0 + std::abs(size * expected(i, j))))
-          << i << ' ' << parameters_of_hung_cables[std::size_t(j)].name;
-  }
-}
+std::vector<Parameter> const& parameters = parameters_of_hung_cables;
 
-template <bool held>
-void expect_slopes_of_whole_runs() {
-  GeneralizedAlpha const integrator{.rho_inf = 0.7};
-  auto const make = hung_cables<AncfLinear, held>();
-  Sensitivities const s = sensitivities(make, parameters_of_hung_cables, integrator);
-  EXPECT_LT(s.left, 1e-10);
-  expect_same_slopes(s.slopes.back(), by_differences(make, parameters_of_hung_cables, integrator), 1e-8);
-  for (Index j = 0; j < s.slopes.back().cols(); ++j)  // none of them is a zero that equals anything
-    EXPECT_GT(parameters_of_hung_cables[std::size_t(j)].size() * s.slopes.back().col(j).norm(), 1e-4);
-}
 TEST(Eliminated, SlopesAreThoseOfWholeRuns) {
-  expect_slopes_of_whole_runs<false>();
-  expect_slopes_of_whole_runs<true>();
+  GeneralizedAlpha const integrator{.rho_inf = 0.7};
+  expect_slopes_of_runs(hung_cables<AncfLinear, false>(), parameters, integrator, 1e-8);
+  expect_slopes_of_runs(hung_cables<AncfLinear, true>(), parameters, integrator, 1e-8);
 }
 
 /// Joints that are linear in coordinates move by the same steps, whether rows hold them or they are eliminated.
 template <bool held>
 void expect_slopes_on_rows() {
-  std::vector<Parameter> const& parameters = parameters_of_hung_cables;
   Sensitivities const free = sensitivities(hung_cables<AncfLinear, held>(), parameters, HhtAlpha{}),
                       on_rows = sensitivities(hung_cables<Constraint, held>(), parameters, HhtAlpha{});
   for (std::size_t const k : {std::size_t(0), free.times.size() / 2, free.times.size() - 1}) {
-    expect_same_slopes(free.slopes[k].topRows(4), on_rows.slopes[k].topRows(4), 1e-9);
+    expect_same_slopes(free.slopes[k].topRows(4), on_rows.slopes[k].topRows(4), parameters, 1e-9);
     // the rounding of rows over βh² is in the reaction
-    expect_same_slopes(free.slopes[k].bottomRows(1), on_rows.slopes[k].bottomRows(1), 1e-7);
+    expect_same_slopes(free.slopes[k].bottomRows(1), on_rows.slopes[k].bottomRows(1), parameters, 1e-7);
   }
 }
 TEST(Eliminated, SlopesAreThoseOfTheSameJointsOnRows) {
@@ -63,8 +44,8 @@ TEST(Eliminated, SlopesAreThoseOfTheSameJointsOnRows) {
 
 TEST(Eliminated, SlopesOfOneResultComeBackwardsToo) {
   GeneralizedAlpha const integrator{.rho_inf = 0.7};
-  expect_adjoint_of_hung_cables(hung_cables<AncfLinear, false>(), integrator, 1e-11);
-  expect_adjoint_of_hung_cables(hung_cables<AncfLinear, true>(), integrator, 1e-11);
+  expect_slopes_backwards(hung_cables<AncfLinear, false>(), parameters, integrator, 1e-11);
+  expect_slopes_backwards(hung_cables<AncfLinear, true>(), parameters, integrator, 1e-11);
   expect_direct_slopes(rated_links<AncfBeam<ElasticLine>, AncfLinear>(0.0), HhtAlpha{}, 1e-11);
 }
 
@@ -72,7 +53,7 @@ TEST(Eliminated, BodiesThatParametersTouchAreFoundAmongWhatIsLeft) {
   auto const make = [](std::span<double const> p) {
     return hung_cables<AncfLinear, true>()(std::array{p[0], 1000.0, p[1], p[2], 2.0});
   };
-  auto const parameters = [](bool with_touches) {
+  auto const of_touches = [](bool with_touches) {
     std::vector<Parameter> all{{"young [Pa]", 1e7, 0.0, {"first", "second"}},
                                {"place [m]", 0.31, 0.0, {"pin", "rod", "second"}},
                                {"gravity [m/s²]", 9.81, 0.0, {"first", "second"}}};
@@ -80,15 +61,15 @@ TEST(Eliminated, BodiesThatParametersTouchAreFoundAmongWhatIsLeft) {
       for (Parameter& p : all) p.touches.clear();
     return all;
   };
-  Gradient const with_touches = gradient(make, parameters(true), GeneralizedAlpha{}),
-                 without = gradient(make, parameters(false), GeneralizedAlpha{});
+  Gradient const with_touches = gradient(make, of_touches(true), GeneralizedAlpha{}),
+                 without = gradient(make, of_touches(false), GeneralizedAlpha{});
   for (Index j = 0; j < 3; ++j) {
-    double const size = parameters(true)[std::size_t(j)].size();
+    double const size = of_touches(true)[std::size_t(j)].size();
     EXPECT_NEAR(size * with_touches.slopes[j], size * without.slopes[j], 1e-12) << j;
     EXPECT_GT(std::abs(size * without.slopes[j]), 1e-5) << j;
   }
   auto const said = [&](std::vector<std::string> touches) {
-    auto few = parameters(true);
+    auto few = of_touches(true);
     few[2].touches = std::move(touches);
     return refusal([&] { gradient(make, few, GeneralizedAlpha{}); });
   };
@@ -107,16 +88,16 @@ TEST(Eliminated, EventsSeeAndChangeWholeStates) {
     scenario.options.events = {floor};
     return scenario;
   };
-  std::vector<Parameter> const parameters{
+  std::vector<Parameter> const of_impact{
       {"density [kg/m³]", 1000.0}, {"place [m]", 0.31}, {"gravity [m/s²]", 9.81}, {"floor [m]", -0.1}};
   GeneralizedAlpha const integrator{.rho_inf = 0.7};
-  Sensitivities const s = sensitivities(make, parameters, integrator);
+  Sensitivities const s = sensitivities(make, of_impact, integrator);
   ASSERT_EQ(s.run.events.size(), 1u);
-  MatX const expected = by_differences(make, parameters, integrator);
+  MatX const expected = by_differences(make, of_impact, integrator);
   for (Index j = 0; j < expected.cols(); ++j) {
-    double const size = parameters[std::size_t(j)].size();
-    EXPECT_LT(size * (s.slopes.back().col(j) - expected.col(j)).norm(), 1e-7) << parameters[std::size_t(j)].name;
-    EXPECT_GT(size * expected.col(j).norm(), 1e-3) << parameters[std::size_t(j)].name;
+    double const size = of_impact[std::size_t(j)].size();
+    EXPECT_LT(size * (s.slopes.back().col(j) - expected.col(j)).norm(), 1e-7) << of_impact[std::size_t(j)].name;
+    EXPECT_GT(size * expected.col(j).norm(), 1e-3) << of_impact[std::size_t(j)].name;
   }
 }
 

@@ -1,11 +1,8 @@
 #pragma once
 // Two cables, the second hung on a place of the first that is no node: a factory of runs that are differentiated.
 
-#include <gtest/gtest.h>
-
 #include <polybody/bodies/ancf/ancf_cable.hpp>
-#include <polybody/gradients/gradient.hpp>
-#include <polybody/gradients/sensitivities.hpp>
+#include <polybody/gradients/objective.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -64,22 +61,5 @@ inline std::vector<Parameter> const parameters_of_hung_cables{{"young [Pa]", 1e7
                                                               {"place [m]", 0.31},
                                                               {"gravity [m/s²]", 9.81},
                                                               {"spin [rad/s]", 2.0}};
-
-/// The slopes of the rating backwards beside those of its parts forwards.
-template <class Make, class I>
-void expect_adjoint_of_hung_cables(Make const& make, I const& integrator, double within) {
-  std::vector<Parameter> const& parameters = parameters_of_hung_cables;
-  Sensitivities const direct = sensitivities(make, parameters, integrator);
-  Gradient const g = gradient(make, parameters, integrator);
-  VecX expected = direct.slopes.back().row(0).transpose();
-  for (std::size_t k = 1; k < direct.times.size(); ++k)
-    expected += 0.5 * (direct.times[k] - direct.times[k - 1]) *
-                (direct.slopes[k].row(1) + direct.slopes[k - 1].row(1)).transpose();
-  for (Index j = 0; j < expected.size(); ++j) {
-    double const size = parameters[std::size_t(j)].size();
-    EXPECT_NEAR(size * g.slopes[j], size * expected[j], within * (1.0 + std::abs(size * expected[j])))
-        << parameters[std::size_t(j)].name;
-  }
-}
 
 }  // namespace polybody

@@ -56,11 +56,11 @@ class AlphaStepAdjoint {
   [[gnu::cold]] AlphaStepAdjoint(M const& model, System& system, AlphaMethod const& method)
       : system_(&system), recorded_(stepped_system<Recorded>(model, with<Entries::motion>)), method_(method) {
     Index const nq = system.coordinates(), nv = system.speeds(), rows = system.rows();
-    PatternSink pattern;
-    TransposedSink<PatternSink> transposed(pattern);
     VecX const any = VecX::Zero(rows);
-    system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, transposed);
-    solver_.analyse(nv + rows, pattern.blocks);
+    solver_.analyse(system, 1, [&](BlockSink& sink) {
+      TransposedSink<BlockSink> transposed(sink);
+      system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, transposed);
+    });
     from_ = q_ = Numbers::Constant(nq, Recorded(0.0));
     delta_ = v_ = a_ = r_ = Numbers::Constant(nv, Recorded(0.0));
     lambda_ = phi_ = rate_ = Numbers::Constant(rows, Recorded(0.0));
@@ -82,7 +82,7 @@ class AlphaStepAdjoint {
     pull_position(x.q);
     VecX const q_before = of_q_, delta_by_q = of_delta_;
     y_.head(nv) = x.own + of_a1 * x.a + of_v1 * x.v + of_d1 * delta_by_q;
-    y_.tail(rows) = x.lambda;
+    y_.tail(rows) = x.lambda.head(rows);
     double const left = solution_.solve(
         y_, mu_,
         [&](VecX const& of) -> VecX const& {
@@ -128,7 +128,7 @@ class AlphaStepAdjoint {
     moved_ = recording_.size();
     detail::set_variables(after.v, v_);
     detail::set_variables(after.a, a_);
-    detail::set_variables(after.lambda, lambda_);
+    detail::set_variables(after.lambda.head(lambda_.size()), lambda_);
     recorded_.evaluate(q_, v_, after.t);
     recorded_.residual(a_, lambda_, r_);
     if (phi_.size() > 0) recorded_.violation(phi_);
@@ -138,8 +138,8 @@ class AlphaStepAdjoint {
   void factor(StepEnds const& step) {
     double const h = step.h;
     State const& x = step.after;
-    system_->evaluate(x.q, x.v, x.t);
-    Index const bad = write_and_factor(solver_, [&](BlockSink& sink) {
+    detail::evaluate_for_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, balance_);
+    Index const bad = solver_.factor([&](BlockSink& sink) {
       TransposedSink<BlockSink> transposed(sink);
       system_->tangent({mass(), method_.gamma * h, method_.beta * h * h}, SecondOrder::included, x.lambda, transposed);
     });
@@ -174,14 +174,14 @@ class AlphaStepAdjoint {
 
   System* system_;
   BasicSystem<Recorded> recorded_;
-  SolverOfSteps<Solver> solver_;
+  TangentSolver<SolverOfSteps<Solver>> solver_;  // of the transposed tangent
   AlphaMethod method_;
   Recording recording_;
   std::size_t moved_ = 0;  // operations until q₁ is there
   Numbers from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
   detail::TransposedSolution solution_;
   VecX mu_, y_, product_;
-  VecX of_q_, of_delta_, of_v_, of_a_, of_lambda_;
+  VecX of_q_, of_delta_, of_v_, of_a_, of_lambda_, balance_;
 };
 
 }  // namespace polybody

@@ -44,6 +44,18 @@ struct StepDirection {
   double dh = 0.0;   ///< that of the length of the step [s]; what the time of its end does to the equations is in `by`
 };
 
+namespace detail {
+/// The system at a place where its tangent with second-order terms is asked: what eliminated joints hold is taken from
+/// the residual that was reduced last. \param r (nv) is scratch
+template <class = void>
+void evaluate_for_tangent(System& system, StepPlace const& x, VecX& r) {
+  system.evaluate(x.at.q, x.at.v, x.at.t);
+  if (!system.step_coordinates()) return;
+  r.resize(system.speeds());
+  system.residual(x.a, x.lambda, r);
+}
+}  // namespace detail
+
 /// Slopes of converged steps of a method, one step after the other.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepSlope {
@@ -72,7 +84,7 @@ class AlphaStepSlope {
     State const& x = step.after;
     TangentCoefficients const k{c, method_.gamma * h, method_.beta * h * h};
     for (bool again = true; again;) {
-      system_->evaluate(x.q, x.v, x.t);
+      detail::evaluate_for_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, own_);
       std::size_t const reordered = solver_.reorderings();
       Index const bad = solver_.factor_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, k, SecondOrder::included);
       again = bad >= 0 && solver_.reorderings() != reordered;
@@ -89,7 +101,7 @@ class AlphaStepSlope {
     for (std::size_t l = 0; l < directions.size(); ++l) {  // as they were: near what they become
       State const& dx = *directions[l].dx;
       y_[l].head(nv) = dx.memory.head(nv);
-      y_[l].tail(rows) = dx.lambda;
+      y_[l].tail(rows) = dx.lambda.head(rows);
     }
     double left = std::numeric_limits<double>::infinity();
     for (int k = 0; k < most_corrections; ++k) {

@@ -55,11 +55,13 @@ std::vector<char> touched_in_whole(ModelLayout const& layout, Parameter const& p
   return touched;
 }
 /// What of a step's equations is touched where so much of the whole model's is. Forces on coordinates that depend on
-/// others go to these; a joint that is touched itself may change how, and with that all equations.
+/// others go to these; a joint that is touched itself may change how, and with that all equations. In joint coordinates
+/// that depends on the place, and all are.
 template <class = void>
 std::vector<char> touched_in_step(System const& system, std::vector<char> const& whole) {
   Coordinates const& c = system.step_coordinates();
   if (!c) return whole;
+  if (!c.narrow->keeps_mass_constant) return std::vector<char>(std::size_t(system.size()), 1);
   Index const speeds = system.layout().speeds;
   std::vector<char> touched(std::size_t(system.size()), 0), stays(whole.size(), 0);
   for (std::size_t i = 0; i < c.narrow->rows_that_stay.size(); ++i) {

@@ -247,8 +247,6 @@ class AdjointRun {
 template <MakesRatedScenarios Make, class I>
 Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                   GradientOptions const& options = {}) {
-  using M = decltype(make(std::span<double const>()).model);
-  detail::require_whole_steps<M>();
   if constexpr (detail::OfAlphaFamily<I>) {
     AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "gradient");
     return detail::AdjointRun<Make, I, detail::AlphaWayBack>(make, parameters, method).run(options);

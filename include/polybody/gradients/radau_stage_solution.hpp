@@ -22,7 +22,7 @@ class RadauStageSolution {
   [[gnu::cold]] RadauStageSolution(Places& places, Radau const& method)
       : places_(&places), projection_(method.projection) {
     System& system = places.template system<double>();
-    slack_.assign(3 * std::size_t(system.rows()), 0.0);
+    find_rows(system);
     rhs_ = correction_ = VecX::Zero(3 * system.size());
     slopes_.analyse(system);
     numbers_.resize(system);
@@ -43,8 +43,10 @@ class RadauStageSolution {
 
   RadauStages<double> const& numbers() const { return numbers_; }                       ///< what was found
   std::array<EquationPlace<>, 3> const& stage_places() const { return stage_places_; }  ///< where the stages are
-  /// By stages and rows: −1 on the diagonal of a row that repeats others, whose multiplier is left alone.
-  Sequence<double> const& slack() const { return slack_; }
+  /// −1 on the diagonal of a row of a stage that repeats others, whose multiplier is left alone; else zero.
+  double slack(Index stage, Index row) const {
+    return slack_[std::size_t(stage * Index(row_of_.size()) + equation_of_[std::size_t(row)])];
+  }
   TangentSolver<AutoLu>& solver() { return solver_; }  ///< the factors of the matrix of all stages
 
   /// The equations of all stages. \param keep takes them, for the unknowns from `first` on
@@ -81,13 +83,13 @@ class RadauStageSolution {
   void write(double t, double h, BlockSink& sink) {
     System& s = places_->template system<double>();
     RadauStages<double>& w = numbers_;
-    Index const n = s.size(), speeds = s.speeds(), rows = s.rows();
+    Index const n = equations_of(s), speeds = equation_speeds_of(s), rows = n - speeds;
     for (int i = 0; i < 3; ++i) {
       std::size_t const stage = std::size_t(i);
       double const at = t + T3::c[i] * h;
       s.plus(w.q0, w.delta[stage], w.at.q);
       slopes_.measure(s, w.at.q, w.v[stage], w.vd[stage], at);
-      s.evaluate(w.at.q, w.v[stage], at);
+      evaluate_for_tangent(s, {{w.at.q, w.v[stage], at}, w.vd[stage], w.lambda[stage]}, balance_);
       for (int j = 0; j < 3; ++j) {
         StageSink part{sink, i * n, j * n, speeds};
         s.tangent({i == j ? 1.0 : 0.0, h * T3::a[i][j], h * h * T3::squared(i, j)}, SecondOrder::included,
@@ -120,11 +122,33 @@ class RadauStageSolution {
     places_->forget();
     places_->solve(w.at);
     std::fill(slack_.begin(), slack_.end(), 0.0);
-    for (Index const k : places_->dropped())
-      for (std::size_t i = 0; i < 3 && k >= s.speeds(); ++i) {
-        slack_[i * std::size_t(s.rows()) + std::size_t(k - s.speeds())] = -1.0;
-        w.lambda[i][k - s.speeds()] = step.before.lambda[k - s.speeds()];
+    for (Index const k : places_->dropped()) {
+      Index const of_rows = k - equation_speeds_of(s), row = of_rows < 0 ? -1 : row_of_[std::size_t(of_rows)];
+      for (std::size_t i = 0; i < 3 && row >= 0; ++i) {
+        slack_[i * row_of_.size() + std::size_t(of_rows)] = -1.0;
+        w.lambda[i][row] = step.before.lambda[row];
       }
+    }
+  }
+  /// Which rows of a step are behind those of the equations, −1 for those of joints that carry bodies; and back.
+  [[gnu::cold]] void find_rows(System const& s) {
+    Index const speeds = equation_speeds_of(s);
+    row_of_.assign(std::size_t(equations_of(s) - speeds), -1);
+    equation_of_.assign(std::size_t(s.rows()), -1);
+    slack_.assign(3 * row_of_.size(), 0.0);
+    Coordinates const& c = s.step_coordinates();
+    bool const others = c && !c.narrow->whole_unknown.empty();
+    for (Index k = 0; k < Index(row_of_.size()); ++k) {
+      Index row = k;
+      if (others) {
+        Sequence<Index> const& stay = c.narrow->rows_that_stay;
+        Index const whole = c.narrow->whole_unknown[std::size_t(speeds + k)] - s.layout().speeds;
+        auto const found = std::lower_bound(stay.begin(), stay.end(), whole);
+        row = found != stay.end() && *found == whole ? Index(found - stay.begin()) : -1;
+      }
+      row_of_[std::size_t(k)] = row;
+      if (row >= 0) equation_of_[std::size_t(row)] = k;
+    }
   }
 
   /// Newton's method with the matrix of every iterate, until rounding is left. The last factors stay.
@@ -141,7 +165,7 @@ class RadauStageSolution {
       Index const bad = solver_.factor([&](BlockSink& sink) { write(step.before.t, step.h, sink); });
       if (bad >= 0)
         throw LinearSolverSingular{"The derivative of the step that ends at t = ", step.before.t + step.h,
-                                   " s has no pivot at ", name_of_equation(s, bad % s.size()), "."};
+                                   " s has no pivot at ", name_of_equation(s, bad % equations_of(s)), "."};
       solver_.solve(rhs_, correction_);
       double change = 0.0, all = 0.0;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -171,8 +195,9 @@ class RadauStageSolution {
   PlaceEquations<double> equations_;
   RadauStages<double> numbers_;
   std::array<EquationPlace<>, 3> stage_places_;
-  Sequence<double> slack_;
-  VecX rhs_, correction_;
+  Sequence<Index> row_of_, equation_of_;  // rows of a step behind those of the equations, and back
+  Sequence<double> slack_;                // by stages and rows of the equations
+  VecX rhs_, correction_, balance_;
 };
 
 }  // namespace polybody::detail

@@ -22,9 +22,7 @@ class RadauStepAdjoint {
   [[gnu::cold]] RadauStepAdjoint(M const& model, System& system, Radau const& method)
       : places_(model, system), stages_(places_, method) {
     recorded_.resize(places_.template system<Recorded>());
-    PatternSink pattern;
-    write_transposed(pattern, 0.0, 1.0);
-    solver_.analyse(3 * system.size(), pattern.blocks);
+    solver_.analyse(system, 3, [&](BlockSink& sink) { write_transposed(sink, 0.0, 1.0); });
     mu_ = y_ = product_ = VecX::Zero(3 * system.size());
   }
   RadauStepAdjoint(RadauStepAdjoint const&) = delete;  // its parts refer to each other
@@ -75,19 +73,18 @@ class RadauStepAdjoint {
 
   Index size() { return places_.template system<double>().size(); }
 
-  template <TakesBlocks Sink>
-  void write_transposed(Sink& sink, double t, double h) {
-    TransposedSink<Sink> transposed(sink);
+  void write_transposed(BlockSink& sink, double t, double h) {
+    TransposedSink<BlockSink> transposed(sink);
     BlockSink through(transposed);
     stages_.write(t, h, through);
   }
   void factor(StepTaken const& step) {
-    Index const bad =
-        write_and_factor(solver_, [&](BlockSink& sink) { write_transposed(sink, step.before.t, step.h); });
+    Index const bad = solver_.factor([&](BlockSink& sink) { write_transposed(sink, step.before.t, step.h); });
     if (bad >= 0)
-      throw LinearSolverSingular{"The adjoint of the step that ends at t = ", step.before.t + step.h,
-                                 " s has no pivot at ",
-                                 name_of_equation(places_.template system<double>(), bad % size()), "."};
+      throw LinearSolverSingular{
+          "The adjoint of the step that ends at t = ", step.before.t + step.h, " s has no pivot at ",
+          name_of_equation(places_.template system<double>(), bad % equations_of(places_.template system<double>())),
+          "."};
   }
 
   /// The start and the stages as variables, their equations, then the places after them. Returns how many operations
@@ -124,8 +121,7 @@ class RadauStepAdjoint {
     take_stages(product_);
     Index const n = size(), nv = recorded_.v0.size(), rows = n - nv;
     for (Index i = 0; i < 3; ++i)
-      for (Index k = 0; k < rows; ++k)
-        product_[i * n + nv + k] += stages_.slack()[std::size_t(i * rows + k)] * mu[i * n + nv + k];
+      for (Index k = 0; k < rows; ++k) product_[i * n + nv + k] += stages_.slack(i, k) * mu[i * n + nv + k];
   }
   /// Slopes of v̇_i and λ_i.
   void take_stages(VecX& out) {
@@ -138,7 +134,7 @@ class RadauStepAdjoint {
   detail::RadauStageSolution<RecordedPlaces<Solver>> stages_;
   PlaceEquations<Recorded> equations_;
   detail::RadauStages<Recorded> recorded_;
-  AutoLu solver_;                           // of the transposed matrix
+  TangentSolver<AutoLu> solver_;            // of the transposed matrix
   std::vector<Recording::Number> numbers_;  // of the equations of all stages
   detail::TransposedSolution solution_;
   VecX mu_, y_, product_;

@@ -80,13 +80,6 @@ template <class I>
 concept OfAlphaFamily = requires(I const integrator) {
   { integrator.method() } -> std::convertible_to<AlphaMethod>;
 };
-/// Steps of model M are differentiated.
-template <class M>
-constexpr void require_whole_steps() {
-  static_assert(std::is_void_v<typename M::Solution>,
-                "Steps in joint coordinates are not differentiated. Give the joints Constraint, Penalty, Bushing or, "
-                "between ANCF bodies, AncfLinear.");
-}
 
 /// The method by which a run is differentiated: its corrections go on to 1e-12. \throws InvalidInput, beginning with
 /// `who`, for parameters and integrators that cannot be meant.

@@ -37,8 +37,6 @@ concept MakesScenarios = requires(F const make, std::span<double const> p) {
 /// and as `simulate`.
 template <MakesScenarios Make, class I>
 Sensitivities sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
-  using M = decltype(make(std::span<double const>()).model);
-  detail::require_whole_steps<M>();
   if constexpr (detail::OfAlphaFamily<I>) {
     AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "sensitivities");
     return detail::DirectDifferentiation<Make, I>(make, parameters, method).run();

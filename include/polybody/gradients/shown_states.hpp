@@ -24,15 +24,18 @@ template <class M, StateScalar T>
 class ShownStates<M, T> {
  public:
   [[gnu::cold]] explicit ShownStates(M const& model) : system_(stepped_system<T>(model, with<Entries::motion>)) {}
-  /// It stays until the next one is shown.
+  /// It stays until the next one is shown. Estimates that a step keeps for joints that carry bodies have no
+  /// derivatives: what these joints hold is worked out.
   StateOf<T> const& operator()(StateOf<T> const& x) {
-    expand(system_, x, shown_, scratch_);
+    stepped_ = x;
+    stepped_.lambda.conservativeResize(system_.rows());
+    expand(system_, stepped_, shown_, scratch_);
     return shown_;
   }
 
  private:
   BasicSystem<T> system_;
-  StateOf<T> shown_;
+  StateOf<T> stepped_, shown_;
   VecXOf<T> scratch_;
 };
 

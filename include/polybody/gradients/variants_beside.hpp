@@ -108,7 +108,8 @@ class VariantsBeside {
   /// ∂r/∂p and ∂Φ/∂p at the end x of a step of h while unknowns stay, where its time moves by dt. `by_time` keeps ∂/∂t.
   EquationSlope of_equations(std::size_t j, State const& x, double h, double dt,
                              std::optional<EquationSlope>& by_time) {
-    EquationSlope sum{VecX::Zero(x.v.size()), VecX::Zero(x.lambda.size()), size(j, h)};
+    EquationSlope sum = no_slope();
+    sum.scale = size(j, h);
     double later = dt;
     if (j != along_motion) {
       for (std::size_t k = 0; k < points; ++k)
@@ -173,12 +174,16 @@ class VariantsBeside {
   EquationSlope rate_of_equations(State const& x, double h) {
     constexpr std::array<double, 5> weights{25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25};
     double const e = 0.02 * h;
-    EquationSlope sum{VecX::Zero(x.v.size()), VecX::Zero(x.lambda.size())};
+    EquationSlope sum = no_slope();
     for (std::size_t i = 0; i < weights.size(); ++i)
       add(sum, n_.itself().equations(x, x.t - double(i) * e), weights[i] / e);
     return sum;
   }
 
+  EquationSlope no_slope() {
+    System const& s = n_.itself().system;
+    return {VecX::Zero(s.speeds()), VecX::Zero(s.rows())};
+  }
   static void add(EquationSlope& sum, EquationSlope const& of, double by) {
     sum.balance += by * of.balance;
     sum.rows += by * of.rows;

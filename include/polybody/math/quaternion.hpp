@@ -93,19 +93,20 @@ Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
   return quaternion_log<T>(quaternion_product<T>(conjugate<T>(p), q));
 }
 
-/// The unit quaternion of the rotation matrix `a` (w ≥ 0).
-template <class = void>  // compiled where it is used
-Quaternion<double> quaternion_of(Mat3 const& a) {
+/// The unit quaternion of the rotation matrix `a` (w ≥ 0) of scalars T.
+template <class T>
+Quaternion<T> quaternion_from(Mat<T, 3, 3> const& a) {
+  using std::sqrt;
   // by the largest of 4w², 4x², 4y², 4z², whose square root loses no digits [Shepperd 1978]
-  double const trace = a(0, 0) + a(1, 1) + a(2, 2);
+  T const trace = a(0, 0) + a(1, 1) + a(2, 2);
   int largest = -1;  // of the axes; −1: w
-  double most = trace;
+  T most = trace;
   for (int i = 0; i < 3; ++i)
     if (a(i, i) > most) {
       most = a(i, i);
       largest = i;
     }
-  double q[4];
+  T q[4];
   if (largest < 0) {
     q[0] = 1.0 + trace;
     for (int i = 0; i < 3; ++i) q[1 + i] = a((i + 2) % 3, (i + 1) % 3) - a((i + 1) % 3, (i + 2) % 3);
@@ -116,9 +117,14 @@ Quaternion<double> quaternion_of(Mat3 const& a) {
     q[1 + j] = a(j, i) + a(i, j);
     q[1 + k] = a(k, i) + a(i, k);
   }
-  double inverse = 1.0 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  T inverse = 1.0 / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (q[0] < 0.0) inverse = -inverse;
   return {q[0] * inverse, q[1] * inverse, q[2] * inverse, q[3] * inverse};
+}
+/// The same in doubles.
+template <class = void>  // compiled where it is used
+Quaternion<double> quaternion_of(Mat3 const& a) {
+  return quaternion_from<double>(a);
 }
 
 /// log of the rotation matrix `a`: rotation vector with |φ| ≤ π [rad].

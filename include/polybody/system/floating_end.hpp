@@ -11,10 +11,11 @@
 
 namespace polybody {
 
-/// A marker of a floating body, without the body's type.
-struct FloatingEnd {
+/// A marker of a floating body, without the body's type. \tparam T scalar of the body's coordinates
+template <class T = double>
+struct FloatingEndOf {
   /// Publishes the marker of `end` on a body with coordinates q and speeds v of its own, both from its first on.
-  using Publish = void (*)(FloatingEnd const& end, double const* q, double const* v, Published<double>& out);
+  using Publish = void (*)(FloatingEndOf const& end, T const* q, T const* v, Published<T>& out);
 
   Publish publish = nullptr;                     ///< the marker where the body has these coordinates and speeds
   void const *body = nullptr, *point = nullptr;  ///< the body and the point on it, whose types `publish` knows
@@ -40,23 +41,31 @@ struct FloatingEnd {
   /// Where the first deformation's rate stands in whole speeds.
   Index first_rate() const { return v0 + frame_speeds(); }
 };
+using FloatingEnd = FloatingEndOf<>;  ///< in doubles
 
 namespace detail {
 
 /// The marker, with its Jacobian in the tree's scratch.
 template <class T>
-Published<T> place_end(FloatingEnd const& end, double const* q, double const* v, TreeStateOf<T>& s) {
+Published<T> place_end(FloatingEndOf<T> const& end, T const* q, T const* v, TreeStateOf<T>& s) {
   Published<T> out;
   out.jacobian = s.jacobian.data();
   end.publish(end, q, v, out);
   return out;
 }
+/// The angle x without full turns, −π to π [rad].
+inline double within_a_turn(double x) { return std::remainder(x, 2.0 * std::numbers::pi); }
+template <class T>
+T within_a_turn(T const& x) {
+  return x + (within_a_turn(value_of(x)) - value_of(x));
+}
 /// The turn of the joint's frame against the body's reference axes at this angle, in the plane: small, as deformations
 /// are.
 template <class T>
-T bent_by(FloatingEnd const& end, Mat<T, 3, 3> const& a, T angle) {
-  Mat<T, 3, 3> const section = product<T>(a, transposed<T>(end.axes));
-  return std::remainder(std::atan2(section(1, 0), section(0, 0)) - angle, 2.0 * std::numbers::pi);
+T bent_by(FloatingEndOf<T> const& end, Mat<T, 3, 3> const& a, T angle) {
+  using std::atan2;
+  Mat<T, 3, 3> const section = product<T, 3>(a, in_scalar<T>(transposed<double>(end.axes)));
+  return within_a_turn(atan2(section(1, 0), section(0, 0)) - angle);
 }
 /// A column of a motion at r, at the world's origin until `finish_columns`.
 template <class T>
@@ -72,7 +81,7 @@ Vec<T, 6> column_from(Vec<T, 3> const& r, Vec<T, 3> const& slide, Vec<T, 3> cons
 
 /// From the frame of the parent to the joint's frame on it. `q`, `v` are whole, and hold the parent.
 template <class T>
-void leave_body(FloatingEnd const& end, VecXOf<T> const& q, VecXOf<T> const& v, RunnerOf<T>& run, T& angle,
+void leave_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const& v, RunnerOf<T>& run, T& angle,
                 TreeStateOf<T>& s) {
   Published<T> const p = place_end<T>(end, q.data() + end.q0, v.data() + end.v0, s);
   if (end.layout == RigidLayout::plane) angle += bent_by<T>(end, p.frame.A, q[end.q0 + 2]);
@@ -90,7 +99,7 @@ void leave_body(FloatingEnd const& end, VecXOf<T> const& q, VecXOf<T> const& v, 
 ///   ω˙ = ω˙_m − ω × A ω_d − A ω˙_d,  r̈ = r̈_m − ω˙ × A u − ω × (ω × A u) − 2 ω × A u˙ − A u¨.
 /// `q`, `v` are whole, and hold the body's deformation.
 template <class T>
-void arrive_on_body(FloatingEnd const& end, VecXOf<T> const& q, VecXOf<T> const& v, RunnerOf<T>& run, T& angle,
+void arrive_on_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const& v, RunnerOf<T>& run, T& angle,
                     TreeStateOf<T>& s) {
   Index const nq = end.frame_coordinates(), nv = end.frame_speeds();
   for (Index i = 0; i < nq; ++i) s.q[std::size_t(i)] = nq == 7 && i == 3 ? 1.0 : 0.0;

@@ -12,7 +12,7 @@ namespace polybody::detail {
 /// One motion; its columns as [moment arm's origin; axis] until `finish_columns` knows where the body's centre comes
 /// to lie.
 template <class T>
-void move(JointMotion const& m, double sign, double const* x, double const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
+void move(JointMotion const& m, double sign, T const* x, T const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
   Vec<T, 3> const none(0, 0, 0), n(sign * run.A(0, m.axis), sign * run.A(1, m.axis), sign * run.A(2, m.axis));
   auto const column = [&](Vec<T, 3> const& slide, Vec<T, 3> const& turn) {
     Vec<T, 3> const carried = cross<T>(run.r, turn);  // at the world's origin
@@ -31,7 +31,7 @@ void move(JointMotion const& m, double sign, double const* x, double const* u, R
     case JointMotion::Kind::screw:
       column(scaled<T>(n, m.pitch), n);
       if (m.kind == JointMotion::Kind::screw) run.slide(n, m.pitch * x[0], m.pitch * u[0]);
-      run.turn(scaled<T>(n, u[0]));
+      run.turn(times<T>(n, u[0]));
       turn_columns<T>(m.axis, sign * x[0], run.A);
       f.angle += n[2] * x[0];  // in the plane the axis is the normal, this way or that
       break;
@@ -87,7 +87,7 @@ void finish_columns(TreeFrameOf<T>& f) {
   for (int k = 0; k < f.speeds; ++k) move_column<T>(f.r, f.column(k));
   for (int i = 0; i < f.speeds; ++i)
     for (int j = 0; j < f.speeds; ++j) {
-      double sum = 0.0;
+      T sum = 0.0;
       for (int k = 0; k < 6; ++k) sum += f.s(k, i) * f.s(k, j);
       f.inverse(i, j) = sum;
     }

@@ -47,7 +47,7 @@ JointFrames<T> joint_frames(JointTreeOf<T> const& tree, TreeBody const& body, Ve
   JointFrames<T> j{point(p, body.from.origin), point(f, body.to.origin), product<T>(p.A, body.from.axes),
                    product<T>(f.A, body.to.axes), f.angle - p.angle - body.angle};
   auto const bent = [&](Index e, Vec<T, 3>& r, Mat<T, 3, 3>& axes) {
-    FloatingEnd const& end = tree.ends[std::size_t(e)];
+    FloatingEndOf<T> const& end = tree.ends[std::size_t(e)];
     Published<T> const m = place_end<T>(end, q.data() + end.q0, v.data() + end.v0, s);
     r = m.frame.r;
     axes = m.frame.A;

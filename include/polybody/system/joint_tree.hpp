@@ -16,7 +16,7 @@
 
 namespace polybody {
 
-/// T is `double`: a template, so that a program without joint coordinates compiles none of it.
+/// \tparam T scalar of the vectors
 template <class T = double>
 class JointTreeOf {
   using Vec3 = Vec<T, 3>;
@@ -24,6 +24,7 @@ class JointTreeOf {
   using VecX = VecXOf<T>;
   using TreeFrame = TreeFrameOf<T>;
   using TreeState = TreeStateOf<T>;
+  using FloatingEnd = FloatingEndOf<T>;
 
  public:
   /// Bodies in an order in which each stands behind its parent.
@@ -89,7 +90,7 @@ class JointTreeOf {
       for (int j = 0; j < 6; ++j) t[j] = s.twists[i][j] - (bias ? f.bias[j] : T(0.0)) - carried[j];
       for (int k = 0; k < f.speeds; ++k) st[k] = detail::along_column<T>(f.column(k), t);
       for (int k = 0; k < f.speeds; ++k) {
-        double sum = 0.0;
+        T sum = 0.0;
         for (int j = 0; j < f.speeds; ++j) sum += f.inverse(k, j) * st[j];
         u[body.vn + k] = sum;
       }
@@ -126,7 +127,7 @@ class JointTreeOf {
       TreeFrame const& f = s.frames[i];
       auto w = detail::zeros<Vec6>(), carried = w;
       for (int k = 0; k < f.speeds; ++k) {
-        double sum = 0.0;
+        T sum = 0.0;
         for (int j = 0; j < f.speeds; ++j) sum += f.inverse(k, j) * given[body.vn + j];
         detail::add_column<T>(f.column(k), sum, w);
       }
@@ -177,18 +178,18 @@ class JointTreeOf {
     if (body.from_end >= 0) {
       detail::leave_body<T>(ends[std::size_t(body.from_end)], whole.q, whole.v, run, f.angle, s);
     } else {
-      if (body.from_turned) run.A = product<T>(p.A, body.from.axes);
-      run.go(product<T, 1>(p.A, body.from.origin));
+      if (body.from_turned) run.A = product<T, 3>(p.A, detail::in_scalar<T>(body.from.axes));
+      run.go(product<T, 1>(p.A, detail::in_scalar<T>(body.from.origin)));
     }
     detail::move_by_joint<T>(body, narrow.q.data() + body.qn, narrow.v.data() + body.vn, run, f);
     if (body.to_end >= 0) {
       detail::arrive_on_body<T>(ends[std::size_t(body.to_end)], whole.q, whole.v, run, f.angle, s);
       f.A = run.A;
     } else {
-      f.A = body.to_turned ? product<T>(run.A, transposed<T>(body.to.axes)) : run.A;
-      run.go(scaled<T>(product<T, 1>(f.A, body.to.origin), -1.0));
+      f.A = body.to_turned ? product<T, 3>(run.A, detail::in_scalar<T>(transposed<double>(body.to.axes))) : run.A;
+      run.go(scaled<T>(product<T, 1>(f.A, detail::in_scalar<T>(body.to.origin)), -1.0));
     }
-    if (body.layout != RigidLayout::plane) f.rotation = quaternion_of(f.A);
+    if (body.layout != RigidLayout::plane) f.rotation = quaternion_from<T>(f.A);
     f.r = run.r;
     f.v = run.v;
     f.w = run.w;

@@ -84,7 +84,7 @@ class ReductionOf {
   struct Hook {
     Index body = -1;  ///< −1: the ground
     Placement frame;
-    FloatingEnd end = {};  ///< instead of the frame, on a body that deforms
+    FloatingEndOf<T> end = {};  ///< instead of the frame, on a body that deforms
   };
   struct Link {
     std::string name;
@@ -150,16 +150,16 @@ class ReductionOf {
     }
   }
   template <class B>
-  static void publish_end(FloatingEnd const& end, double const* q, double const* v, Published<double>& out) {
+  static void publish_end(FloatingEndOf<T> const& end, T const* q, T const* v, Published<T>& out) {
     B const& body = *static_cast<B const*>(end.body);
-    body.template publish<double>(*static_cast<typename B::Point const*>(end.point), end.axes,
-                                  std::span<double const>(q, std::size_t(body.coordinates())),
-                                  std::span<double const>(v, std::size_t(body.speeds())), out);
+    body.template publish<T>(*static_cast<typename B::Point const*>(end.point), end.axes,
+                             std::span<T const>(q, std::size_t(body.coordinates())),
+                             std::span<T const>(v, std::size_t(body.speeds())), out);
   }
   /// Its number in the tree; −1 for a frame on a rigid body or the ground.
   Index add_end(Hook const& hook) {
     if (!hook.end.publish) return -1;
-    FloatingEnd end = hook.end;
+    FloatingEndOf<T> end = hook.end;
     end.first_column = tree_.ends.empty() ? 0 : tree_.ends.back().first_column + tree_.ends.back().deformations;
     tree_.ends.push_back(end);
     return Index(tree_.ends.size()) - 1;

@@ -77,12 +77,12 @@ using TreeState = TreeStateOf<double>;  ///< in doubles
 template <class T>
 void invert_leading(Mat<T, 6, 6>& a, int n) {
   for (int k = 0; k < n; ++k) {
-    double const pivot = 1.0 / a(k, k);
+    T const pivot = 1.0 / a(k, k);
     a(k, k) = 1.0;
     for (int j = 0; j < n; ++j) a(k, j) *= pivot;
     for (int i = 0; i < n; ++i) {
       if (i == k) continue;
-      double const f = a(i, k);
+      T const f = a(i, k);
       a(i, k) = 0.0;
       for (int j = 0; j < n; ++j) a(i, j) -= f * a(k, j);
     }
@@ -116,11 +116,26 @@ int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
 
 namespace detail {
 
+/// The matrix m of doubles in the scalar T: itself where that is double.
+template <class T, class M>
+decltype(auto) in_scalar(M const& m) {
+  if constexpr (std::same_as<T, double>)
+    return (m);
+  else
+    return m.template cast<T>().eval();
+}
+/// s n.
+template <class T>
+Vec<T, 3> times(Vec<T, 3> const& n, T const& s) {
+  return {n[0] * s, n[1] * s, n[2] * s};
+}
+
 /// A · (the turn by an angle about axis k of the frame itself).
 template <class T>
-void turn_columns(int k, double angle, Mat<T, 3, 3>& a) {
+void turn_columns(int k, T angle, Mat<T, 3, 3>& a) {
+  using std::cos, std::sin;
   int const i = (k + 1) % 3, j = (k + 2) % 3;
-  double const c = std::cos(angle), s = std::sin(angle);
+  T const c = cos(angle), s = sin(angle);
   for (int row = 0; row < 3; ++row) {
     T const x = a(row, i), y = a(row, j);
     a(row, i) = x * c + y * s;
@@ -129,7 +144,7 @@ void turn_columns(int k, double angle, Mat<T, 3, 3>& a) {
 }
 /// That turn itself.
 template <class T>
-Mat<T, 3, 3> turn_about(int k, double angle) {
+Mat<T, 3, 3> turn_about(int k, T angle) {
   Mat<T, 3, 3> m = identity<T>();
   turn_columns<T>(k, angle, m);
   return m;
@@ -163,8 +178,8 @@ struct RunnerOf {
       a[i] += sideways[i] + inwards[i];
     }
   }
-  void slide(Vec3 const& n, double s, double rate) {
-    go(scaled<T>(n, s));
+  void slide(Vec3 const& n, T const& s, T const& rate) {
+    go(times<T>(n, s));
     Vec3 const sideways = cross<T>(w, n);
     for (int i = 0; i < 3; ++i) {
       v[i] += rate * n[i];

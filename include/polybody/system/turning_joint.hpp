@@ -42,22 +42,23 @@ namespace detail {
 
 /// A body on a joint of one turn. \param x, u the angle and its rate
 template <class T>
-void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, double x, double u, TreeFrameOf<T>& f) {
+void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, T const& x, T const& u, TreeFrameOf<T>& f) {
+  using std::cos, std::sin;
   RunnerOf<T> run{p.r, p.v, {0, 0, 0}, {}, p.w, {0, 0, 0}};
-  run.go(product<T, 1>(p.A, body.from.origin));
-  Vec<T, 3> const n = product<T, 1>(p.A, body.turn.axis);
-  run.turn(scaled<T>(n, u));
+  run.go(product<T, 1>(p.A, in_scalar<T>(body.from.origin)));
+  Vec<T, 3> const n = product<T, 1>(p.A, in_scalar<T>(body.turn.axis));
+  run.turn(times<T>(n, u));
   if (body.layout == RigidLayout::plane) {
     f.angle = p.angle + body.angle + n[2] * x;
     f.A = turn_about<T>(2, f.angle);
   } else {
-    double const c = std::cos(0.5 * x), s = std::sin(0.5 * x);
+    T const c = cos(0.5 * x), s = sin(0.5 * x);
     Quaternion<T> by;
     for (int i = 0; i < 4; ++i) by[i] = body.turn.still[i] * c + body.turn.turning[i] * s;
     f.rotation = quaternion_product<T>(p.rotation, by);
     set_rotation<T>(f.rotation, f.A);
   }
-  Vec<T, 3> const to_centre = scaled<T>(product<T, 1>(f.A, body.to.origin), -1.0);
+  Vec<T, 3> const to_centre = scaled<T>(product<T, 1>(f.A, in_scalar<T>(body.to.origin)), -1.0);
   run.go(to_centre);
   f.r = run.r;
   f.v = run.v;

@@ -1,0 +1,50 @@
+#pragma once
+// Derivatives of runs beside others of the same runs.
+
+#include <gtest/gtest.h>
+
+#include <polybody/gradients/gradient.hpp>
+#include <polybody/gradients/sensitivities.hpp>
+
+#include "support/differences_of_runs.hpp"
+
+namespace polybody {
+
+/// Both are the same within a share of them and of one, by the sizes of the parameters. The outputs are of the size of
+/// one.
+inline void expect_same_slopes(MatX const& slopes, MatX const& expected, std::vector<Parameter> const& parameters,
+                               double within) {
+  ASSERT_EQ(slopes.rows(), expected.rows());
+  for (Index j = 0; j < slopes.cols(); ++j) {
+    double const size = parameters[std::size_t(j)].size();
+    for (Index i = 0; i < slopes.rows(); ++i)
+      EXPECT_NEAR(size * slopes(i, j), size * expected(i, j), within * (1.0 + std::abs(size * expected(i, j))))
+          << i << ' ' << parameters[std::size_t(j)].name;
+  }
+}
+
+/// Forwards beside differences of whole runs. No parameter leaves everything as it is, so that zeros are not compared.
+template <class Make, class I>
+void expect_slopes_of_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                           double within) {
+  Sensitivities const s = sensitivities(make, parameters, integrator);
+  EXPECT_LT(s.left, 1e-9);
+  expect_same_slopes(s.slopes.back(), by_differences(make, parameters, integrator), parameters, within);
+  for (std::size_t j = 0; j < parameters.size(); ++j)
+    EXPECT_GT(parameters[j].size() * s.slopes.back().col(Index(j)).norm(), 1e-4) << parameters[j].name;
+}
+
+/// Those of a rating, its end and the integral of its way, backwards beside those forwards of the first two outputs,
+/// which are the end and the way.
+template <class Make, class I>
+void expect_slopes_backwards(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                             double within) {
+  Sensitivities const direct = sensitivities(make, parameters, integrator);
+  Gradient const g = gradient(make, parameters, integrator);
+  MatX expected = direct.slopes.back().row(0);
+  for (std::size_t k = 1; k < direct.times.size(); ++k)
+    expected += 0.5 * (direct.times[k] - direct.times[k - 1]) * (direct.slopes[k].row(1) + direct.slopes[k - 1].row(1));
+  expect_same_slopes(g.slopes.transpose(), expected, parameters, within);
+}
+
+}  // namespace polybody
