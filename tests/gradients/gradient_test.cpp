@@ -215,6 +215,35 @@ TEST(Gradient, IsTheSameWhereParametersSayWhatTheyTouch) {
   }
 }
 
+/// The chain with its last angle as an output.
+auto chain_with_angle(P p) {
+  auto scenario = chain(p);
+  scenario.outputs.push_back({"angle [rad]", [](auto const&, State const& x) { return x.q[14]; }});
+  return scenario;
+}
+
+TEST(Gradient, DirectDifferentiationIsTheSameWhereParametersSayWhatTheyTouch) {
+  Sensitivities const a = sensitivities(chain_with_angle, of_chain(true), GeneralizedAlpha{}),
+                      b = sensitivities(chain_with_angle, of_chain(false), GeneralizedAlpha{});
+  for (Index j = 0; j < 15; ++j) {
+    double const size = of_chain(true)[std::size_t(j)].size();
+    EXPECT_NEAR(size * a.slopes.back()(0, j), size * b.slopes.back()(0, j), 1e-11) << j;
+    EXPECT_GT(std::abs(size * a.slopes.back()(0, j)), 1e-8) << j;
+  }
+}
+
+TEST(Gradient, DirectDifferentiationRefusesParametersThatTouchMoreThanTheySay) {
+  auto const said = [](std::size_t j, std::vector<std::string> touches) {
+    auto parameters = of_chain(true);
+    parameters[j].touches = std::move(touches);
+    return refusal([&] { sensitivities(chain_with_angle, parameters, GeneralizedAlpha{}); });
+  };
+  EXPECT_TRUE(has(said(3, {"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));
+  EXPECT_TRUE(has(said(3, {"pin 1"}), "\"length 1 [m]\" changes the equations of body \"rod 2\""));
+  // at the start no pin is strained, so that this shows at the end only
+  EXPECT_TRUE(has(said(5, {"rod 0"}), "\"stiffness 1 [N/m]\" changes the equations of body \"rod 1\""));
+}
+
 TEST(Gradient, ParametersThatTouchNothingInCommonShareTheirModels) {
   using V = detail::Variant<decltype(chain({})), GeneralizedAlpha>;
   auto const groups = [](std::vector<Parameter> const& parameters) {

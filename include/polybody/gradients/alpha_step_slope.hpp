@@ -7,14 +7,15 @@
 /// follow from the formulas of the step, and
 ///   δ[M v̇₁ − f₁ + G₁ᵀλ₁] = 0,  δΦ(q₁)/βh² = 0  (of velocity rows δΦ̇/γh)
 /// is linear in y. Its left side comes from one pass of dual numbers through the residual, so no term is missing: not
-/// the derivative of ⊞, not ∂(Gᵀλ)/∂q. It is solved by the factors of the tangent with second-order terms at the end of
-/// the step, and corrected until nothing changes.
+/// the derivative of ⊞, not ∂(Gᵀλ)/∂q. It is solved by factors that need only be near, those of the step itself or of
+/// the tangent with second-order terms at its end, and corrected until nothing changes.
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <array>
 #include <span>
 
+#include <polybody/gradients/near_factors.hpp>
 #include <polybody/integrators/alpha_method.hpp>
 #include <polybody/solvers/reduced_coordinates.hpp>
 
@@ -39,9 +40,9 @@ struct StepEnds {
 
 /// A direction along which a step is differentiated.
 struct StepDirection {
-  EquationSlope by;  ///< what the parameter does to the equations at the end of the step
-  State* dx;         ///< the derivative of the state before the step; it becomes that of the state after it
-  double dh = 0.0;   ///< that of the length of the step [s]; what the time of its end does to the equations is in `by`
+  EquationSlope by;     ///< what the parameter does to the equations at the end of the step
+  State* dx = nullptr;  ///< the derivative of the state before the step; it becomes that of the state after it
+  double dh = 0.0;  ///< that of the length of the step [s]; what the time of its end does to the equations is in `by`
 };
 
 namespace detail {
@@ -60,7 +61,9 @@ void evaluate_for_tangent(System& system, StepPlace const& x, VecX& r) {
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepSlope {
  public:
-  /// Directions that go through the equations together, a part of a dual number each.
+  using Factors = TangentSolver<SolverOfSteps<Solver>>;  ///< of the tangent of a step
+  /// Directions that go through the equations together, a part of a dual number each: with eight, what they leave
+  /// between joints and bodies no longer stays in the cache.
   static constexpr int lanes = 4;
 
   /// The model must outlive it.
@@ -68,144 +71,229 @@ class AlphaStepSlope {
   [[gnu::cold]] AlphaStepSlope(M const& model, System& system, AlphaMethod const& method)
       : system_(&system), dual_(stepped_system<D>(model, with<Entries::motion>)), method_(method) {
     VecX const any = VecX::Zero(system.rows());
-    solver_.analyse(system, 1,
-                    [&](BlockSink& sink) { system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, sink); });
+    tangent_.analyse(system, SecondOrder::omitted, any);
     Index const nq = system.coordinates(), nv = system.speeds(), rows = system.rows();
     from_ = q_ = Dots::Constant(nq, D(0.0));
     delta_ = v_ = a_ = r_ = Dots::Constant(nv, D(0.0));
     lambda_ = phi_ = rate_ = Dots::Constant(rows, D(0.0));
-    rhs_ = correction_ = VecX::Zero(nv + rows);
-    for (VecX& y : y_) y = rhs_;
+    for (std::size_t l = 0; l < y_.size(); ++l) y_[l] = rhs_[l] = correction_[l] = VecX::Zero(nv + rows);
+    guess_ = VecX::Zero(nv);
   }
 
-  /// From now on slopes are those of this step. \throws LinearSolverSingular at a singular position.
-  void set(StepEnds const& step) {
-    double const c = (1.0 - method_.alpha_m) / (1.0 - method_.alpha_f), h = step.h;
-    State const& x = step.after;
-    TangentCoefficients const k{c, method_.gamma * h, method_.beta * h * h};
-    for (bool again = true; again;) {
-      detail::evaluate_for_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, own_);
-      std::size_t const reordered = solver_.reorderings();
-      Index const bad = solver_.factor_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, k, SecondOrder::included);
-      again = bad >= 0 && solver_.reorderings() != reordered;
-      if (bad >= 0 && !again)
-        throw LinearSolverSingular{"The derivative of the step that ends at t = ", x.t, " s has no pivot at ",
-                                   name_of_equation(*system_, bad), "."};
+  /// From now on slopes are those of this step. \param near factors of a matrix near its tangent, such as its own, or
+  /// none; what serves best, they or factors made at the end of the step, is learnt. \throws LinearSolverSingular at a
+  /// singular position.
+  void set(StepEnds const& step, Factors* near = nullptr) {
+    exact_ = false;
+    factors_ = choice_.next() == NearFactors::of_step ? near : nullptr;
+    if (!factors_) factor(step, choice_.now() == NearFactors::exact);
+    State const &before = step.before, &after = step.after;
+    double const h = step.h, of_a0 = h * h * (0.5 - method_.beta), of_a1 = h * h * method_.beta;
+    for (Index i = 0; i < from_.size(); ++i) from_[i].v = before.q[i];
+    for (Index i = 0; i < a_.size(); ++i) {
+      a_[i].v = after.a[i];
+      v_[i].v = after.v[i];
+      delta_[i].v = h * before.v[i] + of_a0 * step.own_before[i] + of_a1 * step.own_after[i];
     }
+    for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].v = after.lambda[i];
+    size_of_a_ = after.a.norm();
+    size_of_lambda_ = after.lambda.head(lambda_.size()).norm();
   }
 
   /// Takes up to `lanes` directions over the step. Returns what the last corrections changed at most, beside all, or
-  /// beside a and λ over a parameter's scale where that is more.
+  /// beside a and λ over a parameter's scale where that is more. \throws LinearSolverSingular as `set`.
   double advance(StepEnds const& step, std::span<StepDirection const> directions) {
-    Index const nv = a_.size(), rows = lambda_.size();
-    for (std::size_t l = 0; l < directions.size(); ++l) {  // as they were: near what they become
-      State const& dx = *directions[l].dx;
-      y_[l].head(nv) = dx.memory.head(nv);
-      y_[l].tail(rows) = dx.lambda.head(rows);
-    }
-    double left = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < most_corrections; ++k) {
-      find_end(step, directions);
-      evaluate(step);
-      double now = 0.0;
-      for (std::size_t l = 0; l < directions.size(); ++l) {
-        EquationSlope const& by = directions[l].by;
-        VecX& y = y_[l];
-        right_hand_side(step, by, Index(l));
-        solver_.solve(rhs_, correction_);
-        y += correction_;
-        now = std::max({now, part(correction_.head(nv), y.head(nv), step.after.a, by.scale),
-                        part(correction_.tail(rows), y.tail(rows), step.after.lambda, by.scale)});
-      }
-      bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
-      left = now;
-      if (done) break;
-    }
+    bool const far = passes_ > 2;
+    for (std::size_t l = 0; l < directions.size(); ++l) guess(step, directions[l], far, y_[l]);
     find_end(step, directions);
-    for (std::size_t l = 0; l < directions.size(); ++l) take_end(step, *directions[l].dx, Index(l));
+    double left = std::numeric_limits<double>::infinity();
+    for (passes_ = 1; passes_ <= most_passes; ++passes_) {
+      double const before = left, enough = exact_ ? 1e-11 : 1e-12;
+      left = correct(step, directions);
+      bool const again = passes_ > 1, stays = passes_ > 2 && left >= 0.3 * before,
+                 shrinks = passes_ > 2 && left * left <= 1e-14 * before;
+      if (left <= 1e-15 || (again && left <= enough) || ((stays || shrinks) && left <= 1e-10)) break;
+      if (again && left > slow * before && !exact_) factor(step, true);
+    }
+    choice_.add(std::min(passes_, most_passes));
+    if (left > 1e-12) dual_.plus(from_, delta_, q_);  // else βh² times that is less than rounding of q
+    take_end(step, directions);
     return left;
   }
 
  private:
   using D = Dual<lanes>;
   using Dots = VecXOf<D>;
-  static constexpr int most_corrections = 30;
+  using Partials = typename D::Partials;
+  static constexpr int most_passes = 30;
+  static constexpr double slow = 0.1;  // corrections that shrink by no more ask for exact factors
 
+  /// Vectors of the directions, an entry of each at a time; where there are fewer, the first one stands in.
+  struct Side {
+    std::array<double const*, std::size_t(lanes)> of;
+    Partials operator[](Index i) const {
+      Partials out;
+      for (std::size_t l = 0; l < of.size(); ++l) out[Index(l)] = of[l][i];
+      return out;
+    }
+  };
+  template <class F>
+  static Side side(std::size_t count, F const& vector_of) {
+    Side out;
+    for (std::size_t l = 0; l < out.of.size(); ++l) out.of[l] = vector_of(l < count ? l : 0).data();
+    return out;
+  }
+
+  /// Factors the tangent at the end of the step. \param exact with second-order terms
+  void factor(StepEnds const& step, bool exact) {
+    double const h = step.h;
+    State const& x = step.after;
+    TangentCoefficients const k{mass(), method_.gamma * h, method_.beta * h * h};
+    if (exact)
+      tangent_.include(*system_, x.lambda);
+    else
+      tangent_.forget();
+    Factors& own = tangent_.solver();
+    for (bool again = true; again;) {
+      detail::evaluate_for_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, balance_);
+      std::size_t const reordered = own.reorderings();
+      Index const bad = own.factor_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, k, tangent_.terms());
+      again = bad >= 0 && own.reorderings() != reordered;
+      if (bad >= 0 && !again)
+        throw LinearSolverSingular{"The derivative of the step that ends at t = ", x.t, " s has no pivot at ",
+                                   name_of_equation(*system_, bad), "."};
+    }
+    factors_ = &own;
+    exact_ = exact;
+  }
+  double mass() const { return (1.0 - method_.alpha_m) / (1.0 - method_.alpha_f); }
+
+  /// What changes of a₁ and λ₁ begin with: as they were, near what they become; extrapolated where that is far.
+  void guess(StepEnds const& step, StepDirection const& along, bool far, VecX& y) {
+    AlphaMethod const& m = method_;
+    State& dx = *along.dx;
+    Index const nv = a_.size(), rows = lambda_.size();
+    y.head(nv) = dx.memory.head(nv);
+    y.tail(rows) = dx.lambda.head(rows);
+    if (!far) return;
+    multipliers_.resize(dx.lambda.size());
+    StepHistory(dx).extrapolate(dx, step.h, guess_, multipliers_);
+    y.head(nv) = ((1.0 - m.alpha_f) * guess_ + m.alpha_f * dx.a - m.alpha_m * dx.memory.head(nv)) / (1.0 - m.alpha_m);
+    y.tail(rows) = multipliers_.head(rows);
+  }
+
+  /// Changes of δ, v₁, v̇₁ and λ₁ by the y of each direction.
+  void find_end(StepEnds const& step, std::span<StepDirection const> directions) {
+    AlphaMethod const& m = method_;
+    std::size_t const n = directions.size();
+    double const h = step.h, h2 = h * h, of_a0 = h2 * (0.5 - m.beta), of_a1 = h2 * m.beta;
+    auto const state = [&](std::size_t l) -> State const& { return *directions[l].dx; };
+    Side const q = side(n, [&](std::size_t l) -> VecX const& { return state(l).q; }),
+               v = side(n, [&](std::size_t l) -> VecX const& { return state(l).v; }),
+               a = side(n, [&](std::size_t l) -> VecX const& { return state(l).a; }),
+               own = side(n, [&](std::size_t l) -> VecX const& { return state(l).memory; }),
+               y = side(n, [&](std::size_t l) -> VecX const& { return y_[l]; });
+    Partials dh;
+    for (std::size_t l = 0; l < std::size_t(lanes); ++l) dh[Index(l)] = directions[l < n ? l : 0].dh;
+    for (Index i = 0; i < from_.size(); ++i) from_[i].d = q[i];
+    for (Index i = 0; i < a_.size(); ++i) {
+      Partials const v0 = v[i], a0 = own[i], a1 = y[i];
+      double const own0 = step.own_before[i], own1 = step.own_after[i];
+      a_[i].d = ((1.0 - m.alpha_m) * a1 + m.alpha_m * a0 - m.alpha_f * a[i]) / (1.0 - m.alpha_f);
+      v_[i].d = v0 + h * ((1.0 - m.gamma) * a0 + m.gamma * a1) + dh * ((1.0 - m.gamma) * own0 + m.gamma * own1);
+      delta_[i].d = h * v0 + of_a0 * a0 + of_a1 * a1 +
+                    dh * (step.before.v[i] + h * ((1.0 - 2.0 * m.beta) * own0 + 2.0 * m.beta * own1));
+    }
+    for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d = y[a_.size() + i];
+  }
+
+  /// A pass through the equations, and what it corrects. Returns the largest relative correction.
+  double correct(StepEnds const& step, std::span<StepDirection const> directions) {
+    Index const nv = a_.size(), rows = lambda_.size();
+    evaluate(step);
+    right_hand_sides(step, directions);
+    double most = 0.0;
+    for (std::size_t l = 0; l < directions.size(); ++l) {
+      VecX &y = y_[l], &correction = correction_[l];
+      factors_->solve(rhs_[l], correction);
+      y += correction;
+      double const scale = directions[l].by.scale;
+      most = std::max({most, part(correction.head(nv), y.head(nv), size_of_a_ / scale),
+                       part(correction.tail(rows), y.tail(rows), size_of_lambda_ / scale)});
+    }
+    apply(step.h, directions.size());
+    return most;
+  }
   template <class A, class B>
-  static double part(A const& correction, B const& y, VecX const& now, double scale) {
-    double const all = std::max(y.norm(), now.norm() / scale);
+  static double part(A const& correction, B const& y, double least) {
+    double const all = std::max(y.norm(), least);
     return all > 0.0 ? correction.norm() / all : correction.norm();
   }
-
-  /// q₁, v₁, v̇₁ and λ₁ with their changes by the y of each direction.
-  void find_end(StepEnds const& step, std::span<StepDirection const> directions) {
-    State const &before = step.before, &after = step.after;
-    AlphaMethod const& m = method_;
-    Index const nv = a_.size();
-    double const h = step.h, h2 = h * h, of_a0 = h2 * (0.5 - m.beta), of_a1 = h2 * m.beta;
-    for (Index i = 0; i < from_.size(); ++i) from_[i] = D(before.q[i]);
-    for (Index i = 0; i < nv; ++i) {
-      a_[i] = D(after.a[i]);
-      v_[i] = D(after.v[i]);
-      delta_[i] = D(h * before.v[i] + of_a0 * step.own_before[i] + of_a1 * step.own_after[i]);
-    }
-    for (Index i = 0; i < lambda_.size(); ++i) lambda_[i] = D(after.lambda[i]);
-    for (std::size_t l = 0; l < directions.size(); ++l) {
-      State const& dx = *directions[l].dx;
-      VecX const& y = y_[l];
-      Index const k = Index(l);
-      double const dh = directions[l].dh;
-      for (Index i = 0; i < from_.size(); ++i) from_[i].d[k] = dx.q[i];
-      for (Index i = 0; i < nv; ++i) {
-        double const a0 = dx.memory[i], a1 = y[i];
-        a_[i].d[k] = ((1.0 - m.alpha_m) * a1 + m.alpha_m * a0 - m.alpha_f * dx.a[i]) / (1.0 - m.alpha_f);
-        v_[i].d[k] = dx.v[i] + h * ((1.0 - m.gamma) * a0 + m.gamma * a1);
-        delta_[i].d[k] = h * dx.v[i] + of_a0 * a0 + of_a1 * a1;
-        if (dh == 0.0) continue;
-        double const own0 = step.own_before[i], own1 = step.own_after[i];
-        v_[i].d[k] += dh * ((1.0 - m.gamma) * own0 + m.gamma * own1);
-        delta_[i].d[k] += dh * (before.v[i] + h * ((1.0 - 2.0 * m.beta) * own0 + 2.0 * m.beta * own1));
-      }
-      for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d[k] = y[nv + i];
-    }
-    dual_.plus(from_, delta_, q_);
-  }
-
   /// M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ there.
   void evaluate(StepEnds const& step) {
+    dual_.plus(from_, delta_, q_);
     dual_.evaluate(q_, v_, step.after.t);
     dual_.residual(a_, lambda_, r_);
     if (phi_.size() > 0) dual_.violation(phi_);
     if (!dual_.velocity_rows().empty()) dual_.violation_rate(rate_);
   }
-  /// −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (−δΦ̇/γh) of direction l, with what the parameter does.
-  void right_hand_side(StepEnds const& step, EquationSlope const& by, Index l) {
+  /// −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (−δΦ̇/γh) of each direction, with what the parameter does.
+  void right_hand_sides(StepEnds const& step, std::span<StepDirection const> directions) {
     double const of_position = -1.0 / (method_.beta * step.h * step.h), of_speed = -1.0 / (method_.gamma * step.h);
     Index const nv = r_.size();
-    for (Index i = 0; i < nv; ++i) rhs_[i] = -(r_[i].d[l] + by.balance[i]);
-    for (Index i = 0; i < phi_.size(); ++i) rhs_[nv + i] = of_position * (phi_[i].d[l] + by.rows[i]);
-    for (Index const i : dual_.velocity_rows()) rhs_[nv + i] = of_speed * (rate_[i].d[l] + by.rows[i]);
+    std::size_t const n = directions.size();
+    for (Index i = 0; i < nv; ++i)
+      for (std::size_t l = 0; l < n; ++l) rhs_[l][i] = -(r_[i].d[Index(l)] + directions[l].by.balance[i]);
+    for (Index i = 0; i < phi_.size(); ++i)
+      for (std::size_t l = 0; l < n; ++l)
+        rhs_[l][nv + i] = of_position * (phi_[i].d[Index(l)] + directions[l].by.rows[i]);
+    for (Index const i : dual_.velocity_rows())
+      for (std::size_t l = 0; l < n; ++l)
+        rhs_[l][nv + i] = of_speed * (rate_[i].d[Index(l)] + directions[l].by.rows[i]);
   }
-  /// dx becomes the derivative of the state after the step.
-  void take_end(StepEnds const& step, State& dx, Index l) {
-    Index const nv = a_.size();
-    own_ = y_[std::size_t(l)].head(nv);
-    StepHistory(dx).push(dx, step.h, own_);
-    for (Index i = 0; i < q_.size(); ++i) dx.q[i] = q_[i].d[l];
-    for (Index i = 0; i < nv; ++i) {
-      dx.v[i] = v_[i].d[l];
-      dx.a[i] = a_[i].d[l];
+  /// The end of the step after a correction of y.
+  void apply(double h, std::size_t count) {
+    double const of_a = mass(), of_v = method_.gamma * h, of_delta = method_.beta * h * h;
+    Side const by = side(count, [&](std::size_t l) -> VecX const& { return correction_[l]; });
+    for (Index i = 0; i < a_.size(); ++i) {
+      Partials const change = by[i];
+      a_[i].d += of_a * change;
+      v_[i].d += of_v * change;
+      delta_[i].d += of_delta * change;
     }
-    for (Index i = 0; i < lambda_.size(); ++i) dx.lambda[i] = lambda_[i].d[l];
+    for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d += by[a_.size() + i];
+  }
+
+  /// The derivatives of the state before the step become those of the state after it.
+  void take_end(StepEnds const& step, std::span<StepDirection const> directions) {
+    Index const nv = a_.size();
+    for (std::size_t l = 0; l < directions.size(); ++l) {
+      State& dx = *directions[l].dx;
+      guess_ = y_[l].head(nv);
+      StepHistory(dx).push(dx, step.h, guess_);
+    }
+    auto const take = [&](Dots const& from, VecX State::* part) {
+      for (Index i = 0; i < from.size(); ++i)
+        for (std::size_t l = 0; l < directions.size(); ++l) (directions[l].dx->*part)[i] = from[i].d[Index(l)];
+    };
+    take(q_, &State::q);
+    take(v_, &State::v);
+    take(a_, &State::a);
+    take(lambda_, &State::lambda);
   }
 
   System* system_;
   BasicSystem<D> dual_;
-  TangentSolver<SolverOfSteps<Solver>> solver_;
+  StepTangent<SolverOfSteps<Solver>> tangent_;  // at the end of the step
+  Factors* factors_ = nullptr;                  // of it, or what `set` was given
+  bool exact_ = false;                          // they are of it, with second-order terms
+  NearFactorsChoice choice_;
   AlphaMethod method_;
+  int passes_ = 1;  // of the last directions
+  double size_of_a_ = 0.0, size_of_lambda_ = 0.0;
   Dots from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
-  std::array<VecX, std::size_t(lanes)> y_;  // changes of a₁ and λ₁, of each direction
-  VecX rhs_, correction_, own_;
+  std::array<VecX, std::size_t(lanes)> y_, rhs_, correction_;  // y: changes of a₁ and λ₁, of each direction
+  VecX guess_, multipliers_, balance_;
 };
 
 }  // namespace polybody

@@ -37,11 +37,13 @@ class DirectDifferentiation {
     plan_ = StepPlan(x_.t, options().until, options().step, Sequence<double>(corners.begin(), corners.end()));
     x_.t = plan_.pass(x_.t);
     begin();
+    beside_.require_touched(x_);
     note();
     while (!done()) {
       step();
       note();
     }
+    beside_.require_touched(x_);
     warn_of_untouched(parameters_, touched_, out_.run);
     return std::move(out_);
   }
@@ -116,25 +118,28 @@ class DirectDifferentiation {
 
   /// A step to the next place of the plan, or to an event before it.
   void step() {
-    State const before = x_;
+    State& before = before_;
+    before = x_;
     StepPlan::Next const next = plan_.next(x_.t, h_);
     bool const crumb = next.h < 0.01 * h_;
     StepReport const report = whole_.step(x_, next.h);
     x_.t = next.lands ? next.target : row_.after(before.t, next.h);
-    State const far = x_;
+    State far;
+    if (!options().events.empty()) far = x_;
     bool const met = !options().events.empty() && meet(before, next.h);
     double const end = x_.t, h = met ? StepHistory(x_).shifted() : next.h;
     x_.t = before.t + h;  // just before a corner
-    std::vector<Lane> lanes;
+    lanes_.clear();
     for (std::size_t j = 0; j < parameters_.size(); ++j)
-      lanes.push_back({j, &tangents_[j], met ? 0.0 : length_slope(j, next, tangents_[j])});
-    RunTangent by_length{zeros_like(before), 0.0, VecX::Zero(StepHistory::lengths)};
+      lanes_.push_back({j, &tangents_[j], met ? 0.0 : length_slope(j, next, tangents_[j])});
+    RunTangent by_length;
     if (met) {
       if (next.lands && end == next.target) refuse_event_at_corner();
+      by_length = {zeros_like(before), 0.0, VecX::Zero(StepHistory::lengths)};
       by_length.dx.memory.tail(StepHistory::lengths) = before.memory.tail(StepHistory::lengths);
-      lanes.push_back({Variants::along_motion, &by_length, 1.0});
+      lanes_.push_back({Variants::along_motion, &by_length, 1.0});
     }
-    differentiate(before, h, lanes);
+    differentiate(before, h, met);
     if (met) move_to_event(by_length, before, far);
     x_.t = end;
     bool const at_corner = next.jumps && end == next.target;
@@ -179,6 +184,7 @@ class DirectDifferentiation {
   void move_to_event(RunTangent const& by_length, State const& before, State const& far) {
     std::vector<double> dh(parameters_.size());
     std::string const* first = nullptr;
+    beside_.show(x_);
     for (std::size_t i = 0; i < options().events.size(); ++i) {
       if (!watch_.met(i)) continue;
       Event const& event = options().events[i];
@@ -215,28 +221,36 @@ class DirectDifferentiation {
                        " s, so its time has no derivative. Look for a value that passes through zero at a rate."};
   }
 
-  /// The tangents before a step of h that led from `before` to x_ become those at its end.
-  void differentiate(State const& before, double h, std::vector<Lane> const& lanes) {
-    Index const nv = x_.v.size();
-    State from = before;
+  /// The tangents before a step of h that led from `before` to x_ become those at its end. \param met an event: other
+  /// steps were tried after it
+  void differentiate(State& before, double h, bool met) {
     V& spare = beside_.itself();
-    bool const corrects = spare.method.set_out(spare.system, from, h, spare.work);
-    from.v = spare.work.v0;
-    VecX const own_before = spare.work.a0, own_after = x_.memory.head(nv);
-    for (Lane const& lane : lanes) set_out(before, h, lane, corrects);
-    StepEnds const step{from, x_, own_before, own_after, h};
-    slope_.set(step);
-    std::optional<EquationSlope> by_time;
-    std::vector<StepDirection> directions;
-    for (Lane const& lane : lanes) {
-      lane.tangent->dt += lane.dh;
-      directions.push_back(
-          {beside_.of_equations(lane.j, x_, h, lane.tangent->dt, by_time), &lane.tangent->dx, lane.dh});
-      if (directions.size() < std::size_t(AlphaStepSlope<>::lanes) && &lane != &lanes.back()) continue;
-      out_.left = std::max(out_.left, slope_.advance(step, directions));
-      directions.clear();
+    bool const corrects = spare.method.set_out(spare.system, before, h, spare.work);
+    State corrected;
+    if (corrects) {
+      corrected = before;
+      corrected.v = spare.work.v0;
     }
-    for (Lane const& lane : lanes) push_length(*lane.tangent, lane.dh);
+    own_before_ = spare.work.a0;
+    own_after_ = x_.memory.head(x_.v.size());
+    for (Lane const& lane : lanes_) set_out(before, h, lane, corrects);
+    StepEnds const step{corrects ? corrected : before, x_, own_before_, own_after_, h};
+    slope_.set(step, met ? nullptr : whole_.factors(h));
+    beside_.set_end(x_);
+    constexpr std::size_t most = std::size_t(AlphaStepSlope<>::lanes);
+    directions_.resize(std::min(lanes_.size(), most));
+    for (std::size_t first = 0; first < lanes_.size(); first += most) {
+      std::size_t const count = std::min(most, lanes_.size() - first);
+      for (std::size_t l = 0; l < count; ++l) {
+        Lane const& lane = lanes_[first + l];
+        lane.tangent->dt += lane.dh;
+        beside_.of_equations(lane.j, x_, h, lane.tangent->dt, directions_[l].by);
+        directions_[l].dx = &lane.tangent->dx;
+        directions_[l].dh = lane.dh;
+      }
+      out_.left = std::max(out_.left, slope_.advance(step, std::span(directions_).first(count)));
+    }
+    for (Lane const& lane : lanes_) push_length(*lane.tangent, lane.dh);
   }
   /// The tangent of the speeds, and of the method's own accelerations, that a step from x sets out with.
   void set_out(State const& x, double h, Lane const& lane, bool corrects) {
@@ -263,6 +277,7 @@ class DirectDifferentiation {
 
   /// Values and slopes of the outputs at x.
   void note() {
+    beside_.show(x_);
     MatX slopes = MatX::Zero(Index(out_.outputs.size()), Index(parameters_.size()));
     VecX of_time(Index(parameters_.size()));
     auto const outputs = [](V& v, State const& x) { return v.outputs(x); };
@@ -271,9 +286,9 @@ class DirectDifferentiation {
       State const& dx = tangent.dx;
       of_time[Index(j)] = tangent.dt;
       slopes.col(Index(j)) = beside_.of_values(j, x_, tangent, h_, outputs);
-      bool const moves =
-          dx.q.squaredNorm() + dx.v.squaredNorm() + dx.a.squaredNorm() > 0.0 || std::abs(tangent.dt) > 0.0;
-      if (moves || !slopes.col(Index(j)).isZero(0.0)) touched_[j] = 1;
+      if (!touched_[j])
+        touched_[j] = std::abs(tangent.dt) > 0.0 || !slopes.col(Index(j)).isZero(0.0) ||
+                      dx.q.squaredNorm() + dx.v.squaredNorm() + dx.a.squaredNorm() > 0.0;
     }
     out_.times.push_back(x_.t);
     out_.values.push_back(whole_.outputs(x_));
@@ -285,7 +300,10 @@ class DirectDifferentiation {
   V whole_;
   AlphaStepSlope<> slope_;
   Variants beside_;
-  State x_;
+  State x_, before_;             // now, and before the step
+  VecX own_before_, own_after_;  // the method's own accelerations there
+  std::vector<Lane> lanes_;      // of the step
+  std::vector<StepDirection> directions_;
   std::vector<RunTangent> tangents_;  // of each parameter
   std::vector<double> step_slope_, until_slope_;
   StepPlan plan_;

@@ -101,6 +101,11 @@ class EquationSlopes {
   /// parameters
   template <class Make>
   [[gnu::cold]] EquationSlopes(Make const& make, std::vector<Parameter> const& parameters, V const& model)
+      : EquationSlopes(make, parameters, model, [](std::size_t, std::size_t) { return std::shared_ptr<V>(); }) {}
+  /// The same. \param alone alone(j, k) has a model for point k beside parameter j, or none
+  template <class Make, class Alone>
+  [[gnu::cold]] EquationSlopes(Make const& make, std::vector<Parameter> const& parameters, V const& model,
+                               Alone const& alone)
       : places_(parameters.size()) {
     std::vector<std::vector<char>> taken;
     for (std::size_t j = 0; j < parameters.size(); ++j) {
@@ -119,9 +124,16 @@ class EquationSlopes {
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
         std::vector<double> p = values_of(parameters);
+        std::size_t last = 0, members = 0;
         for (std::size_t j = 0; j < p.size(); ++j)
-          if (places_[j].group == g) p[j] += FourPoints::places[k] * parameters[j].distance();
-        groups_[g].models[k] = std::make_unique<V>(make(p), model.method);
+          if (places_[j].group == g) {
+            p[j] += FourPoints::places[k] * parameters[j].distance();
+            last = j;
+            ++members;
+          }
+        std::shared_ptr<V>& there = groups_[g].models[k];
+        if (members == 1) there = alone(last, k);
+        if (!there) there = std::make_shared<V>(make(p), model.method);
       }
   }
 
@@ -133,11 +145,21 @@ class EquationSlopes {
   void evaluate(Place const& x) {
     for (Group& group : groups_)
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
-        EquationSlope const of = group.models[k]->equations(x);
+        EquationSlope const& of = group.models[k]->equations(x);
         if (k == 0) group.difference.setZero(of.balance.size() + of.rows.size());
         group.difference.head(of.balance.size()) += FourPoints::weights[k] * of.balance;
         group.difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
       }
+  }
+  /// ∂r/∂p and ∂Φ/∂p of parameter j, which `out` has the sizes of.
+  void get(std::size_t j, EquationSlope& out) const {
+    Place const& place = places_[j];
+    VecX const& difference = groups_[place.group].difference;
+    Index const speeds = out.balance.size();
+    out.balance.setZero();
+    out.rows.setZero();
+    for (Index const i : place.equations)
+      (i < speeds ? out.balance[i] : out.rows[i - speeds]) = difference[i] / place.distance;
   }
   /// μᵀ ∂r/∂p of parameter j. \param mu by speeds, then by rows
   double dot(std::size_t j, VecX const& mu) const {
@@ -184,7 +206,7 @@ class EquationSlopes {
     std::vector<Index> equations;  // by speeds, then by rows
   };
   struct Group {
-    std::array<std::unique_ptr<V>, 4> models;
+    std::array<std::shared_ptr<V>, 4> models;
     VecX difference;  // Σ of the four, weighted; over a distance it is a derivative
   };
   std::vector<Place> places_;

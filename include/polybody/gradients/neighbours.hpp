@@ -26,7 +26,7 @@ class Neighbours {
       for (double const place : FourPoints::places) {
         std::vector<double> p = values_of(parameters);
         p[j] += place * parameters[j].distance();
-        beside_.push_back(std::make_unique<V>(make(p), method));
+        beside_.push_back(std::make_shared<V>(make(p), method));
         require_alike(itself_, *beside_.back(), parameters[j], "sensitivities");
       }
     find_times();
@@ -35,7 +35,9 @@ class Neighbours {
   V& itself() { return itself_; }                                               ///< for the values of the parameters
   TimesBeside const& times(std::size_t j) const { return times_[j]; }           ///< of runs with another parameter j
   V& beside(std::size_t j, std::size_t k) { return *beside_[points * j + k]; }  ///< at point k beside parameter j
-  Parameter const& parameter(std::size_t j) const { return parameters_[j]; }    ///< number j
+  /// The same, for who keeps it.
+  std::shared_ptr<V> shared(std::size_t j, std::size_t k) const { return beside_[points * j + k]; }
+  Parameter const& parameter(std::size_t j) const { return parameters_[j]; }  ///< number j
 
   /// A step of h from t, in variant k, which sets out at `from`: it ends where the other does.
   double length(std::size_t j, std::size_t k, double t, double h, double from) const {
@@ -68,7 +70,7 @@ class Neighbours {
 
   std::vector<Parameter> parameters_;
   V itself_;
-  std::vector<std::unique_ptr<V>> beside_;  // four for each parameter
+  std::vector<std::shared_ptr<V>> beside_;  // four for each parameter
   std::vector<TimesBeside> times_;
 };
 

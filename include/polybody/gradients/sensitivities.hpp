@@ -33,7 +33,8 @@ concept MakesScenarios = requires(F const make, std::span<double const> p) {
 /// without `stabilised`; with their headers (runge_kutta_step_slope.hpp, radau_step_slope.hpp) RungeKutta4,
 /// DormandPrince, whose choice of steps stays as it is, and Radau, under which there are no events and corners. \throws
 /// InvalidInput for parameters that cannot be meant, a factory whose models differ in size, an event that only touches
-/// zero, events or corners that come at once and part with a parameter; LinearSolverSingular at a singular position;
+/// zero, events or corners that come at once and part with a parameter, a parameter that changes equations of what it
+/// does not name as touched, at the start or at the end; LinearSolverSingular at a singular position;
 /// and as `simulate`.
 template <MakesScenarios Make, class I>
 Sensitivities sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {

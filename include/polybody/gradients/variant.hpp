@@ -22,13 +22,15 @@ struct Variant {
   ShownStates<Model> shown;
   AlphaMethod method;
   AlphaMethod::Workspace<DefaultSolver> work;
+  EquationSlope at_place;
 
   Variant(S made, AlphaMethod const& m)
       : scenario(std::move(made)),
         system(system_for<I>(scenario.model)),
         shown(scenario.model),
         method(m),
-        work(method.workspace<DefaultSolver>(system)) {}
+        work(method.workspace<DefaultSolver>(system)),
+        at_place{VecX::Zero(system.speeds()), VecX::Zero(system.rows())} {}
 
   /// Consistent accelerations and multipliers, as a run begins. \param corrected as in `AlphaMethod::start`
   void start(State& x, double h, std::optional<bool> corrected = {}) {
@@ -69,19 +71,22 @@ struct Variant {
     return method.step(system, x, h, work);
   }
   VecX outputs(State const& x) { return values_of_outputs(scenario, shown(x)); }
-  /// r and Φ (of velocity rows Φ̇) at x.
-  EquationSlope equations(State const& x) { return equations(x, x.t); }
+  /// The factors of the last step, if it was one of h and they serve.
+  TangentSolver<SolverOfSteps<DefaultSolver>>* factors(double h) {
+    return work.kept_factor.usable && work.h_factored == h ? &work.solver() : nullptr;
+  }
+  /// r and Φ (of velocity rows Φ̇) at x, until they are asked again.
+  EquationSlope const& equations(State const& x) { return equations(x, x.t); }
   /// The same at another time t [s].
-  EquationSlope equations(State const& x, double t) {
-    EquationSlope out{VecX::Zero(system.speeds()), VecX::Zero(system.rows())};
+  EquationSlope const& equations(State const& x, double t) {
     system.evaluate(x.q, x.v, t);
-    system.residual(x.a, x.lambda, out.balance);
-    system.violation(out.rows);
-    if (system.velocity_rows().empty()) return out;
-    VecX rate = out.rows;
-    system.violation_rate(rate);
-    for (Index const i : system.velocity_rows()) out.rows[i] = rate[i];
-    return out;
+    system.residual(x.a, x.lambda, at_place.balance);
+    system.violation(at_place.rows);
+    if (system.velocity_rows().empty()) return at_place;
+    work.rate = at_place.rows;
+    system.violation_rate(work.rate);
+    for (Index const i : system.velocity_rows()) at_place.rows[i] = work.rate[i];
+    return at_place;
   }
 };
 

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include <polybody/gradients/equation_slopes.hpp>
 #include <polybody/gradients/neighbours.hpp>
 
 namespace polybody::detail {
@@ -22,18 +23,35 @@ class VariantsBeside {
 
   template <class Make>
   [[gnu::cold]] VariantsBeside(Make const& make, std::vector<Parameter> const& parameters, AlphaMethod const& method)
-      : n_(make, parameters, method) {}
+      : n_(make, parameters, method) {
+    std::vector<Parameter> still;
+    number_.assign(parameters.size(), moving);
+    for (std::size_t j = 0; j < parameters.size(); ++j)
+      if (!n_.times(j).moves()) {
+        number_[j] = still.size();
+        still_.push_back(j);
+        still.push_back(parameters[j]);
+      }
+    auto const make_still = [&](std::span<double const> p) {
+      std::vector<double> all = values_of(parameters);
+      for (std::size_t i = 0; i < p.size(); ++i) all[still_[i]] = p[i];
+      return make(all);
+    };
+    slopes_.emplace(make_still, still, n_.itself(),
+                    [&](std::size_t i, std::size_t k) { return n_.shared(still_[i], k); });
+  }
 
   V& itself() { return n_.itself(); }                                    ///< for the values of the parameters
   TimesBeside const& times(std::size_t j) const { return n_.times(j); }  ///< of runs with another parameter j
   /// The size of parameter j, or the length h of a step along the motion.
   double size(std::size_t j, double h) const { return j == along_motion ? h : n_.parameter(j).size(); }
 
-  /// The derivative of a number of the scenario by parameter j.
+  /// The derivative of a number of the scenario by parameter j: zero, without rounding, where it stays.
   template <class F>
   double of_number(std::size_t j, F const& f) {
+    double const here = f(n_.itself());
     double sum = 0.0;
-    for (std::size_t k = 0; k < points; ++k) sum += weight(j, k) * f(n_.beside(j, k));
+    for (std::size_t k = 0; k < points; ++k) sum += weight(j, k) * (f(n_.beside(j, k)) - here);
     return sum;
   }
 
@@ -60,10 +78,11 @@ class VariantsBeside {
   State of_map(std::size_t j, State const& x, RunTangent const& tangent, std::array<double, 2> h_and_dh, F const& f) {
     auto const [h, dh] = h_and_dh;
     Parts const p = parts(j, x, tangent, h, dh);
+    State const& with = p.reach > 0.0 ? p.with : tangent.dx;
     State sum;
     if (j != along_motion)
       for (std::size_t k = 0; k < points; ++k) {
-        State y = detail::beside(x, p.with, FourPoints::places[k] * n_.parameter(j).distance());
+        State y = detail::beside(x, with, FourPoints::places[k] * n_.parameter(j).distance());
         y.t = n_.times(j)(k, x.t);
         double const length = n_.length(j, k, x.t, h, y.t);
         take(sum, f, {n_.beside(j, k), std::move(y), length}, weight(j, k));
@@ -79,11 +98,13 @@ class VariantsBeside {
     return sum;
   }
 
+  /// From now on values are asked at x.
+  void show(State const& x) { shown_ = x; }
   /// That of numbers f(variant, state) at x. \param h length of steps [s]
   template <class F>
   VecX of_values(std::size_t j, State const& x, RunTangent const& tangent, double h, F const& f) {
     Parts const p = parts(j, x, tangent, h, 0.0);
-    State shown = x;
+    State const& with = p.reach > 0.0 ? p.with : tangent.dx;
     VecX sum;
     auto const add_value = [&](VecX const& value, double by) {
       if (sum.size() == 0) sum.setZero(value.size());
@@ -91,47 +112,60 @@ class VariantsBeside {
     };
     if (j != along_motion)
       for (std::size_t k = 0; k < points; ++k) {
-        add_motion(shown, p.with, FourPoints::places[k] * n_.parameter(j).distance(), x);
-        shown.t = n_.times(j)(k, x.t);
-        add_value(f(n_.beside(j, k), shown), weight(j, k));
+        add_motion(shown_, with, FourPoints::places[k] * n_.parameter(j).distance(), x);
+        shown_.t = n_.times(j)(k, x.t);
+        add_value(f(n_.beside(j, k), shown_), weight(j, k));
       }
     if (p.reach == 0.0) return sum;
     for (std::size_t k = 0; k < points; ++k) {
       double const e = FourPoints::places[k] * p.reach;
-      add_motion(shown, p.along, e, x);
-      shown.t = x.t + e * p.dt;
-      add_value(f(n_.itself(), shown), FourPoints::weights[k] / p.reach);
+      add_motion(shown_, p.along, e, x);
+      shown_.t = x.t + e * p.dt;
+      add_value(f(n_.itself(), shown_), FourPoints::weights[k] / p.reach);
     }
     return sum;
   }
 
-  /// ∂r/∂p and ∂Φ/∂p at the end x of a step of h while unknowns stay, where its time moves by dt. `by_time` keeps ∂/∂t.
-  EquationSlope of_equations(std::size_t j, State const& x, double h, double dt,
-                             std::optional<EquationSlope>& by_time) {
-    EquationSlope sum = no_slope();
+  /// From now on equations are asked at x, the end of a step.
+  void set_end(State const& x) {
+    slopes_->evaluate(x);
+    knows_by_time_ = false;
+  }
+  /// ∂r/∂p and ∂Φ/∂p at the end x of a step of h while unknowns stay, where its time moves by dt, into `sum`.
+  void of_equations(std::size_t j, State const& x, double h, double dt, EquationSlope& sum) {
+    sum.balance.setZero(n_.itself().system.speeds());
+    sum.rows.setZero(n_.itself().system.rows());
     sum.scale = size(j, h);
     double later = dt;
-    if (j != along_motion) {
+    if (j != along_motion && number_[j] != moving) {
+      slopes_->get(number_[j], sum);
+    } else if (j != along_motion) {
       for (std::size_t k = 0; k < points; ++k)
         add(sum, n_.beside(j, k).equations(x, n_.times(j)(k, x.t)), weight(j, k));
       later -= n_.times(j).slope(x.t);
     }
-    if (later == 0.0) return sum;
-    if (!by_time) by_time = rate_of_equations(x, h);
-    add(sum, *by_time, later);
-    return sum;
+    if (later == 0.0) return;
+    if (!knows_by_time_) by_time_ = rate_of_equations(x, h);
+    knows_by_time_ = true;
+    add(sum, by_time_, later);
+  }
+  /// \throws InvalidInput where a parameter changes an equation at x that it does not touch.
+  void require_touched(State const& x) {
+    for (std::size_t i = 0; i < still_.size(); ++i)
+      slopes_->require_touched(i, n_.parameter(still_[i]), n_.itself(), n_.beside(still_[i], 0), x);
   }
 
  private:
   static constexpr std::size_t points = FourPoints::places.size();
+  static constexpr std::size_t moving = std::size_t(-1);
   static constexpr double negligible = 1e-13;  // of a step
   // of a step: no corner is within a hundredth of one of the end of another step
   static constexpr double largest_part = 4e-3;
 
   struct Parts {
-    State with, along;  // at times that stay; along the motion
+    State with, along;  // at times that stay; along the motion: not made where `reach` is 0
     double dt, dh;      // of the latter
-    double reach;       // distance of its differences; 0 where there is none
+    double reach;       // distance of its differences; 0 where there is none and all is at times that stay
   };
   struct Place {
     V& variant;
@@ -152,8 +186,8 @@ class VariantsBeside {
     double const s = n_.times(j).slope(x.t), dt = tangent.dt - s, longer = dh - (n_.times(j).slope(x.t + h) - s);
     double longest = std::max(std::abs(dt), std::abs(longer));
     if (tangent.lengths.size() > 0) longest = std::max(longest, tangent.lengths.cwiseAbs().maxCoeff());
+    if (longest * size(j, h) <= negligible * h) return {{}, {}, dt, longer, 0.0};
     Parts out{tangent.dx, {}, dt, longer, 0.0};
-    if (longest * size(j, h) <= negligible * h) return out;
     out.along = motion(x, dt, 1e-3 * h);
     add(out.with, out.along, -1.0);
     out.reach = reach_of(j, h, longest);
@@ -197,6 +231,11 @@ class VariantsBeside {
   }
 
   Neighbours<S, I> n_;
+  std::vector<std::size_t> number_, still_;  // of each parameter among those under which no time moves; these
+  std::optional<EquationSlopes<V>> slopes_;  // by these
+  EquationSlope by_time_;                    // ∂/∂t at the end of a step
+  bool knows_by_time_ = false;
+  State shown_;
 };
 
 }  // namespace polybody::detail
