@@ -110,7 +110,7 @@ class AlphaStepSlope {
     for (passes_ = 1; passes_ <= most_passes; ++passes_) {
       double const before = left, enough = exact_ ? 1e-11 : 1e-12;
       left = correct(step, directions);
-      bool const again = passes_ > 1, stays = passes_ > 2 && left >= 0.3 * before,
+      bool const again = passes_ > 1, stays = passes_ > 2 && left >= 0.8 * before,
                  shrinks = passes_ > 2 && left * left <= 1e-14 * before;
       if (left <= 1e-15 || (again && left <= enough) || ((stays || shrinks) && left <= 1e-10)) break;
       if (again && left > slow * before && !exact_) factor(step, true);

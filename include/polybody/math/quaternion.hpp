@@ -121,7 +121,7 @@ Quaternion<T> quaternion_from(Mat<T, 3, 3> const& a) {
   if (q[0] < 0.0) inverse = -inverse;
   return {q[0] * inverse, q[1] * inverse, q[2] * inverse, q[3] * inverse};
 }
-/// The same in doubles.
+/// The same in doubles, of the rotation matrix `a` (3×3).
 template <class = void>  // compiled where it is used
 Quaternion<double> quaternion_of(Mat3 const& a) {
   return quaternion_from<double>(a);

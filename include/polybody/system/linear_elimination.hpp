@@ -21,12 +21,12 @@ class LinearEliminationOf {
   /// An independent coordinate and its factor.
   struct Term {
     Index q, v;     ///< its places among coordinates and speeds
-    double factor;  ///< f, of the independent one
+    double factor;  ///< f [unit of the dependent one over that of this one]
   };
   /// A dependent coordinate: its constant and its terms.
   struct Dependent {
     Index q, v;            ///< its places among coordinates and speeds
-    double constant;       ///< c, in the unit of the coordinate
+    double constant;       ///< c [unit of the coordinate]
     Sequence<Term> terms;  ///< Σ f q_i
   };
 
