@@ -5,6 +5,7 @@
 /// dual or recorded numbers.
 
 #include <polybody/solvers/held_multipliers.hpp>
+#include <polybody/system/coordinates.hpp>
 #include <polybody/system/joint_coordinates.hpp>
 #include <polybody/system/reduction.hpp>
 

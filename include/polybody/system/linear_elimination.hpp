@@ -82,10 +82,10 @@ class LinearEliminationOf {
  private:
   /// A row after elimination, and how it came about.
   struct Pivot {
-    Index row;                 ///< of the model
-    Index v = -1;              ///< its dependent
-    IndexMap<double> entries;  ///< by speeds
-    double constant;
+    Index row;                                                ///< of the model
+    Index v = -1;                                             ///< its dependent
+    IndexMap<double> entries;                                 ///< by speeds
+    double constant;                                          ///< of the row [its unit]
     Sequence<std::pair<std::size_t, double>> multiples = {};  ///< m_kj
     Sequence<std::pair<std::size_t, double>> above = {};      ///< row'_j,dk of earlier rows
   };

@@ -67,11 +67,13 @@ MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigens
   std::vector<Index> const free = statically_determinate(s).free_coordinates(s);
   SparseFactor factor;
   factor_positive(factor, submatrix(s.stiffness, free, free), "the structure moves without deformation, though held.");
-  MatX const balanced = loads - heavy * mass.solve(rigid.transpose() * loads);
-  MatX held(Index(free.size()), loads.cols());
-  for (std::size_t i = 0; i < free.size(); ++i) held.row(Index(i)) = balanced.row(free[i]);
   MatX shapes(s.size(), loads.cols() + count);
-  shapes.leftCols(loads.cols()) = scatter_rows(factor.solve(held), free, s.size());
+  if (loads.cols() > 0) {
+    MatX const balanced = loads - heavy * mass.solve(rigid.transpose() * loads);
+    MatX held(Index(free.size()), loads.cols());
+    for (std::size_t i = 0; i < free.size(); ++i) held.row(Index(i)) = balanced.row(free[i]);
+    shapes.leftCols(loads.cols()) = scatter_rows(factor.solve(held), free, s.size());
+  }
   if (count > 0) shapes.rightCols(count) = free_interface_modes(s, count, ReferenceConditions::none(), solve);
   shapes -= rigid * mass.solve(heavy.transpose() * shapes);
   return detail::orthogonal_basis(s, std::move(shapes));
