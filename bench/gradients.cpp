@@ -20,11 +20,13 @@ double cpu() {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// A chain of rigid links or cables of 0.1 m on pins, let go from the side; parameters are factors of links' masses.
+/// A chain of rigid links or cables of 0.1 m on pins, let go from the side, at rest or as it turns about the vertical;
+/// parameters are factors of links' masses.
 template <class B>
 struct Chain {
   int links;
   double until;
+  double turn = 0.0;  // [rad/s]
 
   auto operator()(std::span<double const> p) const {
     using Pin = Joint<Spherical, Constraint>;
@@ -44,7 +46,8 @@ struct Chain {
       else
         model.connect(Pin{}, bodies[std::size_t(i - 1)].at(0.1), bodies[std::size_t(i)].at(0.0));
     }
-    State const start = model.reference_state();
+    State start = model.reference_state();
+    for (auto const& link : bodies) model.set_velocity(start, link, {0, 0, 0}, {0, 0, turn});
     auto const tip = bodies.back();
     std::vector<Output<M>> outputs{
         {"tip z [m]", [tip](M const& m, State const& x) { return position(m, x, tip.at(0.1))[2]; }}};
@@ -128,8 +131,8 @@ std::vector<Parameter> parameters(int count, std::string const& what, std::strin
   return all;
 }
 template <class B>
-void print_chain(char const* name, int links) {
-  print(name, links, Chain<B>{links, 2.0}, parameters(std::min(links, 33), "mass of link", "link"),
+void print_chain(char const* name, int links, double turn = 0.0) {
+  print(name, links, Chain<B>{links, 2.0, turn}, parameters(std::min(links, 33), "mass of link", "link"),
         GeneralizedAlpha{.tolerance = 1e-12});
 }
 
@@ -138,13 +141,17 @@ void print_chain(char const* name, int links) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   std::printf(
-      "chains: 2 s in 2000 steps, vehicle: 0.2 s in 200; tolerance 1e-12; cost in runs\n\n| | links | parameters | run "
+      "chains: 2 s in 2000 steps, from rest in a plane or turning at 2 rad/s; vehicle: 0.2 s in 200; tolerance 1e-12; "
+      "cost in runs\n\n| | links | parameters | run "
       "[ms] | direct | and a parameter | adjoint | and a parameter | adjoint with 50 snapshots | apart "
       "|\n|---|---|---|---|---|---|---|---|---|---|\n");
   print_chain<Rigid<>>("rigid", 16);
   print_chain<Rigid<>>("rigid", 64);
   print_chain<AncfCable<>>("`AncfCable`", 16);
   print_chain<AncfCable<>>("`AncfCable`", 64);
+  print_chain<Rigid<>>("rigid, turning", 16, 2.0);
+  print_chain<Rigid<>>("rigid, turning", 64, 2.0);
+  print_chain<AncfCable<>>("`AncfCable`, turning", 64, 2.0);
   print("vehicle", 128, Vehicle{0.2}, parameters(100, "stiffness of spring", "spring"),
         GeneralizedAlpha{.rho_inf = 0.5, .tolerance = 1e-12, .start_correction = false});
 }

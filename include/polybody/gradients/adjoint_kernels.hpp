@@ -40,9 +40,11 @@ class TransposedSolution {
     mu.resize(y.size());
     correction_.resize(y.size());
     solve(y, mu);
+    products_ = 0;
     double left = std::numeric_limits<double>::infinity();
     for (int cycle = 0;; ++cycle) {
       rhs_ = y - product(mu);
+      ++products_;
       solve(rhs_, correction_);
       double const all = mu.norm(), before = left;
       left = all > 0.0 ? correction_.norm() / all : 0.0;
@@ -51,16 +53,21 @@ class TransposedSolution {
       while (!gmres_.is_done()) {
         solve(product(gmres_.next()), correction_);
         gmres_.take(correction_);
+        ++products_;
       }
       gmres_.add_to(mu);
     }
   }
+
+  /// How many products the last solution took.
+  int products() const { return products_; }
 
  private:
   static constexpr int cycles = 5;
   static constexpr double rounding = 1e-12;
 
   Gmres gmres_;
+  int products_ = 0;
   VecX rhs_, correction_;
 };
 

@@ -12,7 +12,7 @@
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <polybody/gradients/adjoint_kernels.hpp>
-#include <polybody/gradients/alpha_step_slope.hpp>
+#include <polybody/gradients/step_factors.hpp>
 
 namespace polybody {
 
@@ -35,18 +35,6 @@ struct Costate {
   }
 };
 
-/// Passes blocks on with rows and columns exchanged.
-template <TakesBlocks S>
-class TransposedSink {
- public:
-  explicit TransposedSink(S& target) : target_(target) {}  ///< to `target`
-  /// Block b at (row, col) of the matrix, (col, row) of the transposed one.
-  void add(Index row, Index col, BlockView const& b) { target_.add(col, row, b.transposed()); }
-
- private:
-  S& target_;
-};
-
 /// Adjoints of converged steps of a method, one step after the other, from the last one to the first.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepAdjoint {
@@ -54,13 +42,10 @@ class AlphaStepAdjoint {
   /// The model must outlive it.
   template <class M>
   [[gnu::cold]] AlphaStepAdjoint(M const& model, System& system, AlphaMethod const& method)
-      : system_(&system), recorded_(stepped_system<Recorded>(model, with<Entries::motion>)), method_(method) {
+      : recorded_(stepped_system<Recorded>(model, with<Entries::motion>)),
+        method_(method),
+        factors_(system, method, {{NearFactors::exact, 0.0}, {NearFactors::turned, 0.5}}) {
     Index const nq = system.coordinates(), nv = system.speeds(), rows = system.rows();
-    VecX const any = VecX::Zero(rows);
-    solver_.analyse(system, 1, [&](BlockSink& sink) {
-      TransposedSink<BlockSink> transposed(sink);
-      system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, any, transposed);
-    });
     from_ = q_ = Numbers::Constant(nq, Recorded(0.0));
     delta_ = v_ = a_ = r_ = Numbers::Constant(nv, Recorded(0.0));
     lambda_ = phi_ = rate_ = Numbers::Constant(rows, Recorded(0.0));
@@ -76,9 +61,9 @@ class AlphaStepAdjoint {
   /// position.
   double retreat(StepEnds const& step, Costate& x, VecX& mu) {
     record(step);
-    factor(step);
+    factors_.set(step);
     Index const nv = a_.size(), rows = lambda_.size();
-    double const h = step.h, of_a1 = mass(), of_v1 = method_.gamma * h, of_d1 = method_.beta * h * h;
+    double const h = step.h, of_a1 = method_.mass(), of_v1 = method_.gamma * h, of_d1 = method_.beta * h * h;
     pull_position(x.q);
     VecX const q_before = of_q_, delta_by_q = of_delta_;
     y_.head(nv) = x.own + of_a1 * x.a + of_v1 * x.v + of_d1 * delta_by_q;
@@ -91,7 +76,8 @@ class AlphaStepAdjoint {
           product_.tail(rows) = of_lambda_;
           return product_;
         },
-        [&](VecX const& rhs, VecX& correction) { solver_.solve(rhs, correction); }, most_products);
+        [&](VecX const& rhs, VecX& correction) { factors_.solve(rhs, correction); }, most_products);
+    factors_.took(solution_.products());
     VecX const v1 = x.v - of_v_, a1 = x.a - of_a_, delta = delta_by_q - of_delta_;
     x.q = q_before - of_q_;
     x.v = v1 + h * delta;
@@ -109,7 +95,6 @@ class AlphaStepAdjoint {
   using Numbers = VecXOf<Recorded>;
   static constexpr Index most_products = 60;
 
-  double mass() const { return (1.0 - method_.alpha_m) / (1.0 - method_.alpha_f); }
   /// What Φ and Φ̇ are multiplied by in R.
   double of_positions(double h) const { return 1.0 / (method_.beta * h * h); }
   double of_speeds(double h) const { return 1.0 / (method_.gamma * h); }
@@ -120,10 +105,9 @@ class AlphaStepAdjoint {
   void record(StepEnds const& step) {
     State const &before = step.before, &after = step.after;
     Recording::On const on(recording_);
-    double const h = step.h, of_a0 = h * h * (0.5 - method_.beta), of_a1 = h * h * method_.beta;
+    VecX const increment = step.increment(method_);
     detail::set_variables(before.q, from_);
-    for (Index i = 0; i < delta_.size(); ++i)
-      delta_[i] = Recorded::variable(h * before.v[i] + of_a0 * step.own_before[i] + of_a1 * step.own_after[i]);
+    for (Index i = 0; i < delta_.size(); ++i) delta_[i] = Recorded::variable(increment[i]);
     recorded_.plus(from_, delta_, q_);
     moved_ = recording_.size();
     detail::set_variables(after.v, v_);
@@ -133,19 +117,6 @@ class AlphaStepAdjoint {
     recorded_.residual(a_, lambda_, r_);
     if (phi_.size() > 0) recorded_.violation(phi_);
     if (!recorded_.velocity_rows().empty()) recorded_.violation_rate(rate_);
-  }
-
-  void factor(StepEnds const& step) {
-    double const h = step.h;
-    State const& x = step.after;
-    detail::evaluate_for_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, balance_);
-    Index const bad = solver_.factor([&](BlockSink& sink) {
-      TransposedSink<BlockSink> transposed(sink);
-      system_->tangent({mass(), method_.gamma * h, method_.beta * h * h}, SecondOrder::included, x.lambda, transposed);
-    });
-    if (bad >= 0)
-      throw LinearSolverSingular{"The adjoint of the step that ends at t = ", x.t, " s has no pivot at ",
-                                 name_of_equation(*system_, bad), "."};
   }
 
   /// (∂q₁/∂q₀)ᵀ q̄ and (∂q₁/∂δ)ᵀ q̄.
@@ -172,16 +143,15 @@ class AlphaStepAdjoint {
     take(lambda_, of_lambda_);
   }
 
-  System* system_;
   BasicSystem<Recorded> recorded_;
-  TangentSolver<SolverOfSteps<Solver>> solver_;  // of the transposed tangent
   AlphaMethod method_;
+  StepFactors<Solver, Derivative::transposed> factors_;
   Recording recording_;
   std::size_t moved_ = 0;  // operations until q₁ is there
   Numbers from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
   detail::TransposedSolution solution_;
   VecX mu_, y_, product_;
-  VecX of_q_, of_delta_, of_v_, of_a_, of_lambda_, balance_;
+  VecX of_q_, of_delta_, of_v_, of_a_, of_lambda_;
 };
 
 }  // namespace polybody

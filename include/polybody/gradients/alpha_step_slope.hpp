@@ -7,61 +7,24 @@
 /// follow from the formulas of the step, and
 ///   δ[M v̇₁ − f₁ + G₁ᵀλ₁] = 0,  δΦ(q₁)/βh² = 0  (of velocity rows δΦ̇/γh)
 /// is linear in y. Its left side comes from one pass of dual numbers through the residual, so no term is missing: not
-/// the derivative of ⊞, not ∂(Gᵀλ)/∂q. It is solved by factors that need only be near, those of the step itself or of
-/// the tangent with second-order terms at its end, and corrected until nothing changes.
+/// the derivative of ⊞, not ∂(Gᵀλ)/∂q. It is solved by factors that need only be near (`StepFactors`) and corrected
+/// until nothing changes, or until a probe tells that nothing would (`CorrectionProbe`).
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <array>
 #include <span>
 
-#include <polybody/gradients/near_factors.hpp>
-#include <polybody/integrators/alpha_method.hpp>
-#include <polybody/solvers/reduced_coordinates.hpp>
+#include <polybody/gradients/correction_probe.hpp>
+#include <polybody/gradients/step_factors.hpp>
 
 namespace polybody {
-
-/// What a parameter does to the equations of a step at its end while unknowns stay: ∂r/∂p (nv) and ∂Φ/∂p, of velocity
-/// rows ∂Φ̇/∂p (rows).
-struct EquationSlope {
-  VecX balance;        ///< (nv) ∂r/∂p
-  VecX rows;           ///< (rows) ∂Φ/∂p
-  double scale = 1.0;  ///< of the parameter, in its own unit: over it a and λ may change by their own size
-};
-
-/// The ends of a step of h: its state before and after, and the method's own accelerations there.
-struct StepEnds {
-  State const& before;     ///< at its start, with the speeds that the step set out with
-  State const& after;      ///< at its end
-  VecX const& own_before;  ///< (nv) a₀
-  VecX const& own_after;   ///< (nv) a₁
-  double h;                ///< [s]
-};
-
-/// A direction along which a step is differentiated.
-struct StepDirection {
-  EquationSlope by;     ///< what the parameter does to the equations at the end of the step
-  State* dx = nullptr;  ///< the derivative of the state before the step; it becomes that of the state after it
-  double dh = 0.0;  ///< that of the length of the step [s]; what the time of its end does to the equations is in `by`
-};
-
-namespace detail {
-/// The system at a place where its tangent with second-order terms is asked: what eliminated joints hold is taken from
-/// the residual that was reduced last. \param r (nv) is scratch
-template <class = void>
-void evaluate_for_tangent(System& system, StepPlace const& x, VecX& r) {
-  system.evaluate(x.at.q, x.at.v, x.at.t);
-  if (!system.step_coordinates()) return;
-  r.resize(system.speeds());
-  system.residual(x.a, x.lambda, r);
-}
-}  // namespace detail
 
 /// Slopes of converged steps of a method, one step after the other.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepSlope {
  public:
-  using Factors = TangentSolver<SolverOfSteps<Solver>>;  ///< of the tangent of a step
+  using Factors = typename StepFactors<Solver, Derivative::direct>::Factors;  ///< of the tangent of a step
   /// Directions that go through the equations together, a part of a dual number each: with eight, what they leave
   /// between joints and bodies no longer stays in the cache.
   static constexpr int lanes = 4;
@@ -69,56 +32,64 @@ class AlphaStepSlope {
   /// The model must outlive it.
   template <class M>
   [[gnu::cold]] AlphaStepSlope(M const& model, System& system, AlphaMethod const& method)
-      : system_(&system), dual_(stepped_system<D>(model, with<Entries::motion>)), method_(method) {
-    VecX const any = VecX::Zero(system.rows());
-    tangent_.analyse(system, SecondOrder::omitted, any);
+      : dual_(stepped_system<D>(model, with<Entries::motion>)),
+        method_(method),
+        factors_(system, method, candidates()) {
     Index const nq = system.coordinates(), nv = system.speeds(), rows = system.rows();
     from_ = q_ = Dots::Constant(nq, D(0.0));
     delta_ = v_ = a_ = r_ = Dots::Constant(nv, D(0.0));
     lambda_ = phi_ = rate_ = Dots::Constant(rows, D(0.0));
     for (std::size_t l = 0; l < y_.size(); ++l) y_[l] = rhs_[l] = correction_[l] = VecX::Zero(nv + rows);
     guess_ = VecX::Zero(nv);
+    still_.q = VecX::Zero(nq);
+    still_.v = still_.a = still_.memory = guess_;
+    at_rest_ = {{guess_, VecX::Zero(rows)}, &still_, 0.0};
+    probe_ = CorrectionProbe(nv, rows);
   }
 
   /// From now on slopes are those of this step. \param near factors of a matrix near its tangent, such as its own, or
   /// none; what serves best, they or factors made at the end of the step, is learnt. \throws LinearSolverSingular at a
   /// singular position.
   void set(StepEnds const& step, Factors* near = nullptr) {
-    exact_ = false;
-    factors_ = choice_.next() == NearFactors::of_step ? near : nullptr;
-    if (!factors_) factor(step, choice_.now() == NearFactors::exact);
+    probe_.fade();
+    factors_.set(step, near);
     State const &before = step.before, &after = step.after;
-    double const h = step.h, of_a0 = h * h * (0.5 - method_.beta), of_a1 = h * h * method_.beta;
+    guess_ = step.increment(method_);
     for (Index i = 0; i < from_.size(); ++i) from_[i].v = before.q[i];
     for (Index i = 0; i < a_.size(); ++i) {
       a_[i].v = after.a[i];
       v_[i].v = after.v[i];
-      delta_[i].v = h * before.v[i] + of_a0 * step.own_before[i] + of_a1 * step.own_after[i];
+      delta_[i].v = guess_[i];
     }
     for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].v = after.lambda[i];
     size_of_a_ = after.a.norm();
     size_of_lambda_ = after.lambda.head(lambda_.size()).norm();
   }
 
-  /// Takes up to `lanes` directions over the step. Returns what the last corrections changed at most, beside all, or
-  /// beside a and λ over a parameter's scale where that is more. \throws LinearSolverSingular as `set`.
+  /// Takes up to `lanes` directions over the step; where the first ones are fewer, a probe goes with them. Returns what
+  /// a correction more would change at most, beside all, or beside a and λ over a parameter's scale where that is more.
+  /// \throws LinearSolverSingular as `set`.
   double advance(StepEnds const& step, std::span<StepDirection const> directions) {
-    bool const far = passes_ > 2;
-    for (std::size_t l = 0; l < directions.size(); ++l) guess(step, directions[l], far, y_[l]);
+    std::size_t const n = directions.size();
+    bool const far = passes_ > 2, probes = n < std::size_t(lanes) && !probe_.known() && probe_.draw(y_[n]);
+    for (std::size_t l = 0; l < n; ++l) guess(step, directions[l], far, y_[l]);
     find_end(step, directions);
-    double left = std::numeric_limits<double>::infinity();
+    double left = std::numeric_limits<double>::infinity(), more = left;
     for (passes_ = 1; passes_ <= most_passes; ++passes_) {
-      double const before = left, enough = exact_ ? 1e-11 : 1e-12;
+      double const before = left;
       left = correct(step, directions);
-      bool const again = passes_ > 1, stays = passes_ > 2 && left >= 0.8 * before,
-                 shrinks = passes_ > 2 && left * left <= 1e-14 * before;
-      if (left <= 1e-15 || (again && left <= enough) || ((stays || shrinks) && left <= 1e-10)) break;
-      if (again && left > slow * before && !exact_) factor(step, true);
+      if (probes && passes_ == 1) measure(n);
+      more = probe_.known() ? std::min(left, left_after(directions)) : left;
+      bool const stays = passes_ > 2 && left >= 0.8 * before, shrinks = passes_ > 2 && left * left <= 1e-14 * before;
+      if (more <= (factors_.are_exact() ? 1e-11 : 1e-12) || ((stays || shrinks) && left <= 1e-10)) break;
+      if (passes_ == 1 || left <= slow * before || factors_.are_nearest()) continue;
+      factors_.set_nearest(step);
+      probe_.forget();
     }
-    choice_.add(std::min(passes_, most_passes));
+    factors_.took(std::min(passes_, most_passes));
     if (left > 1e-12) dual_.plus(from_, delta_, q_);  // else βh² times that is less than rounding of q
     take_end(step, directions);
-    return left;
+    return more;
   }
 
  private:
@@ -126,9 +97,14 @@ class AlphaStepSlope {
   using Dots = VecXOf<D>;
   using Partials = typename D::Partials;
   static constexpr int most_passes = 30;
-  static constexpr double slow = 0.1;  // corrections that shrink by no more ask for exact factors
+  static constexpr double slow = 0.1;  // corrections that shrink by no more ask for the nearest factors
 
-  /// Vectors of the directions, an entry of each at a time; where there are fewer, the first one stands in.
+  static std::vector<NearFactorsChoice::Candidate> candidates() {
+    return {
+        {NearFactors::of_step, 0.0}, {NearFactors::of_end, 0.7}, {NearFactors::exact, 2.0}, {NearFactors::turned, 2.5}};
+  }
+
+  /// Vectors of the directions, an entry of each at a time; where there are fewer, the probe stands in.
   struct Side {
     std::array<double const*, std::size_t(lanes)> of;
     Partials operator[](Index i) const {
@@ -140,33 +116,9 @@ class AlphaStepSlope {
   template <class F>
   static Side side(std::size_t count, F const& vector_of) {
     Side out;
-    for (std::size_t l = 0; l < out.of.size(); ++l) out.of[l] = vector_of(l < count ? l : 0).data();
+    for (std::size_t l = 0; l < out.of.size(); ++l) out.of[l] = vector_of(std::min(l, count)).data();
     return out;
   }
-
-  /// Factors the tangent at the end of the step. \param exact with second-order terms
-  void factor(StepEnds const& step, bool exact) {
-    double const h = step.h;
-    State const& x = step.after;
-    TangentCoefficients const k{mass(), method_.gamma * h, method_.beta * h * h};
-    if (exact)
-      tangent_.include(*system_, x.lambda);
-    else
-      tangent_.forget();
-    Factors& own = tangent_.solver();
-    for (bool again = true; again;) {
-      detail::evaluate_for_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, balance_);
-      std::size_t const reordered = own.reorderings();
-      Index const bad = own.factor_tangent(*system_, {{x.q, x.v, x.t}, x.a, x.lambda}, k, tangent_.terms());
-      again = bad >= 0 && own.reorderings() != reordered;
-      if (bad >= 0 && !again)
-        throw LinearSolverSingular{"The derivative of the step that ends at t = ", x.t, " s has no pivot at ",
-                                   name_of_equation(*system_, bad), "."};
-    }
-    factors_ = &own;
-    exact_ = exact;
-  }
-  double mass() const { return (1.0 - method_.alpha_m) / (1.0 - method_.alpha_f); }
 
   /// What changes of a₁ and λ₁ begin with: as they were, near what they become; extrapolated where that is far.
   void guess(StepEnds const& step, StepDirection const& along, bool far, VecX& y) {
@@ -187,14 +139,15 @@ class AlphaStepSlope {
     AlphaMethod const& m = method_;
     std::size_t const n = directions.size();
     double const h = step.h, h2 = h * h, of_a0 = h2 * (0.5 - m.beta), of_a1 = h2 * m.beta;
-    auto const state = [&](std::size_t l) -> State const& { return *directions[l].dx; };
+    auto const along = [&](std::size_t l) -> StepDirection const& { return l < n ? directions[l] : at_rest_; };
+    auto const state = [&](std::size_t l) -> State const& { return *along(l).dx; };
     Side const q = side(n, [&](std::size_t l) -> VecX const& { return state(l).q; }),
                v = side(n, [&](std::size_t l) -> VecX const& { return state(l).v; }),
                a = side(n, [&](std::size_t l) -> VecX const& { return state(l).a; }),
                own = side(n, [&](std::size_t l) -> VecX const& { return state(l).memory; }),
                y = side(n, [&](std::size_t l) -> VecX const& { return y_[l]; });
     Partials dh;
-    for (std::size_t l = 0; l < std::size_t(lanes); ++l) dh[Index(l)] = directions[l < n ? l : 0].dh;
+    for (std::size_t l = 0; l < std::size_t(lanes); ++l) dh[Index(l)] = along(l).dh;
     for (Index i = 0; i < from_.size(); ++i) from_[i].d = q[i];
     for (Index i = 0; i < a_.size(); ++i) {
       Partials const v0 = v[i], a0 = own[i], a1 = y[i];
@@ -215,7 +168,7 @@ class AlphaStepSlope {
     double most = 0.0;
     for (std::size_t l = 0; l < directions.size(); ++l) {
       VecX &y = y_[l], &correction = correction_[l];
-      factors_->solve(rhs_[l], correction);
+      factors_.solve(rhs_[l], correction);
       y += correction;
       double const scale = directions[l].by.scale;
       most = std::max({most, part(correction.head(nv), y.head(nv), size_of_a_ / scale),
@@ -224,10 +177,32 @@ class AlphaStepSlope {
     apply(step.h, directions.size());
     return most;
   }
+  /// After a pass with a probe as lane l.
+  void measure(std::size_t l) {
+    factors_.solve(rhs_[l], correction_[l]);
+    correction_[l] += y_[l];
+    probe_.measure(correction_[l]);
+  }
+  /// The largest relative correction that would come after this one.
+  double left_after(std::span<StepDirection const> directions) const {
+    Index const nv = a_.size(), rows = lambda_.size();
+    double most = 0.0;
+    for (std::size_t l = 0; l < directions.size(); ++l) {
+      double const scale = directions[l].by.scale;
+      CorrectionProbe::Parts const left = probe_.bound(correction_[l]);
+      most = std::max({most, relative(left.a, y_[l].head(nv), size_of_a_ / scale),
+                       relative(left.lambda, y_[l].tail(rows), size_of_lambda_ / scale)});
+    }
+    return most;
+  }
+  template <class B>
+  static double relative(double size, B const& y, double least) {
+    double const all = std::max(y.norm(), least);
+    return all > 0.0 ? size / all : size;
+  }
   template <class A, class B>
   static double part(A const& correction, B const& y, double least) {
-    double const all = std::max(y.norm(), least);
-    return all > 0.0 ? correction.norm() / all : correction.norm();
+    return relative(correction.norm(), y, least);
   }
   /// M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ there.
   void evaluate(StepEnds const& step) {
@@ -242,18 +217,18 @@ class AlphaStepSlope {
     double const of_position = -1.0 / (method_.beta * step.h * step.h), of_speed = -1.0 / (method_.gamma * step.h);
     Index const nv = r_.size();
     std::size_t const n = directions.size();
-    for (Index i = 0; i < nv; ++i)
-      for (std::size_t l = 0; l < n; ++l) rhs_[l][i] = -(r_[i].d[Index(l)] + directions[l].by.balance[i]);
-    for (Index i = 0; i < phi_.size(); ++i)
-      for (std::size_t l = 0; l < n; ++l)
-        rhs_[l][nv + i] = of_position * (phi_[i].d[Index(l)] + directions[l].by.rows[i]);
-    for (Index const i : dual_.velocity_rows())
-      for (std::size_t l = 0; l < n; ++l)
-        rhs_[l][nv + i] = of_speed * (rate_[i].d[Index(l)] + directions[l].by.rows[i]);
+    auto const by = [&](std::size_t l) -> EquationSlope const& { return l < n ? directions[l].by : at_rest_.by; };
+    std::size_t const lanes_used = std::min(n + 1, std::size_t(lanes));
+    for (std::size_t l = 0; l < lanes_used; ++l) {
+      EquationSlope const& of = by(l);
+      for (Index i = 0; i < nv; ++i) rhs_[l][i] = -(r_[i].d[Index(l)] + of.balance[i]);
+      for (Index i = 0; i < phi_.size(); ++i) rhs_[l][nv + i] = of_position * (phi_[i].d[Index(l)] + of.rows[i]);
+      for (Index const i : dual_.velocity_rows()) rhs_[l][nv + i] = of_speed * (rate_[i].d[Index(l)] + of.rows[i]);
+    }
   }
   /// The end of the step after a correction of y.
   void apply(double h, std::size_t count) {
-    double const of_a = mass(), of_v = method_.gamma * h, of_delta = method_.beta * h * h;
+    double const of_a = method_.mass(), of_v = method_.gamma * h, of_delta = method_.beta * h * h;
     Side const by = side(count, [&](std::size_t l) -> VecX const& { return correction_[l]; });
     for (Index i = 0; i < a_.size(); ++i) {
       Partials const change = by[i];
@@ -271,6 +246,7 @@ class AlphaStepSlope {
       State& dx = *directions[l].dx;
       guess_ = y_[l].head(nv);
       StepHistory(dx).push(dx, step.h, guess_);
+      probe_.add(y_[l], directions[l].by.scale);
     }
     auto const take = [&](Dots const& from, VecX State::* part) {
       for (Index i = 0; i < from.size(); ++i)
@@ -282,18 +258,17 @@ class AlphaStepSlope {
     take(lambda_, &State::lambda);
   }
 
-  System* system_;
   BasicSystem<D> dual_;
-  StepTangent<SolverOfSteps<Solver>> tangent_;  // at the end of the step
-  Factors* factors_ = nullptr;                  // of it, or what `set` was given
-  bool exact_ = false;                          // they are of it, with second-order terms
-  NearFactorsChoice choice_;
   AlphaMethod method_;
-  int passes_ = 1;  // of the last directions
+  StepFactors<Solver, Derivative::direct> factors_;
+  CorrectionProbe probe_;
+  State still_;            // no change of the state before a step
+  StepDirection at_rest_;  // along which y alone changes
+  int passes_ = 1;         // of the last directions
   double size_of_a_ = 0.0, size_of_lambda_ = 0.0;
   Dots from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
   std::array<VecX, std::size_t(lanes)> y_, rhs_, correction_;  // y: changes of a₁ and λ₁, of each direction
-  VecX guess_, multipliers_, balance_;
+  VecX guess_, multipliers_;
 };
 
 }  // namespace polybody

@@ -239,8 +239,8 @@ class DirectDifferentiation {
     beside_.set_end(x_);
     constexpr std::size_t most = std::size_t(AlphaStepSlope<>::lanes);
     directions_.resize(std::min(lanes_.size(), most));
-    for (std::size_t first = 0; first < lanes_.size(); first += most) {
-      std::size_t const count = std::min(most, lanes_.size() - first);
+    for (std::size_t first = 0, count; first < lanes_.size(); first += count) {
+      count = std::min(first == 0 ? most - 1 : most, lanes_.size() - first);
       for (std::size_t l = 0; l < count; ++l) {
         Lane const& lane = lanes_[first + l];
         lane.tangent->dt += lane.dh;

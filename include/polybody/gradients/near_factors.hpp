@@ -5,7 +5,8 @@
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <algorithm>
-#include <array>
+#include <limits>
+#include <vector>
 
 namespace polybody {
 
@@ -14,31 +15,41 @@ enum class NearFactors {
   of_step,  ///< those by which the step itself was solved: they cost nothing
   of_end,   ///< of its tangent at its end
   exact,    ///< of that with second-order terms
+  turned,   ///< of that with what ⊞ does to its columns (gradients/turned_increments.hpp)
 };
 
 /// The factors that have taken the least, passes through the equations and what they cost themselves. Each are tried
 /// in turn, as long as there is something to save, and again after a hundred steps.
 class NearFactorsChoice {
  public:
+  /// Factors that may be taken.
+  struct Candidate {
+    NearFactors factors;  ///< which
+    double cost;          ///< what they cost themselves [passes with their solutions]
+  };
+
+  /// \param candidates at least one, the cheapest first
+  [[gnu::cold]] explicit NearFactorsChoice(std::vector<Candidate> candidates)
+      : candidates_(std::move(candidates)), taken_(candidates_.size(), never) {}
+
   /// Another step begins: its factors.
   NearFactors next() {
-    if (step_ > 0) cost_[std::size_t(now_)] = passes_ + own_cost[std::size_t(now_)];
-    bool const least = passes_ == 2 * directions_;  // a correction, and another one that finds nothing
+    if (step_ > 0) taken_[now_] = passes_ + candidates_[now_].cost;
+    bool const least = passes_ == directions_;  // one correction each
     if (step_ == 0 || step_ == period) {
-      now_ = NearFactors::of_step;
+      now_ = 0;
       step_ = 0;
-      cost_.fill(never);
+      taken_.assign(candidates_.size(), never);
     } else if (tries_) {
-      tries_ = !least && now_ != NearFactors::exact;
-      now_ = tries_ ? NearFactors(int(now_) + 1)
-                    : NearFactors(int(std::min_element(cost_.begin(), cost_.end()) - cost_.begin()));
+      tries_ = !least && now_ + 1 < candidates_.size();
+      now_ = tries_ ? now_ + 1 : std::size_t(std::min_element(taken_.begin(), taken_.end()) - taken_.begin());
     }
     if (step_++ == 0) tries_ = true;
     passes_ = directions_ = 0;
-    return now_;
+    return now();
   }
   /// Those of the step.
-  NearFactors now() const { return now_; }
+  NearFactors now() const { return candidates_[now_].factors; }
   /// Directions of the step that went through the equations together took so many passes.
   void add(int passes) {
     passes_ += passes;
@@ -47,13 +58,13 @@ class NearFactorsChoice {
 
  private:
   static constexpr int period = 100;  // steps
-  static constexpr double never = 1e9;
-  static constexpr std::array<double, 3> own_cost{0.0, 0.7, 2.0};  // in passes with their solutions
+  static constexpr double never = std::numeric_limits<double>::infinity();
 
-  NearFactors now_ = NearFactors::of_step;
+  std::vector<Candidate> candidates_;
+  std::vector<double> taken_;  // by candidates: passes of a step
+  std::size_t now_ = 0;
   bool tries_ = true;
   int step_ = 0, passes_ = 0, directions_ = 0;
-  std::array<double, 3> cost_{never, never, never};
 };
 
 }  // namespace polybody

@@ -96,12 +96,12 @@ struct AlphaMethod {
     if (corrects) correct(system, x, shifted, h, w);
     return corrects;
   }
+  /// v̇ changes by this much with a.
+  double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
 
  private:
   /// How often a step may be tried again.
   static int efforts(System const& s) { return s.layout().has_groups ? 2 : 1; }
-  /// v̇ changes by this much with a.
-  double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
 
   /// What Newton's method begins a step with: extrapolated, or where it is to take care the last v̇ and λ.
   void guess(State& x, double h, bool careful, AlphaVectors& w) const {

@@ -1,0 +1,130 @@
+#pragma once
+/// \file
+/// Factors near the derivative of a step's equations by its unknowns, or near the transposed one.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <array>
+#include <optional>
+
+#include <polybody/gradients/near_factors.hpp>
+#include <polybody/gradients/step_ends.hpp>
+#include <polybody/gradients/turned_increments.hpp>
+
+namespace polybody {
+
+/// Passes blocks on with rows and columns exchanged.
+template <TakesBlocks S>
+class TransposedSink {
+ public:
+  explicit TransposedSink(S& target) : target_(target) {}  ///< to `target`
+  /// Block b at (row, col) of the matrix, (col, row) of the transposed one.
+  void add(Index row, Index col, BlockView const& b) { target_.add(col, row, b.transposed()); }
+
+ private:
+  S& target_;
+};
+
+/// Which derivative.
+enum class Derivative { direct, transposed };
+
+/// The factors of a step, of the kind that has taken the fewest passes; those of each kind are laid out when they are
+/// first asked for.
+template <LinearSolver Solver, Derivative derivative>
+class StepFactors {
+ public:
+  using Factors = TangentSolver<SolverOfSteps<Solver>>;  ///< of the tangent of a step
+
+  /// The system must outlive it. \param candidates among which to choose, of `turned` only where unknowns turn
+  [[gnu::cold]] StepFactors(System& system, AlphaMethod const& method,
+                            std::vector<NearFactorsChoice::Candidate> candidates)
+      : system_(&system), method_(method), turned_(system), choice_(of_use(std::move(candidates))) {}
+
+  /// From now on they are of this step. \param near those of the step itself, or none. \throws LinearSolverSingular at
+  /// a singular position.
+  void set(StepEnds const& step, Factors* near = nullptr) {
+    kind_ = choice_.next();
+    factors_ = near;
+    if (kind_ != NearFactors::of_step || !near) factor(step, std::max(kind_, NearFactors::of_end));
+  }
+  /// Takes the nearest ones that there are. \throws LinearSolverSingular likewise.
+  void set_nearest(StepEnds const& step) { factor(step, nearest()); }
+  /// They are the nearest ones.
+  bool are_nearest() const { return kind_ == nearest(); }
+  /// They are of the tangent with second-order terms.
+  bool are_exact() const { return kind_ >= NearFactors::exact; }
+  /// x for the right-hand side `rhs`, both by the unknowns of the step.
+  void solve(VecX const& rhs, VecX& x) {
+    if (kind_ != NearFactors::turned) return factors_->solve(rhs, x);
+    if constexpr (derivative == Derivative::transposed) {
+      turned_rhs_ = rhs;
+      turned_.transpose_to_increments(turned_rhs_);
+      factors_->solve(turned_rhs_, x);
+    } else {
+      factors_->solve(rhs, x);
+      turned_.to_increments(x);
+    }
+  }
+  /// Solutions of the step took so many passes, for directions that went together.
+  void took(int passes) { choice_.add(passes); }
+
+ private:
+  std::vector<NearFactorsChoice::Candidate> of_use(std::vector<NearFactorsChoice::Candidate> all) const {
+    if (!turned_.any()) std::erase_if(all, [](auto const& c) { return c.factors == NearFactors::turned; });
+    return all;
+  }
+  NearFactors nearest() const { return turned_.any() ? NearFactors::turned : NearFactors::exact; }
+
+  /// Writes the tangent of a kind where the system was evaluated last.
+  void write(NearFactors kind, TangentCoefficients const& k, VecX const& lambda, BlockSink& sink) {
+    auto const write_into = [&](auto& receiver) {
+      system_->tangent(k, kind == NearFactors::of_end ? SecondOrder::omitted : SecondOrder::included, lambda, receiver);
+      if (kind == NearFactors::turned) turned_.write(*system_, k, receiver);
+    };
+    if constexpr (derivative == Derivative::transposed) {
+      TransposedSink<BlockSink> transposed(sink);
+      write_into(transposed);
+    } else {
+      write_into(sink);
+    }
+  }
+  Factors& factors_of(NearFactors kind, VecX const& lambda) {
+    std::optional<Factors>& own = own_[std::size_t(kind)];
+    if (own) return *own;
+    own.emplace().analyse(*system_, 1, [&](BlockSink& sink) { write(kind, {1.0, 1.0, 1.0}, lambda, sink); });
+    return *own;
+  }
+  void factor(StepEnds const& step, NearFactors kind) {
+    double const h = step.h;
+    StepPlace const end = step.end();
+    if (kind == NearFactors::turned) turned_.set(*system_, step.increment(method_));
+    factors_ = &factors_of(kind, end.lambda);
+    for (bool again = true; again;) {
+      detail::evaluate_for_tangent(*system_, end, balance_);
+      std::size_t const reordered = factors_->reorderings();
+      Index const bad = factor(kind, end, {method_.mass(), method_.gamma * h, method_.beta * h * h});
+      again = bad >= 0 && factors_->reorderings() != reordered;
+      if (bad >= 0 && !again)
+        throw LinearSolverSingular{"The derivative of the step that ends at t = ", end.at.t, " s has no pivot at ",
+                                   name_of_equation(*system_, bad), "."};
+    }
+    kind_ = kind;
+  }
+  Index factor(NearFactors kind, StepPlace const& end, TangentCoefficients const& k) {
+    if (derivative == Derivative::direct && kind != NearFactors::turned)
+      return factors_->factor_tangent(*system_, end, k,
+                                      kind == NearFactors::exact ? SecondOrder::included : SecondOrder::omitted);
+    return factors_->factor([&](BlockSink& sink) { write(kind, k, end.lambda, sink); });
+  }
+
+  System* system_;
+  AlphaMethod method_;
+  TurnedIncrements turned_;
+  NearFactorsChoice choice_;
+  NearFactors kind_ = NearFactors::of_step;
+  std::array<std::optional<Factors>, 4> own_;  // by their kind
+  Factors* factors_ = nullptr;                 // one of these, or what `set` was given
+  VecX balance_, turned_rhs_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,35 @@
+// Which factors are taken where they need given numbers of passes.
+#include <polybody/gradients/near_factors.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace polybody;
+
+namespace near_factors_test {
+
+// How often each kind is taken in so many steps where a direction takes passes[kind].
+std::vector<int> taken(std::vector<int> const& passes, int steps) {
+  NearFactorsChoice choice({{NearFactors::of_step, 0.0}, {NearFactors::of_end, 0.7}, {NearFactors::exact, 2.0}});
+  std::vector<int> count(passes.size(), 0);
+  for (int i = 0; i < steps; ++i) {
+    NearFactors const kind = choice.next();
+    EXPECT_EQ(kind, choice.now());
+    ++count[std::size_t(kind)];
+    choice.add(passes[std::size_t(kind)]);
+  }
+  return count;
+}
+
+TEST(NearFactors, KeepsThoseThatCostLeast) {
+  EXPECT_EQ(taken({6, 4, 1}, 100), (std::vector<int>{1, 1, 98}));
+  EXPECT_EQ(taken({6, 2, 1}, 100), (std::vector<int>{1, 98, 1}));
+  EXPECT_EQ(taken({2, 2, 1}, 100), (std::vector<int>{98, 1, 1}));
+}
+// What needs one pass leaves nothing to save: nothing else is tried.
+TEST(NearFactors, TriesNoOthersWhereOnePassIsEnough) {
+  EXPECT_EQ(taken({1, 1, 1}, 100), (std::vector<int>{100, 0, 0}));
+  EXPECT_EQ(taken({4, 1, 1}, 100), (std::vector<int>{1, 99, 0}));
+}
+TEST(NearFactors, TriesAgainAfterAHundredSteps) { EXPECT_EQ(taken({6, 4, 1}, 400), (std::vector<int>{4, 4, 392})); }
+
+}  // namespace near_factors_test
