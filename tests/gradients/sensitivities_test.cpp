@@ -131,6 +131,16 @@ TEST(Sensitivities, SayWhatNothingDependsOn) {
   EXPECT_EQ(s.run.warnings[0], "Nothing in the run depends on the parameter \"colour [1]\".");
 }
 
+TEST(Sensitivities, RefuseSlopesThatDoNotConverge) {
+  EXPECT_EQ(detail::require_converged(1e-9, 0.25, "sensitivities"), 1e-9);
+  for (double const left : {1e-3, std::nan("")}) {
+    std::string const said =
+        message_of<NewtonStalled>([&] { (void)detail::require_converged(left, 0.25, "sensitivities"); });
+    EXPECT_TRUE(has(said, "sensitivities: derivatives of the step that ends at t = 0.25 s do not converge")) << said;
+    EXPECT_TRUE(has(said, "Take a smaller step")) << said;
+  }
+}
+
 TEST(Sensitivities, RefuseWhatTheyDoNotDifferentiate) {
   auto const said = [](auto const& make, std::vector<Parameter> const& parameters, GeneralizedAlpha const& i = {}) {
     return refusal([&] { sensitivities(make, parameters, i); });

@@ -24,7 +24,7 @@ namespace polybody {
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepSlope {
  public:
-  using Factors = typename StepFactors<Solver, Derivative::direct>::Factors;  ///< of the tangent of a step
+  using Factors = typename StepFactors<Solver, Derivative::direct>::OfStep;  ///< of the tangent of a step
   /// Directions that go through the equations together, a part of a dual number each: with eight, what they leave
   /// between joints and bodies no longer stays in the cache.
   static constexpr int lanes = 4;

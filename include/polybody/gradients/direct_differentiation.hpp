@@ -248,7 +248,8 @@ class DirectDifferentiation {
         directions_[l].dx = &lane.tangent->dx;
         directions_[l].dh = lane.dh;
       }
-      out_.left = std::max(out_.left, slope_.advance(step, std::span(directions_).first(count)));
+      double const left = slope_.advance(step, std::span(directions_).first(count));
+      out_.left = std::max(out_.left, require_converged(left, x_.t, "sensitivities"));
     }
     for (Lane const& lane : lanes_) push_length(*lane.tangent, lane.dh);
   }

@@ -97,7 +97,8 @@ class AdjointRun {
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
-          out_.left = std::max(out_.left, way_.retreat({before, after, steps_[k].taken}, bar, equations, out_.slopes));
+          double const left = way_.retreat({before, after, steps_[k].taken}, bar, equations, out_.slopes);
+          out_.left = std::max(out_.left, require_converged(left, after.t, "gradient"));
           if (k > 0) add_integrand(k, before, bar);
         });
     for (std::size_t j = 0; j < parameters_.size(); ++j) {

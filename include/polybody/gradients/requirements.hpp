@@ -53,6 +53,16 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                        "its markers off the middle between nodes, or give these joints Constraint."};
 }
 
+/// What slopes of a step that ends at t [s] still change by, relative to them. \throws NewtonStalled, beginning with
+/// `who`, where that is more than a millionth.
+template <class = void>
+double require_converged(double left, double t, char const* who) {
+  if (left <= 1e-6) return left;
+  throw NewtonStalled{who,  ": derivatives of the step that ends at t = ",
+                      t,    " s do not converge: the last correction changed them by ",
+                      left, " of themselves. Take a smaller step there, or softer contacts."};
+}
+
 /// Times at which a step of a run must end, in no order: those of drives and loads, then those of the options [s].
 template <class = void>
 std::vector<double> corners_of(System const& system, RunOptions const& options) {

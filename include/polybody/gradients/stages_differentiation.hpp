@@ -106,7 +106,8 @@ class StagesDifferentiation {
                              slope_of(j, [](V const& v) -> VecX const& { return v.at_place.rows; }),
                              parameters_[j].size()};
       };
-      out_.left = std::max(out_.left, slopes_.advance(step, directions, slope));
+      double const left = slopes_.advance(step, directions, slope);
+      out_.left = std::max(out_.left, require_converged(left, x_.t, "sensitivities"));
     }
   }
 

@@ -33,7 +33,7 @@ enum class Derivative { direct, transposed };
 template <LinearSolver Solver, Derivative derivative>
 class StepFactors {
  public:
-  using Factors = TangentSolver<SolverOfSteps<Solver>>;  ///< of the tangent of a step
+  using OfStep = TangentSolver<SolverOfSteps<Solver>>;  ///< by which a step is solved
 
   /// The system must outlive it. \param candidates among which to choose, of `turned` only where unknowns turn
   [[gnu::cold]] StepFactors(System& system, AlphaMethod const& method,
@@ -42,9 +42,9 @@ class StepFactors {
 
   /// From now on they are of this step. \param near those of the step itself, or none. \throws LinearSolverSingular at
   /// a singular position.
-  void set(StepEnds const& step, Factors* near = nullptr) {
+  void set(StepEnds const& step, OfStep* near = nullptr) {
     kind_ = choice_.next();
-    factors_ = near;
+    near_ = near;
     if (kind_ != NearFactors::of_step || !near) factor(step, std::max(kind_, NearFactors::of_end));
   }
   /// Takes the nearest ones that there are. \throws LinearSolverSingular likewise.
@@ -55,6 +55,7 @@ class StepFactors {
   bool are_exact() const { return kind_ >= NearFactors::exact; }
   /// x for the right-hand side `rhs`, both by the unknowns of the step.
   void solve(VecX const& rhs, VecX& x) {
+    if (kind_ == NearFactors::of_step) return near_->solve(rhs, x);
     if (kind_ != NearFactors::turned) return factors_->solve(rhs, x);
     if constexpr (derivative == Derivative::transposed) {
       turned_rhs_ = rhs;
@@ -69,6 +70,8 @@ class StepFactors {
   void took(int passes) { choice_.add(passes); }
 
  private:
+  using Factors = TangentSolver<SolverOfSteps<UnsymmetricSolver<Solver>>>;
+
   std::vector<NearFactorsChoice::Candidate> of_use(std::vector<NearFactorsChoice::Candidate> all) const {
     if (!turned_.any()) std::erase_if(all, [](auto const& c) { return c.factors == NearFactors::turned; });
     return all;
@@ -123,7 +126,8 @@ class StepFactors {
   NearFactorsChoice choice_;
   NearFactors kind_ = NearFactors::of_step;
   std::array<std::optional<Factors>, 4> own_;  // by their kind
-  Factors* factors_ = nullptr;                 // one of these, or what `set` was given
+  Factors* factors_ = nullptr;                 // one of these
+  OfStep* near_ = nullptr;
   VecX balance_, turned_rhs_;
 };
 
