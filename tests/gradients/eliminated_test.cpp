@@ -32,8 +32,8 @@ void expect_slopes_on_rows() {
   Sensitivities const free = sensitivities(hung_cables<AncfLinear, held>(), parameters, HhtAlpha{}),
                       on_rows = sensitivities(hung_cables<Constraint, held>(), parameters, HhtAlpha{});
   for (std::size_t const k : {std::size_t(0), free.times.size() / 2, free.times.size() - 1}) {
-    // the runs differ by their rounding, by DenseLu so much that slopes differ by 2e-9
-    expect_same_slopes(free.slopes[k].topRows(4), on_rows.slopes[k].topRows(4), parameters, 3e-9);
+    // 2e-9 is how far these scatter as the density moves by a millionth
+    expect_same_slopes(free.slopes[k].topRows(4), on_rows.slopes[k].topRows(4), parameters, 4e-9);
     // the rounding of rows over βh² is in the reaction
     expect_same_slopes(free.slopes[k].bottomRows(1), on_rows.slopes[k].bottomRows(1), parameters, 1e-7);
   }

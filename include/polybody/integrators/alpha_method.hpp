@@ -229,6 +229,8 @@ struct AlphaMethod {
       }
       return finite ? method.measure(h, two_sets, w) : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
     }
+    AndersonAcceleration& acceleration() { return w.acceleration; }
+    VecX& correction() { return w.y; }
     void apply(double part) { method.apply(part, h, two_sets, w); }
     /// By a correction of this `norm` (root mean square of accelerations) the bodies move further than by their speeds.
     bool is_far(double norm) const {
@@ -354,9 +356,7 @@ struct AlphaMethod {
     return w.of_each_part(
         [&](Index first, Index end) { return norm(change, first, end) <= 0.5 * h * norm(w.jerk, first, end); });
   }
-  static double norm(VecX const& a, Index first, Index end) {
-    return std::sqrt(squares(a.data() + first, end - first));
-  }
+  static double norm(VecX const& a, Index i, Index end) { return std::sqrt(squares(a.data() + i, end - i)); }
   /// Δq and v after e seconds with w.jerk.
   static void follow(State const& x, double e, AlphaVectors& w) {
     for (Index i = 0; i < w.v.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/math/types.hpp>
+#include <polybody/solvers/anderson.hpp>
 
 namespace polybody {
 
@@ -10,7 +10,8 @@ struct AlphaVectors {
   VecX lambda, rhs, y;                        ///< of all multipliers that the step keeps; `phi` is of its rows
   VecX back, rate, open;  ///< of a stabilised step: what μ moves, a vector by rows, and rows before μ answers them
   VecX kept, kept_back;   ///< corrections while others are looked at
-  Index states;           ///< first-order ones, the last of the speeds
+  AndersonAcceleration acceleration;  ///< of y, by the accelerations of bodies
+  Index states;                       ///< first-order ones, the last of the speeds
 
   /// Zeros, as many as a system has coordinates, speeds, rows, multipliers that a step keeps, and `first_order` states.
   AlphaVectors(Index coordinates, Index speeds, Index rows, Index multipliers, Index first_order)
@@ -33,6 +34,7 @@ struct AlphaVectors {
         open(phi),
         kept(rhs),
         kept_back(v0),
+        acceleration(rhs.size(), speeds - first_order),
         states(first_order) {}
 
   /// f(first, end) holds of the speeds of bodies and of the first-order states.

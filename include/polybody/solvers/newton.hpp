@@ -8,7 +8,7 @@
 #include <optional>
 #include <type_traits>
 
-#include <polybody/math/types.hpp>
+#include <polybody/solvers/anderson.hpp>
 
 namespace polybody {
 
@@ -60,6 +60,7 @@ struct KeptFactor {
   double theta = 1.0;   ///< its contraction rate, a ratio
   double fresh = 0.05;  ///< the ratio that is expected of a new one, as others had
   int served = 0;       ///< solves that it has ended
+  double seen = 0.0;    ///< the rate that its corrections showed last, a ratio; 0: none
   bool stale = false;  ///< the last solve found at once that one had to be made, as where contacts change in every step
 };
 
@@ -98,10 +99,12 @@ struct NewtonProgress {
     return !(grows && beside_tolerated > 1.0);
   }
   /// Whether a new factorisation saves more iterations than it costs, over as many solves as the last one served.
-  static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, KeptFactor const& kept) {
-    if (kept.theta <= 1.5 * kept.fresh) return false;  // no better than what is at hand
+  /// \param theta the rate with the one at hand
+  static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, KeptFactor const& kept,
+                           double theta) {
+    if (theta <= 1.5 * kept.fresh) return false;  // no better than what is at hand
     double const by = size.norm / size.tolerated;
-    double const saved = iterations_to_come(by, kept.theta) - iterations_to_come(by, kept.fresh);
+    double const saved = iterations_to_come(by, theta) - iterations_to_come(by, kept.fresh);
     return saved * std::max(kept.served, 1) > options.factorisation_cost;
   }
 
@@ -111,16 +114,21 @@ struct NewtonProgress {
     return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);
   }
 
-  /// The correction has been applied: whether it was the last one. \param renewed the factorisation is of this iterate
-  bool ends(CorrectionSize const& size, NewtonOptions const& options, bool renewed, double theta) {
+  /// The correction is taken.
+  void take(CorrectionSize const& size) {
     earlier = before;
     before = size.norm;
     largest = std::max(largest, size.norm);
     rated = size.norm / size.tolerated;
+  }
+  /// Whether the correction that is taken is the last one. \param renewed the factorisation is of this iterate
+  /// \param left the share of it that the next one comes from, by a fit of past ones
+  bool ends(NewtonOptions const& options, bool renewed, double theta, double left = 1.0) const {
     if (options.always_refactor || !options.predictive_stop) return rated <= 1.0;
     double const contraction = std::min(theta, 0.99);
     bool const small = rated <= 0.1;  // rounding no longer contracts
-    return small || ((!renewed || grown == 0) && theta < 1.0 && contraction / (1.0 - contraction) * rated <= 1.0);
+    double const expected = contraction / (1.0 - contraction) * left * rated;
+    return small || ((!renewed || grown == 0) && theta < 1.0 && expected <= 1.0);
   }
 };
 
@@ -136,6 +144,8 @@ struct NewtonSolve {
   bool fresh = false, renewed = false;  ///< a factorisation was made at the last iterate, at this one
   bool rounding = false;                ///< the correction is what rounding leaves
   bool restarted = false;               ///< the iterate is the first one again
+  bool follows = false;                 ///< the last correction was by the factorisation at hand
+  std::optional<AndersonFit> fit = {};  ///< of this correction by the ones before it
 
   /// What has been spent and `more` stay within the budget.
   bool affords(double more) const {
@@ -147,6 +157,8 @@ struct NewtonSolve {
     if (!problem.refactor()) return false;
     ++report.factorisations;
     kept.served = 0;
+    kept.seen = 0.0;
+    follows = false;
     return kept.usable = renewed = true;
   }
   /// Goes back to the first iterate where an earlier solve's factorisation led far from it.
@@ -169,11 +181,31 @@ struct NewtonSolve {
   }
   static bool is_finite(CorrectionSize const& size) { return std::isfinite(size.norm / size.tolerated); }
 
+  /// Fits the correction by those before it of the same factorisation.
+  void fit_correction() {
+    if constexpr (requires { problem.acceleration(); })
+      if (follows && !fit) fit = problem.acceleration().fit(problem.correction());
+  }
+  /// After a combined step ‖Δₖ‖/‖Δₖ₋₁‖ is no rate of the factorisation: that is what the fit tells. As one ratio may be
+  /// small by chance, a rate θ is followed by one of at least θ^1.5. Returns that of corrections to come, combined
+  /// ones.
+  double rate_of_factorisation() {
+    double const ratio = kept.theta;
+    if constexpr (requires { problem.acceleration(); })
+      if (follows) {
+        if (problem.acceleration().combined()) fit_correction();
+        kept.theta = std::max(fit ? fit->contraction : ratio, kept.seen * std::sqrt(kept.seen));
+      }
+    kept.seen = kept.theta;
+    return std::min(ratio, kept.theta);
+  }
+
   /// Rates the next correction, renews the factorisation where it asks for that, and solves again. False where it
   /// diverges.
   bool rate(int k, CorrectionSize& size) {
     double const rate_before = kept.theta;
     bool shrinks = progress.rate(size, options, kept.theta);
+    double const to_come = rate_of_factorisation();
     report.theta = kept.theta;
     if (fresh && !renewed) kept.fresh = std::clamp(std::sqrt(kept.fresh * kept.theta), 0.01, 0.5);
     if constexpr (requires { problem.is_rounding(size.norm); })
@@ -181,12 +213,13 @@ struct NewtonSolve {
         rounding = problem.is_rounding(size.norm);
         if (rounding) {
           kept.theta = rate_before;
+          kept.seen = 0.0;
           return true;
         }
         if (!problem.evaluate()) return false;  // it was asked of places beside the iterate
       }
-    bool const asks =
-        !renewed && (!shrinks || progress.renewal_pays(size, options, kept)) && affords(options.factorisation_cost);
+    bool const asks = !renewed && (!shrinks || progress.renewal_pays(size, options, kept, to_come)) &&
+                      affords(options.factorisation_cost);
     if (k == 1 && !options.always_refactor)
       kept.stale = begins_anew ? asks || kept.theta > 2.0 * kept.fresh : asks && !fresh && kept.theta > 0.5;
     if (asks && restart()) return true;
@@ -199,6 +232,24 @@ struct NewtonSolve {
       shrinks = first || size.norm < progress.before || size.norm <= size.tolerated;
     }
     return shrinks || ++progress.grown < options.growths;
+  }
+
+  /// Takes the correction, combined with those before it where it is not the last one by itself. Whether it is.
+  bool take(CorrectionSize const& size) {
+    progress.take(size);
+    bool last = progress.ends(options, renewed, kept.theta);
+    if constexpr (requires { problem.acceleration(); }) {
+      if ((last && !fit) || options.always_refactor || !options.predictive_stop) return last;
+      fit_correction();
+      if (fit && fit->contraction > 0.8) follows = false;  // a combination would lead far
+      if (!follows) problem.acceleration().forget();
+      bool const measured = problem.acceleration().combined();  // else θ is a ratio, as of contacts that have changed
+      problem.acceleration().combine(problem.correction());
+      double const left = !follows ? 1.0 : measured ? fit->left : std::sqrt(fit->left);
+      last = last || progress.ends(options, renewed, kept.theta, left);
+      follows = true;
+    }
+    return last;
   }
 
   /// One iteration. What it ends with, if it does.
@@ -217,6 +268,7 @@ struct NewtonSolve {
       if (!renew()) return fail(k == 0 ? NewtonResult::singular : NewtonResult::diverged);
       if (progress.before == 0.0) kept.theta = 1.0;
     }
+    fit.reset();
     CorrectionSize size{problem.solve()};
     ++report.iterations;
     if (!is_finite(size))
@@ -226,11 +278,12 @@ struct NewtonSolve {
       if (rounding) return NewtonResult::converged;
       if (restarted) return {};
     }
+    bool const last = take(size);
     if constexpr (requires { problem.apply(progress.part); })
       problem.apply(progress.part);
     else
       problem.apply();
-    if (!progress.ends(size, options, renewed, kept.theta)) {
+    if (!last) {
       if (affords(1.0) || !is_near(size.norm)) return {};
       report.left = size.norm / size.tolerated;
     }
@@ -248,6 +301,8 @@ struct NewtonSolve {
 ///                             one right-hand side, by an old and by a new factorisation
 ///   void apply()              adds it; or void apply(double part), which full Newton damps
 ///   bool is_rounding(double)  (or not there) whether a correction of this norm is what rounding of the iterate leaves
+///   AndersonAcceleration& acceleration(), VecX& correction()  (or not there) what combines corrections, and the one
+///                             that `solve` found and `apply` takes
 ///   bool is_far(double), void restart()  (or not there) whether a correction of this norm leads further away than the
 ///                             solution may be; brings back the first iterate
 /// `kept` says whether an earlier factorisation may be used, and what is known of it.
@@ -257,15 +312,17 @@ struct NewtonSolve {
 /// begins again with a new one: from there it may find another solution, as rods that turn over have. Where the first
 /// correction shows that, the next solves begin with a new one, until their second corrections are small again. With
 /// ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no correction
-/// grew: the rate θ after a large correction is small for any iterate and says nothing of convergence. It fails after
-/// as many growing corrections of new factorisations as `growths` says. Full Newton in a stiff direction contracts by
-/// turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate predicts the next
-/// correction: it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves, as what is
-/// tolerated shrinks with a wild iterate's accelerations. Where it would go in circles, as between a contact and none,
-/// half of a correction is enough: the part that is taken is halved, down to 1/64, when ‖Δ‖ shrinks by less than a
-/// tenth of that part, and doubled when it shrinks by what the part explains. What is
-/// near, at the end of the budget: its last correction moves it by less than a hundredth of what would be far, or of
-/// the largest one where the problem does not tell. What is not goes on, as iterates at impacts may be anywhere.
+/// grew: the rate θ after a large correction is small for any iterate and says nothing of convergence. Corrections of
+/// one factorisation are combined, but for full Newton and without `predictive_stop`: θ is then the factorisation's own
+/// rate, and ‖Δ‖ what the combination leaves of the last correction, or its geometric mean with ‖Δ‖ after the first
+/// two. It fails after as many growing corrections of new factorisations as `growths` says. Full Newton in a stiff
+/// direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate
+/// predicts the next correction: it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves,
+/// as what is tolerated shrinks with a wild iterate's accelerations. Where it would go in circles, as between a contact
+/// and none, half of a correction is enough: the part that is taken is halved, down to 1/64, when ‖Δ‖ shrinks by less
+/// than a tenth of that part, and doubled when it shrinks by what the part explains. What is near, at the end of the
+/// budget: its last correction moves it by less than a hundredth of what would be far, or of the largest one where the
+/// problem does not tell. What is not goes on, as iterates at impacts may be anywhere.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, KeptFactor& kept) {
   detail::NewtonSolve<std::remove_reference_t<Problem>> solve{problem, options, kept, kept.stale};
