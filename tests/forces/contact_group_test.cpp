@@ -10,6 +10,7 @@
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
+#include <polybody/testing/frames.hpp>
 
 #include "support/refusal.hpp"
 
@@ -130,6 +131,43 @@ double apart(State const& a, State const& b) { return std::max((a.q - b.q).norm(
 // --- a group moves as its contacts do one by one --------------------------------------------------------------
 
 // The same sums in another order: an explicit method tells them apart by rounding, if at all.
+// Markers beyond reach are told side by side: the same pairs in the same order as one by one, whatever their numbers.
+TEST(ContactGroup, FindsThePairsThatMayTouchOneAfterTheOther) {
+  using Pairs = std::vector<std::pair<Index, Index>>;
+  for (int const planes : {0, 1, 20, 40})
+    for (int const fixed : {0, 3, 24, 40}) {
+      int const many = 77, few = planes + fixed;
+      Group group;
+      group.set_many(many);
+      for (int k = 0; k < planes; ++k) group.pair_with(on_plane, many + k, "plane");
+      for (int k = 0; k < fixed; ++k) group.pair_with(on_fixed, many + planes + k, "ball");
+      laws::Numbers number;
+      std::vector<Frame<double>> frames;
+      for (int k = 0; k < many + few; ++k) frames.push_back(number.frame());
+      auto const frame = [&](Index k) -> Frame<double> const& { return frames[std::size_t(k)]; };
+      for (auto const& [begin, end] : Pairs{{0, many}, {5, 5}, {3, 4}, {31, 64}, {70, 77}}) {
+        Pairs expected, found;
+        group.for_each_candidate([&](Index i, Index j, auto const& law) {
+          if (i >= begin && i < end && law.may_touch(frame(i), frame(j))) expected.emplace_back(i, j);
+        });
+        group.for_each_pair(frame, [&](Index i, Index j, auto const&) { found.emplace_back(i, j); }, begin, end);
+        EXPECT_EQ(found, expected) << planes << " " << fixed << " from " << begin;
+        if (few > 0 && end - begin > 10) {
+          EXPECT_GT(found.size(), 0u);
+          EXPECT_LT(found.size(), std::size_t(few * (end - begin)));
+        }
+      }
+    }
+}
+// What is no number is found, so that it comes to where numbers are looked at.
+TEST(ContactGroup, PassesOverNothingThatIsNoNumber) {
+  ContactReach const reach = ContactReach::sphere({0, 0, 0}, 1.0);
+  double const nan = std::nan("");
+  EXPECT_TRUE(reach.holds(Vec3(0.9, 0.0, 0.0)));
+  EXPECT_FALSE(reach.holds(Vec3(1.1, 0.0, 0.0)));
+  EXPECT_TRUE(reach.holds(Vec3(nan, 5.0, 0.0)));
+}
+
 TEST(ContactGroup, IsTheSumOfItsContacts) {
   State const one_by_one = fallen<Applied::one_by_one>(RungeKutta4<>{}, 2e-4).x;
   EXPECT_LT(apart(fallen<Applied::grouped>(RungeKutta4<>{}, 2e-4).x, one_by_one), 1e-11);

@@ -116,8 +116,7 @@ struct Incomplete {
 };
 struct Accelerated : Incomplete {
   AndersonAcceleration combinations;
-  Accelerated(Index n, double off_diagonal, unsigned seed)
-      : Incomplete(n, off_diagonal, seed), combinations(n, n) {}
+  Accelerated(Index n, double off_diagonal, unsigned seed) : Incomplete(n, off_diagonal, seed), combinations(n, n) {}
   AndersonAcceleration& acceleration() { return combinations; }
   VecX& correction() { return y; }
 };

@@ -235,7 +235,7 @@ TEST(LinkOnGround, OfACableThatStandsUprightIsNone) {
 TEST(LinkOnGround, IsNeverMissedByItsBound) {
   Numbers number;
   auto const missed = [&](auto const& geometry) {
-    int touching = 0, far = 0, found = 0;
+    int touching = 0, far = 0, found = 0, beyond = 0;
     for (int k = 0; k < 20000; ++k) {
       Frame<double> const ground = number.frame();
       Frame<double> link = near_ground(number, 3.0);
@@ -244,10 +244,13 @@ TEST(LinkOnGround, IsNeverMissedByItsBound) {
       bool const touches = !contact_points(geometry, link, ground).empty(), may = geometry.may_touch(link, ground);
       touching += touches;
       far += !may;
-      found += touches && !may;
+      bool const within = geometry.reach(ground).holds(link.r);
+      found += (touches && !may) || (may && !within);
+      beyond += !within;
     }
     EXPECT_GT(touching, 500);
-    EXPECT_GT(far, 500);  // it is of use
+    EXPECT_GT(far, 500);  // they are of use
+    EXPECT_GT(beyond, 500);
     return found;
   };
   EXPECT_EQ(missed(flat), 0);

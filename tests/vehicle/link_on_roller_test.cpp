@@ -227,17 +227,20 @@ TEST(LinkOnRoller, IsNeverLostInABend) {
 template <class G, class Pose>
 void expect_may_touch(G const& geometry, Pose const& pose) {
   Numbers number;
-  int touching = 0, far = 0, missed = 0;
+  int touching = 0, far = 0, missed = 0, beyond = 0;
   for (int k = 0; k < 20000; ++k) {
     auto const [link, roller] = pose(number);
     bool const touches = !contact_points(geometry, link, roller).empty(), may = geometry.may_touch(link, roller);
     touching += touches;
     far += !may;
-    missed += touches && !may;
+    bool const within = geometry.reach(roller).holds(link.r);
+    missed += (touches && !may) || (may && !within);
+    beyond += !within;
   }
   EXPECT_EQ(missed, 0);
   EXPECT_GT(touching, 1000);
-  EXPECT_GT(far, 1000);  // it is of use
+  EXPECT_GT(far, 1000);  // they are of use
+  EXPECT_GT(beyond, 1000);
 }
 
 /// Either near to each other or anywhere.

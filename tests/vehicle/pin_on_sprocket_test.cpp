@@ -334,16 +334,19 @@ TEST(PinOnSprocket, OnACableIsThatOnALinkThatDoesNotRoll) {
 template <class G>
 int missed(G const& geometry, double askew) {
   Numbers number;
-  int touching = 0, far = 0, found = 0;
+  int touching = 0, far = 0, found = 0, beyond = 0;
   for (int k = 0; k < 20000; ++k) {
     auto const [link, sprocket] = number() > 0.0 ? near_pose(number, askew) : std::pair(number.frame(), number.frame());
     bool const touches = !contact_points(geometry, link, sprocket).empty(), may = geometry.may_touch(link, sprocket);
     touching += touches;
     far += !may;
-    found += touches && !may;
+    bool const within = geometry.reach(sprocket).holds(link.r);
+    found += (touches && !may) || (may && !within);
+    beyond += !within;
   }
   EXPECT_GT(touching, 1000);
-  EXPECT_GT(far, 1000);  // it is of use
+  EXPECT_GT(far, 1000);  // they are of use
+  EXPECT_GT(beyond, 1000);
   return found;
 }
 

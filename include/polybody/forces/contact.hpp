@@ -2,6 +2,7 @@
 /// \file
 /// Contact between two markers: a geometry that says where they overlap, a normal force and friction.
 
+#include <polybody/forces/contact_reach.hpp>
 #include <polybody/forces/force_group.hpp>
 #include <polybody/forces/normal_force.hpp>
 
@@ -51,7 +52,7 @@ Vec<T, 3> shifted(Vec<T, 3> const& p, Vec<T, 3> const& n, T const& x) {
 }  // namespace detail
 
 /// Calls visit(point) for every point where the shapes at frames a and b overlap. `may_touch` is a cheap test before:
-/// it is false only where they cannot overlap.
+/// it is false only where they cannot overlap. `reach(b)`, where there is one, is a cheaper one (`TellsReach`).
 template <class G>
 concept ContactGeometry =
     requires(G const geometry, Frame<double> const a, Frame<double> const b, std::string const name) {
@@ -98,6 +99,11 @@ struct Contact {
     friction.check(name);
   }
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const { return geometry.may_touch(a, b); }
+  ContactReach reach(Frame<double> const& b) const
+    requires TellsReach<G>
+  {
+    return geometry.reach(b);
+  }
 
   /// Calls visit(point, v, N) for every point, v the velocity of a relative to b there.
   template <StateScalar T, class Visit>
@@ -213,6 +219,10 @@ struct SphereOnPlane {
     Vec3 const arm = a.r - b.r, n(b.A(0, 2), b.A(1, 2), b.A(2, 2));
     return arm.dot(n) < radius;
   }
+  template <class = void>  // compiled where it is used
+  ContactReach reach(Frame<double> const& b) const {
+    return ContactReach::half_space(b.r, {b.A(0, 2), b.A(1, 2), b.A(2, 2)}, radius);
+  }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
     Vec<T, 3> const arm = a.r - b.r, n(b.A(0, 2), b.A(1, 2), b.A(2, 2));
@@ -236,6 +246,10 @@ struct SphereOnSphere {
     Vec3 const line = a.r - b.r;
     double const reach = radius_a + radius_b;
     return line.dot(line) < reach * reach;
+  }
+  template <class = void>  // compiled where it is used
+  ContactReach reach(Frame<double> const& b) const {
+    return ContactReach::sphere(b.r, radius_a + radius_b);
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
@@ -265,6 +279,10 @@ struct SphereOnCylinder {
     Vec3 const arm = a.r - b.r, axis(b.A(0, 2), b.A(1, 2), b.A(2, 2));
     double const reach = radius + cylinder, along = arm.dot(axis);
     return arm.dot(arm) - along * along < reach * reach;
+  }
+  template <class = void>  // compiled where it is used
+  ContactReach reach(Frame<double> const& b) const {
+    return ContactReach::cylinder(b.r, {b.A(0, 2), b.A(1, 2), b.A(2, 2)}, radius + cylinder);
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {

@@ -1,8 +1,12 @@
 #pragma once
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <tuple>
 #include <vector>
 
+#include <polybody/forces/contact_reach.hpp>
 #include <polybody/forces/force_group.hpp>
 
 namespace polybody {
@@ -11,7 +15,8 @@ namespace polybody {
 ///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
 ///   model.pair_with(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
 /// A law is a force element of two markers: the first is one of the many, the second one of the few. It is evaluated
-/// only where its `may_touch(first, second)` is true, which should cost little more than a distance.
+/// only where its `may_touch(first, second)` is true, which should cost little more than a distance. Where all laws
+/// tell their `reach(second)` (`TellsReach`), markers beyond it are told side by side.
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 class ContactGroup {
@@ -60,6 +65,8 @@ class ContactGroup {
   /// The same for the markers [begin, end) of the many; frame(i) is that of marker i, visit(i, j, law) takes a pair.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
+    if constexpr ((TellsReach<Laws> && ...))
+      if (opponents() <= 64) return for_each_near_pair(frame, visit, begin, end);
     for (Index i = begin; i < end; ++i)
       for_each_opponent([&](auto const& few) {
         if (few.law.may_touch(frame(i), frame(few.marker))) visit(i, few.marker, few.law);
@@ -67,6 +74,56 @@ class ContactGroup {
   }
 
  private:
+  static constexpr Index side_by_side = 32;
+  /// Places of as many of the many, and a bit for each opponent that may reach them, in the order of all opponents.
+  struct Row {
+    std::array<double, side_by_side> x, y, z;
+    std::array<std::uint64_t, side_by_side> near;
+  };
+
+  std::size_t opponents() const {
+    return std::apply([](auto const&... few) { return (few.size() + ... + std::size_t(0)); }, few_);
+  }
+  template <class FrameOf, class Visit>
+  void for_each_near_pair(FrameOf& frame, Visit& visit, Index begin, Index end) const {
+    Row row;
+    for (Index first = begin; first < end; first += side_by_side) {
+      Index const count = std::min(side_by_side, end - first);
+      find_near(frame, first, count, row);
+      for (Index k = 0; k < count; ++k) {
+        std::uint64_t bits = row.near[std::size_t(k)];
+        if (bits == 0) continue;
+        std::apply([&](auto const&... few) { (visit_near(few, frame, visit, first + k, bits), ...); }, few_);
+      }
+    }
+  }
+  template <class FrameOf>
+  void find_near(FrameOf& frame, Index first, Index count, Row& row) const {
+    for (std::size_t k = 0; k < row.x.size(); ++k) {
+      Vec3 const& r = frame(first + std::min(Index(k), count - 1)).r;
+      row.x[k] = r[0];
+      row.y[k] = r[1];
+      row.z[k] = r[2];
+    }
+    row.near.fill(0);
+    std::uint64_t bit = 1;
+    for_each_opponent([&](auto const& few) {
+      ContactReach const reach = few.law.reach(frame(few.marker));
+      for (std::size_t k = 0; k < row.x.size(); ++k) row.near[k] |= reach.holds(row.x[k], row.y[k], row.z[k]) ? bit : 0;
+      bit <<= 1;
+    });
+  }
+  /// Visits those of a law that may touch marker i; their bits are shifted out.
+  template <class Few, class FrameOf, class Visit>
+  static void visit_near(Few const& few, FrameOf& frame, Visit& visit, Index i, std::uint64_t& bits) {
+    std::size_t const n = few.size();
+    std::uint64_t own = n < 64 ? bits & ((std::uint64_t(1) << n) - 1) : bits;
+    for (; own != 0; own &= own - 1) {
+      auto const& one = few[std::size_t(std::countr_zero(own))];
+      if (one.law.may_touch(frame(i), frame(one.marker))) visit(i, one.marker, one.law);
+    }
+    bits = n < 64 ? bits >> n : 0;
+  }
   template <class Few, class F>
   static void each_of(Few const& few, F& f) {
     for (auto const& one : few) f(one);

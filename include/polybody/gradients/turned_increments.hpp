@@ -30,6 +30,7 @@ class TurnedIncrements {
     for (Index const i : system.velocity_rows()) turns_row_[std::size_t(speeds_ + i)] = 1;
     delta_ = VecX::LinSpaced(speeds_, 0.1, 0.2);
     one_ = rate_ = VecX::Zero(speeds_);
+    none_ = VecX::Zero(system.rows());
     for (Index j = 0; j < speeds_; ++j) {
       one_[j] = 1.0;
       system.local_rate(delta_, one_, rate_);
@@ -76,7 +77,7 @@ class TurnedIncrements {
   void write(System& system, TangentCoefficients const& k, S& receiver) {
     if (!any()) return;
     Sink<S> sink{*this, receiver};
-    system.tangent({k.mass, k.damping, 0.0}, SecondOrder::omitted, VecX::Zero(system.rows()), sink);
+    system.tangent({k.mass, k.damping, 0.0}, SecondOrder::omitted, none_, sink);
   }
 
  private:
@@ -144,6 +145,7 @@ class TurnedIncrements {
   std::vector<std::vector<Index>> colours_;  // columns without a row in common
   std::vector<char> turns_row_;              // by unknowns: balances and velocity rows
   VecX delta_, one_, rate_;
+  VecX none_;  // multipliers, which act on second-order terms alone
   std::vector<double> product_;
 };
 

@@ -15,7 +15,7 @@ namespace polybody {
 /// What Anderson's acceleration finds of a correction f.
 struct AndersonFit {
   double contraction;  ///< ‖u₁‖/‖s₋₁‖, how the iteration alone shrinks the last step, a ratio
-  double left;         ///< ‖f − γ₁ d₁ − γ₂ d₂‖/‖f‖, at least 0.1, as no map is linear
+  double left;         ///< ‖f − γ₁ d₁ − γ₂ d₂‖/‖f‖, a ratio, at least 0.1, as no map is linear
 };
 
 /// The corrections of an iteration that the next one is combined with.

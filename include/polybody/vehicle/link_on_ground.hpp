@@ -29,7 +29,10 @@ struct LinkOnGround {
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& ground) const {
     Vec3 const up = detail::column<double>(ground.A, 2);
-    return difference<double>(link.r, ground.r).dot(up) < terrain.highest() + reach();
+    return difference<double>(link.r, ground.r).dot(up) < terrain.highest() + farthest();
+  }
+  ContactReach reach(Frame<double> const& ground) const {
+    return ContactReach::half_space(ground.r, detail::column<double>(ground.A, 2), terrain.highest() + farthest());
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& ground, Visit&& visit) const {
@@ -57,7 +60,7 @@ struct LinkOnGround {
   }
 
  private:
-  double reach() const {
+  double farthest() const {
     double far = 0.0;
     for (Vec3 const& p : pad) far = std::max(far, p.norm());
     return far;

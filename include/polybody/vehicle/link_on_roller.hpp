@@ -45,15 +45,16 @@ struct LinkOnRoller {
       if (!std::isfinite(y)) throw InvalidInput{name, ": the place of a rim must be finite."};
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
-    double far = 0.0;
-    for (double const y : rims) far = std::max(far, std::abs(y));
-    double const reach = radius + half_thickness + half_width + pitch + far;
+    double const far = farthest_rim(), within = farthest(far);
     Vec3 const arm = difference<double>(roller.r, link.r), x = detail::column<double>(link.A, 0);
-    if (arm.squaredNorm() > reach * reach) return false;
+    if (arm.squaredNorm() > within * within) return false;
     Vec3 const axle = detail::column<double>(roller.A, 1);
     double const askew = std::abs(axle.dot(x));
     double const margin = std::max(handover, double(radius)) + askew * far;
     return std::abs(arm.dot(x)) < 0.5 * pitch + margin && reaches(link, arm, axle, far);
+  }
+  ContactReach reach(Frame<double> const& roller) const {
+    return ContactReach::sphere(roller.r, farthest(farthest_rim()));
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {
@@ -80,6 +81,14 @@ struct LinkOnRoller {
   }
 
  private:
+  double farthest_rim() const {
+    double far = 0.0;
+    for (double const y : rims) far = std::max(far, std::abs(y));
+    return far;
+  }
+  /// The roller's middle from that of a link that it touches, at most. \param far that of a rim from the roller's
+  /// middle
+  double farthest(double far) const { return radius + half_thickness + half_width + pitch + far; }
   /// The axle, at `arm` from the link, is not higher above the face than the rims reach; nor is one of these, `far`
   /// along it. A cable's z lies along x × axle (`link_axes`).
   bool reaches(Frame<double> const& link, Vec3 const& arm, Vec3 const& axle, double far) const {
@@ -144,6 +153,9 @@ struct HornOnRims {
     else
       room -= std::abs(tip[1]);  // a cable's z is across the axle
     return std::abs(aside) > room;
+  }
+  ContactReach reach(Frame<double> const& roller) const {
+    return ContactReach::cylinder(roller.r, detail::column<double>(roller.A, 1), radius + tip.norm());
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& roller, Visit&& visit) const {

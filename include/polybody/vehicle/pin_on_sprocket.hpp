@@ -115,19 +115,30 @@ struct PinOnSprocket {
         profile.outer_radius() + far * askew;  // of the pin's middle: at the rings it is nearer by far · askew
     return arm.squaredNorm() - across * across < reach * reach;
   }
+  ContactReach reach(Frame<double> const& sprocket) const {
+    double far = 0.0;
+    for (double const ring : rings) far = std::max(far, std::abs(ring));
+    return ContactReach::cylinder(sprocket.r, detail::column<double>(sprocket.A, 1),
+                                  profile.outer_radius() + far + std::abs(to_pin()));
+  }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& sprocket, Visit&& visit) const {
     Vec<T, 3> const lateral = detail::column<T>(link_axes<observed, T>(link, detail::column<T>(sprocket.A, 1)), 1);
     Vec<T, 3> const along = detail::column<T>(link.A, 0), axis_x = detail::column<T>(sprocket.A, 0),
                     axis_z = detail::column<T>(sprocket.A, 2);
     Vec<T, 3> const pin = difference<T>(detail::shifted<T>(link.r, along, T(to_pin())), sprocket.r);
+    double turned = std::numeric_limits<double>::quiet_NaN(), s = 0.0, c = 1.0;  // to the valley, which rings share
     for (double const ring : rings) {
       Vec<T, 3> const arm = detail::shifted<T>(pin, lateral, T(ring));
       T const x = arm.dot(axis_x), z = arm.dot(axis_z);
       double const step = 2.0 * std::numbers::pi / profile.teeth;
       double const angle = std::atan2(value_of(x), value_of(z)),
                    middle = valley + step * std::round((angle - valley) / step);
-      double const s = std::sin(middle), c = std::cos(middle);
+      if (middle != turned) {
+        turned = middle;
+        s = std::sin(middle);
+        c = std::cos(middle);
+      }
       T const out = x * s + z * c, side = x * c - z * s;  // along the middle of the valley, and across from z towards x
       bool const forward = value_of(side) >= 0.0;
       auto const o = profile.template overlap<T>(out, forward ? side : T(-side));
