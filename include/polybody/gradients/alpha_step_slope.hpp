@@ -120,6 +120,11 @@ class AlphaStepSlope {
     return out;
   }
 
+  /// What lane l goes along: a direction, or where there are fewer nothing but y, which is the probe.
+  StepDirection const& along(std::span<StepDirection const> directions, std::size_t l) const {
+    return l < directions.size() ? directions[l] : at_rest_;
+  }
+
   /// What changes of a₁ and λ₁ begin with: as they were, near what they become; extrapolated where that is far.
   void guess(StepEnds const& step, StepDirection const& along, bool far, VecX& y) {
     AlphaMethod const& m = method_;
@@ -139,15 +144,14 @@ class AlphaStepSlope {
     AlphaMethod const& m = method_;
     std::size_t const n = directions.size();
     double const h = step.h, h2 = h * h, of_a0 = h2 * (0.5 - m.beta), of_a1 = h2 * m.beta;
-    auto const along = [&](std::size_t l) -> StepDirection const& { return l < n ? directions[l] : at_rest_; };
-    auto const state = [&](std::size_t l) -> State const& { return *along(l).dx; };
+    auto const state = [&](std::size_t l) -> State const& { return *along(directions, l).dx; };
     Side const q = side(n, [&](std::size_t l) -> VecX const& { return state(l).q; }),
                v = side(n, [&](std::size_t l) -> VecX const& { return state(l).v; }),
                a = side(n, [&](std::size_t l) -> VecX const& { return state(l).a; }),
                own = side(n, [&](std::size_t l) -> VecX const& { return state(l).memory; }),
                y = side(n, [&](std::size_t l) -> VecX const& { return y_[l]; });
     Partials dh;
-    for (std::size_t l = 0; l < std::size_t(lanes); ++l) dh[Index(l)] = along(l).dh;
+    for (std::size_t l = 0; l < std::size_t(lanes); ++l) dh[Index(l)] = along(directions, l).dh;
     for (Index i = 0; i < from_.size(); ++i) from_[i].d = q[i];
     for (Index i = 0; i < a_.size(); ++i) {
       Partials const v0 = v[i], a0 = own[i], a1 = y[i];
@@ -216,11 +220,9 @@ class AlphaStepSlope {
   void right_hand_sides(StepEnds const& step, std::span<StepDirection const> directions) {
     double const of_position = -1.0 / (method_.beta * step.h * step.h), of_speed = -1.0 / (method_.gamma * step.h);
     Index const nv = r_.size();
-    std::size_t const n = directions.size();
-    auto const by = [&](std::size_t l) -> EquationSlope const& { return l < n ? directions[l].by : at_rest_.by; };
-    std::size_t const lanes_used = std::min(n + 1, std::size_t(lanes));
-    for (std::size_t l = 0; l < lanes_used; ++l) {
-      EquationSlope const& of = by(l);
+    std::size_t const with_probe = std::min(directions.size() + 1, std::size_t(lanes));
+    for (std::size_t l = 0; l < with_probe; ++l) {
+      EquationSlope const& of = along(directions, l).by;
       for (Index i = 0; i < nv; ++i) rhs_[l][i] = -(r_[i].d[Index(l)] + of.balance[i]);
       for (Index i = 0; i < phi_.size(); ++i) rhs_[l][nv + i] = of_position * (phi_[i].d[Index(l)] + of.rows[i]);
       for (Index const i : dual_.velocity_rows()) rhs_[l][nv + i] = of_speed * (rate_[i].d[Index(l)] + of.rows[i]);

@@ -78,10 +78,14 @@ class StepFactors {
   }
   NearFactors nearest() const { return turned_.any() ? NearFactors::turned : NearFactors::exact; }
 
+  static SecondOrder second_order(NearFactors kind) {
+    return kind == NearFactors::of_end ? SecondOrder::omitted : SecondOrder::included;
+  }
+
   /// Writes the tangent of a kind where the system was evaluated last.
   void write(NearFactors kind, TangentCoefficients const& k, VecX const& lambda, BlockSink& sink) {
     auto const write_into = [&](auto& receiver) {
-      system_->tangent(k, kind == NearFactors::of_end ? SecondOrder::omitted : SecondOrder::included, lambda, receiver);
+      system_->tangent(k, second_order(kind), lambda, receiver);
       if (kind == NearFactors::turned) turned_.write(*system_, k, receiver);
     };
     if constexpr (derivative == Derivative::transposed) {
@@ -115,8 +119,7 @@ class StepFactors {
   }
   Index factor(NearFactors kind, StepPlace const& end, TangentCoefficients const& k) {
     if (derivative == Derivative::direct && kind != NearFactors::turned)
-      return factors_->factor_tangent(*system_, end, k,
-                                      kind == NearFactors::exact ? SecondOrder::included : SecondOrder::omitted);
+      return factors_->factor_tangent(*system_, end, k, second_order(kind));
     return factors_->factor([&](BlockSink& sink) { write(kind, k, end.lambda, sink); });
   }
 

@@ -106,9 +106,7 @@ struct PinOnSprocket {
   bool may_touch(Frame<double> const& link, Frame<double> const& sprocket) const {
     Vec3 const x = detail::column<double>(link.A, 0), axle = detail::column<double>(sprocket.A, 1);
     Vec3 const arm = difference<double>(detail::shifted<double>(link.r, x, to_pin()), sprocket.r);
-    double const across = arm.dot(axle);
-    double far = 0.0;
-    for (double const ring : rings) far = std::max(far, std::abs(ring));
+    double const across = arm.dot(axle), far = farthest_ring();
     double const askew = observed == Observes::frame ? cross<double>(detail::column<double>(link.A, 1), axle).norm()
                                                      : std::abs(x.dot(axle));
     double const reach =
@@ -116,10 +114,8 @@ struct PinOnSprocket {
     return arm.squaredNorm() - across * across < reach * reach;
   }
   ContactReach reach(Frame<double> const& sprocket) const {
-    double far = 0.0;
-    for (double const ring : rings) far = std::max(far, std::abs(ring));
     return ContactReach::cylinder(sprocket.r, detail::column<double>(sprocket.A, 1),
-                                  profile.outer_radius() + far + std::abs(to_pin()));
+                                  profile.outer_radius() + farthest_ring() + std::abs(to_pin()));
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& link, Frame<T> const& sprocket, Visit&& visit) const {
@@ -149,6 +145,14 @@ struct PinOnSprocket {
       Vec<T, 3> const middle_of_pin = detail::sum<T>(sprocket.r, arm);
       visit(ContactPoint<T>{detail::shifted<T>(middle_of_pin, n, -T(profile.pin_radius.value)), n, o.depth});
     }
+  }
+
+ private:
+  /// That of a ring from the sprocket's middle, at most.
+  double farthest_ring() const {
+    double far = 0.0;
+    for (double const ring : rings) far = std::max(far, std::abs(ring));
+    return far;
   }
 };
 
