@@ -194,8 +194,16 @@ async function damage(page) {
   const told = async (text) => {
     writeFileSync(file, text, 'latin1');
     await page.open(pathToFileURL(file).href);
-    return page.ask(`{playing: !document.getElementById('player')?.hidden && !!window.polybodyFilm?.drawn,
-                      notice: document.getElementById('notice')?.hidden ? '' : document.getElementById('notice')?.textContent ?? ''}`);
+    // The first picture is drawn some time after the page is loaded, later where the machine is busy.
+    return page.ask(`(async () => {
+      const element = (id) => document.getElementById(id), last = performance.now() + 10000;
+      for (;;) {
+        const playing = !element('player')?.hidden && !!window.polybodyFilm?.drawn;
+        const notice = element('notice')?.hidden ? '' : element('notice')?.textContent ?? '';
+        if (playing || notice || performance.now() > last) return {playing, notice};
+        await new Promise((resolve) => setTimeout(resolve, 20));
+      }
+    })()`);
   };
   const script = whole.indexOf('<script>');
   const cuts = [script - 1, script + 1000, Math.floor((script + data) / 2), data - 60, data - 20, data, data + 1, data + 10, data + 43,
