@@ -30,6 +30,18 @@ TEST(NearFactors, TriesNoOthersWhereOnePassIsEnough) {
   EXPECT_EQ(taken({1, 1, 1}, 100), (std::vector<int>{100, 0, 0}));
   EXPECT_EQ(taken({4, 1, 1}, 100), (std::vector<int>{1, 99, 0}));
 }
+// Passes by cheap factors do not count as cheap where dear ones had to follow within the step.
+TEST(NearFactors, CountsWhatOthersCostThatFollowed) {
+  NearFactorsChoice choice({{NearFactors::of_step, 0.0}, {NearFactors::exact, 2.0}});
+  int cheap = 0;
+  for (int i = 0; i < 100; ++i) {
+    bool const of_step = choice.next() == NearFactors::of_step;
+    cheap += of_step;
+    if (of_step) choice.make(NearFactors::exact);
+    choice.add(of_step ? 3 : 2);  // 5 and 4 with what they cost
+  }
+  EXPECT_EQ(cheap, 1);
+}
 TEST(NearFactors, TriesAgainAfterAHundredSteps) { EXPECT_EQ(taken({6, 4, 1}, 400), (std::vector<int>{4, 4, 392})); }
 
 }  // namespace near_factors_test

@@ -5,6 +5,7 @@
 
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/system/acting_pairs.hpp>
 #include <polybody/testing/differences.hpp>
 
 using namespace polybody;
@@ -56,14 +57,16 @@ struct Step {
     for (Index const i : system.velocity_rows()) all[nv + i] = rate[i] / (gamma * h);
     return all;
   }
-  TangentCoefficients coefficients() const { return {1.0, gamma * h, beta * h * h}; }
+  TangentCoefficients coefficients(bool exact) const {
+    return {.mass = 1.0, .damping = gamma * h, .stiffness = beta * h * h, .exact = exact};
+  }
 };
 
 struct Matrices {
   MatX by_differences;  // of the step's equations by its unknowns
   MatX plain, turned;   // tangent with second-order terms; with what ⊞ does, in the same unknowns
 };
-Matrices matrices_of(System& system, State const& x, Motion const& motion) {
+Matrices matrices_of(System& system, State const& x, Motion const& motion, bool exact) {
   Step const step(system, x, motion);
   Index const n = system.size();
   Matrices out{MatX(n, n), MatX(n, n), MatX(n, n)};
@@ -76,9 +79,9 @@ Matrices matrices_of(System& system, State const& x, Motion const& motion) {
   TurnedIncrements turned(system);
   turned.set(system, step.delta);
   DenseSink sink{MatX::Zero(n, n)};
-  system.tangent(step.coefficients(), SecondOrder::included, step.lambda, sink);
+  system.tangent(step.coefficients(exact), SecondOrder::included, step.lambda, sink);
   out.plain = sink.m;
-  turned.write(system, step.coefficients(), sink);
+  turned.write(system, step.coefficients(exact), sink);
   // sink.m has columns by u, y = u + W u
   MatX to_y(n, n);
   for (Index j = 0; j < n; ++j) {
@@ -107,7 +110,7 @@ auto pair_of(Body const& one, Body const& other) {
 template <class M>
 void expect_exact(M const& model, Motion const& motion = {}) {
   System system(model, with<Entries::implicit_step>);
-  Matrices const m = matrices_of(system, model.reference_state(), motion);
+  Matrices const m = matrices_of(system, model.reference_state(), motion, false);
   EXPECT_LT(apart(m.turned, m.by_differences), 1e-8);
   EXPECT_GT(apart(m.plain, m.by_differences), 1e-4);
 }
@@ -121,6 +124,122 @@ TEST(TurnedIncrements, CompleteTheTangentOfNodesWithRotationVectors) {
 // Their tangent leaves out how inertia forces and weight change with the coordinates.
 TEST(TurnedIncrements, CompleteTheTangentOfFloatingFrames) {
   expect_exact(pair_of(Ffr::from(bar(), 2), Ffr::from(bar(), 2)), {0.0, 0.0});
+}
+
+/// Two bodies that turn, and what acts between them off their middles.
+template <class M>
+struct TwoThatTurn {
+  M model{Gravity{0, 0, -9.81}};
+  BodyHandle<Rigid<>> a, b;
+
+  TwoThatTurn() {
+    a = model.add(Rigid<>::from(bar()), "a");
+    Bar other = bar();
+    other.placement = Placement::at({0.5, 0.1, 0.2});
+    b = model.add(Rigid<>::from(other), "b");
+  }
+  Marker<Rigid<>> of_a() const { return a.at(Vec3(0.1, 0.05, -0.02)); }
+  Marker<Rigid<>> of_b() const { return b.at(Vec3(-0.15, 0.02, 0.04)); }
+};
+/// Steps leave out what positions do to rates: exact tangents do not.
+template <class M>
+void expect_exact_with_rates(M const& model) {
+  System system(model, with<Entries::implicit_step>);
+  Matrices const exact = matrices_of(system, model.reference_state(), {}, true),
+                 as_in_steps = matrices_of(system, model.reference_state(), {}, false);
+  EXPECT_LT(apart(exact.turned, exact.by_differences), 1e-8);
+  EXPECT_GT(apart(as_in_steps.turned, exact.by_differences), 1e-5);
+}
+
+TEST(ExactTangents, AreThoseOfSpringsBetweenBodiesThatTurn) {
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<>, Forces<SpringDamper>>> two;
+  two.model.apply(SpringDamper{.stiffness = 2e3, .damping = 400.0, .free_length = 0.4}, two.of_a(), two.of_b());
+  expect_exact_with_rates(two.model);
+}
+TEST(ExactTangents, AreThoseOfForcesWithStates) {
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<>, Forces<MaxwellElement>>> two;
+  two.model.apply(MaxwellElement{.stiffness = 5e3, .damping = 300.0, .free_length = 0.4}, two.of_a(), two.of_b());
+  System system(two.model, with<Entries::implicit_step>);
+  Matrices const m = matrices_of(system, two.model.reference_state(), {}, true);
+  EXPECT_LT(apart(m.turned, m.by_differences), 1e-8);
+}
+TEST(ExactTangents, AreThoseOfCompliantJoints) {
+  using Soft = Joint<Spherical, Penalty>;
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<Soft>>> ball;
+  ball.model.connect(Soft{{}, Penalty{.stiffness = 2e4, .damping = 800.0}}, ball.of_a(), ball.of_b());
+  expect_exact_with_rates(ball.model);
+  using Rubber = Joint<Weld, Bushing>;
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<Rubber>>> weld;
+  weld.model.connect(Rubber{{},
+                            Bushing{.stiffness = Bushing::diagonal(Vec3(1e3, 2e3, 3e3), Vec3(10, 20, 30)),
+                                    .damping = Bushing::diagonal(Vec3(300, 200, 100), Vec3(3, 2, 1))}},
+                     weld.of_a(), weld.of_b());
+  expect_exact_with_rates(weld.model);
+}
+// Of a group that steps write without the blocks between two bodies.
+TEST(ExactTangents, AreThoseOfGroupsWithBlocksBetweenTheirBodies) {
+  using OnBall = Contact<SphereOnSphere>;
+  using Group = ContactGroup<OnBall>;
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<>, Forces<Group>>> two;
+  auto const group = two.model.apply(Group{}, std::vector{two.of_a()}, "balls");
+  two.model.pair_with(group,
+                      OnBall{{.radius_a = 0.5, .radius_b = 0.6},
+                             {.stiffness = 1e4, .damping = 300.0},
+                             Friction{.coefficient = 0.4, .slip_speed = 0.5}},
+                      two.of_b(), "other ball");
+  expect_exact_with_rates(two.model);
+}
+
+// A row of balls over two others: blocks are written for pairs that touch and for those beside them; the matrix is that
+// with blocks for all pairs, and tells where a pair that touches has none.
+TEST(ActingPairs, HaveAllBlocksThatAct) {
+  using OnBall = Contact<SphereOnSphere>;
+  using Group = ContactGroup<OnBall>;
+  Model<Bodies<Rigid<>>, Joints<>, Forces<Group>> model{Gravity{0, 0, -9.81}};
+  auto const ball = [&](double x, double z) {
+    return model.add(Rigid<>(1.0, Mat3(0.1 * Mat3::Identity()), Placement::at({x, 0, z})), std::to_string(x));
+  };
+  std::vector<Marker<Rigid<>>> many;
+  for (int i = 0; i < 8; ++i) many.push_back(ball(0.5 * i, 1.0).at(Vec3(0, 0, 0)));
+  auto const group = model.apply(Group{}, many, "row");
+  OnBall const law{{.radius_a = 0.2, .radius_b = 0.85}, {.stiffness = 1e4, .damping = 300.0}, Friction{}};
+  for (double const x : {0.1, 3.4}) model.pair_with(group, law, ball(x, 0.0).at(Vec3(0, 0, 0)), "below");
+  System system(model, with<Entries::implicit_step>);
+  State x = model.reference_state();
+  auto const written = [&](ActingPairs* pairs, int& blocks) {
+    struct Counting : DenseSink {
+      int* count;
+      void add(Index row, Index col, BlockView const& b) {
+        DenseSink::add(row, col, b);
+        ++*count;
+      }
+    } sink{{MatX::Zero(system.size(), system.size())}, &blocks};
+    blocks = 0;
+    if (pairs) pairs->begin();
+    system.evaluate(x.q, x.v, 0.0);
+    system.tangent(TangentCoefficients{.mass = 1.0, .damping = 0.1, .stiffness = 0.01, .exact = true, .pairs = pairs},
+                   SecondOrder::included, VecX(), sink);
+    return sink.m;
+  };
+  ActingPairs pairs;
+  int of_all = 0, of_some = 0, of_none = 0;
+  MatX const all = written(nullptr, of_all);
+  EXPECT_NE(written(&pairs, of_none), all);
+  EXPECT_TRUE(pairs.lacks());
+  pairs.hold();
+  EXPECT_EQ(written(&pairs, of_some), all);
+  EXPECT_FALSE(pairs.lacks());
+  // 0 and 7 touch: 0 to 2 and 5 to 7 are held, four blocks a pair, of 16 pairs
+  EXPECT_EQ(of_some - of_none, 4 * 6);
+  EXPECT_EQ(of_all - of_none, 4 * 16);
+  x.q[7] = 0.15;  // the ball beside the first one comes over the same ball below, as is foreseen
+  (void)written(&pairs, of_some);
+  EXPECT_FALSE(pairs.lacks());
+  x.q[0] = 3.35;  // the first one over the other
+  (void)written(&pairs, of_some);
+  EXPECT_TRUE(pairs.lacks());
+  pairs.hold();
+  EXPECT_EQ(written(&pairs, of_some), written(nullptr, of_all));
 }
 
 // A velocity row, at rest, as tangents leave out ∂Φ̇/∂q.

@@ -36,6 +36,10 @@ class ContactGroup {
   /// The first `count` markers are the many; the model sets this.
   void set_many(Index count) { many_ = count; }
   Index many() const { return many_; }  ///< how many markers are the many: the first ones of the group
+  /// How many opponents each of them has.
+  Index opponents() const {
+    return Index(std::apply([](auto const&... few) { return (few.size() + ... + std::size_t(0)); }, few_));
+  }
 
   /// Adds an opponent: under `law` each of the many may touch the group's marker number `marker`.
   template <class Law>
@@ -81,9 +85,6 @@ class ContactGroup {
     std::array<std::uint64_t, side_by_side> near;
   };
 
-  std::size_t opponents() const {
-    return std::apply([](auto const&... few) { return (few.size() + ... + std::size_t(0)); }, few_);
-  }
   template <class FrameOf, class Visit>
   void for_each_near_pair(FrameOf& frame, Visit& visit, Index begin, Index end) const {
     Row row;

@@ -4,7 +4,6 @@
 /// markers are tested side by side.
 
 #include <concepts>
-#include <string>
 
 #include <polybody/kinematics/frame.hpp>
 

@@ -88,28 +88,29 @@ Dual<n> seeded(double value, int i, double slope) {
   return x;
 }
 /// A frame as a function of its pose (δr, δφ in world axes) and twist, six directions from `first` on: pose seeded with
-/// ck, twist with cd.
+/// ck, twist with cd. \param moved without any slopes
 template <int n>
-Frame<Dual<n>> seeded_frame(Frame<double> const& f, int first, double ck, double cd) {
-  Frame<Dual<n>> moved;
+void seed_frame(Frame<double> const& f, int first, double ck, double cd, Frame<Dual<n>>& moved) {
   for (int i = 0; i < 3; ++i) {
-    moved.r[i] = seeded<n>(f.r[i], first + i, ck);
-    moved.v[i] = seeded<n>(f.v[i], first + i, cd);
-    moved.w[i] = seeded<n>(f.w[i], first + 3 + i, cd);
+    moved.r[i].v = f.r[i];
+    moved.v[i].v = f.v[i];
+    moved.w[i].v = f.w[i];
+    moved.r[i].d[first + i] = ck;
+    moved.v[i].d[first + i] = moved.w[i].d[first + 3 + i] = cd;
     int const j = (i + 1) % 3, l = (i + 2) % 3;
     for (int c = 0; c < 3; ++c) {  // δA = δφ × A
-      moved.A(i, c) = seeded<n>(f.A(i, c), first + 3 + j, ck * f.A(l, c));
+      moved.A(i, c).v = f.A(i, c);
+      moved.A(i, c).d[first + 3 + j] = ck * f.A(l, c);
       moved.A(i, c).d[first + 3 + l] = -ck * f.A(j, c);
     }
   }
-  return moved;
 }
 /// Those of all markers, one after another.
 template <int n, std::size_t markers>
 std::array<Frame<Dual<n>>, markers> seeded_frames(std::array<Frame<double>, markers> const& frames, double ck,
                                                   double cd) {
   std::array<Frame<Dual<n>>, markers> moved;
-  for (std::size_t k = 0; k < markers; ++k) moved[k] = seeded_frame<n>(frames[k], 6 * int(k), ck, cd);
+  for (std::size_t k = 0; k < markers; ++k) seed_frame(frames[k], 6 * int(k), ck, cd, moved[k]);
   return moved;
 }
 /// The slopes of the wrenches, 6N×n, into the first rows of `gradient`.

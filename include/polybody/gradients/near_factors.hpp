@@ -14,7 +14,7 @@ namespace polybody {
 enum class NearFactors {
   of_step,  ///< those by which the step itself was solved: they cost nothing
   of_end,   ///< of its tangent at its end
-  exact,    ///< of that with second-order terms
+  exact,    ///< of that with all that steps leave out, second-order terms among it
   turned,   ///< of that with what ⊞ does to its columns (gradients/turned_increments.hpp)
 };
 
@@ -34,7 +34,7 @@ class NearFactorsChoice {
 
   /// Another step begins: its factors.
   NearFactors next() {
-    if (step_ > 0) taken_[now_] = passes_ + candidates_[now_].cost;
+    if (step_ > 0) taken_[now_] = passes_ + candidates_[now_].cost + also_;
     bool const least = passes_ == directions_;  // one correction each
     if (step_ == 0 || step_ == period) {
       now_ = 0;
@@ -46,10 +46,16 @@ class NearFactorsChoice {
     }
     if (step_++ == 0) tries_ = true;
     passes_ = directions_ = 0;
+    also_ = 0.0;
     return now();
   }
   /// Those of the step.
   NearFactors now() const { return candidates_[now_].factors; }
+  /// Those that were taken did not do: others were made within the step.
+  void make(NearFactors others) {
+    for (Candidate const& c : candidates_)
+      if (c.factors == others) also_ += c.cost;
+  }
   /// Directions of the step that went through the equations together took so many passes.
   void add(int passes) {
     passes_ += passes;
@@ -63,6 +69,7 @@ class NearFactorsChoice {
   std::vector<Candidate> candidates_;
   std::vector<double> taken_;  // by candidates: passes of a step
   std::size_t now_ = 0;
+  double also_ = 0.0;  // what other factors in the step cost [passes]
   bool tries_ = true;
   int step_ = 0, passes_ = 0, directions_ = 0;
 };

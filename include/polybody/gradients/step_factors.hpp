@@ -10,6 +10,7 @@
 #include <polybody/gradients/near_factors.hpp>
 #include <polybody/gradients/step_ends.hpp>
 #include <polybody/gradients/turned_increments.hpp>
+#include <polybody/system/acting_pairs.hpp>
 
 namespace polybody {
 
@@ -20,6 +21,12 @@ class TransposedSink {
   explicit TransposedSink(S& target) : target_(target) {}  ///< to `target`
   /// Block b at (row, col) of the matrix, (col, row) of the transposed one.
   void add(Index row, Index col, BlockView const& b) { target_.add(col, row, b.transposed()); }
+  /// Zeros at (row, col).
+  void skip(Index row, Index col, Index rows, Index cols)
+    requires SkipsZeros<S>
+  {
+    target_.skip(col, row, cols, rows);
+  }
 
  private:
   S& target_;
@@ -48,10 +55,13 @@ class StepFactors {
     if (kind_ != NearFactors::of_step || !near) factor(step, std::max(kind_, NearFactors::of_end));
   }
   /// Takes the nearest ones that there are. \throws LinearSolverSingular likewise.
-  void set_nearest(StepEnds const& step) { factor(step, nearest()); }
+  void set_nearest(StepEnds const& step) {
+    choice_.make(nearest());
+    factor(step, nearest());
+  }
   /// They are the nearest ones.
   bool are_nearest() const { return kind_ == nearest(); }
-  /// They are of the tangent with second-order terms.
+  /// They are of the tangent with all terms that steps leave out.
   bool are_exact() const { return kind_ >= NearFactors::exact; }
   /// x for the right-hand side `rhs`, both by the unknowns of the step.
   void solve(VecX const& rhs, VecX& x) {
@@ -82,11 +92,21 @@ class StepFactors {
     return kind == NearFactors::of_end ? SecondOrder::omitted : SecondOrder::included;
   }
 
+  /// The coefficients of a kind, with the pairs of force groups that act, before it is written.
+  TangentCoefficients coefficients(NearFactors kind, double mass, double damping, double stiffness) {
+    ActingPairs& pairs = own_[std::size_t(kind)].pairs;
+    pairs.begin();
+    return {
+        .mass = mass, .damping = damping, .stiffness = stiffness, .exact = kind >= NearFactors::exact, .pairs = &pairs};
+  }
   /// Writes the tangent of a kind where the system was evaluated last.
   void write(NearFactors kind, TangentCoefficients const& k, VecX const& lambda, BlockSink& sink) {
     auto const write_into = [&](auto& receiver) {
+      k.pairs->begin();
       system_->tangent(k, second_order(kind), lambda, receiver);
-      if (kind == NearFactors::turned) turned_.write(*system_, k, receiver);
+      if (kind != NearFactors::turned) return;
+      k.pairs->begin();
+      turned_.write(*system_, k, receiver);
     };
     if constexpr (derivative == Derivative::transposed) {
       TransposedSink<BlockSink> transposed(sink);
@@ -95,41 +115,54 @@ class StepFactors {
       write_into(sink);
     }
   }
-  Factors& factors_of(NearFactors kind, VecX const& lambda) {
-    std::optional<Factors>& own = own_[std::size_t(kind)];
-    if (own) return *own;
-    own.emplace().analyse(*system_, 1, [&](BlockSink& sink) { write(kind, {1.0, 1.0, 1.0}, lambda, sink); });
-    return *own;
+  /// Lays the factors of a kind out, for the pairs that are held.
+  [[gnu::cold]] void lay_out(NearFactors kind, VecX const& lambda) {
+    TangentCoefficients const k = coefficients(kind, 1.0, 1.0, 1.0);
+    own_[std::size_t(kind)].factors.emplace().analyse(*system_, 1,
+                                                      [&](BlockSink& sink) { write(kind, k, lambda, sink); });
   }
   void factor(StepEnds const& step, NearFactors kind) {
-    double const h = step.h;
     StepPlace const end = step.end();
     if (kind == NearFactors::turned) turned_.set(*system_, step.increment(method_));
-    factors_ = &factors_of(kind, end.lambda);
+    Own& own = own_[std::size_t(kind)];
     for (bool again = true; again;) {
       detail::evaluate_for_tangent(*system_, end, balance_);
-      std::size_t const reordered = factors_->reorderings();
-      Index const bad = factor(kind, end, {method_.mass(), method_.gamma * h, method_.beta * h * h});
-      again = bad >= 0 && factors_->reorderings() != reordered;
+      if (!own.factors) lay_out(kind, end.lambda);
+      std::size_t const reordered = own.factors->reorderings();
+      Index const bad = factor(kind, step.h, end);
+      bool const lacks = own.pairs.lacks();
+      again = lacks || (bad >= 0 && own.factors->reorderings() != reordered);
       if (bad >= 0 && !again)
         throw LinearSolverSingular{"The derivative of the step that ends at t = ", end.at.t, " s has no pivot at ",
                                    name_of_equation(*system_, bad), "."};
+      if (!lacks) continue;
+      own.pairs.hold();
+      lay_out(kind, end.lambda);
     }
+    factors_ = &*own.factors;
     kind_ = kind;
   }
-  Index factor(NearFactors kind, StepPlace const& end, TangentCoefficients const& k) {
+  Index factor(NearFactors kind, double h, StepPlace const& end) {
+    TangentCoefficients const k = coefficients(kind, method_.mass(), method_.gamma * h, method_.beta * h * h);
+    Factors& factors = *own_[std::size_t(kind)].factors;
     if (derivative == Derivative::direct && kind != NearFactors::turned)
-      return factors_->factor_tangent(*system_, end, k, second_order(kind));
-    return factors_->factor([&](BlockSink& sink) { write(kind, k, end.lambda, sink); });
+      return factors.factor_tangent(*system_, end, k, second_order(kind));
+    return factors.factor([&](BlockSink& sink) { write(kind, k, end.lambda, sink); });
   }
+
+  /// Factors of a kind, and the pairs whose blocks they have.
+  struct Own {
+    std::optional<Factors> factors;
+    ActingPairs pairs;
+  };
 
   System* system_;
   AlphaMethod method_;
   TurnedIncrements turned_;
   NearFactorsChoice choice_;
   NearFactors kind_ = NearFactors::of_step;
-  std::array<std::optional<Factors>, 4> own_;  // by their kind
-  Factors* factors_ = nullptr;                 // one of these
+  std::array<Own, 4> own_;      // by their kind
+  Factors* factors_ = nullptr;  // one of these
   OfStep* near_ = nullptr;
   VecX balance_, turned_rhs_;
 };

@@ -31,11 +31,12 @@ class TurnedIncrements {
     delta_ = VecX::LinSpaced(speeds_, 0.1, 0.2);
     one_ = rate_ = VecX::Zero(speeds_);
     none_ = VecX::Zero(system.rows());
-    for (Index j = 0; j < speeds_; ++j) {
+    Index const of_bodies = system.layout().body_speeds();  // first-order states stand behind them
+    for (Index j = 0; j < of_bodies; ++j) {
       one_[j] = 1.0;
       system.local_rate(delta_, one_, rate_);
       one_[j] = 0.0;
-      for (Index i = 0; i < speeds_; ++i)
+      for (Index i = 0; i < of_bodies; ++i)
         if (rate_[i] != (i == j ? 1.0 : 0.0)) columns_[std::size_t(j)].push_back({i, 0.0});
     }
     give_colours();
@@ -77,7 +78,8 @@ class TurnedIncrements {
   void write(System& system, TangentCoefficients const& k, S& receiver) {
     if (!any()) return;
     Sink<S> sink{*this, receiver};
-    system.tangent({k.mass, k.damping, 0.0}, SecondOrder::omitted, none_, sink);
+    system.tangent({.mass = k.mass, .damping = k.damping, .exact = k.exact, .pairs = k.pairs}, SecondOrder::omitted,
+                   none_, sink);
   }
 
  private:

@@ -22,6 +22,7 @@ struct Variant {
   ShownStates<Model> shown;
   AlphaMethod method;
   AlphaMethod::Workspace<DefaultSolver> work;
+  bool steps = false;  ///< a step was taken, for which the tangent was laid out: most variants never take one
   EquationSlope at_place;
 
   Variant(S made, AlphaMethod const& m)
@@ -29,13 +30,13 @@ struct Variant {
         system(system_for<I>(scenario.model)),
         shown(scenario.model),
         method(m),
-        work(method.workspace<DefaultSolver>(system)),
+        work(system),
         at_place{VecX::Zero(system.speeds()), VecX::Zero(system.rows())} {}
 
-  /// Consistent accelerations and multipliers, as a run begins. \param corrected as in `AlphaMethod::start`
+  /// Consistent accelerations and multipliers, as a run begins. \param corrected as in `AlphaMethod::begin`
   void start(State& x, double h, std::optional<bool> corrected = {}) {
     work.forward.project_velocities(system, x.q, x.v, x.t);
-    method.start(system, x, h, work, corrected);
+    method.begin(system, x, h, work, corrected);
   }
   /// Times at which a step must end, in no order: those of drives and loads, then those of the options [s].
   std::vector<double> corners() const { return corners_of(system, scenario.options); }
@@ -65,6 +66,8 @@ struct Variant {
   }
   /// A step of h that depends on x alone: with factors of its own, in the first order of elimination.
   StepReport step(State& x, double h) {
+    if (!steps) method.analyse(system, work);
+    steps = true;
     work.kept_factor = {};
     work.tangent.forget();
     work.solver().keep_reorderings(0);

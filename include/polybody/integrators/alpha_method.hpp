@@ -55,13 +55,27 @@ struct AlphaMethod {
   template <class Solver>
   Workspace<Solver> workspace(System& system) const {
     Workspace<Solver> w(system);
-    w.tangent.analyse(system, second_order_terms ? SecondOrder::included : SecondOrder::omitted, w.lambda);
+    analyse(system, w);
     return w;
   }
-
-  /// Consistent v̇ and λ at x, which forgets earlier steps. \param corrected whether by `start_correction`; else h tells
+  /// Lays the tangent of steps out, which the constructor of a workspace does not.
   template <class Solver>
-  void start(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
+  void analyse(System& system, Workspace<Solver>& w) const {
+    w.tangent.analyse(system, second_order_terms ? SecondOrder::included : SecondOrder::omitted, w.lambda);
+  }
+
+  /// Begins, with a factorisation for steps of h [s].
+  template <class Solver>
+  void start(System& system, State& x, double h, Workspace<Solver>& w) const {
+    begin(system, x, h, w);
+    // once here, so that a solver that changes its order does not do so within a step
+    w.solver().evaluate(system, {x.q, x.v, x.t});
+    (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
+  }
+  /// Consistent v̇ and λ at x, which forgets earlier steps; nothing is laid out for steps yet. \param corrected whether
+  /// by `start_correction`; else h tells
+  template <class Solver>
+  void begin(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     w.tangent.forget();
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     append_multipliers(system, x);
@@ -69,9 +83,6 @@ struct AlphaMethod {
     w.kept_factor.usable = false;
     if (start_correction && corrected != false && corrected.value_or(jerk_at_start(system, x, h, w)))
       StepHistory(x).pretend(x, w.jerk, h);
-    // once here, so that a solver that changes its order does not do so within a step
-    w.solver().evaluate(system, {x.q, x.v, x.t});
-    (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
   }
 
   template <class Solver>
@@ -81,7 +92,7 @@ struct AlphaMethod {
   }
 
   /// v₀ and a₀ of a step of h [s] from x, into w: the state's own, corrected where those were made for steps of another
-  /// length. Returns whether they are. \param corrected as in `start`
+  /// length. Returns whether they are. \param corrected as in `begin`
   template <class Solver>
   bool set_out(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     StepHistory const history(x);
@@ -91,7 +102,7 @@ struct AlphaMethod {
     bool const corrects =
         start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
         corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else it is not resolved
-          return h * norm(w.jerk, first, end) <= 0.5 * norm(x.a, first, end);
+          return h * w.norm(w.jerk, first, end) <= 0.5 * w.norm(x.a, first, end);
         }));
     if (corrects) correct(system, x, shifted, h, w);
     return corrects;
@@ -343,37 +354,18 @@ struct AlphaMethod {
   bool jerk_at_start(System& system, State const& x, double h, Workspace<Solver>& w) const {
     w.jerk.setZero();
     auto const acceleration_after = [&](double e) {
-      follow(x, e, w);
+      w.follow(x, e);
       system.plus(x.q, w.dq, w.q);
       VecX a = x.a;
       w.forward.accelerations(system, {w.q, w.v, x.t + e}, a, w.rate);
       return a;
     };
     VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);
-    if (!differences_agree(x.a, quarter, half, full, h, w)) return false;
+    if (!w.find_jerk(x.a, quarter, half, full, h)) return false;
     VecX change = acceleration_after(h);
     for (Index i = 0; i < change.size(); ++i) change[i] -= full[i];
     return w.of_each_part(
-        [&](Index first, Index end) { return norm(change, first, end) <= 0.5 * h * norm(w.jerk, first, end); });
-  }
-  static double norm(VecX const& a, Index i, Index end) { return std::sqrt(squares(a.data() + i, end - i)); }
-  /// Δq and v after e seconds with w.jerk.
-  static void follow(State const& x, double e, AlphaVectors& w) {
-    for (Index i = 0; i < w.v.size(); ++i) {
-      w.dq[i] = e * x.v[i] + 0.5 * e * e * x.a[i] + e * e * e / 6.0 * w.jerk[i];
-      w.v[i] = x.v[i] + e * x.a[i] + 0.5 * e * e * w.jerk[i];
-    }
-  }
-  static bool differences_agree(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h,
-                                AlphaVectors& w) {
-    VecX mismatch(now.size());
-    for (Index i = 0; i < now.size(); ++i) {
-      w.jerk[i] = (4.0 * quarter[i] - half[i] - 3.0 * now[i]) / (0.5 * h);
-      mismatch[i] = w.jerk[i] - (4.0 * half[i] - full[i] - 3.0 * now[i]) / h;
-    }
-    return all_finite(w.jerk) && w.of_each_part([&](Index first, Index end) {
-      return norm(mismatch, first, end) <= 0.5 * norm(w.jerk, first, end);
-    });
+        [&](Index first, Index end) { return w.norm(change, first, end) <= 0.5 * h * w.norm(w.jerk, first, end); });
   }
 };
 

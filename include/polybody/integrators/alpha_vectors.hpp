@@ -1,5 +1,6 @@
 #pragma once
 #include <polybody/solvers/anderson.hpp>
+#include <polybody/system/state.hpp>
 
 namespace polybody {
 
@@ -36,6 +37,27 @@ struct AlphaVectors {
         kept_back(v0),
         acceleration(rhs.size(), speeds - first_order),
         states(first_order) {}
+
+  /// ‖a‖ of the entries [i, end).
+  static double norm(VecX const& a, Index i, Index end) { return std::sqrt(squares(a.data() + i, end - i)); }
+  /// Δq and v after e seconds [s] from x with `jerk`.
+  void follow(State const& x, double e) {
+    for (Index i = 0; i < v.size(); ++i) {
+      dq[i] = e * x.v[i] + 0.5 * e * e * x.a[i] + e * e * e / 6.0 * jerk[i];
+      v[i] = x.v[i] + e * x.a[i] + 0.5 * e * e * jerk[i];
+    }
+  }
+  /// `jerk` by one-sided differences of accelerations now, after h/4, h/2 and h [s]. Whether both distances agree.
+  bool find_jerk(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h) {
+    VecX mismatch(now.size());
+    for (Index i = 0; i < now.size(); ++i) {
+      jerk[i] = (4.0 * quarter[i] - half[i] - 3.0 * now[i]) / (0.5 * h);
+      mismatch[i] = jerk[i] - (4.0 * half[i] - full[i] - 3.0 * now[i]) / h;
+    }
+    return all_finite(jerk) && of_each_part([&](Index first, Index end) {
+             return norm(mismatch, first, end) <= 0.5 * norm(jerk, first, end);
+           });
+  }
 
   /// f(first, end) holds of the speeds of bodies and of the first-order states.
   template <class F>

@@ -36,12 +36,6 @@ struct Unbalance {
   Vec3 g;
 };
 
-/// Where and by which factor second-order terms are taken.
-struct StiffnessAt {
-  At<double> at;
-  double ck;
-};
-
 }  // namespace detail
 
 /// The loops over the bodies of type B, for scalar T. Those of energies, masses and tangents are for numbers.

@@ -10,13 +10,19 @@
 
 namespace polybody {
 
+class ActingPairs;
+
 /// Coefficients of the tangent cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
 struct TangentCoefficients {
-  double mass = 0.0;        ///< factor of M
-  double damping = 0.0;     ///< factor of −∂f/∂v
-  double stiffness = 0.0;   ///< factor of −∂f/∂q
-  bool stand_ins = true;    ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
-  bool full = false;        ///< with second-order terms; a system sets it
+  double mass = 0.0;       ///< factor of M
+  double damping = 0.0;    ///< factor of −∂f/∂v
+  double stiffness = 0.0;  ///< factor of −∂f/∂q
+  bool stand_ins = true;   ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
+  bool full = false;       ///< with second-order terms; a system sets it
+  /// With all that steps leave out: blocks between the markers of a force group's pairs, and what positions do to
+  /// rates.
+  bool exact = false;
+  ActingPairs* pairs = nullptr;  ///< pairs of groups that have such blocks; null: all (system/acting_pairs.hpp)
   double states = damping;  ///< factor of −∂f/∂z and −∂h/∂z, z first-order states; a step takes them with its speeds
 };
 
@@ -81,6 +87,15 @@ struct At {
   double t;            ///< time [s]
 };
 
+namespace detail {
+/// Where and by which factor second-order terms are taken.
+struct StiffnessAt {
+  At<double> at;
+  double ck;
+  bool exact;  ///< with what positions do to rates
+};
+}  // namespace detail
+
 /// The mean forces of a step, by secants (system/secant_entries.hpp).
 struct SecantEntries;
 
@@ -120,8 +135,8 @@ struct ModelEntries {
   void (*force_tangents)(void const* m, double t, double load_factor, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 
-  /// ck ∂(Gᵀλ)/∂q of joints and of bodies' own rows; ck ∂(Jᵀw)/∂q of data.loads.
-  void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, double ck, Data<T>& data,
+  /// ck ∂(Gᵀλ)/∂q of joints, of what compliant ones answer too, and of bodies' own rows; ck ∂(Jᵀw)/∂q of data.loads.
+  void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, TangentCoefficients const& c, Data<T>& data,
                           BlockSink& sink) = nullptr;
   /// ck ∂(Jᵀw)/∂q for the wrenches in data.loads.
   void (*load_stiffness)(void const* m, At<T> at, double ck, Data<T>& data, BlockSink& sink) = nullptr;

@@ -5,29 +5,14 @@
 
 #include <concepts>
 
-#include <polybody/forces/force_states.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/system/joint_kernels.hpp>
+#include <polybody/system/acting_pairs.hpp>
+#include <polybody/system/force_gradients.hpp>
 #include <polybody/system/pair_frames.hpp>
 
 namespace polybody {
 
 namespace detail {
-
-/// Frames of published markers.
-template <std::size_t n, StateScalar T>
-std::array<Frame<T>, n> frames_at(std::array<Index, n> const& at, Data<T> const& data) {
-  std::array<Frame<T>, n> frames;
-  for (std::size_t k = 0; k < n; ++k) frames[k] = data.markers[std::size_t(at[k])].frame;
-  return frames;
-}
-
-template <HasStates F, StateScalar T>
-std::array<T, F::states> states_in(ForceEntry<F> const& e, Data<T> const& data) {
-  std::array<T, F::states> z;
-  for (std::size_t s = 0; s < z.size(); ++s) z[s] = data.states[std::size_t(e.state) + s];
-  return z;
-}
 
 /// Calls visit(force, markers, at) for the force elements of an entry: itself, at its states as they are, or the pairs
 /// of a group that may act now. Markers are places among the entry's, `at` where they are published.
@@ -57,12 +42,6 @@ double power_of(std::array<Wrench<double>, n> const& w, std::array<Frame<double>
     for (int i = 0; i < 3; ++i) sum += w[k].f[i] * frames[k].v[i] + w[k].m[i] * frames[k].w[i];
   return sum;
 }
-
-/// When, by which factor and of what a gradient is taken.
-struct GradientAt {
-  double t, scale;
-  TangentCoefficients const& c;
-};
 
 /// What follows is worked out for one force element, or for one pair of a group by its law. It knows no group: groups
 /// with a law in common share it.
@@ -111,68 +90,6 @@ void add_power(L const& law, std::array<Index, L::markers> const& at, double t, 
   }
 }
 
-/// Adds −scale · the exact gradient; where it is whole (`c.full`), with the blocks that couple the bodies and the
-/// loads.
-template <class L>
-void add_gradient(L const& law, std::array<Index, L::markers> const& at, GradientAt const& x, Data<double>& data,
-                  BlockSink& sink) {
-  constexpr int n = L::markers;
-  std::array<Published<double> const*, std::size_t(n)> markers;
-  for (std::size_t k = 0; k < at.size(); ++k) markers[k] = &data.markers[std::size_t(at[k])];
-  auto const frames = frames_at(at, data);
-  Mat<double, 6 * n, 6 * n> s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);
-  for (Index i = 0; i < s.size(); ++i) s.data()[i] *= -x.scale;
-  add_pulled_pairs<n>(markers, s.data(), x.c.full || couples_bodies<L>(), data.scratch, sink);
-  if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
-}
-
-/// The same of a force element with states, w its wrenches, h the rates and x the frames: blocks −Jᵀ ∂w/∂x J, −Jᵀ
-/// ∂w/∂z, −∂h/∂x J and cm − ∂h/∂z, all by their coefficients.
-template <HasStates F>
-void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& data, BlockSink& sink) {
-  constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
-  auto const frames = frames_at(e.markers, data);
-  auto const z = states_in(e, data);
-  Mat<double, size, size> s = gradient_with_states(e.force, frames, z, x.t, {x.c.stiffness, x.c.damping, x.c.states});
-  for (int j = 0; j < size; ++j)
-    for (int i = 0; i < size; ++i) s(i, j) *= i < first ? -x.scale : -1.0;
-  for (int i = first; i < size; ++i) s(i, i) += x.c.mass;
-  double const* const entries = s.data();
-  Index const at = data.first_state + e.state;
-  auto const marker = [&](int k) -> Published<double> const& {
-    return data.markers[std::size_t(e.markers[std::size_t(k)])];
-  };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      add_pulled_pair(marker(i), marker(j), entries + 6 * i + 6 * size * j, size, data.scratch, sink);
-  for (int k = 0; k < n; ++k) {
-    Published<double> const& p = marker(k);
-    if (p.columns == 0) continue;
-    sink.add(p.first, at, pulled<m>(p, entries + 6 * k + size * first, 1, size, data.scratch));
-    sink.add(at, p.first, pulled<m>(p, entries + first + 6 * size * k, size, 1, data.scratch).transposed());
-  }
-  sink.add(at, at, BlockView(entries + (size + 1) * first, m, m, 1, size));
-  if (x.c.full)
-    add_loads(AtStates<F, double>{e.force, z}.template wrenches<double>(frames, x.t), e.markers, x.scale, data);
-}
-
-/// Adds what each marker of a pair feels of its own motion alone; by the law's `own_stiffness` where it has one. With
-/// the loads where the gradient is whole.
-template <class L>
-void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt const& x, Data<double>& data,
-                       std::array<Mat<double, 6, 6>*, 2> const& to) {
-  auto const frames = frames_at(at, data);
-  if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
-  if constexpr (HasOwnStiffness<L>)
-    if (x.c.stand_ins) return law.own_stiffness(frames, x.c.stiffness, x.c.damping, *to[0], *to[1]);
-  Mat<double, 12, 12> const s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);
-  for (int col = 0; col < 6; ++col)
-    for (int row = 0; row < 6; ++row) {
-      (*to[0])(row, col) -= s(row, col);
-      (*to[1])(row, col) -= s(6 + row, 6 + col);
-    }
-}
-
 }  // namespace detail
 
 /// The loops over the force elements of type F, for scalar T; those of energies and tangents are for numbers.
@@ -205,6 +122,8 @@ struct ForceKernels {
   /// What each marker of a group feels of its own motion alone, block by block, zero where nothing acts; with stand-ins
   /// by a law's `own_stiffness` where it has one.
   static void group_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data, BlockSink& sink);
+  /// The exact slopes of a group, with blocks for all pairs that may ever act, zero where they do not.
+  static void coupled_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data, BlockSink& sink);
 };
 
 template <class F, StateScalar T>
@@ -309,10 +228,8 @@ void ForceKernels<F, T>::tangents(Pool const& pool, double t, double load_factor
       detail::add_gradient(e, x, data, sink);
     else if constexpr (!ForceGroup<F>)
       detail::add_gradient(e.force, e.markers, x, data, sink);
-    else if (c.full && c.mass == 0.0)  // statics and linearisation: exact, of all pairs that may ever act
-      e.force.for_each_candidate([&](Index i, Index j, auto const& law) {
-        detail::add_gradient(law, {e.markers[std::size_t(i)], e.markers[std::size_t(j)]}, x, data, sink);
-      });
+    else if (c.exact || (c.full && c.mass == 0.0))  // or statics and linearisation
+      coupled_tangent(e, x, data, sink);
     else
       group_tangent(e, x, data, sink);
 }
@@ -355,6 +272,27 @@ void ForceKernels<F, T>::group_tangent(Entry const& e, detail::GradientAt const&
       for (int i = 0; i < 36; ++i) s[i] *= x.scale;
       detail::add_pulled_pairs<1>({&p}, s, true, data.scratch, sink);
     }
+  }
+}
+
+template <class F, StateScalar T>
+void ForceKernels<F, T>::coupled_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data,
+                                         BlockSink& sink) {
+  if constexpr (ForceGroup<F>) {
+    detail::PairFrames<F, T> const frame(e, data);
+    Index few = 0;
+    if constexpr (requires { e.force.opponents(); }) few = e.force.opponents();
+    ActingPairs::Group* const held = x.c.pairs ? &x.c.pairs->group(few) : nullptr;
+    std::size_t pair = 0;
+    e.force.for_each_candidate([&](Index i, Index j, auto const& law) {
+      bool const touches = law.may_touch(frame(i), frame(j));
+      if (held && !x.c.pairs->note(*held, pair++, touches)) return;
+      std::array const at{e.markers[std::size_t(i)], e.markers[std::size_t(j)]};
+      if (touches)
+        detail::add_gradient(law, at, x, data, sink);
+      else
+        detail::skip_pulled_pairs<2>({&data.markers[std::size_t(at[0])], &data.markers[std::size_t(at[1])]}, sink);
+    });
   }
 }
 

@@ -87,6 +87,34 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
   return rest;
 }
 
+/// s += ck Gᵀ ∂λ/∂ġ ∂ġ/∂(poses) of a compliant joint, which is what positions do to ġ = G V at speeds that stay: row i
+/// of ∂ġ/∂(poses) is Vᵀ ∂(Gᵀeᵢ)/∂(poses) + (G ∂V/∂(poses))ᵢ. A Φ_t that depends on positions is left out.
+template <class J>
+void add_rate_slopes(J const& joint, Gap<J::rows, double> const& gap,
+                     std::array<Published<double> const*, 2> const& markers, StiffnessAt const& x,
+                     Mat<double, 12, 12>& s) {
+  constexpr int m = J::rows;
+  Frame<double> const &a = markers[0]->frame, &b = markers[1]->frame;
+  Vec<double, 6> const twists[2] = {twist(a), twist(b)};
+  auto rate = zeros<Mat<double, m, 12>>();
+  for (int i = 0; i < m; ++i) {
+    auto one = zeros<Vec<double, m>>();
+    one[i] = 1.0;
+    Mat<double, 12, 12> const h = wrench_gradient(joint.measure(), a, b, x.at.t, one);
+    for (int k = 0; k < 12; ++k)
+      for (int j = 0; j < 12; ++j) rate(i, k) += twists[j / 6][j % 6] * h(j, k);
+  }
+  add_rates_of_pose<m>(*markers[0], gap.Ga.data(), rate.data());
+  add_rates_of_pose<m>(*markers[1], gap.Gb.data(), rate.data() + 6 * m);
+  Mat<double, m, m> const slope = joint.policy.template slope<m>(0.0, x.ck, gap.g, gap_rate(gap, a, b));
+  for (int k = 0; k < 12; ++k)
+    for (int i = 0; i < m; ++i) {
+      double answer = 0.0;
+      for (int l = 0; l < m; ++l) answer += slope(i, l) * rate(l, k);
+      for (int j = 0; j < 12; ++j) s(j, k) += (j < 6 ? gap.Ga(i, j) : gap.Gb(i, j - 6)) * answer;
+    }
+}
+
 }  // namespace detail
 
 /// The loops over the joints of type J, for scalar T; those of energies and tangents are for numbers. Linear joints
@@ -220,6 +248,8 @@ void JointKernels<J, T>::stiffness(Pool const& pool, Kept const& kept, VecX cons
       for (int k = 0; k < m; ++k) l[k] = multipliers[k];
       Mat<double, 12, 12> s = wrench_gradient(e.joint.measure(), a.frame, b.frame, x.at.t, l);
       for (int k = 0; k < 144; ++k) s.data()[k] *= x.ck;
+      if constexpr (compliant)
+        if (x.exact) detail::add_rate_slopes(e.joint, gap, {&a, &b}, x, s);
       std::array<Wrench<double>, 2> on_markers;
       double const* const maps[2] = {gap.Ga.data(), gap.Gb.data()};
       for (std::size_t end = 0; end < 2; ++end) {

@@ -105,6 +105,32 @@ void add_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const
                         sink);
 }
 
+/// The same where nothing acts: blocks of zeros in the same places and order.
+template <int n>
+void skip_pulled_pairs(std::array<Published<double> const*, std::size_t(n)> const& markers, BlockSink& sink) {
+  for (Published<double> const* a : markers)
+    for (Published<double> const* b : markers)
+      if (a->columns > 0 && b->columns > 0) sink.skip(a->first, b->first, a->columns, b->columns);
+}
+
+/// Derivatives by a marker's pose get what it does to the twist while the speeds of its body stay. On a rigid body v =
+/// ṙ₀ + ω × ρ, and a small turn e changes ω by e × ω, v by (e × ω) × ρ + ω × (e × ρ) = e × (ω × ρ), by Jacobi's
+/// identity. Of markers of other bodies that is left out. \param of_twist, of_pose (rows × 6), by columns
+template <int rows>
+void add_rates_of_pose(Published<double> const& p, double const* of_twist, double* of_pose) {
+  if (p.shape != JacobianShape::rigid) return;
+  Vec3 const &w = p.frame.w, &arm = p.arm;
+  double const u[3] = {w[1] * arm[2] - w[2] * arm[1], w[2] * arm[0] - w[0] * arm[2], w[0] * arm[1] - w[1] * arm[0]};
+  for (int k = 0; k < 3; ++k) {
+    int const j = (k + 1) % 3, l = (k + 2) % 3;
+    double const *const by_v = of_twist, *const by_w = of_twist + 3 * rows;
+    double* const to = of_pose + rows * (3 + k);
+    for (int i = 0; i < rows; ++i)
+      to[i] +=
+          u[j] * by_v[i + rows * l] - u[l] * by_v[i + rows * j] + w[j] * by_w[i + rows * l] - w[l] * by_w[i + rows * j];
+  }
+}
+
 /// out (rows×cols) = a (rows×m) bᵀ, b cols×m, all by columns.
 template <int m>
 void times_transposed(double const* a, double const* b, Index rows, Index cols, double* out) {

@@ -161,8 +161,7 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
   require_entry(entries_.element_tangents, "tangents")(model_, at(), c, data_, sink);
   write_rows(data_, layout_.speeds, sink);
   entries_.compliant_tangents(model_, c, data_, sink);
-  if (c.full)
-    require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), lambda, c.stiffness, data_, sink);
+  if (c.full) require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), lambda, c, data_, sink);
   entries_.force_tangents(model_, t_, load_factor, c, data_, sink);
   if (c.full) entries_.load_stiffness(model_, at(), c.stiffness, data_, sink);
 }

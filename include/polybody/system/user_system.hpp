@@ -188,7 +188,8 @@ struct UserEntries {
             .element_tangents = &element_tangents,
             .compliant_tangents = [](void const*, TangentCoefficients const&, Data<double>&, BlockSink&) {},
             .force_tangents = [](void const*, double, double, TangentCoefficients const&, Data<double>&, BlockSink&) {},
-            .joint_stiffness = [](void const*, At<double>, VecX const&, double, Data<double>&, BlockSink&) {},
+            .joint_stiffness = [](void const*, At<double>, VecX const&, TangentCoefficients const&, Data<double>&,
+                                  BlockSink&) {},
             .load_stiffness = [](void const*, At<double>, double, Data<double>&, BlockSink&) {},
             .coordinate_rates = &coordinate_rates};
   }

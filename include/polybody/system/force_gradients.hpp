@@ -1,0 +1,104 @@
+#pragma once
+/// \file
+/// Slopes of a force element, or of one pair of a force group by its law, as blocks of the tangent.
+
+#include <polybody/forces/force_states.hpp>
+#include <polybody/system/joint_kernels.hpp>
+
+namespace polybody::detail {
+
+/// Frames of published markers.
+template <std::size_t n, StateScalar T>
+std::array<Frame<T>, n> frames_at(std::array<Index, n> const& at, Data<T> const& data) {
+  std::array<Frame<T>, n> frames;
+  for (std::size_t k = 0; k < n; ++k) frames[k] = data.markers[std::size_t(at[k])].frame;
+  return frames;
+}
+
+template <HasStates F, StateScalar T>
+std::array<T, F::states> states_in(ForceEntry<F> const& e, Data<T> const& data) {
+  std::array<T, F::states> z;
+  for (std::size_t s = 0; s < z.size(); ++s) z[s] = data.states[std::size_t(e.state) + s];
+  return z;
+}
+
+/// When, by which factor and of what a gradient is taken.
+struct GradientAt {
+  double t, scale;
+  TangentCoefficients const& c;
+};
+
+/// Adds −scale · the exact gradient; where it is whole (`c.full`), with the blocks that couple the bodies and the
+/// loads.
+template <class L>
+void add_gradient(L const& law, std::array<Index, L::markers> const& at, GradientAt const& x, Data<double>& data,
+                  BlockSink& sink) {
+  constexpr int n = L::markers;
+  std::array<Published<double> const*, std::size_t(n)> markers;
+  for (std::size_t k = 0; k < at.size(); ++k) markers[k] = &data.markers[std::size_t(at[k])];
+  auto const frames = frames_at(at, data);
+  Mat<double, 6 * n, 6 * n> s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);
+  if (x.c.exact && x.c.stiffness != 0.0) {
+    Mat<double, 6 * n, 6 * n> const by_twist = wrench_gradient(law, frames, x.t, 0.0, x.c.stiffness);
+    for (int k = 0; k < n; ++k)
+      add_rates_of_pose<6 * n>(*markers[std::size_t(k)], by_twist.data() + 36 * n * k, s.data() + 36 * n * k);
+  }
+  for (Index i = 0; i < s.size(); ++i) s.data()[i] *= -x.scale;
+  add_pulled_pairs<n>(markers, s.data(), x.c.full || x.c.exact || couples_bodies<L>(), data.scratch, sink);
+  if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
+}
+
+/// The same of a force element with states, w its wrenches, h the rates and x the frames: blocks −Jᵀ ∂w/∂x J, −Jᵀ
+/// ∂w/∂z, −∂h/∂x J and cm − ∂h/∂z, all by their coefficients.
+template <HasStates F>
+void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& data, BlockSink& sink) {
+  constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
+  auto const frames = frames_at(e.markers, data);
+  auto const z = states_in(e, data);
+  Mat<double, size, size> s = gradient_with_states(e.force, frames, z, x.t, {x.c.stiffness, x.c.damping, x.c.states});
+  if (x.c.exact && x.c.stiffness != 0.0) {
+    Mat<double, size, size> const by_twist = gradient_with_states(e.force, frames, z, x.t, {0.0, x.c.stiffness, 0.0});
+    for (int k = 0; k < n; ++k)
+      add_rates_of_pose<size>(data.markers[std::size_t(e.markers[std::size_t(k)])], by_twist.data() + 6 * size * k,
+                              s.data() + 6 * size * k);
+  }
+  for (int j = 0; j < size; ++j)
+    for (int i = 0; i < size; ++i) s(i, j) *= i < first ? -x.scale : -1.0;
+  for (int i = first; i < size; ++i) s(i, i) += x.c.mass;
+  double const* const entries = s.data();
+  Index const at = data.first_state + e.state;
+  auto const marker = [&](int k) -> Published<double> const& {
+    return data.markers[std::size_t(e.markers[std::size_t(k)])];
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      add_pulled_pair(marker(i), marker(j), entries + 6 * i + 6 * size * j, size, data.scratch, sink);
+  for (int k = 0; k < n; ++k) {
+    Published<double> const& p = marker(k);
+    if (p.columns == 0) continue;
+    sink.add(p.first, at, pulled<m>(p, entries + 6 * k + size * first, 1, size, data.scratch));
+    sink.add(at, p.first, pulled<m>(p, entries + first + 6 * size * k, size, 1, data.scratch).transposed());
+  }
+  sink.add(at, at, BlockView(entries + (size + 1) * first, m, m, 1, size));
+  if (x.c.full)
+    add_loads(AtStates<F, double>{e.force, z}.template wrenches<double>(frames, x.t), e.markers, x.scale, data);
+}
+
+/// Adds what each marker of a pair feels of its own motion alone; by the law's `own_stiffness` where it has one. With
+/// the loads where the gradient is whole.
+template <class L>
+void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt const& x, Data<double>& data,
+                       std::array<Mat<double, 6, 6>*, 2> const& to) {
+  auto const frames = frames_at(at, data);
+  if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
+  if constexpr (HasOwnStiffness<L>)
+    if (x.c.stand_ins) return law.own_stiffness(frames, x.c.stiffness, x.c.damping, *to[0], *to[1]);
+  Mat<double, 12, 12> const s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);
+  for (int col = 0; col < 6; ++col)
+    for (int row = 0; row < 6; ++row) {
+      (*to[0])(row, col) -= s(row, col);
+      (*to[1])(row, col) -= s(6 + row, 6 + col);
+    }
+}
+
+}  // namespace polybody::detail
