@@ -190,6 +190,32 @@ TEST(ExactTangents, AreThoseOfGroupsWithBlocksBetweenTheirBodies) {
   expect_exact_with_rates(two.model);
 }
 
+/// Springs between markers that follow each other, a group whose law does not tell when it acts.
+struct Net {
+  static constexpr int markers = any_number;
+  static constexpr bool is_load = false;
+  static constexpr Observes needs = SpringDamper::needs;
+  SpringDamper spring;
+  Index many = 0;
+
+  void set_many(Index count) { many = count; }
+  void check(std::string const& name) const { spring.check(name); }
+  template <class FrameOf, class Visit>
+  void for_each_pair(FrameOf&&, Visit&& visit) const {
+    for_each_candidate(visit);
+  }
+  template <class Visit>
+  void for_each_candidate(Visit&& visit) const {
+    for (Index i = 0; i + 1 < many; ++i) visit(i, i + 1, spring);
+  }
+};
+TEST(ExactTangents, AreThoseOfGroupsThatUsersWrite) {
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<>, Forces<Net>>> two;
+  two.model.apply(Net{{.stiffness = 2e3, .damping = 400.0, .free_length = 0.4}}, std::vector{two.of_a(), two.of_b()},
+                  "net");
+  expect_exact_with_rates(two.model);
+}
+
 // A row of balls over two others: blocks are written for pairs that touch and for those beside them; the matrix is that
 // with blocks for all pairs, and tells where a pair that touches has none.
 TEST(ActingPairs, HaveAllBlocksThatAct) {

@@ -285,7 +285,8 @@ void ForceKernels<F, T>::coupled_tangent(Entry const& e, detail::GradientAt cons
     ActingPairs::Group* const held = x.c.pairs ? &x.c.pairs->group(few) : nullptr;
     std::size_t pair = 0;
     e.force.for_each_candidate([&](Index i, Index j, auto const& law) {
-      bool const touches = law.may_touch(frame(i), frame(j));
+      bool touches = true;
+      if constexpr (requires { law.may_touch(frame(i), frame(j)); }) touches = law.may_touch(frame(i), frame(j));
       if (held && !x.c.pairs->note(*held, pair++, touches)) return;
       std::array const at{e.markers[std::size_t(i)], e.markers[std::size_t(j)]};
       if (touches)
