@@ -266,6 +266,19 @@ TEST(ActingPairs, HaveAllBlocksThatAct) {
   EXPECT_TRUE(pairs.lacks());
   pairs.hold();
   EXPECT_EQ(written(&pairs, of_some), written(nullptr, of_all));
+  // back and forth, both places are held; after fifty writings at one of them the other one is left
+  for (int again = 0; again < 3; ++again) {
+    x.q[0] = again % 2 == 0 ? 0.0 : 3.35;
+    (void)written(&pairs, of_some);
+    EXPECT_FALSE(pairs.lacks());
+  }
+  pairs.hold();
+  int of_both = 0;
+  (void)written(&pairs, of_both);
+  for (int i = 0; i < 50; ++i) (void)written(&pairs, of_some);
+  pairs.hold();
+  EXPECT_EQ(written(&pairs, of_some), written(nullptr, of_all));
+  EXPECT_LT(of_some, of_both);
 }
 
 // A velocity row, at rest, as tangents leave out ∂Φ̇/∂q.
