@@ -25,6 +25,11 @@ TEST(RadauStepSlope, RigidOnConstraint) { expect_slopes<Rigid<>, Constraint>(par
 TEST(RadauStepSlope, CableOnPenalty) { expect_slopes<AncfCable<>, Penalty>(parameters_of_links(2e8, 1e6), 5e-4); }
 TEST(RadauStepSlope, LrvfOnBushing) { expect_slopes<Lrvf<>, Bushing>(parameters_of_links(2e7, 1e3), 1e-3); }
 TEST(RadauStepSlope, DriveAndRowsThatRepeatOthers) { expect_slopes_of(DrivenDoor{}, parameters_of_door, 1e-2); }
+TEST(RadauStepSlope, IsExactByTheLengthOfAStep) {
+  expect_slopes_by_length<RadauStepSlope<>>(TwoLinks<Lrvf<>, Bushing>{}, parameters_of_links(2e7, 1e3), exact, 1e-3,
+                                            1e-14);
+  expect_slopes_by_length<RadauStepSlope<>>(DrivenDoor{}, parameters_of_door, exact, 2e-2, 1e-14);
+}
 TEST(RadauStepSlope, HasTheOrderOfTheMethod) { expect_order_of_slopes<RadauStepSlope<>>(exact, 10); }
 
 }  // namespace radau_step_slope_test

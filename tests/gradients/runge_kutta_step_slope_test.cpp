@@ -51,6 +51,16 @@ TEST(RungeKuttaStepSlope, LrvfOnBushing) {
 TEST(RungeKuttaStepSlope, DriveAndRowsThatRepeatOthers) {
   expect_slopes_of(DrivenDoor{}, parameters_of_door, classical(Projection{}), 5e-3);
 }
+TEST(RungeKuttaStepSlope, IsExactByTheLengthOfAStep) {
+  auto const expect_by_length = []<class I>(auto const& make, auto const& parameters, I const& integrator, double h) {
+    expect_slopes_by_length<RungeKuttaStepSlope<I>>(make, parameters, integrator, h, 1e-15);
+  };
+  auto const links = parameters_of_links(2e8, 1e6);
+  expect_by_length(TwoLinks<Rigid<>, Constraint>{}, links, classical(Projection{}), 2e-2);
+  expect_by_length(TwoLinks<Rigid<>, Constraint>{}, links, pair(Baumgarte{.alpha = 20.0, .beta = 30.0}), 2e-2);
+  expect_by_length(DrivenDoor{}, parameters_of_door, classical(Projection{}), 2e-2);
+  expect_by_length(DrivenDoor{}, parameters_of_door, pair(Projection{}), 2e-2);
+}
 TEST(RungeKuttaStepSlope, HasTheOrderOfTheMethod) {
   expect_order_of_slopes<RungeKuttaStepSlope<RungeKutta4<>>>(classical(WithoutRows{}), 50);
   expect_order_of_slopes<RungeKuttaStepSlope<DormandPrince<>>>(pair(WithoutRows{}), 25);

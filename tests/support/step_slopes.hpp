@@ -179,6 +179,14 @@ struct Steps {
   bool step(double h) { return method.step(system, x, h, work).taken == h; }
 };
 
+/// The state after a step of h from x, with factors of its own.
+template <class S>
+State stepped(S& whole, State x, double h) {
+  if constexpr (requires { whole.work.kept_factor; }) whole.work.kept_factor = {};
+  EXPECT_EQ(whole.method.step(whole.system, x, h, whole.work).taken, h);
+  return x;
+}
+
 /// A run of steps of one length, with its derivatives by slopes of its steps and by differences of the run.
 struct DerivedSteps {
   State end;
@@ -258,6 +266,54 @@ inline void expect_slopes_of_steps(DerivedSteps const& run, std::vector<Paramete
                    state = (run.end.*part).norm() / parameters[j].size();
       EXPECT_LE(off, 1e-8 * size + of_state * state) << parameters[j].name << ", " << name;
     }
+}
+
+/// The derivative of a step from x by its length h, under laws that are smooth in time.
+template <class Slope, class S>
+State slope_by_length(S& whole, Slope& slope, State const& x, double h) {
+  State const after = stepped(whole, x, h);
+  StepTaken const step{x, after, h};
+  State dx = x;
+  for (VecX State::* const part : {&State::q, &State::v, &State::a, &State::lambda}) (dx.*part).setZero();
+  std::vector<State*> const directions{&dx};
+  double const later = 1.0, e = 1e-2 * h;
+  slope.set(step);
+  auto const by_time = [&](EquationPlace<> const& at, std::size_t) {
+    EquationSlope out{VecX::Zero(x.v.size()), VecX::Zero(x.lambda.size()), h};
+    for (std::size_t k = 0; k < 4; ++k) {
+      EquationPlace<> there = at;
+      there.t += FourPoints::places[k] * e;
+      whole.equations.evaluate(whole.system, there);
+      double const by = (at.t - x.t) / h * FourPoints::weights[k] / e;
+      out.balance += by * whole.equations.balance;
+      out.rows += by * whole.equations.rows;
+    }
+    return out;
+  };
+  EXPECT_LT(slope.advance(step, directions, by_time, {&later, 1}), 1e-9);
+  return dx;
+}
+/// The slope by the length of the third step is that of differences of steps of nearby lengths, within 1e-8 of itself
+/// and `rounding` of the state over the distance of the differences.
+template <class Slope, class Make, class I>
+void expect_slopes_by_length(Make const& make, std::vector<Parameter> const& parameters, I const& integrator, double h,
+                             double rounding) {
+  std::vector<double> values;
+  for (Parameter const& p : parameters) values.push_back(p.value);
+  Steps<decltype(make(std::span<double const>())), I> whole(make(values), integrator, h);
+  for (int n = 0; n < 2; ++n) EXPECT_TRUE(whole.step(h));
+  State const x = whole.x;
+  Slope slope(whole.made.model, whole.system, whole.method);
+  State const dx = slope_by_length(whole, slope, x, h);
+  double const e = 2e-3 * h;
+  std::vector<State> ends;
+  for (double const place : FourPoints::places) ends.push_back(stepped(whole, x, h + place * e));
+  for (auto const& [name, part] : {std::pair{"q", &State::q}, std::pair{"v", &State::v}, std::pair{"a", &State::a},
+                                   std::pair{"λ", &State::lambda}}) {
+    VecX expected = VecX::Zero((x.*part).size());
+    for (std::size_t k = 0; k < 4; ++k) expected += FourPoints::weights[k] / e * (ends[k].*part);
+    EXPECT_LE((dx.*part - expected).norm(), 1e-8 * expected.norm() + rounding * (x.*part).norm() / e) << name;
+  }
 }
 
 /// The error of (k ∂x/∂k, c ∂x/∂c) at t = 1 s by steps of one length.

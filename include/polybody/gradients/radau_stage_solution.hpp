@@ -49,11 +49,12 @@ class RadauStageSolution {
   }
   TangentSolver<AutoLu>& solver() { return solver_; }  ///< the factors of the matrix of all stages
 
-  /// The equations of all stages. \param keep takes them, for the unknowns from `first` on
-  template <StateScalar T, class Keep>
-  void evaluate(RadauStages<T>& w, PlaceEquations<T>& equations, StepTaken const& step, Keep&& keep) {
+  /// The equations of all stages of a step of h, which is in T where it moves. \param keep takes them, for the unknowns
+  /// from `first` on
+  template <StateScalar T, class H, class Keep>
+  void evaluate(RadauStages<T>& w, PlaceEquations<T>& equations, StepTaken const& step, H const& h, Keep&& keep) {
     BasicSystem<T>& s = places_->template system<T>();
-    w.find(s, step.h);
+    w.find(s, h);
     for (std::size_t i = 0; i < 3; ++i) {
       w.put(s, i, step);
       equations.evaluate(s, w.at);
@@ -158,7 +159,7 @@ class RadauStageSolution {
     Index const nv = s.speeds(), rows = s.rows();
     double left = std::numeric_limits<double>::infinity();
     for (int k = 0;; ++k) {
-      evaluate(w, equations_, step, [&](Index first) {
+      evaluate(w, equations_, step, step.h, [&](Index first) {
         rhs_.segment(first, nv) = -equations_.balance;
         rhs_.segment(first + nv, rows) = -equations_.rows;
       });

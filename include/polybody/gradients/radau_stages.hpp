@@ -42,7 +42,9 @@ struct RadauStages {
   }
 
   /// v_i = v₀ + h Σ a_ij v̇_j and δ_i = h Σ a_ij δ˙(δ_j, v_j), whose passes end when nothing changes but by rounding.
-  void find(BasicSystem<T> const& s, double h) {
+  /// \param h in T where the length of the step moves [s]
+  template <class H>
+  void find(BasicSystem<T> const& s, H const& h) {
     for (std::size_t i = 0; i < 3; ++i) {
       v[i] = v0;
       add_weighted(vd, i, h, v[i]);
@@ -79,9 +81,12 @@ struct RadauStages {
   static constexpr int most_passes = 30;
 
   /// sum += h Σ a_ij of_j.
-  static void add_weighted(std::array<VecXOf<T>, 3> const& of, std::size_t i, double h, VecXOf<T>& sum) {
-    for (std::size_t j = 0; j < 3; ++j)
-      for (Index k = 0; k < sum.size(); ++k) sum[k] += of[j][k] * (h * RadauTableau::a[i][j]);
+  template <class H>
+  static void add_weighted(std::array<VecXOf<T>, 3> const& of, std::size_t i, H const& h, VecXOf<T>& sum) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      H const weight = h * RadauTableau::a[i][j];
+      for (Index k = 0; k < sum.size(); ++k) sum[k] += of[j][k] * weight;
+    }
   }
 };
 

@@ -99,7 +99,7 @@ class RadauStepAdjoint {
       recorded_.delta[i].setConstant(Recorded(0.0));  // so that passes over it are as many as its derivatives need
     }
     numbers_.clear();
-    stages_.evaluate(recorded_, equations_, step, [&](Index) {
+    stages_.evaluate(recorded_, equations_, step, step.h, [&](Index) {
       for (Index i = 0; i < equations_.balance.size(); ++i) numbers_.push_back(equations_.balance[i].number);
       for (Index i = 0; i < equations_.rows.size(); ++i) numbers_.push_back(equations_.rows[i].number);
     });

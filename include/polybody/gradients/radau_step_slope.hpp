@@ -16,9 +16,9 @@
 
 namespace polybody {
 
-/// Slopes of steps of Radau, one step after the other. The stages of a step are not in its states, so they are solved
-/// for once more. Where a step stalled and was taken with stages longer than itself, slopes are those of a step with
-/// stages of its own length; the two differ as their errors do.
+/// Slopes of steps of Radau, one step after the other, also by their lengths. The stages of a step are not in its
+/// states, so they are solved for once more. Where a step stalled and was taken with stages longer than itself, slopes
+/// are those of a step with stages of its own length; the two differ as their errors do.
 template <LinearSolver Solver = DefaultSolver>
 class RadauStepSlope {
  public:
@@ -41,21 +41,26 @@ class RadauStepSlope {
 
   /// Takes up to `lanes` derivatives of the state before the step to those of the state after it. Returns what the last
   /// corrections changed at most, beside all, or beside v̇ and λ over a parameter's scale where that is more. \param
-  /// slope what the parameter of a direction does to the equations at each place where the step solves some
+  /// slope what the parameter of a direction, and the time that moves along it, do to the equations at each place where
+  /// the step solves some; \param dh the derivative of the step's length along each direction [s], or none where it
+  /// stays
   template <TellsEquationSlopes F>
-  double advance(StepTaken const& step, std::span<State* const> directions, F&& slope) {
+  double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
+                 std::span<double const> dh = {}) {
     begin(step, directions);
+    D const h = detail::lift<lanes>(step.h, dh);
     auto const by = slopes_of_stages(directions.size(), slope);
     double left = std::numeric_limits<double>::infinity();
     for (int k = 0; k < most_corrections; ++k) {
-      stages_.evaluate(duals_, dual_equations_, step, [&](Index first) { keep_slopes(first, directions.size(), by); });
+      stages_.evaluate(duals_, dual_equations_, step, h,
+                       [&](Index first) { keep_slopes(first, directions.size(), by); });
       double now = 0.0;
       for (std::size_t l = 0; l < directions.size(); ++l) now = std::max(now, correct(l, by));
       bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
       left = now;
       if (done) break;
     }
-    duals_.find(places_.template system<D>(), step.h);
+    duals_.find(places_.template system<D>(), h);
     places_.again();
     stages_.finish(duals_, step, [&](EquationPlace<D>& at) {
       places_.solve(at, directions.size(), slope);

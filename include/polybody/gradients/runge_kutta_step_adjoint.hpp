@@ -31,7 +31,7 @@ class RungeKuttaStepAdjoint {
     numbers_.v0 = before.v;
     numbers_.acceleration[0] = before.a;
     places_.forget();
-    walk_(places_.template system<double>(), numbers_, step, [&](EquationPlace<>& at) {
+    walk_(places_.template system<double>(), numbers_, before.t, step.h, [&](EquationPlace<>& at) {
       places_.solve(at);
       return places_.largest_row();
     });
@@ -41,7 +41,7 @@ class RungeKuttaStepAdjoint {
     detail::set_variables(before.v, recorded_.v0);
     detail::set_variables(before.a, recorded_.acceleration[0]);
     places_.again();
-    walk_(places_.template system<Recorded>(), recorded_, step, [&](EquationPlace<Recorded>& at) {
+    walk_(places_.template system<Recorded>(), recorded_, before.t, step.h, [&](EquationPlace<Recorded>& at) {
       places_.solve(at);
       return 0.0;
     });

@@ -11,8 +11,8 @@
 
 namespace polybody {
 
-/// Slopes of steps of RungeKutta4 or DormandPrince, one step after the other. The length of a step stays as it was
-/// chosen: its own derivative is not part of them.
+/// Slopes of steps of RungeKutta4 or DormandPrince, one step after the other, also by their lengths. What the error
+/// makes of a length is not part of them.
 template <class Method, LinearSolver Solver = DefaultSolver>
 class RungeKuttaStepSlope {
   using D = typename SolvedPlaces<Solver>::D;
@@ -33,23 +33,25 @@ class RungeKuttaStepSlope {
     numbers_.v0 = x.v;
     numbers_.acceleration[0] = x.a;
     places_.forget();
-    walk_(places_.template system<double>(), numbers_, step, [&](EquationPlace<>& at) {
+    walk_(places_.template system<double>(), numbers_, x.t, step.h, [&](EquationPlace<>& at) {
       places_.solve(at);
       return places_.largest_row();
     });
   }
 
   /// Takes up to `lanes` derivatives of the state before the step to those of the state after it. Returns what a last
-  /// correction changed: zero, for there is none. \param slope what the parameter of a direction does to the equations
-  /// at each place where the step solves some
+  /// correction changed: zero, for there is none. \param slope what the parameter of a direction, and the time that
+  /// moves along it, do to the equations at each place where the step solves some; \param dh the derivative of the
+  /// step's length along each direction [s], or none where it stays
   template <TellsEquationSlopes F>
-  double advance(StepTaken const& step, std::span<State* const> directions, F&& slope) {
+  double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
+                 std::span<double const> dh = {}) {
     State const& x = step.before;
     detail::lift(x.q, directions, &State::q, duals_.q0);
     detail::lift(x.v, directions, &State::v, duals_.v0);
     detail::lift(x.a, directions, &State::a, duals_.acceleration[0]);
     places_.again();
-    walk_(places_.template system<D>(), duals_, step, [&](EquationPlace<D>& at) {
+    walk_(places_.template system<D>(), duals_, x.t, detail::lift<lanes>(step.h, dh), [&](EquationPlace<D>& at) {
       places_.solve(at, directions.size(), slope);
       return 0.0;
     });

@@ -41,11 +41,10 @@ class RungeKuttaWalk {
   explicit RungeKuttaWalk(Method const& method)
       : feedback_(method.stabilisation.feedback()), projection_(projection_of(method)) {}
 
-  /// The step from q₀, v₀ and v̇ there to its end, which stands in w.at. \param system the equations in T; \param solve
-  /// solves them at a place
-  template <StateScalar T, class Solve>
-  void operator()(BasicSystem<T>& system, RungeKuttaNumbers<Method, T>& w, StepTaken const& step, Solve&& solve) {
-    double const h = step.h, t = step.before.t;
+  /// The step from q₀, v₀ and v̇ there to its end, which stands in w.at. \param system the equations in T; \param t
+  /// the time of its start [s]; \param h its length, in T where that moves [s]; \param solve solves them at a place
+  template <StateScalar T, class H, class Solve>
+  void operator()(BasicSystem<T>& system, RungeKuttaNumbers<Method, T>& w, double t, H const& h, Solve&& solve) {
     w.delta = VecXOf<T>::Constant(w.v0.size(), T(0.0));
     w.rate.fill(w.delta);
     w.at.also.resize(0);
@@ -53,19 +52,19 @@ class RungeKuttaWalk {
     for (std::size_t i = 1; i < stages; ++i) {
       combine(w, h, Tableau::a[i], i);
       system.local_rate(w.delta, w.at.v, w.rate[i]);
-      accelerations(w, t + Tableau::c[i] * h, system, solve);
+      accelerations(w, t + Tableau::c[i] * value_of(h), system, solve);
       w.acceleration[i] = w.at.a;
     }
     combine(w, h, Tableau::b, stages);
     if constexpr (projects) {
       w.at.q = w.q0;
       system.plus(w.q0, w.delta, w.at.q);
-      w.at.t = t + h;
-      projection_.apply(system, w.at, h, solve);
+      w.at.t = t + value_of(h);
+      projection_.apply(system, w.at, value_of(h), solve);
       w.at.terms = {};
       solve(w.at);
     } else {
-      accelerations(w, t + h, system, solve);
+      accelerations(w, t + value_of(h), system, solve);
     }
   }
 
@@ -77,15 +76,16 @@ class RungeKuttaWalk {
       return {};
   }
   /// δ, v = h Σ_{j<count} weights[j] k_j (plus v₀).
-  template <StateScalar T, class Row>
-  static void combine(RungeKuttaNumbers<Method, T>& w, double h, Row const& weights, std::size_t count) {
+  template <StateScalar T, class H, class Row>
+  static void combine(RungeKuttaNumbers<Method, T>& w, H const& h, Row const& weights, std::size_t count) {
     w.delta.setConstant(T(0.0));
     w.at.v = w.v0;
     for (std::size_t j = 0; j < count; ++j) {
       if (weights[j] == 0.0) continue;
+      H const weight = h * weights[j];
       for (Index i = 0; i < w.delta.size(); ++i) {
-        w.delta[i] += w.rate[j][i] * (h * weights[j]);
-        w.at.v[i] += w.acceleration[j][i] * (h * weights[j]);
+        w.delta[i] += w.rate[j][i] * weight;
+        w.at.v[i] += w.acceleration[j][i] * weight;
       }
     }
   }

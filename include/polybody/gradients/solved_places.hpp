@@ -155,6 +155,13 @@ void lift(VecX const& part, std::span<State* const> dx, VecX State::* of, VecXOf
     for (std::size_t l = 0; l < dx.size(); ++l) to[i].d[Index(l)] = (dx[l]->*of)[i];
   }
 }
+/// A length of a step with its derivatives dh, or none.
+template <int N>
+Dual<N> lift(double h, std::span<double const> dh) {
+  Dual<N> out(h);
+  for (std::size_t l = 0; l < dh.size(); ++l) out.d[Index(l)] = dh[l];
+  return out;
+}
 /// The derivatives in `from` become those of one part of a state.
 template <int N>
 void take_slopes(VecXOf<Dual<N>> const& from, std::span<State* const> dx, VecX State::* of) {
