@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "support/hung_cables.hpp"
+#include "support/impacts_of_whole_states.hpp"
 #include "support/slopes_of_runs.hpp"
 
 using namespace polybody;
@@ -27,6 +28,10 @@ TEST(EliminatedInStages, ByRungeKuttaWithProjectionOfARowThatStays) {
 TEST(EliminatedInStages, ByRadau) {
   expect_slopes<false>(2e-3, Radau{});
   expect_slopes<true>(2e-3, Radau{});
+}
+TEST(EliminatedInStages, EventsSeeAndChangeWholeStates) {
+  expect_impact_of_cables(5e-4, RungeKutta4<>{});
+  expect_impact_of_cables(2e-3, Radau{});
 }
 
 }  // namespace eliminated_stages_test

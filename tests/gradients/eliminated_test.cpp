@@ -10,6 +10,7 @@
 #include <polybody/joints/policies/constraint.hpp>
 
 #include "support/hung_cables.hpp"
+#include "support/impacts_of_whole_states.hpp"
 #include "support/rated_links.hpp"
 #include "support/refusal.hpp"
 #include "support/slopes_of_runs.hpp"
@@ -78,29 +79,7 @@ TEST(Eliminated, BodiesThatParametersTouchAreFoundAmongWhatIsLeft) {
   EXPECT_TRUE(has(said({"third"}), "touches \"third\", but the model has no body, joint or force of that name"));
 }
 
-TEST(Eliminated, EventsSeeAndChangeWholeStates) {
-  auto const make = [](std::span<double const> p) {
-    auto scenario = hung_cables<AncfLinear, false>()(std::array{1e7, p[0], p[1], p[2], 2.0});
-    Index const z = scenario.start.q.size() - 4;  // of the tip, before its slope
-    Event const floor{.name = "floor",
-                      .value = [z, height = p[3]](State const& x) { return x.q[z] - height; },
-                      .tolerance = 1e-15,
-                      .then = [](State& x) { x.v *= -0.5; }};
-    scenario.options.events = {floor};
-    return scenario;
-  };
-  std::vector<Parameter> const of_impact{
-      {"density [kg/m³]", 1000.0}, {"place [m]", 0.31}, {"gravity [m/s²]", 9.81}, {"floor [m]", -0.1}};
-  GeneralizedAlpha const integrator{.rho_inf = 0.7};
-  Sensitivities const s = sensitivities(make, of_impact, integrator);
-  ASSERT_EQ(s.run.events.size(), 1u);
-  MatX const expected = by_differences(make, of_impact, integrator);
-  for (Index j = 0; j < expected.cols(); ++j) {
-    double const size = of_impact[std::size_t(j)].size();
-    EXPECT_LT(size * (s.slopes.back().col(j) - expected.col(j)).norm(), 1e-7) << of_impact[std::size_t(j)].name;
-    EXPECT_GT(size * expected.col(j).norm(), 1e-3) << of_impact[std::size_t(j)].name;
-  }
-}
+TEST(Eliminated, EventsSeeAndChangeWholeStates) { expect_impact_of_cables(2e-3, GeneralizedAlpha{.rho_inf = 0.7}); }
 
 TEST(Eliminated, OtherUnknownsUnderAParameterAreRefused) {
   // midway between two nodes both have the same part in a row, and a little off the nearer one is eliminated

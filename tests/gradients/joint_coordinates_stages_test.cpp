@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "support/carried_arm.hpp"
+#include "support/impacts_of_whole_states.hpp"
 #include "support/slopes_of_runs.hpp"
 
 using namespace polybody;
@@ -33,6 +34,11 @@ TEST(JointCoordinatesInStages, ByRadau) {
   expect_slopes<Recursive, CarriedArm{}>(Radau{});
   expect_slopes<RecursiveBy<recursive::Reduced>, CarriedArm{.loop = true}>(Radau{});
   expect_slopes<Recursive, CarriedArm{.loop = true}>(Radau{});
+}
+TEST(JointCoordinatesInStages, OfAThreadAndOfWhatAnEventDoes) {
+  expect_slopes_of_nut(RungeKutta4<>{});
+  expect_slopes_of_nut(DormandPrince<>{});
+  expect_slopes_of_nut(Radau{});
 }
 
 }  // namespace joint_coordinates_stages_test

@@ -7,13 +7,12 @@
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/math/time_laws.hpp>
 
 #include "support/differences_of_runs.hpp"
 #include "support/refusal.hpp"
+#include "support/touched_chain.hpp"
 #include "support/two_links.hpp"
 
 using namespace polybody;
@@ -91,27 +90,15 @@ TEST(SensitivitiesOfStages, RigidOnConstraintByDormandPrinceWithItsChoiceOfSteps
   expect_near(s.slopes.back(), by_frozen_differences(make, parameters, integrator, s.times), parameters);
 }
 
-/// A mass that a force pulls which ends at once.
-auto const pulled = [](std::span<double const> p) {
-  using Pull = PointForce<Window>;
-  using M = Model<Bodies<Rigid<>>, Joints<>, Forces<Pull>>;
-  M model;
-  auto const mass = model.add(Rigid<>(p[0], Mat3::Identity()), "mass");
-  model.apply(Pull{{1, 0, 0}, {}, Window{.from = 0.0, .to = 0.05, .value = 1.0}}, mass.at(Vec3::Zero()), "pull");
-  State const start = model.reference_state();
-  std::vector<Output<M>> outputs{{"x [m]", [](M const&, State const& x) { return x.q[0]; }}};
-  return Scenario<M>{std::move(model), start, {.until = 0.1, .step = 1e-2}, std::move(outputs)};
-};
-
-TEST(SensitivitiesOfStages, RefuseCornersAndEvents) {
-  std::vector<Parameter> const parameters{{"mass [kg]", 2.0}};
-  EXPECT_TRUE(has(refusal([&] { sensitivities(pulled, parameters, RungeKutta4<>{}); }), "has a corner at t = 0.05 s"));
-  auto const stopped = [](std::span<double const> p) {
-    auto scenario = pulled(p);
-    scenario.options.events = {{.name = "far", .value = [](State const& x) { return x.q[0] - 1.0; }}};
-    return scenario;
-  };
-  EXPECT_TRUE(has(refusal([&] { sensitivities(stopped, parameters, Radau{}); }), "sensitivities: a run with events"));
+TEST(SensitivitiesOfStages, AreTheSameWhereParametersSayWhatTheyTouch) {
+  touched_chain::expect_same_slopes_with_touches(RungeKutta4<>{});
+  touched_chain::expect_same_slopes_with_touches(Radau{});
+}
+TEST(SensitivitiesOfStages, RefuseParametersThatTouchMoreThanTheySay) {
+  auto parameters = touched_chain::of_chain(true);
+  parameters[5].touches = {"rod 0"};
+  auto const run = [&] { sensitivities(touched_chain::chain_with_angle, parameters, RungeKutta4<>{}); };
+  EXPECT_TRUE(has(refusal(run), "\"stiffness 1 [N/m]\" changes the equations of body \"rod 1\""));
 }
 
 }  // namespace sensitivities_stages_test

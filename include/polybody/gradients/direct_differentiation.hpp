@@ -5,25 +5,27 @@
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <polybody/gradients/sensitivities_report.hpp>
+#include <polybody/gradients/tangent_step.hpp>
 #include <polybody/gradients/variants_beside.hpp>
 
 namespace polybody {
 
 namespace detail {
 
-/// A run and its derivatives, step by step, as `Simulation` takes the steps.
-template <class Make, class I>
+/// A run and its derivatives, step by step, as `Simulation` takes the steps. A step whose length the method chooses by
+/// its error keeps it, unless a corner, an event or the end of the run ends it. \tparam Way takes tangents along steps
+template <class Make, class I, template <class, class> class Way>
 class DirectDifferentiation {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
-  using Variants = VariantsBeside<S, I>;
-  using V = Variant<S, I>;
+  using V = typename Way<S, I>::V;
+  using Variants = VariantsBeside<V>;
 
  public:
   [[gnu::cold]] DirectDifferentiation(Make const& make, std::vector<Parameter> const& parameters,
-                                      AlphaMethod const& method)
+                                      MethodOf<I> const& method)
       : parameters_(parameters),
         whole_(make(values_of(parameters)), method),
-        slope_(whole_.scenario.model, whole_.system, method),
+        way_(whole_),
         beside_(make, parameters, method) {
     require_plain(whole_.scenario);
   }
@@ -49,12 +51,7 @@ class DirectDifferentiation {
   }
 
  private:
-  /// A direction along which a step is differentiated: a parameter, what it does, and the slope of the step's length.
-  struct Lane {
-    std::size_t j;
-    RunTangent* tangent;
-    double dh;
-  };
+  static constexpr bool chooses = requires { I::controls_step; };
 
   static void require_plain(S const& scenario) {
     RunOptions const& o = scenario.options;
@@ -72,7 +69,7 @@ class DirectDifferentiation {
     for (auto const& o : whole_.scenario.outputs) out_.outputs.push_back(o.name);
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       tangents_.push_back({zeros_like(x_), beside_.of_number(j, [](V const& v) { return v.scenario.start.t; }), {}});
-      step_slope_.push_back(beside_.of_number(j, [](V const& v) { return v.length(); }));
+      step_slope_.push_back(chooses ? 0.0 : beside_.of_number(j, [](V const& v) { return v.length(); }));
       until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.until); }));
     }
     if (!options().events.empty()) watch_.start(options().events, x_, seen());
@@ -90,16 +87,15 @@ class DirectDifferentiation {
       fresh = stepped_state(whole_, std::move(fresh));
     }
     whole_.start(fresh, next.h);
-    bool const corrected = fresh.memory[fresh.memory.size() - 2] > 0.0;
     auto const map = [&](V& v, State& y, double h) {
       if (!acting.empty()) y = after(v, acting, y);
-      v.start(y, h, corrected);
+      v.start_like(fresh, y, h);
     };
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       RunTangent& tangent = tangents_[j];
       tangent.dx = differenced(j, next.h, length_slope(j, next, tangent), map);
-      tangent.lengths = tangent.dx.memory.tail(StepHistory::lengths);
-      tangent.dx.memory.tail(StepHistory::lengths) = fresh.memory.tail(StepHistory::lengths);
+      tangent.lengths = lengths_of(tangent.dx);
+      lengths_of(tangent.dx) = lengths_of(fresh);
     }
     x_ = std::move(fresh);
   }
@@ -118,29 +114,22 @@ class DirectDifferentiation {
 
   /// A step to the next place of the plan, or to an event before it.
   void step() {
-    State& before = before_;
-    before = x_;
-    StepPlan::Next const next = plan_.next(x_.t, h_);
+    before_ = x_;
+    StepPlan::Next next = plan_.next(x_.t, h_);
     bool const crumb = next.h < 0.01 * h_;
     StepReport const report = whole_.step(x_, next.h);
-    x_.t = next.lands ? next.target : row_.after(before.t, next.h);
+    next.lands = next.lands && report.taken == next.h;
+    x_.t = next.lands ? next.target : row_.after(before_.t, report.taken);
+    choose_step(report, next.lands);
+    lengths_.assign(1, report.taken);
     State far;
     if (!options().events.empty()) far = x_;
-    bool const met = !options().events.empty() && meet(before, next.h);
-    double const end = x_.t, h = met ? StepHistory(x_).shifted() : next.h;
-    x_.t = before.t + h;  // just before a corner
-    lanes_.clear();
-    for (std::size_t j = 0; j < parameters_.size(); ++j)
-      lanes_.push_back({j, &tangents_[j], met ? 0.0 : length_slope(j, next, tangents_[j])});
+    bool const met = !options().events.empty() && meet();
+    double const end = x_.t;
+    if (met && next.lands && end == next.target) refuse_event_at_corner();
     RunTangent by_length;
-    if (met) {
-      if (next.lands && end == next.target) refuse_event_at_corner();
-      by_length = {zeros_like(before), 0.0, VecX::Zero(StepHistory::lengths)};
-      by_length.dx.memory.tail(StepHistory::lengths) = before.memory.tail(StepHistory::lengths);
-      lanes_.push_back({Variants::along_motion, &by_length, 1.0});
-    }
-    differentiate(before, h, met);
-    if (met) move_to_event(by_length, before, far);
+    differentiate(next, met, by_length);
+    if (met) move_to_event(by_length, before_, far);
     x_.t = end;
     bool const at_corner = next.jumps && end == next.target;
     if (at_corner) x_.t = plan_.pass(end);
@@ -176,9 +165,60 @@ class DirectDifferentiation {
   EventWatch::Seen seen() {
     return [this](State const& x) -> State const& { return whole_.shown(x); };
   }
-  bool meet(State const& before, double h) {
-    EventWatch::Step const again = [this](State& x, double part) { return whole_.step(x, part).taken; };
-    return watch_.meet(options().events, {before, h, seen(), again}, x_, out_.run);
+  void choose_step(StepReport const& report, bool landed) {
+    if constexpr (chooses)
+      h_ = std::min<double>(landed ? std::max(report.next, h_) : report.next,
+                            options().largest_step.value_or(std::numeric_limits<double>::infinity()));
+  }
+  /// Ends the step to x_ at the first event within it; then `lengths_` lead there.
+  bool meet() {
+    struct Trial {
+      double end;
+      std::vector<double> lengths;
+    };
+    std::vector<Trial> trials;
+    EventWatch::Step const again = [&](State& x, double part) {
+      if (x.t == before_.t) trials.emplace_back();
+      double const taken = whole_.step(x, part).taken;
+      trials.back().lengths.push_back(taken);
+      trials.back().end = x.t;
+      return taken;
+    };
+    double const far = x_.t;
+    bool const met = watch_.meet(options().events, {before_, lengths_.front(), seen(), again}, x_, out_.run);
+    if (met && x_.t != far)
+      lengths_ =
+          std::find_if(trials.begin(), trials.end(), [&](Trial const& trial) { return trial.end == x_.t; })->lengths;
+    return met;
+  }
+
+  /// The tangents before the steps of `lengths_` become those at x_. The length of the last one moves with what is
+  /// `next`. Where an event is met it stays, and `by_length` becomes the derivative by it.
+  void differentiate(StepPlan::Next const& next, bool met, RunTangent& by_length) {
+    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // where the error asked for less than up to the event
+      State part = before_;
+      (void)whole_.step(part, lengths_[i]);
+      set_lanes([](std::size_t) { return 0.0; });
+      advance({before_, part, lengths_[i], true});
+      before_ = std::move(part);
+    }
+    x_.t = before_.t + lengths_.back();  // just before a corner
+    set_lanes([&](std::size_t j) { return met ? 0.0 : length_slope(j, next, tangents_[j]); });
+    if (met) {
+      by_length = {zeros_like(before_), 0.0, VecX::Zero(lengths_of(before_).size())};
+      lengths_of(by_length.dx) = lengths_of(before_);
+      lanes_.push_back({Variants::along_motion, &by_length, 1.0});
+    }
+    advance({before_, x_, lengths_.back(), met});
+  }
+  template <class F>
+  void set_lanes(F const& dh_of) {
+    lanes_.clear();
+    for (std::size_t j = 0; j < parameters_.size(); ++j) lanes_.push_back({j, &tangents_[j], dh_of(j)});
+  }
+  void advance(TangentStep const& step) {
+    double const left = way_.advance(step, lanes_, beside_);
+    out_.left = std::max(out_.left, require_converged(left, x_.t, "sensitivities"));
   }
   /// Adds to the derivatives at the end of a step of fixed length what the event's time does: the value stays zero.
   void move_to_event(RunTangent const& by_length, State const& before, State const& far) {
@@ -221,61 +261,6 @@ class DirectDifferentiation {
                        " s, so its time has no derivative. Look for a value that passes through zero at a rate."};
   }
 
-  /// The tangents before a step of h that led from `before` to x_ become those at its end. \param met an event: other
-  /// steps were tried after it
-  void differentiate(State& before, double h, bool met) {
-    V& spare = beside_.itself();
-    bool const corrects = spare.method.set_out(spare.system, before, h, spare.work);
-    State corrected;
-    if (corrects) {
-      corrected = before;
-      corrected.v = spare.work.v0;
-    }
-    own_before_ = spare.work.a0;
-    own_after_ = x_.memory.head(x_.v.size());
-    for (Lane const& lane : lanes_) set_out(before, h, lane, corrects);
-    StepEnds const step{corrects ? corrected : before, x_, own_before_, own_after_, h};
-    slope_.set(step, met ? nullptr : whole_.factors(h));
-    beside_.set_end(x_);
-    constexpr std::size_t most = std::size_t(AlphaStepSlope<>::lanes);
-    directions_.resize(std::min(lanes_.size(), most));
-    for (std::size_t first = 0, count; first < lanes_.size(); first += count) {
-      count = std::min(first == 0 ? most - 1 : most, lanes_.size() - first);
-      for (std::size_t l = 0; l < count; ++l) {
-        Lane const& lane = lanes_[first + l];
-        lane.tangent->dt += lane.dh;
-        beside_.of_equations(lane.j, x_, h, lane.tangent->dt, directions_[l].by);
-        directions_[l].dx = &lane.tangent->dx;
-        directions_[l].dh = lane.dh;
-      }
-      double const left = slope_.advance(step, std::span(directions_).first(count));
-      out_.left = std::max(out_.left, require_converged(left, x_.t, "sensitivities"));
-    }
-    for (Lane const& lane : lanes_) push_length(*lane.tangent, lane.dh);
-  }
-  /// The tangent of the speeds, and of the method's own accelerations, that a step from x sets out with.
-  void set_out(State const& x, double h, Lane const& lane, bool corrects) {
-    RunTangent& tangent = *lane.tangent;
-    double const shifted = x.memory[x.memory.size() - 1];
-    if (!corrects && (shifted == 0.0 || lane.dh == tangent.lengths[StepHistory::lengths - 1])) return;
-    Index const nv = x.v.size();
-    std::optional<bool> decided;
-    if (std::abs(h - shifted) > 1e-9 * h) decided = corrects;
-    State const change = beside_.of_map(lane.j, x, tangent, {h, lane.dh}, [&](V& v, State& y, double length) {
-      (void)v.method.set_out(v.system, y, length, v.work, decided);
-      y.v = v.work.v0 - y.v;
-      y.memory.head(nv) = v.work.a0 - y.memory.head(nv);
-    });
-    tangent.dx.v += change.v;
-    tangent.dx.memory.head(nv) += change.memory.head(nv);
-  }
-  /// As `StepHistory::push` does with a length.
-  static void push_length(RunTangent& tangent, double dh) {
-    constexpr Index last = StepHistory::lengths - 1;
-    for (Index i = 0; i + 1 < last; ++i) tangent.lengths[i] = tangent.lengths[i + 1];
-    tangent.lengths[last - 1] = tangent.lengths[last] = dh;
-  }
-
   /// Values and slopes of the outputs at x.
   void note() {
     beside_.show(x_);
@@ -299,12 +284,11 @@ class DirectDifferentiation {
 
   std::vector<Parameter> parameters_;
   V whole_;
-  AlphaStepSlope<> slope_;
+  Way<S, I> way_;
   Variants beside_;
   State x_, before_;             // now, and before the step
-  VecX own_before_, own_after_;  // the method's own accelerations there
-  std::vector<Lane> lanes_;      // of the step
-  std::vector<StepDirection> directions_;
+  std::vector<double> lengths_;  // of the steps between them
+  std::vector<TangentLane> lanes_;
   std::vector<RunTangent> tangents_;  // of each parameter
   std::vector<double> step_slope_, until_slope_;
   StepPlan plan_;

@@ -140,21 +140,24 @@ class EquationSlopes {
   /// How many groups there are: each takes four evaluations.
   std::size_t groups() const { return groups_.size(); }
 
+  /// What follows is asked of another step.
+  void forget() {
+    for (Group& group : groups_) group.known = 0;
+  }
   /// Differences at x, a state or what else the equations are asked at, of which everything else is asked.
   template <class Place>
   void evaluate(Place const& x) {
-    for (Group& group : groups_)
-      for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
-        EquationSlope const& of = group.models[k]->equations(x);
-        if (k == 0) group.difference.setZero(of.balance.size() + of.rows.size());
-        group.difference.head(of.balance.size()) += FourPoints::weights[k] * of.balance;
-        group.difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
-      }
+    forget();
+    for (Group& group : groups_) group.evaluate(x, 0);
   }
-  /// ∂r/∂p and ∂Φ/∂p of parameter j, which `out` has the sizes of.
-  void get(std::size_t j, EquationSlope& out) const {
+  /// ∂r/∂p and ∂Φ/∂p of parameter j, which `out` has the sizes of, at x, place number `number` of a step: the first
+  /// parameter of a group evaluates them, at one place after the other.
+  template <class X>
+  void get(std::size_t j, X const& x, std::size_t number, EquationSlope& out) {
     Place const& place = places_[j];
-    VecX const& difference = groups_[place.group].difference;
+    Group& group = groups_[place.group];
+    if (number >= group.known) group.evaluate(x, number);
+    VecX const& difference = group.differences[number];
     Index const speeds = out.balance.size();
     out.balance.setZero();
     out.rows.setZero();
@@ -164,7 +167,7 @@ class EquationSlopes {
   /// μᵀ ∂r/∂p of parameter j. \param mu by speeds, then by rows
   double dot(std::size_t j, VecX const& mu) const {
     double sum = 0.0;
-    VecX const& difference = groups_[places_[j].group].difference;
+    VecX const& difference = groups_[places_[j].group].differences.front();
     for (Index const i : places_[j].equations) sum += mu[i] * difference[i];
     return sum / places_[j].distance;
   }
@@ -207,7 +210,21 @@ class EquationSlopes {
   };
   struct Group {
     std::array<std::shared_ptr<V>, 4> models;
-    VecX difference;  // Σ of the four, weighted; over a distance it is a derivative
+    std::vector<VecX> differences;  // at each place, Σ of the four, weighted; over a distance it is a derivative
+    std::size_t known = 0;          // of them, of this step
+
+    template <class X>
+    void evaluate(X const& x, std::size_t number) {
+      known = number + 1;
+      if (differences.size() < known) differences.resize(known);
+      VecX& difference = differences[number];
+      for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
+        EquationSlope const& of = models[k]->equations(x);
+        if (k == 0) difference.setZero(of.balance.size() + of.rows.size());
+        difference.head(of.balance.size()) += FourPoints::weights[k] * of.balance;
+        difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
+      }
+    }
   };
   std::vector<Place> places_;
   std::vector<Group> groups_;

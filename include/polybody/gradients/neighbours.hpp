@@ -9,18 +9,16 @@
 
 #include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/times_beside.hpp>
-#include <polybody/gradients/variant.hpp>
 
 namespace polybody::detail {
 
-/// Scenarios for the values of the parameters, and at the four points beside each of them.
-template <class S, class I>
+/// Scenarios for the values of the parameters, and at the four points beside each of them. \tparam V a Variant or a
+/// StagesVariant
+template <class V>
 class Neighbours {
  public:
-  using V = Variant<S, I>;
-
-  template <class Make>
-  [[gnu::cold]] Neighbours(Make const& make, std::vector<Parameter> const& parameters, AlphaMethod const& method)
+  template <class Make, class Method>
+  [[gnu::cold]] Neighbours(Make const& make, std::vector<Parameter> const& parameters, Method const& method)
       : parameters_(parameters), itself_(make(values_of(parameters)), method) {
     for (std::size_t j = 0; j < parameters.size(); ++j)
       for (double const place : FourPoints::places) {

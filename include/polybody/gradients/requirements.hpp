@@ -72,6 +72,12 @@ std::vector<double> corners_of(System const& system, RunOptions const& options) 
   return all;
 }
 
+/// The length of steps that is asked for, or of the first one [s].
+template <class = void>
+double length_of_steps(RunOptions const& o) {
+  return o.largest_step ? std::min<double>(o.step, *o.largest_step) : double(o.step);
+}
+
 /// The outputs of a scenario at x. \throws NonFinite.
 template <class S>
 VecX values_of_outputs(S const& scenario, State const& x) {

@@ -15,6 +15,16 @@ struct RunTangent {
   VecX lengths;     ///< of those lengths [s]
 };
 
+/// The lengths of steps that an integrator remembers in a state or its derivative [s]; none without a memory.
+template <class = void>
+auto lengths_of(State& x) {
+  return x.memory.tail(std::min<Index>(StepHistory::lengths, x.memory.size()));
+}
+template <class = void>
+auto lengths_of(State const& x) {
+  return x.memory.tail(std::min<Index>(StepHistory::lengths, x.memory.size()));
+}
+
 template <class = void>
 void add(State& sum, State const& x, double by) {
   sum.q += by * x.q;
@@ -43,7 +53,7 @@ template <class = void>
 State beside(State const& x, State const& dx, double e) {
   State out = x;
   add(out, dx, e);
-  out.memory.tail(StepHistory::lengths) = x.memory.tail(StepHistory::lengths);
+  lengths_of(out) = lengths_of(x);
   return out;
 }
 

@@ -15,8 +15,9 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
+#include <polybody/gradients/alpha_tangents.hpp>
 #include <polybody/gradients/direct_differentiation.hpp>
-#include <polybody/gradients/stages_differentiation.hpp>
+#include <polybody/gradients/stages_tangents.hpp>
 
 namespace polybody {
 
@@ -31,23 +32,23 @@ concept MakesScenarios = requires(F const make, std::span<double const> p) {
 /// Runs the scenario that `make` gives for the parameters' values and differentiates its outputs with respect to each.
 /// Newton's corrections go on to 1e-12 or to what rounding leaves. \param integrator one of the generalised-α family,
 /// without `stabilised`; with their headers (runge_kutta_step_slope.hpp, radau_step_slope.hpp) RungeKutta4,
-/// DormandPrince, whose choice of steps stays as it is, and Radau, under which there are no events and corners. \throws
-/// InvalidInput for parameters that cannot be meant, a factory whose models differ in size, an event that only touches
-/// zero, events or corners that come at once and part with a parameter, a parameter that changes equations of what it
-/// does not name as touched, at the start or at the end; LinearSolverSingular at a singular position;
-/// and as `simulate`.
+/// DormandPrince, whose choice of steps stays as it is but where an event, a corner or the end of the run ends one, and
+/// Radau. \throws InvalidInput for parameters that cannot be meant, a factory whose models differ in size, an event
+/// that only touches zero, events or corners that come at once and part with a parameter, a parameter that changes
+/// equations of what it does not name as touched, at the start or at the end; LinearSolverSingular at a singular
+/// position; and as `simulate`.
 template <MakesScenarios Make, class I>
 Sensitivities sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
   if constexpr (detail::OfAlphaFamily<I>) {
     AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "sensitivities");
-    return detail::DirectDifferentiation<Make, I>(make, parameters, method).run();
+    return detail::DirectDifferentiation<Make, I, detail::AlphaTangents>(make, parameters, method).run();
   } else {
     static_assert(detail::HasSlopesOfStages<I>,
                   "Runs are differentiated under the generalised-α family (GeneralizedAlpha, HhtAlpha, Newmark, "
                   "Trapezoidal); with <polybody/gradients/runge_kutta_step_slope.hpp> under RungeKutta4 and "
                   "DormandPrince, with <polybody/gradients/radau_step_slope.hpp> under Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
-    return detail::StagesDifferentiation<Make, I>(make, parameters, method).run();
+    return detail::DirectDifferentiation<Make, I, detail::StagesTangents>(make, parameters, method).run();
   }
 }
 

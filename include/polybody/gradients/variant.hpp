@@ -38,13 +38,12 @@ struct Variant {
     work.forward.project_velocities(system, x.q, x.v, x.t);
     method.begin(system, x, h, work, corrected);
   }
+  /// The same for y, as it was done for x.
+  void start_like(State const& x, State& y, double h) { start(y, h, x.memory[x.memory.size() - 2] > 0.0); }
   /// Times at which a step must end, in no order: those of drives and loads, then those of the options [s].
   std::vector<double> corners() const { return corners_of(system, scenario.options); }
   /// The length of steps that is asked for [s].
-  double length() const {
-    RunOptions const& o = scenario.options;
-    return o.largest_step ? std::min<double>(o.step, *o.largest_step) : double(o.step);
-  }
+  double length() const { return length_of_steps(scenario.options); }
   /// The first state that is stepped, before it is started.
   State first() const { return stepped_state(*this, scenario.start); }
   /// The state in which the run begins, for steps of h.

@@ -14,15 +14,15 @@ namespace polybody::detail {
 /// Differences of what scenarios do. Where a function is differenced by parameter j
 /// in a state whose time moves with j, the change of the state has two parts. One is at a time that stays: variants
 /// beside go along with it, so that what is stiff in them stays at rest. The other follows the motion; it may be longer
-/// than a step, so it is differenced over a small part of one, in the scenario itself.
-template <class S, class I>
+/// than a step, so it is differenced over a small part of one, in the scenario itself. \tparam V a Variant or a
+/// StagesVariant
+template <class V>
 class VariantsBeside {
  public:
-  using V = Variant<S, I>;
   static constexpr std::size_t along_motion = std::size_t(-1);  ///< in place of a parameter: the motion alone
 
-  template <class Make>
-  [[gnu::cold]] VariantsBeside(Make const& make, std::vector<Parameter> const& parameters, AlphaMethod const& method)
+  template <class Make, class Method>
+  [[gnu::cold]] VariantsBeside(Make const& make, std::vector<Parameter> const& parameters, Method const& method)
       : n_(make, parameters, method) {
     std::vector<Parameter> still;
     number_.assign(parameters.size(), moving);
@@ -91,7 +91,7 @@ class VariantsBeside {
     for (std::size_t k = 0; k < points; ++k) {
       double const e = FourPoints::places[k] * p.reach;
       State y = detail::beside(x, p.along, e);
-      y.memory.tail(StepHistory::lengths) += e * tangent.lengths;
+      lengths_of(y) += e * tangent.lengths;
       y.t += e * p.dt;
       take(sum, f, {n_.itself(), std::move(y), h + e * p.dh}, FourPoints::weights[k] / p.reach);
     }
@@ -126,28 +126,39 @@ class VariantsBeside {
     return sum;
   }
 
-  /// From now on equations are asked at x, the end of a step.
-  void set_end(State const& x) {
-    slopes_->evaluate(x);
-    knows_by_time_ = false;
+  /// From now on equations are asked of another step.
+  void begin_step() {
+    slopes_->forget();
+    for (EquationSlope& of : by_time_) of.scale = 0.0;
   }
-  /// ∂r/∂p and ∂Φ/∂p at the end x of a step of h while unknowns stay, where its time moves by dt, into `sum`.
-  void of_equations(std::size_t j, State const& x, double h, double dt, EquationSlope& sum) {
+  /// A place where equations are asked: the end of a step of h, or where it solves some.
+  template <class X>
+  struct PlaceInStep {
+    X const& x;
+    double h;            ///< [s]
+    double dt;           ///< by which its time moves [s]
+    std::size_t number;  ///< of the place, one after the other
+  };
+  /// ∂r/∂p and ∂Φ/∂p at a place while unknowns stay, where its time moves, into `sum`.
+  template <class X>
+  void of_equations(std::size_t j, PlaceInStep<X> const& at, EquationSlope& sum) {
+    auto const& [x, h, dt, number] = at;
     sum.balance.setZero(n_.itself().system.speeds());
     sum.rows.setZero(n_.itself().system.rows());
     sum.scale = size(j, h);
     double later = dt;
     if (j != along_motion && number_[j] != moving) {
-      slopes_->get(number_[j], sum);
+      slopes_->get(number_[j], x, number, sum);
     } else if (j != along_motion) {
       for (std::size_t k = 0; k < points; ++k)
         add(sum, n_.beside(j, k).equations(x, n_.times(j)(k, x.t)), weight(j, k));
       later -= n_.times(j).slope(x.t);
     }
     if (later == 0.0) return;
-    if (!knows_by_time_) by_time_ = rate_of_equations(x, h);
-    knows_by_time_ = true;
-    add(sum, by_time_, later);
+    if (number >= by_time_.size()) by_time_.resize(number + 1, {{}, {}, 0.0});
+    EquationSlope& by_time = by_time_[number];
+    if (by_time.scale == 0.0) by_time = rate_of_equations(x, h);
+    add(sum, by_time, later);
   }
   /// \throws InvalidInput where a parameter changes an equation at x that it does not touch.
   void require_touched(State const& x) {
@@ -167,7 +178,7 @@ class VariantsBeside {
     double dt, dh;      // of the latter
     double reach;       // distance of its differences; 0 where there is none and all is at times that stay
   };
-  struct Place {
+  struct Asked {
     V& variant;
     State x;
     double h;
@@ -204,8 +215,9 @@ class VariantsBeside {
     out.v = dt * x.a;
     return out;
   }
-  /// ∂r/∂t and ∂Φ/∂t at the end of a step, by differences of fourth order that look back within it [Fornberg 1988].
-  EquationSlope rate_of_equations(State const& x, double h) {
+  /// ∂r/∂t and ∂Φ/∂t at a place of a step, by differences of fourth order that look back within it [Fornberg 1988].
+  template <class Place>
+  EquationSlope rate_of_equations(Place const& x, double h) {
     constexpr std::array<double, 5> weights{25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25};
     double const e = 0.02 * h;
     EquationSlope sum = no_slope();
@@ -224,17 +236,16 @@ class VariantsBeside {
   }
   static void add(State& sum, State const& of, double by) { detail::add(sum, of, by); }
   template <class F>
-  static void take(State& sum, F const& f, Place place, double by) {
-    f(place.variant, place.x, place.h);
-    if (sum.q.size() == 0) sum = zeros_like(place.x);
-    add(sum, place.x, by);
+  static void take(State& sum, F const& f, Asked of, double by) {
+    f(of.variant, of.x, of.h);
+    if (sum.q.size() == 0) sum = zeros_like(of.x);
+    add(sum, of.x, by);
   }
 
-  Neighbours<S, I> n_;
+  Neighbours<V> n_;
   std::vector<std::size_t> number_, still_;  // of each parameter among those under which no time moves; these
   std::optional<EquationSlopes<V>> slopes_;  // by these
-  EquationSlope by_time_;                    // ∂/∂t at the end of a step
-  bool knows_by_time_ = false;
+  std::vector<EquationSlope> by_time_;       // ∂/∂t at each place of a step; where it is not known the scale is zero
   State shown_;
 };
 

@@ -1,0 +1,88 @@
+#pragma once
+/// \file
+/// Tangents of a run along its steps under the generalised-α family.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/tangent_step.hpp>
+#include <polybody/gradients/variant.hpp>
+#include <polybody/gradients/variants_beside.hpp>
+
+namespace polybody::detail {
+
+/// What takes tangents before a step to those at its end.
+template <class S, class I>
+class AlphaTangents {
+ public:
+  using V = Variant<S, I>;
+  using Variants = VariantsBeside<V>;
+
+  /// Along the steps of `whole`, which must outlive it.
+  [[gnu::cold]] explicit AlphaTangents(V& whole)
+      : whole_(&whole), slope_(whole.scenario.model, whole.system, whole.method) {}
+
+  /// The tangents of `lanes` become those at the end of a step. Returns what a correction more would change.
+  double advance(TangentStep const& step, std::span<TangentLane const> lanes, Variants& beside) {
+    auto const& [before, after, h, searched] = step;
+    V& spare = beside.itself();
+    bool const corrects = spare.method.set_out(spare.system, before, h, spare.work);
+    State corrected;
+    if (corrects) {
+      corrected = before;
+      corrected.v = spare.work.v0;
+    }
+    own_before_ = spare.work.a0;
+    own_after_ = after.memory.head(after.v.size());
+    for (TangentLane const& lane : lanes) set_out(before, h, lane, corrects, beside);
+    StepEnds const ends{corrects ? corrected : before, after, own_before_, own_after_, h};
+    slope_.set(ends, searched ? nullptr : whole_->factors(h));
+    beside.begin_step();
+    constexpr std::size_t most = std::size_t(AlphaStepSlope<>::lanes);
+    directions_.resize(std::min(lanes.size(), most));
+    double left = 0.0;
+    for (std::size_t first = 0, count; first < lanes.size(); first += count) {
+      count = std::min(first == 0 ? most - 1 : most, lanes.size() - first);
+      for (std::size_t l = 0; l < count; ++l) {
+        TangentLane const& lane = lanes[first + l];
+        lane.tangent->dt += lane.dh;
+        beside.template of_equations<State>(lane.j, {after, h, lane.tangent->dt, 0}, directions_[l].by);
+        directions_[l].dx = &lane.tangent->dx;
+        directions_[l].dh = lane.dh;
+      }
+      left = std::max(left, slope_.advance(ends, std::span(directions_).first(count)));
+    }
+    for (TangentLane const& lane : lanes) push_length(*lane.tangent, lane.dh);
+    return left;
+  }
+
+ private:
+  /// The tangent of the speeds, and of the method's own accelerations, that a step from x sets out with.
+  static void set_out(State const& x, double h, TangentLane const& lane, bool corrects, Variants& beside) {
+    RunTangent& tangent = *lane.tangent;
+    double const shifted = x.memory[x.memory.size() - 1];
+    if (!corrects && (shifted == 0.0 || lane.dh == tangent.lengths[StepHistory::lengths - 1])) return;
+    Index const nv = x.v.size();
+    std::optional<bool> decided;
+    if (std::abs(h - shifted) > 1e-9 * h) decided = corrects;
+    State const change = beside.of_map(lane.j, x, tangent, {h, lane.dh}, [&](V& v, State& y, double length) {
+      (void)v.method.set_out(v.system, y, length, v.work, decided);
+      y.v = v.work.v0 - y.v;
+      y.memory.head(nv) = v.work.a0 - y.memory.head(nv);
+    });
+    tangent.dx.v += change.v;
+    tangent.dx.memory.head(nv) += change.memory.head(nv);
+  }
+  /// As `StepHistory::push` does with a length.
+  static void push_length(RunTangent& tangent, double dh) {
+    constexpr Index last = StepHistory::lengths - 1;
+    for (Index i = 0; i + 1 < last; ++i) tangent.lengths[i] = tangent.lengths[i + 1];
+    tangent.lengths[last - 1] = tangent.lengths[last] = dh;
+  }
+
+  V* whole_;
+  AlphaStepSlope<> slope_;
+  VecX own_before_, own_after_;  // the method's own accelerations before and after
+  std::vector<StepDirection> directions_;
+};
+
+}  // namespace polybody::detail
