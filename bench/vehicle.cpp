@@ -1,6 +1,7 @@
 // What a step of the tracked vehicle costs with every link on every pin that can be driven (Chapters 3 and 4), and what
 // that goes into: CPU of a second of driving, mean, 99.9 % and largest step, Newton's counts, and the time of each part
 // of a step beside the flop limit of its factorisation.   bench_vehicle [--links X] [--pins Y] [--until S] [--speed W]
+// With --causes 1: how many iterations and factorisations steps take by how many contacts come and go in them.
 // With --variants 1: what eight vehicles whose drives turn up to 1 % faster or slower would gain by stepping together.
 #include <ctime>
 
@@ -90,6 +91,61 @@ void measure(Options const& o, Combination const& combination) {
   std::fflush(stdout);
 }
 
+/// Points of contact that press, each by its track, link, opponent and number among theirs.
+std::vector<std::size_t> touching(AnyVehicle const& vehicle, System& system, State const& x) {
+  system.evaluate(x.q, x.v, x.t);
+  std::vector<std::size_t> points;
+  for (m113::Side const side : {m113::Side::left, m113::Side::right})
+    vehicle.tracks->track(side).contacts(system, [&](TouchingPoint const& p) {
+      std::size_t const pair =
+          std::hash<std::string>{}(*p.against) ^ (std::size_t(p.body) << 16) ^ (std::size_t(side) << 32);
+      points.push_back(pair);
+    });
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+/// Iterations and factorisations of steps by the number of contacts that come or go within them: none, some, many.
+void causes(Options const& o, Combination const& combination) {
+  Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
+  AnyModel const& model = built.vehicle.model;
+  State x = model.reference_state();
+  Simulation<GeneralizedAlpha> run =
+      simulate(model, x, integrator(o), {.until = o.until, .step = o.step, .halvings = 6});
+  RunSystems const systems = model.systems_of<GeneralizedAlpha>();
+  System& whole = systems.whole ? *systems.whole : *systems.stepped;
+  struct Class {
+    std::size_t most;  // contacts that come or go
+    double steps = 0.0, iterations = 0.0, factorisations = 0.0;
+  };
+  std::vector<Class> classes{{0}, {2}, {5}, {10}, {std::size_t(-1)}};
+  std::vector<std::size_t> before, after, changed;
+  double iterations = 0.0, factorisations = 0.0;
+  for (State const& state : run) {
+    after = touching(built.vehicle, whole, state);
+    auto const& report = run.report();
+    if (state.t > 0.0) {
+      changed.clear();
+      std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),
+                                    std::back_inserter(changed));
+      Class& of =
+          *std::find_if(classes.begin(), classes.end(), [&](Class const& c) { return changed.size() <= c.most; });
+      of.steps += 1.0;
+      of.iterations += double(report.iterations) - iterations;
+      of.factorisations += double(report.factorisations) - factorisations;
+    }
+    iterations = double(report.iterations);
+    factorisations = double(report.factorisations);
+    before.swap(after);
+  }
+  std::printf("| `%s` | `%s` |", combination.links.c_str(), combination.pins.c_str());
+  for (Class const& c : classes)
+    std::printf(" %.0f: %.2f, %.2f |", 100.0 * c.steps / double(run.report().steps), c.iterations / c.steps,
+                c.factorisations / c.steps);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
 void variants(Options o, Combination const& combination) {
   std::vector<lockstep::Counts> runs;
   double const speed = o.speed;
@@ -119,7 +175,7 @@ int main(int argc, char** argv) {
   o.rho = 0.5;
   o.speed = 30.0;
   o.until = 4.0;
-  bool of_variants = false;
+  bool of_variants = false, of_causes = false;
   o.links.clear();
   o.masses = m113::with_steel_links(o.masses);
   o.files = POLYBODY_TRACK_LINK_FILES;
@@ -133,6 +189,8 @@ int main(int argc, char** argv) {
       o.until = std::stod(value);
     else if (name == "--speed")
       o.speed = std::stod(value);
+    else if (name == "--causes")
+      of_causes = value != "0";
     else if (name == "--variants")
       of_variants = value != "0";
     else
@@ -145,6 +203,15 @@ int main(int argc, char** argv) {
         if (c.refusal.empty() && (o.pins.empty() || o.pins == c.pins)) f(o, c);
     }
   };
+  if (of_causes) {
+    std::printf(
+        "%g s from a standstill to %g rad/s, steps of 1 ms: share of the steps [%%] in which so many contacts come or "
+        "go, and their iterations and factorisations\n\n| links | pins | none | 1 or 2 | 3 to 5 | 6 to 10 | more "
+        "|\n|---|---|---|---|---|---|---|\n",
+        o.until, o.speed);
+    each(causes);
+    return 0;
+  }
   if (of_variants) {
     lockstep::print_head();
     each(variants);

@@ -176,6 +176,17 @@ TEST(ExactTangents, AreThoseOfCompliantJoints) {
                      weld.of_a(), weld.of_b());
   expect_exact_with_rates(weld.model);
 }
+TEST(ExactTangents, AreThoseOfRowsOfSpeeds) {
+  using Blade = Joint<KnifeEdge, Constraint>;
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<Blade>>> glides;
+  glides.model.connect(Blade{{.across = Vec3::UnitY()}}, glides.of_a(), glides.of_b());
+  expect_exact_with_rates(glides.model);
+  using Disc = Joint<RollingDisc, Constraint>;
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<Disc>>> rolls;
+  rolls.model.connect(Disc{{.radius = 0.3, .axis = Vec3::UnitX(), .normal = Vec3::UnitZ()}},
+                      rolls.model.ground().at({0, 0, 0}), rolls.b.at(Vec3(0, 0, 0)));
+  expect_exact_with_rates(rolls.model);
+}
 // Of a group that steps write without the blocks between two bodies.
 TEST(ExactTangents, AreThoseOfGroupsWithBlocksBetweenTheirBodies) {
   using OnBall = Contact<SphereOnSphere>;
@@ -281,7 +292,7 @@ TEST(ActingPairs, HaveAllBlocksThatAct) {
   EXPECT_LT(of_some, of_both);
 }
 
-// A velocity row, at rest, as tangents leave out ∂Φ̇/∂q.
+// A velocity row, at rest, as tangents of steps leave out ∂Φ̇/∂q.
 TEST(TurnedIncrements, CompleteVelocityRows) {
   Model<Bodies<Rigid<>>, Joints<Joint<KnifeEdge, Constraint>>> model;
   auto const sledge = model.add(Rigid<>::from(bar()), "sledge");

@@ -14,7 +14,8 @@
 
 namespace polybody {
 
-/// A floor that the tip of cables on AncfLinear pins meets: the event sees and changes whole states. Steps are of h [s].
+/// A floor that the tip of cables on AncfLinear pins meets: the event sees and changes whole states. Steps are of h
+/// [s].
 template <class I>
 void expect_impact_of_cables(double h, I const& integrator) {
   auto const make = [h](std::span<double const> p) {

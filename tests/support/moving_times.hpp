@@ -1,5 +1,6 @@
 #pragma once
-// Scenarios of runs whose times move with their parameters: falls on the floor, pushes that end, drives that ramp, stops.
+// Scenarios of runs whose times move with their parameters: falls on the floor, pushes that end, drives that ramp,
+// stops.
 
 #include <polybody/gradients/sensitivities.hpp>
 
@@ -47,7 +48,10 @@ inline auto const ball = [](P p) {
   if (bounces) floor.then = [e = p[2]](State& x) { x.v[1] *= -e; };
   std::vector<Output<M>> outputs{{"y [m]", [](M const&, State const& x) { return x.q[1]; }},
                                  {"v [m/s]", [](M const&, State const& x) { return x.v[1]; }}};
-  return Scenario<M>{std::move(model), start, {.until = 1.7, .step = 1e-2, .largest_step = 0.1, .events = {floor}}, std::move(outputs)};
+  return Scenario<M>{std::move(model),
+                     start,
+                     {.until = 1.7, .step = 1e-2, .largest_step = 0.1, .events = {floor}},
+                     std::move(outputs)};
 };
 inline std::vector<Parameter> const of_ball{{"gravity [m/s²]", 9.81}, {"height [m]", 1.0}, {"restitution [1]", 0.8}};
 
@@ -138,8 +142,7 @@ void expect_push(I const& integrator) {
   double const T = 0.3137, F = 3.0, m = 2.0, end = 0.8;
   // as it is differenced the corner moves by 0.06 steps, or by 6
   for (double const scale : {0.75, 75.0}) {
-    Sensitivities const s =
-        sensitivities(pushed, {{"T [s]", T, scale}, {"F [N]", F}, {"m [kg]", m}}, integrator);
+    Sensitivities const s = sensitivities(pushed, {{"T [s]", T, scale}, {"F [N]", F}, {"m [kg]", m}}, integrator);
     MatX const& by = s.slopes.back();
     EXPECT_NEAR(by(0, 0), F / m * (end - T), 1e-11);
     EXPECT_NEAR(by(1, 0), F / m, 1e-11);
@@ -189,7 +192,7 @@ inline std::vector<Parameter> const of_drive{
 /// Beside differences of runs, over distances that keep each corner and event within its step: `scales` of them.
 template <class Make, class I>
 void expect_slopes_of_moving_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
-                           double tolerance, std::vector<double> const& scales) {
+                                  double tolerance, std::vector<double> const& scales) {
   Sensitivities const s = sensitivities(make, parameters, integrator);
   auto near = parameters;
   for (std::size_t j = 0; j < scales.size(); ++j) near[j].scale = scales[j];
@@ -288,7 +291,8 @@ void expect_lengths_as_parameters(I const& integrator, double step) {
     scenario.options.step = p[1];
     return scenario;
   };
-  expect_slopes_of_moving_runs(swung, {{"until [s]", 0.508}, {"step [s]", step}}, integrator, 5e-7, {0.025, 0.5 * step});
+  expect_slopes_of_moving_runs(swung, {{"until [s]", 0.508}, {"step [s]", step}}, integrator, 5e-7,
+                               {0.025, 0.5 * step});
 }
 
 // --- what is refused ---------------------------------------------------------------------------------------------

@@ -131,7 +131,7 @@ class BasicSystem {
       c.full = true;
       if (lambda) require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), *lambda, c, data_, sink);
       require_entry(entries_.force_tangents, "tangents")(model_, t_, load_factor, c, data_, sink);
-      require_entry(entries_.load_stiffness, "second-order terms")(model_, at(), c.stiffness, data_, sink);
+      require_entry(entries_.load_stiffness, "second-order terms")(model_, at(), c, data_, sink);
     });
   }
 

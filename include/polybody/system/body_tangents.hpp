@@ -151,7 +151,7 @@ void BodyKernels<B, T>::own_stiffness(Pool const& pool, VecX const& lambda, deta
       Mat<double, n, n> k;
       Vec<double, B::own_rows> const l(lambda.data() + e.row);
       e.body.own_stiffness(coordinates(e, x.at.q), l, k);
-      k *= x.ck;
+      k *= x.c.stiffness;
       sink.add(e.v0, e.v0, k);
     }
 }
@@ -174,12 +174,12 @@ void BodyKernels<B, T>::load_stiffness(Pool const& pool, Kept& kept, detail::Sti
       MatX& k = kept.scratch[std::size_t(p.body)].point_scratch();
       e.body.load_stiffness(p.point, q, w, k);
       auto of_marker = k.topLeftCorner(marker.columns, marker.columns);
-      of_marker *= x.ck;
+      of_marker *= x.c.stiffness;
       sink.add(marker.first, marker.first, of_marker);
     } else {
       Mat<double, B::point_columns, B::point_columns> k;
       e.body.load_stiffness(p.point, q, w, k);
-      for (Index i = 0; i < k.size(); ++i) k.data()[i] *= x.ck;
+      for (Index i = 0; i < k.size(); ++i) k.data()[i] *= x.c.stiffness;
       sink.add(marker.first, marker.first, k);
     }
   }

@@ -57,6 +57,8 @@ struct Data {
   Data(Data&&) = default;             ///< takes the buffers over: pointers into them stay valid
   Data& operator=(Data&&) = default;  ///< takes the buffers over, as above
 
+  /// Where row i stands among the unknowns, behind the speeds.
+  Index unknown_of_row(Index i) const { return first_state + Index(states.size()) + i; }
   /// Whether this evaluation leaves a block out: one of a linear joint, while `linear_rows` is false.
   bool leaves_out(RowBlock<T> const& block) const { return block.source == RowSource::linear && !linear_rows; }
 };

@@ -88,11 +88,10 @@ struct At {
 };
 
 namespace detail {
-/// Where and by which factor second-order terms are taken.
+/// Where and by which factors second-order terms are taken.
 struct StiffnessAt {
   At<double> at;
-  double ck;
-  bool exact;  ///< with what positions do to rates
+  TangentCoefficients const& c;
 };
 }  // namespace detail
 
@@ -139,7 +138,8 @@ struct ModelEntries {
   void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, TangentCoefficients const& c, Data<T>& data,
                           BlockSink& sink) = nullptr;
   /// ck ∂(Jᵀw)/∂q for the wrenches in data.loads.
-  void (*load_stiffness)(void const* m, At<T> at, double ck, Data<T>& data, BlockSink& sink) = nullptr;
+  void (*load_stiffness)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
+                         BlockSink& sink) = nullptr;
 
   /// q˙; `room` (2 nq + nv) is scratch.
   void (*coordinate_rates)(void const* m, NarrowPlace const* places, Vector const& q, Vector const& v,

@@ -87,32 +87,53 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
   return rest;
 }
 
-/// s += ck Gᵀ ∂λ/∂ġ ∂ġ/∂(poses) of a compliant joint, which is what positions do to ġ = G V at speeds that stay: row i
-/// of ∂ġ/∂(poses) is Vᵀ ∂(Gᵀeᵢ)/∂(poses) + (G ∂V/∂(poses))ᵢ. A Φ_t that depends on positions is left out.
+/// ∂ġ/∂(poses), m×12: what positions do to ġ = G V at speeds that stay. Row i is Vᵀ ∂(Gᵀeᵢ)/∂(poses) +
+/// (G ∂V/∂(poses))ᵢ. A Φ_t that depends on positions is left out.
+template <class G>
+Mat<double, G::rows, 12> rates_by_poses(G const& geometry, Gap<G::rows, double> const& gap,
+                                        std::array<Published<double> const*, 2> const& markers, double t) {
+  constexpr int m = G::rows;
+  Frame<double> const &a = markers[0]->frame, &b = markers[1]->frame;
+  Vec<double, 6> const twists[2] = {twist(a), twist(b)};
+  auto rates = zeros<Mat<double, m, 12>>();
+  for (int i = 0; i < m; ++i) {
+    auto one = zeros<Vec<double, m>>();
+    one[i] = 1.0;
+    Mat<double, 12, 12> const h = wrench_gradient(geometry, a, b, t, one);
+    for (int k = 0; k < 12; ++k)
+      for (int j = 0; j < 12; ++j) rates(i, k) += twists[j / 6][j % 6] * h(j, k);
+  }
+  add_rates_of_pose<m>(*markers[0], gap.Ga.data(), rates.data());
+  add_rates_of_pose<m>(*markers[1], gap.Gb.data(), rates.data() + 6 * m);
+  return rates;
+}
+/// s += ck Gᵀ ∂λ/∂ġ ∂ġ/∂(poses) of a compliant joint.
 template <class J>
 void add_rate_slopes(J const& joint, Gap<J::rows, double> const& gap,
                      std::array<Published<double> const*, 2> const& markers, StiffnessAt const& x,
                      Mat<double, 12, 12>& s) {
   constexpr int m = J::rows;
-  Frame<double> const &a = markers[0]->frame, &b = markers[1]->frame;
-  Vec<double, 6> const twists[2] = {twist(a), twist(b)};
-  auto rate = zeros<Mat<double, m, 12>>();
-  for (int i = 0; i < m; ++i) {
-    auto one = zeros<Vec<double, m>>();
-    one[i] = 1.0;
-    Mat<double, 12, 12> const h = wrench_gradient(joint.measure(), a, b, x.at.t, one);
-    for (int k = 0; k < 12; ++k)
-      for (int j = 0; j < 12; ++j) rate(i, k) += twists[j / 6][j % 6] * h(j, k);
-  }
-  add_rates_of_pose<m>(*markers[0], gap.Ga.data(), rate.data());
-  add_rates_of_pose<m>(*markers[1], gap.Gb.data(), rate.data() + 6 * m);
-  Mat<double, m, m> const slope = joint.policy.template slope<m>(0.0, x.ck, gap.g, gap_rate(gap, a, b));
+  Mat<double, m, 12> const rates = rates_by_poses(joint.measure(), gap, markers, x.at.t);
+  Mat<double, m, m> const slope =
+      joint.policy.template slope<m>(0.0, x.c.stiffness, gap.g, gap_rate(gap, markers[0]->frame, markers[1]->frame));
   for (int k = 0; k < 12; ++k)
     for (int i = 0; i < m; ++i) {
       double answer = 0.0;
-      for (int l = 0; l < m; ++l) answer += slope(i, l) * rate(l, k);
+      for (int l = 0; l < m; ++l) answer += slope(i, l) * rates(l, k);
       for (int j = 0; j < 12; ++j) s(j, k) += (j < 6 ? gap.Ga(i, j) : gap.Gb(i, j - 6)) * answer;
     }
+}
+/// Adds ck/cd ∂ġ/∂(poses) to the last n rows, from `row` on, which are of speeds and stand beside G.
+template <int n, int m>
+void add_velocity_rows(Mat<double, m, 12> const& rates, std::array<Published<double> const*, 2> const& markers,
+                       StiffnessAt const& x, Index row, Sequence<double>& scratch, BlockSink& sink) {
+  double part[12 * n];  // entry i of row k at 12 k + i
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < 12; ++i) part[12 * k + i] = x.c.stiffness / x.c.damping * rates(m - n + k, i);
+  for (int end = 0; end < 2; ++end) {
+    Published<double> const& p = *markers[std::size_t(end)];
+    if (p.columns > 0) sink.add(row, p.first, pulled<n>(p, part + 6 * end, 1, 12, scratch).transposed());
+  }
 }
 
 }  // namespace detail
@@ -247,9 +268,15 @@ void JointKernels<J, T>::stiffness(Pool const& pool, Kept const& kept, VecX cons
       Vec<double, m> l;
       for (int k = 0; k < m; ++k) l[k] = multipliers[k];
       Mat<double, 12, 12> s = wrench_gradient(e.joint.measure(), a.frame, b.frame, x.at.t, l);
-      for (int k = 0; k < 144; ++k) s.data()[k] *= x.ck;
-      if constexpr (compliant)
-        if (x.exact) detail::add_rate_slopes(e.joint, gap, {&a, &b}, x, s);
+      for (int k = 0; k < 144; ++k) s.data()[k] *= x.c.stiffness;
+      if constexpr (constexpr int n = velocity_rows<typename J::Geometry>(); compliant || n > 0)
+        if (x.c.exact) {
+          if constexpr (compliant)
+            detail::add_rate_slopes(e.joint, gap, {&a, &b}, x, s);
+          else if (x.c.damping != 0.0)
+            detail::add_velocity_rows<n>(detail::rates_by_poses(e.joint.measure(), gap, {&a, &b}, x.at.t), {&a, &b}, x,
+                                         data.unknown_of_row(e.row + m - n), data.scratch, sink);
+        }
       std::array<Wrench<double>, 2> on_markers;
       double const* const maps[2] = {gap.Ga.data(), gap.Gb.data()};
       for (std::size_t end = 0; end < 2; ++end) {

@@ -98,12 +98,13 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   }
   static void joint_stiffness(void const* m, At<double> at, VecX const& lambda, TangentCoefficients const& c,
                               Data<double>& data, BlockSink& sink) {
-    StiffnessAt const x{at, c.stiffness, c.exact};
+    StiffnessAt const x{at, c};
     (BodyKernels<Bs, double>::own_stiffness(bodies<Bs>(m), lambda, x, sink), ...);
     (JointKernels<Js, double>::stiffness(joints<Js>(m), of_joints<Js>(data), lambda, x, data, sink), ...);
   }
-  static void load_stiffness(void const* m, At<double> at, double ck, Data<double>& data, BlockSink& sink) {
-    StiffnessAt const x{at, ck, false};
+  static void load_stiffness(void const* m, At<double> at, TangentCoefficients const& c, Data<double>& data,
+                             BlockSink& sink) {
+    StiffnessAt const x{at, c};
     (BodyKernels<Bs, double>::load_stiffness(bodies<Bs>(m), of_bodies<Bs>(data), x, data, sink), ...);
   }
   static void coordinate_rates(void const* m, NarrowPlace const* places, VecX const& q, VecX const& v,

@@ -163,7 +163,7 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
   entries_.compliant_tangents(model_, c, data_, sink);
   if (c.full) require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), lambda, c, data_, sink);
   entries_.force_tangents(model_, t_, load_factor, c, data_, sink);
-  if (c.full) entries_.load_stiffness(model_, at(), c.stiffness, data_, sink);
+  if (c.full) entries_.load_stiffness(model_, at(), c, data_, sink);
 }
 
 /// M a − f of the whole model at v̇ = 0 where it was evaluated last, without the forces of its rows.

@@ -190,7 +190,7 @@ struct UserEntries {
             .force_tangents = [](void const*, double, double, TangentCoefficients const&, Data<double>&, BlockSink&) {},
             .joint_stiffness = [](void const*, At<double>, VecX const&, TangentCoefficients const&, Data<double>&,
                                   BlockSink&) {},
-            .load_stiffness = [](void const*, At<double>, double, Data<double>&, BlockSink&) {},
+            .load_stiffness = [](void const*, At<double>, TangentCoefficients const&, Data<double>&, BlockSink&) {},
             .coordinate_rates = &coordinate_rates};
   }
 };
