@@ -196,5 +196,31 @@ TEST(Rigid, NamesThePrincipalMomentsOfAnInertiaInTurnedAxes) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[std::size_t(i)], given[i], 1e-7);
 }
 
+/// A quarter turn about z, the marker's axes a quarter turn about x against the body's: all numbers by hand.
+template <class T>
+void publishes_by_hand() {
+  double const half = std::sqrt(0.5);
+  std::array<T, 7> const q{T(10.0), T(20.0), T(30.0), T(half), T(0.0), T(0.0), T(half)};
+  std::array<T, 6> const v{T(1.0), T(0.0), T(-1.0), T(0.5), T(0.0), T(2.0)};
+  Published<T> out;
+  out.bias.setConstant(T(9.0));
+  Rigid<>(2.0, tilted).publish<T>({Vec3(1, 2, 3)}, (Mat3() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished(), q, v, out);
+  auto const near = [](auto const& x, auto const& expected) {
+    for (Index i = 0; i < expected.size(); ++i) EXPECT_NEAR(value_of(x.data()[i]), expected.data()[i], 4e-14);
+  };
+  near(out.arm, Vec3(-2, 1, 3));
+  near(out.body_axes, (Mat3() << 0, -1, 0, 1, 0, 0, 0, 0, 1).finished());
+  near(out.frame.r, Vec3(8, 21, 33));
+  near(out.frame.A, (Mat3() << 0, 0, 1, 1, 0, 0, 0, 1, 0).finished());
+  near(out.frame.w, Vec3(0, 0.5, 2));
+  near(out.frame.v, Vec3(0.5, -4, 0));
+  near(out.bias, (Vec6() << 8.5, -1, 0.25, 0, 0, 0).finished());
+}
+
+TEST(Rigid, PublishesByHand) {
+  publishes_by_hand<double>();
+  publishes_by_hand<Dual<2>>();
+}
+
 }  // namespace rigid_test
 }  // namespace polybody

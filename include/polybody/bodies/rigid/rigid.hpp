@@ -8,6 +8,7 @@
 #include <concepts>
 #include <numbers>
 
+#include <polybody/bodies/rigid/rigid_marker.hpp>
 #include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/body.hpp>
 
@@ -323,6 +324,9 @@ class Rigid<UnitQuaternion> : public RigidShape {
   /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0]; the body is where the pose `at` says.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
+    out.shape = JacobianShape::rigid;
+    out.columns = 6;
+    if constexpr (std::same_as<T, double>) return detail::write_rigid_marker(p.u, axes, at, out);
     T arm[3], rate[3];
     for (int i = 0; i < 3; ++i) {
       T const x = at.A(i, 0), y = at.A(i, 1), z = at.A(i, 2);
@@ -339,8 +343,6 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
     out.frame.w = at.w;
     out.body_axes = at.A;
-    out.shape = JacobianShape::rigid;
-    out.columns = 6;
   }
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {

@@ -1,0 +1,27 @@
+#pragma once
+/// \file
+/// A marker of a rigid body in doubles. Markers are many and are written at every evaluation.
+
+#include <polybody/kinematics/published.hpp>
+#include <polybody/math/triple.hpp>
+
+namespace polybody::detail {
+
+/// What `Rigid::publish` writes to `out`, to the last bit: of the point u with the axes `axes`, both by the body's,
+/// whose pose is `at`.
+template <class Pose, class V = Triple<>>  // compiled where it is used
+void write_rigid_marker(Vec3 const& u, Mat3 const& axes, Pose const& at, Published<double>& out) {
+  V const x = V::column(at.A, 0), y = V::column(at.A, 1), z = V::column(at.A, 2), w = V::load(at.w.data());
+  auto const turned = [&](double const* by_body) { return V::combination(x, y, z, by_body); };
+  V const arm = turned(u.data()), rate = cross(w, arm);
+  (V::load(at.r.data()) + arm).store(out.frame.r.data());
+  V::store_columns(turned(axes.data()), turned(axes.data() + 3), turned(axes.data() + 6), out.frame.A);
+  (V::load(at.v.data()) + rate).store(out.frame.v.data());
+  w.store(out.frame.w.data());
+  cross(w, rate).store(out.bias.data());
+  for (int i = 3; i < 6; ++i) out.bias[i] = 0.0;
+  V::store_columns(x, y, z, out.body_axes);
+  arm.store(out.arm.data());
+}
+
+}  // namespace polybody::detail
