@@ -55,7 +55,7 @@ Quaternion<T> quaternion_exp(Vec<T, 3> const& phi) {
   using std::sqrt;
   Vec<T, 3> const half(phi[0] * 0.5, phi[1] * 0.5, phi[2] * 0.5);
   T const x = squared_norm(half);
-  RotationSeries<T> const s(x);
+  ExpSeries<T> const s(x);
   return {1.0 - x * s.b, half[0] * s.a, half[1] * s.a, half[2] * s.a};
 }
 
@@ -76,15 +76,24 @@ Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
   return {v[0] * factor, v[1] * factor, v[2] * factor};
 }
 
-/// q ⊞ δ = q exp(δ): δ (3) in body axes [rad]; the result is normalised.
+/// `out` (4) = q ⊞ δ = q exp(δ), normalised, of q (4) and `delta` (3), δ in body axes [rad]. Numbers are read where
+/// they stand: put into vectors one by one and read from there as a whole, they would be waited for.
 template <class T>
-Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
+void set_quaternion_plus(T const* q, T const* delta, T* out) {
   using std::sqrt;
-  Quaternion<T> const r = quaternion_product<T>(q, quaternion_exp<T>(delta));
+  Quaternion<T> const r =
+      quaternion_product<T>({q[0], q[1], q[2], q[3]}, quaternion_exp<T>({delta[0], delta[1], delta[2]}));
   T const square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3], off = square - 1.0;
   bool const near = value_of(off) * value_of(off) < 1e-16;  // the next term of the series, 3/8 off², is below rounding
   T const scale = near ? T(1.0 - 0.5 * off) : T(1.0 / sqrt(square));
-  return {r[0] * scale, r[1] * scale, r[2] * scale, r[3] * scale};
+  for (int i = 0; i < 4; ++i) out[i] = r[i] * scale;
+}
+/// q ⊞ δ, returned.
+template <class T>
+Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
+  Quaternion<T> turned;
+  set_quaternion_plus<T>(q.data(), delta.data(), turned.data());
+  return turned;
 }
 
 /// q ⊟ p = log(p⁻¹ q): the δ with p ⊞ δ = q (up to sign of the quaternion).

@@ -35,24 +35,21 @@ inline constexpr auto inverse_factorials = [] {
 }();
 }  // namespace detail
 
-/// The coefficients of exp and its Jacobian as functions of x = |φ|², by series near zero:
-/// a = sin θ/θ, b = (1 − cos θ)/θ², c = (θ − sin θ)/θ³, θ = √x.
+/// Coefficients of exp as functions of x = |φ|², by series near zero: a = sin θ/θ, b = (1 − cos θ)/θ², θ = √x.
 template <class T>
-struct RotationSeries {
-  T a, b, c;  ///< as above, without unit; φ in [rad]
+struct ExpSeries {
+  T a, b;  ///< as above, without unit; φ in [rad]
   /// At x = |φ|² [rad²].
-  explicit RotationSeries(T const& x) {
+  explicit ExpSeries(T const& x) {
     using std::cos, std::sin, std::sqrt;
     if (value_of(x) < 0.25) {
       a = series(x, 1);
       b = series(x, 2);
-      c = series(x, 3);
     } else {
       T const angle = sqrt(x);
       T const half = sin(0.5 * angle);
       a = sin(angle) / angle;
       b = 2.0 * half * half / x;
-      c = (1.0 - a) / x;
     }
   }
 
@@ -67,6 +64,15 @@ struct RotationSeries {
     for (int k = n + 2 * terms - 4; k >= n; k -= 2) sum = detail::inverse_factorials[std::size_t(k)] - x * sum;
     return sum;
   }
+};
+
+/// The same with that of its Jacobian, c = (θ − sin θ)/θ³.
+template <class T>
+struct RotationSeries : ExpSeries<T> {
+  T c;  ///< as above, without unit
+  /// At x = |φ|² [rad²].
+  explicit RotationSeries(T const& x)
+      : ExpSeries<T>(x), c(value_of(x) < 0.25 ? this->series(x, 3) : T((1.0 - this->a) / x)) {}
 };
 
 /// Slopes by x of b and c: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x, e = (1/6 − c)/x.

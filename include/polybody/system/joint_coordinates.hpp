@@ -114,9 +114,7 @@ void plus(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& delta
       out[qn] = q[qn] + delta[vn];
       return;
     }
-    Quaternion<T> const turned =
-        quaternion_plus<T>({q[qn], q[qn + 1], q[qn + 2], q[qn + 3]}, {delta[vn], delta[vn + 1], delta[vn + 2]});
-    for (int i = 0; i < 4; ++i) out[qn + i] = turned[i];
+    set_quaternion_plus<T>(q.data() + qn, delta.data() + vn, out.data() + qn);
   });
 }
 /// The rate of δ in q ⊞ δ.

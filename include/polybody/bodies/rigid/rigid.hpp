@@ -210,8 +210,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   template <StateScalar T>
   void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
     for (std::size_t i = 0; i < 3; ++i) out[i] = q[i] + delta[i];
-    Quaternion<T> const turned = quaternion_plus<T>({q[3], q[4], q[5], q[6]}, {delta[3], delta[4], delta[5]});
-    for (std::size_t i = 0; i < 4; ++i) out[3 + i] = turned[Index(i)];
+    set_quaternion_plus<T>(q.data() + 3, delta.data() + 3, out.data() + 3);
   }
 
   /// δ˙ with q ⊞ δ(t) moving with v: Ω = Jr(δ) δ˙.
