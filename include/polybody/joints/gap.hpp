@@ -3,10 +3,24 @@
 /// Waist 2: the gap, all that a policy knows of a joint.
 
 #include <array>
+#include <utility>
 
 #include <polybody/kinematics/frame.hpp>
 
 namespace polybody {
+
+namespace detail {
+/// Zeros, each by a store of its own, of which compilers make registers. Of a loop g++ -O2 makes a string instruction,
+/// which takes as long to begin as a joint's gap to be measured.
+template <class M>
+M stored_zeros() {
+  M m;
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    ((m.data()[i] = typename M::Scalar(0.0)), ...);
+  }(std::make_index_sequence<std::size_t(M::SizeAtCompileTime)>{});
+  return m;
+}
+}  // namespace detail
 
 /// The violation of m rows between frame a and frame b:
 ///   ġ = Ga Va + Gb Vb + Φ_t,   V = [ṙ; ω] in world axes.
@@ -15,10 +29,10 @@ namespace polybody {
 template <int m, StateScalar T = double>
 struct Gap {
   static constexpr int rows = m;
-  Vec<T, m> g = detail::zeros<Vec<T, m>>();         ///< (m) violation [m], [rad] or [1]
-  Mat<T, m, 6> Ga = detail::zeros<Mat<T, m, 6>>();  ///< (m×6) map of frame a's twist
-  Mat<T, m, 6> Gb = detail::zeros<Mat<T, m, 6>>();  ///< (m×6) map of frame b's twist
-  Vec<T, m> rate = detail::zeros<Vec<T, m>>();      ///< (m) Φ_t: the rate that is prescribed by time alone
+  Vec<T, m> g = detail::zeros<Vec<T, m>>();                ///< (m) violation [m], [rad] or [1]
+  Mat<T, m, 6> Ga = detail::stored_zeros<Mat<T, m, 6>>();  ///< (m×6) map of frame a's twist
+  Mat<T, m, 6> Gb = detail::stored_zeros<Mat<T, m, 6>>();  ///< (m×6) map of frame b's twist
+  Vec<T, m> rate = detail::zeros<Vec<T, m>>();             ///< (m) Φ_t: the rate that is prescribed by time alone
 };
 
 /// Axis i of a frame, a column of A.

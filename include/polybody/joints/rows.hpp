@@ -24,7 +24,7 @@ void coincident(Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row = 
 
 /// Writes g = u·w to `row`: ġ = (u × w)·(ω_a − ω_b).
 template <int m, StateScalar T>
-void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, Gap<m, T>& gap, int row) {
+[[gnu::always_inline]] inline void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, Gap<m, T>& gap, int row) {
   Vec<T, 3> const c = cross(u, w);
   gap.g[row] = dot(u, w);
   for (int i = 0; i < 3; ++i) {
