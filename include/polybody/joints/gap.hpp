@@ -98,6 +98,16 @@ constexpr int velocity_rows() {
     return 0;
 }
 
+/// Whether Gb = −Ga in all rows, as a geometry says by `opposite_ends`: forces of its rows then work out one wrench for
+/// both ends. Most say nothing.
+template <class G>
+constexpr bool has_opposite_ends() {
+  if constexpr (requires { G::opposite_ends; })
+    return G::opposite_ends;
+  else
+    return false;
+}
+
 /// Which motions of b against a a geometry leaves free (its member `free`): slides along the joint's axes, then turns
 /// about them.
 using Freedoms = std::array<bool, 6>;

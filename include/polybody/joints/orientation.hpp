@@ -9,6 +9,7 @@ struct Orientation {
   static constexpr int rows = 3;
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::space;
+  static constexpr bool opposite_ends = true;
   static constexpr Freedoms free = {true, true, true};
 
   Mat3 triad() const { return identity(); }

@@ -25,6 +25,7 @@ struct PerpendicularAxes {
   static constexpr Observes needs = Observes::frame;
   static constexpr Observes needs_of_second = Observes::axis;
   static constexpr World world = World::space;
+  static constexpr bool opposite_ends = true;
 
   JointAxis first = {};   ///< (3) unit vector a₁, world axes at the reference configuration
   JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to it
@@ -61,6 +62,7 @@ struct ParallelAxes {
   static constexpr Observes needs = Observes::frame;
   static constexpr Observes needs_of_second = Observes::axis;
   static constexpr World world = World::space;
+  static constexpr bool opposite_ends = true;
   static constexpr Freedoms free = {true, true, true, false, false, true};
 
   JointAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration

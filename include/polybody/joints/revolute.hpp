@@ -12,6 +12,7 @@ struct Revolute {
   static constexpr Observes needs = Observes::frame;
   static constexpr Observes needs_of_second = Observes::axis;
   static constexpr World world = World::space;
+  static constexpr bool opposite_ends = true;
   static constexpr Freedoms free = {false, false, false, false, false, true};
 
   JointAxis axis = {};  ///< (3) unit vector of the pin, world axes at the reference configuration

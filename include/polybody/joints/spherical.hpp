@@ -9,6 +9,7 @@ struct Spherical {
   static constexpr int rows = 3;
   static constexpr Observes needs = Observes::point;
   static constexpr World world = World::space;
+  static constexpr bool opposite_ends = true;
   static constexpr Freedoms free = {false, false, false, true, true, true};
 
   Mat3 triad() const { return identity(); }

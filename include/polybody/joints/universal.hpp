@@ -13,6 +13,7 @@ struct Universal {
   static constexpr Observes needs = Observes::frame;
   static constexpr Observes needs_of_second = Observes::axis;
   static constexpr World world = World::space;
+  static constexpr bool opposite_ends = true;
 
   JointAxis first = {};   ///< (3) unit vector a₁, world axes at the reference configuration
   JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to it

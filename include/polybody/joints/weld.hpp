@@ -9,6 +9,7 @@ struct Weld {
   static constexpr int rows = 6;
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::space;
+  static constexpr bool opposite_ends = true;
   static constexpr Freedoms free = {};
 
   Mat3 triad() const { return identity(); }

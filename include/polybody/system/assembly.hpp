@@ -20,6 +20,13 @@ void for_each_row_block(Data<T> const& data, F&& f) {
 /// r += mapᵀ λ of both ends of a block; m as a constant, or block.rows where it is zero.
 template <int m, StateScalar T>
 void add_ends(RowBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
+  if constexpr (m > 0)
+    if (block.opposite) {
+      T w[6];
+      wrench_of<m>(block.a.map, lambda, w);
+      add_pulled(data.markers[std::size_t(block.a.marker)], w, 1.0, r);
+      return add_pulled(data.markers[std::size_t(block.b.marker)], w, -1.0, r);
+    }
   for (RowEnd<T> const* const end : {&block.a, &block.b}) {
     if (end->marker < 0) {
       int const rows = m > 0 ? m : block.rows;

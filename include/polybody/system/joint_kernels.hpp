@@ -196,6 +196,7 @@ void JointKernels<J, T>::place(Pool const& pool, Kept& kept, Index owner, Index 
       data.read[std::size_t(e.a)] = data.read[std::size_t(e.b)] = 1;
       Gap<J::rows, T>& gap = kept.gaps[i];
       RowBlock<T> block{.source = compliant ? RowSource::compliant : RowSource::joint,
+                        .opposite = has_opposite_ends<typename J::Measured>(),
                         .row = e.row,
                         .rows = J::rows,
                         .owner = owner,

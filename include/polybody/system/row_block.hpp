@@ -29,6 +29,7 @@ enum class RowSource : unsigned char {
 template <StateScalar T = double>
 struct RowBlock {
   RowSource source = RowSource::joint;  ///< who brings them
+  bool opposite = false;                ///< both ends are markers, and the map of b is that of a times −1
   Index row = -1;                       ///< first row of the model; −1 for a compliant joint
   int rows = 0;                         ///< m
   int positions = 0;                    ///< of a linear joint: its first rows, which are those of the position

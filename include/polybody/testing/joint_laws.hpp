@@ -52,7 +52,8 @@ struct JointLawsOf {
   /// Gaᵀλ·Va + Gbᵀλ·Vb = λ·(ġ − Φ_t), ġ along the motion.
   void wrenches_have_the_power_of_the_multipliers();
   /// f_a + f_b = 0 always. Moments balance about every point while the joint is closed; open, rows in world axes leave
-  /// the moment d × f, f the force of these rows (none for a force along d, a spring's).
+  /// the moment d × f, f the force of these rows (none for a force along d, a spring's). A geometry whose ends are said
+  /// to be opposite has Gb = −Ga to the last bit.
   void wrenches_are_equal_and_opposite();
   /// Both frames and their twists turned and shifted together: rows in world axes turn with them, the others stay.
   void does_not_see_a_rigid_motion_of_both_frames();
@@ -182,6 +183,8 @@ inline void JointLawsOf::wrenches_are_equal_and_opposite() {
     if (planar) about[2] = 0.0;
     f.head(geometry.world_rows) = lambda.head(geometry.world_rows);
     EXPECT_LT((w.segment<3>(0) + w.segment<3>(6)).norm(), tolerance);
+    MatX const G = geometry.gap(p, t).G;
+    EXPECT_TRUE(!geometry.opposite_ends || G.leftCols(6) == -G.rightCols(6));
     EXPECT_LT((moment_about(p, w, about) - (p.b.r - p.a.r).cross(f)).norm(), 10 * tolerance);
   }
   for (FramePair const& p : closed())

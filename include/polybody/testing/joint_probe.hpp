@@ -40,7 +40,8 @@ struct SeenGap {
 struct AnyGeometry {
   /// How many; how many of the first are in world axes, of the last speeds.
   Index rows = 0, world_rows = 0, velocity_rows = 0;
-  bool planar = false;  ///< whether the frames stay in the plane z = 0
+  bool planar = false;         ///< whether the frames stay in the plane z = 0
+  bool opposite_ends = false;  ///< whether it says that Gb = −Ga
   ///@{
   /// The gap at a time [s]; `gap_with_slopes` has the derivatives, too.
   std::function<SeenGap(FramePair const&, double)> gap, gap_with_slopes;
@@ -91,6 +92,7 @@ AnyGeometry any_geometry() {
           .world_rows = Case::world_rows,
           .velocity_rows = velocity_rows<G>(),
           .planar = Case::planar,
+          .opposite_ends = has_opposite_ends<G>(),
           .gap = gap,
           .gap_with_slopes = by_duals,
           .gamma = [](FramePair const& p, double t) { return VecX(geometry.template gamma<double>(p.a, p.b, t)); },

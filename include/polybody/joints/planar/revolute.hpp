@@ -9,6 +9,7 @@ struct Revolute {
   static constexpr int rows = 2;
   static constexpr Observes needs = Observes::point;
   static constexpr World world = World::plane;
+  static constexpr bool opposite_ends = true;
   static constexpr Freedoms free = {false, false, false, false, false, true};
 
   Mat3 triad() const { return identity(); }
