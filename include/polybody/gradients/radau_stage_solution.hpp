@@ -152,41 +152,65 @@ class RadauStageSolution {
     }
   }
 
-  /// Newton's method with the matrix of every iterate, until rounding is left. The last factors stay.
+  /// Newton's method until rounding is left. A matrix serves as long as corrections shrink to a tenth; the one that
+  /// stays, by which slopes are solved, is of stages within 10⁻⁸ of those that were found.
   void solve_stages(StepTaken const& step) {
-    System& s = places_->template system<double>();
-    RadauStages<double>& w = numbers_;
-    Index const nv = s.speeds(), rows = s.rows();
-    double left = std::numeric_limits<double>::infinity();
+    double left = std::numeric_limits<double>::infinity(), moved = left;  // moved: since the matrix was made
     for (int k = 0;; ++k) {
-      evaluate(w, equations_, step, step.h, [&](Index first) {
-        rhs_.segment(first, nv) = -equations_.balance;
-        rhs_.segment(first + nv, rows) = -equations_.rows;
-      });
-      Index const bad = solver_.factor([&](BlockSink& sink) { write(step.before.t, step.h, sink); });
-      if (bad >= 0)
-        throw LinearSolverSingular{"The derivative of the step that ends at t = ", step.before.t + step.h,
-                                   " s has no pivot at ", name_of_equation(s, bad % equations_of(s)), "."};
-      solver_.solve(rhs_, correction_);
-      double change = 0.0, all = 0.0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        Index const first = Index(i) * s.size();
-        change = std::max(change, correction_.segment(first, nv).norm());
-        w.vd[i] += correction_.segment(first, nv);
-        w.lambda[i] += correction_.segment(first + nv, rows);
-        all = std::max(all, w.vd[i].norm());
+      find_right_hand_side(step);
+      if (moved == std::numeric_limits<double>::infinity()) {
+        factor(step);
+        moved = 0.0;
       }
-      if (change <= 1e-15 * all || (k > 1 && change <= 1e-6 * (1.0 + all) && change >= 0.9 * left)) break;
+      auto const [change, all] = correct();
+      moved += change;
+      if (change <= 1e-15 * all || (k > 1 && change <= 1e-6 * (1.0 + all) && change >= 0.9 * left)) {
+        if (moved > 1e-8 * all) factor(step);
+        break;
+      }
       if (!std::isfinite(change) || k == most_corrections)
         throw NewtonStalled{"The stages of the step that ends at t = ", step.before.t + step.h,
                             " s are not found again for its derivative. Take a smaller step."};
+      if (change > 0.1 * left) moved = std::numeric_limits<double>::infinity();
       left = change;
     }
+    RadauStages<double>& w = numbers_;
+    BasicSystem<double>& s = places_->template system<double>();
     w.find(s, step.h);
     for (std::size_t i = 0; i < 3; ++i) {
       w.put(s, i, step);
       stage_places_[i] = w.at;
     }
+  }
+  void find_right_hand_side(StepTaken const& step) {
+    evaluate(numbers_, equations_, step, step.h, [&](Index first) {
+      rhs_.segment(first, equations_.balance.size()) = -equations_.balance;
+      rhs_.segment(first + equations_.balance.size(), equations_.rows.size()) = -equations_.rows;
+    });
+  }
+  /// The matrix of the stages as they are.
+  void factor(StepTaken const& step) {
+    System& s = places_->template system<double>();
+    numbers_.find(s, step.h);
+    Index const bad = solver_.factor([&](BlockSink& sink) { write(step.before.t, step.h, sink); });
+    if (bad >= 0)
+      throw LinearSolverSingular{"The derivative of the step that ends at t = ", step.before.t + step.h,
+                                 " s has no pivot at ", name_of_equation(s, bad % equations_of(s)), "."};
+  }
+  /// Corrects the stages. Returns the largest change of their accelerations and the largest of these [m/s²], [rad/s²].
+  std::pair<double, double> correct() {
+    RadauStages<double>& w = numbers_;
+    Index const nv = w.v0.size(), n = rhs_.size() / 3;
+    solver_.solve(rhs_, correction_);
+    double change = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      Index const first = Index(i) * n;
+      change = std::max(change, correction_.segment(first, nv).norm());
+      w.vd[i] += correction_.segment(first, nv);
+      w.lambda[i] += correction_.segment(first + nv, n - nv);
+      all = std::max(all, w.vd[i].norm());
+    }
+    return {change, all};
   }
 
   Places* places_;
