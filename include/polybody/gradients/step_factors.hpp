@@ -21,7 +21,7 @@ class TransposedSink {
   explicit TransposedSink(S& target) : target_(target) {}  ///< to `target`
   /// Block b at (row, col) of the matrix, (col, row) of the transposed one.
   void add(Index row, Index col, BlockView const& b) { target_.add(col, row, b.transposed()); }
-  /// Zeros at (row, col).
+  /// Zeros at (row, col), `rows` × `cols`.
   void skip(Index row, Index col, Index rows, Index cols)
     requires SkipsZeros<S>
   {

@@ -47,7 +47,8 @@ struct AlphaVectors {
       v[i] = x.v[i] + e * x.a[i] + 0.5 * e * e * jerk[i];
     }
   }
-  /// `jerk` by one-sided differences of accelerations now, after h/4, h/2 and h [s]. Whether both distances agree.
+  /// `jerk` by one-sided differences of accelerations `now`, a `quarter` and a `half` of h [s] later and a `full` h
+  /// later. Whether both distances agree.
   bool find_jerk(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h) {
     VecX mismatch(now.size());
     for (Index i = 0; i < now.size(); ++i) {
