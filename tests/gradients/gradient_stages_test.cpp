@@ -11,6 +11,7 @@
 #include <polybody/joints/policies/constraint.hpp>
 
 #include "support/rated_links.hpp"
+#include "support/refusal.hpp"
 
 using namespace polybody;
 
@@ -49,6 +50,23 @@ TEST(GradientOfStages, HasTheSameBitsWithFewSnapshots) {
     EXPECT_GT(few.reversal.taken, all.reversal.taken);
     EXPECT_EQ(gradient(make, parameters_of_two_links, Radau{}, {.snapshots = snapshots}).slopes, by_radau.slopes);
   }
+}
+
+TEST(GradientOfStages, RefusesTimesThatEndItsSteps) {
+  auto const said = [](auto const& change) {
+    auto const make = [&](std::span<double const> p) {
+      auto scenario = rated_links<Rigid<>, Constraint>(0.0)(p);
+      change(scenario.options, p[0] / parameters_of_two_links[0].value);
+      return scenario;
+    };
+    return refusal([&] { gradient(make, parameters_of_two_links, Radau{}); });
+  };
+  EXPECT_TRUE(has(said([](RunOptions& o, double) {
+                    o.events = {{.name = "event", .value = [](State const& x) { return x.t - 0.01; }}};
+                  }),
+                  "gradient: runs with events or corners go back under the generalised-α family alone"));
+  EXPECT_TRUE(
+      has(said([](RunOptions& o, double p) { o.until = 0.05 * p; }), "gradient: runs whose start, end or steps"));
 }
 
 }  // namespace gradient_stages_test

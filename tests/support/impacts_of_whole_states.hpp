@@ -16,9 +16,8 @@ namespace polybody {
 
 /// A floor that the tip of cables on AncfLinear pins meets: the event sees and changes whole states. Steps are of h
 /// [s].
-template <class I>
-void expect_impact_of_cables(double h, I const& integrator) {
-  auto const make = [h](std::span<double const> p) {
+inline auto impact_of_cables(double h) {
+  return [h](std::span<double const> p) {
     auto scenario = hung_cables<AncfLinear, false>(h)(std::array{1e7, p[0], p[1], p[2], 2.0});
     Index const z = scenario.start.q.size() - 4;  // of the tip, before its slope
     Event const floor{.name = "floor",
@@ -28,8 +27,13 @@ void expect_impact_of_cables(double h, I const& integrator) {
     scenario.options.events = {floor};
     return scenario;
   };
-  std::vector<Parameter> const of_impact{
-      {"density [kg/m³]", 1000.0}, {"place [m]", 0.31}, {"gravity [m/s²]", 9.81}, {"floor [m]", -0.1}};
+}
+inline std::vector<Parameter> const of_impact{
+    {"density [kg/m³]", 1000.0}, {"place [m]", 0.31}, {"gravity [m/s²]", 9.81}, {"floor [m]", -0.1}};
+
+template <class I>
+void expect_impact_of_cables(double h, I const& integrator) {
+  auto const make = impact_of_cables(h);
   Sensitivities const s = sensitivities(make, of_impact, integrator);
   ASSERT_EQ(s.run.events.size(), 1u);
   MatX const expected = by_differences(make, of_impact, integrator);
@@ -59,6 +63,8 @@ inline auto const nut_on_thread = [](std::span<double const> p) {
                    .then = [](State& x) { x.v *= -0.5; }};
   return Scenario<M>{std::move(model), start, {.until = 0.2, .step = 1e-2, .events = {stop}}, std::move(outputs)};
 };
+inline std::vector<Parameter> const of_nut{
+    {"pitch [m/rad]", 0.02}, {"mass [kg]", 2.0}, {"spin [rad/s]", 20.0}, {"stop [m]", 0.03}};
 /// Its slopes are those of the closed form.
 template <class I>
 void expect_slopes_of_nut(I const& integrator) {
@@ -69,8 +75,7 @@ void expect_slopes_of_nut(I const& integrator) {
     double const back = -0.5 * (p[2] + rate * t), left = 0.2 - t;
     return Vec2(p[3] + p[0] * (back * left + 0.5 * rate * left * left), back + rate * left);
   };
-  std::vector<Parameter> const parameters{
-      {"pitch [m/rad]", 0.02}, {"mass [kg]", 2.0}, {"spin [rad/s]", 20.0}, {"stop [m]", 0.03}};
+  std::vector<Parameter> const& parameters = of_nut;
   Sensitivities const s = sensitivities(nut_on_thread, parameters, integrator);
   ASSERT_EQ(s.run.events.size(), 1u);
   std::vector<double> p;

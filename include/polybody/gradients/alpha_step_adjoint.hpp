@@ -79,6 +79,9 @@ class AlphaStepAdjoint {
         [&](VecX const& rhs, VecX& correction) { factors_.solve(rhs, correction); }, most_products);
     factors_.took(solution_.products());
     VecX const v1 = x.v - of_v_, a1 = x.a - of_a_, delta = delta_by_q - of_delta_;
+    by_length_ = delta.dot(step.before.v +
+                           h * ((1.0 - 2.0 * method_.beta) * step.own_before + 2.0 * method_.beta * step.own_after)) +
+                 v1.dot((1.0 - method_.gamma) * step.own_before + method_.gamma * step.own_after);
     x.q = q_before - of_q_;
     x.v = v1 + h * delta;
     x.own = h * (1.0 - method_.gamma) * v1 + h * h * (0.5 - method_.beta) * delta +
@@ -90,6 +93,10 @@ class AlphaStepAdjoint {
     for (Index const i : recorded_.velocity_rows()) mu[nv + i] = mu_[nv + i] * of_speeds(h);
     return left;
   }
+
+  /// What J changes by with the length of the step that was gone back over last, where times of equations stay
+  /// [J's unit/s].
+  double by_length() const { return by_length_; }
 
  private:
   using Numbers = VecXOf<Recorded>;
@@ -151,6 +158,7 @@ class AlphaStepAdjoint {
   Numbers from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
   detail::TransposedSolution solution_;
   VecX mu_, y_, product_;
+  double by_length_ = 0.0;
   VecX of_q_, of_delta_, of_v_, of_a_, of_lambda_;
 };
 

@@ -4,6 +4,7 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
+#include <polybody/gradients/refused_times.hpp>
 #include <polybody/gradients/sensitivities_report.hpp>
 #include <polybody/gradients/tangent_step.hpp>
 #include <polybody/gradients/variants_beside.hpp>
@@ -26,8 +27,8 @@ class DirectDifferentiation {
       : parameters_(parameters),
         whole_(make(values_of(parameters)), method),
         way_(whole_),
-        beside_(make, parameters, method) {
-    require_plain(whole_.scenario);
+        beside_(make, parameters, method, "sensitivities") {
+    require_plain(whole_.scenario.options, "sensitivities");
   }
 
   Sensitivities run() {
@@ -53,13 +54,6 @@ class DirectDifferentiation {
  private:
   static constexpr bool chooses = requires { I::controls_step; };
 
-  static void require_plain(S const& scenario) {
-    RunOptions const& o = scenario.options;
-    if (o.halvings > 0 || o.minimum_norm)
-      throw InvalidInput(
-          "sensitivities: a run with halved steps or multipliers of least norm is not differentiated. Leave them out "
-          "of the options.");
-  }
   RunOptions const& options() const { return whole_.scenario.options; }
   bool done() const { return out_.run.stopped || x_.t >= options().until; }
 
@@ -126,7 +120,7 @@ class DirectDifferentiation {
     if (!options().events.empty()) far = x_;
     bool const met = !options().events.empty() && meet();
     double const end = x_.t;
-    if (met && next.lands && end == next.target) refuse_event_at_corner();
+    if (met && next.lands && end == next.target) refuse_event_at_corner(x_.t, "sensitivities");
     RunTangent by_length;
     differentiate(next, met, by_length);
     if (met) move_to_event(by_length, before_, far);
@@ -151,15 +145,7 @@ class DirectDifferentiation {
     if (x_.t < options().until) return;
     for (std::size_t j = 0; j < parameters_.size(); ++j)
       if (std::abs(tangents_[j].dt - until_slope_[j]) * parameters_[j].size() > 1e-9 * h_)
-        throw InvalidInput{"sensitivities: a corner at the end of the run, t = ", x_.t, " s, moves with \"",
-                           parameters_[j].name,
-                           "\", and the end does not: there is no derivative there. End the run a step before or "
-                           "after."};
-  }
-  [[noreturn, gnu::cold]] void refuse_event_at_corner() const {
-    throw InvalidInput{"sensitivities: at t = ", x_.t,
-                       " s there is an event, and a corner or the end of the run: there is no derivative there. Move "
-                       "one of them by a step."};
+        refuse_corner_at_end(x_.t, parameters_[j].name, "sensitivities");
   }
 
   EventWatch::Seen seen() {
@@ -234,7 +220,7 @@ class DirectDifferentiation {
       double const rate = beside_.of_values(Variants::along_motion, x_, by_length, h_, value)[0],
                    most =
                        std::max(std::abs(event.value(whole_.shown(before))), std::abs(event.value(whole_.shown(far))));
-      if (!(std::abs(rate) * (far.t - before.t) > 1e-6 * most)) refuse_touch(event);
+      if (!(std::abs(rate) * (far.t - before.t) > 1e-6 * most)) refuse_touch(event.name, x_.t, "sensitivities");
       for (std::size_t j = 0; j < parameters_.size(); ++j) {
         double const own = -beside_.of_values(j, x_, tangents_[j], h_, value)[0] / rate;
         if (first && std::abs(own - dh[j]) > 1e-6 * (std::abs(own) + h_ / parameters_[j].size()))
@@ -255,10 +241,6 @@ class DirectDifferentiation {
       add(tangents_[j].dx, by_length.dx, dh[j]);
       tangents_[j].dt += dh[j];
     }
-  }
-  [[noreturn, gnu::cold]] void refuse_touch(Event const& event) const {
-    throw InvalidInput{"sensitivities: the event \"", event.name, "\" only touches zero at t = ", x_.t,
-                       " s, so its time has no derivative. Look for a value that passes through zero at a rate."};
   }
 
   /// Values and slopes of the outputs at x.

@@ -7,40 +7,25 @@
 ///     Gradient const g = gradient(make, {{"length [m]", 1.0}}, GeneralizedAlpha{});
 ///     g.slopes[0];   // dJ/dp of the first parameter
 ///
-/// The run is taken once forwards, then backwards from its end (`AlphaStepAdjoint`); states on the way are kept in
-/// snapshots or computed again (`reverse_steps`). Parameters are numbers of a factory, and equations at given unknowns
-/// are differenced by them, as in `sensitivities`; a step costs the same for one parameter and for many but for these
-/// differences, which parameters share that touch nothing in common (`Parameter::touches`). Every step begins with a
-/// factorisation of its own, so that it has the same bits whenever it is taken.
+/// The run is taken once forwards, then backwards from its end (`AlphaStepAdjoint`), through corners and events
+/// (`AdjointThroughEvents`); states on the way are kept in snapshots or computed again (`reverse_steps`). Parameters
+/// are numbers of a factory, and equations at given unknowns are differenced by them, as in `sensitivities`; a step
+/// costs the same for one parameter and for many but for these differences, which parameters share that touch nothing
+/// in common (`Parameter::touches`). Every step begins with a factorisation of its own, so that it has the same bits
+/// whenever it is taken.
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <memory>
 #include <span>
 
+#include <polybody/gradients/adjoint_through_events.hpp>
+#include <polybody/gradients/gradient_report.hpp>
 #include <polybody/gradients/objective.hpp>
 #include <polybody/gradients/requirements.hpp>
-#include <polybody/gradients/reversal.hpp>
 #include <polybody/gradients/ways_back.hpp>
 
 namespace polybody {
-
-/// How the states of a run are kept for the way back.
-struct GradientOptions {
-  std::size_t snapshots = 0;  ///< states that are kept at a time at most; zero: as many as fit into `memory`
-  double memory = 1e9;        ///< for snapshots where their count is not given [bytes]
-};
-
-/// A result of a run and its derivatives.
-struct Gradient {
-  std::vector<std::string> parameters;  ///< names, with units
-  double value = 0.0;                   ///< J, in the objective's unit
-  VecX slopes;                          ///< (parameters) dJ/dp, J's unit over the parameter's
-  double left = 0.0;                    ///< the largest relative change by a last correction of a step's multipliers
-  ReversalReport reversal;              ///< steps, those taken again, snapshots
-  double snapshot_size = 0.0;           ///< memory of one snapshot [bytes]
-  RunReport run;                        ///< of the steps as they were taken first
-};
 
 /// A user's factory: a scenario with its objective for the values of the parameters, in their order.
 template <class F>
@@ -75,6 +60,7 @@ class AdjointRun {
         way_(whole_),
         slopes_(whole_.scenario.model) {
     require_plain(whole_.scenario.options, "gradient");
+    require_still(whole_.scenario.options);
     for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
     out_.slopes = VecX::Zero(Index(parameters.size()));
   }
@@ -91,9 +77,9 @@ class AdjointRun {
     prepare(x, equations);
     Costate bar(x);
     bool at_end = false;
-    out_.snapshot_size = 8.0 * double(x.q.size() + x.v.size() + x.a.size() + x.lambda.size() + x.memory.size());
+    out_.snapshot_size = size_of_snapshot(x);
     out_.reversal = reverse_steps(
-        x, steps_.size(), snapshots(options), [&](std::size_t k, State& y) { take(k, y); },
+        x, steps_.size(), snapshots_of(options, out_.snapshot_size), [&](std::size_t k, State& y) { take(k, y); },
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
@@ -101,11 +87,8 @@ class AdjointRun {
           out_.left = std::max(out_.left, require_converged(left, after.t, "gradient"));
           if (k > 0) add_integrand(k, before, bar);
         });
-    for (std::size_t j = 0; j < parameters_.size(); ++j) {
-      out_.slopes[Index(j)] += bar.dot(starts_[j]);
-      if (out_.slopes[Index(j)] == 0.0)
-        out_.run.add_warning("Nothing of the objective depends on the parameter \"" + parameters_[j].name + "\".");
-    }
+    for (std::size_t j = 0; j < parameters_.size(); ++j) out_.slopes[Index(j)] += bar.dot(starts_[j]);
+    warn_of_zeros(out_);
     return std::move(out_);
   }
 
@@ -115,6 +98,12 @@ class AdjointRun {
   };
   static constexpr bool chooses = requires { I::controls_step; };
 
+  /// What only runs under the generalised-α family have.
+  static void require_still(RunOptions const& o) {
+    if (!o.events.empty() || !o.corners.empty())
+      throw InvalidInput(
+          "gradient: runs with events or corners go back under the generalised-α family alone. Take `sensitivities`.");
+  }
   /// The length of the first step.
   double begin_plan(double t) {
     RunOptions const& options = whole_.scenario.options;
@@ -148,13 +137,6 @@ class AdjointRun {
                            "the run, or set start_correction to false."};
       steps_.push_back(step);
     }
-  }
-  std::size_t snapshots(GradientOptions const& options) const {
-    if (options.snapshots > 0) return options.snapshots;
-    if (!(options.memory >= out_.snapshot_size))
-      throw InvalidInput{"gradient: a snapshot of a state takes ", out_.snapshot_size, " bytes, but the memory is ",
-                         options.memory, " bytes. Give more of it."};
-    return std::size_t(std::min(options.memory / out_.snapshot_size, 1e15));
   }
   /// The part of the run's time for which a state stands in an integral.
   double weight(std::size_t state) const {
@@ -243,13 +225,20 @@ class AdjointRun {
 /// each. Newton's corrections go on to 1e-12 or to what rounding leaves. \param integrator one of the generalised-α
 /// family, without `stabilised`; with runge_kutta_step_adjoint.hpp RungeKutta4, or DormandPrince, whose choice of steps
 /// stays as it is; with radau_step_adjoint.hpp Radau. \throws InvalidInput for parameters or options that cannot be
-/// meant, a factory whose models differ in size, a scenario with events or corners, steps of different lengths;
-/// LinearSolverSingular at a singular position; NonFinite; and as `simulate`.
+/// meant, a factory whose models differ in size, under methods of several stages events, corners or times that move,
+/// times without a derivative as `sensitivities`, two events at once, a last step of another length in a run without
+/// any of these; LinearSolverSingular at a singular position; NonFinite; and as `simulate`.
 template <MakesRatedScenarios Make, class I>
 Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                   GradientOptions const& options = {}) {
   if constexpr (detail::OfAlphaFamily<I>) {
     AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "gradient");
+    auto const scenario = make(detail::values_of(parameters));
+    detail::require_plain(scenario.options, "gradient");
+    System const system = system_for<I>(scenario.model);
+    if (detail::is_interrupted(scenario, detail::corners_of(system, scenario.options)) ||
+        detail::has_moving_times(make, parameters, scenario))
+      return detail::AdjointThroughEvents<Make, I>(make, parameters, method).run(options);
     return detail::AdjointRun<Make, I, detail::AlphaWayBack>(make, parameters, method).run(options);
   } else {
     static_assert(detail::HasAdjointsOfStages<I>,
@@ -257,6 +246,10 @@ Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I 
                   "<polybody/gradients/runge_kutta_step_adjoint.hpp> of RungeKutta4 and DormandPrince, with "
                   "<polybody/gradients/radau_step_adjoint.hpp> of Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
+    if (detail::has_moving_times(make, parameters, make(detail::values_of(parameters)), requires { I::controls_step; }))
+      throw InvalidInput(
+          "gradient: runs whose start, end or steps depend on a parameter go back under the generalised-α family "
+          "alone. Take `sensitivities`.");
     return detail::AdjointRun<Make, I, detail::StagesWayBack>(make, parameters, method).run(options);
   }
 }

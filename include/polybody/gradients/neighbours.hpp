@@ -17,17 +17,19 @@ namespace polybody::detail {
 template <class V>
 class Neighbours {
  public:
+  /// \param who refusals begin with this
   template <class Make, class Method>
-  [[gnu::cold]] Neighbours(Make const& make, std::vector<Parameter> const& parameters, Method const& method)
+  [[gnu::cold]] Neighbours(Make const& make, std::vector<Parameter> const& parameters, Method const& method,
+                           char const* who)
       : parameters_(parameters), itself_(make(values_of(parameters)), method) {
     for (std::size_t j = 0; j < parameters.size(); ++j)
       for (double const place : FourPoints::places) {
         std::vector<double> p = values_of(parameters);
         p[j] += place * parameters[j].distance();
         beside_.push_back(std::make_shared<V>(make(p), method));
-        require_alike(itself_, *beside_.back(), parameters[j], "sensitivities");
+        require_alike(itself_, *beside_.back(), parameters[j], who);
       }
-    find_times();
+    find_times(who);
   }
 
   V& itself() { return itself_; }                                               ///< for the values of the parameters
@@ -49,7 +51,7 @@ class Neighbours {
  private:
   static constexpr std::size_t points = FourPoints::places.size();
 
-  [[gnu::cold]] void find_times() {
+  [[gnu::cold]] void find_times(char const* who) {
     std::vector<double> const here = itself_.corners();
     double const start = itself_.scenario.start.t;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
@@ -62,7 +64,7 @@ class Neighbours {
       };
       add_time(start, [](V const& v) { return v.scenario.start.t; });
       for (std::size_t i = 0; i < here.size(); ++i) add_time(here[i], [i](V const& v) { return v.corners()[i]; });
-      times_.emplace_back(std::move(times), parameters_[j], 1e-9 * itself_.length());
+      times_.emplace_back(std::move(times), parameters_[j], 1e-9 * itself_.length(), who);
     }
   }
 

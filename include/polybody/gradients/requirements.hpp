@@ -24,10 +24,11 @@ std::vector<double> values_of(std::vector<Parameter> const& parameters) {
 /// \throws InvalidInput, beginning with `who`, for options with what is not differentiated.
 template <class = void>
 void require_plain(RunOptions const& o, char const* who) {
-  if (!o.events.empty() || !o.corners.empty() || o.halvings > 0 || o.minimum_norm)
-    throw InvalidInput{who,
-                       ": a run with events, corners, halved steps or multipliers of least norm is not differentiated. "
-                       "Leave them out of the options."};
+  if (o.halvings > 0 || o.minimum_norm)
+    throw InvalidInput{
+        who,
+        ": a run with halved steps or multipliers of least norm is not differentiated. Leave them out of "
+        "the options."};
 }
 
 /// \throws InvalidInput, beginning with `who`, unless the model of another value of p has as many unknowns, outputs,

@@ -26,8 +26,9 @@ class TimesBeside {
   };
 
   TimesBeside() = default;
-  /// \param crumb times that are less apart are one [s]. \throws InvalidInput where times change their order, or part.
-  [[gnu::cold]] TimesBeside(std::vector<Moving> times, Parameter const& p, double crumb)
+  /// \param crumb times that are less apart are one [s]; \param who refusals begin with this. \throws InvalidInput
+  /// where times change their order, or part.
+  [[gnu::cold]] TimesBeside(std::vector<Moving> times, Parameter const& p, double crumb, char const* who)
       : times_(std::move(times)), distance_(p.distance()) {
     std::sort(times_.begin(), times_.end(), [](Moving const& a, Moving const& b) { return a.here < b.here; });
     for (std::size_t i = 1; i < times_.size(); ++i)
@@ -35,17 +36,14 @@ class TimesBeside {
         Moving const &a = times_[i - 1], &b = times_[i];
         double const gap = b.here - a.here, beside = b.there[k] - a.there[k];
         if (gap <= crumb && std::abs(beside - gap) > 1e-9 * crumb + 1e-14 * std::abs(b.here))
-          throw InvalidInput{"sensitivities: two corners, or one and the start, are both at t = ", b.here,
-                             " s and part with \"", p.name,
-                             "\": there is no derivative there. Move one of them by a step."};
+          throw InvalidInput{
+              who,    ": two corners, or one and the start, are both at t = ",        b.here, " s and part with \"",
+              p.name, "\": there is no derivative there. Move one of them by a step."};
         if (gap > crumb && !(beside > 0.0))
-          throw InvalidInput{"sensitivities: the corners at t = ",
-                             a.here,
-                             " s and ",
-                             b.here,
-                             " s change their order with \"",
-                             p.name,
-                             "\" as far as it is differenced. Give it a smaller scale."};
+          throw InvalidInput{who,    ": the corners at t = ",
+                             a.here, " s and ",
+                             b.here, " s change their order with \"",
+                             p.name, "\" as far as it is differenced. Give it a smaller scale."};
       }
     for (Moving const& m : times_)
       for (double const t : m.there) moves_ = moves_ || t != m.here;

@@ -21,9 +21,11 @@ class VariantsBeside {
  public:
   static constexpr std::size_t along_motion = std::size_t(-1);  ///< in place of a parameter: the motion alone
 
+  /// \param who refusals begin with this
   template <class Make, class Method>
-  [[gnu::cold]] VariantsBeside(Make const& make, std::vector<Parameter> const& parameters, Method const& method)
-      : n_(make, parameters, method) {
+  [[gnu::cold]] VariantsBeside(Make const& make, std::vector<Parameter> const& parameters, Method const& method,
+                               char const* who)
+      : n_(make, parameters, method, who) {
     std::vector<Parameter> still;
     number_.assign(parameters.size(), moving);
     for (std::size_t j = 0; j < parameters.size(); ++j)

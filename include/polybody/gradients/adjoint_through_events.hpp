@@ -1,0 +1,297 @@
+#pragma once
+/// \file
+/// The discrete adjoint of a run through corners of drives and loads and through events, whose times may move with the
+/// parameters, under the generalised-α family.
+///
+/// With h a step's length, t the time of its end, x̄ and t̄ what a result J changes by with the state and time there,
+///   ∂J/∂h = x̄ᵀ ∂x/∂h + t̄.
+/// A step to a corner or to the end of the run has dh = dT − dt. One that an event g = 0 ends has
+///   dh = −(∂g/∂p dp + ∂g/∂x dx)/ġ, of fixed length,
+/// so g goes back over the step as J does, ∂g/∂h = ġ, and −(∂J/∂h)/ġ times its costate and slopes is added to those of
+/// J: the transposed saltation relation of the discrete run. A new beginning is a map from the state before it, of
+/// which the costate is differenced.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/gradient_report.hpp>
+#include <polybody/gradients/objective.hpp>
+#include <polybody/gradients/recorded_run.hpp>
+#include <polybody/gradients/set_out_adjoint.hpp>
+
+namespace polybody::detail {
+
+/// A run forwards and back. \tparam I of the generalised-α family
+template <class Make, class I>
+class AdjointThroughEvents {
+  using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
+  using V = Variant<S, I>;
+  using M = typename V::Model;
+  using Variants = VariantsBeside<V>;
+
+ public:
+  [[gnu::cold]] AdjointThroughEvents(Make const& make, std::vector<Parameter> const& parameters,
+                                     AlphaMethod const& method)
+      : parameters_(parameters),
+        whole_(make(values_of(parameters)), method),
+        beside_(make, parameters, method, "gradient"),
+        run_(whole_),
+        adjoint_(whole_.scenario.model, whole_.system, method),
+        objective_(whole_.scenario.model) {
+    for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
+    out_.slopes = VecX::Zero(Index(parameters.size()));
+  }
+
+  Gradient run(GradientOptions const& options) {
+    whole_.scenario.options.check(whole_.scenario.start.t);
+    require_assembled_start(whole_);
+    run_.take(out_.run);
+    State const& first = run_.first();
+    beside_.require_touched(first);
+    begin(first);
+    require_one_end();
+    RunCostate bar(first);
+    out_.snapshot_size = size_of_snapshot(first);
+    out_.reversal = reverse_steps(
+        first, run_.steps().size(), snapshots_of(options, out_.snapshot_size),
+        [&](std::size_t k, State& x) { (void)run_.take(k, x); },
+        [&](std::size_t k, State const& before, State const& after) { back(k, before, after, bar); });
+    auto const start = [&](V& v, State& y, double h) { v.start_like(first, y, h); };
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      out_.slopes[Index(j)] +=
+          bar.dot(beside_.of_start(j, run_.next().h, length_slope(j, run_.next(), time_slope(j, first)), start));
+    warn_of_zeros(out_);
+    return std::move(out_);
+  }
+
+ private:
+  void begin(State const& first) {
+    still_ = {zeros_like(first), 0.0, VecX::Zero(lengths_of(first).size())};
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      step_slope_.push_back(beside_.of_number(j, [](V const& v) { return v.length(); }));
+      until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.until); }));
+    }
+  }
+  /// How fast a time of x that is a corner's moves with parameter j.
+  double time_slope(std::size_t j, State const& x) const { return beside_.times(j).slope(x.t); }
+  double target_slope(std::size_t j, StepPlan::Next const& plan) const {
+    return plan.jumps ? beside_.times(j).slope(plan.target) : until_slope_[j];
+  }
+  /// How fast the length of a step that is planned moves, where the time of its start moves by dt.
+  double length_slope(std::size_t j, StepPlan::Next const& plan, double dt) const {
+    return plan.lands ? target_slope(j, plan) - dt : step_slope_[j];
+  }
+  /// No change of a state but for that of its time.
+  RunTangent const& still(double dt) {
+    still_.dt = dt;
+    return still_;
+  }
+  /// A corner at the end of the run ends it for nearby parameters too.
+  void require_one_end() const {
+    RecordedStep const& last = run_.steps().back();
+    if (!last.at_corner || last.end < whole_.scenario.options.until) return;
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      if (std::abs(target_slope(j, last.plan) - until_slope_[j]) * parameters_[j].size() > 1e-9 * run_.length())
+        refuse_corner_at_end(last.end, parameters_[j].name, "gradient");
+  }
+
+  /// The costate after step k, with what comes after it, becomes that before it.
+  void back(std::size_t k, State before, State const& after, RunCostate& bar) {
+    RecordedStep const& s = run_.steps()[k];
+    bool const last = k + 1 == run_.steps().size(), from_corner = run_.begins_at_corner(k);
+    auto const end = [](S const& scenario) -> auto const& { return scenario.end; };
+    auto const integrand = [](S const& scenario) -> auto const& { return scenario.integrand; };
+    double const half = 0.5 * s.h;
+    if (last) {
+      beside_.require_touched(after);
+      out_.value += add_term(end, after, {1.0, s.at_corner}, bar);
+    }
+    State parted;
+    if (s.restarts) {
+      parted = run_.end(k, before);
+      pull_beginning(s, parted, after, bar);
+    }
+    State const& x = s.restarts ? parted : after;
+    if (s.restarts || last) out_.value += add_term(integrand, x, {half, s.at_corner}, bar);
+    double of_length = retreat(k, before, x, bar, out_.slopes);
+    of_length += 0.5 * (rate_of_integral(before) + rate_of_integral(x));
+    if (s.met.empty())
+      spread_length(s.plan, of_length, bar);
+    else
+      add_event(k, before, x, of_length, bar);
+    double const joined = k > 0 && !run_.steps()[k - 1].restarts ? 0.5 * run_.steps()[k - 1].h : 0.0;
+    out_.value += add_term(integrand, before, {half + joined, from_corner}, bar);
+    if (from_corner) spread_time(before.t, bar);
+  }
+  /// What J changes by with the length of a step goes to what the length depends on.
+  void spread_length(StepPlan::Next const& plan, double of_length, RunCostate& bar) {
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      out_.slopes[Index(j)] += of_length * length_slope(j, plan, 0.0);
+    if (plan.lands) bar.t -= of_length;
+  }
+  /// What J changes by with the time t of a corner goes to the parameters.
+  void spread_time(double t, RunCostate& bar) {
+    for (std::size_t j = 0; j < parameters_.size(); ++j) out_.slopes[Index(j)] += bar.t * beside_.times(j).slope(t);
+    bar.t = 0.0;
+  }
+
+  /// The costate at the end x of step k becomes that before it, at fixed length; what parameters do in it goes to
+  /// `slopes`. Returns what changes with its length.
+  double retreat(std::size_t k, State& before, State const& x, RunCostate& bar, VecX& slopes) {
+    RecordedStep const& s = run_.steps()[k];
+    V& spare = beside_.itself();
+    bool const corrects = spare.method.set_out(spare.system, before, s.h, spare.work);
+    State corrected;
+    if (corrects) {
+      corrected = before;
+      corrected.v = spare.work.v0;
+    }
+    VecX const own_before = spare.work.a0, own_after = x.memory.head(x.v.size());
+    double const left = adjoint_.retreat({corrects ? corrected : before, x, own_before, own_after, s.h}, bar.at, mu_);
+    out_.left = std::max(out_.left, require_converged(left, x.t, "gradient"));
+    double of_length = adjoint_.by_length();
+    beside_.begin_step();
+    for (std::size_t j = 0; j < parameters_.size(); ++j) slopes[Index(j)] -= of_equations(j, {x, s.h, 0.0, 0});
+    bar.t -= of_equations(Variants::along_motion, {x, s.h, 1.0, 0});
+    of_length += bar.t + bar.pull_push(before);
+    SetOutAdjoint<V> const sets_out(spare, before, s.h, corrects);
+    bool const free = (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // of another length nearby
+    if (!corrects && !free) return of_length;
+    bool const from_corner = run_.begins_at_corner(k);
+    if (corrects) {
+      VecX const v = bar.at.v, own = bar.at.own;
+      for (std::size_t j = 0; j < parameters_.size(); ++j) {
+        State const change = beside_.of_map(j, before, still(from_corner ? time_slope(j, before) : 0.0), {s.h, 0.0},
+                                            [&](V& of, State& y, double length) { sets_out.add(of, y, length); });
+        slopes[Index(j)] += v.dot(change.v) + own.dot(change.memory.head(own.size()));
+      }
+    }
+    return of_length + sets_out.pull(bar, !from_corner);
+  }
+  double of_equations(std::size_t j, typename Variants::template PlaceInStep<State> const& at) {
+    beside_.of_equations(j, at, by_);
+    Index const nv = by_.balance.size();
+    return mu_.head(nv).dot(by_.balance) + mu_.tail(by_.rows.size()).dot(by_.rows);
+  }
+
+  /// What the time of the event that ends step k at x does to J.
+  void add_event(std::size_t k, State& before, State const& x, double of_length, RunCostate& bar) {
+    RecordedStep const& s = run_.steps()[k];
+    std::size_t const i = s.met.front();
+    Event const& event = whole_.scenario.options.events[i];
+    RunCostate of(x);
+    VecX slopes = VecX::Zero(out_.slopes.size());
+    objective_.add([&](M const&, State const& shown) { return event.value(shown); }, whole_.scenario.model, x, 1.0,
+                   of.at);
+    auto const value = [i](V& v, State const& y) { return v.scenario.options.events[i].value(v.shown(y)); };
+    add_slopes_of_value(value, x, {1.0, false}, of, slopes);
+    double const rate = retreat(k, before, x, of, slopes);
+    if (!(std::abs(rate) * s.far > 1e-6 * s.largest)) refuse_touch(event.name, x.t, "gradient");
+    bar.add(of, -of_length / rate);
+    out_.slopes -= of_length / rate * slopes;
+  }
+
+  /// The costate `bar` after a new beginning, `after`, becomes that of the state x before it.
+  void pull_beginning(RecordedStep const& s, State& x, State const& after, RunCostate& bar) {
+    double const before_it = x.t, h = s.next.h;
+    x.t = s.end;  // where it is a corner, on its other side
+    RunCostate const of = bar;
+    bar = RunCostate(x);
+    bar.t = of.t;
+    auto const begin = [&](V& v, State& y, double length) { RecordedRun<V>::begin_anew(s, v, after, y, length); };
+    auto const result = [&](State& y, double length) {
+      begin(beside_.itself(), y, length);
+      return of.dot(y, after);
+    };
+    auto const size = [](VecX const& part) { return part.size() > 0 ? part.template lpNorm<Eigen::Infinity>() : 0.0; };
+    double const of_a = size(x.a), of_v = std::max(size(x.v), run_.length() * of_a);
+    add_slopes_by({&State::q, 0, x.q.size(), size(x.q)}, x, h, result, bar.at.q);
+    add_slopes_by({&State::v, 0, x.v.size(), of_v}, x, h, result, bar.at.v);
+    if (run_.reads_forces(s, x)) {
+      add_slopes_by({&State::a, 0, x.a.size(), of_a}, x, h, result, bar.at.a);
+      add_slopes_by({&State::lambda, 0, x.lambda.size(), size(x.lambda)}, x, h, result, bar.at.lambda);
+    }
+    double const longer = s.next.lands ? -1.0 : 0.0;
+    auto const later = [longer](State& y, double& length, double by) {
+      y.t += by;
+      length += longer * by;
+    };
+    if (!s.at_corner) bar.t += slope_along(x, h, 4e-3 * h, later, result);
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      double const dt = s.at_corner ? time_slope(j, x) : 0.0;
+      out_.slopes[Index(j)] += of.dot(beside_.of_map(j, x, still(dt), {h, length_slope(j, s.next, dt)}, begin));
+    }
+    x.t = before_it;
+  }
+
+  struct Weight {
+    double by;
+    bool at_corner;  // the time of the state is a corner's
+  };
+  /// A term of the objective at x. Returns its part of J. \param pick of a scenario
+  template <class Pick>
+  double add_term(Pick const& pick, State const& x, Weight weight, RunCostate& bar) {
+    if constexpr (std::same_as<std::remove_cvref_t<decltype(pick(whole_.scenario))>, NoTerm>) {
+      return 0.0;
+    } else {
+      auto const value = [&](V& v, State const& y) { return term(pick(v.scenario), v.scenario.model, v.shown(y)); };
+      objective_.add(pick(whole_.scenario), whole_.scenario.model, x, weight.by, bar.at);
+      add_slopes_of_value(value, x, weight, bar, out_.slopes);
+      return weight.by * value(whole_, x);
+    }
+  }
+  double rate_of_integral(State const& x) {
+    return term(whole_.scenario.integrand, whole_.scenario.model, whole_.shown(x));
+  }
+  /// What parameters, and the time, do to a value(variant, state) at x.
+  template <class F>
+  void add_slopes_of_value(F const& value, State const& x, Weight weight, RunCostate& bar, VecX& slopes) {
+    auto const values = [&](V& v, State const& y) { return VecX::Constant(1, value(v, y)).eval(); };
+    double const h = run_.length();
+    beside_.show(x);
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      RunTangent const& tangent = still(weight.at_corner ? time_slope(j, x) : 0.0);
+      slopes[Index(j)] += weight.by * beside_.of_values(j, x, tangent, h, values)[0];
+    }
+    if (weight.at_corner) return;
+    auto const later = [](State& y, double&, double by) { y.t += by; };
+    bar.t += weight.by *
+             slope_along(x, h, 4e-3 * h, later, [&](State const& y, double) { return value(beside_.itself(), y); });
+  }
+
+  std::vector<Parameter> parameters_;
+  V whole_;
+  Variants beside_;
+  RecordedRun<V> run_;
+  AlphaStepAdjoint<> adjoint_;
+  ObjectiveSlopes<M> objective_;
+  RunTangent still_;
+  std::vector<double> step_slope_, until_slope_;
+  EquationSlope by_;
+  VecX mu_;
+  Gradient out_;
+};
+
+/// The start or end of a run depends on a parameter, or the length of its steps. \param chooses the method finds the
+/// latter itself
+template <class Make, class S>
+bool has_moving_times(Make const& make, std::vector<Parameter> const& parameters, S const& scenario,
+                      bool chooses = false) {
+  RunOptions const& here = scenario.options;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    std::vector<double> p = values_of(parameters);
+    p[j] += parameters[j].distance();
+    S const near = make(p);
+    bool const same_steps = chooses || length_of_steps(near.options) == length_of_steps(here);
+    if (near.options.until != here.until || near.start.t != scenario.start.t || !same_steps) return true;
+  }
+  return false;
+}
+/// Events or corners may end steps of a run. \param corners of it, in no order [s]
+template <class S>
+bool is_interrupted(S const& scenario, std::vector<double> const& corners) {
+  RunOptions const& o = scenario.options;
+  return !o.events.empty() ||
+         std::any_of(corners.begin(), corners.end(), [&](double t) { return t > scenario.start.t && t <= o.until; });
+}
+
+}  // namespace polybody::detail

@@ -1,0 +1,214 @@
+// The adjoint of runs through corners of drives and loads and through events, beside direct differentiation.
+#include <polybody/gradients/gradient.hpp>
+
+#include <gtest/gtest.h>
+
+#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/newmark.hpp>
+
+#include "support/impacts_of_whole_states.hpp"
+#include "support/moving_times.hpp"
+
+using namespace polybody;
+
+namespace gradient_events_test {
+
+using namespace moving_times;
+
+/// A scenario rated by all of its outputs at the end, and by the first one's integral where it does not jump.
+template <bool integrates = true, class Make>
+auto rated_by_outputs(Make const& make) {
+  return [make](P p) {
+    auto scenario = make(p);
+    using M = std::remove_cvref_t<decltype(scenario.model)>;
+    auto const outputs = scenario.outputs;
+    auto const end = [outputs](M const& model, State const& x) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < outputs.size(); ++i) sum += double(i + 1) * outputs[i].value(model, x);
+      return sum;
+    };
+    double const weight = integrates ? 1.0 : 0.0;
+    auto const way = [weight, first = outputs[0]](M const& model, State const& x) {
+      return weight * first.value(model, x);
+    };
+    return rated(Scenario<M>(std::move(scenario)), end, way);
+  };
+}
+
+/// The same by direct differentiation: the integral's terms stand over steps whose lengths move.
+inline std::pair<double, VecX> by_direct_differentiation(Sensitivities const& s, bool integrates) {
+  double value = 0.0;
+  VecX slopes = VecX::Zero(s.slopes[0].cols());
+  for (Index i = 0; i < s.values.back().size(); ++i) {
+    value += double(i + 1) * s.values.back()[i];
+    slopes += double(i + 1) * s.slopes.back().row(i).transpose();
+  }
+  for (std::size_t k = 1; integrates && k < s.times.size(); ++k) {
+    double const h = s.times[k] - s.times[k - 1], mean = 0.5 * (s.values[k][0] + s.values[k - 1][0]);
+    value += h * mean;
+    slopes += 0.5 * h * (s.slopes[k].row(0) + s.slopes[k - 1].row(0)).transpose() +
+              mean * (s.time_slopes[k] - s.time_slopes[k - 1]);
+  }
+  return {value, slopes};
+}
+
+template <bool integrates = true, class Make, class I>
+void expect_direct_slopes(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                          double within = 1e-10) {
+  auto const [value, slopes] = by_direct_differentiation(sensitivities(make, parameters, integrator), integrates);
+  Gradient const g = gradient(rated_by_outputs<integrates>(make), parameters, integrator);
+  EXPECT_NEAR(g.value, value, 1e-12 * (1.0 + std::abs(value)));
+  EXPECT_LT(g.left, 1e-10);
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    double const size = parameters[j].size();
+    EXPECT_NEAR(size * g.slopes[Index(j)], size * slopes[Index(j)], within * (1.0 + std::abs(size * slopes[Index(j)])))
+        << parameters[j].name;
+  }
+}
+
+TEST(GradientThroughEvents, BouncesFollowDirectDifferentiation) {
+  expect_direct_slopes(ball<true>, of_ball, GeneralizedAlpha{});
+  expect_direct_slopes(ball<true>, of_ball, Newmark{});
+}
+TEST(GradientThroughEvents, AFallThatEndsTheRunFollowsDirectDifferentiation) {
+  expect_direct_slopes(ball<false>, of_ball, GeneralizedAlpha{.rho_inf = 0.6});
+}
+TEST(GradientThroughCorners, APushFollowsDirectDifferentiation) {
+  expect_direct_slopes(pushed, {{"T [s]", 0.3137}, {"F [N]", 3.0}, {"m [kg]", 2.0}}, GeneralizedAlpha{.rho_inf = 0.7});
+}
+TEST(GradientThroughCorners, ARampOfADriveFollowsDirectDifferentiation) {
+  expect_direct_slopes(driven<Constraint>, of_drive, GeneralizedAlpha{.rho_inf = 0.7});
+  // on stiff pins direct differentiation itself is known to 1e-8: so much it changes with the distance of differences
+  expect_direct_slopes(driven<Penalty>, of_drive, Trapezoidal{}, 1e-8);
+}
+TEST(GradientThroughEvents, ImpactsOfAMechanismFollowDirectDifferentiation) {
+  expect_direct_slopes(stopped<Constraint>, of_stop, GeneralizedAlpha{.rho_inf = 0.7});
+  expect_direct_slopes(stopped<Penalty>, of_stop, Newmark{});
+}
+TEST(GradientThroughEvents, AnEventUnderADriveFollowsDirectDifferentiation) {
+  expect_direct_slopes(braked, of_brake, GeneralizedAlpha{.rho_inf = 0.7});
+}
+TEST(GradientThroughEvents, AnEventMayChangeTheStateByItsForces) {
+  auto const pulled = [](P p) {
+    auto scenario = stopped<Constraint>(std::array{1.2, p[0], p[1], 0.6});
+    scenario.options.events[0].then = [k = p[2]](State& x) { x.v *= -k * (0.01 * x.lambda.norm() + 0.02 * x.a[2]); };
+    return scenario;
+  };
+  // in multipliers is the rounding of rows over βh²
+  expect_direct_slopes(pulled, {{"gravity [m/s²]", 9.81}, {"angle [rad]", 1.4}, {"factor [1]", 0.3}},
+                       GeneralizedAlpha{.rho_inf = 0.7}, 1e-8);
+}
+TEST(GradientThroughEvents, JumpsInSpaceFollowDirectDifferentiation) {
+  expect_direct_slopes(spun, {{"spin [rad/s]", 3.0}, {"height [m]", 0.6}, {"gravity [m/s²]", 9.81}},
+                       GeneralizedAlpha{});
+}
+TEST(GradientThroughEvents, LengthsOfStepsAndOfTheRunAreParameters) {
+  auto const swung = [](P p) {
+    auto scenario = stopped<Constraint>(std::array{1.2, 9.81, 10.0, 0.5});
+    scenario.options.until = p[0];
+    scenario.options.step = p[1];
+    scenario.start.t = p[2];
+    return scenario;
+  };
+  // what a start corrects for the jerk is differenced over a part of a step, and rounds: by 1e-10 of the speeds
+  expect_direct_slopes(swung, {{"until [s]", 0.508}, {"step [s]", 0.01, 0.1}, {"start [s]", 0.0, 0.1}},
+                       GeneralizedAlpha{}, 1e-9);
+  expect_direct_slopes(swung, {{"until [s]", 0.508}, {"step [s]", 0.01, 0.1}, {"start [s]", 0.0, 0.1}},
+                       GeneralizedAlpha{.start_correction = false}, 2e-10);
+}
+TEST(GradientThroughEvents, CornersOfOptionsAtFixedTimesFollowDirectDifferentiation) {
+  auto const swung = [](P p) {
+    auto scenario = stopped<Constraint>(std::array{p[0], p[1], 10.0, 0.5});
+    scenario.options.corners = {0.2013, 0.31};
+    return scenario;
+  };
+  expect_direct_slopes(swung, {{"length [m]", 1.2}, {"gravity [m/s²]", 9.81}}, GeneralizedAlpha{});
+}
+TEST(GradientThroughEvents, ImpactsOfWholeStatesFollowDirectDifferentiation) {
+  expect_direct_slopes(nut_on_thread, of_nut, GeneralizedAlpha{});
+  // where cables begin anew, stiff terms dominate what their accelerations change by: these round
+  expect_direct_slopes<false>(impact_of_cables(2e-3), of_impact, GeneralizedAlpha{.rho_inf = 0.6}, 1e-9);
+}
+
+TEST(GradientThroughEvents, ABounceIsThatOfTheClosedForm) {
+  auto const rated_ball = [](P p) {
+    auto scenario = ball<true>(p);
+    using M = std::remove_cvref_t<decltype(scenario.model)>;
+    auto const height = [](auto const&, auto const& x) { return x.q[1]; };
+    auto const falls = [](auto const&, auto const& x) { return x.v[1]; };
+    return rated(Scenario<M>(std::move(scenario)), height, falls);
+  };
+  Gradient const g = gradient(rated_ball, of_ball, GeneralizedAlpha{});
+  std::vector<double> const p{9.81, 1.0, 0.8};
+  // v is linear between impacts, so that the sum over steps is exact: ∫v dt = y − h, though v jumps
+  EXPECT_NEAR(g.value, 2.0 * flight(p, 2, 1.7)[0] - p[1], 1e-11);
+  for (std::size_t j = 0; j < 3; ++j)
+    EXPECT_NEAR(g.slopes[Index(j)], slope_of([](auto const& q) { return 2.0 * flight(q, 2, 1.7)[0] - q[1]; }, p, j),
+                1e-9)
+        << j;
+  EXPECT_EQ(g.run.events.size(), 2u);
+}
+TEST(GradientThroughEvents, TheTimeOfAFallIsThatOfTheClosedForm) {
+  // the integral of one is the time at which the floor ends the run
+  auto const timed = [](P p) {
+    auto scenario = ball<false>(p);
+    using M = std::remove_cvref_t<decltype(scenario.model)>;
+    return rated(Scenario<M>(std::move(scenario)), NoTerm{}, [](auto const&, State const&) { return 1.0; });
+  };
+  Gradient const g = gradient(timed, of_ball, GeneralizedAlpha{.rho_inf = 0.6});
+  double const t = std::sqrt(2.0 / 9.81);
+  EXPECT_NEAR(g.value, t, 1e-13);
+  EXPECT_NEAR(g.slopes[0], -0.5 * t / 9.81, 1e-11);
+  EXPECT_NEAR(g.slopes[1], 0.5 * t, 1e-11);
+  EXPECT_EQ(g.run.warnings.size(), 1u);  // of the restitution, which comes too late
+}
+
+TEST(GradientThroughEvents, EverySnapshotCountGivesTheSameBits) {
+  auto const with = [](std::size_t snapshots) {
+    return gradient(rated_by_outputs(braked), of_brake, GeneralizedAlpha{.rho_inf = 0.7}, {.snapshots = snapshots});
+  };
+  Gradient const all = with(1000);
+  EXPECT_EQ(all.reversal.taken, all.reversal.steps);
+  for (std::size_t const snapshots : {1u, 2u, 3u, 7u, 30u}) {
+    Gradient const few = with(snapshots);
+    EXPECT_GT(few.reversal.taken, few.reversal.steps);
+    EXPECT_EQ(few.value, all.value);
+    for (Index j = 0; j < all.slopes.size(); ++j) EXPECT_EQ(few.slopes[j], all.slopes[j]) << snapshots << ' ' << j;
+  }
+}
+
+TEST(GradientThroughEvents, RefusesWhatHasNoDerivative) {
+  auto const said = [&](auto const& change) {
+    auto const make = [&](P p) {
+      auto scenario = pushed(std::array{0.3137, 3.0, 2.0});
+      change(scenario.options, p[0]);
+      return scenario;
+    };
+    return refusal([&] { gradient(rated_by_outputs(make), {{"p [s]", 0.5}}, GeneralizedAlpha{}); });
+  };
+  auto const event = [](char const* name, auto const& value) {
+    return Event{.name = name, .value = [value](State const& x) { return value(x.t); }};
+  };
+  EXPECT_TRUE(has(said([&](RunOptions& o, double p) {
+                    o.events = {event("first", [p](double t) { return std::pow(t - p - 1e-3, 3); })};
+                  }),
+                  "gradient: the event \"first\" only touches zero at t = 0.501"));
+  EXPECT_TRUE(has(said([&](RunOptions& o, double p) {
+                    o.events = {event("first", [p](double t) { return t - p - 0.003; }),
+                                event("second", [](double t) { return t - 0.503; })};
+                  }),
+                  "gradient: the events \"first\" and \"second\" are met at once at t = 0.503"));
+  EXPECT_TRUE(
+      has(said([&](RunOptions& o, double p) { o.events = {event("end", [p](double t) { return t - p - 0.3; })}; }),
+          "an event, and a corner or the end"));
+  EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.corners = {p, 0.5}; }), "gradient: two corners"));
+  EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.corners = {p, 0.5003}; }), "change their order with \"p [s]\""));
+  EXPECT_TRUE(has(said([](RunOptions& o, double p) {
+                    o.until = 0.5;
+                    o.corners = {p};
+                  }),
+                  "gradient: a corner at the end of the run, t = 0.5 s, moves"));
+  EXPECT_TRUE(has(said([](RunOptions& o, double) { o.halvings = 3; }), "gradient: a run with halved steps"));
+}
+
+}  // namespace gradient_events_test
