@@ -62,13 +62,9 @@ class AlphaTangents {
     double const shifted = x.memory[x.memory.size() - 1];
     if (!corrects && (shifted == 0.0 || lane.dh == tangent.lengths[StepHistory::lengths - 1])) return;
     Index const nv = x.v.size();
-    std::optional<bool> decided;
-    if (std::abs(h - shifted) > 1e-9 * h) decided = corrects;
-    State const change = beside.of_map(lane.j, x, tangent, {h, lane.dh}, [&](V& v, State& y, double length) {
-      (void)v.method.set_out(v.system, y, length, v.work, decided);
-      y.v = v.work.v0 - y.v;
-      y.memory.head(nv) = v.work.a0 - y.memory.head(nv);
-    });
+    std::optional<bool> const decided = V::decided(x, h, corrects);
+    State const change = beside.of_map(lane.j, x, tangent, {h, lane.dh},
+                                       [&](V& v, State& y, double length) { v.set_out_change(y, length, decided); });
     tangent.dx.v += change.v;
     tangent.dx.memory.head(nv) += change.memory.head(nv);
   }

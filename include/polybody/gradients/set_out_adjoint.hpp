@@ -16,20 +16,13 @@ class SetOutAdjoint {
  public:
   /// \param spare a variant of the run itself, which must outlive it; \param corrects the step adds something
   SetOutAdjoint(V& spare, State const& x, double h, bool corrects)
-      : spare_(&spare), x_(&x), h_(h), corrects_(corrects) {
-    if (std::abs(h - shifted()) > 1e-9 * h) decided_ = corrects;
-  }
+      : spare_(&spare), x_(&x), h_(h), corrects_(corrects), decided_(V::decided(x, h, corrects)) {}
 
   /// The length for which x is shifted [s]; zero after a start.
   double shifted() const { return (*x_).memory[(*x_).memory.size() - 1]; }
 
   /// Speeds and own accelerations of a variant's y become what is added to them.
-  void add(V& v, State& y, double length) const {
-    (void)v.method.set_out(v.system, y, length, v.work, decided_);
-    y.v = v.work.v0 - y.v;
-    auto own = y.memory.head(y.v.size());
-    own = v.work.a0 - own;
-  }
+  void add(V& v, State& y, double length) const { v.set_out_change(y, length, decided_); }
 
   /// Takes the costate of speeds and own accelerations that a step sets out with, in `bar`, to that of x. Returns what
   /// J changes by with the length of the step. \param by_time the time of x is not that of a corner

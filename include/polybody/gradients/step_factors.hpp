@@ -92,12 +92,13 @@ class StepFactors {
     return kind == NearFactors::of_end ? SecondOrder::omitted : SecondOrder::included;
   }
 
-  /// The coefficients of a kind, with the pairs of force groups that act, before it is written.
+  /// The coefficients of a kind, with the pairs of force groups that act.
   TangentCoefficients coefficients(NearFactors kind, double mass, double damping, double stiffness) {
-    ActingPairs& pairs = own_[std::size_t(kind)].pairs;
-    pairs.begin();
-    return {
-        .mass = mass, .damping = damping, .stiffness = stiffness, .exact = kind >= NearFactors::exact, .pairs = &pairs};
+    return {.mass = mass,
+            .damping = damping,
+            .stiffness = stiffness,
+            .exact = kind >= NearFactors::exact,
+            .pairs = &own_[std::size_t(kind)].pairs};
   }
   /// Writes the tangent of a kind where the system was evaluated last.
   void write(NearFactors kind, TangentCoefficients const& k, VecX const& lambda, BlockSink& sink) {
@@ -145,8 +146,10 @@ class StepFactors {
   Index factor(NearFactors kind, double h, StepPlace const& end) {
     TangentCoefficients const k = coefficients(kind, method_.mass(), method_.gamma * h, method_.beta * h * h);
     Factors& factors = *own_[std::size_t(kind)].factors;
-    if (derivative == Derivative::direct && kind != NearFactors::turned)
+    if (derivative == Derivative::direct && kind != NearFactors::turned) {
+      k.pairs->begin();
       return factors.factor_tangent(*system_, end, k, second_order(kind));
+    }
     return factors.factor([&](BlockSink& sink) { write(kind, k, end.lambda, sink); });
   }
 

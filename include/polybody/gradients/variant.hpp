@@ -63,6 +63,20 @@ struct Variant {
     }
     return corrected;
   }
+  /// Speeds and own accelerations of y become what is added to them where a step of h sets out from it. \param
+  /// corrected as in `AlphaMethod::begin`
+  void set_out_change(State& y, double h, std::optional<bool> corrected) {
+    (void)method.set_out(system, y, h, work, corrected);
+    y.v = work.v0 - y.v;
+    auto own = y.memory.head(y.v.size());
+    own = work.a0 - own;
+  }
+  /// Whether variants that stand beside x set out corrected, as the run itself does, which `corrects`; none where that
+  /// changes with the length of the step.
+  static std::optional<bool> decided(State const& x, double h, bool corrects) {
+    double const shifted = x.memory[x.memory.size() - 1];
+    return std::abs(h - shifted) > 1e-9 * h ? std::optional<bool>(corrects) : std::nullopt;
+  }
   /// A step of h that depends on x alone: with factors of its own, in the first order of elimination.
   StepReport step(State& x, double h) {
     if (!steps) method.analyse(system, work);
