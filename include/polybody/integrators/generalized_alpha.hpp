@@ -3,8 +3,9 @@
 
 namespace polybody {
 
-/// The method with the most damping of what a step does not resolve for the least of what it does: α_m = (2ρ∞ − 1)/(ρ∞
-/// + 1), α_f = ρ∞/(ρ∞ + 1), γ = ½ − α_m + α_f, β = ¼(γ + ½)² [Chung & Hulbert 1993].
+/// Generalised-α method [Chung & Hulbert 1993]: for a given ρ∞ it has the least dissipation of low frequencies.
+/// Its parameters are
+///   α_m = (2ρ∞ − 1)/(ρ∞ + 1),  α_f = ρ∞/(ρ∞ + 1),  γ = ½ − α_m + α_f,  β = ¼(γ + ½)².
 struct GeneralizedAlpha {
   static constexpr char const* name = "GeneralizedAlpha";
   static constexpr int order = 2;
