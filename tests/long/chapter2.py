@@ -94,4 +94,9 @@ CASES = {
     "arm_unstrained_40": (PAGE, "robot_arm --case fast-low --stiffer 1e4 --elements 40 --no-plot", plain),
     "cantilever": (PAGE, "cantilever --no-plot", meshes({"tip-moment": "2.9, 30 kN m"})),
     "cantilever_fine": (PAGE, "cantilever --case moment --step 1e-3 --until 2 --no-plot", plain),
+    **{
+        f"arm_mesh_{n}": (PAGE, f"robot_arm --case compare --elements {n} --step 1.25e-3 --no-plot",
+                          lambda text: (comparison(text), ""))
+        for n in [5, 10, 20, 40, 160]
+    },
 }
