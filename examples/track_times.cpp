@@ -1,7 +1,8 @@
-// The thesis' own method on its vehicle: independent coordinates and Adams–Bashforth–Moulton of variable order and step
-// (Chapter 3), the pins of the tracks by five formulations at the same tolerance. Processor time for a second of motion
-// beside that of ideal pins (thesis: penalty 1e9, bushing and ANCF take 6, 3 and 5 times as long), and what limits the
-// steps: the fastest rate in the motion, an eigenvalue by power iteration.
+// The vehicle of Chapter 3 in independent coordinates, as the thesis integrates it (§3.3). The thesis names no
+// integrator: Adams–Bashforth–Moulton of variable order and step is our choice. The pins have five formulations at one
+// tolerance. The program prints the processor time per second of motion, its ratio to ideal pins (thesis: penalty 1e9,
+// bushing and ANCF take 6, 3 and 5 times as long), and the limit of the steps: the fastest rate of the motion, an
+// eigenvalue by power iteration.
 //   track_times --until 0.2
 //   track_times --names
 #include <ctime>

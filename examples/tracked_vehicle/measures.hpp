@@ -17,12 +17,19 @@ inline double largest(Runs const& runs, std::size_t k, std::string const& output
 }
 inline std::string const& name_of(Runs const& runs, std::size_t k) { return runs.comparison.runs[k].name; }
 
-// Forces in the watched pin from 1 to 4 s, longitudinal and vertical, up to 30 Hz: how far those of `run` are off those
-// of `first`, as root mean squares; of both components or of `outputs`.
 inline constexpr double force_cut_off = 30.0;  // [Hz]  [thesis §3.6]
+
+// An interval of a run [s].
+struct Interval {
+  double from = 1.0, to = 4.0;
+};
+
+// Relative root mean square difference between two runs of the force in the watched pin, low-passed at 30 Hz: of the
+// longitudinal and the vertical component together, or of `outputs`.
 inline double force_difference(Runs const& first, std::size_t k, Runs const& runs, std::size_t run,
-                               std::vector<std::string> const& outputs = {"joint force x [N]", "joint force z [N]"}) {
-  RmsDifference d(1.0, 4.0);
+                               std::vector<std::string> const& outputs = {"joint force x [N]", "joint force z [N]"},
+                               Interval const& in = {}) {
+  RmsDifference d(in.from, in.to);
   for (std::string const& output : outputs) {
     Filtered const a = filtered(first, k, output, force_cut_off), b = filtered(runs, run, output, force_cut_off);
     d.add({b.times, b.values}, {a.times, a.values});
@@ -115,7 +122,21 @@ inline void path_line(Lines& lines, Runs const& runs, std::size_t k) {
   lines("path, " + name_of(runs, k), {{"taut", 1e3 * off.taut, 1, "mm"}, {"slack", 1e3 * off.slack, 1, "mm"}});
 }
 
-// The watched pin's force, filtered and as it is, and from 1 to 4 s off the first run of `runs`.
+// Difference of the filtered force in the watched pin between run k and the first run, for each interval that both runs
+// cover.
+inline std::vector<Value> force_differences(Runs const& runs, std::size_t k) {
+  std::vector<Value> numbers{{"apart", 1e2 * force_difference(runs, 0, runs, k), 2, "%"},
+                             {"Fx apart", 1e2 * force_difference(runs, 0, runs, k, {"joint force x [N]"}), 2, "%"},
+                             {"Fz apart", 1e2 * force_difference(runs, 0, runs, k, {"joint force z [N]"}), 2, "%"}};
+  for (auto const& [name, in] :
+       {std::pair{"apart to 10 s", Interval{1.0, 10.0}}, std::pair{"apart from 4 to 6 s", Interval{4.0, 6.0}}})
+    if (std::min(runs.times(0).back(), runs.times(k).back()) >= in.to - 1e-9)
+      numbers.push_back(
+          {name, 1e2 * force_difference(runs, 0, runs, k, {"joint force x [N]", "joint force z [N]"}, in), 2, "%"});
+  return numbers;
+}
+
+// Force in the watched pin, filtered and unfiltered, and its difference from the first run of `runs`.
 inline void force_line(Lines& lines, Runs const& runs, std::size_t k) {
   std::vector<Value> numbers;
   auto const filters = [&](std::size_t run, double least) {  // which need equal steps
@@ -123,10 +144,7 @@ inline void force_line(Lines& lines, Runs const& runs, std::size_t k) {
   };
   double const end = runs.times(k).back();
   if (!filters(k, 2.0 / force_cut_off)) return;
-  if (k > 0 && filters(0, 4.0) && filters(k, 4.0))
-    numbers = {{"apart", 1e2 * force_difference(runs, 0, runs, k), 2, "%"},
-               {"Fx apart", 1e2 * force_difference(runs, 0, runs, k, {"joint force x [N]"}), 2, "%"},
-               {"Fz apart", 1e2 * force_difference(runs, 0, runs, k, {"joint force z [N]"}), 2, "%"}};
+  if (k > 0 && filters(0, 4.0) && filters(k, 4.0)) numbers = force_differences(runs, k);
   for (char const* const axis : {"x", "z"}) {
     std::string const output = std::string("joint force ") + axis + " [N]";
     Filtered const f = filtered(runs, k, output, force_cut_off);

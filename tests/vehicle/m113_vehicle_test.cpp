@@ -79,12 +79,11 @@ TEST(M113Vehicle, AnswersOfItsTracksAreThoseOfItsModel) {
   }
 }
 
-// Thesis Figure 3.7: 7 cm with suspension. 0.64 cm without; M113.md §9 finds 0.86 to 0.92 cm of these data.
-TEST(M113Vehicle, DropsOntoItsSpringsByTheThesisSevenCentimetres) {
+// Thesis Figure 3.7: 7 cm with suspension, to which the attachment of the springs is fitted (m113::shock_on_arm), so
+// this is a check of the fit and no claim. 0.64 cm without suspension, where nothing is fitted.
+TEST(M113Vehicle, DropsOntoItsSpringsByTheFittedSevenCentimetres) {
   double const sprung = dip_of({}, 0.3), bare = dip_of({.suspension = false}, 0.15);
-  held({"thesis, ch. 3", "first dip of the vehicle on its springs [m]", By::published, "thesis Figure 3.7",
-        "Rigid, Constraint"},
-       sprung, 0.07, 0.007);
+  EXPECT_NEAR(sprung, 0.07, 0.007);
   EXPECT_GT(bare, 0.004);
   EXPECT_LT(bare, 0.010);
   EXPECT_GT(sprung / bare, 6.0);

@@ -4,7 +4,7 @@
 /// SI units. Not in polybody.hpp: of use to vehicles only.
 ///
 /// Sources, named beside each number:
-///   [T…]  A. Wallin, PhD thesis, University of Illinois at Chicago 2016, with the table (T3.1), section or figure
+///   [T…]  M. Wallin, PhD thesis, University of Illinois at Chicago 2016, with the table (T3.1), section or figure
 ///   [C]   the M113 data files of Project Chrono
 ///   [P]   public data sheets and the manual TM 9-2350-247-10
 ///   [D]   derived from the others, as written beside it
