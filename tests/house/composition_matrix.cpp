@@ -1,4 +1,4 @@
-// The tables "What composes with what" of docs/joints.md, read off the concepts that Joint, Model::connect and simulate
+// The tables "Combinations" of docs/joints.md, read off the concepts that Joint, Model::connect and simulate
 // state.
 //   composition_matrix FILE            fails where the block between the two marks in FILE is another one
 //   composition_matrix FILE --write    writes the block
@@ -212,20 +212,24 @@ std::string composition() {
 
   static_assert(HeldCoordinates<Spherical>::needs == Observes::frame);
   return geometry_policy.text("geometry") +
-         "\nv: velocity rows have no gap for a force to answer. f: names no freedoms, which a bushing needs. j: the "
-         "motion left has no joint coordinates. l: not linear in coordinates of ANCF bodies.\n\n" +
+         "\nv: nonholonomic equations have no position level for a compliant force. f: the geometry names no free "
+         "directions, which a bushing needs. j: the free motion has no joint coordinates. l: the equations are not "
+         "linear in the coordinates of ANCF bodies.\n\n" +
          geometry_body.text("geometry, by `Constraint`") +
-         "\n✓: for either marker. 2nd: for the second only. n: the body's markers tell too little. w: another world. "
-         "The ground serves everywhere. A bushing asks its first marker for a frame.\n\n" +
+         "\n✓: either marker. 2nd: only the second marker. n: the markers of the body do not provide the axis or "
+         "frame. w: the body is of another dimension. The ground can be used everywhere. A bushing needs a frame at "
+         "its first marker.\n\n" +
          policy_body.text("policy, some geometry") +
-         "\nr: joint coordinates are for bodies with a frame, by elimination body by body for rigid ones. l: points "
-         "are not linear in the coordinates.\n\n" +
+         "\nr: joint coordinates need a body with a frame, and `RecursiveBy<ArticulatedBody>` needs rigid bodies. l: "
+         "points are not linear in the coordinates.\n\n" +
          integrator_body.text("integrator") +
-         "\ns: no stabilisation, and norms of Euler parameters are rows. m: the mass matrix is not constant. e: "
-         "coordinates do not add, or there is no mean force over a step.\n\n" +
+         "\ns: the method has no stabilisation, and the norm of Euler parameters is a constraint equation. m: the mass "
+         "matrix is not constant. e: the coordinates are not additive, or the mean force over a step does not "
+         "exist.\n\n" +
          integrator_policy.text("integrator") +
-         "\ns: no stabilisation keeps to rows. m: the mass matrix of joint coordinates is not constant. e: needs "
-         "joints that eliminate nothing, with gaps, and forces linear in them. t: three stages are solved together.\n";
+         "\ns: the method has no stabilisation for constraint equations. m: the mass matrix of joint coordinates is "
+         "not constant. e: the method needs joints without elimination, with a position level, and forces that are "
+         "linear in it. t: the three stages are solved together.\n";
 }
 
 std::string const begins = "<!-- composition begins: written by tests/house/composition_matrix.cpp -->\n",
