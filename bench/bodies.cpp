@@ -1,5 +1,5 @@
-// Every body formulation: nanoseconds an element for M a − f and for its tangent, beside the operations that M a − f
-// takes (counted by a scalar that counts: each +, −, ×, ÷, root or sine is one) and the rate they are done at.
+// Every body formulation: nanoseconds per element for M a − f and for its tangent, the number of operations of M a −
+// f (a counting scalar counts each +, −, ×, ÷, root or sine as one) and their rate.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

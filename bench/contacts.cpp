@@ -1,6 +1,6 @@
-// Contacts that come and go: a chain of 64 links falls across five wheels, and every link may touch every wheel. Three
-// ways to keep the order of elimination: leave link–wheel blocks out of the matrix and iterate over them; keep a slot
-// for each of the 320 pairs; or work out a new order whenever a contact begins or ends.
+// Contacts that begin and end: a chain of 64 links falls across five wheels, and every link may touch every wheel.
+// Three ways to treat the order of elimination: omit link–wheel blocks from the matrix and iterate over them; reserve
+// a slot for each of the 320 pairs; or compute a new order if a contact begins or ends.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

@@ -1,6 +1,6 @@
-// Element kernels: nanoseconds an element for force and tangent one by one, in packs (structure of arrays) and by two
-// threads. The loop over single elements is compiled as all the rest, so the compiler may use vectors within an
-// element; with -fno-tree-vectorize added it is scalar code, and the packs stay what they are.
+// Element kernels: nanoseconds per element for force and tangent, for single elements, for packs (structure of
+// arrays) and with two threads. The compiler may vectorise within a single element; -fno-tree-vectorize makes that
+// loop scalar and does not change the packs.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

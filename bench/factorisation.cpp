@@ -1,6 +1,6 @@
-// Factor and solve [M, Gᵀ; G, 0] of a tracked vehicle: two closed tracks of 64 links, wheels, sprockets and idlers on a
-// chassis, links coupled to what they touch. Every solver gets the same matrix in one run; then chains from 64 to 4096
-// links.
+// Factor and solve [M, Gᵀ; G, 0] of a tracked vehicle: two closed tracks of 64 links, wheels, sprockets and idlers on
+// a chassis, and couplings between links and the bodies in contact with them. Every solver gets the same matrix in
+// one run; then chains from 64 to 4096 links.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

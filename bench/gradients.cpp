@@ -1,5 +1,5 @@
-// What derivatives of a whole run cost beside the run itself under the same options: chains of links, whose densities
-// are parameters, and the tracked vehicle with springs on its links.   bench_gradients
+// Cost of the derivatives of a run, as multiples of the run with the same options: chains with the densities of the
+// links as parameters, and the tracked vehicle with springs on its links. bench_gradients
 #include <cstdio>
 #include <ctime>
 

@@ -1,7 +1,7 @@
-// What a joint costs under each policy, on chains on pins that fall from a horizontal start. Growth: a step of h = 1 ms
-// from 16 to 1024 links, as taken and, since Newton's counts change with the motion, at equal counts; slopes from 64
-// links on; both drawn in joints.png. Parts: nanoseconds a link for residual, tangent, factorisation and solution,
-// beside links without joints. Links of 0.1 m: rigid in space, one cable element each in the plane. Processor time, the
+// Cost of a joint under each policy, on chains on pins that fall from a horizontal start. Growth: a step of h = 1 ms
+// from 16 to 1024 links, with the actual and with equal counts of iterations; exponents from 64 links on; both are
+// drawn in joints.png. Parts: nanoseconds per link for residual, tangent, factorisation and solution, compared with
+// links without joints. Links of 0.1 m: rigid in space, one cable element each in the plane. Processor time, the
 // fastest of several runs.
 #include <benchmark/benchmark.h>
 

@@ -1,5 +1,5 @@
-// What variants of a model that step together, a lane each, would have to do: as many iterations as the slowest of
-// them, and a factorisation where any of them asks for one. With what these take alone that bounds what lanes can gain.
+// Cost of stepping variants of a model in the lanes of one SIMD vector: the iterations of the slowest variant, and a
+// factorisation if any variant needs one. The ratio to single runs bounds the gain of lanes.
 #pragma once
 #include <algorithm>
 #include <cstdio>
@@ -9,7 +9,7 @@
 
 namespace lockstep {
 
-/// Of each step of a run.
+/// Counts of each step of a run.
 struct Counts {
   std::vector<int> iterations, factorisations;
 };

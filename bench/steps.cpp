@@ -244,7 +244,7 @@ void variants() {
   }
 }
 
-/// One run alone by the default solver, of which a profiler sees nothing else: bench_steps --run MODEL SIZE SECONDS.
+/// One run with the default solver only, for a profiler: bench_steps --run MODEL SIZE SECONDS.
 int run_alone(std::string const& model, int size, double until) {
   auto const run = [&](auto const& m, State const& x) {
     Cost const c = cost<BlockSolver>(m, x, until);

@@ -1,5 +1,5 @@
 #pragma once
-// How fast something is on this machine: times and flop rates of the benchmarks.
+// Times and flop rates of the benchmarks.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

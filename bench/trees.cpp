@@ -1,8 +1,8 @@
-// Joint coordinates of a tree by articulated bodies, on a chain that falls from a horizontal start: links of 0.1 m and
-// 1 kg on pins. One call (q, q˙) → q¨; a quarter of a step of Runge–Kutta 4; a step of generalised-α and its
-// iterations; and the work that a second takes to an accuracy of the tip. Where Simbody is found (Debian:
-// libsimbody-dev), the same chain by it in the same run: ratios are polybody's time over Simbody's. Processor time, the
-// fastest of several runs.
+// Joint coordinates of a tree by articulated bodies, on a chain that falls from a horizontal start: links of 0.1 m
+// and 1 kg on pins. One call (q, q˙) → q¨; a quarter of a step of Runge–Kutta 4; a step of generalised-α and its
+// iterations; and the work that a second takes to an accuracy of the tip. If Simbody is found (Debian:
+// libsimbody-dev), the chain is also solved by Simbody in the same run; ratios are the time of polybody over the time
+// of Simbody. Processor time, the fastest of several runs.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

@@ -1,8 +1,8 @@
-// What a step of the tracked vehicle costs with every link on every pin that can be driven (Chapters 3 and 4), and what
-// that goes into: CPU of a second of driving, mean, 99.9 % and largest step, Newton's counts, and the time of each part
-// of a step beside the flop limit of its factorisation.   bench_vehicle [--links X] [--pins Y] [--until S] [--speed W]
-// With --causes 1: how many iterations and factorisations steps take by how many contacts come and go in them.
-// With --variants 1: what eight vehicles whose drives turn up to 1 % faster or slower would gain by stepping together.
+// Cost of a step of the tracked vehicle with every combination of links and pins (Chapters 3 and 4): processor time
+// per second of driving, mean, 99.9 % quantile and maximum of a step, counts of Newton's method, and the time of each
+// part of a step with the flop limit of its factorisation. bench_vehicle [--links X] [--pins Y] [--until S] [--speed
+// W]. With --causes 1: iterations and factorisations of steps by the number of contacts that begin or end. With
+// --variants 1: possible gain of eight vehicles in SIMD lanes, with driving speeds that differ by up to 1 %.
 #include <ctime>
 
 #include <cstdio>
@@ -24,12 +24,12 @@ double cpu() {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// Microseconds of what every iteration and every factorisation of a step consists of.
+/// Times of the parts of an iteration and of a factorisation [µs].
 struct Parts {
   double evaluation, residual, solution, writing, factorisation, limit;
 };
 
-/// At a state of a run, where all is in the cache as within a step.
+/// Measures the parts at a state of a run, with all data in the cache as within a step.
 Parts parts_of(AnyModel const& model, State const& whole, GeneralizedAlpha const& integrator, double h) {
   RunSystems const systems = model.systems_of<GeneralizedAlpha>();
   System& system = *systems.stepped;

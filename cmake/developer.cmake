@@ -1,4 +1,4 @@
-# What only polybody's own build wants; a project that uses polybody never reads this file.
+# Settings of polybody's own build. A project that uses polybody does not read this file.
 
 get_property(multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
 if(NOT multi_config AND NOT CMAKE_BUILD_TYPE)

@@ -1,11 +1,10 @@
-# polybody::compiled, polybody::compiled_vehicle
-# A static library that compiles once what does not depend on a user's model. It is compiled in the user's own build tree
-# with the user's own flags, when a target links it, and not before:
+# polybody::compiled, polybody::compiled_vehicle Static library with the code that is independent of the model of the
+# user. It is compiled in the build tree of the user, with the flags of the user, if a target links it:
 #
 #   find_package(polybody REQUIRED)
 #   add_executable(app app.cpp)                 # #include <polybody/compiled.hpp>
 #   target_link_libraries(app PRIVATE polybody::compiled)
-#   polybody_precompile(app)                    # then app.cpp may include <polybody/polybody.hpp> as before
+#   polybody_precompile(app)                    # app.cpp may also include <polybody/polybody.hpp>
 #
 # polybody::compiled_vehicle adds the hull and the contacts of the vehicle of polybody/vehicle/, with
 # #include <polybody/compiled_vehicle.hpp>.

@@ -9,10 +9,10 @@
 #   target_link_libraries(app PRIVATE polybody::polybody)
 #   polybody_precompile(app)
 #
-# The call takes effect at the end of its folder's CMakeLists.txt, so that what is set after it counts as well. Alike are
-# targets with the same options, definitions, features and language standard, their own and those of the libraries they
-# link; a generator expression counts as it is written. Settings of single source files, and what a generator expression
-# links, are not seen: where they differ, GCC warns (-Winvalid-pch) and reads the header anew, clang stops.
+# The call takes effect at the end of the CMakeLists.txt of its folder and includes later settings. Targets share a
+# header if they have equal options, definitions, features and language standard, including those of linked libraries;
+# a generator expression is compared as text. Settings of single source files and libraries within generator
+# expressions are not compared: if they differ, GCC warns (-Winvalid-pch) and reads the header again, and clang stops.
 function(polybody_precompile)
   if(NOT ARGN)
     message(FATAL_ERROR "polybody_precompile: name the targets that include <polybody/polybody.hpp>.")
@@ -32,7 +32,7 @@ function(polybody_precompile)
   endforeach()
 endfunction()
 
-# What is below is called by the function above only.
+# The functions below are called by the function above only.
 
 # Properties of a target that its precompiled header must share; those of the second list gather along the linked libraries.
 set_property(

@@ -1,7 +1,7 @@
 # polybody_warnings: linked by our own tests, examples and benchmarks; never by a user.
 add_library(polybody_warnings INTERFACE)
-# GCC's full -Wshadow blames a template's parameter when a user's global has the same name, so it is
-# asked about locals only; clang reads the rest (.ci/run, or the clang preset).
+# The full -Wshadow of GCC warns of a template parameter if a global of the user has the same name, so GCC checks
+# locals only; clang checks the rest (.ci/run, or the clang preset).
 target_compile_options(
   polybody_warnings
   INTERFACE -Wall -Wextra -Wpedantic $<IF:$<CXX_COMPILER_ID:GNU>,-Wshadow=local,-Wshadow>)

@@ -1,8 +1,8 @@
 # Each header alone: target headers_alone compiles every header of the library as a program of its own.
 #
-# What most of a header's time goes into is the same for all: Eigen, then what waist 3 includes. So a header is compiled
-# after the highest of these precompiled ones that it reaches by its own includes. That hides nothing: what it adds is
-# there in any case, and a header on the way that does not reach so high is compiled without it.
+# Most of the compile time of a header is common to all: Eigen, then the includes of the system. So a header is
+# compiled after the highest of these precompiled headers among its own includes. Missing includes are still found: a
+# header gets only a precompiled header that it includes itself.
 #
 # POLYBODY_HEADERS_ALONE=K/N takes every N-th header, the K-th first, and those that the last 30 commits changed.
 set(POLYBODY_HEADERS_ALONE all CACHE STRING "Headers that are compiled alone: all, or K/N for every N-th")
@@ -40,7 +40,7 @@ foreach(file IN LISTS polybody_headers polybody_testing_headers)
   list(APPEND headers ${header})
 endforeach()
 
-# Those of `headers` whose turn it is.
+# The part of `headers` that POLYBODY_HEADERS_ALONE selects.
 function(headers_in_turn headers out)
   if(NOT POLYBODY_HEADERS_ALONE MATCHES "^([0-9]+)/([1-9][0-9]*)$")
     set(${out} "${headers}" PARENT_SCOPE)

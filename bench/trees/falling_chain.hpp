@@ -1,6 +1,6 @@
 #pragma once
-// The chain that bench/trees.cpp measures, in C++17 and free of any library: links on pins that fall from a horizontal
-// start, and how a time is taken.
+// The chain of bench/trees.cpp in C++17 without any library: links on pins that fall from a horizontal start, and the
+// measurement of times.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-// A part of polybody::compiled: what is asked of a model once its type is erased (see polybody/compiled.hpp).
+// A part of polybody::compiled: the functions of a model with erased type (see polybody/compiled.hpp).
 #include <polybody/compiled.hpp>
 
 namespace polybody {

@@ -1,4 +1,5 @@
-# An overlay port of the tree that it stands in: vcpkg install polybody --overlay-ports=<polybody>/cmake/packages/vcpkg
+# Overlay port of the tree that contains this file: vcpkg install polybody
+# --overlay-ports=<polybody>/cmake/packages/vcpkg
 set(VCPKG_BUILD_TYPE release) # headers only
 
 get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../../.." ABSOLUTE)
