@@ -29,7 +29,7 @@ struct Options {
 
 using Lrvf = Cantilever<planar::Lrvf>;
 
-// Where the tip is on each of the two meshes.
+// Prints the position of the tip on each of the two meshes.
 void tell_tips(Lrvf const& beam, State const& now) {
   auto const q = coordinates_of(beam.model, now, beam.beam);
   MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), q);

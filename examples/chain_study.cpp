@@ -1,8 +1,7 @@
-// A chain of rods on penalty pins, let go from the side: stiffness of the pins, step and integrator, each with each.
-// How far the end of the chain then is from that of a chain on ideal pins at a fine step, and what it costs: a
-// work-precision map. It stops anywhere and goes on there, over threads or over the ranks of MPI:
-//   chain_study --threads 2 --out out/chain_study
-//   mpirun -np 2 chain_study --out out/chain_study
+// Work–precision map of a chain of rods on penalty pins, released from the horizontal: every combination of pin
+// stiffness, step and integrator. The error is the distance of the end of the chain from a chain with ideal pins and
+// a fine step. The study can be interrupted and continued, on threads or on MPI ranks: chain_study --threads 2 --out
+// out/chain_study mpirun -np 2 chain_study --out out/chain_study
 #include <iostream>
 #include <polybody/polybody.hpp>
 #include <polybody/study/report.hpp>
@@ -23,7 +22,7 @@ struct Options {
   bool retry = false, no_plot = false;
 };
 
-// Where the end of the chain is after the run [m], and the processor time of the steps [s].
+// Position of the end of the chain after the run [m], and the processor time of the steps [s].
 struct End {
   Vec3 place;
   double seconds;

@@ -23,7 +23,7 @@ inline Bar visible_bar(Stiffness const& s, double density) {
           .material = Material{.density = density, .young = s.EA, .poisson = 0.0}};
 }
 
-// What looks at the states of a run for one scene; the model is that of each call.
+// Observer of a run that records the frames of one scene; each call passes the model.
 template <class M, class B>
 class BarFilm {
  public:

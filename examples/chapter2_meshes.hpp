@@ -1,12 +1,11 @@
 #pragma once
-// How far the two meshes of the planar Lrvf are apart, and why (thesis 2.5.1, 2.7). Shared by the examples and their
-// tests.
+// Distance of the two meshes of the planar Lrvf and its causes (thesis 2.5.1, 2.7). The examples and their tests use
+// it.
 //
-// In an element whose ends are turned by phi against each other, with the strains (eps, gamma) and the axes t1, t2 of
-// its middle, the position mesh goes on by l ((1 + eps) t1 + gamma t2), the curve that the rotations imply by
-// l s t1, s = sin(phi/2)/(phi/2). Hence the gap of a node is, exactly,
-//   sum l (eps t1 + gamma t2)  +  sum l (1 - s) t1  over the elements before it:
-// the strains that the strain energy holds, and an error of interpolation of second order in l.
+// Consider an element with the relative rotation phi of its ends, the strains (eps, gamma) and the axes t1, t2 of its
+// middle. The position mesh advances by l ((1 + eps) t1 + gamma t2), and the curve that the rotations imply by l s
+// t1, s = sin(phi/2)/(phi/2). Hence the distance of a node is, exactly, sum l (eps t1 + gamma t2) + sum l (1 - s) t1
+// over the elements before it: the strains of the strain energy, and an interpolation error of second order in l.
 #include "chapter2.hpp"
 
 namespace chapter2 {
@@ -48,7 +47,8 @@ inline RigidFit rigid_fit(std::vector<Vec2> const& from, std::vector<Vec2> const
   return fit;
 }
 
-// The two meshes of one state. A gap is where the position mesh has a node, less where the rotation mesh has it.
+// The two meshes of one state. A gap is the position of a node on the position mesh minus its position on the
+// rotation mesh.
 struct Apart {
   double gap = 0.0;                   // at the node where they are farthest apart [m]
   Vec2 strain = Vec2::Zero();         // the part of it that the strains make [m]

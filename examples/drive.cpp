@@ -1,8 +1,7 @@
-// The vehicle in real time: driven by keys or by a file of orders, beside the clock on the wall.
-//   drive                                       arrows or w a s d, x straight on, space stops, q ends
-//   drive --links ancf --drive ../examples/drive/eight.csv
-//   drive --record mine.csv                     keeps what was ordered, for --drive
-// At the end it says how many frames were late, what steps took, and what Newton's method did for them.
+// The vehicle in real time, driven by keys or by a file of orders. drive arrows or w a s d, x straight on, space
+// stops, q ends drive --links ancf --drive ../examples/drive/eight.csv drive --record mine.csv keeps what was
+// ordered, for --drive At the end it prints the number of late frames, the times of the steps and the counts of
+// Newton's method.
 #include <cstdio>
 #include <iostream>
 #include <numeric>
@@ -31,7 +30,7 @@ struct Options {
   fs::path drive, record;
 };
 
-/// What the drives are to do, by keys or by a file.
+/// Source of the orders for the drives: the keyboard or a file.
 class Pilot {
  public:
   Pilot(Options const& o, Throttles const& throttles) : throttles_(throttles) {

@@ -1,7 +1,6 @@
-// Lesson: the joint policy is one template argument. The same pendulum with an ideal pin (multipliers) and with a
-// stiff one (penalty). Sample run:
-//   Constraint: reaction at the lowest point 24.525 N, gap 0.000e+00 m
-//   Penalty:    reaction at the lowest point 24.525 N, gap 2.452e-06 m
+// Lesson: the joint policy is one template argument. One pendulum with an ideal pin (multipliers) and with a stiff
+// pin (penalty). Sample run: Constraint: reaction at the lowest point 24.525 N, gap 0.000e+00 m Penalty: reaction at
+// the lowest point 24.525 N, gap 2.452e-06 m
 #include <polybody/polybody.hpp>
 
 #include <cstdio>

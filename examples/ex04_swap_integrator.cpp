@@ -1,7 +1,6 @@
-// Lesson: the integrator is one argument. The same double pendulum by an implicit method and by explicit ones that
-// are kept on the joints by projection. Sample run:
-//   GeneralizedAlpha    2000 steps   tip (-1.4448, -1.3218)   energy error 3e-05 J
-//   ...
+// Lesson: the integrator is one argument. One double pendulum with an implicit method and with explicit methods that
+// are stabilised by projection. Sample run: GeneralizedAlpha 2000 steps tip (-1.4448, -1.3218) energy error 3e-05 J
+// ...
 #include <polybody/polybody.hpp>
 
 #include <cstdio>

@@ -1,6 +1,6 @@
-// The stiffness and damping of a mount from a noisy record of how a flexible arm on it moves: least squares with the
-// exact derivatives of runs, under four formulations of the arm, and how far each result is to be trusted.
-//   identify --out out/identify
+// Identification of the stiffness and damping of a mount from a noisy record of the motion of a flexible arm on it:
+// least squares with the exact derivatives of runs, under four formulations of the arm, with confidence intervals.
+// identify --out out/identify
 #include <iostream>
 
 #include "identify/arm.hpp"
@@ -52,7 +52,7 @@ double seconds_of(F&& f) {
   return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// What a gradient costs, in runs of the same formulation, and what it is off, beside differences of whole runs.
+// Cost of a gradient, in runs of this formulation, and its error, compared with differences of runs.
 void print_gradients(std::vector<Candidate> const& candidates, Numbers const& p) {
   std::printf(
       "\na gradient of %zu numbers, in runs; largest error of its columns, relative\n%-8s %10s %10s %18s %18s\n",

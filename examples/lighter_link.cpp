@@ -1,6 +1,6 @@
-// The lightest link that swings a mass through a quarter turn without its stress passing a bound, with the exact
-// derivatives of runs, under four formulations of the link; and what each of the four designs does under the others.
-//   lighter_link --out out/lighter_link
+// Design of the lightest link that rotates a mass by 90° with a bounded stress, with the exact derivatives of runs,
+// under four formulations of the link. Each design is then evaluated under the other formulations. lighter_link --out
+// out/lighter_link
 #include <iostream>
 
 #include "lighter_link/search.hpp"

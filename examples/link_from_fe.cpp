@@ -32,7 +32,7 @@ struct Options {
   double step = 1e-3;
 };
 
-/// What CalculiX printed.
+/// Results of CalculiX.
 struct Reference {
   double mass = 0.0;
   Vec3 inertia = Vec3::Zero();
@@ -65,7 +65,7 @@ std::vector<double> frequencies(Ffr const& body) {
   return omega;
 }
 
-/// Where the point `end` is at each tenth of the time, when the body hangs on the point `pin`, at first level and at
+/// Positions of the point `end` at tenths of the time. The body hangs on the point `pin` and starts horizontally from
 /// rest.
 template <class B, class Point>
 std::vector<Vec3> swing(B const& body, Point const& pin, Point const& end, Vec3 const& at, Options const& o) {

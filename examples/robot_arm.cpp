@@ -66,7 +66,7 @@ void figure_2_4(Options const& o) {
   draw(f, o.out / "figure_2_4_angle", !o.no_plot);
 }
 
-// What the two meshes of the Lrvf do during a run.
+// Observer of the two meshes of the Lrvf during a run.
 struct MeshWatch {
   Case const& of;
   double widest = 0.0, longest = 0.0, implied = 0.0;  // [m]
@@ -89,7 +89,7 @@ struct MeshWatch {
     say(of.name, "rotation mesh", implied, "m");
     if (of.axial_force != 0.0) say(of.name, "static position mesh", static_length(), "m");
   }
-  // The same force on the arm at rest.
+  // Length of the arm under this force at rest.
   double static_length() const {
     RobotArm<planar::Lrvf> arm(bar(of.stiffness, 1.0), 10, of.ramp, of.axial_force);
     State x = arm.model.reference_state();
@@ -135,7 +135,7 @@ void run_case(Options const& o, Case const& c) {
   if constexpr (two_meshes) watch.tell();
 }
 
-// The same arm under other bodies, joints and integrators.
+// The arm under other bodies, joints and integrators.
 struct ArmCase {
   Options const& o;
   Stiffness stiffness;

@@ -55,7 +55,7 @@ double mean_pull(Options const& o, StressRuns const& runs, std::size_t k, double
   return 0.5 * (o.preload + m113::tensioner.stiffness * travel);
 }
 
-// Decoupled and coupled strain, low pass, from 8.5 s on, and how far they are apart at most.
+// Decoupled and coupled strain after a low-pass filter, from 8.5 s on, and their largest difference.
 void print_strains(Options const& o, StressRuns const& r, double speed) {
   auto const &times = r.times(0), &other_times = r.times(1);
   double const from = plateau(times);
@@ -72,7 +72,7 @@ void print_strains(Options const& o, StressRuns const& r, double speed) {
       1e5 * m113::running_strain(mean_speed(r, 0, from), mean_pull(o, r, 0, from)));
 }
 
-// Behind the curves of rigid links and cables the range over settings, where there are several.
+// Draws the range over several settings behind the curves of rigid links and cables.
 void add_bands(Figure& f, std::vector<SettingRuns> const& settings, double scale, std::size_t every,
                std::function<Filtered(SettingRuns const&, std::size_t)> const& history) {
   if (settings.size() < 2) return;
@@ -101,7 +101,7 @@ void report(Options const& o, StressRuns const& runs) {
   std::printf("%g rad/s, %g s, steps of %g ms, rho %g; strain of left link %d, low pass %g Hz\n", o.speed, o.until,
               1e3 * o.step, o.rho, watched_link, o.cut_off);
   std::size_t const last = runs.comparison.runs.size() - 1;
-  std::size_t beside = 0;  // ANCF cables, where they run; else the first
+  std::size_t beside = 0;  // index of the ANCF cables if they are among the runs, else 0
   for (std::size_t k = 0; k <= last; ++k)
     if (runs.name(k) == "ancf") beside = k;
   for (std::size_t k = 0; k <= last; ++k) {
@@ -146,7 +146,7 @@ void report(Options const& o, StressRuns const& runs) {
   }
 }
 
-// What a legend calls the run.
+// Legend entry of the run.
 std::string label_of(StressRuns const& runs, std::size_t k) {
   return runs.links[k]->decoupled ? "rigid, decoupled" : links_in_words(runs.name(k));
 }
@@ -308,7 +308,7 @@ void single(Options const& o) {
   compare_steps(o, runs, run(half, {c}));
 }
 
-// What is read off the run of one combination; strain, force and gap from the plateau on.
+// Results of the run of one combination; strain, force and constraint violation from the plateau on.
 struct Cell {
   double forward = 0.0;  // position at the end [m]
   double strain = 0.0;   // of the watched link, low pass, in the mean
@@ -340,7 +340,7 @@ Cell cell_of(Options const& o, Combination const& c) {
   return cell;
 }
 
-// How far apart the cells are.
+// Largest difference between the cells.
 double spread(std::vector<Cell> const& cells, double Cell::* of) {
   auto const [least, most] =
       std::minmax_element(cells.begin(), cells.end(), [&](Cell const& a, Cell const& b) { return a.*of < b.*of; });
@@ -388,7 +388,7 @@ void matrix(Options o) {
   show_spreads(o, cells);
 }
 
-// The simplifications of the floating frame one by one: what each does to the watched link, beside the whole equations.
+// Effect of each simplification of the floating frame on the watched link, compared with the full equations.
 void compare_terms(Options o) {
   o.audit = true;
   std::vector<std::pair<char const*, FfrTerms>> const variants{

@@ -51,7 +51,7 @@ double fastest_rate(System& system, State const& x) {
   return std::exp(grown);
 }
 
-// What a run took, and what limits its steps.
+// Cost of a run, and the limit of its steps.
 struct Taken {
   System const& system;
   RunReport const& report;

@@ -47,7 +47,7 @@ class RunsMade {
   }
 
  private:
-  // What differs between the runs of one call: pins, suspension and step.
+  // Key of a run within one call: pins, suspension and step.
   using Key = std::tuple<std::string, bool, double>;
   Runs const& made(Options const& o, Pins const& pins) {
     Key const key{pins.name, o.suspension, o.step};
@@ -73,8 +73,7 @@ void report(Options const& o, Runs const& runs, Lines& lines) {
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) run_lines(lines, o, runs, k);
 }
 
-// Coordinates and constraints as the thesis counts them: the ground is a body, too, with four Euler parameters and a
-// weld.
+// Coordinates and constraints in the count of the thesis: the ground is a body with four Euler parameters and a weld.
 void table_3_4(Options const& o) {
   std::cout << "Table 3.4\n";
   Lines lines;

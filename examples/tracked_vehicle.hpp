@@ -58,10 +58,10 @@ m113::VehicleOptions vehicle_options(Settings const& s);
 GeneralizedAlpha integrator(Settings const& o);
 void warn_of_drive(Settings const& o);
 
-// Where links lie whose tracks have come to rest; the same for all formulations.
+// Positions of the links of tracks at rest, common to all formulations.
 m113::TrackStart settled(Settings const& s);
 
-// A vehicle whose formulation is forgotten.
+// A vehicle with erased formulation.
 struct AnyVehicle {
   std::shared_ptr<m113::TrackedVehicle const> tracks;
   AnyModel model;
@@ -70,7 +70,7 @@ struct AnyVehicle {
 };
 class VehicleScene;
 
-// What a vehicle is made with besides the formulation of its tracks.
+// Parts of a vehicle that are independent of the formulation of its tracks.
 struct VehicleParts {
   BumpCourse ground;
   std::array<Ramp, 2> drives;
@@ -78,14 +78,14 @@ struct VehicleParts {
 };
 using MakeVehicle = std::function<AnyVehicle(VehicleParts const&)>;
 
-// What is built and set going: the vehicle, and where its links lay at the start.
+// The vehicle, ready to run, and the positions of its links at the start.
 struct Built {
   m113::TrackStart start;
   AnyVehicle vehicle;
 };
 Built build(Settings const& s, MakeVehicle const& make);
 
-// What became of a run, beside its histories.
+// Results of a run other than its histories.
 struct Outcome {
   std::string name, trouble = {}, deepest = {};
   double depth = 0.0, deepest_time = 0.0;
@@ -93,7 +93,7 @@ struct Outcome {
          relative = -1.0;  // [J]
 };
 
-// A vehicle under an integrator: what `compare` takes as a formulation.
+// A vehicle with an integrator, a formulation for `compare`.
 template <class I>
 struct Driven {
   std::string name;
@@ -114,7 +114,7 @@ struct TrackCase {
   }
 };
 
-// What runs gave: comparison and outcomes side by side.
+// Results of several runs: the comparison and the outcome of each run.
 struct Runs {
   Comparison comparison;
   std::vector<Outcome> outcomes;
@@ -131,11 +131,11 @@ struct Filtered {
   std::vector<double> times, values;
 };
 Filtered filtered(Runs const& runs, std::size_t run, std::string const& output, double cut_off);
-// The same at the times of the run, of numbers that are not among its outputs.
+// Filters values at the times of the run that are not among its outputs.
 std::vector<double> filtered_values(Runs const& runs, std::size_t run, std::vector<double> const& values,
                                     double cut_off);
 
-// What a history spans from one time to another.
+// Minimum and maximum of a history between two times.
 struct Span {
   double mean = 0.0, least = std::numeric_limits<double>::infinity(), most = -least, at_least = 0.0, at_most = 0.0;
 };

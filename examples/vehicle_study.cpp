@@ -1,8 +1,7 @@
-// The tracked vehicle with what nobody knows of it: the preload of its tensioners and the friction of all that its
-// tracks touch. A Latin hypercube of both, and what it says of the forces in a pin and of the way that the vehicle
-// makes. The study stops anywhere and goes on there, over threads or over the ranks of MPI:
-//   vehicle_study --threads 2 --out out/vehicle_study
-//   mpirun -np 2 vehicle_study --out out/vehicle_study
+// The tracked vehicle with two uncertain parameters: the preload of its tensioners and the friction of its tracks. A
+// Latin hypercube of both gives the distribution of the force in a pin and of the distance of the vehicle. The study
+// can be interrupted and continued, on threads or on MPI ranks: vehicle_study --threads 2 --out out/vehicle_study
+// mpirun -np 2 vehicle_study --out out/vehicle_study
 #include <iostream>
 #include <polybody/polybody.hpp>
 #include <polybody/study/report.hpp>

@@ -8,7 +8,7 @@ enum class Key { none, faster, slower, left, right, straight, stop, quit };
 
 class Keyboard {
  public:
-  // \throws polybody::InvalidInput where the input is no terminal.
+  // \throws polybody::InvalidInput if the input is not a terminal.
   Keyboard();
   ~Keyboard();
   Keyboard(Keyboard const&) = delete;

@@ -59,7 +59,7 @@ class Throttle {
   std::shared_ptr<Orders> orders_ = std::make_shared<Orders>();
 };
 
-// What was asked of the left and the right drive, and when.
+// Order for the left and the right drive, with its time.
 struct Order {
   double t, left, right;  // [s], [rad/s]
 };

@@ -14,7 +14,7 @@ namespace identify {
 
 using namespace polybody;
 
-// What is sought: of the mount along x and y, and about z.
+// Unknown parameters of the mount: translation along x and y, and rotation about z.
 inline std::array<char const*, 4> constexpr names{"k [N/m]", "c [N s/m]", "k_t [N m/rad]", "c_t [N m s/rad]"};
 using Numbers = std::array<double, 4>;
 
@@ -92,7 +92,7 @@ MatX slopes_of_tip(Make const& make, std::span<double const> p) {
   return out;
 }
 
-// A formulation of the arm, its types forgotten.
+// A formulation of the arm with erased type.
 struct Candidate {
   std::string name{};
   std::function<VecX(std::span<double const>)> tip;
@@ -105,8 +105,8 @@ Candidate candidate(std::string name, Experiment const& experiment, Index elemen
           [arm](std::span<double const> p) { return slopes_of_tip(arm, p); }};
 }
 
-// What an experiment would have recorded, without its noise: a formulation that is fitted nowhere (engineering strain,
-// 16 elements), by an integrator of order five.
+// Record of the experiment without noise: a formulation that is not among the fitted ones (engineering strain, 16
+// elements), with an integrator of order five.
 inline VecX exact_record(Experiment experiment, Numbers const& truth) {
   experiment.step = 1e-3;
   return tip_of(Arm<planar::AncfCable<EngineeringStrain>>{experiment, 16}, truth, Radau{});

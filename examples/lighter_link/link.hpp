@@ -23,7 +23,7 @@ struct Turn {
   double peak() const { return 2.0 / (3.0 * std::sqrt(3.0)) * angle / (time * time); }
 };
 
-// What the link has to do. The plane of the motion is level: nothing weighs.
+// Task of the link. The plane of the motion is horizontal, so gravity has no effect.
 struct Task {
   double length = 1.0, width = 0.02;                    // of the link [m]
   double payload = 2.0, payload_inertia = 1e-3;         // at its end [kg], [kg m²]
@@ -49,10 +49,9 @@ struct Task {
   }
 };
 
-// The link as sections of B, each of so many elements, welded to each other. Outputs are the stress of the upper and
-// the lower fibre where each section begins, as parts of what is allowed: N/A ∓ M h/2I with N and M from the
-// multipliers of the joint there, which are what the rest of the link and the mass exert under every formulation, a
-// rigid one, too.
+// The link as sections of B with a given number of elements, welded to each other. The outputs are the stresses of
+// the upper and the lower fibre at the beginning of each section, relative to the allowed stress: N/A ∓ M h/2I. N and
+// M are the multipliers of the weld, so they are also available for a rigid formulation.
 template <class B>
 struct Link {
   Task task;
@@ -147,13 +146,13 @@ struct Aggregate {
   }
 };
 
-// What a run with derivatives says of a design.
+// Results of a run with derivatives for one design.
 struct Loaded {
   double aggregate = 0.0, most = 0.0;  // stress, over what is allowed
   VecX slopes{};                       // of the aggregate, by the heights [1/m]
 };
 
-// A formulation of the link, its types forgotten.
+// A formulation of the link with erased type.
 struct Candidate {
   std::string name;
   std::function<MatX(std::span<double const>)> stresses;

@@ -21,9 +21,9 @@ struct Lightest {
   bool converged = false;
 };
 
-// One run with derivatives for each design that is tried: the method asks for mass and stress one after the other. Its
-// numbers are the logarithms of the heights, and it bounds that of the stress: as M h/2I falls with h², they depend on
-// each other almost by a straight line, which is what the method takes them for.
+// Search with one run with derivatives for each design; the method requests mass and stress one after the other. The
+// variables are the logarithms of the heights, and the bound is on the logarithm of the stress: M h/2I is
+// proportional to h⁻², so the relation of the logarithms is nearly linear, as the method assumes.
 inline Lightest lightest(Candidate const& c, Task const& task, Bounds const& bounds) {
   Lightest out{.name = c.name};
   auto const heights = [&](std::span<double const> x) {

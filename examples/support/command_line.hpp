@@ -16,7 +16,7 @@ class App;
 
 class CommandLine {
  public:
-  // Where the value of an option goes; what stands there is the default.
+  // Destination of the value of an option; its content is the default.
   using Value = std::variant<double*, int*, std::ptrdiff_t*, std::string*, std::filesystem::path*>;
 
   explicit CommandLine(std::string const& description);
@@ -26,13 +26,13 @@ class CommandLine {
   void positive(std::string const& name, Value value, std::string const& help);
   void not_negative(std::string const& name, Value value, std::string const& help);
   void between(std::string const& name, Value value, double least, double most, std::string const& help);
-  // `alone`, where it is not empty, is the value of an option that stands without one.
+  // `alone`, if it is not empty, is the value of an option that is given without a value.
   void one_of(std::string const& name, std::string* value, std::vector<std::string> const& all, std::string const& help,
               std::string const& alone = "");
   // "!--no-…" sets it to false.
   void flag(std::string const& name, bool* value, std::string const& help);
 
-  // What main is to return at once: after --help, or for options that cannot be meant, which it says.
+  // Return value for main after --help or after invalid options, which are reported; empty if the program continues.
   std::optional<int> parse(int argc, char** argv);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Least squares by the method of Levenberg and Marquardt as MINPACK has it [Moré 1978], which Eigen brings, and what
-// the Gauss-Newton matrix tells of the accuracy of the numbers found.
+// Least squares by the Levenberg–Marquardt method of MINPACK [Moré 1978], which is part of Eigen, and the covariance
+// of the solution from the Gauss–Newton matrix.
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -21,12 +21,13 @@ struct LeastSquaresFit {
   Eigen::VectorXd residuals{};   // there
   Eigen::MatrixXd slopes{};      // there
   std::vector<double> sums{};    // ½ Σ r² of the start and after each iteration
-  int runs = 0, slope_runs = 0;  // how often residuals and slopes were asked for
+  int runs = 0, slope_runs = 0;  // number of evaluations of residuals and of derivatives
   bool converged = false;
 
   // s with s² = Σ r²/(values − numbers).
   double deviation() const { return std::sqrt(residuals.squaredNorm() / double(residuals.size() - at.size())); }
-  // s² (JᵀJ)⁻¹ of the numbers: right for residuals that noise alone leaves, and where r is nearly linear over it.
+  // Covariance s² (JᵀJ)⁻¹ of the solution. It is correct if the residuals are noise only and r is nearly linear over
+  // their range.
   Eigen::MatrixXd covariance() const {
     Eigen::MatrixXd const normal = slopes.transpose() * slopes, one = Eigen::MatrixXd::Identity(at.size(), at.size());
     Eigen::VectorXd const scale = normal.diagonal().cwiseSqrt().cwiseInverse();  // numbers of different units
@@ -35,7 +36,7 @@ struct LeastSquaresFit {
   }
 };
 
-// What Eigen's method asks for.
+// Functor for the method of Eigen.
 struct CountedLeastSquares : Eigen::DenseFunctor<double> {
   LeastSquares const& of;
   LeastSquaresFit& fit;
@@ -54,8 +55,9 @@ struct CountedLeastSquares : Eigen::DenseFunctor<double> {
   }
 };
 
-// From `start` on, whose numbers are of the size of one, by steps that are at first no longer than it; until neither
-// the sum nor the numbers change by more than `tolerance`, relatively, or `most` iterations have been made.
+// Minimises the sum of squares from `start`, whose entries are of the order of one; the first steps are at most as
+// long as `start`. It ends if the relative change of the sum or of the variables is below `tolerance`, or after
+// `most` iterations.
 inline LeastSquaresFit least_squares(LeastSquares const& problem, Eigen::VectorXd const& start, double tolerance = 1e-6,
                                      int most = 30) {
   using Status = Eigen::LevenbergMarquardtSpace::Status;

@@ -15,7 +15,7 @@ struct Value {
   std::string unit = "";
 };
 
-// Writes each line once, by what it is about: figures and reports share some.
+// Writes each line once, by its key; figures and reports have lines in common.
 class Lines {
  public:
   void operator()(std::string const& what, std::vector<Value> const& values, std::string const& remark = "") {

@@ -22,7 +22,7 @@ struct Design {
   std::function<ValueAndSlopes(std::span<double const>)> objective{}, constraint{};
   std::vector<double> start{}, least{}, most{};
   double tolerance = 1e-5;  // of x, relatively; a tenth of the constraint's
-  int most_runs = 60;       // evaluations of the objective each time that the method is begun anew
+  int most_runs = 60;       // evaluations of the objective after each start of the method
 };
 
 struct BestDesign {
@@ -32,7 +32,7 @@ struct BestDesign {
   bool converged = false;
 };
 
-// NLopt is written in C: what a function throws is kept beside, and thrown again when the method has returned.
+// Calls a function from NLopt, a C library: an exception is stored, and thrown again after the method has returned.
 struct DesignCall {
   std::function<ValueAndSlopes(std::span<double const>)> const& f;
   nlopt_opt method;
@@ -83,7 +83,7 @@ inline BestDesign best_design(Design const& design) {
   BestDesign best{.x = design.start};
   nlopt_result result = NLOPT_FAILURE;
   double before = design.objective(best.x).value;
-  for (int begun = 0; begun < 8; ++begun) {  // anew it knows no curvature that could mislead it to an early end
+  for (int begun = 0; begun < 8; ++begun) {  // a new start has no stored curvature that could end it early
     result = nlopt_optimize(method.get(), best.x.data(), &best.objective);
     if (thrown) std::rethrow_exception(thrown);
     best.constraint = design.constraint(best.x).value;

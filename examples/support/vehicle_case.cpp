@@ -1,4 +1,4 @@
-// Runs of the tracked vehicle: what is asked of each state, and what compare takes.
+// Runs of the tracked vehicle: outputs of each state, and the case for `compare`.
 #include "../tracked_vehicle.hpp"
 
 #include <polybody/io/vtk.hpp>
@@ -11,7 +11,7 @@ namespace chapter3 {
 
 namespace {
 
-// Numbers of one state, worked out once for all outputs that ask.
+// Results of one state, computed once for all outputs.
 class Probe {
  public:
   explicit Probe(Built const& built)
@@ -29,7 +29,7 @@ class Probe {
   double link_x = 0, link_z = 0, force_x = 0, force_z = 0, force = 0, gap = 0, largest_gap = 0, depth = 0, off_path = 0,
          off_plane = 0;
 
-  // As it was evaluated for the last number that was asked.
+  // The system, evaluated at the state of the last output.
   System const& system_at(State const& x) {
     if (x.t != t_) look(x);
     return system_;
@@ -119,7 +119,7 @@ inline constexpr std::pair<char const*, double Probe::*> asked[] = {
     {"off the middle plane [m]", &Probe::off_plane},
 };
 
-// What is done at every state of a run beside its outputs.
+// Observers of every state of a run, in addition to the outputs.
 class Watch {
  public:
   Watch(Settings const& s, std::string const& name, std::shared_ptr<m113::TrackedVehicle const> vehicle,

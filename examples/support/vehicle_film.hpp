@@ -1,5 +1,5 @@
 #pragma once
-// The tracked vehicle as a film: shapes, axial stress where links know it, forces of contacts and pins, and histories.
+// The tracked vehicle as a film: shapes, axial stress of flexible links, forces of contacts and pins, and histories.
 #include <polybody/io/film.hpp>
 #include <polybody/io/film_forces.hpp>
 
@@ -13,25 +13,25 @@ std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& ti
 // One run.
 class VehicleScene {
  public:
-  // \param until what is later is left out [s]
+  // \param until last time of the film [s]
   // \param joints whether with the forces of joints, a sixth of the file
   VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double until, bool joints = true);
 
   // A point of a history, unless there was one within 5 ms.
   void plot(double t, std::vector<std::pair<char const*, double>> const& numbers);
-  // A whole history "label [unit]", likewise.
+  // Adds a complete history with the label "label [unit]".
   void plot(std::string const& output, std::vector<double> const& times, std::vector<double> const& values);
-  // A frame, where one is due. `system` must have been evaluated at x.
+  // Records a frame if one is due. `system` must be evaluated at x.
   void see(State const& x, System const& system);
 
-  // Frames come after the run, by `show_kept`: states are kept where a frame is due, and `also` is told them.
+  // Postpones the frames to `show_kept` after the run: due states are stored and passed to `also`.
   void keep(std::function<void(State const&)> also) { also_ = std::move(also); }
   // Frame k of the states that were kept, once `dress` has changed what there is to be seen in it.
   void show_kept(System system, std::function<void(std::size_t k, std::vector<VisualPart>&)> const& dress);
 
  private:
   void frame(State const& x, System const& system, std::vector<VisualPart> const& parts);
-  // Whether a history whose next point comes at `next` has one at t; then the next one comes later.
+  // True if a history with its next point at `next` has a point at t; advances `next` in this case.
   bool plotted(double t, double& next) const;
 
   Visual visual_;

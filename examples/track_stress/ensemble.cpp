@@ -9,8 +9,8 @@ namespace chapter4 {
 
 namespace {
 
-// What the thesis does not give, in its plausible range. A cable's section need not be that of a rigid link's mass;
-// 1.7 times as high is the box whose inertia Table 3.1 has.
+// Plausible ranges of the data that the thesis does not give. The section of a cable need not have the mass of a
+// rigid link; the box with the inertia of Table 3.1 is 1.7 times as high.
 std::vector<std::pair<std::string, Options>> plausible(Options const& o) {
   std::vector<std::pair<std::string, Options>> all{{"as given", o}};
   auto const with = [&](std::string const& name, auto const& change) {

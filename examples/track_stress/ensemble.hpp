@@ -27,7 +27,7 @@ class Band {
   std::vector<double> times_, least_, most_;
 };
 
-// What decoupled and coupled strain are under each setting, as a table and as bands.
+// Decoupled and coupled strain under each setting, as a table and as bands.
 void ensemble(Options const& o);
 
 }  // namespace chapter4

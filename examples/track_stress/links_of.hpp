@@ -8,7 +8,7 @@
 
 namespace chapter4 {
 
-// What the watched link of a vehicle tells: of a flexible one strain and bending, of a finite element link stress.
+// Outputs of the watched link of a vehicle: strain and bending of a flexible link, stress of a finite element link.
 template <class V, class Links>
 WatchedLink watched(Options const& o, std::shared_ptr<V const> const& vehicle, Links const& links) {
   auto const link = vehicle->side(m113::Side::left).links[watched_link];
@@ -45,7 +45,7 @@ constexpr char const* refusal() {
     return "";
 }
 
-// How links of Body are made under these options.
+// Function that makes links of type Body under these options.
 template <class Body>
 using LinksMade = std::function<m113::LinkOf<Body>(Options const&)>;
 

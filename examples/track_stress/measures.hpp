@@ -7,10 +7,10 @@
 
 namespace chapter4 {
 
-// Where numbers of the plateau begin, or of half of a shorter run.
+// Start of the plateau, or half of a shorter run [s].
 inline double plateau(std::vector<double> const& times) { return times.back() > 8.6 ? 8.5 : 0.5 * times.back(); }
 
-// Filtered strain, or bending, of one run off that of another, from `from` on, as the root mean square.
+// Root mean square of the difference of the filtered strain, or bending, of two runs, from `from` on.
 using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;
 inline double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k,
                   double from, Told of = &StressRuns::raw, Told of_b = nullptr) {
@@ -21,7 +21,7 @@ inline double off(Options const& o, StressRuns const& as, std::size_t i, StressR
   return d.value();
 }
 
-// The same of unfiltered histories of one comparison, in a stretch of time.
+// Root mean square of the difference of unfiltered histories of one comparison, over a time interval.
 inline double off_unfiltered(StressRuns const& runs, std::size_t i, std::size_t k, Told of, double from, double to) {
   RmsDifference d(from, to);
   d.add({runs.times(i), (runs.*of)(i)}, {runs.times(k), (runs.*of)(k)});
@@ -35,7 +35,7 @@ inline double rms(std::vector<double> const& times, std::vector<double> const& x
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-// What cycles of axial stress, unfiltered, amount to.
+// Ranges and damage of the cycles of the unfiltered axial stress.
 struct Ranges {
   double count = 0.0, largest = 0.0, equivalent = 0.0;  // ranges [Pa]
 };

@@ -90,7 +90,7 @@ void restart(Options const& o, Combination const& c) {
   bool const same = x.t == y.t && x.q == y.q && x.v == y.v && x.a == y.a && x.lambda == y.lambda;
   std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", c.name().c_str(), at, y.t,
               same ? "the same bits" : "NOT the same");
-  if (!same) throw Error("The run that was taken up again ended in another state.");
+  if (!same) throw Error("The resumed run ended in another state than the full run.");
 }
 
 }  // namespace chapter4

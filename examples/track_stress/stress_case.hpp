@@ -1,15 +1,15 @@
 #pragma once
-// The case of Chapter 4 for `compare`: the tracked vehicle, whose watched link tells its strain.
+// The case of Chapter 4 for `compare`: the tracked vehicle with the strain of the watched link as output.
 #include "stress_film.hpp"
 
 namespace chapter4 {
 
-// What a rigid link's strain is worked out from after the run.
+// Data for the computation of the strain of a rigid link after the run.
 struct Recording {
   std::shared_ptr<LoadRecorder> recorder = {};
   std::optional<BodyHandle<Rigid<>>> link = {};
 };
-// Adds what the watched link tells to what is done at each state.
+// Adds the outputs of the watched link to the observers of each state.
 Recording watch(Scenario<AnyModel>& scenario, WatchedLink const& link, std::shared_ptr<LinkHistory> const& history);
 void recover(Options const& o, Recording const& recording, LinkHistory& history);
 

@@ -4,14 +4,14 @@
 
 namespace chapter4 {
 
-// A run as a scene of the film that the options name, or of none. Flexible links know their stress in each frame. Of
-// rigid ones what acts on them is recorded where a frame is due; their stress is worked out after the run, as that of
-// floating frames, and the frames are made then.
+// A run as a scene of the film of the options, or without a film. Flexible links provide their stress in each frame.
+// For rigid links the loads are recorded at each frame; their stress is computed after the run, with a floating
+// frame, and then the frames are made.
 class StressScene {
  public:
   StressScene(Options const& o, std::string const& name, AnyVehicle const& vehicle, WatchedLink const& link);
 
-  // What the run shows itself to, none without a film.
+  // Scene that records the run; null without a film.
   std::shared_ptr<VehicleScene> const& scene() const { return scene_; }
   // Adds what is known after the run.
   void finish(Options const& o, std::vector<double> const& times, LinkHistory const& watched);

@@ -1,5 +1,5 @@
 #pragma once
-// What the program asks of a formulation of the links. Each formulation is compiled in a file of its own.
+// Interface of a formulation of the links. Each formulation is compiled in a separate file.
 #include <functional>
 #include <map>
 #include <memory>
@@ -32,7 +32,7 @@ inline double section_height(Options const& o) { return o.section * m113::cable_
 // The mass of a flexible link.
 inline double flexible_mass(Options const& o) { return m113::with_steel_links({}, section_height(o)).link.mass; }
 
-// What a run knows of its watched link. Of rigid links the strain is worked out after the run.
+// History of the watched link of a run. The strain of rigid links is computed after the run.
 struct LinkHistory {
   std::vector<double> strain;   // of the link, change of length over length
   std::vector<double> bending;  // in the middle: what it adds in the fibre towards the wheels
@@ -55,11 +55,11 @@ struct StressRuns : Runs {
   }
 };
 
-// What is asked of the watched link.
+// Selection and outputs of the watched link.
 struct WatchedLink {
   std::optional<BodyHandle<Rigid<>>> rigid = {};             // recorded, and its strain is worked out after the run
   std::vector<BodyHandle<Rigid<>>> rigid_links = {};         // of both tracks: so is their stress for a film
-  std::function<void(State const&, LinkHistory&)> see = {};  // adds what a flexible one tells in a state
+  std::function<void(State const&, LinkHistory&)> see = {};  // adds the outputs of a flexible link in a state
 };
 struct StressVehicle {
   AnyVehicle vehicle;
@@ -79,12 +79,12 @@ struct Combination {
 inline std::vector<std::string> const all_links{"rigid", "ancf", "ffr", "fe", "lrvf", "beam", "continuum"};
 inline std::vector<std::string> const all_pins{"constraint", "penalty", "bushing", "linear", "recursive"};
 
-// What a legend calls links that deform in the run.
+// Legend entry of links that deform in the run.
 std::string links_in_words(std::string const& links);
 
 // The run of one formulation.
 StressRuns run_of(Options const& o, Combination const& c);
-// Half of the run, put away in a file, and the other half from there: what the whole run leads to, bit by bit.
+// Runs the first half, writes a checkpoint, and continues from it; the result is bitwise identical to the full run.
 void restart(Options const& o, Combination const& c);
 
 // Ideal pins, by an Adams method in independent coordinates; states every `step`.

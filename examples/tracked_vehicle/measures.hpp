@@ -37,8 +37,8 @@ inline double force_difference(Runs const& first, std::size_t k, Runs const& run
   return d.value();
 }
 
-// The path of the watched link in the chassis against that of the first run: how far it is off at most, in the upper
-// strand, which hangs between sprocket and idler, and elsewhere [m].
+// Largest distance of the path of the watched link, relative to the chassis, from the path of the first run [m]: in
+// the upper strand between sprocket and idler, and elsewhere.
 struct PathDistance {
   double taut = 0.0, slack = 0.0;
 };
@@ -60,7 +60,7 @@ inline PathDistance path_distance(Runs const& runs, std::size_t run) {
   return worst;
 }
 
-// How far a history of a run is off that of the first one, at most.
+// Largest difference of a history of a run from the first run.
 inline double most_apart(Runs const& runs, std::size_t run, std::string const& output) {
   auto const& r = runs.comparison.runs[run];
   return r.difference[std::size_t(std::find(r.output_names.begin(), r.output_names.end(), output) -
@@ -84,8 +84,8 @@ inline Turning turning(Settings const& o, Runs const& runs, std::size_t k, doubl
           std::abs((o.left + o.right) / apart) * m113::track_y};
 }
 
-// ---------------------------------------------------------------------------------------------------- lines
-// How far tracks that roll without slip have come by then [m].
+// ---------------------------------------------------------------------------------------------------- lines Distance
+// of tracks that roll without slip, at time t [m].
 inline double rolled(Settings const& o, double t) {
   Ramp drive = m113::drive(o.speed, 0.1);
   drive.duration = o.ramp;
@@ -97,7 +97,7 @@ inline Span first_second(Runs const& runs, std::size_t k, double from = 0.0) {
   return span_of(runs.times(k), runs.history(k, "vertical displacement [m]"), from, 1.0);
 }
 
-// The first drop, and where the chassis has come to rest when the drives begin.
+// Line with the first dip and with the rest position of the chassis at the start of the drives.
 inline void drop_line(Lines& lines, std::string const& name, Runs const& runs, std::size_t k) {
   Span const first = first_second(runs, k);
   std::vector<Value> numbers{{"first dip", -1e2 * first.least, 2, "cm"}, {"at", first.at_least, 2, "s"}};
@@ -169,7 +169,7 @@ inline void gap_line(Lines& lines, Runs const& runs, std::size_t k) {
                                      {"most of all pins", 1e3 * all.most, 4, "mm"}});
 }
 
-// Where the links are and how deep contacts go; how fast the vehicle is at the deepest.
+// Line with the positions of the links, the depth of contacts, and the speed of the vehicle at the largest depth.
 inline void track_line(Lines& lines, Runs const& runs, std::size_t k) {
   Outcome const& out = runs.outcomes[k];
   auto const& t = runs.times(k);

@@ -1,5 +1,5 @@
 #pragma once
-// What the program asks of a formulation of the pins. Each formulation is compiled in a file of its own.
+// Interface of a formulation of the pins. Each formulation is compiled in a separate file.
 #include <functional>
 
 #include "../tracked_vehicle.hpp"
@@ -27,7 +27,7 @@ struct Pins {
   std::string cannot_turn = {};  // why --turn is refused
 
   Runs run(Options const& o) const;
-  // What the thesis counts of it, where the ground is a body, too.
+  // Count of coordinates and constraints as in the thesis, in which the ground is a body.
   Census count(Options const& o) const;
 };
 Pins ideal_pins();
