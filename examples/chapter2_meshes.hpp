@@ -3,9 +3,10 @@
 // it.
 //
 // Consider an element with the relative rotation phi of its ends, the strains (eps, gamma) and the axes t1, t2 of its
-// middle. The position mesh advances by l ((1 + eps) t1 + gamma t2), and the curve that the rotations imply by l s
-// t1, s = sin(phi/2)/(phi/2). Hence the distance of a node is, exactly, sum l (eps t1 + gamma t2) + sum l (1 - s) t1
-// over the elements before it: the strains of the strain energy, and an interpolation error of second order in l.
+// middle. The position mesh advances by l ((1 + eps) t1 + gamma t2), and the curve that the rotations imply by l s t1,
+// s = sin(phi/2)/(phi/2). Hence the distance of a node is, exactly,
+//   sum l (eps t1 + gamma t2)  +  sum l (1 - s) t1  over the elements before it:
+// the strains of the strain energy, and an interpolation error of second order in l.
 #include "chapter2.hpp"
 
 namespace chapter2 {
