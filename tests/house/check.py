@@ -174,9 +174,11 @@ def takes_model(head):
 
 
 def is_door(d, all_of_header):
-    """Whether a template on a model only hands it on: a short function, or a record without functions."""
+    """Whether a template on a model only hands it on: a short or deleted function, or a record without functions."""
     if d.kind == "class":
         return not any(o.kind == "function" and o.name.startswith(f"{d.name}::") for o in all_of_header)
+    if re.search(r"=\s*delete\s*$", d.head):
+        return True
     return d.kind == "function" and d.body and d.lines <= MAX_DOOR_LINES
 
 

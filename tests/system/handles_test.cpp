@@ -3,6 +3,7 @@
 #include <optional>
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/system/model.hpp>
@@ -14,11 +15,15 @@ using namespace polybody;
 namespace handles_test {
 
 using Ball = Joint<Spherical, Constraint>;
-using M = Model<Bodies<Rigid<>, Ffr>, Joints<Ball>>;
+using Spring = SpringDamper;
+using M = Model<Bodies<Rigid<>, Ffr>, Joints<Ball>, Forces<Spring>>;
 
 char const* const empty = "A handle made by default names nothing in a model.";
 
-Rigid<> cube(double mass) { return Rigid<>(mass, Mat3::Identity()); }
+Rigid<> cube(double mass, Vec3 const& at = {0, 0, 0}) {
+  return Rigid<>({.mass = mass, .inertia = Mat3::Identity(), .placement = Placement::at(at)});
+}
+Spring spring_of(double stiffness) { return {.stiffness = stiffness, .damping = 0.0, .free_length = 1.0}; }
 Ffr rod(double length) {
   return Ffr::from(
       {.length = length, .section = Circle{.radius = 0.02}, .material = {{.density = 7800, .young = 2e11}}}, 2);
@@ -117,6 +122,124 @@ TEST(Handles, OfAModelServeItsCopyToo) {
   copy = model;
   EXPECT_EQ(copy.entry(only_in_model).body.mass(), 7.0);
   EXPECT_EQ(only_in_copy.body().mass(), 5.0);
+}
+
+/// What every use of a body's handle in `model` says.
+void expect_foreign(M& model, BodyHandle<Rigid<>> const& handle) {
+  State x = model.reference_state();
+  State const before = x;
+  auto const at = handle.at({0, 0, 0});
+  char const* const foreign = "of another model";
+  EXPECT_TRUE(has(refusal([&] { (void)position(model, x, at); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { (void)model.entry(handle); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { model.set_velocity(x, handle, {1, 0, 0}, {0, 0, 1}); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { (void)coordinates_of(model, x, handle); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { (void)speeds_of(model, x, handle); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { model.connect(Ball{}, model.ground().at({0, 0, 0}), at); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { model.apply(spring_of(1.0), model.ground().at({0, 1, 0}), at); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { (void)index_of(layout_of(model), handle); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { (void)index_of(layout_of(model), at, "here"); }), foreign));
+  EXPECT_EQ(x.v, before.v);
+}
+
+// The original has fewer bodies than the copy, as many, and more.
+TEST(Handles, OfWhatIsAddedToACopyAreRefusedByTheOriginal) {
+  M model;
+  model.add(cube(1.0), "hub");
+  M copy = model;
+  auto const only_in_copy = copy.add(cube(5.0, {7, 0, 0}), "of the copy");
+  EXPECT_NE(copy.serial(), model.serial());
+  for (int i = 0; i < 3; ++i) {
+    expect_foreign(model, only_in_copy);
+    auto const only_in_model = model.add(cube(7.0, {3, 0, 0}));
+    expect_foreign(copy, only_in_model);
+    EXPECT_EQ(position(model, model.reference_state(), only_in_model.at({0, 0, 0})), Vec3(3, 0, 0));
+  }
+  EXPECT_EQ(position(copy, copy.reference_state(), only_in_copy.at({0, 0, 0})), Vec3(7, 0, 0));
+}
+
+TEST(Handles, OfJointsAndForcesAddedToACopyAreRefusedByTheOriginal) {
+  M model;
+  auto const hub = model.add(cube(1.0), "hub");
+  auto const shared = model.connect(Ball{}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "shared");
+  M copy = model;
+  auto const ball = copy.connect(Ball{}, copy.ground().at({1, 0, 0}), hub.at({1, 0, 0}), "of the copy");
+  auto const spring = copy.apply(spring_of(1.0), copy.ground().at({0, 1, 0}), hub.at({0, 0, 0}));
+  char const* const foreign = "of another model";
+  for (int i = 0; i < 2; ++i) {
+    State const x = model.reference_state();
+    EXPECT_TRUE(has(refusal([&] { (void)model.entry(ball); }), foreign));
+    EXPECT_TRUE(has(refusal([&] { (void)reaction(model, x, ball); }), foreign));
+    EXPECT_TRUE(has(refusal([&] { (void)gap(model, x, ball); }), foreign));
+    EXPECT_TRUE(has(refusal([&] { (void)model.entry(spring); }), foreign));
+    EXPECT_TRUE(has(refusal([&] { (void)index_of_force(layout_of(model), spring); }), foreign));
+    EXPECT_EQ(gap(model, x, shared), Vec3(0, 0, 0));
+    model.connect(Ball{}, model.ground().at({0, 1, 0}), hub.at({0, 1, 0}));
+    model.apply(spring_of(1.0), model.ground().at({0, 1, 0}), hub.at({0, 0, 0}));
+  }
+  EXPECT_EQ(gap(copy, copy.reference_state(), ball), Vec3(0, 0, 0));
+}
+
+// Copies of copies accept what each ancestor had when it was copied; the ground is that of all descendants.
+TEST(Handles, PassDownALineOfCopies) {
+  M first;
+  auto const a = first.add(cube(1.0));
+  M second = first;
+  auto const b = second.add(cube(2.0));
+  auto const late = first.add(cube(9.0));
+  M third = second;
+  auto const c = third.add(cube(3.0));
+  EXPECT_EQ(third.entry(a).body.mass(), 1.0);
+  EXPECT_EQ(third.entry(b).body.mass(), 2.0);
+  EXPECT_EQ(third.entry(c).body.mass(), 3.0);
+  expect_foreign(third, late);
+  expect_foreign(second, c);
+  expect_foreign(first, b);
+  third.connect(Ball{}, first.ground().at({0, 0, 0}), a.at({0, 0, 0}));
+  EXPECT_TRUE(
+      has(refusal([&] { first.connect(Ball{}, third.ground().at({0, 0, 0}), a.at({0, 0, 0})); }), "of another model"));
+}
+
+// A move takes the handles along and leaves an empty model, which may be filled again.
+TEST(Handles, OfAMovedModelAreRefusedByWhatItLeaves) {
+  M model;
+  auto const hub = model.add(cube(1.0, {3, 0, 0}), "hub");
+  M moved = std::move(model);
+  EXPECT_EQ(model.body_count(), 0);  // NOLINT(bugprone-use-after-move): the state after a move is what is tested
+  EXPECT_EQ(model.coordinates(), 0);
+  expect_foreign(model, hub);
+  auto const other = model.add(cube(2.0, {5, 0, 0}), "hub");
+  expect_foreign(model, hub);
+  expect_foreign(moved, other);
+  EXPECT_EQ(position(model, model.reference_state(), other.at({0, 0, 0})), Vec3(5, 0, 0));
+  EXPECT_EQ(position(moved, moved.reference_state(), hub.at({0, 0, 0})), Vec3(3, 0, 0));
+  std::swap(model, moved);
+  EXPECT_EQ(position(model, model.reference_state(), hub.at({0, 0, 0})), Vec3(3, 0, 0));
+  expect_foreign(model, other);
+}
+
+TEST(Handles, OfAModelWhoseVectorGrowsStayValid) {
+  std::vector<M> models(1);
+  auto const hub = models[0].add(cube(1.0, {3, 0, 0}), "hub");
+  std::uint64_t const serial = models[0].serial();
+  models.resize(5);  // which moves, and does not copy
+  EXPECT_EQ(models[0].serial(), serial);
+  EXPECT_EQ(position(models[0], models[0].reference_state(), hub.at({0, 0, 0})), Vec3(3, 0, 0));
+}
+
+TEST(Handles, RefuseStatesThatAreTooShort) {
+  M model;
+  auto const hub = model.add(cube(1.0), "hub"), wheel = model.add(cube(1.0), "wheel");
+  State x = M(model).reference_state();
+  x.q.conservativeResize(7);
+  x.v.conservativeResize(6);
+  char const* const unfitting = "does not fit the model";
+  EXPECT_EQ(position(model, x, hub.at({0, 0, 0})), Vec3(0, 0, 0));
+  EXPECT_TRUE(has(refusal([&] { (void)position(model, x, wheel.at({0, 0, 0})); }), unfitting));
+  EXPECT_TRUE(has(refusal([&] { (void)coordinates_of(model, x, wheel); }), unfitting));
+  EXPECT_TRUE(has(refusal([&] { (void)body_in_state(wheel, x); }), unfitting));
+  EXPECT_TRUE(has(refusal([&] { (void)body_in_state(BodyHandle<Rigid<>>{}, x); }), empty));
+  EXPECT_TRUE(has(refusal([&] { model.set_velocity(x, wheel, {1, 0, 0}, {0, 0, 0}); }), unfitting));
 }
 
 // A body taken from the model's own array is copied before the array grows.

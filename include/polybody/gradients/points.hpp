@@ -13,7 +13,7 @@ namespace polybody {
 template <class M, class T, class B>
   requires(!std::same_as<T, double>)
 Frame<T> frame(M const& model, StateOf<T> const& x, Marker<B> const& marker) {
-  model.require_own(marker.model, "frame");
+  model.require_own(marker, "frame");
   auto const& entry = std::get<detail::BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)];
   Published<T> out;
   out.columns = point_columns(entry.body, marker.point);

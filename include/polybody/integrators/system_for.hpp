@@ -30,6 +30,9 @@ template <class I, class M>
 concept StepsModel =
     KeepsToRows<I, M> && FindsConstantMass<I, M> && SolvesItsBodies<M> && SolvesItsStages<I, M> && FindsSecants<I, M>;
 
+/// Refuses a temporary model, to which the system would keep a reference.
+template <class I, Entries more = Entries::motion, class M>
+System system_for(M const&& model) = delete;
 /// What integrator I steps of `model`, with the entries that it calls and `more`. The model must outlive it.
 template <class I, Entries more = Entries::motion, class M>
 System system_for(M const& model) {

@@ -47,6 +47,9 @@ class Visual {
   /// No shapes yet. The model must be complete.
   template <class M>
   explicit Visual(M const& model) : layout_(layout_of(model)), reference_(model.reference_state()) {}
+  template <class M>
+    requires(!std::same_as<M, Visual>)
+  explicit Visual(M const&& model) = delete;  ///< a temporary model, which would not outlive it
 
   /// The shape's axes are the marker's. \throws InvalidInput for a marker of another model.
   template <class B>
@@ -62,8 +65,10 @@ class Visual {
   /// The state in which the model is undeformed as placed.
   State const& reference() const { return reference_; }
 
-  /// All parts in state x; valid until asked again.
+  /// All parts in state x; valid until asked again. \throws InvalidInput for a state of another model, or where the
+  /// model has changed.
   std::vector<VisualPart> const& at(State const& x) {
+    layout_.watch.require_unchanged();
     for (std::size_t i = 0; i < parts_.size(); ++i) moves_[i](x, parts_[i]);
     return parts_;
   }
@@ -83,7 +88,7 @@ class Visual {
 template <class B>
 void Visual::attach(Marker<B> const& marker, Surface const& shape, std::string name) {
   if constexpr (std::is_same_v<B, Ground>) {
-    require_own(layout_, marker.model, name);
+    require_own(layout_, marker, name);
     Frame<double> const f{.r = marker.point.origin, .A = marker.point.axes};
     carry(shape, std::move(name), [f](State const&) { return f; });
   } else {

@@ -2,6 +2,7 @@
 /// \file
 /// The bodies of one type as a model and its handles hold them.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -16,9 +17,10 @@ template <class B>
 struct BodyEntry {
   B body;
   std::string name;
-  Index q0;        ///< first coordinate
-  Index v0;        ///< first speed
-  Index row = -1;  ///< first of its own rows; −1 for a body without
+  Index q0;                   ///< first coordinate
+  Index v0;                   ///< first speed
+  Index row = -1;             ///< first of its own rows; −1 for a body without
+  std::uint64_t made_in = 0;  ///< serial number of the model that it was added to
 };
 
 /// The entries stand by value one after another, so loops read them without an indirection. Handles share the array: a

@@ -94,6 +94,9 @@ class LoadRecorderOf {
   /// The model must outlive the recorder and must not change after.
   template <class M>
   explicit LoadRecorderOf(M const& model) : LoadRecorderOf(System(model, with<Entries::motion>)) {}
+  template <class M>
+    requires(!std::same_as<M, System>)
+  explicit LoadRecorderOf(M const&& model) = delete;  ///< a temporary model, which would not outlive the recorder
   /// \param system of the whole mechanism
   explicit LoadRecorderOf(System system) : system_(std::move(system)), recorded_(system_.layout().bodies.size(), -1) {}
 

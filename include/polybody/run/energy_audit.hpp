@@ -43,6 +43,9 @@ class EnergyAuditOf {
   /// An account of this model's runs, which begins with the first state.
   template <class M>
   explicit EnergyAuditOf(M const& model) : EnergyAuditOf(System(model, with<Entries::energy>)) {}
+  template <class M>
+    requires(!std::same_as<M, System>)
+  explicit EnergyAuditOf(M const&& model) = delete;  ///< a temporary model, which would not outlive the audit
   /// \param system of the whole mechanism, made with `Entries::energy`
   explicit EnergyAuditOf(System system) : system_(std::move(system)), backwards_(VecX::Zero(system_.speeds())) {}
 

@@ -11,9 +11,7 @@ namespace detail {
 template <class = void>
 void require_sizes(State const& x, Index coordinates, Index speeds, Index rows) {
   if (x.q.size() != coordinates || x.v.size() != speeds || x.a.size() != speeds || x.lambda.size() != rows)
-    throw InvalidInput(
-        "The state does not fit the model; take it from reference_state() after the last body and "
-        "joint were added.");
+    refuse_unfitting_state();
   require_finite(x.q, "The coordinates of the state");
   require_finite(x.v, "The speeds of the state");
 }
@@ -29,6 +27,7 @@ template <class M>
 template <class = void>
 [[gnu::cold]] void require_fitting(System const& system, State const& x) {
   ModelLayout const& whole = system.layout();
+  whole.watch.require_unchanged();
   detail::require_sizes(x, whole.coordinates, whole.speeds, whole.rows);
 }
 

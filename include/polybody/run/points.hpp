@@ -23,7 +23,7 @@ Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
 /// Frame of a marker on the ground.
 template <class M>
 Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) {
-  model.require_own(marker.model, "frame");
+  model.require_own(marker, "frame");
   return {.r = marker.point.origin, .A = marker.point.axes};
 }
 

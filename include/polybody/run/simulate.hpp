@@ -39,4 +39,30 @@ Simulation<I, Solver> resume(M const& model, State& x, I const& integrator, RunO
   return Simulation<I, Solver>(run_systems<I>(model), x, integrator, std::move(options), from);
 }
 
+namespace detail {
+template <class M>
+constexpr void refuse_temporary() {
+  static_assert(std::is_void_v<M>,
+                "A run keeps a reference to its model, so a temporary model is refused: put the model into a variable "
+                "that lives longer than the run.");
+}
+}  // namespace detail
+
+/// Refuses a temporary model, to which the run would keep a reference.
+template <LinearSolver Solver = DefaultSolver, class M, class I>
+void simulate(M const&&, State&, I const&, RunOptions) {
+  detail::refuse_temporary<M>();
+}
+/// Refuses a temporary model, as `simulate`.
+template <LinearSolver Solver = DefaultSolver, class M, class I>
+void resume(M const&&, State&, I const&, RunOptions, RunSnapshot const&) {
+  detail::refuse_temporary<M>();
+}
+/// Refuses a temporary model, to which the systems would keep a reference.
+template <class I, class M>
+RunSystems run_systems(M const&& model) = delete;
+/// Refuses a temporary model, to which the system would keep a reference.
+template <class M>
+System question_system(M const&& model) = delete;
+
 }  // namespace polybody

@@ -42,6 +42,7 @@ class Simulation {
   bool done() const { return report_.stopped || stepped().t >= options_.until; }  ///< the end, or a stop by an event
 
   /// Takes a step to the next grid point, or to a corner or event before it. When it throws, the state stays as it was.
+  /// \throws InvalidInput where the model has changed since the run was made.
   void advance() { advance(true); }
 
   struct Sentinel {};
@@ -71,10 +72,7 @@ class Simulation {
 
   /// To the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
   RunReport const& run() &;
-  /** To the end. */ RunReport run() && {
-    run();
-    return std::move(report_);
-  }
+  RunReport run() && { return run(), std::move(report_); }  ///< to the end
 
  private:
   struct Prepared {};
@@ -263,12 +261,14 @@ Simulation<I, Solver>::~Simulation() = default;
 
 template <Integrator I, class Solver>
 RunSnapshot Simulation<I, Solver>::snapshot() {
+  system_->layout().watch.require_unchanged();
   renew();
   return {identity_of(*system_), I::name, stepped(), h_, row_, watch_.sides(), report_};
 }
 
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::advance(bool shown) {
+  system_->layout().watch.require_unchanged();
   auto const [target, h, lands, jumps] = plan_.next(stepped().t, h_);
   bool const crumb = h < 0.01 * h_;  // a tiny step, left over after a corner or an event
   if (eliminates() || jumps || crumb || options_.minimum_norm || !options_.events.empty()) before_ = stepped();

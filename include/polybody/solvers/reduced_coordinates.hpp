@@ -298,5 +298,8 @@ template <StateScalar T = double, class M, Entries wanted = Entries::implicit_st
 BasicSystem<T> stepped_system(M const& model, With<wanted> = {}) {
   return BasicSystem<T>(model, with<wanted>, coordinates_of<T>(model));
 }
+/// Refuses a temporary model, to which the system would keep a reference.
+template <StateScalar T = double, class M, Entries wanted = Entries::implicit_step>
+BasicSystem<T> stepped_system(M const&& model, With<wanted> = {}) = delete;
 
 }  // namespace polybody

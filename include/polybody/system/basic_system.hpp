@@ -41,12 +41,15 @@ class BasicSystem {
  public:
   using Vector = VecXOf<T>;  ///< of the system's scalar: coordinates, speeds or rows
 
-  /// The whole mechanism. The model must outlive the system and must not change after.
+  /// The whole mechanism. The model must outlive the system and must not change after: evaluations refuse that.
   template <class M, Entries wanted = Entries::questions>
     requires requires { sizeof(EntriesOf<M, T, wanted>); }
   explicit BasicSystem(M const& model, With<wanted> = {}, CoordinatesOf<T> coordinates = {})
       : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), EntriesOf<M, T, wanted>::make_data(model),
                     std::move(coordinates)) {}
+  template <class M, Entries wanted = Entries::questions>
+    requires requires { sizeof(EntriesOf<M, T, wanted>); }
+  explicit BasicSystem(M const&& model, With<wanted> = {}, CoordinatesOf<T> = {}) = delete;  ///< a temporary model
   /// From entries of any origin, which are called with `model`.
   [[gnu::cold]] BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
                             CoordinatesOf<T> coordinates);
@@ -80,6 +83,7 @@ class BasicSystem {
   double load_factor = 1.0;
 
   /// Sets the state: coordinates q (nq), speeds v (nv), time t [s]. Computes all markers and gaps there.
+  /// \throws InvalidInput where the model has changed since the system was made.
   void evaluate(Vector const& q, Vector const& v, double t);
 
   /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results

@@ -46,8 +46,13 @@ struct BodyKernels {
   using Kept = detail::BodyData<B, T>;  ///< scratch
   using Vector = VecXOf<T>;             ///< numbers, or dual ones
 
-  /// Puts a body into the pool whose coordinates, speeds and own rows begin at q0, v0 and `row`.
-  [[gnu::cold]] static void add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row);
+  /// First coordinate, first speed and first own row of a body, and the serial number of its model.
+  struct Places {
+    Index q0, v0, row;
+    std::uint64_t made_in;
+  };
+  /// Puts a body into the pool.
+  [[gnu::cold]] static void add(Pool& pool, B const& body, std::string const& name, Places const& at);
   /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
   static Published<double> publish_point(B const& body, typename B::Point const& point, std::span<double const> q,
                                          std::span<double const> v, Sequence<double>& jacobian);
@@ -134,8 +139,8 @@ struct BodyKernels {
 };
 
 template <class B, StateScalar T>
-void BodyKernels<B, T>::add(Pool& pool, B const& body, std::string const& name, Index q0, Index v0, Index row) {
-  pool.entries.push_back({body, name, q0, v0, row});
+void BodyKernels<B, T>::add(Pool& pool, B const& body, std::string const& name, Places const& at) {
+  pool.entries.push_back({body, name, at.q0, at.v0, at.row, at.made_in});
 }
 template <class B, StateScalar T>
 Mat3 BodyKernels<B, T>::reference_axes(Pool const& pool, Marker<B> const& marker) {
@@ -168,7 +173,7 @@ void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
   for (Entry const& e : pool.entries)
     out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own,
                           B::world == World::plane, B::constant_mass, &detail::type_tag<B>, index++, &e.body, nullptr,
-                          units_of<B>()});
+                          units_of<B>(), e.made_in});
   if constexpr (LeavesOutAxialForces<B>)
     for (std::size_t i = out.bodies.size() - pool.entries.size(); i < out.bodies.size(); ++i)
       out.bodies[i].axial_share = [](void const* body, std::span<double const> q, std::span<double const> v,

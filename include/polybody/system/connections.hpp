@@ -3,8 +3,6 @@
 /// What a model does as its bodies are added, joined and loaded. These functions know the types of a joint or force and
 /// of its bodies, and not the model's: a program compiles them once for all its models.
 
-#include <atomic>
-
 #include <polybody/forces/gravity.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/math/sequence.hpp>
@@ -17,26 +15,43 @@
 
 namespace polybody::detail {
 
-/// Tells models apart.
-inline std::uint64_t next_serial() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
-}
+/// Counts of a model. A move leaves zeros, as the pools are empty then.
+struct ModelCounts {
+  Index coordinates = 0, speeds = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
+
+  ModelCounts() = default;
+  ModelCounts(ModelCounts const&) = default;
+  ModelCounts& operator=(ModelCounts const&) = default;
+  ModelCounts(ModelCounts&& other) noexcept : ModelCounts(other) { other.clear(); }
+  ModelCounts& operator=(ModelCounts&& other) noexcept {
+    ModelCounts const taken = other;
+    other.clear();
+    return *this = taken;
+  }
+
+ private:
+  void clear() {
+    ModelCounts const none{};
+    *this = none;
+  }
+};
 
 /// What a model counts, and what it keeps beside the pools of its types.
-struct ModelParts {
+struct ModelParts : ModelCounts {
+  explicit ModelParts(Gravity const& g) : gravity(g) {}
+
   Gravity gravity;
-  std::uint64_t serial;
+  ModelOrigin origin = {};
   Sequence<GroundMarker> ground = {};
   Sequence<LinearRows> linear_rows = {};
   Sequence<Index> velocity_rows = {};
   Names body_names = {}, joint_names = {}, force_names = {};
   DriveAxes drive_axes = {};
-  Index coordinates = 0, speeds = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
 
-  /// \throws InvalidInput when `model` is the serial number of another one.
-  void require_own(std::uint64_t model, std::string const& what) const {
-    if (model != serial) refuse_marker_of_another_model(what);
+  std::uint64_t serial() const { return origin.serial(); }
+  /// \throws InvalidInput naming `what` unless the ground of the model with the number `given` is that of this one.
+  void require_own_ground(std::uint64_t given, std::string const& what) const {
+    if (!accepts(serial(), origin.ancestors(), given)) refuse_marker_of_another_model(what);
   }
 };
 
@@ -50,6 +65,23 @@ template <>
 struct PooledMarker<Ground> {
   Marker<Ground> const& marker;
 };
+
+/// The entry that a handle names. \throws InvalidInput for a handle of another model, or one made by default.
+template <class Entries, class Handle>
+auto const& own_entry(Entries const& entries, Handle const& handle) {
+  require_filled(handle.model);
+  if (!holds(entries, handle.index, handle.model)) refuse_marker_of_another_model(handle.name);
+  return entries[std::size_t(handle.index)];
+}
+
+/// \throws InvalidInput naming `what` unless the marker's body is in its pool.
+template <class B>
+void require_own(ModelParts const& parts, PooledMarker<B> const& m, std::string const& what) {
+  if constexpr (std::is_same_v<B, Ground>)
+    parts.require_own_ground(m.marker.model, what);
+  else if (!holds(m.pool.entries, m.marker.body, m.marker.model))
+    refuse_marker_of_another_model(what);
+}
 
 /// Axes (3×3) at a marker's point, as placed.
 template <class B>
@@ -101,13 +133,15 @@ template <class B>
 BodyHandle<B> add_body(ModelParts& parts, BodyPool<B>& pool, B const& body, std::string name) {
   name = parts.body_names.given_or_next(std::move(name), "body", std::size_t(parts.bodies));
   parts.body_names.require_free(name, "body");
-  BodyKernels<B, double>::add(pool, body, name, parts.coordinates, parts.speeds, OwnsRows<B> ? parts.rows : -1);
+  parts.origin.change();
+  BodyKernels<B, double>::add(pool, body, name,
+                              {parts.coordinates, parts.speeds, OwnsRows<B> ? parts.rows : -1, parts.serial()});
   if constexpr (OwnsRows<B>) parts.rows += B::own_rows;
   parts.coordinates += pool.entries.back().body.coordinates();
   parts.speeds += pool.entries.back().body.speeds();
   ++parts.bodies;
   parts.body_names.take(name);
-  return {parts.serial, Index(pool.entries.size()) - 1, std::move(name), pool.entries.shared()};
+  return {parts.serial(), Index(pool.entries.size()) - 1, std::move(name), pool.entries.shared()};
 }
 
 /// \throws InvalidInput naming the joint.
@@ -118,8 +152,8 @@ template <class J, class A, class B>
   using P = typename J::PolicyType;
   using Asks = typename J::Measured;
   name = parts.joint_names.given_or_next(std::move(name), G::name, pool.size());
-  parts.require_own(a.marker.model, name);
-  parts.require_own(b.marker.model, name);
+  require_own(parts, a, name);
+  require_own(parts, b, name);
   require_apart(a.marker, b.marker, name);
   Mat3 const triad = checked_triad<(A::world == World::plane || B::world == World::plane)>(joint, name);
   Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
@@ -128,6 +162,7 @@ template <class J, class A, class B>
   require_observed(a.marker, Asks::needs, name);
   require_observed(b.marker, needs_of_second<Asks>(), name);
   parts.joint_names.require_free(name, "joint");
+  parts.origin.change();
   if constexpr (LinearInCoordinates<P>) {  // before a marker is published: it may refuse
     LinearRows rows{.name = name, .row = parts.rows};
     fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name), triad.col(2),
@@ -142,6 +177,7 @@ template <class J, class A, class B>
   Index const pa = publish_at(parts, a, transposed_product(axes_a, triad));
   Index const pb = publish_at(parts, b, transposed_product(axes_b, triad));
   JointEntry<J> entry{joint, pa, pb, -1, name};
+  entry.made_in = parts.serial();
   if constexpr (LinearInCoordinates<P>) {
     entry.linear = Index(parts.linear_rows.size()) - 1;
     entry.rows = parts.linear_rows.back().rows();
@@ -155,7 +191,7 @@ template <class J, class A, class B>
   }
   pool.push_back(std::move(entry));
   parts.joint_names.take(name);
-  return {parts.serial, Index(pool.size()) - 1, std::move(name)};
+  return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
 /// A force element among the markers. \throws InvalidInput naming it.
@@ -164,13 +200,14 @@ ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
                            PooledMarker<Bs> const&... markers) {
   name = parts.force_names.given_or_next(std::move(name), "force", pool.size());
   force.check(sentence_of({"\"", name, "\""}));
-  (parts.require_own(markers.marker.model, name), ...);
+  (require_own(parts, markers, name), ...);
   (require_observed(markers.marker, F::needs, name), ...);
   parts.force_names.require_free(name, "force");
-  pool.push_back({force, {publish_at(parts, markers, identity())...}, name, parts.states});
+  parts.origin.change();
+  pool.push_back({force, {publish_at(parts, markers, identity())...}, name, parts.states, parts.serial()});
   parts.states += states_of<F>();
   parts.force_names.take(name);
-  return {parts.serial, Index(pool.size()) - 1, std::move(name)};
+  return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
 /// A group of forces with its many markers. \throws InvalidInput naming it.
@@ -179,27 +216,29 @@ ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
                            Sequence<PooledMarker<B>> const& many, std::string name) {
   name = parts.force_names.given_or_next(std::move(name), "group", pool.size());
   group.check(sentence_of({"\"", name, "\""}));
-  ForceEntry<F> entry{group, {}, name};
+  ForceEntry<F> entry{group, {}, name, parts.serial()};
   for (PooledMarker<B> const& m : many) {
-    parts.require_own(m.marker.model, name);
+    require_own(parts, m, name);
     require_observed(m.marker, F::needs, name);
   }
   parts.force_names.require_free(name, "force");
+  parts.origin.change();
   for (PooledMarker<B> const& m : many) entry.markers.push_back(publish_at(parts, m, identity()));
   entry.force.set_many(Index(many.size()));
   pool.push_back(std::move(entry));
   parts.force_names.take(name);
-  return {parts.serial, Index(pool.size()) - 1, std::move(name)};
+  return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
 /// One of the few of a group, with its law. \throws InvalidInput naming the group.
 template <class F, class Law, class B>
 void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, PooledMarker<B> const& one,
                   std::string name) {
-  parts.require_own(one.marker.model, group.name);
+  require_own(parts, one, group.name);
   name = name_or_next(std::move(name), "opponent", group.markers.size() - std::size_t(group.force.many()));
   law.check(sentence_of({"\"", group.name, "\", \"", name, "\""}));
   require_observed(one.marker, needs_of_second<Law>(), group.name);
+  parts.origin.change();
   group.markers.push_back(publish_at(parts, one, identity()));
   group.force.pair_with(law, Index(group.markers.size()) - 1, std::move(name));
 }

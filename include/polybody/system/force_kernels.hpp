@@ -137,6 +137,7 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
       out.forces.back().states = F::states;
     }
     out.forces.back().stores = detail::stores<F>();
+    out.forces.back().made_in = e.made_in;
     if constexpr (requires { e.force.law; }) detail::add_corners(e.force.law, out.corners);
   }
 }

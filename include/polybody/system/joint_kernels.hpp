@@ -179,7 +179,7 @@ void JointKernels<J, T>::describe(Pool const& pool, Sequence<LinearRows> const& 
   for (auto const& e : pool) {
     LinearRows const* const rows = e.linear < 0 ? nullptr : &linear_rows[std::size_t(e.linear)];
     out.joints.push_back({e.name, e.a, e.b, e.row, e.rows, Eliminates<P>, &detail::type_tag<J>, index++, rows,
-                          !compliant || detail::has_potential<P>()});
+                          !compliant || detail::has_potential<P>(), e.made_in});
     detail::add_corners(e.joint.geometry, out.corners);
   }
 }

@@ -10,6 +10,7 @@
 #include <polybody/bodies/shared/coordinate_units.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/types.hpp>
+#include <polybody/system/model_watch.hpp>
 
 namespace polybody {
 
@@ -31,6 +32,7 @@ struct BodyPlace {
   double (*axial_share)(void const* body, std::span<double const> q, std::span<double const> v,
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
   CoordinateUnits units = {};  ///< of its coordinates and speeds
+  std::uint64_t made_in = 0;   ///< serial number of the model that it was added to
 };
 
 /// Where a joint stands: its markers, and its rows among all.
@@ -43,6 +45,7 @@ struct JointPlace {
   Index index = 0;                ///< among the joints of its type
   LinearRows const* linear = {};  ///< rows of a joint that is linear in coordinates, in the model
   bool stores = true;             ///< of a compliant joint: all rows have a potential
+  std::uint64_t made_in = 0;      ///< serial number of the model that it was added to
 };
 
 /// Where a force element stands: its markers, and its first-order states.
@@ -55,11 +58,14 @@ struct ForcePlace {
   bool is_load = false;          ///< scaled by the load factor of `equilibrium`
   Index v0 = -1, states = 0;     ///< first-order states of its own, among the speeds
   bool stores = false;           ///< it has a potential
+  std::uint64_t made_in = 0;     ///< serial number of the model that it was added to
 };
 
 /// Counts, places and names of a model; bodies, joints and forces in the order of their types.
 struct ModelLayout {
   std::uint64_t serial = 0;                     ///< of the model, as its handles know it
+  Sequence<std::uint64_t> ancestors = {};       ///< serial numbers of the models that it was copied from
+  ModelWatch watch = {};                        ///< notices changes of the model
   Index coordinates = 0, speeds = 0, rows = 0;  ///< nq; nv, with first-order states behind; rows
   Index states = 0;                             ///< first-order ones: the last of the speeds
   Sequence<Index> velocity_rows = {};           ///< rows without a position, ascending

@@ -39,7 +39,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   static constexpr bool has_states = (HasStates<Fs> || ...);         ///< first-order states of forces
 
   /// A model without parts. Gravity in world axes [m/s²]; none by default.
-  explicit Model(Gravity const& gravity = {}) : parts_{gravity, detail::next_serial()} {}
+  explicit Model(Gravity const& gravity = {}) : parts_(gravity) {}
 
   /// Adds a body; the name appears in every message about it, and no other body has it. Without a name it gets one.
   template <OneOf<Bs...> B>
@@ -48,7 +48,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   }
 
   /// What does not move: `model.ground().at(r)` is a marker at r, world axes [m].
-  BodyHandle<Ground> ground() const { return {parts_.serial, 0, "ground"}; }
+  BodyHandle<Ground> ground() const { return {parts_.serial(), 0, "ground"}; }
 
   /// Joins marker a to marker b. The joint's axes are those of its geometry in world axes at the reference
   /// configuration. \throws InvalidInput naming the joint for a marker of another model, a rigid body
@@ -99,7 +99,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires ForceGroup<F>
   void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     static_assert(Marker<A>::observes >= needs_of_second<Law>(), "This force needs more than the marker tells.");
-    require_own(group);
+    (void)entry(group);
     detail::add_opponent(parts_, pool_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
   }
 
@@ -121,22 +121,25 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F>
     requires HasStates<F>
   std::span<double, F::states> states(State& x, ElementHandle<F> const& force) const {
-    return std::span<double, F::states>(x.v.data() + parts_.speeds + entry(force).state, F::states);
+    return states_in<F>(x.v, entry(force));
   }
   /// The same of a state that is not written.
   template <OneOf<Fs...> F>
     requires HasStates<F>
   std::span<double const, F::states> states(State const& x, ElementHandle<F> const& force) const {
-    return std::span<double const, F::states>(x.v.data() + parts_.speeds + entry(force).state, F::states);
+    return states_in<F>(x.v, entry(force));
   }
+  template <OneOf<Fs...> F>
+  std::span<double const, F::states> states(State&& x, ElementHandle<F> const& force) const = delete;  ///< x would end
 
   /// Gives a body the speeds of a rigid motion: `v0` is the velocity of the body-fixed point that is at the
-  /// world's origin [m/s], `omega` the angular velocity [rad/s], both in world axes.
+  /// world's origin [m/s], `omega` the angular velocity [rad/s], both in world axes. \throws InvalidInput for a handle
+  /// or state of another model.
   template <OneOf<Bs...> B>
   void set_velocity(State& x, BodyHandle<B> const& handle, Vec3 const& v0, Vec3 const& omega) const {
     auto const& e = entry(handle);
-    e.body.rigid_velocity(detail::body_part(x.q, e.q0, e.body.coordinates()), v0, omega,
-                          detail::body_part_of(x.v, e.v0, e.body.speeds()));
+    e.body.rigid_velocity(detail::checked_part(std::as_const(x.q), e.q0, e.body.coordinates()), v0, omega,
+                          detail::checked_part(x.v, e.v0, e.body.speeds()));
   }
 
   Gravity const& gravity() const { return parts_.gravity; }  ///< [m/s²], world axes
@@ -150,7 +153,10 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   Index markers() const { return parts_.markers; }              ///< how many markers there are
   Index jacobian_size() const { return parts_.jacobian_size; }  ///< numbers in their dense Jacobians
   Index body_count() const { return parts_.bodies; }            ///< how many bodies, the ground not counted
-  std::uint64_t serial() const { return parts_.serial; }        ///< number that the handles of the model carry
+  std::uint64_t serial() const { return parts_.serial(); }      ///< number that the handles of the model carry
+  /// Serial numbers of the models that it was copied from.
+  Sequence<std::uint64_t> const& ancestors() const { return parts_.origin.ancestors(); }
+  ModelWatch watch() const { return parts_.origin.watch(); }  ///< notices later changes of the model
 
   /// Bodies, joints and forces as they are stored, by types.
   BodyPools const& body_pools() const { return bodies_; }
@@ -163,20 +169,17 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// \throws InvalidInput when the handle is of another model, or made by default.
   template <OneOf<Bs...> B>
   auto const& entry(BodyHandle<B> const& handle) const {
-    require_own(handle);
-    return std::get<detail::BodyPool<B>>(bodies_).entries[std::size_t(handle.index)];
+    return detail::own_entry(std::get<detail::BodyPool<B>>(bodies_).entries, handle);
   }
   /// A joint as it is stored. \throws InvalidInput as above.
   template <OneOf<Js...> J>
   auto const& entry(ElementHandle<J> const& handle) const {
-    require_own(handle);
-    return std::get<Sequence<detail::JointEntry<J>>>(joints_)[std::size_t(handle.index)];
+    return detail::own_entry(std::get<Sequence<detail::JointEntry<J>>>(joints_), handle);
   }
   /// A force element as it is stored. \throws InvalidInput as above.
   template <OneOf<Fs...> F>
   auto const& entry(ElementHandle<F> const& handle) const {
-    require_own(handle);
-    return std::get<Sequence<detail::ForceEntry<F>>>(forces_)[std::size_t(handle.index)];
+    return detail::own_entry(std::get<Sequence<detail::ForceEntry<F>>>(forces_), handle);
   }
   /// Calls f(entry) for every body, in the order of the types.
   template <class F>
@@ -194,19 +197,23 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     std::apply([&](auto const&... pool) { (for_each_in(pool, f), ...); }, forces_);
   }
 
-  /// \throws InvalidInput when `serial` is another model's.
-  void require_own(std::uint64_t serial, std::string const& what) const { parts_.require_own(serial, what); }
-  /// \throws InvalidInput for a handle of another model, or one made by default.
-  template <class Handle>
-  void require_own(Handle const& handle) const {
-    detail::require_filled(handle.model);
-    require_own(handle.model, handle.name);
+  /// \throws InvalidInput naming `what` for a marker of another model.
+  template <class B>
+  void require_own(Marker<B> const& marker, std::string const& what) const {
+    if constexpr (std::is_same_v<B, Ground>)
+      parts_.require_own_ground(marker.model, what);
+    else if (!detail::holds(std::get<detail::BodyPool<B>>(bodies_).entries, marker.body, marker.model))
+      detail::refuse_marker_of_another_model(what);
   }
 
  private:
   template <class, class, class>
   friend class Subassembly;
 
+  template <class F, class Vector>
+  auto states_in(Vector& v, detail::ForceEntry<F> const& e) const {
+    return detail::checked_part(v, parts_.speeds + e.state, F::states).template first<std::size_t(F::states)>();
+  }
   template <class Pool, class F>
   static void for_each_in(Pool const& pool, F& f) {
     for (auto const& e : pool) f(e);

@@ -59,8 +59,9 @@ struct JointEntry {
   Index a, b;      ///< published markers
   Index row = -1;  ///< first row; −1 for a joint without rows
   std::string name;
-  Index rows = 0;     ///< how many
-  Index linear = -1;  ///< of a linear joint: its place among the model's linear rows
+  Index rows = 0;             ///< how many
+  Index linear = -1;          ///< of a linear joint: its place among the model's linear rows
+  std::uint64_t made_in = 0;  ///< serial number of the model that it was added to
 };
 
 template <class F>
@@ -68,13 +69,15 @@ struct ForceEntry {
   F force;
   std::array<Index, F::markers> markers;  ///< published
   std::string name;
-  Index state = 0;  ///< first of its own, among the model's first-order states
+  Index state = 0;            ///< first of its own, among the model's first-order states
+  std::uint64_t made_in = 0;  ///< serial number of the model that it was added to
 };
 template <ForceGroup F>
 struct ForceEntry<F> {
   F force;
   Sequence<Index> markers;
   std::string name;
+  std::uint64_t made_in = 0;  ///< as above
 };
 
 /// How the joint coordinates of a model are solved for: what the first policy says that makes any.
@@ -95,6 +98,13 @@ struct SolutionAmong<P, Ps...> {
 template <class... Ps>
 using SolutionOf = typename SolutionAmong<Ps...>::Type;
 
+/// Whether the entries hold a part with this index that was added to the model with the number `serial`. A copied model
+/// accepts the handles of the parts that it got from its original, and neither accepts those added to the other later.
+template <class Entries>
+bool holds(Entries const& entries, Index index, std::uint64_t serial) {
+  return index >= 0 && std::size_t(index) < entries.size() && entries[std::size_t(index)].made_in == serial;
+}
+
 /// Coordinates or speeds of one body.
 template <class Vector>
 auto body_part(Vector const& x, Index first, Index size) {
@@ -105,6 +115,16 @@ template <class Vector>
 auto body_part_of(Vector& x, Index first, Index size) {
   using T = typename Vector::Scalar;
   return std::span<T>(x.data() + first, std::size_t(size));
+}
+[[noreturn, gnu::cold]] inline void refuse_unfitting_state() {
+  throw InvalidInput(
+      "The state does not fit the model; take it from reference_state() after the last body and joint were added.");
+}
+/// A part of a vector of the user's state. \throws InvalidInput where the vector ends before.
+template <class Vector>
+auto checked_part(Vector& x, Index first, Index size) {
+  if (first + size > x.size()) refuse_unfitting_state();
+  return std::span(x.data() + first, std::size_t(size));
 }
 
 }  // namespace detail

@@ -32,7 +32,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return detail::add_body(parts_, pool_of<B>(), body, std::move(name));
   }
 
-  BodyHandle<Ground> ground() const { return {parts_.serial, 0, "ground"}; }  ///< the ground of the model
+  BodyHandle<Ground> ground() const { return {parts_.serial(), 0, "ground"}; }  ///< the ground of the model
 
   /// As `Model::connect`.
   template <OneOf<Js...> J, class A, class B>
@@ -63,8 +63,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires ForceGroup<F>
   void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     static_assert(Marker<A>::observes >= needs_of_second<Law>(), "This force needs more than the marker tells.");
-    detail::require_filled(group.model);
-    parts_.require_own(group.model, group.name);
+    (void)detail::own_entry(forces_of<F>(), group);
     detail::add_opponent(parts_, forces_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
   }
 

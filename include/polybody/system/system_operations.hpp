@@ -35,6 +35,7 @@ BasicSystem<T>::~BasicSystem() = default;
 
 template <StateScalar T>
 void BasicSystem<T>::evaluate(Vector const& q, Vector const& v, double t) {
+  layout_.watch.require_unchanged();
   t_ = t;
   data_.linear_rows = !coordinates_;
   if (coordinates_) {

@@ -141,6 +141,8 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
 template <class M>
 ModelLayout counts_of(M const& model) {
   return {.serial = model.serial(),
+          .ancestors = model.ancestors(),
+          .watch = model.watch(),
           .coordinates = model.coordinates(),
           .speeds = model.speeds(),
           .rows = model.rows(),

@@ -1,0 +1,116 @@
+#pragma once
+/// \file
+/// Identity of a model: serial numbers tell its handles from those of other models, and a count of its changes is
+/// compared by whoever keeps a reference to it.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include <polybody/math/errors.hpp>
+#include <polybody/math/sequence.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// Tells models apart.
+inline std::uint64_t next_serial() noexcept {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+/// Counts the changes of a model. The count outlives the model as long as a watch keeps it.
+struct ModelHistory {
+  std::uint64_t changes = 1;  ///< additions, moves and the destruction
+  std::uint64_t moved = 0;    ///< value of `changes` at the last move to another object; 0: none
+  bool ended = false;         ///< the model was destroyed, or another one was assigned to it
+};
+
+}  // namespace detail
+
+/// Notices changes of a model to which a run or a question keeps a reference. A watch made by default notices none.
+class ModelWatch {
+ public:
+  ModelWatch() = default;
+  /// \param history of the model, from now on
+  explicit ModelWatch(std::shared_ptr<detail::ModelHistory const> history) : history_(std::move(history)) {
+    if (history_) changes_ = history_->changes;
+  }
+
+  /// \throws InvalidInput when the model has grown, moved or been destroyed since the watch began.
+  void require_unchanged() const {
+    if (history_ && history_->changes != changes_) refuse();
+  }
+
+ private:
+  template <class = void>
+  [[noreturn, gnu::cold]] void refuse() const {
+    if (history_->moved > changes_)
+      throw InvalidInput(
+          "The model was moved to another object while a run, system or recorder refers to it. Make that after the "
+          "model has its final place, for instance by a std::unique_ptr to the model.");
+    if (history_->ended)
+      throw InvalidInput(
+          "The model was destroyed or assigned to while a run, system or recorder refers to it. Keep the model in a "
+          "variable that lives longer than these.");
+    throw InvalidInput(
+        "A body, joint or force was added to the model while a run, system or recorder refers to it. Make that after "
+        "the last addition, or give it a copy of the model.");
+  }
+
+  std::shared_ptr<detail::ModelHistory const> history_;
+  std::uint64_t changes_ = 0;
+};
+
+namespace detail {
+
+/// The identity of one model. A copy gets a serial number of its own and keeps those of its ancestors. A move takes the
+/// identity along and leaves that of a new, empty model.
+class ModelOrigin {
+ public:
+  ModelOrigin() = default;
+  ModelOrigin(ModelOrigin const& other) : ancestors_(other.ancestors_) { ancestors_.push_back(other.serial_); }
+  ModelOrigin(ModelOrigin&& other) noexcept
+      : serial_(std::exchange(other.serial_, next_serial())),
+        ancestors_(std::move(other.ancestors_)),
+        history_(std::move(other.history_)) {
+    if (history_) history_->moved = ++history_->changes;
+  }
+  ModelOrigin& operator=(ModelOrigin other) noexcept {  // whose destructor ends what was here
+    std::swap(serial_, other.serial_);
+    ancestors_.swap(other.ancestors_);
+    history_.swap(other.history_);
+    return *this;
+  }
+  ~ModelOrigin() {
+    if (!history_) return;
+    ++history_->changes;
+    history_->ended = true;
+  }
+
+  std::uint64_t serial() const { return serial_; }
+  Sequence<std::uint64_t> const& ancestors() const { return ancestors_; }
+  /// Called before a part is added.
+  void change() {
+    if (!history_) history_ = std::make_shared<ModelHistory>();
+    ++history_->changes;
+  }
+  ModelWatch watch() const { return ModelWatch(history_); }
+
+ private:
+  std::uint64_t serial_ = next_serial();
+  Sequence<std::uint64_t> ancestors_;
+  std::shared_ptr<ModelHistory> history_;  ///< none before the first part
+};
+
+/// Whether a model with these serial numbers, its own and those of its ancestors, accepts parts of no pool (the ground)
+/// of the model with the number `given`.
+inline bool accepts(std::uint64_t serial, Sequence<std::uint64_t> const& ancestors, std::uint64_t given) {
+  return given == serial || std::find(ancestors.begin(), ancestors.end(), given) != ancestors.end();
+}
+
+}  // namespace detail
+
+}  // namespace polybody

@@ -1,0 +1,7 @@
+// refused: a temporary model is refused
+#include <polybody/polybody.hpp>
+
+using namespace polybody;
+using M = Model<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>>;
+
+void run(State& x, RunSnapshot const& from) { resume(M{}, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}, from); }
