@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/bodies/ffr/beam_structure.hpp>
+#include <polybody/bodies/ffr/ffr_basis.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
@@ -110,6 +115,113 @@ TEST(Modes, MotionsWithoutInertiaFollowTheOthers) {
   ASSERT_EQ(m.frequency.size(), 1);
   double const square = k1 * k2 * (a - b) * (a - b) / ((k1 * a * a + k2 * b * b) * mass);
   EXPECT_NEAR(m.frequency[0], std::sqrt(square), 1e-9);
+}
+
+/// A planar rod, EI = L = 1, 1 kg/m, EA = GA = 1e8 N, clamped or free, under a dead force along it at its second end.
+/// Its highest eigenvalue, near GA over the rotary inertia, is 1e16 and more times the lowest one.
+struct ThinRod {
+  using Clamp = Joint<planar::Weld, Constraint>;
+  Model<Bodies<planar::Lrvf>, Joints<Clamp>, Forces<PointForce<>>> model;
+  State x;
+  ThinRod(Index n, double rotary_inertia, bool clamped, double force = 0.0) {
+    BarConstants const constants{.EA = 1e8, .EI = 1, .mass_per_length = 1, .GA = 1e8, .rotary_inertia = rotary_inertia};
+    auto const rod = model.add(planar::Lrvf::from(Bar{.length = 1, .constants = constants}, n), "rod");
+    if (clamped) model.connect(Clamp{}, model.ground().at({0, 0, 0}), rod.at(0.0), "clamp");
+    model.apply(PointForce<>{.force = {force, 0, 0}}, rod.at(1.0));
+    x = model.reference_state();
+    if (force != 0.0) equilibrium(model, x);
+  }
+};
+/// The limit of errors in h² and h⁴ from meshes of 16, 32 and 64 elements.
+template <class F>
+double limit_of_meshes(F&& of) {
+  double const a = of(16), b = of(32), c = of(64), once = (4.0 * b - a) / 3.0, twice = (4.0 * c - b) / 3.0;
+  return (16.0 * twice - once) / 15.0;
+}
+
+// Euler and Bernoulli: (βL)² of cosh βL cos βL = −1 and 1; shear and rotary inertia change them by 1e-7 and less.
+TEST(Modes, OfThinRodsKeepTheirLowestFrequencies) {
+  for (double const rotary_inertia : {1e-9, 1e-11}) {
+    auto const frequency = [&](bool clamped, Index mode) {
+      return limit_of_meshes([&](Index n) {
+        ThinRod const rod(n, rotary_inertia, clamped);
+        return modes(rod.model, rod.x, 6).frequency[mode];
+      });
+    };
+    EXPECT_NEAR(frequency(true, 0), 3.516015268500, 1e-6 * 3.516) << rotary_inertia;
+    EXPECT_NEAR(frequency(true, 1), 22.03449156466, 1e-5 * 22.03) << rotary_inertia;
+    EXPECT_NEAR(frequency(false, 3), 22.37328544806, 1e-5 * 22.37) << rotary_inertia;
+  }
+}
+
+// All modes of one model, low ones by a shift and high ones in their complement, have unit mass and are orthogonal.
+TEST(Modes, OfThinRodsAreOrthogonalOverTheWholeSpectrum) {
+  ThinRod const rod(16, 1e-9, true);
+  Linearisation const l = linearise(rod.model, rod.x);
+  Modes const all = modes(l, 1000), few = modes(l, 3);
+  Index const n = all.frequency.size();
+  ASSERT_EQ(n, 48);
+  EXPECT_LT((all.shape.transpose() * l.M * all.shape - MatX::Identity(n, n)).cwiseAbs().maxCoeff(), 1e-6);
+  for (Index i = 0; i < 3; ++i) EXPECT_NEAR(all.frequency[i], few.frequency[i], 1e-9 * few.frequency[i]);
+  for (Index i = 1; i < n; ++i) EXPECT_GE(all.frequency[i], all.frequency[i - 1]);
+}
+
+// The sign of the lowest frequency changes at Euler's load π² EI/4L², to which secants on ω² lead.
+TEST(Modes, OfThinColumnsFindEulersLoad) {
+  double const exact = 0.25 * std::numbers::pi * std::numbers::pi;
+  double const found = limit_of_meshes([&](Index n) {
+    auto const square = [&](double load) {
+      ThinRod const rod(n, 1e-9, true, -load);
+      double const w = modes(rod.model, rod.x, 1).frequency[0];
+      return w * std::abs(w);
+    };
+    double a = 0.98 * exact, b = 1.1 * exact, at_a = square(a), at_b = square(b);
+    EXPECT_GT(at_a, 0.0);
+    EXPECT_LT(at_b, 0.0);
+    for (int i = 0; i < 5 && std::abs(b - a) > 1e-6 * b; ++i) {
+      double const c = b - at_b * (b - a) / (at_b - at_a);
+      a = std::exchange(b, c);
+      at_a = std::exchange(at_b, square(c));
+    }
+    return b;
+  });
+  EXPECT_NEAR(found, exact, 1e-5 * exact);
+}
+
+// Two thin rods on ball joints at x = 0, each held by a spring across its far end in two directions. Nothing resists
+// their rotations about themselves, which have no inertia. The squared frequencies k/(J + m d²) have a ratio of 1e18.
+TEST(Modes, KeepLowFrequenciesBesideNeutralMotionsWithoutInertia) {
+  using Ball = Joint<Spherical, Constraint>;
+  Model<Bodies<Rigid<>>, Joints<Ball>, Forces<SpringDamper>> model;
+  for (auto const& [mass, stiffness] : {std::pair{1.0, 1.0}, std::pair{1e-10, 1e8}}) {
+    auto const rod =
+        model.add(Rigid<>(mass, Vec3(0.0, 0.1 * mass, 0.1 * mass).asDiagonal(), Placement::planar(0.5, 0)));
+    model.connect(Ball{}, model.ground().at({0, 0, 0}), rod.at(Vec3(-0.5, 0, 0)));
+    for (Vec3 const& foot : {Vec3(1, -1, 0), Vec3(1, 0, -1)})
+      model.apply(SpringDamper{.stiffness = stiffness, .free_length = 1.0}, model.ground().at(foot),
+                  rod.at(Vec3(0.5, 0, 0)));
+  }
+  Modes const m = modes(model, model.reference_state());
+  ASSERT_EQ(m.frequency.size(), 4);
+  double const slow = std::sqrt(1.0 / 0.35), fast = 1e9 * slow;
+  for (Index i = 0; i < 2; ++i) {
+    EXPECT_NEAR(m.frequency[i], slow, 1e-8 * slow);
+    EXPECT_NEAR(m.frequency[2 + i], fast, 1e-6 * fast);  // ε √1e18 = 2e-7
+  }
+}
+
+// A clamped bar of 24 finite elements, in two planes. Cubic elements of length h are off by (βh)⁴/1440: 1.0e-6.
+TEST(DenseModes, OfThinBarsKeepTheirLowestFrequencies) {
+  Structure const s = structure_of(
+      Bar{.length = 1.0,
+          .constants = BarConstants{.EA = 1e8, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1e7, .rotary_inertia = 1e-12}},
+      24);
+  std::vector<Index> const free = ReferenceConditions::clamped().free_coordinates(s);
+  LowestModes const found = DenseModes{}(submatrix(s.stiffness, free, free), submatrix(s.mass_matrix(), free, free), 4);
+  for (Index i = 0; i < 2; ++i) {
+    EXPECT_NEAR(std::sqrt(found.squared_frequencies[i]), 3.516015268500, 1e-6 * 3.516) << i;
+    EXPECT_NEAR(std::sqrt(found.squared_frequencies[2 + i]), 22.03449156466, 2e-6 * 22.03) << i;
+  }
 }
 
 TEST(Modes, AskForAStateOfRest) {

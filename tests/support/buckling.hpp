@@ -42,9 +42,8 @@ double critical_force(F&& lowest, double a, double b) {
   return b;
 }
 
-/// Two legs of 240 mm, 30 mm high in the plane and 0.6 mm thick (N, mm, and any mass: it decides no stability, and a
-/// heavy one keeps rounding errors out of the lowest frequency), in equilibrium under `force` at the tip. S9c's numbers
-/// are those of a frame without shear: GA is ten times EA.
+/// Two legs of 240 mm, 30 mm high in the plane and 0.6 mm thick (N, mm, and any mass: it decides no stability), in
+/// equilibrium under `force` at the tip. S9c's numbers are those of a frame without shear: GA is ten times EA.
 template <class B>
 struct FlatFrame {
   using Clamp = Joint<Weld, Constraint>;

@@ -115,7 +115,7 @@ void stands_bent_beyond(Index n, char const* formulation) {
 }
 
 /// S9d: L = 1, b = 0.1, t = 0.01, J = b t³/3 (1 − 0.63 t/b). It is a rod without shear that S9d means: GA is a hundred
-/// times that of k = 1. Rotary inertia is any; as large as this it keeps rounding errors out of the lowest frequency.
+/// times that of k = 1. Rotary inertia is any: it decides no stability.
 inline Bar strip() {
   double const e = 2.1e11, g = e / 2.6, b = 0.1, t = 0.01, a = b * t;
   return {.length = 1.0,

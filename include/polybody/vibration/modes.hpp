@@ -11,11 +11,13 @@
 
 #include <algorithm>
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include <polybody/math/symmetric_pencil.hpp>
 #include <polybody/run/fitting.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 #include <polybody/system/model_entries.hpp>
@@ -79,6 +81,23 @@ inline void require_modes(Index count, std::string const& who) {
   if (count < 1) throw InvalidInput{who, ": the count of modes must be at least 1, but is ", count, "."};
 }
 
+/// K with a spring on each motion among those without inertia, the columns of v, that K does not resist. Such a motion
+/// y has K y = 0 and M y = 0, so that the spring keeps all other solutions of K x = λ M x, with yᵀx = 0.
+template <class = void>
+MatX with_springs_at_rest(MatX const& k, MatX const& v) {
+  MatX out = k;
+  if (v.cols() == 0) return out;
+  Eigen::SelfAdjointEigenSolver<MatX> const own(v.transpose() * k * v);
+  double const least = 1e-12 * k.norm();
+  double spring = std::numeric_limits<double>::infinity();
+  for (double const x : k.diagonal())
+    if (std::abs(x) > 0.0) spring = std::min(spring, std::abs(x));
+  for (Index i = 0; i < v.cols(); ++i)
+    if (VecX const y = v * own.eigenvectors().col(i); std::abs(own.eigenvalues()[i]) <= least && std::isfinite(spring))
+      out += spring * y * y.transpose();
+  return out;
+}
+
 /// Nᵀ A N.
 template <class = void>
 MatX of_free_motions(MatX const& n, MatX const& a) {
@@ -126,7 +145,8 @@ struct Modes {
 
 /// The `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver: for models of up to some hundred speeds. Motions
 /// without inertia have no frequency and are left out. K is symmetrised and D left out: follower loads, whose K is not
-/// symmetric, and models that turn, whose D is gyroscopic, belong to `damped_modes`.
+/// symmetric, and models that turn, whose D is gyroscopic, belong to `damped_modes`. Frequencies far below the highest
+/// one keep their digits (math/symmetric_pencil.hpp).
 template <class = void>  // compiled where it is used
 Modes modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "modes");
@@ -149,13 +169,19 @@ Modes modes(Linearisation const& l, Index count = 10) {
     if (k22.norm() > 1e-12 * k.norm()) basis -= v2 * detail::smallest_solution(k22, k21, 1e-12);
   }
   VecX const scale = d.tail(n - still).cwiseSqrt().cwiseInverse();
-  basis = basis * scale.asDiagonal();
-  Eigen::SelfAdjointEigenSolver<MatX> const solved(basis.transpose() * k * basis);
+  MatX const scaled = basis * scale.asDiagonal();
+  Eigen::SelfAdjointEigenSolver<MatX> const solved(scaled.transpose() * k * scaled);
+  VecX squares = solved.eigenvalues();
+  MatX shapes = scaled * solved.eigenvectors();
+  if (!renew_low_end(detail::with_springs_at_rest(k, v2), m, count, squares, shapes)) {
+    shapes = scale.asDiagonal() * solved.eigenvectors();
+    renew_low_end<>(basis.transpose() * k * basis, d.tail(n - still).asDiagonal(), count, squares, shapes);
+    shapes = MatX(basis * shapes);
+  }
   Index const kept = std::min(count, n - still);
   Modes out;
-  out.frequency =
-      solved.eigenvalues().head(kept).unaryExpr([](double w2) { return w2 < 0.0 ? -std::sqrt(-w2) : std::sqrt(w2); });
-  out.shape = l.N * basis * solved.eigenvectors().leftCols(kept);
+  out.frequency = squares.head(kept).unaryExpr([](double w2) { return w2 < 0.0 ? -std::sqrt(-w2) : std::sqrt(w2); });
+  out.shape = l.N * shapes.leftCols(kept);
   return out;
 }
 /// The same, the `count` lowest, about x, a state of rest in equilibrium. \throws InvalidInput when x moves.

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <polybody/bodies/ffr/structure_factor.hpp>
+#include <polybody/math/symmetric_pencil.hpp>
 
 namespace polybody {
 
@@ -87,8 +88,12 @@ struct DenseModes {
   /// The `count` lowest solutions.
   template <class = void>  // compiled where it is used
   LowestModes operator()(Structure::Sparse const& k, Structure::Sparse const& m, Index count) const {
-    Eigen::GeneralizedSelfAdjointEigenSolver<MatX> const solver{MatX(k), MatX(m)};
-    return {solver.eigenvalues().head(count), solver.eigenvectors().leftCols(count)};
+    MatX const dense_k(k), dense_m(m);
+    Eigen::GeneralizedSelfAdjointEigenSolver<MatX> const solver(dense_k, dense_m);
+    VecX squares = solver.eigenvalues();
+    MatX shapes = solver.eigenvectors();
+    renew_low_end(dense_k, dense_m, count, squares, shapes);
+    return {squares.head(count), shapes.leftCols(count)};
   }
 };
 

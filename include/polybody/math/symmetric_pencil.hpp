@@ -1,0 +1,122 @@
+#pragma once
+/// \file
+/// Lowest solutions of K x = λ M x with symmetric K and M, by a shift. Solvers that form M^-½ K M^-½ have errors of ε λₙ
+/// in every λ, ε the round-off unit and λₙ the largest eigenvalue. In a thin rod λₙ belongs to shear waves of single
+/// elements and exceeds the lowest λ by more than 1/ε. With a shift τ and K + τM = L Lᵀ the eigenvalues
+///   μ = 1/(λ + τ)  of  L⁻¹ M L⁻ᵀ
+/// have errors of ε μ₁, so that the error of λ is ε (λ + τ)²/(λ₁ + τ) [Parlett 1998, §15.3; Ericsson & Ruhe 1980].
+/// Motions without inertia have μ = 0. The two errors are equal at λ + τ = √(λₙ (λ₁ + τ)): each solver gives its side.
+/// The factor L adds errors of ε K_ii to the stiffness of every motion. Rayleigh quotients of the vectors, summed in
+/// long double, remove them to second order.
+///
+/// Not in polybody.hpp: Eigen's eigenvalue solvers would cost every program seconds to compile.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+/// Solutions of K x = λ M x by a shift.
+struct ShiftedPencil {
+  bool found = false;
+  double shift = 0.0;   ///< τ
+  VecX values = {};     ///< λ ascending; the last ones, of motions without inertia, are infinite
+  MatX vectors = {};    ///< (n×n) xᵀMx = 1
+};
+
+/// K + τM = L Lᵀ with pivots of at least 1e-8 of the diagonal, which keeps the errors of L below those of K's entries.
+/// The shift is the first one of 0, t, 64 t, 64² t … that gives them; t is 1e-12 of the smallest |K_ii|/M_ii.
+/// \param k K (n×n) symmetric \param m M (n×n) symmetric, not negative
+template <class = void>  // compiled where it is used
+ShiftedPencil by_shift(MatX const& k, MatX const& m) {
+  ShiftedPencil out;
+  double unit = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < k.rows(); ++i)
+    if (m(i, i) > 0.0 && k(i, i) != 0.0) unit = std::min(unit, std::abs(k(i, i)) / m(i, i));
+  if (!(unit > 0.0 && std::isfinite(unit))) return out;
+  Eigen::LLT<MatX> factor;
+  for (int attempt = 0; attempt < 16 && !out.found; ++attempt) {
+    out.shift = attempt == 0 ? 0.0 : 1e-12 * unit * std::pow(64.0, attempt - 1);
+    MatX const shifted = k + out.shift * m;
+    factor.compute(shifted);
+    out.found = factor.info() == Eigen::Success &&
+                (factor.matrixLLT().diagonal().array().square() >= 1e-8 * shifted.diagonal().array()).all();
+  }
+  if (!out.found) return out;
+  MatX a = factor.matrixL().solve(m);
+  a = factor.matrixL().solve(MatX(a.transpose()));
+  Eigen::SelfAdjointEigenSolver<MatX> const solved(0.5 * (a + a.transpose()));
+  VecX const mu = solved.eigenvalues().reverse();
+  double const least = 1e-15 * mu[0];
+  out.values.resize(mu.size());
+  VecX scale(mu.size());
+  for (Index i = 0; i < mu.size(); ++i) {
+    bool const inert = mu[i] > least;
+    out.values[i] = inert ? 1.0 / mu[i] - out.shift : std::numeric_limits<double>::infinity();
+    scale[i] = inert ? 1.0 / std::sqrt(mu[i]) : 0.0;
+  }
+  out.vectors = factor.matrixU().solve(solved.eigenvectors().rowwise().reverse()) * scale.asDiagonal();
+  return out;
+}
+
+/// xᵀKx/xᵀMx, summed in long double. \param k K (n×n) \param m M (n×n) \param x (n)
+template <class = void>  // compiled where it is used
+double rayleigh_quotient(MatX const& k, MatX const& m, MatX::ConstColXpr const& x) {
+  long double stiffness = 0.0L, mass = 0.0L;
+  for (Index j = 0; j < x.size(); ++j) {
+    long double kx = 0.0L, mx = 0.0L;
+    for (Index i = 0; i < x.size(); ++i) {
+      kx += static_cast<long double>(k(i, j)) * x[i];
+      mx += static_cast<long double>(m(i, j)) * x[i];
+    }
+    stiffness += kx * x[j];
+    mass += mx * x[j];
+  }
+  return double(stiffness / mass);
+}
+
+/// Replaces the low end of a solution of K x = λ M x that another solver has found with errors of ε λₙ. Nothing changes
+/// if these errors are below 1e-9 of each of the `count` lowest λ. \param k K (n×n) symmetric
+/// \param m M (n×n) symmetric, not negative \param count of the eigenvalues that are of use
+/// \param values (r) all λ, ascending \param vectors X (n×r), XᵀMX = 1
+/// \return false if no shift makes K + τM positive definite
+template <class = void>  // compiled where it is used
+bool renew_low_end(MatX const& k, MatX const& m, Index count, VecX& values, MatX& vectors) {
+  Index const n = values.size();
+  double const last = values[n - 1], smallest = values.head(std::min(count, n)).cwiseAbs().minCoeff();
+  if (!(std::numeric_limits<double>::epsilon() * last > 1e-9 * smallest)) return true;
+  ShiftedPencil const low = by_shift(k, m);
+  if (!low.found) return false;
+  double const first = low.values[0] + low.shift, border = std::sqrt(std::max(last, first)) * std::sqrt(first);
+  Index renewed = 1;
+  while (renewed < n && low.values[renewed] + low.shift <= border) ++renewed;
+  if (renewed < std::min(count, n)) {
+    // the others, in the complement of the renewed ones; in the coordinates x = X w the old solution is diag(λ)
+    MatX const mx = m * vectors, w = mx.transpose() * low.vectors.leftCols(renewed);
+    Eigen::HouseholderQR<MatX> const qr(w);
+    MatX const q = qr.householderQ(), rest = q.rightCols(n - renewed);
+    Eigen::SelfAdjointEigenSolver<MatX> const high(rest.transpose() * values.asDiagonal() * rest);
+    values.tail(n - renewed) = high.eigenvalues();
+    vectors.rightCols(n - renewed) = MatX(vectors * (rest * high.eigenvectors()));
+  }
+  std::vector<std::pair<double, Index>> order;  // quotients of a double λ may change places
+  for (Index i = 0; i < renewed; ++i)
+    order.emplace_back(i < count ? rayleigh_quotient<>(k, m, low.vectors.col(i)) : low.values[i], i);
+  std::sort(order.begin(), order.begin() + std::min(count, renewed));
+  for (Index i = 0; i < renewed; ++i) {
+    values[i] = order[std::size_t(i)].first;
+    vectors.col(i) = low.vectors.col(order[std::size_t(i)].second);
+  }
+  return true;
+}
+
+}  // namespace polybody
