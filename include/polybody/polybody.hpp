@@ -17,6 +17,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
+#include <polybody/bodies/shared/catenary.hpp>
 #include <polybody/bodies/shared/node_chain.hpp>
 #include <polybody/bodies/shared/sections.hpp>
 #include <polybody/bodies/shared/sliding.hpp>

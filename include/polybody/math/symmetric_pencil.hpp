@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Lowest solutions of K x = λ M x with symmetric K and M, by a shift. Solvers that form M^-½ K M^-½ have errors of ε λₙ
-/// in every λ, ε the round-off unit and λₙ the largest eigenvalue. In a thin rod λₙ belongs to shear waves of single
+/// Lowest solutions of K x = λ M x with symmetric K and M, by a shift. Solvers that form M^-½ K M^-½ have errors of ε
+/// λₙ in every λ, ε the round-off unit and λₙ the largest eigenvalue. In a thin rod λₙ belongs to shear waves of single
 /// elements and exceeds the lowest λ by more than 1/ε. With a shift τ and K + τM = L Lᵀ the eigenvalues
 ///   μ = 1/(λ + τ)  of  L⁻¹ M L⁻ᵀ
 /// have errors of ε μ₁, so that the error of λ is ε (λ + τ)²/(λ₁ + τ) [Parlett 1998, §15.3; Ericsson & Ruhe 1980].
@@ -28,9 +28,9 @@ namespace polybody {
 /// Solutions of K x = λ M x by a shift.
 struct ShiftedPencil {
   bool found = false;
-  double shift = 0.0;   ///< τ
-  VecX values = {};     ///< λ ascending; the last ones, of motions without inertia, are infinite
-  MatX vectors = {};    ///< (n×n) xᵀMx = 1
+  double shift = 0.0;  ///< τ
+  VecX values = {};    ///< λ ascending; the last ones, of motions without inertia, are infinite
+  MatX vectors = {};   ///< (n×n) xᵀMx = 1
 };
 
 /// K + τM = L Lᵀ with pivots of at least 1e-8 of the diagonal, which keeps the errors of L below those of K's entries.

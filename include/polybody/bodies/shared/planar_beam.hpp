@@ -85,12 +85,19 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return Beam(bar, c, n);
   }
 
+  /// The same of n elements laid along a curve, nodes at equal arc lengths. Its natural shape stays straight, so that
+  /// it is bent in the reference state. \throws InvalidInput also as `naturally_curved`.
+  static Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
+    Beam beam = from(bar, n);
+    beam.laid_ = beam.nodes_on(bar.placement, curve);
+    return beam;
+  }
+
   /// The bar of n elements whose natural shape is `curve`: it stands there free of stress, but for the pretension,
   ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx,  ε⁰ the strains of the nodes on the curve with the elements' own shapes.
   /// So a circular arc of radius R is straight under the moment EI/R. \throws InvalidInput as `from`, and for a curve
   /// that leaves the plane or is not given by its arc length: the axis of an element off by a tenth.
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
-    if (!curve) throw InvalidInput{Theory::name, ": the natural shape is empty."};
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);
     return beam;
@@ -120,8 +127,9 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
 
   void reference(std::span<double> q) const {
-    std::copy(natural_.begin(), natural_.end(), q.begin());
-    if (!natural_.empty()) return;
+    std::vector<double> const& nodes = laid_.empty() ? natural_ : laid_;
+    std::copy(nodes.begin(), nodes.end(), q.begin());
+    if (!nodes.empty()) return;
     for (Index i = 0; i <= elements(); ++i)
       part<node_columns>(q, i * node_columns) = Theory::reference_node(origin_, angle_, double(i) * l_);
   }
@@ -281,19 +289,25 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return strain;
   }
 
-  void bend_to(Placement const& place, ReferenceCurve const& curve) {
-    natural_.resize(std::size_t(this->coordinates()));
+  /// Coordinates of the nodes on a curve.
+  std::vector<double> nodes_on(Placement const& place, ReferenceCurve const& curve) const {
+    if (!curve) throw InvalidInput{Theory::name, ": the curve is empty."};
+    std::vector<double> nodes(std::size_t(this->coordinates()));
     double angle = angle_;  // counts full turns
     for (Index i = 0; i <= elements(); ++i) {
       Placement const section = curve(double(i) * l_);
       angle += std::remainder(angle_ + section.planar_angle(Theory::name) - angle, 2.0 * std::numbers::pi);
       Vec3 const r = place.origin + place.axes * section.origin;
-      part<node_columns>(std::span(natural_), i * node_columns) = Theory::reference_node(r.head<2>(), angle, 0.0);
+      part<node_columns>(std::span(nodes), i * node_columns) = Theory::reference_node(r.head<2>(), angle, 0.0);
     }
+    for (Index e = 0; e < elements(); ++e) require_arc_length(e, this->of_element(e, std::span<double const>(nodes)));
+    return nodes;
+  }
+  void bend_to(Placement const& place, ReferenceCurve const& curve) {
+    natural_ = nodes_on(place, curve);
     std::vector<typename Groups::type> groups(std::size_t(elements()), this->groups_of(0));
     for (Index e = 0; e < elements(); ++e) {
       Element<double> const rest = this->of_element(e, std::span<double const>(natural_));
-      require_arc_length(e, rest);
       std::apply([&](auto&... group) { (group.set_free(rest), ...); }, groups[std::size_t(e)]);
     }
     this->set_groups(std::move(groups));
@@ -304,7 +318,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
       if (!(std::abs(off) < 0.1))
         throw InvalidInput{
             Theory::name, ": element ",
-            e + 1,        " of the natural shape is strained by ",
+            e + 1,        " of the curve is strained by ",
             off,          ". Give the curve by its arc length, from 0 to the bar's length, or take more elements."};
     }
   }
@@ -315,6 +329,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   Vec2 origin_;
   double angle_;
   std::vector<double> natural_;  ///< coordinates of a natural shape that is curved
+  std::vector<double> laid_;     ///< coordinates of the reference state; empty for the natural shape
   ElementMatrix mass_ = ElementMatrix::Zero();
   Mat<double, element_columns, 2> gravity_ = Mat<double, element_columns, 2>::Zero();
 };

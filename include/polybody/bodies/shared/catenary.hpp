@@ -1,0 +1,59 @@
+#pragma once
+/// \file
+/// Catenary: the curve of an inextensible cable without bending stiffness under its own weight.
+
+#include <cmath>
+
+#include <polybody/bodies/shared/bar.hpp>
+
+namespace polybody {
+
+/// The curve of a cable hung between the origin and `end`, by its arc length s, for `from(bar, n, catenary(…))` or as a
+/// natural shape. With sinh u = sinh u₀ + s/a,
+///   x = a (u − u₀) along the horizontal,  z = a (cosh u − cosh u₀) upwards,
+///   a the horizontal force over the weight per length: 2a sinh(d/2a) = √(L² − h²) for a span d and a rise h of the end
+/// [Irvine 1981, ch. 1]. The section's y axis lies in the plane of the curve.
+/// \param end (3) the second end, in the bar's own axes [m] \param length L [m], above |end|
+/// \param down (3) direction of the weight, in the bar's own axes; any length
+/// \throws InvalidInput for a cable that is not longer than the distance of its ends, for ends one above the other, for
+/// `down` of no direction.
+template <class = void>  // compiled where it is used
+ReferenceCurve catenary(Vec3 const& end, double length, Vec3 const& down) {
+  require_finite(end, "catenary: the end");
+  require_finite(down, "catenary: the direction of the weight");
+  require_positive(length, "catenary: the length");
+  double const size = down.norm();
+  if (!(size > 0.0)) throw InvalidInput("catenary: the direction of the weight is zero.");
+  Vec3 const up = -down / size;
+  double const h = up.dot(end);
+  Vec3 along = end - h * up;
+  double const d = along.norm();
+  if (!(length > (1.0 + 1e-9) * end.norm()))
+    throw InvalidInput{"catenary: the length of ", length, " m must exceed the distance of the ends, ", end.norm(),
+                       " m. A taut cable starts straight."};
+  if (!(d > 1e-6 * length))
+    throw InvalidInput{"catenary: the ends are one above the other, ", d,
+                       " m apart along the horizontal. Give them a horizontal distance of at least ", 1e-6 * length,
+                       " m."};
+  along /= d;
+  // sinh x = r x by Newton's method from above, where sinh x − r x is convex: x² < 6 (r − 1), x = ln 2r + ln x + …
+  double const r = std::sqrt((length - h) * (length + h)) / d;
+  double x = std::min(std::sqrt(6.0 * (r - 1.0)), std::log(2.0 * r) + std::log1p(std::log(2.0 * r)) + 1.0);
+  for (int k = 0; k < 100; ++k) {
+    double const step = (std::sinh(x) - r * x) / (std::cosh(x) - r);
+    x -= step;
+    if (std::abs(step) <= 1e-15 * x) break;
+  }
+  double const a = 0.5 * d / x, u0 = std::atanh(h / length) - x;
+  return [=](double s) {
+    double const u = std::asinh(std::sinh(u0) + s / a);
+    Placement section;
+    section.origin = a * (u - u0) * along + a * (std::cosh(u) - std::cosh(u0)) * up;
+    Vec3 const tangent = (along + std::sinh(u) * up) / std::cosh(u),
+               normal = (up - std::sinh(u) * along) / std::cosh(u);
+    section.axes << tangent, normal, tangent.cross(normal);
+    return section;
+  };
+}
+
+}  // namespace polybody
