@@ -6,135 +6,73 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
+#include <array>
+#include <functional>
 #include <memory>
-#include <numeric>
 
-#include <polybody/gradients/parameter.hpp>
 #include <polybody/gradients/requirements.hpp>
+#include <polybody/gradients/shared_equations.hpp>
+#include <polybody/gradients/touched_equations.hpp>
 #include <polybody/gradients/variant.hpp>
 
 namespace polybody::detail {
 
-/// What of the whole model's equations a parameter touches, by speeds, then by rows. \throws InvalidInput for a name
-/// that the model does not have.
-template <class = void>
-std::vector<char> touched_in_whole(ModelLayout const& layout, Parameter const& p) {
-  std::vector<char> touched(std::size_t(layout.speeds + layout.rows), p.touches.empty());
-  auto const touch = [&](Index first, Index count) {
-    for (Index i = first; i < first + count; ++i) touched[std::size_t(i)] = 1;
-  };
-  auto const touch_owner = [&](Index marker) {
-    if (Index const body = marker < 0 ? -1 : layout.owners[std::size_t(marker)]; body >= 0)
-      touch(layout.bodies[std::size_t(body)].v0, layout.bodies[std::size_t(body)].speeds);
-  };
-  for (std::string const& name : p.touches) {
-    bool found = false;
-    for (BodyPlace const& b : layout.bodies)
-      if (b.name == name) {
-        touch(b.v0, b.speeds);
-        if (b.rows > 0) touch(layout.speeds + b.row, b.rows);
-        found = true;
-      }
-    for (JointPlace const& j : layout.joints)
-      if (j.name == name) {
-        if (j.rows > 0) touch(layout.speeds + j.row, j.rows);
-        touch_owner(j.a);
-        touch_owner(j.b);
-        found = true;
-      }
-    for (ForcePlace const& f : layout.forces)
-      if (f.name == name) {
-        if (f.states > 0) touch(f.v0, f.states);
-        for (Index const marker : f.markers) touch_owner(marker);
-        found = true;
-      }
-    if (!found)
-      throw InvalidInput{"The parameter \"", p.name, "\" touches \"", name,
-                         "\", but the model has no body, joint or force of that name."};
-  }
-  return touched;
-}
-/// What of a step's equations is touched where so much of the whole model's is. Forces on coordinates that depend on
-/// others go to these; a joint that is touched itself may change how, and with that all equations. In joint coordinates
-/// that depends on the place, and all are.
-template <class = void>
-std::vector<char> touched_in_step(System const& system, std::vector<char> const& whole) {
-  Coordinates const& c = system.step_coordinates();
-  if (!c) return whole;
-  if (!c.narrow->keeps_mass_constant) return std::vector<char>(std::size_t(system.size()), 1);
-  Index const speeds = system.layout().speeds;
-  std::vector<char> touched(std::size_t(system.size()), 0), stays(whole.size(), 0);
-  for (std::size_t i = 0; i < c.narrow->rows_that_stay.size(); ++i) {
-    std::size_t const row = std::size_t(speeds + c.narrow->rows_that_stay[i]);
-    stays[row] = 1;
-    touched[std::size_t(system.speeds()) + i] = whole[row];
-  }
-  VecX force(speeds), narrow(system.speeds());
-  for (Index i = 0; i < Index(whole.size()); ++i) {
-    if (!whole[std::size_t(i)]) continue;
-    if (i >= speeds && !stays[std::size_t(i)]) return std::vector<char>(touched.size(), 1);
-    if (i >= speeds) continue;
-    force.setZero();
-    force[i] = 1.0;
-    c.entries->reduce(c.self.get(), force, narrow);
-    for (Index k = 0; k < narrow.size(); ++k)
-      if (narrow[k] != 0.0) touched[std::size_t(k)] = 1;
-  }
-  return touched;
-}
-/// The equations of a step that a parameter touches, ascending: by speeds, then by rows. \throws InvalidInput for a
-/// name that the model does not have.
-template <class = void>
-std::vector<Index> touched_equations(System const& system, Parameter const& p) {
-  std::vector<char> const touched = touched_in_step(system, touched_in_whole(system.layout(), p));
-  std::vector<Index> equations;
-  for (std::size_t i = 0; i < touched.size(); ++i)
-    if (touched[i]) equations.push_back(Index(i));
-  return equations;
-}
-
-/// Differences of the equations by all parameters. \tparam V a Variant
+/// Differences of the equations by all parameters. An equation that a parameter changes without naming it is detected
+/// in these differences (gradients/shared_equations.hpp), without further evaluations. In doubt the parameters of a
+/// group are changed separately. \tparam V a Variant or a StagesVariant
 template <class V>
 class EquationSlopes {
  public:
+  /// In place of the number of a parameter: none is changed.
+  static constexpr std::size_t nobody = std::size_t(-1);
+  /// Gives the model at point k beside parameter j, or with j = `nobody` the model itself.
+  using Models = std::function<std::shared_ptr<V>(std::size_t j, std::size_t k)>;
+
   /// A group for each set of parameters that touch nothing in common. \param make makes a scenario for values of the
-  /// parameters
+  /// parameters, and outlives the differences
   template <class Make>
   [[gnu::cold]] EquationSlopes(Make const& make, std::vector<Parameter> const& parameters, V const& model)
-      : EquationSlopes(make, parameters, model, [](std::size_t, std::size_t) { return std::shared_ptr<V>(); }) {}
-  /// The same. \param alone alone(j, k) has a model for point k beside parameter j, or none
-  template <class Make, class Alone>
-  [[gnu::cold]] EquationSlopes(Make const& make, std::vector<Parameter> const& parameters, V const& model,
-                               Alone const& alone)
-      : places_(parameters.size()) {
-    std::vector<std::vector<char>> taken;
+      : EquationSlopes(make, parameters, model, {}) {
+    models_ = [&make, parameters, method = model.method](std::size_t j, std::size_t k) {
+      std::vector<double> p = values_of(parameters);
+      if (j != nobody) p[j] += FourPoints::places[k] * parameters[j].distance();
+      return std::make_shared<V>(make(p), method);
+    };
+  }
+  /// The same. \param alone has models that are there already
+  template <class Make>
+  [[gnu::cold]] EquationSlopes(Make const& make, std::vector<Parameter> const& parameters, V const& model, Models alone)
+      : parameters_(parameters), places_(parameters.size()), models_(std::move(alone)) {
+    Index const size = model.system.size();
     for (std::size_t j = 0; j < parameters.size(); ++j) {
       Place& place = places_[j];
       place.distance = parameters[j].distance();
       place.equations = touched_equations(model.system, parameters[j]);
-      auto const is_free = [&](std::vector<char> const& in) {
-        return std::all_of(place.equations.begin(), place.equations.end(),
-                           [&](Index i) { return !in[std::size_t(i)]; });
-      };
-      place.group = std::size_t(std::find_if(taken.begin(), taken.end(), is_free) - taken.begin());
-      if (place.group == taken.size()) taken.emplace_back(std::size_t(model.system.size()), 0);
-      for (Index const i : place.equations) taken[place.group][std::size_t(i)] = 1;
+      auto const is_free = [&](Group const& in) { return in.equations.are_free(place.equations); };
+      place.group = std::size_t(std::find_if(groups_.begin(), groups_.end(), is_free) - groups_.begin());
+      if (place.group == groups_.size()) groups_.emplace_back(std::size_t(size));
+      groups_[place.group].equations.add(place.equations);
+      groups_[place.group].members.push_back(j);
     }
-    groups_.resize(taken.size());
-    for (std::size_t g = 0; g < groups_.size(); ++g)
-      for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
-        std::vector<double> p = values_of(parameters);
-        std::size_t last = 0, members = 0;
-        for (std::size_t j = 0; j < p.size(); ++j)
-          if (places_[j].group == g) {
-            p[j] += FourPoints::places[k] * parameters[j].distance();
-            last = j;
-            ++members;
-          }
-        std::shared_ptr<V>& there = groups_[g].models[k];
-        if (members == 1) there = alone(last, k);
-        if (!there) there = std::make_shared<V>(make(p), model.method);
+    for (Group& group : groups_) {
+      std::size_t const members = group.members.size();
+      for (std::size_t of_orders = 1; of_orders == 1 || of_orders < members; of_orders *= member_orders.size()) {
+        Set set;
+        for (std::size_t m = 0; m < points; ++m) {
+          std::vector<double> p = values_of(parameters);
+          for (std::size_t r = 0; r < members; ++r)
+            p[group.members[r]] +=
+                FourPoints::places[order_of_member(r, of_orders)[m]] * places_[group.members[r]].distance;
+          set.models[m] =
+              members == 1 && models_ ? models_(group.members[0], m) : std::make_shared<V>(make(p), model.method);
+        }
+        for (std::size_t i = 0; i < group.equations.size(); ++i) {
+          std::size_t const r = group.equations.owner(i);
+          set.orders.push_back(order_of_member(r == SharedEquations::nobody ? 0 : r, of_orders));
+        }
+        group.sets.push_back(std::move(set));
       }
+    }
   }
 
   /// How many groups there are: each takes four evaluations.
@@ -145,18 +83,20 @@ class EquationSlopes {
     for (Group& group : groups_) group.known = 0;
   }
   /// Differences at x, a state or what else the equations are asked at, of which everything else is asked.
+  /// \throws InvalidInput as `get`.
   template <class Place>
   void evaluate(Place const& x) {
     forget();
-    for (Group& group : groups_) group.evaluate(x, 0);
+    for (Group& group : groups_) evaluate(group, x, 0);
   }
   /// ∂r/∂p and ∂Φ/∂p of parameter j, which `out` has the sizes of, at x, place number `number` of a step: the first
-  /// parameter of a group evaluates them, at one place after the other.
+  /// parameter of a group evaluates them, at one place after the other. \throws InvalidInput where a parameter of the
+  /// group changes an equation that it does not name.
   template <class X>
   void get(std::size_t j, X const& x, std::size_t number, EquationSlope& out) {
     Place const& place = places_[j];
     Group& group = groups_[place.group];
-    if (number >= group.known) group.evaluate(x, number);
+    if (number >= group.known) evaluate(group, x, number);
     VecX const& difference = group.differences[number];
     Index const speeds = out.balance.size();
     out.balance.setZero();
@@ -178,12 +118,11 @@ class EquationSlopes {
 
   /// \throws InvalidInput where parameter j changes an equation at x that it does not touch, by more than rounding.
   /// \param other the model with another value of it
-  void require_touched(std::size_t j, Parameter const& p, V& model, V& other, State const& x) const {
+  template <class X>
+  void require_touched(std::size_t j, V& model, V& other, X const& x) const {
+    Parameter const& p = parameters_[j];
     if (p.touches.empty()) return;
-    State still = x;
-    still.a.setZero();
-    still.lambda.setZero();
-    double const force = model.equations(still).balance.template lpNorm<Eigen::Infinity>();
+    double const force = force_at(model, x);
     EquationSlope const here = model.equations(x), there = other.equations(x);
     Index const speeds = here.balance.size();
     auto const change = [&](Index i) {
@@ -198,36 +137,119 @@ class EquationSlopes {
     }
     for (Index i = 0; i < model.system.size(); ++i)
       if (!touched[std::size_t(i)] && change(i) > most[i < speeds ? 0 : 1])
-        throw InvalidInput{"The parameter \"", p.name, "\" changes the equations of ", model.system.name_of(i),
-                           ", which it does not name. Add to `touches` what acts there, or leave it empty."};
+        throw InvalidInput{"The parameter \"",
+                           p.name,
+                           "\" changes the equations of ",
+                           model.system.name_of(i),
+                           " at t = ",
+                           x.t,
+                           " s, and its `touches` names nothing that acts there. Add the object that depends on it (",
+                           unnamed_at(model.system, p, i),
+                           "), or leave `touches` empty."};
   }
 
  private:
+  static constexpr std::size_t points = FourPoints::places.size();
+
   struct Place {
     std::size_t group = 0;
     double distance = 1.0;
     std::vector<Index> equations;  // by speeds, then by rows
   };
-  struct Group {
+  struct Set {
     std::array<std::shared_ptr<V>, 4> models;
-    std::vector<VecX> differences;  // at each place, Σ of the four, weighted; over a distance it is a derivative
-    std::size_t known = 0;          // of them, of this step
+    std::vector<MemberOrder> orders;  // by equations: the order of the owner
+  };
+  struct Rounding {
+    double balance = -1.0, rows = 0.0;  // negative: not known
+  };
+  struct Group {
+    SharedEquations equations;
+    std::vector<std::size_t> members;  // parameters
+    std::vector<Set> sets;             // evaluations use them cyclically
+    std::array<VecX, 4> values;        // of the equations of its models
+    std::vector<VecX> differences;     // at each place, Σ of the four, weighted; over a distance it is a derivative
+    std::size_t known = 0;             // of them, of this step
 
-    template <class X>
-    void evaluate(X const& x, std::size_t number) {
-      known = number + 1;
-      if (differences.size() < known) differences.resize(known);
-      VecX& difference = differences[number];
-      for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
-        EquationSlope const& of = models[k]->equations(x);
-        if (k == 0) difference.setZero(of.balance.size() + of.rows.size());
-        difference.head(of.balance.size()) += FourPoints::weights[k] * of.balance;
-        difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
-      }
+    explicit Group(std::size_t size) : equations(size) {}
+
+    ValuesAtPlaces at_places(Set const& set, std::size_t i) const {
+      ValuesAtPlaces f;
+      for (std::size_t m = 0; m < points; ++m) f[set.orders[i][m]] = values[m][Index(i)];
+      return f;
     }
   };
+
+  template <class X>
+  static double force_at(V& model, X const& x) {
+    X still = x;
+    still.a.setZero();
+    still.lambda.setZero();
+    return model.equations(still).balance.template lpNorm<Eigen::Infinity>();
+  }
+  template <class X>
+  [[gnu::cold]] void note_rounding(X const& x) {
+    double rows = std::max({1.0, largest_size(x.q), largest_size(x.v), largest_size(x.a)});
+    if constexpr (requires { x.terms; }) rows *= std::max({1.0, x.terms.rate, x.terms.position});
+    rounding_ = {1e-11 * force_at(*models_(nobody, 0), x), 1e-12 * rows};
+  }
+
+  template <class X>
+  void evaluate(Group& group, X const& x, std::size_t number) {
+    group.known = number + 1;
+    if (group.differences.size() < group.known) group.differences.resize(group.known);
+    VecX& difference = group.differences[number];
+    Set const& set = group.sets[group.equations.begin() % group.sets.size()];
+    if (group.equations.is_complete()) return sum_up(set, x, difference);
+    Index speeds = 0;
+    for (std::size_t m = 0; m < points; ++m) {
+      EquationSlope const& of = set.models[m]->equations(x);
+      speeds = of.balance.size();
+      group.values[m].resize(speeds + of.rows.size());
+      group.values[m].head(speeds) = of.balance;
+      group.values[m].tail(of.rows.size()) = of.rows;
+    }
+    if (rounding_.balance < 0.0) note_rounding(x);
+    difference.resize(group.values[0].size());
+    bool doubtful = false;
+    for (Index i = 0; i < difference.size(); ++i) {
+      ValuesAtPlaces const f = group.at_places(set, std::size_t(i));
+      double sum = 0.0;
+      for (std::size_t k = 0; k < points; ++k) sum += FourPoints::weights[k] * f[k];
+      difference[i] = sum;
+      doubtful |= group.equations.is_doubtful(std::size_t(i), f, i < speeds ? rounding_.balance : rounding_.rows);
+    }
+    if (doubtful) settle(group, set, x, speeds);
+  }
+  /// The same for one parameter that touches all equations.
+  template <class X>
+  static void sum_up(Set const& set, X const& x, VecX& difference) {
+    for (std::size_t k = 0; k < points; ++k) {
+      EquationSlope const& of = set.models[k]->equations(x);
+      if (k == 0) difference.setZero(of.balance.size() + of.rows.size());
+      difference.head(of.balance.size()) += FourPoints::weights[k] * of.balance;
+      difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
+    }
+  }
+  /// Changes every member alone. \throws InvalidInput where one changes an equation at x that it does not name.
+  template <class X>
+  [[gnu::cold]] void settle(Group& group, Set const& set, X const& x, Index speeds) {
+    std::shared_ptr<V> const itself = models_(nobody, 0);
+    for (std::size_t const j : group.members)
+      for (std::size_t k = 0; k < 2; ++k) require_touched(j, *itself, *models_(j, k), x);
+    note_rounding(x);
+    for (std::size_t i = 0; i < group.equations.size(); ++i) {
+      ValuesAtPlaces const f = group.at_places(set, i);
+      double const rounding = Index(i) < speeds ? rounding_.balance : rounding_.rows;
+      if (group.equations.is_doubtful(i, f, rounding)) group.equations.allow(i, f);
+    }
+  }
+
+  std::vector<Parameter> parameters_;
   std::vector<Place> places_;
   std::vector<Group> groups_;
+  Models models_;
+  Rounding rounding_;
 };
 
 }  // namespace polybody::detail

@@ -179,7 +179,7 @@ class AdjointRun {
         values[j] += FourPoints::places[k] * p.distance();
         V v(make_(values), whole_.method);
         require_alike(whole_, v, p, "gradient");
-        if (k == 0) equations.require_touched(j, p, whole_, v, x);
+        if (k == 0) equations.require_touched(j, whole_, v, x);
         double const by = FourPoints::weights[k] / p.distance();
         State y = v.started(h);
         of_integrand += by * term(v.scenario.integrand, v.scenario.model, v.shown(y));

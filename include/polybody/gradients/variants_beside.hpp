@@ -39,9 +39,13 @@ class VariantsBeside {
       for (std::size_t i = 0; i < p.size(); ++i) all[still_[i]] = p[i];
       return make(all);
     };
-    slopes_.emplace(make_still, still, n_.itself(),
-                    [&](std::size_t i, std::size_t k) { return n_.shared(still_[i], k); });
+    slopes_.emplace(make_still, still, n_.itself(), [this](std::size_t i, std::size_t k) {
+      bool const itself = i == EquationSlopes<V>::nobody;
+      return itself ? std::shared_ptr<V>(std::shared_ptr<V>(), &n_.itself()) : n_.shared(still_[i], k);
+    });
   }
+  VariantsBeside(VariantsBeside const&) = delete;
+  VariantsBeside& operator=(VariantsBeside const&) = delete;
 
   V& itself() { return n_.itself(); }                                    ///< for the values of the parameters
   TimesBeside const& times(std::size_t j) const { return n_.times(j); }  ///< of runs with another parameter j
@@ -165,7 +169,7 @@ class VariantsBeside {
   /// \throws InvalidInput where a parameter changes an equation at x that it does not touch.
   void require_touched(State const& x) {
     for (std::size_t i = 0; i < still_.size(); ++i)
-      slopes_->require_touched(i, n_.parameter(still_[i]), n_.itself(), n_.beside(still_[i], 0), x);
+      slopes_->require_touched(i, n_.itself(), n_.beside(still_[i], 0), x);
   }
 
  private:
