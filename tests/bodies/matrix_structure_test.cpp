@@ -319,6 +319,31 @@ TEST_F(MatrixFiles, HoldWhatWasWritten) {
   EXPECT_EQ(s.second, expected.second);
 }
 
+TEST_F(MatrixFiles, LinesEndWithLfCrLfOrCr) {
+  auto const with_ends = [&](std::string const& file, std::string const& end) {
+    std::ifstream in(file, std::ios::binary);
+    std::string all;
+    for (std::string line; std::getline(in, line);) all += line + end;
+    in.close();
+    std::ofstream(file, std::ios::binary) << all;
+  };
+  Structure const expected = block.structure();
+  for (std::string const end : {"\r\n", "\r"}) {
+    MatrixFiles::write(mass, lines_of(block.mass, true));
+    MatrixFiles::write(stiffness, lines_of(block.stiffness, false));
+    MatrixFiles::write(nodes, {"# the first four", "0 0 0", "0.3 0 0"});
+    with_ends(mass, end);
+    with_ends(nodes, end);
+    EXPECT_TRUE(has(message_of<IoError>([&] { read_structure(mass, stiffness, nodes); }),
+                    mass + ", line 3: the matrix is 24×24, but the 2 nodes of " + nodes + " need 6×6"));
+    std::vector<std::string> lines{"# x y z [m]"};
+    for (Vec3 const& r : block.nodes) lines.push_back(text(r[0]) + " " + text(r[1]) + " " + text(r[2]));
+    MatrixFiles::write(nodes, lines);
+    for (std::string const& file : {nodes, stiffness}) with_ends(file, end);
+    EXPECT_EQ(read_structure(mass, stiffness, nodes).second, expected.second);
+  }
+}
+
 TEST_F(MatrixFiles, BrokenMatricesAreNamedByFileAndLine) {
   std::string const where = mass + ", line ";
   EXPECT_TRUE(has(told(1, "%%MatrixMarket matrix array real general"), where + "1: this is not"));

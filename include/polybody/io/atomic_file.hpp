@@ -6,54 +6,46 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <memory>
-#include <random>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include <polybody/io/temporary_file.hpp>
 #include <polybody/math/errors.hpp>
 
 namespace polybody {
 
-namespace detail {
-
-/// A hidden name in the folder of `file` that no other writer uses: ".polybody-<16 hex
-/// digits>.tmp".
-inline std::filesystem::path temporary_beside(std::filesystem::path const& file) {
-  std::random_device random;
-  std::string name = ".polybody-";
-  for (int digit = 0; digit < 16; ++digit) name += "0123456789abcdef"[random() % 16];
-  return file.parent_path() / (name + ".tmp");
-}
-
-}  // namespace detail
-
-/// Writes bytes to a hidden temporary file in the same folder and renames it into place on
-/// `close()`, so a reader sees the old file or the whole new one, never a half-written one.
+/// Writes bytes to a temporary file in the same folder and renames it into place on `close()`. A reader finds the old
+/// file or the whole new one, never a half-written one, also after a loss of power (fsync). The new file gets the
+/// permissions of the file that it replaces. A killed program leaves nothing on Linux. If the file system has no files
+/// without a name (O_TMPFILE), it leaves ".polybody-<16 hex digits>.tmp", which may be removed.
 /// Destroyed without `close()`: closes, unless a write has failed, or an exception is in flight and
 /// `keep_on_exception()` was not called; then the temporary is removed and whatever was there before
 /// stays. Move-only.
 class AtomicFile {
  public:
-  /// Creates the parent folders and opens the temporary file. A symbolic link is followed.
-  /// Throws IoError (file name and the system's reason) if that fails or if `file` exists and is
-  /// not a regular file.
+  /// Creates the parent folders and opens the temporary file. A symbolic link is followed, also to a file that does
+  /// not exist yet. Throws IoError (file name and the system's reason) if that fails, for a name that is too long and
+  /// for links that form a loop, or if `file` exists and is not a regular file.
   explicit AtomicFile(std::filesystem::path const& file) : name_(file.string()) {
     namespace fs = std::filesystem;
     if (!file.has_filename()) throw IoError{"file '", name_, "': the name of a file is missing"};
     std::error_code reason;
     fs::path const whole = fs::absolute(file, reason);
     if (reason) fail("its folder cannot be found", reason);
-    fs::create_directories(whole.parent_path(), reason);
+    fs::path const target = detail::end_of_links(whole, reason);
+    if (reason) fail("cannot be created", reason);
+    fs::create_directories(target.parent_path(), reason);
     if (reason) fail("its folder cannot be created", reason);
-    target_ = fs::is_symlink(whole, reason) ? fs::weakly_canonical(whole, reason) : whole;
-    if (fs::exists(target_, reason) && !fs::is_regular_file(target_, reason))
+    fs::file_status const status = fs::status(target, reason);
+    if (status.type() == fs::file_type::none) fail("cannot be created", reason);
+    bool const exists = status.type() != fs::file_type::not_found;
+    if (exists && !fs::is_regular_file(status))
       throw IoError{"file '", name_, "' exists and is not a regular file; choose another name"};
-    temporary_ = detail::temporary_beside(target_);
-    file_.reset(std::fopen(temporary_.string().c_str(), "wbx"));
-    if (!file_) fail("cannot be created", {errno, std::generic_category()});
+    file_ = detail::TemporaryFile(target);
+    if (!file_.is_open()) fail("cannot be created", {errno, std::generic_category()});
+    if (exists) file_.set_permissions(status.permissions());
   }
 
   AtomicFile(AtomicFile&&) noexcept = default;  ///< The source is left closed.
@@ -62,8 +54,6 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&& other) noexcept {
     AtomicFile taken(std::move(other));
     std::swap(name_, taken.name_);
-    std::swap(target_, taken.target_);
-    std::swap(temporary_, taken.temporary_);
     std::swap(file_, taken.file_);
     std::swap(failed_, taken.failed_);
     std::swap(exceptions_, taken.exceptions_);
@@ -73,7 +63,7 @@ class AtomicFile {
 
   /// See the class. A destructor cannot throw: a failure of this last close is printed to stderr.
   ~AtomicFile() {
-    if (!file_) return;
+    if (!is_open()) return;
     try {
       failed_ || (!kept_ && std::uncaught_exceptions() > exceptions_) ? discard() : close();
     } catch (std::exception const& error) {
@@ -84,9 +74,9 @@ class AtomicFile {
   /// Appends `bytes`. Throws IoError if the system refuses them (a full disk, for one) and
   /// InvalidInput if the file is closed.
   void write(std::string_view bytes) {
-    if (!file_) throw InvalidInput{"file '", name_, "' is already closed; nothing can be added"};
+    if (!is_open()) throw InvalidInput{"file '", name_, "' is already closed; nothing can be added"};
     errno = 0;
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) return;
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.stream()) == bytes.size()) return;
     failed_ = true;
     fail("cannot be written", {errno, std::generic_category()});
   }
@@ -97,40 +87,29 @@ class AtomicFile {
   /// Flushes and renames into place; a second call does nothing. Throws IoError (file name and the
   /// system's reason), also if an earlier write failed; the temporary is then removed.
   void close() {
-    if (!file_) return;
+    if (!is_open()) return;
     errno = 0;
-    bool const written = std::fclose(file_.release()) == 0 && !failed_;
+    bool const written = !failed_ && file_.flush();
     std::error_code reason(errno, std::generic_category());
-    if (written) std::filesystem::rename(temporary_, target_, reason);
+    if (written) reason = file_.put_in_place();
     if (written && !reason) return;
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
+    file_.discard();
     fail(written ? "cannot be put in place" : "could not be written completely", reason);
   }
 
   /// Gives the file up: the temporary is removed, nothing appears under the final name.
-  void discard() noexcept {
-    if (!file_) return;
-    file_.reset();
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
-  }
+  void discard() noexcept { file_.discard(); }
 
-  bool is_open() const noexcept { return file_ != nullptr; }  ///< Neither closed nor given up.
+  bool is_open() const noexcept { return file_.is_open(); }   ///< Neither closed nor given up.
   std::string const& name() const noexcept { return name_; }  ///< The path as it was given.
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-  };
-
   [[noreturn, gnu::cold]] void fail(std::string const& what, std::error_code reason) const {
     throw IoError{"file '", name_, "' ", what, (reason ? ": " + reason.message() : "")};
   }
 
   std::string name_;
-  std::filesystem::path target_, temporary_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  detail::TemporaryFile file_;
   bool failed_ = false, kept_ = false;
   int exceptions_ = std::uncaught_exceptions();
 };

@@ -22,7 +22,8 @@
 namespace polybody {
 
 /// Writes a table, one head line and then rows of numbers in the shortest form that reads back to
-/// the same double. The file appears under its name on `close()` (see AtomicFile), and where an
+/// the same double. A text that begins with =, +, - or @ gets a single quote before it, so that a spreadsheet does not
+/// evaluate it. The file appears under its name on `close()` (see AtomicFile), and where an
 /// exception ends the loop that writes it: with the rows so far, if there are any. Move-only.
 class Csv {
  public:
@@ -33,7 +34,7 @@ class Csv {
   /// InvalidInput. Creates the parent folders; throws IoError if the file cannot be made.
   Csv(std::filesystem::path const& file, std::vector<std::string> columns, Keeps keeps = Keeps::rows)
       : columns_(std::move(columns)), file_((check_heads(file, columns_), file)), keeps_(keeps) {
-    for (auto const& head : columns_) (line_ += quoted(head)) += ',';
+    for (auto const& head : columns_) (line_ += detail::csv_text(head)) += ',';
     line_.back() = '\n';
     file_.write(line_);
   }
@@ -48,7 +49,7 @@ class Csv {
   /// The same with a text before the `values`, in the first column: `row("mass [kg]", numbers)`. `read_csv` reads
   /// numbers only and refuses such a table.
   void row(std::string_view text, std::span<double const> values) {
-    line_ = (text.empty() ? "" : quoted(std::string(text))) + ',';
+    line_ = detail::csv_text(std::string(text)) + ',';
     write_row(values, 1);
   }
 
@@ -91,14 +92,6 @@ class Csv {
     line_.back() = '\n';
     file_.write(line_);
     if (rows_++ == 0 && keeps_ == Keeps::rows) file_.keep_on_exception();
-  }
-
-  static std::string quoted(std::string const& head) {
-    bool const edge = head.front() == ' ' || head.back() == ' ' || head.starts_with("\xEF\xBB\xBF");
-    if (!edge && head.find_first_of(",\"\r\n\t") == head.npos) return head;
-    std::string text = "\"";
-    for (char const c : head) text.append(c == '"' ? 2u : 1u, c);
-    return text + '"';
   }
 
   std::vector<std::string> columns_;

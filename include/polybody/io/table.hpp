@@ -41,6 +41,30 @@ struct Table {
 
 namespace detail {
 
+/// The place of a character by which a spreadsheet takes a text for a formula, after single quotes; npos for another
+/// text.
+inline std::size_t formula_in(std::string_view text) {
+  std::size_t const first = text.find_first_not_of('\'');
+  bool const is_formula = first != text.npos && std::string_view("=+-@").find(text[first]) != std::string_view::npos;
+  return is_formula ? first : text.npos;
+}
+
+/// A text, never a number, as a field of comma-separated values (RFC 4180). A text that begins with =, +, - or @, which
+/// spreadsheets evaluate as a formula, gets a single quote before it.
+inline std::string csv_text(std::string const& text) {
+  std::string const whole = formula_in(text) == text.npos ? text : '\'' + text;
+  bool const edge = whole.starts_with(' ') || whole.ends_with(' ') || whole.starts_with("\xEF\xBB\xBF");
+  if (!edge && whole.find_first_of(",\"\r\n\t") == whole.npos) return whole;
+  std::string quoted = "\"";
+  for (char const c : whole) quoted.append(c == '"' ? 2u : 1u, c);
+  return quoted + '"';
+}
+/// The text of a field that `csv_text` wrote.
+inline std::string text_of_csv(std::string const& field) {
+  std::size_t const place = formula_in(field);
+  return place == 0 || place == field.npos ? field : field.substr(1);
+}
+
 /// Cuts RFC 4180 text into records of fields and counts its lines (from 1).
 struct CsvReader {
   std::string_view text;
@@ -61,7 +85,8 @@ struct CsvReader {
       fields.push_back(field());
       if (text.empty()) break;
       bool const more = text.front() == ',';
-      step();
+      bool const pair = step() == '\r' && text.starts_with('\n');
+      if (pair) step();
       if (!more) break;
       if (text.empty()) fields.emplace_back();
     }
@@ -69,19 +94,19 @@ struct CsvReader {
   }
 
  private:
-  static constexpr std::string_view blanks = " \t\r";
+  static constexpr std::string_view blanks = " \t";
 
   char step() {
     char const c = text.front();
     text.remove_prefix(1);
-    line += c == '\n';
+    line += c == '\n' || (c == '\r' && !text.starts_with('\n'));
     return c;
   }
 
   std::string field() {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) step();
     if (!text.starts_with('"')) {
-      std::string_view plain = text.substr(0, text.find_first_of(",\n"));
+      std::string_view plain = text.substr(0, text.find_first_of(",\r\n"));
       text.remove_prefix(plain.size());
       auto const last = plain.find_last_not_of(blanks);
       return std::string(plain.substr(0, last == plain.npos ? 0 : last + 1));
@@ -96,7 +121,7 @@ struct CsvReader {
         value += step();
       else {
         while (!text.empty() && blanks.find(text.front()) != blanks.npos) step();
-        if (!text.empty() && text.front() != ',' && text.front() != '\n') fail(line, "text follows a closing quote");
+        if (text.find_first_of(",\r\n") != 0 && !text.empty()) fail(line, "text follows a closing quote");
         return value;
       }
     }
@@ -106,9 +131,10 @@ struct CsvReader {
 
 }  // namespace detail
 
-/// Reads a file as `Csv` writes it, and what other programs write: LF or CR LF, quoted fields, a
-/// byte-order mark, a leading '+', blank lines. Throws IoError with the file, and the line where
-/// there is one, if it cannot be read, is empty, is ragged or holds anything but finite numbers.
+/// Reads a file as `Csv` writes it, and what other programs write: lines that end with LF, CR LF or CR, quoted fields,
+/// a byte-order mark, a leading '+', blank lines. A head that begins with a single quote before =, +, - or @ loses it.
+/// Throws IoError with the file, and the line where there is one, if it cannot be read, is empty, is ragged or holds
+/// anything but finite numbers.
 inline Table read_csv(std::filesystem::path const& file) {
   std::string const name = file.string();
   errno = 0;
@@ -119,6 +145,7 @@ inline Table read_csv(std::filesystem::path const& file) {
   if (reader.text.starts_with("\xEF\xBB\xBF")) reader.text.remove_prefix(3);
   std::size_t line = 1;
   Table table{reader.record(line), {}};
+  for (std::string& head : table.columns) head = detail::text_of_csv(head);
   if (table.columns.empty()) throw IoError{"file '", name, "' is empty; a head line is needed"};
   for (auto fields = reader.record(line); !fields.empty(); fields = reader.record(line)) {
     if (fields.size() != table.columns.size())

@@ -32,10 +32,18 @@ class NumberLines {
       throw IoError{file, ": it cannot be opened. Check the path, and that it may be read."};
     in_.clear();
   }
-  /// The next line as it stands; false at the end.
+  /// The next line as it stands, up to LF, CR LF or CR; false at the end.
   bool raw(std::string& line) {
     ++line_;
-    return bool(std::getline(in_, line));
+    line.clear();
+    std::streambuf& from = *in_.rdbuf();
+    constexpr int end = std::streambuf::traits_type::eof();
+    for (int c = from.sbumpc(); c != end; c = from.sbumpc()) {
+      if (c == '\r' && from.sgetc() == '\n') continue;
+      if (c == '\r' || c == '\n') return true;
+      line += char(c);
+    }
+    return !line.empty();
   }
   /// The next line with numbers into `values`, all of it, `expected` in words. False at the end of the file. \throws
   /// IoError for another line.

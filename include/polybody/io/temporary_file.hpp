@@ -1,0 +1,155 @@
+#pragma once
+/// \file
+/// The temporary file of an AtomicFile, and the calls of POSIX that it needs. On systems without them the file has a
+/// name from the beginning, and the system decides when its bytes reach the disk.
+///
+/// Not in polybody.hpp: it comes with io/atomic_file.hpp.
+
+#if __has_include(<unistd.h>)
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#endif
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <utility>
+
+namespace polybody::detail {
+
+/// A hidden name in the folder of `file` that no other writer uses: ".polybody-<16 hex digits>.tmp".
+inline std::filesystem::path temporary_beside(std::filesystem::path const& file) {
+  std::random_device random;
+  std::string name = ".polybody-";
+  for (int digit = 0; digit < 16; ++digit) name += "0123456789abcdef"[random() % 16];
+  return file.parent_path() / (name + ".tmp");
+}
+
+/// A file that replaces another one when it is complete. Linux makes it without a name (O_TMPFILE), so that a killed
+/// program leaves nothing behind; on file systems without such files it has a hidden name. Move-only.
+class TemporaryFile {
+ public:
+  TemporaryFile() = default;  ///< None.
+  /// Makes one in the folder of `target`, which exists. The caller checks `is_open`; errno has the reason.
+  explicit TemporaryFile(std::filesystem::path const& target) : target_(target), name_(temporary_beside(target)) {
+#ifdef O_TMPFILE
+    std::filesystem::path const folder = target.parent_path();
+    int const file = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    bool const can_be_named = file >= 0 && ::access(link_to(file).c_str(), F_OK) == 0;
+    if (can_be_named) file_ = ::fdopen(file, "wb");
+    if (file >= 0 && !file_) ::close(file);
+    if (file_) return;
+#endif
+    file_ = std::fopen(name_.string().c_str(), "wbx");
+    is_named_ = file_ != nullptr;
+  }
+  TemporaryFile(TemporaryFile&& other) noexcept { swap(other); }
+  TemporaryFile& operator=(TemporaryFile&& other) noexcept {
+    TemporaryFile taken(std::move(other));
+    swap(taken);
+    return *this;
+  }
+  ~TemporaryFile() { discard(); }
+
+  bool is_open() const noexcept { return file_ != nullptr; }
+  /// The stream to write to.
+  std::FILE* stream() const noexcept { return file_; }
+  /// The file gets the permissions of the one that it replaces.
+  void set_permissions(std::filesystem::perms permissions) const {
+#if __has_include(<unistd.h>)
+    (void)::fchmod(::fileno(file_), static_cast<mode_t>(permissions & std::filesystem::perms::mask));
+#else
+    std::error_code ignored;
+    std::filesystem::permissions(name_, permissions, ignored);
+#endif
+  }
+
+  /// Hands all bytes to the disk, so that a loss of power finds the old file or the whole new one. False where the
+  /// system refuses; errno has the reason.
+  bool flush() const {
+    if (std::fflush(file_) != 0) return false;
+#if __has_include(<unistd.h>)
+    if (::fsync(::fileno(file_)) != 0 && errno != EINVAL && errno != ENOSYS) return false;
+#endif
+    return true;
+  }
+  /// Closes the file and gives it the name of its target. Returns the system's reason where it refuses; nothing is
+  /// left then.
+  std::error_code put_in_place() {
+    if (!is_named_ && !give_name()) {
+      std::error_code const reason(errno, std::generic_category());
+      discard();
+      return reason;
+    }
+    is_named_ = true;
+    errno = 0;
+    std::error_code reason;
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) reason = {errno, std::generic_category()};
+    if (!reason) std::filesystem::rename(name_, target_, reason);
+    if (reason) {
+      remove();
+      return reason;
+    }
+    is_named_ = false;
+    sync_folder();
+    return {};
+  }
+  /// Closes and removes it.
+  void discard() noexcept {
+    if (file_) std::fclose(std::exchange(file_, nullptr));
+    if (is_named_) remove();
+  }
+
+ private:
+  void swap(TemporaryFile& other) noexcept {
+    std::swap(target_, other.target_);
+    std::swap(name_, other.name_);
+    std::swap(file_, other.file_);
+    std::swap(is_named_, other.is_named_);
+  }
+  void remove() noexcept {
+    std::error_code ignored;
+    std::filesystem::remove(name_, ignored);
+    is_named_ = false;
+  }
+#ifdef O_TMPFILE
+  static std::string link_to(int file) { return "/proc/self/fd/" + std::to_string(file); }
+#endif
+  bool give_name() const {
+#ifdef O_TMPFILE
+    return ::linkat(AT_FDCWD, link_to(::fileno(file_)).c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) == 0;
+#else
+    return false;  // it has one
+#endif
+  }
+  void sync_folder() const noexcept {
+#if __has_include(<unistd.h>)
+    int const folder = ::open(target_.parent_path().c_str(), O_RDONLY | O_CLOEXEC);
+    if (folder < 0) return;
+    (void)::fsync(folder);
+    ::close(folder);
+#endif
+  }
+
+  std::filesystem::path target_, name_;
+  std::FILE* file_ = nullptr;
+  bool is_named_ = false;
+};
+
+/// The file at the end of a chain of symbolic links; it need not exist. `reason` becomes an error for a loop of links.
+inline std::filesystem::path end_of_links(std::filesystem::path file, std::error_code& reason) {
+  namespace fs = std::filesystem;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(file, reason)); ++links) {
+    if (links == 40) reason = std::make_error_code(std::errc::too_many_symbolic_link_levels);
+    fs::path const next = reason ? fs::path() : fs::read_symlink(file, reason);
+    if (reason) return file;
+    file = next.is_absolute() ? next : file.parent_path() / next;
+  }
+  reason.clear();
+  return file;
+}
+
+}  // namespace polybody::detail
