@@ -347,6 +347,90 @@ TEST_F(StudyFiles, CurvesAreToldApartByParameters) {
   EXPECT_TRUE(has(refusal([&] { curves_of(found, "step", "sum [m]", {"sum [m]"}); }), "names of parameters"));
 }
 
+TEST_F(StudyFiles, TextsThatASpreadsheetEvaluatesGetASingleQuoteAndNumbersDoNot) {
+  Study const one({file}, grid(formulations("body", {"=rigid", "ffr"}), axis("-x", "m", {-1.5})), outputs("+y", "@z"));
+  StudyResults const found = one.run(
+      [](Point const& p) {
+        if (p.choice("body") == 1) throw Diverged{"-1 m is off"};
+        return std::array{-2.5, 1.0};
+      },
+      with_threads(1));
+  EXPECT_EQ(table_of(found), "point,body,'-x [m],'+y,'@z,failure\n0,'=rigid,-1.5,-2.5,1,\n1,ffr,-1.5,,,'-1 m is off\n");
+}
+
+/// A time limit for each point.
+StudyOptions with_limit(int threads, double limit) {
+  return {.threads = threads, .progress = false, .time_limit = limit};
+}
+
+TEST_F(StudyFiles, APointThatHangsFailsAfterItsTimeLimitAndTheOthersGoOn) {
+  auto const f = [](Point const& p) {
+    if (p.index() == 3 || p.index() == 7)
+      for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return values_at(p);
+  };
+  StudyResults const plain = study.run(values_at, with_threads(1));
+  fs::remove(file);
+  for (int const threads : {1, 3}) {
+    StudyResults const found = study.run(f, with_limit(threads, 0.2));
+    EXPECT_TRUE(found.complete());
+    EXPECT_EQ(found.failed(), 4u);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i == 3 || i == 7) {
+        EXPECT_EQ(found.outcomes[i]->failure, "It has not ended within the time limit of 0.2 s.");
+      } else {
+        EXPECT_EQ(found.outcomes[i]->failure, plain.outcomes[i]->failure);
+        if (!found.outcomes[i]->failed())
+          EXPECT_EQ(found.outcomes[i]->values[0], plain.outcomes[i]->values[0]);  // bits
+      }
+    }
+    EXPECT_TRUE(has(table_of(found), "\n3,1e+06,\"a, b\",0.001,,It has not ended within the time limit of 0.2 s.\n"));
+    StudyResults const again = study.run(values_at, {.threads = threads, .retry_failed = true, .progress = false});
+    EXPECT_EQ(again.failed(), 2u);
+    EXPECT_EQ(again.taken_over, 8u);
+    fs::remove(file);
+  }
+}
+
+TEST_F(StudyFiles, UnderATimeLimitACrashIsAFailureOfItsPoint) {
+  StudyResults const found = study.run(
+      [](Point const& p) {
+        if (p.index() == 0) std::raise(SIGKILL);
+        if (p.index() == 5) ::_exit(0);
+        return values_at(p);
+      },
+      with_limit(2, 60.0));
+  EXPECT_TRUE(found.complete());
+  EXPECT_EQ(found.outcomes[0]->failure, "Its process ended without a result, by signal 9.");
+  EXPECT_EQ(found.outcomes[5]->failure, "Its process ended without a result.");
+  EXPECT_EQ(found.failed(), 4u);
+}
+
+TEST_F(StudyFiles, UnderATimeLimitErrorsOfTheProgramEndTheStudy) {
+  auto const ends = [&](auto const& what) {
+    return [&, what](Point const& p) {
+      if (p.index() == 2) what(p);
+      return values_at(p);
+    };
+  };
+  auto const misuse = ends([](Point const& p) { (void)p["no such column"]; });
+  EXPECT_TRUE(has(message_of<StudyMisuse>([&] { (void)study.run(misuse, with_limit(1, 60.0)); }), "no such column"));
+  auto const own = ends([](Point const&) { throw std::runtime_error("an error of its own"); });
+  EXPECT_TRUE(has(message_of<Error>([&] { (void)study.run(own, with_limit(2, 60.0)); }), "an error of its own"));
+  auto const number = ends([](Point const&) { throw 3; });
+  EXPECT_TRUE(
+      has(message_of<Error>([&] { (void)study.run(number, with_limit(1, 60.0)); }), "not of the standard library"));
+  StudyResults const found = study.run(values_at, with_limit(1, 60.0));
+  EXPECT_GE(found.taken_over, 2u);
+  EXPECT_TRUE(found.complete());
+}
+
+TEST_F(StudyFiles, ATimeLimitIsPositiveOrZero) {
+  for (double const limit : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_TRUE(has(refusal([&] { (void)study.run(values_at, with_limit(1, limit)); }), "the time limit of a point"));
+  EXPECT_FALSE(fs::exists(file));
+}
+
 // A second thread that works does not count, nor does a wait.
 TEST(StudyTime, IsThatOfTheThread) {
   std::atomic<bool> done = false;

@@ -50,7 +50,7 @@ void give_points(MpiRanks const& ranks, Study const& study, StudyQueue& queue) {
 
 /// The other ranks. What f throws beyond errors of the library ends the study.
 template <class F>
-StudyResults work_for_first(Study const& study, F const& f) {
+StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& options) {
   std::exception_ptr own;
   send(0, RankTag::asks, "");
   RankMessage message = receive();
@@ -58,7 +58,7 @@ StudyResults work_for_first(Study const& study, F const& f) {
     if (message.tag == RankTag::no_more) continue;
     std::size_t const i = std::stoul(message.text);
     try {
-      send(0, RankTag::asks, record_text(i, outcome_of(f, study.points()[i], study.outputs())));
+      send(0, RankTag::asks, record_text(i, outcome_of(f, study.points()[i], study.outputs(), options)));
     } catch (std::exception const& error) {
       own = std::current_exception();
       send(0, RankTag::stops, error.what());
@@ -78,7 +78,7 @@ StudyResults run_first(MpiRanks const& ranks, Study const& study, F const& f, St
   StudyRecord record(study.kind());
   StudyQueue queue(record, options, study.label());
   std::thread own(
-      [&] { queue.work([&](std::size_t i) { return outcome_of(f, study.points()[i], study.outputs()); }); });
+      [&] { queue.work([&](std::size_t i) { return outcome_of(f, study.points()[i], study.outputs(), options); }); });
   give_points(ranks, study, queue);
   own.join();
   queue.rethrow();
@@ -107,8 +107,9 @@ void require_same_study(Study const& study) {
 template <class F>
 StudyResults run_over_ranks(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options = {}) {
   if (ranks.size() == 1) return study.run(f, options);
+  detail::check(options);
   detail::require_same_study(study);
-  if (!ranks.first()) return detail::work_for_first(study, f);
+  if (!ranks.first()) return detail::work_for_first(study, f, options);
   auto const tell = [&](detail::RankTag tag, std::string const& text) {
     for (int to = 1; to < ranks.size(); ++to) detail::send(to, tag, text);
   };

@@ -17,6 +17,10 @@ struct StudyOptions {
   int threads = 1;            ///< that work on points; over several ranks each rank works on one at a time
   bool retry_failed = false;  ///< points that failed in an earlier run are tried again
   bool progress = true;       ///< a bar with the time that is left, where stderr is a terminal
+  /// Longest wall-clock time of a point [s]; zero: no limit. A point that exceeds it fails with a sentence, and the
+  /// study continues. With a limit each point is computed in a separate process: changes of variables by the function
+  /// are lost, and a crash is a failure of its point alone.
+  double time_limit = 0.0;
 };
 
 namespace detail {

@@ -9,23 +9,15 @@
 #include <polybody/io/atomic_file.hpp>
 #include <polybody/io/digits.hpp>
 #include <polybody/io/figure.hpp>
+#include <polybody/io/table.hpp>
 #include <polybody/study/outcome.hpp>
 
 namespace polybody {
 
 namespace detail {
 
-/// A field of comma-separated values (RFC 4180).
-template <class = void>  // compiled where it is used
-std::string csv_field(std::string const& text) {
-  if (text.find_first_of(",\"") == text.npos && !text.starts_with(' ') && !text.ends_with(' ')) return text;
-  std::string quoted = "\"";
-  for (char const c : text) quoted.append(c == '"' ? 2u : 1u, c);
-  return quoted + '"';
-}
-
 /// The value of column j of a point as it stands in a table: the word of a choice, or digits that read back exactly.
-template <class = void>
+template <class = void>  // compiled where it is used
 std::string column_text(Points const& points, std::size_t i, std::size_t j) {
   std::vector<std::string> const& choices = points.columns()[j].choices;
   return choices.empty() ? all_digits(points.at(i, j)) : choices[std::size_t(points.at(i, j))];
@@ -35,20 +27,22 @@ template <class = void>
 std::string table_text(StudyResults const& found, bool with_measured) {
   bool const failures = found.failed() > 0;
   std::string text = "point";
-  for (Column const& column : found.points.columns()) text += ',' + csv_field(column.head());
+  for (Column const& column : found.points.columns()) text += ',' + csv_text(column.head());
   for (StudyOutput const& output : found.outputs)
-    if (with_measured || !output.measured) text += ',' + csv_field(output.head);
+    if (with_measured || !output.measured) text += ',' + csv_text(output.head);
   text += failures ? ",failure\n" : "\n";
   for (std::size_t i = 0; i < found.outcomes.size(); ++i) {
     if (!found.outcomes[i]) continue;
     Outcome const& outcome = *found.outcomes[i];
     text += std::to_string(i);
-    for (std::size_t j = 0; j < found.points.columns().size(); ++j)
-      text += ',' + csv_field(column_text(found.points, i, j));
+    for (std::size_t j = 0; j < found.points.columns().size(); ++j) {
+      std::string const value = column_text(found.points, i, j);
+      text += ',' + (found.points.columns()[j].choices.empty() ? value : csv_text(value));
+    }
     for (std::size_t j = 0; j < found.outputs.size(); ++j)
       if (with_measured || !found.outputs[j].measured)
         text += ',' + (outcome.failed() ? "" : all_digits(outcome.values[j]));
-    if (failures) text += ',' + csv_field(outcome.failure);
+    if (failures) text += ',' + csv_text(outcome.failure);
     text += '\n';
   }
   return text;

@@ -9,6 +9,7 @@
 
 #include <polybody/io/file_content.hpp>
 #include <polybody/study/grid.hpp>
+#include <polybody/study/limited_point.hpp>
 #include <polybody/study/queue.hpp>
 
 namespace polybody {
@@ -50,6 +51,23 @@ Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> cons
   }
 }
 
+/// The same within the time limit of the options, if they have one.
+template <class F>
+Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> const& outputs,
+                   StudyOptions const& options) {
+  if (options.time_limit == 0.0) return outcome_of(f, point, outputs);
+  return outcome_within(options.time_limit, outputs.size(), [&] { return outcome_of(f, point, outputs); });
+}
+/// \throws InvalidInput for less than one thread and a time limit that is negative or not finite.
+template <class = void>
+void check(StudyOptions const& options) {
+  if (options.threads < 1)
+    throw InvalidInput{"study: at least one thread is needed, but ", options.threads, " are asked for."};
+  if (!(options.time_limit >= 0.0) || !std::isfinite(options.time_limit))
+    throw InvalidInput{"study: the time limit of a point must be positive, or zero for none, but is ",
+                       options.time_limit, " s."};
+}
+
 }  // namespace detail
 
 /// A study:
@@ -75,17 +93,20 @@ class Study {
 
   /// Calls f(point) for each point that is not finished, by several threads at once: f must not change what it shares.
   /// What f gives, a number or a range of numbers, are the outputs; where f throws an Error, or an output is not
-  /// finite, the point is recorded as failed with that sentence.
+  /// finite, the point is recorded as failed with that sentence. So is a point that exceeds the time limit of the
+  /// options.
   /// \throws IoError for a file that cannot be made or written, that another run has open, that is damaged or of
-  /// another study; InvalidInput for less than one thread; what else f throws. What is finished by then is recorded.
+  /// another study; InvalidInput for less than one thread and a negative time limit; what else f throws,
+  /// under a time limit as an Error with its sentence. What is finished by then is recorded.
   template <class F>
     requires std::is_invocable_v<F const&, Point const&>
   StudyResults run(F const& f, StudyOptions const& options = {}) const {
-    if (options.threads < 1)
-      throw InvalidInput{"study: at least one thread is needed, but ", options.threads, " are asked for."};
+    detail::check(options);
     detail::StudyRecord record(kind());
     detail::StudyQueue queue(record, options, label());
-    auto const work = [&] { queue.work([&](std::size_t i) { return detail::outcome_of(f, points_[i], outputs_); }); };
+    auto const work = [&] {
+      queue.work([&](std::size_t i) { return detail::outcome_of(f, points_[i], outputs_, options); });
+    };
     std::vector<std::thread> others;
     std::size_t const useful = std::min(std::size_t(options.threads), queue.left());
     others.reserve(useful);

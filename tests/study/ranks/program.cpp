@@ -1,5 +1,5 @@
 // A study over the ranks of MPI, which run.py starts, kills and compares:
-//   study_ranks FOLDER [--threads N] [--pause MS] [--alone] [--fail KIND]
+//   study_ranks FOLDER [--threads N] [--pause MS] [--alone] [--limit S] [--fail KIND]
 // Writes FOLDER/a.csv, and beside the record a line "point rank" to FOLDER/calls for each call of the point's function.
 #include <unistd.h>
 
@@ -20,6 +20,7 @@ struct Options {
   std::string folder, fail;
   int threads = 1, pause = 0;
   bool alone = false;  // without MPI
+  double limit = 0.0;  // s for a point
 };
 
 /// Numbers of many digits, and a point in seven that fails.
@@ -32,6 +33,7 @@ std::array<double, 2> values_at(Options const& o, int rank, Point const& p) {
   std::fclose(calls);
   if (o.pause > 0) std::this_thread::sleep_for(std::chrono::milliseconds(o.pause));
   if (p.index() == 20 && o.fail == "misuse") p["no such column"];
+  if ((p.index() == 5 || p.index() == 40) && o.fail == "hangs") ::pause();
   if (rank > 0 && o.fail == "worker") throw std::runtime_error("a worker's own error");
   if (rank == 0 && o.fail == "first") throw std::runtime_error("the first rank's own error");
   if (p.index() % 7 == 3) throw Diverged{"x ", p["x"], "\nis off"};
@@ -47,7 +49,7 @@ int run(Options const& o, MpiRanks const* ranks) {
                            formulations("body", {"rigid", "flexible", "none"})),
                       outputs("product [m]", measured("rank")));
     auto const f = [&](Point const& p) { return values_at(o, rank, p); };
-    StudyOptions const options{.threads = o.threads};
+    StudyOptions const options{.threads = o.threads, .time_limit = o.limit};
     StudyResults const found = ranks ? run_over_ranks(*ranks, study, f, options) : study.run(f, options);
     if (!found.complete()) throw Error{"rank ", rank, " has not all points"};
     write_table(found, o.folder + (rank == 0 ? "/a.csv" : "/a" + std::to_string(rank) + ".csv"));
@@ -68,6 +70,8 @@ int main(int argc, char** argv) {
       o.threads = std::atoi(argv[++i]);
     else if (is("--pause"))
       o.pause = std::atoi(argv[++i]);
+    else if (is("--limit"))
+      o.limit = std::atof(argv[++i]);
     else if (is("--fail"))
       o.fail = argv[++i];
     else if (std::strcmp(argv[i], "--alone") == 0)

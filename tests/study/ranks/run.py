@@ -137,6 +137,19 @@ def check_refusals(runs, root):
     refused("damaged", 2, ", line ", folder=folder)
 
 
+def check_limits(runs, root, one):
+    """Points that hang fail after their time limit, under ranks and threads; the others are as without."""
+    for ranks, options in [(0, ["--threads", "2"]), (1, []), (3, [])]:
+        folder = root / f"limit {ranks}"
+        folder.mkdir()
+        lines = runs.table(folder, ranks, "--limit", "1", "--fail", "hangs", *options).splitlines()
+        for i, (line, plain) in enumerate(zip(lines, one.splitlines(), strict=True)):
+            if i - 1 in (5, 40):
+                require(b"It has not ended within the time limit of 1 s." in line, f"point {i - 1} under {ranks} ranks: {line}")
+            else:
+                require(line == plain, f"under a time limit and {ranks} ranks: {line} for {plain}")
+
+
 def main(program, mpiexec):
     runs = Runs(program, mpiexec)
     with tempfile.TemporaryDirectory() as name:
@@ -149,6 +162,7 @@ def main(program, mpiexec):
         check_sharing(runs, root)
         check_kills(runs, root, one)
         check_refusals(runs, root)
+        check_limits(runs, root, one)
     print("studies over ranks: as they should be")
 
 

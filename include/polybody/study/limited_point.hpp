@@ -1,0 +1,148 @@
+#pragma once
+/// \file
+/// A point of a study in a separate process, which is ended after a time limit. Needs POSIX.
+///
+/// Not in polybody.hpp: it comes with study/study.hpp.
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#if __has_include(<sys/prctl.h>)
+#include <sys/prctl.h>
+#endif
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <mutex>
+
+#include <polybody/study/record_lines.hpp>
+
+namespace polybody::detail {
+
+/// The process of one point, with the pipe for its answer. The destructor ends the process.
+class PointProcess {
+ public:
+  /// Starts it; `answer` gives the text that it sends. \throws Error where the system has no more processes.
+  template <class F>
+  explicit PointProcess(F const& answer) {
+    static std::mutex one_at_a_time;  // else the process of another thread keeps this pipe open
+    std::unique_lock lock(one_at_a_time);
+    int ends[2];
+    if (::pipe(ends) != 0) fail("pipes");
+    for (int const end : ends) (void)::fcntl(end, F_SETFD, FD_CLOEXEC);
+    std::fflush(stdout);
+    process_ = ::fork();
+    if (process_ < 0) {
+      int const why = errno;
+      ::close(ends[0]);
+      ::close(ends[1]);
+      fail("processes", why);
+    }
+    if (process_ == 0) {
+      lock.unlock();
+      ::close(ends[0]);
+      send(ends[1], answer());
+    }
+    ::close(ends[1]);
+    pipe_ = ends[0];
+  }
+  PointProcess(PointProcess const&) = delete;
+  PointProcess& operator=(PointProcess const&) = delete;
+  ~PointProcess() {
+    if (process_ > 0) (void)end();
+    if (pipe_ >= 0) ::close(pipe_);
+  }
+
+  /// Its answer, or nothing where none is complete within `limit` [s].
+  std::optional<std::string> answer(double limit) {
+    using Clock = std::chrono::steady_clock;
+    auto const began = Clock::now();
+    std::string text;
+    for (char block[4096];;) {
+      double const left = limit - std::chrono::duration<double>(Clock::now() - began).count();
+      if (left <= 0.0) return std::nullopt;
+      pollfd ready{pipe_, POLLIN, 0};
+      int const ms = static_cast<int>(std::min(1e3 * left + 1.0, 1e6));
+      if (::poll(&ready, 1, ms) <= 0) continue;
+      ssize_t const got = ::read(pipe_, block, sizeof block);
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) return text;
+      text.append(block, std::size_t(got));
+    }
+  }
+  /// Ends it. Returns the number of the signal that ended it before, or zero.
+  int end() {
+    (void)::kill(process_, SIGKILL);
+    return wait();
+  }
+  /// Waits for its end. Returns the number of the signal that ended it, or zero.
+  int wait() {
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+    process_ = 0;
+    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  }
+
+ private:
+  [[noreturn, gnu::cold]] static void fail(char const* what, int why = errno) {
+    throw Error{"study: the system has no more ", what, " for a point with a time limit: ", std::strerror(why), "."};
+  }
+  /// In the process of the point, which ends here without the exits of the program.
+  [[noreturn]] static void send(int pipe, std::string const& text) {
+    for (std::size_t done = 0; done < text.size();) {
+      ssize_t const got = ::write(pipe, text.data() + done, text.size() - done);
+      if (got > 0) done += std::size_t(got);
+      if (got < 0 && errno != EINTR) break;
+    }
+    std::fflush(stdout);
+    ::_exit(0);
+  }
+
+  pid_t process_ = 0;
+  int pipe_ = -1;
+};
+
+/// The outcome of `found()`, computed in a separate process. The outcome is a failure if the process crashes, or does
+/// not end within `limit` [s]. \throws Error with the sentence of an exception that is not of the library; StudyMisuse;
+/// Error where the system has no more processes.
+template <class F>
+Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
+  pid_t const parent = ::getpid();
+  PointProcess process([&]() -> std::string {
+#ifdef PR_SET_PDEATHSIG
+    (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+    if (::getppid() != parent) ::_exit(1);
+    try {
+      return "o" + record_text(0, found()) + '\n';
+    } catch (StudyMisuse const& error) {
+      return std::string("m") + error.what() + '\n';
+    } catch (std::exception const& error) {
+      return std::string("e") + error.what() + '\n';
+    } catch (...) {
+      return "ean exception that is not of the standard library\n";
+    }
+  });
+  std::optional<std::string> text = process.answer(limit);
+  if (!text) {
+    (void)process.end();
+    return {{}, sentence_of({"It has not ended within the time limit of ", limit, " s."})};
+  }
+  int const signal = process.wait();
+  if (!text->ends_with('\n'))
+    return {{},
+            sentence_of({"Its process ended without a result", signal != 0 ? ", by signal " : "",
+                         signal != 0 ? std::to_string(signal) : "", "."})};
+  text->pop_back();
+  std::string const rest = text->substr(1);
+  if (text->front() == 'm') throw StudyMisuse{rest};
+  if (text->front() == 'e') throw Error{rest};
+  return outcome_in(rest, 1, outputs).value().second;
+}
+
+}  // namespace polybody::detail
