@@ -101,8 +101,8 @@ TEST(Touches, LeftOutAreFoundByTheAdjoint) {
   EXPECT_TRUE(has(said({"other"}, {"floor"}, RungeKutta4<>{}), sentence));
 }
 
-/// Complete names give the same derivatives as no names. The beginning of the contact makes a kink within the difference
-/// by the radius, which must not be refused.
+/// Complete names give the same derivatives as no names. The beginning of the contact makes a kink within the
+/// difference by the radius, which must not be refused.
 TEST(Touches, CompleteNamesGiveTheSameDerivatives) {
   auto const named = of_balls({"floor"}, {"push"}, {"floor"}), all = of_balls({}, {}, {});
   Sensitivities const a = sensitivities(balls, named, integrator), b = sensitivities(balls, all, integrator);
@@ -124,7 +124,8 @@ auto row_of_bodies(double share) {
     M m{Gravity{0, 0, 0}};
     BodyHandle<Rigid<>> first;
     for (int i = 0; i < count; ++i) {
-      auto const b = m.add(Rigid<>(1.0, Mat3::Identity(), Placement::at({double(i), 0, 0})), "body " + std::to_string(i));
+      auto const b =
+          m.add(Rigid<>(1.0, Mat3::Identity(), Placement::at({double(i), 0, 0})), "body " + std::to_string(i));
       if (i == 0) first = b;
       m.apply(Always{.force = {p[i], 0, 0}, .law = {1.0}}, b.at(Vec3(0, 0, 0)), "push " + std::to_string(i));
     }

@@ -161,14 +161,14 @@ std::ostream& operator<<(std::ostream& out, Comparison const& c) {
   }
   std::ios state(nullptr);
   state.copyfmt(out);
-  out << std::left << std::setw(int(label)) << "" << std::right << std::setprecision(4);
+  out << std::left << std::setw(int(label)) << "" << std::right;
   for (ComparedRun const& run : c.runs) out << std::setw(int(wide)) << run.name;
   for (std::size_t i = 0; i < columns.front().size(); ++i) {
     out << '\n' << std::left << std::setw(int(label)) << columns.front()[i].name << std::right;
     for (auto const& column : columns) {
       double const x = column[i].value;
-      out << std::setw(int(wide));
-      x == std::round(x) && std::abs(x) < 1e9 ? out << long(x) : out << x;
+      bool const whole = x == std::round(x) && std::abs(x) < 1e9;
+      out << std::setw(int(wide)) << (whole ? std::to_string(long(x)) : number(x, 4));
     }
   }
   out.copyfmt(state);

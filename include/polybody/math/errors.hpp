@@ -2,8 +2,8 @@
 /// \file
 /// The exceptions of the library. Each message names the object, where known the time, and the remedy.
 
+#include <charconv>
 #include <concepts>
-#include <cstdio>
 #include <initializer_list>
 #include <stdexcept>
 #include <string>
@@ -11,11 +11,10 @@
 
 namespace polybody {
 
-/// `x` as it stands in a message: up to nine digits.
-inline std::string number(double x) {
+/// The text of `x` in messages: up to `digits` digits, with a decimal point in every locale.
+inline std::string number(double x, int digits = 9) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.9g", x);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, digits).ptr};
 }
 
 /// A part of a message: a text that outlives it, or a number.

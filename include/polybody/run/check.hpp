@@ -154,8 +154,8 @@ template <class = void>
 std::ostream& operator<<(std::ostream& out, ModelCheck const& c) {
   out << sentence_of({"rows off by ", c.violation.position, " (positions), ", c.violation.velocity, " (speeds)",
                       (c.violation.position > 0.0 ? ", most of " + c.most_violated : std::string()), "\n"});
-  out << c.redundancy.rows << " rows of rank " << c.redundancy.rank << ", " << c.redundancy.degrees_of_freedom
-      << (c.redundancy.degrees_of_freedom == 1 ? " degree of freedom\n" : " degrees of freedom\n");
+  out << sentence_of({c.redundancy.rows, " rows of rank ", c.redundancy.rank, ", ", c.redundancy.degrees_of_freedom,
+                      c.redundancy.degrees_of_freedom == 1 ? " degree of freedom\n" : " degrees of freedom\n"});
   for (Redundancy::Share const& share : c.redundancy.repeated)
     out << share.name << ": " << detail::counted(share.rows, "row repeats others\n", "rows repeat others\n");
   auto const contradict = [&](std::vector<std::string> const& groups, char const* in) {
