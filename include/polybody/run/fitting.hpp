@@ -2,6 +2,7 @@
 /// \file
 /// Whether a state is one of a model.
 
+#include <polybody/system/state.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {

@@ -12,6 +12,7 @@
 #include <polybody/joints/policies/recursive.hpp>
 #include <polybody/kinematics/marker.hpp>
 #include <polybody/math/sequence.hpp>
+#include <polybody/system/state.hpp>
 
 namespace polybody {
 
@@ -115,10 +116,6 @@ template <class Vector>
 auto body_part_of(Vector& x, Index first, Index size) {
   using T = typename Vector::Scalar;
   return std::span<T>(x.data() + first, std::size_t(size));
-}
-[[noreturn, gnu::cold]] inline void refuse_unfitting_state() {
-  throw InvalidInput(
-      "The state does not fit the model; take it from reference_state() after the last body and joint were added.");
 }
 /// A part of a vector of the user's state. \throws InvalidInput where the vector ends before.
 template <class Vector>

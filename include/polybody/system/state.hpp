@@ -1,5 +1,6 @@
 #pragma once
 #include <polybody/math/dual.hpp>
+#include <polybody/math/errors.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody {
@@ -17,5 +18,12 @@ struct StateOf {
 };
 
 using State = StateOf<double>;  ///< in doubles
+
+namespace detail {
+[[noreturn, gnu::cold]] inline void refuse_unfitting_state() {
+  throw InvalidInput(
+      "The state does not fit the model; take it from reference_state() after the last body and joint were added.");
+}
+}  // namespace detail
 
 }  // namespace polybody
