@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <polybody/gradients/parameter.hpp>
-#include <polybody/system/basic_system.hpp>
+#include <polybody/system/system.hpp>
 
 namespace polybody::detail {
 
