@@ -21,7 +21,7 @@ struct AdamsBashforthMoulton {
   static constexpr bool controls_step = true;
   static constexpr Entries entries = Entries::coordinate_rates;
 
-  double relative_tolerance = 1e-8;   ///< relative to the size of what is integrated
+  double relative_tolerance = 1e-8;   ///< relative to the scale of each kind of unknown, as of `DormandPrince`
   double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
   double smallest_step = 1e-12;       ///< that may be chosen [s]
   int max_order = order;              ///< the highest that may be chosen, in [1, 12]
@@ -45,6 +45,7 @@ struct AdamsBashforthMoulton {
     VecXOf<Dual<1>> dual;                     ///< room for the rates of coordinates
     VecX q_rate;                              ///< q˙ (nq)
     ForwardDynamics<Solver> forward;          ///< accelerations, by the mass matrix
+    detail::ErrorNorm norm;                   ///< of the error
     typename Stabilisation::Scratch scratch;  ///< memory of the stabilisation
 
     /// Allocates all of it.
@@ -61,6 +62,7 @@ struct AdamsBashforthMoulton {
           dual(VecXOf<Dual<1>>::Zero(2 * s.layout().coordinates + s.layout().speeds)),
           q_rate(q),
           forward(s),
+          norm(s, false),
           scratch(s) {}
 
     /// y into q, normalised, and v.
@@ -111,7 +113,7 @@ struct AdamsBashforthMoulton {
       w.split(system);
       w.rates(system, x.t + h, feedback);
       report.evaluations += 1;
-      e = correct(history, Trial{c, age, h, k, known, system.layout().states}, x, w);
+      e = correct(system, history, Trial{c, age, h, k, known}, x, w);
       if (e.here <= 1.0) break;
       ++report.rejected;
       if (known > 1) rising = false;
@@ -163,7 +165,6 @@ struct AdamsBashforthMoulton {
     std::array<double, order + 2> const &c, &age;
     double h;  ///< [s]
     int k, known;
-    Index states;  ///< first-order ones, the last of y
   };
 
   template <class W>
@@ -176,26 +177,38 @@ struct AdamsBashforthMoulton {
     }
   }
 
-  /// c_k D*_k into w.correction, and the errors: means over q and over v, each relative to its largest entry, and over
-  /// first-order states, each relative to itself.
+  /// c_k D*_k into w.correction, and the errors: by `ErrorNorm`, and means over first-order states, each relative to
+  /// itself.
   template <class W>
-  Errors correct(AdamsHistory const& history, Trial const& trial, State const& x, W& w) const {
-    auto const& [c, age, h, k, known, states] = trial;
-    std::array<double, 4> sum{};
-    Index const nq = x.q.size(), n = w.y.size(), bodies = x.v.size() - states;
+  Errors correct(System const& system, AdamsHistory const& history, Trial const& trial, State const& x, W& w) const {
+    auto const& [c, age, h, k, known] = trial;
+    std::array<double, 4> of_states{};
+    Index const nq = x.q.size(), n = w.y.size(), states = system.layout().states, bodies = x.v.size() - states;
     detail::ErrorTolerance const tolerance{absolute_tolerance, relative_tolerance};
-    double const in_q = share(tolerance.of_all(x.q, w.q, nq), nq),
-                 in_v = share(tolerance.of_all(x.v, w.v, bodies), bodies);
-    auto const in_state = [&](Index i) { return 2.0 * share(tolerance.of_one(x.v[i], w.v[i]), states); };
-    for (Index i = 0; i < n; ++i) {
-      double const in = i < nq ? in_q : i < nq + bodies ? in_v : in_state(i - nq);
+    w.norm.set_scales(system, tolerance, x, w.q, w.v);
+    w.norm.clear();
+    auto const add = [&](Index i, double in, std::array<double, 4>& sum) {
       double d = w.f[i];
       for (int j = 0; j <= std::min(k + 1, known); ++j) {  // d is D*_j
         if (j >= k - 2) sum[std::size_t(j - k + 2)] += in * d * d;
         if (j == k) w.correction[i] = c[std::size_t(k)] * d;
         if (j < known) d = (d - history.difference(j)[i]) / (h + age[std::size_t(j)]);
       }
+    };
+    for (Index i = 0; i < nq; ++i) {
+      auto& group = w.norm.of_coordinate(i);
+      add(i, group.in_q, group.sum);
     }
+    for (Index i = 0; i < bodies; ++i) {
+      auto& group = w.norm.of_speed(i);
+      add(nq + i, group.in_v, group.sum);
+    }
+    for (Index i = nq + bodies; i < n; ++i) {
+      double const tolerated = tolerance.of_one(x.v[i - nq], w.v[i - nq]);
+      add(i, 2.0 / (tolerated * tolerated * double(states)), of_states);
+    }
+    std::array<double, 4> sum = w.norm.largest_sums();
+    for (std::size_t j = 0; j < 4; ++j) sum[j] += of_states[j];
     auto const error = [&](int j) {
       if (j < 1) return 0.0;
       if (j > known) return std::numeric_limits<double>::infinity();
@@ -204,9 +217,6 @@ struct AdamsBashforthMoulton {
     };
     return {error(k - 2), error(k - 1), error(k), k < order ? error(k + 1) : std::numeric_limits<double>::infinity()};
   }
-  /// The share of an entry's square in the mean square of n errors over what is tolerated.
-  static double share(double tolerated, Index n) { return 1.0 / (tolerated * tolerated * double(n)); }
-
   /// The next order into k, and the next step. While the order rises from the start it goes up with every step, and the
   /// step doubles; then the order goes where the error is least, and the step doubles, stays or shrinks as that error
   /// asks.

@@ -1,34 +1,23 @@
 #pragma once
 /// \file
-/// What an explicit step of variable length tolerates of its error.
+/// The norm in which integrators of variable step measure the error of a step.
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 
-#include <polybody/math/types.hpp>
+#include <polybody/integrators/assembly_extents.hpp>
 
 namespace polybody::detail {
 
 struct ErrorTolerance {
   double absolute, relative;
 
-  /// What is tolerated of each entry, relative to the largest of the first n, before the step and after.
-  double of_all(VecX const& before, VecX const& after, Index n) const {
-    double largest = 0.0;
-    for (VecX const* const x : {&before, &after})
-      for (Index i = 0; i < std::min(n, x->size()); ++i) largest = std::max(largest, std::abs((*x)[i]));
-    return absolute + relative * largest;
+  /// Tolerated error of unknowns of this scale. \param largest their largest entry, whose round-off is tolerated too
+  double of(double scale, double largest) const {
+    return absolute + relative * scale + 4.0 * std::numeric_limits<double>::epsilon() * largest;
   }
-  /// What is tolerated of one entry, by its own size: for first-order states, each of which has a unit of its own.
+  /// Tolerated error of one entry, relative to its own size: for first-order states, which differ in their units.
   double of_one(double before, double after) const {
     return absolute + relative * std::max(std::abs(before), std::abs(after));
-  }
-
-  /// Mean square of the first n errors over what is tolerated of all.
-  static double mean_square(VecX const& error, Index n, double tolerated) {
-    double sum = 0.0;
-    for (Index i = 0; i < n; ++i) sum += error[i] * error[i];
-    return n > 0 ? sum / (tolerated * tolerated * double(n)) : 0.0;
   }
   /// Mean square of the errors from `first` on, each over its own tolerance.
   double mean_square_each(VecX const& error, VecX const& before, VecX const& after, Index first) const {
@@ -40,5 +29,110 @@ struct ErrorTolerance {
     return error.size() > first ? sum / double(error.size() - first) : 0.0;
   }
 };
+
+/// Scaled error of a step [Hairer, Nørsett & Wanner 1993, §II.4], with a scale for each kind of unknown of each body:
+///   ‖e‖² = max_g ½ (mean over q in g of (e_q / tol(s_q))² + mean over v in g of (e_v / tol(s_v))²),
+///   tol(s) = Atol + Rtol s + 4ε max_g |x|,
+/// a group g holds the unknowns of one kind of one body. The scales are the largest before and after the step of
+///   lengths:    s_q the extent of the positions of the assembly, s_v that of their velocities, or the change of a
+///               velocity over the step;
+///   rotations:  s_q = 1 (a quaternion, or one radian), s_v the largest rate of the group;
+///   others:     the largest entries of the group: gradients, deformations, slides, coordinates of unknown unit.
+/// An assembly holds the bodies that joints and forces connect; markers on the ground are points of it, at rest. So
+/// bodies do not change the scales of bodies that they do not act on, and a common velocity, a common translation and
+/// accumulated turns change none. An assembly of a single point is measured from the world's origin.
+class ErrorNorm {
+ public:
+  /// Groups the unknowns of a time step. \param by_speeds errors of coordinates are numbered as speeds (δ of q ⊞ δ)
+  template <class = void>
+  [[gnu::cold]] ErrorNorm(System const& system, bool by_speeds);
+
+  /// Sets the scales from the state before and (q, v) after the step, at which the system was evaluated last.
+  void set_scales(System const& system, ErrorTolerance const& tolerance, State const& before, VecX const& q,
+                  VecX const& v) {
+    extents_.measure(system, before, q, v);
+    for (Group& g : groups_) g.largest_q = g.largest_v = 0.0;
+    for (VecX const* const x : {&before.q, &q})
+      for (std::size_t i = 0; i < of_q_.size(); ++i) raise(of_coordinate(Index(i)).largest_q, (*x)[Index(i)]);
+    for (VecX const* const x : {&before.v, &v})
+      for (std::size_t i = 0; i < of_v_.size(); ++i) raise(of_speed(Index(i)).largest_v, (*x)[Index(i)]);
+    for (Group& g : groups_) {
+      auto const [extent, speed] = extents_[g.assembly];
+      bool const length = g.kind == UnknownKind::length, rotation = g.kind == UnknownKind::rotation;
+      g.in_q = share(tolerance.of(length ? extent : rotation ? 1.0 : g.largest_q, g.largest_q), g.errors);
+      g.in_v = share(tolerance.of(length ? speed : g.largest_v, g.largest_v), g.speeds);
+    }
+  }
+
+  /// ‖e‖² of errors of coordinates and speeds, both numbered as speeds; not finite if an error is not.
+  double mean_square(VecX const& q_error, VecX const& v_error) {
+    for (Group& g : groups_) g.sum[0] = 0.0;
+    for (std::size_t i = 0; i < of_v_.size(); ++i) {
+      Group& g = groups_[of_v_[i]];
+      double const q = q_error[Index(i)], v = v_error[Index(i)];
+      g.sum[0] += g.in_q * q * q + g.in_v * v * v;
+    }
+    return 0.5 * largest_sums()[0];
+  }
+
+  /// A group of unknowns.
+  struct Group {
+    UnknownKind kind = UnknownKind::other;
+    std::uint32_t assembly = 0;
+    Index errors = 0, speeds = 0;             ///< entries of coordinates and of speeds
+    double largest_q = 0.0, largest_v = 0.0;  ///< before and after the step
+    double in_q = 0.0, in_v = 0.0;            ///< factor of an entry's square in the mean square
+    std::array<double, 4> sum{};              ///< mean squares of several errors
+  };
+  Group& of_coordinate(Index i) { return groups_[of_q_[std::size_t(i)]]; }  ///< group of coordinate i
+  Group& of_speed(Index i) { return groups_[of_v_[std::size_t(i)]]; }       ///< group of speed i
+  /// Sets all sums to zero.
+  void clear() {
+    for (Group& g : groups_) g.sum.fill(0.0);
+  }
+  /// The largest of the sums over all groups; not finite if one is not.
+  std::array<double, 4> largest_sums() const {
+    std::array<double, 4> largest{};
+    for (Group const& g : groups_)
+      for (std::size_t j = 0; j < 4; ++j)
+        if (!(g.sum[j] <= largest[j]) && !std::isnan(largest[j])) largest[j] = g.sum[j];
+    return largest;
+  }
+
+ private:
+  static double share(double tolerated, Index n) { return n > 0 ? 1.0 / (tolerated * tolerated * double(n)) : 0.0; }
+  static void raise(double& largest, double x) { largest = std::max(largest, std::abs(x)); }
+
+  Sequence<std::uint32_t> of_q_, of_v_;  // group of each coordinate and speed
+  Sequence<Group> groups_;
+  AssemblyExtents extents_;
+};
+
+template <class>
+ErrorNorm::ErrorNorm(System const& system, bool by_speeds) {
+  UnknownPlaces const whole = whole_places(system.layout());
+  UnknownPlaces const stepped = system.step_coordinates() ? stepped_places(system, whole) : whole;
+  Sequence<Index> const assembly = assemblies_of(system.layout());
+  extents_ = AssemblyExtents(system, whole, stepped, assembly);
+  Sequence<std::array<Index, 3>> number(assembly.size(), {-1, -1, -1});
+  auto const group = [&](UnknownPlace const& x) {
+    Index& n = number[std::size_t(x.body)][std::size_t(x.kind)];
+    if (n < 0) {
+      n = Index(groups_.size());
+      groups_.push_back({.kind = x.kind, .assembly = std::uint32_t(assembly[std::size_t(x.body)])});
+    }
+    return std::uint32_t(n);
+  };
+  for (UnknownPlace const& x : stepped.of_q) {
+    of_q_.push_back(group(x));
+    ++groups_[of_q_.back()].errors;
+  }
+  for (UnknownPlace const& x : stepped.of_v) {
+    of_v_.push_back(group(x));
+    ++groups_[of_v_.back()].speeds;
+  }
+  if (by_speeds)
+    for (Group& g : groups_) g.errors = g.speeds;
+}
 
 }  // namespace polybody::detail

@@ -20,11 +20,10 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
   using Next = ExplicitStep<Solver>;
   using Next::dq, Next::q, Next::v, Next::a, Next::lambda, Next::forward;
   std::array<VecX, stages> position_rate, acceleration;
-  VecX error, v_error;
   typename Stabilisation::Scratch scratch;
   RowFeedback feedback;  ///< of the run
 
-  explicit RungeKuttaWorkspace(System& s) : Next(s), error(v), v_error(v), scratch(s) {
+  explicit RungeKuttaWorkspace(System& s) : Next(s), scratch(s) {
     position_rate.fill(v);
     acceleration.fill(v);
   }
@@ -133,10 +132,22 @@ struct DormandPrince {
   static constexpr bool controls_step = true;
   using Tableau = detail::DormandPrinceTableau;  ///< its coefficients
 
-  double relative_tolerance = 1e-8;   ///< relative to the size of what is integrated
+  /// Error of a step relative to the scale of each kind of unknown of each body: the extent of the bodies that act on
+  /// each other and that of their velocities, one radian and the body's angular velocity (`detail::ErrorNorm`).
+  double relative_tolerance = 1e-8;
   double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
   double smallest_step = 1e-12;       ///< that may be chosen [s]
   Stabilisation stabilisation = {};   ///< how a step keeps to the rows
+
+  /// Everything that a step needs, allocated once.
+  template <class Solver>
+  struct Workspace : detail::RungeKuttaWorkspace<Solver, Stabilisation, 7> {
+    VecX error, v_error;     ///< of coordinates, by speeds; of speeds
+    detail::ErrorNorm norm;  ///< of these
+    /// Allocates all of it.
+    explicit Workspace(System& s)
+        : detail::RungeKuttaWorkspace<Solver, Stabilisation, 7>(s), error(this->v), v_error(this->v), norm(s, true) {}
+  };
 
   void check() const {
     require_positive(relative_tolerance, "DormandPrince: the relative tolerance");
@@ -145,8 +156,8 @@ struct DormandPrince {
     stabilisation.check();
   }
   template <class Solver>
-  auto workspace(System& system) const {
-    return detail::RungeKuttaWorkspace<Solver, Stabilisation, 7>(system);
+  Workspace<Solver> workspace(System& system) const {
+    return Workspace<Solver>(system);
   }
   template <class W>
   void start(System& system, State& x, double, W& w) const {
@@ -168,7 +179,7 @@ struct DormandPrince {
         w.error += (h * Tableau::error[j]) * w.position_rate[j];
         w.v_error += (h * Tableau::error[j]) * w.acceleration[j];
       }
-      double const error = std::sqrt(mean_square(x, system.speeds() - system.layout().states, w));
+      double const error = std::sqrt(mean_square(system, x, w));
       double const factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 5.0);
       if (error <= 1.0) {
         w.combine(x, h, Tableau::b, Tableau::stages);
@@ -187,14 +198,13 @@ struct DormandPrince {
   }
 
  private:
-  /// Mean square of the error over what is tolerated, of positions and speeds together and of first-order states.
+  /// ‖error‖² (`ErrorNorm`), and the mean square of the errors of first-order states.
   template <class W>
-  double mean_square(State const& x, Index bodies, W const& w) const {
+  double mean_square(System const& system, State const& x, W& w) const {
     detail::ErrorTolerance const tolerance{absolute_tolerance, relative_tolerance};
-    double const of_q = tolerance.of_all(x.q, w.dq, std::max(x.q.size(), w.dq.size()));  // states move no coordinate
-    return 0.5 * (tolerance.mean_square(w.error, bodies, of_q) +
-                  tolerance.mean_square(w.v_error, bodies, tolerance.of_all(x.v, w.v, bodies))) +
-           tolerance.mean_square_each(w.v_error, x.v, w.v, bodies);
+    w.norm.set_scales(system, tolerance, x, w.q, w.v);
+    return w.norm.mean_square(w.error, w.v_error) +
+           tolerance.mean_square_each(w.v_error, x.v, w.v, system.speeds() - system.layout().states);
   }
 };
 

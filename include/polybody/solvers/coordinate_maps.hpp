@@ -39,6 +39,10 @@ class CoordinateMaps {
                    .rows_that_stay = reduction_.rows_that_stay(),
                    .keeps_mass_constant = !has_tree};
     for (Index i = 0; i < n.speeds; ++i) n.whole_speed.push_back(reduction_.whole_speed(i));
+    if constexpr (has_tree)
+      for_each_motion(reduction_.tree(), [&](JointMotion const& m, Index q, Index v) {
+        if (m.kind != JointMotion::Kind::slide) n.turns.push_back({q, v, m.coordinates(), m.speeds()});
+      });
     return n;
   }
 

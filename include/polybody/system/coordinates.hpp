@@ -17,6 +17,12 @@ struct NarrowLayout {
   Sequence<NarrowPlace> places = {};            ///< of the bodies, in the order of the layout
   Sequence<Index> whole_speed = {};     ///< behind a narrow one; of a joint coordinate, the first of the carried body
   Sequence<Index> rows_that_stay = {};  ///< by their number in the model
+  /// A turn of a joint, in narrow vectors.
+  struct Turn {
+    Index q, v;                 ///< its first coordinate and speed
+    Index coordinates, speeds;  ///< how many of both it has
+  };
+  Sequence<Turn> turns = {};  ///< among the joint coordinates; the others are slides and deformations
   /// Eliminated rows of joints that carry bodies, where the equations hold them: a step may keep estimates of their
   /// multipliers behind those of its rows. They move nothing; they bring the residual of the whole model near zero.
   Sequence<Index> carrying_rows = {};

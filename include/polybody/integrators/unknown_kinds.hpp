@@ -1,0 +1,133 @@
+#pragma once
+/// \file
+/// Kinds of unknowns of a time step, and the assemblies that joints and forces make of bodies.
+
+#include <string_view>
+
+#include <polybody/system/system.hpp>
+
+namespace polybody::detail {
+
+/// Kinds of unknowns whose errors compare: of coordinates, and of their rates.
+enum class UnknownKind : unsigned char {
+  length,    ///< of a position in the world
+  rotation,  ///< an angle, or an entry of a unit quaternion
+  other      ///< any other: gradients, deformations, slides, coordinates of unknown unit
+};
+
+/// An unknown: the body that it belongs to, its kind, and the axis of the world of a position, else −1.
+struct UnknownPlace {
+  Index body = 0;
+  UnknownKind kind = UnknownKind::other;
+  signed char axis = -1;
+};
+
+/// Places of the coordinates and speeds of bodies, first-order states left out.
+struct UnknownPlaces {
+  Sequence<UnknownPlace> of_q, of_v;
+};
+
+/// By the units of a body. Three speeds in rad/s beside four coordinates without a unit are those of a quaternion.
+/// Lengths are positions where they come as many as the world has axes, with coordinates of other kinds between them;
+/// the last ones of a body that follow others are places of sliders.
+template <class = void>
+[[gnu::cold]] void classify(BodyPlace const& body, Index speeds, UnknownPlace* of_q, UnknownPlace* of_v) {
+  if (!body.units.of_coordinate) return;
+  auto const unit = [&](Index i) { return std::string_view(body.units.of_coordinate(body.body, i)); };
+  auto const turns = [&](Index j) {
+    return body.units.of_speed && std::string_view(body.units.of_speed(body.body, j)) == "rad/s";
+  };
+  Index const axes = body.planar ? 2 : 3;
+  for (Index i = 0, j = 0; i < body.coordinates && j < speeds;) {
+    if (unit(i) == "m") {
+      Index n = 1;
+      while (n < axes && i + n < body.coordinates && unit(i + n) == "m") ++n;
+      bool const position = n == axes && (i == 0 || i + n < body.coordinates);
+      for (Index k = 0; k < n; ++k, ++i, ++j)
+        if (position) of_q[i].kind = of_v[j].kind = UnknownKind::length, of_q[i].axis = of_v[j].axis = char(k);
+    } else if (unit(i) == "1" && turns(j)) {
+      for (Index k = 0; k < 4; ++k) of_q[i++].kind = UnknownKind::rotation;
+      for (Index k = 0; k < 3; ++k) of_v[j++].kind = UnknownKind::rotation;
+    } else {
+      if (unit(i) == "rad") of_q[i].kind = of_v[j].kind = UnknownKind::rotation;
+      ++i, ++j;
+    }
+  }
+}
+
+/// Places of the unknowns of the whole model.
+template <class = void>
+[[gnu::cold]] UnknownPlaces whole_places(ModelLayout const& layout) {
+  UnknownPlaces out{Sequence<UnknownPlace>(std::size_t(layout.coordinates)),
+                    Sequence<UnknownPlace>(std::size_t(layout.body_speeds()))};
+  for (std::size_t k = 0; k < layout.bodies.size(); ++k) {
+    BodyPlace const& b = layout.bodies[k];
+    Index const speeds = std::min(b.speeds, layout.body_speeds() - b.v0);  // behind them: first-order states
+    for (Index i = 0; i < b.coordinates; ++i) out.of_q[std::size_t(b.q0 + i)].body = Index(k);
+    for (Index i = 0; i < speeds; ++i) out.of_v[std::size_t(b.v0 + i)].body = Index(k);
+    classify(b, speeds, out.of_q.data() + b.q0, out.of_v.data() + b.v0);
+  }
+  return out;
+}
+
+/// From those of the whole model to those of a time step.
+template <class = void>
+[[gnu::cold]] UnknownPlaces stepped_places(System const& system, UnknownPlaces const& whole) {
+  NarrowLayout const& n = *system.step_coordinates().narrow;
+  UnknownPlaces out{Sequence<UnknownPlace>(std::size_t(n.coordinates)),
+                    Sequence<UnknownPlace>(std::size_t(n.speeds - system.layout().states))};
+  auto& [of_q, of_v] = out;
+  for (std::size_t k = 0; k < n.places.size(); ++k) {
+    NarrowPlace const& at = n.places[k];
+    BodyPlace const& body = system.layout().bodies[k];
+    for (Index i = 0; i < at.speeds; ++i) {
+      UnknownPlace& kind = of_v[std::size_t(at.v + i)];
+      if (at.kind != NarrowPlace::Kind::carried) kind = whole.of_v[std::size_t(n.whole_speed[std::size_t(at.v + i)])];
+      kind.body = Index(k);
+    }
+    for (Index i = 0; i < at.coordinates; ++i) {
+      UnknownPlace& kind = of_q[std::size_t(at.q + i)];
+      if (at.kind == NarrowPlace::Kind::as_it_is) kind = whole.of_q[std::size_t(body.q0 + i)];
+      if (at.kind == NarrowPlace::Kind::reduced) kind = of_v[std::size_t(at.v + i)];  // they add
+      kind.body = Index(k);
+    }
+  }
+  for (NarrowLayout::Turn const& turn : n.turns) {
+    for (Index i = 0; i < turn.coordinates; ++i) of_q[std::size_t(turn.q + i)].kind = UnknownKind::rotation;
+    for (Index i = 0; i < turn.speeds; ++i) of_v[std::size_t(turn.v + i)].kind = UnknownKind::rotation;
+  }
+  return out;
+}
+
+/// Number of the assembly of each body: of bodies that joints and forces connect.
+template <class = void>
+[[gnu::cold]] Sequence<Index> assemblies_of(ModelLayout const& layout) {
+  Sequence<Index> root(layout.bodies.size());
+  for (std::size_t i = 0; i < root.size(); ++i) root[i] = Index(i);
+  auto const find = [&](Index i) {
+    while (root[std::size_t(i)] != i) i = root[std::size_t(i)] = root[std::size_t(root[std::size_t(i)])];
+    return i;
+  };
+  auto const owner = [&](Index marker) { return marker < 0 ? Index(-1) : layout.owners[std::size_t(marker)]; };
+  auto const join = [&](Index a, Index b) {
+    if (a >= 0 && b >= 0) root[std::size_t(find(a))] = find(b);
+  };
+  for (JointPlace const& j : layout.joints) join(owner(j.a), owner(j.b));
+  for (ForcePlace const& f : layout.forces) {
+    Index last = -1;
+    for (Index const marker : f.markers) {
+      join(owner(marker), last);
+      if (owner(marker) >= 0) last = owner(marker);
+    }
+  }
+  Sequence<Index> number(root.size(), -1), of(root.size());
+  Index count = 0;
+  for (std::size_t i = 0; i < root.size(); ++i) {
+    Index& n = number[std::size_t(find(Index(i)))];
+    if (n < 0) n = count++;
+    of[i] = n;
+  }
+  return of;
+}
+
+}  // namespace polybody::detail
