@@ -122,10 +122,11 @@ Sequence<bool> constant_unknowns(System const& s) {
   Sequence<bool> out(std::size_t(equations_of(s)), false);
   Coordinates const& c = s.step_coordinates();
   if (c && c.narrow->whole_unknown.empty()) return out;
+  Sequence<bool> constant(std::size_t(s.layout().speeds), false);
+  for (BodyPlace const& b : s.layout().bodies) std::fill_n(constant.begin() + b.v0, b.speeds, b.constant_mass);
   for (Index i = 0; i < equation_speeds_of(s); ++i) {
     Index const whole = c ? c.narrow->whole_unknown[std::size_t(i)] : i;
-    for (BodyPlace const& b : s.layout().bodies)
-      if (whole >= b.v0 && whole < b.v0 + b.speeds) out[std::size_t(i)] = b.constant_mass;
+    if (whole >= 0 && whole < s.layout().speeds) out[std::size_t(i)] = constant[std::size_t(whole)];
   }
   return out;
 }

@@ -15,7 +15,13 @@ namespace detail {
 class JointGraph {
  public:
   template <class = void>
-  explicit JointGraph(ModelLayout const& layout) : layout_(layout), found_(layout.bodies.size(), 0) {
+  explicit JointGraph(ModelLayout const& layout)
+      : layout_(layout), found_(layout.bodies.size(), 0), joints_of_(layout.bodies.size() + 1) {
+    for (Index j = 0; j < Index(layout.joints.size()); ++j) {
+      auto const [a, b] = ends(j);
+      joints_of_[std::size_t(a + 1)].push_back(j);
+      if (a != b) joints_of_[std::size_t(b + 1)].push_back(j);
+    }
     order_.reserve(layout.bodies.size());
     spread(-1);
     joined_ = order_.size();
@@ -60,9 +66,9 @@ class JointGraph {
     Sequence<Carried> waiting;
     auto const offer = [&](Index by, int branch) {
       Sequence<Carried> next;
-      for (Index j = 0; j < Index(layout_.joints.size()); ++j) {
+      for (Index const j : joints_of_[std::size_t(by + 1)]) {
         auto const [a, b] = ends(j);
-        Index const other = a == by ? b : b == by ? a : by;
+        Index const other = a == by ? b : a;
         if (other != by && other >= 0 && !found_[std::size_t(other)]) next.push_back({other, j, by, branch});
       }
       int const inner = next.size() > 1 ? branch + 1 : branch;
@@ -83,6 +89,7 @@ class JointGraph {
 
   ModelLayout const& layout_;
   Sequence<char> found_;
+  Sequence<Sequence<Index>> joints_of_;  ///< ascending, by place of the body plus one; the first are the ground's
   Sequence<Carried> order_;
   std::size_t joined_ = 0;
 };

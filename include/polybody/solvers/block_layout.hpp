@@ -171,6 +171,9 @@ class BlockLayout {
 
   void find_targets() {
     targets.clear();
+    std::size_t pairs = 0;
+    for (Node const& n : nodes) pairs += std::size_t(n.neighbours) * std::size_t(std::max(n.neighbours - 1, 0)) / 2;
+    targets.reserve(pairs);
     for (Node& n : nodes) {
       n.first_target = int(targets.size());
       for (int a = 0; a < n.neighbours; ++a) {

@@ -1,23 +1,26 @@
 #pragma once
 /// \file
-/// What the bodies, joints or forces of a model are called: each otherwise.
+/// Unique names of the bodies, joints or forces of a model.
 
-#include <algorithm>
+#include <functional>
 #include <string>
-#include <vector>
 
 #include <polybody/math/errors.hpp>
+#include <polybody/math/sequence.hpp>
 
 namespace polybody::detail {
 
+/// Names in the order in which they were taken, with a hash table of open addressing: a name is found in constant time.
 class Names {
  public:
-  /// The name as it is given; where it is empty, "kind n" for the first n > `before` of which that is free.
+  /// Returns a given name as it is. An empty one becomes "kind n" with the first n > `before` that makes a free name.
   template <class = void>  // compiled where it is used
-  [[gnu::cold]] std::string given_or_next(std::string name, char const* kind, std::size_t before) const {
-    for (bool const automatic = name.empty(); name.empty() || (automatic && has(name));)
-      name = kind + (" " + std::to_string(++before));
-    return name;
+  [[gnu::cold]] std::string given_or_next(std::string name, char const* kind, std::size_t before) {
+    if (!name.empty()) return name;
+    Run& taken = run_of(kind);
+    if (before < taken.from || before > taken.to) taken.from = taken.to = before;
+    for (;; ++taken.to)
+      if (name = kind + (" " + std::to_string(taken.to + 1)); !has(name)) return name;
   }
   /// \throws InvalidInput when something is called so already. \param what "body", "joint" or "force"
   template <class = void>
@@ -29,13 +32,39 @@ class Names {
   }
   template <class = void>
   [[gnu::cold]] void take(std::string const& name) {
-    sorted_.insert(std::lower_bound(sorted_.begin(), sorted_.end(), name), name);
+    names_.push_back(name);
+    if (2 * names_.size() <= slots_.size()) {
+      slots_[slot_of(name)] = names_.size();
+      return;
+    }
+    slots_.assign(std::max<std::size_t>(4 * names_.size(), 16), 0);
+    for (std::size_t i = 0; i < names_.size(); ++i) slots_[slot_of(names_[i])] = i + 1;
   }
 
  private:
-  bool has(std::string const& name) const { return std::binary_search(sorted_.begin(), sorted_.end(), name); }
+  /// "kind n" is taken for from < n ≤ to.
+  struct Run {
+    std::string kind;
+    std::size_t from = 0, to = 0;
+  };
+  Run& run_of(char const* kind) {
+    for (Run& run : runs_)
+      if (run.kind == kind) return run;
+    runs_.push_back({kind});
+    return runs_.back();
+  }
 
-  std::vector<std::string> sorted_;
+  /// The slot that holds the name, or the free one where it belongs.
+  std::size_t slot_of(std::string const& name) const {
+    std::size_t i = std::hash<std::string>{}(name) % slots_.size();
+    while (slots_[i] != 0 && names_[slots_[i] - 1] != name) i = (i + 1) % slots_.size();
+    return i;
+  }
+  bool has(std::string const& name) const { return !slots_.empty() && slots_[slot_of(name)] != 0; }
+
+  Sequence<std::string> names_;
+  Sequence<std::size_t> slots_;  ///< places in `names_` from one on; zero is free
+  Sequence<Run> runs_;           ///< of numbers that were found taken
 };
 
 }  // namespace polybody::detail

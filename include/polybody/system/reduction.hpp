@@ -283,10 +283,15 @@ void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const
   refuse_loops(bodies.size(), links);
   Sequence<Index> place(bodies.size(), -1);
   Sequence<bool> used(links.size(), false);
+  Sequence<Sequence<std::size_t>> links_of(bodies.size() + 1);  // ascending; those of the ground are the first
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    links_of[std::size_t(links[k].a.body + 1)].push_back(k);
+    links_of[std::size_t(links[k].b.body + 1)].push_back(k);
+  }
   auto const carry_from = [&](Index body) {  // −1: the ground
-    for (std::size_t k = 0; k < links.size(); ++k) {
+    for (std::size_t const k : links_of[std::size_t(body + 1)]) {
       Link const& link = links[k];
-      if (used[k] || (link.a.body != body && link.b.body != body)) continue;
+      if (used[k]) continue;
       used[k] = true;
       bool const backwards = link.a.body != body;
       Hook const& from = backwards ? link.b : link.a;
