@@ -5,6 +5,7 @@
 #include <Eigen/SparseQR>
 
 #include <polybody/run/initial_conditions.hpp>
+#include <polybody/run/private_rows.hpp>
 
 namespace polybody {
 
@@ -50,31 +51,44 @@ class RowFactor {
  public:
   static constexpr double threshold = 1e-6;
 
-  RowFactor(Index speeds, Index rows, std::vector<Eigen::Triplet<double>> const& entries)
+  /// \param bodies whose rows are left out where they are private (`PrivateRows`)
+  RowFactor(Index speeds, Index rows, std::vector<Eigen::Triplet<double>> const& entries,
+            Sequence<BodyPlace> const& bodies = {})
       : scale_(std::size_t(rows), 0.0) {
     std::vector<double> of_speed(std::size_t(speeds), 0.0);
     for (auto const& e : entries)
       of_speed[std::size_t(e.row())] = std::hypot(of_speed[std::size_t(e.row())], e.value());
-    std::vector<int> place;  // speeds that no row touches are left out
-    Index touched = 0;
-    for (double const s : of_speed) place.push_back(s > 0.0 ? int(touched++) : -1);
     auto const scaled = [&](auto const& e) { return e.value() / of_speed[std::size_t(e.row())]; };
     for (auto const& e : entries) scale_[std::size_t(e.col())] = std::hypot(scale_[std::size_t(e.col())], scaled(e));
     for (double& s : scale_) s = s > 0.0 ? 1.0 / s : 1.0;
-    std::vector<Eigen::Triplet<double>> kept;
+    Sequence<RowEntry> all;
     for (auto const& e : entries)
-      kept.emplace_back(place[std::size_t(e.row())], e.col(), scaled(e) * scale_[std::size_t(e.col())]);
-    Eigen::SparseMatrix<double> transposed(touched, rows);
+      all.push_back({Index(e.col()), Index(e.row()), scaled(e) * scale_[std::size_t(e.col())]});
+    PrivateRows<> const left_out(bodies, rows, bodies.empty() ? Sequence<RowEntry>() : all);
+    std::vector<int> column, place(of_speed.size(), -1);  // of rows that stay, of speeds that these touch
+    for (Index i = 0; i < rows; ++i) {
+      column.push_back(left_out[i] ? -1 : int(stays_.size()));
+      if (!left_out[i]) stays_.push_back(i);
+    }
+    for (RowEntry const& e : all)
+      if (!left_out[e.row]) place[std::size_t(e.speed)] = 0;
+    Index touched = 0;
+    for (int& p : place) p = p < 0 ? -1 : int(touched++);
+    std::vector<Eigen::Triplet<double>> kept;
+    for (RowEntry const& e : all)
+      if (!left_out[e.row]) kept.emplace_back(place[std::size_t(e.speed)], column[std::size_t(e.row)], e.value);
+    Eigen::SparseMatrix<double> transposed(touched, Index(stays_.size()));
     transposed.setFromTriplets(kept.begin(), kept.end());
     qr_.setPivotThreshold(threshold);
     if (touched > 0) qr_.compute(transposed);
     rank_ = touched > 0 ? qr_.rank() : 0;
   }
 
-  Index rank() const { return rank_; }
-  Index repeated() const { return Index(scale_.size()) - rank_; }
+  Index rank() const { return Index(scale_.size()) - repeated(); }
+  Index repeated() const { return factored() - rank_; }
+  Index factored() const { return Index(stays_.size()); }  ///< rows that are not private
   /// The k-th row that repeats others.
-  Index row(Index k) const { return rank_ > 0 ? qr_.colsPermutation().indices()[rank_ + k] : k; }
+  Index row(Index k) const { return original(rank_ + k); }
   /// c (rows) of it.
   VecX relation(Index k) const {
     VecX x = VecX::Zero(rank_), c = VecX::Zero(Index(scale_.size()));
@@ -93,7 +107,7 @@ class RowFactor {
       column(j, [&](Index i, double value) { x[i] -= i < j ? value * x[j] : 0.0; });
     }
     for (Index j = 0; j < rank_; ++j) {
-      Index const i = qr_.colsPermutation().indices()[j];
+      Index const i = original(j);
       c[i] = -scale_[std::size_t(i)] * x[j];
     }
     return c;
@@ -101,7 +115,10 @@ class RowFactor {
 
  private:
   using Qr = Eigen::SparseQR<Eigen::SparseMatrix<double>, Ordering>;
+  /// The row of G in column j of the factor.
+  Index original(Index j) const { return stays_[std::size_t(rank_ > 0 ? qr_.colsPermutation().indices()[j] : j)]; }
   std::vector<double> scale_;
+  std::vector<Index> stays_;  // rows that are factored, ascending
   Qr qr_;
   Index rank_ = 0;
 };
@@ -120,7 +137,8 @@ Redundancy redundancy(System& system, State const& x) {
   detail::RowsSink<> sink{system.speeds(), entries};
   VecX phi = VecX::Zero(system.rows()), rate = phi, gamma = phi;
   system.masses(sink);
-  detail::RowFactor<> const factor(system.speeds(), system.rows(), entries);
+  detail::RowFactor<> const factor(system.speeds(), system.rows(), entries,
+                                   system.step_coordinates() ? Sequence<BodyPlace>() : system.layout().bodies);
   system.violation(phi);
   system.violation_rate(rate);
   system.acceleration_bias(gamma);

@@ -56,6 +56,18 @@ struct RowRelation {
   VecX mu_, w_, a_;
 };
 
+/// b − G a by rows, for a motion a with G a = b in all rows that were not dropped: in a dropped row, c·b with its
+/// relation c. As max |c| ≥ 1, |c·b|/max |c| is at most as large. A limit is thus asked of all rows by one solution;
+/// only rows beyond it need their relations. `forward` is as factored last, at the place of `system`.
+template <class Solver>
+[[gnu::cold]] VecX left_of(System& system, ForwardDynamics<Solver>& forward, VecX const& b) {
+  VecX a = VecX::Zero(system.speeds()), left = VecX::Zero(system.rows());
+  forward.least_change(system, b, a);  // G a = −b
+  system.rows_times(a, left);
+  left += b;
+  return left;
+}
+
 /// How rows that repeat others at (q, t) bend with the motion: c·γ(v) − c·γ(0), a quadratic form of v. Where it
 /// vanishes for all v with G v = 0, they repeat others everywhere; else only here, and the position is singular:
 /// motions branch there, and only speeds with c·γ(v) = c·γ(0) belong to one.
@@ -79,6 +91,16 @@ struct RowBending {
     for (Index i = 0; i < w.size(); ++i) w[i] += moved_[i];
     bias(system, zero_, rest_);
   }
+  /// c·γ(w) − c·γ(0) by dropped rows, relative to the larger γ; `limit` of `is_singular` is the least that counts.
+  template <class Solver>
+  VecX bent(System& system, ForwardDynamics<Solver>& forward) {
+    bias(system, w, gamma_);
+    double const scale = std::max(largest_size(gamma_), largest_size(rest_));
+    VecX left = left_of(system, forward, gamma_ - rest_);
+    if (scale > 0.0) left /= scale;
+    return left;
+  }
+  static constexpr double limit = 1e-6;  ///< of differences of c·γ, relative to max |c| max |γ|
   /// Whether the row of c repeats others only here.
   bool is_singular(System& system, VecX const& c) {
     bias(system, w, gamma_);
@@ -105,7 +127,7 @@ struct RowBending {
     double sum = 0.0;
     for (Index i = 0; i < c.size(); ++i) sum += c[i] * (a[i] - b[i]);
     double const scale = largest_size(c) * std::max(largest_size(a), largest_size(b));
-    return std::abs(sum) > 1e-6 * scale;
+    return std::abs(sum) > limit * scale;
   }
 
   State const& x_;
@@ -124,7 +146,9 @@ template <class Solver>
   if (forward.redundant_rows().empty()) return "";
   detail::RowRelation<> relation(system);
   detail::RowBending<> bending(system, forward, x);
+  VecX const bent = bending.bent(system, forward);
   for (Index const i : forward.redundant_rows()) {
+    if (i < system.speeds() || std::abs(bent[i - system.speeds()]) <= bending.limit) continue;
     if (!relation.find(system, forward, i) || !bending.is_singular(system, relation.c) ||
         !bending.leaves_open(system, relation.c))
       continue;
@@ -146,7 +170,9 @@ template <class Solver>
                                             double limit, std::string const& what) {
   if (forward.redundant_rows().empty()) return;
   detail::RowRelation<> relation(system);
+  VecX const at_most = first_not_finite(b) < 0 ? detail::left_of(system, forward, b) : b;
   for (Index const i : forward.redundant_rows()) {
+    if (i < system.speeds() || std::abs(at_most[i - system.speeds()]) <= limit) continue;
     if (!relation.find(system, forward, i)) continue;
     double sum = 0.0;
     for (Index k = 0; k < b.size(); ++k) sum += relation.c[k] * b[k];

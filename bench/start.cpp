@@ -1,0 +1,125 @@
+// Times of what comes before the first step of large models: adding the parts, `simulate` (assembly check, order of
+// elimination, first accelerations), `outline` and `check`; chains of planar bodies on pins, and many pins at one
+// point. The number in brackets is the exponent of growth between two rows: 1 is linear. Processor time of one run.
+#include <benchmark/benchmark.h>
+#include <malloc.h>
+
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <polybody/polybody.hpp>
+#include <polybody/run/check.hpp>
+#include <polybody/run/outline.hpp>
+#include <sstream>
+
+namespace {
+
+using namespace polybody;
+
+template <class Policy>
+using Pin = Joint<planar::Revolute, Policy>;
+template <class Policy>
+using Chain = Model<Bodies<planar::Rigid>, Joints<Pin<Policy>>>;
+
+double processor_time() { return double(std::clock()) / CLOCKS_PER_SEC; }
+
+double seconds(std::function<void()> const& act) {
+  double const start = processor_time();
+  act();
+  return processor_time() - start;
+}
+
+/// Bars of 1 m and 1 kg in a row, each pinned to the one before.
+template <class Policy>
+Chain<Policy> chain(int bodies) {
+  Chain<Policy> model{Gravity{0, -9.81, 0}};
+  BodyHandle<planar::Rigid> before;
+  for (int i = 0; i < bodies; ++i) {
+    auto const bar = model.add(planar::Rigid(1.0, 1.0 / 12.0, Placement::planar(0.5 + i, 0.0)));
+    if (i == 0)
+      model.connect(Pin<Policy>{}, model.ground().at({0, 0, 0}), bar.at(Vec2(-0.5, 0)));
+    else
+      model.connect(Pin<Policy>{}, before.at(Vec2(0.5, 0)), bar.at(Vec2(-0.5, 0)));
+    before = bar;
+  }
+  return model;
+}
+
+/// One body on so many pins at one point.
+Chain<Constraint> pinned(int pins) {
+  Chain<Constraint> model{Gravity{0, -9.81, 0}};
+  auto const hub = model.add(planar::Rigid(1.0, 1.0, Placement::planar(0.5, 0.0)), "hub");
+  for (int i = 0; i < pins; ++i) model.connect(Pin<Constraint>{}, model.ground().at({0, 0, 0}), hub.at(Vec2(-0.5, 0)));
+  return model;
+}
+
+/// A line of times, and of exponents beside the line before.
+class Table {
+ public:
+  void add(int size, std::vector<double> const& times) {
+    std::printf("%8d", size);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      std::printf("  %9.3f", times[k]);
+      if (k < before_.size() && before_[k] > 0.0 && times[k] > 0.0)
+        std::printf(" (%4.2f)", std::log(times[k] / before_[k]) / std::log(double(size) / size_));
+      else
+        std::printf("       ");
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+    size_ = size;
+    before_ = times;
+  }
+
+ private:
+  int size_ = 0;
+  std::vector<double> before_;
+};
+
+template <class Policy>
+void chains(char const* title) {
+  std::printf(
+      "\n%s [s] (exponent)\n  bodies  adding            simulate          first step        outline           check\n",
+      title);
+  Table table;
+  for (int const bodies : {1000, 3000, 10000, 20000, 100000}) {
+    malloc_trim(0);  // each size takes its memory from the system anew
+    std::optional<Chain<Policy>> model;
+    std::vector<double> times{seconds([&] { model = chain<Policy>(bodies); })};
+    State x = model->reference_state();
+    State const start = x;
+    using Run = decltype(simulate(*model, x, GeneralizedAlpha{}, RunOptions{.until = 1.0, .step = 1e-3}));
+    std::unique_ptr<Run> run;
+    times.push_back(seconds(
+        [&] { run.reset(new Run(simulate(*model, x, GeneralizedAlpha{}, RunOptions{.until = 1.0, .step = 1e-3}))); }));
+    times.push_back(seconds([&] { run->advance(); }));
+    times.push_back(seconds([&] { benchmark::DoNotOptimize(outline(*model)); }));
+    times.push_back(seconds([&] { benchmark::DoNotOptimize(check(*model, start)); }));
+    table.add(bodies, times);
+  }
+}
+
+void pins() {
+  std::printf("\npins at one point [s] (exponent)\n    pins  simulate          redundancy\n");
+  Table table;
+  for (int const n : {100, 200, 400}) {
+    Chain<Constraint> const model = pinned(n);
+    State x = model.reference_state();
+    double const start = seconds([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}); });
+    double const rank = seconds([&] { benchmark::DoNotOptimize(redundancy(model, x)); });
+    table.add(n, {start, rank});
+  }
+}
+
+void start(benchmark::State& state) {
+  for (auto _ : state) {
+    chains<Constraint>("chain, Constraint");
+    chains<Recursive>("chain, Recursive");
+    pins();
+  }
+}
+BENCHMARK(start)->Iterations(1)->Unit(benchmark::kSecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,164 @@
+// What is done before the first step grows linearly with the model: shown by structure and by counts of operations.
+// bench/start.cpp shows times.
+#include <gtest/gtest.h>
+
+#include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
+#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/revolute.hpp>
+#include <polybody/run/redundancy.hpp>
+
+namespace polybody {
+namespace large_models_test {
+
+using Pin = Joint<planar::Revolute, Constraint>;
+using Chain = Model<Bodies<planar::Rigid>, Joints<Pin>>;
+
+Chain chain(int bodies) {
+  Chain model{Gravity{0, -9.81, 0}};
+  BodyHandle<planar::Rigid> before;
+  for (int i = 0; i < bodies; ++i) {
+    auto const bar = model.add(planar::Rigid(1.0, 1.0 / 12.0, Placement::planar(0.5 + i, 0.0)));
+    if (i == 0)
+      model.connect(Pin{}, model.ground().at({0, 0, 0}), bar.at(Vec2(-0.5, 0)));
+    else
+      model.connect(Pin{}, before.at(Vec2(0.5, 0)), bar.at(Vec2(-0.5, 0)));
+    before = bar;
+  }
+  return model;
+}
+/// One body on so many pins at one point.
+Chain pinned(int pins) {
+  Chain model{Gravity{0, -9.81, 0}};
+  auto const hub = model.add(planar::Rigid(1.0, 1.0, Placement::planar(0.5, 0.0)), "hub");
+  for (int i = 0; i < pins; ++i) model.connect(Pin{}, model.ground().at({0, 0, 0}), hub.at(Vec2(-0.5, 0)));
+  return model;
+}
+
+/// The factor of the rows of a model in its reference state, of all rows or without private ones.
+template <class M>
+detail::RowFactor<> factor_of(M const& model, bool all) {
+  System system(model, with<Entries::motion>);
+  State const x = model.reference_state();
+  system.evaluate(x.q, x.v, x.t);
+  std::vector<Eigen::Triplet<double>> entries;
+  detail::RowsSink<> sink{system.speeds(), entries};
+  system.masses(sink);
+  return {system.speeds(), system.rows(), entries, all ? Sequence<BodyPlace>() : system.layout().bodies};
+}
+/// Both factors find the same rank, rows and relations; `factored` rows are left for the second one.
+template <class M>
+void expect_alike(M const& model, Index factored) {
+  auto const all = factor_of(model, true), without = factor_of(model, false);
+  EXPECT_EQ(all.factored(), model.rows());
+  EXPECT_EQ(without.factored(), factored);
+  EXPECT_EQ(without.rank(), all.rank());
+  ASSERT_EQ(without.repeated(), all.repeated());
+  for (Index k = 0; k < all.repeated(); ++k) {
+    EXPECT_EQ(without.row(k), all.row(k));
+    VecX const apart = without.relation(k) - all.relation(k);
+    EXPECT_LE(largest_size(apart), 1e-9 * largest_size(all.relation(k)));
+  }
+}
+
+// A rank is found of loops alone. The factor of all rows of a chain has a number of entries that grows as the square.
+TEST(LargeModels, FactorNoRowsOfChains) {
+  expect_alike(chain(50), 0);
+  auto const large = factor_of(chain(3000), false);
+  EXPECT_EQ(large.factored(), 0);
+  EXPECT_EQ(large.rank(), 6000);
+}
+TEST(LargeModels, FactorRowsOfRepeatedPins) { expect_alike(pinned(20), 40); }
+
+// A four-bar linkage with a chain on its coupler; then one pin of the linkage is doubled.
+TEST(LargeModels, FactorRowsOfLoopsOnly) {
+  Chain model;
+  auto const bar = [&](double x, double y, double angle) {
+    return model.add(planar::Rigid(1.0, 1.0 / 12.0, Placement::planar(x, y, angle)));
+  };
+  double const up = 0.5 * std::numbers::pi;
+  auto const left = bar(0, 0.5, up), right = bar(1, 0.5, up), top = bar(0.5, 1, 0), first = bar(1.5, 1, 0),
+             second = bar(2.5, 1, 0);
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), left.at(Vec2(-0.5, 0)));
+  model.connect(Pin{}, top.at(Vec2(0.5, 0)), first.at(Vec2(-0.5, 0)));
+  model.connect(Pin{}, first.at(Vec2(0.5, 0)), second.at(Vec2(-0.5, 0)));
+  model.connect(Pin{}, left.at(Vec2(0.5, 0)), top.at(Vec2(-0.5, 0)));
+  model.connect(Pin{}, model.ground().at({1, 0, 0}), right.at(Vec2(-0.5, 0)));
+  model.connect(Pin{}, right.at(Vec2(0.5, 0)), top.at(Vec2(0.5, 0)));
+  expect_alike(model, 8);
+  model.connect(Pin{}, model.ground().at({1, 0, 0}), right.at(Vec2(-0.5, 0)));
+  expect_alike(model, 10);
+}
+
+// Bodies that own a row, in space.
+TEST(LargeModels, FactorNoRowsOfTreesInSpace) {
+  using Hinge = Joint<Revolute, Constraint>;
+  Model<Bodies<Rigid<>, Rigid<EulerParameters>>, Joints<Hinge>> model;
+  Hinge const hinge{Revolute{.axis = {0, 1, 0}}};
+  auto const hub = model.add(Rigid<>(1.0, Mat3::Identity()), "hub");
+  model.connect(hinge, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}));
+  auto before = model.add(Rigid<EulerParameters>(1.0, Mat3::Identity(), Placement::at({1, 0, 0})));
+  model.connect(hinge, hub.at({0.5, 0, 0}), before.at({-0.5, 0, 0}));
+  for (int i = 0; i < 5; ++i) {
+    auto const next = model.add(Rigid<EulerParameters>(1.0, Mat3::Identity(), Placement::at({2.0 + i, 0, 0})));
+    model.connect(hinge, before.at({0.5, 0, 0}), next.at({-0.5, 0, 0}));
+    before = next;
+  }
+  expect_alike(model, 0);
+  model.connect(hinge, model.ground().at({6.5, 0, 0}), before.at({0.5, 0, 0}));
+  expect_alike(model, model.rows());
+}
+
+/// Counts what is solved for.
+struct Counting : DefaultSolver {
+  void solve(VecX const& b, VecX& x) {
+    ++solutions;
+    DefaultSolver::solve(b, x);
+  }
+  inline static int solutions = 0;
+};
+static_assert(LinearSolver<Counting>);
+
+/// Solutions that the check of a start takes.
+int solutions_of_start(int pins) {
+  Chain const model = pinned(pins);
+  System system(model, with<Entries::motion>);
+  State const x = model.reference_state();
+  ForwardDynamics<Counting> forward(system);
+  Counting::solutions = 0;
+  require_consistent_rows(system, forward, x);
+  EXPECT_EQ(warn_of_start_between_branches(system, forward, x), "");
+  EXPECT_EQ(forward.redundant_rows().size(), std::size_t(2 * (pins - 1)));
+  return Counting::solutions;
+}
+// The number of repeated rows does not matter where they agree: three questions, one solution each, and one for the
+// speeds that test for a singular position.
+TEST(LargeModels, AreAskedForContradictionsByFewSolutions) {
+  EXPECT_EQ(solutions_of_start(5), 4);
+  EXPECT_EQ(solutions_of_start(60), 4);
+}
+
+// Automatic names of two kinds of pins, which share their numbers: each is the next free one.
+TEST(LargeModels, NumberPartsOfTwoTypesWithOneName) {
+  detail::Names names;
+  std::size_t const count = 20000;
+  auto const next = [&](std::size_t before) {
+    std::string name = names.given_or_next("", "pin", before);
+    names.require_free(name, "joint");
+    names.take(name);
+    return name;
+  };
+  names.take("pin 20003");
+  for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(next(i), "pin " + std::to_string(i + 1));
+  EXPECT_EQ(next(0), "pin 20001");
+  EXPECT_EQ(next(1), "pin 20002");
+  EXPECT_EQ(next(2), "pin 20004");
+  for (std::size_t i = 3; i < count; ++i) ASSERT_EQ(next(i), "pin " + std::to_string(count + i + 2));
+  EXPECT_EQ(next(5), "pin " + std::to_string(2 * count + 2));
+  EXPECT_EQ(names.given_or_next("mine", "pin", 0), "mine");
+  EXPECT_EQ(names.given_or_next("", "spring", 4), "spring 5");
+}
+
+}  // namespace large_models_test
+}  // namespace polybody
