@@ -17,9 +17,8 @@
 
 namespace polybody::detail {
 
-/// Differences of the equations by all parameters. An equation that a parameter changes without naming it is detected
-/// in these differences (gradients/shared_equations.hpp), without further evaluations. In doubt the parameters of a
-/// group are changed separately. \tparam V a Variant or a StagesVariant
+/// Differences of the equations by all parameters, in which an equation is detected that a parameter changes without
+/// naming it (gradients/shared_equations.hpp). \tparam V a Variant or a StagesVariant
 template <class V>
 class EquationSlopes {
  public:
@@ -136,16 +135,7 @@ class EquationSlopes {
       most[i < speeds ? 0 : 1] = std::max(most[i < speeds ? 0 : 1], 1e-7 * change(i));
     }
     for (Index i = 0; i < model.system.size(); ++i)
-      if (!touched[std::size_t(i)] && change(i) > most[i < speeds ? 0 : 1])
-        throw InvalidInput{"The parameter \"",
-                           p.name,
-                           "\" changes the equations of ",
-                           model.system.name_of(i),
-                           " at t = ",
-                           x.t,
-                           " s, and its `touches` names nothing that acts there. Add the object that depends on it (",
-                           unnamed_at(model.system, p, i),
-                           "), or leave `touches` empty."};
+      if (!touched[std::size_t(i)] && change(i) > most[i < speeds ? 0 : 1]) refuse_unnamed(model.system, p, i, x.t);
   }
 
  private:
@@ -159,9 +149,6 @@ class EquationSlopes {
   struct Set {
     std::array<std::shared_ptr<V>, 4> models;
     std::vector<MemberOrder> orders;  // by equations: the order of the owner
-  };
-  struct Rounding {
-    double balance = -1.0, rows = 0.0;  // negative: not known
   };
   struct Group {
     SharedEquations equations;
@@ -189,9 +176,7 @@ class EquationSlopes {
   }
   template <class X>
   [[gnu::cold]] void note_rounding(X const& x) {
-    double rows = std::max({1.0, largest_size(x.q), largest_size(x.v), largest_size(x.a)});
-    if constexpr (requires { x.terms; }) rows *= std::max({1.0, x.terms.rate, x.terms.position});
-    rounding_ = {1e-11 * force_at(*models_(nobody, 0), x), 1e-12 * rows};
+    rounding_ = {1e-11 * force_at(*models_(nobody, 0), x), 1e-12 * size_of_rows(x)};
   }
 
   template <class X>
@@ -249,7 +234,7 @@ class EquationSlopes {
   std::vector<Place> places_;
   std::vector<Group> groups_;
   Models models_;
-  Rounding rounding_;
+  RoundingOfEquations rounding_;
 };
 
 }  // namespace polybody::detail

@@ -35,6 +35,18 @@ constexpr MemberOrder const& order_of_member(std::size_t r, std::size_t of_order
   return member_orders[r / of_orders % member_orders.size()];
 }
 
+/// Changes of equations that may be due to round-off.
+struct RoundingOfEquations {
+  double balance = -1.0, rows = 0.0;  ///< negative: not known
+};
+/// The size of the numbers that cancel in the rows at x, a state or a place of a step.
+template <class X>
+double size_of_rows(X const& x) {
+  double const size = std::max({1.0, largest_size(x.q), largest_size(x.v), largest_size(x.a)});
+  if constexpr (requires { x.terms; }) return size * std::max({1.0, x.terms.rate, x.terms.position});
+  return size;
+}
+
 /// Values of an equation at the four places of its own parameter.
 using ValuesAtPlaces = std::array<double, 4>;
 

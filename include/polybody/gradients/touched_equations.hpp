@@ -109,4 +109,18 @@ template <class = void>
   return count > 5 ? sentence_of({list, " and ", count - 5, " more"}) : list;
 }
 
+/// \throws InvalidInput: at time t [s] a parameter changes equation i and does not name an object that acts there.
+template <class = void>
+[[noreturn, gnu::cold]] void refuse_unnamed(System const& system, Parameter const& p, Index i, double t) {
+  throw InvalidInput{"The parameter \"",
+                     p.name,
+                     "\" changes the equations of ",
+                     system.name_of(i),
+                     " at t = ",
+                     t,
+                     " s, and its `touches` names nothing that acts there. Add the object that depends on it (",
+                     unnamed_at(system, p, i),
+                     "), or leave `touches` empty."};
+}
+
 }  // namespace polybody::detail
