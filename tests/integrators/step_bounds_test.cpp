@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/forces/user_force.hpp>
+#include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/penalty.hpp>
@@ -289,6 +292,95 @@ TEST(StepBounds, AForceThatIsNaNInAStepThatFailsIsForgotten) {
   push = 0.0;
   run.run();
   EXPECT_NEAR(x.v.minCoeff(), -100.0 * std::sin(1.5), 1e-3);  // ω = 100 1/s
+}
+
+/// −k (x − 1 m) − d ẋ along x, without a potential.
+auto spring_of_a_user(double k, double d) {
+  return user_force<1>([k, d](auto const& frames, double) {
+    using T = std::decay_t<decltype(frames[0].r[0])>;
+    Wrench<T> w;
+    w.f[0] = (frames[0].r[0] - T(1.0)) * -k - frames[0].v[0] * d;
+    return std::array{w};
+  });
+}
+template <class I>
+void expect_refused(I const& integrator, double k, double d, double h) {
+  auto const force = spring_of_a_user(k, d);
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<std::remove_const_t<decltype(force)>>> model;
+  auto const mass = model.add(planar::Rigid(1.0, 0.1, Placement::planar(1.001, 0.0)), "mass");
+  model.apply(force, mass.at(Vec2(0, 0)), "spring");
+  State x = model.reference_state();
+  auto run = simulate(model, x, integrator, {.until = 0.3, .step = h});
+  EXPECT_TRUE(has(message_of_divergence(run, x), "body \"mass\" moves fastest")) << I::name << k << ' ' << d;
+  EXPECT_NEAR(x.q[0], 1.0, 0.01) << I::name;
+}
+// A force without a potential does not explain the explosion that it drives.
+TEST(StepBounds, AUserForceBeyondTheStabilityLimitIsRefused) {
+  expect_refused(RungeKutta4<>{}, 1e6, 0.0, 1e-2);
+  expect_refused(RungeKutta4<>{}, 1e6, 0.0, 2.9e-3);
+  expect_refused(RungeKutta4<>{}, 1e4, 1e3, 1e-2);
+  expect_refused(CentralDifference<>{}, 1e6, 0.0, 1e-2);
+  expect_refused(SymplecticEuler{}, 1e6, 0.0, 1e-2);
+}
+
+// Constant torque on a rotor that turns by more than half a turn in a step: the quadrature counts whole turns.
+TEST(StepBounds, ATorqueExplainsEnergyAtManyTurnsAStep) {
+  auto const drive = user_force<1>([](auto const& frames, double) {
+    using T = std::decay_t<decltype(frames[0].r[0])>;
+    Wrench<T> w;
+    w.m[2] = T(10.0);
+    return std::array{w};
+  });
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<std::remove_const_t<decltype(drive)>>> model;
+  auto const rotor = model.add(planar::Rigid(1.0, 1.0), "rotor");
+  model.apply(drive, rotor.at(Vec2(0, 0)), "torque");
+  State x = model.reference_state();
+  RunReport const report = simulate(model, x, RungeKutta4<>{}, {.until = 100.0, .step = 0.1}).run();
+  EXPECT_NEAR(x.v[2], 1000.0, 1e-6);
+  EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
+}
+
+// A force that oscillates ten times a second and one that is switched each 0.05 s, under coarse steps and fine ones.
+TEST(StepBounds, ForcesOfTimeAreNeitherRefusedNorWarnedOf) {
+  for (bool const switched : {false, true})
+    for (double const h : {1e-2, 1e-3}) {
+      auto const shake = user_force<1>([switched](auto const& frames, double t) {
+        using T = std::decay_t<decltype(frames[0].r[0])>;
+        double const wave = std::sin(20.0 * std::numbers::pi * t);
+        Wrench<T> w;
+        w.f[0] = T(switched ? (wave < 0.0 ? -10.0 : 10.0) : 10.0 * wave) - frames[0].v[0] * 0.5;
+        return std::array{w};
+      });
+      Model<Bodies<planar::Rigid>, Joints<>, Forces<std::remove_const_t<decltype(shake)>>> model;
+      auto const mass = model.add(planar::Rigid(1.0, 1.0), "mass");
+      model.apply(shake, mass.at(Vec2(0, 0)), "shake");
+      State x = model.reference_state();
+      EXPECT_TRUE(simulate(model, x, GeneralizedAlpha{}, {.until = 10.0, .step = h}).run().warnings.empty());
+      x = model.reference_state();
+      EXPECT_TRUE(simulate(model, x, RungeKutta4<>{}, {.until = 10.0, .step = h}).run().warnings.empty());
+    }
+}
+
+// RungeKutta4 at ωh = 2.84 beyond its 2.828: slow growth is refused at order one, and warned of before.
+TEST(StepBounds, SlowGrowthIsWarnedOfAndThenRefused) {
+  for (double const until : {0.06, 1.0}) {
+    Model<Bodies<Rigid<>>, Joints<>, Forces<SpringDamper>> model;
+    Mat3 const inertia = 0.004 * Mat3::Identity();
+    auto const mass = model.add(Rigid<>(1.0, inertia, Placement::at({1.1, 0, 0})), "mass");
+    model.apply(SpringDamper{.stiffness = 1e4, .damping = 0.0, .free_length = 1.0}, model.ground().at({0, 0, 0}),
+                mass.at(Vec3(0, 0, 0)), "spring");
+    State x = model.reference_state();
+    auto run = simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = 0.0284});
+    if (until == 1.0) {
+      message_of_divergence(run, x);
+      EXPECT_LT(energy(model, x).total(), 400.0);  // of 50 J
+    } else {
+      auto slow = simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.2, .step = 0.0284});
+      auto const warnings = slow.run().warnings;
+      ASSERT_EQ(warnings.size(), 1u);
+      EXPECT_TRUE(has(warnings[0], "J that no work explains")) << warnings[0];
+    }
+  }
 }
 
 TEST(StepBounds, LimitsWithoutAMeaningAreRefused) {

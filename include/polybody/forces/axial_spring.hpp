@@ -25,6 +25,8 @@ struct AxialSpring {
     require_unit(axis, name, ": the axis");
   }
 
+  bool is_lossless() const { return damping == 0.0; }  ///< all work that it takes is stored
+
   /// With d = r_b − r_a and e the axis: s = e·d, ṡ = e·(ḋ − ω_a × d). The pair acts at r_b, so on a it has the moment d
   /// × f_a.
   template <StateScalar T>

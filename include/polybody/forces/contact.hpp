@@ -99,6 +99,18 @@ struct Contact {
     friction.check(name);
   }
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const { return geometry.may_touch(a, b); }
+  /// Neither friction nor the normal force dissipates.
+  bool is_lossless() const
+    requires requires(N const& law) { law.is_lossless(); }
+  {
+    return friction.coefficient == 0.0 && normal.is_lossless();
+  }
+  /// The shapes do not touch at frames `from` or at frames `to`, but on the straight way between.
+  bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const
+    requires requires(G const& shape) { shape.passes(from, to); }
+  {
+    return geometry.passes(from, to);
+  }
   ContactReach reach(Frame<double> const& b) const
     requires TellsReach<G>
   {
@@ -207,6 +219,18 @@ struct Contact {
   }
 };
 
+namespace detail {
+/// Points x and y lie outside of a sphere of radius `reach` [m] about zero, and the way from x to y goes through it by
+/// more than a twentieth of the radius.
+inline bool passes_through(Vec3 const& x, Vec3 const& y, double reach) {
+  Vec3 const way = y - x;
+  double const length2 = way.dot(way), outside = reach * reach;
+  if (length2 < 0.09 * outside || x.dot(x) < outside || y.dot(y) < outside) return false;
+  double const nearest = -x.dot(way) / length2;
+  return nearest > 0.0 && nearest < 1.0 && x.dot(x) - nearest * nearest * length2 < 0.9025 * outside;
+}
+}  // namespace detail
+
 /// A sphere of this radius about marker a on the plane z = 0 of marker b, on the side of positive z.
 struct SphereOnPlane {
   static constexpr Observes needs = Observes::point;
@@ -251,6 +275,11 @@ struct SphereOnSphere {
   ContactReach reach(Frame<double> const& b) const {
     return ContactReach::sphere(b.r, radius_a + radius_b);
   }
+  /// The spheres pass through each other between these frames.
+  template <class = void>  // compiled where it is used
+  bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
+    return detail::passes_through(from[0].r - from[1].r, to[0].r - to[1].r, radius_a + radius_b);
+  }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
     using std::sqrt;
@@ -283,6 +312,17 @@ struct SphereOnCylinder {
   template <class = void>  // compiled where it is used
   ContactReach reach(Frame<double> const& b) const {
     return ContactReach::cylinder(b.r, {b.A(0, 2), b.A(1, 2), b.A(2, 2)}, radius + cylinder);
+  }
+  /// The sphere passes through the cylinder between these frames.
+  template <class = void>  // compiled where it is used
+  bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
+    auto const across = [](Frame<double> const(&f)[2]) {
+      Vec3 const arm = f[0].r - f[1].r;
+      Vec3 out = Vec3::Zero();
+      for (int i = 0; i < 2; ++i) out[i] = f[1].A(0, i) * arm[0] + f[1].A(1, i) * arm[1] + f[1].A(2, i) * arm[2];
+      return out;
+    };
+    return detail::passes_through(across(from), across(to), radius + cylinder);
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {

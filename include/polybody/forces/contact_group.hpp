@@ -24,6 +24,7 @@ class ContactGroup {
   static constexpr int markers = any_number;
   static constexpr bool is_load = false;
   static constexpr Observes needs = std::max({Laws::needs...});
+  static constexpr bool all_laws_store = (HasPotential<Laws> && ...);  ///< each law has a potential
 
   /// One of the few.
   template <class Law>

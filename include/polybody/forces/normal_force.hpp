@@ -67,6 +67,7 @@ struct SpringDamperContact {
     require_not_negative(damping, name, ": the contact damping");
     require_not_negative(onset, name, ": the onset of the contact damping");
   }
+  bool is_lossless() const { return damping == 0.0; }  ///< an impact keeps its energy
   /// The force N ≥ 0 [N] at depth d [m] that grows at `rate` [m/s].
   template <StateScalar T>
   T force(T const& d, T const& rate) const {
@@ -99,6 +100,7 @@ struct HertzContact {
     require_positive(modulus, name, ": the contact modulus");
     require_positive(radius, name, ": the contact radius");
   }
+  bool is_lossless() const { return true; }  ///< an impact keeps its energy
   /// The force N ≥ 0 [N] at depth d [m].
   template <StateScalar T>
   T force(T const& d, T const&) const {
@@ -139,6 +141,7 @@ struct HuntCrossleyContact {
     if (!(exponent >= 1.0) || !std::isfinite(exponent))
       throw InvalidInput{name, ": the exponent of the overlap must be 1 or more, but is ", exponent, "."};
   }
+  bool is_lossless() const { return damping == 0.0; }  ///< an impact keeps its energy
   /// The force N ≥ 0 [N] at depth d [m] that grows at `rate` [m/s].
   template <StateScalar T>
   T force(T const& d, T const& rate) const {

@@ -19,6 +19,8 @@ struct SpringDamper {
     require_not_negative(free_length, name, ": the free length");
   }
 
+  bool is_lossless() const { return damping == 0.0; }  ///< all work that it takes is stored
+
   /// With d = r_b − r_a, l = |d|: f_a = N d/l, f_b = −f_a. For l₀ = 0 the spring passes through l = 0
   /// smoothly when undamped; elsewhere l = 0 has no direction.
   template <StateScalar T>

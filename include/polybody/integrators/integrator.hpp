@@ -18,6 +18,18 @@ struct StepReport {
   double contraction = 0.0;  ///< last contraction rate of Newton's method, a ratio
   long choices = 0;          ///< of independent coordinates since the start, by coordinate partitioning
   double left = 0.0;  ///< correction that it ended with relative to the tolerated one, at Newton's budget; else 0
+
+  /// Adds the second half of a step that was halved.
+  void append(StepReport const& second) {
+    taken += second.taken;
+    next = second.next;
+    iterations += second.iterations;
+    factorisations += second.factorisations;
+    evaluations += second.evaluations;
+    rejected += second.rejected + 1;
+    contraction = second.contraction;
+    left = std::max(left, second.left);
+  }
 };
 
 /// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +

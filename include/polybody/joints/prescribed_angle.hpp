@@ -18,6 +18,7 @@ struct PrescribedAngle {
   static constexpr int rows = 1;
   static constexpr Observes needs = Observes::frame;
   static constexpr World world = World::both;
+  static constexpr double period = 2.0 * std::numbers::pi;  ///< by which the law's value may jump [rad]
 
   Law law;             ///< angle [rad], rate and acceleration as functions of time [s]
   TurnAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration

@@ -31,7 +31,7 @@ struct RunOptions {
   double assembly_tolerance = 1e-8;  ///< |Φ| of the start [m], [rad]
   int halvings = 0;                  ///< how often a step whose Newton iteration stalls may be halved, as at impacts
   bool minimum_norm = false;         ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
-  StepLimits limits = {};            ///< of a step's end: open joints, and energy that no work explains
+  StepLimits limits = {};            ///< of a step's end: constraint violation, and energy that no work explains
   int threads = 1;  ///< that share the loops of an evaluation; for large models, results stay the same bits
   std::function<void(RunProgress const&)> progress = {};  ///< told after each step; `progress_bar` of io makes one
 
@@ -47,6 +47,7 @@ struct RunOptions {
     if (!(limits.violation > 0.0) || !(limits.energy >= 1.0))
       throw InvalidInput{"simulate: limits.violation must be positive and limits.energy at least one, but they are ",
                          limits.violation, " and ", limits.energy, "."};
+    require_positive(limits.warning, "simulate: limits.warning");
     for (double const t : corners)
       if (std::isnan(t)) throw InvalidInput("simulate: a corner must be a time [s], but is nan.");
     for (Event const& event : events) {
@@ -78,12 +79,35 @@ struct RunReport {
   std::vector<std::string> redundant = {};
   /// In sentences: of the start, a singular position in which its speeds do not tell a branch of the motion, and a step
   /// beyond the limit of an explicit integrator; of a step, a singular position at which the speeds jumped to another
-  /// branch.
+  /// branch; of the end, energy that no work explains.
   std::vector<std::string> warnings = {};
 
   /// Adds a sentence, if it has words.
   void add_warning(std::string sentence) {
     if (!sentence.empty()) warnings.push_back(std::move(sentence));
+  }
+  /// A warning begins with these words.
+  bool warns(char const* words) const {
+    return std::any_of(warnings.begin(), warnings.end(), [&](std::string const& w) { return w.starts_with(words); });
+  }
+  /// Times of a run [s], and how many of its steps were halved.
+  struct Course {
+    double start, now;  ///< [s]
+    long halved;        ///< steps
+  };
+  /// Adds a warning where more than the share `limit` of the energy that moved has no explanation.
+  [[gnu::cold]] void warn_of_energy(Unexplained const& found, double limit, Course const& run) {
+    if (!found.known) return;
+    if (found.worst > 0.4 * found.scale)
+      add_warning(
+          sentence_of({"The work of a force over one step is uncertain by ", found.worst, " J, of ", found.scale,
+                       " J that moved: the steps do not resolve it. Compare the run with one of half the step."}));
+    else if (std::abs(found.energy) > limit * found.scale + found.doubt)
+      add_warning(
+          sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion ",
+                       found.energy > 0.0 ? "gains " : "loses ", std::abs(found.energy), " J that no work explains, ",
+                       std::abs(found.energy) / found.scale, " of the energy that moved (", found.scale, " J); ",
+                       run.halved, " steps were halved. Compare the run with one of half the step."}));
   }
   /// Counts the cost of a step.
   void add(StepReport const& step) {

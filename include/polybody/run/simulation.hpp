@@ -106,8 +106,13 @@ class Simulation {
   }
 
   /// The limits of steps hold from this state on.
-  void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, stepped().q, stepped().v, stepped().t); }
-
+  void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, step_end()); }
+  StepEnd step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, h_}; }
+  /// Makes the balance of the energy up to here: before a restart or an action, and at the end.
+  [[gnu::cold]] void settle() {
+    Unexplained const found = workspace_.forward.bounds.settle(*system_, step_end());
+    if (done()) report_.warn_of_energy(found, options_.limits.warning, {start_, stepped().t, halved_});
+  }
   State& stepped() { return eliminates() ? narrow_ : *x_; }
   State const& stepped() const { return eliminates() ? narrow_ : *x_; }
   /// The user's state follows the narrow one, but where a force fails as reactions are worked out. \param seen events
@@ -153,9 +158,7 @@ class Simulation {
     });
     if (!(change.total() > 0.01 * squares(speeds_before_))) return;
     char const* const what = "The joints' rows lose rank next to t = ";
-    for (std::string const& warning : report_.warnings)
-      if (warning.starts_with(what)) return;
-    if (!is_singular(x)) return;
+    if (report_.warns(what) || !is_singular(x)) return;
     report_.warnings.push_back(what + number(x.t) +
                                " s, and the speeds jump in the step that ends there: at this singular position the "
                                "motion can go over to another branch, and on which one it goes on is up to the step "
@@ -197,6 +200,7 @@ class Simulation {
       return method_.step(*system_, x, h, workspace_).taken;
     };
     bool const met = watch_.meet(options_.events, {before_, taken, seen(), again}, stepped(), report_);
+    if (met) settle();
     if (met && watch_.acts(options_.events))
       stepped() = after_action<Solver>(watch_, options_.events, seen()(stepped()), {system_.get(), whole_.get()});
     return met;
@@ -210,6 +214,7 @@ class Simulation {
   decltype(std::declval<MethodOf<I> const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
   AxialWatch axial_forces_;
+  long halved_ = 0;               // steps
   VecX speeds_before_, scratch_;  // the first of a step
   RowGain usual_gain_;            // at the start
   StepPlan plan_;
@@ -286,6 +291,7 @@ void Simulation<I, Solver>::advance(bool shown) {
     bool const at_corner = jumps && stepped().t == target;
     if (at_corner) stepped().t = plan_.pass(stepped().t);
     bool const anew = met || at_corner || crumb;
+    if (!met && (done() || anew)) settle();
     if (anew) restart();
     if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
     if (shown) {
@@ -346,14 +352,8 @@ StepReport Simulation<I, Solver>::step(double h, int halvings) {
     method_.start(*system_, stepped(), 0.5 * h, workspace_);
     StepReport report = step(0.5 * h, halvings - 1);
     StepReport const second = step(h - report.taken, halvings - 1);
-    report.taken += second.taken;
-    report.next = second.next;
-    report.iterations += second.iterations;
-    report.factorisations += second.factorisations;
-    report.evaluations += second.evaluations;
-    report.rejected += second.rejected + 1;
-    report.contraction = second.contraction;
-    report.left = std::max(report.left, second.left);
+    report.append(second);
+    ++halved_;
     return report;
   } catch (...) {
     stepped() = before;

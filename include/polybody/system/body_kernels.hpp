@@ -173,7 +173,7 @@ void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
   for (Entry const& e : pool.entries)
     out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own,
                           B::world == World::plane, B::constant_mass, &detail::type_tag<B>, index++, &e.body, nullptr,
-                          units_of<B>(), e.made_in});
+                          units_of<B>(), e.made_in, HasRigidLayout<B>, ChangesWithTime<B>});
   if constexpr (LeavesOutAxialForces<B>)
     for (std::size_t i = out.bodies.size() - pool.entries.size(); i < out.bodies.size(); ++i)
       out.bodies[i].axial_share = [](void const* body, std::span<double const> q, std::span<double const> v,

@@ -58,11 +58,13 @@ void add_wrenches(L const& law, std::array<Index, L::markers> const& at, double 
     }
 }
 
-/// All that F does has a potential; of groups this is not asked.
+/// All that F does has a potential; a group says it of its laws.
 template <class F>
 constexpr bool stores() {
-  if constexpr (ForceGroup<F> || HasStates<F>)
+  if constexpr (HasStates<F>)
     return false;
+  else if constexpr (ForceGroup<F>)
+    return requires { requires F::all_laws_store; };
   else
     return HasPotential<F>;
 }
@@ -138,6 +140,12 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
     }
     out.forces.back().stores = detail::stores<F>();
     out.forces.back().made_in = e.made_in;
+    out.forces.back().stores_in_part = ForceGroup<F> && !detail::stores<F>();
+    if constexpr (requires { e.force.is_lossless(); }) out.forces.back().lossless = e.force.is_lossless();
+    if constexpr (requires(Frame<double> const(&f)[2]) { e.force.passes(f, f); })
+      out.forces.back().passes = [](void const* force, Frame<double> const(&from)[2], Frame<double> const(&to)[2]) {
+        return static_cast<F const*>(force)->passes(from, to);
+      };
     if constexpr (requires { e.force.law; }) detail::add_corners(e.force.law, out.corners);
   }
 }

@@ -181,6 +181,16 @@ void JointKernels<J, T>::describe(Pool const& pool, Sequence<LinearRows> const& 
     out.joints.push_back({e.name, e.a, e.b, e.row, e.rows, Eliminates<P>, &detail::type_tag<J>, index++, rows,
                           !compliant || detail::has_potential<P>(), e.made_in});
     detail::add_corners(e.joint.geometry, out.corners);
+    JointPlace& place = out.joints.back();
+    place.joint = &e.joint;
+    if constexpr (compliant) {
+      place.lossless = false;
+      if constexpr (requires { e.joint.policy.is_lossless(); }) place.lossless = e.joint.policy.is_lossless();
+    }
+    if constexpr (requires(double t) { Motion(e.joint.geometry.law(t)); }) {
+      place.law = [](void const* joint, double t) { return Motion(static_cast<J const*>(joint)->geometry.law(t)); };
+      if constexpr (requires { J::Geometry::period; }) place.period = J::Geometry::period;
+    }
   }
 }
 

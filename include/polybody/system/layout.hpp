@@ -8,8 +8,9 @@
 #include <string>
 
 #include <polybody/bodies/shared/coordinate_units.hpp>
+#include <polybody/kinematics/frame.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/math/types.hpp>
+#include <polybody/math/time_laws.hpp>
 #include <polybody/system/model_watch.hpp>
 
 namespace polybody {
@@ -33,6 +34,8 @@ struct BodyPlace {
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
   CoordinateUnits units = {};  ///< of its coordinates and speeds
   std::uint64_t made_in = 0;   ///< serial number of the model that it was added to
+  bool lossless = false;       ///< nothing in it dissipates: it is rigid
+  bool changes = false;        ///< its mass depends on time
 };
 
 /// Where a joint stands: its markers, and its rows among all.
@@ -46,6 +49,10 @@ struct JointPlace {
   LinearRows const* linear = {};  ///< rows of a joint that is linear in coordinates, in the model
   bool stores = true;             ///< of a compliant joint: all rows have a potential
   std::uint64_t made_in = 0;      ///< serial number of the model that it was added to
+  bool lossless = true;           ///< of a compliant joint: it has no damping
+  void const* joint = nullptr;    ///< the joint itself, in the model
+  Motion (*law)(void const* joint, double t) = nullptr;  ///< prescribed at t [s]; null where nothing is
+  double period = 0.0;  ///< by which the prescribed value may jump [rad]; 0: by nothing
 };
 
 /// Where a force element stands: its markers, and its first-order states.
@@ -59,6 +66,11 @@ struct ForcePlace {
   Index v0 = -1, states = 0;     ///< first-order states of its own, among the speeds
   bool stores = false;           ///< it has a potential
   std::uint64_t made_in = 0;     ///< serial number of the model that it was added to
+  bool stores_in_part = false;   ///< a group of which some laws have one
+  bool lossless = false;         ///< all work that it takes goes into its potential
+  /// Two markers a and b: whether they move through a contact from frames [a, b] to [a, b] by which neither end of the
+  /// step is touched; null for other forces.
+  bool (*passes)(void const* force, Frame<double> const (&from)[2], Frame<double> const (&to)[2]) = nullptr;
 };
 
 /// Counts, places and names of a model; bodies, joints and forces in the order of their types.

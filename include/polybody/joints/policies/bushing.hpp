@@ -87,6 +87,7 @@ struct Bushing {
       for (int i = 0; i < m; ++i) slope(i, j) = ck * stiffness.value(i, j) + cd * damping.value(i, j);
     return slope;
   }
+  bool is_lossless() const { return damping.value.isZero(0.0); }  ///< all work that it takes is stored
   /// ½ xᵀK x [J].
   template <int m>
     requires(m == 6)

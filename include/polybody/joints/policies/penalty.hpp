@@ -31,6 +31,7 @@ struct Penalty {
     for (int i = 0; i < m; ++i) slope.diagonal()[i] = ck * stiffness + cd * damping;
     return slope;
   }
+  bool is_lossless() const { return damping == 0.0; }  ///< all work that it takes is stored
   /// The energy that the spring stores at the gaps g [J].
   template <int m>
   double potential(Vec<double, m> const& g) const {
@@ -73,6 +74,7 @@ struct PenaltyPerRow {
     for (int i = 0; i < m; ++i) slope.diagonal()[i] = ck * stiffness.value[i] + cd * damping.value[i];
     return slope;
   }
+  bool is_lossless() const { return damping.value.isZero(0.0); }  ///< all work that it takes is stored
   /// The energy that the springs store at the gaps g [J].
   template <int m>
     requires(m == n)

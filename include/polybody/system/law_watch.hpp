@@ -1,0 +1,159 @@
+#pragma once
+/// \file
+/// Checks along a run that the values of prescribed motions fit their rates and accelerations.
+
+#include <algorithm>
+#include <cmath>
+
+#include <polybody/math/sequence.hpp>
+#include <polybody/system/layout.hpp>
+
+namespace polybody {
+
+/// Compares the change of each prescribed value over a step with its rates at both ends, and the change of the rate
+/// with the accelerations:
+///   |Δψ − ½h (ψ̇₀ + ψ̇₁)| ≤ ½h |ψ̇₁ − ψ̇₀| + h² â + 10⁻³ h r̂,   |Δψ̇ − ½h (ψ̈₀ + ψ̈₁)| ≤ h â,
+/// â and r̂ the largest |ψ̈| and |ψ̇| so far. A smooth law keeps to these bounds over a step that resolves it. Otherwise
+/// the bounds are checked for parts of the step, down to h/1024. A law that jumps fails at every length. So does a law
+/// whose derivatives are those of another function.
+class LawWatch {
+ public:
+  /// Restarts the check at time t [s]. Times that differ by less than `crumb` [s] are one breakpoint. \throws
+  /// InvalidInput for a law whose value jumps here.
+  template <class = void>
+  [[gnu::cold]] void begin(ModelLayout const& layout, double t, double crumb);
+  /// Compares the ends of a step of h [s] to t [s]. \throws InvalidInput naming the joint.
+  template <class = void>
+  void require(ModelLayout const& layout, double t, double h);
+
+  bool watches() const { return !laws_.empty(); }  ///< the model has prescribed motions
+
+  void mark() {  ///< begins a trial
+    for (Watched& law : laws_) law.marked = law.last;
+    marked_ = last_;
+  }
+  void go_back() {  ///< drops the trial
+    for (Watched& law : laws_) law.last = law.marked;
+    last_ = marked_;
+  }
+
+ private:
+  struct Watched {
+    std::size_t joint;
+    Motion last, marked;
+    double rate = 0.0, acceleration = 0.0;  ///< largest sizes so far
+  };
+  static Motion at(JointPlace const& joint, double t) { return joint.law(joint.joint, t); }
+  /// The difference of two values, less whole periods.
+  static double change(JointPlace const& joint, double x) {
+    return joint.period > 0.0 ? std::remainder(x, joint.period) : x;
+  }
+  /// Changes of value and rate over a step, minus the changes that the derivatives predict.
+  struct Misfit {
+    double value, rate, by_rate, by_acceleration;
+    bool of_value, of_rate;  ///< beyond the bound
+  };
+  static Misfit misfit(JointPlace const& joint, Watched& law, Motion const& from, Motion const& to, double h) {
+    law.rate = std::max({law.rate, std::abs(from.rate), std::abs(to.rate)});
+    law.acceleration = std::max({law.acceleration, std::abs(from.acceleration), std::abs(to.acceleration)});
+    double const change_of_rate = to.rate - from.rate, by_rate = 0.5 * h * (from.rate + to.rate),
+                 by_acceleration = 0.5 * h * (from.acceleration + to.acceleration),
+                 value = change(joint, to.value - from.value - by_rate), rate = change_of_rate - by_acceleration,
+                 most = 0.5 * h * std::abs(change_of_rate) + h * (h * law.acceleration + 1e-3 * law.rate) +
+                        1e-12 * (1.0 + std::abs(from.value) + std::abs(to.value));
+    return {value,
+            rate,
+            by_rate,
+            by_acceleration,
+            !(std::abs(value) <= most),
+            !(std::abs(rate) <= h * law.acceleration + 1e-9 * law.rate + 1e-12)};
+  }
+  /// Looks at parts of a step that does not fit. \throws InvalidInput unless the parts fit.
+  template <class = void>
+  [[gnu::cold]] static void require_smooth(JointPlace const& joint, Watched& law, Motion from, Motion to, double t,
+                                           double h);
+
+  Sequence<Watched> laws_;
+  double last_ = 0.0, marked_ = 0.0;  // times of the motions [s]
+};
+
+template <class>
+void LawWatch::begin(ModelLayout const& layout, double t, double crumb) {
+  bool const first = laws_.empty();
+  if (first)
+    for (std::size_t i = 0; i < layout.joints.size(); ++i)
+      if (layout.joints[i].law) laws_.push_back({i, {}, {}});
+  for (Watched& law : laws_) {
+    JointPlace const& joint = layout.joints[law.joint];
+    Motion const before = law.last;
+    law.last = at(joint, t);
+    double const gap = t - last_;
+    if (first || std::abs(gap) > crumb) continue;
+    double const jump = change(joint, law.last.value - before.value),
+                 most = std::max(std::abs(before.rate), std::abs(law.last.rate)) * std::abs(gap) +
+                        1e-9 * (1.0 + std::abs(law.last.value));
+    if (!(std::abs(jump) <= most))
+      throw InvalidInput{"joint \"",
+                         joint.name,
+                         "\": the prescribed value jumps by ",
+                         jump,
+                         " at the breakpoint t = ",
+                         t,
+                         " s, but no body can. Go there in a while, by a Ramp or SmoothRamp."};
+  }
+  last_ = marked_ = t;
+  for (Watched& law : laws_) law.marked = law.last;
+}
+
+template <class>
+void LawWatch::require(ModelLayout const& layout, double t, double h) {
+  double const start = t - h;
+  bool const follows = std::abs(start - last_) <= 1e-3 * h, again = std::abs(start - marked_) <= 1e-3 * h;
+  for (Watched& law : laws_) {
+    JointPlace const& joint = layout.joints[law.joint];
+    Motion const from = follows ? law.last : again ? law.marked : at(joint, start), to = at(joint, t);
+    Misfit const off = misfit(joint, law, from, to, h);
+    if (off.of_value || off.of_rate) require_smooth(joint, law, from, to, t, h);
+    law.last = to;
+  }
+  last_ = t;
+}
+
+template <class>
+void LawWatch::require_smooth(JointPlace const& joint, Watched& law, Motion from, Motion to, double t, double h) {
+  Misfit const whole = misfit(joint, law, from, to, h);
+  double part = h, end = t;
+  for (int k = 0; k < 10; ++k) {
+    part *= 0.5;
+    Motion const middle = at(joint, end - part);
+    Misfit const first = misfit(joint, law, from, middle, part), second = misfit(joint, law, middle, to, part);
+    if (second.of_value || second.of_rate) {
+      from = middle;
+    } else if (first.of_value || first.of_rate) {
+      to = middle;
+      end -= part;
+    } else {
+      return;
+    }
+  }
+  bool const of_value = whole.of_value;
+  double const expected = of_value ? whole.by_rate : whole.by_acceleration;
+  throw InvalidInput{"joint \"",
+                     joint.name,
+                     "\": in the step of ",
+                     h,
+                     " s to t = ",
+                     t,
+                     " s the prescribed ",
+                     of_value ? "value" : "rate",
+                     " changes by ",
+                     expected + (of_value ? whole.value : whole.rate),
+                     ", where the law's ",
+                     of_value ? "rate" : "acceleration",
+                     " gives ",
+                     expected,
+                     ". Give the derivatives of the law's value, and declare a breakpoint where its rate jumps, by "
+                     "corners() of the law or in the options of the run. No body follows a jump of the value."};
+}
+
+}  // namespace polybody

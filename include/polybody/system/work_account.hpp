@@ -1,0 +1,240 @@
+#pragma once
+/// \file
+/// Work of forces, drives and compliant joints that have no potential, step by step.
+
+#include <algorithm>
+#include <cmath>
+
+#include <polybody/math/sequence.hpp>
+#include <polybody/system/system.hpp>
+#include <polybody/system/work_of_wrench.hpp>
+
+namespace polybody {
+
+/// The end of a step of length h, before it is accepted.
+struct StepEnd {
+  VecX const &q, &v, &lambda;  ///< q (nq), v (nv), λ (rows) there
+  double t, h;                 ///< its time [s], its length [s]
+};
+
+/// Signed work [J] since the start of an account, element by element, by two quadratures over each step:
+///   along the path, ½ (f₀ + f₁)·Δr, exact for a force that is linear in the place, at any length of the step;
+///   over time, ½ h (P₀ + P₁), never positive for a damper, at any length of the step.
+/// A spring or a damper that an integrator cannot follow puts in no energy by one of them, so it does not explain the
+/// energy that it gains. Both are right to O(h²). The error of the first is estimated by comparing two
+/// steps with one of twice the length [Richardson 1911]. The estimate is zero for a force that is linear in the place,
+/// and large for a force that jumps. Elements with a potential are not counted. An addition does not allocate.
+class WorkAccount {
+ public:
+  /// Resets the account at this place, at which `system` was evaluated last. `place.h` is not read.
+  template <class = void>
+  [[gnu::cold]] void begin(System const& system, StepEnd const& place);
+  /// Adds the work over a step, at whose end `system` was evaluated last.
+  template <class = void>
+  void add(System const& system, StepEnd const& end);
+
+  bool counts() const { return !elements_.empty(); }  ///< anything is counted
+  bool complete() const { return complete_; }         ///< no element stores a part of the energy that it takes
+
+  /// Time moves a joint whose work is not counted.
+  bool misses_drives(Data<double> const& data) const {
+    return std::any_of(at_rest_.begin(), at_rest_.end(), [&](Index i) {
+      RowBlock<double> const& block = data.rows[std::size_t(i)];
+      return std::any_of(block.rate, block.rate + block.rows, [](double x) { return x != 0.0; });
+    });
+  }
+  /// Σ max(0, W) over the elements, W the smaller of the two quadratures.
+  double put_in() const {
+    double sum = 0.0;
+    double const* const work = samples_[last_].work.data();
+    for (std::size_t i = 0; i < 2 * sums_; i += 2) sum += std::max(0.0, std::min(work[i], work[i + 1]));
+    return sum;
+  }
+  /// Σ of the works along the path, with their signs.
+  double net() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 2 * sums_; i += 2) sum += samples_[last_].work[i];
+    return sum;
+  }
+
+  double doubt() const { return samples_[last_].doubt; }  ///< estimated error of `net` [J]
+  double worst() const { return samples_[last_].worst; }  ///< largest estimated error of one step [J]
+
+  void mark() { marked_ = last_; }     ///< begins a trial
+  void go_back() { last_ = marked_; }  ///< drops the trial
+
+ private:
+  enum class Kind : unsigned char { force, drive, compliant };
+  struct Element {
+    Kind kind;
+    Index index, row;     ///< of the action or the block; of λ, −1 for a compliant joint
+    std::size_t at, sum;  ///< its first number in a sample; its works
+  };
+  /// What elements do at an instant, and their works up to it.
+  struct Sample {
+    double t = 0.0, doubt = 0.0, worst = 0.0;  ///< [s], [J], [J]
+    std::size_t before = 0;  ///< the sample from which the step to this one began; itself where it is lost
+    Sequence<double> numbers, work;
+  };
+  static constexpr std::size_t numbers_of_force = 23;  ///< r, A, [f; m], ω, work of the last step, power
+
+  void add_element(Kind kind, Index index, Index row, std::size_t numbers, bool joins) {
+    std::size_t const sum = joins && !elements_.empty() ? elements_.back().sum : sums_++;
+    elements_.push_back({kind, index, row, size_, sum});
+    size_ += numbers;
+  }
+  /// The sample from which a step begins at t, or null.
+  Sample const* start_of(double t, double h) const {
+    for (std::size_t const k : {last_, marked_})
+      if (std::abs(samples_[k].t - t) <= 1e-3 * h) return &samples_[k];
+    return nullptr;
+  }
+  /// Index of the last number of an element.
+  static std::size_t last_number(Element const& e, System const& system) {
+    if (e.kind == Kind::force) return numbers_of_force - 1;
+    return e.kind == Kind::drive ? 0 : std::size_t(2 * system.data().rows[std::size_t(e.index)].rows);
+  }
+  template <class = void>
+  void read(System const& system, VecX const& lambda, double t, Sample& out) const;
+
+  Sequence<Element> elements_;
+  Sequence<Index> at_rest_;  // blocks that no law prescribes and that time did not move at the start: not counted
+  std::size_t size_ = 0, sums_ = 0;
+  Sample samples_[4];  // last step, the one before, start of the trial, next step
+  std::size_t last_ = 0, marked_ = 0;
+  bool complete_ = true;
+};
+
+template <class>
+void WorkAccount::begin(System const& system, StepEnd const& place) {
+  Data<double> const& data = system.data();
+  ModelLayout const& layout = system.layout();
+  elements_.clear();
+  at_rest_.clear();
+  size_ = sums_ = 0;
+  complete_ = true;
+  Index source = -1;
+  for (std::size_t i = 0; i < data.actions.size(); ++i) {
+    ForcePlace const& force = layout.forces[std::size_t(data.actions[i].source)];
+    if (force.stores) continue;
+    add_element(Kind::force, Index(i), 0, numbers_of_force, data.actions[i].source == source);
+    source = data.actions[i].source;
+    complete_ = complete_ && !force.stores_in_part;
+  }
+  Coordinates const& narrow = system.step_coordinates();
+  for (std::size_t i = 0; i < data.rows.size(); ++i) {
+    RowBlock<double> const& block = data.rows[i];
+    if (block.source == RowSource::compliant && !layout.joints[std::size_t(block.owner)].stores) {
+      add_element(Kind::compliant, Index(i), -1, std::size_t(2 * block.rows + 1), false);
+      complete_ = false;
+    }
+    if (!block.rate) continue;
+    bool const driven = (block.source == RowSource::joint || block.source == RowSource::compliant) &&
+                        layout.joints[std::size_t(block.owner)].law;
+    if (!driven && std::all_of(block.rate, block.rate + block.rows, [](double x) { return x == 0.0; })) {
+      at_rest_.push_back(Index(i));
+      continue;
+    }
+    Index row = block.row;
+    if (narrow && row >= 0) {
+      auto const& stay = narrow.narrow->rows_that_stay;
+      auto const at = std::find(stay.begin(), stay.end(), row);
+      if (at == stay.end()) continue;
+      row = at - stay.begin();
+    }
+    add_element(Kind::drive, Index(i), row, 1, false);
+  }
+  for (Sample& sample : samples_) {
+    sample.numbers.assign(size_, 0.0);
+    sample.work.assign(2 * sums_, 0.0);
+    sample.t = place.t;
+    sample.doubt = sample.worst = 0.0;
+    sample.before = std::size_t(&sample - samples_);
+  }
+  last_ = marked_ = 0;
+  read(system, place.lambda, place.t, samples_[0]);
+}
+
+/// Power of an element, last of its numbers: w · twist of a force, λ · Φ_t of a drive, −λ · ġ of a compliant joint.
+template <class>
+void WorkAccount::read(System const& system, VecX const& lambda, double t, Sample& out) const {
+  Data<double> const& data = system.data();
+  out.t = t;
+  for (Element const& e : elements_) {
+    double* const to = out.numbers.data() + e.at;
+    if (e.kind == Kind::force) {
+      Action<double> const& action = data.actions[std::size_t(e.index)];
+      Frame<double> const& f = data.markers[std::size_t(action.marker)].frame;
+      double power = 0.0;
+      for (int i = 0; i < 3; ++i) {
+        to[i] = f.r[i];
+        to[18 + i] = f.w[i];
+        power += action.w[i] * f.v[i] + action.w[3 + i] * f.w[i];
+      }
+      std::copy_n(f.A.data(), 9, to + 3);
+      std::copy_n(action.w, 6, to + 12);
+      to[22] = power;
+      continue;
+    }
+    RowBlock<double> const& block = data.rows[std::size_t(e.index)];
+    double power = 0.0;
+    if (e.kind == Kind::drive) {
+      double const* const l = e.row < 0 ? block.answer : lambda.data() + e.row;
+      for (int k = 0; k < block.rows; ++k) power += l[k] * block.rate[k];
+      to[0] = power;
+      continue;
+    }
+    double rate[6];
+    for (int k = 0; k < block.rows; ++k) rate[k] = block.rate ? block.rate[k] : 0.0;
+    detail::add_rate(block.a, block.rows, data, lambda, rate);
+    detail::add_rate(block.b, block.rows, data, lambda, rate);
+    for (int k = 0; k < block.rows; ++k) {
+      to[k] = block.g[k];
+      to[block.rows + k] = block.answer[k];
+      power -= block.answer[k] * rate[k];
+    }
+    to[2 * block.rows] = power;
+  }
+}
+
+template <class>
+void WorkAccount::add(System const& system, StepEnd const& end) {
+  Sample const* const from = start_of(end.t - end.h, end.h);
+  Sample const& before = from ? *from : samples_[last_];
+  std::size_t const at = std::size_t(&before - samples_), older = before.before;
+  std::size_t next = 0;
+  while (next == marked_ || next == at || next == older) ++next;
+  Sample& to = samples_[next];
+  to.doubt = before.doubt;
+  to.before = from ? at : next;
+  std::copy_n(before.work.data(), before.work.size(), to.work.data());
+  read(system, end.lambda, end.t, to);
+  double const both = end.t - samples_[older].t;
+  bool const compares = from && older != at && samples_[older].t < before.t;
+  for (Element const& e : elements_) {
+    double const *const x = before.numbers.data() + e.at, *const w = samples_[older].numbers.data() + e.at;
+    double* const y = to.numbers.data() + e.at;
+    std::size_t const last = last_number(e, system);
+    double const over_time = from ? 0.5 * end.h * (x[last] + y[last]) : end.h * y[last];
+    if (over_time == 0.0 && e.kind == Kind::drive) continue;
+    double along_path = over_time, doubt = 0.0;
+    if (e.kind == Kind::force && from) {
+      y[21] = along_path = detail::work_along_path(x, y, end.h);
+      if (compares) doubt = detail::work_along_path(w, y, both) - x[21] - y[21];
+    } else if (e.kind == Kind::drive && compares) {
+      doubt = 0.5 * (both * (w[last] + y[last]) - (both - end.h) * (w[last] + x[last])) - over_time;
+    } else if (e.kind == Kind::compliant && from) {
+      along_path = 0.0;
+      for (std::size_t k = 0, m = last / 2; k < m; ++k) along_path -= 0.5 * (x[m + k] + y[m + k]) * (y[k] - x[k]);
+    }
+    // a force that is NaN is refused where it acts
+    if (!std::isfinite(over_time) || !std::isfinite(along_path)) continue;
+    to.work[2 * e.sum] += along_path;
+    to.work[2 * e.sum + 1] += over_time;
+    if (std::isfinite(doubt)) to.doubt += 0.5 * std::abs(doubt);
+  }
+  to.worst = std::max(before.worst, to.doubt - before.doubt);
+  last_ = next;
+}
+
+}  // namespace polybody
