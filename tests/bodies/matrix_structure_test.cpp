@@ -103,6 +103,20 @@ TEST(MatrixStructure, IntegralsOfKnownFieldsAreMomentsOfTheBlock) {
     EXPECT_NEAR(place.dot(s.inertia[p] * place), s.second(symmetric_row[p], symmetric_column[p]), 1e-14 * m);
 }
 
+// Steel (5100 m/s) in kilograms and N/m. Nodes in millimetres have the same rigid motions; waves are 1000 times as
+// fast.
+TEST(MatrixStructure, RefusesNodesInMillimetresBesideAStiffnessInMetres) {
+  Block block(3, 0.3);
+  block.mass *= 7850.0 / block.density;
+  block.stiffness *= 2.1e11 / block.E;
+  EXPECT_NO_THROW(block.structure());
+  for (Vec3& node : block.nodes) node *= 1e3;
+  std::string const message = refusal([&] { block.structure(); });
+  EXPECT_TRUE(has(message, "nodes, masses and stiffness have different units: waves would travel at ")) << message;
+  EXPECT_TRUE(has(message, "Give nodes in metres")) << message;
+  EXPECT_NO_THROW(structure_of(block.mass.sparseView(), block.stiffness.sparseView(), block.nodes, 1e8));
+}
+
 // ν = 0: the face x = 0 held and F spread over the other, u_x = F x/EA is in the elements' span.
 TEST(MatrixStructure, StretchesAsABar) {
   Block const block(3, 0.0);

@@ -142,6 +142,36 @@ void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<
   }
 }
 
+/// Speed of waves from node to node [m/s], to a factor of two: h √(K_ii/m_ii)/2, h the distance of the nearest node
+/// that the stiffness couples with node i; the least one of all nodes. \param m (n×n) masses of the nodes [kg]
+template <class = void>
+double wave_speed(Structure::Sparse const& m, Structure::Sparse const& stiffness, std::vector<Vec3> const& nodes) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < Index(nodes.size()); ++i) {
+    double nearest = std::numeric_limits<double>::infinity(), sum = 0.0;
+    for (Index j = 3 * i; j < 3 * i + 3; ++j)
+      for (Structure::Sparse::InnerIterator it(stiffness, j); it; ++it) {
+        if (it.row() == j) sum += it.value() / 3.0;
+        double const distance = (nodes[std::size_t(it.row() / 3)] - nodes[std::size_t(i)]).norm();
+        if (it.value() != 0.0 && distance > 0.0) nearest = std::min(nearest, distance);
+      }
+    if (sum > 0.0) least = std::min(least, 0.5 * nearest * std::sqrt(sum / m.coeff(i, i)));
+  }
+  return least;
+}
+
+/// \throws InvalidInput for a wave speed above `fastest` [m/s], as of nodes in millimetres: lengths in any unit have
+/// the same rigid motions, but the wave speed is proportional to them.
+template <class = void>
+void require_units_of_solids(double speed, double fastest) {
+  if (!(speed > fastest) || !std::isfinite(speed)) return;
+  throw InvalidInput{"Structure: nodes, masses and stiffness have different units: waves would travel at ", speed,
+                     " m/s, above ", fastest,
+                     " m/s; diamond has 1.8e4. Give nodes in metres, masses in kilograms and the stiffness in N/m "
+                     "(nodes in millimetres make waves 1000 times as fast), or a larger fastest_wave for a material "
+                     "of your own."};
+}
+
 /// \throws InvalidInput where products of masses and places overflow, as of nodes in no unit of length.
 template <class = void>
 void require_finite_moments(Structure const& s) {
@@ -159,10 +189,11 @@ void require_finite_moments(Structure const& s) {
 /// of node 1, …), and its undeformed nodes [m]. Isoparametric elements with a consistent mass matrix give the exact
 /// integrals.
 /// \throws InvalidInput for sizes that do not fit; matrices that are not symmetric or not finite; a mass matrix that is
-/// not m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, as it does to nodes in the wrong order.
+/// not m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, as it does to nodes in the wrong order;
+/// waves that would travel faster than `fastest_wave` [m/s], as with nodes in millimetres and a stiffness in N/m.
 template <class = void>
 Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
-                       std::vector<Vec3> const& nodes) {
+                       std::vector<Vec3> const& nodes, double fastest_wave = 1e5) {
   if (nodes.empty()) throw InvalidInput("Structure: it has no nodes.");
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (double const x : nodes[i])
@@ -175,6 +206,7 @@ Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& s
   detail::require_symmetric(stiffness, s.size(), "the stiffness matrix");
   Structure::Sparse const m = detail::scalar_mass(mass);
   detail::require_free_of_rigid_work(stiffness, nodes);
+  detail::require_units_of_solids(detail::wave_speed(m, stiffness, nodes), fastest_wave);
   s.clear();
   s.stiffness = 0.5 * (stiffness + Structure::Sparse(stiffness.transpose()));
   std::array<std::vector<Eigen::Triplet<double>>, 6> inertia;
@@ -217,10 +249,11 @@ std::vector<Vec3> read_nodes(std::string const& file) {
 
 /// The same from files: `mass_file`, `stiffness_file` in Matrix Market's coordinate format, and `nodes_file`, a line
 /// `x y z` [m] for each, in which # begins a comment. \throws IoError naming file and line for a file that cannot be
-/// read, is truncated or does not fit the nodes; InvalidInput naming the files as `structure_of`.
+/// read, is truncated or does not fit the nodes; InvalidInput naming the files as `structure_of`, also for waves faster
+/// than `fastest_wave` [m/s].
 template <class = void>
-Structure read_structure(std::string const& mass_file, std::string const& stiffness_file,
-                         std::string const& nodes_file) {
+Structure read_structure(std::string const& mass_file, std::string const& stiffness_file, std::string const& nodes_file,
+                         double fastest_wave = 1e5) {
   std::vector<Vec3> const nodes = detail::read_nodes(nodes_file);
   Index const n = 3 * Index(nodes.size());
   std::string const need =
@@ -228,7 +261,7 @@ Structure read_structure(std::string const& mass_file, std::string const& stiffn
   Structure::Sparse const mass = read_matrix(mass_file, n, n, need),
                           stiffness = read_matrix(stiffness_file, n, n, need);
   try {
-    return structure_of(mass, stiffness, nodes);
+    return structure_of(mass, stiffness, nodes, fastest_wave);
   } catch (InvalidInput const& error) {
     throw InvalidInput{mass_file, ", ", stiffness_file, ", ", nodes_file, ": ", error.what()};
   }
