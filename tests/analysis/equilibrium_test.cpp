@@ -1,7 +1,11 @@
 #include <polybody/statics/equilibrium.hpp>
 
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/point_load.hpp>
+#include <polybody/forces/spring_damper.hpp>
+#include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
@@ -194,6 +198,99 @@ TEST(Equilibrium, SaysThatAForceIsNotFinite) {
   x.t = 0.5;
   EXPECT_NO_THROW(equilibrium(s.model, x));
   EXPECT_EQ(x.t, 0.5);
+}
+
+// A clamped column buckles at (2i − 1)² π² EI/4L²: its straight state has as many negative pivots as such loads lie
+// below.
+TEST(Equilibrium, CountsTheNegativePivotsOfAStraightColumn) {
+  double const first = 0.25 * std::numbers::pi * std::numbers::pi;
+  for (Index const n : {12, 40})
+    for (auto const& [factor, negative] : {std::pair{0.98, 0}, {1.05, 1}, {3.0, 1}, {8.5, 1}, {9.6, 2}, {30.0, 3}}) {
+      Held const s(bar(1e8), n, {-factor * first, 0, 0});
+      State x = s.model.reference_state();
+      EquilibriumReport const report = equilibrium(s.model, x);
+      EXPECT_EQ(report.negative_pivots, negative) << n << ' ' << factor;
+      ASSERT_EQ(report.warnings.size(), negative > 0 ? 1u : 0u);
+      if (negative == 0) continue;
+      EXPECT_TRUE(
+          has(report.warnings[0], "The equilibrium is unstable: the stiffness has " + std::to_string(negative)));
+      EXPECT_TRUE(has(report.warnings[0], "body \"beam\" changes its shape"));
+    }
+}
+
+/// A chain of rods on pins, hanging or inverted.
+struct Rods {
+  using Pin = Joint<planar::Revolute, Constraint>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model;
+  Rods(int rods, double gravity, bool twice) : model{Gravity{0, -gravity, 0}} {
+    std::vector<BodyHandle<planar::Rigid>> chain;
+    for (int i = 0; i < rods; ++i) {
+      chain.push_back(model.add(planar::Rigid(1.0, 0.1, Placement::planar(0.0, -0.5 - i, -0.5 * std::numbers::pi))));
+      for (int k = 0; k < (twice ? 2 : 1); ++k)
+        if (i == 0)
+          model.connect(Pin{}, model.ground().at({0, 0, 0}), chain[0].at(Vec2(-0.5, 0)));
+        else
+          model.connect(Pin{}, chain[std::size_t(i) - 1].at(Vec2(0.5, 0)), chain[std::size_t(i)].at(Vec2(-0.5, 0)));
+    }
+  }
+};
+
+// The whole stiffness is that of the multipliers. Upside down each rod may fall; pins made twice change nothing.
+TEST(Equilibrium, CountsTheNegativePivotsOfRodsThatHangAndStand) {
+  for (int const rods : {1, 2, 7})
+    for (bool const twice : {false, true})
+      for (double const gravity : {9.81, -9.81}) {
+        Rods const chain(rods, gravity, twice);
+        State x = chain.model.reference_state();
+        EXPECT_EQ(equilibrium(chain.model, x).negative_pivots, gravity > 0.0 ? 0 : rods) << rods << ' ' << twice;
+      }
+}
+
+/// Two springs of 2400 N/m from (±1, 0) m to a load F downwards at (0, 0.2) m. In equilibrium
+/// F = 2 k (L₀ − L) y/L, L² = 1 + y²; the limit load is 7.0735 N at y = 0.1158 m.
+struct Truss {
+  Model<Bodies<planar::Rigid>, Joints<Joint<planar::Prismatic, Constraint>>, Forces<SpringDamper, PointForce<>>> model;
+  State x;
+  explicit Truss(double F) {
+    auto const tip = model.add(planar::Rigid(1.0, 1.0, Placement::planar(0.0, 0.2)), "tip");
+    model.connect(Joint<planar::Prismatic, Constraint>{{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}),
+                  tip.at(Vec2(0, 0)), "rail");
+    for (double const side : {-1.0, 1.0})
+      model.apply(SpringDamper{.stiffness = 2400.0, .free_length = std::hypot(1.0, 0.2)},
+                  model.ground().at({side, 0, 0}), tip.at(Vec2(0, 0)));
+    model.apply(PointForce<>{.force = {0, -F, 0}}, tip.at(Vec2(0, 0)));
+    x = model.reference_state();
+  }
+  static double force(double y) { return 4800.0 * (std::hypot(1.0, 0.2) / std::hypot(1.0, y) - 1.0) * y; }
+};
+
+// Beyond the limit load the truss snaps through. Whatever the load steps, this is either refused or comes with a
+// warning that names the load factor; below it the state is on the path from the start.
+TEST(Equilibrium, WarnsOfALimitPoint) {
+  double limit = 0.0;
+  for (double y = 0.0; y < 0.2; y += 1e-5) limit = std::max(limit, Truss::force(y));
+  for (int const steps : {1, 3, 10})
+    for (double const part : {0.3, 0.9, 0.99, 1.02, 1.1, 1.3, 2.0, 3.0, 10.0}) {
+      Truss truss(part * limit);
+      EquilibriumReport report;
+      try {
+        report = equilibrium(truss.model, truss.x, {.load_steps = steps});
+      } catch (Error const&) {
+        EXPECT_GT(part, 1.0);
+        continue;
+      }
+      EXPECT_NEAR(Truss::force(truss.x.q[1]), part * limit, 1e-6 * limit);
+      EXPECT_EQ(report.negative_pivots, 0);
+      if (part < 1.0) {
+        EXPECT_GT(truss.x.q[1], 0.115) << part;
+        EXPECT_TRUE(report.warnings.empty()) << part;
+      } else {
+        EXPECT_LT(truss.x.q[1], -0.2);
+        ASSERT_EQ(report.warnings.size(), 1u) << steps << ' ' << part;
+        EXPECT_TRUE(has(report.warnings[0], "has a limit point near load factor"));
+        EXPECT_NEAR(report.limit_point * part, 1.0, 2e-3);
+      }
+    }
 }
 
 // A penalty clamp yields by what it bears, g = F/k and k g = M; a stiffer one comes nearer to the constraint.

@@ -59,6 +59,14 @@ class DenseLu {
 
   /// The least pivot of the last factorisation beside the largest entry of its column.
   double least_pivot() const { return least_pivot_; }
+  /// ±1, the sign of the determinant.
+  double sign_of_determinant() const {
+    Index const n = a_.cols();
+    double sign = 1.0;
+    for (Index k = 0; k < n; ++k)
+      if ((lu_[std::size_t(k * n + k)] < 0.0) != (swaps_[std::size_t(k)] != k)) sign = -sign;
+    return sign;
+  }
 
   void solve(VecX const& b, VecX& x) const {
     Index const n = a_.cols();

@@ -55,6 +55,8 @@ class EigenSparseLuBy {
   }
   /// The least pivot of the last factorisation beside the largest entry of its column.
   double least_pivot() const { return least_pivot_; }
+  /// ±1, the sign of the determinant.
+  double sign_of_determinant() const { return sink_.matrix().cols() == 0 ? 1.0 : lu_->signDeterminant(); }
   void solve(VecX const& b, VecX& x) const {
     if (b.size() > 0) x = lu_->solve(b);
   }

@@ -7,6 +7,8 @@
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/statics/equilibrium_equations.hpp>
 #include <polybody/statics/load_steps.hpp>
+#include <polybody/statics/relaxation.hpp>
+#include <polybody/statics/stability.hpp>
 #include <polybody/system/model_entries.hpp>
 
 namespace polybody {
@@ -25,29 +27,24 @@ bool multipliers_at_rest(System& system, State& x) {
   return true;
 }
 
-/// Newton's method at the present share; what it cost goes into the report.
-template <class Solver>
-NewtonResult correct(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
-  KeptFactor kept;
-  NewtonReport const n = newton(path, {.max_iterations = options.max_iterations, .always_refactor = true}, kept);
-  report.iterations += n.iterations;
-  return n.result;
-}
-
 /// Follows the path from the present place to its end. What stopped it; `path.trial` is then the last place in
 /// equilibrium.
 template <class Solver>
 NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
   LoadSteps steps(options);
-  bool primed = false;
+  bool primed = false, crosses = false;
   path.begin();
   while (!steps.done()) {
     State const before = path.trial;
     path.advance(steps.next());
+    int const iterations = report.iterations;
     NewtonResult const result = correct(path, options, report);
-    if (result == NewtonResult::converged) {
+    if (result == NewtonResult::converged && report.iterations - iterations > 5) path.look_half_way(before);
+    if (result == NewtonResult::converged && !(path.refuses_crossing && path.crosses)) {
+      path.measure_rate(before, steps.next() - steps.reached());
       steps.reach_next();
       ++report.parts;
+      crosses = crosses || path.crosses;
       continue;
     }
     path.trial = before;
@@ -59,8 +56,9 @@ NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& opt
         continue;
       }
     }
-    if (!steps.halve()) return result;
+    if (!steps.halve()) return result == NewtonResult::converged ? NewtonResult::diverged : result;
   }
+  path.crosses = crosses;
   return NewtonResult::converged;
 }
 
@@ -78,6 +76,60 @@ bool follow_least(EquilibriumPath<Solver>& path, State const& start, Equilibrium
   path.require_closed();
   path.least.drop_multipliers(path.trial.lambda);
   return true;
+}
+
+/// Replaces an unstable state that only halved parts have reached by the end of the damped motion from `start`, if that
+/// is stable.
+template <class Solver>
+[[gnu::cold]] void relax_unstable(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
+                                  EquilibriumReport& report) {
+  State const found = path.trial;
+  EquilibriumReport again;
+  bool const converged = relax(path, start, options, again);
+  report.iterations += again.iterations;
+  if (converged) report_stability(path, again);
+  if (converged && again.negative_pivots == 0) {
+    report = again;
+    return;
+  }
+  path.trial = found;
+  path.advance(1.0);
+  path.system.evaluate(found.q, found.v, found.t);
+}
+
+/// Puts a limit point into the report, with a warning; none if the load factor is 0.
+template <class = void>
+[[gnu::cold]] void report_limit_point(double factor, EquilibriumReport& report) {
+  if (factor == 0.0) return;
+  report.limit_point = factor;
+  report.warnings.push_back(sentence_of(
+      {"The path of equilibria from the start has a limit point near load factor ", factor,
+       ". The equilibrium found beyond it is not its continuation. Follow the path by equilibrium_path(model, x)."}));
+}
+
+/// Follows the path a second time from `start`. Parts in which the determinant of the tangent changes its sign are
+/// halved. If this path ends in another stable state, that state is the equilibrium. If it ends early at a limit point,
+/// the first result stays and the report names the load factor.
+template <class Solver>
+[[gnu::cold]] void follow_without_crossing(EquilibriumPath<Solver>& path, State const& start,
+                                           EquilibriumOptions const& options, EquilibriumReport& report) {
+  State const found = path.trial;
+  path.trial = start;
+  path.refuses_crossing = true;
+  path.least_rate = std::numeric_limits<double>::infinity();
+  EquilibriumReport again;
+  if (follow(path, options, again) != NewtonResult::converged) {
+    report_limit_point<>(path.limit_point(), report);
+  } else if (largest_size(path.trial.q - found.q) > 1e-6 * (1.0 + largest_size(found.q)) && !path.is_singular()) {
+    report_stability(path, again);
+    if (again.negative_pivots == 0) {
+      report = std::move(again);
+      return;
+    }
+  }
+  path.trial = found;
+  path.advance(1.0);
+  path.system.evaluate(found.q, found.v, found.t);
 }
 
 }  // namespace detail
@@ -122,9 +174,18 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
         result == NewtonResult::singular || (result == NewtonResult::diverged && path.finds_springs());
     if (!singular || !detail::follow_least(path, start, options, report)) {
       path.refuse_excited();
-      path.refuse(result, bad, at);
+      double const limit = result == NewtonResult::not_finite ? 0.0 : path.limit_point();
+      if (result == NewtonResult::not_finite || !detail::relax(path, start, options, report))
+        path.refuse(result, bad, at);
+      detail::report_limit_point<>(limit, report);
     }
   }
+  bool const crosses = path.crosses && !path.takes_least && !report.relaxed;
+  detail::report_stability(path, report);
+  if (report.negative_pivots > 0 && !report.relaxed && report.parts > options.load_steps)
+    detail::relax_unstable(path, start, options, report);
+  else if (crosses && path.states == 0 && report.negative_pivots == 0)
+    detail::follow_without_crossing(path, start, options, report);
   x = std::move(trial);
   return report;
 }

@@ -15,11 +15,18 @@ struct EquilibriumPath {
   LeastNorm<Solver>& least;
   State& trial;
   double tolerance;
-  bool takes_least = false;                                  ///< corrections by `least`
-  double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());  ///< no equilibrium is sought beyond
+  bool takes_least = false;  ///< corrections by `least`
+  /// A part of the path fails if the determinant of the tangent changes its sign between iterates, as beyond a limit
+  /// point, where Newton's method may converge to another branch.
+  bool refuses_crossing = false;
+  bool crosses = false;  ///< the determinant has changed its sign in this part
+  double sign = 0.0;     ///< of the determinant at the start of this part; 0: none yet
+  double least_rate = std::numeric_limits<double>::infinity();  ///< max |Δq|/Δs of the part with the least one
+  double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());     ///< no equilibrium is sought beyond
   Index nv = system.speeds(), rows = system.rows(), states = system.layout().states, bad = -1;
   double first = 0.0, share = 0.0;  ///< p₀, s
   VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
+  VecX moved = r;  ///< sum of the corrections of this part
 
   /// The path starts at the present place.
   void begin() {
@@ -35,8 +42,47 @@ struct EquilibriumPath {
     system.violation(phi0);
   }
   void advance(double s) {
+    sign = 0.0;
+    crosses = false;
+    moved.setZero();
     share = s;
     system.load_factor = first + s * (1.0 - first);
+  }
+
+  /// After a part Δs from `before` that has converged.
+  void measure_rate(State const& before, double part) {
+    least_rate = std::min(least_rate, largest_size(trial.q - before.q) / part);
+  }
+
+  /// Checks the sign of the determinant between `before` and the present state: Newton's method may pass over a range
+  /// of negative stiffness.
+  [[gnu::cold]] void look_half_way(State const& before) {
+    if (crosses || sign == 0.0 || takes_least) return;
+    VecX const half = 0.5 * moved, lambda = 0.5 * (before.lambda + trial.lambda);
+    system.plus(before.q, half, q);
+    system.evaluate(q, trial.v, trial.t);
+    double const middle = tangent.sign_here(lambda);
+    crosses = middle != 0.0 && middle != sign;
+    system.evaluate(trial.q, trial.v, trial.t);
+    tangent.sign_here(trial.lambda);
+  }
+  /// The present load factor, if a limit point is near: the motion per load, K⁻¹ ∂f/∂s, has grown to many times the
+  /// least one of the parts so far. Else 0.
+  [[gnu::cold]] double limit_point() {
+    if (takes_least) return 0.0;
+    double const factor = system.load_factor;
+    system.evaluate(trial.q, trial.v, trial.t);
+    VecX loads = r;
+    system.load_factor = 0.0;
+    system.residual(trial.a, trial.lambda, loads);
+    system.load_factor = 1.0;
+    system.residual(trial.a, trial.lambda, r);
+    system.load_factor = factor;
+    loads -= r;
+    if (tangent.factor(trial.lambda) >= 0) return std::isfinite(least_rate) ? factor : 0.0;
+    tangent.solve(loads, VecX::Zero(rows), y);
+    double const rate = (1.0 - first) * largest_size(y.head(nv));
+    return rate > 8.0 * least_rate ? factor : 0.0;
   }
 
   bool evaluate() {
@@ -49,7 +95,11 @@ struct EquilibriumPath {
   }
   bool refactor() {
     bad = takes_least ? least.factor(trial.lambda) : tangent.factor(trial.lambda);
-    return bad < 0;
+    if (bad >= 0 || takes_least) return bad < 0;
+    double const now = tangent.sign_of_determinant();
+    if (sign == 0.0) sign = now;
+    crosses = crosses || now != sign;
+    return true;
   }
   double solve() {
     if (takes_least)
@@ -57,6 +107,10 @@ struct EquilibriumPath {
     else
       tangent.solve(r, phi, y);
     if (takes_least && least.excited() >= 0) return std::numeric_limits<double>::infinity();
+    return correction();
+  }
+  /// The size of the correction y; its part of the coordinates into dq.
+  double correction() {
     dq = y.head(nv);
     for (Index i = nv - states; i < nv; ++i) dq[i] /= 1.0 + std::abs(trial.v[i]);  // each by its own unit
     Index largest = 0;
@@ -70,6 +124,7 @@ struct EquilibriumPath {
   void apply() {
     system.plus(trial.q, dq, q);
     trial.q.swap(q);
+    moved += dq;
     trial.v.tail(states) += y.segment(nv - states, states);
     trial.lambda += y.tail(rows);
   }
@@ -137,5 +192,14 @@ struct EquilibriumPath {
         add_row(i);
   }
 };
+
+/// Newton's method at the present share; what it cost goes into the report.
+template <class Solver>
+NewtonResult correct(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
+  KeptFactor kept;
+  NewtonReport const n = newton(path, {.max_iterations = options.max_iterations, .always_refactor = true}, kept);
+  report.iterations += n.iterations;
+  return n.result;
+}
 
 }  // namespace polybody::detail

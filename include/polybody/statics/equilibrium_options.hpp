@@ -35,6 +35,14 @@ struct EquilibriumReport {
   std::vector<std::string> neutral = {};
   /// Joints and bodies with rows that repeat others, once for each such row: their multipliers are zero.
   std::vector<std::string> redundant = {};
+  /// Number of negative eigenvalues of the tangent stiffness, symmetrised, on the motions that the constraint equations
+  /// allow: 0 for a stable state; a state with one or more is unstable. −1: not counted, in models with first-order
+  /// states, about a steady rotation, or beyond some 10⁵ coordinates of one long mechanism.
+  int negative_pivots = 0;
+  double limit_point = 0.0;  ///< load factor near which the path from the start turns back or branches; 0: none found
+  bool relaxed = false;      ///< Newton's method did not converge; the state comes from a damped motion
+  /// Sentences about an unstable state, and about a path of equilibria that is not the one from the start.
+  std::vector<std::string> warnings = {};
 };
 
 }  // namespace polybody

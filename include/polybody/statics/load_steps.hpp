@@ -13,6 +13,7 @@ class LoadSteps {
       : whole_(1.0 / std::max(options.load_steps, 1)), smallest_(options.smallest_part), part_(whole_) {}
 
   bool done() const { return done_ >= 1.0; }  ///< whether s = 1
+  double reached() const { return done_; }    ///< s
   /// Where the next part ends.
   double next() const { return done_ + part_ > 1.0 - 1e-12 ? 1.0 : done_ + part_; }
   /// Moves to `next()`, after a part that converged.

@@ -69,7 +69,24 @@ class StaticTangent {
   void write_scaled(VecX const& lambda, S& sink) {
     write(lambda, factored_, sink);
   }
-  double unit() const { return factored_; }  ///< u of the last factorisation
+  double unit() const { return factored_; }   ///< u of the last factorisation
+  double next_unit() const { return unit_; }  ///< u of the next one
+
+  /// ±1, the sign of the determinant of the last factorisation; 0 for solvers that do not give it.
+  double sign_of_determinant() const {
+    if constexpr (requires { solver_.sign_of_determinant(); })
+      return solver_.sign_of_determinant();
+    else
+      return 0.0;
+  }
+
+  /// The same at the present state of the system; 0 also for a singular matrix. The next scale u stays.
+  double sign_here(VecX const& lambda) {
+    double const next = unit_;
+    double const sign = factor(lambda) < 0 ? sign_of_determinant() : 0.0;
+    unit_ = next;
+    return sign;
+  }
 
   /// max |A⁻¹ b| for a b without order: as large as the inverse of the smallest singular value, but for a b that
   /// happens to be normal to its vector.

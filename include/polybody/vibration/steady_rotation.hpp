@@ -221,6 +221,7 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
   detail::TurningEquilibrium<> problem{.frame = {system, x.q, rotation}, .trial = x, .tolerance = options.tolerance};
   NewtonOptions const newton_options{.max_iterations = options.max_iterations, .always_refactor = true};
   EquilibriumReport report;
+  report.negative_pivots = -1;
   for (LoadSteps steps(options); !steps.done();) {
     State const before = problem.trial;
     problem.frame.share = steps.next();

@@ -1,0 +1,140 @@
+#pragma once
+/// \file
+/// Damped motion into equilibrium, for states from which Newton's method does not converge, such as slack cables: the
+/// gradient flow
+///   W q̇ = f − Gᵀλ,  Φ(q) = (1 − s) Φ₀,  W the diagonal of the mass matrix,
+/// by the implicit Euler method with steps τ that grow with its success (pseudo-transient continuation [Kelley & Keyes
+/// 1998]). It ends in a stable equilibrium: unstable ones repel it.
+
+#include <polybody/statics/equilibrium_equations.hpp>
+#include <polybody/statics/stability.hpp>
+
+namespace polybody::detail {
+
+/// Adds up the diagonal of a matrix.
+struct DiagonalSink {
+  VecX& sum;
+
+  void add(Index row, Index col, BlockView const& b) {
+    if (row != col || row + b.rows > sum.size()) return;
+    for (Index i = 0; i < std::min(b.rows, b.cols); ++i) sum[row + i] += b(i, i);
+  }
+};
+
+/// One step of the damped motion for Newton's method: K + μ W in place of K, μ = 1/τ.
+template <class Solver>
+struct DampedStep {
+  EquilibriumPath<Solver>& path;
+  VecX weights;
+  double mu = 0.0;
+  VecX moved = VecX::Zero(path.nv), springs = VecX::Zero(path.nv + path.rows);
+
+  bool evaluate() {
+    if (!path.evaluate()) return false;
+    path.r.array() -= mu * weights.array() * moved.array();
+    return true;
+  }
+  bool refactor() {
+    springs.head(path.nv) = (mu / path.tangent.next_unit()) * weights;
+    path.tangent.set_springs(springs, path.trial.lambda);
+    path.bad = path.tangent.factor(path.trial.lambda);
+    return path.bad < 0;
+  }
+  double solve() {
+    path.tangent.solve(path.r, path.phi, path.y);
+    return path.correction();
+  }
+  void apply() {
+    path.apply();
+    moved += path.dq;
+  }
+};
+
+/// Moves an unstable equilibrium by 1e-3 of its size along a motion of negative stiffness. False for a stable one.
+template <class Solver>
+[[gnu::cold]] bool leaves_saddle(EquilibriumPath<Solver>& path) {
+  path.system.evaluate(path.trial.q, path.trial.v, path.trial.t);
+  Stability const found = stability(path.system, path.tangent, path.trial.lambda);
+  if (found.negative <= 0) return false;
+  path.dq = (1e-3 * (1.0 + largest_size(path.trial.q)) / largest_size(found.motion)) * found.motion;
+  path.system.plus(path.trial.q, path.dq, path.q);
+  path.trial.q.swap(path.q);
+  return true;
+}
+
+/// Follows the damped motion from `start` under the whole load. Whether it ends in equilibrium.
+template <class Solver>
+[[gnu::cold]] bool relax(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
+                         EquilibriumReport& report) {
+  if (path.states > 0) return false;
+  path.trial = start;
+  path.takes_least = false;
+  path.begin();
+  DampedStep<Solver> step{path, VecX::Zero(path.nv)};
+  DiagonalSink sink{step.weights};
+  path.system.tangent({.mass = 1.0}, SecondOrder::included, path.trial.lambda, sink);
+  double const heaviest = step.weights.maxCoeff();
+  if (!(heaviest > 0.0 && std::isfinite(heaviest))) return false;
+  step.weights = step.weights.cwiseMax(1e-9 * heaviest);
+  double share = 0.0, part = 0.05;
+  step.mu = path.tangent.next_unit() / heaviest;
+  double const stiffest = 1e6 * step.mu;
+  bool reached = false;
+  int saddles = 0, failures = 0;
+  NewtonOptions const few{.max_iterations = std::min(12, options.max_iterations), .always_refactor = true};
+  for (int k = 0; k < 2000 && failures < 200 && step.mu < stiffest && !reached; ++k) {
+    State const before = path.trial;
+    double const next = std::min(1.0, share + part);
+    path.advance(next);
+    step.moved.setZero();
+    KeptFactor kept;
+    NewtonReport const n = newton(step, few, kept);
+    report.iterations += n.iterations;
+    if (n.result != NewtonResult::converged) {
+      ++failures;
+      path.trial = before;
+      step.mu *= 4.0;
+      part = std::max(0.5 * part, 1e-4);
+      continue;
+    }
+    share = next;
+    step.mu *= n.iterations <= 5 ? 0.25 : 0.7;
+    part = std::min(2.0 * part, 0.1);
+    if (share < 1.0 || !(largest_size(step.moved) <= 1e-3 * (1.0 + largest_size(path.trial.q)))) continue;
+    State const near = path.trial;
+    path.tangent.remove_springs(path.trial.lambda);
+    reached = correct(path, options, report) == NewtonResult::converged &&
+              largest_size(path.trial.q - near.q) <= 0.05 * (1.0 + largest_size(near.q));
+    if (!reached) {
+      failures += 4;
+      path.trial = near;
+    } else if (saddles < 20 && leaves_saddle(path)) {
+      ++saddles;
+      reached = false;
+      step.mu = std::min(1e4 * step.mu, 1e-6 * stiffest);
+    }
+  }
+  if (!reached) path.tangent.remove_springs(path.trial.lambda);
+  return report.relaxed = reached;
+}
+
+/// Counts negative pivots at the present place into the report, with a warning where there are any.
+template <class Solver>
+[[gnu::cold]] void report_stability(EquilibriumPath<Solver>& path, EquilibriumReport& report) {
+  report.negative_pivots = -1;
+  if (path.states > 0) return;
+  path.system.evaluate(path.trial.q, path.trial.v, path.trial.t);
+  Stability const found = stability(path.system, path.tangent, path.trial.lambda);
+  report.negative_pivots = int(found.negative);
+  if (found.negative <= 0) return;
+  Index largest = 0;
+  found.motion.cwiseAbs().maxCoeff(&largest);
+  report.warnings.push_back(sentence_of({"The equilibrium is unstable: the stiffness has ", found.negative,
+                                         found.negative == 1 ? " negative pivot" : " negative pivots",
+                                         " on the motions that the joints allow, one of them in a motion in which ",
+                                         name_of_motion(path.system, found.motion, largest),
+                                         ". A small disturbance leads away from it. Start nearer to a stable state, or "
+                                         "apply the loads in smaller steps."}));
+}
+
+}  // namespace polybody::detail

@@ -1,0 +1,209 @@
+#pragma once
+/// \file
+/// Stability of an equilibrium: number of negative eigenvalues of ZᵀK Z, Z a basis of the motions that the constraint
+/// equations allow, G Z = 0. Z comes from elimination: each constraint equation gives one coordinate by others,
+///   G_d x_d + G_f x_f = 0,  Z = [−G_d⁻¹ G_f; 1].
+/// K is symmetrised. Each negative pivot has a motion x. A sum of xᵀK x in long double confirms it: it must be negative
+/// beyond the round-off of its terms.
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include <polybody/statics/static_tangent.hpp>
+#include <polybody/statics/symmetric_pivots.hpp>
+
+namespace polybody::detail {
+
+/// Entries of a matrix of statics, K and G apart.
+struct StaticEntries {
+  struct Entry {
+    int row, col;
+    double value;
+  };
+  Index speeds;
+  Sequence<Entry> stiffness = {}, rows = {};
+
+  void add(Index row, Index col, BlockView const& b) {
+    if (col >= speeds) return;  // Gᵀ
+    for (Index j = 0; j < b.cols; ++j)
+      for (Index i = 0; i < b.rows; ++i)
+        if (double const value = b(i, j); value != 0.0) {
+          Entry const entry{int(row + i), int(col + j), value};
+          if (row < speeds)
+            stiffness.push_back(entry);
+          else
+            rows.push_back({int(row + i - speeds), entry.col, value});
+        }
+  }
+};
+
+/// A sum of coordinates.
+struct CoordinateSum {
+  Sequence<int> columns = {};
+  Sequence<double> factors = {};
+};
+
+/// Coordinates that constraint equations give by others.
+class DependentCoordinates {
+ public:
+  static constexpr double redundant =
+      1e-10;  ///< of an equation's largest entry: what is left of one that repeats others
+  static constexpr std::size_t most_terms = 20000000;
+
+  /// False where the sums have more than `most_terms`.
+  template <class = void>  // compiled where it is used
+  bool find(StaticEntries const& entries, Index rows) {
+    std::size_t const n = std::size_t(entries.speeds);
+    order_.assign(n, -1);
+    work_.assign(n, 0.0);
+    used_.assign(n, 0);
+    Sequence<Sequence<StaticEntries::Entry>> by_row{std::size_t(rows)};
+    for (auto const& e : entries.rows) by_row[std::size_t(e.row)].push_back(e);
+    for (auto const& row : by_row) {
+      double largest = 0.0;
+      for (auto const& e : row) {
+        add(e.col, e.value);
+        largest = std::max(largest, std::abs(e.value));
+      }
+      reduce();
+      give(redundant * largest);
+    }
+    std::size_t terms = 0;
+    for (std::size_t k = sums_.size(); k-- > 0;) {  // later ones by free coordinates, then earlier ones
+      for (std::size_t i = 0; i < sums_[k].columns.size(); ++i) add(sums_[k].columns[i], sums_[k].factors[i]);
+      reduce();
+      sums_[k] = take();
+      terms += sums_[k].columns.size();
+      if (terms > most_terms) return false;
+    }
+    return true;
+  }
+  /// The coordinate as a sum of free ones; null if it is free.
+  CoordinateSum const* sum(int column) const {
+    int const k = order_[std::size_t(column)];
+    return k < 0 ? nullptr : &sums_[std::size_t(k)];
+  }
+
+ private:
+  void add(int column, double value) {
+    if (!used_[std::size_t(column)]) {
+      used_[std::size_t(column)] = 1;
+      touched_.push_back(column);
+      if (order_[std::size_t(column)] >= 0) {
+        pending_.push_back(order_[std::size_t(column)]);
+        std::push_heap(pending_.begin(), pending_.end(), std::greater<int>());
+      }
+    }
+    work_[std::size_t(column)] += value;
+  }
+  /// Puts sums in place of dependent coordinates, those given first first.
+  void reduce() {
+    while (!pending_.empty()) {
+      std::pop_heap(pending_.begin(), pending_.end(), std::greater<int>());
+      CoordinateSum const& sum = sums_[std::size_t(pending_.back())];
+      std::size_t const column = std::size_t(dependent_[std::size_t(pending_.back())]);
+      pending_.pop_back();
+      double const value = std::exchange(work_[column], 0.0);
+      if (value == 0.0) continue;
+      for (std::size_t i = 0; i < sum.columns.size(); ++i) add(sum.columns[i], value * sum.factors[i]);
+    }
+  }
+  /// The row at hand gives the coordinate of its largest entry.
+  void give(double least) {
+    int best = -1;
+    double most = least;
+    for (int const c : touched_)
+      if (std::abs(work_[std::size_t(c)]) > most) {
+        most = std::abs(work_[std::size_t(c)]);
+        best = c;
+      }
+    double const pivot = best < 0 ? 1.0 : std::exchange(work_[std::size_t(best)], 0.0);
+    CoordinateSum sum = take();
+    if (best < 0) return;
+    for (double& f : sum.factors) f /= -pivot;
+    order_[std::size_t(best)] = int(sums_.size());
+    dependent_.push_back(best);
+    sums_.push_back(std::move(sum));
+  }
+  /// The sum at hand, which leaves none.
+  CoordinateSum take() {
+    CoordinateSum sum;
+    for (int const c : touched_) {
+      double const value = std::exchange(work_[std::size_t(c)], 0.0);
+      used_[std::size_t(c)] = 0;
+      if (value == 0.0) continue;
+      sum.columns.push_back(c);
+      sum.factors.push_back(value);
+    }
+    touched_.clear();
+    return sum;
+  }
+
+  Sequence<int> order_, dependent_, touched_, pending_;
+  Sequence<char> used_;
+  Sequence<double> work_;
+  Sequence<CoordinateSum> sums_;
+};
+
+/// Negative eigenvalues of ZᵀK Z.
+struct Stability {
+  Index negative = -1;  ///< their number; −1: the matrix is too large
+  VecX motion = {};     ///< (nv) one of negative xᵀK x; empty where there is none
+};
+
+/// xᵀK x is negative beyond round-off.
+template <class = void>  // compiled where it is used
+bool is_negative(StaticEntries const& entries, VecX const& x) {
+  long double sum = 0.0L, terms = 0.0L;
+  for (auto const& e : entries.stiffness) {
+    long double const term = static_cast<long double>(e.value) * x[e.row] * x[e.col];
+    sum += term;
+    terms += std::abs(term);
+  }
+  return sum < -1e-15L * terms;
+}
+
+/// Stability at the state of the last factorisation of `tangent`.
+template <LinearSolver Solver>
+Stability stability(System const& system, StaticTangent<Solver>& tangent, VecX const& lambda) {
+  Stability out;
+  StaticEntries entries{system.speeds()};
+  tangent.write_scaled(lambda, entries);
+  DependentCoordinates dependent;
+  if (!dependent.find(entries, system.rows())) return out;
+  Sequence<int> place(std::size_t(system.speeds()), -1);
+  int free = 0;
+  for (std::size_t i = 0; i < place.size(); ++i)
+    if (dependent.sum(int(i)) == nullptr) place[i] = free++;
+  Sequence<Eigen::Triplet<double>> reduced;
+  auto const each = [&](int column, auto&& visit) {
+    CoordinateSum const* const sum = dependent.sum(column);
+    if (sum == nullptr) return visit(place[std::size_t(column)], 1.0);
+    for (std::size_t i = 0; i < sum->columns.size(); ++i) visit(place[std::size_t(sum->columns[i])], sum->factors[i]);
+  };
+  for (auto const& e : entries.stiffness)
+    each(e.row, [&](int i, double a) {
+      each(e.col, [&](int j, double b) {
+        reduced.emplace_back(i, j, 0.5 * a * b * e.value);
+        reduced.emplace_back(j, i, 0.5 * a * b * e.value);
+      });
+    });
+  if (reduced.size() > 4 * DependentCoordinates::most_terms) return out;
+  out.negative = 0;
+  if (free == 0) return out;
+  SymmetricPivots::Matrix r(free, free);
+  r.setFromTriplets(reduced.begin(), reduced.end());
+  SymmetricPivots pivots;
+  if (!pivots.factor(r)) return {};
+  for (Index const k : pivots.negative()) {
+    VecX const z = pivots.direction(k);
+    VecX x = VecX::Zero(system.speeds());
+    for (std::size_t i = 0; i < place.size(); ++i) each(int(i), [&](int j, double a) { x[Index(i)] += a * z[j]; });
+    if (!is_negative<>(entries, x)) continue;
+    if (out.negative++ == 0) out.motion = std::move(x);
+  }
+  return out;
+}
+
+}  // namespace polybody::detail
